@@ -1,0 +1,44 @@
+// depth_downsample
+// What    Brings the scene's depth to the resolution of the accumulation target: one kept depth per texel.
+// Reads   scene_depth (full resolution, as the host stores it).
+// Writes  reduced depth, R32Float, linear view depth in metres, never more than system.depth_limit.
+// Blend   none.
+// Source  OTEE "Transfer & lighting", option 1; DESIGN "Reduced resolution".
+
+#import "lib/bindings.wgsl"
+#import "lib/depth.wgsl"
+
+override DEPTH_DOWNSAMPLE: u32 = DEPTH_DOWNSAMPLE_CHECKERBOARD;
+
+@vertex
+fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    // One triangle that covers the target.
+    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+}
+
+@fragment
+fn fragment(@builtin(position) position: vec4f) -> @location(0) f32 {
+    let texel = vec2i(floor(position.xy)) + vec2i(system.target_origin);
+    let scale = i32(system.scale);
+    let first = texel * scale;
+    let last = vec2i(view.size) - 1;
+
+    if DEPTH_DOWNSAMPLE == DEPTH_DOWNSAMPLE_POINT {
+        let pixel = min(first + scale / 2, last);
+        let depth = view_depth_from_ndc_depth(textureLoad(scene_depth, pixel, 0).r, view.depth_coefficients);
+        return min(depth, system.depth_limit);
+    }
+    var nearest = SKY_VIEW_DEPTH;
+    var farthest = 0.0;
+    let end = min(first + scale - 1, last);
+    for (var y = first.y; y <= end.y; y++) {
+        for (var x = first.x; x <= end.x; x++) {
+            let ndc_depth = textureLoad(scene_depth, vec2i(x, y), 0).r;
+            let depth = view_depth_from_ndc_depth(ndc_depth, view.depth_coefficients);
+            nearest = min(nearest, depth);
+            farthest = max(farthest, depth);
+        }
+    }
+    let kept = select(nearest, farthest, depth_downsample_keeps_farthest(DEPTH_DOWNSAMPLE, texel));
+    return min(kept, system.depth_limit);
+}

@@ -1,0 +1,40 @@
+// diffuse_bake
+// What    Bakes all lights through the diffuse ramp into a small texture by normal, once per system and frame.
+// Reads   lights, diffuse ramp.
+// Writes  one face of the cubemap, or the motif: Rgba16Float, linear light.
+// Blend   none.
+// Source  OTEE "Diffuse lighting": "use cubemaps", "motif lighting".
+// Space   Normals in view space. Lights are sampled at the middle of the system.
+
+#import "lib/diffuse.wgsl"
+#import "lib/diffuse_bake.wgsl"
+
+override MOTIF: bool = false;
+// Texels along a side of the target.
+override BAKE_SIZE: f32 = 32.0;
+
+struct BakeVertex {
+    @builtin(position) position: vec4f,
+    @location(0) @interpolate(flat, either) face: u32,
+}
+
+// Face i is drawn with the vertices 3i .. 3i + 2.
+@vertex
+fn vertex(@builtin(vertex_index) index: u32) -> BakeVertex {
+    let corner = index % 3u;
+    return BakeVertex(
+        vec4f(f32(corner & 1u) * 4.0 - 1.0, f32(corner >> 1u) * 4.0 - 1.0, 0.0, 1.0),
+        index / 3u,
+    );
+}
+
+@fragment
+fn fragment(in: BakeVertex) -> @location(0) vec4f {
+    // First and last texel centres lie on -1 and 1.
+    let place = floor(in.position.xy) / (BAKE_SIZE - 1.0) * 2.0 - 1.0;
+    var normal = motif_normal(place);
+    if !MOTIF {
+        normal = normalize(cube_direction(i32(in.face), place));
+    }
+    return vec4f(diffuse_from_lights(normal, system.bounds_centre), 1.0);
+}

@@ -1,0 +1,25 @@
+// What every pass can see. The layouts are in src/pass/mod.rs.
+
+#import "lib/view.wgsl"
+#import "lib/system.wgsl"
+#import "lib/lighting.wgsl"
+
+// MAX_LIGHTS in src/light.rs.
+const MAX_LIGHTS: u32 = 128u;
+
+@group(0) @binding(0) var<uniform> view: View;
+// The host's depth buffer, or its R32Float view depth; read with textureLoad as unfilterable float, which every backend
+// can do with either.
+@group(0) @binding(1) var scene_depth: texture_2d<f32>;
+
+@group(1) @binding(0) var<uniform> system: System;
+// view space; only those that reach the system
+@group(1) @binding(1) var<uniform> lights: array<Light, MAX_LIGHTS>;
+
+@group(2) @binding(0) var sprite: texture_2d_array<f32>;
+@group(2) @binding(1) var diffuse_ramp: texture_2d<f32>;
+@group(2) @binding(2) var soft_scatter_ramp: texture_2d<f32>;
+// x is distance², y is the amount.
+@group(2) @binding(3) var specular_ramp: texture_2d<f32>;
+@group(2) @binding(4) var painted_motif: texture_2d<f32>;
+@group(2) @binding(5) var linear_sampler: sampler;

@@ -1,0 +1,30 @@
+// Scene depth as linear view depth, metres.
+
+// View depth where there is no surface. SKY_VIEW_DEPTH in src/view.rs.
+const SKY_VIEW_DEPTH: f32 = 1.0e6;
+
+// view_depth = (c.x + c.y·d) / (c.z + c.w·d). One form for every convention; the coefficients and their derivation
+// are depth_coefficients() in src/reference/depth.rs.
+fn view_depth_from_ndc_depth(ndc_depth: f32, coefficients: vec4f) -> f32 {
+    let numerator = coefficients.x + coefficients.y * ndc_depth;
+    let denominator = coefficients.z + coefficients.w * ndc_depth;
+    // A zero denominator is an infinite far plane: the sky. `!(a > b)` also catches NaN.
+    if !(denominator * SKY_VIEW_DEPTH > numerator) {
+        return SKY_VIEW_DEPTH;
+    }
+    return numerator / denominator;
+}
+
+const DEPTH_DOWNSAMPLE_CHECKERBOARD: u32 = 0u;
+const DEPTH_DOWNSAMPLE_MAX: u32 = 1u;
+const DEPTH_DOWNSAMPLE_MIN: u32 = 2u;
+const DEPTH_DOWNSAMPLE_POINT: u32 = 3u;
+
+// True if the reduced texel keeps the farthest depth under it, false for the nearest. Checkerboard alternates, so that
+// every 2x2 footprint of an upsampler holds both sides of an edge.
+fn depth_downsample_keeps_farthest(mode: u32, texel: vec2i) -> bool {
+    if mode == DEPTH_DOWNSAMPLE_CHECKERBOARD {
+        return ((texel.x + texel.y) & 1) == 0;
+    }
+    return mode == DEPTH_DOWNSAMPLE_MAX;
+}

@@ -1,0 +1,28 @@
+// Light on smoke: shared by transfer, forward and diffuse_bake.
+
+#import "lib/bindings.wgsl"
+#import "lib/ramp.wgsl"
+
+const SOFT_SCATTER_MODE_SMOOTHSTEP: u32 = 0u;
+const SOFT_SCATTER_MODE_RAMP: u32 = 1u;
+override SOFT_SCATTER_MODE: u32 = SOFT_SCATTER_MODE_SMOOTHSTEP;
+
+// Every light through the diffuse ramp: ramp(dot(n, l) / 2 + 1/2) · colour · attenuation. (OTEE "Diffuse lighting")
+fn diffuse_from_lights(normal: vec3f, position: vec3f) -> vec3f {
+    var sum = vec3f(0.0);
+    for (var i = 0u; i < system.light_count; i++) {
+        let light = sample_light(lights[i], position);
+        let falloff = sample_ramp(diffuse_ramp, linear_sampler, diffuse_coordinate(normal, light.direction));
+        sum += falloff * lights[i].colour * light.attenuation;
+    }
+    return sum;
+}
+
+// The even backlight of smoke by its amount. (OTEE "Soft scattering")
+fn soft_scatter(amount: f32) -> vec3f {
+    if SOFT_SCATTER_MODE == SOFT_SCATTER_MODE_RAMP {
+        return sample_ramp(soft_scatter_ramp, linear_sampler, amount) * system.soft_scatter_intensity;
+    }
+    let weight = soft_scatter_weight(amount, system.scatter_amount, system.scatter_smooth);
+    return mix(system.scatter_colour, system.ambient_colour, weight) * system.soft_scatter_intensity;
+}

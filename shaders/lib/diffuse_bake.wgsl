@@ -1,0 +1,68 @@
+// Diffuse light by normal, baked: the geometry of the cubemap and of the motif, and spherical harmonics.
+
+// Cube faces in the order +x -x +y -y +z -z. A face's edge texel centres lie exactly on the cube's edges, so that two
+// faces share the texels there and bilinear lookups meet without a seam.
+
+struct CubeCoordinate {
+    face: i32,
+    // -1..1 on the face.
+    position: vec2f,
+}
+
+// The direction, not normalised, of a point on a face.
+fn cube_direction(face: i32, position: vec2f) -> vec3f {
+    switch face {
+        case 0: { return vec3f(1.0, position.y, -position.x); }
+        case 1: { return vec3f(-1.0, position.y, position.x); }
+        case 2: { return vec3f(position.x, 1.0, -position.y); }
+        case 3: { return vec3f(position.x, -1.0, position.y); }
+        case 4: { return vec3f(position.x, position.y, 1.0); }
+        default: { return vec3f(-position.x, position.y, -1.0); }
+    }
+}
+
+// The face and point that a direction hits; it need not be normalised.
+fn cube_coordinate(direction: vec3f) -> CubeCoordinate {
+    let size = abs(direction);
+    let largest = max(max(size.x, size.y), max(size.z, 1.0e-12));
+    let d = direction / largest;
+    if size.x >= size.y && size.x >= size.z {
+        if d.x > 0.0 { return CubeCoordinate(0, vec2f(-d.z, d.y)); }
+        return CubeCoordinate(1, vec2f(d.z, d.y));
+    }
+    if size.y >= size.z {
+        if d.y > 0.0 { return CubeCoordinate(2, vec2f(d.x, -d.z)); }
+        return CubeCoordinate(3, vec2f(d.x, d.z));
+    }
+    if d.z > 0.0 { return CubeCoordinate(4, vec2f(d.x, d.y)); }
+    return CubeCoordinate(5, vec2f(-d.x, d.y));
+}
+
+// The normal seen at a point, -1..1, of a picture of a sphere; outside the disc, that of the nearest rim point.
+fn motif_normal(position: vec2f) -> vec3f {
+    let square = dot(position, position);
+    if square >= 1.0 {
+        return vec3f(position * inverseSqrt(square), 0.0);
+    }
+    return vec3f(position, sqrt(1.0 - square));
+}
+
+// Where a normal is seen in a picture of a sphere, -1..1. Normals that face away look at the rim.
+fn motif_position(normal: vec3f) -> vec2f {
+    if normal.z >= 0.0 {
+        return normal.xy;
+    }
+    return normal.xy * inverseSqrt(max(dot(normal.xy, normal.xy), 1.0e-12));
+}
+
+// Light by normal from nine coefficients: the real spherical harmonics to L2, with the basis' constants.
+fn spherical_harmonics(coefficients: array<vec4f, 9>, n: vec3f) -> vec3f {
+    let c = coefficients;
+    var light = 0.282094792 * c[0].rgb;
+    light += 0.488602512 * (n.y * c[1].rgb + n.z * c[2].rgb + n.x * c[3].rgb);
+    light += 1.092548431 * (n.x * n.y * c[4].rgb + n.y * n.z * c[5].rgb + n.x * n.z * c[7].rgb);
+    light += 0.315391565 * (3.0 * n.z * n.z - 1.0) * c[6].rgb;
+    light += 0.546274215 * (n.x * n.x - n.y * n.y) * c[8].rgb;
+    // L2 overshoots on hard ramps; light is never negative.
+    return max(light, vec3f(0.0));
+}

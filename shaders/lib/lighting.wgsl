@@ -1,0 +1,71 @@
+// The light of one point of the smoke. View space, metres, linear colour.
+
+// Mirrors gpu_types::LightUniform.
+struct Light {
+    // Point and spot.
+    position: vec3f,
+    // 1 / range; 0 for directional lights.
+    inverse_range: f32,
+    // The way the light travels, unit length. Spot and directional.
+    direction: vec3f,
+    // 1 for directional lights, else 0.
+    directional: f32,
+    // Colour times intensity.
+    colour: vec3f,
+    specular_scatter: f32,
+    // Cone fade: saturate(cos · spot_scale + spot_offset)². Scale 0, offset 1 for lights without a cone.
+    spot_scale: f32,
+    spot_offset: f32,
+    radius: f32,
+    padding: f32,
+}
+
+struct LightSample {
+    // Unit vector towards the light.
+    direction: vec3f,
+    attenuation: f32,
+}
+
+// Falloff of a light with distance: inverse square, softened inside the light's own body, windowed to reach exactly 0
+// at the range. (window: Karis, "Real Shading in Unreal Engine 4", 2013, eq. 9)
+fn distance_attenuation(distance_squared: f32, inverse_range: f32, radius: f32) -> f32 {
+    let ratio = distance_squared * inverse_range * inverse_range;
+    let window = saturate(1.0 - ratio * ratio);
+    return window * window / (distance_squared + radius * radius);
+}
+
+// Direction to the light and what is left of it at `position`.
+fn sample_light(light: Light, position: vec3f) -> LightSample {
+    if light.directional > 0.5 {
+        return LightSample(-light.direction, 1.0);
+    }
+    let to_light = light.position - position;
+    let distance_squared = dot(to_light, to_light);
+    let direction = to_light * inverseSqrt(max(distance_squared, 1.0e-8));
+    let cone = saturate(dot(-direction, light.direction) * light.spot_scale + light.spot_offset);
+    let attenuation = distance_attenuation(distance_squared, light.inverse_range, light.radius) * cone * cone;
+    return LightSample(direction, attenuation);
+}
+
+// Where a normal looks into the diffuse ramp: 0 facing away from the light, 1 facing it. (OTEE "Diffuse lighting")
+fn diffuse_coordinate(normal: vec3f, to_light: vec3f) -> f32 {
+    return saturate(dot(normal, to_light) * 0.5 + 0.5);
+}
+
+// 0 in thin smoke, 1 in thick: smoothstep(scatter_amount, scatter_amount + scatter_smooth, A), safe at
+// scatter_smooth = 0. (OTEE "Soft scattering")
+fn soft_scatter_weight(amount: f32, scatter_amount: f32, scatter_smooth: f32) -> f32 {
+    let x = saturate((amount - scatter_amount) / max(scatter_smooth, 1.0e-4));
+    return x * x * (3.0 - 2.0 * x);
+}
+
+// How much of the scene the smoke hides. (OTEE "Diffuse lighting", col.a)
+fn coverage(amount: f32, boost: f32) -> f32 {
+    return saturate(amount * boost);
+}
+
+// How much of the box, by view depth, lies in front of a light: 0 before its near side, 1 behind its far side.
+// (OTEE "Specular scattering": fade out the quad as it goes through the bounding box)
+fn specular_scatter_fade(light_depth: f32, bounds_near: f32, bounds_far: f32) -> f32 {
+    return saturate((light_depth - bounds_near) / max(bounds_far - bounds_near, 1.0e-4));
+}

@@ -1,0 +1,48 @@
+// Normals in and out of the accumulation target. View space: x right, y up, z towards the viewer.
+
+const NORMAL_ENCODING_SIGNED: u32 = 0u;
+const NORMAL_ENCODING_BIASED: u32 = 1u;
+const NORMAL_DECODE_EXACT: u32 = 0u;
+const NORMAL_DECODE_LITERAL: u32 = 1u;
+
+// One sprite fragment for the blend ONE, ONE_MINUS_SRC_ALPHA: premultiplied normal, amount. (OTEE "Accumulating")
+fn accumulation_from_normal(encoding: u32, normal: vec3f, amount: f32) -> vec4f {
+    if encoding == NORMAL_ENCODING_BIASED {
+        return vec4f((normal * 0.5 + 0.5) * amount, amount);
+    }
+    return vec4f(normal * amount, amount);
+}
+
+// The unit normal of an accumulated texel.
+// The target was cleared to 0 and the weights of its layers sum to the amount A. So biased normals e = n/2 + 1/2 give
+// rgb = sum(w·n)/2 + A/2, and 2·rgb - A = sum(w·n) is exact at every amount. OTEE's normalize(rgb·2 - 1) equals it only
+// at A = 1; it is kept as NORMAL_DECODE_LITERAL. A zero vector (empty, or cancelled) faces the viewer.
+fn normal_from_accumulation(encoding: u32, decode: u32, accumulated: vec4f) -> vec3f {
+    var normal = accumulated.rgb;
+    if decode == NORMAL_DECODE_LITERAL {
+        normal = accumulated.rgb * 2.0 - 1.0;
+    } else if encoding == NORMAL_ENCODING_BIASED {
+        normal = accumulated.rgb * 2.0 - accumulated.a;
+    }
+    let square = dot(normal, normal);
+    if square < 1.0e-12 {
+        return vec3f(0.0, 0.0, 1.0);
+    }
+    return normal * inverseSqrt(square);
+}
+
+// Turns a sprite's normal with the sprite: rotation is (cos, sin), counter-clockwise.
+fn rotate_normal(normal: vec3f, rotation: vec2f) -> vec3f {
+    return vec3f(
+        normal.x * rotation.x - normal.y * rotation.y,
+        normal.x * rotation.y + normal.y * rotation.x,
+        normal.z,
+    );
+}
+
+// Leans a sprite's normal away from the middle of its system. `away` is the sprite's offset from the middle, in halves
+// of the system's size: about -1..1 on each axis.
+fn bend_normal(normal: vec3f, away: vec3f, shape: f32) -> vec3f {
+    let bent = normal + away * shape;
+    return bent * inverseSqrt(max(dot(bent, bent), 1.0e-12));
+}

@@ -1,0 +1,23 @@
+// Ramp lookups. A ramp's first and last texel centres stand for 0 and 1, so that a gradient's end stops are reached.
+
+// True: filter in the shader in f32, as the reference does. False: the sampler's filter, often 8 bits of weight.
+override EXACT_FILTERING: bool = false;
+
+fn sample_ramp_2d(ramp: texture_2d<f32>, linear_sampler: sampler, coordinate: vec2f) -> vec3f {
+    let size = vec2f(textureDimensions(ramp));
+    let texel = saturate(coordinate) * (size - 1.0);
+    if !EXACT_FILTERING {
+        return textureSampleLevel(ramp, linear_sampler, (texel + 0.5) / size, 0.0).rgb;
+    }
+    let base = floor(texel);
+    let fraction = texel - base;
+    let low = vec2i(base);
+    let high = min(low + 1, vec2i(size) - 1);
+    let bottom = mix(textureLoad(ramp, low, 0), textureLoad(ramp, vec2i(high.x, low.y), 0), fraction.x);
+    let top = mix(textureLoad(ramp, vec2i(low.x, high.y), 0), textureLoad(ramp, high, 0), fraction.x);
+    return mix(bottom, top, fraction.y).rgb;
+}
+
+fn sample_ramp(ramp: texture_2d<f32>, linear_sampler: sampler, u: f32) -> vec3f {
+    return sample_ramp_2d(ramp, linear_sampler, vec2f(u, 0.0));
+}

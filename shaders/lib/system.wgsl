@@ -1,0 +1,46 @@
+// One particle system in this view. Mirrors gpu_types::SystemUniform; the fields named like settings are those settings.
+
+struct System {
+    // World space.
+    bounds_min: vec3f,
+    // View depths of the box.
+    bounds_near: f32,
+    bounds_max: vec3f,
+    bounds_far: f32,
+    // View space.
+    bounds_centre: vec3f,
+    // View depth of the plane that lighting is flattened to.
+    plane_depth: f32,
+    // 1 / half the size of the box in view space.
+    inverse_half_size: vec3f,
+    opacity: f32,
+    scatter_colour: vec3f,
+    scatter_amount: f32,
+    ambient_colour: vec3f,
+    scatter_smooth: f32,
+    // NDC of the accumulation target = NDC of the view · xy + zw.
+    target_from_ndc: vec4f,
+    // Reduced texels.
+    target_origin: vec2f,
+    target_size: vec2f,
+    // Pixels per reduced texel.
+    scale: f32,
+    // Depths beyond this look alike to the system: the far side of the box plus the length of the fade.
+    depth_limit: f32,
+    sprite_size: f32,
+    frame_count: f32,
+    boost: f32,
+    shape: f32,
+    fade_scale: f32,
+    contrast_power: f32,
+    epsilon: f32,
+    near_fade_start: f32,
+    near_fade_end: f32,
+    diffuse_intensity: f32,
+    soft_scatter_intensity: f32,
+    specular_scatter_size: f32,
+    specular_scatter_intensity: f32,
+    light_count: u32,
+    // Diffuse light as spherical harmonics, rgb.
+    spherical_harmonics: array<vec4f, 9>,
+}

@@ -1,0 +1,82 @@
+// specular_scatter
+// What    The glow of lights behind the smoke: one quad of constant pixel size round each light.
+// Reads   accumulation target, reduced depth, scene depth, lights, specular ramp.
+// Writes  the host's colour target, linear HDR.
+// Blend   ONE, ONE (additive); alpha is left alone.
+// Source  OTEE "Specular scattering".
+
+#import "lib/accumulated.wgsl"
+#import "lib/ramp.wgsl"
+#import "lib/sprite.wgsl"
+
+struct QuadVertex {
+    @builtin(position) position: vec4f,
+    // -1..1 across the quad.
+    @location(0) uv: vec2f,
+    // Light colour times all fades.
+    @location(1) @interpolate(flat, either) colour: vec3f,
+}
+
+// The share of a light's body that the scene leaves visible: a ring of 8 taps and the middle.
+fn light_visibility(pixel: vec2f, radius: f32, light_depth: f32) -> f32 {
+    var visible = 0.0;
+    for (var i = 0u; i < 9u; i++) {
+        let angle = f32(i) * 0.785398163;
+        let offset = select(vec2f(cos(angle), sin(angle)) * radius, vec2f(0.0), i == 8u);
+        let tap = clamp(floor(pixel + offset), vec2f(0.0), view.size - 1.0);
+        visible += select(0.0, 1.0, scene_view_depth(tap) >= light_depth);
+    }
+    return visible / 9.0;
+}
+
+@vertex
+fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> QuadVertex {
+    var out: QuadVertex;
+    // Outside the clip volume, until shown to be seen.
+    out.position = vec4f(2.0, 2.0, 2.0, 1.0);
+
+    let light = lights[instance];
+    let homogeneous = select(vec4f(light.position, 1.0), vec4f(-light.direction, 0.0), light.directional > 0.5);
+    let clip = view.clip_from_view * homogeneous;
+    let depth = select(-light.position.z, SKY_VIEW_DEPTH, light.directional > 0.5);
+    let fade = specular_scatter_fade(depth, system.bounds_near, system.bounds_far);
+    let strength = light.specular_scatter * system.specular_scatter_intensity * fade;
+    if clip.w <= 0.0 || depth <= view.near || strength <= 0.0 {
+        return out;
+    }
+    let centre = clip.xy / clip.w;
+    let pixel = pixel_from_ndc(centre, view.size);
+    // The glow ends with its quad: a light further outside the picture than that shows nothing.
+    if any(abs(pixel - 0.5 * view.size) > 0.5 * view.size + system.specular_scatter_size) {
+        return out;
+    }
+    // The light's own fixture may stand in its way: what is nearer than its body does not count. For the sun, anything is.
+    let pixels_per_metre = 0.5 * view.size.y / view.ray_scale.y * mix(1.0 / depth, 1.0, view.orthographic);
+    let body = max(light.radius * pixels_per_metre, 1.5);
+    let compared_depth = min(depth - 2.0 * light.radius, 0.99 * view.far);
+    let visibility = light_visibility(pixel, body, compared_depth);
+    if visibility <= 0.0 {
+        return out;
+    }
+    let corner = sprite_corner(index);
+    let extent = corner * system.specular_scatter_size * 2.0 / view.size;
+    out.position = vec4f(centre + extent, 0.5, 1.0);
+    out.uv = corner;
+    out.colour = light.colour * strength * visibility;
+    return out;
+}
+
+@fragment
+fn fragment(in: QuadVertex) -> @location(0) vec4f {
+    let distance_squared = dot(in.uv, in.uv);
+    if distance_squared >= 1.0 {
+        discard;
+    }
+    let amount = sample_accumulation(in.position.xy).a;
+    if amount <= 0.0 {
+        discard;
+    }
+    // x is distance², y is the amount.
+    let glow = sample_ramp_2d(specular_ramp, linear_sampler, vec2f(distance_squared, amount));
+    return vec4f(glow * in.colour, 0.0);
+}

@@ -1,0 +1,156 @@
+// transfer
+// What    Lights the accumulated smoke once per pixel, over the system's bounding box.
+// Reads   accumulation target, reduced depth, scene depth, lights, ramps, baked diffuse light.
+// Writes  the host's colour target, linear HDR.
+// Blend   ONE, ONE_MINUS_SRC_ALPHA (premultiplied over the scene).
+// Source  OTEE "Transfer & lighting", "Diffuse lighting", "Soft scattering".
+// Space   Lighting in view space, on the plane through the middle of the box that faces the viewer.
+
+#import "lib/diffuse.wgsl"
+#import "lib/accumulated.wgsl"
+#import "lib/normal.wgsl"
+#import "lib/diffuse_bake.wgsl"
+
+// Six faces of baked light by normal (cubemap), or one picture of a lit sphere (motif).
+@group(3) @binding(2) var baked_diffuse: texture_2d_array<f32>;
+
+const DIFFUSE_MODE_RAMP: u32 = 0u;
+const DIFFUSE_MODE_CUBEMAP: u32 = 1u;
+const DIFFUSE_MODE_MOTIF: u32 = 2u;
+const DIFFUSE_MODE_PAINTED_MOTIF: u32 = 3u;
+const DIFFUSE_MODE_SPHERICAL_HARMONICS: u32 = 4u;
+override DIFFUSE_MODE: u32 = DIFFUSE_MODE_RAMP;
+override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
+override NORMAL_DECODE: u32 = NORMAL_DECODE_EXACT;
+// True: draw the back faces, never clipped away by the near plane. False: the front faces, depth-tested.
+override BACK_FACES: bool = false;
+
+const SHADE_TREE_FINAL: u32 = 0u;
+const SHADE_TREE_COMBINED: u32 = 1u;
+const SHADE_TREE_DIFFUSE: u32 = 2u;
+const SHADE_TREE_SOFT_SCATTER: u32 = 3u;
+const SHADE_TREE_SPECULAR_SCATTER: u32 = 4u;
+const SHADE_TREE_NORMALS: u32 = 5u;
+const SHADE_TREE_AMOUNT: u32 = 6u;
+const SHADE_TREE_OVERDRAW: u32 = 7u;
+const SHADE_TREE_REDUCED_DEPTH: u32 = 8u;
+override SHADE_TREE: u32 = SHADE_TREE_FINAL;
+
+// The twelve triangles of a box, counter-clockwise from outside. Bit 0 of a corner is x, bit 1 y, bit 2 z.
+const BOX_CORNERS = array<u32, 36>(
+    0u, 2u, 1u, 1u, 2u, 3u,
+    4u, 5u, 6u, 5u, 7u, 6u,
+    0u, 1u, 4u, 1u, 5u, 4u,
+    2u, 6u, 3u, 3u, 6u, 7u,
+    0u, 4u, 2u, 2u, 4u, 6u,
+    1u, 3u, 5u, 3u, 7u, 5u,
+);
+
+@vertex
+fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    var corners = BOX_CORNERS;
+    let corner = corners[index];
+    let side = vec3f(f32(corner & 1u), f32((corner >> 1u) & 1u), f32(corner >> 2u));
+    let world = mix(system.bounds_min, system.bounds_max, side);
+    var clip = view.clip_from_view * (view.view_from_world * vec4f(world, 1.0));
+    if BACK_FACES {
+        // Not depth-tested: only the half-space in front of the eye matters, not the near and far planes.
+        clip.z = 0.5 * clip.w;
+    }
+    return clip;
+}
+
+// `position` is -1..1 on the face or motif; the first row is -1.
+fn sample_baked(position: vec2f, layer: i32) -> vec3f {
+    let size = vec2f(textureDimensions(baked_diffuse));
+    let texel = saturate(position * 0.5 + 0.5) * (size - 1.0);
+    if !EXACT_FILTERING {
+        return textureSampleLevel(baked_diffuse, linear_sampler, (texel + 0.5) / size, layer, 0.0).rgb;
+    }
+    let base = floor(texel);
+    let fraction = texel - base;
+    let low = vec2i(base);
+    let high = min(low + 1, vec2i(size) - 1);
+    let bottom = mix(
+        textureLoad(baked_diffuse, low, layer, 0),
+        textureLoad(baked_diffuse, vec2i(high.x, low.y), layer, 0),
+        fraction.x,
+    );
+    let top = mix(
+        textureLoad(baked_diffuse, vec2i(low.x, high.y), layer, 0),
+        textureLoad(baked_diffuse, high, layer, 0),
+        fraction.x,
+    );
+    return mix(bottom, top, fraction.y).rgb;
+}
+
+fn diffuse(normal: vec3f, position: vec3f) -> vec3f {
+    var light = vec3f(0.0);
+    switch DIFFUSE_MODE {
+        case DIFFUSE_MODE_CUBEMAP: {
+            let cube = cube_coordinate(normal);
+            light = sample_baked(cube.position, cube.face);
+        }
+        case DIFFUSE_MODE_MOTIF: { light = sample_baked(motif_position(normal), 0); }
+        case DIFFUSE_MODE_PAINTED_MOTIF: {
+            light = sample_ramp_2d(painted_motif, linear_sampler, motif_position(normal) * 0.5 + 0.5);
+        }
+        case DIFFUSE_MODE_SPHERICAL_HARMONICS: { light = spherical_harmonics(system.spherical_harmonics, normal); }
+        default: { light = diffuse_from_lights(normal, position); }
+    }
+    return light * system.diffuse_intensity;
+}
+
+// Black, blue, green, yellow, red, white at 0, 4, 8, 16, 32, 64 layers.
+fn overdraw_colour(layers: f32) -> vec3f {
+    var colours = array<vec3f, 6>(
+        vec3f(0.0),
+        vec3f(0.0, 0.0, 1.0),
+        vec3f(0.0, 1.0, 0.0),
+        vec3f(1.0, 1.0, 0.0),
+        vec3f(1.0, 0.0, 0.0),
+        vec3f(1.0),
+    );
+    let heat = select(layers * 0.25, log2(max(layers, 1.0)) - 1.0, layers > 4.0);
+    let index = clamp(u32(heat), 0u, 4u);
+    return mix(colours[index], colours[index + 1u], saturate(heat - f32(index)));
+}
+
+@fragment
+fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let pixel = position.xy;
+    if SHADE_TREE == SHADE_TREE_REDUCED_DEPTH {
+        let texel = pixel / system.scale - system.target_origin;
+        let depth = textureLoad(reduced_depth, vec2i(texel), 0).r;
+        let grey = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));
+        return vec4f(vec3f(grey), 1.0);
+    }
+    let accumulated = sample_accumulation(pixel);
+    let amount = accumulated.a;
+    if SHADE_TREE == SHADE_TREE_OVERDRAW {
+        return vec4f(overdraw_colour(amount * 255.0), 1.0);
+    }
+    if SHADE_TREE == SHADE_TREE_AMOUNT {
+        return vec4f(vec3f(amount), 1.0);
+    }
+    if amount <= 0.0 {
+        discard;
+    }
+    let covered = coverage(amount, system.boost);
+    let normal = normal_from_accumulation(NORMAL_ENCODING, NORMAL_DECODE, accumulated);
+    if SHADE_TREE == SHADE_TREE_NORMALS {
+        return vec4f(normal * 0.5 + 0.5, 1.0) * covered;
+    }
+
+    // The point that is lit: on the ray through this pixel, flattened to one plane, or the box would show its faces.
+    let ray = ndc_from_pixel(pixel, view.size) * view.ray_scale + view.ray_offset;
+    let lit_position = view_position(ray, system.plane_depth, view.orthographic);
+    var light = vec3f(0.0);
+    if SHADE_TREE != SHADE_TREE_SOFT_SCATTER {
+        light += diffuse(normal, lit_position);
+    }
+    if SHADE_TREE != SHADE_TREE_DIFFUSE {
+        light += soft_scatter(amount);
+    }
+    return vec4f(light, 1.0) * covered;
+}

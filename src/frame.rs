@@ -1,0 +1,89 @@
+//! What the host hands over for one frame.
+
+use glam::Vec3;
+
+use crate::bounds::Bounds;
+use crate::error::FieldError;
+use crate::fields::validate;
+use crate::light::{Light, MAX_LIGHTS};
+use crate::material::Material;
+use crate::particle::Particle;
+use crate::settings::{Settings, ShadeTree};
+use crate::view::View;
+
+/// Everything that [`Renderer::prepare`](crate::Renderer::prepare) needs to know about a frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame<'a> {
+    /// The camera.
+    pub view: View,
+    /// The opaque scene's depth, already rendered in this encoder or an earlier one.
+    pub scene_depth: SceneDepth<'a>,
+    /// At most [`MAX_LIGHTS`].
+    pub lights: &'a [Light],
+    /// Drawn far to near, whatever their order here. A system keeps its targets from frame to frame by its place in
+    /// this slice, so keep the order steady.
+    pub systems: &'a [System<'a>],
+    /// Which stage of the shading is shown; [`ShadeTree::Final`] for a picture.
+    pub shade_tree: ShadeTree,
+}
+
+/// The opaque scene's depth at full resolution, single-sampled, with `TEXTURE_BINDING` usage and the size of the view.
+#[derive(Clone, Copy, Debug)]
+pub enum SceneDepth<'a> {
+    /// A depth buffer written with the view's projection; the view of it shows the depth aspect only.
+    Buffer(&'a wgpu::TextureView),
+    /// An `R32Float` target with linear view depth in metres; no surface: anything from 1e6 up.
+    Linear(&'a wgpu::TextureView),
+}
+
+impl<'a> SceneDepth<'a> {
+    /// The texture view, of either kind.
+    pub fn texture_view(&self) -> &'a wgpu::TextureView {
+        match self {
+            Self::Buffer(view) | Self::Linear(view) => view,
+        }
+    }
+}
+
+/// One particle system: sprites that are accumulated together and lit as one body.
+#[derive(Clone, Copy, Debug)]
+pub struct System<'a> {
+    /// The sprites, in any order.
+    pub particles: Particles<'a>,
+    /// A box in world space that holds every sprite; what is outside may be cut off. `None` measures the slice.
+    pub bounds: Option<Bounds>,
+    /// Everything a slider moves.
+    pub settings: &'a Settings,
+    /// Ramps and sprite picture, made by [`Renderer::create_material`](crate::Renderer::create_material).
+    pub material: &'a Material,
+}
+
+/// Where the sprites are.
+#[derive(Clone, Copy, Debug)]
+pub enum Particles<'a> {
+    /// In memory. Sorted and uploaded by [`Renderer::prepare`](crate::Renderer::prepare). A sprite with a number that
+    /// is not finite, or out of its range, is skipped.
+    Slice(&'a [Particle]),
+    /// On the GPU, in the layout of [`Particle`], back to front, with `VERTEX` usage. `System::bounds` must be given.
+    Buffer {
+        /// `count` particles from the start.
+        buffer: &'a wgpu::Buffer,
+        /// How many to draw.
+        count: u32,
+    },
+}
+
+/// What both renderers refuse about lights and settings.
+pub(crate) fn validate_lights(lights: &[Light]) -> Result<(), FieldError> {
+    if lights.len() > MAX_LIGHTS {
+        return Err(FieldError::new("lights", format!("{} lights", lights.len()), format!("at most {MAX_LIGHTS}")));
+    }
+    for (index, light) in lights.iter().enumerate() {
+        validate(light, || format!("lights[{index}]"))?;
+        if light.kind != crate::light::LightKind::Point && light.direction.normalize_or_zero() == Vec3::ZERO {
+            let field = format!("lights[{index}].direction");
+            return Err(FieldError::new(field, light.direction, "a direction that is not zero"));
+        }
+    }
+    Ok(())
+}

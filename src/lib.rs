@@ -1,0 +1,36 @@
+//! haze
+#![allow(missing_docs)]
+pub mod bounds;
+pub mod descriptor;
+pub mod error;
+pub mod fields;
+pub mod frame;
+pub mod gpu_types;
+pub mod headless;
+pub mod light;
+pub mod material;
+pub mod particle;
+mod pass;
+pub mod picture;
+pub mod ramp;
+pub mod reference;
+mod renderer;
+pub mod settings;
+pub mod shader;
+mod slot;
+pub mod sprite;
+mod system;
+mod targets;
+pub mod view;
+
+pub use bounds::Bounds;
+pub use descriptor::Descriptor;
+pub use error::{Error, FieldError};
+pub use frame::{Frame, Particles, SceneDepth, System};
+pub use light::{Light, LightKind};
+pub use material::{Material, MaterialAssets};
+pub use particle::Particle;
+pub use renderer::{MemoryUse, Renderer};
+pub use settings::Settings;
+pub use view::View;
+pub use wgpu;

@@ -1,0 +1,142 @@
+//! The pictures of a particle system: its ramps and its sprite flipbook.
+
+use glam::UVec2;
+
+use crate::pass::Layouts;
+use crate::ramp::Ramp;
+use crate::reference::diffuse_bake::zonal_coefficients;
+use crate::reference::ramp::sample_ramp;
+use crate::sprite::Sprite;
+use crate::system::MaterialInfo;
+
+/// The pictures in memory. The reference renderer works on these; the GPU renderer uploads them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MaterialAssets {
+    /// Flipbook of normal maps.
+    pub sprite: Sprite,
+    /// Light by dot(n, l)/2 + 1/2: facing away at 0, facing the light at 1. One row.
+    pub diffuse_ramp: Ramp,
+    /// Light by amount, for [`SoftScatterMode::Ramp`](crate::settings::SoftScatterMode::Ramp). One row.
+    pub soft_scatter_ramp: Ramp,
+    /// Glow by distance² (across) and amount (up).
+    pub specular_ramp: Ramp,
+    /// A painted lit sphere, for [`DiffuseMode::PaintedMotif`](crate::settings::DiffuseMode::PaintedMotif).
+    pub motif: Ramp,
+}
+
+impl MaterialAssets {
+    pub(crate) fn info(&self) -> MaterialInfo {
+        MaterialInfo {
+            sprite_size: self.sprite.size() as f32,
+            frame_count: self.sprite.frame_count() as f32,
+            zonal: zonal_coefficients(|cos| sample_ramp(&self.diffuse_ramp, cos * 0.5 + 0.5)),
+        }
+    }
+}
+
+/// The pictures on the GPU. Cheap to share between systems; made by
+/// [`Renderer::create_material`](crate::Renderer::create_material).
+#[derive(Clone, Debug)]
+pub struct Material {
+    pub(crate) bind_group: wgpu::BindGroup,
+    pub(crate) info: MaterialInfo,
+    bytes: u64,
+}
+
+impl Material {
+    pub(crate) fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        layouts: &Layouts,
+        linear_sampler: &wgpu::Sampler,
+        assets: &MaterialAssets,
+    ) -> Self {
+        let mut bytes = 0;
+        let sprite = upload_sprite(device, queue, &assets.sprite, &mut bytes);
+        let mut ramp = |label, ramp| upload_ramp(device, queue, label, ramp, &mut bytes);
+        let diffuse_ramp = ramp("haze diffuse_ramp", &assets.diffuse_ramp);
+        let soft_scatter_ramp = ramp("haze soft_scatter_ramp", &assets.soft_scatter_ramp);
+        let specular_ramp = ramp("haze specular_ramp", &assets.specular_ramp);
+        let motif = ramp("haze painted_motif", &assets.motif);
+        let texture =
+            |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
+        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("haze material"),
+            layout: &layouts.material,
+            entries: &[
+                texture(0, &sprite),
+                texture(1, &diffuse_ramp),
+                texture(2, &soft_scatter_ramp),
+                texture(3, &specular_ramp),
+                texture(4, &motif),
+                wgpu::BindGroupEntry { binding: 5, resource: wgpu::BindingResource::Sampler(linear_sampler) },
+            ],
+        });
+        Self { bind_group, info: assets.info(), bytes }
+    }
+
+    /// Bytes of GPU memory that the pictures take.
+    pub fn memory_use(&self) -> u64 {
+        self.bytes
+    }
+}
+
+fn upload_ramp(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    label: &str,
+    ramp: &Ramp,
+    bytes: &mut u64,
+) -> wgpu::TextureView {
+    let size = extent(ramp.size(), 1);
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba16Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let data = ramp.bytes();
+    *bytes += data.len() as u64;
+    queue.write_texture(texture.as_image_copy(), &data, layout(8 * size.width, size.height), size);
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+fn upload_sprite(device: &wgpu::Device, queue: &wgpu::Queue, sprite: &Sprite, bytes: &mut u64) -> wgpu::TextureView {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("haze sprite"),
+        size: extent(UVec2::splat(sprite.size()), sprite.frame_count()),
+        mip_level_count: sprite.level_count(),
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    for level in 0..sprite.level_count() {
+        let data = sprite.level_bytes(level);
+        *bytes += data.len() as u64;
+        let size = sprite.level_size(level);
+        queue.write_texture(
+            wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() },
+            data,
+            layout(4 * size, size),
+            extent(UVec2::splat(size), sprite.frame_count()),
+        );
+    }
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2Array),
+        ..Default::default()
+    })
+}
+
+fn extent(size: UVec2, layers: u32) -> wgpu::Extent3d {
+    wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: layers }
+}
+
+fn layout(bytes_per_row: u32, rows: u32) -> wgpu::TexelCopyBufferLayout {
+    wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(bytes_per_row), rows_per_image: Some(rows) }
+}

@@ -1,0 +1,51 @@
+//! One sprite of a particle system.
+
+use glam::Vec3;
+
+use crate::bounds::Bounds;
+
+/// One camera-facing sprite. The layout is that of the instance buffer: 32 bytes, tightly packed.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct Particle {
+    /// Centre in world space, metres.
+    pub position: Vec3,
+    /// Half the side of the square sprite, metres. Zero draws nothing.
+    pub radius: f32,
+    /// Rotation on the screen, radians, counter-clockwise. Rotates the sprite's normals too.
+    pub rotation: f32,
+    /// Multiplies the sprite's amount, 0..=1.
+    pub amount: f32,
+    /// Flipbook frame. Wraps round; a fraction blends with the next frame.
+    pub frame: f32,
+    /// Share of its life that has passed, 0..=1.
+    pub age: f32,
+}
+
+impl Default for Particle {
+    fn default() -> Self {
+        Self { position: Vec3::ZERO, radius: 1.0, rotation: 0.0, amount: 1.0, frame: 0.0, age: 0.0 }
+    }
+}
+
+impl Particle {
+    /// The sphere that the sprite's corners reach, whichever way it turns.
+    pub fn reach(&self) -> f32 {
+        self.radius * std::f32::consts::SQRT_2
+    }
+
+    /// True if every number is finite and in range; a sprite that is not is skipped, never drawn.
+    pub fn is_valid(&self) -> bool {
+        let finite = self.position.is_finite() && self.rotation.is_finite() && self.frame.is_finite();
+        finite && self.radius.is_finite() && self.radius >= 0.0 && (0.0..=1.0).contains(&self.amount)
+    }
+}
+
+/// The box that holds every valid particle.
+pub fn bounds_of(particles: &[Particle]) -> Bounds {
+    let mut bounds = Bounds::EMPTY;
+    for particle in particles.iter().filter(|particle| particle.is_valid()) {
+        bounds.include(particle.position, particle.reach());
+    }
+    bounds
+}

@@ -1,0 +1,64 @@
+//! forward
+//! What: the classic way: every sprite fragment lit and blended at full resolution.
+//! Reads: particles back to front, sprite flipbook, scene depth, lights, ramps. Writes: the host's colour target.
+//! Blend: alpha, additive or multiply. Source: OTEE "Typical game particles so far".
+
+use super::{
+    ADDITIVE, Layouts, MULTIPLY, PARTICLE_LAYOUT, PREMULTIPLIED_OVER, PipelineParts, STRIP, Variants, color_target,
+    create_pipeline, in_front, read_only_depth, switch, variant,
+};
+use crate::descriptor::Descriptor;
+use crate::settings::{BlendMode, FadeCurve, SoftScatterMode};
+
+/// What makes one forward pipeline differ from another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct ForwardKey {
+    pub blend_mode: BlendMode,
+    pub curve: FadeCurve,
+    pub soft_scatter_mode: SoftScatterMode,
+    pub reversed: bool,
+}
+
+#[derive(Debug)]
+pub(crate) struct ForwardPass {
+    variants: Variants<ForwardKey>,
+    descriptor: Descriptor,
+}
+
+impl ForwardPass {
+    pub fn new(device: &wgpu::Device, layouts: &Layouts, descriptor: &Descriptor) -> Self {
+        let groups = [Some(&layouts.frame), Some(&layouts.system), Some(&layouts.material)];
+        Self { variants: Variants::new(device, "forward", &groups), descriptor: *descriptor }
+    }
+
+    pub fn pipeline(&mut self, device: &wgpu::Device, key: ForwardKey) -> wgpu::RenderPipeline {
+        let descriptor = self.descriptor;
+        self.variants.get(key, |module, layout| {
+            let blend = match key.blend_mode {
+                BlendMode::Alpha => PREMULTIPLIED_OVER,
+                BlendMode::Additive => ADDITIVE,
+                BlendMode::Multiply => MULTIPLY,
+            };
+            let depth = descriptor.depth_format.map(|format| read_only_depth(format, in_front(key.reversed)));
+            create_pipeline(
+                device,
+                PipelineParts {
+                    label: "forward",
+                    module,
+                    layout,
+                    buffers: &[Some(PARTICLE_LAYOUT)],
+                    primitive: STRIP,
+                    depth_stencil: depth,
+                    sample_count: descriptor.sample_count,
+                    targets: &[color_target(descriptor.color_format, Some(blend))],
+                    constants: &[
+                        variant!("BLEND_MODE", key.blend_mode),
+                        variant!("FADE_CURVE", key.curve),
+                        variant!("SOFT_SCATTER_MODE", key.soft_scatter_mode),
+                        switch("EXACT_FILTERING", descriptor.exact_filtering),
+                    ],
+                },
+            )
+        })
+    }
+}

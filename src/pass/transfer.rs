@@ -1,0 +1,75 @@
+//! transfer
+//! What: lights the accumulated smoke once per pixel, over the system's bounding box.
+//! Reads: accumulation target, reduced depth, scene depth, lights, ramps. Writes: the host's colour target.
+//! Blend: ONE, ONE_MINUS_SRC_ALPHA. Source: OTEE "Transfer & lighting".
+
+use super::{
+    Layouts, PREMULTIPLIED_OVER, PipelineParts, Variants, color_target, create_pipeline, in_front, read_only_depth,
+    switch, variant,
+};
+use crate::descriptor::Descriptor;
+use crate::settings::{DiffuseMode, NormalDecode, NormalEncoding, ShadeTree, SoftScatterMode, Upsample};
+
+/// Vertices of the box: twelve triangles.
+pub(crate) const VERTICES: u32 = 36;
+
+/// What makes one transfer pipeline differ from another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct TransferKey {
+    pub encoding: NormalEncoding,
+    pub decode: NormalDecode,
+    pub diffuse_mode: DiffuseMode,
+    pub soft_scatter_mode: SoftScatterMode,
+    pub upsample: Upsample,
+    pub shade_tree: ShadeTree,
+    /// Draw the back faces, untested, because the near plane cuts the box.
+    pub back_faces: bool,
+    pub reversed: bool,
+}
+
+#[derive(Debug)]
+pub(crate) struct TransferPass {
+    variants: Variants<TransferKey>,
+    descriptor: Descriptor,
+}
+
+impl TransferPass {
+    pub fn new(device: &wgpu::Device, layouts: &Layouts, descriptor: &Descriptor) -> Self {
+        let groups = [Some(&layouts.frame), Some(&layouts.system), Some(&layouts.material), Some(&layouts.transfer)];
+        Self { variants: Variants::new(device, "transfer", &groups), descriptor: *descriptor }
+    }
+
+    pub fn pipeline(&mut self, device: &wgpu::Device, key: TransferKey) -> wgpu::RenderPipeline {
+        let descriptor = self.descriptor;
+        self.variants.get(key, |module, layout| {
+            let (cull, compare) = if key.back_faces {
+                (wgpu::Face::Front, wgpu::CompareFunction::Always)
+            } else {
+                (wgpu::Face::Back, in_front(key.reversed))
+            };
+            create_pipeline(
+                device,
+                PipelineParts {
+                    label: "transfer",
+                    module,
+                    layout,
+                    buffers: &[],
+                    primitive: wgpu::PrimitiveState { cull_mode: Some(cull), ..Default::default() },
+                    depth_stencil: descriptor.depth_format.map(|format| read_only_depth(format, compare)),
+                    sample_count: descriptor.sample_count,
+                    targets: &[color_target(descriptor.color_format, Some(PREMULTIPLIED_OVER))],
+                    constants: &[
+                        variant!("DIFFUSE_MODE", key.diffuse_mode),
+                        variant!("SOFT_SCATTER_MODE", key.soft_scatter_mode),
+                        variant!("NORMAL_ENCODING", key.encoding),
+                        variant!("NORMAL_DECODE", key.decode),
+                        variant!("UPSAMPLE", key.upsample),
+                        variant!("SHADE_TREE", key.shade_tree),
+                        switch("BACK_FACES", key.back_faces),
+                        switch("EXACT_FILTERING", descriptor.exact_filtering),
+                    ],
+                },
+            )
+        })
+    }
+}

@@ -1,0 +1,39 @@
+//! Normals in and out of the accumulation target. `shaders/lib/normal.wgsl`.
+
+use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+
+use crate::settings::{NormalDecode, NormalEncoding};
+
+/// One sprite fragment for the blend ONE, ONE_MINUS_SRC_ALPHA: premultiplied normal, amount. (OTEE "Accumulating")
+pub fn accumulation_from_normal(encoding: NormalEncoding, normal: Vec3, amount: f32) -> Vec4 {
+    match encoding {
+        NormalEncoding::Biased => ((normal * 0.5 + 0.5) * amount).extend(amount),
+        NormalEncoding::Signed => (normal * amount).extend(amount),
+    }
+}
+
+/// The unit normal of an accumulated texel; (0, 0, 1) where there is none.
+///
+/// With Σ weights = A, biased normals sum to rgb = Σw·n/2 + A/2, so n ∝ 2·rgb − A exactly. OTEE's literal decode equals
+/// that only at A = 1.
+pub fn normal_from_accumulation(encoding: NormalEncoding, decode: NormalDecode, accumulated: Vec4) -> Vec3 {
+    let rgb = accumulated.xyz();
+    let normal = match (decode, encoding) {
+        (NormalDecode::Literal, _) => rgb * 2.0 - 1.0,
+        (NormalDecode::Exact, NormalEncoding::Biased) => rgb * 2.0 - accumulated.w,
+        (NormalDecode::Exact, NormalEncoding::Signed) => rgb,
+    };
+    let square = normal.length_squared();
+    if square < 1.0e-12 { Vec3::Z } else { normal / square.sqrt() }
+}
+
+/// Turns a sprite's normal with the sprite: rotation is (cos, sin), counter-clockwise.
+pub fn rotate_normal(normal: Vec3, rotation: Vec2) -> Vec3 {
+    Vec3::new(normal.x * rotation.x - normal.y * rotation.y, normal.x * rotation.y + normal.y * rotation.x, normal.z)
+}
+
+/// Leans a sprite's normal away from the middle of its system; `away` in halves of the system's size.
+pub fn bend_normal(normal: Vec3, away: Vec3, shape: f32) -> Vec3 {
+    let bent = normal + away * shape;
+    bent / bent.length_squared().max(1.0e-12).sqrt()
+}

@@ -1,0 +1,61 @@
+//! The sprite picture: a flipbook of normal maps. `shaders/lib/sprite.wgsl`.
+
+use glam::{IVec2, Vec2, Vec3Swizzles, Vec4, Vec4Swizzles};
+
+use crate::reference::saturate;
+use crate::sprite::Sprite;
+
+/// The mip level at which a sprite's texels are as large as the target's.
+pub fn sprite_lod(sprite_size: f32, diameter_in_texels: f32) -> f32 {
+    (sprite_size / diameter_in_texels.max(1.0e-3)).log2().max(0.0)
+}
+
+/// The two frames that a fractional frame blends, and the share of the second.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlipbookFrames {
+    /// Index of the frame shown.
+    pub first: i32,
+    /// Index of the frame after it.
+    pub second: i32,
+    /// 0 shows the first, 1 the second.
+    pub blend: f32,
+}
+
+/// Splits a fractional frame; the flipbook repeats.
+pub fn flipbook_frames(frame: f32, frame_count: f32) -> FlipbookFrames {
+    let wrapped = frame - (frame / frame_count).floor() * frame_count;
+    let first = wrapped.floor().min(frame_count - 1.0);
+    let second = if first + 1.5 > frame_count { 0.0 } else { first + 1.0 };
+    FlipbookFrames { first: first as i32, second: second as i32, blend: saturate(wrapped - first) }
+}
+
+fn load_sprite_bilinear(sprite: &Sprite, uv: Vec2, frame: i32, level: u32) -> Vec4 {
+    let size = sprite.level_size(level) as i32;
+    let texel = uv * size as f32 - 0.5;
+    let base = texel.floor();
+    let fraction = texel - base;
+    let limit = |texel: IVec2| texel.clamp(IVec2::ZERO, IVec2::splat(size - 1)).as_uvec2();
+    let (low, high) = (limit(base.as_ivec2()), limit(base.as_ivec2() + 1));
+    let load = |x, y| sprite.texel(level, frame as u32, x, y);
+    let top = load(low.x, low.y).lerp(load(high.x, low.y), fraction.x);
+    let bottom = load(low.x, high.y).lerp(load(high.x, high.y), fraction.x);
+    top.lerp(bottom, fraction.y)
+}
+
+fn sample_sprite_frame(sprite: &Sprite, uv: Vec2, frame: i32, lod: f32) -> Vec4 {
+    let last = (sprite.level_count() - 1) as f32;
+    let level = lod.min(last);
+    let base = level.floor();
+    let fine = load_sprite_bilinear(sprite, uv, frame, base as u32);
+    let coarse = load_sprite_bilinear(sprite, uv, frame, (base + 1.0).min(last) as u32);
+    fine.lerp(coarse, level - base)
+}
+
+/// Normal (−1..1, about unit length) and amount of a sprite. uv 0..1, v down.
+pub fn sample_sprite(sprite: &Sprite, uv: Vec2, frames: FlipbookFrames, lod: f32) -> Vec4 {
+    let mut texel = sample_sprite_frame(sprite, uv, frames.first, lod);
+    if frames.blend > 0.0 {
+        texel = texel.lerp(sample_sprite_frame(sprite, uv, frames.second, lod), frames.blend);
+    }
+    (texel.xyz() * 2.0 - 1.0).xyz().extend(texel.w)
+}

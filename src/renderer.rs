@@ -1,0 +1,229 @@
+//! The frame, pass by pass.
+
+use crate::descriptor::Descriptor;
+use crate::error::{Error, FieldError};
+use crate::frame::{Frame, SceneDepth, System, validate_lights};
+use crate::material::{Material, MaterialAssets};
+use crate::pass::Layouts;
+use crate::pass::accumulate::AccumulatePass;
+use crate::pass::depth_downsample::DepthDownsamplePass;
+use crate::pass::diffuse_bake::DiffuseBakePass;
+use crate::pass::forward::ForwardPass;
+use crate::pass::specular_scatter::SpecularScatterPass;
+use crate::pass::transfer::TransferPass;
+use crate::slot::{FrameBindings, Slot};
+use crate::view::ViewGeometry;
+
+/// Draws particle systems into a host's frame.
+///
+/// One renderer serves one view: [`prepare`](Self::prepare) writes buffers that the [`render`](Self::render) of the same
+/// submission reads, so prepare once, render as often as the pass needs, submit, and begin again.
+#[derive(Debug)]
+pub struct Renderer {
+    descriptor: Descriptor,
+    layouts: Layouts,
+    passes: Passes,
+    linear_sampler: wgpu::Sampler,
+    frame: FrameBindings,
+    slots: Vec<Slot>,
+    /// The slots in sight, farthest first.
+    order: Vec<usize>,
+}
+
+/// Independent of any size: shaders and their pipelines.
+#[derive(Debug)]
+pub(crate) struct Passes {
+    pub depth_downsample: DepthDownsamplePass,
+    pub diffuse_bake: DiffuseBakePass,
+    pub accumulate: AccumulatePass,
+    pub transfer: TransferPass,
+    pub specular_scatter: SpecularScatterPass,
+    pub forward: ForwardPass,
+}
+
+/// Bytes of GPU memory that a renderer holds, its materials aside.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MemoryUse {
+    /// Accumulation targets, reduced depths and baked light of all systems.
+    pub targets: u64,
+    /// Particles and uniforms.
+    pub buffers: u64,
+}
+
+impl Renderer {
+    /// Compiles the shaders. Pipelines are compiled by the first [`prepare`](Self::prepare) that needs them.
+    ///
+    /// # Errors
+    /// [`Error::Field`] when the descriptor asks for what the device's backend cannot do.
+    pub fn new(device: &wgpu::Device, descriptor: &Descriptor) -> Result<Self, Error> {
+        if descriptor.depth_format.is_some() && !read_only_depth_is_supported(device) {
+            let expected = "None: this backend cannot test and sample one depth buffer in the same pass";
+            return Err(FieldError::new("descriptor.depth_format", "Some", expected).into());
+        }
+        let layouts = Layouts::new(device);
+        let passes = Passes {
+            depth_downsample: DepthDownsamplePass::new(device, &layouts),
+            diffuse_bake: DiffuseBakePass::new(device, &layouts, descriptor.exact_filtering),
+            accumulate: AccumulatePass::new(device, &layouts, descriptor.exact_filtering),
+            transfer: TransferPass::new(device, &layouts, descriptor),
+            specular_scatter: SpecularScatterPass::new(device, &layouts, descriptor),
+            forward: ForwardPass::new(device, &layouts, descriptor),
+        };
+        let linear_sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("haze linear"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            mipmap_filter: wgpu::MipmapFilterMode::Linear,
+            ..Default::default()
+        });
+        Ok(Self {
+            descriptor: *descriptor,
+            frame: FrameBindings::new(device),
+            layouts,
+            passes,
+            linear_sampler,
+            slots: Vec::new(),
+            order: Vec::new(),
+        })
+    }
+
+    /// Uploads ramps and a sprite picture. Make each once and keep it.
+    pub fn create_material(&self, device: &wgpu::Device, queue: &wgpu::Queue, assets: &MaterialAssets) -> Material {
+        Material::new(device, queue, &self.layouts, &self.linear_sampler, assets)
+    }
+
+    /// Records everything that happens before the host's pass: every system accumulated into a small target of its own.
+    ///
+    /// Allocates and compiles only when a system, the picture's size or a setting that changes a pipeline is new; a
+    /// steady frame creates nothing.
+    ///
+    /// # Errors
+    /// [`Error::Field`] naming the view, light, setting or system that cannot be used. Nothing is drawn by
+    /// [`render`](Self::render) until the next `prepare` that succeeds.
+    pub fn prepare(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &Frame<'_>,
+    ) -> Result<(), Error> {
+        self.order.clear();
+        let view = ViewGeometry::new(&frame.view)?;
+        validate(device, &view, frame)?;
+        self.frame.write(device, queue, &self.layouts, &view, &frame.scene_depth);
+        self.slots.truncate(frame.systems.len());
+        while self.slots.len() < frame.systems.len() {
+            self.slots.push(Slot::new(device, &self.layouts));
+        }
+
+        for (index, system) in frame.systems.iter().enumerate() {
+            let slot = &mut self.slots[index];
+            // Place in the view; lights, settings and particles to the GPU, sprites back to front.
+            slot.write(device, queue, &self.layouts, &mut self.passes, &self.descriptor, &view, frame, system)?;
+            // Scene depth at the target's resolution.
+            slot.depth_downsample(encoder, &self.frame);
+            // All lights by normal, for the cubemap and motif variants of diffuse.
+            slot.diffuse_bake(encoder, &self.frame);
+            // Sprites to premultiplied normal + amount.
+            slot.accumulate(encoder, &self.frame);
+        }
+
+        self.order.extend((0..self.slots.len()).filter(|&index| self.slots[index].is_in_sight()));
+        let slots = &self.slots;
+        self.order.sort_unstable_by(|&a, &b| slots[b].distance().total_cmp(&slots[a].distance()).then(a.cmp(&b)));
+        Ok(())
+    }
+
+    /// Records the smoke into the host's pass, systems far to near. Sets its own pipelines, bind groups 0 to 3 and
+    /// vertex buffer 0; leaves viewport and scissor as the host set them, which must be the whole picture.
+    pub fn render(&self, pass: &mut wgpu::RenderPass<'_>) {
+        for &index in &self.order {
+            let slot = &self.slots[index];
+            // The box, lit once per pixel; or every sprite, lit per fragment.
+            slot.transfer_or_forward(pass, &self.frame);
+            // The glow of lights behind it.
+            slot.specular_scatter(pass, &self.frame);
+        }
+    }
+
+    /// Bytes of GPU memory held for the systems of the last frame.
+    pub fn memory_use(&self) -> MemoryUse {
+        self.slots.iter().fold(MemoryUse::default(), |sum, slot| {
+            let of_slot = slot.memory_use();
+            MemoryUse { targets: sum.targets + of_slot.targets, buffers: sum.buffers + of_slot.buffers }
+        })
+    }
+}
+
+/// OpenGL cannot attach a depth buffer and sample it in the same pass.
+fn read_only_depth_is_supported(device: &wgpu::Device) -> bool {
+    device.adapter_info().backend != wgpu::Backend::Gl
+}
+
+fn validate(device: &wgpu::Device, view: &ViewGeometry, frame: &Frame<'_>) -> Result<(), FieldError> {
+    let texture = frame.scene_depth.texture_view().texture();
+    let size = (view.view.size.x, view.view.size.y);
+    if (texture.width(), texture.height()) != size {
+        let value = format!("{}x{}", texture.width(), texture.height());
+        return Err(FieldError::new("scene_depth", value, format!("the size of the view, {}x{}", size.0, size.1)));
+    }
+    if texture.sample_count() != 1 {
+        let value = format!("{} samples", texture.sample_count());
+        return Err(FieldError::new("scene_depth", value, "1 sample; resolve the depth buffer first"));
+    }
+    let format = texture.format();
+    let fits = match frame.scene_depth {
+        SceneDepth::Buffer(_) => format.has_depth_aspect(),
+        SceneDepth::Linear(_) => format == wgpu::TextureFormat::R32Float,
+    };
+    if !fits {
+        let expected = "a depth format for SceneDepth::Buffer, R32Float for SceneDepth::Linear";
+        return Err(FieldError::new("scene_depth", format!("{format:?}"), expected));
+    }
+    if !texture.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
+        return Err(FieldError::new("scene_depth", format!("usage {:?}", texture.usage()), "TEXTURE_BINDING in it"));
+    }
+    validate_lights(frame.lights)?;
+    for (index, system) in frame.systems.iter().enumerate() {
+        validate_system(device, index, frame, system)?;
+    }
+    Ok(())
+}
+
+fn validate_system(
+    device: &wgpu::Device,
+    index: usize,
+    frame: &Frame<'_>,
+    system: &System<'_>,
+) -> Result<(), FieldError> {
+    use crate::frame::Particles;
+    use crate::settings::DepthSource;
+
+    system.settings.validate(|| format!("systems[{index}].settings"))?;
+    if let Some(bounds) = &system.bounds {
+        bounds.validate(|| format!("systems[{index}].bounds"))?;
+    }
+    let field = |name: &str| format!("systems[{index}].{name}");
+    if let Particles::Buffer { buffer, count } = system.particles {
+        if system.bounds.is_none() {
+            return Err(FieldError::new(field("bounds"), "None", "the box of the particles, which are on the GPU"));
+        }
+        let needed = u64::from(count) * size_of::<crate::Particle>() as u64;
+        if buffer.size() < needed || !buffer.usage().contains(wgpu::BufferUsages::VERTEX) {
+            let value = format!("{} bytes, usage {:?}", buffer.size(), buffer.usage());
+            return Err(FieldError::new(field("particles"), value, format!("at least {needed} bytes, usage VERTEX")));
+        }
+    }
+    if system.settings.accumulate.depth_source == DepthSource::Host && !system.settings.is_forward() {
+        let texture = frame.scene_depth.texture_view().texture();
+        let attachable = texture.usage().contains(wgpu::TextureUsages::RENDER_ATTACHMENT)
+            && matches!(frame.scene_depth, SceneDepth::Buffer(_))
+            && !texture.format().has_stencil_aspect();
+        if !attachable || !read_only_depth_is_supported(device) {
+            let expected = "\"reduced\", or a scene_depth that is a Buffer without stencil, with RENDER_ATTACHMENT \
+                            usage, on a backend with read-only depth (not OpenGL)";
+            return Err(FieldError::new(field("settings.accumulate.depth_source"), "\"host\"", expected));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,436 @@
+//! One particle system's place in the renderer: its buffers, its targets, and what this frame draws with them.
+
+use glam::UVec2;
+
+use crate::bounds::{Bounds, effective_scale};
+use crate::descriptor::Descriptor;
+use crate::error::FieldError;
+use crate::frame::{Frame, Particles, SceneDepth, System};
+use crate::gpu_types::{LightUniform, SystemUniform, ViewUniform};
+use crate::particle::{Particle, bounds_of};
+use crate::pass::accumulate::AccumulateKey;
+use crate::pass::forward::ForwardKey;
+use crate::pass::sort::{SortScratch, back_to_front};
+use crate::pass::transfer::{self, TransferKey};
+use crate::pass::{LIGHTS_SIZE, Layouts};
+use crate::renderer::{MemoryUse, Passes};
+use crate::settings::{DepthSource, Settings, ShadeTree};
+use crate::system::{SystemInView, lights_in_view, system_in_view};
+use crate::targets::{Targets, TargetsKey};
+use crate::view::ViewGeometry;
+
+/// Group 0: the view and the scene's depth.
+#[derive(Debug)]
+pub(crate) struct FrameBindings {
+    view: wgpu::Buffer,
+    /// The depth view that the bind group shows, and the bind group.
+    bound: Option<(wgpu::TextureView, wgpu::BindGroup)>,
+}
+
+impl FrameBindings {
+    pub fn new(device: &wgpu::Device) -> Self {
+        Self { view: uniform_buffer(device, "haze view", size_of::<ViewUniform>() as u64), bound: None }
+    }
+
+    pub fn write(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        layouts: &Layouts,
+        view: &ViewGeometry,
+        scene_depth: &SceneDepth<'_>,
+    ) {
+        let linear = matches!(scene_depth, SceneDepth::Linear(_));
+        queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view.uniform(linear)));
+        let depth = scene_depth.texture_view();
+        if self.bound.as_ref().is_some_and(|(bound, _)| bound == depth) {
+            return;
+        }
+        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("haze frame"),
+            layout: &layouts.frame,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: self.view.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(depth) },
+            ],
+        });
+        self.bound = Some((depth.clone(), bind_group));
+    }
+
+    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
+        self.bound.as_ref().map(|(_, bind_group)| bind_group)
+    }
+}
+
+/// Buffers and targets of one system, and this frame's draws.
+#[derive(Debug)]
+pub(crate) struct Slot {
+    uniform: wgpu::Buffer,
+    lights: wgpu::Buffer,
+    bindings: wgpu::BindGroup,
+    instances: Option<wgpu::Buffer>,
+    targets: Option<Targets>,
+    scratch: Scratch,
+    /// `None` when out of sight.
+    draw: Option<Draw>,
+}
+
+/// Memory kept from frame to frame.
+#[derive(Debug, Default)]
+struct Scratch {
+    lights: Vec<LightUniform>,
+    sort: SortScratch,
+    sorted: Vec<Particle>,
+}
+
+/// What one frame records for a system.
+#[derive(Debug)]
+struct Draw {
+    /// View depth of the box's middle.
+    distance: f32,
+    target_size: UVec2,
+    material: wgpu::BindGroup,
+    instances: wgpu::Buffer,
+    instance_count: u32,
+    path: DrawPath,
+}
+
+#[derive(Debug)]
+enum DrawPath {
+    Deferred {
+        depth_downsample: Option<wgpu::RenderPipeline>,
+        diffuse_bake: Option<wgpu::RenderPipeline>,
+        accumulate: wgpu::RenderPipeline,
+        /// The host's own depth, attached where sprites are tested against it.
+        host_depth: Option<wgpu::TextureView>,
+        transfer: Option<wgpu::RenderPipeline>,
+        specular_scatter: Option<(wgpu::RenderPipeline, u32)>,
+    },
+    Forward(wgpu::RenderPipeline),
+}
+
+impl Slot {
+    pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Self {
+        let uniform = uniform_buffer(device, "haze system", size_of::<SystemUniform>() as u64);
+        let lights = uniform_buffer(device, "haze lights", LIGHTS_SIZE);
+        let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("haze system"),
+            layout: &layouts.system,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: lights.as_entire_binding() },
+            ],
+        });
+        Self { uniform, lights, bindings, instances: None, targets: None, scratch: Scratch::default(), draw: None }
+    }
+
+    pub fn is_in_sight(&self) -> bool {
+        self.draw.is_some()
+    }
+
+    pub fn distance(&self) -> f32 {
+        self.draw.as_ref().map_or(0.0, |draw| draw.distance)
+    }
+
+    pub fn memory_use(&self) -> MemoryUse {
+        let instances = self.instances.as_ref().map_or(0, wgpu::Buffer::size);
+        MemoryUse {
+            targets: self.targets.as_ref().map_or(0, |targets| targets.bytes),
+            buffers: self.uniform.size() + self.lights.size() + instances,
+        }
+    }
+
+    /// Places the system in the view, uploads what the passes read and picks their pipelines.
+    #[allow(clippy::too_many_arguments, reason = "the renderer's own parts, borrowed one by one")]
+    pub fn write(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        layouts: &Layouts,
+        passes: &mut Passes,
+        descriptor: &Descriptor,
+        view: &ViewGeometry,
+        frame: &Frame<'_>,
+        system: &System<'_>,
+    ) -> Result<(), FieldError> {
+        self.draw = None;
+        let bounds = bounds_of_system(system);
+        lights_in_view(view, frame.lights, &bounds, &mut self.scratch.lights);
+        let info = &system.material.info;
+        let Some(in_view) = system_in_view(view, &bounds, system.settings, info, &self.scratch.lights)? else {
+            return Ok(());
+        };
+        let Some((instances, instance_count)) = self.write_particles(device, queue, view, system) else {
+            return Ok(());
+        };
+        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&in_view.uniform));
+        queue.write_buffer(&self.lights, 0, bytemuck::cast_slice(&self.scratch.lights));
+
+        let path = if system.settings.is_forward() {
+            self.targets = None;
+            if !matches!(frame.shade_tree, ShadeTree::Final | ShadeTree::Combined) {
+                return Ok(());
+            }
+            DrawPath::Forward(passes.forward.pipeline(device, forward_key(view, system.settings)))
+        } else {
+            self.fit_targets(device, layouts, view, &in_view, frame, system.settings);
+            self.deferred(device, passes, descriptor, view, &in_view, frame, system.settings)
+        };
+        self.draw = Some(Draw {
+            distance: -view.view_position(bounds.centre()).z,
+            target_size: in_view.rect.size,
+            material: system.material.bind_group.clone(),
+            instances,
+            instance_count,
+            path,
+        });
+        Ok(())
+    }
+
+    fn write_particles(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        view: &ViewGeometry,
+        system: &System<'_>,
+    ) -> Option<(wgpu::Buffer, u32)> {
+        let particles = match system.particles {
+            Particles::Buffer { buffer, count } => return (count > 0).then(|| (buffer.clone(), count)),
+            Particles::Slice(particles) => particles,
+        };
+        let Scratch { sort, sorted, .. } = &mut self.scratch;
+        back_to_front(view, particles, sort, sorted);
+        if sorted.is_empty() {
+            return None;
+        }
+        let bytes: &[u8] = bytemuck::cast_slice(sorted);
+        let buffer = match &self.instances {
+            Some(buffer) if buffer.size() >= bytes.len() as u64 => buffer.clone(),
+            _ => device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("haze particles"),
+                size: (bytes.len() as u64).next_power_of_two(),
+                usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }),
+        };
+        queue.write_buffer(&buffer, 0, bytes);
+        self.instances = Some(buffer.clone());
+        Some((buffer, sorted.len() as u32))
+    }
+
+    fn fit_targets(
+        &mut self,
+        device: &wgpu::Device,
+        layouts: &Layouts,
+        view: &ViewGeometry,
+        in_view: &SystemInView,
+        frame: &Frame<'_>,
+        settings: &Settings,
+    ) {
+        let accumulate = &settings.accumulate;
+        let key = TargetsKey {
+            format: accumulate.format,
+            depth_source: accumulate.depth_source,
+            diffuse_mode: settings.diffuse.mode,
+        };
+        let depth = frame.scene_depth.texture_view();
+        if self.targets.as_ref().is_some_and(|targets| targets.fits(key, &in_view.rect, depth)) {
+            return;
+        }
+        // The old textures go before the new ones come.
+        self.targets = None;
+        let scale = effective_scale(accumulate.scale, accumulate.max_side, view.view.size);
+        let limit = UVec2::new(view.view.size.x.div_ceil(scale), view.view.size.y.div_ceil(scale));
+        self.targets = Some(Targets::new(device, layouts, key, &in_view.rect, limit, depth));
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "the renderer's own parts, borrowed one by one")]
+    fn deferred(
+        &self,
+        device: &wgpu::Device,
+        passes: &mut Passes,
+        descriptor: &Descriptor,
+        view: &ViewGeometry,
+        in_view: &SystemInView,
+        frame: &Frame<'_>,
+        settings: &Settings,
+    ) -> DrawPath {
+        let accumulate = &settings.accumulate;
+        let shade_tree = frame.shade_tree;
+        let depth = frame.scene_depth.texture_view();
+        let host_depth = (accumulate.depth_source == DepthSource::Host).then(|| depth.clone());
+        let glows = matches!(shade_tree, ShadeTree::Final | ShadeTree::SpecularScatter)
+            && settings.specular_scatter.intensity > 0.0
+            && !self.scratch.lights.is_empty();
+        DrawPath::Deferred {
+            depth_downsample: (accumulate.depth_source == DepthSource::Reduced)
+                .then(|| passes.depth_downsample.pipeline(device, accumulate.depth_downsample)),
+            diffuse_bake: passes.diffuse_bake.pipeline(device, settings.diffuse.mode),
+            accumulate: passes.accumulate.pipeline(
+                device,
+                AccumulateKey {
+                    format: accumulate.format,
+                    encoding: accumulate.encoding,
+                    curve: settings.soft_fade.curve,
+                    host_depth: host_depth.as_ref().map(|depth| (depth.texture().format(), view.depth.reversed)),
+                    overdraw: shade_tree == ShadeTree::Overdraw,
+                },
+            ),
+            host_depth,
+            transfer: (shade_tree != ShadeTree::SpecularScatter).then(|| {
+                passes.transfer.pipeline(
+                    device,
+                    TransferKey {
+                        encoding: accumulate.encoding,
+                        decode: accumulate.decode,
+                        diffuse_mode: settings.diffuse.mode,
+                        soft_scatter_mode: settings.soft_scatter.mode,
+                        upsample: accumulate.upsample,
+                        shade_tree,
+                        back_faces: in_view.back_faces || descriptor.depth_format.is_none(),
+                        reversed: view.depth.reversed,
+                    },
+                )
+            }),
+            specular_scatter: glows.then(|| {
+                let pipeline = passes.specular_scatter.pipeline(device, accumulate.upsample);
+                (pipeline, self.scratch.lights.len() as u32)
+            }),
+        }
+    }
+
+    pub fn depth_downsample(&self, encoder: &mut wgpu::CommandEncoder, frame: &FrameBindings) {
+        let (Some(draw), Some(targets)) = (&self.draw, &self.targets) else { return };
+        let DrawPath::Deferred { depth_downsample: Some(pipeline), .. } = &draw.path else { return };
+        let Some(view) = &targets.reduced_depth else { return };
+        let mut pass = begin_pass(encoder, "depth_downsample", &[color_attachment(view)], None);
+        set_part(&mut pass, draw.target_size);
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, frame.bind_group(), &[]);
+        pass.set_bind_group(1, &self.bindings, &[]);
+        pass.draw(0..3, 0..1);
+    }
+
+    pub fn diffuse_bake(&self, encoder: &mut wgpu::CommandEncoder, frame: &FrameBindings) {
+        let (Some(draw), Some(targets)) = (&self.draw, &self.targets) else { return };
+        let DrawPath::Deferred { diffuse_bake: Some(pipeline), .. } = &draw.path else { return };
+        for (face, view) in (0..).zip(&targets.baked_diffuse) {
+            let mut pass = begin_pass(encoder, "diffuse_bake", &[color_attachment(view)], None);
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, frame.bind_group(), &[]);
+            pass.set_bind_group(1, &self.bindings, &[]);
+            pass.set_bind_group(2, &draw.material, &[]);
+            pass.draw(3 * face..3 * face + 3, 0..1);
+        }
+    }
+
+    pub fn accumulate(&self, encoder: &mut wgpu::CommandEncoder, frame: &FrameBindings) {
+        let (Some(draw), Some(targets)) = (&self.draw, &self.targets) else { return };
+        let DrawPath::Deferred { accumulate, host_depth, .. } = &draw.path else { return };
+        let attachments: Vec<_> = targets.accumulation.iter().map(color_attachment).collect();
+        let mut pass = begin_pass(encoder, "accumulate", &attachments, host_depth.as_ref());
+        set_part(&mut pass, draw.target_size);
+        pass.set_pipeline(accumulate);
+        pass.set_bind_group(0, frame.bind_group(), &[]);
+        pass.set_bind_group(1, &self.bindings, &[]);
+        pass.set_bind_group(2, &draw.material, &[]);
+        pass.set_bind_group(3, &targets.accumulate_inputs, &[]);
+        pass.set_vertex_buffer(0, draw.instances.slice(..));
+        pass.draw(0..4, 0..draw.instance_count);
+    }
+
+    pub fn transfer_or_forward(&self, pass: &mut wgpu::RenderPass<'_>, frame: &FrameBindings) {
+        let Some(draw) = &self.draw else { return };
+        match (&draw.path, &self.targets) {
+            (DrawPath::Deferred { transfer: Some(pipeline), .. }, Some(targets)) => {
+                pass.set_pipeline(pipeline);
+                self.bind(pass, frame, draw);
+                pass.set_bind_group(3, &targets.transfer_inputs, &[]);
+                pass.draw(0..transfer::VERTICES, 0..1);
+            }
+            (DrawPath::Forward(pipeline), _) => {
+                pass.set_pipeline(pipeline);
+                self.bind(pass, frame, draw);
+                pass.set_vertex_buffer(0, draw.instances.slice(..));
+                pass.draw(0..4, 0..draw.instance_count);
+            }
+            _ => {}
+        }
+    }
+
+    pub fn specular_scatter(&self, pass: &mut wgpu::RenderPass<'_>, frame: &FrameBindings) {
+        let (Some(draw), Some(targets)) = (&self.draw, &self.targets) else { return };
+        let DrawPath::Deferred { specular_scatter: Some((pipeline, lights)), .. } = &draw.path else { return };
+        pass.set_pipeline(pipeline);
+        self.bind(pass, frame, draw);
+        pass.set_bind_group(3, &targets.transfer_inputs, &[]);
+        pass.draw(0..4, 0..*lights);
+    }
+
+    fn bind(&self, pass: &mut wgpu::RenderPass<'_>, frame: &FrameBindings, draw: &Draw) {
+        pass.set_bind_group(0, frame.bind_group(), &[]);
+        pass.set_bind_group(1, &self.bindings, &[]);
+        pass.set_bind_group(2, &draw.material, &[]);
+    }
+}
+
+fn bounds_of_system(system: &System<'_>) -> Bounds {
+    match (system.bounds, system.particles) {
+        (Some(bounds), _) => bounds,
+        (None, Particles::Slice(particles)) => bounds_of(particles),
+        // Refused when the frame was validated.
+        (None, Particles::Buffer { .. }) => Bounds::EMPTY,
+    }
+}
+
+fn forward_key(view: &ViewGeometry, settings: &Settings) -> ForwardKey {
+    ForwardKey {
+        blend_mode: settings.blend_mode,
+        curve: settings.soft_fade.curve,
+        soft_scatter_mode: settings.soft_scatter.mode,
+        reversed: view.depth.reversed,
+    }
+}
+
+fn uniform_buffer(device: &wgpu::Device, label: &str, size: u64) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+/// Cleared to zero: no normal, no amount.
+fn color_attachment(view: &wgpu::TextureView) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+    Some(wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
+    })
+}
+
+fn begin_pass<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    label: &'static str,
+    color_attachments: &[Option<wgpu::RenderPassColorAttachment<'_>>],
+    read_only_depth: Option<&wgpu::TextureView>,
+) -> wgpu::RenderPass<'a> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(label),
+        color_attachments,
+        depth_stencil_attachment: read_only_depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
+            view,
+            depth_ops: None,
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    })
+}
+
+/// Restricts a pass to the part of the texture that is in use.
+fn set_part(pass: &mut wgpu::RenderPass<'_>, size: UVec2) {
+    pass.set_viewport(0.0, 0.0, size.x as f32, size.y as f32, 0.0, 1.0);
+    pass.set_scissor_rect(0, 0, size.x, size.y);
+}

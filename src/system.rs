@@ -1,0 +1,176 @@
+//! What is derived from a particle system once per frame, on the CPU: where it stands in the view, its uniforms, and the
+//! lights that reach it. Both the GPU renderer and the reference start from here.
+
+use glam::{IVec2, UVec2, Vec2, Vec3, Vec4};
+
+use crate::bounds::{Bounds, TargetRect, bounds_in_view, effective_scale, target_rect};
+use crate::error::FieldError;
+use crate::gpu_types::{LightUniform, SystemUniform, ViewUniform};
+use crate::light::{Light, LightKind};
+use crate::reference::depth::depth_coefficients;
+use crate::reference::diffuse_bake::add_light;
+use crate::reference::lighting::sample_light;
+use crate::settings::{DepthSource, DiffuseMode, Settings};
+use crate::view::{SKY_VIEW_DEPTH, ViewGeometry};
+
+impl ViewGeometry {
+    /// `linear_depth`: the scene depth is view depth already.
+    pub fn uniform(&self, linear_depth: bool) -> ViewUniform {
+        let identity = Vec4::new(0.0, 1.0, 1.0, 0.0);
+        ViewUniform {
+            view_from_world: self.view.view_from_world,
+            clip_from_view: self.view.clip_from_view,
+            depth_coefficients: if linear_depth { identity } else { depth_coefficients(&self.depth) },
+            ray_scale: self.ray_scale,
+            ray_offset: self.ray_offset,
+            size: self.view.size.as_vec2(),
+            near: self.depth.near,
+            far: self.depth.far.min(SKY_VIEW_DEPTH),
+            orthographic: if self.depth.orthographic { 1.0 } else { 0.0 },
+            padding: [0.0; 3],
+        }
+    }
+}
+
+/// What a system needs to know of its sprite picture and ramp.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MaterialInfo {
+    pub sprite_size: f32,
+    pub frame_count: f32,
+    /// Zonal harmonics of the diffuse ramp.
+    pub zonal: [Vec3; 3],
+}
+
+/// A system that is in sight.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SystemInView {
+    pub rect: TargetRect,
+    pub uniform: SystemUniform,
+    /// The box reaches to or behind the near plane: the transfer draws its back faces.
+    pub back_faces: bool,
+}
+
+/// Places a system in the view; `None` when it is out of sight. `lights` are those that reach it.
+pub(crate) fn system_in_view(
+    view: &ViewGeometry,
+    bounds: &Bounds,
+    settings: &Settings,
+    material: &MaterialInfo,
+    lights: &[LightUniform],
+) -> Result<Option<SystemInView>, FieldError> {
+    let Some(in_view) = bounds_in_view(bounds, view) else {
+        return Ok(None);
+    };
+    let accumulate = &settings.accumulate;
+    let picture = view.view.size;
+    let scale = effective_scale(accumulate.scale, accumulate.max_side, picture);
+    let rect = match accumulate.depth_source {
+        DepthSource::Reduced => target_rect(&in_view, scale, picture),
+        // Attachments of one pass are of one size.
+        DepthSource::Host => TargetRect { origin: IVec2::ZERO, size: picture },
+    };
+    if accumulate.depth_source == DepthSource::Host && scale != 1 {
+        let expected = format!("at least {} for this picture with depth_source \"host\"", picture.max_element());
+        return Err(FieldError::new("accumulate.max_side", accumulate.max_side, expected));
+    }
+
+    let (half_size, centre) = half_size_in_view(view, bounds);
+    let mut uniform = SystemUniform {
+        bounds_min: bounds.min,
+        bounds_near: in_view.near,
+        bounds_max: bounds.max,
+        bounds_far: in_view.far,
+        bounds_centre: centre,
+        // The plane through the middle of what is in front of the near plane: through the box's own middle unless the
+        // camera is inside.
+        plane_depth: 0.5 * (in_view.near.max(view.depth.near) + in_view.far),
+        inverse_half_size: half_size.max(Vec3::splat(1.0e-4)).recip(),
+        opacity: accumulate.opacity,
+        scatter_colour: settings.soft_scatter.scatter_colour,
+        scatter_amount: settings.soft_scatter.scatter_amount,
+        ambient_colour: settings.soft_scatter.ambient_colour,
+        scatter_smooth: settings.soft_scatter.scatter_smooth,
+        target_from_ndc: target_from_ndc(&rect, scale, picture),
+        target_origin: rect.origin.as_vec2(),
+        target_size: rect.size.as_vec2(),
+        scale: scale as f32,
+        depth_limit: (in_view.far + 1.0 / settings.soft_fade.fade_scale).min(SKY_VIEW_DEPTH),
+        sprite_size: material.sprite_size,
+        frame_count: material.frame_count,
+        boost: settings.boost,
+        shape: accumulate.shape,
+        fade_scale: settings.soft_fade.fade_scale,
+        contrast_power: settings.soft_fade.contrast_power,
+        epsilon: settings.soft_fade.epsilon,
+        near_fade_start: settings.soft_fade.near_fade_start,
+        near_fade_end: settings.soft_fade.near_fade_end,
+        diffuse_intensity: settings.diffuse.intensity,
+        soft_scatter_intensity: settings.soft_scatter.intensity,
+        specular_scatter_size: settings.specular_scatter.size,
+        specular_scatter_intensity: settings.specular_scatter.intensity,
+        light_count: lights.len() as u32,
+        spherical_harmonics: [Vec4::ZERO; 9],
+    };
+    if settings.diffuse.mode == DiffuseMode::SphericalHarmonics {
+        for light in lights {
+            let sample = sample_light(light, centre);
+            let colour = light.colour * sample.attenuation;
+            add_light(&mut uniform.spherical_harmonics, &material.zonal, sample.direction, colour);
+        }
+    }
+    Ok(Some(SystemInView { rect, uniform, back_faces: in_view.near <= view.depth.near }))
+}
+
+/// Half the size of the view-space box round the box, and its middle.
+fn half_size_in_view(view: &ViewGeometry, bounds: &Bounds) -> (Vec3, Vec3) {
+    let half = 0.5 * (bounds.max - bounds.min);
+    let m = view.view.view_from_world;
+    let extent = |axis: usize| m.col(axis).truncate().abs();
+    (extent(0) * half.x + extent(1) * half.y + extent(2) * half.z, view.view_position(bounds.centre()))
+}
+
+/// Scale (xy) and offset (zw) from the picture's NDC to the target's.
+///
+/// A pixel p is at texel p / scale − origin of the target, so in x, with p = (ndc/2 + 1/2)·W and target NDC = 2·t/w − 1:
+/// scale = W / (s·w), offset = (W/s − 2·origin) / w − 1. In y, which points up in NDC and down in texels, the offset's
+/// sign is the other way round.
+fn target_from_ndc(rect: &TargetRect, scale: u32, picture: UVec2) -> Vec4 {
+    let texels = picture.as_vec2() / scale as f32;
+    let size = rect.size.as_vec2();
+    let offset = (texels - 2.0 * rect.origin.as_vec2()) / size - Vec2::ONE;
+    Vec4::new(texels.x / size.x, texels.y / size.y, offset.x, -offset.y)
+}
+
+/// Brings the lights that reach the box into view space.
+pub(crate) fn lights_in_view(view: &ViewGeometry, lights: &[Light], bounds: &Bounds, out: &mut Vec<LightUniform>) {
+    out.clear();
+    let reaches = |light: &&Light| {
+        let nearest = light.position.clamp(bounds.min, bounds.max);
+        let lit = light.intensity > 0.0 && light.colour != Vec3::ZERO;
+        lit && (light.kind == LightKind::Directional || nearest.distance(light.position) < light.range)
+    };
+    out.extend(lights.iter().filter(reaches).map(|light| light_uniform(view, light)));
+}
+
+fn light_uniform(view: &ViewGeometry, light: &Light) -> LightUniform {
+    let (spot_scale, spot_offset) = if light.kind == LightKind::Spot {
+        let (inner, outer) = (light.inner_angle.to_radians().cos(), light.outer_angle.to_radians().cos());
+        let scale = 1.0 / (inner - outer).max(1.0e-4);
+        (scale, -outer * scale)
+    } else {
+        (0.0, 1.0)
+    };
+    let directional = light.kind == LightKind::Directional;
+    LightUniform {
+        position: view.view_position(light.position),
+        inverse_range: if directional { 0.0 } else { 1.0 / light.range },
+        direction: view.view_direction(light.direction).normalize_or(Vec3::NEG_Z),
+        directional: if directional { 1.0 } else { 0.0 },
+        colour: light.colour * light.intensity,
+        specular_scatter: light.specular_scatter,
+        spot_scale,
+        spot_offset,
+        radius: light.radius,
+        padding: 0.0,
+    }
+}

@@ -1,0 +1,192 @@
+//! Holds what Rust and WGSL both spell out: struct layouts, constants, and the numbers of the setting enums.
+
+use haze::gpu_types::{LightUniform, SystemUniform, ViewUniform};
+use haze::{Particle, light, settings, shader, view};
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+
+fn parse(name: &str, source: &str) -> naga::Module {
+    let module =
+        naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{name}:\n{}", e.emit_to_string(source)));
+    Validator::new(ValidationFlags::all(), Capabilities::empty())
+        .validate(&module)
+        .unwrap_or_else(|e| panic!("{name}:\n{}", e.emit_to_string(source)));
+    module
+}
+
+fn composed(file: &str) -> naga::Module {
+    let source = shader::compose(shader::source(file).unwrap()).unwrap();
+    parse(file, &source)
+}
+
+#[test]
+fn every_file_composes_and_validates_without_any_capability() {
+    for (file, text) in shader::sources() {
+        parse(file, &shader::compose(text).unwrap());
+    }
+}
+
+/// (name, offset) of every member, and the size, of a WGSL struct.
+fn wgsl_struct(module: &naga::Module, name: &str) -> (Vec<(String, u32)>, u32) {
+    let (_, ty) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).unwrap();
+    let naga::TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is no struct") };
+    (members.iter().map(|member| (member.name.clone().unwrap(), member.offset)).collect(), *span)
+}
+
+macro_rules! assert_layout {
+    ($module:expr, $wgsl:literal, $rust:ty, [$($field:ident),+ $(,)?]) => {
+        let rust = vec![$((stringify!($field).to_owned(), std::mem::offset_of!($rust, $field) as u32)),+];
+        let (members, size) = wgsl_struct(&$module, $wgsl);
+        // WGSL may spell padding out as scalars of other names; the rest must be there, in order.
+        let named = |list: &[(String, u32)]| -> Vec<(String, u32)> {
+            list.iter().filter(|(name, _)| !name.starts_with("padding")).cloned().collect()
+        };
+        assert_eq!(named(&members), named(&rust), $wgsl);
+        assert_eq!(size as usize, size_of::<$rust>(), $wgsl);
+        // Every byte of the Rust struct belongs to a listed field, so none was left out of the list.
+        let listed: usize = 0 $(+ size_of_field(|s: &$rust| &s.$field))+;
+        assert_eq!(listed, size_of::<$rust>(), "a field of {} is missing from the list", $wgsl);
+    };
+}
+
+fn size_of_field<S, T>(_: impl Fn(&S) -> &T) -> usize {
+    size_of::<T>()
+}
+
+#[test]
+fn structs_agree() {
+    let module = composed("lib/bindings.wgsl");
+    assert_layout!(
+        module,
+        "View",
+        ViewUniform,
+        [
+            view_from_world,
+            clip_from_view,
+            depth_coefficients,
+            ray_scale,
+            ray_offset,
+            size,
+            near,
+            far,
+            orthographic,
+            padding,
+        ]
+    );
+    assert_layout!(
+        module,
+        "Light",
+        LightUniform,
+        [
+            position,
+            inverse_range,
+            direction,
+            directional,
+            colour,
+            specular_scatter,
+            spot_scale,
+            spot_offset,
+            radius,
+            padding,
+        ]
+    );
+    assert_layout!(
+        module,
+        "System",
+        SystemUniform,
+        [
+            bounds_min,
+            bounds_near,
+            bounds_max,
+            bounds_far,
+            bounds_centre,
+            plane_depth,
+            inverse_half_size,
+            opacity,
+            scatter_colour,
+            scatter_amount,
+            ambient_colour,
+            scatter_smooth,
+            target_from_ndc,
+            target_origin,
+            target_size,
+            scale,
+            depth_limit,
+            sprite_size,
+            frame_count,
+            boost,
+            shape,
+            fade_scale,
+            contrast_power,
+            epsilon,
+            near_fade_start,
+            near_fade_end,
+            diffuse_intensity,
+            soft_scatter_intensity,
+            specular_scatter_size,
+            specular_scatter_intensity,
+            light_count,
+            spherical_harmonics,
+        ]
+    );
+}
+
+#[test]
+fn the_particle_is_two_vertex_attributes() {
+    // position_radius and rotation_amount_frame_age in lib/sprite_vertex.wgsl.
+    let offsets = [
+        std::mem::offset_of!(Particle, position),
+        std::mem::offset_of!(Particle, radius),
+        std::mem::offset_of!(Particle, rotation),
+        std::mem::offset_of!(Particle, amount),
+        std::mem::offset_of!(Particle, frame),
+        std::mem::offset_of!(Particle, age),
+    ];
+    assert_eq!(offsets, [0, 12, 16, 20, 24, 28]);
+    assert_eq!(size_of::<Particle>(), 32);
+}
+
+/// The value of a module constant.
+fn constant(module: &naga::Module, name: &str) -> f64 {
+    let (_, constant) = module
+        .constants
+        .iter()
+        .find(|(_, constant)| constant.name.as_deref() == Some(name))
+        .unwrap_or_else(|| panic!("no constant {name}"));
+    match module.global_expressions[constant.init] {
+        naga::Expression::Literal(naga::Literal::F32(value)) => f64::from(value),
+        naga::Expression::Literal(naga::Literal::U32(value)) => f64::from(value),
+        ref other => panic!("{name} is {other:?}"),
+    }
+}
+
+#[test]
+fn constants_agree() {
+    let transfer = composed("transfer.wgsl");
+    assert_eq!(constant(&transfer, "MAX_LIGHTS"), light::MAX_LIGHTS as f64);
+    assert_eq!(constant(&transfer, "SKY_VIEW_DEPTH"), f64::from(view::SKY_VIEW_DEPTH));
+    assert_eq!(constant(&transfer, "SAME_SURFACE"), f64::from(haze::reference::upsample::SAME_SURFACE));
+}
+
+macro_rules! assert_choices {
+    ($module:expr, $prefix:literal, $choice:ty) => {
+        for &choice in <$choice>::ALL {
+            let name = format!("{}_{}", $prefix, choice.name().to_uppercase());
+            assert_eq!(constant(&$module, &name), f64::from(choice as u32), "{name}");
+        }
+    };
+}
+
+#[test]
+fn setting_enums_agree() {
+    let transfer = composed("transfer.wgsl");
+    assert_choices!(transfer, "UPSAMPLE", settings::Upsample);
+    assert_choices!(transfer, "NORMAL_ENCODING", settings::NormalEncoding);
+    assert_choices!(transfer, "NORMAL_DECODE", settings::NormalDecode);
+    assert_choices!(transfer, "DIFFUSE_MODE", settings::DiffuseMode);
+    assert_choices!(transfer, "SOFT_SCATTER_MODE", settings::SoftScatterMode);
+    assert_choices!(transfer, "SHADE_TREE", settings::ShadeTree);
+    let accumulate = composed("accumulate.wgsl");
+    assert_choices!(accumulate, "FADE_CURVE", settings::FadeCurve);
+    assert_choices!(composed("depth_downsample.wgsl"), "DEPTH_DOWNSAMPLE", settings::DepthDownsample);
+    assert_choices!(composed("forward.wgsl"), "BLEND_MODE", settings::BlendMode);
+}
