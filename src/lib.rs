@@ -1,17 +1,24 @@
 //! haze
 #![allow(missing_docs)]
 pub mod bounds;
+pub mod builtin;
+#[cfg(feature = "app")]
+pub mod demo;
 pub mod descriptor;
+pub mod emitter;
 pub mod error;
 pub mod fields;
 pub mod frame;
 pub mod gpu_types;
 pub mod headless;
+mod json;
 pub mod light;
 pub mod material;
+pub mod noise;
 pub mod particle;
 mod pass;
 pub mod picture;
+pub mod preset;
 pub mod ramp;
 pub mod reference;
 mod renderer;

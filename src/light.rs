@@ -1,8 +1,9 @@
 //! Lights, as the host gives them: world space, linear colour, metres.
 
-use glam::Vec3;
+use glam::{Mat4, Vec3};
 
 use crate::fields::{FieldVisitor, Fields};
+use crate::gpu_types::LightUniform;
 
 /// Most lights in one frame. 128 lights of 64 bytes are half of the 16 KiB that WebGL2 promises a uniform block.
 pub const MAX_LIGHTS: usize = 128;
@@ -64,6 +65,33 @@ impl Default for Light {
             inner_angle: 20.0,
             outer_angle: 35.0,
             specular_scatter: 1.0,
+        }
+    }
+}
+
+impl Light {
+    /// The light as the shaders see it, in the space that `space_from_world` (rigid) leads to.
+    pub fn uniform(&self, space_from_world: &Mat4) -> LightUniform {
+        let directional = self.kind == LightKind::Directional;
+        // Cone fade: cos = cos(inner) gives 1, cos(outer) gives 0.
+        let (spot_scale, spot_offset) = if self.kind == LightKind::Spot {
+            let (inner, outer) = (self.inner_angle.to_radians().cos(), self.outer_angle.to_radians().cos());
+            let scale = 1.0 / (inner - outer).max(1.0e-4);
+            (scale, -outer * scale)
+        } else {
+            (0.0, 1.0)
+        };
+        LightUniform {
+            position: space_from_world.transform_point3(self.position),
+            inverse_range: if directional { 0.0 } else { 1.0 / self.range },
+            direction: space_from_world.transform_vector3(self.direction).normalize_or(Vec3::NEG_Y),
+            directional: if directional { 1.0 } else { 0.0 },
+            colour: self.colour * self.intensity,
+            specular_scatter: self.specular_scatter,
+            spot_scale,
+            spot_offset,
+            radius: self.radius,
+            padding: 0.0,
         }
     }
 }

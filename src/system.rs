@@ -149,28 +149,5 @@ pub(crate) fn lights_in_view(view: &ViewGeometry, lights: &[Light], bounds: &Bou
         let lit = light.intensity > 0.0 && light.colour != Vec3::ZERO;
         lit && (light.kind == LightKind::Directional || nearest.distance(light.position) < light.range)
     };
-    out.extend(lights.iter().filter(reaches).map(|light| light_uniform(view, light)));
-}
-
-fn light_uniform(view: &ViewGeometry, light: &Light) -> LightUniform {
-    let (spot_scale, spot_offset) = if light.kind == LightKind::Spot {
-        let (inner, outer) = (light.inner_angle.to_radians().cos(), light.outer_angle.to_radians().cos());
-        let scale = 1.0 / (inner - outer).max(1.0e-4);
-        (scale, -outer * scale)
-    } else {
-        (0.0, 1.0)
-    };
-    let directional = light.kind == LightKind::Directional;
-    LightUniform {
-        position: view.view_position(light.position),
-        inverse_range: if directional { 0.0 } else { 1.0 / light.range },
-        direction: view.view_direction(light.direction).normalize_or(Vec3::NEG_Z),
-        directional: if directional { 1.0 } else { 0.0 },
-        colour: light.colour * light.intensity,
-        specular_scatter: light.specular_scatter,
-        spot_scale,
-        spot_offset,
-        radius: light.radius,
-        padding: 0.0,
-    }
+    out.extend(lights.iter().filter(reaches).map(|light| light.uniform(&view.view.view_from_world)));
 }

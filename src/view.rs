@@ -102,11 +102,6 @@ impl ViewGeometry {
     pub fn view_position(&self, world: Vec3) -> Vec3 {
         self.view.view_from_world.transform_point3(world)
     }
-
-    /// Direction in view space of a direction in world space.
-    pub fn view_direction(&self, world: Vec3) -> Vec3 {
-        self.view.view_from_world.transform_vector3(world)
-    }
 }
 
 #[cfg(test)]

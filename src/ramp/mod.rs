@@ -1,5 +1,8 @@
 //! Ramps: the small textures that an artist paints the light with. `ramps/README.md` has axes, sizes and colour space.
 
+pub mod bake;
+pub mod motif;
+
 use std::path::Path;
 
 use glam::{UVec2, Vec3};

@@ -1,5 +1,7 @@
 //! Sprite pictures: flipbooks of normal maps with the amount in alpha.
 
+pub mod bake;
+
 use std::path::Path;
 
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};

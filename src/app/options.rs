@@ -1,0 +1,131 @@
+//! What several subcommands take: a preset and changes to it, a size, a backend.
+
+use std::str::FromStr;
+
+use clap::{Args, ValueEnum};
+use glam::{UVec2, Vec4};
+use haze::demo::shot::Shot;
+use haze::headless::Headless;
+use haze::reference::picture::Picture;
+use haze::settings::Path;
+use haze::{Descriptor, Error, FieldError};
+
+/// A preset, and what is changed about it for this run.
+#[derive(Args)]
+pub struct ShotArguments {
+    /// A built-in preset's name (see `haze preset list`), or the path of a JSON file.
+    #[arg(default_value = "column")]
+    preset: String,
+    /// Size of the picture, pixels.
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
+    pub size: UVec2,
+    /// Seconds into the emission; the preset's own if not given.
+    #[arg(long, value_name = "S", value_parser = parse_time, allow_negative_numbers = true)]
+    time: Option<f32>,
+    /// Pixels per texel of the accumulation target, 1 to 16; the preset's own if not given.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16))]
+    scale: Option<u32>,
+    /// auto, raster or forward; the presets' own if not given.
+    #[arg(long, value_parser = parse_choice::<Path>)]
+    path: Option<Path>,
+    /// Seed of every emitter; the preset's own if not given.
+    #[arg(long, value_name = "N")]
+    seed: Option<u32>,
+    /// Which renderer.
+    #[arg(long, value_enum, default_value = "auto")]
+    backend: BackendName,
+}
+
+/// The renderers.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum BackendName {
+    /// The GPU where there is one, else the CPU.
+    Auto,
+    /// The GPU, or fail.
+    Gpu,
+    /// The reference renderer: slow, and the same everywhere.
+    Cpu,
+}
+
+/// The renderer in use.
+pub enum Backend {
+    Gpu(Box<Headless>),
+    Cpu,
+}
+
+impl ShotArguments {
+    /// Loads the preset and applies the changes.
+    pub fn load(&self) -> Result<Shot, Error> {
+        let mut shot = Shot::load(&self.preset, self.size)?;
+        if let Some(time) = self.time {
+            shot.preset.time = time;
+        }
+        for system in &mut shot.preset.systems {
+            system.emitter.seed = self.seed.unwrap_or(system.emitter.seed);
+            system.settings.accumulate.scale = self.scale.unwrap_or(system.settings.accumulate.scale);
+            system.settings.path = self.path.unwrap_or(system.settings.path);
+        }
+        Ok(shot)
+    }
+
+    /// Opens the renderer that was asked for.
+    pub fn backend(&self) -> Result<Backend, Error> {
+        if self.backend == BackendName::Cpu {
+            return Ok(Backend::Cpu);
+        }
+        match Headless::new() {
+            Ok(gpu) => {
+                let most = gpu.device.limits().max_texture_dimension_2d / 2;
+                if self.size.max_element() > most {
+                    let size = format!("{}x{}", self.size.x, self.size.y);
+                    let expected = format!("at most {most}x{most} on {}", gpu.description());
+                    return Err(FieldError::new("--size", size, expected).into());
+                }
+                Ok(Backend::Gpu(Box::new(gpu)))
+            }
+            Err(Error::NoDevice(reason)) if self.backend == BackendName::Auto => {
+                eprintln!("haze: rendering on the CPU: {reason}");
+                Ok(Backend::Cpu)
+            }
+            Err(error) => Err(error),
+        }
+    }
+}
+
+impl Backend {
+    /// Renders, linear HDR.
+    pub fn render(&self, shot: &Shot) -> Result<Picture<Vec4>, Error> {
+        match self {
+            Self::Gpu(gpu) => shot.render_on_gpu(gpu, &Descriptor::default()),
+            Self::Cpu => shot.render_on_cpu(),
+        }
+    }
+
+    /// What renders, in one line.
+    pub fn description(&self) -> String {
+        match self {
+            Self::Gpu(gpu) => gpu.description(),
+            Self::Cpu => "the CPU renderer".into(),
+        }
+    }
+}
+
+const LARGEST: u32 = 8192;
+
+fn parse_size(text: &str) -> Result<UVec2, String> {
+    let expected = || format!("{text:?} is not a size; expected WxH, each 1 to {LARGEST} pixels, for example 1280x720");
+    let (width, height) = text.split_once(['x', 'X']).ok_or_else(expected)?;
+    let side = |digits: &str| digits.parse::<u32>().ok().filter(|side| (1..=LARGEST).contains(side));
+    Ok(UVec2::new(side(width).ok_or_else(expected)?, side(height).ok_or_else(expected)?))
+}
+
+fn parse_time(text: &str) -> Result<f32, String> {
+    let limit = 1.0e5;
+    let time = text.parse().ok().filter(|time: &f32| time.abs() <= limit);
+    time.ok_or_else(|| format!("{text:?} is not a time; expected seconds, -{limit} to {limit}"))
+}
+
+/// A setting enum by the name it has in presets.
+pub fn parse_choice<T: FromStr<Err = FieldError>>(text: &str) -> Result<T, String> {
+    text.parse::<T>().map_err(|error| format!("expected {}", error.expected))
+}

@@ -1,0 +1,34 @@
+//! `haze render`: one picture.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use haze::Error;
+use haze::picture::write_png;
+use haze::settings::ShadeTree;
+
+use super::options::{ShotArguments, parse_choice};
+use super::tonemap::develop;
+
+#[derive(Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    shot: ShotArguments,
+    /// The PNG to write.
+    #[arg(short, long, value_name = "FILE.png")]
+    output: PathBuf,
+    /// Which stage of the shading is shown: final, combined, diffuse, soft_scatter, specular_scatter, normals, amount,
+    /// overdraw or reduced_depth.
+    #[arg(long, default_value = "final", value_parser = parse_choice::<ShadeTree>)]
+    view: ShadeTree,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Error> {
+    let mut shot = arguments.shot.load()?;
+    shot.shade_tree = arguments.view;
+    let backend = arguments.shot.backend()?;
+    let picture = backend.render(&shot)?;
+    write_png(&arguments.output, &develop(&picture, &shot).into())?;
+    println!("{}: {} on {}", arguments.output.display(), shot.preset.name, backend.description());
+    Ok(())
+}

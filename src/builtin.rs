@@ -1,0 +1,96 @@
+//! The ramps, sprites and presets that come with haze, embedded.
+
+use std::path::{Path, PathBuf};
+
+use crate::error::Error;
+use crate::picture::decode_png;
+use crate::ramp::Ramp;
+use crate::sprite::bake::SpriteRecipe;
+use crate::sprite::{Sprite, SpriteLayout};
+
+/// A built-in file: its name and contents.
+#[derive(Clone, Copy, Debug)]
+pub struct Builtin {
+    /// Name without folder and extension.
+    pub name: &'static str,
+    /// The PNG, or the preset's JSON.
+    pub bytes: &'static [u8],
+    /// The JSON it was made from; empty for presets.
+    pub recipe: &'static str,
+}
+
+macro_rules! builtin {
+    ($folder:literal, $kind:literal, [$($name:literal),+ $(,)?]) => {
+        &[$(Builtin {
+            name: $name,
+            bytes: include_bytes!(concat!("../", $folder, "/", $name, ".png")),
+            recipe: include_str!(concat!("../", $folder, "/", $name, $kind)),
+        }),+]
+    };
+}
+
+/// Diffuse, soft scatter and specular ramps. `ramps/README.md`.
+pub const RAMPS: &[Builtin] = builtin!(
+    "ramps",
+    ".ramp.json",
+    [
+        "diffuse_soft",
+        "diffuse_dusk",
+        "diffuse_ember",
+        "diffuse_overcast",
+        "scatter_mist",
+        "scatter_soot",
+        "specular_halo",
+        "specular_ember",
+    ]
+);
+
+/// Painted lit spheres.
+pub const MOTIFS: &[Builtin] = builtin!("ramps", ".motif.json", ["motif_studio"]);
+
+/// Flipbooks of normal maps.
+pub const SPRITES: &[Builtin] = builtin!("sprites", ".sprite.json", ["puff", "wisp", "billow"]);
+
+macro_rules! presets {
+    ([$($name:literal),+ $(,)?]) => {
+        &[$(Builtin {
+            name: $name,
+            bytes: include_bytes!(concat!("../presets/", $name, ".json")),
+            recipe: "",
+        }),+]
+    };
+}
+
+/// The presets; the first is the default.
+pub const PRESETS: &[Builtin] = presets!(["column", "backlit_fog", "corridor", "explosion", "fence", "inside"]);
+
+/// Finds a built-in by name.
+pub fn find(list: &'static [Builtin], name: &str) -> Option<&'static Builtin> {
+    list.iter().find(|builtin| builtin.name == name)
+}
+
+/// The name that errors give a built-in file.
+pub fn path(name: &str) -> PathBuf {
+    Path::new("builtin:").join(name)
+}
+
+impl Builtin {
+    /// Decodes a ramp or a motif.
+    ///
+    /// # Errors
+    /// As [`decode_png`].
+    pub fn ramp(&self) -> Result<Ramp, Error> {
+        Ok(Ramp::from_picture(&decode_png(&path(self.name), self.bytes)?))
+    }
+
+    /// Decodes a sprite, laid out as its recipe says.
+    ///
+    /// # Errors
+    /// As [`decode_png`] and [`Sprite::from_picture`].
+    pub fn sprite(&self) -> Result<Sprite, Error> {
+        let path = path(self.name);
+        let recipe: SpriteRecipe = crate::json::parse(&path, self.recipe)?;
+        let layout = SpriteLayout { columns: recipe.columns, rows: recipe.rows, y_down: false };
+        Sprite::from_picture(&path, &decode_png(&path, self.bytes)?.to_rgba8(), layout)
+    }
+}

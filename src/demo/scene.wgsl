@@ -1,0 +1,274 @@
+// The demo scene: boxes with procedural materials. src/demo/shading.rs is the same on the CPU.
+
+#import "lib/lighting.wgsl"
+
+struct Box {
+    centre: vec3f,
+    // Turn about the vertical.
+    cosine: f32,
+    half_size: vec3f,
+    sine: f32,
+    colour: vec3f,
+    surface: f32,
+}
+
+struct Scene {
+    clip_from_world: mat4x4f,
+    world_from_clip: mat4x4f,
+    eye: vec3f,
+    box_count: u32,
+    zenith: vec3f,
+    light_count: u32,
+    horizon: vec3f,
+    padding0: f32,
+    ground: vec3f,
+    padding1: f32,
+}
+
+@group(0) @binding(0) var<uniform> scene: Scene;
+@group(0) @binding(1) var<uniform> boxes: array<Box, 96>;
+@group(0) @binding(2) var<uniform> lights: array<Light, 128>;
+
+const SURFACE_SLABS: f32 = 1.0;
+const SURFACE_BRICK: f32 = 2.0;
+const SURFACE_WOOD: f32 = 3.0;
+const SURFACE_PLASTER: f32 = 4.0;
+const SURFACE_GLOW: f32 = 5.0;
+
+fn to_local(b: Box, v: vec3f) -> vec3f {
+    return vec3f(v.x * b.cosine + v.z * b.sine, v.y, v.z * b.cosine - v.x * b.sine);
+}
+
+fn to_world(b: Box, v: vec3f) -> vec3f {
+    return vec3f(v.x * b.cosine - v.z * b.sine, v.y, v.z * b.cosine + v.x * b.sine);
+}
+
+fn hash(at: vec3i) -> f32 {
+    var v = vec3u(at) * 1664525u + 1013904223u;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v = v ^ (v >> vec3u(16u));
+    v.x += v.y * v.z;
+    return f32(v.x >> 8u) * (1.0 / 16777216.0);
+}
+
+// 0..1.
+fn value_noise(p: vec3f) -> f32 {
+    let cell = floor(p);
+    let f = p - cell;
+    let w = f * f * (3.0 - 2.0 * f);
+    let i = vec3i(cell);
+    let low = mix(
+        mix(hash(i), hash(i + vec3i(1, 0, 0)), w.x),
+        mix(hash(i + vec3i(0, 1, 0)), hash(i + vec3i(1, 1, 0)), w.x),
+        w.y,
+    );
+    let high = mix(
+        mix(hash(i + vec3i(0, 0, 1)), hash(i + vec3i(1, 0, 1)), w.x),
+        mix(hash(i + vec3i(0, 1, 1)), hash(i + vec3i(1, 1, 1)), w.x),
+        w.y,
+    );
+    return mix(low, high, w.z);
+}
+
+fn stains(p: vec3f) -> f32 {
+    return value_noise(p * 0.7) * 0.5 + value_noise(p * 2.3) * 0.3 + value_noise(p * 9.1) * 0.2;
+}
+
+// 0 on a joint between tiles of `size`, 1 on a tile.
+fn joints(uv: vec2f, size: vec2f, width: f32) -> f32 {
+    let from_edge = (0.5 - abs(fract(uv / size) - 0.5)) * size;
+    return smoothstep(0.0, width, min(from_edge.x, from_edge.y));
+}
+
+// Reflectance of a point of a box. `p` and `n` are in the box's frame, `world` tells boxes apart.
+fn albedo(b: Box, p: vec3f, n: vec3f, world: vec3f) -> vec3f {
+    var uv = p.xy;
+    if abs(n.x) > 0.5 { uv = p.zy; }
+    if abs(n.y) > 0.5 { uv = p.xz; }
+    let dirt = stains(world);
+    if b.surface == SURFACE_SLABS {
+        let size = vec2f(1.6, 1.6);
+        let tile = floor(uv / size);
+        let tone = 0.85 + 0.3 * hash(vec3i(vec2i(tile), 5));
+        return b.colour * tone * (0.55 + 0.7 * dirt) * mix(0.45, 1.0, joints(uv, size, 0.035));
+    }
+    if b.surface == SURFACE_BRICK {
+        let size = vec2f(0.48, 0.17);
+        let row = floor(uv.y / size.y);
+        let shifted = vec2f(uv.x + row * 0.5 * size.x, uv.y);
+        let tile = vec3i(vec3f(floor(shifted / size), n.x * 3.0 + n.z));
+        let tone = 0.7 + 0.6 * hash(tile);
+        let tint = mix(vec3f(1.0), vec3f(1.15, 0.92, 0.8), hash(tile + vec3i(7, 3, 1)));
+        let brick = b.colour * tone * tint * (0.6 + 0.6 * dirt);
+        return mix(vec3f(0.16, 0.155, 0.15) * (0.6 + 0.6 * dirt), brick, joints(shifted, size, 0.02));
+    }
+    if b.surface == SURFACE_WOOD {
+        let plank = floor(uv.y / 0.2);
+        let grain = value_noise(vec3f(uv.x * 2.0, uv.y * 40.0, plank * 7.0 + b.centre.x * 3.0));
+        let tone = 0.8 + 0.4 * hash(vec3i(i32(plank), i32(b.centre.x * 10.0), i32(b.centre.z * 10.0)));
+        // A frame of boards round every face of a crate.
+        var edge = b.half_size - abs(p);
+        edge = select(edge, vec3f(10.0), abs(n) > vec3f(0.5));
+        let framed = smoothstep(0.09, 0.075, min(edge.x, min(edge.y, edge.z)));
+        let boards = tone * mix(0.5, 1.0, joints(uv, vec2f(50.0, 0.2), 0.015));
+        return b.colour * mix(boards, 1.15, framed) * (0.7 + 0.4 * grain) * (0.75 + 0.4 * dirt);
+    }
+    if b.surface == SURFACE_PLASTER {
+        let damp = smoothstep(0.0, 1.2, world.y + dirt * 0.8 - 0.3);
+        return b.colour * (0.6 + 0.55 * dirt) * mix(0.6, 1.0, damp);
+    }
+    return b.colour * (0.8 + 0.4 * dirt);
+}
+
+// Distances along a ray at which it enters and leaves a box, in the box's frame.
+fn box_interval(b: Box, origin: vec3f, direction: vec3f) -> vec2f {
+    let inverse = 1.0 / select(direction, vec3f(1.0e-6), abs(direction) < vec3f(1.0e-6));
+    let middle = -origin * inverse;
+    let reach = abs(inverse) * b.half_size;
+    let enter = middle - reach;
+    let leave = middle + reach;
+    return vec2f(max(enter.x, max(enter.y, enter.z)), min(leave.x, min(leave.y, leave.z)));
+}
+
+fn box_distance(b: Box, p: vec3f) -> f32 {
+    let q = abs(p) - b.half_size;
+    return length(max(q, vec3f(0.0))) + min(max(q.x, max(q.y, q.z)), 0.0);
+}
+
+// How much of a light of angular size `spread` (radius / distance) is seen past the boxes. Rays that miss a box are
+// dimmed by how close they pass it, seen from the point: a penumbra without samples.
+fn light_visibility(origin: vec3f, direction: vec3f, distance: f32, spread: f32) -> f32 {
+    var visible = 1.0;
+    for (var i = 0u; i < scene.box_count; i++) {
+        let b = boxes[i];
+        if b.surface == SURFACE_GLOW { continue; }
+        let o = to_local(b, origin - b.centre);
+        let d = to_local(b, direction);
+        let interval = box_interval(b, o, d);
+        let nearest = clamp(0.5 * (interval.x + interval.y), 0.0, distance);
+        if interval.x < interval.y {
+            if interval.y > 0.0 && interval.x < distance { return 0.0; }
+            continue;
+        }
+        if nearest > 0.0 {
+            visible = min(visible, box_distance(b, o + d * nearest) / (nearest * spread));
+        }
+    }
+    return smoothstep(0.0, 1.0, visible);
+}
+
+// Share of the sky that the boxes leave open over a point: looks at how close they come to two points out on the normal.
+fn ambient_visibility(p: vec3f, n: vec3f) -> f32 {
+    let near = p + n * 0.15;
+    let far = p + n * 0.7;
+    var open_near = 0.15;
+    var open_far = 0.7;
+    for (var i = 0u; i < scene.box_count; i++) {
+        let b = boxes[i];
+        open_near = min(open_near, box_distance(b, to_local(b, near - b.centre)));
+        open_far = min(open_far, box_distance(b, to_local(b, far - b.centre)));
+    }
+    return mix(0.25, 1.0, saturate(open_near / 0.15)) * mix(0.35, 1.0, saturate(open_far / 0.7));
+}
+
+fn sky(direction: vec3f) -> vec3f {
+    let up = saturate(direction.y);
+    return mix(scene.horizon, scene.zenith, 1.0 - pow(1.0 - up, 3.0));
+}
+
+fn shade(b: Box, world: vec3f, local: vec3f, local_normal: vec3f) -> vec3f {
+    if b.surface == SURFACE_GLOW {
+        return b.colour;
+    }
+    let normal = to_world(b, local_normal);
+    let reflectance = albedo(b, local, local_normal, world);
+    let ambient = mix(scene.ground, mix(scene.horizon, scene.zenith, 0.5), normal.y * 0.5 + 0.5);
+    var light = ambient * ambient_visibility(world, normal);
+    let origin = world + normal * 2.0e-3;
+    for (var i = 0u; i < scene.light_count; i++) {
+        let sample = sample_light(lights[i], world);
+        let facing = dot(normal, sample.direction);
+        if facing <= 0.0 || sample.attenuation <= 0.0 { continue; }
+        var distance = 60.0;
+        var spread = 0.02;
+        if lights[i].directional < 0.5 {
+            distance = length(lights[i].position - world);
+            spread = lights[i].radius / max(distance, 0.1);
+        }
+        let visible = light_visibility(origin, sample.direction, distance, spread);
+        light += lights[i].colour * (facing * sample.attenuation * visible);
+    }
+    return reflectance * light;
+}
+
+struct BoxVertex {
+    @builtin(position) position: vec4f,
+    @location(0) world: vec3f,
+    @location(1) local: vec3f,
+    @location(2) @interpolate(flat, either) local_normal: vec3f,
+    @location(3) @interpolate(flat, either) index: u32,
+}
+
+// Six faces of two triangles; face f looks along axis f / 2, backwards if f is even.
+@vertex
+fn box_vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> BoxVertex {
+    let b = boxes[instance];
+    let face = vertex / 6u;
+    var places = array<u32, 6>(0u, 1u, 2u, 2u, 1u, 3u);
+    let place = places[vertex % 6u];
+    let u = f32(place & 1u) * 2.0 - 1.0;
+    let v = f32((place >> 1u) & 1u) * 2.0 - 1.0;
+    let sign = f32(face & 1u) * 2.0 - 1.0;
+    var normal = vec3f(sign, 0.0, 0.0);
+    var local = vec3f(sign, u, v);
+    if face / 2u == 1u {
+        normal = vec3f(0.0, sign, 0.0);
+        local = vec3f(v, sign, u);
+    } else if face / 2u == 2u {
+        normal = vec3f(0.0, 0.0, sign);
+        local = vec3f(u, v, sign);
+    }
+    local *= b.half_size;
+    let world = b.centre + to_world(b, local);
+    return BoxVertex(scene.clip_from_world * vec4f(world, 1.0), world, local, normal, instance);
+}
+
+@fragment
+fn box_fragment(in: BoxVertex) -> @location(0) vec4f {
+    return vec4f(shade(boxes[in.index], in.world, in.local, in.local_normal), 1.0);
+}
+
+@vertex
+fn sky_vertex(@builtin(vertex_index) index: u32) -> BoxVertex {
+    var out: BoxVertex;
+    let ndc = vec2f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0);
+    out.position = vec4f(ndc, 1.0, 1.0);
+    let far = scene.world_from_clip * vec4f(ndc, 1.0, 1.0);
+    out.world = far.xyz / far.w;
+    return out;
+}
+
+@fragment
+fn sky_fragment(in: BoxVertex) -> @location(0) vec4f {
+    return vec4f(sky(normalize(in.world - scene.eye)), 1.0);
+}
+
+// The colour pass is drawn at twice the size: four samples for every pixel, weighted so that one bright sample does not
+// outshine the edge. (Karis, "Tone mapping", 2013)
+@group(1) @binding(0) var samples: texture_2d<f32>;
+
+@fragment
+fn resolve_fragment(in: BoxVertex) -> @location(0) vec4f {
+    let first = vec2i(in.position.xy) * 2;
+    var sum = vec3f(0.0);
+    var weights = 0.0;
+    for (var i = 0; i < 4; i++) {
+        let colour = textureLoad(samples, first + vec2i(i & 1, i >> 1u), 0).rgb;
+        let weight = 1.0 / (1.0 + max(colour.r, max(colour.g, colour.b)));
+        sum += colour * weight;
+        weights += weight;
+    }
+    return vec4f(sum / weights, 1.0);
+}

@@ -1,0 +1,159 @@
+//! A preset as a picture: scene and smoke, by the GPU or by the CPU.
+
+use std::path::{Path, PathBuf};
+
+use glam::{UVec2, Vec4};
+
+use super::{Scene, cpu, gpu};
+use crate::error::Error;
+use crate::frame::{Frame, Particles, SceneDepth, System};
+use crate::headless::Headless;
+use crate::material::MaterialAssets;
+use crate::particle::Particle;
+use crate::preset::Preset;
+use crate::reference;
+use crate::reference::picture::Picture;
+use crate::settings::{Settings, ShadeTree};
+use crate::{Descriptor, Renderer};
+
+/// A preset with its pictures loaded.
+#[derive(Clone, Debug)]
+pub struct Shot {
+    /// The preset; change it freely.
+    pub preset: Preset,
+    /// Picture size.
+    pub size: UVec2,
+    /// Which stage of the shading is shown.
+    pub shade_tree: ShadeTree,
+    materials: Vec<MaterialAssets>,
+}
+
+impl Shot {
+    /// Loads a preset, built in or from a file, and its pictures.
+    ///
+    /// # Errors
+    /// As [`Preset::load`] and [`MaterialNames::load`](crate::preset::MaterialNames::load).
+    pub fn load(name_or_path: &str, size: UVec2) -> Result<Self, Error> {
+        let preset = Preset::load(name_or_path)?;
+        let folder = Path::new(name_or_path).parent().map_or_else(PathBuf::new, Path::to_path_buf);
+        let load = |(index, system): (usize, &crate::preset::PresetSystem)| {
+            system.material.load(&folder).map_err(|error| match error {
+                Error::Field(mut error) => {
+                    error.field = format!("systems[{index}].{}", error.field);
+                    Error::JsonField { path: name_or_path.into(), error }
+                }
+                other => other,
+            })
+        };
+        let materials = preset.systems.iter().enumerate().map(load).collect::<Result<_, _>>()?;
+        Ok(Self { preset, size, shade_tree: ShadeTree::Final, materials })
+    }
+
+    /// True if the smoke is shown in the scene; the other stages are shown on black.
+    fn shows_scene(&self) -> bool {
+        self.shade_tree == ShadeTree::Final
+    }
+
+    fn scene(&self) -> Scene {
+        Scene::new(self.preset.environment.scene, &self.preset.environment, &self.preset.lights)
+    }
+
+    /// Particles and settings of every system, in order.
+    fn systems(&self) -> Vec<(Vec<Particle>, Settings)> {
+        let evaluate = |system: &crate::preset::PresetSystem| {
+            let mut particles = Vec::new();
+            system.emitter.evaluate(self.preset.time, &mut particles);
+            (particles, system.settings_for(self.size.y))
+        };
+        self.preset.systems.iter().map(evaluate).collect()
+    }
+
+    /// Renders on the CPU, linear HDR.
+    ///
+    /// # Errors
+    /// [`Error::Field`] when the preset was changed to something invalid.
+    pub fn render_on_cpu(&self) -> Result<Picture<Vec4>, Error> {
+        let view = self.preset.camera.view(self.size);
+        let (mut colour, depth) = cpu::render(&self.scene(), &view);
+        if !self.shows_scene() {
+            colour.texels.fill(Vec4::W);
+        }
+        let particles = self.systems();
+        let systems: Vec<_> = particles
+            .iter()
+            .zip(&self.materials)
+            .map(|((particles, settings), material)| reference::renderer::System {
+                particles,
+                bounds: None,
+                settings,
+                material,
+            })
+            .collect();
+        let frame = reference::renderer::Frame {
+            view,
+            scene_depth: &depth,
+            lights: &self.preset.lights,
+            systems: &systems,
+            shade_tree: self.shade_tree,
+        };
+        reference::renderer::render(&frame, &mut colour)?;
+        Ok(colour)
+    }
+
+    /// Renders on the GPU, linear HDR.
+    ///
+    /// # Errors
+    /// [`Error::Field`] when the preset was changed to something invalid or the picture is too large for the device,
+    /// [`Error::Device`] when the device failed.
+    pub fn render_on_gpu(&self, gpu: &Headless, descriptor: &Descriptor) -> Result<Picture<Vec4>, Error> {
+        let view = self.preset.camera.view(self.size);
+        let targets = gpu::render(gpu, &self.scene(), &view)?;
+        let depth = targets.depth.create_view(&wgpu::TextureViewDescriptor::default());
+        let colour = targets.colour.create_view(&wgpu::TextureViewDescriptor::default());
+
+        let mut renderer = Renderer::new(&gpu.device, descriptor)?;
+        let materials: Vec<_> =
+            self.materials.iter().map(|assets| renderer.create_material(&gpu.device, &gpu.queue, assets)).collect();
+        let particles = self.systems();
+        let systems: Vec<_> = particles
+            .iter()
+            .zip(&materials)
+            .map(|((particles, settings), material)| System {
+                particles: Particles::Slice(particles),
+                bounds: None,
+                settings,
+                material,
+            })
+            .collect();
+        let frame = Frame {
+            view,
+            scene_depth: SceneDepth::Buffer(&depth),
+            lights: &self.preset.lights,
+            systems: &systems,
+            shade_tree: self.shade_tree,
+        };
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, &frame)?;
+        let load = if self.shows_scene() { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::BLACK) };
+        {
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("smoke"),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &colour,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+                })],
+                depth_stencil_attachment: descriptor.depth_format.map(|_| wgpu::RenderPassDepthStencilAttachment {
+                    view: &depth,
+                    depth_ops: None,
+                    stencil_ops: None,
+                }),
+                ..Default::default()
+            });
+            renderer.render(&mut pass);
+        }
+        gpu.submit(encoder)?;
+        Ok(Picture { size: self.size, texels: gpu.read_rgba16float(&targets.colour)? })
+    }
+}

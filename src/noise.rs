@@ -1,0 +1,140 @@
+//! Hashes and gradient noise: integer hashes and plain f32 arithmetic only, so that WGSL can do the same bit for bit.
+
+use glam::{IVec3, UVec3, Vec2, Vec3};
+
+/// Three random words from three. (Jarzynski and Olano, "Hash functions for GPU rendering", 2020, pcg3d)
+pub fn pcg3d(v: UVec3) -> UVec3 {
+    let [mut x, mut y, mut z] = v.to_array().map(|c| c.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
+    let mix = |x: &mut u32, y: &mut u32, z: &mut u32| {
+        *x = x.wrapping_add(y.wrapping_mul(*z));
+        *y = y.wrapping_add(z.wrapping_mul(*x));
+        *z = z.wrapping_add(x.wrapping_mul(*y));
+    };
+    mix(&mut x, &mut y, &mut z);
+    [x, y, z] = [x, y, z].map(|c| c ^ (c >> 16));
+    mix(&mut x, &mut y, &mut z);
+    UVec3::new(x, y, z)
+}
+
+/// 0..1 from the upper 24 bits of a random word: exact in f32.
+pub fn unit(word: u32) -> f32 {
+    (word >> 8) as f32 * (1.0 / 16_777_216.0)
+}
+
+/// Noise at a point, and how it changes there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// About −1..1, mean 0.
+    pub value: f32,
+    /// Change per unit of x, y and z.
+    pub gradient: Vec3,
+}
+
+/// Gradient noise with a lattice of 1, whose gradients turn by `phase` = (cos, sin): a full turn is a seamless loop in
+/// time that swirls rather than drifts. (Perlin, "Improving noise", 2002; turning: Perlin and Neyret, "Flow noise", 2001)
+pub fn gradient_noise(position: Vec3, phase: Vec2, seed: u32) -> Noise {
+    let cell = position.floor();
+    let f = position - cell;
+    let cell = cell.as_ivec3();
+    let fade = f * f * f * (f * (f * 6.0 - 15.0) + 10.0);
+    let slope = f * f * 30.0 * (f * (f - 2.0) + 1.0);
+
+    let mut value = 0.0;
+    let mut gradient = Vec3::ZERO;
+    for corner in 0..8 {
+        let offset = IVec3::new(corner & 1, (corner >> 1) & 1, corner >> 2);
+        let lattice = lattice_gradient(cell.wrapping_add(offset), phase, seed);
+        let dot = lattice.dot(f - offset.as_vec3());
+        // Weight of the corner on each axis, and its slope.
+        let pick = |axis: usize| {
+            if offset[axis] == 1 { (fade[axis], slope[axis]) } else { (1.0 - fade[axis], -slope[axis]) }
+        };
+        let ((wx, sx), (wy, sy), (wz, sz)) = (pick(0), pick(1), pick(2));
+        let weight = wx * wy * wz;
+        value += weight * dot;
+        gradient += lattice * weight + Vec3::new(sx * wy * wz, wx * sy * wz, wx * wy * sz) * dot;
+    }
+    Noise { value, gradient }
+}
+
+/// The gradient at a lattice point: two random vectors, one fading into the other as the phase turns.
+fn lattice_gradient(at: IVec3, phase: Vec2, seed: u32) -> Vec3 {
+    let hash = pcg3d(at.as_uvec3().wrapping_add(UVec3::new(seed, seed ^ 0x9e37_79b9, 0)));
+    let component = |word: u32| word as f32 * (2.0 / 65535.0) - 1.0;
+    let first = Vec3::new(component(hash.x >> 16), component(hash.y >> 16), component(hash.z >> 16));
+    let second = Vec3::new(component(hash.x & 0xffff), component(hash.y & 0xffff), component(hash.z & 0xffff));
+    first * phase.x + second * phase.y
+}
+
+/// Octaves of [`gradient_noise`]: each of `lacunarity` times the frequency and `gain` times the weight of the last.
+pub fn fractal_noise(position: Vec3, phase: Vec2, seed: u32, octaves: u32, lacunarity: f32, gain: f32) -> Noise {
+    let (mut frequency, mut weight) = (1.0, 1.0);
+    let mut sum = Noise { value: 0.0, gradient: Vec3::ZERO };
+    for octave in 0..octaves {
+        let noise = gradient_noise(position * frequency, phase, seed.wrapping_add(octave * 7919));
+        sum.value += noise.value * weight;
+        sum.gradient += noise.gradient * (weight * frequency);
+        frequency *= lacunarity;
+        weight *= gain;
+    }
+    sum
+}
+
+/// A divergence-free flow: the curl of three noise fields. Smoke that follows it swirls and never bunches up.
+/// (Bridson, Hourihan and Nordenstam, "Curl-noise for procedural fluid flow", 2007)
+pub fn curl_noise(position: Vec3, phase: Vec2, seed: u32) -> Vec3 {
+    let x = gradient_noise(position, phase, seed).gradient;
+    let y = gradient_noise(position, phase, seed.wrapping_add(1)).gradient;
+    let z = gradient_noise(position, phase, seed.wrapping_add(2)).gradient;
+    Vec3::new(z.y - y.z, x.z - z.x, y.x - x.y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn points() -> impl Iterator<Item = Vec3> {
+        (0..200).map(|i| {
+            let hash = pcg3d(UVec3::new(i, 7, 9));
+            Vec3::new(unit(hash.x), unit(hash.y), unit(hash.z)) * 20.0 - 10.0
+        })
+    }
+
+    #[test]
+    fn the_gradient_is_that_of_the_value() {
+        let phase = Vec2::from_angle(0.7);
+        for p in points() {
+            let noise = gradient_noise(p, phase, 3);
+            for axis in Vec3::AXES {
+                // Central differences of f32 noise at step 1/256: error about 1e-3.
+                let h = 1.0 / 256.0;
+                let ahead = gradient_noise(p + axis * h, phase, 3).value;
+                let behind = gradient_noise(p - axis * h, phase, 3).value;
+                assert!(((ahead - behind) / (2.0 * h) - noise.gradient.dot(axis)).abs() < 5e-3, "{p}");
+            }
+            assert!(noise.value.abs() < 1.5);
+        }
+    }
+
+    #[test]
+    fn a_full_turn_is_a_loop() {
+        for p in points() {
+            let start = gradient_noise(p, Vec2::from_angle(0.0), 1).value;
+            let end = gradient_noise(p, Vec2::from_angle(std::f32::consts::TAU), 1).value;
+            assert!((start - end).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn curl_noise_has_no_sources() {
+        let phase = Vec2::X;
+        for p in points() {
+            let h = 1.0 / 128.0;
+            let slope = |axis: Vec3| {
+                (curl_noise(p + axis * h, phase, 5) - curl_noise(p - axis * h, phase, 5)).dot(axis) / (2.0 * h)
+            };
+            let divergence: f32 = Vec3::AXES.into_iter().map(slope).sum();
+            assert!(divergence.abs() < 0.05, "{p}: {divergence}");
+        }
+    }
+}

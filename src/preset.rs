@@ -1,0 +1,395 @@
+//! Presets: a camera, lights and particle systems in a JSON file.
+
+use std::path::{Component, Path, PathBuf};
+
+use glam::camera::rh;
+use glam::{UVec2, Vec3};
+
+use crate::builtin;
+use crate::emitter::Emitter;
+use crate::error::{Error, FieldError};
+use crate::fields::{FieldVisitor, Fields, validate};
+use crate::frame::validate_lights;
+use crate::json;
+use crate::light::Light;
+use crate::material::MaterialAssets;
+use crate::ramp::Ramp;
+use crate::settings::Settings;
+use crate::sprite::{Sprite, SpriteLayout};
+use crate::view::View;
+
+/// The version of the preset format that this code writes and reads.
+pub const PRESET_VERSION: u32 = 1;
+
+/// Height of the picture that pixel sizes in presets are meant for. A renderer of another height scales them, so that a
+/// preset looks the same at every size.
+pub const DESIGN_HEIGHT: f32 = 720.0;
+
+/// Most systems of one preset.
+pub const MAX_SYSTEMS: usize = 32;
+
+/// A whole shot.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Preset {
+    /// Format version: 1.
+    pub version: u32,
+    /// What a list shows.
+    pub name: String,
+    /// What there is to see.
+    #[serde(default)]
+    pub description: String,
+    /// Seconds into the emission that is shown.
+    #[serde(default)]
+    pub time: f32,
+    /// Where it is seen from.
+    #[serde(default)]
+    pub camera: Camera,
+    /// What stands round the smoke in the demo program. A host shows its own scene instead.
+    #[serde(default)]
+    pub environment: Environment,
+    /// Lights on scene and smoke.
+    #[serde(default)]
+    pub lights: Vec<Light>,
+    /// The smoke.
+    #[serde(default)]
+    pub systems: Vec<PresetSystem>,
+}
+
+/// A perspective camera.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct Camera {
+    /// World space, metres.
+    #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+    pub position: Vec3,
+    /// The point in the middle of the picture, metres.
+    #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+    pub target: Vec3,
+    /// Vertical field of view, degrees.
+    pub fov: f32,
+    /// Near plane, metres.
+    pub near: f32,
+    /// Far plane, metres.
+    pub far: f32,
+    /// Multiplies the linear picture by 2^exposure before it is tonemapped.
+    pub exposure: f32,
+}
+
+impl Default for Camera {
+    fn default() -> Self {
+        Self {
+            position: Vec3::new(0.0, 2.0, 8.0),
+            target: Vec3::new(0.0, 1.5, 0.0),
+            fov: 45.0,
+            near: 0.1,
+            far: 200.0,
+            exposure: 0.0,
+        }
+    }
+}
+
+impl Camera {
+    /// The view of a picture of this size.
+    pub fn view(&self, size: UVec2) -> View {
+        let aspect = size.x.max(1) as f32 / size.y.max(1) as f32;
+        // Looking straight up or down, any other up will do.
+        let forward = (self.target - self.position).normalize_or(Vec3::NEG_Z);
+        let up = if forward.y.abs() > 0.999 { Vec3::Z } else { Vec3::Y };
+        View {
+            view_from_world: rh::view::look_to_mat4(self.position, forward, up),
+            clip_from_view: rh::proj::directx::perspective(self.fov.to_radians(), aspect, self.near, self.far),
+            size,
+        }
+    }
+}
+
+/// The demo scene and the light of its sky.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct Environment {
+    /// Which scene.
+    pub scene: SceneName,
+    /// Linear RGB of the sky overhead.
+    #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+    pub zenith: Vec3,
+    /// Linear RGB of the sky at the horizon.
+    #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+    pub horizon: Vec3,
+    /// Linear RGB of the light that the ground throws back.
+    #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+    pub ground: Vec3,
+}
+
+impl Default for Environment {
+    fn default() -> Self {
+        Self {
+            scene: SceneName::default(),
+            zenith: Vec3::new(0.045, 0.07, 0.14),
+            horizon: Vec3::new(0.22, 0.19, 0.2),
+            ground: Vec3::new(0.03, 0.028, 0.026),
+        }
+    }
+}
+
+/// The demo scenes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum SceneName {
+    /// A yard with walls, crates, pillars and a fence.
+    #[default]
+    Yard,
+    /// A colonnade with a far door.
+    Corridor,
+}
+
+/// One particle system.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct PresetSystem {
+    /// What a list shows.
+    pub name: String,
+    /// Where its particles come from.
+    #[serde(default)]
+    pub emitter: Emitter,
+    /// Its pictures.
+    #[serde(default)]
+    pub material: MaterialNames,
+    /// Everything a slider moves.
+    #[serde(default)]
+    pub settings: Settings,
+}
+
+/// The pictures of a system: names of built-in ones, or PNG files beside the preset.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct MaterialNames {
+    /// Flipbook of normal maps.
+    pub sprite: String,
+    /// Frames beside each other, for a sprite from a file. A built-in one knows its own.
+    pub columns: u32,
+    /// Frames below each other, for a sprite from a file.
+    pub rows: u32,
+    /// True for a sprite file painted with green pointing down.
+    pub y_down: bool,
+    /// Light by dot(n, l).
+    pub diffuse_ramp: String,
+    /// Light by amount.
+    pub soft_scatter_ramp: String,
+    /// Glow by distance² and amount.
+    pub specular_ramp: String,
+    /// Painted lit sphere.
+    pub motif: String,
+}
+
+impl Default for MaterialNames {
+    fn default() -> Self {
+        Self {
+            sprite: "puff".into(),
+            columns: 1,
+            rows: 1,
+            y_down: false,
+            diffuse_ramp: "diffuse_soft".into(),
+            soft_scatter_ramp: "scatter_mist".into(),
+            specular_ramp: "specular_halo".into(),
+            motif: "motif_studio".into(),
+        }
+    }
+}
+
+impl Fields for Camera {
+    fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
+        visitor.vector("position", &mut self.position, -1.0e5..=1.0e5, "m");
+        visitor.vector("target", &mut self.target, -1.0e5..=1.0e5, "m");
+        visitor.number("fov", &mut self.fov, 1.0..=150.0, "degrees");
+        visitor.number("near", &mut self.near, 0.001..=100.0, "m");
+        visitor.number("far", &mut self.far, self.near * 1.01..=1.0e5, "m");
+        visitor.number("exposure", &mut self.exposure, -16.0..=16.0, "EV");
+    }
+}
+
+impl Fields for Environment {
+    fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
+        visitor.vector("zenith", &mut self.zenith, 0.0..=100.0, "");
+        visitor.vector("horizon", &mut self.horizon, 0.0..=100.0, "");
+        visitor.vector("ground", &mut self.ground, 0.0..=100.0, "");
+    }
+}
+
+impl Fields for Preset {
+    fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
+        visitor.number("time", &mut self.time, -1.0e5..=1.0e5, "s");
+        visitor.group("camera", &mut self.camera);
+        visitor.group("environment", &mut self.environment);
+    }
+}
+
+impl Preset {
+    /// Reads a preset from a file, or a built-in one by name.
+    ///
+    /// # Errors
+    /// [`Error::Io`], [`Error::Json`] with line and column, or [`Error::JsonField`] with the field and its range.
+    pub fn load(name_or_path: &str) -> Result<Self, Error> {
+        if let Some(preset) = builtin::find(builtin::PRESETS, name_or_path) {
+            return Self::parse(&builtin::path(preset.name), &String::from_utf8_lossy(preset.bytes));
+        }
+        let path = Path::new(name_or_path);
+        let looks_like_a_name = path.extension().is_none() && path.components().count() == 1;
+        if looks_like_a_name && !path.exists() {
+            let names: Vec<_> = builtin::PRESETS.iter().map(|preset| preset.name).collect();
+            let expected = format!("one of {}, or the path of a JSON file", names.join(", "));
+            return Err(FieldError::new("preset", format!("{name_or_path:?}"), expected).into());
+        }
+        json::load(path, PRESET_VERSION, Self::validate)
+    }
+
+    /// Parses and checks a preset. `path` is only named in errors.
+    ///
+    /// # Errors
+    /// As [`Preset::load`].
+    pub fn parse(path: &Path, text: &str) -> Result<Self, Error> {
+        let preset: Self = json::parse_versioned(path, text, PRESET_VERSION)?;
+        preset.validate().map_err(|error| Error::JsonField { path: path.into(), error })?;
+        Ok(preset)
+    }
+
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// The first field that is not valid.
+    pub fn validate(&self) -> Result<(), FieldError> {
+        validate(self, String::new)?;
+        if self.camera.position.distance(self.camera.target) < 1.0e-3 {
+            return Err(FieldError::new("camera.target", self.camera.target, "a point other than camera.position"));
+        }
+        validate_lights(&self.lights)?;
+        if self.systems.len() > MAX_SYSTEMS {
+            let expected = format!("at most {MAX_SYSTEMS} systems");
+            return Err(FieldError::new("systems", format!("{} systems", self.systems.len()), expected));
+        }
+        for (index, system) in self.systems.iter().enumerate() {
+            system.emitter.validate(|| format!("systems[{index}].emitter"))?;
+            system.settings.validate(|| format!("systems[{index}].settings"))?;
+        }
+        Ok(())
+    }
+}
+
+/// The JSON schema of preset files, as text.
+#[cfg(feature = "app")]
+pub fn schema() -> String {
+    let schema = schemars::schema_for!(Preset);
+    serde_json::to_string_pretty(&schema).unwrap_or_default()
+}
+
+impl PresetSystem {
+    /// The settings for a picture of this height: what presets give in pixels, they give for [`DESIGN_HEIGHT`].
+    pub fn settings_for(&self, height: u32) -> Settings {
+        let mut settings = self.settings;
+        settings.specular_scatter.size = (settings.specular_scatter.size * height as f32 / DESIGN_HEIGHT).max(1.0);
+        settings
+    }
+}
+
+impl MaterialNames {
+    /// Loads every picture. `folder` is the preset's; files are looked for there and nowhere else.
+    ///
+    /// # Errors
+    /// [`Error::Image`] or [`Error::Io`] naming the file, or [`Error::Field`] for a name that is neither built in nor a
+    /// file inside the folder.
+    pub fn load(&self, folder: &Path) -> Result<MaterialAssets, Error> {
+        let ramp = |field, name, list| load_ramp(field, name, list, folder);
+        Ok(MaterialAssets {
+            sprite: self.load_sprite(folder)?,
+            diffuse_ramp: ramp("diffuse_ramp", &self.diffuse_ramp, builtin::RAMPS)?,
+            soft_scatter_ramp: ramp("soft_scatter_ramp", &self.soft_scatter_ramp, builtin::RAMPS)?,
+            specular_ramp: ramp("specular_ramp", &self.specular_ramp, builtin::RAMPS)?,
+            motif: ramp("motif", &self.motif, builtin::MOTIFS)?,
+        })
+    }
+
+    fn load_sprite(&self, folder: &Path) -> Result<Sprite, Error> {
+        match builtin::find(builtin::SPRITES, &self.sprite) {
+            Some(sprite) => sprite.sprite(),
+            None => {
+                let path = inside("sprite", &self.sprite, builtin::SPRITES, folder)?;
+                let layout = SpriteLayout { columns: self.columns, rows: self.rows, y_down: self.y_down };
+                Sprite::load(&path, layout)
+            }
+        }
+    }
+}
+
+fn load_ramp(field: &'static str, name: &str, list: &'static [builtin::Builtin], folder: &Path) -> Result<Ramp, Error> {
+    match builtin::find(list, name) {
+        Some(ramp) => ramp.ramp(),
+        None => Ramp::load(&inside(field, name, list, folder)?),
+    }
+}
+
+/// The path of an asset inside the preset's folder.
+fn inside(field: &str, name: &str, list: &[builtin::Builtin], folder: &Path) -> Result<PathBuf, FieldError> {
+    let path = Path::new(name);
+    let is_png = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+    let stays = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+    if is_png && stays {
+        return Ok(folder.join(path));
+    }
+    let names: Vec<_> = list.iter().map(|builtin| builtin.name).collect();
+    let expected = format!("one of {}, or a PNG inside the preset's folder", names.join(", "));
+    Err(FieldError::new(format!("material.{field}"), format!("{name:?}"), expected))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn assets_stay_inside_the_presets_folder() {
+        let folder = Path::new("shots");
+        assert_eq!(inside("sprite", "a/b.png", &[], folder).unwrap(), Path::new("shots/a/b.png"));
+        for outside in ["../b.png", "/etc/b.png", "a/../../b.png", "puf", "b.jpg"] {
+            assert!(inside("sprite", outside, builtin::SPRITES, folder).is_err(), "{outside}");
+        }
+    }
+
+    #[test]
+    fn every_builtin_preset_loads_with_its_assets() {
+        for preset in builtin::PRESETS {
+            let loaded = Preset::load(preset.name).unwrap();
+            assert!(!loaded.description.is_empty() && !loaded.systems.is_empty(), "{}", preset.name);
+            for system in &loaded.systems {
+                system.material.load(Path::new("")).unwrap();
+            }
+        }
+    }
+
+    #[test]
+    fn every_builtin_asset_decodes() {
+        for ramp in builtin::RAMPS.iter().chain(builtin::MOTIFS) {
+            ramp.ramp().unwrap();
+        }
+        for sprite in builtin::SPRITES {
+            assert!(sprite.sprite().unwrap().frame_count() > 1);
+        }
+    }
+
+    #[test]
+    fn mistakes_name_the_file_and_the_field() {
+        let parse = |text: &str| Preset::parse(Path::new("my.json"), text).unwrap_err().to_string();
+        let range = parse(r#"{"version": 1, "name": "x", "camera": {"fov": 200}}"#);
+        assert_eq!(range, "my.json: camera.fov: 200 is not valid; expected 1 to 150 degrees");
+        let nested = parse(
+            r#"{"version": 1, "name": "x", "systems": [{"name": "s", "settings": {"soft_fade": {"fade_scale": 0}}}]}"#,
+        );
+        assert!(nested.starts_with("my.json: systems[0].settings.soft_fade.fade_scale: 0 is not valid"), "{nested}");
+        let unknown = Preset::load("colunm").unwrap_err().to_string();
+        assert!(unknown.contains("column, backlit_fog"), "{unknown}");
+    }
+}
