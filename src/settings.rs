@@ -228,9 +228,6 @@ pub struct Accumulate {
     pub upsample: Upsample,
     /// Multiplies the amount of every sprite.
     pub opacity: f32,
-    /// Bends every sprite's normals away from the middle of the system, so that the whole reads as one round body.
-    /// 0 leaves them as painted.
-    pub shape: f32,
 }
 
 impl Default for Accumulate {
@@ -245,7 +242,6 @@ impl Default for Accumulate {
             depth_downsample: DepthDownsample::default(),
             upsample: Upsample::default(),
             opacity: 1.0,
-            shape: 0.0,
         }
     }
 }
@@ -255,7 +251,6 @@ impl Fields for Accumulate {
         visitor.integer("scale", &mut self.scale, 1..=16, "pixels");
         visitor.integer("max_side", &mut self.max_side, 16..=16384, "texels");
         visitor.number("opacity", &mut self.opacity, 0.0..=1.0, "");
-        visitor.number("shape", &mut self.shape, 0.0..=4.0, "");
     }
 }
 

@@ -74,17 +74,15 @@ pub(crate) fn system_in_view(
         return Err(FieldError::new("accumulate.max_side", accumulate.max_side, expected));
     }
 
-    let (half_size, centre) = half_size_in_view(view, bounds);
     let mut uniform = SystemUniform {
         bounds_min: bounds.min,
         bounds_near: in_view.near,
         bounds_max: bounds.max,
         bounds_far: in_view.far,
-        bounds_centre: centre,
+        bounds_centre: view.view_position(bounds.centre()),
         // The plane through the middle of what is in front of the near plane: through the box's own middle unless the
         // camera is inside.
         plane_depth: 0.5 * (in_view.near.max(view.depth.near) + in_view.far),
-        inverse_half_size: half_size.max(Vec3::splat(1.0e-4)).recip(),
         opacity: accumulate.opacity,
         scatter_colour: settings.soft_scatter.scatter_colour,
         scatter_amount: settings.soft_scatter.scatter_amount,
@@ -98,7 +96,6 @@ pub(crate) fn system_in_view(
         sprite_size: material.sprite_size,
         frame_count: material.frame_count,
         boost: settings.boost,
-        shape: accumulate.shape,
         fade_scale: settings.soft_fade.fade_scale,
         contrast_power: settings.soft_fade.contrast_power,
         epsilon: settings.soft_fade.epsilon,
@@ -113,20 +110,12 @@ pub(crate) fn system_in_view(
     };
     if settings.diffuse.mode == DiffuseMode::SphericalHarmonics {
         for light in lights {
-            let sample = sample_light(light, centre);
+            let sample = sample_light(light, uniform.bounds_centre);
             let colour = light.colour * sample.attenuation;
             add_light(&mut uniform.spherical_harmonics, &material.zonal, sample.direction, colour);
         }
     }
     Ok(Some(SystemInView { rect, uniform, back_faces: in_view.near <= view.depth.near }))
-}
-
-/// Half the size of the view-space box round the box, and its middle.
-fn half_size_in_view(view: &ViewGeometry, bounds: &Bounds) -> (Vec3, Vec3) {
-    let half = 0.5 * (bounds.max - bounds.min);
-    let m = view.view.view_from_world;
-    let extent = |axis: usize| m.col(axis).truncate().abs();
-    (extent(0) * half.x + extent(1) * half.y + extent(2) * half.z, view.view_position(bounds.centre()))
 }
 
 /// Scale (xy) and offset (zw) from the picture's NDC to the target's.

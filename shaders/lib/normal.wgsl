@@ -39,10 +39,3 @@ fn rotate_normal(normal: vec3f, rotation: vec2f) -> vec3f {
         normal.z,
     );
 }
-
-// Leans a sprite's normal away from the middle of its system. `away` is the sprite's offset from the middle, in halves
-// of the system's size: about -1..1 on each axis.
-fn bend_normal(normal: vec3f, away: vec3f, shape: f32) -> vec3f {
-    let bent = normal + away * shape;
-    return bent * inverseSqrt(max(dot(bent, bent), 1.0e-12));
-}

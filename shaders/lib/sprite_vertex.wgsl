@@ -22,8 +22,6 @@ struct SpriteVertex {
     @location(2) @interpolate(flat, either) depth_amount_lod_frame: vec4f,
     // Cosine and sine of the rotation.
     @location(3) @interpolate(flat, either) rotation: vec2f,
-    // Offset from the middle of the system, in halves of its size.
-    @location(4) @interpolate(flat, either) away: vec3f,
 }
 
 // `target_from_ndc` moves the picture's NDC to the target's; `texels_per_pixel` is the target's resolution.
@@ -71,7 +69,6 @@ fn sprite_vertex(
         particle.rotation_amount_frame_age.z,
     );
     out.rotation = rotation;
-    out.away = (centre - system.bounds_centre) * system.inverse_half_size;
     return out;
 }
 
@@ -79,9 +76,6 @@ fn sprite_vertex(
 fn sprite_fragment(vertex: SpriteVertex) -> vec4f {
     let frames = flipbook_frames(vertex.depth_amount_lod_frame.w, system.frame_count);
     let texel = sample_sprite(sprite, linear_sampler, vertex.uv, frames, vertex.depth_amount_lod_frame.z);
-    var normal = rotate_normal(texel.xyz, vertex.rotation);
-    if system.shape > 0.0 {
-        normal = bend_normal(normal, vertex.away, system.shape);
-    }
+    let normal = rotate_normal(texel.xyz, vertex.rotation);
     return vec4f(normal, texel.a * vertex.depth_amount_lod_frame.y);
 }

@@ -11,9 +11,6 @@ struct System {
     bounds_centre: vec3f,
     // View depth of the plane that lighting is flattened to.
     plane_depth: f32,
-    // 1 / half the size of the box in view space.
-    inverse_half_size: vec3f,
-    opacity: f32,
     scatter_colour: vec3f,
     scatter_amount: f32,
     ambient_colour: vec3f,
@@ -29,8 +26,8 @@ struct System {
     depth_limit: f32,
     sprite_size: f32,
     frame_count: f32,
+    opacity: f32,
     boost: f32,
-    shape: f32,
     fade_scale: f32,
     contrast_power: f32,
     epsilon: f32,

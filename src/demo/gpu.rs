@@ -2,7 +2,7 @@
 
 use crate::headless::Headless;
 use crate::{Error, View, shader};
-use glam::{UVec2, Vec3};
+use glam::Vec3;
 
 use super::{MAX_BOXES, Scene, SceneBox, SceneUniform};
 
@@ -211,9 +211,4 @@ fn begin<'a>(
         }),
         ..Default::default()
     })
-}
-
-/// True if the colour pass, at twice the picture's size, fits the device.
-pub fn fits(gpu: &Headless, size: UVec2) -> bool {
-    size.max_element() * 2 <= gpu.device.limits().max_texture_dimension_2d
 }

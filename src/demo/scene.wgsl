@@ -112,7 +112,7 @@ fn albedo(b: Box, p: vec3f, n: vec3f, world: vec3f) -> vec3f {
         var edge = b.half_size - abs(p);
         edge = select(edge, vec3f(10.0), abs(n) > vec3f(0.5));
         let framed = smoothstep(0.09, 0.075, min(edge.x, min(edge.y, edge.z)));
-        let boards = tone * mix(0.5, 1.0, joints(uv, vec2f(50.0, 0.2), 0.015));
+        let boards = tone * mix(0.5, 1.0, joints(vec2f(25.0, uv.y), vec2f(50.0, 0.2), 0.015));
         return b.colour * mix(boards, 1.15, framed) * (0.7 + 0.4 * grain) * (0.75 + 0.4 * dirt);
     }
     if b.surface == SURFACE_PLASTER {

@@ -78,7 +78,7 @@ fn albedo(b: &SceneBox, p: Vec3, n: Vec3, world: Vec3) -> Vec3 {
         let tone = 0.8 + 0.4 * hash(salt);
         let edge = Vec3::select(n.abs().cmpgt(Vec3::splat(0.5)), Vec3::splat(10.0), b.half_size - p.abs());
         let framed = smoothstep(0.09, 0.075, edge.min_element());
-        let boards = tone * mix(0.5, 1.0, joints(uv, Vec2::new(50.0, 0.2), 0.015));
+        let boards = tone * mix(0.5, 1.0, joints(Vec2::new(25.0, uv.y), Vec2::new(50.0, 0.2), 0.015));
         return b.colour * mix(boards, 1.15, framed) * (0.7 + 0.4 * grain) * (0.75 + 0.4 * dirt);
     }
     if is(Surface::Plaster) {

@@ -31,9 +31,3 @@ pub fn normal_from_accumulation(encoding: NormalEncoding, decode: NormalDecode, 
 pub fn rotate_normal(normal: Vec3, rotation: Vec2) -> Vec3 {
     Vec3::new(normal.x * rotation.x - normal.y * rotation.y, normal.x * rotation.y + normal.y * rotation.x, normal.z)
 }
-
-/// Leans a sprite's normal away from the middle of its system; `away` in halves of the system's size.
-pub fn bend_normal(normal: Vec3, away: Vec3, shape: f32) -> Vec3 {
-    let bent = normal + away * shape;
-    bent / bent.length_squared().max(1.0e-12).sqrt()
-}

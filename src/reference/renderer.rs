@@ -20,7 +20,7 @@ use crate::reference::diffuse_bake::{
 use crate::reference::lighting::{
     coverage, diffuse_coordinate, sample_light, soft_scatter_weight, specular_scatter_fade,
 };
-use crate::reference::normal::{accumulation_from_normal, bend_normal, normal_from_accumulation, rotate_normal};
+use crate::reference::normal::{accumulation_from_normal, normal_from_accumulation, rotate_normal};
 use crate::reference::picture::Picture;
 use crate::reference::ramp::{sample_ramp, sample_ramp_2d};
 use crate::reference::saturate;
@@ -292,17 +292,13 @@ impl<'a> Draw<'a> {
                 2.0 * particle.radius * self.pixels_per_metre(view_depth) * texels_per_pixel,
             ),
             frames: flipbook_frames(particle.frame, system.frame_count),
-            away: (centre - system.bounds_centre) * system.inverse_half_size,
         })
     }
 
     /// Normal (view space) and amount, before the soft fade. `sprite_fragment()` in sprite_vertex.wgsl.
     fn sprite_fragment(&self, sprite: &SpriteSetup, uv: Vec2) -> Vec4 {
         let texel = sample_sprite(&self.material.sprite, uv, sprite.frames, sprite.lod);
-        let mut normal = rotate_normal(texel.xyz(), sprite.rotation);
-        if self.system.shape > 0.0 {
-            normal = bend_normal(normal, sprite.away, self.system.shape);
-        }
+        let normal = rotate_normal(texel.xyz(), sprite.rotation);
         normal.extend(texel.w * sprite.amount)
     }
 
@@ -382,7 +378,6 @@ struct SpriteSetup {
     amount: f32,
     lod: f32,
     frames: FlipbookFrames,
-    away: Vec3,
 }
 
 /// The texels that sprites are drawn on: texel (i, j) is the pixels from (origin + (i, j)) · scale.

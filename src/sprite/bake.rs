@@ -142,8 +142,10 @@ impl SpriteRecipe {
         };
         let slope = |voxel: IVec3, reach: i32| {
             let along = |axis: IVec3| density(voxel - axis * reach) - density(voxel + axis * reach);
-            // Voxels count down and away from the viewer.
-            Vec3::new(along(IVec3::X), -along(IVec3::Y), -along(IVec3::Z)).normalize_or_zero()
+            // Voxels count down and away from the viewer. Slopes that face away are turned side-on: every normal keeps a
+            // part towards the viewer, so that overlapping sprites never cancel.
+            let slope = Vec3::new(along(IVec3::X), -along(IVec3::Y), -along(IVec3::Z));
+            slope.with_z(slope.z.max(0.0)).normalize_or_zero()
         };
         // A twelfth of the sprite: the balls show, the noise does not.
         let wide = (self.size as i32 / 24).max(1);

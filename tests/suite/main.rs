@@ -1,4 +1,6 @@
 //! The library against a real adapter. One binary, so that all tests share one device.
 
 mod common;
+#[cfg(feature = "app")]
+mod presets;
 mod shader_layout;
