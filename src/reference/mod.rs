@@ -12,6 +12,7 @@ pub mod renderer;
 pub mod soft_fade;
 pub mod sprite;
 pub mod upsample;
+pub mod view;
 
 /// Clamps to 0..=1; NaN gives 0, as WGSL's `saturate` may.
 pub fn saturate(x: f32) -> f32 {

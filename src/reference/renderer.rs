@@ -27,6 +27,7 @@ use crate::reference::saturate;
 use crate::reference::soft_fade::{near_fade, soft_fade};
 use crate::reference::sprite::{FlipbookFrames, flipbook_frames, sample_sprite, sprite_lod};
 use crate::reference::upsample::upsample_weights;
+use crate::reference::view::{ndc_from_pixel, pixel_from_ndc, view_position};
 use crate::settings::{DepthDownsample, DepthSource, DiffuseMode, Settings, ShadeTree, SoftScatterMode, Upsample};
 use crate::system::{SystemInView, lights_in_view, system_in_view};
 use crate::view::{SKY_VIEW_DEPTH, View, ViewGeometry};
@@ -144,16 +145,10 @@ impl<'a> Draw<'a> {
         view_depth_from_ndc_depth(self.scene_depth.load(pixel), self.view.depth_coefficients)
     }
 
-    /// `ndc · ray_scale + ray_offset` of a pixel position: view-space xy at view depth 1.
-    fn ray(&self, pixel: Vec2) -> Vec2 {
-        let uv = pixel / self.view.size;
-        Vec2::new(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0) * self.view.ray_scale + self.view.ray_offset
-    }
-
-    /// The point at a view depth on the ray through a pixel. `view_position()` in view.wgsl.
+    /// The view-space point at a view depth on the ray through a pixel.
     fn view_position(&self, pixel: Vec2, view_depth: f32) -> Vec3 {
-        let along = if self.view.orthographic > 0.5 { 1.0 } else { view_depth };
-        (self.ray(pixel) * along).extend(-view_depth)
+        let ray = ndc_from_pixel(pixel, self.view.size) * self.view.ray_scale + self.view.ray_offset;
+        view_position(ray, view_depth, self.view.orthographic)
     }
 
     fn pixel_from_view(&self, position: Vec3) -> Vec2 {
@@ -565,10 +560,6 @@ impl Smoke<'_> {
         };
         (0..9).filter(|&i| visible(i)).count() as f32 / 9.0
     }
-}
-
-fn pixel_from_ndc(ndc: Vec2, size: Vec2) -> Vec2 {
-    Vec2::new(ndc.x * 0.5 + 0.5, 0.5 - ndc.y * 0.5) * size
 }
 
 /// Black, blue, green, yellow, red, white at 0, 4, 8, 16, 32, 64 layers.

@@ -1,6 +1,7 @@
 //! The library against a real adapter. One binary, so that all tests share one device.
 
 mod common;
+mod formulas;
 #[cfg(feature = "app")]
 mod presets;
 mod shader_layout;

@@ -69,10 +69,14 @@ fn every_setting_agrees() {
         add("decode, signed", decode.name(), with(|s| s.accumulate.decode = decode));
         let biased = |s: &mut Settings| (s.accumulate.decode, s.accumulate.encoding) = (decode, NormalEncoding::Biased);
         add("decode, biased", decode.name(), with(biased));
-        add("decode, rgba8", decode.name(), with(|s| {
-            biased(s);
-            s.accumulate.format = AccumulationFormat::Rgba8Unorm;
-        }));
+        add(
+            "decode, rgba8",
+            decode.name(),
+            with(|s| {
+                biased(s);
+                s.accumulate.format = AccumulationFormat::Rgba8Unorm;
+            }),
+        );
     }
     for &mode in BlendMode::ALL {
         add("forward", mode.name(), with(|s| (s.path, s.blend_mode) = (Path::Forward, mode)));

@@ -1,0 +1,645 @@
+//! Every WGSL function of `shaders/lib` against the reference function of the same name, and against mutants of itself:
+//! a wrong shader must fail, or the test says nothing.
+
+use glam::{IVec2, UVec2, Vec2, Vec3, Vec4, vec3, vec4};
+use haze::gpu_types::LightUniform;
+use haze::noise::{pcg3d, unit};
+use haze::reference::{depth, diffuse_bake, lighting, normal, ramp, soft_fade, sprite, upsample, view};
+use haze::settings::{DepthDownsample, FadeCurve, NormalDecode, NormalEncoding, Upsample};
+use haze::{ramp::Ramp, shader, sprite::Sprite, sprite::SpriteLayout};
+
+use crate::common::gpu;
+
+/// Most numbers that one case takes or gives.
+const WIDTH: usize = 32;
+
+/// One function of `shaders/lib`, as both sides compute it.
+struct Formula {
+    /// The WGSL function; the reference has the same name.
+    name: &'static str,
+    /// The file that defines it.
+    file: &'static str,
+    /// WGSL statements that read inputs `x(i)` and write results with `y(i, value)`.
+    wgsl: &'static str,
+    /// The same with the reference.
+    reference: fn(&[f32]) -> Vec<f32>,
+    /// Inputs of every case.
+    cases: Vec<Vec<f32>>,
+    /// Largest difference, relative to 1 or to the result if that is larger.
+    tolerance: f32,
+    /// (text in the file, what a mistake would make of it): each must fail.
+    mutants: &'static [(&'static str, &'static str)],
+}
+
+/// f32 arithmetic in another order, with fused or separate multiply-add: a few units in the last place.
+const ARITHMETIC: f32 = 2e-6;
+/// As above, through the driver's `pow`, `exp2`, `log2`, `sin` or `inverseSqrt`, which Vulkan lets be that imprecise.
+const TRANSCENDENTAL: f32 = 2e-4;
+
+/// `count` cases of numbers in the given ranges, the same every time.
+fn random(count: u32, ranges: &[(f32, f32)]) -> Vec<Vec<f32>> {
+    let number = |case: u32, index: usize| unit(pcg3d(glam::UVec3::new(case, index as u32, 77)).x);
+    let pick = |case| (0..).zip(ranges).map(|(i, &(low, high))| low + (high - low) * number(case, i)).collect();
+    (0..count).map(pick).collect()
+}
+
+/// A case for every step of every choice with some random numbers after it.
+fn with_choices(choices: u32, ranges: &[(f32, f32)]) -> Vec<Vec<f32>> {
+    let prefix = |(index, mut case): (u32, Vec<f32>)| {
+        case.insert(0, (index % choices) as f32);
+        case
+    };
+    (0..).zip(random(40 * choices, ranges)).map(prefix).collect()
+}
+
+fn unit_vectors(cases: Vec<Vec<f32>>, at: usize) -> Vec<Vec<f32>> {
+    let normalise = |mut case: Vec<f32>| {
+        let n = vec3(case[at], case[at + 1], case[at + 2]).normalize_or(Vec3::X);
+        case[at..at + 3].copy_from_slice(&n.to_array());
+        case
+    };
+    cases.into_iter().map(normalise).collect()
+}
+
+fn v2(x: &[f32]) -> Vec2 {
+    Vec2::from_slice(x)
+}
+
+fn v3(x: &[f32]) -> Vec3 {
+    Vec3::from_slice(x)
+}
+
+fn v4(x: &[f32]) -> Vec4 {
+    Vec4::from_slice(x)
+}
+
+fn light(x: &[f32]) -> LightUniform {
+    LightUniform {
+        position: v3(&x[0..]),
+        inverse_range: x[3],
+        direction: v3(&x[4..]),
+        directional: x[7],
+        colour: Vec3::ONE,
+        specular_scatter: 1.0,
+        spot_scale: x[8],
+        spot_offset: x[9],
+        radius: x[10],
+        padding: 0.0,
+    }
+}
+
+const WGSL_LIGHT: &str = "let light = Light(vec3f(x(0), x(1), x(2)), x(3), vec3f(x(4), x(5), x(6)), x(7), vec3f(1.0), \
+     1.0, x(8), x(9), x(10), 0.0);";
+
+/// A ramp and a flipbook with a different number in every texel.
+fn test_ramp() -> Ramp {
+    let colour = |i: u32| {
+        let hash = pcg3d(glam::UVec3::new(i, 1, 2));
+        vec3(unit(hash.x), unit(hash.y), unit(hash.z)) * 2.0
+    };
+    Ramp::from_linear(UVec2::new(8, 4), (0..32).map(colour))
+}
+
+fn test_sprite() -> Sprite {
+    let mut sheet = image::RgbaImage::new(24, 8);
+    for (x, y, pixel) in sheet.enumerate_pixels_mut() {
+        let hash = pcg3d(glam::UVec3::new(x, y, 3));
+        let border = x % 8 == 0 || x % 8 == 7 || y == 0 || y == 7;
+        let alpha = if border { 0 } else { hash.x as u8 };
+        *pixel = image::Rgba([hash.y as u8, hash.z as u8, (hash.y >> 8) as u8, alpha]);
+    }
+    let layout = SpriteLayout { columns: 3, rows: 1, y_down: false };
+    Sprite::from_picture(std::path::Path::new("test"), &sheet, layout).unwrap()
+}
+
+#[allow(clippy::too_many_lines)]
+fn formulas() -> Vec<Formula> {
+    vec![
+        Formula {
+            name: "view_depth_from_ndc_depth",
+            file: "lib/depth.wgsl",
+            wgsl: "y(0, view_depth_from_ndc_depth(x(0), vec4f(x(1), x(2), x(3), x(4))));",
+            reference: |x| vec![depth::view_depth_from_ndc_depth(x[0], v4(&x[1..]))],
+            cases: {
+                // Standard, reversed, infinite reversed and orthographic, over the whole buffer.
+                let conventions = [
+                    vec4(0.1, 0.0, 1.0, -0.999),
+                    vec4(0.1, 0.0, 0.001, 0.999),
+                    vec4(0.1, 0.0, 0.0, 1.0),
+                    vec4(0.5, 59.5, 1.0, 0.0),
+                ];
+                let depths = (0..=100).map(|i| i as f32 / 100.0);
+                let case = |d: f32| conventions.map(|c| vec![d, c.x, c.y, c.z, c.w]);
+                depths.flat_map(case).collect()
+            },
+            tolerance: 1e-5,
+            mutants: &[
+                ("coefficients.z + coefficients.w", "coefficients.z - coefficients.w"),
+                ("coefficients.y * ndc_depth", "0.0"),
+            ],
+        },
+        Formula {
+            name: "depth_downsample_keeps_farthest",
+            file: "lib/depth.wgsl",
+            wgsl: "y(0, select(0.0, 1.0, depth_downsample_keeps_farthest(u32(x(0)), vec2i(i32(x(1)), i32(x(2))))));",
+            reference: |x| {
+                let texel = IVec2::new(x[1] as i32, x[2] as i32);
+                let farthest = depth::depth_downsample_keeps_farthest(DepthDownsample::ALL[x[0] as usize], texel);
+                vec![if farthest { 1.0 } else { 0.0 }]
+            },
+            cases: with_choices(3, &[(0.0, 9.0), (0.0, 9.0)]),
+            tolerance: 0.0,
+            mutants: &[
+                ("(texel.x + texel.y) & 1", "(texel.x) & 1"),
+                ("mode == DEPTH_DOWNSAMPLE_MAX", "mode == DEPTH_DOWNSAMPLE_MIN"),
+            ],
+        },
+        Formula {
+            name: "fade_linear",
+            file: "lib/soft_fade.wgsl",
+            wgsl: "y(0, fade_linear(x(0)));",
+            reference: |x| vec![soft_fade::fade_linear(x[0])],
+            cases: random(50, &[(0.0, 1.0)]),
+            tolerance: 0.0,
+            mutants: &[("    return x;\n", "    return 1.0 - x;\n")],
+        },
+        Formula {
+            name: "fade_smoothstep",
+            file: "lib/soft_fade.wgsl",
+            wgsl: "y(0, fade_smoothstep(x(0)));",
+            reference: |x| vec![soft_fade::fade_smoothstep(x[0])],
+            cases: random(50, &[(0.0, 1.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[("3.0 - 2.0 * x", "2.0 - x")],
+        },
+        Formula {
+            name: "fade_contrast",
+            file: "lib/soft_fade.wgsl",
+            wgsl: "y(0, fade_contrast(x(0), x(1)));",
+            reference: |x| vec![soft_fade::fade_contrast(x[0], x[1])],
+            cases: random(200, &[(0.0, 1.0), (0.1, 16.0)]),
+            tolerance: TRANSCENDENTAL,
+            // The second: one half of the curve not reflected, as when NV's saturate is left out.
+            mutants: &[("0.5 * pow(2.0 * x, contrast_power)", "pow(2.0 * x, contrast_power)"), ("(1.0 - x)", "(x)")],
+        },
+        Formula {
+            name: "fade_exponential",
+            file: "lib/soft_fade.wgsl",
+            wgsl: "y(0, fade_exponential(x(0), x(1)));",
+            reference: |x| vec![soft_fade::fade_exponential(x[0], x[1])],
+            cases: random(200, &[(0.0, 1.0), (0.1, 16.0)]),
+            tolerance: TRANSCENDENTAL,
+            // The first is how the formula reads when its exponent is lost in print.
+            mutants: &[
+                ("exp2(-2.0 * pow(2.0 * x, contrast_power))", "pow(0.25 * 2.0 * x, contrast_power)"),
+                ("2.0 * x", "x"),
+            ],
+        },
+        Formula {
+            name: "soft_fade",
+            file: "lib/soft_fade.wgsl",
+            wgsl: "y(0, soft_fade(u32(x(0)), x(1), x(2), x(3), x(4)));",
+            reference: |x| vec![soft_fade::soft_fade(FadeCurve::ALL[x[0] as usize], x[1], x[2], x[3], x[4])],
+            cases: with_choices(4, &[(-0.5, 2.0), (0.2, 4.0), (0.5, 4.0), (0.0, 0.2)]),
+            tolerance: TRANSCENDENTAL,
+            // Unsigned differences let sprites fade back in behind the surface.
+            mutants: &[
+                (
+                    "if distance < max(epsilon, 0.0) {\n        return 0.0;\n    }\n    let x = saturate(distance *",
+                    "let x = saturate(abs(distance) *",
+                ),
+                ("distance < max(epsilon, 0.0)", "distance < 0.0"),
+                ("saturate(distance * fade_scale)", "saturate(distance / fade_scale)"),
+                (
+                    "case FADE_CURVE_CONTRAST: { return fade_contrast",
+                    "case FADE_CURVE_CONTRAST: { return fade_exponential",
+                ),
+            ],
+        },
+        Formula {
+            name: "near_fade",
+            file: "lib/soft_fade.wgsl",
+            wgsl: "y(0, near_fade(x(0), x(1), x(1) + x(2)));",
+            reference: |x| vec![soft_fade::near_fade(x[0], x[1], x[1] + x[2])],
+            cases: random(100, &[(0.0, 3.0), (0.0, 1.0), (0.0, 1.0)]),
+            tolerance: ARITHMETIC * 10.0,
+            mutants: &[("view_depth - start", "end - view_depth")],
+        },
+        Formula {
+            name: "accumulation_from_normal",
+            file: "lib/normal.wgsl",
+            wgsl: "let v = accumulation_from_normal(u32(x(0)), vec3f(x(1), x(2), x(3)), x(4)); \
+                   y(0, v.x); y(1, v.y); y(2, v.z); y(3, v.w);",
+            reference: |x| {
+                let encoding = NormalEncoding::ALL[x[0] as usize];
+                normal::accumulation_from_normal(encoding, v3(&x[1..]), x[4]).to_array().to_vec()
+            },
+            cases: with_choices(2, &[(-1.0, 1.0), (-1.0, 1.0), (-1.0, 1.0), (0.0, 1.0)]),
+            tolerance: ARITHMETIC,
+            // Not premultiplied: OTEE's first, wrong blend.
+            mutants: &[
+                ("(normal * 0.5 + 0.5) * amount", "normal * 0.5 + 0.5"),
+                ("vec4f(normal * amount, amount)", "vec4f(normal, amount)"),
+            ],
+        },
+        Formula {
+            name: "normal_from_accumulation",
+            file: "lib/normal.wgsl",
+            wgsl: "let v = normal_from_accumulation(u32(x(0)) / 2u, u32(x(0)) % 2u, vec4f(x(1), x(2), x(3), x(4))); \
+                   y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| {
+                let (encoding, decode) = (NormalEncoding::ALL[x[0] as usize / 2], NormalDecode::ALL[x[0] as usize % 2]);
+                normal::normal_from_accumulation(encoding, decode, v4(&x[1..])).to_array().to_vec()
+            },
+            cases: {
+                let mut cases = with_choices(4, &[(-1.0, 1.0), (-1.0, 1.0), (-1.0, 1.0), (0.0, 1.0)]);
+                // Empty texels face the viewer.
+                cases.extend((0..4).map(|choice| vec![choice as f32, 0.0, 0.0, 0.0, 0.0]));
+                cases
+            },
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("accumulated.rgb * 2.0 - accumulated.a", "accumulated.rgb * 2.0 - 1.0"),
+                ("vec3f(0.0, 0.0, 1.0)", "vec3f(0.0)"),
+            ],
+        },
+        Formula {
+            name: "rotate_normal",
+            file: "lib/normal.wgsl",
+            wgsl: "let v = rotate_normal(vec3f(x(0), x(1), x(2)), vec2f(x(3), x(4))); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| normal::rotate_normal(v3(x), v2(&x[3..])).to_array().to_vec(),
+            cases: random(50, &[(-1.0, 1.0); 5]),
+            tolerance: ARITHMETIC,
+            mutants: &[
+                ("normal.x * rotation.x - normal.y", "normal.x * rotation.x + normal.y"),
+                ("normal.z,", "-normal.z,"),
+            ],
+        },
+        Formula {
+            name: "distance_attenuation",
+            file: "lib/lighting.wgsl",
+            wgsl: "y(0, distance_attenuation(x(0), x(1), x(2)));",
+            reference: |x| vec![lighting::distance_attenuation(x[0], x[1], x[2])],
+            cases: random(100, &[(0.0, 30.0), (0.1, 1.0), (0.1, 1.0)]),
+            tolerance: ARITHMETIC * 10.0,
+            mutants: &[
+                ("distance_squared + radius * radius", "distance_squared"),
+                ("1.0 - ratio * ratio", "1.0 - ratio"),
+            ],
+        },
+        Formula {
+            name: "sample_light",
+            file: "lib/lighting.wgsl",
+            wgsl: "let s = sample_light(light, vec3f(x(11), x(12), x(13))); \
+                   y(0, s.direction.x); y(1, s.direction.y); y(2, s.direction.z); y(3, s.attenuation);",
+            reference: |x| {
+                let sample = lighting::sample_light(&light(x), v3(&x[11..]));
+                sample.direction.extend(sample.attenuation).to_array().to_vec()
+            },
+            cases: {
+                let range = [
+                    (-4.0, 4.0),
+                    (-4.0, 4.0),
+                    (-4.0, 4.0),
+                    (0.05, 0.2),
+                    (-1.0, 1.0),
+                    (-1.0, 1.0),
+                    (-1.0, 1.0),
+                    (-0.5, 1.0),
+                    (0.0, 8.0),
+                    (-4.0, 1.0),
+                    (0.05, 0.5),
+                    (-3.0, 3.0),
+                    (-3.0, 3.0),
+                    (-3.0, 3.0),
+                ];
+                unit_vectors(random(300, &range), 4)
+            },
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("dot(-direction", "dot(direction"),
+                ("light.position - position", "position - light.position"),
+                ("LightSample(-light.direction", "LightSample(light.direction"),
+            ],
+        },
+        Formula {
+            name: "diffuse_coordinate",
+            file: "lib/lighting.wgsl",
+            wgsl: "y(0, diffuse_coordinate(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5))));",
+            reference: |x| vec![lighting::diffuse_coordinate(v3(x), v3(&x[3..]))],
+            cases: unit_vectors(unit_vectors(random(100, &[(-1.0, 1.0); 6]), 0), 3),
+            tolerance: ARITHMETIC,
+            mutants: &[("* 0.5 + 0.5", "")],
+        },
+        Formula {
+            name: "soft_scatter_weight",
+            file: "lib/lighting.wgsl",
+            wgsl: "y(0, soft_scatter_weight(x(0), x(1), x(2)));",
+            reference: |x| vec![lighting::soft_scatter_weight(x[0], x[1], x[2])],
+            cases: {
+                let mut cases = random(100, &[(0.0, 1.0), (0.0, 0.5), (0.05, 1.0)]);
+                // A step, where the smoothstep would divide by zero.
+                cases.extend([vec![0.3, 0.5, 0.0], vec![0.7, 0.5, 0.0]]);
+                cases
+            },
+            tolerance: 1e-5,
+            mutants: &[
+                ("amount - scatter_amount", "amount"),
+                ("max(scatter_smooth, 1.0e-4)", "max(scatter_smooth - scatter_amount, 1.0e-4)"),
+            ],
+        },
+        Formula {
+            name: "coverage",
+            file: "lib/lighting.wgsl",
+            wgsl: "y(0, coverage(x(0), x(1)));",
+            reference: |x| vec![lighting::coverage(x[0], x[1])],
+            cases: random(50, &[(0.0, 1.0), (0.0, 4.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[("saturate(amount * boost)", "amount * boost")],
+        },
+        Formula {
+            name: "specular_scatter_fade",
+            file: "lib/lighting.wgsl",
+            wgsl: "y(0, specular_scatter_fade(x(0), x(1), x(1) + x(2)));",
+            reference: |x| vec![lighting::specular_scatter_fade(x[0], x[1], x[1] + x[2])],
+            cases: random(50, &[(0.0, 9.0), (1.0, 4.0), (1.0, 4.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[("light_depth - bounds_near", "bounds_far - light_depth")],
+        },
+        Formula {
+            name: "sprite_lod",
+            file: "lib/sprite.wgsl",
+            wgsl: "y(0, sprite_lod(x(0), x(1)));",
+            reference: |x| vec![sprite::sprite_lod(x[0], x[1])],
+            cases: random(50, &[(8.0, 512.0), (0.0, 600.0)]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[("sprite_size / max", "0.5 * sprite_size / max")],
+        },
+        Formula {
+            name: "flipbook_frames",
+            file: "lib/sprite.wgsl",
+            wgsl: "let f = flipbook_frames(x(0), x(1)); y(0, f32(f.first)); y(1, f32(f.second)); y(2, f.blend);",
+            reference: |x| {
+                let frames = sprite::flipbook_frames(x[0], x[1]);
+                vec![frames.first as f32, frames.second as f32, frames.blend]
+            },
+            cases: (-40_i32..120).map(|i| vec![i as f32 * 0.37, (1 + i.rem_euclid(9)) as f32]).collect(),
+            tolerance: 1e-5,
+            mutants: &[("first + 1.5 > frame_count", "false"), ("floor(frame / frame_count)", "0.0")],
+        },
+        Formula {
+            name: "cube_direction",
+            file: "lib/diffuse_bake.wgsl",
+            wgsl: "let v = cube_direction(i32(x(0)), vec2f(x(1), x(2))); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| diffuse_bake::cube_direction(x[0] as i32, v2(&x[1..])).to_array().to_vec(),
+            cases: with_choices(6, &[(-1.0, 1.0), (-1.0, 1.0)]),
+            tolerance: 0.0,
+            mutants: &[("vec3f(1.0, position.y, -position.x)", "vec3f(1.0, position.y, position.x)")],
+        },
+        Formula {
+            name: "cube_coordinate",
+            file: "lib/diffuse_bake.wgsl",
+            wgsl: "let c = cube_coordinate(vec3f(x(0), x(1), x(2))); y(0, f32(c.face)); y(1, c.position.x); y(2, c.position.y);",
+            reference: |x| {
+                let cube = diffuse_bake::cube_coordinate(v3(x));
+                vec![cube.face as f32, cube.position.x, cube.position.y]
+            },
+            cases: random(300, &[(-1.0, 1.0); 3]),
+            tolerance: ARITHMETIC,
+            mutants: &[
+                ("CubeCoordinate(3, vec2f(d.x, d.z))", "CubeCoordinate(3, vec2f(d.x, -d.z))"),
+                ("size.y >= size.z {", "size.y <= size.z {"),
+            ],
+        },
+        Formula {
+            name: "motif_normal",
+            file: "lib/diffuse_bake.wgsl",
+            wgsl: "let v = motif_normal(vec2f(x(0), x(1))); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| diffuse_bake::motif_normal(v2(x)).to_array().to_vec(),
+            cases: random(100, &[(-1.0, 1.0); 2]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[("sqrt(1.0 - square)", "1.0 - square")],
+        },
+        Formula {
+            name: "motif_position",
+            file: "lib/diffuse_bake.wgsl",
+            wgsl: "let v = motif_position(vec3f(x(0), x(1), x(2))); y(0, v.x); y(1, v.y);",
+            reference: |x| diffuse_bake::motif_position(v3(x)).to_array().to_vec(),
+            cases: unit_vectors(random(100, &[(-1.0, 1.0); 3]), 0),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[("normal.z >= 0.0", "normal.z >= -2.0")],
+        },
+        Formula {
+            name: "spherical_harmonics",
+            file: "lib/diffuse_bake.wgsl",
+            wgsl: "var c: array<vec4f, 9>; for (var i = 0u; i < 9u; i++) { \
+                   c[i] = vec4f(x(3u + i), x(12u + i), x(21u + i), 0.0); } \
+                   let v = spherical_harmonics(c, vec3f(x(0), x(1), x(2))); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| {
+                let coefficients = std::array::from_fn(|i| vec4(x[3 + i], x[12 + i], x[21 + i], 0.0));
+                diffuse_bake::spherical_harmonics(&coefficients, v3(x)).to_array().to_vec()
+            },
+            cases: unit_vectors(random(100, &[(-1.0, 1.0); 30]), 0),
+            tolerance: ARITHMETIC * 5.0,
+            mutants: &[
+                ("n.x * n.z * c[7].rgb", "n.x * n.z * c[6].rgb"),
+                ("3.0 * n.z * n.z - 1.0", "3.0 * n.y * n.y - 1.0"),
+                ("max(light, vec3f(0.0))", "light"),
+            ],
+        },
+        Formula {
+            name: "upsample_weights",
+            file: "lib/upsample.wgsl",
+            wgsl: "let w = upsample_weights(u32(x(0)), vec2f(x(1), x(2)), vec4f(x(3), x(4), x(5), x(6)), x(7)); \
+                   y(0, w.x); y(1, w.y); y(2, w.z); y(3, w.w);",
+            reference: |x| {
+                let mode = Upsample::ALL[x[0] as usize];
+                upsample::upsample_weights(mode, v2(&x[1..]), v4(&x[3..]), x[7]).to_array().to_vec()
+            },
+            cases: {
+                let mut cases = with_choices(
+                    3,
+                    &[(0.0, 1.0), (0.0, 1.0), (4.0, 6.0), (4.0, 6.0), (4.0, 6.0), (4.0, 6.0), (4.0, 6.0)],
+                );
+                // Smooth floors, and a pixel whose surface no texel has seen.
+                cases.extend(with_choices(
+                    3,
+                    &[(0.0, 1.0), (0.0, 1.0), (4.9, 5.1), (4.9, 5.1), (4.9, 5.1), (4.9, 5.1), (4.9, 5.1)],
+                ));
+                cases.extend(with_choices(
+                    3,
+                    &[(0.0, 1.0), (0.0, 1.0), (4.0, 5.0), (4.0, 5.0), (4.0, 5.0), (4.0, 5.0), (30.0, 60.0)],
+                ));
+                cases
+            },
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("vec4f(SAME_SURFACE * depth)", "vec4f(SAME_SURFACE)"),
+                ("fraction.x * g.y, g.x * fraction.y", "g.x * fraction.y, fraction.x * g.y"),
+                ("if difference.y == closest", "if difference.z == closest"),
+                ("-0.5 * sigmas * sigmas", "-sigmas * sigmas"),
+            ],
+        },
+        Formula {
+            name: "ndc_from_pixel",
+            file: "lib/view.wgsl",
+            wgsl: "let v = ndc_from_pixel(vec2f(x(0), x(1)), vec2f(x(2), x(3))); y(0, v.x); y(1, v.y);",
+            reference: |x| view::ndc_from_pixel(v2(x), v2(&x[2..])).to_array().to_vec(),
+            cases: random(50, &[(0.0, 640.0), (0.0, 360.0), (100.0, 640.0), (100.0, 360.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[("1.0 - pixel.y / size.y * 2.0", "pixel.y / size.y * 2.0 - 1.0")],
+        },
+        Formula {
+            name: "pixel_from_ndc",
+            file: "lib/view.wgsl",
+            wgsl: "let v = pixel_from_ndc(vec2f(x(0), x(1)), vec2f(x(2), x(3))); y(0, v.x); y(1, v.y);",
+            reference: |x| view::pixel_from_ndc(v2(x), v2(&x[2..])).to_array().to_vec(),
+            cases: random(50, &[(-1.0, 1.0), (-1.0, 1.0), (100.0, 640.0), (100.0, 360.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[("0.5 - ndc.y * 0.5", "0.5 + ndc.y * 0.5")],
+        },
+        Formula {
+            name: "view_position",
+            file: "lib/view.wgsl",
+            wgsl: "let v = view_position(vec2f(x(1), x(2)), x(3), x(0)); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| view::view_position(v2(&x[1..]), x[3], x[0]).to_array().to_vec(),
+            cases: with_choices(2, &[(-1.0, 1.0), (-1.0, 1.0), (0.1, 50.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[("mix(view_depth, 1.0, orthographic)", "view_depth"), ("-view_depth)", "view_depth)")],
+        },
+        Formula {
+            name: "sample_ramp_2d",
+            file: "lib/ramp.wgsl",
+            wgsl: "let v = sample_ramp_2d(test_ramp, test_sampler, vec2f(x(0), x(1))); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| ramp::sample_ramp_2d(&test_ramp(), v2(x)).to_array().to_vec(),
+            cases: random(200, &[(-0.1, 1.1); 2]),
+            tolerance: 1e-5,
+            // Swapped axes, and the texel centres of an image instead of a gradient's ends.
+            mutants: &[("saturate(coordinate)", "saturate(coordinate.yx)"), ("* (size - 1.0)", "* size - 0.5")],
+        },
+        Formula {
+            name: "sample_ramp",
+            file: "lib/ramp.wgsl",
+            wgsl: "let v = sample_ramp(test_ramp, test_sampler, x(0)); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| ramp::sample_ramp(&test_ramp(), x[0]).to_array().to_vec(),
+            cases: random(100, &[(-0.1, 1.1)]),
+            tolerance: 1e-5,
+            mutants: &[("vec2f(u, 0.0)", "vec2f(0.0, u)")],
+        },
+        Formula {
+            name: "sample_sprite",
+            file: "lib/sprite.wgsl",
+            wgsl: "let f = flipbook_frames(x(2), 3.0); \
+                   let v = sample_sprite(test_sprite, test_sampler, vec2f(x(0), x(1)), f, x(3)); \
+                   y(0, v.x); y(1, v.y); y(2, v.z); y(3, v.w);",
+            reference: |x| {
+                let frames = sprite::flipbook_frames(x[2], 3.0);
+                sprite::sample_sprite(&test_sprite(), v2(x), frames, x[3]).to_array().to_vec()
+            },
+            cases: random(300, &[(0.0, 1.0), (0.0, 1.0), (0.0, 9.0), (0.0, 4.0)]),
+            tolerance: 1e-5,
+            mutants: &[
+                ("mix(texel, next, frames.blend)", "texel"),
+                ("mix(fine, coarse, level - base)", "fine"),
+                ("texel.rgb * 2.0 - 1.0", "texel.rgb"),
+                ("uv * vec2f(size) - 0.5", "uv * vec2f(size)"),
+            ],
+        },
+    ]
+}
+
+/// Runs the formula on the GPU, from `source` of its file.
+fn run(formula: &Formula, mutate: Option<(&str, &str)>) -> Vec<Vec<f32>> {
+    let mut library = format!("#import \"{}\"\n", formula.file);
+    if formula.file != "lib/sprite.wgsl" && formula.file != "lib/ramp.wgsl" {
+        library.push_str("#import \"lib/ramp.wgsl\"\n");
+    }
+    let mut source = shader::compose(&library).unwrap();
+    if let Some((from, to)) = mutate {
+        assert!(source.contains(from), "{}: there is no {from:?} to mutate", formula.name);
+        source = source.replace(from, to);
+    }
+    // `sample_light` takes a struct of many fields.
+    let prelude = if formula.name == "sample_light" { WGSL_LIGHT } else { "" };
+    // One case per workgroup: llvmpipe 22 takes a textureLoad's level for a whole SIMD group from its first invocation.
+    source.push_str(&format!(
+        "@group(0) @binding(0) var<storage, read> inputs: array<f32>;
+         @group(0) @binding(1) var<storage, read_write> results: array<f32>;
+         @group(0) @binding(2) var test_ramp: texture_2d<f32>;
+         @group(0) @binding(3) var test_sprite: texture_2d_array<f32>;
+         @group(0) @binding(4) var test_sampler: sampler;
+         var<private> case_index: u32;
+         fn x(i: u32) -> f32 {{ return inputs[case_index * {WIDTH}u + i]; }}
+         fn y(i: u32, value: f32) {{ results[case_index * {WIDTH}u + i] = value; }}
+         @compute @workgroup_size(1)
+         fn main(@builtin(global_invocation_id) id: vec3u) {{
+             case_index = id.x;
+             if case_index * {WIDTH}u >= arrayLength(&inputs) {{ return; }}
+             {prelude}
+             {}
+         }}",
+        formula.wgsl
+    ));
+    let results = crate::common::compute(gpu(), &source, &formula.cases, WIDTH, &test_ramp(), &test_sprite());
+    gpu().check().unwrap_or_else(|error| panic!("{}: {error}\n{source}", formula.name));
+    results
+}
+
+/// Largest difference from the reference, relative to 1 or the result.
+fn error(formula: &Formula, results: &[Vec<f32>]) -> f32 {
+    let mut worst = 0.0_f32;
+    for (case, result) in formula.cases.iter().zip(results) {
+        for (expected, found) in (formula.reference)(case).into_iter().zip(result) {
+            assert!(expected.is_finite(), "{} of {case:?} is {expected}", formula.name);
+            let difference = (expected - found).abs() / expected.abs().max(1.0);
+            worst = worst.max(if difference.is_nan() { f32::INFINITY } else { difference });
+        }
+    }
+    worst
+}
+
+#[test]
+fn every_formula_agrees_with_the_reference() {
+    for formula in formulas() {
+        let worst = error(&formula, &run(&formula, None));
+        println!("{}: {worst:e}", formula.name);
+        assert!(worst <= formula.tolerance, "{}: off by {worst:e}", formula.name);
+    }
+}
+
+#[test]
+fn every_mutant_fails() {
+    for formula in formulas() {
+        assert!(!formula.mutants.is_empty(), "{} has no mutant", formula.name);
+        for &mutant in formula.mutants {
+            let worst = error(&formula, &run(&formula, Some(mutant)));
+            assert!(worst > 10.0 * formula.tolerance, "{}: the mutant {mutant:?} passes ({worst:e})", formula.name);
+        }
+    }
+}
+
+/// Functions that the formulas above run through, or that read the passes' own bindings; whole frames hold the latter.
+const INDIRECT: &[&str] = &[
+    "load_sprite_bilinear",
+    "sample_sprite_frame",
+    "sprite_corner",
+    "sprite_uv",
+    "sprite_vertex",
+    "sprite_fragment",
+    "diffuse_from_lights",
+    "soft_scatter",
+    "scene_view_depth",
+    "sample_accumulation",
+];
+
+#[test]
+fn no_function_is_left_out() {
+    let formulas = formulas();
+    for (file, text) in shader::sources().iter().filter(|(file, _)| file.starts_with("lib/")) {
+        for line in text.lines() {
+            let Some(name) = line.strip_prefix("fn ").and_then(|rest| rest.split('(').next()) else { continue };
+            let tested = formulas.iter().any(|formula| formula.name == name && formula.file == *file);
+            assert!(tested || INDIRECT.contains(&name), "{file}: {name} has no test against the reference");
+        }
+    }
+}
