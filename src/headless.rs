@@ -12,6 +12,25 @@ use crate::error::Error;
 const INSTALL_LINE: &str = "no graphics adapter was found; on Debian and Ubuntu \
     `apt-get install mesa-vulkan-drivers` installs a software one";
 
+fn find_adapter(backends: wgpu::Backends) -> Option<wgpu::Adapter> {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+    descriptor.backends &= backends;
+    if descriptor.backends.is_empty() {
+        return None;
+    }
+    let instance = wgpu::Instance::new(descriptor);
+    let name = std::env::var("WGPU_ADAPTER_NAME").unwrap_or_default().to_lowercase();
+    if name.is_empty() {
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            ..Default::default()
+        };
+        return pollster::block_on(instance.request_adapter(&options)).ok();
+    }
+    let adapters = pollster::block_on(instance.enumerate_adapters(backends));
+    adapters.into_iter().find(|adapter| adapter.get_info().name.to_lowercase().contains(&name))
+}
+
 /// A device with its failures caught: nothing panics when the driver gives up.
 #[derive(Debug)]
 pub struct Headless {
@@ -44,19 +63,8 @@ impl Headless {
     /// # Errors
     /// [`Error::NoDevice`] with the line that installs a software adapter.
     pub fn new() -> Result<Self, Error> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
-        let name = std::env::var("WGPU_ADAPTER_NAME").unwrap_or_default();
-        let adapter = if name.is_empty() {
-            pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions {
-                power_preference: wgpu::PowerPreference::HighPerformance,
-                ..Default::default()
-            }))
-            .ok()
-        } else {
-            let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
-            let wanted = name.to_lowercase();
-            adapters.into_iter().find(|adapter| adapter.get_info().name.to_lowercase().contains(&wanted))
-        };
+        // OpenGL only where nothing else is found: opening it makes noise on machines without a display.
+        let adapter = [wgpu::Backends::PRIMARY, wgpu::Backends::SECONDARY].into_iter().find_map(find_adapter);
         let adapter = adapter.ok_or_else(|| Error::NoDevice(INSTALL_LINE.into()))?;
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("haze headless"),

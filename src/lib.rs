@@ -37,7 +37,7 @@ pub use frame::{Frame, Particles, SceneDepth, System};
 pub use light::{Light, LightKind};
 pub use material::{Material, MaterialAssets};
 pub use particle::Particle;
-pub use renderer::{MemoryUse, Renderer};
+pub use renderer::{MemoryUse, Renderer, TargetViews};
 pub use settings::Settings;
 pub use view::View;
 pub use wgpu;

@@ -1,5 +1,7 @@
 //! The frame, pass by pass.
 
+use glam::{IVec2, UVec2};
+
 use crate::descriptor::Descriptor;
 use crate::error::{Error, FieldError};
 use crate::frame::{Frame, SceneDepth, System, validate_lights};
@@ -39,6 +41,22 @@ pub(crate) struct Passes {
     pub transfer: TransferPass,
     pub specular_scatter: SpecularScatterPass,
     pub forward: ForwardPass,
+}
+
+/// The textures of one system. All share one grid: texel (i, j) covers `scale` by `scale` pixels of the picture from
+/// (`origin` + (i, j)) · `scale`. The textures may be larger than the part in use, `size` from (0, 0).
+#[derive(Clone, Copy, Debug)]
+pub struct TargetViews<'a> {
+    /// First: premultiplied normal in rgb, amount in a.
+    pub accumulation: &'a [wgpu::TextureView],
+    /// `R32Float` linear view depth, metres; `None` where sprites are compared with the host's own depth.
+    pub reduced_depth: Option<&'a wgpu::TextureView>,
+    /// First texel of the picture's grid.
+    pub origin: IVec2,
+    /// Texels in use.
+    pub size: UVec2,
+    /// Pixels per texel.
+    pub scale: u32,
 }
 
 /// Bytes of GPU memory that a renderer holds, its materials aside.
@@ -144,6 +162,12 @@ impl Renderer {
             // The glow of lights behind it.
             slot.specular_scatter(pass, &self.frame);
         }
+    }
+
+    /// The targets of a system as the last [`prepare`](Self::prepare) left them, for tools and for a host's own passes.
+    /// `None` when it is out of sight or drawn forward.
+    pub fn targets(&self, system: usize) -> Option<TargetViews<'_>> {
+        self.slots.get(system)?.target_views()
     }
 
     /// Bytes of GPU memory held for the systems of the last frame.

@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 
-use crate::bounds::{Bounds, effective_scale};
+use crate::bounds::{Bounds, TargetRect, effective_scale};
 use crate::descriptor::Descriptor;
 use crate::error::FieldError;
 use crate::frame::{Frame, Particles, SceneDepth, System};
@@ -13,7 +13,7 @@ use crate::pass::forward::ForwardKey;
 use crate::pass::sort::{SortScratch, back_to_front};
 use crate::pass::transfer::{self, TransferKey};
 use crate::pass::{LIGHTS_SIZE, Layouts};
-use crate::renderer::{MemoryUse, Passes};
+use crate::renderer::{MemoryUse, Passes, TargetViews};
 use crate::settings::{DepthSource, Settings, ShadeTree};
 use crate::system::{SystemInView, lights_in_view, system_in_view};
 use crate::targets::{Targets, TargetsKey};
@@ -88,7 +88,8 @@ struct Scratch {
 struct Draw {
     /// View depth of the box's middle.
     distance: f32,
-    target_size: UVec2,
+    rect: TargetRect,
+    scale: u32,
     material: wgpu::BindGroup,
     instances: wgpu::Buffer,
     instance_count: u32,
@@ -140,6 +141,17 @@ impl Slot {
         }
     }
 
+    pub fn target_views(&self) -> Option<TargetViews<'_>> {
+        let (draw, targets) = (self.draw.as_ref()?, self.targets.as_ref()?);
+        Some(TargetViews {
+            accumulation: &targets.accumulation,
+            reduced_depth: targets.reduced_depth.as_ref(),
+            origin: draw.rect.origin,
+            size: draw.rect.size,
+            scale: draw.scale,
+        })
+    }
+
     /// Places the system in the view, uploads what the passes read and picks their pipelines.
     #[allow(clippy::too_many_arguments, reason = "the renderer's own parts, borrowed one by one")]
     pub fn write(
@@ -178,7 +190,8 @@ impl Slot {
         };
         self.draw = Some(Draw {
             distance: -view.view_position(bounds.centre()).z,
-            target_size: in_view.rect.size,
+            rect: in_view.rect,
+            scale: in_view.uniform.scale as u32,
             material: system.material.bind_group.clone(),
             instances,
             instance_count,
@@ -304,7 +317,7 @@ impl Slot {
         let DrawPath::Deferred { depth_downsample: Some(pipeline), .. } = &draw.path else { return };
         let Some(view) = &targets.reduced_depth else { return };
         let mut pass = begin_pass(encoder, "depth_downsample", &[color_attachment(view)], None);
-        set_part(&mut pass, draw.target_size);
+        set_part(&mut pass, draw.rect.size);
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, frame.bind_group(), &[]);
         pass.set_bind_group(1, &self.bindings, &[]);
@@ -329,7 +342,7 @@ impl Slot {
         let DrawPath::Deferred { accumulate, host_depth, .. } = &draw.path else { return };
         let attachments: Vec<_> = targets.accumulation.iter().map(color_attachment).collect();
         let mut pass = begin_pass(encoder, "accumulate", &attachments, host_depth.as_ref());
-        set_part(&mut pass, draw.target_size);
+        set_part(&mut pass, draw.rect.size);
         pass.set_pipeline(accumulate);
         pass.set_bind_group(0, frame.bind_group(), &[]);
         pass.set_bind_group(1, &self.bindings, &[]);

@@ -40,3 +40,63 @@ pub fn depth_downsample_keeps_farthest(mode: DepthDownsample, texel: IVec2) -> b
         _ => mode == DepthDownsample::Max,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::camera::rh::proj::directx::{
+        orthographic, perspective, perspective_infinite, perspective_infinite_reverse,
+    };
+    use glam::{Mat4, Vec3};
+
+    /// Projections of every convention; reversed is depth' = 1 − depth.
+    fn projections() -> [Mat4; 6] {
+        let reverse = Mat4::from_cols(Vec4::X, Vec4::Y, Vec4::new(0.0, 0.0, -1.0, 0.0), Vec4::new(0.0, 0.0, 1.0, 1.0));
+        let (standard, flat) = (perspective(1.0, 1.5, 0.25, 60.0), orthographic(-4.0, 4.0, -3.0, 3.0, 0.25, 60.0));
+        [
+            standard,
+            reverse * standard,
+            perspective_infinite(1.0, 1.5, 0.25),
+            perspective_infinite_reverse(1.0, 1.5, 0.25),
+            flat,
+            reverse * flat,
+        ]
+    }
+
+    /// Largest relative error over 0.3..50 m when a depth buffer is read back with coefficients `f` makes.
+    fn error(projection: &Mat4, f: impl Fn(&DepthConvention) -> Vec4) -> f32 {
+        let coefficients = f(&DepthConvention::from_clip_from_view(projection).unwrap());
+        let depths = (0..100).map(|i| 0.3 * (50.0_f32 / 0.3).powf(i as f32 / 99.0));
+        let off = |z: f32| {
+            let stored = projection.project_point3(Vec3::new(0.0, 0.0, -z)).z;
+            (view_depth_from_ndc_depth(stored, coefficients) - z).abs() / z
+        };
+        depths.map(off).fold(0.0, f32::max)
+    }
+
+    #[test]
+    fn every_convention_reads_back_what_it_stored() {
+        for projection in projections() {
+            // At 50 m a 0..1 buffer with a near plane of 0.25 m has steps of 6e-8 · 50² / 0.25 m, a part in 80 000.
+            assert!(error(&projection, depth_coefficients) < 3e-5, "{projection}");
+        }
+    }
+
+    #[test]
+    fn the_printed_formula_of_nv_fails() {
+        // z = n·f / (f − d·(f + n)): the sign of n is wrong.
+        let printed = |c: &DepthConvention| Vec4::new(c.near, 0.0, 1.0, -(c.far + c.near) / c.far);
+        assert!(error(&projections()[0], printed) > 0.1);
+    }
+
+    #[test]
+    fn where_nothing_was_drawn_there_is_sky() {
+        for projection in [perspective_infinite(1.0, 1.5, 0.25), perspective_infinite_reverse(1.0, 1.5, 0.25)] {
+            let convention = DepthConvention::from_clip_from_view(&projection).unwrap();
+            let cleared = if convention.reversed { 0.0 } else { 1.0 };
+            let coefficients = depth_coefficients(&convention);
+            assert!(view_depth_from_ndc_depth(cleared, coefficients) >= 0.99 * SKY_VIEW_DEPTH);
+            assert!(view_depth_from_ndc_depth(f32::NAN, coefficients).is_finite());
+        }
+    }
+}

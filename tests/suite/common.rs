@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use glam::Vec4;
+use glam::{UVec2, Vec4};
 use haze::headless::Headless;
 use haze::ramp::Ramp;
 use haze::reference::picture::Picture;
@@ -125,7 +125,7 @@ pub fn compute(
 
 fn upload_ramp(gpu: &Headless, ramp: &Ramp) -> wgpu::TextureView {
     let size = wgpu::Extent3d { width: ramp.size().x, height: ramp.size().y, depth_or_array_layers: 1 };
-    let texel = |i: u32| ramp.texel(glam::UVec2::new(i % size.width, i / size.width)).extend(1.0);
+    let texel = |i: u32| ramp.texel(UVec2::new(i % size.width, i / size.width)).extend(1.0);
     let texels: Vec<_> =
         (0..size.width * size.height).flat_map(|i| texel(i).to_array().map(half::f16::from_f32)).collect();
     let bytes: Vec<u8> = texels.iter().flat_map(|channel| channel.to_le_bytes()).collect();
@@ -180,4 +180,53 @@ fn upload(
         gpu.queue.write_texture(target, bytes, layout, *extent);
     }
     texture.create_view(&wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() })
+}
+
+/// Counts texels of the first `size` of a texture with a NaN or infinity in them.
+pub fn non_finite_texels(gpu: &Headless, view: &wgpu::TextureView, size: UVec2) -> u32 {
+    const SOURCE: &str = "
+        @group(0) @binding(0) var texels: texture_2d<f32>;
+        @group(0) @binding(1) var<storage, read_write> count: atomic<u32>;
+        @compute @workgroup_size(8, 8)
+        fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+            // By their bits: comparisons with NaN may be optimised away. Texels out of range load as zero or a border.
+            let bits = bitcast<vec4u>(textureLoad(texels, id.xy, 0)) & vec4u(0x7f800000u);
+            if any(bits == vec4u(0x7f800000u)) { atomicAdd(&count, 1u); }
+        }";
+    let device = &gpu.device;
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("non-finite texels"),
+        source: wgpu::ShaderSource::Wgsl(SOURCE.into()),
+    });
+    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some("non-finite texels"),
+        layout: None,
+        module: &module,
+        entry_point: Some("main"),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    });
+    let count = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("non-finite texels"),
+        size: 4,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
+    });
+    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("non-finite texels"),
+        layout: &pipeline.get_bind_group_layout(0),
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(view) },
+            wgpu::BindGroupEntry { binding: 1, resource: count.as_entire_binding() },
+        ],
+    });
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.dispatch_workgroups(size.x.div_ceil(8), size.y.div_ceil(8), 1);
+    }
+    gpu.submit(encoder).unwrap();
+    bytemuck::pod_read_unaligned(&gpu.read_buffer(&count).unwrap())
 }

@@ -4,4 +4,6 @@ mod common;
 mod formulas;
 #[cfg(feature = "app")]
 mod presets;
+mod properties;
 mod shader_layout;
+mod stage;

@@ -1,0 +1,419 @@
+//! What must hold whatever the picture: order, emptiness, odd sizes, depth conventions, memory, steady frames.
+
+use glam::camera::rh::proj::directx;
+use glam::{Mat4, UVec2, Vec3, Vec4, vec3, vec4};
+use haze::reference::blending::{premultiplied_over, quantise};
+use haze::settings::{AccumulationFormat, DepthSource, DiffuseMode, Path, ShadeTree, Upsample};
+use haze::{Bounds, Error, Light, Particle, Particles, wgpu};
+use proptest::prelude::*;
+
+use crate::common::{gpu, non_finite_texels, psnr};
+use crate::stage::{BACKDROP, Host, Stage};
+
+const SIZE: UVec2 = UVec2::new(160, 90);
+
+// order
+
+proptest! {
+    #[test]
+    fn amount_is_one_minus_the_product_of_what_each_layer_lets_through(
+        amounts in proptest::collection::vec(0.0_f32..1.0, 1..40),
+        seed in 0_usize..1000,
+    ) {
+        let blend = |amounts: &[f32]| {
+            amounts.iter().fold(Vec4::ZERO, |target, &a| premultiplied_over(Vec4::splat(a), target)).w
+        };
+        let mut shuffled = amounts.clone();
+        for i in (1..shuffled.len()).rev() {
+            shuffled.swap(i, (seed * 31 + i * 17) % (i + 1));
+        }
+        let product = 1.0 - amounts.iter().map(|a| 1.0 - a).product::<f32>();
+        // 40 roundings of 6e-8.
+        prop_assert!((blend(&amounts) - product).abs() < 3e-6);
+        prop_assert!((blend(&shuffled) - product).abs() < 3e-6);
+        // The mutant: SRC_ALPHA, ONE_MINUS_SRC_ALPHA, OTEE's first blend, loses amount.
+        let classic = amounts.iter().fold(0.0, |target, a| a * a + target * (1.0 - a));
+        prop_assert!(amounts.iter().all(|&a| a < 0.01 || a > 0.99) || product - classic > 1e-5);
+    }
+}
+
+#[test]
+fn amount_on_the_gpu_does_not_depend_on_order() {
+    let mut stage = Stage::new(SIZE);
+    stage.shade_tree = ShadeTree::Amount;
+    stage.settings.accumulate.scale = 1;
+    stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    // From a buffer, where the host is responsible for the order.
+    let mut draw = |particles: &[Particle]| {
+        let bytes: &[u8] = bytemuck::cast_slice(particles);
+        let buffer = gpu().device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("host particles"),
+            size: bytes.len() as u64,
+            usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        gpu().queue.write_buffer(&buffer, 0, bytes);
+        let count = particles.len() as u32;
+        host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, count }).unwrap();
+        host.picture(gpu()).unwrap()
+    };
+    let forwards = draw(&stage.particles);
+    let reversed: Vec<_> = stage.particles.iter().rev().copied().collect();
+    let backwards = draw(&reversed);
+    let difference = forwards.texels.iter().zip(&backwards.texels).map(|(a, b)| (a.x - b.x).abs());
+    // 60 layers, each rounded to f16: 60 halves of 2^-11 at worst, a third of that seen.
+    assert!(difference.fold(0.0, f32::max) < 60.0 * 0.5 / 2048.0);
+    assert!(forwards.texels.iter().any(|texel| texel.x > 0.9));
+}
+
+#[test]
+fn eight_bits_lose_thin_smoke_and_sixteen_do_not() {
+    // DESIGN's trap, seen on the GPU: 400 layers of amount 0.02 should reach 1 - 0.98^400 = 0.9997.
+    let stack = |format, encoding| {
+        let mut stage = Stage::new(UVec2::splat(32));
+        let sprite = Particle { position: vec3(0.0, 0.0, -4.0), radius: 3.0, amount: 0.02, ..Particle::default() };
+        stage.particles = vec![sprite; 400];
+        (stage.settings.accumulate.format, stage.settings.accumulate.encoding) = (format, encoding);
+        stage.shade_tree = ShadeTree::Amount;
+        stage.on_gpu(gpu()).picture.load(glam::IVec2::new(8, 16)).x
+    };
+    use haze::settings::NormalEncoding;
+    assert!(stack(AccumulationFormat::Rgba16Float, NormalEncoding::Signed) > 0.97);
+    let eight = stack(AccumulationFormat::Rgba8Unorm, NormalEncoding::Biased);
+    assert!((0.8..0.95).contains(&eight), "{eight}");
+    // And the reference rounds as the GPU does.
+    let layer = |target, _| quantise(AccumulationFormat::Rgba8Unorm, premultiplied_over(Vec4::splat(0.02), target));
+    assert!((0.8..0.95).contains(&(0..400).fold(Vec4::ZERO, layer).w));
+}
+
+// emptiness
+
+#[test]
+fn no_smoke_leaves_the_scene_untouched() {
+    let untouched = |stage: &Stage| {
+        let drawn = stage.on_gpu(gpu());
+        drawn.picture.texels.iter().all(|&texel| texel == BACKDROP)
+            && stage.on_cpu().texels.iter().all(|&t| t == BACKDROP)
+    };
+    let mut stage = Stage::new(SIZE);
+    assert!(!untouched(&stage));
+    let particles = std::mem::take(&mut stage.particles);
+    assert!(untouched(&stage));
+    // Sprites that cannot be drawn count as none.
+    stage.particles = vec![
+        Particle { position: Vec3::NAN, ..Particle::default() },
+        Particle { radius: 0.0, position: vec3(0.0, 0.0, -6.0), ..Particle::default() },
+        Particle { amount: 0.0, position: vec3(0.0, 0.0, -6.0), ..Particle::default() },
+        Particle { radius: f32::INFINITY, ..Particle::default() },
+        // Behind the camera.
+        Particle { position: vec3(0.0, 0.0, 6.0), ..Particle::default() },
+    ];
+    assert!(untouched(&stage));
+    // A real one behind the camera and out of sight.
+    stage.particles =
+        particles.iter().map(|p| Particle { position: p.position + vec3(0.0, 0.0, 20.0), ..*p }).collect();
+    assert!(untouched(&stage));
+    for path in [Path::Raster, Path::Forward] {
+        stage.settings.path = path;
+        stage.settings.accumulate.opacity = 0.0;
+        stage.particles.clone_from(&particles);
+        assert!(untouched(&stage));
+    }
+}
+
+// sizes
+
+#[test]
+fn odd_sizes_and_every_scale_work() {
+    for size in [UVec2::ONE, UVec2::new(1, 97), UVec2::new(641, 359), UVec2::new(3, 2)] {
+        for scale in 1..=16 {
+            let mut stage = Stage::new(size);
+            stage.settings.accumulate.scale = scale;
+            let drawn = stage.on_gpu(gpu());
+            gpu().check().unwrap();
+            assert!(drawn.picture.texels.iter().all(|texel| texel.is_finite()), "{size} scale {scale}");
+            // Hardware places corners on a grid of 1/256 pixel. Where a whole sprite is less than a pixel, that moves it
+            // by a part of its own size, and the pictures of the two renderers are no longer of the same sprite.
+            if size.min_element() > 64 {
+                let psnr = psnr(&drawn.picture, &stage.on_cpu());
+                assert!(psnr >= 45.0, "{size} scale {scale}: {psnr:.1} dB");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_host_may_resize_and_change_everything_from_frame_to_frame() {
+    let mut stage = Stage::new(SIZE);
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    for step in 0..24_u32 {
+        let size = UVec2::new(64 + 37 * (step % 5), 48 + 29 * (step % 7));
+        let next = Stage::new(size);
+        (stage.view, stage.particles) = (next.view, next.particles);
+        let accumulate = &mut stage.settings.accumulate;
+        accumulate.scale = 1 + step % 6;
+        accumulate.upsample = Upsample::ALL[step as usize % 3];
+        accumulate.depth_source = if accumulate.scale == 1 { DepthSource::Host } else { DepthSource::Reduced };
+        stage.settings.diffuse.mode = DiffuseMode::ALL[step as usize % DiffuseMode::ALL.len()];
+        stage.settings.path = if step % 11 == 10 { Path::Forward } else { Path::Auto };
+        // The renderer stays, the host's textures are new.
+        let mut resized = Host::new(gpu(), &stage).unwrap();
+        std::mem::swap(&mut resized.renderer, &mut host.renderer);
+        std::mem::swap(&mut resized, &mut host);
+        host.draw(gpu(), &stage).unwrap();
+        gpu().check().unwrap();
+        let psnr = psnr(&host.picture(gpu()).unwrap(), &stage.on_cpu());
+        assert!(psnr >= 45.0, "step {step}: {psnr:.1} dB");
+    }
+}
+
+#[test]
+fn the_clamp_limits_the_target() {
+    let mut stage = Stage::new(UVec2::new(641, 359));
+    stage.settings.accumulate.scale = 1;
+    stage.settings.accumulate.max_side = 100;
+    let drawn = stage.on_gpu(gpu());
+    let targets = drawn.renderer.targets(0).unwrap();
+    assert_eq!(targets.scale, 7);
+    assert!(targets.size.max_element() <= 100);
+    assert!(psnr(&drawn.picture, &stage.on_cpu()) >= 45.0);
+}
+
+// depth conventions
+
+fn reversed(projection: Mat4) -> Mat4 {
+    let flip = Mat4::from_cols(Vec4::X, Vec4::Y, vec4(0.0, 0.0, -1.0, 0.0), vec4(0.0, 0.0, 1.0, 1.0));
+    flip * projection
+}
+
+#[test]
+fn every_depth_convention_gives_the_same_picture() {
+    let (fov, aspect) = (0.8, SIZE.x as f32 / SIZE.y as f32);
+    let perspective = directx::perspective(fov, aspect, 0.1, 80.0);
+    let orthographic = directx::orthographic(-4.0, 4.0, -2.25, 2.25, 0.1, 80.0);
+    let families = [
+        vec![
+            perspective,
+            reversed(perspective),
+            directx::perspective_infinite(fov, aspect, 0.1),
+            directx::perspective_infinite_reverse(fov, aspect, 0.1),
+        ],
+        vec![orthographic, reversed(orthographic)],
+    ];
+    for family in families {
+        let mut standard = None;
+        for clip_from_view in family {
+            for linear_depth in [false, true] {
+                let mut stage = Stage::new(SIZE);
+                stage.view.clip_from_view = clip_from_view;
+                stage.linear_depth = linear_depth;
+                let picture = stage.on_gpu(gpu()).picture;
+                let reference = psnr(&picture, &stage.on_cpu());
+                assert!(reference >= 45.0, "{clip_from_view}: {reference:.1} dB from the reference");
+                let standard = standard.get_or_insert_with(|| picture.clone());
+                // Depth buffers of different conventions round differently; 60 dB is a thousandth.
+                let psnr = psnr(&picture, standard);
+                assert!(psnr >= 60.0, "{clip_from_view}, linear {linear_depth}: {psnr:.1} dB from standard");
+            }
+        }
+    }
+}
+
+// the camera and the box
+
+#[test]
+fn the_near_plane_cuts_no_hole() {
+    // From in front of the box, through its front face, to the middle of it.
+    for step in 0..=20 {
+        let mut stage = Stage::new(SIZE);
+        let forward = 3.0 + 0.2 * step as f32;
+        stage.view.view_from_world = Mat4::from_translation(vec3(0.0, 0.0, forward));
+        stage.bounds = Some(Bounds { min: vec3(-5.0, -4.0, -8.0), max: vec3(5.0, 4.0, -4.0) });
+        stage.shade_tree = ShadeTree::ReducedDepth;
+        stage.view.clip_from_view = directx::perspective(0.8, 16.0 / 9.0, 0.5, 80.0);
+        let picture = stage.on_gpu(gpu()).picture;
+        // The box fills the view from here on, and this stage paints every pixel of it.
+        let holes = picture.texels.iter().filter(|&&texel| texel == BACKDROP).count();
+        let hidden_by_the_post = if forward < 3.5 { usize::MAX } else { 0 };
+        assert!(holes <= hidden_by_the_post, "{forward}: {holes} holes");
+        stage.shade_tree = ShadeTree::Final;
+        let psnr = psnr(&stage.on_gpu(gpu()).picture, &stage.on_cpu());
+        assert!(psnr >= 45.0, "{forward}: {psnr:.1} dB");
+    }
+}
+
+#[test]
+fn a_box_beyond_the_far_plane_shows_no_hole() {
+    let mut stage = Stage::new(SIZE);
+    stage.view.clip_from_view = directx::perspective(0.8, 16.0 / 9.0, 0.5, 20.0);
+    stage.bounds = Some(Bounds { min: Vec3::splat(-50.0), max: Vec3::splat(50.0) });
+    assert!(psnr(&stage.on_gpu(gpu()).picture, &stage.on_cpu()) >= 45.0);
+}
+
+// several systems, many lights
+
+#[test]
+fn many_lights_agree_and_too_many_are_refused() {
+    let mut stage = Stage::new(SIZE);
+    let light = |i: usize| Light {
+        position: vec3((i % 16) as f32 - 8.0, (i / 16) as f32 - 4.0, -4.0),
+        colour: vec3((i % 3) as f32, (i % 5) as f32, (i % 7) as f32) * 0.1,
+        range: 4.0,
+        specular_scatter: 0.0,
+        ..Light::default()
+    };
+    stage.lights = (0..haze::light::MAX_LIGHTS).map(light).collect();
+    assert!(psnr(&stage.on_gpu(gpu()).picture, &stage.on_cpu()) >= 45.0);
+    stage.lights.push(light(0));
+    let Err(error) = stage.try_on_gpu(gpu()) else { panic!("129 lights passed") };
+    assert_eq!(error.to_string(), "lights: 129 lights is not valid; expected at most 128");
+}
+
+// what callers get wrong
+
+#[test]
+fn bad_frames_are_refused_by_name_and_draw_nothing() {
+    let field = |change: fn(&mut Stage)| {
+        let mut stage = Stage::new(SIZE);
+        change(&mut stage);
+        match stage.try_on_gpu(gpu()) {
+            Err(Error::Field(error)) => error.field,
+            other => panic!("{:?}", other.map(|_| ())),
+        }
+    };
+    assert_eq!(field(|s| s.settings.soft_fade.fade_scale = f32::NAN), "systems[0].settings.soft_fade.fade_scale");
+    assert_eq!(field(|s| s.settings.accumulate.scale = 17), "systems[0].settings.accumulate.scale");
+    assert_eq!(field(|s| s.lights[1].range = -1.0), "lights[1].range");
+    assert_eq!(field(|s| s.bounds = Some(Bounds { min: Vec3::ZERO, max: Vec3::INFINITY })), "systems[0].bounds");
+    assert_eq!(field(|s| s.view.view_from_world = Mat4::ZERO), "view.view_from_world");
+
+    let mut stage = Stage::new(SIZE);
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    stage.view.size += 1;
+    let error = host.draw(gpu(), &stage).unwrap_err().to_string();
+    assert_eq!(error, "scene_depth: 160x90 is not valid; expected the size of the view, 161x91");
+    // Particles on the GPU need a box.
+    stage.view.size = SIZE;
+    let buffer = gpu().device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: 64,
+        usage: wgpu::BufferUsages::VERTEX,
+        mapped_at_creation: false,
+    });
+    let mut refused = |count, bounds| {
+        stage.bounds = bounds;
+        let particles = Particles::Buffer { buffer: &buffer, count };
+        host.draw_particles(gpu(), &stage, particles).unwrap_err().to_string()
+    };
+    assert!(refused(2, None).starts_with("systems[0].bounds: None"));
+    let somewhere = Some(Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE });
+    assert!(refused(3, somewhere).starts_with("systems[0].particles: 64 bytes"));
+}
+
+// memory and steady frames
+
+#[test]
+fn a_system_at_1080p_half_scale_takes_at_most_8_mb() {
+    let mut stage = Stage::new(UVec2::new(1920, 1080));
+    // The whole screen: the worst case.
+    stage.bounds = Some(Bounds { min: Vec3::splat(-20.0), max: Vec3::splat(20.0) });
+    let drawn = stage.on_gpu(gpu());
+    let whole = drawn.renderer.memory_use().targets;
+    println!("{:.2} MB", whole as f64 / 1e6);
+    assert!(whole <= 8_000_000, "{whole} bytes");
+    assert_eq!(drawn.renderer.targets(0).unwrap().size, UVec2::new(960, 540));
+    // And no more than the box's rectangle needs.
+    stage.bounds = Some(Bounds { min: vec3(-0.5, -0.5, -6.5), max: vec3(0.5, 0.5, -5.5) });
+    let drawn = stage.on_gpu(gpu());
+    let size = drawn.renderer.targets(0).unwrap().size;
+    assert!(size.x < 200 && size.y < 200, "{size}");
+    assert!(drawn.renderer.memory_use().targets < whole / 8);
+}
+
+#[test]
+fn steady_frames_create_nothing() {
+    let mut stage = Stage::new(SIZE);
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    for mode in [DiffuseMode::Ramp, DiffuseMode::Cubemap] {
+        stage.settings.diffuse.mode = mode;
+        host.draw(gpu(), &stage).unwrap();
+        let renderer_of = |host: &Host| {
+            let targets = host.renderer.targets(0).unwrap();
+            (targets.accumulation.to_vec(), targets.reduced_depth.cloned(), host.renderer.memory_use())
+        };
+        let before = renderer_of(&host);
+        let count = || {
+            let hal = gpu().device.get_internal_counters().hal;
+            [
+                &hal.buffers,
+                &hal.textures,
+                &hal.texture_views,
+                &hal.bind_groups,
+                &hal.render_pipelines,
+                &hal.shader_modules,
+            ]
+            .map(|counter| counter.read())
+        };
+        // Other tests run beside this one on the same device: look for ten frames in which nothing came or went.
+        let quiet = (0..200).any(|_| {
+            let start = count();
+            for frame in 0..10 {
+                // The smoke moves and the lights flicker.
+                for particle in &mut stage.particles {
+                    particle.rotation += 0.01;
+                }
+                stage.lights[0].intensity = 20.0 + frame as f32;
+                host.draw(gpu(), &stage).unwrap();
+            }
+            count() == start
+        });
+        assert!(quiet, "{mode:?}: something is created every frame");
+        assert_eq!(before, renderer_of(&host));
+    }
+}
+
+#[test]
+fn the_library_never_submits() {
+    // headless.rs and the demo are hosts; the rest is the library.
+    let mut folders = vec![std::path::PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/src"))];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let host = ["headless.rs", "demo", "app", "main.rs"].iter().any(|name| path.ends_with(name));
+            if path.is_dir() && !host {
+                folders.push(path);
+            } else if !path.is_dir() && !host {
+                let text = std::fs::read_to_string(&path).unwrap();
+                assert!(!text.contains(".submit(") && !text.contains(".poll("), "{}", path.display());
+            }
+        }
+    }
+}
+
+// nothing non-finite
+
+#[test]
+fn degenerate_sprites_leave_no_nan_in_any_target() {
+    let mut stage = Stage::new(SIZE);
+    let somewhere = vec3(0.0, 0.0, -6.0);
+    stage.particles.extend([
+        Particle { position: Vec3::ZERO, radius: 1.0, ..Particle::default() },
+        Particle { position: vec3(0.0, 0.0, -0.1), radius: 1e-20, ..Particle::default() },
+        Particle { position: somewhere, radius: 1e9, ..Particle::default() },
+        Particle { position: somewhere, rotation: 1e30, frame: -1e30, ..Particle::default() },
+        Particle { position: somewhere, frame: f32::MAX, ..Particle::default() },
+    ]);
+    stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
+    for contrast_power in [0.1, 16.0] {
+        stage.settings.soft_fade.curve = haze::settings::FadeCurve::Contrast;
+        stage.settings.soft_fade.contrast_power = contrast_power;
+        stage.settings.soft_fade.fade_scale = 1000.0;
+        let drawn = stage.on_gpu(gpu());
+        assert!(drawn.picture.texels.iter().all(|texel| texel.is_finite()));
+        let targets = drawn.renderer.targets(0).unwrap();
+        for view in targets.accumulation.iter().chain(targets.reduced_depth) {
+            assert_eq!(non_finite_texels(gpu(), view, targets.size), 0);
+        }
+    }
+}
