@@ -38,16 +38,19 @@ pub fn perspective(size: UVec2) -> Mat4 {
     rh::proj::directx::perspective(0.8, size.x as f32 / size.y as f32, 0.1, 80.0)
 }
 
-/// A round, flat sprite: alpha 1 in the middle, 0 at the rim; normals of a ball.
-pub fn ball_sprite() -> Sprite {
+/// A soft ball beside the middle of the sprite.
+pub fn ball_sprite(y_down: bool) -> Sprite {
     let picture = image::RgbaImage::from_fn(64, 64, |x, y| {
         let p = (Vec2::new(x as f32, 63.0 - y as f32) + 0.5) / 32.0 - 1.0;
-        let inside = (1.0 - p.length_squared() * 1.1).max(0.0);
-        let normal = p.extend(inside.sqrt().max(0.05)).normalize() * 0.5 + 0.5;
+        // Off the middle and leaning, so that a sprite turned or flipped is another.
+        let p = p - Vec2::new(0.1, 0.05);
+        let inside = (1.0 - p.length_squared() * 1.4).max(0.0);
+        let normal = (p * 1.5 + Vec2::new(0.2, -0.1)).extend(inside.sqrt().max(0.05)).normalize() * 0.5 + 0.5;
         let channel = |value: f32| (value * 255.0).round() as u8;
         image::Rgba([channel(normal.x), channel(normal.y), channel(normal.z), channel(inside.sqrt())])
     });
-    Sprite::from_picture(std::path::Path::new("ball"), &picture, SpriteLayout::default()).unwrap()
+    Sprite::from_picture(std::path::Path::new("ball"), &picture, SpriteLayout { y_down, ..SpriteLayout::default() })
+        .unwrap()
 }
 
 pub fn material() -> MaterialAssets {
@@ -55,7 +58,7 @@ pub fn material() -> MaterialAssets {
         |from: Vec3, to: Vec3| Ramp::from_linear(UVec2::new(16, 1), (0..16).map(|i| from.lerp(to, i as f32 / 15.0)));
     let glow = |i: u32| Vec3::splat((1.0 - (i % 16) as f32 / 15.0) * (i / 16) as f32 / 7.0);
     MaterialAssets {
-        sprite: ball_sprite(),
+        sprite: ball_sprite(false),
         diffuse_ramp: line(Vec3::splat(0.05), Vec3::ONE),
         soft_scatter_ramp: line(Vec3::splat(0.3), Vec3::ZERO),
         specular_ramp: Ramp::from_linear(UVec2::new(16, 8), (0..128).map(glow)),
@@ -97,11 +100,11 @@ impl Stage {
         }
     }
 
-    /// View depth of the scene: a post of 0.3 m at 5 m, a wall at 9 m on the left half, nothing on the right.
+    /// View depth of the scene: a post of 0.3 m at 5 m, a wall at 6.2 m on the left half, that the cloud reaches into, nothing on the right.
     fn view_depth(&self, at: UVec2) -> Option<f32> {
         let uv = (at.as_vec2() + 0.5) / self.view.size.as_vec2();
         let post = (uv.x - 0.6).abs() < 0.03;
-        if post { Some(5.0) } else { (uv.x < 0.5).then_some(9.0) }
+        if post { Some(5.0) } else { (uv.x < 0.5).then_some(6.2) }
     }
 
     /// What the depth buffer holds.
