@@ -9,6 +9,7 @@ pub mod emitter;
 pub mod error;
 pub mod fields;
 pub mod frame;
+mod frame_bindings;
 pub mod gpu_types;
 pub mod headless;
 mod json;

@@ -22,6 +22,9 @@ pub struct Particle {
     pub age: f32,
 }
 
+/// Largest number of a particle that is drawn: far beyond any scene, and far from where f32 runs out.
+pub const LARGEST: f32 = 1.0e9;
+
 impl Default for Particle {
     fn default() -> Self {
         Self { position: Vec3::ZERO, radius: 1.0, rotation: 0.0, amount: 1.0, frame: 0.0, age: 0.0 }
@@ -34,10 +37,12 @@ impl Particle {
         self.radius * std::f32::consts::SQRT_2
     }
 
-    /// True if every number is finite and in range; a sprite that is not is skipped, never drawn.
+    /// True if every number is finite, in range and no more than [`LARGEST`]; a sprite that is not is skipped, never
+    /// drawn.
     pub fn is_valid(&self) -> bool {
+        let largest = self.position.abs().max_element().max(self.rotation.abs()).max(self.frame.abs());
         let finite = self.position.is_finite() && self.rotation.is_finite() && self.frame.is_finite();
-        finite && self.radius.is_finite() && self.radius >= 0.0 && (0.0..=1.0).contains(&self.amount)
+        finite && largest <= LARGEST && (0.0..=LARGEST).contains(&self.radius) && (0.0..=1.0).contains(&self.amount)
     }
 }
 

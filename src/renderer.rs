@@ -5,15 +5,16 @@ use glam::{IVec2, UVec2};
 use crate::descriptor::Descriptor;
 use crate::error::{Error, FieldError};
 use crate::frame::{Frame, SceneDepth, System, validate_lights};
+use crate::frame_bindings::FrameBindings;
 use crate::material::{Material, MaterialAssets};
 use crate::pass::Layouts;
-use crate::pass::accumulate::AccumulatePass;
-use crate::pass::depth_downsample::DepthDownsamplePass;
-use crate::pass::diffuse_bake::DiffuseBakePass;
-use crate::pass::forward::ForwardPass;
-use crate::pass::specular_scatter::SpecularScatterPass;
-use crate::pass::transfer::TransferPass;
-use crate::slot::{FrameBindings, Slot};
+use crate::pass::accumulate::{self, AccumulatePass};
+use crate::pass::depth_downsample::{self, DepthDownsamplePass};
+use crate::pass::diffuse_bake::{self, DiffuseBakePass};
+use crate::pass::forward::{self, ForwardPass};
+use crate::pass::specular_scatter::{self, SpecularScatterPass};
+use crate::pass::transfer::{self, TransferPass};
+use crate::slot::Slot;
 use crate::view::ViewGeometry;
 
 /// Draws particle systems into a host's frame.
@@ -139,11 +140,11 @@ impl Renderer {
             // Place in the view; lights, settings and particles to the GPU, sprites back to front.
             slot.write(device, queue, &self.layouts, &mut self.passes, &self.descriptor, &view, frame, system)?;
             // Scene depth at the target's resolution.
-            slot.depth_downsample(encoder, &self.frame);
+            depth_downsample::record(encoder, &self.frame, slot);
             // All lights by normal, for the cubemap and motif variants of diffuse.
-            slot.diffuse_bake(encoder, &self.frame);
+            diffuse_bake::record(encoder, &self.frame, slot);
             // Sprites to premultiplied normal + amount.
-            slot.accumulate(encoder, &self.frame);
+            accumulate::record(encoder, &self.frame, slot);
         }
 
         self.order.extend((0..self.slots.len()).filter(|&index| self.slots[index].is_in_sight()));
@@ -157,10 +158,12 @@ impl Renderer {
     pub fn render(&self, pass: &mut wgpu::RenderPass<'_>) {
         for &index in &self.order {
             let slot = &self.slots[index];
-            // The box, lit once per pixel; or every sprite, lit per fragment.
-            slot.transfer_or_forward(pass, &self.frame);
+            // Every sprite lit per fragment, for systems that ask for the classic way.
+            forward::record(pass, &self.frame, slot);
+            // The box, lit once per pixel.
+            transfer::record(pass, &self.frame, slot);
             // The glow of lights behind it.
-            slot.specular_scatter(pass, &self.frame);
+            specular_scatter::record(pass, &self.frame, slot);
         }
     }
 

@@ -5,74 +5,31 @@ use glam::UVec2;
 use crate::bounds::{Bounds, TargetRect, effective_scale};
 use crate::descriptor::Descriptor;
 use crate::error::FieldError;
-use crate::frame::{Frame, Particles, SceneDepth, System};
-use crate::gpu_types::{LightUniform, SystemUniform, ViewUniform};
+use crate::frame::{Frame, Particles, System};
+use crate::gpu_types::{LightUniform, SystemUniform};
 use crate::particle::{Particle, bounds_of};
 use crate::pass::accumulate::AccumulateKey;
 use crate::pass::forward::ForwardKey;
 use crate::pass::sort::{SortScratch, back_to_front};
-use crate::pass::transfer::{self, TransferKey};
-use crate::pass::{LIGHTS_SIZE, Layouts};
+use crate::pass::transfer::TransferKey;
+use crate::pass::{LIGHTS_SIZE, Layouts, uniform_buffer};
 use crate::renderer::{MemoryUse, Passes, TargetViews};
 use crate::settings::{DepthSource, Settings, ShadeTree};
 use crate::system::{SystemInView, lights_in_view, system_in_view};
 use crate::targets::{Targets, TargetsKey};
 use crate::view::ViewGeometry;
 
-/// Group 0: the view and the scene's depth.
-#[derive(Debug)]
-pub(crate) struct FrameBindings {
-    view: wgpu::Buffer,
-    /// The depth view that the bind group shows, and the bind group.
-    bound: Option<(wgpu::TextureView, wgpu::BindGroup)>,
-}
-
-impl FrameBindings {
-    pub fn new(device: &wgpu::Device) -> Self {
-        Self { view: uniform_buffer(device, "haze view", size_of::<ViewUniform>() as u64), bound: None }
-    }
-
-    pub fn write(
-        &mut self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        layouts: &Layouts,
-        view: &ViewGeometry,
-        scene_depth: &SceneDepth<'_>,
-    ) {
-        let linear = matches!(scene_depth, SceneDepth::Linear(_));
-        queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view.uniform(linear)));
-        let depth = scene_depth.texture_view();
-        if self.bound.as_ref().is_some_and(|(bound, _)| bound == depth) {
-            return;
-        }
-        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("haze frame"),
-            layout: &layouts.frame,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: self.view.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(depth) },
-            ],
-        });
-        self.bound = Some((depth.clone(), bind_group));
-    }
-
-    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
-        self.bound.as_ref().map(|(_, bind_group)| bind_group)
-    }
-}
-
 /// Buffers and targets of one system, and this frame's draws.
 #[derive(Debug)]
 pub(crate) struct Slot {
     uniform: wgpu::Buffer,
     lights: wgpu::Buffer,
-    bindings: wgpu::BindGroup,
+    pub bindings: wgpu::BindGroup,
     instances: Option<wgpu::Buffer>,
-    targets: Option<Targets>,
+    pub targets: Option<Targets>,
     scratch: Scratch,
     /// `None` when out of sight.
-    draw: Option<Draw>,
+    pub draw: Option<Draw>,
 }
 
 /// Memory kept from frame to frame.
@@ -85,19 +42,19 @@ struct Scratch {
 
 /// What one frame records for a system.
 #[derive(Debug)]
-struct Draw {
+pub(crate) struct Draw {
     /// View depth of the box's middle.
-    distance: f32,
-    rect: TargetRect,
-    scale: u32,
-    material: wgpu::BindGroup,
-    instances: wgpu::Buffer,
-    instance_count: u32,
-    path: DrawPath,
+    pub distance: f32,
+    pub rect: TargetRect,
+    pub scale: u32,
+    pub material: wgpu::BindGroup,
+    pub instances: wgpu::Buffer,
+    pub instance_count: u32,
+    pub path: DrawPath,
 }
 
 #[derive(Debug)]
-enum DrawPath {
+pub(crate) enum DrawPath {
     Deferred {
         depth_downsample: Option<wgpu::RenderPipeline>,
         diffuse_bake: Option<wgpu::RenderPipeline>,
@@ -311,80 +268,6 @@ impl Slot {
             }),
         }
     }
-
-    pub fn depth_downsample(&self, encoder: &mut wgpu::CommandEncoder, frame: &FrameBindings) {
-        let (Some(draw), Some(targets)) = (&self.draw, &self.targets) else { return };
-        let DrawPath::Deferred { depth_downsample: Some(pipeline), .. } = &draw.path else { return };
-        let Some(view) = &targets.reduced_depth else { return };
-        let mut pass = begin_pass(encoder, "depth_downsample", &[color_attachment(view)], None);
-        set_part(&mut pass, draw.rect.size);
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, frame.bind_group(), &[]);
-        pass.set_bind_group(1, &self.bindings, &[]);
-        pass.draw(0..3, 0..1);
-    }
-
-    pub fn diffuse_bake(&self, encoder: &mut wgpu::CommandEncoder, frame: &FrameBindings) {
-        let (Some(draw), Some(targets)) = (&self.draw, &self.targets) else { return };
-        let DrawPath::Deferred { diffuse_bake: Some(pipeline), .. } = &draw.path else { return };
-        for (face, view) in (0..).zip(&targets.baked_diffuse) {
-            let mut pass = begin_pass(encoder, "diffuse_bake", &[color_attachment(view)], None);
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, frame.bind_group(), &[]);
-            pass.set_bind_group(1, &self.bindings, &[]);
-            pass.set_bind_group(2, &draw.material, &[]);
-            pass.draw(3 * face..3 * face + 3, 0..1);
-        }
-    }
-
-    pub fn accumulate(&self, encoder: &mut wgpu::CommandEncoder, frame: &FrameBindings) {
-        let (Some(draw), Some(targets)) = (&self.draw, &self.targets) else { return };
-        let DrawPath::Deferred { accumulate, host_depth, .. } = &draw.path else { return };
-        let attachments: Vec<_> = targets.accumulation.iter().map(color_attachment).collect();
-        let mut pass = begin_pass(encoder, "accumulate", &attachments, host_depth.as_ref());
-        set_part(&mut pass, draw.rect.size);
-        pass.set_pipeline(accumulate);
-        pass.set_bind_group(0, frame.bind_group(), &[]);
-        pass.set_bind_group(1, &self.bindings, &[]);
-        pass.set_bind_group(2, &draw.material, &[]);
-        pass.set_bind_group(3, &targets.accumulate_inputs, &[]);
-        pass.set_vertex_buffer(0, draw.instances.slice(..));
-        pass.draw(0..4, 0..draw.instance_count);
-    }
-
-    pub fn transfer_or_forward(&self, pass: &mut wgpu::RenderPass<'_>, frame: &FrameBindings) {
-        let Some(draw) = &self.draw else { return };
-        match (&draw.path, &self.targets) {
-            (DrawPath::Deferred { transfer: Some(pipeline), .. }, Some(targets)) => {
-                pass.set_pipeline(pipeline);
-                self.bind(pass, frame, draw);
-                pass.set_bind_group(3, &targets.transfer_inputs, &[]);
-                pass.draw(0..transfer::VERTICES, 0..1);
-            }
-            (DrawPath::Forward(pipeline), _) => {
-                pass.set_pipeline(pipeline);
-                self.bind(pass, frame, draw);
-                pass.set_vertex_buffer(0, draw.instances.slice(..));
-                pass.draw(0..4, 0..draw.instance_count);
-            }
-            _ => {}
-        }
-    }
-
-    pub fn specular_scatter(&self, pass: &mut wgpu::RenderPass<'_>, frame: &FrameBindings) {
-        let (Some(draw), Some(targets)) = (&self.draw, &self.targets) else { return };
-        let DrawPath::Deferred { specular_scatter: Some((pipeline, lights)), .. } = &draw.path else { return };
-        pass.set_pipeline(pipeline);
-        self.bind(pass, frame, draw);
-        pass.set_bind_group(3, &targets.transfer_inputs, &[]);
-        pass.draw(0..4, 0..*lights);
-    }
-
-    fn bind(&self, pass: &mut wgpu::RenderPass<'_>, frame: &FrameBindings, draw: &Draw) {
-        pass.set_bind_group(0, frame.bind_group(), &[]);
-        pass.set_bind_group(1, &self.bindings, &[]);
-        pass.set_bind_group(2, &draw.material, &[]);
-    }
 }
 
 fn bounds_of_system(system: &System<'_>) -> Bounds {
@@ -403,47 +286,4 @@ fn forward_key(view: &ViewGeometry, settings: &Settings) -> ForwardKey {
         soft_scatter_mode: settings.soft_scatter.mode,
         reversed: view.depth.reversed,
     }
-}
-
-fn uniform_buffer(device: &wgpu::Device, label: &str, size: u64) -> wgpu::Buffer {
-    device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(label),
-        size,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    })
-}
-
-/// Cleared to zero: no normal, no amount.
-fn color_attachment(view: &wgpu::TextureView) -> Option<wgpu::RenderPassColorAttachment<'_>> {
-    Some(wgpu::RenderPassColorAttachment {
-        view,
-        depth_slice: None,
-        resolve_target: None,
-        ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
-    })
-}
-
-fn begin_pass<'a>(
-    encoder: &'a mut wgpu::CommandEncoder,
-    label: &'static str,
-    color_attachments: &[Option<wgpu::RenderPassColorAttachment<'_>>],
-    read_only_depth: Option<&wgpu::TextureView>,
-) -> wgpu::RenderPass<'a> {
-    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some(label),
-        color_attachments,
-        depth_stencil_attachment: read_only_depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
-            view,
-            depth_ops: None,
-            stencil_ops: None,
-        }),
-        ..Default::default()
-    })
-}
-
-/// Restricts a pass to the part of the texture that is in use.
-fn set_part(pass: &mut wgpu::RenderPass<'_>, size: UVec2) {
-    pass.set_viewport(0.0, 0.0, size.x as f32, size.y as f32, 0.0, 1.0);
-    pass.set_scissor_rect(0, 0, size.x, size.y);
 }

@@ -17,7 +17,7 @@ struct FlipbookFrames {
 
 fn flipbook_frames(frame: f32, frame_count: f32) -> FlipbookFrames {
     let wrapped = frame - floor(frame / frame_count) * frame_count;
-    let first = min(floor(wrapped), frame_count - 1.0);
+    let first = clamp(floor(wrapped), 0.0, frame_count - 1.0);
     let second = select(first + 1.0, 0.0, first + 1.5 > frame_count);
     return FlipbookFrames(i32(first), i32(second), saturate(wrapped - first));
 }

@@ -13,6 +13,9 @@ struct Particle {
     @location(1) rotation_amount_frame_age: vec4f,
 }
 
+// Largest number of a particle that is drawn. LARGEST in src/particle.rs.
+const LARGEST: f32 = 1.0e9;
+
 struct SpriteVertex {
     @builtin(position) position: vec4f,
     @location(0) uv: vec2f,
@@ -35,17 +38,19 @@ fn sprite_vertex(
     let centre = (view.view_from_world * vec4f(particle.position_radius.xyz, 1.0)).xyz;
     let radius = particle.position_radius.w;
     let view_depth = -centre.z;
-    let amount = particle.rotation_amount_frame_age.y * system.opacity
+    let angle = particle.rotation_amount_frame_age.x;
+    let amount = saturate(particle.rotation_amount_frame_age.y) * system.opacity
         * near_fade(view_depth, system.near_fade_start, system.near_fade_end);
+    let frame = particle.rotation_amount_frame_age.z;
 
-    // Hidden sprites collapse outside the clip volume. Written so that NaN is hidden too.
-    let visible = view_depth > view.near && radius > 0.0 && amount > 0.0;
-    if !visible {
+    // Hidden sprites collapse outside the clip volume. A host's own buffer may hold anything: the comparisons are false
+    // for NaN, and what is beyond LARGEST has no place in a picture.
+    let finite = dot(abs(centre), vec3f(1.0)) + radius + abs(angle) + abs(frame) < LARGEST;
+    if !(finite && view_depth > view.near && radius > 0.0 && amount > 0.0) {
         out.position = vec4f(2.0, 2.0, 2.0, 1.0);
         return out;
     }
 
-    let angle = particle.rotation_amount_frame_age.x;
     let rotation = vec2f(cos(angle), sin(angle));
     let corner = sprite_corner(corner_index);
     let turned = vec2f(
@@ -66,7 +71,7 @@ fn sprite_vertex(
         view_depth,
         amount,
         sprite_lod(system.sprite_size, diameter),
-        particle.rotation_amount_frame_age.z,
+        frame,
     );
     out.rotation = rotation;
     return out;

@@ -20,7 +20,7 @@ fn standing(foot: Vec3, size: Vec3, turn: f32, colour: Vec3, surface: Surface) -
         half_size: 0.5 * size,
         sin: turn.sin(),
         colour,
-        surface: surface as u8 as f32,
+        surface: surface as u32,
     }
 }
 

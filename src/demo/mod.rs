@@ -29,7 +29,7 @@ pub struct SceneBox {
     /// Linear; radiance for [`Surface::Glow`].
     pub colour: Vec3,
     /// A [`Surface`].
-    pub surface: f32,
+    pub surface: u32,
 }
 
 impl SceneBox {

@@ -9,7 +9,7 @@ struct Box {
     half_size: vec3f,
     sine: f32,
     colour: vec3f,
-    surface: f32,
+    surface: u32,
 }
 
 struct Scene {
@@ -29,11 +29,11 @@ struct Scene {
 @group(0) @binding(1) var<uniform> boxes: array<Box, 96>;
 @group(0) @binding(2) var<uniform> lights: array<Light, 128>;
 
-const SURFACE_SLABS: f32 = 1.0;
-const SURFACE_BRICK: f32 = 2.0;
-const SURFACE_WOOD: f32 = 3.0;
-const SURFACE_PLASTER: f32 = 4.0;
-const SURFACE_GLOW: f32 = 5.0;
+const SURFACE_SLABS: u32 = 1u;
+const SURFACE_BRICK: u32 = 2u;
+const SURFACE_WOOD: u32 = 3u;
+const SURFACE_PLASTER: u32 = 4u;
+const SURFACE_GLOW: u32 = 5u;
 
 fn to_local(b: Box, v: vec3f) -> vec3f {
     return vec3f(v.x * b.cosine + v.z * b.sine, v.y, v.z * b.cosine - v.x * b.sine);

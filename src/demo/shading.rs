@@ -53,7 +53,7 @@ fn albedo(b: &SceneBox, p: Vec3, n: Vec3, world: Vec3) -> Vec3 {
         p.xy()
     };
     let dirt = stains(world);
-    let is = |surface: Surface| b.surface == surface as u8 as f32;
+    let is = |surface: Surface| b.surface == surface as u32;
     if is(Surface::Slabs) {
         let size = Vec2::splat(1.6);
         let tile = (uv / size).floor().as_ivec2();
@@ -107,7 +107,7 @@ impl Scene {
     fn light_visibility(&self, origin: Vec3, direction: Vec3, distance: f32, spread: f32) -> f32 {
         let mut visible = 1.0_f32;
         for b in &self.boxes {
-            if b.surface == Surface::Glow as u8 as f32 {
+            if b.surface == Surface::Glow as u32 {
                 continue;
             }
             let (o, d) = (b.to_local(origin - b.centre), b.to_local(direction));
@@ -145,7 +145,7 @@ impl Scene {
 
     /// Radiance of a point of a box.
     pub fn shade(&self, b: &SceneBox, world: Vec3, local: Vec3, local_normal: Vec3) -> Vec3 {
-        if b.surface == Surface::Glow as u8 as f32 {
+        if b.surface == Surface::Glow as u32 {
             return b.colour;
         }
         let normal = b.to_world(local_normal);

@@ -7,7 +7,10 @@ use super::{
     ADDITIVE, Layouts, PARTICLE_LAYOUT, PREMULTIPLIED_OVER, PipelineParts, STRIP, Variants, color_target,
     create_pipeline, in_front, read_only_depth, switch, variant,
 };
+use super::{begin_pass, bind, color_attachment, set_part};
+use crate::frame_bindings::FrameBindings;
 use crate::settings::{AccumulationFormat, FadeCurve, NormalEncoding};
+use crate::slot::{DrawPath, Slot};
 use crate::targets::accumulation_layout;
 
 /// What makes one accumulation pipeline differ from another.
@@ -66,3 +69,17 @@ impl AccumulatePass {
 
 /// Adds up colour and alpha.
 const COUNT: wgpu::BlendState = wgpu::BlendState { color: ADDITIVE.color, alpha: ADDITIVE.color };
+
+/// Records the pass for one system.
+pub(crate) fn record(encoder: &mut wgpu::CommandEncoder, frame: &FrameBindings, slot: &Slot) {
+    let (Some(draw), Some(targets)) = (&slot.draw, &slot.targets) else { return };
+    let DrawPath::Deferred { accumulate, host_depth, .. } = &draw.path else { return };
+    let attachments: Vec<_> = targets.accumulation.iter().map(color_attachment).collect();
+    let mut pass = begin_pass(encoder, "accumulate", &attachments, host_depth.as_ref());
+    set_part(&mut pass, draw.rect.size);
+    pass.set_pipeline(accumulate);
+    bind(&mut pass, frame, slot, draw);
+    pass.set_bind_group(3, &targets.accumulate_inputs, &[]);
+    pass.set_vertex_buffer(0, draw.instances.slice(..));
+    pass.draw(0..4, 0..draw.instance_count);
+}

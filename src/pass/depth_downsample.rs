@@ -4,7 +4,10 @@
 //! Source: OTEE "Transfer & lighting", option 1.
 
 use super::{Layouts, PipelineParts, Variants, color_target, create_pipeline, variant};
+use super::{begin_pass, color_attachment, set_part};
+use crate::frame_bindings::FrameBindings;
 use crate::settings::DepthDownsample;
+use crate::slot::{DrawPath, Slot};
 use crate::targets::REDUCED_DEPTH_FORMAT;
 
 #[derive(Debug)]
@@ -36,4 +39,17 @@ impl DepthDownsamplePass {
             )
         })
     }
+}
+
+/// Records the pass for one system.
+pub(crate) fn record(encoder: &mut wgpu::CommandEncoder, frame: &FrameBindings, slot: &Slot) {
+    let (Some(draw), Some(targets)) = (&slot.draw, &slot.targets) else { return };
+    let DrawPath::Deferred { depth_downsample: Some(pipeline), .. } = &draw.path else { return };
+    let Some(view) = &targets.reduced_depth else { return };
+    let mut pass = begin_pass(encoder, "depth_downsample", &[color_attachment(view)], None);
+    set_part(&mut pass, draw.rect.size);
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, frame.bind_group(), &[]);
+    pass.set_bind_group(1, &slot.bindings, &[]);
+    pass.draw(0..3, 0..1);
 }

@@ -4,7 +4,10 @@
 //! Source: OTEE "Diffuse lighting": "use cubemaps", "motif lighting".
 
 use super::{Layouts, PipelineParts, Variants, color_target, create_pipeline, switch};
+use super::{begin_pass, bind, color_attachment};
+use crate::frame_bindings::FrameBindings;
 use crate::settings::DiffuseMode;
+use crate::slot::{DrawPath, Slot};
 
 pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
@@ -54,5 +57,17 @@ impl DiffuseBakePass {
                 },
             )
         }))
+    }
+}
+
+/// Records the pass for one system: every face of the cubemap, or the motif.
+pub(crate) fn record(encoder: &mut wgpu::CommandEncoder, frame: &FrameBindings, slot: &Slot) {
+    let (Some(draw), Some(targets)) = (&slot.draw, &slot.targets) else { return };
+    let DrawPath::Deferred { diffuse_bake: Some(pipeline), .. } = &draw.path else { return };
+    for (face, view) in (0..).zip(&targets.baked_diffuse) {
+        let mut pass = begin_pass(encoder, "diffuse_bake", &[color_attachment(view)], None);
+        pass.set_pipeline(pipeline);
+        bind(&mut pass, frame, slot, draw);
+        pass.draw(3 * face..3 * face + 3, 0..1);
     }
 }

@@ -3,12 +3,15 @@
 //! Reads: particles back to front, sprite flipbook, scene depth, lights, ramps. Writes: the host's colour target.
 //! Blend: alpha, additive or multiply. Source: OTEE "Typical game particles so far".
 
+use super::bind;
 use super::{
     ADDITIVE, Layouts, MULTIPLY, PARTICLE_LAYOUT, PREMULTIPLIED_OVER, PipelineParts, STRIP, Variants, color_target,
     create_pipeline, in_front, read_only_depth, switch, variant,
 };
 use crate::descriptor::Descriptor;
+use crate::frame_bindings::FrameBindings;
 use crate::settings::{BlendMode, FadeCurve, SoftScatterMode};
+use crate::slot::{DrawPath, Slot};
 
 /// What makes one forward pipeline differ from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -61,4 +64,14 @@ impl ForwardPass {
             )
         })
     }
+}
+
+/// Records the pass for one system into the host's pass.
+pub(crate) fn record(pass: &mut wgpu::RenderPass<'_>, frame: &FrameBindings, slot: &Slot) {
+    let Some(draw) = &slot.draw else { return };
+    let DrawPath::Forward(pipeline) = &draw.path else { return };
+    pass.set_pipeline(pipeline);
+    bind(pass, frame, slot, draw);
+    pass.set_vertex_buffer(0, draw.instances.slice(..));
+    pass.draw(0..4, 0..draw.instance_count);
 }

@@ -11,9 +11,11 @@ pub(crate) mod transfer;
 use std::collections::HashMap;
 use std::hash::Hash;
 
+use crate::frame_bindings::FrameBindings;
 use crate::gpu_types::{LightUniform, SystemUniform, ViewUniform};
 use crate::light::MAX_LIGHTS;
 use crate::shader;
+use crate::slot::{Draw, Slot};
 
 /// Layouts of the bind groups: 0 frame, 1 system, 2 material, 3 the pass's own inputs. `shaders/lib/bindings.wgsl`.
 #[derive(Debug)]
@@ -146,6 +148,16 @@ const KEEP_ALPHA: wgpu::BlendComponent = wgpu::BlendComponent {
     operation: wgpu::BlendOperation::Add,
 };
 
+/// A buffer for one uniform block.
+pub(crate) fn uniform_buffer(device: &wgpu::Device, label: &str, size: u64) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
 /// A WGSL override and its value.
 pub(crate) type Constant = (&'static str, f64);
 
@@ -241,3 +253,44 @@ pub(crate) const STRIP: wgpu::PrimitiveState = wgpu::PrimitiveState {
     polygon_mode: wgpu::PolygonMode::Fill,
     conservative: false,
 };
+
+/// Binds groups 0 to 2, as the layouts above have them.
+pub(crate) fn bind(pass: &mut wgpu::RenderPass<'_>, frame: &FrameBindings, slot: &Slot, draw: &Draw) {
+    pass.set_bind_group(0, frame.bind_group(), &[]);
+    pass.set_bind_group(1, &slot.bindings, &[]);
+    pass.set_bind_group(2, &draw.material, &[]);
+}
+
+/// Cleared to zero: no normal, no amount.
+pub(crate) fn color_attachment(view: &wgpu::TextureView) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+    Some(wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
+    })
+}
+
+pub(crate) fn begin_pass<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    label: &'static str,
+    color_attachments: &[Option<wgpu::RenderPassColorAttachment<'_>>],
+    read_only_depth: Option<&wgpu::TextureView>,
+) -> wgpu::RenderPass<'a> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(label),
+        color_attachments,
+        depth_stencil_attachment: read_only_depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
+            view,
+            depth_ops: None,
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    })
+}
+
+/// Restricts a pass to the part of the texture that is in use.
+pub(crate) fn set_part(pass: &mut wgpu::RenderPass<'_>, size: glam::UVec2) {
+    pass.set_viewport(0.0, 0.0, size.x as f32, size.y as f32, 0.0, 1.0);
+    pass.set_scissor_rect(0, 0, size.x, size.y);
+}

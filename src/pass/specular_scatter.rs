@@ -3,11 +3,14 @@
 //! Reads: accumulation target, reduced depth, scene depth, lights, specular ramp. Writes: the host's colour target.
 //! Blend: ONE, ONE. Source: OTEE "Specular scattering".
 
+use super::bind;
 use super::{
     ADDITIVE, Layouts, PipelineParts, STRIP, Variants, color_target, create_pipeline, read_only_depth, switch, variant,
 };
 use crate::descriptor::Descriptor;
+use crate::frame_bindings::FrameBindings;
 use crate::settings::Upsample;
+use crate::slot::{DrawPath, Slot};
 
 #[derive(Debug)]
 pub(crate) struct SpecularScatterPass {
@@ -41,4 +44,14 @@ impl SpecularScatterPass {
             )
         })
     }
+}
+
+/// Records the pass for one system into the host's pass: one quad per light.
+pub(crate) fn record(pass: &mut wgpu::RenderPass<'_>, frame: &FrameBindings, slot: &Slot) {
+    let (Some(draw), Some(targets)) = (&slot.draw, &slot.targets) else { return };
+    let DrawPath::Deferred { specular_scatter: Some((pipeline, lights)), .. } = &draw.path else { return };
+    pass.set_pipeline(pipeline);
+    bind(pass, frame, slot, draw);
+    pass.set_bind_group(3, &targets.transfer_inputs, &[]);
+    pass.draw(0..4, 0..*lights);
 }

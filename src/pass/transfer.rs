@@ -3,15 +3,18 @@
 //! Reads: accumulation target, reduced depth, scene depth, lights, ramps. Writes: the host's colour target.
 //! Blend: ONE, ONE_MINUS_SRC_ALPHA. Source: OTEE "Transfer & lighting".
 
+use super::bind;
 use super::{
     Layouts, PREMULTIPLIED_OVER, PipelineParts, Variants, color_target, create_pipeline, in_front, read_only_depth,
     switch, variant,
 };
 use crate::descriptor::Descriptor;
+use crate::frame_bindings::FrameBindings;
 use crate::settings::{DiffuseMode, NormalDecode, NormalEncoding, ShadeTree, SoftScatterMode, Upsample};
+use crate::slot::{DrawPath, Slot};
 
 /// Vertices of the box: twelve triangles.
-pub(crate) const VERTICES: u32 = 36;
+const BOX_VERTICES: u32 = 36;
 
 /// What makes one transfer pipeline differ from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -72,4 +75,14 @@ impl TransferPass {
             )
         })
     }
+}
+
+/// Records the pass for one system into the host's pass.
+pub(crate) fn record(pass: &mut wgpu::RenderPass<'_>, frame: &FrameBindings, slot: &Slot) {
+    let (Some(draw), Some(targets)) = (&slot.draw, &slot.targets) else { return };
+    let DrawPath::Deferred { transfer: Some(pipeline), .. } = &draw.path else { return };
+    pass.set_pipeline(pipeline);
+    bind(pass, frame, slot, draw);
+    pass.set_bind_group(3, &targets.transfer_inputs, &[]);
+    pass.draw(0..BOX_VERTICES, 0..1);
 }

@@ -6,6 +6,7 @@ pub mod depth;
 pub mod diffuse_bake;
 pub mod lighting;
 pub mod normal;
+mod pass;
 pub mod picture;
 pub mod ramp;
 pub mod renderer;
@@ -16,5 +17,5 @@ pub mod view;
 
 /// Clamps to 0..=1; NaN gives 0, as WGSL's `saturate` may.
 pub fn saturate(x: f32) -> f32 {
-    x.max(0.0).min(1.0)
+    if x > 0.0 { x.min(1.0) } else { 0.0 }
 }

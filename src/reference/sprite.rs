@@ -24,7 +24,7 @@ pub struct FlipbookFrames {
 /// Splits a fractional frame; the flipbook repeats.
 pub fn flipbook_frames(frame: f32, frame_count: f32) -> FlipbookFrames {
     let wrapped = frame - (frame / frame_count).floor() * frame_count;
-    let first = wrapped.floor().min(frame_count - 1.0);
+    let first = wrapped.floor().max(0.0).min(frame_count - 1.0);
     let second = if first + 1.5 > frame_count { 0.0 } else { first + 1.0 };
     FlipbookFrames { first: first as i32, second: second as i32, blend: saturate(wrapped - first) }
 }

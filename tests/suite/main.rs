@@ -1,5 +1,9 @@
 //! The library against a real adapter. One binary, so that all tests share one device.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+#![allow(clippy::redundant_closure_for_method_calls, reason = "not every type of wgpu can be named")]
+#![allow(clippy::float_cmp, reason = "what must be equal to the bit is compared so")]
+
 mod common;
 mod formulas;
 #[cfg(feature = "app")]

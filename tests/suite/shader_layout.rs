@@ -162,6 +162,7 @@ fn constants_agree() {
     let transfer = composed("transfer.wgsl");
     assert_eq!(constant(&transfer, "MAX_LIGHTS"), light::MAX_LIGHTS as f64);
     assert_eq!(constant(&transfer, "SKY_VIEW_DEPTH"), f64::from(view::SKY_VIEW_DEPTH));
+    assert_eq!(constant(&composed("accumulate.wgsl"), "LARGEST"), f64::from(haze::particle::LARGEST));
     assert_eq!(constant(&transfer, "SAME_SURFACE"), f64::from(haze::reference::upsample::SAME_SURFACE));
 }
 

@@ -1,0 +1,56 @@
+//! `shaders/diffuse_bake.wgsl` and `shaders/lib/diffuse.wgsl`.
+
+use glam::{UVec2, Vec3};
+use half::f16;
+
+use crate::gpu_types::LightUniform;
+use crate::pass::diffuse_bake::size_and_layers;
+use crate::reference::diffuse_bake::{cube_direction, motif_normal};
+use crate::reference::lighting::{diffuse_coordinate, sample_light, soft_scatter_weight};
+use crate::reference::picture::Picture;
+use crate::reference::ramp::sample_ramp;
+use crate::reference::renderer::Draw;
+use crate::settings::{DiffuseMode, SoftScatterMode};
+
+impl Draw<'_> {
+    pub fn diffuse_from_lights(&self, normal: Vec3, position: Vec3) -> Vec3 {
+        let light = |light: &LightUniform| {
+            let sample = sample_light(light, position);
+            let falloff = sample_ramp(&self.material.diffuse_ramp, diffuse_coordinate(normal, sample.direction));
+            falloff * light.colour * sample.attenuation
+        };
+        self.lights.iter().map(light).sum()
+    }
+
+    pub fn soft_scatter(&self, amount: f32) -> Vec3 {
+        let system = &self.system;
+        let colour = match self.settings.soft_scatter.mode {
+            SoftScatterMode::Ramp => sample_ramp(&self.material.soft_scatter_ramp, amount),
+            SoftScatterMode::Smoothstep => {
+                let weight = soft_scatter_weight(amount, system.scatter_amount, system.scatter_smooth);
+                system.scatter_colour.lerp(system.ambient_colour, weight)
+            }
+        };
+        colour * system.soft_scatter_intensity
+    }
+
+    /// Faces of the cubemap, or the motif; the first row is −1.
+    pub fn diffuse_bake(&self) -> Vec<Picture<Vec3>> {
+        let mode = self.settings.diffuse.mode;
+        let Some((side, layers)) = size_and_layers(mode) else { return Vec::new() };
+        let face = |face: i32| {
+            let mut baked = Picture::new(UVec2::splat(side), Vec3::ZERO);
+            baked.for_each(|at, texel| {
+                let place = at.as_vec2() / (side - 1) as f32 * 2.0 - 1.0;
+                let normal = match mode {
+                    DiffuseMode::Motif => motif_normal(place),
+                    _ => cube_direction(face, place).normalize(),
+                };
+                let light = self.diffuse_from_lights(normal, self.system.bounds_centre);
+                *texel = Vec3::from(light.to_array().map(|channel| f16::from_f32(channel).to_f32()));
+            });
+            baked
+        };
+        (0..layers as i32).map(face).collect()
+    }
+}

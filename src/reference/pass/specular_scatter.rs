@@ -1,0 +1,63 @@
+//! `shaders/specular_scatter.wgsl`.
+
+use glam::{Vec2, Vec4, Vec4Swizzles};
+
+use super::transfer::Smoke;
+use crate::reference::lighting::specular_scatter_fade;
+use crate::reference::picture::Picture;
+use crate::reference::ramp::sample_ramp_2d;
+use crate::reference::view::pixel_from_ndc;
+use crate::view::SKY_VIEW_DEPTH;
+
+impl Smoke<'_> {
+    pub fn specular_scatter(&self, picture: &mut Picture<Vec4>) {
+        let draw = self.draw;
+        let (size, view) = (draw.system.specular_scatter_size, &draw.view);
+        for light in &draw.lights {
+            let directional = light.directional > 0.5;
+            let homogeneous = if directional { (-light.direction).extend(0.0) } else { light.position.extend(1.0) };
+            let clip = view.clip_from_view * homogeneous;
+            let depth = if directional { SKY_VIEW_DEPTH } else { -light.position.z };
+            let fade = specular_scatter_fade(depth, draw.system.bounds_near, draw.system.bounds_far);
+            let strength = light.specular_scatter * draw.system.specular_scatter_intensity * fade;
+            if clip.w <= 0.0 || depth <= view.near || strength <= 0.0 {
+                continue;
+            }
+            let centre = pixel_from_ndc(clip.xy() / clip.w, view.size);
+            if (centre - 0.5 * view.size).abs().cmpgt(0.5 * view.size + size).any() {
+                continue;
+            }
+            let body = (light.radius * draw.pixels_per_metre(depth)).max(1.5);
+            let compared_depth = (depth - 2.0 * light.radius).min(0.99 * view.far);
+            let visibility = self.light_visibility(centre, body, compared_depth);
+            let colour = light.colour * strength * visibility;
+            if visibility <= 0.0 {
+                continue;
+            }
+            picture.for_each(|at, texel| {
+                let pixel = at.as_vec2() + 0.5;
+                let uv = (pixel - centre) / size;
+                let distance_squared = uv.length_squared();
+                if distance_squared >= 1.0 {
+                    return;
+                }
+                let amount = self.sample_accumulation(pixel).w;
+                if amount > 0.0 {
+                    let ramp = &draw.material.specular_ramp;
+                    let glow = sample_ramp_2d(ramp, Vec2::new(distance_squared, amount));
+                    *texel += (glow * colour).extend(0.0);
+                }
+            });
+        }
+    }
+
+    /// The share of a light's body that the scene leaves visible: a ring of 8 taps and the middle.
+    pub fn light_visibility(&self, pixel: Vec2, radius: f32, light_depth: f32) -> f32 {
+        let visible = |i: u32| {
+            let angle = i as f32 * std::f32::consts::FRAC_PI_4;
+            let offset = if i == 8 { Vec2::ZERO } else { Vec2::new(angle.cos(), angle.sin()) * radius };
+            self.draw.scene_view_depth((pixel + offset).floor().as_ivec2()) >= light_depth
+        };
+        (0..9).filter(|&i| visible(i)).count() as f32 / 9.0
+    }
+}

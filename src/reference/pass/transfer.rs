@@ -1,0 +1,147 @@
+//! `shaders/transfer.wgsl` and `shaders/lib/accumulated.wgsl`.
+
+use glam::{IVec2, Vec2, Vec3, Vec4};
+
+use crate::reference::blending::premultiplied_over;
+use crate::reference::diffuse_bake::{cube_coordinate, motif_position, spherical_harmonics};
+use crate::reference::lighting::coverage;
+use crate::reference::normal::normal_from_accumulation;
+use crate::reference::picture::Picture;
+use crate::reference::ramp::sample_ramp_2d;
+use crate::reference::renderer::Draw;
+use crate::reference::saturate;
+use crate::reference::upsample::upsample_weights;
+use crate::settings::{DiffuseMode, ShadeTree, Upsample};
+
+/// A system's finished target.
+pub struct Smoke<'a> {
+    pub draw: &'a Draw<'a>,
+    pub baked: Vec<Picture<Vec3>>,
+    pub reduced_depth: Picture<f32>,
+    pub accumulation: Picture<Vec4>,
+}
+
+impl Smoke<'_> {
+    /// `sample_accumulation()` in accumulated.wgsl.
+    pub fn sample_accumulation(&self, pixel: Vec2) -> Vec4 {
+        let system = &self.draw.system;
+        let texel = pixel / system.scale - system.target_origin;
+        if texel.cmplt(Vec2::ZERO).any() || texel.cmpge(system.target_size).any() {
+            return Vec4::ZERO;
+        }
+        if system.scale < 1.5 {
+            return self.accumulation.load(texel.as_ivec2());
+        }
+        let upsample = self.draw.settings.accumulate.upsample;
+        let corner = texel - 0.5;
+        let base = corner.floor();
+        let offsets = [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE];
+        let taps = offsets.map(|offset| base.as_ivec2() + offset);
+        let (depths, depth) = match upsample {
+            Upsample::Bilinear => (Vec4::ZERO, 0.0),
+            _ => {
+                let depth = self.draw.scene_view_depth(pixel.as_ivec2()).min(system.depth_limit);
+                (Vec4::from(taps.map(|tap| self.reduced_depth.load(tap))), depth)
+            }
+        };
+        let weights = upsample_weights(upsample, corner - base, depths, depth);
+        taps.iter().zip(weights.to_array()).map(|(&tap, weight)| self.accumulation.load(tap) * weight).sum()
+    }
+
+    pub fn sample_baked(&self, position: Vec2, layer: usize) -> Vec3 {
+        let baked = &self.baked[layer];
+        let unit = (position * 0.5 + 0.5).clamp(Vec2::ZERO, Vec2::ONE);
+        let texel = unit * (baked.size.as_vec2() - 1.0);
+        let base = texel.floor();
+        let fraction = texel - base;
+        let at = |offset| baked.load(base.as_ivec2() + offset);
+        let bottom = at(IVec2::ZERO).lerp(at(IVec2::X), fraction.x);
+        let top = at(IVec2::Y).lerp(at(IVec2::ONE), fraction.x);
+        bottom.lerp(top, fraction.y)
+    }
+
+    pub fn diffuse(&self, normal: Vec3, position: Vec3) -> Vec3 {
+        let draw = self.draw;
+        let light = match draw.settings.diffuse.mode {
+            DiffuseMode::Ramp => draw.diffuse_from_lights(normal, position),
+            DiffuseMode::Cubemap => {
+                let cube = cube_coordinate(normal);
+                self.sample_baked(cube.position, cube.face as usize)
+            }
+            DiffuseMode::Motif => self.sample_baked(motif_position(normal), 0),
+            DiffuseMode::PaintedMotif => sample_ramp_2d(&draw.material.motif, motif_position(normal) * 0.5 + 0.5),
+            DiffuseMode::SphericalHarmonics => spherical_harmonics(&draw.system.spherical_harmonics, normal),
+        };
+        light * draw.system.diffuse_intensity
+    }
+
+    pub fn transfer(&self, shade_tree: ShadeTree, picture: &mut Picture<Vec4>) {
+        picture.for_each(|at, texel| {
+            let pixel = at.as_vec2() + 0.5;
+            if self.box_is_drawn(at.as_ivec2(), pixel)
+                && let Some(source) = self.transfer_fragment(shade_tree, pixel)
+            {
+                *texel = premultiplied_over(source, *texel);
+            }
+        });
+    }
+
+    /// True if the face of the box that the transfer draws covers the pixel and passes the depth test.
+    pub fn box_is_drawn(&self, at: IVec2, pixel: Vec2) -> bool {
+        let draw = self.draw;
+        // The ray by view depth: from the eye, or straight ahead.
+        let (start, end) = (draw.view_position(pixel, 0.0), draw.view_position(pixel, 1.0));
+        let origin = draw.world_from_view.transform_point3(start);
+        let direction = draw.world_from_view.transform_vector3(end - start);
+        let t0 = (draw.system.bounds_min - origin) / direction;
+        let t1 = (draw.system.bounds_max - origin) / direction;
+        let enter = t0.min(t1).max_element();
+        let exit = t0.max(t1).min_element();
+        if draw.in_view.back_faces {
+            enter <= exit && exit > 0.0
+        } else {
+            enter <= exit && enter <= draw.scene_view_depth(at)
+        }
+    }
+
+    pub fn transfer_fragment(&self, shade_tree: ShadeTree, pixel: Vec2) -> Option<Vec4> {
+        let system = &self.draw.system;
+        let accumulate = &self.draw.settings.accumulate;
+        if shade_tree == ShadeTree::ReducedDepth {
+            let depth = self.reduced_depth.load((pixel / system.scale - system.target_origin).as_ivec2());
+            let grey = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));
+            return Some(Vec3::splat(grey).extend(1.0));
+        }
+        let accumulated = self.sample_accumulation(pixel);
+        let amount = accumulated.w;
+        match shade_tree {
+            ShadeTree::Overdraw => return Some(overdraw_colour(amount * 255.0).extend(1.0)),
+            ShadeTree::Amount => return Some(Vec3::splat(amount).extend(1.0)),
+            _ => {}
+        }
+        if amount <= 0.0 {
+            return None;
+        }
+        let covered = coverage(amount, system.boost);
+        let normal = normal_from_accumulation(accumulate.encoding, accumulate.decode, accumulated);
+        if shade_tree == ShadeTree::Normals {
+            return Some((normal * 0.5 + 0.5).extend(1.0) * covered);
+        }
+        let mut light = Vec3::ZERO;
+        if shade_tree != ShadeTree::SoftScatter {
+            light += self.diffuse(normal, self.draw.view_position(pixel, system.plane_depth));
+        }
+        if shade_tree != ShadeTree::Diffuse {
+            light += self.draw.soft_scatter(amount);
+        }
+        Some(light.extend(1.0) * covered)
+    }
+}
+
+/// Black, blue, green, yellow, red, white at 0, 4, 8, 16, 32, 64 layers.
+fn overdraw_colour(layers: f32) -> Vec3 {
+    let heat = if layers > 4.0 { layers.log2() - 1.0 } else { layers * 0.25 };
+    let colours = [Vec3::ZERO, Vec3::Z, Vec3::Y, Vec3::new(1.0, 1.0, 0.0), Vec3::X, Vec3::ONE];
+    let index = (heat.max(0.0) as usize).min(colours.len() - 2);
+    colours[index].lerp(colours[index + 1], saturate(heat - index as f32))
+}
