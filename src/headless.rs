@@ -1,12 +1,16 @@
 //! A device without a window, and pictures read back from it: for tests, tools and examples.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError, mpsc};
+use std::time::Duration;
 
 use glam::{UVec2, Vec4};
 use half::f16;
 
 use crate::error::Error;
+
+/// Far longer than a callback takes once the GPU is done.
+const READ_BACK_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// What to install where there is no adapter.
 const INSTALL_LINE: &str = "no graphics adapter was found; on Debian and Ubuntu \
@@ -194,13 +198,15 @@ impl Headless {
 
     fn map(&self, encoder: wgpu::CommandEncoder, read: &wgpu::Buffer) -> Result<Vec<u8>, Error> {
         self.queue.submit([encoder.finish()]);
-        let mapped = Arc::new(AtomicBool::new(false));
-        let done = mapped.clone();
-        read.map_async(wgpu::MapMode::Read, .., move |result| done.store(result.is_ok(), Ordering::SeqCst));
+        let (sender, mapped) = mpsc::channel();
+        read.map_async(wgpu::MapMode::Read, .., move |result| {
+            // Nobody listens any more only when waiting failed, which is reported.
+            let _ = sender.send(result);
+        });
         self.wait()?;
-        if !mapped.load(Ordering::SeqCst) {
-            return Err(Error::Device("a buffer could not be read back".into()));
-        }
+        // Another thread's poll may be the one that runs the callback, a moment after this one's has returned.
+        let mapped = mapped.recv_timeout(READ_BACK_TIMEOUT).map_err(|error| Error::Device(error.to_string()))?;
+        mapped.map_err(|error| Error::Device(error.to_string()))?;
         let bytes = read.get_mapped_range(..).map_err(|error| Error::Device(error.to_string()))?.to_vec();
         read.unmap();
         Ok(bytes)
