@@ -25,7 +25,8 @@ pub struct Shot {
     pub size: UVec2,
     /// Which stage of the shading is shown.
     pub shade_tree: ShadeTree,
-    materials: Vec<MaterialAssets>,
+    /// One per system.
+    pub materials: Vec<MaterialAssets>,
 }
 
 impl Shot {

@@ -4,8 +4,12 @@
 #![allow(clippy::redundant_closure_for_method_calls, reason = "not every type of wgpu can be named")]
 #![allow(clippy::float_cmp, reason = "what must be equal to the bit is compared so")]
 
+#[cfg(feature = "app")]
+mod assets;
 mod common;
 mod formulas;
+#[cfg(feature = "app")]
+mod goldens;
 #[cfg(feature = "app")]
 mod presets;
 mod properties;

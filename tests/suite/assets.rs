@@ -1,0 +1,61 @@
+//! The committed pictures are what the committed recipes make.
+
+use std::path::{Path, PathBuf};
+
+use haze::picture::read_png;
+use haze::ramp::bake::RampRecipe;
+use haze::ramp::motif::MotifRecipe;
+use haze::sprite::bake::SpriteRecipe;
+use haze::{builtin, preset};
+
+fn file(folder: &str, name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(folder).join(name)
+}
+
+/// Largest difference of two sets of 16-bit channels.
+fn difference(a: &[u16], b: &[u16]) -> u16 {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
+}
+
+#[test]
+fn ramps_are_what_their_recipes_make() {
+    for ramp in builtin::RAMPS {
+        let committed = read_png(&file("ramps", &format!("{}.png", ramp.name))).unwrap().to_rgb16();
+        let recipe = RampRecipe::load(&file("ramps", &format!("{}.ramp.json", ramp.name))).unwrap();
+        let baked = recipe.bake().unwrap().to_rgb16();
+        // `powf` and `cbrt` differ between platforms in the last bits of f32: 2 steps of 65535.
+        assert!(difference(&committed, &baked) <= 2, "{}: bake it again", ramp.name);
+    }
+    for motif in builtin::MOTIFS {
+        let committed = read_png(&file("ramps", &format!("{}.png", motif.name))).unwrap().to_rgb16();
+        let recipe = MotifRecipe::load(&file("ramps", &format!("{}.motif.json", motif.name))).unwrap();
+        assert!(difference(&committed, &recipe.bake().unwrap().to_rgb16()) <= 2, "{}: bake it again", motif.name);
+    }
+}
+
+#[test]
+fn sprites_are_what_their_recipes_make() {
+    for sprite in builtin::SPRITES {
+        let committed = read_png(&file("sprites", &format!("{}.png", sprite.name))).unwrap().to_rgba8();
+        let recipe = SpriteRecipe::load(&file("sprites", &format!("{}.sprite.json", sprite.name))).unwrap();
+        // One frame that is not the first, at full size: the sheet takes a minute.
+        let frame = 3;
+        let baked = recipe.bake_frame(frame);
+        let origin = (frame % recipe.columns * recipe.size, frame / recipe.columns * recipe.size);
+        let mut off = 0;
+        for (index, texel) in (0u32..).zip(&baked.texels) {
+            let committed = committed.get_pixel(origin.0 + index % recipe.size, origin.1 + index / recipe.size);
+            let same = committed.0.iter().zip(texel.0).all(|(&a, b)| a.abs_diff(b) <= 1);
+            off += u32::from(!same);
+        }
+        // Where density just reaches zero, the last bit of `sin` decides a normal: a handful of texels of 65536.
+        assert!(off < 64, "{}: {off} texels differ; bake it again", sprite.name);
+    }
+}
+
+#[test]
+fn the_committed_schema_is_the_programs() {
+    let committed = std::fs::read_to_string(file("presets", "preset.schema.json")).unwrap();
+    assert_eq!(committed.trim_end(), preset::schema(), "run `haze preset schema > presets/preset.schema.json`");
+}
