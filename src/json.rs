@@ -15,7 +15,7 @@ pub fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, Error> {
         // serde_json ends its message with the place, which the error says already.
         let message = error.to_string();
         let reason = message.rsplit_once(" at line ").map_or(message.as_str(), |(reason, _)| reason).to_owned();
-        Error::Json { path: path.into(), line: error.line(), column: error.column(), reason }
+        Error::Json { path: path.into(), line: error.line(), column: error.column().max(1), reason }
     })
 }
 

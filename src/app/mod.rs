@@ -15,6 +15,7 @@ mod tonemap;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
+use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 use haze::Error;
 
@@ -47,13 +48,17 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("error")).init();
     let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
-        Err(error) if error.use_stderr() => {
-            eprintln!("{}", usage_line(&error));
-            return ExitCode::from(2);
-        }
-        Err(help) => {
+        Err(help) if !help.use_stderr() => {
             print!("{help}");
             return ExitCode::SUCCESS;
+        }
+        Err(help) if help.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            eprint!("{help}");
+            return ExitCode::from(2);
+        }
+        Err(error) => {
+            eprintln!("{}", usage_line(&error));
+            return ExitCode::from(2);
         }
     };
     let done = match cli.command {

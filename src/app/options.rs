@@ -23,13 +23,13 @@ pub struct ShotArguments {
     #[arg(long, value_name = "S", value_parser = parse_time, allow_negative_numbers = true)]
     time: Option<f32>,
     /// Pixels per texel of the accumulation target, 1 to 16; the preset's own if not given.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16))]
+    #[arg(long, value_name = "N", value_parser = parse_scale, allow_negative_numbers = true)]
     scale: Option<u32>,
     /// auto, raster or forward; the presets' own if not given.
     #[arg(long, value_parser = parse_choice::<Path>)]
     path: Option<Path>,
     /// Seed of every emitter; the preset's own if not given.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = parse_seed, allow_negative_numbers = true)]
     seed: Option<u32>,
     /// Which renderer.
     #[arg(long, value_enum, default_value = "auto")]
@@ -123,6 +123,15 @@ fn parse_time(text: &str) -> Result<f32, String> {
     let limit = 1.0e5;
     let time = text.parse().ok().filter(|time: &f32| time.abs() <= limit);
     time.ok_or_else(|| format!("{text:?} is not a time; expected seconds, -{limit} to {limit}"))
+}
+
+fn parse_scale(text: &str) -> Result<u32, String> {
+    let scale = text.parse().ok().filter(|scale| (1..=16).contains(scale));
+    scale.ok_or_else(|| format!("{text:?} is not a scale; expected 1 to 16 pixels"))
+}
+
+fn parse_seed(text: &str) -> Result<u32, String> {
+    text.parse().map_err(|_| format!("{text:?} is not a seed; expected 0 to {}", u32::MAX))
 }
 
 /// A setting enum by the name it has in presets.

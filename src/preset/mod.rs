@@ -1,9 +1,15 @@
 //! Presets: a camera, lights and particle systems in a JSON file.
 
+#[cfg(feature = "app")]
+mod schema;
+
 use std::path::{Component, Path, PathBuf};
 
 use glam::camera::rh;
 use glam::{UVec2, Vec3};
+
+#[cfg(feature = "app")]
+pub use schema::schema;
 
 use crate::builtin;
 use crate::emitter::Emitter;
@@ -279,13 +285,6 @@ impl Preset {
         }
         Ok(())
     }
-}
-
-/// The JSON schema of preset files, as text.
-#[cfg(feature = "app")]
-pub fn schema() -> String {
-    let schema = schemars::schema_for!(Preset);
-    serde_json::to_string_pretty(&schema).unwrap_or_default()
 }
 
 impl PresetSystem {

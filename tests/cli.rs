@@ -1,0 +1,221 @@
+//! The command line: what it makes, and how it says what is wrong.
+
+#![cfg(feature = "app")]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use tempfile::TempDir;
+
+fn haze(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_haze"))
+        .args(arguments)
+        .current_dir(folder)
+        // Without it a layer of Mesa's complains on stderr.
+        .env("XDG_RUNTIME_DIR", folder)
+        .output()
+        .unwrap()
+}
+
+fn folder() -> TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// The one line that a mistake gets.
+fn refusal(folder: &Path, arguments: &[&str]) -> String {
+    let output = haze(folder, arguments);
+    let text = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {text}");
+    assert_eq!(text.lines().count(), 1, "{arguments:?}: {text}");
+    text
+}
+
+fn render(folder: &Path, arguments: &[&str]) -> Output {
+    let small = ["render", "--size", "64x36", "--backend", "cpu", "-o", "out.png"];
+    haze(folder, &[&small[..], arguments].concat())
+}
+
+fn size_of(path: &Path) -> (u32, u32) {
+    let picture = haze::picture::read_png(path).unwrap();
+    (picture.width(), picture.height())
+}
+
+#[test]
+fn both_renderers_make_a_picture_of_the_size_asked_for() {
+    let folder = folder();
+    for backend in ["cpu", "gpu", "auto"] {
+        let output = haze(folder.path(), &["render", "--size", "65x37", "--backend", backend, "-o", "a.png"]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        assert_eq!(stderr(&output), "");
+        assert_eq!(size_of(&folder.path().join("a.png")), (65, 37));
+        std::fs::remove_file(folder.path().join("a.png")).unwrap();
+    }
+}
+
+#[test]
+fn every_option_changes_the_picture() {
+    let folder = folder();
+    let picture = |arguments: &[&str]| {
+        let output = render(folder.path(), arguments);
+        assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
+        std::fs::read(folder.path().join("out.png")).unwrap()
+    };
+    let plain = picture(&[]);
+    assert_eq!(plain, picture(&["column"]), "the same command makes the same bytes");
+    let changes: [&[&str]; 6] = [
+        &["--time", "3"],
+        &["--scale", "8"],
+        &["--seed", "9"],
+        &["--view", "normals"],
+        &["--path", "forward"],
+        &["fence"],
+    ];
+    for change in changes {
+        assert_ne!(plain, picture(change), "{change:?}");
+    }
+}
+
+#[test]
+fn bad_values_are_refused_in_one_line_with_field_value_and_range() {
+    let folder = folder();
+    let line = |option: &str, value: &str| refusal(folder.path(), &["render", "-o", "a.png", option, value]);
+    for (option, value, expected) in [
+        ("--scale", "0", "1 to 16"),
+        ("--scale", "17", "1 to 16"),
+        ("--size", "0x720", "1 to 8192"),
+        ("--size", "1280", "WxH"),
+        ("--size", "9000x9000", "1 to 8192"),
+        ("--time", "soon", "-100000 to 100000"),
+        ("--time", "nan", "-100000 to 100000"),
+        ("--view", "colour", "final, combined, diffuse"),
+        ("--path", "tiled", "auto, raster, forward"),
+        ("--backend", "tpu", "auto, gpu, cpu"),
+        ("--seed", "-1", "0 to 4294967295"),
+    ] {
+        let line = line(option, value);
+        assert!(line.contains(option) && line.contains(value) && line.contains(expected), "{line}");
+    }
+    assert!(refusal(folder.path(), &["render"]).contains("--output"));
+    assert!(refusal(folder.path(), &["rendr"]).contains("rendr"));
+    assert!(refusal(folder.path(), &["render", "-o", "a.png", "colunm"]).contains("column, backlit_fog"));
+    assert!(!folder.path().join("a.png").exists());
+}
+
+#[test]
+fn bad_presets_are_refused_with_file_and_place() {
+    let folder = folder();
+    let message = |text: &str| {
+        std::fs::write(folder.path().join("my.json"), text).unwrap();
+        refusal(folder.path(), &["render", "-o", "a.png", "my.json"])
+    };
+    let preset = |inside: &str| format!("{{\"version\": 1, \"name\": \"x\",\n{inside}}}");
+    assert!(message("").starts_with("haze: my.json:1:1: EOF"));
+    assert!(message("{\n\"version\": 1,\n\"nmae\": 2}").contains("my.json:3:6: unknown field `nmae`"));
+    assert!(message("{\"version\": 7}").contains("my.json:1:2: version 7 is newer"));
+    let range = message(&preset("\"time\": 1e9"));
+    assert!(range.contains("my.json: time: 1000000000 is not valid; expected -100000 to 100000 s"), "{range}");
+    let system = |inside: &str| preset(&format!("\"systems\": [{{\"name\": \"s\", {inside}}}]"));
+    let escape = message(&system("\"material\": {\"sprite\": \"../secret.png\"}"));
+    assert!(escape.contains("my.json: systems[0].material.sprite: \"../secret.png\" is not valid"), "{escape}");
+    let missing = message(&system("\"material\": {\"sprite\": \"wisp2.png\"}"));
+    assert!(missing.contains("wisp2.png: No such file"), "{missing}");
+    std::fs::write(folder.path().join("text.png"), "not a picture").unwrap();
+    let broken = message(&system("\"material\": {\"diffuse_ramp\": \"text.png\"}"));
+    assert!(broken.contains("text.png: not a PNG file"), "{broken}");
+    assert!(refusal(folder.path(), &["render", "-o", "a.png", "none.json"]).contains("none.json: No such file"));
+}
+
+#[test]
+fn a_preset_finds_its_own_files() {
+    let folder = folder();
+    let sprites = folder.path().join("shots");
+    std::fs::create_dir(&sprites).unwrap();
+    std::fs::copy(concat!(env!("CARGO_MANIFEST_DIR"), "/sprites/wisp.png"), sprites.join("mine.png")).unwrap();
+    let material = "\"material\": {\"sprite\": \"mine.png\", \"columns\": 4, \"rows\": 2}";
+    let text = format!("{{\"version\": 1, \"name\": \"x\", \"systems\": [{{\"name\": \"s\", {material}}}]}}");
+    std::fs::write(sprites.join("my.json"), text).unwrap();
+    let output = render(folder.path(), &["shots/my.json"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+}
+
+#[test]
+fn a_failure_leaves_the_last_good_picture() {
+    let folder = folder();
+    assert!(render(folder.path(), &[]).status.success());
+    let before = std::fs::read(folder.path().join("out.png")).unwrap();
+    assert!(!render(folder.path(), &["none.json"]).status.success());
+    assert_eq!(before, std::fs::read(folder.path().join("out.png")).unwrap());
+    let output = haze(folder.path(), &["render", "--size", "8x8", "--backend", "cpu", "-o", "no/such/folder/a.png"]);
+    assert!(!output.status.success() && stderr(&output).contains("no/such/folder/a.png"));
+}
+
+#[test]
+fn without_an_adapter_the_cpu_draws_and_says_so() {
+    let folder = folder();
+    let blind = |backend: &str| {
+        Command::new(env!("CARGO_BIN_EXE_haze"))
+            .args(["render", "--size", "64x36", "--backend", backend, "-o", "a.png"])
+            .current_dir(folder.path())
+            // A backend that this system does not have: the same as no driver.
+            .env("WGPU_BACKEND", if cfg!(target_os = "windows") { "metal" } else { "dx12" })
+            .output()
+            .unwrap()
+    };
+    let output = blind("auto");
+    assert!(output.status.success());
+    let text = stderr(&output);
+    assert_eq!(text.lines().count(), 1, "{text}");
+    assert!(text.contains("rendering on the CPU") && text.contains("mesa-vulkan-drivers"), "{text}");
+    let on_cpu = std::fs::read(folder.path().join("a.png")).unwrap();
+    assert!(render(folder.path(), &[]).status.success());
+    assert_eq!(on_cpu, std::fs::read(folder.path().join("out.png")).unwrap());
+    let refused = blind("gpu");
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(stderr(&refused).contains("apt-get install mesa-vulkan-drivers"));
+}
+
+#[test]
+fn the_shade_tree_is_one_sheet() {
+    let folder = folder();
+    let output = haze(folder.path(), &["shade-tree", "--size", "192x108", "--backend", "cpu", "-o", "sheet.png"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let (width, height) = size_of(&folder.path().join("sheet.png"));
+    assert!(width > 192 && height > 108);
+}
+
+#[test]
+fn recipes_are_baked_beside_themselves() {
+    let folder = folder();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    let stops = r##"[{"at": 0, "colour": "#000000"}, {"at": 1, "colour": "#ff8000"}]"##;
+    write(
+        "fire.ramp.json",
+        &format!("{{\"version\": 1, \"width\": 32, \"height\": 1, \"rows\": [{{\"stops\": {stops}}}]}}"),
+    );
+    assert!(haze(folder.path(), &["ramp", "bake", "fire.ramp.json"]).status.success());
+    assert_eq!(size_of(&folder.path().join("fire.png")), (32, 1));
+    write("bad.ramp.json", "{\"version\": 1, \"width\": 1, \"height\": 1, \"rows\": []}");
+    let line = refusal(folder.path(), &["ramp", "bake", "bad.ramp.json"]);
+    assert!(line.contains("bad.ramp.json: width: 1 is not valid; expected 2 to 4096 texels"), "{line}");
+    assert!(refusal(folder.path(), &["sprite", "bake", "fire.ramp.json"]).contains("*.sprite.json"));
+}
+
+#[test]
+fn presets_are_listed_checked_and_described() {
+    let folder = folder();
+    let text = |arguments: &[&str]| {
+        let output = haze(folder.path(), arguments);
+        assert!(output.status.success(), "{}", stderr(&output));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    assert!(text(&["preset", "list"]).lines().count() >= 6);
+    assert_eq!(text(&["preset", "check", "column", "inside"]), "column: good\ninside: good\n");
+    assert!(text(&["preset", "schema"]).contains("\"soft_fade\""));
+    assert!(text(&["info"]).contains("gpu: "));
+    assert!(text(&["--help"]).contains("shade-tree"));
+}
