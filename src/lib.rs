@@ -1,5 +1,66 @@
-//! haze
-#![allow(missing_docs)]
+//! Deferred particle shading for wgpu: smoke that is accumulated as *normal and amount* into a small offscreen target, then
+//! lit **once per pixel** from ramp textures that an artist can paint.
+//!
+//! ```text
+//! host:                opaque scene ─► scene colour (HDR) + scene depth
+//!                                                              │ sampled
+//! Renderer::prepare    depth_downsample   scene depth ─► reduced depth, linear view metres
+//!   (host's encoder)   sort               particles ─► back to front
+//!                      diffuse_bake       lights ─► cubemap or motif, where a system asks for one
+//!                      accumulate         sprites × normal map × soft fade ─► premultiplied normal, amount
+//! Renderer::render     transfer           the system's bounding box: decode, light, upsample, blend on the scene
+//!   (host's pass)      specular_scatter   the glow of lights behind the smoke
+//!                      forward            or: every fragment lit and blended, the classic way
+//! ```
+//!
+//! # What it does not do
+//! - It never creates a device, submits, tonemaps, or requires a device feature.
+//! - It simulates nothing: [`emitter`] is a closed-form source of particles; hosts with their own simulation hand over a
+//!   slice or a GPU buffer.
+//! - It casts no shadows, neither of the smoke on the scene nor of the smoke on itself.
+//! - It reads single-sampled depth; a multisampled host resolves its depth first.
+//!
+//! # Quick start
+//! ```no_run
+//! # use glam::{Mat4, UVec2, Vec3, vec3};
+//! # fn host() -> (wgpu::Device, wgpu::Queue, wgpu::CommandEncoder, wgpu::TextureView, haze::View) { unimplemented!() }
+//! # fn pass_with_read_only_depth(_: &mut wgpu::CommandEncoder) -> wgpu::RenderPass<'_> { unimplemented!() }
+//! # use haze::wgpu;
+//! # let (device, queue, mut encoder, scene_depth, view) = host();
+//! use haze::{Descriptor, Frame, Light, Particles, Renderer, SceneDepth, Settings, System};
+//!
+//! // Once.
+//! let mut smoke = Renderer::new(&device, &Descriptor::default())?;
+//! let assets = haze::preset::MaterialNames::default().load("".as_ref())?;
+//! let material = smoke.create_material(&device, &queue, &assets);
+//! let settings = Settings::default();
+//!
+//! // Every frame, after the opaque scene.
+//! let mut particles = Vec::new();
+//! haze::emitter::Emitter::default().evaluate(2.0, &mut particles);
+//! let frame = Frame {
+//!     view,
+//!     scene_depth: SceneDepth::Buffer(&scene_depth),
+//!     lights: &[Light { position: vec3(-3.0, 3.0, 2.0), intensity: 20.0, ..Light::default() }],
+//!     systems: &[System { particles: Particles::Slice(&particles), bounds: None, settings: &settings, material: &material }],
+//!     shade_tree: Default::default(),
+//! };
+//! smoke.prepare(&device, &queue, &mut encoder, &frame)?;
+//! smoke.render(&mut pass_with_read_only_depth(&mut encoder));
+//! # Ok::<(), haze::Error>(())
+//! ```
+//!
+//! # Conventions
+//! Metres, seconds, radians; angles in settings are degrees. World space is the host's. View space is right-handed: x
+//! right, y up, z towards the viewer. Depth is linear *view depth*, positive in front of the camera. Colour is linear;
+//! ramps are sRGB pictures, decoded when loaded. NDC depth is 0..1, in any of the usual conventions, read off the
+//! projection. `shaders/README.md` and `ramps/README.md` say the rest.
+//!
+//! # Sources
+//! OTEE: N. Francis, *Deferred Particle Shading* (over the edge entertainment). NV: T. Lorach, *Soft Particles*, NVIDIA,
+//! 2007. BLOG: *Soft Particles*, after Umenhoffer et al., *Spherical Billboards*, 2006. MS: the DirectX 10 *SoftParticles*
+//! sample.
+
 pub mod bounds;
 pub mod builtin;
 #[cfg(feature = "app")]

@@ -114,10 +114,11 @@ choice! {
 choice! {
     /// How the reduced target is brought to full resolution.
     Upsample {
-        /// Bilinear where the four depths agree, else the texel whose depth is closest.
-        #[default]
+        /// Bilinear where the four depths agree, else the texel whose depth is closest: a row of dots can show where an
+        /// edge crosses a steep gradient of smoke.
         NearestDepth = "nearest_depth",
-        /// Bilinear weights times a falloff over the depth difference: softer than `nearest_depth`.
+        /// Bilinear weights times a falloff over the depth difference. Smooth on both sides of an edge.
+        #[default]
         JointBilateral = "joint_bilateral",
         /// Ignores depth. Halos at edges; the baseline.
         Bilinear = "bilinear",
@@ -346,8 +347,8 @@ impl Default for SoftScatter {
             mode: SoftScatterMode::default(),
             scatter_amount: 0.0,
             scatter_smooth: 0.7,
-            scatter_colour: Vec3::new(0.20, 0.22, 0.26),
-            ambient_colour: Vec3::new(0.03, 0.035, 0.045),
+            scatter_colour: Vec3::new(0.05, 0.055, 0.065),
+            ambient_colour: Vec3::new(0.012, 0.013, 0.017),
             intensity: 1.0,
         }
     }

@@ -7,7 +7,7 @@
 @group(3) @binding(0) var accumulation: texture_2d<f32>;
 @group(3) @binding(1) var reduced_depth: texture_2d<f32>;
 
-override UPSAMPLE: u32 = UPSAMPLE_NEAREST_DEPTH;
+override UPSAMPLE: u32 = UPSAMPLE_JOINT_BILATERAL;
 
 fn scene_view_depth(pixel: vec2f) -> f32 {
     return view_depth_from_ndc_depth(textureLoad(scene_depth, vec2i(pixel), 0).r, view.depth_coefficients);

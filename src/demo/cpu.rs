@@ -8,7 +8,7 @@ use super::shading::box_interval;
 use super::{Scene, SceneBox};
 
 /// Renders linear colour, four samples a pixel, and depth 0..1 at pixel centres.
-pub fn render(scene: &Scene, view: &View) -> (Picture<Vec4>, Picture<f32>) {
+pub(crate) fn render(scene: &Scene, view: &View) -> (Picture<Vec4>, Picture<f32>) {
     let caster = Caster {
         scene,
         size: view.size.as_vec2(),

@@ -6,17 +6,17 @@ use glam::Vec3;
 
 use super::{MAX_BOXES, Scene, SceneBox, SceneUniform};
 
-pub const COLOUR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+pub(crate) const COLOUR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// Colour and depth of a rendered scene.
-pub struct SceneTargets {
+pub(crate) struct SceneTargets {
     pub colour: wgpu::Texture,
     pub depth: wgpu::Texture,
 }
 
 /// Renders the scene once.
-pub fn render(gpu: &Headless, scene: &Scene, view: &View) -> Result<SceneTargets, Error> {
+pub(crate) fn render(gpu: &Headless, scene: &Scene, view: &View) -> Result<SceneTargets, Error> {
     let renderer = SceneRenderer::new(gpu);
     renderer.render(gpu, scene, view)
 }

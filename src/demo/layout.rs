@@ -5,7 +5,7 @@ use glam::{Vec3, vec3};
 
 use super::{SceneBox, Surface};
 
-pub fn boxes(name: SceneName) -> Vec<SceneBox> {
+pub(crate) fn boxes(name: SceneName) -> Vec<SceneBox> {
     match name {
         SceneName::Yard => yard(),
         SceneName::Corridor => corridor(),

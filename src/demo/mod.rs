@@ -14,12 +14,12 @@ use crate::gpu_types::LightUniform;
 use crate::preset::{Environment, SceneName};
 
 /// Most boxes of one scene: the length of the uniform array in scene.wgsl.
-pub const MAX_BOXES: usize = 96;
+pub(crate) const MAX_BOXES: usize = 96;
 
 /// One box, turned about the vertical. `Box` in scene.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct SceneBox {
+pub(crate) struct SceneBox {
     pub centre: Vec3,
     /// Cosine of the turn.
     pub cos: f32,
@@ -46,7 +46,7 @@ impl SceneBox {
 
 /// The procedural material of a box. The numbers are those of scene.wgsl.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Surface {
+pub(crate) enum Surface {
     Plain = 0,
     Slabs = 1,
     Brick = 2,
@@ -59,7 +59,7 @@ pub enum Surface {
 /// What the scene's shader reads. `Scene` in scene.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct SceneUniform {
+pub(crate) struct SceneUniform {
     pub clip_from_world: Mat4,
     pub world_from_clip: Mat4,
     pub eye: Vec3,
@@ -74,7 +74,7 @@ pub struct SceneUniform {
 
 /// A scene, ready to be drawn by either renderer.
 #[derive(Clone, Debug)]
-pub struct Scene {
+pub(crate) struct Scene {
     pub boxes: Vec<SceneBox>,
     pub environment: Environment,
     /// World space.

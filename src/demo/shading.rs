@@ -89,7 +89,7 @@ fn albedo(b: &SceneBox, p: Vec3, n: Vec3, world: Vec3) -> Vec3 {
 }
 
 /// Distances along a ray at which it enters and leaves a box, in the box's frame.
-pub fn box_interval(b: &SceneBox, origin: Vec3, direction: Vec3) -> (f32, f32) {
+pub(crate) fn box_interval(b: &SceneBox, origin: Vec3, direction: Vec3) -> (f32, f32) {
     let tiny = Vec3::splat(1.0e-6);
     let inverse = Vec3::select(direction.abs().cmplt(tiny), tiny, direction).recip();
     let middle = -origin * inverse;

@@ -1,0 +1,111 @@
+//! haze inside a host that has its own device, depth buffer and pass, and no window. Writes `embed_headless.png`.
+
+use std::path::Path;
+
+use glam::camera::rh;
+use glam::{UVec2, Vec3, vec3};
+use haze::preset::MaterialNames;
+use haze::{Descriptor, Frame, Light, Particles, Renderer, SceneDepth, Settings, System, View, wgpu};
+
+const SIZE: UVec2 = UVec2::new(640, 360);
+const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // The host: a device, targets, a camera.
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))?;
+    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
+    let target = |format, usage| {
+        device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: SIZE.x, height: SIZE.y, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: usage | wgpu::TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        })
+    };
+    let colour = target(COLOUR, wgpu::TextureUsages::COPY_SRC);
+    let depth = target(DEPTH, wgpu::TextureUsages::TEXTURE_BINDING); // haze samples it
+    let (colour_view, depth_view) = (colour.create_view(&Default::default()), depth.create_view(&Default::default()));
+    let view = View {
+        view_from_world: rh::view::look_at_mat4(vec3(0.0, 1.6, 6.5), vec3(0.0, 1.7, 0.0), Vec3::Y),
+        clip_from_view: rh::proj::directx::perspective(0.8, SIZE.x as f32 / SIZE.y as f32, 0.1, 100.0),
+        size: SIZE,
+    };
+
+    // haze, once.
+    let descriptor = Descriptor { color_format: COLOUR, depth_format: Some(DEPTH), ..Descriptor::default() };
+    let mut smoke = Renderer::new(&device, &descriptor)?;
+    let material = smoke.create_material(&device, &queue, &MaterialNames::default().load(Path::new(""))?);
+
+    // haze, every frame.
+    let mut particles = Vec::new();
+    haze::emitter::Emitter::default().evaluate(8.0, &mut particles);
+    let (settings, orange) = (Settings::default(), vec3(1.0, 0.7, 0.4));
+    let frame = Frame {
+        view,
+        scene_depth: SceneDepth::Buffer(&depth_view),
+        lights: &[Light { position: vec3(-3.0, 3.0, 3.0), colour: orange, intensity: 12.0, ..Light::default() }],
+        systems: &[System {
+            particles: Particles::Slice(&particles),
+            bounds: None,
+            settings: &settings,
+            material: &material,
+        }],
+        shade_tree: Default::default(),
+    };
+    let mut encoder = device.create_command_encoder(&Default::default());
+    // The host's own scene is nothing but a dark wall across the view, that the smoke reaches into.
+    let wall = view.clip_from_view.project_point3(vec3(0.0, 0.0, -6.6)).z;
+    drop(host_pass(
+        &mut encoder,
+        &colour_view,
+        &depth_view,
+        Some((wgpu::Color { r: 0.02, g: 0.03, b: 0.05, a: 1.0 }, wall)),
+    ));
+    smoke.prepare(&device, &queue, &mut encoder, &frame)?;
+    smoke.render(&mut host_pass(&mut encoder, &colour_view, &depth_view, None));
+
+    // The host: submit, read back, save. Rows of 640 pixels need no padding.
+    let size = u64::from(4 * SIZE.x * SIZE.y);
+    let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
+    let read = device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false });
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * SIZE.x), rows_per_image: None };
+    let into = wgpu::TexelCopyBufferInfo { buffer: &read, layout };
+    encoder.copy_texture_to_buffer(colour.as_image_copy(), into, colour.size());
+    queue.submit([encoder.finish()]);
+    read.map_async(wgpu::MapMode::Read, .., |_| {});
+    device.poll(wgpu::PollType::wait_indefinitely())?;
+    image::save_buffer("embed_headless.png", &read.get_mapped_range(..)?, SIZE.x, SIZE.y, image::ColorType::Rgba8)?;
+    Ok(())
+}
+
+/// A pass on the host's targets. Where haze draws, the depth buffer is attached read-only: no `depth_ops`.
+fn host_pass<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    colour: &wgpu::TextureView,
+    depth: &wgpu::TextureView,
+    clear: Option<(wgpu::Color, f32)>,
+) -> wgpu::RenderPass<'a> {
+    let load = clear.map_or(wgpu::LoadOp::Load, |(colour, _)| wgpu::LoadOp::Clear(colour));
+    let depth_ops =
+        clear.map(|(_, depth)| wgpu::Operations { load: wgpu::LoadOp::Clear(depth), store: wgpu::StoreOp::Store });
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: colour,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+        })],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: depth,
+            depth_ops,
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    })
+}
