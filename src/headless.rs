@@ -18,7 +18,7 @@ const INSTALL_LINE: &str = "no graphics adapter was found; on Debian and Ubuntu 
 
 fn find_adapter(backends: wgpu::Backends) -> Option<wgpu::Adapter> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-    descriptor.backends &= backends;
+    descriptor.backends &= backends & wgpu::Instance::enabled_backend_features();
     if descriptor.backends.is_empty() {
         return None;
     }
@@ -67,12 +67,21 @@ impl Headless {
     /// # Errors
     /// [`Error::NoDevice`] with the line that installs a software adapter.
     pub fn new() -> Result<Self, Error> {
+        Self::with_limits(wgpu::Limits::default())
+    }
+
+    /// As [`Headless::new`], with a device that promises no more than these limits; textures may be as large as the adapter
+    /// can make them.
+    ///
+    /// # Errors
+    /// [`Error::NoDevice`], also when the adapter has less than these limits.
+    pub fn with_limits(limits: wgpu::Limits) -> Result<Self, Error> {
         // OpenGL only where nothing else is found: opening it makes noise on machines without a display.
         let adapter = [wgpu::Backends::PRIMARY, wgpu::Backends::SECONDARY].into_iter().find_map(find_adapter);
         let adapter = adapter.ok_or_else(|| Error::NoDevice(INSTALL_LINE.into()))?;
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("haze headless"),
-            required_limits: wgpu::Limits::default().using_resolution(adapter.limits()),
+            required_limits: limits.using_resolution(adapter.limits()),
             ..Default::default()
         }))
         .map_err(|error| Error::NoDevice(format!("{}: {error}", adapter.get_info().name)))?;

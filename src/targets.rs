@@ -13,8 +13,11 @@ pub(crate) struct AccumulationAttachment {
     pub format: wgpu::TextureFormat,
 }
 
-/// The accumulation target's layout. One attachment today; tint, emission and six-way light maps will be further ones.
-pub(crate) fn accumulation_layout(format: AccumulationFormat) -> [AccumulationAttachment; 1] {
+/// Textures of the accumulation target. One today; tint, emission and six-way light maps will be further ones.
+pub(crate) const ATTACHMENTS: usize = 1;
+
+/// The accumulation target's layout.
+pub(crate) fn accumulation_layout(format: AccumulationFormat) -> [AccumulationAttachment; ATTACHMENTS] {
     let format = match format {
         AccumulationFormat::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
         AccumulationFormat::Rgba8Unorm => wgpu::TextureFormat::Rgba8Unorm,
@@ -38,7 +41,7 @@ pub(crate) struct Targets {
     key: TargetsKey,
     size: UVec2,
     scene_depth: wgpu::TextureView,
-    pub accumulation: Vec<wgpu::TextureView>,
+    pub accumulation: [wgpu::TextureView; ATTACHMENTS],
     /// None where sprites are compared with the host's own depth.
     pub reduced_depth: Option<wgpu::TextureView>,
     /// One view per face of the cubemap, one for the motif, none for the other diffuse modes.
@@ -89,10 +92,8 @@ impl Targets {
         };
         let whole = |texture: wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
 
-        let accumulation: Vec<_> = accumulation_layout(key.format)
-            .iter()
-            .map(|attachment| whole(texture(attachment.label, attachment.format, size, 1)))
-            .collect();
+        let accumulation = accumulation_layout(key.format)
+            .map(|attachment| whole(texture(attachment.label, attachment.format, size, 1)));
         let reduced_depth = (key.depth_source == DepthSource::Reduced)
             .then(|| whole(texture("haze reduced depth", REDUCED_DEPTH_FORMAT, size, 1)));
 

@@ -46,7 +46,8 @@ fn sample_sprite_frame(sprite: texture_2d_array<f32>, linear_sampler: sampler, u
     if !EXACT_FILTERING {
         return textureSampleLevel(sprite, linear_sampler, uv, frame, lod);
     }
-    let last = f32(textureNumLevels(sprite) - 1u);
+    // The mip chain is whole. WebGL2 cannot ask for the number of levels; the small term is for log2's rounding.
+    let last = floor(log2(f32(textureDimensions(sprite).x)) + 1.0e-3);
     let level = min(lod, last);
     let base = floor(level);
     let fine = load_sprite_bilinear(sprite, uv, frame, i32(base));

@@ -74,7 +74,7 @@ const COUNT: wgpu::BlendState = wgpu::BlendState { color: ADDITIVE.color, alpha:
 pub(crate) fn record(encoder: &mut wgpu::CommandEncoder, frame: &FrameBindings, slot: &Slot) {
     let (Some(draw), Some(targets)) = (&slot.draw, &slot.targets) else { return };
     let DrawPath::Deferred { accumulate, host_depth, .. } = &draw.path else { return };
-    let attachments: Vec<_> = targets.accumulation.iter().map(color_attachment).collect();
+    let attachments = targets.accumulation.each_ref().map(color_attachment);
     let mut pass = begin_pass(encoder, "accumulate", &attachments, host_depth.as_ref());
     set_part(&mut pass, draw.rect.size);
     pass.set_pipeline(accumulate);

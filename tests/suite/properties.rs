@@ -226,6 +226,35 @@ fn every_depth_convention_gives_the_same_picture() {
     }
 }
 
+#[test]
+fn a_pass_without_depth_gives_the_same_picture() {
+    let mut stage = Stage::new(SIZE);
+    let tested = stage.on_gpu(gpu()).picture;
+    stage.attach_depth = false;
+    for path in [Path::Raster, Path::Forward] {
+        stage.settings.path = path;
+        let picture = stage.on_gpu(gpu()).picture;
+        let reference = psnr(&picture, &stage.on_cpu());
+        assert!(reference >= 45.0, "{path:?}: {reference:.1} dB");
+        // The box is not tested then, and the fade alone hides what is behind the scene.
+        assert!(path == Path::Forward || psnr(&picture, &tested) >= 60.0);
+    }
+}
+
+#[test]
+fn the_limits_of_webgl2_are_enough() {
+    let webgl2 = haze::headless::Headless::with_limits(wgpu::Limits::downlevel_webgl2_defaults()).unwrap();
+    let mut stage = Stage::new(SIZE);
+    for mode in DiffuseMode::ALL {
+        stage.settings.diffuse.mode = *mode;
+        let psnr = psnr(&stage.on_gpu(&webgl2).picture, &stage.on_cpu());
+        assert!(psnr >= 45.0, "{mode:?}: {psnr:.1} dB");
+    }
+    stage.settings.path = Path::Forward;
+    assert!(psnr(&stage.on_gpu(&webgl2).picture, &stage.on_cpu()) >= 45.0);
+    webgl2.check().unwrap();
+}
+
 // the camera and the box
 
 #[test]

@@ -25,6 +25,40 @@ fn every_file_composes_and_validates_without_any_capability() {
     }
 }
 
+/// Translates one stage of a pass as it would be for WebGL2: GLSL ES 3.00.
+fn glsl_es_300(module: &naga::Module, shader_stage: naga::ShaderStage, entry_point: &str) -> Result<String, String> {
+    use naga::back::glsl;
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+    let info = validator.validate(module).map_err(|error| error.to_string())?;
+    let constants = naga::back::PipelineConstants::default();
+    let entry = Some((shader_stage, entry_point));
+    let (module, info) = naga::back::pipeline_constants::process_overrides(module, &info, entry, &constants)
+        .map_err(|error| error.to_string())?;
+    let options = glsl::Options { version: glsl::Version::new_gles(300), ..Default::default() };
+    let stage = glsl::PipelineOptions { shader_stage, entry_point: entry_point.to_owned(), multiview: None };
+    let mut text = String::new();
+    glsl::Writer::new(&mut text, &module, &info, &options, &stage, naga::proc::BoundsCheckPolicies::default())
+        .and_then(|mut writer| writer.write())
+        .map_err(|error| error.to_string())?;
+    Ok(text)
+}
+
+#[test]
+fn every_pass_is_within_webgl2() {
+    for (file, _) in shader::sources().iter().filter(|(file, _)| !file.starts_with("lib/")) {
+        let module = composed(file);
+        for (stage, entry_point) in [(naga::ShaderStage::Vertex, "vertex"), (naga::ShaderStage::Fragment, "fragment")] {
+            let text =
+                glsl_es_300(&module, stage, entry_point).unwrap_or_else(|e| panic!("{file}, {entry_point}: {e}"));
+            assert!(!text.contains("sampler2DShadow"), "{file} reads depth in a way that WebGL2 cannot");
+        }
+    }
+    // The mutant: a storage buffer, which WebGL2 has none of.
+    let storage = "@group(0) @binding(0) var<storage, read> a: array<f32>;
+        @vertex fn vertex() -> @builtin(position) vec4f { return vec4f(a[0]); }";
+    assert!(glsl_es_300(&parse("storage", storage), naga::ShaderStage::Vertex, "vertex").is_err());
+}
+
 /// (name, offset) of every member, and the size, of a WGSL struct.
 fn wgsl_struct(module: &naga::Module, name: &str) -> (Vec<(String, u32)>, u32) {
     let (_, ty) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).unwrap();

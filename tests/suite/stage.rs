@@ -12,6 +12,8 @@ use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Bounds, Descriptor, Frame, Light, MaterialAssets, Particle, Particles, Renderer, SceneDepth, System, View};
 use haze::{Error, wgpu};
 
+use crate::common::gpu;
+
 /// Everything a frame needs, in memory.
 pub struct Stage {
     pub view: View,
@@ -23,6 +25,8 @@ pub struct Stage {
     pub shade_tree: ShadeTree,
     /// Hand the scene's depth over as linear metres.
     pub linear_depth: bool,
+    /// Attach the depth buffer to the pass that the smoke is drawn in.
+    pub attach_depth: bool,
 }
 
 /// What a run on the GPU leaves.
@@ -97,6 +101,8 @@ impl Stage {
             material: material(),
             shade_tree: ShadeTree::Final,
             linear_depth: false,
+            // OpenGL cannot test and sample one depth buffer in one pass.
+            attach_depth: gpu().device.adapter_info().backend != wgpu::Backend::Gl,
         }
     }
 
@@ -161,7 +167,10 @@ pub struct Host {
 
 impl Host {
     pub fn new(gpu: &Headless, stage: &Stage) -> Result<Self, Error> {
-        let descriptor = Descriptor { exact_filtering: true, ..Descriptor::default() };
+        let mut descriptor = Descriptor { exact_filtering: true, ..Descriptor::default() };
+        if !stage.attach_depth {
+            descriptor.depth_format = None;
+        }
         let renderer = Renderer::new(&gpu.device, &descriptor)?;
         let material = renderer.create_material(&gpu.device, &gpu.queue, &stage.material);
         let colour = gpu.target("host colour", stage.view.size, wgpu::TextureFormat::Rgba16Float);
@@ -203,7 +212,7 @@ impl Host {
                         store: wgpu::StoreOp::Store,
                     },
                 })],
-                depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                depth_stencil_attachment: stage.attach_depth.then_some(wgpu::RenderPassDepthStencilAttachment {
                     view: &self.depth_view,
                     depth_ops: None,
                     stencil_ops: None,
