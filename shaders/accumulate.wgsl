@@ -9,8 +9,8 @@
 #import "lib/sprite_vertex.wgsl"
 #import "lib/depth.wgsl"
 
-// Reduced depth, or the host's depth where HOST_DEPTH.
-@group(3) @binding(0) var scene_view_depth: texture_2d<f32>;
+// Reduced depth, or the host's depth where HOST_DEPTH. The same may be attached, for the hardware to test.
+@group(3) @binding(0) var tested_depth: texture_2d<f32>;
 
 override FADE_CURVE: u32 = FADE_CURVE_SMOOTHSTEP;
 override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
@@ -23,14 +23,21 @@ const OVERDRAW_STEP: f32 = 1.0 / 255.0;
 
 @vertex
 fn vertex(particle: Particle, @builtin(vertex_index) index: u32) -> SpriteVertex {
-    return sprite_vertex(particle, index, system.target_from_ndc, 1.0 / system.scale);
+    var out = sprite_vertex(particle, index, system.target_from_ndc, 1.0 / system.scale);
+    if !HOST_DEPTH {
+        // Depth as the reduced target stores it. A hidden sprite stays outside the clip volume by its x.
+        out.position.z = out.depth_amount_lod_frame.x / system.depth_limit * out.position.w;
+    }
+    return out;
 }
 
 @fragment
 fn fragment(in: SpriteVertex) -> @location(0) vec4f {
-    var scene = textureLoad(scene_view_depth, vec2i(in.position.xy), 0).r;
+    var scene = textureLoad(tested_depth, vec2i(in.position.xy), 0).r;
     if HOST_DEPTH {
         scene = view_depth_from_ndc_depth(scene, view.depth_coefficients);
+    } else {
+        scene *= system.depth_limit;
     }
     let distance = scene - in.depth_amount_lod_frame.x;
     let fade = soft_fade(FADE_CURVE, distance, system.fade_scale, system.contrast_power, system.epsilon);

@@ -1,7 +1,7 @@
 // depth_downsample
 // What    Brings the scene's depth to the resolution of the accumulation target: one kept depth per texel.
 // Reads   scene_depth (full resolution, as the host stores it).
-// Writes  reduced depth, R32Float, linear view depth in metres, never more than system.depth_limit.
+// Writes  reduced depth: linear view depth over system.depth_limit, 0..1, as a depth buffer.
 // Blend   none.
 // Source  OTEE "Transfer & lighting", option 1; DESIGN "Reduced resolution".
 
@@ -17,7 +17,7 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 }
 
 @fragment
-fn fragment(@builtin(position) position: vec4f) -> @location(0) f32 {
+fn fragment(@builtin(position) position: vec4f) -> @builtin(frag_depth) f32 {
     let texel = vec2i(floor(position.xy)) + vec2i(system.target_origin);
     let scale = i32(system.scale);
     let first = texel * scale;
@@ -26,7 +26,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) f32 {
     if DEPTH_DOWNSAMPLE == DEPTH_DOWNSAMPLE_POINT {
         let pixel = min(first + scale / 2, last);
         let depth = view_depth_from_ndc_depth(textureLoad(scene_depth, pixel, 0).r, view.depth_coefficients);
-        return min(depth, system.depth_limit);
+        return saturate(depth / system.depth_limit);
     }
     var nearest = SKY_VIEW_DEPTH;
     var farthest = 0.0;
@@ -40,5 +40,5 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) f32 {
         }
     }
     let kept = select(nearest, farthest, depth_downsample_keeps_farthest(DEPTH_DOWNSAMPLE, texel));
-    return min(kept, system.depth_limit);
+    return saturate(kept / system.depth_limit);
 }

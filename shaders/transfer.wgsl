@@ -24,6 +24,8 @@ override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
 override NORMAL_DECODE: u32 = NORMAL_DECODE_EXACT;
 // True: draw the back faces, never clipped away by the near plane. False: the front faces, depth-tested.
 override BACK_FACES: bool = false;
+// True: there is no reduced depth, sprites were compared with the host's own.
+override HOST_DEPTH: bool = false;
 
 const SHADE_TREE_FINAL: u32 = 0u;
 const SHADE_TREE_COMBINED: u32 = 1u;
@@ -120,8 +122,13 @@ fn overdraw_colour(layers: f32) -> vec3f {
 fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = position.xy;
     if SHADE_TREE == SHADE_TREE_REDUCED_DEPTH {
-        let texel = pixel / system.scale - system.target_origin;
-        let depth = textureLoad(reduced_depth, vec2i(texel), 0).r;
+        var depth = 0.0;
+        if HOST_DEPTH {
+            depth = scene_view_depth(pixel);
+        } else {
+            let texel = pixel / system.scale - system.target_origin;
+            depth = textureLoad(reduced_depth, vec2i(texel), 0).r * system.depth_limit;
+        }
         let grey = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));
         return vec4f(vec3f(grey), 1.0);
     }

@@ -6,7 +6,8 @@ pub struct Descriptor {
     /// Format of the first colour attachment: blendable, linear light. `Rgba16Float` for HDR.
     pub color_format: wgpu::TextureFormat,
     /// Format of the pass's depth attachment, `None` if it has none. The attachment is the scene depth of the frame,
-    /// read-only (`depth_ops: None`), because the transfer samples it. On OpenGL and WebGL2 it must be `None`.
+    /// read-only (`depth_ops: None`), because the transfer samples it. On OpenGL and WebGL2 it must be `None`: see
+    /// [`read_only_depth_is_supported`].
     pub depth_format: Option<wgpu::TextureFormat>,
     /// Samples per pixel of the pass.
     pub sample_count: u32,
@@ -24,4 +25,10 @@ impl Default for Descriptor {
             exact_filtering: false,
         }
     }
+}
+
+/// True if a pass of this device can test and sample one depth buffer. OpenGL and WebGL2 cannot; there
+/// [`Descriptor::depth_format`] must be `None`, and the soft fade alone hides what is behind the scene.
+pub fn read_only_depth_is_supported(device: &wgpu::Device) -> bool {
+    device.adapter_info().backend != wgpu::Backend::Gl
 }

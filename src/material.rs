@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 
-use crate::pass::Layouts;
+use crate::pass::{Layouts, array_layers};
 use crate::ramp::Ramp;
 use crate::reference::diffuse_bake::zonal_coefficients;
 use crate::reference::ramp::sample_ramp;
@@ -108,7 +108,7 @@ fn upload_ramp(
 fn upload_sprite(device: &wgpu::Device, queue: &wgpu::Queue, sprite: &Sprite, bytes: &mut u64) -> wgpu::TextureView {
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: Some("haze sprite"),
-        size: extent(UVec2::splat(sprite.size()), sprite.frame_count()),
+        size: extent(UVec2::splat(sprite.size()), array_layers(sprite.frame_count())),
         mip_level_count: sprite.level_count(),
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,

@@ -2,7 +2,7 @@
 
 use glam::{IVec2, UVec2};
 
-use crate::descriptor::Descriptor;
+use crate::descriptor::{Descriptor, read_only_depth_is_supported};
 use crate::error::{Error, FieldError};
 use crate::frame::{Frame, SceneDepth, System, validate_lights};
 use crate::frame_bindings::FrameBindings;
@@ -50,7 +50,8 @@ pub(crate) struct Passes {
 pub struct TargetViews<'a> {
     /// First: premultiplied normal in rgb, amount in a.
     pub accumulation: &'a [wgpu::TextureView],
-    /// `R32Float` linear view depth, metres; `None` where sprites are compared with the host's own depth.
+    /// `Depth32Float` linear view depth divided by `depth_limit`; `None` where sprites are compared with the host's own
+    /// depth.
     pub reduced_depth: Option<&'a wgpu::TextureView>,
     /// First texel of the picture's grid.
     pub origin: IVec2,
@@ -58,6 +59,8 @@ pub struct TargetViews<'a> {
     pub size: UVec2,
     /// Pixels per texel.
     pub scale: u32,
+    /// View depth stored as 1, metres: what lies beyond looks alike to the system.
+    pub depth_limit: f32,
 }
 
 /// Bytes of GPU memory that a renderer holds, its materials aside.
@@ -180,11 +183,6 @@ impl Renderer {
             MemoryUse { targets: sum.targets + of_slot.targets, buffers: sum.buffers + of_slot.buffers }
         })
     }
-}
-
-/// OpenGL cannot attach a depth buffer and sample it in the same pass.
-fn read_only_depth_is_supported(device: &wgpu::Device) -> bool {
-    device.adapter_info().backend != wgpu::Backend::Gl
 }
 
 fn validate(device: &wgpu::Device, view: &ViewGeometry, frame: &Frame<'_>) -> Result<(), FieldError> {

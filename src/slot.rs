@@ -3,12 +3,12 @@
 use glam::UVec2;
 
 use crate::bounds::{Bounds, TargetRect, effective_scale};
-use crate::descriptor::Descriptor;
+use crate::descriptor::{Descriptor, read_only_depth_is_supported};
 use crate::error::FieldError;
 use crate::frame::{Frame, Particles, System};
 use crate::gpu_types::{LightUniform, SystemUniform};
 use crate::particle::{Particle, bounds_of};
-use crate::pass::accumulate::AccumulateKey;
+use crate::pass::accumulate::{AccumulateKey, DepthTest};
 use crate::pass::forward::ForwardKey;
 use crate::pass::sort::{SortScratch, back_to_front};
 use crate::pass::transfer::TransferKey;
@@ -47,6 +47,7 @@ pub(crate) struct Draw {
     pub distance: f32,
     pub rect: TargetRect,
     pub scale: u32,
+    pub depth_limit: f32,
     pub material: wgpu::BindGroup,
     pub instances: wgpu::Buffer,
     pub instance_count: u32,
@@ -59,8 +60,8 @@ pub(crate) enum DrawPath {
         depth_downsample: Option<wgpu::RenderPipeline>,
         diffuse_bake: Option<wgpu::RenderPipeline>,
         accumulate: wgpu::RenderPipeline,
-        /// The host's own depth, attached where sprites are tested against it.
-        host_depth: Option<wgpu::TextureView>,
+        /// The depth that the hardware tests sprites against: reduced, or the host's own.
+        tested_depth: Option<wgpu::TextureView>,
         transfer: Option<wgpu::RenderPipeline>,
         specular_scatter: Option<(wgpu::RenderPipeline, u32)>,
     },
@@ -106,6 +107,7 @@ impl Slot {
             origin: draw.rect.origin,
             size: draw.rect.size,
             scale: draw.scale,
+            depth_limit: draw.depth_limit,
         })
     }
 
@@ -149,6 +151,7 @@ impl Slot {
             distance: -view.view_position(bounds.centre()).z,
             rect: in_view.rect,
             scale: in_view.uniform.scale as u32,
+            depth_limit: in_view.uniform.depth_limit,
             material: system.material.bind_group.clone(),
             instances,
             instance_count,
@@ -228,7 +231,12 @@ impl Slot {
         let accumulate = &settings.accumulate;
         let shade_tree = frame.shade_tree;
         let depth = frame.scene_depth.texture_view();
-        let host_depth = (accumulate.depth_source == DepthSource::Host).then(|| depth.clone());
+        let reduced = self.targets.as_ref().and_then(|targets| targets.reduced_depth.clone());
+        let (depth_test, tested_depth) = match accumulate.depth_source {
+            DepthSource::Host => (DepthTest::Host(depth.texture().format(), view.depth.reversed), Some(depth.clone())),
+            DepthSource::Reduced if read_only_depth_is_supported(device) => (DepthTest::Reduced, reduced),
+            DepthSource::Reduced => (DepthTest::InShader, None),
+        };
         let glows = matches!(shade_tree, ShadeTree::Final | ShadeTree::SpecularScatter)
             && settings.specular_scatter.intensity > 0.0
             && !self.scratch.lights.is_empty();
@@ -242,11 +250,11 @@ impl Slot {
                     format: accumulate.format,
                     encoding: accumulate.encoding,
                     curve: settings.soft_fade.curve,
-                    host_depth: host_depth.as_ref().map(|depth| (depth.texture().format(), view.depth.reversed)),
+                    depth_test,
                     overdraw: shade_tree == ShadeTree::Overdraw,
                 },
             ),
-            host_depth,
+            tested_depth,
             transfer: (shade_tree != ShadeTree::SpecularScatter).then(|| {
                 passes.transfer.pipeline(
                     device,
@@ -256,6 +264,7 @@ impl Slot {
                         diffuse_mode: settings.diffuse.mode,
                         soft_scatter_mode: settings.soft_scatter.mode,
                         upsample: accumulate.upsample,
+                        host_depth: accumulate.depth_source == DepthSource::Host,
                         shade_tree,
                         back_faces: in_view.back_faces || descriptor.depth_format.is_none(),
                         reversed: view.depth.reversed,

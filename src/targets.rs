@@ -3,7 +3,7 @@
 use glam::UVec2;
 
 use crate::bounds::TargetRect;
-use crate::pass::{Layouts, diffuse_bake};
+use crate::pass::{Layouts, array_layers, diffuse_bake};
 use crate::settings::{AccumulationFormat, DepthSource, DiffuseMode};
 
 /// One texture of the accumulation target. All share the blend ONE, ONE_MINUS_SRC_ALPHA and are cleared to zero.
@@ -25,7 +25,9 @@ pub(crate) fn accumulation_layout(format: AccumulationFormat) -> [AccumulationAt
     [AccumulationAttachment { label: "haze accumulation: normal + amount", format }]
 }
 
-pub(crate) const REDUCED_DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+/// A depth format: it can be attached, so that the hardware rejects hidden sprites, and every backend can draw to it,
+/// which is not so of `R32Float`.
+pub(crate) const REDUCED_DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// What decides whether a system's textures can be used again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,7 +100,7 @@ impl Targets {
             .then(|| whole(texture("haze reduced depth", REDUCED_DEPTH_FORMAT, size, 1)));
 
         let (side, layers) = diffuse_bake::size_and_layers(key.diffuse_mode).unwrap_or((1, 1));
-        let baked = texture("haze baked diffuse", diffuse_bake::FORMAT, UVec2::splat(side), layers);
+        let baked = texture("haze baked diffuse", diffuse_bake::FORMAT, UVec2::splat(side), array_layers(layers));
         let baked_array = baked.create_view(&wgpu::TextureViewDescriptor {
             dimension: Some(wgpu::TextureViewDimension::D2Array),
             ..Default::default()

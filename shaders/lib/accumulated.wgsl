@@ -5,6 +5,7 @@
 #import "lib/upsample.wgsl"
 
 @group(3) @binding(0) var accumulation: texture_2d<f32>;
+// Linear view depth over system.depth_limit.
 @group(3) @binding(1) var reduced_depth: texture_2d<f32>;
 
 override UPSAMPLE: u32 = UPSAMPLE_JOINT_BILATERAL;
@@ -38,6 +39,7 @@ fn sample_accumulation(pixel: vec2f) -> vec4f {
         depths.y = textureLoad(reduced_depth, b, 0).r;
         depths.z = textureLoad(reduced_depth, c, 0).r;
         depths.w = textureLoad(reduced_depth, d, 0).r;
+        depths *= system.depth_limit;
         depth = min(scene_view_depth(pixel), system.depth_limit);
     }
     let weights = upsample_weights(UPSAMPLE, corner - base, depths, depth);

@@ -8,7 +8,7 @@ use haze::demo::shot::Shot;
 use haze::headless::Headless;
 use haze::reference::picture::Picture;
 use haze::settings::Path;
-use haze::{Descriptor, Error, FieldError};
+use haze::{Error, FieldError};
 
 /// A preset, and what is changed about it for this run.
 #[derive(Args)]
@@ -96,7 +96,7 @@ impl Backend {
     /// Renders, linear HDR.
     pub fn render(&self, shot: &Shot) -> Result<Picture<Vec4>, Error> {
         match self {
-            Self::Gpu(gpu) => shot.render_on_gpu(gpu, &Descriptor::default()),
+            Self::Gpu(gpu) => shot.render_on_gpu(gpu, false),
             Self::Cpu => shot.render_on_cpu(),
         }
     }

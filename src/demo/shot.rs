@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use glam::{UVec2, Vec4};
 
 use super::{Scene, cpu, gpu};
+use crate::descriptor::read_only_depth_is_supported;
 use crate::error::Error;
 use crate::frame::{Frame, Particles, SceneDepth, System};
 use crate::headless::Headless;
@@ -101,18 +102,24 @@ impl Shot {
         Ok(colour)
     }
 
-    /// Renders on the GPU, linear HDR.
+    /// Renders on the GPU, linear HDR. `exact_filtering` as in [`Descriptor`].
     ///
     /// # Errors
     /// [`Error::Field`] when the preset was changed to something invalid or the picture is too large for the device,
     /// [`Error::Device`] when the device failed.
-    pub fn render_on_gpu(&self, gpu: &Headless, descriptor: &Descriptor) -> Result<Picture<Vec4>, Error> {
+    pub fn render_on_gpu(&self, gpu: &Headless, exact_filtering: bool) -> Result<Picture<Vec4>, Error> {
+        let descriptor = Descriptor {
+            color_format: gpu::COLOUR_FORMAT,
+            depth_format: read_only_depth_is_supported(&gpu.device).then_some(gpu::DEPTH_FORMAT),
+            sample_count: 1,
+            exact_filtering,
+        };
         let view = self.preset.camera.view(self.size);
         let targets = gpu::render(gpu, &self.scene(), &view)?;
         let depth = targets.depth.create_view(&wgpu::TextureViewDescriptor::default());
         let colour = targets.colour.create_view(&wgpu::TextureViewDescriptor::default());
 
-        let mut renderer = Renderer::new(&gpu.device, descriptor)?;
+        let mut renderer = Renderer::new(&gpu.device, &descriptor)?;
         let materials: Vec<_> =
             self.materials.iter().map(|assets| renderer.create_material(&gpu.device, &gpu.queue, assets)).collect();
         let particles = self.systems();

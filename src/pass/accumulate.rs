@@ -7,11 +7,11 @@ use super::{
     ADDITIVE, Layouts, PARTICLE_LAYOUT, PREMULTIPLIED_OVER, PipelineParts, STRIP, Variants, color_target,
     create_pipeline, in_front, read_only_depth, switch, variant,
 };
-use super::{begin_pass, bind, color_attachment, set_part};
+use super::{begin_pass, bind, color_attachment, read_only, set_part};
 use crate::frame_bindings::FrameBindings;
 use crate::settings::{AccumulationFormat, FadeCurve, NormalEncoding};
 use crate::slot::{DrawPath, Slot};
-use crate::targets::accumulation_layout;
+use crate::targets::{REDUCED_DEPTH_FORMAT, accumulation_layout};
 
 /// What makes one accumulation pipeline differ from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -19,10 +19,20 @@ pub(crate) struct AccumulateKey {
     pub format: AccumulationFormat,
     pub encoding: NormalEncoding,
     pub curve: FadeCurve,
-    /// Format of the host's depth and whether it is reversed, where sprites are tested against it.
-    pub host_depth: Option<(wgpu::TextureFormat, bool)>,
+    pub depth_test: DepthTest,
     /// Count layers instead of blending normals.
     pub overdraw: bool,
+}
+
+/// What rejects hidden sprites before they are shaded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum DepthTest {
+    /// Nothing: this backend cannot test what the shader samples.
+    InShader,
+    /// The hardware, against the reduced depth.
+    Reduced,
+    /// The hardware, against the host's depth: its format, and whether it is reversed.
+    Host(wgpu::TextureFormat, bool),
 }
 
 #[derive(Debug)]
@@ -41,6 +51,11 @@ impl AccumulatePass {
         let exact_filtering = self.exact_filtering;
         self.variants.get(key, |module, layout| {
             let blend = if key.overdraw { COUNT } else { PREMULTIPLIED_OVER };
+            let depth_stencil = match key.depth_test {
+                DepthTest::InShader => None,
+                DepthTest::Reduced => Some(read_only_depth(REDUCED_DEPTH_FORMAT, in_front(false))),
+                DepthTest::Host(format, reversed) => Some(read_only_depth(format, in_front(reversed))),
+            };
             let targets =
                 accumulation_layout(key.format).map(|attachment| color_target(attachment.format, Some(blend)));
             create_pipeline(
@@ -51,13 +66,13 @@ impl AccumulatePass {
                     layout,
                     buffers: &[Some(PARTICLE_LAYOUT)],
                     primitive: STRIP,
-                    depth_stencil: key.host_depth.map(|(format, reversed)| read_only_depth(format, in_front(reversed))),
+                    depth_stencil,
                     sample_count: 1,
                     targets: &targets,
                     constants: &[
                         variant!("FADE_CURVE", key.curve),
                         variant!("NORMAL_ENCODING", key.encoding),
-                        switch("HOST_DEPTH", key.host_depth.is_some()),
+                        switch("HOST_DEPTH", matches!(key.depth_test, DepthTest::Host(..))),
                         switch("OVERDRAW", key.overdraw),
                         switch("EXACT_FILTERING", exact_filtering),
                     ],
@@ -73,9 +88,9 @@ const COUNT: wgpu::BlendState = wgpu::BlendState { color: ADDITIVE.color, alpha:
 /// Records the pass for one system.
 pub(crate) fn record(encoder: &mut wgpu::CommandEncoder, frame: &FrameBindings, slot: &Slot) {
     let (Some(draw), Some(targets)) = (&slot.draw, &slot.targets) else { return };
-    let DrawPath::Deferred { accumulate, host_depth, .. } = &draw.path else { return };
+    let DrawPath::Deferred { accumulate, tested_depth, .. } = &draw.path else { return };
     let attachments = targets.accumulation.each_ref().map(color_attachment);
-    let mut pass = begin_pass(encoder, "accumulate", &attachments, host_depth.as_ref());
+    let mut pass = begin_pass(encoder, "accumulate", &attachments, read_only(tested_depth.as_ref()));
     set_part(&mut pass, draw.rect.size);
     pass.set_pipeline(accumulate);
     bind(&mut pass, frame, slot, draw);

@@ -1,10 +1,10 @@
 //! depth_downsample
 //! What: brings the scene's depth to the resolution of the accumulation target.
-//! Reads: scene depth. Writes: reduced depth, R32Float, linear metres, at most `depth_limit`. Blend: none.
+//! Reads: scene depth. Writes: reduced depth, Depth32Float, linear view depth over `depth_limit`. Blend: none.
 //! Source: OTEE "Transfer & lighting", option 1.
 
-use super::{Layouts, PipelineParts, Variants, color_target, create_pipeline, variant};
-use super::{begin_pass, color_attachment, set_part};
+use super::{Layouts, PipelineParts, Variants, create_pipeline, variant};
+use super::{begin_pass, read_only_depth, set_part};
 use crate::frame_bindings::FrameBindings;
 use crate::settings::DepthDownsample;
 use crate::slot::{DrawPath, Slot};
@@ -31,9 +31,12 @@ impl DepthDownsamplePass {
                     layout,
                     buffers: &[],
                     primitive: wgpu::PrimitiveState::default(),
-                    depth_stencil: None,
+                    depth_stencil: Some(wgpu::DepthStencilState {
+                        depth_write_enabled: Some(true),
+                        ..read_only_depth(REDUCED_DEPTH_FORMAT, wgpu::CompareFunction::Always)
+                    }),
                     sample_count: 1,
-                    targets: &[color_target(REDUCED_DEPTH_FORMAT, None)],
+                    targets: &[],
                     constants: &[variant!("DEPTH_DOWNSAMPLE", mode)],
                 },
             )
@@ -46,7 +49,12 @@ pub(crate) fn record(encoder: &mut wgpu::CommandEncoder, frame: &FrameBindings, 
     let (Some(draw), Some(targets)) = (&slot.draw, &slot.targets) else { return };
     let DrawPath::Deferred { depth_downsample: Some(pipeline), .. } = &draw.path else { return };
     let Some(view) = &targets.reduced_depth else { return };
-    let mut pass = begin_pass(encoder, "depth_downsample", &[color_attachment(view)], None);
+    let depth = wgpu::RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
+        stencil_ops: None,
+    };
+    let mut pass = begin_pass(encoder, "depth_downsample", &[], Some(depth));
     set_part(&mut pass, draw.rect.size);
     pass.set_pipeline(pipeline);
     pass.set_bind_group(0, frame.bind_group(), &[]);

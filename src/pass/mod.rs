@@ -27,6 +27,12 @@ pub(crate) struct Layouts {
     pub transfer: wgpu::BindGroupLayout,
 }
 
+/// Layers to allocate for a square array texture of `layers`. wgpu's OpenGL backend takes a texture of one layer for a plain
+/// one, and a square texture of six, or a multiple, for a cube: neither can then be sampled as an array.
+pub(crate) fn array_layers(layers: u32) -> u32 {
+    if layers == 1 || layers.is_multiple_of(6) { layers + 1 } else { layers }
+}
+
 /// Bytes of the lights' uniform block.
 pub(crate) const LIGHTS_SIZE: u64 = (MAX_LIGHTS * size_of::<LightUniform>()) as u64;
 
@@ -275,18 +281,19 @@ pub(crate) fn begin_pass<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     label: &'static str,
     color_attachments: &[Option<wgpu::RenderPassColorAttachment<'_>>],
-    read_only_depth: Option<&wgpu::TextureView>,
+    depth_stencil_attachment: Option<wgpu::RenderPassDepthStencilAttachment<'_>>,
 ) -> wgpu::RenderPass<'a> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some(label),
         color_attachments,
-        depth_stencil_attachment: read_only_depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
-            view,
-            depth_ops: None,
-            stencil_ops: None,
-        }),
+        depth_stencil_attachment,
         ..Default::default()
     })
+}
+
+/// Depth that is tested against, not written.
+pub(crate) fn read_only(depth: Option<&wgpu::TextureView>) -> Option<wgpu::RenderPassDepthStencilAttachment<'_>> {
+    depth.map(|view| wgpu::RenderPassDepthStencilAttachment { view, depth_ops: None, stencil_ops: None })
 }
 
 /// Restricts a pass to the part of the texture that is in use.

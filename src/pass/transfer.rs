@@ -24,6 +24,7 @@ pub(crate) struct TransferKey {
     pub diffuse_mode: DiffuseMode,
     pub soft_scatter_mode: SoftScatterMode,
     pub upsample: Upsample,
+    pub host_depth: bool,
     pub shade_tree: ShadeTree,
     /// Draw the back faces, untested, because the near plane cuts the box.
     pub back_faces: bool,
@@ -68,6 +69,7 @@ impl TransferPass {
                         variant!("NORMAL_DECODE", key.decode),
                         variant!("UPSAMPLE", key.upsample),
                         variant!("SHADE_TREE", key.shade_tree),
+                        switch("HOST_DEPTH", key.host_depth),
                         switch("BACK_FACES", key.back_faces),
                         switch("EXACT_FILTERING", descriptor.exact_filtering),
                     ],

@@ -5,11 +5,11 @@
 use std::path::{Path, PathBuf};
 
 use glam::{UVec2, Vec4};
+use haze::builtin;
 use haze::demo::shot::Shot;
 use haze::picture::{read_png, srgb_from_linear, write_png};
 use haze::reference::picture::Picture;
 use haze::settings::ShadeTree;
-use haze::{Descriptor, builtin};
 use image::{DynamicImage, Rgb, RgbImage};
 
 use crate::common::gpu;
@@ -45,7 +45,7 @@ fn difference(a: &RgbImage, b: &RgbImage) -> f64 {
 
 fn compare(name: &str, shot: &Shot) {
     let path = golden(name);
-    let on_gpu = encode(&shot.render_on_gpu(gpu(), &Descriptor::default()).unwrap());
+    let on_gpu = encode(&shot.render_on_gpu(gpu(), false).unwrap());
     if std::env::var_os("HAZE_BLESS").is_some() {
         write_png(&path, &DynamicImage::ImageRgb8(on_gpu)).unwrap();
         return;

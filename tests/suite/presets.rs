@@ -1,10 +1,10 @@
 //! The GPU renderer against the CPU renderer, whole frames: every preset, and every setting that changes a pipeline.
 
 use glam::{UVec2, Vec4};
+use haze::builtin;
 use haze::demo::shot::Shot;
 use haze::reference::picture::Picture;
 use haze::settings::*;
-use haze::{Descriptor, builtin};
 
 use crate::common::{gpu, psnr};
 
@@ -12,16 +12,12 @@ use crate::common::{gpu, psnr};
 /// on llvmpipe. The mistakes in properties.rs all fall below this.
 const AGREEMENT: f32 = 45.0;
 
-fn exact() -> Descriptor {
-    Descriptor { exact_filtering: true, ..Descriptor::default() }
-}
-
 fn shot(name: &str, size: UVec2) -> Shot {
     Shot::load(name, size).unwrap()
 }
 
 fn agreement(shot: &Shot) -> (f32, Picture<Vec4>) {
-    let on_gpu = shot.render_on_gpu(gpu(), &exact()).unwrap();
+    let on_gpu = shot.render_on_gpu(gpu(), true).unwrap();
     let on_cpu = shot.render_on_cpu().unwrap();
     gpu().check().unwrap();
     assert!(on_gpu.texels.iter().all(|texel| texel.is_finite()));
@@ -82,7 +78,14 @@ fn every_setting_agrees() {
     for &mode in BlendMode::ALL {
         add("forward", mode.name(), with(|s| (s.path, s.blend_mode) = (Path::Forward, mode)));
     }
-    add("depth_source", "host", with(|s| (s.accumulate.depth_source, s.accumulate.scale) = (DepthSource::Host, 1)));
+    for stage in [ShadeTree::Final, ShadeTree::ReducedDepth] {
+        if !haze::descriptor::read_only_depth_is_supported(&gpu().device) {
+            break;
+        }
+        let mut shot = with(|s| (s.accumulate.depth_source, s.accumulate.scale) = (DepthSource::Host, 1));
+        shot.shade_tree = stage;
+        add("depth_source host", stage.name(), shot);
+    }
     for &stage in ShadeTree::ALL {
         let mut shot = with(|_| {});
         shot.shade_tree = stage;
@@ -101,7 +104,7 @@ fn half_resolution_is_worth_it() {
     let mut shot = shot("column", UVec2::new(640, 360));
     let mut render = |scale| {
         shot.preset.systems[0].settings.accumulate.scale = scale;
-        shot.render_on_gpu(gpu(), &exact()).unwrap()
+        shot.render_on_gpu(gpu(), true).unwrap()
     };
     let full = render(1);
     for (scale, least) in [(2, 35.0), (4, 35.0)] {
@@ -131,8 +134,8 @@ fn systems_are_drawn_far_to_near_whatever_their_order() {
 #[test]
 fn pictures_scale() {
     // Pixel sizes in presets are for a picture of 720 lines: another height must not change the look.
-    let small = shot("column", UVec2::new(160, 90)).render_on_gpu(gpu(), &exact()).unwrap();
-    let large = shot("column", UVec2::new(320, 180)).render_on_gpu(gpu(), &exact()).unwrap();
+    let small = shot("column", UVec2::new(160, 90)).render_on_gpu(gpu(), true).unwrap();
+    let large = shot("column", UVec2::new(320, 180)).render_on_gpu(gpu(), true).unwrap();
     let mut reduced = Picture::new(small.size, Vec4::ZERO);
     reduced.for_each(|at, texel| {
         let at = at.as_ivec2() * 2;

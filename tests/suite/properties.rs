@@ -2,6 +2,7 @@
 
 use glam::camera::rh::proj::directx;
 use glam::{Mat4, UVec2, Vec3, Vec4, vec3, vec4};
+use haze::descriptor::read_only_depth_is_supported;
 use haze::reference::blending::{premultiplied_over, quantise};
 use haze::settings::{AccumulationFormat, DepthSource, DiffuseMode, Path, ShadeTree, Upsample};
 use haze::{Bounds, Error, Light, Particle, Particles, wgpu};
@@ -160,7 +161,8 @@ fn a_host_may_resize_and_change_everything_from_frame_to_frame() {
         let accumulate = &mut stage.settings.accumulate;
         accumulate.scale = 1 + step % 6;
         accumulate.upsample = Upsample::ALL[step as usize % 3];
-        accumulate.depth_source = if accumulate.scale == 1 { DepthSource::Host } else { DepthSource::Reduced };
+        let host = accumulate.scale == 1 && read_only_depth_is_supported(&gpu().device);
+        accumulate.depth_source = if host { DepthSource::Host } else { DepthSource::Reduced };
         stage.settings.diffuse.mode = DiffuseMode::ALL[step as usize % DiffuseMode::ALL.len()];
         stage.settings.path = if step % 11 == 10 { Path::Forward } else { Path::Auto };
         // The renderer stays, the host's textures are new.

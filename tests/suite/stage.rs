@@ -102,7 +102,7 @@ impl Stage {
             shade_tree: ShadeTree::Final,
             linear_depth: false,
             // OpenGL cannot test and sample one depth buffer in one pass.
-            attach_depth: gpu().device.adapter_info().backend != wgpu::Backend::Gl,
+            attach_depth: haze::descriptor::read_only_depth_is_supported(&gpu().device),
         }
     }
 
