@@ -161,8 +161,8 @@ fn a_host_may_resize_and_change_everything_from_frame_to_frame() {
         let accumulate = &mut stage.settings.accumulate;
         accumulate.scale = 1 + step % 6;
         accumulate.upsample = Upsample::ALL[step as usize % 3];
-        let host = accumulate.scale == 1 && read_only_depth_is_supported(&gpu().device);
-        accumulate.depth_source = if host { DepthSource::Host } else { DepthSource::Reduced };
+        let tested = accumulate.scale == 1 && read_only_depth_is_supported(&gpu().device);
+        accumulate.depth_source = if tested { DepthSource::Host } else { DepthSource::Reduced };
         stage.settings.diffuse.mode = DiffuseMode::ALL[step as usize % DiffuseMode::ALL.len()];
         stage.settings.path = if step % 11 == 10 { Path::Forward } else { Path::Auto };
         // The renderer stays, the host's textures are new.
