@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // haze, once.
     let descriptor = Descriptor { color_format: COLOUR, depth_format: Some(DEPTH), ..Descriptor::default() };
-    let mut smoke = Renderer::new(&device, &descriptor)?;
+    let mut smoke = Renderer::new(&device, &descriptor);
     let material = smoke.create_material(&device, &queue, &MaterialNames::default().load(Path::new(""))?);
 
     // haze, every frame.
@@ -56,6 +56,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             settings: &settings,
             material: &material,
         }],
+        time: 2.0,
         shade_tree: Default::default(),
     };
     let mut encoder = device.create_command_encoder(&Default::default());

@@ -105,7 +105,7 @@ impl Host {
 
         let descriptor =
             Descriptor { color_format: configuration.format, depth_format: Some(DEPTH), ..Descriptor::default() };
-        let smoke = Renderer::new(&device, &descriptor)?;
+        let smoke = Renderer::new(&device, &descriptor);
         let material = smoke.create_material(&device, &queue, &MaterialNames::default().load(Path::new(""))?);
         let depth = depth_target(&device, &configuration);
         let (start, settings) = (Instant::now(), Settings::default());
@@ -181,6 +181,7 @@ impl Host {
                 settings: &self.settings,
                 material: &self.material,
             }],
+            time,
             shade_tree: Default::default(),
         };
         let mut encoder = self.device.create_command_encoder(&Default::default());

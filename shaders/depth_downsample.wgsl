@@ -9,6 +9,12 @@
 #import "lib/depth.wgsl"
 
 override DEPTH_DOWNSAMPLE: u32 = DEPTH_DOWNSAMPLE_CHECKERBOARD;
+// Written to Depth16Unorm, one step too far: a sprite that the original lets through is never lost to rounding.
+override COARSE_COPY: bool = false;
+
+fn stored_depth(view_depth: f32) -> f32 {
+    return saturate(view_depth / system.depth_limit + select(0.0, 1.0 / 65535.0, COARSE_COPY));
+}
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -26,7 +32,7 @@ fn fragment(@builtin(position) position: vec4f) -> @builtin(frag_depth) f32 {
     if DEPTH_DOWNSAMPLE == DEPTH_DOWNSAMPLE_POINT {
         let pixel = min(first + scale / 2, last);
         let depth = view_depth_from_ndc_depth(textureLoad(scene_depth, pixel, 0).r, view.depth_coefficients);
-        return saturate(depth / system.depth_limit);
+        return stored_depth(depth);
     }
     var nearest = SKY_VIEW_DEPTH;
     var farthest = 0.0;
@@ -40,5 +46,5 @@ fn fragment(@builtin(position) position: vec4f) -> @builtin(frag_depth) f32 {
         }
     }
     let kept = select(nearest, farthest, depth_downsample_keeps_farthest(DEPTH_DOWNSAMPLE, texel));
-    return saturate(kept / system.depth_limit);
+    return stored_depth(kept);
 }

@@ -1,15 +1,13 @@
 // forward
 // What    The classic way: every sprite fragment lit and blended at full resolution. The baseline of every comparison.
-// Reads   particles (instances, back to front), sprite flipbook, scene depth, lights, ramps.
+// Reads   particles (instances, back to front), sprite flipbook, detail map or noise, scene depth, lights, ramps.
 // Writes  the host's colour target, linear HDR.
 // Blend   alpha: ONE, ONE_MINUS_SRC_ALPHA (premultiplied) · additive: ONE, ONE · multiply: DST, ZERO.
-// Source  OTEE "Typical game particles so far"; soft fade: NV, BLOG.
+// Source  OTEE "Typical game particles so far"; techniques: NV, BLOG, MS; age ramp: MS.
 
-#import "lib/sprite_vertex.wgsl"
+#import "lib/sprite_fragment.wgsl"
 #import "lib/diffuse.wgsl"
 #import "lib/depth.wgsl"
-
-override FADE_CURVE: u32 = FADE_CURVE_SMOOTHSTEP;
 
 const BLEND_MODE_ALPHA: u32 = 0u;
 const BLEND_MODE_ADDITIVE: u32 = 1u;
@@ -23,19 +21,26 @@ fn vertex(particle: Particle, @builtin(vertex_index) index: u32) -> SpriteVertex
 
 @fragment
 fn fragment(in: SpriteVertex) -> @location(0) vec4f {
-    let ndc_depth = textureLoad(scene_depth, vec2i(in.position.xy), 0).r;
-    let distance = view_depth_from_ndc_depth(ndc_depth, view.depth_coefficients) - in.depth_amount_lod_frame.x;
-    let fade = soft_fade(FADE_CURVE, distance, system.fade_scale, system.contrast_power, system.epsilon);
-    if fade <= 0.0 {
+    var scene = SKY_VIEW_DEPTH;
+    if reads_scene() {
+        let ndc_depth = textureLoad(scene_depth, vec2i(in.position.xy), 0).r;
+        scene = view_depth_from_ndc_depth(ndc_depth, view.depth_coefficients);
+    }
+    let fragment = technique_fragment(in, scene);
+    if fragment.hidden || fragment.amount <= 0.0 {
         discard;
     }
-    let fragment = sprite_fragment(in);
-    let amount = fragment.w * fade;
-    if amount <= 0.0 {
-        discard;
+    let normal = fragment.normal * inverseSqrt(max(dot(fragment.normal, fragment.normal), 1.0e-12));
+    let amount = fragment.amount;
+    var position = in.view_position;
+    if is_sphere() {
+        position = view_position(in.view_position.xy, max(-in.centre_radius.z, view.near), view.orthographic);
     }
-    let normal = fragment.xyz * inverseSqrt(max(dot(fragment.xyz, fragment.xyz), 1.0e-12));
-    let light = diffuse_from_lights(normal, in.view_position) * system.diffuse_intensity + soft_scatter(amount);
+    var light = diffuse_from_lights(normal, position) * system.diffuse_intensity + soft_scatter(amount);
+    if system.age_colour > 0.0 {
+        let colour = sample_ramp(age_ramp, linear_sampler, in.amount_lod_frame_age.w);
+        light *= mix(vec3f(1.0), colour, system.age_colour);
+    }
     let covered = coverage(amount, system.boost);
     switch BLEND_MODE {
         case BLEND_MODE_ADDITIVE: { return vec4f(light * covered, 0.0); }

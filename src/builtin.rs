@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
+use crate::noise_volume::NoiseVolume;
 use crate::picture::decode_png;
 use crate::ramp::Ramp;
 use crate::sprite::bake::SpriteRecipe;
@@ -15,7 +16,7 @@ pub struct Builtin {
     pub name: &'static str,
     /// The PNG, or the preset's JSON.
     pub bytes: &'static [u8],
-    /// The JSON it was made from; empty for presets.
+    /// The JSON it was made from; empty for presets and details.
     pub recipe: &'static str,
 }
 
@@ -42,6 +43,7 @@ pub const RAMPS: &[Builtin] = builtin!(
         "scatter_soot",
         "specular_halo",
         "specular_ember",
+        "age_smoke",
     ]
 );
 
@@ -50,6 +52,16 @@ pub const MOTIFS: &[Builtin] = builtin!("ramps", ".motif.json", ["motif_studio"]
 
 /// Flipbooks of normal maps.
 pub const SPRITES: &[Builtin] = builtin!("sprites", ".sprite.json", ["puff", "wisp", "billow"]);
+
+/// Depth and motion of the flipbooks, by the same names.
+pub const DETAILS: &[Builtin] = &[
+    Builtin { name: "puff", bytes: include_bytes!("../sprites/puff.detail.png"), recipe: "" },
+    Builtin { name: "wisp", bytes: include_bytes!("../sprites/wisp.detail.png"), recipe: "" },
+    Builtin { name: "billow", bytes: include_bytes!("../sprites/billow.detail.png"), recipe: "" },
+];
+
+/// Tiling 3D noise.
+pub const NOISES: &[Builtin] = builtin!("sprites", ".noise.json", ["fbm"]);
 
 macro_rules! presets {
     ([$($name:literal),+ $(,)?]) => {
@@ -90,7 +102,29 @@ impl Builtin {
     pub fn sprite(&self) -> Result<Sprite, Error> {
         let path = path(self.name);
         let recipe: SpriteRecipe = crate::json::parse(&path, self.recipe)?;
-        let layout = SpriteLayout { columns: recipe.columns, rows: recipe.rows, y_down: false };
+        self.decode(recipe.layout())
+    }
+
+    /// Decodes the sprite's detail map.
+    ///
+    /// # Errors
+    /// As [`Builtin::sprite`].
+    pub fn detail(&self) -> Result<Option<Sprite>, Error> {
+        let recipe: SpriteRecipe = crate::json::parse(&path(self.name), self.recipe)?;
+        find(DETAILS, self.name).map(|detail| detail.decode(recipe.layout())).transpose()
+    }
+
+    fn decode(&self, layout: SpriteLayout) -> Result<Sprite, Error> {
+        let path = path(self.name);
         Sprite::from_picture(&path, &decode_png(&path, self.bytes)?.to_rgba8(), layout)
+    }
+
+    /// Decodes a noise.
+    ///
+    /// # Errors
+    /// As [`decode_png`] and [`NoiseVolume::from_picture`].
+    pub fn noise(&self) -> Result<NoiseVolume, Error> {
+        let path = path(self.name);
+        NoiseVolume::from_picture(&path, &decode_png(&path, self.bytes)?.to_rgba8())
     }
 }

@@ -23,6 +23,8 @@ pub struct Frame<'a> {
     /// Drawn far to near, whatever their order here. A system keeps its targets from frame to frame by its place in
     /// this slice, so keep the order steady.
     pub systems: &'a [System<'a>],
+    /// Seconds, from any start: the noise of volumetric sprites scrolls with it.
+    pub time: f32,
     /// Which stage of the shading is shown; [`ShadeTree::Final`] for a picture.
     pub shade_tree: ShadeTree,
 }
@@ -34,13 +36,45 @@ pub enum SceneDepth<'a> {
     Buffer(&'a wgpu::TextureView),
     /// An `R32Float` target with linear view depth in metres; no surface: anything from 1e6 up.
     Linear(&'a wgpu::TextureView),
+    /// Both of the same scene. The buffer is read, but by systems of the technique
+    /// [`SoftLinear`](crate::settings::Technique::SoftLinear), and where the backend (OpenGL) cannot read the buffer that
+    /// is attached to the pass.
+    Both {
+        /// As in [`SceneDepth::Buffer`].
+        buffer: &'a wgpu::TextureView,
+        /// As in [`SceneDepth::Linear`].
+        linear: &'a wgpu::TextureView,
+    },
 }
 
 impl<'a> SceneDepth<'a> {
-    /// The texture view, of either kind.
-    pub fn texture_view(&self) -> &'a wgpu::TextureView {
+    /// The depth buffer, if there is one.
+    pub fn buffer(&self) -> Option<&'a wgpu::TextureView> {
+        match self {
+            Self::Buffer(view) | Self::Both { buffer: view, .. } => Some(view),
+            Self::Linear(_) => None,
+        }
+    }
+
+    /// The texture that a system reads, which [`reads_linear`](crate::slot::reads_linear) tells.
+    pub(crate) fn read_by(&self, linear_depth: bool) -> &'a wgpu::TextureView {
         match self {
             Self::Buffer(view) | Self::Linear(view) => view,
+            Self::Both { buffer, linear } => {
+                if linear_depth {
+                    linear
+                } else {
+                    buffer
+                }
+            }
+        }
+    }
+
+    /// The linear target, if there is one.
+    pub fn linear(&self) -> Option<&'a wgpu::TextureView> {
+        match self {
+            Self::Linear(view) | Self::Both { linear: view, .. } => Some(view),
+            Self::Buffer(_) => None,
         }
     }
 }

@@ -106,6 +106,12 @@ impl Headless {
         format!("{} ({:?}, {})", info.name, info.backend, driver.trim())
     }
 
+    /// True if the adapter can draw to a format, which OpenGL does not promise of every one.
+    pub fn can_draw_to(&self, format: wgpu::TextureFormat) -> bool {
+        let usages = self.adapter.get_texture_format_features(format).allowed_usages;
+        usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT)
+    }
+
     /// The first failure since the device was made.
     ///
     /// # Errors

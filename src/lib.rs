@@ -30,7 +30,7 @@
 //! use haze::{Descriptor, Frame, Light, Particles, Renderer, SceneDepth, Settings, System};
 //!
 //! // Once.
-//! let mut smoke = Renderer::new(&device, &Descriptor::default())?;
+//! let mut smoke = Renderer::new(&device, &Descriptor::default());
 //! let assets = haze::preset::MaterialNames::default().load("".as_ref())?;
 //! let material = smoke.create_material(&device, &queue, &assets);
 //! let settings = Settings::default();
@@ -43,6 +43,7 @@
 //!     scene_depth: SceneDepth::Buffer(&scene_depth),
 //!     lights: &[Light { position: vec3(-3.0, 3.0, 2.0), intensity: 20.0, ..Light::default() }],
 //!     systems: &[System { particles: Particles::Slice(&particles), bounds: None, settings: &settings, material: &material }],
+//!     time: 0.0,
 //!     shade_tree: Default::default(),
 //! };
 //! smoke.prepare(&device, &queue, &mut encoder, &frame)?;
@@ -77,6 +78,7 @@ mod json;
 pub mod light;
 pub mod material;
 pub mod noise;
+pub mod noise_volume;
 pub mod particle;
 mod pass;
 pub mod picture;

@@ -1,11 +1,14 @@
-//! The pictures of a particle system: its ramps and its sprite flipbook.
+//! The pictures of a particle system: its ramps, its sprite flipbook and what belongs to it.
 
 use glam::UVec2;
 
+use crate::error::FieldError;
+use crate::noise_volume::NoiseVolume;
 use crate::pass::{Layouts, array_layers};
 use crate::ramp::Ramp;
 use crate::reference::diffuse_bake::zonal_coefficients;
 use crate::reference::ramp::sample_ramp;
+use crate::settings::Settings;
 use crate::sprite::Sprite;
 use crate::system::MaterialInfo;
 
@@ -14,6 +17,11 @@ use crate::system::MaterialInfo;
 pub struct MaterialAssets {
     /// Flipbook of normal maps.
     pub sprite: Sprite,
+    /// Depth and motion of the sprite, frame by frame: see [`sprite::detail`](crate::sprite::detail). Depth sprites and
+    /// `sprite.motion` need it.
+    pub detail: Option<Sprite>,
+    /// What volumetric sprites are made of.
+    pub noise: NoiseVolume,
     /// Light by dot(n, l)/2 + 1/2: facing away at 0, facing the light at 1. One row.
     pub diffuse_ramp: Ramp,
     /// Light by amount, for [`SoftScatterMode::Ramp`](crate::settings::SoftScatterMode::Ramp). One row.
@@ -22,6 +30,8 @@ pub struct MaterialAssets {
     pub specular_ramp: Ramp,
     /// A painted lit sphere, for [`DiffuseMode::PaintedMotif`](crate::settings::DiffuseMode::PaintedMotif).
     pub motif: Ramp,
+    /// Colour of a particle by its age, forward only. One row. (MS)
+    pub age_ramp: Ramp,
 }
 
 impl MaterialAssets {
@@ -29,7 +39,58 @@ impl MaterialAssets {
         MaterialInfo {
             sprite_size: self.sprite.size() as f32,
             frame_count: self.sprite.frame_count() as f32,
+            detail_lod: self.detail.as_ref().map(|map| (self.sprite.size() as f32 / map.size() as f32).log2()),
             zonal: zonal_coefficients(|cos| sample_ramp(&self.diffuse_ramp, cos * 0.5 + 0.5)),
+        }
+    }
+}
+
+impl MaterialInfo {
+    /// Refuses settings that need a picture which the material lacks; `path` leads to the settings.
+    pub fn validate(&self, settings: &Settings, path: impl Fn() -> String) -> Result<(), FieldError> {
+        if self.detail_lod.is_some() {
+            return Ok(());
+        }
+        let needs = |field: &str, value: &dyn std::fmt::Display| {
+            let expected = "another, or a material with a detail map (NAME.detail.png of `haze sprite bake`)";
+            Err(FieldError::new(format!("{}.{field}", path()), value, expected))
+        };
+        if settings.technique.is_depth_sprite() {
+            return needs("technique", &format!("{:?}", settings.technique.name()));
+        }
+        if settings.sprite.motion > 0.0 {
+            return needs("sprite.motion", &settings.sprite.motion);
+        }
+        Ok(())
+    }
+}
+
+/// How pictures are filtered.
+#[derive(Debug)]
+pub(crate) struct Samplers {
+    /// Ramps and sprites: clamped at the border.
+    pub linear: wgpu::Sampler,
+    /// Noise: round and round.
+    pub repeat: wgpu::Sampler,
+}
+
+impl Samplers {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let sampler = |label, address_mode| {
+            device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some(label),
+                address_mode_u: address_mode,
+                address_mode_v: address_mode,
+                address_mode_w: address_mode,
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                mipmap_filter: wgpu::MipmapFilterMode::Linear,
+                ..Default::default()
+            })
+        };
+        Self {
+            linear: sampler("haze linear", wgpu::AddressMode::ClampToEdge),
+            repeat: sampler("haze repeat", wgpu::AddressMode::Repeat),
         }
     }
 }
@@ -48,16 +109,22 @@ impl Material {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         layouts: &Layouts,
-        linear_sampler: &wgpu::Sampler,
+        samplers: &Samplers,
         assets: &MaterialAssets,
     ) -> Self {
         let mut bytes = 0;
-        let sprite = upload_sprite(device, queue, &assets.sprite, &mut bytes);
+        let sprite = upload_sprite(device, queue, "haze sprite", &assets.sprite, &mut bytes);
+        // Nothing reads it where there is none, but something must be bound.
+        let placeholder = Sprite::with_levels(1, 1, vec![[128, 128, 128, 0]]);
+        let detail = assets.detail.as_ref().unwrap_or(&placeholder);
+        let detail = upload_sprite(device, queue, "haze detail", detail, &mut bytes);
+        let noise = upload_noise(device, queue, &assets.noise, &mut bytes);
         let mut ramp = |label, ramp| upload_ramp(device, queue, label, ramp, &mut bytes);
         let diffuse_ramp = ramp("haze diffuse_ramp", &assets.diffuse_ramp);
         let soft_scatter_ramp = ramp("haze soft_scatter_ramp", &assets.soft_scatter_ramp);
         let specular_ramp = ramp("haze specular_ramp", &assets.specular_ramp);
         let motif = ramp("haze painted_motif", &assets.motif);
+        let age_ramp = ramp("haze age_ramp", &assets.age_ramp);
         let texture =
             |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
         let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -69,7 +136,11 @@ impl Material {
                 texture(2, &soft_scatter_ramp),
                 texture(3, &specular_ramp),
                 texture(4, &motif),
-                wgpu::BindGroupEntry { binding: 5, resource: wgpu::BindingResource::Sampler(linear_sampler) },
+                wgpu::BindGroupEntry { binding: 5, resource: wgpu::BindingResource::Sampler(&samplers.linear) },
+                texture(6, &detail),
+                texture(7, &age_ramp),
+                texture(8, &noise),
+                wgpu::BindGroupEntry { binding: 9, resource: wgpu::BindingResource::Sampler(&samplers.repeat) },
             ],
         });
         Self { bind_group, info: assets.info(), bytes }
@@ -105,9 +176,32 @@ fn upload_ramp(
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-fn upload_sprite(device: &wgpu::Device, queue: &wgpu::Queue, sprite: &Sprite, bytes: &mut u64) -> wgpu::TextureView {
+fn upload_noise(device: &wgpu::Device, queue: &wgpu::Queue, noise: &NoiseVolume, bytes: &mut u64) -> wgpu::TextureView {
+    let size = extent(UVec2::splat(noise.size()), noise.size());
     let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("haze sprite"),
+        label: Some("haze noise"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D3,
+        format: wgpu::TextureFormat::Rgba8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    *bytes += noise.bytes().len() as u64;
+    queue.write_texture(texture.as_image_copy(), noise.bytes(), layout(4 * size.width, size.height), size);
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+fn upload_sprite(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    label: &str,
+    sprite: &Sprite,
+    bytes: &mut u64,
+) -> wgpu::TextureView {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
         size: extent(UVec2::splat(sprite.size()), array_layers(sprite.frame_count())),
         mip_level_count: sprite.level_count(),
         sample_count: 1,

@@ -33,6 +33,16 @@ pub struct Noise {
 /// Gradient noise with a lattice of 1, whose gradients turn by `phase` = (cos, sin): a full turn is a seamless loop in
 /// time that swirls rather than drifts. (Perlin, "Improving noise", 2002; turning: Perlin and Neyret, "Flow noise", 2001)
 pub fn gradient_noise(position: Vec3, phase: Vec2, seed: u32) -> Noise {
+    lattice_noise(position, |cell| lattice_gradient(cell, phase, seed))
+}
+
+/// The same, repeating every `period` cells along each axis.
+pub fn tiling_noise(position: Vec3, period: u32, seed: u32) -> Noise {
+    let period = IVec3::splat(period.max(1) as i32);
+    lattice_noise(position, |cell| lattice_gradient(cell.rem_euclid(period), Vec2::X, seed))
+}
+
+fn lattice_noise(position: Vec3, lattice_gradient: impl Fn(IVec3) -> Vec3) -> Noise {
     let cell = position.floor();
     let f = position - cell;
     let cell = cell.as_ivec3();
@@ -43,7 +53,7 @@ pub fn gradient_noise(position: Vec3, phase: Vec2, seed: u32) -> Noise {
     let mut gradient = Vec3::ZERO;
     for corner in 0..8 {
         let offset = IVec3::new(corner & 1, (corner >> 1) & 1, corner >> 2);
-        let lattice = lattice_gradient(cell.wrapping_add(offset), phase, seed);
+        let lattice = lattice_gradient(cell.wrapping_add(offset));
         let dot = lattice.dot(f - offset.as_vec3());
         // Weight of the corner on each axis, and its slope.
         let pick = |axis: usize| {
@@ -122,6 +132,14 @@ mod tests {
             let start = gradient_noise(p, Vec2::from_angle(0.0), 1).value;
             let end = gradient_noise(p, Vec2::from_angle(std::f32::consts::TAU), 1).value;
             assert!((start - end).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn tiling_noise_repeats() {
+        for p in points() {
+            let (here, there) = (tiling_noise(p, 4, 2), tiling_noise(p + Vec3::new(4.0, -8.0, 12.0), 4, 2));
+            assert!((here.value - there.value).abs() < 1e-4 && here.gradient.distance(there.gradient) < 1e-3, "{p}");
         }
     }
 

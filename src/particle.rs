@@ -32,25 +32,22 @@ impl Default for Particle {
 }
 
 impl Particle {
-    /// The sphere that the sprite's corners reach, whichever way it turns.
-    pub fn reach(&self) -> f32 {
-        self.radius * std::f32::consts::SQRT_2
-    }
-
     /// True if every number is finite, in range and no more than [`LARGEST`]; a sprite that is not is skipped, never
     /// drawn.
     pub fn is_valid(&self) -> bool {
-        let largest = self.position.abs().max_element().max(self.rotation.abs()).max(self.frame.abs());
-        let finite = self.position.is_finite() && self.rotation.is_finite() && self.frame.is_finite();
-        finite && largest <= LARGEST && (0.0..=LARGEST).contains(&self.radius) && (0.0..=1.0).contains(&self.amount)
+        let numbers = [self.position.x, self.position.y, self.position.z, self.rotation, self.frame, self.age];
+        // Both are false for NaN.
+        let in_range = numbers.iter().all(|number| number.abs() <= LARGEST);
+        in_range && (0.0..=LARGEST).contains(&self.radius) && (0.0..=1.0).contains(&self.amount)
     }
 }
 
-/// The box that holds every valid particle.
-pub fn bounds_of(particles: &[Particle]) -> Bounds {
+/// The box that holds the sprites of every valid particle. `reach`: how far a sprite's corners are from its middle, in
+/// radii, see [`Settings::reach`](crate::Settings::reach).
+pub fn bounds_of(particles: &[Particle], reach: f32) -> Bounds {
     let mut bounds = Bounds::EMPTY;
     for particle in particles.iter().filter(|particle| particle.is_valid()) {
-        bounds.include(particle.position, particle.reach());
+        bounds.include(particle.position, particle.radius * reach);
     }
     bounds
 }

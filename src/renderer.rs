@@ -4,9 +4,9 @@ use glam::{IVec2, UVec2};
 
 use crate::descriptor::{Descriptor, read_only_depth_is_supported};
 use crate::error::{Error, FieldError};
-use crate::frame::{Frame, SceneDepth, System, validate_lights};
+use crate::frame::{Frame, System, validate_lights};
 use crate::frame_bindings::FrameBindings;
-use crate::material::{Material, MaterialAssets};
+use crate::material::{Material, MaterialAssets, Samplers};
 use crate::pass::Layouts;
 use crate::pass::accumulate::{self, AccumulatePass};
 use crate::pass::depth_downsample::{self, DepthDownsamplePass};
@@ -14,7 +14,7 @@ use crate::pass::diffuse_bake::{self, DiffuseBakePass};
 use crate::pass::forward::{self, ForwardPass};
 use crate::pass::specular_scatter::{self, SpecularScatterPass};
 use crate::pass::transfer::{self, TransferPass};
-use crate::slot::Slot;
+use crate::slot::{Slot, reads_linear};
 use crate::view::ViewGeometry;
 
 /// Draws particle systems into a host's frame.
@@ -26,7 +26,7 @@ pub struct Renderer {
     descriptor: Descriptor,
     layouts: Layouts,
     passes: Passes,
-    linear_sampler: wgpu::Sampler,
+    samplers: Samplers,
     frame: FrameBindings,
     slots: Vec<Slot>,
     /// The slots in sight, farthest first.
@@ -74,14 +74,7 @@ pub struct MemoryUse {
 
 impl Renderer {
     /// Compiles the shaders. Pipelines are compiled by the first [`prepare`](Self::prepare) that needs them.
-    ///
-    /// # Errors
-    /// [`Error::Field`] when the descriptor asks for what the device's backend cannot do.
-    pub fn new(device: &wgpu::Device, descriptor: &Descriptor) -> Result<Self, Error> {
-        if descriptor.depth_format.is_some() && !read_only_depth_is_supported(device) {
-            let expected = "None: this backend cannot test and sample one depth buffer in the same pass";
-            return Err(FieldError::new("descriptor.depth_format", "Some", expected).into());
-        }
+    pub fn new(device: &wgpu::Device, descriptor: &Descriptor) -> Self {
         let layouts = Layouts::new(device);
         let passes = Passes {
             depth_downsample: DepthDownsamplePass::new(device, &layouts),
@@ -91,27 +84,20 @@ impl Renderer {
             specular_scatter: SpecularScatterPass::new(device, &layouts, descriptor),
             forward: ForwardPass::new(device, &layouts, descriptor),
         };
-        let linear_sampler = device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("haze linear"),
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            mipmap_filter: wgpu::MipmapFilterMode::Linear,
-            ..Default::default()
-        });
-        Ok(Self {
+        Self {
             descriptor: *descriptor,
             frame: FrameBindings::new(device),
             layouts,
             passes,
-            linear_sampler,
+            samplers: Samplers::new(device),
             slots: Vec::new(),
             order: Vec::new(),
-        })
+        }
     }
 
     /// Uploads ramps and a sprite picture. Make each once and keep it.
     pub fn create_material(&self, device: &wgpu::Device, queue: &wgpu::Queue, assets: &MaterialAssets) -> Material {
-        Material::new(device, queue, &self.layouts, &self.linear_sampler, assets)
+        Material::new(device, queue, &self.layouts, &self.samplers, assets)
     }
 
     /// Records everything that happens before the host's pass: every system accumulated into a small target of its own.
@@ -131,7 +117,7 @@ impl Renderer {
     ) -> Result<(), Error> {
         self.order.clear();
         let view = ViewGeometry::new(&frame.view)?;
-        validate(device, &view, frame)?;
+        validate(device, &self.descriptor, &view, frame)?;
         self.frame.write(device, queue, &self.layouts, &view, &frame.scene_depth);
         self.slots.truncate(frame.systems.len());
         while self.slots.len() < frame.systems.len() {
@@ -185,32 +171,57 @@ impl Renderer {
     }
 }
 
-fn validate(device: &wgpu::Device, view: &ViewGeometry, frame: &Frame<'_>) -> Result<(), FieldError> {
-    let texture = frame.scene_depth.texture_view().texture();
-    let size = (view.view.size.x, view.view.size.y);
-    if (texture.width(), texture.height()) != size {
-        let value = format!("{}x{}", texture.width(), texture.height());
-        return Err(FieldError::new("scene_depth", value, format!("the size of the view, {}x{}", size.0, size.1)));
+fn validate(
+    device: &wgpu::Device,
+    descriptor: &Descriptor,
+    view: &ViewGeometry,
+    frame: &Frame<'_>,
+) -> Result<(), FieldError> {
+    if !frame.time.is_finite() {
+        return Err(FieldError::new("time", frame.time, "a finite number of seconds"));
     }
-    if texture.sample_count() != 1 {
-        let value = format!("{} samples", texture.sample_count());
-        return Err(FieldError::new("scene_depth", value, "1 sample; resolve the depth buffer first"));
+    if let Some(buffer) = frame.scene_depth.buffer() {
+        let is_depth = buffer.texture().format().has_depth_aspect();
+        validate_scene_depth(view, buffer, is_depth, "a depth format for the depth buffer")?;
     }
-    let format = texture.format();
-    let fits = match frame.scene_depth {
-        SceneDepth::Buffer(_) => format.has_depth_aspect(),
-        SceneDepth::Linear(_) => format == wgpu::TextureFormat::R32Float,
-    };
-    if !fits {
-        let expected = "a depth format for SceneDepth::Buffer, R32Float for SceneDepth::Linear";
-        return Err(FieldError::new("scene_depth", format!("{format:?}"), expected));
+    if let Some(linear) = frame.scene_depth.linear() {
+        let is_linear = linear.texture().format() == wgpu::TextureFormat::R32Float;
+        validate_scene_depth(view, linear, is_linear, "R32Float for the linear target")?;
     }
-    if !texture.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
-        return Err(FieldError::new("scene_depth", format!("usage {:?}", texture.usage()), "TEXTURE_BINDING in it"));
+    let reads_attached = descriptor.depth_format.is_some() && frame.scene_depth.linear().is_none();
+    if reads_attached && !read_only_depth_is_supported(device) {
+        let expected = "SceneDepth::Linear or Both, or None as the descriptor's depth_format: this backend (OpenGL) \
+                        cannot read the depth buffer that the pass tests";
+        return Err(FieldError::new("scene_depth", "Buffer", expected));
     }
     validate_lights(frame.lights)?;
     for (index, system) in frame.systems.iter().enumerate() {
         validate_system(device, index, frame, system)?;
+    }
+    Ok(())
+}
+
+fn validate_scene_depth(
+    view: &ViewGeometry,
+    depth: &wgpu::TextureView,
+    format_fits: bool,
+    expected: &str,
+) -> Result<(), FieldError> {
+    let texture = depth.texture();
+    let size = (view.view.size.x, view.view.size.y);
+    let refuse = |value: String, expected: &str| Err(FieldError::new("scene_depth", value, expected));
+    if (texture.width(), texture.height()) != size {
+        let value = format!("{}x{}", texture.width(), texture.height());
+        return refuse(value, &format!("the size of the view, {}x{}", size.0, size.1));
+    }
+    if texture.sample_count() != 1 {
+        return refuse(format!("{} samples", texture.sample_count()), "1 sample; resolve the depth buffer first");
+    }
+    if !format_fits {
+        return refuse(format!("{:?}", texture.format()), expected);
+    }
+    if !texture.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
+        return refuse(format!("usage {:?}", texture.usage()), "TEXTURE_BINDING in it");
     }
     Ok(())
 }
@@ -222,7 +233,7 @@ fn validate_system(
     system: &System<'_>,
 ) -> Result<(), FieldError> {
     use crate::frame::Particles;
-    use crate::settings::DepthSource;
+    use crate::settings::{DepthSource, Technique};
 
     system.settings.validate(|| format!("systems[{index}].settings"))?;
     if let Some(bounds) = &system.bounds {
@@ -239,14 +250,20 @@ fn validate_system(
             return Err(FieldError::new(field("particles"), value, format!("at least {needed} bytes, usage VERTEX")));
         }
     }
+    system.material.info.validate(system.settings, || field("settings"))?;
+    if system.settings.technique == Technique::SoftLinear && frame.scene_depth.linear().is_none() {
+        let expected = "\"soft\", or a scene_depth that is SceneDepth::Linear or Both";
+        return Err(FieldError::new(field("settings.technique"), "\"soft_linear\"", expected));
+    }
     if system.settings.accumulate.depth_source == DepthSource::Host && !system.settings.is_forward() {
-        let texture = frame.scene_depth.texture_view().texture();
-        let attachable = texture.usage().contains(wgpu::TextureUsages::RENDER_ATTACHMENT)
-            && matches!(frame.scene_depth, SceneDepth::Buffer(_))
-            && !texture.format().has_stencil_aspect();
-        if !attachable || !read_only_depth_is_supported(device) {
-            let expected = "\"reduced\", or a scene_depth that is a Buffer without stencil, with RENDER_ATTACHMENT \
-                            usage, on a backend with read-only depth (not OpenGL)";
+        let attachable = frame.scene_depth.buffer().is_some_and(|buffer| {
+            let texture = buffer.texture();
+            texture.usage().contains(wgpu::TextureUsages::RENDER_ATTACHMENT) && !texture.format().has_stencil_aspect()
+        });
+        let is_read = !reads_linear(device, &frame.scene_depth, system.settings);
+        if !attachable || (is_read && !read_only_depth_is_supported(device)) {
+            let expected = "\"reduced\", or a scene_depth that has a depth buffer without stencil, with \
+                            RENDER_ATTACHMENT usage, and on OpenGL a linear target as well";
             return Err(FieldError::new(field("settings.accumulate.depth_source"), "\"host\"", expected));
         }
     }

@@ -5,7 +5,7 @@ use glam::UVec2;
 use crate::bounds::{Bounds, TargetRect, effective_scale};
 use crate::descriptor::{Descriptor, read_only_depth_is_supported};
 use crate::error::FieldError;
-use crate::frame::{Frame, Particles, System};
+use crate::frame::{Frame, Particles, SceneDepth, System};
 use crate::gpu_types::{LightUniform, SystemUniform};
 use crate::particle::{Particle, bounds_of};
 use crate::pass::accumulate::{AccumulateKey, DepthTest};
@@ -14,7 +14,7 @@ use crate::pass::sort::{SortScratch, back_to_front};
 use crate::pass::transfer::TransferKey;
 use crate::pass::{LIGHTS_SIZE, Layouts, uniform_buffer};
 use crate::renderer::{MemoryUse, Passes, TargetViews};
-use crate::settings::{DepthSource, Settings, ShadeTree};
+use crate::settings::{DepthSource, Settings, ShadeTree, Technique};
 use crate::system::{SystemInView, lights_in_view, system_in_view};
 use crate::targets::{Targets, TargetsKey};
 use crate::view::ViewGeometry;
@@ -48,6 +48,9 @@ pub(crate) struct Draw {
     pub rect: TargetRect,
     pub scale: u32,
     pub depth_limit: f32,
+    /// The scene's depth is read from the linear target.
+    pub linear_depth: bool,
+    pub debug_loop: u32,
     pub material: wgpu::BindGroup,
     pub instances: wgpu::Buffer,
     pub instance_count: u32,
@@ -58,9 +61,11 @@ pub(crate) struct Draw {
 pub(crate) enum DrawPath {
     Deferred {
         depth_downsample: Option<wgpu::RenderPipeline>,
+        /// The same for the targets' copy of the reduced depth.
+        depth_copy: Option<wgpu::RenderPipeline>,
         diffuse_bake: Option<wgpu::RenderPipeline>,
         accumulate: wgpu::RenderPipeline,
-        /// The depth that the hardware tests sprites against: reduced, or the host's own.
+        /// The depth that the hardware tests sprites against.
         tested_depth: Option<wgpu::TextureView>,
         transfer: Option<wgpu::RenderPipeline>,
         specular_scatter: Option<(wgpu::RenderPipeline, u32)>,
@@ -128,7 +133,8 @@ impl Slot {
         let bounds = bounds_of_system(system);
         lights_in_view(view, frame.lights, &bounds, &mut self.scratch.lights);
         let info = &system.material.info;
-        let Some(in_view) = system_in_view(view, &bounds, system.settings, info, &self.scratch.lights)? else {
+        let Some(in_view) = system_in_view(view, &bounds, system.settings, info, &self.scratch.lights, frame.time)?
+        else {
             return Ok(());
         };
         let Some((instances, instance_count)) = self.write_particles(device, queue, view, system) else {
@@ -137,6 +143,7 @@ impl Slot {
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&in_view.uniform));
         queue.write_buffer(&self.lights, 0, bytemuck::cast_slice(&self.scratch.lights));
 
+        let linear_depth = reads_linear(device, &frame.scene_depth, system.settings);
         let path = if system.settings.is_forward() {
             self.targets = None;
             if !matches!(frame.shade_tree, ShadeTree::Final | ShadeTree::Combined) {
@@ -144,7 +151,7 @@ impl Slot {
             }
             DrawPath::Forward(passes.forward.pipeline(device, forward_key(view, system.settings)))
         } else {
-            self.fit_targets(device, layouts, view, &in_view, frame, system.settings);
+            self.fit_targets(device, layouts, view, &in_view, frame.scene_depth.read_by(linear_depth), system.settings);
             self.deferred(device, passes, descriptor, view, &in_view, frame, system.settings)
         };
         self.draw = Some(Draw {
@@ -152,6 +159,8 @@ impl Slot {
             rect: in_view.rect,
             scale: in_view.uniform.scale as u32,
             depth_limit: in_view.uniform.depth_limit,
+            linear_depth,
+            debug_loop: system.settings.sprite.debug_loop,
             material: system.material.bind_group.clone(),
             instances,
             instance_count,
@@ -197,7 +206,7 @@ impl Slot {
         layouts: &Layouts,
         view: &ViewGeometry,
         in_view: &SystemInView,
-        frame: &Frame<'_>,
+        depth: &wgpu::TextureView,
         settings: &Settings,
     ) {
         let accumulate = &settings.accumulate;
@@ -205,8 +214,8 @@ impl Slot {
             format: accumulate.format,
             depth_source: accumulate.depth_source,
             diffuse_mode: settings.diffuse.mode,
+            depth_copy: accumulate.depth_source == DepthSource::Reduced && !read_only_depth_is_supported(device),
         };
-        let depth = frame.scene_depth.texture_view();
         if self.targets.as_ref().is_some_and(|targets| targets.fits(key, &in_view.rect, depth)) {
             return;
         }
@@ -230,26 +239,26 @@ impl Slot {
     ) -> DrawPath {
         let accumulate = &settings.accumulate;
         let shade_tree = frame.shade_tree;
-        let depth = frame.scene_depth.texture_view();
-        let reduced = self.targets.as_ref().and_then(|targets| targets.reduced_depth.clone());
-        let (depth_test, tested_depth) = match accumulate.depth_source {
-            DepthSource::Host => (DepthTest::Host(depth.texture().format(), view.depth.reversed), Some(depth.clone())),
-            DepthSource::Reduced if read_only_depth_is_supported(device) => (DepthTest::Reduced, reduced),
-            DepthSource::Reduced => (DepthTest::InShader, None),
-        };
+        let (depth_test, tested_depth) = self.depth_test(view, frame, settings);
         let glows = matches!(shade_tree, ShadeTree::Final | ShadeTree::SpecularScatter)
             && settings.specular_scatter.intensity > 0.0
             && !self.scratch.lights.is_empty();
         DrawPath::Deferred {
             depth_downsample: (accumulate.depth_source == DepthSource::Reduced)
-                .then(|| passes.depth_downsample.pipeline(device, accumulate.depth_downsample)),
+                .then(|| passes.depth_downsample.pipeline(device, accumulate.depth_downsample, false)),
+            depth_copy: (depth_test == DepthTest::Copy)
+                .then(|| passes.depth_downsample.pipeline(device, accumulate.depth_downsample, true)),
             diffuse_bake: passes.diffuse_bake.pipeline(device, settings.diffuse.mode),
             accumulate: passes.accumulate.pipeline(
                 device,
                 AccumulateKey {
                     format: accumulate.format,
                     encoding: accumulate.encoding,
+                    technique: settings.technique,
+                    animation: settings.sprite.animation,
+                    debug_sprite: settings.sprite.debug_sprite,
                     curve: settings.soft_fade.curve,
+                    host_depth: accumulate.depth_source == DepthSource::Host,
                     depth_test,
                     overdraw: shade_tree == ShadeTree::Overdraw,
                 },
@@ -277,12 +286,48 @@ impl Slot {
             }),
         }
     }
+
+    /// What rejects hidden sprites, and the depth that it looks at.
+    fn depth_test(
+        &self,
+        view: &ViewGeometry,
+        frame: &Frame<'_>,
+        settings: &Settings,
+    ) -> (DepthTest, Option<wgpu::TextureView>) {
+        if settings.fade_through() > 0.0 {
+            return (DepthTest::InShader, None);
+        }
+        if settings.accumulate.depth_source == DepthSource::Host {
+            let buffer = frame.scene_depth.buffer().cloned();
+            let format = buffer.as_ref().map(|buffer| buffer.texture().format());
+            return match format {
+                Some(format) => (DepthTest::Host(format, view.depth.reversed), buffer),
+                // Refused when the frame was validated.
+                None => (DepthTest::InShader, None),
+            };
+        }
+        match &self.targets {
+            Some(Targets { depth_copy: Some(copy), .. }) => (DepthTest::Copy, Some(copy.clone())),
+            Some(Targets { reduced_depth: Some(reduced), .. }) => (DepthTest::Reduced, Some(reduced.clone())),
+            _ => (DepthTest::InShader, None),
+        }
+    }
+}
+
+/// True if a system reads the scene's linear target, not its depth buffer.
+pub(crate) fn reads_linear(device: &wgpu::Device, scene_depth: &SceneDepth<'_>, settings: &Settings) -> bool {
+    match scene_depth {
+        SceneDepth::Buffer(_) => false,
+        SceneDepth::Linear(_) => true,
+        // Where a depth buffer cannot be tested and read in one pass, it is left to the tests.
+        SceneDepth::Both { .. } => settings.technique == Technique::SoftLinear || !read_only_depth_is_supported(device),
+    }
 }
 
 fn bounds_of_system(system: &System<'_>) -> Bounds {
     match (system.bounds, system.particles) {
         (Some(bounds), _) => bounds,
-        (None, Particles::Slice(particles)) => bounds_of(particles),
+        (None, Particles::Slice(particles)) => bounds_of(particles, system.settings.reach()),
         // Refused when the frame was validated.
         (None, Particles::Buffer { .. }) => Bounds::EMPTY,
     }
@@ -291,7 +336,11 @@ fn bounds_of_system(system: &System<'_>) -> Bounds {
 fn forward_key(view: &ViewGeometry, settings: &Settings) -> ForwardKey {
     ForwardKey {
         blend_mode: settings.blend_mode,
+        technique: settings.technique,
+        animation: settings.sprite.animation,
+        debug_sprite: settings.sprite.debug_sprite,
         curve: settings.soft_fade.curve,
+        shows_through: settings.fade_through() > 0.0,
         soft_scatter_mode: settings.soft_scatter.mode,
         reversed: view.depth.reversed,
     }

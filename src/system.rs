@@ -37,6 +37,8 @@ impl ViewGeometry {
 pub(crate) struct MaterialInfo {
     pub sprite_size: f32,
     pub frame_count: f32,
+    /// Mip levels that the detail map is smaller than the sprite; `None` without a detail map.
+    pub detail_lod: Option<f32>,
     /// Zonal harmonics of the diffuse ramp.
     pub zonal: [Vec3; 3],
 }
@@ -57,6 +59,7 @@ pub(crate) fn system_in_view(
     settings: &Settings,
     material: &MaterialInfo,
     lights: &[LightUniform],
+    time: f32,
 ) -> Result<Option<SystemInView>, FieldError> {
     let Some(in_view) = bounds_in_view(bounds, view) else {
         return Ok(None);
@@ -106,6 +109,20 @@ pub(crate) fn system_in_view(
         specular_scatter_size: settings.specular_scatter.size,
         specular_scatter_intensity: settings.specular_scatter.intensity,
         light_count: lights.len() as u32,
+        size: settings.sprite.size,
+        motion: settings.sprite.motion,
+        age_colour: settings.sprite.age_colour,
+        detail_lod: material.detail_lod.unwrap_or_default(),
+        billboard_radius: settings.spherical_billboard.radius,
+        billboard_density: settings.spherical_billboard.density,
+        density: settings.density.density,
+        noise_size: settings.volumetric.noise_size,
+        volume_opacity: settings.volumetric.opacity,
+        march_steps: settings.volumetric.march_steps,
+        noise_octaves: settings.volumetric.noise_octaves,
+        noise_scroll: noise_scroll(settings, time),
+        fade_through: settings.fade_through(),
+        padding: [0.0; 3],
         spherical_harmonics: [Vec4::ZERO; 9],
     };
     if settings.diffuse.mode == DiffuseMode::SphericalHarmonics {
@@ -115,7 +132,19 @@ pub(crate) fn system_in_view(
             add_light(&mut uniform.spherical_harmonics, &material.zonal, sample.direction, colour);
         }
     }
-    Ok(Some(SystemInView { rect, uniform, back_faces: in_view.near <= view.depth.near }))
+    // The front of the box may be hidden by what sprites show through.
+    let back_faces = in_view.near <= view.depth.near || uniform.fade_through > 0.0;
+    Ok(Some(SystemInView { rect, uniform, back_faces }))
+}
+
+/// Metres that the noise has risen, within one tile of it, so that f32 stays fine after hours.
+fn noise_scroll(settings: &Settings, time: f32) -> f32 {
+    if settings.sprite.freeze_animation {
+        return 0.0;
+    }
+    let volumetric = &settings.volumetric;
+    let risen = f64::from(volumetric.scroll_speed) * f64::from(time);
+    risen.rem_euclid(f64::from(volumetric.noise_size)) as f32
 }
 
 /// Scale (xy) and offset (zw) from the picture's NDC to the target's.

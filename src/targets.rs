@@ -29,12 +29,17 @@ pub(crate) fn accumulation_layout(format: AccumulationFormat) -> [AccumulationAt
 /// which is not so of `R32Float`.
 pub(crate) const REDUCED_DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
+/// The copy that OpenGL tests against: half the size, so that a system stays within its memory.
+pub(crate) const DEPTH_COPY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
+
 /// What decides whether a system's textures can be used again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TargetsKey {
     pub format: AccumulationFormat,
     pub depth_source: DepthSource,
     pub diffuse_mode: DiffuseMode,
+    /// The reduced depth is needed twice.
+    pub depth_copy: bool,
 }
 
 /// The textures of one system. The part in use is the rectangle from (0, 0) of the size of its screen rectangle.
@@ -46,6 +51,8 @@ pub(crate) struct Targets {
     pub accumulation: [wgpu::TextureView; ATTACHMENTS],
     /// None where sprites are compared with the host's own depth.
     pub reduced_depth: Option<wgpu::TextureView>,
+    /// The reduced depth once more, coarser, where the backend cannot test what it samples.
+    pub depth_copy: Option<wgpu::TextureView>,
     /// One view per face of the cubemap, one for the motif, none for the other diffuse modes.
     pub baked_diffuse: Vec<wgpu::TextureView>,
     /// Group 3 of accumulate.
@@ -98,6 +105,7 @@ impl Targets {
             .map(|attachment| whole(texture(attachment.label, attachment.format, size, 1)));
         let reduced_depth = (key.depth_source == DepthSource::Reduced)
             .then(|| whole(texture("haze reduced depth", REDUCED_DEPTH_FORMAT, size, 1)));
+        let depth_copy = key.depth_copy.then(|| whole(texture("haze depth copy", DEPTH_COPY_FORMAT, size, 1)));
 
         let (side, layers) = diffuse_bake::size_and_layers(key.diffuse_mode).unwrap_or((1, 1));
         let baked = texture("haze baked diffuse", diffuse_bake::FORMAT, UVec2::splat(side), array_layers(layers));
@@ -139,6 +147,7 @@ impl Targets {
             scene_depth,
             accumulation,
             reduced_depth,
+            depth_copy,
             baked_diffuse,
             accumulate_inputs,
             transfer_inputs,

@@ -23,3 +23,8 @@ const MAX_LIGHTS: u32 = 128u;
 @group(2) @binding(3) var specular_ramp: texture_2d<f32>;
 @group(2) @binding(4) var painted_motif: texture_2d<f32>;
 @group(2) @binding(5) var linear_sampler: sampler;
+// rgb: depth and motion, see detail_from_texel().
+@group(2) @binding(6) var detail: texture_2d_array<f32>;
+@group(2) @binding(7) var age_ramp: texture_2d<f32>;
+@group(2) @binding(8) var noise: texture_3d<f32>;
+@group(2) @binding(9) var repeat_sampler: sampler;

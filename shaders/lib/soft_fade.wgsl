@@ -4,6 +4,7 @@ const FADE_CURVE_SMOOTHSTEP: u32 = 0u;
 const FADE_CURVE_LINEAR: u32 = 1u;
 const FADE_CURVE_CONTRAST: u32 = 2u;
 const FADE_CURVE_EXPONENTIAL: u32 = 3u;
+const FADE_CURVE_ALWAYS: u32 = 4u;
 
 // x in 0..1. BLOG and NV: x itself.
 fn fade_linear(x: f32) -> f32 {
@@ -28,10 +29,16 @@ fn fade_exponential(x: f32, contrast_power: f32) -> f32 {
     return 1.0 - exp2(-2.0 * pow(2.0 * x, contrast_power));
 }
 
+// Whole in front of the surface, gone 1 / fade_scale behind it. (BLOG, comment: 1 - saturate(softness · (sprite - scene)))
+fn fade_always(distance: f32, fade_scale: f32) -> f32 {
+    return 1.0 - saturate(-distance * fade_scale);
+}
+
 // The fade by a sprite fragment's distance in front of the scene, metres. A fragment behind the surface, or closer
-// than epsilon, is gone: the difference is signed, nothing fades back in. (BLOG, NV section "Blending the sprite")
+// than epsilon, is gone: the difference is signed, nothing fades back in. (BLOG, NV section "Blending the sprite") Only
+// the curve `always` shows what is behind.
 fn soft_fade(curve: u32, distance: f32, fade_scale: f32, contrast_power: f32, epsilon: f32) -> f32 {
-    if distance < max(epsilon, 0.0) {
+    if curve != FADE_CURVE_ALWAYS && distance < max(epsilon, 0.0) {
         return 0.0;
     }
     let x = saturate(distance * fade_scale);
@@ -39,6 +46,7 @@ fn soft_fade(curve: u32, distance: f32, fade_scale: f32, contrast_power: f32, ep
         case FADE_CURVE_LINEAR: { return fade_linear(x); }
         case FADE_CURVE_CONTRAST: { return fade_contrast(x, contrast_power); }
         case FADE_CURVE_EXPONENTIAL: { return fade_exponential(x, contrast_power); }
+        case FADE_CURVE_ALWAYS: { return fade_always(distance, fade_scale); }
         default: { return fade_smoothstep(x); }
     }
 }

@@ -8,6 +8,19 @@ fn sprite_lod(sprite_size: f32, diameter_in_texels: f32) -> f32 {
     return max(log2(sprite_size / max(diameter_in_texels, 1.0e-3)), 0.0);
 }
 
+const SPRITE_ANIMATION_FLIPBOOK: u32 = 0u;
+const SPRITE_ANIMATION_VOLUME: u32 = 1u;
+const SPRITE_ANIMATION_STILL: u32 = 2u;
+
+// The fractional frame that a particle shows: its own, its age through the slices of a volume texture, or the first.
+fn sprite_frame(animation: u32, frame: f32, age: f32, frame_count: f32) -> f32 {
+    switch animation {
+        case SPRITE_ANIMATION_VOLUME: { return saturate(age) * (frame_count - 1.0); }
+        case SPRITE_ANIMATION_STILL: { return 0.0; }
+        default: { return frame; }
+    }
+}
+
 // The two frames that a fractional frame blends, and the share of the second. The flipbook repeats.
 struct FlipbookFrames {
     first: i32,
@@ -55,20 +68,51 @@ fn sample_sprite_frame(sprite: texture_2d_array<f32>, linear_sampler: sampler, u
     return mix(fine, coarse, level - base);
 }
 
-// Normal (-1..1, about unit length) and amount of a sprite. uv 0..1, v down.
+// Normal (-1..1, about unit length) and amount of a sprite. uv 0..1, v down. `motion` is where texels go from the first
+// frame to the second, in uv: each frame is looked up where the texel is at this moment, so that a blend does not ghost.
 fn sample_sprite(
     sprite: texture_2d_array<f32>,
     linear_sampler: sampler,
     uv: vec2f,
     frames: FlipbookFrames,
+    motion: vec2f,
     lod: f32,
 ) -> vec4f {
-    var texel = sample_sprite_frame(sprite, linear_sampler, uv, frames.first, lod);
+    var texel = sample_sprite_frame(sprite, linear_sampler, uv - motion * frames.blend, frames.first, lod);
     if frames.blend > 0.0 {
-        let next = sample_sprite_frame(sprite, linear_sampler, uv, frames.second, lod);
+        let place = uv + motion * (1.0 - frames.blend);
+        let next = sample_sprite_frame(sprite, linear_sampler, place, frames.second, lod);
         texel = mix(texel, next, frames.blend);
     }
     return vec4f(texel.rgb * 2.0 - 1.0, texel.a);
+}
+
+// The largest motion that a detail map holds, in uv. MOTION_RANGE in src/sprite/detail.rs.
+const MOTION_RANGE: f32 = 0.125;
+
+// A detail map's texel: x = how far it stands out towards the viewer, -1..1 radii; yz = motion to the next frame, in uv.
+// 128 of 255 is none.
+fn detail_from_texel(texel: vec3f) -> vec3f {
+    return (texel * 255.0 - 128.0) / 127.0 * vec3f(1.0, MOTION_RANGE, MOTION_RANGE);
+}
+
+// The detail map at a moment between two frames. Motion is the first frame's.
+fn sample_detail(
+    detail: texture_2d_array<f32>,
+    linear_sampler: sampler,
+    uv: vec2f,
+    frames: FlipbookFrames,
+    lod: f32,
+) -> vec3f {
+    let first = detail_from_texel(sample_sprite_frame(detail, linear_sampler, uv, frames.first, lod).rgb);
+    let second = detail_from_texel(sample_sprite_frame(detail, linear_sampler, uv, frames.second, lod).rgb);
+    return vec3f(mix(first.x, second.x, frames.blend), first.yz);
+}
+
+// NV's debug sprite: eight by eight checks, every other one of a quarter of the amount.
+fn checkerboard(uv: vec2f) -> vec4f {
+    let check = vec2i(floor(uv * 8.0));
+    return vec4f(0.0, 0.0, 1.0, select(0.25, 1.0, ((check.x + check.y) & 1) == 0));
 }
 
 // Corner 0..4 of a triangle strip, -1..1, y up.

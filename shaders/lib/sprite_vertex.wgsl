@@ -1,9 +1,9 @@
-// From a particle to one corner of its camera-facing square.
+// From a particle to one corner of its camera-facing square, or of the rectangle round its sphere.
 
 #import "lib/bindings.wgsl"
 #import "lib/sprite.wgsl"
 #import "lib/soft_fade.wgsl"
-#import "lib/normal.wgsl"
+#import "lib/technique.wgsl"
 
 // One instance. The layout is that of `Particle` in src/particle.rs.
 struct Particle {
@@ -18,13 +18,52 @@ const LARGEST: f32 = 1.0e9;
 
 struct SpriteVertex {
     @builtin(position) position: vec4f,
+    // Squares only.
     @location(0) uv: vec2f,
-    // View space.
+    // View space. Squares: the point of the sprite. Spheres: a point of the ray through the pixel, at view depth 1.
     @location(1) view_position: vec3f,
-    // The sprite's view depth, amount after near fade and opacity, mip level, frame.
-    @location(2) @interpolate(flat, either) depth_amount_lod_frame: vec4f,
+    // Amount after near fade and opacity, mip level, frame, age.
+    @location(2) @interpolate(flat, either) amount_lod_frame_age: vec4f,
+    // View space.
+    @location(3) @interpolate(flat, either) centre_radius: vec4f,
     // Cosine and sine of the rotation.
-    @location(3) @interpolate(flat, either) rotation: vec2f,
+    @location(4) @interpolate(flat, either) rotation: vec2f,
+}
+
+override TECHNIQUE: u32 = TECHNIQUE_SOFT;
+override SPRITE_ANIMATION: u32 = SPRITE_ANIMATION_FLIPBOOK;
+
+// True for techniques whose sprites are spheres.
+fn is_sphere() -> bool {
+    return TECHNIQUE == TECHNIQUE_SPHERICAL_BILLBOARD || is_volumetric();
+}
+
+fn is_volumetric() -> bool {
+    return TECHNIQUE == TECHNIQUE_VOLUMETRIC_HARD || TECHNIQUE == TECHNIQUE_VOLUMETRIC_SOFT;
+}
+
+// How far in front of its centre a sprite reaches, metres.
+fn sprite_thickness(radius: f32) -> f32 {
+    let flat_sprite = TECHNIQUE == TECHNIQUE_HARD || TECHNIQUE == TECHNIQUE_SOFT || TECHNIQUE == TECHNIQUE_SOFT_LINEAR;
+    return select(radius, 0.0, flat_sprite);
+}
+
+// The view depth at which the hardware tests a sprite: no part of it is nearer.
+fn sprite_front(centre_radius: vec4f) -> f32 {
+    return max(-centre_radius.z - sprite_thickness(centre_radius.w), view.near);
+}
+
+// NDC of a corner of the rectangle round a sphere's picture, inside the picture.
+fn sphere_corner(centre_radius: vec4f, corner: vec2f) -> vec2f {
+    let centre = centre_radius.xyz;
+    let radius = centre_radius.w;
+    let x = sphere_axis_bounds(vec2f(centre.x, -centre.z), radius, view.near);
+    let y = sphere_axis_bounds(vec2f(centre.y, -centre.z), radius, view.near);
+    var ray = select(vec2f(x.x, y.x), vec2f(x.y, y.y), corner > vec2f(0.0));
+    if view.orthographic > 0.5 {
+        ray = centre.xy + corner * radius;
+    }
+    return clamp((ray - view.ray_offset) / view.ray_scale, vec2f(-1.0), vec2f(1.0));
 }
 
 // `target_from_ndc` moves the picture's NDC to the target's; `texels_per_pixel` is the target's resolution.
@@ -36,51 +75,57 @@ fn sprite_vertex(
 ) -> SpriteVertex {
     var out: SpriteVertex;
     let centre = (view.view_from_world * vec4f(particle.position_radius.xyz, 1.0)).xyz;
-    let radius = particle.position_radius.w;
+    var radius = particle.position_radius.w * system.size;
+    if TECHNIQUE == TECHNIQUE_SPHERICAL_BILLBOARD {
+        radius *= system.billboard_radius;
+    }
     let view_depth = -centre.z;
     let angle = particle.rotation_amount_frame_age.x;
+    // A sphere is seen until its far side has passed the near plane; its fade goes by that side.
+    let back = view_depth + select(0.0, radius, is_sphere());
     let amount = saturate(particle.rotation_amount_frame_age.y) * system.opacity
-        * near_fade(view_depth, system.near_fade_start, system.near_fade_end);
+        * near_fade(back, system.near_fade_start, system.near_fade_end);
     let frame = particle.rotation_amount_frame_age.z;
+    let age = particle.rotation_amount_frame_age.w;
 
     // Hidden sprites collapse outside the clip volume. A host's own buffer may hold anything: the comparisons are false
     // for NaN, and what is beyond LARGEST has no place in a picture.
-    let finite = dot(abs(centre), vec3f(1.0)) + radius + abs(angle) + abs(frame) < LARGEST;
-    if !(finite && view_depth > view.near && radius > 0.0 && amount > 0.0) {
+    let finite = dot(abs(centre), vec3f(1.0)) + radius + abs(angle) + abs(frame) + abs(age) < LARGEST;
+    if !(finite && back > view.near && radius > 0.0 && amount > 0.0) {
         out.position = vec4f(2.0, 2.0, 2.0, 1.0);
         return out;
     }
 
-    let rotation = vec2f(cos(angle), sin(angle));
+    out.centre_radius = vec4f(centre, radius);
+    out.rotation = vec2f(cos(angle), sin(angle));
     let corner = sprite_corner(corner_index);
-    let turned = vec2f(
-        corner.x * rotation.x - corner.y * rotation.y,
-        corner.x * rotation.y + corner.y * rotation.x,
-    );
-    let view_position = centre + vec3f(turned * radius, 0.0);
-    let clip = view.clip_from_view * vec4f(view_position, 1.0);
+    var clip: vec4f;
+    if is_sphere() {
+        let ndc = sphere_corner(out.centre_radius, corner);
+        clip = vec4f(ndc, 0.0, 1.0);
+        out.view_position = view_position(ndc * view.ray_scale + view.ray_offset, 1.0, view.orthographic);
+    } else {
+        let turned = vec2f(
+            corner.x * out.rotation.x - corner.y * out.rotation.y,
+            corner.x * out.rotation.y + corner.y * out.rotation.x,
+        );
+        out.view_position = centre + vec3f(turned * radius, 0.0);
+        clip = view.clip_from_view * vec4f(out.view_position, 1.0);
+        out.uv = sprite_uv(corner);
+    }
+    let front = view.clip_from_view * vec4f(0.0, 0.0, -sprite_front(out.centre_radius), 1.0);
+    let depth = saturate(front.z / front.w);
+    out.position = vec4f(clip.xy * target_from_ndc.xy + clip.w * target_from_ndc.zw, depth * clip.w, clip.w);
 
     // Pixels across the sprite: its size in NDC times half the picture's height.
-    let pixels_per_metre = 0.5 * view.size.y / view.ray_scale.y * mix(1.0 / view_depth, 1.0, view.orthographic);
+    let pixels_per_metre =
+        0.5 * view.size.y / view.ray_scale.y * mix(1.0 / max(view_depth, view.near), 1.0, view.orthographic);
     let diameter = 2.0 * radius * pixels_per_metre * texels_per_pixel;
-
-    out.position = vec4f(clip.xy * target_from_ndc.xy + clip.w * target_from_ndc.zw, clip.zw);
-    out.uv = sprite_uv(corner);
-    out.view_position = view_position;
-    out.depth_amount_lod_frame = vec4f(
-        view_depth,
+    out.amount_lod_frame_age = vec4f(
         amount,
         sprite_lod(system.sprite_size, diameter),
-        frame,
+        sprite_frame(SPRITE_ANIMATION, frame, age, system.frame_count),
+        age,
     );
-    out.rotation = rotation;
     return out;
-}
-
-// Normal (view space) and amount (not faded against the scene yet) of a sprite fragment.
-fn sprite_fragment(vertex: SpriteVertex) -> vec4f {
-    let frames = flipbook_frames(vertex.depth_amount_lod_frame.w, system.frame_count);
-    let texel = sample_sprite(sprite, linear_sampler, vertex.uv, frames, vertex.depth_amount_lod_frame.z);
-    let normal = rotate_normal(texel.xyz, vertex.rotation);
-    return vec4f(normal, texel.a * vertex.depth_amount_lod_frame.y);
 }

@@ -38,6 +38,25 @@ struct System {
     specular_scatter_size: f32,
     specular_scatter_intensity: f32,
     light_count: u32,
+    size: f32,
+    motion: f32,
+    age_colour: f32,
+    // How many mip levels the detail map is smaller than the sprite.
+    detail_lod: f32,
+    billboard_radius: f32,
+    billboard_density: f32,
+    density: f32,
+    noise_size: f32,
+    volume_opacity: f32,
+    march_steps: u32,
+    noise_octaves: u32,
+    // Metres that the noise has risen.
+    noise_scroll: f32,
+    // Metres behind the scene that are still seen: of the curve `always`.
+    fade_through: f32,
+    padding0: f32,
+    padding1: f32,
+    padding2: f32,
     // Diffuse light as spherical harmonics, rgb.
     spherical_harmonics: array<vec4f, 9>,
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
+use haze::noise_volume::NoiseRecipe;
 use haze::picture::write_png;
 use haze::ramp::bake::RampRecipe;
 use haze::ramp::motif::MotifRecipe;
@@ -34,9 +35,9 @@ pub struct SpriteArguments {
 
 #[derive(Subcommand)]
 enum SpriteCommand {
-    /// Write the PNG beside every recipe.
+    /// Write the PNGs beside every recipe: NAME.png, and NAME.detail.png with a sprite's depth and motion.
     Bake {
-        /// `*.sprite.json` files.
+        /// `*.sprite.json` and `*.noise.json` files.
         #[arg(required = true)]
         recipes: Vec<PathBuf>,
     },
@@ -61,10 +62,16 @@ pub fn run_ramp(arguments: &RampArguments) -> Result<(), Error> {
 pub fn run_sprite(arguments: &SpriteArguments) -> Result<(), Error> {
     let SpriteCommand::Bake { recipes } = &arguments.command;
     for recipe in recipes {
-        let Some(output) = output_of(recipe, ".sprite.json") else {
-            return Err(FieldError::new("recipe", recipe.display(), "a *.sprite.json file").into());
-        };
-        write(&output, &SpriteRecipe::load(recipe)?.bake()?.into())?;
+        if let Some(output) = output_of(recipe, ".sprite.json") {
+            let baked = SpriteRecipe::load(recipe)?.bake()?;
+            write(&output, &baked.picture.into())?;
+            write(&output.with_extension("detail.png"), &baked.detail.into())?;
+        } else if let Some(output) = output_of(recipe, ".noise.json") {
+            write(&output, &NoiseRecipe::load(recipe)?.bake()?.into())?;
+        } else {
+            let expected = "a *.sprite.json or *.noise.json file";
+            return Err(FieldError::new("recipe", recipe.display(), expected).into());
+        }
     }
     Ok(())
 }

@@ -7,7 +7,7 @@ use glam::{UVec2, Vec4};
 use haze::demo::shot::Shot;
 use haze::headless::Headless;
 use haze::reference::picture::Picture;
-use haze::settings::Path;
+use haze::settings::{Path, Technique};
 use haze::{Error, FieldError};
 
 /// A preset, and what is changed about it for this run.
@@ -28,6 +28,10 @@ pub struct ShotArguments {
     /// auto, raster or forward; the presets' own if not given.
     #[arg(long, value_parser = parse_choice::<Path>)]
     path: Option<Path>,
+    /// How sprites meet the scene: hard, soft, soft_linear, depth_sprite_hard, depth_sprite_soft, spherical_billboard,
+    /// density, volumetric_hard or volumetric_soft; the preset's own if not given.
+    #[arg(long, value_name = "T", value_parser = parse_choice::<Technique>)]
+    technique: Option<Technique>,
     /// Seed of every emitter; the preset's own if not given.
     #[arg(long, value_name = "N", value_parser = parse_seed, allow_negative_numbers = true)]
     seed: Option<u32>,
@@ -64,6 +68,7 @@ impl ShotArguments {
             system.emitter.seed = self.seed.unwrap_or(system.emitter.seed);
             system.settings.accumulate.scale = self.scale.unwrap_or(system.settings.accumulate.scale);
             system.settings.path = self.path.unwrap_or(system.settings.path);
+            system.settings.technique = self.technique.unwrap_or(system.settings.technique);
         }
         Ok(shot)
     }

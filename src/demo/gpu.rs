@@ -1,6 +1,7 @@
-//! The demo scene on the GPU: colour at two by two samples a pixel, depth at pixel centres.
+//! The demo scene on the GPU: colour at two by two samples a pixel, depth at pixel centres, as a depth buffer and linear.
 
 use crate::headless::Headless;
+use crate::view::SKY_VIEW_DEPTH;
 use crate::{Error, View, shader};
 use glam::Vec3;
 
@@ -9,10 +10,15 @@ use super::{MAX_BOXES, Scene, SceneBox, SceneUniform};
 pub(crate) const COLOUR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
+pub(crate) const LINEAR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+
 /// Colour and depth of a rendered scene.
+#[derive(Debug)]
 pub(crate) struct SceneTargets {
     pub colour: wgpu::Texture,
     pub depth: wgpu::Texture,
+    /// Linear view depth, on adapters that can draw to `R32Float`.
+    pub linear: Option<wgpu::Texture>,
 }
 
 /// Renders the scene once.
@@ -25,7 +31,8 @@ struct SceneRenderer {
     scene_layout: wgpu::BindGroupLayout,
     samples_layout: wgpu::BindGroupLayout,
     boxes: wgpu::RenderPipeline,
-    depth_only: wgpu::RenderPipeline,
+    /// Depth, and linear depth as a colour where it can be drawn.
+    depth: wgpu::RenderPipeline,
     sky: wgpu::RenderPipeline,
     resolve: wgpu::RenderPipeline,
 }
@@ -59,13 +66,14 @@ impl SceneRenderer {
         };
         let scene_layout = layout(&[entry(0, uniform), entry(1, uniform), entry(2, uniform)]);
         let samples_layout = layout(&[entry(0, samples)]);
-        let pipeline = |vertex, fragment: Option<&str>, groups: &[Option<&wgpu::BindGroupLayout>], depth: bool| {
+        type Fragment<'a> = Option<(&'a str, wgpu::TextureFormat)>;
+        let pipeline = |vertex, fragment: Fragment<'_>, groups: &[Option<&wgpu::BindGroupLayout>], depth: bool| {
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some("demo scene"),
                 bind_group_layouts: groups,
                 immediate_size: 0,
             });
-            let targets = [Some(COLOUR_FORMAT.into())];
+            let targets = [fragment.map(|(_, format)| format.into())];
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some("demo scene"),
                 layout: Some(&layout),
@@ -84,7 +92,7 @@ impl SceneRenderer {
                     bias: wgpu::DepthBiasState::default(),
                 }),
                 multisample: wgpu::MultisampleState::default(),
-                fragment: fragment.map(|entry_point| wgpu::FragmentState {
+                fragment: fragment.map(|(entry_point, _)| wgpu::FragmentState {
                     module: &module,
                     entry_point: Some(entry_point),
                     compilation_options: wgpu::PipelineCompilationOptions::default(),
@@ -94,14 +102,15 @@ impl SceneRenderer {
                 cache: None,
             })
         };
+        let linear = gpu.can_draw_to(LINEAR_FORMAT).then_some(("linear_fragment", LINEAR_FORMAT));
         let scene_group = [Some(&scene_layout)];
         Self {
-            boxes: pipeline("box_vertex", Some("box_fragment"), &scene_group, true),
-            depth_only: pipeline("box_vertex", None, &scene_group, true),
-            sky: pipeline("sky_vertex", Some("sky_fragment"), &scene_group, true),
+            boxes: pipeline("box_vertex", Some(("box_fragment", COLOUR_FORMAT)), &scene_group, true),
+            depth: pipeline("box_vertex", linear, &scene_group, true),
+            sky: pipeline("sky_vertex", Some(("sky_fragment", COLOUR_FORMAT)), &scene_group, true),
             resolve: pipeline(
                 "sky_vertex",
-                Some("resolve_fragment"),
+                Some(("resolve_fragment", COLOUR_FORMAT)),
                 &[Some(&scene_layout), Some(&samples_layout)],
                 false,
             ),
@@ -138,6 +147,7 @@ impl SceneRenderer {
         let targets = SceneTargets {
             colour: gpu.target("demo scene colour", view.size, COLOUR_FORMAT),
             depth: gpu.target("demo scene depth", view.size, DEPTH_FORMAT),
+            linear: gpu.can_draw_to(LINEAR_FORMAT).then(|| gpu.target("demo scene linear", view.size, LINEAR_FORMAT)),
         };
         let samples_view = samples.create_view(&wgpu::TextureViewDescriptor::default());
         let samples_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -160,9 +170,9 @@ impl SceneRenderer {
             pass.draw(0..3, 0..1);
         }
         {
-            let mut pass = begin(&mut encoder, None, Some(&targets.depth));
+            let mut pass = begin(&mut encoder, targets.linear.as_ref(), Some(&targets.depth));
             pass.set_bind_group(0, &group, &[]);
-            pass.set_pipeline(&self.depth_only);
+            pass.set_pipeline(&self.depth);
             pass.draw(0..36, 0..count);
         }
         {
@@ -195,11 +205,14 @@ fn begin<'a>(
 ) -> wgpu::RenderPass<'a> {
     let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
     let (colour, depth) = (colour.map(view), depth.map(view));
+    // Black, or as far away as the sky.
+    let is_linear = colour.as_ref().is_some_and(|view| view.texture().format() == LINEAR_FORMAT);
+    let clear = wgpu::Color { r: if is_linear { f64::from(SKY_VIEW_DEPTH) } else { 0.0 }, ..wgpu::Color::BLACK };
     let attachment = colour.as_ref().map(|view| wgpu::RenderPassColorAttachment {
         view,
         depth_slice: None,
         resolve_target: None,
-        ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+        ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
     });
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("demo scene"),

@@ -6,6 +6,7 @@ mod gpu;
 mod layout;
 mod shading;
 pub mod shot;
+pub mod stage;
 
 use glam::{Mat4, Vec3};
 

@@ -240,6 +240,12 @@ fn box_fragment(in: BoxVertex) -> @location(0) vec4f {
     return vec4f(shade(boxes[in.index], in.world, in.local, in.local_normal), 1.0);
 }
 
+// View depth, metres: w of a perspective projection.
+@fragment
+fn linear_fragment(in: BoxVertex) -> @location(0) vec4f {
+    return vec4f((scene.clip_from_world * vec4f(in.world, 1.0)).w, 0.0, 0.0, 1.0);
+}
+
 @vertex
 fn sky_vertex(@builtin(vertex_index) index: u32) -> BoxVertex {
     var out: BoxVertex;

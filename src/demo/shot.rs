@@ -4,10 +4,9 @@ use std::path::{Path, PathBuf};
 
 use glam::{UVec2, Vec4};
 
-use super::{Scene, cpu, gpu};
-use crate::descriptor::read_only_depth_is_supported;
+use super::stage::Stage;
+use super::{Scene, cpu};
 use crate::error::Error;
-use crate::frame::{Frame, Particles, SceneDepth, System};
 use crate::headless::Headless;
 use crate::material::MaterialAssets;
 use crate::particle::Particle;
@@ -15,7 +14,6 @@ use crate::preset::Preset;
 use crate::reference;
 use crate::reference::picture::Picture;
 use crate::settings::{Settings, ShadeTree};
-use crate::{Descriptor, Renderer};
 
 /// A preset with its pictures loaded.
 #[derive(Clone, Debug)]
@@ -52,19 +50,19 @@ impl Shot {
     }
 
     /// True if the smoke is shown in the scene; the other stages are shown on black.
-    fn shows_scene(&self) -> bool {
+    pub(super) fn shows_scene(&self) -> bool {
         self.shade_tree == ShadeTree::Final
     }
 
-    fn scene(&self) -> Scene {
+    pub(super) fn scene(&self) -> Scene {
         Scene::new(self.preset.environment.scene, &self.preset.environment, &self.preset.lights)
     }
 
     /// Particles and settings of every system, in order.
-    fn systems(&self) -> Vec<(Vec<Particle>, Settings)> {
+    pub(super) fn systems(&self) -> Vec<(Vec<Particle>, Settings)> {
         let evaluate = |system: &crate::preset::PresetSystem| {
             let mut particles = Vec::new();
-            system.emitter.evaluate(self.preset.time, &mut particles);
+            system.particles(self.preset.time, &mut particles);
             (particles, system.settings_for(self.size.y))
         };
         self.preset.systems.iter().map(evaluate).collect()
@@ -96,6 +94,7 @@ impl Shot {
             scene_depth: &depth,
             lights: &self.preset.lights,
             systems: &systems,
+            time: self.preset.time,
             shade_tree: self.shade_tree,
         };
         reference::renderer::render(&frame, &mut colour)?;
@@ -108,60 +107,8 @@ impl Shot {
     /// [`Error::Field`] when the preset was changed to something invalid or the picture is too large for the device,
     /// [`Error::Device`] when the device failed.
     pub fn render_on_gpu(&self, gpu: &Headless, exact_filtering: bool) -> Result<Picture<Vec4>, Error> {
-        let descriptor = Descriptor {
-            color_format: gpu::COLOUR_FORMAT,
-            depth_format: read_only_depth_is_supported(&gpu.device).then_some(gpu::DEPTH_FORMAT),
-            sample_count: 1,
-            exact_filtering,
-        };
-        let view = self.preset.camera.view(self.size);
-        let targets = gpu::render(gpu, &self.scene(), &view)?;
-        let depth = targets.depth.create_view(&wgpu::TextureViewDescriptor::default());
-        let colour = targets.colour.create_view(&wgpu::TextureViewDescriptor::default());
-
-        let mut renderer = Renderer::new(&gpu.device, &descriptor)?;
-        let materials: Vec<_> =
-            self.materials.iter().map(|assets| renderer.create_material(&gpu.device, &gpu.queue, assets)).collect();
-        let particles = self.systems();
-        let systems: Vec<_> = particles
-            .iter()
-            .zip(&materials)
-            .map(|((particles, settings), material)| System {
-                particles: Particles::Slice(particles),
-                bounds: None,
-                settings,
-                material,
-            })
-            .collect();
-        let frame = Frame {
-            view,
-            scene_depth: SceneDepth::Buffer(&depth),
-            lights: &self.preset.lights,
-            systems: &systems,
-            shade_tree: self.shade_tree,
-        };
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, &frame)?;
-        let load = if self.shows_scene() { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::BLACK) };
-        {
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("smoke"),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &colour,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-                })],
-                depth_stencil_attachment: descriptor.depth_format.map(|_| wgpu::RenderPassDepthStencilAttachment {
-                    view: &depth,
-                    depth_ops: None,
-                    stencil_ops: None,
-                }),
-                ..Default::default()
-            });
-            renderer.render(&mut pass);
-        }
-        gpu.submit(encoder)?;
-        Ok(Picture { size: self.size, texels: gpu.read_rgba16float(&targets.colour)? })
+        let mut stage = Stage::new(gpu, self, exact_filtering)?;
+        stage.draw(self)?;
+        stage.picture()
     }
 }

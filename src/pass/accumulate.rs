@@ -1,7 +1,7 @@
 //! accumulate
 //! What: blends every sprite's normal and amount into the accumulation target.
-//! Reads: particles back to front, sprite flipbook, reduced depth or the host's own. Writes: accumulation target.
-//! Blend: ONE, ONE_MINUS_SRC_ALPHA. Source: OTEE "Accumulating the particles".
+//! Reads: particles back to front, sprite flipbook, detail map or noise, reduced depth or the host's own. Writes:
+//! accumulation target. Blend: ONE, ONE_MINUS_SRC_ALPHA. Source: OTEE "Accumulating the particles"; techniques: NV, BLOG, MS.
 
 use super::{
     ADDITIVE, Layouts, PARTICLE_LAYOUT, PREMULTIPLIED_OVER, PipelineParts, STRIP, Variants, color_target,
@@ -9,16 +9,21 @@ use super::{
 };
 use super::{begin_pass, bind, color_attachment, read_only, set_part};
 use crate::frame_bindings::FrameBindings;
-use crate::settings::{AccumulationFormat, FadeCurve, NormalEncoding};
+use crate::settings::{AccumulationFormat, FadeCurve, NormalEncoding, SpriteAnimation, Technique};
 use crate::slot::{DrawPath, Slot};
-use crate::targets::{REDUCED_DEPTH_FORMAT, accumulation_layout};
+use crate::targets::{DEPTH_COPY_FORMAT, REDUCED_DEPTH_FORMAT, accumulation_layout};
 
 /// What makes one accumulation pipeline differ from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct AccumulateKey {
     pub format: AccumulationFormat,
     pub encoding: NormalEncoding,
+    pub technique: Technique,
+    pub animation: SpriteAnimation,
+    pub debug_sprite: bool,
     pub curve: FadeCurve,
+    /// Sprites are compared with the host's own depth, not the reduced one.
+    pub host_depth: bool,
     pub depth_test: DepthTest,
     /// Count layers instead of blending normals.
     pub overdraw: bool,
@@ -27,10 +32,12 @@ pub(crate) struct AccumulateKey {
 /// What rejects hidden sprites before they are shaded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum DepthTest {
-    /// Nothing: this backend cannot test what the shader samples.
+    /// Nothing: what is behind the scene may show.
     InShader,
-    /// The hardware, against the reduced depth.
+    /// The hardware, against the reduced depth, which the shader samples too.
     Reduced,
+    /// The hardware, against a coarse copy of the reduced depth: this backend cannot test what the shader samples.
+    Copy,
     /// The hardware, against the host's depth: its format, and whether it is reversed.
     Host(wgpu::TextureFormat, bool),
 }
@@ -54,6 +61,7 @@ impl AccumulatePass {
             let depth_stencil = match key.depth_test {
                 DepthTest::InShader => None,
                 DepthTest::Reduced => Some(read_only_depth(REDUCED_DEPTH_FORMAT, in_front(false))),
+                DepthTest::Copy => Some(read_only_depth(DEPTH_COPY_FORMAT, in_front(false))),
                 DepthTest::Host(format, reversed) => Some(read_only_depth(format, in_front(reversed))),
             };
             let targets =
@@ -70,9 +78,14 @@ impl AccumulatePass {
                     sample_count: 1,
                     targets: &targets,
                     constants: &[
+                        variant!("TECHNIQUE", key.technique),
+                        variant!("SPRITE_ANIMATION", key.animation),
+                        switch("DEBUG_SPRITE", key.debug_sprite),
                         variant!("FADE_CURVE", key.curve),
                         variant!("NORMAL_ENCODING", key.encoding),
-                        switch("HOST_DEPTH", matches!(key.depth_test, DepthTest::Host(..))),
+                        switch("HOST_DEPTH", key.host_depth),
+                        // The copy is too coarse to stand in for the shader's own test.
+                        switch("DEPTH_TESTED", !matches!(key.depth_test, DepthTest::InShader | DepthTest::Copy)),
                         switch("OVERDRAW", key.overdraw),
                         switch("EXACT_FILTERING", exact_filtering),
                     ],
@@ -96,5 +109,7 @@ pub(crate) fn record(encoder: &mut wgpu::CommandEncoder, frame: &FrameBindings, 
     bind(&mut pass, frame, slot, draw);
     pass.set_bind_group(3, &targets.accumulate_inputs, &[]);
     pass.set_vertex_buffer(0, draw.instances.slice(..));
-    pass.draw(0..4, 0..draw.instance_count);
+    for _ in 0..draw.debug_loop {
+        pass.draw(0..4, 0..draw.instance_count);
+    }
 }

@@ -1,6 +1,6 @@
 //! forward
 //! What: the classic way: every sprite fragment lit and blended at full resolution.
-//! Reads: particles back to front, sprite flipbook, scene depth, lights, ramps. Writes: the host's colour target.
+//! Reads: particles back to front, sprite flipbook, detail map or noise, scene depth, lights, ramps. Writes: the host's colour target.
 //! Blend: alpha, additive or multiply. Source: OTEE "Typical game particles so far".
 
 use super::bind;
@@ -10,14 +10,19 @@ use super::{
 };
 use crate::descriptor::Descriptor;
 use crate::frame_bindings::FrameBindings;
-use crate::settings::{BlendMode, FadeCurve, SoftScatterMode};
+use crate::settings::{BlendMode, FadeCurve, SoftScatterMode, SpriteAnimation, Technique};
 use crate::slot::{DrawPath, Slot};
 
 /// What makes one forward pipeline differ from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct ForwardKey {
     pub blend_mode: BlendMode,
+    pub technique: Technique,
+    pub animation: SpriteAnimation,
+    pub debug_sprite: bool,
     pub curve: FadeCurve,
+    /// Sprites are seen behind the scene: nothing tests depth.
+    pub shows_through: bool,
     pub soft_scatter_mode: SoftScatterMode,
     pub reversed: bool,
 }
@@ -42,7 +47,8 @@ impl ForwardPass {
                 BlendMode::Additive => ADDITIVE,
                 BlendMode::Multiply => MULTIPLY,
             };
-            let depth = descriptor.depth_format.map(|format| read_only_depth(format, in_front(key.reversed)));
+            let compare = if key.shows_through { wgpu::CompareFunction::Always } else { in_front(key.reversed) };
+            let depth = descriptor.depth_format.map(|format| read_only_depth(format, compare));
             create_pipeline(
                 device,
                 PipelineParts {
@@ -56,7 +62,11 @@ impl ForwardPass {
                     targets: &[color_target(descriptor.color_format, Some(blend))],
                     constants: &[
                         variant!("BLEND_MODE", key.blend_mode),
+                        variant!("TECHNIQUE", key.technique),
+                        variant!("SPRITE_ANIMATION", key.animation),
+                        switch("DEBUG_SPRITE", key.debug_sprite),
                         variant!("FADE_CURVE", key.curve),
+                        switch("DEPTH_TESTED", descriptor.depth_format.is_some() && !key.shows_through),
                         variant!("SOFT_SCATTER_MODE", key.soft_scatter_mode),
                         switch("EXACT_FILTERING", descriptor.exact_filtering),
                     ],
@@ -73,5 +83,7 @@ pub(crate) fn record(pass: &mut wgpu::RenderPass<'_>, frame: &FrameBindings, slo
     pass.set_pipeline(pipeline);
     bind(pass, frame, slot, draw);
     pass.set_vertex_buffer(0, draw.instances.slice(..));
-    pass.draw(0..4, 0..draw.instance_count);
+    for _ in 0..draw.debug_loop {
+        pass.draw(0..4, 0..draw.instance_count);
+    }
 }

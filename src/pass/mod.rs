@@ -38,7 +38,7 @@ pub(crate) const LIGHTS_SIZE: u64 = (MAX_LIGHTS * size_of::<LightUniform>()) as 
 
 impl Layouts {
     pub fn new(device: &wgpu::Device) -> Self {
-        use wgpu::TextureViewDimension::{D2, D2Array};
+        use wgpu::TextureViewDimension::{D2, D2Array, D3};
         let filterable = wgpu::TextureSampleType::Float { filterable: true };
         // Depth buffers and R32Float alike.
         let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
@@ -75,6 +75,10 @@ impl Layouts {
                     texture(filterable, D2),
                     texture(filterable, D2),
                     texture(filterable, D2),
+                    wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+                    texture(filterable, D2Array),
+                    texture(filterable, D2),
+                    texture(filterable, D3),
                     wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
                 ],
             ),
@@ -262,7 +266,7 @@ pub(crate) const STRIP: wgpu::PrimitiveState = wgpu::PrimitiveState {
 
 /// Binds groups 0 to 2, as the layouts above have them.
 pub(crate) fn bind(pass: &mut wgpu::RenderPass<'_>, frame: &FrameBindings, slot: &Slot, draw: &Draw) {
-    pass.set_bind_group(0, frame.bind_group(), &[]);
+    pass.set_bind_group(0, frame.bind_group(draw.linear_depth), &[]);
     pass.set_bind_group(1, &slot.bindings, &[]);
     pass.set_bind_group(2, &draw.material, &[]);
 }

@@ -19,6 +19,8 @@ use crate::frame::validate_lights;
 use crate::json;
 use crate::light::Light;
 use crate::material::MaterialAssets;
+use crate::noise_volume::NoiseVolume;
+use crate::particle::Particle;
 use crate::ramp::Ramp;
 use crate::settings::Settings;
 use crate::sprite::{Sprite, SpriteLayout};
@@ -178,6 +180,8 @@ pub struct PresetSystem {
 pub struct MaterialNames {
     /// Flipbook of normal maps.
     pub sprite: String,
+    /// Depth and motion of a sprite from a file, laid out as it; empty for none. A built-in sprite has its own.
+    pub detail: String,
     /// Frames beside each other, for a sprite from a file. A built-in one knows its own.
     pub columns: u32,
     /// Frames below each other, for a sprite from a file.
@@ -192,12 +196,17 @@ pub struct MaterialNames {
     pub specular_ramp: String,
     /// Painted lit sphere.
     pub motif: String,
+    /// Colour by age.
+    pub age_ramp: String,
+    /// Tiling 3D noise: a built-in one, or a PNG of slices below each other.
+    pub noise: String,
 }
 
 impl Default for MaterialNames {
     fn default() -> Self {
         Self {
             sprite: "puff".into(),
+            detail: String::new(),
             columns: 1,
             rows: 1,
             y_down: false,
@@ -205,6 +214,8 @@ impl Default for MaterialNames {
             soft_scatter_ramp: "scatter_mist".into(),
             specular_ramp: "specular_halo".into(),
             motif: "motif_studio".into(),
+            age_ramp: "age_smoke".into(),
+            noise: "fbm".into(),
         }
     }
 }
@@ -288,6 +299,15 @@ impl Preset {
 }
 
 impl PresetSystem {
+    /// The particles alive at `time`, seconds.
+    pub fn particles(&self, time: f32, particles: &mut Vec<Particle>) {
+        let mut emitter = self.emitter;
+        if self.settings.sprite.freeze_animation {
+            emitter.frame_rate = 0.0;
+        }
+        emitter.evaluate(time, particles);
+    }
+
     /// The settings for a picture of this height: what presets give in pixels, they give for [`DESIGN_HEIGHT`].
     pub fn settings_for(&self, height: u32) -> Settings {
         let mut settings = self.settings;
@@ -304,24 +324,34 @@ impl MaterialNames {
     /// file inside the folder.
     pub fn load(&self, folder: &Path) -> Result<MaterialAssets, Error> {
         let ramp = |field, name, list| load_ramp(field, name, list, folder);
+        let (sprite, detail) = self.load_sprite(folder)?;
         Ok(MaterialAssets {
-            sprite: self.load_sprite(folder)?,
+            sprite,
+            detail,
+            noise: match builtin::find(builtin::NOISES, &self.noise) {
+                Some(noise) => noise.noise()?,
+                None => NoiseVolume::load(&inside("noise", &self.noise, builtin::NOISES, folder)?)?,
+            },
             diffuse_ramp: ramp("diffuse_ramp", &self.diffuse_ramp, builtin::RAMPS)?,
             soft_scatter_ramp: ramp("soft_scatter_ramp", &self.soft_scatter_ramp, builtin::RAMPS)?,
             specular_ramp: ramp("specular_ramp", &self.specular_ramp, builtin::RAMPS)?,
             motif: ramp("motif", &self.motif, builtin::MOTIFS)?,
+            age_ramp: ramp("age_ramp", &self.age_ramp, builtin::RAMPS)?,
         })
     }
 
-    fn load_sprite(&self, folder: &Path) -> Result<Sprite, Error> {
-        match builtin::find(builtin::SPRITES, &self.sprite) {
-            Some(sprite) => sprite.sprite(),
-            None => {
-                let path = inside("sprite", &self.sprite, builtin::SPRITES, folder)?;
-                let layout = SpriteLayout { columns: self.columns, rows: self.rows, y_down: self.y_down };
-                Sprite::load(&path, layout)
-            }
+    fn load_sprite(&self, folder: &Path) -> Result<(Sprite, Option<Sprite>), Error> {
+        if let Some(sprite) = builtin::find(builtin::SPRITES, &self.sprite) {
+            return Ok((sprite.sprite()?, sprite.detail()?));
         }
+        let path = inside("sprite", &self.sprite, builtin::SPRITES, folder)?;
+        let layout = SpriteLayout { columns: self.columns, rows: self.rows, y_down: self.y_down };
+        let sprite = Sprite::load(&path, layout)?;
+        if self.detail.is_empty() {
+            return Ok((sprite, None));
+        }
+        let path = inside("detail", &self.detail, &[], folder)?;
+        Ok((sprite, Some(Sprite::load(&path, SpriteLayout { y_down: false, ..layout })?)))
     }
 }
 
@@ -374,8 +404,13 @@ mod tests {
         for ramp in builtin::RAMPS.iter().chain(builtin::MOTIFS) {
             ramp.ramp().unwrap();
         }
-        for sprite in builtin::SPRITES {
-            assert!(sprite.sprite().unwrap().frame_count() > 1);
+        for builtin in builtin::SPRITES {
+            let (sprite, detail) = (builtin.sprite().unwrap(), builtin.detail().unwrap().unwrap());
+            assert!(sprite.frame_count() > 1);
+            assert_eq!((detail.size() * 4, detail.frame_count()), (sprite.size(), sprite.frame_count()));
+        }
+        for noise in builtin::NOISES {
+            assert_eq!(noise.noise().unwrap().size(), 32);
         }
     }
 

@@ -5,6 +5,7 @@ pub mod blending;
 pub mod depth;
 pub mod diffuse_bake;
 pub mod lighting;
+pub mod noise_volume;
 pub mod normal;
 mod pass;
 pub mod picture;
@@ -12,6 +13,7 @@ pub mod ramp;
 pub mod renderer;
 pub mod soft_fade;
 pub mod sprite;
+pub mod technique;
 pub mod upsample;
 pub mod view;
 

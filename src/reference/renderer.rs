@@ -29,6 +29,8 @@ pub struct Frame<'a> {
     pub lights: &'a [Light],
     /// Drawn far to near.
     pub systems: &'a [System<'a>],
+    /// Seconds: the noise of volumetric sprites scrolls with it.
+    pub time: f32,
     /// Which stage of the shading is shown.
     pub shade_tree: ShadeTree,
 }
@@ -53,6 +55,9 @@ pub struct System<'a> {
 pub fn render(frame: &Frame<'_>, picture: &mut Picture<Vec4>) -> Result<(), FieldError> {
     let view = ViewGeometry::new(&frame.view)?;
     validate_lights(frame.lights)?;
+    if !frame.time.is_finite() {
+        return Err(FieldError::new("time", frame.time, "a finite number of seconds"));
+    }
     for (name, size) in [("scene_depth", frame.scene_depth.size), ("picture", picture.size)] {
         if size != frame.view.size {
             let value = format!("{}x{}", size.x, size.y);
@@ -61,7 +66,9 @@ pub fn render(frame: &Frame<'_>, picture: &mut Picture<Vec4>) -> Result<(), Fiel
     }
     let mut draws = Vec::new();
     for (index, system) in frame.systems.iter().enumerate() {
-        system.settings.validate(|| format!("systems[{index}].settings"))?;
+        let path = || format!("systems[{index}].settings");
+        system.settings.validate(path)?;
+        system.material.info().validate(system.settings, path)?;
         draws.extend(Draw::new(&view, frame, system)?);
     }
     draws.sort_by(|a, b| b.distance.total_cmp(&a.distance));
@@ -104,11 +111,11 @@ pub(super) struct Draw<'a> {
 
 impl<'a> Draw<'a> {
     fn new(view: &ViewGeometry, frame: &Frame<'a>, system: &System<'a>) -> Result<Option<Self>, FieldError> {
-        let bounds = system.bounds.unwrap_or_else(|| bounds_of(system.particles));
+        let bounds = system.bounds.unwrap_or_else(|| bounds_of(system.particles, system.settings.reach()));
         let mut lights = Vec::new();
         lights_in_view(view, frame.lights, &bounds, &mut lights);
         let info = system.material.info();
-        let Some(in_view) = system_in_view(view, &bounds, system.settings, &info, &lights)? else {
+        let Some(in_view) = system_in_view(view, &bounds, system.settings, &info, &lights, frame.time)? else {
             return Ok(None);
         };
         let mut particles = Vec::new();

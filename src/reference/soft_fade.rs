@@ -23,9 +23,15 @@ pub fn fade_exponential(x: f32, contrast_power: f32) -> f32 {
     1.0 - (-2.0 * (2.0 * x).powf(contrast_power)).exp2()
 }
 
-/// The fade by a sprite fragment's signed distance in front of the scene, metres; gone behind it or within epsilon.
+/// Whole in front of the surface, gone 1 / fade_scale behind it. (BLOG, comment)
+pub fn fade_always(distance: f32, fade_scale: f32) -> f32 {
+    1.0 - saturate(-distance * fade_scale)
+}
+
+/// The fade by a sprite fragment's signed distance in front of the scene, metres; gone behind it or within epsilon,
+/// but for the curve `always`.
 pub fn soft_fade(curve: FadeCurve, distance: f32, fade_scale: f32, contrast_power: f32, epsilon: f32) -> f32 {
-    if distance < epsilon.max(0.0) {
+    if curve != FadeCurve::Always && distance < epsilon.max(0.0) {
         return 0.0;
     }
     let x = saturate(distance * fade_scale);
@@ -34,6 +40,7 @@ pub fn soft_fade(curve: FadeCurve, distance: f32, fade_scale: f32, contrast_powe
         FadeCurve::Linear => fade_linear(x),
         FadeCurve::Contrast => fade_contrast(x, contrast_power),
         FadeCurve::Exponential => fade_exponential(x, contrast_power),
+        FadeCurve::Always => fade_always(distance, fade_scale),
     }
 }
 

@@ -1,13 +1,24 @@
 //! The sprite picture: a flipbook of normal maps. `shaders/lib/sprite.wgsl`.
 
-use glam::{IVec2, Vec2, Vec3Swizzles, Vec4, Vec4Swizzles};
+use glam::{IVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use crate::reference::saturate;
+use crate::settings::SpriteAnimation;
 use crate::sprite::Sprite;
+use crate::sprite::detail::MOTION_RANGE;
 
 /// The mip level at which a sprite's texels are as large as the target's.
 pub fn sprite_lod(sprite_size: f32, diameter_in_texels: f32) -> f32 {
     (sprite_size / diameter_in_texels.max(1.0e-3)).log2().max(0.0)
+}
+
+/// The fractional frame that a particle shows: its own, its age through the slices of a volume texture, or the first.
+pub fn sprite_frame(animation: SpriteAnimation, frame: f32, age: f32, frame_count: f32) -> f32 {
+    match animation {
+        SpriteAnimation::Flipbook => frame,
+        SpriteAnimation::Volume => saturate(age) * (frame_count - 1.0),
+        SpriteAnimation::Still => 0.0,
+    }
 }
 
 /// The two frames that a fractional frame blends, and the share of the second.
@@ -51,11 +62,31 @@ fn sample_sprite_frame(sprite: &Sprite, uv: Vec2, frame: i32, lod: f32) -> Vec4 
     fine.lerp(coarse, level - base)
 }
 
-/// Normal (−1..1, about unit length) and amount of a sprite. uv 0..1, v down.
-pub fn sample_sprite(sprite: &Sprite, uv: Vec2, frames: FlipbookFrames, lod: f32) -> Vec4 {
-    let mut texel = sample_sprite_frame(sprite, uv, frames.first, lod);
+/// Normal (−1..1, about unit length) and amount of a sprite. uv 0..1, v down. `motion` is where texels go from the first
+/// frame to the second, in uv.
+pub fn sample_sprite(sprite: &Sprite, uv: Vec2, frames: FlipbookFrames, motion: Vec2, lod: f32) -> Vec4 {
+    let mut texel = sample_sprite_frame(sprite, uv - motion * frames.blend, frames.first, lod);
     if frames.blend > 0.0 {
-        texel = texel.lerp(sample_sprite_frame(sprite, uv, frames.second, lod), frames.blend);
+        let place = uv + motion * (1.0 - frames.blend);
+        texel = texel.lerp(sample_sprite_frame(sprite, place, frames.second, lod), frames.blend);
     }
-    (texel.xyz() * 2.0 - 1.0).xyz().extend(texel.w)
+    (texel.xyz() * 2.0 - 1.0).extend(texel.w)
+}
+
+/// A detail map's texel: how far it stands out towards the viewer, −1..1 radii, and its motion to the next frame, in uv.
+pub fn detail_from_texel(texel: Vec3) -> Vec3 {
+    (texel * 255.0 - 128.0) / 127.0 * Vec3::new(1.0, MOTION_RANGE, MOTION_RANGE)
+}
+
+/// The detail map at a moment between two frames. Motion is the first frame's.
+pub fn sample_detail(detail: &Sprite, uv: Vec2, frames: FlipbookFrames, lod: f32) -> Vec3 {
+    let sample = |frame| detail_from_texel(sample_sprite_frame(detail, uv, frame, lod).xyz());
+    let (first, second) = (sample(frames.first), sample(frames.second));
+    Vec3::new(first.x + (second.x - first.x) * frames.blend, first.y, first.z)
+}
+
+/// NV's debug sprite: eight by eight checks, every other one of a quarter of the amount.
+pub fn checkerboard(uv: Vec2) -> Vec4 {
+    let check = (uv * 8.0).floor().as_ivec2();
+    Vec4::new(0.0, 0.0, 1.0, if (check.x + check.y) & 1 == 0 { 1.0 } else { 0.25 })
 }

@@ -14,6 +14,8 @@ use crate::json;
 use crate::noise::{curl_noise, fractal_noise, pcg3d, unit};
 use crate::reference::picture::Picture;
 use crate::reference::saturate;
+use crate::sprite::detail::{detail, detail_size};
+use crate::sprite::{Sprite, SpriteLayout};
 
 /// The version of the recipe format that this code writes and reads.
 pub const RECIPE_VERSION: u32 = 1;
@@ -60,6 +62,24 @@ pub struct SpriteRecipe {
     pub bump: f32,
 }
 
+/// What a recipe makes.
+#[derive(Clone, Debug)]
+pub struct BakedSprite {
+    /// The flipbook: rgb = normal / 2 + 1/2 (x right, y up, z to the viewer), a = amount.
+    pub picture: RgbaImage,
+    /// Depth and motion, see [`detail`](crate::sprite::detail).
+    pub detail: RgbaImage,
+}
+
+/// One moment of a sprite.
+#[derive(Clone, Debug)]
+pub struct BakedFrame {
+    /// rgb = normal / 2 + 1/2, a = amount.
+    pub picture: Picture<Rgba<u8>>,
+    /// How far towards the viewer what is seen lies, -1..1 half sides.
+    pub offset: Picture<f32>,
+}
+
 impl Fields for SpriteRecipe {
     fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
         visitor.integer("version", &mut self.version, RECIPE_VERSION..=RECIPE_VERSION, "");
@@ -95,36 +115,48 @@ impl SpriteRecipe {
         self.columns * self.rows
     }
 
-    /// Bakes the whole sheet: rgb = normal / 2 + 1/2 (x right, y up, z to the viewer), a = amount.
+    /// How the sheet is cut into frames.
+    pub fn layout(&self) -> SpriteLayout {
+        SpriteLayout { columns: self.columns, rows: self.rows, y_down: false }
+    }
+
+    /// Bakes the whole sheet and its details.
     ///
     /// # Errors
     /// The first number of the recipe that is out of range.
-    pub fn bake(&self) -> Result<RgbaImage, FieldError> {
+    pub fn bake(&self) -> Result<BakedSprite, FieldError> {
         validate(self, String::new)?;
-        let mut sheet = RgbaImage::new(self.size * self.columns, self.size * self.rows);
-        for frame in 0..self.frame_count() {
-            let origin = UVec2::new(frame % self.columns, frame / self.columns) * self.size;
-            let picture = self.bake_frame(frame);
-            for (index, texel) in (0u32..).zip(&picture.texels) {
-                let at = origin + UVec2::new(index % self.size, index / self.size);
-                sheet.put_pixel(at.x, at.y, *texel);
-            }
-        }
-        Ok(sheet)
+        let frames: Vec<_> = (0..self.frame_count()).map(|frame| self.bake_frame(frame as f32)).collect();
+        let pictures = frames.iter().flat_map(|frame| frame.picture.texels.iter().map(|texel| texel.0));
+        let sprite = Sprite::with_levels(self.size, self.frame_count(), pictures.collect());
+        let details: Vec<_> = (0..).zip(&frames).map(|(frame, baked)| detail(&sprite, frame, &baked.offset)).collect();
+        Ok(BakedSprite {
+            picture: self.sheet(self.size, |frame, at| frames[frame].picture.load(at)),
+            detail: self.sheet(detail_size(self.size), |frame, at| details[frame].load(at)),
+        })
     }
 
-    /// Bakes one frame of the loop.
-    pub fn bake_frame(&self, frame: u32) -> Picture<Rgba<u8>> {
-        let cluster = Cluster::new(self, frame as f32 / self.frame_count() as f32);
+    fn sheet(&self, size: u32, texel: impl Fn(usize, IVec2) -> Rgba<u8>) -> RgbaImage {
+        RgbaImage::from_fn(size * self.columns, size * self.rows, |x, y| {
+            let frame = y / size * self.columns + x / size;
+            texel(frame as usize, UVec2::new(x % size, y % size).as_ivec2())
+        })
+    }
+
+    /// Bakes one moment of the loop; `frame` 0.5 is half way between the first two.
+    pub fn bake_frame(&self, frame: f32) -> BakedFrame {
+        let cluster = Cluster::new(self, frame / self.frame_count() as f32);
         // Slices of the volume below each other, the nearest to the viewer first.
         let mut volume = Picture::new(UVec2::new(self.size, self.size * self.size), 0.0);
         volume.for_each(|at, density| {
             let texel = UVec3::new(at.x, at.y % self.size, at.y / self.size);
             *density = cluster.density(self.position(texel));
         });
-        let mut picture = Picture::new(UVec2::splat(self.size), Rgba([128, 128, 255, 0]));
-        picture.for_each(|at, texel| *texel = self.march(&volume, at));
-        picture
+        let mut marched = Picture::new(UVec2::splat(self.size), (Rgba([128, 128, 255, 0]), 0.0));
+        marched.for_each(|at, texel| *texel = self.march(&volume, at));
+        let (picture, offset) = marched.texels.into_iter().unzip();
+        let size = marched.size;
+        BakedFrame { picture: Picture { size, texels: picture }, offset: Picture { size, texels: offset } }
     }
 
     /// The place of a voxel: x right, y up, z to the viewer.
@@ -133,8 +165,8 @@ impl SpriteRecipe {
         Vec3::new(p.x, -p.y, -p.z)
     }
 
-    /// Front to back through one texel's column.
-    fn march(&self, volume: &Picture<f32>, at: UVec2) -> Rgba<u8> {
+    /// Front to back through one texel's column: the texel, and how far to the viewer what is seen of it lies.
+    fn march(&self, volume: &Picture<f32>, at: UVec2) -> (Rgba<u8>, f32) {
         let last = self.size as i32 - 1;
         let density = |voxel: IVec3| {
             let voxel = voxel.clamp(IVec3::ZERO, IVec3::splat(last));
@@ -152,6 +184,7 @@ impl SpriteRecipe {
         let step = 2.0 / self.size as f32;
         let mut transmittance = 1.0;
         let mut normal = Vec3::ZERO;
+        let mut offset = 0.0;
         for z in 0..=last {
             let voxel = IVec3::new(at.x as i32, at.y as i32, z);
             let amount = 1.0 - (-density(voxel) * self.extinction * step).exp();
@@ -159,6 +192,7 @@ impl SpriteRecipe {
                 continue;
             }
             normal += (slope(voxel, wide) + slope(voxel, 1) * self.bump) * (transmittance * amount);
+            offset += self.position(voxel.as_uvec3()).z * transmittance * amount;
             transmittance *= 1.0 - amount;
             if transmittance < 1.0 / 512.0 {
                 break;
@@ -170,7 +204,8 @@ impl SpriteRecipe {
         let outwards = self.position(at.extend(0)).truncate().extend(0.5);
         let encoded = normal.normalize_or(outwards.normalize()) * 0.5 + 0.5;
         let channel = |value: f32| (saturate(value) * 255.0).round() as u8;
-        Rgba([channel(encoded.x), channel(encoded.y), channel(encoded.z), channel(amount)])
+        let texel = Rgba([channel(encoded.x), channel(encoded.y), channel(encoded.z), channel(amount)]);
+        (texel, offset / (1.0 - transmittance).max(1.0e-6))
     }
 }
 

@@ -1,6 +1,7 @@
 //! Sprite pictures: flipbooks of normal maps with the amount in alpha.
 
 pub mod bake;
+pub mod detail;
 
 use std::path::Path;
 
@@ -91,7 +92,7 @@ impl Sprite {
         Self::from_picture(path, &read_png(path)?.to_rgba8(), layout)
     }
 
-    fn with_levels(size: u32, frame_count: u32, texels: Vec<[u8; 4]>) -> Self {
+    pub(crate) fn with_levels(size: u32, frame_count: u32, texels: Vec<[u8; 4]>) -> Self {
         let mut sprite = Self { size, frame_count, levels: vec![texels] };
         for level in 1..=size.ilog2() {
             let coarse = sprite.level_size(level);

@@ -2,11 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use haze::noise_volume::NoiseRecipe;
 use haze::picture::read_png;
 use haze::ramp::bake::RampRecipe;
 use haze::ramp::motif::MotifRecipe;
 use haze::sprite::bake::SpriteRecipe;
+use haze::sprite::detail::detail;
 use haze::{builtin, preset};
+use image::{Rgba, RgbaImage, imageops};
 
 fn file(folder: &str, name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(folder).join(name)
@@ -41,16 +44,38 @@ fn sprites_are_what_their_recipes_make() {
         let recipe = SpriteRecipe::load(&file("sprites", &format!("{}.sprite.json", sprite.name))).unwrap();
         // One frame that is not the first, at full size: the sheet takes a minute.
         let frame = 3;
-        let baked = recipe.bake_frame(frame);
-        let origin = (frame % recipe.columns * recipe.size, frame / recipe.columns * recipe.size);
-        let mut off = 0;
-        for (index, texel) in (0u32..).zip(&baked.texels) {
-            let committed = committed.get_pixel(origin.0 + index % recipe.size, origin.1 + index / recipe.size);
-            let same = committed.0.iter().zip(texel.0).all(|(&a, b)| a.abs_diff(b) <= 1);
-            off += u32::from(!same);
-        }
+        let frame_of = |sheet: &RgbaImage, size: u32| {
+            let origin = (frame % recipe.columns * size, frame / recipe.columns * size);
+            imageops::crop_imm(sheet, origin.0, origin.1, size, size).to_image()
+        };
+        let baked = recipe.bake_frame(frame as f32);
+        let off = different_texels(&frame_of(&committed, recipe.size), &baked.picture.texels);
         // Where density just reaches zero, the last bit of `sin` decides a normal: a handful of texels of 65536.
         assert!(off < 64, "{}: {off} texels differ; bake it again", sprite.name);
+
+        // Motion is found in the committed frames, so that it is compared with the same input.
+        let decoded = sprite.sprite().unwrap();
+        let detail = detail(&decoded, frame, &baked.offset);
+        let committed = read_png(&file("sprites", &format!("{}.detail.png", sprite.name))).unwrap().to_rgba8();
+        let off = different_texels(&frame_of(&committed, detail.size.x), &detail.texels);
+        assert!(off < 16, "{}.detail: {off} texels differ; bake it again", sprite.name);
+    }
+}
+
+/// Texels that are more than a step of 8 bits apart.
+fn different_texels(committed: &RgbaImage, baked: &[Rgba<u8>]) -> usize {
+    assert_eq!(committed.pixels().len(), baked.len());
+    let same = |(a, b): (&Rgba<u8>, &Rgba<u8>)| a.0.iter().zip(b.0).all(|(&a, b)| a.abs_diff(b) <= 1);
+    committed.pixels().zip(baked).filter(|&pair| !same(pair)).count()
+}
+
+#[test]
+fn noise_is_what_its_recipe_makes() {
+    for noise in builtin::NOISES {
+        let committed = read_png(&file("sprites", &format!("{}.png", noise.name))).unwrap().to_rgba8();
+        let recipe = NoiseRecipe::load(&file("sprites", &format!("{}.noise.json", noise.name))).unwrap();
+        // Hashes and plain arithmetic: the same everywhere, to the bit.
+        assert_eq!(committed, recipe.bake().unwrap(), "{}: bake it again", noise.name);
     }
 }
 

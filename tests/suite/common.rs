@@ -2,8 +2,9 @@
 
 use std::sync::OnceLock;
 
-use glam::{UVec2, Vec4};
+use glam::{UVec2, UVec3, Vec4};
 use haze::headless::Headless;
+use haze::noise_volume::NoiseVolume;
 use haze::ramp::Ramp;
 use haze::reference::picture::Picture;
 use haze::sprite::Sprite;
@@ -31,7 +32,8 @@ pub fn psnr(a: &Picture<Vec4>, b: &Picture<Vec4>) -> f32 {
     (-10.0 * mean.max(1.0e-12).log10()) as f32
 }
 
-/// Runs a compute shader over cases of `width` numbers each, with a ramp, a sprite and a sampler bound beside them.
+/// Runs a compute shader over cases of `width` numbers each, with a ramp, a sprite, a noise and a sampler bound beside
+/// them.
 pub fn compute(
     gpu: &Headless,
     source: &str,
@@ -39,6 +41,7 @@ pub fn compute(
     width: usize,
     ramp: &Ramp,
     sprite: &Sprite,
+    noise: &NoiseVolume,
 ) -> Vec<Vec<f32>> {
     let device = &gpu.device;
     let mut inputs = vec![0.0_f32; cases.len() * width];
@@ -81,6 +84,7 @@ pub fn compute(
             entry(2, texture(wgpu::TextureViewDimension::D2)),
             entry(3, texture(wgpu::TextureViewDimension::D2Array)),
             entry(4, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+            entry(5, texture(wgpu::TextureViewDimension::D3)),
         ],
     });
     let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -98,7 +102,7 @@ pub fn compute(
         },
         cache: None,
     });
-    let (ramp, sprite) = (upload_ramp(gpu, ramp), upload_sprite(gpu, sprite));
+    let (ramp, sprite, noise) = (upload_ramp(gpu, ramp), upload_sprite(gpu, sprite), upload_noise(gpu, noise));
     let sampler = device.create_sampler(&wgpu::SamplerDescriptor::default());
     let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("formula"),
@@ -109,6 +113,7 @@ pub fn compute(
             wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(&ramp) },
             wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::TextureView(&sprite) },
             wgpu::BindGroupEntry { binding: 4, resource: wgpu::BindingResource::Sampler(&sampler) },
+            wgpu::BindGroupEntry { binding: 5, resource: wgpu::BindingResource::TextureView(&noise) },
         ],
     });
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -153,6 +158,15 @@ fn upload_sprite(gpu: &Headless, sprite: &Sprite) -> wgpu::TextureView {
     upload(gpu, wgpu::TextureFormat::Rgba8Unorm, size, &levels, wgpu::TextureViewDimension::D2Array)
 }
 
+fn upload_noise(gpu: &Headless, noise: &NoiseVolume) -> wgpu::TextureView {
+    let side = noise.size();
+    let size = wgpu::Extent3d { width: side, height: side, depth_or_array_layers: side };
+    let voxels = (0..side * side * side).map(|i| UVec3::new(i % side, i / side % side, i / side / side));
+    let bytes = voxels.flat_map(|voxel| (noise.texel(voxel) * 255.0).round().to_array().map(|c| c as u8)).collect();
+    let levels = [(bytes, 4 * side, size)];
+    upload(gpu, wgpu::TextureFormat::Rgba8Unorm, size, &levels, wgpu::TextureViewDimension::D3)
+}
+
 fn upload(
     gpu: &Headless,
     format: wgpu::TextureFormat,
@@ -165,7 +179,10 @@ fn upload(
         size,
         mip_level_count: levels.len() as u32,
         sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
+        dimension: match dimension {
+            wgpu::TextureViewDimension::D3 => wgpu::TextureDimension::D3,
+            _ => wgpu::TextureDimension::D2,
+        },
         format,
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],

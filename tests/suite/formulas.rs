@@ -1,11 +1,16 @@
 //! Every WGSL function of `shaders/lib` against the reference function of the same name, and against mutants of itself:
 //! a wrong shader must fail, or the test says nothing.
 
+use std::sync::OnceLock;
+
 use glam::{IVec2, UVec2, Vec2, Vec3, Vec4, vec3, vec4};
 use haze::gpu_types::LightUniform;
 use haze::noise::{pcg3d, unit};
-use haze::reference::{depth, diffuse_bake, lighting, normal, ramp, soft_fade, sprite, upsample, view};
-use haze::settings::{DepthDownsample, FadeCurve, NormalDecode, NormalEncoding, Upsample};
+use haze::noise_volume::{NoiseRecipe, NoiseVolume};
+use haze::reference::{
+    depth, diffuse_bake, lighting, noise_volume, normal, ramp, soft_fade, sprite, technique, upsample, view,
+};
+use haze::settings::{DepthDownsample, FadeCurve, NormalDecode, NormalEncoding, SpriteAnimation, Upsample};
 use haze::{ramp::Ramp, shader, sprite::Sprite, sprite::SpriteLayout};
 
 use crate::common::gpu;
@@ -112,6 +117,14 @@ fn test_sprite() -> Sprite {
     Sprite::from_picture(std::path::Path::new("test"), &sheet, layout).unwrap()
 }
 
+fn test_noise() -> &'static NoiseVolume {
+    static NOISE: OnceLock<NoiseVolume> = OnceLock::new();
+    NOISE.get_or_init(|| {
+        let recipe = NoiseRecipe { version: 1, seed: 5, size: 8, cells: 2, octaves: 2, gain: 0.5 };
+        NoiseVolume::from_picture(std::path::Path::new("noise"), &recipe.bake().unwrap()).unwrap()
+    })
+}
+
 #[allow(clippy::too_many_lines)]
 fn formulas() -> Vec<Formula> {
     vec![
@@ -196,18 +209,29 @@ fn formulas() -> Vec<Formula> {
             ],
         },
         Formula {
+            name: "fade_always",
+            file: "lib/soft_fade.wgsl",
+            wgsl: "y(0, fade_always(x(0), x(1)));",
+            reference: |x| vec![soft_fade::fade_always(x[0], x[1])],
+            cases: random(100, &[(-2.0, 2.0), (0.2, 4.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[("saturate(-distance", "saturate(distance"), ("1.0 - saturate", "saturate")],
+        },
+        Formula {
             name: "soft_fade",
             file: "lib/soft_fade.wgsl",
             wgsl: "y(0, soft_fade(u32(x(0)), x(1), x(2), x(3), x(4)));",
             reference: |x| vec![soft_fade::soft_fade(FadeCurve::ALL[x[0] as usize], x[1], x[2], x[3], x[4])],
-            cases: with_choices(4, &[(-0.5, 2.0), (0.2, 4.0), (0.5, 4.0), (0.0, 0.2)]),
+            cases: with_choices(5, &[(-0.5, 2.0), (0.2, 4.0), (0.5, 4.0), (0.0, 0.2)]),
             tolerance: TRANSCENDENTAL,
             // Unsigned differences let sprites fade back in behind the surface.
             mutants: &[
                 (
-                    "if distance < max(epsilon, 0.0) {\n        return 0.0;\n    }\n    let x = saturate(distance *",
+                    "if curve != FADE_CURVE_ALWAYS && distance < max(epsilon, 0.0) {\n        return 0.0;\n    }\n    \
+                     let x = saturate(distance *",
                     "let x = saturate(abs(distance) *",
                 ),
+                ("curve != FADE_CURVE_ALWAYS && distance < max(epsilon, 0.0)", "distance < max(epsilon, 0.0)"),
                 ("distance < max(epsilon, 0.0)", "distance < 0.0"),
                 ("saturate(distance * fade_scale)", "saturate(distance / fade_scale)"),
                 (
@@ -530,20 +554,239 @@ fn formulas() -> Vec<Formula> {
             name: "sample_sprite",
             file: "lib/sprite.wgsl",
             wgsl: "let f = flipbook_frames(x(2), 3.0); \
-                   let v = sample_sprite(test_sprite, test_sampler, vec2f(x(0), x(1)), f, x(3)); \
+                   let v = sample_sprite(test_sprite, test_sampler, vec2f(x(0), x(1)), f, vec2f(x(4), x(5)), x(3)); \
                    y(0, v.x); y(1, v.y); y(2, v.z); y(3, v.w);",
             reference: |x| {
                 let frames = sprite::flipbook_frames(x[2], 3.0);
-                sprite::sample_sprite(&test_sprite(), v2(x), frames, x[3]).to_array().to_vec()
+                sprite::sample_sprite(&test_sprite(), v2(x), frames, v2(&x[4..]), x[3]).to_array().to_vec()
             },
-            cases: random(300, &[(0.0, 1.0), (0.0, 1.0), (0.0, 9.0), (0.0, 4.0)]),
+            cases: random(300, &[(0.0, 1.0), (0.0, 1.0), (0.0, 9.0), (0.0, 4.0), (-0.2, 0.2), (-0.2, 0.2)]),
             tolerance: 1e-5,
             mutants: &[
                 ("mix(texel, next, frames.blend)", "texel"),
                 ("mix(fine, coarse, level - base)", "fine"),
                 ("texel.rgb * 2.0 - 1.0", "texel.rgb"),
                 ("uv * vec2f(size) - 0.5", "uv * vec2f(size)"),
+                ("uv - motion * frames.blend", "uv + motion * frames.blend"),
+                ("motion * (1.0 - frames.blend)", "motion * frames.blend"),
             ],
+        },
+        Formula {
+            name: "sprite_frame",
+            file: "lib/sprite.wgsl",
+            wgsl: "y(0, sprite_frame(u32(x(0)), x(1), x(2), x(3)));",
+            reference: |x| vec![sprite::sprite_frame(SpriteAnimation::ALL[x[0] as usize], x[1], x[2], x[3])],
+            cases: with_choices(3, &[(0.0, 9.0), (-0.2, 1.2), (1.0, 9.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[
+                ("frame_count - 1.0);", "frame_count);"),
+                ("STILL: { return 0.0; }", "STILL: { return frame; }"),
+            ],
+        },
+        Formula {
+            name: "detail_from_texel",
+            file: "lib/sprite.wgsl",
+            wgsl: "let v = detail_from_texel(vec3f(x(0), x(1), x(2))); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| sprite::detail_from_texel(v3(x)).to_array().to_vec(),
+            cases: random(50, &[(0.0, 1.0); 3]),
+            tolerance: ARITHMETIC,
+            mutants: &[("- 128.0", "- 127.5"), ("vec3f(1.0, MOTION_RANGE", "vec3f(MOTION_RANGE, MOTION_RANGE")],
+        },
+        Formula {
+            name: "sample_detail",
+            file: "lib/sprite.wgsl",
+            wgsl: "let f = flipbook_frames(x(2), 3.0); \
+                   let v = sample_detail(test_sprite, test_sampler, vec2f(x(0), x(1)), f, x(3)); \
+                   y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| {
+                let frames = sprite::flipbook_frames(x[2], 3.0);
+                sprite::sample_detail(&test_sprite(), v2(x), frames, x[3]).to_array().to_vec()
+            },
+            cases: random(200, &[(0.0, 1.0), (0.0, 1.0), (0.0, 9.0), (0.0, 4.0)]),
+            tolerance: 1e-5,
+            mutants: &[("mix(first.x, second.x, frames.blend)", "first.x"), ("first.yz", "second.yz")],
+        },
+        Formula {
+            name: "checkerboard",
+            file: "lib/sprite.wgsl",
+            wgsl: "let v = checkerboard(vec2f(x(0), x(1))); y(0, v.z); y(1, v.w);",
+            reference: |x| vec![sprite::checkerboard(v2(x)).z, sprite::checkerboard(v2(x)).w],
+            cases: random(100, &[(0.0, 1.0); 2]),
+            tolerance: 0.0,
+            mutants: &[("check.x + check.y", "check.x")],
+        },
+        Formula {
+            name: "hard_fade",
+            file: "lib/technique.wgsl",
+            wgsl: "y(0, hard_fade(x(0)));",
+            reference: |x| vec![technique::hard_fade(x[0])],
+            cases: random(50, &[(-1.0, 1.0)]),
+            tolerance: 0.0,
+            mutants: &[("distance >= 0.0", "distance <= 0.0")],
+        },
+        Formula {
+            name: "depth_sprite_depth",
+            file: "lib/technique.wgsl",
+            wgsl: "y(0, depth_sprite_depth(x(0), x(1), x(2)));",
+            reference: |x| vec![technique::depth_sprite_depth(x[0], x[1], x[2])],
+            cases: random(50, &[(1.0, 9.0), (-1.0, 1.0), (0.0, 2.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[("- offset * radius", "+ offset * radius"), ("offset * radius", "offset")],
+        },
+        Formula {
+            name: "ray_sphere",
+            file: "lib/technique.wgsl",
+            wgsl: "let v = ray_sphere(vec3f(0.1, 0.2, 0.3), vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5)), x(6), x(7), \
+                   x(7) + x(8)); y(0, v.enter); y(1, v.leave); y(2, v.axis.x); y(3, v.axis.y); y(4, v.axis.z);",
+            reference: |x| {
+                let origin = vec3(0.1, 0.2, 0.3);
+                let found = technique::ray_sphere(origin, v3(x), v3(&x[3..]), x[6], x[7], x[7] + x[8]);
+                vec![found.enter, found.leave, found.axis.x, found.axis.y, found.axis.z]
+            },
+            // Missed, hit, and cut at either end.
+            cases: unit_vectors(
+                random(
+                    300,
+                    &[
+                        (-0.3, 0.3),
+                        (-0.3, 0.3),
+                        (-1.0, -0.5),
+                        (-1.0, 1.0),
+                        (-1.0, 1.0),
+                        (-6.0, 0.5),
+                        (0.0, 2.0),
+                        (0.1, 4.0),
+                        (0.0, 6.0),
+                    ],
+                ),
+                0,
+            ),
+            // The root of a difference of squares near the rim: 1e-7 under it is 3e-4.
+            tolerance: 5e-4,
+            mutants: &[
+                ("max(middle - half_chord, near)", "middle - half_chord"),
+                ("min(middle + half_chord, scene)", "middle + half_chord"),
+                ("radius * radius - dot(axis, axis)", "radius * radius"),
+            ],
+        },
+        Formula {
+            name: "spherical_billboard_amount",
+            file: "lib/technique.wgsl",
+            wgsl: "y(0, spherical_billboard_amount(x(0), x(1), x(2), x(3)));",
+            reference: |x| vec![technique::spherical_billboard_amount(x[0], x[1], x[2], x[3])],
+            cases: {
+                let mut cases = random(100, &[(0.0, 4.0), (0.0, 1.5), (0.5, 1.5), (-0.5, 2.0)]);
+                cases.push(vec![1.0, 0.0, 0.0, 1.0]);
+                cases
+            },
+            tolerance: TRANSCENDENTAL,
+            mutants: &[("1.0 - axis_distance / max", "axis_distance / max"), ("max(stretch, 0.0)", "stretch")],
+        },
+        Formula {
+            name: "density_thickness",
+            file: "lib/technique.wgsl",
+            wgsl: "y(0, density_thickness(x(0), x(1), x(2), x(3)));",
+            reference: |x| vec![technique::density_thickness(x[0], x[1], x[2], x[3])],
+            cases: random(200, &[(0.1, 4.0), (0.0, 2.0), (0.1, 2.0), (0.1, 6.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[
+                ("min(scene, view_depth + radius)", "(view_depth + radius)"),
+                ("max(near, view_depth - radius)", "(view_depth - radius)"),
+            ],
+        },
+        Formula {
+            name: "density_amount",
+            file: "lib/technique.wgsl",
+            wgsl: "y(0, density_amount(x(0), x(1)));",
+            reference: |x| vec![technique::density_amount(x[0], x[1])],
+            cases: random(50, &[(0.0, 4.0), (0.0, 2.0)]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[("1.0 - exp(-density * thickness)", "density * thickness")],
+        },
+        Formula {
+            name: "volumetric_falloff",
+            file: "lib/technique.wgsl",
+            wgsl: "y(0, volumetric_falloff(vec3f(x(0), x(1), x(2))));",
+            reference: |x| vec![technique::volumetric_falloff(v3(x))],
+            cases: random(100, &[(-1.0, 1.0); 3]),
+            tolerance: ARITHMETIC,
+            mutants: &[("dot(place, place)", "length(place)"), ("saturate(1.0", "(1.0")],
+        },
+        Formula {
+            name: "volumetric_density",
+            file: "lib/technique.wgsl",
+            wgsl: "y(0, volumetric_density(x(0), x(1)));",
+            reference: |x| vec![technique::volumetric_density(x[0], x[1])],
+            cases: random(100, &[(0.0, 1.0); 2]),
+            tolerance: ARITHMETIC,
+            mutants: &[("2.0 * noise - 1.0 + falloff", "noise"), ("* falloff;", ";")],
+        },
+        Formula {
+            name: "volumetric_normal",
+            file: "lib/technique.wgsl",
+            wgsl: "let v = volumetric_normal(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5))); \
+                   y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| technique::volumetric_normal(v3(x), v3(&x[3..])).to_array().to_vec(),
+            cases: random(100, &[(-1.0, 1.0); 6]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[("place + 2.0 * gradient", "place - 2.0 * gradient"), ("max(normal.z, 0.1)", "normal.z")],
+        },
+        Formula {
+            name: "sphere_axis_bounds",
+            file: "lib/technique.wgsl",
+            wgsl: "let v = sphere_axis_bounds(vec2f(x(0), x(1)), x(2), x(3)); y(0, v.x); y(1, v.y);",
+            reference: |x| technique::sphere_axis_bounds(v2(x), x[2], x[3]).to_array().to_vec(),
+            cases: {
+                let mut cases = random(300, &[(-3.0, 3.0), (0.3, 6.0), (0.05, 2.0), (0.1, 0.3)]);
+                // Only spheres that reach in front of the near plane are drawn.
+                cases.retain(|x| x[1] + x[2] > x[3]);
+                cases
+            },
+            // Tangents that touch close to the near plane are far out and steep.
+            tolerance: 2e-3,
+            mutants: &[
+                ("vec2f(centre.x - cut, centre.x + cut)", "vec2f(centre.x, centre.x)"),
+                ("cosine * centre.x - sine * centre.y", "cosine * centre.x + sine * centre.y"),
+                ("!clipped || upper.y", "upper.y < 0.0 || upper.y"),
+            ],
+        },
+        Formula {
+            name: "sample_noise_volume",
+            file: "lib/noise_volume.wgsl",
+            wgsl: "let v = sample_noise_volume(test_noise, test_sampler, vec3f(x(0), x(1), x(2))); \
+                   y(0, v.x); y(1, v.y); y(2, v.z); y(3, v.w);",
+            reference: |x| noise_volume::sample_noise_volume(test_noise(), v3(x)).to_array().to_vec(),
+            cases: random(200, &[(-2.0, 2.0); 3]),
+            tolerance: 2e-5,
+            mutants: &[
+                ("((texel % size) + size) % size", "clamp(texel, vec3i(0), size - 1)"),
+                ("place * vec3f(size) - 0.5", "place * vec3f(size)"),
+                ("texel.rgb * 2.0 - 1.0", "texel.rgb"),
+                ("mix(near, far, f.z)", "near"),
+            ],
+        },
+        Formula {
+            name: "sample_noise_octaves",
+            file: "lib/noise_volume.wgsl",
+            wgsl: "let v = sample_noise_octaves(test_noise, test_sampler, vec3f(x(1), x(2), x(3)), 1u + u32(x(0))); \
+                   y(0, v.x); y(1, v.y); y(2, v.z); y(3, v.w);",
+            reference: |x| {
+                let octaves = 1 + x[0] as u32;
+                noise_volume::sample_noise_octaves(test_noise(), v3(&x[1..]), octaves).to_array().to_vec()
+            },
+            cases: with_choices(4, &[(-1.0, 1.0); 3]),
+            // A coordinate's last bit, 27 times over.
+            tolerance: 2e-4,
+            mutants: &[("place *= 3.0", "place *= 2.0"), ("weight *= 0.5", "weight *= 1.0"), ("sum / total", "sum")],
+        },
+        Formula {
+            name: "noise_coordinate",
+            file: "lib/noise_volume.wgsl",
+            wgsl: "let v = noise_coordinate(vec3f(x(0), x(1), x(2)), x(3), x(4)); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| noise_volume::noise_coordinate(v3(x), x[3], x[4]).to_array().to_vec(),
+            cases: random(50, &[(-9.0, 9.0), (-9.0, 9.0), (-9.0, 9.0), (0.5, 4.0), (0.0, 2.0)]),
+            tolerance: ARITHMETIC * 10.0,
+            mutants: &[("world - vec3f", "world + vec3f"), ("/ noise_size", "* noise_size")],
         },
     ]
 }
@@ -551,7 +794,7 @@ fn formulas() -> Vec<Formula> {
 /// Runs the formula on the GPU, from `source` of its file.
 fn run(formula: &Formula, mutate: Option<(&str, &str)>) -> Vec<Vec<f32>> {
     let mut library = format!("#import \"{}\"\n", formula.file);
-    if formula.file != "lib/sprite.wgsl" && formula.file != "lib/ramp.wgsl" {
+    if !["lib/sprite.wgsl", "lib/ramp.wgsl", "lib/noise_volume.wgsl"].contains(&formula.file) {
         library.push_str("#import \"lib/ramp.wgsl\"\n");
     }
     let mut source = shader::compose(&library).unwrap();
@@ -568,6 +811,7 @@ fn run(formula: &Formula, mutate: Option<(&str, &str)>) -> Vec<Vec<f32>> {
          @group(0) @binding(2) var test_ramp: texture_2d<f32>;
          @group(0) @binding(3) var test_sprite: texture_2d_array<f32>;
          @group(0) @binding(4) var test_sampler: sampler;
+         @group(0) @binding(5) var test_noise: texture_3d<f32>;
          var<private> case_index: u32;
          fn x(i: u32) -> f32 {{ return inputs[case_index * {WIDTH}u + i]; }}
          fn y(i: u32, value: f32) {{ results[case_index * {WIDTH}u + i] = value; }}
@@ -580,7 +824,8 @@ fn run(formula: &Formula, mutate: Option<(&str, &str)>) -> Vec<Vec<f32>> {
          }}",
         formula.wgsl
     ));
-    let results = crate::common::compute(gpu(), &source, &formula.cases, WIDTH, &test_ramp(), &test_sprite());
+    let results =
+        crate::common::compute(gpu(), &source, &formula.cases, WIDTH, &test_ramp(), &test_sprite(), test_noise());
     gpu().check().unwrap_or_else(|error| panic!("{}: {error}\n{source}", formula.name));
     results
 }
@@ -630,6 +875,18 @@ const INDIRECT: &[&str] = &[
     "soft_scatter",
     "scene_view_depth",
     "sample_accumulation",
+    "load_noise_volume",
+    "is_sphere",
+    "is_volumetric",
+    "sprite_thickness",
+    "sprite_front",
+    "sphere_corner",
+    "reads_scene",
+    "technique_fragment",
+    "fade_before",
+    "sprite_texel",
+    "sphere_fragment",
+    "volumetric_fragment",
 ];
 
 #[test]

@@ -15,3 +15,4 @@ mod presets;
 mod properties;
 mod shader_layout;
 mod stage;
+mod techniques;

@@ -9,7 +9,7 @@ use haze::{Bounds, Error, Light, Particle, Particles, wgpu};
 use proptest::prelude::*;
 
 use crate::common::{gpu, non_finite_texels, psnr};
-use crate::stage::{BACKDROP, Host, Stage};
+use crate::stage::{BACKDROP, DepthKind, Host, Stage};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
@@ -212,17 +212,17 @@ fn every_depth_convention_gives_the_same_picture() {
     for family in families {
         let mut standard = None;
         for clip_from_view in family {
-            for linear_depth in [false, true] {
+            for depth in [DepthKind::Buffer, DepthKind::Linear] {
                 let mut stage = Stage::new(SIZE);
                 stage.view.clip_from_view = clip_from_view;
-                stage.linear_depth = linear_depth;
+                stage.depth = depth;
                 let picture = stage.on_gpu(gpu()).picture;
                 let reference = psnr(&picture, &stage.on_cpu());
                 assert!(reference >= 45.0, "{clip_from_view}: {reference:.1} dB from the reference");
                 let standard = standard.get_or_insert_with(|| picture.clone());
                 // Depth buffers of different conventions round differently; 60 dB is a thousandth.
                 let psnr = psnr(&picture, standard);
-                assert!(psnr >= 60.0, "{clip_from_view}, linear {linear_depth}: {psnr:.1} dB from standard");
+                assert!(psnr >= 60.0, "{clip_from_view}, {depth:?}: {psnr:.1} dB from standard");
             }
         }
     }

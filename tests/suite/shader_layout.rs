@@ -157,6 +157,20 @@ fn structs_agree() {
             specular_scatter_size,
             specular_scatter_intensity,
             light_count,
+            size,
+            motion,
+            age_colour,
+            detail_lod,
+            billboard_radius,
+            billboard_density,
+            density,
+            noise_size,
+            volume_opacity,
+            march_steps,
+            noise_octaves,
+            noise_scroll,
+            fade_through,
+            padding,
             spherical_harmonics,
         ]
     );
@@ -196,7 +210,9 @@ fn constants_agree() {
     let transfer = composed("transfer.wgsl");
     assert_eq!(constant(&transfer, "MAX_LIGHTS"), light::MAX_LIGHTS as f64);
     assert_eq!(constant(&transfer, "SKY_VIEW_DEPTH"), f64::from(view::SKY_VIEW_DEPTH));
-    assert_eq!(constant(&composed("accumulate.wgsl"), "LARGEST"), f64::from(haze::particle::LARGEST));
+    let accumulate = composed("accumulate.wgsl");
+    assert_eq!(constant(&accumulate, "LARGEST"), f64::from(haze::particle::LARGEST));
+    assert_eq!(constant(&accumulate, "MOTION_RANGE"), f64::from(haze::sprite::detail::MOTION_RANGE));
     assert_eq!(constant(&transfer, "SAME_SURFACE"), f64::from(haze::reference::upsample::SAME_SURFACE));
 }
 
@@ -220,6 +236,8 @@ fn setting_enums_agree() {
     assert_choices!(transfer, "SHADE_TREE", settings::ShadeTree);
     let accumulate = composed("accumulate.wgsl");
     assert_choices!(accumulate, "FADE_CURVE", settings::FadeCurve);
+    assert_choices!(accumulate, "TECHNIQUE", settings::Technique);
+    assert_choices!(accumulate, "SPRITE_ANIMATION", settings::SpriteAnimation);
     assert_choices!(composed("depth_downsample.wgsl"), "DEPTH_DOWNSAMPLE", settings::DepthDownsample);
     assert_choices!(composed("forward.wgsl"), "BLEND_MODE", settings::BlendMode);
 }

@@ -4,6 +4,7 @@ use glam::camera::rh;
 use glam::{Mat4, UVec2, UVec3, Vec2, Vec3, Vec4, vec3};
 use haze::headless::Headless;
 use haze::noise::{pcg3d, unit};
+use haze::noise_volume::{NoiseRecipe, NoiseVolume};
 use haze::ramp::Ramp;
 use haze::reference::picture::Picture;
 use haze::reference::renderer as reference;
@@ -22,11 +23,24 @@ pub struct Stage {
     pub bounds: Option<Bounds>,
     pub settings: Settings,
     pub material: MaterialAssets,
+    pub time: f32,
     pub shade_tree: ShadeTree,
-    /// Hand the scene's depth over as linear metres.
-    pub linear_depth: bool,
+    /// Which kind of scene depth is handed over.
+    pub depth: DepthKind,
+    /// The wall goes on to the right.
+    pub wall_everywhere: bool,
+    /// The linear target says that nothing is there.
+    pub empty_linear: bool,
     /// Attach the depth buffer to the pass that the smoke is drawn in.
     pub attach_depth: bool,
+}
+
+/// What a host hands over as the scene's depth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DepthKind {
+    Buffer,
+    Linear,
+    Both,
 }
 
 /// What a run on the GPU leaves.
@@ -57,16 +71,34 @@ pub fn ball_sprite(y_down: bool) -> Sprite {
         .unwrap()
 }
 
+/// Stands out in the middle, moves to the upper right.
+fn ball_detail() -> Sprite {
+    let picture = image::RgbaImage::from_fn(32, 32, |x, y| {
+        let p = (Vec2::new(x as f32, 31.0 - y as f32) + 0.5) / 16.0 - 1.0;
+        let inside = (1.0 - 1.2 * p.length_squared()).max(0.0);
+        image::Rgba([(128.0 + 100.0 * inside) as u8, 168, 88, (inside * 255.0) as u8])
+    });
+    Sprite::from_picture(std::path::Path::new("ball.detail"), &picture, SpriteLayout::default()).unwrap()
+}
+
+fn recipe_noise() -> NoiseVolume {
+    let recipe = NoiseRecipe { version: 1, seed: 3, size: 16, cells: 2, octaves: 3, gain: 0.5 };
+    NoiseVolume::from_picture(std::path::Path::new("noise"), &recipe.bake().unwrap()).unwrap()
+}
+
 pub fn material() -> MaterialAssets {
     let line =
         |from: Vec3, to: Vec3| Ramp::from_linear(UVec2::new(16, 1), (0..16).map(|i| from.lerp(to, i as f32 / 15.0)));
     let glow = |i: u32| Vec3::splat((1.0 - (i % 16) as f32 / 15.0) * (i / 16) as f32 / 7.0);
     MaterialAssets {
         sprite: ball_sprite(false),
+        detail: Some(ball_detail()),
+        noise: recipe_noise(),
         diffuse_ramp: line(Vec3::splat(0.05), Vec3::ONE),
         soft_scatter_ramp: line(Vec3::splat(0.3), Vec3::ZERO),
         specular_ramp: Ramp::from_linear(UVec2::new(16, 8), (0..128).map(glow)),
         motif: line(Vec3::ZERO, Vec3::ONE),
+        age_ramp: line(vec3(1.0, 0.2, 0.1), vec3(0.2, 0.4, 1.0)),
     }
 }
 
@@ -99,8 +131,11 @@ impl Stage {
             bounds: None,
             settings: Settings { boost: 1.5, ..Settings::default() },
             material: material(),
+            time: 1.0,
             shade_tree: ShadeTree::Final,
-            linear_depth: false,
+            depth: DepthKind::Buffer,
+            wall_everywhere: false,
+            empty_linear: false,
             // OpenGL cannot test and sample one depth buffer in one pass.
             attach_depth: haze::descriptor::read_only_depth_is_supported(&gpu().device),
         }
@@ -108,6 +143,9 @@ impl Stage {
 
     /// View depth of the scene: a post of 0.3 m at 5 m, a wall at 6.2 m on the left half, that the cloud reaches into, nothing on the right.
     fn view_depth(&self, at: UVec2) -> Option<f32> {
+        if self.wall_everywhere {
+            return Some(6.2);
+        }
         let uv = (at.as_vec2() + 0.5) / self.view.size.as_vec2();
         let post = (uv.x - 0.6).abs() < 0.03;
         if post { Some(5.0) } else { (uv.x < 0.5).then_some(6.2) }
@@ -138,6 +176,7 @@ impl Stage {
                 settings: &self.settings,
                 material: &self.material,
             }],
+            time: self.time,
             shade_tree: self.shade_tree,
         };
         reference::render(&frame, &mut picture).unwrap();
@@ -171,7 +210,7 @@ impl Host {
         if !stage.attach_depth {
             descriptor.depth_format = None;
         }
-        let renderer = Renderer::new(&gpu.device, &descriptor)?;
+        let renderer = Renderer::new(&gpu.device, &descriptor);
         let material = renderer.create_material(&gpu.device, &gpu.queue, &stage.material);
         let colour = gpu.target("host colour", stage.view.size, wgpu::TextureFormat::Rgba16Float);
         let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
@@ -188,13 +227,14 @@ impl Host {
     pub fn draw_particles(&mut self, gpu: &Headless, stage: &Stage, particles: Particles<'_>) -> Result<(), Error> {
         let frame = Frame {
             view: stage.view,
-            scene_depth: if stage.linear_depth {
-                SceneDepth::Linear(&self.linear_view)
-            } else {
-                SceneDepth::Buffer(&self.depth_view)
+            scene_depth: match stage.depth {
+                DepthKind::Buffer => SceneDepth::Buffer(&self.depth_view),
+                DepthKind::Linear => SceneDepth::Linear(&self.linear_view),
+                DepthKind::Both => SceneDepth::Both { buffer: &self.depth_view, linear: &self.linear_view },
             },
             lights: &stage.lights,
             systems: &[System { particles, bounds: stage.bounds, settings: &stage.settings, material: &self.material }],
+            time: stage.time,
             shade_tree: stage.shade_tree,
         };
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -259,7 +299,8 @@ fn depth_textures(gpu: &Headless, stage: &Stage) -> (wgpu::Texture, wgpu::Textur
     };
     let ndc = upload(&stage.ndc_depth().texels);
     let mut linear = Picture::new(size, 0.0);
-    linear.for_each(|at, texel| *texel = stage.view_depth(at).unwrap_or(haze::view::SKY_VIEW_DEPTH));
+    let seen = |at| stage.view_depth(at).filter(|_| !stage.empty_linear);
+    linear.for_each(|at, texel| *texel = seen(at).unwrap_or(haze::view::SKY_VIEW_DEPTH));
     let linear = upload(&linear.texels);
 
     let depth = gpu.target("host depth", size, wgpu::TextureFormat::Depth32Float);

@@ -1,30 +1,32 @@
 //! `shaders/forward.wgsl`.
 
-use glam::{Vec2, Vec4, Vec4Swizzles};
+use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use super::accumulate::Grid;
 use crate::reference::blending::{forward_blend, forward_fragment};
 use crate::reference::lighting::coverage;
 use crate::reference::picture::Picture;
+use crate::reference::ramp::sample_ramp;
 use crate::reference::renderer::Draw;
 
 impl Draw<'_> {
     pub fn forward(&self, picture: &mut Picture<Vec4>) {
         let grid = Grid { origin: Vec2::ZERO, scale: 1.0, size: picture.size };
         let mode = self.settings.blend_mode;
+        let system = &self.system;
         picture.for_bands(|first_row, band| {
-            self.for_fragments(&grid, first_row, band, |at, sprite, uv, texel: &mut Vec4| {
-                let fade = self.soft_fade(self.scene_view_depth(at) - sprite.view_depth);
-                let fragment = self.sprite_fragment(sprite, uv);
-                let amount = fragment.w * fade;
+            let scene = |at| self.scene_view_depth(at);
+            self.for_fragments(&grid, first_row, band, scene, |at, sprite, fragment, texel: &mut Vec4| {
+                let amount = fragment.w;
                 if amount <= 0.0 {
                     return;
                 }
                 let normal = fragment.xyz() / fragment.xyz().length_squared().max(1.0e-12).sqrt();
-                let position = self.view_position(at.as_vec2() + 0.5, sprite.view_depth);
-                let diffuse = self.diffuse_from_lights(normal, position) * self.system.diffuse_intensity;
-                let light = diffuse + self.soft_scatter(amount);
-                let source = forward_fragment(mode, light, coverage(amount, self.system.boost));
+                let position = self.view_position(at.as_vec2() + 0.5, sprite.view_depth.max(self.view.near));
+                let diffuse = self.diffuse_from_lights(normal, position) * system.diffuse_intensity;
+                let colour = sample_ramp(&self.material.age_ramp, sprite.age);
+                let light = (diffuse + self.soft_scatter(amount)) * Vec3::ONE.lerp(colour, system.age_colour);
+                let source = forward_fragment(mode, light, coverage(amount, system.boost));
                 *texel = forward_blend(mode, source, *texel);
             });
         });

@@ -5,4 +5,5 @@ mod depth_downsample;
 mod diffuse_bake;
 mod forward;
 mod specular_scatter;
+mod sprite;
 pub(super) mod transfer;

@@ -26,17 +26,22 @@ macro_rules! choice {
         }
 
         impl std::str::FromStr for $name {
-            type Err = FieldError;
+            type Err = $crate::error::FieldError;
 
-            fn from_str(text: &str) -> Result<Self, FieldError> {
+            fn from_str(text: &str) -> Result<Self, Self::Err> {
                 Self::ALL.iter().copied().find(|choice| choice.name() == text).ok_or_else(|| {
                     let names: Vec<_> = Self::ALL.iter().map(|choice| choice.name()).collect();
-                    FieldError::new(stringify!($name), format!("{text:?}"), format!("one of {}", names.join(", ")))
+                    let expected = format!("one of {}", names.join(", "));
+                    Self::Err::new(stringify!($name), format!("{text:?}"), expected)
                 })
             }
         }
     };
 }
+
+mod technique;
+
+pub use technique::{Density, SphericalBillboard, SpriteAnimation, SpriteSettings, Technique, Volumetric};
 
 choice! {
     /// How a system reaches the picture.
@@ -137,6 +142,9 @@ choice! {
         Contrast = "contrast",
         /// NV's `1 - 2^(-2 (2x)^c)`. Does not reach 1: 0.9375 at x = 1 for c = 1.
         Exponential = "exponential",
+        /// Whole up to the surface, and linearly gone `1 / fade_scale` metres behind it: sprites show through. There is
+        /// no depth test then. (BLOG, comment)
+        Always = "always",
     }
 }
 
@@ -397,12 +405,22 @@ pub struct Settings {
     pub path: Path,
     /// How forward sprites are blended; the deferred path has its own blend.
     pub blend_mode: BlendMode,
+    /// How sprites meet the scene.
+    pub technique: Technique,
     /// Multiplies the accumulated amount into coverage. OTEE's value is 3.
     pub boost: f32,
+    /// What sprites show.
+    pub sprite: SpriteSettings,
     /// Sprites to normal + amount.
     pub accumulate: Accumulate,
     /// The fade against scene and camera.
     pub soft_fade: SoftFade,
+    /// For the technique of that name.
+    pub spherical_billboard: SphericalBillboard,
+    /// For the technique of that name.
+    pub density: Density,
+    /// For the techniques of that name.
+    pub volumetric: Volumetric,
     /// Light by normal.
     pub diffuse: Diffuse,
     /// Light by amount.
@@ -416,9 +434,14 @@ impl Default for Settings {
         Self {
             path: Path::default(),
             blend_mode: BlendMode::default(),
+            technique: Technique::default(),
             boost: 3.0,
+            sprite: SpriteSettings::default(),
             accumulate: Accumulate::default(),
             soft_fade: SoftFade::default(),
+            spherical_billboard: SphericalBillboard::default(),
+            density: Density::default(),
+            volumetric: Volumetric::default(),
             diffuse: Diffuse::default(),
             soft_scatter: SoftScatter::default(),
             specular_scatter: SpecularScatter::default(),
@@ -429,8 +452,12 @@ impl Default for Settings {
 impl Fields for Settings {
     fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
         visitor.number("boost", &mut self.boost, 0.0..=16.0, "");
+        visitor.group("sprite", &mut self.sprite);
         visitor.group("accumulate", &mut self.accumulate);
         visitor.group("soft_fade", &mut self.soft_fade);
+        visitor.group("spherical_billboard", &mut self.spherical_billboard);
+        visitor.group("density", &mut self.density);
+        visitor.group("volumetric", &mut self.volumetric);
         visitor.group("diffuse", &mut self.diffuse);
         visitor.group("soft_scatter", &mut self.soft_scatter);
         visitor.group("specular_scatter", &mut self.specular_scatter);
@@ -441,6 +468,22 @@ impl Settings {
     /// True if the system is lit and blended per fragment.
     pub fn is_forward(&self) -> bool {
         self.path == Path::Forward
+    }
+
+    /// Metres behind the scene at which sprites are still seen: none, but for the curve `always`.
+    pub fn fade_through(&self) -> f32 {
+        let shows_through = self.soft_fade.curve == FadeCurve::Always && self.technique.is_soft();
+        if shows_through { 1.0 / self.soft_fade.fade_scale } else { 0.0 }
+    }
+
+    /// How far the corners of a sprite reach, whichever way it turns, in radii of its particle.
+    pub fn reach(&self) -> f32 {
+        let of_technique = match self.technique {
+            Technique::SphericalBillboard => self.spherical_billboard.radius,
+            Technique::VolumetricHard | Technique::VolumetricSoft => 1.0,
+            _ => std::f32::consts::SQRT_2,
+        };
+        self.sprite.size * of_technique
     }
 
     /// Checks ranges and the settings that exclude each other.

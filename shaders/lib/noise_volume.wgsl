@@ -1,0 +1,55 @@
+// The tiling 3D noise of volumetric sprites: rgb = inverse density gradient / 2 + 1/2, a = density.
+
+#import "lib/ramp.wgsl"
+
+fn load_noise_volume(noise: texture_3d<f32>, texel: vec3i, size: vec3i) -> vec4f {
+    // `%` keeps the sign of a negative number.
+    return textureLoad(noise, ((texel % size) + size) % size, 0);
+}
+
+// Inverse density gradient (-1..1) and density. The noise repeats with every unit of `coordinate`.
+fn sample_noise_volume(noise: texture_3d<f32>, repeat_sampler: sampler, coordinate: vec3f) -> vec4f {
+    let place = fract(coordinate);
+    if !EXACT_FILTERING {
+        let texel = textureSampleLevel(noise, repeat_sampler, place, 0.0);
+        return vec4f(texel.rgb * 2.0 - 1.0, texel.a);
+    }
+    let size = vec3i(textureDimensions(noise));
+    let at = place * vec3f(size) - 0.5;
+    let base = floor(at);
+    let f = at - base;
+    let i = vec3i(base);
+    let near = mix(
+        mix(load_noise_volume(noise, i, size), load_noise_volume(noise, i + vec3i(1, 0, 0), size), f.x),
+        mix(load_noise_volume(noise, i + vec3i(0, 1, 0), size), load_noise_volume(noise, i + vec3i(1, 1, 0), size), f.x),
+        f.y,
+    );
+    let far = mix(
+        mix(load_noise_volume(noise, i + vec3i(0, 0, 1), size), load_noise_volume(noise, i + vec3i(1, 0, 1), size), f.x),
+        mix(load_noise_volume(noise, i + vec3i(0, 1, 1), size), load_noise_volume(noise, i + vec3i(1, 1, 1), size), f.x),
+        f.y,
+    );
+    let texel = mix(near, far, f.z);
+    return vec4f(texel.rgb * 2.0 - 1.0, texel.a);
+}
+
+// Octaves of the noise, each of three times the frequency and half the weight of the last; weights sum to 1. (MS)
+fn sample_noise_octaves(noise: texture_3d<f32>, repeat_sampler: sampler, coordinate: vec3f, octaves: u32) -> vec4f {
+    var sum = vec4f(0.0);
+    var total = 0.0;
+    var weight = 1.0;
+    var place = coordinate;
+    for (var octave = 0u; octave < octaves; octave++) {
+        sum += sample_noise_volume(noise, repeat_sampler, place) * weight;
+        total += weight;
+        weight *= 0.5;
+        place *= 3.0;
+    }
+    return sum / total;
+}
+
+// Where a point of the world stands in the noise, which rises by `scroll` metres: moving the lookup one way moves the
+// smoke the other. (MS "Animating the volume particles")
+fn noise_coordinate(world: vec3f, noise_size: f32, scroll: f32) -> vec3f {
+    return (world - vec3f(0.0, scroll, 0.0)) / noise_size;
+}

@@ -1,0 +1,153 @@
+// A fragment of a sprite under every technique: shared by accumulate and forward.
+
+#import "lib/sprite_vertex.wgsl"
+#import "lib/noise_volume.wgsl"
+#import "lib/normal.wgsl"
+
+override FADE_CURVE: u32 = FADE_CURVE_SMOOTHSTEP;
+override DEBUG_SPRITE: bool = false;
+// The hardware has already dropped what is behind the scene.
+override DEPTH_TESTED: bool = false;
+
+struct SpriteFragment {
+    // View space, about unit length.
+    normal: vec3f,
+    amount: f32,
+    // Behind the scene or outside the sphere: not shaded at all.
+    hidden: bool,
+}
+
+const HIDDEN: SpriteFragment = SpriteFragment(vec3f(0.0, 0.0, 1.0), 0.0, true);
+
+// True where the technique looks at the scene's depth itself.
+fn reads_scene() -> bool {
+    return !(DEPTH_TESTED && TECHNIQUE == TECHNIQUE_HARD);
+}
+
+fn technique_fragment(in: SpriteVertex, scene: f32) -> SpriteFragment {
+    if is_sphere() {
+        return sphere_fragment(in, scene);
+    }
+    let frames = flipbook_frames(in.amount_lod_frame_age.z, system.frame_count);
+    let amount = in.amount_lod_frame_age.x;
+    let view_depth = -in.centre_radius.z;
+    let radius = in.centre_radius.w;
+
+    var texel_depth = view_depth;
+    var motion = vec2f(0.0);
+    let is_depth_sprite = TECHNIQUE == TECHNIQUE_DEPTH_SPRITE_HARD || TECHNIQUE == TECHNIQUE_DEPTH_SPRITE_SOFT;
+    if is_depth_sprite || system.motion > 0.0 {
+        let lod = max(in.amount_lod_frame_age.y - system.detail_lod, 0.0);
+        let texel = sample_detail(detail, linear_sampler, in.uv, frames, lod);
+        motion = texel.yz * system.motion;
+        if is_depth_sprite {
+            texel_depth = depth_sprite_depth(view_depth, texel.x, radius);
+        }
+    }
+
+    var fade = 1.0;
+    switch TECHNIQUE {
+        case TECHNIQUE_HARD: {
+            if !DEPTH_TESTED { fade = hard_fade(scene - view_depth); }
+        }
+        case TECHNIQUE_DEPTH_SPRITE_HARD: { fade = hard_fade(scene - texel_depth); }
+        case TECHNIQUE_DENSITY: {}
+        default: { fade = fade_before(scene, texel_depth); }
+    }
+    if fade <= 0.0 {
+        return HIDDEN;
+    }
+    let texel = sprite_texel(in, in.uv, frames, motion);
+    var fragment = SpriteFragment(rotate_normal(texel.xyz, in.rotation), texel.w * amount * fade, false);
+    if TECHNIQUE == TECHNIQUE_DENSITY {
+        let thickness = density_thickness(view_depth, radius, view.near, scene);
+        fragment.amount = density_amount(system.density * texel.w * amount, thickness);
+    }
+    return fragment;
+}
+
+fn fade_before(scene: f32, view_depth: f32) -> f32 {
+    return soft_fade(FADE_CURVE, scene - view_depth, system.fade_scale, system.contrast_power, system.epsilon);
+}
+
+// Normal and amount of the sprite's picture.
+fn sprite_texel(in: SpriteVertex, uv: vec2f, frames: FlipbookFrames, motion: vec2f) -> vec4f {
+    if DEBUG_SPRITE {
+        return checkerboard(uv);
+    }
+    return sample_sprite(sprite, linear_sampler, uv, frames, motion, in.amount_lod_frame_age.y);
+}
+
+fn sphere_fragment(in: SpriteVertex, scene: f32) -> SpriteFragment {
+    let centre = in.centre_radius.xyz;
+    let radius = in.centre_radius.w;
+    // The ray through the pixel; view depth d is d / along.z of the way.
+    let origin = vec3f(in.view_position.xy * view.orthographic, 0.0);
+    let along = normalize(vec3f(in.view_position.xy * (1.0 - view.orthographic), -1.0));
+    let per_depth = -1.0 / along.z;
+    let end = (scene + select(0.0, system.fade_through, TECHNIQUE == TECHNIQUE_VOLUMETRIC_SOFT)) * per_depth;
+    let interval = ray_sphere(origin, along, centre, radius, view.near * per_depth, end);
+    let stretch = interval.leave - interval.enter;
+    if stretch <= 0.0 || dot(interval.axis, interval.axis) >= radius * radius {
+        return HIDDEN;
+    }
+    let amount = in.amount_lod_frame_age.x;
+    if is_volumetric() {
+        return volumetric_fragment(in, scene, origin, along, interval);
+    }
+    // The sprite's picture, laid on the disc through the middle that faces the ray.
+    let place = vec2f(
+        interval.axis.x * in.rotation.x + interval.axis.y * in.rotation.y,
+        interval.axis.y * in.rotation.x - interval.axis.x * in.rotation.y,
+    ) / radius;
+    let frames = flipbook_frames(in.amount_lod_frame_age.z, system.frame_count);
+    var motion = vec2f(0.0);
+    if system.motion > 0.0 {
+        let lod = max(in.amount_lod_frame_age.y - system.detail_lod, 0.0);
+        motion = sample_detail(detail, linear_sampler, sprite_uv(place), frames, lod).yz * system.motion;
+    }
+    let texel = sprite_texel(in, sprite_uv(place), frames, motion);
+    let density = system.billboard_density * texel.w * amount;
+    let axis_distance = length(interval.axis);
+    return SpriteFragment(
+        rotate_normal(texel.xyz, in.rotation),
+        spherical_billboard_amount(density, axis_distance, radius, stretch),
+        false,
+    );
+}
+
+// March from entry to exit, front to back. (MS "Volumetric particles")
+fn volumetric_fragment(
+    in: SpriteVertex,
+    scene: f32,
+    origin: vec3f,
+    along: vec3f,
+    interval: RayInterval,
+) -> SpriteFragment {
+    let centre = in.centre_radius.xyz;
+    let world_from_view = transpose(mat3x3f(
+        view.view_from_world[0].xyz,
+        view.view_from_world[1].xyz,
+        view.view_from_world[2].xyz,
+    ));
+    let step = (interval.leave - interval.enter) / f32(system.march_steps);
+    let opacity = system.volume_opacity * in.amount_lod_frame_age.x * step;
+    var normal = vec3f(0.0);
+    var transmittance = 1.0;
+    for (var i = 0u; i < system.march_steps; i++) {
+        let position = origin + along * (interval.enter + (f32(i) + 0.5) * step);
+        let place = (position - centre) / in.centre_radius.w;
+        let world = world_from_view * (position - view.view_from_world[3].xyz);
+        let coordinate = noise_coordinate(world, system.noise_size, system.noise_scroll);
+        let texel = sample_noise_octaves(noise, repeat_sampler, coordinate, system.noise_octaves);
+        var amount = density_amount(opacity, volumetric_density(texel.w, volumetric_falloff(place)));
+        if TECHNIQUE == TECHNIQUE_VOLUMETRIC_SOFT {
+            amount *= fade_before(scene, -position.z);
+        }
+        // The gradient in view space: a row vector times the inverse turns forward.
+        normal += volumetric_normal(place, texel.xyz * world_from_view) * (amount * transmittance);
+        transmittance *= 1.0 - amount;
+    }
+    let total = 1.0 - transmittance;
+    return SpriteFragment(normal / max(total, 1.0e-6), total, false);
+}

@@ -1,0 +1,220 @@
+//! `shaders/lib/sprite_vertex.wgsl` and `shaders/lib/sprite_fragment.wgsl`.
+
+use glam::{Mat3, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
+
+use crate::particle::Particle;
+use crate::reference::noise_volume::{noise_coordinate, sample_noise_octaves};
+use crate::reference::normal::rotate_normal;
+use crate::reference::renderer::Draw;
+use crate::reference::soft_fade::{near_fade, soft_fade};
+use crate::reference::sprite::{
+    FlipbookFrames, checkerboard, flipbook_frames, sample_detail, sample_sprite, sprite_frame, sprite_lod,
+};
+use crate::reference::technique::{
+    RayInterval, density_amount, density_thickness, depth_sprite_depth, hard_fade, ray_sphere, sphere_axis_bounds,
+    spherical_billboard_amount, volumetric_density, volumetric_falloff, volumetric_normal,
+};
+use crate::reference::view::pixel_from_ndc;
+use crate::settings::Technique;
+
+/// A sprite in view space.
+pub struct SpriteSetup {
+    pub centre: Vec3,
+    pub view_depth: f32,
+    pub radius: f32,
+    pub rotation: Vec2,
+    pub amount: f32,
+    pub lod: f32,
+    pub frames: FlipbookFrames,
+    pub age: f32,
+    /// Pixels that it can cover: upper left and lower right corner.
+    pub min: Vec2,
+    pub max: Vec2,
+}
+
+impl Draw<'_> {
+    /// `sprite_vertex()`; `None` when the sprite is hidden.
+    pub fn sprite_setup(&self, particle: &Particle, texels_per_pixel: f32) -> Option<SpriteSetup> {
+        let (system, technique) = (&self.system, self.settings.technique);
+        let centre = self.view.view_from_world.transform_point3(particle.position);
+        let view_depth = -centre.z;
+        let mut radius = particle.radius * system.size;
+        if technique == Technique::SphericalBillboard {
+            radius *= system.billboard_radius;
+        }
+        let (front, back) =
+            if technique.is_sphere() { (view_depth - radius, view_depth + radius) } else { (view_depth, view_depth) };
+        let amount = particle.amount * system.opacity * near_fade(back, system.near_fade_start, system.near_fade_end);
+        let visible = back > self.view.near && front < self.view.far && radius > 0.0 && amount > 0.0;
+        if !visible {
+            return None;
+        }
+        let (min, max) = if technique.is_sphere() {
+            self.sphere_rectangle(centre, radius)
+        } else {
+            self.square_rectangle(centre, radius)
+        };
+        let diameter = 2.0 * radius * self.pixels_per_metre(view_depth.max(self.view.near)) * texels_per_pixel;
+        let frame = sprite_frame(self.settings.sprite.animation, particle.frame, particle.age, system.frame_count);
+        Some(SpriteSetup {
+            centre,
+            view_depth,
+            radius,
+            rotation: Vec2::new(particle.rotation.cos(), particle.rotation.sin()),
+            amount,
+            lod: sprite_lod(system.sprite_size, diameter),
+            frames: flipbook_frames(frame, system.frame_count),
+            age: particle.age,
+            min,
+            max,
+        })
+    }
+
+    fn square_rectangle(&self, centre: Vec3, radius: f32) -> (Vec2, Vec2) {
+        // Half the diagonal holds the sprite at every rotation.
+        let reach = Vec3::new(1.0, 1.0, 0.0) * (radius * std::f32::consts::SQRT_2);
+        let (a, b) = (self.pixel_from_view(centre - reach), self.pixel_from_view(centre + reach));
+        (a.min(b), a.max(b))
+    }
+
+    /// `sphere_corner()`.
+    fn sphere_rectangle(&self, centre: Vec3, radius: f32) -> (Vec2, Vec2) {
+        let view = &self.view;
+        let rays = if view.orthographic > 0.5 {
+            [centre.xy() - radius, centre.xy() + radius]
+        } else {
+            let bounds = |position| sphere_axis_bounds(Vec2::new(position, -centre.z), radius, view.near);
+            let (x, y) = (bounds(centre.x), bounds(centre.y));
+            [Vec2::new(x.x, y.x), Vec2::new(x.y, y.y)]
+        };
+        let [low, high] = rays.map(|ray| {
+            let ndc = ((ray - view.ray_offset) / view.ray_scale).clamp(Vec2::NEG_ONE, Vec2::ONE);
+            pixel_from_ndc(ndc, view.size)
+        });
+        (low.min(high), low.max(high))
+    }
+
+    /// Normal (view space) and amount of a sprite at a pixel in front of a scene of this view depth; `None` where it is
+    /// hidden.
+    pub fn technique_fragment(&self, sprite: &SpriteSetup, pixel: Vec2, scene: f32) -> Option<Vec4> {
+        let (system, technique) = (&self.system, self.settings.technique);
+        if technique.is_sphere() {
+            return self.sphere_fragment(sprite, pixel, scene);
+        }
+        let offset = self.view_position(pixel, sprite.view_depth) - sprite.centre;
+        let local = unrotate(offset.xy(), sprite.rotation) / sprite.radius;
+        if local.abs().max_element() > 1.0 {
+            return None;
+        }
+        let uv = sprite_uv(local);
+        let detail = self.detail(sprite, uv);
+        let motion = detail.yz() * system.motion;
+        let fade = match technique {
+            Technique::Hard => hard_fade(scene - sprite.view_depth),
+            Technique::DepthSpriteHard => {
+                hard_fade(scene - depth_sprite_depth(sprite.view_depth, detail.x, sprite.radius))
+            }
+            Technique::DepthSpriteSoft => {
+                self.fade_before(scene, depth_sprite_depth(sprite.view_depth, detail.x, sprite.radius))
+            }
+            Technique::Density => 1.0,
+            _ => self.fade_before(scene, sprite.view_depth),
+        };
+        if fade <= 0.0 {
+            return None;
+        }
+        let texel = self.sprite_texel(sprite, uv, motion);
+        let amount = if technique == Technique::Density {
+            let thickness = density_thickness(sprite.view_depth, sprite.radius, self.view.near, scene);
+            density_amount(system.density * texel.w * sprite.amount, thickness)
+        } else {
+            texel.w * sprite.amount * fade
+        };
+        Some(rotate_normal(texel.xyz(), sprite.rotation).extend(amount))
+    }
+
+    fn fade_before(&self, scene: f32, view_depth: f32) -> f32 {
+        let system = &self.system;
+        let curve = self.settings.soft_fade.curve;
+        soft_fade(curve, scene - view_depth, system.fade_scale, system.contrast_power, system.epsilon)
+    }
+
+    /// The detail map where a technique or setting reads it.
+    fn detail(&self, sprite: &SpriteSetup, uv: Vec2) -> Vec3 {
+        let is_read = self.settings.technique.is_depth_sprite() || self.system.motion > 0.0;
+        match &self.material.detail {
+            Some(detail) if is_read => {
+                sample_detail(detail, uv, sprite.frames, (sprite.lod - self.system.detail_lod).max(0.0))
+            }
+            _ => Vec3::ZERO,
+        }
+    }
+
+    fn sprite_texel(&self, sprite: &SpriteSetup, uv: Vec2, motion: Vec2) -> Vec4 {
+        if self.settings.sprite.debug_sprite {
+            return checkerboard(uv);
+        }
+        sample_sprite(&self.material.sprite, uv, sprite.frames, motion, sprite.lod)
+    }
+
+    fn sphere_fragment(&self, sprite: &SpriteSetup, pixel: Vec2, scene: f32) -> Option<Vec4> {
+        let system = &self.system;
+        let ray = self.view_position(pixel, 1.0);
+        let (origin, along) =
+            if self.view.orthographic > 0.5 { (ray.with_z(0.0), Vec3::NEG_Z) } else { (Vec3::ZERO, ray.normalize()) };
+        let per_depth = -1.0 / along.z;
+        let end = (scene + system.fade_through) * per_depth;
+        let interval = ray_sphere(origin, along, sprite.centre, sprite.radius, self.view.near * per_depth, end);
+        let stretch = interval.leave - interval.enter;
+        if stretch <= 0.0 || interval.axis.length_squared() >= sprite.radius * sprite.radius {
+            return None;
+        }
+        if self.settings.technique.is_volumetric() {
+            return Some(self.volumetric_fragment(sprite, scene, origin, along, interval));
+        }
+        let uv = sprite_uv(unrotate(interval.axis.xy(), sprite.rotation) / sprite.radius);
+        let texel = self.sprite_texel(sprite, uv, self.detail(sprite, uv).yz() * system.motion);
+        let density = system.billboard_density * texel.w * sprite.amount;
+        let amount = spherical_billboard_amount(density, interval.axis.length(), sprite.radius, stretch);
+        Some(rotate_normal(texel.xyz(), sprite.rotation).extend(amount))
+    }
+
+    fn volumetric_fragment(
+        &self,
+        sprite: &SpriteSetup,
+        scene: f32,
+        origin: Vec3,
+        along: Vec3,
+        interval: RayInterval,
+    ) -> Vec4 {
+        let system = &self.system;
+        let rotation = Mat3::from_mat4(self.view.view_from_world);
+        let step = (interval.leave - interval.enter) / system.march_steps as f32;
+        let opacity = system.volume_opacity * sprite.amount * step;
+        let (mut normal, mut transmittance) = (Vec3::ZERO, 1.0);
+        for i in 0..system.march_steps {
+            let position = origin + along * (interval.enter + (i as f32 + 0.5) * step);
+            let place = (position - sprite.centre) / sprite.radius;
+            let world = rotation.transpose() * (position - self.view.view_from_world.w_axis.xyz());
+            let coordinate = noise_coordinate(world, system.noise_size, system.noise_scroll);
+            let texel = sample_noise_octaves(&self.material.noise, coordinate, system.noise_octaves);
+            let mut amount = density_amount(opacity, volumetric_density(texel.w, volumetric_falloff(place)));
+            if self.settings.technique == Technique::VolumetricSoft {
+                amount *= self.fade_before(scene, -position.z);
+            }
+            normal += volumetric_normal(place, rotation * texel.xyz()) * (amount * transmittance);
+            transmittance *= 1.0 - amount;
+        }
+        let total = 1.0 - transmittance;
+        (normal / total.max(1.0e-6)).extend(total)
+    }
+}
+
+/// Undoes a sprite's rotation.
+fn unrotate(offset: Vec2, rotation: Vec2) -> Vec2 {
+    Vec2::new(offset.x * rotation.x + offset.y * rotation.y, offset.y * rotation.x - offset.x * rotation.y)
+}
+
+fn sprite_uv(local: Vec2) -> Vec2 {
+    Vec2::new(local.x * 0.5 + 0.5, 0.5 - local.y * 0.5)
+}

@@ -1,0 +1,367 @@
+//! How sprites meet the scene, technique by technique: both renderers agree, and each holds what it promises.
+
+use glam::camera::rh::proj::directx;
+use glam::{Mat4, UVec2, Vec2, Vec3, vec3};
+use haze::reference::sprite::flipbook_frames;
+use haze::settings::*;
+use haze::sprite::bake::SpriteRecipe;
+use haze::sprite::{Sprite, SpriteLayout};
+use haze::{Bounds, Error, Particle};
+
+use crate::common::{gpu, non_finite_texels, psnr};
+use crate::stage::{BACKDROP, DepthKind, Host, Stage};
+
+const SIZE: UVec2 = UVec2::new(160, 90);
+
+/// f16 rounding, order of operations, corners on a grid of 1/256 pixel: see presets.rs.
+const AGREEMENT: f32 = 45.0;
+
+fn stage(technique: Technique) -> Stage {
+    let mut stage = Stage::new(SIZE);
+    stage.depth = DepthKind::Both;
+    // With a linear target beside it, a depth buffer can be attached on every backend.
+    stage.attach_depth = true;
+    stage.settings.technique = technique;
+    stage.settings.volumetric.noise_size = 1.5;
+    for (index, particle) in (0..).zip(&mut stage.particles) {
+        particle.age = index as f32 / 59.0;
+    }
+    stage
+}
+
+/// One sprite straight ahead, and nothing else.
+fn one_sprite(technique: Technique, view_depth: f32) -> Stage {
+    let mut stage = stage(technique);
+    stage.particles =
+        vec![Particle { position: vec3(0.0, 0.0, -view_depth), amount: 0.8, radius: 0.7, ..Particle::default() }];
+    stage.bounds = Some(Bounds { min: vec3(-3.0, -3.0, -12.0), max: vec3(3.0, 3.0, 3.0) });
+    stage.settings.soft_fade.near_fade_end = 0.0;
+    stage.settings.accumulate.scale = 1;
+    stage.shade_tree = ShadeTree::Amount;
+    stage
+}
+
+fn agreement(name: &str, stage: &Stage) {
+    let psnr = psnr(&stage.on_gpu(gpu()).picture, &stage.on_cpu());
+    println!("{name}: {psnr:.1} dB");
+    assert!(psnr >= AGREEMENT, "{name}: {psnr:.1} dB");
+}
+
+#[test]
+fn every_technique_agrees_on_every_path() {
+    for &technique in Technique::ALL {
+        for path in [Path::Raster, Path::Forward] {
+            let mut stage = stage(technique);
+            stage.settings.path = path;
+            agreement(&format!("{} {}", technique.name(), path.name()), &stage);
+            stage.settings.soft_fade.curve = FadeCurve::Always;
+            agreement(&format!("{} {} always", technique.name(), path.name()), &stage);
+        }
+        let mut stage = stage(technique);
+        (stage.settings.accumulate.depth_source, stage.settings.accumulate.scale) = (DepthSource::Host, 1);
+        agreement(&format!("{} host depth", technique.name()), &stage);
+        let mut stage = self::stage(technique);
+        stage.view.clip_from_view = directx::orthographic(-4.0, 4.0, -2.25, 2.25, 0.1, 80.0);
+        agreement(&format!("{} orthographic", technique.name()), &stage);
+        // Off centre, turned and elsewhere in the world: noise and sphere bounds depend on it.
+        let mut stage = self::stage(technique);
+        stage.view.clip_from_view = directx::frustum(-0.06, 0.03, -0.02, 0.03, 0.1, 80.0);
+        let turn = Mat4::from_rotation_y(0.4) * Mat4::from_translation(vec3(1.0, -2.0, 3.0));
+        stage.view.view_from_world *= turn;
+        stage.particles.iter_mut().for_each(|p| p.position = turn.inverse().transform_point3(p.position));
+        stage.lights.iter_mut().for_each(|l| l.position = turn.inverse().transform_point3(l.position));
+        agreement(&format!("{} off centre", technique.name()), &stage);
+    }
+}
+
+#[test]
+fn every_sprite_setting_agrees() {
+    type Change = fn(&mut Stage);
+    let changes: &[(&str, Change)] = &[
+        ("size", |s| s.settings.sprite.size = 1.7),
+        ("volume", |s| s.settings.sprite.animation = SpriteAnimation::Volume),
+        ("still", |s| s.settings.sprite.animation = SpriteAnimation::Still),
+        ("motion", |s| s.settings.sprite.motion = 1.0),
+        ("debug sprite", |s| s.settings.sprite.debug_sprite = true),
+        ("debug loop", |s| s.settings.sprite.debug_loop = 3),
+        ("age colour", |s| (s.settings.path, s.settings.sprite.age_colour) = (Path::Forward, 0.8)),
+    ];
+    for (name, change) in changes {
+        for technique in [Technique::Soft, Technique::SphericalBillboard] {
+            let mut stage = stage(technique);
+            (stage.material.sprite, stage.material.detail) = flipbook();
+            for (index, particle) in (0..).zip(&mut stage.particles) {
+                particle.frame = index as f32 * 0.37;
+            }
+            let plain = stage.on_cpu();
+            change(&mut stage);
+            agreement(&format!("{} {name}", technique.name()), &stage);
+            // And it is not a setting without effect.
+            assert_ne!(plain, stage.on_cpu(), "{name} does nothing");
+        }
+    }
+}
+
+/// A small flipbook and its detail map.
+fn flipbook() -> (Sprite, Option<Sprite>) {
+    let recipe = recipe();
+    let baked = recipe.bake().unwrap();
+    let decode = |picture| Sprite::from_picture("flipbook".as_ref(), picture, recipe.layout()).unwrap();
+    (decode(&baked.picture), Some(decode(&baked.detail)))
+}
+
+/// A puff whose balls travel: what only boils in its place has no motion to follow.
+fn recipe() -> SpriteRecipe {
+    let text = include_str!("../../sprites/puff.sprite.json");
+    let puff: SpriteRecipe = serde_json::from_str(text).unwrap();
+    SpriteRecipe { size: 64, drift: 0.2, ball_radius_max: 0.4, erosion: 0.5, ..puff }
+}
+
+#[test]
+fn motion_brings_frames_between_frames_closer_to_what_they_should_be() {
+    let (sprite, detail) = flipbook();
+    let (recipe, detail) = (recipe(), detail.unwrap());
+    let (mut blended, mut moved) = (0.0, 0.0);
+    for frame in [0.5, 3.5, 6.5] {
+        let truth = recipe.bake_frame(frame).picture;
+        let layout = SpriteLayout::default();
+        let picture = image::RgbaImage::from_fn(64, 64, |x, y| truth.texels[(y * 64 + x) as usize]);
+        let truth = Sprite::from_picture("truth".as_ref(), &picture, layout).unwrap();
+        let frames = flipbook_frames(frame, sprite.frame_count() as f32);
+        for index in 0..64 * 64_u32 {
+            let uv = (Vec2::new((index % 64) as f32, (index / 64) as f32) + 0.5) / 64.0;
+            let motion = haze::reference::sprite::sample_detail(&detail, uv, frames, 0.0);
+            let amount = |motion| haze::reference::sprite::sample_sprite(&sprite, uv, frames, motion, 0.0).w;
+            let wanted = truth.texel(0, 0, index % 64, index / 64).w;
+            blended += (amount(Vec2::ZERO) - wanted).powi(2);
+            moved += (amount(Vec2::new(motion.y, motion.z)) - wanted).powi(2);
+        }
+    }
+    println!("squared error blended {blended:.2}, moved {moved:.2}");
+    assert!(moved < 0.8 * blended, "blended {blended:.2}, moved {moved:.2}");
+}
+
+#[test]
+fn frozen_noise_stands_still() {
+    let at = |time: f32, freeze_animation: bool| {
+        let mut stage = stage(Technique::VolumetricSoft);
+        (stage.time, stage.settings.sprite.freeze_animation) = (time, freeze_animation);
+        stage.on_gpu(gpu()).picture
+    };
+    assert_eq!(at(0.0, true), at(7.3, true));
+    assert!(psnr(&at(0.0, false), &at(7.3, false)) < AGREEMENT);
+    // A whole tile further on, it is the same again.
+    let mut stage = stage(Technique::VolumetricSoft);
+    stage.settings.volumetric.scroll_speed = 0.25;
+    let seconds_per_tile = stage.settings.volumetric.noise_size / 0.25;
+    let first = stage.on_gpu(gpu()).picture;
+    stage.time += seconds_per_tile;
+    assert!(psnr(&first, &stage.on_gpu(gpu()).picture) > 60.0);
+}
+
+// what they promise
+
+/// One sprite before, in or behind a wall at 6.2 m.
+fn wall(technique: Technique, view_depth: f32) -> Stage {
+    let mut stage = one_sprite(technique, view_depth);
+    stage.wall_everywhere = true;
+    stage
+}
+
+/// Amount in the middle of the picture, 0..1.
+fn amount(stage: &Stage) -> f32 {
+    let mut host = Host::new(gpu(), stage).unwrap();
+    host.draw(gpu(), stage).unwrap();
+    amount_in(&host)
+}
+
+fn amount_in(host: &Host) -> f32 {
+    let picture = host.picture(gpu()).unwrap();
+    let middle = picture.load((SIZE / 2).as_ivec2());
+    // The stage "amount" is drawn as grey over the backdrop wherever there is any.
+    if middle == BACKDROP { 0.0 } else { middle.x }
+}
+
+#[test]
+fn nothing_shows_behind_a_surface_but_under_always() {
+    for &technique in Technique::ALL {
+        for &curve in FadeCurve::ALL {
+            let mut previous = f32::INFINITY;
+            let mut host = Host::new(gpu(), &wall(technique, 5.0)).unwrap();
+            for step in 0..40 {
+                // The wall is at 6.2 m.
+                let depth = 4.9 + 0.06 * step as f32;
+                let mut stage = wall(technique, depth);
+                (stage.settings.soft_fade.curve, stage.settings.soft_fade.fade_scale) = (curve, 2.5);
+                host.draw(gpu(), &stage).unwrap();
+                let amount = amount_in(&host);
+                let name = format!("{} {} at {depth:.2} m: {amount}", technique.name(), curve.name());
+                let shows_through = curve == FadeCurve::Always && technique.is_soft();
+                // How far the sprite itself reaches in front of its middle.
+                let reach = if technique.is_sphere() || technique.is_depth_sprite() || technique == Technique::Density {
+                    0.7
+                } else {
+                    0.0
+                };
+                let through = if shows_through { 1.0 / 2.5 } else { 0.0 };
+                if depth > 6.2 + reach + through + 0.01 {
+                    assert!(amount <= 0.0, "{name}");
+                }
+                if shows_through && depth < 6.2 + through - 0.03 {
+                    assert!(amount > 0.0, "{name}");
+                }
+                // Volumes are of noise: what is seen of them need not fall evenly.
+                if !technique.is_volumetric() {
+                    assert!(amount <= previous + 2e-3, "{name} after {previous}");
+                }
+                previous = amount;
+            }
+        }
+    }
+}
+
+/// The largest change of any pixel from frame to frame while a camera moves through a sprite in 64 steps.
+fn largest_step(technique: Technique) -> f32 {
+    let mut previous = None;
+    let mut largest = 0.0_f32;
+    let mut host = Host::new(gpu(), &one_sprite(technique, 0.9)).unwrap();
+    for step in 0..=64 {
+        // From 0.9 m in front of the middle to 0.3 m behind it; the near plane is at 0.1 m, the radius 0.7 m.
+        let stage = one_sprite(technique, 0.9 - 1.2 * step as f32 / 64.0);
+        host.draw(gpu(), &stage).unwrap();
+        let picture = host.picture(gpu()).unwrap();
+        let amounts: Vec<f32> =
+            picture.texels.iter().map(|texel| if *texel == BACKDROP { 0.0 } else { texel.x }).collect();
+        if let Some(previous) = previous.replace(amounts.clone()) {
+            let changes = amounts.iter().zip(&previous).map(|(a, b): (&f32, &f32)| (a - b).abs());
+            largest = largest.max(changes.fold(0.0, f32::max));
+        }
+    }
+    largest
+}
+
+/// A step is 19 mm of the camera's way; density times amount is 2.4 per metre. So the end of the way through the middle moves
+/// the amount by at most 1 - exp(-2.4 · 0.019) = 4.5 %.
+const LARGEST_STEP: f32 = 0.045;
+
+#[test]
+fn spherical_billboards_do_not_pop_at_the_near_plane() {
+    let sphere = largest_step(Technique::SphericalBillboard);
+    let square = largest_step(Technique::Soft);
+    println!("largest change in a step: sphere {sphere:.3}, square {square:.3}");
+    assert!(sphere < LARGEST_STEP, "{sphere}");
+    // The mutant: a square is there, and then it is not.
+    assert!(square > 10.0 * LARGEST_STEP, "{square}");
+}
+
+#[test]
+fn volumes_end_at_the_scene_and_begin_at_the_near_plane() {
+    for technique in [Technique::VolumetricHard, Technique::VolumetricSoft, Technique::SphericalBillboard] {
+        // Half of the sphere is behind the wall: about half of the way through it is left.
+        let through = |depth: f32| {
+            let mut stage = wall(technique, depth);
+            stage.settings.soft_fade.fade_scale = 1000.0;
+            (stage.settings.volumetric.march_steps, stage.settings.volumetric.noise_octaves) = (8, 1);
+            -(1.0 - amount(&stage)).ln()
+        };
+        let (whole, half) = (through(5.4), through(6.2));
+        println!("{}: {whole:.3} whole, {half:.3} half", technique.name());
+        assert!((0.25..0.75).contains(&(half / whole)), "{}: {half} of {whole}", technique.name());
+        // The camera in the middle of the sphere: what is ahead of the near plane is left, and both renderers agree.
+        let inside = one_sprite(technique, 0.0);
+        let ahead = -(1.0 - amount(&inside)).ln();
+        println!("{}: {ahead:.3} from inside", technique.name());
+        assert!((0.15..0.75).contains(&(ahead / whole)), "{}: {ahead} of {whole}", technique.name());
+        for depth in [-0.55, -0.3, 0.0, 0.05, 0.1, 0.4, 0.69, 0.75] {
+            agreement(&format!("{} at {depth} m", technique.name()), &one_sprite(technique, depth));
+        }
+        // Gone once its far side has passed the near plane.
+        assert!(amount(&one_sprite(technique, -0.65)) <= 0.0);
+    }
+}
+
+#[test]
+fn depth_sprites_meet_the_scene_where_their_texels_are() {
+    // The detail map stands out in the middle by 0.8 radii, 0.55 m.
+    let seen = |technique, depth: f32| amount(&wall(technique, depth)) > 0.0;
+    assert!(seen(Technique::Hard, 6.1) && !seen(Technique::Hard, 6.3));
+    assert!(seen(Technique::DepthSpriteHard, 6.3) && seen(Technique::DepthSpriteHard, 6.6));
+    assert!(!seen(Technique::DepthSpriteHard, 6.9));
+    assert!(seen(Technique::DepthSpriteSoft, 6.6) && !seen(Technique::DepthSpriteSoft, 6.9));
+}
+
+// bad input
+
+#[test]
+fn degenerate_input_is_finite_or_refused_by_name() {
+    let refused = |change: fn(&mut Stage)| {
+        let mut stage = stage(Technique::Soft);
+        change(&mut stage);
+        match stage.try_on_gpu(gpu()) {
+            Err(Error::Field(error)) => error.to_string(),
+            other => panic!("{:?}", other.map(|_| ())),
+        }
+    };
+    let field = |change| refused(change).split(':').next().unwrap().replace("systems[0].settings.", "");
+    assert_eq!(field(|s| s.settings.soft_fade.fade_scale = 0.0), "soft_fade.fade_scale");
+    assert_eq!(field(|s| s.settings.soft_fade.fade_scale = 1e9), "soft_fade.fade_scale");
+    assert_eq!(field(|s| s.settings.soft_fade.contrast_power = 0.0), "soft_fade.contrast_power");
+    assert_eq!(field(|s| s.settings.soft_fade.contrast_power = 100.0), "soft_fade.contrast_power");
+    assert_eq!(field(|s| s.settings.sprite.size = 1e9), "sprite.size");
+    assert_eq!(field(|s| s.settings.sprite.debug_loop = 0), "sprite.debug_loop");
+    assert_eq!(field(|s| s.settings.volumetric.march_steps = 1), "volumetric.march_steps");
+    assert_eq!(field(|s| s.settings.volumetric.noise_size = 0.0), "volumetric.noise_size");
+    assert_eq!(field(|s| s.settings.spherical_billboard.density = f32::NAN), "spherical_billboard.density");
+    assert_eq!(field(|s| s.time = f32::INFINITY), "time");
+    let lacking = |change: fn(&mut Stage)| {
+        let mut stage = stage(Technique::DepthSpriteHard);
+        stage.material.detail = None;
+        change(&mut stage);
+        stage.try_on_gpu(gpu()).map(|_| ()).unwrap_err().to_string()
+    };
+    assert!(lacking(|_| {}).starts_with("systems[0].settings.technique: \"depth_sprite_hard\""));
+    let motion = lacking(|s| (s.settings.technique, s.settings.sprite.motion) = (Technique::Soft, 0.5));
+    assert!(motion.starts_with("systems[0].settings.sprite.motion: 0.5"), "{motion}");
+
+    for &technique in Technique::ALL {
+        let mut stage = stage(technique);
+        stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, 2.0) });
+        stage.settings.soft_fade.near_fade_end = 0.0;
+        (stage.settings.spherical_billboard.density, stage.settings.volumetric.opacity) = (1000.0, 1000.0);
+        stage.settings.density.density = 1000.0;
+        stage.particles = vec![
+            Particle { position: Vec3::ZERO, ..Particle::default() },
+            Particle { position: vec3(0.0, 0.0, -6.0), radius: 0.0, ..Particle::default() },
+            Particle { position: vec3(0.0, 0.0, -6.0), radius: 1e-20, ..Particle::default() },
+            Particle { position: vec3(0.0, 0.0, -6.0), radius: 1e9, ..Particle::default() },
+            Particle { position: vec3(0.0, 0.0, -0.1), radius: 0.01, ..Particle::default() },
+            Particle { position: vec3(1.0, 0.0, -5.0), age: 1e30, ..Particle::default() },
+        ];
+        let shrink: [fn(&mut Stage); 3] =
+            [|_| {}, |s| s.settings.sprite.size = 0.0, |s| s.settings.spherical_billboard.radius = 0.0];
+        for change in shrink {
+            change(&mut stage);
+            let drawn = stage.on_gpu(gpu());
+            assert!(drawn.picture.texels.iter().all(|texel| texel.is_finite()), "{}", technique.name());
+            let targets = drawn.renderer.targets(0).unwrap();
+            assert_eq!(non_finite_texels(gpu(), &targets.accumulation[0], targets.size), 0, "{}", technique.name());
+            assert!(stage.on_cpu().texels.iter().all(|texel| texel.is_finite()), "{}", technique.name());
+        }
+    }
+}
+
+#[test]
+fn the_linear_target_must_be_there_to_be_read() {
+    let mut stage = stage(Technique::SoftLinear);
+    stage.depth = DepthKind::Buffer;
+    stage.attach_depth = haze::descriptor::read_only_depth_is_supported(&gpu().device);
+    let error = stage.try_on_gpu(gpu()).map(|_| ()).unwrap_err().to_string();
+    assert!(error.starts_with("systems[0].settings.technique: \"soft_linear\"") && error.contains("Both"), "{error}");
+    // It is the linear target that is read: one that says "nothing there" shows what the depth buffer hides.
+    let mut stage = wall(Technique::Soft, 6.4);
+    stage.empty_linear = true;
+    let buffer_is_read = haze::descriptor::read_only_depth_is_supported(&gpu().device);
+    assert_eq!(amount(&stage) > 0.0, !buffer_is_read);
+    stage.settings.technique = Technique::SoftLinear;
+    assert!(amount(&stage) > 0.0);
+}
