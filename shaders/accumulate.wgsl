@@ -14,6 +14,8 @@
 
 override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
 override HOST_DEPTH: bool = false;
+// The host's depth is linear.
+override LINEAR_DEPTH: bool = false;
 // Counts layers instead: every fragment that is shaded adds one.
 override OVERDRAW: bool = false;
 
@@ -36,14 +38,16 @@ fn fragment(in: SpriteVertex) -> @location(0) vec4f {
     var scene = SKY_VIEW_DEPTH;
     if reads_scene() {
         scene = textureLoad(tested_depth, vec2i(in.position.xy), 0).r;
-        if HOST_DEPTH {
-            scene = view_depth_from_ndc_depth(scene, view.depth_coefficients);
-        } else {
+        if !HOST_DEPTH {
             scene *= system.depth_limit;
+        } else if LINEAR_DEPTH {
+            scene = view_depth_from_linear(scene);
+        } else {
+            scene = view_depth_from_ndc_depth(scene, view.depth_coefficients);
         }
     }
     let fragment = technique_fragment(in, scene);
-    if fragment.hidden {
+    if fragment.hidden && (OVERDRAW || !DEPTH_TESTED) {
         discard;
     }
     if OVERDRAW {

@@ -9,6 +9,11 @@
 #import "lib/diffuse.wgsl"
 #import "lib/depth.wgsl"
 
+// The scene's depth is linear.
+override LINEAR_DEPTH: bool = false;
+// True where sprite.age_colour is not 0.
+override AGE_COLOUR: bool = false;
+
 const BLEND_MODE_ALPHA: u32 = 0u;
 const BLEND_MODE_ADDITIVE: u32 = 1u;
 const BLEND_MODE_MULTIPLY: u32 = 2u;
@@ -23,8 +28,12 @@ fn vertex(particle: Particle, @builtin(vertex_index) index: u32) -> SpriteVertex
 fn fragment(in: SpriteVertex) -> @location(0) vec4f {
     var scene = SKY_VIEW_DEPTH;
     if reads_scene() {
-        let ndc_depth = textureLoad(scene_depth, vec2i(in.position.xy), 0).r;
-        scene = view_depth_from_ndc_depth(ndc_depth, view.depth_coefficients);
+        scene = textureLoad(scene_depth, vec2i(in.position.xy), 0).r;
+        if LINEAR_DEPTH {
+            scene = view_depth_from_linear(scene);
+        } else {
+            scene = view_depth_from_ndc_depth(scene, view.depth_coefficients);
+        }
     }
     let fragment = technique_fragment(in, scene);
     if fragment.hidden || fragment.amount <= 0.0 {
@@ -37,7 +46,7 @@ fn fragment(in: SpriteVertex) -> @location(0) vec4f {
         position = view_position(in.view_position.xy, max(-in.centre_radius.z, view.near), view.orthographic);
     }
     var light = diffuse_from_lights(normal, position) * system.diffuse_intensity + soft_scatter(amount);
-    if system.age_colour > 0.0 {
+    if AGE_COLOUR {
         let colour = sample_ramp(age_ramp, linear_sampler, in.amount_lod_frame_age.w);
         light *= mix(vec3f(1.0), colour, system.age_colour);
     }

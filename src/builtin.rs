@@ -74,7 +74,8 @@ macro_rules! presets {
 }
 
 /// The presets; the first is the default.
-pub const PRESETS: &[Builtin] = presets!(["column", "backlit_fog", "corridor", "explosion", "fence", "inside"]);
+pub const PRESETS: &[Builtin] =
+    presets!(["column", "backlit_fog", "corridor", "explosion", "fence", "inside", "crates"]);
 
 /// Finds a built-in by name.
 pub fn find(list: &'static [Builtin], name: &str) -> Option<&'static Builtin> {

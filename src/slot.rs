@@ -149,7 +149,7 @@ impl Slot {
             if !matches!(frame.shade_tree, ShadeTree::Final | ShadeTree::Combined) {
                 return Ok(());
             }
-            DrawPath::Forward(passes.forward.pipeline(device, forward_key(view, system.settings)))
+            DrawPath::Forward(passes.forward.pipeline(device, forward_key(view, linear_depth, system.settings)))
         } else {
             self.fit_targets(device, layouts, view, &in_view, frame.scene_depth.read_by(linear_depth), system.settings);
             self.deferred(device, passes, descriptor, view, &in_view, frame, system.settings)
@@ -257,8 +257,10 @@ impl Slot {
                     technique: settings.technique,
                     animation: settings.sprite.animation,
                     debug_sprite: settings.sprite.debug_sprite,
+                    motion: settings.sprite.motion > 0.0,
                     curve: settings.soft_fade.curve,
                     host_depth: accumulate.depth_source == DepthSource::Host,
+                    linear_depth: reads_linear(device, &frame.scene_depth, settings),
                     depth_test,
                     overdraw: shade_tree == ShadeTree::Overdraw,
                 },
@@ -333,13 +335,16 @@ fn bounds_of_system(system: &System<'_>) -> Bounds {
     }
 }
 
-fn forward_key(view: &ViewGeometry, settings: &Settings) -> ForwardKey {
+fn forward_key(view: &ViewGeometry, linear_depth: bool, settings: &Settings) -> ForwardKey {
     ForwardKey {
         blend_mode: settings.blend_mode,
         technique: settings.technique,
         animation: settings.sprite.animation,
         debug_sprite: settings.sprite.debug_sprite,
+        motion: settings.sprite.motion > 0.0,
+        age_colour: settings.sprite.age_colour > 0.0,
         curve: settings.soft_fade.curve,
+        linear_depth,
         shows_through: settings.fade_through() > 0.0,
         soft_scatter_mode: settings.soft_scatter.mode,
         reversed: view.depth.reversed,

@@ -219,3 +219,38 @@ fn presets_are_listed_checked_and_described() {
     assert!(text(&["info"]).contains("gpu: "));
     assert!(text(&["--help"]).contains("shade-tree"));
 }
+
+#[test]
+fn techniques_are_on_one_sheet_with_their_costs() {
+    let folder = folder();
+    for backend in ["cpu", "gpu"] {
+        let arguments = ["techniques", "--size", "128x72", "--backend", backend, "-o", "t.png", "--curves", "c.png"];
+        let output = haze(folder.path(), &arguments);
+        assert!(output.status.success(), "{}", stderr(&output));
+        // Two columns of 64 pixels, five rows of 36, with margins, labels and a line below.
+        assert_eq!(size_of(&folder.path().join("t.png")), (2 * (64 + 12) + 12, 5 * (36 + 12 + 28) + 12 + 24));
+        assert_eq!(size_of(&folder.path().join("c.png")), (800, 360));
+    }
+    let unknown = refusal(folder.path(), &["render", "--technique", "softest", "-o", "a.png"]);
+    assert!(unknown.contains("volumetric_soft"), "{unknown}");
+}
+
+#[test]
+fn the_experiment_prints_the_papers_figures_beside_its_own() {
+    let folder = folder();
+    let output = haze(folder.path(), &["bench", "soft-particles", "--loops", "2", "--rounds", "1", "--size", "64x36"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let table = String::from_utf8(output.stdout).unwrap();
+    let paper = [("hard", "34.6", "1.00"), ("soft", "13.3", "2.60"), ("soft_linear", "26.7", "1.30")];
+    for source in ["reduced", "host"] {
+        for (technique, fps, ratio) in paper {
+            let rows = table.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
+            let row = rows.into_iter().find(|row| row[..2] == [source, technique]).unwrap();
+            assert_eq!(row[5..], [fps, ratio], "{table}");
+            assert!(row[2].parse::<f64>().unwrap() > 0.0, "{table}");
+        }
+    }
+    for bad in [["--loops", "0"], ["--rounds", "x"]] {
+        refusal(folder.path(), &[&["bench", "soft-particles"][..], &bad].concat());
+    }
+}

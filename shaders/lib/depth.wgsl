@@ -15,6 +15,11 @@ fn view_depth_from_ndc_depth(ndc_depth: f32, coefficients: vec4f) -> f32 {
     return numerator / denominator;
 }
 
+// A linear target's texel: anything from SKY_VIEW_DEPTH up is the sky, and so is NaN.
+fn view_depth_from_linear(texel: f32) -> f32 {
+    return select(SKY_VIEW_DEPTH, texel, texel < SKY_VIEW_DEPTH);
+}
+
 const DEPTH_DOWNSAMPLE_CHECKERBOARD: u32 = 0u;
 const DEPTH_DOWNSAMPLE_MAX: u32 = 1u;
 const DEPTH_DOWNSAMPLE_MIN: u32 = 2u;

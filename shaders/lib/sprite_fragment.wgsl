@@ -6,6 +6,8 @@
 
 override FADE_CURVE: u32 = FADE_CURVE_SMOOTHSTEP;
 override DEBUG_SPRITE: bool = false;
+// True where sprite.motion is not 0.
+override MOTION: bool = false;
 // The hardware has already dropped what is behind the scene.
 override DEPTH_TESTED: bool = false;
 
@@ -36,7 +38,7 @@ fn technique_fragment(in: SpriteVertex, scene: f32) -> SpriteFragment {
     var texel_depth = view_depth;
     var motion = vec2f(0.0);
     let is_depth_sprite = TECHNIQUE == TECHNIQUE_DEPTH_SPRITE_HARD || TECHNIQUE == TECHNIQUE_DEPTH_SPRITE_SOFT;
-    if is_depth_sprite || system.motion > 0.0 {
+    if is_depth_sprite || MOTION {
         let lod = max(in.amount_lod_frame_age.y - system.detail_lod, 0.0);
         let texel = sample_detail(detail, linear_sampler, in.uv, frames, lod);
         motion = texel.yz * system.motion;
@@ -54,11 +56,12 @@ fn technique_fragment(in: SpriteVertex, scene: f32) -> SpriteFragment {
         case TECHNIQUE_DENSITY: {}
         default: { fade = fade_before(scene, texel_depth); }
     }
-    if fade <= 0.0 {
+    // Where the hardware has dropped what is behind, few fragments are left to skip, and the branch costs every one.
+    if !DEPTH_TESTED && fade <= 0.0 {
         return HIDDEN;
     }
     let texel = sprite_texel(in, in.uv, frames, motion);
-    var fragment = SpriteFragment(rotate_normal(texel.xyz, in.rotation), texel.w * amount * fade, false);
+    var fragment = SpriteFragment(rotate_normal(texel.xyz, in.rotation), texel.w * amount * fade, fade <= 0.0);
     if TECHNIQUE == TECHNIQUE_DENSITY {
         let thickness = density_thickness(view_depth, radius, view.near, scene);
         fragment.amount = density_amount(system.density * texel.w * amount, thickness);
@@ -102,7 +105,7 @@ fn sphere_fragment(in: SpriteVertex, scene: f32) -> SpriteFragment {
     ) / radius;
     let frames = flipbook_frames(in.amount_lod_frame_age.z, system.frame_count);
     var motion = vec2f(0.0);
-    if system.motion > 0.0 {
+    if MOTION {
         let lod = max(in.amount_lod_frame_age.y - system.detail_lod, 0.0);
         motion = sample_detail(detail, linear_sampler, sprite_uv(place), frames, lod).yz * system.motion;
     }

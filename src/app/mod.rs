@@ -4,12 +4,17 @@
 //! would be right.
 
 mod bake;
+mod bench;
+mod cost;
 mod info;
 mod label;
 mod options;
+mod plot;
 mod preset;
 mod render;
 mod shade_tree;
+mod sheet;
+mod techniques;
 mod tonemap;
 
 use std::ffi::OsString;
@@ -33,6 +38,10 @@ enum Command {
     Render(render::Arguments),
     /// Render every stage of the shading on one labelled sheet.
     ShadeTree(shade_tree::Arguments),
+    /// Render a preset under every soft-particle technique, with what each costs, on one labelled sheet.
+    Techniques(techniques::Arguments),
+    /// Measure what smoke costs here.
+    Bench(bench::Arguments),
     /// List, check and describe presets.
     Preset(preset::Arguments),
     /// Make ramp pictures.
@@ -64,6 +73,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let done = match cli.command {
         Command::Render(arguments) => render::run(&arguments),
         Command::ShadeTree(arguments) => shade_tree::run(&arguments),
+        Command::Techniques(arguments) => techniques::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
         Command::Preset(arguments) => preset::run(&arguments),
         Command::Ramp(arguments) => bake::run_ramp(&arguments),
         Command::Sprite(arguments) => bake::run_sprite(&arguments),

@@ -10,24 +10,33 @@ use haze::reference::picture::Picture;
 use haze::settings::{Path, Technique};
 use haze::{Error, FieldError};
 
+/// How a picture is drawn, whatever it shows.
+#[derive(Args)]
+pub struct RunArguments {
+    /// Size of the picture, pixels.
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
+    pub size: UVec2,
+    /// auto, raster or forward; the preset's own if not given.
+    #[arg(long, value_parser = parse_choice::<Path>)]
+    pub path: Option<Path>,
+    /// Which renderer.
+    #[arg(long, value_enum, default_value = "auto")]
+    backend: BackendName,
+}
+
 /// A preset, and what is changed about it for this run.
 #[derive(Args)]
 pub struct ShotArguments {
     /// A built-in preset's name (see `haze preset list`), or the path of a JSON file.
-    #[arg(default_value = "column")]
-    preset: String,
-    /// Size of the picture, pixels.
-    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
-    pub size: UVec2,
+    preset: Option<String>,
+    #[command(flatten)]
+    pub run: RunArguments,
     /// Seconds into the emission; the preset's own if not given.
     #[arg(long, value_name = "S", value_parser = parse_time, allow_negative_numbers = true)]
     time: Option<f32>,
     /// Pixels per texel of the accumulation target, 1 to 16; the preset's own if not given.
     #[arg(long, value_name = "N", value_parser = parse_scale, allow_negative_numbers = true)]
     scale: Option<u32>,
-    /// auto, raster or forward; the presets' own if not given.
-    #[arg(long, value_parser = parse_choice::<Path>)]
-    path: Option<Path>,
     /// How sprites meet the scene: hard, soft, soft_linear, depth_sprite_hard, depth_sprite_soft, spherical_billboard,
     /// density, volumetric_hard or volumetric_soft; the preset's own if not given.
     #[arg(long, value_name = "T", value_parser = parse_choice::<Technique>)]
@@ -35,9 +44,6 @@ pub struct ShotArguments {
     /// Seed of every emitter; the preset's own if not given.
     #[arg(long, value_name = "N", value_parser = parse_seed, allow_negative_numbers = true)]
     seed: Option<u32>,
-    /// Which renderer.
-    #[arg(long, value_enum, default_value = "auto")]
-    backend: BackendName,
 }
 
 /// The renderers.
@@ -58,21 +64,23 @@ pub enum Backend {
 }
 
 impl ShotArguments {
-    /// Loads the preset and applies the changes.
-    pub fn load(&self) -> Result<Shot, Error> {
-        let mut shot = Shot::load(&self.preset, self.size)?;
+    /// Loads the preset, or the one that a subcommand shows when none is named, and applies the changes.
+    pub fn load(&self, default: &str) -> Result<Shot, Error> {
+        let mut shot = Shot::load(self.preset.as_deref().unwrap_or(default), self.run.size)?;
         if let Some(time) = self.time {
             shot.preset.time = time;
         }
         for system in &mut shot.preset.systems {
             system.emitter.seed = self.seed.unwrap_or(system.emitter.seed);
             system.settings.accumulate.scale = self.scale.unwrap_or(system.settings.accumulate.scale);
-            system.settings.path = self.path.unwrap_or(system.settings.path);
+            system.settings.path = self.run.path.unwrap_or(system.settings.path);
             system.settings.technique = self.technique.unwrap_or(system.settings.technique);
         }
         Ok(shot)
     }
+}
 
+impl RunArguments {
     /// Opens the renderer that was asked for.
     pub fn backend(&self) -> Result<Backend, Error> {
         if self.backend == BackendName::Cpu {
@@ -114,6 +122,9 @@ impl Backend {
         }
     }
 }
+
+/// The preset of most subcommands.
+pub const DEFAULT_PRESET: &str = "column";
 
 const LARGEST: u32 = 8192;
 

@@ -7,7 +7,7 @@ use haze::Error;
 use haze::picture::write_png;
 use haze::settings::ShadeTree;
 
-use super::options::{ShotArguments, parse_choice};
+use super::options::{DEFAULT_PRESET, ShotArguments, parse_choice};
 use super::tonemap::develop;
 
 #[derive(Args)]
@@ -24,9 +24,9 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
-    let mut shot = arguments.shot.load()?;
+    let mut shot = arguments.shot.load(DEFAULT_PRESET)?;
     shot.shade_tree = arguments.view;
-    let backend = arguments.shot.backend()?;
+    let backend = arguments.shot.run.backend()?;
     let picture = backend.render(&shot)?;
     write_png(&arguments.output, &develop(&picture, &shot).into())?;
     println!("{}: {} on {}", arguments.output.display(), shot.preset.name, backend.description());

@@ -6,10 +6,9 @@ use clap::Args;
 use haze::Error;
 use haze::picture::write_png;
 use haze::settings::ShadeTree;
-use image::{Rgb, RgbImage, imageops};
 
-use super::label::draw_text;
-use super::options::ShotArguments;
+use super::options::{DEFAULT_PRESET, ShotArguments};
+use super::sheet::Sheet;
 use super::tonemap::develop;
 
 #[derive(Args)]
@@ -35,27 +34,18 @@ const STAGES: [(ShadeTree, &str); 9] = [
 ];
 
 const COLUMNS: u32 = 3;
-const MARGIN: u32 = 12;
-const LABEL: u32 = 28;
-const PAPER: Rgb<u8> = Rgb([24, 25, 28]);
-const INK: Rgb<u8> = Rgb([225, 225, 220]);
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
-    let mut shot = arguments.shot.load()?;
+    let mut shot = arguments.shot.load(DEFAULT_PRESET)?;
     // The picture's size is the sheet's: every stage is a third of it, so that the sheet costs what a picture costs.
-    shot.size = (arguments.shot.size / COLUMNS).max(glam::UVec2::ONE);
-    let backend = arguments.shot.backend()?;
-    let rows = STAGES.len() as u32 / COLUMNS;
-    let cell = shot.size + glam::UVec2::new(MARGIN, MARGIN + LABEL);
-    let mut sheet = RgbImage::from_pixel(cell.x * COLUMNS + MARGIN, cell.y * rows + MARGIN, PAPER);
+    shot.size = (arguments.shot.run.size / COLUMNS).max(glam::UVec2::ONE);
+    let backend = arguments.shot.run.backend()?;
+    let mut sheet = Sheet::new(shot.size, COLUMNS, STAGES.len() as u32, 0);
     for (index, (stage, label)) in (0u32..).zip(STAGES) {
         shot.shade_tree = stage;
-        let picture = develop(&backend.render(&shot)?, &shot);
-        let corner = glam::UVec2::new(index % COLUMNS, index / COLUMNS) * cell + MARGIN;
-        draw_text(&mut sheet, corner.x as f32 + 2.0, corner.y as f32, 20.0, INK, label);
-        imageops::replace(&mut sheet, &picture, i64::from(corner.x), i64::from(corner.y + LABEL));
+        sheet.place(index, label, &develop(&backend.render(&shot)?, &shot));
     }
-    write_png(&arguments.output, &sheet.into())?;
+    write_png(&arguments.output, &sheet.picture.into())?;
     println!("{}: {} on {}", arguments.output.display(), shot.preset.name, backend.description());
     Ok(())
 }

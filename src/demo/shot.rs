@@ -34,13 +34,20 @@ impl Shot {
     /// # Errors
     /// As [`Preset::load`] and [`MaterialNames::load`](crate::preset::MaterialNames::load).
     pub fn load(name_or_path: &str, size: UVec2) -> Result<Self, Error> {
-        let preset = Preset::load(name_or_path)?;
-        let folder = Path::new(name_or_path).parent().map_or_else(PathBuf::new, Path::to_path_buf);
+        Self::new(Preset::load(name_or_path)?, Path::new(name_or_path), size)
+    }
+
+    /// Loads the pictures of a preset, which are looked for beside `path`.
+    ///
+    /// # Errors
+    /// As [`MaterialNames::load`](crate::preset::MaterialNames::load).
+    pub fn new(preset: Preset, path: &Path, size: UVec2) -> Result<Self, Error> {
+        let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
         let load = |(index, system): (usize, &crate::preset::PresetSystem)| {
             system.material.load(&folder).map_err(|error| match error {
                 Error::Field(mut error) => {
                     error.field = format!("systems[{index}].{}", error.field);
-                    Error::JsonField { path: name_or_path.into(), error }
+                    Error::JsonField { path: path.into(), error }
                 }
                 other => other,
             })

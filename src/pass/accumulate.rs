@@ -21,9 +21,12 @@ pub(crate) struct AccumulateKey {
     pub technique: Technique,
     pub animation: SpriteAnimation,
     pub debug_sprite: bool,
+    pub motion: bool,
     pub curve: FadeCurve,
     /// Sprites are compared with the host's own depth, not the reduced one.
     pub host_depth: bool,
+    /// The host's depth is linear.
+    pub linear_depth: bool,
     pub depth_test: DepthTest,
     /// Count layers instead of blending normals.
     pub overdraw: bool,
@@ -81,9 +84,11 @@ impl AccumulatePass {
                         variant!("TECHNIQUE", key.technique),
                         variant!("SPRITE_ANIMATION", key.animation),
                         switch("DEBUG_SPRITE", key.debug_sprite),
+                        switch("MOTION", key.motion),
                         variant!("FADE_CURVE", key.curve),
                         variant!("NORMAL_ENCODING", key.encoding),
                         switch("HOST_DEPTH", key.host_depth),
+                        switch("LINEAR_DEPTH", key.linear_depth),
                         // The copy is too coarse to stand in for the shader's own test.
                         switch("DEPTH_TESTED", !matches!(key.depth_test, DepthTest::InShader | DepthTest::Copy)),
                         switch("OVERDRAW", key.overdraw),

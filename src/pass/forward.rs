@@ -20,7 +20,11 @@ pub(crate) struct ForwardKey {
     pub technique: Technique,
     pub animation: SpriteAnimation,
     pub debug_sprite: bool,
+    pub motion: bool,
+    pub age_colour: bool,
     pub curve: FadeCurve,
+    /// The scene's depth is linear.
+    pub linear_depth: bool,
     /// Sprites are seen behind the scene: nothing tests depth.
     pub shows_through: bool,
     pub soft_scatter_mode: SoftScatterMode,
@@ -65,7 +69,10 @@ impl ForwardPass {
                         variant!("TECHNIQUE", key.technique),
                         variant!("SPRITE_ANIMATION", key.animation),
                         switch("DEBUG_SPRITE", key.debug_sprite),
+                        switch("MOTION", key.motion),
+                        switch("AGE_COLOUR", key.age_colour),
                         variant!("FADE_CURVE", key.curve),
+                        switch("LINEAR_DEPTH", key.linear_depth),
                         switch("DEPTH_TESTED", descriptor.depth_format.is_some() && !key.shows_through),
                         variant!("SOFT_SCATTER_MODE", key.soft_scatter_mode),
                         switch("EXACT_FILTERING", descriptor.exact_filtering),

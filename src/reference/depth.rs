@@ -33,6 +33,11 @@ pub fn view_depth_from_ndc_depth(ndc_depth: f32, coefficients: Vec4) -> f32 {
     if denominator * SKY_VIEW_DEPTH > numerator { numerator / denominator } else { SKY_VIEW_DEPTH }
 }
 
+/// A linear target's texel: anything from [`SKY_VIEW_DEPTH`] up is the sky, and so is NaN.
+pub fn view_depth_from_linear(texel: f32) -> f32 {
+    if texel < SKY_VIEW_DEPTH { texel } else { SKY_VIEW_DEPTH }
+}
+
 /// True if the reduced texel keeps the farthest depth under it, false for the nearest.
 pub fn depth_downsample_keeps_farthest(mode: DepthDownsample, texel: IVec2) -> bool {
     match mode {

@@ -173,7 +173,7 @@ pub struct Volumetric {
 
 impl Default for Volumetric {
     fn default() -> Self {
-        Self { march_steps: 6, noise_size: 2.0, noise_octaves: 3, opacity: 3.0, scroll_speed: 0.2 }
+        Self { march_steps: 6, noise_size: 2.5, noise_octaves: 2, opacity: 3.0, scroll_speed: 0.2 }
     }
 }
 

@@ -152,6 +152,15 @@ fn formulas() -> Vec<Formula> {
             ],
         },
         Formula {
+            name: "view_depth_from_linear",
+            file: "lib/depth.wgsl",
+            wgsl: "y(0, view_depth_from_linear(x(0)));",
+            reference: |x| vec![depth::view_depth_from_linear(x[0])],
+            cases: random(50, &[(0.0, 2.0e6)]),
+            tolerance: 0.0,
+            mutants: &[("texel < SKY_VIEW_DEPTH", "true")],
+        },
+        Formula {
             name: "depth_downsample_keeps_farthest",
             file: "lib/depth.wgsl",
             wgsl: "y(0, select(0.0, 1.0, depth_downsample_keeps_farthest(u32(x(0)), vec2i(i32(x(1)), i32(x(2))))));",

@@ -1,0 +1,85 @@
+//! `haze bench soft-particles`: the experiment of NV's paper, "Performance": two big sprites, size 3.2, drawn 1000 times
+//! each, with hardware depth test, with depth read from the depth buffer, and from a linear target.
+
+use std::path::Path;
+
+use clap::Args;
+use haze::Error;
+use haze::demo::shot::Shot;
+use haze::preset::Preset;
+use haze::settings::{DepthSource, Technique};
+
+use crate::app::cost::{Timer, interleaved};
+use crate::app::options::RunArguments;
+
+#[derive(Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    run: RunArguments,
+    /// How often the sprites are drawn in a frame.
+    #[arg(long, value_name = "N", default_value = "1000", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    loops: u32,
+    /// How often each technique is measured.
+    #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    rounds: u32,
+}
+
+/// A technique, and the frames per second that the paper gives for it.
+const TECHNIQUES: [(Technique, f64); 3] =
+    [(Technique::Hard, 34.6), (Technique::Soft, 13.3), (Technique::SoftLinear, 26.7)];
+
+pub fn run(arguments: &Arguments) -> Result<(), Error> {
+    let path = Path::new("soft_particles.json");
+    let preset = Preset::parse(path, include_str!("soft_particles.json"))?;
+    let shot = Shot::new(preset, path, arguments.run.size)?;
+    let backend = arguments.run.backend()?;
+    let mut timer = Timer::new(&backend, &shot)?;
+    let mut variants = Vec::new();
+    for source in [DepthSource::Reduced, DepthSource::Host] {
+        for (technique, paper) in TECHNIQUES {
+            let mut shot = shot.clone();
+            for system in &mut shot.preset.systems {
+                let settings = &mut system.settings;
+                (settings.technique, settings.sprite.debug_loop) = (technique, arguments.loops);
+                settings.path = arguments.run.path.unwrap_or(settings.path);
+                settings.accumulate.depth_source = source;
+            }
+            variants.push(Variant { technique, source, paper, shot });
+        }
+    }
+    let costs = interleaved(arguments.rounds, variants.len(), |variant| timer.frame(&variants[variant].shot))?;
+
+    let size = arguments.run.size;
+    println!(
+        "two sprites of size 3.2, drawn {} times, {}x{}, on {}; median of {} rounds",
+        arguments.loops,
+        size.x,
+        size.y,
+        backend.description(),
+        arguments.rounds
+    );
+    println!("depth    technique      fps here   spread   / hard   fps NV 2007   / hard");
+    let per_source = TECHNIQUES.len();
+    for (index, (variant, cost)) in variants.iter().zip(&costs).enumerate() {
+        println!(
+            "{:<8} {:<12} {:>10.3} {:>7.1}% {:>8.2} {:>13.1} {:>8.2}",
+            variant.source.name(),
+            variant.technique.name(),
+            1.0 / cost.median(),
+            100.0 * cost.spread(),
+            cost.median() / costs[index / per_source * per_source].median(),
+            variant.paper,
+            TECHNIQUES[0].1 / variant.paper
+        );
+    }
+    Ok(())
+}
+
+struct Variant {
+    technique: Technique,
+    /// `reduced`, at scale 1, is made linear once a frame; `host` is read as the host has it, as in the paper.
+    source: DepthSource,
+    /// Frames per second.
+    paper: f64,
+    shot: Shot,
+}

@@ -1,0 +1,179 @@
+//! `haze techniques`: one shot under every technique, labelled with what it costs, the intersection zoomed.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use glam::UVec2;
+use haze::Error;
+use haze::demo::shot::Shot;
+use haze::picture::write_png;
+use haze::reference::soft_fade::soft_fade;
+use haze::settings::{FadeCurve, Technique};
+use image::{Rgb, RgbImage, imageops};
+
+use super::cost::{Cost, Timer, interleaved};
+use super::label::draw_text;
+use super::options::{Backend, ShotArguments};
+use super::plot::{Curve, plot};
+use super::sheet::{INK, LABEL, MARGIN, Sheet};
+use super::tonemap::develop;
+
+#[derive(Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    shot: ShotArguments,
+    /// The PNG to write.
+    #[arg(short, long, value_name = "FILE.png")]
+    output: PathBuf,
+    /// Also write every picture as FOLDER/NAME.png.
+    #[arg(long, value_name = "FOLDER")]
+    cells: Option<PathBuf>,
+    /// Also plot the fade curves.
+    #[arg(long, value_name = "FILE.png")]
+    curves: Option<PathBuf>,
+}
+
+/// The shot that shows the differences best.
+const PRESET: &str = "crates";
+
+const COLUMNS: u32 = 2;
+
+/// How often the sprites are drawn to tell what once costs, and how often that is measured.
+const LOOPS: u32 = 8;
+const ROUNDS: u32 = 5;
+/// The CPU is slow, and alone with its work.
+const LOOPS_ON_CPU: u32 = 1;
+const ROUNDS_ON_CPU: u32 = 1;
+
+pub fn run(arguments: &Arguments) -> Result<(), Error> {
+    let mut shot = arguments.shot.load(PRESET)?;
+    let backend = arguments.shot.run.backend()?;
+    // The picture's size is the sheet's width: every cell is a part of it.
+    shot.size = (arguments.shot.run.size / COLUMNS).max(UVec2::ONE);
+    let cells = cells(&shot);
+    let pictures = cells.iter().map(|(_, shot)| Ok(develop(&backend.render(shot)?, shot)));
+    let pictures: Vec<_> = pictures.collect::<Result<_, Error>>()?;
+    let (loops, rounds) = match backend {
+        Backend::Gpu(_) => (LOOPS, ROUNDS),
+        Backend::Cpu => (LOOPS_ON_CPU, ROUNDS_ON_CPU),
+    };
+    let mut timer = Timer::new(&backend, &shot)?;
+    let costs = interleaved(rounds, cells.len(), |cell| timer.sprites(&cells[cell].1, loops))?;
+
+    let zoom = Zoom::where_they_differ(&pictures[0], &pictures[1]);
+    let mut sheet = Sheet::new(shot.size, COLUMNS, cells.len() as u32, FOOT);
+    for (index, ((name, _), (picture, cost))) in (0..).zip(cells.iter().zip(pictures.iter().zip(&costs))) {
+        let label = format!("{name}    {}", describe(cost, &costs[0]));
+        let zoomed = zoom.inset(picture);
+        if let Some(folder) = &arguments.cells {
+            write_png(&folder.join(format!("{name}.png")), &zoomed.clone().into())?;
+        }
+        sheet.place(index, &label, &zoomed);
+    }
+    let foot =
+        format!("ms: all sprites once, median of {rounds}; {}x{}, {}", shot.size.x, shot.size.y, backend.description());
+    let below = sheet.picture.height() - FOOT;
+    draw_text(&mut sheet.picture, MARGIN as f32 + 2.0, below as f32 - 4.0, 0.7 * LABEL as f32, INK, &foot);
+    if let Some(curves) = &arguments.curves {
+        write_png(curves, &fade_curves().into())?;
+    }
+    write_png(&arguments.output, &sheet.picture.into())?;
+    println!("{}: {} on {}", arguments.output.display(), shot.preset.name, backend.description());
+    Ok(())
+}
+
+/// Height of the line at the bottom.
+const FOOT: u32 = 24;
+
+/// Every technique, and the fade that has no depth test.
+fn cells(shot: &Shot) -> Vec<(String, Shot)> {
+    let with = |technique, always: bool| {
+        let mut shot = shot.clone();
+        for system in &mut shot.preset.systems {
+            system.settings.technique = technique;
+            if always {
+                system.settings.soft_fade.curve = FadeCurve::Always;
+            }
+        }
+        shot
+    };
+    let mut cells: Vec<_> = Technique::ALL.iter().map(|&t| (t.name().to_owned(), with(t, false))).collect();
+    cells.push(("soft_always".to_owned(), with(Technique::Soft, true)));
+    cells
+}
+
+/// The fade by distance, of every curve, as the reference has it.
+fn fade_curves() -> RgbImage {
+    const COLOURS: [Rgb<u8>; 5] =
+        [Rgb([240, 196, 110]), Rgb([225, 225, 220]), Rgb([120, 190, 240]), Rgb([240, 130, 120]), Rgb([150, 210, 140])];
+    let curve = |(&curve, colour): (&FadeCurve, Rgb<u8>)| Curve {
+        name: curve.name(),
+        colour,
+        function: Box::new(move |x| {
+            soft_fade(curve, x, 1.0, if curve == FadeCurve::Contrast { 2.0 } else { 1.0 }, 0.0)
+        }),
+    };
+    let curves: Vec<_> = FadeCurve::ALL.iter().zip(COLOURS).map(curve).collect();
+    let axis = "distance in front of the scene, in 1 / fade_scale   (contrast_power 2 for contrast, 1 for exponential)";
+    plot(UVec2::new(800, 360), (-1.5, 1.5), axis, &curves)
+}
+
+fn describe(cost: &Cost, hard: &Cost) -> String {
+    format!("{:.2} ms, {:.2} x hard", 1000.0 * cost.median(), cost.median() / hard.median())
+}
+
+/// A square of the picture that is shown enlarged in one of its corners.
+struct Zoom {
+    corner: UVec2,
+    side: u32,
+}
+
+/// How much larger.
+const ENLARGED: u32 = 3;
+
+impl Zoom {
+    /// The square in which one picture has the most edges that the other has not.
+    fn where_they_differ(a: &RgbImage, b: &RgbImage) -> Self {
+        let size = UVec2::from(a.dimensions());
+        let side = (size.y / 7).max(1).min(size.x);
+        let green = |x, y| i64::from(a.get_pixel(x, y).0[1]) - i64::from(b.get_pixel(x, y).0[1]);
+        let edge = |x, y| (green(x + 1, y) - green(x, y)).pow(2) + (green(x, y + 1) - green(x, y)).pow(2);
+        let sum = |corner: UVec2| {
+            let last = corner + side - 1;
+            (corner.y..last.y).flat_map(|y| (corner.x..last.x).map(move |x| edge(x, y))).sum::<i64>()
+        };
+        let step = (side / 4).max(1) as usize;
+        let corners = (0..=size.y - side)
+            .step_by(step)
+            .flat_map(|y| (0..=size.x - side).step_by(step).map(move |x| UVec2::new(x, y)));
+        let corner = corners.max_by_key(|&corner| sum(corner)).unwrap_or(UVec2::ZERO);
+        Self { corner, side }
+    }
+
+    fn inset(&self, picture: &RgbImage) -> RgbImage {
+        let mut picture = picture.clone();
+        let size = UVec2::from(picture.dimensions());
+        let enlarged = (self.side * ENLARGED).min(size.min_element());
+        let part = imageops::crop_imm(&picture, self.corner.x, self.corner.y, self.side, self.side).to_image();
+        let part = imageops::resize(&part, enlarged, enlarged, imageops::FilterType::CatmullRom);
+        // At the right, or at the left if that would hide what it shows.
+        let covers = self.corner.x + self.side > size.x - enlarged;
+        let at = UVec2::new(if covers { 0 } else { size.x - enlarged }, size.y - enlarged);
+        imageops::replace(&mut picture, &part, i64::from(at.x), i64::from(at.y));
+        outline(&mut picture, at, enlarged);
+        outline(&mut picture, self.corner, self.side);
+        picture
+    }
+}
+
+fn outline(picture: &mut RgbImage, corner: UVec2, side: u32) {
+    const LINE: Rgb<u8> = Rgb([240, 240, 235]);
+    let last = side - 1;
+    for i in 0..side {
+        for (x, y) in [(i, 0), (i, last), (0, i), (last, i)] {
+            if let Some(pixel) = picture.get_pixel_mut_checked(corner.x + x, corner.y + y) {
+                *pixel = LINE;
+            }
+        }
+    }
+}
