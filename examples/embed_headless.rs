@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             settings: &settings,
             material: &material,
         }],
-        time: 2.0,
+        time: 8.0,
         shade_tree: Default::default(),
     };
     let mut encoder = device.create_command_encoder(&Default::default());

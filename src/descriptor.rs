@@ -6,7 +6,8 @@ pub struct Descriptor {
     /// Format of the first colour attachment: blendable, linear light. `Rgba16Float` for HDR.
     pub color_format: wgpu::TextureFormat,
     /// Format of the pass's depth attachment, `None` if it has none. The attachment is the scene depth of the frame,
-    /// read-only (`depth_ops: None`), because the transfer samples it. On OpenGL and WebGL2 it must be `None`: see
+    /// read-only (`depth_ops: None`), because haze samples it too. OpenGL and WebGL2 cannot do both with one
+    /// texture: there either hand over a linear target ([`SceneDepth::Both`](crate::SceneDepth::Both)), or say `None`. See
     /// [`read_only_depth_is_supported`].
     pub depth_format: Option<wgpu::TextureFormat>,
     /// Samples per pixel of the pass.
@@ -27,8 +28,8 @@ impl Default for Descriptor {
     }
 }
 
-/// True if a pass of this device can test and sample one depth buffer. OpenGL and WebGL2 cannot; there
-/// [`Descriptor::depth_format`] must be `None`, and the soft fade alone hides what is behind the scene.
+/// True if a pass of this device can test and sample one depth buffer. OpenGL and WebGL2 cannot: what is sampled there must
+/// be a linear target, or else [`Descriptor::depth_format`] `None`, and the shaders alone hide what is behind the scene.
 pub fn read_only_depth_is_supported(device: &wgpu::Device) -> bool {
     device.adapter_info().backend != wgpu::Backend::Gl
 }

@@ -10,7 +10,7 @@ use crate::reference::diffuse_bake::zonal_coefficients;
 use crate::reference::ramp::sample_ramp;
 use crate::settings::Settings;
 use crate::sprite::Sprite;
-use crate::system::MaterialInfo;
+use crate::system::{DetailInfo, MaterialInfo};
 
 /// The pictures in memory. The reference renderer works on these; the GPU renderer uploads them.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,27 +39,34 @@ impl MaterialAssets {
         MaterialInfo {
             sprite_size: self.sprite.size() as f32,
             frame_count: self.sprite.frame_count() as f32,
-            detail_lod: self.detail.as_ref().map(|map| (self.sprite.size() as f32 / map.size() as f32).log2()),
+            detail: self.detail.as_ref().map(|detail| DetailInfo {
+                frame_count: detail.frame_count(),
+                lod: (self.sprite.size() as f32 / detail.size() as f32).log2(),
+            }),
             zonal: zonal_coefficients(|cos| sample_ramp(&self.diffuse_ramp, cos * 0.5 + 0.5)),
         }
     }
 }
 
 impl MaterialInfo {
-    /// Refuses settings that need a picture which the material lacks; `path` leads to the settings.
-    pub fn validate(&self, settings: &Settings, path: impl Fn() -> String) -> Result<(), FieldError> {
-        if self.detail_lod.is_some() {
-            return Ok(());
-        }
-        let needs = |field: &str, value: &dyn std::fmt::Display| {
-            let expected = "another, or a material with a detail map (NAME.detail.png of `haze sprite bake`)";
-            Err(FieldError::new(format!("{}.{field}", path()), value, expected))
+    /// Refuses settings that need a picture which the material of system `index` lacks.
+    pub fn validate(&self, index: usize, settings: &Settings) -> Result<(), FieldError> {
+        let refuse = |field: &str, value: String, expected: String| {
+            Err(FieldError::new(format!("systems[{index}].{field}"), value, expected))
         };
-        if settings.technique.is_depth_sprite() {
-            return needs("technique", &format!("{:?}", settings.technique.name()));
-        }
-        if settings.sprite.motion > 0.0 {
-            return needs("sprite.motion", &settings.sprite.motion);
+        let Some(detail) = &self.detail else {
+            let expected = "another, or a detail map in the material, as `haze sprite bake` makes it".to_owned();
+            if settings.technique.is_depth_sprite() {
+                return refuse("settings.technique", format!("{:?}", settings.technique.name()), expected);
+            }
+            if settings.sprite.motion > 0.0 {
+                return refuse("settings.sprite.motion", settings.sprite.motion.to_string(), expected);
+            }
+            return Ok(());
+        };
+        if detail.frame_count != self.frame_count as u32 {
+            let expected = format!("as many as the sprite has, {}", self.frame_count);
+            return refuse("material.detail", format!("{} frames", detail.frame_count), expected);
         }
         Ok(())
     }

@@ -250,7 +250,7 @@ fn validate_system(
             return Err(FieldError::new(field("particles"), value, format!("at least {needed} bytes, usage VERTEX")));
         }
     }
-    system.material.info.validate(system.settings, || field("settings"))?;
+    system.material.info.validate(index, system.settings)?;
     if system.settings.technique == Technique::SoftLinear && frame.scene_depth.linear().is_none() {
         let expected = "\"soft\", or a scene_depth that is SceneDepth::Linear or Both";
         return Err(FieldError::new(field("settings.technique"), "\"soft_linear\"", expected));

@@ -37,10 +37,17 @@ impl ViewGeometry {
 pub(crate) struct MaterialInfo {
     pub sprite_size: f32,
     pub frame_count: f32,
-    /// Mip levels that the detail map is smaller than the sprite; `None` without a detail map.
-    pub detail_lod: Option<f32>,
+    pub detail: Option<DetailInfo>,
     /// Zonal harmonics of the diffuse ramp.
     pub zonal: [Vec3; 3],
+}
+
+/// What it needs to know of its detail map.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DetailInfo {
+    pub frame_count: u32,
+    /// Mip levels that it is smaller than the sprite.
+    pub lod: f32,
 }
 
 /// A system that is in sight.
@@ -112,7 +119,7 @@ pub(crate) fn system_in_view(
         size: settings.sprite.size,
         motion: settings.sprite.motion,
         age_colour: settings.sprite.age_colour,
-        detail_lod: material.detail_lod.unwrap_or_default(),
+        detail_lod: material.detail.map_or(0.0, |detail| detail.lod),
         billboard_radius: settings.spherical_billboard.radius,
         billboard_density: settings.spherical_billboard.density,
         density: settings.density.density,

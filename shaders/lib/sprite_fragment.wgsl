@@ -88,7 +88,7 @@ fn sphere_fragment(in: SpriteVertex, scene: f32) -> SpriteFragment {
     let origin = vec3f(in.view_position.xy * view.orthographic, 0.0);
     let along = normalize(vec3f(in.view_position.xy * (1.0 - view.orthographic), -1.0));
     let per_depth = -1.0 / along.z;
-    let end = (scene + select(0.0, system.fade_through, TECHNIQUE == TECHNIQUE_VOLUMETRIC_SOFT)) * per_depth;
+    let end = (scene + system.fade_through) * per_depth;
     let interval = ray_sphere(origin, along, centre, radius, view.near * per_depth, end);
     let stretch = interval.leave - interval.enter;
     if stretch <= 0.0 || dot(interval.axis, interval.axis) >= radius * radius {

@@ -82,7 +82,8 @@ fn sprite_vertex(
     let view_depth = -centre.z;
     let angle = particle.rotation_amount_frame_age.x;
     // A sphere is seen until its far side has passed the near plane; its fade goes by that side.
-    let back = view_depth + select(0.0, radius, is_sphere());
+    let half_depth = select(0.0, radius, is_sphere());
+    let back = view_depth + half_depth;
     let amount = saturate(particle.rotation_amount_frame_age.y) * system.opacity
         * near_fade(back, system.near_fade_start, system.near_fade_end);
     let frame = particle.rotation_amount_frame_age.z;
@@ -91,7 +92,8 @@ fn sprite_vertex(
     // Hidden sprites collapse outside the clip volume. A host's own buffer may hold anything: the comparisons are false
     // for NaN, and what is beyond LARGEST has no place in a picture.
     let finite = dot(abs(centre), vec3f(1.0)) + radius + abs(angle) + abs(frame) + abs(age) < LARGEST;
-    if !(finite && back > view.near && radius > 0.0 && amount > 0.0) {
+    let in_view = back > view.near && view_depth - half_depth < view.far;
+    if !(finite && in_view && radius > 0.0 && amount > 0.0) {
         out.position = vec4f(2.0, 2.0, 2.0, 1.0);
         return out;
     }

@@ -48,6 +48,11 @@ pub fn interleaved(
     Ok(times.into_iter().map(sorted).collect())
 }
 
+/// Seconds against which a frame's own unsteadiness is small.
+const LONG_ENOUGH: f64 = 0.05;
+/// With the one that they are compared with, within the range of `debug_loop`.
+const MOST_LOOPS: u32 = 8192;
+
 /// Draws the smoke of a shot again and again.
 pub enum Timer<'a> {
     Gpu(Box<Stage<'a>>),
@@ -72,6 +77,17 @@ impl<'a> Timer<'a> {
                 Ok(start.elapsed().as_secs_f64())
             }
         }
+    }
+
+    /// How often to draw all sprites so that the clock can tell what once costs.
+    pub fn loops_that_tell(&mut self, shot: &Shot) -> Result<u32, Error> {
+        let mut loops = 1;
+        // The first frame compiles pipelines.
+        self.frame(shot)?;
+        while loops < MOST_LOOPS && self.sprites(shot, loops)? * f64::from(loops) < LONG_ENOUGH {
+            loops *= 2;
+        }
+        Ok(loops)
     }
 
     /// Seconds that it takes to draw all sprites once, and nothing else: what more passes over them cost, per pass.

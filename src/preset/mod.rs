@@ -1,13 +1,15 @@
 //! Presets: a camera, lights and particle systems in a JSON file.
 
+mod material;
 #[cfg(feature = "app")]
 mod schema;
 
-use std::path::{Component, Path, PathBuf};
+use std::path::Path;
 
 use glam::camera::rh;
 use glam::{UVec2, Vec3};
 
+pub use material::MaterialNames;
 #[cfg(feature = "app")]
 pub use schema::schema;
 
@@ -18,12 +20,8 @@ use crate::fields::{FieldVisitor, Fields, validate};
 use crate::frame::validate_lights;
 use crate::json;
 use crate::light::Light;
-use crate::material::MaterialAssets;
-use crate::noise_volume::NoiseVolume;
 use crate::particle::Particle;
-use crate::ramp::Ramp;
 use crate::settings::Settings;
-use crate::sprite::{Sprite, SpriteLayout};
 use crate::view::View;
 
 /// The version of the preset format that this code writes and reads.
@@ -173,53 +171,6 @@ pub struct PresetSystem {
     pub settings: Settings,
 }
 
-/// The pictures of a system: names of built-in ones, or PNG files beside the preset.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
-#[serde(default, deny_unknown_fields)]
-pub struct MaterialNames {
-    /// Flipbook of normal maps.
-    pub sprite: String,
-    /// Depth and motion of a sprite from a file, laid out as it; empty for none. A built-in sprite has its own.
-    pub detail: String,
-    /// Frames beside each other, for a sprite from a file. A built-in one knows its own.
-    pub columns: u32,
-    /// Frames below each other, for a sprite from a file.
-    pub rows: u32,
-    /// True for a sprite file painted with green pointing down.
-    pub y_down: bool,
-    /// Light by dot(n, l).
-    pub diffuse_ramp: String,
-    /// Light by amount.
-    pub soft_scatter_ramp: String,
-    /// Glow by distance² and amount.
-    pub specular_ramp: String,
-    /// Painted lit sphere.
-    pub motif: String,
-    /// Colour by age.
-    pub age_ramp: String,
-    /// Tiling 3D noise: a built-in one, or a PNG of slices below each other.
-    pub noise: String,
-}
-
-impl Default for MaterialNames {
-    fn default() -> Self {
-        Self {
-            sprite: "puff".into(),
-            detail: String::new(),
-            columns: 1,
-            rows: 1,
-            y_down: false,
-            diffuse_ramp: "diffuse_soft".into(),
-            soft_scatter_ramp: "scatter_mist".into(),
-            specular_ramp: "specular_halo".into(),
-            motif: "motif_studio".into(),
-            age_ramp: "age_smoke".into(),
-            noise: "fbm".into(),
-        }
-    }
-}
-
 impl Fields for Camera {
     fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
         visitor.vector("position", &mut self.position, -1.0e5..=1.0e5, "m");
@@ -316,77 +267,9 @@ impl PresetSystem {
     }
 }
 
-impl MaterialNames {
-    /// Loads every picture. `folder` is the preset's; files are looked for there and nowhere else.
-    ///
-    /// # Errors
-    /// [`Error::Image`] or [`Error::Io`] naming the file, or [`Error::Field`] for a name that is neither built in nor a
-    /// file inside the folder.
-    pub fn load(&self, folder: &Path) -> Result<MaterialAssets, Error> {
-        let ramp = |field, name, list| load_ramp(field, name, list, folder);
-        let (sprite, detail) = self.load_sprite(folder)?;
-        Ok(MaterialAssets {
-            sprite,
-            detail,
-            noise: match builtin::find(builtin::NOISES, &self.noise) {
-                Some(noise) => noise.noise()?,
-                None => NoiseVolume::load(&inside("noise", &self.noise, builtin::NOISES, folder)?)?,
-            },
-            diffuse_ramp: ramp("diffuse_ramp", &self.diffuse_ramp, builtin::RAMPS)?,
-            soft_scatter_ramp: ramp("soft_scatter_ramp", &self.soft_scatter_ramp, builtin::RAMPS)?,
-            specular_ramp: ramp("specular_ramp", &self.specular_ramp, builtin::RAMPS)?,
-            motif: ramp("motif", &self.motif, builtin::MOTIFS)?,
-            age_ramp: ramp("age_ramp", &self.age_ramp, builtin::RAMPS)?,
-        })
-    }
-
-    fn load_sprite(&self, folder: &Path) -> Result<(Sprite, Option<Sprite>), Error> {
-        if let Some(sprite) = builtin::find(builtin::SPRITES, &self.sprite) {
-            return Ok((sprite.sprite()?, sprite.detail()?));
-        }
-        let path = inside("sprite", &self.sprite, builtin::SPRITES, folder)?;
-        let layout = SpriteLayout { columns: self.columns, rows: self.rows, y_down: self.y_down };
-        let sprite = Sprite::load(&path, layout)?;
-        if self.detail.is_empty() {
-            return Ok((sprite, None));
-        }
-        let path = inside("detail", &self.detail, &[], folder)?;
-        Ok((sprite, Some(Sprite::load(&path, SpriteLayout { y_down: false, ..layout })?)))
-    }
-}
-
-fn load_ramp(field: &'static str, name: &str, list: &'static [builtin::Builtin], folder: &Path) -> Result<Ramp, Error> {
-    match builtin::find(list, name) {
-        Some(ramp) => ramp.ramp(),
-        None => Ramp::load(&inside(field, name, list, folder)?),
-    }
-}
-
-/// The path of an asset inside the preset's folder.
-fn inside(field: &str, name: &str, list: &[builtin::Builtin], folder: &Path) -> Result<PathBuf, FieldError> {
-    let path = Path::new(name);
-    let is_png = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
-    let stays = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
-    if is_png && stays {
-        return Ok(folder.join(path));
-    }
-    let names: Vec<_> = list.iter().map(|builtin| builtin.name).collect();
-    let expected = format!("one of {}, or a PNG inside the preset's folder", names.join(", "));
-    Err(FieldError::new(format!("material.{field}"), format!("{name:?}"), expected))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn assets_stay_inside_the_presets_folder() {
-        let folder = Path::new("shots");
-        assert_eq!(inside("sprite", "a/b.png", &[], folder).unwrap(), Path::new("shots/a/b.png"));
-        for outside in ["../b.png", "/etc/b.png", "a/../../b.png", "puf", "b.jpg"] {
-            assert!(inside("sprite", outside, builtin::SPRITES, folder).is_err(), "{outside}");
-        }
-    }
 
     #[test]
     fn every_builtin_preset_loads_with_its_assets() {

@@ -66,9 +66,8 @@ pub fn render(frame: &Frame<'_>, picture: &mut Picture<Vec4>) -> Result<(), Fiel
     }
     let mut draws = Vec::new();
     for (index, system) in frame.systems.iter().enumerate() {
-        let path = || format!("systems[{index}].settings");
-        system.settings.validate(path)?;
-        system.material.info().validate(system.settings, path)?;
+        system.settings.validate(|| format!("systems[{index}].settings"))?;
+        system.material.info().validate(index, system.settings)?;
         draws.extend(Draw::new(&view, frame, system)?);
     }
     draws.sort_by(|a, b| b.distance.total_cmp(&a.distance));

@@ -290,6 +290,21 @@ fn depth_sprites_meet_the_scene_where_their_texels_are() {
     assert!(seen(Technique::DepthSpriteSoft, 6.6) && !seen(Technique::DepthSpriteSoft, 6.9));
 }
 
+#[test]
+fn nothing_is_drawn_beyond_the_far_plane() {
+    for &technique in Technique::ALL {
+        for path in [Path::Raster, Path::Forward] {
+            let drawn = |depth: f32| {
+                let mut stage = one_sprite(technique, depth);
+                stage.view.clip_from_view = directx::perspective(0.8, 16.0 / 9.0, 0.1, 6.0);
+                (stage.settings.path, stage.shade_tree) = (path, ShadeTree::Final);
+                stage.on_gpu(gpu()).picture.texels.iter().any(|&texel| texel != BACKDROP)
+            };
+            assert!(drawn(4.5) && !drawn(7.0), "{} {}", technique.name(), path.name());
+        }
+    }
+}
+
 // bad input
 
 #[test]
@@ -322,6 +337,13 @@ fn degenerate_input_is_finite_or_refused_by_name() {
     assert!(lacking(|_| {}).starts_with("systems[0].settings.technique: \"depth_sprite_hard\""));
     let motion = lacking(|s| (s.settings.technique, s.settings.sprite.motion) = (Technique::Soft, 0.5));
     assert!(motion.starts_with("systems[0].settings.sprite.motion: 0.5"), "{motion}");
+
+    let mut two_frames = stage(Technique::Soft);
+    let sheet = image::RgbaImage::new(16, 8);
+    let layout = SpriteLayout { columns: 2, rows: 1, y_down: false };
+    two_frames.material.detail = Some(Sprite::from_picture("two".as_ref(), &sheet, layout).unwrap());
+    let error = two_frames.try_on_gpu(gpu()).map(|_| ()).unwrap_err().to_string();
+    assert_eq!(error, "systems[0].material.detail: 2 frames is not valid; expected as many as the sprite has, 1");
 
     for &technique in Technique::ALL {
         let mut stage = stage(technique);
