@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // haze, once.
     let descriptor = Descriptor { color_format: COLOUR, depth_format: Some(DEPTH), ..Descriptor::default() };
     let mut smoke = Renderer::new(&device, &descriptor);
-    let material = smoke.create_material(&device, &queue, &MaterialNames::default().load(Path::new(""))?);
+    let material = smoke.create_material(&device, &queue, &MaterialNames::default().load(Path::new(""))?)?;
 
     // haze, every frame.
     let mut particles = Vec::new();

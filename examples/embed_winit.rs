@@ -106,7 +106,7 @@ impl Host {
         let descriptor =
             Descriptor { color_format: configuration.format, depth_format: Some(DEPTH), ..Descriptor::default() };
         let smoke = Renderer::new(&device, &descriptor);
-        let material = smoke.create_material(&device, &queue, &MaterialNames::default().load(Path::new(""))?);
+        let material = smoke.create_material(&device, &queue, &MaterialNames::default().load(Path::new(""))?)?;
         let depth = depth_target(&device, &configuration);
         let (start, settings) = (Instant::now(), Settings::default());
         Ok(Self {

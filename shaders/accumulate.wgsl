@@ -7,15 +7,12 @@
 // Space   Normals in view space. Depths in metres.
 
 #import "lib/sprite_fragment.wgsl"
-#import "lib/depth.wgsl"
 
 // Reduced depth, or the host's depth where HOST_DEPTH.
 @group(3) @binding(0) var tested_depth: texture_2d<f32>;
 
 override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
 override HOST_DEPTH: bool = false;
-// The host's depth is linear.
-override LINEAR_DEPTH: bool = false;
 // Counts layers instead: every fragment that is shaded adds one.
 override OVERDRAW: bool = false;
 
@@ -38,12 +35,10 @@ fn fragment(in: SpriteVertex) -> @location(0) vec4f {
     var scene = SKY_VIEW_DEPTH;
     if reads_scene() {
         scene = textureLoad(tested_depth, vec2i(in.position.xy), 0).r;
-        if !HOST_DEPTH {
-            scene *= system.depth_limit;
-        } else if LINEAR_DEPTH {
-            scene = view_depth_from_linear(scene);
+        if HOST_DEPTH {
+            scene = host_view_depth(scene);
         } else {
-            scene = view_depth_from_ndc_depth(scene, view.depth_coefficients);
+            scene *= system.depth_limit;
         }
     }
     let fragment = technique_fragment(in, scene);

@@ -7,10 +7,7 @@
 
 #import "lib/sprite_fragment.wgsl"
 #import "lib/diffuse.wgsl"
-#import "lib/depth.wgsl"
 
-// The scene's depth is linear.
-override LINEAR_DEPTH: bool = false;
 // True where sprite.age_colour is not 0.
 override AGE_COLOUR: bool = false;
 
@@ -28,12 +25,7 @@ fn vertex(particle: Particle, @builtin(vertex_index) index: u32) -> SpriteVertex
 fn fragment(in: SpriteVertex) -> @location(0) vec4f {
     var scene = SKY_VIEW_DEPTH;
     if reads_scene() {
-        scene = textureLoad(scene_depth, vec2i(in.position.xy), 0).r;
-        if LINEAR_DEPTH {
-            scene = view_depth_from_linear(scene);
-        } else {
-            scene = view_depth_from_ndc_depth(scene, view.depth_coefficients);
-        }
+        scene = host_view_depth(textureLoad(scene_depth, vec2i(in.position.xy), 0).r);
     }
     let fragment = technique_fragment(in, scene);
     if fragment.hidden || fragment.amount <= 0.0 {

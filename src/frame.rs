@@ -1,14 +1,14 @@
 //! What the host hands over for one frame.
 
-use glam::Vec3;
+use glam::{UVec2, Vec3};
 
-use crate::bounds::Bounds;
+use crate::bounds::{Bounds, effective_scale};
 use crate::error::FieldError;
 use crate::fields::validate;
 use crate::light::{Light, MAX_LIGHTS};
 use crate::material::Material;
 use crate::particle::Particle;
-use crate::settings::{Settings, ShadeTree};
+use crate::settings::{DepthSource, Settings, ShadeTree};
 use crate::view::View;
 
 /// Everything that [`Renderer::prepare`](crate::Renderer::prepare) needs to know about a frame.
@@ -107,7 +107,20 @@ pub enum Particles<'a> {
     },
 }
 
-/// What both renderers refuse about lights and settings.
+/// What both renderers refuse about the settings of system `index` in a picture of this size.
+pub(crate) fn validate_settings(index: usize, settings: &Settings, picture: UVec2) -> Result<(), FieldError> {
+    settings.validate(|| format!("systems[{index}].settings"))?;
+    let accumulate = &settings.accumulate;
+    let is_host = accumulate.depth_source == DepthSource::Host && !settings.is_forward();
+    if is_host && effective_scale(accumulate.scale, accumulate.max_side, picture) != 1 {
+        let field = format!("systems[{index}].settings.accumulate.max_side");
+        let expected = format!("at least {} for this picture with depth_source \"host\"", picture.max_element());
+        return Err(FieldError::new(field, accumulate.max_side, expected));
+    }
+    Ok(())
+}
+
+/// What both renderers refuse about lights.
 pub(crate) fn validate_lights(lights: &[Light]) -> Result<(), FieldError> {
     if lights.len() > MAX_LIGHTS {
         return Err(FieldError::new("lights", format!("{} lights", lights.len()), format!("at most {MAX_LIGHTS}")));

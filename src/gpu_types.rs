@@ -1,4 +1,4 @@
-//! Every struct that WGSL sees. `tests/shader_layout.rs` holds each against its WGSL twin: name, offset, size.
+//! Every struct that WGSL sees. `tests/suite/shader_layout.rs` holds each against its WGSL twin: name, offset, size.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec2, Vec3, Vec4};

@@ -32,7 +32,7 @@
 //! // Once.
 //! let mut smoke = Renderer::new(&device, &Descriptor::default());
 //! let assets = haze::preset::MaterialNames::default().load("".as_ref())?;
-//! let material = smoke.create_material(&device, &queue, &assets);
+//! let material = smoke.create_material(&device, &queue, &assets)?;
 //! let settings = Settings::default();
 //!
 //! // Every frame, after the opaque scene.

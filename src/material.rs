@@ -55,12 +55,12 @@ impl MaterialInfo {
             Err(FieldError::new(format!("systems[{index}].{field}"), value, expected))
         };
         let Some(detail) = &self.detail else {
-            let expected = "another, or a detail map in the material, as `haze sprite bake` makes it".to_owned();
+            let expected = || "another, or a detail map in the material, as `haze sprite bake` makes it".to_owned();
             if settings.technique.is_depth_sprite() {
-                return refuse("settings.technique", format!("{:?}", settings.technique.name()), expected);
+                return refuse("settings.technique", format!("{:?}", settings.technique.name()), expected());
             }
             if settings.sprite.motion > 0.0 {
-                return refuse("settings.sprite.motion", settings.sprite.motion.to_string(), expected);
+                return refuse("settings.sprite.motion", settings.sprite.motion.to_string(), expected());
             }
             return Ok(());
         };
@@ -118,7 +118,8 @@ impl Material {
         layouts: &Layouts,
         samplers: &Samplers,
         assets: &MaterialAssets,
-    ) -> Self {
+    ) -> Result<Self, FieldError> {
+        validate_sizes(&device.limits(), assets)?;
         let mut bytes = 0;
         let sprite = upload_sprite(device, queue, "haze sprite", &assets.sprite, &mut bytes);
         // Nothing reads it where there is none, but something must be bound.
@@ -150,13 +151,44 @@ impl Material {
                 wgpu::BindGroupEntry { binding: 9, resource: wgpu::BindingResource::Sampler(&samplers.repeat) },
             ],
         });
-        Self { bind_group, info: assets.info(), bytes }
+        Ok(Self { bind_group, info: assets.info(), bytes })
     }
 
     /// Bytes of GPU memory that the pictures take.
     pub fn memory_use(&self) -> u64 {
         self.bytes
     }
+}
+
+/// Refuses pictures that are too large for the device.
+fn validate_sizes(limits: &wgpu::Limits, assets: &MaterialAssets) -> Result<(), FieldError> {
+    let check = |name: &str, side: u32, most: u32| {
+        if side <= most {
+            return Ok(());
+        }
+        Err(FieldError::new(
+            format!("material.{name}"),
+            format!("{side} texels"),
+            format!("at most {most} on this device"),
+        ))
+    };
+    let flat = limits.max_texture_dimension_2d;
+    let ramps = [
+        ("diffuse_ramp", &assets.diffuse_ramp),
+        ("soft_scatter_ramp", &assets.soft_scatter_ramp),
+        ("specular_ramp", &assets.specular_ramp),
+        ("motif", &assets.motif),
+        ("age_ramp", &assets.age_ramp),
+    ];
+    for (name, ramp) in ramps {
+        check(name, ramp.size().max_element(), flat)?;
+    }
+    for (name, sprite) in [("sprite", Some(&assets.sprite)), ("detail", assets.detail.as_ref())] {
+        let Some(sprite) = sprite else { continue };
+        check(name, sprite.size(), flat)?;
+        check(name, array_layers(sprite.frame_count()), limits.max_texture_array_layers)?;
+    }
+    check("noise", assets.noise.size(), limits.max_texture_dimension_3d)
 }
 
 fn upload_ramp(
@@ -207,9 +239,10 @@ fn upload_sprite(
     sprite: &Sprite,
     bytes: &mut u64,
 ) -> wgpu::TextureView {
+    let layers = array_layers(sprite.frame_count());
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
-        size: extent(UVec2::splat(sprite.size()), array_layers(sprite.frame_count())),
+        size: extent(UVec2::splat(sprite.size()), layers),
         mip_level_count: sprite.level_count(),
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
@@ -219,8 +252,8 @@ fn upload_sprite(
     });
     for level in 0..sprite.level_count() {
         let data = sprite.level_bytes(level);
-        *bytes += data.len() as u64;
         let size = sprite.level_size(level);
+        *bytes += 4 * u64::from(size) * u64::from(size) * u64::from(layers);
         queue.write_texture(
             wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() },
             data,

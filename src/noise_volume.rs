@@ -14,8 +14,8 @@ use crate::picture::read_png;
 /// The version of the recipe format that this code writes and reads.
 pub const RECIPE_VERSION: u32 = 1;
 
-/// Largest side in voxels: what WebGL2 promises of a 3D texture.
-pub const MAX_SIZE: u32 = 256;
+/// Largest side in voxels: its slices below each other are as high as a picture may be.
+pub const MAX_SIZE: u32 = 64;
 
 /// A decoded cube of noise that repeats in every direction. Texels are rgb = inverse density gradient (it points to
 /// where there is less) / 2 + 1/2, scaled so that the steepest place is of unit length, and a = density, 8 bits each.
@@ -89,7 +89,7 @@ pub struct NoiseRecipe {
 impl Fields for NoiseRecipe {
     fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
         visitor.integer("version", &mut self.version, RECIPE_VERSION..=RECIPE_VERSION, "");
-        visitor.integer("size", &mut self.size, 4..=128, "voxels");
+        visitor.integer("size", &mut self.size, 4..=64, "voxels");
         visitor.integer("cells", &mut self.cells, 1..=64, "");
         visitor.integer("octaves", &mut self.octaves, 1..=8, "");
         visitor.number("gain", &mut self.gain, 0.0..=1.0, "");

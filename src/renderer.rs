@@ -4,7 +4,7 @@ use glam::{IVec2, UVec2};
 
 use crate::descriptor::{Descriptor, read_only_depth_is_supported};
 use crate::error::{Error, FieldError};
-use crate::frame::{Frame, System, validate_lights};
+use crate::frame::{Frame, System, validate_lights, validate_settings};
 use crate::frame_bindings::FrameBindings;
 use crate::material::{Material, MaterialAssets, Samplers};
 use crate::pass::Layouts;
@@ -96,8 +96,16 @@ impl Renderer {
     }
 
     /// Uploads ramps and a sprite picture. Make each once and keep it.
-    pub fn create_material(&self, device: &wgpu::Device, queue: &wgpu::Queue, assets: &MaterialAssets) -> Material {
-        Material::new(device, queue, &self.layouts, &self.samplers, assets)
+    ///
+    /// # Errors
+    /// [`Error::Field`] naming a picture that is too large for the device.
+    pub fn create_material(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        assets: &MaterialAssets,
+    ) -> Result<Material, Error> {
+        Ok(Material::new(device, queue, &self.layouts, &self.samplers, assets)?)
     }
 
     /// Records everything that happens before the host's pass: every system accumulated into a small target of its own.
@@ -127,7 +135,7 @@ impl Renderer {
         for (index, system) in frame.systems.iter().enumerate() {
             let slot = &mut self.slots[index];
             // Place in the view; lights, settings and particles to the GPU, sprites back to front.
-            slot.write(device, queue, &self.layouts, &mut self.passes, &self.descriptor, &view, frame, system)?;
+            slot.write(device, queue, &self.layouts, &mut self.passes, &self.descriptor, &view, frame, system);
             // Scene depth at the target's resolution.
             depth_downsample::record(encoder, &self.frame, slot);
             // All lights by normal, for the cubemap and motif variants of diffuse.
@@ -235,11 +243,18 @@ fn validate_system(
     use crate::frame::Particles;
     use crate::settings::{DepthSource, Technique};
 
-    system.settings.validate(|| format!("systems[{index}].settings"))?;
+    validate_settings(index, system.settings, frame.view.size)?;
     if let Some(bounds) = &system.bounds {
         bounds.validate(|| format!("systems[{index}].bounds"))?;
     }
     let field = |name: &str| format!("systems[{index}].{name}");
+    if let Particles::Slice(particles) = system.particles {
+        let most = device.limits().max_buffer_size / size_of::<crate::Particle>() as u64;
+        if particles.len() as u64 > most {
+            let expected = format!("at most {most} on this device");
+            return Err(FieldError::new(field("particles"), format!("{} particles", particles.len()), expected));
+        }
+    }
     if let Particles::Buffer { buffer, count } = system.particles {
         if system.bounds.is_none() {
             return Err(FieldError::new(field("bounds"), "None", "the box of the particles, which are on the GPU"));

@@ -4,13 +4,13 @@ use glam::UVec2;
 
 use crate::bounds::{Bounds, TargetRect, effective_scale};
 use crate::descriptor::{Descriptor, read_only_depth_is_supported};
-use crate::error::FieldError;
 use crate::frame::{Frame, Particles, SceneDepth, System};
 use crate::gpu_types::{LightUniform, SystemUniform};
 use crate::particle::{Particle, bounds_of};
 use crate::pass::accumulate::{AccumulateKey, DepthTest};
 use crate::pass::forward::ForwardKey;
 use crate::pass::sort::{SortScratch, back_to_front};
+use crate::pass::sprite::SpriteKey;
 use crate::pass::transfer::TransferKey;
 use crate::pass::{LIGHTS_SIZE, Layouts, uniform_buffer};
 use crate::renderer::{MemoryUse, Passes, TargetViews};
@@ -128,17 +128,17 @@ impl Slot {
         view: &ViewGeometry,
         frame: &Frame<'_>,
         system: &System<'_>,
-    ) -> Result<(), FieldError> {
+    ) {
         self.draw = None;
         let bounds = bounds_of_system(system);
         lights_in_view(view, frame.lights, &bounds, &mut self.scratch.lights);
         let info = &system.material.info;
-        let Some(in_view) = system_in_view(view, &bounds, system.settings, info, &self.scratch.lights, frame.time)?
+        let Some(in_view) = system_in_view(view, &bounds, system.settings, info, &self.scratch.lights, frame.time)
         else {
-            return Ok(());
+            return;
         };
         let Some((instances, instance_count)) = self.write_particles(device, queue, view, system) else {
-            return Ok(());
+            return;
         };
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&in_view.uniform));
         queue.write_buffer(&self.lights, 0, bytemuck::cast_slice(&self.scratch.lights));
@@ -147,7 +147,7 @@ impl Slot {
         let path = if system.settings.is_forward() {
             self.targets = None;
             if !matches!(frame.shade_tree, ShadeTree::Final | ShadeTree::Combined) {
-                return Ok(());
+                return;
             }
             DrawPath::Forward(passes.forward.pipeline(device, forward_key(view, linear_depth, system.settings)))
         } else {
@@ -166,7 +166,6 @@ impl Slot {
             instance_count,
             path,
         });
-        Ok(())
     }
 
     fn write_particles(
@@ -190,7 +189,7 @@ impl Slot {
             Some(buffer) if buffer.size() >= bytes.len() as u64 => buffer.clone(),
             _ => device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("haze particles"),
-                size: (bytes.len() as u64).next_power_of_two(),
+                size: (bytes.len() as u64).next_power_of_two().min(device.limits().max_buffer_size),
                 usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
@@ -254,13 +253,8 @@ impl Slot {
                 AccumulateKey {
                     format: accumulate.format,
                     encoding: accumulate.encoding,
-                    technique: settings.technique,
-                    animation: settings.sprite.animation,
-                    debug_sprite: settings.sprite.debug_sprite,
-                    motion: settings.sprite.motion > 0.0,
-                    curve: settings.soft_fade.curve,
+                    sprite: SpriteKey::new(settings, reads_linear(device, &frame.scene_depth, settings)),
                     host_depth: accumulate.depth_source == DepthSource::Host,
-                    linear_depth: reads_linear(device, &frame.scene_depth, settings),
                     depth_test,
                     overdraw: shade_tree == ShadeTree::Overdraw,
                 },
@@ -338,13 +332,8 @@ fn bounds_of_system(system: &System<'_>) -> Bounds {
 fn forward_key(view: &ViewGeometry, linear_depth: bool, settings: &Settings) -> ForwardKey {
     ForwardKey {
         blend_mode: settings.blend_mode,
-        technique: settings.technique,
-        animation: settings.sprite.animation,
-        debug_sprite: settings.sprite.debug_sprite,
-        motion: settings.sprite.motion > 0.0,
+        sprite: SpriteKey::new(settings, linear_depth),
         age_colour: settings.sprite.age_colour > 0.0,
-        curve: settings.soft_fade.curve,
-        linear_depth,
         shows_through: settings.fade_through() > 0.0,
         soft_scatter_mode: settings.soft_scatter.mode,
         reversed: view.depth.reversed,

@@ -4,7 +4,6 @@
 use glam::{IVec2, UVec2, Vec2, Vec3, Vec4};
 
 use crate::bounds::{Bounds, TargetRect, bounds_in_view, effective_scale, target_rect};
-use crate::error::FieldError;
 use crate::gpu_types::{LightUniform, SystemUniform, ViewUniform};
 use crate::light::{Light, LightKind};
 use crate::reference::depth::depth_coefficients;
@@ -55,7 +54,7 @@ pub(crate) struct DetailInfo {
 pub(crate) struct SystemInView {
     pub rect: TargetRect,
     pub uniform: SystemUniform,
-    /// The box reaches to or behind the near plane: the transfer draws its back faces.
+    /// The transfer draws the back faces of the box: it reaches to or behind the near plane, or shows through the scene.
     pub back_faces: bool,
 }
 
@@ -67,10 +66,8 @@ pub(crate) fn system_in_view(
     material: &MaterialInfo,
     lights: &[LightUniform],
     time: f32,
-) -> Result<Option<SystemInView>, FieldError> {
-    let Some(in_view) = bounds_in_view(bounds, view) else {
-        return Ok(None);
-    };
+) -> Option<SystemInView> {
+    let in_view = bounds_in_view(bounds, view)?;
     let accumulate = &settings.accumulate;
     let picture = view.view.size;
     let scale = effective_scale(accumulate.scale, accumulate.max_side, picture);
@@ -79,10 +76,6 @@ pub(crate) fn system_in_view(
         // Attachments of one pass are of one size.
         DepthSource::Host => TargetRect { origin: IVec2::ZERO, size: picture },
     };
-    if accumulate.depth_source == DepthSource::Host && scale != 1 {
-        let expected = format!("at least {} for this picture with depth_source \"host\"", picture.max_element());
-        return Err(FieldError::new("accumulate.max_side", accumulate.max_side, expected));
-    }
 
     let mut uniform = SystemUniform {
         bounds_min: bounds.min,
@@ -102,7 +95,7 @@ pub(crate) fn system_in_view(
         target_origin: rect.origin.as_vec2(),
         target_size: rect.size.as_vec2(),
         scale: scale as f32,
-        depth_limit: (in_view.far + 1.0 / settings.soft_fade.fade_scale).min(SKY_VIEW_DEPTH),
+        depth_limit: (in_view.far + settings.soft_fade.reach()).min(SKY_VIEW_DEPTH),
         sprite_size: material.sprite_size,
         frame_count: material.frame_count,
         boost: settings.boost,
@@ -141,7 +134,7 @@ pub(crate) fn system_in_view(
     }
     // The front of the box may be hidden by what sprites show through.
     let back_faces = in_view.near <= view.depth.near || uniform.fade_through > 0.0;
-    Ok(Some(SystemInView { rect, uniform, back_faces }))
+    Some(SystemInView { rect, uniform, back_faces })
 }
 
 /// Metres that the noise has risen, within one tile of it, so that f32 stays fine after hours.

@@ -68,7 +68,9 @@ impl Targets {
         let holds = rect.size.cmple(self.size).all();
         let wasteful = self.size.element_product() > 4 * padded(rect.size).element_product();
         let exact = key.depth_source == DepthSource::Reduced || self.size == rect.size;
-        self.key == key && holds && !wasteful && exact && self.scene_depth == *scene_depth
+        // Only the host's own depth is bound with them.
+        let same_depth = key.depth_source == DepthSource::Reduced || self.scene_depth == *scene_depth;
+        self.key == key && holds && !wasteful && exact && same_depth
     }
 
     /// `limit`: size of the whole picture at this scale; the textures need never be larger.

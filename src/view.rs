@@ -23,7 +23,7 @@ pub struct View {
 /// How a depth buffer encodes distance. Read off the projection, so that it can never disagree with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthConvention {
-    /// View depth of the near plane, metres. Positive for perspective.
+    /// View depth of the near plane, metres. Positive; for an orthographic view it may be 0.
     pub near: f32,
     /// View depth of the far plane, metres; infinite for an infinite projection.
     pub far: f32,
@@ -57,7 +57,8 @@ impl DepthConvention {
         let reversed = at_zero.abs() > at_one.abs();
         let (near, far) = if reversed { (at_one, at_zero) } else { (at_zero, at_one) };
         let far = if far.is_infinite() { f64::INFINITY } else { far };
-        if !(near.is_finite() && near < far && (orthographic || near > 0.0)) {
+        // Linear depth is stored as a share of a limit, which must be in front of the viewer: near ≥ 0.
+        if !(near.is_finite() && near < far && near >= 0.0 && (orthographic || near > 0.0)) {
             return Err(bad("a projection whose depth runs from a near to a far plane in front of the viewer"));
         }
         Ok(Self { near: near as f32, far: far as f32, reversed, orthographic })
@@ -166,6 +167,8 @@ mod tests {
         let left_handed = lh::proj::directx::perspective(FOV, 1.5, 0.1, 100.0);
         assert_eq!(field(View { clip_from_view: left_handed, ..view }), "view.clip_from_view");
         assert_eq!(field(View { clip_from_view: Mat4::ZERO, ..view }), "view.clip_from_view");
+        let behind = rh::proj::directx::orthographic(-4.0, 4.0, -3.0, 3.0, -5.0, 60.0);
+        assert_eq!(field(View { clip_from_view: behind, ..view }), "view.clip_from_view");
         assert_eq!(field(View { view_from_world: Mat4::NAN, ..view }), "view.view_from_world");
     }
 }

@@ -109,6 +109,11 @@ fn sample_detail(
     return vec3f(mix(first.x, second.x, frames.blend), first.yz);
 }
 
+// Undoes a sprite's rotation, (cos, sin).
+fn unrotate(offset: vec2f, rotation: vec2f) -> vec2f {
+    return vec2f(offset.x * rotation.x + offset.y * rotation.y, offset.y * rotation.x - offset.x * rotation.y);
+}
+
 // NV's debug sprite: eight by eight checks, every other one of a quarter of the amount.
 fn checkerboard(uv: vec2f) -> vec4f {
     let check = vec2i(floor(uv * 8.0));

@@ -1,6 +1,7 @@
 // A fragment of a sprite under every technique: shared by accumulate and forward.
 
 #import "lib/sprite_vertex.wgsl"
+#import "lib/depth.wgsl"
 #import "lib/noise_volume.wgsl"
 #import "lib/normal.wgsl"
 
@@ -8,6 +9,8 @@ override FADE_CURVE: u32 = FADE_CURVE_SMOOTHSTEP;
 override DEBUG_SPRITE: bool = false;
 // True where sprite.motion is not 0.
 override MOTION: bool = false;
+// The host's depth is linear.
+override LINEAR_DEPTH: bool = false;
 // The hardware has already dropped what is behind the scene.
 override DEPTH_TESTED: bool = false;
 
@@ -24,6 +27,14 @@ const HIDDEN: SpriteFragment = SpriteFragment(vec3f(0.0, 0.0, 1.0), 0.0, true);
 // True where the technique looks at the scene's depth itself.
 fn reads_scene() -> bool {
     return !(DEPTH_TESTED && TECHNIQUE == TECHNIQUE_HARD);
+}
+
+// View depth of a texel of the host's depth.
+fn host_view_depth(texel: f32) -> f32 {
+    if LINEAR_DEPTH {
+        return view_depth_from_linear(texel);
+    }
+    return view_depth_from_ndc_depth(texel, view.depth_coefficients);
 }
 
 fn technique_fragment(in: SpriteVertex, scene: f32) -> SpriteFragment {
@@ -47,13 +58,15 @@ fn technique_fragment(in: SpriteVertex, scene: f32) -> SpriteFragment {
         }
     }
 
+    let thickness = density_thickness(view_depth, radius, view.near, scene);
     var fade = 1.0;
     switch TECHNIQUE {
         case TECHNIQUE_HARD: {
             if !DEPTH_TESTED { fade = hard_fade(scene - view_depth); }
         }
         case TECHNIQUE_DEPTH_SPRITE_HARD: { fade = hard_fade(scene - texel_depth); }
-        case TECHNIQUE_DENSITY: {}
+        // Hidden where nothing is left of the slab.
+        case TECHNIQUE_DENSITY: { fade = thickness; }
         default: { fade = fade_before(scene, texel_depth); }
     }
     // Where the hardware has dropped what is behind, few fragments are left to skip, and the branch costs every one.
@@ -63,7 +76,6 @@ fn technique_fragment(in: SpriteVertex, scene: f32) -> SpriteFragment {
     let texel = sprite_texel(in, in.uv, frames, motion);
     var fragment = SpriteFragment(rotate_normal(texel.xyz, in.rotation), texel.w * amount * fade, fade <= 0.0);
     if TECHNIQUE == TECHNIQUE_DENSITY {
-        let thickness = density_thickness(view_depth, radius, view.near, scene);
         fragment.amount = density_amount(system.density * texel.w * amount, thickness);
     }
     return fragment;
@@ -99,10 +111,7 @@ fn sphere_fragment(in: SpriteVertex, scene: f32) -> SpriteFragment {
         return volumetric_fragment(in, scene, origin, along, interval);
     }
     // The sprite's picture, laid on the disc through the middle that faces the ray.
-    let place = vec2f(
-        interval.axis.x * in.rotation.x + interval.axis.y * in.rotation.y,
-        interval.axis.y * in.rotation.x - interval.axis.x * in.rotation.y,
-    ) / radius;
+    let place = unrotate(interval.axis.xy, in.rotation) / radius;
     let frames = flipbook_frames(in.amount_lod_frame_age.z, system.frame_count);
     var motion = vec2f(0.0);
     if MOTION {

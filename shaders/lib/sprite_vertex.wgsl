@@ -53,8 +53,9 @@ fn sprite_front(centre_radius: vec4f) -> f32 {
     return max(-centre_radius.z - sprite_thickness(centre_radius.w), view.near);
 }
 
-// NDC of a corner of the rectangle round a sphere's picture, inside the picture.
-fn sphere_corner(centre_radius: vec4f, corner: vec2f) -> vec2f {
+// NDC of a corner of the rectangle round a sphere's picture, cut half a texel outside the picture: the last texels may
+// reach that far out.
+fn sphere_corner(centre_radius: vec4f, corner: vec2f, texels_per_pixel: f32) -> vec2f {
     let centre = centre_radius.xyz;
     let radius = centre_radius.w;
     let x = sphere_axis_bounds(vec2f(centre.x, -centre.z), radius, view.near);
@@ -63,7 +64,8 @@ fn sphere_corner(centre_radius: vec4f, corner: vec2f) -> vec2f {
     if view.orthographic > 0.5 {
         ray = centre.xy + corner * radius;
     }
-    return clamp((ray - view.ray_offset) / view.ray_scale, vec2f(-1.0), vec2f(1.0));
+    let edge = 1.0 + 1.0 / (texels_per_pixel * view.size);
+    return clamp((ray - view.ray_offset) / view.ray_scale, -edge, edge);
 }
 
 // `target_from_ndc` moves the picture's NDC to the target's; `texels_per_pixel` is the target's resolution.
@@ -103,7 +105,7 @@ fn sprite_vertex(
     let corner = sprite_corner(corner_index);
     var clip: vec4f;
     if is_sphere() {
-        let ndc = sphere_corner(out.centre_radius, corner);
+        let ndc = sphere_corner(out.centre_radius, corner, texels_per_pixel);
         clip = vec4f(ndc, 0.0, 1.0);
         out.view_position = view_position(ndc * view.ray_scale + view.ray_offset, 1.0, view.orthographic);
     } else {

@@ -92,9 +92,11 @@ impl<'a> Timer<'a> {
 
     /// Seconds that it takes to draw all sprites once, and nothing else: what more passes over them cost, per pass.
     pub fn sprites(&mut self, shot: &Shot, loops: u32) -> Result<f64, Error> {
-        let mut repeated = shot.clone();
-        repeated.preset.systems.iter_mut().for_each(|system| system.settings.sprite.debug_loop = loops + 1);
-        let (once, often) = (self.frame(shot)?, self.frame(&repeated)?);
-        Ok((often - once) / f64::from(loops))
+        let mut shot = shot.clone();
+        let mut frame = |times: u32| {
+            shot.preset.systems.iter_mut().for_each(|system| system.settings.sprite.debug_loop = times);
+            self.frame(&shot)
+        };
+        Ok((frame(loops + 1)? - frame(1)?) / f64::from(loops))
     }
 }

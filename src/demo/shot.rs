@@ -111,7 +111,7 @@ impl Shot {
     /// Renders on the GPU, linear HDR. `exact_filtering` as in [`Descriptor`].
     ///
     /// # Errors
-    /// [`Error::Field`] when the preset was changed to something invalid or the picture is too large for the device,
+    /// [`Error::Field`] when the preset was changed to something invalid or a picture is too large for the device,
     /// [`Error::Device`] when the device failed.
     pub fn render_on_gpu(&self, gpu: &Headless, exact_filtering: bool) -> Result<Picture<Vec4>, Error> {
         let mut stage = Stage::new(gpu, self, exact_filtering)?;

@@ -33,7 +33,7 @@ impl<'a> Stage<'a> {
     /// Draws the scene. `exact_filtering` as in [`Descriptor`].
     ///
     /// # Errors
-    /// [`Error::Device`] when the device failed.
+    /// [`Error::Field`] when a picture is too large for the device, [`Error::Device`] when the device failed.
     pub fn new(gpu: &'a Headless, shot: &Shot, exact_filtering: bool) -> Result<Self, Error> {
         let view = shot.preset.camera.view(shot.size);
         let targets = gpu::render(gpu, &shot.scene(), &view)?;
@@ -51,7 +51,7 @@ impl<'a> Stage<'a> {
             },
         );
         let upload = |assets| renderer.create_material(&gpu.device, &gpu.queue, assets);
-        let materials = shot.materials.iter().map(upload).collect();
+        let materials = shot.materials.iter().map(upload).collect::<Result<_, _>>()?;
         let (colour, depth) = (whole(&targets.colour), whole(&targets.depth));
         Ok(Self { gpu, view, targets, colour, depth, linear, tests_depth, renderer, materials })
     }

@@ -3,13 +3,14 @@
 //! Reads: particles back to front, sprite flipbook, detail map or noise, reduced depth or the host's own. Writes:
 //! accumulation target. Blend: ONE, ONE_MINUS_SRC_ALPHA. Source: OTEE "Accumulating the particles"; techniques: NV, BLOG, MS.
 
+use super::sprite::SpriteKey;
 use super::{
     ADDITIVE, Layouts, PARTICLE_LAYOUT, PREMULTIPLIED_OVER, PipelineParts, STRIP, Variants, color_target,
     create_pipeline, in_front, read_only_depth, switch, variant,
 };
 use super::{begin_pass, bind, color_attachment, read_only, set_part};
 use crate::frame_bindings::FrameBindings;
-use crate::settings::{AccumulationFormat, FadeCurve, NormalEncoding, SpriteAnimation, Technique};
+use crate::settings::{AccumulationFormat, NormalEncoding};
 use crate::slot::{DrawPath, Slot};
 use crate::targets::{DEPTH_COPY_FORMAT, REDUCED_DEPTH_FORMAT, accumulation_layout};
 
@@ -18,15 +19,9 @@ use crate::targets::{DEPTH_COPY_FORMAT, REDUCED_DEPTH_FORMAT, accumulation_layou
 pub(crate) struct AccumulateKey {
     pub format: AccumulationFormat,
     pub encoding: NormalEncoding,
-    pub technique: Technique,
-    pub animation: SpriteAnimation,
-    pub debug_sprite: bool,
-    pub motion: bool,
-    pub curve: FadeCurve,
+    pub sprite: SpriteKey,
     /// Sprites are compared with the host's own depth, not the reduced one.
     pub host_depth: bool,
-    /// The host's depth is linear.
-    pub linear_depth: bool,
     pub depth_test: DepthTest,
     /// Count layers instead of blending normals.
     pub overdraw: bool,
@@ -80,20 +75,14 @@ impl AccumulatePass {
                     depth_stencil,
                     sample_count: 1,
                     targets: &targets,
-                    constants: &[
-                        variant!("TECHNIQUE", key.technique),
-                        variant!("SPRITE_ANIMATION", key.animation),
-                        switch("DEBUG_SPRITE", key.debug_sprite),
-                        switch("MOTION", key.motion),
-                        variant!("FADE_CURVE", key.curve),
+                    constants: &key.sprite.constants([
                         variant!("NORMAL_ENCODING", key.encoding),
                         switch("HOST_DEPTH", key.host_depth),
-                        switch("LINEAR_DEPTH", key.linear_depth),
                         // The copy is too coarse to stand in for the shader's own test.
                         switch("DEPTH_TESTED", !matches!(key.depth_test, DepthTest::InShader | DepthTest::Copy)),
                         switch("OVERDRAW", key.overdraw),
                         switch("EXACT_FILTERING", exact_filtering),
-                    ],
+                    ]),
                 },
             )
         })

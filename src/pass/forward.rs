@@ -4,27 +4,22 @@
 //! Blend: alpha, additive or multiply. Source: OTEE "Typical game particles so far".
 
 use super::bind;
+use super::sprite::SpriteKey;
 use super::{
     ADDITIVE, Layouts, MULTIPLY, PARTICLE_LAYOUT, PREMULTIPLIED_OVER, PipelineParts, STRIP, Variants, color_target,
     create_pipeline, in_front, read_only_depth, switch, variant,
 };
 use crate::descriptor::Descriptor;
 use crate::frame_bindings::FrameBindings;
-use crate::settings::{BlendMode, FadeCurve, SoftScatterMode, SpriteAnimation, Technique};
+use crate::settings::{BlendMode, SoftScatterMode};
 use crate::slot::{DrawPath, Slot};
 
 /// What makes one forward pipeline differ from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct ForwardKey {
     pub blend_mode: BlendMode,
-    pub technique: Technique,
-    pub animation: SpriteAnimation,
-    pub debug_sprite: bool,
-    pub motion: bool,
+    pub sprite: SpriteKey,
     pub age_colour: bool,
-    pub curve: FadeCurve,
-    /// The scene's depth is linear.
-    pub linear_depth: bool,
     /// Sprites are seen behind the scene: nothing tests depth.
     pub shows_through: bool,
     pub soft_scatter_mode: SoftScatterMode,
@@ -64,19 +59,13 @@ impl ForwardPass {
                     depth_stencil: depth,
                     sample_count: descriptor.sample_count,
                     targets: &[color_target(descriptor.color_format, Some(blend))],
-                    constants: &[
+                    constants: &key.sprite.constants([
                         variant!("BLEND_MODE", key.blend_mode),
-                        variant!("TECHNIQUE", key.technique),
-                        variant!("SPRITE_ANIMATION", key.animation),
-                        switch("DEBUG_SPRITE", key.debug_sprite),
-                        switch("MOTION", key.motion),
                         switch("AGE_COLOUR", key.age_colour),
-                        variant!("FADE_CURVE", key.curve),
-                        switch("LINEAR_DEPTH", key.linear_depth),
                         switch("DEPTH_TESTED", descriptor.depth_format.is_some() && !key.shows_through),
                         variant!("SOFT_SCATTER_MODE", key.soft_scatter_mode),
                         switch("EXACT_FILTERING", descriptor.exact_filtering),
-                    ],
+                    ]),
                 },
             )
         })

@@ -6,6 +6,7 @@ pub(crate) mod diffuse_bake;
 pub(crate) mod forward;
 pub(crate) mod sort;
 pub(crate) mod specular_scatter;
+pub(crate) mod sprite;
 pub(crate) mod transfer;
 
 use std::collections::HashMap;

@@ -4,7 +4,7 @@ use glam::{IVec2, Mat4, Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use crate::bounds::Bounds;
 use crate::error::FieldError;
-use crate::frame::validate_lights;
+use crate::frame::{validate_lights, validate_settings};
 use crate::gpu_types::{LightUniform, SystemUniform, ViewUniform};
 use crate::light::Light;
 use crate::material::MaterialAssets;
@@ -66,9 +66,9 @@ pub fn render(frame: &Frame<'_>, picture: &mut Picture<Vec4>) -> Result<(), Fiel
     }
     let mut draws = Vec::new();
     for (index, system) in frame.systems.iter().enumerate() {
-        system.settings.validate(|| format!("systems[{index}].settings"))?;
+        validate_settings(index, system.settings, frame.view.size)?;
         system.material.info().validate(index, system.settings)?;
-        draws.extend(Draw::new(&view, frame, system)?);
+        draws.extend(Draw::new(&view, frame, system));
     }
     draws.sort_by(|a, b| b.distance.total_cmp(&a.distance));
 
@@ -109,17 +109,15 @@ pub(super) struct Draw<'a> {
 }
 
 impl<'a> Draw<'a> {
-    fn new(view: &ViewGeometry, frame: &Frame<'a>, system: &System<'a>) -> Result<Option<Self>, FieldError> {
+    fn new(view: &ViewGeometry, frame: &Frame<'a>, system: &System<'a>) -> Option<Self> {
         let bounds = system.bounds.unwrap_or_else(|| bounds_of(system.particles, system.settings.reach()));
         let mut lights = Vec::new();
         lights_in_view(view, frame.lights, &bounds, &mut lights);
         let info = system.material.info();
-        let Some(in_view) = system_in_view(view, &bounds, system.settings, &info, &lights, frame.time)? else {
-            return Ok(None);
-        };
+        let in_view = system_in_view(view, &bounds, system.settings, &info, &lights, frame.time)?;
         let mut particles = Vec::new();
         back_to_front(view, system.particles, &mut SortScratch::default(), &mut particles);
-        Ok(Some(Self {
+        Some(Self {
             distance: -view.view_position(bounds.centre()).z,
             view: view.uniform(false),
             world_from_view: view.view.view_from_world.inverse(),
@@ -130,7 +128,7 @@ impl<'a> Draw<'a> {
             scene_depth: frame.scene_depth,
             settings: system.settings,
             material: system.material,
-        }))
+        })
     }
 
     pub fn scene_view_depth(&self, pixel: IVec2) -> f32 {

@@ -85,6 +85,11 @@ pub fn sample_detail(detail: &Sprite, uv: Vec2, frames: FlipbookFrames, lod: f32
     Vec3::new(first.x + (second.x - first.x) * frames.blend, first.y, first.z)
 }
 
+/// Undoes a sprite's rotation, (cos, sin).
+pub fn unrotate(offset: Vec2, rotation: Vec2) -> Vec2 {
+    Vec2::new(offset.x * rotation.x + offset.y * rotation.y, offset.y * rotation.x - offset.x * rotation.y)
+}
+
 /// NV's debug sprite: eight by eight checks, every other one of a quarter of the amount.
 pub fn checkerboard(uv: Vec2) -> Vec4 {
     let check = (uv * 8.0).floor().as_ivec2();

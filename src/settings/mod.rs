@@ -1,6 +1,6 @@
 //! Everything a slider moves: the settings of one particle system. Plain data with units and ranges.
 //!
-//! The order of the variants is the order of the constants in the shaders; `tests/shader_layout.rs` holds the two together.
+//! The order of the variants is the order of the constants in the shaders; `tests/suite/shader_layout.rs` holds the two together.
 
 use crate::error::FieldError;
 use crate::fields::{FieldVisitor, Fields, validate};

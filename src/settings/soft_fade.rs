@@ -14,8 +14,8 @@ choice! {
         Contrast = "contrast",
         /// NV's `1 - 2^(-2 (2x)^c)`. Does not reach 1: 0.9375 at x = 1 for c = 1.
         Exponential = "exponential",
-        /// Whole up to the surface, and linearly gone `1 / fade_scale` metres behind it: sprites show through. There is
-        /// no depth test then. (BLOG, comment)
+        /// Whole up to the surface, and linearly gone `1 / fade_scale` metres behind it: sprites show through. Techniques
+        /// that fade have no depth test then; the others know no curve. (BLOG, comment)
         Always = "always",
     }
 }
@@ -49,6 +49,13 @@ impl Default for SoftFade {
             near_fade_start: 0.0,
             near_fade_end: 0.5,
         }
+    }
+}
+
+impl SoftFade {
+    /// Distance beyond which the scene behind a sprite changes nothing, metres.
+    pub fn reach(&self) -> f32 {
+        (1.0 / self.fade_scale).max(self.epsilon)
     }
 }
 

@@ -12,6 +12,7 @@ use crate::error::{Error, FieldError};
 use crate::fields::{FieldVisitor, Fields, validate};
 use crate::json;
 use crate::noise::{curl_noise, fractal_noise, pcg3d, unit};
+use crate::picture::MAX_SIDE;
 use crate::reference::picture::Picture;
 use crate::reference::saturate;
 use crate::sprite::detail::{detail, detail_size};
@@ -83,9 +84,11 @@ pub struct BakedFrame {
 impl Fields for SpriteRecipe {
     fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
         visitor.integer("version", &mut self.version, RECIPE_VERSION..=RECIPE_VERSION, "");
-        visitor.integer("size", &mut self.size, 8..=1024, "pixels");
-        visitor.integer("columns", &mut self.columns, 1..=16, "frames");
-        visitor.integer("rows", &mut self.rows, 1..=16, "frames");
+        // A frame is marched through a cube of its size; a sheet must be readable again.
+        visitor.integer("size", &mut self.size, 8..=512, "pixels");
+        let most = (MAX_SIDE / self.size.max(1)).min(16);
+        visitor.integer("columns", &mut self.columns, 1..=most, "frames");
+        visitor.integer("rows", &mut self.rows, 1..=most, "frames");
         visitor.integer("balls", &mut self.balls, 1..=256, "");
         visitor.number("spread", &mut self.spread, 0.0..=1.0, "half sides");
         visitor.number("ball_radius_min", &mut self.ball_radius_min, 0.02..=1.0, "half sides");

@@ -51,10 +51,10 @@ impl Sprite {
         let error = |reason: String| Err(Error::Image { path: path.into(), reason });
         let (columns, rows) = (layout.columns, layout.rows);
         let (width, height) = picture.dimensions();
-        if columns == 0 || rows == 0 || columns * rows > MAX_FRAMES {
+        if !columns.checked_mul(rows).is_some_and(|frames| (1..=MAX_FRAMES).contains(&frames)) {
             return error(format!("{columns}x{rows} frames; expected 1 to {MAX_FRAMES} frames"));
         }
-        if width % columns != 0 || height % rows != 0 || width / columns != height / rows {
+        if width == 0 || width % columns != 0 || height % rows != 0 || width / columns != height / rows {
             return error(format!(
                 "{width}x{height} pixels do not divide into {columns}x{rows} square frames; \
                  expected columns and rows that give square frames"

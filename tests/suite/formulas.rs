@@ -616,6 +616,15 @@ fn formulas() -> Vec<Formula> {
             mutants: &[("mix(first.x, second.x, frames.blend)", "first.x"), ("first.yz", "second.yz")],
         },
         Formula {
+            name: "unrotate",
+            file: "lib/sprite.wgsl",
+            wgsl: "let v = unrotate(vec2f(x(0), x(1)), vec2f(x(2), x(3))); y(0, v.x); y(1, v.y);",
+            reference: |x| sprite::unrotate(v2(x), v2(&x[2..])).to_array().to_vec(),
+            cases: random(50, &[(-1.0, 1.0); 4]),
+            tolerance: ARITHMETIC,
+            mutants: &[("offset.x * rotation.x + offset.y", "offset.x * rotation.x - offset.y")],
+        },
+        Formula {
             name: "checkerboard",
             file: "lib/sprite.wgsl",
             wgsl: "let v = checkerboard(vec2f(x(0), x(1))); y(0, v.z); y(1, v.w);",
@@ -879,7 +888,6 @@ const INDIRECT: &[&str] = &[
     "sprite_corner",
     "sprite_uv",
     "sprite_vertex",
-    "sprite_fragment",
     "diffuse_from_lights",
     "soft_scatter",
     "scene_view_depth",
@@ -892,6 +900,7 @@ const INDIRECT: &[&str] = &[
     "sphere_corner",
     "reads_scene",
     "technique_fragment",
+    "host_view_depth",
     "fade_before",
     "sprite_texel",
     "sphere_fragment",
@@ -907,5 +916,9 @@ fn no_function_is_left_out() {
             let tested = formulas.iter().any(|formula| formula.name == name && formula.file == *file);
             assert!(tested || INDIRECT.contains(&name), "{file}: {name} has no test against the reference");
         }
+    }
+    for name in INDIRECT {
+        let is_there = |text: &str| text.contains(&format!("\nfn {name}("));
+        assert!(shader::sources().iter().any(|(_, text)| is_there(text)), "{name} is no more");
     }
 }

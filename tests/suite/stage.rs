@@ -211,7 +211,7 @@ impl Host {
             descriptor.depth_format = None;
         }
         let renderer = Renderer::new(&gpu.device, &descriptor);
-        let material = renderer.create_material(&gpu.device, &gpu.queue, &stage.material);
+        let material = renderer.create_material(&gpu.device, &gpu.queue, &stage.material)?;
         let colour = gpu.target("host colour", stage.view.size, wgpu::TextureFormat::Rgba16Float);
         let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
         let (depth, linear) = depth_textures(gpu, stage);

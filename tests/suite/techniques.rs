@@ -75,6 +75,32 @@ fn every_technique_agrees_on_every_path() {
 }
 
 #[test]
+fn the_last_texel_is_covered_at_every_size() {
+    // Where the picture is no multiple of the scale, the last texel reaches out of it.
+    for technique in [Technique::Soft, Technique::SphericalBillboard, Technique::VolumetricSoft] {
+        for (size, scale) in [(UVec2::new(161, 91), 2), (UVec2::new(161, 91), 4), (UVec2::new(169, 97), 8)] {
+            let mut stage = stage(technique);
+            let sized = Stage::new(size);
+            (stage.view, stage.settings.accumulate.scale) = (sized.view, scale);
+            // Sprites over the right and lower border.
+            stage.particles.iter_mut().for_each(|p| p.position += vec3(3.0, -1.5, 0.0));
+            agreement(&format!("{} {size} scale {scale}", technique.name()), &stage);
+        }
+    }
+}
+
+#[test]
+fn switching_the_depth_that_is_read_keeps_the_targets() {
+    let mut stage = stage(Technique::Soft);
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    host.draw(gpu(), &stage).unwrap();
+    let before = host.renderer.targets(0).unwrap().accumulation.to_vec();
+    stage.settings.technique = Technique::SoftLinear;
+    host.draw(gpu(), &stage).unwrap();
+    assert_eq!(before, host.renderer.targets(0).unwrap().accumulation);
+}
+
+#[test]
 fn every_sprite_setting_agrees() {
     type Change = fn(&mut Stage);
     let changes: &[(&str, Change)] = &[
@@ -338,6 +364,12 @@ fn degenerate_input_is_finite_or_refused_by_name() {
     let motion = lacking(|s| (s.settings.technique, s.settings.sprite.motion) = (Technique::Soft, 0.5));
     assert!(motion.starts_with("systems[0].settings.sprite.motion: 0.5"), "{motion}");
 
+    // At scale 1 the host's depth needs a target as large as the picture.
+    let error = refused(|s| {
+        (s.settings.accumulate.depth_source, s.settings.accumulate.scale) = (DepthSource::Host, 1);
+        s.settings.accumulate.max_side = 100;
+    });
+    assert!(error.starts_with("systems[0].settings.accumulate.max_side: 100"), "{error}");
     let mut two_frames = stage(Technique::Soft);
     let sheet = image::RgbaImage::new(16, 8);
     let layout = SpriteLayout { columns: 2, rows: 1, y_down: false };

@@ -8,7 +8,7 @@ use crate::reference::normal::rotate_normal;
 use crate::reference::renderer::Draw;
 use crate::reference::soft_fade::{near_fade, soft_fade};
 use crate::reference::sprite::{
-    FlipbookFrames, checkerboard, flipbook_frames, sample_detail, sample_sprite, sprite_frame, sprite_lod,
+    FlipbookFrames, checkerboard, flipbook_frames, sample_detail, sample_sprite, sprite_frame, sprite_lod, unrotate,
 };
 use crate::reference::technique::{
     RayInterval, density_amount, density_thickness, depth_sprite_depth, hard_fade, ray_sphere, sphere_axis_bounds,
@@ -50,7 +50,7 @@ impl Draw<'_> {
             return None;
         }
         let (min, max) = if technique.is_sphere() {
-            self.sphere_rectangle(centre, radius)
+            self.sphere_rectangle(centre, radius, texels_per_pixel)
         } else {
             self.square_rectangle(centre, radius)
         };
@@ -78,7 +78,7 @@ impl Draw<'_> {
     }
 
     /// `sphere_corner()`.
-    fn sphere_rectangle(&self, centre: Vec3, radius: f32) -> (Vec2, Vec2) {
+    fn sphere_rectangle(&self, centre: Vec3, radius: f32, texels_per_pixel: f32) -> (Vec2, Vec2) {
         let view = &self.view;
         let rays = if view.orthographic > 0.5 {
             [centre.xy() - radius, centre.xy() + radius]
@@ -87,8 +87,9 @@ impl Draw<'_> {
             let (x, y) = (bounds(centre.x), bounds(centre.y));
             [Vec2::new(x.x, y.x), Vec2::new(x.y, y.y)]
         };
+        let edge = 1.0 + (texels_per_pixel * view.size).recip();
         let [low, high] = rays.map(|ray| {
-            let ndc = ((ray - view.ray_offset) / view.ray_scale).clamp(Vec2::NEG_ONE, Vec2::ONE);
+            let ndc = ((ray - view.ray_offset) / view.ray_scale).clamp(-edge, edge);
             pixel_from_ndc(ndc, view.size)
         });
         (low.min(high), low.max(high))
@@ -109,6 +110,7 @@ impl Draw<'_> {
         let uv = sprite_uv(local);
         let detail = self.detail(sprite, uv);
         let motion = detail.yz() * system.motion;
+        let thickness = density_thickness(sprite.view_depth, sprite.radius, self.view.near, scene);
         let fade = match technique {
             Technique::Hard => hard_fade(scene - sprite.view_depth),
             Technique::DepthSpriteHard => {
@@ -117,7 +119,8 @@ impl Draw<'_> {
             Technique::DepthSpriteSoft => {
                 self.fade_before(scene, depth_sprite_depth(sprite.view_depth, detail.x, sprite.radius))
             }
-            Technique::Density => 1.0,
+            // Hidden where nothing is left of the slab.
+            Technique::Density => thickness,
             _ => self.fade_before(scene, sprite.view_depth),
         };
         if fade <= 0.0 {
@@ -125,7 +128,6 @@ impl Draw<'_> {
         }
         let texel = self.sprite_texel(sprite, uv, motion);
         let amount = if technique == Technique::Density {
-            let thickness = density_thickness(sprite.view_depth, sprite.radius, self.view.near, scene);
             density_amount(system.density * texel.w * sprite.amount, thickness)
         } else {
             texel.w * sprite.amount * fade
@@ -208,11 +210,6 @@ impl Draw<'_> {
         let total = 1.0 - transmittance;
         (normal / total.max(1.0e-6)).extend(total)
     }
-}
-
-/// Undoes a sprite's rotation.
-fn unrotate(offset: Vec2, rotation: Vec2) -> Vec2 {
-    Vec2::new(offset.x * rotation.x + offset.y * rotation.y, offset.y * rotation.x - offset.x * rotation.y)
 }
 
 fn sprite_uv(local: Vec2) -> Vec2 {
