@@ -18,8 +18,6 @@ const INSTALL_LINE: &str = "no graphics adapter was found; on Debian and Ubuntu 
 
 fn find_adapter(backends: wgpu::Backends) -> Option<wgpu::Adapter> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-    // Nothing here is drawn indirectly, and checking that needs compute shaders, which OpenGL may lack.
-    descriptor.flags.remove(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
     descriptor.backends &= backends & wgpu::Instance::enabled_backend_features();
     if descriptor.backends.is_empty() {
         return None;
