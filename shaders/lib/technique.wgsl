@@ -30,7 +30,7 @@ struct RayInterval {
     axis: vec3f,
 }
 
-// `direction` is of unit length; `near` and `scene` are distances along the ray. w = sqrt(r² - q²), BLOG [2].
+// `direction` is of unit length; `near` and `scene` are distances along the ray. w = sqrt(r² - q²), BLOG 2.
 fn ray_sphere(origin: vec3f, direction: vec3f, centre: vec3f, radius: f32, near: f32, scene: f32) -> RayInterval {
     let to_centre = centre - origin;
     let middle = dot(to_centre, direction);
@@ -40,7 +40,7 @@ fn ray_sphere(origin: vec3f, direction: vec3f, centre: vec3f, radius: f32, near:
 }
 
 // Umenhoffer's spherical billboard: a = 1 - exp(-density · (1 - q/r) · Δs), Δs the stretch inside the sphere that near
-// plane and scene leave. (BLOG [2])
+// plane and scene leave. (BLOG 2)
 fn spherical_billboard_amount(density: f32, axis_distance: f32, radius: f32, stretch: f32) -> f32 {
     let inwards = saturate(1.0 - axis_distance / max(radius, 1.0e-6));
     return 1.0 - exp(-density * inwards * max(stretch, 0.0));
@@ -51,7 +51,7 @@ fn density_thickness(view_depth: f32, radius: f32, near: f32, scene: f32) -> f32
     return max(min(scene, view_depth + radius) - max(near, view_depth - radius), 0.0);
 }
 
-// The sprite's alpha is a density: a = 1 - exp(-density · thickness). (BLOG [3])
+// The sprite's alpha is a density: a = 1 - exp(-density · thickness). (BLOG 3)
 fn density_amount(density: f32, thickness: f32) -> f32 {
     return 1.0 - exp(-density * thickness);
 }

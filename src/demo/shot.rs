@@ -108,7 +108,7 @@ impl Shot {
         Ok(colour)
     }
 
-    /// Renders on the GPU, linear HDR. `exact_filtering` as in [`Descriptor`].
+    /// Renders on the GPU, linear HDR. `exact_filtering` as in [`Descriptor`](crate::Descriptor).
     ///
     /// # Errors
     /// [`Error::Field`] when the preset was changed to something invalid or a picture is too large for the device,

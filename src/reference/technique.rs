@@ -25,7 +25,7 @@ pub struct RayInterval {
     pub axis: Vec3,
 }
 
-/// Intersects a ray of unit length with a sphere; `near` and `scene` are distances along the ray. w = √(r² − q²), BLOG [2].
+/// Intersects a ray of unit length with a sphere; `near` and `scene` are distances along the ray. w = √(r² − q²), BLOG 2.
 pub fn ray_sphere(origin: Vec3, direction: Vec3, centre: Vec3, radius: f32, near: f32, scene: f32) -> RayInterval {
     let to_centre = centre - origin;
     let middle = to_centre.dot(direction);
@@ -34,7 +34,7 @@ pub fn ray_sphere(origin: Vec3, direction: Vec3, centre: Vec3, radius: f32, near
     RayInterval { enter: (middle - half_chord).max(near), leave: (middle + half_chord).min(scene), axis }
 }
 
-/// a = 1 − exp(−density · (1 − q/r) · Δs): Umenhoffer's spherical billboard. (BLOG [2])
+/// a = 1 − exp(−density · (1 − q/r) · Δs): Umenhoffer's spherical billboard. (BLOG 2)
 pub fn spherical_billboard_amount(density: f32, axis_distance: f32, radius: f32, stretch: f32) -> f32 {
     let inwards = saturate(1.0 - axis_distance / radius.max(1.0e-6));
     1.0 - (-density * inwards * stretch.max(0.0)).exp()
@@ -45,7 +45,7 @@ pub fn density_thickness(view_depth: f32, radius: f32, near: f32, scene: f32) ->
     (scene.min(view_depth + radius) - near.max(view_depth - radius)).max(0.0)
 }
 
-/// a = 1 − exp(−density · thickness). (BLOG [3])
+/// a = 1 − exp(−density · thickness). (BLOG 3)
 pub fn density_amount(density: f32, thickness: f32) -> f32 {
     1.0 - (-density * thickness).exp()
 }

@@ -17,9 +17,9 @@ choice! {
         DepthSpriteHard = "depth_sprite_hard",
         /// Every texel at a depth of its own, and faded. (MS)
         DepthSpriteSoft = "depth_sprite_soft",
-        /// A sphere of gas: its amount grows with the way through it, which scene and near plane cut short. (BLOG [2])
+        /// A sphere of gas: its amount grows with the way through it, which scene and near plane cut short. (BLOG 2)
         SphericalBillboard = "spherical_billboard",
-        /// The sprite's alpha is the density of a slab, which scene and near plane cut short. (BLOG [3])
+        /// The sprite's alpha is the density of a slab, which scene and near plane cut short. (BLOG 3)
         Density = "density",
         /// A sphere of 3D noise, marched through as far as the scene. (MS)
         VolumetricHard = "volumetric_hard",
