@@ -51,7 +51,8 @@ pub fn load<T: DeserializeOwned>(
     validate: impl FnOnce(&T) -> Result<(), FieldError>,
 ) -> Result<T, Error> {
     let text = std::fs::read_to_string(path).map_err(|error| Error::Io { path: path.into(), error })?;
-    let value = parse_versioned(path, &text, newest)?;
+    // Some editors begin a file with a byte order mark.
+    let value = parse_versioned(path, text.trim_start_matches('\u{feff}'), newest)?;
     validate(&value).map_err(|error| Error::JsonField { path: path.into(), error })?;
     Ok(value)
 }

@@ -31,7 +31,10 @@ pub fn decode_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Error> {
         DynamicImage::from_decoder(decoder)
     };
     decode().map_err(|reason| {
-        error(format!("{reason}; expected a PNG of at most {MAX_SIDE}x{MAX_SIDE} pixels and {} MiB", MAX_BYTES >> 20))
+        error(format!(
+            "{reason}; expected a whole PNG of at most {MAX_SIDE}x{MAX_SIDE} pixels and {} MiB",
+            MAX_BYTES >> 20
+        ))
     })
 }
 
@@ -67,6 +70,9 @@ pub fn write_png(path: &Path, picture: &DynamicImage) -> Result<(), Error> {
 /// [`Error::Io`] when it cannot be written.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     let io = |error: std::io::Error| Error::Io { path: path.into(), error };
+    // A link stays one, and what it points to is replaced.
+    let target = std::fs::canonicalize(path).unwrap_or_else(|_| path.into());
+    let path = target.as_path();
     let mut name = path.file_name().unwrap_or_default().to_os_string();
     name.push(format!(".{}.partial", std::process::id()));
     let partial = path.with_file_name(name);

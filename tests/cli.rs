@@ -254,3 +254,72 @@ fn the_experiment_prints_the_papers_figures_beside_its_own() {
         refusal(folder.path(), &[&["bench", "soft-particles"][..], &bad].concat());
     }
 }
+
+#[test]
+fn outputs_are_checked_before_anything_is_drawn_or_replaced() {
+    let folder = folder();
+    let preset = include_str!("../presets/crates.json");
+    std::fs::write(folder.path().join("own.json"), preset).unwrap();
+    std::fs::create_dir(folder.path().join("folder.png")).unwrap();
+    std::fs::write(folder.path().join("old.png"), "old").unwrap();
+    let refused = |output: &str| refusal(folder.path(), &["render", "own.json", "--size", "8x8", "-o", output]);
+    assert!(refused("own.json").contains("ends in .png"));
+    assert!(refused("folder.png").contains("a file, or a name that is free"));
+    assert!(refused("missing/a.png").contains("a folder that exists"));
+    // A sheet that cannot be written leaves the pictures beside it alone.
+    let sheet = ["techniques", "--size", "8x8", "-o", "missing/a.png", "--curves", "old.png"];
+    assert!(refusal(folder.path(), &sheet).contains("a folder that exists"));
+    assert_eq!(std::fs::read_to_string(folder.path().join("old.png")).unwrap(), "old");
+    assert_eq!(std::fs::read_to_string(folder.path().join("own.json")).unwrap(), preset);
+    let ignored = ["techniques", "--technique", "soft", "-o", "a.png"];
+    assert!(refusal(folder.path(), &ignored).contains("the sheet shows every technique"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_is_followed() {
+    let folder = folder();
+    std::fs::create_dir(folder.path().join("pictures")).unwrap();
+    std::os::unix::fs::symlink("pictures/real.png", folder.path().join("out.png")).unwrap();
+    std::fs::write(folder.path().join("pictures/real.png"), "old").unwrap();
+    assert!(render(folder.path(), &[]).status.success());
+    assert!(folder.path().join("out.png").is_symlink());
+    assert_eq!(size_of(&folder.path().join("pictures/real.png")), (64, 36));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_output_that_is_closed_or_full_is_no_panic() {
+    let folder = folder();
+    let run = |redirect: &str| {
+        let line = format!("'{}' preset schema {redirect}", env!("CARGO_BIN_EXE_haze"));
+        Command::new("sh").args(["-c", &line]).current_dir(folder.path()).output().unwrap()
+    };
+    let full = run("> /dev/full");
+    assert_eq!((full.status.code(), stderr(&full).lines().count()), (Some(1), 1), "{}", stderr(&full));
+    assert!(stderr(&full).starts_with("haze: standard output: "), "{}", stderr(&full));
+    assert_eq!(stderr(&run("| true")), "");
+}
+
+#[test]
+fn a_preset_that_cannot_be_drawn_is_not_called_good() {
+    let folder = folder();
+    let preset = |material: &str, technique: &str| {
+        let text = format!(
+            r#"{{"version": 1, "name": "x", "systems": [{{"name": "s", "material": {material},
+                "settings": {{"technique": "{technique}"}}}}]}}"#
+        );
+        std::fs::write(folder.path().join("own.json"), text).unwrap();
+        refusal(folder.path(), &["preset", "check", "own.json"])
+    };
+    let sprite = image::RgbaImage::new(16, 16);
+    sprite.save(folder.path().join("mine.png")).unwrap();
+    let lacks = preset(r#"{"sprite": "mine.png"}"#, "depth_sprite_soft");
+    assert!(lacks.starts_with("haze: own.json: systems[0].settings.technique"), "{lacks}");
+    let ignored = preset(r#"{"detail": "mine.png"}"#, "soft");
+    assert!(ignored.contains("material.detail") && ignored.contains("knows its own"), "{ignored}");
+    let columns = preset(r#"{"columns": 0}"#, "soft");
+    assert!(columns.contains("material.columns and rows: 0x1"), "{columns}");
+    let outside = preset(r#"{"sprite": "mine.png", "detail": "../x.png"}"#, "soft");
+    assert!(outside.contains("expected a PNG inside the preset's folder"), "{outside}");
+}

@@ -11,6 +11,8 @@ use haze::sprite::bake::SpriteRecipe;
 use haze::{Error, FieldError};
 use image::DynamicImage;
 
+use super::output::{check_target, say};
+
 #[derive(Args)]
 pub struct RampArguments {
     #[command(subcommand)]
@@ -63,9 +65,12 @@ pub fn run_sprite(arguments: &SpriteArguments) -> Result<(), Error> {
     let SpriteCommand::Bake { recipes } = &arguments.command;
     for recipe in recipes {
         if let Some(output) = output_of(recipe, ".sprite.json") {
+            let detail = output.with_extension("detail.png");
+            check_target(&output)?;
+            check_target(&detail)?;
             let baked = SpriteRecipe::load(recipe)?.bake()?;
             write(&output, &baked.picture.into())?;
-            write(&output.with_extension("detail.png"), &baked.detail.into())?;
+            write(&detail, &baked.detail.into())?;
         } else if let Some(output) = output_of(recipe, ".noise.json") {
             write(&output, &NoiseRecipe::load(recipe)?.bake()?.into())?;
         } else {
@@ -77,12 +82,12 @@ pub fn run_sprite(arguments: &SpriteArguments) -> Result<(), Error> {
 }
 
 fn output_of(recipe: &Path, kind: &str) -> Option<PathBuf> {
-    let name = recipe.file_name()?.to_str()?.strip_suffix(kind)?;
+    let name = recipe.file_name()?.to_str()?.strip_suffix(kind).filter(|name| !name.is_empty())?;
     Some(recipe.with_file_name(format!("{name}.png")))
 }
 
 fn write(output: &Path, picture: &DynamicImage) -> Result<(), Error> {
+    check_target(output)?;
     write_png(output, picture)?;
-    println!("{}: {}x{}", output.display(), picture.width(), picture.height());
-    Ok(())
+    say!("{}: {}x{}", output.display(), picture.width(), picture.height())
 }

@@ -3,15 +3,16 @@
 use haze::Error;
 use haze::headless::Headless;
 
+use super::output::say;
+
 pub fn run() -> Result<(), Error> {
-    println!("haze {}", env!("CARGO_PKG_VERSION"));
+    say!("haze {}", env!("CARGO_PKG_VERSION"))?;
     match Headless::new() {
         Ok(gpu) => {
-            println!("gpu: {}", gpu.description());
-            println!("largest texture: {} pixels a side", gpu.device.limits().max_texture_dimension_2d);
+            say!("gpu: {}", gpu.description())?;
+            say!("largest texture: {} pixels a side", gpu.device.limits().max_texture_dimension_2d)?;
         }
-        Err(error) => println!("gpu: none ({error})"),
+        Err(error) => say!("gpu: none ({error})")?,
     }
-    println!("cpu: {} threads", std::thread::available_parallelism().map_or(1, usize::from));
-    Ok(())
+    say!("cpu: {} threads", std::thread::available_parallelism().map_or(1, usize::from))
 }

@@ -9,6 +9,7 @@ mod cost;
 mod info;
 mod label;
 mod options;
+mod output;
 mod plot;
 mod preset;
 mod render;
@@ -58,8 +59,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
         Err(help) if !help.use_stderr() => {
-            print!("{help}");
-            return ExitCode::SUCCESS;
+            return report(output::say!("{help}"));
         }
         Err(help) if help.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
             eprint!("{help}");
@@ -80,6 +80,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Sprite(arguments) => bake::run_sprite(&arguments),
         Command::Info => info::run(),
     };
+    report(done)
+}
+
+fn report(done: Result<(), Error>) -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
@@ -107,7 +111,10 @@ fn exit_code(error: &Error) -> u8 {
         Error::Field(_) | Error::Image { .. } | Error::Json { .. } | Error::JsonField { .. } => 2,
         // A file that is not there, or may not be read, is bad input; a full disk is not.
         Error::Io { error, .. } => match error.kind() {
-            std::io::ErrorKind::NotFound | std::io::ErrorKind::PermissionDenied | std::io::ErrorKind::InvalidData => 2,
+            std::io::ErrorKind::NotFound
+            | std::io::ErrorKind::PermissionDenied
+            | std::io::ErrorKind::InvalidData
+            | std::io::ErrorKind::IsADirectory => 2,
             _ => 1,
         },
         Error::NoDevice(_) | Error::Device(_) => 1,

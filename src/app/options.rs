@@ -40,7 +40,7 @@ pub struct ShotArguments {
     /// How sprites meet the scene: hard, soft, soft_linear, depth_sprite_hard, depth_sprite_soft, spherical_billboard,
     /// density, volumetric_hard or volumetric_soft; the preset's own if not given.
     #[arg(long, value_name = "T", value_parser = parse_choice::<Technique>)]
-    technique: Option<Technique>,
+    pub technique: Option<Technique>,
     /// Seed of every emitter; the preset's own if not given.
     #[arg(long, value_name = "N", value_parser = parse_seed, allow_negative_numbers = true)]
     seed: Option<u32>,

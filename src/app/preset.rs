@@ -6,6 +6,8 @@ use haze::demo::shot::Shot;
 use haze::preset::Preset;
 use haze::{Error, builtin};
 
+use super::output::say;
+
 #[derive(Args)]
 pub struct Arguments {
     #[command(subcommand)]
@@ -31,16 +33,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         Command::List => {
             for builtin in builtin::PRESETS {
                 let preset = Preset::load(builtin.name)?;
-                println!("{:<14}{}", builtin.name, preset.description);
+                say!("{:<14}{}", builtin.name, preset.description)?;
             }
         }
         Command::Check { presets } => {
             for name in presets {
                 Shot::load(name, UVec2::new(1280, 720))?;
-                println!("{name}: good");
+                say!("{name}: good")?;
             }
         }
-        Command::Schema => println!("{}", haze::preset::schema()),
+        Command::Schema => say!("{}", haze::preset::schema())?,
     }
     Ok(())
 }

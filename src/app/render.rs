@@ -8,6 +8,7 @@ use haze::picture::write_png;
 use haze::settings::ShadeTree;
 
 use super::options::{DEFAULT_PRESET, ShotArguments, parse_choice};
+use super::output::{check_target, say};
 use super::tonemap::develop;
 
 #[derive(Args)]
@@ -24,11 +25,11 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
+    check_target(&arguments.output)?;
     let mut shot = arguments.shot.load(DEFAULT_PRESET)?;
     shot.shade_tree = arguments.view;
     let backend = arguments.shot.run.backend()?;
     let picture = backend.render(&shot)?;
     write_png(&arguments.output, &develop(&picture, &shot).into())?;
-    println!("{}: {} on {}", arguments.output.display(), shot.preset.name, backend.description());
-    Ok(())
+    say!("{}: {} on {}", arguments.output.display(), shot.preset.name, backend.description())
 }

@@ -8,6 +8,7 @@ use haze::picture::write_png;
 use haze::settings::ShadeTree;
 
 use super::options::{DEFAULT_PRESET, ShotArguments};
+use super::output::{check_target, say};
 use super::sheet::Sheet;
 use super::tonemap::develop;
 
@@ -36,6 +37,7 @@ const STAGES: [(ShadeTree, &str); 9] = [
 const COLUMNS: u32 = 3;
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
+    check_target(&arguments.output)?;
     let mut shot = arguments.shot.load(DEFAULT_PRESET)?;
     // The picture's size is the sheet's: every stage is a third of it, so that the sheet costs what a picture costs.
     shot.size = (arguments.shot.run.size / COLUMNS).max(glam::UVec2::ONE);
@@ -46,6 +48,5 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         sheet.place(index, label, &develop(&backend.render(&shot)?, &shot));
     }
     write_png(&arguments.output, &sheet.picture.into())?;
-    println!("{}: {} on {}", arguments.output.display(), shot.preset.name, backend.description());
-    Ok(())
+    say!("{}: {} on {}", arguments.output.display(), shot.preset.name, backend.description())
 }

@@ -4,16 +4,17 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::UVec2;
-use haze::Error;
 use haze::demo::shot::Shot;
 use haze::picture::write_png;
 use haze::reference::soft_fade::soft_fade;
 use haze::settings::{FadeCurve, Technique};
+use haze::{Error, FieldError};
 use image::{Rgb, RgbImage, imageops};
 
 use super::cost::{Cost, Timer, interleaved};
 use super::label::draw_text;
 use super::options::{Backend, ShotArguments};
+use super::output::{check_folder, check_target, say};
 use super::plot::{Curve, plot};
 use super::sheet::{INK, LABEL, MARGIN, Sheet};
 use super::tonemap::develop;
@@ -44,6 +45,15 @@ const ROUNDS: u32 = 5;
 const ROUNDS_ON_CPU: u32 = 1;
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
+    for target in [Some(&arguments.output), arguments.curves.as_ref()].into_iter().flatten() {
+        check_target(target)?;
+    }
+    if let Some(folder) = &arguments.cells {
+        check_folder(folder)?;
+    }
+    if let Some(technique) = arguments.shot.technique {
+        return Err(FieldError::new("--technique", technique.name(), "nothing: the sheet shows every technique").into());
+    }
     let mut shot = arguments.shot.load(PRESET)?;
     let backend = arguments.shot.run.backend()?;
     // The picture's size is the sheet's width: every cell is a part of it.
@@ -85,8 +95,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         write_png(curves, &fade_curves().into())?;
     }
     write_png(&arguments.output, &sheet.picture.into())?;
-    println!("{}: {} on {}", arguments.output.display(), shot.preset.name, backend.description());
-    Ok(())
+    say!("{}: {} on {}", arguments.output.display(), shot.preset.name, backend.description())
 }
 
 /// Height of the line at the bottom.

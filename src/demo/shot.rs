@@ -52,7 +52,11 @@ impl Shot {
                 other => other,
             })
         };
-        let materials = preset.systems.iter().enumerate().map(load).collect::<Result<_, _>>()?;
+        let materials: Vec<_> = preset.systems.iter().enumerate().map(load).collect::<Result<_, _>>()?;
+        for (index, (system, material)) in preset.systems.iter().zip(&materials).enumerate() {
+            let fits = material.info().validate(index, &system.settings);
+            fits.map_err(|error| Error::JsonField { path: path.into(), error })?;
+        }
         Ok(Self { preset, size, shade_tree: ShadeTree::Final, materials })
     }
 

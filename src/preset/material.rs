@@ -82,6 +82,16 @@ impl MaterialNames {
 
     fn load_sprite(&self, folder: &Path) -> Result<(Sprite, Option<Sprite>), Error> {
         if let Some(sprite) = builtin::find(builtin::SPRITES, &self.sprite) {
+            let refuse = |field: &str, value: String, expected: &str| {
+                let expected = format!("{expected} with a built-in sprite, which knows its own");
+                Err(FieldError::new(format!("material.{field}"), value, expected).into())
+            };
+            if !self.detail.is_empty() {
+                return refuse("detail", format!("{:?}", self.detail), "\"\"");
+            }
+            if (self.columns, self.rows) != (1, 1) {
+                return refuse("columns and rows", format!("{}x{}", self.columns, self.rows), "1 and 1");
+            }
             return Ok((sprite.sprite()?, sprite.detail()?));
         }
         let path = inside("sprite", &self.sprite, builtin::SPRITES, folder)?;
@@ -110,8 +120,11 @@ fn inside(field: &str, name: &str, list: &[builtin::Builtin], folder: &Path) -> 
     if is_png && stays {
         return Ok(folder.join(path));
     }
-    let names: Vec<_> = list.iter().map(|builtin| builtin.name).collect();
-    let expected = format!("one of {}, or a PNG inside the preset's folder", names.join(", "));
+    let mut expected = "a PNG inside the preset's folder".to_owned();
+    if !list.is_empty() {
+        let names: Vec<_> = list.iter().map(|builtin| builtin.name).collect();
+        expected = format!("one of {}, or {expected}", names.join(", "));
+    }
     Err(FieldError::new(format!("material.{field}"), format!("{name:?}"), expected))
 }
 

@@ -12,6 +12,7 @@ use haze::settings::{DepthSource, Technique};
 
 use crate::app::cost::{Timer, interleaved};
 use crate::app::options::{Backend, RunArguments};
+use crate::app::output::say;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -59,21 +60,21 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let costs = interleaved(arguments.rounds, variants.len(), |variant| timer.frame(&variants[variant].shot))?;
 
     let size = arguments.run.size;
-    println!(
+    say!(
         "two sprites of size 3.2, drawn {} times, {}x{}, on {}; median of {} rounds",
         arguments.loops,
         size.x,
         size.y,
         backend.description(),
         arguments.rounds
-    );
-    println!("depth    technique      fps here   spread   / hard   fps NV 2007   / hard");
+    )?;
+    say!("depth    technique      fps here   spread   / hard   fps NV 2007   / hard")?;
     let mut hard = 1.0;
     for (variant, cost) in variants.iter().zip(&costs) {
         if variant.technique == Technique::Hard {
             hard = cost.median();
         }
-        println!(
+        say!(
             "{:<8} {:<12} {:>10.3} {:>7.1}% {:>8.2} {:>13.1} {:>8.2}",
             variant.source.name(),
             variant.technique.name(),
@@ -82,7 +83,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
             cost.median() / hard,
             variant.paper,
             TECHNIQUES[0].1 / variant.paper
-        );
+        )?;
     }
     Ok(())
 }
