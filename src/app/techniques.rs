@@ -58,32 +58,19 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let backend = arguments.shot.run.backend()?;
     // The picture's size is the sheet's width: every cell is a part of it.
     shot.size = (arguments.shot.run.size / COLUMNS).max(UVec2::ONE);
-    let (mut cells, mut pictures) = (Vec::new(), Vec::new());
-    for (name, shot) in every_technique(&shot) {
-        match backend.render(&shot) {
-            Ok(picture) => {
-                pictures.push(develop(&picture, &shot));
-                cells.push((name, shot));
-            }
-            // What a sprite without a detail map, or an adapter that cannot draw to R32Float, leaves no way to show.
-            Err(Error::Field(error)) if error.field.ends_with("settings.technique") => {
-                eprintln!("haze: left out: {error}");
-            }
-            Err(error) => return Err(error),
-        }
-    }
+    let cells = render_cells(&backend, &shot)?;
     let rounds = if matches!(backend, Backend::Cpu) { ROUNDS_ON_CPU } else { ROUNDS };
     let mut timer = Timer::new(&backend, &shot)?;
-    let loops = timer.loops_that_tell(&cells[0].1)?;
-    let costs = interleaved(rounds, cells.len(), |cell| timer.sprites(&cells[cell].1, loops))?;
+    let loops = timer.loops_that_tell(&cells[0].shot)?;
+    let costs = interleaved(rounds, cells.len(), |cell| timer.sprites(&cells[cell].shot, loops))?;
 
-    let zoom = Zoom::where_they_differ(&pictures[0], &pictures[1]);
+    let zoom = Zoom::where_they_differ(&cells[0].picture, &cells[1].picture);
     let mut sheet = Sheet::new(shot.size, COLUMNS, cells.len() as u32, FOOT);
-    for (index, ((name, _), (picture, cost))) in (0..).zip(cells.iter().zip(pictures.iter().zip(&costs))) {
-        let label = format!("{name}    {}", describe(cost, &costs[0]));
-        let zoomed = zoom.inset(picture);
+    for (index, (cell, cost)) in (0..).zip(cells.iter().zip(&costs)) {
+        let label = format!("{}    {}", cell.name, describe(cost, &costs[0]));
+        let zoomed = zoom.inset(&cell.picture);
         if let Some(folder) = &arguments.cells {
-            write_png(&folder.join(format!("{name}.png")), &zoomed.clone().into())?;
+            write_png(&folder.join(format!("{}.png", cell.name)), &zoomed.clone().into())?;
         }
         sheet.place(index, &label, &zoomed);
     }
@@ -100,6 +87,28 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
 
 /// Height of the line at the bottom.
 const FOOT: u32 = 24;
+
+struct Cell {
+    name: String,
+    shot: Shot,
+    picture: RgbImage,
+}
+
+/// Renders the shot under every technique that can show it; `hard` and `soft`, the first two, always can.
+fn render_cells(backend: &Backend, shot: &Shot) -> Result<Vec<Cell>, Error> {
+    let mut cells = Vec::new();
+    for (name, shot) in every_technique(shot) {
+        match backend.render(&shot) {
+            Ok(picture) => cells.push(Cell { picture: develop(&picture, &shot), name, shot }),
+            // What a sprite without a detail map, or an adapter that cannot draw to R32Float, leaves no way to show.
+            Err(Error::Field(error)) if error.field.ends_with("settings.technique") => {
+                eprintln!("haze: left out: {error}");
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(cells)
+}
 
 /// Every technique, and the fade that has no depth test.
 fn every_technique(shot: &Shot) -> Vec<(String, Shot)> {
