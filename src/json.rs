@@ -25,6 +25,7 @@ pub fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, Error> {
 /// [`Error::Json`].
 pub fn parse_versioned<T: DeserializeOwned>(path: &Path, text: &str, newest: u32) -> Result<T, Error> {
     #[derive(serde::Deserialize)]
+    #[serde(expecting = "an object with a \"version\"")]
     struct Versioned {
         version: u32,
     }

@@ -320,6 +320,8 @@ fn a_preset_that_cannot_be_drawn_is_not_called_good() {
     assert!(ignored.contains("material.detail") && ignored.contains("knows its own"), "{ignored}");
     let columns = preset(r#"{"columns": 0}"#, "soft");
     assert!(columns.contains("material.columns and rows: 0x1"), "{columns}");
+    let missing = preset(r#"{"noise": "none.png"}"#, "soft");
+    assert!(missing.contains("none.png: ") && missing.contains("(material.noise)"), "{missing}");
     let outside = preset(r#"{"sprite": "mine.png", "detail": "../x.png"}"#, "soft");
     assert!(outside.contains("expected a PNG inside the preset's folder"), "{outside}");
 }

@@ -60,7 +60,7 @@ impl MaterialNames {
     /// Loads every picture. `folder` is the preset's; files are looked for there and nowhere else.
     ///
     /// # Errors
-    /// [`Error::Image`] or [`Error::Io`] naming the file, or [`Error::Field`] for a name that is neither built in nor a
+    /// [`Error::Image`] or [`Error::Io`] naming the file and the field that names it, or [`Error::Field`] for a name that is neither built in nor a
     /// file inside the folder.
     pub fn load(&self, folder: &Path) -> Result<MaterialAssets, Error> {
         let ramp = |field, name, list| load_ramp(field, name, list, folder);
@@ -70,7 +70,10 @@ impl MaterialNames {
             detail,
             noise: match builtin::find(builtin::NOISES, &self.noise) {
                 Some(noise) => noise.noise()?,
-                None => NoiseVolume::load(&inside("noise", &self.noise, builtin::NOISES, folder)?)?,
+                None => {
+                    let path = inside("noise", &self.noise, builtin::NOISES, folder)?;
+                    NoiseVolume::load(&path).map_err(|error| named_by("noise", error))?
+                }
             },
             diffuse_ramp: ramp("diffuse_ramp", &self.diffuse_ramp, builtin::RAMPS)?,
             soft_scatter_ramp: ramp("soft_scatter_ramp", &self.soft_scatter_ramp, builtin::RAMPS)?,
@@ -96,19 +99,32 @@ impl MaterialNames {
         }
         let path = inside("sprite", &self.sprite, builtin::SPRITES, folder)?;
         let layout = SpriteLayout { columns: self.columns, rows: self.rows, y_down: self.y_down };
-        let sprite = Sprite::load(&path, layout)?;
+        let sprite = Sprite::load(&path, layout).map_err(|error| named_by("sprite", error))?;
         if self.detail.is_empty() {
             return Ok((sprite, None));
         }
         let path = inside("detail", &self.detail, &[], folder)?;
-        Ok((sprite, Some(Sprite::load(&path, SpriteLayout { y_down: false, ..layout })?)))
+        let detail = Sprite::load(&path, SpriteLayout { y_down: false, ..layout });
+        Ok((sprite, Some(detail.map_err(|error| named_by("detail", error))?)))
+    }
+}
+
+/// Adds to a picture's error which field of the preset asks for it.
+fn named_by(field: &str, error: Error) -> Error {
+    match error {
+        Error::Image { path, reason } => Error::Image { path, reason: format!("{reason} (material.{field})") },
+        Error::Io { path, error } => {
+            let error = std::io::Error::new(error.kind(), format!("{error} (material.{field})"));
+            Error::Io { path, error }
+        }
+        other => other,
     }
 }
 
 fn load_ramp(field: &'static str, name: &str, list: &'static [builtin::Builtin], folder: &Path) -> Result<Ramp, Error> {
     match builtin::find(list, name) {
         Some(ramp) => ramp.ramp(),
-        None => Ramp::load(&inside(field, name, list, folder)?),
+        None => Ramp::load(&inside(field, name, list, folder)?).map_err(|error| named_by(field, error)),
     }
 }
 
