@@ -90,6 +90,7 @@ pub mod settings;
 pub mod shader;
 mod slot;
 pub mod sprite;
+mod sprite_key;
 mod system;
 mod targets;
 pub mod view;

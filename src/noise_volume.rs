@@ -111,27 +111,21 @@ impl NoiseRecipe {
     /// The first number of the recipe that is out of range.
     pub fn bake(&self) -> Result<RgbaImage, FieldError> {
         validate(self, String::new)?;
-        let voxels = || {
-            let along = 0..self.size;
-            along.clone().flat_map(move |z| {
-                let along = 0..self.size;
-                along.clone().flat_map(move |y| along.clone().map(move |x| UVec3::new(x, y, z)))
-            })
-        };
+        let size = self.size;
         // Gradient in xyz, density in w.
-        let field: Vec<Vec4> = voxels().map(|voxel| self.sample(voxel)).collect();
+        let sample = |index: u32| self.sample(UVec3::new(index % size, index / size % size, index / (size * size)));
+        let field: Vec<Vec4> = (0..size.pow(3)).map(sample).collect();
         let least = field.iter().map(|v| v.w).fold(f32::INFINITY, f32::min);
         let most = field.iter().map(|v| v.w).fold(f32::NEG_INFINITY, f32::max);
         let steepest = field.iter().map(|v| v.xyz().length()).fold(f32::MIN_POSITIVE, f32::max);
         let channel = |value: f32| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
-        let mut picture = RgbaImage::new(self.size, self.size * self.size);
-        for (voxel, value) in voxels().zip(field) {
+        // With the slices below each other, the picture's rows are in the voxels' order.
+        Ok(RgbaImage::from_fn(size, size * size, |x, y| {
+            let value = field[(y * size + x) as usize];
             let away = -value.xyz() / steepest * 0.5 + 0.5;
             let density = (value.w - least) / (most - least).max(f32::MIN_POSITIVE);
-            let texel = Rgba([channel(away.x), channel(away.y), channel(away.z), channel(density)]);
-            picture.put_pixel(voxel.x, voxel.z * self.size + voxel.y, texel);
-        }
-        Ok(picture)
+            Rgba([channel(away.x), channel(away.y), channel(away.z), channel(density)])
+        }))
     }
 
     fn sample(&self, voxel: UVec3) -> Vec4 {

@@ -2,7 +2,7 @@
 
 use glam::{IVec2, UVec2};
 
-use crate::descriptor::{Descriptor, read_only_depth_is_supported};
+use crate::descriptor::Descriptor;
 use crate::error::{Error, FieldError};
 use crate::frame::{Frame, System, validate_lights, validate_settings};
 use crate::frame_bindings::FrameBindings;
@@ -125,7 +125,7 @@ impl Renderer {
     ) -> Result<(), Error> {
         self.order.clear();
         let view = ViewGeometry::new(&frame.view)?;
-        validate(device, &self.descriptor, &view, frame)?;
+        validate(device, &self.layouts, &self.descriptor, &view, frame)?;
         self.frame.write(device, queue, &self.layouts, &view, &frame.scene_depth);
         self.slots.truncate(frame.systems.len());
         while self.slots.len() < frame.systems.len() {
@@ -181,6 +181,7 @@ impl Renderer {
 
 fn validate(
     device: &wgpu::Device,
+    layouts: &Layouts,
     descriptor: &Descriptor,
     view: &ViewGeometry,
     frame: &Frame<'_>,
@@ -197,14 +198,14 @@ fn validate(
         validate_scene_depth(view, linear, is_linear, "R32Float for the linear target")?;
     }
     let reads_attached = descriptor.depth_format.is_some() && frame.scene_depth.linear().is_none();
-    if reads_attached && !read_only_depth_is_supported(device) {
+    if reads_attached && !layouts.read_only_depth {
         let expected = "SceneDepth::Linear or Both, or None as the descriptor's depth_format: this backend (OpenGL) \
                         cannot read the depth buffer that the pass tests";
         return Err(FieldError::new("scene_depth", "Buffer", expected));
     }
     validate_lights(frame.lights)?;
     for (index, system) in frame.systems.iter().enumerate() {
-        validate_system(device, index, frame, system)?;
+        validate_system(device, layouts, index, frame, system)?;
     }
     Ok(())
 }
@@ -236,6 +237,7 @@ fn validate_scene_depth(
 
 fn validate_system(
     device: &wgpu::Device,
+    layouts: &Layouts,
     index: usize,
     frame: &Frame<'_>,
     system: &System<'_>,
@@ -275,8 +277,8 @@ fn validate_system(
             let texture = buffer.texture();
             texture.usage().contains(wgpu::TextureUsages::RENDER_ATTACHMENT) && !texture.format().has_stencil_aspect()
         });
-        let is_read = !reads_linear(device, &frame.scene_depth, system.settings);
-        if !attachable || (is_read && !read_only_depth_is_supported(device)) {
+        let is_read = !reads_linear(layouts, &frame.scene_depth, system.settings);
+        if !attachable || (is_read && !layouts.read_only_depth) {
             let expected = "\"reduced\", or a scene_depth that has a depth buffer without stencil, with \
                             RENDER_ATTACHMENT usage, and on OpenGL a linear target as well";
             return Err(FieldError::new(field("settings.accumulate.depth_source"), "\"host\"", expected));

@@ -3,18 +3,18 @@
 use glam::UVec2;
 
 use crate::bounds::{Bounds, TargetRect, effective_scale};
-use crate::descriptor::{Descriptor, read_only_depth_is_supported};
+use crate::descriptor::Descriptor;
 use crate::frame::{Frame, Particles, SceneDepth, System};
 use crate::gpu_types::{LightUniform, SystemUniform};
 use crate::particle::{Particle, bounds_of};
 use crate::pass::accumulate::{AccumulateKey, DepthTest};
 use crate::pass::forward::ForwardKey;
 use crate::pass::sort::{SortScratch, back_to_front};
-use crate::pass::sprite::SpriteKey;
 use crate::pass::transfer::TransferKey;
 use crate::pass::{LIGHTS_SIZE, Layouts, uniform_buffer};
 use crate::renderer::{MemoryUse, Passes, TargetViews};
 use crate::settings::{DepthSource, Settings, ShadeTree, Technique};
+use crate::sprite_key::SpriteKey;
 use crate::system::{SystemInView, lights_in_view, system_in_view};
 use crate::targets::{Targets, TargetsKey};
 use crate::view::ViewGeometry;
@@ -143,7 +143,7 @@ impl Slot {
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&in_view.uniform));
         queue.write_buffer(&self.lights, 0, bytemuck::cast_slice(&self.scratch.lights));
 
-        let linear_depth = reads_linear(device, &frame.scene_depth, system.settings);
+        let linear_depth = reads_linear(layouts, &frame.scene_depth, system.settings);
         let path = if system.settings.is_forward() {
             self.targets = None;
             if !matches!(frame.shade_tree, ShadeTree::Final | ShadeTree::Combined) {
@@ -152,7 +152,7 @@ impl Slot {
             DrawPath::Forward(passes.forward.pipeline(device, forward_key(view, linear_depth, system.settings)))
         } else {
             self.fit_targets(device, layouts, view, &in_view, frame.scene_depth.read_by(linear_depth), system.settings);
-            self.deferred(device, passes, descriptor, view, &in_view, frame, system.settings)
+            self.deferred(device, passes, descriptor, view, &in_view, linear_depth, frame, system.settings)
         };
         self.draw = Some(Draw {
             distance: -view.view_position(bounds.centre()).z,
@@ -213,7 +213,6 @@ impl Slot {
             format: accumulate.format,
             depth_source: accumulate.depth_source,
             diffuse_mode: settings.diffuse.mode,
-            depth_copy: accumulate.depth_source == DepthSource::Reduced && !read_only_depth_is_supported(device),
         };
         if self.targets.as_ref().is_some_and(|targets| targets.fits(key, &in_view.rect, depth)) {
             return;
@@ -233,6 +232,7 @@ impl Slot {
         descriptor: &Descriptor,
         view: &ViewGeometry,
         in_view: &SystemInView,
+        linear_depth: bool,
         frame: &Frame<'_>,
         settings: &Settings,
     ) -> DrawPath {
@@ -253,7 +253,7 @@ impl Slot {
                 AccumulateKey {
                     format: accumulate.format,
                     encoding: accumulate.encoding,
-                    sprite: SpriteKey::new(settings, reads_linear(device, &frame.scene_depth, settings)),
+                    sprite: SpriteKey::new(settings, linear_depth),
                     host_depth: accumulate.depth_source == DepthSource::Host,
                     depth_test,
                     overdraw: shade_tree == ShadeTree::Overdraw,
@@ -311,12 +311,12 @@ impl Slot {
 }
 
 /// True if a system reads the scene's linear target, not its depth buffer.
-pub(crate) fn reads_linear(device: &wgpu::Device, scene_depth: &SceneDepth<'_>, settings: &Settings) -> bool {
+pub(crate) fn reads_linear(layouts: &Layouts, scene_depth: &SceneDepth<'_>, settings: &Settings) -> bool {
     match scene_depth {
         SceneDepth::Buffer(_) => false,
         SceneDepth::Linear(_) => true,
         // Where a depth buffer cannot be tested and read in one pass, it is left to the tests.
-        SceneDepth::Both { .. } => settings.technique == Technique::SoftLinear || !read_only_depth_is_supported(device),
+        SceneDepth::Both { .. } => settings.technique == Technique::SoftLinear || !layouts.read_only_depth,
     }
 }
 

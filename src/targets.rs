@@ -38,8 +38,6 @@ pub(crate) struct TargetsKey {
     pub format: AccumulationFormat,
     pub depth_source: DepthSource,
     pub diffuse_mode: DiffuseMode,
-    /// The reduced depth is needed twice.
-    pub depth_copy: bool,
 }
 
 /// The textures of one system. The part in use is the rectangle from (0, 0) of the size of its screen rectangle.
@@ -107,7 +105,8 @@ impl Targets {
             .map(|attachment| whole(texture(attachment.label, attachment.format, size, 1)));
         let reduced_depth = (key.depth_source == DepthSource::Reduced)
             .then(|| whole(texture("haze reduced depth", REDUCED_DEPTH_FORMAT, size, 1)));
-        let depth_copy = key.depth_copy.then(|| whole(texture("haze depth copy", DEPTH_COPY_FORMAT, size, 1)));
+        let needs_copy = key.depth_source == DepthSource::Reduced && !layouts.read_only_depth;
+        let depth_copy = needs_copy.then(|| whole(texture("haze depth copy", DEPTH_COPY_FORMAT, size, 1)));
 
         let (side, layers) = diffuse_bake::size_and_layers(key.diffuse_mode).unwrap_or((1, 1));
         let baked = texture("haze baked diffuse", diffuse_bake::FORMAT, UVec2::splat(side), array_layers(layers));

@@ -1,14 +1,19 @@
 //! What several subcommands take: a preset and changes to it, a size, a backend.
 
+use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 use glam::{UVec2, Vec4};
 use haze::demo::shot::Shot;
 use haze::headless::Headless;
+use haze::picture::write_png;
 use haze::reference::picture::Picture;
 use haze::settings::{Path, Technique};
 use haze::{Error, FieldError};
+use image::RgbImage;
+
+use super::output::{check_target, say};
 
 /// How a picture is drawn, whatever it shows.
 #[derive(Args)]
@@ -44,6 +49,9 @@ pub struct ShotArguments {
     /// Seed of every emitter; the preset's own if not given.
     #[arg(long, value_name = "N", value_parser = parse_seed, allow_negative_numbers = true)]
     seed: Option<u32>,
+    /// The PNG to write.
+    #[arg(short, long, value_name = "FILE.png")]
+    output: PathBuf,
 }
 
 /// The renderers.
@@ -64,8 +72,10 @@ pub enum Backend {
 }
 
 impl ShotArguments {
-    /// Loads the preset, or the one that a subcommand shows when none is named, and applies the changes.
+    /// Loads the preset, or the one that a subcommand shows when none is named, and applies the changes. Refuses first
+    /// an output that cannot be written.
     pub fn load(&self, default: &str) -> Result<Shot, Error> {
+        check_target(&self.output)?;
         let mut shot = Shot::load(self.preset.as_deref().unwrap_or(default), self.run.size)?;
         if let Some(time) = self.time {
             shot.preset.time = time;
@@ -77,6 +87,12 @@ impl ShotArguments {
             system.settings.technique = self.technique.unwrap_or(system.settings.technique);
         }
         Ok(shot)
+    }
+
+    /// Writes the picture, and says so.
+    pub fn write(&self, picture: RgbImage, shot: &Shot, backend: &Backend) -> Result<(), Error> {
+        write_png(&self.output, &picture.into())?;
+        say!("{}: {} on {}", self.output.display(), shot.preset.name, backend.description())
     }
 }
 

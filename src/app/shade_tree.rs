@@ -1,14 +1,10 @@
 //! `haze shade-tree`: every stage of the shading on one sheet, as OTEE's slide "Shade tree" shows it.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use haze::Error;
-use haze::picture::write_png;
 use haze::settings::ShadeTree;
 
 use super::options::{DEFAULT_PRESET, ShotArguments};
-use super::output::{check_target, say};
 use super::sheet::Sheet;
 use super::tonemap::develop;
 
@@ -16,9 +12,6 @@ use super::tonemap::develop;
 pub struct Arguments {
     #[command(flatten)]
     shot: ShotArguments,
-    /// The PNG to write.
-    #[arg(short, long, value_name = "FILE.png")]
-    output: PathBuf,
 }
 
 /// In the order in which they are made, three to a row.
@@ -37,16 +30,14 @@ const STAGES: [(ShadeTree, &str); 9] = [
 const COLUMNS: u32 = 3;
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
-    check_target(&arguments.output)?;
     let mut shot = arguments.shot.load(DEFAULT_PRESET)?;
     // The picture's size is the sheet's: every stage is a third of it, so that the sheet costs what a picture costs.
     shot.size = (arguments.shot.run.size / COLUMNS).max(glam::UVec2::ONE);
     let backend = arguments.shot.run.backend()?;
-    let mut sheet = Sheet::new(shot.size, COLUMNS, STAGES.len() as u32, 0);
+    let mut sheet = Sheet::new(shot.size, COLUMNS, STAGES.len() as u32);
     for (index, (stage, label)) in (0u32..).zip(STAGES) {
         shot.shade_tree = stage;
         sheet.place(index, label, &develop(&backend.render(&shot)?, &shot));
     }
-    write_png(&arguments.output, &sheet.picture.into())?;
-    say!("{}: {} on {}", arguments.output.display(), shot.preset.name, backend.description())
+    arguments.shot.write(sheet.picture, &shot, &backend)
 }

@@ -5,9 +5,11 @@ use image::{Rgb, RgbImage, imageops};
 
 use super::label::draw_text;
 
-pub const MARGIN: u32 = 12;
+const MARGIN: u32 = 12;
 /// Height of a label.
-pub const LABEL: u32 = 28;
+const LABEL: u32 = 28;
+/// Height of the line at the bottom.
+const FOOT: u32 = 24;
 pub const INK: Rgb<u8> = Rgb([225, 225, 220]);
 pub const PAPER: Rgb<u8> = Rgb([24, 25, 28]);
 
@@ -19,11 +21,11 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// An empty sheet with `foot` pixels to spare at the bottom.
-    pub fn new(size: UVec2, columns: u32, count: u32, foot: u32) -> Self {
+    /// An empty sheet.
+    pub fn new(size: UVec2, columns: u32, count: u32) -> Self {
         let cell = size + UVec2::new(MARGIN, MARGIN + LABEL);
         let rows = count.div_ceil(columns);
-        let picture = RgbImage::from_pixel(cell.x * columns + MARGIN, cell.y * rows + MARGIN + foot, PAPER);
+        let picture = RgbImage::from_pixel(cell.x * columns + MARGIN, cell.y * rows + MARGIN, PAPER);
         Self { picture, columns, cell }
     }
 
@@ -32,5 +34,14 @@ impl Sheet {
         let corner = UVec2::new(index % self.columns, index / self.columns) * self.cell + MARGIN;
         draw_text(&mut self.picture, corner.x as f32 + 2.0, corner.y as f32, 20.0, INK, label);
         imageops::replace(&mut self.picture, picture, i64::from(corner.x), i64::from(corner.y + LABEL));
+    }
+
+    /// Adds a line below the cells.
+    pub fn add_foot(&mut self, text: &str) {
+        let (width, height) = self.picture.dimensions();
+        let mut picture = RgbImage::from_pixel(width, height + FOOT, PAPER);
+        imageops::replace(&mut picture, &self.picture, 0, 0);
+        draw_text(&mut picture, MARGIN as f32 + 2.0, height as f32 - 4.0, 20.0, INK, text);
+        self.picture = picture;
     }
 }

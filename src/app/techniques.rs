@@ -12,20 +12,16 @@ use haze::{Error, FieldError};
 use image::{Rgb, RgbImage, imageops};
 
 use super::cost::{Cost, Timer, interleaved};
-use super::label::draw_text;
 use super::options::{Backend, ShotArguments};
-use super::output::{check_folder, check_target, say};
+use super::output::{check_folder, check_target};
 use super::plot::{Curve, plot};
-use super::sheet::{INK, LABEL, MARGIN, Sheet};
+use super::sheet::Sheet;
 use super::tonemap::develop;
 
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
     shot: ShotArguments,
-    /// The PNG to write.
-    #[arg(short, long, value_name = "FILE.png")]
-    output: PathBuf,
     /// Also write every picture as FOLDER/NAME.png.
     #[arg(long, value_name = "FOLDER")]
     cells: Option<PathBuf>,
@@ -45,8 +41,8 @@ const ROUNDS: u32 = 5;
 const ROUNDS_ON_CPU: u32 = 1;
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
-    for target in [Some(&arguments.output), arguments.curves.as_ref()].into_iter().flatten() {
-        check_target(target)?;
+    if let Some(curves) = &arguments.curves {
+        check_target(curves)?;
     }
     if let Some(folder) = &arguments.cells {
         check_folder(folder)?;
@@ -65,7 +61,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let costs = interleaved(rounds, cells.len(), |cell| timer.sprites(&cells[cell].shot, loops))?;
 
     let zoom = Zoom::where_they_differ(&cells[0].picture, &cells[1].picture);
-    let mut sheet = Sheet::new(shot.size, COLUMNS, cells.len() as u32, FOOT);
+    let mut sheet = Sheet::new(shot.size, COLUMNS, cells.len() as u32);
     for (index, (cell, cost)) in (0..).zip(cells.iter().zip(&costs)) {
         let label = format!("{}    {}", cell.name, describe(cost, &costs[0]));
         let zoomed = zoom.inset(&cell.picture);
@@ -76,17 +72,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     }
     let foot =
         format!("ms: all sprites once, median of {rounds}; {}x{}, {}", shot.size.x, shot.size.y, backend.description());
-    let below = sheet.picture.height() - FOOT;
-    draw_text(&mut sheet.picture, MARGIN as f32 + 2.0, below as f32 - 4.0, 0.7 * LABEL as f32, INK, &foot);
+    sheet.add_foot(&foot);
     if let Some(curves) = &arguments.curves {
         write_png(curves, &fade_curves().into())?;
     }
-    write_png(&arguments.output, &sheet.picture.into())?;
-    say!("{}: {} on {}", arguments.output.display(), shot.preset.name, backend.description())
+    arguments.shot.write(sheet.picture, &shot, &backend)
 }
-
-/// Height of the line at the bottom.
-const FOOT: u32 = 24;
 
 struct Cell {
     name: String,

@@ -3,7 +3,6 @@
 //! Reads: particles back to front, sprite flipbook, detail map or noise, reduced depth or the host's own. Writes:
 //! accumulation target. Blend: ONE, ONE_MINUS_SRC_ALPHA. Source: OTEE "Accumulating the particles"; techniques: NV, BLOG, MS.
 
-use super::sprite::SpriteKey;
 use super::{
     ADDITIVE, Layouts, PARTICLE_LAYOUT, PREMULTIPLIED_OVER, PipelineParts, STRIP, Variants, color_target,
     create_pipeline, in_front, read_only_depth, switch, variant,
@@ -12,6 +11,7 @@ use super::{begin_pass, bind, color_attachment, read_only, set_part};
 use crate::frame_bindings::FrameBindings;
 use crate::settings::{AccumulationFormat, NormalEncoding};
 use crate::slot::{DrawPath, Slot};
+use crate::sprite_key::SpriteKey;
 use crate::targets::{DEPTH_COPY_FORMAT, REDUCED_DEPTH_FORMAT, accumulation_layout};
 
 /// What makes one accumulation pipeline differ from another.

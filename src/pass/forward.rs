@@ -4,7 +4,6 @@
 //! Blend: alpha, additive or multiply. Source: OTEE "Typical game particles so far".
 
 use super::bind;
-use super::sprite::SpriteKey;
 use super::{
     ADDITIVE, Layouts, MULTIPLY, PARTICLE_LAYOUT, PREMULTIPLIED_OVER, PipelineParts, STRIP, Variants, color_target,
     create_pipeline, in_front, read_only_depth, switch, variant,
@@ -13,6 +12,7 @@ use crate::descriptor::Descriptor;
 use crate::frame_bindings::FrameBindings;
 use crate::settings::{BlendMode, SoftScatterMode};
 use crate::slot::{DrawPath, Slot};
+use crate::sprite_key::SpriteKey;
 
 /// What makes one forward pipeline differ from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -6,12 +6,12 @@ pub(crate) mod diffuse_bake;
 pub(crate) mod forward;
 pub(crate) mod sort;
 pub(crate) mod specular_scatter;
-pub(crate) mod sprite;
 pub(crate) mod transfer;
 
 use std::collections::HashMap;
 use std::hash::Hash;
 
+use crate::descriptor::read_only_depth_is_supported;
 use crate::frame_bindings::FrameBindings;
 use crate::gpu_types::{LightUniform, SystemUniform, ViewUniform};
 use crate::light::MAX_LIGHTS;
@@ -21,6 +21,8 @@ use crate::slot::{Draw, Slot};
 /// Layouts of the bind groups: 0 frame, 1 system, 2 material, 3 the pass's own inputs. `shaders/lib/bindings.wgsl`.
 #[derive(Debug)]
 pub(crate) struct Layouts {
+    /// [`read_only_depth_is_supported`], asked once: the answer is one of many that a device makes a copy of each time.
+    pub read_only_depth: bool,
     pub frame: wgpu::BindGroupLayout,
     pub system: wgpu::BindGroupLayout,
     pub material: wgpu::BindGroupLayout,
@@ -66,6 +68,7 @@ impl Layouts {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
         };
         Self {
+            read_only_depth: read_only_depth_is_supported(device),
             frame: layout("haze frame", &[uniform(size_of::<ViewUniform>() as u64), texture(unfilterable, D2)]),
             system: layout("haze system", &[uniform(size_of::<SystemUniform>() as u64), uniform(LIGHTS_SIZE)]),
             material: layout(

@@ -13,6 +13,7 @@ pub mod ramp;
 pub mod renderer;
 pub mod soft_fade;
 pub mod sprite;
+mod sprite_fragment;
 pub mod technique;
 pub mod upsample;
 pub mod view;

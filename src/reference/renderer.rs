@@ -15,7 +15,7 @@ use crate::reference::pass::transfer::Smoke;
 use crate::reference::picture::Picture;
 use crate::reference::view::{ndc_from_pixel, pixel_from_ndc, view_position};
 use crate::settings::{Settings, ShadeTree};
-use crate::system::{SystemInView, lights_in_view, system_in_view};
+use crate::system::{MaterialInfo, SystemInView, lights_in_view, system_in_view};
 use crate::view::{View, ViewGeometry};
 
 /// One frame, as [`crate::Frame`], in memory.
@@ -67,8 +67,9 @@ pub fn render(frame: &Frame<'_>, picture: &mut Picture<Vec4>) -> Result<(), Fiel
     let mut draws = Vec::new();
     for (index, system) in frame.systems.iter().enumerate() {
         validate_settings(index, system.settings, frame.view.size)?;
-        system.material.info().validate(index, system.settings)?;
-        draws.extend(Draw::new(&view, frame, system));
+        let info = system.material.info();
+        info.validate(index, system.settings)?;
+        draws.extend(Draw::new(&view, frame, system, &info));
     }
     draws.sort_by(|a, b| b.distance.total_cmp(&a.distance));
 
@@ -109,12 +110,11 @@ pub(super) struct Draw<'a> {
 }
 
 impl<'a> Draw<'a> {
-    fn new(view: &ViewGeometry, frame: &Frame<'a>, system: &System<'a>) -> Option<Self> {
+    fn new(view: &ViewGeometry, frame: &Frame<'a>, system: &System<'a>, info: &MaterialInfo) -> Option<Self> {
         let bounds = system.bounds.unwrap_or_else(|| bounds_of(system.particles, system.settings.reach()));
         let mut lights = Vec::new();
         lights_in_view(view, frame.lights, &bounds, &mut lights);
-        let info = system.material.info();
-        let in_view = system_in_view(view, &bounds, system.settings, &info, &lights, frame.time)?;
+        let in_view = system_in_view(view, &bounds, system.settings, info, &lights, frame.time)?;
         let mut particles = Vec::new();
         back_to_front(view, system.particles, &mut SortScratch::default(), &mut particles);
         Some(Self {

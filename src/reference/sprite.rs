@@ -90,6 +90,11 @@ pub fn unrotate(offset: Vec2, rotation: Vec2) -> Vec2 {
     Vec2::new(offset.x * rotation.x + offset.y * rotation.y, offset.y * rotation.x - offset.x * rotation.y)
 }
 
+/// Place in the picture, 0..1 with v down, of a place on the sprite, -1..1 with y up.
+pub fn sprite_uv(corner: Vec2) -> Vec2 {
+    Vec2::new(corner.x * 0.5 + 0.5, 0.5 - corner.y * 0.5)
+}
+
 /// NV's debug sprite: eight by eight checks, every other one of a quarter of the amount.
 pub fn checkerboard(uv: Vec2) -> Vec4 {
     let check = (uv * 8.0).floor().as_ivec2();

@@ -625,6 +625,15 @@ fn formulas() -> Vec<Formula> {
             mutants: &[("offset.x * rotation.x + offset.y", "offset.x * rotation.x - offset.y")],
         },
         Formula {
+            name: "sprite_uv",
+            file: "lib/sprite.wgsl",
+            wgsl: "let v = sprite_uv(vec2f(x(0), x(1))); y(0, v.x); y(1, v.y);",
+            reference: |x| sprite::sprite_uv(v2(x)).to_array().to_vec(),
+            cases: random(50, &[(-1.0, 1.0); 2]),
+            tolerance: ARITHMETIC,
+            mutants: &[("0.5 - corner.y * 0.5", "0.5 + corner.y * 0.5")],
+        },
+        Formula {
             name: "checkerboard",
             file: "lib/sprite.wgsl",
             wgsl: "let v = checkerboard(vec2f(x(0), x(1))); y(0, v.z); y(1, v.w);",
@@ -775,6 +784,7 @@ fn formulas() -> Vec<Formula> {
                    y(0, v.x); y(1, v.y); y(2, v.z); y(3, v.w);",
             reference: |x| noise_volume::sample_noise_volume(test_noise(), v3(x)).to_array().to_vec(),
             cases: random(200, &[(-2.0, 2.0); 3]),
+            // `fract` keeps 1e-7 of a coordinate; times 8 texels and the steepest slope between two of them, 2.
             tolerance: 2e-5,
             mutants: &[
                 ("((texel % size) + size) % size", "clamp(texel, vec3i(0), size - 1)"),
@@ -803,6 +813,7 @@ fn formulas() -> Vec<Formula> {
             wgsl: "let v = noise_coordinate(vec3f(x(0), x(1), x(2)), x(3), x(4)); y(0, v.x); y(1, v.y); y(2, v.z);",
             reference: |x| noise_volume::noise_coordinate(v3(x), x[3], x[4]).to_array().to_vec(),
             cases: random(50, &[(-9.0, 9.0), (-9.0, 9.0), (-9.0, 9.0), (0.5, 4.0), (0.0, 2.0)]),
+            // Coordinates up to 20.
             tolerance: ARITHMETIC * 10.0,
             mutants: &[("world - vec3f", "world + vec3f"), ("/ noise_size", "* noise_size")],
         },
@@ -886,7 +897,6 @@ const INDIRECT: &[&str] = &[
     "load_sprite_bilinear",
     "sample_sprite_frame",
     "sprite_corner",
-    "sprite_uv",
     "sprite_vertex",
     "diffuse_from_lights",
     "soft_scatter",

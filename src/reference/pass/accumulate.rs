@@ -2,11 +2,11 @@
 
 use glam::{IVec2, UVec2, Vec2, Vec4, Vec4Swizzles};
 
-use super::sprite::SpriteSetup;
 use crate::reference::blending::{premultiplied_over, quantise};
 use crate::reference::normal::accumulation_from_normal;
 use crate::reference::picture::Picture;
 use crate::reference::renderer::Draw;
+use crate::reference::sprite_fragment::SpriteSetup;
 
 /// The texels that sprites are drawn on: texel (i, j) is the pixels from (origin + (i, j)) · scale.
 pub struct Grid {

@@ -5,5 +5,4 @@ mod depth_downsample;
 mod diffuse_bake;
 mod forward;
 mod specular_scatter;
-mod sprite;
 pub(super) mod transfer;

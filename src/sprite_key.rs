@@ -1,6 +1,6 @@
 //! What accumulate and forward share: the variants of `shaders/lib/sprite_vertex.wgsl` and `sprite_fragment.wgsl`.
 
-use super::{Constant, switch, variant};
+use crate::pass::{Constant, switch, variant};
 use crate::settings::{FadeCurve, Settings, SpriteAnimation, Technique};
 
 /// What makes the sprites of one pipeline differ from another's.

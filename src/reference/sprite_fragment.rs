@@ -8,7 +8,8 @@ use crate::reference::normal::rotate_normal;
 use crate::reference::renderer::Draw;
 use crate::reference::soft_fade::{near_fade, soft_fade};
 use crate::reference::sprite::{
-    FlipbookFrames, checkerboard, flipbook_frames, sample_detail, sample_sprite, sprite_frame, sprite_lod, unrotate,
+    FlipbookFrames, checkerboard, flipbook_frames, sample_detail, sample_sprite, sprite_frame, sprite_lod, sprite_uv,
+    unrotate,
 };
 use crate::reference::technique::{
     RayInterval, density_amount, density_thickness, depth_sprite_depth, hard_fade, ray_sphere, sphere_axis_bounds,
@@ -210,8 +211,4 @@ impl Draw<'_> {
         let total = 1.0 - transmittance;
         (normal / total.max(1.0e-6)).extend(total)
     }
-}
-
-fn sprite_uv(local: Vec2) -> Vec2 {
-    Vec2::new(local.x * 0.5 + 0.5, 0.5 - local.y * 0.5)
 }
