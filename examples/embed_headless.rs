@@ -31,15 +31,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let colour = target(COLOUR, wgpu::TextureUsages::COPY_SRC);
     let depth = target(DEPTH, wgpu::TextureUsages::TEXTURE_BINDING); // haze samples it
     let (colour_view, depth_view) = (colour.create_view(&Default::default()), depth.create_view(&Default::default()));
-    let view = View {
-        view_from_world: rh::view::look_at_mat4(vec3(0.0, 1.6, 6.5), vec3(0.0, 1.7, 0.0), Vec3::Y),
-        clip_from_view: rh::proj::directx::perspective(0.8, SIZE.x as f32 / SIZE.y as f32, 0.1, 100.0),
-        size: SIZE,
-    };
+    let view = View::new(
+        rh::view::look_at_mat4(vec3(0.0, 1.6, 6.5), vec3(0.0, 1.7, 0.0), Vec3::Y),
+        rh::proj::directx::perspective(0.8, SIZE.x as f32 / SIZE.y as f32, 0.1, 100.0),
+        SIZE,
+    );
 
     // haze, once.
     let descriptor = Descriptor { color_format: COLOUR, depth_format: Some(DEPTH), ..Descriptor::default() };
-    let mut smoke = Renderer::new(&device, &descriptor);
+    let mut smoke = Renderer::new(&device, &queue, &descriptor)?;
     let material = smoke.create_material(&device, &queue, &MaterialNames::default().load(Path::new(""))?)?;
 
     // haze, every frame.
@@ -47,17 +47,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     haze::emitter::Emitter::default().evaluate(8.0, &mut particles);
     let (settings, orange) = (Settings::default(), vec3(1.0, 0.7, 0.4));
     let frame = Frame {
-        view,
-        scene_depth: SceneDepth::Buffer(&depth_view),
         lights: &[Light { position: vec3(-3.0, 3.0, 3.0), colour: orange, intensity: 12.0, ..Light::default() }],
-        systems: &[System {
-            particles: Particles::Slice(&particles),
-            bounds: None,
-            settings: &settings,
-            material: &material,
-        }],
+        systems: &[System::new(Particles::Slice(&particles), &settings, &material)],
         time: 8.0,
-        shade_tree: Default::default(),
+        ..Frame::new(view, SceneDepth::Buffer(&depth_view))
     };
     let mut encoder = device.create_command_encoder(&Default::default());
     // The host's own scene is nothing but a dark wall across the view, that the smoke reaches into.

@@ -105,7 +105,7 @@ impl Host {
 
         let descriptor =
             Descriptor { color_format: configuration.format, depth_format: Some(DEPTH), ..Descriptor::default() };
-        let smoke = Renderer::new(&device, &descriptor);
+        let smoke = Renderer::new(&device, &queue, &descriptor)?;
         let material = smoke.create_material(&device, &queue, &MaterialNames::default().load(Path::new(""))?)?;
         let depth = depth_target(&device, &configuration);
         let (start, settings) = (Instant::now(), Settings::default());
@@ -154,35 +154,20 @@ impl Host {
         let eye = vec3(6.5 * angle.sin(), 1.8, 6.5 * angle.cos());
         Emitter::default().evaluate(time, &mut self.particles);
 
+        let view = View::new(
+            rh::view::look_at_mat4(eye, vec3(0.0, 1.8, 0.0), Vec3::Y),
+            rh::proj::directx::perspective(0.8, size.x as f32 / size.y as f32, 0.1, 100.0),
+            size,
+        );
+        let lamp = |position, colour, intensity| Light { position, colour, intensity, ..Light::default() };
         let frame = Frame {
-            view: View {
-                view_from_world: rh::view::look_at_mat4(eye, vec3(0.0, 1.8, 0.0), Vec3::Y),
-                clip_from_view: rh::proj::directx::perspective(0.8, size.x as f32 / size.y as f32, 0.1, 100.0),
-                size,
-            },
-            scene_depth: SceneDepth::Buffer(&self.depth),
             lights: &[
-                Light {
-                    position: vec3(-3.0, 3.0, 3.0),
-                    colour: vec3(1.0, 0.7, 0.4),
-                    intensity: 12.0,
-                    ..Light::default()
-                },
-                Light {
-                    position: vec3(2.0, 2.0, -2.5),
-                    colour: vec3(0.4, 0.6, 1.0),
-                    intensity: 3.0,
-                    ..Light::default()
-                },
+                lamp(vec3(-3.0, 3.0, 3.0), vec3(1.0, 0.7, 0.4), 12.0),
+                lamp(vec3(2.0, 2.0, -2.5), vec3(0.4, 0.6, 1.0), 3.0),
             ],
-            systems: &[System {
-                particles: Particles::Slice(&self.particles),
-                bounds: None,
-                settings: &self.settings,
-                material: &self.material,
-            }],
+            systems: &[System::new(Particles::Slice(&self.particles), &self.settings, &self.material)],
             time,
-            shade_tree: Default::default(),
+            ..Frame::new(view, SceneDepth::Buffer(&self.depth))
         };
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let colour = target.texture.create_view(&Default::default());

@@ -31,7 +31,7 @@ fn fragment(@builtin(position) position: vec4f) -> @builtin(frag_depth) f32 {
 
     if DEPTH_DOWNSAMPLE == DEPTH_DOWNSAMPLE_POINT {
         let pixel = min(first + scale / 2, last);
-        let depth = view_depth_from_ndc_depth(textureLoad(scene_depth, pixel, 0).r, view.depth_coefficients);
+        let depth = view_depth_from_ndc_depth(load_scene_depth(pixel), view.depth_coefficients);
         return stored_depth(depth);
     }
     var nearest = SKY_VIEW_DEPTH;
@@ -39,7 +39,7 @@ fn fragment(@builtin(position) position: vec4f) -> @builtin(frag_depth) f32 {
     let end = min(first + scale - 1, last);
     for (var y = first.y; y <= end.y; y++) {
         for (var x = first.x; x <= end.x; x++) {
-            let ndc_depth = textureLoad(scene_depth, vec2i(x, y), 0).r;
+            let ndc_depth = load_scene_depth(vec2i(x, y));
             let depth = view_depth_from_ndc_depth(ndc_depth, view.depth_coefficients);
             nearest = min(nearest, depth);
             farthest = max(farthest, depth);

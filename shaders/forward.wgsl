@@ -1,19 +1,18 @@
 // forward
 // What    The classic way: every sprite fragment lit and blended at full resolution. The baseline of every comparison.
 // Reads   particles (instances, back to front), sprite flipbook, detail map or noise, scene depth, lights, ramps.
-// Writes  the host's colour target, linear HDR.
+// Writes  the host's colour target: linear HDR, or sRGB code where GAMMA_TARGET.
 // Blend   alpha: ONE, ONE_MINUS_SRC_ALPHA (premultiplied) · additive: ONE, ONE · multiply: DST, ZERO.
 // Source  OTEE "Typical game particles so far"; techniques: NV, BLOG, MS; age ramp: MS.
 
 #import "lib/sprite_fragment.wgsl"
 #import "lib/diffuse.wgsl"
+#import "lib/blending.wgsl"
+#import "lib/colour.wgsl"
 
 // True where sprite.age_colour is not 0.
 override AGE_COLOUR: bool = false;
 
-const BLEND_MODE_ALPHA: u32 = 0u;
-const BLEND_MODE_ADDITIVE: u32 = 1u;
-const BLEND_MODE_MULTIPLY: u32 = 2u;
 override BLEND_MODE: u32 = BLEND_MODE_ALPHA;
 
 @vertex
@@ -25,6 +24,7 @@ fn vertex(particle: Particle, @builtin(vertex_index) index: u32) -> SpriteVertex
 fn fragment(in: SpriteVertex) -> @location(0) vec4f {
     var scene = SKY_VIEW_DEPTH;
     if reads_scene() {
+        // The picture's own pixels: the view's origin is in them already.
         scene = host_view_depth(textureLoad(scene_depth, vec2i(in.position.xy), 0).r);
     }
     let fragment = technique_fragment(in, scene);
@@ -42,10 +42,5 @@ fn fragment(in: SpriteVertex) -> @location(0) vec4f {
         let colour = sample_ramp(age_ramp, linear_sampler, in.amount_lod_frame_age.w);
         light *= mix(vec3f(1.0), colour, system.age_colour);
     }
-    let covered = coverage(amount, system.boost);
-    switch BLEND_MODE {
-        case BLEND_MODE_ADDITIVE: { return vec4f(light * covered, 0.0); }
-        case BLEND_MODE_MULTIPLY: { return vec4f(mix(vec3f(1.0), min(light, vec3f(1.0)), covered), 1.0); }
-        default: { return vec4f(light, 1.0) * covered; }
-    }
+    return forward_fragment(BLEND_MODE, target_colour(light), coverage(amount, system.boost));
 }

@@ -1,11 +1,12 @@
 // specular_scatter
 // What    The glow of lights behind the smoke: one quad of constant pixel size round each light.
 // Reads   accumulation target, reduced depth, scene depth, lights, specular ramp.
-// Writes  the host's colour target, linear HDR.
+// Writes  the host's colour target: linear HDR, or sRGB code where GAMMA_TARGET.
 // Blend   ONE, ONE (additive); alpha is left alone.
 // Source  OTEE "Specular scattering".
 
 #import "lib/accumulated.wgsl"
+#import "lib/colour.wgsl"
 #import "lib/ramp.wgsl"
 #import "lib/sprite.wgsl"
 
@@ -72,11 +73,11 @@ fn fragment(in: QuadVertex) -> @location(0) vec4f {
     if distance_squared >= 1.0 {
         discard;
     }
-    let amount = sample_accumulation(in.position.xy).a;
+    let amount = sample_accumulation(in.position.xy - view.origin).a;
     if amount <= 0.0 {
         discard;
     }
     // x is distance², y is the amount.
     let glow = sample_ramp_2d(specular_ramp, linear_sampler, vec2f(distance_squared, amount));
-    return vec4f(glow * in.colour, 0.0);
+    return vec4f(target_colour(glow * in.colour), 0.0);
 }

@@ -1,7 +1,7 @@
 // transfer
 // What    Lights the accumulated smoke once per pixel, over the system's bounding box.
 // Reads   accumulation target, reduced depth, scene depth, lights, ramps, baked diffuse light.
-// Writes  the host's colour target, linear HDR.
+// Writes  the host's colour target: linear HDR, or sRGB code where GAMMA_TARGET.
 // Blend   ONE, ONE_MINUS_SRC_ALPHA (premultiplied over the scene).
 // Source  OTEE "Transfer & lighting", "Diffuse lighting", "Soft scattering".
 // Space   Lighting in view space, on the plane through the middle of the box that faces the viewer.
@@ -10,6 +10,7 @@
 #import "lib/accumulated.wgsl"
 #import "lib/normal.wgsl"
 #import "lib/diffuse_bake.wgsl"
+#import "lib/colour.wgsl"
 
 // Six faces of baked light by normal (cubemap), or one picture of a lit sphere (motif).
 @group(3) @binding(2) var baked_diffuse: texture_2d_array<f32>;
@@ -120,7 +121,7 @@ fn overdraw_colour(layers: f32) -> vec3f {
 
 @fragment
 fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let pixel = position.xy;
+    let pixel = position.xy - view.origin;
     if SHADE_TREE == SHADE_TREE_REDUCED_DEPTH {
         var depth = 0.0;
         if HOST_DEPTH {
@@ -159,5 +160,5 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     if SHADE_TREE != SHADE_TREE_DIFFUSE {
         light += soft_scatter(amount);
     }
-    return vec4f(light, 1.0) * covered;
+    return vec4f(target_colour(light), 1.0) * covered;
 }

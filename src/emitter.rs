@@ -5,146 +5,85 @@
 
 use glam::{UVec3, Vec2, Vec3};
 
+use crate::assets::noise::{curl_noise, pcg3d, unit};
 use crate::error::FieldError;
-use crate::fields::{FieldVisitor, Fields, validate};
-use crate::noise::{curl_noise, pcg3d, unit};
-use crate::particle::Particle;
+use crate::frame::Particle;
+use crate::settings::{choice, settings, validate};
 
 /// Most particles of one emitter.
 pub const MAX_PARTICLES: u32 = 1 << 20;
 
-/// Where particles are born.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum EmitterShape {
-    /// In an ellipsoid.
-    #[default]
-    Sphere,
-    /// In a box.
-    Box,
-    /// On a flat, horizontal disc.
-    Disc,
-}
-
-/// All settings of an emitter. Positions and velocities in world space.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-#[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
-#[serde(default, deny_unknown_fields)]
-pub struct Emitter {
-    /// Different seeds give different smoke of the same kind.
-    pub seed: u32,
-    /// Births per second.
-    pub rate: f32,
-    /// Seconds of emission, from time 0. 0: it has always been smoking and never stops.
-    pub duration: f32,
-    /// Seconds a particle lives.
-    pub lifetime: f32,
-    /// Share of the lifetime by which lives differ, up and down.
-    pub lifetime_spread: f32,
+choice! {
     /// Where particles are born.
-    pub shape: EmitterShape,
-    /// Middle of the shape.
-    #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
-    pub position: Vec3,
-    /// Half the size of the shape.
-    #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
-    pub extent: Vec3,
-    /// Velocity at birth.
-    #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
-    pub velocity: Vec3,
-    /// Speed at birth away from the middle of the shape.
-    pub burst: f32,
-    /// Random speed at birth, any direction.
-    pub velocity_spread: f32,
-    /// How fast a particle takes on the velocity of the air.
-    pub drag: f32,
-    /// Upward acceleration of hot smoke; against the drag it ends in a steady rise of buoyancy / drag.
-    pub buoyancy: f32,
-    /// Velocity of the air.
-    #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
-    pub wind: Vec3,
-    /// How far curl noise carries a particle off its path by the end of its life.
-    pub turbulence: f32,
-    /// Size of the swirls.
-    pub turbulence_scale: f32,
-    /// Turns of the swirls per second.
-    pub turbulence_speed: f32,
-    /// Radius at birth.
-    pub radius_start: f32,
-    /// Radius at death.
-    pub radius_end: f32,
-    /// Share by which radii differ, up and down.
-    pub radius_spread: f32,
-    /// Fastest spin, either way, at birth; drag slows it.
-    pub spin: f32,
-    /// Amount of a full-grown particle.
-    pub amount: f32,
-    /// Share of the life over which a particle appears.
-    pub fade_in: f32,
-    /// Share of the life over which it disappears.
-    pub fade_out: f32,
-    /// Flipbook frames per second. 0: still.
-    pub frame_rate: f32,
-}
-
-impl Default for Emitter {
-    fn default() -> Self {
-        Self {
-            seed: 1,
-            rate: 40.0,
-            duration: 0.0,
-            lifetime: 6.0,
-            lifetime_spread: 0.2,
-            shape: EmitterShape::Sphere,
-            position: Vec3::ZERO,
-            extent: Vec3::splat(0.2),
-            velocity: Vec3::new(0.0, 0.6, 0.0),
-            burst: 0.0,
-            velocity_spread: 0.2,
-            drag: 0.6,
-            buoyancy: 0.6,
-            wind: Vec3::ZERO,
-            turbulence: 0.5,
-            turbulence_scale: 1.5,
-            turbulence_speed: 0.05,
-            radius_start: 0.25,
-            radius_end: 1.2,
-            radius_spread: 0.25,
-            spin: 0.6,
-            amount: 0.3,
-            fade_in: 0.12,
-            fade_out: 0.5,
-            frame_rate: 4.0,
-        }
+    EmitterShape {
+        /// In an ellipsoid.
+        #[default]
+        Sphere = "sphere",
+        /// In a box.
+        Box = "box",
+        /// On a flat, horizontal disc.
+        Disc = "disc",
     }
 }
 
-impl Fields for Emitter {
-    fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
-        visitor.number("rate", &mut self.rate, 0.0..=100_000.0, "1/s");
-        visitor.number("duration", &mut self.duration, 0.0..=3600.0, "s");
-        visitor.number("lifetime", &mut self.lifetime, 0.01..=600.0, "s");
-        visitor.number("lifetime_spread", &mut self.lifetime_spread, 0.0..=0.95, "");
-        visitor.vector("position", &mut self.position, -1.0e5..=1.0e5, "m");
-        visitor.vector("extent", &mut self.extent, 0.0..=1.0e4, "m");
-        visitor.vector("velocity", &mut self.velocity, -1.0e3..=1.0e3, "m/s");
-        visitor.number("burst", &mut self.burst, -1.0e3..=1.0e3, "m/s");
-        visitor.number("velocity_spread", &mut self.velocity_spread, 0.0..=1.0e3, "m/s");
-        visitor.number("drag", &mut self.drag, 0.0..=100.0, "1/s");
-        visitor.number("buoyancy", &mut self.buoyancy, -100.0..=100.0, "m/s²");
-        visitor.vector("wind", &mut self.wind, -100.0..=100.0, "m/s");
-        visitor.number("turbulence", &mut self.turbulence, 0.0..=100.0, "m");
-        visitor.number("turbulence_scale", &mut self.turbulence_scale, 0.01..=1.0e3, "m");
-        visitor.number("turbulence_speed", &mut self.turbulence_speed, 0.0..=10.0, "1/s");
-        visitor.number("radius_start", &mut self.radius_start, 0.0..=1.0e3, "m");
-        visitor.number("radius_end", &mut self.radius_end, 0.0..=1.0e3, "m");
-        visitor.number("radius_spread", &mut self.radius_spread, 0.0..=0.95, "");
-        visitor.number("spin", &mut self.spin, 0.0..=100.0, "rad/s");
-        visitor.number("amount", &mut self.amount, 0.0..=1.0, "");
-        visitor.number("fade_in", &mut self.fade_in, 0.0..=1.0, "");
-        visitor.number("fade_out", &mut self.fade_out, 0.0..=1.0, "");
-        visitor.number("frame_rate", &mut self.frame_rate, 0.0..=120.0, "frames/s");
+settings! {
+    /// All settings of an emitter. Positions and velocities in world space.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Emitter {
+        /// Different seeds give different smoke of the same kind.
+        seed: u32 = 1, seed;
+        /// Births per second.
+        rate: f32 = 40.0, number(0.0..=100_000.0, "1/s");
+        /// Seconds of emission, from time 0. 0: it has always been smoking and never stops.
+        duration: f32 = 0.0, number(0.0..=3600.0, "s");
+        /// Seconds a particle lives.
+        lifetime: f32 = 6.0, number(0.01..=600.0, "s");
+        /// Share of the lifetime by which lives differ, up and down.
+        lifetime_spread: f32 = 0.2, number(0.0..=0.95, "");
+        /// Where particles are born.
+        shape: EmitterShape = EmitterShape::Sphere, choice;
+        /// Middle of the shape.
+        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        position: Vec3 = Vec3::ZERO, vector(-1.0e5..=1.0e5, "m");
+        /// Half the size of the shape.
+        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        extent: Vec3 = Vec3::splat(0.2), vector(0.0..=1.0e4, "m");
+        /// Velocity at birth.
+        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        velocity: Vec3 = Vec3::new(0.0, 0.6, 0.0), vector(-1.0e3..=1.0e3, "m/s");
+        /// Speed at birth away from the middle of the shape.
+        burst: f32 = 0.0, number(-1.0e3..=1.0e3, "m/s");
+        /// Random speed at birth, any direction.
+        velocity_spread: f32 = 0.2, number(0.0..=1.0e3, "m/s");
+        /// How fast a particle takes on the velocity of the air.
+        drag: f32 = 0.6, number(0.0..=100.0, "1/s");
+        /// Upward acceleration of hot smoke; against the drag it ends in a steady rise of buoyancy / drag.
+        buoyancy: f32 = 0.6, number(-100.0..=100.0, "m/s²");
+        /// Velocity of the air.
+        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        wind: Vec3 = Vec3::ZERO, vector(-100.0..=100.0, "m/s");
+        /// How far curl noise carries a particle off its path by the end of its life.
+        turbulence: f32 = 0.5, number(0.0..=100.0, "m");
+        /// Size of the swirls.
+        turbulence_scale: f32 = 1.5, number(0.01..=1.0e3, "m");
+        /// Turns of the swirls per second.
+        turbulence_speed: f32 = 0.05, number(0.0..=10.0, "1/s");
+        /// Radius at birth.
+        radius_start: f32 = 0.25, number(0.0..=1.0e3, "m");
+        /// Radius at death.
+        radius_end: f32 = 1.2, number(0.0..=1.0e3, "m");
+        /// Share by which radii differ, up and down.
+        radius_spread: f32 = 0.25, number(0.0..=0.95, "");
+        /// Fastest spin, either way, at birth; drag slows it.
+        spin: f32 = 0.6, number(0.0..=100.0, "rad/s");
+        /// Amount of a full-grown particle.
+        amount: f32 = 0.3, number(0.0..=1.0, "");
+        /// Share of the life over which a particle appears.
+        fade_in: f32 = 0.12, number(0.0..=1.0, "");
+        /// Share of the life over which it disappears.
+        fade_out: f32 = 0.5, number(0.0..=1.0, "");
+        /// Flipbook frames per second. 0: still.
+        frame_rate: f32 = 4.0, number(0.0..=120.0, "frames/s");
     }
 }
 

@@ -22,15 +22,14 @@
 //!
 //! # Quick start
 //! ```no_run
-//! # use glam::{Mat4, UVec2, Vec3, vec3};
+//! # use haze::{glam, wgpu};
 //! # fn host() -> (wgpu::Device, wgpu::Queue, wgpu::CommandEncoder, wgpu::TextureView, haze::View) { unimplemented!() }
 //! # fn pass_with_read_only_depth(_: &mut wgpu::CommandEncoder) -> wgpu::RenderPass<'_> { unimplemented!() }
-//! # use haze::wgpu;
 //! # let (device, queue, mut encoder, scene_depth, view) = host();
 //! use haze::{Descriptor, Frame, Light, Particles, Renderer, SceneDepth, Settings, System};
 //!
 //! // Once.
-//! let mut smoke = Renderer::new(&device, &Descriptor::default());
+//! let mut smoke = Renderer::new(&device, &queue, &Descriptor::default())?;
 //! let assets = haze::preset::MaterialNames::default().load("".as_ref())?;
 //! let material = smoke.create_material(&device, &queue, &assets)?;
 //! let settings = Settings::default();
@@ -39,12 +38,9 @@
 //! let mut particles = Vec::new();
 //! haze::emitter::Emitter::default().evaluate(2.0, &mut particles);
 //! let frame = Frame {
-//!     view,
-//!     scene_depth: SceneDepth::Buffer(&scene_depth),
-//!     lights: &[Light { position: vec3(-3.0, 3.0, 2.0), intensity: 20.0, ..Light::default() }],
-//!     systems: &[System { particles: Particles::Slice(&particles), bounds: None, settings: &settings, material: &material }],
-//!     time: 0.0,
-//!     shade_tree: Default::default(),
+//!     lights: &[Light { position: glam::vec3(-3.0, 3.0, 2.0), intensity: 20.0, ..Light::default() }],
+//!     systems: &[System::new(Particles::Slice(&particles), &settings, &material)],
+//!     ..Frame::new(view, SceneDepth::Buffer(&scene_depth))
 //! };
 //! smoke.prepare(&device, &queue, &mut encoder, &frame)?;
 //! smoke.render(&mut pass_with_read_only_depth(&mut encoder));
@@ -52,57 +48,40 @@
 //! ```
 //!
 //! # Conventions
-//! Metres, seconds, radians; angles in settings are degrees. World space is the host's. View space is right-handed: x
-//! right, y up, z towards the viewer. Depth is linear *view depth*, positive in front of the camera. Colour is linear;
-//! ramps are sRGB pictures, decoded when loaded. NDC depth is 0..1, in any of the usual conventions, read off the
-//! projection. `shaders/README.md` and `ramps/README.md` say the rest.
+//! Metres, seconds, radians; angles in settings are degrees. World space is the host's, of either hand; so is its view space.
+//! Inside, view space has x to the right and y up in the picture and z towards the viewer. Depth is linear *view depth*,
+//! positive in front of the camera. Colour is linear; ramps are sRGB pictures, decoded when loaded. NDC depth is 0..1, in any of
+//! the usual conventions, read off the projection. `shaders/README.md` and `ramps/README.md` say the rest.
 //!
 //! # Sources
 //! OTEE: N. Francis, *Deferred Particle Shading* (over the edge entertainment). NV: T. Lorach, *Soft Particles*, NVIDIA,
 //! 2007. BLOG: *Soft Particles*, after Umenhoffer et al., *Spherical Billboards*, 2006. MS: the DirectX 10 *SoftParticles*
 //! sample.
 
-pub mod bounds;
-pub mod builtin;
+pub mod assets;
 #[cfg(feature = "app")]
 pub mod demo;
-pub mod descriptor;
 pub mod emitter;
 pub mod error;
-pub mod fields;
+pub mod formula;
 pub mod frame;
-mod frame_bindings;
-pub mod gpu_types;
+#[cfg(feature = "headless")]
 pub mod headless;
-mod json;
-pub mod light;
-pub mod material;
-pub mod noise;
-pub mod noise_volume;
-pub mod particle;
-mod pass;
-pub mod picture;
+mod in_view;
 pub mod preset;
-pub mod ramp;
 pub mod reference;
 mod renderer;
 pub mod settings;
-pub mod shader;
-mod slot;
-pub mod sprite;
-mod sprite_key;
-mod system;
-mod targets;
-pub mod view;
 
-pub use bounds::Bounds;
-pub use descriptor::Descriptor;
+pub use assets::material::MaterialAssets;
+#[doc(inline)]
+pub use assets::{builtin, noise, picture, ramp, sprite};
 pub use error::{Error, FieldError};
-pub use frame::{Frame, Particles, SceneDepth, System};
-pub use light::{Light, LightKind};
-pub use material::{Material, MaterialAssets};
-pub use particle::Particle;
-pub use renderer::{MemoryUse, Renderer, TargetViews};
+pub use frame::{Bounds, Frame, Light, LightKind, Material, Particle, Particles, SceneDepth, System, View};
+pub use renderer::{
+    Context, Descriptor, MemoryUse, Renderer, SceneDepthKind, TargetViews, WarmUp, read_only_depth_is_supported, shader,
+};
 pub use settings::Settings;
-pub use view::View;
+
+pub use glam;
 pub use wgpu;

@@ -319,7 +319,9 @@ fn a_preset_that_cannot_be_drawn_is_not_called_good() {
     let ignored = preset(r#"{"detail": "mine.png"}"#, "soft");
     assert!(ignored.contains("material.detail") && ignored.contains("knows its own"), "{ignored}");
     let columns = preset(r#"{"columns": 0}"#, "soft");
-    assert!(columns.contains("material.columns and rows: 0x1"), "{columns}");
+    assert!(columns.contains("systems[0].material.columns: 0 is not valid; expected 1 to 256 frames"), "{columns}");
+    let ignored = preset(r#"{"columns": 2}"#, "soft");
+    assert!(ignored.contains("material.columns and rows: 2x1"), "{ignored}");
     let missing = preset(r#"{"noise": "none.png"}"#, "soft");
     assert!(missing.contains("none.png: ") && missing.contains("(material.noise)"), "{missing}");
     let outside = preset(r#"{"sprite": "mine.png", "detail": "../x.png"}"#, "soft");

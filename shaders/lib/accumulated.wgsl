@@ -11,10 +11,10 @@
 override UPSAMPLE: u32 = UPSAMPLE_JOINT_BILATERAL;
 
 fn scene_view_depth(pixel: vec2f) -> f32 {
-    return view_depth_from_ndc_depth(textureLoad(scene_depth, vec2i(pixel), 0).r, view.depth_coefficients);
+    return view_depth_from_ndc_depth(load_scene_depth(vec2i(pixel)), view.depth_coefficients);
 }
 
-// The accumulation target at a pixel of the picture; zero outside the part of the picture that it covers.
+// The accumulation target at a pixel of the view; zero outside the part of the view that it covers.
 fn sample_accumulation(pixel: vec2f) -> vec4f {
     let texel = pixel / system.scale - system.target_origin;
     if any(texel < vec2f(0.0)) || any(texel >= system.target_size) {

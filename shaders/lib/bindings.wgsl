@@ -1,10 +1,10 @@
-// What every pass can see. The layouts are in src/pass/mod.rs.
+// What every pass can see. The layouts are in src/renderer/layouts.rs.
 
 #import "lib/view.wgsl"
 #import "lib/system.wgsl"
 #import "lib/lighting.wgsl"
 
-// MAX_LIGHTS in src/light.rs.
+// MAX_LIGHTS in src/frame/light.rs.
 const MAX_LIGHTS: u32 = 128u;
 
 @group(0) @binding(0) var<uniform> view: View;
@@ -28,3 +28,8 @@ const MAX_LIGHTS: u32 = 128u;
 @group(2) @binding(7) var age_ramp: texture_2d<f32>;
 @group(2) @binding(8) var noise: texture_3d<f32>;
 @group(2) @binding(9) var repeat_sampler: sampler;
+
+// The host's depth at a pixel of the view.
+fn load_scene_depth(pixel: vec2i) -> f32 {
+    return textureLoad(scene_depth, pixel + vec2i(view.origin), 0).r;
+}

@@ -1,6 +1,6 @@
 // The light of one point of the smoke. View space, metres, linear colour.
 
-// Mirrors gpu_types::LightUniform.
+// Mirrors LightUniform in src/formula/uniforms.rs.
 struct Light {
     // Point and spot.
     position: vec3f,

@@ -87,7 +87,7 @@ fn sample_sprite(
     return vec4f(texel.rgb * 2.0 - 1.0, texel.a);
 }
 
-// The largest motion that a detail map holds, in uv. MOTION_RANGE in src/sprite/detail.rs.
+// The largest motion that a detail map holds, in uv. MOTION_RANGE in src/formula/sprite.rs.
 const MOTION_RANGE: f32 = 0.125;
 
 // A detail map's texel: x = how far it stands out towards the viewer, -1..1 radii; yz = motion to the next frame, in uv.

@@ -32,7 +32,7 @@ fn reads_scene() -> bool {
 // View depth of a texel of the host's depth.
 fn host_view_depth(texel: f32) -> f32 {
     if LINEAR_DEPTH {
-        return view_depth_from_linear(texel);
+        return view_depth_from_linear(texel + view.depth_offset);
     }
     return view_depth_from_ndc_depth(texel, view.depth_coefficients);
 }

@@ -5,7 +5,7 @@
 #import "lib/soft_fade.wgsl"
 #import "lib/technique.wgsl"
 
-// One instance. The layout is that of `Particle` in src/particle.rs.
+// One instance. The layout is that of `Particle` in src/frame/particle.rs.
 struct Particle {
     // World space; radius in w.
     @location(0) position_radius: vec4f,
@@ -13,7 +13,7 @@ struct Particle {
     @location(1) rotation_amount_frame_age: vec4f,
 }
 
-// Largest number of a particle that is drawn. LARGEST in src/particle.rs.
+// Largest number of a particle that is drawn. LARGEST in src/frame/particle.rs.
 const LARGEST: f32 = 1.0e9;
 
 struct SpriteVertex {

@@ -1,4 +1,4 @@
-// One particle system in this view. Mirrors gpu_types::SystemUniform; the fields named like settings are those settings.
+// One particle system in this view. Mirrors SystemUniform in src/formula/uniforms.rs; the fields named like settings are those settings.
 
 struct System {
     // World space.

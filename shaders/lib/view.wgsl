@@ -1,4 +1,4 @@
-// The camera. Mirrors gpu_types::ViewUniform.
+// The camera. Mirrors ViewUniform in src/formula/uniforms.rs.
 
 struct View {
     view_from_world: mat4x4f,
@@ -10,11 +10,15 @@ struct View {
     ray_offset: vec2f,
     // Pixels.
     size: vec2f,
+    // The view's first pixel in the host's colour target and depth.
+    origin: vec2f,
     // Metres. An infinite far plane is SKY_VIEW_DEPTH.
     near: f32,
     far: f32,
     // 1 for orthographic views, 0 for perspective.
     orthographic: f32,
+    // Added to the host's linear depth: not 0 for an orthographic view that begins behind the viewer.
+    depth_offset: f32,
 }
 
 // Pixel coordinates point down, NDC up.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
-use haze::noise_volume::NoiseRecipe;
+use haze::noise::NoiseRecipe;
 use haze::picture::write_png;
 use haze::ramp::bake::RampRecipe;
 use haze::ramp::motif::MotifRecipe;

@@ -2,9 +2,9 @@
 
 use glam::{Mat3, UVec2, UVec3, Vec3, Vec4, Vec4Swizzles, vec3};
 use haze::demo::shot::Shot;
+use haze::formula::colour::srgb_from_linear;
 use haze::noise::{pcg3d, unit};
-use haze::picture::srgb_from_linear;
-use haze::reference::picture::Picture;
+use haze::picture::Picture;
 use haze::settings::ShadeTree;
 use image::{Rgb, RgbImage};
 

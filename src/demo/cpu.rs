@@ -1,11 +1,12 @@
 //! The demo scene by ray casting: colour and depth as the GPU would leave them.
 
-use crate::View;
-use crate::reference::picture::Picture;
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
+use super::layout::SceneBox;
+use super::scene::Scene;
 use super::shading::box_interval;
-use super::{Scene, SceneBox};
+use crate::assets::picture::Picture;
+use crate::frame::View;
 
 /// Renders linear colour, four samples a pixel, and depth 0..1 at pixel centres.
 pub(crate) fn render(scene: &Scene, view: &View) -> (Picture<Vec4>, Picture<f32>) {

@@ -1,11 +1,15 @@
 //! The demo scene on the GPU: colour at two by two samples a pixel, depth at pixel centres, as a depth buffer and linear.
 
-use crate::headless::Headless;
-use crate::view::SKY_VIEW_DEPTH;
-use crate::{Error, View, shader};
 use glam::Vec3;
 
-use super::{MAX_BOXES, Scene, SceneBox, SceneUniform};
+use super::layout::SceneBox;
+use super::scene::{MAX_BOXES, Scene, SceneUniform};
+use crate::error::Error;
+use crate::formula::depth::SKY_VIEW_DEPTH;
+use crate::formula::uniforms::LightUniform;
+use crate::frame::{MAX_LIGHTS, View};
+use crate::headless::Headless;
+use crate::renderer::shader;
 
 pub(crate) const COLOUR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -124,7 +128,7 @@ impl SceneRenderer {
         let uniform = scene.uniform(view.clip_from_view * view.view_from_world, eye);
         let mut boxes = [SceneBox::default(); MAX_BOXES];
         boxes[..scene.boxes.len()].copy_from_slice(&scene.boxes);
-        let mut lights = [crate::gpu_types::LightUniform::default(); crate::light::MAX_LIGHTS];
+        let mut lights = [LightUniform::default(); MAX_LIGHTS];
         lights[..scene.lights.len()].copy_from_slice(&scene.lights);
         let buffers = [
             uniform_buffer(gpu, bytemuck::bytes_of::<SceneUniform>(&uniform)),

@@ -1,12 +1,13 @@
 //! The light and the materials of the demo scene on the CPU. `scene.wgsl` is the same on the GPU, function by function.
 
-use crate::gpu_types::LightUniform;
-use crate::noise::unit;
-use crate::reference::lighting::sample_light;
-use crate::reference::saturate;
 use glam::{IVec3, Vec2, Vec3, Vec3Swizzles};
 
-use super::{Scene, SceneBox, Surface};
+use super::layout::{SceneBox, Surface};
+use super::scene::Scene;
+use crate::assets::noise::{pcg3d, unit};
+use crate::formula::lighting::sample_light;
+use crate::formula::saturate;
+use crate::formula::uniforms::LightUniform;
 
 fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
     let t = saturate((x - low) / (high - low));
@@ -18,7 +19,7 @@ fn mix(a: f32, b: f32, t: f32) -> f32 {
 }
 
 fn hash(at: IVec3) -> f32 {
-    unit(crate::noise::pcg3d(at.as_uvec3()).x)
+    unit(pcg3d(at.as_uvec3()).x)
 }
 
 /// 0..1.

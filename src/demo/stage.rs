@@ -6,14 +6,11 @@ use glam::Vec4;
 
 use super::gpu::{self, SceneTargets};
 use super::shot::Shot;
-use crate::descriptor::{Descriptor, read_only_depth_is_supported};
+use crate::assets::picture::Picture;
 use crate::error::Error;
-use crate::frame::{Frame, Particles, SceneDepth, System};
+use crate::frame::{Frame, Material, Particles, SceneDepth, System, View};
 use crate::headless::Headless;
-use crate::material::Material;
-use crate::reference::picture::Picture;
-use crate::renderer::Renderer;
-use crate::view::View;
+use crate::renderer::{Descriptor, Renderer, read_only_depth_is_supported};
 
 /// See the module.
 #[derive(Debug)]
@@ -43,13 +40,14 @@ impl<'a> Stage<'a> {
         let tests_depth = linear.is_some() || read_only_depth_is_supported(&gpu.device);
         let renderer = Renderer::new(
             &gpu.device,
+            &gpu.queue,
             &Descriptor {
                 color_format: gpu::COLOUR_FORMAT,
                 depth_format: tests_depth.then_some(gpu::DEPTH_FORMAT),
-                sample_count: 1,
                 exact_filtering,
+                ..Descriptor::default()
             },
-        );
+        )?;
         let upload = |assets| renderer.create_material(&gpu.device, &gpu.queue, assets);
         let materials = shot.materials.iter().map(upload).collect::<Result<_, _>>()?;
         let (colour, depth) = (whole(&targets.colour), whole(&targets.depth));
@@ -62,14 +60,11 @@ impl<'a> Stage<'a> {
     /// [`Error::Field`] when the preset was changed to something invalid, [`Error::Device`] when the device failed.
     pub fn draw(&mut self, shot: &Shot) -> Result<Duration, Error> {
         let particles = shot.systems();
-        let systems: Vec<_> = particles
-            .iter()
-            .zip(&self.materials)
-            .map(|((particles, settings), material)| System {
-                particles: Particles::Slice(particles),
-                bounds: None,
-                settings,
-                material,
+        let systems: Vec<_> = (0..)
+            .zip(particles.iter().zip(&self.materials))
+            .map(|(key, ((particles, settings), material))| System {
+                key,
+                ..System::new(Particles::Slice(particles), settings, material)
             })
             .collect();
         let frame = Frame {

@@ -5,28 +5,22 @@ use std::ops::RangeInclusive;
 use glam::Vec3;
 use serde_json::{Value, json};
 
-use super::Preset;
-use crate::emitter::Emitter;
-use crate::fields::{FieldVisitor, Fields};
-use crate::light::Light;
-use crate::preset::Camera;
-use crate::settings::Settings;
+use super::camera::Camera;
+use super::preset::{Preset, PresetSystem};
+use crate::frame::Light;
+use crate::settings::{FieldVisitor, Fields};
 
 /// The JSON schema of preset files, as text.
 pub fn schema() -> String {
     let mut schema = schemars::schema_for!(Preset).to_value();
     // Some ranges begin at another field's value: those fields are put where they leave the widest range.
-    let camera = Camera { near: 0.001, ..Camera::default() };
-    let light = Light { inner_angle: 0.0, ..Light::default() };
-    let mut parts: [(&str, Box<dyn Fields>); 4] = [
-        ("Camera", Box::new(camera)),
-        ("Light", Box::new(light)),
-        ("Emitter", Box::new(Emitter::default())),
-        ("Settings", Box::new(Settings::default())),
-    ];
-    for (definition, fields) in &mut parts {
-        fields.visit(&mut Ranges { schema: &mut schema, definition: (*definition).to_owned() });
-    }
+    let mut preset = Preset {
+        camera: Camera { near: 0.001, ..Camera::default() },
+        lights: vec![Light { inner_angle: 0.0, ..Light::default() }],
+        systems: vec![PresetSystem::default()],
+        ..Preset::default()
+    };
+    preset.visit(&mut Ranges { schema: &mut schema, definition: String::new() });
     tidy(&mut schema);
     serde_json::to_string_pretty(&schema).unwrap_or_default()
 }
@@ -44,13 +38,21 @@ fn tidy(value: &mut Value) {
 /// Writes the range of every number it visits into a struct's definition.
 struct Ranges<'a> {
     schema: &'a mut Value,
-    /// Name of the struct being walked.
+    /// JSON pointer to the struct being walked; "" is the preset itself.
     definition: String,
 }
 
 impl Ranges<'_> {
     fn property(&mut self, name: &str) -> Option<&mut Value> {
-        self.schema.pointer_mut(&format!("/$defs/{}/properties/{name}", self.definition))
+        self.schema.pointer_mut(&format!("{}/properties/{name}", self.definition))
+    }
+
+    /// Walks a struct that a field refers to.
+    fn enter(&mut self, name: &str, fields: &mut dyn Fields) {
+        let reference = self.property(name).and_then(|property| property["$ref"].as_str());
+        if let Some(definition) = reference.and_then(|path| path.strip_prefix('#')).map(str::to_owned) {
+            fields.visit(&mut Ranges { schema: self.schema, definition });
+        }
     }
 
     fn limit(&mut self, name: &str, item: &str, minimum: Value, maximum: Value) {
@@ -80,10 +82,11 @@ impl FieldVisitor for Ranges<'_> {
     }
 
     fn group(&mut self, name: &'static str, fields: &mut dyn Fields) {
-        let reference = self.property(name).and_then(|property| property["$ref"].as_str());
-        if let Some(definition) = reference.and_then(|path| path.strip_prefix("#/$defs/")).map(str::to_owned) {
-            fields.visit(&mut Ranges { schema: self.schema, definition });
-        }
+        self.enter(name, fields);
+    }
+
+    fn item(&mut self, name: &'static str, _: usize, fields: &mut dyn Fields) {
+        self.enter(&format!("{name}/items"), fields);
     }
 }
 

@@ -1,24 +1,64 @@
-//! The specification: every formula once, in plain Rust, under the name it has in `shaders/`, and a complete renderer on
-//! top of them. It is the oracle of the tests, and what draws on a machine without a GPU driver.
+//! The whole frame on the CPU, pass by pass as the GPU renderer has it, in f32: the oracle of the tests, and what draws on a
+//! machine without a GPU driver.
 
-pub mod blending;
-pub mod depth;
-pub mod diffuse_bake;
-pub mod lighting;
-pub mod noise_volume;
-pub mod normal;
+mod accumulated;
+pub mod blend_unit;
+mod draw;
+mod frame;
 mod pass;
-pub mod picture;
-pub mod ramp;
-pub mod renderer;
-pub mod soft_fade;
-pub mod sprite;
-mod sprite_fragment;
-pub mod technique;
-pub mod upsample;
-pub mod view;
+mod sprite;
 
-/// Clamps to 0..=1; NaN gives 0, as WGSL's `saturate` may.
-pub fn saturate(x: f32) -> f32 {
-    if x > 0.0 { x.min(1.0) } else { 0.0 }
+use glam::Vec4;
+
+use crate::assets::picture::Picture;
+use crate::error::FieldError;
+use crate::frame::validate::{validate_lights, validate_settings, validate_time};
+use crate::in_view::ViewGeometry;
+use crate::settings::ShadeTree;
+
+use accumulated::Accumulated;
+use draw::Draw;
+pub use frame::{Frame, System};
+
+/// Blends the frame's smoke over `picture`, linear HDR.
+///
+/// # Errors
+/// The view, light or setting that cannot be used; `picture` is untouched then.
+pub fn render(frame: &Frame<'_>, picture: &mut Picture<Vec4>) -> Result<(), FieldError> {
+    let view = ViewGeometry::new(&frame.view)?;
+    validate_lights(frame.lights)?;
+    validate_time(frame.time)?;
+    for (name, size) in [("scene_depth", frame.scene_depth.size), ("picture", picture.size)] {
+        if size != frame.view.size {
+            let value = format!("{}x{}", size.x, size.y);
+            return Err(FieldError::new(name, value, format!("{}x{}", frame.view.size.x, frame.view.size.y)));
+        }
+    }
+    let mut draws = Vec::new();
+    for (index, system) in frame.systems.iter().enumerate() {
+        validate_settings(index, system.settings, frame.view.size)?;
+        let info = system.material.info();
+        info.validate(index, system.settings)?;
+        draws.extend(Draw::new(&view, frame, system, &info));
+    }
+    draws.sort_by(|a, b| b.in_view.distance.total_cmp(&a.in_view.distance));
+
+    for draw in &draws {
+        if draw.settings.is_forward() {
+            if matches!(frame.shade_tree, ShadeTree::Final | ShadeTree::Combined) {
+                draw.forward(picture);
+            }
+            continue;
+        }
+        let reduced_depth = draw.depth_downsample();
+        let accumulation = draw.accumulate(&reduced_depth, frame.shade_tree == ShadeTree::Overdraw);
+        let smoke = Accumulated { draw, baked: draw.diffuse_bake(), reduced_depth, accumulation };
+        if frame.shade_tree != ShadeTree::SpecularScatter {
+            smoke.transfer(frame.shade_tree, picture);
+        }
+        if matches!(frame.shade_tree, ShadeTree::Final | ShadeTree::SpecularScatter) {
+            smoke.specular_scatter(picture);
+        }
+    }
+    Ok(())
 }

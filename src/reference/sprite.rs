@@ -1,102 +1,252 @@
-//! The sprite picture: a flipbook of normal maps. `shaders/lib/sprite.wgsl`.
+//! Sprites, fragment by fragment. `shaders/lib/sprite_vertex.wgsl` and `shaders/lib/sprite_fragment.wgsl`.
 
-use glam::{IVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{IVec2, Mat3, UVec2, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 
-use crate::reference::saturate;
-use crate::settings::SpriteAnimation;
-use crate::sprite::Sprite;
-use crate::sprite::detail::MOTION_RANGE;
+use super::draw::Draw;
+use crate::formula::noise_volume::{noise_coordinate, sample_noise_octaves};
+use crate::formula::normal::rotate_normal;
+use crate::formula::soft_fade::{near_fade, soft_fade};
+use crate::formula::sprite::{
+    FlipbookFrames, checkerboard, flipbook_frames, sample_detail, sample_sprite, sprite_frame, sprite_lod, sprite_uv,
+    unrotate,
+};
+use crate::formula::technique::{
+    RayInterval, density_amount, density_thickness, depth_sprite_depth, hard_fade, ray_sphere, sphere_axis_bounds,
+    spherical_billboard_amount, volumetric_density, volumetric_falloff, volumetric_normal,
+};
+use crate::formula::view::pixel_from_ndc;
+use crate::frame::Particle;
+use crate::settings::Technique;
 
-/// The mip level at which a sprite's texels are as large as the target's.
-pub fn sprite_lod(sprite_size: f32, diameter_in_texels: f32) -> f32 {
-    (sprite_size / diameter_in_texels.max(1.0e-3)).log2().max(0.0)
+/// The texels that sprites are drawn on: texel (i, j) is the pixels from (origin + (i, j)) · scale.
+pub struct Grid {
+    pub origin: Vec2,
+    pub scale: f32,
+    pub size: UVec2,
 }
 
-/// The fractional frame that a particle shows: its own, its age through the slices of a volume texture, or the first.
-pub fn sprite_frame(animation: SpriteAnimation, frame: f32, age: f32, frame_count: f32) -> f32 {
-    match animation {
-        SpriteAnimation::Flipbook => frame,
-        SpriteAnimation::Volume => saturate(age) * (frame_count - 1.0),
-        SpriteAnimation::Still => 0.0,
+/// A sprite in view space.
+pub struct SpriteSetup {
+    pub centre: Vec3,
+    pub view_depth: f32,
+    pub radius: f32,
+    pub rotation: Vec2,
+    pub amount: f32,
+    pub lod: f32,
+    pub frames: FlipbookFrames,
+    pub age: f32,
+    /// Pixels that it can cover: upper left and lower right corner.
+    pub min: Vec2,
+    pub max: Vec2,
+}
+
+impl Draw<'_> {
+    /// Calls `f(texel position, sprite, normal and amount, texel)` for every fragment of every sprite in a band of rows,
+    /// in order. `scene` is the scene's view depth at a texel.
+    pub fn for_fragments<T>(
+        &self,
+        grid: &Grid,
+        first_row: u32,
+        band: &mut [T],
+        scene: impl Fn(IVec2) -> f32,
+        f: impl Fn(IVec2, &SpriteSetup, Vec4, &mut T),
+    ) {
+        let width = grid.size.x as i32;
+        let rows = band.len() as i32 / width;
+        let (top, bottom) = (first_row as i32, first_row as i32 + rows);
+        let loops = 0..self.settings.sprite.debug_loop;
+        for particle in loops.flat_map(|_| &self.particles) {
+            let Some(sprite) = self.sprite_setup(particle, 1.0 / grid.scale) else { continue };
+            let texel = |pixel: Vec2| pixel / grid.scale - grid.origin;
+            let min = texel(sprite.min).floor().as_ivec2().max(IVec2::new(0, top));
+            let max = texel(sprite.max).ceil().as_ivec2().min(IVec2::new(width, bottom));
+            for y in min.y..max.y {
+                for x in min.x..max.x {
+                    let at = IVec2::new(x, y);
+                    let pixel = (at.as_vec2() + 0.5 + grid.origin) * grid.scale;
+                    if let Some(fragment) = self.technique_fragment(&sprite, pixel, scene(at)) {
+                        f(at, &sprite, fragment, &mut band[((y - top) * width + x) as usize]);
+                    }
+                }
+            }
+        }
     }
-}
 
-/// The two frames that a fractional frame blends, and the share of the second.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FlipbookFrames {
-    /// Index of the frame shown.
-    pub first: i32,
-    /// Index of the frame after it.
-    pub second: i32,
-    /// 0 shows the first, 1 the second.
-    pub blend: f32,
-}
-
-/// Splits a fractional frame; the flipbook repeats.
-pub fn flipbook_frames(frame: f32, frame_count: f32) -> FlipbookFrames {
-    let wrapped = frame - (frame / frame_count).floor() * frame_count;
-    let first = wrapped.floor().max(0.0).min(frame_count - 1.0);
-    let second = if first + 1.5 > frame_count { 0.0 } else { first + 1.0 };
-    FlipbookFrames { first: first as i32, second: second as i32, blend: saturate(wrapped - first) }
-}
-
-fn load_sprite_bilinear(sprite: &Sprite, uv: Vec2, frame: i32, level: u32) -> Vec4 {
-    let size = sprite.level_size(level) as i32;
-    let texel = uv * size as f32 - 0.5;
-    let base = texel.floor();
-    let fraction = texel - base;
-    let limit = |texel: IVec2| texel.clamp(IVec2::ZERO, IVec2::splat(size - 1)).as_uvec2();
-    let (low, high) = (limit(base.as_ivec2()), limit(base.as_ivec2() + 1));
-    let load = |x, y| sprite.texel(level, frame as u32, x, y);
-    let top = load(low.x, low.y).lerp(load(high.x, low.y), fraction.x);
-    let bottom = load(low.x, high.y).lerp(load(high.x, high.y), fraction.x);
-    top.lerp(bottom, fraction.y)
-}
-
-fn sample_sprite_frame(sprite: &Sprite, uv: Vec2, frame: i32, lod: f32) -> Vec4 {
-    let last = (sprite.level_count() - 1) as f32;
-    let level = lod.min(last);
-    let base = level.floor();
-    let fine = load_sprite_bilinear(sprite, uv, frame, base as u32);
-    let coarse = load_sprite_bilinear(sprite, uv, frame, (base + 1.0).min(last) as u32);
-    fine.lerp(coarse, level - base)
-}
-
-/// Normal (−1..1, about unit length) and amount of a sprite. uv 0..1, v down. `motion` is where texels go from the first
-/// frame to the second, in uv.
-pub fn sample_sprite(sprite: &Sprite, uv: Vec2, frames: FlipbookFrames, motion: Vec2, lod: f32) -> Vec4 {
-    let mut texel = sample_sprite_frame(sprite, uv - motion * frames.blend, frames.first, lod);
-    if frames.blend > 0.0 {
-        let place = uv + motion * (1.0 - frames.blend);
-        texel = texel.lerp(sample_sprite_frame(sprite, place, frames.second, lod), frames.blend);
+    /// `sprite_vertex()`; `None` when the sprite is hidden.
+    pub fn sprite_setup(&self, particle: &Particle, texels_per_pixel: f32) -> Option<SpriteSetup> {
+        let (system, technique) = (&self.system, self.settings.technique);
+        let centre = self.view.view_from_world.transform_point3(particle.position);
+        let view_depth = -centre.z;
+        let mut radius = particle.radius * system.size;
+        if technique == Technique::SphericalBillboard {
+            radius *= system.billboard_radius;
+        }
+        let half_depth = if technique.is_sphere() { radius } else { 0.0 };
+        let (front, back) = (view_depth - half_depth, view_depth + half_depth);
+        let amount = particle.amount * system.opacity * near_fade(back, system.near_fade_start, system.near_fade_end);
+        let visible = back > self.view.near && front < self.view.far && radius > 0.0 && amount > 0.0;
+        if !visible {
+            return None;
+        }
+        let (min, max) = if technique.is_sphere() {
+            self.sphere_rectangle(centre, radius, texels_per_pixel)
+        } else {
+            self.square_rectangle(centre, radius)
+        };
+        let diameter = 2.0 * radius * self.pixels_per_metre(view_depth.max(self.view.near)) * texels_per_pixel;
+        let frame = sprite_frame(self.settings.sprite.animation, particle.frame, particle.age, system.frame_count);
+        Some(SpriteSetup {
+            centre,
+            view_depth,
+            radius,
+            rotation: Vec2::new(particle.rotation.cos(), particle.rotation.sin()),
+            amount,
+            lod: sprite_lod(system.sprite_size, diameter),
+            frames: flipbook_frames(frame, system.frame_count),
+            age: particle.age,
+            min,
+            max,
+        })
     }
-    (texel.xyz() * 2.0 - 1.0).extend(texel.w)
-}
 
-/// A detail map's texel: how far it stands out towards the viewer, −1..1 radii, and its motion to the next frame, in uv.
-pub fn detail_from_texel(texel: Vec3) -> Vec3 {
-    (texel * 255.0 - 128.0) / 127.0 * Vec3::new(1.0, MOTION_RANGE, MOTION_RANGE)
-}
+    fn square_rectangle(&self, centre: Vec3, radius: f32) -> (Vec2, Vec2) {
+        // Half the diagonal holds the sprite at every rotation.
+        let reach = Vec3::new(1.0, 1.0, 0.0) * (radius * std::f32::consts::SQRT_2);
+        let (a, b) = (self.pixel_from_view(centre - reach), self.pixel_from_view(centre + reach));
+        (a.min(b), a.max(b))
+    }
 
-/// The detail map at a moment between two frames. Motion is the first frame's.
-pub fn sample_detail(detail: &Sprite, uv: Vec2, frames: FlipbookFrames, lod: f32) -> Vec3 {
-    let sample = |frame| detail_from_texel(sample_sprite_frame(detail, uv, frame, lod).xyz());
-    let (first, second) = (sample(frames.first), sample(frames.second));
-    Vec3::new(first.x + (second.x - first.x) * frames.blend, first.y, first.z)
-}
+    /// `sphere_corner()`.
+    fn sphere_rectangle(&self, centre: Vec3, radius: f32, texels_per_pixel: f32) -> (Vec2, Vec2) {
+        let view = &self.view;
+        let rays = if view.orthographic > 0.5 {
+            [centre.xy() - radius, centre.xy() + radius]
+        } else {
+            let bounds = |position| sphere_axis_bounds(Vec2::new(position, -centre.z), radius, view.near);
+            let (x, y) = (bounds(centre.x), bounds(centre.y));
+            [Vec2::new(x.x, y.x), Vec2::new(x.y, y.y)]
+        };
+        let edge = 1.0 + (texels_per_pixel * view.size).recip();
+        let [low, high] = rays.map(|ray| {
+            let ndc = ((ray - view.ray_offset) / view.ray_scale).clamp(-edge, edge);
+            pixel_from_ndc(ndc, view.size)
+        });
+        (low.min(high), low.max(high))
+    }
 
-/// Undoes a sprite's rotation, (cos, sin).
-pub fn unrotate(offset: Vec2, rotation: Vec2) -> Vec2 {
-    Vec2::new(offset.x * rotation.x + offset.y * rotation.y, offset.y * rotation.x - offset.x * rotation.y)
-}
+    /// Normal (view space) and amount of a sprite at a pixel in front of a scene of this view depth; `None` where it is
+    /// hidden.
+    pub fn technique_fragment(&self, sprite: &SpriteSetup, pixel: Vec2, scene: f32) -> Option<Vec4> {
+        let (system, technique) = (&self.system, self.settings.technique);
+        if technique.is_sphere() {
+            return self.sphere_fragment(sprite, pixel, scene);
+        }
+        let offset = self.view_position(pixel, sprite.view_depth) - sprite.centre;
+        let local = unrotate(offset.xy(), sprite.rotation) / sprite.radius;
+        if local.abs().max_element() > 1.0 {
+            return None;
+        }
+        let uv = sprite_uv(local);
+        let detail = self.detail(sprite, uv);
+        let motion = detail.yz() * system.motion;
+        let thickness = density_thickness(sprite.view_depth, sprite.radius, self.view.near, scene);
+        let fade = match technique {
+            Technique::Hard => hard_fade(scene - sprite.view_depth),
+            Technique::DepthSpriteHard => {
+                hard_fade(scene - depth_sprite_depth(sprite.view_depth, detail.x, sprite.radius))
+            }
+            Technique::DepthSpriteSoft => {
+                self.fade_before(scene, depth_sprite_depth(sprite.view_depth, detail.x, sprite.radius))
+            }
+            // Hidden where nothing is left of the slab.
+            Technique::Density => thickness,
+            _ => self.fade_before(scene, sprite.view_depth),
+        };
+        if fade <= 0.0 {
+            return None;
+        }
+        let texel = self.sprite_texel(sprite, uv, motion);
+        let amount = if technique == Technique::Density {
+            density_amount(system.density * texel.w * sprite.amount, thickness)
+        } else {
+            texel.w * sprite.amount * fade
+        };
+        Some(rotate_normal(texel.xyz(), sprite.rotation).extend(amount))
+    }
 
-/// Place in the picture, 0..1 with v down, of a place on the sprite, -1..1 with y up.
-pub fn sprite_uv(corner: Vec2) -> Vec2 {
-    Vec2::new(corner.x * 0.5 + 0.5, 0.5 - corner.y * 0.5)
-}
+    fn fade_before(&self, scene: f32, view_depth: f32) -> f32 {
+        let system = &self.system;
+        let curve = self.settings.soft_fade.curve;
+        soft_fade(curve, scene - view_depth, system.fade_scale, system.contrast_power, system.epsilon)
+    }
 
-/// NV's debug sprite: eight by eight checks, every other one of a quarter of the amount.
-pub fn checkerboard(uv: Vec2) -> Vec4 {
-    let check = (uv * 8.0).floor().as_ivec2();
-    Vec4::new(0.0, 0.0, 1.0, if (check.x + check.y) & 1 == 0 { 1.0 } else { 0.25 })
+    /// The detail map where a technique or setting reads it.
+    fn detail(&self, sprite: &SpriteSetup, uv: Vec2) -> Vec3 {
+        let is_read = self.settings.technique.is_depth_sprite() || self.system.motion > 0.0;
+        match &self.material.detail {
+            Some(detail) if is_read => {
+                sample_detail(detail, uv, sprite.frames, (sprite.lod - self.system.detail_lod).max(0.0))
+            }
+            _ => Vec3::ZERO,
+        }
+    }
+
+    fn sprite_texel(&self, sprite: &SpriteSetup, uv: Vec2, motion: Vec2) -> Vec4 {
+        if self.settings.sprite.debug_sprite {
+            return checkerboard(uv);
+        }
+        sample_sprite(&self.material.sprite, uv, sprite.frames, motion, sprite.lod)
+    }
+
+    fn sphere_fragment(&self, sprite: &SpriteSetup, pixel: Vec2, scene: f32) -> Option<Vec4> {
+        let system = &self.system;
+        let ray = self.view_position(pixel, 1.0);
+        let (origin, along) =
+            if self.view.orthographic > 0.5 { (ray.with_z(0.0), Vec3::NEG_Z) } else { (Vec3::ZERO, ray.normalize()) };
+        let per_depth = -1.0 / along.z;
+        let end = (scene + system.fade_through) * per_depth;
+        let interval = ray_sphere(origin, along, sprite.centre, sprite.radius, self.view.near * per_depth, end);
+        let stretch = interval.leave - interval.enter;
+        if stretch <= 0.0 || interval.axis.length_squared() >= sprite.radius * sprite.radius {
+            return None;
+        }
+        if self.settings.technique.is_volumetric() {
+            return Some(self.volumetric_fragment(sprite, scene, origin, along, interval));
+        }
+        let uv = sprite_uv(unrotate(interval.axis.xy(), sprite.rotation) / sprite.radius);
+        let texel = self.sprite_texel(sprite, uv, self.detail(sprite, uv).yz() * system.motion);
+        let density = system.billboard_density * texel.w * sprite.amount;
+        let amount = spherical_billboard_amount(density, interval.axis.length(), sprite.radius, stretch);
+        Some(rotate_normal(texel.xyz(), sprite.rotation).extend(amount))
+    }
+
+    fn volumetric_fragment(
+        &self,
+        sprite: &SpriteSetup,
+        scene: f32,
+        origin: Vec3,
+        along: Vec3,
+        interval: RayInterval,
+    ) -> Vec4 {
+        let system = &self.system;
+        let rotation = Mat3::from_mat4(self.view.view_from_world);
+        let step = (interval.leave - interval.enter) / system.march_steps as f32;
+        let opacity = system.volume_opacity * sprite.amount * step;
+        let (mut normal, mut transmittance) = (Vec3::ZERO, 1.0);
+        for i in 0..system.march_steps {
+            let position = origin + along * (interval.enter + (i as f32 + 0.5) * step);
+            let place = (position - sprite.centre) / sprite.radius;
+            let world = rotation.transpose() * (position - self.view.view_from_world.w_axis.xyz());
+            let coordinate = noise_coordinate(world, system.noise_size, system.noise_scroll);
+            let texel = sample_noise_octaves(&self.material.noise, coordinate, system.noise_octaves);
+            let mut amount = density_amount(opacity, volumetric_density(texel.w, volumetric_falloff(place)));
+            if self.settings.technique == Technique::VolumetricSoft {
+                amount *= self.fade_before(scene, -position.z);
+            }
+            normal += volumetric_normal(place, rotation * texel.xyz()) * (amount * transmittance);
+            transmittance *= 1.0 - amount;
+        }
+        let total = 1.0 - transmittance;
+        (normal / total.max(1.0e-6)).extend(total)
+    }
 }

@@ -1,6 +1,9 @@
 //! The accumulation pass and the way back to full resolution.
 
-use crate::fields::{FieldVisitor, Fields};
+use glam::UVec2;
+
+use super::choice::choice;
+use super::table::settings;
 
 choice! {
     /// Texel format of the accumulation target.
@@ -76,51 +79,48 @@ choice! {
     }
 }
 
-/// The accumulation pass: how sprites become normal + amount.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-#[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
-#[serde(default, deny_unknown_fields)]
-pub struct Accumulate {
-    /// Texel format of the target.
-    pub format: AccumulationFormat,
-    /// How normals are written.
-    pub encoding: NormalEncoding,
-    /// How normals are read.
-    pub decode: NormalDecode,
-    /// Pixels of the picture per texel of the target, along each side. Cost falls with its square.
-    pub scale: u32,
-    /// Most texels along the picture's longer side; raises `scale` on large pictures.
-    pub max_side: u32,
-    /// Which scene depth sprites are compared with.
-    pub depth_source: DepthSource,
-    /// Which depth a reduced texel keeps.
-    pub depth_downsample: DepthDownsample,
-    /// How the target is brought to full resolution.
-    pub upsample: Upsample,
-    /// Multiplies the amount of every sprite.
-    pub opacity: f32,
-}
-
-impl Default for Accumulate {
-    fn default() -> Self {
-        Self {
-            format: AccumulationFormat::default(),
-            encoding: NormalEncoding::default(),
-            decode: NormalDecode::default(),
-            scale: 2,
-            max_side: 4096,
-            depth_source: DepthSource::default(),
-            depth_downsample: DepthDownsample::default(),
-            upsample: Upsample::default(),
-            opacity: 1.0,
-        }
+settings! {
+    /// The accumulation pass: how sprites become normal + amount.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Accumulate {
+        /// Texel format of the target.
+        format: AccumulationFormat = AccumulationFormat::default(), choice;
+        /// How normals are written.
+        encoding: NormalEncoding = NormalEncoding::default(), choice;
+        /// How normals are read.
+        decode: NormalDecode = NormalDecode::default(), choice;
+        /// Pixels of the picture per texel of the target, along each side. Cost falls with its square.
+        scale: u32 = 2, integer(1..=16, "pixels");
+        /// Most texels along the picture's longer side; raises `scale` on large pictures.
+        max_side: u32 = 4096, integer(16..=16384, "texels");
+        /// Which scene depth sprites are compared with.
+        depth_source: DepthSource = DepthSource::default(), choice;
+        /// Which depth a reduced texel keeps.
+        depth_downsample: DepthDownsample = DepthDownsample::default(), choice;
+        /// How the target is brought to full resolution.
+        upsample: Upsample = Upsample::default(), choice;
+        /// Multiplies the amount of every sprite.
+        opacity: f32 = 1.0, number(0.0..=1.0, "");
     }
 }
 
-impl Fields for Accumulate {
-    fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
-        visitor.integer("scale", &mut self.scale, 1..=16, "pixels");
-        visitor.integer("max_side", &mut self.max_side, 16..=16384, "texels");
-        visitor.number("opacity", &mut self.opacity, 0.0..=1.0, "");
+impl Accumulate {
+    /// The divisor in use: `scale`, raised until the picture's longer side has at most `max_side` texels.
+    pub fn effective_scale(&self, picture: UVec2) -> u32 {
+        self.scale.max(picture.max_element().div_ceil(self.max_side.max(1)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_clamp_raises_the_scale() {
+        let scale =
+            |scale, max_side, picture| Accumulate { scale, max_side, ..Accumulate::default() }.effective_scale(picture);
+        assert_eq!(scale(2, 4096, UVec2::new(1920, 1080)), 2);
+        assert_eq!(scale(2, 480, UVec2::new(1920, 1080)), 4);
+        assert_eq!(scale(1, 1, UVec2::new(7, 3)), 7);
     }
 }

@@ -3,50 +3,24 @@
 //! The order of the variants is the order of the constants in the shaders; `tests/suite/shader_layout.rs` holds the two together.
 
 use crate::error::FieldError;
-use crate::fields::{FieldVisitor, Fields, validate};
-
-/// Derives what every setting enum has.
-macro_rules! choice {
-    ($(#[$meta:meta])* $name:ident { $($(#[$variant_meta:meta])* $variant:ident = $text:literal,)+ }) => {
-        $(#[$meta])*
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
-        #[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
-        pub enum $name { $($(#[$variant_meta])* #[serde(rename = $text)] $variant,)+ }
-
-        impl $name {
-            /// Every choice, in the order of the documentation.
-            pub const ALL: &[Self] = &[$(Self::$variant,)+];
-
-            /// The name used in presets, on the command line and in user interfaces.
-            pub const fn name(self) -> &'static str {
-                match self { $(Self::$variant => $text,)+ }
-            }
-        }
-
-        impl std::str::FromStr for $name {
-            type Err = $crate::error::FieldError;
-
-            fn from_str(text: &str) -> Result<Self, Self::Err> {
-                Self::ALL.iter().copied().find(|choice| choice.name() == text).ok_or_else(|| {
-                    let names: Vec<_> = Self::ALL.iter().map(|choice| choice.name()).collect();
-                    let expected = format!("one of {}", names.join(", "));
-                    Self::Err::new(stringify!($name), format!("{text:?}"), expected)
-                })
-            }
-        }
-    };
-}
 
 mod accumulate;
+pub(crate) mod choice;
+pub(crate) mod fields;
 mod lighting;
 mod soft_fade;
+pub(crate) mod table;
 mod technique;
 
 pub use accumulate::{
     Accumulate, AccumulationFormat, DepthDownsample, DepthSource, NormalDecode, NormalEncoding, Upsample,
 };
+pub use choice::Choice;
+pub(crate) use choice::choice;
+pub use fields::{FieldVisitor, Fields, PictureRole, validate};
 pub use lighting::{Diffuse, DiffuseMode, SoftScatter, SoftScatterMode, SpecularScatter};
 pub use soft_fade::{FadeCurve, SoftFade};
+pub(crate) use table::settings;
 pub use technique::{Density, SphericalBillboard, SpriteAnimation, SpriteSettings, Technique, Volumetric};
 
 choice! {
@@ -100,71 +74,36 @@ choice! {
     }
 }
 
-/// All settings of one particle system.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-#[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
-#[serde(default, deny_unknown_fields)]
-pub struct Settings {
-    /// How the system reaches the picture.
-    pub path: Path,
-    /// How forward sprites are blended; the deferred path has its own blend.
-    pub blend_mode: BlendMode,
-    /// How sprites meet the scene.
-    pub technique: Technique,
-    /// Multiplies the accumulated amount into coverage. OTEE's value is 3.
-    pub boost: f32,
-    /// What sprites show.
-    pub sprite: SpriteSettings,
-    /// Sprites to normal + amount.
-    pub accumulate: Accumulate,
-    /// The fade against scene and camera.
-    pub soft_fade: SoftFade,
-    /// For the technique of that name.
-    pub spherical_billboard: SphericalBillboard,
-    /// For the technique of that name.
-    pub density: Density,
-    /// For the techniques of that name.
-    pub volumetric: Volumetric,
-    /// Light by normal.
-    pub diffuse: Diffuse,
-    /// Light by amount.
-    pub soft_scatter: SoftScatter,
-    /// Glow round lights behind.
-    pub specular_scatter: SpecularScatter,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            path: Path::default(),
-            blend_mode: BlendMode::default(),
-            technique: Technique::default(),
-            boost: 3.0,
-            sprite: SpriteSettings::default(),
-            accumulate: Accumulate::default(),
-            soft_fade: SoftFade::default(),
-            spherical_billboard: SphericalBillboard::default(),
-            density: Density::default(),
-            volumetric: Volumetric::default(),
-            diffuse: Diffuse::default(),
-            soft_scatter: SoftScatter::default(),
-            specular_scatter: SpecularScatter::default(),
-        }
-    }
-}
-
-impl Fields for Settings {
-    fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
-        visitor.number("boost", &mut self.boost, 0.0..=16.0, "");
-        visitor.group("sprite", &mut self.sprite);
-        visitor.group("accumulate", &mut self.accumulate);
-        visitor.group("soft_fade", &mut self.soft_fade);
-        visitor.group("spherical_billboard", &mut self.spherical_billboard);
-        visitor.group("density", &mut self.density);
-        visitor.group("volumetric", &mut self.volumetric);
-        visitor.group("diffuse", &mut self.diffuse);
-        visitor.group("soft_scatter", &mut self.soft_scatter);
-        visitor.group("specular_scatter", &mut self.specular_scatter);
+settings! {
+    /// All settings of one particle system.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Settings {
+        /// How the system reaches the picture.
+        path: Path = Path::Auto, choice;
+        /// How forward sprites are blended; the deferred path has its own blend.
+        blend_mode: BlendMode = BlendMode::Alpha, choice;
+        /// How sprites meet the scene.
+        technique: Technique = Technique::Soft, choice;
+        /// Multiplies the accumulated amount into coverage. OTEE's value is 3.
+        boost: f32 = 3.0, number(0.0..=16.0, "");
+        /// What sprites show.
+        sprite: SpriteSettings = SpriteSettings::default(), group;
+        /// Sprites to normal + amount.
+        accumulate: Accumulate = Accumulate::default(), group;
+        /// The fade against scene and camera.
+        soft_fade: SoftFade = SoftFade::default(), group;
+        /// For the technique of that name.
+        spherical_billboard: SphericalBillboard = SphericalBillboard::default(), group;
+        /// For the technique of that name.
+        density: Density = Density::default(), group;
+        /// For the techniques of that name.
+        volumetric: Volumetric = Volumetric::default(), group;
+        /// Light by normal.
+        diffuse: Diffuse = Diffuse::default(), group;
+        /// Light by amount.
+        soft_scatter: SoftScatter = SoftScatter::default(), group;
+        /// Glow round lights behind.
+        specular_scatter: SpecularScatter = SpecularScatter::default(), group;
     }
 }
 

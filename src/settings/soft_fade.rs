@@ -1,6 +1,7 @@
 //! The fade of sprites before scene and camera.
 
-use crate::fields::{FieldVisitor, Fields};
+use super::choice::choice;
+use super::table::settings;
 
 choice! {
     /// The curve from depth difference to fade; x is the difference times `fade_scale`, clamped to 0..1.
@@ -20,35 +21,22 @@ choice! {
     }
 }
 
-/// The soft depth fade: how a sprite dissolves where it meets the scene or the camera.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-#[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
-#[serde(default, deny_unknown_fields)]
-pub struct SoftFade {
-    /// The curve.
-    pub curve: FadeCurve,
-    /// Reciprocal of the distance over which a sprite fades. Larger is harder.
-    pub fade_scale: f32,
-    /// Steepness of the `contrast` and `exponential` curves. 1 is linear for `contrast`.
-    pub contrast_power: f32,
-    /// Sprites closer to the surface than this are dropped. 0 keeps everything in front of the surface.
-    pub epsilon: f32,
-    /// View depth at which a sprite is gone.
-    pub near_fade_start: f32,
-    /// View depth from which a sprite is whole; not less than `near_fade_start`. Both 0: no near fade.
-    pub near_fade_end: f32,
-}
-
-impl Default for SoftFade {
-    fn default() -> Self {
-        Self {
-            curve: FadeCurve::default(),
-            fade_scale: 2.0,
-            contrast_power: 2.0,
-            epsilon: 0.0,
-            near_fade_start: 0.0,
-            near_fade_end: 0.5,
-        }
+settings! {
+    /// The soft depth fade: how a sprite dissolves where it meets the scene or the camera.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct SoftFade {
+        /// The curve.
+        curve: FadeCurve = FadeCurve::default(), choice;
+        /// Reciprocal of the distance over which a sprite fades. Larger is harder.
+        fade_scale: f32 = 2.0, number(0.001..=1000.0, "1/m");
+        /// Steepness of the `contrast` and `exponential` curves. 1 is linear for `contrast`.
+        contrast_power: f32 = 2.0, number(0.1..=16.0, "");
+        /// Sprites closer to the surface than this are dropped. 0 keeps everything in front of the surface.
+        epsilon: f32 = 0.0, number(0.0..=10.0, "m");
+        /// View depth at which a sprite is gone.
+        near_fade_start: f32 = 0.0, number(0.0..=1000.0, "m");
+        /// View depth from which a sprite is whole; not less than `near_fade_start`. Both 0: no near fade.
+        near_fade_end: f32 = 0.5, number(|this| this.near_fade_start..=1000.0, "m");
     }
 }
 
@@ -56,15 +44,5 @@ impl SoftFade {
     /// Distance beyond which the scene behind a sprite changes nothing, metres.
     pub fn reach(&self) -> f32 {
         (1.0 / self.fade_scale).max(self.epsilon)
-    }
-}
-
-impl Fields for SoftFade {
-    fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
-        visitor.number("fade_scale", &mut self.fade_scale, 0.001..=1000.0, "1/m");
-        visitor.number("contrast_power", &mut self.contrast_power, 0.1..=16.0, "");
-        visitor.number("epsilon", &mut self.epsilon, 0.0..=10.0, "m");
-        visitor.number("near_fade_start", &mut self.near_fade_start, 0.0..=1000.0, "m");
-        visitor.number("near_fade_end", &mut self.near_fade_end, self.near_fade_start..=1000.0, "m");
     }
 }

@@ -1,7 +1,8 @@
 //! How a sprite keeps from cutting into the scene, what it shows, and the numbers of the techniques that have their own.
 //! `docs/techniques.md` compares them.
 
-use crate::fields::{FieldVisitor, Fields};
+use super::choice::choice;
+use super::table::settings;
 
 choice! {
     /// How a sprite meets the scene.
@@ -64,125 +65,61 @@ choice! {
     }
 }
 
-/// What a sprite shows.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-#[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
-#[serde(default, deny_unknown_fields)]
-pub struct SpriteSettings {
-    /// Multiplies the radius of every particle. 0 draws nothing.
-    pub size: f32,
-    /// What moves through the frames.
-    pub animation: SpriteAnimation,
-    /// Holds every sprite at the frame it was born with, and the noise of volumetric sprites where it is at time 0.
-    /// Frames come from the emitter: a host with its own simulation stops them itself.
-    pub freeze_animation: bool,
-    /// How far texels are carried along the detail map's motion between two frames: 0 only blends, 1 goes all the way.
-    pub motion: f32,
-    /// How much the age ramp colours a particle, forward only: 0 not at all, 1 wholly. (MS)
-    pub age_colour: f32,
-    /// Shows a checkerboard in place of the sprite. (NV)
-    pub debug_sprite: bool,
-    /// Draws all sprites this many times, to make the cost of a fragment stand out. (NV)
-    pub debug_loop: u32,
-}
-
-impl Default for SpriteSettings {
-    fn default() -> Self {
-        Self {
-            size: 1.0,
-            animation: SpriteAnimation::default(),
-            freeze_animation: false,
-            motion: 0.0,
-            age_colour: 0.0,
-            debug_sprite: false,
-            debug_loop: 1,
-        }
+settings! {
+    /// What a sprite shows.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct SpriteSettings {
+        /// Multiplies the radius of every particle. 0 draws nothing.
+        size: f32 = 1.0, number(0.0..=100.0, "");
+        /// What moves through the frames.
+        animation: SpriteAnimation = SpriteAnimation::default(), choice;
+        /// Holds every sprite at the frame it was born with, and the noise of volumetric sprites where it is at time 0.
+        /// Frames come from the emitter: a host with its own simulation stops them itself.
+        freeze_animation: bool = false, flag;
+        /// How far texels are carried along the detail map's motion between two frames: 0 only blends, 1 goes all the way.
+        motion: f32 = 0.0, number(0.0..=1.0, "");
+        /// How much the age ramp colours a particle, forward only: 0 not at all, 1 wholly. (MS)
+        age_colour: f32 = 0.0, number(0.0..=1.0, "");
+        /// Shows a checkerboard in place of the sprite. (NV)
+        debug_sprite: bool = false, flag;
+        /// Draws all sprites this many times, to make the cost of a fragment stand out. (NV)
+        debug_loop: u32 = 1, integer(1..=10_000, "");
     }
 }
 
-impl Fields for SpriteSettings {
-    fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
-        visitor.number("size", &mut self.size, 0.0..=100.0, "");
-        visitor.number("motion", &mut self.motion, 0.0..=1.0, "");
-        visitor.number("age_colour", &mut self.age_colour, 0.0..=1.0, "");
-        visitor.integer("debug_loop", &mut self.debug_loop, 1..=10_000, "");
+settings! {
+    /// Numbers of the technique `spherical_billboard`.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct SphericalBillboard {
+        /// Radius of the sphere, in radii of the particle.
+        radius: f32 = 1.0, number(0.0..=10.0, "");
+        /// How fast the amount grows on the way through the middle of the sphere.
+        density: f32 = 3.0, number(0.0..=1000.0, "1/m");
     }
 }
 
-/// Numbers of the technique `spherical_billboard`.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-#[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
-#[serde(default, deny_unknown_fields)]
-pub struct SphericalBillboard {
-    /// Radius of the sphere, in radii of the particle.
-    pub radius: f32,
-    /// How fast the amount grows on the way through the middle of the sphere.
-    pub density: f32,
-}
-
-impl Default for SphericalBillboard {
-    fn default() -> Self {
-        Self { radius: 1.0, density: 3.0 }
+settings! {
+    /// The number of the technique `density`.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Density {
+        /// Density of the slab where the sprite's alpha is 1.
+        density: f32 = 1.0, number(0.0..=1000.0, "1/m");
     }
 }
 
-impl Fields for SphericalBillboard {
-    fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
-        visitor.number("radius", &mut self.radius, 0.0..=10.0, "");
-        visitor.number("density", &mut self.density, 0.0..=1000.0, "1/m");
-    }
-}
-
-/// The number of the technique `density`.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-#[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
-#[serde(default, deny_unknown_fields)]
-pub struct Density {
-    /// Density of the slab where the sprite's alpha is 1.
-    pub density: f32,
-}
-
-impl Default for Density {
-    fn default() -> Self {
-        Self { density: 1.0 }
-    }
-}
-
-impl Fields for Density {
-    fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
-        visitor.number("density", &mut self.density, 0.0..=1000.0, "1/m");
-    }
-}
-
-/// Numbers of the techniques `volumetric_hard` and `volumetric_soft`.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-#[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
-#[serde(default, deny_unknown_fields)]
-pub struct Volumetric {
-    /// Steps of the march through a sphere.
-    pub march_steps: u32,
-    /// Side of one tile of the noise, which fills the world.
-    pub noise_size: f32,
-    /// Lookups into the noise for each step, each of three times the frequency and half the weight of the last.
-    pub noise_octaves: u32,
-    /// How fast the amount grows where the noise is densest.
-    pub opacity: f32,
-    /// How fast the noise rises.
-    pub scroll_speed: f32,
-}
-
-impl Default for Volumetric {
-    fn default() -> Self {
-        Self { march_steps: 6, noise_size: 2.5, noise_octaves: 2, opacity: 3.0, scroll_speed: 0.2 }
-    }
-}
-
-impl Fields for Volumetric {
-    fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
-        visitor.integer("march_steps", &mut self.march_steps, 2..=8, "");
-        visitor.number("noise_size", &mut self.noise_size, 0.01..=1000.0, "m");
-        visitor.integer("noise_octaves", &mut self.noise_octaves, 1..=4, "");
-        visitor.number("opacity", &mut self.opacity, 0.0..=1000.0, "1/m");
-        visitor.number("scroll_speed", &mut self.scroll_speed, -100.0..=100.0, "m/s");
+settings! {
+    /// Numbers of the techniques `volumetric_hard` and `volumetric_soft`.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Volumetric {
+        /// Steps of the march through a sphere.
+        march_steps: u32 = 6, integer(2..=8, "");
+        /// Side of one tile of the noise, which fills the world.
+        noise_size: f32 = 2.5, number(0.01..=1000.0, "m");
+        /// Lookups into the noise for each step, each of three times the frequency and half the weight of the last.
+        noise_octaves: u32 = 2, integer(1..=4, "");
+        /// How fast the amount grows where the noise is densest.
+        opacity: f32 = 3.0, number(0.0..=1000.0, "1/m");
+        /// How fast the noise rises.
+        scroll_speed: f32 = 0.2, number(-100.0..=100.0, "m/s");
     }
 }

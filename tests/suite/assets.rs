@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use haze::noise_volume::NoiseRecipe;
+use haze::noise::NoiseRecipe;
 use haze::picture::read_png;
 use haze::ramp::bake::RampRecipe;
 use haze::ramp::motif::MotifRecipe;

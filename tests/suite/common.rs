@@ -4,9 +4,9 @@ use std::sync::OnceLock;
 
 use glam::{UVec2, UVec3, Vec4};
 use haze::headless::Headless;
-use haze::noise_volume::NoiseVolume;
+use haze::noise::NoiseVolume;
+use haze::picture::Picture;
 use haze::ramp::Ramp;
-use haze::reference::picture::Picture;
 use haze::sprite::Sprite;
 use haze::wgpu;
 

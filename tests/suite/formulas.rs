@@ -4,13 +4,14 @@
 use std::sync::OnceLock;
 
 use glam::{IVec2, UVec2, Vec2, Vec3, Vec4, vec3, vec4};
-use haze::gpu_types::LightUniform;
-use haze::noise::{pcg3d, unit};
-use haze::noise_volume::{NoiseRecipe, NoiseVolume};
-use haze::reference::{
-    depth, diffuse_bake, lighting, noise_volume, normal, ramp, soft_fade, sprite, technique, upsample, view,
+use haze::formula::uniforms::LightUniform;
+use haze::formula::{
+    blending, colour, depth, diffuse_bake, lighting, noise_volume, normal, ramp, soft_fade, sprite, technique,
+    upsample, view,
 };
-use haze::settings::{DepthDownsample, FadeCurve, NormalDecode, NormalEncoding, SpriteAnimation, Upsample};
+use haze::noise::{NoiseRecipe, NoiseVolume};
+use haze::noise::{pcg3d, unit};
+use haze::settings::{BlendMode, DepthDownsample, FadeCurve, NormalDecode, NormalEncoding, SpriteAnimation, Upsample};
 use haze::{ramp::Ramp, shader, sprite::Sprite, sprite::SpriteLayout};
 
 use crate::common::gpu;
@@ -55,6 +56,11 @@ fn with_choices(choices: u32, ranges: &[(f32, f32)]) -> Vec<Vec<f32>> {
         case
     };
     (0..).zip(random(40 * choices, ranges)).map(prefix).collect()
+}
+
+/// How many choices a setting has: a new one is tested without being named here.
+fn count<T>(choices: &[T]) -> u32 {
+    choices.len() as u32
 }
 
 fn unit_vectors(cases: Vec<Vec<f32>>, at: usize) -> Vec<Vec<f32>> {
@@ -169,7 +175,7 @@ fn formulas() -> Vec<Formula> {
                 let farthest = depth::depth_downsample_keeps_farthest(DepthDownsample::ALL[x[0] as usize], texel);
                 vec![if farthest { 1.0 } else { 0.0 }]
             },
-            cases: with_choices(3, &[(0.0, 9.0), (0.0, 9.0)]),
+            cases: with_choices(count(DepthDownsample::ALL), &[(0.0, 9.0), (0.0, 9.0)]),
             tolerance: 0.0,
             mutants: &[
                 ("(texel.x + texel.y) & 1", "(texel.x) & 1"),
@@ -231,7 +237,7 @@ fn formulas() -> Vec<Formula> {
             file: "lib/soft_fade.wgsl",
             wgsl: "y(0, soft_fade(u32(x(0)), x(1), x(2), x(3), x(4)));",
             reference: |x| vec![soft_fade::soft_fade(FadeCurve::ALL[x[0] as usize], x[1], x[2], x[3], x[4])],
-            cases: with_choices(5, &[(-0.5, 2.0), (0.2, 4.0), (0.5, 4.0), (0.0, 0.2)]),
+            cases: with_choices(count(FadeCurve::ALL), &[(-0.5, 2.0), (0.2, 4.0), (0.5, 4.0), (0.0, 0.2)]),
             tolerance: TRANSCENDENTAL,
             // Unsigned differences let sprites fade back in behind the surface.
             mutants: &[
@@ -267,7 +273,7 @@ fn formulas() -> Vec<Formula> {
                 let encoding = NormalEncoding::ALL[x[0] as usize];
                 normal::accumulation_from_normal(encoding, v3(&x[1..]), x[4]).to_array().to_vec()
             },
-            cases: with_choices(2, &[(-1.0, 1.0), (-1.0, 1.0), (-1.0, 1.0), (0.0, 1.0)]),
+            cases: with_choices(count(NormalEncoding::ALL), &[(-1.0, 1.0), (-1.0, 1.0), (-1.0, 1.0), (0.0, 1.0)]),
             tolerance: ARITHMETIC,
             // Not premultiplied: OTEE's first, wrong blend.
             mutants: &[
@@ -285,7 +291,8 @@ fn formulas() -> Vec<Formula> {
                 normal::normal_from_accumulation(encoding, decode, v4(&x[1..])).to_array().to_vec()
             },
             cases: {
-                let mut cases = with_choices(4, &[(-1.0, 1.0), (-1.0, 1.0), (-1.0, 1.0), (0.0, 1.0)]);
+                let choices = count(NormalEncoding::ALL) * count(NormalDecode::ALL);
+                let mut cases = with_choices(choices, &[(-1.0, 1.0), (-1.0, 1.0), (-1.0, 1.0), (0.0, 1.0)]);
                 // Empty texels face the viewer.
                 cases.extend((0..4).map(|choice| vec![choice as f32, 0.0, 0.0, 0.0, 0.0]));
                 cases
@@ -491,16 +498,16 @@ fn formulas() -> Vec<Formula> {
             },
             cases: {
                 let mut cases = with_choices(
-                    3,
+                    count(Upsample::ALL),
                     &[(0.0, 1.0), (0.0, 1.0), (4.0, 6.0), (4.0, 6.0), (4.0, 6.0), (4.0, 6.0), (4.0, 6.0)],
                 );
                 // Smooth floors, and a pixel whose surface no texel has seen.
                 cases.extend(with_choices(
-                    3,
+                    count(Upsample::ALL),
                     &[(0.0, 1.0), (0.0, 1.0), (4.9, 5.1), (4.9, 5.1), (4.9, 5.1), (4.9, 5.1), (4.9, 5.1)],
                 ));
                 cases.extend(with_choices(
-                    3,
+                    count(Upsample::ALL),
                     &[(0.0, 1.0), (0.0, 1.0), (4.0, 5.0), (4.0, 5.0), (4.0, 5.0), (4.0, 5.0), (30.0, 60.0)],
                 ));
                 cases
@@ -585,7 +592,7 @@ fn formulas() -> Vec<Formula> {
             file: "lib/sprite.wgsl",
             wgsl: "y(0, sprite_frame(u32(x(0)), x(1), x(2), x(3)));",
             reference: |x| vec![sprite::sprite_frame(SpriteAnimation::ALL[x[0] as usize], x[1], x[2], x[3])],
-            cases: with_choices(3, &[(0.0, 9.0), (-0.2, 1.2), (1.0, 9.0)]),
+            cases: with_choices(count(SpriteAnimation::ALL), &[(0.0, 9.0), (-0.2, 1.2), (1.0, 9.0)]),
             tolerance: ARITHMETIC,
             mutants: &[
                 ("frame_count - 1.0);", "frame_count);"),
@@ -778,6 +785,41 @@ fn formulas() -> Vec<Formula> {
             ],
         },
         Formula {
+            name: "srgb_from_linear",
+            file: "lib/colour.wgsl",
+            wgsl: "y(0, srgb_from_linear(x(0)));",
+            reference: |x| vec![colour::srgb_from_linear(x[0])],
+            cases: [random(100, &[(0.0, 1.0)]), random(50, &[(0.0, 0.01)])].concat(),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[("1.0 / 2.4", "1.0 / 2.2"), ("linear * 12.92", "linear")],
+        },
+        Formula {
+            name: "gamma_target_colour",
+            file: "lib/colour.wgsl",
+            wgsl: "let v = gamma_target_colour(vec3f(x(0), x(1), x(2))); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| colour::gamma_target_colour(v3(x)).to_array().to_vec(),
+            cases: random(100, &[(-0.5, 3.0); 3]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[("saturate(light)", "light"), ("srgb_from_linear(shown.g)", "shown.g")],
+        },
+        Formula {
+            name: "forward_fragment",
+            file: "lib/blending.wgsl",
+            wgsl: "let v = forward_fragment(u32(x(0)), vec3f(x(1), x(2), x(3)), x(4)); \
+                   y(0, v.x); y(1, v.y); y(2, v.z); y(3, v.w);",
+            reference: |x| {
+                blending::forward_fragment(BlendMode::ALL[x[0] as usize], v3(&x[1..]), x[4]).to_array().to_vec()
+            },
+            cases: with_choices(count(BlendMode::ALL), &[(0.0, 2.0), (0.0, 2.0), (0.0, 2.0), (0.0, 1.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[
+                // Not premultiplied.
+                ("vec4f(light, 1.0) * coverage", "vec4f(light, coverage)"),
+                ("light * coverage, 0.0", "light * coverage, coverage"),
+                ("min(light, vec3f(1.0))", "light"),
+            ],
+        },
+        Formula {
             name: "sample_noise_volume",
             file: "lib/noise_volume.wgsl",
             wgsl: "let v = sample_noise_volume(test_noise, test_sampler, vec3f(x(0), x(1), x(2))); \
@@ -903,6 +945,8 @@ const INDIRECT: &[&str] = &[
     "scene_view_depth",
     "sample_accumulation",
     "load_noise_volume",
+    "load_scene_depth",
+    "target_colour",
     "is_sphere",
     "is_volumetric",
     "sprite_thickness",

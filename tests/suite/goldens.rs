@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use glam::{UVec2, Vec4};
 use haze::builtin;
 use haze::demo::shot::Shot;
-use haze::picture::{read_png, srgb_from_linear, write_png};
-use haze::reference::picture::Picture;
+use haze::formula::colour::srgb_from_linear;
+use haze::picture::Picture;
+use haze::picture::{read_png, write_png};
 use haze::settings::{ShadeTree, Technique};
 use image::{DynamicImage, Rgb, RgbImage};
 

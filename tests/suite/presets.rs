@@ -3,7 +3,7 @@
 use glam::{UVec2, Vec4};
 use haze::builtin;
 use haze::demo::shot::Shot;
-use haze::reference::picture::Picture;
+use haze::picture::Picture;
 use haze::settings::*;
 
 use crate::common::{gpu, psnr};
@@ -79,7 +79,7 @@ fn every_setting_agrees() {
         add("forward", mode.name(), with(|s| (s.path, s.blend_mode) = (Path::Forward, mode)));
     }
     for stage in [ShadeTree::Final, ShadeTree::ReducedDepth] {
-        if !haze::descriptor::read_only_depth_is_supported(&gpu().device) {
+        if !haze::read_only_depth_is_supported(&gpu().device) {
             break;
         }
         let mut shot = with(|s| (s.accumulate.depth_source, s.accumulate.scale) = (DepthSource::Host, 1));

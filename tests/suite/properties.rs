@@ -2,8 +2,8 @@
 
 use glam::camera::rh::proj::directx;
 use glam::{Mat4, UVec2, Vec3, Vec4, vec3, vec4};
-use haze::descriptor::read_only_depth_is_supported;
-use haze::reference::blending::{premultiplied_over, quantise};
+use haze::read_only_depth_is_supported;
+use haze::reference::blend_unit::{premultiplied_over, quantise};
 use haze::settings::{AccumulationFormat, DepthSource, DiffuseMode, Path, ShadeTree, Upsample};
 use haze::{Bounds, Error, Light, Particle, Particles, wgpu};
 use proptest::prelude::*;
@@ -62,7 +62,7 @@ fn amount_on_the_gpu_does_not_depend_on_order() {
     let mut draw = |particles: &[Particle]| {
         let buffer = particle_buffer(particles);
         let count = particles.len() as u32;
-        host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, count }).unwrap();
+        host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count }).unwrap();
         host.picture(gpu()).unwrap()
     };
     let forwards = draw(&stage.particles);
@@ -344,7 +344,7 @@ fn order_matters_to_normals() {
     let buffer = particle_buffer(&front_to_back);
     let mut host = Host::new(gpu(), &stage).unwrap();
     let count = front_to_back.len() as u32;
-    host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, count }).unwrap();
+    host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count }).unwrap();
     assert!(psnr(&host.picture(gpu()).unwrap(), &sorted) < 45.0);
 }
 
@@ -360,7 +360,7 @@ fn many_lights_agree_and_too_many_are_refused() {
         specular_scatter: 0.0,
         ..Light::default()
     };
-    stage.lights = (0..haze::light::MAX_LIGHTS).map(light).collect();
+    stage.lights = (0..haze::frame::MAX_LIGHTS).map(light).collect();
     assert!(psnr(&stage.on_gpu(gpu()).picture, &stage.on_cpu()) >= 45.0);
     stage.lights.push(light(0));
     let Err(error) = stage.try_on_gpu(gpu()) else { panic!("129 lights passed") };
@@ -389,7 +389,10 @@ fn bad_frames_are_refused_by_name_and_draw_nothing() {
     let mut host = Host::new(gpu(), &stage).unwrap();
     stage.view.size += 1;
     let error = host.draw(gpu(), &stage).unwrap_err().to_string();
-    assert_eq!(error, "scene_depth: 160x90 is not valid; expected the size of the view, 161x91");
+    assert_eq!(
+        error,
+        "view.size: 161x91 from (0, 0) is not valid; expected the size of the scene depth, 160x90, or a part of it"
+    );
     // Particles on the GPU need a box.
     stage.view.size = SIZE;
     let buffer = gpu().device.create_buffer(&wgpu::BufferDescriptor {
@@ -400,7 +403,7 @@ fn bad_frames_are_refused_by_name_and_draw_nothing() {
     });
     let mut refused = |count, bounds| {
         stage.bounds = bounds;
-        let particles = Particles::Buffer { buffer: &buffer, count };
+        let particles = Particles::Buffer { buffer: &buffer, offset: 0, count };
         host.draw_particles(gpu(), &stage, particles).unwrap_err().to_string()
     };
     assert!(refused(2, None).starts_with("systems[0].bounds: None"));
@@ -482,7 +485,7 @@ fn the_library_never_submits() {
                 folders.push(path);
             } else if !path.is_dir() && !host {
                 let text = std::fs::read_to_string(&path).unwrap();
-                assert!(!text.contains(".submit(") && !text.contains(".poll("), "{}", path.display());
+                assert!(!text.contains(".submit(") && !text.contains("PollType"), "{}", path.display());
             }
         }
     }
@@ -537,7 +540,7 @@ fn garbage_in_a_hosts_buffer_is_not_drawn() {
     particles.push(Particle { amount: f32::NAN, ..good });
     let count = particles.len() as u32;
     let buffer = particle_buffer(&particles);
-    host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, count }).unwrap();
+    host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count }).unwrap();
     assert!(host.picture(gpu()).unwrap().texels.iter().all(|&texel| texel == BACKDROP));
     let targets = host.renderer.targets(0).unwrap();
     assert_eq!(non_finite_texels(gpu(), &targets.accumulation[0], targets.size), 0);

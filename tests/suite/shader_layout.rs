@@ -1,7 +1,7 @@
 //! Holds what Rust and WGSL both spell out: struct layouts, constants, and the numbers of the setting enums.
 
-use haze::gpu_types::{LightUniform, SystemUniform, ViewUniform};
-use haze::{Particle, light, settings, shader, view};
+use haze::formula::uniforms::{LightUniform, SystemUniform, UniformField, ViewUniform};
+use haze::{Particle, formula, frame, settings, shader};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 fn parse(name: &str, source: &str) -> naga::Module {
@@ -66,114 +66,26 @@ fn wgsl_struct(module: &naga::Module, name: &str) -> (Vec<(String, u32)>, u32) {
     (members.iter().map(|member| (member.name.clone().unwrap(), member.offset)).collect(), *span)
 }
 
-macro_rules! assert_layout {
-    ($module:expr, $wgsl:literal, $rust:ty, [$($field:ident),+ $(,)?]) => {
-        let rust = vec![$((stringify!($field).to_owned(), std::mem::offset_of!($rust, $field) as u32)),+];
-        let (members, size) = wgsl_struct(&$module, $wgsl);
-        // WGSL may spell padding out as scalars of other names; the rest must be there, in order.
-        let named = |list: &[(String, u32)]| -> Vec<(String, u32)> {
-            list.iter().filter(|(name, _)| !name.starts_with("padding")).cloned().collect()
-        };
-        assert_eq!(named(&members), named(&rust), $wgsl);
-        assert_eq!(size as usize, size_of::<$rust>(), $wgsl);
-        // Every byte of the Rust struct belongs to a listed field, so none was left out of the list.
-        let listed: usize = 0 $(+ size_of_field(|s: &$rust| &s.$field))+;
-        assert_eq!(listed, size_of::<$rust>(), "a field of {} is missing from the list", $wgsl);
+/// The fields of a Rust struct and its size against its WGSL twin.
+fn assert_layout(module: &naga::Module, wgsl: &str, fields: &[UniformField], size: usize) {
+    let (members, span) = wgsl_struct(module, wgsl);
+    let rust: Vec<_> = fields.iter().map(|&(name, offset, _)| (name.to_owned(), offset as u32)).collect();
+    // WGSL may spell padding out as scalars of other names; the rest must be there, in order.
+    let named = |list: &[(String, u32)]| -> Vec<(String, u32)> {
+        list.iter().filter(|(name, _)| !name.starts_with("padding")).cloned().collect()
     };
-}
-
-fn size_of_field<S, T>(_: impl Fn(&S) -> &T) -> usize {
-    size_of::<T>()
+    assert_eq!(named(&members), named(&rust), "{wgsl}");
+    assert_eq!(span as usize, size, "{wgsl}");
+    // No hole between the fields: every byte that is uploaded belongs to one.
+    assert_eq!(fields.iter().map(|(_, _, size)| size).sum::<usize>(), size, "{wgsl}");
 }
 
 #[test]
 fn structs_agree() {
     let module = composed("lib/bindings.wgsl");
-    assert_layout!(
-        module,
-        "View",
-        ViewUniform,
-        [
-            view_from_world,
-            clip_from_view,
-            depth_coefficients,
-            ray_scale,
-            ray_offset,
-            size,
-            near,
-            far,
-            orthographic,
-            padding,
-        ]
-    );
-    assert_layout!(
-        module,
-        "Light",
-        LightUniform,
-        [
-            position,
-            inverse_range,
-            direction,
-            directional,
-            colour,
-            specular_scatter,
-            spot_scale,
-            spot_offset,
-            radius,
-            padding,
-        ]
-    );
-    assert_layout!(
-        module,
-        "System",
-        SystemUniform,
-        [
-            bounds_min,
-            bounds_near,
-            bounds_max,
-            bounds_far,
-            bounds_centre,
-            plane_depth,
-            scatter_colour,
-            scatter_amount,
-            ambient_colour,
-            scatter_smooth,
-            target_from_ndc,
-            target_origin,
-            target_size,
-            scale,
-            depth_limit,
-            sprite_size,
-            frame_count,
-            opacity,
-            boost,
-            fade_scale,
-            contrast_power,
-            epsilon,
-            near_fade_start,
-            near_fade_end,
-            diffuse_intensity,
-            soft_scatter_intensity,
-            specular_scatter_size,
-            specular_scatter_intensity,
-            light_count,
-            size,
-            motion,
-            age_colour,
-            detail_lod,
-            billboard_radius,
-            billboard_density,
-            density,
-            noise_size,
-            volume_opacity,
-            march_steps,
-            noise_octaves,
-            noise_scroll,
-            fade_through,
-            padding,
-            spherical_harmonics,
-        ]
-    );
+    assert_layout(&module, "View", ViewUniform::FIELDS, size_of::<ViewUniform>());
+    assert_layout(&module, "Light", LightUniform::FIELDS, size_of::<LightUniform>());
+    assert_layout(&module, "System", SystemUniform::FIELDS, size_of::<SystemUniform>());
 }
 
 #[test]
@@ -208,12 +120,12 @@ fn constant(module: &naga::Module, name: &str) -> f64 {
 #[test]
 fn constants_agree() {
     let transfer = composed("transfer.wgsl");
-    assert_eq!(constant(&transfer, "MAX_LIGHTS"), light::MAX_LIGHTS as f64);
-    assert_eq!(constant(&transfer, "SKY_VIEW_DEPTH"), f64::from(view::SKY_VIEW_DEPTH));
+    assert_eq!(constant(&transfer, "MAX_LIGHTS"), frame::MAX_LIGHTS as f64);
+    assert_eq!(constant(&transfer, "SKY_VIEW_DEPTH"), f64::from(formula::depth::SKY_VIEW_DEPTH));
     let accumulate = composed("accumulate.wgsl");
-    assert_eq!(constant(&accumulate, "LARGEST"), f64::from(haze::particle::LARGEST));
-    assert_eq!(constant(&accumulate, "MOTION_RANGE"), f64::from(haze::sprite::detail::MOTION_RANGE));
-    assert_eq!(constant(&transfer, "SAME_SURFACE"), f64::from(haze::reference::upsample::SAME_SURFACE));
+    assert_eq!(constant(&accumulate, "LARGEST"), f64::from(frame::LARGEST));
+    assert_eq!(constant(&accumulate, "MOTION_RANGE"), f64::from(formula::sprite::MOTION_RANGE));
+    assert_eq!(constant(&transfer, "SAME_SURFACE"), f64::from(formula::upsample::SAME_SURFACE));
 }
 
 macro_rules! assert_choices {

@@ -3,11 +3,11 @@
 use glam::camera::rh;
 use glam::{Mat4, UVec2, UVec3, Vec2, Vec3, Vec4, vec3};
 use haze::headless::Headless;
+use haze::noise::{NoiseRecipe, NoiseVolume};
 use haze::noise::{pcg3d, unit};
-use haze::noise_volume::{NoiseRecipe, NoiseVolume};
+use haze::picture::Picture;
 use haze::ramp::Ramp;
-use haze::reference::picture::Picture;
-use haze::reference::renderer as reference;
+use haze::reference;
 use haze::settings::{Settings, ShadeTree};
 use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Bounds, Descriptor, Frame, Light, MaterialAssets, Particle, Particles, Renderer, SceneDepth, System, View};
@@ -117,7 +117,7 @@ impl Stage {
             }
         };
         Self {
-            view: View { view_from_world: Mat4::IDENTITY, clip_from_view: perspective(size), size },
+            view: View::new(Mat4::IDENTITY, perspective(size), size),
             lights: vec![
                 Light {
                     position: vec3(-4.0, 2.0, -4.0),
@@ -137,7 +137,7 @@ impl Stage {
             wall_everywhere: false,
             empty_linear: false,
             // OpenGL cannot test and sample one depth buffer in one pass.
-            attach_depth: haze::descriptor::read_only_depth_is_supported(&gpu().device),
+            attach_depth: haze::read_only_depth_is_supported(&gpu().device),
         }
     }
 
@@ -210,7 +210,7 @@ impl Host {
         if !stage.attach_depth {
             descriptor.depth_format = None;
         }
-        let renderer = Renderer::new(&gpu.device, &descriptor);
+        let renderer = Renderer::new(&gpu.device, &gpu.queue, &descriptor)?;
         let material = renderer.create_material(&gpu.device, &gpu.queue, &stage.material)?;
         let colour = gpu.target("host colour", stage.view.size, wgpu::TextureFormat::Rgba16Float);
         let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
@@ -233,7 +233,7 @@ impl Host {
                 DepthKind::Both => SceneDepth::Both { buffer: &self.depth_view, linear: &self.linear_view },
             },
             lights: &stage.lights,
-            systems: &[System { particles, bounds: stage.bounds, settings: &stage.settings, material: &self.material }],
+            systems: &[System { bounds: stage.bounds, ..System::new(particles, &stage.settings, &self.material) }],
             time: stage.time,
             shade_tree: stage.shade_tree,
         };
@@ -300,7 +300,7 @@ fn depth_textures(gpu: &Headless, stage: &Stage) -> (wgpu::Texture, wgpu::Textur
     let ndc = upload(&stage.ndc_depth().texels);
     let mut linear = Picture::new(size, 0.0);
     let seen = |at| stage.view_depth(at).filter(|_| !stage.empty_linear);
-    linear.for_each(|at, texel| *texel = seen(at).unwrap_or(haze::view::SKY_VIEW_DEPTH));
+    linear.for_each(|at, texel| *texel = seen(at).unwrap_or(haze::formula::depth::SKY_VIEW_DEPTH));
     let linear = upload(&linear.texels);
 
     let depth = gpu.target("host depth", size, wgpu::TextureFormat::Depth32Float);

@@ -2,7 +2,7 @@
 
 use glam::camera::rh::proj::directx;
 use glam::{Mat4, UVec2, Vec2, Vec3, vec3};
-use haze::reference::sprite::flipbook_frames;
+use haze::formula::sprite::flipbook_frames;
 use haze::settings::*;
 use haze::sprite::bake::SpriteRecipe;
 use haze::sprite::{Sprite, SpriteLayout};
@@ -156,8 +156,8 @@ fn motion_brings_frames_between_frames_closer_to_what_they_should_be() {
         let frames = flipbook_frames(frame, sprite.frame_count() as f32);
         for index in 0..64 * 64_u32 {
             let uv = (Vec2::new((index % 64) as f32, (index / 64) as f32) + 0.5) / 64.0;
-            let motion = haze::reference::sprite::sample_detail(&detail, uv, frames, 0.0);
-            let amount = |motion| haze::reference::sprite::sample_sprite(&sprite, uv, frames, motion, 0.0).w;
+            let motion = haze::formula::sprite::sample_detail(&detail, uv, frames, 0.0);
+            let amount = |motion| haze::formula::sprite::sample_sprite(&sprite, uv, frames, motion, 0.0).w;
             let wanted = truth.texel(0, 0, index % 64, index / 64).w;
             blended += (amount(Vec2::ZERO) - wanted).powi(2);
             moved += (amount(Vec2::new(motion.y, motion.z)) - wanted).powi(2);
@@ -411,13 +411,13 @@ fn degenerate_input_is_finite_or_refused_by_name() {
 fn the_linear_target_must_be_there_to_be_read() {
     let mut stage = stage(Technique::SoftLinear);
     stage.depth = DepthKind::Buffer;
-    stage.attach_depth = haze::descriptor::read_only_depth_is_supported(&gpu().device);
+    stage.attach_depth = haze::read_only_depth_is_supported(&gpu().device);
     let error = stage.try_on_gpu(gpu()).map(|_| ()).unwrap_err().to_string();
     assert!(error.starts_with("systems[0].settings.technique: \"soft_linear\"") && error.contains("Both"), "{error}");
     // It is the linear target that is read: one that says "nothing there" shows what the depth buffer hides.
     let mut stage = wall(Technique::Soft, 6.4);
     stage.empty_linear = true;
-    let buffer_is_read = haze::descriptor::read_only_depth_is_supported(&gpu().device);
+    let buffer_is_read = haze::read_only_depth_is_supported(&gpu().device);
     assert_eq!(amount(&stage) > 0.0, !buffer_is_read);
     stage.settings.technique = Technique::SoftLinear;
     assert!(amount(&stage) > 0.0);

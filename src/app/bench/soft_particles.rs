@@ -6,8 +6,8 @@ use std::path::Path;
 use clap::Args;
 use haze::Error;
 use haze::demo::shot::Shot;
-use haze::descriptor::read_only_depth_is_supported;
 use haze::preset::Preset;
+use haze::read_only_depth_is_supported;
 use haze::settings::{DepthSource, Technique};
 
 use crate::app::cost::{Timer, interleaved};

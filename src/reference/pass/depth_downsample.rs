@@ -2,11 +2,10 @@
 
 use glam::IVec2;
 
-use crate::reference::depth::depth_downsample_keeps_farthest;
-use crate::reference::picture::Picture;
-use crate::reference::renderer::Draw;
+use crate::assets::picture::Picture;
+use crate::formula::depth::{SKY_VIEW_DEPTH, depth_downsample_keeps_farthest};
+use crate::reference::draw::Draw;
 use crate::settings::{DepthDownsample, DepthSource};
-use crate::view::SKY_VIEW_DEPTH;
 
 impl Draw<'_> {
     pub fn depth_downsample(&self) -> Picture<f32> {

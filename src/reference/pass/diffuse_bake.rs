@@ -3,13 +3,12 @@
 use glam::{UVec2, Vec3};
 use half::f16;
 
-use crate::gpu_types::LightUniform;
-use crate::pass::diffuse_bake::size_and_layers;
-use crate::reference::diffuse_bake::{cube_direction, motif_normal};
-use crate::reference::lighting::{diffuse_coordinate, sample_light, soft_scatter_weight};
-use crate::reference::picture::Picture;
-use crate::reference::ramp::sample_ramp;
-use crate::reference::renderer::Draw;
+use crate::assets::picture::Picture;
+use crate::formula::diffuse_bake::{baked_size_and_layers, cube_direction, motif_normal};
+use crate::formula::lighting::{diffuse_coordinate, sample_light, soft_scatter_weight};
+use crate::formula::ramp::sample_ramp;
+use crate::formula::uniforms::LightUniform;
+use crate::reference::draw::Draw;
 use crate::settings::{DiffuseMode, SoftScatterMode};
 
 impl Draw<'_> {
@@ -37,7 +36,7 @@ impl Draw<'_> {
     /// Faces of the cubemap, or the motif; the first row is −1.
     pub fn diffuse_bake(&self) -> Vec<Picture<Vec3>> {
         let mode = self.settings.diffuse.mode;
-        let Some((side, layers)) = size_and_layers(mode) else { return Vec::new() };
+        let Some((side, layers)) = baked_size_and_layers(mode) else { return Vec::new() };
         let face = |face: i32| {
             let mut baked = Picture::new(UVec2::splat(side), Vec3::ZERO);
             baked.for_each(|at, texel| {

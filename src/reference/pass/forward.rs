@@ -2,12 +2,13 @@
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
-use super::accumulate::Grid;
-use crate::reference::blending::{forward_blend, forward_fragment};
-use crate::reference::lighting::coverage;
-use crate::reference::picture::Picture;
-use crate::reference::ramp::sample_ramp;
-use crate::reference::renderer::Draw;
+use crate::assets::picture::Picture;
+use crate::formula::blending::forward_fragment;
+use crate::formula::lighting::coverage;
+use crate::formula::ramp::sample_ramp;
+use crate::reference::blend_unit::forward_blend;
+use crate::reference::draw::Draw;
+use crate::reference::sprite::Grid;
 
 impl Draw<'_> {
     pub fn forward(&self, picture: &mut Picture<Vec4>) {

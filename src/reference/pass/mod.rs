@@ -5,4 +5,4 @@ mod depth_downsample;
 mod diffuse_bake;
 mod forward;
 mod specular_scatter;
-pub(super) mod transfer;
+mod transfer;

@@ -2,14 +2,14 @@
 
 use glam::{Vec2, Vec4, Vec4Swizzles};
 
-use super::transfer::Smoke;
-use crate::reference::lighting::specular_scatter_fade;
-use crate::reference::picture::Picture;
-use crate::reference::ramp::sample_ramp_2d;
-use crate::reference::view::pixel_from_ndc;
-use crate::view::SKY_VIEW_DEPTH;
+use crate::assets::picture::Picture;
+use crate::formula::depth::SKY_VIEW_DEPTH;
+use crate::formula::lighting::specular_scatter_fade;
+use crate::formula::ramp::sample_ramp_2d;
+use crate::formula::view::pixel_from_ndc;
+use crate::reference::accumulated::Accumulated;
 
-impl Smoke<'_> {
+impl Accumulated<'_> {
     pub fn specular_scatter(&self, picture: &mut Picture<Vec4>) {
         let draw = self.draw;
         let (size, view) = (draw.system.specular_scatter_size, &draw.view);

@@ -1,53 +1,18 @@
-//! `shaders/transfer.wgsl` and `shaders/lib/accumulated.wgsl`.
+//! `shaders/transfer.wgsl`.
 
 use glam::{IVec2, Vec2, Vec3, Vec4};
 
-use crate::reference::blending::premultiplied_over;
-use crate::reference::diffuse_bake::{cube_coordinate, motif_position, spherical_harmonics};
-use crate::reference::lighting::coverage;
-use crate::reference::normal::normal_from_accumulation;
-use crate::reference::picture::Picture;
-use crate::reference::ramp::sample_ramp_2d;
-use crate::reference::renderer::Draw;
-use crate::reference::saturate;
-use crate::reference::upsample::upsample_weights;
-use crate::settings::{DiffuseMode, ShadeTree, Upsample};
+use crate::assets::picture::Picture;
+use crate::formula::diffuse_bake::{cube_coordinate, motif_position, spherical_harmonics};
+use crate::formula::lighting::coverage;
+use crate::formula::normal::normal_from_accumulation;
+use crate::formula::ramp::sample_ramp_2d;
+use crate::formula::saturate;
+use crate::reference::accumulated::Accumulated;
+use crate::reference::blend_unit::premultiplied_over;
+use crate::settings::{DiffuseMode, ShadeTree};
 
-/// A system's finished target.
-pub struct Smoke<'a> {
-    pub draw: &'a Draw<'a>,
-    pub baked: Vec<Picture<Vec3>>,
-    pub reduced_depth: Picture<f32>,
-    pub accumulation: Picture<Vec4>,
-}
-
-impl Smoke<'_> {
-    /// `sample_accumulation()` in accumulated.wgsl.
-    pub fn sample_accumulation(&self, pixel: Vec2) -> Vec4 {
-        let system = &self.draw.system;
-        let texel = pixel / system.scale - system.target_origin;
-        if texel.cmplt(Vec2::ZERO).any() || texel.cmpge(system.target_size).any() {
-            return Vec4::ZERO;
-        }
-        if system.scale < 1.5 {
-            return self.accumulation.load(texel.as_ivec2());
-        }
-        let upsample = self.draw.settings.accumulate.upsample;
-        let corner = texel - 0.5;
-        let base = corner.floor();
-        let offsets = [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE];
-        let taps = offsets.map(|offset| base.as_ivec2() + offset);
-        let (depths, depth) = match upsample {
-            Upsample::Bilinear => (Vec4::ZERO, 0.0),
-            _ => {
-                let depth = self.draw.scene_view_depth(pixel.as_ivec2()).min(system.depth_limit);
-                (Vec4::from(taps.map(|tap| self.reduced_depth.load(tap))), depth)
-            }
-        };
-        let weights = upsample_weights(upsample, corner - base, depths, depth);
-        taps.iter().zip(weights.to_array()).map(|(&tap, weight)| self.accumulation.load(tap) * weight).sum()
-    }
-
+impl Accumulated<'_> {
     pub fn sample_baked(&self, position: Vec2, layer: usize) -> Vec3 {
         let baked = &self.baked[layer];
         let unit = (position * 0.5 + 0.5).clamp(Vec2::ZERO, Vec2::ONE);

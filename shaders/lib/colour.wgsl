@@ -1,0 +1,27 @@
+// Light and its sRGB code.
+
+// True: the host's target holds sRGB code, and the hardware takes it for linear.
+override GAMMA_TARGET: bool = false;
+
+// Linear to sRGB 0..1. (IEC 61966-2-1)
+fn srgb_from_linear(linear: f32) -> f32 {
+    if linear <= 0.0031308 {
+        return linear * 12.92;
+    }
+    return 1.055 * pow(linear, 1.0 / 2.4) - 0.055;
+}
+
+// What is written to a target that holds sRGB code without the hardware knowing it: linear light clamped to what such a
+// target can show, and encoded.
+fn gamma_target_colour(light: vec3f) -> vec3f {
+    let shown = saturate(light);
+    return vec3f(srgb_from_linear(shown.r), srgb_from_linear(shown.g), srgb_from_linear(shown.b));
+}
+
+// Light as the host's target holds it.
+fn target_colour(light: vec3f) -> vec3f {
+    if GAMMA_TARGET {
+        return gamma_target_colour(light);
+    }
+    return light;
+}

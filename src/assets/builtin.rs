@@ -1,0 +1,132 @@
+//! The ramps, sprites and presets that come with haze, embedded.
+
+use std::path::{Path, PathBuf};
+
+use super::json;
+use super::noise::NoiseVolume;
+use super::picture::decode_png;
+use super::ramp::Ramp;
+use super::sprite::bake::SpriteRecipe;
+use super::sprite::{Sprite, SpriteLayout};
+use crate::error::Error;
+
+/// A built-in file: its name and contents.
+#[derive(Clone, Copy, Debug)]
+pub struct Builtin {
+    /// Name without folder and extension.
+    pub name: &'static str,
+    /// The PNG, or the preset's JSON.
+    pub bytes: &'static [u8],
+    /// The JSON it was made from; empty for presets and details.
+    pub recipe: &'static str,
+}
+
+macro_rules! builtin {
+    ($folder:literal, $kind:literal, [$($name:literal),+ $(,)?]) => {
+        &[$(Builtin {
+            name: $name,
+            bytes: include_bytes!(concat!("../../", $folder, "/", $name, ".png")),
+            recipe: include_str!(concat!("../../", $folder, "/", $name, $kind)),
+        }),+]
+    };
+}
+
+/// Diffuse, soft scatter and specular ramps. `ramps/README.md`.
+pub const RAMPS: &[Builtin] = builtin!(
+    "ramps",
+    ".ramp.json",
+    [
+        "diffuse_soft",
+        "diffuse_dusk",
+        "diffuse_ember",
+        "diffuse_overcast",
+        "scatter_mist",
+        "scatter_soot",
+        "specular_halo",
+        "specular_ember",
+        "age_smoke",
+    ]
+);
+
+/// Painted lit spheres.
+pub const MOTIFS: &[Builtin] = builtin!("ramps", ".motif.json", ["motif_studio"]);
+
+/// Flipbooks of normal maps.
+pub const SPRITES: &[Builtin] = builtin!("sprites", ".sprite.json", ["puff", "wisp", "billow"]);
+
+/// Depth and motion of the flipbooks, by the same names.
+pub const DETAILS: &[Builtin] = &[
+    Builtin { name: "puff", bytes: include_bytes!("../../sprites/puff.detail.png"), recipe: "" },
+    Builtin { name: "wisp", bytes: include_bytes!("../../sprites/wisp.detail.png"), recipe: "" },
+    Builtin { name: "billow", bytes: include_bytes!("../../sprites/billow.detail.png"), recipe: "" },
+];
+
+/// Tiling 3D noise.
+pub const NOISES: &[Builtin] = builtin!("sprites", ".noise.json", ["fbm"]);
+
+macro_rules! presets {
+    ([$($name:literal),+ $(,)?]) => {
+        &[$(Builtin {
+            name: $name,
+            bytes: include_bytes!(concat!("../../presets/", $name, ".json")),
+            recipe: "",
+        }),+]
+    };
+}
+
+/// The presets; the first is the default.
+pub const PRESETS: &[Builtin] =
+    presets!(["column", "backlit_fog", "corridor", "explosion", "fence", "inside", "crates"]);
+
+/// Finds a built-in by name.
+pub fn find(list: &'static [Builtin], name: &str) -> Option<&'static Builtin> {
+    list.iter().find(|builtin| builtin.name == name)
+}
+
+/// The name that errors give a built-in file.
+pub fn path(name: &str) -> PathBuf {
+    Path::new("builtin:").join(name)
+}
+
+impl Builtin {
+    /// Decodes a ramp or a motif.
+    ///
+    /// # Errors
+    /// As [`decode_png`].
+    pub fn ramp(&self) -> Result<Ramp, Error> {
+        Ok(Ramp::from_picture(&decode_png(&path(self.name), self.bytes)?))
+    }
+
+    /// Decodes a sprite, laid out as its recipe says.
+    ///
+    /// # Errors
+    /// As [`decode_png`] and [`Sprite::from_picture`].
+    pub fn sprite(&self) -> Result<Sprite, Error> {
+        let path = path(self.name);
+        let recipe: SpriteRecipe = json::parse(&path, self.recipe)?;
+        self.decode(recipe.layout())
+    }
+
+    /// Decodes the sprite's detail map.
+    ///
+    /// # Errors
+    /// As [`Builtin::sprite`].
+    pub fn detail(&self) -> Result<Option<Sprite>, Error> {
+        let recipe: SpriteRecipe = json::parse(&path(self.name), self.recipe)?;
+        find(DETAILS, self.name).map(|detail| detail.decode(recipe.layout())).transpose()
+    }
+
+    fn decode(&self, layout: SpriteLayout) -> Result<Sprite, Error> {
+        let path = path(self.name);
+        Sprite::from_picture(&path, &decode_png(&path, self.bytes)?.to_rgba8(), layout)
+    }
+
+    /// Decodes a noise.
+    ///
+    /// # Errors
+    /// As [`decode_png`] and [`NoiseVolume::from_picture`].
+    pub fn noise(&self) -> Result<NoiseVolume, Error> {
+        let path = path(self.name);
+        NoiseVolume::from_picture(&path, &decode_png(&path, self.bytes)?.to_rgba8())
+    }
+}

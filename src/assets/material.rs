@@ -1,0 +1,89 @@
+//! The pictures of a particle system in memory: its ramps, its sprite flipbook and what belongs to it.
+
+use glam::Vec3;
+
+use super::noise::NoiseVolume;
+use super::ramp::Ramp;
+use super::sprite::Sprite;
+use crate::error::FieldError;
+use crate::formula::diffuse_bake::zonal_coefficients;
+use crate::formula::ramp::sample_ramp;
+use crate::settings::Settings;
+
+/// The pictures in memory. The reference renderer works on these; the GPU renderer uploads them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MaterialAssets {
+    /// Flipbook of normal maps.
+    pub sprite: Sprite,
+    /// Depth and motion of the sprite, frame by frame: see [`sprite::detail`](crate::assets::sprite::detail). Depth sprites and
+    /// `sprite.motion` need it.
+    pub detail: Option<Sprite>,
+    /// What volumetric sprites are made of.
+    pub noise: NoiseVolume,
+    /// Light by dot(n, l)/2 + 1/2: facing away at 0, facing the light at 1. One row.
+    pub diffuse_ramp: Ramp,
+    /// Light by amount, for [`SoftScatterMode::Ramp`](crate::settings::SoftScatterMode::Ramp). One row.
+    pub soft_scatter_ramp: Ramp,
+    /// Glow by distance² (across) and amount (up).
+    pub specular_ramp: Ramp,
+    /// A painted lit sphere, for [`DiffuseMode::PaintedMotif`](crate::settings::DiffuseMode::PaintedMotif).
+    pub motif: Ramp,
+    /// Colour of a particle by its age, forward only. One row. (MS)
+    pub age_ramp: Ramp,
+}
+
+impl MaterialAssets {
+    pub(crate) fn info(&self) -> MaterialInfo {
+        MaterialInfo {
+            sprite_size: self.sprite.size() as f32,
+            frame_count: self.sprite.frame_count() as f32,
+            detail: self.detail.as_ref().map(|detail| DetailInfo {
+                frame_count: detail.frame_count(),
+                lod: (self.sprite.size() as f32 / detail.size() as f32).log2(),
+            }),
+            zonal: zonal_coefficients(|cos| sample_ramp(&self.diffuse_ramp, cos * 0.5 + 0.5)),
+        }
+    }
+}
+
+/// What a frame needs to know of a material's pictures.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MaterialInfo {
+    pub sprite_size: f32,
+    pub frame_count: f32,
+    pub detail: Option<DetailInfo>,
+    /// Zonal harmonics of the diffuse ramp.
+    pub zonal: [Vec3; 3],
+}
+
+/// What it needs to know of a detail map.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DetailInfo {
+    pub frame_count: u32,
+    /// Mip levels that it is smaller than the sprite.
+    pub lod: f32,
+}
+
+impl MaterialInfo {
+    /// Refuses settings that need a picture which the material of system `index` lacks.
+    pub fn validate(&self, index: usize, settings: &Settings) -> Result<(), FieldError> {
+        let refuse = |field: &str, value: String, expected: String| {
+            Err(FieldError::new(format!("systems[{index}].{field}"), value, expected))
+        };
+        let Some(detail) = &self.detail else {
+            let expected = || "another, or a detail map in the material, as `haze sprite bake` makes it".to_owned();
+            if settings.technique.is_depth_sprite() {
+                return refuse("settings.technique", format!("{:?}", settings.technique.name()), expected());
+            }
+            if settings.sprite.motion > 0.0 {
+                return refuse("settings.sprite.motion", settings.sprite.motion.to_string(), expected());
+            }
+            return Ok(());
+        };
+        if detail.frame_count != self.frame_count as u32 {
+            let expected = format!("as many as the sprite has, {}", self.frame_count);
+            return refuse("material.detail", format!("{} frames", detail.frame_count), expected);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,60 @@
+//! Pictures in memory, and threads over their rows; PNG in and out.
+
+mod png;
+
+pub use png::{MAX_SIDE, decode_png, read_png, write_file, write_png};
+
+use std::sync::{Mutex, PoisonError};
+
+use glam::{IVec2, UVec2};
+
+/// A rectangle of texels, row by row from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture<T> {
+    /// Width and height.
+    pub size: UVec2,
+    /// `size.x * size.y` texels.
+    pub texels: Vec<T>,
+}
+
+impl<T: Copy + Send> Picture<T> {
+    /// A picture of one colour.
+    pub fn new(size: UVec2, texel: T) -> Self {
+        Self { size, texels: vec![texel; (size.x * size.y) as usize] }
+    }
+
+    /// The texel at a place inside the picture; places outside are clamped to the border.
+    pub fn load(&self, at: IVec2) -> T {
+        let at = at.clamp(IVec2::ZERO, self.size.as_ivec2() - 1).as_uvec2();
+        self.texels[(at.y * self.size.x + at.x) as usize]
+    }
+
+    /// Calls `f(first_row, rows)` for bands of rows, on all processors.
+    pub fn for_bands(&mut self, f: impl Fn(u32, &mut [T]) + Sync) {
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let width = self.size.x as usize;
+        // More bands than threads: smoke is rarely spread evenly.
+        let rows = (self.size.y as usize).div_ceil(threads * 4).max(1);
+        let bands = Mutex::new(self.texels.chunks_mut(rows * width).enumerate());
+        let next = || bands.lock().unwrap_or_else(PoisonError::into_inner).next();
+        std::thread::scope(|scope| {
+            for _ in 0..threads {
+                scope.spawn(|| {
+                    while let Some((index, band)) = next() {
+                        f((index * rows) as u32, band);
+                    }
+                });
+            }
+        });
+    }
+
+    /// Calls `f(position, texel)` for every texel, on all processors.
+    pub fn for_each(&mut self, f: impl Fn(UVec2, &mut T) + Sync) {
+        let width = self.size.x;
+        self.for_bands(|first_row, band| {
+            for (index, texel) in (0u32..).zip(band.iter_mut()) {
+                f(UVec2::new(index % width, first_row + index / width), texel);
+            }
+        });
+    }
+}

@@ -1,0 +1,111 @@
+//! PNG in and out, with the limits that any file from outside must respect.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use image::{DynamicImage, ImageDecoder, Limits};
+
+use crate::error::Error;
+
+/// Largest side of a picture that is read, pixels.
+pub const MAX_SIDE: u32 = 4096;
+/// Most memory that decoding a picture may take.
+const MAX_BYTES: u64 = 64 << 20;
+
+/// Decodes a PNG held in memory. `path` is only named in errors.
+///
+/// # Errors
+/// [`Error::Image`] for a broken file, one that is no PNG, or one beyond 4096 pixels a side or 64 MiB.
+pub fn decode_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Error> {
+    let error = |reason: String| Error::Image { path: path.into(), reason };
+    if !bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
+        return Err(error("not a PNG file; export it as PNG".into()));
+    }
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(MAX_SIDE);
+    limits.max_image_height = Some(MAX_SIDE);
+    limits.max_alloc = Some(MAX_BYTES);
+    let decode = || {
+        let mut decoder = image::codecs::png::PngDecoder::with_limits(Cursor::new(bytes), limits.clone())?;
+        decoder.set_limits(limits.clone())?;
+        DynamicImage::from_decoder(decoder)
+    };
+    decode().map_err(|reason| {
+        error(format!(
+            "{reason}; expected a whole PNG of at most {MAX_SIDE}x{MAX_SIDE} pixels and {} MiB",
+            MAX_BYTES >> 20
+        ))
+    })
+}
+
+/// Reads and decodes a PNG file.
+///
+/// # Errors
+/// [`Error::Io`] when it cannot be read, else as [`decode_png`].
+pub fn read_png(path: &Path) -> Result<DynamicImage, Error> {
+    let bytes = std::fs::read(path).map_err(|error| Error::Io { path: path.into(), error })?;
+    decode_png(path, &bytes)
+}
+
+/// Writes a PNG beside its final place and moves it there, so that a reader never sees half a file and a failed write
+/// leaves the old one.
+///
+/// # Errors
+/// [`Error::Io`] when it cannot be written.
+pub fn write_png(path: &Path, picture: &DynamicImage) -> Result<(), Error> {
+    let io = |error: std::io::Error| Error::Io { path: path.into(), error };
+    let mut bytes = Vec::new();
+    let encoder = image::codecs::png::PngEncoder::new_with_quality(
+        &mut bytes,
+        image::codecs::png::CompressionType::Best,
+        image::codecs::png::FilterType::Adaptive,
+    );
+    picture.write_with_encoder(encoder).map_err(|error| io(std::io::Error::other(error)))?;
+    write_file(path, &bytes)
+}
+
+/// Writes a file beside its final place and moves it there.
+///
+/// # Errors
+/// [`Error::Io`] when it cannot be written.
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    let io = |error: std::io::Error| Error::Io { path: path.into(), error };
+    // A link stays one, and what it points to is replaced.
+    let target = std::fs::canonicalize(path).unwrap_or_else(|_| path.into());
+    let path = target.as_path();
+    let mut name = path.file_name().unwrap_or_default().to_os_string();
+    name.push(format!(".{}.partial", std::process::id()));
+    let partial = path.with_file_name(name);
+    std::fs::write(&partial, bytes).and_then(|()| std::fs::rename(&partial, path)).map_err(|error| {
+        let _ = std::fs::remove_file(&partial);
+        io(error)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bad_pictures_are_one_error_that_names_the_file() {
+        let path = Path::new("ramps/broken.png");
+        let message = |bytes: &[u8]| decode_png(path, bytes).unwrap_err().to_string();
+        assert!(message(b"GIF89a").starts_with("ramps/broken.png: not a PNG"));
+        assert!(message(b"\x89PNG\r\n\x1a\n garbage").starts_with("ramps/broken.png: "));
+        // A header that promises 100000 x 100000 pixels is refused before anything is allocated.
+        let mut huge = Vec::new();
+        DynamicImage::new_rgb8(1, 1).write_to(&mut Cursor::new(&mut huge), image::ImageFormat::Png).unwrap();
+        huge[16..20].copy_from_slice(&100_000_u32.to_be_bytes());
+        huge[20..24].copy_from_slice(&100_000_u32.to_be_bytes());
+        assert!(message(&huge).contains("4096x4096"), "{}", message(&huge));
+    }
+
+    #[test]
+    fn a_failed_write_leaves_nothing_behind() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("missing").join("a.png");
+        assert!(write_png(&path, &DynamicImage::new_rgb8(2, 2)).is_err());
+        write_png(&folder.path().join("a.png"), &DynamicImage::new_rgb8(2, 2)).unwrap();
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+}

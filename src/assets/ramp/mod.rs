@@ -1,0 +1,80 @@
+//! Ramps: the small textures that an artist paints the light with. `ramps/README.md` has axes, sizes and colour space.
+
+pub mod bake;
+pub mod motif;
+
+use std::path::Path;
+
+use glam::{UVec2, Vec3, Vec4};
+use half::f16;
+use image::DynamicImage;
+
+use crate::assets::picture::read_png;
+use crate::error::Error;
+use crate::formula::colour::linear_from_srgb;
+use crate::formula::texture::Texture2d;
+
+/// A decoded ramp: linear RGB, half floats as the GPU holds them. One row for a 1D ramp.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ramp {
+    size: UVec2,
+    texels: Vec<[f16; 4]>,
+}
+
+impl Ramp {
+    /// Builds a ramp from linear colours, row by row, the row for 0 first.
+    ///
+    /// # Panics
+    /// Never: missing texels are black, surplus ones are dropped.
+    pub fn from_linear(size: UVec2, colours: impl IntoIterator<Item = Vec3>) -> Self {
+        let size = size.max(UVec2::ONE);
+        let mut texels: Vec<_> = colours
+            .into_iter()
+            .take((size.x * size.y) as usize)
+            .map(|colour| [colour.x, colour.y, colour.z, 1.0].map(f16::from_f32))
+            .collect();
+        texels.resize((size.x * size.y) as usize, [f16::ZERO; 4]);
+        Self { size, texels }
+    }
+
+    /// Decodes an sRGB picture, 8 or 16 bits a channel; alpha is ignored. The bottom row is 0 on the second axis.
+    pub fn from_picture(picture: &DynamicImage) -> Self {
+        let pixels = picture.to_rgb32f();
+        let size = UVec2::new(pixels.width(), pixels.height());
+        let colours = pixels.rows().rev().flat_map(|row| row.map(|pixel| Vec3::from(pixel.0.map(linear_from_srgb))));
+        Self::from_linear(size, colours)
+    }
+
+    /// Reads an sRGB PNG.
+    ///
+    /// # Errors
+    /// As [`read_png`].
+    pub fn load(path: &Path) -> Result<Self, Error> {
+        Ok(Self::from_picture(&read_png(path)?))
+    }
+
+    /// Texels.
+    pub fn size(&self) -> UVec2 {
+        self.size
+    }
+
+    /// Linear RGB of a texel; y counts from the row for 0.
+    pub fn texel(&self, at: UVec2) -> Vec3 {
+        self.load(at).truncate()
+    }
+
+    /// The texels as they are uploaded: `Rgba16Float`, the row for 0 first.
+    pub(crate) fn bytes(&self) -> Vec<u8> {
+        self.texels.iter().flatten().flat_map(|channel| channel.to_le_bytes()).collect()
+    }
+}
+
+impl Texture2d for Ramp {
+    fn dimensions(&self) -> UVec2 {
+        self.size
+    }
+
+    fn load(&self, at: UVec2) -> Vec4 {
+        Vec4::from(self.texels[(at.y * self.size.x + at.x) as usize].map(f16::to_f32))
+    }
+}

@@ -1,0 +1,213 @@
+//! Sprite pictures: flipbooks of normal maps with the amount in alpha.
+
+pub mod bake;
+pub mod detail;
+
+use std::path::Path;
+
+use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
+use image::RgbaImage;
+
+use crate::assets::picture::read_png;
+use crate::error::Error;
+use crate::formula::texture::Texture2dArray;
+
+/// How a sprite's picture is laid out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SpriteLayout {
+    /// Frames beside each other.
+    pub columns: u32,
+    /// Frames below each other; frames run left to right, then down.
+    pub rows: u32,
+    /// True for a map painted with green pointing down (DirectX style).
+    pub y_down: bool,
+}
+
+impl Default for SpriteLayout {
+    fn default() -> Self {
+        Self { columns: 1, rows: 1, y_down: false }
+    }
+}
+
+/// A decoded flipbook with its mip levels. Texels are rgb = normal / 2 + 1/2 (x right, y up, z to the viewer) and
+/// a = amount, 8 bits each, not premultiplied.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sprite {
+    size: u32,
+    frame_count: u32,
+    /// Level by level; each level frame by frame, row by row, top row first.
+    levels: Vec<Vec<[u8; 4]>>,
+}
+
+/// Most frames of one flipbook: the layers that WebGL2 promises an array texture.
+pub const MAX_FRAMES: u32 = 256;
+
+impl Sprite {
+    /// Cuts a picture into frames and builds their mip levels.
+    ///
+    /// # Errors
+    /// [`Error::Image`] when the layout does not fit the picture, frames are not square, or a frame is not clear at
+    /// its border (it would show as a square).
+    pub fn from_picture(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Result<Self, Error> {
+        let error = |reason: String| Err(Error::Image { path: path.into(), reason });
+        let (columns, rows) = (layout.columns, layout.rows);
+        let (width, height) = picture.dimensions();
+        if !columns.checked_mul(rows).is_some_and(|frames| (1..=MAX_FRAMES).contains(&frames)) {
+            return error(format!("{columns}x{rows} frames; expected 1 to {MAX_FRAMES} frames"));
+        }
+        if width == 0 || width % columns != 0 || height % rows != 0 || width / columns != height / rows {
+            return error(format!(
+                "{width}x{height} pixels do not divide into {columns}x{rows} square frames; \
+                 expected columns and rows that give square frames"
+            ));
+        }
+        let size = width / columns;
+        let mut texels = Vec::with_capacity((width * height) as usize);
+        for frame in 0..columns * rows {
+            let origin = UVec2::new(frame % columns, frame / columns) * size;
+            for y in 0..size {
+                for x in 0..size {
+                    let mut texel = picture.get_pixel(origin.x + x, origin.y + y).0;
+                    if layout.y_down {
+                        texel[1] = 255 - texel[1];
+                    }
+                    if texel[3] != 0 && size > 2 && (x == 0 || y == 0 || x == size - 1 || y == size - 1) {
+                        return error(format!(
+                            "frame {frame} has alpha {} on its border at ({x}, {y}); expected a border of alpha 0, \
+                             or the sprite shows as a square",
+                            texel[3]
+                        ));
+                    }
+                    texels.push(texel);
+                }
+            }
+        }
+        Ok(Self::with_levels(size, columns * rows, texels))
+    }
+
+    /// Reads a PNG.
+    ///
+    /// # Errors
+    /// As [`read_png`] and [`Sprite::from_picture`].
+    pub fn load(path: &Path, layout: SpriteLayout) -> Result<Self, Error> {
+        Self::from_picture(path, &read_png(path)?.to_rgba8(), layout)
+    }
+
+    pub(crate) fn with_levels(size: u32, frame_count: u32, texels: Vec<[u8; 4]>) -> Self {
+        let mut sprite = Self { size, frame_count, levels: vec![texels] };
+        for level in 1..=size.ilog2() {
+            let coarse = sprite.level_size(level);
+            let fine = sprite.level_size(level - 1);
+            let mut texels = Vec::with_capacity((coarse * coarse * frame_count) as usize);
+            for frame in 0..frame_count {
+                for y in 0..coarse {
+                    for x in 0..coarse {
+                        let at = |dx: u32, dy: u32| {
+                            let (x, y) = ((2 * x + dx).min(fine - 1), (2 * y + dy).min(fine - 1));
+                            sprite.texel(level - 1, frame, x, y)
+                        };
+                        texels.push(average([at(0, 0), at(1, 0), at(0, 1), at(1, 1)]));
+                    }
+                }
+            }
+            sprite.levels.push(texels);
+        }
+        sprite
+    }
+
+    /// Side of a frame in texels, at full size.
+    pub fn size(&self) -> u32 {
+        self.size
+    }
+
+    /// Number of frames.
+    pub fn frame_count(&self) -> u32 {
+        self.frame_count
+    }
+
+    /// Number of mip levels, the full size included.
+    pub fn level_count(&self) -> u32 {
+        self.levels.len() as u32
+    }
+
+    /// Side of a frame in texels at a mip level.
+    pub fn level_size(&self, level: u32) -> u32 {
+        (self.size >> level).max(1)
+    }
+
+    /// One texel, 0..1 in each channel.
+    pub fn texel(&self, level: u32, frame: u32, x: u32, y: u32) -> Vec4 {
+        let size = self.level_size(level);
+        let texel = self.levels[level as usize][((frame * size + y) * size + x) as usize];
+        Vec4::from(texel.map(f32::from)) / 255.0
+    }
+
+    pub(crate) fn level_bytes(&self, level: u32) -> &[u8] {
+        bytemuck::cast_slice(&self.levels[level as usize])
+    }
+}
+
+impl Texture2dArray for Sprite {
+    fn level_count(&self) -> u32 {
+        self.levels.len() as u32
+    }
+
+    fn dimensions(&self, level: u32) -> u32 {
+        self.level_size(level)
+    }
+
+    fn load(&self, at: UVec2, layer: u32, level: u32) -> Vec4 {
+        self.texel(level, layer, at.x, at.y)
+    }
+}
+
+/// Averages texels for the next mip level. Normals count by their amount, or clear texels would pull them about.
+fn average(texels: [Vec4; 4]) -> [u8; 4] {
+    let amount = texels.iter().map(|texel| texel.w).sum::<f32>() / 4.0;
+    let weighted = |weight: fn(&Vec4) -> f32| texels.iter().map(|texel| texel.xyz() * weight(texel)).sum::<Vec3>();
+    let normal = if amount > 0.0 { weighted(|t| t.w) / (4.0 * amount) } else { weighted(|_| 0.25) };
+    normal.extend(amount).to_array().map(|channel| (channel * 255.0).round() as u8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::Rgba;
+
+    fn picture(width: u32, height: u32) -> RgbaImage {
+        RgbaImage::from_pixel(width, height, Rgba([128, 200, 255, 0]))
+    }
+
+    fn message(picture: &RgbaImage, layout: SpriteLayout) -> String {
+        Sprite::from_picture(Path::new("wisp.png"), picture, layout).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn frames_are_cut_left_to_right_then_down() {
+        let mut sheet = picture(8, 8);
+        sheet.put_pixel(5, 2, Rgba([10, 20, 30, 40]));
+        let sprite = Sprite::from_picture(Path::new(""), &sheet, SpriteLayout { columns: 2, rows: 2, y_down: true });
+        let sprite = sprite.unwrap();
+        assert_eq!((sprite.size(), sprite.frame_count(), sprite.level_count()), (4, 4, 3));
+        let texel = sprite.texel(0, 1, 1, 2) * 255.0;
+        assert_eq!(texel, Vec4::new(10.0, 235.0, 30.0, 40.0));
+    }
+
+    #[test]
+    fn mip_levels_weigh_normals_by_amount() {
+        let mut sheet = picture(4, 4);
+        sheet.put_pixel(1, 1, Rgba([255, 0, 0, 200]));
+        let sprite = Sprite::from_picture(Path::new(""), &sheet, SpriteLayout::default()).unwrap();
+        assert_eq!(sprite.texel(1, 0, 0, 0) * 255.0, Vec4::new(255.0, 0.0, 0.0, 50.0));
+        assert_eq!(sprite.texel(1, 0, 1, 1) * 255.0, Vec4::new(128.0, 200.0, 255.0, 0.0));
+    }
+
+    #[test]
+    fn layouts_that_do_not_fit_and_square_sprites_are_refused() {
+        assert!(message(&picture(8, 8), SpriteLayout { columns: 3, rows: 1, y_down: false }).contains("3x1 square"));
+        assert!(message(&picture(8, 8), SpriteLayout { columns: 0, rows: 1, y_down: false }).contains("1 to 256"));
+        let mut square = picture(8, 8);
+        square.put_pixel(0, 3, Rgba([0, 0, 0, 9]));
+        assert!(message(&square, SpriteLayout::default()).contains("alpha 9 on its border at (0, 3)"));
+    }
+}

@@ -1,0 +1,52 @@
+//! A shot as a picture: scene and smoke, by the GPU or by the CPU.
+
+use glam::Vec4;
+
+use super::cpu;
+use super::shot::Shot;
+use super::stage::Stage;
+use crate::assets::picture::Picture;
+use crate::error::Error;
+use crate::headless::Headless;
+use crate::reference;
+
+impl Shot {
+    /// Renders on the CPU, linear HDR.
+    ///
+    /// # Errors
+    /// [`Error::Field`] when the preset was changed to something invalid.
+    pub fn render_on_cpu(&self) -> Result<Picture<Vec4>, Error> {
+        let view = self.preset.camera.view(self.size);
+        let (mut colour, depth) = cpu::render(&self.scene(), &view);
+        if !self.shows_scene() {
+            colour.texels.fill(Vec4::W);
+        }
+        let particles = self.systems();
+        let systems: Vec<_> = particles
+            .iter()
+            .zip(&self.materials)
+            .map(|((particles, settings), material)| reference::System { particles, bounds: None, settings, material })
+            .collect();
+        let frame = reference::Frame {
+            view,
+            scene_depth: &depth,
+            lights: &self.preset.lights,
+            systems: &systems,
+            time: self.preset.time,
+            shade_tree: self.shade_tree,
+        };
+        reference::render(&frame, &mut colour)?;
+        Ok(colour)
+    }
+
+    /// Renders on the GPU, linear HDR. `exact_filtering` as in [`Descriptor`](crate::Descriptor).
+    ///
+    /// # Errors
+    /// [`Error::Field`] when the preset was changed to something invalid or a picture is too large for the device,
+    /// [`Error::Device`] when the device failed.
+    pub fn render_on_gpu(&self, gpu: &Headless, exact_filtering: bool) -> Result<Picture<Vec4>, Error> {
+        let mut stage = Stage::new(gpu, self, exact_filtering)?;
+        stage.draw(self)?;
+        stage.picture()
+    }
+}

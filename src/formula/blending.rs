@@ -1,0 +1,14 @@
+//! What a lit fragment hands to the blend unit. `shaders/lib/blending.wgsl`.
+
+use glam::{Vec3, Vec4};
+
+use crate::settings::BlendMode;
+
+/// What a forward fragment hands to its blend: premultiplied for alpha and additive, a filter colour for multiply.
+pub fn forward_fragment(mode: BlendMode, light: Vec3, coverage: f32) -> Vec4 {
+    match mode {
+        BlendMode::Alpha => light.extend(1.0) * coverage,
+        BlendMode::Additive => (light * coverage).extend(0.0),
+        BlendMode::Multiply => Vec3::ONE.lerp(light.min(Vec3::ONE), coverage).extend(1.0),
+    }
+}

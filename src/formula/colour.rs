@@ -1,0 +1,32 @@
+//! Light and its sRGB code. `shaders/lib/colour.wgsl`.
+
+use glam::Vec3;
+
+/// sRGB 0..1 to linear. (IEC 61966-2-1)
+pub fn linear_from_srgb(encoded: f32) -> f32 {
+    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}
+
+/// Linear to sRGB 0..1. (IEC 61966-2-1)
+pub fn srgb_from_linear(linear: f32) -> f32 {
+    if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// What is written to a target that holds sRGB code without the hardware knowing it: linear light clamped to what such a
+/// target can show, and encoded.
+pub fn gamma_target_colour(light: Vec3) -> Vec3 {
+    light.clamp(Vec3::ZERO, Vec3::ONE).map(srgb_from_linear)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn srgb_round_trips() {
+        for step in 0..=255 {
+            let encoded = step as f32 / 255.0;
+            assert!((srgb_from_linear(linear_from_srgb(encoded)) - encoded).abs() < 1e-5);
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! The light of one point of the smoke. `shaders/lib/lighting.wgsl`.
+
+use glam::Vec3;
+
+use super::saturate;
+use super::uniforms::LightUniform;
+
+/// Direction to a light, and what is left of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightSample {
+    /// Unit vector towards the light.
+    pub direction: Vec3,
+    /// Multiplies the light's colour.
+    pub attenuation: f32,
+}
+
+/// Inverse square, softened inside the light's body, windowed to 0 at the range.
+/// (window: Karis, "Real Shading in Unreal Engine 4", 2013, eq. 9)
+pub fn distance_attenuation(distance_squared: f32, inverse_range: f32, radius: f32) -> f32 {
+    let ratio = distance_squared * inverse_range * inverse_range;
+    let window = saturate(1.0 - ratio * ratio);
+    window * window / (distance_squared + radius * radius)
+}
+
+/// Direction to the light and what is left of it at `position`, view space.
+pub fn sample_light(light: &LightUniform, position: Vec3) -> LightSample {
+    if light.directional > 0.5 {
+        return LightSample { direction: -light.direction, attenuation: 1.0 };
+    }
+    let to_light = light.position - position;
+    let distance_squared = to_light.length_squared();
+    let direction = to_light / distance_squared.max(1.0e-8).sqrt();
+    let cone = saturate((-direction).dot(light.direction) * light.spot_scale + light.spot_offset);
+    let attenuation = distance_attenuation(distance_squared, light.inverse_range, light.radius) * cone * cone;
+    LightSample { direction, attenuation }
+}
+
+/// Where a normal looks into the diffuse ramp: 0 facing away from the light, 1 facing it. (OTEE "Diffuse lighting")
+pub fn diffuse_coordinate(normal: Vec3, to_light: Vec3) -> f32 {
+    saturate(normal.dot(to_light) * 0.5 + 0.5)
+}
+
+/// 0 in thin smoke, 1 in thick: smoothstep(scatter_amount, scatter_amount + scatter_smooth, A).
+/// (OTEE "Soft scattering")
+pub fn soft_scatter_weight(amount: f32, scatter_amount: f32, scatter_smooth: f32) -> f32 {
+    let x = saturate((amount - scatter_amount) / scatter_smooth.max(1.0e-4));
+    x * x * (3.0 - 2.0 * x)
+}
+
+/// How much of the scene the smoke hides. (OTEE "Diffuse lighting", col.a)
+pub fn coverage(amount: f32, boost: f32) -> f32 {
+    saturate(amount * boost)
+}
+
+/// How much of the box, by view depth, lies in front of a light. (OTEE "Specular scattering")
+pub fn specular_scatter_fade(light_depth: f32, bounds_near: f32, bounds_far: f32) -> f32 {
+    saturate((light_depth - bounds_near) / (bounds_far - bounds_near).max(1.0e-4))
+}

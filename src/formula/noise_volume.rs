@@ -1,0 +1,40 @@
+//! The tiling 3D noise of volumetric sprites. `shaders/lib/noise_volume.wgsl`.
+
+use glam::{IVec3, Vec3, Vec4, Vec4Swizzles};
+
+use super::texture::Texture3d;
+
+/// Inverse density gradient (−1..1) and density. The noise repeats with every unit of `coordinate`.
+pub fn sample_noise_volume(noise: &impl Texture3d, coordinate: Vec3) -> Vec4 {
+    let size = noise.dimensions() as i32;
+    let at = (coordinate - coordinate.floor()) * size as f32 - 0.5;
+    let base = at.floor();
+    let f = at - base;
+    let load = |x, y, z| {
+        let texel = (base.as_ivec3() + IVec3::new(x, y, z)).rem_euclid(IVec3::splat(size));
+        noise.load(texel.as_uvec3())
+    };
+    let slice = |z| {
+        let row = |y| load(0, y, z).lerp(load(1, y, z), f.x);
+        row(0).lerp(row(1), f.y)
+    };
+    let texel = slice(0).lerp(slice(1), f.z);
+    (texel.xyz() * 2.0 - 1.0).extend(texel.w)
+}
+
+/// Octaves of the noise, each of three times the frequency and half the weight of the last; weights sum to 1. (MS)
+pub fn sample_noise_octaves(noise: &impl Texture3d, coordinate: Vec3, octaves: u32) -> Vec4 {
+    let (mut sum, mut total, mut weight, mut place) = (Vec4::ZERO, 0.0, 1.0, coordinate);
+    for _ in 0..octaves {
+        sum += sample_noise_volume(noise, place) * weight;
+        total += weight;
+        weight *= 0.5;
+        place *= 3.0;
+    }
+    sum / total
+}
+
+/// Where a point of the world stands in the noise, which rises by `scroll` metres. (MS "Animating the volume particles")
+pub fn noise_coordinate(world: Vec3, noise_size: f32, scroll: f32) -> Vec3 {
+    (world - Vec3::new(0.0, scroll, 0.0)) / noise_size
+}

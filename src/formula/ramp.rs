@@ -1,0 +1,24 @@
+//! Ramp lookups. `shaders/lib/ramp.wgsl`.
+
+use glam::{UVec2, Vec2, Vec3, Vec4Swizzles};
+
+use super::texture::Texture2d;
+
+/// Bilinear; the first and last texel centres stand for 0 and 1.
+pub fn sample_ramp_2d(ramp: &impl Texture2d, coordinate: Vec2) -> Vec3 {
+    let size = ramp.dimensions();
+    let texel = coordinate.clamp(Vec2::ZERO, Vec2::ONE) * (size.as_vec2() - 1.0);
+    let base = texel.floor();
+    let fraction = texel - base;
+    let low = base.as_uvec2();
+    let high = (low + 1).min(size - 1);
+    let load = |x, y| ramp.load(UVec2::new(x, y));
+    let bottom = load(low.x, low.y).lerp(load(high.x, low.y), fraction.x);
+    let top = load(low.x, high.y).lerp(load(high.x, high.y), fraction.x);
+    bottom.lerp(top, fraction.y).xyz()
+}
+
+/// A ramp of one row.
+pub fn sample_ramp(ramp: &impl Texture2d, u: f32) -> Vec3 {
+    sample_ramp_2d(ramp, Vec2::new(u, 0.0))
+}

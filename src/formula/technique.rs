@@ -1,0 +1,119 @@
+//! How a sprite keeps from cutting into the scene. `shaders/lib/technique.wgsl`.
+
+use glam::{Vec2, Vec3};
+
+use super::saturate;
+
+/// 1 in front of the scene or on it, 0 behind it: what the hardware's depth test does. (NV 3)
+pub fn hard_fade(distance: f32) -> f32 {
+    if distance >= 0.0 { 1.0 } else { 0.0 }
+}
+
+/// View depth of a texel that stands out towards the viewer by `offset` radii, −1..1. (MS "2D particles with depth")
+pub fn depth_sprite_depth(view_depth: f32, offset: f32, radius: f32) -> f32 {
+    view_depth - offset * radius
+}
+
+/// The stretch of a ray inside a sphere, cut at the near plane and at the scene. Distances along the ray, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayInterval {
+    /// Where the ray enters.
+    pub enter: f32,
+    /// Where it leaves; not beyond `enter`: there is nothing.
+    pub leave: f32,
+    /// From the middle of the sphere to the nearest point of the ray's line.
+    pub axis: Vec3,
+}
+
+/// Intersects a ray of unit length with a sphere; `near` and `scene` are distances along the ray. w = √(r² − q²), BLOG 2.
+pub fn ray_sphere(origin: Vec3, direction: Vec3, centre: Vec3, radius: f32, near: f32, scene: f32) -> RayInterval {
+    let to_centre = centre - origin;
+    let middle = to_centre.dot(direction);
+    let axis = direction * middle - to_centre;
+    let half_chord = (radius * radius - axis.length_squared()).max(0.0).sqrt();
+    RayInterval { enter: (middle - half_chord).max(near), leave: (middle + half_chord).min(scene), axis }
+}
+
+/// a = 1 − exp(−density · (1 − q/r) · Δs): Umenhoffer's spherical billboard. (BLOG 2)
+pub fn spherical_billboard_amount(density: f32, axis_distance: f32, radius: f32, stretch: f32) -> f32 {
+    let inwards = saturate(1.0 - axis_distance / radius.max(1.0e-6));
+    1.0 - (-density * inwards * stretch.max(0.0)).exp()
+}
+
+/// How much of a slab, a radius before and behind the sprite, lies between near plane and scene, metres.
+pub fn density_thickness(view_depth: f32, radius: f32, near: f32, scene: f32) -> f32 {
+    (scene.min(view_depth + radius) - near.max(view_depth - radius)).max(0.0)
+}
+
+/// a = 1 − exp(−density · thickness). (BLOG 3)
+pub fn density_amount(density: f32, thickness: f32) -> f32 {
+    1.0 - (-density * thickness).exp()
+}
+
+/// Falloff of a volume from its middle; `place` is −1..1 in the sphere. (MS "March", step 3)
+pub fn volumetric_falloff(place: Vec3) -> f32 {
+    saturate(1.0 - place.length_squared())
+}
+
+/// Density of a volume, 0..1: the noise, eaten away from the outside in. (MS "March", steps 1 and 3)
+pub fn volumetric_density(noise: f32, falloff: f32) -> f32 {
+    saturate(2.0 * noise - 1.0 + falloff) * falloff
+}
+
+/// Which way a place in a volume faces, in view space: out of the sphere and down the noise's density, and never away
+/// from the viewer. (MS "March", step 2)
+pub fn volumetric_normal(place: Vec3, gradient: Vec3) -> Vec3 {
+    let normal = place + 2.0 * gradient;
+    normal.with_z(normal.z.max(0.1)).normalize()
+}
+
+/// Lower and upper bound of a sphere's picture on one axis, as position / depth, cut at the near plane; `centre` is
+/// (position on the axis, depth). (Mara and McGuire, JCGT 2013)
+pub fn sphere_axis_bounds(centre: Vec2, radius: f32, near: f32) -> Vec2 {
+    let clipped = centre.y - radius < near;
+    let cut = (radius * radius - (near - centre.y) * (near - centre.y)).max(0.0).sqrt();
+    let mut bounds = Vec2::new(centre.x - cut, centre.x + cut) / near;
+    let tangent_squared = centre.length_squared() - radius * radius;
+    if tangent_squared > 0.0 {
+        let distance = centre.length();
+        let (cosine, sine) = (tangent_squared.sqrt() / distance, radius / distance);
+        let lower = Vec2::new(cosine * centre.x - sine * centre.y, cosine * centre.y + sine * centre.x);
+        let upper = Vec2::new(cosine * centre.x + sine * centre.y, cosine * centre.y - sine * centre.x);
+        if !clipped || lower.y * cosine > near {
+            bounds.x = lower.x / lower.y;
+        }
+        if !clipped || upper.y * cosine > near {
+            bounds.y = upper.x / upper.y;
+        }
+    }
+    bounds
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bounds_hold_every_visible_point_of_the_sphere_and_little_more() {
+        let near = 0.1;
+        // Beside, round, and half behind the near plane.
+        let spheres = [
+            (Vec2::new(1.0, 5.0), 0.7),
+            (Vec2::new(-3.0, 1.0), 0.9),
+            (Vec2::new(0.2, 0.3), 0.5),
+            (Vec2::new(0.4, -0.2), 0.35),
+            (Vec2::new(2.0, 0.05), 1.0),
+        ];
+        for (centre, radius) in spheres {
+            let bounds = sphere_axis_bounds(centre, radius, near);
+            let points = (0..100_000).map(|i| centre + Vec2::from_angle(i as f32 * 6.283_2e-5) * radius);
+            let cut = (radius * radius - (near - centre.y) * (near - centre.y)).max(0.0).sqrt();
+            let rim = [centre.x - cut, centre.x + cut].map(|x| Vec2::new(x, near));
+            let rim = rim.into_iter().filter(|_| (near - centre.y).abs() < radius);
+            let seen = points.filter(|point| point.y >= near).chain(rim).map(|point| point.x / point.y);
+            let (low, high) = seen.fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+            let close = |a: f32, b: f32| (a - b).abs() < 1e-3 * (1.0 + b.abs());
+            assert!(close(bounds.x, low) && close(bounds.y, high), "{centre} {radius}: {bounds}, not {low}..{high}");
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Every struct that WGSL sees, field by field. `tests/suite/shader_layout.rs` holds each against its WGSL twin: name, offset
+//! and size.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat4, Vec2, Vec3, Vec4};
+
+/// A field of a uniform struct: its name, and its first byte and size in it.
+pub type UniformField = (&'static str, usize, usize);
+
+/// Defines a uniform struct with a list of its fields. What a field means is written in WGSL.
+macro_rules! uniform {
+    ($(#[$meta:meta])* $name:ident { $($field:ident: $type:ty,)+ }) => {
+        $(#[$meta])*
+        #[repr(C)]
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+        #[allow(missing_docs, reason = "documented in WGSL")]
+        pub struct $name { $(pub $field: $type,)+ }
+
+        impl $name {
+            /// All fields, in order.
+            pub const FIELDS: &[UniformField] =
+                &[$((stringify!($field), std::mem::offset_of!($name, $field), size_of::<$type>()),)+];
+        }
+    };
+}
+
+uniform! {
+    /// `View` in `shaders/lib/view.wgsl`.
+    ViewUniform {
+        view_from_world: Mat4,
+        clip_from_view: Mat4,
+        depth_coefficients: Vec4,
+        ray_scale: Vec2,
+        ray_offset: Vec2,
+        size: Vec2,
+        origin: Vec2,
+        near: f32,
+        far: f32,
+        orthographic: f32,
+        depth_offset: f32,
+    }
+}
+
+uniform! {
+    /// `Light` in `shaders/lib/lighting.wgsl`.
+    LightUniform {
+        position: Vec3,
+        inverse_range: f32,
+        direction: Vec3,
+        directional: f32,
+        colour: Vec3,
+        specular_scatter: f32,
+        spot_scale: f32,
+        spot_offset: f32,
+        radius: f32,
+        padding: f32,
+    }
+}
+
+uniform! {
+    /// `System` in `shaders/lib/system.wgsl`.
+    SystemUniform {
+        bounds_min: Vec3,
+        bounds_near: f32,
+        bounds_max: Vec3,
+        bounds_far: f32,
+        bounds_centre: Vec3,
+        plane_depth: f32,
+        scatter_colour: Vec3,
+        scatter_amount: f32,
+        ambient_colour: Vec3,
+        scatter_smooth: f32,
+        target_from_ndc: Vec4,
+        target_origin: Vec2,
+        target_size: Vec2,
+        scale: f32,
+        depth_limit: f32,
+        sprite_size: f32,
+        frame_count: f32,
+        opacity: f32,
+        boost: f32,
+        fade_scale: f32,
+        contrast_power: f32,
+        epsilon: f32,
+        near_fade_start: f32,
+        near_fade_end: f32,
+        diffuse_intensity: f32,
+        soft_scatter_intensity: f32,
+        specular_scatter_size: f32,
+        specular_scatter_intensity: f32,
+        light_count: u32,
+        size: f32,
+        motion: f32,
+        age_colour: f32,
+        detail_lod: f32,
+        billboard_radius: f32,
+        billboard_density: f32,
+        density: f32,
+        noise_size: f32,
+        volume_opacity: f32,
+        march_steps: u32,
+        noise_octaves: u32,
+        noise_scroll: f32,
+        fade_through: f32,
+        padding: [f32; 3],
+        spherical_harmonics: [Vec4; 9],
+    }
+}

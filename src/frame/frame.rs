@@ -1,0 +1,108 @@
+//! One frame.
+
+use super::bounds::Bounds;
+use super::light::Light;
+use super::material::Material;
+use super::particle::Particle;
+use super::view::View;
+use crate::settings::{Settings, ShadeTree};
+
+/// Everything that [`Renderer::prepare`](crate::Renderer::prepare) needs to know about a frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame<'a> {
+    /// The camera.
+    pub view: View,
+    /// The opaque scene's depth, already rendered in this encoder or an earlier one.
+    pub scene_depth: SceneDepth<'a>,
+    /// At most [`MAX_LIGHTS`](crate::frame::MAX_LIGHTS).
+    pub lights: &'a [Light],
+    /// Drawn far to near, whatever their order here.
+    pub systems: &'a [System<'a>],
+    /// Seconds, from any start: the noise of volumetric sprites scrolls with it.
+    pub time: f32,
+    /// Which stage of the shading is shown; [`ShadeTree::Final`] for a picture.
+    pub shade_tree: ShadeTree,
+}
+
+impl<'a> Frame<'a> {
+    /// A frame without lights and smoke.
+    pub const fn new(view: View, scene_depth: SceneDepth<'a>) -> Self {
+        Self { view, scene_depth, lights: &[], systems: &[], time: 0.0, shade_tree: ShadeTree::Final }
+    }
+}
+
+/// The opaque scene's depth at full resolution, single-sampled, with `TEXTURE_BINDING` usage, as large as the host's colour
+/// target. Which of the two is read, and which tested, when, is a table in `docs/depth.md`.
+#[derive(Clone, Copy, Debug)]
+pub enum SceneDepth<'a> {
+    /// A depth buffer written with the view's projection: a 2D view of its depth aspect.
+    Buffer(&'a wgpu::TextureView),
+    /// An `R32Float` target with linear view depth in metres; no surface: anything from 1e6 up.
+    Linear(&'a wgpu::TextureView),
+    /// Both of the same scene. The buffer is read, but by systems of the technique
+    /// [`SoftLinear`](crate::settings::Technique::SoftLinear), and where the backend (OpenGL) cannot read the buffer that
+    /// is attached to the pass.
+    Both {
+        /// As in [`SceneDepth::Buffer`].
+        buffer: &'a wgpu::TextureView,
+        /// As in [`SceneDepth::Linear`].
+        linear: &'a wgpu::TextureView,
+    },
+}
+
+impl<'a> SceneDepth<'a> {
+    /// The depth buffer, if there is one.
+    pub fn buffer(&self) -> Option<&'a wgpu::TextureView> {
+        match self {
+            Self::Buffer(view) | Self::Both { buffer: view, .. } => Some(view),
+            Self::Linear(_) => None,
+        }
+    }
+
+    /// The linear target, if there is one.
+    pub fn linear(&self) -> Option<&'a wgpu::TextureView> {
+        match self {
+            Self::Linear(view) | Self::Both { linear: view, .. } => Some(view),
+            Self::Buffer(_) => None,
+        }
+    }
+}
+
+/// One particle system: sprites that are accumulated together and lit as one body.
+#[derive(Clone, Copy, Debug)]
+pub struct System<'a> {
+    /// A number of its own, by which the renderer knows the system again in the next frame, whatever its place in the list.
+    pub key: u64,
+    /// The sprites, in any order.
+    pub particles: Particles<'a>,
+    /// A box in world space that holds every sprite; what is outside may be cut off. `None` measures the slice.
+    pub bounds: Option<Bounds>,
+    /// Everything a slider moves.
+    pub settings: &'a Settings,
+    /// Ramps and sprite picture.
+    pub material: &'a Material,
+}
+
+impl<'a> System<'a> {
+    /// A system whose box is measured. With more than one in a frame, give each a `key`.
+    pub const fn new(particles: Particles<'a>, settings: &'a Settings, material: &'a Material) -> Self {
+        Self { key: 0, particles, bounds: None, settings, material }
+    }
+}
+
+/// Where the sprites are.
+#[derive(Clone, Copy, Debug)]
+pub enum Particles<'a> {
+    /// In memory. Sorted and uploaded by [`Renderer::prepare`](crate::Renderer::prepare). A sprite with a number that
+    /// is not finite, or out of its range, is skipped.
+    Slice(&'a [Particle]),
+    /// On the GPU, in the layout of [`Particle`], back to front, with `VERTEX` usage. `System::bounds` must be given.
+    Buffer {
+        /// Holds `count` particles from `offset` on.
+        buffer: &'a wgpu::Buffer,
+        /// Bytes before the first particle, a multiple of 4.
+        offset: u64,
+        /// How many to draw.
+        count: u32,
+    },
+}

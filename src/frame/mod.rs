@@ -1,0 +1,17 @@
+//! What a host hands over for every frame: a camera, scene depth, lights and particle systems.
+
+mod bounds;
+#[allow(clippy::module_inception, reason = "one file per thing handed over, and one of them is the frame")]
+mod frame;
+mod light;
+mod material;
+mod particle;
+pub(crate) mod validate;
+mod view;
+
+pub use bounds::Bounds;
+pub use frame::{Frame, Particles, SceneDepth, System};
+pub use light::{Light, LightKind, MAX_LIGHTS};
+pub use material::Material;
+pub use particle::{LARGEST, Particle, bounds_of};
+pub use view::View;

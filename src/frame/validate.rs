@@ -1,0 +1,43 @@
+//! What both renderers refuse.
+
+use glam::{UVec2, Vec3};
+
+use super::light::{Light, LightKind, MAX_LIGHTS};
+use crate::error::FieldError;
+use crate::settings::{DepthSource, Settings, validate};
+
+/// The settings of system `index` in a picture of this size.
+pub(crate) fn validate_settings(index: usize, settings: &Settings, picture: UVec2) -> Result<(), FieldError> {
+    settings.validate(|| format!("systems[{index}].settings"))?;
+    let accumulate = &settings.accumulate;
+    let is_host = accumulate.depth_source == DepthSource::Host && !settings.is_forward();
+    if is_host && accumulate.effective_scale(picture) != 1 {
+        let field = format!("systems[{index}].settings.accumulate.max_side");
+        let expected = format!("at least {} for this picture with depth_source \"host\"", picture.max_element());
+        return Err(FieldError::new(field, accumulate.max_side, expected));
+    }
+    Ok(())
+}
+
+/// Lights.
+pub(crate) fn validate_lights(lights: &[Light]) -> Result<(), FieldError> {
+    if lights.len() > MAX_LIGHTS {
+        return Err(FieldError::new("lights", format!("{} lights", lights.len()), format!("at most {MAX_LIGHTS}")));
+    }
+    for (index, light) in lights.iter().enumerate() {
+        validate(light, || format!("lights[{index}]"))?;
+        if light.kind != LightKind::Point && light.direction.normalize_or_zero() == Vec3::ZERO {
+            let field = format!("lights[{index}].direction");
+            return Err(FieldError::new(field, light.direction, "a direction that is not zero"));
+        }
+    }
+    Ok(())
+}
+
+/// The time of a frame.
+pub(crate) fn validate_time(time: f32) -> Result<(), FieldError> {
+    if time.is_finite() {
+        return Ok(());
+    }
+    Err(FieldError::new("time", time, "a finite number of seconds"))
+}

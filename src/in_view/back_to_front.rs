@@ -1,0 +1,67 @@
+//! Sprites in the order in which they are drawn. Normals are blended over each other and depend on it; the amount does not.
+//! (OTEE "Accumulating")
+
+use super::view::ViewGeometry;
+use crate::frame::Particle;
+
+/// Scratch memory that is kept from frame to frame.
+#[derive(Debug, Default)]
+pub(crate) struct SortScratch {
+    /// Sort key above, index below.
+    keys: Vec<u64>,
+}
+
+impl SortScratch {
+    /// Gives back what the last sort did not need.
+    pub fn shrink(&mut self) {
+        self.keys.shrink_to_fit();
+    }
+}
+
+/// Writes the valid particles to `sorted`, farthest from the viewer first. Equal depths keep their order, so that a
+/// picture is the same every time.
+pub(crate) fn back_to_front(
+    view: &ViewGeometry,
+    particles: &[Particle],
+    scratch: &mut SortScratch,
+    sorted: &mut Vec<Particle>,
+) {
+    // The third row of view_from_world: view z, which grows towards the viewer.
+    let row = view.view_from_world.row(2);
+    scratch.keys.clear();
+    scratch.keys.extend((0u64..).zip(particles).filter(|(_, particle)| particle.is_valid()).map(
+        |(index, particle)| {
+            let z = row.truncate().dot(particle.position) + row.w;
+            (u64::from(ordered_bits(z)) << 32) | index
+        },
+    ));
+    scratch.keys.sort_unstable();
+    sorted.clear();
+    sorted.extend(scratch.keys.iter().map(|&key| particles[(key & 0xffff_ffff) as usize]));
+}
+
+/// Bits that order as the numbers do. (Herf, "Radix tricks", 2001)
+fn ordered_bits(value: f32) -> u32 {
+    let bits = value.to_bits();
+    if bits >> 31 == 0 { bits | 0x8000_0000 } else { !bits }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::View;
+    use glam::camera::rh;
+    use glam::{Mat4, UVec2, Vec3};
+
+    #[test]
+    fn farthest_first_invalid_dropped_ties_in_order() {
+        let clip_from_view = rh::proj::directx::perspective(1.0, 1.0, 0.1, 100.0);
+        let view = ViewGeometry::new(&View::new(Mat4::IDENTITY, clip_from_view, UVec2::ONE)).unwrap();
+        let at = |z: f32, frame: f32| Particle { position: Vec3::new(0.0, 0.0, z), frame, ..Particle::default() };
+        let particles = [at(-3.0, 0.0), at(f32::NAN, 1.0), at(4.0, 2.0), at(-9.0, 3.0), at(-3.0, 4.0)];
+        let mut sorted = Vec::new();
+        back_to_front(&view, &particles, &mut SortScratch::default(), &mut sorted);
+        let frames: Vec<_> = sorted.iter().map(|particle| particle.frame).collect();
+        assert_eq!(frames, [3.0, 0.0, 4.0, 2.0]);
+    }
+}

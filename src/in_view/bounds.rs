@@ -1,0 +1,133 @@
+//! Where the box round a particle system stands in a view: what the transfer pass draws, and how much target it needs.
+
+use glam::{IVec2, UVec2, Vec2, Vec3};
+
+use super::view::ViewGeometry;
+use crate::frame::Bounds;
+
+/// Where a box stands in a view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct BoundsInView {
+    /// Smallest view depth of the box, metres; negative if it reaches behind the eye.
+    pub near: f32,
+    /// Largest view depth of the box, metres.
+    pub far: f32,
+    /// Covered pixels, `min` inclusive, `max` exclusive, inside the picture and not empty.
+    pub min: UVec2,
+    pub max: UVec2,
+}
+
+/// Finds the pixels and depths that `bounds` covers; `None` when it is out of sight.
+pub(super) fn bounds_in_view(bounds: &Bounds, view: &ViewGeometry) -> Option<BoundsInView> {
+    if bounds.is_empty() {
+        return None;
+    }
+    let corners: [Vec3; 8] = std::array::from_fn(|i| view.view_position(bounds.corner(i as u32)));
+    let depths = corners.map(|corner| -corner.z);
+    let near = depths.iter().copied().fold(f32::INFINITY, f32::min);
+    let far = depths.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    if far <= view.depth.near || near >= view.depth.far {
+        return None;
+    }
+
+    let mut ndc_min = Vec2::INFINITY;
+    let mut ndc_max = Vec2::NEG_INFINITY;
+    let mut include = |position: Vec3| {
+        let clip = view.clip_from_view * position.extend(1.0);
+        let ndc = Vec2::new(clip.x, clip.y) / clip.w;
+        ndc_min = ndc_min.min(ndc);
+        ndc_max = ndc_max.max(ndc);
+    };
+    let clip_depth = view.depth.near;
+    for (index, &corner) in corners.iter().enumerate() {
+        if depths[index] >= clip_depth {
+            include(corner);
+        }
+        // The twelve edges: those that cross the near plane are cut there.
+        for bit in [1, 2, 4] {
+            let other = index | bit;
+            if other != index && (depths[index] < clip_depth) != (depths[other] < clip_depth) {
+                let t = (clip_depth - depths[index]) / (depths[other] - depths[index]);
+                include(corner.lerp(corners[other], t));
+            }
+        }
+    }
+
+    let size = view.size.as_vec2();
+    // NDC y points up, pixel y down.
+    let min = Vec2::new(ndc_min.x * 0.5 + 0.5, 0.5 - ndc_max.y * 0.5) * size;
+    let max = Vec2::new(ndc_max.x * 0.5 + 0.5, 0.5 - ndc_min.y * 0.5) * size;
+    let min = min.floor().clamp(Vec2::ZERO, size).as_uvec2();
+    let max = max.ceil().clamp(Vec2::ZERO, size).as_uvec2();
+    (min.cmplt(max).all()).then_some(BoundsInView { near, far, min, max })
+}
+
+/// A rectangle of texels of the reduced-resolution picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct TargetRect {
+    /// First texel, on the grid whose texel (i, j) covers the pixels i·scale .. (i+1)·scale.
+    pub origin: IVec2,
+    pub size: UVec2,
+}
+
+/// The texels that an upsampler can touch for the pixels of `bounds`.
+pub(super) fn target_rect(bounds: &BoundsInView, scale: u32, picture: UVec2) -> TargetRect {
+    let grid = UVec2::new(picture.x.div_ceil(scale), picture.y.div_ceil(scale));
+    // One texel more on every side: the bilinear footprint of a border pixel.
+    let min = (bounds.min / scale).saturating_sub(UVec2::ONE);
+    let max = UVec2::new(bounds.max.x.div_ceil(scale), bounds.max.y.div_ceil(scale)) + UVec2::ONE;
+    let max = max.min(grid);
+    TargetRect { origin: min.as_ivec2(), size: max - min }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::View;
+    use glam::Mat4;
+    use glam::camera::rh;
+
+    fn view(size: UVec2) -> ViewGeometry {
+        let clip_from_view = rh::proj::directx::perspective(1.0, size.x as f32 / size.y as f32, 0.1, 100.0);
+        ViewGeometry::new(&View::new(Mat4::IDENTITY, clip_from_view, size)).unwrap()
+    }
+
+    fn cube(centre: Vec3, half: f32) -> Bounds {
+        Bounds { min: centre - half, max: centre + half }
+    }
+
+    #[test]
+    fn a_box_ahead_covers_the_middle_only() {
+        let found = bounds_in_view(&cube(Vec3::new(0.0, 0.0, -10.0), 1.0), &view(UVec2::new(640, 360))).unwrap();
+        assert!((found.near - 9.0).abs() < 1e-5 && (found.far - 11.0).abs() < 1e-5);
+        assert!(found.min.x > 250 && found.max.x < 390 && found.min.y > 130 && found.max.y < 230, "{found:?}");
+    }
+
+    #[test]
+    fn a_box_round_the_eye_covers_everything_and_one_behind_nothing() {
+        let view = view(UVec2::new(641, 359));
+        let found = bounds_in_view(&cube(Vec3::ZERO, 2.0), &view).unwrap();
+        assert_eq!((found.min, found.max), (UVec2::ZERO, UVec2::new(641, 359)));
+        assert!(found.near < 0.0);
+        assert_eq!(bounds_in_view(&cube(Vec3::new(0.0, 0.0, 5.0), 1.0), &view), None);
+        assert_eq!(bounds_in_view(&cube(Vec3::new(500.0, 0.0, -9.0), 1.0), &view), None);
+        assert_eq!(bounds_in_view(&Bounds::EMPTY, &view), None);
+    }
+
+    #[test]
+    fn the_rectangle_holds_every_bilinear_footprint() {
+        let picture = UVec2::new(641, 359);
+        for scale in 1..=16 {
+            let bounds = BoundsInView { near: 1.0, far: 2.0, min: UVec2::new(100, 50), max: UVec2::new(301, 200) };
+            let rect = target_rect(&bounds, scale, picture);
+            for (pixel, edge) in [(bounds.min, 0.0), (bounds.max - 1, 1.0)] {
+                let texel = (pixel.as_vec2() + 0.5) / scale as f32 - 0.5;
+                let texel = (texel.floor() + edge).as_ivec2();
+                let grid = UVec2::new(picture.x.div_ceil(scale), picture.y.div_ceil(scale)).as_ivec2();
+                let texel = texel.clamp(IVec2::ZERO, grid - 1);
+                let inside = texel - rect.origin;
+                assert!(inside.cmpge(IVec2::ZERO).all() && inside.cmplt(rect.size.as_ivec2()).all(), "scale {scale}");
+            }
+        }
+    }
+}

@@ -1,0 +1,18 @@
+//! Lights in a view.
+
+use glam::Vec3;
+
+use super::view::ViewGeometry;
+use crate::formula::uniforms::LightUniform;
+use crate::frame::{Bounds, Light, LightKind};
+
+/// Brings the lights that reach the box into view space.
+pub(crate) fn lights_in_view(view: &ViewGeometry, lights: &[Light], bounds: &Bounds, out: &mut Vec<LightUniform>) {
+    out.clear();
+    let reaches = |light: &&Light| {
+        let nearest = light.position.clamp(bounds.min, bounds.max);
+        let lit = light.intensity > 0.0 && light.colour != Vec3::ZERO;
+        lit && (light.kind == LightKind::Directional || nearest.distance(light.position) < light.range)
+    };
+    out.extend(lights.iter().filter(reaches).map(|light| light.uniform(&view.view_from_world)));
+}

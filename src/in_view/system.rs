@@ -1,0 +1,132 @@
+//! One particle system in a view: the texels it needs and its uniforms.
+
+use glam::{UVec2, Vec2, Vec4};
+
+use super::bounds::{TargetRect, bounds_in_view, target_rect};
+use super::view::ViewGeometry;
+use crate::assets::material::MaterialInfo;
+use crate::formula::depth::SKY_VIEW_DEPTH;
+use crate::formula::diffuse_bake::add_light;
+use crate::formula::lighting::sample_light;
+use crate::formula::uniforms::{LightUniform, SystemUniform};
+use crate::frame::Bounds;
+use crate::settings::{DepthSource, DiffuseMode, Settings};
+
+/// What there is to know about a system before it is placed in a view.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SystemInWorld<'a> {
+    pub bounds: &'a Bounds,
+    pub settings: &'a Settings,
+    pub material: &'a MaterialInfo,
+    /// View space; those that reach the system.
+    pub lights: &'a [LightUniform],
+    /// Seconds.
+    pub time: f32,
+}
+
+/// A system that is in sight.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SystemInView {
+    pub rect: TargetRect,
+    pub uniform: SystemUniform,
+    /// The transfer draws the back faces of the box: it reaches to or behind the near plane, or shows through the scene.
+    pub back_faces: bool,
+    /// View depth of the middle of the box.
+    pub distance: f32,
+}
+
+/// Places a system in the view; `None` when it is out of sight. `targets` is the size of the host's targets, of which the view
+/// may be a part.
+pub(crate) fn system_in_view(view: &ViewGeometry, targets: UVec2, system: &SystemInWorld<'_>) -> Option<SystemInView> {
+    let SystemInWorld { bounds, settings, material, lights, time } = *system;
+    let in_view = bounds_in_view(bounds, view)?;
+    let accumulate = &settings.accumulate;
+    let scale = accumulate.effective_scale(view.size);
+    let rect = match accumulate.depth_source {
+        DepthSource::Reduced => target_rect(&in_view, scale, view.size),
+        // Attachments of one pass are of one size.
+        DepthSource::Host => TargetRect { origin: -view.origin.as_ivec2(), size: targets },
+    };
+
+    let mut uniform = SystemUniform {
+        bounds_min: bounds.min,
+        bounds_near: in_view.near,
+        bounds_max: bounds.max,
+        bounds_far: in_view.far,
+        bounds_centre: view.view_position(bounds.centre()),
+        // The plane through the middle of what is in front of the near plane: through the box's own middle unless the
+        // camera is inside.
+        plane_depth: 0.5 * (in_view.near.max(view.depth.near) + in_view.far),
+        opacity: accumulate.opacity,
+        scatter_colour: settings.soft_scatter.scatter_colour,
+        scatter_amount: settings.soft_scatter.scatter_amount,
+        ambient_colour: settings.soft_scatter.ambient_colour,
+        scatter_smooth: settings.soft_scatter.scatter_smooth,
+        target_from_ndc: target_from_ndc(&rect, scale, view.size),
+        target_origin: rect.origin.as_vec2(),
+        target_size: rect.size.as_vec2(),
+        scale: scale as f32,
+        depth_limit: (in_view.far + settings.soft_fade.reach()).min(SKY_VIEW_DEPTH),
+        sprite_size: material.sprite_size,
+        frame_count: material.frame_count,
+        boost: settings.boost,
+        fade_scale: settings.soft_fade.fade_scale,
+        contrast_power: settings.soft_fade.contrast_power,
+        epsilon: settings.soft_fade.epsilon,
+        near_fade_start: settings.soft_fade.near_fade_start,
+        near_fade_end: settings.soft_fade.near_fade_end,
+        diffuse_intensity: settings.diffuse.intensity,
+        soft_scatter_intensity: settings.soft_scatter.intensity,
+        specular_scatter_size: settings.specular_scatter.size,
+        specular_scatter_intensity: settings.specular_scatter.intensity,
+        light_count: lights.len() as u32,
+        size: settings.sprite.size,
+        motion: settings.sprite.motion,
+        age_colour: settings.sprite.age_colour,
+        detail_lod: material.detail.map_or(0.0, |detail| detail.lod),
+        billboard_radius: settings.spherical_billboard.radius,
+        billboard_density: settings.spherical_billboard.density,
+        density: settings.density.density,
+        noise_size: settings.volumetric.noise_size,
+        volume_opacity: settings.volumetric.opacity,
+        march_steps: settings.volumetric.march_steps,
+        noise_octaves: settings.volumetric.noise_octaves,
+        noise_scroll: noise_scroll(settings, time),
+        fade_through: settings.fade_through(),
+        padding: [0.0; 3],
+        spherical_harmonics: [Vec4::ZERO; 9],
+    };
+    if settings.diffuse.mode == DiffuseMode::SphericalHarmonics {
+        for light in lights {
+            let sample = sample_light(light, uniform.bounds_centre);
+            let colour = light.colour * sample.attenuation;
+            add_light(&mut uniform.spherical_harmonics, &material.zonal, sample.direction, colour);
+        }
+    }
+    // The front of the box may be hidden by what sprites show through.
+    let back_faces = in_view.near <= view.depth.near || uniform.fade_through > 0.0;
+    let distance = -uniform.bounds_centre.z;
+    Some(SystemInView { rect, uniform, back_faces, distance })
+}
+
+/// Metres that the noise has risen, within one tile of it, so that f32 stays fine after hours.
+fn noise_scroll(settings: &Settings, time: f32) -> f32 {
+    if settings.sprite.freeze_animation {
+        return 0.0;
+    }
+    let volumetric = &settings.volumetric;
+    let risen = f64::from(volumetric.scroll_speed) * f64::from(time);
+    risen.rem_euclid(f64::from(volumetric.noise_size)) as f32
+}
+
+/// Scale (xy) and offset (zw) from the picture's NDC to the target's.
+///
+/// A pixel p is at texel p / scale − origin of the target, so in x, with p = (ndc/2 + 1/2)·W and target NDC = 2·t/w − 1:
+/// scale = W / (s·w), offset = (W/s − 2·origin) / w − 1. In y, which points up in NDC and down in texels, the offset's
+/// sign is the other way round.
+fn target_from_ndc(rect: &TargetRect, scale: u32, picture: UVec2) -> Vec4 {
+    let texels = picture.as_vec2() / scale as f32;
+    let size = rect.size.as_vec2();
+    let offset = (texels - 2.0 * rect.origin.as_vec2()) / size - Vec2::ONE;
+    Vec4::new(texels.x / size.x, texels.y / size.y, offset.x, -offset.y)
+}

@@ -1,0 +1,34 @@
+//! What stands round the smoke in the demo program.
+
+use glam::Vec3;
+
+use crate::settings::{choice, settings};
+
+settings! {
+    /// The demo scene and the light of its sky.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Environment {
+        /// Which scene.
+        scene: SceneName = SceneName::Yard, choice;
+        /// Linear RGB of the sky overhead.
+        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        zenith: Vec3 = Vec3::new(0.045, 0.07, 0.14), colour(0.0..=100.0);
+        /// Linear RGB of the sky at the horizon.
+        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        horizon: Vec3 = Vec3::new(0.22, 0.19, 0.2), colour(0.0..=100.0);
+        /// Linear RGB of the light that the ground throws back.
+        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        ground: Vec3 = Vec3::new(0.03, 0.028, 0.026), colour(0.0..=100.0);
+    }
+}
+
+choice! {
+    /// The demo scenes.
+    SceneName {
+        /// A yard with walls, crates, pillars and a fence.
+        #[default]
+        Yard = "yard",
+        /// A colonnade with a far door.
+        Corridor = "corridor",
+    }
+}

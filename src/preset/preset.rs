@@ -1,0 +1,236 @@
+//! A preset: camera, lights and particle systems of a shot.
+
+use std::path::Path;
+
+use super::camera::Camera;
+use super::environment::Environment;
+use super::material_names::MaterialNames;
+use crate::assets::{builtin, json};
+use crate::emitter::Emitter;
+use crate::error::{Error, FieldError};
+use crate::frame::validate::validate_lights;
+use crate::frame::{Light, Particle};
+use crate::settings::{FieldVisitor, Fields, Settings, validate};
+
+/// The version of the preset format that this code writes and reads.
+pub const PRESET_VERSION: u32 = 1;
+
+/// Height of the picture that pixel sizes in presets are meant for. A renderer of another height scales them, so that a
+/// preset looks the same at every size.
+pub const DESIGN_HEIGHT: f32 = 720.0;
+
+/// Most systems of one preset.
+pub const MAX_SYSTEMS: usize = 32;
+
+/// A whole shot.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Preset {
+    /// Format version: 1.
+    pub version: u32,
+    /// What a list shows.
+    pub name: String,
+    /// What there is to see.
+    #[serde(default)]
+    pub description: String,
+    /// Seconds into the emission that is shown.
+    #[serde(default)]
+    pub time: f32,
+    /// Where it is seen from.
+    #[serde(default)]
+    pub camera: Camera,
+    /// What stands round the smoke in the demo program. A host shows its own scene instead.
+    #[serde(default)]
+    pub environment: Environment,
+    /// Lights on scene and smoke.
+    #[serde(default)]
+    pub lights: Vec<Light>,
+    /// The smoke.
+    #[serde(default)]
+    pub systems: Vec<PresetSystem>,
+}
+
+/// One particle system.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct PresetSystem {
+    /// What a list shows.
+    pub name: String,
+    /// Where its particles come from.
+    #[serde(default)]
+    pub emitter: Emitter,
+    /// Its pictures.
+    #[serde(default)]
+    pub material: MaterialNames,
+    /// Everything a slider moves.
+    #[serde(default)]
+    pub settings: Settings,
+}
+
+impl Default for Preset {
+    /// The default camera in the default scene, without lights and smoke.
+    fn default() -> Self {
+        Self {
+            version: PRESET_VERSION,
+            name: "untitled".into(),
+            description: String::new(),
+            time: 0.0,
+            camera: Camera::default(),
+            environment: Environment::default(),
+            lights: Vec::new(),
+            systems: Vec::new(),
+        }
+    }
+}
+
+impl Default for PresetSystem {
+    fn default() -> Self {
+        Self {
+            name: "smoke".into(),
+            emitter: Emitter::default(),
+            material: MaterialNames::default(),
+            settings: Settings::default(),
+        }
+    }
+}
+
+impl Fields for Preset {
+    fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
+        visitor.integer("version", &mut self.version, PRESET_VERSION..=PRESET_VERSION, "");
+        visitor.text("name", &mut self.name);
+        visitor.text("description", &mut self.description);
+        visitor.number("time", &mut self.time, -1.0e5..=1.0e5, "s");
+        visitor.group("camera", &mut self.camera);
+        visitor.group("environment", &mut self.environment);
+        for (index, light) in self.lights.iter_mut().enumerate() {
+            visitor.item("lights", index, light);
+        }
+        for (index, system) in self.systems.iter_mut().enumerate() {
+            visitor.item("systems", index, system);
+        }
+    }
+}
+
+impl Fields for PresetSystem {
+    fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
+        visitor.text("name", &mut self.name);
+        visitor.group("emitter", &mut self.emitter);
+        visitor.group("material", &mut self.material);
+        visitor.group("settings", &mut self.settings);
+    }
+}
+
+impl Preset {
+    /// Reads a preset from a file, or a built-in one by name.
+    ///
+    /// # Errors
+    /// [`Error::Io`], [`Error::Json`] with line and column, or [`Error::JsonField`] with the field and its range.
+    pub fn load(name_or_path: &str) -> Result<Self, Error> {
+        if let Some(preset) = builtin::find(builtin::PRESETS, name_or_path) {
+            return Self::parse(&builtin::path(preset.name), &String::from_utf8_lossy(preset.bytes));
+        }
+        let path = Path::new(name_or_path);
+        let looks_like_a_name = path.extension().is_none() && path.components().count() == 1;
+        if looks_like_a_name && !path.exists() {
+            let names: Vec<_> = builtin::PRESETS.iter().map(|preset| preset.name).collect();
+            let expected = format!("one of {}, or the path of a JSON file", names.join(", "));
+            return Err(FieldError::new("preset", format!("{name_or_path:?}"), expected).into());
+        }
+        json::load(path, PRESET_VERSION, Self::validate)
+    }
+
+    /// Parses and checks a preset. `path` is only named in errors.
+    ///
+    /// # Errors
+    /// As [`Preset::load`].
+    pub fn parse(path: &Path, text: &str) -> Result<Self, Error> {
+        let preset: Self = json::parse_versioned(path, text, PRESET_VERSION)?;
+        preset.validate().map_err(|error| Error::JsonField { path: path.into(), error })?;
+        Ok(preset)
+    }
+
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// The first field that is not valid.
+    pub fn validate(&self) -> Result<(), FieldError> {
+        validate(self, String::new)?;
+        if self.camera.position.distance(self.camera.target) < 1.0e-3 {
+            return Err(FieldError::new("camera.target", self.camera.target, "a point other than camera.position"));
+        }
+        validate_lights(&self.lights)?;
+        if self.systems.len() > MAX_SYSTEMS {
+            let expected = format!("at most {MAX_SYSTEMS} systems");
+            return Err(FieldError::new("systems", format!("{} systems", self.systems.len()), expected));
+        }
+        for (index, system) in self.systems.iter().enumerate() {
+            system.emitter.validate(|| format!("systems[{index}].emitter"))?;
+            system.settings.validate(|| format!("systems[{index}].settings"))?;
+        }
+        Ok(())
+    }
+}
+
+impl PresetSystem {
+    /// The particles alive at `time`, seconds.
+    pub fn particles(&self, time: f32, particles: &mut Vec<Particle>) {
+        let mut emitter = self.emitter;
+        if self.settings.sprite.freeze_animation {
+            emitter.frame_rate = 0.0;
+        }
+        emitter.evaluate(time, particles);
+    }
+
+    /// The settings for a picture of this height: what presets give in pixels, they give for [`DESIGN_HEIGHT`].
+    pub fn settings_for(&self, height: u32) -> Settings {
+        let mut settings = self.settings;
+        settings.specular_scatter.size = (settings.specular_scatter.size * height as f32 / DESIGN_HEIGHT).max(1.0);
+        settings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_builtin_preset_loads_with_its_assets() {
+        for preset in builtin::PRESETS {
+            let loaded = Preset::load(preset.name).unwrap();
+            assert!(!loaded.description.is_empty() && !loaded.systems.is_empty(), "{}", preset.name);
+            for system in &loaded.systems {
+                system.material.load(Path::new("")).unwrap();
+            }
+        }
+    }
+
+    #[test]
+    fn every_builtin_asset_decodes() {
+        for ramp in builtin::RAMPS.iter().chain(builtin::MOTIFS) {
+            ramp.ramp().unwrap();
+        }
+        for builtin in builtin::SPRITES {
+            let (sprite, detail) = (builtin.sprite().unwrap(), builtin.detail().unwrap().unwrap());
+            assert!(sprite.frame_count() > 1);
+            assert_eq!((detail.size() * 4, detail.frame_count()), (sprite.size(), sprite.frame_count()));
+        }
+        for noise in builtin::NOISES {
+            assert_eq!(noise.noise().unwrap().size(), 32);
+        }
+    }
+
+    #[test]
+    fn mistakes_name_the_file_and_the_field() {
+        let parse = |text: &str| Preset::parse(Path::new("my.json"), text).unwrap_err().to_string();
+        let range = parse(r#"{"version": 1, "name": "x", "camera": {"fov": 200}}"#);
+        assert_eq!(range, "my.json: camera.fov: 200 is not valid; expected 1 to 150 degrees");
+        let nested = parse(
+            r#"{"version": 1, "name": "x", "systems": [{"name": "s", "settings": {"soft_fade": {"fade_scale": 0}}}]}"#,
+        );
+        assert!(nested.starts_with("my.json: systems[0].settings.soft_fade.fade_scale: 0 is not valid"), "{nested}");
+        let unknown = Preset::load("colunm").unwrap_err().to_string();
+        assert!(unknown.contains("column, backlit_fog"), "{unknown}");
+    }
+}

@@ -1,0 +1,82 @@
+//! What renderers of one device share.
+
+use std::sync::Arc;
+
+use super::gpu::Gpu;
+use super::gpu::capabilities::read_only_depth_is_supported;
+use super::layouts::Layouts;
+use super::material::{SharedTextures, create_material};
+use super::passes::Passes;
+use crate::assets::material::MaterialAssets;
+use crate::error::{Error, FieldError};
+use crate::frame::Material;
+
+/// What all renderers of one device share: shader modules, bind group layouts, samplers and pipelines. A clone is the same
+/// context; it may be used from any thread.
+///
+/// A program with one view needs none of its own: [`Renderer::new`](crate::Renderer::new) makes one. For split screens, stereo,
+/// shadow or reflection views, make a renderer for each view, and hand the same context to each: they are cheap then, and no
+/// pipeline is compiled twice.
+#[derive(Clone, Debug)]
+pub struct Context(Arc<Shared>);
+
+#[derive(Debug)]
+pub(crate) struct Shared {
+    pub device: wgpu::Device,
+    pub layouts: Layouts,
+    textures: SharedTextures,
+    pub passes: Passes,
+    /// [`read_only_depth_is_supported`], asked once: the answer is one of many that a device makes a copy of each time.
+    pub read_only_depth: bool,
+}
+
+impl Context {
+    /// Compiles the shader modules. Pipelines are compiled by the first `prepare` that needs them, or ahead by
+    /// [`Renderer::warm_up`](crate::Renderer::warm_up).
+    ///
+    /// `pipeline_cache`: one that the host made from what it saved the last time, on backends that have them (today Vulkan, with
+    /// `Features::PIPELINE_CACHE`). Pipelines are looked up in it and added to it; the host takes its contents out with
+    /// `get_data` when it likes.
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, pipeline_cache: Option<&wgpu::PipelineCache>) -> Self {
+        let layouts = Layouts::new(device);
+        let passes = Passes::new(device, &layouts, pipeline_cache);
+        Self(Arc::new(Shared {
+            device: device.clone(),
+            textures: SharedTextures::new(&Gpu { device, queue }),
+            read_only_depth: read_only_depth_is_supported(device),
+            layouts,
+            passes,
+        }))
+    }
+
+    /// Uploads ramps and sprite pictures. Make each material once and keep it; all renderers of this context draw with it.
+    ///
+    /// # Errors
+    /// [`Error::Field`] naming a picture that is too large for the device, or the device if it is another than this context's.
+    pub fn create_material(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        assets: &MaterialAssets,
+    ) -> Result<Material, Error> {
+        self.validate_device(device)?;
+        Ok(create_material(&Gpu { device, queue }, &self.0.layouts.material, &self.0.textures, assets)?)
+    }
+
+    /// Pipelines compiled so far. It stands still once everything that a program draws has been drawn or warmed up.
+    pub fn pipeline_count(&self) -> usize {
+        self.0.passes.pipeline_count()
+    }
+
+    pub(crate) fn shared(&self) -> &Shared {
+        &self.0
+    }
+
+    /// Refuses any device but this context's.
+    pub(crate) fn validate_device(&self, device: &wgpu::Device) -> Result<(), FieldError> {
+        if self.0.device == *device {
+            return Ok(());
+        }
+        Err(FieldError::new("device", "another than the context's", "the device that the context was made with"))
+    }
+}

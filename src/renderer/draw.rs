@@ -1,0 +1,110 @@
+//! What one frame records for a system: its passes with everything that they bind.
+
+use super::frame_bindings::DepthBindings;
+use super::pass::Groups;
+use super::pass::accumulate::{Accumulate, DepthTest};
+use super::pass::depth_downsample::{DepthDownsampleKey, Downsample};
+use super::pass::diffuse_bake::DiffuseBake;
+use super::pass::forward::Forward;
+use super::pass::specular_scatter::SpecularScatter;
+use super::pass::sprites::Sprites;
+use super::pass::transfer::Transfer;
+use super::passes::Passes;
+use super::plan::{DeferredPlan, ForwardPlan};
+use super::system_targets::ReadyTargets;
+use crate::in_view::SystemInView;
+
+/// How a system reaches the picture.
+#[derive(Debug)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "one for each system, made in its place; a box would be an allocation a frame"
+)]
+pub(crate) enum Draw {
+    Forward(Forward),
+    Deferred(Deferred),
+}
+
+/// The passes of the deferred path, in order.
+#[derive(Debug)]
+pub(crate) struct Deferred {
+    pub depth_downsample: Option<Downsample>,
+    pub depth_copy: Option<Downsample>,
+    pub diffuse_bake: Option<DiffuseBake>,
+    pub accumulate: Accumulate,
+    pub transfer: Option<Transfer>,
+    pub specular_scatter: Option<SpecularScatter>,
+}
+
+/// Where passes come from.
+pub(crate) struct Assembly<'a> {
+    pub device: &'a wgpu::Device,
+    pub passes: &'a Passes,
+    pub groups: Groups,
+    pub sprites: Sprites,
+}
+
+impl Assembly<'_> {
+    pub fn forward(self, plan: &ForwardPlan) -> Draw {
+        let pipeline = self.passes.forward(self.device, plan.key);
+        Draw::Forward(Forward { pipeline, groups: self.groups, sprites: self.sprites })
+    }
+
+    /// `depth` is what the plan reads of the host's depth, `host_depth` its depth buffer.
+    pub fn deferred(
+        self,
+        plan: &DeferredPlan,
+        targets: ReadyTargets<'_>,
+        in_view: &SystemInView,
+        depth: &DepthBindings,
+        host_depth: Option<&wgpu::TextureView>,
+    ) -> Draw {
+        let Self { device, passes, groups, sprites } = self;
+        let ReadyTargets { accumulation, baked_diffuse, inputs } = targets;
+        let size = in_view.rect.size;
+        let downsample = |key: Option<DepthDownsampleKey>, target: &Option<wgpu::TextureView>| {
+            Some(Downsample {
+                pipeline: passes.depth_downsample(device, key?),
+                target: target.clone()?,
+                size,
+                frame: groups.frame.clone(),
+                system: groups.system.clone(),
+            })
+        };
+        let lights = in_view.uniform.light_count;
+        Draw::Deferred(Deferred {
+            depth_downsample: downsample(plan.depth_downsample, &accumulation.reduced_depth),
+            depth_copy: downsample(plan.depth_copy, &accumulation.depth_copy),
+            diffuse_bake: plan.diffuse_bake.map(|key| DiffuseBake {
+                pipeline: passes.diffuse_bake(device, key),
+                faces: baked_diffuse.faces.clone(),
+                groups: groups.clone(),
+            }),
+            accumulate: Accumulate {
+                pipeline: passes.accumulate(device, plan.accumulate),
+                targets: accumulation.attachments.clone(),
+                tested_depth: match plan.accumulate.depth_test {
+                    DepthTest::InShader => None,
+                    DepthTest::Reduced => accumulation.reduced_depth.clone(),
+                    DepthTest::Copy => accumulation.depth_copy.clone(),
+                    DepthTest::Host(..) => host_depth.cloned(),
+                },
+                size,
+                groups: groups.clone(),
+                inputs: inputs.accumulate.as_ref().unwrap_or(&depth.accumulate_inputs).clone(),
+                sprites,
+            },
+            transfer: plan.transfer.map(|key| Transfer {
+                pipeline: passes.transfer(device, key),
+                groups: groups.clone(),
+                inputs: inputs.transfer.clone(),
+            }),
+            specular_scatter: plan.specular_scatter.filter(|_| lights > 0).map(|key| SpecularScatter {
+                pipeline: passes.specular_scatter(device, key),
+                groups: groups.clone(),
+                inputs: inputs.transfer.clone(),
+                lights,
+            }),
+        })
+    }
+}

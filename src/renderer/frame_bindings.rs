@@ -1,0 +1,105 @@
+//! Group 0 of every pass: the view and the scene's depth.
+
+use super::gpu::Gpu;
+use super::gpu::checked::checked;
+use super::gpu::record::uniform_buffer;
+use super::layouts::{Layouts, bind_textures};
+use crate::error::FieldError;
+use crate::formula::uniforms::ViewUniform;
+use crate::frame::SceneDepth;
+use crate::in_view::ViewGeometry;
+
+/// The view's uniforms with either kind of scene depth.
+#[derive(Debug)]
+pub(crate) struct FrameBindings {
+    buffer: Source,
+    linear: Source,
+}
+
+/// One kind of scene depth, and bind groups that are made anew when the host hands over another texture.
+#[derive(Debug)]
+struct Source {
+    view: wgpu::Buffer,
+    bound: Option<DepthBindings>,
+}
+
+/// A depth of the host's, bound.
+#[derive(Debug)]
+pub(crate) struct DepthBindings {
+    depth: wgpu::TextureView,
+    /// Group 0.
+    pub frame: wgpu::BindGroup,
+    /// Group 3 of accumulate, where sprites are compared with the host's own depth.
+    pub accumulate_inputs: wgpu::BindGroup,
+}
+
+impl FrameBindings {
+    pub fn new(device: &wgpu::Device) -> Self {
+        Self { buffer: Source::new(device), linear: Source::new(device) }
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> u64 {
+        self.buffer.view.size() + self.linear.view.size()
+    }
+
+    /// # Errors
+    /// The field `scene_depth` when a view of it cannot be read.
+    pub fn write(
+        &mut self,
+        gpu: &Gpu<'_>,
+        layouts: &Layouts,
+        view: &ViewGeometry,
+        scene_depth: &SceneDepth<'_>,
+    ) -> Result<(), FieldError> {
+        self.buffer.write(gpu, layouts, &view.uniform(false), scene_depth.buffer())?;
+        self.linear.write(gpu, layouts, &view.uniform(true), scene_depth.linear())
+    }
+
+    /// `linear`: those of the linear target. `None` when the frame has no depth of that kind.
+    pub fn get(&self, linear: bool) -> Option<&DepthBindings> {
+        if linear { self.linear.bound.as_ref() } else { self.buffer.bound.as_ref() }
+    }
+}
+
+impl Source {
+    fn new(device: &wgpu::Device) -> Self {
+        Self { view: uniform_buffer(device, "haze view", size_of::<ViewUniform>() as u64), bound: None }
+    }
+
+    fn write(
+        &mut self,
+        gpu: &Gpu<'_>,
+        layouts: &Layouts,
+        view: &ViewUniform,
+        depth: Option<&wgpu::TextureView>,
+    ) -> Result<(), FieldError> {
+        let Some(depth) = depth else {
+            self.bound = None;
+            return Ok(());
+        };
+        if self.bound.as_ref().is_none_or(|bound| bound.depth != *depth) {
+            self.bound = None;
+            let bound = checked(gpu.device, || self.bind(gpu.device, layouts, depth)).map_err(|reason| {
+                let expected = format!("a 2D view of one layer and one aspect of a texture of this device ({reason})");
+                FieldError::new("scene_depth", format!("a view of a {:?}", depth.texture().format()), expected)
+            })?;
+            self.bound = Some(bound);
+        }
+        gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(view));
+        Ok(())
+    }
+
+    fn bind(&self, device: &wgpu::Device, layouts: &Layouts, depth: &wgpu::TextureView) -> DepthBindings {
+        let frame = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("haze frame"),
+            layout: &layouts.frame,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: self.view.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(depth) },
+            ],
+        });
+        let accumulate_inputs = bind_textures(device, "haze accumulate inputs", &layouts.accumulate, [depth]);
+        DepthBindings { depth: depth.clone(), frame, accumulate_inputs }
+    }
+}

@@ -1,0 +1,14 @@
+//! What backends differ in.
+
+/// True if a pass of this device can test and sample one depth buffer. OpenGL and WebGL2 cannot: what is sampled there must
+/// be a linear target, or else [`Descriptor::depth_format`](crate::Descriptor::depth_format) `None`, and the shaders alone hide
+/// what is behind the scene.
+pub fn read_only_depth_is_supported(device: &wgpu::Device) -> bool {
+    device.adapter_info().backend != wgpu::Backend::Gl
+}
+
+/// Layers to allocate for a square array texture of `layers`. wgpu's OpenGL backend takes a texture of one layer for a plain
+/// one, and a square texture of six, or a multiple, for a cube: neither can then be sampled as an array.
+pub(crate) fn array_layers(layers: u32) -> u32 {
+    if layers == 1 || layers.is_multiple_of(6) { layers + 1 } else { layers }
+}

@@ -1,0 +1,172 @@
+//! Render pipelines: their variants, and the states that passes share.
+
+use std::collections::HashMap;
+use std::hash::Hash;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// A pass's shader, and its pipelines by what distinguishes them. Compiled when first asked for, from any thread.
+#[derive(Debug)]
+pub(crate) struct Variants<K> {
+    name: &'static str,
+    module: wgpu::ShaderModule,
+    layout: wgpu::PipelineLayout,
+    cache: Option<wgpu::PipelineCache>,
+    pipelines: Mutex<HashMap<K, wgpu::RenderPipeline>>,
+}
+
+/// The parts of a render pipeline that differ from variant to variant.
+pub(crate) struct PipelineParts {
+    pub buffers: &'static [Option<wgpu::VertexBufferLayout<'static>>],
+    pub primitive: wgpu::PrimitiveState,
+    pub depth_stencil: Option<wgpu::DepthStencilState>,
+    pub sample_count: u32,
+    pub targets: Vec<Option<wgpu::ColorTargetState>>,
+    pub constants: Vec<Constant>,
+}
+
+impl<K: Copy + Eq + Hash> Variants<K> {
+    /// `name` is the pass's: its label.
+    pub fn new(
+        device: &wgpu::Device,
+        name: &'static str,
+        source: String,
+        groups: &[Option<&wgpu::BindGroupLayout>],
+        cache: Option<&wgpu::PipelineCache>,
+    ) -> Self {
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(name),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(name),
+            bind_group_layouts: groups,
+            immediate_size: 0,
+        });
+        Self { name, module, layout, cache: cache.cloned(), pipelines: Mutex::default() }
+    }
+
+    /// The pipeline for `key`, compiled the first time. Nobody waits meanwhile but who asks for it.
+    pub fn get(&self, device: &wgpu::Device, key: K, describe: impl FnOnce() -> PipelineParts) -> wgpu::RenderPipeline {
+        let found = self.lock().get(&key).cloned();
+        found.unwrap_or_else(|| {
+            let compiled = self.compile(device, &describe());
+            self.lock().entry(key).or_insert(compiled).clone()
+        })
+    }
+
+    /// Pipelines compiled so far.
+    pub fn len(&self) -> usize {
+        self.lock().len()
+    }
+
+    fn lock(&self) -> MutexGuard<'_, HashMap<K, wgpu::RenderPipeline>> {
+        self.pipelines.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn compile(&self, device: &wgpu::Device, parts: &PipelineParts) -> wgpu::RenderPipeline {
+        let options = wgpu::PipelineCompilationOptions { constants: &parts.constants, ..Default::default() };
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(self.name),
+            layout: Some(&self.layout),
+            vertex: wgpu::VertexState {
+                module: &self.module,
+                entry_point: Some("vertex"),
+                compilation_options: options.clone(),
+                buffers: parts.buffers,
+            },
+            primitive: parts.primitive,
+            depth_stencil: parts.depth_stencil.clone(),
+            multisample: wgpu::MultisampleState { count: parts.sample_count, ..Default::default() },
+            fragment: Some(wgpu::FragmentState {
+                module: &self.module,
+                entry_point: Some("fragment"),
+                compilation_options: options,
+                targets: &parts.targets,
+            }),
+            multiview_mask: None,
+            cache: self.cache.as_ref(),
+        })
+    }
+}
+
+/// A WGSL override and its value.
+pub(crate) type Constant = (&'static str, f64);
+
+/// A switch of the shader.
+pub(crate) fn switch(name: &'static str, on: bool) -> Constant {
+    (name, if on { 1.0 } else { 0.0 })
+}
+
+/// A setting enum as the shader's number: the variant's place.
+macro_rules! variant {
+    ($name:literal, $value:expr) => {
+        ($name, f64::from($value as u32))
+    };
+}
+pub(crate) use variant;
+
+/// ONE, ONE_MINUS_SRC_ALPHA: the source's colour over what is there, both premultiplied.
+pub(crate) const PREMULTIPLIED_OVER: wgpu::BlendState = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
+
+/// ONE, ONE on colour; alpha is left alone.
+pub(crate) const ADDITIVE: wgpu::BlendState = wgpu::BlendState { color: ADD, alpha: KEEP };
+
+/// ONE, ONE on colour and alpha.
+pub(crate) const COUNT: wgpu::BlendState = wgpu::BlendState { color: ADD, alpha: ADD };
+
+/// DST, ZERO on colour: what is there times the source; alpha is left alone.
+pub(crate) const MULTIPLY: wgpu::BlendState = wgpu::BlendState {
+    color: wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::Dst,
+        dst_factor: wgpu::BlendFactor::Zero,
+        operation: wgpu::BlendOperation::Add,
+    },
+    alpha: KEEP,
+};
+
+const ADD: wgpu::BlendComponent = wgpu::BlendComponent {
+    src_factor: wgpu::BlendFactor::One,
+    dst_factor: wgpu::BlendFactor::One,
+    operation: wgpu::BlendOperation::Add,
+};
+
+const KEEP: wgpu::BlendComponent = wgpu::BlendComponent {
+    src_factor: wgpu::BlendFactor::Zero,
+    dst_factor: wgpu::BlendFactor::One,
+    operation: wgpu::BlendOperation::Add,
+};
+
+/// A colour target with or without a blend.
+pub(crate) fn color_target(
+    format: wgpu::TextureFormat,
+    blend: Option<wgpu::BlendState>,
+) -> Option<wgpu::ColorTargetState> {
+    Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL })
+}
+
+/// A depth attachment that is compared with but not written.
+pub(crate) fn read_only_depth(format: wgpu::TextureFormat, compare: wgpu::CompareFunction) -> wgpu::DepthStencilState {
+    wgpu::DepthStencilState {
+        format,
+        depth_write_enabled: Some(false),
+        depth_compare: Some(compare),
+        stencil: wgpu::StencilState::default(),
+        bias: wgpu::DepthBiasState::default(),
+    }
+}
+
+/// "In front of or at the surface" in a depth buffer.
+pub(crate) fn in_front(reversed: bool) -> wgpu::CompareFunction {
+    if reversed { wgpu::CompareFunction::GreaterEqual } else { wgpu::CompareFunction::LessEqual }
+}
+
+/// The primitive of quads: a strip of four corners, both sides.
+pub(crate) const STRIP: wgpu::PrimitiveState = wgpu::PrimitiveState {
+    topology: wgpu::PrimitiveTopology::TriangleStrip,
+    strip_index_format: None,
+    front_face: wgpu::FrontFace::Ccw,
+    cull_mode: None,
+    unclipped_depth: false,
+    polygon_mode: wgpu::PolygonMode::Fill,
+    conservative: false,
+};

@@ -1,0 +1,61 @@
+//! The instance buffer of a system whose particles are in memory.
+
+use super::gpu::Gpu;
+use super::gpu::spare::Spare;
+use super::pass::sprites::Sprites;
+use crate::frame::{Particle, Particles};
+use crate::in_view::{SortScratch, ViewGeometry, back_to_front};
+
+#[derive(Debug, Default)]
+pub(crate) struct Instances {
+    buffer: Option<wgpu::Buffer>,
+    spare: Spare,
+    sort: SortScratch,
+    sorted: Vec<Particle>,
+}
+
+impl Instances {
+    /// Uploads a slice, back to front; a host's buffer is taken as it is. `None` when there is nothing to draw.
+    pub fn write(
+        &mut self,
+        gpu: &Gpu<'_>,
+        view: &ViewGeometry,
+        particles: Particles<'_>,
+        loops: u32,
+    ) -> Option<Sprites> {
+        let particles = match particles {
+            Particles::Buffer { buffer, offset, count } => {
+                self.buffer = None;
+                return (count > 0).then(|| Sprites { buffer: buffer.clone(), offset, count, loops });
+            }
+            Particles::Slice(particles) => particles,
+        };
+        back_to_front(view, particles, &mut self.sort, &mut self.sorted);
+        let needed = size_of_val(self.sorted.as_slice()) as u64;
+        let held = self.bytes();
+        let gives_back = self.spare.outlasts(needed.next_power_of_two() * 4 <= held);
+        if needed > held || gives_back {
+            self.buffer = None;
+            self.sort.shrink();
+            self.sorted.shrink_to_fit();
+        }
+        if needed == 0 {
+            return None;
+        }
+        let buffer = self.buffer.get_or_insert_with(|| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("haze particles"),
+                size: needed.next_power_of_two().min(gpu.device.limits().max_buffer_size),
+                usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        });
+        gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&self.sorted));
+        Some(Sprites { buffer: buffer.clone(), offset: 0, count: self.sorted.len() as u32, loops })
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> u64 {
+        self.buffer.as_ref().map_or(0, wgpu::Buffer::size)
+    }
+}

@@ -1,0 +1,86 @@
+//! Layouts of the bind groups: 0 frame, 1 system, 2 material, 3 the pass's own inputs. `shaders/lib/bindings.wgsl`.
+
+use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
+use crate::frame::MAX_LIGHTS;
+
+/// Bytes of the lights' uniform block.
+pub(crate) const LIGHTS_SIZE: u64 = (MAX_LIGHTS * size_of::<LightUniform>()) as u64;
+
+#[derive(Debug)]
+pub(crate) struct Layouts {
+    pub frame: wgpu::BindGroupLayout,
+    pub system: wgpu::BindGroupLayout,
+    pub material: wgpu::BindGroupLayout,
+    pub accumulate: wgpu::BindGroupLayout,
+    pub transfer: wgpu::BindGroupLayout,
+}
+
+impl Layouts {
+    pub fn new(device: &wgpu::Device) -> Self {
+        use wgpu::TextureViewDimension::{D2, D2Array, D3};
+        let filterable = wgpu::TextureSampleType::Float { filterable: true };
+        // Depth buffers and R32Float alike.
+        let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
+        let uniform = |size: u64| wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: wgpu::BufferSize::new(size),
+        };
+        let texture = |sample_type, view_dimension| wgpu::BindingType::Texture {
+            sample_type,
+            view_dimension,
+            multisampled: false,
+        };
+        let layout = |label, types: &[wgpu::BindingType]| {
+            let entries: Vec<_> = (0..)
+                .zip(types)
+                .map(|(binding, &ty)| wgpu::BindGroupLayoutEntry {
+                    binding,
+                    visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+                    ty,
+                    count: None,
+                })
+                .collect();
+            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
+        };
+        Self {
+            frame: layout("haze frame", &[uniform(size_of::<ViewUniform>() as u64), texture(unfilterable, D2)]),
+            system: layout("haze system", &[uniform(size_of::<SystemUniform>() as u64), uniform(LIGHTS_SIZE)]),
+            material: layout(
+                "haze material",
+                &[
+                    texture(filterable, D2Array),
+                    texture(filterable, D2),
+                    texture(filterable, D2),
+                    texture(filterable, D2),
+                    texture(filterable, D2),
+                    wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+                    texture(filterable, D2Array),
+                    texture(filterable, D2),
+                    texture(filterable, D3),
+                    wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+                ],
+            ),
+            accumulate: layout("haze accumulate inputs", &[texture(unfilterable, D2)]),
+            transfer: layout(
+                "haze transfer inputs",
+                &[texture(unfilterable, D2), texture(unfilterable, D2), texture(filterable, D2Array)],
+            ),
+        }
+    }
+}
+
+/// A bind group of textures, in the order of its layout.
+pub(crate) fn bind_textures<const N: usize>(
+    device: &wgpu::Device,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    views: [&wgpu::TextureView; N],
+) -> wgpu::BindGroup {
+    let mut binding = 0..;
+    let entries = views.map(|view| wgpu::BindGroupEntry {
+        binding: binding.next().unwrap_or_default(),
+        resource: wgpu::BindingResource::TextureView(view),
+    });
+    device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+}

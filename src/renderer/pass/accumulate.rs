@@ -1,0 +1,92 @@
+//! accumulate
+//! What: blends every sprite's normal and amount into the accumulation target.
+//! Reads: particles back to front, sprite flipbook, detail map or noise, reduced depth or the host's own. Writes:
+//! accumulation target. Blend: ONE, ONE_MINUS_SRC_ALPHA. Source: OTEE "Accumulating the particles"; techniques: NV, BLOG, MS.
+
+use glam::UVec2;
+
+use super::Groups;
+use super::sprites::{PARTICLE_LAYOUT, SpriteKey, Sprites};
+use crate::renderer::gpu::pipeline::{
+    COUNT, PREMULTIPLIED_OVER, PipelineParts, STRIP, color_target, in_front, read_only_depth, switch, variant,
+};
+use crate::renderer::gpu::record::{begin_pass, color_attachment, set_part, tested_depth};
+use crate::renderer::targets::{ATTACHMENTS, DEPTH_COPY_FORMAT, REDUCED_DEPTH_FORMAT, accumulation_layout};
+use crate::settings::{AccumulationFormat, NormalEncoding};
+
+/// What makes one accumulation pipeline differ from another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct AccumulateKey {
+    pub format: AccumulationFormat,
+    pub encoding: NormalEncoding,
+    pub sprite: SpriteKey,
+    /// Sprites are compared with the host's own depth, not the reduced one.
+    pub host_depth: bool,
+    pub depth_test: DepthTest,
+    /// Count layers instead of blending normals.
+    pub overdraw: bool,
+}
+
+/// What rejects hidden sprites before they are shaded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum DepthTest {
+    /// Nothing: what is behind the scene may show.
+    InShader,
+    /// The hardware, against the reduced depth, which the shader samples too.
+    Reduced,
+    /// The hardware, against a coarse copy of the reduced depth: this backend cannot test what the shader samples.
+    Copy,
+    /// The hardware, against the host's depth: its format, and whether it is reversed.
+    Host(wgpu::TextureFormat, bool),
+}
+
+/// The pipeline for a key.
+pub(crate) fn describe(key: AccumulateKey) -> PipelineParts {
+    let blend = if key.overdraw { COUNT } else { PREMULTIPLIED_OVER };
+    PipelineParts {
+        buffers: const { &[Some(PARTICLE_LAYOUT)] },
+        primitive: STRIP,
+        depth_stencil: match key.depth_test {
+            DepthTest::InShader => None,
+            DepthTest::Reduced => Some(read_only_depth(REDUCED_DEPTH_FORMAT, in_front(false))),
+            DepthTest::Copy => Some(read_only_depth(DEPTH_COPY_FORMAT, in_front(false))),
+            DepthTest::Host(format, reversed) => Some(read_only_depth(format, in_front(reversed))),
+        },
+        sample_count: 1,
+        targets: accumulation_layout(key.format).map(|a| color_target(a.format, Some(blend))).to_vec(),
+        constants: key.sprite.constants([
+            variant!("NORMAL_ENCODING", key.encoding),
+            switch("HOST_DEPTH", key.host_depth),
+            // The copy is too coarse to stand in for the shader's own test.
+            switch("DEPTH_TESTED", !matches!(key.depth_test, DepthTest::InShader | DepthTest::Copy)),
+            switch("OVERDRAW", key.overdraw),
+        ]),
+    }
+}
+
+/// The pass for one system.
+#[derive(Debug)]
+pub(crate) struct Accumulate {
+    pub pipeline: wgpu::RenderPipeline,
+    pub targets: [wgpu::TextureView; ATTACHMENTS],
+    /// The depth that the hardware tests sprites against.
+    pub tested_depth: Option<wgpu::TextureView>,
+    /// Texels in use.
+    pub size: UVec2,
+    pub groups: Groups,
+    /// Group 3: the depth that the shader reads.
+    pub inputs: wgpu::BindGroup,
+    pub sprites: Sprites,
+}
+
+impl Accumulate {
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        let attachments = self.targets.each_ref().map(color_attachment);
+        let mut pass = begin_pass(encoder, "accumulate", &attachments, self.tested_depth.as_ref().map(tested_depth));
+        set_part(&mut pass, UVec2::ZERO, self.size);
+        pass.set_pipeline(&self.pipeline);
+        self.groups.bind(&mut pass);
+        pass.set_bind_group(3, &self.inputs, &[]);
+        self.sprites.draw(&mut pass);
+    }
+}

@@ -1,0 +1,58 @@
+//! depth_downsample
+//! What: brings the scene's depth to the resolution of the accumulation target.
+//! Reads: scene depth. Writes: reduced depth, Depth32Float, linear view depth over `depth_limit`; where a backend cannot
+//! test what it samples, a coarse copy as well, never nearer than the original. Blend: none.
+//! Source: OTEE "Transfer & lighting", option 1.
+
+use glam::UVec2;
+
+use crate::renderer::gpu::pipeline::{PipelineParts, read_only_depth, switch, variant};
+use crate::renderer::gpu::record::{begin_pass, set_part, written_depth};
+use crate::renderer::targets::{DEPTH_COPY_FORMAT, REDUCED_DEPTH_FORMAT};
+use crate::settings::DepthDownsample;
+
+/// What makes one downsampling pipeline differ from another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct DepthDownsampleKey {
+    pub mode: DepthDownsample,
+    /// For the copy.
+    pub copy: bool,
+}
+
+/// The pipeline for a key.
+pub(crate) fn describe(key: DepthDownsampleKey) -> PipelineParts {
+    let format = if key.copy { DEPTH_COPY_FORMAT } else { REDUCED_DEPTH_FORMAT };
+    PipelineParts {
+        buffers: &[],
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: Some(wgpu::DepthStencilState {
+            depth_write_enabled: Some(true),
+            ..read_only_depth(format, wgpu::CompareFunction::Always)
+        }),
+        sample_count: 1,
+        targets: Vec::new(),
+        constants: vec![variant!("DEPTH_DOWNSAMPLE", key.mode), switch("COARSE_COPY", key.copy)],
+    }
+}
+
+/// The pass for one system and one target.
+#[derive(Debug)]
+pub(crate) struct Downsample {
+    pub pipeline: wgpu::RenderPipeline,
+    pub target: wgpu::TextureView,
+    /// Texels in use.
+    pub size: UVec2,
+    pub frame: wgpu::BindGroup,
+    pub system: wgpu::BindGroup,
+}
+
+impl Downsample {
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        let mut pass = begin_pass(encoder, "depth_downsample", &[], Some(written_depth(&self.target)));
+        set_part(&mut pass, UVec2::ZERO, self.size);
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.frame, &[]);
+        pass.set_bind_group(1, &self.system, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}

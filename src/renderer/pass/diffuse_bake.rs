@@ -1,0 +1,57 @@
+//! diffuse_bake
+//! What: bakes all lights through the diffuse ramp into a small texture by normal, once per system and frame.
+//! Reads: lights, diffuse ramp. Writes: cubemap faces or motif, Rgba16Float. Blend: none.
+//! Source: OTEE "Diffuse lighting": "use cubemaps", "motif lighting".
+
+use std::sync::Arc;
+
+use super::Groups;
+use crate::formula::diffuse_bake::baked_size_and_layers;
+use crate::renderer::gpu::pipeline::{PipelineParts, color_target, switch};
+use crate::renderer::gpu::record::{begin_pass, color_attachment};
+use crate::renderer::targets::BAKED_DIFFUSE_FORMAT;
+use crate::settings::DiffuseMode;
+
+/// What makes one baking pipeline differ from another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct DiffuseBakeKey {
+    /// One that bakes.
+    pub mode: DiffuseMode,
+    pub exact_filtering: bool,
+}
+
+/// The pipeline for a key.
+pub(crate) fn describe(key: DiffuseBakeKey) -> PipelineParts {
+    let (side, _) = baked_size_and_layers(key.mode).unwrap_or((1, 1));
+    PipelineParts {
+        buffers: &[],
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        sample_count: 1,
+        targets: vec![color_target(BAKED_DIFFUSE_FORMAT, None)],
+        constants: vec![
+            switch("MOTIF", key.mode == DiffuseMode::Motif),
+            ("BAKE_SIZE", f64::from(side)),
+            switch("EXACT_FILTERING", key.exact_filtering),
+        ],
+    }
+}
+
+/// The pass for one system: every face of the cubemap, or the motif.
+#[derive(Debug)]
+pub(crate) struct DiffuseBake {
+    pub pipeline: wgpu::RenderPipeline,
+    pub faces: Arc<[wgpu::TextureView]>,
+    pub groups: Groups,
+}
+
+impl DiffuseBake {
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        for (face, view) in (0..).zip(self.faces.iter()) {
+            let mut pass = begin_pass(encoder, "diffuse_bake", &[color_attachment(view)], None);
+            pass.set_pipeline(&self.pipeline);
+            self.groups.bind(&mut pass);
+            pass.draw(3 * face..3 * face + 3, 0..1);
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! forward
+//! What: the classic way: every sprite fragment lit and blended at full resolution.
+//! Reads: particles back to front, sprite flipbook, detail map or noise, scene depth, lights, ramps. Writes: the host's colour target.
+//! Blend: alpha, additive or multiply. Source: OTEE "Typical game particles so far".
+
+use super::Groups;
+use super::sprites::{PARTICLE_LAYOUT, SpriteKey, Sprites};
+use crate::renderer::gpu::host_pass::HostPass;
+use crate::renderer::gpu::pipeline::{
+    ADDITIVE, MULTIPLY, PREMULTIPLIED_OVER, PipelineParts, STRIP, in_front, read_only_depth, switch, variant,
+};
+use crate::settings::{BlendMode, SoftScatterMode};
+
+/// What makes one forward pipeline differ from another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct ForwardKey {
+    pub host: HostPass,
+    pub blend_mode: BlendMode,
+    pub sprite: SpriteKey,
+    pub age_colour: bool,
+    /// Sprites are seen behind the scene: nothing tests depth.
+    pub shows_through: bool,
+    pub soft_scatter_mode: SoftScatterMode,
+    pub reversed: bool,
+}
+
+/// The pipeline for a key.
+pub(crate) fn describe(key: ForwardKey) -> PipelineParts {
+    let blend = match key.blend_mode {
+        BlendMode::Alpha => PREMULTIPLIED_OVER,
+        BlendMode::Additive => ADDITIVE,
+        BlendMode::Multiply => MULTIPLY,
+    };
+    let compare = if key.shows_through { wgpu::CompareFunction::Always } else { in_front(key.reversed) };
+    PipelineParts {
+        buffers: const { &[Some(PARTICLE_LAYOUT)] },
+        primitive: STRIP,
+        depth_stencil: key.host.depth_format.map(|format| read_only_depth(format, compare)),
+        sample_count: key.host.sample_count,
+        targets: key.host.color_targets(blend),
+        constants: key.sprite.constants([
+            variant!("BLEND_MODE", key.blend_mode),
+            switch("AGE_COLOUR", key.age_colour),
+            switch("DEPTH_TESTED", key.host.depth_format.is_some() && !key.shows_through),
+            variant!("SOFT_SCATTER_MODE", key.soft_scatter_mode),
+            switch("GAMMA_TARGET", key.host.gamma_target),
+        ]),
+    }
+}
+
+/// The pass for one system, in the host's pass.
+#[derive(Debug)]
+pub(crate) struct Forward {
+    pub pipeline: wgpu::RenderPipeline,
+    pub groups: Groups,
+    pub sprites: Sprites,
+}
+
+impl Forward {
+    pub fn record(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        self.groups.bind(pass);
+        self.sprites.draw(pass);
+    }
+}

@@ -1,0 +1,26 @@
+//! The passes, one file each: what its pipelines differ in, and how it is recorded. A pass is handed values: bind groups,
+//! buffers, counts, targets. It does not know who holds them.
+
+pub(crate) mod accumulate;
+pub(crate) mod depth_downsample;
+pub(crate) mod diffuse_bake;
+pub(crate) mod forward;
+pub(crate) mod specular_scatter;
+pub(crate) mod sprites;
+pub(crate) mod transfer;
+
+/// Bind groups 0 to 2 of a system's passes.
+#[derive(Clone, Debug)]
+pub(crate) struct Groups {
+    pub frame: wgpu::BindGroup,
+    pub system: wgpu::BindGroup,
+    pub material: wgpu::BindGroup,
+}
+
+impl Groups {
+    fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_bind_group(0, &self.frame, &[]);
+        pass.set_bind_group(1, &self.system, &[]);
+        pass.set_bind_group(2, &self.material, &[]);
+    }
+}

@@ -1,0 +1,53 @@
+//! specular_scatter
+//! What: the glow of lights behind the smoke, one quad of constant pixel size round each.
+//! Reads: accumulation target, reduced depth, scene depth, lights, specular ramp. Writes: the host's colour target.
+//! Blend: ONE, ONE. Source: OTEE "Specular scattering".
+
+use super::Groups;
+use crate::renderer::gpu::host_pass::HostPass;
+use crate::renderer::gpu::pipeline::{ADDITIVE, PipelineParts, STRIP, read_only_depth, switch, variant};
+use crate::settings::Upsample;
+
+/// What makes one specular scatter pipeline differ from another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct SpecularScatterKey {
+    pub host: HostPass,
+    pub upsample: Upsample,
+    pub exact_filtering: bool,
+}
+
+/// The pipeline for a key.
+pub(crate) fn describe(key: SpecularScatterKey) -> PipelineParts {
+    let always = |format| read_only_depth(format, wgpu::CompareFunction::Always);
+    PipelineParts {
+        buffers: &[],
+        primitive: STRIP,
+        depth_stencil: key.host.depth_format.map(always),
+        sample_count: key.host.sample_count,
+        targets: key.host.color_targets(ADDITIVE),
+        constants: vec![
+            variant!("UPSAMPLE", key.upsample),
+            switch("GAMMA_TARGET", key.host.gamma_target),
+            switch("EXACT_FILTERING", key.exact_filtering),
+        ],
+    }
+}
+
+/// The pass for one system, in the host's pass: one quad per light.
+#[derive(Debug)]
+pub(crate) struct SpecularScatter {
+    pub pipeline: wgpu::RenderPipeline,
+    pub groups: Groups,
+    /// Group 3: the targets.
+    pub inputs: wgpu::BindGroup,
+    pub lights: u32,
+}
+
+impl SpecularScatter {
+    pub fn record(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        self.groups.bind(pass);
+        pass.set_bind_group(3, &self.inputs, &[]);
+        pass.draw(0..4, 0..self.lights);
+    }
+}

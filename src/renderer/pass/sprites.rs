@@ -1,0 +1,73 @@
+//! What accumulate and forward share: sprites, and the variants of `shaders/lib/sprite_vertex.wgsl` and `sprite_fragment.wgsl`.
+
+use crate::frame::Particle;
+use crate::renderer::gpu::pipeline::{Constant, switch, variant};
+use crate::settings::{FadeCurve, Settings, SpriteAnimation, Technique};
+
+/// The instance buffer's layout: one [`Particle`] per sprite.
+pub(crate) const PARTICLE_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: size_of::<Particle>() as u64,
+    step_mode: wgpu::VertexStepMode::Instance,
+    attributes: &wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4],
+};
+
+/// What makes the sprites of one pipeline differ from another's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct SpriteKey {
+    technique: Technique,
+    animation: SpriteAnimation,
+    debug_sprite: bool,
+    motion: bool,
+    curve: FadeCurve,
+    linear_depth: bool,
+    exact_filtering: bool,
+}
+
+impl SpriteKey {
+    /// `linear_depth`: the host's depth is linear.
+    pub fn new(settings: &Settings, linear_depth: bool, exact_filtering: bool) -> Self {
+        Self {
+            technique: settings.technique,
+            animation: settings.sprite.animation,
+            debug_sprite: settings.sprite.debug_sprite,
+            motion: settings.sprite.motion > 0.0,
+            curve: settings.soft_fade.curve,
+            linear_depth,
+            exact_filtering,
+        }
+    }
+
+    /// The overrides of the shared files, and a pass's own.
+    pub fn constants<const N: usize>(&self, of_pass: [Constant; N]) -> Vec<Constant> {
+        let shared = [
+            variant!("TECHNIQUE", self.technique),
+            variant!("SPRITE_ANIMATION", self.animation),
+            switch("DEBUG_SPRITE", self.debug_sprite),
+            switch("MOTION", self.motion),
+            variant!("FADE_CURVE", self.curve),
+            switch("LINEAR_DEPTH", self.linear_depth),
+            switch("EXACT_FILTERING", self.exact_filtering),
+        ];
+        shared.into_iter().chain(of_pass).collect()
+    }
+}
+
+/// A run of sprites in a buffer.
+#[derive(Clone, Debug)]
+pub(crate) struct Sprites {
+    pub buffer: wgpu::Buffer,
+    /// Bytes before the first.
+    pub offset: u64,
+    pub count: u32,
+    /// How often all of them are drawn.
+    pub loops: u32,
+}
+
+impl Sprites {
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_vertex_buffer(0, self.buffer.slice(self.offset..));
+        for _ in 0..self.loops {
+            pass.draw(0..4, 0..self.count);
+        }
+    }
+}

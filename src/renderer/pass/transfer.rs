@@ -1,0 +1,81 @@
+//! transfer
+//! What: lights the accumulated smoke once per pixel, over the system's bounding box.
+//! Reads: accumulation target, reduced depth, scene depth, lights, ramps. Writes: the host's colour target.
+//! Blend: ONE, ONE_MINUS_SRC_ALPHA. Source: OTEE "Transfer & lighting".
+
+use super::Groups;
+use crate::renderer::gpu::host_pass::HostPass;
+use crate::renderer::gpu::pipeline::{PREMULTIPLIED_OVER, PipelineParts, in_front, read_only_depth, switch, variant};
+use crate::settings::{DiffuseMode, NormalDecode, NormalEncoding, ShadeTree, SoftScatterMode, Upsample};
+
+/// Vertices of the box: twelve triangles.
+const BOX_VERTICES: u32 = 36;
+
+/// What makes one transfer pipeline differ from another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct TransferKey {
+    pub host: HostPass,
+    pub encoding: NormalEncoding,
+    pub decode: NormalDecode,
+    pub diffuse_mode: DiffuseMode,
+    pub soft_scatter_mode: SoftScatterMode,
+    pub upsample: Upsample,
+    pub host_depth: bool,
+    pub shade_tree: ShadeTree,
+    /// Draw the back faces, untested: the near plane cuts the box, or nothing tests depth.
+    pub back_faces: bool,
+    pub reversed: bool,
+    /// The view mirrors: faces turn the other way round.
+    pub mirrored: bool,
+    pub exact_filtering: bool,
+}
+
+/// The pipeline for a key.
+pub(crate) fn describe(key: TransferKey) -> PipelineParts {
+    let (cull, compare) = if key.back_faces {
+        (wgpu::Face::Front, wgpu::CompareFunction::Always)
+    } else {
+        (wgpu::Face::Back, in_front(key.reversed))
+    };
+    PipelineParts {
+        buffers: &[],
+        primitive: wgpu::PrimitiveState {
+            front_face: if key.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
+            cull_mode: Some(cull),
+            ..Default::default()
+        },
+        depth_stencil: key.host.depth_format.map(|format| read_only_depth(format, compare)),
+        sample_count: key.host.sample_count,
+        targets: key.host.color_targets(PREMULTIPLIED_OVER),
+        constants: vec![
+            variant!("DIFFUSE_MODE", key.diffuse_mode),
+            variant!("SOFT_SCATTER_MODE", key.soft_scatter_mode),
+            variant!("NORMAL_ENCODING", key.encoding),
+            variant!("NORMAL_DECODE", key.decode),
+            variant!("UPSAMPLE", key.upsample),
+            variant!("SHADE_TREE", key.shade_tree),
+            switch("HOST_DEPTH", key.host_depth),
+            switch("BACK_FACES", key.back_faces),
+            switch("GAMMA_TARGET", key.host.gamma_target),
+            switch("EXACT_FILTERING", key.exact_filtering),
+        ],
+    }
+}
+
+/// The pass for one system, in the host's pass.
+#[derive(Debug)]
+pub(crate) struct Transfer {
+    pub pipeline: wgpu::RenderPipeline,
+    pub groups: Groups,
+    /// Group 3: the targets.
+    pub inputs: wgpu::BindGroup,
+}
+
+impl Transfer {
+    pub fn record(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        self.groups.bind(pass);
+        pass.set_bind_group(3, &self.inputs, &[]);
+        pass.draw(0..BOX_VERTICES, 0..1);
+    }
+}

@@ -1,0 +1,177 @@
+//! What a frame draws, and with which pipelines: decided from plain data, before a device is asked for anything.
+
+use super::gpu::host_pass::HostPass;
+use super::pass::accumulate::{AccumulateKey, DepthTest};
+use super::pass::depth_downsample::DepthDownsampleKey;
+use super::pass::diffuse_bake::DiffuseBakeKey;
+use super::pass::forward::ForwardKey;
+use super::pass::specular_scatter::SpecularScatterKey;
+use super::pass::sprites::SpriteKey;
+use super::pass::transfer::TransferKey;
+use crate::formula::diffuse_bake::baked_size_and_layers;
+use crate::frame::SceneDepth;
+use crate::settings::{DepthSource, Settings, ShadeTree, Technique};
+
+/// Which depth of the scene a host hands over, and the format of the buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SceneDepthKind {
+    /// [`SceneDepth::Buffer`].
+    Buffer(wgpu::TextureFormat),
+    /// [`SceneDepth::Linear`].
+    Linear,
+    /// [`SceneDepth::Both`].
+    Both(wgpu::TextureFormat),
+}
+
+impl SceneDepth<'_> {
+    /// Its kind.
+    pub fn kind(&self) -> SceneDepthKind {
+        match self {
+            Self::Buffer(view) => SceneDepthKind::Buffer(view.texture().format()),
+            Self::Linear(_) => SceneDepthKind::Linear,
+            Self::Both { buffer, .. } => SceneDepthKind::Both(buffer.texture().format()),
+        }
+    }
+}
+
+/// What all systems of a frame have in common.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Situation {
+    pub host: HostPass,
+    pub exact_filtering: bool,
+    /// One pass can test and sample one depth buffer.
+    pub read_only_depth: bool,
+    pub scene_depth: SceneDepthKind,
+    /// The near plane is stored as 1.
+    pub reversed: bool,
+    /// The view mirrors.
+    pub mirrored: bool,
+    pub shade_tree: ShadeTree,
+}
+
+/// What is drawn for one system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Plan {
+    /// Forward sprites have no stages to show.
+    Nothing,
+    Forward(ForwardPlan),
+    Deferred(DeferredPlan),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ForwardPlan {
+    /// The scene's depth is read from the linear target, not from the depth buffer.
+    pub reads_linear: bool,
+    pub key: ForwardKey,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct DeferredPlan {
+    /// As in [`ForwardPlan`].
+    pub reads_linear: bool,
+    pub depth_downsample: Option<DepthDownsampleKey>,
+    /// The same for the copy of the reduced depth.
+    pub depth_copy: Option<DepthDownsampleKey>,
+    pub diffuse_bake: Option<DiffuseBakeKey>,
+    pub accumulate: AccumulateKey,
+    pub transfer: Option<TransferKey>,
+    pub specular_scatter: Option<SpecularScatterKey>,
+}
+
+/// Plans a system. `back_faces`: the near plane cuts its box, or it shows through the scene.
+pub(crate) fn plan(situation: &Situation, settings: &Settings, back_faces: bool) -> Plan {
+    let reads_linear = reads_linear(situation.scene_depth, situation.read_only_depth, settings);
+    if !settings.is_forward() {
+        return Plan::Deferred(deferred(situation, settings, back_faces, reads_linear));
+    }
+    if !matches!(situation.shade_tree, ShadeTree::Final | ShadeTree::Combined) {
+        return Plan::Nothing;
+    }
+    let key = ForwardKey {
+        host: situation.host,
+        blend_mode: settings.blend_mode,
+        sprite: SpriteKey::new(settings, reads_linear, situation.exact_filtering),
+        age_colour: settings.sprite.age_colour > 0.0,
+        shows_through: settings.fade_through() > 0.0,
+        soft_scatter_mode: settings.soft_scatter.mode,
+        reversed: situation.reversed,
+    };
+    Plan::Forward(ForwardPlan { reads_linear, key })
+}
+
+fn deferred(situation: &Situation, settings: &Settings, back_faces: bool, reads_linear: bool) -> DeferredPlan {
+    let (accumulate, shade_tree) = (&settings.accumulate, situation.shade_tree);
+    let (host, exact_filtering) = (situation.host, situation.exact_filtering);
+    let host_depth = accumulate.depth_source == DepthSource::Host;
+    let depth_test = depth_test(situation, settings);
+    let downsample = |copy| DepthDownsampleKey { mode: accumulate.depth_downsample, copy };
+    let bakes = baked_size_and_layers(settings.diffuse.mode).is_some();
+    let glows = matches!(shade_tree, ShadeTree::Final | ShadeTree::SpecularScatter)
+        && settings.specular_scatter.intensity > 0.0;
+    DeferredPlan {
+        reads_linear,
+        depth_downsample: (!host_depth).then(|| downsample(false)),
+        depth_copy: (depth_test == DepthTest::Copy).then(|| downsample(true)),
+        diffuse_bake: bakes.then_some(DiffuseBakeKey { mode: settings.diffuse.mode, exact_filtering }),
+        accumulate: AccumulateKey {
+            format: accumulate.format,
+            encoding: accumulate.encoding,
+            sprite: SpriteKey::new(settings, reads_linear, exact_filtering),
+            host_depth,
+            depth_test,
+            overdraw: shade_tree == ShadeTree::Overdraw,
+        },
+        transfer: (shade_tree != ShadeTree::SpecularScatter).then_some(TransferKey {
+            host,
+            encoding: accumulate.encoding,
+            decode: accumulate.decode,
+            diffuse_mode: settings.diffuse.mode,
+            soft_scatter_mode: settings.soft_scatter.mode,
+            upsample: accumulate.upsample,
+            host_depth,
+            shade_tree,
+            // Faces that nothing tests must not be the front ones: they would stand before the scene.
+            back_faces: back_faces || host.depth_format.is_none(),
+            reversed: situation.reversed,
+            mirrored: situation.mirrored,
+            exact_filtering,
+        }),
+        specular_scatter: glows.then_some(SpecularScatterKey { host, upsample: accumulate.upsample, exact_filtering }),
+    }
+}
+
+/// What rejects hidden sprites before they are shaded.
+fn depth_test(situation: &Situation, settings: &Settings) -> DepthTest {
+    if settings.fade_through() > 0.0 {
+        return DepthTest::InShader;
+    }
+    if settings.accumulate.depth_source == DepthSource::Reduced {
+        return if situation.read_only_depth { DepthTest::Reduced } else { DepthTest::Copy };
+    }
+    match situation.scene_depth {
+        SceneDepthKind::Buffer(format) | SceneDepthKind::Both(format) => DepthTest::Host(format, situation.reversed),
+        // Refused when the frame was validated.
+        SceneDepthKind::Linear => DepthTest::InShader,
+    }
+}
+
+/// True if a system reads the scene's linear target, not its depth buffer.
+pub(crate) fn reads_linear(scene_depth: SceneDepthKind, read_only_depth: bool, settings: &Settings) -> bool {
+    match scene_depth {
+        SceneDepthKind::Buffer(_) => false,
+        SceneDepthKind::Linear => true,
+        // Where a depth buffer cannot be tested and read in one pass, it is left to the tests.
+        SceneDepthKind::Both(_) => settings.technique == Technique::SoftLinear || !read_only_depth,
+    }
+}
+
+impl Plan {
+    /// True if it reads the scene's linear target.
+    pub fn reads_linear(&self) -> bool {
+        match self {
+            Self::Nothing => false,
+            Self::Forward(plan) => plan.reads_linear,
+            Self::Deferred(plan) => plan.reads_linear,
+        }
+    }
+}

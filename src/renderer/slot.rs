@@ -1,0 +1,177 @@
+//! One particle system's place in a renderer: its buffers, its targets, and what this frame draws with them.
+
+use glam::UVec2;
+
+use super::context::Shared;
+use super::draw::{Assembly, Draw};
+use super::frame_bindings::FrameBindings;
+use super::gpu::Gpu;
+use super::gpu::record::uniform_buffer;
+use super::gpu::spare::Spare;
+use super::instances::Instances;
+use super::layouts::LIGHTS_SIZE;
+use super::memory::MemoryUse;
+use super::pass::Groups;
+use super::plan::{Plan, Situation, plan};
+use super::system_targets::SystemTargets;
+use super::targets::TargetViews;
+use crate::formula::uniforms::{LightUniform, SystemUniform};
+use crate::frame::{Bounds, Frame, Particles, System, bounds_of};
+use crate::in_view::{SystemInView, SystemInWorld, ViewGeometry, lights_in_view, system_in_view};
+
+/// A frame, and what it is drawn with.
+pub(crate) struct FrameContext<'a> {
+    pub gpu: Gpu<'a>,
+    pub shared: &'a Shared,
+    pub frame: &'a Frame<'a>,
+    pub view: &'a ViewGeometry,
+    /// Size of the host's targets.
+    pub host_size: UVec2,
+    pub situation: &'a Situation,
+    pub bindings: &'a FrameBindings,
+}
+
+/// Buffers and targets of one system, and this frame's draw.
+#[derive(Debug)]
+pub(crate) struct Slot {
+    /// The system's.
+    pub key: u64,
+    uniform: wgpu::Buffer,
+    lights: wgpu::Buffer,
+    bindings: wgpu::BindGroup,
+    lights_in_view: Vec<LightUniform>,
+    instances: Instances,
+    targets: SystemTargets,
+    /// Counts frames without deferred smoke: its targets are not kept for ever.
+    without_targets: Spare,
+    /// Counts frames without the system.
+    absent: Spare,
+    /// `None` when out of sight.
+    drawn: Option<Drawn>,
+}
+
+#[derive(Debug)]
+struct Drawn {
+    in_view: SystemInView,
+    draw: Draw,
+}
+
+impl Slot {
+    pub fn new(key: u64, shared: &Shared) -> Self {
+        let device = &shared.device;
+        let uniform = uniform_buffer(device, "haze system", size_of::<SystemUniform>() as u64);
+        let lights = uniform_buffer(device, "haze lights", LIGHTS_SIZE);
+        let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("haze system"),
+            layout: &shared.layouts.system,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: lights.as_entire_binding() },
+            ],
+        });
+        Self {
+            key,
+            uniform,
+            lights,
+            bindings,
+            lights_in_view: Vec::new(),
+            instances: Instances::default(),
+            targets: SystemTargets::default(),
+            without_targets: Spare::default(),
+            absent: Spare::default(),
+            drawn: None,
+        }
+    }
+
+    /// This frame's draw; `None` when out of sight.
+    pub fn draw(&self) -> Option<&Draw> {
+        self.drawn.as_ref().map(|drawn| &drawn.draw)
+    }
+
+    /// View depth of the box's middle.
+    pub fn distance(&self) -> f32 {
+        self.drawn.as_ref().map_or(0.0, |drawn| drawn.in_view.distance)
+    }
+
+    pub fn memory_use(&self) -> MemoryUse {
+        let buffers = self.uniform.size() + self.lights.size() + self.instances.bytes();
+        MemoryUse { targets: self.targets.bytes(), buffers }
+    }
+
+    pub fn target_views(&self) -> Option<TargetViews<'_>> {
+        let Drawn { in_view, draw: Draw::Deferred(_) } = self.drawn.as_ref()? else { return None };
+        let accumulation = self.targets.accumulation()?;
+        Some(TargetViews {
+            accumulation: &accumulation.attachments,
+            reduced_depth: accumulation.reduced_depth.as_ref(),
+            origin: in_view.rect.origin,
+            size: in_view.rect.size,
+            scale: in_view.uniform.scale as u32,
+            depth_limit: in_view.uniform.depth_limit,
+        })
+    }
+
+    /// Tells of a frame in which the system may be missing; true once it has been for long.
+    pub fn is_abandoned(&mut self, is_missing: bool) -> bool {
+        if is_missing {
+            self.drawn = None;
+        }
+        self.absent.outlasts(is_missing)
+    }
+
+    /// Places the system in the view, uploads what the passes read, and readies targets and pipelines.
+    pub fn write(&mut self, context: &FrameContext<'_>, system: &System<'_>) {
+        self.drawn = self.place(context, system);
+        let is_deferred = matches!(self.draw(), Some(Draw::Deferred(_)));
+        if self.without_targets.outlasts(!is_deferred) {
+            self.targets = SystemTargets::default();
+        }
+    }
+
+    fn place(&mut self, context: &FrameContext<'_>, system: &System<'_>) -> Option<Drawn> {
+        let FrameContext { gpu, shared, frame, view, .. } = context;
+        let settings = system.settings;
+        let bounds = bounds_of_system(system);
+        lights_in_view(view, frame.lights, &bounds, &mut self.lights_in_view);
+        let in_world = SystemInWorld {
+            bounds: &bounds,
+            settings,
+            material: &system.material.info,
+            lights: &self.lights_in_view,
+            time: frame.time,
+        };
+        let in_view = system_in_view(view, context.host_size, &in_world)?;
+        let sprites = self.instances.write(gpu, view, system.particles, settings.sprite.debug_loop)?;
+        gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&in_view.uniform));
+        gpu.queue.write_buffer(&self.lights, 0, bytemuck::cast_slice(&self.lights_in_view));
+
+        let plan = plan(context.situation, settings, in_view.back_faces);
+        let depth = context.bindings.get(plan.reads_linear())?;
+        let groups = Groups {
+            frame: depth.frame.clone(),
+            system: self.bindings.clone(),
+            material: system.material.bind_group.clone(),
+        };
+        let assembly = Assembly { device: gpu.device, passes: &shared.passes, groups, sprites };
+        let draw = match &plan {
+            Plan::Nothing => return None,
+            Plan::Forward(plan) => assembly.forward(plan),
+            Plan::Deferred(plan) => {
+                let scale = settings.accumulate.effective_scale(view.size);
+                let limit = UVec2::new(view.size.x.div_ceil(scale), view.size.y.div_ceil(scale));
+                let targets = self.targets.fit(shared, settings, in_view.rect.size, limit);
+                assembly.deferred(plan, targets, &in_view, depth, frame.scene_depth.buffer())
+            }
+        };
+        Some(Drawn { in_view, draw })
+    }
+}
+
+fn bounds_of_system(system: &System<'_>) -> Bounds {
+    match (system.bounds, system.particles) {
+        (Some(bounds), _) => bounds,
+        (None, Particles::Slice(particles)) => bounds_of(particles, system.settings.reach()),
+        // Refused when the frame was validated.
+        (None, Particles::Buffer { .. }) => Bounds::EMPTY,
+    }
+}

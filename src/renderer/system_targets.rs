@@ -1,0 +1,77 @@
+//! What one system is accumulated into and lit from, bound for the passes that read it.
+
+use glam::UVec2;
+
+use super::context::Shared;
+use super::layouts::bind_textures;
+use super::targets::{AccumulationKey, AccumulationTarget, BakedDiffuse};
+use crate::settings::Settings;
+
+/// The textures of one system, and their bind groups, which are made anew with them.
+#[derive(Debug, Default)]
+pub(crate) struct SystemTargets {
+    accumulation: Option<AccumulationTarget>,
+    baked_diffuse: Option<BakedDiffuse>,
+    inputs: Option<TargetInputs>,
+}
+
+/// Bind groups of the textures.
+#[derive(Debug)]
+pub(crate) struct TargetInputs {
+    /// Group 3 of accumulate; `None` where sprites are compared with the host's own depth.
+    pub accumulate: Option<wgpu::BindGroup>,
+    /// Group 3 of transfer and specular_scatter.
+    pub transfer: wgpu::BindGroup,
+}
+
+/// Textures that are ready to be drawn to and read.
+#[derive(Clone, Copy)]
+pub(crate) struct ReadyTargets<'a> {
+    pub accumulation: &'a AccumulationTarget,
+    pub baked_diffuse: &'a BakedDiffuse,
+    pub inputs: &'a TargetInputs,
+}
+
+impl SystemTargets {
+    /// Makes everything ready for `size` texels; the whole view at this scale has `limit`.
+    pub fn fit(&mut self, shared: &Shared, settings: &Settings, size: UVec2, limit: UVec2) -> ReadyTargets<'_> {
+        let device = &shared.device;
+        let key = AccumulationKey {
+            format: settings.accumulate.format,
+            depth_source: settings.accumulate.depth_source,
+            depth_copy: !shared.read_only_depth,
+        };
+        let (accumulation, is_new) = AccumulationTarget::fit(&mut self.accumulation, device, key, size, limit);
+        let (baked_diffuse, is_newly_baked) = BakedDiffuse::fit(&mut self.baked_diffuse, device, settings.diffuse.mode);
+        if is_new || is_newly_baked {
+            self.inputs = None;
+        }
+        let inputs = self.inputs.get_or_insert_with(|| {
+            let depth = accumulation.reduced_depth.as_ref();
+            let amount = &accumulation.attachments[0];
+            let (accumulate, transfer) = (&shared.layouts.accumulate, &shared.layouts.transfer);
+            TargetInputs {
+                accumulate: depth.map(|depth| bind_textures(device, "haze accumulate inputs", accumulate, [depth])),
+                // Without a reduced depth nothing reads one, but something must be bound.
+                transfer: bind_textures(
+                    device,
+                    "haze transfer inputs",
+                    transfer,
+                    [amount, depth.unwrap_or(amount), &baked_diffuse.array],
+                ),
+            }
+        });
+        ReadyTargets { accumulation, baked_diffuse, inputs }
+    }
+
+    /// The accumulation target, if there is one.
+    pub fn accumulation(&self) -> Option<&AccumulationTarget> {
+        self.accumulation.as_ref()
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> u64 {
+        let accumulation = self.accumulation.as_ref().map_or(0, |target| target.bytes);
+        accumulation + self.baked_diffuse.as_ref().map_or(0, |baked| baked.bytes)
+    }
+}

@@ -1,0 +1,57 @@
+//! Light by normal, baked: the faces of a cubemap, or a motif.
+
+use std::sync::Arc;
+
+use glam::UVec2;
+
+use super::textures::Textures;
+use crate::formula::diffuse_bake::baked_size_and_layers;
+use crate::renderer::gpu::capabilities::array_layers;
+use crate::settings::DiffuseMode;
+
+pub(crate) const BAKED_DIFFUSE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
+/// The texture of one system. It does not depend on the size of the picture.
+#[derive(Debug)]
+pub(crate) struct BakedDiffuse {
+    /// `None` for the modes that bake nothing.
+    size_and_layers: Option<(u32, u32)>,
+    /// One view per face of the cubemap, one for the motif, none for the other diffuse modes.
+    pub faces: Arc<[wgpu::TextureView]>,
+    /// All of it. A texel that nothing reads for the modes that bake nothing.
+    pub array: wgpu::TextureView,
+    pub bytes: u64,
+}
+
+impl BakedDiffuse {
+    /// Makes the texture ready for a mode. Gives it, and whether it is new.
+    pub fn fit<'a>(baked: &'a mut Option<Self>, device: &wgpu::Device, mode: DiffuseMode) -> (&'a Self, bool) {
+        let size_and_layers = baked_size_and_layers(mode);
+        if baked.as_ref().is_some_and(|baked| baked.size_and_layers != size_and_layers) {
+            *baked = None;
+        }
+        let is_new = baked.is_none();
+        (baked.get_or_insert_with(|| Self::new(device, size_and_layers)), is_new)
+    }
+
+    fn new(device: &wgpu::Device, size_and_layers: Option<(u32, u32)>) -> Self {
+        let mut textures = Textures { device, bytes: 0 };
+        let (side, layers) = size_and_layers.unwrap_or((1, 1));
+        let label = "haze baked diffuse";
+        let texture = textures.create(label, BAKED_DIFFUSE_FORMAT, UVec2::splat(side), array_layers(layers));
+        let array = texture.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            ..Default::default()
+        });
+        let face = |layer| {
+            texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2),
+                base_array_layer: layer,
+                array_layer_count: Some(1),
+                ..Default::default()
+            })
+        };
+        let faces = if size_and_layers.is_some() { 0..layers } else { 0..0 };
+        Self { size_and_layers, faces: faces.map(face).collect(), array, bytes: textures.bytes }
+    }
+}

@@ -1,0 +1,30 @@
+//! Making textures.
+
+use glam::UVec2;
+
+/// Makes textures and counts their bytes.
+pub(super) struct Textures<'a> {
+    pub device: &'a wgpu::Device,
+    pub bytes: u64,
+}
+
+impl Textures<'_> {
+    pub fn create(&mut self, label: &str, format: wgpu::TextureFormat, size: UVec2, layers: u32) -> wgpu::Texture {
+        let texel = u64::from(format.block_copy_size(None).unwrap_or(16));
+        self.bytes += texel * u64::from(size.x) * u64::from(size.y) * u64::from(layers);
+        self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: layers },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        })
+    }
+
+    pub fn create_whole(&mut self, label: &str, format: wgpu::TextureFormat, size: UVec2) -> wgpu::TextureView {
+        self.create(label, format, size, 1).create_view(&wgpu::TextureViewDescriptor::default())
+    }
+}

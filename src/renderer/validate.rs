@@ -1,0 +1,145 @@
+//! What the GPU renderer refuses about a frame.
+
+use glam::UVec2;
+
+use super::context::Shared;
+use super::gpu::host_pass::HostPass;
+use super::plan::reads_linear;
+use crate::error::FieldError;
+use crate::frame::validate::{validate_lights, validate_settings, validate_time};
+use crate::frame::{Frame, Particle, Particles, SceneDepth, System, View};
+use crate::settings::{DepthSource, Technique};
+
+/// Checks everything but the view's matrices.
+///
+/// # Errors
+/// The first field that cannot be used.
+pub(crate) fn validate(shared: &Shared, host: &HostPass, frame: &Frame<'_>) -> Result<(), FieldError> {
+    validate_time(frame.time)?;
+    let size = validate_scene_depth(frame)?;
+    if frame.view.origin.saturating_add(frame.view.size).cmpgt(size).any() {
+        let View { size: pixels, origin, .. } = frame.view;
+        let value = format!("{}x{} from ({}, {})", pixels.x, pixels.y, origin.x, origin.y);
+        let expected = format!("the size of the scene depth, {}x{}, or a part of it", size.x, size.y);
+        return Err(FieldError::new("view.size", value, expected));
+    }
+    let reads_attached = host.depth_format.is_some() && frame.scene_depth.linear().is_none();
+    if reads_attached && !shared.read_only_depth && host.sample_count == 1 {
+        let expected = "SceneDepth::Linear or Both, or None as the descriptor's depth_format: this backend (OpenGL) \
+                        cannot read the depth buffer that the pass tests";
+        return Err(FieldError::new("scene_depth", "Buffer", expected));
+    }
+    validate_lights(frame.lights)?;
+    for (index, system) in frame.systems.iter().enumerate() {
+        if let Some(other) = frame.systems[..index].iter().position(|other| other.key == system.key) {
+            let expected = format!("a key of its own; systems[{other}] has it already");
+            return Err(FieldError::new(format!("systems[{index}].key"), system.key, expected));
+        }
+        validate_system(shared, index, frame, system)?;
+    }
+    Ok(())
+}
+
+/// The size of the host's targets.
+pub(crate) fn host_size(scene_depth: &SceneDepth<'_>) -> UVec2 {
+    let (SceneDepth::Buffer(view) | SceneDepth::Linear(view) | SceneDepth::Both { buffer: view, .. }) = scene_depth;
+    UVec2::new(view.texture().width(), view.texture().height())
+}
+
+fn validate_scene_depth(frame: &Frame<'_>) -> Result<UVec2, FieldError> {
+    let size = host_size(&frame.scene_depth);
+    if let Some(buffer) = frame.scene_depth.buffer() {
+        let is_depth = buffer.texture().format().has_depth_aspect();
+        validate_depth_texture(size, buffer, is_depth, "a depth format for the depth buffer")?;
+    }
+    if let Some(linear) = frame.scene_depth.linear() {
+        let is_linear = linear.texture().format() == wgpu::TextureFormat::R32Float;
+        validate_depth_texture(size, linear, is_linear, "R32Float for the linear target")?;
+    }
+    Ok(size)
+}
+
+fn validate_depth_texture(
+    size: UVec2,
+    depth: &wgpu::TextureView,
+    format_fits: bool,
+    expected: &str,
+) -> Result<(), FieldError> {
+    let texture = depth.texture();
+    let refuse = |value: String, expected: &str| Err(FieldError::new("scene_depth", value, expected));
+    if (texture.width(), texture.height()) != (size.x, size.y) {
+        let value = format!("{}x{}", texture.width(), texture.height());
+        return refuse(value, &format!("the size of the other depth, {}x{}", size.x, size.y));
+    }
+    if texture.sample_count() != 1 {
+        return refuse(format!("{} samples", texture.sample_count()), "1 sample; resolve the depth buffer first");
+    }
+    if !format_fits {
+        return refuse(format!("{:?}", texture.format()), expected);
+    }
+    if !texture.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
+        return refuse(format!("usage {:?}", texture.usage()), "TEXTURE_BINDING in it");
+    }
+    Ok(())
+}
+
+fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &System<'_>) -> Result<(), FieldError> {
+    validate_settings(index, system.settings, frame.view.size)?;
+    let field = |name: &str| format!("systems[{index}].{name}");
+    if let Some(bounds) = &system.bounds {
+        bounds.validate(|| field("bounds"))?;
+    }
+    validate_particles(shared, system, &field)?;
+    if system.material.device != shared.device {
+        let expected = "one made by create_material with this renderer's device";
+        return Err(FieldError::new(field("material"), "of another device", expected));
+    }
+    system.material.info.validate(index, system.settings)?;
+    if system.settings.technique == Technique::SoftLinear && frame.scene_depth.linear().is_none() {
+        let expected = "\"soft\", or a scene_depth that is SceneDepth::Linear or Both";
+        return Err(FieldError::new(field("settings.technique"), "\"soft_linear\"", expected));
+    }
+    if system.settings.accumulate.depth_source == DepthSource::Host && !system.settings.is_forward() {
+        let attachable = frame.scene_depth.buffer().is_some_and(|buffer| {
+            let texture = buffer.texture();
+            texture.usage().contains(wgpu::TextureUsages::RENDER_ATTACHMENT) && !texture.format().has_stencil_aspect()
+        });
+        let is_read = !reads_linear(frame.scene_depth.kind(), shared.read_only_depth, system.settings);
+        if !attachable || (is_read && !shared.read_only_depth) {
+            let expected = "\"reduced\", or a scene_depth that has a depth buffer without stencil, with \
+                            RENDER_ATTACHMENT usage, and on OpenGL a linear target as well";
+            return Err(FieldError::new(field("settings.accumulate.depth_source"), "\"host\"", expected));
+        }
+    }
+    Ok(())
+}
+
+fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str) -> String) -> Result<(), FieldError> {
+    let size = size_of::<Particle>() as u64;
+    match system.particles {
+        Particles::Slice(particles) => {
+            let most = shared.device.limits().max_buffer_size / size;
+            if particles.len() as u64 > most {
+                let value = format!("{} particles", particles.len());
+                return Err(FieldError::new(field("particles"), value, format!("at most {most} on this device")));
+            }
+        }
+        Particles::Buffer { buffer, offset, count } => {
+            if system.bounds.is_none() {
+                let expected = "the box of the particles, which are on the GPU";
+                return Err(FieldError::new(field("bounds"), "None", expected));
+            }
+            if !offset.is_multiple_of(wgpu::VERTEX_ALIGNMENT) {
+                let expected = format!("a multiple of {}", wgpu::VERTEX_ALIGNMENT);
+                return Err(FieldError::new(field("particles.offset"), offset, expected));
+            }
+            let needed = offset.saturating_add(u64::from(count) * size);
+            if buffer.size() < needed || !buffer.usage().contains(wgpu::BufferUsages::VERTEX) {
+                let value = format!("{} bytes, usage {:?}", buffer.size(), buffer.usage());
+                let expected = format!("at least {needed} bytes, usage VERTEX");
+                return Err(FieldError::new(field("particles"), value, expected));
+            }
+        }
+    }
+    Ok(())
+}

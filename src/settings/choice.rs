@@ -1,0 +1,61 @@
+//! Settings that are one of a few: enums with names, that a user interface can list.
+
+/// A setting enum, for whatever lists its choices.
+pub trait Choice {
+    /// The names of all choices, as presets, the command line and user interfaces have them.
+    fn names(&self) -> &'static [&'static str];
+
+    /// Which of the names it is.
+    fn index(&self) -> usize;
+
+    /// Makes it another; an index beyond the names changes nothing.
+    fn set_index(&mut self, index: usize);
+}
+
+/// Defines a setting enum: its variants, their names, and everything that goes by them.
+macro_rules! choice {
+    ($(#[$meta:meta])* $name:ident { $($(#[$variant_meta:meta])* $variant:ident = $text:literal,)+ }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+        #[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
+        pub enum $name { $($(#[$variant_meta])* #[serde(rename = $text)] $variant,)+ }
+
+        impl $name {
+            /// Every choice, in the order of the documentation.
+            pub const ALL: &[Self] = &[$(Self::$variant,)+];
+            /// Their names.
+            pub const NAMES: &[&str] = &[$($text,)+];
+
+            /// The name used in presets, on the command line and in user interfaces.
+            pub const fn name(self) -> &'static str {
+                Self::NAMES[self as usize]
+            }
+        }
+
+        impl $crate::settings::choice::Choice for $name {
+            fn names(&self) -> &'static [&'static str] {
+                Self::NAMES
+            }
+
+            fn index(&self) -> usize {
+                *self as usize
+            }
+
+            fn set_index(&mut self, index: usize) {
+                *self = Self::ALL.get(index).copied().unwrap_or(*self);
+            }
+        }
+
+        impl std::str::FromStr for $name {
+            type Err = $crate::error::FieldError;
+
+            fn from_str(text: &str) -> Result<Self, Self::Err> {
+                Self::ALL.iter().copied().find(|choice| choice.name() == text).ok_or_else(|| {
+                    let expected = format!("one of {}", Self::NAMES.join(", "));
+                    Self::Err::new(stringify!($name), format!("{text:?}"), expected)
+                })
+            }
+        }
+    };
+}
+pub(crate) use choice;

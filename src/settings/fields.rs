@@ -1,0 +1,221 @@
+//! One table per settings struct: every field's name, kind, valid range and unit, walked by a visitor.
+//!
+//! The walk is what checks a preset, and what a user interface builds its panels from, so that a range is written once. The
+//! name given to the visitor is the Rust field, the preset key and the label; the field's doc comment is its tooltip
+//! ([`Tooltips`](crate::preset::Tooltips) has them at run time).
+
+use std::fmt::Write as _;
+use std::ops::RangeInclusive;
+
+use glam::Vec3;
+
+use super::choice::Choice;
+use crate::error::FieldError;
+
+/// A settings struct whose fields can be walked.
+pub trait Fields {
+    /// Hands every field to `visitor`, in the order of the struct.
+    fn visit(&mut self, visitor: &mut dyn FieldVisitor);
+}
+
+/// What a picture named by a field is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PictureRole {
+    /// A flipbook of normal maps.
+    Sprite,
+    /// Depth and motion of a flipbook.
+    Detail,
+    /// A gradient, or a stack of them.
+    Ramp,
+    /// A painted lit sphere.
+    Motif,
+    /// Slices of a tiling noise.
+    Noise,
+}
+
+/// What walks the fields of a settings struct. Those that are no numbers may be left alone.
+pub trait FieldVisitor {
+    /// A real number. `unit` is "" for a ratio.
+    fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, unit: &'static str);
+
+    /// A whole number.
+    fn integer(&mut self, name: &'static str, value: &mut u32, range: RangeInclusive<u32>, unit: &'static str);
+
+    /// A position, direction or size: three numbers that share a range.
+    fn vector(&mut self, name: &'static str, value: &mut Vec3, range: RangeInclusive<f32>, unit: &'static str);
+
+    /// Linear RGB.
+    fn colour(&mut self, name: &'static str, value: &mut Vec3, range: RangeInclusive<f32>) {
+        self.vector(name, value, range, "");
+    }
+
+    /// An sRGB colour of 8 bits a channel.
+    fn srgb(&mut self, _name: &'static str, _value: &mut [u8; 3]) {}
+
+    /// On or off.
+    fn flag(&mut self, _name: &'static str, _value: &mut bool) {}
+
+    /// One of a few.
+    fn choice(&mut self, _name: &'static str, _value: &mut dyn Choice) {}
+
+    /// Any words.
+    fn text(&mut self, _name: &'static str, _value: &mut String) {}
+
+    /// The name of a picture: a built-in one's, or a file's.
+    fn picture(&mut self, _name: &'static str, _value: &mut String, _role: PictureRole) {}
+
+    /// A random seed: every whole number is as good as the next.
+    fn seed(&mut self, _name: &'static str, _value: &mut u32) {}
+
+    /// A nested struct.
+    fn group(&mut self, name: &'static str, fields: &mut dyn Fields);
+
+    /// An entry of a list.
+    fn item(&mut self, name: &'static str, index: usize, fields: &mut dyn Fields);
+}
+
+/// Checks every number of `settings` against its range. `path` leads to the struct and is put before the
+/// field's name in the message: `systems[0].settings` gives `systems[0].settings.soft_fade.fade_scale`.
+///
+/// # Errors
+/// The first field that is not a finite number inside its range.
+pub fn validate<T: Fields + Clone>(settings: &T, path: impl FnOnce() -> String) -> Result<(), FieldError> {
+    let mut validator = Validator { path: [Step::default(); MAX_DEPTH], depth: 0, error: None };
+    settings.clone().visit(&mut validator);
+    match validator.error {
+        None => Ok(()),
+        Some(mut error) => {
+            let prefix = path();
+            if !prefix.is_empty() {
+                error.field = format!("{prefix}.{}", error.field);
+            }
+            Err(error)
+        }
+    }
+}
+
+/// Deepest nesting; no settings struct comes near it.
+const MAX_DEPTH: usize = 8;
+
+/// A struct on the way to a field: its name, and its place where it is one of a list.
+type Step = (&'static str, Option<usize>);
+
+/// Fixed storage: a frame validates its settings and must not allocate while all is well.
+struct Validator {
+    path: [Step; MAX_DEPTH],
+    depth: usize,
+    error: Option<FieldError>,
+}
+
+impl Validator {
+    fn check<T: Copy + PartialOrd + std::fmt::Display>(
+        &mut self,
+        name: &str,
+        value: T,
+        range: &RangeInclusive<T>,
+        unit: &str,
+    ) {
+        // `contains` is false for NaN, which is what we want.
+        if self.error.is_some() || range.contains(&value) {
+            return;
+        }
+        let mut field = String::new();
+        for (name, index) in &self.path[..self.depth] {
+            let _ = match index {
+                Some(index) => write!(field, "{name}[{index}]."),
+                None => write!(field, "{name}."),
+            };
+        }
+        field.push_str(name);
+        let space = if unit.is_empty() { "" } else { " " };
+        self.error = Some(FieldError {
+            field,
+            value: value.to_string(),
+            expected: format!("{} to {}{space}{unit}", range.start(), range.end()),
+        });
+    }
+
+    fn enter(&mut self, step: Step, fields: &mut dyn Fields) {
+        if self.depth < MAX_DEPTH {
+            self.path[self.depth] = step;
+            self.depth += 1;
+            fields.visit(self);
+            self.depth -= 1;
+        }
+    }
+}
+
+impl FieldVisitor for Validator {
+    fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, unit: &'static str) {
+        self.check(name, *value, &range, unit);
+    }
+
+    fn integer(&mut self, name: &'static str, value: &mut u32, range: RangeInclusive<u32>, unit: &'static str) {
+        self.check(name, *value, &range, unit);
+    }
+
+    fn vector(&mut self, name: &'static str, value: &mut Vec3, range: RangeInclusive<f32>, unit: &'static str) {
+        for component in value.to_array() {
+            self.check(name, component, &range, unit);
+        }
+    }
+
+    fn group(&mut self, name: &'static str, fields: &mut dyn Fields) {
+        self.enter((name, None), fields);
+    }
+
+    fn item(&mut self, name: &'static str, index: usize, fields: &mut dyn Fields) {
+        self.enter((name, Some(index)), fields);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::table::settings;
+
+    settings! {
+        #[derive(Clone)]
+        pub struct Inner {
+            contrast_power: f32 = 2.0, number(0.1..=16.0, "");
+            steepest: f32 = 16.0, number(|this| this.contrast_power..=16.0, "");
+        }
+    }
+    #[derive(Clone)]
+    struct Outer {
+        scale: u32,
+        soft_fade: Inner,
+        systems: Vec<Inner>,
+    }
+    impl Fields for Outer {
+        fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
+            visitor.integer("scale", &mut self.scale, 1..=16, "pixels");
+            visitor.group("soft_fade", &mut self.soft_fade);
+            for (index, system) in self.systems.iter_mut().enumerate() {
+                visitor.item("systems", index, system);
+            }
+        }
+    }
+
+    fn outer(scale: u32, contrast_power: f32) -> Outer {
+        Outer { scale, soft_fade: Inner { contrast_power, ..Inner::default() }, systems: vec![Inner::default(); 2] }
+    }
+
+    #[test]
+    fn a_value_in_range_passes() {
+        assert!(validate(&outer(4, 2.0), || unreachable!("no error, no path")).is_ok());
+    }
+
+    #[test]
+    fn the_message_names_the_field_the_value_and_the_range() {
+        let error = validate(&outer(17, 2.0), || "systems[1]".into()).unwrap_err();
+        assert_eq!(error.to_string(), "systems[1].scale: 17 is not valid; expected 1 to 16 pixels");
+        let error = validate(&outer(1, f32::NAN), String::new).unwrap_err();
+        assert_eq!(error.to_string(), "soft_fade.contrast_power: NaN is not valid; expected 0.1 to 16");
+        let mut outer = outer(1, 2.0);
+        outer.systems[1].contrast_power = 7.0;
+        outer.systems[1].steepest = 3.0;
+        let error = validate(&outer, String::new).unwrap_err();
+        assert_eq!(error.to_string(), "systems[1].steepest: 3 is not valid; expected 7 to 16");
+    }
+}

@@ -1,0 +1,44 @@
+//! Settings structs as tables: a field's type, default, kind, range and unit in one row, from which the struct, its
+//! `Default`, its JSON and its `Fields` are made. A row cannot be half there.
+
+/// Defines a settings struct. Rows are `name: Type = default, kind(range, unit);`, where kind is a method of
+/// `FieldVisitor`. A range that depends on another field is written `|this| this.near..=10.0`.
+macro_rules! settings {
+    ($(#[$meta:meta])* pub struct $name:ident {
+        $($(#[$field_meta:meta])* $field:ident: $type:ty = $default:expr, $kind:ident $(($($argument:tt)*))?;)+
+    }) => {
+        $(#[$meta])*
+        #[derive(serde::Serialize, serde::Deserialize)]
+        #[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
+        #[serde(default, deny_unknown_fields)]
+        pub struct $name { $($(#[$field_meta])* pub $field: $type,)+ }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self { $($field: $default,)+ }
+            }
+        }
+
+        impl $crate::settings::fields::Fields for $name {
+            fn visit(&mut self, visitor: &mut dyn $crate::settings::fields::FieldVisitor) {
+                $($crate::settings::table::visit!(self, visitor, $field, $kind $($($argument)*)?);)+
+            }
+        }
+    };
+}
+pub(crate) use settings;
+
+/// One row's call of the visitor.
+macro_rules! visit {
+    ($self:ident, $visitor:ident, $field:ident, $kind:ident |$this:ident| $range:expr, $unit:expr) => {
+        let range = {
+            let $this = &*$self;
+            $range
+        };
+        $visitor.$kind(stringify!($field), &mut $self.$field, range, $unit);
+    };
+    ($self:ident, $visitor:ident, $field:ident, $kind:ident $($argument:expr),*) => {
+        $visitor.$kind(stringify!($field), &mut $self.$field $(, $argument)*);
+    };
+}
+pub(crate) use visit;
