@@ -67,21 +67,22 @@ impl Headless {
     /// # Errors
     /// [`Error::NoDevice`] with the line that installs a software adapter.
     pub fn new() -> Result<Self, Error> {
-        Self::with_limits(wgpu::Limits::default())
+        Self::with(wgpu::Limits::default(), wgpu::Features::empty())
     }
 
-    /// As [`Headless::new`], with a device that promises no more than these limits; textures may be as large as the adapter
-    /// can make them.
+    /// As [`Headless::new`], with a device that promises no more than these limits, but for textures, which may be as large as
+    /// the adapter can make them; and with those of `features` that the adapter has. haze needs none.
     ///
     /// # Errors
     /// [`Error::NoDevice`], also when the adapter has less than these limits.
-    pub fn with_limits(limits: wgpu::Limits) -> Result<Self, Error> {
+    pub fn with(limits: wgpu::Limits, features: wgpu::Features) -> Result<Self, Error> {
         // OpenGL only where nothing else is found: opening it makes noise on machines without a display.
         let adapter = [wgpu::Backends::PRIMARY, wgpu::Backends::SECONDARY].into_iter().find_map(find_adapter);
         let adapter = adapter.ok_or_else(|| Error::NoDevice(INSTALL_LINE.into()))?;
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("haze headless"),
             required_limits: limits.using_resolution(adapter.limits()),
+            required_features: features & adapter.features(),
             ..Default::default()
         }))
         .map_err(|error| Error::NoDevice(format!("{}: {error}", adapter.get_info().name)))?;

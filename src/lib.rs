@@ -85,3 +85,12 @@ pub use settings::Settings;
 
 pub use glam;
 pub use wgpu;
+
+/// The code in the documents compiles as it is printed.
+#[cfg(doctest)]
+mod documents {
+    #[doc = include_str!("../README.md")]
+    struct Readme;
+    #[doc = include_str!("../docs/recipes.md")]
+    struct Recipes;
+}

@@ -186,6 +186,25 @@ fn nothing_on_the_ground_knows_a_device() {
 }
 
 #[test]
+fn documents_name_files_that_are_there() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let documents = ["ARCHITECTURE.md", "README.md", "docs/depth.md", "docs/recipes.md", "docs/techniques.md"];
+    let mut named = 0;
+    for document in documents.iter().chain(&["shaders/README.md", "ramps/README.md"]) {
+        let text = std::fs::read_to_string(root.join(document)).unwrap();
+        for word in text.split(|c: char| c.is_whitespace() || "`()[]<>,:".contains(c)) {
+            let is_path =
+                ["src/", "shaders/", "tests/", "docs/", "examples/"].iter().any(|start| word.starts_with(start));
+            if is_path && !word.contains('*') && !word.contains("foo.") {
+                assert!(root.join(word.trim_end_matches(['.', ';'])).exists(), "{document} names {word}");
+                named += 1;
+            }
+        }
+    }
+    assert!(named > 50, "{named}");
+}
+
+#[test]
 fn circles_are_seen() {
     let file = |name: &str, text: &str| (PathBuf::from(name), text.to_owned());
     let three = |last: &str| {

@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use glam::{UVec2, Vec4};
 use haze::demo::shot::Shot;
 use haze::headless::Headless;
 use haze::picture::Picture;
 use haze::picture::write_png;
-use haze::settings::{Path, Technique};
+use haze::settings::{Choice, Path, Technique};
 use haze::{Error, FieldError};
 use image::RgbImage;
 
@@ -21,8 +22,8 @@ pub struct RunArguments {
     /// Size of the picture, pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
     pub size: UVec2,
-    /// auto, raster or forward; the preset's own if not given.
-    #[arg(long, value_parser = parse_choice::<Path>)]
+    /// How smoke reaches the picture; the preset's own if not given.
+    #[arg(long, value_parser = choices::<Path>())]
     pub path: Option<Path>,
     /// Which renderer.
     #[arg(long, value_enum, default_value = "auto")]
@@ -42,9 +43,8 @@ pub struct ShotArguments {
     /// Pixels per texel of the accumulation target, 1 to 16; the preset's own if not given.
     #[arg(long, value_name = "N", value_parser = parse_scale, allow_negative_numbers = true)]
     scale: Option<u32>,
-    /// How sprites meet the scene: hard, soft, soft_linear, depth_sprite_hard, depth_sprite_soft, spherical_billboard,
-    /// density, volumetric_hard or volumetric_soft; the preset's own if not given.
-    #[arg(long, value_name = "T", value_parser = parse_choice::<Technique>)]
+    /// How sprites meet the scene; the preset's own if not given.
+    #[arg(long, value_name = "T", value_parser = choices::<Technique>())]
     pub technique: Option<Technique>,
     /// Seed of every emitter; the preset's own if not given.
     #[arg(long, value_name = "N", value_parser = parse_seed, allow_negative_numbers = true)]
@@ -166,7 +166,10 @@ fn parse_seed(text: &str) -> Result<u32, String> {
     text.parse().map_err(|_| format!("{text:?} is not a seed; expected 0 to {}", u32::MAX))
 }
 
-/// A setting enum by the name it has in presets.
-pub fn parse_choice<T: FromStr<Err = FieldError>>(text: &str) -> Result<T, String> {
-    text.parse::<T>().map_err(|error| format!("expected {}", error.expected))
+/// A setting enum by the names that it has in presets.
+pub fn choices<T>() -> impl TypedValueParser<Value = T>
+where
+    T: Choice + Default + FromStr<Err = FieldError> + Clone + Send + Sync + 'static,
+{
+    PossibleValuesParser::new(T::default().names()).try_map(|name| name.parse::<T>())
 }

@@ -4,16 +4,15 @@ use clap::Args;
 use haze::Error;
 use haze::settings::ShadeTree;
 
-use super::options::{DEFAULT_PRESET, ShotArguments, parse_choice};
+use super::options::{DEFAULT_PRESET, ShotArguments, choices};
 use super::tonemap::develop;
 
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
     shot: ShotArguments,
-    /// Which stage of the shading is shown: final, combined, diffuse, soft_scatter, specular_scatter, normals, amount,
-    /// overdraw or reduced_depth.
-    #[arg(long, default_value = "final", value_parser = parse_choice::<ShadeTree>)]
+    /// Which stage of the shading is shown.
+    #[arg(long, default_value = "final", value_parser = choices::<ShadeTree>())]
     view: ShadeTree,
 }
 

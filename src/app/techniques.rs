@@ -120,7 +120,7 @@ fn every_technique(shot: &Shot) -> Vec<(String, Shot)> {
 
 /// The fade by distance, of every curve, as the reference has it.
 fn fade_curves() -> RgbImage {
-    const COLOURS: [Rgb<u8>; 5] =
+    const COLOURS: [Rgb<u8>; FadeCurve::ALL.len()] =
         [Rgb([240, 196, 110]), Rgb([225, 225, 220]), Rgb([120, 190, 240]), Rgb([240, 130, 120]), Rgb([150, 210, 140])];
     let curve = |(&curve, colour): (&FadeCurve, Rgb<u8>)| Curve {
         name: curve.name(),

@@ -6,8 +6,8 @@ use crate::assets::material::MaterialInfo;
 /// [`Renderer::create_material`](crate::Renderer::create_material).
 #[derive(Clone, Debug)]
 pub struct Material {
-    /// Whose memory the pictures are in.
-    pub(crate) device: wgpu::Device,
+    /// Number of the context that made it.
+    pub(crate) context: u64,
     pub(crate) bind_group: wgpu::BindGroup,
     pub(crate) info: MaterialInfo,
     pub(crate) bytes: u64,

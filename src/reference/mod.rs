@@ -8,10 +8,11 @@ mod frame;
 mod pass;
 mod sprite;
 
-use glam::Vec4;
+use glam::{UVec2, Vec4};
 
 use crate::assets::picture::Picture;
 use crate::error::FieldError;
+use crate::frame::View;
 use crate::frame::validate::{validate_lights, validate_settings, validate_time};
 use crate::in_view::ViewGeometry;
 use crate::settings::ShadeTree;
@@ -25,7 +26,8 @@ pub use frame::{Frame, System};
 /// # Errors
 /// The view, light or setting that cannot be used; `picture` is untouched then.
 pub fn render(frame: &Frame<'_>, picture: &mut Picture<Vec4>) -> Result<(), FieldError> {
-    let view = ViewGeometry::new(&frame.view)?;
+    // The picture is the view, wherever that lies in a host's targets.
+    let view = ViewGeometry::new(&View { origin: UVec2::ZERO, ..frame.view })?;
     validate_lights(frame.lights)?;
     validate_time(frame.time)?;
     for (name, size) in [("scene_depth", frame.scene_depth.size), ("picture", picture.size)] {

@@ -1,6 +1,7 @@
 //! What renderers of one device share.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::gpu::Gpu;
 use super::gpu::capabilities::read_only_depth_is_supported;
@@ -22,6 +23,8 @@ pub struct Context(Arc<Shared>);
 
 #[derive(Debug)]
 pub(crate) struct Shared {
+    /// No other context has it. wgpu compares devices by a number that two instances may both give.
+    pub number: u64,
     pub device: wgpu::Device,
     pub layouts: Layouts,
     textures: SharedTextures,
@@ -40,7 +43,9 @@ impl Context {
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, pipeline_cache: Option<&wgpu::PipelineCache>) -> Self {
         let layouts = Layouts::new(device);
         let passes = Passes::new(device, &layouts, pipeline_cache);
+        static CONTEXTS: AtomicU64 = AtomicU64::new(0);
         Self(Arc::new(Shared {
+            number: CONTEXTS.fetch_add(1, Ordering::Relaxed),
             device: device.clone(),
             textures: SharedTextures::new(&Gpu { device, queue }),
             read_only_depth: read_only_depth_is_supported(device),
@@ -60,7 +65,8 @@ impl Context {
         assets: &MaterialAssets,
     ) -> Result<Material, Error> {
         self.validate_device(device)?;
-        Ok(create_material(&Gpu { device, queue }, &self.0.layouts.material, &self.0.textures, assets)?)
+        let Shared { layouts, textures, number, .. } = &*self.0;
+        Ok(create_material(&Gpu { device, queue }, &layouts.material, textures, *number, assets)?)
     }
 
     /// Pipelines compiled so far. It stands still once everything that a program draws has been drawn or warmed up.

@@ -53,6 +53,7 @@ pub(crate) fn create_material(
     gpu: &Gpu<'_>,
     layout: &wgpu::BindGroupLayout,
     shared: &SharedTextures,
+    context: u64,
     assets: &MaterialAssets,
 ) -> Result<Material, FieldError> {
     validate_sizes(&gpu.device.limits(), assets)?;
@@ -85,7 +86,7 @@ pub(crate) fn create_material(
             sampler(9, &shared.repeat),
         ],
     });
-    Ok(Material { device: gpu.device.clone(), bind_group, info: assets.info(), bytes })
+    Ok(Material { context, bind_group, info: assets.info(), bytes })
 }
 
 /// Refuses pictures that are too large for the device.

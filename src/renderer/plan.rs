@@ -175,3 +175,118 @@ impl Plan {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::{DiffuseMode, FadeCurve, Path};
+    use wgpu::TextureFormat::{Depth24Plus, Depth32Float, Rgba16Float};
+
+    fn situation() -> Situation {
+        Situation {
+            host: HostPass { depth_format: Some(Depth32Float), ..HostPass::plain(Rgba16Float) },
+            exact_filtering: false,
+            read_only_depth: true,
+            scene_depth: SceneDepthKind::Both(Depth24Plus),
+            reversed: false,
+            mirrored: false,
+            shade_tree: ShadeTree::Final,
+        }
+    }
+
+    fn deferred(situation: &Situation, settings: &Settings) -> DeferredPlan {
+        match plan(situation, settings, false) {
+            Plan::Deferred(plan) => plan,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn the_table_in_the_docs_is_what_is_planned() {
+        let table = include_str!("../../docs/depth.md");
+        let rows =
+            table.lines().filter(|line| ["| Buffer ", "| Linear ", "| Both "].iter().any(|k| line.starts_with(k)));
+        let mut seen = 0;
+        for row in rows {
+            let cells: Vec<_> = row.trim_matches('|').split('|').map(str::trim).collect();
+            let [depth, technique, source, backend, read, compared, tested] = cells[..] else { panic!("{row}") };
+            let situation = Situation {
+                scene_depth: match depth {
+                    "Buffer" => SceneDepthKind::Buffer(Depth24Plus),
+                    "Linear" => SceneDepthKind::Linear,
+                    _ => SceneDepthKind::Both(Depth24Plus),
+                },
+                read_only_depth: backend != "OpenGL",
+                ..situation()
+            };
+            // "soft" stands for all others.
+            let techniques =
+                Technique::ALL.iter().filter(|t| (**t == Technique::SoftLinear) == (technique == "soft_linear"));
+            for &technique in techniques {
+                let mut settings = Settings { technique, ..Settings::default() };
+                settings.accumulate.depth_source = source.parse().unwrap();
+                let plan = deferred(&situation, &settings);
+                assert_eq!(plan.reads_linear, read == "linear", "{row}");
+                assert_eq!(plan.accumulate.host_depth, compared == "host's", "{row}");
+                assert_eq!(plan.depth_downsample.is_some(), compared == "reduced", "{row}");
+                let test = match tested {
+                    "reduced" => DepthTest::Reduced,
+                    "copy" => DepthTest::Copy,
+                    _ => DepthTest::Host(Depth24Plus, false),
+                };
+                assert_eq!(plan.accumulate.depth_test, test, "{row}");
+                assert_eq!(plan.depth_copy.is_some(), tested == "copy", "{row}");
+                settings.soft_fade.curve = FadeCurve::Always;
+                let always = deferred(&situation, &settings).accumulate.depth_test;
+                assert_eq!(always, if technique.is_soft() { DepthTest::InShader } else { test }, "{row}");
+                seen += 1;
+            }
+        }
+        assert!(seen > 60, "{seen}");
+    }
+
+    #[test]
+    fn stages_draw_no_more_than_they_show() {
+        for &shade_tree in ShadeTree::ALL {
+            let mut settings = Settings::default();
+            let situation = Situation { shade_tree, ..situation() };
+            let shown = deferred(&situation, &settings);
+            let glows = matches!(shade_tree, ShadeTree::Final | ShadeTree::SpecularScatter);
+            assert_eq!(shown.specular_scatter.is_some(), glows, "{shade_tree:?}");
+            assert_eq!(shown.transfer.is_some(), shade_tree != ShadeTree::SpecularScatter, "{shade_tree:?}");
+            assert_eq!(shown.accumulate.overdraw, shade_tree == ShadeTree::Overdraw);
+            settings.specular_scatter.intensity = 0.0;
+            assert_eq!(deferred(&situation, &settings).specular_scatter, None);
+            // Forward sprites are lit as they are drawn: there are no stages to show.
+            settings.path = Path::Forward;
+            let is_picture = matches!(shade_tree, ShadeTree::Final | ShadeTree::Combined);
+            assert_eq!(plan(&situation, &settings, false) != Plan::Nothing, is_picture, "{shade_tree:?}");
+        }
+    }
+
+    #[test]
+    fn light_is_baked_where_a_mode_asks_for_it() {
+        for &mode in DiffuseMode::ALL {
+            let mut settings = Settings::default();
+            settings.diffuse.mode = mode;
+            let bakes = matches!(mode, DiffuseMode::Cubemap | DiffuseMode::Motif);
+            assert_eq!(deferred(&situation(), &settings).diffuse_bake.is_some(), bakes, "{mode:?}");
+        }
+    }
+
+    #[test]
+    fn boxes_turn_with_the_view() {
+        let transfer = |situation: &Situation, back_faces| match plan(situation, &Settings::default(), back_faces) {
+            Plan::Deferred(plan) => plan.transfer.unwrap(),
+            other => panic!("{other:?}"),
+        };
+        let plain = transfer(&situation(), false);
+        assert!(!plain.back_faces && !plain.mirrored && !plain.reversed);
+        assert!(transfer(&situation(), true).back_faces);
+        assert!(transfer(&Situation { mirrored: true, ..situation() }, false).mirrored);
+        assert!(transfer(&Situation { reversed: true, ..situation() }, false).reversed);
+        // What nothing tests must not be drawn by its front.
+        let untested = Situation { host: HostPass::plain(Rgba16Float), ..situation() };
+        assert!(transfer(&untested, false).back_faces);
+    }
+}

@@ -100,10 +100,11 @@ impl Slot {
 
     pub fn target_views(&self) -> Option<TargetViews<'_>> {
         let Drawn { in_view, draw: Draw::Deferred(_) } = self.drawn.as_ref()? else { return None };
-        let accumulation = self.targets.accumulation()?;
+        let (accumulation, baked_diffuse) = self.targets.textures()?;
         Some(TargetViews {
             accumulation: &accumulation.attachments,
             reduced_depth: accumulation.reduced_depth.as_ref(),
+            baked_diffuse: &baked_diffuse.faces,
             origin: in_view.rect.origin,
             size: in_view.rect.size,
             scale: in_view.uniform.scale as u32,

@@ -64,9 +64,9 @@ impl SystemTargets {
         ReadyTargets { accumulation, baked_diffuse, inputs }
     }
 
-    /// The accumulation target, if there is one.
-    pub fn accumulation(&self) -> Option<&AccumulationTarget> {
-        self.accumulation.as_ref()
+    /// The textures, if there are any.
+    pub fn textures(&self) -> Option<(&AccumulationTarget, &BakedDiffuse)> {
+        self.accumulation.as_ref().zip(self.baked_diffuse.as_ref())
     }
 
     /// Bytes held.

@@ -90,9 +90,9 @@ fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &Sy
         bounds.validate(|| field("bounds"))?;
     }
     validate_particles(shared, system, &field)?;
-    if system.material.device != shared.device {
-        let expected = "one made by create_material with this renderer's device";
-        return Err(FieldError::new(field("material"), "of another device", expected));
+    if system.material.context != shared.number {
+        let expected = "one that this renderer's context has made; renderers share materials by sharing a context";
+        return Err(FieldError::new(field("material"), "of another context", expected));
     }
     system.material.info.validate(index, system.settings)?;
     if system.settings.technique == Technique::SoftLinear && frame.scene_depth.linear().is_none() {

@@ -7,9 +7,12 @@
 #[cfg(feature = "app")]
 mod assets;
 mod common;
+mod every_setting;
 mod formulas;
 #[cfg(feature = "app")]
 mod goldens;
+mod host;
+mod hosts;
 #[cfg(feature = "app")]
 mod presets;
 mod properties;

@@ -9,7 +9,8 @@ use haze::{Bounds, Error, Light, Particle, Particles, wgpu};
 use proptest::prelude::*;
 
 use crate::common::{gpu, non_finite_texels, psnr};
-use crate::stage::{BACKDROP, DepthKind, Host, Stage};
+use crate::host::Host;
+use crate::stage::{BACKDROP, DepthKind, Stage};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
@@ -166,7 +167,7 @@ fn a_host_may_resize_and_change_everything_from_frame_to_frame() {
         stage.settings.diffuse.mode = DiffuseMode::ALL[step as usize % DiffuseMode::ALL.len()];
         stage.settings.path = if step % 11 == 10 { Path::Forward } else { Path::Auto };
         // The renderer stays, the host's textures are new.
-        let mut resized = Host::new(gpu(), &stage).unwrap();
+        let mut resized = Host::on(gpu(), &stage, Some(host.renderer.context())).unwrap();
         std::mem::swap(&mut resized.renderer, &mut host.renderer);
         std::mem::swap(&mut resized, &mut host);
         host.draw(gpu(), &stage).unwrap();
@@ -245,7 +246,8 @@ fn a_pass_without_depth_gives_the_same_picture() {
 
 #[test]
 fn the_limits_of_webgl2_are_enough() {
-    let webgl2 = haze::headless::Headless::with_limits(wgpu::Limits::downlevel_webgl2_defaults()).unwrap();
+    let webgl2 =
+        haze::headless::Headless::with(wgpu::Limits::downlevel_webgl2_defaults(), wgpu::Features::empty()).unwrap();
     let mut stage = Stage::new(SIZE);
     for mode in DiffuseMode::ALL {
         stage.settings.diffuse.mode = *mode;
@@ -511,7 +513,7 @@ fn no_preset_leaves_a_nan_in_any_target() {
     }
 }
 
-fn assert_all_finite(stage: &Stage, drawn: &crate::stage::Drawn, name: &str) {
+fn assert_all_finite(stage: &Stage, drawn: &crate::host::Drawn, name: &str) {
     assert!(drawn.picture.texels.iter().all(|texel| texel.is_finite()), "{name}");
     let targets = drawn.renderer.targets(0).unwrap();
     assert!(targets.size.cmple(stage.view.size).all());

@@ -9,7 +9,8 @@ use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Bounds, Error, Particle};
 
 use crate::common::{gpu, non_finite_texels, psnr};
-use crate::stage::{BACKDROP, DepthKind, Host, Stage};
+use crate::host::Host;
+use crate::stage::{BACKDROP, DepthKind, Stage};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
@@ -129,7 +130,7 @@ fn every_sprite_setting_agrees() {
 }
 
 /// A small flipbook and its detail map.
-fn flipbook() -> (Sprite, Option<Sprite>) {
+pub fn flipbook() -> (Sprite, Option<Sprite>) {
     let recipe = recipe();
     let baked = recipe.bake().unwrap();
     let decode = |picture| Sprite::from_picture("flipbook".as_ref(), picture, recipe.layout()).unwrap();

@@ -11,6 +11,8 @@ pub struct TargetViews<'a> {
     /// `Depth32Float` linear view depth divided by `depth_limit`; `None` where sprites are compared with the host's own
     /// depth.
     pub reduced_depth: Option<&'a wgpu::TextureView>,
+    /// Light by normal: six faces of a cubemap, one motif, or none, `Rgba16Float`.
+    pub baked_diffuse: &'a [wgpu::TextureView],
     /// First texel of the view's grid.
     pub origin: IVec2,
     /// Texels in use.

@@ -1,0 +1,377 @@
+//! A host on the GPU, of any kind: its targets and its pass, and a stage drawn in it.
+
+use glam::{UVec2, Vec4};
+use haze::formula::colour::gamma_target_colour;
+use haze::headless::Headless;
+use haze::picture::Picture;
+use haze::wgpu::util::DeviceExt;
+use haze::{Context, Descriptor, Error, Frame, Particles, Renderer, SceneDepth, System, wgpu};
+
+use crate::stage::{BACKDROP, DepthKind, Stage};
+
+/// What a host's pass and targets are like.
+#[derive(Clone, Debug)]
+pub struct HostKind {
+    pub color_format: wgpu::TextureFormat,
+    /// Further colour attachments of the pass.
+    pub further: Vec<wgpu::TextureFormat>,
+    pub depth_format: wgpu::TextureFormat,
+    /// Of the pass; the depth that is handed over is resolved.
+    pub samples: u32,
+    pub gamma_target: bool,
+    /// Size of the targets, where the view is a part of them.
+    pub target_size: Option<UVec2>,
+}
+
+impl Default for HostKind {
+    fn default() -> Self {
+        Self {
+            color_format: wgpu::TextureFormat::Rgba16Float,
+            further: Vec::new(),
+            depth_format: wgpu::TextureFormat::Depth32Float,
+            samples: 1,
+            gamma_target: false,
+            target_size: None,
+        }
+    }
+}
+
+/// The host's side, kept from frame to frame.
+pub struct Host {
+    pub renderer: Renderer,
+    pub material: haze::Material,
+    size: UVec2,
+    /// Single-sampled; what is shown.
+    pub colour: wgpu::Texture,
+    /// First what the smoke is drawn on, then the further attachments.
+    attachments: Vec<wgpu::TextureView>,
+    resolved: Option<wgpu::TextureView>,
+    /// What is handed over.
+    pub depth: wgpu::TextureView,
+    pub linear: wgpu::TextureView,
+    attached_depth: wgpu::TextureView,
+}
+
+/// What a run leaves.
+pub struct Drawn {
+    pub picture: Picture<Vec4>,
+    pub renderer: Renderer,
+}
+
+impl Stage {
+    pub fn on_gpu(&self, gpu: &Headless) -> Drawn {
+        self.try_on_gpu(gpu).unwrap()
+    }
+
+    pub fn try_on_gpu(&self, gpu: &Headless) -> Result<Drawn, Error> {
+        let mut host = Host::new(gpu, self)?;
+        host.draw(gpu, self)?;
+        Ok(Drawn { picture: host.picture(gpu)?, renderer: host.renderer })
+    }
+}
+
+impl Host {
+    pub fn new(gpu: &Headless, stage: &Stage) -> Result<Self, Error> {
+        Self::on(gpu, stage, None)
+    }
+
+    /// With a renderer on a context of others.
+    pub fn on(gpu: &Headless, stage: &Stage, context: Option<&Context>) -> Result<Self, Error> {
+        let kind = &stage.host;
+        let further: Vec<_> = kind.further.iter().copied().map(Some).collect();
+        let descriptor = Descriptor {
+            context,
+            color_format: kind.color_format,
+            further_color_formats: &further,
+            depth_format: stage.attach_depth.then_some(kind.depth_format),
+            sample_count: kind.samples,
+            gamma_target: kind.gamma_target,
+            exact_filtering: true,
+        };
+        let renderer = Renderer::new(&gpu.device, &gpu.queue, &descriptor)?;
+        let material = renderer.create_material(&gpu.device, &gpu.queue, &stage.material)?;
+        let size = kind.target_size.unwrap_or(stage.view.size);
+        let whole = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let colour = gpu.target("host colour", size, kind.color_format);
+        let resolved = (kind.samples > 1).then(|| whole(&colour));
+        let mut attachments: Vec<_> = std::iter::once(kind.color_format)
+            .chain(kind.further.iter().copied())
+            .map(|format| whole(&target(gpu, size, format, kind.samples)))
+            .collect();
+        if resolved.is_none() {
+            attachments[0] = whole(&colour);
+        }
+        let depth = depth_buffer(gpu, stage, size, 1);
+        let attached_depth =
+            if kind.samples > 1 { depth_buffer(gpu, stage, size, kind.samples) } else { depth.clone() };
+        let linear = upload(gpu, &placed(&stage.linear_depth(), stage.view.origin, size));
+        // A depth and stencil buffer is read through a view of its depth alone.
+        let depth_aspect = wgpu::TextureViewDescriptor {
+            aspect: if kind.depth_format.has_stencil_aspect() {
+                wgpu::TextureAspect::DepthOnly
+            } else {
+                wgpu::TextureAspect::All
+            },
+            ..Default::default()
+        };
+        Ok(Self {
+            renderer,
+            material,
+            size,
+            colour,
+            attachments,
+            resolved,
+            depth: depth.create_view(&depth_aspect),
+            linear: whole(&linear),
+            attached_depth: whole(&attached_depth),
+        })
+    }
+
+    /// One frame: the backdrop, then the smoke.
+    pub fn draw(&mut self, gpu: &Headless, stage: &Stage) -> Result<(), Error> {
+        self.draw_particles(gpu, stage, Particles::Slice(&stage.particles))
+    }
+
+    pub fn draw_particles(&mut self, gpu: &Headless, stage: &Stage, particles: Particles<'_>) -> Result<(), Error> {
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        self.prepare(gpu, &mut encoder, stage, particles)?;
+        self.render(&mut encoder, stage);
+        gpu.submit(encoder)
+    }
+
+    /// The first half of a frame.
+    pub fn prepare(
+        &mut self,
+        gpu: &Headless,
+        encoder: &mut wgpu::CommandEncoder,
+        stage: &Stage,
+        particles: Particles<'_>,
+    ) -> Result<(), Error> {
+        let system = System { bounds: stage.bounds, ..System::new(particles, &stage.settings, &self.material) };
+        let frame = Frame {
+            lights: &stage.lights,
+            systems: &[system],
+            time: stage.time,
+            shade_tree: stage.shade_tree,
+            ..Frame::new(stage.view, scene_depth(stage.depth, &self.depth, &self.linear))
+        };
+        self.renderer.prepare(&gpu.device, &gpu.queue, encoder, &frame)
+    }
+
+    /// The second half.
+    pub fn render(&self, encoder: &mut wgpu::CommandEncoder, stage: &Stage) {
+        let clear =
+            if stage.host.gamma_target { gamma_target_colour(BACKDROP.truncate()).extend(1.0) } else { BACKDROP };
+        let [r, g, b, a] = clear.to_array().map(f64::from);
+        let attachments: Vec<_> = self
+            .attachments
+            .iter()
+            .enumerate()
+            .map(|(index, view)| {
+                Some(wgpu::RenderPassColorAttachment {
+                    view,
+                    depth_slice: None,
+                    resolve_target: self.resolved.as_ref().filter(|_| index == 0),
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a }),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })
+            })
+            .collect();
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("host"),
+            color_attachments: &attachments,
+            depth_stencil_attachment: stage.attach_depth.then_some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.attached_depth,
+                depth_ops: None,
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        self.renderer.render(&mut pass);
+    }
+
+    /// The pixels of the targets, as light: code is decoded.
+    pub fn picture(&self, gpu: &Headless) -> Result<Picture<Vec4>, Error> {
+        Ok(Picture { size: self.size, texels: gpu.read_rgba16float(&as_floats(gpu, &self.colour))? })
+    }
+
+    /// A further attachment.
+    pub fn further(&self, gpu: &Headless, index: usize) -> Picture<Vec4> {
+        let texels = gpu.read_rgba16float(&as_floats(gpu, self.attachments[index + 1].texture())).unwrap();
+        Picture { size: self.size, texels }
+    }
+}
+
+pub fn scene_depth<'a>(
+    kind: DepthKind,
+    buffer: &'a wgpu::TextureView,
+    linear: &'a wgpu::TextureView,
+) -> SceneDepth<'a> {
+    match kind {
+        DepthKind::Buffer => SceneDepth::Buffer(buffer),
+        DepthKind::Linear => SceneDepth::Linear(linear),
+        DepthKind::Both => SceneDepth::Both { buffer, linear },
+    }
+}
+
+fn target(gpu: &Headless, size: UVec2, format: wgpu::TextureFormat, sample_count: u32) -> wgpu::Texture {
+    let sampled = if sample_count > 1 { wgpu::TextureUsages::empty() } else { wgpu::TextureUsages::TEXTURE_BINDING };
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("host target"),
+        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | sampled,
+        view_formats: &[],
+    })
+}
+
+/// A view's values in targets that it is a part of: the rest is as near as can be, so that a value from there shows.
+fn placed(values: &Picture<f32>, origin: UVec2, size: UVec2) -> Picture<f32> {
+    let mut whole = Picture::new(size, 0.0);
+    whole.for_each(|at, texel| {
+        let inside = at.cmpge(origin).all() && at.cmplt(origin + values.size).all();
+        if inside {
+            *texel = values.load((at - origin).as_ivec2());
+        }
+    });
+    whole
+}
+
+fn upload(gpu: &Headless, values: &Picture<f32>) -> wgpu::Texture {
+    let descriptor = wgpu::TextureDescriptor {
+        label: Some("host depth values"),
+        size: wgpu::Extent3d { width: values.size.x, height: values.size.y, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::R32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    };
+    let order = wgpu::util::TextureDataOrder::LayerMajor;
+    gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, bytemuck::cast_slice(&values.texels))
+}
+
+/// The stage's scene in a depth buffer.
+fn depth_buffer(gpu: &Headless, stage: &Stage, size: UVec2, samples: u32) -> wgpu::Texture {
+    let values = upload(gpu, &placed(&stage.ndc_depth(), stage.view.origin, size));
+    let depth = target(gpu, size, stage.host.depth_format, samples);
+    let fragment = "@fragment fn fragment(@builtin(position) p: vec4f) -> @builtin(frag_depth) f32 {
+        return textureLoad(values, vec2i(p.xy), 0).r;
+    }";
+    fill(gpu, &values, &depth, fragment);
+    depth
+}
+
+/// Any texture as `Rgba16Float`.
+fn as_floats(gpu: &Headless, texture: &wgpu::Texture) -> wgpu::Texture {
+    if texture.format() == wgpu::TextureFormat::Rgba16Float && texture.usage().contains(wgpu::TextureUsages::COPY_SRC) {
+        return texture.clone();
+    }
+    let size = UVec2::new(texture.width(), texture.height());
+    let floats = gpu.target("host picture", size, wgpu::TextureFormat::Rgba16Float);
+    let fragment = "@fragment fn fragment(@builtin(position) p: vec4f) -> @location(0) vec4f {
+        return textureLoad(values, vec2i(p.xy), 0);
+    }";
+    fill(gpu, texture, &floats, fragment);
+    floats
+}
+
+/// Draws a fragment shader that reads `values` over all of a target.
+fn fill(gpu: &Headless, values: &wgpu::Texture, into: &wgpu::Texture, fragment: &str) {
+    let source = format!(
+        "@group(0) @binding(0) var values: texture_2d<f32>;
+        @vertex fn vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {{
+            return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+        }}
+        {fragment}"
+    );
+    let device = &gpu.device;
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("host fill"),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("host fill"),
+        entries: &[wgpu::BindGroupLayoutEntry {
+            binding: 0,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            count: None,
+        }],
+    });
+    let is_depth = into.format().is_depth_stencil_format();
+    let target = [Some(into.format().into())];
+    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("host fill"),
+        layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("host fill"),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        })),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("vertex"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: is_depth.then(|| wgpu::DepthStencilState {
+            format: into.format(),
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Always),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState { count: into.sample_count(), ..Default::default() },
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("fragment"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: if is_depth { &[] } else { &target },
+        }),
+        multiview_mask: None,
+        cache: None,
+    });
+    let whole = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+    let (values, view) = (whole(values), whole(into));
+    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("host fill"),
+        layout: &layout,
+        entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&values) }],
+    });
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    {
+        let attachment = Some(wgpu::RenderPassColorAttachment {
+            view: &view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations::default(),
+        });
+        let has_stencil = into.format().has_stencil_aspect();
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("host fill"),
+            color_attachments: if is_depth { &[] } else { std::slice::from_ref(&attachment) },
+            depth_stencil_attachment: is_depth.then(|| wgpu::RenderPassDepthStencilAttachment {
+                view: &view,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
+                stencil_ops: has_stencil
+                    .then_some(wgpu::Operations { load: wgpu::LoadOp::Clear(0), store: wgpu::StoreOp::Store }),
+            }),
+            ..Default::default()
+        });
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+    gpu.submit(encoder).unwrap();
+}
