@@ -200,7 +200,8 @@ impl Headless {
             texture.size(),
         );
         let bytes = self.map(encoder, &read)?;
-        Ok(bytes.chunks_exact(padded as usize).flat_map(|line| &line[..row as usize]).copied().collect())
+        let rows: Vec<_> = bytes.chunks_exact(padded as usize).map(|line| &line[..row as usize]).collect();
+        Ok(rows.concat())
     }
 
     fn read_back_buffer(&self, size: u64) -> wgpu::Buffer {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use haze::noise::NoiseRecipe;
-use haze::picture::write_png;
+use haze::picture::{Effort, write_png};
 use haze::ramp::bake::RampRecipe;
 use haze::ramp::motif::MotifRecipe;
 use haze::sprite::bake::SpriteRecipe;
@@ -88,6 +88,6 @@ fn output_of(recipe: &Path, kind: &str) -> Option<PathBuf> {
 
 fn write(output: &Path, picture: &DynamicImage) -> Result<(), Error> {
     check_target(output)?;
-    write_png(output, picture)?;
+    write_png(output, picture, Effort::Small)?;
     say!("{}: {}x{}", output.display(), picture.width(), picture.height())
 }

@@ -66,7 +66,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         let label = format!("{}    {}", cell.name, describe(cost, &costs[0]));
         let zoomed = zoom.inset(&cell.picture);
         if let Some(folder) = &arguments.cells {
-            write_png(&folder.join(format!("{}.png", cell.name)), &zoomed.clone().into())?;
+            write_png(&folder.join(format!("{}.png", cell.name)), &zoomed.clone().into(), arguments.shot.effort())?;
         }
         sheet.place(index, &label, &zoomed);
     }
@@ -74,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         format!("ms: all sprites once, median of {rounds}; {}x{}, {}", shot.size.x, shot.size.y, backend.description());
     sheet.add_foot(&foot);
     if let Some(curves) = &arguments.curves {
-        write_png(curves, &fade_curves().into())?;
+        write_png(curves, &fade_curves().into(), arguments.shot.effort())?;
     }
     arguments.shot.write(sheet.picture, &shot, &backend)
 }

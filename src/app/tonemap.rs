@@ -6,7 +6,7 @@ use haze::formula::colour::srgb_from_linear;
 use haze::noise::{pcg3d, unit};
 use haze::picture::Picture;
 use haze::settings::ShadeTree;
-use image::{Rgb, RgbImage};
+use image::RgbImage;
 
 /// Develops a rendered shot: exposure and a film curve for pictures, the bare values for data.
 pub fn develop(picture: &Picture<Vec4>, shot: &Shot) -> RgbImage {
@@ -15,13 +15,13 @@ pub fn develop(picture: &Picture<Vec4>, shot: &Shot) -> RgbImage {
         shot.shade_tree,
         ShadeTree::Normals | ShadeTree::Amount | ShadeTree::Overdraw | ShadeTree::ReducedDepth
     );
-    let mut developed = RgbImage::new(picture.size.x, picture.size.y);
-    for (index, (texel, out)) in (0u32..).zip(picture.texels.iter().zip(developed.pixels_mut())) {
-        let at = UVec2::new(index % picture.size.x, index / picture.size.x);
-        let encoded = if is_data { texel.xyz() } else { film(texel.xyz() * exposure).map(srgb_from_linear) };
-        *out = quantise(encoded, at);
-    }
-    developed
+    let mut developed = Picture::new(picture.size, [0_u8; 3]);
+    developed.for_each(|at, out| {
+        let colour = picture.load(at.as_ivec2()).xyz();
+        *out = quantise(if is_data { colour } else { film(colour * exposure).map(srgb_from_linear) }, at);
+    });
+    // A texel for every pixel, so never empty.
+    RgbImage::from_raw(picture.size.x, picture.size.y, developed.texels.into_flattened()).unwrap_or_default()
 }
 
 /// The ACES film curve. (Hill, "BakingLab", 2016: a fit of the reference and output transforms)
@@ -42,8 +42,9 @@ fn film(colour: Vec3) -> Vec3 {
 }
 
 /// Rounds to 8 bits with a triangular dither of one step, so that slow gradients do not band.
-fn quantise(encoded: Vec3, at: UVec2) -> Rgb<u8> {
+fn quantise(encoded: Vec3, at: UVec2) -> [u8; 3] {
     let hash = pcg3d(UVec3::new(at.x, at.y, 0));
     let dither = unit(hash.x) - unit(hash.y);
-    Rgb((encoded * 255.0 + 0.5 * dither).to_array().map(|channel| channel.round().clamp(0.0, 255.0) as u8))
+    // Rounded by the cast, which also clamps.
+    (encoded * 255.0 + (0.5 + 0.5 * dither)).to_array().map(|channel| channel as u8)
 }

@@ -1,9 +1,11 @@
-//! The demo scene on the GPU: colour at two by two samples a pixel, depth at pixel centres, as a depth buffer and linear.
+//! The demo scene on the GPU: painted at two by two samples a pixel, then lit; depth at pixel centres, as a depth buffer and
+//! linear.
 
 use glam::Vec3;
 
-use super::layout::SceneBox;
-use super::scene::{MAX_BOXES, Scene, SceneUniform};
+use super::boxes::{MAX_BOXES, SceneBox};
+use super::occluders::Occluders;
+use super::scene::{Scene, SceneUniform};
 use crate::error::Error;
 use crate::formula::depth::SKY_VIEW_DEPTH;
 use crate::formula::uniforms::LightUniform;
@@ -33,12 +35,13 @@ pub(crate) fn render(gpu: &Headless, scene: &Scene, view: &View) -> Result<Scene
 
 struct SceneRenderer {
     scene_layout: wgpu::BindGroupLayout,
-    samples_layout: wgpu::BindGroupLayout,
-    boxes: wgpu::RenderPipeline,
+    paint_layout: wgpu::BindGroupLayout,
+    /// Reflectance and face, two by two samples a pixel.
+    paint: wgpu::RenderPipeline,
     /// Depth, and linear depth as a colour where it can be drawn.
     depth: wgpu::RenderPipeline,
-    sky: wgpu::RenderPipeline,
-    resolve: wgpu::RenderPipeline,
+    /// Light on what is painted.
+    light: wgpu::RenderPipeline,
 }
 
 impl SceneRenderer {
@@ -60,16 +63,17 @@ impl SceneRenderer {
             has_dynamic_offset: false,
             min_binding_size: None,
         };
-        let samples = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+        let texture = |sample_type| wgpu::BindingType::Texture {
+            sample_type,
             view_dimension: wgpu::TextureViewDimension::D2,
             multisampled: false,
         };
         let layout = |entries: &[wgpu::BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("demo scene"), entries })
         };
-        let scene_layout = layout(&[entry(0, uniform), entry(1, uniform), entry(2, uniform)]);
-        let samples_layout = layout(&[entry(0, samples)]);
+        let masks = texture(wgpu::TextureSampleType::Uint);
+        let scene_layout = layout(&[entry(0, uniform), entry(1, uniform), entry(2, uniform), entry(3, masks)]);
+        let paint_layout = layout(&[entry(0, texture(wgpu::TextureSampleType::Float { filterable: false }))]);
         type Fragment<'a> = Option<(&'a str, wgpu::TextureFormat)>;
         let pipeline = |vertex, fragment: Fragment<'_>, groups: &[Option<&wgpu::BindGroupLayout>], depth: bool| {
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -109,17 +113,16 @@ impl SceneRenderer {
         let linear = gpu.can_draw_to(LINEAR_FORMAT).then_some(("linear_fragment", LINEAR_FORMAT));
         let scene_group = [Some(&scene_layout)];
         Self {
-            boxes: pipeline("box_vertex", Some(("box_fragment", COLOUR_FORMAT)), &scene_group, true),
+            paint: pipeline("box_vertex", Some(("paint_fragment", COLOUR_FORMAT)), &scene_group, true),
             depth: pipeline("box_vertex", linear, &scene_group, true),
-            sky: pipeline("sky_vertex", Some(("sky_fragment", COLOUR_FORMAT)), &scene_group, true),
-            resolve: pipeline(
-                "sky_vertex",
-                Some(("resolve_fragment", COLOUR_FORMAT)),
-                &[Some(&scene_layout), Some(&samples_layout)],
+            light: pipeline(
+                "picture_vertex",
+                Some(("light_fragment", COLOUR_FORMAT)),
+                &[Some(&scene_layout), Some(&paint_layout)],
                 false,
             ),
             scene_layout,
-            samples_layout,
+            paint_layout,
         }
     }
 
@@ -135,10 +138,13 @@ impl SceneRenderer {
             uniform_buffer(gpu, bytemuck::cast_slice(&boxes)),
             uniform_buffer(gpu, bytemuck::cast_slice(&lights)),
         ];
-        let entries: Vec<_> = (0..)
-            .zip(&buffers)
-            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
-            .collect();
+        let occluders = occluder_texture(gpu, &scene.occluders).create_view(&wgpu::TextureViewDescriptor::default());
+        let buffer = |binding: usize| wgpu::BindGroupEntry {
+            binding: binding as u32,
+            resource: buffers[binding].as_entire_binding(),
+        };
+        let masks = wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::TextureView(&occluders) };
+        let entries = [buffer(0), buffer(1), buffer(2), masks];
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("demo scene"),
             layout: &self.scene_layout,
@@ -146,49 +152,62 @@ impl SceneRenderer {
         });
 
         let twice = view.size * 2;
-        let samples = gpu.target("demo scene samples", twice, COLOUR_FORMAT);
-        let samples_depth = gpu.target("demo scene samples depth", twice, DEPTH_FORMAT);
+        let paint = gpu.target("demo scene paint", twice, COLOUR_FORMAT);
+        let paint_depth = gpu.target("demo scene paint depth", twice, DEPTH_FORMAT);
         let targets = SceneTargets {
             colour: gpu.target("demo scene colour", view.size, COLOUR_FORMAT),
             depth: gpu.target("demo scene depth", view.size, DEPTH_FORMAT),
             linear: gpu.can_draw_to(LINEAR_FORMAT).then(|| gpu.target("demo scene linear", view.size, LINEAR_FORMAT)),
         };
-        let samples_view = samples.create_view(&wgpu::TextureViewDescriptor::default());
-        let samples_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("demo scene samples"),
-            layout: &self.samples_layout,
-            entries: &[wgpu::BindGroupEntry {
-                binding: 0,
-                resource: wgpu::BindingResource::TextureView(&samples_view),
-            }],
+        let paint_view = paint.create_view(&wgpu::TextureViewDescriptor::default());
+        let paint_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("demo scene paint"),
+            layout: &self.paint_layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&paint_view) }],
         });
 
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let count = scene.boxes.len() as u32;
         {
-            let mut pass = begin(&mut encoder, Some(&samples), Some(&samples_depth));
+            let mut pass = begin(&mut encoder, Some((&paint, NOTHING)), Some(&paint_depth));
             pass.set_bind_group(0, &group, &[]);
-            pass.set_pipeline(&self.boxes);
+            pass.set_pipeline(&self.paint);
             pass.draw(0..36, 0..count);
-            pass.set_pipeline(&self.sky);
-            pass.draw(0..3, 0..1);
         }
         {
-            let mut pass = begin(&mut encoder, targets.linear.as_ref(), Some(&targets.depth));
+            let mut pass = begin(&mut encoder, targets.linear.as_ref().zip(Some(NO_SURFACE)), Some(&targets.depth));
             pass.set_bind_group(0, &group, &[]);
             pass.set_pipeline(&self.depth);
             pass.draw(0..36, 0..count);
         }
         {
-            let mut pass = begin(&mut encoder, Some(&targets.colour), None);
+            let mut pass = begin(&mut encoder, Some((&targets.colour, wgpu::Color::BLACK)), None);
             pass.set_bind_group(0, &group, &[]);
-            pass.set_bind_group(1, &samples_group, &[]);
-            pass.set_pipeline(&self.resolve);
+            pass.set_bind_group(1, &paint_group, &[]);
+            pass.set_pipeline(&self.light);
             pass.draw(0..3, 0..1);
         }
         gpu.submit(encoder)?;
         Ok(targets)
     }
+}
+
+fn occluder_texture(gpu: &Headless, occluders: &Occluders) -> wgpu::Texture {
+    let masks = &occluders.masks;
+    let size = wgpu::Extent3d { width: masks.size.x, height: masks.size.y, depth_or_array_layers: 1 };
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("demo scene occluders"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba32Uint,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * size.width), rows_per_image: None };
+    gpu.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(&masks.texels), layout, size);
+    texture
 }
 
 fn uniform_buffer(gpu: &Headless, bytes: &[u8]) -> wgpu::Buffer {
@@ -202,21 +221,23 @@ fn uniform_buffer(gpu: &Headless, bytes: &[u8]) -> wgpu::Buffer {
     buffer
 }
 
+/// Paint where no box is: `NOTHING` in scene.wgsl.
+const NOTHING: wgpu::Color = wgpu::Color { a: -1.0, ..wgpu::Color::TRANSPARENT };
+/// Linear depth where no box is.
+const NO_SURFACE: wgpu::Color = wgpu::Color { r: SKY_VIEW_DEPTH as f64, ..wgpu::Color::BLACK };
+
 fn begin<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
-    colour: Option<&wgpu::Texture>,
+    colour: Option<(&wgpu::Texture, wgpu::Color)>,
     depth: Option<&wgpu::Texture>,
 ) -> wgpu::RenderPass<'a> {
     let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
-    let (colour, depth) = (colour.map(view), depth.map(view));
-    // Black, or as far away as the sky.
-    let is_linear = colour.as_ref().is_some_and(|view| view.texture().format() == LINEAR_FORMAT);
-    let clear = wgpu::Color { r: if is_linear { f64::from(SKY_VIEW_DEPTH) } else { 0.0 }, ..wgpu::Color::BLACK };
-    let attachment = colour.as_ref().map(|view| wgpu::RenderPassColorAttachment {
+    let (colour, depth) = (colour.map(|(texture, clear)| (view(texture), clear)), depth.map(view));
+    let attachment = colour.as_ref().map(|(view, clear)| wgpu::RenderPassColorAttachment {
         view,
         depth_slice: None,
         resolve_target: None,
-        ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
+        ops: wgpu::Operations { load: wgpu::LoadOp::Clear(*clear), store: wgpu::StoreOp::Store },
     });
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("demo scene"),

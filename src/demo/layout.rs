@@ -1,47 +1,9 @@
 //! Where the boxes of the demo scenes stand. Metres; x right, y up, z to the default camera.
 
-use crate::preset::SceneName;
 use glam::{Vec3, vec3};
 
-/// One box, turned about the vertical. `Box` in scene.wgsl.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
-pub(crate) struct SceneBox {
-    pub centre: Vec3,
-    /// Cosine of the turn.
-    pub cos: f32,
-    pub half_size: Vec3,
-    /// Sine of the turn.
-    pub sin: f32,
-    /// Linear; radiance for [`Surface::Glow`].
-    pub colour: Vec3,
-    /// A [`Surface`].
-    pub surface: u32,
-}
-
-impl SceneBox {
-    /// A vector in the box's own frame.
-    pub fn to_local(self, v: Vec3) -> Vec3 {
-        Vec3::new(v.x * self.cos + v.z * self.sin, v.y, v.z * self.cos - v.x * self.sin)
-    }
-
-    /// A vector of the box's own frame in the world.
-    pub fn to_world(self, v: Vec3) -> Vec3 {
-        Vec3::new(v.x * self.cos - v.z * self.sin, v.y, v.z * self.cos + v.x * self.sin)
-    }
-}
-
-/// The procedural material of a box. The numbers are those of scene.wgsl.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Surface {
-    Plain = 0,
-    Slabs = 1,
-    Brick = 2,
-    Wood = 3,
-    Plaster = 4,
-    /// Shines, casts no shadow.
-    Glow = 5,
-}
+use super::boxes::{SceneBox, Surface};
+use crate::preset::SceneName;
 
 pub(crate) fn boxes(name: SceneName) -> Vec<SceneBox> {
     match name {

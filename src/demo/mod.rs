@@ -1,9 +1,11 @@
 //! The demo scene that smoke is shown in: boxes with procedural materials, lit by the preset's lights, drawn on the GPU and
 //! on the CPU alike.
 
+mod boxes;
 mod cpu;
 mod gpu;
 mod layout;
+mod occluders;
 mod render;
 mod scene;
 mod shading;

@@ -2,13 +2,12 @@
 
 use glam::{Mat4, Vec3};
 
-use super::layout::{self, SceneBox};
+use super::boxes::{MAX_BOXES, SceneBox};
+use super::layout;
+use super::occluders::Occluders;
 use crate::formula::uniforms::LightUniform;
 use crate::frame::Light;
 use crate::preset::{Environment, SceneName};
-
-/// Most boxes of one scene: the length of the uniform array in scene.wgsl.
-pub(crate) const MAX_BOXES: usize = 96;
 
 /// What the scene's shader reads. `Scene` in scene.wgsl.
 #[repr(C)]
@@ -33,17 +32,15 @@ pub(crate) struct Scene {
     pub environment: Environment,
     /// World space.
     pub lights: Vec<LightUniform>,
+    pub occluders: Occluders,
 }
 
 impl Scene {
     pub fn new(name: SceneName, environment: &Environment, lights: &[Light]) -> Self {
         let mut boxes = layout::boxes(name);
         boxes.truncate(MAX_BOXES);
-        Self {
-            boxes,
-            environment: *environment,
-            lights: lights.iter().map(|light| light.uniform(&Mat4::IDENTITY)).collect(),
-        }
+        let lights: Vec<_> = lights.iter().map(|light| light.uniform(&Mat4::IDENTITY)).collect();
+        Self { environment: *environment, occluders: Occluders::new(&boxes, &lights), boxes, lights }
     }
 
     pub fn uniform(&self, clip_from_world: Mat4, eye: Vec3) -> SceneUniform {

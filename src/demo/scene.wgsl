@@ -28,6 +28,15 @@ struct Scene {
 @group(0) @binding(0) var<uniform> scene: Scene;
 @group(0) @binding(1) var<uniform> boxes: array<Box, 96>;
 @group(0) @binding(2) var<uniform> lights: array<Light, 128>;
+// For the sky (list 0) and every light (from list 1), a bit for each box that matters to a cell: src/demo/occluders.rs.
+@group(0) @binding(3) var occluders: texture_2d<u32>;
+
+const OCCLUDER_CELLS = vec3i(40, 8, 40);
+const OCCLUDER_ORIGIN = vec3f(-20.0, -0.5, -24.0);
+const AMBIENT_REACH: f32 = 0.7;
+const SUN_DISTANCE: f32 = 60.0;
+const SUN_SPREAD: f32 = 0.02;
+const WIDEST_PIXEL: f32 = 0.1;
 
 const SURFACE_SLABS: u32 = 1u;
 const SURFACE_BRICK: u32 = 2u;
@@ -137,23 +146,40 @@ fn box_distance(b: Box, p: vec3f) -> f32 {
     return length(max(q, vec3f(0.0))) + min(max(q.x, max(q.y, q.z)), 0.0);
 }
 
+// The boxes that matter to a point. Cells are a metre wide.
+fn boxes_at(list: u32, point: vec3f) -> vec4u {
+    let cell = vec3i(floor(point - OCCLUDER_ORIGIN));
+    if any(cell < vec3i(0)) || any(cell >= OCCLUDER_CELLS) {
+        return vec4u(0xffffffffu);
+    }
+    let at = vec2i(cell.x + cell.z * OCCLUDER_CELLS.x, i32(list) * OCCLUDER_CELLS.y + cell.y);
+    return textureLoad(occluders, at, 0);
+}
+
 // How much of a light of angular size `spread` (radius / distance) is seen past the boxes. Rays that miss a box are
-// dimmed by how close they pass it, seen from the point: a penumbra without samples.
-fn light_visibility(origin: vec3f, direction: vec3f, distance: f32, spread: f32) -> f32 {
+// dimmed by how close they pass it, seen from the point: a penumbra without samples. It is as wide as a pixel, or wider.
+fn light_visibility(mask: vec4u, origin: vec3f, direction: vec3f, distance: f32, spread: f32, pixel: f32) -> f32 {
     var visible = 1.0;
-    for (var i = 0u; i < scene.box_count; i++) {
-        let b = boxes[i];
-        if b.surface == SURFACE_GLOW { continue; }
-        let o = to_local(b, origin - b.centre);
-        let d = to_local(b, direction);
-        let interval = box_interval(b, o, d);
-        let nearest = clamp(0.5 * (interval.x + interval.y), 0.0, distance);
-        if interval.x < interval.y {
-            if interval.y > 0.0 && interval.x < distance { return 0.0; }
-            continue;
-        }
-        if nearest > 0.0 {
-            visible = min(visible, box_distance(b, o + d * nearest) / (nearest * spread));
+    for (var word = 0u; word < 3u; word++) {
+        for (var bits = mask[word]; bits != 0u; bits &= bits - 1u) {
+            let i = word * 32u + firstTrailingBit(bits);
+            if i >= scene.box_count { break; }
+            let b = boxes[i];
+            if b.surface == SURFACE_GLOW { continue; }
+            let o = to_local(b, origin - b.centre);
+            let d = to_local(b, direction);
+            let interval = box_interval(b, o, d);
+            if interval.x < interval.y {
+                if interval.y > 0.0 && interval.x < distance { return 0.0; }
+                continue;
+            }
+            // The ray is nearest to the box between these two places, if it has not passed it.
+            let places = min(interval, vec2f(distance));
+            for (var end = 0; end < 2; end++) {
+                let place = places[end];
+                let gap = box_distance(b, o + d * place) / max(place * spread, pixel);
+                visible = select(visible, min(visible, gap), place > 0.0);
+            }
         }
     }
     return smoothstep(0.0, 1.0, visible);
@@ -162,15 +188,20 @@ fn light_visibility(origin: vec3f, direction: vec3f, distance: f32, spread: f32)
 // Share of the sky that the boxes leave open over a point: looks at how close they come to two points out on the normal.
 fn ambient_visibility(p: vec3f, n: vec3f) -> f32 {
     let near = p + n * 0.15;
-    let far = p + n * 0.7;
+    let far = p + n * AMBIENT_REACH;
     var open_near = 0.15;
-    var open_far = 0.7;
-    for (var i = 0u; i < scene.box_count; i++) {
-        let b = boxes[i];
-        open_near = min(open_near, box_distance(b, to_local(b, near - b.centre)));
-        open_far = min(open_far, box_distance(b, to_local(b, far - b.centre)));
+    var open_far = AMBIENT_REACH;
+    let mask = boxes_at(0u, p);
+    for (var word = 0u; word < 3u; word++) {
+        for (var bits = mask[word]; bits != 0u; bits &= bits - 1u) {
+            let i = word * 32u + firstTrailingBit(bits);
+            if i >= scene.box_count { break; }
+            let b = boxes[i];
+            open_near = min(open_near, box_distance(b, to_local(b, near - b.centre)));
+            open_far = min(open_far, box_distance(b, to_local(b, far - b.centre)));
+        }
     }
-    return mix(0.25, 1.0, saturate(open_near / 0.15)) * mix(0.35, 1.0, saturate(open_far / 0.7));
+    return mix(0.25, 1.0, saturate(open_near / 0.15)) * mix(0.35, 1.0, saturate(open_far / AMBIENT_REACH));
 }
 
 fn sky(direction: vec3f) -> vec3f {
@@ -178,29 +209,33 @@ fn sky(direction: vec3f) -> vec3f {
     return mix(scene.horizon, scene.zenith, 1.0 - pow(1.0 - up, 3.0));
 }
 
-fn shade(b: Box, world: vec3f, local: vec3f, local_normal: vec3f) -> vec3f {
-    if b.surface == SURFACE_GLOW {
-        return b.colour;
-    }
-    let normal = to_world(b, local_normal);
-    let reflectance = albedo(b, local, local_normal, world);
+// Light on a point of a box, where a pixel is so many metres wide.
+fn irradiance(world: vec3f, normal: vec3f, pixel: f32) -> vec3f {
     let ambient = mix(scene.ground, mix(scene.horizon, scene.zenith, 0.5), normal.y * 0.5 + 0.5);
     var light = ambient * ambient_visibility(world, normal);
     let origin = world + normal * 2.0e-3;
     for (var i = 0u; i < scene.light_count; i++) {
         let sample = sample_light(lights[i], world);
         let facing = dot(normal, sample.direction);
-        if facing <= 0.0 || sample.attenuation <= 0.0 { continue; }
-        var distance = 60.0;
-        var spread = 0.02;
+        let is_lit = facing > 0.0 && sample.attenuation > 0.0;
+        var distance = SUN_DISTANCE;
+        var spread = SUN_SPREAD;
         if lights[i].directional < 0.5 {
             distance = length(lights[i].position - world);
             spread = lights[i].radius / max(distance, 0.1);
         }
-        let visible = light_visibility(origin, sample.direction, distance, spread);
-        light += lights[i].colour * (facing * sample.attenuation * visible);
+        // No boxes rather than a branch: llvmpipe runs both sides of a branch, but ends a loop that nothing is in.
+        let boxes = select(vec4u(0u), boxes_at(i + 1u, world), is_lit);
+        let visible = light_visibility(boxes, origin, sample.direction, distance, spread, min(pixel, WIDEST_PIXEL));
+        light += lights[i].colour * (max(facing, 0.0) * sample.attenuation * visible);
     }
-    return reflectance * light;
+    return light;
+}
+
+// A face looks along axis face / 2, backwards if face is even.
+fn face_normal(face: u32) -> vec3f {
+    let sign = f32(face & 1u) * 2.0 - 1.0;
+    return select(vec3f(0.0), vec3f(sign), vec3<bool>(face / 2u == 0u, face / 2u == 1u, face / 2u == 2u));
 }
 
 struct BoxVertex {
@@ -208,36 +243,42 @@ struct BoxVertex {
     @location(0) world: vec3f,
     @location(1) local: vec3f,
     @location(2) @interpolate(flat, either) local_normal: vec3f,
-    @location(3) @interpolate(flat, either) index: u32,
+    // Six to a box.
+    @location(3) @interpolate(flat, either) face: u32,
 }
 
-// Six faces of two triangles; face f looks along axis f / 2, backwards if f is even.
+// Six faces of two triangles.
 @vertex
 fn box_vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> BoxVertex {
-    let b = boxes[instance];
+    // Small boxes are named last and drawn first: what they hide is not painted.
+    let index = scene.box_count - 1u - instance;
+    let b = boxes[index];
     let face = vertex / 6u;
     var places = array<u32, 6>(0u, 1u, 2u, 2u, 1u, 3u);
     let place = places[vertex % 6u];
     let u = f32(place & 1u) * 2.0 - 1.0;
     let v = f32((place >> 1u) & 1u) * 2.0 - 1.0;
-    let sign = f32(face & 1u) * 2.0 - 1.0;
-    var normal = vec3f(sign, 0.0, 0.0);
-    var local = vec3f(sign, u, v);
+    let normal = face_normal(face);
+    var local = normal + vec3f(0.0, u, v);
     if face / 2u == 1u {
-        normal = vec3f(0.0, sign, 0.0);
-        local = vec3f(v, sign, u);
+        local = normal + vec3f(v, 0.0, u);
     } else if face / 2u == 2u {
-        normal = vec3f(0.0, 0.0, sign);
-        local = vec3f(u, v, sign);
+        local = normal + vec3f(u, v, 0.0);
     }
     local *= b.half_size;
     let world = b.centre + to_world(b, local);
-    return BoxVertex(scene.clip_from_world * vec4f(world, 1.0), world, local, normal, instance);
+    return BoxVertex(scene.clip_from_world * vec4f(world, 1.0), world, local, normal, index * 6u + face);
 }
 
+// Reflectance (radiance of what glows), and the face: at twice the size of the picture. Cleared to NOTHING.
 @fragment
-fn box_fragment(in: BoxVertex) -> @location(0) vec4f {
-    return vec4f(shade(boxes[in.index], in.world, in.local, in.local_normal), 1.0);
+fn paint_fragment(in: BoxVertex) -> @location(0) vec4f {
+    let b = boxes[in.face / 6u];
+    var paint = b.colour;
+    if b.surface != SURFACE_GLOW {
+        paint = albedo(b, in.local, in.local_normal, in.world);
+    }
+    return vec4f(paint, f32(in.face));
 }
 
 // View depth, metres: w of a perspective projection.
@@ -247,31 +288,62 @@ fn linear_fragment(in: BoxVertex) -> @location(0) vec4f {
 }
 
 @vertex
-fn sky_vertex(@builtin(vertex_index) index: u32) -> BoxVertex {
-    var out: BoxVertex;
-    let ndc = vec2f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0);
-    out.position = vec4f(ndc, 1.0, 1.0);
-    let far = scene.world_from_clip * vec4f(ndc, 1.0, 1.0);
-    out.world = far.xyz / far.w;
-    return out;
+fn picture_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }
 
-@fragment
-fn sky_fragment(in: BoxVertex) -> @location(0) vec4f {
-    return vec4f(sky(normalize(in.world - scene.eye)), 1.0);
+@group(1) @binding(0) var paint: texture_2d<f32>;
+
+// In the alpha of paint, where no box is.
+const NOTHING: f32 = -1.0;
+
+// The way of the ray through a place of the picture, pixels.
+fn ray_direction(place: vec2f) -> vec3f {
+    let uv = place * 2.0 / vec2f(textureDimensions(paint));
+    let far = scene.world_from_clip * vec4f(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0, 1.0, 1.0);
+    return normalize(far.xyz / far.w - scene.eye);
 }
 
-// The colour pass is drawn at twice the size: four samples for every pixel, weighted so that one bright sample does not
-// outshine the edge. (Karis, "Tone mapping", 2013)
-@group(1) @binding(0) var samples: texture_2d<f32>;
+// Where the ray meets the plane of a face.
+fn point_on_face(b: Box, normal: vec3f, direction: vec3f) -> vec3f {
+    let origin = to_local(b, scene.eye - b.centre);
+    let distance = (dot(abs(normal), b.half_size) - dot(normal, origin)) / dot(normal, to_local(b, direction));
+    return scene.eye + direction * distance;
+}
 
+// Four samples for every pixel, weighted so that one bright sample does not outshine the edge (Karis, "Tone mapping", 2013).
+// Light falls on each of them where they are of several faces, and once on the pixel's middle where they are of one.
 @fragment
-fn resolve_fragment(in: BoxVertex) -> @location(0) vec4f {
-    let first = vec2i(in.position.xy) * 2;
+fn light_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let first = vec2i(position.xy) * 2;
+    var paints = array<vec4f, 4>();
+    for (var i = 0; i < 4; i++) {
+        paints[i] = textureLoad(paint, first + vec2i(i & 1, i >> 1u), 0);
+    }
+    let pixel_angle = length(ray_direction(position.xy + vec2f(0.0, 1.0)) - ray_direction(position.xy));
+    let is_one = paints[0].a == paints[1].a && paints[0].a == paints[2].a && paints[0].a == paints[3].a;
+    var lit = array<vec3f, 4>();
+    for (var i = 0; i < select(4, 1, is_one); i++) {
+        let offset = vec2f(vec2i(i & 1, i >> 1u)) * 0.5 - 0.25;
+        let direction = ray_direction(position.xy + select(offset, vec2f(0.0), is_one));
+        let face = u32(max(paints[i].a, 0.0));
+        let b = boxes[face / 6u];
+        let normal = face_normal(face % 6u);
+        lit[i] = vec3f(1.0);
+        if paints[i].a < 0.0 {
+            lit[i] = sky(direction);
+        } else if b.surface != SURFACE_GLOW {
+            let point = point_on_face(b, normal, direction);
+            let world_normal = to_world(b, normal);
+            let pixel = pixel_angle * length(point - scene.eye) / max(-dot(direction, world_normal), 1.0e-3);
+            lit[i] = irradiance(point, world_normal, pixel);
+        }
+    }
     var sum = vec3f(0.0);
     var weights = 0.0;
     for (var i = 0; i < 4; i++) {
-        let colour = textureLoad(samples, first + vec2i(i & 1, i >> 1u), 0).rgb;
+        let reflectance = select(paints[i].rgb, vec3f(1.0), paints[i].a < 0.0);
+        let colour = reflectance * lit[select(i, 0, is_one)];
         let weight = 1.0 / (1.0 + max(colour.r, max(colour.g, colour.b)));
         sum += colour * weight;
         weights += weight;

@@ -2,7 +2,10 @@
 
 use glam::{IVec3, Vec2, Vec3, Vec3Swizzles};
 
-use super::layout::{SceneBox, Surface};
+use super::boxes::{
+    AMBIENT_REACH, SUN_DISTANCE, SUN_SPREAD, SceneBox, Surface, WIDEST_PIXEL, box_distance, box_interval,
+};
+use super::occluders::{Boxes, indices};
 use super::scene::Scene;
 use crate::assets::noise::{pcg3d, unit};
 use crate::formula::lighting::sample_light;
@@ -44,8 +47,8 @@ fn joints(uv: Vec2, size: Vec2, width: f32) -> f32 {
     smoothstep(0.0, width, from_edge.min_element())
 }
 
-/// Reflectance of a point of a box. `p` and `n` are in the box's frame, `world` tells boxes apart.
-fn albedo(b: &SceneBox, p: Vec3, n: Vec3, world: Vec3) -> Vec3 {
+/// Reflectance of a point of a box, or what it glows with. `p` and `n` are in the box's frame, `world` tells boxes apart.
+pub(crate) fn albedo(b: &SceneBox, p: Vec3, n: Vec3, world: Vec3) -> Vec3 {
     let uv = if n.x.abs() > 0.5 {
         p.zy()
     } else if n.y.abs() > 0.5 {
@@ -53,6 +56,9 @@ fn albedo(b: &SceneBox, p: Vec3, n: Vec3, world: Vec3) -> Vec3 {
     } else {
         p.xy()
     };
+    if b.surface == Surface::Glow as u32 {
+        return b.colour;
+    }
     let dirt = stains(world);
     let is = |surface: Surface| b.surface == surface as u32;
     if is(Surface::Slabs) {
@@ -89,25 +95,21 @@ fn albedo(b: &SceneBox, p: Vec3, n: Vec3, world: Vec3) -> Vec3 {
     b.colour * (0.8 + 0.4 * dirt)
 }
 
-/// Distances along a ray at which it enters and leaves a box, in the box's frame.
-pub(crate) fn box_interval(b: &SceneBox, origin: Vec3, direction: Vec3) -> (f32, f32) {
-    let tiny = Vec3::splat(1.0e-6);
-    let inverse = Vec3::select(direction.abs().cmplt(tiny), tiny, direction).recip();
-    let middle = -origin * inverse;
-    let reach = inverse.abs() * b.half_size;
-    ((middle - reach).max_element(), (middle + reach).min_element())
-}
-
-fn box_distance(b: &SceneBox, p: Vec3) -> f32 {
-    let q = p.abs() - b.half_size;
-    q.max(Vec3::ZERO).length() + q.max_element().min(0.0)
+/// The way from a point to a light.
+struct ShadowRay {
+    origin: Vec3,
+    direction: Vec3,
+    distance: f32,
+    /// Angular size of the light: radius / distance.
+    spread: f32,
 }
 
 impl Scene {
-    /// How much of a light of angular size `spread` (radius / distance) is seen past the boxes.
-    fn light_visibility(&self, origin: Vec3, direction: Vec3, distance: f32, spread: f32) -> f32 {
+    /// How much of a light is seen past the boxes.
+    fn light_visibility(&self, boxes: Boxes, ray: &ShadowRay, pixel: f32) -> f32 {
+        let &ShadowRay { origin, direction, distance, spread } = ray;
         let mut visible = 1.0_f32;
-        for b in &self.boxes {
+        for b in indices(boxes, self.boxes.len()).map(|index| &self.boxes[index]) {
             if b.surface == Surface::Glow as u32 {
                 continue;
             }
@@ -119,9 +121,9 @@ impl Scene {
                 }
                 continue;
             }
-            let nearest = (0.5 * (enter + leave)).clamp(0.0, distance);
-            if nearest > 0.0 {
-                visible = visible.min(box_distance(b, o + d * nearest) / (nearest * spread));
+            // The ray is nearest to the box between these two places, if it has not passed it.
+            for place in [enter.min(distance), leave.min(distance)].into_iter().filter(|&place| place > 0.0) {
+                visible = visible.min(box_distance(b, o + d * place) / (place * spread).max(pixel));
             }
         }
         smoothstep(0.0, 1.0, visible)
@@ -129,13 +131,13 @@ impl Scene {
 
     /// Share of the sky that the boxes leave open over a point.
     fn ambient_visibility(&self, p: Vec3, n: Vec3) -> f32 {
-        let (near, far) = (p + n * 0.15, p + n * 0.7);
-        let (mut open_near, mut open_far) = (0.15_f32, 0.7_f32);
-        for b in &self.boxes {
+        let (near, far) = (p + n * 0.15, p + n * AMBIENT_REACH);
+        let (mut open_near, mut open_far) = (0.15_f32, AMBIENT_REACH);
+        for b in indices(self.occluders.at(0, p), self.boxes.len()).map(|index| &self.boxes[index]) {
             open_near = open_near.min(box_distance(b, b.to_local(near - b.centre)));
             open_far = open_far.min(box_distance(b, b.to_local(far - b.centre)));
         }
-        mix(0.25, 1.0, saturate(open_near / 0.15)) * mix(0.35, 1.0, saturate(open_far / 0.7))
+        mix(0.25, 1.0, saturate(open_near / 0.15)) * mix(0.35, 1.0, saturate(open_far / AMBIENT_REACH))
     }
 
     /// Radiance of the sky in a direction.
@@ -144,33 +146,29 @@ impl Scene {
         self.environment.horizon.lerp(self.environment.zenith, 1.0 - (1.0 - up).powi(3))
     }
 
-    /// Radiance of a point of a box.
-    pub fn shade(&self, b: &SceneBox, world: Vec3, local: Vec3, local_normal: Vec3) -> Vec3 {
-        if b.surface == Surface::Glow as u32 {
-            return b.colour;
-        }
-        let normal = b.to_world(local_normal);
-        let reflectance = albedo(b, local, local_normal, world);
+    /// Light on a point of a box, where a pixel is so many metres wide.
+    pub fn irradiance(&self, world: Vec3, normal: Vec3, pixel: f32) -> Vec3 {
         let sky = self.environment.horizon.lerp(self.environment.zenith, 0.5);
         let ambient = self.environment.ground.lerp(sky, normal.y * 0.5 + 0.5);
-        let origin = world + normal * 2.0e-3;
-        let direct = self.lights.iter().map(|light| self.direct(light, world, origin, normal)).sum::<Vec3>();
-        reflectance * (ambient * self.ambient_visibility(world, normal) + direct)
+        let direct = (0..).zip(&self.lights).map(|(index, light)| self.direct(index, light, world, normal, pixel));
+        ambient * self.ambient_visibility(world, normal) + direct.sum::<Vec3>()
     }
 
-    fn direct(&self, light: &LightUniform, world: Vec3, origin: Vec3, normal: Vec3) -> Vec3 {
+    fn direct(&self, index: u32, light: &LightUniform, world: Vec3, normal: Vec3, pixel: f32) -> Vec3 {
         let sample = sample_light(light, world);
         let facing = normal.dot(sample.direction);
         if facing <= 0.0 || sample.attenuation <= 0.0 {
             return Vec3::ZERO;
         }
         let (distance, spread) = if light.directional > 0.5 {
-            (60.0, 0.02)
+            (SUN_DISTANCE, SUN_SPREAD)
         } else {
             let distance = (light.position - world).length();
             (distance, light.radius / distance.max(0.1))
         };
-        let visible = self.light_visibility(origin, sample.direction, distance, spread);
+        let boxes = self.occluders.at(1 + index, world);
+        let ray = ShadowRay { origin: world + normal * 2.0e-3, direction: sample.direction, distance, spread };
+        let visible = self.light_visibility(boxes, &ray, pixel.min(WIDEST_PIXEL));
         light.colour * (facing * sample.attenuation * visible)
     }
 }

@@ -9,7 +9,7 @@ use haze::builtin;
 use haze::demo::shot::Shot;
 use haze::formula::colour::srgb_from_linear;
 use haze::picture::Picture;
-use haze::picture::{read_png, write_png};
+use haze::picture::{Effort, read_png, write_png};
 use haze::settings::{ShadeTree, Technique};
 use image::{DynamicImage, Rgb, RgbImage};
 
@@ -58,7 +58,7 @@ fn compare(name: &str, shot: &Shot) {
     let path = golden(name);
     let on_gpu = encode(&shot.render_on_gpu(gpu(), false).unwrap());
     if std::env::var_os("HAZE_BLESS").is_some() {
-        write_png(&path, &DynamicImage::ImageRgb8(on_gpu)).unwrap();
+        write_png(&path, &DynamicImage::ImageRgb8(on_gpu), Effort::Small).unwrap();
         return;
     }
     let golden = read_png(&path).unwrap_or_else(|error| panic!("no golden: {error}")).to_rgb8();
@@ -69,7 +69,7 @@ fn compare(name: &str, shot: &Shot) {
         println!("{name} on the {renderer}: {difference:.2}");
         if difference > TOLERANCE {
             let found = path.with_extension("found.png");
-            write_png(&found, &DynamicImage::ImageRgb8(picture.clone())).unwrap();
+            write_png(&found, &DynamicImage::ImageRgb8(picture.clone()), Effort::Small).unwrap();
             panic!("{name} on the {renderer} is {difference:.2} off; see {}", found.display());
         }
     }

@@ -2,7 +2,7 @@
 
 mod png;
 
-pub use png::{MAX_SIDE, decode_png, read_png, write_file, write_png};
+pub use png::{Effort, MAX_SIDE, decode_png, read_png, write_file, write_png};
 
 use std::sync::{Mutex, PoisonError};
 
