@@ -3,7 +3,7 @@
 //!
 //! A detail map is laid out as its sprite, at a quarter of its size: r = offset towards the viewer, g and b = motion to
 //! the right and down, a = amount. 128 is none; 1 and 255 are -1 and 1 half sides of the sprite (r), and
-//! [`MOTION_RANGE`](crate::formula::sprite::MOTION_RANGE) of its side (g, b).
+//! [`MOTION_RANGE`] of its side (g, b).
 
 use glam::{IVec2, Mat2, UVec2, Vec2, Vec3};
 use image::Rgba;
