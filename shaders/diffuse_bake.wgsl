@@ -36,5 +36,5 @@ fn fragment(in: BakeVertex) -> @location(0) vec4f {
     if !MOTIF {
         normal = normalize(cube_direction(i32(in.face), place));
     }
-    return vec4f(diffuse_from_lights(normal, system.bounds_centre), 1.0);
+    return vec4f(diffuse_from_lights(normal, system.centre), 1.0);
 }

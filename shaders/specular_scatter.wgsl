@@ -40,7 +40,7 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
     let homogeneous = select(vec4f(light.position, 1.0), vec4f(-light.direction, 0.0), light.directional > 0.5);
     let clip = view.clip_from_view * homogeneous;
     let depth = select(-light.position.z, SKY_VIEW_DEPTH, light.directional > 0.5);
-    let fade = specular_scatter_fade(depth, system.bounds_near, system.bounds_far);
+    let fade = specular_scatter_fade(depth, system.smoke_near, system.smoke_far);
     let strength = light.specular_scatter * system.specular_scatter_intensity * fade;
     if clip.w <= 0.0 || depth <= view.near || strength <= 0.0 {
         return out;

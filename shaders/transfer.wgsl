@@ -4,7 +4,7 @@
 // Writes  the host's colour target: linear HDR, or sRGB code where GAMMA_TARGET.
 // Blend   ONE, ONE_MINUS_SRC_ALPHA (premultiplied over the scene).
 // Source  OTEE "Transfer & lighting", "Diffuse lighting", "Soft scattering".
-// Space   Lighting in view space, on the plane through the middle of the box that faces the viewer.
+// Space   Lighting in view space, on the plane through the middle of the smoke that faces the viewer.
 
 #import "lib/diffuse.wgsl"
 #import "lib/accumulated.wgsl"
@@ -152,7 +152,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
 
     // The point that is lit: on the ray through this pixel, flattened to one plane, or the box would show its faces.
     let ray = ndc_from_pixel(pixel, view.size) * view.ray_scale + view.ray_offset;
-    let lit_position = view_position(ray, system.plane_depth, view.orthographic);
+    let lit_position = view_position(ray, -system.centre.z, view.orthographic);
     var light = vec3f(0.0);
     if SHADE_TREE != SHADE_TREE_SOFT_SCATTER {
         light += diffuse(normal, lit_position);

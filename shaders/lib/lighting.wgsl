@@ -64,8 +64,8 @@ fn coverage(amount: f32, boost: f32) -> f32 {
     return saturate(amount * boost);
 }
 
-// How much of the box, by view depth, lies in front of a light: 0 before its near side, 1 behind its far side.
+// How much of the smoke, by view depth, lies in front of a light: 0 before its near side, 1 behind its far side.
 // (OTEE "Specular scattering": fade out the quad as it goes through the bounding box)
-fn specular_scatter_fade(light_depth: f32, bounds_near: f32, bounds_far: f32) -> f32 {
-    return saturate((light_depth - bounds_near) / max(bounds_far - bounds_near, 1.0e-4));
+fn specular_scatter_fade(light_depth: f32, smoke_near: f32, smoke_far: f32) -> f32 {
+    return saturate((light_depth - smoke_near) / max(smoke_far - smoke_near, 1.0e-4));
 }

@@ -3,14 +3,14 @@
 struct System {
     // World space.
     bounds_min: vec3f,
-    // View depths of the box.
+    // View depth of the box's near side.
     bounds_near: f32,
     bounds_max: vec3f,
-    bounds_far: f32,
-    // View space.
-    bounds_centre: vec3f,
-    // View depth of the plane that lighting is flattened to.
-    plane_depth: f32,
+    // View depths between which most of the smoke lies.
+    smoke_near: f32,
+    // View space: the middle of the smoke. Light is flattened to the plane through it that faces the viewer.
+    centre: vec3f,
+    smoke_far: f32,
     scatter_colour: vec3f,
     scatter_amount: f32,
     ambient_colour: vec3f,

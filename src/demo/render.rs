@@ -25,7 +25,7 @@ impl Shot {
         let systems: Vec<_> = particles
             .iter()
             .zip(&self.materials)
-            .map(|((particles, settings), material)| reference::System { particles, bounds: None, settings, material })
+            .map(|((particles, settings), material)| reference::System::new(particles, settings, material))
             .collect();
         let frame = reference::Frame {
             view,

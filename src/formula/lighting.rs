@@ -53,6 +53,6 @@ pub fn coverage(amount: f32, boost: f32) -> f32 {
 }
 
 /// How much of the box, by view depth, lies in front of a light. (OTEE "Specular scattering")
-pub fn specular_scatter_fade(light_depth: f32, bounds_near: f32, bounds_far: f32) -> f32 {
-    saturate((light_depth - bounds_near) / (bounds_far - bounds_near).max(1.0e-4))
+pub fn specular_scatter_fade(light_depth: f32, smoke_near: f32, smoke_far: f32) -> f32 {
+    saturate((light_depth - smoke_near) / (smoke_far - smoke_near).max(1.0e-4))
 }

@@ -75,8 +75,14 @@ pub struct System<'a> {
     pub key: u64,
     /// The sprites, in any order.
     pub particles: Particles<'a>,
-    /// A box in world space that holds every sprite; what is outside may be cut off. `None` measures the slice.
+    /// A box in world space that holds every sprite, corners and all: [`Settings::reach`] radii round each. It decides which
+    /// pixels are lit, which lights reach the smoke, and whether it is in sight; what is outside may be cut off, and what is
+    /// larger than it need be only costs. `None` measures the slice with [`bounds_of`](crate::frame::bounds_of).
     pub bounds: Option<Bounds>,
+    /// View depth, metres, of the plane that light is flattened to, and by which systems are drawn far to near. It should move
+    /// without jumps: the mean depth of the sprites, by amount and area, is best, and is what `None` takes of a slice. For a
+    /// buffer, `None` takes the middle of the part of `bounds` that is in front of the viewer, which jumps when `bounds` does.
+    pub depth: Option<f32>,
     /// Everything a slider moves.
     pub settings: &'a Settings,
     /// Ramps and sprite picture.
@@ -86,7 +92,7 @@ pub struct System<'a> {
 impl<'a> System<'a> {
     /// A system whose box is measured. With more than one in a frame, give each a `key`.
     pub const fn new(particles: Particles<'a>, settings: &'a Settings, material: &'a Material) -> Self {
-        Self { key: 0, particles, bounds: None, settings, material }
+        Self { key: 0, particles, bounds: None, depth: None, settings, material }
     }
 }
 

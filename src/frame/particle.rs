@@ -14,7 +14,7 @@ pub struct Particle {
     pub radius: f32,
     /// Rotation on the screen, radians, counter-clockwise. Rotates the sprite's normals too.
     pub rotation: f32,
-    /// Multiplies the sprite's amount, 0..=1.
+    /// Multiplies the sprite's amount, 0..=1; what is beyond is clamped. Zero draws nothing.
     pub amount: f32,
     /// Flipbook frame. Wraps round; a fraction blends with the next frame.
     pub frame: f32,
@@ -35,18 +35,28 @@ impl Particle {
     /// True if every number is finite, in range and no more than [`LARGEST`]; a sprite that is not is skipped, never
     /// drawn.
     pub fn is_valid(&self) -> bool {
-        let numbers = [self.position.x, self.position.y, self.position.z, self.rotation, self.frame, self.age];
+        let [x, y, z] = self.position.to_array();
+        let numbers = [x, y, z, self.rotation, self.amount, self.frame, self.age];
         // Both are false for NaN.
-        let in_range = numbers.iter().all(|number| number.abs() <= LARGEST);
-        in_range && (0.0..=LARGEST).contains(&self.radius) && (0.0..=1.0).contains(&self.amount)
+        numbers.iter().all(|number| number.abs() <= LARGEST) && (0.0..=LARGEST).contains(&self.radius)
+    }
+
+    /// True if it is valid and there is something of it to see.
+    pub fn is_visible(&self) -> bool {
+        self.is_valid() && self.radius > 0.0 && self.amount > 0.0
+    }
+
+    /// The amount, as far as it counts.
+    pub(crate) fn shown_amount(&self) -> f32 {
+        self.amount.clamp(0.0, 1.0)
     }
 }
 
-/// The box that holds the sprites of every valid particle. `reach`: how far a sprite's corners are from its middle, in
+/// The box that holds the sprites of every visible particle. `reach`: how far a sprite's corners are from its middle, in
 /// radii, see [`Settings::reach`](crate::Settings::reach).
 pub fn bounds_of(particles: &[Particle], reach: f32) -> Bounds {
     let mut bounds = Bounds::EMPTY;
-    for particle in particles.iter().filter(|particle| particle.is_valid()) {
+    for particle in particles.iter().filter(|particle| particle.is_visible()) {
         bounds.include(particle.position, particle.radius * reach);
     }
     bounds

@@ -2,6 +2,7 @@
 
 use glam::{UVec2, Vec3};
 
+use super::bounds::Bounds;
 use super::light::{Light, LightKind, MAX_LIGHTS};
 use crate::error::FieldError;
 use crate::settings::{DepthSource, Settings, validate};
@@ -17,6 +18,19 @@ pub(crate) fn validate_settings(index: usize, settings: &Settings, picture: UVec
         return Err(FieldError::new(field, accumulate.max_side, expected));
     }
     Ok(())
+}
+
+/// Where a host says that system `index` is.
+pub(crate) fn validate_place(index: usize, bounds: Option<&Bounds>, depth: Option<f32>) -> Result<(), FieldError> {
+    if let Some(bounds) = bounds {
+        bounds.validate(|| format!("systems[{index}].bounds"))?;
+    }
+    match depth {
+        Some(depth) if !depth.is_finite() => {
+            Err(FieldError::new(format!("systems[{index}].depth"), depth, "a finite number of metres, or None"))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Lights.

@@ -18,7 +18,7 @@ impl SortScratch {
     }
 }
 
-/// Writes the valid particles to `sorted`, farthest from the viewer first. Equal depths keep their order, so that a
+/// Writes the visible particles to `sorted`, farthest from the viewer first. Equal depths keep their order, so that a
 /// picture is the same every time.
 pub(crate) fn back_to_front(
     view: &ViewGeometry,
@@ -29,7 +29,7 @@ pub(crate) fn back_to_front(
     // The third row of view_from_world: view z, which grows towards the viewer.
     let row = view.view_from_world.row(2);
     scratch.keys.clear();
-    scratch.keys.extend((0u64..).zip(particles).filter(|(_, particle)| particle.is_valid()).map(
+    scratch.keys.extend((0u64..).zip(particles).filter(|(_, particle)| particle.is_visible()).map(
         |(index, particle)| {
             let z = row.truncate().dot(particle.position) + row.w;
             (u64::from(ordered_bits(z)) << 32) | index
@@ -54,11 +54,18 @@ mod tests {
     use glam::{Mat4, UVec2, Vec3};
 
     #[test]
-    fn farthest_first_invalid_dropped_ties_in_order() {
+    fn farthest_first_hidden_dropped_ties_in_order() {
         let clip_from_view = rh::proj::directx::perspective(1.0, 1.0, 0.1, 100.0);
         let view = ViewGeometry::new(&View::new(Mat4::IDENTITY, clip_from_view, UVec2::ONE)).unwrap();
         let at = |z: f32, frame: f32| Particle { position: Vec3::new(0.0, 0.0, z), frame, ..Particle::default() };
-        let particles = [at(-3.0, 0.0), at(f32::NAN, 1.0), at(4.0, 2.0), at(-9.0, 3.0), at(-3.0, 4.0)];
+        let particles = [
+            at(-3.0, 0.0),
+            at(f32::NAN, 1.0),
+            at(4.0, 2.0),
+            at(-9.0, 3.0),
+            at(-3.0, 4.0),
+            Particle { amount: 0.0, ..at(-1.0, 5.0) },
+        ];
         let mut sorted = Vec::new();
         back_to_front(&view, &particles, &mut SortScratch::default(), &mut sorted);
         let frames: Vec<_> = sorted.iter().map(|particle| particle.frame).collect();

@@ -3,6 +3,7 @@
 mod back_to_front;
 mod bounds;
 mod lights;
+mod middle;
 mod system;
 mod view;
 

@@ -3,19 +3,24 @@
 use glam::{UVec2, Vec2, Vec4};
 
 use super::bounds::{TargetRect, bounds_in_view, target_rect};
+use super::middle::Middle;
 use super::view::ViewGeometry;
 use crate::assets::material::MaterialInfo;
 use crate::formula::depth::SKY_VIEW_DEPTH;
 use crate::formula::diffuse_bake::add_light;
 use crate::formula::lighting::sample_light;
 use crate::formula::uniforms::{LightUniform, SystemUniform};
-use crate::frame::Bounds;
+use crate::frame::{Bounds, Particle};
 use crate::settings::{DepthSource, DiffuseMode, Settings};
 
 /// What there is to know about a system before it is placed in a view.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SystemInWorld<'a> {
     pub bounds: &'a Bounds,
+    /// View depth that the host wants it lit at.
+    pub depth: Option<f32>,
+    /// None where they are on the GPU.
+    pub particles: &'a [Particle],
     pub settings: &'a Settings,
     pub material: &'a MaterialInfo,
     /// View space; those that reach the system.
@@ -31,15 +36,16 @@ pub(crate) struct SystemInView {
     pub uniform: SystemUniform,
     /// The transfer draws the back faces of the box: it reaches to or behind the near plane, or shows through the scene.
     pub back_faces: bool,
-    /// View depth of the middle of the box.
+    /// View depth of the middle of the smoke.
     pub distance: f32,
 }
 
 /// Places a system in the view; `None` when it is out of sight. `targets` is the size of the host's targets, of which the view
 /// may be a part.
 pub(crate) fn system_in_view(view: &ViewGeometry, targets: UVec2, system: &SystemInWorld<'_>) -> Option<SystemInView> {
-    let SystemInWorld { bounds, settings, material, lights, time } = *system;
+    let SystemInWorld { bounds, depth, particles, settings, material, lights, time } = *system;
     let in_view = bounds_in_view(bounds, view)?;
+    let middle = Middle::new(view, particles, settings.sprite.size, bounds, &in_view, depth);
     let accumulate = &settings.accumulate;
     let scale = accumulate.effective_scale(view.size);
     let rect = match accumulate.depth_source {
@@ -52,11 +58,9 @@ pub(crate) fn system_in_view(view: &ViewGeometry, targets: UVec2, system: &Syste
         bounds_min: bounds.min,
         bounds_near: in_view.near,
         bounds_max: bounds.max,
-        bounds_far: in_view.far,
-        bounds_centre: view.view_position(bounds.centre()),
-        // The plane through the middle of what is in front of the near plane: through the box's own middle unless the
-        // camera is inside.
-        plane_depth: 0.5 * (in_view.near.max(view.depth.near) + in_view.far),
+        smoke_near: middle.near,
+        centre: middle.centre,
+        smoke_far: middle.far,
         opacity: accumulate.opacity,
         scatter_colour: settings.soft_scatter.scatter_colour,
         scatter_amount: settings.soft_scatter.scatter_amount,
@@ -98,14 +102,14 @@ pub(crate) fn system_in_view(view: &ViewGeometry, targets: UVec2, system: &Syste
     };
     if settings.diffuse.mode == DiffuseMode::SphericalHarmonics {
         for light in lights {
-            let sample = sample_light(light, uniform.bounds_centre);
+            let sample = sample_light(light, uniform.centre);
             let colour = light.colour * sample.attenuation;
             add_light(&mut uniform.spherical_harmonics, &material.zonal, sample.direction, colour);
         }
     }
     // The front of the box may be hidden by what sprites show through.
     let back_faces = in_view.near <= view.depth.near || uniform.fade_through > 0.0;
-    let distance = -uniform.bounds_centre.z;
+    let distance = -uniform.centre.z;
     Some(SystemInView { rect, uniform, back_faces, distance })
 }
 

@@ -35,7 +35,15 @@ impl<'a> Draw<'a> {
         let bounds = system.bounds.unwrap_or_else(|| bounds_of(system.particles, settings.reach()));
         let mut lights = Vec::new();
         lights_in_view(view, frame.lights, &bounds, &mut lights);
-        let in_world = SystemInWorld { bounds: &bounds, settings, material, lights: &lights, time: frame.time };
+        let in_world = SystemInWorld {
+            bounds: &bounds,
+            depth: system.depth,
+            particles: system.particles,
+            settings,
+            material,
+            lights: &lights,
+            time: frame.time,
+        };
         let in_view = system_in_view(view, frame.view.size, &in_world)?;
         let mut particles = Vec::new();
         back_to_front(view, system.particles, &mut SortScratch::default(), &mut particles);

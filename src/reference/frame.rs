@@ -29,8 +29,17 @@ pub struct System<'a> {
     pub particles: &'a [Particle],
     /// A box that holds every sprite; `None` measures them.
     pub bounds: Option<Bounds>,
+    /// View depth that the system is lit at; `None` measures the sprites.
+    pub depth: Option<f32>,
     /// Everything a slider moves.
     pub settings: &'a Settings,
     /// Ramps and sprite picture.
     pub material: &'a MaterialAssets,
+}
+
+impl<'a> System<'a> {
+    /// A system that is measured.
+    pub const fn new(particles: &'a [Particle], settings: &'a Settings, material: &'a MaterialAssets) -> Self {
+        Self { particles, bounds: None, depth: None, settings, material }
+    }
 }

@@ -13,7 +13,7 @@ use glam::{UVec2, Vec4};
 use crate::assets::picture::Picture;
 use crate::error::FieldError;
 use crate::frame::View;
-use crate::frame::validate::{validate_lights, validate_settings, validate_time};
+use crate::frame::validate::{validate_lights, validate_place, validate_settings, validate_time};
 use crate::in_view::ViewGeometry;
 use crate::settings::ShadeTree;
 
@@ -39,6 +39,7 @@ pub fn render(frame: &Frame<'_>, picture: &mut Picture<Vec4>) -> Result<(), Fiel
     let mut draws = Vec::new();
     for (index, system) in frame.systems.iter().enumerate() {
         validate_settings(index, system.settings, frame.view.size)?;
+        validate_place(index, system.bounds.as_ref(), system.depth)?;
         let info = system.material.info();
         info.validate(index, system.settings)?;
         draws.extend(Draw::new(&view, frame, system, &info));

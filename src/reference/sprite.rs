@@ -83,7 +83,8 @@ impl Draw<'_> {
         }
         let half_depth = if technique.is_sphere() { radius } else { 0.0 };
         let (front, back) = (view_depth - half_depth, view_depth + half_depth);
-        let amount = particle.amount * system.opacity * near_fade(back, system.near_fade_start, system.near_fade_end);
+        let amount =
+            particle.shown_amount() * system.opacity * near_fade(back, system.near_fade_start, system.near_fade_end);
         let visible = back > self.view.near && front < self.view.far && radius > 0.0 && amount > 0.0;
         if !visible {
             return None;

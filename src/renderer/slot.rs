@@ -88,7 +88,7 @@ impl Slot {
         self.drawn.as_ref().map(|drawn| &drawn.draw)
     }
 
-    /// View depth of the box's middle.
+    /// View depth of the middle of the smoke.
     pub fn distance(&self) -> f32 {
         self.drawn.as_ref().map_or(0.0, |drawn| drawn.in_view.distance)
     }
@@ -136,6 +136,11 @@ impl Slot {
         lights_in_view(view, frame.lights, &bounds, &mut self.lights_in_view);
         let in_world = SystemInWorld {
             bounds: &bounds,
+            depth: system.depth,
+            particles: match system.particles {
+                Particles::Slice(particles) => particles,
+                Particles::Buffer { .. } => &[],
+            },
             settings,
             material: &system.material.info,
             lights: &self.lights_in_view,

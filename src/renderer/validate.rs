@@ -6,7 +6,7 @@ use super::context::Shared;
 use super::gpu::host_pass::HostPass;
 use super::plan::reads_linear;
 use crate::error::FieldError;
-use crate::frame::validate::{validate_lights, validate_settings, validate_time};
+use crate::frame::validate::{validate_lights, validate_place, validate_settings, validate_time};
 use crate::frame::{Frame, Particle, Particles, SceneDepth, System, View};
 use crate::settings::{DepthSource, Technique};
 
@@ -85,10 +85,8 @@ fn validate_depth_texture(
 
 fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &System<'_>) -> Result<(), FieldError> {
     validate_settings(index, system.settings, frame.view.size)?;
+    validate_place(index, system.bounds.as_ref(), system.depth)?;
     let field = |name: &str| format!("systems[{index}].{name}");
-    if let Some(bounds) = &system.bounds {
-        bounds.validate(|| field("bounds"))?;
-    }
     validate_particles(shared, system, &field)?;
     if system.material.context != shared.number {
         let expected = "one that this renderer's context has made; renderers share materials by sharing a context";

@@ -404,7 +404,7 @@ fn formulas() -> Vec<Formula> {
             reference: |x| vec![lighting::specular_scatter_fade(x[0], x[1], x[1] + x[2])],
             cases: random(50, &[(0.0, 9.0), (1.0, 4.0), (1.0, 4.0)]),
             tolerance: ARITHMETIC,
-            mutants: &[("light_depth - bounds_near", "bounds_far - light_depth")],
+            mutants: &[("light_depth - smoke_near", "smoke_far - light_depth")],
         },
         Formula {
             name: "sprite_lod",

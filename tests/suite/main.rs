@@ -13,6 +13,7 @@ mod formulas;
 mod goldens;
 mod host;
 mod hosts;
+mod lighting;
 #[cfg(feature = "app")]
 mod presets;
 mod properties;

@@ -183,10 +183,8 @@ impl Stage {
             scene_depth: &self.ndc_depth(),
             lights: &self.lights,
             systems: &[reference::System {
-                particles: &self.particles,
                 bounds: self.bounds,
-                settings: &self.settings,
-                material: &self.material,
+                ..reference::System::new(&self.particles, &self.settings, &self.material)
             }],
             time: self.time,
             shade_tree: self.shade_tree,

@@ -45,7 +45,7 @@ impl Draw<'_> {
                     DiffuseMode::Motif => motif_normal(place),
                     _ => cube_direction(face, place).normalize(),
                 };
-                let light = self.diffuse_from_lights(normal, self.system.bounds_centre);
+                let light = self.diffuse_from_lights(normal, self.system.centre);
                 *texel = Vec3::from(light.to_array().map(|channel| f16::from_f32(channel).to_f32()));
             });
             baked

@@ -18,7 +18,7 @@ impl Accumulated<'_> {
             let homogeneous = if directional { (-light.direction).extend(0.0) } else { light.position.extend(1.0) };
             let clip = view.clip_from_view * homogeneous;
             let depth = if directional { SKY_VIEW_DEPTH } else { -light.position.z };
-            let fade = specular_scatter_fade(depth, draw.system.bounds_near, draw.system.bounds_far);
+            let fade = specular_scatter_fade(depth, draw.system.smoke_near, draw.system.smoke_far);
             let strength = light.specular_scatter * draw.system.specular_scatter_intensity * fade;
             if clip.w <= 0.0 || depth <= view.near || strength <= 0.0 {
                 continue;

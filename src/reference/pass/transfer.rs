@@ -94,7 +94,7 @@ impl Accumulated<'_> {
         }
         let mut light = Vec3::ZERO;
         if shade_tree != ShadeTree::SoftScatter {
-            light += self.diffuse(normal, self.draw.view_position(pixel, system.plane_depth));
+            light += self.diffuse(normal, self.draw.view_position(pixel, -system.centre.z));
         }
         if shade_tree != ShadeTree::Diffuse {
             light += self.draw.soft_scatter(amount);
