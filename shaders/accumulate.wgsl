@@ -1,18 +1,22 @@
 // accumulate
 // What    Blends every sprite's normal and amount into the accumulation target.
-// Reads   particles (instances, back to front), sprite flipbook, detail map or noise, reduced depth (or the host's own).
-// Writes  accumulation target: rgb = sum of premultiplied normals, a = amount.
-// Blend   ONE, ONE_MINUS_SRC_ALPHA: the normal is blended, the amount adds smoothly, A = 1 - product of (1 - a).
+// Reads   particles (instances; sorted: back to front), sprite flipbook, detail map or noise, reduced depth (or the host's own).
+// Writes  accumulation target: rgb = sum of premultiplied normals, a = amount; the sum of weights where it is needed.
+// Blend   Sorted: ONE, ONE_MINUS_SRC_ALPHA: the normal is blended, the amount adds smoothly, A = 1 - product of (1 - a).
+//         Weighted: ONE, ONE for the normal, the amount as before.
 // Source  OTEE "Accumulating the particles"; techniques: NV, BLOG, MS.
 // Space   Normals in view space. Depths in metres.
 
 #import "lib/sprite_fragment.wgsl"
+#import "lib/order.wgsl"
 
 // Reduced depth, or the host's depth where HOST_DEPTH.
 @group(3) @binding(0) var tested_depth: texture_2d<f32>;
 
 override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
 override HOST_DEPTH: bool = false;
+// Sprites come in any order.
+override WEIGHTED: bool = false;
 // Counts layers instead: every fragment that is shaded adds one.
 override OVERDRAW: bool = false;
 
@@ -27,11 +31,22 @@ fn vertex(particle: Particle, @builtin(vertex_index) index: u32) -> SpriteVertex
         // Depth as the reduced target stores it.
         out.position.z = saturate(sprite_front(out.centre_radius) / system.depth_limit) * out.position.w;
     }
+    if WEIGHTED {
+        let view_depth = -out.centre_radius.z;
+        let in_front = optical_depth_in_front(system.front_knots, view_depth, system.smoke_near, system.smoke_far);
+        out.weight = order_weight(system.depth_weight, in_front);
+    }
     return out;
 }
 
+struct Accumulated {
+    @location(0) normal_and_amount: vec4f,
+    // Its sum is kept where biased normals are weighted.
+    @location(1) weight: f32,
+}
+
 @fragment
-fn fragment(in: SpriteVertex) -> @location(0) vec4f {
+fn fragment(in: SpriteVertex) -> Accumulated {
     var scene = SKY_VIEW_DEPTH;
     if reads_scene() {
         scene = textureLoad(tested_depth, vec2i(in.position.xy), 0).r;
@@ -46,7 +61,8 @@ fn fragment(in: SpriteVertex) -> @location(0) vec4f {
         discard;
     }
     if OVERDRAW {
-        return vec4f(OVERDRAW_STEP);
+        return Accumulated(vec4f(OVERDRAW_STEP), 0.0);
     }
-    return accumulation_from_normal(NORMAL_ENCODING, fragment.normal, fragment.amount);
+    let accumulated = accumulation_from_normal(NORMAL_ENCODING, fragment.normal, fragment.amount, in.weight);
+    return Accumulated(accumulated, fragment.amount * in.weight);
 }

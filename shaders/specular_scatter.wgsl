@@ -73,7 +73,7 @@ fn fragment(in: QuadVertex) -> @location(0) vec4f {
     if distance_squared >= 1.0 {
         discard;
     }
-    let amount = sample_accumulation(in.position.xy - view.origin).a;
+    let amount = sample_target(accumulation, footprint(in.position.xy - view.origin)).a;
     if amount <= 0.0 {
         discard;
     }

@@ -14,6 +14,8 @@
 
 // Six faces of baked light by normal (cubemap), or one picture of a lit sphere (motif).
 @group(3) @binding(2) var baked_diffuse: texture_2d_array<f32>;
+// What the weights of the normals sum to, where WEIGHT_SUM.
+@group(3) @binding(3) var weight_sum: texture_2d<f32>;
 
 const DIFFUSE_MODE_RAMP: u32 = 0u;
 const DIFFUSE_MODE_CUBEMAP: u32 = 1u;
@@ -23,6 +25,7 @@ const DIFFUSE_MODE_SPHERICAL_HARMONICS: u32 = 4u;
 override DIFFUSE_MODE: u32 = DIFFUSE_MODE_RAMP;
 override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
 override NORMAL_DECODE: u32 = NORMAL_DECODE_EXACT;
+override WEIGHT_SUM: bool = false;
 // True: draw the back faces, never clipped away by the near plane. False: the front faces, depth-tested.
 override BACK_FACES: bool = false;
 // True: there is no reduced depth, sprites were compared with the host's own.
@@ -133,7 +136,8 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         let grey = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));
         return vec4f(vec3f(grey), 1.0);
     }
-    let accumulated = sample_accumulation(pixel);
+    let at = footprint(pixel);
+    let accumulated = sample_target(accumulation, at);
     let amount = accumulated.a;
     if SHADE_TREE == SHADE_TREE_OVERDRAW {
         return vec4f(overdraw_colour(amount * 255.0), 1.0);
@@ -145,7 +149,11 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         discard;
     }
     let covered = coverage(amount, system.boost);
-    let normal = normal_from_accumulation(NORMAL_ENCODING, NORMAL_DECODE, accumulated);
+    var weights = amount;
+    if WEIGHT_SUM {
+        weights = sample_target(weight_sum, at).r;
+    }
+    let normal = normal_from_accumulation(NORMAL_ENCODING, NORMAL_DECODE, accumulated.rgb, weights);
     if SHADE_TREE == SHADE_TREE_NORMALS {
         return vec4f(normal * 0.5 + 0.5, 1.0) * covered;
     }

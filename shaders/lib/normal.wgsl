@@ -5,24 +5,26 @@ const NORMAL_ENCODING_BIASED: u32 = 1u;
 const NORMAL_DECODE_EXACT: u32 = 0u;
 const NORMAL_DECODE_LITERAL: u32 = 1u;
 
-// One sprite fragment for the blend ONE, ONE_MINUS_SRC_ALPHA: premultiplied normal, amount. (OTEE "Accumulating")
-fn accumulation_from_normal(encoding: u32, normal: vec3f, amount: f32) -> vec4f {
+// One sprite fragment for the blend unit: normal times amount, and the amount. (OTEE "Accumulating") `weight` is how much the
+// normal counts: 1 where sprites are sorted.
+fn accumulation_from_normal(encoding: u32, normal: vec3f, amount: f32, weight: f32) -> vec4f {
     if encoding == NORMAL_ENCODING_BIASED {
-        return vec4f((normal * 0.5 + 0.5) * amount, amount);
+        return vec4f((normal * 0.5 + 0.5) * (amount * weight), amount);
     }
-    return vec4f(normal * amount, amount);
+    return vec4f(normal * (amount * weight), amount);
 }
 
 // The unit normal of an accumulated texel.
-// The target was cleared to 0 and the weights of its layers sum to the amount A. So biased normals e = n/2 + 1/2 give
+// The target was cleared to 0 and the weights of its layers sum to the amount A where they are blended. So biased normals e = n/2 + 1/2 give
 // rgb = sum(w·n)/2 + A/2, and 2·rgb - A = sum(w·n) is exact at every amount. OTEE's normalize(rgb·2 - 1) equals it only
 // at A = 1; it is kept as NORMAL_DECODE_LITERAL. A zero vector (empty, or cancelled) faces the viewer.
-fn normal_from_accumulation(encoding: u32, decode: u32, accumulated: vec4f) -> vec3f {
-    var normal = accumulated.rgb;
+// `weights` is what the weights of the layers sum to: A, unless normals are weighted.
+fn normal_from_accumulation(encoding: u32, decode: u32, rgb: vec3f, weights: f32) -> vec3f {
+    var normal = rgb;
     if decode == NORMAL_DECODE_LITERAL {
-        normal = accumulated.rgb * 2.0 - 1.0;
+        normal = rgb * 2.0 - 1.0;
     } else if encoding == NORMAL_ENCODING_BIASED {
-        normal = accumulated.rgb * 2.0 - accumulated.a;
+        normal = rgb * 2.0 - weights;
     }
     let square = dot(normal, normal);
     if square < 1.0e-12 {

@@ -28,6 +28,8 @@ struct SpriteVertex {
     @location(3) @interpolate(flat, either) centre_radius: vec4f,
     // Cosine and sine of the rotation.
     @location(4) @interpolate(flat, either) rotation: vec2f,
+    // How much the normal counts, where sprites are not sorted.
+    @location(5) @interpolate(flat, either) weight: f32,
 }
 
 override TECHNIQUE: u32 = TECHNIQUE_SOFT;
@@ -101,6 +103,7 @@ fn sprite_vertex(
     }
 
     out.centre_radius = vec4f(centre, radius);
+    out.weight = 1.0;
     out.rotation = vec2f(cos(angle), sin(angle));
     let corner = sprite_corner(corner_index);
     var clip: vec4f;

@@ -54,9 +54,11 @@ struct System {
     noise_scroll: f32,
     // Metres behind the scene that are still seen: of the curve `always`.
     fade_through: f32,
+    depth_weight: f32,
     padding0: f32,
     padding1: f32,
-    padding2: f32,
+    // Optical depth of the smoke in front of sixteen view depths.
+    front_knots: array<vec4f, 4>,
     // Diffuse light as spherical harmonics, rgb.
     spherical_harmonics: array<vec4f, 9>,
 }

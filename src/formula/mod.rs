@@ -8,6 +8,7 @@ pub mod diffuse_bake;
 pub mod lighting;
 pub mod noise_volume;
 pub mod normal;
+pub mod order;
 pub mod ramp;
 pub mod soft_fade;
 pub mod sprite;

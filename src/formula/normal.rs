@@ -1,26 +1,26 @@
 //! Normals in and out of the accumulation target. `shaders/lib/normal.wgsl`.
 
-use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{Vec2, Vec3, Vec4};
 
 use crate::settings::{NormalDecode, NormalEncoding};
 
-/// One sprite fragment for the blend ONE, ONE_MINUS_SRC_ALPHA: premultiplied normal, amount. (OTEE "Accumulating")
-pub fn accumulation_from_normal(encoding: NormalEncoding, normal: Vec3, amount: f32) -> Vec4 {
+/// One sprite fragment for the blend unit: normal times amount, and the amount. (OTEE "Accumulating") `weight` is how much the
+/// normal counts: 1 where sprites are sorted.
+pub fn accumulation_from_normal(encoding: NormalEncoding, normal: Vec3, amount: f32, weight: f32) -> Vec4 {
     match encoding {
-        NormalEncoding::Biased => ((normal * 0.5 + 0.5) * amount).extend(amount),
-        NormalEncoding::Signed => (normal * amount).extend(amount),
+        NormalEncoding::Biased => ((normal * 0.5 + 0.5) * (amount * weight)).extend(amount),
+        NormalEncoding::Signed => (normal * (amount * weight)).extend(amount),
     }
 }
 
 /// The unit normal of an accumulated texel; (0, 0, 1) where there is none.
 ///
 /// With Σ weights = A, biased normals sum to rgb = Σw·n/2 + A/2, so n ∝ 2·rgb − A exactly. OTEE's literal decode equals
-/// that only at A = 1.
-pub fn normal_from_accumulation(encoding: NormalEncoding, decode: NormalDecode, accumulated: Vec4) -> Vec3 {
-    let rgb = accumulated.xyz();
+/// that only at A = 1. `weights` is Σ weights where normals are weighted.
+pub fn normal_from_accumulation(encoding: NormalEncoding, decode: NormalDecode, rgb: Vec3, weights: f32) -> Vec3 {
     let normal = match (decode, encoding) {
         (NormalDecode::Literal, _) => rgb * 2.0 - 1.0,
-        (NormalDecode::Exact, NormalEncoding::Biased) => rgb * 2.0 - accumulated.w,
+        (NormalDecode::Exact, NormalEncoding::Biased) => rgb * 2.0 - weights,
         (NormalDecode::Exact, NormalEncoding::Signed) => rgb,
     };
     let square = normal.length_squared();

@@ -102,7 +102,9 @@ uniform! {
         noise_octaves: u32,
         noise_scroll: f32,
         fade_through: f32,
-        padding: [f32; 3],
+        depth_weight: f32,
+        padding: [f32; 2],
+        front_knots: [Vec4; 4],
         spherical_harmonics: [Vec4; 9],
     }
 }

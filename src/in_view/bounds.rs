@@ -73,9 +73,10 @@ pub(crate) struct TargetRect {
 /// The texels that an upsampler can touch for the pixels of `bounds`.
 pub(super) fn target_rect(bounds: &BoundsInView, scale: u32, picture: UVec2) -> TargetRect {
     let grid = UVec2::new(picture.x.div_ceil(scale), picture.y.div_ceil(scale));
-    // One texel more on every side: the bilinear footprint of a border pixel.
-    let min = (bounds.min / scale).saturating_sub(UVec2::ONE);
-    let max = UVec2::new(bounds.max.x.div_ceil(scale), bounds.max.y.div_ceil(scale)) + UVec2::ONE;
+    // Two texels more on every side: the widest footprint of a border pixel.
+    let border = UVec2::splat(2);
+    let min = (bounds.min / scale).saturating_sub(border);
+    let max = UVec2::new(bounds.max.x.div_ceil(scale), bounds.max.y.div_ceil(scale)) + border;
     let max = max.min(grid);
     TargetRect { origin: min.as_ivec2(), size: max - min }
 }

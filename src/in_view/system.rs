@@ -3,6 +3,7 @@
 use glam::{UVec2, Vec2, Vec4};
 
 use super::bounds::{TargetRect, bounds_in_view, target_rect};
+use super::in_front::optical_depths;
 use super::middle::Middle;
 use super::view::ViewGeometry;
 use crate::assets::material::MaterialInfo;
@@ -11,7 +12,7 @@ use crate::formula::diffuse_bake::add_light;
 use crate::formula::lighting::sample_light;
 use crate::formula::uniforms::{LightUniform, SystemUniform};
 use crate::frame::{Bounds, Particle};
-use crate::settings::{DepthSource, DiffuseMode, Settings};
+use crate::settings::{DepthSource, DiffuseMode, Order, Settings};
 
 /// What there is to know about a system before it is placed in a view.
 #[derive(Clone, Copy, Debug)]
@@ -97,7 +98,12 @@ pub(crate) fn system_in_view(view: &ViewGeometry, targets: UVec2, system: &Syste
         noise_octaves: settings.volumetric.noise_octaves,
         noise_scroll: noise_scroll(settings, time),
         fade_through: settings.fade_through(),
-        padding: [0.0; 3],
+        depth_weight: accumulate.depth_weight,
+        padding: [0.0; 2],
+        front_knots: match settings.order() {
+            Order::Sorted => [Vec4::ZERO; 4],
+            Order::Weighted => optical_depths(view, particles, settings, &middle),
+        },
         spherical_harmonics: [Vec4::ZERO; 9],
     };
     if settings.diffuse.mode == DiffuseMode::SphericalHarmonics {

@@ -10,6 +10,11 @@ pub fn premultiplied_over(source: Vec4, target: Vec4) -> Vec4 {
     source + target * (1.0 - source.w)
 }
 
+/// ONE, ONE on the normal, ONE, ONE_MINUS_SRC_ALPHA on the amount.
+pub fn weighted_sum(source: Vec4, target: Vec4) -> Vec4 {
+    (source.xyz() + target.xyz()).extend(source.w + target.w * (1.0 - source.w))
+}
+
 /// OTEE's three classic blends of a forward fragment on the picture.
 pub fn forward_blend(mode: BlendMode, source: Vec4, target: Vec4) -> Vec4 {
     match mode {

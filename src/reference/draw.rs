@@ -10,7 +10,7 @@ use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use crate::formula::view::{ndc_from_pixel, pixel_from_ndc, view_position};
 use crate::frame::{Particle, bounds_of};
 use crate::in_view::{
-    SortScratch, SystemInView, SystemInWorld, ViewGeometry, back_to_front, lights_in_view, system_in_view,
+    SortScratch, SystemInView, SystemInWorld, ViewGeometry, in_order, lights_in_view, system_in_view,
 };
 use crate::settings::Settings;
 
@@ -21,7 +21,7 @@ pub struct Draw<'a> {
     pub system: SystemUniform,
     pub in_view: SystemInView,
     pub lights: Vec<LightUniform>,
-    /// Farthest first.
+    /// In the order in which they are drawn.
     pub particles: Vec<Particle>,
     pub scene_depth: &'a Picture<f32>,
     pub settings: &'a Settings,
@@ -46,7 +46,7 @@ impl<'a> Draw<'a> {
         };
         let in_view = system_in_view(view, frame.view.size, &in_world)?;
         let mut particles = Vec::new();
-        back_to_front(view, system.particles, &mut SortScratch::default(), &mut particles);
+        in_order(view, system.particles, settings.order(), &mut SortScratch::default(), &mut particles);
         Some(Self {
             view: view.uniform(false),
             world_from_view: view.view_from_world.inverse(),

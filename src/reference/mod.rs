@@ -55,7 +55,8 @@ pub fn render(frame: &Frame<'_>, picture: &mut Picture<Vec4>) -> Result<(), Fiel
         }
         let reduced_depth = draw.depth_downsample();
         let accumulation = draw.accumulate(&reduced_depth, frame.shade_tree == ShadeTree::Overdraw);
-        let smoke = Accumulated { draw, baked: draw.diffuse_bake(), reduced_depth, accumulation };
+        let weight_sum = draw.weight_sum(&reduced_depth);
+        let smoke = Accumulated { draw, baked: draw.diffuse_bake(), reduced_depth, accumulation, weight_sum };
         if frame.shade_tree != ShadeTree::SpecularScatter {
             smoke.transfer(frame.shade_tree, picture);
         }

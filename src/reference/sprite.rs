@@ -5,6 +5,7 @@ use glam::{IVec2, Mat3, UVec2, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 use super::draw::Draw;
 use crate::formula::noise_volume::{noise_coordinate, sample_noise_octaves};
 use crate::formula::normal::rotate_normal;
+use crate::formula::order::{optical_depth_in_front, order_weight};
 use crate::formula::soft_fade::{near_fade, soft_fade};
 use crate::formula::sprite::{
     FlipbookFrames, checkerboard, flipbook_frames, sample_detail, sample_sprite, sprite_frame, sprite_lod, sprite_uv,
@@ -16,7 +17,7 @@ use crate::formula::technique::{
 };
 use crate::formula::view::pixel_from_ndc;
 use crate::frame::Particle;
-use crate::settings::Technique;
+use crate::settings::{Order, Technique};
 
 /// The texels that sprites are drawn on: texel (i, j) is the pixels from (origin + (i, j)) · scale.
 pub struct Grid {
@@ -35,6 +36,8 @@ pub struct SpriteSetup {
     pub lod: f32,
     pub frames: FlipbookFrames,
     pub age: f32,
+    /// How much the normal counts, where sprites are not sorted.
+    pub weight: f32,
     /// Pixels that it can cover: upper left and lower right corner.
     pub min: Vec2,
     pub max: Vec2,
@@ -105,9 +108,22 @@ impl Draw<'_> {
             lod: sprite_lod(system.sprite_size, diameter),
             frames: flipbook_frames(frame, system.frame_count),
             age: particle.age,
+            weight: self.order_weight(view_depth),
             min,
             max,
         })
+    }
+
+    fn order_weight(&self, view_depth: f32) -> f32 {
+        let system = &self.system;
+        match self.settings.order() {
+            Order::Sorted => 1.0,
+            Order::Weighted => {
+                let (near, far) = (system.smoke_near, system.smoke_far);
+                let in_front = optical_depth_in_front(&system.front_knots, view_depth, near, far);
+                order_weight(system.depth_weight, in_front)
+            }
+        }
     }
 
     fn square_rectangle(&self, centre: Vec3, radius: f32) -> (Vec2, Vec2) {

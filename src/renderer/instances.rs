@@ -4,7 +4,8 @@ use super::gpu::Gpu;
 use super::gpu::spare::Spare;
 use super::pass::sprites::Sprites;
 use crate::frame::{Particle, Particles};
-use crate::in_view::{SortScratch, ViewGeometry, back_to_front};
+use crate::in_view::{SortScratch, ViewGeometry, in_order};
+use crate::settings::Settings;
 
 #[derive(Debug, Default)]
 pub(crate) struct Instances {
@@ -15,14 +16,15 @@ pub(crate) struct Instances {
 }
 
 impl Instances {
-    /// Uploads a slice, back to front; a host's buffer is taken as it is. `None` when there is nothing to draw.
+    /// Uploads a slice, in order; a host's buffer is taken as it is. `None` when there is nothing to draw.
     pub fn write(
         &mut self,
         gpu: &Gpu<'_>,
         view: &ViewGeometry,
         particles: Particles<'_>,
-        loops: u32,
+        settings: &Settings,
     ) -> Option<Sprites> {
+        let loops = settings.sprite.debug_loop;
         let particles = match particles {
             Particles::Buffer { buffer, offset, count } => {
                 self.buffer = None;
@@ -30,7 +32,7 @@ impl Instances {
             }
             Particles::Slice(particles) => particles,
         };
-        back_to_front(view, particles, &mut self.sort, &mut self.sorted);
+        in_order(view, particles, settings.order(), &mut self.sort, &mut self.sorted);
         let needed = size_of_val(self.sorted.as_slice()) as u64;
         let held = self.bytes();
         let gives_back = self.spare.outlasts(needed.next_power_of_two() * 4 <= held);

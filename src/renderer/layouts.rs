@@ -64,7 +64,12 @@ impl Layouts {
             accumulate: layout("haze accumulate inputs", &[texture(unfilterable, D2)]),
             transfer: layout(
                 "haze transfer inputs",
-                &[texture(unfilterable, D2), texture(unfilterable, D2), texture(filterable, D2Array)],
+                &[
+                    texture(unfilterable, D2),
+                    texture(unfilterable, D2),
+                    texture(filterable, D2Array),
+                    texture(unfilterable, D2),
+                ],
             ),
         }
     }

@@ -116,6 +116,8 @@ fn deferred(situation: &Situation, settings: &Settings, back_faces: bool, reads_
         accumulate: AccumulateKey {
             format: accumulate.format,
             encoding: accumulate.encoding,
+            order: accumulate.order,
+            sums_weights: accumulate.sums_weights(),
             sprite: SpriteKey::new(settings, reads_linear, exact_filtering),
             host_depth,
             depth_test,
@@ -125,6 +127,7 @@ fn deferred(situation: &Situation, settings: &Settings, back_faces: bool, reads_
             host,
             encoding: accumulate.encoding,
             decode: accumulate.decode,
+            sums_weights: accumulate.sums_weights(),
             diffuse_mode: settings.diffuse.mode,
             soft_scatter_mode: settings.soft_scatter.mode,
             upsample: accumulate.upsample,

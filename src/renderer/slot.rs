@@ -147,7 +147,7 @@ impl Slot {
             time: frame.time,
         };
         let in_view = system_in_view(view, context.host_size, &in_world)?;
-        let sprites = self.instances.write(gpu, view, system.particles, settings.sprite.debug_loop)?;
+        let sprites = self.instances.write(gpu, view, system.particles, settings)?;
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&in_view.uniform));
         gpu.queue.write_buffer(&self.lights, 0, bytemuck::cast_slice(&self.lights_in_view));
 

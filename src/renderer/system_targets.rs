@@ -38,6 +38,7 @@ impl SystemTargets {
         let device = &shared.device;
         let key = AccumulationKey {
             format: settings.accumulate.format,
+            sums_weights: settings.accumulate.sums_weights(),
             depth_source: settings.accumulate.depth_source,
             depth_copy: !shared.read_only_depth,
         };
@@ -52,12 +53,17 @@ impl SystemTargets {
             let (accumulate, transfer) = (&shared.layouts.accumulate, &shared.layouts.transfer);
             TargetInputs {
                 accumulate: depth.map(|depth| bind_textures(device, "haze accumulate inputs", accumulate, [depth])),
-                // Without a reduced depth nothing reads one, but something must be bound.
+                // Without a reduced depth or weights nothing reads them, but something must be bound.
                 transfer: bind_textures(
                     device,
                     "haze transfer inputs",
                     transfer,
-                    [amount, depth.unwrap_or(amount), &baked_diffuse.array],
+                    [
+                        amount,
+                        depth.unwrap_or(amount),
+                        &baked_diffuse.array,
+                        accumulation.attachments.get(1).unwrap_or(amount),
+                    ],
                 ),
             }
         });

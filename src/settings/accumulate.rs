@@ -39,6 +39,19 @@ choice! {
 }
 
 choice! {
+    /// What the blended normals take their order from; the amount needs none. `docs/order.md` compares them.
+    Order {
+        /// Sprites are blended back to front, as OTEE has it. A sprite that overtakes another in depth changes the picture at
+        /// once, and the edges of the nearest show.
+        #[default]
+        Sorted = "sorted",
+        /// Normals are added up, the less the more smoke is in front of their sprite: no sorting, no pops, no layers. Needs
+        /// `rgba16float`.
+        Weighted = "weighted",
+    }
+}
+
+choice! {
     /// Which scene depth the sprites are compared with.
     DepthSource {
         /// A copy at the resolution of the accumulation target. Works everywhere.
@@ -68,12 +81,16 @@ choice! {
 choice! {
     /// How the reduced target is brought to full resolution.
     Upsample {
+        /// Bilinear where depth hardly changes; elsewhere a fit to the sixteen texels around, by place and by depth. Smooth
+        /// on both sides of an edge and on surfaces seen at a grazing angle. `docs/upsampling.md` compares them.
+        #[default]
+        Guided = "guided",
+        /// Bilinear weights times a falloff over the depth difference. Smooth on both sides of an edge; teeth show on
+        /// surfaces seen at a grazing angle.
+        JointBilateral = "joint_bilateral",
         /// Bilinear where the four depths agree, else the texel whose depth is closest: a row of dots can show where an
         /// edge crosses a steep gradient of smoke.
         NearestDepth = "nearest_depth",
-        /// Bilinear weights times a falloff over the depth difference. Smooth on both sides of an edge.
-        #[default]
-        JointBilateral = "joint_bilateral",
         /// Ignores depth. Halos at edges; the baseline.
         Bilinear = "bilinear",
     }
@@ -89,6 +106,10 @@ settings! {
         encoding: NormalEncoding = NormalEncoding::default(), choice;
         /// How normals are read.
         decode: NormalDecode = NormalDecode::default(), choice;
+        /// What the normals take their order from.
+        order: Order = Order::default(), choice;
+        /// For the order `weighted`: a normal counts e^(-depth_weight · the optical depth in front of its sprite). 0: all alike.
+        depth_weight: f32 = 0.4, number(0.0..=4.0, "");
         /// Pixels of the picture per texel of the target, along each side. Cost falls with its square.
         scale: u32 = 2, integer(1..=16, "pixels");
         /// Most texels along the picture's longer side; raises `scale` on large pictures.
@@ -105,6 +126,11 @@ settings! {
 }
 
 impl Accumulate {
+    /// True if the target holds the sum of the weights of normals, too: biased ones cannot be read without it.
+    pub(crate) fn sums_weights(&self) -> bool {
+        (self.order, self.encoding) == (Order::Weighted, NormalEncoding::Biased)
+    }
+
     /// The divisor in use: `scale`, raised until the picture's longer side has at most `max_side` texels.
     pub fn effective_scale(&self, picture: UVec2) -> u32 {
         self.scale.max(picture.max_element().div_ceil(self.max_side.max(1)))

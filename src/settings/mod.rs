@@ -13,7 +13,7 @@ pub(crate) mod table;
 mod technique;
 
 pub use accumulate::{
-    Accumulate, AccumulationFormat, DepthDownsample, DepthSource, NormalDecode, NormalEncoding, Upsample,
+    Accumulate, AccumulationFormat, DepthDownsample, DepthSource, NormalDecode, NormalEncoding, Order, Upsample,
 };
 pub use choice::Choice;
 pub(crate) use choice::choice;
@@ -113,6 +113,11 @@ impl Settings {
         self.path == Path::Forward
     }
 
+    /// The order in which sprites are drawn. Forward sprites hide each other and are always sorted.
+    pub fn order(&self) -> Order {
+        if self.is_forward() { Order::Sorted } else { self.accumulate.order }
+    }
+
     /// Metres behind the scene at which sprites are still seen: none, but for the curve `always`.
     pub fn fade_through(&self) -> f32 {
         let shows_through = self.soft_fade.curve == FadeCurve::Always && self.technique.is_soft();
@@ -144,6 +149,9 @@ impl Settings {
         if accumulate.format == AccumulationFormat::Rgba8Unorm && accumulate.encoding == NormalEncoding::Signed {
             return conflict("encoding", "signed", "\"biased\" with format \"rgba8unorm\", which holds no sign");
         }
+        if accumulate.format == AccumulationFormat::Rgba8Unorm && accumulate.order == Order::Weighted {
+            return conflict("order", "weighted", "\"sorted\" with format \"rgba8unorm\", which holds no sums");
+        }
         if accumulate.depth_source == DepthSource::Host && accumulate.scale != 1 {
             return conflict("scale", &accumulate.scale.to_string(), "1 with depth_source \"host\"");
         }
@@ -167,7 +175,10 @@ mod tests {
             assert_eq!(serde_json::to_string(&choice).unwrap(), format!("{:?}", choice.name()));
         }
         let error = "cubic".parse::<Upsample>().unwrap_err().to_string();
-        assert!(error.contains("\"cubic\"") && error.contains("nearest_depth, joint_bilateral, bilinear"), "{error}");
+        assert!(
+            error.contains("\"cubic\"") && error.contains("guided, joint_bilateral, nearest_depth, bilinear"),
+            "{error}"
+        );
     }
 
     #[test]
@@ -177,6 +188,9 @@ mod tests {
         assert_eq!(settings.validate(|| "s".into()).unwrap_err().field, "s.accumulate.encoding");
         settings.accumulate.encoding = NormalEncoding::Biased;
         settings.validate(String::new).unwrap();
+        settings.accumulate.order = Order::Weighted;
+        assert_eq!(settings.validate(String::new).unwrap_err().field, "accumulate.order");
+        settings.accumulate.order = Order::Sorted;
         settings.accumulate.depth_source = DepthSource::Host;
         assert_eq!(settings.validate(String::new).unwrap_err().field, "accumulate.scale");
         settings.accumulate.scale = 1;

@@ -103,8 +103,10 @@ fn stages() -> Vec<Stage> {
     // The near fade reaches into the smoke.
     let contrast: fn(&mut Settings) = |s| (s.soft_fade.curve, s.soft_fade.near_fade_end) = (FadeCurve::Contrast, 9.0);
     let tested: fn(&mut Settings) = |s| (s.accumulate.scale, s.accumulate.encoding) = (1, NormalEncoding::Biased);
+    let weighted: fn(&mut Settings) = |s| s.accumulate.order = Order::Weighted;
     vec![
         stage(Technique::Soft, Path::Raster, nothing),
+        stage(Technique::Soft, Path::Raster, weighted),
         stage(Technique::Soft, Path::Forward, nothing),
         stage(Technique::Soft, Path::Raster, contrast),
         stage(Technique::Soft, Path::Raster, tested),

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use glam::{IVec2, UVec2, Vec2, Vec3, Vec4, vec3, vec4};
 use haze::formula::uniforms::LightUniform;
 use haze::formula::{
-    blending, colour, depth, diffuse_bake, lighting, noise_volume, normal, ramp, soft_fade, sprite, technique,
+    blending, colour, depth, diffuse_bake, lighting, noise_volume, normal, order, ramp, soft_fade, sprite, technique,
     upsample, view,
 };
 use haze::noise::{NoiseRecipe, NoiseVolume};
@@ -267,28 +267,32 @@ fn formulas() -> Vec<Formula> {
         Formula {
             name: "accumulation_from_normal",
             file: "lib/normal.wgsl",
-            wgsl: "let v = accumulation_from_normal(u32(x(0)), vec3f(x(1), x(2), x(3)), x(4)); \
+            wgsl: "let v = accumulation_from_normal(u32(x(0)), vec3f(x(1), x(2), x(3)), x(4), x(5)); \
                    y(0, v.x); y(1, v.y); y(2, v.z); y(3, v.w);",
             reference: |x| {
                 let encoding = NormalEncoding::ALL[x[0] as usize];
-                normal::accumulation_from_normal(encoding, v3(&x[1..]), x[4]).to_array().to_vec()
+                normal::accumulation_from_normal(encoding, v3(&x[1..]), x[4], x[5]).to_array().to_vec()
             },
-            cases: with_choices(count(NormalEncoding::ALL), &[(-1.0, 1.0), (-1.0, 1.0), (-1.0, 1.0), (0.0, 1.0)]),
+            cases: with_choices(
+                count(NormalEncoding::ALL),
+                &[(-1.0, 1.0), (-1.0, 1.0), (-1.0, 1.0), (0.0, 1.0), (0.0, 1.0)],
+            ),
             tolerance: ARITHMETIC,
             // Not premultiplied: OTEE's first, wrong blend.
             mutants: &[
-                ("(normal * 0.5 + 0.5) * amount", "normal * 0.5 + 0.5"),
-                ("vec4f(normal * amount, amount)", "vec4f(normal, amount)"),
+                ("(normal * 0.5 + 0.5) * (amount * weight)", "normal * 0.5 + 0.5"),
+                ("vec4f(normal * (amount * weight), amount)", "vec4f(normal, amount)"),
+                ("vec4f(normal * (amount * weight), amount)", "vec4f(normal * amount, amount) * weight"),
             ],
         },
         Formula {
             name: "normal_from_accumulation",
             file: "lib/normal.wgsl",
-            wgsl: "let v = normal_from_accumulation(u32(x(0)) / 2u, u32(x(0)) % 2u, vec4f(x(1), x(2), x(3), x(4))); \
+            wgsl: "let v = normal_from_accumulation(u32(x(0)) / 2u, u32(x(0)) % 2u, vec3f(x(1), x(2), x(3)), x(4)); \
                    y(0, v.x); y(1, v.y); y(2, v.z);",
             reference: |x| {
                 let (encoding, decode) = (NormalEncoding::ALL[x[0] as usize / 2], NormalDecode::ALL[x[0] as usize % 2]);
-                normal::normal_from_accumulation(encoding, decode, v4(&x[1..])).to_array().to_vec()
+                normal::normal_from_accumulation(encoding, decode, v3(&x[1..]), x[4]).to_array().to_vec()
             },
             cases: {
                 let choices = count(NormalEncoding::ALL) * count(NormalDecode::ALL);
@@ -298,10 +302,7 @@ fn formulas() -> Vec<Formula> {
                 cases
             },
             tolerance: TRANSCENDENTAL,
-            mutants: &[
-                ("accumulated.rgb * 2.0 - accumulated.a", "accumulated.rgb * 2.0 - 1.0"),
-                ("vec3f(0.0, 0.0, 1.0)", "vec3f(0.0)"),
-            ],
+            mutants: &[("rgb * 2.0 - weights", "rgb * 2.0 - 1.0"), ("vec3f(0.0, 0.0, 1.0)", "vec3f(0.0)")],
         },
         Formula {
             name: "rotate_normal",
@@ -488,6 +489,29 @@ fn formulas() -> Vec<Formula> {
             ],
         },
         Formula {
+            name: "optical_depth_in_front",
+            file: "lib/order.wgsl",
+            wgsl: "var k: array<vec4f, 4>; for (var i = 0u; i < 16u; i++) { k[i / 4u][i % 4u] = x(3u + i); } \
+                   y(0, optical_depth_in_front(k, x(0), x(1), x(2)));",
+            reference: |x| {
+                let knots = std::array::from_fn(|i| v4(&x[3 + 4 * i..]));
+                vec![order::optical_depth_in_front(&knots, x[0], x[1], x[2])]
+            },
+            // Depths before the first knot, at the last and beyond it.
+            cases: random(200, &[[(-2.0, 14.0), (3.0, 4.0), (5.0, 8.0)].as_slice(), &[(0.0, 9.0); 16]].concat()),
+            tolerance: ARITHMETIC * 10.0,
+            mutants: &[("through * 0.5 + 0.25", "through"), ("place - f32(low)", "0.0"), ("low + 1u", "low")],
+        },
+        Formula {
+            name: "order_weight",
+            file: "lib/order.wgsl",
+            wgsl: "y(0, order_weight(x(0), x(1)));",
+            reference: |x| vec![order::order_weight(x[0], x[1])],
+            cases: random(100, &[(0.0, 4.0), (0.0, 12.0)]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[("depth_weight * optical_depth", "depth_weight"), ("exp(-min", "exp(min")],
+        },
+        Formula {
             name: "upsample_weights",
             file: "lib/upsample.wgsl",
             wgsl: "let w = upsample_weights(u32(x(0)), vec2f(x(1), x(2)), vec4f(x(3), x(4), x(5), x(6)), x(7)); \
@@ -518,6 +542,52 @@ fn formulas() -> Vec<Formula> {
                 ("fraction.x * g.y, g.x * fraction.y", "g.x * fraction.y, fraction.x * g.y"),
                 ("if difference.y == closest", "if difference.z == closest"),
                 ("-0.5 * sigmas * sigmas", "-sigmas * sigmas"),
+            ],
+        },
+        Formula {
+            name: "is_smooth",
+            file: "lib/upsample.wgsl",
+            wgsl: "y(0, f32(is_smooth(vec4f(x(0), x(1), x(2), x(3)), x(4), x(5))));",
+            reference: |x| vec![f32::from(upsample::is_smooth(v4(x), x[4], x[5]))],
+            cases: random(200, &[(4.0, 5.0), (4.0, 5.0), (4.0, 5.0), (4.0, 5.0), (4.0, 5.0), (0.0, 4.0)]),
+            tolerance: 0.0,
+            mutants: &[
+                ("SAME_SMOKE * fade", "fade"),
+                ("min(depths.z, depths.w)), depth)", "min(depths.z, depths.w)), 9.0)"),
+                ("max(depths.x, depths.y)", "depths.y"),
+            ],
+        },
+        Formula {
+            name: "guided_weights",
+            file: "lib/upsample.wgsl",
+            wgsl: "let d = array(vec4f(x(4), x(5), x(6), x(7)), vec4f(x(8), x(9), x(10), x(11)), \
+                   vec4f(x(12), x(13), x(14), x(15)), vec4f(x(16), x(17), x(18), x(19))); \
+                   var w = guided_weights(vec2f(x(0), x(1)), d, x(2), x(3)); \
+                   for (var i = 0u; i < 16u; i++) { y(i, w[i / 4u][i % 4u]); }",
+            reference: |x| {
+                let depths = std::array::from_fn(|row| v4(&x[4 + 4 * row..]));
+                let weights = upsample::guided_weights(v2(x), &depths, x[2], x[3]);
+                weights.iter().flat_map(Vec4::to_array).collect()
+            },
+            cases: {
+                let case = |depth: (f32, f32), depths: (f32, f32)| {
+                    [[(0.0, 1.0), (0.0, 1.0), depth, (0.1, 1.0)].as_slice(), &[depths; 16]].concat()
+                };
+                // An edge, a slope, and a pixel whose surface no texel has seen.
+                let mut cases = random(60, &case((4.0, 6.0), (4.0, 6.0)));
+                cases.extend(random(60, &case((4.9, 5.1), (4.9, 5.1))));
+                cases.extend(random(60, &case((30.0, 60.0), (4.0, 5.0))));
+                cases
+            },
+            // The driver's exp, through the inverse of a matrix.
+            tolerance: TRANSCENDENTAL * 5.0,
+            mutants: &[
+                ("let sigma = 0.5 * SAME_SURFACE", "let sigma = SAME_SURFACE"),
+                ("clamp(depth, nearest, farthest)", "depth"),
+                ("held * held", "held"),
+                ("vec3f(0.02, 0.02,", "vec3f(0.0, 0.0,"),
+                ("dot(w, dz) * dy", "0.0"),
+                ("abs(y) * 0.5", "abs(y)"),
             ],
         },
         Formula {
@@ -943,7 +1013,10 @@ const INDIRECT: &[&str] = &[
     "diffuse_from_lights",
     "soft_scatter",
     "scene_view_depth",
-    "sample_accumulation",
+    "clamped_texel",
+    "load_reduced_depth",
+    "footprint",
+    "sample_target",
     "load_noise_volume",
     "load_scene_depth",
     "target_colour",

@@ -20,3 +20,5 @@ mod properties;
 mod shader_layout;
 mod stage;
 mod techniques;
+#[cfg(feature = "app")]
+mod upsampling;

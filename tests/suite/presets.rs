@@ -62,6 +62,10 @@ fn every_setting_agrees() {
     for &mode in DepthDownsample::ALL {
         add("depth_downsample", mode.name(), with(|s| (s.accumulate.depth_downsample, s.accumulate.scale) = (mode, 4)));
     }
+    for &encoding in NormalEncoding::ALL {
+        let weighted = |s: &mut Settings| (s.accumulate.order, s.accumulate.encoding) = (Order::Weighted, encoding);
+        add("order weighted", encoding.name(), with(weighted));
+    }
     for &decode in NormalDecode::ALL {
         add("decode, signed", decode.name(), with(|s| s.accumulate.decode = decode));
         let biased = |s: &mut Settings| (s.accumulate.decode, s.accumulate.encoding) = (decode, NormalEncoding::Biased);
@@ -71,7 +75,7 @@ fn every_setting_agrees() {
             decode.name(),
             with(|s| {
                 biased(s);
-                s.accumulate.format = AccumulationFormat::Rgba8Unorm;
+                (s.accumulate.format, s.accumulate.order) = (AccumulationFormat::Rgba8Unorm, Order::Sorted);
             }),
         );
     }

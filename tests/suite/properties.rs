@@ -161,7 +161,7 @@ fn a_host_may_resize_and_change_everything_from_frame_to_frame() {
         (stage.view, stage.particles) = (next.view, next.particles);
         let accumulate = &mut stage.settings.accumulate;
         accumulate.scale = 1 + step % 6;
-        accumulate.upsample = Upsample::ALL[step as usize % 3];
+        accumulate.upsample = Upsample::ALL[step as usize % Upsample::ALL.len()];
         let tested = accumulate.scale == 1 && read_only_depth_is_supported(&gpu().device);
         accumulate.depth_source = if tested { DepthSource::Host } else { DepthSource::Reduced };
         stage.settings.diffuse.mode = DiffuseMode::ALL[step as usize % DiffuseMode::ALL.len()];

@@ -123,9 +123,11 @@ fn constants_agree() {
     assert_eq!(constant(&transfer, "MAX_LIGHTS"), frame::MAX_LIGHTS as f64);
     assert_eq!(constant(&transfer, "SKY_VIEW_DEPTH"), f64::from(formula::depth::SKY_VIEW_DEPTH));
     let accumulate = composed("accumulate.wgsl");
+    assert_eq!(constant(&accumulate, "FRONT_KNOTS"), formula::order::FRONT_KNOTS as f64);
     assert_eq!(constant(&accumulate, "LARGEST"), f64::from(frame::LARGEST));
     assert_eq!(constant(&accumulate, "MOTION_RANGE"), f64::from(formula::sprite::MOTION_RANGE));
     assert_eq!(constant(&transfer, "SAME_SURFACE"), f64::from(formula::upsample::SAME_SURFACE));
+    assert_eq!(constant(&transfer, "SAME_SMOKE"), f64::from(formula::upsample::SAME_SMOKE));
 }
 
 macro_rules! assert_choices {

@@ -55,6 +55,11 @@ fn every_technique_agrees_on_every_path() {
             let mut stage = stage(technique);
             stage.settings.path = path;
             agreement(&format!("{} {}", technique.name(), path.name()), &stage);
+            if path == Path::Raster {
+                let mut weighted = stage.clone();
+                weighted.settings.accumulate.order = Order::Weighted;
+                agreement(&format!("{} weighted", technique.name()), &weighted);
+            }
             stage.settings.soft_fade.curve = FadeCurve::Always;
             agreement(&format!("{} {} always", technique.name(), path.name()), &stage);
         }

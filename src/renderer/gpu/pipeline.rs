@@ -111,6 +111,9 @@ pub(crate) const PREMULTIPLIED_OVER: wgpu::BlendState = wgpu::BlendState::PREMUL
 /// ONE, ONE on colour; alpha is left alone.
 pub(crate) const ADDITIVE: wgpu::BlendState = wgpu::BlendState { color: ADD, alpha: KEEP };
 
+/// ONE, ONE on colour; ONE, ONE_MINUS_SRC_ALPHA on alpha.
+pub(crate) const WEIGHTED_SUM: wgpu::BlendState = wgpu::BlendState { color: ADD, alpha: wgpu::BlendComponent::OVER };
+
 /// ONE, ONE on colour and alpha.
 pub(crate) const COUNT: wgpu::BlendState = wgpu::BlendState { color: ADD, alpha: ADD };
 

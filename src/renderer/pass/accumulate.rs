@@ -1,24 +1,29 @@
 //! accumulate
 //! What: blends every sprite's normal and amount into the accumulation target.
-//! Reads: particles back to front, sprite flipbook, detail map or noise, reduced depth or the host's own. Writes:
-//! accumulation target. Blend: ONE, ONE_MINUS_SRC_ALPHA. Source: OTEE "Accumulating the particles"; techniques: NV, BLOG, MS.
+//! Reads: particles, sprite flipbook, detail map or noise, reduced depth or the host's own. Writes:
+//! accumulation target. Blend: ONE, ONE_MINUS_SRC_ALPHA; weighted normals ONE, ONE. Source: OTEE "Accumulating the
+//! particles"; techniques: NV, BLOG, MS.
 
 use glam::UVec2;
 
 use super::Groups;
 use super::sprites::{PARTICLE_LAYOUT, SpriteKey, Sprites};
 use crate::renderer::gpu::pipeline::{
-    COUNT, PREMULTIPLIED_OVER, PipelineParts, STRIP, color_target, in_front, read_only_depth, switch, variant,
+    COUNT, PREMULTIPLIED_OVER, PipelineParts, STRIP, WEIGHTED_SUM, color_target, in_front, read_only_depth, switch,
+    variant,
 };
 use crate::renderer::gpu::record::{begin_pass, color_attachment, set_part, tested_depth};
-use crate::renderer::targets::{ATTACHMENTS, DEPTH_COPY_FORMAT, REDUCED_DEPTH_FORMAT, accumulation_layout};
-use crate::settings::{AccumulationFormat, NormalEncoding};
+use crate::renderer::targets::{DEPTH_COPY_FORMAT, REDUCED_DEPTH_FORMAT, accumulation_layout};
+use crate::settings::{AccumulationFormat, NormalEncoding, Order};
 
 /// What makes one accumulation pipeline differ from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct AccumulateKey {
     pub format: AccumulationFormat,
     pub encoding: NormalEncoding,
+    pub order: Order,
+    /// There is a target for the sum of weights.
+    pub sums_weights: bool,
     pub sprite: SpriteKey,
     /// Sprites are compared with the host's own depth, not the reduced one.
     pub host_depth: bool,
@@ -42,7 +47,11 @@ pub(crate) enum DepthTest {
 
 /// The pipeline for a key.
 pub(crate) fn describe(key: AccumulateKey) -> PipelineParts {
-    let blend = if key.overdraw { COUNT } else { PREMULTIPLIED_OVER };
+    let blend = match (key.overdraw, key.order) {
+        (true, _) => COUNT,
+        (false, Order::Sorted) => PREMULTIPLIED_OVER,
+        (false, Order::Weighted) => WEIGHTED_SUM,
+    };
     PipelineParts {
         buffers: const { &[Some(PARTICLE_LAYOUT)] },
         primitive: STRIP,
@@ -53,10 +62,14 @@ pub(crate) fn describe(key: AccumulateKey) -> PipelineParts {
             DepthTest::Host(format, reversed) => Some(read_only_depth(format, in_front(reversed))),
         },
         sample_count: 1,
-        targets: accumulation_layout(key.format).map(|a| color_target(a.format, Some(blend))).to_vec(),
+        targets: accumulation_layout(key.format, key.sums_weights)
+            .iter()
+            .map(|attachment| color_target(attachment.format, Some(blend)))
+            .collect(),
         constants: key.sprite.constants([
             variant!("NORMAL_ENCODING", key.encoding),
             switch("HOST_DEPTH", key.host_depth),
+            switch("WEIGHTED", key.order == Order::Weighted),
             // The copy is too coarse to stand in for the shader's own test.
             switch("DEPTH_TESTED", !matches!(key.depth_test, DepthTest::InShader | DepthTest::Copy)),
             switch("OVERDRAW", key.overdraw),
@@ -68,7 +81,7 @@ pub(crate) fn describe(key: AccumulateKey) -> PipelineParts {
 #[derive(Debug)]
 pub(crate) struct Accumulate {
     pub pipeline: wgpu::RenderPipeline,
-    pub targets: [wgpu::TextureView; ATTACHMENTS],
+    pub targets: Vec<wgpu::TextureView>,
     /// The depth that the hardware tests sprites against.
     pub tested_depth: Option<wgpu::TextureView>,
     /// Texels in use.
@@ -81,7 +94,7 @@ pub(crate) struct Accumulate {
 
 impl Accumulate {
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        let attachments = self.targets.each_ref().map(color_attachment);
+        let attachments: Vec<_> = self.targets.iter().map(color_attachment).collect();
         let mut pass = begin_pass(encoder, "accumulate", &attachments, self.tested_depth.as_ref().map(tested_depth));
         set_part(&mut pass, UVec2::ZERO, self.size);
         pass.set_pipeline(&self.pipeline);

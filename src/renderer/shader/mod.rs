@@ -34,6 +34,7 @@ const SOURCES: &[(&str, &str)] = embed![
     "lib/lighting.wgsl",
     "lib/noise_volume.wgsl",
     "lib/normal.wgsl",
+    "lib/order.wgsl",
     "lib/ramp.wgsl",
     "lib/soft_fade.wgsl",
     "lib/sprite.wgsl",

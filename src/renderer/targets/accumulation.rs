@@ -6,23 +6,22 @@ use super::textures::Textures;
 use crate::renderer::gpu::spare::Spare;
 use crate::settings::{AccumulationFormat, DepthSource};
 
-/// One texture of the accumulation target. All share the blend ONE, ONE_MINUS_SRC_ALPHA and are cleared to zero.
+/// One texture of the accumulation target. All share one blend and are cleared to zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct AccumulationAttachment {
     pub label: &'static str,
     pub format: wgpu::TextureFormat,
 }
 
-/// Textures of the accumulation target. One today; `ARCHITECTURE.md` lists what a second one touches.
-pub(crate) const ATTACHMENTS: usize = 1;
-
 /// The accumulation target's layout.
-pub(crate) fn accumulation_layout(format: AccumulationFormat) -> [AccumulationAttachment; ATTACHMENTS] {
+pub(crate) fn accumulation_layout(format: AccumulationFormat, sums_weights: bool) -> Vec<AccumulationAttachment> {
     let format = match format {
         AccumulationFormat::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
         AccumulationFormat::Rgba8Unorm => wgpu::TextureFormat::Rgba8Unorm,
     };
-    [AccumulationAttachment { label: "haze accumulation: normal + amount", format }]
+    let normal = AccumulationAttachment { label: "haze accumulation: normal + amount", format };
+    let weights = AccumulationAttachment { label: "haze accumulation: weights", format: wgpu::TextureFormat::R16Float };
+    std::iter::once(normal).chain(sums_weights.then_some(weights)).collect()
 }
 
 /// A depth format: it can be attached, so that the hardware rejects hidden sprites, and every backend can draw to it,
@@ -36,6 +35,7 @@ pub(crate) const DEPTH_COPY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::D
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct AccumulationKey {
     pub format: AccumulationFormat,
+    pub sums_weights: bool,
     pub depth_source: DepthSource,
     /// A copy of the reduced depth is needed: the backend cannot test what it samples.
     pub depth_copy: bool,
@@ -47,7 +47,7 @@ pub(crate) struct AccumulationTarget {
     key: AccumulationKey,
     size: UVec2,
     spare: Spare,
-    pub attachments: [wgpu::TextureView; ATTACHMENTS],
+    pub attachments: Vec<wgpu::TextureView>,
     /// `None` where sprites are compared with the host's own depth.
     pub reduced_depth: Option<wgpu::TextureView>,
     /// The reduced depth once more, coarser, where the backend cannot test what it samples.
@@ -91,8 +91,10 @@ impl AccumulationTarget {
 
     fn new(device: &wgpu::Device, key: AccumulationKey, size: UVec2) -> Self {
         let mut textures = Textures { device, bytes: 0 };
-        let attachments = accumulation_layout(key.format)
-            .map(|attachment| textures.create_whole(attachment.label, attachment.format, size));
+        let attachments = accumulation_layout(key.format, key.sums_weights)
+            .into_iter()
+            .map(|attachment| textures.create_whole(attachment.label, attachment.format, size))
+            .collect();
         let is_reduced = key.depth_source == DepthSource::Reduced;
         let reduced_depth = is_reduced.then(|| textures.create_whole("haze reduced depth", REDUCED_DEPTH_FORMAT, size));
         let depth_copy =

@@ -1,8 +1,9 @@
-//! Sprites in the order in which they are drawn. Normals are blended over each other and depend on it; the amount does not.
-//! (OTEE "Accumulating")
+//! The sprites that there is something to see of, in the order in which they are drawn. Sorted normals are blended over each
+//! other and depend on it; the amount does not. (OTEE "Accumulating")
 
 use super::view::ViewGeometry;
 use crate::frame::Particle;
+use crate::settings::Order;
 
 /// Scratch memory that is kept from frame to frame.
 #[derive(Debug, Default)]
@@ -18,14 +19,25 @@ impl SortScratch {
     }
 }
 
-/// Writes the visible particles to `sorted`, farthest from the viewer first. Equal depths keep their order, so that a
-/// picture is the same every time.
-pub(crate) fn back_to_front(
+/// Writes the visible particles to `out`, sorted farthest first, or as they come.
+pub(crate) fn in_order(
     view: &ViewGeometry,
     particles: &[Particle],
+    order: Order,
     scratch: &mut SortScratch,
-    sorted: &mut Vec<Particle>,
+    out: &mut Vec<Particle>,
 ) {
+    match order {
+        Order::Sorted => back_to_front(view, particles, scratch, out),
+        Order::Weighted => {
+            out.clear();
+            out.extend(particles.iter().filter(|particle| particle.is_visible()));
+        }
+    }
+}
+
+/// Equal depths keep their order, so that a picture is the same every time.
+fn back_to_front(view: &ViewGeometry, particles: &[Particle], scratch: &mut SortScratch, sorted: &mut Vec<Particle>) {
     // The third row of view_from_world: view z, which grows towards the viewer.
     let row = view.view_from_world.row(2);
     scratch.keys.clear();

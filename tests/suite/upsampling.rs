@@ -1,0 +1,87 @@
+//! Reduced targets against full ones, where the scene's depth changes.
+
+use glam::{IVec2, UVec2, Vec4, vec3};
+use haze::builtin;
+use haze::demo::shot::Shot;
+use haze::formula::colour::srgb_from_linear;
+use haze::picture::Picture;
+use haze::settings::{ShadeTree, Upsample};
+
+use crate::common::{gpu, psnr};
+
+const SIZE: UVec2 = UVec2::new(640, 360);
+
+/// Renders with every system at a scale.
+fn render(shot: &Shot, scale: u32, upsample: Upsample) -> Picture<Vec4> {
+    let mut shot = shot.clone();
+    for system in &mut shot.preset.systems {
+        (system.settings.accumulate.scale, system.settings.accumulate.upsample) = (scale, upsample);
+    }
+    shot.render_on_gpu(gpu(), true).unwrap()
+}
+
+/// Pixels with another depth within `reach` of them.
+fn edges(shot: &Shot, reach: i32) -> Vec<bool> {
+    let depth = render(&Shot { shade_tree: ShadeTree::ReducedDepth, ..shot.clone() }, 1, Upsample::Bilinear);
+    let is_edge = |i: u32| {
+        let at = IVec2::new((i % SIZE.x) as i32, (i / SIZE.x) as i32);
+        let around = (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| IVec2::new(x, y)));
+        let depths = around.map(|offset| depth.load(at + offset).x);
+        let (low, high) = depths.fold((f32::INFINITY, 0.0_f32), |(low, high), d| (low.min(d), high.max(d)));
+        high - low > 0.02
+    };
+    (0..SIZE.element_product()).map(is_edge).collect()
+}
+
+/// PSNR of the pixels at edges, decibels, and what the worst of them is off, of sRGB's 0..1.
+fn error_at_edges(reduced: &Picture<Vec4>, full: &Picture<Vec4>, edges: &[bool]) -> (f32, f32) {
+    let at_edges = |picture: &Picture<Vec4>| {
+        let texels: Vec<Vec4> = picture.texels.iter().zip(edges).filter(|(_, edge)| **edge).map(|(t, _)| *t).collect();
+        Picture { size: UVec2::new(texels.len() as u32, 1), texels }
+    };
+    let (reduced, full) = (at_edges(reduced), at_edges(full));
+    assert!(full.texels.len() > 5000, "{}", full.texels.len());
+    let encoded = |x: f32| srgb_from_linear(x.clamp(0.0, 1.0));
+    let off = |(a, b): (&Vec4, &Vec4)| (0..3).map(|i| (encoded(a[i]) - encoded(b[i])).abs()).fold(0.0, f32::max);
+    let worst = reduced.texels.iter().zip(&full.texels).map(off).fold(0.0, f32::max);
+    (psnr(&reduced, &full), worst)
+}
+
+/// Prints a row of the table in docs/upsampling.md for every way and scale; gives the worst pixel of guided and of
+/// joint bilateral upsampling at scale 2.
+fn row(name: &str, shot: &Shot) -> (f32, f32) {
+    let full = render(shot, 1, Upsample::Bilinear);
+    let mut worst_of = Vec::new();
+    for scale in [2, 4] {
+        let edges = edges(shot, scale as i32);
+        for &upsample in Upsample::ALL {
+            let reduced = render(shot, scale, upsample);
+            let (edge_psnr, worst) = error_at_edges(&reduced, &full, &edges);
+            let all = psnr(&reduced, &full);
+            println!(
+                "{name} scale {scale} {}: {all:.1} dB, at edges {edge_psnr:.1} dB, worst {worst:.2}",
+                upsample.name()
+            );
+            worst_of.push(worst);
+        }
+    }
+    (worst_of[Upsample::Guided as usize], worst_of[Upsample::JointBilateral as usize])
+}
+
+#[test]
+fn no_teeth_show_at_half_scale() {
+    for preset in builtin::PRESETS {
+        let (guided, _) = row(preset.name, &Shot::load(preset.name, SIZE).unwrap());
+        assert!(guided <= 0.2, "{}: {guided}", preset.name);
+    }
+}
+
+#[test]
+fn the_top_of_a_box_seen_from_its_side_has_no_comb() {
+    let mut shot = Shot::load("column", SIZE).unwrap();
+    // The brazier's top is a few degrees below the eye.
+    let camera = &mut shot.preset.camera;
+    (camera.position, camera.target, camera.fov) = (vec3(0.3, 0.9, 4.5), vec3(0.0, 0.7, 0.0), 25.0);
+    let (guided, joint) = row("grazing", &shot);
+    assert!(guided <= 0.2 && joint > 2.0 * guided, "{guided}, joint bilateral {joint}");
+}
