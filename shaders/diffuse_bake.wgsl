@@ -8,6 +8,7 @@
 
 #import "lib/diffuse.wgsl"
 #import "lib/diffuse_bake.wgsl"
+#import "lib/colour.wgsl"
 
 override MOTIF: bool = false;
 // Texels along a side of the target.
@@ -36,5 +37,5 @@ fn fragment(in: BakeVertex) -> @location(0) vec4f {
     if !MOTIF {
         normal = normalize(cube_direction(i32(in.face), place));
     }
-    return vec4f(diffuse_from_lights(normal, system.centre), 1.0);
+    return vec4f(bounded_light(diffuse_from_lights(normal, system.centre)), 1.0);
 }

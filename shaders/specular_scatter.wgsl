@@ -14,8 +14,10 @@ struct QuadVertex {
     @builtin(position) position: vec4f,
     // -1..1 across the quad.
     @location(0) uv: vec2f,
-    // Light colour times all fades.
+    // Light colour times all fades but that of its range.
     @location(1) @interpolate(flat, either) colour: vec3f,
+    // Position, and 1 / range.
+    @location(2) @interpolate(flat, either) position_inverse_range: vec4f,
 }
 
 // The share of a light's body that the scene leaves visible: a ring of 8 taps and the middle.
@@ -64,6 +66,7 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
     out.position = vec4f(centre + extent, 0.5, 1.0);
     out.uv = corner;
     out.colour = light.colour * strength * visibility;
+    out.position_inverse_range = vec4f(light.position, light.inverse_range);
     return out;
 }
 
@@ -73,11 +76,14 @@ fn fragment(in: QuadVertex) -> @location(0) vec4f {
     if distance_squared >= 1.0 {
         discard;
     }
-    let amount = sample_target(accumulation, footprint(in.position.xy - view.origin)).a;
+    let pixel = in.position.xy - view.origin;
+    let amount = sample_target(accumulation, footprint(pixel)).a;
     if amount <= 0.0 {
         discard;
     }
+    let to_light = in.position_inverse_range.xyz - lit_position(pixel);
+    let window = range_window(dot(to_light, to_light), in.position_inverse_range.w);
     // x is distance², y is the amount.
     let glow = sample_ramp_2d(specular_ramp, linear_sampler, vec2f(distance_squared, amount));
-    return vec4f(target_colour(glow * in.colour), 0.0);
+    return vec4f(target_colour(glow * in.colour * window), 0.0);
 }

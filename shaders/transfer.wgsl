@@ -158,12 +158,9 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         return vec4f(normal * 0.5 + 0.5, 1.0) * covered;
     }
 
-    // The point that is lit: on the ray through this pixel, flattened to one plane, or the box would show its faces.
-    let ray = ndc_from_pixel(pixel, view.size) * view.ray_scale + view.ray_offset;
-    let lit_position = view_position(ray, -system.centre.z, view.orthographic);
     var light = vec3f(0.0);
     if SHADE_TREE != SHADE_TREE_SOFT_SCATTER {
-        light += diffuse(normal, lit_position);
+        light += diffuse(normal, lit_position(pixel));
     }
     if SHADE_TREE != SHADE_TREE_DIFFUSE {
         light += soft_scatter(amount);

@@ -3,7 +3,7 @@
 //! Nothing is stepped, so time can be scrubbed, frames rendered in any order, and two pictures compared. The arithmetic
 //! is integer hashes and plain f32, shaped so that a compute shader can evaluate one particle per invocation.
 
-use glam::{UVec3, Vec2, Vec3};
+use glam::{Quat, UVec3, Vec2, Vec3};
 
 use crate::assets::noise::{curl_noise, pcg3d, unit};
 use crate::error::FieldError;
@@ -21,7 +21,7 @@ choice! {
         Sphere = "sphere",
         /// In a box.
         Box = "box",
-        /// On a flat, horizontal disc.
+        /// On a flat disc across `up`, its extent's x and z.
         Disc = "disc",
     }
 }
@@ -59,6 +59,9 @@ settings! {
         drag: f32 = 0.6, number(0.0..=100.0, "1/s");
         /// Upward acceleration of hot smoke; against the drag it ends in a steady rise of buoyancy / drag.
         buoyancy: f32 = 0.6, number(-100.0..=100.0, "m/s²");
+        /// The way up, along which hot smoke rises and across which a disc lies; need not be unit length.
+        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        up: Vec3 = Vec3::Y, vector(-1.0e3..=1.0e3, "");
         /// Velocity of the air.
         #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
         wind: Vec3 = Vec3::ZERO, vector(-100.0..=100.0, "m/s");
@@ -94,6 +97,9 @@ impl Emitter {
     /// The first field that is not valid.
     pub fn validate(&self, path: impl Fn() -> String) -> Result<(), FieldError> {
         validate(self, &path)?;
+        if self.up.normalize_or_zero() == Vec3::ZERO {
+            return Err(FieldError::new(format!("{}.up", path()), self.up, "a direction that is not zero"));
+        }
         let longest = f64::from(self.lifetime * (1.0 + self.lifetime_spread));
         let most =
             f64::from(self.rate) * if self.duration > 0.0 { longest.min(f64::from(self.duration)) } else { longest };
@@ -147,7 +153,7 @@ impl Emitter {
             + unit_sphere(motion) * (self.velocity_spread * life.z);
         // v' = drag·(wind − v) + buoyancy, solved: position and spin approach their limits as 1 − e^(−drag·t).
         let (reached, approached) = drag_integrals(self.drag, seconds);
-        let rise = Vec3::Y * self.buoyancy;
+        let rise = self.up.normalize_or(Vec3::Y) * self.buoyancy;
         let path = velocity * reached + self.wind * (seconds - reached) + rise * approached;
         let base = self.position + offset + path;
 
@@ -177,7 +183,8 @@ impl Emitter {
             EmitterShape::Sphere => unit_sphere(random) * self.extent * random.x.cbrt(),
             EmitterShape::Disc => {
                 let direction = Vec2::from_angle(random.y * std::f32::consts::TAU) * random.z.sqrt();
-                Vec3::new(direction.x, 0.0, direction.y) * self.extent
+                let level = Vec3::new(direction.x, 0.0, direction.y) * self.extent;
+                Quat::from_rotation_arc(Vec3::Y, self.up.normalize_or(Vec3::Y)) * level
             }
         }
     }
@@ -240,6 +247,20 @@ mod tests {
             matched += 1;
         }
         assert!(matched > 100);
+    }
+
+    #[test]
+    fn smoke_rises_along_up() {
+        let upwards = Emitter { shape: EmitterShape::Disc, turbulence: 0.0, ..Emitter::default() };
+        // x becomes y, y becomes z, z becomes x.
+        let turned = |v: Vec3| Vec3::new(v.z, v.x, v.y);
+        let along_z =
+            Emitter { up: Vec3::Z * 3.0, velocity: turned(upwards.velocity), velocity_spread: 0.0, ..upwards };
+        let upwards = Emitter { velocity_spread: 0.0, ..upwards };
+        let height = |particles: &[Particle], up: Vec3| particles.iter().map(|p| p.position.dot(up)).sum::<f32>();
+        let (y, z) = (height(&at(&upwards, 9.0), Vec3::Y), height(&at(&along_z, 9.0), Vec3::Z));
+        assert!((y - z).abs() < 1e-3 * y, "{y} {z}");
+        assert!(Emitter { up: Vec3::ZERO, ..upwards }.validate(String::new).is_err());
     }
 
     #[test]

@@ -91,3 +91,10 @@ fn sample_target(target_texture: texture_2d<f32>, at: Footprint) -> vec4f {
     // Guided weights may overshoot.
     return select(sum, clamp(sum, low, high), at.side == 4);
 }
+
+// The point of the smoke that is lit at a pixel, view space: on the pixel's ray, flattened to one plane, or the box would
+// show its faces.
+fn lit_position(pixel: vec2f) -> vec3f {
+    let ray = ndc_from_pixel(pixel, view.size) * view.ray_scale + view.ray_offset;
+    return view_position(ray, -system.centre.z, view.orthographic);
+}

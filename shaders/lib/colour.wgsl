@@ -18,10 +18,18 @@ fn gamma_target_colour(light: vec3f) -> vec3f {
     return vec3f(srgb_from_linear(shown.r), srgb_from_linear(shown.g), srgb_from_linear(shown.b));
 }
 
+// Half of what a half float holds: light never becomes infinite there, not even where a glow is added to smoke.
+const BRIGHTEST: f32 = 32752.0;
+
+// Light that a target of half floats can hold.
+fn bounded_light(light: vec3f) -> vec3f {
+    return min(light, vec3f(BRIGHTEST));
+}
+
 // Light as the host's target holds it.
 fn target_colour(light: vec3f) -> vec3f {
     if GAMMA_TARGET {
         return gamma_target_colour(light);
     }
-    return light;
+    return bounded_light(light);
 }

@@ -26,12 +26,17 @@ struct LightSample {
     attenuation: f32,
 }
 
-// Falloff of a light with distance: inverse square, softened inside the light's own body, windowed to reach exactly 0
-// at the range. (window: Karis, "Real Shading in Unreal Engine 4", 2013, eq. 9)
-fn distance_attenuation(distance_squared: f32, inverse_range: f32, radius: f32) -> f32 {
+// 1 at a light, exactly 0 at its range. (Karis, "Real Shading in Unreal Engine 4", 2013, eq. 9)
+fn range_window(distance_squared: f32, inverse_range: f32) -> f32 {
     let ratio = distance_squared * inverse_range * inverse_range;
     let window = saturate(1.0 - ratio * ratio);
-    return window * window / (distance_squared + radius * radius);
+    return window * window;
+}
+
+// Falloff of a light with distance: inverse square, softened inside the light's own body, or the last centimetre, windowed
+// to reach 0 at the range.
+fn distance_attenuation(distance_squared: f32, inverse_range: f32, radius: f32) -> f32 {
+    return range_window(distance_squared, inverse_range) / max(distance_squared + radius * radius, 1.0e-4);
 }
 
 // Direction to the light and what is left of it at `position`.

@@ -48,8 +48,8 @@ fn sample_noise_octaves(noise: texture_3d<f32>, repeat_sampler: sampler, coordin
     return sum / total;
 }
 
-// Where a point of the world stands in the noise, which rises by `scroll` metres: moving the lookup one way moves the
-// smoke the other. (MS "Animating the volume particles")
-fn noise_coordinate(world: vec3f, noise_size: f32, scroll: f32) -> vec3f {
-    return (world - vec3f(0.0, scroll, 0.0)) / noise_size;
+// Where a point of the world stands in the noise. `from_eye` is where it is seen from the eye, in the world's axes;
+// `noise_offset` is where the eye stands, less what the noise has risen. (MS "Animating the volume particles")
+fn noise_coordinate(from_eye: vec3f, noise_size: f32, noise_offset: vec3f) -> vec3f {
+    return (from_eye + noise_offset) / noise_size;
 }

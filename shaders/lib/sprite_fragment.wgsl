@@ -42,7 +42,7 @@ fn technique_fragment(in: SpriteVertex, scene: f32) -> SpriteFragment {
         return sphere_fragment(in, scene);
     }
     let frames = flipbook_frames(in.amount_lod_frame_age.z, system.frame_count);
-    let amount = in.amount_lod_frame_age.x;
+    var amount = in.amount_lod_frame_age.x;
     let view_depth = -in.centre_radius.z;
     let radius = in.centre_radius.w;
 
@@ -55,6 +55,7 @@ fn technique_fragment(in: SpriteVertex, scene: f32) -> SpriteFragment {
         motion = texel.yz * system.motion;
         if is_depth_sprite {
             texel_depth = depth_sprite_depth(view_depth, texel.x, radius);
+            amount *= slab_share(view_depth, radius, view.near);
         }
     }
 
@@ -149,8 +150,7 @@ fn volumetric_fragment(
     for (var i = 0u; i < system.march_steps; i++) {
         let position = origin + along * (interval.enter + (f32(i) + 0.5) * step);
         let place = (position - centre) / in.centre_radius.w;
-        let world = world_from_view * (position - view.view_from_world[3].xyz);
-        let coordinate = noise_coordinate(world, system.noise_size, system.noise_scroll);
+        let coordinate = noise_coordinate(world_from_view * position, system.noise_size, system.noise_offset);
         let texel = sample_noise_octaves(noise, repeat_sampler, coordinate, system.noise_octaves);
         var amount = density_amount(opacity, volumetric_density(texel.w, volumetric_falloff(place)));
         if TECHNIQUE == TECHNIQUE_VOLUMETRIC_SOFT {

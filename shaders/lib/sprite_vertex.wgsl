@@ -44,7 +44,7 @@ fn is_volumetric() -> bool {
     return TECHNIQUE == TECHNIQUE_VOLUMETRIC_HARD || TECHNIQUE == TECHNIQUE_VOLUMETRIC_SOFT;
 }
 
-// How far in front of its centre a sprite reaches, metres.
+// How far in front of its centre and behind it a sprite reaches, metres.
 fn sprite_thickness(radius: f32) -> f32 {
     let flat_sprite = TECHNIQUE == TECHNIQUE_HARD || TECHNIQUE == TECHNIQUE_SOFT || TECHNIQUE == TECHNIQUE_SOFT_LINEAR;
     return select(radius, 0.0, flat_sprite);
@@ -85,8 +85,8 @@ fn sprite_vertex(
     }
     let view_depth = -centre.z;
     let angle = particle.rotation_amount_frame_age.x;
-    // A sphere is seen until its far side has passed the near plane; its fade goes by that side.
-    let half_depth = select(0.0, radius, is_sphere());
+    // A sprite is seen until its far side has passed the near plane; its fade goes by that side.
+    let half_depth = sprite_thickness(radius);
     let back = view_depth + half_depth;
     let amount = saturate(particle.rotation_amount_frame_age.y) * system.opacity
         * near_fade(back, system.near_fade_start, system.near_fade_end);
@@ -116,7 +116,8 @@ fn sprite_vertex(
             corner.x * out.rotation.x - corner.y * out.rotation.y,
             corner.x * out.rotation.y + corner.y * out.rotation.x,
         );
-        out.view_position = centre + vec3f(turned * radius, 0.0);
+        // A slab whose middle has passed the near plane is drawn on that.
+        out.view_position = vec3f(centre.xy + turned * radius, min(centre.z, -view.near));
         clip = view.clip_from_view * vec4f(out.view_position, 1.0);
         out.uv = sprite_uv(corner);
     }

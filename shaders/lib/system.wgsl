@@ -50,13 +50,11 @@ struct System {
     volume_opacity: f32,
     march_steps: u32,
     noise_octaves: u32,
-    // Metres that the noise has risen.
-    noise_scroll: f32,
+    depth_weight: f32,
+    // From the eye to the noise's origin, metres, within one tile of it.
+    noise_offset: vec3f,
     // Metres behind the scene that are still seen: of the curve `always`.
     fade_through: f32,
-    depth_weight: f32,
-    padding0: f32,
-    padding1: f32,
     // Optical depth of the smoke in front of sixteen view depths.
     front_knots: array<vec4f, 4>,
     // Diffuse light as spherical harmonics, rgb.

@@ -51,6 +51,11 @@ fn density_thickness(view_depth: f32, radius: f32, near: f32, scene: f32) -> f32
     return max(min(scene, view_depth + radius) - max(near, view_depth - radius), 0.0);
 }
 
+// The share of that slab which lies behind the near plane.
+fn slab_share(view_depth: f32, radius: f32, near: f32) -> f32 {
+    return saturate((view_depth + radius - near) / max(2.0 * radius, 1.0e-6));
+}
+
 // The sprite's alpha is a density: a = 1 - exp(-density · thickness). (BLOG 3)
 fn density_amount(density: f32, thickness: f32) -> f32 {
     return 1.0 - exp(-density * thickness);

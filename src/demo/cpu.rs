@@ -83,23 +83,36 @@ impl Hit<'_> {
 }
 
 impl Caster<'_> {
-    fn direction(&self, pixel: Vec2) -> Vec3 {
+    /// Where a pixel is on the near plane (0) or the far plane (1), seen from the eye.
+    fn on_plane(&self, pixel: Vec2, ndc_depth: f32) -> Vec3 {
         let uv = pixel / self.size;
-        let far = self.world_from_clip * Vec4::new(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0, 1.0, 1.0);
-        (far.xyz() / far.w - self.eye).normalize()
+        let place = self.world_from_clip * Vec4::new(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0, ndc_depth, 1.0);
+        place.xyz() / place.w - self.eye
     }
 
-    /// What the ray of a pixel hits.
-    fn hit(&self, at: UVec2, direction: Vec3) -> Option<Hit<'_>> {
+    fn direction(&self, pixel: Vec2) -> Vec3 {
+        self.on_plane(pixel, 1.0).normalize()
+    }
+
+    /// What the ray of a place in the picture hits between near and far plane.
+    fn hit(&self, pixel: Vec2) -> Option<Hit<'_>> {
+        let at = pixel.as_uvec2();
+        let direction = self.direction(pixel);
+        let seen = self.on_plane(pixel, 0.0).length()..=self.on_plane(pixel, 1.0).length();
         let mut nearest = f32::INFINITY;
         let mut hit = None;
         let boxes = &self.scene.boxes;
         for b in indices(self.tiles.load((at / TILE).as_ivec2()), boxes.len()).map(|index| &boxes[index]) {
             let (origin, local) = (b.to_local(self.eye - b.centre), b.to_local(direction));
             let (enter, leave) = box_interval(b, origin, local);
-            if enter < leave && enter > 0.0 && enter < nearest {
-                nearest = enter;
-                hit = Some((b, origin + local * enter));
+            if enter >= leave {
+                continue;
+            }
+            // A box that the near plane cuts open shows its far side.
+            let distance = [enter, leave].into_iter().find(|distance| seen.contains(distance));
+            if let Some(distance) = distance.filter(|distance| *distance < nearest) {
+                nearest = distance;
+                hit = Some((b, origin + local * distance));
             }
         }
         let (surface, local) = hit?;
@@ -122,7 +135,7 @@ impl Caster<'_> {
         const OFFSETS: [Vec2; 4] =
             [Vec2::new(0.25, 0.25), Vec2::new(0.75, 0.25), Vec2::new(0.25, 0.75), Vec2::new(0.75, 0.75)];
         let directions = OFFSETS.map(|offset| self.direction(at.as_vec2() + offset));
-        let hits = directions.map(|direction| self.hit(at, direction));
+        let hits = OFFSETS.map(|offset| self.hit(at.as_vec2() + offset));
         let is_one = hits[1..].iter().all(|hit| match (hit, &hits[0]) {
             (Some(hit), Some(first)) => hit.is_on_the_face_of(first),
             (None, None) => true,
@@ -157,7 +170,7 @@ impl Caster<'_> {
     }
 
     fn depth(&self, at: UVec2) -> f32 {
-        let Some(hit) = self.hit(at, self.direction(at.as_vec2() + 0.5)) else { return 1.0 };
+        let Some(hit) = self.hit(at.as_vec2() + 0.5) else { return 1.0 };
         let clip = self.clip_from_world * hit.world.extend(1.0);
         (clip.z / clip.w).clamp(0.0, 1.0)
     }

@@ -1,6 +1,6 @@
 //! A shot as a picture: scene and smoke, by the GPU or by the CPU.
 
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 
 use super::cpu;
 use super::shot::Shot;
@@ -33,6 +33,7 @@ impl Shot {
             lights: &self.preset.lights,
             systems: &systems,
             time: self.preset.time,
+            up: Vec3::Y,
             shade_tree: self.shade_tree,
         };
         reference::render(&frame, &mut colour)?;

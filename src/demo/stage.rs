@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 
 use super::gpu::{self, SceneTargets};
 use super::shot::Shot;
@@ -76,6 +76,7 @@ impl<'a> Stage<'a> {
             lights: &shot.preset.lights,
             systems: &systems,
             time: shot.preset.time,
+            up: Vec3::Y,
             shade_tree: shot.shade_tree,
         };
         let (device, queue) = (&self.gpu.device, &self.gpu.queue);

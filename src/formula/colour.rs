@@ -18,6 +18,14 @@ pub fn gamma_target_colour(light: Vec3) -> Vec3 {
     light.clamp(Vec3::ZERO, Vec3::ONE).map(srgb_from_linear)
 }
 
+/// Half of what a half float holds.
+pub const BRIGHTEST: f32 = 32752.0;
+
+/// Light that a target of half floats can hold.
+pub fn bounded_light(light: Vec3) -> Vec3 {
+    light.min(Vec3::splat(BRIGHTEST))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -14,12 +14,16 @@ pub struct LightSample {
     pub attenuation: f32,
 }
 
-/// Inverse square, softened inside the light's body, windowed to 0 at the range.
-/// (window: Karis, "Real Shading in Unreal Engine 4", 2013, eq. 9)
-pub fn distance_attenuation(distance_squared: f32, inverse_range: f32, radius: f32) -> f32 {
+/// 1 at a light, exactly 0 at its range. (Karis, "Real Shading in Unreal Engine 4", 2013, eq. 9)
+pub fn range_window(distance_squared: f32, inverse_range: f32) -> f32 {
     let ratio = distance_squared * inverse_range * inverse_range;
     let window = saturate(1.0 - ratio * ratio);
-    window * window / (distance_squared + radius * radius)
+    window * window
+}
+
+/// Inverse square, softened inside the light's body or the last centimetre, windowed to 0 at the range.
+pub fn distance_attenuation(distance_squared: f32, inverse_range: f32, radius: f32) -> f32 {
+    range_window(distance_squared, inverse_range) / (distance_squared + radius * radius).max(1.0e-4)
 }
 
 /// Direction to the light and what is left of it at `position`, view space.

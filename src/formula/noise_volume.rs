@@ -34,7 +34,8 @@ pub fn sample_noise_octaves(noise: &impl Texture3d, coordinate: Vec3, octaves: u
     sum / total
 }
 
-/// Where a point of the world stands in the noise, which rises by `scroll` metres. (MS "Animating the volume particles")
-pub fn noise_coordinate(world: Vec3, noise_size: f32, scroll: f32) -> Vec3 {
-    (world - Vec3::new(0.0, scroll, 0.0)) / noise_size
+/// Where a point of the world stands in the noise. `from_eye` is where it is seen from the eye, in the world's axes;
+/// `noise_offset` is where the eye stands, less what the noise has risen. (MS "Animating the volume particles")
+pub fn noise_coordinate(from_eye: Vec3, noise_size: f32, noise_offset: Vec3) -> Vec3 {
+    (from_eye + noise_offset) / noise_size
 }

@@ -45,6 +45,11 @@ pub fn density_thickness(view_depth: f32, radius: f32, near: f32, scene: f32) ->
     (scene.min(view_depth + radius) - near.max(view_depth - radius)).max(0.0)
 }
 
+/// The share of that slab which lies behind the near plane.
+pub fn slab_share(view_depth: f32, radius: f32, near: f32) -> f32 {
+    saturate((view_depth + radius - near) / (2.0 * radius).max(1.0e-6))
+}
+
 /// a = 1 − exp(−density · thickness). (BLOG 3)
 pub fn density_amount(density: f32, thickness: f32) -> f32 {
     1.0 - (-density * thickness).exp()

@@ -100,10 +100,9 @@ uniform! {
         volume_opacity: f32,
         march_steps: u32,
         noise_octaves: u32,
-        noise_scroll: f32,
-        fade_through: f32,
         depth_weight: f32,
-        padding: [f32; 2],
+        noise_offset: Vec3,
+        fade_through: f32,
         front_knots: [Vec4; 4],
         spherical_harmonics: [Vec4; 9],
     }

@@ -1,5 +1,7 @@
 //! One frame.
 
+use glam::Vec3;
+
 use super::bounds::Bounds;
 use super::light::Light;
 use super::material::Material;
@@ -18,16 +20,18 @@ pub struct Frame<'a> {
     pub lights: &'a [Light],
     /// Drawn far to near, whatever their order here.
     pub systems: &'a [System<'a>],
-    /// Seconds, from any start: the noise of volumetric sprites scrolls with it.
+    /// Seconds, from any start: the noise of volumetric sprites rises with it.
     pub time: f32,
+    /// The way up in the world, along which noise rises; need not be unit length.
+    pub up: Vec3,
     /// Which stage of the shading is shown; [`ShadeTree::Final`] for a picture.
     pub shade_tree: ShadeTree,
 }
 
 impl<'a> Frame<'a> {
-    /// A frame without lights and smoke.
+    /// A frame without lights and smoke; y is up.
     pub const fn new(view: View, scene_depth: SceneDepth<'a>) -> Self {
-        Self { view, scene_depth, lights: &[], systems: &[], time: 0.0, shade_tree: ShadeTree::Final }
+        Self { view, scene_depth, lights: &[], systems: &[], time: 0.0, up: Vec3::Y, shade_tree: ShadeTree::Final }
     }
 }
 

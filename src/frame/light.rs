@@ -36,12 +36,14 @@ settings! {
         /// Linear RGB, usually 0..=1.
         #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
         colour: Vec3 = Vec3::ONE, colour(0.0..=100.0);
-        /// Multiplies `colour`. Point and spot: at one metre. Directional: everywhere.
-        intensity: f32 = 1.0, number(0.0..=1.0e5, "");
-        /// Metres at which a point or spot light has faded to nothing. Smaller is cheaper: systems beyond it skip the light.
-        range: f32 = 20.0, number(0.01..=1.0e5, "m");
+        /// Multiplies `colour`. Point and spot: at one metre. Directional: everywhere. In any unit, the scene's: a sun of 120 000
+        /// lux is as good as one of 1. What is brighter than half floats can hold is drawn as bright as they can.
+        intensity: f32 = 1.0, number(0.0..=1.0e9, "");
+        /// Metres at which a point or spot light has faded to nothing; infinite: never. Smaller is cheaper: systems beyond it skip
+        /// the light.
+        range: f32 = 20.0, number(0.01..=f32::INFINITY, "m");
         /// Radius of the glowing body, metres: softens the falloff close by and lets the body show past its own fixture.
-        radius: f32 = 0.1, number(0.001..=100.0, "m");
+        radius: f32 = 0.1, number(0.0..=1.0e4, "m");
         /// Half angle of the spot's bright core, degrees.
         inner_angle: f32 = 20.0, number(0.0..=89.0, "degrees");
         /// Half angle at which the spot has faded to nothing, degrees; at least `inner_angle`.

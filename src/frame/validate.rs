@@ -48,10 +48,13 @@ pub(crate) fn validate_lights(lights: &[Light]) -> Result<(), FieldError> {
     Ok(())
 }
 
-/// The time of a frame.
-pub(crate) fn validate_time(time: f32) -> Result<(), FieldError> {
-    if time.is_finite() {
-        return Ok(());
+/// The time of a frame, and its way up.
+pub(crate) fn validate_time_and_up(time: f32, up: Vec3) -> Result<(), FieldError> {
+    if !time.is_finite() {
+        return Err(FieldError::new("time", time, "a finite number of seconds"));
     }
-    Err(FieldError::new("time", time, "a finite number of seconds"))
+    if up.normalize_or_zero() == Vec3::ZERO {
+        return Err(FieldError::new("up", up, "a direction that is not zero"));
+    }
+    Ok(())
 }

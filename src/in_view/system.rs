@@ -1,6 +1,6 @@
 //! One particle system in a view: the texels it needs and its uniforms.
 
-use glam::{UVec2, Vec2, Vec4};
+use glam::{DVec3, UVec2, Vec2, Vec3, Vec4};
 
 use super::bounds::{TargetRect, bounds_in_view, target_rect};
 use super::in_front::optical_depths;
@@ -26,6 +26,8 @@ pub(crate) struct SystemInWorld<'a> {
     pub material: &'a MaterialInfo,
     /// View space; those that reach the system.
     pub lights: &'a [LightUniform],
+    /// Unit length.
+    pub up: Vec3,
     /// Seconds.
     pub time: f32,
 }
@@ -44,7 +46,7 @@ pub(crate) struct SystemInView {
 /// Places a system in the view; `None` when it is out of sight. `targets` is the size of the host's targets, of which the view
 /// may be a part.
 pub(crate) fn system_in_view(view: &ViewGeometry, targets: UVec2, system: &SystemInWorld<'_>) -> Option<SystemInView> {
-    let SystemInWorld { bounds, depth, particles, settings, material, lights, time } = *system;
+    let SystemInWorld { bounds, depth, particles, settings, material, lights, up, time } = *system;
     let in_view = bounds_in_view(bounds, view)?;
     let middle = Middle::new(view, particles, settings.sprite.size, bounds, &in_view, depth);
     let accumulate = &settings.accumulate;
@@ -96,10 +98,9 @@ pub(crate) fn system_in_view(view: &ViewGeometry, targets: UVec2, system: &Syste
         volume_opacity: settings.volumetric.opacity,
         march_steps: settings.volumetric.march_steps,
         noise_octaves: settings.volumetric.noise_octaves,
-        noise_scroll: noise_scroll(settings, time),
+        noise_offset: noise_offset(view, settings, up, time),
         fade_through: settings.fade_through(),
         depth_weight: accumulate.depth_weight,
-        padding: [0.0; 2],
         front_knots: match settings.order() {
             Order::Sorted => [Vec4::ZERO; 4],
             Order::Weighted => optical_depths(view, particles, settings, &middle),
@@ -119,14 +120,15 @@ pub(crate) fn system_in_view(view: &ViewGeometry, targets: UVec2, system: &Syste
     Some(SystemInView { rect, uniform, back_faces, distance })
 }
 
-/// Metres that the noise has risen, within one tile of it, so that f32 stays fine after hours.
-fn noise_scroll(settings: &Settings, time: f32) -> f32 {
-    if settings.sprite.freeze_animation {
-        return 0.0;
-    }
+/// Where the eye stands in the noise, which has risen: within one tile of it, so that f32 stays fine after hours and far from
+/// the world's origin.
+fn noise_offset(view: &ViewGeometry, settings: &Settings, up: Vec3, time: f32) -> Vec3 {
     let volumetric = &settings.volumetric;
-    let risen = f64::from(volumetric.scroll_speed) * f64::from(time);
-    risen.rem_euclid(f64::from(volumetric.noise_size)) as f32
+    let seconds = if settings.sprite.freeze_animation { 0.0 } else { f64::from(time) };
+    let eye = view.view_from_world.as_dmat4().inverse().w_axis.truncate();
+    let place = eye - up.as_dvec3() * (f64::from(volumetric.scroll_speed) * seconds);
+    let size = f64::from(volumetric.noise_size);
+    DVec3::from(place.to_array().map(|axis| axis.rem_euclid(size))).as_vec3()
 }
 
 /// Scale (xy) and offset (zw) from the picture's NDC to the target's.

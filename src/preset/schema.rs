@@ -58,7 +58,10 @@ impl Ranges<'_> {
     fn limit(&mut self, name: &str, item: &str, minimum: Value, maximum: Value) {
         if let Some(property) = self.property(&format!("{name}{item}")) {
             property["minimum"] = minimum;
-            property["maximum"] = maximum;
+            // Infinity is no JSON.
+            if !maximum.is_null() {
+                property["maximum"] = maximum;
+            }
         }
     }
 }

@@ -42,6 +42,7 @@ impl<'a> Draw<'a> {
             settings,
             material,
             lights: &lights,
+            up: frame.up.normalize_or(Vec3::Y),
             time: frame.time,
         };
         let in_view = system_in_view(view, frame.view.size, &in_world)?;

@@ -1,5 +1,7 @@
 //! What the CPU renderer is handed: the same as the GPU's, in memory.
 
+use glam::Vec3;
+
 use crate::assets::material::MaterialAssets;
 use crate::assets::picture::Picture;
 use crate::frame::{Bounds, Light, Particle, View};
@@ -16,10 +18,19 @@ pub struct Frame<'a> {
     pub lights: &'a [Light],
     /// Drawn far to near.
     pub systems: &'a [System<'a>],
-    /// Seconds: the noise of volumetric sprites scrolls with it.
+    /// Seconds: the noise of volumetric sprites rises with it.
     pub time: f32,
+    /// The way up in the world; need not be unit length.
+    pub up: Vec3,
     /// Which stage of the shading is shown.
     pub shade_tree: ShadeTree,
+}
+
+impl<'a> Frame<'a> {
+    /// A frame without lights and smoke; y is up.
+    pub const fn new(view: View, scene_depth: &'a Picture<f32>) -> Self {
+        Self { view, scene_depth, lights: &[], systems: &[], time: 0.0, up: Vec3::Y, shade_tree: ShadeTree::Final }
+    }
 }
 
 /// One particle system, as [`crate::System`], in memory.

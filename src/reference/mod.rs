@@ -13,7 +13,7 @@ use glam::{UVec2, Vec4};
 use crate::assets::picture::Picture;
 use crate::error::FieldError;
 use crate::frame::View;
-use crate::frame::validate::{validate_lights, validate_place, validate_settings, validate_time};
+use crate::frame::validate::{validate_lights, validate_place, validate_settings, validate_time_and_up};
 use crate::in_view::ViewGeometry;
 use crate::settings::ShadeTree;
 
@@ -29,7 +29,7 @@ pub fn render(frame: &Frame<'_>, picture: &mut Picture<Vec4>) -> Result<(), Fiel
     // The picture is the view, wherever that lies in a host's targets.
     let view = ViewGeometry::new(&View { origin: UVec2::ZERO, ..frame.view })?;
     validate_lights(frame.lights)?;
-    validate_time(frame.time)?;
+    validate_time_and_up(frame.time, frame.up)?;
     for (name, size) in [("scene_depth", frame.scene_depth.size), ("picture", picture.size)] {
         if size != frame.view.size {
             let value = format!("{}x{}", size.x, size.y);

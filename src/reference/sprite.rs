@@ -12,8 +12,8 @@ use crate::formula::sprite::{
     unrotate,
 };
 use crate::formula::technique::{
-    RayInterval, density_amount, density_thickness, depth_sprite_depth, hard_fade, ray_sphere, sphere_axis_bounds,
-    spherical_billboard_amount, volumetric_density, volumetric_falloff, volumetric_normal,
+    RayInterval, density_amount, density_thickness, depth_sprite_depth, hard_fade, ray_sphere, slab_share,
+    sphere_axis_bounds, spherical_billboard_amount, volumetric_density, volumetric_falloff, volumetric_normal,
 };
 use crate::formula::view::pixel_from_ndc;
 use crate::frame::Particle;
@@ -84,7 +84,7 @@ impl Draw<'_> {
         if technique == Technique::SphericalBillboard {
             radius *= system.billboard_radius;
         }
-        let half_depth = if technique.is_sphere() { radius } else { 0.0 };
+        let half_depth = if technique.is_flat() { 0.0 } else { radius };
         let (front, back) = (view_depth - half_depth, view_depth + half_depth);
         let amount =
             particle.shown_amount() * system.opacity * near_fade(back, system.near_fade_start, system.near_fade_end);
@@ -95,7 +95,7 @@ impl Draw<'_> {
         let (min, max) = if technique.is_sphere() {
             self.sphere_rectangle(centre, radius, texels_per_pixel)
         } else {
-            self.square_rectangle(centre, radius)
+            self.square_rectangle(self.on_screen(centre), radius)
         };
         let diameter = 2.0 * radius * self.pixels_per_metre(view_depth.max(self.view.near)) * texels_per_pixel;
         let frame = sprite_frame(self.settings.sprite.animation, particle.frame, particle.age, system.frame_count);
@@ -124,6 +124,11 @@ impl Draw<'_> {
                 order_weight(system.depth_weight, in_front)
             }
         }
+    }
+
+    /// A slab whose middle has passed the near plane is drawn on that.
+    fn on_screen(&self, centre: Vec3) -> Vec3 {
+        centre.with_z(centre.z.min(-self.view.near))
     }
 
     fn square_rectangle(&self, centre: Vec3, radius: f32) -> (Vec2, Vec2) {
@@ -158,7 +163,8 @@ impl Draw<'_> {
         if technique.is_sphere() {
             return self.sphere_fragment(sprite, pixel, scene);
         }
-        let offset = self.view_position(pixel, sprite.view_depth) - sprite.centre;
+        let drawn = self.on_screen(sprite.centre);
+        let offset = self.view_position(pixel, -drawn.z) - drawn;
         let local = unrotate(offset.xy(), sprite.rotation) / sprite.radius;
         if local.abs().max_element() > 1.0 {
             return None;
@@ -183,10 +189,12 @@ impl Draw<'_> {
             return None;
         }
         let texel = self.sprite_texel(sprite, uv, motion);
-        let amount = if technique == Technique::Density {
-            density_amount(system.density * texel.w * sprite.amount, thickness)
-        } else {
-            texel.w * sprite.amount * fade
+        let amount = match technique {
+            Technique::Density => density_amount(system.density * texel.w * sprite.amount, thickness),
+            _ if technique.is_depth_sprite() => {
+                texel.w * sprite.amount * fade * slab_share(sprite.view_depth, sprite.radius, self.view.near)
+            }
+            _ => texel.w * sprite.amount * fade,
         };
         Some(rotate_normal(texel.xyz(), sprite.rotation).extend(amount))
     }
@@ -253,8 +261,8 @@ impl Draw<'_> {
         for i in 0..system.march_steps {
             let position = origin + along * (interval.enter + (i as f32 + 0.5) * step);
             let place = (position - sprite.centre) / sprite.radius;
-            let world = rotation.transpose() * (position - self.view.view_from_world.w_axis.xyz());
-            let coordinate = noise_coordinate(world, system.noise_size, system.noise_scroll);
+            let from_eye = rotation.transpose() * position;
+            let coordinate = noise_coordinate(from_eye, system.noise_size, system.noise_offset);
             let texel = sample_noise_octaves(&self.material.noise, coordinate, system.noise_octaves);
             let mut amount = density_amount(opacity, volumetric_density(texel.w, volumetric_falloff(place)));
             if self.settings.technique == Technique::VolumetricSoft {

@@ -28,7 +28,8 @@ pub struct Descriptor<'a> {
     /// formats that end in `Srgb`, which encode by themselves.
     pub gamma_target: bool,
     /// Filter ramps and sprites in the shader in f32 instead of by the sampler: slower, and equal to the reference on
-    /// every driver. For tests.
+    /// every driver. For tests. Samplers weigh texels in steps of 1/256, so without it thin smoke under lights of 1000 and more is
+    /// a little off in up to 0.3 % of the pixels.
     pub exact_filtering: bool,
 }
 

@@ -1,6 +1,6 @@
 //! One particle system's place in a renderer: its buffers, its targets, and what this frame draws with them.
 
-use glam::UVec2;
+use glam::{UVec2, Vec3};
 
 use super::context::Shared;
 use super::draw::{Assembly, Draw};
@@ -144,6 +144,7 @@ impl Slot {
             settings,
             material: &system.material.info,
             lights: &self.lights_in_view,
+            up: frame.up.normalize_or(Vec3::Y),
             time: frame.time,
         };
         let in_view = system_in_view(view, context.host_size, &in_world)?;

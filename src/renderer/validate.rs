@@ -6,7 +6,7 @@ use super::context::Shared;
 use super::gpu::host_pass::HostPass;
 use super::plan::reads_linear;
 use crate::error::FieldError;
-use crate::frame::validate::{validate_lights, validate_place, validate_settings, validate_time};
+use crate::frame::validate::{validate_lights, validate_place, validate_settings, validate_time_and_up};
 use crate::frame::{Frame, Particle, Particles, SceneDepth, System, View};
 use crate::settings::{DepthSource, Technique};
 
@@ -15,7 +15,7 @@ use crate::settings::{DepthSource, Technique};
 /// # Errors
 /// The first field that cannot be used.
 pub(crate) fn validate(shared: &Shared, host: &HostPass, frame: &Frame<'_>) -> Result<(), FieldError> {
-    validate_time(frame.time)?;
+    validate_time_and_up(frame.time, frame.up)?;
     let size = validate_scene_depth(frame)?;
     if frame.view.origin.saturating_add(frame.view.size).cmpgt(size).any() {
         let View { size: pixels, origin, .. } = frame.view;

@@ -128,11 +128,13 @@ impl Validator {
         }
         field.push_str(name);
         let space = if unit.is_empty() { "" } else { " " };
-        self.error = Some(FieldError {
-            field,
-            value: value.to_string(),
-            expected: format!("{} to {}{space}{unit}", range.start(), range.end()),
-        });
+        let (low, high) = (range.start().to_string(), range.end().to_string());
+        let expected = if high == "inf" {
+            format!("at least {low}{space}{unit}")
+        } else {
+            format!("{low} to {high}{space}{unit}")
+        };
+        self.error = Some(FieldError { field, value: value.to_string(), expected });
     }
 
     fn enter(&mut self, step: Step, fields: &mut dyn Fields) {

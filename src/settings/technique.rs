@@ -35,6 +35,11 @@ impl Technique {
         matches!(self, Self::SphericalBillboard) || self.is_volumetric()
     }
 
+    /// True if the sprite is a card without thickness.
+    pub fn is_flat(self) -> bool {
+        matches!(self, Self::Hard | Self::Soft | Self::SoftLinear)
+    }
+
     /// True if the sprite fades by `soft_fade`.
     pub fn is_soft(self) -> bool {
         matches!(self, Self::Soft | Self::SoftLinear | Self::DepthSpriteSoft | Self::VolumetricSoft)

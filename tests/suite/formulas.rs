@@ -321,12 +321,27 @@ fn formulas() -> Vec<Formula> {
             file: "lib/lighting.wgsl",
             wgsl: "y(0, distance_attenuation(x(0), x(1), x(2)));",
             reference: |x| vec![lighting::distance_attenuation(x[0], x[1], x[2])],
-            cases: random(100, &[(0.0, 30.0), (0.1, 1.0), (0.1, 1.0)]),
+            cases: {
+                let mut cases = random(100, &[(0.0, 30.0), (0.1, 1.0), (0.1, 1.0)]);
+                // A point without a body, close by; one without a range.
+                cases.extend(random(20, &[(0.0, 2.0e-4), (0.0, 0.1), (0.0, 0.0)]));
+                cases.extend(random(20, &[(0.0, 900.0), (0.0, 0.0), (0.1, 1.0)]));
+                cases
+            },
             tolerance: ARITHMETIC * 10.0,
             mutants: &[
                 ("distance_squared + radius * radius", "distance_squared"),
-                ("1.0 - ratio * ratio", "1.0 - ratio"),
+                ("max(distance_squared + radius * radius, 1.0e-4)", "(distance_squared + radius * radius + 1.0e-9)"),
             ],
+        },
+        Formula {
+            name: "range_window",
+            file: "lib/lighting.wgsl",
+            wgsl: "y(0, range_window(x(0), x(1)));",
+            reference: |x| vec![lighting::range_window(x[0], x[1])],
+            cases: random(100, &[(0.0, 30.0), (0.0, 1.0)]),
+            tolerance: ARITHMETIC * 10.0,
+            mutants: &[("1.0 - ratio * ratio", "1.0 - ratio"), ("window * window", "window")],
         },
         Formula {
             name: "sample_light",
@@ -799,6 +814,18 @@ fn formulas() -> Vec<Formula> {
             ],
         },
         Formula {
+            name: "slab_share",
+            file: "lib/technique.wgsl",
+            wgsl: "y(0, slab_share(x(0), x(1), x(2)));",
+            reference: |x| vec![technique::slab_share(x[0], x[1], x[2])],
+            cases: random(100, &[(-2.0, 3.0), (0.1, 2.0), (0.05, 0.5)]),
+            tolerance: ARITHMETIC * 10.0,
+            mutants: &[
+                ("radius - near)", "radius)"),
+                ("saturate((view_depth + radius - near)", "((view_depth + radius - near)"),
+            ],
+        },
+        Formula {
             name: "density_amount",
             file: "lib/technique.wgsl",
             wgsl: "y(0, density_amount(x(0), x(1)));",
@@ -864,6 +891,15 @@ fn formulas() -> Vec<Formula> {
             mutants: &[("1.0 / 2.4", "1.0 / 2.2"), ("linear * 12.92", "linear")],
         },
         Formula {
+            name: "bounded_light",
+            file: "lib/colour.wgsl",
+            wgsl: "let v = bounded_light(vec3f(x(0), x(1), x(2))); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| colour::bounded_light(v3(x)).to_array().to_vec(),
+            cases: random(50, &[(0.0, 1.0e5); 3]),
+            tolerance: 0.0,
+            mutants: &[("min(light", "max(light"), ("32752.0", "65504.0")],
+        },
+        Formula {
             name: "gamma_target_colour",
             file: "lib/colour.wgsl",
             wgsl: "let v = gamma_target_colour(vec3f(x(0), x(1), x(2))); y(0, v.x); y(1, v.y); y(2, v.z);",
@@ -922,12 +958,12 @@ fn formulas() -> Vec<Formula> {
         Formula {
             name: "noise_coordinate",
             file: "lib/noise_volume.wgsl",
-            wgsl: "let v = noise_coordinate(vec3f(x(0), x(1), x(2)), x(3), x(4)); y(0, v.x); y(1, v.y); y(2, v.z);",
-            reference: |x| noise_volume::noise_coordinate(v3(x), x[3], x[4]).to_array().to_vec(),
-            cases: random(50, &[(-9.0, 9.0), (-9.0, 9.0), (-9.0, 9.0), (0.5, 4.0), (0.0, 2.0)]),
+            wgsl: "let v = noise_coordinate(vec3f(x(0), x(1), x(2)), x(3), vec3f(x(4), x(5), x(6))); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| noise_volume::noise_coordinate(v3(x), x[3], v3(&x[4..])).to_array().to_vec(),
+            cases: random(50, &[(-9.0, 9.0), (-9.0, 9.0), (-9.0, 9.0), (0.5, 4.0), (0.0, 2.0), (0.0, 2.0), (0.0, 2.0)]),
             // Coordinates up to 20.
             tolerance: ARITHMETIC * 10.0,
-            mutants: &[("world - vec3f", "world + vec3f"), ("/ noise_size", "* noise_size")],
+            mutants: &[("from_eye + noise_offset", "from_eye - noise_offset"), ("/ noise_size", "* noise_size")],
         },
     ]
 }
@@ -1017,6 +1053,7 @@ const INDIRECT: &[&str] = &[
     "load_reduced_depth",
     "footprint",
     "sample_target",
+    "lit_position",
     "load_noise_volume",
     "load_scene_depth",
     "target_colour",

@@ -33,6 +33,17 @@ fn every_preset_agrees() {
     }
 }
 
+#[test]
+fn near_and_far_planes_cut_the_scene_alike() {
+    for (near, far) in [(0.1, 9.0), (6.9, 200.0), (7.3, 8.1)] {
+        let mut shot = shot("column", UVec2::new(320, 180));
+        (shot.preset.camera.near, shot.preset.camera.far) = (near, far);
+        let (psnr, _) = agreement(&shot);
+        println!("{near} to {far} m: {psnr:.1} dB");
+        assert!(psnr >= AGREEMENT, "{near} to {far} m: {psnr:.1} dB");
+    }
+}
+
 /// Changes one system setting of the default preset.
 fn with(change: impl Fn(&mut Settings)) -> Shot {
     let mut shot = shot("column", UVec2::new(160, 90));

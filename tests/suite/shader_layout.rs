@@ -127,6 +127,7 @@ fn constants_agree() {
     assert_eq!(constant(&accumulate, "LARGEST"), f64::from(frame::LARGEST));
     assert_eq!(constant(&accumulate, "MOTION_RANGE"), f64::from(formula::sprite::MOTION_RANGE));
     assert_eq!(constant(&transfer, "SAME_SURFACE"), f64::from(formula::upsample::SAME_SURFACE));
+    assert_eq!(constant(&transfer, "BRIGHTEST"), f64::from(formula::colour::BRIGHTEST));
     assert_eq!(constant(&transfer, "SAME_SMOKE"), f64::from(formula::upsample::SAME_SMOKE));
 }
 

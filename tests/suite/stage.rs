@@ -26,6 +26,7 @@ pub struct Stage {
     pub settings: Settings,
     pub material: MaterialAssets,
     pub time: f32,
+    pub up: Vec3,
     pub shade_tree: ShadeTree,
     /// Which kind of scene depth is handed over.
     pub depth: DepthKind,
@@ -131,6 +132,7 @@ impl Stage {
             settings: Settings { boost: 1.5, ..Settings::default() },
             material: material(),
             time: 1.0,
+            up: Vec3::Y,
             shade_tree: ShadeTree::Final,
             depth: DepthKind::Buffer,
             wall_everywhere: false,
@@ -187,6 +189,7 @@ impl Stage {
                 ..reference::System::new(&self.particles, &self.settings, &self.material)
             }],
             time: self.time,
+            up: self.up,
             shade_tree: self.shade_tree,
         };
         reference::render(&frame, &mut picture).unwrap();

@@ -4,6 +4,7 @@ use glam::{UVec2, Vec3};
 use half::f16;
 
 use crate::assets::picture::Picture;
+use crate::formula::colour::bounded_light;
 use crate::formula::diffuse_bake::{baked_size_and_layers, cube_direction, motif_normal};
 use crate::formula::lighting::{diffuse_coordinate, sample_light, soft_scatter_weight};
 use crate::formula::ramp::sample_ramp;
@@ -45,7 +46,7 @@ impl Draw<'_> {
                     DiffuseMode::Motif => motif_normal(place),
                     _ => cube_direction(face, place).normalize(),
                 };
-                let light = self.diffuse_from_lights(normal, self.system.centre);
+                let light = bounded_light(self.diffuse_from_lights(normal, self.system.centre));
                 *texel = Vec3::from(light.to_array().map(|channel| f16::from_f32(channel).to_f32()));
             });
             baked

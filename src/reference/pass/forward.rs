@@ -4,6 +4,7 @@ use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use crate::assets::picture::Picture;
 use crate::formula::blending::forward_fragment;
+use crate::formula::colour::bounded_light;
 use crate::formula::lighting::coverage;
 use crate::formula::ramp::sample_ramp;
 use crate::reference::blend_unit::forward_blend;
@@ -27,7 +28,7 @@ impl Draw<'_> {
                 let diffuse = self.diffuse_from_lights(normal, position) * system.diffuse_intensity;
                 let colour = sample_ramp(&self.material.age_ramp, sprite.age);
                 let light = (diffuse + self.soft_scatter(amount)) * Vec3::ONE.lerp(colour, system.age_colour);
-                let source = forward_fragment(mode, light, coverage(amount, system.boost));
+                let source = forward_fragment(mode, bounded_light(light), coverage(amount, system.boost));
                 *texel = forward_blend(mode, source, *texel);
             });
         });

@@ -3,8 +3,9 @@
 use glam::{Vec2, Vec4, Vec4Swizzles};
 
 use crate::assets::picture::Picture;
+use crate::formula::colour::bounded_light;
 use crate::formula::depth::SKY_VIEW_DEPTH;
-use crate::formula::lighting::specular_scatter_fade;
+use crate::formula::lighting::{range_window, specular_scatter_fade};
 use crate::formula::ramp::sample_ramp_2d;
 use crate::formula::view::pixel_from_ndc;
 use crate::reference::accumulated::{Accumulated, sample_target};
@@ -45,7 +46,9 @@ impl Accumulated<'_> {
                 if amount > 0.0 {
                     let ramp = &draw.material.specular_ramp;
                     let glow = sample_ramp_2d(ramp, Vec2::new(distance_squared, amount));
-                    *texel += (glow * colour).extend(0.0);
+                    let to_light = light.position - draw.view_position(pixel, -draw.system.centre.z);
+                    let window = range_window(to_light.length_squared(), light.inverse_range);
+                    *texel += bounded_light(glow * colour * window).extend(0.0);
                 }
             });
         }

@@ -3,6 +3,7 @@
 use glam::{IVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use crate::assets::picture::Picture;
+use crate::formula::colour::bounded_light;
 use crate::formula::diffuse_bake::{cube_coordinate, motif_position, spherical_harmonics};
 use crate::formula::lighting::coverage;
 use crate::formula::normal::normal_from_accumulation;
@@ -101,7 +102,7 @@ impl Accumulated<'_> {
         if shade_tree != ShadeTree::Diffuse {
             light += self.draw.soft_scatter(amount);
         }
-        Some(light.extend(1.0) * covered)
+        Some(bounded_light(light).extend(1.0) * covered)
     }
 }
 
