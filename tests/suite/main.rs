@@ -7,6 +7,7 @@
 #[cfg(feature = "app")]
 mod assets;
 mod common;
+mod creations;
 mod every_setting;
 mod formulas;
 #[cfg(feature = "app")]
