@@ -5,7 +5,7 @@ use haze::formula::colour::gamma_target_colour;
 use haze::headless::Headless;
 use haze::picture::Picture;
 use haze::wgpu::util::DeviceExt;
-use haze::{Context, Descriptor, Error, Frame, Particles, Renderer, SceneDepth, System, wgpu};
+use haze::{Context, Descriptor, Error, Frame, Particle, Particles, Renderer, SceneDepth, System, wgpu};
 
 use crate::stage::{BACKDROP, DepthKind, Stage};
 
@@ -202,6 +202,19 @@ impl Host {
         let texels = gpu.read_rgba16float(&as_floats(gpu, self.attachments[index + 1].texture())).unwrap();
         Picture { size: self.size, texels }
     }
+}
+
+/// A host's own particles on the GPU.
+pub fn particle_buffer(gpu: &Headless, particles: &[Particle]) -> wgpu::Buffer {
+    let bytes: &[u8] = bytemuck::cast_slice(particles);
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("host particles"),
+        size: bytes.len() as u64,
+        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    gpu.queue.write_buffer(&buffer, 0, bytes);
+    buffer
 }
 
 pub fn scene_depth<'a>(

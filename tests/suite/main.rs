@@ -15,6 +15,7 @@ mod goldens;
 mod host;
 mod hosts;
 mod lighting;
+mod in_view;
 #[cfg(feature = "app")]
 mod presets;
 mod properties;

@@ -10,7 +10,7 @@ use proptest::prelude::*;
 
 use crate::common::{gpu, non_finite_texels, psnr};
 use crate::creations;
-use crate::host::Host;
+use crate::host::{Host, particle_buffer};
 use crate::stage::{BACKDROP, DepthKind, Stage};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
@@ -40,19 +40,6 @@ proptest! {
     }
 }
 
-/// A host's own particles on the GPU.
-fn particle_buffer(particles: &[Particle]) -> wgpu::Buffer {
-    let bytes: &[u8] = bytemuck::cast_slice(particles);
-    let buffer = gpu().device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("host particles"),
-        size: bytes.len() as u64,
-        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    gpu().queue.write_buffer(&buffer, 0, bytes);
-    buffer
-}
-
 #[test]
 fn amount_on_the_gpu_does_not_depend_on_order() {
     let mut stage = Stage::new(SIZE);
@@ -62,7 +49,7 @@ fn amount_on_the_gpu_does_not_depend_on_order() {
     let mut host = Host::new(gpu(), &stage).unwrap();
     // From a buffer, where the host is responsible for the order.
     let mut draw = |particles: &[Particle]| {
-        let buffer = particle_buffer(particles);
+        let buffer = particle_buffer(gpu(), particles);
         let count = particles.len() as u32;
         host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count }).unwrap();
         host.picture(gpu()).unwrap()
@@ -344,7 +331,7 @@ fn order_matters_to_normals() {
     let sorted = stage.on_cpu();
     let mut front_to_back = stage.particles.clone();
     front_to_back.sort_by(|a, b| b.position.z.total_cmp(&a.position.z));
-    let buffer = particle_buffer(&front_to_back);
+    let buffer = particle_buffer(gpu(), &front_to_back);
     let mut host = Host::new(gpu(), &stage).unwrap();
     let count = front_to_back.len() as u32;
     host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count }).unwrap();
@@ -529,7 +516,7 @@ fn garbage_in_a_hosts_buffer_is_not_drawn() {
     }
     particles.push(Particle { amount: f32::NAN, ..good });
     let count = particles.len() as u32;
-    let buffer = particle_buffer(&particles);
+    let buffer = particle_buffer(gpu(), &particles);
     host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count }).unwrap();
     assert!(host.picture(gpu()).unwrap().texels.iter().all(|&texel| texel == BACKDROP));
     let targets = host.renderer.targets(0).unwrap();

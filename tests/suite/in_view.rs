@@ -1,0 +1,334 @@
+//! What both renderers are handed by one and the same code, held against laws that are worked out here: the light of spherical
+//! harmonics, cones, ranges, the order of sprites, and what is in sight.
+
+use glam::camera::rh::proj::directx;
+use glam::{IVec2, Mat4, UVec2, Vec2, Vec3, Vec3Swizzles, Vec4, vec3, vec4};
+use haze::picture::Picture;
+use haze::ramp::Ramp;
+use haze::settings::{DiffuseMode, ShadeTree};
+use haze::sprite::{Sprite, SpriteLayout};
+use haze::{Bounds, Light, LightKind, Particle, Particles};
+
+use crate::common::gpu;
+use crate::host::{Host, particle_buffer};
+use crate::stage::{BACKDROP, Stage};
+
+const SIZE: UVec2 = UVec2::new(96, 54);
+
+/// A camera that is neither at the origin nor straight.
+fn camera() -> Mat4 {
+    Mat4::from_rotation_x(0.3) * Mat4::from_rotation_y(-0.8) * Mat4::from_translation(vec3(1.0, -2.0, 3.0))
+}
+
+/// A sprite of one normal that covers its square, but for the border.
+fn flat_sprite() -> Sprite {
+    let picture = image::RgbaImage::from_fn(64, 64, |x, y| {
+        let inside = (1..63).contains(&x) && (1..63).contains(&y);
+        image::Rgba([128, 128, 255, if inside { 255 } else { 0 }])
+    });
+    Sprite::from_picture("flat".as_ref(), &picture, SpriteLayout::default()).unwrap()
+}
+
+/// View depth of the sheet: in front of everything in the scene.
+const SHEET: f32 = 4.0;
+/// Half its side, metres.
+const HALF: f32 = 1.5;
+
+/// A flat, opaque sheet that faces the camera. Its ramp is white: a pixel shows how much light reaches it, and nothing else.
+fn sheet(lights_in_view: &[Light]) -> Stage {
+    let mut stage = Stage::new(SIZE);
+    // Axes change places, so that the box is as thin in the world.
+    stage.view.view_from_world = Mat4::from_cols(Vec4::Y, Vec4::Z, Vec4::X, vec4(1.0, -2.0, 3.0, 1.0));
+    let world_from_view = stage.view.view_from_world.inverse();
+    let [a, b] = [vec3(-HALF, -HALF, -SHEET - 0.05), vec3(HALF, HALF, -SHEET + 0.05)]
+        .map(|corner| world_from_view.transform_point3(corner));
+    stage.bounds = Some(Bounds { min: a.min(b), max: a.max(b) });
+    let position = world_from_view.transform_point3(vec3(0.0, 0.0, -SHEET));
+    stage.particles = vec![Particle { position, radius: HALF, ..Particle::default() }];
+    stage.lights = lights_in_view.to_vec();
+    for light in &mut stage.lights {
+        light.position = world_from_view.transform_point3(light.position);
+        light.direction = world_from_view.transform_vector3(light.direction);
+    }
+    stage.material.sprite = flat_sprite();
+    stage.material.diffuse_ramp = Ramp::from_linear(UVec2::new(2, 1), [Vec3::ONE; 2]);
+    (stage.settings.diffuse.intensity, stage.settings.soft_fade.fade_scale) = (1.0, 1000.0);
+    stage.settings.accumulate.scale = 1;
+    stage.shade_tree = ShadeTree::Diffuse;
+    stage
+}
+
+/// The point of view space at a view depth behind the middle of a pixel, by the inverse of the projection.
+fn point_behind(stage: &Stage, at: UVec2, view_depth: f32) -> Vec3 {
+    let uv = (at.as_vec2() + 0.5) / stage.view.size.as_vec2();
+    let ndc = Vec2::new(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0);
+    let view_from_clip = stage.view.clip_from_view.inverse();
+    let [a, b] = [0.25, 0.75].map(|z| view_from_clip.project_point3(ndc.extend(z)));
+    a.lerp(b, (-view_depth - a.z) / (b.z - a.z))
+}
+
+/// Light on every pixel of the sheet, by both renderers; not where its border may be.
+fn lit(stage: &Stage, mut check: impl FnMut(Vec3, f32)) {
+    for picture in [stage.on_cpu(), stage.on_gpu(gpu()).picture] {
+        for (index, texel) in (0..).zip(&picture.texels) {
+            let point = point_behind(stage, UVec2::new(index % SIZE.x, index / SIZE.x), SHEET);
+            if point.xy().abs().max_element() < 0.9 * HALF {
+                check(point, texel.x);
+            }
+        }
+    }
+}
+
+// lights
+
+#[test]
+fn a_cone_is_whole_at_its_inner_angle_and_nothing_at_its_outer() {
+    let spot = Light {
+        kind: LightKind::Spot,
+        position: vec3(0.7, 0.4, -1.5),
+        direction: vec3(-0.9, -0.5, -2.0),
+        intensity: 100.0,
+        inner_angle: 12.0,
+        outer_angle: 24.0,
+        range: 50.0,
+        ..Light::default()
+    };
+    let point = sheet(&[Light { kind: LightKind::Point, ..spot }]);
+    let mut whole = Vec::new();
+    lit(&point, |_, light| whole.push(light));
+    let (inner, outer) = (12.0_f32.to_radians().cos(), 24.0_f32.to_radians().cos());
+    let (mut index, mut seen) = (0, [0; 3]);
+    lit(&sheet(&[spot]), |point, light| {
+        let cos = (point - spot.position).normalize().dot(spot.direction.normalize());
+        let share = light / whole[index];
+        // By the cosine, squared: a quarter is left half of the way.
+        let law = ((cos - outer) / (inner - outer)).clamp(0.0, 1.0).powi(2);
+        // Both pictures are of f16: two roundings of 2^-11.
+        assert!(
+            (share - law).abs() < 1.5e-3,
+            "{share} of the light at {point}, {} degrees off",
+            cos.acos().to_degrees()
+        );
+        index += 1;
+        seen[usize::from(law > 0.0) + usize::from(law >= 1.0)] += 1;
+    });
+    assert!(seen.iter().all(|&pixels| pixels > 100), "{seen:?} pixels outside, between and inside");
+}
+
+#[test]
+fn a_light_ends_at_its_range() {
+    // A metre from an edge of the sheet, from a corner, from its faces, and on it.
+    let places = [
+        (Vec3::X, Vec3::X),
+        (Vec3::NEG_X, Vec3::NEG_X),
+        (Vec3::Y, Vec3::Y),
+        (Vec3::NEG_Y, Vec3::NEG_Y),
+        (vec3(1.0, -1.0, 0.0), vec3(0.6, -0.6, 0.5)),
+        (Vec3::ZERO, Vec3::Z),
+        (Vec3::ZERO, Vec3::NEG_Z),
+        (Vec3::ZERO, Vec3::ZERO),
+    ];
+    for (edge, off) in places {
+        let position = vec3(0.0, 0.0, -SHEET) + edge * HALF + off;
+        for range in [0.95, 1.3] {
+            let light = Light { position, range, intensity: 1.0e4, radius: 1.0, ..Light::default() };
+            let mut is_lit = false;
+            lit(&sheet(&[light]), |point, light| {
+                let distance = point.distance(position);
+                // Too little is left of it in the last 2 % of its range.
+                assert!(distance < range || light <= 0.0, "{light} at {distance} m from {position}, beyond {range} m");
+                assert!(distance > 0.98 * range || light > 0.0, "dark at {distance} m from {position}");
+                is_lit |= light > 0.0;
+            });
+            assert_eq!(is_lit, range > off.length(), "{range} m from {position}");
+        }
+    }
+}
+
+/// Largest difference of any channel.
+fn largest_difference(a: &Picture<Vec4>, b: &Picture<Vec4>) -> f32 {
+    a.texels.iter().zip(&b.texels).map(|(a, b)| (a - b).abs().max_element()).fold(0.0, f32::max)
+}
+
+/// The cloud in the light of one lamp through a ramp that is a parabola of the cosine: harmonics to L2 hold it exactly.
+fn harmonic(light: Light, mode: DiffuseMode) -> Stage {
+    let mut stage = Stage::new(SIZE);
+    stage.lights = vec![light];
+    let parabola = |cos: f32| vec3(0.5 + 0.5 * cos, 0.2 + 0.5 * cos + 0.4 * cos * cos, 1.0 - cos * cos);
+    let ramp = (0..256).map(|i| parabola(i as f32 / 255.0 * 2.0 - 1.0));
+    stage.material.diffuse_ramp = Ramp::from_linear(UVec2::new(256, 1), ramp);
+    stage.settings.diffuse.mode = mode;
+    stage.shade_tree = ShadeTree::Diffuse;
+    // A box whose middle is known.
+    stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
+    stage
+}
+
+#[test]
+fn spherical_harmonics_turn_with_the_light() {
+    let directions =
+        [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z, vec3(1.0, 2.0, -3.0), vec3(-3.0, 1.0, 0.5)];
+    for direction in directions {
+        let light = |direction| Light { kind: LightKind::Directional, direction, ..Light::default() };
+        let ramp = harmonic(light(direction), DiffuseMode::Ramp).on_cpu();
+        let harmonics = harmonic(light(direction), DiffuseMode::SphericalHarmonics);
+        // Texels of the ramp are f16: half of 2^-10 between 1 and 2. On the GPU so are normals and the picture.
+        let (cpu, gpu) = (harmonics.on_cpu(), harmonics.on_gpu(gpu()).picture);
+        let found = [&cpu, &gpu].map(|picture| largest_difference(picture, &ramp));
+        println!("{direction}: {found:?}");
+        assert!(found[0] < 5e-4 && found[1] < 4e-3, "{direction}: {found:?}");
+        // The mutant: light from the other side.
+        let turned = harmonic(light(-direction), DiffuseMode::SphericalHarmonics).on_cpu();
+        assert!(largest_difference(&turned, &ramp) > 0.1, "{direction}");
+    }
+}
+
+#[test]
+fn spherical_harmonics_take_a_lamp_from_the_middle_of_the_box() {
+    let lamp = Light { position: vec3(-3.0, 2.0, -4.5), intensity: 20.0, range: 9.0, ..Light::default() };
+    let way = vec3(0.0, 0.0, -6.0) - lamp.position;
+    let square = way.length_squared();
+    let window = 1.0 - (square / 81.0).powi(2);
+    let sun = Light {
+        kind: LightKind::Directional,
+        direction: way,
+        intensity: 20.0 * window * window / (square + lamp.radius * lamp.radius),
+        ..Light::default()
+    };
+    let [lamp, sun] = [lamp, sun].map(|light| harmonic(light, DiffuseMode::SphericalHarmonics).on_cpu());
+    let found = largest_difference(&lamp, &sun);
+    assert!(found < 1e-5, "{found}");
+}
+
+// order
+
+#[test]
+fn sprites_are_drawn_in_the_order_of_a_plain_sort() {
+    let mut stage = Stage::new(SIZE);
+    let world_from_view = camera().inverse();
+    stage.view.view_from_world = camera();
+    for particle in &mut stage.particles {
+        particle.position = world_from_view.transform_point3(particle.position);
+        particle.amount = 0.9;
+    }
+    stage.shade_tree = ShadeTree::Normals;
+    let mut bounds = Bounds::EMPTY;
+    stage.particles.iter().for_each(|particle| bounds.include(particle.position, 2.0));
+    stage.bounds = Some(bounds);
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    host.draw(gpu(), &stage).unwrap();
+    let sorted_by_renderer = host.picture(gpu()).unwrap();
+    // From a buffer, which is drawn in the order that it has.
+    let depth = |particle: &Particle| -(stage.view.view_from_world * particle.position.extend(1.0)).z;
+    let mut sorted = stage.particles.clone();
+    sorted.sort_by(|a, b| depth(b).total_cmp(&depth(a)));
+    assert_ne!(sorted, stage.particles);
+    let mut in_order = |particles: &[Particle]| {
+        let buffer = particle_buffer(gpu(), particles);
+        let count = particles.len() as u32;
+        host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count }).unwrap();
+        host.picture(gpu()).unwrap()
+    };
+    assert!(in_order(&sorted) == sorted_by_renderer, "not back to front");
+    sorted.reverse();
+    assert!(in_order(&sorted) != sorted_by_renderer);
+    // The CPU's order does not come from the list either.
+    let on_cpu = stage.on_cpu();
+    stage.particles.reverse();
+    assert!(stage.on_cpu() == on_cpu);
+}
+
+// what is in sight
+
+/// Turn of the sprite that is moved in and out of sight, radians.
+const TURN: f32 = 0.6;
+
+/// Draws one sprite at a place in view space; true if some pixel shows it. A pixel well inside it must show it, one outside must
+/// not, by both renderers, when its depth is between the near and the far plane.
+fn shows(stage: &mut Stage, host: &mut Host, (near, far): (f32, f32), centre: Vec3, radius: f32) -> bool {
+    let position = stage.view.view_from_world.inverse().transform_point3(centre);
+    stage.particles = vec![Particle { position, radius, rotation: TURN, ..Particle::default() }];
+    host.draw(gpu(), stage).unwrap();
+    let mut any = false;
+    for (renderer, picture) in [("CPU", stage.on_cpu()), ("GPU", host.picture(gpu()).unwrap())] {
+        for (index, texel) in (0..).zip(&picture.texels) {
+            let at = UVec2::new(index % SIZE.x, index / SIZE.x);
+            let offset = (point_behind(stage, at, -centre.z) - centre).xy();
+            let local = Vec2::from_angle(-TURN).rotate(offset).abs().max_element() / radius;
+            // A texel's border, and a pixel for the filter.
+            let (inside, outside) = (local < 0.8, local > 1.2);
+            let in_depth = (near..far).contains(&-centre.z);
+            let shown = *texel != BACKDROP;
+            assert!(!(shown && (outside || !in_depth)), "{renderer}: {at} shows a sprite at {centre}");
+            assert!(shown || !(inside && in_depth), "{renderer}: {at} does not show a sprite at {centre}");
+            any |= shown;
+        }
+    }
+    any
+}
+
+/// Smoke that is sharp, and seen wherever there is any.
+fn visible() -> Stage {
+    let mut stage = Stage::new(SIZE);
+    stage.material.sprite = flat_sprite();
+    (stage.settings.soft_fade.near_fade_end, stage.settings.soft_fade.fade_scale) = (0.0, 1000.0);
+    stage.settings.accumulate.scale = 1;
+    stage.shade_tree = ShadeTree::SoftScatter;
+    stage
+}
+
+#[test]
+fn a_system_is_drawn_exactly_when_it_is_between_all_six_planes() {
+    let (near, far) = (0.5, 9.0);
+    let projections = [
+        directx::perspective(0.8, 16.0 / 9.0, near, far),
+        directx::frustum(-0.3, 0.15, -0.1, 0.2, near, far),
+        directx::orthographic(-4.0, 3.0, -2.0, 2.5, near, far),
+    ];
+    for clip_from_view in projections {
+        let mut stage = visible();
+        (stage.view.clip_from_view, stage.view.view_from_world) = (clip_from_view, camera());
+        let mut host = Host::new(gpu(), &stage).unwrap();
+        // The sides, in front of everything in the scene: the middles of the picture's edges are where they are crossed.
+        let pixels = SIZE.as_ivec2();
+        let edges = [IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
+        for (edge, depth) in edges.into_iter().flat_map(|edge| [0.8, 3.0].map(|depth| (edge, depth))) {
+            let at = ((edge + 1) * pixels / 2).clamp(IVec2::ZERO, pixels - 1).as_uvec2();
+            let crossing = point_behind(&stage, at, depth);
+            // Down in the picture is down in view space.
+            let outwards = edge.as_vec2() * Vec2::new(1.0, -1.0);
+            let mut seen = (-10..=20).map(|step| {
+                let centre = crossing + (outwards * (0.05 * step as f32)).extend(0.0);
+                shows(&mut stage, &mut host, (near, far), centre, 0.5)
+            });
+            assert!(seen.next() == Some(true) && seen.next_back() == Some(false), "{edge}");
+        }
+        // Near and far, to the right of the wall and the post.
+        for (plane, depths) in [(near, [0.47, 0.53]), (far, [8.95, 9.05])] {
+            let seen = depths.map(|depth| {
+                let centre = point_behind(&stage, UVec2::new(SIZE.x * 5 / 6, SIZE.y / 2), depth);
+                shows(&mut stage, &mut host, (near, far), centre, 0.5)
+            });
+            assert_eq!(seen, depths.map(|depth| (near..far).contains(&depth)), "the plane at {plane} m");
+        }
+    }
+}
+
+#[test]
+fn a_flat_box_covers_what_is_in_it_wherever_the_near_plane_is() {
+    // A floor, a ceiling and two walls, from behind the camera or from close in front of it.
+    for side in [Vec2::X, Vec2::NEG_X, Vec2::Y, Vec2::NEG_Y] {
+        for begin in [2.0, -0.6] {
+            let mut stage = visible();
+            let planes = (0.5, 20.0);
+            stage.view.clip_from_view = directx::perspective(0.8, 16.0 / 9.0, planes.0, planes.1);
+            let middle = side * 0.3;
+            let half = side.abs() * 0.05 + side.perp().abs() * 3.0;
+            stage.bounds = Some(Bounds { min: (middle - half).extend(-8.0), max: (middle + half).extend(begin) });
+            let mut host = Host::new(gpu(), &stage).unwrap();
+            for depth in [0.75, 1.0, 1.5, 2.5] {
+                assert!(shows(&mut stage, &mut host, planes, middle.extend(-depth), 0.035), "{side} at {depth} m");
+            }
+        }
+    }
+}
