@@ -160,8 +160,11 @@ impl Host {
 
     /// The second half.
     pub fn render(&self, encoder: &mut wgpu::CommandEncoder, stage: &Stage) {
-        let clear =
-            if stage.host.gamma_target { gamma_target_colour(BACKDROP.truncate()).extend(1.0) } else { BACKDROP };
+        let clear = if stage.host.gamma_target {
+            gamma_target_colour(BACKDROP.truncate()).extend(BACKDROP.w)
+        } else {
+            BACKDROP
+        };
         let [r, g, b, a] = clear.to_array().map(f64::from);
         let attachments: Vec<_> = self
             .attachments

@@ -48,8 +48,9 @@ pub enum DepthKind {
     Both,
 }
 
-/// The scene behind the smoke: a colour that is nowhere near a lit sprite's, with values that f16 holds exactly.
-pub const BACKDROP: Vec4 = Vec4::new(0.125, 0.25, 0.5, 1.0);
+/// The scene behind the smoke: a colour that is nowhere near a lit sprite's, with values that f16 holds exactly, and not
+/// opaque, so that the smoke's own alpha shows.
+pub const BACKDROP: Vec4 = Vec4::new(0.125, 0.25, 0.5, 0.25);
 
 pub fn perspective(size: UVec2) -> Mat4 {
     rh::proj::directx::perspective(0.8, size.x as f32 / size.y as f32, 0.1, 80.0)
