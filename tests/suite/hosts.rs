@@ -13,7 +13,7 @@ use haze::{
     System, View, WarmUp, wgpu,
 };
 
-use crate::common::{gpu, psnr};
+use crate::common::{AGREEMENT, gpu, psnr};
 use crate::host::{Host, HostKind};
 use crate::stage::{BACKDROP, DepthKind, Stage};
 
@@ -238,12 +238,12 @@ fn every_hand_and_every_up_gives_the_same_picture() {
                 let stage = change(stage());
                 let seen = stage.on_gpu(gpu()).picture;
                 let reference = psnr(&seen, &stage.on_cpu());
-                assert!(reference >= 45.0, "{name}: {reference:.1} dB from the reference");
+                assert!(reference >= AGREEMENT, "{name}: {reference:.1} dB from the reference");
                 // The noise of volumes fills the world: turned, it is another.
                 let same_noise = !technique.is_volumetric() || name.starts_with("+z");
                 let same = psnr(&seen, &picture);
                 // Another order of f32 operations, seen through f16.
-                assert!(!same_noise || same >= 60.0, "{name}: {same:.1} dB");
+                assert!(!same_noise || same >= 85.0, "{name}: {same:.1} dB");
             }
         }
     }
@@ -276,7 +276,7 @@ fn projections_that_turn_the_picture_over_and_views_that_begin_behind_the_viewer
                 let picture = stage.on_gpu(gpu()).picture;
                 assert!(picture.texels.iter().any(|&texel| texel != BACKDROP), "{name}: no smoke");
                 let psnr = psnr(&picture, &stage.on_cpu());
-                assert!(psnr >= 45.0, "{name}, {}, {}: {psnr:.1} dB", technique.name(), path.name());
+                assert!(psnr >= AGREEMENT, "{name}, {}, {}: {psnr:.1} dB", technique.name(), path.name());
             }
         }
     }
@@ -292,7 +292,7 @@ fn projections_that_turn_the_picture_over_and_views_that_begin_behind_the_viewer
         stage.on_gpu(gpu()).picture
     };
     let psnr = psnr(&seen_from(0.5, 0.0), &seen_from(-19.5, 20.0));
-    assert!(psnr >= 60.0, "{psnr:.1} dB");
+    assert!(psnr >= 85.0, "{psnr:.1} dB");
 }
 
 #[test]
@@ -328,12 +328,12 @@ fn a_view_may_be_a_part_of_larger_targets() {
         cropped.for_each(|at, texel| *texel = part.load((at + origin).as_ivec2()));
         // Corners of sprites round to another 1/256 pixel at another place of a target.
         let same = psnr(&cropped, &alone);
-        assert!(same >= 80.0, "{name}: {same:.1} dB");
+        assert!(same >= 95.0, "{name}: {same:.1} dB");
         let outside = (0..260 * 150_u32).map(|i| UVec2::new(i % 260, i / 260));
         let mut outside = outside.filter(|at| at.cmplt(origin).any() || at.cmpge(origin + SIZE).any());
         assert!(outside.all(|at| part.load(at.as_ivec2()) == BACKDROP), "{name}: smoke beside the view");
         // The reference draws the view's own pixels.
-        assert!(psnr(&cropped, &stage.on_cpu()) >= 45.0, "{name}");
+        assert!(psnr(&cropped, &stage.on_cpu()) >= AGREEMENT, "{name}");
     }
     let mut stage = Stage::new(SIZE);
     stage.host.target_size = Some(UVec2::new(200, 100));
@@ -347,23 +347,23 @@ fn a_view_may_be_a_part_of_larger_targets() {
 fn passes_of_every_kind_show_the_same_smoke() {
     use wgpu::TextureFormat as Format;
     let host = HostKind::default;
-    // The least agreement with the reference: f16, 11 and 10 bits of float, 8 bits.
+    // The least agreement with the reference: floats of 11 and 10 bits round more than what is compared.
     let kinds = [
-        ("four samples", 45.0, HostKind { samples: 4, ..host() }),
-        ("four samples, sRGB", 35.0, HostKind { samples: 4, color_format: Format::Rgba8UnormSrgb, ..host() }),
-        ("Depth24Plus", 45.0, HostKind { depth_format: Format::Depth24Plus, ..host() }),
-        ("Depth24PlusStencil8", 45.0, HostKind { depth_format: Format::Depth24PlusStencil8, ..host() }),
-        ("Depth32FloatStencil8", 45.0, HostKind { depth_format: Format::Depth32FloatStencil8, ..host() }),
-        ("Rg11b10Ufloat", 35.0, HostKind { color_format: Format::Rg11b10Ufloat, ..host() }),
-        ("Rgba8UnormSrgb", 40.0, HostKind { color_format: Format::Rgba8UnormSrgb, ..host() }),
-        ("Bgra8UnormSrgb", 40.0, HostKind { color_format: Format::Bgra8UnormSrgb, ..host() }),
-        ("Rgba8Unorm, linear", 40.0, HostKind { color_format: Format::Rgba8Unorm, ..host() }),
+        ("four samples", AGREEMENT, HostKind { samples: 4, ..host() }),
+        ("four samples, sRGB", AGREEMENT, HostKind { samples: 4, color_format: Format::Rgba8UnormSrgb, ..host() }),
+        ("Depth24Plus", AGREEMENT, HostKind { depth_format: Format::Depth24Plus, ..host() }),
+        ("Depth24PlusStencil8", AGREEMENT, HostKind { depth_format: Format::Depth24PlusStencil8, ..host() }),
+        ("Depth32FloatStencil8", AGREEMENT, HostKind { depth_format: Format::Depth32FloatStencil8, ..host() }),
+        ("Rg11b10Ufloat", 50.0, HostKind { color_format: Format::Rg11b10Ufloat, ..host() }),
+        ("Rgba8UnormSrgb", AGREEMENT, HostKind { color_format: Format::Rgba8UnormSrgb, ..host() }),
+        ("Bgra8UnormSrgb", AGREEMENT, HostKind { color_format: Format::Bgra8UnormSrgb, ..host() }),
+        ("Rgba8Unorm, linear", AGREEMENT, HostKind { color_format: Format::Rgba8Unorm, ..host() }),
         (
             "four samples and stencil",
-            45.0,
+            AGREEMENT,
             HostKind { samples: 4, depth_format: Format::Depth24PlusStencil8, ..host() },
         ),
-        ("velocity", 45.0, HostKind { further: vec![Format::Rg16Float, Format::R8Unorm], ..host() }),
+        ("velocity", AGREEMENT, HostKind { further: vec![Format::Rg16Float, Format::R8Unorm], ..host() }),
     ];
     for (name, least, kind) in kinds {
         for (path, attach_depth) in [(Path::Raster, true), (Path::Forward, true), (Path::Raster, false)] {
@@ -386,6 +386,9 @@ fn passes_of_every_kind_show_the_same_smoke() {
             let mut reference = stage.on_cpu();
             if kind.color_format != Format::Rgba16Float && kind.color_format != Format::Rg11b10Ufloat {
                 reference.texels.iter_mut().for_each(|texel| *texel = texel.min(Vec4::ONE));
+            }
+            if kind.color_format == Format::Rg11b10Ufloat {
+                reference.texels.iter_mut().for_each(|texel| texel.w = 1.0);
             }
             let psnr = psnr(&picture, &reference);
             println!("{name}, {}, depth {attach_depth}: {psnr:.1} dB", path.name());
@@ -417,7 +420,8 @@ fn a_target_of_code_is_written_in_code() {
         let code = stage.on_gpu(gpu()).picture;
         let mut expected = light.clone();
         expected.for_each(|at, texel| {
-            *texel = gamma_target_colour(light.load(at.as_ivec2()).truncate()).extend(1.0);
+            let light = light.load(at.as_ivec2());
+            *texel = gamma_target_colour(light.truncate()).extend(light.w);
         });
         // At the rim smoke is blended: code there is no code of a blend. The middle is opaque.
         let middle = |picture: &Picture<Vec4>| {
@@ -426,7 +430,7 @@ fn a_target_of_code_is_written_in_code() {
             part
         };
         let right = psnr(&middle(&code), &middle(&expected));
-        assert!(right >= 45.0, "{}: {right:.1} dB", path.name());
+        assert!(right >= AGREEMENT, "{}: {right:.1} dB", path.name());
         // The mutant: light written as it is.
         stage.host.gamma_target = false;
         let dark = psnr(&middle(&stage.on_gpu(gpu()).picture), &middle(&expected));

@@ -6,22 +6,33 @@ use haze::demo::shot::Shot;
 use haze::picture::Picture;
 use haze::settings::*;
 
-use crate::common::{gpu, psnr};
-
-/// Two correct renderers differ by f16 rounding, by the order of f32 operations, and at edges by 1/256 pixel: 55 to 92 dB
-/// on llvmpipe. The mistakes in properties.rs all fall below this.
-const AGREEMENT: f32 = 45.0;
+use crate::common::{AGREEMENT, gpu, psnr_over};
 
 fn shot(name: &str, size: UVec2) -> Shot {
     Shot::load(name, size).unwrap()
 }
 
+/// The same without the smoke.
+fn behind(shot: &Shot) -> Shot {
+    let mut behind = shot.clone();
+    behind.preset.systems.clear();
+    behind.materials.clear();
+    behind
+}
+
+fn on_gpu(shot: &Shot) -> Picture<Vec4> {
+    shot.render_on_gpu(gpu(), true).unwrap()
+}
+
+/// Agreement of the renderers, and the GPU's picture.
 fn agreement(shot: &Shot) -> (f32, Picture<Vec4>) {
-    let on_gpu = shot.render_on_gpu(gpu(), true).unwrap();
-    let on_cpu = shot.render_on_cpu().unwrap();
+    let renderers = |shot: &Shot| [on_gpu(shot), shot.render_on_cpu().unwrap()];
+    let (pictures, behind) = (renderers(shot), renderers(&behind(shot)));
     gpu().check().unwrap();
-    assert!(on_gpu.texels.iter().all(|texel| texel.is_finite()));
-    (psnr(&on_gpu, &on_cpu), on_gpu)
+    assert!(pictures[0].texels.iter().all(|texel| texel.is_finite()));
+    let psnr = psnr_over(pictures.each_ref(), behind.each_ref());
+    let [on_gpu, _] = pictures;
+    (psnr, on_gpu)
 }
 
 #[test]
@@ -109,7 +120,14 @@ fn every_setting_agrees() {
     for (name, shot) in &shots {
         let (psnr, _) = agreement(shot);
         println!("{name}: {psnr:.1} dB");
-        assert!(psnr >= AGREEMENT, "{name}: {psnr:.1} dB");
+        let least = match name.as_str() {
+            // Where the depths of texels straddle its 10 %, a last bit decides whose smoke a pixel shows: 43 dB, 53 on OpenGL.
+            "upsample nearest_depth" => 40.0,
+            // The light of every layer is added up in f16, whose steps grow with the sum: 48 dB.
+            "forward additive" => 45.0,
+            _ => AGREEMENT,
+        };
+        assert!(psnr >= least, "{name}: {psnr:.1} dB");
     }
 }
 
@@ -117,13 +135,14 @@ fn every_setting_agrees() {
 fn half_resolution_is_worth_it() {
     // The default preset as it is shipped, at half scale, against full scale.
     let mut shot = shot("column", UVec2::new(640, 360));
+    let behind = on_gpu(&behind(&shot));
     let mut render = |scale| {
         shot.preset.systems[0].settings.accumulate.scale = scale;
-        shot.render_on_gpu(gpu(), true).unwrap()
+        on_gpu(&shot)
     };
     let full = render(1);
-    for (scale, least) in [(2, 35.0), (4, 35.0)] {
-        let psnr = psnr(&render(scale), &full);
+    for (scale, least) in [(2, 47.0), (4, 38.0)] {
+        let psnr = psnr_over([&render(scale), &full], [&behind, &behind]);
         println!("scale {scale}: {psnr:.1} dB");
         assert!(psnr >= least, "scale {scale}: {psnr:.1} dB");
     }
@@ -149,15 +168,18 @@ fn systems_are_drawn_far_to_near_whatever_their_order() {
 #[test]
 fn pictures_scale() {
     // Pixel sizes in presets are for a picture of 720 lines: another height must not change the look.
-    let small = shot("column", UVec2::new(160, 90)).render_on_gpu(gpu(), true).unwrap();
-    let large = shot("column", UVec2::new(320, 180)).render_on_gpu(gpu(), true).unwrap();
-    let mut reduced = Picture::new(small.size, Vec4::ZERO);
-    reduced.for_each(|at, texel| {
-        let at = at.as_ivec2() * 2;
-        let corner = |x, y| large.load(at + glam::IVec2::new(x, y));
-        *texel = (corner(0, 0) + corner(1, 0) + corner(0, 1) + corner(1, 1)) / 4.0;
-    });
-    let psnr = psnr(&small, &reduced);
-    // Edges of the scene and of sprites fall differently on the two grids; a glow of half the size gives 26 dB.
-    assert!(psnr >= 30.0, "{psnr:.1} dB");
+    let (small, large) = (shot("column", UVec2::new(160, 90)), shot("column", UVec2::new(320, 180)));
+    let reduced = |shot: &Shot| {
+        let (large, mut reduced) = (on_gpu(shot), Picture::new(shot.size / 2, Vec4::ZERO));
+        reduced.for_each(|at, texel| {
+            let at = at.as_ivec2() * 2;
+            let corner = |x, y| large.load(at + glam::IVec2::new(x, y));
+            *texel = (corner(0, 0) + corner(1, 0) + corner(0, 1) + corner(1, 1)) / 4.0;
+        });
+        reduced
+    };
+    let behind = [on_gpu(&behind(&small)), reduced(&behind(&large))];
+    let psnr = psnr_over([&on_gpu(&small), &reduced(&large)], behind.each_ref());
+    // Edges of the scene and of sprites fall differently on the two grids; 38 dB. A glow of half the size gives 28.
+    assert!(psnr >= 35.0, "{psnr:.1} dB");
 }

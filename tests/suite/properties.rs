@@ -2,13 +2,14 @@
 
 use glam::camera::rh::proj::directx;
 use glam::{Mat4, UVec2, Vec3, Vec4, vec3, vec4};
+use haze::picture::Picture;
 use haze::read_only_depth_is_supported;
 use haze::reference::blend_unit::{premultiplied_over, quantise};
 use haze::settings::{AccumulationFormat, DepthSource, DiffuseMode, Path, ShadeTree, Upsample};
 use haze::{Bounds, Error, Light, Particle, Particles, wgpu};
 use proptest::prelude::*;
 
-use crate::common::{gpu, non_finite_texels, psnr};
+use crate::common::{AGREEMENT, gpu, non_finite_texels, psnr};
 use crate::creations;
 use crate::host::{Host, particle_buffer};
 use crate::stage::{BACKDROP, DepthKind, Stage};
@@ -133,7 +134,7 @@ fn odd_sizes_and_every_scale_work() {
             // by a part of its own size, and the pictures of the two renderers are no longer of the same sprite.
             if size.min_element() > 64 {
                 let psnr = psnr(&drawn.picture, &stage.on_cpu());
-                assert!(psnr >= 45.0, "{size} scale {scale}: {psnr:.1} dB");
+                assert!(psnr >= AGREEMENT, "{size} scale {scale}: {psnr:.1} dB");
             }
         }
     }
@@ -161,7 +162,8 @@ fn a_host_may_resize_and_change_everything_from_frame_to_frame() {
         host.draw(gpu(), &stage).unwrap();
         gpu().check().unwrap();
         let psnr = psnr(&host.picture(gpu()).unwrap(), &stage.on_cpu());
-        assert!(psnr >= 45.0, "step {step}: {psnr:.1} dB");
+        // The edge of a sprite takes or leaves a whole texel, which may be 36 of few pixels: 53 dB.
+        assert!(psnr >= 50.0, "step {step}: {psnr:.1} dB");
     }
 }
 
@@ -174,7 +176,7 @@ fn the_clamp_limits_the_target() {
     let targets = drawn.renderer.targets(0).unwrap();
     assert_eq!(targets.scale, 7);
     assert!(targets.size.max_element() <= 100);
-    assert!(psnr(&drawn.picture, &stage.on_cpu()) >= 45.0);
+    assert!(psnr(&drawn.picture, &stage.on_cpu()) >= AGREEMENT);
 }
 
 // depth conventions
@@ -207,11 +209,11 @@ fn every_depth_convention_gives_the_same_picture() {
                 stage.depth = depth;
                 let picture = stage.on_gpu(gpu()).picture;
                 let reference = psnr(&picture, &stage.on_cpu());
-                assert!(reference >= 45.0, "{clip_from_view}: {reference:.1} dB from the reference");
+                assert!(reference >= AGREEMENT, "{clip_from_view}: {reference:.1} dB from the reference");
                 let standard = standard.get_or_insert_with(|| picture.clone());
-                // Depth buffers of different conventions round differently; 60 dB is a thousandth.
+                // Depth buffers of different conventions round differently: 90 dB were found.
                 let psnr = psnr(&picture, standard);
-                assert!(psnr >= 60.0, "{clip_from_view}, {depth:?}: {psnr:.1} dB from standard");
+                assert!(psnr >= 85.0, "{clip_from_view}, {depth:?}: {psnr:.1} dB from standard");
             }
         }
     }
@@ -226,9 +228,9 @@ fn a_pass_without_depth_gives_the_same_picture() {
         stage.settings.path = path;
         let picture = stage.on_gpu(gpu()).picture;
         let reference = psnr(&picture, &stage.on_cpu());
-        assert!(reference >= 45.0, "{path:?}: {reference:.1} dB");
+        assert!(reference >= AGREEMENT, "{path:?}: {reference:.1} dB");
         // The box is not tested then, and the fade alone hides what is behind the scene.
-        assert!(path == Path::Forward || psnr(&picture, &tested) >= 60.0);
+        assert!(path == Path::Forward || psnr(&picture, &tested) >= 85.0);
     }
 }
 
@@ -240,10 +242,10 @@ fn the_limits_of_webgl2_are_enough() {
     for mode in DiffuseMode::ALL {
         stage.settings.diffuse.mode = *mode;
         let psnr = psnr(&stage.on_gpu(&webgl2).picture, &stage.on_cpu());
-        assert!(psnr >= 45.0, "{mode:?}: {psnr:.1} dB");
+        assert!(psnr >= AGREEMENT, "{mode:?}: {psnr:.1} dB");
     }
     stage.settings.path = Path::Forward;
-    assert!(psnr(&stage.on_gpu(&webgl2).picture, &stage.on_cpu()) >= 45.0);
+    assert!(psnr(&stage.on_gpu(&webgl2).picture, &stage.on_cpu()) >= AGREEMENT);
     webgl2.check().unwrap();
 }
 
@@ -265,8 +267,11 @@ fn the_near_plane_cuts_no_hole() {
             assert!(picture.texels.iter().all(|&texel| texel != BACKDROP), "{forward}: a hole");
         }
         stage.shade_tree = ShadeTree::Final;
-        let psnr = psnr(&stage.on_gpu(gpu()).picture, &stage.on_cpu());
-        assert!(psnr >= 45.0, "{forward}: {psnr:.1} dB");
+        // Until the camera has passed the smoke.
+        if forward < 6.3 {
+            let psnr = psnr(&stage.on_gpu(gpu()).picture, &stage.on_cpu());
+            assert!(psnr >= AGREEMENT, "{forward}: {psnr:.1} dB");
+        }
     }
 }
 
@@ -275,7 +280,7 @@ fn a_box_beyond_the_far_plane_shows_no_hole() {
     let mut stage = Stage::new(SIZE);
     stage.view.clip_from_view = directx::perspective(0.8, 16.0 / 9.0, 0.5, 20.0);
     stage.bounds = Some(Bounds { min: Vec3::splat(-50.0), max: Vec3::splat(50.0) });
-    assert!(psnr(&stage.on_gpu(gpu()).picture, &stage.on_cpu()) >= 45.0);
+    assert!(psnr(&stage.on_gpu(gpu()).picture, &stage.on_cpu()) >= AGREEMENT);
 }
 
 // mutants of the whole frame: what a mistake in a pass would do, done to the reference
@@ -317,7 +322,20 @@ fn mistakes_in_a_pass_are_seen() {
     for (name, change) in mutants {
         let psnr = agreement(*change);
         println!("{name}: {psnr:.1} dB");
-        assert!(psnr < 45.0, "{name} passes: {psnr:.1} dB");
+        assert!(psnr < AGREEMENT - 10.0, "{name} passes: {psnr:.1} dB");
+    }
+}
+
+#[test]
+fn a_twentieth_in_a_few_pixels_is_seen() {
+    let mut smoke = Picture::new(SIZE, BACKDROP);
+    smoke.texels[..SIZE.element_product() as usize / 100].fill(Vec4::splat(0.7));
+    for channel in Vec4::AXES {
+        let mut off = smoke.clone();
+        let few = off.texels.iter_mut().filter(|texel| **texel != BACKDROP);
+        few.for_each(|texel| *texel -= channel * 0.05);
+        let psnr = psnr(&off, &smoke);
+        assert!(psnr < AGREEMENT, "{channel}: {psnr:.1} dB");
     }
 }
 
@@ -335,7 +353,7 @@ fn order_matters_to_normals() {
     let mut host = Host::new(gpu(), &stage).unwrap();
     let count = front_to_back.len() as u32;
     host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count }).unwrap();
-    assert!(psnr(&host.picture(gpu()).unwrap(), &sorted) < 45.0);
+    assert!(psnr(&host.picture(gpu()).unwrap(), &sorted) < AGREEMENT - 10.0);
 }
 
 // several systems, many lights
@@ -351,7 +369,7 @@ fn many_lights_agree_and_too_many_are_refused() {
         ..Light::default()
     };
     stage.lights = (0..haze::frame::MAX_LIGHTS).map(light).collect();
-    assert!(psnr(&stage.on_gpu(gpu()).picture, &stage.on_cpu()) >= 45.0);
+    assert!(psnr(&stage.on_gpu(gpu()).picture, &stage.on_cpu()) >= AGREEMENT);
     stage.lights.push(light(0));
     let Err(error) = stage.try_on_gpu(gpu()) else { panic!("129 lights passed") };
     assert_eq!(error.to_string(), "lights: 129 lights is not valid; expected at most 128");
