@@ -8,14 +8,11 @@ use haze::sprite::bake::SpriteRecipe;
 use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Bounds, Error, Particle};
 
-use crate::common::{gpu, non_finite_texels, psnr};
+use crate::common::{AGREEMENT, gpu, non_finite_texels, psnr};
 use crate::host::Host;
 use crate::stage::{BACKDROP, DepthKind, Stage};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
-
-/// f16 rounding, order of operations, corners on a grid of 1/256 pixel: see presets.rs.
-const AGREEMENT: f32 = 45.0;
 
 fn stage(technique: Technique) -> Stage {
     let mut stage = Stage::new(SIZE);
