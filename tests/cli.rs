@@ -1,11 +1,13 @@
 //! The command line: what it makes, and how it says what is wrong.
 
 #![cfg(feature = "app")]
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use haze::settings::ShadeTree;
 use tempfile::TempDir;
 
 fn haze(folder: &Path, arguments: &[&str]) -> Output {
@@ -184,8 +186,23 @@ fn the_shade_tree_is_one_sheet() {
     let folder = folder();
     let output = haze(folder.path(), &["shade-tree", "--size", "192x108", "--backend", "cpu", "-o", "sheet.png"]);
     assert!(output.status.success(), "{}", stderr(&output));
-    let (width, height) = size_of(&folder.path().join("sheet.png"));
-    assert!(width > 192 && height > 108);
+    let sheet = haze::picture::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8();
+    // Every stage is on it, as it is rendered alone: three rows of three.
+    let mut corners = BTreeSet::new();
+    for stage in ShadeTree::ALL {
+        let output = render(folder.path(), &["--view", stage.name()]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let alone = haze::picture::read_png(&folder.path().join("out.png")).unwrap().to_rgb8();
+        let is_at =
+            |x: u32, y: u32| alone.enumerate_pixels().all(|(dx, dy, pixel)| sheet.get_pixel(x + dx, y + dy) == pixel);
+        let (right, bottom) = (sheet.width() - alone.width(), sheet.height() - alone.height());
+        let corner = (0..=bottom).find_map(|y| (0..=right).find(|&x| is_at(x, y)).map(|x| (x, y)));
+        corners.insert(corner.unwrap_or_else(|| panic!("no {} on the sheet", stage.name())));
+    }
+    let distinct = |list: Vec<u32>| list.into_iter().collect::<BTreeSet<_>>().len();
+    let columns = distinct(corners.iter().map(|corner| corner.0).collect());
+    let rows = distinct(corners.iter().map(|corner| corner.1).collect());
+    assert_eq!((corners.len(), columns, rows), (9, 3, 3));
 }
 
 #[test]

@@ -379,12 +379,27 @@ fn many_lights_agree_and_too_many_are_refused() {
 
 #[test]
 fn bad_frames_are_refused_by_name_and_draw_nothing() {
-    let field = |change: fn(&mut Stage)| {
+    // After a good frame, so that there is something that could be drawn.
+    let refusal = |host: &mut Host, stage: &Stage, particles: Particles<'_>| {
+        host.draw(gpu(), &Stage::new(SIZE)).unwrap();
+        assert!(host.picture(gpu()).unwrap().texels.iter().any(|&texel| texel != BACKDROP));
+        let mut encoder = gpu().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let error = host.prepare(gpu(), &mut encoder, stage, particles).unwrap_err();
+        host.render(&mut encoder, stage);
+        gpu().submit(encoder).unwrap();
+        assert!(
+            host.picture(gpu()).unwrap().texels.iter().all(|&texel| texel == BACKDROP),
+            "{error}: something is drawn"
+        );
+        error
+    };
+    let mut host = Host::new(gpu(), &Stage::new(SIZE)).unwrap();
+    let mut field = |change: fn(&mut Stage)| {
         let mut stage = Stage::new(SIZE);
         change(&mut stage);
-        match stage.try_on_gpu(gpu()) {
-            Err(Error::Field(error)) => error.field,
-            other => panic!("{:?}", other.map(|_| ())),
+        match refusal(&mut host, &stage, Particles::Slice(&stage.particles)) {
+            Error::Field(error) => error.field,
+            other => panic!("{other}"),
         }
     };
     assert_eq!(field(|s| s.settings.soft_fade.fade_scale = f32::NAN), "systems[0].settings.soft_fade.fade_scale");
@@ -394,9 +409,8 @@ fn bad_frames_are_refused_by_name_and_draw_nothing() {
     assert_eq!(field(|s| s.view.view_from_world = Mat4::ZERO), "view.view_from_world");
 
     let mut stage = Stage::new(SIZE);
-    let mut host = Host::new(gpu(), &stage).unwrap();
     stage.view.size += 1;
-    let error = host.draw(gpu(), &stage).unwrap_err().to_string();
+    let error = refusal(&mut host, &stage, Particles::Slice(&stage.particles)).to_string();
     assert_eq!(
         error,
         "view.size: 161x91 from (0, 0) is not valid; expected the size of the scene depth, 160x90, or a part of it"
@@ -412,7 +426,7 @@ fn bad_frames_are_refused_by_name_and_draw_nothing() {
     let mut refused = |count, bounds| {
         stage.bounds = bounds;
         let particles = Particles::Buffer { buffer: &buffer, offset: 0, count };
-        host.draw_particles(gpu(), &stage, particles).unwrap_err().to_string()
+        refusal(&mut host, &stage, particles).to_string()
     };
     assert!(refused(2, None).starts_with("systems[0].bounds: None"));
     let somewhere = Some(Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE });

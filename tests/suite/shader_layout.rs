@@ -90,17 +90,36 @@ fn structs_agree() {
 
 #[test]
 fn the_particle_is_two_vertex_attributes() {
-    // position_radius and rotation_amount_frame_age in lib/sprite_vertex.wgsl.
     let offsets = [
-        std::mem::offset_of!(Particle, position),
-        std::mem::offset_of!(Particle, radius),
-        std::mem::offset_of!(Particle, rotation),
-        std::mem::offset_of!(Particle, amount),
-        std::mem::offset_of!(Particle, frame),
-        std::mem::offset_of!(Particle, age),
+        ("position", std::mem::offset_of!(Particle, position)),
+        ("radius", std::mem::offset_of!(Particle, radius)),
+        ("rotation", std::mem::offset_of!(Particle, rotation)),
+        ("amount", std::mem::offset_of!(Particle, amount)),
+        ("frame", std::mem::offset_of!(Particle, frame)),
+        ("age", std::mem::offset_of!(Particle, age)),
     ];
-    assert_eq!(offsets, [0, 12, 16, 20, 24, 28]);
+    assert_eq!(offsets.map(|(_, offset)| offset), [0, 12, 16, 20, 24, 28]);
     assert_eq!(size_of::<Particle>(), 32);
+    // Each attribute is four numbers, named after the fields that lie in them.
+    for file in ["accumulate.wgsl", "forward.wgsl"] {
+        let module = composed(file);
+        let (_, ty) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some("Particle")).unwrap();
+        let naga::TypeInner::Struct { members, .. } = &ty.inner else { panic!("{file}: Particle is no struct") };
+        assert_eq!(members.len(), 2, "{file}");
+        for (index, member) in members.iter().enumerate() {
+            let bytes = 16 * index..16 * (index + 1);
+            let fields: Vec<_> =
+                offsets.iter().filter(|(_, offset)| bytes.contains(offset)).map(|(name, _)| *name).collect();
+            assert_eq!(member.name.as_deref(), Some(fields.join("_").as_str()), "{file}");
+            let location = match member.binding {
+                Some(naga::Binding::Location { location, .. }) => location as usize,
+                _ => panic!("{file}: {:?} has no location", member.name),
+            };
+            assert_eq!(location, index, "{file}");
+            let vec4f = naga::TypeInner::Vector { size: naga::VectorSize::Quad, scalar: naga::Scalar::F32 };
+            assert_eq!(module.types[member.ty].inner, vec4f, "{file}");
+        }
+    }
 }
 
 /// The value of a module constant.
