@@ -107,21 +107,6 @@ fn diffuse(normal: vec3f, position: vec3f) -> vec3f {
     return light * system.diffuse_intensity;
 }
 
-// Black, blue, green, yellow, red, white at 0, 4, 8, 16, 32, 64 layers.
-fn overdraw_colour(layers: f32) -> vec3f {
-    var colours = array<vec3f, 6>(
-        vec3f(0.0),
-        vec3f(0.0, 0.0, 1.0),
-        vec3f(0.0, 1.0, 0.0),
-        vec3f(1.0, 1.0, 0.0),
-        vec3f(1.0, 0.0, 0.0),
-        vec3f(1.0),
-    );
-    let heat = select(layers * 0.25, log2(max(layers, 1.0)) - 1.0, layers > 4.0);
-    let index = clamp(u32(heat), 0u, 4u);
-    return mix(colours[index], colours[index + 1u], saturate(heat - f32(index)));
-}
-
 @fragment
 fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = position.xy - view.origin;

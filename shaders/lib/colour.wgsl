@@ -1,4 +1,4 @@
-// Light and its sRGB code.
+// Light and its sRGB code; the colours of overdraw.
 
 // True: the host's target holds sRGB code, and the hardware takes it for linear.
 override GAMMA_TARGET: bool = false;
@@ -32,4 +32,19 @@ fn target_colour(light: vec3f) -> vec3f {
         return gamma_target_colour(light);
     }
     return bounded_light(light);
+}
+
+// Black, blue, green, yellow, red, white at 0, 4, 8, 16, 32, 64 layers.
+fn overdraw_colour(layers: f32) -> vec3f {
+    var colours = array<vec3f, 6>(
+        vec3f(0.0),
+        vec3f(0.0, 0.0, 1.0),
+        vec3f(0.0, 1.0, 0.0),
+        vec3f(1.0, 1.0, 0.0),
+        vec3f(1.0, 0.0, 0.0),
+        vec3f(1.0),
+    );
+    let heat = select(layers * 0.25, log2(max(layers, 1.0)) - 1.0, layers > 4.0);
+    let index = clamp(u32(heat), 0u, 4u);
+    return mix(colours[index], colours[index + 1u], saturate(heat - f32(index)));
 }

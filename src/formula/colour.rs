@@ -1,6 +1,8 @@
-//! Light and its sRGB code. `shaders/lib/colour.wgsl`.
+//! Light and its sRGB code; the colours of overdraw. `shaders/lib/colour.wgsl`.
 
 use glam::Vec3;
+
+use super::saturate;
 
 /// sRGB 0..1 to linear. (IEC 61966-2-1)
 pub fn linear_from_srgb(encoded: f32) -> f32 {
@@ -24,6 +26,14 @@ pub const BRIGHTEST: f32 = 32752.0;
 /// Light that a target of half floats can hold.
 pub fn bounded_light(light: Vec3) -> Vec3 {
     light.min(Vec3::splat(BRIGHTEST))
+}
+
+/// Black, blue, green, yellow, red, white at 0, 4, 8, 16, 32, 64 layers.
+pub fn overdraw_colour(layers: f32) -> Vec3 {
+    let heat = if layers > 4.0 { layers.log2() - 1.0 } else { layers * 0.25 };
+    let colours = [Vec3::ZERO, Vec3::Z, Vec3::Y, Vec3::new(1.0, 1.0, 0.0), Vec3::X, Vec3::ONE];
+    let index = (heat.max(0.0) as usize).min(colours.len() - 2);
+    colours[index].lerp(colours[index + 1], saturate(heat - index as f32))
 }
 
 #[cfg(test)]

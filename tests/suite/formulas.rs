@@ -909,6 +909,15 @@ fn formulas() -> Vec<Formula> {
             mutants: &[("saturate(light)", "light"), ("srgb_from_linear(shown.g)", "shown.g")],
         },
         Formula {
+            name: "overdraw_colour",
+            file: "lib/colour.wgsl",
+            wgsl: "let v = overdraw_colour(x(0)); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| colour::overdraw_colour(x[0]).to_array().to_vec(),
+            cases: [random(100, &[(0.0, 80.0)]), random(50, &[(0.0, 9.0)])].concat(),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[("layers * 0.25", "layers * 0.5"), ("- 1.0, layers", "- 2.0, layers"), ("index + 1u", "index")],
+        },
+        Formula {
             name: "forward_fragment",
             file: "lib/blending.wgsl",
             wgsl: "let v = forward_fragment(u32(x(0)), vec3f(x(1), x(2), x(3)), x(4)); \

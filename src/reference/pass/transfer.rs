@@ -3,7 +3,7 @@
 use glam::{IVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use crate::assets::picture::Picture;
-use crate::formula::colour::bounded_light;
+use crate::formula::colour::{bounded_light, overdraw_colour};
 use crate::formula::diffuse_bake::{cube_coordinate, motif_position, spherical_harmonics};
 use crate::formula::lighting::coverage;
 use crate::formula::normal::normal_from_accumulation;
@@ -104,12 +104,4 @@ impl Accumulated<'_> {
         }
         Some(bounded_light(light).extend(1.0) * covered)
     }
-}
-
-/// Black, blue, green, yellow, red, white at 0, 4, 8, 16, 32, 64 layers.
-fn overdraw_colour(layers: f32) -> Vec3 {
-    let heat = if layers > 4.0 { layers.log2() - 1.0 } else { layers * 0.25 };
-    let colours = [Vec3::ZERO, Vec3::Z, Vec3::Y, Vec3::new(1.0, 1.0, 0.0), Vec3::X, Vec3::ONE];
-    let index = (heat.max(0.0) as usize).min(colours.len() - 2);
-    colours[index].lerp(colours[index + 1], saturate(heat - index as f32))
 }
