@@ -66,38 +66,14 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     return clip;
 }
 
-// `position` is -1..1 on the face or motif; the first row is -1.
-fn sample_baked(position: vec2f, layer: i32) -> vec3f {
-    let size = vec2f(textureDimensions(baked_diffuse));
-    let texel = saturate(position * 0.5 + 0.5) * (size - 1.0);
-    if !EXACT_FILTERING {
-        return textureSampleLevel(baked_diffuse, linear_sampler, (texel + 0.5) / size, layer, 0.0).rgb;
-    }
-    let base = floor(texel);
-    let fraction = texel - base;
-    let low = vec2i(base);
-    let high = min(low + 1, vec2i(size) - 1);
-    let bottom = mix(
-        textureLoad(baked_diffuse, low, layer, 0),
-        textureLoad(baked_diffuse, vec2i(high.x, low.y), layer, 0),
-        fraction.x,
-    );
-    let top = mix(
-        textureLoad(baked_diffuse, vec2i(low.x, high.y), layer, 0),
-        textureLoad(baked_diffuse, high, layer, 0),
-        fraction.x,
-    );
-    return mix(bottom, top, fraction.y).rgb;
-}
-
 fn diffuse(normal: vec3f, position: vec3f) -> vec3f {
     var light = vec3f(0.0);
     switch DIFFUSE_MODE {
         case DIFFUSE_MODE_CUBEMAP: {
             let cube = cube_coordinate(normal);
-            light = sample_baked(cube.position, cube.face);
+            light = sample_baked(baked_diffuse, linear_sampler, cube.position, cube.face);
         }
-        case DIFFUSE_MODE_MOTIF: { light = sample_baked(motif_position(normal), 0); }
+        case DIFFUSE_MODE_MOTIF: { light = sample_baked(baked_diffuse, linear_sampler, motif_position(normal), 0); }
         case DIFFUSE_MODE_PAINTED_MOTIF: {
             light = sample_ramp_2d(painted_motif, linear_sampler, motif_position(normal) * 0.5 + 0.5);
         }

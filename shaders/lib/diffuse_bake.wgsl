@@ -1,5 +1,7 @@
 // Diffuse light by normal, baked: the geometry of the cubemap and of the motif, and spherical harmonics.
 
+#import "lib/ramp.wgsl"
+
 // Cube faces in the order +x -x +y -y +z -z. A face's edge texel centres lie exactly on the cube's edges, so that two
 // faces share the texels there and bilinear lookups meet without a seam.
 
@@ -53,6 +55,30 @@ fn motif_position(normal: vec3f) -> vec2f {
         return normal.xy;
     }
     return normal.xy * inverseSqrt(max(dot(normal.xy, normal.xy), 1.0e-12));
+}
+
+// Baked light. `position` is -1..1 on the face or motif; the first row is -1.
+fn sample_baked(baked: texture_2d_array<f32>, linear_sampler: sampler, position: vec2f, layer: i32) -> vec3f {
+    let size = vec2f(textureDimensions(baked));
+    let texel = saturate(position * 0.5 + 0.5) * (size - 1.0);
+    if !EXACT_FILTERING {
+        return textureSampleLevel(baked, linear_sampler, (texel + 0.5) / size, layer, 0.0).rgb;
+    }
+    let base = floor(texel);
+    let fraction = texel - base;
+    let low = vec2i(base);
+    let high = min(low + 1, vec2i(size) - 1);
+    let bottom = mix(
+        textureLoad(baked, low, layer, 0),
+        textureLoad(baked, vec2i(high.x, low.y), layer, 0),
+        fraction.x,
+    );
+    let top = mix(
+        textureLoad(baked, vec2i(low.x, high.y), layer, 0),
+        textureLoad(baked, high, layer, 0),
+        fraction.x,
+    );
+    return mix(bottom, top, fraction.y).rgb;
 }
 
 // Light by normal from nine coefficients: the real spherical harmonics to L2, with the basis' constants.

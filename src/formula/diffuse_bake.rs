@@ -2,6 +2,8 @@
 
 use glam::{Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 
+use super::ramp::sample_ramp_2d;
+use super::texture::Texture2d;
 use crate::settings::DiffuseMode;
 
 /// Side and layers of the texture that a mode bakes into; `None` for those that bake nothing. A ramp's gradient is broad: 32
@@ -64,6 +66,11 @@ pub fn motif_position(normal: Vec3) -> Vec2 {
         return normal.xy();
     }
     normal.xy() / normal.xy().length_squared().max(1.0e-12).sqrt()
+}
+
+/// Baked light, of one face or the motif. `position` is −1..1 on it; the first row is −1.
+pub fn sample_baked(baked: &impl Texture2d, position: Vec2) -> Vec3 {
+    sample_ramp_2d(baked, position * 0.5 + 0.5)
 }
 
 /// The nine real spherical-harmonic basis functions to L2 in a direction, in the order of the coefficients.

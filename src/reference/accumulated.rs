@@ -1,9 +1,10 @@
 //! A system's finished target, read at full resolution. `shaders/lib/accumulated.wgsl`.
 
-use glam::{IVec2, Vec2, Vec3, Vec4};
+use glam::{IVec2, UVec2, Vec2, Vec3, Vec4};
 
 use super::draw::Draw;
 use crate::assets::picture::Picture;
+use crate::formula::texture::Texture2d;
 use crate::formula::upsample::{guided_weights, is_smooth, upsample_weights};
 use crate::settings::Upsample;
 
@@ -24,6 +25,16 @@ pub struct Footprint {
     first: IVec2,
     /// A row in each vector.
     weights: [Vec4; 4],
+}
+
+impl Texture2d for Picture<Vec3> {
+    fn dimensions(&self) -> UVec2 {
+        self.size
+    }
+
+    fn load(&self, at: UVec2) -> Vec4 {
+        self.texels[(at.y * self.size.x + at.x) as usize].extend(1.0)
+    }
 }
 
 impl Accumulated<'_> {

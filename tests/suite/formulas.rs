@@ -4,6 +4,7 @@
 use std::sync::OnceLock;
 
 use glam::{IVec2, UVec2, Vec2, Vec3, Vec4, vec3, vec4};
+use haze::formula::texture::Texture2d;
 use haze::formula::uniforms::LightUniform;
 use haze::formula::{
     blending, colour, depth, diffuse_bake, lighting, noise_volume, normal, order, ramp, soft_fade, sprite, technique,
@@ -121,6 +122,18 @@ fn test_sprite() -> Sprite {
     }
     let layout = SpriteLayout { columns: 3, rows: 1, y_down: false };
     Sprite::from_picture(std::path::Path::new("test"), &sheet, layout).unwrap()
+}
+
+/// One frame of a sprite.
+struct Frame(Sprite, u32);
+
+impl Texture2d for Frame {
+    fn dimensions(&self) -> UVec2 {
+        UVec2::splat(self.0.level_size(0))
+    }
+    fn load(&self, at: UVec2) -> Vec4 {
+        self.0.texel(0, self.1, at.x, at.y)
+    }
 }
 
 fn test_noise() -> &'static NoiseVolume {
@@ -484,6 +497,26 @@ fn formulas() -> Vec<Formula> {
             cases: unit_vectors(random(100, &[(-1.0, 1.0); 3]), 0),
             tolerance: TRANSCENDENTAL,
             mutants: &[("normal.z >= 0.0", "normal.z >= -2.0")],
+        },
+        Formula {
+            name: "sample_baked",
+            file: "lib/diffuse_bake.wgsl",
+            wgsl: "let v = sample_baked(test_sprite, test_sampler, vec2f(x(1), x(2)), i32(x(0))); \
+                   y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| {
+                diffuse_bake::sample_baked(&Frame(test_sprite(), x[0] as u32), v2(&x[1..])).to_array().to_vec()
+            },
+            cases: with_choices(3, &[(-1.2, 1.2); 2]),
+            tolerance: 1e-5,
+            // The last puts the border between texels, where faces of the cube would show a seam.
+            mutants: &[
+                ("low, layer, 0)", "low, 0, 0)"),
+                ("position * 0.5 + 0.5", "vec2f(position.x, -position.y) * 0.5 + 0.5"),
+                (
+                    "let texel = saturate(position * 0.5 + 0.5) * (size - 1.0)",
+                    "let texel = saturate(position * 0.5 + 0.5) * size - 0.5",
+                ),
+            ],
         },
         Formula {
             name: "spherical_harmonics",

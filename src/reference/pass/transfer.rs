@@ -4,7 +4,7 @@ use glam::{IVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use crate::assets::picture::Picture;
 use crate::formula::colour::{bounded_light, overdraw_colour};
-use crate::formula::diffuse_bake::{cube_coordinate, motif_position, spherical_harmonics};
+use crate::formula::diffuse_bake::{cube_coordinate, motif_position, sample_baked, spherical_harmonics};
 use crate::formula::lighting::coverage;
 use crate::formula::normal::normal_from_accumulation;
 use crate::formula::ramp::sample_ramp_2d;
@@ -14,27 +14,15 @@ use crate::reference::blend_unit::premultiplied_over;
 use crate::settings::{DiffuseMode, ShadeTree};
 
 impl Accumulated<'_> {
-    pub fn sample_baked(&self, position: Vec2, layer: usize) -> Vec3 {
-        let baked = &self.baked[layer];
-        let unit = (position * 0.5 + 0.5).clamp(Vec2::ZERO, Vec2::ONE);
-        let texel = unit * (baked.size.as_vec2() - 1.0);
-        let base = texel.floor();
-        let fraction = texel - base;
-        let at = |offset| baked.load(base.as_ivec2() + offset);
-        let bottom = at(IVec2::ZERO).lerp(at(IVec2::X), fraction.x);
-        let top = at(IVec2::Y).lerp(at(IVec2::ONE), fraction.x);
-        bottom.lerp(top, fraction.y)
-    }
-
     pub fn diffuse(&self, normal: Vec3, position: Vec3) -> Vec3 {
         let draw = self.draw;
         let light = match draw.settings.diffuse.mode {
             DiffuseMode::Ramp => draw.diffuse_from_lights(normal, position),
             DiffuseMode::Cubemap => {
                 let cube = cube_coordinate(normal);
-                self.sample_baked(cube.position, cube.face as usize)
+                sample_baked(&self.baked[cube.face as usize], cube.position)
             }
-            DiffuseMode::Motif => self.sample_baked(motif_position(normal), 0),
+            DiffuseMode::Motif => sample_baked(&self.baked[0], motif_position(normal)),
             DiffuseMode::PaintedMotif => sample_ramp_2d(&draw.material.motif, motif_position(normal) * 0.5 + 0.5),
             DiffuseMode::SphericalHarmonics => spherical_harmonics(&draw.system.spherical_harmonics, normal),
         };
