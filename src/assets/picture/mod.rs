@@ -1,8 +1,10 @@
 //! Pictures in memory, and threads over their rows; PNG in and out.
 
+mod file;
 mod png;
 
-pub use png::{Effort, MAX_SIDE, decode_png, read_png, write_file, write_png};
+pub use file::{FileIdentity, check_file, write_file};
+pub use png::{Effort, MAX_SIDE, decode_png, read_png, write_png};
 
 use std::sync::{Mutex, PoisonError};
 
@@ -37,14 +39,19 @@ impl<T: Copy + Send> Picture<T> {
         let rows = (self.size.y as usize).div_ceil(threads * 4).max(1);
         let bands = Mutex::new(self.texels.chunks_mut(rows * width).enumerate());
         let next = || bands.lock().unwrap_or_else(PoisonError::into_inner).next();
-        std::thread::scope(|scope| {
-            for _ in 0..threads {
-                scope.spawn(|| {
-                    while let Some((index, band)) = next() {
-                        f((index * rows) as u32, band);
-                    }
-                });
+        let work = || {
+            while let Some((index, band)) = next() {
+                f((index * rows) as u32, band);
             }
+        };
+        std::thread::scope(|scope| {
+            // This thread works as well; it does what is left where no other is to be had.
+            for _ in 1..threads {
+                if std::thread::Builder::new().spawn_scoped(scope, work).is_err() {
+                    break;
+                }
+            }
+            work();
         });
     }
 

@@ -6,6 +6,7 @@ use std::path::Path;
 use image::codecs::png::CompressionType;
 use image::{DynamicImage, ImageDecoder, Limits};
 
+use super::file::write_file;
 use crate::error::Error;
 
 /// Largest side of a picture that is read, pixels.
@@ -58,8 +59,7 @@ pub enum Effort {
     Small,
 }
 
-/// Writes a PNG beside its final place and moves it there, so that a reader never sees half a file and a failed write
-/// leaves the old one.
+/// Writes a PNG as [`write_file`] does.
 ///
 /// # Errors
 /// [`Error::Io`] when it cannot be written.
@@ -76,24 +76,6 @@ pub fn write_png(path: &Path, picture: &DynamicImage, effort: Effort) -> Result<
     );
     picture.write_with_encoder(encoder).map_err(|error| io(std::io::Error::other(error)))?;
     write_file(path, &bytes)
-}
-
-/// Writes a file beside its final place and moves it there.
-///
-/// # Errors
-/// [`Error::Io`] when it cannot be written.
-pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    let io = |error: std::io::Error| Error::Io { path: path.into(), error };
-    // A link stays one, and what it points to is replaced.
-    let target = std::fs::canonicalize(path).unwrap_or_else(|_| path.into());
-    let path = target.as_path();
-    let mut name = path.file_name().unwrap_or_default().to_os_string();
-    name.push(format!(".{}.partial", std::process::id()));
-    let partial = path.with_file_name(name);
-    std::fs::write(&partial, bytes).and_then(|()| std::fs::rename(&partial, path)).map_err(|error| {
-        let _ = std::fs::remove_file(&partial);
-        io(error)
-    })
 }
 
 #[cfg(test)]
