@@ -7,7 +7,7 @@ use std::time::Duration;
 use glam::{UVec2, Vec4};
 use half::f16;
 
-use crate::error::Error;
+use crate::error::{Error, FieldError};
 
 /// Far longer than a callback takes once the GPU is done.
 const READ_BACK_TIMEOUT: Duration = Duration::from_secs(10);
@@ -16,23 +16,60 @@ const READ_BACK_TIMEOUT: Duration = Duration::from_secs(10);
 const INSTALL_LINE: &str = "no graphics adapter was found; on Debian and Ubuntu \
     `apt-get install mesa-vulkan-drivers` installs a software one";
 
-fn find_adapter(backends: wgpu::Backends) -> Option<wgpu::Adapter> {
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-    descriptor.backends &= backends & wgpu::Instance::enabled_backend_features();
-    if descriptor.backends.is_empty() {
-        return None;
+/// The fastest adapter, or the one that `WGPU_ADAPTER_NAME` and `WGPU_BACKEND` choose.
+fn find_adapter() -> Result<wgpu::Adapter, Error> {
+    let variable = |name| std::env::var_os(name).unwrap_or_default().to_string_lossy().into_owned();
+    let (backends, name) = (variable("WGPU_BACKEND"), variable("WGPU_ADAPTER_NAME"));
+    let built_in = wgpu::Instance::enabled_backend_features();
+    let list = || {
+        let names: Vec<_> = wgpu::Backend::ALL.into_iter().filter(|&b| built_in.contains(b.into())).collect();
+        names.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+    };
+    let mut wanted = wgpu::Backends::all();
+    if !backends.is_empty() {
+        wanted = wgpu::Backends::from_comma_list(&backends);
+        if wanted.is_empty() {
+            return Err(FieldError::new("WGPU_BACKEND", format!("{backends:?}"), format!("some of {}", list())).into());
+        }
     }
-    let instance = wgpu::Instance::new(descriptor);
-    let name = std::env::var("WGPU_ADAPTER_NAME").unwrap_or_default().to_lowercase();
-    if name.is_empty() {
-        let options = wgpu::RequestAdapterOptions {
-            power_preference: wgpu::PowerPreference::HighPerformance,
-            ..Default::default()
-        };
-        return pollster::block_on(instance.request_adapter(&options)).ok();
+    let mut others = Vec::new();
+    // OpenGL only where nothing else is found: opening it makes noise on machines without a display.
+    for group in [wgpu::Backends::PRIMARY, wgpu::Backends::SECONDARY] {
+        let group = group & wanted & built_in;
+        if group.is_empty() {
+            continue;
+        }
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends: group,
+            ..wgpu::InstanceDescriptor::new_without_display_handle_from_env()
+        });
+        if name.is_empty() {
+            let options = wgpu::RequestAdapterOptions {
+                power_preference: wgpu::PowerPreference::HighPerformance,
+                ..Default::default()
+            };
+            if let Ok(adapter) = pollster::block_on(instance.request_adapter(&options)) {
+                return Ok(adapter);
+            }
+        } else {
+            for adapter in pollster::block_on(instance.enumerate_adapters(group)) {
+                let info = adapter.get_info();
+                if info.name.to_lowercase().contains(&name.to_lowercase()) {
+                    return Ok(adapter);
+                }
+                others.push(format!("{:?} ({})", info.name, info.backend));
+            }
+        }
     }
-    let adapters = pollster::block_on(instance.enumerate_adapters(backends));
-    adapters.into_iter().find(|adapter| adapter.get_info().name.to_lowercase().contains(&name))
+    if !others.is_empty() {
+        let expected = format!("a part of {}", others.join(" or "));
+        return Err(FieldError::new("WGPU_ADAPTER_NAME", format!("{name:?}"), expected).into());
+    }
+    let mut reason = INSTALL_LINE.to_owned();
+    if !backends.is_empty() {
+        reason += &format!("; WGPU_BACKEND allows only {backends:?} of {}", list());
+    }
+    Err(Error::NoDevice(reason))
 }
 
 /// A device with its failures caught: nothing panics when the driver gives up.
@@ -65,7 +102,8 @@ impl Headless {
     /// Takes the fastest adapter; `WGPU_ADAPTER_NAME` and `WGPU_BACKEND` choose another.
     ///
     /// # Errors
-    /// [`Error::NoDevice`] with the line that installs a software adapter.
+    /// [`Error::NoDevice`] with the line that installs a software adapter; [`Error::Field`] when one of the variables chooses
+    /// what there is not.
     pub fn new() -> Result<Self, Error> {
         Self::with(wgpu::Limits::default(), wgpu::Features::empty())
     }
@@ -74,11 +112,9 @@ impl Headless {
     /// the adapter can make them; and with those of `features` that the adapter has. haze needs none.
     ///
     /// # Errors
-    /// [`Error::NoDevice`], also when the adapter has less than these limits.
+    /// As [`Headless::new`]; [`Error::NoDevice`] also when the adapter has less than these limits.
     pub fn with(limits: wgpu::Limits, features: wgpu::Features) -> Result<Self, Error> {
-        // OpenGL only where nothing else is found: opening it makes noise on machines without a display.
-        let adapter = [wgpu::Backends::PRIMARY, wgpu::Backends::SECONDARY].into_iter().find_map(find_adapter);
-        let adapter = adapter.ok_or_else(|| Error::NoDevice(INSTALL_LINE.into()))?;
+        let adapter = find_adapter()?;
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("haze headless"),
             required_limits: limits.using_resolution(adapter.limits()),
@@ -96,15 +132,21 @@ impl Headless {
             }
         });
         let errors = failures.clone();
-        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| errors.record(error.to_string())));
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            errors.record(match error {
+                wgpu::Error::OutOfMemory { .. } => "out of memory; a smaller picture takes less".into(),
+                error => error.to_string(),
+            });
+        }));
         Ok(Self { adapter, device, queue, failures })
     }
 
-    /// Adapter, backend and driver, in one line.
+    /// Adapter, backend and driver, and whether it is software, in one line.
     pub fn description(&self) -> String {
         let info = self.adapter.get_info();
         let driver = format!("{} {}", info.driver, info.driver_info);
-        format!("{} ({:?}, {})", info.name, info.backend, driver.trim())
+        let software = if info.device_type == wgpu::DeviceType::Cpu { ", software" } else { "" };
+        format!("{} ({:?}, {}{software})", info.name, info.backend, driver.trim())
     }
 
     /// True if the adapter can draw to a format, which OpenGL does not promise of every one.

@@ -12,7 +12,8 @@ pub fn run() -> Result<(), Error> {
             say!("gpu: {}", gpu.description())?;
             say!("largest texture: {} pixels a side", gpu.device.limits().max_texture_dimension_2d)?;
         }
-        Err(error) => say!("gpu: none ({error})")?,
+        Err(Error::NoDevice(reason)) => say!("gpu: none ({reason})")?,
+        Err(error) => return Err(error),
     }
     say!("cpu: {} threads", std::thread::available_parallelism().map_or(1, usize::from))
 }
