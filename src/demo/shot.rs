@@ -29,8 +29,9 @@ impl Shot {
     ///
     /// # Errors
     /// As [`Preset::load`] and [`MaterialNames::load`](crate::preset::MaterialNames::load).
-    pub fn load(name_or_path: &str, size: UVec2) -> Result<Self, Error> {
-        Self::new(Preset::load(name_or_path)?, Path::new(name_or_path), size)
+    pub fn load(name_or_path: impl AsRef<Path>, size: UVec2) -> Result<Self, Error> {
+        let path = name_or_path.as_ref();
+        Self::new(Preset::load(path)?, path, size)
     }
 
     /// Loads the pictures of a preset, which are looked for beside `path`.

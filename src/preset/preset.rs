@@ -127,16 +127,16 @@ impl Preset {
     ///
     /// # Errors
     /// [`Error::Io`], [`Error::Json`] with line and column, or [`Error::JsonField`] with the field and its range.
-    pub fn load(name_or_path: &str) -> Result<Self, Error> {
-        if let Some(preset) = builtin::find(builtin::PRESETS, name_or_path) {
+    pub fn load(name_or_path: impl AsRef<Path>) -> Result<Self, Error> {
+        let path = name_or_path.as_ref();
+        if let Some(preset) = path.to_str().and_then(|name| builtin::find(builtin::PRESETS, name)) {
             return Self::parse(&builtin::path(preset.name), &String::from_utf8_lossy(preset.bytes));
         }
-        let path = Path::new(name_or_path);
         let looks_like_a_name = path.extension().is_none() && path.components().count() == 1;
         if looks_like_a_name && !path.exists() {
             let names: Vec<_> = builtin::PRESETS.iter().map(|preset| preset.name).collect();
             let expected = format!("one of {}, or the path of a JSON file", names.join(", "));
-            return Err(FieldError::new("preset", format!("{name_or_path:?}"), expected).into());
+            return Err(FieldError::new("preset", format!("{path:?}"), expected).into());
         }
         json::load(path, PRESET_VERSION, Self::validate)
     }
