@@ -1,22 +1,14 @@
 //! Text on pictures.
 
-use ab_glyph::{Font, FontRef, PxScale, ScaleFont, point};
+use ab_glyph::{Font, FontRef, GlyphId, InvalidFont, PxScale, ScaleFont, point};
 use image::{Rgb, RgbImage};
 
 /// Writes `text` with its upper left corner at (`x`, `y`); what does not fit is cut off.
 pub fn draw_text(picture: &mut RgbImage, x: f32, y: f32, height: f32, colour: Rgb<u8>, text: &str) {
-    let Ok(font) = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT) else { return };
-    let scaled = font.as_scaled(PxScale::from(height));
-    let mut pen = point(x, y + scaled.ascent());
-    let mut previous = None;
-    for character in text.chars() {
-        let id = scaled.glyph_id(character);
-        if let Some(previous) = previous {
-            pen.x += scaled.kern(previous, id);
-        }
-        previous = Some(id);
-        let advance = scaled.h_advance(id);
-        if let Some(outline) = font.outline_glyph(id.with_scale_and_position(height, pen)) {
+    let Ok(font) = font() else { return };
+    let baseline = y + font.as_scaled(PxScale::from(height)).ascent();
+    for (id, left) in place(&font, height, text).0 {
+        if let Some(outline) = font.outline_glyph(id.with_scale_and_position(height, point(x + left, baseline))) {
             let bounds = outline.px_bounds();
             outline.draw(|dx, dy, coverage| {
                 let (px, py) = (bounds.min.x as i64 + i64::from(dx), bounds.min.y as i64 + i64::from(dy));
@@ -31,6 +23,42 @@ pub fn draw_text(picture: &mut RgbImage, x: f32, y: f32, height: f32, colour: Rg
                 }
             });
         }
-        pen.x += advance;
     }
+}
+
+/// Breaks `text` between words into lines of at most `width` pixels; a word that is wider has a line of its own.
+pub fn wrap(height: f32, width: f32, text: &str) -> Vec<String> {
+    let Ok(font) = font() else { return Vec::new() };
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        if let Some(line) = lines.last_mut() {
+            let longer = format!("{line} {word}");
+            if place(&font, height, &longer).1 <= width {
+                *line = longer;
+                continue;
+            }
+        }
+        lines.push(word.to_owned());
+    }
+    lines
+}
+
+fn font() -> Result<FontRef<'static>, InvalidFont> {
+    FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT)
+}
+
+/// Glyphs with their left ends, and the width of all.
+fn place(font: &FontRef<'_>, height: f32, text: &str) -> (Vec<(GlyphId, f32)>, f32) {
+    let scaled = font.as_scaled(PxScale::from(height));
+    let mut x = 0.0;
+    let mut previous = None;
+    let mut glyphs = Vec::new();
+    for id in text.chars().map(|character| scaled.glyph_id(character)) {
+        if let Some(previous) = previous.replace(id) {
+            x += scaled.kern(previous, id);
+        }
+        glyphs.push((id, x));
+        x += scaled.h_advance(id);
+    }
+    (glyphs, x)
 }

@@ -3,12 +3,14 @@
 use glam::UVec2;
 use image::{Rgb, RgbImage, imageops};
 
-use super::label::draw_text;
+use super::label::{draw_text, wrap};
 
 const MARGIN: u32 = 12;
 /// Height of a label.
 const LABEL: u32 = 28;
-/// Height of the line at the bottom.
+/// Height of what is written.
+const TEXT: f32 = 20.0;
+/// Height of a line at the bottom.
 const FOOT: u32 = 24;
 pub const INK: Rgb<u8> = Rgb([225, 225, 220]);
 pub const PAPER: Rgb<u8> = Rgb([24, 25, 28]);
@@ -32,16 +34,49 @@ impl Sheet {
     /// Puts a picture and its label into a cell.
     pub fn place(&mut self, index: u32, label: &str, picture: &RgbImage) {
         let corner = UVec2::new(index % self.columns, index / self.columns) * self.cell + MARGIN;
-        draw_text(&mut self.picture, corner.x as f32 + 2.0, corner.y as f32, 20.0, INK, label);
+        draw_text(&mut self.picture, corner.x as f32 + 2.0, corner.y as f32, TEXT, INK, label);
         imageops::replace(&mut self.picture, picture, i64::from(corner.x), i64::from(corner.y + LABEL));
     }
 
-    /// Adds a line below the cells.
+    /// Adds a text below the cells, over as many lines as it takes.
     pub fn add_foot(&mut self, text: &str) {
         let (width, height) = self.picture.dimensions();
-        let mut picture = RgbImage::from_pixel(width, height + FOOT, PAPER);
+        let left = MARGIN as f32 + 2.0;
+        let lines = wrap(TEXT, width as f32 - 2.0 * left, text);
+        let mut picture = RgbImage::from_pixel(width, height + FOOT * lines.len() as u32, PAPER);
         imageops::replace(&mut picture, &self.picture, 0, 0);
-        draw_text(&mut picture, MARGIN as f32 + 2.0, height as f32 - 4.0, 20.0, INK, text);
+        for (line, text) in (0..).zip(&lines) {
+            draw_text(&mut picture, left, (height + FOOT * line) as f32 - 4.0, TEXT, INK, text);
+        }
         self.picture = picture;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_foot_is_on_the_sheet_whatever_its_width() {
+        let text = "ms: all sprites once, median of 5 rounds; 450x253, llvmpipe (LLVM 15.0.6, 256 bits) (Vulkan, \
+            llvmpipe Mesa 22.3.6 (LLVM 15.0.6), software)";
+        // Ink, and whether any is beyond the margin at the right.
+        let ink = |side: u32| {
+            let mut sheet = Sheet::new(UVec2::new(side, 10), 2, 2);
+            let above = sheet.picture.height();
+            sheet.add_foot(text);
+            let margin = sheet.picture.width() - MARGIN;
+            let inked: Vec<_> =
+                sheet.picture.enumerate_pixels().filter(|(_, y, p)| *y >= above && **p != PAPER).collect();
+            (inked.len(), inked.iter().any(|(x, ..)| *x >= margin), (sheet.picture.height() - above) / FOOT)
+        };
+        let (whole, _, lines) = ink(900);
+        assert_eq!(lines, 1);
+        for side in [450, 300, 100] {
+            let (inked, beyond, lines) = ink(side);
+            assert!(!beyond && lines > 1, "{side}: {lines} lines");
+            // Glyphs stand elsewhere between pixels, no more.
+            assert!(inked.abs_diff(whole) < whole / 10, "{side}: {inked} pixels for {whole}");
+        }
     }
 }
