@@ -3,12 +3,24 @@
 #![cfg(feature = "app")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
+#[path = "cli/drivers.rs"]
+mod drivers;
+#[path = "cli/names.rs"]
+mod names;
+#[path = "cli/outputs.rs"]
+mod outputs;
+#[path = "cli/streams.rs"]
+mod streams;
+
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::{Command, Output};
 
 use haze::settings::ShadeTree;
 use tempfile::TempDir;
+
+/// A recipe that is soon baked.
+const MOTIF: &str = r##"{"version": 1, "size": 8, "ambient": "#000000", "lights": []}"##;
 
 fn haze(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_haze"))
@@ -93,7 +105,10 @@ fn bad_values_are_refused_in_one_line_with_field_value_and_range() {
         ("--size", "1280", "WxH"),
         ("--size", "9000x9000", "1 to 8192"),
         ("--time", "soon", "-100000 to 100000"),
+        ("--size", "-1x3", "1 to 8192"),
         ("--time", "nan", "-100000 to 100000"),
+        ("--time", "-inf", "-100000 to 100000"),
+        ("--scale", "-a", "1 to 16"),
         ("--view", "colour", "final, combined, diffuse"),
         ("--path", "tiled", "auto, raster, forward"),
         ("--backend", "tpu", "auto, gpu, cpu"),
@@ -177,7 +192,7 @@ fn without_an_adapter_the_cpu_draws_and_says_so() {
     assert!(render(folder.path(), &[]).status.success());
     assert_eq!(on_cpu, std::fs::read(folder.path().join("out.png")).unwrap());
     let refused = blind("gpu");
-    assert_eq!(refused.status.code(), Some(1));
+    assert_eq!(refused.status.code(), Some(2));
     assert!(stderr(&refused).contains("apt-get install mesa-vulkan-drivers"));
 }
 
@@ -250,8 +265,28 @@ fn techniques_are_on_one_sheet_with_their_costs() {
         assert!(width == 2 * (64 + 12) + 12 && foot >= 24 && foot.is_multiple_of(24), "{width}x{height}");
         assert_eq!(size_of(&folder.path().join("c.png")), (800, 360));
     }
+    let help = String::from_utf8(haze(folder.path(), &["techniques", "--help"]).stdout).unwrap();
+    assert!(help.contains("Twice the size of a picture on the sheet"), "{help}");
     let unknown = refusal(folder.path(), &["render", "--technique", "softest", "-o", "a.png"]);
     assert!(unknown.contains("volumetric_soft"), "{unknown}");
+}
+
+#[test]
+fn without_smoke_in_sight_there_are_no_costs() {
+    let folder = folder();
+    let run = |time: &str| {
+        let arguments =
+            ["techniques", "explosion", "--size", "400x40", "--backend", "cpu", "--time", time, "-o", "t.png"];
+        let output = haze(folder.path(), &arguments);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let sheet = haze::picture::read_png(&folder.path().join("t.png")).unwrap().to_rgb8();
+        // Behind the name of the first cell, `hard`, up to its picture.
+        let costs = image::imageops::crop_imm(&sheet, 70, 12, 130, 28).to_image();
+        let paper = *sheet.get_pixel(0, 0);
+        (stderr(&output), costs.pixels().any(|pixel| *pixel != paper))
+    };
+    assert_eq!(run("0.5"), (String::new(), true));
+    assert_eq!(run("1000"), ("haze: no smoke in sight: costs are left out\n".into(), false));
 }
 
 #[test]
@@ -266,10 +301,12 @@ fn the_experiment_prints_the_papers_figures_beside_its_own() {
             let rows = table.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
             let row = rows.into_iter().find(|row| row[..2] == [source, technique]).unwrap();
             assert_eq!(row[5..], [fps, ratio], "{table}");
+            assert_eq!(row[3], "-", "one round has no spread: {table}");
             assert!(row[2].parse::<f64>().unwrap() > 0.0, "{table}");
         }
     }
-    for bad in [["--loops", "0"], ["--rounds", "x"]] {
+    assert!(table.contains("one round"), "{table}");
+    for bad in [["--loops", "0"], ["--loops", "-1"], ["--rounds", "x"]] {
         refusal(folder.path(), &[&["bench", "soft-particles"][..], &bad].concat());
     }
 }

@@ -1,5 +1,6 @@
 //! `haze ramp bake` and `haze sprite bake`: pictures from their recipes.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
@@ -11,7 +12,7 @@ use haze::sprite::bake::SpriteRecipe;
 use haze::{Error, FieldError};
 use image::DynamicImage;
 
-use super::output::{check_target, say};
+use super::output::{Failures, Files, say};
 
 #[derive(Args)]
 pub struct RampArguments {
@@ -45,49 +46,81 @@ enum SpriteCommand {
     },
 }
 
-pub fn run_ramp(arguments: &RampArguments) -> Result<(), Error> {
+pub fn run_ramp(arguments: &RampArguments) -> Result<(), Failures> {
     let RampCommand::Bake { recipes } = &arguments.command;
-    for recipe in recipes {
-        let picture = if let Some(output) = output_of(recipe, ".ramp.json") {
-            (output, RampRecipe::load(recipe)?.bake()?)
-        } else if let Some(output) = output_of(recipe, ".motif.json") {
-            (output, MotifRecipe::load(recipe)?.bake()?)
-        } else {
-            let expected = "a *.ramp.json or *.motif.json file";
-            return Err(FieldError::new("recipe", recipe.display(), expected).into());
-        };
-        write(&picture.0, &picture.1)?;
-    }
-    Ok(())
+    let load = |path: &Path, kind: &str| match kind {
+        "ramp" => Some(RampRecipe::load(path).map(Recipe::Ramp)),
+        "motif" => Some(MotifRecipe::load(path).map(Recipe::Motif)),
+        _ => None,
+    };
+    run(recipes, "a *.ramp.json or *.motif.json file", load)
 }
 
-pub fn run_sprite(arguments: &SpriteArguments) -> Result<(), Error> {
+pub fn run_sprite(arguments: &SpriteArguments) -> Result<(), Failures> {
     let SpriteCommand::Bake { recipes } = &arguments.command;
-    for recipe in recipes {
-        if let Some(output) = output_of(recipe, ".sprite.json") {
-            let detail = output.with_extension("detail.png");
-            check_target(&output)?;
-            check_target(&detail)?;
-            let baked = SpriteRecipe::load(recipe)?.bake()?;
-            write(&output, &baked.picture.into())?;
-            write(&detail, &baked.detail.into())?;
-        } else if let Some(output) = output_of(recipe, ".noise.json") {
-            write(&output, &NoiseRecipe::load(recipe)?.bake()?.into())?;
-        } else {
-            let expected = "a *.sprite.json or *.noise.json file";
-            return Err(FieldError::new("recipe", recipe.display(), expected).into());
+    let load = |path: &Path, kind: &str| match kind {
+        "sprite" => Some(SpriteRecipe::load(path).map(Recipe::Sprite)),
+        "noise" => Some(NoiseRecipe::load(path).map(Recipe::Noise)),
+        _ => None,
+    };
+    run(recipes, "a *.sprite.json or *.noise.json file", load)
+}
+
+enum Recipe {
+    Ramp(RampRecipe),
+    Motif(MotifRecipe),
+    Sprite(SpriteRecipe),
+    Noise(NoiseRecipe),
+}
+
+impl Recipe {
+    /// Extensions of the pictures, in place of the recipe's.
+    fn extensions(&self) -> &'static [&'static str] {
+        match self {
+            Self::Sprite(_) => &["png", "detail.png"],
+            _ => &["png"],
+        }
+    }
+
+    /// As many pictures as extensions.
+    fn bake(&self) -> Result<Vec<DynamicImage>, FieldError> {
+        Ok(match self {
+            Self::Ramp(recipe) => vec![recipe.bake()?],
+            Self::Motif(recipe) => vec![recipe.bake()?],
+            Self::Noise(recipe) => vec![recipe.bake()?.into()],
+            Self::Sprite(recipe) => {
+                let baked = recipe.bake()?;
+                vec![baked.picture.into(), baked.detail.into()]
+            }
+        })
+    }
+}
+
+/// Bakes recipes if all are good. `load` knows kinds: `ramp` of `fire.ramp.json`.
+fn run(
+    recipes: &[PathBuf],
+    expected: &str,
+    load: impl Fn(&Path, &str) -> Option<Result<Recipe, Error>>,
+) -> Result<(), Failures> {
+    let mut files = Files::read(recipes);
+    let (jobs, failures) = Failures::of_each(recipes, |path| {
+        let refuse = || Error::from(FieldError::new("recipe", path.display(), expected));
+        let is_json = path.extension().is_some_and(|extension| extension == "json");
+        // `fire.ramp`, of `fire.ramp.json`.
+        let name = Path::new(path.file_stem().filter(|_| is_json).unwrap_or_default());
+        let kind = name.extension().and_then(OsStr::to_str).unwrap_or_default();
+        let recipe = load(path, kind).ok_or_else(refuse)??;
+        let output = |extension| path.with_file_name(name.with_extension(extension));
+        let outputs: Vec<_> = recipe.extensions().iter().map(output).collect();
+        outputs.iter().try_for_each(|output| files.write("output", output))?;
+        Ok((recipe, outputs))
+    });
+    failures.into_result()?;
+    for (recipe, outputs) in jobs {
+        for (picture, output) in recipe.bake().map_err(Error::from)?.iter().zip(&outputs) {
+            write_png(output, picture, Effort::Small)?;
+            say!("{}: {}x{}", output.display(), picture.width(), picture.height())?;
         }
     }
     Ok(())
-}
-
-fn output_of(recipe: &Path, kind: &str) -> Option<PathBuf> {
-    let name = recipe.file_name()?.to_str()?.strip_suffix(kind).filter(|name| !name.is_empty())?;
-    Some(recipe.with_file_name(format!("{name}.png")))
-}
-
-fn write(output: &Path, picture: &DynamicImage) -> Result<(), Error> {
-    check_target(output)?;
-    write_png(output, picture, Effort::Small)?;
-    say!("{}: {}x{}", output.display(), picture.width(), picture.height())
 }

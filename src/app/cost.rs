@@ -19,11 +19,16 @@ impl Cost {
         if times.len() % 2 == 1 { times[middle] } else { 0.5 * (times[middle - 1] + times[middle]) }
     }
 
-    /// Half the distance between the quartiles, as a share of the median.
-    pub fn spread(&self) -> f64 {
+    /// Half the distance between the quartiles, as a share of the median; none of a single time.
+    pub fn spread(&self) -> Option<f64> {
         let at = |share: f64| self.0[((self.0.len() - 1) as f64 * share).round() as usize];
-        0.5 * (at(0.75) - at(0.25)) / self.median()
+        (self.0.len() > 1).then(|| 0.5 * (at(0.75) - at(0.25)) / self.median())
     }
+}
+
+/// What a figure is of so many rounds.
+pub fn median_of(rounds: u32) -> String {
+    if rounds == 1 { "one round".into() } else { format!("median of {rounds} rounds") }
 }
 
 /// Measures every variant in every round, after a round that is not counted. `measure` gives seconds.

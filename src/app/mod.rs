@@ -7,7 +7,9 @@ mod bake;
 mod bench;
 mod cost;
 mod info;
+mod inputs;
 mod label;
+mod memory;
 mod options;
 mod output;
 mod plot;
@@ -19,11 +21,14 @@ mod techniques;
 mod tonemap;
 
 use std::ffi::OsString;
+use std::io::Write;
 use std::process::ExitCode;
 
-use clap::error::ErrorKind;
+use clap::error::{ContextValue, ErrorKind};
 use clap::{Parser, Subcommand};
 use haze::Error;
+
+use output::{Failures, complain, one_line, write_text};
 
 /// Lit, soft smoke for wgpu: accumulated small, lit once per pixel, painted by ramps.
 #[derive(Parser)]
@@ -55,60 +60,66 @@ enum Command {
 
 /// Runs the program and reports how it went.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("error")).init();
+    // wgpu-hal logs every driver that it looks for and does not find; that there is none at all is an error of ours.
+    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("error,wgpu_hal=off")).init();
     let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
         Err(help) if !help.use_stderr() => {
-            return report(output::say!("{help}"));
+            // The text ends its last line itself.
+            return report(write_text(help.to_string().trim_end()).map_err(Failures::from));
         }
         Err(help) if help.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            eprint!("{help}");
+            let _ = write!(std::io::stderr().lock(), "{help}");
             return ExitCode::from(2);
         }
         Err(error) => {
-            eprintln!("{}", usage_line(&error));
+            complain(usage_line(error));
             return ExitCode::from(2);
         }
     };
-    let done = match cli.command {
-        Command::Render(arguments) => render::run(&arguments),
-        Command::ShadeTree(arguments) => shade_tree::run(&arguments),
-        Command::Techniques(arguments) => techniques::run(&arguments),
-        Command::Bench(arguments) => bench::run(&arguments),
+    let one = |done: Result<(), Error>| done.map_err(Failures::from);
+    report(match cli.command {
+        Command::Render(arguments) => one(render::run(&arguments)),
+        Command::ShadeTree(arguments) => one(shade_tree::run(&arguments)),
+        Command::Techniques(arguments) => one(techniques::run(&arguments)),
+        Command::Bench(arguments) => one(bench::run(&arguments)),
         Command::Preset(arguments) => preset::run(&arguments),
         Command::Ramp(arguments) => bake::run_ramp(&arguments),
         Command::Sprite(arguments) => bake::run_sprite(&arguments),
-        Command::Info => info::run(),
-    };
-    report(done)
+        Command::Info => one(info::run()),
+    })
 }
 
-fn report(done: Result<(), Error>) -> ExitCode {
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("haze: {error}");
-            ExitCode::from(exit_code(&error))
-        }
-    }
+fn report(done: Result<(), Failures>) -> ExitCode {
+    let Err(failures) = done else { return ExitCode::SUCCESS };
+    failures.errors().iter().for_each(complain);
+    ExitCode::from(failures.errors().iter().map(exit_code).max().unwrap_or_default())
 }
 
 /// clap explains over several lines; the first says what is wrong and what would be right.
-fn usage_line(error: &clap::Error) -> String {
+fn usage_line(mut error: clap::Error) -> String {
+    // What was given may have line breaks of its own.
+    let given = |(kind, value): (_, &_)| match value {
+        ContextValue::String(given) => Some((kind, ContextValue::String(one_line(given)))),
+        _ => None,
+    };
+    for (kind, value) in error.context().filter_map(given).collect::<Vec<_>>() {
+        error.insert(kind, value);
+    }
     let text = error.to_string();
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
     let first = lines.next().unwrap_or_default().trim_start_matches("error: ");
     // Lists ("the following required arguments were not provided:", "[possible values: …]") go on one line more.
     let more = lines.next().filter(|line| first.ends_with(':') || line.starts_with("[possible values"));
     match more {
-        Some(more) => format!("haze: {first} {more}"),
-        None => format!("haze: {first}"),
+        Some(more) => format!("{first} {more}"),
+        None => first.to_owned(),
     }
 }
 
 fn exit_code(error: &Error) -> u8 {
     match error {
-        Error::Field(_) | Error::Image { .. } | Error::Json { .. } | Error::JsonField { .. } => 2,
+        Error::Field(_) | Error::Image { .. } | Error::Json { .. } | Error::JsonField { .. } | Error::NoDevice(_) => 2,
         // A file that is not there, or may not be read, is bad input; a full disk is not.
         Error::Io { error, .. } => match error.kind() {
             std::io::ErrorKind::NotFound
@@ -117,6 +128,6 @@ fn exit_code(error: &Error) -> u8 {
             | std::io::ErrorKind::IsADirectory => 2,
             _ => 1,
         },
-        Error::NoDevice(_) | Error::Device(_) => 1,
+        Error::Device(_) => 1,
     }
 }

@@ -14,13 +14,15 @@ use haze::settings::{Choice, Path, Technique};
 use haze::{Error, FieldError};
 use image::RgbImage;
 
-use super::output::{check_target, say};
+use super::inputs::pictures_of;
+use super::memory::check_memory;
+use super::output::{Files, complain, say};
 
 /// How a picture is drawn, whatever it shows.
 #[derive(Args)]
 pub struct RunArguments {
     /// Size of the picture, pixels.
-    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size, allow_hyphen_values = true)]
     pub size: UVec2,
     /// How smoke reaches the picture; the preset's own if not given.
     #[arg(long, value_parser = choices::<Path>())]
@@ -34,20 +36,20 @@ pub struct RunArguments {
 #[derive(Args)]
 pub struct ShotArguments {
     /// A built-in preset's name (see `haze preset list`), or the path of a JSON file.
-    preset: Option<String>,
+    preset: Option<PathBuf>,
     #[command(flatten)]
     pub run: RunArguments,
     /// Seconds into the emission; the preset's own if not given.
-    #[arg(long, value_name = "S", value_parser = parse_time, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", value_parser = parse_time, allow_hyphen_values = true)]
     time: Option<f32>,
     /// Pixels per texel of the accumulation target, 1 to 16; the preset's own if not given.
-    #[arg(long, value_name = "N", value_parser = parse_scale, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = parse_scale, allow_hyphen_values = true)]
     scale: Option<u32>,
     /// How sprites meet the scene; the preset's own if not given.
     #[arg(long, value_name = "T", value_parser = choices::<Technique>())]
     pub technique: Option<Technique>,
     /// Seed of every emitter; the preset's own if not given.
-    #[arg(long, value_name = "N", value_parser = parse_seed, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = parse_seed, allow_hyphen_values = true)]
     seed: Option<u32>,
     /// The PNG to write.
     #[arg(short, long, value_name = "FILE.png")]
@@ -75,11 +77,14 @@ pub enum Backend {
 }
 
 impl ShotArguments {
-    /// Loads the preset, or the one that a subcommand shows when none is named, and applies the changes. Refuses first
-    /// an output that cannot be written.
-    pub fn load(&self, default: &str) -> Result<Shot, Error> {
-        check_target(&self.output)?;
-        let mut shot = Shot::load(self.preset.as_deref().unwrap_or(default), self.run.size)?;
+    /// Loads the preset, or the one that a subcommand shows when none is named, and applies the changes. Refuses
+    /// an output that cannot be written, this one or another that comes with the option which asks for it.
+    pub fn load(&self, default: &str, others: &[(&str, PathBuf)]) -> Result<Shot, Error> {
+        let preset = self.preset.as_deref().unwrap_or(std::path::Path::new(default));
+        let mut shot = Shot::load(preset, self.run.size)?;
+        let mut files = Files::read(pictures_of(preset, &shot.preset).iter().map(PathBuf::as_path).chain([preset]));
+        files.write("--output", &self.output)?;
+        others.iter().try_for_each(|(option, path)| files.write(option, path))?;
         if let Some(time) = self.time {
             shot.preset.time = time;
         }
@@ -107,6 +112,7 @@ impl ShotArguments {
 impl RunArguments {
     /// Opens the renderer that was asked for.
     pub fn backend(&self) -> Result<Backend, Error> {
+        check_memory(self.size)?;
         if self.backend == BackendName::Cpu {
             return Ok(Backend::Cpu);
         }
@@ -121,7 +127,7 @@ impl RunArguments {
                 Ok(Backend::Gpu(Box::new(gpu)))
             }
             Err(Error::NoDevice(reason)) if self.backend == BackendName::Auto => {
-                eprintln!("haze: rendering on the CPU: {reason}");
+                complain(format_args!("rendering on the CPU: {reason}"));
                 Ok(Backend::Cpu)
             }
             Err(error) => Err(error),

@@ -1,50 +1,119 @@
-//! What the program writes: lines on standard output, and pictures.
+//! What the program writes: lines, and the files that pictures go to.
 
-use std::fmt::Arguments;
+use std::fmt::{Arguments, Display};
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
+use haze::picture::{FileIdentity, check_file};
 use haze::{Error, FieldError};
 
-/// `println!` whose failure is an error, not a panic.
+/// `println!` of one line whose failure is an error, not a panic.
 macro_rules! say {
     ($($argument:tt)*) => { $crate::app::output::write_line(format_args!($($argument)*)) };
 }
 pub(crate) use say;
 
 pub fn write_line(line: Arguments<'_>) -> Result<(), Error> {
+    write_text(one_line(line))
+}
+
+/// Writes text of our own, of any number of lines, to standard output.
+pub fn write_text(text: impl Display) -> Result<(), Error> {
     let mut out = std::io::stdout().lock();
-    match writeln!(out, "{line}").and_then(|()| out.flush()) {
+    match writeln!(out, "{text}").and_then(|()| out.flush()) {
         // Whoever reads has enough: `haze preset schema | head`.
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
         written => written.map_err(|error| Error::Io { path: "standard output".into(), error }),
     }
 }
 
-/// Refuses a file that a picture cannot be written to, before any work is done and anything is replaced.
-pub fn check_target(path: &Path) -> Result<(), Error> {
-    let refuse = |expected: &str| Err(FieldError::new("output", path.display(), expected).into());
-    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-        return refuse("a name that ends in .png");
-    }
-    if !path.parent().is_none_or(is_folder) {
-        return refuse("a file in a folder that exists");
-    }
-    match std::fs::metadata(path) {
-        Ok(found) if !found.is_file() => refuse("a file, or a name that is free"),
-        Ok(found) if found.permissions().readonly() => refuse("a file that may be written"),
-        _ => Ok(()),
+/// Writes one line to standard error, if anyone can be told.
+pub fn complain(line: impl Display) {
+    let _ = writeln!(std::io::stderr().lock(), "haze: {}", one_line(line));
+}
+
+/// Control characters, which may come from names of files, as Rust would have them written.
+pub fn one_line(text: impl Display) -> String {
+    let escape = |c: char| if c.is_control() { c.escape_default().collect() } else { String::from(c) };
+    text.to_string().chars().map(escape).collect()
+}
+
+/// What went wrong with the files that a command was given.
+pub struct Failures(Vec<Error>);
+
+impl From<Error> for Failures {
+    fn from(error: Error) -> Self {
+        Self(vec![error])
     }
 }
 
-/// Refuses a folder that is not there.
-pub fn check_folder(folder: &Path) -> Result<(), Error> {
-    if is_folder(folder) {
-        return Ok(());
+impl Failures {
+    /// Does something with every item, whatever becomes of the others; gives what was done and what was not.
+    pub fn of_each<T, U>(
+        items: impl IntoIterator<Item = T>,
+        work: impl FnMut(T) -> Result<U, Error>,
+    ) -> (Vec<U>, Self) {
+        let (mut done, mut failures) = (Vec::new(), Vec::new());
+        for result in items.into_iter().map(work) {
+            match result {
+                Ok(value) => done.push(value),
+                Err(error) => failures.push(error),
+            }
+        }
+        (done, Self(failures))
     }
-    Err(FieldError::new("output", folder.display(), "a folder that exists").into())
+
+    pub fn into_result(self) -> Result<(), Self> {
+        if self.0.is_empty() { Ok(()) } else { Err(self) }
+    }
+
+    pub fn errors(&self) -> &[Error] {
+        &self.0
+    }
 }
 
-fn is_folder(path: &Path) -> bool {
-    path.as_os_str().is_empty() || path.is_dir()
+/// The files that a command reads and writes.
+pub struct Files {
+    inputs: Vec<FileIdentity>,
+    outputs: Vec<FileIdentity>,
+}
+
+impl Files {
+    /// Files that a command reads: to be told before those that it writes.
+    pub fn read<P: AsRef<Path>>(inputs: impl IntoIterator<Item = P>) -> Self {
+        let inputs = inputs.into_iter().map(|path| FileIdentity::of(path.as_ref())).collect();
+        Self { inputs, outputs: Vec::new() }
+    }
+
+    /// Refuses a file that a picture cannot be written to, before any work is done and anything is replaced.
+    pub fn write(&mut self, option: &str, path: &Path) -> Result<(), Error> {
+        let refuse = |expected: &str| Err(FieldError::new(option, path.display(), expected).into());
+        if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+            return refuse("a name that ends in .png");
+        }
+        if !path.parent().is_none_or(|folder| folder.as_os_str().is_empty() || folder.is_dir()) {
+            return refuse("a file in a folder that exists");
+        }
+        // `a.png/` and `a.png/.` have the name `a.png`, and mean a folder.
+        let name = path.file_name().unwrap_or_default().as_encoded_bytes();
+        let found = std::fs::metadata(path);
+        if !path.as_os_str().as_encoded_bytes().ends_with(name) || found.as_ref().is_ok_and(|found| !found.is_file()) {
+            return refuse("a file, or a name that is free");
+        }
+        if found.is_ok_and(|found| found.permissions().readonly()) {
+            return refuse("a file that may be written");
+        }
+        if let Err(error) = check_file(path) {
+            return refuse(&format!("a file that can be written ({error})"));
+        }
+        let identity = FileIdentity::of(path);
+        if self.inputs.contains(&identity) {
+            return refuse("a file that is not read");
+        }
+        if self.outputs.contains(&identity) {
+            return refuse("a file of its own");
+        }
+        self.outputs.push(identity);
+        Ok(())
+    }
 }

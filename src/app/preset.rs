@@ -1,12 +1,14 @@
 //! `haze preset`: list, check, schema.
 
+use std::path::PathBuf;
+
 use clap::{Args, Subcommand};
 use glam::UVec2;
+use haze::builtin;
 use haze::demo::shot::Shot;
 use haze::preset::Preset;
-use haze::{Error, builtin};
 
-use super::output::say;
+use super::output::{Failures, say, write_text};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -22,13 +24,13 @@ enum Command {
     Check {
         /// Names or paths.
         #[arg(required = true)]
-        presets: Vec<String>,
+        presets: Vec<PathBuf>,
     },
     /// Print the JSON schema of preset files.
     Schema,
 }
 
-pub fn run(arguments: &Arguments) -> Result<(), Error> {
+pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     match &arguments.command {
         Command::List => {
             for builtin in builtin::PRESETS {
@@ -37,12 +39,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
             }
         }
         Command::Check { presets } => {
-            for name in presets {
-                Shot::load(name, UVec2::new(1280, 720))?;
-                say!("{name}: good")?;
+            let check = |name| Shot::load(name, UVec2::new(1280, 720)).map(|_| name);
+            let (good, failures) = Failures::of_each(presets, check);
+            for name in good {
+                say!("{}: good", name.display())?;
             }
+            return failures.into_result();
         }
-        Command::Schema => say!("{}", haze::preset::schema())?,
+        Command::Schema => write_text(haze::preset::schema())?,
     }
     Ok(())
 }

@@ -17,7 +17,7 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
-    let mut shot = arguments.shot.load(DEFAULT_PRESET)?;
+    let mut shot = arguments.shot.load(DEFAULT_PRESET, &[])?;
     shot.shade_tree = arguments.view;
     let backend = arguments.shot.run.backend()?;
     let picture = backend.render(&shot)?;

@@ -9,6 +9,7 @@ use super::sheet::Sheet;
 use super::tonemap::develop;
 
 #[derive(Args)]
+#[command(mut_arg("size", |size| size.help("Three times the size of a picture on the sheet, which has three to a row, pixels")))]
 pub struct Arguments {
     #[command(flatten)]
     shot: ShotArguments,
@@ -30,8 +31,8 @@ const STAGES: [(ShadeTree, &str); ShadeTree::ALL.len()] = [
 const COLUMNS: u32 = 3;
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
-    let mut shot = arguments.shot.load(DEFAULT_PRESET)?;
-    // The picture's size is the sheet's: every stage is a third of it, so that the sheet costs what a picture costs.
+    let mut shot = arguments.shot.load(DEFAULT_PRESET, &[])?;
+    // So the sheet costs what a picture costs.
     shot.size = (arguments.shot.run.size / COLUMNS).max(glam::UVec2::ONE);
     let backend = arguments.shot.run.backend()?;
     let mut sheet = Sheet::new(shot.size, COLUMNS, STAGES.len() as u32);

@@ -11,14 +11,15 @@ use haze::settings::{FadeCurve, Technique};
 use haze::{Error, FieldError};
 use image::{Rgb, RgbImage, imageops};
 
-use super::cost::{Cost, Timer, interleaved};
+use super::cost::{Cost, Timer, interleaved, median_of};
 use super::options::{Backend, ShotArguments};
-use super::output::{check_folder, check_target};
+use super::output::complain;
 use super::plot::{Curve, plot};
 use super::sheet::Sheet;
 use super::tonemap::develop;
 
 #[derive(Args)]
+#[command(mut_arg("size", |size| size.help("Twice the size of a picture on the sheet, which has two to a row, pixels")))]
 pub struct Arguments {
     #[command(flatten)]
     shot: ShotArguments,
@@ -41,59 +42,79 @@ const ROUNDS: u32 = 5;
 const ROUNDS_ON_CPU: u32 = 1;
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
-    if let Some(curves) = &arguments.curves {
-        check_target(curves)?;
-    }
-    if let Some(folder) = &arguments.cells {
-        check_folder(folder)?;
-    }
     if let Some(technique) = arguments.shot.technique {
         return Err(FieldError::new("--technique", technique.name(), "nothing: the sheet shows every technique").into());
     }
-    let mut shot = arguments.shot.load(PRESET)?;
+    let in_cells = |name: &str| arguments.cells.as_ref().map(|folder| folder.join(format!("{name}.png")));
+    let cells = variants().filter_map(|variant| Some(("--cells", in_cells(variant.name)?)));
+    let curves = arguments.curves.iter().map(|path| ("--curves", path.clone()));
+    let mut shot = arguments.shot.load(PRESET, &curves.chain(cells).collect::<Vec<_>>())?;
     let backend = arguments.shot.run.backend()?;
-    // The picture's size is the sheet's width: every cell is a part of it.
     shot.size = (arguments.shot.run.size / COLUMNS).max(UVec2::ONE);
     let cells = render_cells(&backend, &shot)?;
     let rounds = if matches!(backend, Backend::Cpu) { ROUNDS_ON_CPU } else { ROUNDS };
-    let mut timer = Timer::new(&backend, &shot)?;
-    let loops = timer.loops_that_tell(&cells[0].shot)?;
-    let costs = interleaved(rounds, cells.len(), |cell| timer.sprites(&cells[cell].shot, loops))?;
+    let costs = measure(&backend, &shot, &cells, rounds)?;
 
     let zoom = Zoom::where_they_differ(&cells[0].picture, &cells[1].picture);
     let mut sheet = Sheet::new(shot.size, COLUMNS, cells.len() as u32);
-    for (index, (cell, cost)) in (0..).zip(cells.iter().zip(&costs)) {
-        let label = format!("{}    {}", cell.name, describe(cost, &costs[0]));
-        let zoomed = zoom.inset(&cell.picture);
-        if let Some(folder) = &arguments.cells {
-            write_png(&folder.join(format!("{}.png", cell.name)), &zoomed.clone().into(), arguments.shot.effort())?;
+    for (index, cell) in (0..).zip(&cells) {
+        let mut label = cell.name.to_owned();
+        if let Some(costs) = &costs {
+            label += &format!("    {}", describe(&costs[index], &costs[0]));
         }
-        sheet.place(index, &label, &zoomed);
+        let zoomed = zoom.inset(&cell.picture);
+        if let Some(path) = in_cells(cell.name) {
+            write_png(&path, &zoomed.clone().into(), arguments.shot.effort())?;
+        }
+        sheet.place(index as u32, &label, &zoomed);
     }
-    let foot =
-        format!("ms: all sprites once, median of {rounds}; {}x{}, {}", shot.size.x, shot.size.y, backend.description());
-    sheet.add_foot(&foot);
+    let measured = match costs {
+        Some(_) => format!("ms: all sprites once, {}", median_of(rounds)),
+        None => "no smoke in sight, so no costs".into(),
+    };
+    sheet.add_foot(&format!("{measured}; {}x{}, {}", shot.size.x, shot.size.y, backend.description()));
     if let Some(curves) = &arguments.curves {
         write_png(curves, &fade_curves().into(), arguments.shot.effort())?;
     }
     arguments.shot.write(sheet.picture, &shot, &backend)
 }
 
+/// What may be in a cell.
+struct Variant {
+    name: &'static str,
+    technique: Technique,
+    /// With the fade that has no depth test.
+    always: bool,
+}
+
+/// `hard` and `soft` are the first two.
+fn variants() -> impl Iterator<Item = Variant> {
+    let plain = Technique::ALL.iter().map(|&technique| Variant { name: technique.name(), technique, always: false });
+    plain.chain([Variant { name: "soft_always", technique: Technique::Soft, always: true }])
+}
+
 struct Cell {
-    name: String,
+    name: &'static str,
     shot: Shot,
     picture: RgbImage,
 }
 
-/// Renders the shot under every technique that can show it; `hard` and `soft`, the first two, always can.
+/// Renders the shot under every technique that can show it; `hard` and `soft` always can.
 fn render_cells(backend: &Backend, shot: &Shot) -> Result<Vec<Cell>, Error> {
     let mut cells = Vec::new();
-    for (name, shot) in every_technique(shot) {
+    for variant in variants() {
+        let mut shot = shot.clone();
+        for system in &mut shot.preset.systems {
+            system.settings.technique = variant.technique;
+            if variant.always {
+                system.settings.soft_fade.curve = FadeCurve::Always;
+            }
+        }
         match backend.render(&shot) {
-            Ok(picture) => cells.push(Cell { picture: develop(&picture, &shot), name, shot }),
+            Ok(picture) => cells.push(Cell { picture: develop(&picture, &shot), name: variant.name, shot }),
             // What a sprite without a detail map, or an adapter that cannot draw to R32Float, leaves no way to show.
             Err(Error::Field(error)) if error.field.ends_with("settings.technique") => {
-                eprintln!("haze: left out: {error}");
+                complain(format_args!("left out: {error}"));
             }
             Err(error) => return Err(error),
         }
@@ -101,21 +122,18 @@ fn render_cells(backend: &Backend, shot: &Shot) -> Result<Vec<Cell>, Error> {
     Ok(cells)
 }
 
-/// Every technique, and the fade that has no depth test.
-fn every_technique(shot: &Shot) -> Vec<(String, Shot)> {
-    let with = |technique, always: bool| {
-        let mut shot = shot.clone();
-        for system in &mut shot.preset.systems {
-            system.settings.technique = technique;
-            if always {
-                system.settings.soft_fade.curve = FadeCurve::Always;
-            }
-        }
-        shot
-    };
-    let mut cells: Vec<_> = Technique::ALL.iter().map(|&t| (t.name().to_owned(), with(t, false))).collect();
-    cells.push(("soft_always".to_owned(), with(Technique::Soft, true)));
-    cells
+/// What every cell costs; nothing where no cell shows more than the bare scene.
+fn measure(backend: &Backend, shot: &Shot, cells: &[Cell], rounds: u32) -> Result<Option<Vec<Cost>>, Error> {
+    let mut bare = shot.clone();
+    bare.preset.systems.clear();
+    let bare = develop(&backend.render(&bare)?, &bare);
+    if cells.iter().all(|cell| cell.picture == bare) {
+        complain("no smoke in sight: costs are left out");
+        return Ok(None);
+    }
+    let mut timer = Timer::new(backend, shot)?;
+    let loops = timer.loops_that_tell(&cells[0].shot)?;
+    interleaved(rounds, cells.len(), |cell| timer.sprites(&cells[cell].shot, loops)).map(Some)
 }
 
 /// The fade by distance, of every curve, as the reference has it.

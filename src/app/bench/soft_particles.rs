@@ -10,19 +10,21 @@ use haze::preset::Preset;
 use haze::read_only_depth_is_supported;
 use haze::settings::{DepthSource, Technique};
 
-use crate::app::cost::{Timer, interleaved};
+use crate::app::cost::{Timer, interleaved, median_of};
 use crate::app::options::{Backend, RunArguments};
-use crate::app::output::say;
+use crate::app::output::{complain, say};
 
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
     run: RunArguments,
     /// How often the sprites are drawn in a frame.
-    #[arg(long, value_name = "N", default_value = "1000", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, value_name = "N", default_value = "1000", allow_hyphen_values = true)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=10_000))]
     loops: u32,
     /// How often each technique is measured.
-    #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value = "5", allow_hyphen_values = true)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=1000))]
     rounds: u32,
 }
 
@@ -44,7 +46,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     for source in [DepthSource::Reduced, DepthSource::Host] {
         for (technique, paper) in TECHNIQUES {
             if source == DepthSource::Host && technique == Technique::Soft && !reads_attached {
-                eprintln!("haze: left out: host soft, on a backend that cannot read the depth buffer that it tests");
+                complain("left out: host soft, on a backend that cannot read the depth buffer that it tests");
                 continue;
             }
             let mut shot = shot.clone();
@@ -61,12 +63,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
 
     let size = arguments.run.size;
     say!(
-        "two sprites of size 3.2, drawn {} times, {}x{}, on {}; median of {} rounds",
+        "two sprites of size 3.2, drawn {} times, {}x{}, on {}; {}",
         arguments.loops,
         size.x,
         size.y,
         backend.description(),
-        arguments.rounds
+        median_of(arguments.rounds)
     )?;
     say!("depth    technique      fps here   spread   / hard   fps NV 2007   / hard")?;
     let mut hard = 1.0;
@@ -75,11 +77,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
             hard = cost.median();
         }
         say!(
-            "{:<8} {:<12} {:>10.3} {:>7.1}% {:>8.2} {:>13.1} {:>8.2}",
+            "{:<8} {:<12} {:>10.3} {:>8} {:>8.2} {:>13.1} {:>8.2}",
             variant.source.name(),
             variant.technique.name(),
             1.0 / cost.median(),
-            100.0 * cost.spread(),
+            cost.spread().map_or("-".into(), |spread| format!("{:.1}%", 100.0 * spread)),
             cost.median() / hard,
             variant.paper,
             TECHNIQUES[0].1 / variant.paper

@@ -1,0 +1,32 @@
+//! The files that a shot is read from.
+
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+use glam::Vec3;
+use haze::preset::Preset;
+use haze::settings::{FieldVisitor, Fields, PictureRole};
+
+/// The pictures beside a preset's file that it names.
+pub fn pictures_of(path: &Path, preset: &Preset) -> Vec<PathBuf> {
+    let mut names = Names(Vec::new());
+    preset.clone().visit(&mut names);
+    names.0.iter().map(|name| path.with_file_name(name)).collect()
+}
+
+struct Names(Vec<String>);
+
+impl FieldVisitor for Names {
+    fn number(&mut self, _: &'static str, _: &mut f32, _: RangeInclusive<f32>, _: &'static str) {}
+    fn integer(&mut self, _: &'static str, _: &mut u32, _: RangeInclusive<u32>, _: &'static str) {}
+    fn vector(&mut self, _: &'static str, _: &mut Vec3, _: RangeInclusive<f32>, _: &'static str) {}
+    fn picture(&mut self, _: &'static str, name: &mut String, _: PictureRole) {
+        self.0.push(name.clone());
+    }
+    fn group(&mut self, _: &'static str, fields: &mut dyn Fields) {
+        fields.visit(self);
+    }
+    fn item(&mut self, _: &'static str, _: usize, fields: &mut dyn Fields) {
+        fields.visit(self);
+    }
+}
