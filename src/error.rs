@@ -37,6 +37,16 @@ pub enum Error {
         reason: String,
     },
 
+    /// A picture that a preset names could not be used.
+    #[error("{named_by}: {error}")]
+    Picture {
+        /// The field that names it, after the preset's file and the system where they are known:
+        /// `my.json: systems[0].material.sprite`.
+        named_by: String,
+        /// What is wrong with the picture.
+        error: Box<Error>,
+    },
+
     /// A preset or gradient file could not be used.
     #[error("{}:{line}:{column}: {reason}", path.display())]
     Json {

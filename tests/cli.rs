@@ -379,7 +379,7 @@ fn a_preset_that_cannot_be_drawn_is_not_called_good() {
     let ignored = preset(r#"{"columns": 2}"#, "soft");
     assert!(ignored.contains("material.columns and rows: 2x1"), "{ignored}");
     let missing = preset(r#"{"noise": "none.png"}"#, "soft");
-    assert!(missing.contains("none.png: ") && missing.contains("(material.noise)"), "{missing}");
+    assert!(missing.contains("own.json: systems[0].material.noise: none.png: "), "{missing}");
     let outside = preset(r#"{"sprite": "mine.png", "detail": "../x.png"}"#, "soft");
     assert!(outside.contains("expected a PNG inside the preset's folder"), "{outside}");
 }

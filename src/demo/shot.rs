@@ -1,6 +1,6 @@
 //! A preset with its pictures loaded: what there is to draw, whoever draws it.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::UVec2;
 
@@ -28,7 +28,7 @@ impl Shot {
     /// Loads a preset, built in or from a file, and its pictures.
     ///
     /// # Errors
-    /// As [`Preset::load`] and [`MaterialNames::load`](crate::preset::MaterialNames::load).
+    /// As [`Preset::load`] and [`Preset::load_materials`].
     pub fn load(name_or_path: impl AsRef<Path>, size: UVec2) -> Result<Self, Error> {
         let path = name_or_path.as_ref();
         Self::new(Preset::load(path)?, path, size)
@@ -37,19 +37,9 @@ impl Shot {
     /// Loads the pictures of a preset, which are looked for beside `path`.
     ///
     /// # Errors
-    /// As [`MaterialNames::load`](crate::preset::MaterialNames::load).
+    /// As [`Preset::load_materials`].
     pub fn new(preset: Preset, path: &Path, size: UVec2) -> Result<Self, Error> {
-        let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
-        let load = |(index, system): (usize, &PresetSystem)| {
-            system.material.load(&folder).map_err(|error| match error {
-                Error::Field(mut error) => {
-                    error.field = format!("systems[{index}].{}", error.field);
-                    Error::JsonField { path: path.into(), error }
-                }
-                other => other,
-            })
-        };
-        let materials: Vec<_> = preset.systems.iter().enumerate().map(load).collect::<Result<_, _>>()?;
+        let materials = preset.load_materials(path)?;
         for (index, (system, material)) in preset.systems.iter().zip(&materials).enumerate() {
             let fits = material.info().validate(index, &system.settings);
             fits.map_err(|error| Error::JsonField { path: path.into(), error })?;

@@ -2,10 +2,9 @@
 
 use std::path::{Component, Path, PathBuf};
 
+use super::pictures::Pictures;
 use crate::assets::builtin;
 use crate::assets::material::MaterialAssets;
-use crate::assets::noise::NoiseVolume;
-use crate::assets::ramp::Ramp;
 use crate::assets::sprite::{Sprite, SpriteLayout};
 use crate::error::{Error, FieldError};
 use crate::settings::{PictureRole, settings};
@@ -43,21 +42,27 @@ impl MaterialNames {
     /// Loads every picture. `folder` is the preset's; files are looked for there and nowhere else.
     ///
     /// # Errors
-    /// [`Error::Image`] or [`Error::Io`] naming the file and the field that names it, or [`Error::Field`] for a name that is neither built in nor a
-    /// file inside the folder.
+    /// [`Error::Picture`] naming the field and the file, or [`Error::Field`] for a name that is neither built in nor a file
+    /// inside the folder, or for more than [`MAX_PICTURE_BYTES`](super::MAX_PICTURE_BYTES).
     pub fn load(&self, folder: &Path) -> Result<MaterialAssets, Error> {
-        let ramp = |field, name, list| load_ramp(field, name, list, folder);
-        let (sprite, detail) = self.load_sprite(folder)?;
+        self.load_from(&mut Pictures::default(), folder)
+    }
+
+    /// The same, where other systems may have loaded some already.
+    pub(super) fn load_from(&self, pictures: &mut Pictures, folder: &Path) -> Result<MaterialAssets, Error> {
+        let (sprite, detail) = self.load_sprite(pictures, folder)?;
+        let noise = match builtin::find(builtin::NOISES, &self.noise) {
+            Some(noise) => noise.noise()?,
+            None => pictures.noise("noise", inside("noise", &self.noise, builtin::NOISES, folder)?)?,
+        };
+        let mut ramp = |field, name: &str, list| match builtin::find(list, name) {
+            Some(ramp) => ramp.ramp(),
+            None => pictures.ramp(field, inside(field, name, list, folder)?),
+        };
         Ok(MaterialAssets {
             sprite,
             detail,
-            noise: match builtin::find(builtin::NOISES, &self.noise) {
-                Some(noise) => noise.noise()?,
-                None => {
-                    let path = inside("noise", &self.noise, builtin::NOISES, folder)?;
-                    NoiseVolume::load(&path).map_err(|error| named_by("noise", error))?
-                }
-            },
+            noise,
             diffuse_ramp: ramp("diffuse_ramp", &self.diffuse_ramp, builtin::RAMPS)?,
             soft_scatter_ramp: ramp("soft_scatter_ramp", &self.soft_scatter_ramp, builtin::RAMPS)?,
             specular_ramp: ramp("specular_ramp", &self.specular_ramp, builtin::RAMPS)?,
@@ -66,7 +71,7 @@ impl MaterialNames {
         })
     }
 
-    fn load_sprite(&self, folder: &Path) -> Result<(Sprite, Option<Sprite>), Error> {
+    fn load_sprite(&self, pictures: &mut Pictures, folder: &Path) -> Result<(Sprite, Option<Sprite>), Error> {
         if let Some(sprite) = builtin::find(builtin::SPRITES, &self.sprite) {
             let refuse = |field: &str, value: String, expected: &str| {
                 let expected = format!("{expected} with a built-in sprite, which knows its own");
@@ -80,34 +85,14 @@ impl MaterialNames {
             }
             return Ok((sprite.sprite()?, sprite.detail()?));
         }
-        let path = inside("sprite", &self.sprite, builtin::SPRITES, folder)?;
         let layout = SpriteLayout { columns: self.columns, rows: self.rows, y_down: self.y_down };
-        let sprite = Sprite::load(&path, layout).map_err(|error| named_by("sprite", error))?;
+        let path = inside("sprite", &self.sprite, builtin::SPRITES, folder)?;
+        let sprite = pictures.sprite("sprite", path, layout)?;
         if self.detail.is_empty() {
             return Ok((sprite, None));
         }
         let path = inside("detail", &self.detail, &[], folder)?;
-        let detail = Sprite::load(&path, SpriteLayout { y_down: false, ..layout });
-        Ok((sprite, Some(detail.map_err(|error| named_by("detail", error))?)))
-    }
-}
-
-/// Adds to a picture's error which field of the preset asks for it.
-fn named_by(field: &str, error: Error) -> Error {
-    match error {
-        Error::Image { path, reason } => Error::Image { path, reason: format!("{reason} (material.{field})") },
-        Error::Io { path, error } => {
-            let error = std::io::Error::new(error.kind(), format!("{error} (material.{field})"));
-            Error::Io { path, error }
-        }
-        other => other,
-    }
-}
-
-fn load_ramp(field: &'static str, name: &str, list: &'static [builtin::Builtin], folder: &Path) -> Result<Ramp, Error> {
-    match builtin::find(list, name) {
-        Some(ramp) => ramp.ramp(),
-        None => Ramp::load(&inside(field, name, list, folder)?).map_err(|error| named_by(field, error)),
+        Ok((sprite, Some(pictures.sprite("detail", path, SpriteLayout { y_down: false, ..layout })?)))
     }
 }
 

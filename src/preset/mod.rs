@@ -3,6 +3,7 @@
 mod camera;
 mod environment;
 mod material_names;
+mod pictures;
 #[allow(clippy::module_inception, reason = "one file per part of a preset, and one for the whole")]
 mod preset;
 #[cfg(feature = "app")]
@@ -13,6 +14,7 @@ mod tooltips;
 pub use camera::Camera;
 pub use environment::{Environment, SceneName};
 pub use material_names::MaterialNames;
+pub use pictures::MAX_PICTURE_BYTES;
 pub use preset::{DESIGN_HEIGHT, MAX_SYSTEMS, PRESET_VERSION, Preset, PresetSystem};
 #[cfg(feature = "app")]
 pub use schema::schema;

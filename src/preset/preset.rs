@@ -5,6 +5,8 @@ use std::path::Path;
 use super::camera::Camera;
 use super::environment::Environment;
 use super::material_names::MaterialNames;
+use super::pictures::Pictures;
+use crate::assets::material::MaterialAssets;
 use crate::assets::{builtin, json};
 use crate::emitter::Emitter;
 use crate::error::{Error, FieldError};
@@ -151,6 +153,20 @@ impl Preset {
         Ok(preset)
     }
 
+    /// Loads the pictures of every system, each file once. They are looked for beside `path`, the preset's.
+    ///
+    /// # Errors
+    /// As [`MaterialNames::load`], naming the preset and the system too.
+    pub fn load_materials(&self, path: &Path) -> Result<Vec<MaterialAssets>, Error> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut pictures = Pictures::default();
+        let systems = self.systems.iter().enumerate();
+        let mut load = |(index, system): (usize, &PresetSystem)| {
+            system.material.load_from(&mut pictures, folder).map_err(|error| in_system(path, index, error))
+        };
+        systems.map(&mut load).collect()
+    }
+
     /// Checks every number.
     ///
     /// # Errors
@@ -170,6 +186,20 @@ impl Preset {
             system.settings.validate(|| format!("systems[{index}].settings"))?;
         }
         Ok(())
+    }
+}
+
+/// A mistake in the material of system `index`, said with the preset's file.
+fn in_system(path: &Path, index: usize, error: Error) -> Error {
+    match error {
+        Error::Field(mut error) => {
+            error.field = format!("systems[{index}].{}", error.field);
+            Error::JsonField { path: path.into(), error }
+        }
+        Error::Picture { named_by, error } => {
+            Error::Picture { named_by: format!("{}: systems[{index}].{named_by}", path.display()), error }
+        }
+        other => other,
     }
 }
 

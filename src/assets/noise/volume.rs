@@ -1,6 +1,7 @@
 //! The tiling 3D noise that fills volumetric particles: density in alpha, its inverse gradient in rgb.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::{UVec3, Vec3, Vec4, Vec4Swizzles};
 use image::{Rgba, RgbaImage};
@@ -20,11 +21,12 @@ pub const MAX_SIZE: u32 = 64;
 
 /// A decoded cube of noise that repeats in every direction. Texels are rgb = inverse density gradient (it points to
 /// where there is less) / 2 + 1/2, scaled so that the steepest place is of unit length, and a = density, 8 bits each.
+/// A clone shares its texels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoiseVolume {
     size: u32,
     /// Slice by slice, row by row.
-    texels: Vec<[u8; 4]>,
+    texels: Arc<[[u8; 4]]>,
 }
 
 impl NoiseVolume {
@@ -63,8 +65,13 @@ impl NoiseVolume {
         Vec4::from(self.texels[index as usize].map(f32::from)) / 255.0
     }
 
+    /// Bytes that the texels take.
+    pub(crate) fn memory(&self) -> u64 {
+        size_of_val(&*self.texels) as u64
+    }
+
     pub(crate) fn bytes(&self) -> &[u8] {
-        bytemuck::cast_slice(&self.texels)
+        bytemuck::cast_slice(&self.texels[..])
     }
 }
 

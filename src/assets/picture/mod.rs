@@ -4,6 +4,7 @@ mod file;
 mod png;
 
 pub use file::{FileIdentity, check_file, write_file};
+pub(crate) use png::is_png;
 pub use png::{Effort, MAX_SIDE, decode_png, read_png, write_png};
 
 use std::sync::{Mutex, PoisonError};

@@ -3,50 +3,74 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use image::codecs::png::CompressionType;
-use image::{DynamicImage, ImageDecoder, Limits};
+use image::codecs::png::{CompressionType, PngDecoder};
+use image::{DynamicImage, ImageDecoder as _, ImageError, Limits};
 
 use super::file::write_file;
+use crate::assets::file;
 use crate::error::Error;
 
 /// Largest side of a picture that is read, pixels.
 pub const MAX_SIDE: u32 = 4096;
-/// Most memory that decoding a picture may take.
+/// Most bytes of a PNG file, and most memory that its decoded pixels may take.
 const MAX_BYTES: u64 = 64 << 20;
+
+const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
+
+/// True for a file that begins as a PNG does.
+pub(crate) fn is_png(bytes: &[u8]) -> bool {
+    bytes.starts_with(SIGNATURE)
+}
 
 /// Decodes a PNG held in memory. `path` is only named in errors.
 ///
 /// # Errors
-/// [`Error::Image`] for a broken file, one that is no PNG, or one beyond 4096 pixels a side or 64 MiB.
+/// [`Error::Image`] for a broken file, one that is no PNG, or one beyond 4096 pixels a side or 64 MiB once decoded.
 pub fn decode_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Error> {
-    let error = |reason: String| Error::Image { path: path.into(), reason };
-    if !bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
-        return Err(error("not a PNG file; export it as PNG".into()));
+    let refuse = |reason: String| Err(Error::Image { path: path.into(), reason });
+    if !is_png(bytes) {
+        return refuse("not a PNG file; export it as PNG".into());
+    }
+    // A PNG begins with its header, and that with width and height.
+    let side = |at: usize| bytes.get(at..at + 4).and_then(|side| side.try_into().ok()).map(u32::from_be_bytes);
+    let (Some(width), Some(height)) = (side(16), side(20)) else { return refuse(broken(None)) };
+    if width.max(height) > MAX_SIDE {
+        return refuse(format!("{width}x{height} pixels; expected at most {MAX_SIDE}x{MAX_SIDE}"));
     }
     let mut limits = Limits::default();
-    limits.max_image_width = Some(MAX_SIDE);
-    limits.max_image_height = Some(MAX_SIDE);
     limits.max_alloc = Some(MAX_BYTES);
-    let decode = || {
-        let mut decoder = image::codecs::png::PngDecoder::with_limits(Cursor::new(bytes), limits.clone())?;
-        decoder.set_limits(limits.clone())?;
-        DynamicImage::from_decoder(decoder)
+    let decoder = match PngDecoder::with_limits(Cursor::new(bytes), limits) {
+        Ok(decoder) => decoder,
+        Err(error) => return refuse(broken(Some(&error))),
     };
-    decode().map_err(|reason| {
-        error(format!(
-            "{reason}; expected a whole PNG of at most {MAX_SIDE}x{MAX_SIDE} pixels and {} MiB",
-            MAX_BYTES >> 20
-        ))
-    })
+    // The decoder's own limit leaves out the picture that it decodes into.
+    let (decoded, most) = (decoder.total_bytes(), MAX_BYTES >> 20);
+    if decoded > MAX_BYTES {
+        let texel = decoded / (u64::from(width) * u64::from(height));
+        return refuse(format!(
+            "{} MiB in memory, {width}x{height} pixels of {texel} bytes; expected at most {most} MiB",
+            decoded >> 20
+        ));
+    }
+    DynamicImage::from_decoder(decoder).or_else(|error| refuse(broken(Some(&error))))
+}
+
+/// What is wrong with a PNG. The decoder's own words are for those who know its code.
+fn broken(error: Option<&ImageError>) -> String {
+    let most = MAX_BYTES >> 20;
+    match error {
+        None | Some(ImageError::IoError(_)) => "the file ends too early; expected a whole PNG".into(),
+        Some(ImageError::Limits(_)) => format!("it takes more than {most} MiB to decode; expected a smaller PNG"),
+        Some(_) => "a damaged PNG; expected one that other programs can open: export it again".into(),
+    }
 }
 
 /// Reads and decodes a PNG file.
 ///
 /// # Errors
-/// [`Error::Io`] when it cannot be read, else as [`decode_png`].
+/// [`Error::Io`] when it cannot be read or is larger than 64 MiB, else as [`decode_png`].
 pub fn read_png(path: &Path) -> Result<DynamicImage, Error> {
-    let bytes = std::fs::read(path).map_err(|error| Error::Io { path: path.into(), error })?;
-    decode_png(path, &bytes)
+    decode_png(path, &file::read(path, "PNG file", MAX_BYTES)?)
 }
 
 /// How long to look for a smaller file.

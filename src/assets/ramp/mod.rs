@@ -4,6 +4,7 @@ pub mod bake;
 pub mod motif;
 
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::{UVec2, Vec3, Vec4};
 use half::f16;
@@ -14,11 +15,11 @@ use crate::error::Error;
 use crate::formula::colour::linear_from_srgb;
 use crate::formula::texture::Texture2d;
 
-/// A decoded ramp: linear RGB, half floats as the GPU holds them. One row for a 1D ramp.
+/// A decoded ramp: linear RGB, half floats as the GPU holds them. One row for a 1D ramp. A clone shares its texels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ramp {
     size: UVec2,
-    texels: Vec<[f16; 4]>,
+    texels: Arc<[[f16; 4]]>,
 }
 
 impl Ramp {
@@ -34,14 +35,15 @@ impl Ramp {
             .map(|colour| [colour.x, colour.y, colour.z, 1.0].map(f16::from_f32))
             .collect();
         texels.resize((size.x * size.y) as usize, [f16::ZERO; 4]);
-        Self { size, texels }
+        Self { size, texels: texels.into() }
     }
 
     /// Decodes an sRGB picture, 8 or 16 bits a channel; alpha is ignored. The bottom row is 0 on the second axis.
     pub fn from_picture(picture: &DynamicImage) -> Self {
-        let pixels = picture.to_rgb32f();
+        let pixels = picture.to_rgb16();
         let size = UVec2::new(pixels.width(), pixels.height());
-        let colours = pixels.rows().rev().flat_map(|row| row.map(|pixel| Vec3::from(pixel.0.map(linear_from_srgb))));
+        let linear = |channel: u16| linear_from_srgb(f32::from(channel) / 65535.0);
+        let colours = pixels.rows().rev().flat_map(|row| row.map(|pixel| Vec3::from(pixel.0.map(linear))));
         Self::from_linear(size, colours)
     }
 
@@ -61,6 +63,11 @@ impl Ramp {
     /// Linear RGB of a texel; y counts from the row for 0.
     pub fn texel(&self, at: UVec2) -> Vec3 {
         self.load(at).truncate()
+    }
+
+    /// Bytes that the texels take.
+    pub(crate) fn memory(&self) -> u64 {
+        size_of_val(&*self.texels) as u64
     }
 
     /// The texels as they are uploaded: `Rgba16Float`, the row for 0 first.

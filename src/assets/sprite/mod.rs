@@ -4,6 +4,7 @@ pub mod bake;
 pub mod detail;
 
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
 use image::RgbaImage;
@@ -13,7 +14,7 @@ use crate::error::Error;
 use crate::formula::texture::Texture2dArray;
 
 /// How a sprite's picture is laid out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SpriteLayout {
     /// Frames beside each other.
     pub columns: u32,
@@ -30,13 +31,13 @@ impl Default for SpriteLayout {
 }
 
 /// A decoded flipbook with its mip levels. Texels are rgb = normal / 2 + 1/2 (x right, y up, z to the viewer) and
-/// a = amount, 8 bits each, not premultiplied.
+/// a = amount, 8 bits each, not premultiplied. A clone shares its texels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sprite {
     size: u32,
     frame_count: u32,
     /// Level by level; each level frame by frame, row by row, top row first.
-    levels: Vec<Vec<[u8; 4]>>,
+    levels: Vec<Arc<[[u8; 4]]>>,
 }
 
 /// Most frames of one flipbook: the layers that WebGL2 promises an array texture.
@@ -94,7 +95,7 @@ impl Sprite {
     }
 
     pub(crate) fn with_levels(size: u32, frame_count: u32, texels: Vec<[u8; 4]>) -> Self {
-        let mut sprite = Self { size, frame_count, levels: vec![texels] };
+        let mut sprite = Self { size, frame_count, levels: vec![texels.into()] };
         for level in 1..=size.ilog2() {
             let coarse = sprite.level_size(level);
             let fine = sprite.level_size(level - 1);
@@ -110,7 +111,7 @@ impl Sprite {
                     }
                 }
             }
-            sprite.levels.push(texels);
+            sprite.levels.push(texels.into());
         }
         sprite
     }
@@ -140,6 +141,11 @@ impl Sprite {
         let size = self.level_size(level);
         let texel = self.levels[level as usize][((frame * size + y) * size + x) as usize];
         Vec4::from(texel.map(f32::from)) / 255.0
+    }
+
+    /// Bytes that the texels take.
+    pub(crate) fn memory(&self) -> u64 {
+        self.levels.iter().map(|level| size_of_val(&**level) as u64).sum()
     }
 
     pub(crate) fn level_bytes(&self, level: u32) -> &[u8] {

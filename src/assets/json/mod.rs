@@ -4,7 +4,12 @@ use std::path::Path;
 
 use serde::de::DeserializeOwned;
 
+use super::file;
+use super::picture::is_png;
 use crate::error::{Error, FieldError};
+
+/// Largest file that is read, bytes: a preset is some thousands.
+const MAX_BYTES: u64 = 1 << 20;
 
 /// Parses `text`. `path` is only named in errors.
 ///
@@ -51,19 +56,38 @@ pub fn load<T: DeserializeOwned>(
     newest: u32,
     validate: impl FnOnce(&T) -> Result<(), FieldError>,
 ) -> Result<T, Error> {
-    let text = std::fs::read_to_string(path).map_err(|error| Error::Io { path: path.into(), error })?;
-    // Some editors begin a file with a byte order mark.
-    let value = parse_versioned(path, text.trim_start_matches('\u{feff}'), newest)?;
+    let value = parse_versioned(path, text(path, &file::read(path, "JSON file", MAX_BYTES)?)?, newest)?;
     validate(&value).map_err(|error| Error::JsonField { path: path.into(), error })?;
     Ok(value)
 }
 
+/// The text of a file. Other encodings and pictures are named.
+fn text<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, Error> {
+    let refuse = |(line, column), reason: &str| {
+        Err(Error::Json { path: path.into(), line, column, reason: format!("{reason}; expected JSON as UTF-8 text") })
+    };
+    if is_png(bytes) {
+        return refuse((1, 1), "a PNG picture");
+    }
+    if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
+        return refuse((1, 1), "text in UTF-16; save it as UTF-8");
+    }
+    // Some editors begin a file with a byte order mark.
+    let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
+    std::str::from_utf8(bytes).or_else(|error| {
+        let before = String::from_utf8_lossy(&bytes[..error.valid_up_to()]);
+        refuse(place(&before), "bytes that are no UTF-8 text")
+    })
+}
+
+/// Line and column, 1-based, of what follows `before`.
+fn place(before: &str) -> (usize, usize) {
+    (before.matches('\n').count() + 1, before.len() - before.rfind('\n').map_or(0, |at| at + 1) + 1)
+}
+
 /// Line and column, 1-based, of the first occurrence of a key.
 fn place_of(text: &str, key: &str) -> (usize, usize) {
-    let before = &text[..text.find(key).unwrap_or(0)];
-    let line = before.matches('\n').count() + 1;
-    let column = before.len() - before.rfind('\n').map_or(0, |at| at + 1) + 1;
-    (line, column)
+    place(&text[..text.find(key).unwrap_or(0)])
 }
 
 #[cfg(test)]

@@ -1,0 +1,53 @@
+//! Files from outside: looked at before they are read.
+
+use std::fs::{File, Metadata};
+use std::io::{self, ErrorKind, Read as _};
+use std::path::Path;
+
+use crate::error::Error;
+
+/// Reads a file of at most `most` bytes. Pipes, devices and folders are refused; `kind` is what was hoped for.
+///
+/// # Errors
+/// [`Error::Io`], which says what is there instead and what would be right.
+pub fn read(path: &Path, kind: &str, most: u64) -> Result<Vec<u8>, Error> {
+    let io = |error| Error::Io { path: path.into(), error };
+    let refuse = |found: String| {
+        let reason = format!("{found}; expected a {kind} of at most {most} bytes ({} MiB)", most >> 20);
+        io(io::Error::new(ErrorKind::InvalidData, reason))
+    };
+    let check = |found: &Metadata| match found {
+        found if !found.is_file() => Err(refuse(format!("{}, not a file", kind_of(found)))),
+        found if found.len() > most => Err(refuse(format!("{} bytes", found.len()))),
+        _ => Ok(()),
+    };
+    // To open a pipe is to wait for whoever writes to it: looked at before, and again in case the name has changed hands.
+    check(&std::fs::metadata(path).map_err(io)?)?;
+    let file = File::open(path).map_err(io)?;
+    check(&file.metadata().map_err(io)?)?;
+    let mut bytes = Vec::new();
+    file.take(most + 1).read_to_end(&mut bytes).map_err(io)?;
+    // It may have grown meanwhile, or not have told its length.
+    if bytes.len() as u64 > most {
+        return Err(refuse(format!("more than {most} bytes")));
+    }
+    Ok(bytes)
+}
+
+fn kind_of(found: &Metadata) -> &'static str {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt as _;
+        let kind = found.file_type();
+        if kind.is_fifo() {
+            return "a pipe";
+        }
+        if kind.is_char_device() || kind.is_block_device() {
+            return "a device";
+        }
+        if kind.is_socket() {
+            return "a socket";
+        }
+    }
+    if found.is_dir() { "a folder" } else { "something else" }
+}

@@ -1,0 +1,102 @@
+//! The pictures of one preset: each is decoded once, and all together are bounded.
+
+use std::collections::HashMap;
+use std::hash::Hash;
+use std::path::PathBuf;
+
+use crate::assets::noise::NoiseVolume;
+use crate::assets::ramp::Ramp;
+use crate::assets::sprite::{Sprite, SpriteLayout};
+use crate::error::{Error, FieldError};
+
+/// Most memory that the pictures of a preset take, bytes. A picture counts for every field that names it, as renderers
+/// upload it.
+pub const MAX_PICTURE_BYTES: u64 = 1 << 30;
+
+/// What has been loaded so far, by file.
+#[derive(Default)]
+pub(super) struct Pictures {
+    ramps: HashMap<PathBuf, Ramp>,
+    sprites: HashMap<(PathBuf, SpriteLayout), Sprite>,
+    noises: HashMap<PathBuf, NoiseVolume>,
+    bytes: u64,
+}
+
+impl Pictures {
+    /// The ramp of this file, for a field of the material.
+    pub fn ramp(&mut self, field: &str, path: PathBuf) -> Result<Ramp, Error> {
+        let ramp = once(&mut self.ramps, path, |path| Ramp::load(path)).map_err(|error| named_by(field, error))?;
+        self.count(field, ramp.memory())?;
+        Ok(ramp)
+    }
+
+    /// The sprite of this file.
+    pub fn sprite(&mut self, field: &str, path: PathBuf, layout: SpriteLayout) -> Result<Sprite, Error> {
+        let sprite = once(&mut self.sprites, (path, layout), |(path, layout)| Sprite::load(path, *layout));
+        let sprite = sprite.map_err(|error| named_by(field, error))?;
+        self.count(field, sprite.memory())?;
+        Ok(sprite)
+    }
+
+    /// The noise of this file.
+    pub fn noise(&mut self, field: &str, path: PathBuf) -> Result<NoiseVolume, Error> {
+        let noise =
+            once(&mut self.noises, path, |path| NoiseVolume::load(path)).map_err(|error| named_by(field, error))?;
+        self.count(field, noise.memory())?;
+        Ok(noise)
+    }
+
+    fn count(&mut self, field: &str, bytes: u64) -> Result<(), FieldError> {
+        self.bytes += bytes;
+        if self.bytes <= MAX_PICTURE_BYTES {
+            return Ok(());
+        }
+        let [found, most] = [self.bytes, MAX_PICTURE_BYTES].map(|bytes| bytes >> 20);
+        let expected = format!("at most {most} MiB for all pictures of the preset, each as often as it is named");
+        Err(FieldError::new(format!("material.{field}"), format!("{found} MiB of pictures"), expected))
+    }
+}
+
+fn once<K: Hash + Eq, T: Clone>(
+    loaded: &mut HashMap<K, T>,
+    key: K,
+    load: impl FnOnce(&K) -> Result<T, Error>,
+) -> Result<T, Error> {
+    if let Some(picture) = loaded.get(&key) {
+        return Ok(picture.clone());
+    }
+    let picture = load(&key)?;
+    loaded.insert(key, picture.clone());
+    Ok(picture)
+}
+
+/// Adds to a picture's error which field of the preset asks for it.
+fn named_by(field: &str, error: Error) -> Error {
+    Error::Picture { named_by: format!("material.{field}"), error: Box::new(error) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_read_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("own.png");
+        let layout = SpriteLayout::default();
+        image::RgbaImage::new(1, 1).save(&path).unwrap();
+        let mut pictures = Pictures::default();
+        let ramp = pictures.ramp("motif", path.clone()).unwrap();
+        let noise = pictures.noise("noise", path.clone()).unwrap();
+        let sprite = pictures.sprite("sprite", path.clone(), layout).unwrap();
+        std::fs::remove_file(&path).unwrap();
+        assert_eq!(pictures.ramp("age_ramp", path.clone()).unwrap(), ramp);
+        assert_eq!(pictures.noise("noise", path.clone()).unwrap(), noise);
+        assert_eq!(pictures.sprite("detail", path.clone(), layout).unwrap(), sprite);
+        // Half floats of four channels; twice four bytes.
+        assert_eq!(pictures.bytes, 2 * (8 + 4 + 4));
+        let other = SpriteLayout { y_down: true, ..layout };
+        let error = pictures.sprite("sprite", path, other).unwrap_err().to_string();
+        assert!(error.starts_with("material.sprite: ") && error.contains("own.png: No such file"), "{error}");
+    }
+}

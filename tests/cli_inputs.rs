@@ -1,0 +1,132 @@
+//! Files from outside, as the program meets them: refused at once, in one line that says which, what it is and what would be
+//! right.
+
+#![cfg(feature = "app")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs::File;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use image::{DynamicImage, GrayImage, ImageFormat, RgbImage};
+use tempfile::TempDir;
+
+fn folder() -> TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+/// Nothing here takes a second; a pipe that is waited for takes for ever.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// The one line that a refused file gets.
+fn refusal(folder: &Path, arguments: &[&str]) -> String {
+    let mut child: Child = Command::new(env!("CARGO_BIN_EXE_haze"))
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let started = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if started.elapsed() > PATIENCE {
+            child.kill().unwrap();
+            panic!("{arguments:?} does not end");
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let output = child.wait_with_output().unwrap();
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {text}");
+    assert_eq!(text.lines().count(), 1, "{arguments:?}: {text}");
+    text.trim_end().to_owned()
+}
+
+/// What is said of a preset whose systems have these contents besides their names.
+fn preset(folder: &Path, systems: &[&str]) -> String {
+    let systems: Vec<_> = systems.iter().map(|inside| format!("{{\"name\": \"s\", {inside}}}")).collect();
+    let text = format!("{{\"version\": 1, \"name\": \"x\",\n\"systems\": [{}]}}", systems.join(", "));
+    std::fs::write(folder.join("my.json"), text).unwrap();
+    refusal(folder, &["preset", "check", "my.json"])
+}
+
+/// What is said of a system of a preset, whose first one is good.
+fn system(folder: &Path, inside: &str) -> String {
+    preset(folder, &["\"settings\": {}", inside])
+}
+
+#[test]
+fn only_files_of_a_sane_length_are_read() {
+    let folder = folder();
+    let refused = |name: &str| refusal(folder.path(), &["preset", "check", name]);
+    std::fs::create_dir(folder.path().join("folder.json")).unwrap();
+    assert_eq!(
+        refused("folder.json"),
+        "haze: folder.json: a folder, not a file; expected a JSON file of at most 1048576 bytes (1 MiB)"
+    );
+    File::create(folder.path().join("long.json")).unwrap().set_len(100 << 20).unwrap();
+    assert_eq!(
+        refused("long.json"),
+        "haze: long.json: 104857600 bytes; expected a JSON file of at most 1048576 bytes (1 MiB)"
+    );
+    for (command, recipe) in [("ramp", "a.ramp.json"), ("ramp", "a.motif.json"), ("sprite", "a.noise.json")] {
+        File::create(folder.path().join(recipe)).unwrap().set_len(2 << 20).unwrap();
+        assert!(refusal(folder.path(), &[command, "bake", recipe]).contains("(1 MiB)"));
+    }
+    // Sparse: it takes no room on the disk.
+    File::create(folder.path().join("long.png")).unwrap().set_len(3 << 30).unwrap();
+    assert_eq!(
+        system(folder.path(), "\"material\": {\"motif\": \"long.png\"}"),
+        "haze: my.json: systems[1].material.motif: long.png: 3221225472 bytes; \
+         expected a PNG file of at most 67108864 bytes (64 MiB)"
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_not_waited_for() {
+    let folder = folder();
+    for name in ["pipe.json", "pipe.png"] {
+        assert!(Command::new("mkfifo").arg(folder.path().join(name)).status().unwrap().success());
+    }
+    let refused = |name: &str| refusal(folder.path(), &["preset", "check", name]);
+    assert!(refused("pipe.json").starts_with("haze: pipe.json: a pipe, not a file; expected a JSON file"));
+    assert!(refused("/dev/zero").starts_with("haze: /dev/zero: a device, not a file; expected a JSON file"));
+    let picture = system(folder.path(), "\"material\": {\"sprite\": \"pipe.png\"}");
+    assert!(
+        picture.starts_with("haze: my.json: systems[1].material.sprite: pipe.png: a pipe, not a file"),
+        "{picture}"
+    );
+}
+
+#[test]
+fn pictures_have_one_limit_in_memory_and_another_together() {
+    let folder = folder();
+    let save = |name: &str, picture: DynamicImage| {
+        picture.save_with_format(folder.path().join(name), ImageFormat::Png).unwrap();
+    };
+    save("deep.png", DynamicImage::new_rgb16(4096, 4096));
+    assert_eq!(
+        system(folder.path(), "\"material\": {\"age_ramp\": \"deep.png\"}"),
+        "haze: my.json: systems[1].material.age_ramp: deep.png: \
+         96 MiB in memory, 4096x4096 pixels of 6 bytes; expected at most 64 MiB"
+    );
+    save("wide.png", RgbImage::new(5000, 1).into());
+    let wide = system(folder.path(), "\"material\": {\"age_ramp\": \"wide.png\"}");
+    assert!(wide.ends_with("wide.png: 5000x1 pixels; expected at most 4096x4096"), "{wide}");
+    // 128 MiB as half floats, for each of nine fields.
+    save("large.png", GrayImage::new(4096, 4096).into());
+    let ramps = |names: &[&str]| {
+        let fields: Vec<_> = names.iter().map(|name| format!("\"{name}\": \"large.png\"")).collect();
+        format!("\"material\": {{{}}}", fields.join(", "))
+    };
+    let five = ramps(&["diffuse_ramp", "soft_scatter_ramp", "specular_ramp", "motif", "age_ramp"]);
+    let four = ramps(&["diffuse_ramp", "soft_scatter_ramp", "specular_ramp", "motif"]);
+    assert_eq!(
+        preset(folder.path(), &[&five, &four]),
+        "haze: my.json: systems[1].material.motif: 1152 MiB of pictures is not valid; \
+         expected at most 1024 MiB for all pictures of the preset, each as often as it is named"
+    );
+}
