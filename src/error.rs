@@ -1,10 +1,41 @@
 //! What can go wrong, and where it is said. Every message names the field, file or line, and what would be right.
 
-use std::path::PathBuf;
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+
+/// A text from outside, for a message of one line: control characters and marks that turn the direction of writing are
+/// escaped, and a long text is cut.
+pub(crate) fn one_line(text: impl Display) -> String {
+    /// Leaves room for what is expected.
+    const MOST: usize = 200;
+    let text = text.to_string();
+    let mut line = escape(text.chars().take(MOST));
+    if text.chars().nth(MOST).is_some() {
+        line.push('…');
+    }
+    line
+}
+
+/// A file's name on one line, whole.
+pub(crate) fn name(path: &Path) -> String {
+    escape(path.to_string_lossy().chars())
+}
+
+fn escape(text: impl Iterator<Item = char>) -> String {
+    let mut line = String::new();
+    for c in text {
+        if c.is_control() || matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}') {
+            line.extend(c.escape_default());
+        } else {
+            line.push(c);
+        }
+    }
+    line
+}
 
 /// A value outside its valid range, or in conflict with another.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{field}: {value} is not valid; expected {expected}")]
+#[error("{field}: {} is not valid; expected {expected}", one_line(value))]
 pub struct FieldError {
     /// Dotted path to the field, for example `systems[0].settings.soft_fade.fade_scale`.
     pub field: String,
@@ -29,7 +60,7 @@ pub enum Error {
     Field(#[from] FieldError),
 
     /// A ramp or sprite picture could not be used.
-    #[error("{}: {reason}", path.display())]
+    #[error("{}: {reason}", name(path))]
     Image {
         /// The file, or `builtin:NAME`.
         path: PathBuf,
@@ -48,7 +79,7 @@ pub enum Error {
     },
 
     /// A preset or gradient file could not be used.
-    #[error("{}:{line}:{column}: {reason}", path.display())]
+    #[error("{}:{line}:{column}: {reason}", name(path))]
     Json {
         /// The file, or `builtin:NAME`.
         path: PathBuf,
@@ -61,7 +92,7 @@ pub enum Error {
     },
 
     /// A value inside a preset or gradient file is out of range.
-    #[error("{}: {error}", path.display())]
+    #[error("{}: {error}", name(path))]
     JsonField {
         /// The file, or `builtin:NAME`.
         path: PathBuf,
@@ -70,7 +101,7 @@ pub enum Error {
     },
 
     /// A file could not be read or written.
-    #[error("{}: {error}", path.display())]
+    #[error("{}: {error}", name(path))]
     Io {
         /// The file.
         path: PathBuf,

@@ -131,7 +131,7 @@ fn bad_presets_are_refused_with_file_and_place() {
         refusal(folder.path(), &["render", "-o", "a.png", "my.json"])
     };
     let preset = |inside: &str| format!("{{\"version\": 1, \"name\": \"x\",\n{inside}}}");
-    assert!(message("").starts_with("haze: my.json:1:1: EOF"));
+    assert!(message("").starts_with("haze: my.json:1:1: the file ends where a value should be"));
     assert!(message("{\n\"version\": 1,\n\"nmae\": 2}").contains("my.json:3:6: unknown field `nmae`"));
     assert!(message("{\"version\": 7}").contains("my.json:1:2: version 7 is newer"));
     let range = message(&preset("\"time\": 1e9"));

@@ -130,3 +130,84 @@ fn pictures_have_one_limit_in_memory_and_another_together() {
          expected at most 1024 MiB for all pictures of the preset, each as often as it is named"
     );
 }
+
+#[test]
+fn what_is_no_json_is_named() {
+    let folder = folder();
+    let said = |bytes: &[u8]| {
+        std::fs::write(folder.path().join("a.json"), bytes).unwrap();
+        refusal(folder.path(), &["preset", "check", "a.json"])
+    };
+    let text = "{\"version\": 1}";
+    let utf16 = |bytes_of: fn(u16) -> [u8; 2]| {
+        "\u{feff}".encode_utf16().chain(text.encode_utf16()).flat_map(bytes_of).collect()
+    };
+    let (little, big): (Vec<u8>, Vec<u8>) = (utf16(u16::to_le_bytes), utf16(u16::to_be_bytes));
+    for bytes in [little, big] {
+        assert_eq!(said(&bytes), "haze: a.json:1:1: text in UTF-16; save it as UTF-8; expected JSON as UTF-8 text");
+    }
+    let mut png = Vec::new();
+    DynamicImage::new_rgb8(1, 1).write_to(&mut std::io::Cursor::new(&mut png), ImageFormat::Png).unwrap();
+    assert_eq!(said(&png), "haze: a.json:1:1: a PNG picture; expected JSON as UTF-8 text");
+    assert_eq!(
+        said(b"{\n \"name\": \"caf\xe9\"}"),
+        "haze: a.json:2:14: bytes that are no UTF-8 text; expected JSON as UTF-8 text"
+    );
+    // A byte order mark is no mistake: what is missing is the name.
+    assert_eq!(said(format!("\u{feff}{text}").as_bytes()), "haze: a.json:1:14: missing field `name`");
+}
+
+#[test]
+fn mistakes_name_the_system_and_the_field() {
+    let folder = folder();
+    let said = |inside: &str| system(folder.path(), inside);
+    assert_eq!(
+        said("\"settings\": {\"soft_fade\": {\"fade_scale\": \"wide\"}}"),
+        "haze: my.json:2:104: systems[1].settings.soft_fade.fade_scale: \"wide\" is not valid; expected a number"
+    );
+    assert_eq!(
+        said("\"material\": {\"columns\": true}"),
+        "haze: my.json:2:85: systems[1].material.columns: true is not valid; expected a whole number, 0 to 4294967295"
+    );
+    let picture = |inside: &str| said(&format!("\"material\": {{\"columns\": 2, {inside}}}"));
+    let missing = picture("\"sprite\": \"none.png\"");
+    assert!(missing.starts_with("haze: my.json: systems[1].material.sprite: none.png: No such file"), "{missing}");
+    RgbImage::new(64, 48).save(folder.path().join("own.png")).unwrap();
+    assert_eq!(
+        picture("\"sprite\": \"own.png\""),
+        "haze: my.json: systems[1].material.sprite: own.png: 64x48 pixels do not divide into 2x1 square frames; \
+         expected columns and rows that give square frames"
+    );
+    let own = std::fs::read(folder.path().join("own.png")).unwrap();
+    for (length, change, expected) in [
+        (own.len() / 2, None, "the file ends too early; expected a whole PNG"),
+        (20, None, "the file ends too early; expected a whole PNG"),
+        (own.len(), Some(12), "a damaged PNG; expected one that other programs can open: export it again"),
+        (own.len(), Some(29), "a damaged PNG; expected one that other programs can open: export it again"),
+        (own.len(), Some(45), "a damaged PNG; expected one that other programs can open: export it again"),
+    ] {
+        let mut bytes = own[..length].to_vec();
+        if let Some(at) = change {
+            bytes[at] ^= 0x20;
+        }
+        std::fs::write(folder.path().join("broken.png"), bytes).unwrap();
+        assert_eq!(
+            said("\"material\": {\"noise\": \"broken.png\"}"),
+            format!("haze: my.json: systems[1].material.noise: broken.png: {expected}")
+        );
+    }
+}
+
+#[test]
+fn names_cannot_forge_a_message() {
+    let folder = folder();
+    let forged = system(folder.path(), r#""material": {"sprite": "a\nhaze: \u001b[2Jgood\u202e.png"}"#);
+    assert!(
+        forged.starts_with(
+            r"haze: my.json: systems[1].material.sprite: a\nhaze: \u{1b}[2Jgood\u{202e}.png: No such file"
+        ),
+        "{forged}"
+    );
+    let preset = refusal(folder.path(), &["preset", "check", "a\nb\u{1b}.json"]);
+    assert!(preset.starts_with(r"haze: a\nb\u{1b}.json: No such file"), "{preset}");
+}

@@ -9,7 +9,7 @@ use super::pictures::Pictures;
 use crate::assets::material::MaterialAssets;
 use crate::assets::{builtin, json};
 use crate::emitter::Emitter;
-use crate::error::{Error, FieldError};
+use crate::error::{Error, FieldError, name};
 use crate::frame::validate::validate_lights;
 use crate::frame::{Light, Particle};
 use crate::settings::{FieldVisitor, Fields, Settings, validate};
@@ -197,7 +197,7 @@ fn in_system(path: &Path, index: usize, error: Error) -> Error {
             Error::JsonField { path: path.into(), error }
         }
         Error::Picture { named_by, error } => {
-            Error::Picture { named_by: format!("{}: systems[{index}].{named_by}", path.display()), error }
+            Error::Picture { named_by: format!("{}: systems[{index}].{named_by}", name(path)), error }
         }
         other => other,
     }

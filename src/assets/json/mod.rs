@@ -1,5 +1,7 @@
 //! JSON files with a `version`: newer ones are refused untouched, unknown keys are named with line and column.
 
+mod words;
+
 use std::path::Path;
 
 use serde::de::DeserializeOwned;
@@ -14,13 +16,25 @@ const MAX_BYTES: u64 = 1 << 20;
 /// Parses `text`. `path` is only named in errors.
 ///
 /// # Errors
-/// [`Error::Json`] with line and column, naming what was expected.
+/// [`Error::Json`] with line, column and field, naming what was expected.
 pub fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, Error> {
-    serde_json::from_str(text).map_err(|error| {
+    let mut json = serde_json::Deserializer::from_str(text);
+    let parsed = serde_path_to_error::deserialize(&mut json).map_err(|error| {
+        // "." is the whole file, "?" a field that has no name yet.
+        (error.path().to_string().trim_end_matches(['.', '?']).to_owned(), error.into_inner())
+    });
+    let whole = parsed.and_then(|value| json.end().map(|()| value).map_err(|error| (String::new(), error)));
+    whole.map_err(|(field, error)| {
         // serde_json ends its message with the place, which the error says already.
         let message = error.to_string();
-        let reason = message.rsplit_once(" at line ").map_or(message.as_str(), |(reason, _)| reason).to_owned();
-        Error::Json { path: path.into(), line: error.line(), column: error.column().max(1), reason }
+        let message = message.rsplit_once(" at line ").map_or(message.as_str(), |(message, _)| message);
+        // Where a field is not known, its own name is no place to look at.
+        let unknown = message.strip_prefix("unknown field `").and_then(|rest| rest.rsplit_once("`, expected "));
+        let field = field.strip_suffix(unknown.map_or("", |(name, _)| name)).unwrap_or(&field).trim_end_matches('.');
+        let (line, column) = (error.line().max(1), error.column().max(1));
+        let rest = text.split('\n').nth(line - 1).and_then(|text| text.get(column - 1..));
+        let reason = words::plain(message, field, rest.unwrap_or_default());
+        Error::Json { path: path.into(), line, column, reason }
     })
 }
 
@@ -114,7 +128,74 @@ mod tests {
         assert!(unknown.starts_with("a.json:2:8: unknown field `bost`, expected `version` or `boost`"), "{unknown}");
         assert!(message("{\"version\": 1}").contains("missing field `boost`"));
         assert!(message("{\"boost\": 1}").contains("missing field `version`"));
-        assert!(message("{").starts_with("a.json:1:1: EOF"));
+        assert!(message("{").starts_with("a.json:1:1: the file ends inside an object"));
+    }
+
+    #[test]
+    fn mistakes_are_said_in_plain_words() {
+        #[derive(Debug, serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
+        #[allow(dead_code, reason = "only read from files")]
+        struct Whole {
+            count: u32,
+            on: bool,
+            names: Vec<String>,
+            place: glam::Vec3,
+            path: crate::settings::Path,
+            parts: Vec<Sample>,
+        }
+        let said = |text: &str| parse::<Whole>(Path::new("a.json"), text).unwrap_err().to_string();
+        for (text, expected) in [
+            (r#"{"count": "1"}"#, r#"a.json:1:13: count: "1" is not valid; expected a whole number, 0 to 4294967295"#),
+            (r#"{"count": -1}"#, "a.json:1:12: count: -1 is not valid; expected a whole number, 0 to 4294967295"),
+            (r#"{"count": 1.5}"#, "a.json:1:13: count: 1.5 is not valid; expected a whole number, 0 to 4294967295"),
+            (r#"{"on": 1}"#, "a.json:1:8: on: 1 is not valid; expected true or false"),
+            (r#"{"names": {}}"#, "a.json:1:10: names: an object is not valid; expected a list"),
+            (r#"{"names": ["a", null]}"#, "a.json:1:20: names[1]: null is not valid; expected a text in double quotes"),
+            (r#"{"place": [1, 2]}"#, "a.json:1:16: place: a list of 2 is not valid; expected a list of 3 numbers"),
+            (r#"{"place": [1, 2, 3, 4]}"#, "a.json:1:21: place: too many entries; expected the list to end here"),
+            (
+                r#"{"path": "rastre"}"#,
+                r#"a.json:1:17: path: "rastre" is not valid; expected one of auto, raster, forward"#,
+            ),
+            (r#"{"path": 3}"#, "a.json:1:10: path: no text; expected a name in double quotes"),
+            (
+                r#"{"parts": [{"version": 1, "boost": []}]}"#,
+                "a.json:1:35: parts[0].boost: a list is not valid; expected a number",
+            ),
+            (r#"{"parts": [3]}"#, "a.json:1:12: parts[0]: 3 is not valid; expected an object"),
+            (
+                r#"{"parts": [{"bost": 1}]}"#,
+                "a.json:1:18: parts[0]: unknown field `bost`, expected `version` or `boost`",
+            ),
+            (r#"{"parts": [{"a.b": 1}]}"#, "a.json:1:17: parts[0]: unknown field `a.b`, expected `version` or `boost`"),
+            (r#"{"count": 1, "count": 1}"#, "a.json:1:20: duplicate field `count`"),
+            (r#"{"count": 1,}"#, "a.json:1:13: a comma before the closing bracket; expected none"),
+            (
+                r#"{"count": .5}"#,
+                "a.json:1:11: count: no value; expected a number, a text in double quotes, a list or an object",
+            ),
+            ("{count: 1}", "a.json:1:2: expected a field's name in double quotes"),
+            (
+                "{\"a\nb\": 1}",
+                "a.json:2:1: a line break, tab or control character in a text; expected an escape, for example \\n",
+            ),
+            (
+                r#"{"a\u001b[2J": 1}"#,
+                r"a.json:1:13: unknown field `a\u{1b}[2J`, expected one of `count`, `on`, `names`, `place`, `path`, `parts`",
+            ),
+        ] {
+            assert_eq!(said(text), expected, "{text}");
+        }
+        let text = r#"{"version": 1, "boost": 2} x"#;
+        assert!(
+            message(text).starts_with("a.json:1:28: more text after the end; expected nothing"),
+            "{}",
+            message(text)
+        );
+        // However long what is found, what is expected is said.
+        let long = said(&format!("{{\"count\": \"{}\"}}", "x".repeat(1 << 20)));
+        assert!(long.len() < 300 && long.ends_with("expected a whole number, 0 to 4294967295"), "{long}");
     }
 
     #[test]

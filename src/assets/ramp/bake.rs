@@ -6,7 +6,7 @@ use glam::{UVec2, Vec3};
 use image::{DynamicImage, ImageBuffer, Rgb};
 
 use crate::assets::json;
-use crate::error::{Error, FieldError};
+use crate::error::{Error, FieldError, one_line};
 use crate::formula::colour::{linear_from_srgb, srgb_from_linear};
 use crate::settings::{FieldVisitor, Fields, validate};
 
@@ -70,14 +70,19 @@ pub(crate) fn srgb16_from_linear(colour: Vec3) -> Rgb<u16> {
 }
 
 impl TryFrom<String> for HexColour {
-    type Error = FieldError;
+    /// What is wrong; the field is known to whoever asks.
+    type Error = String;
 
-    fn try_from(text: String) -> Result<Self, FieldError> {
-        let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii());
-        let channel = |digits: &str, at: usize| u8::from_str_radix(&digits[at..at + 2], 16).ok();
-        digits
-            .and_then(|digits| Some(Self([channel(digits, 0)?, channel(digits, 2)?, channel(digits, 4)?])))
-            .ok_or_else(|| FieldError::new("colour", format!("{text:?}"), "an sRGB colour, \"#rrggbb\""))
+    fn try_from(text: String) -> Result<Self, String> {
+        // `from_str_radix` takes a sign too.
+        let is_hex = |digits: &&str| digits.len() == 6 && digits.bytes().all(|digit| digit.is_ascii_hexdigit());
+        let digits = text.strip_prefix('#').filter(is_hex).and_then(|digits| u32::from_str_radix(digits, 16).ok());
+        match digits.map(u32::to_be_bytes) {
+            Some([_, r, g, b]) => Ok(Self([r, g, b])),
+            None => {
+                Err(format!("{} is not valid; expected an sRGB colour, \"#rrggbb\"", one_line(format!("{text:?}"))))
+            }
+        }
     }
 }
 
@@ -281,7 +286,10 @@ mod tests {
         let error = recipe(&[(0.5, "#000000"), (0.2, "#ffffff")]).validate().unwrap_err();
         assert_eq!(error.field, "rows[0].stops[1].at");
         assert_eq!(recipe(&[]).validate().unwrap_err().field, "rows[0].stops");
-        assert!(HexColour::try_from("red".to_owned()).unwrap_err().to_string().contains("#rrggbb"));
-        assert!(HexColour::try_from("#12é45".to_owned()).is_err());
+        assert!(HexColour::try_from("red".to_owned()).unwrap_err().contains("#rrggbb"));
+        for bad in ["#12é45", "#+1+2+3", "#12345", "#1234567", "123456", "#12 456"] {
+            assert!(HexColour::try_from(bad.to_owned()).is_err(), "{bad}");
+        }
+        assert_eq!(HexColour::try_from("#0aFf80".to_owned()), Ok(HexColour([0x0a, 0xff, 0x80])));
     }
 }
