@@ -378,6 +378,11 @@ fn a_preset_that_cannot_be_drawn_is_not_called_good() {
     assert!(columns.contains("systems[0].material.columns: 0 is not valid; expected 1 to 256 frames"), "{columns}");
     let ignored = preset(r#"{"columns": 2}"#, "soft");
     assert!(ignored.contains("material.columns and rows: 2x1"), "{ignored}");
+    let ignored = preset(r#"{"y_down": true}"#, "soft");
+    assert!(
+        ignored.contains("systems[0].material.y_down: true is not valid; expected false with a built-in"),
+        "{ignored}"
+    );
     let missing = preset(r#"{"noise": "none.png"}"#, "soft");
     assert!(missing.contains("own.json: systems[0].material.noise: none.png: "), "{missing}");
     let outside = preset(r#"{"sprite": "mine.png", "detail": "../x.png"}"#, "soft");

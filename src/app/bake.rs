@@ -13,6 +13,7 @@ use haze::{Error, FieldError};
 use image::DynamicImage;
 
 use super::output::{Failures, Files, say};
+use super::progress::watched;
 
 #[derive(Args)]
 pub struct RampArguments {
@@ -113,12 +114,13 @@ fn run(
         let output = |extension| path.with_file_name(name.with_extension(extension));
         let outputs: Vec<_> = recipe.extensions().iter().map(output).collect();
         outputs.iter().try_for_each(|output| files.write("output", output))?;
-        Ok((recipe, outputs))
+        Ok((path, recipe, outputs))
     });
     failures.into_result()?;
-    for (recipe, outputs) in jobs {
-        for (picture, output) in recipe.bake().map_err(Error::from)?.iter().zip(&outputs) {
-            write_png(output, picture, Effort::Small)?;
+    for (path, recipe, outputs) in jobs {
+        let pictures = watched(format!("haze: baking {}", path.display()), || recipe.bake()).map_err(Error::from)?;
+        for (picture, output) in pictures.iter().zip(&outputs) {
+            watched(format!("haze: writing {}", output.display()), || write_png(output, picture, Effort::Small))?;
             say!("{}: {}x{}", output.display(), picture.width(), picture.height())?;
         }
     }

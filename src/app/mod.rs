@@ -14,6 +14,7 @@ mod options;
 mod output;
 mod plot;
 mod preset;
+mod progress;
 mod render;
 mod shade_tree;
 mod sheet;

@@ -83,6 +83,9 @@ impl MaterialNames {
             if (self.columns, self.rows) != (1, 1) {
                 return refuse("columns and rows", format!("{}x{}", self.columns, self.rows), "1 and 1");
             }
+            if self.y_down {
+                return refuse("y_down", self.y_down.to_string(), "false");
+            }
             return Ok((sprite.sprite()?, sprite.detail()?));
         }
         let layout = SpriteLayout { columns: self.columns, rows: self.rows, y_down: self.y_down };

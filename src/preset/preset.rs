@@ -8,7 +8,7 @@ use super::material_names::MaterialNames;
 use super::pictures::Pictures;
 use crate::assets::material::MaterialAssets;
 use crate::assets::{builtin, json};
-use crate::emitter::Emitter;
+use crate::emitter::{Emitter, MAX_PARTICLES};
 use crate::error::{Error, FieldError, name};
 use crate::frame::validate::validate_lights;
 use crate::frame::{Light, Particle};
@@ -167,7 +167,7 @@ impl Preset {
         systems.map(&mut load).collect()
     }
 
-    /// Checks every number.
+    /// Checks every number, and that no more than [`MAX_PARTICLES`] live at once.
     ///
     /// # Errors
     /// The first field that is not valid.
@@ -181,8 +181,15 @@ impl Preset {
             let expected = format!("at most {MAX_SYSTEMS} systems");
             return Err(FieldError::new("systems", format!("{} systems", self.systems.len()), expected));
         }
+        let mut most = 0.0;
         for (index, system) in self.systems.iter().enumerate() {
             system.emitter.validate(|| format!("systems[{index}].emitter"))?;
+            most += system.emitter.most_alive();
+            if most > f64::from(MAX_PARTICLES) {
+                let field = format!("systems[{index}].emitter.rate");
+                let expected = format!("at most {MAX_PARTICLES} particles alive at once in all systems, not {most:.0}");
+                return Err(FieldError::new(field, system.emitter.rate, expected));
+            }
             system.settings.validate(|| format!("systems[{index}].settings"))?;
         }
         Ok(())
@@ -260,6 +267,14 @@ mod tests {
             r#"{"version": 1, "name": "x", "systems": [{"name": "s", "settings": {"soft_fade": {"fade_scale": 0}}}]}"#,
         );
         assert!(nested.starts_with("my.json: systems[0].settings.soft_fade.fade_scale: 0 is not valid"), "{nested}");
+        let emitter = r#"{"rate": 100000, "lifetime": 5, "lifetime_spread": 0}"#;
+        let system = format!(r#"{{"name": "s", "emitter": {emitter}}}"#);
+        let crowded = parse(&format!(r#"{{"version": 1, "name": "x", "systems": [{system}, {system}, {system}]}}"#));
+        assert_eq!(
+            crowded,
+            "my.json: systems[2].emitter.rate: 100000 is not valid; \
+             expected at most 1048576 particles alive at once in all systems, not 1500000"
+        );
         let unknown = Preset::load("colunm").unwrap_err().to_string();
         assert!(unknown.contains("column, backlit_fog"), "{unknown}");
     }

@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use glam::{UVec2, Vec3};
-use image::{DynamicImage, ImageBuffer, Rgb};
+use image::{DynamicImage, ImageBuffer};
 
 use crate::assets::json;
+use crate::assets::picture::Picture;
 use crate::error::{Error, FieldError, one_line};
 use crate::formula::colour::{linear_from_srgb, srgb_from_linear};
 use crate::settings::{FieldVisitor, Fields, validate};
@@ -65,8 +66,15 @@ impl HexColour {
 }
 
 /// A linear colour as a texel of a ramp's picture.
-pub(crate) fn srgb16_from_linear(colour: Vec3) -> Rgb<u16> {
-    Rgb(colour.to_array().map(|channel| (srgb_from_linear(channel.clamp(0.0, 1.0)) * 65535.0).round() as u16))
+pub(super) fn srgb16_from_linear(colour: Vec3) -> [u16; 3] {
+    colour.to_array().map(|channel| (srgb_from_linear(channel.clamp(0.0, 1.0)) * 65535.0).round() as u16)
+}
+
+/// The picture to write of sRGB texels.
+pub(super) fn image_of(picture: Picture<[u16; 3]>) -> DynamicImage {
+    // A texel for every pixel, so never empty.
+    ImageBuffer::from_raw(picture.size.x, picture.size.y, picture.texels.into_flattened())
+        .map_or_else(DynamicImage::default, DynamicImage::ImageRgb16)
 }
 
 impl TryFrom<String> for HexColour {
@@ -148,17 +156,7 @@ impl RampRecipe {
     /// As [`RampRecipe::validate`].
     pub fn sample(&self, u: f32, v: f32) -> Result<Vec3, FieldError> {
         self.validate()?;
-        Ok(self.sample_valid(u, v))
-    }
-
-    fn sample_valid(&self, u: f32, v: f32) -> Vec3 {
-        let row = |row: &RampRow| {
-            let stops: Vec<_> =
-                row.stops.iter().map(|stop| (stop.at, oklab_from_linear(stop.colour.linear()))).collect();
-            monotone_curve(&stops, u)
-        };
-        let rows: Vec<_> = self.rows.iter().map(|r| (r.at, row(r))).collect();
-        linear_from_oklab(monotone_curve(&rows, v)).max(Vec3::ZERO)
+        Ok(Gradient::new(self).sample(u, v))
     }
 
     /// Bakes the picture: sRGB, 16 bits a channel, the row for 0 at the bottom.
@@ -167,13 +165,34 @@ impl RampRecipe {
     /// As [`RampRecipe::validate`].
     pub fn bake(&self) -> Result<DynamicImage, FieldError> {
         self.validate()?;
+        let gradient = Gradient::new(self);
         let size = UVec2::new(self.width, self.height);
         let last = (size - 1).max(UVec2::ONE).as_vec2();
-        let picture = ImageBuffer::from_fn(size.x, size.y, |x, y| {
-            let colour = self.sample_valid(x as f32 / last.x, (size.y - 1 - y) as f32 / last.y);
-            srgb16_from_linear(colour)
+        let mut picture = Picture::new(size, [0; 3]);
+        picture.for_each(|at, texel| {
+            *texel = srgb16_from_linear(gradient.sample(at.x as f32 / last.x, (size.y - 1 - at.y) as f32 / last.y));
         });
-        Ok(DynamicImage::ImageRgb16(picture))
+        Ok(image_of(picture))
+    }
+}
+
+/// A recipe made ready to be asked for many texels: its colours in Oklab.
+struct Gradient {
+    rows: Vec<(f32, Vec<(f32, Vec3)>)>,
+}
+
+impl Gradient {
+    fn new(recipe: &RampRecipe) -> Self {
+        let stop = |stop: &RampStop| (stop.at, oklab_from_linear(stop.colour.linear()));
+        Self { rows: recipe.rows.iter().map(|row| (row.at, row.stops.iter().map(stop).collect())).collect() }
+    }
+
+    fn sample(&self, u: f32, v: f32) -> Vec3 {
+        // The curve between two rows looks at one row more on either side.
+        let next = self.rows.partition_point(|&(at, _)| at <= v);
+        let near = &self.rows[next.saturating_sub(2)..self.rows.len().min(next + 2)];
+        let rows: Vec<_> = near.iter().map(|(at, stops)| (*at, monotone_curve(stops, u))).collect();
+        linear_from_oklab(monotone_curve(&rows, v)).max(Vec3::ZERO)
     }
 }
 
@@ -203,7 +222,8 @@ fn monotone_curve(points: &[(f32, Vec3)], x: f32) -> Vec3 {
     };
     let secant = |a: usize, b: usize| {
         let (&(xa, ya), &(xb, yb)) = (points.get(a)?, points.get(b)?);
-        Some((yb - ya) / (xb - xa))
+        // Steeper than this no picture can show, and products of slopes stay far from overflow.
+        Some((yb - ya) / (xb - xa).max(1.0e-6))
     };
     let tangent = |at: usize| match (secant(at.wrapping_sub(1), at), secant(at, at + 1)) {
         (Some(before), Some(after)) => {
@@ -278,6 +298,49 @@ mod tests {
             let grey = recipe.sample(step as f32 / 400.0, 0.0).unwrap().y;
             assert!(grey >= last - 1e-5 && grey <= 1.0 + 1e-4, "{step}: {grey} after {last}");
             last = grey;
+        }
+    }
+
+    #[test]
+    fn stops_that_all_but_meet_are_an_edge() {
+        for gap in [f32::from_bits(1), 1.0e-20, 1.0e-7] {
+            let recipe = recipe(&[(0.0, "#000000"), (gap, "#404040"), (2.0 * gap, "#808080"), (1.0, "#ffffff")]);
+            for u in [0.0, gap / 2.0, gap, 1.5 * gap, 2.0 * gap, 3.0 * gap, 0.5] {
+                let colour = recipe.sample(u, 0.0).unwrap();
+                assert!(colour.is_finite() && colour.max_element() < 1.001, "{gap:e} {u:e}: {colour}");
+            }
+            assert!(recipe.sample(0.5, 0.0).unwrap().x > 0.05);
+        }
+    }
+
+    #[test]
+    fn many_stops_and_rows_take_little_longer_than_few() {
+        let rows = |rows: u32, stops: u32| {
+            let place = |index: u32, count: u32| index as f32 / count as f32;
+            let stop = |index| RampStop { at: place(index, stops), colour: HexColour([index as u8; 3]) };
+            let stops: Vec<_> = (0..stops).map(stop).collect();
+            let row = |index| RampRow { at: place(index, rows), stops: stops.clone() };
+            RampRecipe { version: 1, width: 1024, height: 256, rows: (0..rows).map(row).collect() }
+        };
+        let started = std::time::Instant::now();
+        rows(1, 100_000).bake().unwrap();
+        rows(2_000, 20).bake().unwrap();
+        // Tenths of a second; texels times stops or times rows would be minutes.
+        assert!(started.elapsed().as_secs() < 20, "{:?}", started.elapsed());
+    }
+
+    #[test]
+    fn rows_far_off_do_not_matter() {
+        let mut tall = recipe(&[(0.0, "#102030"), (1.0, "#ff8040")]);
+        let stops = |colour: &str| vec![RampStop { at: 0.0, colour: colour.to_owned().try_into().unwrap() }];
+        let colours = ["#000000", "#404040", "#505050", "#606060", "#ffffff"];
+        let row = |(index, colour): (usize, &&str)| RampRow { at: index as f32 / 4.0, stops: stops(colour) };
+        tall.rows = colours.iter().enumerate().map(row).collect();
+        // The same curve as along one row.
+        let long = recipe(&[0, 1, 2, 3, 4].map(|index| (index as f32 / 4.0, colours[index])));
+        for step in 0..=64 {
+            let at = step as f32 / 64.0;
+            assert_eq!(tall.sample(0.3, at).unwrap(), long.sample(at, 0.0).unwrap(), "{at}");
         }
     }
 

@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use glam::{Vec2, Vec3};
-use image::{DynamicImage, ImageBuffer};
+use glam::{UVec2, Vec2, Vec3};
+use image::DynamicImage;
 
-use super::bake::{HexColour, srgb16_from_linear};
+use super::bake::{HexColour, image_of, srgb16_from_linear};
 use crate::assets::json;
+use crate::assets::picture::Picture;
 use crate::error::{Error, FieldError};
 use crate::formula::diffuse_bake::motif_normal;
 use crate::formula::saturate;
@@ -14,6 +15,9 @@ use crate::settings::{FieldVisitor, Fields, validate};
 
 /// The version of the recipe format that this code writes and reads.
 pub const RECIPE_VERSION: u32 = 1;
+
+/// Most lights of one motif: every texel adds them up.
+const MAX_LIGHTS: usize = 256;
 
 /// How a motif was made: the contents of a `*.motif.json`.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -69,7 +73,20 @@ impl MotifRecipe {
     /// # Errors
     /// [`Error::Io`], [`Error::Json`] or [`Error::JsonField`].
     pub fn load(path: &Path) -> Result<Self, Error> {
-        json::load(path, RECIPE_VERSION, |recipe: &Self| validate(recipe, String::new))
+        json::load(path, RECIPE_VERSION, Self::validate)
+    }
+
+    /// Checks ranges and the number of lights.
+    ///
+    /// # Errors
+    /// The first field that is not valid.
+    pub fn validate(&self) -> Result<(), FieldError> {
+        validate(self, String::new)?;
+        if self.lights.len() > MAX_LIGHTS {
+            let expected = format!("at most {MAX_LIGHTS} lights");
+            return Err(FieldError::new("lights", format!("{} lights", self.lights.len()), expected));
+        }
+        Ok(())
     }
 
     /// Bakes the picture: sRGB, 16 bits a channel.
@@ -77,18 +94,38 @@ impl MotifRecipe {
     /// # Errors
     /// The first field that is not valid.
     pub fn bake(&self) -> Result<DynamicImage, FieldError> {
-        validate(self, String::new)?;
+        self.validate()?;
         let last = (self.size - 1) as f32;
-        let picture = ImageBuffer::from_fn(self.size, self.size, |x, y| {
-            let normal = motif_normal(Vec2::new(x as f32 / last * 2.0 - 1.0, 1.0 - y as f32 / last * 2.0));
-            let lit = self.lights.iter().map(|light| {
-                let facing = normal.dot(light.direction.normalize_or(Vec3::Z));
-                let amount = saturate((facing + light.wrap) / (1.0 + light.wrap));
-                light.colour.linear() * amount * amount
+        let light = |light: &MotifLight| (light.direction.normalize_or(Vec3::Z), light.colour.linear(), light.wrap);
+        let lights: Vec<_> = self.lights.iter().map(light).collect();
+        let mut picture = Picture::new(UVec2::splat(self.size), [0; 3]);
+        picture.for_each(|at, texel| {
+            let normal = motif_normal(Vec2::new(at.x as f32 / last * 2.0 - 1.0, 1.0 - at.y as f32 / last * 2.0));
+            let lit = lights.iter().map(|&(direction, colour, wrap)| {
+                let amount = saturate((normal.dot(direction) + wrap) / (1.0 + wrap));
+                colour * amount * amount
             });
-            let colour = self.ambient.linear() + lit.sum::<Vec3>();
-            srgb16_from_linear(colour)
+            *texel = srgb16_from_linear(self.ambient.linear() + lit.sum::<Vec3>());
         });
-        Ok(DynamicImage::ImageRgb16(picture))
+        Ok(image_of(picture))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lights_are_counted() {
+        let light = MotifLight { direction: Vec3::Z, colour: HexColour([9; 3]), wrap: 0.0 };
+        let recipe = |lights| MotifRecipe {
+            version: 1,
+            size: 8,
+            ambient: HexColour([0; 3]),
+            lights: vec![light.clone(); lights],
+        };
+        assert!(recipe(MAX_LIGHTS).bake().is_ok());
+        let error = recipe(20_000).bake().unwrap_err().to_string();
+        assert_eq!(error, "lights: 20000 lights is not valid; expected at most 256 lights");
     }
 }

@@ -1,0 +1,58 @@
+//! A line on stderr that says that long work goes on: only where someone watches, and gone when the work is done.
+
+use std::io::{IsTerminal as _, Write};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::{Duration, Instant};
+
+/// Does the work, and says what it is and for how long already. Work of less than a second says nothing.
+pub fn watched<T>(what: String, work: impl FnOnce() -> T) -> T {
+    let stderr = std::io::stderr();
+    if stderr.is_terminal() { watched_on(stderr, what, Duration::from_secs(1), work) } else { work() }
+}
+
+fn watched_on<T>(mut out: impl Write + Send, what: String, every: Duration, work: impl FnOnce() -> T) -> T {
+    let (done, end) = channel::<()>();
+    let tell = move || {
+        let started = Instant::now();
+        let mut erase = "";
+        while end.recv_timeout(every) == Err(RecvTimeoutError::Timeout) {
+            // A terminal that is gone is no reason to stop.
+            let _ = write!(out, "\r{what}, {} s ", started.elapsed().as_secs()).and_then(|()| out.flush());
+            erase = "\r\x1b[K";
+        }
+        let _ = write!(out, "{erase}").and_then(|()| out.flush());
+    };
+    std::thread::scope(move |scope| {
+        // Without a thread the work goes on unseen.
+        let _ = std::thread::Builder::new().spawn_scoped(scope, tell);
+        let result = work();
+        drop(done);
+        result
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown(every: Duration, work: Duration) -> String {
+        let mut terminal = Vec::new();
+        watched_on(&mut terminal, "baking puff".into(), every, || std::thread::sleep(work));
+        String::from_utf8(terminal).unwrap()
+    }
+
+    #[test]
+    fn long_work_is_seen_and_leaves_no_trace() {
+        let text = shown(Duration::from_millis(1), Duration::from_millis(200));
+        assert!(text.starts_with("\rbaking puff, 0 s ") && text.ends_with("\r\x1b[K"), "{text:?}");
+        assert_eq!(shown(Duration::from_secs(60), Duration::ZERO), "");
+    }
+
+    #[test]
+    fn a_terminal_that_is_gone_is_no_failure() {
+        // A writer without room.
+        let full: &mut [u8] = &mut [];
+        let work = || std::thread::sleep(Duration::from_millis(50));
+        watched_on(full, "baking".into(), Duration::from_millis(1), work);
+    }
+}
