@@ -6,7 +6,7 @@ use glam::{UVec2, Vec3};
 use image::{DynamicImage, ImageBuffer};
 
 use crate::assets::json;
-use crate::assets::picture::Picture;
+use crate::assets::picture::{MAX_BYTES, MAX_SIDE, Picture};
 use crate::error::{Error, FieldError, one_line};
 use crate::formula::colour::{linear_from_srgb, srgb_from_linear};
 use crate::settings::{FieldVisitor, Fields, validate};
@@ -103,8 +103,10 @@ impl From<HexColour> for String {
 impl Fields for RampRecipe {
     fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
         visitor.integer("version", &mut self.version, RECIPE_VERSION..=RECIPE_VERSION, "");
-        visitor.integer("width", &mut self.width, 2..=4096, "texels");
-        visitor.integer("height", &mut self.height, 1..=4096, "texels");
+        visitor.integer("width", &mut self.width, 2..=MAX_SIDE, "texels");
+        // What is baked must be readable again: three channels of 16 bits.
+        let most = MAX_BYTES as u32 / 6 / self.width.max(1);
+        visitor.integer("height", &mut self.height, 1..=most.min(MAX_SIDE), "texels");
         for (index, row) in self.rows.iter_mut().enumerate() {
             visitor.item("rows", index, row);
         }
@@ -342,6 +344,19 @@ mod tests {
             let at = step as f32 / 64.0;
             assert_eq!(tall.sample(0.3, at).unwrap(), long.sample(at, 0.0).unwrap(), "{at}");
         }
+    }
+
+    #[test]
+    fn what_is_baked_can_be_read_again() {
+        let mut large = recipe(&[(0.0, "#102030")]);
+        (large.width, large.height) = (4096, 4096);
+        let error = large.validate().unwrap_err().to_string();
+        assert_eq!(error, "height: 4096 is not valid; expected 1 to 2730 texels");
+        large.height = 2730;
+        let mut png = Vec::new();
+        let baked = large.bake().unwrap();
+        baked.write_to(&mut std::io::Cursor::new(&mut png), image::ImageFormat::Png).unwrap();
+        assert_eq!(crate::assets::picture::decode_png(Path::new("large.png"), &png).unwrap().height(), 2730);
     }
 
     #[test]
