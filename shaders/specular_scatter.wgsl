@@ -20,16 +20,14 @@ struct QuadVertex {
     @location(2) @interpolate(flat, either) position_inverse_range: vec4f,
 }
 
-// The share of a light's body that the scene leaves visible: a ring of 8 taps and the middle.
+// The share of a light's body that the scene leaves visible.
 fn light_visibility(pixel: vec2f, radius: f32, light_depth: f32) -> f32 {
     var visible = 0.0;
-    for (var i = 0u; i < 9u; i++) {
-        let angle = f32(i) * 0.785398163;
-        let offset = select(vec2f(cos(angle), sin(angle)) * radius, vec2f(0.0), i == 8u);
-        let tap = clamp(floor(pixel + offset), vec2f(0.0), view.size - 1.0);
+    for (var i = 0u; i < VISIBILITY_TAPS; i++) {
+        let tap = clamp(floor(pixel + visibility_tap(i, radius)), vec2f(0.0), view.size - 1.0);
         visible += select(0.0, 1.0, scene_view_depth(tap) >= light_depth);
     }
-    return visible / 9.0;
+    return visible / f32(VISIBILITY_TAPS);
 }
 
 @vertex

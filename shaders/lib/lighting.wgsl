@@ -74,3 +74,11 @@ fn coverage(amount: f32, boost: f32) -> f32 {
 fn specular_scatter_fade(light_depth: f32, smoke_near: f32, smoke_far: f32) -> f32 {
     return saturate((light_depth - smoke_near) / max(smoke_far - smoke_near, 1.0e-4));
 }
+
+const VISIBILITY_TAPS: u32 = 9u;
+
+// Where a light's body is looked for, from its middle: a ring of 8 taps at its radius, and the middle.
+fn visibility_tap(index: u32, radius: f32) -> vec2f {
+    let angle = f32(index) * 0.785398163;
+    return select(vec2f(cos(angle), sin(angle)) * radius, vec2f(0.0), index == 8u);
+}

@@ -1,6 +1,6 @@
 //! The light of one point of the smoke. `shaders/lib/lighting.wgsl`.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::saturate;
 use super::uniforms::LightUniform;
@@ -59,4 +59,12 @@ pub fn coverage(amount: f32, boost: f32) -> f32 {
 /// How much of the box, by view depth, lies in front of a light. (OTEE "Specular scattering")
 pub fn specular_scatter_fade(light_depth: f32, smoke_near: f32, smoke_far: f32) -> f32 {
     saturate((light_depth - smoke_near) / (smoke_far - smoke_near).max(1.0e-4))
+}
+
+/// Taps of [`visibility_tap`].
+pub const VISIBILITY_TAPS: u32 = 9;
+
+/// Where a light's body is looked for, from its middle: a ring of 8 taps at its radius, and the middle.
+pub fn visibility_tap(index: u32, radius: f32) -> Vec2 {
+    if index == 8 { Vec2::ZERO } else { Vec2::from_angle(index as f32 * std::f32::consts::FRAC_PI_4) * radius }
 }

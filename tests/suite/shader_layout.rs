@@ -148,6 +148,7 @@ fn constants_agree() {
     assert_eq!(constant(&transfer, "SAME_SURFACE"), f64::from(formula::upsample::SAME_SURFACE));
     assert_eq!(constant(&transfer, "BRIGHTEST"), f64::from(formula::colour::BRIGHTEST));
     assert_eq!(constant(&transfer, "SAME_SMOKE"), f64::from(formula::upsample::SAME_SMOKE));
+    assert_eq!(constant(&transfer, "VISIBILITY_TAPS"), f64::from(formula::lighting::VISIBILITY_TAPS));
 }
 
 macro_rules! assert_choices {

@@ -5,7 +5,7 @@ use glam::{Vec2, Vec4, Vec4Swizzles};
 use crate::assets::picture::Picture;
 use crate::formula::colour::bounded_light;
 use crate::formula::depth::SKY_VIEW_DEPTH;
-use crate::formula::lighting::{range_window, specular_scatter_fade};
+use crate::formula::lighting::{VISIBILITY_TAPS, range_window, specular_scatter_fade, visibility_tap};
 use crate::formula::ramp::sample_ramp_2d;
 use crate::formula::view::pixel_from_ndc;
 use crate::reference::accumulated::{Accumulated, sample_target};
@@ -54,13 +54,10 @@ impl Accumulated<'_> {
         }
     }
 
-    /// The share of a light's body that the scene leaves visible: a ring of 8 taps and the middle.
+    /// The share of a light's body that the scene leaves visible.
     pub fn light_visibility(&self, pixel: Vec2, radius: f32, light_depth: f32) -> f32 {
-        let visible = |i: u32| {
-            let angle = i as f32 * std::f32::consts::FRAC_PI_4;
-            let offset = if i == 8 { Vec2::ZERO } else { Vec2::new(angle.cos(), angle.sin()) * radius };
-            self.draw.scene_view_depth((pixel + offset).floor().as_ivec2()) >= light_depth
-        };
-        (0..9).filter(|&i| visible(i)).count() as f32 / 9.0
+        let visible =
+            |i: u32| self.draw.scene_view_depth((pixel + visibility_tap(i, radius)).floor().as_ivec2()) >= light_depth;
+        (0..VISIBILITY_TAPS).filter(|&i| visible(i)).count() as f32 / VISIBILITY_TAPS as f32
     }
 }
