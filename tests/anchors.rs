@@ -33,7 +33,7 @@ fn is_vector(found: Vec3, expected: Vec3) {
 /// Layers of (normal, amount) over each other.
 fn accumulate(encoding: NormalEncoding, layers: &[(Vec3, f32)]) -> Vec4 {
     let over = |target, &(normal, amount): &(Vec3, f32)| {
-        premultiplied_over(accumulation_from_normal(encoding, normal, amount), target)
+        premultiplied_over(accumulation_from_normal(encoding, normal, amount, 1.0), target)
     };
     layers.iter().fold(Vec4::ZERO, over)
 }
@@ -53,7 +53,8 @@ fn amounts_add_smoothly() {
 fn normals_come_out_as_they_went_in() {
     let normal = Vec3::ONE.normalize();
     let decode = |decode, layers: &[(Vec3, f32)]| {
-        normal_from_accumulation(NormalEncoding::Biased, decode, accumulate(NormalEncoding::Biased, layers))
+        let accumulated = accumulate(NormalEncoding::Biased, layers);
+        normal_from_accumulation(NormalEncoding::Biased, decode, accumulated.xyz(), accumulated.w)
     };
     is_vector(decode(NormalDecode::Exact, &[(normal, 0.125)]), normal);
     is_vector(decode(NormalDecode::Exact, &[(normal, 0.5); 4]), normal);

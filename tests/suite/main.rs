@@ -14,8 +14,8 @@ mod formulas;
 mod goldens;
 mod host;
 mod hosts;
-mod lighting;
 mod in_view;
+mod lighting;
 #[cfg(feature = "app")]
 mod presets;
 mod properties;
