@@ -1,4 +1,4 @@
-//! JSON files with a `version`: newer ones are refused untouched, unknown keys are named with line and column.
+//! JSON files with a `version`, at most 1 MiB: newer ones are refused untouched, mistakes are named with line, column and field.
 
 mod words;
 
@@ -84,7 +84,7 @@ fn text<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, Error> {
         return refuse((1, 1), "a PNG picture");
     }
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
-        return refuse((1, 1), "text in UTF-16; save it as UTF-8");
+        return refuse((1, 1), "text in UTF-16");
     }
     // Some editors begin a file with a byte order mark.
     let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
