@@ -46,7 +46,7 @@ fn every_preset_agrees() {
 
 #[test]
 fn near_and_far_planes_cut_the_scene_alike() {
-    for (near, far) in [(0.1, 9.0), (6.9, 200.0), (7.3, 8.1)] {
+    for (near, far) in [(0.1, 9.0), (6.9, 200.0), (5.0, 7.2)] {
         let mut shot = shot("column", UVec2::new(320, 180));
         (shot.preset.camera.near, shot.preset.camera.far) = (near, far);
         let (psnr, _) = agreement(&shot);

@@ -2,6 +2,7 @@
 
 use glam::camera::rh::proj::directx;
 use glam::{Mat4, UVec2, Vec3, Vec4, vec3, vec4};
+use haze::frame::bounds_of;
 use haze::picture::Picture;
 use haze::read_only_depth_is_supported;
 use haze::reference::blend_unit::{premultiplied_over, quantise};
@@ -62,6 +63,28 @@ fn amount_on_the_gpu_does_not_depend_on_order() {
     // 60 layers, each rounded to f16: 60 halves of 2^-11 at worst, a third of that seen.
     assert!(difference.fold(0.0, f32::max) < 60.0 * 0.5 / 2048.0);
     assert!(forwards.texels.iter().any(|texel| texel.x > 0.9));
+}
+
+#[test]
+fn more_than_all_counts_as_all() {
+    let mut stage = Stage::new(SIZE);
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    let mut draw = |amount: f32| {
+        stage.particles = vec![Particle { position: vec3(0.0, 0.0, -5.0), amount, ..Particle::default() }];
+        stage.bounds = Some(bounds_of(&stage.particles, stage.settings.reach()));
+        host.draw(gpu(), &stage).unwrap();
+        let slice = host.picture(gpu()).unwrap();
+        let buffer = particle_buffer(gpu(), &stage.particles);
+        host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count: 1 }).unwrap();
+        [slice, host.picture(gpu()).unwrap(), stage.on_cpu()]
+    };
+    let whole = draw(1.0);
+    assert!(whole[0].texels.iter().any(|texel| *texel != BACKDROP));
+    for amount in [1.000_000_1, 3.0, 1.0e6] {
+        for (more, whole) in draw(amount).iter().zip(&whole) {
+            assert!(more.texels == whole.texels, "{amount}");
+        }
+    }
 }
 
 #[test]
