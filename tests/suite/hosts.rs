@@ -606,18 +606,18 @@ fn offsets_that_do_not_fit_are_refused() {
 }
 
 /// Frames of several systems, without a picture.
-struct Systems {
+pub struct Systems {
     host: Host,
-    stage: Stage,
+    pub stage: Stage,
 }
 
 impl Systems {
-    fn new(gpu: &Headless, size: UVec2) -> Self {
+    pub fn new(gpu: &Headless, size: UVec2) -> Self {
         let stage = Stage::new(size);
         Self { host: Host::new(gpu, &stage).unwrap(), stage }
     }
 
-    fn frame(&mut self, gpu: &Headless, systems: &[(u64, &[Particle], Settings)]) -> Result<(), Error> {
+    pub fn frame(&mut self, gpu: &Headless, systems: &[(u64, &[Particle], Settings)]) -> Result<(), Error> {
         let systems: Vec<_> = systems
             .iter()
             .map(|(key, particles, settings)| System {

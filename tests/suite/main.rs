@@ -20,6 +20,7 @@ mod lighting;
 mod presets;
 mod properties;
 mod shader_layout;
+mod soak;
 mod stage;
 mod techniques;
 #[cfg(feature = "app")]
