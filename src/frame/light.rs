@@ -46,7 +46,8 @@ settings! {
         radius: f32 = 0.1, number(0.0..=1.0e4, "m");
         /// Half angle of the spot's bright core, degrees.
         inner_angle: f32 = 20.0, number(0.0..=89.0, "degrees");
-        /// Half angle at which the spot has faded to nothing, degrees; at least `inner_angle`.
+        /// Half angle at which the spot has faded to nothing, degrees; at least `inner_angle`. Between them light falls by the
+        /// square of how far the cosine has gone.
         outer_angle: f32 = 35.0, number(|this| this.inner_angle..=89.9, "degrees");
         /// Multiplies this light's specular scatter quad. 0 draws none.
         specular_scatter: f32 = 1.0, number(0.0..=100.0, "");
