@@ -75,7 +75,7 @@ fn fragment(in: QuadVertex) -> @location(0) vec4f {
         discard;
     }
     let pixel = in.position.xy - view.origin;
-    let amount = sample_target(accumulation, footprint(pixel)).a;
+    let amount = sample_target(accumulation, pixel).a;
     if amount <= 0.0 {
         discard;
     }

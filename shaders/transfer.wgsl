@@ -97,8 +97,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         let grey = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));
         return vec4f(vec3f(grey), 1.0);
     }
-    let at = footprint(pixel);
-    let accumulated = sample_target(accumulation, at);
+    let accumulated = sample_target(accumulation, pixel);
     let amount = accumulated.a;
     if SHADE_TREE == SHADE_TREE_OVERDRAW {
         return vec4f(overdraw_colour(amount * 255.0), 1.0);
@@ -112,7 +111,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let covered = coverage(amount, system.boost);
     var weights = amount;
     if WEIGHT_SUM {
-        weights = sample_target(weight_sum, at).r;
+        weights = sample_target(weight_sum, pixel).r;
     }
     let normal = normal_from_accumulation(NORMAL_ENCODING, NORMAL_DECODE, accumulated.rgb, weights);
     if SHADE_TREE == SHADE_TREE_NORMALS {

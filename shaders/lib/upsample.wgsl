@@ -24,7 +24,7 @@ fn is_smooth(depths: vec4f, depth: f32, fade: f32) -> bool {
 // nearest_depth: bilinear if all four lie on the pixel's surface, else the closest alone. (Jansen and Bavoil, "Fast
 // rendering of opacity-mapped particles using DirectX 11 tessellation and mixed resolutions", 2011)
 // joint_bilateral: bilinear times a Gaussian of the depth difference. (Kopf et al., "Joint bilateral upsampling", 2007)
-// guided: bilinear, where is_smooth; else guided_weights.
+// guided: bilinear, where is_smooth; else a GuidedFit.
 fn upsample_weights(mode: u32, fraction: vec2f, depths: vec4f, depth: f32) -> vec4f {
     let g = 1.0 - fraction;
     let bilinear = vec4f(g.x * g.y, fraction.x * g.y, g.x * fraction.y, fraction.x * fraction.y);
@@ -51,56 +51,72 @@ fn upsample_weights(mode: u32, fraction: vec2f, depths: vec4f, depth: f32) -> ve
     return vec4f(0.0, 0.0, 0.0, 1.0);
 }
 
-// Weights of the texels (-1..2, -1..2), a row in each vector, of which upsample_weights has the middle four: what there is
-// at the pixel if smoke is linear in place and depth. Texels count by distance and by depth; the fit is theirs by least
-// squares, so weights may be negative, and what they give must be clamped to what the texels hold.
+// What there is at a pixel if smoke is linear in place and depth, by least squares over the texels around it. Places are
+// from the pixel: x and y in texels, z the texel's depth less the pixel's. Sums of weight times what is named; a sum needs
+// no array, and a GPU that steps over a branch's every instruction steps over one texel's.
 // (He, Sun and Tang, "Guided image filtering", 2010, with the scene's depth as the guide)
-fn guided_weights(fraction: vec2f, depths: array<vec4f, 4>, depth: f32, fade: f32) -> array<vec4f, 4> {
-    let x = vec4f(-1.0, 0.0, 1.0, 2.0) - fraction.x;
-    let y = vec4f(-1.0, 0.0, 1.0, 2.0) - fraction.y;
-    // Tents two texels wide, squared: smooth where a texel comes in or goes.
-    let tent_x = max(1.0 - abs(x) * 0.5, vec4f(0.0));
-    let tent_y = max(1.0 - abs(y) * 0.5, vec4f(0.0));
-    let sigma = 0.5 * SAME_SURFACE * max(depth, 1.0e-6);
-    var weights = depths;
-    var total = 0.0;
-    var mean = vec3f(0.0);
-    var nearest = depths[0].x;
-    var farthest = depths[0].x;
-    for (var row = 0u; row < 4u; row++) {
-        let d = depths[row];
-        let sigmas = (d - depth) / sigma;
-        // Never nothing: a pixel may lie on a surface that no texel has seen.
-        weights[row] = tent_x * tent_x * (tent_y[row] * tent_y[row]) * (exp(-0.5 * sigmas * sigmas) + 1.0e-4);
-        let sum = dot(weights[row], vec4f(1.0));
-        total += sum;
-        mean += vec3f(dot(weights[row], x), sum * y[row], dot(weights[row], d));
-        nearest = min(nearest, min(min(d.x, d.y), min(d.z, d.w)));
-        farthest = max(farthest, max(max(d.x, d.y), max(d.z, d.w)));
-    }
-    mean /= total;
-    // Covariance of x, y and depth: its diagonal, and xy, x·depth, y·depth.
-    var diagonal = vec3f(0.0);
-    var mixed = vec3f(0.0);
-    for (var row = 0u; row < 4u; row++) {
-        let w = weights[row] / total;
-        let dx = x - mean.x;
-        let dy = y[row] - mean.y;
-        let dz = depths[row] - mean.z;
-        diagonal += vec3f(dot(w, dx * dx), dot(w, vec4f(1.0)) * dy * dy, dot(w, dz * dz));
-        mixed += vec3f(dot(w, dx) * dy, dot(w, dx * dz), dot(w, dz) * dy);
-    }
-    // Slopes that little speaks for are held down.
+struct GuidedFit {
+    total: f32,
+    place: vec3f,
+    // x², y², z².
+    squares: vec3f,
+    // xy, xz, yz.
+    products: vec3f,
+    value: vec4f,
+    x_value: vec4f,
+    y_value: vec4f,
+    z_value: vec4f,
+    // What texels hold, and how far in depth they are.
+    low: vec4f,
+    high: vec4f,
+    nearest: f32,
+    farthest: f32,
+}
+
+// Texels count by distance, two of them away to nothing, and by depth: SAME_SURFACE is two sigma out.
+fn guided_weight(place: vec3f, depth: f32) -> f32 {
+    let tent = max(1.0 - abs(place.xy) * 0.5, vec2f(0.0));
+    let sigmas = place.z * (2.0 / (SAME_SURFACE * max(depth, 1.0e-6)));
+    // Never nothing: a pixel may lie on a surface that no texel has seen.
+    return tent.x * tent.x * tent.y * tent.y * (exp(-0.5 * sigmas * sigmas) + 1.0e-4);
+}
+
+fn with_texel(fit: GuidedFit, place: vec3f, weight: f32, value: vec4f) -> GuidedFit {
+    let w = place * weight;
+    return GuidedFit(
+        fit.total + weight,
+        fit.place + w,
+        fit.squares + w * place,
+        fit.products + w.xxy * place.yzz,
+        fit.value + value * weight,
+        fit.x_value + value * w.x,
+        fit.y_value + value * w.y,
+        fit.z_value + value * w.z,
+        select(min(fit.low, value), value, fit.total == 0.0),
+        select(max(fit.high, value), value, fit.total == 0.0),
+        min(fit.nearest, place.z),
+        max(fit.farthest, place.z),
+    );
+}
+
+// `fade`: metres that a soft fade is long.
+fn fitted_value(fit: GuidedFit, fade: f32) -> vec4f {
+    let mean = fit.place / fit.total;
+    let value = fit.value / fit.total;
+    // Covariances. Slopes that little speaks for are held down.
     let held = 0.05 * fade;
-    diagonal += vec3f(0.02, 0.02, held * held);
-    let a = vec3f(diagonal.x, mixed.x, mixed.y);
-    let b = vec3f(mixed.x, diagonal.y, mixed.z);
-    let c = vec3f(mixed.y, mixed.z, diagonal.z);
-    let at = vec3f(0.0, 0.0, clamp(depth, nearest, farthest)) - mean;
-    let slopes = vec3f(dot(cross(b, c), at), dot(cross(c, a), at), dot(cross(a, b), at)) / dot(a, cross(b, c));
-    for (var row = 0u; row < 4u; row++) {
-        let line = slopes.x * (x - mean.x) + slopes.y * (y[row] - mean.y) + slopes.z * (depths[row] - mean.z);
-        weights[row] *= (1.0 + line) / total;
-    }
-    return weights;
+    let square = fit.squares / fit.total - mean * mean + vec3f(0.02, 0.02, held * held);
+    let product = fit.products / fit.total - mean.xxy * mean.yzz;
+    let a = vec3f(square.x, product.x, product.y);
+    let b = vec3f(product.x, square.y, product.z);
+    let c = vec3f(product.y, product.z, square.z);
+    // The pixel, no nearer and no farther than its texels.
+    let at = vec3f(0.0, 0.0, clamp(0.0, fit.nearest, fit.farthest)) - mean;
+    let way = vec3f(dot(cross(b, c), at), dot(cross(c, a), at), dot(cross(a, b), at)) / dot(a, cross(b, c));
+    let fitted = value
+        + (fit.x_value / fit.total - value * mean.x) * way.x
+        + (fit.y_value / fit.total - value * mean.y) * way.y
+        + (fit.z_value / fit.total - value * mean.z) * way.z;
+    // A line goes on beyond its points, smoke does not.
+    return clamp(fitted, fit.low, fit.high);
 }

@@ -5,7 +5,7 @@ use glam::{IVec2, UVec2, Vec2, Vec3, Vec4};
 use super::draw::Draw;
 use crate::assets::picture::Picture;
 use crate::formula::texture::Texture2d;
-use crate::formula::upsample::{guided_weights, is_smooth, upsample_weights};
+use crate::formula::upsample::{GuidedFit, fitted_value, guided_weight, is_smooth, upsample_weights, with_texel};
 use crate::settings::Upsample;
 
 /// A system's finished target.
@@ -16,15 +16,6 @@ pub struct Accumulated<'a> {
     pub accumulation: Picture<Vec4>,
     /// What the weights of the normals sum to, where that is kept.
     pub weight_sum: Option<Picture<Vec4>>,
-}
-
-/// The texels that a pixel is made of.
-pub struct Footprint {
-    /// Along each side: 0 outside the part of the view that the target covers.
-    side: i32,
-    first: IVec2,
-    /// A row in each vector.
-    weights: [Vec4; 4],
 }
 
 impl Texture2d for Picture<Vec3> {
@@ -38,49 +29,38 @@ impl Texture2d for Picture<Vec3> {
 }
 
 impl Accumulated<'_> {
-    /// `footprint()` in accumulated.wgsl.
-    pub fn footprint(&self, pixel: Vec2) -> Footprint {
+    /// A texture of the accumulation target. `sample_target()` in accumulated.wgsl.
+    pub fn sample_target(&self, target: &Picture<Vec4>, pixel: Vec2) -> Vec4 {
         let system = &self.draw.system;
         let texel = pixel / system.scale - system.target_origin;
         if texel.cmplt(Vec2::ZERO).any() || texel.cmpge(system.target_size).any() {
-            return Footprint { side: 0, first: IVec2::ZERO, weights: [Vec4::ZERO; 4] };
+            return Vec4::ZERO;
         }
         if system.scale < 1.5 {
-            return Footprint { side: 1, first: texel.as_ivec2(), weights: [Vec4::X; 4] };
+            return target.load(texel.as_ivec2());
         }
         let upsample = self.draw.settings.accumulate.upsample;
         let corner = texel - 0.5;
-        let base = corner.floor().as_ivec2();
-        let fraction = corner - corner.floor();
-        let at = |x, y| self.reduced_depth.load(base + IVec2::new(x, y));
+        let (base, fraction) = (corner.floor().as_ivec2(), corner - corner.floor());
+        let taps = [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE].map(|offset| base + offset);
         let (depths, depth) = match upsample {
             Upsample::Bilinear => (Vec4::ZERO, 0.0),
             _ => {
                 let depth = self.draw.scene_view_depth(pixel.as_ivec2()).min(system.depth_limit);
-                (Vec4::new(at(0, 0), at(1, 0), at(0, 1), at(1, 1)), depth)
+                (Vec4::from(taps.map(|tap| self.reduced_depth.load(tap))), depth)
             }
         };
         let fade = 1.0 / system.fade_scale;
-        if upsample == Upsample::Guided && !is_smooth(depths, depth, fade) {
-            let around = [-1, 0, 1, 2].map(|y| Vec4::new(at(-1, y), at(0, y), at(1, y), at(2, y)));
-            let weights = guided_weights(fraction, &around, depth, fade);
-            return Footprint { side: 4, first: base - 1, weights };
+        if upsample != Upsample::Guided || is_smooth(depths, depth, fade) {
+            let weights = upsample_weights(upsample, fraction, depths, depth);
+            return taps.iter().zip(weights.to_array()).map(|(&tap, weight)| target.load(tap) * weight).sum();
         }
-        let weights = upsample_weights(upsample, fraction, depths, depth);
-        let rows = [Vec4::new(weights.x, weights.y, 0.0, 0.0), Vec4::new(weights.z, weights.w, 0.0, 0.0)];
-        Footprint { side: 2, first: base, weights: [rows[0], rows[1], Vec4::ZERO, Vec4::ZERO] }
+        let fit = (0..16).fold(GuidedFit::default(), |fit, i| {
+            let offset = IVec2::new(i % 4, i / 4) - 1;
+            let at = base + offset;
+            let place = (offset.as_vec2() - fraction).extend(self.reduced_depth.load(at) - depth);
+            with_texel(&fit, place, guided_weight(place, depth), target.load(at))
+        });
+        fitted_value(&fit, fade)
     }
-}
-
-/// `sample_target()` in accumulated.wgsl.
-pub fn sample_target(target: &Picture<Vec4>, at: &Footprint) -> Vec4 {
-    let (mut sum, mut low, mut high) = (Vec4::ZERO, Vec4::INFINITY, Vec4::NEG_INFINITY);
-    for (y, weights) in (0..at.side).zip(&at.weights) {
-        for (x, weight) in (0..at.side).zip(weights.to_array()) {
-            let value = target.load(at.first + IVec2::new(x, y));
-            sum += value * weight;
-            (low, high) = (low.min(value), high.max(value));
-        }
-    }
-    if at.side == 4 { sum.clamp(low, high) } else { sum }
 }

@@ -103,6 +103,23 @@ fn light(x: &[f32]) -> LightUniform {
 const WGSL_LIGHT: &str = "let light = Light(vec3f(x(0), x(1), x(2)), x(3), vec3f(x(4), x(5), x(6)), x(7), vec3f(1.0), \
      1.0, x(8), x(9), x(10), 0.0);";
 
+/// Four texels of place and value, of weights 1 to 4.
+fn fit(x: &[f32]) -> upsample::GuidedFit {
+    x[..20].chunks(5).zip([1.0, 2.0, 3.0, 4.0]).fold(upsample::GuidedFit::default(), |fit, (x, weight)| {
+        upsample::with_texel(&fit, v3(x), weight, Vec4::splat(x[3]))
+    })
+}
+
+const WGSL_FIT: &str = "var f: GuidedFit; f.nearest = 1.0e6; f.farthest = -1.0e6; for (var i = 0u; i < 4u; i++) { let o = 5u * i; \
+     f = with_texel(f, vec3f(x(o), x(o + 1u), x(o + 2u)), f32(i + 1u), vec4f(x(o + 3u))); } \
+     y(0, f.total); y(1, f.nearest); y(2, f.farthest); for (var i = 0u; i < 3u; i++) { y(3u + i, f.place[i]); \
+     y(6u + i, f.squares[i]); y(9u + i, f.products[i]); } y(12, f.value.x); y(13, f.x_value.x); y(14, f.y_value.x); \
+     y(15, f.z_value.x); y(16, f.low.x); y(17, f.high.x);";
+
+const WGSL_FITTED: &str = "var f: GuidedFit; f.nearest = 1.0e6; f.farthest = -1.0e6; for (var i = 0u; i < 4u; i++) { \
+     let o = 5u * i; f = with_texel(f, vec3f(x(o), x(o + 1u), x(o + 2u)), f32(i + 1u), vec4f(x(o + 3u))); } \
+     y(0, fitted_value(f, 0.5).x);";
+
 /// A ramp and a flipbook with a different number in every texel.
 fn test_ramp() -> Ramp {
     let colour = |i: u32| {
@@ -615,36 +632,48 @@ fn formulas() -> Vec<Formula> {
             ],
         },
         Formula {
-            name: "guided_weights",
+            name: "guided_weight",
             file: "lib/upsample.wgsl",
-            wgsl: "let d = array(vec4f(x(4), x(5), x(6), x(7)), vec4f(x(8), x(9), x(10), x(11)), \
-                   vec4f(x(12), x(13), x(14), x(15)), vec4f(x(16), x(17), x(18), x(19))); \
-                   var w = guided_weights(vec2f(x(0), x(1)), d, x(2), x(3)); \
-                   for (var i = 0u; i < 16u; i++) { y(i, w[i / 4u][i % 4u]); }",
+            wgsl: "y(0, guided_weight(vec3f(x(0), x(1), x(2)), x(3)));",
+            reference: |x| vec![upsample::guided_weight(v3(x), x[3])],
+            cases: random(100, &[(-2.2, 2.2), (-2.2, 2.2), (-0.5, 0.5), (3.0, 6.0)]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[("abs(place.xy) * 0.5", "abs(place.xy)"), ("(2.0 / (SAME_SURFACE", "(1.0 / (SAME_SURFACE")],
+        },
+        Formula {
+            name: "with_texel",
+            file: "lib/upsample.wgsl",
+            wgsl: WGSL_FIT,
             reference: |x| {
-                let depths = std::array::from_fn(|row| v4(&x[4 + 4 * row..]));
-                let weights = upsample::guided_weights(v2(x), &depths, x[2], x[3]);
-                weights.iter().flat_map(Vec4::to_array).collect()
+                let fit = fit(x);
+                let vectors = [fit.place, fit.squares, fit.products].map(|v| v.to_array());
+                let values = [fit.value, fit.x_value, fit.y_value, fit.z_value, fit.low, fit.high].map(|v| v.x);
+                [[fit.total, fit.nearest, fit.farthest].as_slice(), vectors.as_flattened(), &values].concat()
             },
-            cases: {
-                let case = |depth: (f32, f32), depths: (f32, f32)| {
-                    [[(0.0, 1.0), (0.0, 1.0), depth, (0.1, 1.0)].as_slice(), &[depths; 16]].concat()
-                };
-                // An edge, a slope, and a pixel whose surface no texel has seen.
-                let mut cases = random(60, &case((4.0, 6.0), (4.0, 6.0)));
-                cases.extend(random(60, &case((4.9, 5.1), (4.9, 5.1))));
-                cases.extend(random(60, &case((30.0, 60.0), (4.0, 5.0))));
-                cases
-            },
-            // The driver's exp, through the inverse of a matrix.
-            tolerance: TRANSCENDENTAL * 5.0,
+            cases: random(100, &[(-2.0, 2.0); 20]),
+            tolerance: ARITHMETIC * 10.0,
             mutants: &[
-                ("let sigma = 0.5 * SAME_SURFACE", "let sigma = SAME_SURFACE"),
-                ("clamp(depth, nearest, farthest)", "depth"),
+                ("w.xxy * place.yzz", "w.xyy * place.yzz"),
+                ("w * place,", "w,"),
+                ("fit.y_value + value * w.y", "fit.y_value + value * w.x"),
+                ("value, fit.total == 0.0),\n        min", "value, false),\n        min"),
+                ("min(fit.nearest, place.z)", "place.z"),
+            ],
+        },
+        Formula {
+            name: "fitted_value",
+            file: "lib/upsample.wgsl",
+            wgsl: WGSL_FITTED,
+            reference: |x| vec![upsample::fitted_value(&fit(x), 0.5).x],
+            cases: random(200, &[(-1.5, 1.5); 20]),
+            // Through the inverse of a matrix, of sums in another order.
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
                 ("held * held", "held"),
                 ("vec3f(0.02, 0.02,", "vec3f(0.0, 0.0,"),
-                ("dot(w, dz) * dy", "0.0"),
-                ("abs(y) * 0.5", "abs(y)"),
+                ("clamp(0.0, fit.nearest, fit.farthest)", "0.0"),
+                ("clamp(fitted, fit.low, fit.high)", "fitted"),
+                ("mean.xxy * mean.yzz", "mean.xxy"),
             ],
         },
         Formula {
@@ -1104,8 +1133,6 @@ const INDIRECT: &[&str] = &[
     "soft_scatter",
     "scene_view_depth",
     "clamped_texel",
-    "load_reduced_depth",
-    "footprint",
     "sample_target",
     "lit_position",
     "load_noise_volume",

@@ -8,7 +8,7 @@ use crate::formula::depth::SKY_VIEW_DEPTH;
 use crate::formula::lighting::{VISIBILITY_TAPS, range_window, specular_scatter_fade, visibility_tap};
 use crate::formula::ramp::sample_ramp_2d;
 use crate::formula::view::pixel_from_ndc;
-use crate::reference::accumulated::{Accumulated, sample_target};
+use crate::reference::accumulated::Accumulated;
 
 impl Accumulated<'_> {
     pub fn specular_scatter(&self, picture: &mut Picture<Vec4>) {
@@ -42,7 +42,7 @@ impl Accumulated<'_> {
                 if distance_squared >= 1.0 {
                     return;
                 }
-                let amount = sample_target(&self.accumulation, &self.footprint(pixel)).w;
+                let amount = self.sample_target(&self.accumulation, pixel).w;
                 if amount > 0.0 {
                     let ramp = &draw.material.specular_ramp;
                     let glow = sample_ramp_2d(ramp, Vec2::new(distance_squared, amount));

@@ -9,7 +9,7 @@ use crate::formula::lighting::coverage;
 use crate::formula::normal::normal_from_accumulation;
 use crate::formula::ramp::sample_ramp_2d;
 use crate::formula::saturate;
-use crate::reference::accumulated::{Accumulated, sample_target};
+use crate::reference::accumulated::Accumulated;
 use crate::reference::blend_unit::premultiplied_over;
 use crate::settings::{DiffuseMode, ShadeTree};
 
@@ -66,8 +66,7 @@ impl Accumulated<'_> {
             let grey = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));
             return Some(Vec3::splat(grey).extend(1.0));
         }
-        let at = self.footprint(pixel);
-        let accumulated = sample_target(&self.accumulation, &at);
+        let accumulated = self.sample_target(&self.accumulation, pixel);
         let amount = accumulated.w;
         match shade_tree {
             ShadeTree::Overdraw => return Some(overdraw_colour(amount * 255.0).extend(1.0)),
@@ -78,7 +77,7 @@ impl Accumulated<'_> {
             return None;
         }
         let covered = coverage(amount, system.boost);
-        let weights = self.weight_sum.as_ref().map_or(amount, |sum| sample_target(sum, &at).x);
+        let weights = self.weight_sum.as_ref().map_or(amount, |sum| self.sample_target(sum, pixel).x);
         let normal = normal_from_accumulation(accumulate.encoding, accumulate.decode, accumulated.xyz(), weights);
         if shade_tree == ShadeTree::Normals {
             return Some((normal * 0.5 + 0.5).extend(1.0) * covered);
