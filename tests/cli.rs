@@ -5,6 +5,8 @@
 
 #[path = "cli/drivers.rs"]
 mod drivers;
+#[path = "cli/many.rs"]
+mod many;
 #[path = "cli/names.rs"]
 mod names;
 #[path = "cli/outputs.rs"]

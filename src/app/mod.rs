@@ -6,6 +6,7 @@
 mod bake;
 mod bench;
 mod cost;
+mod frames;
 mod info;
 mod inputs;
 mod label;
@@ -20,6 +21,7 @@ mod shade_tree;
 mod sheet;
 mod techniques;
 mod tonemap;
+mod vary;
 
 use std::ffi::OsString;
 use std::io::Write;
@@ -41,10 +43,12 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Render a preset to a PNG.
+    /// Render a preset to a PNG, or to one for every frame.
     Render(render::Arguments),
     /// Render every stage of the shading on one labelled sheet.
     ShadeTree(shade_tree::Arguments),
+    /// Render a preset with one field at several values, on one labelled sheet.
+    Sheet(vary::Arguments),
     /// Render a preset under every soft-particle technique, with what each costs, on one labelled sheet.
     Techniques(techniques::Arguments),
     /// Measure what smoke costs here.
@@ -82,6 +86,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     report(match cli.command {
         Command::Render(arguments) => one(render::run(&arguments)),
         Command::ShadeTree(arguments) => one(shade_tree::run(&arguments)),
+        Command::Sheet(arguments) => one(vary::run(&arguments)),
         Command::Techniques(arguments) => one(techniques::run(&arguments)),
         Command::Bench(arguments) => one(bench::run(&arguments)),
         Command::Preset(arguments) => preset::run(&arguments),

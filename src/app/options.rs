@@ -10,7 +10,8 @@ use haze::demo::shot::Shot;
 use haze::headless::Headless;
 use haze::picture::Picture;
 use haze::picture::{Effort, write_png};
-use haze::settings::{Choice, Path, Technique};
+use haze::preset::Preset;
+use haze::settings::{Choice, Path, Technique, set_field};
 use haze::{Error, FieldError};
 use image::RgbImage;
 
@@ -36,7 +37,8 @@ pub struct RunArguments {
 #[derive(Args)]
 pub struct ShotArguments {
     /// A built-in preset's name (see `haze preset list`), or the path of a JSON file.
-    preset: Option<PathBuf>,
+    #[arg(default_value = "column")]
+    preset: PathBuf,
     #[command(flatten)]
     pub run: RunArguments,
     /// Seconds into the emission; the preset's own if not given.
@@ -51,9 +53,13 @@ pub struct ShotArguments {
     /// Seed of every emitter; the preset's own if not given.
     #[arg(long, value_name = "N", value_parser = parse_seed, allow_hyphen_values = true)]
     seed: Option<u32>,
+    /// Sets a field of the preset, by its name or the end of it: `accumulate.scale=4`, `lights[0].intensity=30`. May be given
+    /// more than once.
+    #[arg(long, value_name = "FIELD=VALUE", value_parser = parse_assignment)]
+    set: Vec<(String, String)>,
     /// The PNG to write.
     #[arg(short, long, value_name = "FILE.png")]
-    output: PathBuf,
+    pub output: PathBuf,
     /// Take a second more to make the file a tenth smaller.
     #[arg(long)]
     small: bool,
@@ -77,24 +83,37 @@ pub enum Backend {
 }
 
 impl ShotArguments {
-    /// Loads the preset, or the one that a subcommand shows when none is named, and applies the changes. Refuses
-    /// an output that cannot be written, this one or another that comes with the option which asks for it.
-    pub fn load(&self, default: &str, others: &[(&str, PathBuf)]) -> Result<Shot, Error> {
-        let preset = self.preset.as_deref().unwrap_or(std::path::Path::new(default));
-        let mut shot = Shot::load(preset, self.run.size)?;
-        let mut files = Files::read(pictures_of(preset, &shot.preset).iter().map(PathBuf::as_path).chain([preset]));
-        files.write("--output", &self.output)?;
-        others.iter().try_for_each(|(option, path)| files.write(option, path))?;
-        if let Some(time) = self.time {
-            shot.preset.time = time;
-        }
-        for system in &mut shot.preset.systems {
+    /// Loads the preset, or the default, and applies the changes. Refuses an output that cannot be written, `--output` or
+    /// another that comes with the option which asks for it.
+    pub fn load(&self, others: &[(&str, PathBuf)]) -> Result<Shot, Error> {
+        let output = ("--output", self.output.clone());
+        self.load_for(&[&[output], others].concat())
+    }
+
+    /// The same for outputs in place of `--output`.
+    pub fn load_for(&self, outputs: &[(&str, PathBuf)]) -> Result<Shot, Error> {
+        let mut preset = Preset::load(&self.preset)?;
+        for system in &mut preset.systems {
             system.emitter.seed = self.seed.unwrap_or(system.emitter.seed);
             system.settings.accumulate.scale = self.scale.unwrap_or(system.settings.accumulate.scale);
             system.settings.path = self.run.path.unwrap_or(system.settings.path);
             system.settings.technique = self.technique.unwrap_or(system.settings.technique);
         }
+        preset.time = self.time.unwrap_or(preset.time);
+        for (field, value) in &self.set {
+            set_field(&mut preset, field, value).map_err(|error| in_option("--set", error))?;
+        }
+        let shot = self.shot(preset)?;
+        let pictures = pictures_of(&self.preset, &shot.preset);
+        let mut files = Files::read(pictures.iter().map(PathBuf::as_path).chain([self.preset.as_path()]));
+        outputs.iter().try_for_each(|(option, path)| files.write(option, path))?;
         Ok(shot)
+    }
+
+    /// A shot of the preset, changed.
+    pub fn shot(&self, preset: Preset) -> Result<Shot, Error> {
+        preset.validate()?;
+        Shot::new(preset, &self.preset, self.run.size)
     }
 
     /// How much work the size of files is worth.
@@ -153,8 +172,11 @@ impl Backend {
     }
 }
 
-/// The preset of most subcommands.
-pub const DEFAULT_PRESET: &str = "column";
+/// A mistake in what an option sets.
+pub fn in_option(option: &str, mut error: FieldError) -> FieldError {
+    error.field = format!("{option} {}", error.field);
+    error
+}
 
 const LARGEST: u32 = 8192;
 
@@ -163,6 +185,13 @@ fn parse_size(text: &str) -> Result<UVec2, String> {
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(expected)?;
     let side = |digits: &str| digits.parse::<u32>().ok().filter(|side| (1..=LARGEST).contains(side));
     Ok(UVec2::new(side(width).ok_or_else(expected)?, side(height).ok_or_else(expected)?))
+}
+
+pub fn parse_assignment(text: &str) -> Result<(String, String), String> {
+    let (field, value) = text.split_once('=').ok_or_else(|| {
+        format!("{text:?} sets nothing; expected a field and its value, for example accumulate.scale=4")
+    })?;
+    Ok((field.into(), value.into()))
 }
 
 fn parse_time(text: &str) -> Result<f32, String> {

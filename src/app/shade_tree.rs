@@ -4,7 +4,7 @@ use clap::Args;
 use haze::Error;
 use haze::settings::ShadeTree;
 
-use super::options::{DEFAULT_PRESET, ShotArguments};
+use super::options::ShotArguments;
 use super::sheet::Sheet;
 use super::tonemap::develop;
 
@@ -31,7 +31,7 @@ const STAGES: [(ShadeTree, &str); ShadeTree::ALL.len()] = [
 const COLUMNS: u32 = 3;
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
-    let mut shot = arguments.shot.load(DEFAULT_PRESET, &[])?;
+    let mut shot = arguments.shot.load(&[])?;
     // So the sheet costs what a picture costs.
     shot.size = (arguments.shot.run.size / COLUMNS).max(glam::UVec2::ONE);
     let backend = arguments.shot.run.backend()?;

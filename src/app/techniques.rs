@@ -19,7 +19,11 @@ use super::sheet::Sheet;
 use super::tonemap::develop;
 
 #[derive(Args)]
-#[command(mut_arg("size", |size| size.help("Twice the size of a picture on the sheet, which has two to a row, pixels")))]
+#[command(
+    // The shot that shows the differences best.
+    mut_arg("preset", |preset| preset.default_value("crates")),
+    mut_arg("size", |size| size.help("Twice the size of a picture on the sheet, which has two to a row, pixels")),
+)]
 pub struct Arguments {
     #[command(flatten)]
     shot: ShotArguments,
@@ -30,9 +34,6 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE.png")]
     curves: Option<PathBuf>,
 }
-
-/// The shot that shows the differences best.
-const PRESET: &str = "crates";
 
 const COLUMNS: u32 = 2;
 
@@ -48,7 +49,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let in_cells = |name: &str| arguments.cells.as_ref().map(|folder| folder.join(format!("{name}.png")));
     let cells = variants().filter_map(|variant| Some(("--cells", in_cells(variant.name)?)));
     let curves = arguments.curves.iter().map(|path| ("--curves", path.clone()));
-    let mut shot = arguments.shot.load(PRESET, &curves.chain(cells).collect::<Vec<_>>())?;
+    let mut shot = arguments.shot.load(&curves.chain(cells).collect::<Vec<_>>())?;
     let backend = arguments.shot.run.backend()?;
     shot.size = (arguments.shot.run.size / COLUMNS).max(UVec2::ONE);
     let cells = render_cells(&backend, &shot)?;

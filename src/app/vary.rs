@@ -1,0 +1,60 @@
+//! `haze sheet`: one field over several values, side by side.
+
+use clap::Args;
+use glam::UVec2;
+use haze::settings::set_field;
+use haze::{Error, FieldError};
+
+use super::options::{ShotArguments, in_option, parse_assignment};
+use super::progress::watched;
+use super::sheet::Sheet;
+use super::tonemap::develop;
+
+#[derive(Args)]
+#[command(mut_arg("size", |size| size.help("Size of the pictures of a full row and column together, pixels: each is that much smaller")))]
+pub struct Arguments {
+    #[command(flatten)]
+    shot: ShotArguments,
+    /// The field, by its name or the end of it, and its values: `accumulate.scale=1,2,4`; of three numbers each,
+    /// `lights[0].colour=1,0,0;0,1,0`.
+    #[arg(long, value_name = "FIELD=A,B,C", value_parser = parse_variation)]
+    vary: (String, Vec<String>),
+}
+
+/// Most pictures of a sheet.
+const MOST: usize = 64;
+
+fn parse_variation(text: &str) -> Result<(String, Vec<String>), String> {
+    let (field, values) = parse_assignment(text)?;
+    let separator = if values.contains(';') { ';' } else { ',' };
+    let values: Vec<_> = values.split(separator).map(|value| value.trim().to_owned()).collect();
+    if values.len() > MOST {
+        return Err(format!("{} values are too many; expected at most {MOST}", values.len()));
+    }
+    Ok((field, values))
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Error> {
+    let (field, values) = &arguments.vary;
+    let base = arguments.shot.load(&[])?;
+    let columns = (1..).find(|side| side * side >= values.len() as u32).unwrap_or(1);
+    let size = (arguments.shot.run.size / columns).max(UVec2::ONE);
+    let mut name = String::new();
+    let mut shots = Vec::new();
+    for value in values {
+        let mut preset = base.preset.clone();
+        let set = set_field(&mut preset, field, value).map_err(|error: FieldError| in_option("--vary", error));
+        name = set?;
+        let mut shot = arguments.shot.shot(preset)?;
+        shot.size = size;
+        shots.push(shot);
+    }
+    let backend = arguments.shot.run.backend()?;
+    let mut sheet = Sheet::new(size, columns, shots.len() as u32);
+    for (index, (shot, value)) in (0..).zip(shots.iter().zip(values)) {
+        let picture = watched(format!("haze: {field} = {value}"), || backend.render(shot))?;
+        sheet.place(index, value, &develop(&picture, shot));
+    }
+    sheet.add_foot(&format!("{name}; {}, {}x{}, {}", base.preset.name, size.x, size.y, backend.description()));
+    arguments.shot.write(sheet.picture, &base, &backend)
+}

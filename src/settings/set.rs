@@ -1,0 +1,315 @@
+//! Fields by name: what the command line sets, and a user interface finds.
+
+use std::collections::BTreeSet;
+use std::ops::RangeInclusive;
+
+use glam::Vec3;
+
+use super::choice::Choice;
+use super::fields::{FieldVisitor, Fields, PictureRole};
+use crate::error::FieldError;
+
+/// Sets the fields that `path` names to `value`; gives the name of each, without its place in lists.
+///
+/// `systems[1].settings.accumulate.scale` is one field, `systems.settings.accumulate.scale` that of every system, and so
+/// is `accumulate.scale`, or any end that only one field has. A value is what a preset has there, without quotes; of three
+/// numbers, `1,2,3`. Ranges are not looked at: validate the whole afterwards.
+///
+/// # Errors
+/// No field has this name, several have, or the value is of another kind; nothing is changed then.
+pub fn set_field<T: Fields + Clone>(settings: &mut T, path: &str, value: &str) -> Result<String, FieldError> {
+    let wanted = parse_path(path)?;
+    // A copy, so that nothing is half changed.
+    let mut changed = settings.clone();
+    let mut names = Names::default();
+    changed.visit(&mut Walk { at: Vec::new(), wanted: &wanted, then: &mut names });
+    let name = names.the_one(path, &wanted)?;
+    let mut set = Set { name: &name, value, error: None };
+    changed.visit(&mut Walk { at: Vec::new(), wanted: &wanted, then: &mut set });
+    match set.error {
+        Some(expected) => Err(FieldError::new(path, format!("{value:?}"), expected)),
+        None => {
+            *settings = changed;
+            Ok(name)
+        }
+    }
+}
+
+/// A name, and a place where it is in a list.
+type Step<'a> = (&'a str, Option<usize>);
+
+fn parse_path(path: &str) -> Result<Vec<Step<'_>>, FieldError> {
+    let step = |text| match str::strip_suffix(text, ']') {
+        None => Some((text, None)),
+        Some(text) => text.split_once('[').and_then(|(name, index)| Some((name, Some(index.parse().ok()?)))),
+    };
+    let is_name = |(name, _): &Step<'_>| !name.is_empty() && !name.contains(['[', ']']);
+    let steps: Option<Vec<_>> = path.split('.').map(|text| step(text).filter(is_name)).collect();
+    let expected = "names with points between them, such as systems[0].settings.boost";
+    steps.ok_or_else(|| FieldError::new("field", format!("{path:?}"), expected))
+}
+
+/// A value of one kind, and what it should be.
+enum Leaf<'a> {
+    Number(&'a mut f32),
+    Whole(&'a mut u32),
+    Vector(&'a mut Vec3),
+    Flag(&'a mut bool),
+    Choice(&'a mut dyn Choice),
+    Text(&'a mut String),
+}
+
+/// What is done at a field.
+trait AtField {
+    /// `name` is the whole path without places in lists; `is_wanted` if the wanted path ends there.
+    fn at(&mut self, name: String, is_wanted: bool, leaf: Leaf<'_>);
+}
+
+struct Walk<'a, 'b> {
+    at: Vec<Step<'static>>,
+    wanted: &'a [Step<'a>],
+    then: &'b mut dyn AtField,
+}
+
+impl Walk<'_, '_> {
+    fn leaf(&mut self, name: &'static str, leaf: Leaf<'_>) {
+        self.at.push((name, None));
+        let tail = self.at.len().checked_sub(self.wanted.len()).map(|start| &self.at[start..]);
+        let fits = |(at, wanted): (&Step<'_>, &Step<'_>)| at.0 == wanted.0 && (wanted.1.is_none() || at.1 == wanted.1);
+        let is_wanted = tail.is_some_and(|tail| tail.iter().zip(self.wanted).all(fits));
+        let name = self.at.iter().map(|step| step.0).collect::<Vec<_>>().join(".");
+        self.then.at(name, is_wanted, leaf);
+        self.at.pop();
+    }
+
+    fn enter(&mut self, step: Step<'static>, fields: &mut dyn Fields) {
+        self.at.push(step);
+        fields.visit(self);
+        self.at.pop();
+    }
+}
+
+impl FieldVisitor for Walk<'_, '_> {
+    fn number(&mut self, name: &'static str, value: &mut f32, _: RangeInclusive<f32>, _: &'static str) {
+        self.leaf(name, Leaf::Number(value));
+    }
+
+    fn integer(&mut self, name: &'static str, value: &mut u32, _: RangeInclusive<u32>, _: &'static str) {
+        self.leaf(name, Leaf::Whole(value));
+    }
+
+    fn vector(&mut self, name: &'static str, value: &mut Vec3, _: RangeInclusive<f32>, _: &'static str) {
+        self.leaf(name, Leaf::Vector(value));
+    }
+
+    fn flag(&mut self, name: &'static str, value: &mut bool) {
+        self.leaf(name, Leaf::Flag(value));
+    }
+
+    fn choice(&mut self, name: &'static str, value: &mut dyn Choice) {
+        self.leaf(name, Leaf::Choice(value));
+    }
+
+    fn text(&mut self, name: &'static str, value: &mut String) {
+        self.leaf(name, Leaf::Text(value));
+    }
+
+    fn picture(&mut self, name: &'static str, value: &mut String, _: PictureRole) {
+        self.leaf(name, Leaf::Text(value));
+    }
+
+    fn seed(&mut self, name: &'static str, value: &mut u32) {
+        self.leaf(name, Leaf::Whole(value));
+    }
+
+    fn group(&mut self, name: &'static str, fields: &mut dyn Fields) {
+        self.enter((name, None), fields);
+    }
+
+    fn item(&mut self, name: &'static str, index: usize, fields: &mut dyn Fields) {
+        self.enter((name, Some(index)), fields);
+    }
+}
+
+/// Which fields there are.
+#[derive(Default)]
+struct Names {
+    wanted: BTreeSet<String>,
+    others: BTreeSet<String>,
+}
+
+impl AtField for Names {
+    fn at(&mut self, name: String, is_wanted: bool, _: Leaf<'_>) {
+        if is_wanted { &mut self.wanted } else { &mut self.others }.insert(name);
+    }
+}
+
+impl Names {
+    /// The name that is wanted: a whole one, or the only one.
+    fn the_one(mut self, path: &str, wanted: &[Step<'_>]) -> Result<String, FieldError> {
+        let whole = wanted.iter().map(|step| step.0).collect::<Vec<_>>().join(".");
+        if let Some(name) = self.wanted.take(&whole) {
+            return Ok(name);
+        }
+        match (self.wanted.len(), self.wanted.pop_first()) {
+            (1, Some(name)) => Ok(name),
+            (_, None) => {
+                let last = wanted.last().map_or("", |step| step.0);
+                let alike = self.others.iter().filter(|name| {
+                    let end = name.rsplit('.').next().unwrap_or_default();
+                    end.contains(last) || last.contains(end)
+                });
+                let alike: Vec<_> = alike.take(8).map(String::as_str).collect();
+                let expected = match alike.as_slice() {
+                    [] => "the name of a field, such as systems.settings.boost".into(),
+                    alike => format!("the name of a field, such as {}", alike.join(", ")),
+                };
+                Err(FieldError::new("field", format!("{path:?}"), expected))
+            }
+            (_, Some(first)) => {
+                let all: Vec<_> = std::iter::once(first).chain(self.wanted).collect();
+                Err(FieldError::new("field", format!("{path:?}"), format!("one of {}", all.join(", "))))
+            }
+        }
+    }
+}
+
+/// Sets the fields of one name.
+struct Set<'a> {
+    name: &'a str,
+    value: &'a str,
+    /// What would have been right.
+    error: Option<String>,
+}
+
+impl AtField for Set<'_> {
+    fn at(&mut self, name: String, is_wanted: bool, leaf: Leaf<'_>) {
+        if is_wanted && name == self.name {
+            self.error = self.error.take().or(assign(leaf, self.value).err());
+        }
+    }
+}
+
+/// Fails with what would be right.
+fn assign(leaf: Leaf<'_>, text: &str) -> Result<(), String> {
+    fn parse<T: std::str::FromStr>(text: &str, expected: &str) -> Result<T, String> {
+        text.trim().parse().map_err(|_| expected.into())
+    }
+    match leaf {
+        Leaf::Number(value) => *value = parse(text, "a number")?,
+        Leaf::Whole(value) => *value = parse(text, "a whole number from 0 on")?,
+        Leaf::Flag(value) => *value = parse(text, "true or false")?,
+        Leaf::Text(value) => text.clone_into(value),
+        Leaf::Choice(value) => {
+            let index = value.names().iter().position(|name| *name == text);
+            value.set_index(index.ok_or_else(|| format!("one of {}", value.names().join(", ")))?);
+        }
+        Leaf::Vector(value) => {
+            let expected = "three numbers, such as 0.5,1,2";
+            let numbers: Result<Vec<f32>, _> = text.split(',').map(|number| parse(number, expected)).collect();
+            let numbers: [f32; 3] = numbers?.try_into().map_err(|_| String::from(expected))?;
+            *value = numbers.into();
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::choice;
+    use crate::settings::table::settings;
+
+    choice! {
+        /// Metals.
+        Metal {
+            /// Soft.
+            #[default]
+            Tin = "tin",
+            /// Heavy.
+            Lead = "lead",
+        }
+    }
+
+    settings! {
+        #[derive(Clone, Debug, PartialEq)]
+        pub struct Inner {
+            scale: f32 = 2.0, number(0.1..=16.0, "");
+            metal: Metal = Metal::Tin, choice;
+            is_hollow: bool = false, flag;
+            #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+            place: Vec3 = Vec3::ZERO, vector(-1.0..=1.0, "m");
+        }
+    }
+
+    #[derive(Clone, Debug, PartialEq)]
+    struct Outer {
+        name: String,
+        scale: u32,
+        layers: Vec<Inner>,
+        core: Inner,
+    }
+
+    impl Fields for Outer {
+        fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
+            visitor.text("name", &mut self.name);
+            visitor.integer("scale", &mut self.scale, 1..=16, "pixels");
+            for (index, layer) in self.layers.iter_mut().enumerate() {
+                visitor.item("layers", index, layer);
+            }
+            visitor.group("core", &mut self.core);
+        }
+    }
+
+    fn outer() -> Outer {
+        Outer { name: "a".into(), scale: 1, layers: vec![Inner::default(); 3], core: Inner::default() }
+    }
+
+    #[test]
+    fn one_field_or_that_of_every_item() {
+        let mut settings = outer();
+        assert_eq!(set_field(&mut settings, "layers[1].place", "1, 2,3").unwrap(), "layers.place");
+        assert_eq!(settings.layers.iter().map(|layer| layer.place.z).collect::<Vec<_>>(), [0.0, 3.0, 0.0]);
+        set_field(&mut settings, "layers.metal", "lead").unwrap();
+        assert!(settings.layers.iter().all(|layer| layer.metal == Metal::Lead));
+        assert_eq!(settings.core, Inner::default());
+        // A whole name goes before the end of another.
+        set_field(&mut settings, "scale", "7").unwrap();
+        assert_eq!((settings.scale, settings.core.scale), (7, 2.0));
+        set_field(&mut settings, "core.is_hollow", "true").unwrap();
+        set_field(&mut settings, "name", "b.c = d").unwrap();
+        assert!(settings.core.is_hollow && settings.name == "b.c = d");
+    }
+
+    #[test]
+    fn mistakes_say_what_would_be_right_and_change_nothing() {
+        let mut settings = outer();
+        for (path, value, message) in [
+            ("metal", "tin", "field: \"metal\" is not valid; expected one of core.metal, layers.metal"),
+            (
+                "core.metals",
+                "tin",
+                "field: \"core.metals\" is not valid; expected the name of a field, such as core.metal, layers.metal",
+            ),
+            ("xyz", "1", "field: \"xyz\" is not valid; expected the name of a field, such as systems.settings.boost"),
+            (
+                "layers[3].scale",
+                "1",
+                "field: \"layers[3].scale\" is not valid; expected the name of a field, such as core.scale, layers.scale, scale",
+            ),
+            (
+                "layers[.scale",
+                "1",
+                "field: \"layers[.scale\" is not valid; expected names with points between them, such as systems[0].settings.boost",
+            ),
+            ("core.metal", "gold", "core.metal: \"gold\" is not valid; expected one of tin, lead"),
+            ("core.scale", "1,5", "core.scale: \"1,5\" is not valid; expected a number"),
+            ("core.place", "1,2", "core.place: \"1,2\" is not valid; expected three numbers, such as 0.5,1,2"),
+            ("scale", "-1", "scale: \"-1\" is not valid; expected a whole number from 0 on"),
+            ("core.is_hollow", "yes", "core.is_hollow: \"yes\" is not valid; expected true or false"),
+        ] {
+            assert_eq!(set_field(&mut settings, path, value).unwrap_err().to_string(), message);
+            assert_eq!(settings, outer());
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! Many pictures of one preset: fields that are set and varied, frames, flipbooks.
+
+use std::fs;
+
+use super::{folder, haze, refusal, render, size_of, stderr};
+
+const SMALL: [&str; 7] = ["render", "fence", "--size", "32x18", "--backend", "cpu", "-o"];
+
+#[test]
+fn a_field_is_set_by_its_name() {
+    let folder = folder();
+    let picture = |arguments: &[&str]| {
+        let output = render(folder.path(), arguments);
+        assert!(output.status.success(), "{}", stderr(&output));
+        fs::read(folder.path().join("out.png")).unwrap()
+    };
+    // The same by an option, by its end, and by its place.
+    let scale = picture(&["--scale", "4"]);
+    assert_eq!(scale, picture(&["--set", "accumulate.scale=4"]));
+    assert_eq!(scale, picture(&["--set", "systems[0].settings.accumulate.scale=4"]));
+    assert_ne!(scale, picture(&["--set", "accumulate.scale=4", "--set", "scatter_colour=1,0,0"]));
+}
+
+#[test]
+fn what_cannot_be_set_is_refused_before_the_work() {
+    let folder = folder();
+    let line = |set: &str| refusal(folder.path(), &[&SMALL[..], &["out.png", "--set", set]].concat());
+    assert!(line("accumulate.scale").contains("expected a field and its value"));
+    assert!(
+        line("accumulate.scales=1").contains("--set field: \"accumulate.scales\" is not valid"),
+        "{}",
+        line("a.b=1")
+    );
+    assert!(line("intensity=1").contains("expected one of lights.intensity, "), "{}", line("intensity=1"));
+    assert!(line("accumulate.scale=x").contains("--set accumulate.scale: \"x\" is not valid; expected a whole number"));
+    assert!(
+        line("accumulate.scale=99").contains("systems[0].settings.accumulate.scale: 99 is not valid; expected 1 to 16")
+    );
+    assert!(line("material.diffuse_ramp=gone.png").contains("systems[0].material.diffuse_ramp"));
+    assert!(!folder.path().join("out.png").exists());
+}
+
+#[test]
+fn a_sheet_has_a_picture_of_every_value() {
+    let folder = folder();
+    let sheet = |vary: &str| {
+        let arguments = ["sheet", "fence", "--vary", vary, "--size", "96x54", "--backend", "cpu", "-o", "sheet.png"];
+        let output = haze(folder.path(), &arguments);
+        assert!(output.status.success(), "{}", stderr(&output));
+        haze::picture::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8()
+    };
+    // Two to a row, the last place empty.
+    let picture = sheet("accumulate.scale=1,4,16");
+    let cell = |x: u32, y: u32| image::imageops::crop_imm(&picture, 12 + x * 60, 40 + y * 67, 48, 27).to_image();
+    let cells = [cell(0, 0), cell(1, 0), cell(0, 1), cell(1, 1)];
+    for (i, a) in cells.iter().enumerate() {
+        assert!(cells[..i].iter().all(|b| a != b), "{i}");
+    }
+    assert!(cells[3].pixels().all(|pixel| *pixel == cells[3][(0, 0)]));
+    // Values of three numbers.
+    sheet("lights[0].colour=1,0,0;0,1,0");
+    let line = refusal(folder.path(), &["sheet", "--vary", "emitter.seed=1,b", "-o", "a.png"]);
+    assert!(line.contains("--vary emitter.seed: \"b\" is not valid"), "{line}");
+}
+
+#[test]
+fn frames_go_to_files_of_their_own() {
+    let folder = folder();
+    let run = |arguments: &[&str]| {
+        let output = haze(folder.path(), &[&SMALL[..], arguments].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+    };
+    let read = |name: &str| fs::read(folder.path().join(name)).unwrap();
+    run(&["f_%03d.png", "--frames", "9..11", "--rate", "2", "--time", "4"]);
+    run(&["one.png", "--time", "9"]);
+    assert_eq!(read("f_010.png"), read("one.png"));
+    assert_ne!(read("f_009.png"), read("f_011.png"));
+    assert!(!folder.path().join("f_%03d.png").exists());
+    // The same on one sheet, read row by row.
+    run(&["flipbook.png", "--frames", "9..11", "--rate", "2", "--time", "4", "--sheet", "2x2"]);
+    assert_eq!(size_of(&folder.path().join("flipbook.png")), (64, 36));
+    let picture = |name: &str| haze::picture::read_png(&folder.path().join(name)).unwrap().to_rgb8();
+    let flipbook = picture("flipbook.png");
+    assert_eq!(image::imageops::crop_imm(&flipbook, 0, 18, 32, 18).to_image(), picture("f_011.png"));
+
+    let line = |arguments: &[&str]| refusal(folder.path(), &[&SMALL[..], arguments].concat());
+    assert!(line(&["f.png", "--frames", "0..3"]).contains("expected a name with one place for the frame"));
+    assert!(line(&["f_%d.png", "--frames", "3..0"]).contains("are no frames; expected A..B"));
+    assert!(line(&["f.png", "--frames", "0..9", "--sheet", "3x3"]).contains("expected room for 10 frames"));
+    assert!(line(&["missing/%d.png", "--frames", "0..1"]).contains("a folder that exists"));
+    assert!(line(&["f.png", "--sheet", "3x3"]).contains("--frames"));
+}
