@@ -41,8 +41,8 @@ fn sample_target(target_texture: texture_2d<f32>, pixel: vec2f) -> vec4f {
         depths.y = textureLoad(reduced_depth, b, 0).r;
         depths.z = textureLoad(reduced_depth, c, 0).r;
         depths.w = textureLoad(reduced_depth, d, 0).r;
-        depths *= system.depth_limit;
-        depth = min(scene_view_depth(pixel), system.depth_limit);
+        depths = min(depths * system.depth_limit, vec4f(system.guide_limit));
+        depth = min(scene_view_depth(pixel), system.guide_limit);
     }
     let weights = upsample_weights(UPSAMPLE, fraction, depths, depth);
     let value = textureLoad(target_texture, a, 0) * weights.x
@@ -61,7 +61,7 @@ fn sample_target(target_texture: texture_2d<f32>, pixel: vec2f) -> vec4f {
     for (var i = 0; i < count; i++) {
         let offset = vec2i(i % 4, i / 4) - 1;
         let at = clamped_texel(base + offset);
-        let texel_depth = textureLoad(reduced_depth, at, 0).r * system.depth_limit;
+        let texel_depth = min(textureLoad(reduced_depth, at, 0).r * system.depth_limit, system.guide_limit);
         let place = vec3f(vec2f(offset) - fraction, texel_depth - depth);
         fit = with_texel(fit, place, guided_weight(place, depth), textureLoad(target_texture, at, 0));
     }

@@ -55,6 +55,11 @@ struct System {
     noise_offset: vec3f,
     // Metres behind the scene that are still seen: of the curve `always`.
     fade_through: f32,
+    // As depth_limit, for what there is to see of the smoke: it does not jump with the box.
+    guide_limit: f32,
+    padding0: f32,
+    padding1: f32,
+    padding2: f32,
     // Optical depth of the smoke in front of sixteen view depths.
     front_knots: array<vec4f, 4>,
     // Diffuse light as spherical harmonics, rgb.

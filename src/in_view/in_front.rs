@@ -100,7 +100,7 @@ mod tests {
         };
         let wall = |(depth, amount)| (0..256).map(move |i| sprite(depth, amount, i));
         let particles: Vec<_> = [8.0, 12.0].into_iter().zip(amounts).flat_map(wall).collect();
-        let middle = Middle { centre: vec3(0.0, 0.0, -10.0), near: 7.0, far: 13.0 };
+        let middle = Middle { centre: vec3(0.0, 0.0, -10.0), near: 7.0, far: 13.0, farthest: 13.0 };
         let knots = optical_depths(&view, &particles, &Settings::default(), &middle);
         depths.map(|depth| optical_depth_in_front(&knots, depth, middle.near, middle.far))
     }

@@ -18,7 +18,12 @@ pub(crate) struct Middle {
     /// View depths between which most of the smoke lies.
     pub near: f32,
     pub far: f32,
+    /// View depth behind which nothing is; sprites that are all but gone draw back from it.
+    pub farthest: f32,
 }
+
+/// The amount below which a sprite is all but gone.
+const FAINT: f32 = 0.05;
 
 impl Middle {
     /// Of the sprites that are in memory, or else of the box, `depth` being the host's choice.
@@ -59,7 +64,13 @@ impl Middle {
             // The variance of a slab is a third of its half thickness, squared.
             let half = (3.0 * (squares / weights - centre.z * centre.z)).max(0.0).sqrt();
             let (near, far) = ((-centre.z - half) as f32, (-centre.z + half) as f32);
-            Self { centre: centre.as_vec3(), near, far }
+            let behind = |particle: &Particle| {
+                let back = -view.view_position(particle.position).z + particle.radius * size;
+                (back + centre.z as f32) * (particle.shown_amount() / FAINT).min(1.0)
+            };
+            let visible = particles.iter().filter(|particle| particle.is_visible());
+            let farthest = visible.map(behind).fold(0.0, f32::max) - centre.z as f32;
+            Self { centre: centre.as_vec3(), near, far, farthest }
         })
     }
 
@@ -67,7 +78,7 @@ impl Middle {
     fn of_bounds(view: &ViewGeometry, bounds: &Bounds, in_view: &BoundsInView) -> Self {
         let depth = 0.5 * (in_view.near.max(view.depth.near) + in_view.far);
         let centre = view.view_position(bounds.centre()).with_z(-depth);
-        Self { centre, near: in_view.near, far: in_view.far }
+        Self { centre, near: in_view.near, far: in_view.far, farthest: in_view.far }
     }
 }
 

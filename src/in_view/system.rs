@@ -74,6 +74,8 @@ pub(crate) fn system_in_view(view: &ViewGeometry, targets: UVec2, system: &Syste
         target_size: rect.size.as_vec2(),
         scale: scale as f32,
         depth_limit: (in_view.far + settings.soft_fade.reach()).min(SKY_VIEW_DEPTH),
+        guide_limit: (middle.farthest.min(in_view.far) + settings.soft_fade.reach()).min(SKY_VIEW_DEPTH),
+        padding: [0.0; 3],
         sprite_size: material.sprite_size,
         frame_count: material.frame_count,
         boost: settings.boost,

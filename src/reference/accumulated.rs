@@ -43,11 +43,12 @@ impl Accumulated<'_> {
         let corner = texel - 0.5;
         let (base, fraction) = (corner.floor().as_ivec2(), corner - corner.floor());
         let taps = [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE].map(|offset| base + offset);
+        let guide = |tap| self.reduced_depth.load(tap).min(system.guide_limit);
         let (depths, depth) = match upsample {
             Upsample::Bilinear => (Vec4::ZERO, 0.0),
             _ => {
-                let depth = self.draw.scene_view_depth(pixel.as_ivec2()).min(system.depth_limit);
-                (Vec4::from(taps.map(|tap| self.reduced_depth.load(tap))), depth)
+                let depth = self.draw.scene_view_depth(pixel.as_ivec2()).min(system.guide_limit);
+                (Vec4::from(taps.map(guide)), depth)
             }
         };
         let fade = 1.0 / system.fade_scale;
@@ -58,7 +59,7 @@ impl Accumulated<'_> {
         let fit = (0..16).fold(GuidedFit::default(), |fit, i| {
             let offset = IVec2::new(i % 4, i / 4) - 1;
             let at = base + offset;
-            let place = (offset.as_vec2() - fraction).extend(self.reduced_depth.load(at) - depth);
+            let place = (offset.as_vec2() - fraction).extend(guide(at) - depth);
             with_texel(&fit, place, guided_weight(place, depth), target.load(at))
         });
         fitted_value(&fit, fade)

@@ -44,6 +44,40 @@ fn every_preset_agrees() {
     }
 }
 
+/// The largest change from one frame to the next, over the median of its 15 neighbours.
+fn worst_step(mut shot: Shot, frames: u32) -> f32 {
+    shot.shade_tree = ShadeTree::Combined;
+    let start = shot.preset.time;
+    let mut frame = |i: u32| {
+        shot.preset.time = start + i as f32 / 60.0;
+        shot.render_on_cpu().unwrap()
+    };
+    let mut last = frame(0);
+    let mut changes = Vec::new();
+    for i in 1..frames {
+        let next = frame(i);
+        let change = |(a, b): (&Vec4, &Vec4)| (*a - *b).abs().truncate().element_sum();
+        changes.push(next.texels.iter().zip(&last.texels).map(change).sum::<f32>());
+        last = next;
+    }
+    let ratio = |i: usize| {
+        let mut around = changes[i.saturating_sub(7)..(i + 8).min(changes.len())].to_vec();
+        around.sort_by(f32::total_cmp);
+        changes[i] / around[around.len() / 2]
+    };
+    (0..changes.len()).map(ratio).fold(0.0, f32::max)
+}
+
+#[test]
+fn births_and_deaths_do_not_pop() {
+    // Three births and three deaths a frame; the box and the plane through its middle jumped by 2.05.
+    for (name, frames) in [("column", 60), ("fence", 30), ("crates", 30)] {
+        let worst = worst_step(shot(name, UVec2::new(128, 72)), frames);
+        println!("{name}: {worst:.2}");
+        assert!(worst <= 1.2, "{name}: {worst}");
+    }
+}
+
 #[test]
 fn near_and_far_planes_cut_the_scene_alike() {
     for (near, far) in [(0.1, 9.0), (6.9, 200.0), (5.0, 7.2)] {

@@ -6,7 +6,7 @@ use haze::frame::bounds_of;
 use haze::picture::Picture;
 use haze::read_only_depth_is_supported;
 use haze::reference::blend_unit::{premultiplied_over, quantise};
-use haze::settings::{AccumulationFormat, DepthSource, DiffuseMode, Path, ShadeTree, Upsample};
+use haze::settings::{AccumulationFormat, DepthSource, DiffuseMode, Order, Path, ShadeTree, Upsample};
 use haze::{Bounds, Error, Light, Particle, Particles, wgpu};
 use proptest::prelude::*;
 
@@ -63,6 +63,28 @@ fn amount_on_the_gpu_does_not_depend_on_order() {
     // 60 layers, each rounded to f16: 60 halves of 2^-11 at worst, a third of that seen.
     assert!(difference.fold(0.0, f32::max) < 60.0 * 0.5 / 2048.0);
     assert!(forwards.texels.iter().any(|texel| texel.x > 0.9));
+}
+
+#[test]
+fn weighted_normals_need_no_order() {
+    let mut stage = Stage::new(SIZE);
+    stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
+    let reversed: Vec<_> = stage.particles.iter().rev().copied().collect();
+    let mut apart = |order| {
+        stage.settings.accumulate.order = order;
+        let mut host = Host::new(gpu(), &stage).unwrap();
+        let mut draw = |particles: &[Particle]| {
+            let buffer = particle_buffer(gpu(), particles);
+            let count = particles.len() as u32;
+            host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count }).unwrap();
+            host.picture(gpu()).unwrap()
+        };
+        psnr(&draw(&stage.particles), &draw(&reversed))
+    };
+    let (weighted, sorted) = (apart(Order::Weighted), apart(Order::Sorted));
+    println!("turned round: weighted {weighted:.1} dB, sorted {sorted:.1} dB");
+    // Sums of f16 round in another order.
+    assert!(weighted > AGREEMENT && sorted < AGREEMENT, "{weighted} {sorted}");
 }
 
 #[test]
