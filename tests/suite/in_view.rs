@@ -215,6 +215,8 @@ fn sprites_are_drawn_in_the_order_of_a_plain_sort() {
         particle.amount = 0.9;
     }
     stage.shade_tree = ShadeTree::Normals;
+    // Upsampling goes by the sprites where they are known.
+    stage.settings.accumulate.scale = 1;
     let mut bounds = Bounds::EMPTY;
     stage.particles.iter().for_each(|particle| bounds.include(particle.position, 2.0));
     stage.bounds = Some(bounds);
