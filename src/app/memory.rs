@@ -8,8 +8,9 @@ use haze::Error;
 /// Textures are the driver's, which says when it has no room.
 const BYTES_A_PIXEL: u64 = 60;
 
-/// Refuses a picture that there is no memory for: later, in the midst of the work, running out ends the program.
-pub fn check_memory(size: UVec2) -> Result<(), Error> {
+/// Refuses a picture that there is no memory for: later, in the midst of the work, running out ends the program. `option` asks
+/// for it.
+pub fn check_memory(option: &str, size: UVec2) -> Result<(), Error> {
     let bytes = u64::from(size.x) * u64::from(size.y) * BYTES_A_PIXEL;
     let mut room = Vec::<u8>::new();
     let had = usize::try_from(bytes).is_ok_and(|bytes| room.try_reserve_exact(bytes).is_ok());
@@ -20,5 +21,5 @@ pub fn check_memory(size: UVec2) -> Result<(), Error> {
     }
     let reason = format!("out of memory: it takes {} MiB; expected a smaller picture", bytes >> 20);
     let error = std::io::Error::new(std::io::ErrorKind::OutOfMemory, reason);
-    Err(Error::Io { path: format!("--size {}x{}", size.x, size.y).into(), error })
+    Err(Error::Io { path: format!("{option} {}x{}", size.x, size.y).into(), error })
 }

@@ -131,7 +131,7 @@ impl ShotArguments {
 impl RunArguments {
     /// Opens the renderer that was asked for.
     pub fn backend(&self) -> Result<Backend, Error> {
-        check_memory(self.size)?;
+        check_memory("--size", self.size)?;
         if self.backend == BackendName::Cpu {
             return Ok(Backend::Cpu);
         }

@@ -11,6 +11,7 @@ use haze::{Error, FieldError};
 use image::{RgbImage, imageops};
 
 use super::frames::{FrameNames, parse_frames, parse_rate, parse_sheet};
+use super::memory::check_memory;
 use super::options::{Backend, ShotArguments, choices};
 use super::output::say;
 use super::progress::watched;
@@ -61,6 +62,9 @@ fn sequence(arguments: &Arguments, frames: &RangeInclusive<u32>) -> Result<(), E
     say!("{} to {}: {} on {}", first.display(), last.display(), shot.preset.name, backend.description())
 }
 
+/// Most pixels along a side of a flipbook.
+const MOST_PIXELS: u32 = 32_768;
+
 fn flipbook(arguments: &Arguments, frames: &RangeInclusive<u32>, cells: UVec2) -> Result<(), Error> {
     let count = frames.clone().count();
     if count > cells.element_product() as usize {
@@ -68,9 +72,15 @@ fn flipbook(arguments: &Arguments, frames: &RangeInclusive<u32>, cells: UVec2) -
         return Err(FieldError::new("--sheet", format!("{}x{}", cells.x, cells.y), expected).into());
     }
     let shot = Shot { shade_tree: arguments.view, ..arguments.shot.load(&[])? };
-    let backend = arguments.shot.run.backend()?;
     let (rows, columns) = (cells.x, cells.y);
-    let mut sheet = RgbImage::new(shot.size.x * columns, shot.size.y * rows);
+    let size = shot.size * UVec2::new(columns, rows);
+    if size.max_element() > MOST_PIXELS {
+        let expected = format!("at most {MOST_PIXELS} pixels along a side, not {}x{}", size.x, size.y);
+        return Err(FieldError::new("--sheet", format!("{rows}x{columns}"), expected).into());
+    }
+    check_memory("--sheet", size)?;
+    let backend = arguments.shot.run.backend()?;
+    let mut sheet = RgbImage::new(size.x, size.y);
     for (index, frame) in (0..).zip(frames.clone()) {
         let picture = render_frame(arguments, &backend, &shot, frame)?;
         let corner = UVec2::new(index % columns, index / columns) * shot.size;

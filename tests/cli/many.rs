@@ -87,6 +87,10 @@ fn frames_go_to_files_of_their_own() {
     assert!(line(&["f.png", "--frames", "0..3"]).contains("expected a name with one place for the frame"));
     assert!(line(&["f_%d.png", "--frames", "3..0"]).contains("are no frames; expected A..B"));
     assert!(line(&["f.png", "--frames", "0..9", "--sheet", "3x3"]).contains("expected room for 10 frames"));
+    let huge =
+        ["render", "--size", "8000x8000", "--frames", "0..1", "--sheet", "64x64", "--backend", "cpu", "-o", "f.png"];
+    let huge = refusal(folder.path(), &huge);
+    assert!(huge.contains("--sheet: 64x64 is not valid; expected at most 32768 pixels"), "{huge}");
     assert!(line(&["missing/%d.png", "--frames", "0..1"]).contains("a folder that exists"));
     assert!(line(&["f.png", "--sheet", "3x3"]).contains("--frames"));
 }
