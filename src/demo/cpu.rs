@@ -97,8 +97,8 @@ impl Caster<'_> {
     /// What the ray of a place in the picture hits between near and far plane.
     fn hit(&self, pixel: Vec2) -> Option<Hit<'_>> {
         let at = pixel.as_uvec2();
-        let direction = self.direction(pixel);
-        let seen = self.on_plane(pixel, 0.0).length()..=self.on_plane(pixel, 1.0).length();
+        let (near, far) = (self.on_plane(pixel, 0.0), self.on_plane(pixel, 1.0));
+        let (direction, seen) = (far.normalize(), near.length()..=far.length());
         let mut nearest = f32::INFINITY;
         let mut hit = None;
         let boxes = &self.scene.boxes;

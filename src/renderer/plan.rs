@@ -117,7 +117,6 @@ fn deferred(situation: &Situation, settings: &Settings, back_faces: bool, reads_
             format: accumulate.format,
             encoding: accumulate.encoding,
             order: accumulate.order,
-            sums_weights: accumulate.sums_weights(),
             sprite: SpriteKey::new(settings, reads_linear, exact_filtering),
             host_depth,
             depth_test,

@@ -125,10 +125,17 @@ settings! {
     }
 }
 
+impl Order {
+    /// True if normals in this order and encoding need the sum of their weights.
+    pub(crate) fn sums_weights(self, encoding: NormalEncoding) -> bool {
+        (self, encoding) == (Self::Weighted, NormalEncoding::Biased)
+    }
+}
+
 impl Accumulate {
     /// True if the target holds the sum of the weights of normals, too: biased ones cannot be read without it.
     pub(crate) fn sums_weights(&self) -> bool {
-        (self.order, self.encoding) == (Order::Weighted, NormalEncoding::Biased)
+        self.order.sums_weights(self.encoding)
     }
 
     /// The divisor in use: `scale`, raised until the picture's longer side has at most `max_side` texels.

@@ -139,6 +139,12 @@ impl Host {
         gpu.submit(encoder)
     }
 
+    /// Draws from a buffer, in the order that it has.
+    pub fn draw_buffer(&mut self, gpu: &Headless, stage: &Stage, particles: &[Particle]) -> Result<(), Error> {
+        let (buffer, count) = (particle_buffer(gpu, particles), particles.len() as u32);
+        self.draw_particles(gpu, stage, Particles::Buffer { buffer: &buffer, offset: 0, count })
+    }
+
     /// The first half of a frame.
     pub fn prepare(
         &mut self,
@@ -208,7 +214,7 @@ impl Host {
 }
 
 /// A host's own particles on the GPU.
-pub fn particle_buffer(gpu: &Headless, particles: &[Particle]) -> wgpu::Buffer {
+fn particle_buffer(gpu: &Headless, particles: &[Particle]) -> wgpu::Buffer {
     let bytes: &[u8] = bytemuck::cast_slice(particles);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("host particles"),

@@ -7,10 +7,10 @@ use haze::picture::Picture;
 use haze::ramp::Ramp;
 use haze::settings::{DiffuseMode, ShadeTree};
 use haze::sprite::{Sprite, SpriteLayout};
-use haze::{Bounds, Light, LightKind, Particle, Particles};
+use haze::{Bounds, Light, LightKind, Particle};
 
 use crate::common::gpu;
-use crate::host::{Host, particle_buffer};
+use crate::host::Host;
 use crate::stage::{BACKDROP, Stage};
 
 const SIZE: UVec2 = UVec2::new(96, 54);
@@ -229,9 +229,7 @@ fn sprites_are_drawn_in_the_order_of_a_plain_sort() {
     sorted.sort_by(|a, b| depth(b).total_cmp(&depth(a)));
     assert_ne!(sorted, stage.particles);
     let mut in_order = |particles: &[Particle]| {
-        let buffer = particle_buffer(gpu(), particles);
-        let count = particles.len() as u32;
-        host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count }).unwrap();
+        host.draw_buffer(gpu(), &stage, particles).unwrap();
         host.picture(gpu()).unwrap()
     };
     assert!(in_order(&sorted) == sorted_by_renderer, "not back to front");

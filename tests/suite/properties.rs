@@ -12,7 +12,7 @@ use proptest::prelude::*;
 
 use crate::common::{AGREEMENT, gpu, non_finite_texels, psnr};
 use crate::creations;
-use crate::host::{Host, particle_buffer};
+use crate::host::Host;
 use crate::stage::{BACKDROP, DepthKind, Stage};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
@@ -51,9 +51,7 @@ fn amount_on_the_gpu_does_not_depend_on_order() {
     let mut host = Host::new(gpu(), &stage).unwrap();
     // From a buffer, where the host is responsible for the order.
     let mut draw = |particles: &[Particle]| {
-        let buffer = particle_buffer(gpu(), particles);
-        let count = particles.len() as u32;
-        host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count }).unwrap();
+        host.draw_buffer(gpu(), &stage, particles).unwrap();
         host.picture(gpu()).unwrap()
     };
     let forwards = draw(&stage.particles);
@@ -74,9 +72,7 @@ fn weighted_normals_need_no_order() {
         stage.settings.accumulate.order = order;
         let mut host = Host::new(gpu(), &stage).unwrap();
         let mut draw = |particles: &[Particle]| {
-            let buffer = particle_buffer(gpu(), particles);
-            let count = particles.len() as u32;
-            host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count }).unwrap();
+            host.draw_buffer(gpu(), &stage, particles).unwrap();
             host.picture(gpu()).unwrap()
         };
         psnr(&draw(&stage.particles), &draw(&reversed))
@@ -96,8 +92,7 @@ fn more_than_all_counts_as_all() {
         stage.bounds = Some(bounds_of(&stage.particles, stage.settings.reach()));
         host.draw(gpu(), &stage).unwrap();
         let slice = host.picture(gpu()).unwrap();
-        let buffer = particle_buffer(gpu(), &stage.particles);
-        host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count: 1 }).unwrap();
+        host.draw_buffer(gpu(), &stage, &stage.particles).unwrap();
         [slice, host.picture(gpu()).unwrap(), stage.on_cpu()]
     };
     let whole = draw(1.0);
@@ -394,10 +389,8 @@ fn order_matters_to_normals() {
     let sorted = stage.on_cpu();
     let mut front_to_back = stage.particles.clone();
     front_to_back.sort_by(|a, b| b.position.z.total_cmp(&a.position.z));
-    let buffer = particle_buffer(gpu(), &front_to_back);
     let mut host = Host::new(gpu(), &stage).unwrap();
-    let count = front_to_back.len() as u32;
-    host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count }).unwrap();
+    host.draw_buffer(gpu(), &stage, &front_to_back).unwrap();
     assert!(psnr(&host.picture(gpu()).unwrap(), &sorted) < AGREEMENT - 10.0);
 }
 
@@ -592,9 +585,7 @@ fn garbage_in_a_hosts_buffer_is_not_drawn() {
         ]);
     }
     particles.push(Particle { amount: f32::NAN, ..good });
-    let count = particles.len() as u32;
-    let buffer = particle_buffer(gpu(), &particles);
-    host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count }).unwrap();
+    host.draw_buffer(gpu(), &stage, &particles).unwrap();
     assert!(host.picture(gpu()).unwrap().texels.iter().all(|&texel| texel == BACKDROP));
     let targets = host.renderer.targets(0).unwrap();
     assert_eq!(non_finite_texels(gpu(), &targets.accumulation[0], targets.size), 0);

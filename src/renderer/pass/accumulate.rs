@@ -4,10 +4,13 @@
 //! accumulation target. Blend: ONE, ONE_MINUS_SRC_ALPHA; weighted normals ONE, ONE. Source: OTEE "Accumulating the
 //! particles"; techniques: NV, BLOG, MS.
 
+use std::sync::Arc;
+
 use glam::UVec2;
 
 use super::Groups;
 use super::sprites::{PARTICLE_LAYOUT, SpriteKey, Sprites};
+use crate::renderer::gpu::host_pass::MAX_ATTACHMENTS;
 use crate::renderer::gpu::pipeline::{
     COUNT, PREMULTIPLIED_OVER, PipelineParts, STRIP, WEIGHTED_SUM, color_target, in_front, read_only_depth, switch,
     variant,
@@ -22,8 +25,6 @@ pub(crate) struct AccumulateKey {
     pub format: AccumulationFormat,
     pub encoding: NormalEncoding,
     pub order: Order,
-    /// There is a target for the sum of weights.
-    pub sums_weights: bool,
     pub sprite: SpriteKey,
     /// Sprites are compared with the host's own depth, not the reduced one.
     pub host_depth: bool,
@@ -62,7 +63,7 @@ pub(crate) fn describe(key: AccumulateKey) -> PipelineParts {
             DepthTest::Host(format, reversed) => Some(read_only_depth(format, in_front(reversed))),
         },
         sample_count: 1,
-        targets: accumulation_layout(key.format, key.sums_weights)
+        targets: accumulation_layout(key.format, key.order.sums_weights(key.encoding))
             .iter()
             .map(|attachment| color_target(attachment.format, Some(blend)))
             .collect(),
@@ -81,7 +82,7 @@ pub(crate) fn describe(key: AccumulateKey) -> PipelineParts {
 #[derive(Debug)]
 pub(crate) struct Accumulate {
     pub pipeline: wgpu::RenderPipeline,
-    pub targets: Vec<wgpu::TextureView>,
+    pub targets: Arc<[wgpu::TextureView]>,
     /// The depth that the hardware tests sprites against.
     pub tested_depth: Option<wgpu::TextureView>,
     /// Texels in use.
@@ -94,8 +95,9 @@ pub(crate) struct Accumulate {
 
 impl Accumulate {
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        let attachments: Vec<_> = self.targets.iter().map(color_attachment).collect();
-        let mut pass = begin_pass(encoder, "accumulate", &attachments, self.tested_depth.as_ref().map(tested_depth));
+        let attachments: [_; MAX_ATTACHMENTS] = std::array::from_fn(|index| color_attachment(self.targets.get(index)?));
+        let attachments = &attachments[..self.targets.len()];
+        let mut pass = begin_pass(encoder, "accumulate", attachments, self.tested_depth.as_ref().map(tested_depth));
         set_part(&mut pass, UVec2::ZERO, self.size);
         pass.set_pipeline(&self.pipeline);
         self.groups.bind(&mut pass);

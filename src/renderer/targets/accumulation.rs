@@ -1,5 +1,7 @@
 //! What sprites are accumulated into, and the depth that they are compared with.
 
+use std::sync::Arc;
+
 use glam::UVec2;
 
 use super::textures::Textures;
@@ -47,7 +49,7 @@ pub(crate) struct AccumulationTarget {
     key: AccumulationKey,
     size: UVec2,
     spare: Spare,
-    pub attachments: Vec<wgpu::TextureView>,
+    pub attachments: Arc<[wgpu::TextureView]>,
     /// `None` where sprites are compared with the host's own depth.
     pub reduced_depth: Option<wgpu::TextureView>,
     /// The reduced depth once more, coarser, where the backend cannot test what it samples.
