@@ -77,7 +77,7 @@ impl<'a> Stage<'a> {
             systems: &systems,
             time: shot.preset.time,
             up: Vec3::Y,
-            shade_tree: shot.shade_tree,
+            stages: &[shot.shade_tree],
         };
         let (device, queue) = (&self.gpu.device, &self.gpu.queue);
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -99,7 +99,7 @@ impl<'a> Stage<'a> {
                 }),
                 ..Default::default()
             });
-            self.renderer.render(&mut pass);
+            self.renderer.render_stage(&mut pass, shot.shade_tree);
         }
         let start = Instant::now();
         self.gpu.submit(encoder)?;

@@ -24,14 +24,16 @@ pub struct Frame<'a> {
     pub time: f32,
     /// The way up in the world, along which noise rises; need not be unit length.
     pub up: Vec3,
-    /// Which stage of the shading is shown; [`ShadeTree::Final`] for a picture.
-    pub shade_tree: ShadeTree,
+    /// Which stages of the shading may be shown of this frame; [`ShadeTree::Final`] for a picture. One accumulation serves all
+    /// of them but [`ShadeTree::Overdraw`], which takes a pass of its own.
+    pub stages: &'a [ShadeTree],
 }
 
 impl<'a> Frame<'a> {
     /// A frame without lights and smoke; y is up.
     pub const fn new(view: View, scene_depth: SceneDepth<'a>) -> Self {
-        Self { view, scene_depth, lights: &[], systems: &[], time: 0.0, up: Vec3::Y, shade_tree: ShadeTree::Final }
+        let stages = &[ShadeTree::Final];
+        Self { view, scene_depth, lights: &[], systems: &[], time: 0.0, up: Vec3::Y, stages }
     }
 }
 

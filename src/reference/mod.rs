@@ -48,7 +48,7 @@ pub fn render(frame: &Frame<'_>, picture: &mut Picture<Vec4>) -> Result<(), Fiel
 
     for draw in &draws {
         if draw.settings.is_forward() {
-            if matches!(frame.shade_tree, ShadeTree::Final | ShadeTree::Combined) {
+            if frame.shade_tree.is_picture() {
                 draw.forward(picture);
             }
             continue;
@@ -60,7 +60,7 @@ pub fn render(frame: &Frame<'_>, picture: &mut Picture<Vec4>) -> Result<(), Fiel
         if frame.shade_tree != ShadeTree::SpecularScatter {
             smoke.transfer(frame.shade_tree, picture);
         }
-        if matches!(frame.shade_tree, ShadeTree::Final | ShadeTree::SpecularScatter) {
+        if frame.shade_tree.glows() {
             smoke.specular_scatter(picture);
         }
     }

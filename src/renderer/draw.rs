@@ -1,8 +1,10 @@
 //! What one frame records for a system: its passes with everything that they bind.
 
+use std::sync::Arc;
+
 use super::frame_bindings::DepthBindings;
 use super::pass::Groups;
-use super::pass::accumulate::{Accumulate, DepthTest};
+use super::pass::accumulate::{Accumulate, AccumulateKey, DepthTest};
 use super::pass::depth_downsample::{DepthDownsampleKey, Downsample};
 use super::pass::diffuse_bake::DiffuseBake;
 use super::pass::forward::Forward;
@@ -13,6 +15,7 @@ use super::passes::Passes;
 use super::plan::{DeferredPlan, ForwardPlan};
 use super::system_targets::ReadyTargets;
 use crate::in_view::SystemInView;
+use crate::settings::ShadeTree;
 
 /// How a system reaches the picture.
 #[derive(Debug)]
@@ -32,7 +35,8 @@ pub(crate) struct Deferred {
     pub depth_copy: Option<Downsample>,
     pub diffuse_bake: Option<DiffuseBake>,
     pub accumulate: Accumulate,
-    pub transfer: Option<Transfer>,
+    pub overdraw: Option<Accumulate>,
+    pub transfer: Transfer,
     pub specular_scatter: Option<SpecularScatter>,
 }
 
@@ -53,7 +57,7 @@ impl Assembly<'_> {
     /// `depth` is what the plan reads of the host's depth, `host_depth` its depth buffer.
     pub fn deferred(
         self,
-        plan: &DeferredPlan,
+        plan: &DeferredPlan<'_>,
         targets: ReadyTargets<'_>,
         in_view: &SystemInView,
         depth: &DepthBindings,
@@ -71,6 +75,24 @@ impl Assembly<'_> {
                 system: groups.system.clone(),
             })
         };
+        let accumulate = |key: AccumulateKey, targets: &Arc<[wgpu::TextureView]>| Accumulate {
+            pipeline: passes.accumulate(device, key),
+            targets: targets.clone(),
+            tested_depth: match key.depth_test {
+                DepthTest::InShader => None,
+                DepthTest::Reduced => accumulation.reduced_depth.clone(),
+                DepthTest::Copy => accumulation.depth_copy.clone(),
+                DepthTest::Host(..) => host_depth.cloned(),
+            },
+            size,
+            groups: groups.clone(),
+            inputs: inputs.accumulate.as_ref().unwrap_or(&depth.accumulate_inputs).clone(),
+            sprites: sprites.clone(),
+        };
+        let mut pipelines = [const { None }; ShadeTree::ALL.len()];
+        for key in plan.transfers() {
+            pipelines[key.shade_tree as usize] = Some(passes.transfer(device, key));
+        }
         let lights = in_view.uniform.light_count;
         Draw::Deferred(Deferred {
             depth_downsample: downsample(plan.depth_downsample, &accumulation.reduced_depth),
@@ -80,25 +102,14 @@ impl Assembly<'_> {
                 faces: baked_diffuse.faces.clone(),
                 groups: groups.clone(),
             }),
-            accumulate: Accumulate {
-                pipeline: passes.accumulate(device, plan.accumulate),
-                targets: accumulation.attachments.clone(),
-                tested_depth: match plan.accumulate.depth_test {
-                    DepthTest::InShader => None,
-                    DepthTest::Reduced => accumulation.reduced_depth.clone(),
-                    DepthTest::Copy => accumulation.depth_copy.clone(),
-                    DepthTest::Host(..) => host_depth.cloned(),
-                },
-                size,
-                groups: groups.clone(),
-                inputs: inputs.accumulate.as_ref().unwrap_or(&depth.accumulate_inputs).clone(),
-                sprites,
-            },
-            transfer: plan.transfer.map(|key| Transfer {
-                pipeline: passes.transfer(device, key),
+            accumulate: accumulate(plan.accumulate, &accumulation.attachments),
+            overdraw: plan.overdraw.zip(accumulation.overdraw.as_ref()).map(|(key, layers)| accumulate(key, layers)),
+            transfer: Transfer {
+                pipelines,
                 groups: groups.clone(),
                 inputs: inputs.transfer.clone(),
-            }),
+                overdraw_inputs: inputs.overdraw.clone(),
+            },
             specular_scatter: plan.specular_scatter.filter(|_| lights > 0).map(|key| SpecularScatter {
                 pipeline: passes.specular_scatter(device, key),
                 groups: groups.clone(),

@@ -118,7 +118,7 @@ impl Renderer {
     /// [`Error::Field`] naming the view or setting that cannot be used.
     pub fn warm_up(&self, expected: &WarmUp<'_>) -> Result<(), Error> {
         let view = ViewGeometry::new(&expected.view)?;
-        let situation = self.situation(&view, expected.scene_depth, expected.shade_tree);
+        let situation = self.situation(&view, expected.scene_depth, expected.stages);
         let shared = self.context.shared();
         for (index, settings) in expected.settings.iter().enumerate() {
             settings.validate(|| format!("settings[{index}]"))?;
@@ -153,7 +153,7 @@ impl Renderer {
         let shared = context.shared();
         let view = ViewGeometry::new(&frame.view)?;
         validate(shared, &self.host, frame)?;
-        let situation = self.situation(&view, frame.scene_depth.kind(), frame.shade_tree);
+        let situation = self.situation(&view, frame.scene_depth.kind(), frame.stages);
         // The view and the scene's depth, for every system.
         self.bindings.write(&gpu, &shared.layouts, &view, &frame.scene_depth)?;
         self.keep_slots(frame);
@@ -176,6 +176,8 @@ impl Renderer {
             draw.diffuse_bake.iter().for_each(|pass| pass.record(encoder));
             // Sprites to premultiplied normal + amount.
             draw.accumulate.record(encoder);
+            // Or counted, where that is to be shown.
+            draw.overdraw.iter().for_each(|pass| pass.record(encoder));
         }
         // Far to near; at one distance as the host has them.
         self.order.sort_by(|a, b| b.distance.total_cmp(&a.distance));
@@ -186,20 +188,26 @@ impl Renderer {
     /// Records the smoke into the host's pass, systems far to near. Sets its own pipelines, bind groups 0 to 3, vertex
     /// buffer 0, and viewport and scissor to the view; leaves stencil reference and blend constant as they are.
     pub fn render(&self, pass: &mut wgpu::RenderPass<'_>) {
+        self.render_stage(pass, ShadeTree::Final);
+    }
+
+    /// As [`render`](Self::render), for a stage of the shading: one of the frame's [`stages`](Frame::stages), or nothing is drawn.
+    /// Any number of them may be drawn of one `prepare`.
+    pub fn render_stage(&self, pass: &mut wgpu::RenderPass<'_>, stage: ShadeTree) {
         let Some(view) = self.view.filter(|_| !self.order.is_empty()) else { return };
         self.submission.follow_pass(pass);
         set_part(pass, view.origin, view.size);
         for seen in &self.order {
             match self.slots[seen.slot].draw() {
                 // Every sprite lit per fragment, for systems that ask for the classic way.
-                Some(Draw::Forward(forward)) => forward.record(pass),
+                Some(Draw::Forward(forward)) if stage.is_picture() => forward.record(pass),
                 Some(Draw::Deferred(draw)) => {
                     // The box, lit once per pixel.
-                    draw.transfer.iter().for_each(|transfer| transfer.record(pass));
+                    draw.transfer.record(pass, stage);
                     // The glow of lights behind it.
-                    draw.specular_scatter.iter().for_each(|glow| glow.record(pass));
+                    draw.specular_scatter.iter().filter(|_| stage.glows()).for_each(|glow| glow.record(pass));
                 }
-                None => {}
+                _ => {}
             }
         }
     }
@@ -216,7 +224,12 @@ impl Renderer {
         self.slots.iter().map(Slot::memory_use).chain([own]).sum()
     }
 
-    fn situation(&self, view: &ViewGeometry, scene_depth: SceneDepthKind, shade_tree: ShadeTree) -> Situation {
+    fn situation<'a>(
+        &self,
+        view: &ViewGeometry,
+        scene_depth: SceneDepthKind,
+        stages: &'a [ShadeTree],
+    ) -> Situation<'a> {
         Situation {
             host: self.host,
             exact_filtering: self.exact_filtering,
@@ -224,7 +237,7 @@ impl Renderer {
             scene_depth,
             reversed: view.depth.reversed,
             mirrored: view.mirrored,
-            shade_tree,
+            stages,
         }
     }
 

@@ -50,7 +50,7 @@ impl Passes {
     }
 
     /// Compiles what a plan draws with.
-    pub fn compile(&self, device: &wgpu::Device, plan: &Plan) {
+    pub fn compile(&self, device: &wgpu::Device, plan: &Plan<'_>) {
         match plan {
             Plan::Nothing => {}
             Plan::Forward(plan) => drop(self.forward(device, plan.key)),
@@ -59,8 +59,12 @@ impl Passes {
                     self.depth_downsample(device, key);
                 }
                 plan.diffuse_bake.map(|key| self.diffuse_bake(device, key));
-                self.accumulate(device, plan.accumulate);
-                plan.transfer.map(|key| self.transfer(device, key));
+                for key in std::iter::once(plan.accumulate).chain(plan.overdraw) {
+                    self.accumulate(device, key);
+                }
+                for key in plan.transfers() {
+                    self.transfer(device, key);
+                }
                 plan.specular_scatter.map(|key| self.specular_scatter(device, key));
             }
         }

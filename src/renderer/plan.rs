@@ -36,7 +36,7 @@ impl SceneDepth<'_> {
 
 /// What all systems of a frame have in common.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Situation {
+pub(crate) struct Situation<'a> {
     pub host: HostPass,
     pub exact_filtering: bool,
     /// One pass can test and sample one depth buffer.
@@ -46,16 +46,17 @@ pub(crate) struct Situation {
     pub reversed: bool,
     /// The view mirrors.
     pub mirrored: bool,
-    pub shade_tree: ShadeTree,
+    /// What may be shown.
+    pub stages: &'a [ShadeTree],
 }
 
 /// What is drawn for one system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Plan {
+pub(crate) enum Plan<'a> {
     /// Forward sprites have no stages to show.
     Nothing,
     Forward(ForwardPlan),
-    Deferred(DeferredPlan),
+    Deferred(DeferredPlan<'a>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,7 +67,7 @@ pub(crate) struct ForwardPlan {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct DeferredPlan {
+pub(crate) struct DeferredPlan<'a> {
     /// As in [`ForwardPlan`].
     pub reads_linear: bool,
     pub depth_downsample: Option<DepthDownsampleKey>,
@@ -74,17 +75,21 @@ pub(crate) struct DeferredPlan {
     pub depth_copy: Option<DepthDownsampleKey>,
     pub diffuse_bake: Option<DiffuseBakeKey>,
     pub accumulate: AccumulateKey,
-    pub transfer: Option<TransferKey>,
+    /// Counts layers instead.
+    pub overdraw: Option<AccumulateKey>,
+    /// One for every stage that the box is drawn for.
+    pub transfer: TransferKey,
+    pub stages: &'a [ShadeTree],
     pub specular_scatter: Option<SpecularScatterKey>,
 }
 
 /// Plans a system. `back_faces`: the near plane cuts its box, or it shows through the scene.
-pub(crate) fn plan(situation: &Situation, settings: &Settings, back_faces: bool) -> Plan {
+pub(crate) fn plan<'a>(situation: &Situation<'a>, settings: &Settings, back_faces: bool) -> Plan<'a> {
     let reads_linear = reads_linear(situation.scene_depth, situation.read_only_depth, settings);
     if !settings.is_forward() {
         return Plan::Deferred(deferred(situation, settings, back_faces, reads_linear));
     }
-    if !matches!(situation.shade_tree, ShadeTree::Final | ShadeTree::Combined) {
+    if !situation.stages.iter().any(|stage| stage.is_picture()) {
         return Plan::Nothing;
     }
     let key = ForwardKey {
@@ -99,30 +104,36 @@ pub(crate) fn plan(situation: &Situation, settings: &Settings, back_faces: bool)
     Plan::Forward(ForwardPlan { reads_linear, key })
 }
 
-fn deferred(situation: &Situation, settings: &Settings, back_faces: bool, reads_linear: bool) -> DeferredPlan {
-    let (accumulate, shade_tree) = (&settings.accumulate, situation.shade_tree);
+fn deferred<'a>(
+    situation: &Situation<'a>,
+    settings: &Settings,
+    back_faces: bool,
+    reads_linear: bool,
+) -> DeferredPlan<'a> {
+    let (accumulate, stages) = (&settings.accumulate, situation.stages);
     let (host, exact_filtering) = (situation.host, situation.exact_filtering);
     let host_depth = accumulate.depth_source == DepthSource::Host;
     let depth_test = depth_test(situation, settings);
     let downsample = |copy| DepthDownsampleKey { mode: accumulate.depth_downsample, copy };
     let bakes = baked_size_and_layers(settings.diffuse.mode).is_some();
-    let glows = matches!(shade_tree, ShadeTree::Final | ShadeTree::SpecularScatter)
-        && settings.specular_scatter.intensity > 0.0;
+    let glows = stages.iter().any(|stage| stage.glows()) && settings.specular_scatter.intensity > 0.0;
+    let accumulate_key = AccumulateKey {
+        format: accumulate.format,
+        encoding: accumulate.encoding,
+        order: accumulate.order,
+        sprite: SpriteKey::new(settings, reads_linear, exact_filtering),
+        host_depth,
+        depth_test,
+        overdraw: false,
+    };
     DeferredPlan {
         reads_linear,
         depth_downsample: (!host_depth).then(|| downsample(false)),
         depth_copy: (depth_test == DepthTest::Copy).then(|| downsample(true)),
         diffuse_bake: bakes.then_some(DiffuseBakeKey { mode: settings.diffuse.mode, exact_filtering }),
-        accumulate: AccumulateKey {
-            format: accumulate.format,
-            encoding: accumulate.encoding,
-            order: accumulate.order,
-            sprite: SpriteKey::new(settings, reads_linear, exact_filtering),
-            host_depth,
-            depth_test,
-            overdraw: shade_tree == ShadeTree::Overdraw,
-        },
-        transfer: (shade_tree != ShadeTree::SpecularScatter).then_some(TransferKey {
+        accumulate: accumulate_key,
+        overdraw: stages.contains(&ShadeTree::Overdraw).then_some(AccumulateKey { overdraw: true, ..accumulate_key }),
+        transfer: TransferKey {
             host,
             encoding: accumulate.encoding,
             decode: accumulate.decode,
@@ -131,13 +142,14 @@ fn deferred(situation: &Situation, settings: &Settings, back_faces: bool, reads_
             soft_scatter_mode: settings.soft_scatter.mode,
             upsample: accumulate.upsample,
             host_depth,
-            shade_tree,
+            shade_tree: ShadeTree::Final,
             // Faces that nothing tests must not be the front ones: they would stand before the scene.
             back_faces: back_faces || host.depth_format.is_none(),
             reversed: situation.reversed,
             mirrored: situation.mirrored,
             exact_filtering,
-        }),
+        },
+        stages,
         specular_scatter: glows.then_some(SpecularScatterKey { host, upsample: accumulate.upsample, exact_filtering }),
     }
 }
@@ -167,7 +179,15 @@ pub(crate) fn reads_linear(scene_depth: SceneDepthKind, read_only_depth: bool, s
     }
 }
 
-impl Plan {
+impl DeferredPlan<'_> {
+    /// What the box is drawn with, stage by stage.
+    pub fn transfers(&self) -> impl Iterator<Item = TransferKey> {
+        let drawn = self.stages.iter().filter(|stage| **stage != ShadeTree::SpecularScatter);
+        drawn.map(|&shade_tree| TransferKey { shade_tree, ..self.transfer })
+    }
+}
+
+impl Plan<'_> {
     /// True if it reads the scene's linear target.
     pub fn reads_linear(&self) -> bool {
         match self {
@@ -184,7 +204,7 @@ mod tests {
     use crate::settings::{DiffuseMode, FadeCurve, Path};
     use wgpu::TextureFormat::{Depth24Plus, Depth32Float, Rgba16Float};
 
-    fn situation() -> Situation {
+    fn situation() -> Situation<'static> {
         Situation {
             host: HostPass { depth_format: Some(Depth32Float), ..HostPass::plain(Rgba16Float) },
             exact_filtering: false,
@@ -192,11 +212,11 @@ mod tests {
             scene_depth: SceneDepthKind::Both(Depth24Plus),
             reversed: false,
             mirrored: false,
-            shade_tree: ShadeTree::Final,
+            stages: &[ShadeTree::Final],
         }
     }
 
-    fn deferred(situation: &Situation, settings: &Settings) -> DeferredPlan {
+    fn deferred<'a>(situation: &Situation<'a>, settings: &Settings) -> DeferredPlan<'a> {
         match plan(situation, settings, false) {
             Plan::Deferred(plan) => plan,
             other => panic!("{other:?}"),
@@ -251,12 +271,15 @@ mod tests {
     fn stages_draw_no_more_than_they_show() {
         for &shade_tree in ShadeTree::ALL {
             let mut settings = Settings::default();
-            let situation = Situation { shade_tree, ..situation() };
+            let situation = Situation { stages: &[shade_tree], ..situation() };
             let shown = deferred(&situation, &settings);
             let glows = matches!(shade_tree, ShadeTree::Final | ShadeTree::SpecularScatter);
             assert_eq!(shown.specular_scatter.is_some(), glows, "{shade_tree:?}");
-            assert_eq!(shown.transfer.is_some(), shade_tree != ShadeTree::SpecularScatter, "{shade_tree:?}");
-            assert_eq!(shown.accumulate.overdraw, shade_tree == ShadeTree::Overdraw);
+            let stages: Vec<_> = shown.transfers().map(|key| key.shade_tree).collect();
+            let is_drawn = shade_tree != ShadeTree::SpecularScatter;
+            assert_eq!(stages, if is_drawn { vec![shade_tree] } else { vec![] });
+            assert_eq!(shown.overdraw.is_some(), shade_tree == ShadeTree::Overdraw);
+            assert!(!shown.accumulate.overdraw);
             settings.specular_scatter.intensity = 0.0;
             assert_eq!(deferred(&situation, &settings).specular_scatter, None);
             // Forward sprites are lit as they are drawn: there are no stages to show.
@@ -279,7 +302,7 @@ mod tests {
     #[test]
     fn boxes_turn_with_the_view() {
         let transfer = |situation: &Situation, back_faces| match plan(situation, &Settings::default(), back_faces) {
-            Plan::Deferred(plan) => plan.transfer.unwrap(),
+            Plan::Deferred(plan) => plan.transfer,
             other => panic!("{other:?}"),
         };
         let plain = transfer(&situation(), false);

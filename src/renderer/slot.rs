@@ -27,7 +27,7 @@ pub(crate) struct FrameContext<'a> {
     pub view: &'a ViewGeometry,
     /// Size of the host's targets.
     pub host_size: UVec2,
-    pub situation: &'a Situation,
+    pub situation: &'a Situation<'a>,
     pub bindings: &'a FrameBindings,
 }
 
@@ -166,7 +166,7 @@ impl Slot {
             Plan::Deferred(plan) => {
                 let scale = settings.accumulate.effective_scale(view.size);
                 let limit = UVec2::new(view.size.x.div_ceil(scale), view.size.y.div_ceil(scale));
-                let targets = self.targets.fit(shared, settings, in_view.rect.size, limit);
+                let targets = self.targets.fit(shared, settings, plan.overdraw.is_some(), in_view.rect.size, limit);
                 assembly.deferred(plan, targets, &in_view, depth, frame.scene_depth.buffer())
             }
         };

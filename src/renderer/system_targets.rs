@@ -22,6 +22,8 @@ pub(crate) struct TargetInputs {
     pub accumulate: Option<wgpu::BindGroup>,
     /// Group 3 of transfer and specular_scatter.
     pub transfer: wgpu::BindGroup,
+    /// The same with counted layers in place of the amount.
+    pub overdraw: Option<wgpu::BindGroup>,
 }
 
 /// Textures that are ready to be drawn to and read.
@@ -34,12 +36,21 @@ pub(crate) struct ReadyTargets<'a> {
 
 impl SystemTargets {
     /// Makes everything ready for `size` texels; the whole view at this scale has `limit`.
-    pub fn fit(&mut self, shared: &Shared, settings: &Settings, size: UVec2, limit: UVec2) -> ReadyTargets<'_> {
+    /// `overdraw`: layers are counted, too.
+    pub fn fit(
+        &mut self,
+        shared: &Shared,
+        settings: &Settings,
+        overdraw: bool,
+        size: UVec2,
+        limit: UVec2,
+    ) -> ReadyTargets<'_> {
         let device = &shared.device;
         let key = AccumulationKey {
             format: settings.accumulate.format,
             sums_weights: settings.accumulate.sums_weights(),
             depth_source: settings.accumulate.depth_source,
+            overdraw,
             depth_copy: !shared.read_only_depth,
         };
         let (accumulation, is_new) = AccumulationTarget::fit(&mut self.accumulation, device, key, size, limit);
@@ -51,20 +62,17 @@ impl SystemTargets {
             let depth = accumulation.reduced_depth.as_ref();
             let amount = &accumulation.attachments[0];
             let (accumulate, transfer) = (&shared.layouts.accumulate, &shared.layouts.transfer);
+            // Without a reduced depth or weights nothing reads them, but something must be bound.
+            let transfer = |amount| {
+                let depth = depth.unwrap_or(amount);
+                let weights = accumulation.attachments.get(1).unwrap_or(amount);
+                let inputs = [amount, depth, &baked_diffuse.array, weights];
+                bind_textures(device, "haze transfer inputs", transfer, inputs)
+            };
             TargetInputs {
                 accumulate: depth.map(|depth| bind_textures(device, "haze accumulate inputs", accumulate, [depth])),
-                // Without a reduced depth or weights nothing reads them, but something must be bound.
-                transfer: bind_textures(
-                    device,
-                    "haze transfer inputs",
-                    transfer,
-                    [
-                        amount,
-                        depth.unwrap_or(amount),
-                        &baked_diffuse.array,
-                        accumulation.attachments.get(1).unwrap_or(amount),
-                    ],
-                ),
+                transfer: transfer(amount),
+                overdraw: accumulation.overdraw.as_ref().map(|layers| transfer(&layers[0])),
             }
         });
         ReadyTargets { accumulation, baked_diffuse, inputs }

@@ -13,6 +13,6 @@ pub struct WarmUp<'a> {
     pub scene_depth: SceneDepthKind,
     /// Settings of the systems to come.
     pub settings: &'a [Settings],
-    /// The stage that is shown.
-    pub shade_tree: ShadeTree,
+    /// The stages that will be shown.
+    pub stages: &'a [ShadeTree],
 }

@@ -76,6 +76,18 @@ choice! {
     }
 }
 
+impl ShadeTree {
+    /// True for what forward sprites show too: lit smoke.
+    pub(crate) fn is_picture(self) -> bool {
+        matches!(self, Self::Final | Self::Combined)
+    }
+
+    /// True where the glow of lights is shown.
+    pub(crate) fn glows(self) -> bool {
+        matches!(self, Self::Final | Self::SpecularScatter)
+    }
+}
+
 settings! {
     /// All settings of one particle system.
     #[derive(Clone, Copy, Debug, PartialEq)]

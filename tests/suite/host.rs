@@ -158,7 +158,7 @@ impl Host {
             lights: &stage.lights,
             systems: &[system],
             time: stage.time,
-            shade_tree: stage.shade_tree,
+            stages: stage.stages.unwrap_or(std::slice::from_ref(&stage.shade_tree)),
             ..Frame::new(stage.view, scene_depth(stage.depth, &self.depth, &self.linear))
         };
         self.renderer.prepare(&gpu.device, &gpu.queue, encoder, &frame)
@@ -198,7 +198,7 @@ impl Host {
             }),
             ..Default::default()
         });
-        self.renderer.render(&mut pass);
+        self.renderer.render_stage(&mut pass, stage.shade_tree);
     }
 
     /// The pixels of the targets, as light: code is decoded.

@@ -110,13 +110,13 @@ fn a_second_prepare_before_the_first_is_submitted_is_refused() {
     gpu().check().unwrap();
 }
 
-fn warm_up<'a>(stage: &Stage, settings: &'a [Settings]) -> WarmUp<'a> {
+fn warm_up<'a>(stage: &'a Stage, settings: &'a [Settings]) -> WarmUp<'a> {
     let scene_depth = match stage.depth {
         DepthKind::Buffer => SceneDepthKind::Buffer(stage.host.depth_format),
         DepthKind::Linear => SceneDepthKind::Linear,
         DepthKind::Both => SceneDepthKind::Both(stage.host.depth_format),
     };
-    WarmUp { view: stage.view, scene_depth, settings, shade_tree: stage.shade_tree }
+    WarmUp { view: stage.view, scene_depth, settings, stages: std::slice::from_ref(&stage.shade_tree) }
 }
 
 #[test]
@@ -339,6 +339,32 @@ fn a_view_may_be_a_part_of_larger_targets() {
     stage.host.target_size = Some(UVec2::new(200, 100));
     stage.view.origin = UVec2::new(41, 0);
     assert_eq!(field(stage.try_on_gpu(gpu())), "view.size");
+}
+
+// stages
+
+#[test]
+fn one_prepare_shows_every_stage() {
+    for path in [Path::Raster, Path::Forward] {
+        let mut all = Stage::new(SIZE);
+        (all.settings.path, all.stages) = (path, Some(ShadeTree::ALL));
+        let mut host = Host::new(gpu(), &all).unwrap();
+        let mut encoder = encoder(gpu());
+        host.prepare(gpu(), &mut encoder, &all, slice(&all)).unwrap();
+        gpu().submit(encoder).unwrap();
+        for &stage in ShadeTree::ALL {
+            let alone = Stage { shade_tree: stage, stages: None, ..Stage::new(SIZE) };
+            let alone = Stage { settings: all.settings, ..alone };
+            all.shade_tree = stage;
+            let mut encoder = self::encoder(gpu());
+            host.render(&mut encoder, &all);
+            gpu().submit(encoder).unwrap();
+            assert!(host.picture(gpu()).unwrap() == alone.on_gpu(gpu()).picture, "{path:?} {stage:?}");
+        }
+    }
+    // A stage that was not to be shown draws nothing.
+    let stage = Stage { stages: Some(&[ShadeTree::Final]), shade_tree: ShadeTree::Overdraw, ..Stage::new(SIZE) };
+    assert!(stage.on_gpu(gpu()).picture.texels.iter().all(|texel| *texel == BACKDROP));
 }
 
 // passes

@@ -27,7 +27,10 @@ pub struct Stage {
     pub material: MaterialAssets,
     pub time: f32,
     pub up: Vec3,
+    /// The stage that is drawn.
     pub shade_tree: ShadeTree,
+    /// What the GPU is told may be shown; the stage that is drawn if `None`.
+    pub stages: Option<&'static [ShadeTree]>,
     /// Which kind of scene depth is handed over.
     pub depth: DepthKind,
     /// The wall goes on to the right.
@@ -135,6 +138,7 @@ impl Stage {
             time: 1.0,
             up: Vec3::Y,
             shade_tree: ShadeTree::Final,
+            stages: None,
             depth: DepthKind::Buffer,
             wall_everywhere: false,
             empty_linear: false,

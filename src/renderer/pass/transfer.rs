@@ -67,17 +67,23 @@ pub(crate) fn describe(key: TransferKey) -> PipelineParts {
 /// The pass for one system, in the host's pass.
 #[derive(Debug)]
 pub(crate) struct Transfer {
-    pub pipeline: wgpu::RenderPipeline,
+    /// By stage, of those that may be shown.
+    pub pipelines: [Option<wgpu::RenderPipeline>; ShadeTree::ALL.len()],
     pub groups: Groups,
     /// Group 3: the targets.
     pub inputs: wgpu::BindGroup,
+    /// The same with counted layers in place of the amount.
+    pub overdraw_inputs: Option<wgpu::BindGroup>,
 }
 
 impl Transfer {
-    pub fn record(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.set_pipeline(&self.pipeline);
+    /// Draws nothing for a stage that was not to be shown.
+    pub fn record(&self, pass: &mut wgpu::RenderPass<'_>, stage: ShadeTree) {
+        let Some(pipeline) = &self.pipelines[stage as usize] else { return };
+        let inputs = if stage == ShadeTree::Overdraw { self.overdraw_inputs.as_ref() } else { Some(&self.inputs) };
+        pass.set_pipeline(pipeline);
         self.groups.bind(pass);
-        pass.set_bind_group(3, &self.inputs, &[]);
+        pass.set_bind_group(3, inputs, &[]);
         pass.draw(0..BOX_VERTICES, 0..1);
     }
 }

@@ -39,6 +39,8 @@ pub(crate) struct AccumulationKey {
     pub format: AccumulationFormat,
     pub sums_weights: bool,
     pub depth_source: DepthSource,
+    /// Layers are counted as well.
+    pub overdraw: bool,
     /// A copy of the reduced depth is needed: the backend cannot test what it samples.
     pub depth_copy: bool,
 }
@@ -50,6 +52,8 @@ pub(crate) struct AccumulationTarget {
     size: UVec2,
     spare: Spare,
     pub attachments: Arc<[wgpu::TextureView]>,
+    /// The first attachment once more, for counted layers.
+    pub overdraw: Option<Arc<[wgpu::TextureView]>>,
     /// `None` where sprites are compared with the host's own depth.
     pub reduced_depth: Option<wgpu::TextureView>,
     /// The reduced depth once more, coarser, where the backend cannot test what it samples.
@@ -93,16 +97,18 @@ impl AccumulationTarget {
 
     fn new(device: &wgpu::Device, key: AccumulationKey, size: UVec2) -> Self {
         let mut textures = Textures { device, bytes: 0 };
-        let attachments = accumulation_layout(key.format, key.sums_weights)
-            .into_iter()
-            .map(|attachment| textures.create_whole(attachment.label, attachment.format, size))
-            .collect();
+        let mut create = |sums_weights| -> Arc<[_]> {
+            let layout = accumulation_layout(key.format, sums_weights).into_iter();
+            layout.map(|attachment| textures.create_whole(attachment.label, attachment.format, size)).collect()
+        };
+        let attachments = create(key.sums_weights);
+        let overdraw = key.overdraw.then(|| create(false));
         let is_reduced = key.depth_source == DepthSource::Reduced;
         let reduced_depth = is_reduced.then(|| textures.create_whole("haze reduced depth", REDUCED_DEPTH_FORMAT, size));
         let depth_copy =
             (is_reduced && key.depth_copy).then(|| textures.create_whole("haze depth copy", DEPTH_COPY_FORMAT, size));
         let bytes = textures.bytes;
-        Self { key, size, spare: Spare::default(), attachments, reduced_depth, depth_copy, bytes }
+        Self { key, size, spare: Spare::default(), attachments, overdraw, reduced_depth, depth_copy, bytes }
     }
 }
 
