@@ -52,6 +52,7 @@ pub(crate) struct Situation<'a> {
 
 /// What is drawn for one system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(clippy::large_enum_variant, reason = "one lives at a time, on the stack")]
 pub(crate) enum Plan<'a> {
     /// Forward sprites have no stages to show.
     Nothing,

@@ -77,6 +77,11 @@ choice! {
 }
 
 impl ShadeTree {
+    /// True for stages that show numbers, not light: they are neither exposed nor tonemapped.
+    pub fn is_data(self) -> bool {
+        matches!(self, Self::Normals | Self::Amount | Self::Overdraw | Self::ReducedDepth)
+    }
+
     /// True for what forward sprites show too: lit smoke.
     pub(crate) fn is_picture(self) -> bool {
         matches!(self, Self::Final | Self::Combined)

@@ -3,12 +3,12 @@
 
 use std::sync::OnceLock;
 
-use glam::{IVec2, UVec2, Vec2, Vec3, Vec4, vec3, vec4};
+use glam::{IVec2, UVec2, UVec3, Vec2, Vec3, Vec4, vec3, vec4};
 use haze::formula::texture::Texture2d;
 use haze::formula::uniforms::LightUniform;
 use haze::formula::{
     blending, colour, depth, diffuse_bake, lighting, noise_volume, normal, order, ramp, soft_fade, sprite, technique,
-    upsample, view,
+    tonemap, upsample, view,
 };
 use haze::noise::{NoiseRecipe, NoiseVolume};
 use haze::noise::{pcg3d, unit};
@@ -45,7 +45,7 @@ const TRANSCENDENTAL: f32 = 2e-4;
 
 /// `count` cases of numbers in the given ranges, the same every time.
 fn random(count: u32, ranges: &[(f32, f32)]) -> Vec<Vec<f32>> {
-    let number = |case: u32, index: usize| unit(pcg3d(glam::UVec3::new(case, index as u32, 77)).x);
+    let number = |case: u32, index: usize| unit(pcg3d(UVec3::new(case, index as u32, 77)).x);
     let pick = |case| (0..).zip(ranges).map(|(i, &(low, high))| low + (high - low) * number(case, i)).collect();
     (0..count).map(pick).collect()
 }
@@ -123,7 +123,7 @@ const WGSL_FITTED: &str = "var f: GuidedFit; f.nearest = 1.0e6; f.farthest = -1.
 /// A ramp and a flipbook with a different number in every texel.
 fn test_ramp() -> Ramp {
     let colour = |i: u32| {
-        let hash = pcg3d(glam::UVec3::new(i, 1, 2));
+        let hash = pcg3d(UVec3::new(i, 1, 2));
         vec3(unit(hash.x), unit(hash.y), unit(hash.z)) * 2.0
     };
     Ramp::from_linear(UVec2::new(8, 4), (0..32).map(colour))
@@ -132,7 +132,7 @@ fn test_ramp() -> Ramp {
 fn test_sprite() -> Sprite {
     let mut sheet = image::RgbaImage::new(24, 8);
     for (x, y, pixel) in sheet.enumerate_pixels_mut() {
-        let hash = pcg3d(glam::UVec3::new(x, y, 3));
+        let hash = pcg3d(UVec3::new(x, y, 3));
         let border = x % 8 == 0 || x % 8 == 7 || y == 0 || y == 7;
         let alpha = if border { 0 } else { hash.x as u8 };
         *pixel = image::Rgba([hash.y as u8, hash.z as u8, (hash.y >> 8) as u8, alpha]);
@@ -978,6 +978,59 @@ fn formulas() -> Vec<Formula> {
             cases: random(100, &[(-0.5, 3.0); 3]),
             tolerance: TRANSCENDENTAL,
             mutants: &[("saturate(light)", "light"), ("srgb_from_linear(shown.g)", "shown.g")],
+        },
+        Formula {
+            name: "pcg3d",
+            file: "lib/hash.wgsl",
+            wgsl: "let v = pcg3d(vec3u(u32(x(0)), u32(x(1)), u32(x(2)))) >> vec3u(8u); \
+                   y(0, f32(v.x)); y(1, f32(v.y)); y(2, f32(v.z));",
+            reference: |x| {
+                let word = |i: usize| x[i] as u32;
+                let v = pcg3d(UVec3::new(word(0), word(1), word(2)));
+                (v >> UVec3::splat(8)).as_vec3().to_array().to_vec()
+            },
+            cases: random(50, &[(0.0, 1.0e6); 3])
+                .into_iter()
+                .map(|case| case.into_iter().map(f32::floor).collect())
+                .collect(),
+            tolerance: 0.0,
+            mutants: &[("1664525u", "1664526u"), ("vec3u(16u)", "vec3u(15u)")],
+        },
+        Formula {
+            name: "unit",
+            file: "lib/hash.wgsl",
+            wgsl: "y(0, unit(u32(x(0)) * 77777u));",
+            reference: |x| vec![unit((x[0] as u32).wrapping_mul(77777))],
+            cases: random(50, &[(0.0, 1.0e6)]),
+            tolerance: 0.0,
+            mutants: &[("word >> 8u", "word >> 9u")],
+        },
+        Formula {
+            name: "film",
+            file: "lib/tonemap.wgsl",
+            wgsl: "let v = film(vec3f(x(0), x(1), x(2))); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| tonemap::film(v3(x)).to_array().to_vec(),
+            cases: [random(60, &[(-0.1, 1.0); 3]), random(30, &[(0.0, 50.0); 3])].concat(),
+            tolerance: 10.0 * ARITHMETIC,
+            mutants: &[("0.35458", "0.45458"), ("output * fitted", "fitted * output"), ("0.432951", "0.532951")],
+        },
+        Formula {
+            name: "developed",
+            file: "lib/tonemap.wgsl",
+            wgsl: "let v = developed(vec3f(x(0), x(1), x(2)), x(3)); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| tonemap::developed(v3(x), x[3]).to_array().to_vec(),
+            cases: random(60, &[(0.0, 2.0), (0.0, 2.0), (0.0, 2.0), (0.1, 4.0)]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[("film(colour * exposure)", "film(colour)"), ("gamma_target_colour(film", "(film")],
+        },
+        Formula {
+            name: "dither",
+            file: "lib/tonemap.wgsl",
+            wgsl: "y(0, dither(vec2u(u32(x(0)), u32(x(1)))) * 255.0);",
+            reference: |x| vec![tonemap::dither(UVec2::new(x[0] as u32, x[1] as u32)) * 255.0],
+            cases: random(50, &[(0.0, 4000.0); 2]),
+            tolerance: ARITHMETIC,
+            mutants: &[("unit(hash.y)", "unit(hash.z)"), ("vec3u(at, 0u)", "vec3u(at.yx, 0u)")],
         },
         Formula {
             name: "overdraw_colour",

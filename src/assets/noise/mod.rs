@@ -3,5 +3,6 @@
 mod gradient;
 mod volume;
 
-pub use gradient::{Noise, curl_noise, fractal_noise, gradient_noise, pcg3d, tiling_noise, unit};
+pub use crate::formula::hash::{pcg3d, unit};
+pub use gradient::{Noise, curl_noise, fractal_noise, gradient_noise, tiling_noise};
 pub use volume::{MAX_SIZE, NoiseRecipe, NoiseVolume, RECIPE_VERSION};

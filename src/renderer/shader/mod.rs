@@ -31,6 +31,7 @@ const SOURCES: &[(&str, &str)] = embed![
     "lib/depth.wgsl",
     "lib/diffuse.wgsl",
     "lib/diffuse_bake.wgsl",
+    "lib/hash.wgsl",
     "lib/lighting.wgsl",
     "lib/noise_volume.wgsl",
     "lib/normal.wgsl",
@@ -42,6 +43,7 @@ const SOURCES: &[(&str, &str)] = embed![
     "lib/sprite_vertex.wgsl",
     "lib/system.wgsl",
     "lib/technique.wgsl",
+    "lib/tonemap.wgsl",
     "lib/upsample.wgsl",
     "lib/view.wgsl",
 ];
