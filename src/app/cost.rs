@@ -5,7 +5,8 @@ use std::time::Instant;
 
 use haze::Error;
 use haze::demo::shot::Shot;
-use haze::demo::stage::Stage;
+use haze::demo::stage::{Stage, StageContext};
+use haze::headless::Headless;
 
 use super::options::Backend;
 
@@ -60,14 +61,17 @@ const MOST_LOOPS: u32 = 8192;
 
 /// Draws the smoke of a shot again and again.
 pub enum Timer<'a> {
-    Gpu(Box<Stage<'a>>),
+    Gpu(Box<Stage>, &'a Headless),
     Cpu,
 }
 
 impl<'a> Timer<'a> {
-    pub fn new(backend: &'a Backend, shot: &Shot) -> Result<Self, Error> {
+    pub fn new(backend: &'a Backend) -> Result<Self, Error> {
         Ok(match backend {
-            Backend::Gpu(gpu) => Self::Gpu(Box::new(Stage::new(gpu, shot, false)?)),
+            Backend::Gpu(gpu) => {
+                let context = StageContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
+                Self::Gpu(Box::new(Stage::new(&context, false)?), gpu)
+            }
             Backend::Cpu => Self::Cpu,
         })
     }
@@ -75,7 +79,7 @@ impl<'a> Timer<'a> {
     /// Seconds of one frame; on the CPU with the scene behind it.
     pub fn frame(&mut self, shot: &Shot) -> Result<f64, Error> {
         match self {
-            Self::Gpu(stage) => Ok(stage.draw(shot)?.as_secs_f64()),
+            Self::Gpu(stage, gpu) => Ok(stage.draw(gpu, shot)?.as_secs_f64()),
             Self::Cpu => {
                 let start = Instant::now();
                 shot.render_on_cpu()?;

@@ -20,7 +20,6 @@ mod render;
 mod shade_tree;
 mod sheet;
 mod techniques;
-mod tonemap;
 mod vary;
 
 use std::ffi::OsString;

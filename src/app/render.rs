@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 
 use clap::Args;
 use glam::UVec2;
+use haze::demo::develop::develop;
 use haze::demo::shot::Shot;
 use haze::picture::write_png;
 use haze::settings::ShadeTree;
@@ -15,7 +16,6 @@ use super::memory::check_memory;
 use super::options::{Backend, ShotArguments, choices};
 use super::output::say;
 use super::progress::watched;
-use super::tonemap::develop;
 
 #[derive(Args)]
 pub struct Arguments {

@@ -2,11 +2,11 @@
 
 use clap::Args;
 use haze::Error;
+use haze::demo::develop::develop;
 use haze::settings::ShadeTree;
 
 use super::options::ShotArguments;
 use super::sheet::Sheet;
-use super::tonemap::develop;
 
 #[derive(Args)]
 #[command(mut_arg("size", |size| size.help("Three times the size of a picture on the sheet, which has three to a row, pixels")))]

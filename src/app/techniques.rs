@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::UVec2;
+use haze::demo::develop::develop;
 use haze::demo::shot::Shot;
 use haze::formula::soft_fade::soft_fade;
 use haze::picture::write_png;
@@ -16,7 +17,6 @@ use super::options::{Backend, ShotArguments};
 use super::output::complain;
 use super::plot::{Curve, plot};
 use super::sheet::Sheet;
-use super::tonemap::develop;
 
 #[derive(Args)]
 #[command(
@@ -132,7 +132,7 @@ fn measure(backend: &Backend, shot: &Shot, cells: &[Cell], rounds: u32) -> Resul
         complain("no smoke in sight: costs are left out");
         return Ok(None);
     }
-    let mut timer = Timer::new(backend, shot)?;
+    let mut timer = Timer::new(backend)?;
     let loops = timer.loops_that_tell(&cells[0].shot)?;
     interleaved(rounds, cells.len(), |cell| timer.sprites(&cells[cell].shot, loops)).map(Some)
 }

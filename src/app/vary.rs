@@ -2,13 +2,13 @@
 
 use clap::Args;
 use glam::UVec2;
+use haze::demo::develop::develop;
 use haze::settings::set_field;
 use haze::{Error, FieldError};
 
 use super::options::{ShotArguments, in_option, parse_assignment};
 use super::progress::watched;
 use super::sheet::Sheet;
-use super::tonemap::develop;
 
 #[derive(Args)]
 #[command(mut_arg("size", |size| size.help("Size of the pictures of a full row and column together, pixels: each is that much smaller")))]

@@ -33,6 +33,23 @@ pub struct MaterialAssets {
 }
 
 impl MaterialAssets {
+    /// True if both hold the very same pictures, in the same memory: cheap, unlike `==`.
+    pub fn shares(&self, other: &Self) -> bool {
+        let sprite = |a: &Option<Sprite>, b: &Option<Sprite>| match (a, b) {
+            (Some(a), Some(b)) => a.shares(b),
+            (None, None) => true,
+            _ => false,
+        };
+        self.sprite.shares(&other.sprite)
+            && sprite(&self.detail, &other.detail)
+            && self.noise.shares(&other.noise)
+            && self.ramps().iter().zip(other.ramps()).all(|(a, b)| a.shares(b))
+    }
+
+    fn ramps(&self) -> [&Ramp; 5] {
+        [&self.diffuse_ramp, &self.soft_scatter_ramp, &self.specular_ramp, &self.motif, &self.age_ramp]
+    }
+
     pub(crate) fn info(&self) -> MaterialInfo {
         MaterialInfo {
             sprite_size: self.sprite.size() as f32,

@@ -3,11 +3,12 @@
 
 mod boxes;
 mod cpu;
-mod gpu;
+pub mod develop;
 mod layout;
 mod occluders;
 mod render;
 mod scene;
+mod scene_renderer;
 mod shading;
 pub mod shot;
 pub mod stage;

@@ -4,7 +4,7 @@ use glam::{Vec3, Vec4};
 
 use super::cpu;
 use super::shot::Shot;
-use super::stage::Stage;
+use super::stage::{Stage, StageContext};
 use crate::assets::picture::Picture;
 use crate::error::Error;
 use crate::headless::Headless;
@@ -46,8 +46,9 @@ impl Shot {
     /// [`Error::Field`] when the preset was changed to something invalid or a picture is too large for the device,
     /// [`Error::Device`] when the device failed.
     pub fn render_on_gpu(&self, gpu: &Headless, exact_filtering: bool) -> Result<Picture<Vec4>, Error> {
-        let mut stage = Stage::new(gpu, self, exact_filtering)?;
-        stage.draw(self)?;
-        stage.picture()
+        let context = StageContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
+        let mut stage = Stage::new(&context, exact_filtering)?;
+        stage.draw(gpu, self)?;
+        stage.read(gpu, self)
     }
 }

@@ -1,117 +1,228 @@
-//! A shot on the GPU: its scene, drawn once, and a renderer for the smoke, kept from frame to frame.
+//! A shot on the GPU, frame after frame: the scene is drawn when it or the camera changes, the smoke every time.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use glam::{Vec3, Vec4};
+use glam::{UVec2, Vec3, Vec4};
 
-use super::gpu::{self, SceneTargets};
+use super::scene_renderer::{COLOUR_FORMAT, DEPTH_FORMAT, LINEAR_FORMAT, SceneRenderer, SceneTargets, texture, whole};
 use super::shot::Shot;
+use crate::assets::material::MaterialAssets;
 use crate::assets::picture::Picture;
 use crate::error::Error;
-use crate::frame::{Frame, Material, Particles, SceneDepth, System, View};
+use crate::frame::{Frame, Light, Material, Particles, SceneDepth, System, View};
 use crate::headless::Headless;
-use crate::renderer::{Descriptor, Renderer, read_only_depth_is_supported};
+use crate::preset::Environment;
+use crate::renderer::{Context, Descriptor, Renderer, read_only_depth_is_supported};
+use crate::settings::ShadeTree;
+
+/// What the stages of one device share. A clone is the same.
+#[derive(Clone, Debug)]
+pub struct StageContext {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    haze: Context,
+    scene: Arc<SceneRenderer>,
+    /// The depth buffer is attached where it need not be read, or can be all the same.
+    tests_depth: bool,
+}
+
+impl StageContext {
+    /// Compiles the scene's shader and haze's.
+    pub fn new(adapter: &wgpu::Adapter, device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
+        let usages = adapter.get_texture_format_features(LINEAR_FORMAT).allowed_usages;
+        let draws_linear = usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT);
+        Self {
+            device: device.clone(),
+            queue: queue.clone(),
+            haze: Context::new(device, queue, None),
+            scene: Arc::new(SceneRenderer::new(device, queue, draws_linear)),
+            tests_depth: draws_linear || read_only_depth_is_supported(device),
+        }
+    }
+
+    /// The same with another context of haze's, of the same device: with other shaders, say.
+    #[must_use]
+    pub fn with_haze(&self, haze: Context) -> Self {
+        Self { haze, ..self.clone() }
+    }
+}
 
 /// See the module.
 #[derive(Debug)]
-pub struct Stage<'a> {
-    gpu: &'a Headless,
-    view: View,
-    targets: SceneTargets,
-    colour: wgpu::TextureView,
-    depth: wgpu::TextureView,
-    linear: Option<wgpu::TextureView>,
-    tests_depth: bool,
+pub struct Stage {
+    context: StageContext,
     renderer: Renderer,
-    materials: Vec<Material>,
+    materials: Vec<(MaterialAssets, Material)>,
+    set: Option<Set>,
 }
 
-impl<'a> Stage<'a> {
-    /// Draws the scene. `exact_filtering` as in [`Descriptor`].
+/// What depends on the picture's size.
+#[derive(Debug)]
+struct Set {
+    targets: SceneTargets,
+    /// What the targets show.
+    drawn: Option<Drawn>,
+    pictures: [Option<wgpu::Texture>; ShadeTree::ALL.len()],
+}
+
+/// What a picture of the scene depends on.
+#[derive(Clone, Debug, PartialEq)]
+struct Drawn {
+    environment: Environment,
+    lights: Vec<Light>,
+    view: View,
+}
+
+impl Stage {
+    /// An empty stage. `exact_filtering` as in [`Descriptor`].
     ///
     /// # Errors
-    /// [`Error::Field`] when a picture is too large for the device, [`Error::Device`] when the device failed.
-    pub fn new(gpu: &'a Headless, shot: &Shot, exact_filtering: bool) -> Result<Self, Error> {
-        let view = shot.preset.camera.view(shot.size);
-        let targets = gpu::render(gpu, &shot.scene(), &view)?;
-        let whole = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let linear = targets.linear.as_ref().map(whole);
-        // The depth buffer is attached where it need not be read, or can be all the same.
-        let tests_depth = linear.is_some() || read_only_depth_is_supported(&gpu.device);
-        let renderer = Renderer::new(
-            &gpu.device,
-            &gpu.queue,
-            &Descriptor {
-                color_format: gpu::COLOUR_FORMAT,
-                depth_format: tests_depth.then_some(gpu::DEPTH_FORMAT),
-                exact_filtering,
-                ..Descriptor::default()
-            },
-        )?;
-        let upload = |assets| renderer.create_material(&gpu.device, &gpu.queue, assets);
-        let materials = shot.materials.iter().map(upload).collect::<Result<_, _>>()?;
-        let (colour, depth) = (whole(&targets.colour), whole(&targets.depth));
-        Ok(Self { gpu, view, targets, colour, depth, linear, tests_depth, renderer, materials })
+    /// [`Error::Field`] where the device cannot draw to half floats.
+    pub fn new(context: &StageContext, exact_filtering: bool) -> Result<Self, Error> {
+        let descriptor = Descriptor {
+            context: Some(&context.haze),
+            color_format: COLOUR_FORMAT,
+            depth_format: context.tests_depth.then_some(DEPTH_FORMAT),
+            exact_filtering,
+            ..Descriptor::default()
+        };
+        let renderer = Renderer::new(&context.device, &context.queue, &descriptor)?;
+        Ok(Self { context: context.clone(), renderer, materials: Vec::new(), set: None })
     }
 
-    /// Draws the smoke of a shot in the same scene over what is there, and tells how long the device took.
+    /// haze's renderer of this stage.
+    pub fn renderer(&self) -> &Renderer {
+        &self.renderer
+    }
+
+    /// Records a frame: the scene if anything of it is new, the smoke, and a picture of every one of `stages`. One call for each
+    /// submission.
     ///
     /// # Errors
-    /// [`Error::Field`] when the preset was changed to something invalid, [`Error::Device`] when the device failed.
-    pub fn draw(&mut self, shot: &Shot) -> Result<Duration, Error> {
+    /// [`Error::Field`] when the preset was changed to something invalid or a picture is too large for the device. The pictures
+    /// are as they were then.
+    pub fn record(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        shot: &Shot,
+        stages: &[ShadeTree],
+    ) -> Result<(), Error> {
+        shot.preset.validate()?;
+        self.upload(&shot.materials)?;
+        let StageContext { device, queue, scene, tests_depth, .. } = &self.context;
+        let size = shot.size.max(UVec2::ONE);
+        let set = match &mut self.set {
+            Some(set) if set.size() == size => set,
+            set => set.insert(Set { targets: scene.targets(size), drawn: None, pictures: Default::default() }),
+        };
+        let view = shot.preset.camera.view(size);
+        let drawn = Drawn { environment: shot.preset.environment, lights: shot.preset.lights.clone(), view };
+        if set.drawn.as_ref() != Some(&drawn) {
+            scene.record(encoder, &set.targets, &shot.scene(), &view);
+            set.drawn = Some(drawn);
+        }
         let particles = shot.systems();
         let systems: Vec<_> = (0..)
             .zip(particles.iter().zip(&self.materials))
-            .map(|(key, ((particles, settings), material))| System {
+            .map(|(key, ((particles, settings), (_, material)))| System {
                 key,
                 ..System::new(Particles::Slice(particles), settings, material)
             })
             .collect();
+        let depth = &set.targets.depth;
         let frame = Frame {
-            view: self.view,
-            scene_depth: match &self.linear {
-                Some(linear) => SceneDepth::Both { buffer: &self.depth, linear },
-                None => SceneDepth::Buffer(&self.depth),
-            },
             lights: &shot.preset.lights,
             systems: &systems,
             time: shot.preset.time,
             up: Vec3::Y,
-            stages: &[shot.shade_tree],
+            stages,
+            ..Frame::new(
+                view,
+                match &set.targets.linear {
+                    Some(linear) => SceneDepth::Both { buffer: depth, linear },
+                    None => SceneDepth::Buffer(depth),
+                },
+            )
         };
-        let (device, queue) = (&self.gpu.device, &self.gpu.queue);
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.renderer.prepare(device, queue, &mut encoder, &frame)?;
-        let load = if shot.shows_scene() { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::BLACK) };
-        {
+        self.renderer.prepare(device, queue, encoder, &frame)?;
+        for &stage in stages {
+            let picture = set.pictures[stage as usize]
+                .get_or_insert_with(|| texture(device, "demo picture", size, COLOUR_FORMAT));
+            // Other stages than the picture are shown on black.
+            let mut load = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
+            if stage == ShadeTree::Final {
+                let colour = &set.targets.colour;
+                encoder.copy_texture_to_texture(colour.as_image_copy(), picture.as_image_copy(), colour.size());
+                load = wgpu::LoadOp::Load;
+            }
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("smoke"),
                 color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &self.colour,
+                    view: &whole(picture),
                     depth_slice: None,
                     resolve_target: None,
                     ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
                 })],
-                depth_stencil_attachment: self.tests_depth.then_some(wgpu::RenderPassDepthStencilAttachment {
-                    view: &self.depth,
+                depth_stencil_attachment: tests_depth.then_some(wgpu::RenderPassDepthStencilAttachment {
+                    view: depth,
                     depth_ops: None,
                     stencil_ops: None,
                 }),
                 ..Default::default()
             });
-            self.renderer.render_stage(&mut pass, shot.shade_tree);
+            self.renderer.render_stage(&mut pass, stage);
         }
+        Ok(())
+    }
+
+    /// The picture of a stage as last recorded: linear HDR, `Rgba16Float`, of the shot's size.
+    pub fn picture(&self, stage: ShadeTree) -> Option<&wgpu::Texture> {
+        self.set.as_ref()?.pictures[stage as usize].as_ref()
+    }
+
+    /// Draws a shot's stage now, and tells how long the device took.
+    ///
+    /// # Errors
+    /// As [`record`](Self::record); [`Error::Device`] when the device failed.
+    pub fn draw(&mut self, gpu: &Headless, shot: &Shot) -> Result<Duration, Error> {
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        self.record(&mut encoder, shot, &[shot.shade_tree])?;
         let start = Instant::now();
-        self.gpu.submit(encoder)?;
+        gpu.submit(encoder)?;
         Ok(start.elapsed())
     }
 
-    /// Reads the picture back, linear HDR.
+    /// Reads a shot's stage back, linear HDR; black if it was never drawn.
     ///
     /// # Errors
     /// [`Error::Device`] when the device failed.
-    pub fn picture(&self) -> Result<Picture<Vec4>, Error> {
-        let texels = self.gpu.read_rgba16float(&self.targets.colour)?;
-        Ok(Picture { size: self.view.size, texels })
+    pub fn read(&self, gpu: &Headless, shot: &Shot) -> Result<Picture<Vec4>, Error> {
+        let Some(picture) = self.picture(shot.shade_tree) else { return Ok(Picture::new(shot.size, Vec4::W)) };
+        let size = UVec2::new(picture.width(), picture.height());
+        Ok(Picture { size, texels: gpu.read_rgba16float(picture)? })
+    }
+
+    /// Puts pictures on the GPU that are not there yet.
+    fn upload(&mut self, assets: &[MaterialAssets]) -> Result<(), Error> {
+        self.materials.truncate(assets.len());
+        for (index, assets) in assets.iter().enumerate() {
+            if self.materials.get(index).is_some_and(|(uploaded, _)| uploaded.shares(assets)) {
+                continue;
+            }
+            let material = self.renderer.create_material(&self.context.device, &self.context.queue, assets)?;
+            let entry = (assets.clone(), material);
+            match self.materials.get_mut(index) {
+                Some(slot) => *slot = entry,
+                None => self.materials.push(entry),
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Set {
+    fn size(&self) -> UVec2 {
+        UVec2::new(self.targets.colour.width(), self.targets.colour.height())
     }
 }

@@ -291,7 +291,7 @@ fn depth_buffer(gpu: &Headless, stage: &Stage, size: UVec2, samples: u32) -> wgp
 }
 
 /// Any texture as `Rgba16Float`.
-fn as_floats(gpu: &Headless, texture: &wgpu::Texture) -> wgpu::Texture {
+pub fn as_floats(gpu: &Headless, texture: &wgpu::Texture) -> wgpu::Texture {
     if texture.format() == wgpu::TextureFormat::Rgba16Float && texture.usage().contains(wgpu::TextureUsages::COPY_SRC) {
         return texture.clone();
     }

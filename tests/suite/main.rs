@@ -8,6 +8,8 @@
 mod assets;
 mod common;
 mod creations;
+#[cfg(feature = "app")]
+mod develop;
 mod every_setting;
 mod formulas;
 #[cfg(feature = "app")]

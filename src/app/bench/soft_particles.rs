@@ -37,7 +37,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let preset = Preset::parse(path, include_str!("soft_particles.json"))?;
     let shot = Shot::new(preset, path, arguments.run.size)?;
     let backend = arguments.run.backend()?;
-    let mut timer = Timer::new(&backend, &shot)?;
+    let mut timer = Timer::new(&backend)?;
     let reads_attached = match &backend {
         Backend::Gpu(gpu) => read_only_depth_is_supported(&gpu.device),
         Backend::Cpu => true,

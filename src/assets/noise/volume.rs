@@ -30,6 +30,11 @@ pub struct NoiseVolume {
 }
 
 impl NoiseVolume {
+    /// True if both are in the same memory.
+    pub(crate) fn shares(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.texels, &other.texels)
+    }
+
     /// Cuts a picture into slices: `size` texels wide, the slices below each other.
     ///
     /// # Errors

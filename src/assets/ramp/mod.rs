@@ -65,6 +65,11 @@ impl Ramp {
         self.load(at).truncate()
     }
 
+    /// True if both are in the same memory.
+    pub(crate) fn shares(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.texels, &other.texels)
+    }
+
     /// Bytes that the texels take.
     pub(crate) fn memory(&self) -> u64 {
         size_of_val(&*self.texels) as u64

@@ -44,6 +44,11 @@ pub struct Sprite {
 pub const MAX_FRAMES: u32 = 256;
 
 impl Sprite {
+    /// True if both are in the same memory.
+    pub(crate) fn shares(&self, other: &Self) -> bool {
+        self.levels.len() == other.levels.len() && self.levels.iter().zip(&other.levels).all(|(a, b)| Arc::ptr_eq(a, b))
+    }
+
     /// Cuts a picture into frames and builds their mip levels.
     ///
     /// # Errors

@@ -1,0 +1,95 @@
+//! What a window shows is what the program writes.
+
+use glam::{UVec2, Vec2, Vec4};
+use haze::demo::develop::{Developer, Shown, develop, exposure};
+use haze::demo::shot::Shot;
+use haze::demo::stage::{Stage, StageContext};
+use haze::settings::ShadeTree;
+use haze::wgpu;
+
+use crate::common::gpu;
+use crate::host::as_floats;
+
+const SIZE: UVec2 = UVec2::new(160, 90);
+
+/// The first shot developed on the GPU beside the second, in the middle of a larger target; its code.
+fn on_screen(a: (&Stage, &Shot), b: (&Stage, &Shot), shown: Shown) -> Vec<Vec4> {
+    let device = &gpu().device;
+    let format = wgpu::TextureFormat::Rgba8Unorm;
+    let developer = Developer::new(device, format);
+    let picture = |(stage, shot): (&Stage, &Shot)| stage.picture(shot.shade_tree).unwrap().clone();
+    let developing = developer.bind(device, &picture(a), &picture(b));
+    let place = UVec2::new(13, 7);
+    let screen = gpu().target("screen", SIZE + 2 * place, format);
+    let (origin, size) = (place.as_vec2(), SIZE.as_vec2());
+    let exposure = Vec2::new(exposure(a.1), exposure(b.1));
+    developer.prepare(&gpu().queue, &developing, &Shown { origin, size, exposure, ..shown });
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("screen"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &screen.create_view(&wgpu::TextureViewDescriptor::default()),
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::RED), store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
+        pass.set_viewport(origin.x, origin.y, size.x, size.y, 0.0, 1.0);
+        pass.set_scissor_rect(place.x, place.y, SIZE.x, SIZE.y);
+        developer.record(&mut pass, &developing);
+    }
+    gpu().submit(encoder).unwrap();
+    let whole = gpu().read_rgba16float(&as_floats(gpu(), &screen)).unwrap();
+    let width = screen.width();
+    let inside = (0..SIZE.y).flat_map(|y| (0..SIZE.x).map(move |x| ((y + place.y) * width + x + place.x) as usize));
+    inside.map(|index| whole[index]).collect()
+}
+
+fn shot(preset: &str, shade_tree: ShadeTree) -> (Stage, Shot) {
+    let context = StageContext::new(&gpu().adapter, &gpu().device, &gpu().queue);
+    let mut stage = Stage::new(&context, true).unwrap();
+    let mut shot = Shot { shade_tree, ..Shot::load(preset, SIZE).unwrap() };
+    shot.preset.camera.exposure = 0.7;
+    stage.draw(gpu(), &shot).unwrap();
+    (stage, shot)
+}
+
+#[test]
+fn a_window_shows_what_the_program_writes() {
+    for stage in [ShadeTree::Final, ShadeTree::Normals] {
+        let (stage, shot) = shot("column", stage);
+        let written = develop(&stage.read(gpu(), &shot).unwrap(), &shot);
+        let shown = on_screen((&stage, &shot), (&stage, &shot), Shown::default());
+        let mut off = 0;
+        for (written, shown) in written.pixels().zip(shown) {
+            for (written, shown) in written.0.into_iter().zip(shown.to_array()) {
+                let apart = (f32::from(written) - shown * 255.0).abs();
+                assert!(apart < 1.5, "{written} {}", shown * 255.0);
+                off += u32::from(apart > 0.5);
+            }
+        }
+        // Where the driver's power function falls to the other side of a half.
+        assert!(off < SIZE.element_product() / 100, "{off}");
+    }
+}
+
+#[test]
+fn two_pictures_side_by_side_and_how_they_differ() {
+    let (a, b) = (shot("column", ShadeTree::Final), shot("column", ShadeTree::Amount));
+    let alone = |of: &(Stage, Shot)| on_screen((&of.0, &of.1), (&of.0, &of.1), Shown::default());
+    let (left, right) = (alone(&a), alone(&b));
+    let both = |shown| on_screen((&a.0, &a.1), (&b.0, &b.1), shown);
+    let split = both(Shown { split: 60.0, ..Shown::default() });
+    for (index, texel) in split.iter().enumerate() {
+        let is_left = index as u32 % SIZE.x < 60;
+        assert_eq!(*texel, if is_left { left[index] } else { right[index] });
+    }
+    let differing = both(Shown { difference: 2.0, ..Shown::default() });
+    for ((texel, a), b) in differing.iter().zip(&left).zip(&right) {
+        // Two roundings of dithered code, doubled.
+        let expected = ((*a - *b).abs() * 2.0).min(Vec4::ONE);
+        assert!((*texel - expected).truncate().abs().max_element() < 6.5 / 255.0, "{texel} {expected}");
+    }
+}
