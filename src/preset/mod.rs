@@ -8,6 +8,7 @@ mod pictures;
 mod preset;
 #[cfg(feature = "app")]
 mod schema;
+mod text;
 #[cfg(feature = "app")]
 mod tooltips;
 

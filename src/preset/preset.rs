@@ -130,9 +130,18 @@ impl Preset {
     /// # Errors
     /// [`Error::Io`], [`Error::Json`] with line and column, or [`Error::JsonField`] with the field and its range.
     pub fn load(name_or_path: impl AsRef<Path>) -> Result<Self, Error> {
+        Self::read(name_or_path).map(|(preset, _)| preset)
+    }
+
+    /// The same, with the text that it was read from: to see later whether the file has changed.
+    ///
+    /// # Errors
+    /// As [`Preset::load`].
+    pub fn read(name_or_path: impl AsRef<Path>) -> Result<(Self, String), Error> {
         let path = name_or_path.as_ref();
         if let Some(preset) = path.to_str().and_then(|name| builtin::find(builtin::PRESETS, name)) {
-            return Self::parse(&builtin::path(preset.name), &String::from_utf8_lossy(preset.bytes));
+            let text = String::from_utf8_lossy(preset.bytes);
+            return Ok((Self::parse(&builtin::path(preset.name), &text)?, text.into_owned()));
         }
         let looks_like_a_name = path.extension().is_none() && path.components().count() == 1;
         if looks_like_a_name && !path.exists() {
@@ -140,7 +149,8 @@ impl Preset {
             let expected = format!("one of {}, or the path of a JSON file", names.join(", "));
             return Err(FieldError::new("preset", format!("{path:?}"), expected).into());
         }
-        json::load(path, PRESET_VERSION, Self::validate)
+        let text = json::read(path)?;
+        Ok((Self::parse(path, &text)?, text))
     }
 
     /// Parses and checks a preset. `path` is only named in errors.

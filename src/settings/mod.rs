@@ -12,6 +12,7 @@ mod set;
 mod soft_fade;
 pub(crate) mod table;
 mod technique;
+mod walk;
 
 pub use accumulate::{
     Accumulate, AccumulationFormat, DepthDownsample, DepthSource, NormalDecode, NormalEncoding, Order, Upsample,
@@ -24,6 +25,7 @@ pub use set::set_field;
 pub use soft_fade::{FadeCurve, SoftFade};
 pub(crate) use table::settings;
 pub use technique::{Density, SphericalBillboard, SpriteAnimation, SpriteSettings, Technique, Volumetric};
+pub use walk::{Leaf, Step, Value, path_of, values, walk};
 
 choice! {
     /// How a system reaches the picture.

@@ -1,12 +1,9 @@
 //! Fields by name: what the command line sets, and a user interface finds.
 
 use std::collections::BTreeSet;
-use std::ops::RangeInclusive;
 
-use glam::Vec3;
-
-use super::choice::Choice;
-use super::fields::{FieldVisitor, Fields, PictureRole};
+use super::fields::Fields;
+use super::walk::{Leaf, Step, walk};
 use crate::error::FieldError;
 
 /// Sets the fields that `path` names to `value`; gives the name of each, without its place in lists.
@@ -22,11 +19,18 @@ pub fn set_field<T: Fields + Clone>(settings: &mut T, path: &str, value: &str) -
     // A copy, so that nothing is half changed.
     let mut changed = settings.clone();
     let mut names = Names::default();
-    changed.visit(&mut Walk { at: Vec::new(), wanted: &wanted, then: &mut names });
+    walk(&mut changed, &mut |path, _| {
+        let of_kind = if is_wanted(path, &wanted) { &mut names.wanted } else { &mut names.others };
+        of_kind.insert(plain(path));
+    });
     let name = names.the_one(path, &wanted)?;
-    let mut set = Set { name: &name, value, error: None };
-    changed.visit(&mut Walk { at: Vec::new(), wanted: &wanted, then: &mut set });
-    match set.error {
+    let mut error = None;
+    walk(&mut changed, &mut |path, leaf| {
+        if is_wanted(path, &wanted) && plain(path) == name {
+            error = error.take().or(assign(leaf, value).err());
+        }
+    });
+    match error {
         Some(expected) => Err(FieldError::new(path, format!("{value:?}"), expected)),
         None => {
             *settings = changed;
@@ -34,9 +38,6 @@ pub fn set_field<T: Fields + Clone>(settings: &mut T, path: &str, value: &str) -
         }
     }
 }
-
-/// A name, and a place where it is in a list.
-type Step<'a> = (&'a str, Option<usize>);
 
 fn parse_path(path: &str) -> Result<Vec<Step<'_>>, FieldError> {
     let step = |text| match str::strip_suffix(text, ']') {
@@ -49,86 +50,16 @@ fn parse_path(path: &str) -> Result<Vec<Step<'_>>, FieldError> {
     steps.ok_or_else(|| FieldError::new("field", format!("{path:?}"), expected))
 }
 
-/// A value of one kind, and what it should be.
-enum Leaf<'a> {
-    Number(&'a mut f32),
-    Whole(&'a mut u32),
-    Vector(&'a mut Vec3),
-    Flag(&'a mut bool),
-    Choice(&'a mut dyn Choice),
-    Text(&'a mut String),
+/// Whether a field's path ends as is wanted.
+fn is_wanted(path: &[Step<'_>], wanted: &[Step<'_>]) -> bool {
+    let tail = path.len().checked_sub(wanted.len()).map(|start| &path[start..]);
+    let fits = |(at, wanted): (&Step<'_>, &Step<'_>)| at.0 == wanted.0 && (wanted.1.is_none() || at.1 == wanted.1);
+    tail.is_some_and(|tail| tail.iter().zip(wanted).all(fits))
 }
 
-/// What is done at a field.
-trait AtField {
-    /// `name` is the whole path without places in lists; `is_wanted` if the wanted path ends there.
-    fn at(&mut self, name: String, is_wanted: bool, leaf: Leaf<'_>);
-}
-
-struct Walk<'a, 'b> {
-    at: Vec<Step<'static>>,
-    wanted: &'a [Step<'a>],
-    then: &'b mut dyn AtField,
-}
-
-impl Walk<'_, '_> {
-    fn leaf(&mut self, name: &'static str, leaf: Leaf<'_>) {
-        self.at.push((name, None));
-        let tail = self.at.len().checked_sub(self.wanted.len()).map(|start| &self.at[start..]);
-        let fits = |(at, wanted): (&Step<'_>, &Step<'_>)| at.0 == wanted.0 && (wanted.1.is_none() || at.1 == wanted.1);
-        let is_wanted = tail.is_some_and(|tail| tail.iter().zip(self.wanted).all(fits));
-        let name = self.at.iter().map(|step| step.0).collect::<Vec<_>>().join(".");
-        self.then.at(name, is_wanted, leaf);
-        self.at.pop();
-    }
-
-    fn enter(&mut self, step: Step<'static>, fields: &mut dyn Fields) {
-        self.at.push(step);
-        fields.visit(self);
-        self.at.pop();
-    }
-}
-
-impl FieldVisitor for Walk<'_, '_> {
-    fn number(&mut self, name: &'static str, value: &mut f32, _: RangeInclusive<f32>, _: &'static str) {
-        self.leaf(name, Leaf::Number(value));
-    }
-
-    fn integer(&mut self, name: &'static str, value: &mut u32, _: RangeInclusive<u32>, _: &'static str) {
-        self.leaf(name, Leaf::Whole(value));
-    }
-
-    fn vector(&mut self, name: &'static str, value: &mut Vec3, _: RangeInclusive<f32>, _: &'static str) {
-        self.leaf(name, Leaf::Vector(value));
-    }
-
-    fn flag(&mut self, name: &'static str, value: &mut bool) {
-        self.leaf(name, Leaf::Flag(value));
-    }
-
-    fn choice(&mut self, name: &'static str, value: &mut dyn Choice) {
-        self.leaf(name, Leaf::Choice(value));
-    }
-
-    fn text(&mut self, name: &'static str, value: &mut String) {
-        self.leaf(name, Leaf::Text(value));
-    }
-
-    fn picture(&mut self, name: &'static str, value: &mut String, _: PictureRole) {
-        self.leaf(name, Leaf::Text(value));
-    }
-
-    fn seed(&mut self, name: &'static str, value: &mut u32) {
-        self.leaf(name, Leaf::Whole(value));
-    }
-
-    fn group(&mut self, name: &'static str, fields: &mut dyn Fields) {
-        self.enter((name, None), fields);
-    }
-
-    fn item(&mut self, name: &'static str, index: usize, fields: &mut dyn Fields) {
-        self.enter((name, Some(index)), fields);
-    }
+/// A path without places in lists.
+fn plain(path: &[Step<'_>]) -> String {
+    path.iter().map(|step| step.0).collect::<Vec<_>>().join(".")
 }
 
 /// Which fields there are.
@@ -138,17 +69,10 @@ struct Names {
     others: BTreeSet<String>,
 }
 
-impl AtField for Names {
-    fn at(&mut self, name: String, is_wanted: bool, _: Leaf<'_>) {
-        if is_wanted { &mut self.wanted } else { &mut self.others }.insert(name);
-    }
-}
-
 impl Names {
     /// The name that is wanted: a whole one, or the only one.
     fn the_one(mut self, path: &str, wanted: &[Step<'_>]) -> Result<String, FieldError> {
-        let whole = wanted.iter().map(|step| step.0).collect::<Vec<_>>().join(".");
-        if let Some(name) = self.wanted.take(&whole) {
+        if let Some(name) = self.wanted.take(&plain(wanted)) {
             return Ok(name);
         }
         match (self.wanted.len(), self.wanted.pop_first()) {
@@ -170,22 +94,6 @@ impl Names {
                 let all: Vec<_> = std::iter::once(first).chain(self.wanted).collect();
                 Err(FieldError::new("field", format!("{path:?}"), format!("one of {}", all.join(", "))))
             }
-        }
-    }
-}
-
-/// Sets the fields of one name.
-struct Set<'a> {
-    name: &'a str,
-    value: &'a str,
-    /// What would have been right.
-    error: Option<String>,
-}
-
-impl AtField for Set<'_> {
-    fn at(&mut self, name: String, is_wanted: bool, leaf: Leaf<'_>) {
-        if is_wanted && name == self.name {
-            self.error = self.error.take().or(assign(leaf, self.value).err());
         }
     }
 }
@@ -216,7 +124,10 @@ fn assign(leaf: Leaf<'_>, text: &str) -> Result<(), String> {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
+    use crate::settings::FieldVisitor;
     use crate::settings::choice;
     use crate::settings::table::settings;
 

@@ -70,9 +70,17 @@ pub fn load<T: DeserializeOwned>(
     newest: u32,
     validate: impl FnOnce(&T) -> Result<(), FieldError>,
 ) -> Result<T, Error> {
-    let value = parse_versioned(path, text(path, &file::read(path, "JSON file", MAX_BYTES)?)?, newest)?;
+    let value = parse_versioned(path, &read(path)?, newest)?;
     validate(&value).map_err(|error| Error::JsonField { path: path.into(), error })?;
     Ok(value)
+}
+
+/// Reads the text of a file.
+///
+/// # Errors
+/// [`Error::Io`], or [`Error::Json`] for what is no text.
+pub fn read(path: &Path) -> Result<String, Error> {
+    text(path, &file::read(path, "JSON file", MAX_BYTES)?).map(str::to_owned)
 }
 
 /// The text of a file. Other encodings and pictures are named.

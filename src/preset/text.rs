@@ -1,0 +1,179 @@
+//! Presets as text: what differs from the defaults, in the order of the documentation, so that a change of one slider is a
+//! change of one line.
+
+use std::collections::HashMap;
+
+use serde::{Serialize, Serializer};
+
+use super::preset::{Preset, PresetSystem};
+use crate::frame::Light;
+use crate::settings::{Step, Value, walk};
+
+/// Fields that are written whatever their value: without them one does not see what it is.
+const ALWAYS: &[&str] = &["version", "name", "kind"];
+
+impl Preset {
+    /// The JSON that [`Preset::parse`] makes this preset from, ending with a line break; for a preset that is valid. Fields at
+    /// their defaults are left out, but for those that stand in `old`, the text that is to be replaced, or "".
+    ///
+    /// JSON has no infinity: the largest number stands for it.
+    pub fn to_text(&self, old: &str) -> String {
+        let old = serde_json::from_str(old).unwrap_or_default();
+        let lists = (vec![Light::default()], vec![PresetSystem::default()]);
+        let mut usual = Self { lights: lists.0, systems: lists.1, ..Self::default() };
+        let mut defaults = HashMap::new();
+        walk(&mut usual, &mut |path, leaf| {
+            defaults.insert(plain(path), leaf.value());
+        });
+        let mut root = Vec::new();
+        walk(&mut self.clone(), &mut |path, leaf| {
+            let value = leaf.value();
+            let is_always = path.last().is_some_and(|(name, _)| ALWAYS.contains(name));
+            if is_always || stands_in(&old, path) || defaults.get(&plain(path)) != Some(&value) {
+                insert(&mut root, path, finite(value));
+            }
+        });
+        // A tree of numbers and texts with texts for names: there is nothing that could fail.
+        serde_json::to_string_pretty(&Node::Object(root)).unwrap_or_default() + "\n"
+    }
+}
+
+/// Names without places in lists: every light has the same defaults.
+fn plain(path: &[Step<'static>]) -> Vec<&'static str> {
+    path.iter().map(|step| step.0).collect()
+}
+
+fn stands_in(old: &serde_json::Value, path: &[Step<'static>]) -> bool {
+    let mut at = Some(old);
+    for (name, index) in path {
+        at = at.and_then(|old| old.get(name));
+        if let Some(index) = index {
+            at = at.and_then(|old| old.get(index));
+        }
+    }
+    at.is_some()
+}
+
+fn finite(value: Value) -> Value {
+    match value {
+        Value::Number(number) => Value::Number(number.clamp(f32::MIN, f32::MAX)),
+        value => value,
+    }
+}
+
+/// JSON that keeps its order.
+enum Node {
+    Value(Value),
+    Object(Vec<(&'static str, Node)>),
+    List(Vec<Node>),
+}
+
+impl Serialize for Node {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Value(value) => value.serialize(serializer),
+            Self::Object(fields) => serializer.collect_map(fields.iter().map(|(name, node)| (name, node))),
+            Self::List(nodes) => serializer.collect_seq(nodes),
+        }
+    }
+}
+
+fn insert(fields: &mut Vec<(&'static str, Node)>, path: &[Step<'static>], value: Value) {
+    let [(name, index), rest @ ..] = path else { return };
+    if rest.is_empty() {
+        fields.push((name, Node::Value(value)));
+        return;
+    }
+    // Fields come in order: what is not the last is new.
+    if fields.last().is_none_or(|(last, _)| last != name) {
+        let new = if index.is_some() { Node::List(Vec::new()) } else { Node::Object(Vec::new()) };
+        fields.push((name, new));
+    }
+    let item = match fields.last_mut() {
+        Some((_, Node::List(items))) => {
+            let index = index.unwrap_or_default();
+            items.resize_with(items.len().max(index + 1), || Node::Object(Vec::new()));
+            items.get_mut(index)
+        }
+        last => last.map(|(_, node)| node),
+    };
+    if let Some(Node::Object(fields)) = item {
+        insert(fields, rest, value);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::assets::{builtin, json};
+    use crate::settings::Leaf;
+
+    #[test]
+    fn shipped_presets_are_as_they_are_written() {
+        for shipped in builtin::PRESETS {
+            let (preset, text) = Preset::read(shipped.name).unwrap();
+            let written = preset.to_text(&text);
+            for (at, (written, shipped_line)) in (1..).zip(written.lines().zip(text.lines())) {
+                assert_eq!(written, shipped_line, "{}:{at}", shipped.name);
+            }
+            assert_eq!(written, text);
+            assert_eq!(Preset::parse(Path::new("a.json"), &preset.to_text("")).unwrap(), preset);
+        }
+    }
+
+    #[test]
+    fn every_field_is_written_and_read_back() {
+        let mut usual = Preset::load("column").unwrap();
+        usual.lights.push(Light::default());
+        usual.systems.push(PresetSystem::default());
+        let mut count = 0;
+        walk(&mut usual.clone(), &mut |_, _| count += 1);
+        for moved in 0..count {
+            let (mut preset, mut at) = (usual.clone(), 0);
+            walk(&mut preset, &mut |path, leaf| {
+                if at == moved && path[0].0 != "version" {
+                    match leaf {
+                        Leaf::Number(value) => *value = 0.1234567,
+                        Leaf::Whole(value) => *value = u32::MAX,
+                        Leaf::Vector(value) => value.z = -1.0e-7,
+                        Leaf::Flag(value) => *value = !*value,
+                        Leaf::Choice(value) => value.set_index((value.index() + 1) % value.names().len()),
+                        Leaf::Text(value) => value.push_str("\"\\\n\u{1}ü"),
+                    }
+                }
+                at += 1;
+            });
+            let text = preset.to_text("");
+            let read: Preset = json::parse(Path::new("a.json"), &text).unwrap();
+            assert_eq!(read, preset, "field {moved}");
+            // What stood in the old text stays, also where it is the default again.
+            let kept = usual.to_text(&text);
+            assert!(kept.lines().count() >= text.lines().count(), "field {moved}: {kept}");
+            assert_eq!(Preset::parse(Path::new("a.json"), &kept).unwrap(), usual);
+        }
+        assert!(count > 100, "{count}");
+    }
+
+    #[test]
+    fn what_json_cannot_hold_is_the_largest_number() {
+        let preset = Preset { lights: vec![Light { range: f32::INFINITY, ..Light::default() }], ..Preset::default() };
+        let read = Preset::parse(Path::new("a.json"), &preset.to_text("")).unwrap();
+        assert_eq!(read.lights[0].range.to_bits(), f32::MAX.to_bits());
+    }
+
+    proptest! {
+        /// But for the sign of a zero: it is written as any other default, not at all.
+        #[test]
+        fn numbers_come_back_to_the_last_bit(bits: u32) {
+            let number = f32::from_bits(bits);
+            prop_assume!(number.is_finite());
+            let preset = Preset { time: number, ..Preset::default() };
+            let read: Preset = json::parse(Path::new("a.json"), &preset.to_text("")).unwrap();
+            prop_assert_eq!((read.time + 0.0).to_bits(), (number + 0.0).to_bits());
+        }
+    }
+}
