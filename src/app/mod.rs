@@ -20,6 +20,7 @@ mod render;
 mod shade_tree;
 mod sheet;
 mod techniques;
+mod tweak;
 mod vary;
 
 use std::ffi::OsString;
@@ -37,11 +38,13 @@ use output::{Failures, complain, one_line, write_text};
 #[command(name = "haze", version, max_term_width = 100)]
 struct Cli {
     #[command(subcommand)]
-    command: Command,
+    command: Option<Command>,
 }
 
 #[derive(Subcommand)]
 enum Command {
+    /// Light smoke by hand, in a window: what `haze` alone does.
+    Tweak(tweak::Arguments),
     /// Render a preset to a PNG, or to one for every frame.
     Render(render::Arguments),
     /// Render every stage of the shading on one labelled sheet.
@@ -82,7 +85,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     let one = |done: Result<(), Error>| done.map_err(Failures::from);
-    report(match cli.command {
+    report(match cli.command.unwrap_or_else(|| Command::Tweak(tweak::Arguments::default())) {
+        Command::Tweak(arguments) => one(tweak::run(&arguments)),
         Command::Render(arguments) => one(render::run(&arguments)),
         Command::ShadeTree(arguments) => one(shade_tree::run(&arguments)),
         Command::Sheet(arguments) => one(vary::run(&arguments)),

@@ -180,7 +180,7 @@ pub fn in_option(option: &str, mut error: FieldError) -> FieldError {
 
 const LARGEST: u32 = 8192;
 
-fn parse_size(text: &str) -> Result<UVec2, String> {
+pub fn parse_size(text: &str) -> Result<UVec2, String> {
     let expected = || format!("{text:?} is not a size; expected WxH, each 1 to {LARGEST} pixels, for example 1280x720");
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(expected)?;
     let side = |digits: &str| digits.parse::<u32>().ok().filter(|side| (1..=LARGEST).contains(side));

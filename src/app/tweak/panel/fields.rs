@@ -1,0 +1,168 @@
+//! A settings struct as rows: every field that the table has, with its range, unit and doc comment.
+
+use std::collections::HashSet;
+use std::ops::RangeInclusive;
+
+use eframe::egui::{self, Ui};
+use glam::Vec3;
+use haze::builtin;
+use haze::preset::Tooltips;
+use haze::settings::{Choice, FieldVisitor, Fields, PictureRole, path_of};
+
+use super::row::{self, Row, spaced};
+
+/// What rows are drawn with, and what they ask for.
+pub struct Desk<'a> {
+    pub tooltips: &'a Tooltips,
+    /// Paths of what differs from the preset on disk.
+    pub changed: &'a HashSet<String>,
+    /// Why a field does nothing, by path.
+    pub inert: &'a dyn Fn(&str) -> Option<&'static str>,
+    /// Fields that are to be set back.
+    pub reset: Vec<String>,
+    /// Why what was typed cannot be.
+    pub refused: Option<String>,
+    /// A field that is to be brought into sight.
+    pub sought: Option<&'a str>,
+}
+
+/// Draws the fields of a struct that `path` leads to; groups fold.
+pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, path: &[(&'static str, Option<usize>)], fields: &mut dyn Fields) {
+    fields.visit(&mut Rows { ui, desk, path: path.to_vec() });
+}
+
+struct Rows<'a, 'd, 'u> {
+    ui: &'u mut Ui,
+    desk: &'a mut Desk<'d>,
+    path: Vec<(&'static str, Option<usize>)>,
+}
+
+impl Rows<'_, '_, '_> {
+    fn row(
+        &mut self,
+        name: &'static str,
+        control: impl FnOnce(&mut Ui, &egui::Response, &mut Option<String>, &str, &Tooltips),
+    ) {
+        self.path.push((name, None));
+        let path = path_of(&self.path);
+        let plain = self.path.iter().map(|step| step.0).collect::<Vec<_>>().join(".");
+        self.path.pop();
+        let desk = &mut *self.desk;
+        let row = Row {
+            name,
+            tooltip: desk.tooltips.field(&plain).unwrap_or_default(),
+            is_changed: desk.changed.contains(&path),
+            inert: (desk.inert)(&path),
+        };
+        let refused = &mut desk.refused;
+        let tooltips = desk.tooltips;
+        let before = self.ui.cursor().min;
+        if row.show(self.ui, |ui, label| control(ui, label, refused, &path, tooltips)) {
+            desk.reset.push(path.clone());
+        }
+        if let Some(what) = &mut desk.refused
+            && !what.contains(": ")
+        {
+            *what = format!("{path}: {what}");
+        }
+        if desk.sought == Some(path.as_str()) {
+            let rect =
+                egui::Rect::from_min_max(before, self.ui.cursor().min + egui::vec2(self.ui.available_width(), 0.0));
+            self.ui.scroll_to_rect(rect, Some(egui::Align::Center));
+            self.ui.painter().rect_stroke(rect, 2.0, self.ui.visuals().selection.stroke, egui::StrokeKind::Outside);
+        }
+    }
+
+    fn nested(&mut self, step: (&'static str, Option<usize>), title: &str, fields: &mut dyn Fields) {
+        self.path.push(step);
+        let path = path_of(&self.path);
+        let mark = if self.desk.changed.iter().any(|changed| changed.starts_with(&path)) { " •" } else { "" };
+        let header = egui::CollapsingHeader::new(format!("{}{mark}", spaced(title))).id_salt(&path);
+        let is_sought = self.desk.sought.is_some_and(|sought| sought.starts_with(&path));
+        let header = if is_sought { header.open(Some(true)) } else { header };
+        header.show(self.ui, |ui| show(ui, self.desk, &self.path, fields));
+        self.path.pop();
+    }
+}
+
+impl FieldVisitor for Rows<'_, '_, '_> {
+    fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, unit: &'static str) {
+        self.row(name, |ui, label, refused, _, _| {
+            row::number(ui, value, &range, unit, refused).labelled_by(label.id);
+        });
+    }
+
+    fn integer(&mut self, name: &'static str, value: &mut u32, range: RangeInclusive<u32>, unit: &'static str) {
+        self.row(name, |ui, label, refused, _, _| {
+            row::integer(ui, value, &range, unit, refused).labelled_by(label.id);
+        });
+    }
+
+    fn vector(&mut self, name: &'static str, value: &mut Vec3, range: RangeInclusive<f32>, unit: &'static str) {
+        self.row(name, |ui, label, _, _, _| row::vector(ui, value, &range, unit, label));
+    }
+
+    fn colour(&mut self, name: &'static str, value: &mut Vec3, _: RangeInclusive<f32>) {
+        self.row(name, |ui, label, _, _, _| row::colour(ui, value, label));
+    }
+
+    fn flag(&mut self, name: &'static str, value: &mut bool) {
+        self.row(name, |ui, label, _, _, _| {
+            ui.checkbox(value, "").labelled_by(label.id);
+        });
+    }
+
+    fn choice(&mut self, name: &'static str, value: &mut dyn Choice) {
+        let plain = self.path.iter().map(|step| step.0).chain([name]).collect::<Vec<_>>().join(".");
+        self.row(name, |ui, label, _, path, tooltips| {
+            row::choice(ui, value, path, |choice| tooltips.choice(&plain, choice)).labelled_by(label.id);
+        });
+    }
+
+    fn text(&mut self, name: &'static str, value: &mut String) {
+        self.row(name, |ui, label, _, _, _| {
+            ui.add(egui::TextEdit::singleline(value).desired_width(f32::INFINITY)).labelled_by(label.id);
+        });
+    }
+
+    fn picture(&mut self, name: &'static str, value: &mut String, role: PictureRole) {
+        self.row(name, |ui, label, _, path, _| {
+            let combo =
+                egui::ComboBox::from_id_salt(path).selected_text(value.as_str()).width(ui.available_width() - 8.0);
+            let shown = combo.show_ui(ui, |ui| {
+                for builtin in builtins(role) {
+                    ui.selectable_value(value, builtin.name.to_owned(), builtin.name);
+                }
+            });
+            shown.response.labelled_by(label.id);
+        });
+    }
+
+    fn seed(&mut self, name: &'static str, value: &mut u32) {
+        self.row(name, |ui, label, _, _, _| {
+            ui.add(egui::DragValue::new(value)).labelled_by(label.id);
+            if ui.button("next").clicked() {
+                *value = value.wrapping_add(1);
+            }
+        });
+    }
+
+    fn group(&mut self, name: &'static str, fields: &mut dyn Fields) {
+        self.nested((name, None), name, fields);
+    }
+
+    fn item(&mut self, name: &'static str, index: usize, fields: &mut dyn Fields) {
+        self.nested((name, Some(index)), &format!("{} {}", name.trim_end_matches('s'), index + 1), fields);
+    }
+}
+
+/// The built-in pictures of a role.
+fn builtins(role: PictureRole) -> &'static [builtin::Builtin] {
+    match role {
+        PictureRole::Sprite => builtin::SPRITES,
+        PictureRole::Ramp => builtin::RAMPS,
+        PictureRole::Motif => builtin::MOTIFS,
+        PictureRole::Noise => builtin::NOISES,
+        PictureRole::Detail => &[],
+    }
+}

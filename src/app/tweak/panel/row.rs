@@ -1,0 +1,238 @@
+//! One row of a panel: a mark, a name, a control.
+
+use std::ops::RangeInclusive;
+
+use eframe::egui::{self, Response, Ui};
+use glam::Vec3;
+use haze::settings::Choice;
+
+/// Width of the names.
+const NAME: f32 = 118.0;
+/// Width of the mark before them.
+const MARK: f32 = 12.0;
+
+/// What a row says and does beside its control.
+pub struct Row<'a> {
+    pub name: &'a str,
+    pub tooltip: &'a str,
+    /// It differs from the preset on disk.
+    pub is_changed: bool,
+    /// Why it does nothing here.
+    pub inert: Option<&'a str>,
+}
+
+impl Row<'_> {
+    /// Draws the row; true if it is to be set back. `control` is handed the response of the name, for who cannot see it.
+    pub fn show(&self, ui: &mut Ui, control: impl FnOnce(&mut Ui, &Response)) -> bool {
+        let mut reset = false;
+        ui.horizontal(|ui| {
+            let height = ui.spacing().interact_size.y;
+            ui.allocate_ui_with_layout(
+                egui::vec2(MARK, height),
+                egui::Layout::left_to_right(egui::Align::Center),
+                |ui| {
+                    ui.set_min_size(egui::vec2(MARK, height));
+                    if self.is_changed {
+                        let mark = egui::Button::new(egui::RichText::new("•").strong()).frame(false).small();
+                        let mark = ui.add(mark).on_hover_text("Differs from the preset. Click to set it back.");
+                        mark.widget_info(|| {
+                            egui::WidgetInfo::labeled(egui::Role::Button, true, format!("set back {}", self.name))
+                        });
+                        reset |= mark.clicked();
+                    }
+                },
+            );
+            let name = ui
+                .allocate_ui_with_layout(
+                    egui::vec2(NAME, height),
+                    egui::Layout::left_to_right(egui::Align::Center),
+                    |ui| {
+                        ui.set_min_size(egui::vec2(NAME, height));
+                        let text = egui::RichText::new(spaced(self.name));
+                        let text = if self.inert.is_some() { text.weak() } else { text };
+                        ui.add(egui::Label::new(text).truncate().sense(egui::Sense::click()))
+                    },
+                )
+                .inner
+                .on_hover_text(self.hint());
+            reset |= name.double_clicked();
+            name.context_menu(|ui| {
+                if ui.add_enabled(self.is_changed, egui::Button::new("Set back")).clicked() {
+                    reset = true;
+                    ui.close();
+                }
+            });
+            ui.add_enabled_ui(self.inert.is_none(), |ui| control(ui, &name));
+        });
+        reset
+    }
+
+    fn hint(&self) -> String {
+        match self.inert {
+            Some(reason) => format!("{}\n\nNo effect here: {reason}.", self.tooltip),
+            None => self.tooltip.to_owned(),
+        }
+    }
+}
+
+/// A name as it is read.
+pub fn spaced(name: &str) -> String {
+    name.replace('_', " ")
+}
+
+/// Widest range that a linear slider can be aimed in.
+const WIDEST_LINEAR: f32 = 20.0;
+/// Where sliders of endless ranges end; more can be typed.
+const FAR: f32 = 1000.0;
+
+/// A slider for a number, which can also be typed; `refused` is told what was typed in vain.
+pub fn number(
+    ui: &mut Ui,
+    value: &mut f32,
+    range: &RangeInclusive<f32>,
+    unit: &str,
+    refused: &mut Option<String>,
+) -> Response {
+    let (low, high) = (*range.start(), *range.end());
+    let shown_high = if high > FAR { FAR.max(value.abs() * 2.0).min(high) } else { high };
+    let shown_low = if low < -FAR { -FAR.max(value.abs() * 2.0) } else { low };
+    let is_wide = shown_high - shown_low > WIDEST_LINEAR;
+    let typed = std::cell::RefCell::new(None);
+    let mut edited = *value;
+    let slider = egui::Slider::new(&mut edited, shown_low..=shown_high)
+        .logarithmic(is_wide)
+        .smallest_positive(f64::from(low.max(0.001)))
+        .clamping(egui::SliderClamping::Never)
+        .suffix(suffix(unit))
+        .max_decimals(4)
+        .update_while_editing(false)
+        .custom_parser(|text| {
+            let number = parse(text, unit).filter(|number| range.contains(&(*number as f32)));
+            if number.is_none() {
+                *typed.borrow_mut() = Some(text.to_owned());
+            }
+            number
+        });
+    ui.spacing_mut().slider_width = (ui.available_width() - 84.0).max(40.0);
+    let response = ui.add(slider);
+    if let Some(text) = typed.into_inner() {
+        let space = if unit.is_empty() { "" } else { " " };
+        *refused = Some(format!("{text:?} is not valid; expected {low} to {high}{space}{unit}"));
+    } else if response.changed() && edited.is_finite() {
+        *value = edited.clamp(low, high);
+    }
+    response
+}
+
+/// The same for a whole number.
+pub fn integer(
+    ui: &mut Ui,
+    value: &mut u32,
+    range: &RangeInclusive<u32>,
+    unit: &str,
+    refused: &mut Option<String>,
+) -> Response {
+    let (low, high) = (*range.start(), *range.end());
+    let typed = std::cell::RefCell::new(None);
+    let slider = egui::Slider::new(value, low..=high)
+        .logarithmic(f64::from(high) > 100.0 * f64::from(low.max(1)))
+        .suffix(suffix(unit))
+        .update_while_editing(false)
+        .custom_parser(|text| {
+            let number = parse(text, unit).filter(|number| (f64::from(low)..=f64::from(high)).contains(number));
+            if number.is_none() {
+                *typed.borrow_mut() = Some(text.to_owned());
+            }
+            number
+        });
+    ui.spacing_mut().slider_width = (ui.available_width() - 84.0).max(40.0);
+    let response = ui.add(slider);
+    if let Some(text) = typed.into_inner() {
+        *refused = Some(format!("{text:?} is not valid; expected {low} to {high}"));
+    }
+    response
+}
+
+/// Three numbers beside each other.
+pub fn vector(ui: &mut Ui, value: &mut Vec3, range: &RangeInclusive<f32>, unit: &str, name: &Response) {
+    let (low, high) = (*range.start(), *range.end());
+    let width = (ui.available_width() - 2.0 * ui.spacing().item_spacing.x) / 3.0;
+    let mut axes = value.to_array();
+    for (axis, label) in axes.iter_mut().zip(["x", "y", "z"]) {
+        let drag = egui::DragValue::new(axis)
+            .speed(0.02)
+            .range(low..=high)
+            .max_decimals(3)
+            .update_while_editing(false)
+            .custom_parser(|text| parse(text, unit));
+        let drag =
+            ui.add_sized([width, ui.spacing().interact_size.y], drag).on_hover_text(format!("{label}{}", suffix(unit)));
+        drag.labelled_by(name.id);
+    }
+    let edited = Vec3::from(axes);
+    if edited.is_finite() {
+        *value = edited;
+    }
+}
+
+/// Linear RGB, which may be brighter than 1: the button shows its hue.
+pub fn colour(ui: &mut Ui, value: &mut Vec3, name: &Response) {
+    let peak = value.max_element().max(1.0);
+    let mut shown = (*value / peak).to_array();
+    let button = ui.color_edit_button_rgb(&mut shown).labelled_by(name.id);
+    if button.changed() {
+        *value = Vec3::from(shown) * peak;
+    }
+    let [r, g, b] = value.to_array();
+    ui.weak(format!("{r:.3} {g:.3} {b:.3}"));
+}
+
+/// One of a few; `tooltip` tells what each means.
+pub fn choice<'t>(
+    ui: &mut Ui,
+    value: &mut dyn Choice,
+    salt: &str,
+    tooltip: impl Fn(&str) -> Option<&'t str>,
+) -> Response {
+    let names = value.names();
+    let mut index = value.index();
+    let selected = spaced(names.get(index).copied().unwrap_or_default());
+    let combo = egui::ComboBox::from_id_salt(salt).selected_text(selected).width(ui.available_width() - 8.0);
+    let response = combo
+        .show_ui(ui, |ui| {
+            for (place, name) in names.iter().enumerate() {
+                let entry = ui.selectable_value(&mut index, place, spaced(name));
+                if let Some(tooltip) = tooltip(name) {
+                    entry.on_hover_text(tooltip);
+                }
+            }
+        })
+        .response;
+    value.set_index(index);
+    response
+}
+
+fn suffix(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(" {unit}") }
+}
+
+/// A number as it is typed, with its unit or without; never infinite, never NaN.
+fn parse(text: &str, unit: &str) -> Option<f64> {
+    let text = text.trim();
+    let text = text.strip_suffix(unit).unwrap_or(text).trim();
+    text.parse().ok().filter(|number: &f64| number.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_typed_with_their_unit_or_without() {
+        assert_eq!(parse(" 2.5 m/s ", "m/s"), Some(2.5));
+        assert_eq!(parse("1e-3", ""), Some(0.001));
+        for wrong in ["nan", "inf", "2,5", "", "m/s", "two"] {
+            assert_eq!(parse(wrong, "m/s"), None, "{wrong}");
+        }
+    }
+}
