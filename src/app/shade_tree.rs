@@ -16,7 +16,7 @@ pub struct Arguments {
 }
 
 /// In the order in which they are made, three to a row.
-const STAGES: [(ShadeTree, &str); ShadeTree::ALL.len()] = [
+pub const STAGES: [(ShadeTree, &str); ShadeTree::ALL.len()] = [
     (ShadeTree::ReducedDepth, "Reduced depth"),
     (ShadeTree::Normals, "Accumulated normals"),
     (ShadeTree::Amount, "Accumulated amount"),

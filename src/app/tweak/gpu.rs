@@ -2,32 +2,43 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use eframe::egui::epaint::ViewportInPixels;
 use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
 use eframe::{egui, wgpu};
 use glam::Vec2;
-use haze::Error;
 use haze::demo::develop::{Developer, Developing, Shown, exposure};
 use haze::demo::shot::Shot;
 use haze::demo::stage::{Stage, StageContext};
+use haze::settings::ShadeTree;
+use haze::{Error, MaterialAssets};
 
 /// Draws for one window. A clone is the same.
 #[derive(Clone)]
 pub struct Easel(Arc<Mutex<Inner>>);
 
 struct Inner {
+    context: StageContext,
     developer: Developer,
-    /// The viewport's picture.
+    /// The picture, and what it is compared with.
     main: Canvas,
+    other: Option<Canvas>,
+    /// The two, bound together.
+    pair: Option<Developing>,
+    /// All stages, small.
+    strip: Canvas,
     /// The first mistake since it was last asked for.
     error: Option<Error>,
 }
 
-/// A stage, and what it shows.
-struct Canvas {
-    stage: Stage,
-    /// What was drawn last.
-    shot: Option<Shot>,
-    developing: Option<Developing>,
+/// What the viewport shows.
+#[derive(Clone)]
+pub struct Exhibit {
+    pub shot: Shot,
+    pub other: Option<Shot>,
+    /// Share of the width from which on the other is shown.
+    pub split: f32,
+    /// Multiplies the difference of the two; 0: they stand side by side.
+    pub difference: f32,
 }
 
 impl Easel {
@@ -36,14 +47,19 @@ impl Easel {
     pub fn new(render: &RenderState) -> Result<Self, Error> {
         let context = StageContext::new(&render.adapter, &render.device, &render.queue);
         let developer = Developer::new(&render.device, render.target_format);
-        let main = Canvas::new(&context)?;
-        Ok(Self(Arc::new(Mutex::new(Inner { developer, main, error: None }))))
+        let (main, strip) = (Canvas::new(&context)?, Canvas::new(&context)?);
+        let inner = Inner { context, developer, main, other: None, pair: None, strip, error: None };
+        Ok(Self(Arc::new(Mutex::new(inner))))
     }
 
-    /// Shows a shot in a part of the window.
-    pub fn show(&self, ui: &egui::Ui, rect: egui::Rect, shot: Shot) {
-        let callback = Callback { easel: self.clone(), rect, shot };
-        ui.painter().add(eframe::egui_wgpu::Callback::new_paint_callback(rect, callback));
+    /// Shows the picture in a part of the window.
+    pub fn show(&self, ui: &egui::Ui, rect: egui::Rect, exhibit: Exhibit) {
+        self.add(ui, rect, What::Exhibit(Box::new(exhibit)));
+    }
+
+    /// Shows a stage of a shot as small as the part of the window; all stages of one shot are drawn at once.
+    pub fn show_stage(&self, ui: &egui::Ui, rect: egui::Rect, shot: Shot) {
+        self.add(ui, rect, What::Stage(Box::new(shot)));
     }
 
     /// What went wrong since this was asked the last time.
@@ -51,22 +67,34 @@ impl Easel {
         self.lock().error.take()
     }
 
+    fn add(&self, ui: &egui::Ui, rect: egui::Rect, what: What) {
+        let callback = Callback { easel: self.clone(), rect, what };
+        ui.painter().add(eframe::egui_wgpu::Callback::new_paint_callback(rect, callback));
+    }
+
     fn lock(&self) -> MutexGuard<'_, Inner> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Canvas {
-    fn new(context: &StageContext) -> Result<Self, Error> {
-        Ok(Self { stage: Stage::new(context, false)?, shot: None, developing: None })
-    }
-}
-
-/// One shot in one part of the window, on its way through egui.
+/// One part of the window on its way through egui.
 struct Callback {
     easel: Easel,
     rect: egui::Rect,
-    shot: Shot,
+    what: What,
+}
+
+enum What {
+    Exhibit(Box<Exhibit>),
+    Stage(Box<Shot>),
+}
+
+/// Where egui draws, and with what.
+struct Target<'a> {
+    device: &'a wgpu::Device,
+    queue: &'a wgpu::Queue,
+    encoder: &'a mut wgpu::CommandEncoder,
+    place: ViewportInPixels,
 }
 
 impl CallbackTrait for Callback {
@@ -78,60 +106,127 @@ impl CallbackTrait for Callback {
         encoder: &mut wgpu::CommandEncoder,
         _: &mut CallbackResources,
     ) -> Vec<wgpu::CommandBuffer> {
-        let place =
-            egui::epaint::ViewportInPixels::from_points(&self.rect, screen.pixels_per_point, screen.size_in_pixels);
-        self.easel.lock().record(device, queue, encoder, &self.shot, &place);
+        let place = ViewportInPixels::from_points(&self.rect, screen.pixels_per_point, screen.size_in_pixels);
+        let mut target = Target { device, queue, encoder, place };
+        let mut inner = self.easel.lock();
+        let done = match &self.what {
+            What::Exhibit(exhibit) => inner.record_exhibit(&mut target, exhibit),
+            What::Stage(shot) => inner.record_stage(&mut target, shot),
+        };
+        // The last good picture stays.
+        if let Err(error) = done {
+            inner.error.get_or_insert(error);
+        }
         Vec::new()
     }
 
     fn paint(&self, info: egui::PaintCallbackInfo, pass: &mut wgpu::RenderPass<'static>, _: &CallbackResources) {
         let place = info.viewport_in_pixels();
-        if place.width_px > 0 && place.height_px > 0 {
-            let inner = self.easel.lock();
-            if let Some(developing) = &inner.main.developing {
-                inner.developer.record(pass, developing);
-            }
+        if place.width_px <= 0 || place.height_px <= 0 {
+            return;
+        }
+        let inner = self.easel.lock();
+        let developing = match &self.what {
+            What::Exhibit(_) => inner.pair.as_ref(),
+            What::Stage(shot) => inner.strip.developing[shot.shade_tree as usize].as_ref(),
+        };
+        if let Some(developing) = developing {
+            inner.developer.record(pass, developing);
         }
     }
 }
 
 impl Inner {
-    fn record(
-        &mut self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        encoder: &mut wgpu::CommandEncoder,
-        shot: &Shot,
-        place: &egui::epaint::ViewportInPixels,
-    ) {
-        let canvas = &mut self.main;
-        if !canvas.shot.as_ref().is_some_and(|drawn| is_same(drawn, shot)) {
-            match canvas.stage.record(encoder, shot, &[shot.shade_tree]) {
-                Ok(()) => {
-                    canvas.shot = Some(shot.clone());
-                    let picture = canvas.stage.picture(shot.shade_tree);
-                    canvas.developing = picture.map(|picture| self.developer.bind(device, picture, picture));
-                }
-                // The last good picture stays.
-                Err(error) => self.error = self.error.take().or(Some(error)),
+    fn record_exhibit(&mut self, target: &mut Target<'_>, exhibit: &Exhibit) -> Result<(), Error> {
+        let Exhibit { shot, other, split, difference } = exhibit;
+        let mut is_new = self.main.record(target, shot, &[shot.shade_tree])?;
+        match other {
+            Some(other) => {
+                let canvas = match &mut self.other {
+                    Some(canvas) => canvas,
+                    none => none.insert(Canvas::new(&self.context)?),
+                };
+                is_new |= canvas.record(target, other, &[other.shade_tree])?;
             }
+            None => is_new |= self.other.take().is_some(),
         }
-        if let (Some(developing), Some(shot)) = (&canvas.developing, &canvas.shot) {
+        let first = self.main.picture(shot.shade_tree);
+        let second = self.other.as_ref().zip(other.as_ref());
+        let second = second.and_then(|(canvas, other)| canvas.picture(other.shade_tree)).or(first);
+        if let Some((first, second)) = first.zip(second).filter(|_| is_new || self.pair.is_none()) {
+            self.pair = Some(self.developer.bind(target.device, first, second));
+        }
+        if let Some(pair) = &self.pair {
+            let width = target.place.width_px as f32;
             let shown = Shown {
-                origin: Vec2::new(place.left_px as f32, place.top_px as f32),
-                size: Vec2::new(place.width_px as f32, place.height_px as f32),
-                exposure: Vec2::splat(exposure(shot)),
-                split: f32::MAX,
-                difference: 0.0,
+                exposure: Vec2::new(exposure(shot), exposure(other.as_ref().unwrap_or(shot))),
+                split: if other.is_some() { split * width } else { width },
+                difference: if other.is_some() { *difference } else { 0.0 },
+                ..target.shown()
             };
-            self.developer.prepare(queue, developing, &shown);
+            self.developer.prepare(target.queue, pair, &shown);
         }
+        Ok(())
+    }
+
+    fn record_stage(&mut self, target: &mut Target<'_>, shot: &Shot) -> Result<(), Error> {
+        let stage = shot.shade_tree;
+        // Drawn by the first of them.
+        let all = Shot { shade_tree: ShadeTree::Final, ..shot.clone() };
+        if self.strip.record(target, &all, ShadeTree::ALL)? {
+            self.strip.developing = Default::default();
+        }
+        let Some(picture) = self.strip.stage.picture(stage) else { return Ok(()) };
+        let developing = self.strip.developing[stage as usize]
+            .get_or_insert_with(|| self.developer.bind(target.device, picture, picture));
+        let shown = Shown { exposure: Vec2::splat(exposure(shot)), ..target.shown() };
+        self.developer.prepare(target.queue, developing, &shown);
+        Ok(())
+    }
+}
+
+impl Target<'_> {
+    fn shown(&self) -> Shown {
+        Shown {
+            origin: Vec2::new(self.place.left_px as f32, self.place.top_px as f32),
+            size: Vec2::new(self.place.width_px as f32, self.place.height_px as f32),
+            ..Shown::default()
+        }
+    }
+}
+
+/// A stage, and what it shows.
+struct Canvas {
+    stage: Stage,
+    /// What was drawn last.
+    shot: Option<Shot>,
+    developing: [Option<Developing>; ShadeTree::ALL.len()],
+}
+
+impl Canvas {
+    fn new(context: &StageContext) -> Result<Self, Error> {
+        Ok(Self { stage: Stage::new(context, false)?, shot: None, developing: Default::default() })
+    }
+
+    /// Draws a shot if it is another than the last; tells whether pictures may be others now.
+    fn record(&mut self, target: &mut Target<'_>, shot: &Shot, stages: &[ShadeTree]) -> Result<bool, Error> {
+        if self.shot.as_ref().is_some_and(|drawn| is_same(drawn, shot)) {
+            return Ok(false);
+        }
+        // Once, even if it cannot be drawn.
+        let last = self.shot.replace(shot.clone());
+        self.stage.record(target.encoder, shot, stages)?;
+        Ok(last.is_none_or(|last| (last.size, last.shade_tree) != (shot.size, shot.shade_tree)))
+    }
+
+    fn picture(&self, stage: ShadeTree) -> Option<&wgpu::Texture> {
+        self.stage.picture(stage)
     }
 }
 
 /// True if two shots give one picture.
 fn is_same(a: &Shot, b: &Shot) -> bool {
-    let shared = |(a, b): (&haze::MaterialAssets, &haze::MaterialAssets)| a.shares(b);
+    let shared = |(a, b): (&MaterialAssets, &MaterialAssets)| a.shares(b);
     (a.size, a.shade_tree) == (b.size, b.shade_tree)
         && a.preset == b.preset
         && a.materials.len() == b.materials.len()

@@ -6,6 +6,7 @@ mod messages;
 mod panel;
 mod playback;
 mod session;
+mod strip;
 mod viewport;
 mod window;
 

@@ -33,6 +33,8 @@ pub struct Session {
 #[derive(Clone, Debug)]
 pub struct Show {
     pub stage: ShadeTree,
+    /// All stages are shown, small.
+    pub has_strip: bool,
 }
 
 /// The pictures of all systems, as last loaded well.
@@ -49,7 +51,7 @@ impl Session {
         Ok(Self {
             history: History::new(preset.clone()),
             playback: Playback::at(preset.time),
-            show: Show { stage: ShadeTree::Final },
+            show: Show { stage: ShadeTree::Final, has_strip: true },
             messages: Messages::default(),
             tooltips: Tooltips::of::<Preset>(),
             screenshot: None,

@@ -12,6 +12,7 @@ use image::RgbImage;
 use super::gpu::Easel;
 use super::panel;
 use super::session::Session;
+use super::strip::strip;
 use super::viewport::viewport;
 
 pub struct Window {
@@ -142,6 +143,10 @@ impl eframe::App for Window {
         egui::Panel::bottom("status").show(ui, |ui| self.status(ui));
         egui::Panel::bottom("time").show(ui, |ui| self.time(ui));
         egui::Panel::right("settings").default_size(330.0).show(ui, |ui| panel::settings::panel(ui, &mut self.session));
+        if self.session.show.has_strip {
+            let panel = egui::Panel::bottom("strip").resizable(true).default_size(100.0).size_range(60.0..=240.0);
+            panel.show(ui, |ui| strip(ui, &mut self.session, &self.easel));
+        }
         egui::CentralPanel::no_frame().show(ui, |ui| viewport(ui, &mut self.session, &self.easel));
         self.session.track(ui.input(|input| input.pointer.any_down()));
         match self.easel.take_error() {

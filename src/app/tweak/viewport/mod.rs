@@ -5,7 +5,7 @@ mod camera;
 use eframe::egui::{self, Sense, Ui};
 use glam::UVec2;
 
-use super::gpu::Easel;
+use super::gpu::{Easel, Exhibit};
 use super::session::Session;
 
 pub fn viewport(ui: &mut Ui, session: &mut Session, easel: &Easel) {
@@ -17,5 +17,6 @@ pub fn viewport(ui: &mut Ui, session: &mut Session, easel: &Easel) {
     }
     camera::steer(ui, &response, &mut session.preset.camera);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "viewport"));
-    easel.show(ui, rect, session.shot(size));
+    let exhibit = Exhibit { shot: session.shot(size), other: None, split: 1.0, difference: 0.0 };
+    easel.show(ui, rect, exhibit);
 }
