@@ -1,12 +1,21 @@
 //! `haze tweak`: a window to light smoke in.
 
+mod action;
+mod compare;
 mod document;
 mod gpu;
+mod icon;
 mod messages;
 mod panel;
 mod playback;
+mod search;
 mod session;
+mod show;
 mod strip;
+#[cfg(test)]
+mod testing;
+#[cfg(test)]
+mod tests;
 mod viewport;
 mod window;
 

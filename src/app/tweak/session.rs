@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 use glam::UVec2;
 use haze::demo::shot::Shot;
 use haze::preset::{Preset, Tooltips};
-use haze::settings::ShadeTree;
 use haze::{Error, MaterialAssets};
 
+use super::compare::Compare;
 use super::document::{History, step_name};
 use super::messages::Messages;
 use super::playback::Playback;
+use super::search::Search;
+use super::show::Show;
 
 pub struct Session {
     /// What is edited; panels change it directly.
@@ -22,19 +24,13 @@ pub struct Session {
     pub history: History<Preset>,
     pub playback: Playback,
     pub show: Show,
+    pub compare: Compare,
+    pub search: Search,
     pub messages: Messages,
     pub tooltips: Tooltips,
     /// A picture of the window is wanted here; then it closes.
     pub screenshot: Option<PathBuf>,
     pictures: Pictures,
-}
-
-/// What is shown of the preset; no part of it.
-#[derive(Clone, Debug)]
-pub struct Show {
-    pub stage: ShadeTree,
-    /// All stages are shown, small.
-    pub has_strip: bool,
 }
 
 /// The pictures of all systems, as last loaded well.
@@ -51,7 +47,9 @@ impl Session {
         Ok(Self {
             history: History::new(preset.clone()),
             playback: Playback::at(preset.time),
-            show: Show { stage: ShadeTree::Final, has_strip: true },
+            show: Show::default(),
+            compare: Compare::default(),
+            search: Search::default(),
             messages: Messages::default(),
             tooltips: Tooltips::of::<Preset>(),
             screenshot: None,

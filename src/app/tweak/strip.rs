@@ -11,14 +11,16 @@ use crate::app::shade_tree::STAGES;
 
 /// Height of a name.
 const NAME: f32 = 16.0;
-/// Width of an arrow.
+/// Least width of an arrow.
 const ARROW: f32 = 14.0;
 
-/// Draws the stages beside each other; a click shows one in the viewport, another click the picture again.
-pub fn strip(ui: &mut Ui, session: &mut Session, easel: &Easel) {
+/// Draws the stages beside each other; a click shows one in the viewport, another click the picture again. `aspect` is the
+/// viewport's width over its height.
+pub fn strip(ui: &mut Ui, session: &mut Session, easel: &Easel, aspect: f32) {
     let count = STAGES.len() as f32;
     let width = (ui.available_width() - (count - 1.0) * ARROW) / count;
-    let size = Vec2::new(width.floor(), (ui.available_height() - NAME).floor());
+    let height = (ui.available_height() - NAME).min(width / aspect);
+    let size = Vec2::new((height * aspect).floor(), height.floor());
     let pixels = size * ui.pixels_per_point();
     let pixels = UVec2::new(pixels.x.round() as u32, pixels.y.round() as u32);
     if pixels.min_element() == 0 {
@@ -26,10 +28,11 @@ pub fn strip(ui: &mut Ui, session: &mut Session, easel: &Easel) {
     }
     let shot = session.shot(pixels);
     ui.spacing_mut().item_spacing = Vec2::ZERO;
+    let arrow_width = (ui.available_width() - count * size.x) / (count - 1.0);
     ui.horizontal_top(|ui| {
         for (index, (stage, label)) in STAGES.into_iter().enumerate() {
             if index > 0 {
-                arrow(ui, size.y);
+                arrow(ui, Vec2::new(arrow_width, size.y));
             }
             let (rect, response) = ui.allocate_exact_size(size + Vec2::new(0.0, NAME), Sense::click());
             let picture = egui::Rect::from_min_size(rect.min, size);
@@ -42,10 +45,8 @@ pub fn strip(ui: &mut Ui, session: &mut Session, easel: &Easel) {
                 ui.painter().rect_stroke(picture, 0.0, stroke, egui::StrokeKind::Inside);
             }
             let name = egui::Rect::from_min_max(picture.left_bottom(), rect.max);
-            let font = egui::TextStyle::Small.resolve(ui.style());
-            let text = ui.painter().layout_no_wrap(label.to_owned(), font, visuals.text_color());
-            let at = name.center() - 0.5 * text.size();
-            ui.painter().with_clip_rect(name).galley(egui::pos2(at.x.max(name.left()), at.y), text, visuals.text_color());
+            let text = egui::RichText::new(label).small().color(visuals.text_color());
+            ui.put(name, egui::Label::new(text).truncate().selectable(false));
             let tooltip = session.tooltips.choice("shade_tree", stage.name()).unwrap_or(label);
             if response.on_hover_text(tooltip).clicked() {
                 session.show.stage = if is_shown { ShadeTree::Final } else { stage };
@@ -55,8 +56,8 @@ pub fn strip(ui: &mut Ui, session: &mut Session, easel: &Easel) {
 }
 
 /// What is made of the stage before.
-fn arrow(ui: &mut Ui, height: f32) {
-    let (rect, _) = ui.allocate_exact_size(Vec2::new(ARROW, height), Sense::hover());
+fn arrow(ui: &mut Ui, size: Vec2) {
+    let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
     let (middle, reach) = (rect.center(), 3.5);
     let points = [
         middle + Vec2::new(-0.5 * reach, -reach),
@@ -64,4 +65,10 @@ fn arrow(ui: &mut Ui, height: f32) {
         middle + Vec2::new(-0.5 * reach, reach),
     ];
     ui.painter().add(egui::Shape::line(points.to_vec(), egui::Stroke::new(1.5, ui.visuals().weak_text_color())));
+}
+
+/// The stage that is made after one; round and round.
+pub fn after(stage: ShadeTree) -> ShadeTree {
+    let at = STAGES.iter().position(|(one, _)| *one == stage).map_or(0, |at| at + 1);
+    STAGES[at % STAGES.len()].0
 }

@@ -7,12 +7,14 @@ use eframe::egui::{self, Ui};
 use eframe::wgpu;
 use haze::Error;
 use haze::picture::{Effort, write_png};
+use haze::settings::ShadeTree;
 use image::RgbImage;
 
+use super::action::{ACTIONS, Action};
 use super::gpu::Easel;
 use super::panel;
 use super::session::Session;
-use super::strip::strip;
+use super::strip::{after, strip};
 use super::viewport::viewport;
 
 pub struct Window {
@@ -62,27 +64,17 @@ impl Window {
             if ui.add_enabled(redo.is_some(), egui::Button::new("Redo")).clicked() {
                 self.session.redo();
             }
-        });
-    }
-
-    fn time(&mut self, ui: &mut Ui) {
-        let playback = &mut self.session.playback;
-        ui.horizontal(|ui| {
-            if ui.button(if playback.is_playing { "Pause" } else { "Play" }).clicked() {
-                playback.is_playing = !playback.is_playing;
-            }
-            if ui.button("⏴").clicked() {
-                playback.step(-1.0);
-            }
-            if ui.button("⏵").clicked() {
-                playback.step(1.0);
-            }
-            ui.spacing_mut().slider_width = (ui.available_width() - 90.0).max(60.0);
-            ui.add(
-                egui::Slider::new(&mut playback.time, playback.range.clone())
-                    .clamping(egui::SliderClamping::Never)
-                    .suffix(" s"),
-            );
+            ui.separator();
+            panel::compare::panel(ui, &mut self.session);
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if ui.button("?").on_hover_text("Keys and gestures").clicked() {
+                    self.act(Action::Help);
+                }
+                if ui.button("Find").on_hover_text("Any setting, by its name or what it does").clicked() {
+                    self.act(Action::Find);
+                }
+                egui::widgets::global_theme_preference_buttons(ui);
+            });
         });
     }
 
@@ -96,14 +88,35 @@ impl Window {
         });
     }
 
+    /// Does what keys ask for, unless something is typed.
     fn keys(&mut self, ui: &Ui) {
-        let pressed = |modifiers, key| ui.input_mut(|input| input.consume_key(modifiers, key));
-        let (command, shift) = (egui::Modifiers::COMMAND, egui::Modifiers::SHIFT);
-        if pressed(command | shift, egui::Key::Z) || pressed(command, egui::Key::Y) {
-            self.session.redo();
+        let is_modal = self.session.search.is_open || self.session.show.help;
+        if ui.ctx().text_edit_focused() || is_modal {
+            return;
         }
-        if pressed(command, egui::Key::Z) {
-            self.session.undo();
+        // Space and the like are for the control that has the keyboard.
+        let is_free = ui.memory(|memory| memory.focused()).is_none();
+        for entry in ACTIONS.iter().filter(|entry| is_free || entry.keys.modifiers.any()) {
+            if ui.input_mut(|input| input.consume_shortcut(&entry.keys)) {
+                self.act(entry.action);
+            }
+        }
+    }
+
+    fn act(&mut self, action: Action) {
+        let session = &mut self.session;
+        match action {
+            Action::Undo => session.undo(),
+            Action::Redo => session.redo(),
+            Action::Find => session.search.open(),
+            Action::Play => session.playback.is_playing = !session.playback.is_playing,
+            Action::StepBack => session.playback.step(-1.0),
+            Action::StepOn => session.playback.step(1.0),
+            Action::Loop => session.playback.is_looping = !session.playback.is_looping,
+            Action::Strip => session.show.has_strip = !session.show.has_strip,
+            Action::NextStage => session.show.stage = after(session.show.stage),
+            Action::Picture => session.show.stage = ShadeTree::Final,
+            Action::Help => session.show.help = !session.show.help,
         }
     }
 
@@ -141,13 +154,17 @@ impl eframe::App for Window {
         self.session.playback.advance(ui.input(|input| input.stable_dt));
         egui::Panel::top("top").show(ui, |ui| self.top(ui));
         egui::Panel::bottom("status").show(ui, |ui| self.status(ui));
-        egui::Panel::bottom("time").show(ui, |ui| self.time(ui));
-        egui::Panel::right("settings").default_size(330.0).show(ui, |ui| panel::settings::panel(ui, &mut self.session));
+        egui::Panel::bottom("time").show(ui, |ui| panel::time::panel(ui, &mut self.session));
         if self.session.show.has_strip {
-            let panel = egui::Panel::bottom("strip").resizable(true).default_size(100.0).size_range(60.0..=240.0);
-            panel.show(ui, |ui| strip(ui, &mut self.session, &self.easel));
+            let aspect = self.session.show.aspect;
+            let panel = egui::Panel::bottom("strip").resizable(true).default_size(96.0).size_range(56.0..=240.0);
+            panel.show(ui, |ui| strip(ui, &mut self.session, &self.easel, aspect));
         }
+        let settings = egui::Panel::right("settings").default_size(330.0).size_range(240.0..=520.0);
+        settings.show(ui, |ui| panel::settings::panel(ui, &mut self.session));
         egui::CentralPanel::no_frame().show(ui, |ui| viewport(ui, &mut self.session, &self.easel));
+        panel::search::panel(ui, &mut self.session);
+        panel::help::panel(ui, &mut self.session);
         self.session.track(ui.input(|input| input.pointer.any_down()));
         match self.easel.take_error() {
             Some(error) => self.session.messages.complain("picture", error),

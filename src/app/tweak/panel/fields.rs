@@ -11,6 +11,9 @@ use haze::settings::{Choice, FieldVisitor, Fields, PictureRole, path_of};
 
 use super::row::{self, Row, spaced};
 
+/// A step on the way to a field: its name, and its place where it is one of a list.
+pub type Step = (&'static str, Option<usize>);
+
 /// What rows are drawn with, and what they ask for.
 pub struct Desk<'a> {
     pub tooltips: &'a Tooltips,
@@ -27,14 +30,33 @@ pub struct Desk<'a> {
 }
 
 /// Draws the fields of a struct that `path` leads to; groups fold.
-pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, path: &[(&'static str, Option<usize>)], fields: &mut dyn Fields) {
-    fields.visit(&mut Rows { ui, desk, path: path.to_vec() });
+pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fields) {
+    fields.visit(&mut Rows { ui, desk, path: path.to_vec(), only: None });
+}
+
+/// Draws some fields of a struct, in the order of `names`: what each is called here, and its path from the struct.
+pub fn show_named(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fields, names: &[(&str, &str)]) {
+    for &(title, wanted) in names {
+        let only = Some(Only { title, wanted, depth: path.len() });
+        fields.visit(&mut Rows { ui, desk, path: path.to_vec(), only });
+    }
 }
 
 struct Rows<'a, 'd, 'u> {
     ui: &'u mut Ui,
     desk: &'a mut Desk<'d>,
-    path: Vec<(&'static str, Option<usize>)>,
+    path: Vec<Step>,
+    /// All fields if `None`.
+    only: Option<Only<'a>>,
+}
+
+/// One field among many.
+#[derive(Clone, Copy)]
+struct Only<'a> {
+    title: &'a str,
+    /// Its path from a struct that so many steps lead to.
+    wanted: &'a str,
+    depth: usize,
 }
 
 impl Rows<'_, '_, '_> {
@@ -46,10 +68,14 @@ impl Rows<'_, '_, '_> {
         self.path.push((name, None));
         let path = path_of(&self.path);
         let plain = self.path.iter().map(|step| step.0).collect::<Vec<_>>().join(".");
+        let below = self.only.map(|only| path_of(&self.path[only.depth..]));
         self.path.pop();
+        if self.only.zip(below).is_some_and(|(only, path)| path != only.wanted) {
+            return;
+        }
         let desk = &mut *self.desk;
         let row = Row {
-            name,
+            name: self.only.map_or(name, |only| only.title),
             tooltip: desk.tooltips.field(&plain).unwrap_or_default(),
             is_changed: desk.changed.contains(&path),
             inert: (desk.inert)(&path),
@@ -73,8 +99,13 @@ impl Rows<'_, '_, '_> {
         }
     }
 
-    fn nested(&mut self, step: (&'static str, Option<usize>), title: &str, fields: &mut dyn Fields) {
+    fn nested(&mut self, step: Step, title: &str, fields: &mut dyn Fields) {
         self.path.push(step);
+        if let Some(only) = self.only {
+            fields.visit(&mut Rows { ui: self.ui, desk: self.desk, path: self.path.clone(), only: Some(only) });
+            self.path.pop();
+            return;
+        }
         let path = path_of(&self.path);
         let mark = if self.desk.changed.iter().any(|changed| changed.starts_with(&path)) { " •" } else { "" };
         let header = egui::CollapsingHeader::new(format!("{}{mark}", spaced(title))).id_salt(&path);

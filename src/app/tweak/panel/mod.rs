@@ -1,5 +1,10 @@
 //! The panels: what can be set, in rows made from the table of settings.
 
+pub mod compare;
 pub mod fields;
+pub mod help;
+pub mod look;
 pub mod row;
+pub mod search;
 pub mod settings;
+pub mod time;

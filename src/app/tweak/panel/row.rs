@@ -80,8 +80,9 @@ pub fn spaced(name: &str) -> String {
     name.replace('_', " ")
 }
 
-/// Widest range that a linear slider can be aimed in.
-const WIDEST_LINEAR: f32 = 20.0;
+/// Widest range that a linear slider can be aimed in, and how many times its low end the high end may be.
+const WIDEST_LINEAR: f32 = 40.0;
+const MOST_LINEAR: f32 = 100.0;
 /// Where sliders of endless ranges end; more can be typed.
 const FAR: f32 = 1000.0;
 
@@ -96,7 +97,7 @@ pub fn number(
     let (low, high) = (*range.start(), *range.end());
     let shown_high = if high > FAR { FAR.max(value.abs() * 2.0).min(high) } else { high };
     let shown_low = if low < -FAR { -FAR.max(value.abs() * 2.0) } else { low };
-    let is_wide = shown_high - shown_low > WIDEST_LINEAR;
+    let is_wide = shown_high - shown_low > WIDEST_LINEAR || low > 0.0 && high > MOST_LINEAR * low;
     let typed = std::cell::RefCell::new(None);
     let mut edited = *value;
     let slider = egui::Slider::new(&mut edited, shown_low..=shown_high)

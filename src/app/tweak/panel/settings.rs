@@ -1,39 +1,60 @@
-//! Everything that can be set, at the right of the window.
+//! What can be set, at the right of the window: the look first, then the parts of the preset.
 
 use std::collections::HashSet;
 
 use eframe::egui::{self, Ui};
-use haze::settings::Fields;
+use haze::preset::Preset;
+use haze::settings::{Fields, path_of};
 
-use super::fields::{Desk, show};
+use super::fields::{self, Desk};
+use super::look;
 use crate::app::tweak::document::{changed_fields, copy_field};
 use crate::app::tweak::session::Session;
+use crate::app::tweak::show::Tab;
+
+/// The tabs, their names, and what is on them.
+pub const TABS: [(Tab, &str, &str); 4] = [
+    (Tab::Look, "Look", "The few controls that make a look"),
+    (Tab::Light, "Light", "Lights, the sky, the camera"),
+    (Tab::Smoke, "Smoke", "Where smoke comes from, and how it takes light"),
+    (Tab::Advanced, "Advanced", "How smoke reaches the picture: techniques, targets, formats"),
+];
 
 pub fn panel(ui: &mut Ui, session: &mut Session) {
     let changed: HashSet<_> = changed_fields(&session.saved, &session.preset).into_iter().collect();
+    ui.horizontal(|ui| {
+        for (tab, name, tooltip) in TABS {
+            ui.selectable_value(&mut session.show.tab, tab, name).on_hover_text(tooltip);
+        }
+    });
+    let systems = session.preset.systems.len();
+    session.show.system = session.show.system.min(systems.saturating_sub(1));
+    if let Some(index) = session.search.found.as_ref().and_then(|(path, _)| system_of(path)) {
+        session.show.system = index;
+    }
+    if systems > 1 && session.show.tab != Tab::Light {
+        ui.horizontal_wrapped(|ui| {
+            for (index, system) in session.preset.systems.iter().enumerate() {
+                ui.selectable_value(&mut session.show.system, index, &system.name);
+            }
+        });
+    }
+    ui.separator();
     let mut desk = Desk {
         tooltips: &session.tooltips,
         changed: &changed,
         inert: &|_| None,
         reset: Vec::new(),
         refused: None,
-        sought: None,
+        sought: session.search.found.as_ref().map(|(path, _)| path.as_str()),
     };
     let preset = &mut session.preset;
-    egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        let mut section = |title: &str, step: &'static str, fields: &mut dyn Fields| {
-            egui::CollapsingHeader::new(title).show(ui, |ui| show(ui, &mut desk, &[(step, None)], fields));
-        };
-        section("Camera", "camera", &mut preset.camera);
-        section("Environment", "environment", &mut preset.environment);
-        for (index, light) in preset.lights.iter_mut().enumerate() {
-            let title = format!("Light {}", index + 1);
-            egui::CollapsingHeader::new(title).show(ui, |ui| show(ui, &mut desk, &[("lights", Some(index))], light));
-        }
-        for (index, system) in preset.systems.iter_mut().enumerate() {
-            let header = egui::CollapsingHeader::new(system.name.clone()).id_salt(("system", index)).default_open(true);
-            header.show(ui, |ui| show(ui, &mut desk, &[("systems", Some(index))], system));
-        }
+    let system = session.show.system;
+    egui::ScrollArea::vertical().id_salt(session.show.tab).auto_shrink(false).show(ui, |ui| match session.show.tab {
+        Tab::Look => look::panel(ui, &mut desk, preset, system),
+        Tab::Light => light(ui, &mut desk, preset),
+        Tab::Smoke => smoke(ui, &mut desk, preset, system),
+        Tab::Advanced => advanced(ui, &mut desk, preset, system),
     });
     let Desk { reset, refused, .. } = desk;
     for path in reset {
@@ -42,4 +63,44 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
     if let Some(refused) = refused {
         session.messages.complain("typed", refused);
     }
+}
+
+/// The system that a setting belongs to: 1 of `systems[1].settings.boost`.
+fn system_of(path: &str) -> Option<usize> {
+    path.strip_prefix("systems[")?.split_once(']')?.0.parse().ok()
+}
+
+/// A part of the preset that folds.
+fn section(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, path: &[fields::Step], fields: &mut dyn Fields) {
+    let is_sought = desk.sought.is_some_and(|sought| sought.starts_with(&path_of(path)));
+    let header = egui::CollapsingHeader::new(title).id_salt(path).default_open(true);
+    let header = if is_sought { header.open(Some(true)) } else { header };
+    header.show(ui, |ui| fields::show(ui, desk, path, fields));
+}
+
+fn light(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset) {
+    for (index, light) in preset.lights.iter_mut().enumerate() {
+        section(ui, desk, &format!("Light {}", index + 1), &[("lights", Some(index))], light);
+    }
+    section(ui, desk, "Sky and scene", &[("environment", None)], &mut preset.environment);
+    section(ui, desk, "Camera", &[("camera", None)], &mut preset.camera);
+}
+
+fn smoke(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, index: usize) {
+    let Some(system) = preset.systems.get_mut(index) else { return };
+    let at = ("systems", Some(index));
+    section(ui, desk, "Emitter", &[at, ("emitter", None)], &mut system.emitter);
+    section(ui, desk, "Sprite and ramps", &[at, ("material", None)], &mut system.material);
+    let settings = &mut system.settings;
+    let at = |name| [at, ("settings", None), (name, None)];
+    section(ui, desk, "Diffuse", &at("diffuse"), &mut settings.diffuse);
+    section(ui, desk, "Soft scatter", &at("soft_scatter"), &mut settings.soft_scatter);
+    section(ui, desk, "Specular scatter", &at("specular_scatter"), &mut settings.specular_scatter);
+    section(ui, desk, "Soft fade", &at("soft_fade"), &mut settings.soft_fade);
+}
+
+fn advanced(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, index: usize) {
+    let Some(system) = preset.systems.get_mut(index) else { return };
+    let at = [("systems", Some(index)), ("settings", None)];
+    fields::show(ui, desk, &at, &mut system.settings);
 }

@@ -15,8 +15,42 @@ pub fn viewport(ui: &mut Ui, session: &mut Session, easel: &Easel) {
     if size.min_element() == 0 {
         return;
     }
+    session.show.aspect = size.x as f32 / size.y as f32;
     camera::steer(ui, &response, &mut session.preset.camera);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "viewport"));
-    let exhibit = Exhibit { shot: session.shot(size), other: None, split: 1.0, difference: 0.0 };
+    let shot = session.shot(size);
+    let compare = &mut session.compare;
+    let other = compare.against.as_ref().map(|against| against.shot(&shot, &session.saved));
+    let exhibit = Exhibit { shot, other, split: compare.split, difference: compare.difference };
     easel.show(ui, rect, exhibit);
+    if compare.against.is_some() && compare.difference == 0.0 {
+        divider(ui, rect, &mut compare.split);
+    }
+}
+
+/// What stands between two pictures, and can be moved.
+fn divider(ui: &Ui, rect: egui::Rect, split: &mut f32) {
+    let x = rect.left() + *split * rect.width();
+    let grip = egui::Rect::from_x_y_ranges(x - 5.0..=x + 5.0, rect.y_range());
+    let response = ui
+        .interact(grip, ui.scope_id().with("divider"), Sense::drag())
+        .on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
+    response.widget_info(|| egui::WidgetInfo::slider(true, f64::from(*split), "divider"));
+    if response.dragged() {
+        *split = (*split + response.drag_delta().x / rect.width()).clamp(0.02, 0.98);
+    }
+    let x = (rect.left() + *split * rect.width()).round() + 0.5;
+    let colour = if response.hovered() || response.dragged() {
+        egui::Color32::WHITE
+    } else {
+        egui::Color32::from_white_alpha(160)
+    };
+    ui.painter().vline(x - 1.0, rect.y_range(), egui::Stroke::new(1.0, egui::Color32::from_black_alpha(160)));
+    ui.painter().vline(x, rect.y_range(), egui::Stroke::new(1.0, colour));
+    ui.painter().circle(
+        egui::pos2(x, rect.center().y),
+        5.0,
+        egui::Color32::from_black_alpha(120),
+        egui::Stroke::new(1.0, colour),
+    );
 }

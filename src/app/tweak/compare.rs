@@ -1,0 +1,91 @@
+//! A second picture beside the first: every saving shows its price.
+
+use haze::demo::shot::Shot;
+use haze::preset::Preset;
+use haze::settings::Path;
+
+/// What the picture is compared with.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Against {
+    /// The preset as it is on disk.
+    Saved,
+    /// The preset as it once was.
+    Kept(Box<Preset>),
+    /// The same without a reduced target.
+    FullResolution,
+    /// The same lit and blended sprite by sprite.
+    Forward,
+}
+
+/// How the two are shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compare {
+    pub against: Option<Against>,
+    /// Share of the width from which on the second is shown.
+    pub split: f32,
+    /// Multiplies the difference of the two, which is shown instead; 0: they stand side by side.
+    pub difference: f32,
+}
+
+impl Default for Compare {
+    fn default() -> Self {
+        Self { against: None, split: 0.5, difference: 0.0 }
+    }
+}
+
+impl Against {
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Saved => "as saved",
+            Self::Kept(_) => "as kept",
+            Self::FullResolution => "full resolution",
+            Self::Forward => "forward",
+        }
+    }
+
+    /// The second shot: seen as the first is, at the same time.
+    pub fn shot(&self, first: &Shot, saved: &Preset) -> Shot {
+        let mut shot = first.clone();
+        let systems = shot.preset.systems.iter_mut();
+        match self {
+            Self::Saved => shot.preset = seen_as(saved, &first.preset),
+            Self::Kept(preset) => shot.preset = seen_as(preset, &first.preset),
+            Self::FullResolution => systems.for_each(|system| {
+                let accumulate = &mut system.settings.accumulate;
+                (accumulate.scale, accumulate.max_side) = (1, 16384);
+            }),
+            Self::Forward => systems.for_each(|system| system.settings.path = Path::Forward),
+        }
+        shot
+    }
+}
+
+/// A preset through another's camera, at its time.
+fn seen_as(preset: &Preset, other: &Preset) -> Preset {
+    Preset { camera: other.camera, time: other.time, ..preset.clone() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::UVec2;
+
+    #[test]
+    fn the_second_differs_only_in_what_it_is_for() {
+        let mut first = Shot::load("column", UVec2::new(64, 36)).unwrap();
+        let saved = first.preset.clone();
+        first.preset.camera.fov = 70.0;
+        first.preset.time = 3.0;
+        first.preset.systems[0].settings.boost = 1.0;
+        let shot = |against: Against| against.shot(&first, &saved).preset;
+        let (as_saved, whole) = (shot(Against::Saved), shot(Against::FullResolution));
+        assert_eq!((as_saved.camera, as_saved.systems.clone()), (first.preset.camera, saved.systems.clone()));
+        assert_eq!(as_saved.time.to_bits(), first.preset.time.to_bits());
+        assert_eq!(whole.systems[0].settings.accumulate.scale, 1);
+        whole.validate().unwrap();
+        let mut back = whole;
+        back.systems[0].settings.accumulate = saved.systems[0].settings.accumulate;
+        assert_eq!(back, first.preset);
+        assert!(shot(Against::Forward).systems[0].settings.is_forward());
+    }
+}

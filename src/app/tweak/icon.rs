@@ -1,0 +1,46 @@
+//! Buttons with a drawn sign: the fonts that come with the window have none of these.
+
+use eframe::egui::{self, Color32, Pos2, Response, Sense, Shape, Ui, Vec2, pos2};
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Icon {
+    Play,
+    Pause,
+    Back,
+    Forward,
+    Loop,
+}
+
+/// A button; `name` is its tooltip, and what who cannot see it is told.
+pub fn button(ui: &mut Ui, icon: Icon, is_on: bool, name: &str) -> Response {
+    let side = ui.spacing().interact_size.y;
+    let (rect, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::click());
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, name));
+    let visuals = ui.style().interact_selectable(&response, is_on);
+    ui.painter().rect_filled(rect, visuals.corner_radius, visuals.weak_bg_fill);
+    draw(ui, icon, rect, visuals.text_color());
+    response.on_hover_text(name)
+}
+
+fn draw(ui: &Ui, icon: Icon, rect: egui::Rect, colour: Color32) {
+    let at = |x: f32, y: f32| -> Pos2 { pos2(rect.left() + x * rect.width(), rect.top() + y * rect.height()) };
+    let solid = |points: Vec<Pos2>| Shape::convex_polygon(points, colour, egui::Stroke::NONE);
+    let bar = |left: f32| solid(vec![at(left, 0.25), at(left + 0.15, 0.25), at(left + 0.15, 0.75), at(left, 0.75)]);
+    let right = |left: f32| solid(vec![at(left, 0.25), at(left + 0.4, 0.5), at(left, 0.75)]);
+    let left = |right: f32| solid(vec![at(right, 0.25), at(right, 0.75), at(right - 0.4, 0.5)]);
+    let shapes = match icon {
+        Icon::Play => vec![right(0.33)],
+        Icon::Pause => vec![bar(0.28), bar(0.57)],
+        Icon::Back => vec![bar(0.2), left(0.78)],
+        Icon::Forward => vec![right(0.22), bar(0.65)],
+        Icon::Loop => {
+            let stroke = egui::Stroke::new(1.5, colour);
+            let arc = (2..=22).map(|step| {
+                let angle = step as f32 / 24.0 * std::f32::consts::TAU;
+                at(0.5 + 0.26 * angle.cos(), 0.5 + 0.26 * angle.sin())
+            });
+            vec![Shape::line(arc.collect(), stroke), solid(vec![at(0.62, 0.36), at(0.92, 0.36), at(0.77, 0.54)])]
+        }
+    };
+    ui.painter().extend(shapes);
+}

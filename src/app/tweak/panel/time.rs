@@ -1,0 +1,50 @@
+//! Time: play, step, scrub, go round.
+
+use eframe::egui::{self, Ui};
+
+use crate::app::tweak::icon::{self, Icon};
+use crate::app::tweak::session::Session;
+
+pub fn panel(ui: &mut Ui, session: &mut Session) {
+    let playback = &mut session.playback;
+    ui.horizontal(|ui| {
+        if icon::button(ui, Icon::Back, false, "A frame back (,)").clicked() {
+            playback.step(-1.0);
+        }
+        let (sign, name) =
+            if playback.is_playing { (Icon::Pause, "Pause (space)") } else { (Icon::Play, "Play (space)") };
+        if icon::button(ui, sign, playback.is_playing, name).clicked() {
+            playback.is_playing = !playback.is_playing;
+        }
+        if icon::button(ui, Icon::Forward, false, "A frame on (.)").clicked() {
+            playback.step(1.0);
+        }
+        if icon::button(ui, Icon::Loop, playback.is_looping, "Go round in the range at the right (L)").clicked() {
+            playback.is_looping = !playback.is_looping;
+        }
+        ui.spacing_mut().slider_width = (ui.available_width() - 440.0).max(60.0);
+        let scrub = egui::Slider::new(&mut playback.time, playback.range.clone())
+            .clamping(egui::SliderClamping::Never)
+            .fixed_decimals(2)
+            .suffix(" s");
+        ui.add(scrub).on_hover_text("Seconds into the emission");
+        let (mut start, mut end) = (*playback.range.start(), *playback.range.end());
+        let drag =
+            |value| egui::DragValue::new(value).speed(0.05).range(-1000.0..=1.0e5).fixed_decimals(1).suffix(" s");
+        ui.weak("from").labelled_by(ui.add(drag(&mut start)).on_hover_text("Where the range begins").id);
+        ui.weak("to").labelled_by(ui.add(drag(&mut end)).on_hover_text("Where the range ends").id);
+        if end > start {
+            playback.range = start..=end;
+        }
+        let speed =
+            egui::DragValue::new(&mut playback.speed).speed(0.01).range(-8.0..=8.0).fixed_decimals(2).prefix("x ");
+        ui.add(speed).on_hover_text("How fast the clock runs; negative runs backwards");
+        let preset = &mut session.preset;
+        let is_kept = preset.time.to_bits() == playback.time.to_bits();
+        let keep =
+            ui.add_enabled(!is_kept, egui::Button::new("Keep")).on_hover_text("Makes this moment the preset's time");
+        if keep.clicked() {
+            preset.time = playback.time;
+        }
+    });
+}

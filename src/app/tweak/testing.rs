@@ -1,0 +1,38 @@
+//! A window for tests: driven by its accessible names, drawn by a real adapter.
+
+use std::path::Path;
+
+use eframe::egui::{self, Vec2};
+use egui_kittest::Harness;
+use image::RgbaImage;
+
+use super::session::Session;
+use super::window::Window;
+
+/// A window of a preset, as it stands when it has settled.
+pub fn window(preset: &str, size: Vec2, theme: egui::Theme) -> Harness<'static, Window> {
+    let session = Session::open(Path::new(preset)).unwrap();
+    let builder = Harness::builder().with_size(size).with_theme(theme).with_render_cursor(false).wgpu();
+    let mut harness = builder.build_eframe(|context| Window::new(context, session).unwrap());
+    harness.run_steps(3);
+    harness
+}
+
+/// What the window shows.
+pub fn picture(harness: &mut Harness<'_, Window>) -> RgbaImage {
+    harness.step();
+    harness.render().unwrap()
+}
+
+/// Mean brightness of a part of a picture, 0 to 255.
+pub fn brightness(picture: &RgbaImage, part: egui::Rect) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for y in part.top() as u32..part.bottom() as u32 {
+        for x in part.left() as u32..part.right() as u32 {
+            let [r, g, b, _] = picture.get_pixel(x, y).0;
+            sum += (f64::from(r) + f64::from(g) + f64::from(b)) / 3.0;
+            count += 1.0;
+        }
+    }
+    sum / count
+}
