@@ -73,7 +73,7 @@ impl Window {
                 if ui.button("Find").on_hover_text("Any setting, by its name or what it does").clicked() {
                     self.act(Action::Find);
                 }
-                egui::widgets::global_theme_preference_buttons(ui);
+                theme(ui);
             });
         });
     }
@@ -95,7 +95,7 @@ impl Window {
             return;
         }
         // Space and the like are for the control that has the keyboard.
-        let is_free = ui.memory(|memory| memory.focused()).is_none();
+        let is_free = ui.memory(egui::Memory::focused).is_none();
         for entry in ACTIONS.iter().filter(|entry| is_free || entry.keys.modifiers.any()) {
             if ui.input_mut(|input| input.consume_shortcut(&entry.keys)) {
                 self.act(entry.action);
@@ -146,6 +146,20 @@ fn write(path: &Path, picture: &egui::ColorImage) -> Result<(), Error> {
     let bytes = picture.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()]).collect();
     let picture = RgbImage::from_raw(width, height, bytes).unwrap_or_default();
     write_png(path, &picture.into(), Effort::Quick)
+}
+
+/// Light or dark. (egui's own buttons want signs that its fonts lack.)
+fn theme(ui: &mut Ui) {
+    let mut preference = ui.ctx().options(|options| options.theme_preference);
+    ui.menu_button("Theme", |ui| {
+        use egui::ThemePreference::{Dark, Light, System};
+        for (theme, name) in [(System, "As the system"), (Dark, "Dark"), (Light, "Light")] {
+            if ui.radio_value(&mut preference, theme, name).clicked() {
+                ui.close();
+            }
+        }
+    });
+    ui.ctx().set_theme(preference);
 }
 
 impl eframe::App for Window {
