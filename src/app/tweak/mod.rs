@@ -7,6 +7,7 @@ mod gpu;
 mod icon;
 mod messages;
 mod panel;
+mod platform;
 mod playback;
 mod search;
 mod session;

@@ -1,22 +1,26 @@
 //! What differs between two presets: names for the steps of undo, marks, and copying across.
 
+use std::collections::HashMap;
+
 use haze::preset::Preset;
 use haze::settings::{Value, path_of, values, walk};
 
 /// The paths of the fields that differ, `systems[0].settings.boost`. Where lists are not as long as each other the list is one
 /// field, `lights`.
 pub fn changed_fields(before: &Preset, after: &Preset) -> Vec<String> {
-    let lengths = [before, after].map(|preset| [preset.lights.len(), preset.systems.len()]);
-    let lists: Vec<_> = (0..2).filter(|&list| lengths[0][list] != lengths[1][list]).map(|list| LISTS[list]).collect();
-    let in_list = |path: &str| lists.iter().any(|list| is_below(path, list));
-    let alone = |preset| -> Vec<_> { values(preset).into_iter().filter(|(path, _)| !in_list(path)).collect() };
-    let pairs = alone(before).into_iter().zip(alone(after));
+    let pairs = lists(before).into_iter().zip(lists(after));
+    let lists: Vec<_> = pairs.filter(|(before, after)| before != after).map(|((list, _), _)| list).collect();
+    let is_whole = |path: &str| !lists.iter().any(|list| is_below(path, list));
+    let fields = |preset| values(preset).into_iter().filter(|(path, _)| is_whole(path)).collect::<Vec<_>>();
+    let pairs = fields(before).into_iter().zip(fields(after));
     let changed = pairs.filter(|(before, after)| before != after).map(|((path, _), _)| path);
     changed.chain(lists.iter().map(|&list| list.to_owned())).collect()
 }
 
-/// The lists of a preset.
-const LISTS: [&str; 2] = ["lights", "systems"];
+/// The lists of a preset, and how long they are.
+fn lists(preset: &Preset) -> [(&'static str, usize); 2] {
+    [("lights", preset.lights.len()), ("systems", preset.systems.len())]
+}
 
 /// Whether a field is `above`, or in it.
 fn is_below(path: &str, above: &str) -> bool {
@@ -30,7 +34,7 @@ pub fn copy_field(from: &Preset, to: &mut Preset, path: &str) {
         "systems" => to.systems.clone_from(&from.systems),
         _ => {
             let values = values(from).into_iter().filter(|(field, _)| is_below(field, path));
-            let values: std::collections::HashMap<String, Value> = values.collect();
+            let values: HashMap<String, Value> = values.collect();
             walk(to, &mut |path, leaf| {
                 if let Some(value) = values.get(&path_of(path)) {
                     leaf.set(value);
@@ -45,18 +49,15 @@ pub fn step_name(before: &Preset, after: &Preset) -> String {
     let changed = changed_fields(before, after);
     let Some(first) = changed.first() else { return "change".into() };
     let owner = owner_of(first);
-    let of = match owner.as_ref().map(|(list, index)| (*list, after.systems.get(*index), index + 1)) {
+    let of = match owner.map(|(list, index)| (list, after.systems.get(index), index + 1)) {
         Some(("systems", Some(system), _)) if !system.name.is_empty() => format!(" of {}", system.name),
         Some((list, _, number)) => format!(" of {} {number}", singular(list)),
         None => String::new(),
     };
-    let lengths =
-        |preset: &Preset, list: &str| if list == LISTS[0] { preset.lights.len() } else { preset.systems.len() };
+    let length = |preset| lists(preset).into_iter().find(|(list, _)| list == first).map(|(_, length)| length);
     match changed.as_slice() {
-        [list] if LISTS.contains(&list.as_str()) => {
-            let is_more = lengths(after, list) > lengths(before, list);
-            format!("{} {}", singular(list), if is_more { "added" } else { "removed" })
-        }
+        [list] if length(before) < length(after) => format!("{} added", singular(list)),
+        [list] if length(before) > length(after) => format!("{} removed", singular(list)),
         [field] => format!("{}{of}", field.rsplit('.').next().unwrap_or(field)),
         fields if fields.iter().all(|field| owner_of(field) == owner) => format!("{} fields{of}", fields.len()),
         fields => format!("{} fields", fields.len()),
@@ -72,4 +73,81 @@ fn owner_of(path: &str) -> Option<(&str, usize)> {
 
 fn singular(list: &str) -> &str {
     list.trim_end_matches('s')
+}
+
+#[cfg(test)]
+mod tests {
+    use haze::preset::PresetSystem;
+    use haze::{Light, Settings};
+
+    use super::*;
+
+    fn changed_by(change: impl Fn(&mut Preset)) -> (Vec<String>, String) {
+        let before = Preset::load("column").unwrap();
+        let mut after = before.clone();
+        change(&mut after);
+        let name = step_name(&before, &after);
+        let changed = changed_fields(&before, &after);
+        // Copied across one by one, they are the same.
+        let mut copied = before.clone();
+        changed.iter().for_each(|path| copy_field(&after, &mut copied, path));
+        assert_eq!(changed_fields(&copied, &after), [""; 0]);
+        let mut back = after.clone();
+        changed.iter().for_each(|path| copy_field(&before, &mut back, path));
+        assert_eq!(back, before);
+        (changed, name)
+    }
+
+    #[test]
+    fn changes_are_named() {
+        let said = |change: fn(&mut Preset)| {
+            let (changed, name) = changed_by(change);
+            (changed.join(" "), name)
+        };
+        let expect = |said: (String, String), fields: &str, name: &str| assert_eq!(said, (fields.into(), name.into()));
+        expect(said(|_| {}), "", "change");
+        expect(said(|preset| preset.systems[0].settings.boost = 2.0), "systems[0].settings.boost", "boost of smoke");
+        expect(said(|preset| preset.lights[1].colour.x = 0.0), "lights[1].colour", "colour of light 2");
+        expect(said(|preset| preset.camera.exposure = 2.0), "camera.exposure", "exposure");
+        expect(said(|preset| preset.lights.push(Light::default())), "lights", "light added");
+        expect(said(|preset| preset.lights.truncate(2)), "lights", "light removed");
+        expect(said(|preset| preset.systems.push(PresetSystem::default())), "systems", "system added");
+        expect(
+            said(|preset| (preset.lights[1].colour.x, preset.lights[1].intensity) = (0.0, 0.0)),
+            "lights[1].colour lights[1].intensity",
+            "2 fields of light 2",
+        );
+        expect(said(|preset| (preset.time, preset.camera.fov) = (0.0, 20.0)), "time camera.fov", "2 fields");
+        // A NaN is a change once, not for ever.
+        let nan = |preset: &mut Preset| preset.systems[0].settings.boost = f32::NAN;
+        let mut preset = Preset::load("column").unwrap();
+        assert_eq!(
+            changed_fields(&Preset::load("column").unwrap(), &{
+                nan(&mut preset);
+                preset.clone()
+            })
+            .len(),
+            1
+        );
+        assert_eq!(changed_fields(&preset, &preset), [""; 0]);
+    }
+
+    #[test]
+    fn groups_and_items_are_copied_whole_and_nothing_else() {
+        let from = Preset::load("backlit_fog").unwrap();
+        let before = Preset::load("column").unwrap();
+        let mut to = before.clone();
+        copy_field(&from, &mut to, "systems[0].settings");
+        assert_eq!(to.systems[0].settings, from.systems[0].settings);
+        to.systems[0].settings = before.systems[0].settings;
+        assert_eq!(to, before);
+        copy_field(&from, &mut to, "lights[1]");
+        assert_eq!(to.lights[1], from.lights[1]);
+        to.lights[1] = before.lights[1];
+        // Only one has it, or nobody.
+        copy_field(&from, &mut to, "lights[3].colour");
+        copy_field(&from, &mut to, "systems[0].settings.boos");
+        assert_eq!(to, before);
+        assert_ne!(from.systems[0].settings, Settings::default());
+    }
 }

@@ -91,3 +91,122 @@ impl<T: Clone + PartialEq> History<T> {
         self.past.push_back(Step { name, value: before });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn name<T: std::fmt::Display>(before: &T, after: &T) -> String {
+        format!("{before} to {after}")
+    }
+
+    #[test]
+    fn a_drag_is_one_step() {
+        let mut history = History::new(0);
+        for value in [1, 2, 3] {
+            history.track(&value, true, name);
+            assert_eq!(history.undo_name(), Some("0 to 1"));
+        }
+        history.track(&3, false, name);
+        assert_eq!(history.undo_name(), Some("0 to 3"));
+        // Moved and put back is none.
+        history.track(&4, true, name);
+        history.track(&3, true, name);
+        history.track(&3, false, name);
+        let mut value = 3;
+        assert_eq!(history.undo(&mut value), Some("0 to 3"));
+        assert_eq!((value, history.undo_name(), history.redo_name()), (0, None, Some("0 to 3")));
+        assert_eq!(history.undo(&mut value), None);
+    }
+
+    #[test]
+    fn undo_in_the_middle_of_a_drag_takes_the_drag_back() {
+        let (mut history, mut value) = (History::new(0), 1);
+        history.track(&value, true, name);
+        assert_eq!(history.undo(&mut value), Some("0 to 1"));
+        assert_eq!(value, 0);
+        history.track(&value, true, name);
+        assert_eq!(history.redo(&mut value), Some("0 to 1"));
+        assert_eq!(value, 1);
+        // Before a frame has seen the change, too.
+        value = 2;
+        assert_eq!(history.redo(&mut value), None);
+        assert_eq!(history.undo(&mut value), Some("change"));
+        assert_eq!(value, 1);
+    }
+
+    #[test]
+    fn a_nan_is_no_step_and_undo_takes_it_away() {
+        let mut history = History::new(0.0);
+        history.track(&1.0, false, name);
+        for _ in 0..3 {
+            history.track(&f32::NAN, false, name);
+        }
+        let mut value = f32::NAN;
+        assert_eq!(history.undo(&mut value), Some("0 to 1"));
+        assert_eq!((value.to_bits(), history.undo_name()), (0, None));
+    }
+
+    #[test]
+    fn memory_is_bounded() {
+        let mut history = History::new(0);
+        (1..=3000u32).for_each(|value| history.track(&value, false, name));
+        let (mut value, mut steps) = (3000, 0);
+        while history.undo(&mut value).is_some() {
+            steps += 1;
+        }
+        assert_eq!((steps, value), (MOST_STEPS, 2500));
+    }
+
+    proptest! {
+        /// Against the plain model: a list of values and a place in it.
+        #[test]
+        fn steps_are_undone_and_redone_in_order(does in prop::collection::vec((0u8..5, 0u8..4), 1..60)) {
+            let mut history = History::new(0);
+            let (mut model, mut at, mut value) = (vec![0], 0, 0);
+            for (what, to) in does {
+                match what {
+                    0 => {
+                        if at > 0 {
+                            let expected = name(&model[at - 1], &model[at]);
+                            prop_assert_eq!(history.undo(&mut value), Some(expected.as_str()));
+                            at -= 1;
+                        } else {
+                            prop_assert_eq!(history.undo(&mut value), None);
+                        }
+                    }
+                    1 => {
+                        if at + 1 < model.len() {
+                            let expected = name(&model[at], &model[at + 1]);
+                            prop_assert_eq!(history.redo(&mut value), Some(expected.as_str()));
+                            at += 1;
+                        } else {
+                            prop_assert_eq!(history.redo(&mut value), None);
+                        }
+                    }
+                    _ => {
+                        // A drag over some values, or a click.
+                        (0..what - 2).for_each(|held| history.track(&held, true, name));
+                        value = to;
+                        history.track(&value, false, name);
+                        if value != model[at] {
+                            model.truncate(at + 1);
+                            model.push(value);
+                            at += 1;
+                        }
+                    }
+                }
+                prop_assert_eq!(value, model[at]);
+                prop_assert_eq!(history.undo_name().is_some(), at > 0);
+                prop_assert_eq!(history.redo_name().is_some(), at + 1 < model.len());
+            }
+            let (last, undone) = (value, at);
+            (0..undone).for_each(|_| assert!(history.undo(&mut value).is_some()));
+            prop_assert_eq!(value, 0);
+            (0..undone).for_each(|_| assert!(history.redo(&mut value).is_some()));
+            prop_assert_eq!(value, last);
+        }
+    }
+}

@@ -1,7 +1,4 @@
-//! What is edited: its steps, and what differs in it.
+//! What is edited: a preset and its steps.
 
-mod difference;
-mod history;
-
-pub use difference::{changed_fields, copy_field, step_name};
-pub use history::History;
+pub mod difference;
+pub mod history;
