@@ -4,14 +4,19 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
-use haze::preset::Preset;
+use haze::preset::{Preset, picture_file};
 use haze::settings::{FieldVisitor, Fields, PictureRole};
 
 /// The pictures beside a preset's file that it names.
 pub fn pictures_of(path: &Path, preset: &Preset) -> Vec<PathBuf> {
+    picture_files(preset).into_iter().map(|file| path.with_file_name(file)).collect()
+}
+
+/// The same, from the preset's folder on.
+pub fn picture_files(preset: &Preset) -> Vec<PathBuf> {
     let mut names = Names(Vec::new());
     preset.clone().visit(&mut names);
-    names.0.iter().map(|name| path.with_file_name(name)).collect()
+    names.0.iter().filter_map(|name| picture_file(name)).map(Path::to_path_buf).collect()
 }
 
 struct Names(Vec<String>);

@@ -2,7 +2,7 @@
 //! knows a device.
 
 pub mod builtin;
-mod file;
+pub mod file;
 pub mod json;
 pub mod material;
 pub mod noise;

@@ -99,12 +99,18 @@ impl MaterialNames {
     }
 }
 
-/// The path of an asset inside the preset's folder.
-fn inside(field: &str, name: &str, list: &[builtin::Builtin], folder: &Path) -> Result<PathBuf, FieldError> {
+/// The file that the name of a picture stands for, from the preset's folder on; none for a built-in one's, and for what lies
+/// outside.
+pub fn picture_file(name: &str) -> Option<&Path> {
     let path = Path::new(name);
     let is_png = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
     let stays = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
-    if is_png && stays {
+    (is_png && stays).then_some(path)
+}
+
+/// The path of an asset inside the preset's folder.
+fn inside(field: &str, name: &str, list: &[builtin::Builtin], folder: &Path) -> Result<PathBuf, FieldError> {
+    if let Some(path) = picture_file(name) {
         return Ok(folder.join(path));
     }
     let mut expected = "a PNG inside the preset's folder".to_owned();

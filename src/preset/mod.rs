@@ -14,7 +14,7 @@ mod tooltips;
 
 pub use camera::Camera;
 pub use environment::{Environment, SceneName};
-pub use material_names::MaterialNames;
+pub use material_names::{MaterialNames, picture_file};
 pub use pictures::MAX_PICTURE_BYTES;
 pub use preset::{DESIGN_HEIGHT, MAX_SYSTEMS, PRESET_VERSION, Preset, PresetSystem};
 #[cfg(feature = "app")]

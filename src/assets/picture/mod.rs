@@ -4,8 +4,8 @@ mod file;
 mod png;
 
 pub use file::{FileIdentity, check_file, write_file};
-pub use png::{Effort, MAX_SIDE, decode_png, read_png, write_png};
-pub(crate) use png::{MAX_BYTES, is_png};
+pub(crate) use png::is_png;
+pub use png::{Effort, MAX_BYTES, MAX_SIDE, decode_png, read_png, write_png};
 
 use std::sync::{Mutex, PoisonError};
 

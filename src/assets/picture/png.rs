@@ -13,7 +13,7 @@ use crate::error::Error;
 /// Largest side of a picture that is read, pixels.
 pub const MAX_SIDE: u32 = 4096;
 /// Most bytes of a PNG file, and most memory that its decoded pixels may take.
-pub(crate) const MAX_BYTES: u64 = 64 << 20;
+pub const MAX_BYTES: u64 = 64 << 20;
 
 const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 

@@ -1,4 +1,8 @@
-//! What is edited: a preset and its steps.
+//! What is edited: a preset with its file, its steps, and what is kept for after a crash.
 
 pub mod difference;
+#[allow(clippy::module_inception, reason = "one file per part of a document, and one for the whole")]
+pub mod document;
 pub mod history;
+mod pictures;
+pub mod recovery;

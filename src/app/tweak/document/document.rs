@@ -1,0 +1,192 @@
+//! A preset while it is worked on.
+
+use std::path::{Path, PathBuf};
+
+use haze::preset::Preset;
+use haze::{Error, FieldError, builtin};
+
+use super::difference::step_name;
+use super::history::History;
+use super::pictures::copy_beside;
+use crate::app::inputs::pictures_of;
+use crate::app::tweak::platform::files::{self, Stamp};
+
+/// A preset, where it came from, and how it got to be what it is.
+pub struct Document {
+    /// What panels change.
+    pub preset: Preset,
+    history: History<Preset>,
+    /// A file, or the name of a built-in preset.
+    path: PathBuf,
+    /// What is in the file, if it is known.
+    saved: Option<Preset>,
+    /// The text of the file as it was read or written last.
+    text: String,
+    /// The file when its text was that; none where it has to be read to know.
+    stamp: Option<Stamp>,
+}
+
+/// How the file is, compared with what was read from it or written to it last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OnDisk {
+    /// It is the same.
+    Same,
+    /// Another program has written it.
+    Changed,
+    /// It is not there.
+    Gone,
+}
+
+impl Document {
+    /// Opens a file, or a built-in preset by name.
+    pub fn open(name_or_path: &Path) -> Result<Self, Error> {
+        // Before it is read: written in between, it is found to have changed.
+        let stamp = Stamp::of(name_or_path);
+        let (preset, text) = files::read_preset(name_or_path)?;
+        let history = History::new(preset.clone());
+        Ok(Self { saved: Some(preset.clone()), preset, history, path: name_or_path.into(), text, stamp })
+    }
+
+    /// What was being done to a preset when the program was ended. The file that it came from need not be there any more.
+    pub fn recovered(preset: Preset, name_or_path: &Path) -> Self {
+        let mut document = Self::open(name_or_path).unwrap_or_else(|_| Self {
+            history: History::new(preset.clone()),
+            preset: preset.clone(),
+            path: name_or_path.into(),
+            saved: None,
+            text: String::new(),
+            stamp: None,
+        });
+        document.put(preset, "recover");
+        document
+    }
+
+    /// The file, or the name of the built-in preset: where pictures are looked for.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The files that its picture is made from, of which some may be missing: what is to be watched.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let own = (!self.is_built_in()).then(|| self.path.clone());
+        own.into_iter().chain(pictures_of(&self.path, &self.preset)).collect()
+    }
+
+    /// Whether it has no file yet.
+    pub fn is_built_in(&self) -> bool {
+        self.path.to_str().and_then(|name| builtin::find(builtin::PRESETS, name)).is_some()
+    }
+
+    /// The preset as it is in the file, if it is there: what marks and resets go by.
+    pub fn saved(&self) -> Option<&Preset> {
+        self.saved.as_ref()
+    }
+
+    /// Whether something would be lost without saving.
+    pub fn is_dirty(&self) -> bool {
+        self.saved.as_ref() != Some(&self.preset)
+    }
+
+    /// Writes the file.
+    pub fn save(&mut self) -> Result<(), Error> {
+        if self.is_built_in() {
+            let expected = "another name: this preset is built in";
+            return Err(FieldError::new("save", self.path.display(), expected).into());
+        }
+        self.preset.validate()?;
+        self.write(&self.path.clone())
+    }
+
+    /// Writes another file, which is the document's from now on. The pictures that the preset names come with it into another
+    /// folder.
+    pub fn save_as(&mut self, path: &Path) -> Result<(), Error> {
+        if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
+            return Err(FieldError::new("save as", path.display(), "a name that ends in .json").into());
+        }
+        self.preset.validate()?;
+        let folder = |path: &Path| path.parent().unwrap_or(Path::new("")).to_path_buf();
+        copy_beside(&self.preset, &folder(&self.path), &folder(path))?;
+        self.write(path)?;
+        self.path = path.into();
+        Ok(())
+    }
+
+    fn write(&mut self, path: &Path) -> Result<(), Error> {
+        let text = self.preset.to_text(&self.text);
+        files::write(path, text.as_bytes())?;
+        // The next look reads it: another program may have been quicker than a stamp could be taken.
+        (self.text, self.stamp, self.saved) = (text, None, Some(self.preset.clone()));
+        Ok(())
+    }
+
+    /// Reads the file again; what was changed is one step back.
+    pub fn revert(&mut self) -> Result<(), Error> {
+        let Self { preset, text, stamp, .. } = Self::open(&self.path)?;
+        (self.text, self.stamp, self.saved) = (text, stamp, Some(preset.clone()));
+        self.put(preset, "revert");
+        Ok(())
+    }
+
+    /// Whether another program has written the file. What [`Document::save`] writes does not count.
+    pub fn on_disk(&mut self) -> OnDisk {
+        if self.is_built_in() {
+            return OnDisk::Same;
+        }
+        let Some(stamp) = Stamp::of(&self.path) else { return OnDisk::Gone };
+        if self.stamp == Some(stamp) {
+            return OnDisk::Same;
+        }
+        match files::read_text(&self.path) {
+            Ok(text) if text == self.text => {
+                self.stamp = Some(stamp);
+                OnDisk::Same
+            }
+            _ => OnDisk::Changed,
+        }
+    }
+
+    /// Leaves the file as another program has written it, and goes on with what is here, which is not saved then.
+    pub fn keep_mine(&mut self) {
+        (self.stamp, self.saved) = (Stamp::of(&self.path), None);
+    }
+
+    /// The preset as a text, to be pasted elsewhere.
+    pub fn to_text(&self) -> String {
+        self.preset.to_text("")
+    }
+
+    /// Makes it the preset of a text, in one step; what is no preset changes nothing.
+    pub fn paste(&mut self, text: &str) -> Result<(), Error> {
+        self.put(Preset::parse(Path::new("pasted text"), text)?, "paste");
+        Ok(())
+    }
+
+    fn put(&mut self, preset: Preset, name: &str) {
+        self.track(false);
+        self.preset = preset;
+        self.history.track(&self.preset, false, |_, _| name.into());
+    }
+
+    /// Sees what panels have changed; once a frame, as [`History::track`].
+    pub fn track(&mut self, is_held: bool) {
+        self.history.track(&self.preset, is_held, step_name);
+    }
+
+    /// Takes back a step, and gives its name.
+    pub fn undo(&mut self) -> Option<&str> {
+        self.history.undo(&mut self.preset)
+    }
+
+    /// Does the last step that was undone again, and gives its name.
+    pub fn redo(&mut self) -> Option<&str> {
+        self.history.redo(&mut self.preset)
+    }
+
+    /// For the names of what there is to undo and redo.
+    pub fn history(&self) -> &History<Preset> {
+        &self.history
+    }
+}
+
+#[cfg(test)]
+mod tests;

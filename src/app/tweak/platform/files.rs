@@ -1,0 +1,82 @@
+//! Files: read with a limit, written whole.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use haze::Error;
+use haze::assets::{file, json};
+use haze::picture::{FileIdentity, MAX_BYTES, write_file};
+use haze::preset::Preset;
+
+/// A preset and the text that it was read from.
+pub fn read_preset(name_or_path: &Path) -> Result<(Preset, String), Error> {
+    Preset::read(name_or_path)
+}
+
+/// The text of a JSON file.
+pub fn read_text(path: &Path) -> Result<String, Error> {
+    json::read(path)
+}
+
+/// The bytes of a picture's file.
+pub fn read_picture(path: &Path) -> Result<Vec<u8>, Error> {
+    file::read(path, "PNG picture", MAX_BYTES)
+}
+
+/// Writes a file whole, or leaves the old one.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    write_file(path, bytes)
+}
+
+/// Makes a folder, and those that it is in.
+pub fn make_folder(path: &Path) -> Result<(), Error> {
+    fs::create_dir_all(path).map_err(|error| Error::Io { path: path.into(), error })
+}
+
+/// Removes a file, if it can be.
+pub fn remove(path: &Path) {
+    let _ = fs::remove_file(path);
+}
+
+/// The files in a folder, by name; none where there is no folder.
+pub fn list(folder: &Path) -> Vec<PathBuf> {
+    let mut files: Vec<_> = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect();
+    files.sort();
+    files
+}
+
+/// Whether something is there.
+pub fn exists(path: &Path) -> bool {
+    path.exists()
+}
+
+/// Whether two paths lead to one place.
+pub fn is_same(one: &Path, other: &Path) -> bool {
+    FileIdentity::of(one) == FileIdentity::of(other)
+}
+
+/// What a file looks like from outside: as long as it stays, the file has not been written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stamp {
+    /// In bytes.
+    pub length: u64,
+    modified: Option<SystemTime>,
+    /// Device and inode, and when that was changed, which no program can set back.
+    inode: (u64, u64, i64, i64),
+}
+
+impl Stamp {
+    /// Of what is there now; links are followed.
+    pub fn of(path: &Path) -> Option<Self> {
+        let found = fs::metadata(path).ok()?;
+        #[cfg(unix)]
+        let inode = {
+            use std::os::unix::fs::MetadataExt;
+            (found.dev(), found.ino(), found.ctime(), found.ctime_nsec())
+        };
+        #[cfg(not(unix))]
+        let inode = Default::default();
+        Some(Self { length: found.len(), modified: found.modified().ok(), inode })
+    }
+}

@@ -1,0 +1,62 @@
+//! What is remembered between runs: where windows and panels were. Each thing is a JSON file in the folder for that.
+
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use haze::Error;
+use haze::assets::json;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::files;
+
+fn path_of(folder: &Path, name: &str) -> PathBuf {
+    folder.join(name).with_extension("json")
+}
+
+/// What was remembered under a name, or the default; with what was wrong with the file if there was one.
+pub fn recall<T: DeserializeOwned + Default>(folder: &Path, name: &str) -> (T, Option<Error>) {
+    let path = path_of(folder, name);
+    match files::read_text(&path).and_then(|text| json::parse(&path, &text)) {
+        Ok(value) => (value, None),
+        Err(Error::Io { error, .. }) if error.kind() == ErrorKind::NotFound => (T::default(), None),
+        Err(error) => (T::default(), Some(error)),
+    }
+}
+
+/// Remembers a value under a name.
+pub fn remember<T: Serialize>(folder: &Path, name: &str, value: &T) -> Result<(), Error> {
+    let path = path_of(folder, name);
+    files::make_folder(folder)?;
+    match serde_json::to_string_pretty(value) {
+        Ok(text) => files::write(&path, (text + "\n").as_bytes()),
+        Err(error) => Err(Error::Io { path, error: error.into() }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    #[serde(default)]
+    struct Layout {
+        width: f32,
+        open: Vec<String>,
+    }
+
+    #[test]
+    fn a_layout_comes_back_and_a_broken_one_is_said_once_and_forgotten() {
+        let folder = tempfile::tempdir().unwrap();
+        let state = folder.path().join("not/yet");
+        let found = || recall::<Layout>(&state, "layout");
+        assert!(matches!(found(), (layout, None) if layout == Layout::default()));
+        let layout = Layout { width: 0.1, open: vec!["lights".into()] };
+        remember(&state, "layout", &layout).unwrap();
+        assert!(matches!(found(), (found, None) if found == layout));
+        std::fs::write(state.join("layout.json"), "{\"width\": wide}").unwrap();
+        let (found, error) = found();
+        let error = error.unwrap().to_string();
+        assert!(found == Layout::default() && error.contains("layout.json:1:11: width: no value"), "{error}");
+    }
+}

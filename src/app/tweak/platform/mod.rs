@@ -1,0 +1,9 @@
+//! Everything that touches disk, clock or threads: the rest of the tweaker runs wherever this can be had.
+
+pub mod clock;
+pub mod files;
+pub mod folders;
+pub mod lock;
+pub mod memory;
+pub mod watch;
+pub mod worker;

@@ -1,0 +1,88 @@
+//! Notice from the system that something happened in a folder.
+
+use std::collections::{BTreeSet, HashSet};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use notify::event::{EventKind, ModifyKind};
+use notify::{ErrorKind, Event, RecommendedWatcher, RecursiveMode, Watcher as _};
+
+use super::route::places;
+use super::state::Shared;
+
+/// What makes a notifier: that of the system, but for tests of how it is when there is none.
+pub type Make = fn(Arc<Shared>) -> notify::Result<RecommendedWatcher>;
+
+/// The system's.
+pub fn system(shared: Arc<Shared>) -> notify::Result<RecommendedWatcher> {
+    notify::recommended_watcher(move |event| happened(&shared, event))
+}
+
+/// Called for all that happens in the folders, on a thread of notify's that must not wait.
+fn happened(shared: &Shared, event: notify::Result<Event>) {
+    let Ok(event) = event else { return shared.signal(true) };
+    if event.kind.is_access() {
+        return;
+    }
+    if event.need_rescan() || event.paths.is_empty() {
+        return shared.signal(true);
+    }
+    let writes = matches!(event.kind, EventKind::Modify(ModifyKind::Data(_)));
+    shared.signal_at(&event.paths, !writes);
+}
+
+/// The folders that are watched. Never the files: an editor that renames would take the watch away with the old one.
+pub struct Folders {
+    notifier: RecommendedWatcher,
+    watched: BTreeSet<PathBuf>,
+}
+
+impl Folders {
+    pub fn new(notifier: RecommendedWatcher) -> Self {
+        Self { notifier, watched: BTreeSet::new() }
+    }
+
+    /// Watches every folder on the way to these files, all anew if `is_lost`: one of them may be another by the same name.
+    ///
+    /// # Errors
+    /// Why a folder with a file in it cannot be watched.
+    pub fn follow(&mut self, shared: &Shared, files: &[PathBuf], is_lost: bool) -> Result<(), notify::Error> {
+        if is_lost {
+            std::mem::take(&mut self.watched).into_iter().for_each(|folder| drop(self.notifier.unwatch(&folder)));
+        }
+        /// What moves while it is looked at gives notice itself, once its folder is watched.
+        const MOST_LOOKS: u32 = 3;
+        for _ in 0..MOST_LOOKS {
+            let routes: Vec<_> = files.iter().map(|file| places(file)).collect();
+            let all: HashSet<_> = routes.iter().flatten().cloned().collect();
+            let ends: HashSet<_> = routes.iter().filter_map(|route| route.last()?.parent()).collect();
+            let folders: HashSet<_> = all.iter().filter_map(|place| place.parent()).collect();
+            shared.lock().places.clone_from(&all);
+            let is_left = |folder: &Path| !folders.contains(folder);
+            let left: Vec<_> = self.watched.iter().filter(|folder| is_left(folder)).cloned().collect();
+            for folder in left {
+                self.watched.remove(&folder);
+                let _ = self.notifier.unwatch(&folder);
+            }
+            // Outer ones first, so that they tell when an inner one moves.
+            let mut new: Vec<_> = folders.into_iter().filter(|folder| !self.watched.contains(*folder)).collect();
+            if new.is_empty() {
+                break;
+            }
+            new.sort();
+            for folder in new {
+                match self.notifier.watch(folder, RecursiveMode::NonRecursive) {
+                    Ok(()) => drop(self.watched.insert(folder.into())),
+                    Err(error) if is_final(&error) || ends.contains(folder) && folder.is_dir() => return Err(error),
+                    // Gone again, or a folder that may be gone through and not listed.
+                    Err(_) => {}
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn is_final(error: &notify::Error) -> bool {
+    matches!(error.kind, ErrorKind::MaxFilesWatch)
+}

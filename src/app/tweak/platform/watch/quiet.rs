@@ -1,0 +1,82 @@
+//! Whether a file is whole: it has stayed as it is for a while.
+
+use crate::app::tweak::platform::clock::{Duration, Instant};
+use crate::app::tweak::platform::files::Stamp;
+
+/// Programs that write a file in parts take less between them.
+pub const QUIET: Duration = Duration::from_millis(50);
+
+/// A file that is empty or gone will not stay so, if a program is about to write it anew.
+pub const QUIET_IF_HOLLOW: Duration = Duration::from_millis(200);
+
+/// A file as it was told last, and as it was seen last.
+pub struct Seen {
+    told: Option<Stamp>,
+    now: Option<Stamp>,
+    since: Instant,
+}
+
+/// What there is to do about a file.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Todo {
+    /// It is as it was told.
+    Nothing,
+    /// It has changed and is whole.
+    Tell,
+    /// It has changed; to be looked at again then.
+    LookAgain(Instant),
+}
+
+impl Seen {
+    pub fn new(stamp: Option<Stamp>, at: Instant) -> Self {
+        Self { told: stamp, now: stamp, since: at }
+    }
+
+    pub fn look(&mut self, stamp: Option<Stamp>, at: Instant) -> Todo {
+        if stamp != self.now {
+            (self.now, self.since) = (stamp, at);
+        }
+        if self.now == self.told {
+            return Todo::Nothing;
+        }
+        let is_hollow = stamp.is_none_or(|stamp| stamp.length == 0);
+        let whole = self.since + if is_hollow { QUIET_IF_HOLLOW } else { QUIET };
+        if at < whole {
+            return Todo::LookAgain(whole);
+        }
+        self.told = self.now;
+        Todo::Tell
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_told_once_when_it_is_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        let stamp = |text: &str| {
+            std::fs::write(&path, text).unwrap();
+            Stamp::of(&path)
+        };
+        let start = Instant::now();
+        let at = |milliseconds| start + Duration::from_millis(milliseconds);
+        let mut seen = Seen::new(None, start);
+        assert_eq!(seen.look(None, at(1000)), Todo::Nothing);
+        // Made, then written in two parts, 30 ms between.
+        assert_eq!(seen.look(stamp(""), at(1000)), Todo::LookAgain(at(1200)));
+        assert_eq!(seen.look(stamp("1"), at(1010)), Todo::LookAgain(at(1060)));
+        let whole = stamp("12");
+        assert_eq!(seen.look(whole, at(1040)), Todo::LookAgain(at(1090)));
+        assert_eq!(seen.look(whole, at(1060)), Todo::LookAgain(at(1090)));
+        assert_eq!(seen.look(whole, at(1090)), Todo::Tell);
+        assert_eq!(seen.look(whole, at(1200)), Todo::Nothing);
+        // Gone, and back as it was: nothing has happened. Gone for good is told.
+        assert_eq!(seen.look(None, at(1300)), Todo::LookAgain(at(1500)));
+        assert_eq!(seen.look(whole, at(1310)), Todo::Nothing);
+        assert_eq!(seen.look(None, at(1400)), Todo::LookAgain(at(1600)));
+        assert_eq!(seen.look(None, at(1600)), Todo::Tell);
+    }
+}

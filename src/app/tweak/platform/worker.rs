@@ -1,0 +1,194 @@
+//! One thread for work that a frame has no time for.
+
+use std::collections::VecDeque;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::{io, thread};
+
+/// Does jobs one after the other, on a thread of its own. Dropped, it cancels them all.
+pub struct Worker<T> {
+    shared: Arc<Shared<T>>,
+}
+
+/// Tells a job whether anybody still waits for it. Clones are one.
+#[derive(Clone, Debug, Default)]
+pub struct Ticket(Arc<AtomicBool>);
+
+impl Ticket {
+    /// The job is not begun any more, stops where it looks, and what it made is thrown away.
+    pub fn cancel(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// For long jobs to look at.
+    pub fn is_cancelled(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// What became of a job: its result, or nothing where it panicked.
+type Done<T> = (Ticket, Option<T>);
+
+type Job<T> = Box<dyn FnOnce(&Ticket) -> T + Send>;
+
+struct Shared<T> {
+    state: Mutex<State<T>>,
+    has_changed: Condvar,
+}
+
+struct State<T> {
+    queue: VecDeque<(Ticket, Job<T>)>,
+    running: Option<Ticket>,
+    done: VecDeque<Done<T>>,
+    is_over: bool,
+}
+
+impl<T> Shared<T> {
+    fn lock(&self) -> MutexGuard<'_, State<T>> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl<T: Send + 'static> Worker<T> {
+    /// Begins the thread. `wake` is called from it whenever a job is done.
+    pub fn new(name: &str, wake: impl Fn() + Send + 'static) -> io::Result<Self> {
+        let state = State { queue: VecDeque::new(), running: None, done: VecDeque::new(), is_over: false };
+        let shared = Arc::new(Shared { state: Mutex::new(state), has_changed: Condvar::new() });
+        let work = Arc::clone(&shared);
+        thread::Builder::new().name(name.into()).spawn(move || {
+            while let Some((ticket, job)) = work.next() {
+                let result = catch_unwind(AssertUnwindSafe(|| job(&ticket))).ok();
+                work.finish(ticket, result);
+                wake();
+            }
+        })?;
+        Ok(Self { shared })
+    }
+
+    /// Puts a job behind the others.
+    pub fn submit(&self, job: impl FnOnce(&Ticket) -> T + Send + 'static) -> Ticket {
+        let ticket = Ticket::default();
+        self.shared.lock().queue.push_back((ticket.clone(), Box::new(job)));
+        self.shared.has_changed.notify_all();
+        ticket
+    }
+
+    /// The result of a job that is done, oldest first; nothing in it if the job panicked.
+    pub fn poll(&self) -> Option<Option<T>> {
+        let mut state = self.shared.lock();
+        while let Some((ticket, result)) = state.done.pop_front() {
+            if !ticket.is_cancelled() {
+                return Some(result);
+            }
+        }
+        None
+    }
+
+    /// Whether something is being done, or waits for it.
+    pub fn is_busy(&self) -> bool {
+        let state = self.shared.lock();
+        state.running.iter().chain(state.queue.iter().map(|(ticket, _)| ticket)).any(|ticket| !ticket.is_cancelled())
+    }
+}
+
+impl<T> Shared<T> {
+    /// Waits for a job; none when it is over.
+    fn next(&self) -> Option<(Ticket, Job<T>)> {
+        let mut state = self.lock();
+        while !state.is_over {
+            match state.queue.pop_front() {
+                Some((ticket, _)) if ticket.is_cancelled() => {}
+                Some((ticket, job)) => {
+                    state.running = Some(ticket.clone());
+                    return Some((ticket, job));
+                }
+                None => state = self.has_changed.wait(state).unwrap_or_else(PoisonError::into_inner),
+            }
+        }
+        None
+    }
+
+    fn finish(&self, ticket: Ticket, result: Option<T>) {
+        let mut state = self.lock();
+        state.running = None;
+        if !ticket.is_cancelled() {
+            state.done.push_back((ticket, result));
+        }
+    }
+}
+
+impl<T> Drop for Worker<T> {
+    /// Does not wait: a job that does not look at its ticket would hold up the end of the program.
+    fn drop(&mut self) {
+        let mut state = self.shared.lock();
+        state.is_over = true;
+        state.running.iter().chain(state.queue.iter().map(|(ticket, _)| ticket)).for_each(Ticket::cancel);
+        state.queue.clear();
+        self.shared.has_changed.notify_all();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc;
+    use std::time::Duration;
+
+    use super::*;
+
+    const LONG: Duration = Duration::from_secs(20);
+
+    fn worker<T: Send + 'static>() -> (Worker<T>, mpsc::Receiver<()>) {
+        let (wake, woken) = mpsc::channel();
+        let wake = move || {
+            let _ = wake.send(());
+        };
+        (Worker::new("test", wake).unwrap(), woken)
+    }
+
+    #[test]
+    fn jobs_are_done_in_order_and_a_panic_ends_only_its_own() {
+        let (worker, woken) = worker();
+        for number in 0..4 {
+            worker.submit(move |_| if number == 1 { panic!("a job that panics, on purpose") } else { number });
+        }
+        (0..4).for_each(|_| woken.recv_timeout(LONG).unwrap());
+        let done: Vec<_> = std::iter::from_fn(|| worker.poll()).collect();
+        assert_eq!(done, [Some(0), None, Some(2), Some(3)]);
+        assert!(!worker.is_busy());
+    }
+
+    #[test]
+    fn what_is_cancelled_stops_and_gives_nothing() {
+        let (worker, woken) = worker();
+        let (begin, begun) = mpsc::channel();
+        let running = worker.submit(move |ticket| {
+            begin.send(()).unwrap();
+            while !ticket.is_cancelled() {
+                thread::yield_now();
+            }
+            "stopped"
+        });
+        let queued = worker.submit(|_| "never begun");
+        worker.submit(|_| "done");
+        begun.recv_timeout(LONG).unwrap();
+        queued.cancel();
+        running.cancel();
+        (0..2).for_each(|_| woken.recv_timeout(LONG).unwrap());
+        assert_eq!((worker.poll(), worker.poll()), (Some(Some("done")), None));
+    }
+
+    #[test]
+    fn dropping_it_ends_the_thread() {
+        let (over, is_over) = mpsc::channel::<()>();
+        let worker = Worker::new("test", || {}).unwrap();
+        worker.submit(move |ticket| {
+            let _until_done = over;
+            while !ticket.is_cancelled() {
+                thread::yield_now();
+            }
+        });
+        drop(worker);
+        assert_eq!(is_over.recv_timeout(LONG), Err(mpsc::RecvTimeoutError::Disconnected));
+    }
+}
