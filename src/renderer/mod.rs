@@ -1,6 +1,7 @@
 //! The frame on the GPU, pass by pass.
 
 mod context;
+mod counts;
 mod descriptor;
 mod draw;
 mod frame_bindings;
@@ -26,8 +27,11 @@ use crate::in_view::ViewGeometry;
 use crate::settings::ShadeTree;
 
 pub use context::Context;
+pub use counts::FrameCounts;
 pub use descriptor::Descriptor;
 pub use gpu::capabilities::read_only_depth_is_supported;
+pub use gpu::frame_times::{FrameTimes, PassTime};
+pub use gpu::timing::Timing;
 pub use memory::MemoryUse;
 pub use plan::SceneDepthKind;
 pub use targets::TargetViews;
@@ -54,6 +58,9 @@ pub struct Renderer {
     host: HostPass,
     exact_filtering: bool,
     submission: Submission,
+    timing: Option<Timing>,
+    /// The frame of `timing` that was prepared last.
+    timed_frame: Option<u64>,
     bindings: FrameBindings,
     slots: Vec<Slot>,
     /// The slots in sight, farthest first.
@@ -85,6 +92,8 @@ impl Renderer {
             host,
             exact_filtering: descriptor.exact_filtering,
             submission: Submission::new(device),
+            timing: None,
+            timed_frame: None,
             bindings: FrameBindings::new(device),
             slots: Vec::new(),
             order: Vec::new(),
@@ -158,6 +167,8 @@ impl Renderer {
         self.bindings.write(&gpu, &shared.layouts, &view, &frame.scene_depth)?;
         self.keep_slots(frame);
         self.submission.follow(encoder);
+        let timing = self.timing.as_ref();
+        self.timed_frame = timing.map(|timing| timing.enter(self.timed_frame));
 
         let host_size = host_size(&frame.scene_depth);
         let bindings = &self.bindings;
@@ -171,13 +182,13 @@ impl Renderer {
             self.order.push(Seen { slot: index, distance: slot.distance() });
             let Draw::Deferred(draw) = draw else { continue };
             // Scene depth at the target's resolution, and once more where what is read cannot be tested.
-            draw.depth_downsample.iter().chain(&draw.depth_copy).for_each(|pass| pass.record(encoder));
+            draw.depth_downsample.iter().chain(&draw.depth_copy).for_each(|pass| pass.record(encoder, timing));
             // All lights by normal, for the cubemap and motif variants of diffuse.
-            draw.diffuse_bake.iter().for_each(|pass| pass.record(encoder));
+            draw.diffuse_bake.iter().for_each(|pass| pass.record(encoder, timing));
             // Sprites to premultiplied normal + amount.
-            draw.accumulate.record(encoder);
+            draw.accumulate.record(encoder, timing);
             // Or counted, where that is to be shown.
-            draw.overdraw.iter().for_each(|pass| pass.record(encoder));
+            draw.overdraw.iter().for_each(|pass| pass.record(encoder, timing));
         }
         // Far to near; at one distance as the host has them.
         self.order.sort_by(|a, b| b.distance.total_cmp(&a.distance));
@@ -196,16 +207,21 @@ impl Renderer {
     pub fn render_stage(&self, pass: &mut wgpu::RenderPass<'_>, stage: ShadeTree) {
         let Some(view) = self.view.filter(|_| !self.order.is_empty()) else { return };
         self.submission.follow_pass(pass);
+        let timing = self.timing.as_ref();
         set_part(pass, view.origin, view.size);
         for seen in &self.order {
             match self.slots[seen.slot].draw() {
                 // Every sprite lit per fragment, for systems that ask for the classic way.
-                Some(Draw::Forward(forward)) if stage.is_picture() => forward.record(pass),
+                Some(Draw::Forward(forward)) if stage.is_picture() => {
+                    Timing::inside(timing, "forward", pass, |pass| forward.record(pass));
+                }
                 Some(Draw::Deferred(draw)) => {
                     // The box, lit once per pixel.
-                    draw.transfer.record(pass, stage);
+                    Timing::inside(timing, "transfer", pass, |pass| draw.transfer.record(pass, stage));
                     // The glow of lights behind it.
-                    draw.specular_scatter.iter().filter(|_| stage.glows()).for_each(|glow| glow.record(pass));
+                    for glow in draw.specular_scatter.iter().filter(|_| stage.glows()) {
+                        Timing::inside(timing, "specular_scatter", pass, |pass| glow.record(pass));
+                    }
                 }
                 _ => {}
             }
@@ -222,6 +238,26 @@ impl Renderer {
     pub fn memory_use(&self) -> MemoryUse {
         let own = MemoryUse { targets: 0, buffers: self.bindings.bytes() };
         self.slots.iter().map(Slot::memory_use).chain([own]).sum()
+    }
+
+    /// What the last [`prepare`](Self::prepare) gives [`render`](Self::render) to draw.
+    pub fn counts(&self) -> FrameCounts {
+        self.order.iter().map(|seen| self.slots[seen.slot].counts()).sum()
+    }
+
+    /// Measures the GPU time of this renderer's passes from the next [`prepare`](Self::prepare) on; `None`, as at first, measures
+    /// nothing and costs nothing.
+    ///
+    /// # Errors
+    /// [`Error::Field`] when it was made with another device.
+    pub fn set_timing(&mut self, timing: Option<&Timing>) -> Result<(), Error> {
+        if timing.is_some_and(|timing| !timing.is_of(&self.context.shared().device)) {
+            let expected = "one made with the device of the renderer's context";
+            return Err(FieldError::new("timing", "of another device", expected).into());
+        }
+        self.timing = timing.cloned();
+        self.timed_frame = None;
+        Ok(())
     }
 
     fn situation<'a>(

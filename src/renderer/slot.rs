@@ -3,6 +3,7 @@
 use glam::{UVec2, Vec3};
 
 use super::context::Shared;
+use super::counts::FrameCounts;
 use super::draw::{Assembly, Draw};
 use super::frame_bindings::FrameBindings;
 use super::gpu::Gpu;
@@ -96,6 +97,19 @@ impl Slot {
     pub fn memory_use(&self) -> MemoryUse {
         let buffers = self.uniform.size() + self.lights.size() + self.instances.bytes();
         MemoryUse { targets: self.targets.bytes(), buffers }
+    }
+
+    pub fn counts(&self) -> FrameCounts {
+        let (sprites, texels) = match &self.drawn {
+            None => return FrameCounts::default(),
+            Some(Drawn { draw: Draw::Forward(forward), .. }) => (&forward.sprites, UVec2::ZERO),
+            Some(Drawn { draw: Draw::Deferred(draw), in_view }) => (&draw.accumulate.sprites, in_view.rect.size),
+        };
+        FrameCounts {
+            systems: 1,
+            sprites: u64::from(sprites.count) * u64::from(sprites.loops),
+            texels: u64::from(texels.x) * u64::from(texels.y),
+        }
     }
 
     pub fn target_views(&self) -> Option<TargetViews<'_>> {

@@ -5,7 +5,7 @@ use haze::formula::colour::gamma_target_colour;
 use haze::headless::Headless;
 use haze::picture::Picture;
 use haze::wgpu::util::DeviceExt;
-use haze::{Context, Descriptor, Error, Frame, Particle, Particles, Renderer, SceneDepth, System, wgpu};
+use haze::{Context, Descriptor, Error, Frame, Particle, Particles, Renderer, SceneDepth, System, Timing, wgpu};
 
 use crate::stage::{BACKDROP, DepthKind, Stage};
 
@@ -50,6 +50,8 @@ pub struct Host {
     pub depth: wgpu::TextureView,
     pub linear: wgpu::TextureView,
     attached_depth: wgpu::TextureView,
+    /// Measures the host's pass, and is resolved at the end of a frame.
+    pub timing: Option<Timing>,
 }
 
 /// What a run leaves.
@@ -124,6 +126,7 @@ impl Host {
             depth: depth.create_view(&depth_aspect),
             linear: whole(&linear),
             attached_depth: whole(&attached_depth),
+            timing: None,
         })
     }
 
@@ -136,6 +139,9 @@ impl Host {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         self.prepare(gpu, &mut encoder, stage, particles)?;
         self.render(&mut encoder, stage);
+        if let Some(timing) = &self.timing {
+            timing.resolve(&mut encoder);
+        }
         gpu.submit(encoder)
     }
 
@@ -196,6 +202,7 @@ impl Host {
                 depth_ops: None,
                 stencil_ops: None,
             }),
+            timestamp_writes: self.timing.as_ref().and_then(|timing| timing.host_pass("host")),
             ..Default::default()
         });
         self.renderer.render_stage(&mut pass, stage.shade_tree);

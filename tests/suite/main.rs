@@ -25,5 +25,6 @@ mod shader_layout;
 mod soak;
 mod stage;
 mod techniques;
+mod timing;
 #[cfg(feature = "app")]
 mod upsampling;

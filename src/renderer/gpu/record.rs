@@ -1,5 +1,7 @@
 //! Recording: the passes that haze begins by itself, and buffers.
 
+use super::timing::Timing;
+
 /// Cleared to zero.
 pub(crate) fn color_attachment(view: &wgpu::TextureView) -> Option<wgpu::RenderPassColorAttachment<'_>> {
     Some(wgpu::RenderPassColorAttachment {
@@ -29,11 +31,13 @@ pub(crate) fn begin_pass<'a>(
     label: &'static str,
     color_attachments: &[Option<wgpu::RenderPassColorAttachment<'_>>],
     depth_stencil_attachment: Option<wgpu::RenderPassDepthStencilAttachment<'_>>,
+    timing: Option<&Timing>,
 ) -> wgpu::RenderPass<'a> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some(label),
         color_attachments,
         depth_stencil_attachment,
+        timestamp_writes: timing.and_then(|timing| timing.pass(label)),
         ..Default::default()
     })
 }

@@ -16,6 +16,7 @@ use crate::renderer::gpu::pipeline::{
     variant,
 };
 use crate::renderer::gpu::record::{begin_pass, color_attachment, set_part, tested_depth};
+use crate::renderer::gpu::timing::Timing;
 use crate::renderer::targets::{DEPTH_COPY_FORMAT, REDUCED_DEPTH_FORMAT, accumulation_layout};
 use crate::settings::{AccumulationFormat, NormalEncoding, Order};
 
@@ -94,10 +95,11 @@ pub(crate) struct Accumulate {
 }
 
 impl Accumulate {
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
         let attachments: [_; MAX_ATTACHMENTS] = std::array::from_fn(|index| color_attachment(self.targets.get(index)?));
         let attachments = &attachments[..self.targets.len()];
-        let mut pass = begin_pass(encoder, "accumulate", attachments, self.tested_depth.as_ref().map(tested_depth));
+        let mut pass =
+            begin_pass(encoder, "accumulate", attachments, self.tested_depth.as_ref().map(tested_depth), timing);
         set_part(&mut pass, UVec2::ZERO, self.size);
         pass.set_pipeline(&self.pipeline);
         self.groups.bind(&mut pass);

@@ -8,6 +8,7 @@ use glam::UVec2;
 
 use crate::renderer::gpu::pipeline::{PipelineParts, read_only_depth, switch, variant};
 use crate::renderer::gpu::record::{begin_pass, set_part, written_depth};
+use crate::renderer::gpu::timing::Timing;
 use crate::renderer::targets::{DEPTH_COPY_FORMAT, REDUCED_DEPTH_FORMAT};
 use crate::settings::DepthDownsample;
 
@@ -47,8 +48,8 @@ pub(crate) struct Downsample {
 }
 
 impl Downsample {
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        let mut pass = begin_pass(encoder, "depth_downsample", &[], Some(written_depth(&self.target)));
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
+        let mut pass = begin_pass(encoder, "depth_downsample", &[], Some(written_depth(&self.target)), timing);
         set_part(&mut pass, UVec2::ZERO, self.size);
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.frame, &[]);

@@ -9,6 +9,7 @@ use super::Groups;
 use crate::formula::diffuse_bake::baked_size_and_layers;
 use crate::renderer::gpu::pipeline::{PipelineParts, color_target, switch};
 use crate::renderer::gpu::record::{begin_pass, color_attachment};
+use crate::renderer::gpu::timing::Timing;
 use crate::renderer::targets::BAKED_DIFFUSE_FORMAT;
 use crate::settings::DiffuseMode;
 
@@ -46,9 +47,9 @@ pub(crate) struct DiffuseBake {
 }
 
 impl DiffuseBake {
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
         for (face, view) in (0..).zip(self.faces.iter()) {
-            let mut pass = begin_pass(encoder, "diffuse_bake", &[color_attachment(view)], None);
+            let mut pass = begin_pass(encoder, "diffuse_bake", &[color_attachment(view)], None, timing);
             pass.set_pipeline(&self.pipeline);
             self.groups.bind(&mut pass);
             pass.draw(3 * face..3 * face + 3, 0..1);

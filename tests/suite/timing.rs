@@ -1,0 +1,287 @@
+//! GPU time by pass, on a device that has timestamps.
+
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+
+use glam::UVec2;
+use haze::headless::Headless;
+use haze::settings::{DiffuseMode, Path};
+use haze::{Error, Frame, FrameTimes, Particles, SceneDepth, Settings, System, Timing, wgpu};
+
+use crate::common::gpu;
+use crate::creations;
+use crate::host::Host;
+use crate::stage::Stage;
+
+const SIZE: UVec2 = UVec2::new(160, 90);
+
+const FEATURES: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
+
+/// A device that measures; `None` where the adapter cannot.
+fn timed_gpu() -> Option<&'static Headless> {
+    static GPU: OnceLock<Headless> = OnceLock::new();
+    let gpu = GPU.get_or_init(|| Headless::with(wgpu::Limits::default(), FEATURES).unwrap());
+    let measures = gpu.device.features().contains(FEATURES);
+    if !measures {
+        println!("{} has no timestamps within passes", gpu.description());
+    }
+    measures.then_some(gpu)
+}
+
+/// A host that measures.
+fn timed_host(gpu: &Headless, stage: &Stage) -> (Host, Timing) {
+    let timing = Timing::new(&gpu.device, &gpu.queue).unwrap();
+    assert_eq!(timing.latest(), None);
+    let mut host = Host::new(gpu, stage).unwrap();
+    host.renderer.set_timing(Some(&timing)).unwrap();
+    host.timing = Some(timing.clone());
+    (host, timing)
+}
+
+/// The first result after `seen`. It has come when the submission is done, but for another thread whose poll may be the one that
+/// brings it.
+fn result_after(timing: &Timing, seen: Option<u64>) -> FrameTimes {
+    let start = Instant::now();
+    while start.elapsed() < Duration::from_secs(10) {
+        if let Some(times) = timing.latest().filter(|times| Some(times.frame) > seen) {
+            return times;
+        }
+        std::thread::yield_now();
+    }
+    panic!("no result came");
+}
+
+fn drawn(gpu: &Headless, host: &mut Host, timing: &Timing, stage: &Stage) -> FrameTimes {
+    let seen = timing.latest().map(|times| times.frame);
+    host.draw(gpu, stage).unwrap();
+    result_after(timing, seen)
+}
+
+fn names(times: &FrameTimes) -> Vec<&str> {
+    times.passes.iter().map(|pass| pass.name).collect()
+}
+
+/// Every pass of the deferred path.
+fn stage() -> Stage {
+    let mut stage = Stage::new(SIZE);
+    stage.settings.diffuse.mode = DiffuseMode::Cubemap;
+    stage
+}
+
+const DEFERRED: [&str; 6] = ["depth_downsample", "diffuse_bake", "accumulate", "host", "transfer", "specular_scatter"];
+
+#[test]
+fn every_pass_is_named_and_takes_time() {
+    let Some(gpu) = timed_gpu() else { return };
+    let mut stage = stage();
+    let (mut host, timing) = timed_host(gpu, &stage);
+    let mut frame = None;
+    for _ in 0..5 {
+        let times = drawn(gpu, &mut host, &timing, &stage);
+        assert_eq!(names(&times), DEFERRED);
+        assert!(Some(times.frame) > frame && times.discarded == 0, "{times:?}");
+        assert!(times.passes.iter().all(|pass| pass.ms > 0.0), "{times:?}");
+        frame = Some(times.frame);
+        let ms = |name: &str| times.passes.iter().find(|pass| pass.name == name).unwrap().ms;
+        // Intervals within an interval, and one after the other in the whole; f32 sums of six.
+        let within = ms("transfer") + ms("specular_scatter");
+        assert!(within <= ms("host") * 1.0001, "{times:?}");
+        assert!(times.smoke_ms() - within + ms("host") <= times.whole_ms * 1.0001, "{times:?}");
+        let own: f32 = DEFERRED.iter().filter(|name| **name != "host").map(|name| ms(name)).sum();
+        assert!((times.smoke_ms() - own).abs() < 1.0e-5 * own, "{times:?}");
+        assert!(times.passes.iter().all(|pass| pass.of_host == (pass.name == "host")));
+    }
+    stage.settings.path = Path::Forward;
+    assert_eq!(names(&drawn(gpu, &mut host, &timing, &stage)), ["host", "forward"]);
+    stage.particles.clear();
+    assert_eq!(names(&drawn(gpu, &mut host, &timing, &stage)), ["host"]);
+}
+
+#[test]
+fn a_renderer_without_timing_is_not_measured() {
+    let Some(gpu) = timed_gpu() else { return };
+    let stage = stage();
+    let (mut host, timing) = timed_host(gpu, &stage);
+    assert_eq!(names(&drawn(gpu, &mut host, &timing, &stage)).len(), 6);
+    host.renderer.set_timing(None).unwrap();
+    assert_eq!(names(&drawn(gpu, &mut host, &timing, &stage)), ["host"]);
+    // A frame with nothing in it is a result, too: the smoke costs nothing now.
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let seen = timing.latest().map(|times| times.frame);
+    timing.resolve(&mut encoder);
+    gpu.submit(encoder).unwrap();
+    let times = result_after(&timing, seen);
+    assert_eq!((names(&times), times.smoke_ms(), times.whole_ms), (vec![], 0.0, 0.0));
+}
+
+#[test]
+fn systems_add_up() {
+    let Some(gpu) = timed_gpu() else { return };
+    let stage = stage();
+    let (mut host, timing) = timed_host(gpu, &stage);
+    let light = stage.settings;
+    let mut heavy = light;
+    heavy.sprite.debug_loop = 64;
+    heavy.accumulate.scale = 1;
+    let mut measure = |settings: &[&Settings]| {
+        let systems: Vec<_> = (0..)
+            .zip(settings)
+            .map(|(key, settings)| System {
+                key,
+                ..System::new(Particles::Slice(&stage.particles), settings, &host.material)
+            })
+            .collect();
+        let frame = Frame {
+            lights: &stage.lights,
+            systems: &systems,
+            ..Frame::new(stage.view, SceneDepth::Buffer(&host.depth))
+        };
+        let seen = timing.latest().map(|times| times.frame);
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        host.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, &frame).unwrap();
+        timing.resolve(&mut encoder);
+        gpu.submit(encoder).unwrap();
+        let times = result_after(&timing, seen);
+        assert_eq!((names(&times).len(), times.discarded), (3, 0), "{times:?}");
+        (times.passes[2].ms, host.renderer.counts())
+    };
+    measure(&[&light, &heavy]);
+    let (alone, counts) = measure(&[&light]);
+    assert_eq!((counts.systems, counts.sprites), (1, 60));
+    // Whichever comes last: 64 times the sprites on 4 times the texels are more than 3 times the work on any machine.
+    for both in [[&light, &heavy], [&heavy, &light]] {
+        let (ms, of_both) = measure(&both);
+        assert!(ms > 3.0 * alone, "{ms} ms, alone {alone} ms");
+        assert_eq!((of_both.systems, of_both.sprites), (2, 60 + 64 * 60));
+        assert!((4.5..5.5).contains(&(of_both.texels as f32 / counts.texels as f32)), "{of_both:?} {counts:?}");
+    }
+}
+
+#[test]
+fn a_device_without_timestamps_measures_nothing() {
+    let plain = gpu();
+    assert!(!plain.device.features().contains(wgpu::Features::TIMESTAMP_QUERY));
+    assert!(Timing::new(&plain.device, &plain.queue).is_none());
+}
+
+#[test]
+fn another_devices_timing_is_refused() {
+    let Some(gpu) = timed_gpu() else { return };
+    if gpu.adapter.get_info().backend == wgpu::Backend::Gl {
+        return; // as what_belongs_to_another_device_is_refused
+    }
+    let descriptor = wgpu::DeviceDescriptor { required_features: FEATURES, ..Default::default() };
+    let (device, queue) = pollster::block_on(gpu.adapter.request_device(&descriptor)).unwrap();
+    let of_another = Timing::new(&device, &queue).unwrap();
+    let (mut host, timing) = timed_host(gpu, &stage());
+    let refused = host.renderer.set_timing(Some(&of_another));
+    let Err(Error::Field(error)) = refused else { panic!("{refused:?}") };
+    assert_eq!(error.field, "timing");
+    // The one before stays.
+    assert_eq!(names(&drawn(gpu, &mut host, &timing, &stage())), DEFERRED);
+}
+
+#[test]
+fn without_timestamps_inside_passes_the_host_measures_its_own() {
+    let gpu = Headless::with(wgpu::Limits::default(), wgpu::Features::TIMESTAMP_QUERY).unwrap();
+    if !gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
+        return;
+    }
+    let (mut host, timing) = timed_host(&gpu, &stage());
+    let times = drawn(&gpu, &mut host, &timing, &stage());
+    assert_eq!((names(&times), times.discarded), (DEFERRED[..4].to_vec(), 0));
+}
+
+#[test]
+fn dropped_encoders_leave_no_trace() {
+    let Some(gpu) = timed_gpu() else { return };
+    let stage = stage();
+    let (mut host, timing) = timed_host(gpu, &stage);
+    let first = drawn(gpu, &mut host, &timing, &stage);
+    // More often than there are buffers and queries.
+    for round in 0..200 {
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        host.prepare(gpu, &mut encoder, &stage, Particles::Slice(&stage.particles)).unwrap();
+        if round % 3 > 0 {
+            host.render(&mut encoder, &stage);
+        }
+        if round % 3 > 1 {
+            timing.resolve(&mut encoder);
+        }
+    }
+    assert_eq!(timing.latest(), Some(first));
+    for _ in 0..2 {
+        let times = drawn(gpu, &mut host, &timing, &stage);
+        assert_eq!((names(&times), times.discarded), (DEFERRED.to_vec(), 0));
+    }
+}
+
+#[test]
+fn only_the_frame_that_is_resolved_counts() {
+    let Some(gpu) = timed_gpu() else { return };
+    let mut stage = stage();
+    let (mut host, timing) = timed_host(gpu, &stage);
+    host.timing = None;
+    stage.settings.path = Path::Forward;
+    host.draw(gpu, &stage).unwrap();
+    stage.settings.path = Path::Auto;
+    host.timing = Some(timing.clone());
+    let times = drawn(gpu, &mut host, &timing, &stage);
+    assert_eq!((names(&times), times.discarded), (DEFERRED.to_vec(), 0));
+}
+
+#[test]
+fn labels_that_are_not_used_or_do_not_fit_are_counted() {
+    let Some(gpu) = timed_gpu() else { return };
+    let stage = stage();
+    let (mut host, timing) = timed_host(gpu, &stage);
+    let mut discarded = |asked| {
+        let given = (0..asked).filter(|_| timing.host_pass("unused").is_some()).count();
+        let times = drawn(gpu, &mut host, &timing, &stage);
+        assert_eq!(names(&times).contains(&"host"), given < 32);
+        assert!(!names(&times).contains(&"unused"));
+        times.discarded
+    };
+    assert_eq!(discarded(0), 0);
+    // This query holds what the host's pass wrote in the frame before.
+    assert_eq!(discarded(1), 1);
+    // Thirty-two of nothing; eight and the host's pass do not fit.
+    assert_eq!(discarded(40), 32 + 8 + 1);
+    assert_eq!(discarded(0), 0);
+}
+
+#[test]
+fn frames_in_flight_beyond_the_buffers_are_left_out() {
+    if timed_gpu().is_none() {
+        return;
+    }
+    // A device of its own: no other thread's poll may bring results later.
+    let gpu = &Headless::with(wgpu::Limits::default(), FEATURES).unwrap();
+    let stage = stage();
+    let (mut host, timing) = timed_host(gpu, &stage);
+    let recorded = |_| {
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        timing.resolve(&mut encoder);
+        encoder
+    };
+    let held = [(); 4].map(recorded);
+    host.draw(gpu, &stage).unwrap();
+    assert_eq!(timing.latest(), None);
+    for encoder in held {
+        gpu.submit(encoder).unwrap();
+    }
+    let times = drawn(gpu, &mut host, &timing, &stage);
+    assert_eq!((names(&times), times.frame, times.discarded), (DEFERRED.to_vec(), 5, 0));
+}
+
+#[test]
+fn steady_frames_create_nothing() {
+    let Some(gpu) = timed_gpu() else { return };
+    let stage = stage();
+    let (mut host, timing) = timed_host(gpu, &stage);
+    drawn(gpu, &mut host, &timing, &stage);
+    for _ in 0..10 {
+        let created = creations::count(|| host.draw(gpu, &stage).unwrap());
+        assert_eq!(created, 0);
+    }
+}
