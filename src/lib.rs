@@ -82,7 +82,7 @@ pub use renderer::{
     Context, Descriptor, FrameCounts, FrameTimes, MemoryUse, PassTime, Renderer, SceneDepthKind, TargetViews, Timing,
     WarmUp, read_only_depth_is_supported, shader,
 };
-pub use settings::Settings;
+pub use settings::{ScaleBudget, Settings};
 
 pub use glam;
 pub use wgpu;

@@ -5,6 +5,7 @@
 use crate::error::FieldError;
 
 mod accumulate;
+mod budget;
 pub(crate) mod choice;
 pub(crate) mod fields;
 mod lighting;
@@ -17,6 +18,7 @@ mod walk;
 pub use accumulate::{
     Accumulate, AccumulationFormat, DepthDownsample, DepthSource, NormalDecode, NormalEncoding, Order, Upsample,
 };
+pub use budget::{Budget, ScaleBudget};
 pub use choice::Choice;
 pub(crate) use choice::choice;
 pub use fields::{FieldVisitor, Fields, PictureRole, validate};
