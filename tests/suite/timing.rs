@@ -217,6 +217,36 @@ fn dropped_encoders_leave_no_trace() {
 }
 
 #[test]
+fn queries_asked_for_before_a_frame_starts_over_do_no_harm() {
+    let Some(gpu) = timed_gpu() else { return };
+    let mut stage = stage();
+    stage.attach_depth = false;
+    let (mut host, timing) = timed_host(gpu, &stage);
+    let encoder = || gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    host.prepare(gpu, &mut encoder(), &stage, Particles::Slice(&stage.particles)).unwrap();
+    let timestamp_writes = timing.host_pass("host");
+    let mut encoder = encoder();
+    host.prepare(gpu, &mut encoder, &stage, Particles::Slice(&stage.particles)).unwrap();
+    let view = host.colour.create_view(&wgpu::TextureViewDescriptor::default());
+    let attachment = wgpu::RenderPassColorAttachment {
+        view: &view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations::default(),
+    };
+    host.renderer.render(&mut encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &[Some(attachment)],
+        timestamp_writes,
+        ..Default::default()
+    }));
+    timing.resolve(&mut encoder);
+    // One query written twice in a pass would be an error of wgpu.
+    gpu.submit(encoder).unwrap();
+    let times = result_after(&timing, None);
+    assert_eq!((names(&times).len(), times.discarded), (5, 0), "{times:?}");
+}
+
+#[test]
 fn only_the_frame_that_is_resolved_counts() {
     let Some(gpu) = timed_gpu() else { return };
     let mut stage = stage();
