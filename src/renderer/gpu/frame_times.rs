@@ -26,7 +26,7 @@ pub struct PassTime {
 }
 
 impl FrameTimes {
-    /// What the smoke costs, milliseconds: all passes but the host's.
+    /// What the smoke costs, milliseconds: all passes that the device could measure, but the host's.
     pub fn smoke_ms(&self) -> f32 {
         self.passes.iter().filter(|pass| !pass.of_host).map(|pass| pass.ms).sum()
     }
