@@ -187,4 +187,6 @@ fn the_budget_may_be_changed_while_it_is_held() {
     host.chooser.budget.min_scale = 0;
     host.chooser.budget.milliseconds = -1.0;
     assert_eq!(host.scales(100, |_| load, 0.1).last(), Some(&1));
+    host.chooser.budget.max_scale = u32::MAX;
+    assert_eq!(host.scales(1000, |_| Load { fixed: f32::MAX, falling: 0.0 }, 0.0).last(), Some(&16));
 }

@@ -5,6 +5,9 @@ use glam::UVec2;
 use super::choice::choice;
 use super::table::settings;
 
+/// The coarsest scale of the target, pixels per texel.
+pub(super) const COARSEST: u32 = 16;
+
 choice! {
     /// Texel format of the accumulation target.
     AccumulationFormat {
@@ -111,7 +114,7 @@ settings! {
         /// For the order `weighted`: a normal counts e^(-depth_weight · the optical depth in front of its sprite). 0: all alike.
         depth_weight: f32 = 0.4, number(0.0..=4.0, "");
         /// Pixels of the picture per texel of the target, along each side. Cost falls with its square.
-        scale: u32 = 2, integer(1..=16, "pixels");
+        scale: u32 = 2, integer(1..=COARSEST, "pixels");
         /// Most texels along the picture's longer side; raises `scale` on large pictures.
         max_side: u32 = 4096, integer(16..=16384, "texels");
         /// Which scene depth sprites are compared with.

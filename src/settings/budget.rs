@@ -1,5 +1,6 @@
 //! Which scale of the accumulation target holds a budget of GPU time.
 
+use super::accumulate::COARSEST;
 use super::table::settings;
 
 settings! {
@@ -9,9 +10,9 @@ settings! {
         /// GPU time of the smoke that is held where a scale within the limits can.
         milliseconds: f32 = 2.0, number(0.05..=100.0, "ms");
         /// The finest scale that is chosen.
-        min_scale: u32 = 1, integer(1..=16, "pixels");
+        min_scale: u32 = 1, integer(1..=COARSEST, "pixels");
         /// The coarsest: it is kept where none holds the budget.
-        max_scale: u32 = 8, integer(|this| this.min_scale..=16, "pixels");
+        max_scale: u32 = 8, integer(|this| this.min_scale..=COARSEST, "pixels");
     }
 }
 
@@ -116,14 +117,15 @@ impl ScaleBudget {
 
     fn decide(&mut self, median: f32) {
         let limit = self.budget.milliseconds;
-        if median > OVERLOAD * limit && self.scale < self.budget.max_scale {
+        let may_be_coarser = self.scale < self.limits().1;
+        if median > OVERLOAD * limit && may_be_coarser {
             return self.coarser(median);
         }
         let before = self.seen.mean;
         let Some(mean) = self.seen.block(median) else { return };
         self.learn(mean);
         // Twice running: a load that just fits is not given up for noise.
-        if mean.min(before) > limit && self.scale < self.budget.max_scale {
+        if mean.min(before) > limit && may_be_coarser {
             self.coarser(mean);
         } else if self.seen.blocks.is_multiple_of(self.patience) {
             self.finer(mean);
@@ -137,7 +139,7 @@ impl ScaleBudget {
             let did_last = self.seen.blocks >= MAX_PATIENCE;
             self.patience = if did_last { PATIENCE } else { MAX_PATIENCE.min(2 * self.patience) };
         }
-        let last = self.budget.max_scale.min(2 * self.scale);
+        let last = self.limits().1.min(2 * self.scale);
         // Not knowing better, all of it falls with the scale.
         let cost = |scale: &u32| ms * relative_cost(self.share.unwrap_or(1.0), self.scale, *scale);
         let scale = (self.scale + 1..=last).find(|scale| cost(scale) <= self.budget.milliseconds);
@@ -150,7 +152,7 @@ impl ScaleBudget {
         // Not knowing better, a finer scale is free; one step tells.
         let (share, first) = self.share.map_or((0.0, self.scale - 1), |share| (share, self.scale.div_ceil(2)));
         let fits = |scale: &u32| peak * relative_cost(share, self.scale, *scale) <= ROOM * self.budget.milliseconds;
-        if let Some(scale) = (first.max(self.budget.min_scale)..self.scale).find(fits) {
+        if let Some(scale) = (first.max(self.limits().0)..self.scale).find(fits) {
             self.go_to(scale, ms);
         }
     }
@@ -171,9 +173,15 @@ impl ScaleBudget {
         self.share = Some((1.0 - ratio) / (1.0 - now - ratio * (1.0 - before)));
     }
 
+    /// The budget's, made to be some.
+    fn limits(&self) -> (u32, u32) {
+        let min = self.budget.min_scale.clamp(1, COARSEST);
+        (min, self.budget.max_scale.clamp(min, COARSEST))
+    }
+
     fn keep_within_limits(&mut self) {
-        let min = self.budget.min_scale.max(1);
-        let scale = self.scale.clamp(min, self.budget.max_scale.max(min));
+        let (min, max) = self.limits();
+        let scale = self.scale.clamp(min, max);
         if scale != self.scale {
             (self.scale, self.before, self.is_finer, self.seen) = (scale, None, false, Seen::default());
         }
