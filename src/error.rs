@@ -91,6 +91,20 @@ pub enum Error {
         reason: String,
     },
 
+    /// A shader could not be used.
+    #[error("{}:{line}:{column}: {reason}", name(path))]
+    Shader {
+        /// The file that has the mistake, or `builtin:NAME`.
+        path: PathBuf,
+        /// 1-based. A mistake that is of no one place, an entry point that is missing for example, stands at 1:1 of the pass's
+        /// file.
+        line: usize,
+        /// 1-based, characters.
+        column: usize,
+        /// What is wrong.
+        reason: String,
+    },
+
     /// A value inside a preset or gradient file is out of range.
     #[error("{}: {error}", name(path))]
     JsonField {

@@ -128,7 +128,12 @@ fn usage_line(mut error: clap::Error) -> String {
 
 fn exit_code(error: &Error) -> u8 {
     match error {
-        Error::Field(_) | Error::Image { .. } | Error::Json { .. } | Error::JsonField { .. } | Error::NoDevice(_) => 2,
+        Error::Field(_)
+        | Error::Image { .. }
+        | Error::Json { .. }
+        | Error::JsonField { .. }
+        | Error::Shader { .. }
+        | Error::NoDevice(_) => 2,
         Error::Picture { error, .. } => exit_code(error),
         // A file that is not there, or may not be read, is bad input; a full disk is not.
         Error::Io { error, .. } => match error.kind() {

@@ -8,6 +8,8 @@ use super::gpu::capabilities::read_only_depth_is_supported;
 use super::layouts::Layouts;
 use super::material::{SharedTextures, create_material};
 use super::passes::Passes;
+use super::plan::one_of_each;
+use super::shader::{Sources, checked_shader, embedded_shader};
 use crate::assets::material::MaterialAssets;
 use crate::error::{Error, FieldError};
 use crate::frame::Material;
@@ -42,7 +44,31 @@ impl Context {
     /// `get_data` when it likes.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, pipeline_cache: Option<&wgpu::PipelineCache>) -> Self {
         let layouts = Layouts::new(device);
-        let passes = Passes::new(device, &layouts, pipeline_cache);
+        let Ok(passes) = Passes::new(device, &layouts, pipeline_cache, |name| embedded_shader(device, name));
+        Self::assemble(device, queue, layouts, passes)
+    }
+
+    /// The same with shaders that someone works on. They are compiled and checked before the context is made: the modules, and a
+    /// pipeline of every pass. What only other settings bring to light, [`Renderer::warm_up`](crate::Renderer::warm_up)
+    /// reports. On its error keep the context that there is, and its renderers.
+    ///
+    /// # Errors
+    /// [`Error::Shader`]: the first mistake, with its place in the file that has it.
+    pub fn with_shaders(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        pipeline_cache: Option<&wgpu::PipelineCache>,
+        sources: &Sources,
+    ) -> Result<Self, Error> {
+        let layouts = Layouts::new(device);
+        let passes = Passes::new(device, &layouts, pipeline_cache, |name| checked_shader(device, name, sources))?;
+        let context = Self::assemble(device, queue, layouts, passes);
+        let shared = context.shared();
+        one_of_each(shared.read_only_depth).iter().try_for_each(|plan| shared.passes.compile(device, plan))?;
+        Ok(context)
+    }
+
+    fn assemble(device: &wgpu::Device, queue: &wgpu::Queue, layouts: Layouts, passes: Passes) -> Self {
         static CONTEXTS: AtomicU64 = AtomicU64::new(0);
         Self(Arc::new(Shared {
             number: CONTEXTS.fetch_add(1, Ordering::Relaxed),

@@ -124,7 +124,8 @@ impl Renderer {
     /// frame's thread, make a second renderer there on the same [`Context`] and with the same [`Descriptor`].
     ///
     /// # Errors
-    /// [`Error::Field`] naming the view or setting that cannot be used.
+    /// [`Error::Field`] naming the view or setting that cannot be used, [`Error::Shader`] naming the file of a pass of which the
+    /// device takes no such pipeline: one of [`Context::with_shaders`], or a mistake of the driver's.
     pub fn warm_up(&self, expected: &WarmUp<'_>) -> Result<(), Error> {
         let view = ViewGeometry::new(&expected.view)?;
         let situation = self.situation(&view, expected.scene_depth, expected.stages);
@@ -132,7 +133,7 @@ impl Renderer {
         for (index, settings) in expected.settings.iter().enumerate() {
             settings.validate(|| format!("settings[{index}]"))?;
             for back_faces in [false, true] {
-                shared.passes.compile(&shared.device, &plan(&situation, settings, back_faces));
+                shared.passes.compile(&shared.device, &plan(&situation, settings, back_faces))?;
             }
         }
         Ok(())

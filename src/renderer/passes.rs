@@ -1,6 +1,6 @@
 //! The shaders of all passes and their pipelines.
 
-use super::gpu::pipeline::Variants;
+use super::gpu::pipeline::{Shader, Variants};
 use super::layouts::Layouts;
 use super::pass::accumulate::{self, AccumulateKey};
 use super::pass::depth_downsample::{self, DepthDownsampleKey};
@@ -9,7 +9,7 @@ use super::pass::forward::{self, ForwardKey};
 use super::pass::specular_scatter::{self, SpecularScatterKey};
 use super::pass::transfer::{self, TransferKey};
 use super::plan::Plan;
-use super::shader;
+use crate::error::Error;
 
 /// Independent of any size and view: shaders and their pipelines.
 #[derive(Debug)]
@@ -23,20 +23,31 @@ pub(crate) struct Passes {
 }
 
 impl Passes {
-    /// `cache`: the host's, where the backend has one.
-    pub fn new(device: &wgpu::Device, layouts: &Layouts, cache: Option<&wgpu::PipelineCache>) -> Self {
+    /// `shader` gives the shader of a pass, by name; `cache` is the host's, where the backend has one.
+    pub fn new<E>(
+        device: &wgpu::Device,
+        layouts: &Layouts,
+        cache: Option<&wgpu::PipelineCache>,
+        shader: impl Fn(&'static str) -> Result<Shader, E>,
+    ) -> Result<Self, E> {
         let frame_and_system = [Some(&layouts.frame), Some(&layouts.system)];
         let material = [Some(&layouts.frame), Some(&layouts.system), Some(&layouts.material)];
         let with = |inputs| [Some(&layouts.frame), Some(&layouts.system), Some(&layouts.material), Some(inputs)];
         let (accumulate, transfer) = (with(&layouts.accumulate), with(&layouts.transfer));
-        Self {
-            depth_downsample: variants(device, "depth_downsample", &frame_and_system, cache),
-            diffuse_bake: variants(device, "diffuse_bake", &material, cache),
-            accumulate: variants(device, "accumulate", &accumulate, cache),
-            transfer: variants(device, "transfer", &transfer, cache),
-            specular_scatter: variants(device, "specular_scatter", &transfer, cache),
-            forward: variants(device, "forward", &material, cache),
+        macro_rules! variants {
+            ($pass:ident, $groups:expr) => {{
+                let name = stringify!($pass);
+                Variants::new(device, name, shader(name)?, $pass::describe, $groups, cache)
+            }};
         }
+        Ok(Self {
+            depth_downsample: variants!(depth_downsample, &frame_and_system),
+            diffuse_bake: variants!(diffuse_bake, &material),
+            accumulate: variants!(accumulate, &accumulate),
+            transfer: variants!(transfer, &transfer),
+            specular_scatter: variants!(specular_scatter, &transfer),
+            forward: variants!(forward, &material),
+        })
     }
 
     /// Pipelines compiled so far.
@@ -49,60 +60,44 @@ impl Passes {
             + self.forward.len()
     }
 
-    /// Compiles what a plan draws with.
-    pub fn compile(&self, device: &wgpu::Device, plan: &Plan<'_>) {
+    /// Compiles what a plan draws with, or says what is wrong with the shaders.
+    pub fn compile(&self, device: &wgpu::Device, plan: &Plan<'_>) -> Result<(), Error> {
         match plan {
-            Plan::Nothing => {}
-            Plan::Forward(plan) => drop(self.forward(device, plan.key)),
+            Plan::Nothing => Ok(()),
+            Plan::Forward(plan) => self.forward.check(device, plan.key),
             Plan::Deferred(plan) => {
-                for key in plan.depth_downsample.into_iter().chain(plan.depth_copy) {
-                    self.depth_downsample(device, key);
-                }
-                plan.diffuse_bake.map(|key| self.diffuse_bake(device, key));
-                for key in std::iter::once(plan.accumulate).chain(plan.overdraw) {
-                    self.accumulate(device, key);
-                }
-                for key in plan.transfers() {
-                    self.transfer(device, key);
-                }
-                plan.specular_scatter.map(|key| self.specular_scatter(device, key));
+                let mut downsamples = plan.depth_downsample.into_iter().chain(plan.depth_copy);
+                downsamples.try_for_each(|key| self.depth_downsample.check(device, key))?;
+                plan.diffuse_bake.map_or(Ok(()), |key| self.diffuse_bake.check(device, key))?;
+                let mut accumulates = std::iter::once(plan.accumulate).chain(plan.overdraw);
+                accumulates.try_for_each(|key| self.accumulate.check(device, key))?;
+                plan.transfers().try_for_each(|key| self.transfer.check(device, key))?;
+                plan.specular_scatter.map_or(Ok(()), |key| self.specular_scatter.check(device, key))
             }
         }
     }
 
     pub fn depth_downsample(&self, device: &wgpu::Device, key: DepthDownsampleKey) -> wgpu::RenderPipeline {
-        self.depth_downsample.get(device, key, || depth_downsample::describe(key))
+        self.depth_downsample.get(device, key)
     }
 
     pub fn diffuse_bake(&self, device: &wgpu::Device, key: DiffuseBakeKey) -> wgpu::RenderPipeline {
-        self.diffuse_bake.get(device, key, || diffuse_bake::describe(key))
+        self.diffuse_bake.get(device, key)
     }
 
     pub fn accumulate(&self, device: &wgpu::Device, key: AccumulateKey) -> wgpu::RenderPipeline {
-        self.accumulate.get(device, key, || accumulate::describe(key))
+        self.accumulate.get(device, key)
     }
 
     pub fn transfer(&self, device: &wgpu::Device, key: TransferKey) -> wgpu::RenderPipeline {
-        self.transfer.get(device, key, || transfer::describe(key))
+        self.transfer.get(device, key)
     }
 
     pub fn specular_scatter(&self, device: &wgpu::Device, key: SpecularScatterKey) -> wgpu::RenderPipeline {
-        self.specular_scatter.get(device, key, || specular_scatter::describe(key))
+        self.specular_scatter.get(device, key)
     }
 
     pub fn forward(&self, device: &wgpu::Device, key: ForwardKey) -> wgpu::RenderPipeline {
-        self.forward.get(device, key, || forward::describe(key))
+        self.forward.get(device, key)
     }
-}
-
-fn variants<K: Copy + Eq + std::hash::Hash>(
-    device: &wgpu::Device,
-    name: &'static str,
-    groups: &[Option<&wgpu::BindGroupLayout>],
-    cache: Option<&wgpu::PipelineCache>,
-) -> Variants<K> {
-    // The sources are embedded and a test composes every one, so neither can fail; an empty module would be reported by
-    // the device like any other invalid shader.
-    let source = shader::source(&format!("{name}.wgsl")).and_then(|text| shader::compose(text).ok());
-    Variants::new(device, name, source.unwrap_or_default(), groups, cache)
 }

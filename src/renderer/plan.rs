@@ -10,7 +10,7 @@ use super::pass::sprites::SpriteKey;
 use super::pass::transfer::TransferKey;
 use crate::formula::diffuse_bake::baked_size_and_layers;
 use crate::frame::SceneDepth;
-use crate::settings::{DepthSource, Settings, ShadeTree, Technique};
+use crate::settings::{DepthSource, DiffuseMode, Path, Settings, ShadeTree, Technique};
 
 /// Which depth of the scene a host hands over, and the format of the buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,6 +103,24 @@ pub(crate) fn plan<'a>(situation: &Situation<'a>, settings: &Settings, back_face
         reversed: situation.reversed,
     };
     Plan::Forward(ForwardPlan { reads_linear, key })
+}
+
+/// Plans that draw with every pass between them, for a host of the plainest kind.
+pub(crate) fn one_of_each(read_only_depth: bool) -> [Plan<'static>; 2] {
+    let depth_format = wgpu::TextureFormat::Depth32Float;
+    let situation = Situation {
+        host: HostPass { depth_format: Some(depth_format), ..HostPass::plain(wgpu::TextureFormat::Rgba8Unorm) },
+        exact_filtering: false,
+        read_only_depth,
+        scene_depth: SceneDepthKind::Buffer(depth_format),
+        reversed: false,
+        mirrored: false,
+        stages: &[ShadeTree::Final],
+    };
+    let mut deferred = Settings::default();
+    deferred.diffuse.mode = DiffuseMode::Cubemap;
+    let forward = Settings { path: Path::Forward, ..Settings::default() };
+    [deferred, forward].map(|settings| plan(&situation, &settings, false))
 }
 
 fn deferred<'a>(
@@ -297,6 +315,15 @@ mod tests {
             settings.diffuse.mode = mode;
             let bakes = matches!(mode, DiffuseMode::Cubemap | DiffuseMode::Motif);
             assert_eq!(deferred(&situation(), &settings).diffuse_bake.is_some(), bakes, "{mode:?}");
+        }
+    }
+
+    #[test]
+    fn one_of_each_is_one_of_each() {
+        for read_only_depth in [true, false] {
+            let [Plan::Deferred(deferred), Plan::Forward(_)] = one_of_each(read_only_depth) else { panic!() };
+            assert!(deferred.depth_downsample.is_some() && deferred.diffuse_bake.is_some());
+            assert!(deferred.transfer.is_some() && deferred.specular_scatter.is_some());
         }
     }
 

@@ -22,6 +22,7 @@ mod lighting;
 mod presets;
 mod properties;
 mod shader_layout;
+mod shaders;
 mod soak;
 mod stage;
 mod techniques;

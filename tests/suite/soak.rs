@@ -3,7 +3,8 @@
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
-use haze::wgpu;
+use haze::shader::{self, Sources};
+use haze::{Context, wgpu};
 
 use crate::common::gpu;
 use crate::host::Host;
@@ -105,4 +106,33 @@ fn systems_that_come_and_go() {
         let present: Vec<_> = births.map(|key| (key, &particles[..15 + (key % 4) as usize * 15], settings)).collect();
         systems.frame(gpu(), &present[..1 + (frame / 400 % 4) as usize]).unwrap();
     });
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn two_hundred_reloads_of_shaders() {
+    let folder = tempfile::tempdir().unwrap();
+    let good = shader::source("transfer.wgsl").unwrap();
+    let texts = [
+        good.to_owned(),
+        good.replace("saturate(", "saturat("),
+        good.replace("fn fragment(", "fn fragments("),
+        good.replace("#import \"lib/colour.wgsl\"", "#import \"lib/color.wgsl\""),
+    ];
+    let stage = Stage::new(SIZE);
+    let mut reload = |step: u32| {
+        let text = step as usize % texts.len();
+        std::fs::write(folder.path().join("transfer.wgsl"), &texts[text]).unwrap();
+        let sources = Sources::from_folder(folder.path()).unwrap();
+        let context = Context::with_shaders(&gpu().device, &gpu().queue, None, &sources);
+        assert_eq!(context.is_ok(), text == 0);
+        if let Ok(context) = context {
+            Host::on(gpu(), &stage, Some(&context)).unwrap().draw(gpu(), &stage).unwrap();
+        }
+        // What was dropped is freed when the device is next looked after.
+        gpu().device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+    };
+    // The driver's compiler takes memory for good in a few large pieces, 5 MiB all in all, and then no more.
+    (0..100).for_each(&mut reload);
+    soak(200, reload);
 }

@@ -11,15 +11,25 @@ pub(crate) fn checked<T>(device: &wgpu::Device, create: impl FnOnce() -> T) -> R
     if cfg!(target_arch = "wasm32") {
         return Ok(create());
     }
-    let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    // What the driver's own compiler does not take is an internal error.
+    let scopes = [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::Validation].map(|kind| device.push_error_scope(kind));
     let created = create();
-    let answer = pin!(scope.pop()).poll(&mut Context::from_waker(Waker::noop()));
-    match answer {
-        Poll::Ready(Some(error)) => {
+    // The scope that was opened last is closed first.
+    let errors = scopes.into_iter().rev().filter_map(|scope| answer(scope.pop()).flatten());
+    match errors.reduce(|first, _| first) {
+        Some(error) => {
             let text = error.to_string();
             let last = text.lines().map(str::trim).rfind(|line| !line.is_empty());
             Err(last.unwrap_or("not valid").to_owned())
         }
-        Poll::Ready(None) | Poll::Pending => Ok(created),
+        None => Ok(created),
+    }
+}
+
+/// What is known at once; `None` in a browser.
+pub(crate) fn answer<T>(future: impl Future<Output = T>) -> Option<T> {
+    match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
+        Poll::Ready(answer) => Some(answer),
+        Poll::Pending => None,
     }
 }

@@ -2,13 +2,26 @@
 
 use std::collections::HashMap;
 use std::hash::Hash;
+use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use super::checked::checked;
+use crate::error::{Error, one_line};
+
+/// A pass's shader.
+#[derive(Debug)]
+pub(crate) struct Shader {
+    pub module: wgpu::ShaderModule,
+    /// The pass's file.
+    pub path: PathBuf,
+}
 
 /// A pass's shader, and its pipelines by what distinguishes them. Compiled when first asked for, from any thread.
 #[derive(Debug)]
 pub(crate) struct Variants<K> {
     name: &'static str,
-    module: wgpu::ShaderModule,
+    shader: Shader,
+    describe: fn(K) -> PipelineParts,
     layout: wgpu::PipelineLayout,
     cache: Option<wgpu::PipelineCache>,
     pipelines: Mutex<HashMap<K, wgpu::RenderPipeline>>,
@@ -29,29 +42,41 @@ impl<K: Copy + Eq + Hash> Variants<K> {
     pub fn new(
         device: &wgpu::Device,
         name: &'static str,
-        source: String,
+        shader: Shader,
+        describe: fn(K) -> PipelineParts,
         groups: &[Option<&wgpu::BindGroupLayout>],
         cache: Option<&wgpu::PipelineCache>,
     ) -> Self {
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(name),
-            source: wgpu::ShaderSource::Wgsl(source.into()),
-        });
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(name),
             bind_group_layouts: groups,
             immediate_size: 0,
         });
-        Self { name, module, layout, cache: cache.cloned(), pipelines: Mutex::default() }
+        Self { name, shader, describe, layout, cache: cache.cloned(), pipelines: Mutex::default() }
     }
 
     /// The pipeline for `key`, compiled the first time. Nobody waits meanwhile but who asks for it.
-    pub fn get(&self, device: &wgpu::Device, key: K, describe: impl FnOnce() -> PipelineParts) -> wgpu::RenderPipeline {
+    pub fn get(&self, device: &wgpu::Device, key: K) -> wgpu::RenderPipeline {
         let found = self.lock().get(&key).cloned();
-        found.unwrap_or_else(|| {
-            let compiled = self.compile(device, &describe());
-            self.lock().entry(key).or_insert(compiled).clone()
-        })
+        found.unwrap_or_else(|| self.keep(key, self.compile(device, key)))
+    }
+
+    /// Compiles the pipeline for `key`, or says what is wrong with the shader.
+    pub fn check(&self, device: &wgpu::Device, key: K) -> Result<(), Error> {
+        if self.lock().contains_key(&key) {
+            return Ok(());
+        }
+        let compiled = checked(device, || self.compile(device, key)).map_err(|reason| {
+            let reason = reason.replace("ShaderStages(VERTEX)", "vertex").replace("ShaderStages(FRAGMENT)", "fragment");
+            Error::Shader { path: self.shader.path.clone(), line: 1, column: 1, reason: one_line(reason) }
+        })?;
+        self.keep(key, compiled);
+        Ok(())
+    }
+
+    /// Another thread may have been first.
+    fn keep(&self, key: K, compiled: wgpu::RenderPipeline) -> wgpu::RenderPipeline {
+        self.lock().entry(key).or_insert(compiled).clone()
     }
 
     /// Pipelines compiled so far.
@@ -63,13 +88,14 @@ impl<K: Copy + Eq + Hash> Variants<K> {
         self.pipelines.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn compile(&self, device: &wgpu::Device, parts: &PipelineParts) -> wgpu::RenderPipeline {
+    fn compile(&self, device: &wgpu::Device, key: K) -> wgpu::RenderPipeline {
+        let parts = (self.describe)(key);
         let options = wgpu::PipelineCompilationOptions { constants: &parts.constants, ..Default::default() };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(self.name),
             layout: Some(&self.layout),
             vertex: wgpu::VertexState {
-                module: &self.module,
+                module: &self.shader.module,
                 entry_point: Some("vertex"),
                 compilation_options: options.clone(),
                 buffers: parts.buffers,
@@ -78,7 +104,7 @@ impl<K: Copy + Eq + Hash> Variants<K> {
             depth_stencil: parts.depth_stencil.clone(),
             multisample: wgpu::MultisampleState { count: parts.sample_count, ..Default::default() },
             fragment: Some(wgpu::FragmentState {
-                module: &self.module,
+                module: &self.shader.module,
                 entry_point: Some("fragment"),
                 compilation_options: options,
                 targets: &parts.targets,

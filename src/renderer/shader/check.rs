@@ -1,0 +1,55 @@
+//! Modules from sources, and what the compiler says against them, said of the file that has the mistake.
+
+use std::convert::Infallible;
+
+use super::compose::Composed;
+use super::sources::Sources;
+use super::words::{plain, pointed_at};
+use crate::error::Error;
+use crate::renderer::gpu::checked::{answer, checked};
+use crate::renderer::gpu::pipeline::Shader;
+
+/// The embedded shader of a pass.
+pub(crate) fn embedded_shader(device: &wgpu::Device, name: &'static str) -> Result<Shader, Infallible> {
+    // A test composes every one, so this cannot fail; an empty module would be reported by the device like any other.
+    let composed = Sources::embedded().compose(&file_of(name)).unwrap_or_default();
+    Ok(Shader { module: create(device, name, &composed), path: composed.path })
+}
+
+/// The shader of a pass, from sources that may have mistakes.
+///
+/// # Errors
+/// [`Error::Shader`]: the first one.
+pub(crate) fn checked_shader(device: &wgpu::Device, name: &'static str, sources: &Sources) -> Result<Shader, Error> {
+    let composed = sources.compose(&file_of(name))?;
+    let mut module = None;
+    let created = checked(device, || module.insert(create(device, name, &composed)).clone());
+    match created {
+        Ok(module) => Ok(Shader { module, path: composed.path }),
+        Err(reason) => Err(sources.unclosed().unwrap_or_else(|| {
+            let info = module.and_then(|module| answer(module.get_compilation_info()));
+            match info.and_then(|info| info.messages.into_iter().next()) {
+                Some(wgpu::CompilationMessage { message, location: Some(place), .. }) => {
+                    let of_naga = || {
+                        let line = place.line_number as usize;
+                        (line, composed.column(line, place.line_position as usize))
+                    };
+                    let (line, column) = pointed_at(&message, &composed.text).unwrap_or_else(of_naga);
+                    composed.mistake(line, column, &plain(&message))
+                }
+                _ => composed.mistake(1, 1, &reason),
+            }
+        })),
+    }
+}
+
+fn file_of(name: &str) -> String {
+    format!("{name}.wgsl")
+}
+
+fn create(device: &wgpu::Device, name: &'static str, composed: &Composed) -> wgpu::ShaderModule {
+    device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(name),
+        source: wgpu::ShaderSource::Wgsl(composed.text.as_str().into()),
+    })
+}

@@ -1,0 +1,103 @@
+//! One text out of many files, and the way back from its lines to theirs.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::sources::{File, IMPORT_COLUMN, Sources, import, is_inside};
+use crate::error::{Error, one_line};
+
+/// A text without imports.
+#[derive(Debug, Default)]
+pub(crate) struct Composed {
+    pub text: String,
+    /// The file that it was made from.
+    pub path: PathBuf,
+    /// Where each of its lines comes from.
+    places: Vec<Place>,
+}
+
+#[derive(Clone, Debug)]
+struct Place {
+    path: Arc<Path>,
+    /// 1-based.
+    line: usize,
+}
+
+impl Composed {
+    /// The column of a byte of a line, all 1-based.
+    pub fn column(&self, line: usize, byte: usize) -> usize {
+        let text = self.text.lines().nth(line.saturating_sub(1)).unwrap_or_default();
+        text.char_indices().take_while(|(at, _)| at + 1 < byte).count() + 1
+    }
+
+    /// A mistake at a line and column of the text, as one in the file that has it. The end of the text is behind its last line.
+    pub fn mistake(&self, line: usize, column: usize, reason: &str) -> Error {
+        let index = line.clamp(1, self.places.len().max(1)) - 1;
+        let (path, line) = match self.places.get(index) {
+            Some(place) => (&*place.path, place.line),
+            None => (&*self.path, 1),
+        };
+        Error::Shader { path: path.into(), line, column, reason: one_line(reason) }
+    }
+}
+
+impl Sources {
+    /// The file of a pass, composed.
+    pub(super) fn compose(&self, name: &str) -> Result<Composed, Error> {
+        match self.find(name) {
+            Some(file) => self.compose_file(file),
+            None => self.compose_text(""),
+        }
+    }
+
+    /// A text that has no name.
+    pub(super) fn compose_text(&self, text: &str) -> Result<Composed, Error> {
+        self.compose_file(&File::embedded("", text.to_owned()))
+    }
+
+    fn compose_file(&self, file: &File) -> Result<Composed, Error> {
+        let composed = Composed { text: String::new(), path: file.path.to_path_buf(), places: Vec::new() };
+        let mut composer = Composer { sources: self, composed, done: Vec::new(), open: Vec::new() };
+        composer.append(file)?;
+        Ok(composer.composed)
+    }
+}
+
+struct Composer<'a> {
+    sources: &'a Sources,
+    composed: Composed,
+    /// What has been imported.
+    done: Vec<&'a str>,
+    /// The files from the pass's down to the one that is being read.
+    open: Vec<&'a str>,
+}
+
+impl<'a> Composer<'a> {
+    fn append(&mut self, file: &'a File) -> Result<(), Error> {
+        self.open.push(&file.name);
+        for (line, text) in (1..).zip(file.text.lines()) {
+            let Some(import) = import(text) else {
+                self.composed.text.push_str(text);
+                self.composed.text.push('\n');
+                self.composed.places.push(Place { path: file.path.clone(), line });
+                continue;
+            };
+            let refuse = |reason| Err(file.mistake(line, IMPORT_COLUMN, reason));
+            if let Some(start) = self.open.iter().position(|open| *open == import) {
+                let circle = [&self.open[start..], &[import]].concat().join(" → ");
+                return refuse(format!("imports go round in a circle: {circle}"));
+            }
+            if self.done.contains(&import) {
+                continue;
+            }
+            let Some(imported) = self.sources.find(import) else {
+                let expected = if is_inside(import) { "" } else { "; expected a .wgsl file inside the folder" };
+                return refuse(format!("there is no shader file {import:?} to import{expected}"));
+            };
+            self.done.push(&imported.name);
+            self.append(imported)?;
+        }
+        self.open.pop();
+        Ok(())
+    }
+}

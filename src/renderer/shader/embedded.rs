@@ -1,0 +1,69 @@
+//! The shader files that are built in.
+
+/// Looks up an embedded shader file by its path under `shaders/`.
+pub fn source(file: &str) -> Option<&'static str> {
+    SOURCES.iter().find(|(name, _)| *name == file).map(|(_, text)| *text)
+}
+
+/// Every embedded shader file: path under `shaders/`, text.
+pub fn sources() -> &'static [(&'static str, &'static str)] {
+    SOURCES
+}
+
+macro_rules! embed {
+    ($($file:literal,)+) => { &[$(($file, include_str!(concat!("../../../shaders/", $file))),)+] };
+}
+
+pub(super) const SOURCES: &[(&str, &str)] = embed![
+    "accumulate.wgsl",
+    "depth_downsample.wgsl",
+    "diffuse_bake.wgsl",
+    "forward.wgsl",
+    "specular_scatter.wgsl",
+    "transfer.wgsl",
+    "lib/accumulated.wgsl",
+    "lib/bindings.wgsl",
+    "lib/blending.wgsl",
+    "lib/colour.wgsl",
+    "lib/depth.wgsl",
+    "lib/diffuse.wgsl",
+    "lib/diffuse_bake.wgsl",
+    "lib/hash.wgsl",
+    "lib/lighting.wgsl",
+    "lib/noise_volume.wgsl",
+    "lib/normal.wgsl",
+    "lib/order.wgsl",
+    "lib/ramp.wgsl",
+    "lib/soft_fade.wgsl",
+    "lib/sprite.wgsl",
+    "lib/sprite_fragment.wgsl",
+    "lib/sprite_vertex.wgsl",
+    "lib/system.wgsl",
+    "lib/technique.wgsl",
+    "lib/tonemap.wgsl",
+    "lib/upsample.wgsl",
+    "lib/view.wgsl",
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_shader_file_is_embedded() {
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
+        let mut files = Vec::new();
+        for folder in ["", "lib"] {
+            for entry in std::fs::read_dir(root.join(folder)).unwrap() {
+                let name = entry.unwrap().file_name().into_string().unwrap();
+                if name.ends_with(".wgsl") {
+                    files.push(if folder.is_empty() { name } else { format!("{folder}/{name}") });
+                }
+            }
+        }
+        files.sort();
+        let mut embedded: Vec<_> = SOURCES.iter().map(|(name, _)| (*name).to_owned()).collect();
+        embedded.sort();
+        assert_eq!(files, embedded);
+    }
+}

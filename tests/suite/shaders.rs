@@ -1,0 +1,220 @@
+//! Shaders from a folder: what an author writes is what is drawn, and a mistake is named where it was made.
+
+use std::path::Path;
+
+use glam::{UVec2, Vec4};
+use haze::picture::Picture;
+use haze::settings::ShadeTree;
+use haze::shader::{self, Sources};
+use haze::{Context, Error, SceneDepthKind, WarmUp, wgpu};
+use tempfile::TempDir;
+
+use crate::common::gpu;
+use crate::host::Host;
+use crate::stage::Stage;
+
+const SIZE: UVec2 = UVec2::new(96, 64);
+
+/// An author's folder.
+struct Folder(TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn write(&self, file: &str, text: impl AsRef<[u8]>) -> &Self {
+        let path = self.0.path().join(file);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+        self
+    }
+
+    /// One of haze's files, with a change.
+    fn edit(&self, file: &str, from: &str, to: &str) -> &Self {
+        let text = shader::source(file).unwrap();
+        assert!(text.contains(from), "{file} has no {from:?}");
+        self.write(file, text.replacen(from, to, 1))
+    }
+
+    fn context(&self) -> Result<Context, Error> {
+        let gpu = gpu();
+        Context::with_shaders(&gpu.device, &gpu.queue, None, &Sources::from_folder(self.0.path())?)
+    }
+
+    fn picture(&self) -> Picture<Vec4> {
+        draw(Some(&self.context().unwrap()))
+    }
+
+    /// What is said of it, with files by their names in it.
+    fn refusal(&self) -> String {
+        let error = self.context().unwrap_err();
+        gpu().check().unwrap();
+        error.to_string().replace(&format!("{}/", self.0.path().display()), "")
+    }
+}
+
+fn draw(context: Option<&Context>) -> Picture<Vec4> {
+    let stage = Stage::new(SIZE);
+    let mut host = Host::on(gpu(), &stage, context).unwrap();
+    host.draw(gpu(), &stage).unwrap();
+    host.picture(gpu()).unwrap()
+}
+
+/// Line and column, 1-based, of the first `what` in one of haze's files.
+fn place(file: &str, what: &str) -> String {
+    let before = shader::source(file).unwrap().split(what).next().unwrap();
+    let line = before.matches('\n').count() + 1;
+    format!("{file}:{line}:{}", before.rsplit('\n').next().unwrap().chars().count() + 1)
+}
+
+#[test]
+fn a_broken_file_names_itself_and_the_place() {
+    let refused = |from: &str, to: &str| Folder::new().edit("lib/colour.wgsl", from, to).refusal();
+    let says = |from: &str, to: &str, what: &str, reason: &str| {
+        assert_eq!(refused(from, to), format!("{}: {reason}", place("lib/colour.wgsl", what)), "{to}");
+    };
+    let shown = "saturate(light)";
+    says(shown, "saturat(light)", shown, "no definition in scope for identifier: `saturat`");
+    // What is invalid as a whole is named by the part that makes it so.
+    let sum = "Function 'gamma_target_colour' is invalid: Operation Add can't work with vec3<f32> and vec2<f32>";
+    says(shown, "saturate(light) + vec2f(f32(1u ^ 2u))", shown, sum);
+    let returned =
+        "Function 'srgb_from_linear' is invalid: The `return` expression does not match the declared return type";
+    says("return linear * 12.92", "return vec3f(linear * 12.92)", "linear * 12.92", returned);
+    // Columns are characters, not bytes; nor do tabs shift them.
+    let behind = refused("    let shown", "\t/* ü→ü */ let shown: vec2f");
+    assert!(behind.starts_with("lib/colour.wgsl:17:16: "), "{behind}");
+    let behind = refused("saturate(light)", "/* ü→ü */ saturat(light)");
+    assert!(behind.starts_with("lib/colour.wgsl:17:27: "), "{behind}");
+    // The compiler would miss it in the file that comes next.
+    says("    return min(light, vec3f(BRIGHTEST));\n}", "", "{\n    return min(light, vec", "`{` is never closed");
+    let unended = refused("// Light as the host", "/* Light");
+    assert_eq!(unended, format!("{}: unterminated block comment", place("lib/colour.wgsl", "// Light as the host")));
+    // A file that is embedded may be the one that does not fit any more.
+    let renamed = refused("fn overdraw_colour", "fn overdrawn_colour");
+    let called = place("transfer.wgsl", "overdraw_colour");
+    assert!(renamed.starts_with(&format!("builtin:/{called}: no definition in scope")), "{renamed}");
+}
+
+#[test]
+fn what_only_a_pipeline_shows_is_found_too() {
+    for pass in shader::sources().iter().map(|(file, _)| *file).filter(|file| !file.starts_with("lib/")) {
+        let fragment = |to: &str| Folder::new().edit(pass, "fn fragment(", to).refusal();
+        assert_eq!(fragment("fn fragments("), format!("{pass}:1:1: Unable to find entry point 'fragment'"));
+    }
+    let refused = |file: &str, from: &str, to: &str| Folder::new().edit(file, from, to).refusal();
+    let gone = refused("transfer.wgsl", "override BACK_FACES: bool", "const BACK_FACES: bool");
+    assert!(gone.starts_with("transfer.wgsl:1:1: ") && gone.contains("'BACK_FACES' not found"), "{gone}");
+    let input = refused("lib/sprite_vertex.wgsl", "@location(0)", "@location(9)");
+    assert!(input.contains("accumulate.wgsl:1:1: Input is not provided"), "{input}");
+    let divided = refused("transfer.wgsl", "if amount <= 0.0 {", "if amount <= f32(1u / SHADE_TREE) {");
+    assert!(divided.ends_with("fragment shader: Division by zero"), "{divided}");
+}
+
+#[test]
+fn what_other_settings_show_is_told_when_they_are_warmed_up() {
+    let folder = Folder::new();
+    // Good in the final picture, where the stage is 0.
+    folder.edit("transfer.wgsl", "if amount <= 0.0 {", "if amount <= f32(1u / (SHADE_TREE - 1u)) {");
+    let mut stage = Stage::new(SIZE);
+    let host = Host::on(gpu(), &stage, Some(&folder.context().unwrap())).unwrap();
+    let settings = [std::mem::take(&mut stage.settings)];
+    let scene_depth = SceneDepthKind::Buffer(wgpu::TextureFormat::Depth32Float);
+    let expected = WarmUp { view: stage.view, scene_depth, settings: &settings, shade_tree: ShadeTree::Final };
+    host.renderer.warm_up(&expected).unwrap();
+    let compiled = host.renderer.context().pipeline_count();
+    let combined = WarmUp { shade_tree: ShadeTree::Combined, ..expected };
+    let error = host.renderer.warm_up(&combined).unwrap_err().to_string();
+    assert!(
+        error.ends_with("transfer.wgsl:1:1: Pipeline constant error in fragment shader: Division by zero"),
+        "{error}"
+    );
+    gpu().check().unwrap();
+    assert_eq!(host.renderer.context().pipeline_count(), compiled);
+}
+
+#[test]
+fn imports_that_lead_nowhere_are_named() {
+    let imports = |import: &str| {
+        let folder = Folder::new();
+        folder.edit("lib/colour.wgsl", "// Half of", &format!("#import \"{import}\"\n// Half of"));
+        folder
+            .write("lib/round.wgsl", "#import \"lib/about.wgsl\"\n")
+            .write("lib/about.wgsl", "\n#import \"lib/round.wgsl\"");
+        (folder.refusal(), place("lib/colour.wgsl", "// Half of").replace(":1", ":9"))
+    };
+    let (unknown, place) = imports("lib/nothing.wgsl");
+    assert_eq!(unknown, format!("{place}: there is no shader file \"lib/nothing.wgsl\" to import"));
+    for outside in ["../../etc", "/etc/hostname", "lib/../../secret.wgsl", "lib", ""] {
+        let (refused, place) = imports(outside);
+        let reason = format!("there is no shader file {outside:?} to import; expected a .wgsl file inside the folder");
+        assert_eq!(refused, format!("{place}: {reason}"));
+    }
+    let circle = "imports go round in a circle: lib/round.wgsl → lib/about.wgsl → lib/round.wgsl";
+    assert_eq!(imports("lib/round.wgsl").0, format!("lib/about.wgsl:2:9: {circle}"));
+    let (itself, place) = imports("lib/colour.wgsl");
+    assert_eq!(itself, format!("{place}: imports go round in a circle: lib/colour.wgsl → lib/colour.wgsl"));
+}
+
+#[test]
+fn a_change_is_seen_and_taken_back() {
+    let plain = draw(None);
+    let folder = Folder::new();
+    folder.edit("lib/colour.wgsl", "return bounded_light(light);", "return bounded_light(light * TINT);");
+    assert!(folder.refusal().contains("`TINT`"));
+    // In a file of its own, which others import.
+    folder.edit("lib/blending.wgsl", "// What", "#import \"mine/tint.wgsl\"\n// What");
+    folder.edit("lib/normal.wgsl", "//", "#import \"mine/tint.wgsl\"\n//");
+    let text = std::fs::read_to_string(folder.0.path().join("lib/colour.wgsl")).unwrap();
+    folder.write("lib/colour.wgsl", format!("#import \"mine/tint.wgsl\"\n{text}"));
+    folder.write("mine/tint.wgsl", "const TINT = vec3f(0.5);\n");
+    assert_ne!(folder.picture(), plain);
+    folder.write("mine/tint.wgsl", "const TINT = vec3f(1.0);\n");
+    assert_eq!(folder.picture(), plain);
+    let read: Vec<_> = Sources::from_folder(folder.0.path()).unwrap().paths().map(Path::to_owned).collect();
+    let files = ["lib/blending.wgsl", "lib/colour.wgsl", "lib/normal.wgsl", "mine/tint.wgsl"];
+    assert_eq!(read, files.map(|file| folder.0.path().join(file)));
+}
+
+#[test]
+fn files_may_end_their_lines_and_begin_as_they_like() {
+    let plain = draw(None);
+    let folder = Folder::new();
+    for (file, text) in shader::sources() {
+        folder.write(file, format!("\u{feff}{}", text.replace('\n', "\r\n")));
+    }
+    assert_eq!(folder.picture(), plain);
+    let text = shader::source("lib/colour.wgsl").unwrap().replace('\n', "\r\n");
+    folder.write("lib/colour.wgsl", format!("\u{feff}{}", text.replace("saturate(light)", "saturat(light)")));
+    let place = place("lib/colour.wgsl", "saturate(light)");
+    assert_eq!(folder.refusal(), format!("{place}: no definition in scope for identifier: `saturat`"));
+}
+
+#[test]
+fn what_is_no_folder_of_shaders_is_refused() {
+    let expected = "expected accumulate.wgsl, depth_downsample.wgsl, diffuse_bake.wgsl, forward.wgsl, \
+                    specular_scatter.wgsl, transfer.wgsl or a file of lib/ in it";
+    let said = |path: &Path| Sources::from_folder(path).unwrap_err().to_string();
+    let folder = Folder::new();
+    let path = folder.0.path();
+    assert_eq!(said(path), format!("{}: a folder without any of haze's shaders; {expected}", path.display()));
+    let absent = path.join("absent");
+    assert!(said(&absent).starts_with(&format!("{}: No such file", absent.display())), "{}", said(&absent));
+    folder.write("readme.txt", "");
+    assert!(said(&path.join("readme.txt")).ends_with(&format!("readme.txt: not a folder; {expected}")));
+
+    assert_eq!(
+        folder.write("lib/ramp.wgsl", b"// f\xc3\xbcr\n// f\xfcr\n").refusal(),
+        "lib/ramp.wgsl:2:5: not a text; expected UTF-8"
+    );
+    folder.write("lib/ramp.wgsl", vec![b' '; (1 << 20) + 1]);
+    assert_eq!(folder.refusal(), "lib/ramp.wgsl: 1048577 bytes; expected a WGSL file of at most 1048576 bytes (1 MiB)");
+    // A chain of imports is followed only so far.
+    folder.edit("lib/ramp.wgsl", "//", "#import \"0.wgsl\"\n//");
+    for link in 0..300 {
+        folder.write(&format!("{link}.wgsl"), format!("#import \"{}.wgsl\"\n", link + 1));
+    }
+    let last = 256 - shader::sources().len() - 1;
+    assert_eq!(folder.refusal(), format!("{last}.wgsl:1:9: more than 256 files"));
+}
