@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use haze::Error;
 use haze::demo::shot::Shot;
-use haze::demo::stage::{Stage, StageContext};
+use haze::demo::stage::Stage;
 use haze::headless::Headless;
 
 use super::options::Backend;
@@ -68,10 +68,7 @@ pub enum Timer<'a> {
 impl<'a> Timer<'a> {
     pub fn new(backend: &'a Backend) -> Result<Self, Error> {
         Ok(match backend {
-            Backend::Gpu(gpu) => {
-                let context = StageContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
-                Self::Gpu(Box::new(Stage::new(&context, false)?), gpu)
-            }
+            Backend::Gpu(gpu) => Self::Gpu(Box::new(Stage::new(&gpu.context, false)?), &gpu.headless),
             Backend::Cpu => Self::Cpu,
         })
     }

@@ -1,5 +1,6 @@
 //! What several subcommands take: a preset and changes to it, a size, a backend.
 
+use std::cell::RefCell;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -7,12 +8,14 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use glam::{UVec2, Vec4};
 use haze::demo::shot::Shot;
+use haze::demo::stage::{Stage, StageContext};
 use haze::headless::Headless;
 use haze::picture::Picture;
 use haze::picture::{Effort, write_png};
 use haze::preset::Preset;
 use haze::settings::{Choice, Path, Technique, set_field};
-use haze::{Error, FieldError};
+use haze::shader::Sources;
+use haze::{Context, Error, FieldError};
 use image::RgbImage;
 
 use super::inputs::pictures_of;
@@ -31,6 +34,9 @@ pub struct RunArguments {
     /// Which renderer.
     #[arg(long, value_enum, default_value = "auto")]
     backend: BackendName,
+    /// A folder like haze's own `shaders`: its files take the place of those of the same names that the program has in it.
+    #[arg(long, value_name = "DIR")]
+    shaders: Option<PathBuf>,
 }
 
 /// A preset, and what is changed about it for this run.
@@ -78,8 +84,15 @@ enum BackendName {
 
 /// The renderer in use.
 pub enum Backend {
-    Gpu(Box<Headless>),
+    Gpu(Box<Gpu>),
     Cpu,
+}
+
+/// A device, and what draws on it, from picture to picture.
+pub struct Gpu {
+    pub headless: Headless,
+    pub context: StageContext,
+    stage: RefCell<Stage>,
 }
 
 impl ShotArguments {
@@ -132,8 +145,14 @@ impl RunArguments {
     /// Opens the renderer that was asked for.
     pub fn backend(&self) -> Result<Backend, Error> {
         check_memory("--size", self.size)?;
+        let sources = self.shaders.as_ref().map(Sources::from_folder).transpose()?;
         if self.backend == BackendName::Cpu {
-            return Ok(Backend::Cpu);
+            return match sources {
+                Some(_) => {
+                    Err(FieldError::new("--shaders", "with --backend cpu", "a GPU: the CPU runs no shaders").into())
+                }
+                None => Ok(Backend::Cpu),
+            };
         }
         match Headless::new() {
             Ok(gpu) => {
@@ -143,9 +162,14 @@ impl RunArguments {
                     let expected = format!("at most {most}x{most} on {}", gpu.description());
                     return Err(FieldError::new("--size", size, expected).into());
                 }
-                Ok(Backend::Gpu(Box::new(gpu)))
+                let mut context = StageContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
+                if let Some(sources) = sources {
+                    context = context.with_haze(Context::with_shaders(&gpu.device, &gpu.queue, None, &sources)?);
+                }
+                let stage = RefCell::new(Stage::new(&context, false)?);
+                Ok(Backend::Gpu(Box::new(Gpu { headless: gpu, context, stage })))
             }
-            Err(Error::NoDevice(reason)) if self.backend == BackendName::Auto => {
+            Err(Error::NoDevice(reason)) if self.backend == BackendName::Auto && sources.is_none() => {
                 complain(format_args!("rendering on the CPU: {reason}"));
                 Ok(Backend::Cpu)
             }
@@ -158,7 +182,12 @@ impl Backend {
     /// Renders, linear HDR.
     pub fn render(&self, shot: &Shot) -> Result<Picture<Vec4>, Error> {
         match self {
-            Self::Gpu(gpu) => shot.render_on_gpu(gpu, false),
+            Self::Gpu(gpu) => {
+                let mut stage = gpu.stage.borrow_mut();
+                stage.warm_up(shot)?;
+                stage.draw(&gpu.headless, shot)?;
+                stage.read(&gpu.headless, shot)
+            }
             Self::Cpu => shot.render_on_cpu(),
         }
     }
@@ -166,7 +195,7 @@ impl Backend {
     /// What renders, in one line.
     pub fn description(&self) -> String {
         match self {
-            Self::Gpu(gpu) => gpu.description(),
+            Self::Gpu(gpu) => gpu.headless.description(),
             Self::Cpu => "the CPU renderer".into(),
         }
     }

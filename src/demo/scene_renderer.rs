@@ -29,7 +29,7 @@ pub(crate) struct SceneRenderer {
     depth: wgpu::RenderPipeline,
     /// Light on what is painted.
     light: wgpu::RenderPipeline,
-    draws_linear: bool,
+    pub draws_linear: bool,
 }
 
 /// Colour and depth of a scene, and what it takes to draw them.

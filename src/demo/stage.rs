@@ -13,7 +13,7 @@ use crate::error::Error;
 use crate::frame::{Frame, Light, Material, Particles, SceneDepth, System, View};
 use crate::headless::Headless;
 use crate::preset::Environment;
-use crate::renderer::{Context, Descriptor, Renderer, read_only_depth_is_supported};
+use crate::renderer::{Context, Descriptor, Renderer, SceneDepthKind, WarmUp, read_only_depth_is_supported};
 use crate::settings::ShadeTree;
 
 /// What the stages of one device share. A clone is the same.
@@ -174,6 +174,24 @@ impl Stage {
             self.renderer.render_stage(&mut pass, stage);
         }
         Ok(())
+    }
+
+    /// Compiles what a shot is drawn with.
+    ///
+    /// # Errors
+    /// [`Error::Shader`] naming the pass that cannot be compiled, of a context with shaders of an author's.
+    pub fn warm_up(&self, shot: &Shot) -> Result<(), Error> {
+        let settings: Vec<_> = shot.preset.systems.iter().map(|system| system.settings_for(shot.size.y)).collect();
+        self.renderer.warm_up(&WarmUp {
+            view: shot.preset.camera.view(shot.size),
+            scene_depth: if self.context.scene.draws_linear {
+                SceneDepthKind::Both(DEPTH_FORMAT)
+            } else {
+                SceneDepthKind::Buffer(DEPTH_FORMAT)
+            },
+            settings: &settings,
+            stages: &[shot.shade_tree],
+        })
     }
 
     /// The picture of a stage as last recorded: linear HDR, `Rgba16Float`, of the shot's size.

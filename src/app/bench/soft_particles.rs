@@ -39,7 +39,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let backend = arguments.run.backend()?;
     let mut timer = Timer::new(&backend)?;
     let reads_attached = match &backend {
-        Backend::Gpu(gpu) => read_only_depth_is_supported(&gpu.device),
+        Backend::Gpu(gpu) => read_only_depth_is_supported(&gpu.headless.device),
         Backend::Cpu => true,
     };
     let mut variants = Vec::new();
