@@ -52,6 +52,8 @@ pub(crate) enum Surface {
     Plaster = 4,
     /// Shines, casts no shadow.
     Glow = 5,
+    /// The colour itself, without a stain.
+    Even = 6,
 }
 
 /// Distances along a ray at which it enters and leaves a box, in the box's frame.

@@ -3,12 +3,14 @@
 use glam::{Vec3, vec3};
 
 use super::boxes::{SceneBox, Surface};
-use crate::preset::SceneName;
+use crate::preset::{Environment, SceneName};
 
-pub(crate) fn boxes(name: SceneName) -> Vec<SceneBox> {
-    match name {
-        SceneName::Yard => yard(),
+pub(crate) fn boxes(environment: &Environment) -> Vec<SceneBox> {
+    match environment.scene {
+        SceneName::Yard => yard(environment),
         SceneName::Corridor => corridor(),
+        SceneName::Studio => studio(),
+        SceneName::Empty => Vec::new(),
     }
 }
 
@@ -31,6 +33,8 @@ const PLASTER: Vec3 = vec3(0.46, 0.42, 0.36);
 const PAVING: Vec3 = vec3(0.30, 0.29, 0.28);
 const IRON: Vec3 = vec3(0.06, 0.06, 0.065);
 const PAINTED: Vec3 = vec3(0.20, 0.21, 0.20);
+/// A photographer's grey card.
+const GREY: Vec3 = Vec3::splat(0.18);
 
 fn pillar(boxes: &mut Vec<SceneBox>, foot: Vec3, height: f32) {
     boxes.push(standing(foot, vec3(0.8, 0.3, 0.8), 0.0, STONE, Surface::Plaster));
@@ -38,7 +42,7 @@ fn pillar(boxes: &mut Vec<SceneBox>, foot: Vec3, height: f32) {
     boxes.push(standing(foot + Vec3::Y * height, vec3(0.78, 0.22, 0.78), 0.0, STONE, Surface::Plaster));
 }
 
-fn yard() -> Vec<SceneBox> {
+fn yard(environment: &Environment) -> Vec<SceneBox> {
     let mut boxes = Vec::new();
     let at = vec3;
     boxes.push(standing(at(0.0, -1.0, 0.0), vec3(60.0, 1.0, 60.0), 0.0, PAVING, Surface::Slabs));
@@ -72,15 +76,19 @@ fn yard() -> Vec<SceneBox> {
     boxes.push(standing(at(5.7, 0.0, -0.9), vec3(0.8, 0.8, 0.8), -0.5, WOOD, Surface::Wood));
 
     // A brazier that smokes.
-    boxes.push(standing(at(0.0, 0.0, 0.0), vec3(0.7, 0.12, 0.7), 0.3, IRON, Surface::Plain));
-    boxes.push(standing(at(0.0, 0.12, 0.0), vec3(0.46, 0.36, 0.46), 0.3, IRON, Surface::Plain));
-    boxes.push(standing(at(0.0, 0.48, 0.0), vec3(0.36, 0.03, 0.36), 0.3, vec3(2.6, 0.7, 0.12), Surface::Glow));
+    if environment.brazier {
+        boxes.push(standing(at(0.0, 0.0, 0.0), vec3(0.7, 0.12, 0.7), 0.3, IRON, Surface::Plain));
+        boxes.push(standing(at(0.0, 0.12, 0.0), vec3(0.46, 0.36, 0.46), 0.3, IRON, Surface::Plain));
+        boxes.push(standing(at(0.0, 0.48, 0.0), vec3(0.36, 0.03, 0.36), 0.3, vec3(2.6, 0.7, 0.12), Surface::Glow));
+    }
 
     // A lamp on a post behind the brazier.
-    boxes.push(standing(at(1.1, 0.0, -2.4), vec3(0.3, 0.14, 0.3), 0.0, IRON, Surface::Plain));
-    boxes.push(standing(at(1.1, 0.0, -2.4), vec3(0.09, 2.35, 0.09), 0.0, IRON, Surface::Plain));
-    boxes.push(standing(at(1.1, 2.36, -2.4), vec3(0.2, 0.24, 0.2), 0.0, vec3(9.0, 6.4, 3.6), Surface::Glow));
-    boxes.push(standing(at(1.1, 2.62, -2.4), vec3(0.36, 0.06, 0.36), 0.0, IRON, Surface::Plain));
+    if environment.lamp {
+        boxes.push(standing(at(1.1, 0.0, -2.4), vec3(0.3, 0.14, 0.3), 0.0, IRON, Surface::Plain));
+        boxes.push(standing(at(1.1, 0.0, -2.4), vec3(0.09, 2.35, 0.09), 0.0, IRON, Surface::Plain));
+        boxes.push(standing(at(1.1, 2.36, -2.4), vec3(0.2, 0.24, 0.2), 0.0, vec3(9.0, 6.4, 3.6), Surface::Glow));
+        boxes.push(standing(at(1.1, 2.62, -2.4), vec3(0.36, 0.06, 0.36), 0.0, IRON, Surface::Plain));
+    }
 
     // A thin fence for hard depth edges.
     for rail in [0.28, 0.82] {
@@ -121,4 +129,32 @@ fn corridor() -> Vec<SceneBox> {
     boxes.push(standing(at(-1.4, 0.0, -6.2), vec3(0.8, 0.8, 0.8), 0.5, WOOD, Surface::Wood));
     boxes.push(standing(at(1.6, 0.0, -8.4), vec3(1.0, 1.0, 1.0), -0.2, WOOD * 0.85, Surface::Wood));
     boxes
+}
+
+fn studio() -> Vec<SceneBox> {
+    // Higher and wider than the presets' cameras see.
+    let floor = standing(vec3(0.0, -1.0, 0.0), vec3(60.0, 1.0, 60.0), 0.0, GREY, Surface::Even);
+    let wall = standing(vec3(0.0, 0.0, -10.0), vec3(60.0, 16.0, 1.0), 0.0, GREY, Surface::Even);
+    vec![floor, wall]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_glows_goes_with_its_prop() {
+        let glowing = |lamp, brazier| {
+            let boxes = boxes(&Environment { lamp, brazier, ..Environment::default() });
+            boxes.iter().filter(|b| b.surface == Surface::Glow as u32).count()
+        };
+        assert_eq!([glowing(true, true), glowing(true, false), glowing(false, true)], [2, 1, 1]);
+        assert_eq!(glowing(false, false), 0);
+    }
+
+    #[test]
+    fn the_studio_is_an_even_grey() {
+        let boxes = boxes(&Environment { scene: SceneName::Studio, ..Environment::default() });
+        assert!(boxes.iter().all(|b| b.colour == Vec3::splat(0.18) && b.surface == Surface::Even as u32));
+    }
 }

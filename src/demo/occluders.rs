@@ -117,7 +117,7 @@ mod tests {
     fn boxes_that_are_left_out_change_nothing() {
         for name in ["column", "corridor", "explosion"] {
             let preset = Preset::load(name).unwrap();
-            let scene = Scene::new(preset.environment.scene, &preset.environment, &preset.lights);
+            let scene = Scene::new(&preset.environment, &preset.lights);
             let everything = Scene { occluders: Occluders { masks: Picture::new(UVec2::ONE, ALL) }, ..scene.clone() };
             let (mut points, mut asked) = (0, 0);
             for index in 0..4000_u32 {

@@ -7,7 +7,7 @@ use super::layout;
 use super::occluders::Occluders;
 use crate::formula::uniforms::LightUniform;
 use crate::frame::Light;
-use crate::preset::{Environment, SceneName};
+use crate::preset::Environment;
 
 /// What the scene's shader reads. `Scene` in scene.wgsl.
 #[repr(C)]
@@ -36,8 +36,8 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    pub fn new(name: SceneName, environment: &Environment, lights: &[Light]) -> Self {
-        let mut boxes = layout::boxes(name);
+    pub fn new(environment: &Environment, lights: &[Light]) -> Self {
+        let mut boxes = layout::boxes(environment);
         boxes.truncate(MAX_BOXES);
         let lights: Vec<_> = lights.iter().map(|light| light.uniform(&Mat4::IDENTITY)).collect();
         Self { environment: *environment, occluders: Occluders::new(&boxes, &lights), boxes, lights }

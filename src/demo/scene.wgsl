@@ -43,6 +43,7 @@ const SURFACE_BRICK: u32 = 2u;
 const SURFACE_WOOD: u32 = 3u;
 const SURFACE_PLASTER: u32 = 4u;
 const SURFACE_GLOW: u32 = 5u;
+const SURFACE_EVEN: u32 = 6u;
 
 fn to_local(b: Box, v: vec3f) -> vec3f {
     return vec3f(v.x * b.cosine + v.z * b.sine, v.y, v.z * b.cosine - v.x * b.sine);
@@ -275,7 +276,7 @@ fn box_vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) insta
 fn paint_fragment(in: BoxVertex) -> @location(0) vec4f {
     let b = boxes[in.face / 6u];
     var paint = b.colour;
-    if b.surface != SURFACE_GLOW {
+    if b.surface != SURFACE_GLOW && b.surface != SURFACE_EVEN {
         paint = albedo(b, in.local, in.local_normal, in.world);
     }
     return vec4f(paint, f32(in.face));

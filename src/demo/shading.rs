@@ -56,11 +56,11 @@ pub(crate) fn albedo(b: &SceneBox, p: Vec3, n: Vec3, world: Vec3) -> Vec3 {
     } else {
         p.xy()
     };
-    if b.surface == Surface::Glow as u32 {
+    let is = |surface: Surface| b.surface == surface as u32;
+    if is(Surface::Glow) || is(Surface::Even) {
         return b.colour;
     }
     let dirt = stains(world);
-    let is = |surface: Surface| b.surface == surface as u32;
     if is(Surface::Slabs) {
         let size = Vec2::splat(1.6);
         let tile = (uv / size).floor().as_ivec2();

@@ -53,7 +53,7 @@ impl Shot {
     }
 
     pub(super) fn scene(&self) -> Scene {
-        Scene::new(self.preset.environment.scene, &self.preset.environment, &self.preset.lights)
+        Scene::new(&self.preset.environment, &self.preset.lights)
     }
 
     /// Particles and settings of every system, in order.

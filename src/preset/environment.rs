@@ -10,6 +10,12 @@ settings! {
     pub struct Environment {
         /// Which scene.
         scene: SceneName = SceneName::Yard, choice;
+        /// True where the yard has its lamp, with the body that glows: a prop for the light that presets put there. The light
+        /// itself is the preset's, and stays.
+        lamp: bool = true, flag;
+        /// True where the yard has its brazier, with the embers that glow: a prop for smoke, and for the light that presets put
+        /// there. The light itself is the preset's, and stays.
+        brazier: bool = true, flag;
         /// Linear RGB of the sky overhead.
         #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
         zenith: Vec3 = Vec3::new(0.045, 0.07, 0.14), colour(0.0..=100.0);
@@ -30,5 +36,9 @@ choice! {
         Yard = "yard",
         /// A colonnade with a far door.
         Corridor = "corridor",
+        /// A floor that meets a wall, both of an even neutral grey (0.18), and nothing else: for judging light.
+        Studio = "studio",
+        /// Nothing but the sky.
+        Empty = "empty",
     }
 }

@@ -4,6 +4,7 @@ use glam::{UVec2, Vec4};
 use haze::builtin;
 use haze::demo::shot::Shot;
 use haze::picture::Picture;
+use haze::preset::SceneName;
 use haze::settings::*;
 
 use crate::common::{AGREEMENT, gpu, psnr_over};
@@ -76,6 +77,31 @@ fn births_and_deaths_do_not_pop() {
         println!("{name}: {worst:.2}");
         assert!(worst <= 1.2, "{name}: {worst}");
     }
+}
+
+#[test]
+fn every_scene_agrees() {
+    let props = [(true, true), (false, true), (true, false)];
+    let mut pictures = Vec::new();
+    for (scene, (lamp, brazier)) in SceneName::ALL.iter().flat_map(|scene| props.map(|props| (*scene, props))) {
+        let mut shot = shot("column", UVec2::new(320, 180));
+        let environment = &mut shot.preset.environment;
+        (environment.scene, environment.lamp, environment.brazier) = (scene, lamp, brazier);
+        let scene = format!("{}, lamp {lamp}, brazier {brazier}", scene.name());
+        let (psnr, _) = agreement(&shot);
+        // The scene alone, over black.
+        let alone = behind(&shot);
+        let (on_gpu, on_cpu) = (on_gpu(&alone), alone.render_on_cpu().unwrap());
+        let black = Picture::new(shot.size, Vec4::ZERO);
+        let alone = psnr_over([&on_gpu, &on_cpu], [&black, &black]);
+        println!("{scene}: {psnr:.1} dB, without smoke {alone:.1} dB");
+        assert!(psnr >= AGREEMENT && alone >= AGREEMENT, "{scene}: {psnr:.1} dB, without smoke {alone:.1} dB");
+        if !pictures.contains(&on_cpu) {
+            pictures.push(on_cpu);
+        }
+    }
+    // The props are the yard's.
+    assert_eq!(pictures.len(), SceneName::ALL.len() + 2);
 }
 
 #[test]
