@@ -146,7 +146,7 @@ fn imports_that_lead_nowhere_are_named() {
     };
     let (unknown, place) = imports("lib/nothing.wgsl");
     assert_eq!(unknown, format!("{place}: there is no shader file \"lib/nothing.wgsl\" to import"));
-    for outside in ["../../etc", "/etc/hostname", "lib/../../secret.wgsl", "lib", ""] {
+    for outside in ["../../etc", "/etc/hostname", "lib/../../secret.wgsl", "lib", "", "\0.wgsl"] {
         let (refused, place) = imports(outside);
         let reason = format!("there is no shader file {outside:?} to import; expected a .wgsl file inside the folder");
         assert_eq!(refused, format!("{place}: {reason}"));

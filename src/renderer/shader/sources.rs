@@ -142,7 +142,9 @@ fn end_of(text: &str) -> (usize, usize) {
 
 /// True for a path of a shader that cannot lead out of the folder.
 pub(super) fn is_inside(name: &str) -> bool {
-    name.ends_with(".wgsl") && Path::new(name).components().all(|part| matches!(part, Component::Normal(_)))
+    name.ends_with(".wgsl")
+        && !name.contains(char::is_control)
+        && Path::new(name).components().all(|part| matches!(part, Component::Normal(_)))
 }
 
 /// The file that a line imports.
