@@ -323,7 +323,7 @@ mod tests {
         for read_only_depth in [true, false] {
             let [Plan::Deferred(deferred), Plan::Forward(_)] = one_of_each(read_only_depth) else { panic!() };
             assert!(deferred.depth_downsample.is_some() && deferred.diffuse_bake.is_some());
-            assert!(deferred.transfer.is_some() && deferred.specular_scatter.is_some());
+            assert!(deferred.transfers().count() == 1 && deferred.specular_scatter.is_some());
         }
     }
 

@@ -121,10 +121,10 @@ fn what_other_settings_show_is_told_when_they_are_warmed_up() {
     let host = Host::on(gpu(), &stage, Some(&folder.context().unwrap())).unwrap();
     let settings = [std::mem::take(&mut stage.settings)];
     let scene_depth = SceneDepthKind::Buffer(wgpu::TextureFormat::Depth32Float);
-    let expected = WarmUp { view: stage.view, scene_depth, settings: &settings, shade_tree: ShadeTree::Final };
+    let expected = WarmUp { view: stage.view, scene_depth, settings: &settings, stages: &[ShadeTree::Final] };
     host.renderer.warm_up(&expected).unwrap();
     let compiled = host.renderer.context().pipeline_count();
-    let combined = WarmUp { shade_tree: ShadeTree::Combined, ..expected };
+    let combined = WarmUp { stages: &[ShadeTree::Combined], ..expected };
     let error = host.renderer.warm_up(&combined).unwrap_err().to_string();
     assert!(
         error.ends_with("transfer.wgsl:1:1: Pipeline constant error in fragment shader: Division by zero"),

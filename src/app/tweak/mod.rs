@@ -2,11 +2,13 @@
 
 mod action;
 mod compare;
+#[allow(dead_code, reason = "what the window is about to use")]
 mod document;
 mod gpu;
 mod icon;
 mod messages;
 mod panel;
+#[allow(dead_code, reason = "what the window is about to use")]
 mod platform;
 mod playback;
 mod search;
@@ -57,9 +59,9 @@ impl Default for Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let mut session = Session::open(&arguments.preset)?;
     for (field, value) in &arguments.set {
-        set_field(&mut session.preset, field, value).map_err(|error| in_option("--set", error))?;
+        set_field(&mut session.document.preset, field, value).map_err(|error| in_option("--set", error))?;
     }
-    session.preset.validate()?;
+    session.document.preset.validate()?;
     session.screenshot = arguments.screenshot.clone();
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()

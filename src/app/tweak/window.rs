@@ -51,13 +51,13 @@ impl Window {
 
     fn top(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
-            ui.strong(&self.session.preset.name);
-            if self.session.preset != self.session.saved {
+            ui.strong(&self.session.document.preset.name);
+            if self.session.document.is_dirty() {
                 ui.label("•").on_hover_text("Changed since it was saved");
             }
             ui.separator();
-            let undo = self.session.history.undo_name().map(str::to_owned);
-            let redo = self.session.history.redo_name().map(str::to_owned);
+            let undo = self.session.document.history().undo_name().map(str::to_owned);
+            let redo = self.session.document.history().redo_name().map(str::to_owned);
             if ui.add_enabled(undo.is_some(), egui::Button::new("Undo")).clicked() {
                 self.session.undo();
             }

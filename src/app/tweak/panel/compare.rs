@@ -9,7 +9,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
     let compare = &mut session.compare;
     let name = compare.against.as_ref().map_or("Compare", Against::name);
     ui.menu_button(name, |ui| {
-        let kept = Against::Kept(Box::new(session.preset.clone()));
+        let kept = Against::Kept(Box::new(session.document.preset.clone()));
         let entries = [
             ("Nothing", None, "One picture"),
             ("As saved", Some(Against::Saved), "The preset as it is on disk"),
@@ -42,15 +42,16 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
         ui.add(times).on_hover_text("How much brighter");
     }
     let second = match &against {
-        Against::Saved => Some(session.saved.clone()),
+        Against::Saved => Some(session.saved().clone()),
         Against::Kept(preset) => Some((**preset).clone()),
         _ => None,
     };
     let Some(second) = second else { return };
     if ui.button("Use").on_hover_text("Takes the second over; Undo brings this one back").clicked() {
-        session.preset = second.clone();
+        session.document.preset = second.clone();
     }
     if ui.button("Swap").on_hover_text("Edits the second, beside these settings").clicked() {
-        compare.against = Some(Against::Kept(Box::new(std::mem::replace(&mut session.preset, second))));
+        session.compare.against =
+            Some(Against::Kept(Box::new(std::mem::replace(&mut session.document.preset, second))));
     }
 }

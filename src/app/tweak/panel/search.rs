@@ -15,7 +15,7 @@ pub fn panel(ui: &Ui, session: &mut Session) {
     if !search.is_open {
         return;
     }
-    let found = matches(&session.preset, &session.tooltips, &search.text);
+    let found = matches(&session.document.preset, &session.tooltips, &search.text);
     let mut gone_to = None;
     let response = egui::Modal::new(egui::Id::unique("search")).show(ui.ctx(), |ui| {
         ui.set_width(460.0);

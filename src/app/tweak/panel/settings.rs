@@ -1,14 +1,11 @@
 //! What can be set, at the right of the window: the look first, then the parts of the preset.
 
-use std::collections::HashSet;
-
 use eframe::egui::{self, Ui};
 use haze::preset::Preset;
 use haze::settings::{Fields, path_of};
 
 use super::fields::{self, Desk};
 use super::look;
-use crate::app::tweak::document::{changed_fields, copy_field};
 use crate::app::tweak::session::Session;
 use crate::app::tweak::show::Tab;
 
@@ -21,20 +18,19 @@ pub const TABS: [(Tab, &str, &str); 4] = [
 ];
 
 pub fn panel(ui: &mut Ui, session: &mut Session) {
-    let changed: HashSet<_> = changed_fields(&session.saved, &session.preset).into_iter().collect();
     ui.horizontal(|ui| {
         for (tab, name, tooltip) in TABS {
             ui.selectable_value(&mut session.show.tab, tab, name).on_hover_text(tooltip);
         }
     });
-    let systems = session.preset.systems.len();
+    let systems = session.document.preset.systems.len();
     session.show.system = session.show.system.min(systems.saturating_sub(1));
     if let Some(index) = session.search.found.as_ref().and_then(|(path, _)| system_of(path)) {
         session.show.system = index;
     }
     if systems > 1 && session.show.tab != Tab::Light {
         ui.horizontal_wrapped(|ui| {
-            for (index, system) in session.preset.systems.iter().enumerate() {
+            for (index, system) in session.document.preset.systems.iter().enumerate() {
                 ui.selectable_value(&mut session.show.system, index, &system.name);
             }
         });
@@ -42,13 +38,15 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
     ui.separator();
     let mut desk = Desk {
         tooltips: &session.tooltips,
-        changed: &changed,
+        changed: session.changed(),
         inert: &|_| None,
         reset: Vec::new(),
         refused: None,
         sought: session.search.found.as_ref().map(|(path, _)| path.as_str()),
     };
-    let preset = &mut session.preset;
+    // Panels change a copy: the desk reads the session meanwhile.
+    let mut edited = session.document.preset.clone();
+    let preset = &mut edited;
     let system = session.show.system;
     egui::ScrollArea::vertical().id_salt(session.show.tab).auto_shrink(false).show(ui, |ui| match session.show.tab {
         Tab::Look => look::panel(ui, &mut desk, preset, system),
@@ -57,9 +55,8 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
         Tab::Advanced => advanced(ui, &mut desk, preset, system),
     });
     let Desk { reset, refused, .. } = desk;
-    for path in reset {
-        copy_field(&session.saved, &mut session.preset, &path);
-    }
+    session.document.preset = edited;
+    reset.iter().for_each(|path| session.set_back(path));
     if let Some(refused) = refused {
         session.messages.complain("typed", refused);
     }

@@ -39,7 +39,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
         let speed =
             egui::DragValue::new(&mut playback.speed).speed(0.01).range(-8.0..=8.0).fixed_decimals(2).prefix("x ");
         ui.add(speed).on_hover_text("How fast the clock runs; negative runs backwards");
-        let preset = &mut session.preset;
+        let preset = &mut session.document.preset;
         let is_kept = preset.time.to_bits() == playback.time.to_bits();
         let keep =
             ui.add_enabled(!is_kept, egui::Button::new("Keep")).on_hover_text("Makes this moment the preset's time");

@@ -16,11 +16,11 @@ pub fn viewport(ui: &mut Ui, session: &mut Session, easel: &Easel) {
         return;
     }
     session.show.aspect = size.x as f32 / size.y as f32;
-    camera::steer(ui, &response, &mut session.preset.camera);
+    camera::steer(ui, &response, &mut session.document.preset.camera);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "viewport"));
     let shot = session.shot(size);
+    let other = session.compare.against.as_ref().map(|against| against.shot(&shot, session.saved()));
     let compare = &mut session.compare;
-    let other = compare.against.as_ref().map(|against| against.shot(&shot, &session.saved));
     let exhibit = Exhibit { shot, other, split: compare.split, difference: compare.difference };
     easel.show(ui, rect, exhibit);
     if compare.against.is_some() && compare.difference == 0.0 {
