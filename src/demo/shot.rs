@@ -47,6 +47,15 @@ impl Shot {
         Ok(Self { preset, size, shade_tree: ShadeTree::Final, materials })
     }
 
+    /// True if both give one picture; cheap, as pictures are compared by where they are in memory.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let shares = |(a, b): (&MaterialAssets, &MaterialAssets)| a.shares(b);
+        (self.size, self.shade_tree) == (other.size, other.shade_tree)
+            && self.preset == other.preset
+            && self.materials.len() == other.materials.len()
+            && self.materials.iter().zip(&other.materials).all(shares)
+    }
+
     /// True if the smoke is shown in the scene; the other stages are shown on black.
     pub(super) fn shows_scene(&self) -> bool {
         self.shade_tree == ShadeTree::Final

@@ -1,7 +1,7 @@
 //! A second picture beside the first: every saving shows its price.
 
 use haze::demo::shot::Shot;
-use haze::preset::Preset;
+use haze::preset::{Camera, Preset};
 use haze::settings::Path;
 
 /// What the picture is compared with.
@@ -15,6 +15,8 @@ pub enum Against {
     FullResolution,
     /// The same lit and blended sprite by sprite.
     Forward,
+    /// The same by the renderer that the specification is.
+    Reference,
 }
 
 /// How the two are shown.
@@ -40,6 +42,7 @@ impl Against {
             Self::Kept(_) => "as kept",
             Self::FullResolution => "full resolution",
             Self::Forward => "forward",
+            Self::Reference => "CPU reference",
         }
     }
 
@@ -55,14 +58,16 @@ impl Against {
                 (accumulate.scale, accumulate.max_side) = (1, 16384);
             }),
             Self::Forward => systems.for_each(|system| system.settings.path = Path::Forward),
+            Self::Reference => {}
         }
         shot
     }
 }
 
-/// A preset through another's camera, at its time.
+/// A preset from where another is seen, at its time. How it is exposed is its own.
 fn seen_as(preset: &Preset, other: &Preset) -> Preset {
-    Preset { camera: other.camera, time: other.time, ..preset.clone() }
+    let camera = Camera { exposure: preset.camera.exposure, ..other.camera };
+    Preset { camera, time: other.time, ..preset.clone() }
 }
 
 #[cfg(test)]

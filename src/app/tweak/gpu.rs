@@ -5,12 +5,13 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use eframe::egui::epaint::ViewportInPixels;
 use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
 use eframe::{egui, wgpu};
-use glam::Vec2;
+use glam::{Vec2, Vec4};
+use haze::Error;
 use haze::demo::develop::{Developer, Developing, Shown, exposure};
 use haze::demo::shot::Shot;
 use haze::demo::stage::{Stage, StageContext};
+use haze::picture::Picture;
 use haze::settings::ShadeTree;
-use haze::{Error, MaterialAssets};
 
 /// Draws for one window. A clone is the same.
 #[derive(Clone)]
@@ -19,9 +20,10 @@ pub struct Easel(Arc<Mutex<Inner>>);
 struct Inner {
     context: StageContext,
     developer: Developer,
-    /// The picture, and what it is compared with.
+    /// The picture, and what it is compared with: drawn here, or made elsewhere.
     main: Canvas,
     other: Option<Canvas>,
+    made: Option<Made>,
     /// The two, bound together.
     pair: Option<Developing>,
     /// All stages, small.
@@ -34,11 +36,25 @@ struct Inner {
 #[derive(Clone)]
 pub struct Exhibit {
     pub shot: Shot,
-    pub other: Option<Shot>,
+    pub other: Option<Other>,
     /// Share of the width from which on the other is shown.
     pub split: f32,
     /// Multiplies the difference of the two; 0: they stand side by side.
     pub difference: f32,
+}
+
+/// What a picture is compared with.
+#[derive(Clone)]
+pub enum Other {
+    Shot(Shot),
+    /// Made elsewhere, and its exposure.
+    Picture(Arc<Picture<Vec4>>, f32),
+}
+
+/// A picture that was made elsewhere, on the GPU.
+struct Made {
+    picture: Arc<Picture<Vec4>>,
+    texture: wgpu::Texture,
 }
 
 impl Easel {
@@ -48,7 +64,7 @@ impl Easel {
         let context = StageContext::new(&render.adapter, &render.device, &render.queue);
         let developer = Developer::new(&render.device, render.target_format);
         let (main, strip) = (Canvas::new(&context)?, Canvas::new(&context)?);
-        let inner = Inner { context, developer, main, other: None, pair: None, strip, error: None };
+        let inner = Inner { context, developer, main, other: None, made: None, pair: None, strip, error: None };
         Ok(Self(Arc::new(Mutex::new(inner))))
     }
 
@@ -140,7 +156,12 @@ impl Inner {
     fn record_exhibit(&mut self, target: &mut Target<'_>, exhibit: &Exhibit) -> Result<(), Error> {
         let Exhibit { shot, other, split, difference } = exhibit;
         let mut is_new = self.main.record(target, shot, &[shot.shade_tree])?;
-        match other {
+        let (drawn, made) = match other {
+            Some(Other::Shot(shot)) => (Some(shot), None),
+            Some(Other::Picture(picture, _)) => (None, Some(picture)),
+            None => (None, None),
+        };
+        match drawn {
             Some(other) => {
                 let canvas = match &mut self.other {
                     Some(canvas) => canvas,
@@ -150,16 +171,17 @@ impl Inner {
             }
             None => is_new |= self.other.take().is_some(),
         }
+        is_new |= self.hang(target, made);
         let first = self.main.picture(shot.shade_tree);
-        let second = self.other.as_ref().zip(other.as_ref());
-        let second = second.and_then(|(canvas, other)| canvas.picture(other.shade_tree)).or(first);
+        let second = self.other.as_ref().zip(drawn).and_then(|(canvas, other)| canvas.picture(other.shade_tree));
+        let second = second.or(self.made.as_ref().map(|made| &made.texture)).or(first);
         if let Some((first, second)) = first.zip(second).filter(|_| is_new || self.pair.is_none()) {
             self.pair = Some(self.developer.bind(target.device, first, second));
         }
         if let Some(pair) = &self.pair {
             let width = target.place.width_px as f32;
             let shown = Shown {
-                exposure: Vec2::new(exposure(shot), exposure(other.as_ref().unwrap_or(shot))),
+                exposure: Vec2::new(exposure(shot), other.as_ref().map_or(exposure(shot), Other::exposure)),
                 split: if other.is_some() { split * width } else { width },
                 difference: if other.is_some() { *difference } else { 0.0 },
                 ..target.shown()
@@ -167,6 +189,19 @@ impl Inner {
             self.developer.prepare(target.queue, pair, &shown);
         }
         Ok(())
+    }
+
+    /// Puts a picture that was made elsewhere on the GPU, or takes it down; tells whether it is another than before.
+    fn hang(&mut self, target: &Target<'_>, picture: Option<&Arc<Picture<Vec4>>>) -> bool {
+        let is_up = match (&self.made, picture) {
+            (Some(made), Some(picture)) => Arc::ptr_eq(&made.picture, picture),
+            (None, None) => true,
+            _ => false,
+        };
+        if !is_up {
+            self.made = picture.map(|picture| Made { texture: upload(target, picture), picture: picture.clone() });
+        }
+        !is_up
     }
 
     fn record_stage(&mut self, target: &mut Target<'_>, shot: &Shot) -> Result<(), Error> {
@@ -183,6 +218,35 @@ impl Inner {
         self.developer.prepare(target.queue, developing, &shown);
         Ok(())
     }
+}
+
+impl Other {
+    fn exposure(&self) -> f32 {
+        match self {
+            Self::Shot(shot) => exposure(shot),
+            Self::Picture(_, exposure) => *exposure,
+        }
+    }
+}
+
+/// A picture of linear HDR as a texture of half floats.
+fn upload(target: &Target<'_>, picture: &Picture<Vec4>) -> wgpu::Texture {
+    let size = wgpu::Extent3d { width: picture.size.x, height: picture.size.y, depth_or_array_layers: 1 };
+    let texture = target.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("made picture"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba16Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    });
+    let texels: Vec<_> = picture.texels.iter().flat_map(|texel| texel.to_array().map(half::f16::from_f32)).collect();
+    let bytes: Vec<_> = texels.iter().flat_map(|channel| channel.to_le_bytes()).collect();
+    let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(8 * size.width), rows_per_image: None };
+    target.queue.write_texture(texture.as_image_copy(), &bytes, rows, size);
+    texture
 }
 
 impl Target<'_> {
@@ -210,7 +274,7 @@ impl Canvas {
 
     /// Draws a shot if it is another than the last; tells whether pictures may be others now.
     fn record(&mut self, target: &mut Target<'_>, shot: &Shot, stages: &[ShadeTree]) -> Result<bool, Error> {
-        if self.shot.as_ref().is_some_and(|drawn| is_same(drawn, shot)) {
+        if self.shot.as_ref().is_some_and(|drawn| drawn.is_same(shot)) {
             return Ok(false);
         }
         // Once, even if it cannot be drawn.
@@ -222,13 +286,4 @@ impl Canvas {
     fn picture(&self, stage: ShadeTree) -> Option<&wgpu::Texture> {
         self.stage.picture(stage)
     }
-}
-
-/// True if two shots give one picture.
-fn is_same(a: &Shot, b: &Shot) -> bool {
-    let shared = |(a, b): (&MaterialAssets, &MaterialAssets)| a.shares(b);
-    (a.size, a.shade_tree) == (b.size, b.shade_tree)
-        && a.preset == b.preset
-        && a.materials.len() == b.materials.len()
-        && a.materials.iter().zip(&b.materials).all(shared)
 }

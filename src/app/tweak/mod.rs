@@ -11,6 +11,7 @@ mod panel;
 #[allow(dead_code, reason = "what the window is about to use")]
 mod platform;
 mod playback;
+mod referee;
 mod search;
 mod session;
 mod show;

@@ -13,6 +13,7 @@ use super::document::difference::{changed_fields, copy_field};
 use super::document::document::Document;
 use super::messages::Messages;
 use super::playback::Playback;
+use super::referee::Referee;
 use super::search::Search;
 use super::show::Show;
 
@@ -22,6 +23,7 @@ pub struct Session {
     pub playback: Playback,
     pub show: Show,
     pub compare: Compare,
+    pub referee: Referee,
     pub search: Search,
     pub messages: Messages,
     pub tooltips: Tooltips,
@@ -54,6 +56,7 @@ impl Session {
             playback: Playback::at(preset.time),
             show: Show::default(),
             compare: Compare::default(),
+            referee: Referee::default(),
             search: Search::default(),
             messages: Messages::default(),
             tooltips: Tooltips::of::<Preset>(),

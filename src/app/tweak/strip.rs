@@ -45,8 +45,11 @@ pub fn strip(ui: &mut Ui, session: &mut Session, easel: &Easel, aspect: f32) {
                 ui.painter().rect_stroke(picture, 0.0, stroke, egui::StrokeKind::Inside);
             }
             let name = egui::Rect::from_min_max(picture.left_bottom(), rect.max);
-            let text = egui::RichText::new(label).small().color(visuals.text_color());
-            ui.put(name, egui::Label::new(text).truncate().selectable(false));
+            let text = egui::WidgetText::from(egui::RichText::new(label).small());
+            let wrap = Some(egui::TextWrapMode::Truncate);
+            let text = text.into_galley(ui, wrap, name.width(), egui::TextStyle::Small);
+            let at = egui::pos2(name.center().x - 0.5 * text.size().x, name.center().y - 0.5 * text.size().y);
+            ui.painter().galley(at, text, visuals.text_color());
             let tooltip = session.tooltips.choice("shade_tree", stage.name()).unwrap_or(label);
             if response.on_hover_text(tooltip).clicked() {
                 session.show.stage = if is_shown { ShadeTree::Final } else { stage };

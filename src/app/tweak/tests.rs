@@ -63,3 +63,96 @@ fn controls_change_the_picture_the_way_they_say() {
     set(&mut harness, "key light", 60.0);
     assert!(shown(&mut harness) > before + 5.0);
 }
+
+/// Chooses an entry of a menu.
+fn choose(harness: &mut Harness<'_, Window>, menu: &str, entry: &str) {
+    harness.get_by_label(menu).click();
+    harness.run_steps(2);
+    harness.get_by_label(entry).click();
+    harness.run_steps(2);
+}
+
+#[test]
+fn a_second_picture_shows_what_a_saving_costs() {
+    let mut harness = column();
+    let alone = shown(&mut harness);
+    choose(&mut harness, "Compare", "Full resolution");
+    assert!((shown(&mut harness) - alone).abs() < 1.0);
+    harness.get_by_label("Difference").click();
+    harness.run_steps(2);
+    let saved = shown(&mut harness);
+    assert!(saved > 0.2 && saved < 0.2 * alone, "{saved}");
+    choose(&mut harness, "full resolution", "Forward");
+    assert!(shown(&mut harness) > 2.0 * saved);
+    // Made in the background: until then the picture stands alone.
+    choose(&mut harness, "forward", "CPU reference");
+    let mut judged = alone;
+    for _ in 0..200 {
+        judged = shown(&mut harness);
+        if judged < 0.5 * alone {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(50));
+    }
+    assert!(judged < saved, "{judged} {saved}");
+}
+
+#[test]
+fn what_is_compared_can_be_taken_over() {
+    let mut harness = column();
+    let before = shown(&mut harness);
+    set(&mut harness, "exposure", 3.0);
+    choose(&mut harness, "Compare", "As saved");
+    let divider = harness.get_by_label("divider").rect();
+    let view = viewport(&harness);
+    let picture = picture(&mut harness);
+    let left = brightness(&picture, Rect::from_min_max(view.min, divider.left_bottom()));
+    let right = brightness(&picture, Rect::from_min_max(divider.right_top(), view.max));
+    assert!(left > right + 15.0, "{left} {right}");
+    harness.get_by_label("Use").click();
+    harness.run_steps(3);
+    assert!((shown(&mut harness) - before).abs() < 1.0);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(3);
+    assert!(shown(&mut harness) > before + 8.0);
+}
+
+#[test]
+fn any_setting_is_found_and_gone_to() {
+    let mut harness = column();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
+    harness.run_steps(2);
+    harness.get_by_label("find a setting").type_text("fade scale");
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(8);
+    let row = harness.get_all_by_label("fade scale").next().unwrap().rect();
+    assert!(Rect::from_min_size(Default::default(), SIZE).contains_rect(row), "{row:?}");
+}
+
+#[test]
+fn a_stage_of_the_strip_is_seen_full() {
+    let mut harness = column();
+    let before = shown(&mut harness);
+    harness.get_by_label("Specular scatter").click();
+    harness.run_steps(3);
+    assert!(shown(&mut harness) < 0.5 * before);
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    assert!((shown(&mut harness) - before).abs() < 1.0);
+}
+
+#[test]
+fn time_is_played_and_stepped() {
+    let mut harness = column();
+    let before = picture(&mut harness);
+    harness.get_by_label("A frame on (.)").click();
+    harness.run_steps(2);
+    assert!(picture(&mut harness) != before);
+    harness.get_by_label("A frame back (,)").click();
+    harness.run_steps(2);
+    harness.get_by_label("viewport").hover();
+    harness.run_steps(1);
+    let part = viewport(&harness);
+    assert!((brightness(&picture(&mut harness), part) - brightness(&before, part)).abs() < 0.01);
+}

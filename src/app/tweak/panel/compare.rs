@@ -16,6 +16,11 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
             ("As it is now", Some(kept), "Keeps these settings, and shows beside them what is changed from here on"),
             ("Full resolution", Some(Against::FullResolution), "The same smoke without a reduced target"),
             ("Forward", Some(Against::Forward), "The same smoke lit and blended sprite by sprite, the classic way"),
+            (
+                "CPU reference",
+                Some(Against::Reference),
+                "The same by the CPU renderer, which the specification is: takes a while",
+            ),
         ];
         for (name, against, tooltip) in entries {
             let is_on =

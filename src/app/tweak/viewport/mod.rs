@@ -4,8 +4,12 @@ mod camera;
 
 use eframe::egui::{self, Sense, Ui};
 use glam::UVec2;
+use haze::demo::develop::exposure;
+use haze::demo::shot::Shot;
 
-use super::gpu::{Easel, Exhibit};
+use super::compare::Against;
+use super::gpu::{Easel, Exhibit, Other};
+use super::referee::Verdict;
 use super::session::Session;
 
 pub fn viewport(ui: &mut Ui, session: &mut Session, easel: &Easel) {
@@ -19,13 +23,29 @@ pub fn viewport(ui: &mut Ui, session: &mut Session, easel: &Easel) {
     camera::steer(ui, &response, &mut session.document.preset.camera);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "viewport"));
     let shot = session.shot(size);
-    let other = session.compare.against.as_ref().map(|against| against.shot(&shot, session.saved()));
+    let other = other(ui, session, &shot);
     let compare = &mut session.compare;
     let exhibit = Exhibit { shot, other, split: compare.split, difference: compare.difference };
     easel.show(ui, rect, exhibit);
     if compare.against.is_some() && compare.difference == 0.0 {
         divider(ui, rect, &mut compare.split);
     }
+}
+
+/// What the picture is compared with, if it is there yet.
+fn other(ui: &Ui, session: &mut Session, shot: &Shot) -> Option<Other> {
+    let against = session.compare.against.clone()?;
+    if against != Against::Reference {
+        return Some(Other::Shot(against.shot(shot, session.saved())));
+    }
+    let context = ui.ctx().clone();
+    match session.referee.judge(shot, move || context.request_repaint()) {
+        Verdict::Made(picture) => return Some(Other::Picture(picture, exposure(shot))),
+        Verdict::Later(wait) => ui.ctx().request_repaint_after(wait),
+        Verdict::Failed(error) => session.messages.complain("reference", error),
+        Verdict::Soon => {}
+    }
+    None
 }
 
 /// What stands between two pictures, and can be moved.
