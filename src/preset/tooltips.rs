@@ -20,7 +20,7 @@ impl Tooltips {
         self.property(path)?["description"].as_str()
     }
 
-    /// What one choice of a field means; `name` is the one that presets use.
+    /// What one choice of a field means; `name` is the one that presets use. `path` is "" where `T` is itself a choice.
     pub fn choice(&self, path: &str, name: &str) -> Option<&str> {
         let choices = self.resolve(self.property(path)?)["oneOf"].as_array()?;
         let choice = choices.iter().find(|choice| choice["const"] == name)?;
@@ -29,7 +29,7 @@ impl Tooltips {
 
     fn property(&self, path: &str) -> Option<&Value> {
         let mut at = &self.schema;
-        for name in path.split('.') {
+        for name in path.split('.').filter(|name| !name.is_empty()) {
             at = self.resolve(at).get("properties")?.get(name)?;
         }
         Some(at)
@@ -128,5 +128,7 @@ mod tests {
         );
         assert_eq!(tooltips.field("systems.settings.boots"), None);
         assert_eq!(tooltips.choice("lights.kind", "laser"), None);
+        let stages = Tooltips::of::<crate::settings::ShadeTree>();
+        assert_eq!(stages.choice("", "amount"), Some("Accumulated amount, as grey."));
     }
 }

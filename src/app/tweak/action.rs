@@ -41,7 +41,7 @@ pub const ACTIONS: &[Entry] = &[
     entry(Action::StepOn, "A frame on", Modifiers::NONE, Key::Period),
     entry(Action::Loop, "Go round in the range", Modifiers::NONE, Key::L),
     entry(Action::Strip, "Shade tree strip", Modifiers::NONE, Key::F4),
-    entry(Action::NextStage, "Next stage of the shading", Modifiers::NONE, Key::CloseBracket),
+    entry(Action::NextStage, "Next stage of the shading", Modifiers::NONE, Key::N),
     entry(Action::Picture, "Back to the picture", Modifiers::NONE, Key::Escape),
     entry(Action::Help, "This list", Modifiers::NONE, Key::F1),
 ];

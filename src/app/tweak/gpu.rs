@@ -46,7 +46,7 @@ pub struct Exhibit {
 /// What a picture is compared with.
 #[derive(Clone)]
 pub enum Other {
-    Shot(Shot),
+    Shot(Box<Shot>),
     /// Made elsewhere, and its exposure.
     Picture(Arc<Picture<Vec4>>, f32),
 }
@@ -157,7 +157,7 @@ impl Inner {
         let Exhibit { shot, other, split, difference } = exhibit;
         let mut is_new = self.main.record(target, shot, &[shot.shade_tree])?;
         let (drawn, made) = match other {
-            Some(Other::Shot(shot)) => (Some(shot), None),
+            Some(Other::Shot(shot)) => (Some(&**shot), None),
             Some(Other::Picture(picture, _)) => (None, Some(picture)),
             None => (None, None),
         };

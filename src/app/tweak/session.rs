@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use glam::UVec2;
 use haze::demo::shot::Shot;
 use haze::preset::{MaterialNames, Preset, Tooltips};
+use haze::settings::ShadeTree;
 use haze::{Error, MaterialAssets};
 
 use super::compare::Compare;
@@ -27,6 +28,8 @@ pub struct Session {
     pub search: Search,
     pub messages: Messages,
     pub tooltips: Tooltips,
+    /// What the stages of the shading are.
+    pub stages: Tooltips,
     /// A picture of the window is wanted here; then it closes.
     pub screenshot: Option<PathBuf>,
     pictures: Pictures,
@@ -60,6 +63,7 @@ impl Session {
             search: Search::default(),
             messages: Messages::default(),
             tooltips: Tooltips::of::<Preset>(),
+            stages: Tooltips::of::<ShadeTree>(),
             screenshot: None,
             pictures: Pictures { names: names(preset), loaded },
             changed: Changed { paths: HashSet::new(), saved: preset.clone(), preset: preset.clone() },

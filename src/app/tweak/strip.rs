@@ -50,7 +50,7 @@ pub fn strip(ui: &mut Ui, session: &mut Session, easel: &Easel, aspect: f32) {
             let text = text.into_galley(ui, wrap, name.width(), egui::TextStyle::Small);
             let at = egui::pos2(name.center().x - 0.5 * text.size().x, name.center().y - 0.5 * text.size().y);
             ui.painter().galley(at, text, visuals.text_color());
-            let tooltip = session.tooltips.choice("shade_tree", stage.name()).unwrap_or(label);
+            let tooltip = session.stages.choice("", stage.name()).unwrap_or(label);
             if response.on_hover_text(tooltip).clicked() {
                 session.show.stage = if is_shown { ShadeTree::Final } else { stage };
             }

@@ -171,10 +171,12 @@ impl eframe::App for Window {
         egui::Panel::bottom("time").show(ui, |ui| panel::time::panel(ui, &mut self.session));
         if self.session.show.has_strip {
             let aspect = self.session.show.aspect;
-            let panel = egui::Panel::bottom("strip").resizable(true).default_size(96.0).size_range(56.0..=240.0);
+            let height = (0.12 * ui.available_height()).max(80.0);
+            let panel = egui::Panel::bottom("strip").resizable(true).default_size(height).size_range(56.0..=320.0);
             panel.show(ui, |ui| strip(ui, &mut self.session, &self.easel, aspect));
         }
-        let settings = egui::Panel::right("settings").default_size(330.0).size_range(240.0..=520.0);
+        let width = (0.18 * ui.available_width()).clamp(330.0, 440.0);
+        let settings = egui::Panel::right("settings").default_size(width).size_range(240.0..=560.0);
         settings.show(ui, |ui| panel::settings::panel(ui, &mut self.session));
         egui::CentralPanel::no_frame().show(ui, |ui| viewport(ui, &mut self.session, &self.easel));
         panel::search::panel(ui, &mut self.session);

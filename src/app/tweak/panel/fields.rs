@@ -119,13 +119,13 @@ impl Rows<'_, '_, '_> {
 impl FieldVisitor for Rows<'_, '_, '_> {
     fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, unit: &'static str) {
         self.row(name, |ui, label, refused, _, _| {
-            row::number(ui, value, &range, unit, refused).labelled_by(label.id);
+            row::number(ui, label, value, &range, unit, refused);
         });
     }
 
     fn integer(&mut self, name: &'static str, value: &mut u32, range: RangeInclusive<u32>, unit: &'static str) {
         self.row(name, |ui, label, refused, _, _| {
-            row::integer(ui, value, &range, unit, refused).labelled_by(label.id);
+            row::integer(ui, label, value, &range, unit, refused);
         });
     }
 

@@ -13,7 +13,8 @@ pub fn panel(ui: &Ui, session: &mut Session) {
     let response = egui::Modal::new(egui::Id::unique("help")).show(ui.ctx(), |ui| {
         ui.heading("Keys and gestures");
         ui.add_space(6.0);
-        egui::ScrollArea::vertical().max_height(ui.ctx().content_rect().height() - 120.0).show(ui, |ui| {
+        let height = ui.ctx().content_rect().height() - 120.0;
+        egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
             egui::Grid::new("keys").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
                 for entry in ACTIONS {
                     ui.strong(ui.ctx().format_shortcut(&entry.keys));

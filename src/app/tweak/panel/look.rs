@@ -60,8 +60,7 @@ fn thickness(ui: &mut Ui, desk: &mut Desk<'_>, system: &mut PresetSystem, index:
     let tooltip = "How much one full-grown sprite covers: amount, opacity and boost together.";
     made_row(ui, desk, "thickness", tooltip, &paths, |ui, label, refused| {
         let mut value = thickness_of(system);
-        let response = row::number(ui, &mut value, &(0.001..=16.0), "", refused);
-        if response.labelled_by(label.id).changed() {
+        if row::number(ui, label, &mut value, &(0.001..=16.0), "", refused) {
             set_thickness(system, value);
         }
     });
@@ -95,8 +94,7 @@ fn wind(ui: &mut Ui, desk: &mut Desk<'_>, system: &mut PresetSystem, index: usiz
     made_row(ui, desk, "wind", tooltip, &path, |ui, label, refused| {
         let wind = &mut system.emitter.wind;
         let mut speed = wind.length();
-        let response = row::number(ui, &mut speed, &(0.0..=20.0), "m/s", refused);
-        if response.labelled_by(label.id).changed() {
+        if row::number(ui, label, &mut speed, &(0.0..=20.0), "m/s", refused) {
             *wind = wind.normalize_or(Vec3::X) * speed;
         }
     });
@@ -107,8 +105,7 @@ fn softness(ui: &mut Ui, desk: &mut Desk<'_>, system: &mut PresetSystem, index: 
     let tooltip = "Distance over which smoke dissolves before a surface: 1 / fade_scale.";
     made_row(ui, desk, "softness", tooltip, &path, |ui, label, refused| {
         let mut reach = 1.0 / system.settings.soft_fade.fade_scale;
-        let response = row::number(ui, &mut reach, &(0.001..=10.0), "m", refused);
-        if response.labelled_by(label.id).changed() {
+        if row::number(ui, label, &mut reach, &(0.001..=10.0), "m", refused) {
             system.settings.soft_fade.fade_scale = 1.0 / reach;
         }
     });

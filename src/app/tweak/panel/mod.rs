@@ -1,6 +1,7 @@
 //! The panels: what can be set, in rows made from the table of settings.
 
 pub mod compare;
+pub mod curve;
 pub mod fields;
 pub mod help;
 pub mod look;

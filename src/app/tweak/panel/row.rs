@@ -86,72 +86,122 @@ const MOST_LINEAR: f32 = 100.0;
 /// Where sliders of endless ranges end; more can be typed.
 const FAR: f32 = 1000.0;
 
-/// A slider for a number, which can also be typed; `refused` is told what was typed in vain.
+/// Width of what is typed.
+const VALUE: f32 = 84.0;
+
+/// What cannot be typed is told once.
+pub type Refused = Option<String>;
+
+/// A slider for a number, and the number, which can be typed; `refused` is told what was typed in vain. True if it was changed.
 pub fn number(
     ui: &mut Ui,
+    name: &Response,
     value: &mut f32,
     range: &RangeInclusive<f32>,
     unit: &str,
-    refused: &mut Option<String>,
-) -> Response {
+    refused: &mut Refused,
+) -> bool {
     let (low, high) = (*range.start(), *range.end());
     let shown_high = if high > FAR { FAR.max(value.abs() * 2.0).min(high) } else { high };
     let shown_low = if low < -FAR { -FAR.max(value.abs() * 2.0) } else { low };
     let is_wide = shown_high - shown_low > WIDEST_LINEAR || low > 0.0 && high > MOST_LINEAR * low;
-    let typed = std::cell::RefCell::new(None);
-    let mut edited = *value;
-    let slider = egui::Slider::new(&mut edited, shown_low..=shown_high)
-        .logarithmic(is_wide)
-        .smallest_positive(f64::from(low.max(0.001)))
-        .clamping(egui::SliderClamping::Never)
-        .suffix(suffix(unit))
-        .max_decimals(4)
-        .update_while_editing(false)
-        .custom_parser(|text| {
-            let number = parse(text, unit).filter(|number| range.contains(&(*number as f32)));
-            if number.is_none() {
-                *typed.borrow_mut() = Some(text.to_owned());
-            }
-            number
-        });
-    ui.spacing_mut().slider_width = (ui.available_width() - 84.0).max(40.0);
-    let response = ui.add(slider);
-    if let Some(text) = typed.into_inner() {
-        let space = if unit.is_empty() { "" } else { " " };
-        *refused = Some(format!("{text:?} is not valid; expected {low} to {high}{space}{unit}"));
-    } else if response.changed() && edited.is_finite() {
-        *value = edited.clamp(low, high);
+    let control = Control {
+        name,
+        unit,
+        shown: f64::from(shown_low)..=f64::from(shown_high),
+        range: f64::from(low)..=f64::from(high),
+        is_logarithmic: is_wide,
+        smallest: f64::from(low.max(0.001)),
+        decimals: 4,
+    };
+    let mut edited = f64::from(*value);
+    let is_changed = control.show(ui, &mut edited, refused) && edited.is_finite();
+    if is_changed {
+        *value = (edited as f32).clamp(low, high);
     }
-    response
+    is_changed
 }
 
 /// The same for a whole number.
 pub fn integer(
     ui: &mut Ui,
+    name: &Response,
     value: &mut u32,
     range: &RangeInclusive<u32>,
     unit: &str,
-    refused: &mut Option<String>,
-) -> Response {
+    refused: &mut Refused,
+) -> bool {
     let (low, high) = (*range.start(), *range.end());
-    let typed = std::cell::RefCell::new(None);
-    let slider = egui::Slider::new(value, low..=high)
-        .logarithmic(f64::from(high) > 100.0 * f64::from(low.max(1)))
-        .suffix(suffix(unit))
-        .update_while_editing(false)
-        .custom_parser(|text| {
-            let number = parse(text, unit).filter(|number| (f64::from(low)..=f64::from(high)).contains(number));
-            if number.is_none() {
-                *typed.borrow_mut() = Some(text.to_owned());
-            }
-            number
-        });
-    ui.spacing_mut().slider_width = (ui.available_width() - 84.0).max(40.0);
-    let response = ui.add(slider);
-    if let Some(text) = typed.into_inner() {
-        *refused = Some(format!("{text:?} is not valid; expected {low} to {high}"));
+    let range = f64::from(low)..=f64::from(high);
+    let control = Control {
+        name,
+        unit,
+        shown: range.clone(),
+        is_logarithmic: range.end() / range.start().max(1.0) > 100.0,
+        range,
+        smallest: 1.0,
+        decimals: 0,
+    };
+    let mut edited = f64::from(*value);
+    let is_changed = control.show(ui, &mut edited, refused);
+    if is_changed {
+        *value = (edited.round() as u32).clamp(low, high);
     }
-    response
+    is_changed
+}
+
+/// A slider with its number beside it.
+struct Control<'a> {
+    name: &'a Response,
+    unit: &'a str,
+    /// What the slider reaches.
+    shown: RangeInclusive<f64>,
+    /// What may be typed.
+    range: RangeInclusive<f64>,
+    is_logarithmic: bool,
+    /// The smallest that a logarithmic slider tells from 0.
+    smallest: f64,
+    decimals: usize,
+}
+
+impl Control<'_> {
+    /// True if the value was changed.
+    fn show(&self, ui: &mut Ui, value: &mut f64, refused: &mut Refused) -> bool {
+        let height = ui.spacing().interact_size.y;
+        ui.spacing_mut().slider_width = (ui.available_width() - VALUE - ui.spacing().item_spacing.x).max(16.0);
+        let before = *value;
+        let slider = egui::Slider::new(value, self.shown.clone())
+            .logarithmic(self.is_logarithmic)
+            .smallest_positive(self.smallest)
+            .clamping(egui::SliderClamping::Never)
+            .show_value(false);
+        let slider = if self.decimals == 0 { slider.integer() } else { slider };
+        let is_slid = ui.add(slider).labelled_by(self.name.id).changed();
+        let typed = std::cell::RefCell::new(None);
+        let number = egui::DragValue::new(value)
+            .speed(if self.decimals == 0 { 0.1 } else { before.abs().max(0.1) * 0.005 })
+            .max_decimals(self.decimals)
+            .suffix(suffix(self.unit))
+            .update_while_editing(false)
+            .custom_formatter(|value, _| shown(value))
+            .custom_parser(|text| {
+                let number = parse(text, self.unit).filter(|number| self.range.contains(number));
+                if number.is_none() {
+                    *typed.borrow_mut() = Some(text.to_owned());
+                }
+                number
+            });
+        let is_typed =
+            ui.add_sized([VALUE.min(ui.available_width()), height], number).labelled_by(self.name.id).changed();
+        if let Some(text) = typed.into_inner() {
+            let (low, high) = (self.range.start(), self.range.end());
+            let space = if self.unit.is_empty() { "" } else { " " };
+            *refused = Some(format!("{text:?} is not valid; expected {low} to {high}{space}{}", self.unit));
+            *value = before;
+            return false;
+        }
+        is_slid || is_typed
+    }
 }
 
 /// Three numbers beside each other.
@@ -185,7 +235,7 @@ pub fn colour(ui: &mut Ui, value: &mut Vec3, name: &Response) {
         *value = Vec3::from(shown) * peak;
     }
     let [r, g, b] = value.to_array();
-    ui.weak(format!("{r:.3} {g:.3} {b:.3}"));
+    ui.add(egui::Label::new(egui::RichText::new(format!("{r:.3} {g:.3} {b:.3}")).weak()).truncate());
 }
 
 /// One of a few; `tooltip` tells what each means.
@@ -213,20 +263,47 @@ pub fn choice<'t>(
     response
 }
 
+/// A number as it is read: four digits that count, no zeros after them.
+fn shown(value: f64) -> String {
+    let digits = if value == 0.0 { 0 } else { (3 - value.abs().log10().floor() as i32).clamp(0, 4) as usize };
+    let text = format!("{value:.digits$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text == "-0" { "0".into() } else { text.into() }
+}
+
 fn suffix(unit: &str) -> String {
-    if unit.is_empty() { String::new() } else { format!(" {unit}") }
+    match unit {
+        "" => String::new(),
+        "degrees" => "°".into(),
+        unit => format!(" {unit}"),
+    }
 }
 
 /// A number as it is typed, with its unit or without; never infinite, never NaN.
 fn parse(text: &str, unit: &str) -> Option<f64> {
     let text = text.trim();
-    let text = text.strip_suffix(unit).unwrap_or(text).trim();
+    let text = text.strip_suffix(unit).or(text.strip_suffix('°')).unwrap_or(text).trim();
     text.parse().ok().filter(|number: &f64| number.is_finite())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_are_shown_without_noise() {
+        for (value, text) in [
+            (0.0, "0"),
+            (34.0, "34"),
+            (0.05, "0.05"),
+            (1.0 / 3.0, "0.3333"),
+            (-2.5, "-2.5"),
+            (12345.6, "12346"),
+            (-1.0e-6, "0"),
+        ] {
+            assert_eq!(shown(value), text);
+        }
+    }
 
     #[test]
     fn numbers_are_typed_with_their_unit_or_without() {

@@ -5,7 +5,7 @@ use haze::preset::Preset;
 use haze::settings::{Fields, path_of};
 
 use super::fields::{self, Desk};
-use super::look;
+use super::{curve, look};
 use crate::app::tweak::session::Session;
 use crate::app::tweak::show::Tab;
 
@@ -94,6 +94,7 @@ fn smoke(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, index: usize) {
     section(ui, desk, "Soft scatter", &at("soft_scatter"), &mut settings.soft_scatter);
     section(ui, desk, "Specular scatter", &at("specular_scatter"), &mut settings.specular_scatter);
     section(ui, desk, "Soft fade", &at("soft_fade"), &mut settings.soft_fade);
+    curve::panel(ui, &settings.soft_fade);
 }
 
 fn advanced(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, index: usize) {

@@ -36,7 +36,7 @@ pub fn viewport(ui: &mut Ui, session: &mut Session, easel: &Easel) {
 fn other(ui: &Ui, session: &mut Session, shot: &Shot) -> Option<Other> {
     let against = session.compare.against.clone()?;
     if against != Against::Reference {
-        return Some(Other::Shot(against.shot(shot, session.saved())));
+        return Some(Other::Shot(Box::new(against.shot(shot, session.saved()))));
     }
     let context = ui.ctx().clone();
     match session.referee.judge(shot, move || context.request_repaint()) {
