@@ -15,7 +15,7 @@ use haze::picture::{Effort, write_png};
 use haze::preset::Preset;
 use haze::settings::{Choice, Path, Technique, set_field};
 use haze::shader::Sources;
-use haze::{Context, Error, FieldError};
+use haze::{Error, FieldError};
 use image::RgbImage;
 
 use super::inputs::pictures_of;
@@ -164,7 +164,7 @@ impl RunArguments {
                 }
                 let mut context = StageContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
                 if let Some(sources) = sources {
-                    context = context.with_haze(Context::with_shaders(&gpu.device, &gpu.queue, None, &sources)?);
+                    context = context.with_shaders(&sources)?;
                 }
                 let stage = RefCell::new(Stage::new(&context, false)?);
                 Ok(Backend::Gpu(Box::new(Gpu { headless: gpu, context, stage })))

@@ -13,6 +13,7 @@ use crate::error::Error;
 use crate::frame::{Frame, Light, Material, Particles, SceneDepth, System, View};
 use crate::headless::Headless;
 use crate::preset::Environment;
+use crate::renderer::shader::Sources;
 use crate::renderer::{Context, Descriptor, Renderer, SceneDepthKind, WarmUp, read_only_depth_is_supported};
 use crate::settings::ShadeTree;
 
@@ -45,6 +46,14 @@ impl StageContext {
     #[must_use]
     pub fn with_haze(&self, haze: Context) -> Self {
         Self { haze, ..self.clone() }
+    }
+
+    /// The same with other shaders.
+    ///
+    /// # Errors
+    /// As [`Context::with_shaders`].
+    pub fn with_shaders(&self, sources: &Sources) -> Result<Self, Error> {
+        Ok(self.with_haze(Context::with_shaders(&self.device, &self.queue, None, sources)?))
     }
 }
 

@@ -78,6 +78,23 @@ impl Easel {
         self.add(ui, rect, What::Stage(Box::new(shot)));
     }
 
+    /// What stages are made of: for other shaders to be checked with.
+    pub fn context(&self) -> StageContext {
+        self.lock().context.clone()
+    }
+
+    /// Draws everything with another context of the same device from now on.
+    ///
+    /// # Errors
+    /// As [`Easel::new`]; all is as it was then.
+    pub fn set_context(&self, context: StageContext) -> Result<(), Error> {
+        let (main, strip) = (Canvas::new(&context)?, Canvas::new(&context)?);
+        let mut inner = self.lock();
+        (inner.main, inner.strip, inner.other, inner.pair) = (main, strip, None, None);
+        inner.context = context;
+        Ok(())
+    }
+
     /// What went wrong since this was asked the last time.
     pub fn take_error(&self) -> Option<Error> {
         self.lock().error.take()

@@ -8,10 +8,12 @@ mod gpu;
 mod icon;
 mod messages;
 mod panel;
+mod pictures;
 #[allow(dead_code, reason = "what the window is about to use")]
 mod platform;
 mod playback;
 mod referee;
+mod reload;
 mod search;
 mod session;
 mod show;
@@ -30,8 +32,10 @@ use eframe::{egui, egui_wgpu, wgpu};
 use glam::UVec2;
 use haze::Error;
 use haze::settings::set_field;
+use haze::shader::Sources;
 
 use super::options::{in_option, parse_assignment, parse_size};
+use reload::ShaderFolder;
 use session::Session;
 use window::Window;
 
@@ -46,6 +50,10 @@ pub struct Arguments {
     /// Sets a field of the preset, as in `haze render`. May be given more than once.
     #[arg(long, value_name = "FIELD=VALUE", value_parser = parse_assignment)]
     set: Vec<(String, String)>,
+    /// A folder like haze's own `shaders`, followed as it changes: its files take the place of those of the same names that the
+    /// program has in it. Started by `cargo run`, the program follows its checkout's.
+    #[arg(long, value_name = "DIR")]
+    shaders: Option<PathBuf>,
     /// Write a picture of the window once it stands still, and close it.
     #[arg(long, value_name = "FILE.png")]
     screenshot: Option<PathBuf>,
@@ -53,7 +61,7 @@ pub struct Arguments {
 
 impl Default for Arguments {
     fn default() -> Self {
-        Self { preset: "column".into(), size: UVec2::new(1280, 800), set: Vec::new(), screenshot: None }
+        Self { preset: "column".into(), size: UVec2::new(1280, 800), set: Vec::new(), shaders: None, screenshot: None }
     }
 }
 
@@ -64,6 +72,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     }
     session.document.preset.validate()?;
     session.screenshot = arguments.screenshot.clone();
+    let shaders = match &arguments.shaders {
+        Some(folder) => Sources::from_folder(folder).map(|_| ShaderFolder::Given(folder.clone()))?,
+        None => ShaderFolder::of_checkout(),
+    };
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_app_id("haze")
@@ -73,8 +85,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         wgpu_options: egui_wgpu::WgpuConfiguration { wgpu_setup: setup(), ..Default::default() },
         ..Default::default()
     };
-    let window =
-        |context: &eframe::CreationContext<'_>| Ok(Box::new(Window::new(context, session)?) as Box<dyn eframe::App>);
+    let window = |context: &eframe::CreationContext<'_>| {
+        Ok(Box::new(Window::new(context, session, &shaders)?) as Box<dyn eframe::App>)
+    };
     check_display()?;
     eframe::run_native("haze", options, Box::new(window)).map_err(no_window)
 }

@@ -4,15 +4,16 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use glam::UVec2;
+use haze::Error;
 use haze::demo::shot::Shot;
-use haze::preset::{MaterialNames, Preset, Tooltips};
+use haze::preset::{Preset, Tooltips};
 use haze::settings::ShadeTree;
-use haze::{Error, MaterialAssets};
 
 use super::compare::Compare;
 use super::document::difference::{changed_fields, copy_field};
 use super::document::document::Document;
 use super::messages::Messages;
+use super::pictures::Pictures;
 use super::playback::Playback;
 use super::referee::Referee;
 use super::search::Search;
@@ -32,14 +33,11 @@ pub struct Session {
     pub stages: Tooltips,
     /// A picture of the window is wanted here; then it closes.
     pub screenshot: Option<PathBuf>,
-    pictures: Pictures,
+    /// As last loaded well.
+    pub pictures: Pictures,
+    /// Another program has written the file while something was changed here: which of the two is wanted is not known.
+    pub is_changed_on_disk: bool,
     changed: Changed,
-}
-
-/// The pictures of all systems, as last loaded well.
-struct Pictures {
-    names: Vec<MaterialNames>,
-    loaded: Vec<MaterialAssets>,
 }
 
 /// Paths of the fields that differ from the preset on disk, and the two that they were found between.
@@ -65,7 +63,8 @@ impl Session {
             tooltips: Tooltips::of::<Preset>(),
             stages: Tooltips::of::<ShadeTree>(),
             screenshot: None,
-            pictures: Pictures { names: names(preset), loaded },
+            pictures: Pictures::new(preset, loaded),
+            is_changed_on_disk: false,
             changed: Changed { paths: HashSet::new(), saved: preset.clone(), preset: preset.clone() },
             document,
         })
@@ -75,7 +74,8 @@ impl Session {
     pub fn shot(&self, size: UVec2) -> Shot {
         let mut preset = self.document.preset.clone();
         preset.time = self.playback.time;
-        Shot { preset, size, shade_tree: self.show.stage, materials: self.pictures.loaded.clone() }
+        let materials = self.pictures.of(&preset);
+        Shot { preset, size, shade_tree: self.show.stage, materials }
     }
 
     /// The preset as it is on disk; as it is here where that is not known.
@@ -102,9 +102,6 @@ impl Session {
             let paths = changed_fields(saved, preset).into_iter().collect();
             self.changed = Changed { paths, saved: saved.clone(), preset: preset.clone() };
         }
-        if names(&self.document.preset) != self.pictures.names {
-            self.load_pictures();
-        }
     }
 
     pub fn undo(&mut self) {
@@ -119,19 +116,12 @@ impl Session {
         }
     }
 
-    /// Reads the pictures that the preset names; those of before stay where they cannot be had.
-    pub fn load_pictures(&mut self) {
-        self.pictures.names = names(&self.document.preset);
-        match self.document.preset.load_materials(self.document.path()) {
-            Ok(loaded) => {
-                self.pictures.loaded = loaded;
-                self.messages.withdraw("pictures");
-            }
-            Err(error) => self.messages.complain("pictures", error),
+    /// Reads the file again; what was changed is one step back.
+    pub fn revert(&mut self) {
+        self.is_changed_on_disk = false;
+        match self.document.revert() {
+            Ok(()) => self.messages.withdraw("preset"),
+            Err(error) => self.messages.complain("preset", error),
         }
     }
-}
-
-fn names(preset: &Preset) -> Vec<MaterialNames> {
-    preset.systems.iter().map(|system| system.material.clone()).collect()
 }

@@ -6,14 +6,20 @@ use eframe::egui::{self, Vec2};
 use egui_kittest::Harness;
 use image::RgbaImage;
 
+use super::reload::ShaderFolder;
 use super::session::Session;
 use super::window::Window;
 
 /// A window of a preset, as it stands when it has settled.
 pub fn window(preset: &str, size: Vec2, theme: egui::Theme) -> Harness<'static, Window> {
+    window_with(preset, size, theme, ShaderFolder::None)
+}
+
+/// The same with a folder of shaders.
+pub fn window_with(preset: &str, size: Vec2, theme: egui::Theme, shaders: ShaderFolder) -> Harness<'static, Window> {
     let session = Session::open(Path::new(preset)).unwrap();
     let builder = Harness::builder().with_size(size).with_theme(theme).with_render_cursor(false).wgpu();
-    let mut harness = builder.build_eframe(|context| Window::new(context, session).unwrap());
+    let mut harness = builder.build_eframe(|context| Window::new(context, session, &shaders).unwrap());
     harness.run_steps(3);
     harness
 }

@@ -13,13 +13,15 @@ use image::RgbImage;
 use super::action::{ACTIONS, Action};
 use super::gpu::Easel;
 use super::panel;
+use super::reload::{Reload, ShaderFolder};
 use super::session::Session;
 use super::strip::{after, strip};
 use super::viewport::viewport;
 
 pub struct Window {
-    session: Session,
+    pub session: Session,
     easel: Easel,
+    pub reload: Reload,
     adapter: String,
     screenshot: Screenshot,
 }
@@ -36,14 +38,17 @@ struct Screenshot {
 const SETTLED: u32 = 6;
 
 impl Window {
-    pub fn new(context: &eframe::CreationContext<'_>, session: Session) -> Result<Self, Error> {
+    pub fn new(context: &eframe::CreationContext<'_>, session: Session, shaders: &ShaderFolder) -> Result<Self, Error> {
         let none = || Error::NoDevice("the window has no graphics device".into());
         let render = context.wgpu_render_state.as_ref().ok_or_else(none)?;
         let info = render.adapter.get_info();
         let software = if info.device_type == wgpu::DeviceType::Cpu { ", software" } else { "" };
+        let easel = Easel::new(render)?;
+        let egui = context.egui_ctx.clone();
         Ok(Self {
+            reload: Reload::new(&session, shaders, &easel, move || egui.request_repaint())?,
             session,
-            easel: Easel::new(render)?,
+            easel,
             adapter: format!("{} ({}{software})", info.name, info.backend),
             screenshot: Screenshot::default(),
         })
@@ -165,8 +170,10 @@ fn theme(ui: &mut Ui) {
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         self.keys(ui);
+        self.reload.advance(&mut self.session, &self.easel);
         self.session.playback.advance(ui.input(|input| input.stable_dt));
         egui::Panel::top("top").show(ui, |ui| self.top(ui));
+        panel::notice::panel(ui, &mut self.session);
         egui::Panel::bottom("status").show(ui, |ui| self.status(ui));
         egui::Panel::bottom("time").show(ui, |ui| panel::time::panel(ui, &mut self.session));
         if self.session.show.has_strip {

@@ -5,6 +5,7 @@ pub mod curve;
 pub mod fields;
 pub mod help;
 pub mod look;
+pub mod notice;
 pub mod row;
 pub mod search;
 pub mod settings;

@@ -1,0 +1,272 @@
+//! Files are saved beside a window: what it shows, and what it says.
+
+use std::fs;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use eframe::egui::{Theme, Vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use image::{Rgb, RgbImage};
+use tempfile::TempDir;
+
+use super::*;
+use crate::app::tweak::testing::{brightness, picture, window_with};
+use crate::app::tweak::window::Window;
+
+const COLOUR: &str = include_str!("../../../../shaders/lib/colour.wgsl");
+
+/// A preset with a ramp of its own in a folder of its own, and a window that shows it.
+struct Bench {
+    folder: TempDir,
+    window: Harness<'static, Window>,
+}
+
+impl Bench {
+    fn new(size: Vec2) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let mut preset = Preset::load("column").unwrap();
+        preset.systems[0].material.diffuse_ramp = "mine.png".into();
+        fs::write(folder.path().join("my.json"), preset.to_text("")).unwrap();
+        fs::create_dir_all(folder.path().join("shaders/lib")).unwrap();
+        fs::write(folder.path().join("shaders/lib/colour.wgsl"), COLOUR).unwrap();
+        write_ramp(folder.path(), 200);
+        let path = folder.path().join("my.json");
+        let shaders = ShaderFolder::Given(folder.path().join("shaders"));
+        let window = window_with(path.to_str().unwrap(), size, Theme::Dark, shaders);
+        let mut bench = Self { folder, window };
+        bench.rest();
+        bench
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn session(&mut self) -> &mut Session {
+        &mut self.window.state_mut().session
+    }
+
+    fn said(&mut self) -> Option<String> {
+        self.session().messages.latest().map(|message| message.text.clone())
+    }
+
+    /// Frames until something is so.
+    fn until(&mut self, is_so: impl Fn(&mut Self) -> bool) {
+        let start = Instant::now();
+        loop {
+            self.window.step();
+            if is_so(self) {
+                return;
+            }
+            assert!(start.elapsed() < Duration::from_secs(30), "never; said: {:?}", self.said());
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    /// Frames until nothing is being loaded.
+    fn rest(&mut self) {
+        self.until(|bench| !bench.window.state().reload.worker.is_busy());
+        self.window.step();
+    }
+
+    /// Brightness of the picture.
+    fn shown(&mut self) -> f64 {
+        let part = self.window.get_by_label("viewport").rect();
+        brightness(&picture(&mut self.window), part)
+    }
+
+    fn pictures(&mut self) -> MaterialAssets {
+        let preset = self.session().document.preset.clone();
+        self.session().pictures.of(&preset).remove(0)
+    }
+}
+
+/// A ramp of one grey.
+fn write_ramp(folder: &Path, grey: u8) {
+    let picture = RgbImage::from_pixel(64, 1, Rgb([grey; 3]));
+    haze::picture::write_png(&folder.join("mine.png"), &picture.into(), haze::picture::Effort::Quick).unwrap();
+}
+
+const SIZE: Vec2 = Vec2::new(640.0, 400.0);
+
+#[test]
+fn a_ramp_is_seen_as_it_is_saved_and_a_broken_one_is_said_until_it_is_mended() {
+    let mut bench = Bench::new(SIZE);
+    let before = bench.shown();
+    let bright = bench.pictures();
+    write_ramp(bench.folder.path(), 20);
+    bench.until(|bench| !bench.pictures().shares(&bright));
+    let dark = bench.shown();
+    assert!(dark < before - 3.0, "{before} {dark}");
+    fs::write(bench.path("mine.png"), "no picture").unwrap();
+    bench.until(|bench| bench.said().is_some());
+    let said = bench.said().unwrap();
+    assert!(
+        said.contains("my.json: systems[0].material.diffuse_ramp: ") && said.contains("mine.png: not a PNG"),
+        "{said}"
+    );
+    assert!((bench.shown() - dark).abs() < 0.5, "the last good one stays");
+    write_ramp(bench.folder.path(), 200);
+    bench.until(|bench| bench.said().is_none());
+    assert!((bench.shown() - before).abs() < 0.5);
+}
+
+#[test]
+fn another_presets_file_is_loaded_unless_work_would_be_lost() {
+    let mut bench = Bench::new(SIZE);
+    let path = bench.path("my.json");
+    let write = |exposure: f32| {
+        let mut preset = Preset::load(&path).unwrap_or_default();
+        preset.camera.exposure = exposure;
+        fs::write(&path, preset.to_text("")).unwrap();
+    };
+    let exposure = |bench: &mut Bench| bench.session().document.preset.camera.exposure;
+    write(1.5);
+    bench.until(|bench| exposure(bench) == 1.5);
+    assert!(!bench.session().document.is_dirty());
+    fs::write(&path, "{\n\"version\": x").unwrap();
+    bench.until(|bench| bench.said().is_some_and(|said| said.contains("my.json:2:12")));
+    assert_eq!(exposure(&mut bench), 1.5);
+    fs::remove_file(&path).unwrap();
+    bench.until(|bench| bench.said().is_some_and(|said| said.contains("gone")));
+    let saved = bench.session().document.preset.to_text("");
+    fs::write(&path, saved).unwrap();
+    bench.until(|bench| bench.said().is_none());
+    // Changed on both sides.
+    bench.session().document.preset.camera.exposure = -1.0;
+    write(0.5);
+    bench.until(|bench| bench.session().is_changed_on_disk);
+    assert_eq!(exposure(&mut bench), -1.0);
+    bench.window.step();
+    bench.window.get_by_label("Keep mine").click();
+    bench.window.run_steps(2);
+    assert!(exposure(&mut bench) == -1.0 && bench.session().document.is_dirty());
+    assert!(bench.window.query_by_label("Keep mine").is_none());
+    write(0.25);
+    bench.until(|bench| bench.session().is_changed_on_disk);
+    bench.window.step();
+    bench.window.get_by_label("Load it").click();
+    bench.window.run_steps(2);
+    assert!(exposure(&mut bench) == 0.25 && !bench.session().document.is_dirty());
+    bench.session().undo();
+    assert_eq!(exposure(&mut bench), -1.0);
+}
+
+#[test]
+fn a_shader_is_seen_as_it_is_saved_and_a_mistake_is_said_with_its_place() {
+    let mut bench = Bench::new(SIZE);
+    let before = bench.shown();
+    let write = |bench: &Bench, text: &str| fs::write(bench.path("shaders/lib/colour.wgsl"), text).unwrap();
+    write(&bench, &COLOUR.replace("saturate(light)", "saturat(light)"));
+    bench.until(|bench| bench.said().is_some());
+    let said = bench.said().unwrap();
+    assert!(said.contains("colour.wgsl:17:17: no definition in scope for identifier: `saturat`"), "{said}");
+    assert!((bench.shown() - before).abs() < 0.5, "the last good one stays");
+    write(&bench, &COLOUR.replace("return bounded_light(light);", "return bounded_light(light * 0.25);"));
+    bench.until(|bench| bench.said().is_none());
+    bench.rest();
+    let dark = bench.shown();
+    assert!(dark < before - 3.0, "{before} {dark}");
+    // One that takes the place of an embedded one only now.
+    let blending = shader::source("lib/blending.wgsl").unwrap();
+    fs::write(bench.path("shaders/lib/blending.wgsl"), blending.to_owned() + "\nfn (").unwrap();
+    bench.until(|bench| bench.said().is_some_and(|said| said.contains("lib/blending.wgsl:")));
+    fs::remove_file(bench.path("shaders/lib/blending.wgsl")).unwrap();
+    bench.until(|bench| bench.said().is_none());
+}
+
+/// From a save until the frame has the picture, and until its pixel can be read, milliseconds, of so many saves; sorted.
+fn latencies(bench: &mut Bench, count: u32) -> (Vec<u128>, Vec<u128>) {
+    let (mut loaded, mut seen): (Vec<_>, Vec<_>) = (0..count)
+        .map(|index| {
+            let before = bench.pictures();
+            let shown = picture(&mut bench.window);
+            write_ramp(bench.folder.path(), if index % 2 == 0 { 20 } else { 200 });
+            let start = Instant::now();
+            bench.until(|bench| !bench.pictures().shares(&before));
+            let loaded = start.elapsed().as_millis();
+            assert!(picture(&mut bench.window) != shown);
+            (loaded, start.elapsed().as_millis())
+        })
+        .unzip();
+    loaded.sort_unstable();
+    seen.sort_unstable();
+    (loaded, seen)
+}
+
+#[test]
+#[ignore = "measures; with the machine to itself"]
+fn a_ramp_is_on_the_screen_a_quarter_of_a_second_after_it_is_saved() {
+    let mut bench = Bench::new(SIZE);
+    bench.session().show.has_strip = false;
+    let (loaded, seen) = latencies(&mut bench, 50);
+    for (what, taken) in [("loaded", &loaded), ("seen", &seen)] {
+        eprintln!("{what}: median {} ms, p95 {} ms, most {} ms", taken[25], taken[47], taken[49]);
+    }
+    assert!(seen[47] <= 250, "{seen:?}");
+}
+
+/// Files that are open, and the process' memory, bytes.
+#[cfg(target_os = "linux")]
+fn held() -> (usize, u64) {
+    let status = fs::read_to_string("/proc/self/status").unwrap();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap();
+    let kilobytes: u64 = line.trim().trim_end_matches(" kB").parse().unwrap();
+    (fs::read_dir("/proc/self/fd").unwrap().count(), kilobytes * 1024)
+}
+
+/// Good and bad ramps and presets by turns.
+#[cfg(target_os = "linux")]
+fn reload(bench: &mut Bench, count: u32) {
+    let good = fs::read_to_string(bench.path("my.json")).unwrap();
+    for index in 0..count {
+        let (said, pictures) = (bench.said(), bench.pictures());
+        let text = good.replace("\"Dense column\"", &format!("\"column {index}\""));
+        match index % 4 {
+            0 => write_ramp(bench.folder.path(), (index % 251) as u8),
+            1 => fs::write(bench.path("mine.png"), "no picture").unwrap(),
+            2 => fs::write(bench.path("my.json"), text).unwrap(),
+            _ => fs::write(bench.path("my.json"), &good[..good.len() / 2]).unwrap(),
+        }
+        let name = format!("column {index}");
+        bench.until(|bench| match index % 4 {
+            0 => !bench.pictures().shares(&pictures),
+            2 => bench.session().document.preset.name == name,
+            _ => bench.said() != said,
+        });
+        if index % 50 == 0 {
+            picture(&mut bench.window);
+        }
+    }
+    fs::write(bench.path("my.json"), good).unwrap();
+    bench.rest();
+}
+
+#[cfg(target_os = "linux")]
+fn soak(count: u32) {
+    let mut bench = Bench::new(SIZE);
+    // Steps of Undo, which are kept.
+    reload(&mut bench, count / 5 + 4);
+    let (files, memory) = held();
+    reload(&mut bench, count);
+    let (files_after, memory_after) = held();
+    let grown = memory_after.saturating_sub(memory);
+    eprintln!("{count} reloads: {files} files before, {files_after} after; {} KiB more", grown / 1024);
+    assert!(files_after <= files, "{files_after} files for {files}");
+    // Pages that the allocator and the driver keep.
+    assert!(grown < 16 << 20, "{grown} bytes more");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+#[ignore = "takes minutes; alone in its process"]
+fn five_thousand_good_and_bad_reloads() {
+    soak(5000);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn good_and_bad_reloads_by_turns() {
+    reload(&mut Bench::new(SIZE), 24);
+}
