@@ -31,9 +31,9 @@ impl Camera {
     /// The view of a picture of this size.
     pub fn view(&self, size: UVec2) -> View {
         let aspect = size.x.max(1) as f32 / size.y.max(1) as f32;
-        // Looking straight up or down, any other up will do.
+        // Looking straight up or down, x stays to the right.
         let forward = (self.target - self.position).normalize_or(Vec3::NEG_Z);
-        let up = if forward.y.abs() > 0.999 { Vec3::Z } else { Vec3::Y };
+        let up = if forward.y.abs() > 0.9999 { Vec3::Z * forward.y.signum() } else { Vec3::Y };
         let clip_from_view = rh::proj::directx::perspective(self.fov.to_radians(), aspect, self.near, self.far);
         View::new(rh::view::look_to_mat4(self.position, forward, up), clip_from_view, size)
     }

@@ -1,6 +1,7 @@
 //! What can be done by key or by menu: one table for the keys, the menus and the list of both.
 
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+use glam::Vec3;
 
 /// Something that the window does when it is told to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +17,43 @@ pub enum Action {
     NextStage,
     Picture,
     Help,
+    InView(InView),
+}
+
+/// What the viewport does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InView {
+    Frame,
+    Home,
+    /// The selected light.
+    Delete,
+    Duplicate,
+    Face(Side),
+}
+
+/// Where the camera stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    Front,
+    Back,
+    Right,
+    Left,
+    Top,
+    Bottom,
+}
+
+impl Side {
+    /// From what it looks at to the camera.
+    pub fn way(self) -> Vec3 {
+        match self {
+            Self::Front => Vec3::Z,
+            Self::Back => Vec3::NEG_Z,
+            Self::Right => Vec3::X,
+            Self::Left => Vec3::NEG_X,
+            Self::Top => Vec3::Y,
+            Self::Bottom => Vec3::NEG_Y,
+        }
+    }
 }
 
 /// An action, what it is called, and its keys.
@@ -43,15 +81,26 @@ pub const ACTIONS: &[Entry] = &[
     entry(Action::Strip, "Shade tree strip", Modifiers::NONE, Key::F4),
     entry(Action::NextStage, "Next stage of the shading", Modifiers::NONE, Key::N),
     entry(Action::Picture, "Back to the picture", Modifiers::NONE, Key::Escape),
+    entry(Action::InView(InView::Frame), "Show the selected light, or all of the smoke", Modifiers::NONE, Key::F),
+    entry(Action::InView(InView::Home), "Back to the saved camera", Modifiers::NONE, Key::Home),
+    entry(Action::InView(InView::Delete), "Delete the selected light", Modifiers::NONE, Key::Delete),
+    entry(Action::InView(InView::Duplicate), "Duplicate the selected light", Modifiers::COMMAND, Key::D),
+    entry(Action::InView(InView::Face(Side::Back)), "From behind", Modifiers::COMMAND, Key::Num1),
+    entry(Action::InView(InView::Face(Side::Front)), "From the front", Modifiers::NONE, Key::Num1),
+    entry(Action::InView(InView::Face(Side::Left)), "From the left", Modifiers::COMMAND, Key::Num3),
+    entry(Action::InView(InView::Face(Side::Right)), "From the right", Modifiers::NONE, Key::Num3),
+    entry(Action::InView(InView::Face(Side::Bottom)), "From below", Modifiers::COMMAND, Key::Num7),
+    entry(Action::InView(InView::Face(Side::Top)), "From above", Modifiers::NONE, Key::Num7),
     entry(Action::Help, "This list", Modifiers::NONE, Key::F1),
 ];
 
 /// What else is done with pointer and keys.
 pub const GESTURES: &[(&str, &str)] = &[
     ("Drag in the picture, or middle button", "Orbit"),
-    ("Shift drag", "Pan"),
-    ("Wheel, Ctrl middle, Alt right", "Nearer and farther"),
-    ("Right button with W A S D Q E", "Fly; Shift for faster"),
+    ("Shift middle, Alt middle", "Pan"),
+    ("Wheel, Ctrl middle, Alt right", "Nearer and farther; the wheel towards the pointer"),
+    ("Right button with W A S D Q E", "Fly; Shift for faster, the wheel for another speed"),
+    ("Click on a light", "Selects it: drag its handles; Shift is slow, Ctrl snaps, Escape puts it back"),
     ("Double click on a name", "Sets it back"),
     ("Click on a value", "Type it, with its unit or without"),
 ];

@@ -1,11 +1,13 @@
 //! `haze tweak`: a window to light smoke in.
 
 mod action;
+mod angles;
 mod compare;
 #[allow(dead_code, reason = "what the window is about to use")]
 mod document;
 mod gpu;
 mod icon;
+mod lights;
 mod messages;
 mod panel;
 mod pictures;
@@ -17,6 +19,7 @@ mod reload;
 mod search;
 mod session;
 mod show;
+mod smoke;
 mod strip;
 #[cfg(test)]
 mod testing;

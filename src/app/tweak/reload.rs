@@ -183,7 +183,7 @@ impl Reload {
                 }
             }
             None => {
-                session.messages.complain("reload", "a file could not be read again: the program has a mistake in it")
+                session.messages.complain("reload", "a file could not be read again: the program has a mistake in it");
             }
         }
     }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use glam::UVec2;
 use haze::Error;
+use haze::Light;
 use haze::demo::shot::Shot;
 use haze::preset::{Preset, Tooltips};
 use haze::settings::ShadeTree;
@@ -12,6 +13,7 @@ use haze::settings::ShadeTree;
 use super::compare::Compare;
 use super::document::difference::{changed_fields, copy_field};
 use super::document::document::Document;
+use super::lights::ShownLights;
 use super::messages::Messages;
 use super::pictures::Pictures;
 use super::playback::Playback;
@@ -74,6 +76,7 @@ impl Session {
     pub fn shot(&self, size: UVec2) -> Shot {
         let mut preset = self.document.preset.clone();
         preset.time = self.playback.time;
+        preset.lights = self.show.lights.shown(&preset.lights);
         let materials = self.pictures.of(&preset);
         Shot { preset, size, shade_tree: self.show.stage, materials }
     }
@@ -101,6 +104,14 @@ impl Session {
         if (&self.changed.saved, &self.changed.preset) != (saved, preset) {
             let paths = changed_fields(saved, preset).into_iter().collect();
             self.changed = Changed { paths, saved: saved.clone(), preset: preset.clone() };
+        }
+    }
+
+    /// Does something with the selected light, if there is one.
+    pub fn change_light(&mut self, change: impl FnOnce(&mut ShownLights, &mut Vec<Light>, usize)) {
+        let lights = &mut self.document.preset.lights;
+        if let Some(index) = self.show.lights.selected.filter(|&index| index < lights.len()) {
+            change(&mut self.show.lights, lights, index);
         }
     }
 

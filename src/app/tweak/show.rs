@@ -2,6 +2,8 @@
 
 use haze::settings::ShadeTree;
 
+use super::lights::ShownLights;
+
 /// What is shown of the preset; no part of it.
 #[derive(Clone, Debug)]
 pub struct Show {
@@ -15,6 +17,7 @@ pub struct Show {
     pub tab: Tab,
     /// The system whose settings are shown.
     pub system: usize,
+    pub lights: ShownLights,
 }
 
 /// A part of the settings.
@@ -28,6 +31,14 @@ pub enum Tab {
 
 impl Default for Show {
     fn default() -> Self {
-        Self { stage: ShadeTree::Final, has_strip: true, aspect: 16.0 / 9.0, help: false, tab: Tab::Look, system: 0 }
+        Self {
+            stage: ShadeTree::Final,
+            has_strip: true,
+            aspect: 16.0 / 9.0,
+            help: false,
+            tab: Tab::Look,
+            system: 0,
+            lights: ShownLights::default(),
+        }
     }
 }

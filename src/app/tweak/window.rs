@@ -16,12 +16,13 @@ use super::panel;
 use super::reload::{Reload, ShaderFolder};
 use super::session::Session;
 use super::strip::{after, strip};
-use super::viewport::viewport;
+use super::viewport::Viewport;
 
 pub struct Window {
     pub session: Session,
     easel: Easel,
     pub reload: Reload,
+    viewport: Viewport,
     adapter: String,
     screenshot: Screenshot,
 }
@@ -49,6 +50,7 @@ impl Window {
             reload: Reload::new(&session, shaders, &easel, move || egui.request_repaint())?,
             session,
             easel,
+            viewport: Viewport::default(),
             adapter: format!("{} ({}{software})", info.name, info.backend),
             screenshot: Screenshot::default(),
         })
@@ -96,7 +98,7 @@ impl Window {
     /// Does what keys ask for, unless something is typed.
     fn keys(&mut self, ui: &Ui) {
         let is_modal = self.session.search.is_open || self.session.show.help;
-        if ui.ctx().text_edit_focused() || is_modal {
+        if ui.ctx().text_edit_focused() || is_modal || self.viewport.is_dragging() {
             return;
         }
         // Space and the like are for the control that has the keyboard.
@@ -122,6 +124,7 @@ impl Window {
             Action::NextStage => session.show.stage = after(session.show.stage),
             Action::Picture => session.show.stage = ShadeTree::Final,
             Action::Help => session.show.help = !session.show.help,
+            Action::InView(action) => self.viewport.act(action, session),
         }
     }
 
@@ -185,10 +188,10 @@ impl eframe::App for Window {
         let width = (0.18 * ui.available_width()).clamp(330.0, 440.0);
         let settings = egui::Panel::right("settings").default_size(width).size_range(240.0..=560.0);
         settings.show(ui, |ui| panel::settings::panel(ui, &mut self.session));
-        egui::CentralPanel::no_frame().show(ui, |ui| viewport(ui, &mut self.session, &self.easel));
+        egui::CentralPanel::no_frame().show(ui, |ui| self.viewport.show(ui, &mut self.session, &self.easel));
         panel::search::panel(ui, &mut self.session);
         panel::help::panel(ui, &mut self.session);
-        self.session.track(ui.input(|input| input.pointer.any_down()));
+        self.session.track(ui.input(|input| input.pointer.any_down()) || self.viewport.is_held(ui));
         match self.easel.take_error() {
             Some(error) => self.session.messages.complain("picture", error),
             None => self.session.messages.withdraw("picture"),

@@ -44,7 +44,10 @@ pub fn copy_field(from: &Preset, to: &mut Preset, path: &str) {
     }
 }
 
-/// A name for a step between two presets: "boost of smoke", "colour of light 2", "3 fields of smoke", "light added".
+/// What changes when the camera is moved.
+const MOVES: [&str; 2] = ["camera.position", "camera.target"];
+
+/// A name for a step between two presets: "boost of smoke", "colour of light 2", "camera", "3 fields of smoke", "light added".
 pub fn step_name(before: &Preset, after: &Preset) -> String {
     let changed = changed_fields(before, after);
     let Some(first) = changed.first() else { return "change".into() };
@@ -58,6 +61,7 @@ pub fn step_name(before: &Preset, after: &Preset) -> String {
     match changed.as_slice() {
         [list] if length(before) < length(after) => format!("{} added", singular(list)),
         [list] if length(before) > length(after) => format!("{} removed", singular(list)),
+        fields if fields.iter().all(|field| MOVES.contains(&field.as_str())) => "camera".into(),
         [field] => format!("{}{of}", field.rsplit('.').next().unwrap_or(field)),
         fields if fields.iter().all(|field| owner_of(field) == owner) => format!("{} fields{of}", fields.len()),
         fields => format!("{} fields", fields.len()),
@@ -109,6 +113,7 @@ mod tests {
         expect(said(|preset| preset.systems[0].settings.boost = 2.0), "systems[0].settings.boost", "boost of smoke");
         expect(said(|preset| preset.lights[1].colour.x = 0.0), "lights[1].colour", "colour of light 2");
         expect(said(|preset| preset.camera.exposure = 2.0), "camera.exposure", "exposure");
+        expect(said(|preset| preset.camera.target.x += 1.0), "camera.target", "camera");
         expect(said(|preset| preset.lights.push(Light::default())), "lights", "light added");
         expect(said(|preset| preset.lights.truncate(2)), "lights", "light removed");
         expect(said(|preset| preset.systems.push(PresetSystem::default())), "systems", "system added");

@@ -4,6 +4,7 @@ pub mod compare;
 pub mod curve;
 pub mod fields;
 pub mod help;
+pub mod lights;
 pub mod look;
 pub mod notice;
 pub mod row;

@@ -226,16 +226,22 @@ pub fn vector(ui: &mut Ui, value: &mut Vec3, range: &RangeInclusive<f32>, unit: 
     }
 }
 
-/// Linear RGB, which may be brighter than 1: the button shows its hue.
+/// Linear RGB and its numbers.
 pub fn colour(ui: &mut Ui, value: &mut Vec3, name: &Response) {
+    swatch(ui, value).labelled_by(name.id);
+    let [r, g, b] = value.to_array();
+    ui.add(egui::Label::new(egui::RichText::new(format!("{r:.3} {g:.3} {b:.3}")).weak()).truncate());
+}
+
+/// Linear RGB, which may be brighter than 1: the button shows its hue.
+pub fn swatch(ui: &mut Ui, value: &mut Vec3) -> Response {
     let peak = value.max_element().max(1.0);
     let mut shown = (*value / peak).to_array();
-    let button = ui.color_edit_button_rgb(&mut shown).labelled_by(name.id);
+    let button = ui.color_edit_button_rgb(&mut shown);
     if button.changed() {
         *value = Vec3::from(shown) * peak;
     }
-    let [r, g, b] = value.to_array();
-    ui.add(egui::Label::new(egui::RichText::new(format!("{r:.3} {g:.3} {b:.3}")).weak()).truncate());
+    button
 }
 
 /// One of a few; `tooltip` tells what each means.
@@ -309,6 +315,7 @@ mod tests {
     fn numbers_are_typed_with_their_unit_or_without() {
         assert_eq!(parse(" 2.5 m/s ", "m/s"), Some(2.5));
         assert_eq!(parse("1e-3", ""), Some(0.001));
+        assert_eq!((parse("35°", "degrees"), parse("35 degrees", "degrees")), (Some(35.0), Some(35.0)));
         for wrong in ["nan", "inf", "2,5", "", "m/s", "two"] {
             assert_eq!(parse(wrong, "m/s"), None, "{wrong}");
         }

@@ -5,7 +5,7 @@ use haze::preset::Preset;
 use haze::settings::{Fields, path_of};
 
 use super::fields::{self, Desk};
-use super::{curve, look};
+use super::{curve, lights, look};
 use crate::app::tweak::session::Session;
 use crate::app::tweak::show::Tab;
 
@@ -36,6 +36,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
         });
     }
     ui.separator();
+    let (time, mut shown) = (session.playback.time, std::mem::take(&mut session.show.lights));
     let mut desk = Desk {
         tooltips: &session.tooltips,
         changed: session.changed(),
@@ -50,12 +51,17 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
     let system = session.show.system;
     egui::ScrollArea::vertical().id_salt(session.show.tab).auto_shrink(false).show(ui, |ui| match session.show.tab {
         Tab::Look => look::panel(ui, &mut desk, preset, system),
-        Tab::Light => light(ui, &mut desk, preset),
+        Tab::Light => {
+            lights::panel(ui, &mut desk, preset, &mut shown, time);
+            ui.separator();
+            surroundings(ui, &mut desk, preset);
+        }
         Tab::Smoke => smoke(ui, &mut desk, preset, system),
         Tab::Advanced => advanced(ui, &mut desk, preset, system),
     });
     let Desk { reset, refused, .. } = desk;
     session.document.preset = edited;
+    session.show.lights = shown;
     reset.iter().for_each(|path| session.set_back(path));
     if let Some(refused) = refused {
         session.messages.complain("typed", refused);
@@ -75,10 +81,7 @@ fn section(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, path: &[fields::Step],
     header.show(ui, |ui| fields::show(ui, desk, path, fields));
 }
 
-fn light(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset) {
-    for (index, light) in preset.lights.iter_mut().enumerate() {
-        section(ui, desk, &format!("Light {}", index + 1), &[("lights", Some(index))], light);
-    }
+fn surroundings(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset) {
     section(ui, desk, "Sky and scene", &[("environment", None)], &mut preset.environment);
     section(ui, desk, "Camera", &[("camera", None)], &mut preset.camera);
 }

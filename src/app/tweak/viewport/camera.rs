@@ -1,137 +1,93 @@
-//! The camera by pointer and keys, as Maya and Blender have it: Alt and a button, or the middle button with Shift or Ctrl; the right
-//! button and WASD fly.
+//! What can be done to a camera.
 
-use eframe::egui::{Key, PointerButton, Response, Ui};
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec2, Vec3};
+use haze::Bounds;
 use haze::preset::Camera;
 
-/// Radians of orbit for a drag over the height of the picture.
-const ORBIT: f32 = 3.5;
-/// Radians of looking round for the same.
-const LOOK: f32 = 1.6;
-/// Times nearer for a drag over the height of the picture, or for so many points of the wheel.
-const DOLLY: f32 = 4.0;
-const WHEEL: f32 = 600.0;
 /// Closest that the camera comes to what it looks at, metres.
 const NEAREST: f32 = 0.05;
-/// Share of straight up or down that it may look.
-const STEEPEST: f32 = 0.995;
+/// Share of straight up or down that it is turned to.
+const STEEPEST: f32 = 0.9995;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Gesture {
-    Orbit,
-    Pan,
-    Dolly,
-    Look,
-}
-
-/// Moves the camera by what the pointer does over the picture.
-pub fn steer(ui: &Ui, response: &Response, camera: &mut Camera) {
-    let height = response.rect.height().max(1.0);
-    let (modifiers, seconds) = ui.input(|input| (input.modifiers, input.stable_dt.min(0.1)));
-    let drag = response.drag_delta() / height;
-    let drag = glam::Vec2::new(drag.x, drag.y);
-    let is_dragged = |button| response.dragged_by(button);
-    let gesture = if is_dragged(PointerButton::Middle) {
-        Some(match (modifiers.shift, modifiers.command) {
-            (true, _) => Gesture::Pan,
-            (_, true) => Gesture::Dolly,
-            _ => {
-                if modifiers.alt {
-                    Gesture::Pan
-                } else {
-                    Gesture::Orbit
-                }
-            }
-        })
-    } else if modifiers.alt && is_dragged(PointerButton::Secondary) {
-        Some(Gesture::Dolly)
-    } else if is_dragged(PointerButton::Secondary) {
-        Some(Gesture::Look)
-    } else if is_dragged(PointerButton::Primary) {
-        Some(if modifiers.shift { Gesture::Pan } else { Gesture::Orbit })
-    } else {
-        None
-    };
-    match gesture {
-        Some(Gesture::Orbit) => orbit(camera, drag * ORBIT),
-        Some(Gesture::Pan) => pan(camera, drag),
-        Some(Gesture::Dolly) => dolly(camera, DOLLY.powf(drag.y - drag.x)),
-        Some(Gesture::Look) => look(camera, drag * LOOK),
-        None => {}
-    }
-    if response.hovered() {
-        let wheel = ui.input(|input| input.smooth_scroll_delta().y);
-        if wheel != 0.0 {
-            dolly(camera, DOLLY.powf(-wheel / WHEEL));
-        }
-    }
-    if gesture == Some(Gesture::Look) {
-        let axis = |plus, minus| {
-            ui.input(|input| f32::from(u8::from(input.key_down(plus))) - f32::from(u8::from(input.key_down(minus))))
-        };
-        let way = Vec3::new(axis(Key::D, Key::A), axis(Key::E, Key::Q), axis(Key::W, Key::S));
-        if way != Vec3::ZERO {
-            fly(camera, way * seconds * if modifiers.shift { 8.0 } else { 2.0 });
-            ui.ctx().request_repaint();
-        }
-    }
-}
-
-/// Round what it looks at.
-pub fn orbit(camera: &mut Camera, angle: glam::Vec2) {
+/// Round what it looks at; radians to the side and up.
+pub fn orbit(camera: &mut Camera, angle: Vec2) {
     camera.position = camera.target + turned(camera.position - camera.target, angle);
 }
 
 /// Round where it stands.
-fn look(camera: &mut Camera, angle: glam::Vec2) {
+pub fn look(camera: &mut Camera, angle: Vec2) {
     camera.target = camera.position + turned(camera.target - camera.position, angle);
 }
 
 /// A vector turned about the vertical by x, and up or down by y, never over the top.
-fn turned(v: Vec3, angle: glam::Vec2) -> Vec3 {
+fn turned(v: Vec3, angle: Vec2) -> Vec3 {
     let level = Quat::from_rotation_y(-angle.x) * v;
     let side = level.cross(Vec3::Y).normalize_or(Vec3::X);
     let steep = Quat::from_axis_angle(side, -angle.y) * level;
-    if steep.normalize_or_zero().y.abs() < STEEPEST { steep } else { level }
+    let steepness = |v: Vec3| v.normalize_or_zero().y.abs();
+    if steepness(steep) < steepness(level).max(STEEPEST) { steep } else { level }
 }
 
-/// Sideways, so that what it looks at stays under the pointer.
-pub fn pan(camera: &mut Camera, share: glam::Vec2) {
+/// Sideways by shares of the picture's height, so that what it looks at stays under the pointer.
+pub fn pan(camera: &mut Camera, share: Vec2) {
     let away = camera.target - camera.position;
-    let (right, up) = sides(away);
+    let (right, up) = sides(away.normalize_or(Vec3::NEG_Z));
     let reach = 2.0 * away.length() * (0.5 * camera.fov.to_radians()).tan();
-    let by = (up * share.y - right * share.x) * reach;
-    camera.position += by;
-    camera.target += by;
+    shift(camera, (up * share.y - right * share.x) * reach);
 }
 
-/// Nearer to what it looks at, or away from it.
-pub fn dolly(camera: &mut Camera, factor: f32) {
-    let away = camera.position - camera.target;
-    let distance = (away.length() * factor).clamp(NEAREST, 0.5 * camera.far);
-    camera.position = camera.target + away.normalize_or(Vec3::Z) * distance;
+/// Nearer to a point, or away from it; it stays where it is in the picture.
+pub fn dolly(camera: &mut Camera, point: Vec3, factor: f32) {
+    let distance = camera.position.distance(camera.target).max(1.0e-6);
+    let factor = factor.clamp(NEAREST / distance, (0.5 * camera.far).max(NEAREST) / distance);
+    camera.position = point + (camera.position - point) * factor;
+    camera.target = point + (camera.target - point) * factor;
 }
 
 /// Metres to the right, up and ahead.
-fn fly(camera: &mut Camera, way: Vec3) {
+pub fn fly(camera: &mut Camera, way: Vec3) {
     let ahead = (camera.target - camera.position).normalize_or(Vec3::NEG_Z);
     let (right, _) = sides(ahead);
-    let by = right * way.x + Vec3::Y * way.y + ahead * way.z;
-    camera.position += by;
-    camera.target += by;
+    shift(camera, right * way.x + Vec3::Y * way.y + ahead * way.z);
 }
 
-/// Right and up of who looks that way.
-fn sides(ahead: Vec3) -> (Vec3, Vec3) {
+/// Shows a box whole in a picture so many times as wide as high, from where it is seen now.
+pub fn frame(camera: &mut Camera, bounds: &Bounds, aspect: f32) {
+    let tangent = (0.5 * camera.fov.to_radians()).tan();
+    let (centre, half) = (bounds.centre(), 0.5 * (bounds.max - bounds.min));
+    let ahead = (camera.target - camera.position).normalize_or(Vec3::NEG_Z);
+    let (right, up) = sides(ahead);
+    // How far away each corner has to be from the eye to be seen, and how far from there to the middle.
+    let distance = |corner: Vec3| {
+        let side = corner.dot(right).abs() / (tangent * aspect.max(0.01));
+        side.max(corner.dot(up).abs() / tangent).max(camera.near) - corner.dot(ahead)
+    };
+    let corners =
+        (0..8).map(|corner| half * Vec3::from([1, 2, 4].map(|bit| if corner & bit == 0 { -1.0 } else { 1.0 })));
+    let farthest = 1.08 * corners.map(distance).fold(NEAREST, f32::max);
+    camera.position = centre - ahead * farthest.clamp(NEAREST, (0.5 * camera.far).max(NEAREST));
+    camera.target = centre;
+}
+
+/// Looks at the same from another side.
+pub fn face(camera: &mut Camera, from: Vec3) {
+    camera.position = camera.target + from * camera.position.distance(camera.target);
+}
+
+/// Right and up of who looks along a unit vector, as [`Camera::view`] has them.
+pub fn sides(ahead: Vec3) -> (Vec3, Vec3) {
     let right = ahead.cross(Vec3::Y).normalize_or(Vec3::X);
     (right, right.cross(ahead).normalize_or(Vec3::Y))
+}
+
+fn shift(camera: &mut Camera, by: Vec3) {
+    camera.position += by;
+    camera.target += by;
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec2;
 
     #[test]
     fn an_orbit_keeps_its_distance_and_never_turns_over() {
@@ -146,15 +102,47 @@ mod tests {
     }
 
     #[test]
-    fn a_pan_moves_both_and_a_dolly_only_the_camera() {
+    fn from_straight_above_there_is_a_way_down() {
+        let mut camera = Camera::default();
+        face(&mut camera, Vec3::Y);
+        let distance = camera.position.distance(camera.target);
+        orbit(&mut camera, Vec2::new(0.0, -0.01));
+        let back = (camera.position - camera.target) / distance;
+        assert!(back.y < 1.0 && back.z > 0.0, "{back}");
+    }
+
+    #[test]
+    fn a_pan_moves_both_and_a_dolly_keeps_its_point_in_the_picture() {
         let (mut camera, before) = (Camera::default(), Camera::default());
         pan(&mut camera, Vec2::new(0.25, 0.0));
         // The picture goes right with the pointer: the camera left.
         assert!(camera.position.x < before.position.x && camera.target.x < before.target.x);
         assert_eq!(camera.position - camera.target, before.position - before.target);
-        dolly(&mut camera, 0.5);
+        let point = camera.target + Vec3::new(0.4, 0.3, 0.0);
+        let seen = |camera: &Camera| (point - camera.position).normalize();
+        let seen_before = seen(&camera);
+        dolly(&mut camera, point, 0.5);
         assert!((camera.position.distance(camera.target) - 0.5 * before.position.distance(before.target)).abs() < 1e-3);
-        dolly(&mut camera, 0.0);
+        assert!(seen(&camera).distance(seen_before) < 1e-5);
+        dolly(&mut camera, before.target, 0.0);
         assert!(camera.position.distance(camera.target) >= 0.9 * NEAREST);
+    }
+
+    #[test]
+    fn a_framed_box_fits_the_narrower_side() {
+        let bounds = Bounds { min: Vec3::new(2.0, 0.0, -3.0), max: Vec3::new(4.0, 6.0, -2.0) };
+        for aspect in [0.2, 1.0, 2.0] {
+            let mut camera = Camera::default();
+            orbit(&mut camera, Vec2::new(0.4, 0.3));
+            frame(&mut camera, &bounds, aspect);
+            let view = camera.view(glam::UVec2::new((1000.0 * aspect) as u32, 1000));
+            let clip_from_world = view.clip_from_view * view.view_from_world;
+            let corners = (0..8).map(|i| {
+                let pick = |bit: u32, axis: usize| if i & bit == 0 { bounds.min[axis] } else { bounds.max[axis] };
+                clip_from_world.project_point3(Vec3::new(pick(1, 0), pick(2, 1), pick(4, 2)))
+            });
+            let outermost = corners.map(|ndc| ndc.x.abs().max(ndc.y.abs())).fold(0.0, f32::max);
+            assert!((0.85..1.0).contains(&outermost), "{aspect}: {outermost}");
+        }
     }
 }

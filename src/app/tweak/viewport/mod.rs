@@ -1,76 +1,121 @@
-//! The picture, and what is done to it with the pointer.
+//! The picture, and what is done to it with pointer and keys.
 
 mod camera;
+mod compare;
+mod gizmo;
+mod grab;
+mod handle;
+mod ink;
+mod lens;
+mod mark;
+mod ray;
+mod steer;
 
-use eframe::egui::{self, Sense, Ui};
+use eframe::egui::{self, Response, Sense, Ui};
 use glam::UVec2;
-use haze::demo::develop::exposure;
-use haze::demo::shot::Shot;
+use haze::{Bounds, LightKind};
 
-use super::compare::Against;
-use super::gpu::{Easel, Exhibit, Other};
-use super::referee::Verdict;
+use super::action::InView;
+use super::gpu::{Easel, Exhibit};
+use super::lights::ShownLights;
 use super::session::Session;
+use super::smoke::Smoke;
+use compare::{divider, other};
+use gizmo::Gizmo;
+use ink::Ink;
+use lens::Lens;
+use steer::Steering;
 
-pub fn viewport(ui: &mut Ui, session: &mut Session, easel: &Easel) {
-    let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-    let pixels = rect.size() * ui.pixels_per_point();
-    let size = UVec2::new(pixels.x.round() as u32, pixels.y.round() as u32);
-    if size.min_element() == 0 {
-        return;
+/// What goes on in the viewport.
+#[derive(Default)]
+pub struct Viewport {
+    steering: Steering,
+    smoke: Smoke,
+    gizmo: Gizmo,
+}
+
+/// Metres round a light that are shown when it is looked at.
+const CLOSE: f32 = 0.75;
+
+impl Viewport {
+    pub fn show(&mut self, ui: &mut Ui, session: &mut Session, easel: &Easel) {
+        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        let pixels = rect.size() * ui.pixels_per_point();
+        let size = UVec2::new(pixels.x.round() as u32, pixels.y.round() as u32);
+        if size.min_element() == 0 {
+            return;
+        }
+        session.show.aspect = size.x as f32 / size.y as f32;
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "viewport"));
+        self.begin_gesture(ui, session);
+        session.show.lights.follow(&session.document.preset.lights);
+        let lens = Lens::new(&session.document.preset.camera, rect);
+        if !self.gizmo.interact(ui, &response, &lens, session) {
+            self.steer(ui, &response, &lens, session);
+        }
+        let shot = session.shot(size);
+        let other = other(ui, session, &shot);
+        let compare = &mut session.compare;
+        let exhibit = Exhibit { shot, other, split: compare.split, difference: compare.difference };
+        easel.show(ui, rect, exhibit);
+        if compare.against.is_some() && compare.difference == 0.0 {
+            divider(ui, rect, &mut compare.split);
+        }
+        let lens = Lens::new(&session.document.preset.camera, rect);
+        let painter = ui.painter_at(rect);
+        self.gizmo.draw(&Ink(&painter), &lens, session);
     }
-    session.show.aspect = size.x as f32 / size.y as f32;
-    camera::steer(ui, &response, &mut session.document.preset.camera);
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "viewport"));
-    let shot = session.shot(size);
-    let other = other(ui, session, &shot);
-    let compare = &mut session.compare;
-    let exhibit = Exhibit { shot, other, split: compare.split, difference: compare.difference };
-    easel.show(ui, rect, exhibit);
-    if compare.against.is_some() && compare.difference == 0.0 {
-        divider(ui, rect, &mut compare.split);
+
+    /// Something is moved without a button being held.
+    pub fn is_held(&self, ui: &Ui) -> bool {
+        self.steering.is_wheeling(ui)
+    }
+
+    /// What is pressed now is no part of what the wheel did just before.
+    fn begin_gesture(&mut self, ui: &Ui, session: &mut Session) {
+        if self.steering.is_wheeling(ui) && ui.input(|input| input.pointer.any_pressed()) {
+            self.steering.forget_wheel();
+            session.track(false);
+        }
+    }
+
+    fn steer(&mut self, ui: &Ui, response: &Response, lens: &Lens, session: &mut Session) {
+        if self.steering.steer(ui, response, lens, &mut session.document.preset.camera) {
+            session.messages.say("flight", format!("flying at {:.2} m/s", self.steering.speed));
+        }
+    }
+
+    /// A handle of a light is being dragged; keys are for it.
+    pub fn is_dragging(&self) -> bool {
+        self.gizmo.is_dragging()
+    }
+
+    /// Does what a key or a menu asks for.
+    pub fn act(&mut self, action: InView, session: &mut Session) {
+        let saved = session.saved().camera;
+        let camera = &mut session.document.preset.camera;
+        match action {
+            InView::Frame => self.frame(session),
+            InView::Home => *camera = saved,
+            InView::Delete => session.change_light(ShownLights::remove),
+            InView::Duplicate => session.change_light(ShownLights::duplicate),
+            InView::Face(side) => camera::face(camera, side.way()),
+        }
+    }
+
+    /// Shows the selected light, or all of the smoke.
+    fn frame(&mut self, session: &mut Session) {
+        let preset = &mut session.document.preset;
+        let selected = session.show.lights.selected.and_then(|index| preset.lights.get(index));
+        let light = selected.filter(|light| light.kind != LightKind::Directional);
+        let mut bounds = self.smoke.at(preset, session.playback.time).bounds();
+        if let Some(light) = light {
+            bounds = Bounds::EMPTY;
+            bounds.include(light.position, light.radius.max(CLOSE));
+        }
+        camera::frame(&mut preset.camera, &bounds, session.show.aspect);
     }
 }
 
-/// What the picture is compared with, if it is there yet.
-fn other(ui: &Ui, session: &mut Session, shot: &Shot) -> Option<Other> {
-    let against = session.compare.against.clone()?;
-    if against != Against::Reference {
-        return Some(Other::Shot(Box::new(against.shot(shot, session.saved()))));
-    }
-    let context = ui.ctx().clone();
-    match session.referee.judge(shot, move || context.request_repaint()) {
-        Verdict::Made(picture) => return Some(Other::Picture(picture, exposure(shot))),
-        Verdict::Later(wait) => ui.ctx().request_repaint_after(wait),
-        Verdict::Failed(error) => session.messages.complain("reference", error),
-        Verdict::Soon => {}
-    }
-    None
-}
-
-/// What stands between two pictures, and can be moved.
-fn divider(ui: &Ui, rect: egui::Rect, split: &mut f32) {
-    let x = rect.left() + *split * rect.width();
-    let grip = egui::Rect::from_x_y_ranges(x - 5.0..=x + 5.0, rect.y_range());
-    let response = ui
-        .interact(grip, ui.scope_id().with("divider"), Sense::drag())
-        .on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
-    response.widget_info(|| egui::WidgetInfo::slider(true, f64::from(*split), "divider"));
-    if response.dragged() {
-        *split = (*split + response.drag_delta().x / rect.width()).clamp(0.02, 0.98);
-    }
-    let x = (rect.left() + *split * rect.width()).round() + 0.5;
-    let colour = if response.hovered() || response.dragged() {
-        egui::Color32::WHITE
-    } else {
-        egui::Color32::from_white_alpha(160)
-    };
-    ui.painter().vline(x - 1.0, rect.y_range(), egui::Stroke::new(1.0, egui::Color32::from_black_alpha(160)));
-    ui.painter().vline(x, rect.y_range(), egui::Stroke::new(1.0, colour));
-    ui.painter().circle(
-        egui::pos2(x, rect.center().y),
-        5.0,
-        egui::Color32::from_black_alpha(120),
-        egui::Stroke::new(1.0, colour),
-    );
-}
+#[cfg(test)]
+mod tests;

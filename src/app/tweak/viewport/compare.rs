@@ -1,0 +1,53 @@
+//! What the picture is compared with, beside it.
+
+use eframe::egui::{self, Sense, Ui};
+use haze::demo::develop::exposure;
+use haze::demo::shot::Shot;
+
+use crate::app::tweak::compare::Against;
+use crate::app::tweak::gpu::Other;
+use crate::app::tweak::referee::Verdict;
+use crate::app::tweak::session::Session;
+
+/// What the picture is compared with, if it is there yet.
+pub fn other(ui: &Ui, session: &mut Session, shot: &Shot) -> Option<Other> {
+    let against = session.compare.against.clone()?;
+    if against != Against::Reference {
+        return Some(Other::Shot(Box::new(against.shot(shot, session.saved()))));
+    }
+    let context = ui.ctx().clone();
+    match session.referee.judge(shot, move || context.request_repaint()) {
+        Verdict::Made(picture) => return Some(Other::Picture(picture, exposure(shot))),
+        Verdict::Later(wait) => ui.ctx().request_repaint_after(wait),
+        Verdict::Failed(error) => session.messages.complain("reference", error),
+        Verdict::Soon => {}
+    }
+    None
+}
+
+/// What stands between two pictures, and can be moved.
+pub fn divider(ui: &Ui, rect: egui::Rect, split: &mut f32) {
+    let x = rect.left() + *split * rect.width();
+    let grip = egui::Rect::from_x_y_ranges(x - 5.0..=x + 5.0, rect.y_range());
+    let response = ui
+        .interact(grip, ui.scope_id().with("divider"), Sense::drag())
+        .on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
+    response.widget_info(|| egui::WidgetInfo::slider(true, f64::from(*split), "divider"));
+    if response.dragged() {
+        *split = (*split + response.drag_delta().x / rect.width()).clamp(0.02, 0.98);
+    }
+    let x = (rect.left() + *split * rect.width()).round() + 0.5;
+    let colour = if response.hovered() || response.dragged() {
+        egui::Color32::WHITE
+    } else {
+        egui::Color32::from_white_alpha(160)
+    };
+    ui.painter().vline(x - 1.0, rect.y_range(), egui::Stroke::new(1.0, egui::Color32::from_black_alpha(160)));
+    ui.painter().vline(x, rect.y_range(), egui::Stroke::new(1.0, colour));
+    ui.painter().circle(
+        egui::pos2(x, rect.center().y),
+        5.0,
+        egui::Color32::from_black_alpha(120),
+        egui::Stroke::new(1.0, colour),
+    );
+}

@@ -1,0 +1,93 @@
+//! What lies under the pointer: a line from the eye, and where it meets axes, planes and spheres.
+
+use glam::Vec3;
+
+/// A line from the eye. `direction` is of unit length.
+#[derive(Clone, Copy, Debug)]
+pub struct Ray {
+    pub origin: Vec3,
+    pub direction: Vec3,
+}
+
+/// Sine of the angle below which a line and an axis, or a line and a plane, count as parallel.
+const PARALLEL: f32 = 0.02;
+
+impl Ray {
+    /// Metres along an axis of unit length, from `origin`, to where it comes closest; `None` where it runs beside the ray.
+    pub fn along_axis(&self, origin: Vec3, axis: Vec3) -> Option<f32> {
+        let between = origin - self.origin;
+        let cosine = axis.dot(self.direction);
+        let squared_sine = 1.0 - cosine * cosine;
+        (squared_sine > PARALLEL * PARALLEL)
+            .then(|| (cosine * self.direction.dot(between) - axis.dot(between)) / squared_sine)
+    }
+
+    /// Where it meets a plane through `point`; `None` where that is behind the eye, or runs beside the ray.
+    pub fn on_plane(&self, point: Vec3, normal: Vec3) -> Option<Vec3> {
+        let slope = normal.dot(self.direction);
+        let metres = normal.dot(point - self.origin) / slope;
+        (slope.abs() > PARALLEL && metres > 0.0).then(|| self.origin + self.direction * metres)
+    }
+
+    /// Whether it passes by a sphere.
+    pub fn passes(&self, centre: Vec3, radius: f32) -> bool {
+        let closest = self.origin + self.direction * (centre - self.origin).dot(self.direction);
+        closest.distance_squared(centre) > radius * radius
+    }
+
+    /// Where it meets a sphere, before or behind the sphere's middle; a ray that passes by meets the rim that is closest to it.
+    pub fn on_sphere(&self, centre: Vec3, radius: f32, is_before: bool) -> Vec3 {
+        let middle = (centre - self.origin).dot(self.direction);
+        let closest = self.origin + self.direction * middle;
+        let half = (radius * radius - closest.distance_squared(centre)).max(0.0).sqrt();
+        let met = closest + self.direction * if is_before { -half } else { half };
+        centre + (met - centre).normalize_or(Vec3::Y) * radius
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::vec3;
+
+    fn towards(point: Vec3) -> Ray {
+        let origin = vec3(3.0, 2.0, 7.0);
+        Ray { origin, direction: (point - origin).normalize() }
+    }
+
+    #[test]
+    fn a_ray_through_a_point_of_an_axis_finds_it() {
+        let origin = vec3(0.5, -1.0, 0.25);
+        for axis in [Vec3::X, Vec3::Y, Vec3::Z, vec3(1.0, -2.0, 0.5).normalize()] {
+            for metres in [-3.0, 0.0, 0.7, 12.0] {
+                let found = towards(origin + axis * metres).along_axis(origin, axis).unwrap();
+                assert!((found - metres).abs() < 1e-3, "{axis}: {found} for {metres}");
+            }
+        }
+        assert_eq!(Ray { origin: Vec3::ZERO, direction: Vec3::Y }.along_axis(vec3(1.0, 0.0, 0.0), Vec3::Y), None);
+    }
+
+    #[test]
+    fn a_ray_through_a_point_of_a_plane_finds_it_unless_it_is_behind() {
+        let (point, normal) = (vec3(0.0, 1.0, 0.0), vec3(0.3, 1.0, -0.4).normalize());
+        let met = point + normal.cross(vec3(0.2, 0.0, 1.0)) * 1.7;
+        assert!(towards(met).on_plane(point, normal).unwrap().distance(met) < 1e-4);
+        let away = Ray { origin: vec3(0.0, 3.0, 0.0), direction: Vec3::Y };
+        assert_eq!(away.on_plane(Vec3::ZERO, Vec3::Y), None);
+        assert_eq!(Ray { direction: Vec3::X, ..away }.on_plane(Vec3::ZERO, Vec3::Y), None);
+    }
+
+    #[test]
+    fn either_side_of_a_sphere_is_met_and_its_rim_from_beside() {
+        let (centre, radius) = (vec3(1.0, 1.0, 0.0), 2.0);
+        let ray = towards(centre + vec3(0.5, 0.2, 0.0));
+        let (front, back) = (ray.on_sphere(centre, radius, true), ray.on_sphere(centre, radius, false));
+        for met in [front, back] {
+            assert!((met.distance(centre) - radius).abs() < 1e-5);
+            assert!((met - ray.origin).normalize().distance(ray.direction) < 1e-5);
+        }
+        assert!(front.distance(ray.origin) < back.distance(ray.origin));
+        let beside = towards(centre + vec3(9.0, 0.0, 0.0)).on_sphere(centre, radius, true);
+        assert!((beside.distance(centre) - radius).abs() < 1e-5 && beside.x > centre.x);
+    }
+}
