@@ -153,7 +153,7 @@ fn write(path: &Path, picture: &egui::ColorImage) -> Result<(), Error> {
     let [width, height] = picture.size.map(|side| side as u32);
     let bytes = picture.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()]).collect();
     let picture = RgbImage::from_raw(width, height, bytes).unwrap_or_default();
-    write_png(path, &picture.into(), Effort::Quick)
+    write_png(path, &picture.into(), Effort::Small)
 }
 
 /// Light or dark. (egui's own buttons want signs that its fonts lack.)
