@@ -67,8 +67,11 @@ enum Command {
 
 /// Runs the program and reports how it went.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    // wgpu-hal logs every driver that it looks for and does not find; that there is none at all is an error of ours.
-    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("error,wgpu_hal=off")).init();
+    // wgpu-hal logs every driver that it looks for and does not find, eframe that there is none: an error of ours.
+    env_logger::Builder::from_env(
+        env_logger::Env::default().default_filter_or("error,wgpu_hal=off,eframe::native::run=off"),
+    )
+    .init();
     let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
         Err(help) if !help.use_stderr() => {

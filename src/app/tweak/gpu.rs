@@ -3,9 +3,9 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use eframe::egui::epaint::ViewportInPixels;
-use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
+use eframe::egui_wgpu::{CallbackResources, CallbackTrait, ScreenDescriptor};
 use eframe::{egui, wgpu};
-use glam::{Vec2, Vec4};
+use glam::{UVec2, Vec2, Vec4};
 use haze::Error;
 use haze::demo::develop::{Developer, Developing, Shown, exposure};
 use haze::demo::shot::Shot;
@@ -13,9 +13,18 @@ use haze::demo::stage::{Stage, StageContext};
 use haze::picture::Picture;
 use haze::settings::ShadeTree;
 
+use super::health::Health;
+use super::pace::Pace;
+use super::platform::clock::{Duration, Instant};
+
 /// Draws for one window. A clone is the same.
 #[derive(Clone)]
-pub struct Easel(Arc<Mutex<Inner>>);
+pub struct Easel {
+    inner: Arc<Mutex<Inner>>,
+    adapter: Arc<wgpu::AdapterInfo>,
+    health: Health,
+    egui: egui::Context,
+}
 
 struct Inner {
     context: StageContext,
@@ -28,8 +37,26 @@ struct Inner {
     pair: Option<Developing>,
     /// All stages, small.
     strip: Canvas,
+    strip_drawn: Option<Instant>,
+    motion: Motion,
     /// The first mistake since it was last asked for.
     error: Option<Error>,
+    /// Times that the picture was drawn.
+    #[cfg(test)]
+    pictures: u64,
+}
+
+/// How often the strip is drawn while something moves.
+const STRIP_EVERY: Duration = Duration::from_millis(400);
+
+/// What is known of frames in which something moves.
+#[derive(Default)]
+struct Motion {
+    pace: Pace,
+    is_moving: bool,
+    /// When the last frame began, and whether it drew the picture.
+    last: Option<Instant>,
+    drew: bool,
 }
 
 /// What the viewport shows.
@@ -59,13 +86,70 @@ struct Made {
 
 impl Easel {
     /// # Errors
-    /// Where the device cannot draw what the demo draws.
-    pub fn new(render: &RenderState) -> Result<Self, Error> {
+    /// Where there is no device, or it cannot draw what the demo draws.
+    pub fn new(window: &eframe::CreationContext<'_>) -> Result<Self, Error> {
+        let none = || Error::NoDevice("the window has no graphics device".into());
+        let render = window.wgpu_render_state.as_ref().ok_or_else(none)?;
+        let health = Health::watch(&render.device, &window.egui_ctx);
         let context = StageContext::new(&render.adapter, &render.device, &render.queue);
         let developer = Developer::new(&render.device, render.target_format);
         let (main, strip) = (Canvas::new(&context)?, Canvas::new(&context)?);
-        let inner = Inner { context, developer, main, other: None, made: None, pair: None, strip, error: None };
-        Ok(Self(Arc::new(Mutex::new(inner))))
+        let inner = Inner {
+            context,
+            developer,
+            main,
+            other: None,
+            made: None,
+            pair: None,
+            strip,
+            strip_drawn: None,
+            motion: Motion::default(),
+            error: None,
+            #[cfg(test)]
+            pictures: 0,
+        };
+        let (adapter, egui) = (Arc::new(render.adapter.get_info()), window.egui_ctx.clone());
+        Ok(Self { inner: Arc::new(Mutex::new(inner)), adapter, health, egui })
+    }
+
+    /// Makes the window draw itself again, from any thread.
+    pub fn wake(&self) -> impl Fn() + Send + Sync + 'static {
+        let egui = self.egui.clone();
+        move || egui.request_repaint()
+    }
+
+    /// What draws, on one line.
+    pub fn adapter(&self) -> String {
+        let software = if self.is_software() { ", software" } else { "" };
+        format!("{} ({}{software})", self.adapter.name, self.adapter.backend)
+    }
+
+    /// True if the CPU draws.
+    pub fn is_software(&self) -> bool {
+        self.adapter.device_type == wgpu::DeviceType::Cpu
+    }
+
+    pub fn health(&self) -> &Health {
+        &self.health
+    }
+
+    /// To be called at the beginning of a frame. While something moves the picture is drawn as coarsely as it takes to be quick.
+    pub fn begin_frame(&self, is_moving: bool) {
+        let motion = &mut self.lock().motion;
+        let last = motion.last.replace(Instant::now());
+        let drew = std::mem::take(&mut motion.drew);
+        if !is_moving {
+            motion.pace.rest();
+        } else if let Some(last) = last.filter(|_| drew && motion.is_moving) {
+            motion.pace.update(last.elapsed().as_secs_f32());
+        }
+        motion.is_moving = is_moving;
+    }
+
+    /// Pixels of the window that one of the picture stands for, each way.
+    #[cfg(test)]
+    pub fn divisor(&self) -> u32 {
+        self.lock().motion.pace.divisor()
     }
 
     /// Shows the picture in a part of the window.
@@ -95,6 +179,12 @@ impl Easel {
         Ok(())
     }
 
+    /// Times that the picture was drawn.
+    #[cfg(test)]
+    pub fn pictures(&self) -> u64 {
+        self.lock().pictures
+    }
+
     /// What went wrong since this was asked the last time.
     pub fn take_error(&self) -> Option<Error> {
         self.lock().error.take()
@@ -106,7 +196,7 @@ impl Easel {
     }
 
     fn lock(&self) -> MutexGuard<'_, Inner> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -139,11 +229,21 @@ impl CallbackTrait for Callback {
         encoder: &mut wgpu::CommandEncoder,
         _: &mut CallbackResources,
     ) -> Vec<wgpu::CommandBuffer> {
+        if self.easel.health.is_lost() {
+            return Vec::new();
+        }
         let place = ViewportInPixels::from_points(&self.rect, screen.pixels_per_point, screen.size_in_pixels);
         let mut target = Target { device, queue, encoder, place };
         let mut inner = self.easel.lock();
         let done = match &self.what {
-            What::Exhibit(exhibit) => inner.record_exhibit(&mut target, exhibit),
+            What::Exhibit(exhibit) => {
+                let done = inner.record_exhibit(&mut target, exhibit);
+                if inner.motion.drew && inner.motion.is_moving {
+                    // So that the time to the next frame is what this one takes.
+                    self.easel.egui.request_repaint();
+                }
+                done
+            }
             What::Stage(shot) => inner.record_stage(&mut target, shot),
         };
         // The last good picture stays.
@@ -172,6 +272,13 @@ impl CallbackTrait for Callback {
 impl Inner {
     fn record_exhibit(&mut self, target: &mut Target<'_>, exhibit: &Exhibit) -> Result<(), Error> {
         let Exhibit { shot, other, split, difference } = exhibit;
+        let divisor = self.motion.pace.divisor();
+        let (shot, other) = (&reduced(shot, divisor), &other.as_ref().map(|other| other.reduced(divisor)));
+        self.motion.drew |= !self.main.shows(shot);
+        #[cfg(test)]
+        {
+            self.pictures += u64::from(!self.main.shows(shot));
+        }
         let mut is_new = self.main.record(target, shot, &[shot.shade_tree])?;
         let (drawn, made) = match other {
             Some(Other::Shot(shot)) => (Some(&**shot), None),
@@ -225,8 +332,12 @@ impl Inner {
         let stage = shot.shade_tree;
         // Drawn by the first of them.
         let all = Shot { shade_tree: ShadeTree::Final, ..shot.clone() };
-        if self.strip.record(target, &all, ShadeTree::ALL)? {
-            self.strip.developing = Default::default();
+        let may_wait = self.motion.is_moving && self.strip_drawn.is_some_and(|drawn| drawn.elapsed() < STRIP_EVERY);
+        if !may_wait && !self.strip.shows(&all) {
+            self.strip_drawn = Some(Instant::now());
+            if self.strip.record(target, &all, ShadeTree::ALL)? {
+                self.strip.developing = Default::default();
+            }
         }
         let Some(picture) = self.strip.stage.picture(stage) else { return Ok(()) };
         let developing = self.strip.developing[stage as usize]
@@ -238,6 +349,14 @@ impl Inner {
 }
 
 impl Other {
+    /// As the picture is while something moves.
+    fn reduced(&self, divisor: u32) -> Self {
+        match self {
+            Self::Shot(shot) => Self::Shot(Box::new(reduced(shot, divisor))),
+            Self::Picture(picture, exposure) => Self::Picture(picture.clone(), *exposure),
+        }
+    }
+
     fn exposure(&self) -> f32 {
         match self {
             Self::Shot(shot) => exposure(shot),
@@ -289,9 +408,14 @@ impl Canvas {
         Ok(Self { stage: Stage::new(context, false)?, shot: None, developing: Default::default() })
     }
 
+    /// True if this shot was drawn last.
+    fn shows(&self, shot: &Shot) -> bool {
+        self.shot.as_ref().is_some_and(|drawn| drawn.is_same(shot))
+    }
+
     /// Draws a shot if it is another than the last; tells whether pictures may be others now.
     fn record(&mut self, target: &mut Target<'_>, shot: &Shot, stages: &[ShadeTree]) -> Result<bool, Error> {
-        if self.shot.as_ref().is_some_and(|drawn| drawn.is_same(shot)) {
+        if self.shows(shot) {
             return Ok(false);
         }
         // Once, even if it cannot be drawn.
@@ -303,4 +427,9 @@ impl Canvas {
     fn picture(&self, stage: ShadeTree) -> Option<&wgpu::Texture> {
         self.stage.picture(stage)
     }
+}
+
+/// The same shot with so many times fewer pixels each way.
+fn reduced(shot: &Shot, divisor: u32) -> Shot {
+    Shot { size: (shot.size / divisor).max(UVec2::ONE), ..shot.clone() }
 }

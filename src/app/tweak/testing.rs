@@ -6,6 +6,7 @@ use eframe::egui::{self, Vec2};
 use egui_kittest::Harness;
 use image::RgbaImage;
 
+use super::gpu::Easel;
 use super::reload::ShaderFolder;
 use super::session::Session;
 use super::window::Window;
@@ -19,7 +20,8 @@ pub fn window(preset: &str, size: Vec2, theme: egui::Theme) -> Harness<'static, 
 pub fn window_with(preset: &str, size: Vec2, theme: egui::Theme, shaders: ShaderFolder) -> Harness<'static, Window> {
     let session = Session::open(Path::new(preset)).unwrap();
     let builder = Harness::builder().with_size(size).with_theme(theme).with_render_cursor(false).wgpu();
-    let mut harness = builder.build_eframe(|context| Window::new(context, session, &shaders).unwrap());
+    let open = |context: &mut _| Window::new(Easel::new(context).unwrap(), session, &shaders).unwrap();
+    let mut harness = builder.build_eframe(open);
     harness.run_steps(3);
     harness
 }

@@ -4,7 +4,6 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui::{self, Ui};
-use eframe::wgpu;
 use haze::Error;
 use haze::picture::{Effort, write_png};
 use haze::settings::ShadeTree;
@@ -35,25 +34,42 @@ struct Screenshot {
     taken: Arc<Mutex<Option<Arc<egui::ColorImage>>>>,
 }
 
+/// What it means that the CPU draws.
+const SLOW: &str = "No GPU is used: the CPU draws, coarsely while something moves. A smaller window is quicker.";
+
 /// Frames after which a window stands still.
 const SETTLED: u32 = 6;
 
 impl Window {
-    pub fn new(context: &eframe::CreationContext<'_>, session: Session, shaders: &ShaderFolder) -> Result<Self, Error> {
-        let none = || Error::NoDevice("the window has no graphics device".into());
-        let render = context.wgpu_render_state.as_ref().ok_or_else(none)?;
-        let info = render.adapter.get_info();
-        let software = if info.device_type == wgpu::DeviceType::Cpu { ", software" } else { "" };
-        let easel = Easel::new(render)?;
-        let egui = context.egui_ctx.clone();
+    /// # Errors
+    /// [`Error::Io`] where the system has no thread left.
+    pub fn new(easel: Easel, mut session: Session, shaders: &ShaderFolder) -> Result<Self, Error> {
+        if easel.is_software() {
+            session.messages.say("software", SLOW);
+        }
         Ok(Self {
-            reload: Reload::new(&session, shaders, &easel, move || egui.request_repaint())?,
+            reload: Reload::new(&session, shaders, &easel, easel.wake())?,
+            viewport: Viewport::default(),
+            adapter: easel.adapter(),
+            screenshot: Screenshot::default(),
             session,
             easel,
-            viewport: Viewport::default(),
-            adapter: format!("{} ({}{software})", info.name, info.backend),
-            screenshot: Screenshot::default(),
         })
+    }
+
+    /// What outlives the window.
+    pub fn into_session(self) -> Session {
+        self.session
+    }
+
+    #[cfg(test)]
+    pub fn easel(&self) -> &Easel {
+        &self.easel
+    }
+
+    #[cfg(test)]
+    pub fn session_mut(&mut self) -> &mut Session {
+        &mut self.session
     }
 
     fn top(&mut self, ui: &mut Ui) {
@@ -91,7 +107,13 @@ impl Window {
                 let text = egui::RichText::new(&message.text);
                 ui.label(if message.is_error { text.color(ui.visuals().error_fg_color) } else { text });
             }
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.weak(&self.adapter));
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if self.easel.is_software() {
+                    ui.colored_label(ui.visuals().warn_fg_color, &self.adapter).on_hover_text(SLOW);
+                } else {
+                    ui.weak(&self.adapter);
+                }
+            });
         });
     }
 
@@ -174,6 +196,8 @@ impl eframe::App for Window {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         self.keys(ui);
         self.reload.advance(&mut self.session, &self.easel);
+        let is_touched = ui.input(|input| input.pointer.any_down() || input.smooth_scroll_delta() != egui::Vec2::ZERO);
+        self.easel.begin_frame(is_touched || self.session.playback.is_playing);
         self.session.playback.advance(ui.input(|input| input.stable_dt));
         egui::Panel::top("top").show(ui, |ui| self.top(ui));
         panel::notice::panel(ui, &mut self.session);
@@ -195,6 +219,9 @@ impl eframe::App for Window {
         match self.easel.take_error() {
             Some(error) => self.session.messages.complain("picture", error),
             None => self.session.messages.withdraw("picture"),
+        }
+        if let Some(error) = self.easel.health().take_error() {
+            self.session.messages.complain("device", error);
         }
         if self.session.playback.is_playing {
             ui.ctx().request_repaint();

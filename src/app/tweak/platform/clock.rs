@@ -1,3 +1,4 @@
 //! Time.
 
+pub use std::thread::sleep;
 pub use std::time::{Duration, Instant};

@@ -1,0 +1,78 @@
+//! What a window costs while it is used, and while it is not.
+
+use std::time::Instant;
+
+use eframe::egui::{Pos2, Rect, Role, Theme, Vec2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+
+use super::testing::{picture, window};
+use super::window::Window;
+
+/// A window whose picture has this size.
+fn window_around(size: Vec2) -> Harness<'static, Window> {
+    let harness = window("column", Vec2::new(1000.0, 640.0), Theme::Dark);
+    let room = Vec2::new(1000.0, 640.0) - harness.get_by_label("viewport").rect().size();
+    drop(harness);
+    window("column", size + room, Theme::Dark)
+}
+
+fn slider(harness: &Harness<'_, Window>, name: &str) -> Rect {
+    let mut rows = harness.get_all_by_label(name);
+    rows.find(|node| node.accesskit_node().role() == Role::Slider).unwrap().rect()
+}
+
+/// Drags a slider to and fro; frames a second, the first of them aside, and how coarse the picture became.
+fn drag(harness: &mut Harness<'_, Window>, frames: usize) -> (f64, u32) {
+    let rect = slider(harness, "thickness");
+    let at = |frame: usize| Pos2::new(rect.left() + 8.0 + (frame * 7 % 90) as f32, rect.center().y);
+    harness.drag_at(at(0));
+    let mut start = Instant::now();
+    let mut coarsest = 1;
+    for frame in 0..frames + 10 {
+        if frame == 10 {
+            start = Instant::now();
+        }
+        harness.hover_at(at(frame));
+        picture(harness);
+        coarsest = coarsest.max(harness.state().easel().divisor());
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    harness.drop_at(at(0));
+    harness.run_steps(2);
+    (frames as f64 / seconds, coarsest)
+}
+
+/// Its figures are those of the machine, which may be busy.
+#[test]
+#[ignore = "measures; run it alone"]
+fn a_slider_is_dragged_at_15_frames_a_second() {
+    for size in [vec2(640.0, 360.0), vec2(1280.0 - 330.0, 800.0 - 190.0)] {
+        let mut harness = window_around(size);
+        let (rate, coarsest) = drag(&mut harness, 80);
+        println!("{size:?}: {rate:.1} frames a second, {coarsest} pixels each way");
+        assert!(rate >= 15.0 || size.x > 640.0, "{rate}");
+        assert_eq!(harness.state().easel().divisor(), 1);
+    }
+}
+
+#[test]
+fn nothing_is_drawn_or_asked_for_while_nothing_happens() {
+    let mut harness = window("column", Vec2::new(700.0, 480.0), Theme::Dark);
+    let drawn = |harness: &mut Harness<'_, Window>| {
+        picture(harness);
+        harness.state().easel().pictures()
+    };
+    drawn(&mut harness);
+    harness.run_steps(10);
+    let before = drawn(&mut harness);
+    assert!(!harness.ctx.has_requested_repaint());
+    // Nor while the pointer goes over panels, which light up.
+    let rect = slider(&harness, "exposure");
+    for step in 0..6 {
+        harness.hover_at(rect.left_top() + vec2(8.0 * step as f32, -6.0 * step as f32));
+        assert_eq!(drawn(&mut harness), before);
+    }
+    harness.state_mut().session_mut().document.preset.camera.exposure += 1.0;
+    assert!(drawn(&mut harness) > before);
+}

@@ -1,0 +1,196 @@
+//! Opens the window; and again, with all that was done in it, when the graphics device is lost.
+
+use eframe::{egui, egui_wgpu, wgpu};
+use haze::Error;
+
+use super::document::recovery::Recovery;
+use super::gpu::Easel;
+use super::health::{Health, lose_device};
+use super::platform::clock::{Duration, Instant};
+use super::platform::folders;
+use super::reload::ShaderFolder;
+use super::session::Session;
+use super::surface::paced;
+use super::window::Window;
+
+/// A device that is lost twice in this time is not tried a third time.
+const TOO_SOON: Duration = Duration::from_secs(10);
+
+/// Names the frames, counted over all windows, in which the device is lost: "5,9". For tests.
+const LOSE_DEVICE: &str = "HAZE_TEST_LOSE_DEVICE";
+
+/// What draws where there can be no window.
+const INSTEAD: &str = "`haze render` draws to files without one";
+
+/// What outlives a window.
+struct Kept {
+    /// Not here while a window has it.
+    session: Option<Session>,
+    /// What egui remembers: the sizes of panels, what is folded.
+    memory: Option<egui::Memory>,
+    /// Where the window is to be, and how large.
+    place: egui::ViewportBuilder,
+    is_lost: bool,
+    /// Frames that were shown.
+    frames: u32,
+    /// Those in which the device is to be lost.
+    lose_in: Vec<u32>,
+}
+
+/// Shows a session in a window until the window is closed. `size`: points; the adapter chooses if none.
+pub fn open(session: Session, shaders: &ShaderFolder, size: Option<egui::Vec2>) -> Result<(), Error> {
+    check_display()?;
+    let lose_in = std::env::var(LOSE_DEVICE).unwrap_or_default();
+    let lose_in = lose_in.split(',').filter_map(|frame| frame.parse().ok()).collect();
+    let place = egui::ViewportBuilder::default().with_inner_size(size.unwrap_or(USUAL));
+    let mut kept = Kept { session: Some(session), memory: None, place, is_lost: false, frames: 0, lose_in };
+    let mut is_sized = size.is_some();
+    let mut last_loss = None;
+    loop {
+        let opened = open_once(&mut kept, shaders, is_sized);
+        if !std::mem::take(&mut kept.is_lost) {
+            return match last_loss {
+                Some(_) => {
+                    opened.map_err(|error| give_up(&kept, &format!("it was lost, and is not there again: {error}")))
+                }
+                None => opened,
+            };
+        }
+        let now = Instant::now();
+        if last_loss.replace(now).is_some_and(|last| now.saturating_duration_since(last) < TOO_SOON) {
+            return Err(give_up(&kept, "it was lost twice within 10 seconds"));
+        }
+        is_sized = true;
+    }
+}
+
+/// The usual size of a window, points, and that where the CPU draws it.
+const USUAL: egui::Vec2 = egui::Vec2::new(1280.0, 800.0);
+const SOFTWARE: egui::Vec2 = egui::Vec2::new(1000.0, 640.0);
+
+fn open_once(kept: &mut Kept, shaders: &ShaderFolder, is_sized: bool) -> Result<(), Error> {
+    let options = eframe::NativeOptions {
+        viewport: kept.place.clone().with_app_id("haze").with_title("haze").with_min_inner_size([640.0, 400.0]),
+        wgpu_options: egui_wgpu::WgpuConfiguration {
+            wgpu_setup: setup(),
+            on_surface_status: paced(),
+            ..Default::default()
+        },
+        ..Default::default()
+    };
+    let app: eframe::AppCreator<'_> = Box::new(move |context| {
+        let easel = Easel::new(context)?;
+        if let Some(memory) = kept.memory.take() {
+            context.egui_ctx.memory_mut(|new| *new = memory);
+        }
+        if !is_sized && easel.is_software() {
+            context.egui_ctx.send_viewport_cmd(egui::ViewportCommand::InnerSize(SOFTWARE));
+        }
+        let health = easel.health().clone();
+        let session = kept.session.take();
+        let window = session.map(|session| Window::new(easel, session, shaders)).transpose()?;
+        Ok(Box::new(Shown { window, health, kept }) as Box<dyn eframe::App>)
+    });
+    eframe::run_native("haze", options, app).map_err(no_window)
+}
+
+/// A window while its device works.
+struct Shown<'a> {
+    window: Option<Window>,
+    health: Health,
+    kept: &'a mut Kept,
+}
+
+impl eframe::App for Shown<'_> {
+    fn logic(&mut self, context: &egui::Context, frame: &mut eframe::Frame) {
+        if !self.health.is_lost() {
+            self.window.iter_mut().for_each(|window| window.logic(context, frame));
+        } else if !std::mem::replace(&mut self.kept.is_lost, true) {
+            self.kept.memory = Some(context.memory(Clone::clone));
+            self.kept.place = context.input(|input| place(input.viewport()));
+            context.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        // egui panics when it has something to upload to a device that is lost: a frame without anything in it has not.
+        if self.kept.is_lost {
+            return;
+        }
+        self.window.iter_mut().for_each(|window| window.ui(ui, frame));
+        self.kept.frames += 1;
+        if self.kept.lose_in.contains(&self.kept.frames) {
+            lose_device(ui);
+        }
+    }
+}
+
+impl Drop for Shown<'_> {
+    fn drop(&mut self) {
+        self.kept.session = self.window.take().map(Window::into_session);
+    }
+}
+
+/// The same place, for another window.
+fn place(window: &egui::ViewportInfo) -> egui::ViewportBuilder {
+    let mut place = egui::ViewportBuilder::default()
+        .with_maximized(window.maximized.unwrap_or_default())
+        .with_fullscreen(window.fullscreen.unwrap_or_default());
+    place.inner_size = window.inner_rect.map(|rect| rect.size());
+    place.position = window.outer_rect.map(|rect| rect.min);
+    place
+}
+
+/// Saves what was not saved, for the next start, and says why there is no window any more.
+fn give_up(kept: &Kept, reason: &str) -> Error {
+    let document = kept.session.as_ref().map(|session| &session.document).filter(|document| document.is_dirty());
+    let Some(document) = document else { return Error::Device(format!("{reason}; nothing was unsaved")) };
+    let saved = match folders::state(|name| std::env::var_os(name)) {
+        Some(folder) => Recovery::new(&folder).write(document).map_err(|error| error.to_string()),
+        None => Err("no folder for it; expected HOME to be set".into()),
+    };
+    Error::Device(match saved {
+        Ok(()) => format!("{reason}; what was not saved is kept for the next start"),
+        Err(error) => format!("{reason}; what was not saved could not be kept: {error}"),
+    })
+}
+
+/// The fastest adapter, or the one that WGPU_ADAPTER_NAME and WGPU_BACKEND choose.
+fn setup() -> egui_wgpu::WgpuSetup {
+    let mut setup = egui_wgpu::WgpuSetupCreateNew::without_display_handle();
+    setup.device_descriptor = std::sync::Arc::new(|adapter| {
+        let timing = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES;
+        wgpu::DeviceDescriptor {
+            label: Some("haze window"),
+            required_features: timing & adapter.features(),
+            required_limits: wgpu::Limits::downlevel_webgl2_defaults().using_resolution(adapter.limits()),
+            ..Default::default()
+        }
+    });
+    setup.into()
+}
+
+/// Says so where there is nothing to open a window on, better than a window library does.
+fn check_display() -> Result<(), Error> {
+    let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    if !cfg!(target_os = "linux") || ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].into_iter().any(is_set) {
+        return Ok(());
+    }
+    let reason = "no display for a window: neither DISPLAY nor WAYLAND_DISPLAY is set";
+    Err(Error::NoDevice(format!("{reason}; {INSTEAD}, and under `xvfb-run` a window opens on none")))
+}
+
+/// Why there is no window, and what to do instead.
+fn no_window(error: eframe::Error) -> Error {
+    match error {
+        eframe::Error::AppCreation(error) => match error.downcast::<Error>() {
+            Ok(error) => *error,
+            Err(error) => Error::Device(error.to_string()),
+        },
+        eframe::Error::Wgpu(error) => Error::NoDevice(format!(
+            "no graphics adapter for a window ({error}); on Debian and Ubuntu `apt-get install mesa-vulkan-drivers` \
+             installs a software one; {INSTEAD}"
+        )),
+        error => Error::NoDevice(format!("no window: {error}; {INSTEAD}")),
+    }
+}

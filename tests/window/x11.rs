@@ -1,0 +1,141 @@
+//! A display of the tests' own, and as much of the X protocol as it takes to treat a window as its user would.
+
+use std::io::{BufRead, BufReader, Read, Write};
+use std::os::unix::net::UnixStream;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// What is to be installed where there is no Xvfb.
+const MISSING: &str = "Xvfb is not here: the window cannot be tested; on Debian and Ubuntu `apt-get install xvfb`";
+
+/// An X server without a screen, which ends with this.
+pub struct Display {
+    server: Child,
+    pub name: String,
+}
+
+impl Display {
+    pub fn start() -> Self {
+        let arguments = ["-displayfd", "1", "-screen", "0", "1600x1000x24", "-nolisten", "tcp"];
+        let mut command = Command::new("Xvfb");
+        command.args(arguments).stdout(Stdio::piped()).stderr(Stdio::null());
+        let mut server = command.spawn().unwrap_or_else(|error| panic!("{MISSING} ({error})"));
+        let mut number = String::new();
+        BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
+        assert!(!number.trim().is_empty(), "Xvfb found no free display");
+        Self { server, name: format!(":{}", number.trim()) }
+    }
+
+    pub fn connect(&self) -> Client {
+        Client::new(&self.name[1..])
+    }
+}
+
+impl Drop for Display {
+    fn drop(&mut self) {
+        let _ = self.server.kill();
+        let _ = self.server.wait();
+    }
+}
+
+/// A connection to a display.
+pub struct Client {
+    stream: UnixStream,
+    root: u32,
+}
+
+/// One request: what it is, its small argument, and the rest in words of 32 bits.
+fn request(code: u8, small: u8, words: &[u32]) -> Vec<u8> {
+    let length = (words.len() as u16 + 1).to_le_bytes();
+    let head = [code, small, length[0], length[1]];
+    head.into_iter().chain(words.iter().flat_map(|word| word.to_le_bytes())).collect()
+}
+
+fn word(bytes: &[u8], at: usize) -> u32 {
+    u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap())
+}
+
+impl Client {
+    fn new(number: &str) -> Self {
+        let mut stream = UnixStream::connect(format!("/tmp/.X11-unix/X{number}")).unwrap();
+        // Little endian, version 11.0, no authority.
+        stream.write_all(&[b'l', 0, 11, 0, 0, 0, 0, 0, 0, 0, 0, 0]).unwrap();
+        let mut head = [0; 8];
+        stream.read_exact(&mut head).unwrap();
+        assert_eq!(head[0], 1, "the display lets nobody in");
+        let mut setup = vec![0; 4 * usize::from(u16::from_le_bytes([head[6], head[7]]))];
+        stream.read_exact(&mut setup).unwrap();
+        let vendor = usize::from(u16::from_le_bytes([setup[16], setup[17]])).next_multiple_of(4);
+        let root = word(&setup, 32 + vendor + 8 * usize::from(setup[21]));
+        Self { stream, root }
+    }
+
+    fn send(&mut self, request: &[u8]) {
+        self.stream.write_all(request).unwrap();
+    }
+
+    /// Sends a request that is answered.
+    fn ask(&mut self, request: &[u8]) -> Vec<u8> {
+        self.send(request);
+        loop {
+            let mut answer = vec![0; 32];
+            self.stream.read_exact(&mut answer).unwrap();
+            match answer[0] {
+                // What was asked about is gone.
+                0 => return vec![0; 64],
+                1 => {
+                    let mut more = vec![0; 4 * word(&answer, 4) as usize];
+                    self.stream.read_exact(&mut more).unwrap();
+                    return [answer, more].concat();
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn atom(&mut self, name: &str) -> u32 {
+        let padded = format!("{name:\0<width$}", width = name.len().next_multiple_of(4));
+        let name = padded.as_bytes().chunks(4).map(|bytes| word(bytes, 0));
+        let words: Vec<_> = [name.len() as u32 * 4].into_iter().chain(name).collect();
+        let mut request = request(16, 0, &words);
+        // The length without what fills it up.
+        request[4] = padded.trim_end_matches('\0').len() as u8;
+        word(&self.ask(&request), 8)
+    }
+
+    /// The window that is to be seen, once there is one.
+    pub fn window(&mut self) -> u32 {
+        let start = Instant::now();
+        while start.elapsed() < Duration::from_secs(60) {
+            let tree = self.ask(&request(15, 0, &[self.root]));
+            let count = usize::from(u16::from_le_bytes([tree[16], tree[17]]));
+            let children: Vec<_> = (0..count).map(|index| word(&tree, 32 + 4 * index)).collect();
+            let is_seen = |window: &u32| self.ask(&request(3, 0, &[*window]))[26] == 2;
+            if let Some(window) = children.into_iter().find(is_seen) {
+                return window;
+            }
+            std::thread::sleep(Duration::from_millis(50));
+        }
+        panic!("no window came");
+    }
+
+    pub fn resize(&mut self, window: u32, width: u32, height: u32) {
+        self.send(&request(12, 0, &[window, 0x4 | 0x8, width, height]));
+    }
+
+    /// Takes a window away, as a window manager does that minimises it.
+    pub fn unmap(&mut self, window: u32) {
+        self.send(&request(10, 0, &[window]));
+    }
+
+    pub fn map(&mut self, window: u32) {
+        self.send(&request(8, 0, &[window]));
+    }
+
+    /// What the button at the upper right of a window does.
+    pub fn close(&mut self, window: u32) {
+        let [protocols, delete] = ["WM_PROTOCOLS", "WM_DELETE_WINDOW"].map(|name| self.atom(name));
+        let message = 33 | 32 << 8;
+        self.send(&request(25, 0, &[window, 0, message, window, protocols, delete, 0, 0, 0, 0]));
+    }
+}
