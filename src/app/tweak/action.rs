@@ -6,6 +6,12 @@ use glam::Vec3;
 /// Something that the window does when it is told to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
+    Presets,
+    Open,
+    Save,
+    SaveAs,
+    Copy,
+    Paste,
     Undo,
     Redo,
     Find,
@@ -71,6 +77,12 @@ const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// Those with more modifiers come first: egui lets Shift pass where it is not asked for.
 pub const ACTIONS: &[Entry] = &[
+    entry(Action::Presets, "New from a preset", Modifiers::COMMAND, Key::N),
+    entry(Action::Open, "Open a preset", Modifiers::COMMAND, Key::O),
+    entry(Action::SaveAs, "Save as", COMMAND_SHIFT, Key::S),
+    entry(Action::Save, "Save", Modifiers::COMMAND, Key::S),
+    entry(Action::Copy, "Copy the preset as text", COMMAND_SHIFT, Key::C),
+    entry(Action::Paste, "Paste a preset", COMMAND_SHIFT, Key::V),
     entry(Action::Redo, "Redo", COMMAND_SHIFT, Key::Z),
     entry(Action::Undo, "Undo", Modifiers::COMMAND, Key::Z),
     entry(Action::Find, "Find a setting", Modifiers::COMMAND, Key::P),

@@ -118,6 +118,11 @@ impl Easel {
         move || egui.request_repaint()
     }
 
+    /// What the window is drawn with.
+    pub fn egui(&self) -> &egui::Context {
+        &self.egui
+    }
+
     /// What draws, on one line.
     pub fn adapter(&self) -> String {
         let software = if self.is_software() { ", software" } else { "" };

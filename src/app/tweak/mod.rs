@@ -3,11 +3,12 @@
 mod action;
 mod angles;
 mod compare;
-#[allow(dead_code, reason = "what the window is about to use")]
 mod document;
+mod filing;
 mod gpu;
 mod health;
 mod icon;
+mod keeping;
 mod lights;
 mod messages;
 #[cfg(test)]
@@ -16,7 +17,6 @@ mod open;
 mod pace;
 mod panel;
 mod pictures;
-#[allow(dead_code, reason = "what the window is about to use")]
 mod platform;
 mod playback;
 mod referee;
@@ -31,6 +31,7 @@ mod surface;
 mod testing;
 #[cfg(test)]
 mod tests;
+mod thumbnails;
 mod viewport;
 mod window;
 
@@ -44,16 +45,20 @@ use haze::settings::set_field;
 use haze::shader::Sources;
 
 use super::options::{in_option, parse_assignment, parse_size};
+use keeping::{Keeping, Layout};
 use open::open;
+use platform::dialog::Dialogs;
+use platform::folders;
 use reload::ShaderFolder;
 use session::Session;
+use window::Start;
 
 #[derive(Args)]
 pub struct Arguments {
     /// A built-in preset's name (see `haze preset list`), or the path of a JSON file.
     #[arg(default_value = "column")]
     preset: PathBuf,
-    /// Size of the window, points; 1280x800 where it is not given, 1000x640 where the CPU draws.
+    /// Size of the window, points; as it was the last time if not given, or 1280x800, 1000x640 where the CPU draws.
     #[arg(long, value_name = "WxH", value_parser = parse_size, allow_hyphen_values = true)]
     size: Option<UVec2>,
     /// Sets a field of the preset, as in `haze render`. May be given more than once.
@@ -85,5 +90,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         Some(folder) => Sources::from_folder(folder).map(|_| ShaderFolder::Given(folder.clone()))?,
         None => ShaderFolder::of_checkout(),
     };
-    open(session, &shaders, arguments.size.map(|size| egui::Vec2::from(size.as_vec2().to_array())))
+    // A picture of the window is the same wherever it is taken.
+    let state = folders::state(|name| std::env::var_os(name)).filter(|_| arguments.screenshot.is_none());
+    let (layout, error) = state.as_ref().map_or_else(Default::default, |folder| Layout::recall(folder));
+    if let Some(error) = error {
+        session.messages.complain("layout", error);
+    }
+    let size = arguments.size.map(|size| size.as_vec2().to_array()).or(layout.window);
+    let keeping = state.map(|folder| Keeping::new(folder, &mut session));
+    let start = Start { session, shaders, keeping, layout, has_dialogs: Dialogs::are_likely() };
+    open(start, size.map(egui::Vec2::from))
 }

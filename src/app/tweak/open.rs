@@ -3,15 +3,11 @@
 use eframe::{egui, egui_wgpu, wgpu};
 use haze::Error;
 
-use super::document::recovery::Recovery;
 use super::gpu::Easel;
 use super::health::{Health, lose_device};
 use super::platform::clock::{Duration, Instant};
-use super::platform::folders;
-use super::reload::ShaderFolder;
-use super::session::Session;
 use super::surface::paced;
-use super::window::Window;
+use super::window::{Start, Window};
 
 /// A device that is lost twice in this time is not tried a third time.
 const TOO_SOON: Duration = Duration::from_secs(10);
@@ -25,7 +21,7 @@ const INSTEAD: &str = "`haze render` draws to files without one";
 /// What outlives a window.
 struct Kept {
     /// Not here while a window has it.
-    session: Option<Session>,
+    start: Option<Start>,
     /// What egui remembers: the sizes of panels, what is folded.
     memory: Option<egui::Memory>,
     /// Where the window is to be, and how large.
@@ -38,27 +34,27 @@ struct Kept {
 }
 
 /// Shows a session in a window until the window is closed. `size`: points; the adapter chooses if none.
-pub fn open(session: Session, shaders: &ShaderFolder, size: Option<egui::Vec2>) -> Result<(), Error> {
+pub fn open(start: Start, size: Option<egui::Vec2>) -> Result<(), Error> {
     check_display()?;
     let lose_in = std::env::var(LOSE_DEVICE).unwrap_or_default();
     let lose_in = lose_in.split(',').filter_map(|frame| frame.parse().ok()).collect();
     let place = egui::ViewportBuilder::default().with_inner_size(size.unwrap_or(USUAL));
-    let mut kept = Kept { session: Some(session), memory: None, place, is_lost: false, frames: 0, lose_in };
+    let mut kept = Kept { start: Some(start), memory: None, place, is_lost: false, frames: 0, lose_in };
     let mut is_sized = size.is_some();
     let mut last_loss = None;
     loop {
-        let opened = open_once(&mut kept, shaders, is_sized);
+        let opened = open_once(&mut kept, is_sized);
         if !std::mem::take(&mut kept.is_lost) {
             return match last_loss {
                 Some(_) => {
-                    opened.map_err(|error| give_up(&kept, &format!("it was lost, and is not there again: {error}")))
+                    opened.map_err(|error| give_up(&mut kept, &format!("it was lost, and is not there again: {error}")))
                 }
                 None => opened,
             };
         }
         let now = Instant::now();
         if last_loss.replace(now).is_some_and(|last| now.saturating_duration_since(last) < TOO_SOON) {
-            return Err(give_up(&kept, "it was lost twice within 10 seconds"));
+            return Err(give_up(&mut kept, "it was lost twice within 10 seconds"));
         }
         is_sized = true;
     }
@@ -68,7 +64,7 @@ pub fn open(session: Session, shaders: &ShaderFolder, size: Option<egui::Vec2>) 
 const USUAL: egui::Vec2 = egui::Vec2::new(1280.0, 800.0);
 const SOFTWARE: egui::Vec2 = egui::Vec2::new(1000.0, 640.0);
 
-fn open_once(kept: &mut Kept, shaders: &ShaderFolder, is_sized: bool) -> Result<(), Error> {
+fn open_once(kept: &mut Kept, is_sized: bool) -> Result<(), Error> {
     let options = eframe::NativeOptions {
         viewport: kept.place.clone().with_app_id("haze").with_title("haze").with_min_inner_size([640.0, 400.0]),
         wgpu_options: egui_wgpu::WgpuConfiguration {
@@ -87,8 +83,7 @@ fn open_once(kept: &mut Kept, shaders: &ShaderFolder, is_sized: bool) -> Result<
             context.egui_ctx.send_viewport_cmd(egui::ViewportCommand::InnerSize(SOFTWARE));
         }
         let health = easel.health().clone();
-        let session = kept.session.take();
-        let window = session.map(|session| Window::new(easel, session, shaders)).transpose()?;
+        let window = kept.start.take().map(|start| Window::new(easel, start)).transpose()?;
         Ok(Box::new(Shown { window, health, kept }) as Box<dyn eframe::App>)
     });
     eframe::run_native("haze", options, app).map_err(no_window)
@@ -123,11 +118,18 @@ impl eframe::App for Shown<'_> {
             lose_device(ui);
         }
     }
+
+    fn on_exit(&mut self) {
+        // With a lost device it goes on.
+        if !self.kept.is_lost {
+            self.window.iter_mut().for_each(eframe::App::on_exit);
+        }
+    }
 }
 
 impl Drop for Shown<'_> {
     fn drop(&mut self) {
-        self.kept.session = self.window.take().map(Window::into_session);
+        self.kept.start = self.window.take().map(Window::into_start);
     }
 }
 
@@ -142,11 +144,13 @@ fn place(window: &egui::ViewportInfo) -> egui::ViewportBuilder {
 }
 
 /// Saves what was not saved, for the next start, and says why there is no window any more.
-fn give_up(kept: &Kept, reason: &str) -> Error {
-    let document = kept.session.as_ref().map(|session| &session.document).filter(|document| document.is_dirty());
-    let Some(document) = document else { return Error::Device(format!("{reason}; nothing was unsaved")) };
-    let saved = match folders::state(|name| std::env::var_os(name)) {
-        Some(folder) => Recovery::new(&folder).write(document).map_err(|error| error.to_string()),
+fn give_up(kept: &mut Kept, reason: &str) -> Error {
+    let start = kept.start.as_mut().filter(|start| start.session.document.is_dirty());
+    let Some(Start { session, keeping, .. }) = start else {
+        return Error::Device(format!("{reason}; nothing was unsaved"));
+    };
+    let saved = match keeping {
+        Some(keeping) => keeping.write(&session.document).map_err(|error| error.to_string()),
         None => Err("no folder for it; expected HOME to be set".into()),
     };
     Error::Device(match saved {

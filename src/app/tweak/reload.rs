@@ -107,6 +107,8 @@ impl Reload {
         if now != self.asked {
             self.asked = now;
             self.watch(session);
+            // What was written between the reading and the watching.
+            changed_on_disk(session);
             self.load_pictures(session);
         }
         let (mut has_pictures, mut has_shaders) = (false, false);
@@ -183,7 +185,7 @@ impl Reload {
                 }
             }
             None => {
-                session.messages.complain("reload", "a file could not be read again: the program has a mistake in it");
+                session.messages.complain("reload", "a file cannot be read: the program has a mistake in it");
             }
         }
     }

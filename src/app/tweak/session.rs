@@ -4,11 +4,10 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use glam::UVec2;
-use haze::Error;
-use haze::Light;
 use haze::demo::shot::Shot;
 use haze::preset::{Preset, Tooltips};
 use haze::settings::ShadeTree;
+use haze::{Error, Light, MaterialAssets};
 
 use super::compare::Compare;
 use super::document::difference::{changed_fields, copy_field};
@@ -133,6 +132,23 @@ impl Session {
         match self.document.revert() {
             Ok(()) => self.messages.withdraw("preset"),
             Err(error) => self.messages.complain("preset", error),
+        }
+    }
+
+    /// Goes on with another document, as at the beginning.
+    pub fn put(&mut self, document: Document, loaded: Vec<MaterialAssets>) {
+        self.pictures = Pictures::new(&document.preset, loaded);
+        self.playback = Playback::at(document.preset.time);
+        (self.compare, self.show.system, self.is_changed_on_disk) = (Compare::default(), 0, false);
+        ["preset", "pictures", "file"].into_iter().for_each(|about| self.messages.withdraw(about));
+        self.document = document;
+    }
+
+    /// Makes it the preset of a text.
+    pub fn paste(&mut self, text: &str) {
+        match self.document.paste(text) {
+            Ok(()) => self.messages.say("file", "pasted a preset"),
+            Err(error) => self.messages.complain("file", format!("nothing is pasted: {error}")),
         }
     }
 }

@@ -7,9 +7,10 @@ use egui_kittest::Harness;
 use image::RgbaImage;
 
 use super::gpu::Easel;
+use super::keeping::Layout;
 use super::reload::ShaderFolder;
 use super::session::Session;
-use super::window::Window;
+use super::window::{Start, Window};
 
 /// A window of a preset, as it stands when it has settled.
 pub fn window(preset: &str, size: Vec2, theme: egui::Theme) -> Harness<'static, Window> {
@@ -19,8 +20,13 @@ pub fn window(preset: &str, size: Vec2, theme: egui::Theme) -> Harness<'static, 
 /// The same with a folder of shaders.
 pub fn window_with(preset: &str, size: Vec2, theme: egui::Theme, shaders: ShaderFolder) -> Harness<'static, Window> {
     let session = Session::open(Path::new(preset)).unwrap();
+    open(Start { session, shaders, keeping: None, layout: Layout::default(), has_dialogs: false }, size, theme)
+}
+
+/// The same, begun in any way.
+pub fn open(start: Start, size: Vec2, theme: egui::Theme) -> Harness<'static, Window> {
     let builder = Harness::builder().with_size(size).with_theme(theme).with_render_cursor(false).wgpu();
-    let open = |context: &mut _| Window::new(Easel::new(context).unwrap(), session, &shaders).unwrap();
+    let open = |context: &mut _| Window::new(Easel::new(context).unwrap(), start).unwrap();
     let mut harness = builder.build_eframe(open);
     harness.run_steps(3);
     harness

@@ -10,11 +10,14 @@ use haze::settings::ShadeTree;
 use image::RgbImage;
 
 use super::action::{ACTIONS, Action};
+use super::filing::Filing;
 use super::gpu::Easel;
+use super::keeping::{Keeping, Layout};
 use super::panel;
 use super::reload::{Reload, ShaderFolder};
 use super::session::Session;
 use super::strip::{after, strip};
+use super::thumbnails::Thumbnails;
 use super::viewport::Viewport;
 
 pub struct Window {
@@ -22,8 +25,27 @@ pub struct Window {
     easel: Easel,
     pub reload: Reload,
     viewport: Viewport,
+    pub filing: Filing,
+    pub thumbnails: Thumbnails,
+    /// The list of presets is open.
+    has_browser: bool,
+    pub keeping: Option<Keeping>,
+    layout: Layout,
+    shaders: ShaderFolder,
+    has_dialogs: bool,
     adapter: String,
     screenshot: Screenshot,
+}
+
+/// What a window begins with.
+pub struct Start {
+    pub session: Session,
+    pub shaders: ShaderFolder,
+    /// Nothing outlives it without.
+    pub keeping: Option<Keeping>,
+    pub layout: Layout,
+    /// The system may have dialogs for files.
+    pub has_dialogs: bool,
 }
 
 /// A picture of the window on its way.
@@ -43,13 +65,25 @@ const SETTLED: u32 = 6;
 impl Window {
     /// # Errors
     /// [`Error::Io`] where the system has no thread left.
-    pub fn new(easel: Easel, mut session: Session, shaders: &ShaderFolder) -> Result<Self, Error> {
+    pub fn new(easel: Easel, start: Start) -> Result<Self, Error> {
+        let Start { mut session, shaders, keeping, layout, has_dialogs } = start;
         if easel.is_software() {
             session.messages.say("software", SLOW);
         }
+        session.show.has_strip = layout.has_strip.unwrap_or(session.show.has_strip);
+        if let Some(theme) = layout.theme() {
+            easel.egui().set_theme(theme);
+        }
         Ok(Self {
-            reload: Reload::new(&session, shaders, &easel, easel.wake())?,
+            reload: Reload::new(&session, &shaders, &easel, easel.wake())?,
+            filing: Filing::new(has_dialogs, easel.wake())?,
+            thumbnails: Thumbnails::new(easel.wake())?,
             viewport: Viewport::default(),
+            has_browser: false,
+            keeping,
+            layout,
+            shaders,
+            has_dialogs,
             adapter: easel.adapter(),
             screenshot: Screenshot::default(),
             session,
@@ -57,9 +91,10 @@ impl Window {
         })
     }
 
-    /// What outlives the window.
-    pub fn into_session(self) -> Session {
-        self.session
+    /// What another window can go on with.
+    pub fn into_start(self) -> Start {
+        let Self { session, shaders, keeping, layout, has_dialogs, .. } = self;
+        Start { session, shaders, keeping, layout, has_dialogs }
     }
 
     #[cfg(test)]
@@ -74,6 +109,9 @@ impl Window {
 
     fn top(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
+            if let Some(action) = panel::file::menu(ui, &mut self.session) {
+                self.act(action, ui.ctx());
+            }
             ui.strong(&self.session.document.preset.name);
             if self.session.document.is_dirty() {
                 ui.label("•").on_hover_text("Changed since it was saved");
@@ -91,10 +129,10 @@ impl Window {
             panel::compare::panel(ui, &mut self.session);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if ui.button("?").on_hover_text("Keys and gestures").clicked() {
-                    self.act(Action::Help);
+                    self.act(Action::Help, ui.ctx());
                 }
                 if ui.button("Find").on_hover_text("Any setting, by its name or what it does").clicked() {
-                    self.act(Action::Find);
+                    self.act(Action::Find, ui.ctx());
                 }
                 theme(ui);
             });
@@ -119,22 +157,38 @@ impl Window {
 
     /// Does what keys ask for, unless something is typed.
     fn keys(&mut self, ui: &Ui) {
-        let is_modal = self.session.search.is_open || self.session.show.help;
+        let is_asked = self.filing.waiting.is_some() || self.filing.typed.is_some();
+        let is_modal = self.session.search.is_open || self.session.show.help || self.has_browser || is_asked;
         if ui.ctx().text_edit_focused() || is_modal || self.viewport.is_dragging() {
             return;
+        }
+        for text in ui.input(pasted) {
+            self.session.paste(&text);
         }
         // Space and the like are for the control that has the keyboard.
         let is_free = ui.memory(egui::Memory::focused).is_none();
         for entry in ACTIONS.iter().filter(|entry| is_free || entry.keys.modifiers.any()) {
             if ui.input_mut(|input| input.consume_shortcut(&entry.keys)) {
-                self.act(entry.action);
+                self.act(entry.action, ui.ctx());
             }
         }
     }
 
-    fn act(&mut self, action: Action) {
+    fn act(&mut self, action: Action, context: &egui::Context) {
         let session = &mut self.session;
         match action {
+            Action::Presets => {
+                self.has_browser = true;
+                self.thumbnails.list(session.document.path().parent().unwrap_or(Path::new("")));
+            }
+            Action::Open => self.filing.ask_open(session),
+            Action::Save => self.filing.save(session),
+            Action::SaveAs => self.filing.save_as(session),
+            Action::Copy => {
+                context.copy_text(session.document.to_text());
+                session.messages.say("file", "copied: the preset as text");
+            }
+            Action::Paste => context.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
             Action::Undo => session.undo(),
             Action::Redo => session.redo(),
             Action::Find => session.search.open(),
@@ -178,6 +232,15 @@ fn write(path: &Path, picture: &egui::ColorImage) -> Result<(), Error> {
     write_png(path, &picture.into(), Effort::Small)
 }
 
+/// Texts that were pasted.
+fn pasted(input: &egui::InputState) -> Vec<String> {
+    let texts = input.events.iter().map(|event| match event {
+        egui::Event::Paste(text) => Some(text.clone()),
+        _ => None,
+    });
+    texts.flatten().collect()
+}
+
 /// Light or dark. (egui's own buttons want signs that its fonts lack.)
 fn theme(ui: &mut Ui) {
     let mut preference = ui.ctx().options(|options| options.theme_preference);
@@ -198,24 +261,40 @@ impl eframe::App for Window {
         self.reload.advance(&mut self.session, &self.easel);
         let is_touched = ui.input(|input| input.pointer.any_down() || input.smooth_scroll_delta() != egui::Vec2::ZERO);
         self.easel.begin_frame(is_touched || self.session.playback.is_playing);
+        self.filing.advance(&mut self.session, ui.ctx());
         self.session.playback.advance(ui.input(|input| input.stable_dt));
         egui::Panel::top("top").show(ui, |ui| self.top(ui));
-        panel::notice::panel(ui, &mut self.session);
+        panel::notice::panel(ui, &mut self.session, self.keeping.as_mut());
         egui::Panel::bottom("status").show(ui, |ui| self.status(ui));
         egui::Panel::bottom("time").show(ui, |ui| panel::time::panel(ui, &mut self.session));
         if self.session.show.has_strip {
             let aspect = self.session.show.aspect;
-            let height = (0.12 * ui.available_height()).max(80.0);
+            let height = self.layout.strip.unwrap_or((0.12 * ui.available_height()).max(80.0));
             let panel = egui::Panel::bottom("strip").resizable(true).default_size(height).size_range(56.0..=320.0);
-            panel.show(ui, |ui| strip(ui, &mut self.session, &self.easel, aspect));
+            let shown = panel.show(ui, |ui| strip(ui, &mut self.session, &self.easel, aspect));
+            self.layout.strip = Some(shown.response.rect.height());
         }
-        let width = (0.18 * ui.available_width()).clamp(330.0, 440.0);
+        let width = self.layout.settings.unwrap_or((0.18 * ui.available_width()).clamp(330.0, 440.0));
         let settings = egui::Panel::right("settings").default_size(width).size_range(240.0..=560.0);
-        settings.show(ui, |ui| panel::settings::panel(ui, &mut self.session));
+        let shown = settings.show(ui, |ui| panel::settings::panel(ui, &mut self.session));
+        self.layout.settings = Some(shown.response.rect.width());
         egui::CentralPanel::no_frame().show(ui, |ui| self.viewport.show(ui, &mut self.session, &self.easel));
         panel::search::panel(ui, &mut self.session);
         panel::help::panel(ui, &mut self.session);
-        self.session.track(ui.input(|input| input.pointer.any_down()) || self.viewport.is_held(ui));
+        panel::file::questions(ui, &mut self.filing, &mut self.session);
+        if self.has_browser
+            && let Some(chosen) = panel::browser::panel(ui, &mut self.thumbnails)
+        {
+            self.has_browser = false;
+            self.thumbnails.stop();
+            chosen.into_iter().for_each(|path| self.filing.open(path));
+        }
+        let is_held = ui.input(|input| input.pointer.any_down()) || ui.ctx().text_edit_focused();
+        self.session.track(is_held || self.viewport.is_held(ui));
+        if let Some(keeping) = &mut self.keeping {
+            keeping.advance(&mut self.session, ui.ctx());
+        }
+        self.layout.see(ui.ctx(), &self.session);
         match self.easel.take_error() {
             Some(error) => self.session.messages.complain("picture", error),
             None => self.session.messages.withdraw("picture"),
@@ -227,5 +306,11 @@ impl eframe::App for Window {
             ui.ctx().request_repaint();
         }
         self.take_screenshot(ui);
+    }
+
+    fn on_exit(&mut self) {
+        if let Some(keeping) = self.keeping.take() {
+            keeping.finish(&self.layout);
+        }
     }
 }

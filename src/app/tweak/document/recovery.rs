@@ -75,6 +75,12 @@ impl Recovery {
         Ok(())
     }
 
+    /// Whether there is something that [`Recovery::keep`] will write, once it is time to.
+    pub fn is_behind(&self, document: &Document) -> bool {
+        let is_written = self.written.as_ref().is_some_and(|(preset, _)| *preset == document.preset);
+        document.is_dirty() && !is_written && !self.is_broken && document.preset.validate().is_ok()
+    }
+
     fn forget(&mut self) {
         if self.written.take().is_some()
             && let Some(lock) = &self.lock

@@ -1,8 +1,10 @@
 //! The panels: what can be set, in rows made from the table of settings.
 
+pub mod browser;
 pub mod compare;
 pub mod curve;
 pub mod fields;
+pub mod file;
 pub mod help;
 pub mod lights;
 pub mod look;

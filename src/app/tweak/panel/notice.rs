@@ -2,10 +2,14 @@
 
 use eframe::egui::{self, Ui};
 
+use crate::app::tweak::keeping::Keeping;
 use crate::app::tweak::session::Session;
 
 /// Draws the bar while there is something to ask.
-pub fn panel(ui: &mut Ui, session: &mut Session) {
+pub fn panel(ui: &mut Ui, session: &mut Session, keeping: Option<&mut Keeping>) {
+    if let Some(keeping) = keeping {
+        recovery(ui, session, keeping);
+    }
     if !session.is_changed_on_disk {
         return;
     }
@@ -18,6 +22,25 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
             if ui.button("Keep mine").on_hover_text("Save writes over what is on disk").clicked() {
                 session.document.keep_mine();
                 session.is_changed_on_disk = false;
+            }
+        });
+    });
+}
+
+fn recovery(ui: &mut Ui, session: &mut Session, keeping: &mut Keeping) {
+    let Some(one) = keeping.abandoned.last() else { return };
+    let text =
+        format!("Unsaved work on {} was left when the program ended: {}.", one.source.display(), one.preset.name);
+    egui::Panel::top("recovery").show(ui, |ui| {
+        ui.horizontal(|ui| {
+            ui.label(text);
+            // Not over other work that is not saved.
+            let is_free = !session.document.is_dirty();
+            let recover = ui.add_enabled(is_free, egui::Button::new("Recover"));
+            if recover.on_disabled_hover_text("Save what is changed here first").clicked() {
+                keeping.answer(true, session);
+            } else if ui.button("Throw away").clicked() {
+                keeping.answer(false, session);
             }
         });
     });

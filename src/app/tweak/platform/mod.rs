@@ -1,6 +1,7 @@
 //! Everything that touches disk, clock or threads: the rest of the tweaker runs wherever this can be had.
 
 pub mod clock;
+pub mod dialog;
 pub mod files;
 pub mod folders;
 pub mod lock;

@@ -121,13 +121,14 @@ fn another_presets_file_is_loaded_unless_work_would_be_lost() {
         preset.camera.exposure = exposure;
         fs::write(&path, preset.to_text("")).unwrap();
     };
-    let exposure = |bench: &mut Bench| bench.session().document.preset.camera.exposure;
+    // In hundredths.
+    let exposure = |bench: &mut Bench| (bench.session().document.preset.camera.exposure * 100.0) as i32;
     write(1.5);
-    bench.until(|bench| exposure(bench) == 1.5);
+    bench.until(|bench| exposure(bench) == 150);
     assert!(!bench.session().document.is_dirty());
     fs::write(&path, "{\n\"version\": x").unwrap();
     bench.until(|bench| bench.said().is_some_and(|said| said.contains("my.json:2:12")));
-    assert_eq!(exposure(&mut bench), 1.5);
+    assert_eq!(exposure(&mut bench), 150);
     fs::remove_file(&path).unwrap();
     bench.until(|bench| bench.said().is_some_and(|said| said.contains("gone")));
     let saved = bench.session().document.preset.to_text("");
@@ -137,20 +138,20 @@ fn another_presets_file_is_loaded_unless_work_would_be_lost() {
     bench.session().document.preset.camera.exposure = -1.0;
     write(0.5);
     bench.until(|bench| bench.session().is_changed_on_disk);
-    assert_eq!(exposure(&mut bench), -1.0);
+    assert_eq!(exposure(&mut bench), -100);
     bench.window.step();
     bench.window.get_by_label("Keep mine").click();
     bench.window.run_steps(2);
-    assert!(exposure(&mut bench) == -1.0 && bench.session().document.is_dirty());
+    assert!(exposure(&mut bench) == -100 && bench.session().document.is_dirty());
     assert!(bench.window.query_by_label("Keep mine").is_none());
     write(0.25);
     bench.until(|bench| bench.session().is_changed_on_disk);
     bench.window.step();
     bench.window.get_by_label("Load it").click();
     bench.window.run_steps(2);
-    assert!(exposure(&mut bench) == 0.25 && !bench.session().document.is_dirty());
+    assert!(exposure(&mut bench) == 25 && !bench.session().document.is_dirty());
     bench.session().undo();
-    assert_eq!(exposure(&mut bench), -1.0);
+    assert_eq!(exposure(&mut bench), -100);
 }
 
 #[test]

@@ -1,0 +1,248 @@
+//! Opening and saving, and what is asked before work is lost.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use eframe::egui;
+use haze::ramp::Ramp;
+use haze::{Error, FieldError, MaterialAssets};
+
+use super::document::document::{Document, OnDisk};
+use super::platform::dialog::{Answer, Dialogs, Purpose};
+use super::platform::worker::Worker;
+use super::session::Session;
+
+/// What the File menu does.
+pub struct Filing {
+    opener: Worker<Opened>,
+    dialogs: Dialogs,
+    /// What the dialog that is open is for.
+    purpose: Purpose,
+    /// What waits until someone says what becomes of unsaved work.
+    pub waiting: Option<Next>,
+    /// What follows when it is saved.
+    then: Option<Next>,
+    /// The path that is typed where the system has no dialogs.
+    pub typed: Option<Typed>,
+    /// The window may close, whatever is not saved.
+    is_over: bool,
+    title: String,
+}
+
+/// What ends the work on a document.
+pub enum Next {
+    /// Another takes its place.
+    Show(Box<Document>, Vec<MaterialAssets>),
+    Close,
+}
+
+/// A path on its way.
+pub struct Typed {
+    pub purpose: Purpose,
+    pub text: String,
+}
+
+enum Opened {
+    Preset(Box<Document>, Vec<MaterialAssets>),
+    /// A ramp's name, to be looked for beside the preset.
+    Ramp(String),
+    Failed(Error),
+}
+
+impl Filing {
+    /// `wake` is called from other threads when something is done.
+    ///
+    /// # Errors
+    /// [`Error::Io`] where the system has no thread left.
+    pub fn new(has_dialogs: bool, wake: impl Fn() + Send + Sync + 'static) -> Result<Self, Error> {
+        let thread = |error| Error::Io { path: "a thread to open files".into(), error };
+        let wake = Arc::new(wake);
+        let its = Arc::clone(&wake);
+        Ok(Self {
+            opener: Worker::new("haze open", move || its()).map_err(thread)?,
+            dialogs: Dialogs::new(has_dialogs, move || wake()).map_err(thread)?,
+            purpose: Purpose::Open,
+            waiting: None,
+            then: None,
+            typed: None,
+            is_over: false,
+            title: String::new(),
+        })
+    }
+
+    /// Once a frame: what came of dialogs, what was read, what was dropped on the window, and whether it is to close.
+    pub fn advance(&mut self, session: &mut Session, context: &egui::Context) {
+        match self.dialogs.poll() {
+            Some(Answer::Chosen(path)) => self.chosen(self.purpose, &path, session),
+            Some(Answer::NoDialogs) => self.type_path(self.purpose, session),
+            Some(Answer::Cancelled) => self.then = None,
+            None => {}
+        }
+        while let Some(opened) = self.opener.poll() {
+            match opened {
+                Some(Opened::Preset(document, loaded)) => self.begin_or_ask(Next::Show(document, loaded), session),
+                Some(Opened::Ramp(name)) => {
+                    if let Some(system) = session.document.preset.systems.get_mut(session.show.system) {
+                        system.material.diffuse_ramp = name;
+                    }
+                }
+                Some(Opened::Failed(error)) => session.messages.complain("file", error),
+                None => session.messages.complain("file", "a file cannot be read: the program has a mistake in it"),
+            }
+        }
+        let dropped = context.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()));
+        if let Some(path) = dropped {
+            self.take(path, session);
+        }
+        if self.is_over {
+            context.send_viewport_cmd(egui::ViewportCommand::Close);
+        } else if context.input(|input| input.viewport().close_requested()) && session.document.is_dirty() {
+            context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            self.waiting = Some(Next::Close);
+        }
+        let mark = if session.document.is_dirty() { "* " } else { "" };
+        let title = format!("{mark}{} - haze", session.document.preset.name);
+        if title != self.title {
+            context.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
+    }
+
+    /// A file that was dropped on the window: a preset to open, or a ramp to light by.
+    fn take(&self, path: PathBuf, session: &Session) {
+        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+            let preset = session.document.path().to_owned();
+            self.opener.submit(move |_| ramp_beside(&path, &preset).map_or_else(Opened::Failed, Opened::Ramp));
+        } else {
+            self.open(path);
+        }
+    }
+
+    /// Opens a file, or a built-in preset by name. What cannot be opened changes nothing.
+    pub fn open(&self, path: PathBuf) {
+        self.opener.submit(move |_| match load(&path) {
+            Ok((document, loaded)) => Opened::Preset(Box::new(document), loaded),
+            Err(error) => Opened::Failed(error),
+        });
+    }
+
+    fn begin_or_ask(&mut self, next: Next, session: &mut Session) {
+        if session.document.is_dirty() { self.waiting = Some(next) } else { self.begin(next, session) }
+    }
+
+    fn begin(&mut self, next: Next, session: &mut Session) {
+        match next {
+            Next::Show(document, loaded) => session.put(*document, loaded),
+            Next::Close => self.is_over = true,
+        }
+    }
+
+    /// The answer to what becomes of unsaved work: it is saved, lost, or kept, and nothing else begun.
+    pub fn answer(&mut self, is_saved: Option<bool>, session: &mut Session) {
+        let next = self.waiting.take();
+        match (is_saved, next) {
+            (Some(true), Some(next)) => {
+                self.then = Some(next);
+                self.save(session);
+            }
+            (Some(false), Some(next)) => self.begin(next, session),
+            _ => {}
+        }
+    }
+
+    /// Asks which preset is to be opened.
+    pub fn ask_open(&mut self, session: &Session) {
+        self.ask(Purpose::Open, session);
+    }
+
+    /// Writes the file; where there is none, asks for one.
+    pub fn save(&mut self, session: &mut Session) {
+        if session.document.is_built_in() {
+            return self.save_as(session);
+        }
+        if session.document.on_disk() == OnDisk::Changed {
+            session.is_changed_on_disk = true;
+            self.then = None;
+            return session.messages.complain("file", "not saved: it has changed on disk; say which is wanted first");
+        }
+        let done = session.document.save();
+        self.saved(done, session);
+    }
+
+    /// Asks for another file to write.
+    pub fn save_as(&mut self, session: &Session) {
+        self.ask(Purpose::SaveAs, session);
+    }
+
+    fn saved(&mut self, done: Result<(), Error>, session: &mut Session) {
+        let then = self.then.take();
+        match done {
+            Ok(()) => {
+                session.is_changed_on_disk = false;
+                session.messages.withdraw("preset");
+                session.messages.say("file", format!("saved: {}", session.document.path().display()));
+                then.into_iter().for_each(|next| self.begin(next, session));
+            }
+            Err(error) => session.messages.complain("file", error),
+        }
+    }
+
+    fn ask(&mut self, purpose: Purpose, session: &Session) {
+        self.purpose = purpose;
+        if !self.dialogs.ask(purpose, &suggested(session)) {
+            self.type_path(purpose, session);
+        }
+    }
+
+    fn type_path(&mut self, purpose: Purpose, session: &Session) {
+        let text = match purpose {
+            Purpose::Open => String::new(),
+            Purpose::SaveAs => suggested(session).display().to_string(),
+        };
+        self.typed = Some(Typed { purpose, text });
+    }
+
+    /// What was chosen or typed; nothing, if it was given up.
+    pub fn finish_typing(&mut self, path: Option<&Path>, session: &mut Session) {
+        match (self.typed.take(), path) {
+            (Some(typed), Some(path)) => self.chosen(typed.purpose, path, session),
+            _ => self.then = None,
+        }
+    }
+
+    fn chosen(&mut self, purpose: Purpose, path: &Path, session: &mut Session) {
+        match purpose {
+            Purpose::Open => self.open(path.into()),
+            Purpose::SaveAs => {
+                let path = if path.extension().is_none() { path.with_extension("json") } else { path.into() };
+                let done = session.document.save_as(&path);
+                self.saved(done, session);
+            }
+        }
+    }
+}
+
+/// Where a preset would be saved: its file, or one of its name in the folder that the program was started in.
+fn suggested(session: &Session) -> PathBuf {
+    let document = &session.document;
+    if document.is_built_in() { document.path().with_extension("json") } else { document.path().into() }
+}
+
+fn load(path: &Path) -> Result<(Document, Vec<MaterialAssets>), Error> {
+    let document = Document::open(path)?;
+    let loaded = document.preset.load_materials(path)?;
+    Ok((document, loaded))
+}
+
+/// The name that a preset has for a ramp in its folder.
+fn ramp_beside(path: &Path, preset: &Path) -> Result<String, Error> {
+    let folder = std::path::absolute(preset).ok().and_then(|preset| preset.parent().map(Path::to_owned));
+    let name = folder.and_then(|folder| path.strip_prefix(folder).ok()?.to_str().map(str::to_owned));
+    let expected = "a ramp in the preset's folder, or a preset";
+    let name = name.ok_or_else(|| FieldError::new("dropped file", path.display(), expected))?;
+    Ramp::load(path)?;
+    Ok(name.replace('\\', "/"))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,122 @@
+//! What outlives the window: unsaved work, for after a crash, and where things were.
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui;
+use haze::Error;
+use serde::{Deserialize, Serialize};
+
+use super::document::document::Document;
+use super::document::recovery::{Abandoned, Recovery, WRITE_EVERY, abandoned};
+use super::platform::clock::Instant;
+use super::platform::memory::{recall, remember};
+use super::session::Session;
+
+/// See the module.
+pub struct Keeping {
+    folder: PathBuf,
+    recovery: Recovery,
+    /// What crashed tweakers have left; asked about one by one.
+    pub abandoned: Vec<Abandoned>,
+}
+
+/// Where things were. Points.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Layout {
+    /// The window's inside.
+    pub window: Option<[f32; 2]>,
+    /// Width of the settings.
+    pub settings: Option<f32>,
+    /// Height of the shade tree strip.
+    pub strip: Option<f32>,
+    pub has_strip: Option<bool>,
+    /// `dark`, `light` or `system`.
+    pub theme: Option<String>,
+}
+
+/// Themes by name.
+const THEMES: [(&str, egui::ThemePreference); 3] = [
+    ("system", egui::ThemePreference::System),
+    ("dark", egui::ThemePreference::Dark),
+    ("light", egui::ThemePreference::Light),
+];
+
+/// The name that the layout is remembered under.
+const LAYOUT: &str = "layout";
+
+impl Layout {
+    /// As it was remembered, but what cannot be; with what was wrong with the file.
+    pub fn recall(folder: &Path) -> (Self, Option<Error>) {
+        let (found, error): (Self, _) = recall(folder, LAYOUT);
+        let side = |side: Option<f32>, most: f32| side.filter(|side| (1.0..=most).contains(side));
+        let window = found.window.filter(|sides| sides.iter().all(|side| (320.0..=16_384.0).contains(side)));
+        (Self { window, settings: side(found.settings, 560.0), strip: side(found.strip, 320.0), ..found }, error)
+    }
+
+    pub fn theme(&self) -> Option<egui::ThemePreference> {
+        THEMES.into_iter().find(|(name, _)| self.theme.as_deref() == Some(name)).map(|(_, theme)| theme)
+    }
+
+    /// Takes note of what the window says about itself.
+    pub fn see(&mut self, context: &egui::Context, session: &Session) {
+        let shown = context.options(|options| options.theme_preference);
+        if self.theme() != Some(shown) {
+            let name = THEMES.into_iter().find(|(_, theme)| *theme == shown);
+            self.theme = name.map(|(name, _)| name.to_owned());
+        }
+        let is_full = context.input(|input| input.viewport().maximized.or(input.viewport().fullscreen)) == Some(true);
+        if !is_full {
+            self.window = Some(context.content_rect().size().into());
+        }
+        self.has_strip = Some(session.show.has_strip);
+    }
+}
+
+impl Keeping {
+    /// Keeps in a folder, and looks there for what others have left.
+    pub fn new(folder: PathBuf, session: &mut Session) -> Self {
+        let (abandoned, errors) = abandoned(&folder);
+        errors.into_iter().for_each(|error| session.messages.complain("recovery", error));
+        Self { recovery: Recovery::new(&folder), folder, abandoned }
+    }
+
+    /// Once a frame: writes what is not saved, every few seconds.
+    pub fn advance(&mut self, session: &mut Session, context: &egui::Context) {
+        if let Err(error) = self.recovery.keep(&session.document, Instant::now()) {
+            session.messages.complain("recovery", error);
+        }
+        if self.recovery.is_behind(&session.document) {
+            context.request_repaint_after(WRITE_EVERY);
+        }
+    }
+
+    /// Goes on with what was left, or throws it away.
+    pub fn answer(&mut self, is_wanted: bool, session: &mut Session) {
+        let Some(one) = self.abandoned.pop() else { return };
+        if is_wanted {
+            let document = Document::recovered(one.preset.clone(), &one.source);
+            let written = self.recovery.write(&document);
+            // Those of another file or other names are loaded as soon as this is seen.
+            let loaded = session.pictures.of(&document.preset);
+            session.put(document, loaded);
+            // Else it is offered again at the next start.
+            if let Err(error) = written {
+                return session.messages.complain("recovery", error);
+            }
+        }
+        one.discard();
+    }
+
+    /// Keeps what is not saved for the next start, now.
+    pub fn write(&mut self, document: &Document) -> Result<(), Error> {
+        self.recovery.write(document)
+    }
+
+    /// The end: nothing is left but where things were.
+    pub fn finish(self, layout: &Layout) {
+        self.recovery.finish();
+        // The window is gone: there is no one to tell.
+        let _ = remember(&self.folder, LAYOUT, layout);
+    }
+}
