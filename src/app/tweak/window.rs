@@ -67,9 +67,6 @@ impl Window {
     /// [`Error::Io`] where the system has no thread left.
     pub fn new(easel: Easel, start: Start) -> Result<Self, Error> {
         let Start { mut session, shaders, keeping, layout, has_dialogs } = start;
-        if easel.is_software() {
-            session.messages.say("software", SLOW);
-        }
         session.show.has_strip = layout.has_strip.unwrap_or(session.show.has_strip);
         if let Some(theme) = layout.theme() {
             easel.egui().set_theme(theme);
