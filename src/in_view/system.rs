@@ -41,6 +41,8 @@ pub(crate) struct SystemInView {
     pub back_faces: bool,
     /// View depth of the middle of the smoke.
     pub distance: f32,
+    /// The same as the host measures it.
+    pub lit_depth: f32,
 }
 
 /// Places a system in the view; `None` when it is out of sight. `targets` is the size of the host's targets, of which the view
@@ -119,7 +121,7 @@ pub(crate) fn system_in_view(view: &ViewGeometry, targets: UVec2, system: &Syste
     // The front of the box may be hidden by what sprites show through.
     let back_faces = in_view.near <= view.depth.near || uniform.fade_through > 0.0;
     let distance = -uniform.centre.z;
-    Some(SystemInView { rect, uniform, back_faces, distance })
+    Some(SystemInView { rect, uniform, back_faces, distance, lit_depth: distance - view.depth_offset })
 }
 
 /// Where the eye stands in the noise, which has risen: within one tile of it, so that f32 stays fine after hours and far from

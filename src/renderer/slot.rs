@@ -123,6 +123,7 @@ impl Slot {
             size: in_view.rect.size,
             scale: in_view.uniform.scale as u32,
             depth_limit: in_view.uniform.depth_limit,
+            lit_depth: in_view.lit_depth,
         })
     }
 

@@ -219,6 +219,20 @@ fn the_clamp_limits_the_target() {
     assert!(psnr(&drawn.picture, &stage.on_cpu()) >= AGREEMENT);
 }
 
+#[test]
+fn the_plane_that_is_lit_is_told_as_the_host_measures_depth() {
+    let aspect = SIZE.x as f32 / SIZE.y as f32;
+    // This one's near plane is behind the viewer: inside, it steps back.
+    let orthographic = directx::orthographic(-4.0, 4.0, -2.25, 2.25, -5.0, 80.0);
+    for projection in [directx::perspective(0.8, aspect, 0.1, 80.0), orthographic] {
+        let mut stage = Stage::new(SIZE);
+        stage.view.clip_from_view = projection;
+        stage.particles = vec![Particle { position: vec3(0.0, 0.0, -6.0), ..Particle::default() }];
+        let lit = stage.on_gpu(gpu()).renderer.targets(0).unwrap().lit_depth;
+        assert!((lit - 6.0).abs() < 1e-3, "{lit}");
+    }
+}
+
 // depth conventions
 
 fn reversed(projection: Mat4) -> Mat4 {

@@ -3,6 +3,8 @@
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 use glam::Vec3;
 
+use super::show::Overlay;
+
 /// Something that the window does when it is told to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
@@ -34,6 +36,10 @@ pub enum InView {
     /// The selected light.
     Delete,
     Duplicate,
+    /// Puts it, or a new one, behind the smoke.
+    Behind,
+    Overlay(Overlay),
+    Turntable,
     Face(Side),
 }
 
@@ -97,6 +103,12 @@ pub const ACTIONS: &[Entry] = &[
     entry(Action::InView(InView::Home), "Back to the saved camera", Modifiers::NONE, Key::Home),
     entry(Action::InView(InView::Delete), "Delete the selected light", Modifiers::NONE, Key::Delete),
     entry(Action::InView(InView::Duplicate), "Duplicate the selected light", Modifiers::COMMAND, Key::D),
+    entry(Action::InView(InView::Behind), "A light behind the smoke", Modifiers::SHIFT, Key::B),
+    entry(Action::InView(InView::Overlay(Overlay::Bounds)), "Bounds", Modifiers::NONE, Key::B),
+    entry(Action::InView(InView::Overlay(Overlay::LitPlane)), "Lit plane", Modifiers::NONE, Key::K),
+    entry(Action::InView(InView::Overlay(Overlay::Particles)), "Particles", Modifiers::NONE, Key::P),
+    entry(Action::InView(InView::Overlay(Overlay::Grid)), "Texels of the smoke", Modifiers::NONE, Key::G),
+    entry(Action::InView(InView::Turntable), "Lights round the smoke", Modifiers::NONE, Key::T),
     entry(Action::InView(InView::Face(Side::Back)), "From behind", Modifiers::COMMAND, Key::Num1),
     entry(Action::InView(InView::Face(Side::Front)), "From the front", Modifiers::NONE, Key::Num1),
     entry(Action::InView(InView::Face(Side::Left)), "From the left", Modifiers::COMMAND, Key::Num3),
@@ -106,12 +118,18 @@ pub const ACTIONS: &[Entry] = &[
     entry(Action::Help, "This list", Modifiers::NONE, Key::F1),
 ];
 
+/// The keys of what the viewport does.
+pub fn keys_of(action: InView) -> Option<KeyboardShortcut> {
+    ACTIONS.iter().find(|entry| entry.action == Action::InView(action)).map(|entry| entry.keys)
+}
+
 /// What else is done with pointer and keys.
 pub const GESTURES: &[(&str, &str)] = &[
     ("Drag in the picture, or middle button", "Orbit"),
     ("Shift middle, Alt middle", "Pan"),
     ("Wheel, Ctrl middle, Alt right", "Nearer and farther; the wheel towards the pointer"),
     ("Right button with W A S D Q E", "Fly; Shift for faster, the wheel for another speed"),
+    ("Right click in the picture", "Adds a light here"),
     ("Click on a light", "Selects it: drag its handles; Shift is slow, Ctrl snaps, Escape puts it back"),
     ("Double click on a name", "Sets it back"),
     ("Click on a value", "Type it, with its unit or without"),

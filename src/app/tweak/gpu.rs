@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use eframe::egui::epaint::ViewportInPixels;
 use eframe::egui_wgpu::{CallbackResources, CallbackTrait, ScreenDescriptor};
 use eframe::{egui, wgpu};
-use glam::{UVec2, Vec2, Vec4};
+use glam::{IVec2, UVec2, Vec2, Vec4};
 use haze::Error;
 use haze::demo::develop::{Developer, Developing, Shown, exposure};
 use haze::demo::shot::Shot;
@@ -39,6 +39,8 @@ struct Inner {
     strip: Canvas,
     strip_drawn: Option<Instant>,
     motion: Motion,
+    /// Of every system of the picture.
+    texels: Vec<Option<Texels>>,
     /// The first mistake since it was last asked for.
     error: Option<Error>,
     /// Times that the picture was drawn.
@@ -68,6 +70,17 @@ pub struct Exhibit {
     pub split: f32,
     /// Multiplies the difference of the two; 0: they stand side by side.
     pub difference: f32,
+}
+
+/// The texels that a system was accumulated in, and where it was lit: see [`haze::TargetViews`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Texels {
+    pub origin: IVec2,
+    pub size: UVec2,
+    pub scale: u32,
+    pub lit_depth: f32,
+    /// Pixels of the picture.
+    pub picture: UVec2,
 }
 
 /// What a picture is compared with.
@@ -104,6 +117,7 @@ impl Easel {
             strip,
             strip_drawn: None,
             motion: Motion::default(),
+            texels: Vec::new(),
             error: None,
             #[cfg(test)]
             pictures: 0,
@@ -195,6 +209,11 @@ impl Easel {
         self.lock().error.take()
     }
 
+    /// Of every system, how it was in the last picture; `None` where it was out of sight or drawn forward.
+    pub fn texels(&self) -> Vec<Option<Texels>> {
+        self.lock().texels.clone()
+    }
+
     fn add(&self, ui: &egui::Ui, rect: egui::Rect, what: What) {
         let callback = Callback { easel: self.clone(), rect, what };
         ui.painter().add(eframe::egui_wgpu::Callback::new_paint_callback(rect, callback));
@@ -255,6 +274,12 @@ impl CallbackTrait for Callback {
         if let Err(error) = done {
             inner.error.get_or_insert(error);
         }
+        // What is drawn over the picture is as it was in the last one.
+        if let What::Exhibit(exhibit) = &self.what
+            && inner.measure(exhibit.shot.preset.systems.len())
+        {
+            self.easel.egui.request_repaint();
+        }
         Vec::new()
     }
 
@@ -275,6 +300,24 @@ impl CallbackTrait for Callback {
 }
 
 impl Inner {
+    /// Takes note of the texels of all systems; true if they are others.
+    fn measure(&mut self, systems: usize) -> bool {
+        let renderer = self.main.stage.renderer();
+        let picture = self.main.shot.as_ref().map_or(UVec2::ONE, |shot| shot.size);
+        let of = |key| {
+            renderer.targets(key).map(|targets| Texels {
+                origin: targets.origin,
+                size: targets.size,
+                scale: targets.scale,
+                lit_depth: targets.lit_depth,
+                picture,
+            })
+        };
+        let texels = (0..systems as u64).map(of).collect();
+        let before = std::mem::replace(&mut self.texels, texels);
+        before != self.texels
+    }
+
     fn record_exhibit(&mut self, target: &mut Target<'_>, exhibit: &Exhibit) -> Result<(), Error> {
         let Exhibit { shot, other, split, difference } = exhibit;
         let divisor = self.motion.pace.divisor();

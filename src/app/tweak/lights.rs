@@ -1,13 +1,50 @@
 //! Which lights are selected, alone or silent: how they are looked at, no part of the preset.
 
-use haze::Light;
+use std::f32::consts::TAU;
+
+use glam::{Quat, Vec3};
 use haze::frame::MAX_LIGHTS;
+use haze::{Light, LightKind};
 
 /// What is remembered of the lights of a preset, by their places.
 #[derive(Clone, Debug, Default)]
 pub struct ShownLights {
     pub selected: Option<usize>,
+    /// All lights are sent round.
+    pub turn: Option<Turn>,
     entries: Vec<Entry>,
+}
+
+/// The lights go round a vertical axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turn {
+    /// A point of the axis.
+    pub middle: Vec3,
+    /// Radians from where the preset has them.
+    pub angle: f32,
+}
+
+/// Seconds of a turn.
+const TURN: f32 = 5.0;
+
+impl Turn {
+    /// Goes on by the seconds that have passed.
+    pub fn advance(&mut self, seconds: f32) {
+        self.angle = (self.angle + seconds * TAU / TURN).rem_euclid(TAU);
+    }
+
+    fn turned(&self, light: &Light) -> Light {
+        let turn = Quat::from_rotation_y(self.angle);
+        let position = self.middle + turn * (light.position - self.middle);
+        Light { position, direction: turn * light.direction, ..*light }
+    }
+}
+
+/// A light to be added, about as bright as others of its kind.
+pub fn fresh(kind: LightKind, lights: &[Light]) -> Light {
+    let usual = if kind == LightKind::Directional { 1.0 } else { 10.0 };
+    let alike = lights.iter().find(|light| light.kind == kind);
+    Light { kind, intensity: alike.map_or(usual, |light| light.intensity), ..Light::default() }
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -62,9 +99,14 @@ impl ShownLights {
             .is_none_or(|Entry { marks, .. }| if is_any_solo { marks.is_solo } else { !marks.is_muted })
     }
 
-    /// The lights that are in the picture.
+    /// The lights that are in the picture, as they are there.
     pub fn shown(&self, lights: &[Light]) -> Vec<Light> {
-        (0..).zip(lights).filter(|(index, _)| self.is_shown(*index)).map(|(_, light)| *light).collect()
+        (0..).zip(lights).filter(|(index, _)| self.is_shown(*index)).map(|(_, light)| self.turned(light)).collect()
+    }
+
+    /// A light where the turn has taken it.
+    pub fn turned(&self, light: &Light) -> Light {
+        self.turn.map_or(*light, |turn| turn.turned(light))
     }
 
     /// Adds a light at a place in the list, and selects it; not beyond what a frame may have.
@@ -141,6 +183,25 @@ mod tests {
         assert_eq!(shown.shown(&all), all[1..]);
         shown.marks(2).unwrap().is_solo = true;
         assert_eq!(shown.shown(&all), all[2..]);
+    }
+
+    #[test]
+    fn a_turn_keeps_height_and_distance_and_closes() {
+        let light =
+            Light { position: Vec3::new(3.0, 2.0, 1.0), direction: Vec3::new(0.5, -1.0, 0.2), ..Light::default() };
+        let mut turn = Turn { middle: Vec3::new(1.0, 4.0, 0.0), angle: 0.0 };
+        assert_eq!(turn.turned(&light), light);
+        for step in 1..=50 {
+            turn.advance(TURN / 50.0);
+            let turned = turn.turned(&light);
+            assert!((turned.position - turn.middle).length() - (light.position - turn.middle).length() < 1e-4);
+            assert!((turned.position.y - 2.0).abs() < 1e-5 && (turned.direction.y + 1.0).abs() < 1e-5);
+            if step == 25 {
+                assert!(turned.position.distance(Vec3::new(-1.0, 2.0, -1.0)) < 1e-4, "{}", turned.position);
+            }
+        }
+        let closed = turn.turned(&light);
+        assert!(closed.position.distance(light.position) < 1e-3 && closed.direction.distance(light.direction) < 1e-3);
     }
 
     #[test]

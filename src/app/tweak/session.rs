@@ -114,6 +114,13 @@ impl Session {
         }
     }
 
+    /// Adds a light, and selects it.
+    pub fn add_light(&mut self, light: Light) {
+        let lights = &mut self.document.preset.lights;
+        let end = lights.len();
+        self.show.lights.insert(lights, end, light);
+    }
+
     pub fn undo(&mut self) {
         if let Some(name) = self.document.undo() {
             self.messages.say("undo", format!("undone: {name}"));

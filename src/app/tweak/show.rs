@@ -18,6 +18,7 @@ pub struct Show {
     /// The system whose settings are shown.
     pub system: usize,
     pub lights: ShownLights,
+    pub overlays: Overlays,
 }
 
 /// A part of the settings.
@@ -39,6 +40,37 @@ impl Default for Show {
             tab: Tab::Look,
             system: 0,
             lights: ShownLights::default(),
+            overlays: Overlays::default(),
         }
+    }
+}
+
+/// What can be drawn over the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Overlay {
+    /// The box of each system.
+    Bounds,
+    /// The plane that light is flattened to.
+    LitPlane,
+    Particles,
+    /// The texels of the accumulation target.
+    Grid,
+}
+
+/// What is drawn over the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Overlays([bool; 4]);
+
+impl Overlays {
+    pub fn has(self, overlay: Overlay) -> bool {
+        self.0[overlay as usize]
+    }
+
+    pub fn is_any(self) -> bool {
+        self.0.contains(&true)
+    }
+
+    pub fn toggle(&mut self, overlay: Overlay) {
+        self.0[overlay as usize] ^= true;
     }
 }

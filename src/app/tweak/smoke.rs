@@ -10,9 +10,9 @@ use haze::{Bounds, Light, LightKind, Particle};
 pub struct Smoke {
     /// And the bits of the time.
     of: Option<(Vec<PresetSystem>, u32)>,
-    systems: Vec<Vec<Particle>>,
+    pub systems: Vec<Vec<Particle>>,
     /// Of each system, sprites included.
-    bounds: Vec<Bounds>,
+    pub bounds: Vec<Bounds>,
 }
 
 impl Smoke {

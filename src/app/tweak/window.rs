@@ -257,7 +257,8 @@ impl eframe::App for Window {
         self.keys(ui);
         self.reload.advance(&mut self.session, &self.easel);
         let is_touched = ui.input(|input| input.pointer.any_down() || input.smooth_scroll_delta() != egui::Vec2::ZERO);
-        self.easel.begin_frame(is_touched || self.session.playback.is_playing);
+        let is_turning = self.session.show.lights.turn.is_some();
+        self.easel.begin_frame(is_touched || is_turning || self.session.playback.is_playing);
         self.filing.advance(&mut self.session, ui.ctx());
         self.session.playback.advance(ui.input(|input| input.stable_dt));
         egui::Panel::top("top").show(ui, |ui| self.top(ui));

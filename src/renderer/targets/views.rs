@@ -21,4 +21,6 @@ pub struct TargetViews<'a> {
     pub scale: u32,
     /// View depth stored as 1, metres: what lies beyond looks alike to the system.
     pub depth_limit: f32,
+    /// View depth of the plane that light is flattened to, metres: as [`System::depth`](crate::System::depth).
+    pub lit_depth: f32,
 }

@@ -8,7 +8,7 @@ use haze::{Bounds, Light, LightKind};
 use super::fields::{self, Desk};
 use super::row::{self, Row};
 use crate::app::tweak::angles::{Angles, STEEPEST, from_angles, to_angles};
-use crate::app::tweak::lights::ShownLights;
+use crate::app::tweak::lights::{ShownLights, fresh};
 use crate::app::tweak::smoke::{Smoke, put_behind};
 
 /// Draws the list and what is selected of it. `time` is the time that is shown.
@@ -68,7 +68,7 @@ fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut ShownLights, time: f32) {
         ui.menu_button("Add", |ui| {
             for &kind in LightKind::ALL {
                 if ui.button(kind.name()).clicked() {
-                    let light = beside(kind, &preset.camera, &smoke(preset));
+                    let light = beside(fresh(kind, &preset.lights), &preset.camera, &smoke(preset));
                     let end = preset.lights.len();
                     shown.insert(&mut preset.lights, end, light);
                 }
@@ -94,9 +94,8 @@ fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut ShownLights, time: f32) {
 }
 
 /// A light above the smoke and to the side of the viewer.
-fn beside(kind: LightKind, camera: &Camera, bounds: &Bounds) -> Light {
+fn beside(mut light: Light, camera: &Camera, bounds: &Bounds) -> Light {
     let reach = 0.5 * (bounds.max - bounds.min);
-    let mut light = Light { kind, ..Light::default() };
     let right = (camera.target - camera.position).cross(glam::Vec3::Y).normalize_or(glam::Vec3::X);
     light.position = bounds.centre() + right * (reach.length() + 0.5);
     light.direction = bounds.centre() - light.position - glam::Vec3::Y;

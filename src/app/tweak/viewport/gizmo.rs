@@ -32,7 +32,7 @@ impl Gizmo {
             let pointer = &input.pointer;
             (pointer.interact_pos(), pointer.primary_pressed(), pointer.primary_down(), input.modifiers)
         });
-        let selected = session.show.lights.selected;
+        let selected = session.show.lights.selected.filter(|_| session.show.lights.turn.is_none());
         let light =
             selected.and_then(|index| session.document.preset.lights.get_mut(index).map(|light| (index, light)));
         let at = pointer.filter(|_| response.contains_pointer() || self.grab.is_some());
@@ -56,7 +56,9 @@ impl Gizmo {
             self.grab = None;
         }
         if let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked() && !was_busy) {
-            session.show.lights.selected = mark::pick(&session.document.preset.lights, lens, at);
+            let lights: Vec<_> =
+                session.document.preset.lights.iter().map(|light| session.show.lights.turned(light)).collect();
+            session.show.lights.selected = mark::pick(&lights, lens, at);
         }
         self.is_busy || was_busy
     }
@@ -93,10 +95,11 @@ impl Gizmo {
         let lights = &session.show.lights;
         for (index, light) in session.document.preset.lights.iter().enumerate() {
             let is_selected = lights.selected == Some(index);
-            if is_selected {
+            // What goes round cannot be grabbed.
+            if is_selected && lights.turn.is_none() {
                 self.draw_selected(ink, light, lens);
             }
-            mark::draw(ink, light, lens, is_selected, lights.is_shown(index));
+            mark::draw(ink, &lights.turned(light), lens, is_selected, lights.is_shown(index));
         }
     }
 

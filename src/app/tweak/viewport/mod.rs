@@ -8,8 +8,11 @@ mod handle;
 mod ink;
 mod lens;
 mod mark;
+mod menu;
+mod overlay;
 mod ray;
 mod steer;
+mod toolbar;
 
 use eframe::egui::{self, Response, Sense, Ui};
 use glam::UVec2;
@@ -17,13 +20,14 @@ use haze::{Bounds, LightKind};
 
 use super::action::InView;
 use super::gpu::{Easel, Exhibit};
-use super::lights::ShownLights;
+use super::lights::{ShownLights, Turn, fresh};
 use super::session::Session;
-use super::smoke::Smoke;
+use super::smoke::{Smoke, put_behind};
 use compare::{divider, other};
 use gizmo::Gizmo;
 use ink::Ink;
 use lens::Lens;
+use menu::Menu;
 use steer::Steering;
 
 /// What goes on in the viewport.
@@ -32,6 +36,7 @@ pub struct Viewport {
     steering: Steering,
     smoke: Smoke,
     gizmo: Gizmo,
+    menu: Menu,
 }
 
 /// Metres round a light that are shown when it is looked at.
@@ -53,6 +58,11 @@ impl Viewport {
         if !self.gizmo.interact(ui, &response, &lens, session) {
             self.steer(ui, &response, &lens, session);
         }
+        self.menu(&response, &lens, session);
+        if let Some(turn) = &mut session.show.lights.turn {
+            turn.advance(ui.input(|input| input.stable_dt.min(0.1)));
+            ui.ctx().request_repaint();
+        }
         let shot = session.shot(size);
         let other = other(ui, session, &shot);
         let compare = &mut session.compare;
@@ -63,7 +73,24 @@ impl Viewport {
         }
         let lens = Lens::new(&session.document.preset.camera, rect);
         let painter = ui.painter_at(rect);
-        self.gizmo.draw(&Ink(&painter), &lens, session);
+        let ink = Ink(&painter);
+        if session.show.overlays.is_any() {
+            let smoke = self.smoke.at(&session.document.preset, session.playback.time);
+            overlay::draw(&ink, &lens, &session.show, smoke, &easel.texels());
+        }
+        self.gizmo.draw(&ink, &lens, session);
+        if let Some(action) = toolbar::toolbar(ui, rect, session) {
+            self.act(action, session);
+            ui.ctx().request_repaint();
+        }
+    }
+
+    fn menu(&mut self, response: &Response, lens: &Lens, session: &mut Session) {
+        // A flight that did not look round is no click.
+        let is_click = !self.steering.has_flown;
+        if is_click && let Some(action) = self.menu.show(response, lens, session, &mut self.smoke) {
+            self.act(action, session);
+        }
     }
 
     /// Something is moved without a button being held.
@@ -99,8 +126,28 @@ impl Viewport {
             InView::Home => *camera = saved,
             InView::Delete => session.change_light(ShownLights::remove),
             InView::Duplicate => session.change_light(ShownLights::duplicate),
+            InView::Behind => self.put_behind(session),
+            InView::Overlay(overlay) => session.show.overlays.toggle(overlay),
+            InView::Turntable => {
+                let middle = self.smoke.at(&session.document.preset, session.playback.time).bounds().centre();
+                let turn = &mut session.show.lights.turn;
+                *turn = if turn.is_some() { None } else { Some(Turn { middle, angle: 0.0 }) };
+            }
             InView::Face(side) => camera::face(camera, side.way()),
         }
+    }
+
+    /// Puts the selected light, or a new one, behind the smoke.
+    fn put_behind(&mut self, session: &mut Session) {
+        let preset = &mut session.document.preset;
+        let bounds = self.smoke.at(preset, session.playback.time).bounds();
+        let selected = session.show.lights.selected.and_then(|index| preset.lights.get_mut(index));
+        if let Some(light) = selected {
+            return put_behind(light, &preset.camera, &bounds);
+        }
+        let mut light = fresh(LightKind::Point, &preset.lights);
+        put_behind(&mut light, &preset.camera, &bounds);
+        session.add_light(light);
     }
 
     /// Shows the selected light, or all of the smoke.

@@ -372,3 +372,75 @@ fn lights_are_added_duplicated_and_deleted_from_the_panel_and_by_key() {
     elevation(0.0, &mut harness);
     assert!(harness.state().session.document.preset.lights[1].direction.distance(Vec3::NEG_Z) < 0.01);
 }
+
+#[test]
+fn a_right_click_adds_a_light_there_and_another_behind_the_smoke() {
+    let mut harness = lit(Light::default());
+    let at = viewport(&harness).center() + vec2(-160.0, -40.0);
+    drag(&mut harness, PointerButton::Secondary, &[at]);
+    harness.run_steps(3);
+    harness.get_by_label("Add spot light here").click();
+    harness.run();
+    let added = |harness: &Harness<'_, Window>| *harness.state().session.document.preset.lights.last().unwrap();
+    let spot = added(&harness);
+    assert!(spot.kind == LightKind::Spot && lens(&harness).project(spot.position).unwrap().distance(at) < 1.0);
+    assert_eq!(undo_name(&harness).as_deref(), Some("light added"));
+    harness.state_mut().session.show.lights.selected = None;
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::B);
+    harness.run();
+    assert_eq!(harness.state().session.document.preset.lights.len(), 3);
+    assert!(lens(&harness).depth(added(&harness).position) > lens(&harness).depth(spot.position));
+}
+
+#[test]
+fn overlays_are_drawn_while_they_are_on() {
+    let mut harness = lit(Light::default());
+    let part = viewport(&harness);
+    let plain = picture(&mut harness);
+    for name in ["Bounds", "Lit plane", "Particles", "Grid"] {
+        let mut click = || {
+            harness.get_by_label(name).click();
+            harness.remove_cursor();
+            harness.run();
+            // What is drawn is known from the picture before.
+            picture(&mut harness);
+            picture(&mut harness)
+        };
+        let (on, off) = (click(), click());
+        let changed = |other: &image::RgbaImage| {
+            let pixels = plain.enumerate_pixels().zip(other.pixels());
+            let in_view =
+                pixels.filter(|((x, y, _), _)| part.shrink2(vec2(0.0, 40.0)).contains(Pos2::new(*x as f32, *y as f32)));
+            in_view.filter(|((_, _, a), b)| a != b).count()
+        };
+        assert!(changed(&on) > 300, "{name}: {}", changed(&on));
+        assert!(changed(&off) < 20, "{name}: {}", changed(&off));
+    }
+}
+
+#[test]
+fn the_turntable_takes_lights_round_and_leaves_the_preset_alone() {
+    let mut harness = lit(Light { intensity: 30.0, ..Light::default() });
+    let before = harness.state().session.document.preset.clone();
+    let shown = |harness: &Harness<'_, Window>| harness.state().session.shot(glam::UVec2::splat(8)).preset.lights[0];
+    harness.key_press(Key::T);
+    harness.run_steps(8);
+    assert!(shown(&harness).position.distance(before.lights[0].position) > 0.2);
+    harness.key_press(Key::T);
+    harness.run();
+    assert_eq!((shown(&harness), &harness.state().session.document.preset), (before.lights[0], &before));
+}
+
+#[test]
+fn the_scene_is_chosen_and_its_props_are_put_away() {
+    let mut harness = lit(Light { intensity: 30.0, ..Light::default() });
+    let environment = |harness: &Harness<'_, Window>| harness.state().session.document.preset.environment;
+    harness.get_by_label("Scene").click();
+    harness.run_steps(3);
+    harness.get_by_label("lamp").click();
+    harness.run_steps(3);
+    assert!(!environment(&harness).lamp && environment(&harness).brazier);
+    harness.get_by_label("studio").click();
+    harness.run_steps(3);
+    assert_eq!(environment(&harness).scene.name(), "studio");
+}
