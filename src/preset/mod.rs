@@ -1,6 +1,7 @@
 //! Presets: a camera, lights and particle systems in a JSON file.
 
 mod camera;
+mod effect;
 mod environment;
 mod material_names;
 mod pictures;

@@ -4,6 +4,7 @@
 use std::ops::RangeInclusive;
 
 use glam::{UVec2, Vec3, Vec4};
+use haze::builtin;
 use haze::picture::Picture;
 use haze::settings::*;
 
@@ -12,16 +13,22 @@ use crate::stage::{DepthKind, Stage};
 
 const SIZE: UVec2 = UVec2::new(96, 54);
 
+/// What a detail map is moved to, beside the sprite's file.
+pub const OTHER_DETAIL: &str = "other.png";
+/// The same for a noise, of which one is built in.
+pub const OTHER_NOISE: &str = "noise.png";
+
 /// Moves the one field that is asked for to the one value that is asked for, and tells of it.
-struct Mover {
+#[derive(Default)]
+pub struct Mover {
     /// Fields to pass by.
-    skip: usize,
+    pub skip: usize,
     /// Which of a field's other values.
-    value: usize,
-    path: Vec<&'static str>,
-    moved: Option<String>,
+    pub value: usize,
+    pub path: Vec<&'static str>,
+    pub moved: Option<String>,
     /// The field has more values than this.
-    has_more: bool,
+    pub has_more: bool,
 }
 
 impl Mover {
@@ -71,6 +78,25 @@ impl FieldVisitor for Mover {
             if let Some(moved) = &mut self.moved {
                 *moved = format!("{moved} {}", value.names()[value.index()]);
             }
+        }
+    }
+    fn picture(&mut self, name: &'static str, value: &mut String, role: PictureRole) {
+        if self.is_here(name) {
+            let builtins = match role {
+                PictureRole::Sprite => builtin::SPRITES,
+                PictureRole::Ramp => builtin::RAMPS,
+                PictureRole::Motif => builtin::MOTIFS,
+                PictureRole::Noise => builtin::NOISES,
+                PictureRole::Detail => &[],
+            };
+            let file = if role == PictureRole::Noise { OTHER_NOISE } else { OTHER_DETAIL };
+            let other = builtins.iter().find(|builtin| builtin.name != value);
+            *value = other.map_or(file, |builtin| builtin.name).into();
+        }
+    }
+    fn seed(&mut self, name: &'static str, value: &mut u32) {
+        if self.is_here(name) {
+            *value += 1;
         }
     }
     fn group(&mut self, name: &'static str, fields: &mut dyn Fields) {
@@ -136,7 +162,7 @@ fn every_setting_moves_both_renderers_alike() {
         let (mut has_more, mut felt) = (false, false);
         for (index, plain) in plain.iter().enumerate() {
             let mut stage = stages[index].clone();
-            let mut mover = Mover { skip, value, path: Vec::new(), moved: None, has_more: false };
+            let mut mover = Mover { skip, value, ..Mover::default() };
             stage.settings.visit(&mut mover);
             has_more = mover.has_more;
             name = mover.moved.clone();

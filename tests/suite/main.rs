@@ -29,3 +29,4 @@ mod techniques;
 mod timing;
 #[cfg(feature = "app")]
 mod upsampling;
+mod without_effect;

@@ -9,7 +9,7 @@ use haze::ramp::Ramp;
 use haze::reference;
 use haze::settings::{Settings, ShadeTree};
 use haze::sprite::{Sprite, SpriteLayout};
-use haze::{Bounds, Light, MaterialAssets, Particle, View};
+use haze::{Bounds, FieldError, Light, MaterialAssets, Particle, View};
 
 use crate::common::gpu;
 use crate::host::HostKind;
@@ -184,6 +184,10 @@ impl Stage {
     }
 
     pub fn on_cpu(&self) -> Picture<Vec4> {
+        self.try_on_cpu().unwrap()
+    }
+
+    pub fn try_on_cpu(&self) -> Result<Picture<Vec4>, FieldError> {
         let mut picture = Picture::new(self.view.size, BACKDROP);
         let frame = reference::Frame {
             view: self.view,
@@ -197,7 +201,7 @@ impl Stage {
             up: self.up,
             shade_tree: self.shade_tree,
         };
-        reference::render(&frame, &mut picture).unwrap();
-        picture
+        reference::render(&frame, &mut picture)?;
+        Ok(picture)
     }
 }

@@ -1,0 +1,247 @@
+//! What is told to have no effect has none, on either renderer; what is not told so has one somewhere.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path as File;
+
+use glam::{UVec2, Vec3, Vec4, vec3};
+use haze::noise::NoiseRecipe;
+use haze::picture::Picture;
+use haze::preset::{Preset, PresetSystem};
+use haze::settings::*;
+use haze::{Context, Light, LightKind, MaterialAssets};
+
+use crate::common::gpu;
+use crate::every_setting::{Mover, OTHER_DETAIL, OTHER_NOISE};
+use crate::host::Host;
+use crate::stage::Stage;
+
+const SIZE: UVec2 = UVec2::new(48, 27);
+
+/// A preset of one system and one light, and the pictures of its system.
+#[derive(Clone)]
+struct Situation {
+    preset: Preset,
+    material: MaterialAssets,
+}
+
+impl Situation {
+    fn new(folder: &File, change: fn(&mut PresetSystem, &mut Light)) -> Self {
+        let mut system = PresetSystem::default();
+        let (emitter, settings) = (&mut system.emitter, &mut system.settings);
+        (emitter.rate, emitter.position, emitter.lifetime) = (8.0, vec3(0.0, -1.5, -6.0), 5.0);
+        (emitter.burst, emitter.wind) = (0.3, vec3(0.1, 0.0, 0.0));
+        (settings.boost, settings.specular_scatter.size, settings.volumetric.noise_size) = (1.0, 300.0, 1.5);
+        // The near fade reaches into the smoke.
+        settings.soft_fade.near_fade_end = 7.0;
+        let mut light = Light { position: vec3(0.4, 0.3, -7.5), intensity: 8.0, ..Light::default() };
+        light.direction = vec3(0.4, -0.1, 0.8);
+        change(&mut system, &mut light);
+        let material = system.material.load(folder).unwrap();
+        let preset = Preset { time: 6.3, lights: vec![light], systems: vec![system], ..Preset::default() };
+        preset.validate().unwrap();
+        Self { preset, material }
+    }
+
+    fn stage(&self) -> Stage {
+        let mut stage = Stage::new(SIZE);
+        let system = &self.preset.systems[0];
+        system.particles(self.preset.time, &mut stage.particles);
+        stage.lights.clone_from(&self.preset.lights);
+        (stage.settings, stage.time) = (system.settings_for(SIZE.y), self.preset.time);
+        stage.material = self.material.clone();
+        stage
+    }
+
+    /// This with one field another, the field's path, and whether it has more values; `None` past the last field. Nothing in it
+    /// where the value does not go with the rest.
+    #[allow(clippy::type_complexity, reason = "used once")]
+    fn moved(&self, folder: &File, skip: usize, value: usize) -> Option<(Option<Self>, String, bool)> {
+        let mut other = self.clone();
+        let mut mover = Mover { skip, value, ..Mover::default() };
+        other.preset.systems[0].visit(&mut mover);
+        let mut path = "systems[0].";
+        if mover.moved.is_none() {
+            other.preset.lights[0].visit(&mut mover);
+            path = "lights[0].";
+        }
+        let moved = mover.moved?;
+        let path = format!("{path}{}", moved.split(' ').next().unwrap_or_default());
+        if other.preset.systems[0].material != self.preset.systems[0].material {
+            match other.preset.systems[0].material.load(folder) {
+                Ok(material) => other.material = material,
+                Err(_) => return Some((None, path, mover.has_more)),
+            }
+        }
+        let fits = other.preset.validate().is_ok();
+        Some((fits.then_some(other), path, mover.has_more))
+    }
+
+    fn on_gpu(&self, context: &Context) -> Picture<Vec4> {
+        let stage = self.stage();
+        let mut host = Host::on(gpu(), &stage, Some(context)).unwrap();
+        host.draw(gpu(), &stage).unwrap();
+        host.picture(gpu()).unwrap()
+    }
+}
+
+/// Between them they bring every reason about.
+const SITUATIONS: &[fn(&mut PresetSystem, &mut Light)] = &[
+    |_, _| {},
+    |s, _| s.settings.accumulate.encoding = NormalEncoding::Biased,
+    |s, _| s.settings.path = Path::Forward,
+    |s, _| (s.settings.path, s.settings.sprite.age_colour) = (Path::Forward, 0.5),
+    |s, l| (s.settings.accumulate.order, l.kind) = (Order::Weighted, LightKind::Directional),
+    |s, l| {
+        (s.settings.accumulate.scale, s.settings.soft_fade.curve, l.kind) = (1, FadeCurve::Contrast, LightKind::Spot);
+    },
+    |s, _| (s.settings.accumulate.scale, s.settings.soft_fade.curve) = (1, FadeCurve::Always),
+    |s, _| (s.settings.accumulate.scale, s.settings.technique) = (1, Technique::Hard),
+    |s, _| (s.settings.accumulate.upsample, s.settings.technique) = (Upsample::Bilinear, Technique::Hard),
+    |s, _| (s.settings.accumulate.max_side, s.settings.accumulate.scale) = (16, 1),
+    |s, _| s.settings.technique = Technique::Hard,
+    |s, _| s.settings.technique = Technique::DepthSpriteHard,
+    |s, _| (s.settings.technique, s.settings.sprite.debug_sprite) = (Technique::DepthSpriteSoft, true),
+    |s, _| (s.settings.technique, s.settings.sprite.motion) = (Technique::SphericalBillboard, 0.5),
+    |s, _| s.settings.technique = Technique::Density,
+    |s, _| s.settings.technique = Technique::VolumetricHard,
+    |s, _| (s.settings.technique, s.settings.sprite.freeze_animation) = (Technique::VolumetricSoft, true),
+    |s, _| (s.settings.technique, s.settings.volumetric.scroll_speed) = (Technique::VolumetricSoft, 0.0),
+    |s, _| (s.settings.sprite.debug_sprite, s.settings.sprite.motion) = (true, 0.5),
+    |s, _| s.settings.sprite.freeze_animation = true,
+    |s, _| (s.settings.sprite.animation, s.settings.sprite.motion) = (SpriteAnimation::Still, 0.5),
+    |s, _| (s.settings.sprite.animation, s.settings.sprite.motion) = (SpriteAnimation::Volume, 0.5),
+    |s, l| (s.settings.diffuse.mode, s.emitter.frame_rate, l.intensity) = (DiffuseMode::PaintedMotif, 0.0, 0.0),
+    |s, _| (s.settings.diffuse.mode, s.settings.path) = (DiffuseMode::PaintedMotif, Path::Forward),
+    |s, _| (s.settings.soft_scatter.mode, s.settings.diffuse.intensity) = (SoftScatterMode::Ramp, 0.0),
+    |s, _| (s.settings.soft_scatter.intensity, s.settings.specular_scatter.intensity) = (0.0, 0.0),
+    |s, _| (s.emitter.turbulence, s.emitter.extent, s.emitter.buoyancy) = (0.0, Vec3::ZERO, 0.0),
+    |s, _| (s.material.sprite, s.material.detail) = ("own.png".into(), "own.png".into()),
+    |s, _| {
+        (s.material.sprite, s.material.detail) = ("own.png".into(), "own.png".into());
+        s.settings.sprite.motion = 0.7;
+    },
+];
+
+/// Fields whose other values make no other picture where they can be compared, and why.
+const SAME: [&str; 3] = [
+    // At scale 1 the reduced depth is the host's.
+    "systems[0].settings.accumulate.depth_source",
+    // Frames are square: neither can be moved without the other.
+    "systems[0].material.columns",
+    "systems[0].material.rows",
+];
+
+/// Fields that do nothing in some situation without being told so: it depends on more than settings, or on how far they are moved.
+const NOT_ALWAYS: [&str; 15] = [
+    // Nothing to see of the light: it is hidden, or lights nothing.
+    "lights[0].kind",
+    "lights[0].radius",
+    "lights[0].specular_scatter",
+    "systems[0].material.specular_ramp",
+    "systems[0].settings.specular_scatter.intensity",
+    "systems[0].settings.specular_scatter.size",
+    // No diffuse light: nothing reads normals, which an artist moves all the same.
+    "systems[0].settings.accumulate.decode",
+    "systems[0].settings.accumulate.encoding",
+    // The most texels are so few that they set the scale, and one depth hides the post from the smoke or not.
+    "systems[0].settings.accumulate.depth_downsample",
+    "systems[0].settings.accumulate.max_side",
+    "systems[0].settings.accumulate.scale",
+    // Another value is the same: `auto` is `raster`, `soft_linear` reads the same depth, and so does `host`.
+    "systems[0].settings.path",
+    "systems[0].settings.technique",
+    "systems[0].settings.accumulate.depth_source",
+    // Less than the reach of the fade.
+    "systems[0].settings.soft_fade.epsilon",
+];
+
+/// Pipelines of other constants may be compiled otherwise: two steps of a half float at 1.
+const ROUNDING: f32 = 2.0 / 1024.0;
+
+fn pictures(folder: &File) {
+    for (name, lean) in [("own.png", 40), (OTHER_DETAIL, 90)] {
+        let picture = image::RgbaImage::from_fn(32, 32, |x, y| {
+            let inside = 255 - (2 * (x.abs_diff(16).pow(2) + y.abs_diff(12).pow(2))).min(255) as u8;
+            image::Rgba([128 + lean, 200 - lean, 220 - x as u8, inside])
+        });
+        picture.save(folder.join(name)).unwrap();
+    }
+    let noise = NoiseRecipe { version: 1, seed: 3, size: 16, cells: 2, octaves: 3, gain: 0.5 };
+    noise.bake().unwrap().save(folder.join(OTHER_NOISE)).unwrap();
+}
+
+#[test]
+fn what_has_no_effect_has_none_and_what_is_not_told_so_has_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    pictures(folder);
+    let context = Context::new(&gpu().device, &gpu().queue, None);
+    let (mut reasons, mut felt, mut all) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
+    let mut compared = BTreeSet::new();
+    let mut wrong = BTreeSet::new();
+    let mut untold = BTreeMap::<String, Vec<usize>>::new();
+    for (index, change) in SITUATIONS.iter().enumerate() {
+        let situation = Situation::new(folder, *change);
+        let plain = situation.stage().on_cpu();
+        let mut on_gpu = None;
+        let (mut skip, mut value) = (0, 0);
+        while let Some((moved, path, has_more)) = situation.moved(folder, skip, value) {
+            (skip, value) = if has_more { (skip, value + 1) } else { (skip + 1, 0) };
+            all.insert(path.clone());
+            let reason = situation.preset.without_effect(&path, SIZE);
+            // Not every value goes with every other.
+            reasons.extend(reason);
+            let on_cpu = moved.as_ref().and_then(|moved| moved.stage().try_on_cpu().ok());
+            let Some((moved, on_cpu)) = moved.zip(on_cpu) else { continue };
+            let is_moved = on_cpu != plain;
+            let Some(reason) = reason else {
+                if is_moved {
+                    felt.insert(path);
+                } else {
+                    untold.entry(path).or_default().push(index);
+                }
+                continue;
+            };
+            if is_moved {
+                wrong.insert(format!("{path} has an effect in situation {index}: {reason}"));
+            } else if compared.insert((reason, path.clone())) {
+                let plain = on_gpu.get_or_insert_with(|| situation.on_gpu(&context));
+                let moved = moved.on_gpu(&context);
+                let differences = plain.texels.iter().zip(&moved.texels).map(|(a, b)| (a - b).abs().max_element());
+                let most = differences.fold(0.0, f32::max);
+                if most > ROUNDING {
+                    wrong.insert(format!("{path} moves the GPU's picture by {most} in situation {index}: {reason}"));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+    let unfelt: Vec<_> = all.iter().filter(|path| !felt.contains(*path) && !SAME.contains(&path.as_str())).collect();
+    assert!(unfelt.is_empty(), "nowhere any effect: {unfelt:?}");
+    assert!(untold.keys().all(|path| NOT_ALWAYS.contains(&path.as_str())), "{untold:?}");
+    // All but the one that is about the demo scene.
+    assert_eq!(reasons.len(), 36, "{reasons:#?}");
+}
+
+#[cfg(feature = "app")]
+#[test]
+fn the_yards_props_are_nowhere_else() {
+    use haze::demo::shot::Shot;
+    use haze::preset::SceneName;
+
+    let mut shot = Shot::load("column", SIZE).unwrap();
+    let pictures = |shot: &Shot| (shot.render_on_cpu().unwrap(), shot.render_on_gpu(gpu(), true).unwrap());
+    for &scene in SceneName::ALL {
+        shot.preset.environment.scene = scene;
+        let plain = pictures(&shot);
+        for field in ["environment.lamp", "environment.brazier"] {
+            let mut other = shot.clone();
+            set_field(&mut other.preset, field, "false").unwrap();
+            let is_told = shot.preset.without_effect(field, SIZE).is_some();
+            assert_eq!(is_told, scene != SceneName::Yard, "{field}");
+            let moved = pictures(&other);
+            assert_eq!(is_told, moved.0 == plain.0, "{field} {}", scene.name());
+            assert_eq!(is_told, moved.1 == plain.1, "{field} {}", scene.name());
+        }
+    }
+}
