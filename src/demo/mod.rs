@@ -2,6 +2,7 @@
 //! on the CPU alike.
 
 mod boxes;
+pub mod capture;
 mod cpu;
 pub mod develop;
 mod layout;

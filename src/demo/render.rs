@@ -7,8 +7,10 @@ use super::shot::Shot;
 use super::stage::{Stage, StageContext};
 use crate::assets::picture::Picture;
 use crate::error::Error;
+use crate::frame::Particle;
 use crate::headless::Headless;
 use crate::reference;
+use crate::settings::Settings;
 
 impl Shot {
     /// Renders on the CPU, linear HDR.
@@ -22,20 +24,8 @@ impl Shot {
             colour.texels.fill(Vec4::W);
         }
         let particles = self.systems();
-        let systems: Vec<_> = particles
-            .iter()
-            .zip(&self.materials)
-            .map(|((particles, settings), material)| reference::System::new(particles, settings, material))
-            .collect();
-        let frame = reference::Frame {
-            view,
-            scene_depth: &depth,
-            lights: &self.preset.lights,
-            systems: &systems,
-            time: self.preset.time,
-            up: Vec3::Y,
-            shade_tree: self.shade_tree,
-        };
+        let systems = self.reference_systems(&particles);
+        let frame = self.reference_frame(&depth, &systems);
         reference::render(&frame, &mut colour)?;
         Ok(colour)
     }
@@ -50,5 +40,29 @@ impl Shot {
         let mut stage = Stage::new(&context, exact_filtering)?;
         stage.draw(gpu, self)?;
         stage.read(gpu, self)
+    }
+
+    pub(super) fn reference_systems<'a>(
+        &'a self,
+        particles: &'a [(Vec<Particle>, Settings)],
+    ) -> Vec<reference::System<'a>> {
+        let system = |((particles, settings), material)| reference::System::new(particles, settings, material);
+        let particles = particles.iter().map(|(particles, settings)| (particles.as_slice(), settings));
+        particles.zip(&self.materials).map(system).collect()
+    }
+
+    pub(super) fn reference_frame<'a>(
+        &'a self,
+        scene_depth: &'a Picture<f32>,
+        systems: &'a [reference::System<'a>],
+    ) -> reference::Frame<'a> {
+        reference::Frame {
+            lights: &self.preset.lights,
+            systems,
+            time: self.preset.time,
+            up: Vec3::Y,
+            shade_tree: self.shade_tree,
+            ..reference::Frame::new(self.preset.camera.view(self.size), scene_depth)
+        }
     }
 }

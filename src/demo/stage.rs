@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use glam::{UVec2, Vec3, Vec4};
 
+use super::capture::Capture;
 use super::scene_renderer::{COLOUR_FORMAT, DEPTH_FORMAT, LINEAR_FORMAT, SceneRenderer, SceneTargets, texture, whole};
 use super::shot::Shot;
 use crate::assets::material::MaterialAssets;
@@ -26,6 +27,8 @@ pub struct StageContext {
     scene: Arc<SceneRenderer>,
     /// The depth buffer is attached where it need not be read, or can be all the same.
     tests_depth: bool,
+    /// Depth can be copied to a buffer.
+    copies_depth: bool,
 }
 
 impl StageContext {
@@ -33,7 +36,9 @@ impl StageContext {
     pub fn new(adapter: &wgpu::Adapter, device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
         let usages = adapter.get_texture_format_features(LINEAR_FORMAT).allowed_usages;
         let draws_linear = usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT);
+        let flags = adapter.get_downlevel_capabilities().flags;
         Self {
+            copies_depth: flags.contains(wgpu::DownlevelFlags::DEPTH_TEXTURE_AND_BUFFER_COPIES),
             device: device.clone(),
             queue: queue.clone(),
             haze: Context::new(device, queue, None),
@@ -206,6 +211,15 @@ impl Stage {
     /// The picture of a stage as last recorded: linear HDR, `Rgba16Float`, of the shot's size.
     pub fn picture(&self, stage: ShadeTree) -> Option<&wgpu::Texture> {
         self.set.as_ref()?.pictures[stage as usize].as_ref()
+    }
+
+    /// Records a copy of what the last frame was drawn from, after it in its encoder; `None` where there was none, and on OpenGL,
+    /// which copies no depth.
+    pub fn capture(&self, encoder: &mut wgpu::CommandEncoder) -> Option<Capture> {
+        let targets = &self.set.as_ref().filter(|_| self.context.copies_depth)?.targets;
+        let systems: Vec<_> = (0..).zip(&self.materials).map(|(key, _)| self.renderer.targets(key)).collect();
+        let scene = [targets.depth.texture(), &targets.colour];
+        Some(Capture::record(&self.context.device, encoder, scene, &systems))
     }
 
     /// Draws a shot's stage now, and tells how long the device took.

@@ -1,14 +1,16 @@
 //! A system in sight, and the geometry that its passes share.
 
-use glam::{IVec2, Mat4, Vec2, Vec3, Vec4Swizzles};
+use glam::{IVec2, Mat4, UVec2, Vec2, Vec3, Vec4Swizzles};
 
 use super::frame::{Frame, System};
 use crate::assets::material::{MaterialAssets, MaterialInfo};
 use crate::assets::picture::Picture;
+use crate::error::FieldError;
 use crate::formula::depth::view_depth_from_ndc_depth;
 use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use crate::formula::view::{ndc_from_pixel, pixel_from_ndc, view_position};
-use crate::frame::{Particle, bounds_of};
+use crate::frame::validate::{validate_lights, validate_place, validate_settings, validate_time_and_up};
+use crate::frame::{Bounds, Particle, View, bounds_of};
 use crate::in_view::{
     SortScratch, SystemInView, SystemInWorld, ViewGeometry, in_order, lights_in_view, system_in_view,
 };
@@ -20,6 +22,7 @@ pub struct Draw<'a> {
     pub world_from_view: Mat4,
     pub system: SystemUniform,
     pub in_view: SystemInView,
+    pub bounds: Bounds,
     pub lights: Vec<LightUniform>,
     /// In the order in which they are drawn.
     pub particles: Vec<Particle>,
@@ -53,6 +56,7 @@ impl<'a> Draw<'a> {
             world_from_view: view.view_from_world.inverse(),
             system: in_view.uniform,
             in_view,
+            bounds,
             lights,
             particles,
             scene_depth: frame.scene_depth,
@@ -80,4 +84,28 @@ impl<'a> Draw<'a> {
         let along = if self.view.orthographic > 0.5 { 1.0 } else { 1.0 / view_depth };
         0.5 * self.view.size.y / self.view.ray_scale.y * along
     }
+}
+
+/// The systems in sight, with their places in the frame, far to near; for a picture of this size.
+pub fn visible<'a>(frame: &Frame<'a>, picture: UVec2) -> Result<Vec<(usize, Draw<'a>)>, FieldError> {
+    // The picture is the view, wherever that lies in a host's targets.
+    let view = ViewGeometry::new(&View { origin: UVec2::ZERO, ..frame.view })?;
+    validate_lights(frame.lights)?;
+    validate_time_and_up(frame.time, frame.up)?;
+    for (name, size) in [("scene_depth", frame.scene_depth.size), ("picture", picture)] {
+        if size != frame.view.size {
+            let value = format!("{}x{}", size.x, size.y);
+            return Err(FieldError::new(name, value, format!("{}x{}", frame.view.size.x, frame.view.size.y)));
+        }
+    }
+    let mut draws = Vec::new();
+    for (index, system) in frame.systems.iter().enumerate() {
+        validate_settings(index, system.settings, frame.view.size)?;
+        validate_place(index, system.bounds.as_ref(), system.depth)?;
+        let info = system.material.info();
+        info.validate(index, system.settings)?;
+        draws.extend(Draw::new(&view, frame, system, &info).map(|draw| (index, draw)));
+    }
+    draws.sort_by(|(_, a), (_, b)| b.in_view.distance.total_cmp(&a.in_view.distance));
+    Ok(draws)
 }

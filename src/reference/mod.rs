@@ -6,47 +6,27 @@ pub mod blend_unit;
 mod draw;
 mod frame;
 mod pass;
+mod probe;
 mod sprite;
 
-use glam::{UVec2, Vec4};
+use glam::Vec4;
 
 use crate::assets::picture::Picture;
 use crate::error::FieldError;
-use crate::frame::View;
-use crate::frame::validate::{validate_lights, validate_place, validate_settings, validate_time_and_up};
-use crate::in_view::ViewGeometry;
 use crate::settings::ShadeTree;
 
 use accumulated::Accumulated;
-use draw::Draw;
+use draw::visible;
 pub use frame::{Frame, System};
+pub use probe::{GlowProbe, LightProbe, Probe, SystemProbe, Texels, probe};
 
 /// Blends the frame's smoke over `picture`, linear HDR.
 ///
 /// # Errors
 /// The view, light or setting that cannot be used; `picture` is untouched then.
 pub fn render(frame: &Frame<'_>, picture: &mut Picture<Vec4>) -> Result<(), FieldError> {
-    // The picture is the view, wherever that lies in a host's targets.
-    let view = ViewGeometry::new(&View { origin: UVec2::ZERO, ..frame.view })?;
-    validate_lights(frame.lights)?;
-    validate_time_and_up(frame.time, frame.up)?;
-    for (name, size) in [("scene_depth", frame.scene_depth.size), ("picture", picture.size)] {
-        if size != frame.view.size {
-            let value = format!("{}x{}", size.x, size.y);
-            return Err(FieldError::new(name, value, format!("{}x{}", frame.view.size.x, frame.view.size.y)));
-        }
-    }
-    let mut draws = Vec::new();
-    for (index, system) in frame.systems.iter().enumerate() {
-        validate_settings(index, system.settings, frame.view.size)?;
-        validate_place(index, system.bounds.as_ref(), system.depth)?;
-        let info = system.material.info();
-        info.validate(index, system.settings)?;
-        draws.extend(Draw::new(&view, frame, system, &info));
-    }
-    draws.sort_by(|a, b| b.in_view.distance.total_cmp(&a.in_view.distance));
-
-    for draw in &draws {
+    let draws = visible(frame, picture.size)?;
+    for (_, draw) in &draws {
         if draw.settings.is_forward() {
             if frame.shade_tree.is_picture() {
                 draw.forward(picture);

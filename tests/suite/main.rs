@@ -20,6 +20,8 @@ mod in_view;
 mod lighting;
 #[cfg(feature = "app")]
 mod presets;
+#[cfg(feature = "app")]
+mod probe;
 mod properties;
 mod shader_layout;
 mod shaders;

@@ -14,12 +14,13 @@ use crate::settings::{DiffuseMode, SoftScatterMode};
 
 impl Draw<'_> {
     pub fn diffuse_from_lights(&self, normal: Vec3, position: Vec3) -> Vec3 {
-        let light = |light: &LightUniform| {
-            let sample = sample_light(light, position);
-            let falloff = sample_ramp(&self.material.diffuse_ramp, diffuse_coordinate(normal, sample.direction));
-            falloff * light.colour * sample.attenuation
-        };
-        self.lights.iter().map(light).sum()
+        self.lights.iter().map(|light| self.diffuse_from_light(light, normal, position)).sum()
+    }
+
+    pub fn diffuse_from_light(&self, light: &LightUniform, normal: Vec3, position: Vec3) -> Vec3 {
+        let sample = sample_light(light, position);
+        let falloff = sample_ramp(&self.material.diffuse_ramp, diffuse_coordinate(normal, sample.direction));
+        falloff * light.colour * sample.attenuation
     }
 
     pub fn soft_scatter(&self, amount: f32) -> Vec3 {

@@ -60,7 +60,6 @@ impl Accumulated<'_> {
 
     pub fn transfer_fragment(&self, shade_tree: ShadeTree, pixel: Vec2) -> Option<Vec4> {
         let system = &self.draw.system;
-        let accumulate = &self.draw.settings.accumulate;
         if shade_tree == ShadeTree::ReducedDepth {
             let depth = self.reduced_depth.load((pixel / system.scale - system.target_origin).as_ivec2());
             let grey = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));
@@ -77,8 +76,7 @@ impl Accumulated<'_> {
             return None;
         }
         let covered = coverage(amount, system.boost);
-        let weights = self.weight_sum.as_ref().map_or(amount, |sum| self.sample_target(sum, pixel).x);
-        let normal = normal_from_accumulation(accumulate.encoding, accumulate.decode, accumulated.xyz(), weights);
+        let normal = self.normal(accumulated, pixel);
         if shade_tree == ShadeTree::Normals {
             return Some((normal * 0.5 + 0.5).extend(1.0) * covered);
         }
@@ -90,5 +88,15 @@ impl Accumulated<'_> {
             light += self.draw.soft_scatter(amount);
         }
         Some(bounded_light(light).extend(1.0) * covered)
+    }
+    fn normal(&self, accumulated: Vec4, pixel: Vec2) -> Vec3 {
+        let accumulate = &self.draw.settings.accumulate;
+        let weights = self.weight_sum.as_ref().map_or(accumulated.w, |sum| self.sample_target(sum, pixel).x);
+        normal_from_accumulation(accumulate.encoding, accumulate.decode, accumulated.xyz(), weights)
+    }
+
+    pub fn amount_and_normal(&self, pixel: Vec2) -> (f32, Vec3) {
+        let accumulated = self.sample_target(&self.accumulation, pixel);
+        (accumulated.w, self.normal(accumulated, pixel))
     }
 }

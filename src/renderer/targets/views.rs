@@ -3,7 +3,8 @@
 use glam::{IVec2, UVec2};
 
 /// The textures of one system. All share one grid: texel (i, j) covers `scale` by `scale` pixels of the view from
-/// (`origin` + (i, j)) · `scale`. The textures may be larger than the part in use, `size` from (0, 0).
+/// (`origin` + (i, j)) · `scale`. The textures may be larger than the part in use, `size` from (0, 0);
+/// they can be copied from.
 #[derive(Clone, Copy, Debug)]
 pub struct TargetViews<'a> {
     /// First: premultiplied normal in rgb, amount in a.

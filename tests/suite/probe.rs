@@ -1,0 +1,128 @@
+//! What is told of a pixel is what was drawn there.
+
+use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
+use haze::builtin;
+use haze::demo::capture::Captured;
+use haze::demo::shot::Shot;
+use haze::demo::stage::{Stage, StageContext};
+use haze::picture::Picture;
+use haze::reference::{Probe, SystemProbe};
+use haze::settings::*;
+use haze::wgpu;
+
+use crate::common::gpu;
+
+const SIZE: UVec2 = UVec2::new(160, 90);
+
+/// A shot on the GPU: what came back, and pictures of its stages.
+fn drawn(shot: &Shot, stages: &[ShadeTree]) -> (Captured, Vec<Picture<Vec4>>) {
+    let gpu = gpu();
+    let context = StageContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
+    let mut stage = Stage::new(&context, true).unwrap();
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    stage.record(&mut encoder, shot, stages).unwrap();
+    let capture = stage.capture(&mut encoder).unwrap();
+    gpu.submit(encoder).unwrap();
+    // Another test's poll may be the one that brings it.
+    while !capture.has_arrived() {
+        std::thread::yield_now();
+    }
+    let read = |&shade_tree| stage.read(gpu, &Shot { shade_tree, ..shot.clone() }).unwrap();
+    (capture.read().unwrap(), stages.iter().map(read).collect())
+}
+
+/// Every third pixel each way.
+fn pixels() -> Vec<UVec2> {
+    (0..SIZE.y).step_by(3).flat_map(|y| (0..SIZE.x).step_by(3).map(move |x| UVec2::new(x, y))).collect()
+}
+
+/// Steps of a half float that the blend unit may round by: one for each system, and one for the device's arithmetic.
+const STEPS: f32 = 4.0;
+
+/// In steps of a half float.
+fn difference(a: Vec3, b: Vec3) -> f32 {
+    let step = a.abs().max(b.abs()).max(Vec3::splat(1.0 / 16.0)) / 1024.0;
+    ((a - b).abs() / step).max_element()
+}
+
+/// Share of pixels that may be off: edges of the box and of boxes in the scene fall to one side or the other by 1/256 pixel.
+const EDGES: f32 = 0.005;
+
+fn assert_alike(what: &str, told: impl Fn(&Probe) -> Option<Vec3>, probes: &[Probe], drawn: &Picture<Vec4>) {
+    let (mut seen, mut wrong, mut most) = (0, 0, 0.0_f32);
+    for (probe, at) in probes.iter().zip(pixels()) {
+        let Some(told) = told(probe) else { continue };
+        let difference = difference(told, drawn.load(at.as_ivec2()).xyz());
+        (seen, most) = (seen + 1, most.max(difference));
+        wrong += u32::from(difference > STEPS);
+    }
+    println!("{what}: {wrong} of {seen} pixels, at most {most:.1} steps");
+    assert!(seen > 20, "{what}: {seen}");
+    assert!(wrong as f32 <= EDGES * seen as f32, "{what}: {wrong} of {seen} pixels, {most} steps");
+}
+
+#[test]
+fn the_colour_that_is_told_is_the_picture() {
+    for preset in builtin::PRESETS {
+        let shot = Shot::load(preset.name, SIZE).unwrap();
+        let (captured, pictures) = drawn(&shot, &[ShadeTree::Final]);
+        let probes = captured.probe(&shot, &pixels()).unwrap();
+        if shot.preset.systems.iter().any(|system| system.settings.is_forward()) {
+            assert!(probes.iter().all(|probe| probe.colour.is_none()), "{}", preset.name);
+            continue;
+        }
+        assert_alike(preset.name, |probe| probe.colour.map(|colour| colour.xyz()), &probes, &pictures[0]);
+    }
+}
+
+#[test]
+fn every_stage_is_told_as_it_is_shown() {
+    type Told = fn(&SystemProbe) -> Vec3;
+    let stages: [(ShadeTree, Told); 6] = [
+        (ShadeTree::Amount, |probe| Vec3::splat(probe.amount)),
+        (ShadeTree::Normals, |probe| (probe.normal * 0.5 + 0.5) * probe.coverage),
+        (ShadeTree::Diffuse, |probe| probe.diffuse * probe.coverage),
+        (ShadeTree::SoftScatter, |probe| probe.soft_scatter * probe.coverage),
+        (ShadeTree::Combined, |probe| probe.light() * probe.coverage),
+        (ShadeTree::SpecularScatter, SystemProbe::specular),
+    ];
+    let changes: [fn(&mut Settings); 5] = [
+        |_| {},
+        |s| (s.accumulate.encoding, s.accumulate.order) = (NormalEncoding::Biased, Order::Weighted),
+        |s| (s.accumulate.scale, s.diffuse.mode) = (4, DiffuseMode::Cubemap),
+        |s| (s.accumulate.scale, s.accumulate.depth_source) = (1, DepthSource::Host),
+        |s| {
+            (s.accumulate.format, s.accumulate.encoding) = (AccumulationFormat::Rgba8Unorm, NormalEncoding::Biased);
+            s.accumulate.order = Order::Sorted;
+            (s.diffuse.mode, s.soft_scatter.mode) = (DiffuseMode::Motif, SoftScatterMode::Ramp);
+        },
+    ];
+    for (index, change) in changes.iter().enumerate() {
+        let mut shot = Shot::load("column", SIZE).unwrap();
+        change(&mut shot.preset.systems[0].settings);
+        let (captured, pictures) = drawn(&shot, &stages.map(|(stage, _)| stage));
+        let probes = captured.probe(&shot, &pixels()).unwrap();
+        for ((stage, told), picture) in stages.iter().zip(&pictures) {
+            let what = format!("{} {index}", stage.name());
+            assert_alike(&what, |probe| probe.systems.first().map(told), &probes, picture);
+        }
+        if shot.preset.systems[0].settings.diffuse.mode == DiffuseMode::Ramp {
+            for system in probes.iter().flat_map(|probe| &probe.systems) {
+                let sum: Vec3 = system.lights.iter().map(|light| light.diffuse).sum();
+                assert!(difference(sum, system.diffuse) < 1.0, "{sum} {}", system.diffuse);
+            }
+        }
+    }
+}
+
+#[test]
+fn texels_of_another_shot_are_refused() {
+    let shot = Shot::load("column", SIZE).unwrap();
+    let (captured, _) = drawn(&shot, &[ShadeTree::Final]);
+    let mut other = shot.clone();
+    other.preset.systems[0].settings.accumulate.scale = 3;
+    let error = captured.probe(&other, &[UVec2::ONE]).unwrap_err().to_string();
+    assert!(error.starts_with("texels: "), "{error}");
+    let other = Shot { size: SIZE * 2, ..shot };
+    assert!(captured.probe(&other, &[UVec2::ONE]).is_err());
+}
