@@ -113,7 +113,7 @@ fn run(
         let recipe = load(path, kind).ok_or_else(refuse)??;
         let output = |extension| path.with_file_name(name.with_extension(extension));
         let outputs: Vec<_> = recipe.extensions().iter().map(output).collect();
-        outputs.iter().try_for_each(|output| files.write("output", output))?;
+        outputs.iter().try_for_each(|output| files.write("output", output, "png"))?;
         Ok((path, recipe, outputs))
     });
     failures.into_result()?;

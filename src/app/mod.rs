@@ -6,9 +6,11 @@
 mod bake;
 mod bench;
 mod cost;
+mod export;
 mod frames;
 mod info;
 mod inputs;
+mod interrupt;
 mod label;
 mod memory;
 mod options;
@@ -25,11 +27,12 @@ mod vary;
 
 use std::ffi::OsString;
 use std::io::Write;
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::error::{ContextValue, ErrorKind};
-use clap::{Parser, Subcommand};
-use haze::Error;
+use clap::{CommandFactory as _, Parser, Subcommand};
+use haze::{Error, builtin};
 
 use output::{Failures, complain, one_line, write_text};
 
@@ -43,7 +46,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Light smoke by hand, in a window: what `haze` alone does.
+    /// Light smoke by hand, in a window: what `haze` alone and `haze PRESET` do.
     Tweak(tweak::Arguments),
     /// Render a preset to a PNG, or to one for every frame.
     Render(render::Arguments),
@@ -72,7 +75,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         env_logger::Env::default().default_filter_or("error,wgpu_hal=off,eframe::native::run=off"),
     )
     .init();
-    let cli = match Cli::try_parse_from(arguments) {
+    let cli = match Cli::try_parse_from(with_subcommand(arguments.into_iter().collect())) {
         Ok(cli) => cli,
         Err(help) if !help.use_stderr() => {
             // The text ends its last line itself.
@@ -100,6 +103,20 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Sprite(arguments) => bake::run_sprite(&arguments),
         Command::Info => one(info::run()),
     })
+}
+
+/// `haze PRESET` is `haze tweak PRESET`; a subcommand of that name comes first.
+fn with_subcommand(mut arguments: Vec<OsString>) -> Vec<OsString> {
+    let is_preset = |name: &OsString| {
+        let path = Path::new(name);
+        let is_built_in = name.to_str().is_some_and(|name| builtin::find(builtin::PRESETS, name).is_some());
+        let is_command = Cli::command().find_subcommand(name).is_some();
+        !is_command && (is_built_in || path.is_file() || output::has_extension(path, "json"))
+    };
+    if arguments.get(1).is_some_and(is_preset) {
+        arguments.insert(1, "tweak".into());
+    }
+    arguments
 }
 
 fn report(done: Result<(), Failures>) -> ExitCode {

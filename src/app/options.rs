@@ -100,11 +100,11 @@ impl ShotArguments {
     /// another that comes with the option which asks for it.
     pub fn load(&self, others: &[(&str, PathBuf)]) -> Result<Shot, Error> {
         let output = ("--output", self.output.clone());
-        self.load_for(&[&[output], others].concat())
+        self.load_for(&[&[output], others].concat(), "png")
     }
 
-    /// The same for outputs in place of `--output`.
-    pub fn load_for(&self, outputs: &[(&str, PathBuf)]) -> Result<Shot, Error> {
+    /// The same for outputs in place of `--output`, whose names end in `kind`.
+    pub fn load_for(&self, outputs: &[(&str, PathBuf)], kind: &str) -> Result<Shot, Error> {
         let mut preset = Preset::load(&self.preset)?;
         for system in &mut preset.systems {
             system.emitter.seed = self.seed.unwrap_or(system.emitter.seed);
@@ -119,7 +119,7 @@ impl ShotArguments {
         let shot = self.shot(preset)?;
         let pictures = pictures_of(&self.preset, &shot.preset);
         let mut files = Files::read(pictures.iter().map(PathBuf::as_path).chain([self.preset.as_path()]));
-        outputs.iter().try_for_each(|(option, path)| files.write(option, path))?;
+        outputs.iter().try_for_each(|(option, path)| files.write(option, path, kind))?;
         Ok(shot)
     }
 
@@ -162,12 +162,7 @@ impl RunArguments {
                     let expected = format!("at most {most}x{most} on {}", gpu.description());
                     return Err(FieldError::new("--size", size, expected).into());
                 }
-                let mut context = StageContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
-                if let Some(sources) = sources {
-                    context = context.with_shaders(&sources)?;
-                }
-                let stage = RefCell::new(Stage::new(&context, false)?);
-                Ok(Backend::Gpu(Box::new(Gpu { headless: gpu, context, stage })))
+                Backend::on(gpu, sources.as_ref())
             }
             Err(Error::NoDevice(reason)) if self.backend == BackendName::Auto && sources.is_none() => {
                 complain(format_args!("rendering on the CPU: {reason}"));
@@ -179,6 +174,24 @@ impl RunArguments {
 }
 
 impl Backend {
+    /// The GPU where there is one, else the CPU.
+    pub fn open() -> Result<Self, Error> {
+        match Headless::new() {
+            Ok(gpu) => Self::on(gpu, None),
+            Err(Error::NoDevice(_)) => Ok(Self::Cpu),
+            Err(error) => Err(error),
+        }
+    }
+
+    fn on(gpu: Headless, sources: Option<&Sources>) -> Result<Self, Error> {
+        let mut context = StageContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
+        if let Some(sources) = sources {
+            context = context.with_shaders(sources)?;
+        }
+        let stage = RefCell::new(Stage::new(&context, false)?);
+        Ok(Self::Gpu(Box::new(Gpu { headless: gpu, context, stage })))
+    }
+
     /// Renders, linear HDR.
     pub fn render(&self, shot: &Shot) -> Result<Picture<Vec4>, Error> {
         match self {

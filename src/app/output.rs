@@ -78,6 +78,10 @@ pub struct Files {
     outputs: Vec<FileIdentity>,
 }
 
+pub fn has_extension(path: &Path, expected: &str) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(expected))
+}
+
 impl Files {
     /// Files that a command reads: to be told before those that it writes.
     pub fn read<P: AsRef<Path>>(inputs: impl IntoIterator<Item = P>) -> Self {
@@ -85,11 +89,12 @@ impl Files {
         Self { inputs, outputs: Vec::new() }
     }
 
-    /// Refuses a file that a picture cannot be written to, before any work is done and anything is replaced.
-    pub fn write(&mut self, option: &str, path: &Path) -> Result<(), Error> {
+    /// Refuses a file that a picture cannot be written to, before any work is done and anything is replaced. `kind` is what its
+    /// name ends in.
+    pub fn write(&mut self, option: &str, path: &Path, kind: &str) -> Result<(), Error> {
         let refuse = |expected: &str| Err(FieldError::new(option, path.display(), expected).into());
-        if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-            return refuse("a name that ends in .png");
+        if !has_extension(path, kind) {
+            return refuse(&format!("a name that ends in .{kind}"));
         }
         if !path.parent().is_none_or(|folder| folder.as_os_str().is_empty() || folder.is_dir()) {
             return refuse("a file in a folder that exists");

@@ -6,16 +6,13 @@ use clap::Args;
 use glam::UVec2;
 use haze::demo::develop::develop;
 use haze::demo::shot::Shot;
-use haze::picture::write_png;
 use haze::settings::ShadeTree;
 use haze::{Error, FieldError};
-use image::{RgbImage, imageops};
 
+use super::export::{self, Frames, Watch};
 use super::frames::{FrameNames, parse_frames, parse_rate, parse_sheet};
-use super::memory::check_memory;
-use super::options::{Backend, ShotArguments, choices};
-use super::output::say;
-use super::progress::watched;
+use super::options::{ShotArguments, choices};
+use super::output::{has_extension, say};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -24,20 +21,26 @@ pub struct Arguments {
     /// Which stage of the shading is shown.
     #[arg(long, default_value = "final", value_parser = choices::<ShadeTree>())]
     view: ShadeTree,
-    /// Render frames A to B, both included, into files of their own: the name has the number in it, as in `f_%04d.png`. Frame 0
-    /// is at the preset's time, or at --time.
+    /// Render frames A to B, both included, into files of their own: the name has the number in it, as in `f_%04d.png`; or into
+    /// one that moves, `f.gif`. Frame 0 is at the preset's time, or at --time.
     #[arg(long, value_name = "A..B", value_parser = parse_frames)]
     frames: Option<RangeInclusive<u32>>,
-    /// Frames in a second.
-    #[arg(long, value_name = "N", default_value = "60", value_parser = parse_rate, requires = "frames")]
-    rate: f32,
+    /// Frames in a second; 60 if not given, and 25 in a GIF.
+    #[arg(long, value_name = "N", value_parser = parse_rate, requires = "frames")]
+    rate: Option<f32>,
     /// Put all frames on one sheet of so many rows and columns, a flipbook; --size is the size of a frame.
     #[arg(long, value_name = "RxC", value_parser = parse_sheet, requires = "frames")]
     sheet: Option<UVec2>,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
-    match (&arguments.frames, arguments.sheet) {
+    let is_gif = has_extension(&arguments.shot.output, "gif");
+    let frames = arguments.frames.clone().map(|range| {
+        let usual = if is_gif { 25.0 } else { 60.0 };
+        Frames { range, rate: arguments.rate.unwrap_or(usual) }
+    });
+    match (&frames, arguments.sheet) {
+        (Some(frames), None) if is_gif => gif(arguments, frames),
         (Some(frames), None) => sequence(arguments, frames),
         (Some(frames), Some(cells)) => flipbook(arguments, frames, cells),
         (None, _) => {
@@ -49,49 +52,33 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     }
 }
 
-fn sequence(arguments: &Arguments, frames: &RangeInclusive<u32>) -> Result<(), Error> {
+fn sequence(arguments: &Arguments, frames: &Frames) -> Result<(), Error> {
     let names = FrameNames::parse(&arguments.shot.output)?;
-    let outputs: Vec<_> = frames.clone().map(|frame| ("--output", names.of(frame))).collect();
-    let shot = Shot { shade_tree: arguments.view, ..arguments.shot.load_for(&outputs)? };
+    let outputs: Vec<_> = frames.range.clone().map(|frame| ("--output", names.of(frame))).collect();
+    let shot = Shot { shade_tree: arguments.view, ..arguments.shot.load_for(&outputs, "png")? };
     let backend = arguments.shot.run.backend()?;
-    for (frame, (_, path)) in frames.clone().zip(&outputs) {
-        let picture = render_frame(arguments, &backend, &shot, frame)?;
-        write_png(path, &picture.into(), arguments.shot.effort())?;
-    }
-    let (first, last) = (names.of(*frames.start()), names.of(*frames.end()));
+    export::sequence(&backend, &shot, frames, &names, arguments.shot.effort(), &Watch::terminal())?;
+    let (first, last) = (names.of(*frames.range.start()), names.of(*frames.range.end()));
     say!("{} to {}: {} on {}", first.display(), last.display(), shot.preset.name, backend.description())
 }
 
-/// Most pixels along a side of a flipbook.
-const MOST_PIXELS: u32 = 32_768;
-
-fn flipbook(arguments: &Arguments, frames: &RangeInclusive<u32>, cells: UVec2) -> Result<(), Error> {
-    let count = frames.clone().count();
-    if count > cells.element_product() as usize {
-        let expected = format!("room for {count} frames");
-        return Err(FieldError::new("--sheet", format!("{}x{}", cells.x, cells.y), expected).into());
-    }
+fn flipbook(arguments: &Arguments, frames: &Frames, cells: UVec2) -> Result<(), Error> {
     let shot = Shot { shade_tree: arguments.view, ..arguments.shot.load(&[])? };
-    let (rows, columns) = (cells.x, cells.y);
-    let size = shot.size * UVec2::new(columns, rows);
-    if size.max_element() > MOST_PIXELS {
-        let expected = format!("at most {MOST_PIXELS} pixels along a side, not {}x{}", size.x, size.y);
-        return Err(FieldError::new("--sheet", format!("{rows}x{columns}"), expected).into());
-    }
-    check_memory("--sheet", size)?;
+    export::check_flipbook(shot.size, frames, cells)?;
     let backend = arguments.shot.run.backend()?;
-    let mut sheet = RgbImage::new(size.x, size.y);
-    for (index, frame) in (0..).zip(frames.clone()) {
-        let picture = render_frame(arguments, &backend, &shot, frame)?;
-        let corner = UVec2::new(index % columns, index / columns) * shot.size;
-        imageops::replace(&mut sheet, &picture, i64::from(corner.x), i64::from(corner.y));
-    }
+    let sheet = export::flipbook(&backend, &shot, frames, cells, &arguments.shot.output, &Watch::terminal())?;
     arguments.shot.write(sheet, &shot, &backend)
 }
 
-fn render_frame(arguments: &Arguments, backend: &Backend, shot: &Shot, frame: u32) -> Result<RgbImage, Error> {
-    let mut shot = shot.clone();
-    shot.preset.time += frame as f32 / arguments.rate;
-    let picture = watched(format!("haze: frame {frame}"), || backend.render(&shot))?;
-    Ok(develop(&picture, &shot))
+fn gif(arguments: &Arguments, frames: &Frames) -> Result<(), Error> {
+    if frames.rate > export::MOST_GIF_RATE {
+        let expected = format!("at most {} frames in a second, for a GIF", export::MOST_GIF_RATE);
+        return Err(FieldError::new("--rate", frames.rate, expected).into());
+    }
+    let path = &arguments.shot.output;
+    let outputs = [("--output", path.clone())];
+    let shot = Shot { shade_tree: arguments.view, ..arguments.shot.load_for(&outputs, "gif")? };
+    let backend = arguments.shot.run.backend()?;
+    export::gif(&backend, &shot, frames, path, &Watch::terminal())?;
+    say!("{}: {} on {}", path.display(), shot.preset.name, backend.description())
 }

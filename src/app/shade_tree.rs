@@ -2,11 +2,11 @@
 
 use clap::Args;
 use haze::Error;
-use haze::demo::develop::develop;
+use haze::demo::shot::Shot;
 use haze::settings::ShadeTree;
 
+use super::export::{Watch, sheet};
 use super::options::ShotArguments;
-use super::sheet::Sheet;
 
 #[derive(Args)]
 #[command(mut_arg("size", |size| size.help("Three times the size of a picture on the sheet, which has three to a row, pixels")))]
@@ -28,17 +28,18 @@ pub const STAGES: [(ShadeTree, &str); ShadeTree::ALL.len()] = [
     (ShadeTree::Final, "Final"),
 ];
 
-const COLUMNS: u32 = 3;
+pub const COLUMNS: u32 = 3;
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let mut shot = arguments.shot.load(&[])?;
     // So the sheet costs what a picture costs.
     shot.size = (arguments.shot.run.size / COLUMNS).max(glam::UVec2::ONE);
     let backend = arguments.shot.run.backend()?;
-    let mut sheet = Sheet::new(shot.size, COLUMNS, STAGES.len() as u32);
-    for (index, (stage, label)) in (0u32..).zip(STAGES) {
-        shot.shade_tree = stage;
-        sheet.place(index, label, &develop(&backend.render(&shot)?, &shot));
-    }
+    let sheet = sheet(&backend, &stages(&shot), COLUMNS, &arguments.shot.output, &Watch::terminal())?;
     arguments.shot.write(sheet.picture, &shot, &backend)
+}
+
+/// A shot of every stage, with its name.
+pub fn stages(shot: &Shot) -> Vec<(String, Shot)> {
+    STAGES.map(|(stage, label)| (label.into(), Shot { shade_tree: stage, ..shot.clone() })).into()
 }

@@ -2,13 +2,11 @@
 
 use clap::Args;
 use glam::UVec2;
-use haze::demo::develop::develop;
 use haze::settings::set_field;
 use haze::{Error, FieldError};
 
+use super::export::{Watch, columns, sheet};
 use super::options::{ShotArguments, in_option, parse_assignment};
-use super::progress::watched;
-use super::sheet::Sheet;
 
 #[derive(Args)]
 #[command(mut_arg("size", |size| size.help("Size of the pictures of a full row and column together, pixels: each is that much smaller")))]
@@ -37,24 +35,20 @@ fn parse_variation(text: &str) -> Result<(String, Vec<String>), String> {
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let (field, values) = &arguments.vary;
     let base = arguments.shot.load(&[])?;
-    let columns = (1..).find(|side| side * side >= values.len() as u32).unwrap_or(1);
+    let columns = columns(values.len());
     let size = (arguments.shot.run.size / columns).max(UVec2::ONE);
     let mut name = String::new();
-    let mut shots = Vec::new();
+    let mut cells = Vec::new();
     for value in values {
         let mut preset = base.preset.clone();
         let set = set_field(&mut preset, field, value).map_err(|error: FieldError| in_option("--vary", error));
         name = set?;
         let mut shot = arguments.shot.shot(preset)?;
         shot.size = size;
-        shots.push(shot);
+        cells.push((value.clone(), shot));
     }
     let backend = arguments.shot.run.backend()?;
-    let mut sheet = Sheet::new(size, columns, shots.len() as u32);
-    for (index, (shot, value)) in (0..).zip(shots.iter().zip(values)) {
-        let picture = watched(format!("haze: {field} = {value}"), || backend.render(shot))?;
-        sheet.place(index, value, &develop(&picture, shot));
-    }
+    let mut sheet = sheet(&backend, &cells, columns, &arguments.shot.output, &Watch::terminal())?;
     sheet.add_foot(&format!("{name}; {}, {}x{}, {}", base.preset.name, size.x, size.y, backend.description()));
     arguments.shot.write(sheet.picture, &base, &backend)
 }

@@ -94,3 +94,48 @@ fn frames_go_to_files_of_their_own() {
     assert!(line(&["missing/%d.png", "--frames", "0..1"]).contains("a folder that exists"));
     assert!(line(&["f.png", "--sheet", "3x3"]).contains("--frames"));
 }
+
+#[test]
+fn frames_go_into_a_gif() {
+    use image::AnimationDecoder as _;
+    let folder = folder();
+    let output = haze(folder.path(), &[&SMALL[..], &["a.gif", "--frames", "0..6", "--rate", "30"]].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    let bytes = fs::read(folder.path().join("a.gif")).unwrap();
+    let decoder = image::codecs::gif::GifDecoder::new(std::io::Cursor::new(bytes)).unwrap();
+    let frames = decoder.into_frames().collect_frames().unwrap();
+    let milliseconds: u32 = frames.iter().map(|frame| frame.delay().numer_denom_ms().0).sum();
+    // 7 of 30 in a second.
+    assert_eq!((frames.len(), milliseconds), (7, 230));
+    assert!(frames[0].buffer() != frames[6].buffer());
+    let refused = |more: &[&str]| refusal(folder.path(), &[&SMALL[..], more].concat());
+    let line = refused(&["b.gif", "--frames", "0..6", "--rate", "60"]);
+    assert!(line.contains("--rate: 60 is not valid; expected at most 50"), "{line}");
+    assert!(refused(&["b.gif"]).contains("a name that ends in .png"));
+    assert!(!folder.path().join("b.gif").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_sequence_that_is_stopped_leaves_whole_files_and_says_so() {
+    use std::process::{Command, Stdio};
+    let folder = folder();
+    let arguments = [&SMALL[..], &["f_%04d.png", "--frames", "0..9999"]].concat();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_haze"));
+    let child = command.args(arguments).current_dir(folder.path()).stderr(Stdio::piped()).spawn().unwrap();
+    let start = std::time::Instant::now();
+    while !folder.path().join("f_0002.png").exists() {
+        assert!(start.elapsed().as_secs() < 60);
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    let text = stderr(&output);
+    assert_eq!((output.status.code(), text.lines().count()), (Some(1), 1), "{text}");
+    let count = fs::read_dir(folder.path()).unwrap().count();
+    let said = format!("f_{count:04}.png: stopped: not written; this sequence is partial, {count} of 10000 frames");
+    assert!(text.contains(&said), "{count}: {text}");
+    for entry in fs::read_dir(folder.path()).unwrap() {
+        assert_eq!(size_of(&entry.unwrap().path()), (32, 18));
+    }
+}

@@ -41,6 +41,23 @@ fn control_characters_are_written_out() {
     assert!(folder.path().join(picture).exists());
 }
 
+#[test]
+fn a_preset_alone_opens_the_tweaker() {
+    let folder = folder();
+    std::fs::write(folder.path().join("my"), r#"{"version": 1, "name": "x"}"#).unwrap();
+    // Refused by the tweaker, so that no window is opened.
+    for preset in ["column", "my", "none.json"] {
+        let line = refusal(folder.path(), &[preset, "--set", "camera.exposure=bright"]);
+        let expected = if preset == "none.json" { "none.json: No such file" } else { "--set camera.exposure" };
+        assert!(line.contains(expected), "{preset}: {line}");
+    }
+    let line = refusal(folder.path(), &["colum"]);
+    assert!(line.contains("unrecognized subcommand 'colum'"), "{line}");
+    // A subcommand comes first, and keeps its own mistakes.
+    std::fs::write(folder.path().join("render"), "").unwrap();
+    assert!(refusal(folder.path(), &["render"]).contains("--output"));
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn names_that_are_no_unicode_are_files_like_others() {

@@ -4,6 +4,7 @@ mod action;
 mod angles;
 mod compare;
 mod document;
+mod exporting;
 mod filing;
 mod gpu;
 mod health;

@@ -10,6 +10,7 @@ use haze::settings::ShadeTree;
 use image::RgbImage;
 
 use super::action::{ACTIONS, Action};
+use super::exporting::{Exporting, Product};
 use super::filing::Filing;
 use super::gpu::Easel;
 use super::keeping::{Keeping, Layout};
@@ -27,6 +28,7 @@ pub struct Window {
     viewport: Viewport,
     pub filing: Filing,
     pub thumbnails: Thumbnails,
+    pub exporting: Exporting,
     /// The list of presets is open.
     has_browser: bool,
     pub keeping: Option<Keeping>,
@@ -75,6 +77,7 @@ impl Window {
             reload: Reload::new(&session, &shaders, &easel, easel.wake())?,
             filing: Filing::new(has_dialogs, easel.wake())?,
             thumbnails: Thumbnails::new(easel.wake())?,
+            exporting: Exporting::new(easel.wake())?,
             viewport: Viewport::default(),
             has_browser: false,
             keeping,
@@ -185,6 +188,9 @@ impl Window {
                 context.copy_text(session.document.to_text());
                 session.messages.say("file", "copied: the preset as text");
             }
+            Action::Screenshot => self.exporting.begin(Product::Picture, session),
+            Action::Seeds => self.exporting.begin(Product::Seeds, session),
+            Action::Export => self.exporting.is_open = !self.exporting.is_open,
             Action::Paste => context.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
             Action::Undo => session.undo(),
             Action::Redo => session.redo(),
@@ -279,6 +285,7 @@ impl eframe::App for Window {
         egui::CentralPanel::no_frame().show(ui, |ui| self.viewport.show(ui, &mut self.session, &self.easel));
         panel::search::panel(ui, &mut self.session);
         panel::help::panel(ui, &mut self.session);
+        panel::export::panel(ui, &mut self.exporting, &mut self.session);
         panel::file::questions(ui, &mut self.filing, &mut self.session);
         if self.has_browser
             && let Some(chosen) = panel::browser::panel(ui, &mut self.thumbnails)

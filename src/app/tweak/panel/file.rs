@@ -37,6 +37,10 @@ pub fn menu(ui: &mut Ui, session: &mut Session) -> Option<Action> {
         entry(ui, Action::Copy);
         entry(ui, Action::Paste);
         ui.separator();
+        entry(ui, Action::Screenshot);
+        entry(ui, Action::Seeds);
+        entry(ui, Action::Export);
+        ui.separator();
         if ui.button("Quit").clicked() {
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
         }

@@ -3,6 +3,7 @@
 pub mod browser;
 pub mod compare;
 pub mod curve;
+pub mod export;
 pub mod fields;
 pub mod file;
 pub mod help;

@@ -1,0 +1,118 @@
+//! What is to be written, how far it is, and a sheet that was made.
+
+use eframe::egui::{self, Ui};
+
+use crate::app::tweak::exporting::{Exporting, MOST_PIXELS, Product};
+use crate::app::tweak::platform::clock::Duration;
+use crate::app::tweak::search::matches;
+use crate::app::tweak::session::Session;
+
+/// Draws the window for exports and the sheet while they are open.
+pub fn panel(ui: &Ui, exporting: &mut Exporting, session: &mut Session) {
+    exporting.advance(session);
+    if exporting.progress().is_some() {
+        // What is far is seen to move, and no oftener than it does.
+        ui.ctx().request_repaint_after(Duration::from_millis(200));
+    }
+    let mut is_open = exporting.is_open;
+    egui::Window::new("Export").open(&mut is_open).collapsible(false).resizable(false).show(ui.ctx(), |ui| {
+        match exporting.progress() {
+            Some((done, count)) => {
+                let share = done as f32 / count.max(1) as f32;
+                ui.add(egui::ProgressBar::new(share).text(format!("{done} of {count}")));
+                if ui.button("Stop").on_hover_text("Files that are there are whole").clicked() {
+                    exporting.stop();
+                }
+            }
+            None => order(ui, exporting, session),
+        }
+    });
+    exporting.is_open = is_open;
+    sheet(ui, exporting);
+}
+
+fn order(ui: &mut Ui, exporting: &mut Exporting, session: &mut Session) {
+    let values = match &exporting.product {
+        Product::Values(path) => path.clone(),
+        _ => String::new(),
+    };
+    let products = [
+        ("Sequence", Product::Sequence),
+        ("Flipbook", Product::Flipbook),
+        ("GIF", Product::Gif),
+        ("Shade tree", Product::ShadeTree),
+        ("Nine seeds", Product::Seeds),
+        ("Values of a setting", Product::Values(values)),
+    ];
+    ui.horizontal_wrapped(|ui| {
+        for (name, product) in products {
+            ui.selectable_value(&mut exporting.product, product, name);
+        }
+    });
+    let (product, order) = (&mut exporting.product, &mut exporting.order);
+    let is_moving = matches!(product, Product::Sequence | Product::Flipbook | Product::Gif);
+    egui::Grid::new("order").num_columns(2).show(ui, |ui| {
+        let mut row = |name: &str, numbers: [(&mut u32, std::ops::RangeInclusive<u32>); 2]| {
+            let label = ui.label(name).id;
+            ui.horizontal(|ui| {
+                for (number, range) in numbers {
+                    ui.add(egui::DragValue::new(number).range(range)).labelled_by(label);
+                }
+            });
+            ui.end_row();
+        };
+        row("Size", [(&mut order.size.x, 16..=MOST_PIXELS), (&mut order.size.y, 16..=MOST_PIXELS)]);
+        if is_moving {
+            row("Frames", [(&mut order.first, 0..=99_999), (&mut order.last, 0..=99_999)]);
+        }
+        if *product == Product::Flipbook {
+            row("Rows, columns", [(&mut order.cells.x, 1..=64), (&mut order.cells.y, 1..=64)]);
+        }
+        if is_moving {
+            let label = ui.label("Frames a second").id;
+            ui.add(egui::DragValue::new(&mut order.rate).range(1.0..=50.0)).labelled_by(label);
+            ui.end_row();
+        }
+    });
+    if let Product::Values(path) = product {
+        let edit = egui::TextEdit::singleline(&mut exporting.wanted).hint_text("Find a setting");
+        ui.add(edit).widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "setting to vary"));
+        for found in matches(&session.document.preset, &session.tooltips, &exporting.wanted).into_iter().take(6) {
+            let is_chosen = found.path == *path;
+            if ui.selectable_label(is_chosen, &found.path).on_hover_text(&found.tooltip).clicked() {
+                path.clone_from(&found.path);
+            }
+        }
+    }
+    let is_ready = *product != Product::Values(String::new());
+    if ui.add_enabled(is_ready, egui::Button::new("Make")).clicked() {
+        let product = product.clone();
+        exporting.begin(product, session);
+    }
+}
+
+fn sheet(ui: &Ui, exporting: &mut Exporting) {
+    let Some((picture, _)) = &exporting.sheet else { return };
+    let id = egui::Id::unique("sheet");
+    let size = [picture.width() as usize, picture.height() as usize];
+    // Uploaded once.
+    let known = ui.data(|data| data.get_temp::<egui::TextureHandle>(id)).filter(|known| known.size() == size);
+    let texture = known.unwrap_or_else(|| {
+        let picture = egui::ColorImage::from_rgb(size, picture);
+        ui.ctx().load_texture("sheet", picture, egui::TextureOptions::LINEAR)
+    });
+    ui.data_mut(|data| data.insert_temp(id, texture.clone()));
+    let (mut is_open, mut is_saved) = (true, false);
+    let room = ui.ctx().content_rect().size() - egui::Vec2::new(60.0, 120.0);
+    egui::Window::new("Sheet").open(&mut is_open).collapsible(false).show(ui.ctx(), |ui| {
+        is_saved = ui.button("Save").on_hover_text("Beside the preset").clicked();
+        ui.add(egui::Image::new(&texture).max_size(room).alt_text("sheet"));
+    });
+    if is_saved {
+        exporting.save_sheet();
+    }
+    if is_saved || !is_open {
+        exporting.sheet = None;
+        ui.data_mut(|data| data.remove::<egui::TextureHandle>(id));
+    }
+}
