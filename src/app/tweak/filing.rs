@@ -96,7 +96,10 @@ impl Filing {
         }
         if self.is_over {
             context.send_viewport_cmd(egui::ViewportCommand::Close);
-        } else if context.input(|input| input.viewport().close_requested()) && session.document.is_dirty() && session.screenshot.is_none() {
+        } else if context.input(|input| input.viewport().close_requested())
+            && session.document.is_dirty()
+            && session.screenshot.is_none()
+        {
             context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.waiting = Some(Next::Close);
         }
