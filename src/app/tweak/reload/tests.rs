@@ -47,8 +47,9 @@ impl Bench {
         &mut self.window.state_mut().session
     }
 
+    /// What is wrong.
     fn said(&mut self) -> Option<String> {
-        self.session().messages.latest().map(|message| message.text.clone())
+        self.session().messages.latest().filter(|message| message.is_error).map(|message| message.text.clone())
     }
 
     /// Frames until something is so.
