@@ -145,11 +145,10 @@ impl Capture {
         let bytes = Arc::new(Mutex::new(None));
         let (arrived, mapped) = (bytes.clone(), buffer.clone());
         encoder.map_buffer_on_submit(&buffer, wgpu::MapMode::Read, .., move |result| {
-            if result.is_ok()
-                && let Ok(view) = mapped.get_mapped_range(..)
-            {
-                *arrived.lock().unwrap_or_else(PoisonError::into_inner) = Some(view.to_vec());
-            }
+            // Nothing, where it could not be had: nobody is to wait for it.
+            let view = if result.is_ok() { mapped.get_mapped_range(..).ok() } else { None };
+            let bytes = view.map(|view| view.to_vec()).unwrap_or_default();
+            *arrived.lock().unwrap_or_else(PoisonError::into_inner) = Some(bytes);
             mapped.unmap();
         });
         let target = |views: &TargetViews<'_>| Target {
@@ -162,14 +161,17 @@ impl Capture {
         Self { parts, systems: systems.iter().map(|views| views.as_ref().map(target)).collect(), bytes }
     }
 
-    /// True once it is here: whichever submission or poll finds the GPU done brings it.
+    /// True once it is here, or is known not to come: whichever submission or poll finds the GPU done brings it.
     pub fn has_arrived(&self) -> bool {
         self.bytes.lock().unwrap_or_else(PoisonError::into_inner).is_some()
     }
 
-    /// Reads what has arrived.
+    /// Reads what has arrived, once; `None` where it did not.
     pub fn read(&self) -> Option<Captured> {
         let bytes = self.bytes.lock().unwrap_or_else(PoisonError::into_inner).take()?;
+        if (bytes.len() as u64) < self.parts.last().map_or(0, |part| part.offset + part.bytes()) {
+            return None;
+        }
         let mut parts = self.parts.iter();
         let (depth, behind) = (parts.next()?, parts.next()?);
         let whole = |part: &Part| UVec2::new(part.size.width, part.size.height);

@@ -47,6 +47,11 @@ impl StageContext {
         }
     }
 
+    /// Whether [`Stage::capture`] can copy what was drawn.
+    pub fn can_capture(&self) -> bool {
+        self.copies_depth
+    }
+
     /// The same with another context of haze's, of the same device: with other shaders, say.
     #[must_use]
     pub fn with_haze(&self, haze: Context) -> Self {

@@ -25,6 +25,7 @@ pub enum Action {
     StepOn,
     Loop,
     Strip,
+    Inspect,
     NextStage,
     Picture,
     Help,
@@ -103,6 +104,7 @@ pub const ACTIONS: &[Entry] = &[
     entry(Action::StepOn, "A frame on", Modifiers::NONE, Key::Period),
     entry(Action::Loop, "Go round in the range", Modifiers::NONE, Key::L),
     entry(Action::Strip, "Shade tree strip", Modifiers::NONE, Key::F4),
+    entry(Action::Inspect, "Inspect the pixel under the pointer", Modifiers::NONE, Key::I),
     entry(Action::NextStage, "Next stage of the shading", Modifiers::NONE, Key::N),
     entry(Action::Picture, "Back to the picture", Modifiers::NONE, Key::Escape),
     entry(Action::InView(InView::Frame), "Show the selected light, or all of the smoke", Modifiers::NONE, Key::F),
@@ -137,6 +139,7 @@ pub const GESTURES: &[(&str, &str)] = &[
     ("Right button with W A S D Q E", "Fly; Shift for faster, the wheel for another speed"),
     ("Right click in the picture", "Adds a light here"),
     ("Click on a light", "Selects it: drag its handles; Shift is slow, Ctrl snaps, Escape puts it back"),
+    ("Click while inspecting", "Keeps the pixel; another click lets it go"),
     ("Double click on a name", "Sets it back"),
     ("Click on a value", "Type it, with its unit or without"),
 ];

@@ -7,6 +7,7 @@ use eframe::egui_wgpu::{CallbackResources, CallbackTrait, ScreenDescriptor};
 use eframe::{egui, wgpu};
 use glam::{IVec2, UVec2, Vec2, Vec4};
 use haze::Error;
+use haze::demo::capture::Capture;
 use haze::demo::develop::{Developer, Developing, Shown, exposure};
 use haze::demo::shot::Shot;
 use haze::demo::stage::{Stage, StageContext};
@@ -41,6 +42,10 @@ struct Inner {
     motion: Motion,
     /// Of every system of the picture.
     texels: Vec<Option<Texels>>,
+    /// Texels of the picture are wanted back, and are under way; what they were last taken of.
+    wants_capture: bool,
+    capture: Option<(Shot, Capture)>,
+    captured: Option<Shot>,
     /// The first mistake since it was last asked for.
     error: Option<Error>,
     /// Times that the picture was drawn.
@@ -118,6 +123,9 @@ impl Easel {
             strip_drawn: None,
             motion: Motion::default(),
             texels: Vec::new(),
+            wants_capture: false,
+            capture: None,
+            captured: None,
             error: None,
             #[cfg(test)]
             pictures: 0,
@@ -212,6 +220,32 @@ impl Easel {
     /// Of every system, how it was in the last picture; `None` where it was out of sight or drawn forward.
     pub fn texels(&self) -> Vec<Option<Texels>> {
         self.lock().texels.clone()
+    }
+
+    /// Whether texels can be brought back at all.
+    pub fn can_capture(&self) -> bool {
+        self.lock().context.can_capture()
+    }
+
+    /// Whether texels of the picture are to be brought back when it is another.
+    pub fn want_capture(&self, wants: bool) {
+        let mut inner = self.lock();
+        inner.wants_capture = wants;
+    }
+
+    /// Texels of a picture that have arrived.
+    pub fn take_capture(&self) -> Option<(Shot, Capture)> {
+        self.lock().capture.take_if(|(_, capture)| capture.has_arrived())
+    }
+
+    /// Texels are under way.
+    pub fn is_capturing(&self) -> bool {
+        self.lock().capture.is_some()
+    }
+
+    /// The next copy is taken, even of a picture that was copied.
+    pub fn forget_capture(&self) {
+        self.lock().captured = None;
     }
 
     fn add(&self, ui: &egui::Ui, rect: egui::Rect, what: What) {
@@ -328,6 +362,11 @@ impl Inner {
             self.pictures += u64::from(!self.main.shows(shot));
         }
         let mut is_new = self.main.record(target, shot, &[shot.shade_tree])?;
+        let is_new_shot = || self.captured.as_ref().is_none_or(|captured| !captured.is_same(shot));
+        if self.wants_capture && self.capture.is_none() && is_new_shot() {
+            self.captured = Some(shot.clone());
+            self.capture = self.main.stage.capture(target.encoder).map(|capture| (shot.clone(), capture));
+        }
         let (drawn, made) = match other {
             Some(Other::Shot(shot)) => (Some(&**shot), None),
             Some(Other::Picture(picture, _)) => (None, Some(picture)),

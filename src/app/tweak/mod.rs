@@ -9,6 +9,7 @@ mod filing;
 mod gpu;
 mod health;
 mod icon;
+mod inspect;
 mod keeping;
 mod lights;
 mod messages;

@@ -12,6 +12,7 @@ use haze::{Error, Light, MaterialAssets};
 use super::compare::Compare;
 use super::document::difference::{changed_fields, copy_field};
 use super::document::document::Document;
+use super::inspect::Inspect;
 use super::lights::ShownLights;
 use super::messages::Messages;
 use super::pictures::Pictures;
@@ -27,6 +28,7 @@ pub struct Session {
     pub show: Show,
     pub compare: Compare,
     pub referee: Referee,
+    pub inspect: Inspect,
     pub search: Search,
     pub messages: Messages,
     pub tooltips: Tooltips,
@@ -59,6 +61,7 @@ impl Session {
             show: Show::default(),
             compare: Compare::default(),
             referee: Referee::default(),
+            inspect: Inspect::default(),
             search: Search::default(),
             messages: Messages::default(),
             tooltips: Tooltips::of::<Preset>(),
@@ -78,6 +81,11 @@ impl Session {
         preset.lights = self.show.lights.shown(&preset.lights);
         let materials = self.pictures.of(&preset);
         Shot { preset, size, shade_tree: self.show.stage, materials }
+    }
+
+    /// The pictures of every system.
+    pub fn materials(&self) -> Vec<MaterialAssets> {
+        self.pictures.of(&self.document.preset)
     }
 
     /// The preset as it is on disk; as it is here where that is not known.

@@ -1,5 +1,6 @@
 //! How the preset is looked at.
 
+use glam::UVec2;
 use haze::settings::ShadeTree;
 
 use super::lights::ShownLights;
@@ -10,6 +11,8 @@ pub struct Show {
     pub stage: ShadeTree,
     /// All stages are shown, small.
     pub has_strip: bool,
+    /// Pixels of the picture.
+    pub size: UVec2,
     /// Width of the picture over its height.
     pub aspect: f32,
     /// The list of keys is open.
@@ -27,12 +30,14 @@ pub enum Tab {
     Look,
     Light,
     Smoke,
+    Ramps,
     Advanced,
 }
 
 impl Default for Show {
     fn default() -> Self {
         Self {
+            size: UVec2::new(1280, 720),
             stage: ShadeTree::Final,
             has_strip: true,
             aspect: 16.0 / 9.0,

@@ -13,6 +13,8 @@ use super::action::{ACTIONS, Action};
 use super::exporting::{Exporting, Product};
 use super::filing::Filing;
 use super::gpu::Easel;
+use super::inspect::lens::Lens;
+use super::inspect::{lit, panel as inspector};
 use super::keeping::{Keeping, Layout};
 use super::panel;
 use super::reload::{Reload, ShaderFolder};
@@ -36,6 +38,7 @@ pub struct Window {
     shaders: ShaderFolder,
     has_dialogs: bool,
     adapter: String,
+    lens: Option<Lens>,
     screenshot: Screenshot,
 }
 
@@ -85,6 +88,8 @@ impl Window {
             shaders,
             has_dialogs,
             adapter: easel.adapter(),
+            // Without a thread there is no inspector.
+            lens: Lens::new(easel.egui()).ok(),
             screenshot: Screenshot::default(),
             session,
             easel,
@@ -127,6 +132,10 @@ impl Window {
             }
             ui.separator();
             panel::compare::panel(ui, &mut self.session);
+            let inspect = ui.selectable_label(self.session.inspect.is_on, "Inspect");
+            if inspect.on_hover_text("The numbers of the pixel under the pointer (I); a click keeps it").clicked() {
+                self.session.inspect.toggle();
+            }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if ui.button("?").on_hover_text("Keys and gestures").clicked() {
                     self.act(Action::Help, ui.ctx());
@@ -200,6 +209,7 @@ impl Window {
             Action::StepOn => session.playback.step(1.0),
             Action::Loop => session.playback.is_looping = !session.playback.is_looping,
             Action::Strip => session.show.has_strip = !session.show.has_strip,
+            Action::Inspect => session.inspect.toggle(),
             Action::NextStage => session.show.stage = after(session.show.stage),
             Action::Picture => session.show.stage = ShadeTree::Final,
             Action::Help => session.show.help = !session.show.help,
@@ -282,7 +292,15 @@ impl eframe::App for Window {
         let settings = egui::Panel::right("settings").default_size(width).size_range(240.0..=560.0);
         let shown = settings.show(ui, |ui| panel::settings::panel(ui, &mut self.session));
         self.layout.settings = Some(shown.response.rect.width());
-        egui::CentralPanel::no_frame().show(ui, |ui| self.viewport.show(ui, &mut self.session, &self.easel));
+        egui::CentralPanel::no_frame().show(ui, |ui| {
+            let rect = ui.max_rect();
+            self.viewport.show(ui, &mut self.session, &self.easel);
+            lit::paint(ui, rect, &self.session.inspect, self.session.show.system);
+            inspector::panel(ui, rect, &self.session);
+        });
+        if let Some(lens) = &mut self.lens {
+            lens.update(ui, &mut self.session, &self.easel);
+        }
         panel::search::panel(ui, &mut self.session);
         panel::help::panel(ui, &mut self.session);
         panel::export::panel(ui, &mut self.exporting, &mut self.session);

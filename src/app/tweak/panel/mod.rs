@@ -10,6 +10,7 @@ pub mod help;
 pub mod lights;
 pub mod look;
 pub mod notice;
+pub mod ramps;
 pub mod row;
 pub mod search;
 pub mod settings;

@@ -5,15 +5,16 @@ use haze::preset::Preset;
 use haze::settings::{Fields, path_of};
 
 use super::fields::{self, Desk};
-use super::{curve, lights, look};
+use super::{curve, lights, look, ramps};
 use crate::app::tweak::session::Session;
 use crate::app::tweak::show::Tab;
 
 /// The tabs, their names, and what is on them.
-pub const TABS: [(Tab, &str, &str); 4] = [
+pub const TABS: [(Tab, &str, &str); 5] = [
     (Tab::Look, "Look", "The few controls that make a look"),
     (Tab::Light, "Light", "Lights, the sky, the camera"),
     (Tab::Smoke, "Smoke", "Where smoke comes from, and how it takes light"),
+    (Tab::Ramps, "Ramps", "What smoke is lit from, and which part of it this picture looks up"),
     (Tab::Advanced, "Advanced", "How smoke reaches the picture: techniques, targets, formats"),
 ];
 
@@ -40,7 +41,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
     let mut desk = Desk {
         tooltips: &session.tooltips,
         changed: session.changed(),
-        inert: &|_| None,
+        inert: &|path| session.document.preset.without_effect(path, session.show.size),
         reset: Vec::new(),
         refused: None,
         sought: session.search.found.as_ref().map(|(path, _)| path.as_str()),
@@ -49,6 +50,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
     let mut edited = session.document.preset.clone();
     let preset = &mut edited;
     let system = session.show.system;
+    let mut spot = None;
     egui::ScrollArea::vertical().id_salt(session.show.tab).auto_shrink(false).show(ui, |ui| match session.show.tab {
         Tab::Look => look::panel(ui, &mut desk, preset, system),
         Tab::Light => {
@@ -57,11 +59,13 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
             surroundings(ui, &mut desk, preset);
         }
         Tab::Smoke => smoke(ui, &mut desk, preset, system),
+        Tab::Ramps => spot = ramps::panel(ui, session, system),
         Tab::Advanced => advanced(ui, &mut desk, preset, system),
     });
     let Desk { reset, refused, .. } = desk;
     session.document.preset = edited;
     session.show.lights = shown;
+    session.inspect.spot = spot;
     reset.iter().for_each(|path| session.set_back(path));
     if let Some(refused) = refused {
         session.messages.complain("typed", refused);

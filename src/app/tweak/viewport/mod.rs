@@ -50,6 +50,8 @@ impl Viewport {
         if size.min_element() == 0 {
             return;
         }
+        session.show.size = size;
+        session.inspect.point(&response);
         session.show.aspect = size.x as f32 / size.y as f32;
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "viewport"));
         self.begin_gesture(ui, session);

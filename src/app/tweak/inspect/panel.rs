@@ -1,0 +1,162 @@
+//! The numbers of a pixel, in a corner of the viewport.
+
+use eframe::egui::{self, Color32, Rect, RichText, Sense, Stroke, Ui, Vec2};
+use glam::{Vec3, Vec4, Vec4Swizzles};
+use haze::formula::tonemap::developed;
+use haze::reference::{LightProbe, SystemProbe};
+
+use super::Told;
+use crate::app::tweak::session::Session;
+
+/// How far from the corner.
+const MARGIN: f32 = 8.0;
+
+/// Draws them while the inspector is on, on the side where the pointer is not.
+pub fn panel(ui: &Ui, viewport: Rect, session: &Session) {
+    let inspect = &session.inspect;
+    let Some(told) = inspect.told.as_ref().filter(|_| inspect.is_on) else { return };
+    let Some(place) = inspect.place() else { return };
+    cross(ui, viewport.min + place * viewport.size(), inspect.pinned.is_some());
+    let (corner, pivot) = if place.x < 0.5 {
+        (viewport.right_top() + Vec2::new(-MARGIN, MARGIN), egui::Align2::RIGHT_TOP)
+    } else {
+        (viewport.left_top() + Vec2::splat(MARGIN), egui::Align2::LEFT_TOP)
+    };
+    let area = egui::Area::new(egui::Id::unique("inspector")).fixed_pos(corner).pivot(pivot).interactable(false);
+    area.constrain_to(viewport).show(ui.ctx(), |ui| {
+        egui::Frame::popup(ui.style()).show(ui, |ui| {
+            ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+            numbers(ui, told, session);
+        });
+    });
+}
+
+/// Marks the pixel.
+fn cross(ui: &Ui, at: egui::Pos2, is_pinned: bool) {
+    let reach = if is_pinned { 9.0 } else { 6.0 };
+    for (width, colour) in [(3.0, Color32::from_black_alpha(150)), (1.0, Color32::WHITE)] {
+        for way in [Vec2::new(1.0, 0.0), Vec2::new(-1.0, 0.0), Vec2::new(0.0, 1.0), Vec2::new(0.0, -1.0)] {
+            ui.painter().line_segment([at + way * 3.0, at + way * reach], Stroke::new(width, colour));
+        }
+    }
+}
+
+fn numbers(ui: &mut Ui, told: &Told, session: &Session) {
+    let Told { pixel, probe, exposure } = told;
+    let keep = if session.inspect.pinned.is_some() { "kept" } else { "click keeps it" };
+    ui.horizontal(|ui| {
+        ui.strong(format!("Pixel {}, {}", pixel.x, pixel.y));
+        ui.weak(keep);
+    });
+    // The nearest first.
+    for system in probe.systems.iter().rev() {
+        ui.separator();
+        let names = &session.document.preset.systems;
+        ui.label(RichText::new(names.get(system.system).map_or("smoke", |system| &system.name)).strong());
+        of_system(ui, system);
+    }
+    if probe.systems.is_empty() {
+        ui.weak("No smoke here");
+    }
+    ui.separator();
+    match probe.colour {
+        Some(colour) => picture(ui, colour, *exposure),
+        None => {
+            ui.weak("Forward smoke is lit sprite by sprite:\nnothing is kept to tell from");
+        }
+    }
+}
+
+fn of_system(ui: &mut Ui, probe: &SystemProbe) {
+    ui.horizontal(|ui| {
+        ball(ui, probe.normal);
+        ui.vertical(|ui| {
+            ui.label(format!("amount {:.3}   coverage {:.3}", probe.amount, probe.coverage));
+            let Vec3 { x, y, z } = probe.normal;
+            ui.label(format!("normal {x:.2} {y:.2} {z:.2}"));
+        });
+    });
+    egui::Grid::new(("lights", probe.system)).num_columns(6).spacing([10.0, 2.0]).show(ui, |ui| {
+        for title in ["", "N·L", "ramp", "reaches", "diffuse", "specular"] {
+            ui.weak(title);
+        }
+        ui.end_row();
+        probe.lights.iter().for_each(|light| of_light(ui, light));
+    });
+    egui::Grid::new(("sums", probe.system)).num_columns(3).spacing([10.0, 2.0]).show(ui, |ui| {
+        let scatter = probe.soft_scatter_weight.map_or("by ramp".into(), |weight| format!("weight {weight:.2}"));
+        for (title, note, light) in [
+            ("diffuse", String::new(), probe.diffuse),
+            ("soft scatter", scatter, probe.soft_scatter),
+            ("specular", String::new(), probe.specular()),
+            ("blended", String::new(), probe.blended.xyz()),
+        ] {
+            ui.label(title);
+            colour(ui, light);
+            ui.weak(note);
+            ui.end_row();
+        }
+    });
+}
+
+fn of_light(ui: &mut Ui, light: &LightProbe) {
+    ui.label(format!("Light {}", light.light + 1));
+    ui.label(format!("{:.2}", light.cosine));
+    ui.label(format!("{:.2}", light.coordinate));
+    ui.label(format!("{:.3}", light.attenuation));
+    colour(ui, light.diffuse);
+    match light.glow {
+        Some(glow) => colour(ui, glow.specular),
+        None => {
+            ui.weak("none");
+        }
+    }
+    ui.end_row();
+}
+
+/// What the picture shows, before the film curve and after.
+fn picture(ui: &mut Ui, light: Vec4, exposure: f32) {
+    egui::Grid::new("picture").num_columns(2).spacing([10.0, 2.0]).show(ui, |ui| {
+        ui.label("picture, linear");
+        colour(ui, light.xyz());
+        ui.end_row();
+        let shown = developed(light.xyz(), exposure);
+        ui.label("as shown, sRGB");
+        let [r, g, b] = shown.to_array().map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round() as u8);
+        ui.horizontal(|ui| {
+            swatch(ui, Color32::from_rgb(r, g, b));
+            ui.label(format!("{r} {g} {b}"));
+        });
+        ui.end_row();
+    });
+}
+
+/// Linear light, and its hue.
+fn colour(ui: &mut Ui, light: Vec3) {
+    let [r, g, b] = (light / light.max_element().max(1.0)).to_array();
+    ui.horizontal(|ui| {
+        swatch(ui, egui::Rgba::from_rgb(r, g, b).into());
+        ui.label(format!("{:.3} {:.3} {:.3}", light.x, light.y, light.z));
+    });
+}
+
+fn swatch(ui: &mut Ui, colour: Color32) {
+    let (rect, _) = ui.allocate_exact_size(Vec2::splat(11.0), Sense::hover());
+    ui.painter().rect(rect, 2.0, colour, ui.visuals().widgets.noninteractive.bg_stroke, egui::StrokeKind::Inside);
+}
+
+/// A ball, and where on it the normal is.
+fn ball(ui: &mut Ui, normal: Vec3) {
+    let (rect, _) = ui.allocate_exact_size(Vec2::splat(34.0), Sense::hover());
+    let (middle, radius) = (rect.center(), 15.0);
+    let painter = ui.painter();
+    // From dark at the edge to light at the middle.
+    for step in 0..6_u8 {
+        let share = 1.0 - f32::from(step) / 6.0;
+        painter.circle_filled(middle, radius * share, Color32::from_gray(50 + 18 * step));
+    }
+    let tip = middle + Vec2::new(normal.x, -normal.y) * radius;
+    painter.line_segment([middle, tip], Stroke::new(1.5, Color32::from_rgb(255, 200, 60)));
+    painter.circle_filled(tip, 3.0, Color32::from_rgb(255, 200, 60));
+    painter.circle_stroke(middle, radius, ui.visuals().widgets.noninteractive.bg_stroke);
+}

@@ -1,0 +1,87 @@
+use std::time::Duration;
+
+use eframe::egui::{self, Key, Pos2, Theme, Vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use crate::app::tweak::testing::{brightness, picture, window};
+use crate::app::tweak::window::Window;
+
+const SIZE: Vec2 = Vec2::new(1000.0, 640.0);
+
+/// A place in the smoke of `column`.
+fn smoke(harness: &Harness<'_, Window>) -> Pos2 {
+    harness.get_by_label("viewport").rect().center()
+}
+
+/// Steps until something is there: texels come back and are read beside the window.
+fn wait_for(harness: &mut Harness<'_, Window>, is_there: impl Fn(&Harness<'_, Window>) -> bool) {
+    for _ in 0..300 {
+        // Only what is drawn comes back.
+        picture(harness);
+        if is_there(harness) {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    panic!("nothing came");
+}
+
+fn shows(harness: &Harness<'_, Window>, text: &str) -> bool {
+    harness.query_all_by_label_contains(text).next().is_some()
+}
+
+#[test]
+fn the_pixel_under_the_pointer_is_told_and_a_click_keeps_it() {
+    let mut harness = window("column", SIZE, Theme::Dark);
+    harness.key_press(Key::I);
+    let place = smoke(&harness);
+    harness.hover_at(place);
+    wait_for(&mut harness, |harness| shows(harness, "coverage"));
+    assert!(shows(&harness, "Light 1") && shows(&harness, "soft scatter") && shows(&harness, "as shown, sRGB"));
+    assert!(shows(&harness, "click keeps it"));
+    harness.drag_at(place);
+    harness.step();
+    harness.drop_at(place);
+    harness.run_steps(3);
+    harness.remove_cursor();
+    harness.run_steps(3);
+    assert!(shows(&harness, "kept") && shows(&harness, "coverage"));
+    harness.key_press(Key::I);
+    harness.run_steps(3);
+    assert!(!shows(&harness, "coverage"));
+}
+
+#[test]
+fn pointing_at_a_ramp_lights_the_smoke_that_looks_there() {
+    let mut harness = window("column", SIZE, Theme::Dark);
+    harness.get_by_label("Ramps").click();
+    wait_for(&mut harness, |harness| shows(harness, "Light 1"));
+    let viewport = harness.get_by_label("viewport").rect();
+    let before = brightness(&picture(&mut harness), viewport);
+    // The middle of the diffuse ramp: most of what is lit looks there.
+    let ramp = harness.get_by_label("diffuse ramp").rect();
+    harness.hover_at(egui::pos2(ramp.center().x, ramp.center().y));
+    harness.run_steps(3);
+    let lit = brightness(&picture(&mut harness), viewport);
+    assert!(lit > before + 0.5, "{before} {lit}");
+    harness.hover_at(egui::pos2(5.0, 5.0));
+    harness.run_steps(3);
+    assert!((brightness(&picture(&mut harness), viewport) - before).abs() < 0.1);
+}
+
+#[test]
+fn a_picture_that_stands_still_is_not_drawn_again() {
+    let mut harness = window("column", SIZE, Theme::Dark);
+    harness.key_press(Key::I);
+    harness.get_by_label("Ramps").click();
+    wait_for(&mut harness, |harness| shows(harness, "Light 1"));
+    // No more than the copy that is under way, what is read of it, and the end of its interval.
+    for _ in 0..5 {
+        picture(&mut harness);
+        std::thread::sleep(Duration::from_millis(300));
+    }
+    harness.run_steps(4);
+    let delay = harness.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay;
+    assert!(delay > Duration::from_secs(10), "{delay:?}");
+}

@@ -1,0 +1,184 @@
+//! The ramps in use, and what this picture looks up in them.
+
+use eframe::egui::{self, Color32, Mesh, Rect, Response, Sense, Stroke, Ui, Vec2};
+use glam::UVec2;
+use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
+use haze::ramp::Ramp;
+use haze::reference::SystemProbe;
+
+use super::row::spaced;
+use crate::app::tweak::inspect::survey::{BINS, Histogram, SIDE, Spot};
+use crate::app::tweak::session::Session;
+
+/// Heights of a ramp's strip and of a histogram.
+const STRIP: f32 = 20.0;
+const HISTOGRAM: f32 = 56.0;
+
+/// One colour for each light, round and round; told apart by those who see fewer, too.
+const LIGHTS: [Color32; 6] = [
+    Color32::from_rgb(230, 159, 0),
+    Color32::from_rgb(86, 180, 233),
+    Color32::from_rgb(0, 158, 115),
+    Color32::from_rgb(204, 121, 167),
+    Color32::from_rgb(213, 94, 0),
+    Color32::from_rgb(120, 120, 240),
+];
+
+/// Over the specular ramp, where all lights look.
+const LOOKED_UP: Color32 = Color32::from_rgb(120, 200, 240);
+
+/// Draws them; gives the place that is pointed at.
+pub fn panel(ui: &mut Ui, session: &Session, index: usize) -> Option<Spot> {
+    let system = session.document.preset.systems.get(index)?;
+    let material = &session.materials().into_iter().nth(index)?;
+    let told = session.inspect.told.as_ref().filter(|_| session.inspect.place().is_some());
+    let probe = told.and_then(|told| told.probe.systems.iter().find(|probe| probe.system == index));
+    let survey = session.inspect.survey.as_deref();
+    let inert = |field: &str| {
+        let path = format!("systems[{index}].material.{field}");
+        session.document.preset.without_effect(&path, session.show.size)
+    };
+    let mut spot = None;
+    ui.weak("Point at a ramp: the smoke that looks there is lit. Point at smoke: its place is marked.");
+    for (field, title, name) in [
+        ("diffuse_ramp", "Diffuse, by normal and light", &system.material.diffuse_ramp),
+        ("soft_scatter_ramp", "Soft scatter, by amount", &system.material.soft_scatter_ramp),
+        ("specular_ramp", "Specular, by distance² and amount", &system.material.specular_ramp),
+        ("age_ramp", "Age, from birth to death", &system.material.age_ramp),
+    ] {
+        ui.add_space(6.0);
+        ui.horizontal(|ui| {
+            ui.strong(title);
+            ui.weak(name);
+        });
+        if let Some(reason) = inert(field) {
+            ui.weak(format!("Not used: {reason}"));
+            continue;
+        }
+        let spoken = spaced(field);
+        match field {
+            "diffuse_ramp" => {
+                let marks = probe.map_or_else(Vec::new, |probe| {
+                    probe.lights.iter().map(|light| (light.coordinate, of_light(light.light))).collect()
+                });
+                let histograms = survey.map(|survey| survey.by_light(index)).unwrap_or_default();
+                let at = strip(ui, &spoken, &material.diffuse_ramp, &marks);
+                legend_and_bins(ui, &histograms);
+                spot = spot.or(at.map(Spot::Diffuse));
+            }
+            "soft_scatter_ramp" => {
+                let marks: Vec<_> = probe.map(|probe| (probe.amount, Color32::WHITE)).into_iter().collect();
+                let at = strip(ui, &spoken, &material.soft_scatter_ramp, &marks);
+                amounts(ui, survey.map(|survey| survey.by_amount(index)));
+                spot = spot.or(at.map(Spot::SoftScatter));
+            }
+            "specular_ramp" => {
+                let density = survey.map(|survey| survey.by_glow(index));
+                spot = spot.or(plane(ui, &spoken, &material.specular_ramp, density.as_deref(), probe));
+            }
+            _ => {
+                strip(ui, &spoken, &material.age_ramp, &[]);
+            }
+        }
+    }
+    spot
+}
+
+fn of_light(index: usize) -> Color32 {
+    LIGHTS[index % LIGHTS.len()]
+}
+
+/// Space for a picture with a name; where it is pointed at, in shares of its sides.
+fn space(ui: &mut Ui, size: Vec2, name: &str) -> (Rect, Option<Vec2>) {
+    let (rect, response): (Rect, Response) = ui.allocate_exact_size(size, Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
+    (rect, response.hover_pos().map(|at| (at - rect.min) / rect.size()))
+}
+
+/// A ramp from left to right, with marks on it; the coordinate that is pointed at.
+fn strip(ui: &mut Ui, name: &str, ramp: &Ramp, marks: &[(f32, Color32)]) -> Option<f32> {
+    let (rect, at) = space(ui, Vec2::new(ui.available_width(), STRIP), name);
+    picture(ui, rect, UVec2::new(128, 1), |at| sample_ramp(ramp, at.x));
+    for &(coordinate, colour) in marks {
+        let x = rect.left() + coordinate * rect.width();
+        for (width, colour) in [(4.0, Color32::BLACK), (2.0, colour)] {
+            ui.painter().vline(x, rect.y_range(), Stroke::new(width, colour));
+        }
+    }
+    at.map(|at| at.x)
+}
+
+/// A linear picture by a formula of shares of its sides, cell by cell.
+fn picture(ui: &Ui, rect: Rect, cells: UVec2, colour: impl Fn(glam::Vec2) -> glam::Vec3) {
+    let mut mesh = Mesh::default();
+    let side = rect.size() / Vec2::new(cells.x as f32, cells.y as f32);
+    for y in 0..cells.y {
+        for x in 0..cells.x {
+            let at = glam::Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / cells.as_vec2();
+            let [r, g, b] = colour(at).to_array();
+            let corner = rect.min + Vec2::new(x as f32, y as f32) * side;
+            mesh.add_colored_rect(Rect::from_min_size(corner, side), egui::Rgba::from_rgb(r, g, b).into());
+        }
+    }
+    ui.painter().add(mesh);
+}
+
+/// A histogram for each light over each other, and whose is which.
+fn legend_and_bins(ui: &mut Ui, histograms: &[Histogram]) {
+    let (rect, _) = space(ui, Vec2::new(ui.available_width(), HISTOGRAM), "histogram of N·L");
+    ui.painter().rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
+    histograms.iter().for_each(|histogram| bins(ui, rect, &histogram.bins, of_light(histogram.light)));
+    ui.horizontal_wrapped(|ui| {
+        for histogram in histograms {
+            ui.colored_label(of_light(histogram.light), format!("Light {}", histogram.light + 1));
+        }
+        if histograms.is_empty() {
+            ui.weak("No light reaches smoke in the picture");
+        }
+    });
+}
+
+fn amounts(ui: &mut Ui, histogram: Option<Vec<f32>>) {
+    let (rect, _) = space(ui, Vec2::new(ui.available_width(), HISTOGRAM), "histogram of amounts");
+    ui.painter().rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
+    bins(ui, rect, &histogram.unwrap_or_default(), ui.visuals().text_color());
+}
+
+/// Columns that fade upwards to nothing, with a line along their tops.
+fn bins(ui: &Ui, rect: Rect, bins: &[f32], colour: Color32) {
+    let width = rect.width() / BINS as f32;
+    let mut outline = Vec::new();
+    let mut mesh = Mesh::default();
+    for (index, bin) in bins.iter().enumerate() {
+        let left = rect.left() + index as f32 * width;
+        // A root: what is rare shows as well.
+        let top = rect.bottom() - bin.sqrt() * (rect.height() - 2.0);
+        let column = Rect::from_min_max(egui::pos2(left, top), egui::pos2(left + width, rect.bottom()));
+        mesh.add_colored_rect(column, colour.gamma_multiply(0.25));
+        outline.extend([column.left_top(), column.right_top()]);
+    }
+    ui.painter().add(mesh);
+    ui.painter().add(egui::Shape::line(outline, Stroke::new(1.5, colour)));
+}
+
+/// The specular ramp, amounts upwards, and over it what is looked up.
+fn plane(ui: &mut Ui, name: &str, ramp: &Ramp, density: Option<&[f32]>, probe: Option<&SystemProbe>) -> Option<Spot> {
+    let side = ui.available_width().min(220.0);
+    let (rect, at) = space(ui, Vec2::new(side, 0.6 * side), name);
+    picture(ui, rect, UVec2::splat(48), |at| sample_ramp_2d(ramp, glam::Vec2::new(at.x, 1.0 - at.y)));
+    let mut mesh = Mesh::default();
+    let cell = rect.size() / SIDE as f32;
+    for (index, density) in density.unwrap_or_default().iter().enumerate().filter(|(_, density)| **density > 0.0) {
+        let (x, y) = ((index % SIDE) as f32, (SIDE - 1 - index / SIDE) as f32);
+        let square = Rect::from_min_size(rect.min + Vec2::new(x, y) * cell, cell);
+        mesh.add_colored_rect(square, LOOKED_UP.gamma_multiply(0.7 * density.sqrt()));
+    }
+    ui.painter().add(mesh);
+    for glow in probe.iter().flat_map(|probe| &probe.lights).filter_map(|light| Some((light.light, light.glow?))) {
+        let (light, at) = (glow.0, glow.1.coordinate);
+        let place = rect.min + Vec2::new(at.x, 1.0 - at.y) * rect.size();
+        ui.painter().circle(place, 4.0, of_light(light), Stroke::new(1.5, Color32::BLACK));
+    }
+    ui.weak("across: distance² from the light; up: amount");
+    at.map(|at| Spot::Specular(glam::Vec2::new(at.x, 1.0 - at.y)))
+}
