@@ -34,6 +34,7 @@ mod testing;
 #[cfg(test)]
 mod tests;
 mod thumbnails;
+mod thumbs;
 mod viewport;
 mod window;
 

@@ -20,6 +20,7 @@ use super::playback::Playback;
 use super::referee::Referee;
 use super::search::Search;
 use super::show::Show;
+use super::thumbs::Thumbs;
 
 pub struct Session {
     /// What is edited; panels change its preset directly.
@@ -34,6 +35,7 @@ pub struct Session {
     pub tooltips: Tooltips,
     /// What the stages of the shading are.
     pub stages: Tooltips,
+    pub thumbs: Thumbs,
     /// A picture of the window is wanted here; then it closes.
     pub screenshot: Option<PathBuf>,
     /// As last loaded well.
@@ -66,6 +68,7 @@ impl Session {
             messages: Messages::default(),
             tooltips: Tooltips::of::<Preset>(),
             stages: Tooltips::of::<ShadeTree>(),
+            thumbs: Thumbs::default(),
             screenshot: None,
             pictures: Pictures::new(preset, loaded),
             is_changed_on_disk: false,

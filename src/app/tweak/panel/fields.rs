@@ -5,11 +5,12 @@ use std::ops::RangeInclusive;
 
 use eframe::egui::{self, Ui};
 use glam::Vec3;
-use haze::builtin;
 use haze::preset::Tooltips;
 use haze::settings::{Choice, FieldVisitor, Fields, PictureRole, path_of};
 
+use super::gallery::gallery;
 use super::row::{self, Row, spaced};
+use crate::app::tweak::thumbs::Thumbs;
 
 /// A step on the way to a field: its name, and its place where it is one of a list.
 pub type Step = (&'static str, Option<usize>);
@@ -17,6 +18,8 @@ pub type Step = (&'static str, Option<usize>);
 /// What rows are drawn with, and what they ask for.
 pub struct Desk<'a> {
     pub tooltips: &'a Tooltips,
+    /// What pictures look like.
+    pub thumbs: &'a Thumbs,
     /// Paths of what differs from the preset on disk.
     pub changed: &'a HashSet<String>,
     /// Why a field does nothing, by path.
@@ -157,15 +160,9 @@ impl FieldVisitor for Rows<'_, '_, '_> {
     }
 
     fn picture(&mut self, name: &'static str, value: &mut String, role: PictureRole) {
+        let thumbs = self.desk.thumbs;
         self.row(name, |ui, label, _, path, _| {
-            let combo =
-                egui::ComboBox::from_id_salt(path).selected_text(value.as_str()).width(ui.available_width() - 8.0);
-            let shown = combo.show_ui(ui, |ui| {
-                for builtin in builtins(role) {
-                    ui.selectable_value(value, builtin.name.to_owned(), builtin.name);
-                }
-            });
-            shown.response.labelled_by(label.id);
+            gallery(ui, thumbs, role, value, path).labelled_by(label.id);
         });
     }
 
@@ -184,16 +181,5 @@ impl FieldVisitor for Rows<'_, '_, '_> {
 
     fn item(&mut self, name: &'static str, index: usize, fields: &mut dyn Fields) {
         self.nested((name, Some(index)), &format!("{} {}", name.trim_end_matches('s'), index + 1), fields);
-    }
-}
-
-/// The built-in pictures of a role.
-fn builtins(role: PictureRole) -> &'static [builtin::Builtin] {
-    match role {
-        PictureRole::Sprite => builtin::SPRITES,
-        PictureRole::Ramp => builtin::RAMPS,
-        PictureRole::Motif => builtin::MOTIFS,
-        PictureRole::Noise => builtin::NOISES,
-        PictureRole::Detail => &[],
     }
 }

@@ -6,6 +6,7 @@ pub mod curve;
 pub mod export;
 pub mod fields;
 pub mod file;
+pub mod gallery;
 pub mod help;
 pub mod lights;
 pub mod look;

@@ -1,0 +1,181 @@
+//! Small pictures of what a material can be made of: decoded once, beside the window.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureOptions};
+use glam::{UVec3, Vec3, Vec4Swizzles};
+use haze::builtin::{self, Builtin};
+use haze::picture::decode_png;
+use haze::settings::PictureRole;
+use haze::sprite::Sprite;
+use haze::{Error, noise};
+use image::imageops::{self, FilterType};
+
+use super::platform::files::{self, Stamp};
+use super::platform::worker::Worker;
+
+/// Pixels of a thumbnail.
+pub const SIZE: [usize; 2] = [72, 48];
+
+/// Most files of a folder that are offered.
+const MOST: usize = 64;
+
+/// Seconds after which a folder is looked at again while its files are shown.
+const FRESH: f64 = 1.0;
+
+type Key = (u8, String);
+type Decoded = (Key, Option<ColorImage>);
+
+/// See the module. Panels share it.
+#[derive(Default)]
+pub struct Thumbs(RefCell<Inner>);
+
+#[derive(Default)]
+struct Inner {
+    worker: Option<Worker<Decoded>>,
+    pictures: HashMap<Key, Thumb>,
+    /// Where the preset's pictures are; none for a built-in one's.
+    folder: Option<PathBuf>,
+    /// The PNG files there, and when they were looked for, seconds.
+    files: Vec<String>,
+    listed: Option<f64>,
+}
+
+/// What is known of a picture.
+struct Thumb {
+    /// Of its file.
+    stamp: Option<Stamp>,
+    /// Nothing while it is decoded, and where it cannot be.
+    texture: Option<TextureHandle>,
+}
+
+impl Thumbs {
+    /// The preset whose pictures are offered.
+    pub fn follow(&self, preset: &Path) {
+        let is_file = preset.extension().is_some();
+        let folder = is_file.then(|| preset.parent().unwrap_or(Path::new("")).to_owned());
+        let mut inner = self.0.borrow_mut();
+        if inner.folder != folder {
+            *inner = Inner { worker: inner.worker.take(), folder, ..Inner::default() };
+        }
+    }
+
+    /// Names of the pictures for a role: the built-in ones, then the files in the preset's folder.
+    pub fn names(&self, context: &egui::Context, role: PictureRole) -> Vec<String> {
+        let now = context.input(|input| input.time);
+        let inner = &mut *self.0.borrow_mut();
+        if inner.listed.is_none_or(|listed| now - listed > FRESH) {
+            inner.listed = Some(now);
+            inner.files = inner.folder.as_deref().map(pngs).unwrap_or_default();
+            // Those that were written meanwhile are decoded again.
+            let folder = inner.folder.clone().unwrap_or_default();
+            inner
+                .pictures
+                .retain(|(_, name), thumb| thumb.stamp.is_none() || thumb.stamp == Stamp::of(&folder.join(name)));
+        }
+        let builtins = builtins(role).iter().map(|builtin| builtin.name.to_owned());
+        builtins.chain(inner.files.iter().cloned()).collect()
+    }
+
+    /// The thumbnail of a picture, once there is one.
+    pub fn texture(&self, context: &egui::Context, role: PictureRole, name: &str) -> Option<egui::TextureId> {
+        let inner = &mut *self.0.borrow_mut();
+        while let Some(Some((key, image))) = inner.worker.as_ref().and_then(Worker::poll) {
+            if let Some((thumb, image)) = inner.pictures.get_mut(&key).zip(image) {
+                thumb.texture = Some(context.load_texture(&key.1, image, TextureOptions::LINEAR));
+            }
+        }
+        let key = (role as u8, name.to_owned());
+        if let Some(thumb) = inner.pictures.get(&key) {
+            return thumb.texture.as_ref().map(TextureHandle::id);
+        }
+        let source = match builtin::find(builtins(role), name) {
+            Some(builtin) => Source::Builtin(builtin),
+            None => Source::File(inner.folder.as_ref()?.join(name)),
+        };
+        let stamp = if let Source::File(path) = &source { Stamp::of(path) } else { None };
+        inner.pictures.insert(key.clone(), Thumb { stamp, texture: None });
+        if inner.worker.is_none() {
+            let context = context.clone();
+            // Without a thread names alone are shown.
+            inner.worker = Worker::new("thumbnails", move || context.request_repaint()).ok();
+        }
+        let worker = inner.worker.as_ref()?;
+        worker.submit(move |_| (key, thumbnail(role, &source).ok()));
+        None
+    }
+}
+
+/// The PNG files in a folder.
+fn pngs(folder: &Path) -> Vec<String> {
+    let is_png = |path: &PathBuf| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+    let name = |path: PathBuf| Some(path.file_name()?.to_str()?.to_owned());
+    files::list(folder).into_iter().filter(is_png).filter_map(name).take(MOST).collect()
+}
+
+/// The built-in pictures of a role.
+fn builtins(role: PictureRole) -> &'static [Builtin] {
+    match role {
+        PictureRole::Sprite => builtin::SPRITES,
+        PictureRole::Ramp => builtin::RAMPS,
+        PictureRole::Motif => builtin::MOTIFS,
+        PictureRole::Noise => builtin::NOISES,
+        PictureRole::Detail => &[],
+    }
+}
+
+enum Source {
+    Builtin(&'static Builtin),
+    File(PathBuf),
+}
+
+fn thumbnail(role: PictureRole, source: &Source) -> Result<ColorImage, Error> {
+    match (role, source) {
+        (PictureRole::Sprite, Source::Builtin(builtin)) => Ok(puff(&builtin.sprite()?)),
+        (PictureRole::Noise, Source::Builtin(builtin)) => Ok(slice(&builtin.noise()?)),
+        (_, Source::Builtin(builtin)) => decoded(&builtin::path(builtin.name), builtin.bytes),
+        (_, Source::File(path)) => decoded(path, &files::read_picture(path)?),
+    }
+}
+
+/// The picture as it is, stretched.
+fn decoded(path: &Path, bytes: &[u8]) -> Result<ColorImage, Error> {
+    let [width, height] = SIZE.map(|side| side as u32);
+    let small = imageops::resize(&decode_png(path, bytes)?.to_rgba8(), width, height, FilterType::Triangle);
+    Ok(ColorImage::from_rgba_unmultiplied(SIZE, small.as_raw()))
+}
+
+/// A picture by a formula of the pixel.
+fn drawn(colour: impl Fn([usize; 2]) -> Color32) -> ColorImage {
+    let pixels = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]));
+    ColorImage::new(SIZE, pixels.map(colour).collect())
+}
+
+/// The first frame of a sprite, lit from the upper left.
+fn puff(sprite: &Sprite) -> ColorImage {
+    // The smallest level that is no smaller than the thumbnail.
+    let is_large = |level: &u32| sprite.level_size(*level) as usize >= SIZE[1];
+    let level = (0..sprite.level_count()).rev().find(is_large).unwrap_or(0);
+    let (side, left) = (sprite.level_size(level) as usize, (SIZE[0] - SIZE[1]) / 2);
+    drawn(|[x, y]| {
+        if !(left..left + SIZE[1]).contains(&x) {
+            return Color32::TRANSPARENT;
+        }
+        let at = |pixel: usize| (pixel * side / SIZE[1]) as u32;
+        let texel = sprite.texel(level, 0, at(x - left), at(y));
+        let light = (texel.xyz() * 2.0 - 1.0).dot(Vec3::new(-0.5, 0.6, 0.62)).max(0.0);
+        let grey = (70.0 + 175.0 * light).min(255.0) as u8;
+        Color32::from_rgba_unmultiplied(grey, grey, grey, (texel.w.clamp(0.0, 1.0) * 255.0) as u8)
+    })
+}
+
+/// The density of a slice of noise.
+fn slice(noise: &noise::NoiseVolume) -> ColorImage {
+    let side = noise.size();
+    drawn(|[x, y]| {
+        let at = |pixel: usize| (pixel as u32 * side / SIZE[1] as u32) % side;
+        Color32::from_gray((noise.texel(UVec3::new(at(x), at(y), 0)).w.clamp(0.0, 1.0) * 255.0) as u8)
+    })
+}
