@@ -17,7 +17,7 @@ pub fn gallery(ui: &mut Ui, thumbs: &Thumbs, role: PictureRole, value: &mut Stri
     let combo = egui::ComboBox::from_id_salt(salt)
         .selected_text(shown)
         .width(ui.available_width() - 8.0)
-        .height(4.0 * (PICTURE.y + NAME));
+        .height(4.5 * (PICTURE.y + NAME + 8.0));
     combo
         .show_ui(ui, |ui| {
             let gap = ui.spacing().item_spacing.x;

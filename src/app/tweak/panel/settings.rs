@@ -111,3 +111,31 @@ fn advanced(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, index: usize)
     let at = [("systems", Some(index)), ("settings", None)];
     fields::show(ui, desk, &at, &mut system.settings);
 }
+
+#[cfg(test)]
+mod tests {
+    use eframe::egui::{Role, Theme, Vec2};
+    use egui_kittest::kittest::{NodeT as _, Queryable as _};
+    use egui_kittest::{Harness, Node};
+
+    use crate::app::tweak::testing::window;
+    use crate::app::tweak::window::Window;
+
+    fn control<'h>(harness: &'h Harness<'_, Window>, name: &'h str) -> Node<'h> {
+        harness.get_all_by_label(name).find(|node| node.accesskit_node().role() == Role::ComboBox).unwrap()
+    }
+
+    #[test]
+    fn a_control_without_effect_is_grey_and_says_why() {
+        let mut harness = window("column", Vec2::new(1000.0, 640.0), Theme::Dark);
+        harness.get_by_label("Advanced").click();
+        harness.run_steps(3);
+        let is_grey = |name| control(&harness, name).accesskit_node().is_disabled();
+        assert!(is_grey("blend mode") && !is_grey("technique"));
+        // Its name stands at its left.
+        let place = control(&harness, "blend mode").rect().left_center();
+        harness.hover_at(place - Vec2::new(80.0, 0.0));
+        harness.run_steps(8);
+        assert!(harness.query_all_by_label_contains("No effect here: forward only.").next().is_some());
+    }
+}
