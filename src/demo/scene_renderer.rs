@@ -47,6 +47,13 @@ pub(crate) struct SceneTargets {
     buffers: [wgpu::Buffer; 3],
 }
 
+impl SceneTargets {
+    pub fn textures(&self) -> impl Iterator<Item = &wgpu::Texture> {
+        let views = [&self.depth, &self.paint, &self.paint_depth].into_iter().chain(&self.linear);
+        std::iter::once(&self.colour).chain(views.map(wgpu::TextureView::texture))
+    }
+}
+
 impl SceneRenderer {
     /// `draws_linear`: the adapter can draw to `R32Float`.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, draws_linear: bool) -> Self {

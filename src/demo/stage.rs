@@ -15,7 +15,9 @@ use crate::frame::{Frame, Light, Material, Particles, SceneDepth, System, View};
 use crate::headless::Headless;
 use crate::preset::Environment;
 use crate::renderer::shader::Sources;
-use crate::renderer::{Context, Descriptor, Renderer, SceneDepthKind, WarmUp, read_only_depth_is_supported};
+use crate::renderer::{
+    Context, Descriptor, MemoryUse, Renderer, SceneDepthKind, Timing, WarmUp, read_only_depth_is_supported,
+};
 use crate::settings::ShadeTree;
 
 /// What the stages of one device share. A clone is the same.
@@ -52,6 +54,11 @@ impl StageContext {
         self.copies_depth
     }
 
+    /// What measures the stages of this device; none where it cannot.
+    pub fn timing(&self) -> Option<Timing> {
+        Timing::new(&self.device, &self.queue)
+    }
+
     /// The same with another context of haze's, of the same device: with other shaders, say.
     #[must_use]
     pub fn with_haze(&self, haze: Context) -> Self {
@@ -74,6 +81,24 @@ pub struct Stage {
     renderer: Renderer,
     materials: Vec<(MaterialAssets, Material)>,
     set: Option<Set>,
+}
+
+/// Bytes of GPU memory that a stage holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StageMemory {
+    /// Of haze's renderer.
+    pub smoke: MemoryUse,
+    /// Ramps and sprites.
+    pub materials: u64,
+    /// The scene's targets, and the pictures.
+    pub scene: u64,
+}
+
+impl StageMemory {
+    /// All of it.
+    pub fn total(&self) -> u64 {
+        self.smoke.targets + self.smoke.buffers + self.materials + self.scene
+    }
 }
 
 /// What depends on the picture's size.
@@ -113,6 +138,23 @@ impl Stage {
     /// haze's renderer of this stage.
     pub fn renderer(&self) -> &Renderer {
         &self.renderer
+    }
+
+    /// As [`Renderer::set_timing`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn set_timing(&mut self, timing: Option<&Timing>) -> Result<(), Error> {
+        self.renderer.set_timing(timing)
+    }
+
+    /// Bytes of GPU memory held.
+    pub fn memory_use(&self) -> StageMemory {
+        StageMemory {
+            smoke: self.renderer.memory_use(),
+            materials: self.materials.iter().map(|(_, material)| material.memory_use()).sum(),
+            scene: self.set.as_ref().map_or(0, Set::bytes),
+        }
     }
 
     /// Records a frame: the scene if anything of it is new, the smoke, and a picture of every one of `stages`. One call for each
@@ -270,5 +312,13 @@ impl Stage {
 impl Set {
     fn size(&self) -> UVec2 {
         UVec2::new(self.targets.colour.width(), self.targets.colour.height())
+    }
+
+    fn bytes(&self) -> u64 {
+        let bytes = |texture: &wgpu::Texture| {
+            let texel = texture.format().block_copy_size(None).unwrap_or_default();
+            u64::from(texel) * u64::from(texture.width()) * u64::from(texture.height())
+        };
+        self.targets.textures().chain(self.pictures.iter().flatten()).map(bytes).sum()
     }
 }

@@ -6,13 +6,14 @@ use eframe::egui::epaint::ViewportInPixels;
 use eframe::egui_wgpu::{CallbackResources, CallbackTrait, ScreenDescriptor};
 use eframe::{egui, wgpu};
 use glam::{IVec2, UVec2, Vec2, Vec4};
-use haze::Error;
 use haze::demo::capture::Capture;
 use haze::demo::develop::{Developer, Developing, Shown, exposure};
 use haze::demo::shot::Shot;
-use haze::demo::stage::{Stage, StageContext};
+use haze::demo::stage::{Stage, StageContext, StageMemory};
 use haze::picture::Picture;
-use haze::settings::ShadeTree;
+use haze::preset::Preset;
+use haze::settings::{DepthSource, ShadeTree};
+use haze::{Error, FrameCounts, FrameTimes, Timing};
 
 use super::health::Health;
 use super::pace::Pace;
@@ -25,6 +26,8 @@ pub struct Easel {
     adapter: Arc<wgpu::AdapterInfo>,
     health: Health,
     egui: egui::Context,
+    /// GPU time can be known.
+    is_timed: bool,
 }
 
 struct Inner {
@@ -46,11 +49,27 @@ struct Inner {
     wants_capture: bool,
     capture: Option<(Shot, Capture)>,
     captured: Option<Shot>,
-    /// The first mistake since it was last asked for.
-    error: Option<Error>,
     /// Times that the picture was drawn.
-    #[cfg(test)]
     pictures: u64,
+    /// There while the picture is measured.
+    timing: Option<Timing>,
+    /// Pixels a texel of the accumulation targets that are shown, in place of the preset's.
+    scale: Option<u32>,
+}
+
+/// What drawing the picture took.
+#[derive(Clone, Debug, Default)]
+pub struct Figures {
+    /// Times that it was drawn.
+    pub pictures: u64,
+    /// GPU time of the last picture that it is known of.
+    pub times: Option<FrameTimes>,
+    /// GPU time can be known here.
+    pub is_timed: bool,
+    pub counts: FrameCounts,
+    pub memory: StageMemory,
+    /// What the strip and a second picture hold, bytes.
+    pub beside: u64,
 }
 
 /// How often the strip is drawn while something moves.
@@ -126,12 +145,13 @@ impl Easel {
             wants_capture: false,
             capture: None,
             captured: None,
-            error: None,
-            #[cfg(test)]
             pictures: 0,
+            timing: None,
+            scale: None,
         };
         let (adapter, egui) = (Arc::new(render.adapter.get_info()), window.egui_ctx.clone());
-        Ok(Self { inner: Arc::new(Mutex::new(inner)), adapter, health, egui })
+        let is_timed = render.device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
+        Ok(Self { inner: Arc::new(Mutex::new(inner)), adapter, health, egui, is_timed })
     }
 
     /// Makes the window draw itself again, from any thread.
@@ -174,7 +194,6 @@ impl Easel {
     }
 
     /// Pixels of the window that one of the picture stands for, each way.
-    #[cfg(test)]
     pub fn divisor(&self) -> u32 {
         self.lock().motion.pace.divisor()
     }
@@ -206,15 +225,51 @@ impl Easel {
         Ok(())
     }
 
-    /// Times that the picture was drawn.
-    #[cfg(test)]
-    pub fn pictures(&self) -> u64 {
-        self.lock().pictures
+    /// What is wrong with what is to be seen.
+    pub fn error(&self) -> Option<String> {
+        let inner = self.lock();
+        [Some(&inner.main), inner.other.as_ref(), Some(&inner.strip)]
+            .into_iter()
+            .flatten()
+            .find_map(|canvas| canvas.error.clone())
     }
 
-    /// What went wrong since this was asked the last time.
-    pub fn take_error(&self) -> Option<Error> {
-        self.lock().error.take()
+    /// Measures the picture from now on, or not any more.
+    pub fn measure(&self, is_on: bool) {
+        let inner = &mut *self.lock();
+        if is_on == inner.timing.is_some() || is_on && !self.is_timed {
+            return;
+        }
+        inner.timing = is_on.then(|| inner.context.timing()).flatten();
+        // Of the same device.
+        let _ = inner.main.stage.set_timing(inner.timing.as_ref());
+        if is_on {
+            inner.main.shot = None;
+        }
+    }
+
+    /// Draws the picture again, though it is the same.
+    pub fn draw_again(&self) {
+        self.lock().main.shot = None;
+    }
+
+    /// Shows the smoke through targets of this scale, or of the preset's.
+    pub fn show_scale(&self, scale: Option<u32>) {
+        self.lock().scale = scale;
+    }
+
+    /// What drawing the picture took.
+    pub fn figures(&self) -> Figures {
+        let inner = &*self.lock();
+        let beside = [Some(&inner.strip), inner.other.as_ref()].into_iter().flatten();
+        Figures {
+            pictures: inner.pictures,
+            times: inner.timing.as_ref().and_then(Timing::latest),
+            is_timed: self.is_timed,
+            counts: inner.main.stage.renderer().counts(),
+            memory: inner.main.stage.memory_use(),
+            beside: beside.map(|canvas| canvas.stage.memory_use().total()).sum(),
+        }
     }
 
     /// Of every system, how it was in the last picture; `None` where it was out of sight or drawn forward.
@@ -293,20 +348,13 @@ impl CallbackTrait for Callback {
         let place = ViewportInPixels::from_points(&self.rect, screen.pixels_per_point, screen.size_in_pixels);
         let mut target = Target { device, queue, encoder, place };
         let mut inner = self.easel.lock();
-        let done = match &self.what {
-            What::Exhibit(exhibit) => {
-                let done = inner.record_exhibit(&mut target, exhibit);
-                if inner.motion.drew && inner.motion.is_moving {
-                    // So that the time to the next frame is what this one takes.
-                    self.easel.egui.request_repaint();
-                }
-                done
-            }
+        match &self.what {
+            What::Exhibit(exhibit) => inner.record_exhibit(&mut target, exhibit),
             What::Stage(shot) => inner.record_stage(&mut target, shot),
-        };
-        // The last good picture stays.
-        if let Err(error) = done {
-            inner.error.get_or_insert(error);
+        }
+        // The time to the next frame is what this one takes.
+        if inner.motion.drew && inner.motion.is_moving {
+            self.easel.egui.request_repaint();
         }
         // What is drawn over the picture is as it was in the last one.
         if let What::Exhibit(exhibit) = &self.what
@@ -352,16 +400,19 @@ impl Inner {
         before != self.texels
     }
 
-    fn record_exhibit(&mut self, target: &mut Target<'_>, exhibit: &Exhibit) -> Result<(), Error> {
+    fn record_exhibit(&mut self, target: &mut Target<'_>, exhibit: &Exhibit) {
         let Exhibit { shot, other, split, difference } = exhibit;
         let divisor = self.motion.pace.divisor();
-        let (shot, other) = (&reduced(shot, divisor), &other.as_ref().map(|other| other.reduced(divisor)));
-        self.motion.drew |= !self.main.shows(shot);
-        #[cfg(test)]
-        {
-            self.pictures += u64::from(!self.main.shows(shot));
+        let (mut shot, other) = (reduced(shot, divisor), &other.as_ref().map(|other| other.reduced(divisor)));
+        self.scale.iter().for_each(|scale| set_scale(&mut shot.preset, *scale));
+        let shot = &shot;
+        let mut is_new = false;
+        if !self.main.shows(shot) {
+            is_new = self.main.record(target, shot, &[shot.shade_tree]);
+            self.timing.iter().for_each(|timing| timing.resolve(target.encoder));
+            self.motion.drew = true;
+            self.pictures += 1;
         }
-        let mut is_new = self.main.record(target, shot, &[shot.shade_tree])?;
         let is_new_shot = || self.captured.as_ref().is_none_or(|captured| !captured.is_same(shot));
         if self.wants_capture && self.capture.is_none() && is_new_shot() {
             self.captured = Some(shot.clone());
@@ -374,11 +425,13 @@ impl Inner {
         };
         match drawn {
             Some(other) => {
-                let canvas = match &mut self.other {
-                    Some(canvas) => canvas,
-                    none => none.insert(Canvas::new(&self.context)?),
-                };
-                is_new |= canvas.record(target, other, &[other.shade_tree])?;
+                if self.other.is_none() {
+                    // As the others, which could be made.
+                    self.other = Canvas::new(&self.context).ok();
+                }
+                if let Some(canvas) = &mut self.other {
+                    is_new |= canvas.record(target, other, &[other.shade_tree]);
+                }
             }
             None => is_new |= self.other.take().is_some(),
         }
@@ -399,7 +452,6 @@ impl Inner {
             };
             self.developer.prepare(target.queue, pair, &shown);
         }
-        Ok(())
     }
 
     /// Puts a picture that was made elsewhere on the GPU, or takes it down; tells whether it is another than before.
@@ -415,23 +467,22 @@ impl Inner {
         !is_up
     }
 
-    fn record_stage(&mut self, target: &mut Target<'_>, shot: &Shot) -> Result<(), Error> {
+    fn record_stage(&mut self, target: &mut Target<'_>, shot: &Shot) {
         let stage = shot.shade_tree;
         // Drawn by the first of them.
         let all = Shot { shade_tree: ShadeTree::Final, ..shot.clone() };
         let may_wait = self.motion.is_moving && self.strip_drawn.is_some_and(|drawn| drawn.elapsed() < STRIP_EVERY);
         if !may_wait && !self.strip.shows(&all) {
             self.strip_drawn = Some(Instant::now());
-            if self.strip.record(target, &all, ShadeTree::ALL)? {
+            if self.strip.record(target, &all, ShadeTree::ALL) {
                 self.strip.developing = Default::default();
             }
         }
-        let Some(picture) = self.strip.stage.picture(stage) else { return Ok(()) };
+        let Some(picture) = self.strip.stage.picture(stage) else { return };
         let developing = self.strip.developing[stage as usize]
             .get_or_insert_with(|| self.developer.bind(target.device, picture, picture));
         let shown = Shown { exposure: Vec2::splat(exposure(shot)), ..target.shown() };
         self.developer.prepare(target.queue, developing, &shown);
-        Ok(())
     }
 }
 
@@ -487,12 +538,14 @@ struct Canvas {
     stage: Stage,
     /// What was drawn last.
     shot: Option<Shot>,
+    /// Why that could not be: what was drawn before is shown.
+    error: Option<String>,
     developing: [Option<Developing>; ShadeTree::ALL.len()],
 }
 
 impl Canvas {
     fn new(context: &StageContext) -> Result<Self, Error> {
-        Ok(Self { stage: Stage::new(context, false)?, shot: None, developing: Default::default() })
+        Ok(Self { stage: Stage::new(context, false)?, shot: None, error: None, developing: Default::default() })
     }
 
     /// True if this shot was drawn last.
@@ -501,14 +554,15 @@ impl Canvas {
     }
 
     /// Draws a shot if it is another than the last; tells whether pictures may be others now.
-    fn record(&mut self, target: &mut Target<'_>, shot: &Shot, stages: &[ShadeTree]) -> Result<bool, Error> {
+    fn record(&mut self, target: &mut Target<'_>, shot: &Shot, stages: &[ShadeTree]) -> bool {
         if self.shows(shot) {
-            return Ok(false);
+            return false;
         }
         // Once, even if it cannot be drawn.
         let last = self.shot.replace(shot.clone());
-        self.stage.record(target.encoder, shot, stages)?;
-        Ok(last.is_none_or(|last| (last.size, last.shade_tree) != (shot.size, shot.shade_tree)))
+        let done = self.stage.record(target.encoder, shot, stages);
+        self.error = done.err().map(|error| error.to_string());
+        last.is_none_or(|last| (last.size, last.shade_tree) != (shot.size, shot.shade_tree))
     }
 
     fn picture(&self, stage: ShadeTree) -> Option<&wgpu::Texture> {
@@ -519,4 +573,13 @@ impl Canvas {
 /// The same shot with so many times fewer pixels each way.
 fn reduced(shot: &Shot, divisor: u32) -> Shot {
     Shot { size: (shot.size / divisor).max(UVec2::ONE), ..shot.clone() }
+}
+
+/// Sets the scale of every system that can have another than 1.
+pub fn set_scale(preset: &mut Preset, scale: u32) {
+    for system in &mut preset.systems {
+        if system.settings.accumulate.depth_source != DepthSource::Host {
+            system.settings.accumulate.scale = scale;
+        }
+    }
 }

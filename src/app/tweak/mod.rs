@@ -18,6 +18,7 @@ mod motion_tests;
 mod open;
 mod pace;
 mod panel;
+mod performance;
 mod pictures;
 mod platform;
 mod playback;

@@ -61,7 +61,7 @@ fn nothing_is_drawn_or_asked_for_while_nothing_happens() {
     let mut harness = window("column", Vec2::new(700.0, 480.0), Theme::Dark);
     let drawn = |harness: &mut Harness<'_, Window>| {
         picture(harness);
-        harness.state().easel().pictures()
+        harness.state().easel().figures().pictures
     };
     drawn(&mut harness);
     harness.run_steps(10);

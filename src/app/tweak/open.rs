@@ -162,16 +162,19 @@ fn give_up(kept: &mut Kept, reason: &str) -> Error {
 /// The fastest adapter, or the one that WGPU_ADAPTER_NAME and WGPU_BACKEND choose.
 fn setup() -> egui_wgpu::WgpuSetup {
     let mut setup = egui_wgpu::WgpuSetupCreateNew::without_display_handle();
-    setup.device_descriptor = std::sync::Arc::new(|adapter| {
-        let timing = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES;
-        wgpu::DeviceDescriptor {
-            label: Some("haze window"),
-            required_features: timing & adapter.features(),
-            required_limits: wgpu::Limits::downlevel_webgl2_defaults().using_resolution(adapter.limits()),
-            ..Default::default()
-        }
-    });
+    setup.device_descriptor = std::sync::Arc::new(device);
     setup.into()
+}
+
+/// The device of a window: measured where the adapter can do that.
+pub fn device(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+    let timing = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES;
+    wgpu::DeviceDescriptor {
+        label: Some("haze window"),
+        required_features: timing & adapter.features(),
+        required_limits: wgpu::Limits::downlevel_webgl2_defaults().using_resolution(adapter.limits()),
+        ..Default::default()
+    }
 }
 
 /// Says so where there is nothing to open a window on, better than a window library does.

@@ -15,6 +15,7 @@ use super::document::document::Document;
 use super::inspect::Inspect;
 use super::lights::ShownLights;
 use super::messages::Messages;
+use super::performance::Performance;
 use super::pictures::Pictures;
 use super::playback::Playback;
 use super::referee::Referee;
@@ -32,6 +33,7 @@ pub struct Session {
     pub inspect: Inspect,
     pub search: Search,
     pub messages: Messages,
+    pub performance: Performance,
     pub tooltips: Tooltips,
     /// What the stages of the shading are.
     pub stages: Tooltips,
@@ -66,6 +68,7 @@ impl Session {
             inspect: Inspect::default(),
             search: Search::default(),
             messages: Messages::default(),
+            performance: Performance::default(),
             tooltips: Tooltips::of::<Preset>(),
             stages: Tooltips::of::<ShadeTree>(),
             thumbs: Thumbs::default(),

@@ -32,6 +32,7 @@ pub enum Tab {
     Smoke,
     Ramps,
     Advanced,
+    Performance,
 }
 
 impl Default for Show {

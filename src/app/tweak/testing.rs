@@ -3,11 +3,13 @@
 use std::path::Path;
 
 use eframe::egui::{self, Vec2};
-use egui_kittest::Harness;
+use eframe::egui_wgpu;
+use egui_kittest::{Harness, HarnessBuilder};
 use image::RgbaImage;
 
 use super::gpu::Easel;
 use super::keeping::Layout;
+use super::open::device;
 use super::reload::ShaderFolder;
 use super::session::Session;
 use super::window::{Start, Window};
@@ -19,17 +21,33 @@ pub fn window(preset: &str, size: Vec2, theme: egui::Theme) -> Harness<'static, 
 
 /// The same with a folder of shaders.
 pub fn window_with(preset: &str, size: Vec2, theme: egui::Theme, shaders: ShaderFolder) -> Harness<'static, Window> {
+    open(start(preset, shaders), size, theme)
+}
+
+fn start(preset: &str, shaders: ShaderFolder) -> Start {
     let session = Session::open(Path::new(preset)).unwrap();
-    open(Start { session, shaders, keeping: None, layout: Layout::default(), has_dialogs: false }, size, theme)
+    Start { session, shaders, keeping: None, layout: Layout::default(), has_dialogs: false }
 }
 
 /// The same, begun in any way.
 pub fn open(start: Start, size: Vec2, theme: egui::Theme) -> Harness<'static, Window> {
-    let builder = Harness::builder().with_size(size).with_theme(theme).with_render_cursor(false).wgpu();
+    settled(Harness::builder().with_size(size).with_theme(theme).wgpu(), start)
+}
+
+fn settled(builder: HarnessBuilder<Window>, start: Start) -> Harness<'static, Window> {
     let open = |context: &mut _| Window::new(Easel::new(context).unwrap(), start).unwrap();
-    let mut harness = builder.build_eframe(open);
+    let mut harness = builder.with_render_cursor(false).build_eframe(open);
     harness.run_steps(3);
     harness
+}
+
+/// The same on a device as windows have it, which is measured where it can be.
+pub fn measured(preset: &str, size: Vec2) -> Harness<'static, Window> {
+    let mut setup = egui_kittest::wgpu::default_wgpu_setup();
+    if let egui_wgpu::WgpuSetup::CreateNew(setup) = &mut setup {
+        setup.device_descriptor = std::sync::Arc::new(device);
+    }
+    settled(Harness::builder().with_size(size).wgpu_setup(setup), start(preset, ShaderFolder::None))
 }
 
 /// What the window shows.

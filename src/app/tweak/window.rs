@@ -19,6 +19,7 @@ use super::keeping::{Keeping, Layout};
 use super::panel;
 use super::reload::{Reload, ShaderFolder};
 use super::session::Session;
+use super::show::Tab;
 use super::strip::{after, strip};
 use super::thumbnails::Thumbnails;
 use super::viewport::Viewport;
@@ -62,7 +63,7 @@ struct Screenshot {
 }
 
 /// What it means that the CPU draws.
-const SLOW: &str = "No GPU is used: the CPU draws, coarsely while something moves. A smaller window is quicker.";
+const SLOW: &str = "The CPU draws: coarsely while something moves. A smaller window is quicker.";
 
 /// Frames after which a window stands still.
 const SETTLED: u32 = 6;
@@ -149,19 +150,21 @@ impl Window {
     }
 
     fn status(&self, ui: &mut Ui) {
-        ui.horizontal(|ui| {
-            if let Some(message) = self.session.messages.latest() {
-                let text = egui::RichText::new(&message.text);
-                ui.label(if message.is_error { text.color(ui.visuals().error_fg_color) } else { text });
+        let line = |ui: &mut Ui| {
+            if self.easel.is_software() {
+                ui.colored_label(ui.visuals().warn_fg_color, &self.adapter).on_hover_text(SLOW);
+            } else {
+                ui.weak(&self.adapter);
             }
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                if self.easel.is_software() {
-                    ui.colored_label(ui.visuals().warn_fg_color, &self.adapter).on_hover_text(SLOW);
-                } else {
-                    ui.weak(&self.adapter);
+            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                if let Some(message) = self.session.messages.latest() {
+                    let text = egui::RichText::new(&message.text);
+                    let text = if message.is_error { text.color(ui.visuals().error_fg_color) } else { text };
+                    ui.add(egui::Label::new(text).truncate());
                 }
             });
-        });
+        };
+        ui.horizontal(|ui| ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), line));
     }
 
     /// Does what keys ask for, unless something is typed.
@@ -269,7 +272,7 @@ fn theme(ui: &mut Ui) {
 }
 
 impl eframe::App for Window {
-    fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
+    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         self.keys(ui);
         self.reload.advance(&mut self.session, &self.easel);
         let is_touched = ui.input(|input| input.pointer.any_down() || input.smooth_scroll_delta() != egui::Vec2::ZERO);
@@ -318,7 +321,12 @@ impl eframe::App for Window {
             keeping.advance(&mut self.session, ui.ctx());
         }
         self.layout.see(ui.ctx(), &self.session);
-        match self.easel.take_error() {
+        let Session { performance, show, document, .. } = &mut self.session;
+        let is_seen = show.tab == Tab::Performance;
+        if performance.follow(&self.easel, is_seen, frame.info().cpu_usage, &document.preset) {
+            ui.ctx().request_repaint();
+        }
+        match self.easel.error() {
             Some(error) => self.session.messages.complain("picture", error),
             None => self.session.messages.withdraw("picture"),
         }

@@ -11,6 +11,7 @@ pub mod help;
 pub mod lights;
 pub mod look;
 pub mod notice;
+pub mod performance;
 pub mod ramps;
 pub mod row;
 pub mod search;

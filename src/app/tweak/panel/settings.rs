@@ -10,12 +10,13 @@ use crate::app::tweak::session::Session;
 use crate::app::tweak::show::Tab;
 
 /// The tabs, their names, and what is on them.
-pub const TABS: [(Tab, &str, &str); 5] = [
+pub const TABS: [(Tab, &str, &str); 6] = [
     (Tab::Look, "Look", "The few controls that make a look"),
     (Tab::Light, "Light", "Lights, the sky, the camera"),
     (Tab::Smoke, "Smoke", "Where smoke comes from, and how it takes light"),
     (Tab::Ramps, "Ramps", "What smoke is lit from, and which part of it this picture looks up"),
     (Tab::Advanced, "Advanced", "How smoke reaches the picture: techniques, targets, formats"),
+    (Tab::Performance, "Cost", "What the picture costs, and a budget for it"),
 ];
 
 pub fn panel(ui: &mut Ui, session: &mut Session) {
@@ -24,6 +25,10 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
             ui.selectable_value(&mut session.show.tab, tab, name).on_hover_text(tooltip);
         }
     });
+    if session.show.tab == Tab::Performance {
+        ui.separator();
+        return super::performance::panel(ui, session);
+    }
     let systems = session.document.preset.systems.len();
     session.show.system = session.show.system.min(systems.saturating_sub(1));
     if let Some(index) = session.search.found.as_ref().and_then(|(path, _)| system_of(path)) {
@@ -63,6 +68,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
         Tab::Smoke => smoke(ui, &mut desk, preset, system),
         Tab::Ramps => spot = ramps::panel(ui, session, system),
         Tab::Advanced => advanced(ui, &mut desk, preset, system),
+        Tab::Performance => {}
     });
     let Desk { reset, refused, .. } = desk;
     session.document.preset = edited;
