@@ -193,6 +193,12 @@ impl Easel {
         motion.is_moving = is_moving;
     }
 
+    /// As if a frame had taken long.
+    #[cfg(test)]
+    pub fn be_slow(&self) {
+        self.lock().motion.pace.update(1.0);
+    }
+
     /// Pixels of the window that one of the picture stands for, each way.
     pub fn divisor(&self) -> u32 {
         self.lock().motion.pace.divisor()

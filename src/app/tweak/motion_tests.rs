@@ -5,6 +5,7 @@ use std::time::Instant;
 use eframe::egui::{Pos2, Rect, Role, Theme, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use image::RgbaImage;
 
 use super::testing::{picture, window};
 use super::window::Window;
@@ -22,22 +23,30 @@ fn slider(harness: &Harness<'_, Window>, name: &str) -> Rect {
     rows.find(|node| node.accesskit_node().role() == Role::Slider).unwrap().rect()
 }
 
+/// Milliseconds that the CPUs have worked for this process, all threads together: what a busy machine does not change.
+fn worked() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let fields = stat.rsplit_once(')').map_or("", |(_, fields)| fields).split_whitespace().skip(11).take(2);
+    fields.map(|ticks| 10.0 * ticks.parse::<f64>().unwrap()).sum()
+}
+
 /// Drags a slider to and fro; frames a second, the first of them aside, and how coarse the picture became.
 fn drag(harness: &mut Harness<'_, Window>, frames: usize) -> (f64, u32) {
     let rect = slider(harness, "thickness");
     let at = |frame: usize| Pos2::new(rect.left() + 8.0 + (frame * 7 % 90) as f32, rect.center().y);
     harness.drag_at(at(0));
-    let mut start = Instant::now();
+    let (mut start, mut before) = (Instant::now(), worked());
     let mut coarsest = 1;
     for frame in 0..frames + 10 {
         if frame == 10 {
-            start = Instant::now();
+            (start, before) = (Instant::now(), worked());
         }
         harness.hover_at(at(frame));
         picture(harness);
         coarsest = coarsest.max(harness.state().easel().divisor());
     }
     let seconds = start.elapsed().as_secs_f64();
+    println!("{:.0} ms of work a frame", (worked() - before) / frames as f64);
     harness.drop_at(at(0));
     harness.run_steps(2);
     (frames as f64 / seconds, coarsest)
@@ -75,4 +84,28 @@ fn nothing_is_drawn_or_asked_for_while_nothing_happens() {
     }
     harness.state_mut().session_mut().document.preset.camera.exposure += 1.0;
     assert!(drawn(&mut harness) > before);
+}
+
+#[test]
+fn a_picture_that_was_coarse_is_whole_again_when_all_is_let_go() {
+    let mut harness = window("column", Vec2::new(700.0, 480.0), Theme::Dark);
+    let whole = picture(&mut harness);
+    // Where there is nothing to be changed.
+    let at = Pos2::new(3.0, 3.0);
+    harness.drag_at(at);
+    harness.step();
+    harness.state().easel().be_slow();
+    let coarse = picture(&mut harness);
+    assert!(harness.state().easel().divisor() > 1);
+    harness.drop_at(at);
+    harness.run_steps(3);
+    let again = picture(&mut harness);
+    let part = harness.get_by_label("viewport").rect().shrink(8.0);
+    let apart = |a: &RgbaImage, b: &RgbaImage| {
+        let pixels = (part.top() as u32..part.bottom() as u32)
+            .flat_map(|y| (part.left() as u32..part.right() as u32).map(move |x| (x, y)));
+        pixels.filter(|&(x, y)| a.get_pixel(x, y) != b.get_pixel(x, y)).count()
+    };
+    assert!(apart(&whole, &coarse) > 1000);
+    assert_eq!((harness.state().easel().divisor(), apart(&whole, &again)), (1, 0));
 }
