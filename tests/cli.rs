@@ -251,6 +251,10 @@ fn presets_are_listed_checked_and_described() {
     };
     assert!(text(&["preset", "list"]).lines().count() >= 6);
     assert_eq!(text(&["preset", "check", "column", "inside"]), "column: good\ninside: good\n");
+    let idle = r#"{"version": 1, "name": "x", "systems": [{"name": "s", "settings": {"blend_mode": "additive", "boost": 2}}]}"#;
+    std::fs::write(folder.path().join("idle.json"), idle).unwrap();
+    let note = "idle.json: good\n  systems[0].settings.blend_mode has no effect: forward only\n";
+    assert_eq!(text(&["preset", "check", "idle.json"]), note);
     assert!(text(&["preset", "schema"]).contains("\"soft_fade\""));
     assert!(text(&["info"]).contains("gpu: "));
     assert!(text(&["--help"]).contains("shade-tree"));

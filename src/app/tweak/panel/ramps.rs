@@ -33,13 +33,17 @@ pub fn panel(ui: &mut Ui, session: &Session, index: usize) -> Option<Spot> {
     let material = &session.materials().into_iter().nth(index)?;
     let told = session.inspect.told.as_ref().filter(|_| session.inspect.place().is_some());
     let probe = told.and_then(|told| told.probe.systems.iter().find(|probe| probe.system == index));
-    let survey = session.inspect.survey.as_deref();
+    let is_forward = system.settings.is_forward();
+    let survey = session.inspect.survey.as_deref().filter(|_| !is_forward);
     let inert = |field: &str| {
         let path = format!("systems[{index}].material.{field}");
         session.document.preset.without_effect(&path, session.show.size)
     };
     let mut spot = None;
     ui.weak("Point at a ramp: the smoke that looks there is lit. Point at smoke: its place is marked.");
+    if is_forward {
+        ui.weak("Forward smoke is lit sprite by sprite: nothing is kept to count.");
+    }
     for (field, title, name) in [
         ("diffuse_ramp", "Diffuse, by normal and light", &system.material.diffuse_ramp),
         ("soft_scatter_ramp", "Soft scatter, by amount", &system.material.soft_scatter_ramp),
@@ -61,15 +65,18 @@ pub fn panel(ui: &mut Ui, session: &Session, index: usize) -> Option<Spot> {
                 let marks = probe.map_or_else(Vec::new, |probe| {
                     probe.lights.iter().map(|light| (light.coordinate, of_light(light.light))).collect()
                 });
-                let histograms = survey.map(|survey| survey.by_light(index)).unwrap_or_default();
                 let at = strip(ui, &spoken, &material.diffuse_ramp, &marks);
-                legend_and_bins(ui, &histograms);
+                if let Some(survey) = survey {
+                    legend_and_bins(ui, &survey.by_light(index));
+                }
                 spot = spot.or(at.map(Spot::Diffuse));
             }
             "soft_scatter_ramp" => {
                 let marks: Vec<_> = probe.map(|probe| (probe.amount, Color32::WHITE)).into_iter().collect();
                 let at = strip(ui, &spoken, &material.soft_scatter_ramp, &marks);
-                amounts(ui, survey.map(|survey| survey.by_amount(index)));
+                if let Some(survey) = survey {
+                    amounts(ui, &survey.by_amount(index));
+                }
                 spot = spot.or(at.map(Spot::SoftScatter));
             }
             "specular_ramp" => {
@@ -138,10 +145,10 @@ fn legend_and_bins(ui: &mut Ui, histograms: &[Histogram]) {
     });
 }
 
-fn amounts(ui: &mut Ui, histogram: Option<Vec<f32>>) {
+fn amounts(ui: &mut Ui, histogram: &[f32]) {
     let (rect, _) = space(ui, Vec2::new(ui.available_width(), HISTOGRAM), "histogram of amounts");
     ui.painter().rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
-    bins(ui, rect, &histogram.unwrap_or_default(), ui.visuals().text_color());
+    bins(ui, rect, histogram, ui.visuals().text_color());
 }
 
 /// Columns that fade upwards to nothing, with a line along their tops.
