@@ -7,6 +7,9 @@ use crate::app::tweak::platform::clock::Duration;
 use crate::app::tweak::search::matches;
 use crate::app::tweak::session::Session;
 
+/// Below the menus.
+const CORNER: [f32; 2] = [24.0, 40.0];
+
 /// Draws the window for exports and the sheet while they are open.
 pub fn panel(ui: &Ui, exporting: &mut Exporting, session: &mut Session) {
     exporting.advance(session);
@@ -15,17 +18,16 @@ pub fn panel(ui: &Ui, exporting: &mut Exporting, session: &mut Session) {
         ui.ctx().request_repaint_after(Duration::from_millis(200));
     }
     let mut is_open = exporting.is_open;
-    egui::Window::new("Export").open(&mut is_open).collapsible(false).resizable(false).show(ui.ctx(), |ui| {
-        match exporting.progress() {
-            Some((done, count)) => {
-                let share = done as f32 / count.max(1) as f32;
-                ui.add(egui::ProgressBar::new(share).text(format!("{done} of {count}")));
-                if ui.button("Stop").on_hover_text("Files that are there are whole").clicked() {
-                    exporting.stop();
-                }
+    let window = egui::Window::new("Export").default_pos(CORNER).open(&mut is_open).collapsible(false).resizable(false);
+    window.show(ui.ctx(), |ui| match exporting.progress() {
+        Some((done, count)) => {
+            let share = done as f32 / count.max(1) as f32;
+            ui.add(egui::ProgressBar::new(share).text(format!("{done} of {count}")));
+            if ui.button("Stop").on_hover_text("Files that are there are whole").clicked() {
+                exporting.stop();
             }
-            None => order(ui, exporting, session),
         }
+        None => order(ui, exporting, session),
     });
     exporting.is_open = is_open;
     sheet(ui, exporting);
@@ -104,7 +106,8 @@ fn sheet(ui: &Ui, exporting: &mut Exporting) {
     ui.data_mut(|data| data.insert_temp(id, texture.clone()));
     let (mut is_open, mut is_saved) = (true, false);
     let room = ui.ctx().content_rect().size() - egui::Vec2::new(60.0, 120.0);
-    egui::Window::new("Sheet").open(&mut is_open).collapsible(false).show(ui.ctx(), |ui| {
+    let window = egui::Window::new("Sheet").default_pos(CORNER).open(&mut is_open).collapsible(false);
+    window.show(ui.ctx(), |ui| {
         is_saved = ui.button("Save").on_hover_text("Beside the preset").clicked();
         ui.add(egui::Image::new(&texture).max_size(room).alt_text("sheet"));
     });
