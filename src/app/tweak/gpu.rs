@@ -5,17 +5,17 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use eframe::egui::epaint::ViewportInPixels;
 use eframe::egui_wgpu::{CallbackResources, CallbackTrait, ScreenDescriptor};
 use eframe::{egui, wgpu};
-use glam::{IVec2, UVec2, Vec2, Vec4};
+use glam::{IVec2, UVec2, Vec2};
 use haze::demo::capture::Capture;
 use haze::demo::develop::{Developer, Developing, Shown, exposure};
 use haze::demo::shot::Shot;
-use haze::demo::stage::{Stage, StageContext, StageMemory};
-use haze::picture::Picture;
-use haze::preset::Preset;
-use haze::settings::{DepthSource, ShadeTree};
+use haze::demo::stage::{StageContext, StageMemory};
+use haze::settings::ShadeTree;
 use haze::{Error, FrameCounts, FrameTimes, Timing};
 
+use super::canvas::{Canvas, Target, reduced, set_scale};
 use super::health::Health;
+use super::other::{Made, Other};
 use super::pace::Pace;
 use super::platform::clock::{Duration, Instant};
 
@@ -105,20 +105,6 @@ pub struct Texels {
     pub lit_depth: f32,
     /// Pixels of the picture.
     pub picture: UVec2,
-}
-
-/// What a picture is compared with.
-#[derive(Clone)]
-pub enum Other {
-    Shot(Box<Shot>),
-    /// Made elsewhere, and its exposure.
-    Picture(Arc<Picture<Vec4>>, f32),
-}
-
-/// A picture that was made elsewhere, on the GPU.
-struct Made {
-    picture: Arc<Picture<Vec4>>,
-    texture: wgpu::Texture,
 }
 
 impl Easel {
@@ -331,14 +317,6 @@ enum What {
     Stage(Box<Shot>),
 }
 
-/// Where egui draws, and with what.
-struct Target<'a> {
-    device: &'a wgpu::Device,
-    queue: &'a wgpu::Queue,
-    encoder: &'a mut wgpu::CommandEncoder,
-    place: ViewportInPixels,
-}
-
 impl CallbackTrait for Callback {
     fn prepare(
         &self,
@@ -441,7 +419,7 @@ impl Inner {
             }
             None => is_new |= self.other.take().is_some(),
         }
-        is_new |= self.hang(target, made);
+        is_new |= Made::hang(&mut self.made, target, made);
         let first = self.main.picture(shot.shade_tree);
         let second = self.other.as_ref().zip(drawn).and_then(|(canvas, other)| canvas.picture(other.shade_tree));
         let second = second.or(self.made.as_ref().map(|made| &made.texture)).or(first);
@@ -460,19 +438,6 @@ impl Inner {
         }
     }
 
-    /// Puts a picture that was made elsewhere on the GPU, or takes it down; tells whether it is another than before.
-    fn hang(&mut self, target: &Target<'_>, picture: Option<&Arc<Picture<Vec4>>>) -> bool {
-        let is_up = match (&self.made, picture) {
-            (Some(made), Some(picture)) => Arc::ptr_eq(&made.picture, picture),
-            (None, None) => true,
-            _ => false,
-        };
-        if !is_up {
-            self.made = picture.map(|picture| Made { texture: upload(target, picture), picture: picture.clone() });
-        }
-        !is_up
-    }
-
     fn record_stage(&mut self, target: &mut Target<'_>, shot: &Shot) {
         let stage = shot.shade_tree;
         // Drawn by the first of them.
@@ -489,103 +454,5 @@ impl Inner {
             .get_or_insert_with(|| self.developer.bind(target.device, picture, picture));
         let shown = Shown { exposure: Vec2::splat(exposure(shot)), ..target.shown() };
         self.developer.prepare(target.queue, developing, &shown);
-    }
-}
-
-impl Other {
-    /// As the picture is while something moves.
-    fn reduced(&self, divisor: u32) -> Self {
-        match self {
-            Self::Shot(shot) => Self::Shot(Box::new(reduced(shot, divisor))),
-            Self::Picture(picture, exposure) => Self::Picture(picture.clone(), *exposure),
-        }
-    }
-
-    fn exposure(&self) -> f32 {
-        match self {
-            Self::Shot(shot) => exposure(shot),
-            Self::Picture(_, exposure) => *exposure,
-        }
-    }
-}
-
-/// A picture of linear HDR as a texture of half floats.
-fn upload(target: &Target<'_>, picture: &Picture<Vec4>) -> wgpu::Texture {
-    let size = wgpu::Extent3d { width: picture.size.x, height: picture.size.y, depth_or_array_layers: 1 };
-    let texture = target.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("made picture"),
-        size,
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba16Float,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC,
-        view_formats: &[],
-    });
-    let texels: Vec<_> = picture.texels.iter().flat_map(|texel| texel.to_array().map(half::f16::from_f32)).collect();
-    let bytes: Vec<_> = texels.iter().flat_map(|channel| channel.to_le_bytes()).collect();
-    let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(8 * size.width), rows_per_image: None };
-    target.queue.write_texture(texture.as_image_copy(), &bytes, rows, size);
-    texture
-}
-
-impl Target<'_> {
-    fn shown(&self) -> Shown {
-        Shown {
-            origin: Vec2::new(self.place.left_px as f32, self.place.top_px as f32),
-            size: Vec2::new(self.place.width_px as f32, self.place.height_px as f32),
-            ..Shown::default()
-        }
-    }
-}
-
-/// A stage, and what it shows.
-struct Canvas {
-    stage: Stage,
-    /// What was drawn last.
-    shot: Option<Shot>,
-    /// Why that could not be: what was drawn before is shown.
-    error: Option<String>,
-    developing: [Option<Developing>; ShadeTree::ALL.len()],
-}
-
-impl Canvas {
-    fn new(context: &StageContext) -> Result<Self, Error> {
-        Ok(Self { stage: Stage::new(context, false)?, shot: None, error: None, developing: Default::default() })
-    }
-
-    /// True if this shot was drawn last.
-    fn shows(&self, shot: &Shot) -> bool {
-        self.shot.as_ref().is_some_and(|drawn| drawn.is_same(shot))
-    }
-
-    /// Draws a shot if it is another than the last; tells whether pictures may be others now.
-    fn record(&mut self, target: &mut Target<'_>, shot: &Shot, stages: &[ShadeTree]) -> bool {
-        if self.shows(shot) {
-            return false;
-        }
-        // Once, even if it cannot be drawn.
-        let last = self.shot.replace(shot.clone());
-        let done = self.stage.record(target.encoder, shot, stages);
-        self.error = done.err().map(|error| error.to_string());
-        last.is_none_or(|last| (last.size, last.shade_tree) != (shot.size, shot.shade_tree))
-    }
-
-    fn picture(&self, stage: ShadeTree) -> Option<&wgpu::Texture> {
-        self.stage.picture(stage)
-    }
-}
-
-/// The same shot with so many times fewer pixels each way.
-fn reduced(shot: &Shot, divisor: u32) -> Shot {
-    Shot { size: (shot.size / divisor).max(UVec2::ONE), ..shot.clone() }
-}
-
-/// Sets the scale of every system that can have another than 1.
-pub fn set_scale(preset: &mut Preset, scale: u32) {
-    for system in &mut preset.systems {
-        if system.settings.accumulate.depth_source != DepthSource::Host {
-            system.settings.accumulate.scale = scale;
-        }
     }
 }

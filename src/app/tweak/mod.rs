@@ -2,6 +2,7 @@
 
 mod action;
 mod angles;
+mod canvas;
 mod compare;
 mod document;
 mod exporting;
@@ -16,6 +17,7 @@ mod messages;
 #[cfg(test)]
 mod motion_tests;
 mod open;
+mod other;
 mod pace;
 mod panel;
 mod performance;

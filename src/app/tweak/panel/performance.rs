@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use eframe::egui::{self, Color32, Rect, Sense, Ui, pos2, vec2};
 
 use super::fields::{self, Desk};
-use crate::app::tweak::gpu::set_scale;
+use crate::app::tweak::canvas::set_scale;
 use crate::app::tweak::performance::{Performance, REMEMBERED};
 use crate::app::tweak::session::Session;
 
