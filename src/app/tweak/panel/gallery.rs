@@ -115,6 +115,11 @@ mod tests {
         harness.get_by_label("red.png").click();
         harness.run_steps(3);
         assert!(harness.query_by_label("broken.png").is_none(), "it closes");
+        // Read in the background.
+        for _ in 0..30 {
+            harness.step();
+            std::thread::sleep(std::time::Duration::from_millis(20));
+        }
         let chosen = picture(&mut harness);
         let redness = |picture: &image::RgbaImage| {
             let part = imageops::crop_imm(picture, 50, 100, 500, 400).to_image();
