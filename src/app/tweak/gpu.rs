@@ -211,9 +211,10 @@ impl Easel {
     /// As [`Easel::new`]; all is as it was then.
     pub fn set_context(&self, context: StageContext) -> Result<(), Error> {
         let (main, strip) = (Canvas::new(&context)?, Canvas::new(&context)?);
-        let mut inner = self.lock();
-        (inner.main, inner.strip, inner.other, inner.pair) = (main, strip, None, None);
+        let inner = &mut *self.lock();
+        (inner.main, inner.strip, inner.other, inner.pair, inner.captured) = (main, strip, None, None, None);
         inner.context = context;
+        inner.main.stage.set_timing(inner.timing.as_ref())?;
         Ok(())
     }
 

@@ -54,7 +54,8 @@ fn times(ui: &mut Ui, performance: &Performance) {
         }
         ui.label("");
         ui.strong("together");
-        let sum: f32 = (0..performance.names.len()).map(|index| performance.mean(index)).sum();
+        // A sum of nothing is a negative zero.
+        let sum = (0..performance.names.len()).map(|index| performance.mean(index)).sum::<f32>().max(0.0);
         ui.monospace(format!("{sum:6.3} ms"));
         ui.end_row();
     });

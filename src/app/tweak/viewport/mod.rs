@@ -57,7 +57,9 @@ impl Viewport {
         self.begin_gesture(ui, session);
         session.show.lights.follow(&session.document.preset.lights);
         let lens = Lens::new(&session.document.preset.camera, rect);
-        if !self.gizmo.interact(ui, &response, &lens, session) {
+        // While a pixel is inspected, a click is for it.
+        let is_taken = !session.inspect.is_on && self.gizmo.interact(ui, &response, &lens, session);
+        if !is_taken {
             self.steer(ui, &response, &lens, session);
         }
         self.menu(&response, &lens, session);
