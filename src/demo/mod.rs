@@ -1,6 +1,8 @@
 //! The demo scene that smoke is shown in: boxes with procedural materials, lit by the preset's lights, drawn on the GPU and
 //! on the CPU alike.
 
+pub mod apart;
+mod arriving;
 mod boxes;
 pub mod capture;
 mod cpu;

@@ -269,6 +269,11 @@ impl Stage {
         Some(Capture::record(&self.context.device, encoder, scene, &systems))
     }
 
+    /// The scene's view depth, `R32Float`, metres, on devices that can draw it.
+    pub fn linear_depth(&self) -> Option<&wgpu::Texture> {
+        self.set.as_ref()?.targets.linear.as_ref().map(wgpu::TextureView::texture)
+    }
+
     /// Draws a shot's stage now, and tells how long the device took.
     ///
     /// # Errors

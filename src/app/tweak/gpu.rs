@@ -6,6 +6,7 @@ use eframe::egui::epaint::ViewportInPixels;
 use eframe::egui_wgpu::{CallbackResources, CallbackTrait, ScreenDescriptor};
 use eframe::{egui, wgpu};
 use glam::{IVec2, UVec2, Vec2};
+use haze::demo::apart::Comparison;
 use haze::demo::capture::Capture;
 use haze::demo::develop::{Developer, Developing, Shown, exposure};
 use haze::demo::shot::Shot;
@@ -49,6 +50,10 @@ struct Inner {
     wants_capture: bool,
     capture: Option<(Shot, Capture)>,
     captured: Option<Shot>,
+    /// The two pictures are wanted back to be compared, are under way, and were, as they are.
+    wants_comparison: bool,
+    comparison: Option<Comparison>,
+    is_compared: bool,
     /// Times that the picture was drawn.
     pictures: u64,
     /// There while the picture is measured.
@@ -131,6 +136,9 @@ impl Easel {
             wants_capture: false,
             capture: None,
             captured: None,
+            wants_comparison: false,
+            comparison: None,
+            is_compared: false,
             pictures: 0,
             timing: None,
             scale: None,
@@ -296,6 +304,24 @@ impl Easel {
         self.lock().captured = None;
     }
 
+    /// Whether the two pictures are to be brought back when they stand still.
+    pub fn want_comparison(&self, wants: bool) {
+        let mut inner = self.lock();
+        inner.wants_comparison = wants;
+        inner.is_compared &= wants;
+    }
+
+    /// Two pictures that have arrived.
+    pub fn take_comparison(&self) -> Option<Comparison> {
+        self.lock().comparison.take_if(|comparison| comparison.has_arrived())
+    }
+
+    /// Two pictures are under way, or will be.
+    pub fn is_comparing(&self) -> bool {
+        let inner = self.lock();
+        inner.comparison.is_some() || inner.wants_comparison && !inner.is_compared && inner.second_is_there()
+    }
+
     fn add(&self, ui: &egui::Ui, rect: egui::Rect, what: What) {
         let callback = Callback { easel: self.clone(), rect, what };
         ui.painter().add(eframe::egui_wgpu::Callback::new_paint_callback(rect, callback));
@@ -397,6 +423,7 @@ impl Inner {
             self.timing.iter().for_each(|timing| timing.resolve(target.encoder));
             self.motion.drew = true;
             self.pictures += 1;
+            self.is_compared = false;
         }
         let is_new_shot = || self.captured.as_ref().is_none_or(|captured| !captured.is_same(shot));
         if self.wants_capture && self.capture.is_none() && is_new_shot() {
@@ -415,12 +442,15 @@ impl Inner {
                     self.other = Canvas::new(&self.context).ok();
                 }
                 if let Some(canvas) = &mut self.other {
+                    self.is_compared &= canvas.shows(other);
                     is_new |= canvas.record(target, other, &[other.shade_tree]);
                 }
             }
             None => is_new |= self.other.take().is_some(),
         }
-        is_new |= Made::hang(&mut self.made, target, made);
+        let is_hung = Made::hang(&mut self.made, target, made);
+        self.is_compared &= !is_hung;
+        is_new |= is_hung;
         let first = self.main.picture(shot.shade_tree);
         let second = self.other.as_ref().zip(drawn).and_then(|(canvas, other)| canvas.picture(other.shade_tree));
         let second = second.or(self.made.as_ref().map(|made| &made.texture)).or(first);
@@ -436,7 +466,23 @@ impl Inner {
                 ..target.shown()
             };
             self.developer.prepare(target.queue, pair, &shown);
+            let stands_still = !self.motion.is_moving && self.comparison.is_none() && !self.is_compared;
+            if let Some((first, second)) = first.zip(second)
+                && self.wants_comparison
+                && stands_still
+                && self.second_is_there()
+            {
+                let depth = self.main.stage.linear_depth();
+                let (device, encoder) = (target.device, &mut *target.encoder);
+                self.comparison = Comparison::record(device, encoder, [first, second], shown.exposure, depth);
+                self.is_compared = true;
+            }
         }
+    }
+
+    /// There are two pictures.
+    fn second_is_there(&self) -> bool {
+        self.other.is_some() || self.made.is_some()
     }
 
     fn record_stage(&mut self, target: &mut Target<'_>, shot: &Shot) {

@@ -7,6 +7,7 @@ mod compare;
 mod document;
 mod exporting;
 mod filing;
+mod gauge;
 mod gpu;
 mod health;
 mod icon;

@@ -12,6 +12,7 @@ use haze::{Error, Light, MaterialAssets};
 use super::compare::Compare;
 use super::document::difference::{changed_fields, copy_field};
 use super::document::document::Document;
+use super::gauge::Gauge;
 use super::inspect::Inspect;
 use super::lights::ShownLights;
 use super::messages::Messages;
@@ -29,6 +30,7 @@ pub struct Session {
     pub playback: Playback,
     pub show: Show,
     pub compare: Compare,
+    pub gauge: Gauge,
     pub referee: Referee,
     pub inspect: Inspect,
     pub search: Search,
@@ -64,6 +66,7 @@ impl Session {
             playback: Playback::at(preset.time),
             show: Show::default(),
             compare: Compare::default(),
+            gauge: Gauge::default(),
             referee: Referee::default(),
             inspect: Inspect::default(),
             search: Search::default(),

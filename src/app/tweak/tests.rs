@@ -72,12 +72,30 @@ fn choose(harness: &mut Harness<'_, Window>, menu: &str, entry: &str) {
     harness.run_steps(2);
 }
 
+/// The figure in the corner, once it is there and stands still.
+fn decibels(harness: &mut Harness<'_, Window>) -> f32 {
+    let mut last = None;
+    for _ in 0..100 {
+        picture(harness);
+        std::thread::sleep(std::time::Duration::from_millis(30));
+        let text = harness.query_by_label_contains("PSNR").and_then(|node| node.accesskit_node().label());
+        if text.is_some() && text == last {
+            break;
+        }
+        last = text;
+    }
+    let text = last.unwrap();
+    text.split_whitespace().nth(1).unwrap().parse().unwrap()
+}
+
 #[test]
 fn a_second_picture_shows_what_a_saving_costs() {
     let mut harness = column();
     let alone = shown(&mut harness);
     choose(&mut harness, "Compare", "Full resolution");
     assert!((shown(&mut harness) - alone).abs() < 1.0);
+    let figure = decibels(&mut harness);
+    assert!((25.0..70.0).contains(&figure), "{figure}");
     harness.get_by_label("Difference").click();
     harness.run_steps(2);
     let saved = shown(&mut harness);
@@ -95,6 +113,7 @@ fn a_second_picture_shows_what_a_saving_costs() {
         std::thread::sleep(std::time::Duration::from_millis(50));
     }
     assert!(judged < saved, "{judged} {saved}");
+    assert!(decibels(&mut harness) > figure + 5.0, "the reference is closer than a reduced target to a full one");
 }
 
 #[test]
@@ -169,6 +188,9 @@ fn pictures_of_every_tab() {
             harness.run_steps(4);
             picture(&mut harness).save(folder.join(format!("{name}_{}.png", size.0))).unwrap();
         }
+        choose(&mut harness, "Compare", "Forward");
+        decibels(&mut harness);
+        picture(&mut harness).save(folder.join(format!("compare_{}.png", size.0))).unwrap();
         harness.key_press(Key::F1);
         harness.run_steps(4);
         picture(&mut harness).save(folder.join(format!("help_{}.png", size.0))).unwrap();

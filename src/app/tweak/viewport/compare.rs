@@ -51,3 +51,18 @@ pub fn divider(ui: &Ui, rect: egui::Rect, split: &mut f32) {
         egui::Stroke::new(1.0, colour),
     );
 }
+
+/// How far the two are apart, in the lower right corner.
+pub fn figures(ui: &Ui, rect: egui::Rect, text: &str) {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::WHITE);
+    let at = rect.right_bottom() - galley.size() - egui::vec2(12.0, 10.0);
+    let plate = egui::Rect::from_min_size(at, galley.size()).expand2(egui::vec2(6.0, 3.0));
+    let response = ui.interact(plate, ui.scope_id().with("figures"), Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Status, true, text));
+    ui.painter().rect_filled(plate, 3.0, egui::Color32::from_black_alpha(170));
+    ui.painter().galley(at, galley, egui::Color32::WHITE);
+    response.on_hover_text(
+        "Peak signal-to-noise ratio of the two as they are shown; over all, and where the scene's depth jumps",
+    );
+}

@@ -72,6 +72,7 @@ impl Viewport {
         let compare = &mut session.compare;
         let exhibit = Exhibit { shot, other, split: compare.split, difference: compare.difference };
         easel.show(ui, rect, exhibit);
+        session.gauge.update(ui.ctx(), easel, compare.against.is_some());
         if compare.against.is_some() && compare.difference == 0.0 {
             divider(ui, rect, &mut compare.split);
         }
@@ -83,6 +84,9 @@ impl Viewport {
             overlay::draw(&ink, &lens, &session.show, smoke, &easel.texels());
         }
         self.gizmo.draw(&ink, &lens, session);
+        if let Some(text) = session.gauge.text() {
+            compare::figures(ui, rect, &text);
+        }
         if let Some(action) = toolbar::toolbar(ui, rect, session) {
             self.act(action, session);
             ui.ctx().request_repaint();
