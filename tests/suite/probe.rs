@@ -14,21 +14,26 @@ use crate::common::gpu;
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
-/// A shot on the GPU: what came back, and pictures of its stages.
-fn drawn(shot: &Shot, stages: &[ShadeTree]) -> (Captured, Vec<Picture<Vec4>>) {
+/// A shot on the GPU: what came back, and pictures of its stages. `None` on OpenGL, which copies no depth back.
+fn drawn(shot: &Shot, stages: &[ShadeTree]) -> Option<(Captured, Vec<Picture<Vec4>>)> {
     let gpu = gpu();
     let context = StageContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
     let mut stage = Stage::new(&context, true).unwrap();
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     stage.record(&mut encoder, shot, stages).unwrap();
-    let capture = stage.capture(&mut encoder).unwrap();
+    let capture = stage.capture(&mut encoder);
     gpu.submit(encoder).unwrap();
+    assert_eq!(capture.is_some(), context.can_capture());
+    let Some(capture) = capture else {
+        assert_eq!(gpu.adapter.get_info().backend, wgpu::Backend::Gl);
+        return None;
+    };
     // Another test's poll may be the one that brings it.
     while !capture.has_arrived() {
         std::thread::yield_now();
     }
     let read = |&shade_tree| stage.read(gpu, &Shot { shade_tree, ..shot.clone() }).unwrap();
-    (capture.read().unwrap(), stages.iter().map(read).collect())
+    Some((capture.read().unwrap(), stages.iter().map(read).collect()))
 }
 
 /// Every third pixel each way.
@@ -65,7 +70,7 @@ fn assert_alike(what: &str, told: impl Fn(&Probe) -> Option<Vec3>, probes: &[Pro
 fn the_colour_that_is_told_is_the_picture() {
     for preset in builtin::PRESETS {
         let shot = Shot::load(preset.name, SIZE).unwrap();
-        let (captured, pictures) = drawn(&shot, &[ShadeTree::Final]);
+        let Some((captured, pictures)) = drawn(&shot, &[ShadeTree::Final]) else { return };
         let probes = captured.probe(&shot, &pixels()).unwrap();
         if shot.preset.systems.iter().any(|system| system.settings.is_forward()) {
             assert!(probes.iter().all(|probe| probe.colour.is_none()), "{}", preset.name);
@@ -100,7 +105,7 @@ fn every_stage_is_told_as_it_is_shown() {
     for (index, change) in changes.iter().enumerate() {
         let mut shot = Shot::load("column", SIZE).unwrap();
         change(&mut shot.preset.systems[0].settings);
-        let (captured, pictures) = drawn(&shot, &stages.map(|(stage, _)| stage));
+        let Some((captured, pictures)) = drawn(&shot, &stages.map(|(stage, _)| stage)) else { return };
         let probes = captured.probe(&shot, &pixels()).unwrap();
         for ((stage, told), picture) in stages.iter().zip(&pictures) {
             let what = format!("{} {index}", stage.name());
@@ -118,7 +123,7 @@ fn every_stage_is_told_as_it_is_shown() {
 #[test]
 fn texels_of_another_shot_are_refused() {
     let shot = Shot::load("column", SIZE).unwrap();
-    let (captured, _) = drawn(&shot, &[ShadeTree::Final]);
+    let Some((captured, _)) = drawn(&shot, &[ShadeTree::Final]) else { return };
     let mut other = shot.clone();
     other.preset.systems[0].settings.accumulate.scale = 3;
     let error = captured.probe(&other, &[UVec2::ONE]).unwrap_err().to_string();
