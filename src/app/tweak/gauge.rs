@@ -3,7 +3,7 @@
 use eframe::egui;
 use haze::demo::apart::Apart;
 
-use super::gpu::Easel;
+use super::easel::Easel;
 use super::platform::worker::Worker;
 
 #[derive(Default)]

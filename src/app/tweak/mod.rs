@@ -2,13 +2,12 @@
 
 mod action;
 mod angles;
-mod canvas;
 mod compare;
 mod document;
+mod easel;
 mod exporting;
 mod filing;
 mod gauge;
-mod gpu;
 mod health;
 mod icon;
 mod inspect;
@@ -18,13 +17,13 @@ mod messages;
 #[cfg(test)]
 mod motion_tests;
 mod open;
-mod other;
-mod pace;
 mod panel;
 mod performance;
+mod picture_thumbnails;
 mod pictures;
 mod platform;
 mod playback;
+mod preset_thumbnails;
 mod referee;
 mod reload;
 mod search;
@@ -37,8 +36,6 @@ mod surface;
 mod testing;
 #[cfg(test)]
 mod tests;
-mod thumbnails;
-mod thumbs;
 mod viewport;
 mod window;
 

@@ -3,7 +3,7 @@
 use eframe::{egui, egui_wgpu, wgpu};
 use haze::Error;
 
-use super::gpu::Easel;
+use super::easel::Easel;
 use super::health::{Health, lose_device};
 use super::platform::clock::{Duration, Instant};
 use super::surface::paced;

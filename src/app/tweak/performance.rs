@@ -6,7 +6,7 @@ use haze::preset::{Preset, Tooltips};
 use haze::settings::Budget;
 use haze::{FrameTimes, ScaleBudget};
 
-use super::gpu::{Easel, Figures};
+use super::easel::{Easel, Figures};
 
 /// Pictures that are remembered.
 pub const REMEMBERED: usize = 200;

@@ -13,7 +13,7 @@ use haze::shader::{self, Sources};
 use haze::{Error, MaterialAssets};
 
 use super::document::document::OnDisk;
-use super::gpu::Easel;
+use super::easel::Easel;
 use super::pictures::{Pictures, names};
 use super::platform::watch::Watcher;
 use super::platform::worker::{Ticket, Worker};

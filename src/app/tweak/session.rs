@@ -17,12 +17,12 @@ use super::inspect::Inspect;
 use super::lights::ShownLights;
 use super::messages::Messages;
 use super::performance::Performance;
+use super::picture_thumbnails::PictureThumbnails;
 use super::pictures::Pictures;
 use super::playback::Playback;
 use super::referee::Referee;
 use super::search::Search;
 use super::show::Show;
-use super::thumbs::Thumbs;
 
 pub struct Session {
     /// What is edited; panels change its preset directly.
@@ -39,7 +39,7 @@ pub struct Session {
     pub tooltips: Tooltips,
     /// What the stages of the shading are.
     pub stages: Tooltips,
-    pub thumbs: Thumbs,
+    pub thumbnails: PictureThumbnails,
     /// A picture of the window is wanted here; then it closes.
     pub screenshot: Option<PathBuf>,
     /// As last loaded well.
@@ -74,7 +74,7 @@ impl Session {
             performance: Performance::default(),
             tooltips: Tooltips::of::<Preset>(),
             stages: Tooltips::of::<ShadeTree>(),
-            thumbs: Thumbs::default(),
+            thumbnails: PictureThumbnails::default(),
             screenshot: None,
             pictures: Pictures::new(preset, loaded),
             is_changed_on_disk: false,

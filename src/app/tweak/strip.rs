@@ -5,7 +5,7 @@ use glam::UVec2;
 use haze::demo::shot::Shot;
 use haze::settings::ShadeTree;
 
-use super::gpu::Easel;
+use super::easel::Easel;
 use super::session::Session;
 use crate::app::shade_tree::STAGES;
 

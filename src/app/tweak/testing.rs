@@ -7,7 +7,7 @@ use eframe::egui_wgpu;
 use egui_kittest::{Harness, HarnessBuilder};
 use image::RgbaImage;
 
-use super::gpu::Easel;
+use super::easel::Easel;
 use super::keeping::Layout;
 use super::open::device;
 use super::reload::ShaderFolder;

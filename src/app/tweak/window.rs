@@ -10,18 +10,18 @@ use haze::settings::ShadeTree;
 use image::RgbImage;
 
 use super::action::{ACTIONS, Action};
+use super::easel::Easel;
 use super::exporting::{Exporting, Product};
 use super::filing::Filing;
-use super::gpu::Easel;
 use super::inspect::lens::Lens;
 use super::inspect::{lit, panel as inspector};
 use super::keeping::{Keeping, Layout};
 use super::panel;
+use super::preset_thumbnails::PresetThumbnails;
 use super::reload::{Reload, ShaderFolder};
 use super::session::Session;
 use super::show::Tab;
 use super::strip::{after, strip};
-use super::thumbnails::Thumbnails;
 use super::viewport::Viewport;
 
 pub struct Window {
@@ -30,7 +30,7 @@ pub struct Window {
     pub reload: Reload,
     viewport: Viewport,
     pub filing: Filing,
-    pub thumbnails: Thumbnails,
+    pub thumbnails: PresetThumbnails,
     pub exporting: Exporting,
     /// The list of presets is open.
     has_browser: bool,
@@ -80,7 +80,7 @@ impl Window {
         Ok(Self {
             reload: Reload::new(&session, &shaders, &easel, easel.wake())?,
             filing: Filing::new(has_dialogs, easel.wake())?,
-            thumbnails: Thumbnails::new(easel.wake())?,
+            thumbnails: PresetThumbnails::new(easel.wake())?,
             exporting: Exporting::new(easel.wake())?,
             viewport: Viewport::default(),
             has_browser: false,

@@ -10,7 +10,7 @@ use haze::demo::shot::Shot;
 
 use super::survey::Survey;
 use super::{Inspect, Told};
-use crate::app::tweak::gpu::Easel;
+use crate::app::tweak::easel::Easel;
 use crate::app::tweak::platform::worker::Worker;
 use crate::app::tweak::session::Session;
 use crate::app::tweak::show::Tab;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui::{self, Sense, Ui, Vec2};
 
-use crate::app::tweak::thumbnails::{Entry, SIZE, Thumbnails};
+use crate::app::tweak::preset_thumbnails::{Entry, PresetThumbnails, SIZE};
 
 /// Round a picture.
 const MARGIN: f32 = 4.0;
@@ -14,7 +14,7 @@ const NAME: f32 = 20.0;
 const CELL: Vec2 = Vec2::new(SIZE.x as f32 + 2.0 * MARGIN, SIZE.y as f32 + NAME + MARGIN);
 
 /// Draws the list over the window; gives the preset that was chosen, or nothing when it is to be closed.
-pub fn panel(ui: &Ui, thumbnails: &mut Thumbnails) -> Option<Option<PathBuf>> {
+pub fn panel(ui: &Ui, thumbnails: &mut PresetThumbnails) -> Option<Option<PathBuf>> {
     thumbnails.advance(ui.ctx());
     let mut chosen = None;
     let room = ui.ctx().content_rect().size() - Vec2::new(80.0, 140.0);

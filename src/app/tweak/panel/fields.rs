@@ -10,7 +10,7 @@ use haze::settings::{Choice, FieldVisitor, Fields, PictureRole, path_of};
 
 use super::gallery::gallery;
 use super::row::{self, Row, spaced};
-use crate::app::tweak::thumbs::Thumbs;
+use crate::app::tweak::picture_thumbnails::PictureThumbnails;
 
 /// A step on the way to a field: its name, and its place where it is one of a list.
 pub type Step = (&'static str, Option<usize>);
@@ -19,7 +19,7 @@ pub type Step = (&'static str, Option<usize>);
 pub struct Desk<'a> {
     pub tooltips: &'a Tooltips,
     /// What pictures look like.
-    pub thumbs: &'a Thumbs,
+    pub thumbnails: &'a PictureThumbnails,
     /// Paths of what differs from the preset on disk.
     pub changed: &'a HashSet<String>,
     /// Why a field does nothing, by path.
@@ -160,9 +160,9 @@ impl FieldVisitor for Rows<'_, '_, '_> {
     }
 
     fn picture(&mut self, name: &'static str, value: &mut String, role: PictureRole) {
-        let thumbs = self.desk.thumbs;
+        let thumbnails = self.desk.thumbnails;
         self.row(name, |ui, label, _, path, _| {
-            gallery(ui, thumbs, role, value, path).labelled_by(label.id);
+            gallery(ui, thumbnails, role, value, path).labelled_by(label.id);
         });
     }
 

@@ -3,16 +3,22 @@
 use eframe::egui::{self, Rect, Response, Sense, Stroke, Ui, Vec2};
 use haze::settings::PictureRole;
 
-use crate::app::tweak::thumbs::{SIZE, Thumbs};
+use crate::app::tweak::picture_thumbnails::{PictureThumbnails, SIZE};
 
 /// Points of a thumbnail, and of the name below.
 const PICTURE: Vec2 = Vec2::new(SIZE[0] as f32, SIZE[1] as f32);
 const NAME: f32 = 16.0;
-/// Thumbnails in a row.
+/// PresetThumbnails in a row.
 const COLUMNS: f32 = 3.0;
 
 /// A field that names a picture: opened, it shows those that there are.
-pub fn gallery(ui: &mut Ui, thumbs: &Thumbs, role: PictureRole, value: &mut String, salt: &str) -> Response {
+pub fn gallery(
+    ui: &mut Ui,
+    thumbnails: &PictureThumbnails,
+    role: PictureRole,
+    value: &mut String,
+    salt: &str,
+) -> Response {
     let shown = if value.is_empty() { "none" } else { value.as_str() };
     let combo = egui::ComboBox::from_id_salt(salt)
         .selected_text(shown)
@@ -23,8 +29,8 @@ pub fn gallery(ui: &mut Ui, thumbs: &Thumbs, role: PictureRole, value: &mut Stri
             let gap = ui.spacing().item_spacing.x;
             ui.set_width(COLUMNS * (PICTURE.x + 8.0) + (COLUMNS + 1.0) * gap);
             ui.horizontal_wrapped(|ui| {
-                for name in thumbs.names(ui.ctx(), role) {
-                    if cell(ui, thumbs, role, &name, *value == name).clicked() {
+                for name in thumbnails.names(ui.ctx(), role) {
+                    if cell(ui, thumbnails, role, &name, *value == name).clicked() {
                         *value = name;
                         ui.close();
                     }
@@ -38,7 +44,7 @@ pub fn gallery(ui: &mut Ui, thumbs: &Thumbs, role: PictureRole, value: &mut Stri
 }
 
 /// A thumbnail with its name.
-fn cell(ui: &mut Ui, thumbs: &Thumbs, role: PictureRole, name: &str, is_chosen: bool) -> Response {
+fn cell(ui: &mut Ui, thumbnails: &PictureThumbnails, role: PictureRole, name: &str, is_chosen: bool) -> Response {
     let (rect, response) = ui.allocate_exact_size(PICTURE + Vec2::new(8.0, NAME + 4.0), Sense::click());
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_chosen, name));
     let visuals = ui.style().interact_selectable(&response, is_chosen);
@@ -47,7 +53,7 @@ fn cell(ui: &mut Ui, thumbs: &Thumbs, role: PictureRole, name: &str, is_chosen: 
     }
     let picture = Rect::from_min_size(rect.min + Vec2::splat(4.0), PICTURE);
     let text = Rect::from_min_max(picture.left_bottom(), rect.max);
-    match thumbs.texture(ui.ctx(), role, name) {
+    match thumbnails.texture(ui.ctx(), role, name) {
         Some(texture) => {
             let whole = Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
             ui.painter().image(texture, picture, whole, egui::Color32::WHITE);

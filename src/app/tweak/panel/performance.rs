@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use eframe::egui::{self, Color32, Rect, Sense, Ui, pos2, vec2};
 
 use super::fields::{self, Desk};
-use crate::app::tweak::canvas::set_scale;
+use crate::app::tweak::easel::canvas::set_scale;
 use crate::app::tweak::performance::{Performance, REMEMBERED};
 use crate::app::tweak::session::Session;
 
@@ -104,7 +104,7 @@ fn budget(ui: &mut Ui, session: &mut Session) {
     });
     let mut desk = Desk {
         tooltips: &performance.tooltips,
-        thumbs: &session.thumbs,
+        thumbnails: &session.thumbnails,
         changed: &HashSet::new(),
         inert: &|_| None,
         reset: Vec::new(),

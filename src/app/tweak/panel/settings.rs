@@ -43,10 +43,10 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
     }
     ui.separator();
     let (time, mut shown) = (session.playback.time, std::mem::take(&mut session.show.lights));
-    session.thumbs.follow(session.document.path());
+    session.thumbnails.follow(session.document.path());
     let mut desk = Desk {
         tooltips: &session.tooltips,
-        thumbs: &session.thumbs,
+        thumbnails: &session.thumbnails,
         changed: session.changed(),
         inert: &|path| session.document.preset.without_effect(path, session.show.size),
         reset: Vec::new(),

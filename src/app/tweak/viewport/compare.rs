@@ -5,7 +5,7 @@ use haze::demo::develop::exposure;
 use haze::demo::shot::Shot;
 
 use crate::app::tweak::compare::Against;
-use crate::app::tweak::other::Other;
+use crate::app::tweak::easel::other::Other;
 use crate::app::tweak::referee::Verdict;
 use crate::app::tweak::session::Session;
 

@@ -19,7 +19,7 @@ use glam::UVec2;
 use haze::{Bounds, LightKind};
 
 use super::action::InView;
-use super::gpu::{Easel, Exhibit};
+use super::easel::{Easel, Exhibit};
 use super::lights::{ShownLights, Turn, fresh};
 use super::session::Session;
 use super::smoke::{Smoke, put_behind};

@@ -6,7 +6,7 @@ use haze::{Bounds, Particle};
 
 use super::ink::Ink;
 use super::lens::Lens;
-use crate::app::tweak::gpu::Texels;
+use crate::app::tweak::easel::Texels;
 use crate::app::tweak::show::{Overlay, Show};
 use crate::app::tweak::smoke::Smoke;
 

@@ -30,7 +30,7 @@ type Decoded = (Key, Option<ColorImage>);
 
 /// See the module. Panels share it.
 #[derive(Default)]
-pub struct Thumbs(RefCell<Inner>);
+pub struct PictureThumbnails(RefCell<Inner>);
 
 #[derive(Default)]
 struct Inner {
@@ -51,7 +51,7 @@ struct Thumb {
     texture: Option<TextureHandle>,
 }
 
-impl Thumbs {
+impl PictureThumbnails {
     /// The preset whose pictures are offered.
     pub fn follow(&self, preset: &Path) {
         let is_file = preset.extension().is_some();

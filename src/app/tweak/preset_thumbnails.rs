@@ -19,7 +19,7 @@ pub const SIZE: UVec2 = UVec2::new(160, 90);
 const MOST: usize = 200;
 
 /// The presets that there are to begin with.
-pub struct Thumbnails {
+pub struct PresetThumbnails {
     worker: Worker<(PathBuf, Result<Drawn, Error>)>,
     pub entries: Vec<Entry>,
     tickets: Vec<Ticket>,
@@ -48,7 +48,7 @@ struct Drawn {
     picture: RgbImage,
 }
 
-impl Thumbnails {
+impl PresetThumbnails {
     /// `wake` is called from another thread when there is a new picture.
     ///
     /// # Errors

@@ -1,0 +1,13 @@
+//! What the pictures of the window are drawn on, as egui calls for them.
+
+mod callback;
+pub mod canvas;
+mod drawing;
+#[allow(clippy::module_inception, reason = "one file per part of what draws, and one for the whole")]
+mod easel;
+mod motion;
+pub mod other;
+mod pace;
+
+pub use drawing::{Exhibit, Figures, Texels};
+pub use easel::Easel;
