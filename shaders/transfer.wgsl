@@ -26,6 +26,9 @@ override DIFFUSE_MODE: u32 = DIFFUSE_MODE_RAMP;
 override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
 override NORMAL_DECODE: u32 = NORMAL_DECODE_EXACT;
 override WEIGHT_SUM: bool = false;
+const COVERAGE_MODE_LINEAR: u32 = 0u;
+const COVERAGE_MODE_RAMP: u32 = 1u;
+override COVERAGE_MODE: u32 = COVERAGE_MODE_LINEAR;
 // True: draw the back faces, never clipped away by the near plane. False: the front faces, depth-tested.
 override BACK_FACES: bool = false;
 // True: there is no reduced depth, sprites were compared with the host's own.
@@ -108,7 +111,10 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     if amount <= 0.0 {
         discard;
     }
-    let covered = coverage(amount, system.boost);
+    var covered = coverage(amount, system.boost);
+    if COVERAGE_MODE == COVERAGE_MODE_RAMP {
+        covered = painted_coverage(sample_ramp(coverage_ramp, linear_sampler, covered));
+    }
     var weights = amount;
     if WEIGHT_SUM {
         weights = sample_target(weight_sum, pixel).r;

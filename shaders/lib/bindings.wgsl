@@ -28,6 +28,7 @@ const MAX_LIGHTS: u32 = 128u;
 @group(2) @binding(7) var age_ramp: texture_2d<f32>;
 @group(2) @binding(8) var noise: texture_3d<f32>;
 @group(2) @binding(9) var repeat_sampler: sampler;
+@group(2) @binding(10) var coverage_ramp: texture_2d<f32>;
 
 // The host's depth at a pixel of the view.
 fn load_scene_depth(pixel: vec2i) -> f32 {

@@ -1,5 +1,7 @@
 // The light of one point of the smoke. View space, metres, linear colour.
 
+#import "lib/colour.wgsl"
+
 // Mirrors LightUniform in src/formula/uniforms.rs.
 struct Light {
     // Point and spot.
@@ -67,6 +69,12 @@ fn soft_scatter_weight(amount: f32, scatter_amount: f32, scatter_smooth: f32) ->
 // How much of the scene the smoke hides. (OTEE "Diffuse lighting", col.a)
 fn coverage(amount: f32, boost: f32) -> f32 {
     return saturate(amount * boost);
+}
+
+// How much of the scene smoke hides where the coverage ramp is this light. Paint is read as it looks, the sRGB code of its
+// luminance: grey in the middle hides half.
+fn painted_coverage(paint: vec3f) -> f32 {
+    return srgb_from_linear(saturate(dot(paint, vec3f(0.2126, 0.7152, 0.0722))));
 }
 
 // How much of the smoke, by view depth, lies in front of a light: 0 before its near side, 1 behind its far side.

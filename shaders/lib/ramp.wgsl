@@ -3,9 +3,26 @@
 // True: filter in the shader in f32, as the reference does. False: the sampler's filter, often 8 bits of weight.
 override EXACT_FILTERING: bool = false;
 
-fn sample_ramp_2d(ramp: texture_2d<f32>, linear_sampler: sampler, coordinate: vec2f) -> vec3f {
+const RAMP_FILTER_BILINEAR: u32 = 0u;
+const RAMP_FILTER_NEAREST: u32 = 1u;
+override RAMP_FILTER: u32 = RAMP_FILTER_BILINEAR;
+
+// Where a coordinate lies among the texels.
+fn ramp_texel(size: vec2f, coordinate: vec2f) -> vec2f {
+    return saturate(coordinate) * (size - 1.0);
+}
+
+fn sample_ramp_nearest(ramp: texture_2d<f32>, coordinate: vec2f) -> vec3f {
     let size = vec2f(textureDimensions(ramp));
-    let texel = saturate(coordinate) * (size - 1.0);
+    return textureLoad(ramp, vec2i(ramp_texel(size, coordinate) + 0.5), 0).rgb;
+}
+
+fn sample_ramp_2d(ramp: texture_2d<f32>, linear_sampler: sampler, coordinate: vec2f) -> vec3f {
+    if RAMP_FILTER == RAMP_FILTER_NEAREST {
+        return sample_ramp_nearest(ramp, coordinate);
+    }
+    let size = vec2f(textureDimensions(ramp));
+    let texel = ramp_texel(size, coordinate);
     if !EXACT_FILTERING {
         return textureSampleLevel(ramp, linear_sampler, (texel + 0.5) / size, 0.0).rgb;
     }

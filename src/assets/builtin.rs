@@ -45,6 +45,9 @@ pub const RAMPS: &[Builtin] = builtin!(
         "specular_halo",
         "specular_ember",
         "age_smoke",
+        "coverage_soft",
+        "coverage_toon",
+        "coverage_wispy",
     ]
 );
 

@@ -8,7 +8,7 @@ use super::sprite::Sprite;
 use crate::error::FieldError;
 use crate::formula::diffuse_bake::zonal_coefficients;
 use crate::formula::ramp::sample_ramp;
-use crate::settings::Settings;
+use crate::settings::{RampFilter, Settings};
 
 /// The pictures in memory. The reference renderer works on these; the GPU renderer uploads them.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +30,9 @@ pub struct MaterialAssets {
     pub motif: Ramp,
     /// Colour of a particle by its age, forward only. One row. (MS)
     pub age_ramp: Ramp,
+    /// Coverage by amount times `boost`, for [`CoverageMode::Ramp`](crate::settings::CoverageMode::Ramp): black hides nothing, white
+    /// all. One row.
+    pub coverage_ramp: Ramp,
 }
 
 impl MaterialAssets {
@@ -46,8 +49,15 @@ impl MaterialAssets {
             && self.ramps().iter().zip(other.ramps()).all(|(a, b)| a.shares(b))
     }
 
-    fn ramps(&self) -> [&Ramp; 5] {
-        [&self.diffuse_ramp, &self.soft_scatter_ramp, &self.specular_ramp, &self.motif, &self.age_ramp]
+    fn ramps(&self) -> [&Ramp; 6] {
+        [
+            &self.diffuse_ramp,
+            &self.soft_scatter_ramp,
+            &self.specular_ramp,
+            &self.motif,
+            &self.age_ramp,
+            &self.coverage_ramp,
+        ]
     }
 
     pub(crate) fn info(&self) -> MaterialInfo {
@@ -58,7 +68,7 @@ impl MaterialAssets {
                 frame_count: detail.frame_count(),
                 lod: (self.sprite.size() as f32 / detail.size() as f32).log2(),
             }),
-            zonal: zonal_coefficients(|cos| sample_ramp(&self.diffuse_ramp, cos * 0.5 + 0.5)),
+            zonal: zonal_coefficients(|cos| sample_ramp(&self.diffuse_ramp, RampFilter::Bilinear, cos * 0.5 + 0.5)),
         }
     }
 }

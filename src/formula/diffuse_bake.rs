@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 
 use super::ramp::sample_ramp_2d;
 use super::texture::Texture2d;
-use crate::settings::DiffuseMode;
+use crate::settings::{DiffuseMode, RampFilter};
 
 /// Side and layers of the texture that a mode bakes into; `None` for those that bake nothing. A ramp's gradient is broad: 32
 /// texels across 90 degrees resolve it; the motif has to hold the rim, where its texels shrink, and gets twice that.
@@ -70,7 +70,7 @@ pub fn motif_position(normal: Vec3) -> Vec2 {
 
 /// Baked light, of one face or the motif. `position` is −1..1 on it; the first row is −1.
 pub fn sample_baked(baked: &impl Texture2d, position: Vec2) -> Vec3 {
-    sample_ramp_2d(baked, position * 0.5 + 0.5)
+    sample_ramp_2d(baked, RampFilter::Bilinear, position * 0.5 + 0.5)
 }
 
 /// The nine real spherical-harmonic basis functions to L2 in a direction, in the order of the coefficients.

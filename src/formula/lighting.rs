@@ -2,6 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
+use super::colour::srgb_from_linear;
 use super::saturate;
 use super::uniforms::LightUniform;
 
@@ -54,6 +55,12 @@ pub fn soft_scatter_weight(amount: f32, scatter_amount: f32, scatter_smooth: f32
 /// How much of the scene the smoke hides. (OTEE "Diffuse lighting", col.a)
 pub fn coverage(amount: f32, boost: f32) -> f32 {
     saturate(amount * boost)
+}
+
+/// How much of the scene smoke hides where the coverage ramp is this light. Paint is read as it looks, the sRGB code of its
+/// luminance: grey in the middle hides half.
+pub fn painted_coverage(paint: Vec3) -> f32 {
+    srgb_from_linear(saturate(paint.dot(Vec3::new(0.2126, 0.7152, 0.0722))))
 }
 
 /// How much of the box, by view depth, lies in front of a light. (OTEE "Specular scattering")

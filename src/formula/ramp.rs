@@ -3,11 +3,25 @@
 use glam::{UVec2, Vec2, Vec3, Vec4Swizzles};
 
 use super::texture::Texture2d;
+use crate::settings::RampFilter;
 
-/// Bilinear; the first and last texel centres stand for 0 and 1.
-pub fn sample_ramp_2d(ramp: &impl Texture2d, coordinate: Vec2) -> Vec3 {
+/// Where a coordinate lies among the texels: the first and last texel centres stand for 0 and 1.
+pub fn ramp_texel(size: UVec2, coordinate: Vec2) -> Vec2 {
+    coordinate.clamp(Vec2::ZERO, Vec2::ONE) * (size.as_vec2() - 1.0)
+}
+
+/// The texel that is nearest.
+pub fn sample_ramp_nearest(ramp: &impl Texture2d, coordinate: Vec2) -> Vec3 {
+    ramp.load((ramp_texel(ramp.dimensions(), coordinate) + 0.5).as_uvec2()).xyz()
+}
+
+/// A ramp of two axes.
+pub fn sample_ramp_2d(ramp: &impl Texture2d, filter: RampFilter, coordinate: Vec2) -> Vec3 {
+    if filter == RampFilter::Nearest {
+        return sample_ramp_nearest(ramp, coordinate);
+    }
     let size = ramp.dimensions();
-    let texel = coordinate.clamp(Vec2::ZERO, Vec2::ONE) * (size.as_vec2() - 1.0);
+    let texel = ramp_texel(size, coordinate);
     let base = texel.floor();
     let fraction = texel - base;
     let low = base.as_uvec2();
@@ -19,6 +33,6 @@ pub fn sample_ramp_2d(ramp: &impl Texture2d, coordinate: Vec2) -> Vec3 {
 }
 
 /// A ramp of one row.
-pub fn sample_ramp(ramp: &impl Texture2d, u: f32) -> Vec3 {
-    sample_ramp_2d(ramp, Vec2::new(u, 0.0))
+pub fn sample_ramp(ramp: &impl Texture2d, filter: RampFilter, u: f32) -> Vec3 {
+    sample_ramp_2d(ramp, filter, Vec2::new(u, 0.0))
 }

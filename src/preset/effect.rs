@@ -7,7 +7,9 @@ use super::preset::{Preset, PresetSystem};
 use crate::assets::builtin;
 use crate::emitter::EmitterShape;
 use crate::frame::{Light, LightKind};
-use crate::settings::{DiffuseMode, FadeCurve, Order, SoftScatterMode, SpriteAnimation, Technique, Upsample};
+use crate::settings::{
+    CoverageMode, DiffuseMode, FadeCurve, Order, SoftScatterMode, SpriteAnimation, Technique, Upsample,
+};
 
 /// A reason, whether it holds, and what does nothing then: fields, or groups of them.
 struct Row<T> {
@@ -41,8 +43,10 @@ const OF_SYSTEMS: &[Row<PresetSystem>] = &[
             "settings.accumulate.depth_source",
             "settings.accumulate.depth_downsample",
             "settings.accumulate.upsample",
+            "settings.coverage",
             "settings.diffuse.mode",
             "settings.specular_scatter",
+            "material.coverage_ramp",
             "material.specular_ramp",
             "material.motif",
         ],
@@ -177,6 +181,8 @@ const OF_SYSTEMS: &[Row<PresetSystem>] = &[
         |s, _| s.settings.soft_scatter.mode != SoftScatterMode::Ramp,
         &["material.soft_scatter_ramp"],
     ),
+    row("only with coverage ramp", |s, _| s.settings.coverage != CoverageMode::Ramp, &["material.coverage_ramp"]),
+    row("no ramp is looked up", looks_up_no_ramp, &["settings.ramp_filter"]),
     row(
         "only at an intensity of specular scatter above 0",
         |s, _| s.settings.specular_scatter.intensity <= 0.0,
@@ -295,6 +301,19 @@ fn stands_still(system: &PresetSystem, _: UVec2) -> bool {
 
 fn is_painted(system: &PresetSystem) -> bool {
     system.settings.diffuse.mode == DiffuseMode::PaintedMotif
+}
+
+fn looks_up_no_ramp(system: &PresetSystem, _: UVec2) -> bool {
+    let settings = &system.settings;
+    let (is_forward, is_lit) = (settings.is_forward(), settings.diffuse.intensity > 0.0);
+    let by_normal = is_lit && (is_forward || settings.diffuse.mode != DiffuseMode::SphericalHarmonics);
+    let by_amount = settings.soft_scatter.intensity > 0.0 && settings.soft_scatter.mode == SoftScatterMode::Ramp;
+    let others = if is_forward {
+        settings.sprite.age_colour > 0.0
+    } else {
+        settings.coverage == CoverageMode::Ramp || settings.specular_scatter.intensity > 0.0
+    };
+    !(by_normal || by_amount || others)
 }
 
 fn needs_no_up(system: &PresetSystem, _: UVec2) -> bool {

@@ -33,6 +33,8 @@ settings! {
         motif: String = "motif_studio".into(), picture(PictureRole::Motif);
         /// Colour by age.
         age_ramp: String = "age_smoke".into(), picture(PictureRole::Ramp);
+        /// Coverage by amount.
+        coverage_ramp: String = "coverage_soft".into(), picture(PictureRole::Ramp);
         /// Tiling 3D noise: a built-in one, or a PNG of slices below each other.
         noise: String = "fbm".into(), picture(PictureRole::Noise);
     }
@@ -68,6 +70,7 @@ impl MaterialNames {
             specular_ramp: ramp("specular_ramp", &self.specular_ramp, builtin::RAMPS)?,
             motif: ramp("motif", &self.motif, builtin::MOTIFS)?,
             age_ramp: ramp("age_ramp", &self.age_ramp, builtin::RAMPS)?,
+            coverage_ramp: ramp("coverage_ramp", &self.coverage_ramp, builtin::RAMPS)?,
         })
     }
 

@@ -41,6 +41,8 @@ pub struct SystemProbe {
     pub system: usize,
     /// Accumulated alpha, 0 to 1.
     pub amount: f32,
+    /// Amount times `boost`, 0 to 1: where the coverage ramp is looked up.
+    pub coverage_coordinate: f32,
     /// Share of what is behind that is hidden.
     pub coverage: f32,
     /// Unit length, view space: z towards the viewer.
@@ -173,7 +175,8 @@ impl<'a> Smoke<'a> {
         Some(SystemProbe {
             system: index,
             amount,
-            coverage: coverage(amount, system.boost),
+            coverage_coordinate: coverage(amount, system.boost),
+            coverage: smoke.coverage(amount),
             normal,
             lights: draw.lights.iter().zip(&glows).zip(&self.lights).map(light).collect(),
             diffuse: smoke.diffuse(normal, position),

@@ -59,6 +59,7 @@ impl Layouts {
                     texture(filterable, D2),
                     texture(filterable, D3),
                     wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+                    texture(filterable, D2),
                 ],
             ),
             accumulate: layout("haze accumulate inputs", &[texture(unfilterable, D2)]),

@@ -67,6 +67,7 @@ pub(crate) fn create_material(
     let specular_ramp = ramp("haze specular_ramp", &assets.specular_ramp);
     let motif = ramp("haze painted_motif", &assets.motif);
     let age_ramp = ramp("haze age_ramp", &assets.age_ramp);
+    let coverage_ramp = ramp("haze coverage_ramp", &assets.coverage_ramp);
     let texture = |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
     let sampler =
         |binding, sampler| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::Sampler(sampler) };
@@ -84,6 +85,7 @@ pub(crate) fn create_material(
             texture(7, &age_ramp),
             texture(8, &noise),
             sampler(9, &shared.repeat),
+            texture(10, &coverage_ramp),
         ],
     });
     Ok(Material { context, bind_group, info: assets.info(), bytes })
@@ -108,6 +110,7 @@ fn validate_sizes(limits: &wgpu::Limits, assets: &MaterialAssets) -> Result<(), 
         ("specular_ramp", &assets.specular_ramp),
         ("motif", &assets.motif),
         ("age_ramp", &assets.age_ramp),
+        ("coverage_ramp", &assets.coverage_ramp),
     ];
     for (name, ramp) in ramps {
         check(name, ramp.size().max_element(), flat)?;

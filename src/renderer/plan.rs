@@ -100,6 +100,7 @@ pub(crate) fn plan<'a>(situation: &Situation<'a>, settings: &Settings, back_face
         age_colour: settings.sprite.age_colour > 0.0,
         shows_through: settings.fade_through() > 0.0,
         soft_scatter_mode: settings.soft_scatter.mode,
+        ramp_filter: settings.ramp_filter,
         reversed: situation.reversed,
     };
     Plan::Forward(ForwardPlan { reads_linear, key })
@@ -130,7 +131,7 @@ fn deferred<'a>(
     reads_linear: bool,
 ) -> DeferredPlan<'a> {
     let (accumulate, stages) = (&settings.accumulate, situation.stages);
-    let (host, exact_filtering) = (situation.host, situation.exact_filtering);
+    let (host, ramp_filter, exact_filtering) = (situation.host, settings.ramp_filter, situation.exact_filtering);
     let host_depth = accumulate.depth_source == DepthSource::Host;
     let depth_test = depth_test(situation, settings);
     let downsample = |copy| DepthDownsampleKey { mode: accumulate.depth_downsample, copy };
@@ -149,7 +150,7 @@ fn deferred<'a>(
         reads_linear,
         depth_downsample: (!host_depth).then(|| downsample(false)),
         depth_copy: (depth_test == DepthTest::Copy).then(|| downsample(true)),
-        diffuse_bake: bakes.then_some(DiffuseBakeKey { mode: settings.diffuse.mode, exact_filtering }),
+        diffuse_bake: bakes.then_some(DiffuseBakeKey { mode: settings.diffuse.mode, ramp_filter, exact_filtering }),
         accumulate: accumulate_key,
         overdraw: stages.contains(&ShadeTree::Overdraw).then_some(AccumulateKey { overdraw: true, ..accumulate_key }),
         transfer: TransferKey {
@@ -166,10 +167,17 @@ fn deferred<'a>(
             back_faces: back_faces || host.depth_format.is_none(),
             reversed: situation.reversed,
             mirrored: situation.mirrored,
+            coverage: settings.coverage,
+            ramp_filter,
             exact_filtering,
         },
         stages,
-        specular_scatter: glows.then_some(SpecularScatterKey { host, upsample: accumulate.upsample, exact_filtering }),
+        specular_scatter: glows.then_some(SpecularScatterKey {
+            host,
+            upsample: accumulate.upsample,
+            ramp_filter,
+            exact_filtering,
+        }),
     }
 }
 

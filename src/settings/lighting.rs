@@ -33,6 +33,28 @@ choice! {
     }
 }
 
+choice! {
+    /// How the amount becomes coverage: the share of what is behind that is hidden.
+    CoverageMode {
+        /// Times `boost`.
+        #[default]
+        Linear = "linear",
+        /// Through the coverage ramp, looked up at the amount times `boost`: silhouettes by paint.
+        Ramp = "ramp",
+    }
+}
+
+choice! {
+    /// What a ramp gives between two of its texels.
+    RampFilter {
+        /// A mix of both.
+        #[default]
+        Bilinear = "bilinear",
+        /// The nearer of them: hard steps.
+        Nearest = "nearest",
+    }
+}
+
 settings! {
     /// Diffuse light: `ramp(dot(n, l)/2 + 1/2)` per light.
     #[derive(Clone, Copy, Debug, PartialEq)]

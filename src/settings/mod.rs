@@ -22,7 +22,7 @@ pub use budget::{Budget, ScaleBudget};
 pub use choice::Choice;
 pub(crate) use choice::choice;
 pub use fields::{FieldVisitor, Fields, PictureRole, validate};
-pub use lighting::{Diffuse, DiffuseMode, SoftScatter, SoftScatterMode, SpecularScatter};
+pub use lighting::{CoverageMode, Diffuse, DiffuseMode, RampFilter, SoftScatter, SoftScatterMode, SpecularScatter};
 pub use set::set_field;
 pub use soft_fade::{FadeCurve, SoftFade};
 pub(crate) use table::settings;
@@ -109,6 +109,10 @@ settings! {
         technique: Technique = Technique::Soft, choice;
         /// Multiplies the accumulated amount into coverage. OTEE's value is 3.
         boost: f32 = 3.0, number(0.0..=16.0, "");
+        /// How the amount becomes coverage.
+        coverage: CoverageMode = CoverageMode::default(), choice;
+        /// What ramps give between two texels.
+        ramp_filter: RampFilter = RampFilter::default(), choice;
         /// What sprites show.
         sprite: SpriteSettings = SpriteSettings::default(), group;
         /// Sprites to normal + amount.

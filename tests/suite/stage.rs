@@ -101,6 +101,7 @@ pub fn material() -> MaterialAssets {
         soft_scatter_ramp: line(Vec3::splat(0.3), Vec3::ZERO),
         specular_ramp: Ramp::from_linear(UVec2::new(16, 8), (0..128).map(glow)),
         motif: line(Vec3::ZERO, Vec3::ONE),
+        coverage_ramp: Ramp::from_linear(UVec2::new(16, 1), (0..16).map(|i| Vec3::splat((i as f32 / 15.0).powi(3)))),
         age_ramp: line(vec3(1.0, 0.2, 0.1), vec3(0.2, 0.4, 1.0)),
     }
 }

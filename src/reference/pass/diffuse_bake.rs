@@ -4,6 +4,7 @@ use glam::{UVec2, Vec3};
 use half::f16;
 
 use crate::assets::picture::Picture;
+use crate::assets::ramp::Ramp;
 use crate::formula::colour::bounded_light;
 use crate::formula::diffuse_bake::{baked_size_and_layers, cube_direction, motif_normal};
 use crate::formula::lighting::{diffuse_coordinate, sample_light, soft_scatter_weight};
@@ -13,20 +14,25 @@ use crate::reference::draw::Draw;
 use crate::settings::{DiffuseMode, SoftScatterMode};
 
 impl Draw<'_> {
+    /// A ramp of one row, as the settings have it looked up.
+    pub fn sample_ramp(&self, ramp: &Ramp, u: f32) -> Vec3 {
+        sample_ramp(ramp, self.settings.ramp_filter, u)
+    }
+
     pub fn diffuse_from_lights(&self, normal: Vec3, position: Vec3) -> Vec3 {
         self.lights.iter().map(|light| self.diffuse_from_light(light, normal, position)).sum()
     }
 
     pub fn diffuse_from_light(&self, light: &LightUniform, normal: Vec3, position: Vec3) -> Vec3 {
         let sample = sample_light(light, position);
-        let falloff = sample_ramp(&self.material.diffuse_ramp, diffuse_coordinate(normal, sample.direction));
+        let falloff = self.sample_ramp(&self.material.diffuse_ramp, diffuse_coordinate(normal, sample.direction));
         falloff * light.colour * sample.attenuation
     }
 
     pub fn soft_scatter(&self, amount: f32) -> Vec3 {
         let system = &self.system;
         let colour = match self.settings.soft_scatter.mode {
-            SoftScatterMode::Ramp => sample_ramp(&self.material.soft_scatter_ramp, amount),
+            SoftScatterMode::Ramp => self.sample_ramp(&self.material.soft_scatter_ramp, amount),
             SoftScatterMode::Smoothstep => {
                 let weight = soft_scatter_weight(amount, system.scatter_amount, system.scatter_smooth);
                 system.scatter_colour.lerp(system.ambient_colour, weight)

@@ -6,7 +6,6 @@ use crate::assets::picture::Picture;
 use crate::formula::blending::forward_fragment;
 use crate::formula::colour::bounded_light;
 use crate::formula::lighting::coverage;
-use crate::formula::ramp::sample_ramp;
 use crate::reference::blend_unit::forward_blend;
 use crate::reference::draw::Draw;
 use crate::reference::sprite::Grid;
@@ -26,7 +25,7 @@ impl Draw<'_> {
                 let normal = fragment.xyz() / fragment.xyz().length_squared().max(1.0e-12).sqrt();
                 let position = self.view_position(at.as_vec2() + 0.5, sprite.view_depth.max(self.view.near));
                 let diffuse = self.diffuse_from_lights(normal, position) * system.diffuse_intensity;
-                let colour = sample_ramp(&self.material.age_ramp, sprite.age);
+                let colour = self.sample_ramp(&self.material.age_ramp, sprite.age);
                 let light = (diffuse + self.soft_scatter(amount)) * Vec3::ONE.lerp(colour, system.age_colour);
                 let source = forward_fragment(mode, bounded_light(light), coverage(amount, system.boost));
                 *texel = forward_blend(mode, source, *texel);

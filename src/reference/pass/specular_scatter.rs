@@ -67,7 +67,7 @@ impl Accumulated<'_> {
             return None;
         }
         let coordinate = Vec2::new(distance_squared, amount);
-        let found = sample_ramp_2d(&draw.material.specular_ramp, coordinate);
+        let found = sample_ramp_2d(&draw.material.specular_ramp, draw.settings.ramp_filter, coordinate);
         let to_light = glow.light.position - draw.view_position(pixel, -draw.system.centre.z);
         let window = range_window(to_light.length_squared(), glow.light.inverse_range);
         Some((coordinate, bounded_light(found * glow.colour * window)))

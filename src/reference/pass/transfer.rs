@@ -5,13 +5,13 @@ use glam::{IVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use crate::assets::picture::Picture;
 use crate::formula::colour::{bounded_light, overdraw_colour};
 use crate::formula::diffuse_bake::{cube_coordinate, motif_position, sample_baked, spherical_harmonics};
-use crate::formula::lighting::coverage;
+use crate::formula::lighting::{coverage, painted_coverage};
 use crate::formula::normal::normal_from_accumulation;
 use crate::formula::ramp::sample_ramp_2d;
 use crate::formula::saturate;
 use crate::reference::accumulated::Accumulated;
 use crate::reference::blend_unit::premultiplied_over;
-use crate::settings::{DiffuseMode, ShadeTree};
+use crate::settings::{CoverageMode, DiffuseMode, ShadeTree};
 
 impl Accumulated<'_> {
     pub fn diffuse(&self, normal: Vec3, position: Vec3) -> Vec3 {
@@ -23,7 +23,10 @@ impl Accumulated<'_> {
                 sample_baked(&self.baked[cube.face as usize], cube.position)
             }
             DiffuseMode::Motif => sample_baked(&self.baked[0], motif_position(normal)),
-            DiffuseMode::PaintedMotif => sample_ramp_2d(&draw.material.motif, motif_position(normal) * 0.5 + 0.5),
+            DiffuseMode::PaintedMotif => {
+                let filter = draw.settings.ramp_filter;
+                sample_ramp_2d(&draw.material.motif, filter, motif_position(normal) * 0.5 + 0.5)
+            }
             DiffuseMode::SphericalHarmonics => spherical_harmonics(&draw.system.spherical_harmonics, normal),
         };
         light * draw.system.diffuse_intensity
@@ -75,7 +78,7 @@ impl Accumulated<'_> {
         if amount <= 0.0 {
             return None;
         }
-        let covered = coverage(amount, system.boost);
+        let covered = self.coverage(amount);
         let normal = self.normal(accumulated, pixel);
         if shade_tree == ShadeTree::Normals {
             return Some((normal * 0.5 + 0.5).extend(1.0) * covered);
@@ -89,6 +92,17 @@ impl Accumulated<'_> {
         }
         Some(bounded_light(light).extend(1.0) * covered)
     }
+
+    /// How much of the scene the smoke hides.
+    pub fn coverage(&self, amount: f32) -> f32 {
+        let draw = self.draw;
+        let linear = coverage(amount, draw.system.boost);
+        match draw.settings.coverage {
+            CoverageMode::Linear => linear,
+            CoverageMode::Ramp => painted_coverage(draw.sample_ramp(&draw.material.coverage_ramp, linear)),
+        }
+    }
+
     fn normal(&self, accumulated: Vec4, pixel: Vec2) -> Vec3 {
         let accumulate = &self.draw.settings.accumulate;
         let weights = self.weight_sum.as_ref().map_or(accumulated.w, |sum| self.sample_target(sum, pixel).x);

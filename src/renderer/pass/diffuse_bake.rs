@@ -7,17 +7,18 @@ use std::sync::Arc;
 
 use super::Groups;
 use crate::formula::diffuse_bake::baked_size_and_layers;
-use crate::renderer::gpu::pipeline::{PipelineParts, color_target, switch};
+use crate::renderer::gpu::pipeline::{PipelineParts, color_target, switch, variant};
 use crate::renderer::gpu::record::{begin_pass, color_attachment};
 use crate::renderer::gpu::timing::Timing;
 use crate::renderer::targets::BAKED_DIFFUSE_FORMAT;
-use crate::settings::DiffuseMode;
+use crate::settings::{DiffuseMode, RampFilter};
 
 /// What makes one baking pipeline differ from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct DiffuseBakeKey {
     /// One that bakes.
     pub mode: DiffuseMode,
+    pub ramp_filter: RampFilter,
     pub exact_filtering: bool,
 }
 
@@ -33,6 +34,7 @@ pub(crate) fn describe(key: DiffuseBakeKey) -> PipelineParts {
         constants: vec![
             switch("MOTIF", key.mode == DiffuseMode::Motif),
             ("BAKE_SIZE", f64::from(side)),
+            variant!("RAMP_FILTER", key.ramp_filter),
             switch("EXACT_FILTERING", key.exact_filtering),
         ],
     }

@@ -6,13 +6,14 @@
 use super::Groups;
 use crate::renderer::gpu::host_pass::HostPass;
 use crate::renderer::gpu::pipeline::{ADDITIVE, PipelineParts, STRIP, read_only_depth, switch, variant};
-use crate::settings::Upsample;
+use crate::settings::{RampFilter, Upsample};
 
 /// What makes one specular scatter pipeline differ from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct SpecularScatterKey {
     pub host: HostPass,
     pub upsample: Upsample,
+    pub ramp_filter: RampFilter,
     pub exact_filtering: bool,
 }
 
@@ -28,6 +29,7 @@ pub(crate) fn describe(key: SpecularScatterKey) -> PipelineParts {
         constants: vec![
             variant!("UPSAMPLE", key.upsample),
             switch("GAMMA_TARGET", key.host.gamma_target),
+            variant!("RAMP_FILTER", key.ramp_filter),
             switch("EXACT_FILTERING", key.exact_filtering),
         ],
     }

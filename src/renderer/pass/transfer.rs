@@ -6,7 +6,9 @@
 use super::Groups;
 use crate::renderer::gpu::host_pass::HostPass;
 use crate::renderer::gpu::pipeline::{PREMULTIPLIED_OVER, PipelineParts, in_front, read_only_depth, switch, variant};
-use crate::settings::{DiffuseMode, NormalDecode, NormalEncoding, ShadeTree, SoftScatterMode, Upsample};
+use crate::settings::{
+    CoverageMode, DiffuseMode, NormalDecode, NormalEncoding, RampFilter, ShadeTree, SoftScatterMode, Upsample,
+};
 
 /// Vertices of the box: twelve triangles.
 const BOX_VERTICES: u32 = 36;
@@ -28,6 +30,8 @@ pub(crate) struct TransferKey {
     pub reversed: bool,
     /// The view mirrors: faces turn the other way round.
     pub mirrored: bool,
+    pub coverage: CoverageMode,
+    pub ramp_filter: RampFilter,
     pub exact_filtering: bool,
 }
 
@@ -59,6 +63,8 @@ pub(crate) fn describe(key: TransferKey) -> PipelineParts {
             switch("HOST_DEPTH", key.host_depth),
             switch("BACK_FACES", key.back_faces),
             switch("GAMMA_TARGET", key.host.gamma_target),
+            variant!("COVERAGE_MODE", key.coverage),
+            variant!("RAMP_FILTER", key.ramp_filter),
             switch("EXACT_FILTERING", key.exact_filtering),
         ],
     }

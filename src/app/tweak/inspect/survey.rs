@@ -25,6 +25,8 @@ pub enum Spot {
     SoftScatter(f32),
     /// By distance² and amount.
     Specular(Vec2),
+    /// By amount times boost.
+    Coverage(f32),
 }
 
 /// Smoke at the pixels that were looked at.
@@ -82,8 +84,20 @@ impl Survey {
 
     /// What a system looks up in the soft scatter ramp: its amounts.
     pub fn by_amount(&self, system: usize) -> Vec<f32> {
+        self.count(system, |probe| (probe.amount, probe.coverage))
+    }
+
+    /// What it looks up in the coverage ramp. Every pixel counts as much: also where the ramp hides nothing.
+    pub fn by_coverage(&self, system: usize) -> Vec<f32> {
+        self.count(system, |probe| (probe.coverage_coordinate, 1.0))
+    }
+
+    /// A histogram of a coordinate by a weight.
+    fn count(&self, system: usize, of: impl Fn(&SystemProbe) -> (f32, f32)) -> Vec<f32> {
         let mut bins = vec![0.0; BINS];
-        self.of_system(system).for_each(|(_, probe)| bins[bin(probe.amount, BINS)] += probe.coverage);
+        for (coordinate, weight) in self.of_system(system).map(|(_, probe)| of(probe)) {
+            bins[bin(coordinate, BINS)] += weight;
+        }
         let most = bins.iter().fold(0.0, |a: f32, b| a.max(*b));
         scale(&mut bins, most);
         bins
@@ -108,6 +122,7 @@ impl Survey {
         let looks_up = |probe: &SystemProbe| match spot {
             Spot::Diffuse(x) => probe.lights.iter().any(|light| is_near(light.coordinate, x)),
             Spot::SoftScatter(x) => is_near(probe.amount, x),
+            Spot::Coverage(x) => is_near(probe.coverage_coordinate, x),
             Spot::Specular(at) => probe
                 .lights
                 .iter()

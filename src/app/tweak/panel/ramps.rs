@@ -5,6 +5,7 @@ use glam::UVec2;
 use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
 use haze::ramp::Ramp;
 use haze::reference::SystemProbe;
+use haze::settings::RampFilter;
 
 use super::row::spaced;
 use crate::app::tweak::inspect::survey::{BINS, Histogram, SIDE, Spot};
@@ -33,6 +34,7 @@ pub fn panel(ui: &mut Ui, session: &Session, index: usize) -> Option<Spot> {
     let material = &session.materials().into_iter().nth(index)?;
     let told = session.inspect.told.as_ref().filter(|_| session.inspect.place().is_some());
     let probe = told.and_then(|told| told.probe.systems.iter().find(|probe| probe.system == index));
+    let filter = system.settings.ramp_filter;
     let is_forward = system.settings.is_forward();
     let survey = session.inspect.survey.as_deref().filter(|_| !is_forward);
     let inert = |field: &str| {
@@ -48,6 +50,7 @@ pub fn panel(ui: &mut Ui, session: &Session, index: usize) -> Option<Spot> {
         ("diffuse_ramp", "Diffuse, by normal and light", &system.material.diffuse_ramp),
         ("soft_scatter_ramp", "Soft scatter, by amount", &system.material.soft_scatter_ramp),
         ("specular_ramp", "Specular, by distance² and amount", &system.material.specular_ramp),
+        ("coverage_ramp", "Coverage, by amount times boost", &system.material.coverage_ramp),
         ("age_ramp", "Age, from birth to death", &system.material.age_ramp),
     ] {
         ui.add_space(6.0);
@@ -65,7 +68,7 @@ pub fn panel(ui: &mut Ui, session: &Session, index: usize) -> Option<Spot> {
                 let marks = probe.map_or_else(Vec::new, |probe| {
                     probe.lights.iter().map(|light| (light.coordinate, of_light(light.light))).collect()
                 });
-                let at = strip(ui, &spoken, &material.diffuse_ramp, &marks);
+                let at = strip(ui, &spoken, &material.diffuse_ramp, filter, &marks);
                 if let Some(survey) = survey {
                     legend_and_bins(ui, &survey.by_light(index));
                 }
@@ -73,18 +76,27 @@ pub fn panel(ui: &mut Ui, session: &Session, index: usize) -> Option<Spot> {
             }
             "soft_scatter_ramp" => {
                 let marks: Vec<_> = probe.map(|probe| (probe.amount, Color32::WHITE)).into_iter().collect();
-                let at = strip(ui, &spoken, &material.soft_scatter_ramp, &marks);
+                let at = strip(ui, &spoken, &material.soft_scatter_ramp, filter, &marks);
                 if let Some(survey) = survey {
                     amounts(ui, &survey.by_amount(index));
                 }
                 spot = spot.or(at.map(Spot::SoftScatter));
             }
+            "coverage_ramp" => {
+                let marks: Vec<_> =
+                    probe.map(|probe| (probe.coverage_coordinate, Color32::WHITE)).into_iter().collect();
+                let at = strip(ui, &spoken, &material.coverage_ramp, filter, &marks);
+                if let Some(survey) = survey {
+                    amounts(ui, &survey.by_coverage(index));
+                }
+                spot = spot.or(at.map(Spot::Coverage));
+            }
             "specular_ramp" => {
                 let density = survey.map(|survey| survey.by_glow(index));
-                spot = spot.or(plane(ui, &spoken, &material.specular_ramp, density.as_deref(), probe));
+                spot = spot.or(plane(ui, &spoken, (&material.specular_ramp, filter), density.as_deref(), probe));
             }
             _ => {
-                strip(ui, &spoken, &material.age_ramp, &[]);
+                strip(ui, &spoken, &material.age_ramp, filter, &[]);
             }
         }
     }
@@ -103,9 +115,9 @@ fn space(ui: &mut Ui, size: Vec2, name: &str) -> (Rect, Option<Vec2>) {
 }
 
 /// A ramp from left to right, with marks on it; the coordinate that is pointed at.
-fn strip(ui: &mut Ui, name: &str, ramp: &Ramp, marks: &[(f32, Color32)]) -> Option<f32> {
+fn strip(ui: &mut Ui, name: &str, ramp: &Ramp, filter: RampFilter, marks: &[(f32, Color32)]) -> Option<f32> {
     let (rect, at) = space(ui, Vec2::new(ui.available_width(), STRIP), name);
-    picture(ui, rect, UVec2::new(128, 1), |at| sample_ramp(ramp, at.x));
+    picture(ui, rect, UVec2::new(128, 1), |at| sample_ramp(ramp, filter, at.x));
     for &(coordinate, colour) in marks {
         let x = rect.left() + coordinate * rect.width();
         for (width, colour) in [(4.0, Color32::BLACK), (2.0, colour)] {
@@ -169,10 +181,16 @@ fn bins(ui: &Ui, rect: Rect, bins: &[f32], colour: Color32) {
 }
 
 /// The specular ramp, amounts upwards, and over it what is looked up.
-fn plane(ui: &mut Ui, name: &str, ramp: &Ramp, density: Option<&[f32]>, probe: Option<&SystemProbe>) -> Option<Spot> {
+fn plane(
+    ui: &mut Ui,
+    name: &str,
+    (ramp, filter): (&Ramp, RampFilter),
+    density: Option<&[f32]>,
+    probe: Option<&SystemProbe>,
+) -> Option<Spot> {
     let side = ui.available_width().min(220.0);
     let (rect, at) = space(ui, Vec2::new(side, 0.6 * side), name);
-    picture(ui, rect, UVec2::splat(48), |at| sample_ramp_2d(ramp, glam::Vec2::new(at.x, 1.0 - at.y)));
+    picture(ui, rect, UVec2::splat(48), |at| sample_ramp_2d(ramp, filter, glam::Vec2::new(at.x, 1.0 - at.y)));
     let mut mesh = Mesh::default();
     let cell = rect.size() / SIDE as f32;
     for (index, density) in density.unwrap_or_default().iter().enumerate().filter(|(_, density)| **density > 0.0) {
