@@ -255,9 +255,69 @@ fn presets_are_listed_checked_and_described() {
     std::fs::write(folder.path().join("idle.json"), idle).unwrap();
     let note = "idle.json: good\n  systems[0].settings.blend_mode has no effect: forward only\n";
     assert_eq!(text(&["preset", "check", "idle.json"]), note);
+    let shown = text(&["preset", "show", "idle.json"]);
+    let line = |field: &str| shown.lines().find(|line| line.starts_with(&format!("systems[0].{field} "))).unwrap();
+    assert!(line("settings.boost").ends_with(" 2.0                    default 3.0"), "{shown}");
+    assert!(line("settings.accumulate.scale").ends_with(" 2                      default"), "{shown}");
+    assert!(line("settings.blend_mode").ends_with("default \"alpha\"; no effect: forward only"), "{shown}");
+    assert_eq!(text(&["preset", "show", "--changed", "idle.json"]).lines().count(), 4);
     assert!(text(&["preset", "schema"]).contains("\"soft_fade\""));
     assert!(text(&["info"]).contains("gpu: "));
     assert!(text(&["--help"]).contains("shade-tree"));
+}
+
+#[test]
+fn presets_are_begun_as_copies_with_their_pictures() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::create_dir_all(path("theirs")).unwrap();
+    image::RgbImage::from_pixel(8, 1, image::Rgb([9; 3])).save(path("theirs/own.png")).unwrap();
+    let text = r#"{"version": 1, "name": "x", "systems": [{"name": "s", "material": {"diffuse_ramp": "own.png"}}]}"#;
+    std::fs::write(path("theirs/first.json"), text).unwrap();
+    let done = |arguments: &[&str]| {
+        let output = haze(folder.path(), arguments);
+        assert!(output.status.success(), "{}", stderr(&output));
+    };
+    done(&["preset", "new", "mine", "--from", "theirs/first.json"]);
+    done(&["preset", "check", "mine.json"]);
+    assert!(std::fs::read_to_string(path("mine.json")).unwrap().contains("\"name\": \"mine\""));
+    assert!(path("own.png").exists());
+    let again = refusal(folder.path(), &["preset", "new", "mine"]);
+    assert!(again.contains("mine.json") && again.contains("nothing is replaced"), "{again}");
+    assert!(refusal(folder.path(), &["preset", "new", "a.png"]).contains("ends in .json"));
+    // Another picture of that name is there.
+    image::RgbImage::from_pixel(8, 1, image::Rgb([7; 3])).save(path("own.png")).unwrap();
+    assert!(refusal(folder.path(), &["preset", "new", "b", "--from", "theirs/first.json"]).contains("own.png"));
+    assert!(!path("b.json").exists());
+}
+
+#[test]
+fn pictures_may_lie_in_a_folder_that_presets_share() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::create_dir_all(path("team")).unwrap();
+    image::RgbImage::from_fn(64, 8, |x, y| image::Rgb([(2 * x + 8 * y) as u8; 3])).save(path("team/glow.png")).unwrap();
+    let text = r#"{"version": 1, "name": "x", "systems": [{"name": "s", "material":
+        {"diffuse_ramp": "glow.png", "age_ramp": "glwo.png", "noise": "fmb.png"}}]}"#;
+    std::fs::write(path("my.json"), text).unwrap();
+    let check = |arguments: &[&str]| {
+        let output = haze(folder.path(), &[&["preset", "check", "my.json"], arguments].concat());
+        (output.status.code(), stderr(&output), String::from_utf8(output.stdout).unwrap())
+    };
+    let (code, said, _) = check(&[]);
+    // All of them, in the order of the fields.
+    let lines: Vec<_> = said.lines().collect();
+    assert_eq!((code, lines.len()), (Some(2), 3), "{said}");
+    assert!(lines[0].contains("systems[0].material.diffuse_ramp: glow.png: No such file in "), "{said}");
+    let (_, said, _) = check(&["--assets", "team"]);
+    assert!(said.lines().count() == 2 && said.contains("the nearest name is \"glow.png\""), "{said}");
+    std::fs::write(path("my.json"), text.replace("glwo", "glow").replace("fmb.png", "fbm")).unwrap();
+    let (code, said, doubts) = check(&["--assets", "team"]);
+    assert_eq!((code, said.as_str()), (Some(0), ""), "{said}");
+    assert!(doubts.contains("  systems[0].material.diffuse_ramp: glow.png: its 8 rows differ"), "{doubts}");
+    let render = ["render", "my.json", "--size", "32x18", "--backend", "cpu", "-o", "a.png"];
+    assert!(haze(folder.path(), &[&render[..], &["--assets", "team"]].concat()).status.success());
+    assert!(refusal(folder.path(), &[&render[..], &["--assets", "none"]].concat()).contains("--assets: none"));
 }
 
 #[test]

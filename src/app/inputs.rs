@@ -4,12 +4,12 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
-use haze::preset::{Preset, picture_file};
+use haze::preset::{PictureFolders, Preset, picture_file};
 use haze::settings::{FieldVisitor, Fields, PictureRole};
 
-/// The pictures beside a preset's file that it names.
-pub fn pictures_of(path: &Path, preset: &Preset) -> Vec<PathBuf> {
-    picture_files(preset).into_iter().map(|file| path.with_file_name(file)).collect()
+/// Every place where a picture may lie that a preset names.
+pub fn pictures_of(folders: &PictureFolders, preset: &Preset) -> Vec<PathBuf> {
+    picture_files(preset).iter().flat_map(|file| folders.places(file)).collect()
 }
 
 /// The same, from the preset's folder on.

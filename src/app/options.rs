@@ -12,7 +12,7 @@ use haze::demo::stage::{Stage, StageContext};
 use haze::headless::Headless;
 use haze::picture::Picture;
 use haze::picture::{Effort, write_png};
-use haze::preset::Preset;
+use haze::preset::{PictureFolders, Preset};
 use haze::settings::{Choice, Path, Technique, set_field};
 use haze::shader::Sources;
 use haze::{Error, FieldError};
@@ -66,9 +66,32 @@ pub struct ShotArguments {
     /// The PNG to write.
     #[arg(short, long, value_name = "FILE.png")]
     pub output: PathBuf,
+    #[command(flatten)]
+    assets: AssetsArguments,
     /// Take a second more to make the file a tenth smaller.
     #[arg(long)]
     small: bool,
+}
+
+/// A folder of pictures that presets share.
+#[derive(Args, Clone, Debug, Default)]
+pub struct AssetsArguments {
+    /// A folder in which pictures are looked for that are not beside the preset.
+    #[arg(long, value_name = "DIR")]
+    assets: Option<PathBuf>,
+}
+
+impl AssetsArguments {
+    /// Where the pictures of a preset are looked for.
+    ///
+    /// # Errors
+    /// Where the folder is none.
+    pub fn folders(&self, preset: &std::path::Path) -> Result<PictureFolders, Error> {
+        if let Some(folder) = self.assets.as_ref().filter(|folder| !folder.is_dir()) {
+            return Err(FieldError::new("--assets", folder.display(), "a folder that exists").into());
+        }
+        Ok(PictureFolders::beside(preset).and_shared(self.assets.clone()))
+    }
 }
 
 /// The renderers.
@@ -117,7 +140,7 @@ impl ShotArguments {
             set_field(&mut preset, field, value).map_err(|error| in_option("--set", error))?;
         }
         let shot = self.shot(preset)?;
-        let pictures = pictures_of(&self.preset, &shot.preset);
+        let pictures = pictures_of(&self.assets.folders(&self.preset)?, &shot.preset);
         let mut files = Files::read(pictures.iter().map(PathBuf::as_path).chain([self.preset.as_path()]));
         outputs.iter().try_for_each(|(option, path)| files.write(option, path, kind))?;
         Ok(shot)
@@ -126,7 +149,7 @@ impl ShotArguments {
     /// A shot of the preset, changed.
     pub fn shot(&self, preset: Preset) -> Result<Shot, Error> {
         preset.validate()?;
-        Shot::new(preset, &self.preset, self.run.size)
+        Shot::from_folders(preset, &self.preset, &self.assets.folders(&self.preset)?, self.run.size)
     }
 
     /// How much work the size of files is worth.

@@ -48,6 +48,10 @@ impl From<Error> for Failures {
 }
 
 impl Failures {
+    pub fn new(errors: Vec<Error>) -> Self {
+        Self(errors)
+    }
+
     /// Does something with every item, whatever becomes of the others; gives what was done and what was not.
     pub fn of_each<T, U>(
         items: impl IntoIterator<Item = T>,

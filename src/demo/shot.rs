@@ -8,7 +8,7 @@ use super::scene::Scene;
 use crate::assets::material::MaterialAssets;
 use crate::error::Error;
 use crate::frame::Particle;
-use crate::preset::{Preset, PresetSystem};
+use crate::preset::{PictureFolders, Preset, PresetSystem};
 use crate::settings::{Settings, ShadeTree};
 
 /// A preset with its pictures loaded.
@@ -39,7 +39,15 @@ impl Shot {
     /// # Errors
     /// As [`Preset::load_materials`].
     pub fn new(preset: Preset, path: &Path, size: UVec2) -> Result<Self, Error> {
-        let materials = preset.load_materials(path)?;
+        Self::from_folders(preset, path, &PictureFolders::beside(path), size)
+    }
+
+    /// The same, where the pictures are looked for in other folders.
+    ///
+    /// # Errors
+    /// As [`Preset::load_materials`].
+    pub fn from_folders(preset: Preset, path: &Path, folders: &PictureFolders, size: UVec2) -> Result<Self, Error> {
+        let materials = preset.load_materials_from(path, folders).map_err(|mut errors| errors.swap_remove(0))?;
         for (index, (system, material)) in preset.systems.iter().zip(&materials).enumerate() {
             let fits = material.info().validate(index, &system.settings);
             fits.map_err(|error| Error::JsonField { path: path.into(), error })?;

@@ -1,7 +1,8 @@
 //! The pictures that a preset names, and where they are looked for.
 
-use std::path::{Component, Path, PathBuf};
+use std::path::{Component, Path};
 
+use super::folders::PictureFolders;
 use super::pictures::Pictures;
 use crate::assets::builtin;
 use crate::assets::material::MaterialAssets;
@@ -47,34 +48,54 @@ impl MaterialNames {
     /// [`Error::Picture`] naming the field and the file, or [`Error::Field`] for a name that is neither built in nor a file
     /// inside the folder, or for more than [`MAX_PICTURE_BYTES`](super::MAX_PICTURE_BYTES).
     pub fn load(&self, folder: &Path) -> Result<MaterialAssets, Error> {
-        self.load_from(&mut Pictures::default(), folder)
+        let loaded = self.load_from(&mut Pictures::new(PictureFolders::at(folder)));
+        loaded.map_err(|mut errors| errors.swap_remove(0))
     }
 
-    /// The same, where other systems may have loaded some already.
-    pub(super) fn load_from(&self, pictures: &mut Pictures, folder: &Path) -> Result<MaterialAssets, Error> {
-        let (sprite, detail) = self.load_sprite(pictures, folder)?;
+    /// The same, where other systems may have loaded some already. The errors are those of all fields, in their order: at least
+    /// one.
+    pub(super) fn load_from(&self, pictures: &mut Pictures) -> Result<MaterialAssets, Vec<Error>> {
+        let mut errors = Vec::new();
+        let sprite = kept(self.load_sprite(pictures), &mut errors);
+        let mut ramp = |field, name: &str, list| {
+            let found = match builtin::find(list, name) {
+                Some(ramp) => ramp.ramp(),
+                None => inside(field, name, list).and_then(|file| pictures.ramp(field, file)),
+            };
+            kept(found, &mut errors)
+        };
+        let ramps = (
+            ramp("diffuse_ramp", &self.diffuse_ramp, builtin::RAMPS),
+            ramp("soft_scatter_ramp", &self.soft_scatter_ramp, builtin::RAMPS),
+            ramp("specular_ramp", &self.specular_ramp, builtin::RAMPS),
+            ramp("motif", &self.motif, builtin::MOTIFS),
+            ramp("age_ramp", &self.age_ramp, builtin::RAMPS),
+            ramp("coverage_ramp", &self.coverage_ramp, builtin::RAMPS),
+        );
         let noise = match builtin::find(builtin::NOISES, &self.noise) {
-            Some(noise) => noise.noise()?,
-            None => pictures.noise("noise", inside("noise", &self.noise, builtin::NOISES, folder)?)?,
+            Some(noise) => noise.noise(),
+            None => inside("noise", &self.noise, builtin::NOISES).and_then(|file| pictures.noise("noise", file)),
         };
-        let mut ramp = |field, name: &str, list| match builtin::find(list, name) {
-            Some(ramp) => ramp.ramp(),
-            None => pictures.ramp(field, inside(field, name, list, folder)?),
-        };
-        Ok(MaterialAssets {
-            sprite,
-            detail,
-            noise,
-            diffuse_ramp: ramp("diffuse_ramp", &self.diffuse_ramp, builtin::RAMPS)?,
-            soft_scatter_ramp: ramp("soft_scatter_ramp", &self.soft_scatter_ramp, builtin::RAMPS)?,
-            specular_ramp: ramp("specular_ramp", &self.specular_ramp, builtin::RAMPS)?,
-            motif: ramp("motif", &self.motif, builtin::MOTIFS)?,
-            age_ramp: ramp("age_ramp", &self.age_ramp, builtin::RAMPS)?,
-            coverage_ramp: ramp("coverage_ramp", &self.coverage_ramp, builtin::RAMPS)?,
-        })
+        let noise = kept(noise, &mut errors);
+        match (sprite, ramps, noise) {
+            (Some((sprite, detail)), (Some(a), Some(b), Some(c), Some(d), Some(e), Some(f)), Some(noise)) => {
+                Ok(MaterialAssets {
+                    sprite,
+                    detail,
+                    noise,
+                    diffuse_ramp: a,
+                    soft_scatter_ramp: b,
+                    specular_ramp: c,
+                    motif: d,
+                    age_ramp: e,
+                    coverage_ramp: f,
+                })
+            }
+            _ => Err(errors),
+        }
     }
 
-    fn load_sprite(&self, pictures: &mut Pictures, folder: &Path) -> Result<(Sprite, Option<Sprite>), Error> {
+    fn load_sprite(&self, pictures: &mut Pictures) -> Result<(Sprite, Option<Sprite>), Error> {
         if let Some(sprite) = builtin::find(builtin::SPRITES, &self.sprite) {
             let refuse = |field: &str, value: String, expected: &str| {
                 let expected = format!("{expected} with a built-in sprite, which knows its own");
@@ -92,12 +113,12 @@ impl MaterialNames {
             return Ok((sprite.sprite()?, sprite.detail()?));
         }
         let layout = SpriteLayout { columns: self.columns, rows: self.rows, y_down: self.y_down };
-        let path = inside("sprite", &self.sprite, builtin::SPRITES, folder)?;
+        let path = inside("sprite", &self.sprite, builtin::SPRITES)?;
         let sprite = pictures.sprite("sprite", path, layout)?;
         if self.detail.is_empty() {
             return Ok((sprite, None));
         }
-        let path = inside("detail", &self.detail, &[], folder)?;
+        let path = inside("detail", &self.detail, &[])?;
         Ok((sprite, Some(pictures.sprite("detail", path, SpriteLayout { y_down: false, ..layout })?)))
     }
 }
@@ -111,17 +132,22 @@ pub fn picture_file(name: &str) -> Option<&Path> {
     (is_png && stays).then_some(path)
 }
 
-/// The path of an asset inside the preset's folder.
-fn inside(field: &str, name: &str, list: &[builtin::Builtin], folder: &Path) -> Result<PathBuf, FieldError> {
+/// The file that a name stands for, from a folder on.
+fn inside<'a>(field: &str, name: &'a str, list: &[builtin::Builtin]) -> Result<&'a Path, Error> {
     if let Some(path) = picture_file(name) {
-        return Ok(folder.join(path));
+        return Ok(path);
     }
     let mut expected = "a PNG inside the preset's folder".to_owned();
     if !list.is_empty() {
         let names: Vec<_> = list.iter().map(|builtin| builtin.name).collect();
         expected = format!("one of {}, or {expected}", names.join(", "));
     }
-    Err(FieldError::new(format!("material.{field}"), format!("{name:?}"), expected))
+    Err(FieldError::new(format!("material.{field}"), format!("{name:?}"), expected).into())
+}
+
+/// What there is, else takes note of why not.
+fn kept<T>(found: Result<T, Error>, errors: &mut Vec<Error>) -> Option<T> {
+    found.map_err(|error| errors.push(error)).ok()
 }
 
 #[cfg(test)]
@@ -130,10 +156,9 @@ mod tests {
 
     #[test]
     fn assets_stay_inside_the_presets_folder() {
-        let folder = Path::new("shots");
-        assert_eq!(inside("sprite", "a/b.png", &[], folder).unwrap(), Path::new("shots/a/b.png"));
+        assert_eq!(inside("sprite", "a/b.png", &[]).unwrap(), Path::new("a/b.png"));
         for outside in ["../b.png", "/etc/b.png", "a/../../b.png", "puf", "b.jpg"] {
-            assert!(inside("sprite", outside, builtin::SPRITES, folder).is_err(), "{outside}");
+            assert!(inside("sprite", outside, builtin::SPRITES).is_err(), "{outside}");
         }
     }
 }

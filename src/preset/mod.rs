@@ -3,10 +3,12 @@
 mod camera;
 mod effect;
 mod environment;
+mod folders;
 mod material_names;
 mod pictures;
 #[allow(clippy::module_inception, reason = "one file per part of a preset, and one for the whole")]
 mod preset;
+mod role;
 #[cfg(feature = "app")]
 mod schema;
 mod text;
@@ -15,6 +17,7 @@ mod tooltips;
 
 pub use camera::Camera;
 pub use environment::{Environment, SceneName};
+pub use folders::PictureFolders;
 pub use material_names::{MaterialNames, picture_file};
 pub use pictures::MAX_PICTURE_BYTES;
 pub use preset::{DESIGN_HEIGHT, MAX_SYSTEMS, PRESET_VERSION, Preset, PresetSystem};

@@ -2,8 +2,9 @@
 
 use std::collections::HashMap;
 use std::hash::Hash;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use super::folders::PictureFolders;
 use crate::assets::noise::NoiseVolume;
 use crate::assets::ramp::Ramp;
 use crate::assets::sprite::{Sprite, SpriteLayout};
@@ -14,8 +15,8 @@ use crate::error::{Error, FieldError};
 pub const MAX_PICTURE_BYTES: u64 = 1 << 30;
 
 /// What has been loaded so far, by file.
-#[derive(Default)]
 pub(super) struct Pictures {
+    folders: PictureFolders,
     ramps: HashMap<PathBuf, Ramp>,
     sprites: HashMap<(PathBuf, SpriteLayout), Sprite>,
     noises: HashMap<PathBuf, NoiseVolume>,
@@ -23,29 +24,42 @@ pub(super) struct Pictures {
 }
 
 impl Pictures {
+    pub fn new(folders: PictureFolders) -> Self {
+        let (ramps, sprites, noises) = Default::default();
+        Self { folders, ramps, sprites, noises, bytes: 0 }
+    }
+
     /// The ramp of this file, for a field of the material.
-    pub fn ramp(&mut self, field: &str, path: PathBuf) -> Result<Ramp, Error> {
-        let ramp = once(&mut self.ramps, path, |path| Ramp::load(path)).map_err(|error| named_by(field, error))?;
+    pub fn ramp(&mut self, field: &str, file: &Path) -> Result<Ramp, Error> {
+        self.count(field, 0)?;
+        let folders = &self.folders;
+        let ramp = once(&mut self.ramps, file.into(), |file: &PathBuf| Ramp::load(&folders.find(file)?));
+        let ramp = ramp.map_err(|error| named_by(field, error))?;
         self.count(field, ramp.memory())?;
         Ok(ramp)
     }
 
     /// The sprite of this file.
-    pub fn sprite(&mut self, field: &str, path: PathBuf, layout: SpriteLayout) -> Result<Sprite, Error> {
-        let sprite = once(&mut self.sprites, (path, layout), |(path, layout)| Sprite::load(path, *layout));
-        let sprite = sprite.map_err(|error| named_by(field, error))?;
+    pub fn sprite(&mut self, field: &str, file: &Path, layout: SpriteLayout) -> Result<Sprite, Error> {
+        self.count(field, 0)?;
+        let folders = &self.folders;
+        let load = |(file, layout): &(PathBuf, SpriteLayout)| Sprite::load(&folders.find(file)?, *layout);
+        let sprite = once(&mut self.sprites, (file.into(), layout), load).map_err(|error| named_by(field, error))?;
         self.count(field, sprite.memory())?;
         Ok(sprite)
     }
 
     /// The noise of this file.
-    pub fn noise(&mut self, field: &str, path: PathBuf) -> Result<NoiseVolume, Error> {
-        let noise =
-            once(&mut self.noises, path, |path| NoiseVolume::load(path)).map_err(|error| named_by(field, error))?;
+    pub fn noise(&mut self, field: &str, file: &Path) -> Result<NoiseVolume, Error> {
+        self.count(field, 0)?;
+        let folders = &self.folders;
+        let noise = once(&mut self.noises, file.into(), |file: &PathBuf| NoiseVolume::load(&folders.find(file)?));
+        let noise = noise.map_err(|error| named_by(field, error))?;
         self.count(field, noise.memory())?;
         Ok(noise)
     }
 
+    /// Refuses more than there may be: nothing is decoded after that.
     fn count(&mut self, field: &str, bytes: u64) -> Result<(), FieldError> {
         self.bytes += bytes;
         if self.bytes <= MAX_PICTURE_BYTES {
@@ -82,21 +96,22 @@ mod tests {
     #[test]
     fn a_file_is_read_once() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("own.png");
+        let file = Path::new("own.png");
+        let path = folder.path().join(file);
         let layout = SpriteLayout::default();
         image::RgbaImage::new(1, 1).save(&path).unwrap();
-        let mut pictures = Pictures::default();
-        let ramp = pictures.ramp("motif", path.clone()).unwrap();
-        let noise = pictures.noise("noise", path.clone()).unwrap();
-        let sprite = pictures.sprite("sprite", path.clone(), layout).unwrap();
+        let mut pictures = Pictures::new(PictureFolders::at(folder.path()));
+        let ramp = pictures.ramp("motif", file).unwrap();
+        let noise = pictures.noise("noise", file).unwrap();
+        let sprite = pictures.sprite("sprite", file, layout).unwrap();
         std::fs::remove_file(&path).unwrap();
-        assert_eq!(pictures.ramp("age_ramp", path.clone()).unwrap(), ramp);
-        assert_eq!(pictures.noise("noise", path.clone()).unwrap(), noise);
-        assert_eq!(pictures.sprite("detail", path.clone(), layout).unwrap(), sprite);
+        assert_eq!(pictures.ramp("age_ramp", file).unwrap(), ramp);
+        assert_eq!(pictures.noise("noise", file).unwrap(), noise);
+        assert_eq!(pictures.sprite("detail", file, layout).unwrap(), sprite);
         // Half floats of four channels; twice four bytes.
         assert_eq!(pictures.bytes, 2 * (8 + 4 + 4));
         let other = SpriteLayout { y_down: true, ..layout };
-        let error = pictures.sprite("sprite", path, other).unwrap_err().to_string();
+        let error = pictures.sprite("sprite", file, other).unwrap_err().to_string();
         assert!(error.starts_with("material.sprite: ") && error.contains("own.png: No such file"), "{error}");
     }
 }

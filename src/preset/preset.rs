@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::camera::Camera;
 use super::environment::Environment;
+use super::folders::PictureFolders;
 use super::material_names::MaterialNames;
 use super::pictures::Pictures;
 use crate::assets::material::MaterialAssets;
@@ -168,13 +169,27 @@ impl Preset {
     /// # Errors
     /// As [`MaterialNames::load`], naming the preset and the system too.
     pub fn load_materials(&self, path: &Path) -> Result<Vec<MaterialAssets>, Error> {
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let mut pictures = Pictures::default();
-        let systems = self.systems.iter().enumerate();
-        let mut load = |(index, system): (usize, &PresetSystem)| {
-            system.material.load_from(&mut pictures, folder).map_err(|error| in_system(path, index, error))
-        };
-        systems.map(&mut load).collect()
+        self.load_materials_from(path, &PictureFolders::beside(path)).map_err(|mut errors| errors.swap_remove(0))
+    }
+
+    /// The same from other folders. `path`, the preset's, is for errors alone.
+    ///
+    /// # Errors
+    /// All that is wrong with any picture of any system: at least one.
+    pub fn load_materials_from(
+        &self,
+        path: &Path,
+        folders: &PictureFolders,
+    ) -> Result<Vec<MaterialAssets>, Vec<Error>> {
+        let mut pictures = Pictures::new(folders.clone());
+        let (mut loaded, mut errors) = (Vec::new(), Vec::new());
+        for (index, system) in self.systems.iter().enumerate() {
+            match system.material.load_from(&mut pictures) {
+                Ok(material) => loaded.push(material),
+                Err(wrong) => errors.extend(wrong.into_iter().map(|error| in_system(path, index, error))),
+            }
+        }
+        if errors.is_empty() { Ok(loaded) } else { Err(errors) }
     }
 
     /// Checks every number, and that no more than [`MAX_PARTICLES`] live at once.

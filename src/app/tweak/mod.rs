@@ -41,6 +41,8 @@ mod window;
 
 use std::path::PathBuf;
 
+pub use document::pictures::copy_beside;
+
 use clap::Args;
 use eframe::egui;
 use glam::UVec2;

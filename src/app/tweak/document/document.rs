@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use haze::preset::Preset;
+use haze::preset::{PictureFolders, Preset};
 use haze::{Error, FieldError, builtin};
 
 use super::difference::step_name;
@@ -69,7 +69,7 @@ impl Document {
     /// The files that its picture is made from, of which some may be missing: what is to be watched.
     pub fn files(&self) -> Vec<PathBuf> {
         let own = (!self.is_built_in()).then(|| self.path.clone());
-        own.into_iter().chain(pictures_of(&self.path, &self.preset)).collect()
+        own.into_iter().chain(pictures_of(&PictureFolders::beside(&self.path), &self.preset)).collect()
     }
 
     /// Whether it has no file yet.

@@ -4,5 +4,5 @@ pub mod difference;
 #[allow(clippy::module_inception, reason = "one file per part of a document, and one for the whole")]
 pub mod document;
 pub mod history;
-mod pictures;
+pub mod pictures;
 pub mod recovery;

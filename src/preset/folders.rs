@@ -1,0 +1,105 @@
+//! Where the pictures of a preset are looked for.
+
+use std::ffi::OsStr;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use crate::error::Error;
+
+/// The folder of the preset's file, and after it one that presets share.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PictureFolders {
+    own: PathBuf,
+    shared: Option<PathBuf>,
+}
+
+/// Most names of a folder that are compared with one that is missing.
+const MOST_NAMES: usize = 10_000;
+
+/// Least likeness of a name to one that is missing, to be spoken of.
+const ALIKE: f64 = 0.75;
+
+impl PictureFolders {
+    /// The folder of a preset's file alone.
+    pub fn beside(preset: &Path) -> Self {
+        Self::at(preset.parent().unwrap_or(Path::new("")))
+    }
+
+    /// One folder alone; the empty path is the one that the program was started in.
+    pub fn at(folder: &Path) -> Self {
+        Self { own: folder.into(), shared: None }
+    }
+
+    /// These, and then a folder that presets share.
+    pub fn and_shared(self, shared: Option<PathBuf>) -> Self {
+        Self { shared, ..self }
+    }
+
+    /// Every place where a picture may lie, the first wins.
+    pub fn places(&self, file: &Path) -> impl Iterator<Item = PathBuf> {
+        self.all().map(move |folder| folder.join(file))
+    }
+
+    /// Where a picture lies. What is there and cannot be read is found: reading it says why.
+    ///
+    /// # Errors
+    /// [`Error::Image`] where it is in no folder, with the folders, and the name that is most like it.
+    pub fn find(&self, file: &Path) -> Result<PathBuf, Error> {
+        let is_there = |place: &PathBuf| match place.symlink_metadata() {
+            Ok(_) => true,
+            Err(error) => error.kind() != ErrorKind::NotFound,
+        };
+        self.places(file).find(is_there).ok_or_else(|| self.missing(file))
+    }
+
+    fn all(&self) -> impl Iterator<Item = &Path> {
+        std::iter::once(self.own.as_path()).chain(self.shared.as_deref())
+    }
+
+    fn missing(&self, file: &Path) -> Error {
+        let folders: Vec<_> = self
+            .all()
+            .map(|folder| std::path::absolute(folder.join(".")).unwrap_or(folder.into()).display().to_string())
+            .collect();
+        let nearest = self.all().filter_map(|folder| nearest(&folder.join(file))).max_by(|a, b| a.0.total_cmp(&b.0));
+        let nearest = nearest.map(|(_, name)| format!("; the nearest name is {name:?}")).unwrap_or_default();
+        let reason = format!("No such file in {}{nearest}", folders.join(", nor in "));
+        Error::Image { path: self.own.join(file), reason }
+    }
+}
+
+/// The picture of the same folder whose name is most like that of a file, and how much.
+fn nearest(file: &Path) -> Option<(f64, String)> {
+    let (name, folder) = (file.file_name()?.to_str()?, file.parent()?);
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let is_png =
+        |name: &String| Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case(OsStr::new("png")));
+    let names =
+        std::fs::read_dir(folder).ok()?.take(MOST_NAMES).filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let alike = names.filter(is_png).map(|other| (strsim::jaro_winkler(name, &other), other));
+    alike.filter(|(alike, _)| *alike >= ALIKE).max_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_presets_own_folder_comes_first_and_what_is_nowhere_is_told_with_what_is_like_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        for file in ["shots/both.png", "team/both.png", "team/theirs.png", "team/wispy_edge.png", "shots/a.txt"] {
+            std::fs::create_dir_all(path(file).parent().unwrap()).unwrap();
+            std::fs::write(path(file), "").unwrap();
+        }
+        let folders = PictureFolders::beside(&path("shots/my.json")).and_shared(Some(path("team")));
+        let find = |name: &str| folders.find(Path::new(name));
+        assert_eq!(find("both.png").unwrap(), path("shots/both.png"));
+        assert_eq!(find("theirs.png").unwrap(), path("team/theirs.png"));
+        let error = find("wispy_egde.png").unwrap_err().to_string();
+        assert!(error.contains("No such file in ") && error.contains(", nor in "), "{error}");
+        assert!(error.ends_with("; the nearest name is \"wispy_edge.png\""), "{error}");
+        let error = PictureFolders::at(&path("shots")).find(Path::new("xyz.png")).unwrap_err().to_string();
+        assert!(error.ends_with("shots") && !error.contains("nor in"), "{error}");
+    }
+}

@@ -1,0 +1,113 @@
+//! Pictures in a role that they were not painted for: what loads, and is not what an artist meant.
+
+use glam::{UVec2, Vec3};
+
+use super::material_names::MaterialNames;
+use crate::assets::material::MaterialAssets;
+use crate::assets::ramp::Ramp;
+use crate::formula::colour::srgb_from_linear;
+
+/// Most that channels of linear colours differ which are taken for the same.
+const SAME: f32 = 1.0 / 64.0;
+
+impl MaterialNames {
+    /// What is doubtful about pictures in the roles that they have: the field, and what is so.
+    pub fn doubts(&self, loaded: &MaterialAssets) -> Vec<(&'static str, String)> {
+        let ramps = [
+            ("diffuse_ramp", &self.diffuse_ramp, &loaded.diffuse_ramp),
+            ("soft_scatter_ramp", &self.soft_scatter_ramp, &loaded.soft_scatter_ramp),
+            ("age_ramp", &self.age_ramp, &loaded.age_ramp),
+            ("coverage_ramp", &self.coverage_ramp, &loaded.coverage_ramp),
+        ];
+        let of_ramps = ramps.iter().map(|(field, name, ramp)| (*field, *name, of_ramp(ramp)));
+        let others = [
+            ("specular_ramp", &self.specular_ramp, of_specular_ramp(&loaded.specular_ramp)),
+            ("motif", &self.motif, of_motif(&loaded.motif)),
+        ];
+        let doubts = of_ramps.chain(others);
+        doubts.filter_map(|(field, name, doubt)| Some((field, format!("{name}: {}", doubt?)))).collect()
+    }
+}
+
+/// What is wrong with a ramp of one row.
+fn of_ramp(ramp: &Ramp) -> Option<String> {
+    let size = ramp.size();
+    let all = |same: &dyn Fn(u32, u32) -> bool| (0..size.y).all(|y| (0..size.x).all(|x| same(x, y)));
+    let is_same = |a: UVec2, b: UVec2| ramp.texel(a).abs_diff_eq(ramp.texel(b), SAME);
+    if all(&|x, y| is_same(UVec2::new(x, y), UVec2::new(x, 0))) {
+        return None;
+    }
+    if shows_normals(ramp) {
+        return Some("looks like the normals of a sprite; expected a ramp from left to right".into());
+    }
+    if all(&|x, y| is_same(UVec2::new(x, y), UVec2::new(0, y))) {
+        return Some("painted from top to bottom; expected a ramp from left to right".into());
+    }
+    Some(format!("its {} rows differ, and only the bottom one is looked up; expected a ramp of one row", size.y))
+}
+
+fn of_specular_ramp(ramp: &Ramp) -> Option<String> {
+    if shows_normals(ramp) {
+        return Some("looks like the normals of a sprite; expected distance² across and amount up".into());
+    }
+    (ramp.size().y == 1)
+        .then(|| "its one row is the same for every amount; expected distance² across and amount up".into())
+}
+
+fn of_motif(motif: &Ramp) -> Option<String> {
+    let size = motif.size();
+    (size.x != size.y)
+        .then(|| format!("{}x{} pixels; expected a square with a lit sphere that fills it", size.x, size.y))
+}
+
+/// True if the colours are those of normals: most of them look at the viewer, a bit to every side.
+fn shows_normals(ramp: &Ramp) -> bool {
+    let size = ramp.size();
+    let mut sum = Vec3::ZERO;
+    for y in 0..size.y {
+        for x in 0..size.x {
+            sum += Vec3::from(ramp.texel(UVec2::new(x, y)).to_array().map(srgb_from_linear));
+        }
+    }
+    let mean = sum / size.element_product() as f32;
+    (mean - Vec3::new(0.5, 0.5, 0.9)).abs().cmplt(Vec3::splat(0.12)).all()
+}
+
+#[cfg(test)]
+mod tests {
+    use image::{Rgb, RgbImage};
+
+    use super::*;
+
+    #[test]
+    fn pictures_in_roles_that_they_were_not_painted_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let save = |name: &str, size: (u32, u32), colour: fn(u32, u32) -> [u8; 3]| {
+            let picture = RgbImage::from_fn(size.0, size.1, |x, y| Rgb(colour(x, y)));
+            picture.save(folder.path().join(name)).unwrap();
+        };
+        save("across.png", (64, 4), |x, _| [4 * x as u8; 3]);
+        save("down.png", (4, 64), |_, y| [4 * y as u8; 3]);
+        save("both.png", (64, 64), |x, y| [(x * y / 16) as u8; 3]);
+        save("normals.png", (32, 32), |x, y| [112 + x as u8, 112 + y as u8, 240]);
+        let doubts = |change: fn(&mut MaterialNames)| {
+            let mut names = MaterialNames::default();
+            change(&mut names);
+            names.doubts(&names.load(folder.path()).unwrap())
+        };
+        let one = |change: fn(&mut MaterialNames), field: &str, text: &str| {
+            let found = doubts(change);
+            let [(found_field, found)] = &found[..] else { panic!("{text}: {found:?}") };
+            assert!(*found_field == field && found.contains(text), "{found_field}: {found}");
+        };
+        assert_eq!(doubts(|_| {}), []);
+        assert_eq!(doubts(|names| names.diffuse_ramp = "across.png".into()), []);
+        assert_eq!(doubts(|names| names.specular_ramp = "both.png".into()), []);
+        one(|names| names.diffuse_ramp = "down.png".into(), "diffuse_ramp", "from top to bottom");
+        one(|names| names.coverage_ramp = "both.png".into(), "coverage_ramp", "its 64 rows differ");
+        one(|names| names.diffuse_ramp = "specular_halo".into(), "diffuse_ramp", "its 64 rows differ");
+        one(|names| names.age_ramp = "normals.png".into(), "age_ramp", "normals of a sprite");
+        one(|names| names.specular_ramp = "normals.png".into(), "specular_ramp", "normals of a sprite");
+        one(|names| names.motif = "across.png".into(), "motif", "64x4 pixels");
+    }
+}
