@@ -11,9 +11,10 @@ use std::process::{Child, Command, Output, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use haze::preset::Preset;
 use image::RgbImage;
 use tempfile::TempDir;
-use x11::Display;
+use x11::{Display, Key};
 
 /// One window at a time: some of them are timed.
 fn alone() -> MutexGuard<'static, ()> {
@@ -89,7 +90,7 @@ fn a_device_that_is_lost_twice_is_given_up_and_the_work_is_kept() {
     };
     let text = line(command(&BRIGHT), 1);
     assert!(text.contains("lost twice within 10 seconds") && text.contains("kept for the next start"), "{text}");
-    let kept = haze::preset::Preset::load(folder.path().join("state/recovery-1.json")).unwrap();
+    let kept = Preset::load(folder.path().join("state/recovery-1.json")).unwrap();
     assert!((kept.camera.exposure - 2.5).abs() < 1e-6 && (kept.time - 3.0).abs() < 1e-6);
     // Nothing is kept of what nobody has changed.
     assert!(line(command(&[]), 1).contains("nothing was unsaved"));
@@ -102,9 +103,76 @@ fn without_a_display_or_an_adapter_one_line_says_what_to_do() {
     let (display, folder) = (Display::start(), folder());
     let text = line(haze(folder.path(), "", &[], &["tweak"]), 2);
     assert!(text.contains("DISPLAY") && text.contains("`haze render`"), "{text}");
-    let none = [("VK_DRIVER_FILES", "/dev/null"), ("VK_ICD_FILENAMES", "/dev/null"), ("WGPU_BACKEND", "vulkan")];
+    // No driver of either kind that Linux has.
+    let none = [
+        ("VK_DRIVER_FILES", "/nonexistent"),
+        ("VK_ICD_FILENAMES", "/nonexistent"),
+        ("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent"),
+    ];
     let text = line(haze(folder.path(), &display.name, &none, &["tweak"]), 2);
     assert!(text.contains("apt-get install mesa-vulkan-drivers") && text.contains("`haze render`"), "{text}");
+}
+
+/// A program ends well, and soon.
+fn ends(mut child: Child) {
+    let start = Instant::now();
+    while child.try_wait().unwrap().is_none() && start.elapsed() < Duration::from_secs(20) {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let _ = child.kill();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
+}
+
+/// Looks until something is so.
+fn until(what: &str, mut is_so: impl FnMut() -> bool) {
+    let start = Instant::now();
+    while !is_so() {
+        assert!(start.elapsed() < Duration::from_secs(60), "never: {what}");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+#[test]
+fn work_that_a_kill_ends_is_offered_by_the_next_window_and_a_clean_end_leaves_nothing() {
+    let _alone = alone();
+    let (display, folder) = (Display::start(), folder());
+    let (first, second) = (folder.path().join("state/recovery-1.json"), folder.path().join("state/recovery-2.json"));
+    let start = || haze(folder.path(), &display.name, &[], &["tweak", "--size", "700x420"]).spawn().unwrap();
+    let mut client = display.connect();
+    let mut child = start();
+    let window = client.window();
+    client.focus(window);
+    // The camera is moved until that is kept, and is moved still.
+    until("work is kept", || {
+        client.key(&[], Key::Three);
+        first.exists()
+    });
+    client.key(&[Key::Control], Key::Three);
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let kept = Preset::load(&first).unwrap();
+    assert_ne!(kept.camera, Preset::load("column").unwrap().camera);
+
+    let child = start();
+    let window = client.window();
+    // The bar below the menus, from the left: the first button in it.
+    let mut places = (150..650).step_by(15).cycle();
+    until("the work is offered", || {
+        client.click(places.next().unwrap(), 45);
+        !first.exists()
+    });
+    assert!(Preset::load(&second).unwrap() == kept);
+    client.focus(window);
+    until("it is undone", || {
+        client.key(&[Key::Control], Key::Z);
+        !second.exists()
+    });
+    client.close(window);
+    ends(child);
+    let left: Vec<_> =
+        std::fs::read_dir(folder.path().join("state")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(left, ["layout.json"]);
 }
 
 /// Ticks of the clock that a program has had of the CPUs, a hundredth of a second each.
@@ -146,11 +214,5 @@ fn a_window_of_any_size_lives_rests_when_nothing_happens_and_closes() {
     });
     assert!(rests, "a window works while nothing happens in it");
     client.close(window);
-    let start = Instant::now();
-    while child.try_wait().unwrap().is_none() && start.elapsed() < Duration::from_secs(20) {
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    let _ = child.kill();
-    let output = child.wait_with_output().unwrap();
-    assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
+    ends(child);
 }

@@ -42,6 +42,16 @@ impl Drop for Display {
 pub struct Client {
     stream: UnixStream,
     root: u32,
+    /// What the requests of that extension are.
+    xtest: u8,
+}
+
+/// Keys, by where they are on any PC's keyboard.
+#[derive(Clone, Copy)]
+pub enum Key {
+    Three = 12,
+    Control = 37,
+    Z = 52,
 }
 
 /// One request: what it is, its small argument, and the rest in words of 32 bits.
@@ -67,7 +77,12 @@ impl Client {
         stream.read_exact(&mut setup).unwrap();
         let vendor = usize::from(u16::from_le_bytes([setup[16], setup[17]])).next_multiple_of(4);
         let root = word(&setup, 32 + vendor + 8 * usize::from(setup[21]));
-        Self { stream, root }
+        let mut client = Self { stream, root, xtest: 0 };
+        let name = *b"XTEST\0\0\0";
+        let answer = client.ask(&request(98, 0, &[5, word(&name, 0), word(&name, 4)]));
+        assert_eq!(answer[8], 1, "the display has no XTEST");
+        client.xtest = answer[9];
+        client
     }
 
     fn send(&mut self, request: &[u8]) {
@@ -130,6 +145,30 @@ impl Client {
 
     pub fn map(&mut self, window: u32) {
         self.send(&request(8, 0, &[window]));
+    }
+
+    /// Gives a window the keyboard, as a window manager does.
+    pub fn focus(&mut self, window: u32) {
+        self.send(&request(42, 1, &[window, 0]));
+    }
+
+    /// Presses a key and lets it go, as the keyboard does, while others are held.
+    pub fn key(&mut self, held: &[Key], key: Key) {
+        let keys = || held.iter().chain([&key]);
+        keys().for_each(|key| self.fake(2, *key as u32, 0));
+        keys().rev().for_each(|key| self.fake(3, *key as u32, 0));
+    }
+
+    /// Presses the left button at a place of the display and lets it go, as the mouse does.
+    pub fn click(&mut self, x: u32, y: u32) {
+        for (kind, button) in [(6, 0), (4, 1), (5, 1)] {
+            self.fake(kind, button, x | y << 16);
+        }
+    }
+
+    /// An event of the display's own keyboard and mouse: XTEST's FakeInput.
+    fn fake(&mut self, kind: u32, detail: u32, place: u32) {
+        self.send(&request(self.xtest, 2, &[kind | detail << 8, 0, self.root, 0, 0, place, 0, 0]));
     }
 
     /// What the button at the upper right of a window does.
