@@ -11,11 +11,11 @@ use crate::settings::Upsample;
 /// A system's finished target.
 pub struct Accumulated<'a> {
     pub draw: &'a Draw<'a>,
-    pub baked: Vec<Picture<Vec3>>,
-    pub reduced_depth: Picture<f32>,
-    pub accumulation: Picture<Vec4>,
+    pub baked: &'a [Picture<Vec3>],
+    pub reduced_depth: &'a Picture<f32>,
+    pub accumulation: &'a Picture<Vec4>,
     /// What the weights of the normals sum to, where that is kept.
-    pub weight_sum: Option<Picture<Vec4>>,
+    pub weight_sum: Option<&'a Picture<Vec4>>,
 }
 
 impl Texture2d for Picture<Vec3> {

@@ -36,7 +36,9 @@ pub fn render(frame: &Frame<'_>, picture: &mut Picture<Vec4>) -> Result<(), Fiel
         let reduced_depth = draw.depth_downsample();
         let accumulation = draw.accumulate(&reduced_depth, frame.shade_tree == ShadeTree::Overdraw);
         let weight_sum = draw.weight_sum(&reduced_depth);
-        let smoke = Accumulated { draw, baked: draw.diffuse_bake(), reduced_depth, accumulation, weight_sum };
+        let baked = draw.diffuse_bake();
+        let (reduced_depth, accumulation, weight_sum) = (&reduced_depth, &accumulation, weight_sum.as_ref());
+        let smoke = Accumulated { draw, baked: &baked, reduced_depth, accumulation, weight_sum };
         if frame.shade_tree != ShadeTree::SpecularScatter {
             smoke.transfer(frame.shade_tree, picture);
         }

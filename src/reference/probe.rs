@@ -97,10 +97,17 @@ pub fn probe(
     pixels: &[UVec2],
 ) -> Result<Vec<Probe>, FieldError> {
     let draws = visible(frame, behind.size)?;
-    let mut systems = Vec::new();
+    let mut deferred = Vec::new();
     for (index, draw) in draws.iter().filter(|(_, draw)| !draw.settings.is_forward()) {
         let Some(Some(texels)) = texels.get(*index) else { continue };
-        systems.push((*index, Smoke::new(frame, draw, texels)?));
+        // The scene's own depth, where sprites are compared with that.
+        let own_depth = texels.reduced_depth.is_none().then(|| draw.depth_downsample());
+        deferred.push((*index, draw, texels, own_depth));
+    }
+    let mut systems = Vec::new();
+    for (index, draw, texels, own_depth) in &deferred {
+        let Some(depth) = texels.reduced_depth.as_ref().or(own_depth.as_ref()) else { continue };
+        systems.push((*index, Smoke::new(frame, draw, texels, depth)?));
     }
     let has_forward = draws.iter().any(|(_, draw)| draw.settings.is_forward());
     let at = |&pixel: &UVec2| {
@@ -119,16 +126,20 @@ struct Smoke<'a> {
 }
 
 impl<'a> Smoke<'a> {
-    fn new(frame: &Frame<'_>, draw: &'a Draw<'a>, texels: &Texels) -> Result<Self, FieldError> {
-        let Texels { accumulation, weights, reduced_depth, baked } = texels.clone();
+    fn new(
+        frame: &Frame<'_>,
+        draw: &'a Draw<'a>,
+        texels: &'a Texels,
+        reduced_depth: &'a Picture<f32>,
+    ) -> Result<Self, FieldError> {
+        let Texels { accumulation, weights, baked, .. } = texels;
         let size = draw.in_view.rect.size;
-        let sizes = [Some(accumulation.size), weights.as_ref().map(|t| t.size), reduced_depth.as_ref().map(|t| t.size)];
+        let sizes = [Some(accumulation.size), weights.as_ref().map(|t| t.size), Some(reduced_depth.size)];
         if let Some(other) = sizes.into_iter().flatten().find(|other| *other != size) {
             let value = format!("{}x{}", other.x, other.y);
             return Err(FieldError::new("texels", value, format!("{}x{}, as the system has", size.x, size.y)));
         }
-        let reduced_depth = reduced_depth.unwrap_or_else(|| draw.depth_downsample());
-        let accumulated = Accumulated { draw, baked, reduced_depth, accumulation, weight_sum: weights };
+        let accumulated = Accumulated { draw, baked, reduced_depth, accumulation, weight_sum: weights.as_ref() };
         let view = ViewGeometry::new(&crate::View { origin: UVec2::ZERO, ..frame.view })?;
         let mut reached = Vec::new();
         let lights = frame.lights.iter().enumerate().filter(|(_, light)| {

@@ -62,7 +62,7 @@ impl Accumulated<'_> {
         if distance_squared >= 1.0 {
             return None;
         }
-        let amount = self.sample_target(&self.accumulation, pixel).w;
+        let amount = self.sample_target(self.accumulation, pixel).w;
         if amount <= 0.0 {
             return None;
         }

@@ -68,7 +68,7 @@ impl Accumulated<'_> {
             let grey = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));
             return Some(Vec3::splat(grey).extend(1.0));
         }
-        let accumulated = self.sample_target(&self.accumulation, pixel);
+        let accumulated = self.sample_target(self.accumulation, pixel);
         let amount = accumulated.w;
         match shade_tree {
             ShadeTree::Overdraw => return Some(overdraw_colour(amount * 255.0).extend(1.0)),
@@ -105,12 +105,12 @@ impl Accumulated<'_> {
 
     fn normal(&self, accumulated: Vec4, pixel: Vec2) -> Vec3 {
         let accumulate = &self.draw.settings.accumulate;
-        let weights = self.weight_sum.as_ref().map_or(accumulated.w, |sum| self.sample_target(sum, pixel).x);
+        let weights = self.weight_sum.map_or(accumulated.w, |sum| self.sample_target(sum, pixel).x);
         normal_from_accumulation(accumulate.encoding, accumulate.decode, accumulated.xyz(), weights)
     }
 
     pub fn amount_and_normal(&self, pixel: Vec2) -> (f32, Vec3) {
-        let accumulated = self.sample_target(&self.accumulation, pixel);
+        let accumulated = self.sample_target(self.accumulation, pixel);
         (accumulated.w, self.normal(accumulated, pixel))
     }
 }
