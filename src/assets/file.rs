@@ -1,6 +1,6 @@
 //! Files from outside: looked at before they are read.
 
-use std::fs::{File, Metadata};
+use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, ErrorKind, Read as _};
 use std::path::Path;
 
@@ -21,9 +21,9 @@ pub fn read(path: &Path, kind: &str, most: u64) -> Result<Vec<u8>, Error> {
         found if found.len() > most => Err(refuse(format!("{} bytes", found.len()))),
         _ => Ok(()),
     };
-    // To open a pipe is to wait for whoever writes to it: looked at before, and again in case the name has changed hands.
+    // Looked at before, and again in case the name has changed hands.
     check(&std::fs::metadata(path).map_err(io)?)?;
-    let file = File::open(path).map_err(io)?;
+    let file = open(path).map_err(io)?;
     check(&file.metadata().map_err(io)?)?;
     let mut bytes = Vec::new();
     file.take(most + 1).read_to_end(&mut bytes).map_err(io)?;
@@ -32,6 +32,20 @@ pub fn read(path: &Path, kind: &str, most: u64) -> Result<Vec<u8>, Error> {
         return Err(refuse(format!("more than {most} bytes")));
     }
     Ok(bytes)
+}
+
+/// `O_NONBLOCK`: to open a pipe is to wait for whoever writes to it, but with this.
+#[cfg(target_os = "linux")]
+const NONBLOCK: i32 = 0o4000;
+#[cfg(target_os = "macos")]
+const NONBLOCK: i32 = 4;
+
+/// Opens whatever is there, without waiting.
+fn open(path: &Path) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    #[cfg(any(target_os = "linux", target_os = "macos"))]
+    std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, NONBLOCK);
+    options.read(true).open(path)
 }
 
 fn kind_of(found: &Metadata) -> &'static str {
@@ -50,4 +64,22 @@ fn kind_of(found: &Metadata) -> &'static str {
         }
     }
     if found.is_dir() { "a folder" } else { "something else" }
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pipe_that_takes_the_place_of_a_file_is_not_waited_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
+        let (opened, wait) = std::sync::mpsc::channel();
+        let pipe = path.clone();
+        std::thread::spawn(move || opened.send(open(&pipe).map(|file| file.metadata().unwrap().is_file())));
+        let is_file = wait.recv_timeout(std::time::Duration::from_secs(10)).unwrap();
+        assert!(!is_file.unwrap());
+        assert!(read(&path, "PNG picture", 1).unwrap_err().to_string().contains("a pipe, not a file"));
+    }
 }
