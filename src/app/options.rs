@@ -197,11 +197,11 @@ impl RunArguments {
 }
 
 impl Backend {
-    /// The GPU where there is one, else the CPU.
-    pub fn open() -> Result<Self, Error> {
+    /// The GPU where there is one, else the CPU, which draws without an author's shaders only.
+    pub fn open(sources: Option<&Sources>) -> Result<Self, Error> {
         match Headless::new() {
-            Ok(gpu) => Self::on(gpu, None),
-            Err(Error::NoDevice(_)) => Ok(Self::Cpu),
+            Ok(gpu) => Self::on(gpu, sources),
+            Err(Error::NoDevice(_)) if sources.is_none() => Ok(Self::Cpu),
             Err(error) => Err(error),
         }
     }

@@ -126,14 +126,16 @@ impl Exporting {
         let place = Place::new(session.document.path(), &shot.preset);
         let progress = Arc::<Progress>::default();
         self.progress = Arc::clone(&progress);
-        let order = self.order.clone();
+        let (order, shaders) = (self.order.clone(), session.shaders.clone());
         self.worker.submit(move |ticket| {
             let go_on = |done, count| {
                 progress.done.store(done, Ordering::Relaxed);
                 progress.count.store(count, Ordering::Relaxed);
                 !progress.is_stopped.load(Ordering::Relaxed) && !ticket.is_cancelled()
             };
-            make(&product, &shot, &order, &place, &Watch::Caller(&go_on)).unwrap_or_else(Done::Failed)
+            let made = Backend::open(shaders.as_ref())
+                .and_then(|backend| make(&backend, &product, &shot, &order, &place, &Watch::Caller(&go_on)));
+            made.unwrap_or_else(Done::Failed)
         });
     }
 
@@ -190,16 +192,22 @@ fn write(path: PathBuf, picture: RgbImage) -> Result<Done, Error> {
     Ok(Done::Written(path))
 }
 
-fn make(product: &Product, shot: &Shot, order: &Order, place: &Place, watch: &Watch<'_>) -> Result<Done, Error> {
+fn make(
+    backend: &Backend,
+    product: &Product,
+    shot: &Shot,
+    order: &Order,
+    place: &Place,
+    watch: &Watch<'_>,
+) -> Result<Done, Error> {
     let frames = Frames { range: order.first..=order.last.max(order.first), rate: order.rate };
-    let backend = Backend::open()?;
     let sheet = |name: &str, cells: Vec<(String, Shot)>| {
         let path = place.free(name, ".png");
         let columns = export::columns(cells.len());
         let size = (shot.size / columns).max(UVec2::ONE);
         let small = |(label, shot): (String, Shot)| (label, Shot { size, ..shot });
         let cells: Vec<_> = cells.into_iter().map(small).collect();
-        let mut sheet = export::sheet(&backend, &cells, columns, &path, watch)?;
+        let mut sheet = export::sheet(backend, &cells, columns, &path, watch)?;
         sheet.add_foot(&format!("{name}; {}, {}", shot.preset.name, backend.description()));
         Ok(Done::Sheet(sheet.picture, path))
     };
@@ -207,23 +215,23 @@ fn make(product: &Product, shot: &Shot, order: &Order, place: &Place, watch: &Wa
         Product::Picture => {
             let path = place.free("", ".png");
             let one = Frames { range: 0..=0, rate: 1.0 };
-            write(path.clone(), export::flipbook(&backend, shot, &one, UVec2::ONE, &path, watch)?)
+            write(path.clone(), export::flipbook(backend, shot, &one, UVec2::ONE, &path, watch)?)
         }
         Product::Sequence => {
             let folder = place.free("frames", "");
             files::make_folder(&folder)?;
             let names = FrameNames::parse(&folder.join("%04d.png"))?;
-            export::sequence(&backend, shot, &frames, &names, Effort::Quick, watch)?;
+            export::sequence(backend, shot, &frames, &names, Effort::Quick, watch)?;
             Ok(Done::Written(folder))
         }
         Product::Flipbook => {
             export::check_flipbook(shot.size, &frames, order.cells)?;
             let path = place.free("flipbook", ".png");
-            write(path.clone(), export::flipbook(&backend, shot, &frames, order.cells, &path, watch)?)
+            write(path.clone(), export::flipbook(backend, shot, &frames, order.cells, &path, watch)?)
         }
         Product::Gif => {
             let path = place.free("", ".gif");
-            export::gif(&backend, shot, &frames, &path, watch)?;
+            export::gif(backend, shot, &frames, &path, watch)?;
             Ok(Done::Written(path))
         }
         Product::ShadeTree => sheet("shade_tree", shade_tree::stages(shot)),

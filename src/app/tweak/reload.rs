@@ -40,7 +40,8 @@ struct Shaders {
 /// What the worker has made.
 enum Loaded {
     Pictures(Box<Preset>, Result<Vec<MaterialAssets>, Error>),
-    Shaders(Vec<PathBuf>, Result<StageContext, Error>),
+    /// With the files that are to be watched.
+    Shaders(Vec<PathBuf>, Result<(StageContext, Sources), Error>),
 }
 
 /// Which shaders are followed.
@@ -90,7 +91,8 @@ impl Reload {
             },
         };
         reload.watch(session);
-        if matches!(shaders, ShaderFolder::Given(_)) {
+        // Those of another device, too.
+        if matches!(shaders, ShaderFolder::Given(_)) || session.shaders.is_some() {
             reload.check_shaders(session, easel);
         }
         // What was written between the reading and the watching.
@@ -160,6 +162,12 @@ impl Reload {
         let ticket = self.worker.submit(move |_| {
             let mut files = embedded_names(&folder);
             let checked = check(&folder, &context, &shot, &mut files);
+            if let Err(Error::Io { path, .. } | Error::Shader { path, .. }) = &checked
+                && path.starts_with(&folder)
+            {
+                // One that could not be read is to be watched like those that could.
+                add(&mut files, path);
+            }
             Loaded::Shaders(files, checked)
         });
         if let Some(before) = shaders.checking.replace(ticket) {
@@ -179,8 +187,12 @@ impl Reload {
                     shaders.files = files;
                 }
                 self.watch(session);
-                match checked.and_then(|context| easel.set_context(context)) {
-                    Ok(()) => session.messages.withdraw("shaders"),
+                let put = checked.and_then(|(context, sources)| easel.set_context(context).map(|()| sources));
+                match put {
+                    Ok(sources) => {
+                        session.shaders = Some(sources);
+                        session.messages.withdraw("shaders");
+                    }
                     Err(error) => session.messages.complain("shaders", error),
                 }
             }
@@ -208,14 +220,23 @@ fn embedded_names(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// A context with the folder's shaders that draws the shot. Adds the files that are imported to `files`.
-fn check(folder: &Path, context: &StageContext, shot: &Shot, files: &mut Vec<PathBuf>) -> Result<StageContext, Error> {
+fn check(
+    folder: &Path,
+    context: &StageContext,
+    shot: &Shot,
+    files: &mut Vec<PathBuf>,
+) -> Result<(StageContext, Sources), Error> {
     let sources = Sources::from_folder(folder)?;
-    for path in sources.paths().filter(|path| !files.iter().any(|file| file == path)).collect::<Vec<_>>() {
-        files.push(path.to_owned());
-    }
+    sources.paths().for_each(|path| add(files, path));
     let context = context.with_shaders(&sources)?;
     Stage::new(&context, false)?.warm_up(shot)?;
-    Ok(context)
+    Ok((context, sources))
+}
+
+fn add(files: &mut Vec<PathBuf>, path: &Path) {
+    if !files.iter().any(|file| file == path) {
+        files.push(path.to_owned());
+    }
 }
 
 /// The preset's file is another: it is loaded if nothing of it is changed here, else someone has to say which is wanted.

@@ -7,6 +7,7 @@ use glam::UVec2;
 use haze::demo::shot::Shot;
 use haze::preset::{Preset, Tooltips};
 use haze::settings::ShadeTree;
+use haze::shader::Sources;
 use haze::{Error, Light, MaterialAssets};
 
 use super::compare::Compare;
@@ -44,6 +45,8 @@ pub struct Session {
     pub screenshot: Option<PathBuf>,
     /// As last loaded well.
     pub pictures: Pictures,
+    /// An author's, as last compiled well; those that the program has in it if none.
+    pub shaders: Option<Sources>,
     /// Another program has written the file while something was changed here: which of the two is wanted is not known.
     pub is_changed_on_disk: bool,
     changed: Changed,
@@ -77,6 +80,7 @@ impl Session {
             thumbnails: PictureThumbnails::default(),
             screenshot: None,
             pictures: Pictures::new(preset, loaded),
+            shaders: None,
             is_changed_on_disk: false,
             changed: Changed { paths: HashSet::new(), saved: preset.clone(), preset: preset.clone() },
             document,

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 use std::io::{self, ErrorKind};
-use std::path::{Component, Path};
+use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
 use super::embedded::SOURCES;
@@ -21,7 +21,11 @@ pub(super) const IMPORT_COLUMN: usize = IMPORT.len() + 1;
 
 /// The shaders of a [`Context`](crate::Context): haze's own, or an author's in place of them. A clone is the same sources.
 #[derive(Clone, Debug)]
-pub struct Sources(Arc<[File]>);
+pub struct Sources {
+    files: Arc<[File]>,
+    /// Where files would be that are imported, and are not there.
+    missing: Arc<[PathBuf]>,
+}
 
 #[derive(Debug)]
 pub(super) struct File {
@@ -36,7 +40,8 @@ pub(super) struct File {
 impl Sources {
     /// The shaders that haze is built with.
     pub fn embedded() -> Self {
-        Self(SOURCES.iter().map(|&(name, text)| File::embedded(name, text)).collect())
+        let files = SOURCES.iter().map(|&(name, text)| File::embedded(name, text)).collect();
+        Self { files, missing: Arc::default() }
     }
 
     /// Reads a folder like haze's own `shaders/`: every file that it has takes the place of the embedded one of that name, so
@@ -66,7 +71,7 @@ impl Sources {
         if files.iter().all(|file| file.is_embedded) {
             return refuse("a folder without any of haze's shaders");
         }
-        let mut next = 0;
+        let (mut next, mut missing) = (0, Vec::new());
         while let Some(file) = files.get(next) {
             let mut imported = Vec::new();
             for (line, name) in imports(&file.text) {
@@ -78,29 +83,34 @@ impl Sources {
                 if files.len() + imported.len() == MAX_FILES {
                     return Err(file.mistake(line, IMPORT_COLUMN, format!("more than {MAX_FILES} files")));
                 }
-                imported.extend(File::read(folder, name)?);
+                match File::read(folder, name)? {
+                    Some(file) => imported.push(file),
+                    None => missing.push(folder.join(name)),
+                }
             }
             files.append(&mut imported);
             next += 1;
         }
-        Ok(Self(files.into()))
+        Ok(Self { files: files.into(), missing: missing.into() })
     }
 
-    /// The files that were read, to be watched; none of those that are embedded.
+    /// What is to be watched: the files that were read, none of those that are embedded, and where those would be that are
+    /// imported and were not there.
     pub fn paths(&self) -> impl Iterator<Item = &Path> {
-        self.0.iter().filter(|file| !file.is_embedded).map(|file| &*file.path)
+        let read = self.files.iter().filter(|file| !file.is_embedded).map(|file| &*file.path);
+        read.chain(self.missing.iter().map(PathBuf::as_path))
     }
 
     /// A bracket that an author left open.
     pub(super) fn unclosed(&self) -> Option<Error> {
-        let own = self.0.iter().filter(|file| !file.is_embedded);
+        let own = self.files.iter().filter(|file| !file.is_embedded);
         own.filter_map(|file| Some((file, unclosed(&file.text)?)))
             .map(|(file, (line, column, bracket))| file.mistake(line, column, format!("`{bracket}` is never closed")))
             .next()
     }
 
     pub(super) fn find(&self, name: &str) -> Option<&File> {
-        self.0.iter().find(|file| file.name == name)
+        self.files.iter().find(|file| file.name == name)
     }
 }
 

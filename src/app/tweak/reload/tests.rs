@@ -11,6 +11,7 @@ use image::{Rgb, RgbImage};
 use tempfile::TempDir;
 
 use super::*;
+use crate::app::tweak::exporting::Product;
 use crate::app::tweak::testing::{brightness, picture, window_with};
 use crate::app::tweak::window::Window;
 
@@ -178,6 +179,45 @@ fn a_shader_is_seen_as_it_is_saved_and_a_mistake_is_said_with_its_place() {
     bench.until(|bench| bench.said().is_none());
 }
 
+#[test]
+fn an_import_that_is_missing_or_no_text_is_followed_until_it_is_mended() {
+    let mut bench = Bench::new(SIZE);
+    let path = bench.path("shaders/lib/mine.wgsl");
+    fs::write(bench.path("shaders/lib/colour.wgsl"), format!("#import \"lib/mine.wgsl\"\n{COLOUR}")).unwrap();
+    bench.until(|bench| bench.said().is_some_and(|said| said.contains("\"lib/mine.wgsl\" to import")));
+    bench.rest();
+    fs::write(&path, "fn mine() {}").unwrap();
+    bench.until(|bench| bench.said().is_none());
+    bench.rest();
+    fs::write(&path, [b'f', b'n', 0xff]).unwrap();
+    bench.until(|bench| bench.said().is_some_and(|said| said.contains("mine.wgsl:1:3: not a text")));
+    bench.rest();
+    fs::write(&path, "fn mine() {}").unwrap();
+    bench.until(|bench| bench.said().is_none());
+}
+
+#[test]
+fn pictures_are_exported_as_the_shaders_of_the_folder_draw_them() {
+    let mut bench = Bench::new(SIZE);
+    let export = |bench: &mut Bench| {
+        let window = bench.window.state_mut();
+        window.exporting.order.size = glam::UVec2::new(96, 54);
+        window.exporting.begin(Product::Picture, &mut window.session);
+        bench.until(|bench| bench.window.state().exporting.progress().is_none());
+        bench.window.run_steps(2);
+        let said = bench.session().messages.latest().unwrap().text.clone();
+        let picture = haze::picture::read_png(Path::new(said.strip_prefix("written: ").unwrap())).unwrap();
+        picture.into_rgb8().as_raw().iter().map(|byte| u32::from(*byte)).sum::<u32>()
+    };
+    let before = export(&mut bench);
+    let dark = COLOUR.replace("return bounded_light(light);", "return bounded_light(light * 0.25);");
+    fs::write(bench.path("shaders/lib/colour.wgsl"), dark).unwrap();
+    let shaders = |bench: &mut Bench| format!("{:?}", bench.session().shaders).contains("light * 0.25");
+    bench.until(shaders);
+    let after = export(&mut bench);
+    assert!(after * 10 < before * 9, "{before} {after}");
+}
+
 /// From a save until the frame has the picture, and until its pixel can be read, milliseconds, of so many saves; sorted.
 fn latencies(bench: &mut Bench, count: u32) -> (Vec<u128>, Vec<u128>) {
     let (mut loaded, mut seen): (Vec<_>, Vec<_>) = (0..count)
@@ -218,6 +258,34 @@ fn held() -> (usize, u64) {
     (fs::read_dir("/proc/self/fd").unwrap().count(), kilobytes * 1024)
 }
 
+/// Good and bad shaders by turns, with an import of their own.
+#[cfg(target_os = "linux")]
+fn reload_shaders(bench: &mut Bench, count: u32) {
+    let path = bench.path("shaders/lib/colour.wgsl");
+    for index in 0..count {
+        let good = format!("#import \"lib/mine.wgsl\"\n// {index}\n{COLOUR}");
+        let (text, is_good) = match index % 4 {
+            0 | 2 => (good, true),
+            1 => (good.replace("saturate(light)", &format!("saturate{index}(light)")), false),
+            _ => (good.replace("lib/mine.wgsl", &format!("lib/mine_{index}.wgsl")), false),
+        };
+        fs::write(bench.path("shaders/lib/mine.wgsl"), format!("const MINE = {index};")).unwrap();
+        fs::write(&path, text).unwrap();
+        bench.until(|bench| match is_good {
+            true => {
+                bench.said().is_none() && format!("{:?}", bench.session().shaders).contains(&format!("// {index}\\n"))
+            }
+            false => bench.said().is_some_and(|said| said.contains(&index.to_string())),
+        });
+        if index % 10 == 0 {
+            picture(&mut bench.window);
+        }
+    }
+    fs::write(&path, COLOUR).unwrap();
+    bench.until(|bench| bench.said().is_none());
+    bench.rest();
+}
+
 /// Good and bad ramps and presets by turns.
 #[cfg(target_os = "linux")]
 fn reload(bench: &mut Bench, count: u32) {
@@ -246,12 +314,16 @@ fn reload(bench: &mut Bench, count: u32) {
 }
 
 #[cfg(target_os = "linux")]
-fn soak(count: u32) {
+fn soak(count: u32, reload: fn(&mut Bench, u32)) {
     let mut bench = Bench::new(SIZE);
     // Steps of Undo, which are kept.
     reload(&mut bench, count / 5 + 4);
     let (files, memory) = held();
-    reload(&mut bench, count);
+    for part in 1..=5 {
+        reload(&mut bench, count / 5);
+        let (files, memory) = held();
+        eprintln!("{} reloads: {files} files, {} KiB", part * count / 5, memory / 1024);
+    }
     let (files_after, memory_after) = held();
     let grown = memory_after.saturating_sub(memory);
     eprintln!("{count} reloads: {files} files before, {files_after} after; {} KiB more", grown / 1024);
@@ -264,11 +336,21 @@ fn soak(count: u32) {
 #[test]
 #[ignore = "takes minutes; alone in its process"]
 fn five_thousand_good_and_bad_reloads() {
-    soak(5000);
+    soak(5000, reload);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+#[ignore = "takes many minutes; alone in its process"]
+fn five_thousand_good_and_bad_shaders() {
+    // Most of a second each on two cores.
+    let count = std::env::var("HAZE_RELOADS").ok().and_then(|count| count.parse().ok());
+    soak(count.unwrap_or(5000), reload_shaders);
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn good_and_bad_reloads_by_turns() {
     reload(&mut Bench::new(SIZE), 24);
+    reload_shaders(&mut Bench::new(SIZE), 8);
 }
