@@ -13,6 +13,20 @@ pub struct Message {
 #[derive(Default)]
 pub struct Messages(Vec<Message>);
 
+/// Most characters of a message.
+const LONGEST: usize = 600;
+
+/// A text from outside on one line of at most so many characters: what is too much goes from its middle, for paths and reasons
+/// end with what matters.
+pub fn short(text: &str, most: usize) -> String {
+    let mut line: Vec<_> = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if line.len() > most {
+        let (head, tail) = (most * 2 / 3, most / 3);
+        line.splice(head..line.len() - tail, ['…']);
+    }
+    line.into_iter().collect()
+}
+
 /// Most that are kept.
 const MOST: usize = 20;
 
@@ -34,7 +48,9 @@ impl Messages {
         self.0.last()
     }
 
-    fn push(&mut self, message: Message) {
+    fn push(&mut self, mut message: Message) {
+        // Names may have anything in them.
+        message.text = short(&message.text, LONGEST);
         if self.0.contains(&message) {
             return;
         }
@@ -48,6 +64,15 @@ impl Messages {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_said_is_one_line_and_not_endless() {
+        let mut messages = Messages::default();
+        messages.say("file", format!("a\nb{}: it is full", "c".repeat(4000)));
+        let text = messages.latest().unwrap().text.clone();
+        assert!(text.starts_with("a bcc") && text.contains("c…c") && text.ends_with("c: it is full"), "{text}");
+        assert_eq!((text.chars().count(), short("abcdef", 6)), (LONGEST + 1, "abcdef".into()));
+    }
 
     #[test]
     fn a_thing_is_said_once_and_taken_back() {

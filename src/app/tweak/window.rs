@@ -16,6 +16,7 @@ use super::filing::Filing;
 use super::inspect::lens::Lens;
 use super::inspect::{lit, panel as inspector};
 use super::keeping::{Keeping, Layout};
+use super::messages::short;
 use super::panel;
 use super::preset_thumbnails::PresetThumbnails;
 use super::reload::{Reload, ShaderFolder};
@@ -118,7 +119,7 @@ impl Window {
             if let Some(action) = panel::file::menu(ui, &mut self.session) {
                 self.act(action, ui.ctx());
             }
-            ui.strong(&self.session.document.preset.name);
+            ui.strong(short(&self.session.document.preset.name, 40));
             if self.session.document.is_dirty() {
                 ui.label("•").on_hover_text("Changed since it was saved");
             }

@@ -133,7 +133,7 @@ impl FieldVisitor for Rows<'_, '_, '_> {
     }
 
     fn vector(&mut self, name: &'static str, value: &mut Vec3, range: RangeInclusive<f32>, unit: &'static str) {
-        self.row(name, |ui, label, _, _, _| row::vector(ui, value, &range, unit, label));
+        self.row(name, |ui, label, refused, _, _| row::vector(ui, value, &range, unit, label, refused));
     }
 
     fn colour(&mut self, name: &'static str, value: &mut Vec3, _: RangeInclusive<f32>) {

@@ -6,6 +6,7 @@ use eframe::egui::{self, Key, Ui};
 
 use crate::app::tweak::action::{ACTIONS, Action};
 use crate::app::tweak::filing::Filing;
+use crate::app::tweak::messages::short;
 use crate::app::tweak::platform::dialog::Purpose;
 use crate::app::tweak::platform::files;
 use crate::app::tweak::session::Session;
@@ -61,7 +62,7 @@ pub fn questions(ui: &Ui, filing: &mut Filing, session: &mut Session) {
 fn unsaved(ui: &Ui, filing: &mut Filing, session: &mut Session) {
     let mut answer = None;
     let response = egui::Modal::new(egui::Id::unique("unsaved")).show(ui.ctx(), |ui| {
-        ui.heading(format!("Save the changes of {}?", session.document.preset.name));
+        ui.heading(format!("Save the changes of {}?", short(&session.document.preset.name, 60)));
         ui.add_space(8.0);
         ui.horizontal(|ui| {
             for (text, value) in [("Save", Some(true)), ("Lose them", Some(false)), ("Go on here", None)] {

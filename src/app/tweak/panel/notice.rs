@@ -3,6 +3,7 @@
 use eframe::egui::{self, Ui};
 
 use crate::app::tweak::keeping::Keeping;
+use crate::app::tweak::messages::short;
 use crate::app::tweak::session::Session;
 
 /// Draws the bar while there is something to ask.
@@ -15,7 +16,8 @@ pub fn panel(ui: &mut Ui, session: &mut Session, keeping: Option<&mut Keeping>) 
     }
     egui::Panel::top("notice").show(ui, |ui| {
         ui.horizontal(|ui| {
-            ui.label(format!("{} has changed on disk, and is changed here too.", session.document.path().display()));
+            let path = short(&session.document.path().display().to_string(), 80);
+            ui.label(format!("{path} has changed on disk, and is changed here too."));
             if ui.button("Load it").on_hover_text("What is changed here is one Undo away").clicked() {
                 session.revert();
             }
@@ -29,8 +31,8 @@ pub fn panel(ui: &mut Ui, session: &mut Session, keeping: Option<&mut Keeping>) 
 
 fn recovery(ui: &mut Ui, session: &mut Session, keeping: &mut Keeping) {
     let Some(one) = keeping.abandoned.last() else { return };
-    let text =
-        format!("Unsaved work on {} was left when the program ended: {}.", one.source.display(), one.preset.name);
+    let (source, name) = (short(&one.source.display().to_string(), 60), short(&one.preset.name, 30));
+    let text = format!("Unsaved work on {source} was left when the program ended: {name}.");
     egui::Panel::top("recovery").show(ui, |ui| {
         ui.horizontal(|ui| {
             ui.label(text);

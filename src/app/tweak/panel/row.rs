@@ -1,5 +1,6 @@
 //! One row of a panel: a mark, a name, a control.
 
+use std::fmt::Display;
 use std::ops::RangeInclusive;
 
 use eframe::egui::{self, Response, Ui};
@@ -194,9 +195,7 @@ impl Control<'_> {
         let is_typed =
             ui.add_sized([VALUE.min(ui.available_width()), height], number).labelled_by(self.name.id).changed();
         if let Some(text) = typed.into_inner() {
-            let (low, high) = (self.range.start(), self.range.end());
-            let space = if self.unit.is_empty() { "" } else { " " };
-            *refused = Some(format!("{text:?} is not valid; expected {low} to {high}{space}{}", self.unit));
+            *refused = Some(refusal(&text, *self.range.start(), *self.range.end(), self.unit));
             *value = before;
             return false;
         }
@@ -204,21 +203,45 @@ impl Control<'_> {
     }
 }
 
-/// Three numbers beside each other.
-pub fn vector(ui: &mut Ui, value: &mut Vec3, range: &RangeInclusive<f32>, unit: &str, name: &Response) {
+/// What is said of a text that is no number of a range.
+fn refusal(text: &str, low: impl Display, high: impl Display, unit: &str) -> String {
+    let space = if unit.is_empty() { "" } else { " " };
+    format!("{text:?} is not valid; expected {low} to {high}{space}{unit}")
+}
+
+/// Three numbers beside each other; `refused` is told what was typed in vain.
+pub fn vector(
+    ui: &mut Ui,
+    value: &mut Vec3,
+    range: &RangeInclusive<f32>,
+    unit: &str,
+    name: &Response,
+    refused: &mut Refused,
+) {
     let (low, high) = (*range.start(), *range.end());
     let width = (ui.available_width() - 2.0 * ui.spacing().item_spacing.x) / 3.0;
     let mut axes = value.to_array();
     for (axis, label) in axes.iter_mut().zip(["x", "y", "z"]) {
+        let (before, typed) = (*axis, std::cell::RefCell::new(None));
         let drag = egui::DragValue::new(axis)
             .speed(0.02)
             .range(low..=high)
             .max_decimals(3)
             .update_while_editing(false)
-            .custom_parser(|text| parse(text, unit));
+            .custom_parser(|text| {
+                let number = parse(text, unit).filter(|number| range.contains(&(*number as f32)));
+                if number.is_none() {
+                    *typed.borrow_mut() = Some(text.to_owned());
+                }
+                number
+            });
         let drag =
             ui.add_sized([width, ui.spacing().interact_size.y], drag).on_hover_text(format!("{label}{}", suffix(unit)));
         drag.labelled_by(name.id);
+        if let Some(text) = typed.into_inner() {
+            *refused = Some(refusal(&text, low, high, unit));
+            *axis = before;
+        }
     }
     let edited = Vec3::from(axes);
     if edited.is_finite() {
@@ -294,6 +317,8 @@ fn parse(text: &str, unit: &str) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use egui_kittest::kittest::Queryable as _;
+
     use super::*;
 
     #[test]
@@ -318,6 +343,30 @@ mod tests {
         assert_eq!((parse("35°", "degrees"), parse("35 degrees", "degrees")), (Some(35.0), Some(35.0)));
         for wrong in ["nan", "inf", "2,5", "", "m/s", "two"] {
             assert_eq!(parse(wrong, "m/s"), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn what_is_typed_in_vain_into_three_numbers_is_said_and_changes_nothing() {
+        let row = |ui: &mut Ui, (value, refused): &mut (Vec3, Refused)| {
+            let name = ui.label("wind");
+            vector(ui, value, &(-10.0..=10.0), "m/s", &name, refused);
+        };
+        let mut harness = egui_kittest::Harness::new_ui_state(row, (Vec3::ONE, None));
+        for (text, expected) in
+            [("two", Vec3::ONE), ("nan", Vec3::ONE), ("11", Vec3::ONE), ("2 m/s", Vec3::new(2.0, 1.0, 1.0))]
+        {
+            harness.get_all_by_role(egui::Role::SpinButton).next().unwrap().click();
+            harness.run();
+            harness.event(egui::Event::Text(text.into()));
+            harness.run();
+            harness.key_press(egui::Key::Enter);
+            harness.run();
+            let (value, refused) = harness.state_mut();
+            let said = refused.take().unwrap_or_default();
+            assert_eq!(*value, expected);
+            let wanted = format!("{text:?} is not valid; expected -10 to 10 m/s");
+            assert_eq!(said, if expected == Vec3::ONE { wanted } else { String::new() });
         }
     }
 }

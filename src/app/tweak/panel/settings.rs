@@ -6,6 +6,7 @@ use haze::settings::{Fields, path_of};
 
 use super::fields::{self, Desk};
 use super::{curve, lights, look, ramps};
+use crate::app::tweak::messages::short;
 use crate::app::tweak::session::Session;
 use crate::app::tweak::show::Tab;
 
@@ -37,7 +38,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
     if systems > 1 && session.show.tab != Tab::Light {
         ui.horizontal_wrapped(|ui| {
             for (index, system) in session.document.preset.systems.iter().enumerate() {
-                ui.selectable_value(&mut session.show.system, index, &system.name);
+                ui.selectable_value(&mut session.show.system, index, short(&system.name, 30));
             }
         });
     }
