@@ -7,14 +7,15 @@ use eframe::egui;
 use haze::ramp::Ramp;
 use haze::{Error, FieldError, MaterialAssets};
 
-use super::document::document::{Document, OnDisk};
+use super::document::document::{Document, OnDisk, Saving};
+use super::messages::short;
 use super::platform::dialog::{Answer, Dialogs, Purpose};
 use super::platform::worker::Worker;
 use super::session::Session;
 
 /// What the File menu does.
 pub struct Filing {
-    opener: Worker<Opened>,
+    worker: Worker<Done>,
     dialogs: Dialogs,
     /// What the dialog that is open is for.
     purpose: Purpose,
@@ -42,10 +43,12 @@ pub struct Typed {
     pub text: String,
 }
 
-enum Opened {
-    Preset(Box<Document>, Vec<MaterialAssets>),
+/// What was done elsewhere.
+enum Done {
+    Opened(Box<Document>, Vec<MaterialAssets>),
     /// A ramp's name, to be looked for beside the preset.
     Ramp(String),
+    Saved(Box<Saving>, Result<(), Error>),
     Failed(Error),
 }
 
@@ -55,11 +58,11 @@ impl Filing {
     /// # Errors
     /// [`Error::Io`] where the system has no thread left.
     pub fn new(has_dialogs: bool, wake: impl Fn() + Send + Sync + 'static) -> Result<Self, Error> {
-        let thread = |error| Error::Io { path: "a thread to open files".into(), error };
+        let thread = |error| Error::Io { path: "a thread for files".into(), error };
         let wake = Arc::new(wake);
         let its = Arc::clone(&wake);
         Ok(Self {
-            opener: Worker::new("haze open", move || its()).map_err(thread)?,
+            worker: Worker::new("haze files", move || its()).map_err(thread)?,
             dialogs: Dialogs::new(has_dialogs, move || wake()).map_err(thread)?,
             purpose: Purpose::Open,
             waiting: None,
@@ -70,7 +73,7 @@ impl Filing {
         })
     }
 
-    /// Once a frame: what came of dialogs, what was read, what was dropped on the window, and whether it is to close.
+    /// Once a frame: what came of dialogs, what was read and written, what was dropped on the window, and whether it is to close.
     pub fn advance(&mut self, session: &mut Session, context: &egui::Context) {
         match self.dialogs.poll() {
             Some(Answer::Chosen(path)) => self.chosen(self.purpose, &path, session),
@@ -78,16 +81,19 @@ impl Filing {
             Some(Answer::Cancelled) => self.then = None,
             None => {}
         }
-        while let Some(opened) = self.opener.poll() {
-            match opened {
-                Some(Opened::Preset(document, loaded)) => self.begin_or_ask(Next::Show(document, loaded), session),
-                Some(Opened::Ramp(name)) => {
+        while let Some(done) = self.worker.poll() {
+            match done {
+                Some(Done::Opened(document, loaded)) => self.begin_or_ask(Next::Show(document, loaded), session),
+                Some(Done::Saved(saving, done)) => self.saved(*saving, done, session),
+                Some(Done::Ramp(name)) => {
                     if let Some(system) = session.document.preset.systems.get_mut(session.show.system) {
                         system.material.diffuse_ramp = name;
                     }
                 }
-                Some(Opened::Failed(error)) => session.messages.complain("file", error),
-                None => session.messages.complain("file", "a file cannot be read: the program has a mistake in it"),
+                Some(Done::Failed(error)) => session.messages.complain("file", error),
+                None => {
+                    session.messages.complain("file", "no file is read or written: the program has a mistake in it");
+                }
             }
         }
         let dropped = context.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()));
@@ -97,14 +103,15 @@ impl Filing {
         if self.is_over {
             context.send_viewport_cmd(egui::ViewportCommand::Close);
         } else if context.input(|input| input.viewport().close_requested())
-            && session.document.is_dirty()
+            && (session.document.is_dirty() || session.document.is_being_saved())
             && session.screenshot.is_none()
         {
             context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
-            self.waiting = Some(Next::Close);
+            let when = if session.document.is_being_saved() { &mut self.then } else { &mut self.waiting };
+            *when = Some(Next::Close);
         }
         let mark = if session.document.is_dirty() { "* " } else { "" };
-        let title = format!("{mark}{} - haze", session.document.preset.name);
+        let title = format!("{mark}{} - haze", short(&session.document.preset.name, 80));
         if title != self.title {
             context.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.title = title;
@@ -115,7 +122,7 @@ impl Filing {
     fn take(&self, path: PathBuf, session: &Session) {
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
             let preset = session.document.path().to_owned();
-            self.opener.submit(move |_| ramp_beside(&path, &preset).map_or_else(Opened::Failed, Opened::Ramp));
+            self.worker.submit(move |_| ramp_beside(&path, &preset).map_or_else(Done::Failed, Done::Ramp));
         } else {
             self.open(path);
         }
@@ -123,9 +130,9 @@ impl Filing {
 
     /// Opens a file, or a built-in preset by name. What cannot be opened changes nothing.
     pub fn open(&self, path: PathBuf) {
-        self.opener.submit(move |_| match load(&path) {
-            Ok((document, loaded)) => Opened::Preset(Box::new(document), loaded),
-            Err(error) => Opened::Failed(error),
+        self.worker.submit(move |_| match load(&path) {
+            Ok((document, loaded)) => Done::Opened(Box::new(document), loaded),
+            Err(error) => Done::Failed(error),
         });
     }
 
@@ -160,6 +167,9 @@ impl Filing {
 
     /// Writes the file; where there is none, asks for one.
     pub fn save(&mut self, session: &mut Session) {
+        if session.document.is_being_saved() {
+            return session.messages.say("file", "it is being saved");
+        }
         if session.document.is_built_in() {
             return self.save_as(session);
         }
@@ -168,8 +178,24 @@ impl Filing {
             self.then = None;
             return session.messages.complain("file", "not saved: it has changed on disk; say which is wanted first");
         }
-        let done = session.document.save();
-        self.saved(done, session);
+        let begun = session.document.begin_saving();
+        self.write(begun, session);
+    }
+
+    /// Has it written elsewhere: pictures may be large, and disks slow.
+    fn write(&mut self, begun: Result<Saving, Error>, session: &mut Session) {
+        match begun {
+            Ok(saving) => {
+                self.worker.submit(move |_| {
+                    let done = saving.write();
+                    Done::Saved(Box::new(saving), done)
+                });
+            }
+            Err(error) => {
+                self.then = None;
+                session.messages.complain("file", error);
+            }
+        }
     }
 
     /// Asks for another file to write.
@@ -177,14 +203,17 @@ impl Filing {
         self.ask(Purpose::SaveAs, session);
     }
 
-    fn saved(&mut self, done: Result<(), Error>, session: &mut Session) {
+    fn saved(&mut self, saving: Saving, done: Result<(), Error>, session: &mut Session) {
         let then = self.then.take();
+        let path = saving.path().display().to_string();
+        session.document.finish_saving(saving, done.is_ok());
         match done {
             Ok(()) => {
                 session.is_changed_on_disk = false;
                 session.messages.withdraw("preset");
-                session.messages.say("file", format!("saved: {}", session.document.path().display()));
-                then.into_iter().for_each(|next| self.begin(next, session));
+                session.messages.say("file", format!("saved: {path}"));
+                // It may have been changed meanwhile.
+                then.into_iter().for_each(|next| self.begin_or_ask(next, session));
             }
             Err(error) => session.messages.complain("file", error),
         }
@@ -218,8 +247,8 @@ impl Filing {
             Purpose::Open => self.open(path.into()),
             Purpose::SaveAs => {
                 let path = if path.extension().is_none() { path.with_extension("json") } else { path.into() };
-                let done = session.document.save_as(&path);
-                self.saved(done, session);
+                let begun = session.document.begin_saving_as(&path);
+                self.write(begun, session);
             }
         }
     }

@@ -1,6 +1,7 @@
 //! A preset while it is worked on.
 
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Weak};
 
 use haze::preset::{PictureFolders, Preset};
 use haze::{Error, FieldError, builtin};
@@ -24,6 +25,30 @@ pub struct Document {
     text: String,
     /// The file when its text was that; none where it has to be read to know.
     stamp: Option<Stamp>,
+    /// What is being written over it elsewhere, as long as it is.
+    writing: Weak<String>,
+}
+
+/// A document as it is to be saved: all that it takes to write it, on any thread.
+pub struct Saving {
+    preset: Preset,
+    text: Arc<String>,
+    /// Where its pictures are, and where it goes.
+    from: PathBuf,
+    path: PathBuf,
+}
+
+impl Saving {
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes the file, and the pictures that the preset names where it goes into another folder.
+    pub fn write(&self) -> Result<(), Error> {
+        let folder = |path: &Path| path.parent().unwrap_or(Path::new("")).to_path_buf();
+        copy_beside(&self.preset, &folder(&self.from), &folder(&self.path))?;
+        files::write(&self.path, self.text.as_bytes())
+    }
 }
 
 /// How the file is, compared with what was read from it or written to it last.
@@ -44,7 +69,8 @@ impl Document {
         let stamp = Stamp::of(name_or_path);
         let (preset, text) = files::read_preset(name_or_path)?;
         let history = History::new(preset.clone());
-        Ok(Self { saved: Some(preset.clone()), preset, history, path: name_or_path.into(), text, stamp })
+        let (saved, path) = (Some(preset.clone()), name_or_path.into());
+        Ok(Self { saved, preset, history, path, text, stamp, writing: Weak::new() })
     }
 
     /// What was being done to a preset when the program was ended. The file that it came from need not be there any more.
@@ -56,6 +82,7 @@ impl Document {
             saved: None,
             text: String::new(),
             stamp: None,
+            writing: Weak::new(),
         });
         document.put(preset, "recover");
         document
@@ -87,36 +114,38 @@ impl Document {
         self.saved.as_ref() != Some(&self.preset)
     }
 
-    /// Writes the file.
-    pub fn save(&mut self) -> Result<(), Error> {
+    /// Begins to save it: [`Saving::write`] does the work, and [`Document::finish_saving`] has to be told of its end.
+    pub fn begin_saving(&mut self) -> Result<Saving, Error> {
         if self.is_built_in() {
             let expected = "another name: this preset is built in";
             return Err(FieldError::new("save", self.path.display(), expected).into());
         }
-        self.preset.validate()?;
-        self.write(&self.path.clone())
+        self.begin_saving_as(&self.path.clone())
     }
 
-    /// Writes another file, which is the document's from now on. The pictures that the preset names come with it into another
-    /// folder.
-    pub fn save_as(&mut self, path: &Path) -> Result<(), Error> {
+    /// Begins to write another file, which is the document's once it is there.
+    pub fn begin_saving_as(&mut self, path: &Path) -> Result<Saving, Error> {
         if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
             return Err(FieldError::new("save as", path.display(), "a name that ends in .json").into());
         }
         self.preset.validate()?;
-        let folder = |path: &Path| path.parent().unwrap_or(Path::new("")).to_path_buf();
-        copy_beside(&self.preset, &folder(&self.path), &folder(path))?;
-        self.write(path)?;
-        self.path = path.into();
-        Ok(())
+        let text = Arc::new(self.preset.to_text(&self.text));
+        self.writing = Arc::downgrade(&text);
+        Ok(Saving { preset: self.preset.clone(), text, from: self.path.clone(), path: path.into() })
     }
 
-    fn write(&mut self, path: &Path) -> Result<(), Error> {
-        let text = self.preset.to_text(&self.text);
-        files::write(path, text.as_bytes())?;
-        // The next look reads it: another program may have been quicker than a stamp could be taken.
-        (self.text, self.stamp, self.saved) = (text, None, Some(self.preset.clone()));
-        Ok(())
+    /// Being written, it has not come to its end yet.
+    pub fn is_being_saved(&self) -> bool {
+        self.writing.strong_count() > 0
+    }
+
+    /// What was begun has come to its end; of another document, that is nothing to this one.
+    pub fn finish_saving(&mut self, saving: Saving, is_written: bool) {
+        let Saving { preset, text, path, .. } = saving;
+        if is_written && Weak::as_ptr(&self.writing) == Arc::as_ptr(&text) {
+            // The next look reads it: another program may have been quicker than a stamp could be taken.
+            (self.text, self.stamp, self.saved, self.path) = (text.to_string(), None, Some(preset), path);
+        }
     }
 
     /// Reads the file again; what was changed is one step back.
@@ -127,7 +156,7 @@ impl Document {
         Ok(())
     }
 
-    /// Whether another program has written the file. What [`Document::save`] writes does not count.
+    /// Whether another program has written the file. What is saved here does not count.
     pub fn on_disk(&mut self) -> OnDisk {
         if self.is_built_in() {
             return OnDisk::Same;
@@ -137,7 +166,7 @@ impl Document {
             return OnDisk::Same;
         }
         match files::read_text(&self.path) {
-            Ok(text) if text == self.text => {
+            Ok(text) if text == self.text || self.writing.upgrade().is_some_and(|writing| *writing == text) => {
                 self.stamp = Some(stamp);
                 OnDisk::Same
             }

@@ -6,6 +6,25 @@ use haze::settings::set_field;
 
 use super::*;
 
+impl Document {
+    /// Saves it here and now.
+    pub fn save(&mut self) -> Result<(), Error> {
+        let saving = self.begin_saving()?;
+        self.write(saving)
+    }
+
+    pub fn save_as(&mut self, path: &Path) -> Result<(), Error> {
+        let saving = self.begin_saving_as(path)?;
+        self.write(saving)
+    }
+
+    fn write(&mut self, saving: Saving) -> Result<(), Error> {
+        let done = saving.write();
+        self.finish_saving(saving, done.is_ok());
+        done
+    }
+}
+
 fn shot(folder: &Path) -> PathBuf {
     let path = folder.join("shot.json");
     fs::write(&path, Preset::load("column").unwrap().to_text("")).unwrap();
