@@ -55,11 +55,18 @@ impl Shot {
         Ok(Self { preset, size, shade_tree: ShadeTree::Final, materials })
     }
 
-    /// True if both give one picture; cheap, as pictures are compared by where they are in memory.
+    /// True if both give one picture, before it is developed: exposure is no part of it. Cheap, as ramps and sprites are
+    /// compared by where they are in memory.
     pub fn is_same(&self, other: &Self) -> bool {
         let shares = |(a, b): (&MaterialAssets, &MaterialAssets)| a.shares(b);
+        let is_same_but_exposed = || {
+            let mut preset = other.preset.clone();
+            preset.camera.exposure = self.preset.camera.exposure;
+            preset == self.preset
+        };
+        let is_exposed_alike = self.preset.camera.exposure.to_bits() == other.preset.camera.exposure.to_bits();
         (self.size, self.shade_tree) == (other.size, other.shade_tree)
-            && self.preset == other.preset
+            && (self.preset == other.preset || !is_exposed_alike && is_same_but_exposed())
             && self.materials.len() == other.materials.len()
             && self.materials.iter().zip(&other.materials).all(shares)
     }

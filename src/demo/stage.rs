@@ -237,6 +237,11 @@ impl Stage {
         Ok(())
     }
 
+    /// What was recorded last was dropped: the next frame draws all of it again.
+    pub fn forget(&mut self) {
+        self.set.iter_mut().for_each(|set| set.drawn = None);
+    }
+
     /// Compiles what a shot is drawn with.
     ///
     /// # Errors

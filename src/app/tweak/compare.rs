@@ -19,6 +19,13 @@ pub enum Against {
     Reference,
 }
 
+/// One of the two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    First,
+    Second,
+}
+
 /// How the two are shown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compare {
@@ -32,6 +39,14 @@ pub struct Compare {
 impl Default for Compare {
     fn default() -> Self {
         Self { against: None, split: 0.5, difference: 0.0 }
+    }
+}
+
+impl Compare {
+    /// Which of the two is seen at a share of the width. Of their difference, the first.
+    pub fn side(&self, x: f32) -> Side {
+        let is_second = self.against.is_some() && self.difference == 0.0 && x >= self.split;
+        if is_second { Side::Second } else { Side::First }
     }
 }
 

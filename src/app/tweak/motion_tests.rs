@@ -82,7 +82,7 @@ fn nothing_is_drawn_or_asked_for_while_nothing_happens() {
         harness.hover_at(rect.left_top() + vec2(8.0 * step as f32, -6.0 * step as f32));
         assert_eq!(drawn(&mut harness), before);
     }
-    harness.state_mut().session_mut().document.preset.camera.exposure += 1.0;
+    harness.state_mut().session_mut().document.preset.camera.fov += 5.0;
     assert!(drawn(&mut harness) > before);
 }
 

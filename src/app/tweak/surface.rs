@@ -21,7 +21,11 @@ pub fn paced() -> Arc<Answer> {
         let passed = last.map(|last: Instant| last.elapsed());
         sleep(passed.map_or(Duration::ZERO, |passed| PACE.saturating_sub(passed)));
         *last = Some(Instant::now());
-        usual(status)
+        match status {
+            // A frame that was late is wanted still: this asks for another.
+            CurrentSurfaceTexture::Timeout => SurfaceErrorAction::Reconfigure,
+            status => usual(status),
+        }
     })
 }
 
@@ -37,6 +41,7 @@ mod tests {
             assert!(matches!(answer(&CurrentSurfaceTexture::Outdated), SurfaceErrorAction::Reconfigure));
             assert!(matches!(answer(&CurrentSurfaceTexture::Occluded), SurfaceErrorAction::SkipFrame));
         }
+        assert!(matches!(answer(&CurrentSurfaceTexture::Timeout), SurfaceErrorAction::Reconfigure));
         assert!(start.elapsed() >= 14 * PACE);
     }
 }

@@ -53,6 +53,7 @@ impl CallbackTrait for Callback {
         let place = ViewportInPixels::from_points(&self.rect, screen.pixels_per_point, screen.size_in_pixels);
         let mut target = Target { device, queue, encoder, place };
         let mut drawing = self.easel.lock();
+        drawing.is_unpainted = true;
         match &self.what {
             What::Exhibit(exhibit) => drawing.record_exhibit(&mut target, exhibit),
             What::Stage(shot) => drawing.record_stage(&mut target, shot),
@@ -74,7 +75,8 @@ impl CallbackTrait for Callback {
         if place.width_px <= 0 || place.height_px <= 0 {
             return;
         }
-        let drawing = self.easel.lock();
+        let mut drawing = self.easel.lock();
+        drawing.is_unpainted = false;
         let developing = match &self.what {
             What::Exhibit(_) => drawing.pair.as_ref(),
             What::Stage(shot) => drawing.strip.developing[shot.shade_tree as usize].as_ref(),
@@ -84,3 +86,6 @@ impl CallbackTrait for Callback {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -60,6 +60,12 @@ impl Canvas {
         last.is_none_or(|last| (last.size, last.shade_tree) != (shot.size, shot.shade_tree))
     }
 
+    /// What was recorded last was never drawn.
+    pub fn forget(&mut self) {
+        self.shot = None;
+        self.stage.forget();
+    }
+
     pub fn picture(&self, stage: ShadeTree) -> Option<&wgpu::Texture> {
         self.stage.picture(stage)
     }

@@ -13,6 +13,7 @@ use haze::{Error, FrameCounts, FrameTimes, Timing};
 use super::canvas::{Canvas, Target, reduced, set_scale};
 use super::motion::Motion;
 use super::other::{Made, Other};
+use crate::app::tweak::compare::Side;
 use crate::app::tweak::platform::clock::{Duration, Instant};
 
 /// What the viewport shows.
@@ -68,14 +69,18 @@ pub struct Drawing {
     pub motion: Motion,
     /// Of every system of the picture.
     pub texels: Vec<Option<Texels>>,
-    /// Texels of the picture are wanted back, and are under way; what they were last taken of.
-    pub wants_capture: bool,
-    pub capture: Option<(Shot, Capture)>,
-    pub captured: Option<Shot>,
+    /// Something was recorded that has not been painted yet.
+    pub is_unpainted: bool,
+    /// Texels of a picture are wanted back, and are under way; what they were last taken of.
+    pub wants_capture: Option<Side>,
+    pub capture: Option<(Side, Shot, Capture)>,
+    pub captured: Option<(Side, Shot)>,
     /// The two pictures are wanted back to be compared, are under way, and were, as they are.
     wants_comparison: bool,
     pub comparison: Option<Comparison>,
     is_compared: bool,
+    /// What multiplies the light of the two.
+    exposures: Vec2,
     /// Times that the picture was drawn.
     pictures: u64,
     /// There while the picture is measured.
@@ -101,12 +106,14 @@ impl Drawing {
             strip_drawn: None,
             motion: Motion::default(),
             texels: Vec::new(),
-            wants_capture: false,
+            is_unpainted: false,
+            wants_capture: None,
             capture: None,
             captured: None,
             wants_comparison: false,
             comparison: None,
             is_compared: false,
+            exposures: Vec2::ZERO,
             pictures: 0,
             timing: None,
             scale: None,
@@ -119,6 +126,13 @@ impl Drawing {
         self.context = context;
         self.main.stage.set_timing(self.timing.as_ref())?;
         Ok(())
+    }
+
+    /// What was recorded last was never submitted.
+    pub fn forget(&mut self) {
+        let canvases = [Some(&mut self.main), self.other.as_mut(), Some(&mut self.strip)];
+        canvases.into_iter().flatten().for_each(Canvas::forget);
+        (self.capture, self.captured, self.comparison, self.is_compared) = (None, None, None, false);
     }
 
     pub fn error(&self) -> Option<String> {
@@ -193,12 +207,8 @@ impl Drawing {
             self.pictures += 1;
             self.is_compared = false;
         }
-        let is_new_shot = || self.captured.as_ref().is_none_or(|captured| !captured.is_same(shot));
-        if self.wants_capture && self.capture.is_none() && is_new_shot() {
-            self.captured = Some(shot.clone());
-            self.capture = self.main.stage.capture(target.encoder).map(|capture| (shot.clone(), capture));
-        }
         is_new |= self.record_second(target, other.as_ref());
+        self.copy(target.encoder, shot, other.as_ref());
         let Some([first, second]) = self.hung(shot, other.as_ref()) else { return };
         if is_new || self.pair.is_none() {
             self.pair = Some(self.developer.bind(target.device, &first, &second));
@@ -211,12 +221,32 @@ impl Drawing {
             ..target.shown()
         };
         self.pair.iter().for_each(|pair| self.developer.prepare(target.queue, pair, &shown));
+        self.is_compared &= shown.exposure == self.exposures;
+        self.exposures = shown.exposure;
         let stands_still = !self.motion.is_moving() && self.comparison.is_none() && !self.is_compared;
         if self.wants_comparison && stands_still && self.second_is_there() {
             let depth = self.main.stage.linear_depth();
             let (device, encoder) = (target.device, &mut *target.encoder);
             self.comparison = Comparison::record(device, encoder, [&first, &second], shown.exposure, depth);
             self.is_compared = true;
+        }
+    }
+
+    /// Copies the texels that are wanted, unless they were. They are those of this frame.
+    fn copy(&mut self, encoder: &mut wgpu::CommandEncoder, first: &Shot, other: Option<&Other>) {
+        let Some(side) = self.wants_capture.filter(|_| self.capture.is_none()) else { return };
+        let (shot, canvas) = match (side, other, &self.other) {
+            (Side::First, ..) => (first, &self.main),
+            (Side::Second, Some(Other::Shot(shot)), Some(canvas)) => (&**shot, canvas),
+            // Made elsewhere: it has none.
+            (Side::Second, ..) => return,
+        };
+        let is_copied = |(of, copied): &(Side, Shot)| {
+            *of == side && copied.is_same(shot) && exposure(copied).to_bits() == exposure(shot).to_bits()
+        };
+        if !self.captured.as_ref().is_some_and(is_copied) {
+            self.captured = Some((side, shot.clone()));
+            self.capture = canvas.stage.capture(encoder).map(|capture| (side, shot.clone(), capture));
         }
     }
 

@@ -11,6 +11,7 @@ use haze::demo::shot::Shot;
 use haze::demo::stage::StageContext;
 
 use super::drawing::{Drawing, Figures, Texels};
+use crate::app::tweak::compare::Side;
 use crate::app::tweak::health::Health;
 
 /// Draws for one window. A clone is the same.
@@ -67,7 +68,12 @@ impl Easel {
 
     /// To be called at the beginning of a frame. While something moves the picture is drawn as coarsely as it takes to be quick.
     pub fn begin_frame(&self, is_moving: bool) {
-        self.lock().motion.begin_frame(is_moving);
+        let mut drawing = self.lock();
+        // egui drops what was recorded where there is nothing to draw into.
+        if std::mem::take(&mut drawing.is_unpainted) {
+            drawing.forget();
+        }
+        drawing.motion.begin_frame(is_moving);
     }
 
     /// As if a frame had taken long.
@@ -131,14 +137,14 @@ impl Easel {
         self.lock().context.can_capture()
     }
 
-    /// Whether texels of the picture are to be brought back when it is another.
-    pub fn want_capture(&self, wants: bool) {
+    /// Of which picture texels are to be brought back when it is another.
+    pub fn want_capture(&self, wants: Option<Side>) {
         self.lock().wants_capture = wants;
     }
 
     /// Texels of a picture that have arrived.
-    pub fn take_capture(&self) -> Option<(Shot, Capture)> {
-        self.lock().capture.take_if(|(_, capture)| capture.has_arrived())
+    pub fn take_capture(&self) -> Option<(Side, Shot, Capture)> {
+        self.lock().capture.take_if(|(.., capture)| capture.has_arrived())
     }
 
     /// Texels are under way.

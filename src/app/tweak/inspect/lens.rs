@@ -10,6 +10,7 @@ use haze::demo::shot::Shot;
 
 use super::survey::Survey;
 use super::{Inspect, Told};
+use crate::app::tweak::compare::Side;
 use crate::app::tweak::easel::Easel;
 use crate::app::tweak::platform::worker::Worker;
 use crate::app::tweak::session::Session;
@@ -31,6 +32,7 @@ pub struct Lens {
 
 /// A picture, and its texels.
 struct Seen {
+    side: Side,
     shot: Shot,
     captured: Captured,
 }
@@ -53,7 +55,7 @@ impl Lens {
     pub fn update(&mut self, ui: &Ui, session: &mut Session, easel: &Easel) {
         let has_ramps = session.show.tab == Tab::Ramps;
         if !session.inspect.is_on && !has_ramps {
-            easel.want_capture(false);
+            easel.want_capture(None);
             easel.forget_capture();
             (self.seen, self.asked) = (None, None);
             (session.inspect.told, session.inspect.survey) = (None, None);
@@ -67,13 +69,14 @@ impl Lens {
         }
         let now = ui.input(|input| input.time);
         let waits = INTERVAL - (now - self.arrived);
-        if let Some((shot, capture)) = easel.take_capture() {
+        let side = session.inspect.place().map_or(Side::First, |place| session.compare.side(place.x));
+        if let Some((side, shot, capture)) = easel.take_capture() {
             self.arrived = now;
-            self.worker.submit(move |_| Ok(Answer::Seen(Arc::new(read(shot, &capture)?))));
+            self.worker.submit(move |_| Ok(Answer::Seen(Arc::new(read(side, shot, &capture)?))));
         } else if easel.is_capturing() {
             ui.ctx().request_repaint();
         }
-        easel.want_capture(waits <= 0.0);
+        easel.want_capture((waits <= 0.0).then_some(side));
         if waits > 0.0 {
             ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(waits.min(INTERVAL)));
         }
@@ -85,13 +88,14 @@ impl Lens {
                 None => {}
             }
         }
-        self.ask(&session.inspect);
+        self.ask(&session.inspect, side);
     }
 
     fn take(&mut self, answer: Answer, inspect: &mut Inspect, has_ramps: bool) {
         match answer {
             Answer::Seen(seen) => {
-                if has_ramps {
+                // Ramps are those of the first picture.
+                if has_ramps && seen.side == Side::First {
                     let seen = seen.clone();
                     self.worker.submit(move |_| Ok(Answer::Survey(Survey::of(&seen.captured, &seen.shot)?)));
                 }
@@ -103,8 +107,10 @@ impl Lens {
     }
 
     /// Has the pixel read that is pointed at, unless it was.
-    fn ask(&mut self, inspect: &Inspect) {
-        let Some((seen, place)) = self.seen.as_ref().zip(inspect.place()) else { return };
+    fn ask(&mut self, inspect: &Inspect, side: Side) {
+        let Some((seen, place)) = self.seen.as_ref().filter(|seen| seen.side == side).zip(inspect.place()) else {
+            return;
+        };
         let size = seen.shot.size;
         let at = |share: f32, side: u32| ((share * side as f32) as u32).min(side - 1);
         let pixel = UVec2::new(at(place.x, size.x), at(place.y, size.y));
@@ -115,13 +121,15 @@ impl Lens {
         let seen = seen.clone();
         self.worker.submit(move |_| {
             let probe = seen.captured.probe(&seen.shot, &[pixel])?.remove(0);
-            Ok(Answer::Told(Told { pixel, probe, exposure: seen.shot.preset.camera.exposure.exp2() }))
+            let preset = &seen.shot.preset;
+            let names = preset.systems.iter().map(|system| system.name.clone()).collect();
+            Ok(Answer::Told(Told { pixel, side: seen.side, names, probe, exposure: preset.camera.exposure.exp2() }))
         });
         (self.asked, self.is_asking) = (Some(pixel), true);
     }
 }
 
-fn read(shot: Shot, capture: &Capture) -> Result<Seen, Error> {
+fn read(side: Side, shot: Shot, capture: &Capture) -> Result<Seen, Error> {
     let none = || Error::Device("the texels of the picture did not come back".into());
-    Ok(Seen { captured: capture.read().ok_or_else(none)?, shot })
+    Ok(Seen { side, captured: capture.read().ok_or_else(none)?, shot })
 }

@@ -13,6 +13,7 @@ use eframe::egui::{Response, Vec2};
 use glam::UVec2;
 use haze::reference::Probe;
 
+use super::compare::Side;
 use survey::{Spot, Survey};
 
 /// What is asked, and what is known.
@@ -35,6 +36,9 @@ pub struct Inspect {
 /// What became of a pixel.
 pub struct Told {
     pub pixel: UVec2,
+    /// The picture that it is of, and the names of the systems there.
+    pub side: Side,
+    pub names: Vec<String>,
     pub probe: Probe,
     /// Multiplies the light before it is shown.
     pub exposure: f32,

@@ -6,6 +6,7 @@ use haze::formula::tonemap::developed;
 use haze::reference::{LightProbe, SystemProbe};
 
 use super::Told;
+use crate::app::tweak::compare::{Against, Side};
 use crate::app::tweak::session::Session;
 
 /// How far from the corner.
@@ -13,9 +14,14 @@ const MARGIN: f32 = 8.0;
 
 /// Draws them while the inspector is on, on the side where the pointer is not.
 pub fn panel(ui: &Ui, viewport: Rect, session: &Session) {
-    let inspect = &session.inspect;
-    let Some(told) = inspect.told.as_ref().filter(|_| inspect.is_on) else { return };
-    let Some(place) = inspect.place() else { return };
+    let (inspect, compare) = (&session.inspect, &session.compare);
+    let Some(place) = inspect.place().filter(|_| inspect.is_on) else { return };
+    let side = compare.side(place.x);
+    let is_made = side == Side::Second && compare.against == Some(Against::Reference);
+    let told = inspect.told.as_ref().filter(|told| told.side == side && !is_made);
+    if told.is_none() && !is_made {
+        return;
+    }
     cross(ui, viewport.min + place * viewport.size(), inspect.pinned.is_some());
     let (corner, pivot) = if place.x < 0.5 {
         (viewport.right_top() + Vec2::new(-MARGIN, MARGIN), egui::Align2::RIGHT_TOP)
@@ -26,7 +32,10 @@ pub fn panel(ui: &Ui, viewport: Rect, session: &Session) {
     area.constrain_to(viewport).show(ui.ctx(), |ui| {
         egui::Frame::popup(ui.style()).show(ui, |ui| {
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
-            numbers(ui, told, session);
+            match told {
+                Some(told) => numbers(ui, told, session),
+                None => drop(ui.weak("Made by the CPU: no texels are kept to tell from")),
+            }
         });
     });
 }
@@ -42,17 +51,19 @@ fn cross(ui: &Ui, at: egui::Pos2, is_pinned: bool) {
 }
 
 fn numbers(ui: &mut Ui, told: &Told, session: &Session) {
-    let Told { pixel, probe, exposure } = told;
+    let Told { pixel, side, names, probe, exposure } = told;
     let keep = if session.inspect.pinned.is_some() { "kept" } else { "click keeps it" };
     ui.horizontal(|ui| {
         ui.strong(format!("Pixel {}, {}", pixel.x, pixel.y));
         ui.weak(keep);
+        if let Some(against) = session.compare.against.as_ref().filter(|_| *side == Side::Second) {
+            ui.weak(format!("second: {}", against.name()));
+        }
     });
     // The nearest first.
     for system in probe.systems.iter().rev() {
         ui.separator();
-        let names = &session.document.preset.systems;
-        ui.label(RichText::new(names.get(system.system).map_or("smoke", |system| &system.name)).strong());
+        ui.label(RichText::new(names.get(system.system).map_or("smoke", String::as_str)).strong());
         of_system(ui, system);
     }
     if probe.systems.is_empty() {

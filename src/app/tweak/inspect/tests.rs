@@ -4,6 +4,7 @@ use eframe::egui::{self, Key, Pos2, Theme, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
+use crate::app::tweak::compare::Against;
 use crate::app::tweak::testing::{brightness, picture, window};
 use crate::app::tweak::window::Window;
 
@@ -50,6 +51,24 @@ fn the_pixel_under_the_pointer_is_told_and_a_click_keeps_it() {
     harness.key_press(Key::I);
     harness.run_steps(3);
     assert!(!shows(&harness, "coverage"));
+}
+
+#[test]
+fn of_two_pictures_the_one_under_the_pointer_is_told() {
+    let mut harness = window("column", SIZE, Theme::Dark);
+    harness.key_press(Key::I);
+    let mut show = |against: Against, x: f32, text: &str| {
+        harness.state_mut().session.compare.against = Some(against);
+        let place = smoke(&harness) + Vec2::new(x, 0.0);
+        harness.hover_at(place);
+        wait_for(&mut harness, |harness| shows(harness, text));
+        [shows(&harness, "coverage"), shows(&harness, "second: ")]
+    };
+    assert_eq!(show(Against::FullResolution, -20.0, "coverage"), [true, false]);
+    assert_eq!(show(Against::FullResolution, 20.0, "second: full resolution"), [true, true]);
+    assert_eq!(show(Against::Forward, 20.0, "lit sprite by sprite"), [false, true]);
+    assert_eq!(show(Against::Reference, 20.0, "Made by the CPU"), [false, false]);
+    assert_eq!(show(Against::Reference, -20.0, "coverage"), [true, false]);
 }
 
 #[test]

@@ -8,6 +8,8 @@ use haze::reference::SystemProbe;
 use haze::settings::RampFilter;
 
 use super::row::spaced;
+use crate::app::tweak::compare::Side;
+use crate::app::tweak::inspect::Told;
 use crate::app::tweak::inspect::survey::{BINS, Histogram, SIDE, Spot};
 use crate::app::tweak::session::Session;
 
@@ -32,7 +34,8 @@ const LOOKED_UP: Color32 = Color32::from_rgb(120, 200, 240);
 pub fn panel(ui: &mut Ui, session: &Session, index: usize) -> Option<Spot> {
     let system = session.document.preset.systems.get(index)?;
     let material = &session.materials().into_iter().nth(index)?;
-    let told = session.inspect.told.as_ref().filter(|_| session.inspect.place().is_some());
+    let is_first = |told: &&Told| told.side == Side::First && session.inspect.place().is_some();
+    let told = session.inspect.told.as_ref().filter(is_first);
     let probe = told.and_then(|told| told.probe.systems.iter().find(|probe| probe.system == index));
     let filter = system.settings.ramp_filter;
     let is_forward = system.settings.is_forward();
