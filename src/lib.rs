@@ -79,8 +79,8 @@ pub use assets::{builtin, noise, picture, ramp, sprite};
 pub use error::{Error, FieldError};
 pub use frame::{Bounds, Frame, Light, LightKind, Material, Particle, Particles, SceneDepth, System, View};
 pub use renderer::{
-    Context, Descriptor, FrameCounts, FrameTimes, MemoryUse, PassTime, Renderer, SceneDepthKind, TargetViews, Timing,
-    WarmUp, read_only_depth_is_supported, shader,
+    Context, Descriptor, FrameCounts, FrameTimes, MemoryUse, Overdraw, PassTime, Renderer, SceneDepthKind, TargetViews,
+    Timing, WarmUp, read_only_depth_is_supported, shader,
 };
 pub use settings::{ScaleBudget, Settings};
 

@@ -5,10 +5,12 @@ mod in_front;
 mod lights;
 mod middle;
 mod order;
+mod sprites;
 mod system;
 mod view;
 
 pub(crate) use lights::lights_in_view;
 pub(crate) use order::{SortScratch, in_order};
+pub(crate) use sprites::{Grid, Placing, SpriteInView};
 pub(crate) use system::{SystemInView, SystemInWorld, system_in_view};
 pub(crate) use view::ViewGeometry;

@@ -36,6 +36,8 @@ pub(crate) struct SystemInWorld<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SystemInView {
     pub rect: TargetRect,
+    /// Pixels that the box covers.
+    pub pixels: UVec2,
     pub uniform: SystemUniform,
     /// The transfer draws the back faces of the box: it reaches to or behind the near plane, or shows through the scene.
     pub back_faces: bool,
@@ -121,7 +123,8 @@ pub(crate) fn system_in_view(view: &ViewGeometry, targets: UVec2, system: &Syste
     // The front of the box may be hidden by what sprites show through.
     let back_faces = in_view.near <= view.depth.near || uniform.fade_through > 0.0;
     let distance = -uniform.centre.z;
-    Some(SystemInView { rect, uniform, back_faces, distance, lit_depth: distance - view.depth_offset })
+    let pixels = in_view.max - in_view.min;
+    Some(SystemInView { rect, pixels, uniform, back_faces, distance, lit_depth: distance - view.depth_offset })
 }
 
 /// Where the eye stands in the noise, which has risen: within one tile of it, so that f32 stays fine after hours and far from

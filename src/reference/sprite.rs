@@ -1,30 +1,23 @@
 //! Sprites, fragment by fragment. `shaders/lib/sprite_vertex.wgsl` and `shaders/lib/sprite_fragment.wgsl`.
 
-use glam::{IVec2, Mat3, UVec2, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
+use glam::{IVec2, Mat3, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 
 use super::draw::Draw;
 use crate::formula::noise_volume::{noise_coordinate, sample_noise_octaves};
 use crate::formula::normal::rotate_normal;
 use crate::formula::order::{optical_depth_in_front, order_weight};
-use crate::formula::soft_fade::{near_fade, soft_fade};
+use crate::formula::soft_fade::soft_fade;
 use crate::formula::sprite::{
     FlipbookFrames, checkerboard, flipbook_frames, sample_detail, sample_sprite, sprite_frame, sprite_lod, sprite_uv,
     unrotate,
 };
 use crate::formula::technique::{
     RayInterval, density_amount, density_thickness, depth_sprite_depth, hard_fade, ray_sphere, slab_share,
-    sphere_axis_bounds, spherical_billboard_amount, volumetric_density, volumetric_falloff, volumetric_normal,
+    spherical_billboard_amount, volumetric_density, volumetric_falloff, volumetric_normal,
 };
-use crate::formula::view::pixel_from_ndc;
 use crate::frame::Particle;
+use crate::in_view::{Grid, Placing, SpriteInView};
 use crate::settings::{Order, Technique};
-
-/// The texels that sprites are drawn on: texel (i, j) is the pixels from (origin + (i, j)) · scale.
-pub struct Grid {
-    pub origin: Vec2,
-    pub scale: f32,
-    pub size: UVec2,
-}
 
 /// A sprite in view space.
 pub struct SpriteSetup {
@@ -77,25 +70,14 @@ impl Draw<'_> {
 
     /// `sprite_vertex()`; `None` when the sprite is hidden.
     pub fn sprite_setup(&self, particle: &Particle, texels_per_pixel: f32) -> Option<SpriteSetup> {
-        let (system, technique) = (&self.system, self.settings.technique);
-        let centre = self.view.view_from_world.transform_point3(particle.position);
+        let (system, technique, placing) = (&self.system, self.settings.technique, self.placing());
+        let sprite = placing.sprite(particle)?;
+        let SpriteInView { centre, radius, amount } = sprite;
         let view_depth = -centre.z;
-        let mut radius = particle.radius * system.size;
-        if technique == Technique::SphericalBillboard {
-            radius *= system.billboard_radius;
-        }
-        let half_depth = if technique.is_flat() { 0.0 } else { radius };
-        let (front, back) = (view_depth - half_depth, view_depth + half_depth);
-        let amount =
-            particle.shown_amount() * system.opacity * near_fade(back, system.near_fade_start, system.near_fade_end);
-        let visible = back > self.view.near && front < self.view.far && radius > 0.0 && amount > 0.0;
-        if !visible {
-            return None;
-        }
         let (min, max) = if technique.is_sphere() {
-            self.sphere_rectangle(centre, radius, texels_per_pixel)
+            placing.sphere_rectangle(&sprite, texels_per_pixel)
         } else {
-            self.square_rectangle(self.on_screen(centre), radius)
+            self.square_rectangle(placing.on_screen(centre), radius)
         };
         let diameter = 2.0 * radius * self.pixels_per_metre(view_depth.max(self.view.near)) * texels_per_pixel;
         let frame = sprite_frame(self.settings.sprite.animation, particle.frame, particle.age, system.frame_count);
@@ -126,9 +108,8 @@ impl Draw<'_> {
         }
     }
 
-    /// A slab whose middle has passed the near plane is drawn on that.
-    fn on_screen(&self, centre: Vec3) -> Vec3 {
-        centre.with_z(centre.z.min(-self.view.near))
+    fn placing(&self) -> Placing<'_> {
+        Placing { view: &self.view, system: &self.system, technique: self.settings.technique }
     }
 
     fn square_rectangle(&self, centre: Vec3, radius: f32) -> (Vec2, Vec2) {
@@ -138,24 +119,6 @@ impl Draw<'_> {
         (a.min(b), a.max(b))
     }
 
-    /// `sphere_corner()`.
-    fn sphere_rectangle(&self, centre: Vec3, radius: f32, texels_per_pixel: f32) -> (Vec2, Vec2) {
-        let view = &self.view;
-        let rays = if view.orthographic > 0.5 {
-            [centre.xy() - radius, centre.xy() + radius]
-        } else {
-            let bounds = |position| sphere_axis_bounds(Vec2::new(position, -centre.z), radius, view.near);
-            let (x, y) = (bounds(centre.x), bounds(centre.y));
-            [Vec2::new(x.x, y.x), Vec2::new(x.y, y.y)]
-        };
-        let edge = 1.0 + (texels_per_pixel * view.size).recip();
-        let [low, high] = rays.map(|ray| {
-            let ndc = ((ray - view.ray_offset) / view.ray_scale).clamp(-edge, edge);
-            pixel_from_ndc(ndc, view.size)
-        });
-        (low.min(high), low.max(high))
-    }
-
     /// Normal (view space) and amount of a sprite at a pixel in front of a scene of this view depth; `None` where it is
     /// hidden.
     pub fn technique_fragment(&self, sprite: &SpriteSetup, pixel: Vec2, scene: f32) -> Option<Vec4> {
@@ -163,7 +126,7 @@ impl Draw<'_> {
         if technique.is_sphere() {
             return self.sphere_fragment(sprite, pixel, scene);
         }
-        let drawn = self.on_screen(sprite.centre);
+        let drawn = self.placing().on_screen(sprite.centre);
         let offset = self.view_position(pixel, -drawn.z) - drawn;
         let local = unrotate(offset.xy(), sprite.rotation) / sprite.radius;
         if local.abs().max_element() > 1.0 {

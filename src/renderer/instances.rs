@@ -56,6 +56,11 @@ impl Instances {
         Some(Sprites { buffer: buffer.clone(), offset: 0, count: self.sorted.len() as u32, loops })
     }
 
+    /// What is drawn, in order; nothing of a host's buffer.
+    pub fn particles(&self) -> &[Particle] {
+        if self.buffer.is_some() { &self.sorted } else { &[] }
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> u64 {
         self.buffer.as_ref().map_or(0, wgpu::Buffer::size)

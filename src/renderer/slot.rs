@@ -1,9 +1,9 @@
 //! One particle system's place in a renderer: its buffers, its targets, and what this frame draws with them.
 
-use glam::{UVec2, Vec3};
+use glam::{UVec2, Vec2, Vec3};
 
 use super::context::Shared;
-use super::counts::FrameCounts;
+use super::counts::{FrameCounts, Overdraw};
 use super::draw::{Assembly, Draw};
 use super::frame_bindings::FrameBindings;
 use super::gpu::Gpu;
@@ -16,9 +16,10 @@ use super::pass::Groups;
 use super::plan::{Plan, Situation, plan};
 use super::system_targets::SystemTargets;
 use super::targets::TargetViews;
-use crate::formula::uniforms::{LightUniform, SystemUniform};
+use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use crate::frame::{Bounds, Frame, Particles, System, bounds_of};
-use crate::in_view::{SystemInView, SystemInWorld, ViewGeometry, lights_in_view, system_in_view};
+use crate::in_view::{Grid, Placing, SystemInView, SystemInWorld, ViewGeometry, lights_in_view, system_in_view};
+use crate::settings::Technique;
 
 /// A frame, and what it is drawn with.
 pub(crate) struct FrameContext<'a> {
@@ -54,6 +55,7 @@ pub(crate) struct Slot {
 #[derive(Debug)]
 struct Drawn {
     in_view: SystemInView,
+    technique: Technique,
     draw: Draw,
 }
 
@@ -103,7 +105,7 @@ impl Slot {
         let (sprites, texels) = match &self.drawn {
             None => return FrameCounts::default(),
             Some(Drawn { draw: Draw::Forward(forward), .. }) => (&forward.sprites, UVec2::ZERO),
-            Some(Drawn { draw: Draw::Deferred(draw), in_view }) => (&draw.accumulate.sprites, in_view.rect.size),
+            Some(Drawn { draw: Draw::Deferred(draw), in_view, .. }) => (&draw.accumulate.sprites, in_view.rect.size),
         };
         FrameCounts {
             systems: 1,
@@ -112,8 +114,29 @@ impl Slot {
         }
     }
 
+    /// In a view.
+    pub fn overdraw(&self, view: &ViewUniform) -> Overdraw {
+        let Some(Drawn { in_view, technique, draw }) = &self.drawn else { return Overdraw::default() };
+        let particles = self.instances.particles();
+        if particles.is_empty() {
+            return Overdraw::default();
+        }
+        let (sprites, grid) = match draw {
+            Draw::Forward(forward) => {
+                (&forward.sprites, Grid { origin: Vec2::ZERO, scale: 1.0, size: view.size.as_uvec2() })
+            }
+            Draw::Deferred(draw) => {
+                let origin = in_view.rect.origin.as_vec2();
+                (&draw.accumulate.sprites, Grid { origin, scale: in_view.uniform.scale, size: in_view.rect.size })
+            }
+        };
+        let placing = Placing { view, system: &in_view.uniform, technique: *technique };
+        let side = (in_view.pixels.as_dvec2() / f64::from(grid.scale)).ceil();
+        Overdraw { fragments: f64::from(sprites.loops) * placing.fragments(&grid, particles), texels: side.x * side.y }
+    }
+
     pub fn target_views(&self) -> Option<TargetViews<'_>> {
-        let Drawn { in_view, draw: Draw::Deferred(_) } = self.drawn.as_ref()? else { return None };
+        let Drawn { in_view, draw: Draw::Deferred(_), .. } = self.drawn.as_ref()? else { return None };
         let (accumulation, baked_diffuse) = self.targets.textures()?;
         Some(TargetViews {
             accumulation: &accumulation.attachments,
@@ -185,7 +208,7 @@ impl Slot {
                 assembly.deferred(plan, targets, &in_view, depth, frame.scene_depth.buffer())
             }
         };
-        Some(Drawn { in_view, draw })
+        Some(Drawn { in_view, technique: settings.technique, draw })
     }
 }
 

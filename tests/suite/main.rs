@@ -18,6 +18,7 @@ mod host;
 mod hosts;
 mod in_view;
 mod lighting;
+mod overdraw;
 #[cfg(feature = "app")]
 mod presets;
 #[cfg(feature = "app")]

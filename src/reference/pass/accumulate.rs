@@ -4,9 +4,9 @@ use glam::{Vec4, Vec4Swizzles};
 
 use crate::assets::picture::Picture;
 use crate::formula::normal::accumulation_from_normal;
+use crate::in_view::Grid;
 use crate::reference::blend_unit::{premultiplied_over, quantise, weighted_sum};
 use crate::reference::draw::Draw;
-use crate::reference::sprite::Grid;
 use crate::settings::{AccumulationFormat, Order};
 
 impl Draw<'_> {

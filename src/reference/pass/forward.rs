@@ -6,9 +6,9 @@ use crate::assets::picture::Picture;
 use crate::formula::blending::forward_fragment;
 use crate::formula::colour::bounded_light;
 use crate::formula::lighting::coverage;
+use crate::in_view::Grid;
 use crate::reference::blend_unit::forward_blend;
 use crate::reference::draw::Draw;
-use crate::reference::sprite::Grid;
 
 impl Draw<'_> {
     pub fn forward(&self, picture: &mut Picture<Vec4>) {

@@ -8,7 +8,7 @@ use haze::demo::develop::{Developer, Developing, Shown, exposure};
 use haze::demo::shot::Shot;
 use haze::demo::stage::{StageContext, StageMemory};
 use haze::settings::ShadeTree;
-use haze::{Error, FrameCounts, FrameTimes, Timing};
+use haze::{Error, FrameCounts, FrameTimes, Overdraw, Timing};
 
 use super::canvas::{Canvas, Target, reduced, set_scale};
 use super::motion::Motion;
@@ -48,6 +48,7 @@ pub struct Figures {
     /// GPU time can be known here.
     pub is_timed: bool,
     pub counts: FrameCounts,
+    pub overdraw: Overdraw,
     pub memory: StageMemory,
     /// What the strip and a second picture hold, bytes.
     pub beside: u64,
@@ -161,6 +162,7 @@ impl Drawing {
             times: self.timing.as_ref().and_then(Timing::latest),
             is_timed,
             counts: self.main.stage.renderer().counts(),
+            overdraw: self.main.stage.renderer().overdraw(),
             memory: self.main.stage.memory_use(),
             beside: beside.map(|canvas| canvas.stage.memory_use().total()).sum(),
         }

@@ -5,6 +5,7 @@ use std::collections::HashSet;
 use eframe::egui::{self, Color32, Rect, Sense, Ui, pos2, vec2};
 
 use super::fields::{self, Desk};
+use crate::app::tweak::easel::Figures;
 use crate::app::tweak::easel::canvas::set_scale;
 use crate::app::tweak::performance::{Performance, REMEMBERED};
 use crate::app::tweak::session::Session;
@@ -128,13 +129,19 @@ fn budget(ui: &mut Ui, session: &mut Session) {
 }
 
 fn drawn(ui: &mut Ui, performance: &Performance) {
-    let counts = &performance.figures.counts;
+    let Figures { counts, overdraw, .. } = &performance.figures;
     rows(
         ui,
         "drawn",
         &[
             ("systems in sight", counts.systems.to_string(), "Systems that reach the picture"),
             ("sprites", counts.sprites.to_string(), "Sprites of all of them"),
+            (
+                "fragments",
+                format!("{:.0}", overdraw.fragments),
+                "Areas of all sprites, in texels: each is shaded, but for what the scene hides",
+            ),
+            ("mean overdraw", format!("{:.2}", overdraw.mean()), "Sprites over each other, in the mean over their box"),
             ("texels", counts.texels.to_string(), "Texels of the accumulation targets in use: each is lit once"),
         ],
     );
@@ -206,7 +213,16 @@ mod tests {
         let names = performance.names.clone();
         let memory = performance.figures.memory;
         assert_eq!(names, ["depth_downsample", "accumulate", "transfer", "specular_scatter"]);
-        for name in names.iter().chain(&["targets", "buffers", "materials", "scene", "sprites", "texels"]) {
+        for name in names.iter().chain(&[
+            "targets",
+            "buffers",
+            "materials",
+            "scene",
+            "sprites",
+            "fragments",
+            "mean overdraw",
+            "texels",
+        ]) {
             harness.get_by_label(name);
         }
         assert!(memory.smoke.targets > 0 && memory.smoke.buffers > 0 && memory.materials > 0 && memory.scene > 0);

@@ -1,0 +1,193 @@
+//! How many fragments sprites make, worked out on the CPU, against those that the GPU counts.
+
+use glam::camera::rh::proj::directx;
+use glam::{Mat4, UVec2, Vec4, vec3};
+use haze::formula::colour::overdraw_colour;
+use haze::headless::Headless;
+use haze::picture::Picture;
+use haze::settings::{DepthSource, Path, ShadeTree, Technique};
+use haze::{Overdraw, Particle, Particles, View, wgpu};
+
+use crate::common::gpu;
+use crate::host::Host;
+use crate::stage::{BACKDROP, Stage};
+
+const SIZE: UVec2 = UVec2::new(320, 180);
+
+/// Sprites in front of all of the scene, none of whose fragments is discarded, and as many texels as pixels.
+fn stage() -> Stage {
+    let mut stage = Stage::new(SIZE);
+    stage.settings.accumulate.scale = 1;
+    (stage.settings.soft_fade.near_fade_start, stage.settings.soft_fade.near_fade_end) = (0.0, 0.0);
+    stage.shade_tree = ShadeTree::Overdraw;
+    moved(stage, 2.5)
+}
+
+fn moved(mut stage: Stage, metres: f32) -> Stage {
+    stage.particles.iter_mut().for_each(|particle| particle.position.z += metres);
+    stage
+}
+
+fn overdraw(stage: &Stage) -> Overdraw {
+    stage.on_gpu(gpu()).renderer.overdraw()
+}
+
+/// Layers at every pixel of a picture of the stage of that name.
+fn layers(picture: &Picture<Vec4>) -> Vec<u32> {
+    let colours: Vec<_> = (0..=60).map(|layers| overdraw_colour(layers as f32)).collect();
+    let layers = |texel: &Vec4| {
+        let off = |colour: &glam::Vec3| (texel.truncate() - colour).abs().max_element();
+        // Half floats; one layer more is another colour by 0.02 at least.
+        colours.iter().position(|colour| off(colour) < 0.005).unwrap_or_else(|| panic!("{texel}")) as u32
+    };
+    picture.texels.iter().filter(|texel| **texel != BACKDROP).map(layers).collect()
+}
+
+/// Cameras and sprites of every kind.
+fn cases() -> Vec<(&'static str, Stage)> {
+    let off_centre = directx::frustum(-0.05, 0.15, -0.1, 0.06, 0.1, 80.0);
+    let orthographic = directx::orthographic(-1.6, 1.2, -0.9, 0.7, 0.1, 80.0);
+    let seen = |clip_from_view| Stage { view: View::new(Mat4::IDENTITY, clip_from_view, SIZE), ..stage() };
+    let mut depth_sprites = moved(stage(), 2.6);
+    depth_sprites.settings.technique = Technique::DepthSpriteSoft;
+    vec![
+        ("in sight", stage()),
+        ("round the eye", moved(stage(), 2.6)),
+        ("slabs through the near plane", depth_sprites),
+        ("off centre", seen(off_centre)),
+        ("orthographic", seen(orthographic)),
+    ]
+}
+
+#[test]
+fn fragments_are_as_many_as_the_stage_of_that_name_counts() {
+    for (name, stage) in cases() {
+        let drawn = stage.on_gpu(gpu());
+        let found = drawn.renderer.overdraw();
+        let counted: u32 = layers(&drawn.picture).iter().sum();
+        println!("{name}: {found:?}, counted {counted}, {:.2} layers", found.mean());
+        // How many centres of pixels lie in a square differs from its area by some square root of its outline: of 60 squares with
+        // outlines of 400 pixels, by 150 of 100 000 altogether.
+        assert!((found.fragments / f64::from(counted) - 1.0).abs() < 0.003, "{name}: {found:?}, counted {counted}");
+    }
+}
+
+#[test]
+fn layers_are_in_the_mean_over_the_pixels_of_the_box() {
+    let stage = stage();
+    let drawn = stage.on_gpu(gpu());
+    let found = drawn.renderer.overdraw();
+    let in_box = layers(&drawn.picture);
+    // Seen straight on, the box is a rectangle; its edges may be anywhere in their pixels.
+    let outline = 2 * (SIZE.x + SIZE.y);
+    assert!((found.texels - in_box.len() as f64).abs() <= f64::from(outline), "{found:?}, drawn {}", in_box.len());
+    assert_eq!(found.mean(), found.fragments / found.texels);
+    assert_eq!(Overdraw::default().mean(), 0.0);
+}
+
+#[test]
+fn layers_do_not_depend_on_the_resolution_and_are_counted_as_often_as_they_are_drawn() {
+    let of = |change: &dyn Fn(&mut Stage)| {
+        let mut stage = stage();
+        change(&mut stage);
+        overdraw(&stage)
+    };
+    let whole = of(&|_| {});
+    let coarse = of(&|stage| stage.settings.accumulate.scale = 4);
+    // Areas are exact; sides of the box are rounded up to whole texels.
+    assert!((16.0 * coarse.fragments / whole.fragments - 1.0).abs() < 1.0e-3, "{coarse:?} {whole:?}");
+    assert!((coarse.mean() / whole.mean() - 1.0).abs() < 0.05, "{coarse:?} {whole:?}");
+    let forward = of(&|stage| (stage.settings.path, stage.shade_tree) = (Path::Forward, ShadeTree::Final));
+    // Without the texels of the border that a target has.
+    assert!((forward.fragments / whole.fragments - 1.0).abs() < 0.01 && forward.texels == whole.texels, "{forward:?}");
+    let host_depth = of(&|stage| stage.settings.accumulate.depth_source = DepthSource::Host);
+    assert!((host_depth.fragments / whole.fragments - 1.0).abs() < 0.01 && host_depth.texels == whole.texels);
+    assert_eq!(of(&|stage| stage.settings.sprite.debug_loop = 3).fragments, 3.0 * whole.fragments);
+    // Nothing of what is not drawn, out of sight or not known.
+    let hide = |particle: &mut Particle| particle.amount = 0.0;
+    assert_eq!(of(&|stage| stage.particles.iter_mut().for_each(hide)), Overdraw::default());
+    assert_eq!(of(&|stage| stage.particles.iter_mut().for_each(|p| p.position.z = 9.0)), Overdraw::default());
+    let mut buffered = stage();
+    buffered.bounds = Some(haze::Bounds { min: vec3(-3.0, -3.0, -8.0), max: vec3(3.0, 3.0, 0.0) });
+    let mut host = Host::new(gpu(), &buffered).unwrap();
+    host.draw(gpu(), &buffered).unwrap();
+    assert!(host.renderer.overdraw().fragments > 0.0);
+    host.draw_buffer(gpu(), &buffered, &buffered.particles).unwrap();
+    assert_eq!(host.renderer.overdraw(), Overdraw::default());
+}
+
+/// A device that counts; `None` where the adapter cannot.
+fn counting_gpu() -> Option<Headless> {
+    let gpu = Headless::with(wgpu::Limits::default(), wgpu::Features::PIPELINE_STATISTICS_QUERY).unwrap();
+    let counts = gpu.device.features().contains(wgpu::Features::PIPELINE_STATISTICS_QUERY);
+    if !counts {
+        println!("{} counts no fragments", gpu.description());
+    }
+    counts.then_some(gpu)
+}
+
+/// Runs of the fragment shader while forward sprites are drawn.
+fn shaded(gpu: &Headless, stage: &Stage) -> (u64, Overdraw) {
+    let mut host = Host::new(gpu, stage).unwrap();
+    let buffer = |usage| {
+        gpu.device.create_buffer(&wgpu::BufferDescriptor { label: None, size: 8, usage, mapped_at_creation: false })
+    };
+    let resolved = buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC);
+    let queries = gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
+        label: None,
+        ty: wgpu::QueryType::PipelineStatistics(wgpu::PipelineStatisticsTypes::FRAGMENT_SHADER_INVOCATIONS),
+        count: 1,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    host.prepare(gpu, &mut encoder, stage, Particles::Slice(&stage.particles)).unwrap();
+    {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("host"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &host.colour.create_view(&wgpu::TextureViewDescriptor::default()),
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations::default(),
+            })],
+            ..Default::default()
+        });
+        pass.begin_pipeline_statistics_query(&queries, 0);
+        host.renderer.render(&mut pass);
+        pass.end_pipeline_statistics_query();
+    }
+    encoder.resolve_query_set(&queries, 0..1, &resolved, 0);
+    gpu.submit(encoder).unwrap();
+    let bytes = gpu.read_buffer(&resolved).unwrap();
+    (bytemuck::pod_read_unaligned(&bytes), host.renderer.overdraw())
+}
+
+/// Sides of the stage's sprites, pixels.
+fn sides(stage: &Stage) -> Vec<f64> {
+    let pixels_per_metre = |depth: f32| 0.5 * SIZE.y as f32 * stage.view.clip_from_view.y_axis.y / depth;
+    let side = |particle: &Particle| 2.0 * particle.radius * pixels_per_metre(-particle.position.z);
+    stage.particles.iter().map(|particle| f64::from(side(particle))).collect()
+}
+
+/// A GPU shades blocks of pixels, of which it counts all or those that are covered: blocks of 4 by 4 on llvmpipe, for each of the
+/// two triangles of a square. As ends are anywhere in their blocks, a triangle of legs s lies in blocks of s²/2 + 2s(b-1) + (b-1)²
+/// pixels in the mean.
+#[test]
+fn fragments_are_as_many_as_the_gpu_shades() {
+    let Some(gpu) = counting_gpu() else { return };
+    let mut stage = moved(stage(), -6.0);
+    (stage.settings.path, stage.shade_tree, stage.attach_depth) = (Path::Forward, ShadeTree::Final, false);
+    stage.particles.iter_mut().for_each(|particle| particle.rotation = 0.0);
+    let sides = sides(&stage);
+    let (shaded, found) = shaded(&gpu, &stage);
+    let blocks = |side: f64| {
+        let of_two = |own: f64| own * own + 4.0 * own * (side - 1.0) + 2.0 * (side - 1.0).powi(2);
+        sides.iter().map(|own| of_two(*own)).sum::<f64>()
+    };
+    // Areas by f32.
+    assert!((found.fragments / blocks(1.0) - 1.0).abs() < 1.0e-4, "{found:?} {}", blocks(1.0));
+    let off = [1.0, 2.0, 4.0].map(|side| (shaded as f64 / blocks(side) - 1.0).abs());
+    println!("{found:?}, shaded {shaded}, off by {off:?} of blocks of 1, 2, 4");
+    // A block more or less along a side is a 1/6 of a square, and a 1/50 of the sum of 60. Were they counted twice, or half of them,
+    // it would be far more.
+    assert!(off.iter().any(|off| *off < 0.02), "{found:?}, shaded {shaded}, off by {off:?}");
+}
