@@ -4,6 +4,8 @@ use haze::demo::shot::Shot;
 use haze::preset::{Camera, Preset};
 use haze::settings::Path;
 
+use super::lights::ShownLights;
+
 /// What the picture is compared with.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Against {
@@ -61,28 +63,38 @@ impl Against {
         }
     }
 
+    /// The settings of the second, where it has any of its own.
+    pub fn settings<'a>(&'a self, saved: &'a Preset) -> Option<&'a Preset> {
+        match self {
+            Self::Saved => Some(saved),
+            Self::Kept(preset) => Some(preset),
+            Self::FullResolution | Self::Forward | Self::Reference => None,
+        }
+    }
+
     /// The second shot: seen as the first is, at the same time.
-    pub fn shot(&self, first: &Shot, saved: &Preset) -> Shot {
+    pub fn shot(&self, first: &Shot, saved: &Preset, lights: &ShownLights) -> Shot {
         let mut shot = first.clone();
+        if let Some(settings) = self.settings(saved) {
+            shot.preset = seen_as(settings, &first.preset, lights);
+        }
         let systems = shot.preset.systems.iter_mut();
         match self {
-            Self::Saved => shot.preset = seen_as(saved, &first.preset),
-            Self::Kept(preset) => shot.preset = seen_as(preset, &first.preset),
             Self::FullResolution => systems.for_each(|system| {
                 let accumulate = &mut system.settings.accumulate;
                 (accumulate.scale, accumulate.max_side) = (1, 16384);
             }),
             Self::Forward => systems.for_each(|system| system.settings.path = Path::Forward),
-            Self::Reference => {}
+            Self::Saved | Self::Kept(_) | Self::Reference => {}
         }
         shot
     }
 }
 
-/// A preset from where another is seen, at its time. How it is exposed is its own.
-fn seen_as(preset: &Preset, other: &Preset) -> Preset {
+/// A preset from where another is seen, at its time, with the same lights muted and turned. How it is exposed is its own.
+fn seen_as(preset: &Preset, other: &Preset, lights: &ShownLights) -> Preset {
     let camera = Camera { exposure: preset.camera.exposure, ..other.camera };
-    Preset { camera, time: other.time, ..preset.clone() }
+    Preset { camera, time: other.time, lights: lights.shown_of(&preset.lights), ..preset.clone() }
 }
 
 #[cfg(test)]
@@ -97,9 +109,14 @@ mod tests {
         first.preset.camera.fov = 70.0;
         first.preset.time = 3.0;
         first.preset.systems[0].settings.boost = 1.0;
-        let shot = |against: Against| against.shot(&first, &saved).preset;
+        let mut lights = ShownLights::default();
+        lights.follow(&first.preset.lights);
+        lights.marks(0).unwrap().is_muted = true;
+        first.preset.lights = lights.shown(&first.preset.lights);
+        let shot = |against: Against| against.shot(&first, &saved, &lights).preset;
         let (as_saved, whole) = (shot(Against::Saved), shot(Against::FullResolution));
         assert_eq!((as_saved.camera, as_saved.systems.clone()), (first.preset.camera, saved.systems.clone()));
+        assert_eq!((&as_saved.lights, &whole.lights), (&first.preset.lights, &first.preset.lights));
         assert_eq!(as_saved.time.to_bits(), first.preset.time.to_bits());
         assert_eq!(whole.systems[0].settings.accumulate.scale, 1);
         whole.validate().unwrap();

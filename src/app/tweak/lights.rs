@@ -93,15 +93,25 @@ impl ShownLights {
 
     /// Whether a light is in the picture.
     pub fn is_shown(&self, index: usize) -> bool {
-        let is_any_solo = self.entries.iter().any(|entry| entry.marks.is_solo);
-        self.entries
-            .get(index)
-            .is_none_or(|Entry { marks, .. }| if is_any_solo { marks.is_solo } else { !marks.is_muted })
+        let has_solo = self.has_solo();
+        self.entries.get(index).is_none_or(|Entry { marks, .. }| if has_solo { marks.is_solo } else { !marks.is_muted })
     }
 
     /// The lights that are in the picture, as they are there.
     pub fn shown(&self, lights: &[Light]) -> Vec<Light> {
         (0..).zip(lights).filter(|(index, _)| self.is_shown(*index)).map(|(_, light)| self.turned(light)).collect()
+    }
+
+    /// The same of another preset's lights, which are known by their places, and by what is alike at both ends of the lists.
+    pub fn shown_of(&self, others: &[Light]) -> Vec<Light> {
+        let mut of_others = self.clone();
+        of_others.follow(others);
+        // One that is alone and not there leaves none.
+        if self.has_solo() && !of_others.has_solo() { Vec::new() } else { of_others.shown(others) }
+    }
+
+    fn has_solo(&self) -> bool {
+        self.entries.iter().any(|entry| entry.marks.is_solo)
     }
 
     /// A light where the turn has taken it.
@@ -183,6 +193,24 @@ mod tests {
         assert_eq!(shown.shown(&all), all[1..]);
         shown.marks(2).unwrap().is_solo = true;
         assert_eq!(shown.shown(&all), all[2..]);
+    }
+
+    #[test]
+    fn the_lights_of_another_preset_are_seen_in_the_same_way() {
+        let all = lights(&[1.0, 2.0, 3.0]);
+        let mut shown = ShownLights::default();
+        shown.follow(&all);
+        shown.turn = Some(Turn { middle: Vec3::ZERO, angle: 1.0 });
+        shown.marks(1).unwrap().is_muted = true;
+        let turned = |of: &[f32]| lights(of).iter().map(|light| shown.turned(light)).collect::<Vec<_>>();
+        assert_eq!(shown.shown_of(&lights(&[5.0, 6.0, 7.0])), turned(&[5.0, 7.0]));
+        // Without the first, which was added since.
+        assert_eq!(shown.shown_of(&lights(&[2.0, 3.0])), turned(&[3.0]));
+        let mut alone = shown.clone();
+        alone.marks(0).unwrap().is_solo = true;
+        assert_eq!(alone.shown_of(&lights(&[5.0, 6.0, 7.0])), turned(&[5.0]));
+        assert_eq!(alone.shown_of(&lights(&[2.0, 3.0])), []);
+        assert_eq!(alone.shown(&all), turned(&[1.0]), "nothing is changed by looking");
     }
 
     #[test]

@@ -46,18 +46,32 @@ impl Smoke {
     }
 }
 
+/// Lowest place of a light that is put somewhere, metres: above the ground.
+const LOWEST: f32 = 0.2;
+
 /// Puts a light behind the middle of the smoke, as a camera sees it, a bit outside the box; a spot or sun shines at the smoke.
 pub fn put_behind(light: &mut Light, camera: &Camera, bounds: &Bounds) {
-    let (centre, half) = (bounds.centre(), 0.5 * (bounds.max - bounds.min));
+    let centre = bounds.centre();
     let away = (centre - camera.position).normalize_or(Vec3::NEG_Z);
-    // To where the line leaves the box.
-    let leaves = (0..3).map(|axis| half[axis] / away[axis].abs().max(1.0e-6)).fold(f32::INFINITY, f32::min);
-    if light.kind != LightKind::Directional {
-        light.position = centre + away * (1.1 * leaves + 0.2);
-    }
-    if light.kind != LightKind::Point {
+    if light.kind == LightKind::Directional {
         light.direction = -away;
+        return;
     }
+    light.position = beyond(bounds, away);
+    if light.position.y < LOWEST {
+        // The way down ends in the ground: it goes on along that.
+        light.position = beyond(bounds, away.with_y(0.0).normalize_or(Vec3::NEG_Z)).with_y(LOWEST);
+    }
+    if light.kind == LightKind::Spot {
+        light.direction = (centre - light.position).normalize_or(-away);
+    }
+}
+
+/// A bit outside a box, from its middle in a direction.
+fn beyond(bounds: &Bounds, way: Vec3) -> Vec3 {
+    let half = 0.5 * (bounds.max - bounds.min);
+    let leaves = (0..3).map(|axis| half[axis] / way[axis].abs().max(1.0e-6)).fold(f32::INFINITY, f32::min);
+    bounds.centre() + way * (1.1 * leaves + 0.2)
 }
 
 #[cfg(test)]
@@ -81,6 +95,21 @@ mod tests {
             if kind != LightKind::Point {
                 assert!(light.direction.distance(-away) < 1e-5);
             }
+        }
+    }
+
+    #[test]
+    fn seen_from_above_a_light_behind_the_smoke_stays_above_the_ground() {
+        let bounds = Bounds { min: Vec3::new(-1.0, 0.0, -2.0), max: Vec3::new(1.5, 5.0, 1.0) };
+        for position in [Vec3::new(4.0, 9.0, 6.0), Vec3::new(0.25, 20.0, -0.5), Vec3::new(0.3, 6.0, 0.0)] {
+            let camera = Camera { position, ..Camera::default() };
+            let mut light = Light { kind: LightKind::Spot, ..Light::default() };
+            put_behind(&mut light, &camera, &bounds);
+            assert!(light.position.y >= LOWEST, "{}", light.position);
+            // Outside the box, at the far side of it, and shining at its middle.
+            assert!(light.position.x < bounds.min.x || light.position.z < bounds.min.z, "{}", light.position);
+            let to_middle = (bounds.centre() - light.position).normalize();
+            assert!(light.direction.distance(to_middle) < 1e-5, "{}", light.direction);
         }
     }
 }

@@ -46,12 +46,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
         let times = egui::DragValue::new(&mut compare.difference).range(1.0..=256.0).speed(0.2).prefix("x ");
         ui.add(times).on_hover_text("How much brighter");
     }
-    let second = match &against {
-        Against::Saved => Some(session.saved().clone()),
-        Against::Kept(preset) => Some((**preset).clone()),
-        _ => None,
-    };
-    let Some(second) = second else { return };
+    let Some(second) = against.settings(session.saved()).cloned() else { return };
     if ui.button("Use").on_hover_text("Takes the second over; Undo brings this one back").clicked() {
         session.document.preset = second.clone();
     }

@@ -13,7 +13,7 @@ use crate::app::tweak::session::Session;
 pub fn other(ui: &Ui, session: &mut Session, shot: &Shot) -> Option<Other> {
     let against = session.compare.against.clone()?;
     if against != Against::Reference {
-        return Some(Other::Shot(Box::new(against.shot(shot, session.saved()))));
+        return Some(Other::Shot(Box::new(against.shot(shot, session.saved(), &session.show.lights))));
     }
     let context = ui.ctx().clone();
     match session.referee.judge(shot, move || context.request_repaint()) {
