@@ -1,5 +1,7 @@
 //! Pictures that are written, and sheets to look at: drawn elsewhere, as the command line draws them, while the work goes on.
 
+mod spread;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -8,7 +10,7 @@ use glam::UVec2;
 use haze::demo::shot::Shot;
 use haze::picture::{Effort, write_png};
 use haze::preset::Preset;
-use haze::settings::{Value, set_field, values};
+use haze::settings::set_field;
 use haze::{Error, FieldError};
 use image::RgbImage;
 
@@ -19,6 +21,7 @@ use crate::app::export::{self, Frames, Watch};
 use crate::app::frames::FrameNames;
 use crate::app::options::Backend;
 use crate::app::shade_tree;
+use spread::spread;
 
 /// What can be made of the preset.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -259,42 +262,15 @@ fn seeds(shot: &Shot) -> Vec<(String, Shot)> {
     (0..9).map(with).collect()
 }
 
-/// The shot with a field at half and double its value and farther; or at every one of its choices. Only those that are valid.
+/// The shot with a field at the values of its [`spread`]. Only those that are valid.
 fn variations(shot: &Shot, path: &str) -> Vec<(String, Shot)> {
-    /// Steps of what is 0.
-    const STEPS: [f32; 5] = [0.0, 0.25, 0.5, 1.0, 2.0];
-    const TIMES: [f32; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
-    let value = values(&shot.preset).into_iter().find(|(field, _)| field == path).map(|(_, value)| value);
-    let texts: Vec<String> = match value {
-        Some(Value::Number(number)) if number.abs() < 1.0e-6 => STEPS.map(|step| step.to_string()).into(),
-        Some(Value::Number(number)) => TIMES.map(|times| (number * times).to_string()).into(),
-        Some(Value::Whole(0)) => (0..5).map(|number: u32| number.to_string()).collect(),
-        Some(Value::Whole(number)) => TIMES.map(|times| ((number as f32 * times) as u32).to_string()).into(),
-        Some(Value::Flag(_)) => vec!["false".into(), "true".into()],
-        Some(Value::Choice(_)) => choices(&shot.preset, path),
-        _ => Vec::new(),
-    };
     let with = |text: String| {
         let mut shot = shot.clone();
         set_field(&mut shot.preset, path, &text).ok()?;
         shot.preset.validate().ok()?;
         Some((text, shot))
     };
-    let mut cells: Vec<_> = texts.into_iter().filter_map(with).collect();
-    cells.dedup_by(|a, b| a.0 == b.0);
-    cells
-}
-
-fn choices(preset: &Preset, path: &str) -> Vec<String> {
-    let mut names = Vec::new();
-    haze::settings::walk(&mut preset.clone(), &mut |field, leaf| {
-        if let haze::settings::Leaf::Choice(choice) = leaf
-            && haze::settings::path_of(field) == path
-        {
-            names = choice.names().iter().map(|name| (*name).to_owned()).collect();
-        }
-    });
-    names
+    spread(&shot.preset, path).into_iter().filter_map(with).collect()
 }
 
 #[cfg(test)]

@@ -24,6 +24,7 @@ mod pictures;
 mod platform;
 mod playback;
 mod preset_thumbnails;
+mod reach;
 mod referee;
 mod reload;
 mod search;

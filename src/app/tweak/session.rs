@@ -1,12 +1,12 @@
 //! What is edited and how it is looked at: all that is worth keeping when a device is lost.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use glam::UVec2;
 use haze::demo::shot::Shot;
 use haze::preset::{Preset, Tooltips};
-use haze::settings::ShadeTree;
+use haze::settings::{ShadeTree, Value, values};
 use haze::shader::Sources;
 use haze::{Error, Light, MaterialAssets};
 
@@ -50,6 +50,8 @@ pub struct Session {
     /// Another program has written the file while something was changed here: which of the two is wanted is not known.
     pub is_changed_on_disk: bool,
     changed: Changed,
+    /// What the second picture has, by path, where it is another, if it has settings of its own.
+    second: Option<HashMap<String, Value>>,
 }
 
 /// Paths of the fields that differ from the preset on disk, and the two that they were found between.
@@ -83,6 +85,7 @@ impl Session {
             shaders: None,
             is_changed_on_disk: false,
             changed: Changed { paths: HashSet::new(), saved: preset.clone(), preset: preset.clone() },
+            second: None,
             document,
         })
     }
@@ -117,6 +120,19 @@ impl Session {
         copy_field(&saved, &mut self.document.preset, path);
     }
 
+    /// What the second picture of a comparison has, by path, where it is another; `None` without settings of its own.
+    pub fn second(&self) -> Option<&HashMap<String, Value>> {
+        self.second.as_ref()
+    }
+
+    /// Gives a field, a group or a list what the second picture has.
+    pub fn take(&mut self, path: &str) {
+        if let Some(second) = self.compare.against.as_ref().and_then(|against| against.settings(self.saved())).cloned()
+        {
+            copy_field(&second, &mut self.document.preset, path);
+        }
+    }
+
     /// Takes note of what the panels changed. `is_held`: a control is still being moved, or typed into.
     pub fn track(&mut self, is_held: bool) {
         self.document.track(is_held);
@@ -125,6 +141,11 @@ impl Session {
             let paths = changed_fields(saved, preset).into_iter().collect();
             self.changed = Changed { paths, saved: saved.clone(), preset: preset.clone() };
         }
+        let second = self.compare.against.as_ref().and_then(|against| against.settings(self.saved()));
+        self.second = second.map(|second| {
+            let apart: HashSet<_> = changed_fields(second, &self.document.preset).into_iter().collect();
+            values(second).into_iter().filter(|(path, _)| apart.contains(path)).collect()
+        });
     }
 
     /// Does something with the selected light, if there is one.

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use eframe::egui::{self, Vec2};
 use eframe::egui_wgpu;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, HarnessBuilder};
 use image::RgbaImage;
 
@@ -48,6 +49,19 @@ pub fn measured(preset: &str, size: Vec2) -> Harness<'static, Window> {
         setup.device_descriptor = std::sync::Arc::new(device);
     }
     settled(Harness::builder().with_size(size).wgpu_setup(setup), start(preset, ShaderFolder::None))
+}
+
+/// Opens the menu of the row whose slider has this name: a right click on the name, which stands at its left.
+pub fn row_menu(harness: &mut Harness<'_, Window>, name: &str) {
+    let is_slider = |node: &egui_kittest::Node<'_>| node.accesskit_node().role() == egui::Role::Slider;
+    let slider = harness.get_all_by_label(name).find(is_slider).unwrap().rect();
+    let pos = slider.left_center() - egui::vec2(115.0, 0.0);
+    harness.hover_at(pos);
+    for pressed in [true, false] {
+        let (button, modifiers) = (egui::PointerButton::Secondary, egui::Modifiers::NONE);
+        harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
+    }
+    harness.run_steps(3);
 }
 
 /// What the window shows.

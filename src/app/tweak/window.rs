@@ -296,6 +296,9 @@ impl eframe::App for Window {
         let settings = egui::Panel::right("settings").default_size(width).size_range(240.0..=560.0);
         let shown = settings.show(ui, |ui| panel::settings::panel(ui, &mut self.session));
         self.layout.settings = Some(shown.response.rect.width());
+        if let Some(path) = shown.inner {
+            self.exporting.begin(Product::Values(path), &mut self.session);
+        }
         egui::CentralPanel::no_frame().show(ui, |ui| {
             let rect = ui.max_rect();
             self.viewport.show(ui, &mut self.session, &self.easel);

@@ -134,10 +134,33 @@ fn what_is_stopped_says_that_it_is_partial() {
 }
 
 #[test]
-fn a_field_varies_round_its_value_and_stays_valid() {
+fn a_row_makes_the_sheet_of_its_values_that_the_export_makes() {
+    let mut bench = bench();
+    let path = "camera.exposure";
+    bench.make(Product::Values(path.into()));
+    bench.until(|window| window.exporting.sheet.is_some());
+    let (made, _) = bench.window.state_mut().exporting.sheet.take().unwrap();
+    bench.window.state_mut().exporting.is_open = false;
+    bench.window.run_steps(3);
+    testing::row_menu(&mut bench.window, "exposure");
+    bench.window.get_by_label("Five values on a sheet").click();
+    bench.window.run_steps(2);
+    bench.until(|window| window.exporting.sheet.is_some());
+    let (sheet, _) = bench.window.state_mut().exporting.sheet.take().unwrap();
+    assert!(sheet == made, "another sheet");
+}
+
+#[test]
+fn a_field_varies_over_its_slider_or_round_its_value_and_stays_valid() {
     let shot = Shot::load("column", UVec2::new(64, 36)).unwrap();
     let labels = |path: &str| variations(&shot, path).into_iter().map(|(label, _)| label).collect::<Vec<_>>();
     assert_eq!(labels("systems[0].settings.boost").len(), 5);
+    assert_eq!(labels("systems[0].settings.accumulate.opacity"), ["0", "0.25", "0.5", "0.75", "1"]);
+    let rate = shot.preset.systems[0].emitter.rate;
+    let rates = [0.25, 0.5, 1.0, 2.0, 4.0].map(|times| (rate * times).to_string());
+    assert_eq!(labels("systems[0].emitter.rate"), rates);
+    assert_eq!(labels("systems[0].emitter.seed").len(), 5);
+    assert!(labels("systems[0].emitter.wind").is_empty());
     assert_eq!(labels("systems[0].settings.sprite.freeze_animation").len(), 2);
     assert!(labels("systems[0].settings.path").contains(&"forward".to_owned()));
     assert!(labels("systems[0].settings.accumulate.scale").iter().all(|label| label.parse::<u32>().unwrap() <= 16));

@@ -1,15 +1,16 @@
 //! A settings struct as rows: every field that the table has, with its range, unit and doc comment.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::ops::RangeInclusive;
 
 use eframe::egui::{self, Ui};
 use glam::Vec3;
 use haze::preset::Tooltips;
-use haze::settings::{Choice, FieldVisitor, Fields, PictureRole, path_of};
+use haze::settings::{Choice, FieldVisitor, Fields, PictureRole, Value, path_of};
 
 use super::gallery::gallery;
-use super::row::{self, Row, spaced};
+use super::row::{self, Asked, Row, spaced};
+use super::value::shown_value;
 use crate::app::tweak::picture_thumbnails::PictureThumbnails;
 
 /// A step on the way to a field: its name, and its place where it is one of a list.
@@ -22,15 +23,30 @@ pub struct Desk<'a> {
     pub thumbnails: &'a PictureThumbnails,
     /// Paths of what differs from the preset on disk.
     pub changed: &'a HashSet<String>,
+    /// What the second picture of a comparison has, by path, where it is another; `None` without settings of its own.
+    pub second: Option<&'a HashMap<String, Value>>,
+    /// The fields are the preset's: sheets of their values can be made.
+    pub has_sheets: bool,
     /// Why a field does nothing, by path.
     pub inert: &'a dyn Fn(&str) -> Option<&'static str>,
-    /// Fields that are to be set back.
-    pub reset: Vec<String>,
+    /// What is asked for, and of which fields.
+    pub asked: Vec<(Asked, String)>,
     /// Why what was typed cannot be.
     pub refused: Option<String>,
     /// A field that is to be brought into sight.
     pub sought: Option<&'a str>,
 }
+
+impl Desk<'_> {
+    /// What a row says of a field that the second picture has, too.
+    pub fn second(&self, path: &str, unit: &str) -> Option<Option<String>> {
+        Some(self.second?.get(path).map(|value| shown_value(value, unit)))
+    }
+}
+
+/// What a sheet is called of a number's values, and of all there are.
+const FIVE: Option<&str> = Some("Five values on a sheet");
+const ALL: Option<&str> = Some("All values on a sheet");
 
 /// Draws the fields of a struct that `path` leads to; groups fold.
 pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fields) {
@@ -66,6 +82,7 @@ impl Rows<'_, '_, '_> {
     fn row(
         &mut self,
         name: &'static str,
+        (unit, sheet): (&str, Option<&'static str>),
         control: impl FnOnce(&mut Ui, &egui::Response, &mut Option<String>, &str, &Tooltips),
     ) {
         self.path.push((name, None));
@@ -77,18 +94,20 @@ impl Rows<'_, '_, '_> {
             return;
         }
         let desk = &mut *self.desk;
+        let second = desk.second(&path, unit);
         let row = Row {
             name: self.only.map_or(name, |only| only.title),
             tooltip: desk.tooltips.field(&plain).unwrap_or_default(),
             is_changed: desk.changed.contains(&path),
+            second: second.as_ref().map(Option::as_deref),
+            sheet: sheet.filter(|_| desk.has_sheets),
             inert: (desk.inert)(&path),
         };
         let refused = &mut desk.refused;
         let tooltips = desk.tooltips;
         let before = self.ui.cursor().min;
-        if row.show(self.ui, |ui, label| control(ui, label, refused, &path, tooltips)) {
-            desk.reset.push(path.clone());
-        }
+        let asked = row.show(self.ui, |ui, label| control(ui, label, refused, &path, tooltips));
+        desk.asked.extend(asked.map(|asked| (asked, path.clone())));
         if let Some(what) = &mut desk.refused
             && !what.contains(": ")
         {
@@ -111,7 +130,9 @@ impl Rows<'_, '_, '_> {
         }
         let path = path_of(&self.path);
         let mark = if self.desk.changed.iter().any(|changed| changed.starts_with(&path)) { " •" } else { "" };
-        let header = egui::CollapsingHeader::new(format!("{}{mark}", spaced(title))).id_salt(&path);
+        let is_apart = self.desk.second.is_some_and(|second| second.keys().any(|apart| apart.starts_with(&path)));
+        let apart = if is_apart { " ≠" } else { "" };
+        let header = egui::CollapsingHeader::new(format!("{}{mark}{apart}", spaced(title))).id_salt(&path);
         let is_sought = self.desk.sought.is_some_and(|sought| sought.starts_with(&path));
         let header = if is_sought { header.open(Some(true)) } else { header };
         header.show(self.ui, |ui| show(ui, self.desk, &self.path, fields));
@@ -121,53 +142,53 @@ impl Rows<'_, '_, '_> {
 
 impl FieldVisitor for Rows<'_, '_, '_> {
     fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, unit: &'static str) {
-        self.row(name, |ui, label, refused, _, _| {
+        self.row(name, (unit, FIVE), |ui, label, refused, _, _| {
             row::number(ui, label, value, &range, unit, refused);
         });
     }
 
     fn integer(&mut self, name: &'static str, value: &mut u32, range: RangeInclusive<u32>, unit: &'static str) {
-        self.row(name, |ui, label, refused, _, _| {
+        self.row(name, (unit, FIVE), |ui, label, refused, _, _| {
             row::integer(ui, label, value, &range, unit, refused);
         });
     }
 
     fn vector(&mut self, name: &'static str, value: &mut Vec3, range: RangeInclusive<f32>, unit: &'static str) {
-        self.row(name, |ui, label, refused, _, _| row::vector(ui, value, &range, unit, label, refused));
+        self.row(name, (unit, None), |ui, label, refused, _, _| row::vector(ui, value, &range, unit, label, refused));
     }
 
     fn colour(&mut self, name: &'static str, value: &mut Vec3, _: RangeInclusive<f32>) {
-        self.row(name, |ui, label, _, _, _| row::colour(ui, value, label));
+        self.row(name, ("", None), |ui, label, _, _, _| row::colour(ui, value, label));
     }
 
     fn flag(&mut self, name: &'static str, value: &mut bool) {
-        self.row(name, |ui, label, _, _, _| {
+        self.row(name, ("", ALL), |ui, label, _, _, _| {
             ui.checkbox(value, "").labelled_by(label.id);
         });
     }
 
     fn choice(&mut self, name: &'static str, value: &mut dyn Choice) {
         let plain = self.path.iter().map(|step| step.0).chain([name]).collect::<Vec<_>>().join(".");
-        self.row(name, |ui, label, _, path, tooltips| {
+        self.row(name, ("", ALL), |ui, label, _, path, tooltips| {
             row::choice(ui, value, path, |choice| tooltips.choice(&plain, choice)).labelled_by(label.id);
         });
     }
 
     fn text(&mut self, name: &'static str, value: &mut String) {
-        self.row(name, |ui, label, _, _, _| {
+        self.row(name, ("", None), |ui, label, _, _, _| {
             ui.add(egui::TextEdit::singleline(value).desired_width(f32::INFINITY)).labelled_by(label.id);
         });
     }
 
     fn picture(&mut self, name: &'static str, value: &mut String, role: PictureRole) {
         let thumbnails = self.desk.thumbnails;
-        self.row(name, |ui, label, _, path, _| {
+        self.row(name, ("", None), |ui, label, _, path, _| {
             gallery(ui, thumbnails, role, value, path).labelled_by(label.id);
         });
     }
 
     fn seed(&mut self, name: &'static str, value: &mut u32) {
-        self.row(name, |ui, label, _, _, _| {
+        self.row(name, ("", FIVE), |ui, label, _, _, _| {
             ui.add(egui::DragValue::new(value)).labelled_by(label.id);
             if ui.button("next").clicked() {
                 *value = value.wrapping_add(1);

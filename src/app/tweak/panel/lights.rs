@@ -108,13 +108,14 @@ fn angles(ui: &mut Ui, desk: &mut Desk<'_>, index: usize, light: &mut Light) {
     let mut edited = before;
     let path = format!("lights[{index}].direction");
     let mut angle = |name: &str, value: &mut f32, most: f32, tooltip: &str| {
-        let row = Row { name, tooltip, is_changed: desk.changed.contains(&path), inert: None };
+        let second = desk.second(&path, "");
+        let second = second.as_ref().map(Option::as_deref);
+        let row = Row { name, tooltip, is_changed: desk.changed.contains(&path), second, sheet: None, inert: None };
         let refused = &mut desk.refused;
-        if row.show(ui, |ui, label| {
+        let asked = row.show(ui, |ui, label| {
             row::number(ui, label, value, &(-most..=most), "degrees", refused);
-        }) {
-            desk.reset.push(path.clone());
-        }
+        });
+        desk.asked.extend(asked.map(|asked| (asked, path.clone())));
     };
     angle("azimuth", &mut edited.azimuth, 180.0, "Which side the light comes from: 0 is from +z, 90 from +x.");
     angle("elevation", &mut edited.elevation, 90.0, "How high above the horizon the light comes from; 0 is level.");

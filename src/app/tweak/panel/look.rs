@@ -6,7 +6,7 @@ use haze::preset::{Preset, PresetSystem};
 use haze::{Light, LightKind};
 
 use super::fields::{self, Desk};
-use super::row::{self, Row};
+use super::row::{self, Asked, Row};
 
 /// Settings of the system that are shown as they are, under names that tell what they do: what comes before the rows of their
 /// own, and after.
@@ -47,11 +47,12 @@ fn made_row(
     control: impl FnOnce(&mut Ui, &egui::Response, &mut Option<String>),
 ) {
     let is_changed = paths.iter().any(|path| desk.changed.contains(path));
-    let row = Row { name, tooltip, is_changed, inert: None };
+    let apart = paths.iter().any(|path| desk.second.is_some_and(|second| second.contains_key(path)));
+    let second = desk.second.map(|_| apart.then_some("another value"));
+    let row = Row { name, tooltip, is_changed, second, sheet: None, inert: None };
     let refused = &mut desk.refused;
-    if row.show(ui, |ui, label| control(ui, label, refused)) {
-        desk.reset.extend_from_slice(paths);
-    }
+    let asked: Option<Asked> = row.show(ui, |ui, label| control(ui, label, refused));
+    desk.asked.extend(asked.into_iter().flat_map(|asked| paths.iter().map(move |path| (asked, path.clone()))));
 }
 
 fn thickness(ui: &mut Ui, desk: &mut Desk<'_>, system: &mut PresetSystem, index: usize) {

@@ -17,3 +17,4 @@ pub mod row;
 pub mod search;
 pub mod settings;
 pub mod time;
+pub mod value;

@@ -108,7 +108,9 @@ fn budget(ui: &mut Ui, session: &mut Session) {
         thumbnails: &session.thumbnails,
         changed: &HashSet::new(),
         inert: &|_| None,
-        reset: Vec::new(),
+        second: None,
+        has_sheets: false,
+        asked: Vec::new(),
         refused: None,
         sought: None,
     };

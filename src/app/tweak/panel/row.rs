@@ -7,6 +7,9 @@ use eframe::egui::{self, Response, Ui};
 use glam::Vec3;
 use haze::settings::Choice;
 
+use super::value::{parse, shown, suffix};
+use crate::app::tweak::reach::{is_wide, reach};
+
 /// Width of the names.
 const NAME: f32 = 118.0;
 /// Width of the mark before them.
@@ -18,31 +21,41 @@ pub struct Row<'a> {
     pub tooltip: &'a str,
     /// It differs from the preset on disk.
     pub is_changed: bool,
+    /// What the second picture has here, where it is another; `None` where it has no settings of its own.
+    pub second: Option<Option<&'a str>>,
+    /// What a sheet of its values is called, where one can be made.
+    pub sheet: Option<&'a str>,
     /// Why it does nothing here.
     pub inert: Option<&'a str>,
 }
 
+/// What is asked for on a row, beside its control.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Asked {
+    SetBack,
+    /// What the second picture has.
+    Take,
+    /// Of its values.
+    Sheet,
+}
+
 impl Row<'_> {
-    /// Draws the row; true if it is to be set back. `control` is handed the response of the name, for who cannot see it.
-    pub fn show(&self, ui: &mut Ui, control: impl FnOnce(&mut Ui, &Response)) -> bool {
-        let mut reset = false;
+    /// Draws the row, and tells what is asked for. `control` is handed the response of the name, for who cannot see it.
+    pub fn show(&self, ui: &mut Ui, control: impl FnOnce(&mut Ui, &Response)) -> Option<Asked> {
+        let mut asked = None;
         ui.horizontal(|ui| {
             let height = ui.spacing().interact_size.y;
-            ui.allocate_ui_with_layout(
-                egui::vec2(MARK, height),
-                egui::Layout::left_to_right(egui::Align::Center),
-                |ui| {
-                    ui.set_min_size(egui::vec2(MARK, height));
-                    if self.is_changed {
-                        let mark = egui::Button::new(egui::RichText::new("•").strong()).frame(false).small();
-                        let mark = ui.add(mark).on_hover_text("Differs from the preset. Click to set it back.");
-                        mark.widget_info(|| {
-                            egui::WidgetInfo::labeled(egui::Role::Button, true, format!("set back {}", self.name))
-                        });
-                        reset |= mark.clicked();
-                    }
-                },
-            );
+            let tooltip = "Differs from the preset. Click to set it back.";
+            if mark(ui, self.is_changed.then_some(("•", tooltip)), || format!("set back {}", self.name)) {
+                asked = Some(Asked::SetBack);
+            }
+            if let Some(second) = self.second {
+                let tooltip = second.map(|value| format!("The second picture has {value}. Click to take it."));
+                let sign = tooltip.as_deref().map(|tooltip| ("≠", tooltip));
+                if mark(ui, sign, || format!("take {} of the second", self.name)) {
+                    asked = Some(Asked::Take);
+                }
+            }
             let name = ui
                 .allocate_ui_with_layout(
                     egui::vec2(NAME, height),
@@ -56,16 +69,31 @@ impl Row<'_> {
                 )
                 .inner
                 .on_hover_text(self.hint());
-            reset |= name.double_clicked();
-            name.context_menu(|ui| {
-                if ui.add_enabled(self.is_changed, egui::Button::new("Set back")).clicked() {
-                    reset = true;
-                    ui.close();
-                }
-            });
+            if name.double_clicked() {
+                asked = Some(Asked::SetBack);
+            }
+            name.context_menu(|ui| asked = self.menu(ui).or(asked));
             ui.add_enabled_ui(self.inert.is_none(), |ui| control(ui, &name));
         });
-        reset
+        asked
+    }
+
+    fn menu(&self, ui: &mut Ui) -> Option<Asked> {
+        let mut asked = None;
+        let mut entry = |is_on, name: &str, what| {
+            if ui.add_enabled(is_on, egui::Button::new(name)).clicked() {
+                asked = Some(what);
+                ui.close();
+            }
+        };
+        entry(self.is_changed, "Set back", Asked::SetBack);
+        if let Some(Some(value)) = self.second {
+            entry(true, &format!("Take {value} of the second picture"), Asked::Take);
+        }
+        if let Some(sheet) = self.sheet {
+            entry(true, sheet, Asked::Sheet);
+        }
+        asked
     }
 
     fn hint(&self) -> String {
@@ -76,16 +104,25 @@ impl Row<'_> {
     }
 }
 
+/// A place for a mark and what it means, and the mark if there is one; true if it was clicked. `name` tells who cannot see it.
+fn mark(ui: &mut Ui, sign: Option<(&str, &str)>, name: impl Fn() -> String) -> bool {
+    let size = egui::vec2(MARK, ui.spacing().interact_size.y);
+    let layout = egui::Layout::left_to_right(egui::Align::Center);
+    let place = ui.allocate_ui_with_layout(size, layout, |ui| {
+        ui.set_min_size(size);
+        let (sign, tooltip) = sign?;
+        let mark = egui::Button::new(egui::RichText::new(sign).strong()).frame(false).small();
+        let mark = ui.add(mark).on_hover_text(tooltip);
+        mark.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name()));
+        Some(mark.clicked())
+    });
+    place.inner == Some(true)
+}
+
 /// A name as it is read.
 pub fn spaced(name: &str) -> String {
     name.replace('_', " ")
 }
-
-/// Widest range that a linear slider can be aimed in, and how many times its low end the high end may be.
-const WIDEST_LINEAR: f32 = 40.0;
-const MOST_LINEAR: f32 = 100.0;
-/// Where sliders of endless ranges end; more can be typed.
-const FAR: f32 = 1000.0;
 
 /// Width of what is typed.
 const VALUE: f32 = 84.0;
@@ -103,13 +140,11 @@ pub fn number(
     refused: &mut Refused,
 ) -> bool {
     let (low, high) = (*range.start(), *range.end());
-    let shown_high = if high > FAR { FAR.max(value.abs() * 2.0).min(high) } else { high };
-    let shown_low = if low < -FAR { -FAR.max(value.abs() * 2.0) } else { low };
-    let is_wide = shown_high - shown_low > WIDEST_LINEAR || low > 0.0 && high > MOST_LINEAR * low;
+    let (shown, is_wide) = reach(range, *value);
     let control = Control {
         name,
         unit,
-        shown: f64::from(shown_low)..=f64::from(shown_high),
+        shown: f64::from(*shown.start())..=f64::from(*shown.end()),
         range: f64::from(low)..=f64::from(high),
         is_logarithmic: is_wide,
         smallest: f64::from(low.max(0.001)),
@@ -123,26 +158,19 @@ pub fn number(
     is_changed
 }
 
-/// The same for a whole number.
+/// A slider for a whole number, as [`number`].
 pub fn integer(
     ui: &mut Ui,
     name: &Response,
     value: &mut u32,
-    range: &RangeInclusive<u32>,
+    whole: &RangeInclusive<u32>,
     unit: &str,
     refused: &mut Refused,
 ) -> bool {
-    let (low, high) = (*range.start(), *range.end());
+    let (low, high) = (*whole.start(), *whole.end());
     let range = f64::from(low)..=f64::from(high);
-    let control = Control {
-        name,
-        unit,
-        shown: range.clone(),
-        is_logarithmic: range.end() / range.start().max(1.0) > 100.0,
-        range,
-        smallest: 1.0,
-        decimals: 0,
-    };
+    let control =
+        Control { name, unit, shown: range.clone(), is_logarithmic: is_wide(whole), range, smallest: 1.0, decimals: 0 };
     let mut edited = f64::from(*value);
     let is_changed = control.show(ui, &mut edited, refused);
     if is_changed {
@@ -292,59 +320,11 @@ pub fn choice<'t>(
     response
 }
 
-/// A number as it is read: four digits that count, no zeros after them.
-fn shown(value: f64) -> String {
-    let digits = if value == 0.0 { 0 } else { (3 - value.abs().log10().floor() as i32).clamp(0, 4) as usize };
-    let text = format!("{value:.digits$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    if text == "-0" { "0".into() } else { text.into() }
-}
-
-fn suffix(unit: &str) -> String {
-    match unit {
-        "" => String::new(),
-        "degrees" => "°".into(),
-        unit => format!(" {unit}"),
-    }
-}
-
-/// A number as it is typed, with its unit or without; never infinite, never NaN.
-fn parse(text: &str, unit: &str) -> Option<f64> {
-    let text = text.trim();
-    let text = text.strip_suffix(unit).or(text.strip_suffix('°')).unwrap_or(text).trim();
-    text.parse().ok().filter(|number: &f64| number.is_finite())
-}
-
 #[cfg(test)]
 mod tests {
     use egui_kittest::kittest::Queryable as _;
 
     use super::*;
-
-    #[test]
-    fn numbers_are_shown_without_noise() {
-        for (value, text) in [
-            (0.0, "0"),
-            (34.0, "34"),
-            (0.05, "0.05"),
-            (1.0 / 3.0, "0.3333"),
-            (-2.5, "-2.5"),
-            (12345.6, "12346"),
-            (-1.0e-6, "0"),
-        ] {
-            assert_eq!(shown(value), text);
-        }
-    }
-
-    #[test]
-    fn numbers_are_typed_with_their_unit_or_without() {
-        assert_eq!(parse(" 2.5 m/s ", "m/s"), Some(2.5));
-        assert_eq!(parse("1e-3", ""), Some(0.001));
-        assert_eq!((parse("35°", "degrees"), parse("35 degrees", "degrees")), (Some(35.0), Some(35.0)));
-        for wrong in ["nan", "inf", "2,5", "", "m/s", "two"] {
-            assert_eq!(parse(wrong, "m/s"), None, "{wrong}");
-        }
-    }
 
     #[test]
     fn what_is_typed_in_vain_into_three_numbers_is_said_and_changes_nothing() {

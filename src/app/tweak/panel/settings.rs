@@ -5,6 +5,7 @@ use haze::preset::Preset;
 use haze::settings::{Fields, path_of};
 
 use super::fields::{self, Desk};
+use super::row::Asked;
 use super::{curve, lights, look, ramps};
 use crate::app::tweak::messages::short;
 use crate::app::tweak::session::Session;
@@ -20,7 +21,8 @@ pub const TABS: [(Tab, &str, &str); 6] = [
     (Tab::Performance, "Cost", "What the picture costs, and a budget for it"),
 ];
 
-pub fn panel(ui: &mut Ui, session: &mut Session) {
+/// Gives the path of a field of whose values a sheet is to be made.
+pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
     ui.horizontal(|ui| {
         for (tab, name, tooltip) in TABS {
             ui.selectable_value(&mut session.show.tab, tab, name).on_hover_text(tooltip);
@@ -28,7 +30,8 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
     });
     if session.show.tab == Tab::Performance {
         ui.separator();
-        return super::performance::panel(ui, session);
+        super::performance::panel(ui, session);
+        return None;
     }
     let systems = session.document.preset.systems.len();
     session.show.system = session.show.system.min(systems.saturating_sub(1));
@@ -50,7 +53,9 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
         thumbnails: &session.thumbnails,
         changed: session.changed(),
         inert: &|path| session.document.preset.without_effect(path, session.show.size),
-        reset: Vec::new(),
+        second: session.second(),
+        has_sheets: true,
+        asked: Vec::new(),
         refused: None,
         sought: session.search.found.as_ref().map(|(path, _)| path.as_str()),
     };
@@ -71,14 +76,22 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
         Tab::Advanced => advanced(ui, &mut desk, preset, system),
         Tab::Performance => {}
     });
-    let Desk { reset, refused, .. } = desk;
+    let Desk { asked, refused, .. } = desk;
     session.document.preset = edited;
     session.show.lights = shown;
     session.inspect.spot = spot;
-    reset.iter().for_each(|path| session.set_back(path));
     if let Some(refused) = refused {
         session.messages.complain("typed", refused);
     }
+    let mut sheet = None;
+    for (asked, path) in asked {
+        match asked {
+            Asked::SetBack => session.set_back(&path),
+            Asked::Take => session.take(&path),
+            Asked::Sheet => sheet = Some(path),
+        }
+    }
+    sheet
 }
 
 /// The system that a setting belongs to: 1 of `systems[1].settings.boost`.
@@ -124,8 +137,11 @@ mod tests {
     use eframe::egui::{Role, Theme, Vec2};
     use egui_kittest::kittest::{NodeT as _, Queryable as _};
     use egui_kittest::{Harness, Node};
+    use haze::settings::Value;
 
-    use crate::app::tweak::testing::window;
+    use crate::app::tweak::compare::Against;
+    use crate::app::tweak::panel::value::shown_value;
+    use crate::app::tweak::testing::{row_menu, window};
     use crate::app::tweak::window::Window;
 
     fn control<'h>(harness: &'h Harness<'_, Window>, name: &'h str) -> Node<'h> {
@@ -144,5 +160,44 @@ mod tests {
         harness.hover_at(place - Vec2::new(80.0, 0.0));
         harness.run_steps(8);
         assert!(harness.query_all_by_label_contains("No effect here: forward only.").next().is_some());
+    }
+
+    fn undo_name(harness: &Harness<'_, Window>) -> Option<String> {
+        harness.state().session.document.history().undo_name().map(str::to_owned)
+    }
+
+    #[test]
+    fn what_the_second_picture_has_is_marked_and_can_be_taken_field_by_field() {
+        let mut harness = window("column", Vec2::new(1000.0, 640.0), Theme::Dark);
+        let saved = harness.state().session.document.preset.clone();
+        let is_marked = |harness: &Harness<'_, Window>, name| harness.query_by_label(name).is_some();
+        let (exposure, rise) = ("take exposure of the second", "take rise of the second");
+        let preset = &mut harness.state_mut().session.document.preset;
+        preset.camera.exposure = 3.0;
+        preset.systems[0].emitter.buoyancy += 1.0;
+        harness.run_steps(3);
+        assert!(!is_marked(&harness, exposure), "nothing is compared");
+        harness.state_mut().session.compare.against = Some(Against::Forward);
+        harness.run_steps(3);
+        assert!(!is_marked(&harness, exposure), "the same settings, drawn in another way");
+        harness.state_mut().session.compare.against = Some(Against::Saved);
+        harness.run_steps(3);
+        assert!(is_marked(&harness, exposure) && is_marked(&harness, rise));
+        assert!(!is_marked(&harness, "take glow of the second"));
+        harness.get_by_label(exposure).click();
+        harness.run_steps(3);
+        let now = |harness: &Harness<'_, Window>| harness.state().session.document.preset.clone();
+        assert_eq!(now(&harness).camera, saved.camera);
+        assert_ne!(now(&harness).systems, saved.systems);
+        assert!(!is_marked(&harness, exposure) && is_marked(&harness, rise));
+        assert_eq!(undo_name(&harness).as_deref(), Some("exposure"));
+        // The menu says what it would be.
+        row_menu(&mut harness, "rise");
+        let value = shown_value(&Value::Number(saved.systems[0].emitter.buoyancy), "m/s²");
+        harness.get_by_label(&format!("Take {value} of the second picture")).click();
+        harness.run_steps(3);
+        assert_eq!(now(&harness), saved);
+        harness.state_mut().session.undo();
+        assert_ne!(now(&harness).systems, saved.systems);
     }
 }

@@ -1,0 +1,86 @@
+//! Values as they are read and typed.
+
+use glam::Vec3;
+use haze::settings::Value;
+
+/// A number as it is read: four digits that count, no zeros after them.
+pub fn shown(value: f64) -> String {
+    let digits = if value == 0.0 { 0 } else { (3 - value.abs().log10().floor() as i32).clamp(0, 4) as usize };
+    let text = format!("{value:.digits$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text == "-0" { "0".into() } else { text.into() }
+}
+
+/// The value of a field as it is read, with its unit.
+pub fn shown_value(value: &Value, unit: &str) -> String {
+    let list = |vector: &Vec3| vector.to_array().map(|axis| shown(f64::from(axis))).join(", ");
+    match value {
+        Value::Number(number) => shown(f64::from(*number)) + &suffix(unit),
+        Value::Whole(number) => number.to_string() + &suffix(unit),
+        Value::Vector(vector) => list(vector) + &suffix(unit),
+        Value::Flag(flag) => if *flag { "on" } else { "off" }.into(),
+        Value::Choice(name) => name.replace('_', " "),
+        Value::Text(text) if text.is_empty() => "nothing".into(),
+        Value::Text(text) => text.clone(),
+    }
+}
+
+pub fn suffix(unit: &str) -> String {
+    match unit {
+        "" => String::new(),
+        "degrees" => "°".into(),
+        unit => format!(" {unit}"),
+    }
+}
+
+/// A number as it is typed, with its unit or without; never infinite, never NaN.
+pub fn parse(text: &str, unit: &str) -> Option<f64> {
+    let text = text.trim();
+    let text = text.strip_suffix(unit).or(text.strip_suffix('°')).unwrap_or(text).trim();
+    text.parse().ok().filter(|number: &f64| number.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_shown_without_noise() {
+        for (value, text) in [
+            (0.0, "0"),
+            (34.0, "34"),
+            (0.05, "0.05"),
+            (1.0 / 3.0, "0.3333"),
+            (-2.5, "-2.5"),
+            (12345.6, "12346"),
+            (-1.0e-6, "0"),
+        ] {
+            assert_eq!(shown(value), text);
+        }
+    }
+
+    #[test]
+    fn values_are_read_with_their_units() {
+        for (value, unit, text) in [
+            (Value::Number(0.25), "m", "0.25 m"),
+            (Value::Number(35.0), "degrees", "35°"),
+            (Value::Whole(4), "", "4"),
+            (Value::Vector(Vec3::new(1.0, -0.5, 0.0)), "m/s", "1, -0.5, 0 m/s"),
+            (Value::Flag(true), "", "on"),
+            (Value::Choice("depth_sprite_soft"), "", "depth sprite soft"),
+            (Value::Text(String::new()), "", "nothing"),
+        ] {
+            assert_eq!(shown_value(&value, unit), text);
+        }
+    }
+
+    #[test]
+    fn numbers_are_typed_with_their_unit_or_without() {
+        assert_eq!(parse(" 2.5 m/s ", "m/s"), Some(2.5));
+        assert_eq!(parse("1e-3", ""), Some(0.001));
+        assert_eq!((parse("35°", "degrees"), parse("35 degrees", "degrees")), (Some(35.0), Some(35.0)));
+        for wrong in ["nan", "inf", "2,5", "", "m/s", "two"] {
+            assert_eq!(parse(wrong, "m/s"), None, "{wrong}");
+        }
+    }
+}
