@@ -33,6 +33,8 @@ pub struct Layout {
     pub has_strip: Option<bool>,
     /// `dark`, `light` or `system`.
     pub theme: Option<String>,
+    /// Hints that are still to be shown.
+    pub hints: Option<Vec<String>>,
 }
 
 /// Themes by name.
@@ -70,6 +72,7 @@ impl Layout {
             self.window = Some(context.content_rect().size().into());
         }
         self.has_strip = Some(session.show.has_strip);
+        self.hints = Some(session.hints.left());
     }
 }
 

@@ -9,6 +9,7 @@ mod exporting;
 mod filing;
 mod gauge;
 mod health;
+mod hints;
 mod icon;
 mod inspect;
 mod keeping;

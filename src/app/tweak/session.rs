@@ -14,6 +14,7 @@ use super::compare::Compare;
 use super::document::difference::{changed_fields, copy_field};
 use super::document::document::Document;
 use super::gauge::Gauge;
+use super::hints::Hints;
 use super::inspect::Inspect;
 use super::lights::ShownLights;
 use super::messages::Messages;
@@ -35,6 +36,7 @@ pub struct Session {
     pub referee: Referee,
     pub inspect: Inspect,
     pub search: Search,
+    pub hints: Hints,
     pub messages: Messages,
     pub performance: Performance,
     pub tooltips: Tooltips,
@@ -75,6 +77,7 @@ impl Session {
             referee: Referee::default(),
             inspect: Inspect::default(),
             search: Search::default(),
+            hints: Hints::default(),
             messages: Messages::default(),
             performance: Performance::default(),
             tooltips: Tooltips::of::<Preset>(),

@@ -13,6 +13,7 @@ use super::action::{ACTIONS, Action};
 use super::easel::Easel;
 use super::exporting::{Exporting, Product};
 use super::filing::Filing;
+use super::hints::Place;
 use super::inspect::lens::Lens;
 use super::inspect::{lit, panel as inspector};
 use super::keeping::{Keeping, Layout};
@@ -75,6 +76,11 @@ impl Window {
     pub fn new(easel: Easel, start: Start) -> Result<Self, Error> {
         let Start { mut session, shaders, keeping, layout, has_dialogs } = start;
         session.show.has_strip = layout.has_strip.unwrap_or(session.show.has_strip);
+        match &layout.hints {
+            Some(left) => session.hints.go_on(left),
+            None if keeping.is_some() && layout == Layout::default() => session.hints.begin(),
+            None => {}
+        }
         if let Some(theme) = layout.theme() {
             easel.egui().set_theme(theme);
         }
@@ -110,6 +116,11 @@ impl Window {
     }
 
     #[cfg(test)]
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    #[cfg(test)]
     pub fn session_mut(&mut self) -> &mut Session {
         &mut self.session
     }
@@ -139,10 +150,14 @@ impl Window {
                 self.session.inspect.toggle();
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                if ui.button("?").on_hover_text("Keys and gestures").clicked() {
+                let keys = ui.button("?").on_hover_text("Keys and gestures");
+                self.session.hints.see(Place::Keys, keys.rect);
+                if keys.clicked() {
                     self.act(Action::Help, ui.ctx());
                 }
-                if ui.button("Find").on_hover_text("Any setting, by its name or what it does").clicked() {
+                let find = ui.button("Find").on_hover_text("Any setting, by its name or what it does");
+                self.session.hints.see(Place::Find, find.rect);
+                if find.clicked() {
                     self.act(Action::Find, ui.ctx());
                 }
                 theme(ui);
@@ -177,6 +192,9 @@ impl Window {
         }
         for text in ui.input(pasted) {
             self.session.paste(&text);
+        }
+        if ui.input(|input| input.key_pressed(egui::Key::Escape)) && self.session.hints.dismiss() {
+            ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Escape));
         }
         // Space and the like are for the control that has the keyboard.
         let is_free = ui.memory(egui::Memory::focused).is_none();
@@ -296,11 +314,13 @@ impl eframe::App for Window {
         let settings = egui::Panel::right("settings").default_size(width).size_range(240.0..=560.0);
         let shown = settings.show(ui, |ui| panel::settings::panel(ui, &mut self.session));
         self.layout.settings = Some(shown.response.rect.width());
+        self.session.hints.see(Place::Settings, shown.response.rect);
         if let Some(path) = shown.inner {
             self.exporting.begin(Product::Values(path), &mut self.session);
         }
         egui::CentralPanel::no_frame().show(ui, |ui| {
             let rect = ui.max_rect();
+            self.session.hints.see(Place::Picture, rect);
             self.viewport.show(ui, &mut self.session, &self.easel);
             lit::paint(ui, rect, &self.session.inspect, self.session.show.system);
             inspector::panel(ui, rect, &self.session);
@@ -308,6 +328,7 @@ impl eframe::App for Window {
         if let Some(lens) = &mut self.lens {
             lens.update(ui, &mut self.session, &self.easel);
         }
+        panel::hints::panel(ui, &mut self.session, is_touched, self.viewport.is_dragging());
         panel::search::panel(ui, &mut self.session);
         panel::help::panel(ui, &mut self.session);
         panel::export::panel(ui, &mut self.exporting, &mut self.session);

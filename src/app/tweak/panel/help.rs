@@ -11,7 +11,13 @@ pub fn panel(ui: &Ui, session: &mut Session) {
         return;
     }
     let response = egui::Modal::new(egui::Id::unique("help")).show(ui.ctx(), |ui| {
-        ui.heading("Keys and gestures");
+        ui.horizontal(|ui| {
+            ui.heading("Keys and gestures");
+            if ui.button("Show the hints again").on_hover_text("Those of the first start").clicked() {
+                session.hints.begin();
+                session.show.help = false;
+            }
+        });
         ui.add_space(6.0);
         let height = ui.ctx().content_rect().height() - 120.0;
         egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {

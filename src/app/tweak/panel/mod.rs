@@ -8,6 +8,7 @@ pub mod fields;
 pub mod file;
 pub mod gallery;
 pub mod help;
+pub mod hints;
 pub mod lights;
 pub mod look;
 pub mod notice;
