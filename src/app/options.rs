@@ -82,15 +82,25 @@ pub struct AssetsArguments {
 }
 
 impl AssetsArguments {
+    /// The folder.
+    ///
+    /// # Errors
+    /// Where it is none.
+    pub fn folder(&self) -> Result<Option<PathBuf>, Error> {
+        match &self.assets {
+            Some(folder) if !folder.is_dir() => {
+                Err(FieldError::new("--assets", folder.display(), "a folder that exists").into())
+            }
+            folder => Ok(folder.clone()),
+        }
+    }
+
     /// Where the pictures of a preset are looked for.
     ///
     /// # Errors
-    /// Where the folder is none.
+    /// As [`AssetsArguments::folder`].
     pub fn folders(&self, preset: &std::path::Path) -> Result<PictureFolders, Error> {
-        if let Some(folder) = self.assets.as_ref().filter(|folder| !folder.is_dir()) {
-            return Err(FieldError::new("--assets", folder.display(), "a folder that exists").into());
-        }
-        Ok(PictureFolders::beside(preset).and_shared(self.assets.clone()))
+        Ok(PictureFolders::beside(preset).and_shared(self.folder()?))
     }
 }
 

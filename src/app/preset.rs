@@ -88,7 +88,7 @@ fn check(path: &Path, assets: &AssetsArguments) -> Result<Vec<String>, Vec<Error
     let one = |error| vec![error];
     let preset = Preset::load(path).map_err(one)?;
     let folders = assets.folders(path).map_err(one)?;
-    let materials = preset.load_materials_from(path, &folders)?;
+    let materials = preset.check_materials(path, &folders)?;
     let shot = Shot::from_folders(preset, path, &folders, SIZE).map_err(one)?;
     let systems = shot.preset.systems.iter().zip(&materials).enumerate();
     let doubts = systems.flat_map(|(index, (system, material))| {

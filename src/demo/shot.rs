@@ -47,7 +47,7 @@ impl Shot {
     /// # Errors
     /// As [`Preset::load_materials`].
     pub fn from_folders(preset: Preset, path: &Path, folders: &PictureFolders, size: UVec2) -> Result<Self, Error> {
-        let materials = preset.load_materials_from(path, folders).map_err(|mut errors| errors.swap_remove(0))?;
+        let materials = preset.load_materials_from(path, folders)?;
         for (index, (system, material)) in preset.systems.iter().zip(&materials).enumerate() {
             let fits = material.info().validate(index, &system.settings);
             fits.map_err(|error| Error::JsonField { path: path.into(), error })?;

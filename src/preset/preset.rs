@@ -169,18 +169,22 @@ impl Preset {
     /// # Errors
     /// As [`MaterialNames::load`], naming the preset and the system too.
     pub fn load_materials(&self, path: &Path) -> Result<Vec<MaterialAssets>, Error> {
-        self.load_materials_from(path, &PictureFolders::beside(path)).map_err(|mut errors| errors.swap_remove(0))
+        self.load_materials_from(path, &PictureFolders::beside(path))
     }
 
     /// The same from other folders. `path`, the preset's, is for errors alone.
     ///
     /// # Errors
-    /// All that is wrong with any picture of any system: at least one.
-    pub fn load_materials_from(
-        &self,
-        path: &Path,
-        folders: &PictureFolders,
-    ) -> Result<Vec<MaterialAssets>, Vec<Error>> {
+    /// As [`Preset::load_materials`].
+    pub fn load_materials_from(&self, path: &Path, folders: &PictureFolders) -> Result<Vec<MaterialAssets>, Error> {
+        self.check_materials(path, folders).map_err(|mut errors| errors.swap_remove(0))
+    }
+
+    /// The same, for all that is wrong.
+    ///
+    /// # Errors
+    /// Those of every picture of every system: at least one.
+    pub fn check_materials(&self, path: &Path, folders: &PictureFolders) -> Result<Vec<MaterialAssets>, Vec<Error>> {
         let mut pictures = Pictures::new(folders.clone());
         let (mut loaded, mut errors) = (Vec::new(), Vec::new());
         for (index, system) in self.systems.iter().enumerate() {

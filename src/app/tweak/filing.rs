@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use eframe::egui;
+use haze::preset::PictureFolders;
 use haze::ramp::Ramp;
 use haze::{Error, FieldError, MaterialAssets};
 
@@ -124,13 +125,14 @@ impl Filing {
             let preset = session.document.path().to_owned();
             self.worker.submit(move |_| ramp_beside(&path, &preset).map_or_else(Done::Failed, Done::Ramp));
         } else {
-            self.open(path);
+            self.open(path, session);
         }
     }
 
     /// Opens a file, or a built-in preset by name. What cannot be opened changes nothing.
-    pub fn open(&self, path: PathBuf) {
-        self.worker.submit(move |_| match load(&path) {
+    pub fn open(&self, path: PathBuf, session: &Session) {
+        let assets = session.assets.clone();
+        self.worker.submit(move |_| match load(&path, assets) {
             Ok((document, loaded)) => Done::Opened(Box::new(document), loaded),
             Err(error) => Done::Failed(error),
         });
@@ -244,7 +246,7 @@ impl Filing {
 
     fn chosen(&mut self, purpose: Purpose, path: &Path, session: &mut Session) {
         match purpose {
-            Purpose::Open => self.open(path.into()),
+            Purpose::Open => self.open(path.into(), session),
             Purpose::SaveAs => {
                 let path = if path.extension().is_none() { path.with_extension("json") } else { path.into() };
                 let begun = session.document.begin_saving_as(&path);
@@ -260,9 +262,10 @@ fn suggested(session: &Session) -> PathBuf {
     if document.is_built_in() { document.path().with_extension("json") } else { document.path().into() }
 }
 
-fn load(path: &Path) -> Result<(Document, Vec<MaterialAssets>), Error> {
+fn load(path: &Path, assets: Option<PathBuf>) -> Result<(Document, Vec<MaterialAssets>), Error> {
     let document = Document::open(path)?;
-    let loaded = document.preset.load_materials(path)?;
+    let folders = PictureFolders::beside(path).and_shared(assets);
+    let loaded = document.preset.load_materials_from(path, &folders)?;
     Ok((document, loaded))
 }
 

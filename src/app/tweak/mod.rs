@@ -52,7 +52,7 @@ use haze::Error;
 use haze::settings::set_field;
 use haze::shader::Sources;
 
-use super::options::{in_option, parse_assignment, parse_size};
+use super::options::{AssetsArguments, in_option, parse_assignment, parse_size};
 use keeping::{Keeping, Layout};
 use open::open;
 use platform::dialog::Dialogs;
@@ -76,6 +76,8 @@ pub struct Arguments {
     /// program has in it. Started by `cargo run`, the program follows its checkout's.
     #[arg(long, value_name = "DIR")]
     shaders: Option<PathBuf>,
+    #[command(flatten)]
+    assets: AssetsArguments,
     /// Write a picture of the window once it stands still, and close it.
     #[arg(long, value_name = "FILE.png")]
     screenshot: Option<PathBuf>,
@@ -83,12 +85,19 @@ pub struct Arguments {
 
 impl Default for Arguments {
     fn default() -> Self {
-        Self { preset: "column".into(), size: None, set: Vec::new(), shaders: None, screenshot: None }
+        Self {
+            preset: "column".into(),
+            size: None,
+            set: Vec::new(),
+            shaders: None,
+            assets: AssetsArguments::default(),
+            screenshot: None,
+        }
     }
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
-    let mut session = Session::open(&arguments.preset)?;
+    let mut session = Session::open(&arguments.preset, arguments.assets.folder()?)?;
     for (field, value) in &arguments.set {
         set_field(&mut session.document.preset, field, value).map_err(|error| in_option("--set", error))?;
     }

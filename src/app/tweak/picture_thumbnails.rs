@@ -36,8 +36,8 @@ pub struct PictureThumbnails(RefCell<Inner>);
 struct Inner {
     worker: Option<Worker<Decoded>>,
     pictures: HashMap<Key, Thumb>,
-    /// Where the preset's pictures are; none for a built-in one's.
-    folder: Option<PathBuf>,
+    /// Where files are looked for; nowhere for a built-in preset that shares none.
+    folders: Vec<PathBuf>,
     /// The PNG files there, and when they were looked for, seconds.
     files: Vec<String>,
     listed: Option<f64>,
@@ -52,28 +52,30 @@ struct Thumb {
 }
 
 impl PictureThumbnails {
-    /// The preset whose pictures are offered.
-    pub fn follow(&self, preset: &Path) {
-        let is_file = preset.extension().is_some();
-        let folder = is_file.then(|| preset.parent().unwrap_or(Path::new("")).to_owned());
+    /// Offers the pictures beside a preset, and then those of a folder that presets share.
+    pub fn follow(&self, preset: &Path, assets: Option<&Path>) {
+        let own = preset.extension().map(|_| preset.parent().unwrap_or(Path::new("")));
+        let is_same = |inner: &Inner| inner.folders.iter().map(PathBuf::as_path).eq(own.into_iter().chain(assets));
         let mut inner = self.0.borrow_mut();
-        if inner.folder != folder {
-            *inner = Inner { worker: inner.worker.take(), folder, ..Inner::default() };
+        if !is_same(&inner) {
+            let folders = own.into_iter().chain(assets).map(Path::to_owned).collect();
+            *inner = Inner { worker: inner.worker.take(), folders, ..Inner::default() };
         }
     }
 
-    /// Names of the pictures for a role: the built-in ones, then the files in the preset's folder.
+    /// Names of the pictures for a role: the built-in ones, then the files.
     pub fn names(&self, context: &egui::Context, role: PictureRole) -> Vec<String> {
         let now = context.input(|input| input.time);
         let inner = &mut *self.0.borrow_mut();
         if inner.listed.is_none_or(|listed| now - listed > FRESH) {
             inner.listed = Some(now);
-            inner.files = inner.folder.as_deref().map(pngs).unwrap_or_default();
+            inner.files = inner.folders.iter().flat_map(|folder| pngs(folder)).collect();
+            inner.files.sort();
+            inner.files.dedup();
             // Those that were written meanwhile are decoded again.
-            let folder = inner.folder.clone().unwrap_or_default();
-            inner
-                .pictures
-                .retain(|(_, name), thumb| thumb.stamp.is_none() || thumb.stamp == Stamp::of(&folder.join(name)));
+            let Inner { folders, pictures, .. } = inner;
+            let stamp = |name: &str| file(folders, name).and_then(|path| Stamp::of(&path));
+            pictures.retain(|(_, name), thumb| thumb.stamp.is_none() || thumb.stamp == stamp(name));
         }
         let builtins = builtins(role).iter().map(|builtin| builtin.name.to_owned());
         builtins.chain(inner.files.iter().cloned()).collect()
@@ -93,7 +95,7 @@ impl PictureThumbnails {
         }
         let source = match builtin::find(builtins(role), name) {
             Some(builtin) => Source::Builtin(builtin),
-            None => Source::File(inner.folder.as_ref()?.join(name)),
+            None => Source::File(file(&inner.folders, name)?),
         };
         let stamp = if let Source::File(path) = &source { Stamp::of(path) } else { None };
         inner.pictures.insert(key.clone(), Thumb { stamp, texture: None });
@@ -106,6 +108,11 @@ impl PictureThumbnails {
         worker.submit(move |_| (key, thumbnail(role, &source).ok()));
         None
     }
+}
+
+/// Where a file lies: the first folder that has it.
+fn file(folders: &[PathBuf], name: &str) -> Option<PathBuf> {
+    folders.iter().map(|folder| folder.join(name)).find(|path| files::exists(path))
 }
 
 /// The PNG files in a folder.

@@ -6,6 +6,7 @@ use eframe::egui;
 use glam::UVec2;
 use haze::demo::develop::develop;
 use haze::demo::shot::Shot;
+use haze::preset::{PictureFolders, Preset};
 use haze::{Error, builtin};
 use image::RgbImage;
 
@@ -59,8 +60,8 @@ impl PresetThumbnails {
         Ok(Self { worker, entries: Vec::new(), tickets: Vec::new() })
     }
 
-    /// Lists the built-in presets and the JSON files of a folder, and draws those that are new or changed.
-    pub fn list(&mut self, folder: &Path) {
+    /// Lists the built-in presets and the JSON files of a folder, whose pictures may lie in `assets`, too, and draws those that are new or changed.
+    pub fn list(&mut self, folder: &Path, assets: Option<&Path>) {
         let built_in = builtin::PRESETS.iter().map(|preset| PathBuf::from(preset.name));
         let is_preset = |path: &PathBuf| {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -79,7 +80,8 @@ impl PresetThumbnails {
                 continue;
             }
             self.entries.push(Entry { path: path.clone(), stamp, shown: None });
-            let job = move |_: &Ticket| (path.clone(), draw(&path));
+            let assets = assets.map(Path::to_owned);
+            let job = move |_: &Ticket| (path.clone(), draw(&path, assets));
             self.tickets.push(self.worker.submit(job));
         }
     }
@@ -108,8 +110,9 @@ impl PresetThumbnails {
     }
 }
 
-fn draw(path: &Path) -> Result<Drawn, Error> {
-    let shot = Shot::load(path, SIZE)?;
+fn draw(path: &Path, assets: Option<PathBuf>) -> Result<Drawn, Error> {
+    let folders = PictureFolders::beside(path).and_shared(assets);
+    let shot = Shot::from_folders(Preset::load(path)?, path, &folders, SIZE)?;
     let picture = develop(&shot.render_on_cpu()?, &shot);
     Ok(Drawn { picture, name: shot.preset.name, description: shot.preset.description })
 }

@@ -136,16 +136,16 @@ impl Reload {
 
     fn watch(&self, session: &Session) {
         let shaders = self.shaders.iter().flat_map(|shaders| shaders.files.iter().cloned());
-        self.watcher.set(session.document.files().into_iter().chain(shaders));
+        self.watcher.set(session.document.files(&session.folders()).into_iter().chain(shaders));
     }
 
     /// Reads the pictures that the preset names; those of before stay where they cannot be had.
     fn load_pictures(&mut self, session: &Session) {
         let preset = Box::new(session.document.preset.clone());
         let path = session.document.path().to_owned();
-        let old = session.pictures.clone();
+        let (old, folders) = (session.pictures.clone(), session.folders());
         let ticket = self.worker.submit(move |_| {
-            let loaded = preset.load_materials(&path).map(|loaded| old.keep_same(loaded));
+            let loaded = preset.load_materials_from(&path, &folders).map(|loaded| old.keep_same(loaded));
             Loaded::Pictures(preset, loaded)
         });
         // Only the last are wanted.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use glam::UVec2;
 use haze::demo::shot::Shot;
-use haze::preset::{Preset, Tooltips};
+use haze::preset::{PictureFolders, Preset, Tooltips};
 use haze::settings::{ShadeTree, Value, values};
 use haze::shader::Sources;
 use haze::{Error, Light, MaterialAssets};
@@ -43,6 +43,8 @@ pub struct Session {
     /// What the stages of the shading are.
     pub stages: Tooltips,
     pub thumbnails: PictureThumbnails,
+    /// A folder of pictures that presets share.
+    pub assets: Option<PathBuf>,
     /// A picture of the window is wanted here; then it closes.
     pub screenshot: Option<PathBuf>,
     /// As last loaded well.
@@ -64,12 +66,14 @@ struct Changed {
 }
 
 impl Session {
-    /// Opens a built-in preset by name, or a file.
-    pub fn open(source: &Path) -> Result<Self, Error> {
+    /// Opens a built-in preset by name, or a file. Its pictures are looked for beside it and in `assets`.
+    pub fn open(source: &Path, assets: Option<PathBuf>) -> Result<Self, Error> {
         let document = Document::open(source)?;
         let preset = &document.preset;
-        let loaded = preset.load_materials(source)?;
+        let folders = PictureFolders::beside(source).and_shared(assets.clone());
+        let loaded = preset.load_materials_from(source, &folders)?;
         Ok(Self {
+            assets,
             playback: Playback::at(preset.time),
             show: Show::default(),
             compare: Compare::default(),
@@ -91,6 +95,11 @@ impl Session {
             second: None,
             document,
         })
+    }
+
+    /// Where pictures are looked for.
+    pub fn folders(&self) -> PictureFolders {
+        PictureFolders::beside(self.document.path()).and_shared(self.assets.clone())
     }
 
     /// What is to be seen now.

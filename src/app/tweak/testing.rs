@@ -26,7 +26,7 @@ pub fn window_with(preset: &str, size: Vec2, theme: egui::Theme, shaders: Shader
 }
 
 fn start(preset: &str, shaders: ShaderFolder) -> Start {
-    let session = Session::open(Path::new(preset)).unwrap();
+    let session = Session::open(Path::new(preset), None).unwrap();
     Start { session, shaders, keeping: None, layout: Layout::default(), has_dialogs: false }
 }
 

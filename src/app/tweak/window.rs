@@ -210,7 +210,8 @@ impl Window {
         match action {
             Action::Presets => {
                 self.has_browser = true;
-                self.thumbnails.list(session.document.path().parent().unwrap_or(Path::new("")));
+                let folder = session.document.path().parent().unwrap_or(Path::new(""));
+                self.thumbnails.list(folder, session.assets.as_deref());
             }
             Action::Open => self.filing.ask_open(session),
             Action::Save => self.filing.save(session),
@@ -338,7 +339,7 @@ impl eframe::App for Window {
         {
             self.has_browser = false;
             self.thumbnails.stop();
-            chosen.into_iter().for_each(|path| self.filing.open(path));
+            chosen.into_iter().for_each(|path| self.filing.open(path, &self.session));
         }
         let is_held = ui.input(|input| input.pointer.any_down()) || ui.ctx().text_edit_focused();
         self.session.track(is_held || self.viewport.is_held(ui));

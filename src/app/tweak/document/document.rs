@@ -94,9 +94,9 @@ impl Document {
     }
 
     /// The files that its picture is made from, of which some may be missing: what is to be watched.
-    pub fn files(&self) -> Vec<PathBuf> {
+    pub fn files(&self, folders: &PictureFolders) -> Vec<PathBuf> {
         let own = (!self.is_built_in()).then(|| self.path.clone());
-        own.into_iter().chain(pictures_of(&PictureFolders::beside(&self.path), &self.preset)).collect()
+        own.into_iter().chain(pictures_of(folders, &self.preset)).collect()
     }
 
     /// Whether it has no file yet.

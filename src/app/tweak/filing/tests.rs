@@ -31,7 +31,7 @@ fn bench() -> Bench {
 }
 
 fn window(path: &Path, state: Option<PathBuf>) -> Harness<'static, Window> {
-    let mut session = Session::open(path).unwrap();
+    let mut session = Session::open(path, None).unwrap();
     let keeping = state.map(|folder| Keeping::new(folder, &mut session));
     let start = Start { session, shaders: ShaderFolder::None, keeping, layout: Layout::default(), has_dialogs: false };
     testing::open(start, Vec2::new(800.0, 500.0), Theme::Dark)

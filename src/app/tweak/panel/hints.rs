@@ -92,7 +92,7 @@ mod tests {
 
     /// A window whose state is kept in a folder.
     fn start(folder: &std::path::Path, size: Vec2, theme: Theme) -> Harness<'static, Window> {
-        let mut session = Session::open("column".as_ref()).unwrap();
+        let mut session = Session::open("column".as_ref(), None).unwrap();
         let keeping = Some(Keeping::new(folder.into(), &mut session));
         let (layout, _) = Layout::recall(folder);
         let start = Start { session, shaders: ShaderFolder::None, keeping, layout, has_dialogs: false };

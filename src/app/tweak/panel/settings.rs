@@ -47,7 +47,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
     }
     ui.separator();
     let (time, mut shown) = (session.playback.time, std::mem::take(&mut session.show.lights));
-    session.thumbnails.follow(session.document.path());
+    session.thumbnails.follow(session.document.path(), session.assets.as_deref());
     let mut desk = Desk {
         tooltips: &session.tooltips,
         thumbnails: &session.thumbnails,

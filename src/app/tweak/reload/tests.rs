@@ -115,6 +115,23 @@ fn a_ramp_is_seen_as_it_is_saved_and_a_broken_one_is_said_until_it_is_mended() {
 }
 
 #[test]
+fn a_ramp_that_presets_share_is_followed_too() {
+    let mut bench = Bench::new(SIZE);
+    let (team, own) = (bench.path("team"), bench.pictures());
+    fs::create_dir(&team).unwrap();
+    write_ramp(&team, 90);
+    fs::rename(team.join("mine.png"), team.join("theirs.png")).unwrap();
+    bench.session().assets = Some(team.clone());
+    bench.session().document.preset.systems[0].material.diffuse_ramp = "theirs.png".into();
+    bench.until(|bench| !bench.pictures().shares(&own));
+    let theirs = bench.pictures();
+    write_ramp(&team, 20);
+    fs::rename(team.join("mine.png"), team.join("theirs.png")).unwrap();
+    bench.until(|bench| !bench.pictures().shares(&theirs));
+    assert_eq!(bench.said(), None);
+}
+
+#[test]
 fn another_presets_file_is_loaded_unless_work_would_be_lost() {
     let mut bench = Bench::new(SIZE);
     let path = bench.path("my.json");

@@ -35,7 +35,7 @@ fn shot(folder: &Path) -> PathBuf {
 fn a_change_is_saved_as_one_line() {
     let folder = tempfile::tempdir().unwrap();
     let mut document = Document::open(Path::new("column")).unwrap();
-    assert!(document.is_built_in() && !document.is_dirty() && document.files().is_empty());
+    assert!(document.is_built_in() && !document.is_dirty() && document.files(&PictureFolders::default()).is_empty());
     let refused = document.save().unwrap_err().to_string();
     assert_eq!(refused, "save: column is not valid; expected another name: this preset is built in");
     let refused = document.save_as(&folder.path().join("shot")).unwrap_err().to_string();
@@ -158,7 +158,10 @@ fn pictures_come_along_into_another_folder() {
     let mut document = Document::open(&shot(&old)).unwrap();
     document.preset.systems[0].material.diffuse_ramp = "ramps/own.png".into();
     document.preset.systems[0].material.motif = "missing.png".into();
-    assert_eq!(document.files(), ["shot.json", "ramps/own.png", "missing.png"].map(|name| old.join(name)));
+    assert_eq!(
+        document.files(&PictureFolders::at(&old)),
+        ["shot.json", "ramps/own.png", "missing.png"].map(|name| old.join(name))
+    );
     fs::copy("ramps/diffuse_soft.png", old.join("ramps/own.png")).unwrap();
     document.save_as(&new.join("shot.json")).unwrap();
     assert_eq!(fs::read(new.join("ramps/own.png")).unwrap(), fs::read("ramps/diffuse_soft.png").unwrap());

@@ -19,7 +19,7 @@ use crate::app::tweak::window::{Start, Window};
 
 /// A window, and what egui draws it with.
 fn window() -> (Harness<'static, Window>, RenderState) {
-    let session = Session::open(Path::new("column")).unwrap();
+    let session = Session::open(Path::new("column"), None).unwrap();
     let (shaders, layout) = (ShaderFolder::None, Layout::default());
     let start = Start { session, shaders, keeping: None, layout, has_dialogs: false };
     let state = Rc::new(RefCell::new(None));
