@@ -11,6 +11,8 @@ mod many;
 mod names;
 #[path = "cli/outputs.rs"]
 mod outputs;
+#[path = "cli/ramps.rs"]
+mod ramps;
 #[path = "cli/shaders.rs"]
 mod shaders;
 #[path = "cli/streams.rs"]

@@ -123,7 +123,7 @@ fn every_field_of_every_file_is_met() {
     );
     assert_eq!(forgotten(&mut serde_json::from_str::<NoiseRecipe>(&recipe("sprites/fbm.noise.json")).unwrap()), none);
     assert_eq!(
-        forgotten(&mut serde_json::from_str::<RampRecipe>(&recipe("ramps/specular_halo.ramp.json")).unwrap()),
+        forgotten(&mut serde_json::from_str::<RampRecipe>(&recipe("tests/corpus/ramp/good_rich")).unwrap()),
         none
     );
     assert_eq!(

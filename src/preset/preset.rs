@@ -150,7 +150,7 @@ impl Preset {
             let expected = format!("one of {}, or the path of a JSON file", names.join(", "));
             return Err(FieldError::new("preset", format!("{path:?}"), expected).into());
         }
-        let text = json::read(path)?;
+        let text = json::read(path, json::MAX_BYTES)?;
         Ok((Self::parse(path, &text)?, text))
     }
 

@@ -1,4 +1,4 @@
-//! JSON files with a `version`, at most 1 MiB: newer ones are refused untouched, mistakes are named with line, column and field.
+//! JSON files with a `version`: newer ones are refused untouched, mistakes are named with line, column and field.
 
 mod words;
 
@@ -10,8 +10,8 @@ use super::file;
 use super::picture::is_png;
 use crate::error::{Error, FieldError};
 
-/// Largest file that is read, bytes: a preset is some thousands.
-const MAX_BYTES: u64 = 1 << 20;
+/// Largest file of most kinds, bytes: a preset is some thousands.
+pub const MAX_BYTES: u64 = 1 << 20;
 
 /// Parses `text`. `path` is only named in errors.
 ///
@@ -61,7 +61,7 @@ pub fn parse_versioned<T: DeserializeOwned>(path: &Path, text: &str, newest: u32
     parse(path, text)
 }
 
-/// Reads, parses and checks a file with a version.
+/// Reads, parses and checks a file with a version, of at most [`MAX_BYTES`].
 ///
 /// # Errors
 /// [`Error::Io`], [`Error::Json`], or [`Error::JsonField`] for what `validate` finds.
@@ -70,17 +70,17 @@ pub fn load<T: DeserializeOwned>(
     newest: u32,
     validate: impl FnOnce(&T) -> Result<(), FieldError>,
 ) -> Result<T, Error> {
-    let value = parse_versioned(path, &read(path)?, newest)?;
+    let value = parse_versioned(path, &read(path, MAX_BYTES)?, newest)?;
     validate(&value).map_err(|error| Error::JsonField { path: path.into(), error })?;
     Ok(value)
 }
 
-/// Reads the text of a file.
+/// Reads the text of a file of at most `most` bytes.
 ///
 /// # Errors
 /// [`Error::Io`], or [`Error::Json`] for what is no text.
-pub fn read(path: &Path) -> Result<String, Error> {
-    text(path, &file::read(path, "JSON file", MAX_BYTES)?).map(str::to_owned)
+pub fn read(path: &Path, most: u64) -> Result<String, Error> {
+    text(path, &file::read(path, "JSON file", most)?).map(str::to_owned)
 }
 
 /// The text of a file. Other encodings and pictures are named.

@@ -1,6 +1,9 @@
 //! Ramps: the small textures that an artist paints the light with. `ramps/README.md` has axes, sizes and colour space.
 
 pub mod bake;
+mod colour;
+mod formula;
+mod gradient;
 pub mod motif;
 
 use std::path::Path;

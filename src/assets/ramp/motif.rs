@@ -5,7 +5,8 @@ use std::path::Path;
 use glam::{UVec2, Vec2, Vec3};
 use image::DynamicImage;
 
-use super::bake::{HexColour, image_of, srgb16_from_linear};
+use super::bake::image_of;
+use super::colour::{HexColour, srgb16_from_linear};
 use crate::assets::json;
 use crate::assets::picture::Picture;
 use crate::error::{Error, FieldError};

@@ -16,7 +16,7 @@ pub fn read_preset(name_or_path: &Path) -> Result<(Preset, String), Error> {
 
 /// The text of a JSON file.
 pub fn read_text(path: &Path) -> Result<String, Error> {
-    json::read(path)
+    json::read(path, json::MAX_BYTES)
 }
 
 /// The bytes of a picture's file.
