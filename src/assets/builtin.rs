@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::json;
 use super::noise::NoiseVolume;
-use super::picture::decode_png;
+use super::picture::{decode_colour_png, decode_png};
 use super::ramp::Ramp;
 use super::sprite::bake::SpriteRecipe;
 use super::sprite::{Sprite, SpriteLayout};
@@ -95,9 +95,9 @@ impl Builtin {
     /// Decodes a ramp or a motif.
     ///
     /// # Errors
-    /// As [`decode_png`].
+    /// As [`decode_colour_png`].
     pub fn ramp(&self) -> Result<Ramp, Error> {
-        Ok(Ramp::from_picture(&decode_png(&path(self.name), self.bytes)?))
+        Ok(Ramp::from_picture(&decode_colour_png(&path(self.name), self.bytes)?))
     }
 
     /// Decodes a sprite, laid out as its recipe says.

@@ -4,7 +4,7 @@ use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, ErrorKind, Read as _};
 use std::path::Path;
 
-use crate::error::Error;
+use crate::error::{Error, one_line};
 
 /// Reads a file of at most `most` bytes. Pipes, devices and folders are refused; `kind` is what was hoped for.
 ///
@@ -22,7 +22,14 @@ pub fn read(path: &Path, kind: &str, most: u64) -> Result<Vec<u8>, Error> {
         _ => Ok(()),
     };
     // Looked at before, and again in case the name has changed hands.
-    check(&std::fs::metadata(path).map_err(io)?)?;
+    let found = std::fs::metadata(path).map_err(|error| match std::fs::read_link(path) {
+        Ok(target) if error.kind() == ErrorKind::NotFound => {
+            let reason = format!("a link to {}, which is not there", one_line(target.display()));
+            io(io::Error::new(ErrorKind::NotFound, reason))
+        }
+        _ => io(error),
+    });
+    check(&found?)?;
     let file = open(path).map_err(io)?;
     check(&file.metadata().map_err(io)?)?;
     let mut bytes = Vec::new();

@@ -1,8 +1,12 @@
 //! Pictures in memory, and threads over their rows; PNG in and out.
 
+mod chunks;
+mod colour_space;
 mod file;
 mod png;
+mod profile;
 
+pub use colour_space::{colour_notes, decode_colour_png, read_colour_png};
 pub use file::{FileIdentity, check_file, write_file};
 pub(crate) use png::is_png;
 pub use png::{Effort, MAX_BYTES, MAX_SIDE, decode_png, read_png, write_png};

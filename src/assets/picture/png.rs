@@ -1,11 +1,12 @@
 //! PNG in and out, with the limits that any file from outside must respect.
 
-use std::io::Cursor;
+use std::io::{Cursor, ErrorKind};
 use std::path::Path;
 
 use image::codecs::png::{CompressionType, PngDecoder};
 use image::{DynamicImage, ImageDecoder as _, ImageError, Limits};
 
+use super::chunks::colour_tags;
 use super::file::write_file;
 use crate::assets::file;
 use crate::error::Error;
@@ -27,6 +28,11 @@ pub(crate) fn is_png(bytes: &[u8]) -> bool {
 /// # Errors
 /// [`Error::Image`] for a broken file, one that is no PNG, or one beyond 4096 pixels a side or 64 MiB once decoded.
 pub fn decode_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Error> {
+    decode_with_profile(path, bytes).map(|(picture, _)| picture)
+}
+
+/// The same with its colour profile.
+pub(super) fn decode_with_profile(path: &Path, bytes: &[u8]) -> Result<(DynamicImage, Option<Vec<u8>>), Error> {
     let refuse = |reason: String| Err(Error::Image { path: path.into(), reason });
     if !is_png(bytes) {
         return refuse("not a PNG file; export it as PNG".into());
@@ -37,9 +43,12 @@ pub fn decode_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Error> {
     if width.max(height) > MAX_SIDE {
         return refuse(format!("{width}x{height} pixels; expected at most {MAX_SIDE}x{MAX_SIDE}"));
     }
+    if colour_tags(bytes).is_none() {
+        return refuse(broken(None));
+    }
     let mut limits = Limits::default();
     limits.max_alloc = Some(MAX_BYTES);
-    let decoder = match PngDecoder::with_limits(Cursor::new(bytes), limits) {
+    let mut decoder = match PngDecoder::with_limits(Cursor::new(bytes), limits) {
         Ok(decoder) => decoder,
         Err(error) => return refuse(broken(Some(&error))),
     };
@@ -52,14 +61,20 @@ pub fn decode_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Error> {
             decoded >> 20
         ));
     }
-    DynamicImage::from_decoder(decoder).or_else(|error| refuse(broken(Some(&error))))
+    // A profile that cannot be read is none.
+    let profile = decoder.icc_profile().unwrap_or_default();
+    match DynamicImage::from_decoder(decoder) {
+        Ok(picture) => Ok((picture, profile)),
+        Err(error) => refuse(broken(Some(&error))),
+    }
 }
 
 /// What is wrong with a PNG. The decoder's own words are for those who know its code.
 fn broken(error: Option<&ImageError>) -> String {
     let most = MAX_BYTES >> 20;
     match error {
-        None | Some(ImageError::IoError(_)) => "the file ends too early; expected a whole PNG".into(),
+        None => "the file ends too early; expected a whole PNG".into(),
+        Some(ImageError::IoError(error)) if error.kind() == ErrorKind::UnexpectedEof => broken(None),
         Some(ImageError::Limits(_)) => format!("it takes more than {most} MiB to decode; expected a smaller PNG"),
         Some(_) => "a damaged PNG; expected one that other programs can open: export it again".into(),
     }

@@ -13,7 +13,7 @@ use glam::{UVec2, Vec3, Vec4};
 use half::f16;
 use image::DynamicImage;
 
-use crate::assets::picture::read_png;
+use crate::assets::picture::read_colour_png;
 use crate::error::Error;
 use crate::formula::colour::linear_from_srgb;
 use crate::formula::texture::Texture2d;
@@ -41,7 +41,8 @@ impl Ramp {
         Self { size, texels: texels.into() }
     }
 
-    /// Decodes an sRGB picture, 8 or 16 bits a channel; alpha is ignored. The bottom row is 0 on the second axis.
+    /// Decodes an sRGB picture, 8 or 16 bits a channel; alpha is for who decodes it
+    /// ([`decode_colour_png`](crate::picture::decode_colour_png)). The bottom row is 0 on the second axis.
     pub fn from_picture(picture: &DynamicImage) -> Self {
         let pixels = picture.to_rgb16();
         let size = UVec2::new(pixels.width(), pixels.height());
@@ -50,12 +51,12 @@ impl Ramp {
         Self::from_linear(size, colours)
     }
 
-    /// Reads an sRGB PNG.
+    /// Reads a PNG.
     ///
     /// # Errors
-    /// As [`read_png`].
+    /// As [`read_colour_png`].
     pub fn load(path: &Path) -> Result<Self, Error> {
-        Ok(Self::from_picture(&read_png(path)?))
+        Ok(Self::from_picture(&read_colour_png(path)?))
     }
 
     /// Texels.
