@@ -2,9 +2,13 @@
 
 pub mod bake;
 mod colour;
+pub mod fit;
 mod formula;
+mod ggr;
 mod gradient;
+pub mod import;
 pub mod motif;
+mod text;
 
 use std::path::Path;
 use std::sync::Arc;

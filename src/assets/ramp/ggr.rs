@@ -1,0 +1,141 @@
+//! Gradients of GIMP, `*.ggr`. (GIMP, devel-docs/ggr.txt)
+
+use std::f32::consts::PI;
+
+use glam::{Vec3, Vec4};
+
+use super::bake::{Blend, Curve, HexColour, RampStop};
+use super::colour::srgb_from_linear;
+use super::fit::Fit;
+use super::text::{Mistake, numbers, opaque, strip};
+
+/// A piece of a gradient.
+struct Segment {
+    left: f32,
+    middle: f32,
+    right: f32,
+    from: Vec4,
+    to: Vec4,
+    /// 0 straight, 1 curved, 2 as a sine, 3 and 4 as a sphere, 5 a step.
+    blending: u32,
+    /// 0 as RGB, 1 and 2 through the hues, up and down.
+    colours: u32,
+}
+
+/// Straight segments and steps as they are, others by short straight pieces, a quarter of `most` off.
+pub(super) fn read(text: &str, most: f32) -> Result<Fit, Mistake> {
+    let segments = segments(text)?;
+    let mut stops: Vec<RampStop> = Vec::new();
+    let mut add = |at: f32, code: Vec3, curve: Curve| {
+        let stop = RampStop { at, colour: HexColour::from_srgb(code), curve };
+        // Where a segment goes on as the one before ended.
+        if let Some(last) = stops.last_mut().filter(|last| (last.at, last.colour) == (stop.at, stop.colour)) {
+            last.curve = curve;
+        } else {
+            stops.push(stop);
+        }
+    };
+    for segment in &segments {
+        if segment.blending == 5 {
+            add(segment.left, opaque(segment.from), Curve::Constant);
+            add(segment.middle, opaque(segment.to), Curve::Constant);
+            continue;
+        }
+        let mut add = |at| add(at, segment.code(at), Curve::Linear);
+        add(segment.left);
+        segment.divide(segment.left, segment.middle, most / 4.0, &mut add);
+        segment.divide(segment.middle, segment.right, most / 4.0, &mut add);
+    }
+    let mut fitted = strip(Blend::Srgb, stops);
+    if let Ok(gradient) = fitted.recipe.gradient() {
+        // Between the places where segments are wont to meet.
+        let off = (0..1024).map(|index| (index as f32 + 0.5) / 1024.0).filter_map(|at| {
+            let segment = segments.iter().find(|segment| at <= segment.right)?;
+            let made = gradient.sample(at, 0.0).map(srgb_from_linear);
+            Some((made - segment.code(at)).abs().max_element() * 255.0)
+        });
+        fitted.error = off.fold(fitted.error, f32::max);
+    }
+    Ok(fitted)
+}
+
+fn segments(text: &str) -> Result<Vec<Segment>, Mistake> {
+    let mistake = |line: usize, reason: &str| Mistake { line, reason: reason.into() };
+    let mut lines = text.lines().zip(1..).peekable();
+    if lines.next().is_none_or(|(line, _)| line.trim() != "GIMP Gradient") {
+        return Err(mistake(1, "expected \"GIMP Gradient\""));
+    }
+    lines.next_if(|(line, _)| line.starts_with("Name:"));
+    let count =
+        lines.next().and_then(|(line, at)| Some((line.trim().parse::<usize>().ok().filter(|&count| count > 0)?, at)));
+    let Some((count, counted)) = count else { return Err(mistake(3, "expected the number of segments")) };
+    let mut segments = Vec::new();
+    for (line, at) in lines.take(count) {
+        let [left, middle, right, r0, g0, b0, a0, r1, g1, b1, a1, blending, colours] =
+            *numbers(line).as_deref().and_then(<[f32]>::first_chunk).ok_or_else(|| {
+                mistake(at, "expected 13 numbers: left, middle, right, two colours of four, blending, colours")
+            })?;
+        let in_order = 0.0 <= left && left <= middle && middle <= right && right <= 1.0;
+        let known = (0.0..6.0).contains(&blending) && (0.0..3.0).contains(&colours);
+        if !in_order || !known {
+            let expected =
+                if in_order { "blending 0 to 5 and colours 0 to 2" } else { "left, middle and right in order, 0 to 1" };
+            return Err(mistake(at, &format!("expected {expected}")));
+        }
+        let (from, to) = (Vec4::new(r0, g0, b0, a0), Vec4::new(r1, g1, b1, a1));
+        segments.push(Segment { left, middle, right, from, to, blending: blending as u32, colours: colours as u32 });
+    }
+    if segments.len() < count {
+        return Err(mistake(counted, &format!("{} segments follow; expected {count}", segments.len())));
+    }
+    Ok(segments)
+}
+
+impl Segment {
+    /// sRGB code at a place in the segment.
+    fn code(&self, at: f32) -> Vec3 {
+        let share = |from: f32, to: f32| if to > from { ((at - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };
+        let half = if at < self.middle {
+            share(self.left, self.middle) / 2.0
+        } else {
+            0.5 + share(self.middle, self.right) / 2.0
+        };
+        let part = match self.blending {
+            1 => {
+                let middle =
+                    ((self.middle - self.left) / (self.right - self.left).max(1.0e-9)).clamp(1.0e-6, 1.0 - 1.0e-6);
+                share(self.left, self.right).powf(0.5_f32.ln() / middle.ln())
+            }
+            2 => (1.0 - (PI * half).cos()) / 2.0,
+            3 => (1.0 - (half - 1.0) * (half - 1.0)).max(0.0).sqrt(),
+            4 => 1.0 - (1.0 - half * half).max(0.0).sqrt(),
+            5 => f32::from(u8::from(at >= self.middle)),
+            _ => half,
+        };
+        let mixed = self.from.lerp(self.to, part);
+        if self.colours == 0 {
+            return opaque(mixed);
+        }
+        let (from, to) = (Blend::HsvNear.of_code(self.from.truncate()), Blend::HsvNear.of_code(self.to.truncate()));
+        let turn = (to.x - from.x).rem_euclid(1.0) - if self.colours == 2 { 1.0 } else { 0.0 };
+        let hsv = Vec3::new(from.x + turn * part, from.y + (to.y - from.y) * part, from.z + (to.z - from.z) * part);
+        opaque(Blend::HsvNear.linear(hsv).map(srgb_from_linear).extend(mixed.w))
+    }
+
+    /// Adds the end of a part, and what it takes before it to be no more than `most` steps of 255 off a straight line.
+    fn divide(&self, from: f32, to: f32, most: f32, add: &mut impl FnMut(f32)) {
+        let is_straight = [0.25, 0.5, 0.75].into_iter().all(|part| {
+            let straight = self.code(from).lerp(self.code(to), part);
+            let off = self.code(from + (to - from) * part) - straight;
+            off.abs().max_element() * 255.0 <= most
+        });
+        // No ramp has more texels than this tells apart.
+        if !is_straight && to - from > 1.0e-4 {
+            let middle = f32::midpoint(from, to);
+            self.divide(from, middle, most, add);
+            self.divide(middle, to, most, add);
+        } else {
+            add(to);
+        }
+    }
+}
