@@ -1,4 +1,4 @@
-//! `haze ramp bake` and `haze sprite bake`: pictures from their recipes.
+//! `haze ramp` and `haze sprite`; `bake`: pictures from their recipes.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -14,6 +14,7 @@ use image::DynamicImage;
 
 use super::output::{Failures, Files, say};
 use super::progress::watched;
+use super::ramp;
 
 #[derive(Args)]
 pub struct RampArguments {
@@ -29,6 +30,15 @@ enum RampCommand {
         #[arg(required = true)]
         recipes: Vec<PathBuf>,
     },
+    /// Write a recipe to begin with.
+    New(ramp::new::Arguments),
+    /// Write the recipe of a picture, or of another program's gradient.
+    Import(ramp::import::Arguments),
+    /// Show a ramp in the terminal, with its curve, or as a picture.
+    Show(ramp::show::Arguments),
+    /// Say what would show: banding, steps, seams, specular ramps that are not black at their ends, colour spaces. Exits with 1
+    /// if there is anything.
+    Check(ramp::check::Arguments),
 }
 
 #[derive(Args)]
@@ -48,7 +58,13 @@ enum SpriteCommand {
 }
 
 pub fn run_ramp(arguments: &RampArguments) -> Result<(), Failures> {
-    let RampCommand::Bake { recipes } = &arguments.command;
+    let recipes = match &arguments.command {
+        RampCommand::Bake { recipes } => recipes,
+        RampCommand::New(arguments) => return ramp::new::run(arguments).map_err(Failures::from),
+        RampCommand::Import(arguments) => return ramp::import::run(arguments).map_err(Failures::from),
+        RampCommand::Show(arguments) => return ramp::show::run(arguments).map_err(Failures::from),
+        RampCommand::Check(arguments) => return ramp::check::run(arguments),
+    };
     let load = |path: &Path, kind: &str| match kind {
         "ramp" => Some(RampRecipe::load(path).map(Recipe::Ramp)),
         "motif" => Some(MotifRecipe::load(path).map(Recipe::Motif)),

@@ -18,6 +18,7 @@ mod output;
 mod plot;
 mod preset;
 mod progress;
+mod ramp;
 mod render;
 mod shade_tree;
 mod sheet;
@@ -60,7 +61,7 @@ enum Command {
     Bench(bench::Arguments),
     /// List, check and describe presets.
     Preset(preset::Arguments),
-    /// Make ramp pictures.
+    /// Make, import, show and check ramps.
     Ramp(bake::RampArguments),
     /// Make sprite pictures.
     Sprite(bake::SpriteArguments),
@@ -122,7 +123,8 @@ fn with_subcommand(mut arguments: Vec<OsString>) -> Vec<OsString> {
 fn report(done: Result<(), Failures>) -> ExitCode {
     let Err(failures) = done else { return ExitCode::SUCCESS };
     failures.errors().iter().for_each(complain);
-    ExitCode::from(failures.errors().iter().map(exit_code).max().unwrap_or_default())
+    // None at all: what failed has been said.
+    ExitCode::from(failures.errors().iter().map(exit_code).max().unwrap_or(1))
 }
 
 /// clap explains over several lines; the first says what is wrong and what would be right.

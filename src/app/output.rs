@@ -38,7 +38,8 @@ pub fn one_line(text: impl Display) -> String {
     text.to_string().chars().map(escape).collect()
 }
 
-/// What went wrong with the files that a command was given.
+/// What went wrong with the files that a command was given; nothing where that has been said already.
+#[derive(Default)]
 pub struct Failures(Vec<Error>);
 
 impl From<Error> for Failures {

@@ -7,8 +7,9 @@ use super::label::draw_text;
 use super::sheet::{INK, PAPER};
 
 const GRID: Rgb<u8> = Rgb([58, 60, 66]);
-const LEFT: f32 = 44.0;
-const RIGHT: f32 = 150.0;
+/// Beside the curves, pixels.
+pub const LEFT: f32 = 44.0;
+pub const RIGHT: f32 = 150.0;
 const TOP: f32 = 16.0;
 const BOTTOM: f32 = 44.0;
 /// Half the width of a line, pixels.

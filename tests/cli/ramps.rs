@@ -2,9 +2,15 @@
 
 use std::fmt::Write as _;
 use std::fs;
+use std::path::Path;
+#[cfg(target_os = "linux")]
+use std::process::Command;
 use std::time::{Duration, Instant};
 
-use super::{folder, haze, stderr};
+use haze::ramp::template::TEMPLATES;
+use image::{DynamicImage, GrayImage, ImageBuffer, Luma, LumaA};
+
+use super::{folder, haze, refusal, stderr};
 
 #[test]
 fn a_ramp_of_very_many_stops_is_soon_baked() {
@@ -30,4 +36,126 @@ fn a_ramp_of_very_many_stops_is_soon_baked() {
     assert!(output.status.success(), "{}", stderr(&output));
     // 0.3 s for a release build on two cores; here other tests run at the same time, and serde_json is not optimised.
     assert!(started.elapsed() < Duration::from_secs(10), "{:?}", started.elapsed());
+}
+
+/// The standard output of what goes well.
+fn said(folder: &Path, arguments: &[&str]) -> String {
+    let output = haze(folder, arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn every_template_is_made_baked_shown_and_good() {
+    let folder = folder();
+    for template in TEMPLATES {
+        let name = format!("{}_{}", template.role.name(), template.name);
+        let recipe = format!("{name}.ramp.json");
+        let line = said(folder.path(), &["ramp", "new", "--template", template.name, "-o", &recipe]);
+        assert!(line.starts_with(&format!("{recipe}: {}", template.about)), "{line}");
+        said(folder.path(), &["ramp", "bake", &recipe]);
+        let picture = format!("{name}.png");
+        let checked = said(folder.path(), &["ramp", "check", &recipe, &picture]);
+        assert_eq!(checked, format!("{recipe}: good\n{picture}: good\n"));
+    }
+    // Nobody's work is lost.
+    let again = refusal(folder.path(), &["ramp", "new", "-o", "diffuse_moon.ramp.json"]);
+    assert!(again.contains("expected a name that is free"), "{again}");
+    let name = refusal(folder.path(), &["ramp", "new", "-o", "moon.json"]);
+    assert!(name.contains("expected a name that ends in .ramp.json"), "{name}");
+    let unknown = refusal(folder.path(), &["ramp", "new", "--template", "tune", "-o", "a.ramp.json"]);
+    assert!(unknown.contains("soft_toon") && unknown.contains("night_lamp"), "{unknown}");
+}
+
+#[test]
+fn a_picture_becomes_a_recipe_and_a_picture_again() {
+    let folder = folder();
+    for (name, error) in [("specular_halo", 2.0), ("diffuse_dusk", 2.0)] {
+        let source = format!("{}/ramps/{name}.png", env!("CARGO_MANIFEST_DIR"));
+        let line = said(folder.path(), &["ramp", "import", &source, "-o", "mine.ramp.json", "--error", "2"]);
+        let stated: f32 = line.rsplit("at most ").next().unwrap().split('/').next().unwrap().parse().unwrap();
+        assert!(line.starts_with("mine.ramp.json: ") && stated <= error, "{line}");
+        said(folder.path(), &["ramp", "bake", "mine.ramp.json"]);
+        let read = |path: &Path| haze::picture::read_png(path).unwrap().into_rgb16();
+        let (before, after) = (read(source.as_ref()), read(&folder.path().join("mine.png")));
+        let off = before.iter().zip(after.iter()).map(|(a, b)| a.abs_diff(*b)).max().unwrap();
+        assert!((f32::from(off) / 257.0 - stated).abs() < 0.06, "{line}: {off}");
+    }
+    fs::write(folder.path().join("a.txt"), "0 (0 0 0)\n1 (1 1 1)\n").unwrap();
+    let line = said(folder.path(), &["ramp", "import", "a.txt", "-o", "a.ramp.json"]);
+    assert_eq!(line, "a.ramp.json: 2 stops, at most 0.5/255 off\n");
+    let line = refusal(folder.path(), &["ramp", "import", "a.txt", "-o", "a.txt"]);
+    assert!(line.contains("expected a name that ends in .ramp.json"), "{line}");
+    fs::write(folder.path().join("a.png"), "GIF89a").unwrap();
+    let line = refusal(folder.path(), &["ramp", "import", "a.png", "-o", "a.ramp.json"]);
+    assert_eq!(line, "haze: a.png: not a PNG file; export it as PNG\n");
+    let line = refusal(folder.path(), &["ramp", "import", "a.txt", "-o", "a.ramp.json", "--error=-1"]);
+    assert_eq!(line, "haze: error: -1 is not valid; expected 1 to 64 steps of 255\n");
+    assert_eq!(said(folder.path(), &["ramp", "bake", "a.ramp.json"]), "a.png: 256x1\n");
+}
+
+#[test]
+fn what_is_found_is_said_and_exits_with_1() {
+    let folder = folder();
+    let save = |name: &str, picture: DynamicImage| picture.save(folder.path().join(name)).unwrap();
+    save("specular_grey.png", DynamicImage::ImageLuma8(GrayImage::from_pixel(16, 16, Luma([90]))));
+    let slope = |x: u32| Luma([(20 + x * 40 / 256) as u8]);
+    save("a.png", DynamicImage::ImageLuma8(GrayImage::from_fn(256, 1, |x, _| slope(x))));
+    save("age.png", DynamicImage::ImageLumaA8(ImageBuffer::from_pixel(4, 1, LumaA([90, 128]))));
+    let output = haze(folder.path(), &["ramp", "check", "specular_grey.png", "a.png", "age.png"]);
+    let text = String::from_utf8(output.stdout.clone()).unwrap();
+    assert_eq!((output.status.code(), stderr(&output)), (Some(1), String::new()), "{text}");
+    let names: Vec<_> = text.lines().map(|line| line.rsplitn(2, ';').last().unwrap()).collect();
+    assert_eq!(
+        names,
+        [
+            "specular_grey.png: ends: 90 of 255 at amount 0, the bottom row",
+            "specular_grey.png: ends: 90 of 255 at distance 1, the last column",
+            "a.png: banding: a slope of steps at 0.10 across",
+            "age.png: colour_space: transparent texels",
+        ]
+    );
+    let output = haze(folder.path(), &["ramp", "check", "--as", "diffuse", "specular_grey.png"]);
+    assert!(output.status.success());
+    // What cannot be read is bad input.
+    assert!(refusal(folder.path(), &["ramp", "check", "gone.png"]).starts_with("haze: gone.png: "));
+}
+
+#[test]
+fn a_ramp_is_shown_as_text_and_as_a_picture() {
+    let folder = folder();
+    said(folder.path(), &["ramp", "new", "--template", "hard_toon", "-o", "toon.ramp.json"]);
+    let text = said(folder.path(), &["ramp", "show", "toon.ramp.json"]);
+    // Not to a terminal: no colours, the curve and the stops.
+    assert!(!text.contains('\u{1b}') && text.contains('█'), "{text}");
+    assert!(text.starts_with("toon.ramp.json: 256x1\n") && text.ends_with("0.720  #f6efe2  constant\n"), "{text}");
+    said(folder.path(), &["ramp", "show", "toon.ramp.json", "-o", "toon.png"]);
+    let picture = haze::picture::read_png(&folder.path().join("toon.png")).unwrap().into_rgb8();
+    assert_eq!(picture.get_pixel(100, 40).0, [0x2b, 0x2a, 0x3a]);
+    assert_eq!(picture.get_pixel(540, 40).0, [0xf6, 0xef, 0xe2]);
+    let line = refusal(folder.path(), &["ramp", "show", "toon.png", "-o", "toon.png"]);
+    assert!(line.contains("expected a file that is not read"), "{line}");
+}
+
+/// What a program says to a terminal.
+#[cfg(target_os = "linux")]
+fn said_to_a_terminal(folder: &Path, arguments: &str, no_color: &str) -> String {
+    let command = format!("{} {arguments}", env!("CARGO_BIN_EXE_haze"));
+    let script = Command::new("script")
+        .args(["-qec", &command, "/dev/null"])
+        .current_dir(folder)
+        .env("NO_COLOR", no_color)
+        .output();
+    String::from_utf8(script.unwrap().stdout).unwrap()
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_terminal_shows_colours_unless_it_is_told_not_to() {
+    let folder = folder();
+    said(folder.path(), &["ramp", "new", "--template", "hard_toon", "-o", "toon.ramp.json"]);
+    let coloured = said_to_a_terminal(folder.path(), "ramp show toon.ramp.json", "");
+    assert!(coloured.contains("\u{1b}[38;2;43;42;58;48;2;43;42;58m"), "{coloured:?}");
+    let plain = said_to_a_terminal(folder.path(), "ramp show toon.ramp.json", "1");
+    assert!(!plain.contains('\u{1b}') && plain.contains("#f6efe2"), "{plain:?}");
 }

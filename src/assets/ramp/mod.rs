@@ -1,6 +1,7 @@
 //! Ramps: the small textures that an artist paints the light with. `ramps/README.md` has axes, sizes and colour space.
 
 pub mod bake;
+pub mod check;
 mod colour;
 pub mod fit;
 mod formula;
@@ -8,7 +9,11 @@ mod ggr;
 mod gradient;
 pub mod import;
 pub mod motif;
+mod role;
+pub mod template;
 mod text;
+
+pub use role::Role;
 
 use std::path::Path;
 use std::sync::Arc;

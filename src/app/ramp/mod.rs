@@ -1,0 +1,37 @@
+//! `haze ramp`: what an artist does with a ramp besides baking it.
+
+pub mod check;
+pub mod import;
+pub mod new;
+pub mod show;
+
+use std::path::Path;
+
+use haze::picture::{read_colour_png, write_file};
+use haze::ramp::bake::RampRecipe;
+use haze::{Error, FieldError};
+use image::DynamicImage;
+
+use super::output::{Files, has_extension};
+
+/// A ramp's picture: a PNG, or what a recipe bakes, with the recipe.
+fn picture_of(path: &Path) -> Result<(DynamicImage, Option<RampRecipe>), Error> {
+    if has_extension(path, "json") {
+        let recipe = RampRecipe::load(path)?;
+        return Ok((recipe.bake()?, Some(recipe)));
+    }
+    Ok((read_colour_png(path)?, None))
+}
+
+/// Refuses a name that recipes do not have, and a file that cannot be written.
+fn check_output(files: &mut Files, output: &Path) -> Result<(), Error> {
+    let stem = Path::new(output.file_stem().unwrap_or_default());
+    if !has_extension(output, "json") || !has_extension(stem, "ramp") {
+        return Err(FieldError::new("--output", output.display(), "a name that ends in .ramp.json").into());
+    }
+    files.write("--output", output, "json")
+}
+
+fn write_recipe(output: &Path, recipe: &RampRecipe) -> Result<(), Error> {
+    write_file(output, recipe.to_text().as_bytes())
+}
