@@ -1,4 +1,4 @@
-//! `haze preset`: list, check, show, new, schema.
+//! `haze preset`: list, check, show, new, schema, settings.
 
 use std::path::{Path, PathBuf};
 
@@ -53,6 +53,8 @@ enum Command {
     },
     /// Print the JSON schema of preset files.
     Schema,
+    /// Print every setting with its range and default, as Markdown.
+    Settings,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failures> {
@@ -79,6 +81,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
         Command::Show { preset, changed } => show(&Preset::load(preset)?, *changed)?,
         Command::New { file, from } => new(file, from)?,
         Command::Schema => write_text(haze::preset::schema())?,
+        Command::Settings => write_text(haze::preset::settings_page().trim_end())?,
     }
     Ok(())
 }

@@ -18,6 +18,15 @@ struct Row<T> {
     fields: &'static [&'static str],
 }
 
+impl<T> Row<T> {
+    /// Whether it is about a field.
+    fn names(&self, field: &str) -> bool {
+        let is_named =
+            |name: &&str| field.strip_prefix(*name).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
+        self.fields.iter().any(is_named)
+    }
+}
+
 const fn row<T>(reason: &'static str, holds: fn(&T, UVec2) -> bool, fields: &'static [&'static str]) -> Row<T> {
     Row { reason, holds, fields }
 }
@@ -243,9 +252,25 @@ impl Preset {
     }
 }
 
+/// The conditions that a field's effect has, told as such: of a dotted path without places in lists.
+#[cfg(feature = "app")]
+pub(super) fn conditions(path: &str) -> impl Iterator<Item = &'static str> {
+    fn of<T>(rows: &'static [Row<T>], field: Option<&str>) -> Vec<&'static str> {
+        let Some(field) = field else { return Vec::new() };
+        rows.iter().filter(|row| row.names(field)).map(|row| row.reason).collect()
+    }
+    let all = [
+        of(OF_SYSTEMS, path.strip_prefix("systems.")),
+        of(OF_LIGHTS, path.strip_prefix("lights.")),
+        of(OF_ENVIRONMENTS, path.strip_prefix("environment.")),
+    ];
+    let is_condition =
+        |reason: &&str| reason.starts_with("only ") || reason.starts_with("not ") || reason.contains(" only");
+    all.into_iter().flatten().filter(is_condition)
+}
+
 fn find<T>(rows: &[Row<T>], of: &T, field: &str, size: UVec2) -> Option<&'static str> {
-    let is_named = |name: &&str| field.strip_prefix(*name).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
-    let holds = |row: &&Row<T>| row.fields.iter().any(is_named) && (row.holds)(of, size);
+    let holds = |row: &&Row<T>| row.names(field) && (row.holds)(of, size);
     rows.iter().find(holds).map(|row| row.reason)
 }
 

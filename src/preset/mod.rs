@@ -5,6 +5,8 @@ mod effect;
 mod environment;
 mod folders;
 mod material_names;
+#[cfg(feature = "app")]
+mod page;
 mod pictures;
 #[allow(clippy::module_inception, reason = "one file per part of a preset, and one for the whole")]
 mod preset;
@@ -19,6 +21,8 @@ pub use camera::Camera;
 pub use environment::{Environment, SceneName};
 pub use folders::PictureFolders;
 pub use material_names::{MaterialNames, picture_file};
+#[cfg(feature = "app")]
+pub use page::settings_page;
 pub use pictures::MAX_PICTURE_BYTES;
 pub use preset::{DESIGN_HEIGHT, MAX_SYSTEMS, PRESET_VERSION, Preset, PresetSystem};
 #[cfg(feature = "app")]

@@ -79,6 +79,12 @@ fn noise_is_what_its_recipe_makes() {
 }
 
 #[test]
+fn the_committed_page_of_settings_is_the_programs() {
+    let committed = std::fs::read_to_string(file("docs", "settings.md")).unwrap();
+    assert!(committed == preset::settings_page(), "run `haze preset settings > docs/settings.md`");
+}
+
+#[test]
 fn the_committed_schema_is_the_programs() {
     let committed = std::fs::read_to_string(file("presets", "preset.schema.json")).unwrap();
     assert!(committed.trim_end() == preset::schema(), "run `haze preset schema > presets/preset.schema.json`");
