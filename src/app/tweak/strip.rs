@@ -47,7 +47,8 @@ pub fn strip(ui: &mut Ui, session: &mut Session, easel: &Easel, aspect: f32) {
             let name = egui::Rect::from_min_max(picture.left_bottom(), rect.max);
             let text = egui::WidgetText::from(egui::RichText::new(label).small());
             let wrap = Some(egui::TextWrapMode::Truncate);
-            let text = text.into_galley(ui, wrap, name.width(), egui::TextStyle::Small);
+            // A long name takes of the room of the arrows.
+            let text = text.into_galley(ui, wrap, name.width() + 0.9 * arrow_width, egui::TextStyle::Small);
             let at = egui::pos2(name.center().x - 0.5 * text.size().x, name.center().y - 0.5 * text.size().y);
             ui.painter().galley(at, text, visuals.text_color());
             let tooltip = session.stages.choice("", stage.name()).unwrap_or(label);

@@ -5,6 +5,7 @@ use std::collections::HashSet;
 use eframe::egui::{self, Color32, Rect, Sense, Ui, pos2, vec2};
 
 use super::fields::{self, Desk};
+use super::value::grouped;
 use crate::app::tweak::easel::Figures;
 use crate::app::tweak::easel::canvas::set_scale;
 use crate::app::tweak::performance::{Performance, REMEMBERED};
@@ -137,14 +138,14 @@ fn drawn(ui: &mut Ui, performance: &Performance) {
         "drawn",
         &[
             ("systems in sight", counts.systems.to_string(), "Systems that reach the picture"),
-            ("sprites", counts.sprites.to_string(), "Sprites of all of them"),
+            ("sprites", grouped(counts.sprites.into()), "Sprites of all of them"),
             (
                 "fragments",
-                format!("{:.0}", overdraw.fragments),
+                grouped(overdraw.fragments.round() as u64),
                 "Areas of all sprites, in texels: each is shaded, but for what the scene hides",
             ),
             ("mean overdraw", format!("{:.2}", overdraw.mean()), "Sprites over each other, in the mean over their box"),
-            ("texels", counts.texels.to_string(), "Texels of the accumulation targets in use: each is lit once"),
+            ("texels", grouped(counts.texels), "Texels of the accumulation targets in use: each is lit once"),
         ],
     );
 }

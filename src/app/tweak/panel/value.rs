@@ -11,6 +11,13 @@ pub fn shown(value: f64) -> String {
     if text == "-0" { "0".into() } else { text.into() }
 }
 
+/// A large whole number as it is read: its digits by threes.
+pub fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let groups = digits.as_bytes().rchunks(3).rev().map(String::from_utf8_lossy);
+    groups.collect::<Vec<_>>().join("\u{2009}")
+}
+
 /// The value of a field as it is read, with its unit.
 pub fn shown_value(value: &Value, unit: &str) -> String {
     let list = |vector: &Vec3| vector.to_array().map(|axis| shown(f64::from(axis))).join(", ");
@@ -43,6 +50,13 @@ pub fn parse(text: &str, unit: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn large_numbers_are_read_by_threes() {
+        for (number, text) in [(0, "0"), (999, "999"), (1000, "1 000"), (3_714_705, "3 714 705")] {
+            assert_eq!(grouped(number).replace('\u{2009}', " "), text);
+        }
+    }
 
     #[test]
     fn numbers_are_shown_without_noise() {
