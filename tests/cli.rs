@@ -17,6 +17,8 @@ mod ramps;
 mod shaders;
 #[path = "cli/streams.rs"]
 mod streams;
+#[path = "cli/watch.rs"]
+mod watch;
 
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -19,12 +19,14 @@ mod plot;
 mod preset;
 mod progress;
 mod ramp;
+mod recipe;
 mod render;
 mod shade_tree;
 mod sheet;
 mod techniques;
 mod tweak;
 mod vary;
+mod watch;
 
 use std::ffi::OsString;
 use std::io::Write;
@@ -61,7 +63,7 @@ enum Command {
     Bench(bench::Arguments),
     /// List, check and describe presets.
     Preset(preset::Arguments),
-    /// Make, import, show and check ramps.
+    /// Make, import, watch, show and check ramps.
     Ramp(bake::RampArguments),
     /// Make sprite pictures.
     Sprite(bake::SpriteArguments),

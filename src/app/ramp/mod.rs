@@ -4,6 +4,7 @@ pub mod check;
 pub mod import;
 pub mod new;
 pub mod show;
+pub mod watch;
 
 use std::path::Path;
 

@@ -15,9 +15,9 @@ use haze::{Error, MaterialAssets};
 use super::document::document::OnDisk;
 use super::easel::Easel;
 use super::pictures::{Pictures, names};
-use super::platform::watch::Watcher;
 use super::platform::worker::{Ticket, Worker};
 use super::session::Session;
+use crate::app::watch::Watcher;
 
 /// What follows the files of a session.
 pub struct Reload {

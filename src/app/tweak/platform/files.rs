@@ -2,12 +2,13 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
 
 use haze::Error;
 use haze::assets::{file, json};
 use haze::picture::{FileIdentity, MAX_BYTES, write_file};
 use haze::preset::Preset;
+
+pub use crate::app::watch::Stamp;
 
 /// A preset and the text that it was read from.
 pub fn read_preset(name_or_path: &Path) -> Result<(Preset, String), Error> {
@@ -54,29 +55,4 @@ pub fn exists(path: &Path) -> bool {
 /// Whether two paths lead to one place.
 pub fn is_same(one: &Path, other: &Path) -> bool {
     FileIdentity::of(one) == FileIdentity::of(other)
-}
-
-/// What a file looks like from outside: as long as it stays, the file has not been written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Stamp {
-    /// In bytes.
-    pub length: u64,
-    modified: Option<SystemTime>,
-    /// Device and inode, and when that was changed, which no program can set back.
-    inode: (u64, u64, i64, i64),
-}
-
-impl Stamp {
-    /// Of what is there now; links are followed.
-    pub fn of(path: &Path) -> Option<Self> {
-        let found = fs::metadata(path).ok()?;
-        #[cfg(unix)]
-        let inode = {
-            use std::os::unix::fs::MetadataExt;
-            (found.dev(), found.ino(), found.ctime(), found.ctime_nsec())
-        };
-        #[cfg(not(unix))]
-        let inode = Default::default();
-        Some(Self { length: found.len(), modified: found.modified().ok(), inode })
-    }
 }

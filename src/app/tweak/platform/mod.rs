@@ -6,5 +6,4 @@ pub mod files;
 pub mod folders;
 pub mod lock;
 pub mod memory;
-pub mod watch;
 pub mod worker;

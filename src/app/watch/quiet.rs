@@ -1,7 +1,8 @@
 //! Whether a file is whole: it has stayed as it is for a while.
 
-use crate::app::tweak::platform::clock::{Duration, Instant};
-use crate::app::tweak::platform::files::Stamp;
+use std::time::{Duration, Instant};
+
+use super::stamp::Stamp;
 
 /// Programs that write a file in parts take less between them.
 pub const QUIET: Duration = Duration::from_millis(50);
@@ -28,8 +29,9 @@ pub enum Todo {
 }
 
 impl Seen {
-    pub fn new(stamp: Option<Stamp>, at: Instant) -> Self {
-        Self { told: stamp, now: stamp, since: at }
+    /// `is_told`: what is there now is known.
+    pub fn new(stamp: Option<Stamp>, is_told: bool, at: Instant) -> Self {
+        Self { told: stamp.filter(|_| is_told), now: stamp, since: at }
     }
 
     pub fn look(&mut self, stamp: Option<Stamp>, at: Instant) -> Todo {
@@ -63,7 +65,7 @@ mod tests {
         };
         let start = Instant::now();
         let at = |milliseconds| start + Duration::from_millis(milliseconds);
-        let mut seen = Seen::new(None, start);
+        let mut seen = Seen::new(None, true, start);
         assert_eq!(seen.look(None, at(1000)), Todo::Nothing);
         // Made, then written in two parts, 30 ms between.
         assert_eq!(seen.look(stamp(""), at(1000)), Todo::LookAgain(at(1200)));
@@ -78,5 +80,9 @@ mod tests {
         assert_eq!(seen.look(whole, at(1310)), Todo::Nothing);
         assert_eq!(seen.look(None, at(1400)), Todo::LookAgain(at(1600)));
         assert_eq!(seen.look(None, at(1600)), Todo::Tell);
+        // One that nobody has read is told as it is.
+        let mut seen = Seen::new(whole, false, start);
+        assert_eq!(seen.look(whole, at(0)), Todo::LookAgain(at(50)));
+        assert_eq!(seen.look(whole, at(50)), Todo::Tell);
     }
 }

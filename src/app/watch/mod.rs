@@ -7,15 +7,17 @@
 mod notice;
 mod quiet;
 mod route;
+mod stamp;
 mod state;
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 use std::{io, thread};
 
-use super::clock::{Duration, Instant};
-use super::files::Stamp;
+pub use stamp::Stamp;
+
 use notice::{Folders, Make};
 use quiet::Seen;
 use state::Shared;
@@ -47,6 +49,15 @@ impl Watcher {
     /// Watches these files, of which some may not be there yet, and no others. To be called before they are read: what happens
     /// from now on is told.
     pub fn set(&self, files: impl IntoIterator<Item = PathBuf>) {
+        self.watch(files, true);
+    }
+
+    /// The same for who has not read them: those that are new to it are told as they are.
+    pub fn set_unread(&self, files: impl IntoIterator<Item = PathBuf>) {
+        self.watch(files, false);
+    }
+
+    fn watch(&self, files: impl IntoIterator<Item = PathBuf>, is_told: bool) {
         let files: BTreeSet<_> = files.into_iter().collect();
         let known: BTreeSet<_> = self.shared.lock().files.keys().cloned().collect();
         if files == known {
@@ -56,7 +67,7 @@ impl Watcher {
         let mut state = self.shared.lock();
         state.files.retain(|file, _| files.contains(file));
         state.changed.retain(|file| files.contains(file));
-        state.files.extend(new.into_iter().map(|(file, stamp)| (file, Seen::new(stamp, Instant::now()))));
+        state.files.extend(new.into_iter().map(|(file, stamp)| (file, Seen::new(stamp, is_told, Instant::now()))));
         drop(state);
         self.shared.signal(false);
     }

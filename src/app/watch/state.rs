@@ -3,10 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::path::PathBuf;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
 use super::quiet::{Seen, Todo};
-use crate::app::tweak::platform::clock::Instant;
-use crate::app::tweak::platform::files::Stamp;
+use super::stamp::Stamp;
 
 /// Nothing in here grows with what happens: signals are flags, and a file is told once however often it was written.
 #[derive(Default)]

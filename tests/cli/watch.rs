@@ -1,0 +1,160 @@
+//! `haze ramp watch`: pictures follow their recipes.
+
+#![cfg(unix)]
+
+use std::fs;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::time::Duration;
+
+use super::{MOTIF, folder, haze, refusal};
+
+/// Late on a machine that does other things too.
+const LATE: Duration = Duration::from_secs(20);
+/// Nothing more comes after this.
+const STILL: Duration = Duration::from_millis(700);
+
+/// A program that watches, and the lines that it says.
+struct Watching {
+    child: Child,
+    lines: Receiver<String>,
+}
+
+impl Watching {
+    fn new(folder: &Path, arguments: &[&str]) -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_haze"));
+        command.args(["ramp", "watch"]).args(arguments).current_dir(folder);
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let (send, lines) = channel();
+        let streams: [Box<dyn Read + Send>; 2] =
+            [Box::new(child.stdout.take().unwrap()), Box::new(child.stderr.take().unwrap())];
+        for stream in streams {
+            let send = send.clone();
+            std::thread::spawn(move || {
+                BufReader::new(stream).lines().map_while(Result::ok).for_each(|line| drop(send.send(line)));
+            });
+        }
+        Self { child, lines }
+    }
+
+    /// One line is said, and no more.
+    fn says(&self, line: &str, what: &str) {
+        let said = self.lines.recv_timeout(LATE).unwrap_or_default();
+        assert!(said.starts_with(line), "{what}: {said}");
+        self.is_still(what);
+    }
+
+    fn is_still(&self, what: &str) {
+        let more = self.lines.recv_timeout(STILL).ok();
+        assert_eq!(more, None, "{what}");
+    }
+}
+
+impl Drop for Watching {
+    fn drop(&mut self) {
+        let _ = self.child.kill().and_then(|()| self.child.wait());
+    }
+}
+
+fn recipe(colour: u32) -> String {
+    format!(
+        r##"{{"version": 2, "width": 2, "height": 1, "rows": [{{"stops": [{{"at": 0, "colour": "#{colour:06x}"}}]}}]}}"##
+    )
+}
+
+fn colour(path: &Path) -> u32 {
+    let [r, g, b] = haze::picture::read_png(path).unwrap().to_rgb8()[(0, 0)].0;
+    u32::from_be_bytes([0, r, g, b])
+}
+
+#[test]
+fn every_way_of_saving_bakes_once() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    let save = |name: &str, colour| fs::write(path(name), recipe(colour)).unwrap();
+    save("a.ramp.json", 1);
+    save("b.ramp.json", 1);
+    let watching = Watching::new(folder.path(), &["a.ramp.json", "./b.ramp.json"]);
+    let mut first = [(); 2].map(|()| watching.lines.recv_timeout(LATE).unwrap());
+    first.sort();
+    assert_eq!(first, ["./b.png: 2x1", "a.png: 2x1"]);
+    let ways: [(&str, &dyn Fn()); 4] = [
+        ("in place", &|| save("a.ramp.json", 2)),
+        ("renamed over", &|| {
+            save("partial", 3);
+            fs::rename(path("partial"), path("a.ramp.json")).unwrap();
+        }),
+        ("removed and made", &|| {
+            fs::remove_file(path("a.ramp.json")).unwrap();
+            std::thread::sleep(Duration::from_millis(60));
+            save("a.ramp.json", 4);
+        }),
+        ("slowly", &|| {
+            let text = recipe(5);
+            (1..=text.len()).for_each(|end| {
+                fs::write(path("a.ramp.json"), &text[..end]).unwrap();
+                std::thread::sleep(Duration::from_millis(1));
+            });
+        }),
+    ];
+    for (what, way) in ways {
+        let before = colour(&path("a.png"));
+        way();
+        watching.says("a.png: 2x1", what);
+        assert_eq!(colour(&path("a.png")), before + 1, "{what}");
+    }
+    assert_eq!(colour(&path("b.png")), 1);
+    // A mistake is said, and the picture stays.
+    fs::write(path("a.ramp.json"), "{").unwrap();
+    watching.says("haze: a.ramp.json:1:1", "broken");
+    assert_eq!(colour(&path("a.png")), 5);
+    save("a.ramp.json", 6);
+    watching.says("a.png: 2x1", "mended");
+    assert_eq!(colour(&path("a.png")), 6);
+}
+
+#[test]
+fn recipes_in_a_folder_come_and_go_and_what_was_painted_over_stays() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    fs::write(path("painted.ramp.json"), recipe(1)).unwrap();
+    assert!(haze(folder.path(), &["ramp", "bake", "painted.ramp.json"]).status.success());
+    let picture = fs::read(path("painted.png")).unwrap();
+    let watching = Watching::new(folder.path(), &["."]);
+    watching.is_still("newer than its recipe");
+    fs::write(path("new.ramp.json"), recipe(7)).unwrap();
+    watching.says("./new.png: 2x1", "new");
+    fs::write(path("ball.motif.json"), MOTIF).unwrap();
+    watching.says("./ball.png: 8x8", "a motif");
+    fs::write(path("other.json"), "{").unwrap();
+    fs::remove_file(path("new.ramp.json")).unwrap();
+    watching.is_still("none of its own, and gone");
+    fs::write(path("new.ramp.json"), recipe(8)).unwrap();
+    watching.says("./new.png: 2x1", "back");
+    assert_eq!(colour(&path("new.png")), 8);
+    assert_eq!(fs::read(path("painted.png")).unwrap(), picture);
+    fs::write(path("painted.ramp.json"), recipe(2)).unwrap();
+    watching.says("./painted.png: 2x1", "saved");
+}
+
+#[test]
+fn an_interrupt_is_a_clean_end() {
+    let folder = folder();
+    fs::write(folder.path().join("a.ramp.json"), recipe(1)).unwrap();
+    let mut watching = Watching::new(folder.path(), &["."]);
+    watching.says("./a.png: 2x1", "begun");
+    assert!(Command::new("kill").args(["-INT", &watching.child.id().to_string()]).status().unwrap().success());
+    assert_eq!(watching.child.wait().unwrap().code(), Some(0));
+    watching.is_still("an end");
+}
+
+#[test]
+fn what_cannot_be_watched_is_refused() {
+    let folder = folder();
+    fs::write(folder.path().join("a.json"), "{}").unwrap();
+    let line = |name: &str| refusal(folder.path(), &["ramp", "watch", name]);
+    assert!(line("a.json").contains("a *.ramp.json or *.motif.json file"));
+    assert!(line("gone.ramp.json").starts_with("haze: gone.ramp.json: "));
+}
