@@ -28,6 +28,8 @@ enum RampCommand {
     New(ramp::new::Arguments),
     /// Write the recipe of a picture, or of another program's gradient.
     Import(ramp::import::Arguments),
+    /// Render a preset under every ramp of a folder, on one labelled sheet.
+    Sheet(ramp::sheet::Arguments),
     /// Show a ramp in the terminal, with its curve, or as a picture.
     Show(ramp::show::Arguments),
     /// Say what would show: banding, steps, seams, specular ramps that are not black at their ends, colour spaces. Exits with 1
@@ -57,6 +59,7 @@ pub fn run_ramp(arguments: &RampArguments) -> Result<(), Failures> {
         RampCommand::Watch(arguments) => ramp::watch::run(arguments),
         RampCommand::New(arguments) => ramp::new::run(arguments).map_err(Failures::from),
         RampCommand::Import(arguments) => ramp::import::run(arguments).map_err(Failures::from),
+        RampCommand::Sheet(arguments) => ramp::sheet::run(arguments).map_err(Failures::from),
         RampCommand::Show(arguments) => ramp::show::run(arguments).map_err(Failures::from),
         RampCommand::Check(arguments) => ramp::check::run(arguments),
     }

@@ -170,6 +170,9 @@ pub fn gif(backend: &Backend, shot: &Shot, frames: &Frames, path: &Path, watch: 
     write_file(path, &bytes)
 }
 
+/// Most pictures of a labelled sheet.
+pub const MOST_CELLS: usize = 64;
+
 /// Renders shots with their labels onto one sheet. All are of one size; `path` is where it is to go.
 pub fn sheet(
     backend: &Backend,

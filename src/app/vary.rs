@@ -5,7 +5,7 @@ use glam::UVec2;
 use haze::settings::set_field;
 use haze::{Error, FieldError};
 
-use super::export::{Watch, columns, sheet};
+use super::export::{MOST_CELLS, Watch, columns, sheet};
 use super::options::{ShotArguments, in_option, parse_assignment};
 
 #[derive(Args)]
@@ -19,15 +19,12 @@ pub struct Arguments {
     vary: (String, Vec<String>),
 }
 
-/// Most pictures of a sheet.
-const MOST: usize = 64;
-
 fn parse_variation(text: &str) -> Result<(String, Vec<String>), String> {
     let (field, values) = parse_assignment(text)?;
     let separator = if values.contains(';') { ';' } else { ',' };
     let values: Vec<_> = values.split(separator).map(|value| value.trim().to_owned()).collect();
-    if values.len() > MOST {
-        return Err(format!("{} values are too many; expected at most {MOST}", values.len()));
+    if values.len() > MOST_CELLS {
+        return Err(format!("{} values are too many; expected at most {MOST_CELLS}", values.len()));
     }
     Ok((field, values))
 }

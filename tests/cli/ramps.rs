@@ -159,3 +159,51 @@ fn a_terminal_shows_colours_unless_it_is_told_not_to() {
     let plain = said_to_a_terminal(folder.path(), "ramp show toon.ramp.json", "1");
     assert!(!plain.contains('\u{1b}') && plain.contains("#f6efe2"), "{plain:?}");
 }
+
+#[test]
+fn a_shot_is_shown_under_every_ramp_of_a_folder() {
+    let folder = folder();
+    let new = |template: &str, name: &str| {
+        said(folder.path(), &["ramp", "new", "--template", template, "-o", &format!("ramps/{name}.ramp.json")]);
+    };
+    fs::create_dir(folder.path().join("ramps")).unwrap();
+    new("soot", "diffuse_soot");
+    new("sunset_backlight", "mine");
+    new("wide_glow", "specular_wide");
+    // One has a picture already, which is what is loaded.
+    said(folder.path(), &["ramp", "bake", "ramps/mine.ramp.json"]);
+    fs::write(folder.path().join("ramps/mine.ramp.json"), "{").unwrap();
+    fs::write(folder.path().join("ramps/notes.txt"), "").unwrap();
+    let sheet = |arguments: &[&str]| {
+        let fixed = ["ramp", "sheet", "fence", "--backend", "cpu", "-o", "sheet.png"];
+        said(folder.path(), &[&fixed[..], arguments].concat());
+        haze::picture::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8()
+    };
+    let render = |sets: &[&str]| {
+        let fixed = ["render", "fence", "--backend", "cpu", "--size", "48x27", "--assets", "ramps", "-o", "one.png"];
+        let sets: Vec<_> = sets.iter().flat_map(|set| ["--set", set]).collect();
+        said(folder.path(), &[&fixed[..], &sets].concat());
+        haze::picture::read_png(&folder.path().join("one.png")).unwrap().to_rgb8()
+    };
+    let cell = |sheet: &image::RgbImage, x: u32| image::imageops::crop_imm(sheet, 12 + x * 60, 40, 48, 27).to_image();
+    // Two to a row, in the order of their names.
+    let diffuse = sheet(&["--ramps", "ramps", "--role", "diffuse", "--size", "96x54"]);
+    said(folder.path(), &["ramp", "bake", "ramps/diffuse_soot.ramp.json"]);
+    assert!(cell(&diffuse, 0) == render(&["diffuse_ramp=diffuse_soot.png"]));
+    assert!(cell(&diffuse, 1) == render(&["diffuse_ramp=mine.png"]));
+    // Without a role, those whose names say it.
+    let named = sheet(&["--ramps", "ramps", "--size", "96x54"]);
+    assert!(cell(&named, 0) == cell(&diffuse, 0) && cell(&named, 1) != cell(&diffuse, 1));
+    // A ramp is seen whatever the preset has in its place.
+    let coverage = sheet(&["--role", "coverage", "--size", "96x54"]);
+    assert!(cell(&coverage, 1) == render(&["systems.settings.coverage=ramp", "coverage_ramp=coverage_toon"]));
+    assert!(cell(&coverage, 0) != cell(&coverage, 1));
+
+    let line = |arguments: &[&str]| refusal(folder.path(), &[&["ramp", "sheet", "fence"], arguments].concat());
+    assert!(line(&["--ramps", "gone", "-o", "a.png"]).starts_with("haze: gone: "));
+    let over = line(&["--ramps", "ramps", "--role", "diffuse", "-o", "ramps/mine.png"]);
+    assert!(over.contains("expected a file that is not read"), "{over}");
+    fs::create_dir(folder.path().join("empty")).unwrap();
+    let none = line(&["--ramps", "empty", "--role", "age", "-o", "a.png"]);
+    assert!(none.contains("--ramps: empty is not valid; expected 1 to 64 ramps for age, not 0"), "{none}");
+}

@@ -3,6 +3,7 @@
 pub mod check;
 pub mod import;
 pub mod new;
+pub mod sheet;
 pub mod show;
 pub mod watch;
 
@@ -24,10 +25,14 @@ fn picture_of(path: &Path) -> Result<(DynamicImage, Option<RampRecipe>), Error> 
     Ok((read_colour_png(path)?, None))
 }
 
+/// Whether a file is a ramp's recipe, by its name.
+fn is_recipe(path: &Path) -> bool {
+    has_extension(path, "json") && has_extension(Path::new(path.file_stem().unwrap_or_default()), "ramp")
+}
+
 /// Refuses a name that recipes do not have, and a file that cannot be written.
 fn check_output(files: &mut Files, output: &Path) -> Result<(), Error> {
-    let stem = Path::new(output.file_stem().unwrap_or_default());
-    if !has_extension(output, "json") || !has_extension(stem, "ramp") {
+    if !is_recipe(output) {
         return Err(FieldError::new("--output", output.display(), "a name that ends in .ramp.json").into());
     }
     files.write("--output", output, "json")

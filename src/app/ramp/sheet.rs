@@ -1,0 +1,148 @@
+//! `haze ramp sheet`: one shot under every ramp.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use glam::UVec2;
+use haze::demo::shot::Shot;
+use haze::ramp::{Ramp, Role};
+use haze::settings::{CoverageMode, DiffuseMode, Path as SmokePath, SoftScatterMode};
+use haze::{Error, FieldError, MaterialAssets, builtin};
+
+use super::super::export::{MOST_CELLS, Watch, columns, sheet};
+use super::super::options::{ShotArguments, choices};
+use super::super::output::{Files, has_extension};
+use super::super::recipe::picture;
+use super::{is_recipe, picture_of};
+
+#[derive(Args)]
+#[command(mut_arg("size", |size| size.help("Size of the pictures of a full row and column together, pixels: each is that much smaller")))]
+pub struct Arguments {
+    #[command(flatten)]
+    shot: ShotArguments,
+    /// A folder of ramps: PNGs, and recipes without one. Those that are built in if not given.
+    #[arg(long, value_name = "DIR")]
+    ramps: Option<PathBuf>,
+    /// The built-in ramps, too.
+    #[arg(long)]
+    builtin: bool,
+    /// Only ramps that are used for this, and those whose names do not say what they are used for.
+    #[arg(long, value_name = "ROLE", value_parser = choices::<Role>())]
+    role: Option<Role>,
+}
+
+/// A ramp to show.
+struct Cell {
+    name: String,
+    role: Role,
+    source: Source,
+}
+
+enum Source {
+    File(PathBuf),
+    Builtin(&'static builtin::Builtin),
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Error> {
+    let cells = arguments.cells()?;
+    let base = arguments.shot.load(&[])?;
+    let read = cells.iter().filter_map(|cell| match &cell.source {
+        Source::File(path) => Some(path),
+        Source::Builtin(_) => None,
+    });
+    Files::read(read).write("--output", &arguments.shot.output, "png")?;
+    let columns = columns(cells.len());
+    let size = (arguments.shot.run.size / columns).max(UVec2::ONE);
+    let shots = cells.iter().map(|cell| {
+        let mut shot = Shot { size, ..base.clone() };
+        cell.paint(&mut shot)?;
+        Ok((cell.name.clone(), shot))
+    });
+    let shots = shots.collect::<Result<Vec<_>, Error>>()?;
+    let backend = arguments.shot.run.backend()?;
+    let mut sheet = sheet(&backend, &shots, columns, &arguments.shot.output, &Watch::terminal())?;
+    sheet.add_foot(&format!("{}, {}x{}, {}", base.preset.name, size.x, size.y, backend.description()));
+    arguments.shot.write(sheet.picture, &base, &backend)
+}
+
+impl Arguments {
+    /// The ramps that were asked for, by name.
+    fn cells(&self) -> Result<Vec<Cell>, Error> {
+        let mut cells = Vec::new();
+        let mut add = |name: &str, source| {
+            // A motif is a picture of another kind.
+            let named = Role::of_name(name).or(self.role.filter(|_| !name.starts_with("motif_")));
+            if let Some(role) = named.filter(|role| self.role.is_none_or(|wanted| wanted == *role)) {
+                cells.push(Cell { name: name.into(), role, source });
+            }
+        };
+        if self.ramps.is_none() || self.builtin {
+            builtin::RAMPS.iter().for_each(|ramp| add(ramp.name, Source::Builtin(ramp)));
+        }
+        for path in self.ramps.iter().map(|folder| files(folder)).collect::<Result<Vec<_>, _>>()?.concat() {
+            let name = path.file_name().map(OsStr::to_string_lossy).unwrap_or_default();
+            let name = name.split('.').next().unwrap_or_default();
+            add(name, Source::File(path.clone()));
+        }
+        if cells.is_empty() || cells.len() > MOST_CELLS {
+            let folder = self.ramps.as_ref().map_or("the built-in ones".into(), |folder| folder.display().to_string());
+            let named = "whose names begin with what they are used for, such as diffuse_";
+            let which = self.role.map_or(named.into(), |role| format!("for {}", role.name()));
+            let expected = format!("1 to {MOST_CELLS} ramps {which}, not {}", cells.len());
+            return Err(FieldError::new("--ramps", folder, expected).into());
+        }
+        Ok(cells)
+    }
+}
+
+/// PNGs in a folder, and recipes that have none, by name.
+fn files(folder: &Path) -> Result<Vec<PathBuf>, Error> {
+    let failed = |error| Error::Io { path: folder.into(), error };
+    let entries: Result<Vec<_>, _> = fs::read_dir(folder).map_err(failed)?.collect();
+    let mut files: Vec<_> = entries.map_err(failed)?.into_iter().map(|entry| entry.path()).collect();
+    files.retain(|path| has_extension(path, "png") || is_recipe(path) && !picture(path).exists());
+    files.sort();
+    Ok(files)
+}
+
+impl Cell {
+    /// Puts the ramp into the shot, with what it takes for the ramp to be seen.
+    fn paint(&self, shot: &mut Shot) -> Result<(), Error> {
+        let ramp = match &self.source {
+            Source::File(path) => Ramp::from_picture(&picture_of(path)?.0),
+            Source::Builtin(builtin) => builtin.ramp()?,
+        };
+        for (system, material) in shot.preset.systems.iter_mut().zip(&mut shot.materials) {
+            let settings = &mut system.settings;
+            let MaterialAssets { diffuse_ramp, soft_scatter_ramp, specular_ramp, coverage_ramp, age_ramp, .. } =
+                material;
+            let place = match self.role {
+                Role::Diffuse => {
+                    if settings.diffuse.mode == DiffuseMode::PaintedMotif {
+                        settings.diffuse.mode = DiffuseMode::Ramp;
+                    }
+                    diffuse_ramp
+                }
+                Role::Scatter => {
+                    settings.soft_scatter.mode = SoftScatterMode::Ramp;
+                    soft_scatter_ramp
+                }
+                Role::Specular => specular_ramp,
+                Role::Coverage => {
+                    settings.coverage = CoverageMode::Ramp;
+                    coverage_ramp
+                }
+                // Deferred smoke has no colours of its own.
+                Role::Age => {
+                    settings.path = SmokePath::Forward;
+                    settings.sprite.age_colour = 1.0;
+                    age_ramp
+                }
+            };
+            *place = ramp.clone();
+        }
+        Ok(())
+    }
+}
