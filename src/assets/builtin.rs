@@ -31,7 +31,7 @@ macro_rules! builtin {
     };
 }
 
-/// Diffuse, soft scatter and specular ramps. `ramps/README.md`.
+/// Ramps of every role. `ramps/README.md`.
 pub const RAMPS: &[Builtin] = builtin!(
     "ramps",
     ".ramp.json",
@@ -40,14 +40,25 @@ pub const RAMPS: &[Builtin] = builtin!(
         "diffuse_dusk",
         "diffuse_ember",
         "diffuse_overcast",
+        "diffuse_neutral",
+        "diffuse_steam",
+        "diffuse_sand",
+        "diffuse_soot",
+        "diffuse_moon",
+        "diffuse_night_lamp",
+        "diffuse_sunset_backlight",
+        "diffuse_soft_toon",
+        "diffuse_ink",
         "scatter_mist",
         "scatter_soot",
         "specular_halo",
         "specular_ember",
+        "specular_neutral",
         "age_smoke",
         "coverage_soft",
         "coverage_toon",
         "coverage_wispy",
+        "coverage_cut",
     ]
 );
 

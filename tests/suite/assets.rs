@@ -2,10 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
+use glam::UVec2;
+use haze::demo::develop::develop;
+use haze::demo::shot::Shot;
 use haze::noise::NoiseRecipe;
 use haze::picture::read_png;
 use haze::ramp::bake::RampRecipe;
 use haze::ramp::motif::MotifRecipe;
+use haze::ramp::template::TEMPLATES;
+use haze::settings::CoverageMode;
 use haze::sprite::bake::SpriteRecipe;
 use haze::sprite::detail::detail;
 use haze::{builtin, preset};
@@ -34,6 +39,39 @@ fn ramps_are_what_their_recipes_make() {
         let recipe = MotifRecipe::load(&file("ramps", &format!("{}.motif.json", motif.name))).unwrap();
         assert!(difference(&committed, &recipe.bake().unwrap().to_rgb16()) <= 2, "{}: bake it again", motif.name);
     }
+}
+
+#[test]
+fn ramps_that_templates_give_their_names_to_are_the_templates() {
+    let mut found = 0;
+    for template in TEMPLATES {
+        // "neutral" is a diffuse one already.
+        let name = if template.name == "neutral_glow" { "neutral" } else { template.name };
+        let name = format!("{}_{name}", template.role.name());
+        if builtin::find(builtin::RAMPS, &name).is_some() {
+            let recipe = RampRecipe::load(&file("ramps", &format!("{name}.ramp.json"))).unwrap();
+            assert_eq!(recipe, template.recipe(), "{name}");
+            found += 1;
+        }
+    }
+    assert_eq!(found, 12);
+}
+
+#[test]
+fn coverage_through_the_soft_ramp_is_linear_coverage() {
+    let ramp = RampRecipe::load(&file("ramps", "coverage_soft.ramp.json")).unwrap();
+    let pixels = ramp.bake().unwrap().to_rgb16();
+    assert!(pixels.enumerate_pixels().all(|(x, _, pixel)| pixel.0 == [257 * x as u16; 3]));
+    let picture = |coverage| {
+        let mut shot = Shot::load("column", UVec2::new(160, 90)).unwrap();
+        shot.preset.systems[0].settings.coverage = coverage;
+        shot.preset.systems[0].material.coverage_ramp = "coverage_soft".into();
+        let shot = Shot::new(shot.preset, Path::new("column"), shot.size).unwrap();
+        develop(&shot.render_on_cpu().unwrap(), &shot)
+    };
+    let (linear, ramp) = (picture(CoverageMode::Linear), picture(CoverageMode::Ramp));
+    // Texels are half floats: the last step of 8 bits may fall to either side.
+    assert!(linear.iter().zip(ramp.iter()).all(|(a, b)| a.abs_diff(*b) <= 1));
 }
 
 #[test]

@@ -69,7 +69,7 @@ pub const TEMPLATES: &[Template] = &[
         "steam",
         "white, with thin shade",
         Curve::Monotone,
-        &[(0.0, 0x8f9aa6), (0.45, 0xc4ccd3), (0.75, 0xeaedef), (1.0, 0xffffff)],
+        &[(0.0, 0x5f6c7a), (0.45, 0xa4afba), (0.75, 0xe4e8eb), (1.0, 0xffffff)],
     ),
     strip(
         Role::Diffuse,
@@ -112,6 +112,20 @@ pub const TEMPLATES: &[Template] = &[
         "light where thin, blue where thick",
         Curve::Monotone,
         &[(0.0, 0xb4c1cf), (0.5, 0x7d8b9c), (1.0, 0x4a5563)],
+    ),
+    strip(
+        Role::Coverage,
+        "wispy",
+        "thinner edges",
+        Curve::Monotone,
+        &[(0.0, 0x000000), (0.08, 0x050505), (0.24, 0x2a2a2a), (0.5, 0x8c8c8c), (0.78, 0xe6e6e6), (1.0, 0xffffff)],
+    ),
+    strip(
+        Role::Coverage,
+        "cut",
+        "cut out, as from paper",
+        Curve::Ease,
+        &[(0.0, 0x000000), (0.34, 0x000000), (0.4, 0xffffff), (1.0, 0xffffff)],
     ),
     strip(
         Role::Age,
