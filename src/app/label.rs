@@ -26,6 +26,11 @@ pub fn draw_text(picture: &mut RgbImage, x: f32, y: f32, height: f32, colour: Rg
     }
 }
 
+/// How wide `text` is, pixels.
+pub fn width(height: f32, text: &str) -> f32 {
+    font().map_or(0.0, |font| place(&font, height, text).1)
+}
+
 /// Breaks `text` between words into lines of at most `width` pixels; a word that is wider has a line of its own.
 pub fn wrap(height: f32, width: f32, text: &str) -> Vec<String> {
     let Ok(font) = font() else { return Vec::new() };

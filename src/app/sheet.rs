@@ -38,6 +38,13 @@ impl Sheet {
         imageops::replace(&mut self.picture, picture, i64::from(corner.x), i64::from(corner.y + LABEL));
     }
 
+    /// Covers the lower left corner of a cell's picture.
+    pub fn inset(&mut self, index: u32, inset: &RgbImage) {
+        let end = UVec2::new(index % self.columns, index / self.columns + 1) * self.cell;
+        let corner = end + UVec2::new(MARGIN, 0) - UVec2::new(0, inset.height());
+        imageops::replace(&mut self.picture, inset, i64::from(corner.x), i64::from(corner.y));
+    }
+
     /// Adds a text below the cells, over as many lines as it takes.
     pub fn add_foot(&mut self, text: &str) {
         let (width, height) = self.picture.dimensions();

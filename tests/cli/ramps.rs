@@ -7,6 +7,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
+use haze::ramp::Role;
 use haze::ramp::template::TEMPLATES;
 use image::{DynamicImage, GrayImage, ImageBuffer, Luma, LumaA};
 
@@ -179,18 +180,23 @@ fn a_shot_is_shown_under_every_ramp_of_a_folder() {
         said(folder.path(), &[&fixed[..], arguments].concat());
         haze::picture::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8()
     };
+    // Above the ramp itself.
+    let above = |picture: &image::RgbImage, x, y| image::imageops::crop_imm(picture, x, y, 48, 25).to_image();
     let render = |sets: &[&str]| {
         let fixed = ["render", "fence", "--backend", "cpu", "--size", "48x27", "--assets", "ramps", "-o", "one.png"];
         let sets: Vec<_> = sets.iter().flat_map(|set| ["--set", set]).collect();
         said(folder.path(), &[&fixed[..], &sets].concat());
-        haze::picture::read_png(&folder.path().join("one.png")).unwrap().to_rgb8()
+        above(&haze::picture::read_png(&folder.path().join("one.png")).unwrap().to_rgb8(), 0, 0)
     };
-    let cell = |sheet: &image::RgbImage, x: u32| image::imageops::crop_imm(sheet, 12 + x * 60, 40, 48, 27).to_image();
+    let cell = |sheet: &image::RgbImage, x: u32| above(sheet, 12 + x * 60, 40);
     // Two to a row, in the order of their names.
     let diffuse = sheet(&["--ramps", "ramps", "--role", "diffuse", "--size", "96x54"]);
     said(folder.path(), &["ramp", "bake", "ramps/diffuse_soot.ramp.json"]);
     assert!(cell(&diffuse, 0) == render(&["diffuse_ramp=diffuse_soot.png"]));
     assert!(cell(&diffuse, 1) == render(&["diffuse_ramp=mine.png"]));
+    // The ramp below: 2 of 27 lines.
+    let below = |x: u32| diffuse[(12 + x * 60 + 47, 40 + 26)].0;
+    assert_eq!([below(0), below(1)], [[0x6a, 0x61, 0x5a], [0xff, 0xe3, 0xb0]]);
     // Without a role, those whose names say it.
     let named = sheet(&["--ramps", "ramps", "--size", "96x54"]);
     assert!(cell(&named, 0) == cell(&diffuse, 0) && cell(&named, 1) != cell(&diffuse, 1));
@@ -206,4 +212,27 @@ fn a_shot_is_shown_under_every_ramp_of_a_folder() {
     fs::create_dir(folder.path().join("empty")).unwrap();
     let none = line(&["--ramps", "empty", "--role", "age", "-o", "a.png"]);
     assert!(none.contains("--ramps: empty is not valid; expected 1 to 64 ramps for age, not 0"), "{none}");
+}
+
+#[test]
+fn a_blank_of_every_role_is_a_ramp_with_its_axes_on_it() {
+    let folder = folder();
+    for role in Role::ALL {
+        let name = format!("{}_mine.png", role.name());
+        let line = said(folder.path(), &["ramp", "new", "--blank", role.name(), "-o", &name]);
+        let size = if *role == Role::Specular { "512x256" } else { "512x64" };
+        assert_eq!(line, format!("{name}: a {} ramp to paint over, {size}\n", role.name()));
+        // Ink is written at both ends: from one line to the next a ramp changes little.
+        let picture = haze::picture::read_png(&folder.path().join(&name)).unwrap().to_luma8();
+        let middle = picture.height() / 2;
+        for end in [0..150, 362..512] {
+            let is_edge = |x: &u32, y| picture[(*x, y)].0[0].abs_diff(picture[(*x, y + 1)].0[0]) > 60;
+            let edges = (middle - 10..middle + 10).map(|y| end.clone().filter(|x| is_edge(x, y)).count());
+            let edges: usize = edges.sum();
+            assert!(edges > 20, "{name}, {end:?}: {edges}");
+        }
+        assert!(refusal(folder.path(), &["ramp", "new", "--blank", role.name(), "-o", &name]).contains("that is free"));
+    }
+    let line = refusal(folder.path(), &["ramp", "new", "--blank", "age", "-o", "a.ramp.json"]);
+    assert!(line.contains("expected a name that ends in .png"), "{line}");
 }

@@ -5,6 +5,7 @@ pub mod import;
 pub mod new;
 pub mod sheet;
 pub mod show;
+mod strip;
 pub mod watch;
 
 use std::path::Path;

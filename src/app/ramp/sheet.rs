@@ -15,6 +15,7 @@ use super::super::export::{MOST_CELLS, Watch, columns, sheet};
 use super::super::options::{ShotArguments, choices};
 use super::super::output::{Files, has_extension};
 use super::super::recipe::picture;
+use super::strip::strip;
 use super::{is_recipe, picture_of};
 
 #[derive(Args)]
@@ -32,6 +33,11 @@ pub struct Arguments {
     #[arg(long, value_name = "ROLE", value_parser = choices::<Role>())]
     role: Option<Role>,
 }
+
+/// Of a picture's sides, what a ramp of two axes takes.
+const INSET: u32 = 4;
+/// Of a picture's height, what a ramp of one axis takes.
+const STRIP: u32 = 10;
 
 /// A ramp to show.
 struct Cell {
@@ -55,14 +61,21 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     Files::read(read).write("--output", &arguments.shot.output, "png")?;
     let columns = columns(cells.len());
     let size = (arguments.shot.run.size / columns).max(UVec2::ONE);
-    let shots = cells.iter().map(|cell| {
+    let (mut shots, mut ramps) = (Vec::new(), Vec::new());
+    for cell in &cells {
         let mut shot = Shot { size, ..base.clone() };
-        cell.paint(&mut shot)?;
-        Ok((cell.name.clone(), shot))
-    });
-    let shots = shots.collect::<Result<Vec<_>, Error>>()?;
+        let ramp = cell.ramp()?;
+        paint(&mut shot, cell.role, &ramp);
+        shots.push((cell.name.clone(), shot));
+        ramps.push(ramp);
+    }
     let backend = arguments.shot.run.backend()?;
     let mut sheet = sheet(&backend, &shots, columns, &arguments.shot.output, &Watch::terminal())?;
+    for (index, (ramp, cell)) in (0..).zip(ramps.iter().zip(&cells)) {
+        let has_two_axes = cell.role == Role::Specular;
+        let inset = if has_two_axes { size / INSET } else { UVec2::new(size.x, size.y / STRIP) };
+        sheet.inset(index, &strip(ramp, inset));
+    }
     sheet.add_foot(&format!("{}, {}x{}, {}", base.preset.name, size.x, size.y, backend.description()));
     arguments.shot.write(sheet.picture, &base, &backend)
 }
@@ -108,41 +121,42 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>, Error> {
 }
 
 impl Cell {
-    /// Puts the ramp into the shot, with what it takes for the ramp to be seen.
-    fn paint(&self, shot: &mut Shot) -> Result<(), Error> {
-        let ramp = match &self.source {
-            Source::File(path) => Ramp::from_picture(&picture_of(path)?.0),
-            Source::Builtin(builtin) => builtin.ramp()?,
-        };
-        for (system, material) in shot.preset.systems.iter_mut().zip(&mut shot.materials) {
-            let settings = &mut system.settings;
-            let MaterialAssets { diffuse_ramp, soft_scatter_ramp, specular_ramp, coverage_ramp, age_ramp, .. } =
-                material;
-            let place = match self.role {
-                Role::Diffuse => {
-                    if settings.diffuse.mode == DiffuseMode::PaintedMotif {
-                        settings.diffuse.mode = DiffuseMode::Ramp;
-                    }
-                    diffuse_ramp
-                }
-                Role::Scatter => {
-                    settings.soft_scatter.mode = SoftScatterMode::Ramp;
-                    soft_scatter_ramp
-                }
-                Role::Specular => specular_ramp,
-                Role::Coverage => {
-                    settings.coverage = CoverageMode::Ramp;
-                    coverage_ramp
-                }
-                // Deferred smoke has no colours of its own.
-                Role::Age => {
-                    settings.path = SmokePath::Forward;
-                    settings.sprite.age_colour = 1.0;
-                    age_ramp
-                }
-            };
-            *place = ramp.clone();
+    fn ramp(&self) -> Result<Ramp, Error> {
+        match &self.source {
+            Source::File(path) => Ok(Ramp::from_picture(&picture_of(path)?.0)),
+            Source::Builtin(builtin) => builtin.ramp(),
         }
-        Ok(())
+    }
+}
+
+/// Puts a ramp into a shot, with what it takes for the ramp to be seen.
+fn paint(shot: &mut Shot, role: Role, ramp: &Ramp) {
+    for (system, material) in shot.preset.systems.iter_mut().zip(&mut shot.materials) {
+        let settings = &mut system.settings;
+        let MaterialAssets { diffuse_ramp, soft_scatter_ramp, specular_ramp, coverage_ramp, age_ramp, .. } = material;
+        let place = match role {
+            Role::Diffuse => {
+                if settings.diffuse.mode == DiffuseMode::PaintedMotif {
+                    settings.diffuse.mode = DiffuseMode::Ramp;
+                }
+                diffuse_ramp
+            }
+            Role::Scatter => {
+                settings.soft_scatter.mode = SoftScatterMode::Ramp;
+                soft_scatter_ramp
+            }
+            Role::Specular => specular_ramp,
+            Role::Coverage => {
+                settings.coverage = CoverageMode::Ramp;
+                coverage_ramp
+            }
+            // Deferred smoke has no colours of its own.
+            Role::Age => {
+                settings.path = SmokePath::Forward;
+                settings.sprite.age_colour = 1.0;
+                age_ramp
+            }
+        };
+        *place = ramp.clone();
     }
 }

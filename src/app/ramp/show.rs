@@ -8,7 +8,6 @@ use clap::Args;
 use glam::{UVec2, Vec3};
 use haze::Error;
 use haze::formula::colour::srgb_from_linear;
-use haze::formula::texture::Texture2d as _;
 use haze::picture::{Effort, write_png};
 use haze::ramp::Ramp;
 use haze::ramp::bake::RampRecipe;
@@ -18,6 +17,7 @@ use super::super::output::{Files, one_line, say, write_text};
 use super::super::plot::{Curve, LEFT, RIGHT, plot};
 use super::super::sheet::PAPER;
 use super::picture_of;
+use super::strip::{code, share, strip};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -57,17 +57,6 @@ pub fn run(Arguments { ramp: path, output }: &Arguments) -> Result<(), Error> {
     text += &curve(&ramp);
     text += &recipe.as_ref().map(stops).unwrap_or_default();
     write_text(text.trim_end())
-}
-
-/// sRGB code, 0 to 1, at a share of either axis.
-fn code(ramp: &Ramp, u: f32, v: f32) -> Vec3 {
-    let at = |share: f32, count: u32| (share * (count - 1) as f32).round() as u32;
-    let size = ramp.dimensions();
-    ramp.texel(UVec2::new(at(u, size.x), at(v, size.y))).map(srgb_from_linear)
-}
-
-fn share(index: u32, count: u32) -> f32 {
-    index as f32 / (count - 1) as f32
 }
 
 /// Two texels for each character: the upper one is ink, the lower paper.
@@ -137,10 +126,7 @@ fn drawn(ramp: &Ramp) -> RgbImage {
     let axis = if ramp.size().y > 1 { "across, at the middle of the other axis" } else { "across" };
     let below = plot(SIZE + UVec2::new((LEFT + RIGHT) as u32, 60), (0.0, 1.0), axis, &curves);
     let up = if ramp.size().y > 1 { SIZE.y } else { SIZE.y / 4 };
-    let strip = RgbImage::from_fn(SIZE.x, up, |x, y| {
-        let colour = code(ramp, share(x, SIZE.x), share(up - 1 - y, up)) * 255.0;
-        Rgb(colour.to_array().map(|channel| channel.round() as u8))
-    });
+    let strip = strip(ramp, UVec2::new(SIZE.x, up));
     let mut picture = RgbImage::from_pixel(below.width(), up + below.height() + 16, PAPER);
     imageops::replace(&mut picture, &strip, LEFT as i64, 16);
     imageops::replace(&mut picture, &below, 0, i64::from(up) + 16);
