@@ -296,6 +296,21 @@ fn presets_are_begun_as_copies_with_their_pictures() {
 }
 
 #[test]
+fn every_line_of_the_page_of_looks_makes_another_picture() {
+    let folder = folder();
+    let mut made = std::collections::HashSet::new();
+    for line in include_str!("../docs/looks.md").lines().filter(|line| line.starts_with("haze ")) {
+        let mut arguments: Vec<_> = line.split(' ').skip(1).collect();
+        let output = arguments.pop().unwrap();
+        assert!(output.starts_with("docs/pictures/looks/"), "{line}");
+        let done = haze(folder.path(), &[&arguments[..], &["a.png", "--size", "48x27", "--backend", "cpu"]].concat());
+        assert!(done.status.success(), "{line}: {}", stderr(&done));
+        assert!(made.insert(std::fs::read(folder.path().join("a.png")).unwrap()), "{line}: nothing new");
+    }
+    assert!(made.len() > 5);
+}
+
+#[test]
 fn pictures_may_lie_in_a_folder_that_presets_share() {
     let folder = folder();
     let path = |name: &str| folder.path().join(name);

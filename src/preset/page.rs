@@ -17,7 +17,8 @@ use crate::settings::{Choice, FieldVisitor, Fields, PictureRole, Value, values};
 const HEAD: &str = "\
 # Settings
 
-Made by `haze preset settings > docs/settings.md` from the tables in the code, as the sliders of the window are. A field that is left out of a preset has its default. Fields of lights are those of each of
+Made by `haze preset settings > docs/settings.md` from the tables in the code, as the sliders of the window are. What to turn for which
+look is on [another page](looks.md). A field that is left out of a preset has its default. Fields of lights are those of each of
 `lights`, fields of systems those of each of `systems`. Where a setting says *when*, it does nothing elsewhere: `haze preset check`
 tells of your preset, and the window greys it.
 ";
