@@ -90,7 +90,7 @@ macro_rules! presets {
 
 /// The presets; the first is the default.
 pub const PRESETS: &[Builtin] =
-    presets!(["column", "backlit_fog", "corridor", "explosion", "fence", "inside", "crates"]);
+    presets!(["column", "backlit_fog", "corridor", "explosion", "fence", "inside", "crates", "dust_storm"]);
 
 /// Finds a built-in by name.
 pub fn find(list: &'static [Builtin], name: &str) -> Option<&'static Builtin> {
