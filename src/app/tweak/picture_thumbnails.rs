@@ -63,7 +63,7 @@ impl PictureThumbnails {
         }
     }
 
-    /// Names of the pictures for a role: the built-in ones, then the files.
+    /// Names of the pictures for a role: the files, then the built-in ones, of which there are many.
     pub fn names(&self, context: &egui::Context, role: PictureRole) -> Vec<String> {
         let now = context.input(|input| input.time);
         let inner = &mut *self.0.borrow_mut();
@@ -78,7 +78,7 @@ impl PictureThumbnails {
             pictures.retain(|(_, name), thumb| thumb.stamp.is_none() || thumb.stamp == stamp(name));
         }
         let builtins = builtins(role).iter().map(|builtin| builtin.name.to_owned());
-        builtins.chain(inner.files.iter().cloned()).collect()
+        inner.files.iter().cloned().chain(builtins).collect()
     }
 
     /// The thumbnail of a picture, once there is one.
