@@ -8,7 +8,7 @@ use crate::formula::colour::{linear_from_srgb, srgb_from_linear};
 /// One thing that would show.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
-    /// `banding`, `step`, `seam`, `ends` or `turned`.
+    /// `banding`, `step`, `seam`, `ends`, `round` or `turned`.
     pub name: &'static str,
     /// What it is, where, and what would be right.
     pub what: String,
@@ -28,6 +28,7 @@ const BLACK: u16 = 257;
 ///   coverage ramps may have steps; toon is made of them.
 /// - `seam`: first or last texels that are not of the gradient beside them: a frame, or what scaling a picture left.
 /// - `ends`: a specular ramp that is not black at amount 0 or at distance 1.
+/// - `round`: a specular ramp that is brightest away from distance 0: painted as a glow looks, not along its axes.
 /// - `turned`: a gradient from top to bottom.
 pub fn check(picture: &DynamicImage, role: Option<Role>) -> Vec<Finding> {
     let pixels = picture.to_rgb16();
@@ -74,6 +75,18 @@ pub fn check(picture: &DynamicImage, role: Option<Role>) -> Vec<Finding> {
             if let Some(bright) = line.map(|line| brightest(line)).filter(|&bright| bright > BLACK) {
                 find("ends", format!("{} of 255 at {end}; expected black: else {why}", bright / 257));
             }
+        }
+        let lightest = along_columns.first().map_or(0, |line| brightest(line));
+        let most = along_rows.iter().map(|line| brightest(line)).max().unwrap_or_default();
+        if findings.is_empty() && lightest < most / 2 {
+            let (lightest, most) = (lightest / 257, most / 257);
+            findings.push(Finding {
+                name: "round",
+                what: format!(
+                    "{lightest} of 255 at distance 0, the first column, and {most} farther on; expected it to be brightest at the \
+                     light: a ramp is no picture of a glow"
+                ),
+            });
         }
     }
     findings
@@ -201,6 +214,10 @@ mod tests {
         assert_eq!(names(&glow.flipv(), Some(Role::Specular)), ["ends"]);
         assert_eq!(names(&glow.fliph(), Some(Role::Specular)), ["ends"]);
         assert!(names(&glow.fliph(), Some(Role::Diffuse)).is_empty());
+        let place = "sqrt(abs(2 * u - 1) ^ 2 + abs(2 * v - 1) ^ 2)".into();
+        let round = RampRecipe { place, times: Vec::new(), ..recipe }.bake().unwrap();
+        assert_eq!(names(&round, Some(Role::Specular)), ["round"]);
+        assert!(names(&round, None).is_empty());
         let what = &check(&glow.flipv(), Some(Role::Specular))[0].what;
         assert!(what.contains("at amount 0, the bottom row; expected black: else lights glow"), "{what}");
     }
