@@ -65,6 +65,8 @@ pub mod emitter;
 pub mod error;
 pub mod formula;
 pub mod frame;
+#[cfg(feature = "app")]
+pub mod gradient_editor;
 #[cfg(feature = "headless")]
 pub mod headless;
 mod in_view;

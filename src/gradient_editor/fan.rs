@@ -1,0 +1,70 @@
+//! Where the handles of stops stand, so that each can be grabbed however near to each other the stops are.
+
+use std::ops::Range;
+
+/// Handles where not all have room: few, so that they stand near their stops.
+const FEW: usize = 9;
+
+/// Which of `count` stops have handles: all, or if there is no room for them, some round the one that is selected.
+pub fn shown(count: usize, selected: usize, room: usize) -> Range<usize> {
+    let room = if count <= room { count } else { room.clamp(1, FEW) };
+    let start = selected.saturating_sub(room / 2).min(count.saturating_sub(room));
+    start..count.min(start + room)
+}
+
+/// Places from 0 to `width` in order, at least `gap` apart and as near as can be to those wanted, which are in order too. More
+/// than have room end beyond `width`.
+pub fn fan_out(wanted: &[f32], width: f32, gap: f32) -> Vec<f32> {
+    // Less what those before need, places only have to be in order: runs that are not become their mean. (Pool adjacent violators:
+    // the least squares)
+    let mut runs: Vec<(f32, usize)> = Vec::new();
+    for (index, place) in wanted.iter().enumerate() {
+        let mut run = (place - index as f32 * gap, 1);
+        while let Some(before) = runs.pop_if(|before| before.0 > run.0) {
+            let count = before.1 + run.1;
+            run = ((before.0 * before.1 as f32 + run.0 * run.1 as f32) / count as f32, count);
+        }
+        runs.push(run);
+    }
+    let most = (width - wanted.len().saturating_sub(1) as f32 * gap).max(0.0);
+    let places = runs.into_iter().flat_map(|(place, count)| std::iter::repeat_n(place.clamp(0.0, most), count));
+    places.enumerate().map(|(index, place)| place + index as f32 * gap).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn handles_stand_where_their_stops_are_if_they_have_room() {
+        assert_eq!(fan_out(&[0.0, 30.0, 100.0], 100.0, 10.0), [0.0, 30.0, 100.0]);
+        assert_eq!(fan_out(&[50.0, 50.0, 50.0], 100.0, 10.0), [40.0, 50.0, 60.0]);
+        assert_eq!(fan_out(&[100.0, 100.0], 100.0, 10.0), [90.0, 100.0]);
+        assert!(fan_out(&[], 100.0, 10.0).is_empty());
+    }
+
+    #[test]
+    fn the_selected_one_is_always_shown() {
+        assert_eq!(shown(5, 4, 20), 0..5);
+        assert_eq!(shown(20, 4, 20), 0..20);
+        assert_eq!(shown(100, 50, 20), 46..55);
+        assert_eq!(shown(100, 0, 20), 0..9);
+        assert_eq!(shown(100, 99, 20), 91..100);
+        assert_eq!(shown(100, 50, 4), 48..52);
+        assert_eq!(shown(3, 2, 0), 2..3);
+        assert_eq!(shown(0, 0, 5), 0..0);
+    }
+
+    proptest! {
+        #[test]
+        fn no_two_are_nearer_than_the_gap(mut wanted in prop::collection::vec(0.0f32..=200.0, 1..20)) {
+            wanted.sort_by(f32::total_cmp);
+            let places = fan_out(&wanted, 200.0, 10.0);
+            prop_assert_eq!(places.len(), wanted.len());
+            prop_assert!(places.windows(2).all(|pair| pair[1] - pair[0] > 9.99));
+            prop_assert!(places[0] >= 0.0 && places[places.len() - 1] <= 200.01);
+        }
+    }
+}

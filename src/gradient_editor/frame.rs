@@ -1,0 +1,103 @@
+//! What the parts of the editor share: its state, and the stops in one frame.
+
+use eframe::egui::{self, Color32, Ui};
+
+use super::text;
+use crate::assets::ramp::bake::{Blend, RampRow, RampStop};
+
+/// What an editor remembers from frame to frame.
+#[derive(Clone, Debug, Default)]
+pub struct State {
+    /// Index of the stop that keys and fields are for.
+    pub selected: usize,
+    /// From the pointer to the stop that is dragged, in shares of the strip.
+    pub dragged: Option<f32>,
+    /// What is being done, until it is let go.
+    pub pending: Option<&'static str>,
+    /// A handle has the keyboard.
+    pub has_keyboard: bool,
+    /// The clipboard was asked for.
+    pub awaits_paste: bool,
+    /// The colour that is being typed.
+    pub typed: Option<String>,
+}
+
+/// What is shown of a gradient beside its stops.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Surroundings<'a> {
+    /// The space that its colours are blended in.
+    pub blend: Blend,
+    /// How often each part of it is looked up, from 0 to 1, drawn below the strip in their colours.
+    pub histograms: &'a [(Color32, &'a [f32])],
+    /// Places on it that are marked.
+    pub marks: &'a [(f32, Color32)],
+}
+
+/// What one frame of an editor works on.
+pub struct Frame<'a> {
+    pub editor: &'a mut State,
+    pub stops: &'a mut Vec<RampStop>,
+    /// What was done in it first.
+    pub done: Option<&'static str>,
+    pub refused: Option<String>,
+    /// The selected one is to have it.
+    pub wants_keyboard: bool,
+}
+
+impl Frame<'_> {
+    /// Makes a change, and notes what it was.
+    pub fn edit<T>(&mut self, what: &'static str, change: impl FnOnce(&mut Vec<RampStop>, usize) -> T) -> T {
+        self.done.get_or_insert(what);
+        change(self.stops, self.editor.selected)
+    }
+
+    /// The same where the selected stop is another then.
+    pub fn edit_and_select(&mut self, what: &'static str, change: impl FnOnce(&mut Vec<RampStop>, usize) -> usize) {
+        self.editor.selected = self.edit(what, change);
+    }
+
+    /// Takes other stops for all of them.
+    pub fn replace(&mut self, what: &'static str, stops: Vec<RampStop>) {
+        self.edit_and_select(what, |all, _| {
+            *all = stops;
+            0
+        });
+    }
+
+    /// Copies for the stop that has the keyboard; takes what comes for it, or was asked for.
+    pub fn clipboard(&mut self, ui: &Ui, at: f32) {
+        if !self.editor.has_keyboard && !self.editor.awaits_paste {
+            return;
+        }
+        let (mut copies, mut pasted) = (false, None);
+        if ui.input(|input| input.pointer.any_pressed()) {
+            // Nothing came, as where the clipboard has no text.
+            self.editor.awaits_paste = false;
+        }
+        ui.input_mut(|input| {
+            input.events.retain(|event| {
+                match event {
+                    egui::Event::Copy if self.editor.has_keyboard => copies = true,
+                    egui::Event::Paste(text) => pasted = Some(text.clone()),
+                    _ => return true,
+                }
+                false
+            });
+        });
+        if copies {
+            self.copy(ui, at);
+        }
+        if let Some(pasted) = pasted {
+            self.editor.awaits_paste = false;
+            match text::parse(&pasted) {
+                Ok(stops) => self.replace("paste stops", stops),
+                Err(error) => self.refused = Some(format!("nothing is pasted: {error}")),
+            }
+        }
+    }
+
+    pub fn copy(&self, ui: &Ui, at: f32) {
+        let row = RampRow { at, stops: self.stops.clone(), ..RampRow::default() };
+        ui.ctx().copy_text(text::to_text(&row));
+    }
+}

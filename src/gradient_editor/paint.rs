@@ -1,0 +1,53 @@
+//! How the parts of the editor look.
+
+use eframe::egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, StrokeKind, Ui, pos2};
+
+use crate::assets::ramp::bake::RampStop;
+
+/// Where the stops are, however many, a tick for each pixel.
+pub fn ticks(ui: &Ui, stops: &[RampStop], strip: Rect) {
+    let mut last = f32::NEG_INFINITY;
+    for stop in stops {
+        let x = strip.left() + stop.at * strip.width();
+        if x - last >= 1.0 {
+            for (width, colour) in [(3.0, Color32::BLACK), (1.0, Color32::WHITE)] {
+                ui.painter().vline(x, strip.bottom() - 4.0..=strip.bottom(), Stroke::new(width, colour));
+            }
+            last = x;
+        }
+    }
+}
+
+/// A handle, and a line to the place that it is of.
+pub fn handle(
+    ui: &Ui,
+    rect: Rect,
+    place: Pos2,
+    colour: Color32,
+    (is_selected, is_hovered, has_focus): (bool, bool, bool),
+) {
+    let visuals = ui.visuals();
+    let ink = if is_selected { visuals.selection.stroke.color } else { visuals.text_color() };
+    let stroke = Stroke::new(if is_selected || is_hovered { 2.0 } else { 1.0 }, ink);
+    ui.painter().line_segment([place, pos2(rect.center().x, rect.top())], stroke);
+    if has_focus {
+        ui.painter().rect_stroke(rect.expand(3.0), 3.0, Stroke::new(1.0, ink), StrokeKind::Inside);
+    }
+    ui.painter().rect(rect, 2.0, colour, stroke, StrokeKind::Outside);
+}
+
+/// Columns that fade upwards to nothing, with a line along their tops.
+pub fn histogram(ui: &Ui, rect: Rect, bins: &[f32], colour: Color32) {
+    let width = rect.width() / bins.len().max(1) as f32;
+    let (mut mesh, mut outline) = (Mesh::default(), Vec::new());
+    for (index, bin) in bins.iter().enumerate() {
+        let left = rect.left() + index as f32 * width;
+        // A root: what is rare shows as well.
+        let top = rect.bottom() - bin.clamp(0.0, 1.0).sqrt() * (rect.height() - 2.0);
+        let column = Rect::from_min_max(pos2(left, top), pos2(left + width, rect.bottom()));
+        mesh.add_colored_rect(column, colour.gamma_multiply(0.25));
+        outline.extend([column.left_top(), column.right_top()]);
+    }
+    ui.painter().add(mesh);
+    ui.painter().add(Shape::line(outline, Stroke::new(1.5, colour)));
+}
