@@ -25,6 +25,7 @@ mod pictures;
 mod platform;
 mod playback;
 mod preset_thumbnails;
+mod ramp_files;
 mod reach;
 mod referee;
 mod reload;

@@ -22,9 +22,10 @@ use super::performance::Performance;
 use super::picture_thumbnails::PictureThumbnails;
 use super::pictures::Pictures;
 use super::playback::Playback;
+use super::ramp_files::RampFiles;
 use super::referee::Referee;
 use super::search::Search;
-use super::show::Show;
+use super::show::{Show, Tab};
 
 pub struct Session {
     /// What is edited; panels change its preset directly.
@@ -49,6 +50,8 @@ pub struct Session {
     pub screenshot: Option<PathBuf>,
     /// As last loaded well.
     pub pictures: Pictures,
+    /// Ramps whose stops are changed.
+    pub ramps: RampFiles,
     /// An author's, as last compiled well; those that the program has in it if none.
     pub shaders: Option<Sources>,
     /// Another program has written the file while something was changed here: which of the two is wanted is not known.
@@ -89,6 +92,7 @@ impl Session {
             thumbnails: PictureThumbnails::default(),
             screenshot: None,
             pictures: Pictures::new(preset, loaded),
+            ramps: RampFiles::default(),
             shaders: None,
             is_changed_on_disk: false,
             changed: Changed { paths: HashSet::new(), saved: preset.clone(), preset: preset.clone() },
@@ -107,13 +111,27 @@ impl Session {
         let mut preset = self.document.preset.clone();
         preset.time = self.playback.time;
         preset.lights = self.show.lights.shown(&preset.lights);
-        let materials = self.pictures.of(&preset);
+        let materials = self.materials();
         Shot { preset, size, shade_tree: self.show.stage, materials }
     }
 
     /// The pictures of every system.
     pub fn materials(&self) -> Vec<MaterialAssets> {
-        self.pictures.of(&self.document.preset)
+        let mut materials = self.pictures.of(&self.document.preset);
+        self.ramps.apply(&self.document.preset, &mut materials);
+        materials
+    }
+
+    /// Bakes what was changed of ramps, and writes it unless a control is held.
+    pub fn follow_ramps(&mut self, is_held: bool) {
+        let folders = self.folders();
+        let mut done = self.ramps.advance(&mut self.document, &folders, is_held);
+        if !is_held && done.is_ok() {
+            done = self.ramps.make_own(&mut self.document);
+        }
+        if let Err(error) = done {
+            self.messages.complain("ramp", error);
+        }
     }
 
     /// The preset as it is on disk; as it is here where that is not known.
@@ -147,6 +165,8 @@ impl Session {
 
     /// Takes note of what the panels changed. `is_held`: a control is still being moved, or typed into.
     pub fn track(&mut self, is_held: bool) {
+        let is_held = is_held || self.show.tab == Tab::Ramps && self.ramps.is_editing();
+        self.follow_ramps(is_held);
         self.document.track(is_held);
         let (saved, preset) = (self.saved(), &self.document.preset);
         if (&self.changed.saved, &self.changed.preset) != (saved, preset) {
@@ -201,7 +221,8 @@ impl Session {
         self.pictures = Pictures::new(&document.preset, loaded);
         self.playback = Playback::at(document.preset.time);
         (self.compare, self.show.system, self.is_changed_on_disk) = (Compare::default(), 0, false);
-        ["preset", "pictures", "file"].into_iter().for_each(|about| self.messages.withdraw(about));
+        self.ramps = RampFiles::default();
+        ["preset", "ramp", "pictures", "file"].into_iter().for_each(|about| self.messages.withdraw(about));
         self.document = document;
     }
 

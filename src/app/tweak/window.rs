@@ -190,7 +190,9 @@ impl Window {
         if ui.ctx().text_edit_focused() || is_modal || self.viewport.is_dragging() {
             return;
         }
-        for text in ui.input(pasted) {
+        // Stops are pasted where stops are.
+        let is_for_stops = self.session.show.tab == Tab::Ramps && self.session.ramps.takes_paste();
+        for text in ui.input(pasted).into_iter().filter(|_| !is_for_stops) {
             self.session.paste(&text);
         }
         if ui.input(|input| input.key_pressed(egui::Key::Escape)) && self.session.hints.dismiss() {
@@ -316,6 +318,9 @@ impl eframe::App for Window {
         let shown = settings.show(ui, |ui| panel::settings::panel(ui, &mut self.session));
         self.layout.settings = Some(shown.response.rect.width());
         self.session.hints.see(Place::Settings, shown.response.rect);
+        if std::mem::take(&mut self.session.ramps.wants_place) {
+            self.filing.save_as(&self.session);
+        }
         if let Some(path) = shown.inner {
             self.exporting.begin(Product::Values(path), &mut self.session);
         }

@@ -6,9 +6,9 @@ use std::sync::{Arc, Weak};
 use haze::preset::{PictureFolders, Preset};
 use haze::{Error, FieldError, builtin};
 
-use super::difference::step_name;
 use super::history::History;
 use super::pictures::copy_beside;
+use super::recipes::{Recipes, Work, name_of};
 use crate::app::inputs::pictures_of;
 use crate::app::tweak::platform::files::{self, Stamp};
 
@@ -16,7 +16,9 @@ use crate::app::tweak::platform::files::{self, Stamp};
 pub struct Document {
     /// What panels change.
     pub preset: Preset,
-    history: History<Preset>,
+    /// What panels change of ramps; they are written as soon as a step is done.
+    pub recipes: Recipes,
+    history: History<Work>,
     /// A file, or the name of a built-in preset.
     path: PathBuf,
     /// What is in the file, if it is known.
@@ -68,15 +70,17 @@ impl Document {
         // Before it is read: written in between, it is found to have changed.
         let stamp = Stamp::of(name_or_path);
         let (preset, text) = files::read_preset(name_or_path)?;
-        let history = History::new(preset.clone());
+        let recipes = Recipes::default();
+        let history = History::new((preset.clone(), recipes.clone()));
         let (saved, path) = (Some(preset.clone()), name_or_path.into());
-        Ok(Self { saved, preset, history, path, text, stamp, writing: Weak::new() })
+        Ok(Self { saved, preset, recipes, history, path, text, stamp, writing: Weak::new() })
     }
 
     /// What was being done to a preset when the program was ended. The file that it came from need not be there any more.
     pub fn recovered(preset: Preset, name_or_path: &Path) -> Self {
         let mut document = Self::open(name_or_path).unwrap_or_else(|_| Self {
-            history: History::new(preset.clone()),
+            recipes: Recipes::default(),
+            history: History::new((preset.clone(), Recipes::default())),
             preset: preset.clone(),
             path: name_or_path.into(),
             saved: None,
@@ -193,26 +197,36 @@ impl Document {
     fn put(&mut self, preset: Preset, name: &str) {
         self.track(false);
         self.preset = preset;
-        self.history.track(&self.preset, false, |_, _| name.into());
+        self.history.track(&self.work(), false, |_, _| name.into());
     }
 
     /// Sees what panels have changed; once a frame, as [`History::track`].
     pub fn track(&mut self, is_held: bool) {
-        self.history.track(&self.preset, is_held, step_name);
+        self.history.track(&self.work(), is_held, name_of);
+    }
+
+    fn work(&self) -> Work {
+        (self.preset.clone(), self.recipes.clone())
     }
 
     /// Takes back a step, and gives its name.
     pub fn undo(&mut self) -> Option<&str> {
-        self.history.undo(&mut self.preset)
+        let mut work = self.work();
+        let name = self.history.undo(&mut work);
+        (self.preset, self.recipes) = work;
+        name
     }
 
     /// Does the last step that was undone again, and gives its name.
     pub fn redo(&mut self) -> Option<&str> {
-        self.history.redo(&mut self.preset)
+        let mut work = self.work();
+        let name = self.history.redo(&mut work);
+        (self.preset, self.recipes) = work;
+        name
     }
 
     /// For the names of what there is to undo and redo.
-    pub fn history(&self) -> &History<Preset> {
+    pub fn history(&self) -> &History<Work> {
         &self.history
     }
 }

@@ -5,4 +5,5 @@ pub mod difference;
 pub mod document;
 pub mod history;
 pub mod pictures;
+pub mod recipes;
 pub mod recovery;

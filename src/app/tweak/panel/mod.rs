@@ -17,5 +17,6 @@ pub mod ramps;
 pub mod row;
 pub mod search;
 pub mod settings;
+pub mod stops;
 pub mod time;
 pub mod value;

@@ -8,6 +8,7 @@ use haze::reference::SystemProbe;
 use haze::settings::RampFilter;
 
 use super::row::spaced;
+use super::stops::{self, Bins, Mark, Named};
 use crate::app::tweak::compare::Side;
 use crate::app::tweak::inspect::Told;
 use crate::app::tweak::inspect::survey::{BINS, Histogram, SIDE, Spot};
@@ -31,16 +32,18 @@ const LIGHTS: [Color32; 6] = [
 const LOOKED_UP: Color32 = Color32::from_rgb(120, 200, 240);
 
 /// Draws them; gives the place that is pointed at.
-pub fn panel(ui: &mut Ui, session: &Session, index: usize) -> Option<Spot> {
-    let system = session.document.preset.systems.get(index)?;
+pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
+    let system = &session.document.preset.systems.get(index)?.clone();
     let material = &session.materials().into_iter().nth(index)?;
     let is_first = |told: &&Told| told.side == Side::First && session.inspect.place().is_some();
     let told = session.inspect.told.as_ref().filter(is_first);
-    let probe = told.and_then(|told| told.probe.systems.iter().find(|probe| probe.system == index));
+    let probe = told.and_then(|told| told.probe.systems.iter().find(|probe| probe.system == index)).cloned();
+    let probe = probe.as_ref();
     let filter = system.settings.ramp_filter;
     let is_forward = system.settings.is_forward();
-    let survey = session.inspect.survey.as_deref().filter(|_| !is_forward);
-    let inert = |field: &str| {
+    let survey = session.inspect.survey.clone().filter(|_| !is_forward);
+    let survey = survey.as_deref();
+    let inert = |session: &Session, field: &str| {
         let path = format!("systems[{index}].material.{field}");
         session.document.preset.without_effect(&path, session.show.size)
     };
@@ -61,48 +64,58 @@ pub fn panel(ui: &mut Ui, session: &Session, index: usize) -> Option<Spot> {
             ui.strong(title);
             ui.weak(name);
         });
-        if let Some(reason) = inert(field) {
+        if let Some(reason) = inert(session, field) {
             ui.weak(format!("Not used: {reason}"));
             continue;
         }
+        let mut lights = Vec::new();
+        let ramp = Named { system: index, field, name };
+        stops::offer(ui, session, ramp);
         let spoken = spaced(field);
-        match field {
+        let one = |at: Option<f32>| at.map(|at| (at, Color32::WHITE)).into_iter().collect();
+        let ink = ui.visuals().text_color();
+        let (picture, marks, bins): (_, Vec<Mark>, Vec<Bins>) = match field {
             "diffuse_ramp" => {
-                let marks = probe.map_or_else(Vec::new, |probe| {
-                    probe.lights.iter().map(|light| (light.coordinate, of_light(light.light))).collect()
-                });
-                let at = strip(ui, &spoken, &material.diffuse_ramp, filter, &marks);
-                if let Some(survey) = survey {
-                    legend_and_bins(ui, &survey.by_light(index));
-                }
-                spot = spot.or(at.map(Spot::Diffuse));
+                let looking = probe.iter().flat_map(|probe| &probe.lights);
+                let marks = looking.map(|light| (light.coordinate, of_light(light.light))).collect();
+                lights = survey.map_or_else(Vec::new, |survey| survey.by_light(index));
+                let bins = lights.iter().map(|histogram| (of_light(histogram.light), histogram.bins.clone()));
+                (&material.diffuse_ramp, marks, bins.collect())
             }
             "soft_scatter_ramp" => {
-                let marks: Vec<_> = probe.map(|probe| (probe.amount, Color32::WHITE)).into_iter().collect();
-                let at = strip(ui, &spoken, &material.soft_scatter_ramp, filter, &marks);
-                if let Some(survey) = survey {
-                    amounts(ui, &survey.by_amount(index));
-                }
-                spot = spot.or(at.map(Spot::SoftScatter));
+                let bins = survey.map(|survey| (ink, survey.by_amount(index)));
+                (&material.soft_scatter_ramp, one(probe.map(|probe| probe.amount)), bins.into_iter().collect())
             }
             "coverage_ramp" => {
-                let marks: Vec<_> =
-                    probe.map(|probe| (probe.coverage_coordinate, Color32::WHITE)).into_iter().collect();
-                let at = strip(ui, &spoken, &material.coverage_ramp, filter, &marks);
-                if let Some(survey) = survey {
-                    amounts(ui, &survey.by_coverage(index));
-                }
-                spot = spot.or(at.map(Spot::Coverage));
+                let bins = survey.map(|survey| (ink, survey.by_coverage(index)));
+                let at = probe.map(|probe| probe.coverage_coordinate);
+                (&material.coverage_ramp, one(at), bins.into_iter().collect())
             }
             "specular_ramp" => {
                 let density = survey.map(|survey| survey.by_glow(index));
                 spot = spot.or(plane(ui, &spoken, (&material.specular_ramp, filter), density.as_deref(), probe));
+                stops::editor(ui, session, ramp, &[], &[]);
+                continue;
             }
-            _ => {
-                strip(ui, &spoken, &material.age_ramp, filter, &[]);
-            }
+            _ => (&material.age_ramp, Vec::new(), Vec::new()),
+        };
+        let edited = stops::editor(ui, session, ramp, &bins, &marks);
+        let at = edited.unwrap_or_else(|| {
+            let at = strip(ui, &spoken, picture, filter, &marks);
+            histogram(ui, field, &bins);
+            at
+        });
+        if field == "diffuse_ramp" && survey.is_some() {
+            legend(ui, &lights);
         }
+        spot = spot.or(at.and_then(|at| match field {
+            "diffuse_ramp" => Some(Spot::Diffuse(at)),
+            "soft_scatter_ramp" => Some(Spot::SoftScatter(at)),
+            "coverage_ramp" => Some(Spot::Coverage(at)),
+            _ => None,
+        }));
     }
+    session.follow_ramps(true);
     spot
 }
 
@@ -145,11 +158,19 @@ fn picture(ui: &Ui, rect: Rect, cells: UVec2, colour: impl Fn(glam::Vec2) -> gla
     ui.painter().add(mesh);
 }
 
-/// A histogram for each light over each other, and whose is which.
-fn legend_and_bins(ui: &mut Ui, histograms: &[Histogram]) {
-    let (rect, _) = space(ui, Vec2::new(ui.available_width(), HISTOGRAM), "histogram of N·L");
+/// Histograms over each other.
+fn histogram(ui: &mut Ui, field: &str, histograms: &[Bins]) {
+    if histograms.is_empty() {
+        return;
+    }
+    let name = if field == "diffuse_ramp" { "histogram of N·L" } else { "histogram of amounts" };
+    let (rect, _) = space(ui, Vec2::new(ui.available_width(), HISTOGRAM), name);
     ui.painter().rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
-    histograms.iter().for_each(|histogram| bins(ui, rect, &histogram.bins, of_light(histogram.light)));
+    histograms.iter().for_each(|(colour, of)| bins(ui, rect, of, *colour));
+}
+
+/// Whose histogram is which.
+fn legend(ui: &mut Ui, histograms: &[Histogram]) {
     ui.horizontal_wrapped(|ui| {
         for histogram in histograms {
             ui.colored_label(of_light(histogram.light), format!("Light {}", histogram.light + 1));
@@ -158,12 +179,6 @@ fn legend_and_bins(ui: &mut Ui, histograms: &[Histogram]) {
             ui.weak("No light reaches smoke in the picture");
         }
     });
-}
-
-fn amounts(ui: &mut Ui, histogram: &[f32]) {
-    let (rect, _) = space(ui, Vec2::new(ui.available_width(), HISTOGRAM), "histogram of amounts");
-    ui.painter().rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
-    bins(ui, rect, histogram, ui.visuals().text_color());
 }
 
 /// Columns that fade upwards to nothing, with a line along their tops.

@@ -46,6 +46,13 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
         });
     }
     ui.separator();
+    session.inspect.spot = None;
+    if session.show.tab == Tab::Ramps {
+        let area = egui::ScrollArea::vertical().id_salt(session.show.tab).auto_shrink(false);
+        let system = session.show.system;
+        session.inspect.spot = area.show(ui, |ui| ramps::panel(ui, session, system)).inner;
+        return None;
+    }
     let (time, mut shown) = (session.playback.time, std::mem::take(&mut session.show.lights));
     session.thumbnails.follow(session.document.path(), session.assets.as_deref());
     let mut desk = Desk {
@@ -63,7 +70,6 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
     let mut edited = session.document.preset.clone();
     let preset = &mut edited;
     let system = session.show.system;
-    let mut spot = None;
     egui::ScrollArea::vertical().id_salt(session.show.tab).auto_shrink(false).show(ui, |ui| match session.show.tab {
         Tab::Look => look::panel(ui, &mut desk, preset, system),
         Tab::Light => {
@@ -72,14 +78,12 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
             surroundings(ui, &mut desk, preset);
         }
         Tab::Smoke => smoke(ui, &mut desk, preset, system),
-        Tab::Ramps => spot = ramps::panel(ui, session, system),
         Tab::Advanced => advanced(ui, &mut desk, preset, system),
-        Tab::Performance => {}
+        Tab::Ramps | Tab::Performance => {}
     });
     let Desk { asked, refused, .. } = desk;
     session.document.preset = edited;
     session.show.lights = shown;
-    session.inspect.spot = spot;
     if let Some(refused) = refused {
         session.messages.complain("typed", refused);
     }
