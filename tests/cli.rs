@@ -15,6 +15,8 @@ mod outputs;
 mod ramps;
 #[path = "cli/shaders.rs"]
 mod shaders;
+#[path = "cli/sprites.rs"]
+mod sprites;
 #[path = "cli/streams.rs"]
 mod streams;
 #[path = "cli/watch.rs"]

@@ -6,18 +6,28 @@ use std::time::{Duration, Instant};
 
 /// Does the work, and says what it is and for how long already. Work of less than a second says nothing.
 pub fn watched<T>(what: String, work: impl FnOnce() -> T) -> T {
+    watched_as(|| what.clone(), work)
+}
+
+/// The same, where what it is changes.
+pub fn watched_as<T>(what: impl Fn() -> String + Send, work: impl FnOnce() -> T) -> T {
     let stderr = std::io::stderr();
     if stderr.is_terminal() { watched_on(stderr, what, Duration::from_secs(1), work) } else { work() }
 }
 
-fn watched_on<T>(mut out: impl Write + Send, what: String, every: Duration, work: impl FnOnce() -> T) -> T {
+fn watched_on<T>(
+    mut out: impl Write + Send,
+    what: impl Fn() -> String + Send,
+    every: Duration,
+    work: impl FnOnce() -> T,
+) -> T {
     let (done, end) = channel::<()>();
     let tell = move || {
         let started = Instant::now();
         let mut erase = "";
         while end.recv_timeout(every) == Err(RecvTimeoutError::Timeout) {
             // A terminal that is gone is no reason to stop.
-            let _ = write!(out, "\r{what}, {} s ", started.elapsed().as_secs()).and_then(|()| out.flush());
+            let _ = write!(out, "\r{}, {} s ", what(), started.elapsed().as_secs()).and_then(|()| out.flush());
             erase = "\r\x1b[K";
         }
         let _ = write!(out, "{erase}").and_then(|()| out.flush());
@@ -37,7 +47,7 @@ mod tests {
 
     fn shown(every: Duration, work: Duration) -> String {
         let mut terminal = Vec::new();
-        watched_on(&mut terminal, "baking puff".into(), every, || std::thread::sleep(work));
+        watched_on(&mut terminal, || "baking puff".into(), every, || std::thread::sleep(work));
         String::from_utf8(terminal).unwrap()
     }
 
@@ -53,6 +63,6 @@ mod tests {
         // A writer without room.
         let full: &mut [u8] = &mut [];
         let work = || std::thread::sleep(Duration::from_millis(50));
-        watched_on(full, "baking".into(), Duration::from_millis(1), work);
+        watched_on(full, || "baking".into(), Duration::from_millis(1), work);
     }
 }

@@ -2,6 +2,7 @@
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use haze::noise::NoiseRecipe;
 use haze::picture::{Effort, write_png};
@@ -12,7 +13,7 @@ use haze::{Error, FieldError};
 use image::DynamicImage;
 
 use super::output::{Files, say};
-use super::progress::watched;
+use super::progress::{watched, watched_as};
 
 /// The recipes that a command takes.
 pub struct Kinds {
@@ -81,14 +82,19 @@ impl Recipe {
         }
     }
 
-    /// As many pictures as extensions.
-    fn bake(&self) -> Result<Vec<DynamicImage>, FieldError> {
+    /// Frames that are baked one by one.
+    fn frame_count(&self) -> u32 {
+        if let Self::Sprite(recipe) = self { recipe.frame_count() } else { 1 }
+    }
+
+    /// As many pictures as extensions. `progress` is told how many frames are done.
+    fn bake(&self, progress: impl Fn(u32)) -> Result<Vec<DynamicImage>, FieldError> {
         Ok(match self {
             Self::Ramp(recipe) => vec![recipe.bake()?],
             Self::Motif(recipe) => vec![recipe.bake()?],
             Self::Noise(recipe) => vec![recipe.bake()?.into()],
             Self::Sprite(recipe) => {
-                let baked = recipe.bake()?;
+                let baked = recipe.bake(progress)?;
                 vec![baked.picture.into(), baked.detail.into()]
             }
         })
@@ -113,7 +119,12 @@ impl<'a> Job<'a> {
 
     /// Writes the pictures, and says so.
     pub fn bake(&self) -> Result<(), Error> {
-        let pictures = watched(format!("haze: baking {}", self.path.display()), || self.recipe.bake())?;
+        let (path, done, count) = (self.path.display(), AtomicU32::new(0), self.recipe.frame_count());
+        let what = || match count {
+            1 => format!("haze: baking {path}"),
+            _ => format!("haze: baking {path}, frame {} of {count}", done.load(Ordering::Relaxed) + 1),
+        };
+        let pictures = watched_as(what, || self.recipe.bake(|frames| done.store(frames, Ordering::Relaxed)))?;
         for (picture, output) in pictures.iter().zip(&self.outputs) {
             watched(format!("haze: writing {}", output.display()), || write_png(output, picture, Effort::Small))?;
             say!("{}: {}x{}", output.display(), picture.width(), picture.height())?;

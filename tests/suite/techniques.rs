@@ -135,7 +135,7 @@ fn every_sprite_setting_agrees() {
 /// A small flipbook and its detail map.
 pub fn flipbook() -> (Sprite, Option<Sprite>) {
     let recipe = recipe();
-    let baked = recipe.bake().unwrap();
+    let baked = recipe.bake(|_| ()).unwrap();
     let decode = |picture| Sprite::from_picture("flipbook".as_ref(), picture, recipe.layout()).unwrap();
     (decode(&baked.picture), Some(decode(&baked.detail)))
 }

@@ -97,22 +97,21 @@ fn refine(from: &Picture<Vec3>, to: &Picture<Vec3>, flow: &Picture<Vec2>) -> Pic
         *y = (bilinear(to, moved + Vec2::Y) - bilinear(to, moved - Vec2::Y)) * 0.5;
         *rest = from.load(at) - bilinear(to, moved);
     });
+    let offsets = (-WINDOW..=WINDOW).flat_map(|dy| (-WINDOW..=WINDOW).map(move |dx| IVec2::new(dx, dy)));
+    let weight = |offset: IVec2| (-offset.as_vec2().length_squared() / (WINDOW * WINDOW) as f32 * 2.0).exp();
+    let window: Vec<_> = offsets.map(|offset| (offset, weight(offset))).collect();
     let mut refined = Picture::new(from.size, Vec2::ZERO);
     refined.for_each(|at, motion| {
         let at = at.as_ivec2();
         let (mut matrix, mut right) = (Mat2::from_diagonal(Vec2::splat(STIFFNESS)), Vec2::ZERO);
         // The window's own mean motion: neighbours move alike.
         let (mut mean, mut total) = (Vec2::ZERO, 0.0);
-        for dy in -WINDOW..=WINDOW {
-            for dx in -WINDOW..=WINDOW {
-                let offset = IVec2::new(dx, dy);
-                let weight = (-offset.as_vec2().length_squared() / (WINDOW * WINDOW) as f32 * 2.0).exp();
-                let (x, y, rest) = local.load(at + offset);
-                matrix += Mat2::from_cols(Vec2::new(x.dot(x), x.dot(y)), Vec2::new(x.dot(y), y.dot(y))) * weight;
-                right += Vec2::new(x.dot(rest), y.dot(rest)) * weight;
-                mean += flow.load(at + offset) * weight;
-                total += weight;
-            }
+        for &(offset, weight) in &window {
+            let (x, y, rest) = local.load(at + offset);
+            matrix += Mat2::from_cols(Vec2::new(x.dot(x), x.dot(y)), Vec2::new(x.dot(y), y.dot(y))) * weight;
+            right += Vec2::new(x.dot(rest), y.dot(rest)) * weight;
+            mean += flow.load(at + offset) * weight;
+            total += weight;
         }
         let step = matrix.inverse() * right;
         *motion = flow.load(at).lerp(mean / total, 0.5) + step.clamp_length_max(1.0);
