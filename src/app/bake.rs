@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 
 use super::output::{Failures, Files};
-use super::ramp;
 use super::recipe::{Job, Kinds, RAMPS, SPRITES};
+use super::{ramp, sprite};
 
 #[derive(Args)]
 pub struct RampArguments {
@@ -51,6 +51,9 @@ enum SpriteCommand {
         #[arg(required = true)]
         recipes: Vec<PathBuf>,
     },
+    /// Say what would show: colours in place of normals, their length, green that points down, borders, premultiplied normals, the
+    /// seam of the loop. Exits with 1 if there is anything.
+    Check(sprite::check::Arguments),
 }
 
 pub fn run_ramp(arguments: &RampArguments) -> Result<(), Failures> {
@@ -66,8 +69,10 @@ pub fn run_ramp(arguments: &RampArguments) -> Result<(), Failures> {
 }
 
 pub fn run_sprite(arguments: &SpriteArguments) -> Result<(), Failures> {
-    let SpriteCommand::Bake { recipes } = &arguments.command;
-    run(recipes, &SPRITES)
+    match &arguments.command {
+        SpriteCommand::Bake { recipes } => run(recipes, &SPRITES),
+        SpriteCommand::Check(arguments) => sprite::check::run(arguments),
+    }
 }
 
 /// Bakes recipes if all are good.

@@ -23,6 +23,7 @@ mod recipe;
 mod render;
 mod shade_tree;
 mod sheet;
+mod sprite;
 mod techniques;
 mod tweak;
 mod vary;
@@ -65,7 +66,7 @@ enum Command {
     Preset(preset::Arguments),
     /// Make, import, watch, show and check ramps.
     Ramp(bake::RampArguments),
-    /// Make sprite pictures.
+    /// Make and check sprites.
     Sprite(bake::SpriteArguments),
     /// Say what this machine renders with.
     Info,

@@ -5,6 +5,7 @@ use glam::{UVec2, Vec3};
 use super::material_names::MaterialNames;
 use crate::assets::material::MaterialAssets;
 use crate::assets::ramp::Ramp;
+use crate::assets::sprite::check::not_normals;
 use crate::formula::colour::srgb_from_linear;
 
 /// Most that channels of linear colours differ which are taken for the same.
@@ -24,7 +25,8 @@ impl MaterialNames {
             ("specular_ramp", &self.specular_ramp, of_specular_ramp(&loaded.specular_ramp)),
             ("motif", &self.motif, of_motif(&loaded.motif)),
         ];
-        let doubts = of_ramps.chain(others);
+        let sprite = [("sprite", &self.sprite, not_normals(&loaded.sprite).map(String::from))];
+        let doubts = sprite.into_iter().chain(of_ramps).chain(others);
         doubts.filter_map(|(field, name, doubt)| Some((field, format!("{name}: {}", doubt?)))).collect()
     }
 }
@@ -108,6 +110,12 @@ mod tests {
         one(|names| names.diffuse_ramp = "specular_halo".into(), "diffuse_ramp", "its 64 rows differ");
         one(|names| names.age_ramp = "normals.png".into(), "age_ramp", "normals of a sprite");
         one(|names| names.specular_ramp = "normals.png".into(), "specular_ramp", "normals of a sprite");
+        let sheet = image::RgbaImage::from_fn(16, 16, |x, y| {
+            let inside = (1..15).contains(&x) && (1..15).contains(&y);
+            image::Rgba([240, 90 + 4 * x as u8, 30, if inside { 255 } else { 0 }])
+        });
+        sheet.save(folder.path().join("fire.png")).unwrap();
+        one(|names| names.sprite = "fire.png".into(), "sprite", "colours, not normals");
         one(|names| names.motif = "across.png".into(), "motif", "64x4 pixels");
     }
 }

@@ -3,7 +3,7 @@
 use std::fs;
 use std::time::{Duration, Instant};
 
-use super::{folder, haze, stderr};
+use super::{folder, haze, refusal, stderr};
 
 #[test]
 fn a_large_flipbook_is_soon_baked() {
@@ -17,4 +17,31 @@ fn a_large_flipbook_is_soon_baked() {
     assert!(output.status.success(), "{}", stderr(&output));
     // 7 s of two cores' time; here other tests run at the same time. Version 1 takes more than 400 s of it.
     assert!(started.elapsed() < Duration::from_secs(40), "{:?}", started.elapsed());
+}
+
+#[test]
+fn what_is_found_in_sprites_is_said_and_exits_with_1() {
+    let folder = folder();
+    let wisp = concat!(env!("CARGO_MANIFEST_DIR"), "/sprites/wisp.png");
+    // Its recipe is beside it, and says how it is laid out.
+    let output = haze(folder.path(), &["sprite", "check", wisp]);
+    assert_eq!(String::from_utf8_lossy(&output.stdout), format!("{wisp}: good\n"), "{}", stderr(&output));
+    let sheet = image::open(wisp).unwrap().to_rgba8();
+    let mut turned = sheet.clone();
+    turned.pixels_mut().for_each(|texel| texel.0[1] = 255 - texel.0[1]);
+    turned.save(folder.path().join("down.png")).unwrap();
+    let colours = image::RgbaImage::from_pixel(8, 8, image::Rgba([250, 120, 20, 255]));
+    colours.save(folder.path().join("fire.png")).unwrap();
+    let output = haze(folder.path(), &["sprite", "check", "--columns", "4", "--rows", "2", "down.png"]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.starts_with("down.png: y_down: green points down, "), "{text}");
+    assert_eq!((output.status.code(), text.lines().count(), stderr(&output)), (Some(1), 1, String::new()), "{text}");
+    let arguments = ["sprite", "check", "--columns", "4", "--rows", "2", "--y-down", "down.png"];
+    assert!(haze(folder.path(), &arguments).status.success());
+    let output = haze(folder.path(), &["sprite", "check", "fire.png"]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.contains("fire.png: border: frame 0 has alpha 255") && text.contains("fire.png: normals: "), "{text}");
+    // What cannot be cut into frames is bad input.
+    let text = refusal(folder.path(), &["sprite", "check", "--columns", "3", "down.png"]);
+    assert!(text.contains("square frames"), "{text}");
 }

@@ -1,6 +1,7 @@
 //! Sprite pictures: flipbooks of normal maps with the amount in alpha.
 
 pub mod bake;
+pub mod check;
 pub mod detail;
 
 use std::path::Path;

@@ -1,0 +1,57 @@
+//! `haze sprite check`: what would show.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use haze::Error;
+use haze::picture::read_png;
+use haze::sprite::SpriteLayout;
+use haze::sprite::bake::SpriteRecipe;
+use haze::sprite::check::{Finding, check};
+
+use super::super::output::{Failures, say};
+
+#[derive(Args)]
+pub struct Arguments {
+    /// PNGs.
+    #[arg(required = true)]
+    sprites: Vec<PathBuf>,
+    /// Frames beside each other; else as the recipe beside a PNG says, or 1.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=256))]
+    columns: Option<u32>,
+    /// Frames below each other; likewise.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=256))]
+    rows: Option<u32>,
+    /// They are loaded with `"y_down": true`.
+    #[arg(long)]
+    y_down: bool,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failures> {
+    let (checked, failures) = Failures::of_each(&arguments.sprites, |path| Ok((path, findings(path, arguments)?)));
+    let mut is_good = true;
+    for (path, findings) in checked {
+        if findings.is_empty() {
+            say!("{}: good", path.display())?;
+        }
+        for Finding { name, what } in findings {
+            is_good = false;
+            say!("{}: {name}: {what}", path.display())?;
+        }
+    }
+    failures.into_result()?;
+    if is_good { Ok(()) } else { Err(Failures::default()) }
+}
+
+fn findings(path: &Path, Arguments { columns, rows, y_down, .. }: &Arguments) -> Result<Vec<Finding>, Error> {
+    let picture = read_png(path)?.to_rgba8();
+    let recipe = path.with_extension("sprite.json");
+    let beside = if (columns, rows) == (&None, &None) && recipe.is_file() {
+        SpriteRecipe::load(&recipe)?.layout()
+    } else {
+        SpriteLayout::default()
+    };
+    let layout =
+        SpriteLayout { columns: columns.unwrap_or(beside.columns), rows: rows.unwrap_or(beside.rows), y_down: *y_down };
+    check(path, &picture, layout)
+}

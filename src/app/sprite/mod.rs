@@ -1,0 +1,3 @@
+//! `haze sprite`: what an artist does with a sprite besides baking it.
+
+pub mod check;
