@@ -28,6 +28,7 @@ mod preset_thumbnails;
 mod ramp_files;
 mod reach;
 mod referee;
+mod release;
 mod reload;
 mod search;
 mod session;

@@ -6,6 +6,7 @@ use haze::Error;
 use super::easel::Easel;
 use super::health::{Health, lose_device};
 use super::platform::clock::{Duration, Instant};
+use super::release::split_at_release;
 use super::surface::paced;
 use super::window::{Start, Window};
 
@@ -84,7 +85,7 @@ fn open_once(kept: &mut Kept, is_sized: bool) -> Result<(), Error> {
         }
         let health = easel.health().clone();
         let window = kept.start.take().map(|start| Window::new(easel, start)).transpose()?;
-        Ok(Box::new(Shown { window, health, kept }) as Box<dyn eframe::App>)
+        Ok(Box::new(Shown { window, health, kept, later: Vec::new() }) as Box<dyn eframe::App>)
     });
     eframe::run_native("haze", options, app).map_err(no_window)
 }
@@ -94,9 +95,18 @@ struct Shown<'a> {
     window: Option<Window>,
     health: Health,
     kept: &'a mut Kept,
+    /// What happened after a button was let go, for the next frame.
+    later: Vec<egui::Event>,
 }
 
 impl eframe::App for Shown<'_> {
+    fn raw_input_hook(&mut self, context: &egui::Context, input: &mut egui::RawInput) {
+        split_at_release(&mut self.later, &mut input.events);
+        if !self.later.is_empty() {
+            context.request_repaint();
+        }
+    }
+
     fn logic(&mut self, context: &egui::Context, frame: &mut eframe::Frame) {
         if !self.health.is_lost() {
             self.window.iter_mut().for_each(|window| window.logic(context, frame));

@@ -4,6 +4,8 @@ use eframe::egui::{Key, Modifiers, Rect, Role, Theme, Vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, SnapshotOptions};
 
+use haze::settings::ShadeTree;
+
 use super::testing::{brightness, picture, window};
 use super::window::Window;
 
@@ -159,6 +161,20 @@ fn a_stage_of_the_strip_is_seen_full() {
     harness.key_press(Key::Escape);
     harness.run_steps(3);
     assert!((shown(&mut harness) - before).abs() < 1.0);
+}
+
+#[test]
+fn escape_closes_a_menu_and_nothing_else() {
+    let mut harness = column();
+    harness.get_by_label("Specular scatter").click();
+    harness.run_steps(3);
+    harness.get_by_label("Compare").click();
+    harness.run_steps(3);
+    harness.get_by_label("As saved");
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    assert!(harness.query_by_label("As saved").is_none());
+    assert_eq!(harness.state_mut().session_mut().show.stage, ShadeTree::SpecularScatter);
 }
 
 #[test]

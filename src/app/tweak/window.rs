@@ -187,7 +187,9 @@ impl Window {
     fn keys(&mut self, ui: &Ui) {
         let is_asked = self.filing.waiting.is_some() || self.filing.typed.is_some();
         let is_modal = self.session.search.is_open || self.session.show.help || self.has_browser || is_asked;
-        if ui.ctx().text_edit_focused() || is_modal || self.viewport.is_dragging() {
+        // A menu that is open has the keys: Escape closes it.
+        let is_menu = egui::Popup::is_any_open(ui.ctx());
+        if ui.ctx().text_edit_focused() || is_modal || is_menu || self.viewport.is_dragging() {
             return;
         }
         // Stops are pasted where stops are.
@@ -236,6 +238,7 @@ impl Window {
             Action::Strip => session.show.has_strip = !session.show.has_strip,
             Action::Inspect => session.inspect.toggle(),
             Action::NextStage => session.show.stage = after(session.show.stage),
+            Action::Picture if self.exporting.is_open => self.exporting.is_open = false,
             Action::Picture => session.show.stage = ShadeTree::Final,
             Action::Help => session.show.help = !session.show.help,
             Action::InView(action) => self.viewport.act(action, session),

@@ -227,7 +227,7 @@ mod tests {
     use super::*;
     use crate::assets::builtin;
     use crate::assets::picture::decode_png;
-    use image::{Rgba, imageops};
+    use image::Rgba;
 
     const LAYOUT: SpriteLayout = SpriteLayout { columns: 4, rows: 2, y_down: false };
 

@@ -9,7 +9,7 @@ use haze::preset::Tooltips;
 use haze::settings::{Choice, FieldVisitor, Fields, PictureRole, Value, path_of};
 
 use super::gallery::gallery;
-use super::row::{self, Asked, Row, spaced};
+use super::row::{self, Asked, Row, Usual, spaced};
 use super::value::shown_value;
 use crate::app::tweak::picture_thumbnails::PictureThumbnails;
 
@@ -53,10 +53,13 @@ pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fi
     fields.visit(&mut Rows { ui, desk, path: path.to_vec(), only: None });
 }
 
-/// Draws some fields of a struct, in the order of `names`: what each is called here, and its path from the struct.
-pub fn show_named(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fields, names: &[(&str, &str)]) {
-    for &(title, wanted) in names {
-        let only = Some(Only { title, wanted, depth: path.len() });
+/// A field by a name of its own: that, its path, and how far its slider goes.
+pub type Named = (&'static str, &'static str, Usual);
+
+/// Draws some fields of a struct, in the order of `names`; paths are from the struct.
+pub fn show_named(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fields, names: &[Named]) {
+    for &(title, wanted, usual) in names {
+        let only = Some(Only { title, wanted, usual, depth: path.len() });
         fields.visit(&mut Rows { ui, desk, path: path.to_vec(), only });
     }
 }
@@ -75,6 +78,7 @@ struct Only<'a> {
     title: &'a str,
     /// Its path from a struct that so many steps lead to.
     wanted: &'a str,
+    usual: Usual,
     depth: usize,
 }
 
@@ -142,8 +146,9 @@ impl Rows<'_, '_, '_> {
 
 impl FieldVisitor for Rows<'_, '_, '_> {
     fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, unit: &'static str) {
+        let usual = self.only.and_then(|only| only.usual);
         self.row(name, (unit, FIVE), |ui, label, refused, _, _| {
-            row::number(ui, label, value, &range, unit, refused);
+            row::number(ui, label, value, (&range, usual), unit, refused);
         });
     }
 

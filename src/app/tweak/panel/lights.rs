@@ -113,7 +113,7 @@ fn angles(ui: &mut Ui, desk: &mut Desk<'_>, index: usize, light: &mut Light) {
         let row = Row { name, tooltip, is_changed: desk.changed.contains(&path), second, sheet: None, inert: None };
         let refused = &mut desk.refused;
         let asked = row.show(ui, |ui, label| {
-            row::number(ui, label, value, &(-most..=most), "degrees", refused);
+            row::number(ui, label, value, (&(-most..=most), None), "degrees", refused);
         });
         desk.asked.extend(asked.map(|asked| (asked, path.clone())));
     };

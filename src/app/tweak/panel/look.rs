@@ -5,16 +5,26 @@ use glam::Vec3;
 use haze::preset::{Preset, PresetSystem};
 use haze::{Light, LightKind};
 
-use super::fields::{self, Desk};
+use super::fields::{self, Desk, Named};
 use super::row::{self, Asked, Row};
 
-/// Settings of the system that are shown as they are, under names that tell what they do: what comes before the rows of their
+/// Settings of the system that are shown as they are, under names that tell what they do, as far as they make sense: what comes before the rows of their
 /// own, and after.
-const BEFORE: [(&str, &str); 3] =
-    [("size at birth", "emitter.radius_start"), ("size at death", "emitter.radius_end"), ("rise", "emitter.buoyancy")];
-const AFTER: [(&str, &str); 2] = [("turbulence", "emitter.turbulence"), ("swirl size", "emitter.turbulence_scale")];
-const LIGHT: [(&str, &str); 2] =
-    [("scatter colour", "settings.soft_scatter.scatter_colour"), ("glow", "settings.specular_scatter.intensity")];
+const BEFORE: [Named; 3] = [
+    ("size at birth", "emitter.radius_start", Some((0.0, 1.5))),
+    ("size at death", "emitter.radius_end", Some((0.0, 4.0))),
+    ("rise", "emitter.buoyancy", Some((-1.0, 3.0))),
+];
+const AFTER: [Named; 2] = [
+    ("turbulence", "emitter.turbulence", Some((0.0, 3.0))),
+    ("swirl size", "emitter.turbulence_scale", Some((0.1, 6.0))),
+];
+const KEY_LIGHT: [Named; 1] = [("key light", "intensity", Some((0.0, 100.0)))];
+const LIGHT: [Named; 2] = [
+    ("scatter colour", "settings.soft_scatter.scatter_colour", None),
+    ("glow", "settings.specular_scatter.intensity", Some((0.0, 4.0))),
+];
+const EXPOSURE: [Named; 1] = [("exposure", "exposure", Some((-4.0, 4.0)))];
 
 /// Draws the look of one system of the preset.
 pub fn panel(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, index: usize) {
@@ -29,12 +39,12 @@ pub fn panel(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, index: usize
     fields::show_named(ui, desk, &[("systems", Some(index))], system, &AFTER);
     softness(ui, desk, system, index);
     if let Some((key, light)) = key.and_then(|key| Some((key, preset.lights.get_mut(key)?))) {
-        fields::show_named(ui, desk, &[("lights", Some(key))], light, &[("key light", "intensity")]);
+        fields::show_named(ui, desk, &[("lights", Some(key))], light, &KEY_LIGHT);
     }
     if let Some(system) = preset.systems.get_mut(index) {
         fields::show_named(ui, desk, &[("systems", Some(index))], system, &LIGHT);
     }
-    fields::show_named(ui, desk, &[("camera", None)], &mut preset.camera, &[("exposure", "exposure")]);
+    fields::show_named(ui, desk, &[("camera", None)], &mut preset.camera, &EXPOSURE);
 }
 
 /// A row for what several settings make together.
@@ -61,7 +71,7 @@ fn thickness(ui: &mut Ui, desk: &mut Desk<'_>, system: &mut PresetSystem, index:
     let tooltip = "How much one full-grown sprite covers: amount, opacity and boost together.";
     made_row(ui, desk, "thickness", tooltip, &paths, |ui, label, refused| {
         let mut value = thickness_of(system);
-        if row::number(ui, label, &mut value, &(0.001..=16.0), "", refused) {
+        if row::number(ui, label, &mut value, (&(0.001..=16.0), Some((0.001, 3.0))), "", refused) {
             set_thickness(system, value);
         }
     });
@@ -95,7 +105,7 @@ fn wind(ui: &mut Ui, desk: &mut Desk<'_>, system: &mut PresetSystem, index: usiz
     made_row(ui, desk, "wind", tooltip, &path, |ui, label, refused| {
         let wind = &mut system.emitter.wind;
         let mut speed = wind.length();
-        if row::number(ui, label, &mut speed, &(0.0..=20.0), "m/s", refused) {
+        if row::number(ui, label, &mut speed, (&(0.0..=20.0), Some((0.0, 4.0))), "m/s", refused) {
             *wind = wind.normalize_or(Vec3::X) * speed;
         }
     });
@@ -106,7 +116,7 @@ fn softness(ui: &mut Ui, desk: &mut Desk<'_>, system: &mut PresetSystem, index: 
     let tooltip = "Distance over which smoke dissolves before a surface: 1 / fade_scale.";
     made_row(ui, desk, "softness", tooltip, &path, |ui, label, refused| {
         let mut reach = 1.0 / system.settings.soft_fade.fade_scale;
-        if row::number(ui, label, &mut reach, &(0.001..=10.0), "m", refused) {
+        if row::number(ui, label, &mut reach, (&(0.001..=10.0), Some((0.01, 2.0))), "m", refused) {
             system.settings.soft_fade.fade_scale = 1.0 / reach;
         }
     });

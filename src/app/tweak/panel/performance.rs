@@ -138,7 +138,7 @@ fn drawn(ui: &mut Ui, performance: &Performance) {
         "drawn",
         &[
             ("systems in sight", counts.systems.to_string(), "Systems that reach the picture"),
-            ("sprites", grouped(counts.sprites.into()), "Sprites of all of them"),
+            ("sprites", grouped(counts.sprites), "Sprites of all of them"),
             (
                 "fragments",
                 grouped(overdraw.fragments.round() as u64),

@@ -130,17 +130,20 @@ const VALUE: f32 = 84.0;
 /// What cannot be typed is told once.
 pub type Refused = Option<String>;
 
+/// What is usual of a number, where that is less than what it may be: the slider goes from one to the other, straight.
+pub type Usual = Option<(f32, f32)>;
+
 /// A slider for a number, and the number, which can be typed; `refused` is told what was typed in vain. True if it was changed.
 pub fn number(
     ui: &mut Ui,
     name: &Response,
     value: &mut f32,
-    range: &RangeInclusive<f32>,
+    (range, usual): (&RangeInclusive<f32>, Usual),
     unit: &str,
     refused: &mut Refused,
 ) -> bool {
     let (low, high) = (*range.start(), *range.end());
-    let (shown, is_wide) = reach(range, *value);
+    let (shown, is_wide) = usual.map_or_else(|| reach(range, *value), |(low, high)| (low..=high, false));
     let control = Control {
         name,
         unit,
