@@ -20,7 +20,7 @@ use eframe::egui::{self, Ui};
 
 pub use frame::Surroundings;
 
-use crate::assets::ramp::bake::RampRow;
+use crate::assets::ramp::bake::{HexColour, RampRow};
 use frame::{Frame, State};
 
 /// What became of a gradient in a frame.
@@ -75,6 +75,14 @@ impl GradientEditor {
             edited.committed = self.state.pending.take();
         }
         edited
+    }
+
+    /// Gives the selected stop of the row another colour, as an eyedropper does: a step that the next frame commits.
+    pub fn set_colour(&mut self, row: &mut RampRow, colour: HexColour) {
+        if let Some(stop) = row.stops.get_mut(self.state.selected).filter(|stop| stop.colour != colour) {
+            stop.colour = colour;
+            self.state.pending = Some("colour of a stop");
+        }
     }
 
     /// A step is being made: what is changed is not committed yet.

@@ -10,7 +10,8 @@ mod tests;
 use std::sync::Arc;
 
 use eframe::egui::{Response, Vec2};
-use glam::UVec2;
+use glam::{UVec2, Vec3};
+use haze::formula::tonemap::developed;
 use haze::reference::Probe;
 
 use super::compare::Side;
@@ -58,8 +59,19 @@ impl Inspect {
         self.pinned.filter(|_| self.is_on).or(self.pointer)
     }
 
+    /// The sRGB colour of the pixel that is kept, as it is shown.
+    pub fn kept_colour(&self) -> Option<[u8; 3]> {
+        let told = self.told.as_ref().filter(|_| self.is_on && self.pinned.is_some())?;
+        Some(code(told.probe.colour?.truncate(), told.exposure))
+    }
+
     pub fn toggle(&mut self) {
         self.is_on = !self.is_on;
         self.pinned = None;
     }
+}
+
+/// Light as it is shown, sRGB code.
+fn code(light: Vec3, exposure: f32) -> [u8; 3] {
+    developed(light, exposure).to_array().map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round() as u8)
 }

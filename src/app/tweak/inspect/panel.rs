@@ -2,10 +2,9 @@
 
 use eframe::egui::{self, Color32, Rect, RichText, Sense, Stroke, Ui, Vec2};
 use glam::{Vec3, Vec4, Vec4Swizzles};
-use haze::formula::tonemap::developed;
 use haze::reference::{LightProbe, SystemProbe};
 
-use super::Told;
+use super::{Told, code};
 use crate::app::tweak::compare::{Against, Side};
 use crate::app::tweak::session::Session;
 
@@ -131,9 +130,8 @@ fn picture(ui: &mut Ui, light: Vec4, exposure: f32) {
         ui.label("picture, linear");
         colour(ui, light.xyz());
         ui.end_row();
-        let shown = developed(light.xyz(), exposure);
         ui.label("as shown, sRGB");
-        let [r, g, b] = shown.to_array().map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round() as u8);
+        let [r, g, b] = code(light.xyz(), exposure);
         ui.horizontal(|ui| {
             swatch(ui, Color32::from_rgb(r, g, b));
             ui.label(format!("{r} {g} {b}"));

@@ -74,7 +74,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
         let spoken = spaced(field);
         let one = |at: Option<f32>| at.map(|at| (at, Color32::WHITE)).into_iter().collect();
         let ink = ui.visuals().text_color();
-        let (picture, marks, bins): (_, Vec<Mark>, Vec<Bins>) = match field {
+        let (picture, marks, mut bins): (_, Vec<Mark>, Vec<Bins>) = match field {
             "diffuse_ramp" => {
                 let looking = probe.iter().flat_map(|probe| &probe.lights);
                 let marks = looking.map(|light| (light.coordinate, of_light(light.light))).collect();
@@ -99,6 +99,10 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
             }
             _ => (&material.age_ramp, Vec::new(), Vec::new()),
         };
+        if bins.is_empty() && field != "age_ramp" && !is_forward {
+            // Its place is kept: what is below must not move under the pointer when it comes.
+            bins.push((ink, Vec::new()));
+        }
         let edited = stops::editor(ui, session, ramp, &bins, &marks);
         let at = edited.unwrap_or_else(|| {
             let at = strip(ui, &spoken, picture, filter, &marks);

@@ -50,7 +50,12 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
     if session.show.tab == Tab::Ramps {
         let area = egui::ScrollArea::vertical().id_salt(session.show.tab).auto_shrink(false);
         let system = session.show.system;
-        session.inspect.spot = area.show(ui, |ui| ramps::panel(ui, session, system)).inner;
+        let shown = area.show(ui, |ui| {
+            // The last stop's handle is beside the scroll bar, not under it.
+            ui.set_max_width(ui.available_width() - ui.spacing().scroll.bar_width);
+            ramps::panel(ui, session, system)
+        });
+        session.inspect.spot = shown.inner;
         return None;
     }
     let (time, mut shown) = (session.playback.time, std::mem::take(&mut session.show.lights));

@@ -1,8 +1,8 @@
 //! The stops of a ramp that has a recipe, and how one without gets some.
 
 use eframe::egui::{self, Color32, Ui};
-use haze::gradient_editor::Surroundings;
-use haze::ramp::bake::RampRecipe;
+use haze::gradient_editor::{GradientEditor, Surroundings};
+use haze::ramp::bake::{HexColour, RampRecipe, RampRow};
 
 use crate::app::tweak::ramp_files::Source;
 use crate::app::tweak::session::Session;
@@ -35,21 +35,34 @@ pub fn editor(
     let folders = session.folders();
     let Source::Recipe(recipe) = session.ramps.source(ramp.name, &folders) else { return None };
     let mut recipe = session.document.recipes.get(ramp.name).unwrap_or(recipe).clone();
+    let kept = session.inspect.kept_colour();
     let (editor, row) = session.ramps.editor(ramp.field);
     rows(ui, &recipe, row);
     let histograms: Vec<_> = bins.iter().map(|(colour, bins)| (*colour, bins.as_slice())).collect();
     let surroundings = Surroundings { blend: recipe.blend, histograms: &histograms, marks };
     let shown = recipe.rows.get_mut(*row)?;
     let edited = ui.push_id(ramp.field, |ui| editor.show(ui, shown, &surroundings)).inner;
-    if edited.is_changed {
+    let is_changed = edited.is_changed | take_kept(ui, kept, editor, shown);
+    if is_changed {
         session.document.recipes.set(ramp.name, recipe);
     }
     if let Some(refused) = edited.refused {
         session.messages.complain("ramp", refused);
-    } else if edited.is_changed {
+    } else if is_changed {
         session.messages.withdraw("ramp");
     }
     Some(edited.pointed_at)
+}
+
+/// An eyedropper: the selected stop takes the colour of the pixel that the inspector keeps. True if it did.
+fn take_kept(ui: &mut Ui, kept: Option<[u8; 3]>, editor: &mut GradientEditor, row: &mut RampRow) -> bool {
+    let about = "The selected stop takes the colour of a pixel: inspect (I), and click on it in the picture to keep it";
+    let button = ui.add_enabled(kept.is_some(), egui::Button::new("Take the kept pixel"));
+    let is_taken = button.on_hover_text(about).on_disabled_hover_text(about).clicked();
+    if let Some(colour) = kept.filter(|_| is_taken) {
+        editor.set_colour(row, HexColour(colour));
+    }
+    is_taken
 }
 
 /// Which of the rows, where there are more than one.

@@ -196,7 +196,7 @@ fn rows_of_a_plane_are_picked() {
     let mut harness = folder.open();
     harness.get_by_label("1.00").click();
     harness.run_steps(3);
-    harness.get_by_label("Flip").click();
+    harness.get_by_label("Flip").click_accesskit();
     harness.run_steps(4);
     let [first, second] = &folder.recipe().rows[..] else { panic!("two rows") };
     assert_eq!(*first, row(0.0));
@@ -240,6 +240,34 @@ fn what_cannot_be_written_is_said() {
     let (is_error, text) = message.unwrap();
     assert!(is_error && text.contains("mine.ramp.json"), "{text}");
     assert!(Path::new(&folder.path("mine.png")).is_file());
+}
+
+#[test]
+fn a_stop_takes_the_colour_of_a_pixel() {
+    let folder = Folder::new();
+    let mut harness = folder.open();
+    let pixel = harness.get_by_label("viewport").rect().center();
+    harness.get_by_label("Inspect").click();
+    harness.run_steps(2);
+    harness.hover_at(pixel);
+    wait(&mut harness);
+    harness.drag_at(pixel);
+    harness.step();
+    harness.drop_at(pixel);
+    for _ in 0..300 {
+        picture(&mut harness);
+        if harness.state().session.inspect.kept_colour().is_some() {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    wait(&mut harness);
+    let kept = harness.state().session.inspect.kept_colour().unwrap();
+    harness.get_by_label("Take the kept pixel").click();
+    harness.run_steps(4);
+    assert_eq!(folder.recipe().rows[0].stops[0].colour.0, kept);
+    assert!(folder.is_baked());
+    assert_eq!(harness.state().session.document.history().undo_name(), Some("stops of mine.png"));
 }
 
 /// `HAZE_LOOK=DIR` says where to.
