@@ -54,6 +54,8 @@ enum SpriteCommand {
     /// Say what would show: colours in place of normals, their length, green that points down, borders, premultiplied normals, the
     /// seam of the loop. Exits with 1 if there is anything.
     Check(sprite::check::Arguments),
+    /// Make a sprite of normals painted elsewhere, heights, alpha alone or six-way light maps; of a sheet or of numbered frames.
+    Import(sprite::import::Arguments),
 }
 
 pub fn run_ramp(arguments: &RampArguments) -> Result<(), Failures> {
@@ -72,6 +74,7 @@ pub fn run_sprite(arguments: &SpriteArguments) -> Result<(), Failures> {
     match &arguments.command {
         SpriteCommand::Bake { recipes } => run(recipes, &SPRITES),
         SpriteCommand::Check(arguments) => sprite::check::run(arguments),
+        SpriteCommand::Import(arguments) => sprite::import::run(arguments).map_err(Failures::from),
     }
 }
 

@@ -66,7 +66,7 @@ enum Command {
     Preset(preset::Arguments),
     /// Make, import, watch, show and check ramps.
     Ramp(bake::RampArguments),
-    /// Make and check sprites.
+    /// Make, import and check sprites.
     Sprite(bake::SpriteArguments),
     /// Say what this machine renders with.
     Info,

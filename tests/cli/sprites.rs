@@ -45,3 +45,40 @@ fn what_is_found_in_sprites_is_said_and_exits_with_1() {
     let text = refusal(folder.path(), &["sprite", "check", "--columns", "3", "down.png"]);
     assert!(text.contains("square frames"), "{text}");
 }
+
+#[test]
+fn pictures_of_other_kinds_become_sprites() {
+    let folder = folder();
+    let said = |arguments: &[&str]| {
+        let output = haze(folder.path(), &[&["sprite", "import"], arguments].concat());
+        assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let wisp = concat!(env!("CARGO_MANIFEST_DIR"), "/sprites/wisp.png");
+    let grid = ["--columns", "4", "--rows", "2"];
+    let text = said(&[&[wisp, "-o", "up.png"], &grid[..]].concat());
+    assert!(text.starts_with("up.png: 4x2 frames\n  green points up: a guess, "), "{text}");
+    let mut down = image::open(wisp).unwrap().to_rgba8();
+    down.pixels_mut().for_each(|texel| texel.0[1] = 255 - texel.0[1]);
+    down.save(folder.path().join("down.png")).unwrap();
+    let text = said(&[&["down.png", "-o", "turned.png"], &grid[..]].concat());
+    assert!(text.contains("green points down, and was turned: a guess, "), "{text}");
+    let text = said(&[&["down.png", "-o", "told.png", "--y-down"], &grid[..]].concat());
+    assert!(text.contains("green points down, and was turned, as said"), "{text}");
+    let read = |name: &str| fs::read(folder.path().join(name)).unwrap();
+    assert_eq!(read("turned.png"), read("told.png"));
+    // Numbered frames.
+    for index in 0..4 {
+        let frame = image::imageops::crop_imm(&down, 0, 0, down.width() / 4, down.height() / 2).to_image();
+        frame.save(folder.path().join(format!("smoke_{index:04}.png"))).unwrap();
+    }
+    let frames = ["smoke_0000.png", "smoke_0001.png", "smoke_0002.png", "smoke_0003.png"];
+    let text = said(&[&frames[..], &["--from", "alpha", "-o", "puff.png"]].concat());
+    assert_eq!(text, "puff.png: 2x2 frames\n");
+    let checked = haze(folder.path(), &["sprite", "check", "--columns", "2", "--rows", "2", "puff.png"]);
+    assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stdout));
+    let text = refusal(folder.path(), &["sprite", "import", "down.png", "--from", "six_way_unity", "-o", "a.png"]);
+    assert!(text.contains("1 sheets; expected 2"), "{text}");
+    let text = refusal(folder.path(), &["sprite", "import", "down.png", "-o", "down.png"]);
+    assert!(text.contains("expected a file that is not read"), "{text}");
+}

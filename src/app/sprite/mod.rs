@@ -1,3 +1,4 @@
 //! `haze sprite`: what an artist does with a sprite besides baking it.
 
 pub mod check;
+pub mod import;

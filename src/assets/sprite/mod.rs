@@ -3,6 +3,7 @@
 pub mod bake;
 pub mod check;
 pub mod detail;
+pub mod import;
 
 use std::path::Path;
 use std::sync::Arc;

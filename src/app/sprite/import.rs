@@ -1,0 +1,75 @@
+//! `haze sprite import`: a sprite of a picture of another kind.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use glam::UVec2;
+use haze::Error;
+use haze::picture::{Effort, read_png, write_png};
+use haze::sprite::SpriteLayout;
+use haze::sprite::check::SURE;
+use haze::sprite::import::{Imported, Source, import, sheet_of};
+
+use super::super::options::choices;
+use super::super::output::{Files, say};
+
+#[derive(Args)]
+pub struct Arguments {
+    /// PNGs: one sheet, one file for each frame in their order, or the two sheets of six-way light maps.
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+    /// The PNG to write.
+    #[arg(short, long, value_name = "FILE.png")]
+    output: PathBuf,
+    /// What they hold.
+    #[arg(long = "from", value_name = "SOURCE", value_parser = choices::<Source>(), default_value = "normals")]
+    source: Source,
+    /// Frames beside each other on a sheet.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=256))]
+    columns: u32,
+    /// Frames below each other on a sheet.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=256))]
+    rows: u32,
+    /// Green of normals points down, true or false; guessed without.
+    #[arg(long, num_args = 0..=1, default_missing_value = "true", value_name = "IS_DOWN")]
+    y_down: Option<bool>,
+    /// How much heights, puffs and light maps stand out.
+    #[arg(long, default_value_t = 1.0, value_parser = strength)]
+    strength: f32,
+}
+
+fn strength(text: &str) -> Result<f32, String> {
+    let value = text.parse::<f32>().ok().filter(|value| (0.01..=100.0).contains(value));
+    value.ok_or_else(|| "expected a number from 0.01 to 100".into())
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Error> {
+    let Arguments { files, output, source, columns, rows, y_down, strength } = arguments;
+    Files::read(files).write("--output", output, "png")?;
+    let pictures = files.iter().map(|path| Ok((path.as_path(), read_png(path)?.to_rgba8())));
+    let pictures = pictures.collect::<Result<Vec<_>, Error>>()?;
+    let path = files.first().map_or(Path::new(""), PathBuf::as_path);
+    let (sheets, grid) = if pictures.len() > 1 && !source.has_two() {
+        let (sheet, grid) = sheet_of(&pictures)?;
+        (vec![sheet], grid)
+    } else {
+        (pictures.into_iter().map(|(_, picture)| picture).collect(), UVec2::new(*columns, *rows))
+    };
+    let layout = SpriteLayout { columns: grid.x, rows: grid.y, y_down: false };
+    let Imported { picture, y_direction, border } = import(path, &sheets, *source, layout, *y_down, *strength)?;
+    write_png(output, &picture.into(), Effort::Small)?;
+    say!("{}: {}x{} frames", output.display(), grid.x, grid.y)?;
+    if let Some((frame, alpha)) = border {
+        say!("  border: alpha up to {alpha} in frame {frame}, made clear; leave more room round the smoke")?;
+    }
+    let direction = |is_down| if is_down { "down, and was turned" } else { "up" };
+    match (y_down, y_direction) {
+        (Some(is_down), _) => say!("  green points {}, as said", direction(*is_down)),
+        (None, Some(found)) if found.sureness >= SURE => {
+            let sure = (found.sureness * 100.0).round();
+            say!("  green points {}: a guess, {sure} of 100 sure; --y-down says it", direction(found.is_down))
+        }
+        (None, Some(_)) => say!("  green taken to point up: nothing tells; --y-down says it"),
+        (None, None) => Ok(()),
+    }
+}
