@@ -66,14 +66,21 @@ pub const RAMPS: &[Builtin] = builtin!(
 pub const MOTIFS: &[Builtin] = builtin!("ramps", ".motif.json", ["motif_studio"]);
 
 /// Flipbooks of normal maps.
-pub const SPRITES: &[Builtin] = builtin!("sprites", ".sprite.json", ["puff", "wisp", "billow"]);
+pub const SPRITES: &[Builtin] =
+    builtin!("sprites", ".sprite.json", ["puff", "wisp", "billow", "ball", "cauliflower", "strands", "streaks"]);
+
+macro_rules! details {
+    ([$($name:literal),+ $(,)?]) => {
+        &[$(Builtin {
+            name: $name,
+            bytes: include_bytes!(concat!("../../sprites/", $name, ".detail.png")),
+            recipe: "",
+        }),+]
+    };
+}
 
 /// Depth and motion of the flipbooks, by the same names.
-pub const DETAILS: &[Builtin] = &[
-    Builtin { name: "puff", bytes: include_bytes!("../../sprites/puff.detail.png"), recipe: "" },
-    Builtin { name: "wisp", bytes: include_bytes!("../../sprites/wisp.detail.png"), recipe: "" },
-    Builtin { name: "billow", bytes: include_bytes!("../../sprites/billow.detail.png"), recipe: "" },
-];
+pub const DETAILS: &[Builtin] = details!(["puff", "wisp", "billow", "ball", "cauliflower", "strands", "streaks"]);
 
 /// Tiling 3D noise.
 pub const NOISES: &[Builtin] = builtin!("sprites", ".noise.json", ["fbm"]);

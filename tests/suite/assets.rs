@@ -79,7 +79,7 @@ fn sprites_are_what_their_recipes_make() {
     for sprite in builtin::SPRITES {
         let committed = read_png(&file("sprites", &format!("{}.png", sprite.name))).unwrap().to_rgba8();
         let recipe = SpriteRecipe::load(&file("sprites", &format!("{}.sprite.json", sprite.name))).unwrap();
-        // One frame that is not the first, at full size: the sheet takes a minute.
+        // One frame that is not the first.
         let frame = 3;
         let frame_of = |sheet: &RgbaImage, size: u32| {
             let origin = (frame % recipe.columns * size, frame / recipe.columns * size);
