@@ -22,17 +22,17 @@ choice! {
         Height = "height",
         /// a = amount, or grey where there is no alpha: puffed up.
         Alpha = "alpha",
-        /// Two light maps as Unity's: right, left, top; bottom, back, front. Their alpha: first amount, second none or emission.
+        /// Two light maps as Unity's VFX Graph has them: right, top, back; left, bottom, front. Alpha of the first = amount.
         SixWayUnity = "six_way_unity",
-        /// Two light maps: right, top, back; left, bottom, front. Alpha of the first = amount.
-        SixWayPairs = "six_way_pairs",
+        /// Two light maps: right, left, top; bottom, back, front. Alpha of the first = amount.
+        SixWayRltBbf = "six_way_rlt_bbf",
     }
 }
 
 impl Source {
     /// True for those of two pictures.
     pub fn has_two(self) -> bool {
-        matches!(self, Self::SixWayUnity | Self::SixWayPairs)
+        matches!(self, Self::SixWayUnity | Self::SixWayRltBbf)
     }
 }
 
@@ -135,7 +135,7 @@ pub fn import(
             for (texel, other) in picture.pixels_mut().zip(second.pixels()) {
                 let (a, b) = (value(texel), value(other));
                 let (right, left, top, bottom, front, back) = match source {
-                    Source::SixWayPairs => (a.x, b.x, a.y, b.y, b.z, a.z),
+                    Source::SixWayUnity => (a.x, b.x, a.y, b.y, b.z, a.z),
                     _ => (a.x, a.y, a.z, b.x, b.z, b.y),
                 };
                 let normal = Vec3::new(right - left, top - bottom, front - back);
@@ -267,8 +267,8 @@ mod tests {
             balls(move |normal, amount| [r(normal), g(normal), b(normal), amount])
         };
         let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
-        assert!(off(&[sheet([x, -x, y]), sheet([-y, -z, z])], Source::SixWayUnity, None, 1.0) < 0.02);
-        assert!(off(&[sheet([x, y, -z]), sheet([-x, -y, z])], Source::SixWayPairs, None, 1.0) < 0.02);
+        assert!(off(&[sheet([x, -x, y]), sheet([-y, -z, z])], Source::SixWayRltBbf, None, 1.0) < 0.02);
+        assert!(off(&[sheet([x, y, -z]), sheet([-x, -y, z])], Source::SixWayUnity, None, 1.0) < 0.02);
     }
 
     #[test]
@@ -278,9 +278,9 @@ mod tests {
             import(Path::new("a.png"), sheets, source, LAYOUT, None, 1.0).unwrap_err().to_string()
         };
         assert!(message(&[], Source::Height).contains("expected one"));
-        assert!(message(std::slice::from_ref(&sheet), Source::SixWayUnity).contains("1 sheets; expected 2"));
+        assert!(message(std::slice::from_ref(&sheet), Source::SixWayRltBbf).contains("1 sheets; expected 2"));
         let small = RgbaImage::new(64, 64);
-        assert!(message(&[sheet, small.clone()], Source::SixWayPairs).contains("expected 128x64 as the first"));
+        assert!(message(&[sheet, small.clone()], Source::SixWayUnity).contains("expected 128x64 as the first"));
         assert!(message(&[small], Source::Alpha).contains("square frames"));
     }
 
