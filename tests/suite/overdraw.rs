@@ -10,7 +10,7 @@ use haze::{Overdraw, Particle, Particles, View, wgpu};
 
 use crate::common::gpu;
 use crate::host::Host;
-use crate::stage::{BACKDROP, Stage};
+use crate::stage::{BACKDROP, DepthKind, Stage};
 
 const SIZE: UVec2 = UVec2::new(320, 180);
 
@@ -100,7 +100,9 @@ fn layers_do_not_depend_on_the_resolution_and_are_counted_as_often_as_they_are_d
     let forward = of(&|stage| (stage.settings.path, stage.shade_tree) = (Path::Forward, ShadeTree::Final));
     // Without the texels of the border that a target has.
     assert!((forward.fragments / whole.fragments - 1.0).abs() < 0.01 && forward.texels == whole.texels, "{forward:?}");
-    let host_depth = of(&|stage| stage.settings.accumulate.depth_source = DepthSource::Host);
+    // A linear target as well: OpenGL reads no depth buffer that it tests.
+    let host_depth =
+        of(&|stage| (stage.settings.accumulate.depth_source, stage.depth) = (DepthSource::Host, DepthKind::Both));
     assert!((host_depth.fragments / whole.fragments - 1.0).abs() < 0.01 && host_depth.texels == whole.texels);
     assert_eq!(of(&|stage| stage.settings.sprite.debug_loop = 3).fragments, 3.0 * whole.fragments);
     // Nothing of what is not drawn, out of sight or not known.
