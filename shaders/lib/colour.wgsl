@@ -11,6 +11,11 @@ fn srgb_from_linear(linear: f32) -> f32 {
     return 1.055 * pow(linear, 1.0 / 2.4) - 0.055;
 }
 
+// How bright linear RGB is to the eye. (ITU-R BT.709)
+fn luminance(light: vec3f) -> f32 {
+    return dot(light, vec3f(0.2126, 0.7152, 0.0722));
+}
+
 // What is written to a target that holds sRGB code without the hardware knowing it: linear light clamped to what such a
 // target can show, and encoded.
 fn gamma_target_colour(light: vec3f) -> vec3f {

@@ -74,7 +74,7 @@ fn coverage(amount: f32, boost: f32) -> f32 {
 // How much of the scene smoke hides where the coverage ramp is this light. Paint is read as it looks, the sRGB code of its
 // luminance: grey in the middle hides half.
 fn painted_coverage(paint: vec3f) -> f32 {
-    return srgb_from_linear(saturate(dot(paint, vec3f(0.2126, 0.7152, 0.0722))));
+    return srgb_from_linear(saturate(luminance(paint)));
 }
 
 // How much of the smoke, by view depth, lies in front of a light: 0 before its near side, 1 behind its far side.

@@ -7,6 +7,7 @@ mod bake;
 mod bench;
 mod cost;
 mod export;
+mod findings;
 mod frames;
 mod info;
 mod inputs;

@@ -9,6 +9,7 @@ use super::ramp::Ramp;
 use super::sprite::bake::SpriteRecipe;
 use super::sprite::{Sprite, SpriteLayout};
 use crate::error::Error;
+use crate::settings::PictureRole;
 
 /// A built-in file: its name and contents.
 #[derive(Clone, Copy, Debug)]
@@ -98,6 +99,17 @@ macro_rules! presets {
 /// The presets; the first is the default.
 pub const PRESETS: &[Builtin] =
     presets!(["column", "backlit_fog", "corridor", "explosion", "fence", "inside", "crates", "dust_storm"]);
+
+/// The pictures that there are for a role.
+pub fn of_role(role: PictureRole) -> &'static [Builtin] {
+    match role {
+        PictureRole::Sprite => SPRITES,
+        PictureRole::Ramp => RAMPS,
+        PictureRole::Motif => MOTIFS,
+        PictureRole::Noise => NOISES,
+        PictureRole::Detail => &[],
+    }
+}
 
 /// Finds a built-in by name.
 pub fn find(list: &'static [Builtin], name: &str) -> Option<&'static Builtin> {

@@ -3,6 +3,7 @@
 
 pub mod builtin;
 pub mod file;
+pub mod finding;
 pub mod json;
 pub mod material;
 pub mod noise;

@@ -14,6 +14,11 @@ pub fn srgb_from_linear(linear: f32) -> f32 {
     if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
+/// How bright linear RGB is to the eye. (ITU-R BT.709)
+pub fn luminance(light: Vec3) -> f32 {
+    light.dot(Vec3::new(0.2126, 0.7152, 0.0722))
+}
+
 /// What is written to a target that holds sRGB code without the hardware knowing it: linear light clamped to what such a
 /// target can show, and encoded.
 pub fn gamma_target_colour(light: Vec3) -> Vec3 {

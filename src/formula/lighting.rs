@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::colour::srgb_from_linear;
+use super::colour::{luminance, srgb_from_linear};
 use super::saturate;
 use super::uniforms::LightUniform;
 
@@ -60,7 +60,7 @@ pub fn coverage(amount: f32, boost: f32) -> f32 {
 /// How much of the scene smoke hides where the coverage ramp is this light. Paint is read as it looks, the sRGB code of its
 /// luminance: grey in the middle hides half.
 pub fn painted_coverage(paint: Vec3) -> f32 {
-    srgb_from_linear(saturate(paint.dot(Vec3::new(0.2126, 0.7152, 0.0722))))
+    srgb_from_linear(saturate(luminance(paint)))
 }
 
 /// How much of the box, by view depth, lies in front of a light. (OTEE "Specular scattering")

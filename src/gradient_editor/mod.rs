@@ -19,6 +19,7 @@ mod text;
 use eframe::egui::{self, Ui};
 
 pub use frame::Surroundings;
+pub use paint::histogram;
 
 use crate::assets::ramp::bake::{HexColour, RampRow};
 use frame::{Frame, State};

@@ -36,7 +36,7 @@ pub fn handle(
     ui.painter().rect(rect, 2.0, colour, stroke, StrokeKind::Outside);
 }
 
-/// Columns that fade upwards to nothing, with a line along their tops.
+/// Draws columns of heights from 0 to 1 over a rectangle, which fade upwards to nothing, with a line along their tops.
 pub fn histogram(ui: &Ui, rect: Rect, bins: &[f32], colour: Color32) {
     let width = rect.width() / bins.len().max(1) as f32;
     let (mut mesh, mut outline) = (Mesh::default(), Vec::new());

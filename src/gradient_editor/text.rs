@@ -4,7 +4,8 @@ use std::path::Path;
 
 use crate::assets::json;
 use crate::assets::ramp::bake::{RampRow, RampStop};
-use crate::error::{Error, FieldError};
+use crate::assets::ramp::gradient::not_empty;
+use crate::error::Error;
 use crate::settings::validate;
 
 /// The row as in a recipe.
@@ -17,8 +18,7 @@ pub fn to_text(row: &RampRow) -> String {
 pub fn parse(text: &str) -> Result<Vec<RampStop>, Error> {
     let path = Path::new("pasted text");
     let mut row: RampRow = json::parse(path, text)?;
-    let is_empty = || FieldError::new("stops", "[]", "at least one entry");
-    let valid = validate(&row, String::new).and(row.stops.first().map(|_| ()).ok_or_else(is_empty));
+    let valid = validate(&row, String::new).and_then(|()| not_empty("stops", &row.stops));
     valid.map_err(|error| Error::JsonField { path: path.into(), error })?;
     super::stops::sort(&mut row.stops);
     Ok(row.stops)

@@ -6,9 +6,9 @@ use std::ops::RangeInclusive;
 
 use glam::Vec3;
 
-use super::camera::Camera;
 use super::effect::conditions;
 use super::preset::{Preset, PresetSystem};
+use super::schema::widest;
 use super::tooltips::Tooltips;
 use crate::assets::builtin;
 use crate::frame::Light;
@@ -25,13 +25,7 @@ tells of your preset, and the window greys it.
 
 /// The page, as Markdown.
 pub fn settings_page() -> String {
-    // A range that begins at another field's value is told at its widest.
-    let mut preset = Preset {
-        camera: Camera { near: 0.001, ..Camera::default() },
-        lights: vec![Light { inner_angle: 0.0, ..Light::default() }],
-        systems: vec![PresetSystem::default()],
-        ..Preset::default()
-    };
+    let mut preset = widest();
     let plain = Preset { lights: vec![Light::default()], systems: vec![PresetSystem::default()], ..Preset::default() };
     let defaults = values(&plain).into_iter().map(|(path, value)| (path.replace("[0]", ""), value)).collect();
     let mut page = Page { tooltips: Tooltips::of::<Preset>(), defaults, path: Vec::new(), parts: Vec::new() };
@@ -135,14 +129,10 @@ impl FieldVisitor for Rows<'_> {
     }
 
     fn picture(&mut self, name: &'static str, _: &mut String, role: PictureRole) {
-        let built_in = match role {
-            PictureRole::Sprite => builtin::SPRITES,
-            PictureRole::Ramp => return self.row(name, "[a built-in ramp](../ramps/README.md), or a PNG's path"),
-            PictureRole::Motif => builtin::MOTIFS,
-            PictureRole::Noise => builtin::NOISES,
-            PictureRole::Detail => &[],
-        };
-        let names: Vec<_> = built_in.iter().map(|built_in| format!("`{}`", built_in.name)).collect();
+        if role == PictureRole::Ramp {
+            return self.row(name, "[a built-in ramp](../ramps/README.md), or a PNG's path");
+        }
+        let names: Vec<_> = builtin::of_role(role).iter().map(|built_in| format!("`{}`", built_in.name)).collect();
         let or = if names.is_empty() { "" } else { ", or " };
         self.row(name, names.join(", ") + or + "a PNG's path");
     }

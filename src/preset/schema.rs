@@ -13,16 +13,20 @@ use crate::settings::{FieldVisitor, Fields};
 /// The JSON schema of preset files, as text.
 pub fn schema() -> String {
     let mut schema = schemars::schema_for!(Preset).to_value();
-    // Some ranges begin at another field's value: those fields are put where they leave the widest range.
-    let mut preset = Preset {
+    let mut preset = widest();
+    preset.visit(&mut Ranges { schema: &mut schema, definition: String::new() });
+    tidy(&mut schema);
+    serde_json::to_string_pretty(&schema).unwrap_or_default()
+}
+
+/// One of each part, whose ranges are told: where one begins at another field's value, that leaves the widest.
+pub(super) fn widest() -> Preset {
+    Preset {
         camera: Camera { near: 0.001, ..Camera::default() },
         lights: vec![Light { inner_angle: 0.0, ..Light::default() }],
         systems: vec![PresetSystem::default()],
         ..Preset::default()
-    };
-    preset.visit(&mut Ranges { schema: &mut schema, definition: String::new() });
-    tidy(&mut schema);
-    serde_json::to_string_pretty(&schema).unwrap_or_default()
+    }
 }
 
 /// Writes defaults as the f32 they are, not as the f64 nearest to it.

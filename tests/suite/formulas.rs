@@ -452,7 +452,7 @@ fn formulas() -> Vec<Formula> {
             reference: |x| vec![lighting::painted_coverage(v3(x))],
             cases: random(100, &[(0.0, 1.3); 3]),
             tolerance: 1e-5,
-            mutants: &[("0.7152, 0.0722", "0.0722, 0.7152"), ("srgb_from_linear(saturate", "(saturate")],
+            mutants: &[("luminance(paint)", "paint.r"), ("srgb_from_linear(saturate", "(saturate")],
         },
         Formula {
             name: "specular_scatter_fade",
@@ -980,6 +980,15 @@ fn formulas() -> Vec<Formula> {
                 ("cosine * centre.x - sine * centre.y", "cosine * centre.x + sine * centre.y"),
                 ("!clipped || upper.y", "upper.y < 0.0 || upper.y"),
             ],
+        },
+        Formula {
+            name: "luminance",
+            file: "lib/colour.wgsl",
+            wgsl: "y(0, luminance(vec3f(x(0), x(1), x(2))));",
+            reference: |x| vec![colour::luminance(v3(x))],
+            cases: random(50, &[(0.0, 4.0); 3]),
+            tolerance: ARITHMETIC,
+            mutants: &[("0.7152, 0.0722", "0.0722, 0.7152")],
         },
         Formula {
             name: "srgb_from_linear",

@@ -5,13 +5,15 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use haze::Error;
+use haze::assets::finding::Finding;
 use haze::picture::colour_notes;
 use haze::ramp::Role;
-use haze::ramp::check::{Finding, check};
+use haze::ramp::check::check;
 
-use super::super::options::choices;
-use super::super::output::{Failures, has_extension, say};
 use super::picture_of;
+use crate::app::findings::tell;
+use crate::app::options::choices;
+use crate::app::output::{Failures, has_extension};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -24,19 +26,7 @@ pub struct Arguments {
 }
 
 pub fn run(Arguments { ramps, role }: &Arguments) -> Result<(), Failures> {
-    let (checked, failures) = Failures::of_each(ramps, |path| Ok((path, findings(path, *role)?)));
-    let mut is_good = true;
-    for (path, findings) in checked {
-        if findings.is_empty() {
-            say!("{}: good", path.display())?;
-        }
-        for Finding { name, what } in findings {
-            is_good = false;
-            say!("{}: {name}: {what}", path.display())?;
-        }
-    }
-    failures.into_result()?;
-    if is_good { Ok(()) } else { Err(Failures::default()) }
+    tell(ramps, |path| findings(path, *role))
 }
 
 fn findings(path: &Path, role: Option<Role>) -> Result<Vec<Finding>, Error> {

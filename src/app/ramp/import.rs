@@ -7,9 +7,9 @@ use haze::Error;
 use haze::ramp::fit::USUAL_ERROR;
 use haze::ramp::import::import;
 
-use super::super::output::{Files, say};
-use super::super::progress::watched;
 use super::{check_output, write_recipe};
+use crate::app::output::{Files, say};
+use crate::app::progress::watched;
 
 #[derive(Args)]
 pub struct Arguments {

@@ -11,11 +11,11 @@ use haze::ramp::{Ramp, Role};
 use haze::{Error, FieldError};
 use image::Rgb;
 
-use super::super::label::{draw_text, width};
-use super::super::options::choices;
-use super::super::output::{Files, say};
 use super::strip::strip;
 use super::{check_output, write_recipe};
+use crate::app::label::{draw_text, width};
+use crate::app::options::choices;
+use crate::app::output::{Files, say};
 
 #[derive(Args)]
 pub struct Arguments {

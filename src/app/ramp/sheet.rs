@@ -11,12 +11,12 @@ use haze::ramp::{Ramp, Role};
 use haze::settings::{CoverageMode, DiffuseMode, Path as SmokePath, SoftScatterMode};
 use haze::{Error, FieldError, MaterialAssets, builtin};
 
-use super::super::export::{MOST_CELLS, Watch, columns, sheet};
-use super::super::options::{ShotArguments, choices};
-use super::super::output::{Files, has_extension};
-use super::super::recipe::picture;
 use super::strip::strip;
 use super::{is_recipe, picture_of};
+use crate::app::export::{MOST_CELLS, Watch, columns, sheet};
+use crate::app::options::{ShotArguments, choices};
+use crate::app::output::{Files, has_extension};
+use crate::app::recipe::picture;
 
 #[derive(Args)]
 #[command(mut_arg("size", |size| size.help("Size of the pictures of a full row and column together, pixels: each is that much smaller")))]

@@ -7,17 +7,17 @@ use std::path::PathBuf;
 use clap::Args;
 use glam::{UVec2, Vec3};
 use haze::Error;
-use haze::formula::colour::srgb_from_linear;
+use haze::formula::colour::{linear_from_srgb, luminance, srgb_from_linear};
 use haze::picture::{Effort, write_png};
 use haze::ramp::Ramp;
 use haze::ramp::bake::RampRecipe;
 use image::{Rgb, RgbImage, imageops};
 
-use super::super::output::{Files, one_line, say, write_text};
-use super::super::plot::{Curve, LEFT, RIGHT, plot};
-use super::super::sheet::PAPER;
 use super::picture_of;
 use super::strip::{code, share, strip};
+use crate::app::output::{Files, one_line, say, write_text};
+use crate::app::plot::{Curve, LEFT, RIGHT, plot};
+use crate::app::sheet::PAPER;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -77,15 +77,15 @@ fn coloured(ramp: &Ramp) -> String {
     text
 }
 
-fn luminance(code: Vec3) -> f32 {
-    let linear = code.map(haze::formula::colour::linear_from_srgb);
-    srgb_from_linear(linear.dot(Vec3::new(0.2126, 0.7152, 0.0722)))
+/// Of sRGB code, as code.
+fn brightness(code: Vec3) -> f32 {
+    srgb_from_linear(luminance(code.map(linear_from_srgb)))
 }
 
 /// Luminance along the middle of the ramp.
 fn curve(ramp: &Ramp) -> String {
     let heights: Vec<u32> =
-        (0..ACROSS).map(|x| (luminance(code(ramp, share(x, ACROSS), 0.5)) * (8 * UP) as f32).round() as u32).collect();
+        (0..ACROSS).map(|x| (brightness(code(ramp, share(x, ACROSS), 0.5)) * (8 * UP) as f32).round() as u32).collect();
     let mut text = String::new();
     for line in (0..UP).rev() {
         let eighth = |height: &u32| EIGHTHS[height.saturating_sub(8 * line).min(8) as usize];
@@ -121,7 +121,7 @@ fn drawn(ramp: &Ramp) -> RgbImage {
         curve("red", [235, 90, 80], |code| code.x),
         curve("green", [90, 200, 100], |code| code.y),
         curve("blue", [90, 140, 245], |code| code.z),
-        curve("luminance", [225, 225, 220], luminance),
+        curve("luminance", [225, 225, 220], brightness),
     ];
     let axis = if ramp.size().y > 1 { "across, at the middle of the other axis" } else { "across" };
     let below = plot(SIZE + UVec2::new((LEFT + RIGHT) as u32, 60), (0.0, 1.0), axis, &curves);

@@ -10,10 +10,10 @@ use std::time::Duration;
 use clap::Args;
 use haze::Error;
 
-use super::super::interrupt;
-use super::super::output::{Failures, Files, complain};
-use super::super::recipe::{Job, RAMPS, picture};
-use super::super::watch::Watcher;
+use crate::app::interrupt;
+use crate::app::output::{Failures, Files, complain};
+use crate::app::recipe::{Job, RAMPS, picture};
+use crate::app::watch::Watcher;
 
 #[derive(Args)]
 pub struct Arguments {

@@ -4,12 +4,14 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use haze::Error;
+use haze::assets::finding::Finding;
 use haze::picture::read_png;
 use haze::sprite::SpriteLayout;
 use haze::sprite::bake::SpriteRecipe;
-use haze::sprite::check::{Finding, check};
+use haze::sprite::check::check;
 
-use super::super::output::{Failures, say};
+use crate::app::findings::tell;
+use crate::app::output::Failures;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -28,19 +30,7 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failures> {
-    let (checked, failures) = Failures::of_each(&arguments.sprites, |path| Ok((path, findings(path, arguments)?)));
-    let mut is_good = true;
-    for (path, findings) in checked {
-        if findings.is_empty() {
-            say!("{}: good", path.display())?;
-        }
-        for Finding { name, what } in findings {
-            is_good = false;
-            say!("{}: {name}: {what}", path.display())?;
-        }
-    }
-    failures.into_result()?;
-    if is_good { Ok(()) } else { Err(Failures::default()) }
+    tell(&arguments.sprites, |path| findings(path, arguments))
 }
 
 fn findings(path: &Path, Arguments { columns, rows, y_down, .. }: &Arguments) -> Result<Vec<Finding>, Error> {

@@ -10,8 +10,8 @@ use haze::sprite::SpriteLayout;
 use haze::sprite::check::SURE;
 use haze::sprite::import::{Imported, Source, import, sheet_of};
 
-use super::super::options::choices;
-use super::super::output::{Files, say};
+use crate::app::options::choices;
+use crate::app::output::{Files, say};
 
 #[derive(Args)]
 pub struct Arguments {

@@ -103,9 +103,13 @@ impl Hints {
         if self.open.is_empty() {
             return;
         }
-        let now = (preset.camera.position, preset.systems.clone());
-        let (has_moved, has_set) =
-            self.last.as_ref().map_or((false, false), |(camera, systems)| (*camera != now.0, *systems != now.1));
+        let (camera, systems) = (preset.camera.position, &preset.systems);
+        let last = self.last.get_or_insert_with(|| (camera, systems.clone()));
+        let (has_moved, has_set) = (last.0 != camera, last.1 != *systems);
+        last.0 = camera;
+        if has_set {
+            last.1.clone_from(systems);
+        }
         self.open.retain(|hint| !match hint {
             Hint::Orbit => has_moved && done.presses,
             Hint::Light => done.drags_light,
@@ -113,7 +117,6 @@ impl Hints {
             Hint::Find => done.finds,
             Hint::Keys => done.sees_keys,
         });
-        self.last = Some(now);
     }
 }
 

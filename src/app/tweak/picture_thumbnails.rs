@@ -77,7 +77,7 @@ impl PictureThumbnails {
             let stamp = |name: &str| file(folders, name).and_then(|path| Stamp::of(&path));
             pictures.retain(|(_, name), thumb| thumb.stamp.is_none() || thumb.stamp == stamp(name));
         }
-        let builtins = builtins(role).iter().map(|builtin| builtin.name.to_owned());
+        let builtins = builtin::of_role(role).iter().map(|builtin| builtin.name.to_owned());
         inner.files.iter().cloned().chain(builtins).collect()
     }
 
@@ -93,7 +93,7 @@ impl PictureThumbnails {
         if let Some(thumb) = inner.pictures.get(&key) {
             return thumb.texture.as_ref().map(TextureHandle::id);
         }
-        let source = match builtin::find(builtins(role), name) {
+        let source = match builtin::find(builtin::of_role(role), name) {
             Some(builtin) => Source::Builtin(builtin),
             None => Source::File(file(&inner.folders, name)?),
         };
@@ -120,17 +120,6 @@ fn pngs(folder: &Path) -> Vec<String> {
     let is_png = |path: &PathBuf| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
     let name = |path: PathBuf| Some(path.file_name()?.to_str()?.to_owned());
     files::list(folder).into_iter().filter(is_png).filter_map(name).take(MOST).collect()
-}
-
-/// The built-in pictures of a role.
-fn builtins(role: PictureRole) -> &'static [Builtin] {
-    match role {
-        PictureRole::Sprite => builtin::SPRITES,
-        PictureRole::Ramp => builtin::RAMPS,
-        PictureRole::Motif => builtin::MOTIFS,
-        PictureRole::Noise => builtin::NOISES,
-        PictureRole::Detail => &[],
-    }
 }
 
 enum Source {

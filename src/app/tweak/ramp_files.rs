@@ -110,7 +110,7 @@ impl RampFiles {
             self.preset = document.path().into();
         }
         for (name, known) in &mut self.known {
-            if known.stamps != stamps(&known.picture) {
+            if !is_held && known.stamps != stamps(&known.picture) {
                 // Another program has the last word.
                 *known = Known::read(name, folders);
                 document.recipes.forget(name);

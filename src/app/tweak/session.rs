@@ -57,14 +57,21 @@ pub struct Session {
     /// Another program has written the file while something was changed here: which of the two is wanted is not known.
     pub is_changed_on_disk: bool,
     changed: Changed,
-    /// What the second picture has, by path, where it is another, if it has settings of its own.
-    second: Option<HashMap<String, Value>>,
+    /// There while the second picture has settings of its own.
+    second: Option<Second>,
 }
 
 /// Paths of the fields that differ from the preset on disk, and the two that they were found between.
 struct Changed {
     paths: HashSet<String>,
     saved: Preset,
+    preset: Preset,
+}
+
+/// What the second picture has, by path, where it is another, and the two settings that this was found between.
+struct Second {
+    apart: HashMap<String, Value>,
+    settings: Preset,
     preset: Preset,
 }
 
@@ -152,7 +159,7 @@ impl Session {
 
     /// What the second picture of a comparison has, by path, where it is another; `None` without settings of its own.
     pub fn second(&self) -> Option<&HashMap<String, Value>> {
-        self.second.as_ref()
+        self.second.as_ref().map(|second| &second.apart)
     }
 
     /// Gives a field, a group or a list what the second picture has.
@@ -174,10 +181,16 @@ impl Session {
             self.changed = Changed { paths, saved: saved.clone(), preset: preset.clone() };
         }
         let second = self.compare.against.as_ref().and_then(|against| against.settings(self.saved()));
-        self.second = second.map(|second| {
-            let apart: HashSet<_> = changed_fields(second, &self.document.preset).into_iter().collect();
-            values(second).into_iter().filter(|(path, _)| apart.contains(path)).collect()
-        });
+        let Some(settings) = second else {
+            self.second = None;
+            return;
+        };
+        let preset = &self.document.preset;
+        if self.second.as_ref().is_none_or(|known| (&known.settings, &known.preset) != (settings, preset)) {
+            let paths: HashSet<_> = changed_fields(settings, preset).into_iter().collect();
+            let apart = values(settings).into_iter().filter(|(path, _)| paths.contains(path)).collect();
+            self.second = Some(Second { apart, settings: settings.clone(), preset: preset.clone() });
+        }
     }
 
     /// Does something with the selected light, if there is one.

@@ -1,18 +1,11 @@
 //! What is wrong with a ramp's picture.
 
+use glam::Vec3;
 use image::DynamicImage;
 
 use super::role::Role;
-use crate::formula::colour::{linear_from_srgb, srgb_from_linear};
-
-/// One thing that would show.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Finding {
-    /// `banding`, `step`, `seam`, `ends`, `round` or `turned`.
-    pub name: &'static str,
-    /// What it is, where, and what would be right.
-    pub what: String,
-}
+use crate::assets::finding::Finding;
+use crate::formula::colour::{linear_from_srgb, luminance, srgb_from_linear};
 
 /// Least jump that is a step or a seam, of 255: a twentieth of white.
 const JUMP: f32 = 12.0;
@@ -95,8 +88,7 @@ pub fn check(picture: &DynamicImage, role: Option<Role>) -> Vec<Finding> {
 /// Code of the luminance, of 255.
 fn luminances(line: &[[u16; 3]]) -> Vec<f32> {
     let linear = |channel: u16| linear_from_srgb(f32::from(channel) / 65535.0);
-    let luminance = |[r, g, b]: &[u16; 3]| 0.2126 * linear(*r) + 0.7152 * linear(*g) + 0.0722 * linear(*b);
-    line.iter().map(|texel| srgb_from_linear(luminance(texel)) * 255.0).collect()
+    line.iter().map(|texel| srgb_from_linear(luminance(Vec3::from(texel.map(linear)))) * 255.0).collect()
 }
 
 fn place(index: usize, count: usize) -> f32 {

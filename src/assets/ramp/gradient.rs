@@ -83,7 +83,7 @@ impl Fields for RampStop {
 }
 
 /// Refuses a list without an entry.
-pub(super) fn not_empty<T>(field: impl Into<String>, list: &[T]) -> Result<(), FieldError> {
+pub(crate) fn not_empty<T>(field: impl Into<String>, list: &[T]) -> Result<(), FieldError> {
     if list.is_empty() { Err(FieldError::new(field, "[]", "at least one entry")) } else { Ok(()) }
 }
 

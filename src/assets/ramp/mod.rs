@@ -6,7 +6,7 @@ mod colour;
 pub mod fit;
 mod formula;
 mod ggr;
-mod gradient;
+pub(crate) mod gradient;
 pub mod import;
 pub mod motif;
 mod role;

@@ -6,16 +6,8 @@ use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use image::RgbaImage;
 
 use super::{Sprite, SpriteLayout};
+use crate::assets::finding::Finding;
 use crate::error::Error;
-
-/// One thing that would show.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Finding {
-    /// `normals`, `length`, `y_down`, `border`, `premultiplied` or `loop`.
-    pub name: &'static str,
-    /// What it is, where, and what would be right.
-    pub what: String,
-}
 
 /// Which way green points, as far as the picture tells.
 #[derive(Clone, Copy, Debug, PartialEq)]

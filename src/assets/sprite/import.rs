@@ -255,7 +255,7 @@ mod tests {
     fn heights_alpha_and_light_maps_become_normals() {
         let height = balls(|normal, amount| [normal.z, normal.z, normal.z, amount]);
         assert!(off(&[height], Source::Height, None, 28.0 / 32.0) < 0.05);
-        // A puff is no ball, but round as one.
+        // A puff is no ball, but round as one: normals that all face the viewer are 0.75 off.
         let alpha = balls(|_, amount| [1.0, 1.0, 1.0, amount]);
         assert!(off(&[alpha], Source::Alpha, None, 1.0) < 0.45);
         let grey = balls(|_, amount| [amount, amount, amount, 1.0]);

@@ -202,7 +202,13 @@ impl Document {
 
     /// Sees what panels have changed; once a frame, as [`History::track`].
     pub fn track(&mut self, is_held: bool) {
-        self.history.track(&self.work(), is_held, name_of);
+        // Nothing is copied while nothing changes.
+        let (preset, recipes) = self.history.settled();
+        if *preset == self.preset && *recipes == self.recipes {
+            self.history.rest();
+        } else {
+            self.history.track(&self.work(), is_held, name_of);
+        }
     }
 
     fn work(&self) -> Work {

@@ -27,13 +27,23 @@ impl<T: Clone + PartialEq> History<T> {
         Self { settled: value, past: VecDeque::new(), future: Vec::new(), open: None }
     }
 
+    /// The value after the last step.
+    pub fn settled(&self) -> &T {
+        &self.settled
+    }
+
+    /// As [`History::track`] with the value after the last step.
+    pub fn rest(&mut self) {
+        self.open = None;
+    }
+
     /// To be called once a frame, after the panels. While `is_held` (a pointer is down on a control, a text field has the
     /// keyboard) changes gather in one step, which is named and closed by the first frame after.
     ///
     /// A value that does not equal itself, as one with a NaN in it, is no step.
     pub fn track(&mut self, current: &T, is_held: bool, name: impl FnOnce(&T, &T) -> String) {
         if !self.is_changed(current) {
-            self.open = None;
+            self.rest();
         } else if !is_held {
             self.close(current.clone(), name(&self.settled, current));
         } else if self.open.is_none() {

@@ -8,7 +8,7 @@ use crate::app::tweak::picture_thumbnails::{PictureThumbnails, SIZE};
 /// Points of a thumbnail, and of the name below.
 const PICTURE: Vec2 = Vec2::new(SIZE[0] as f32, SIZE[1] as f32);
 const NAME: f32 = 16.0;
-/// PresetThumbnails in a row.
+/// Thumbnails in a row.
 const COLUMNS: f32 = 3.0;
 
 /// A field that names a picture: opened, it shows those that there are.

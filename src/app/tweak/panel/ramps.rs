@@ -3,6 +3,7 @@
 use eframe::egui::{self, Color32, Mesh, Rect, Response, Sense, Stroke, Ui, Vec2};
 use glam::UVec2;
 use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
+use haze::gradient_editor;
 use haze::ramp::Ramp;
 use haze::reference::SystemProbe;
 use haze::settings::RampFilter;
@@ -11,7 +12,7 @@ use super::row::spaced;
 use super::stops::{self, Bins, Mark, Named};
 use crate::app::tweak::compare::Side;
 use crate::app::tweak::inspect::Told;
-use crate::app::tweak::inspect::survey::{BINS, Histogram, SIDE, Spot};
+use crate::app::tweak::inspect::survey::{Histogram, SIDE, Spot};
 use crate::app::tweak::session::Session;
 
 /// Heights of a ramp's strip and of a histogram.
@@ -170,7 +171,7 @@ fn histogram(ui: &mut Ui, field: &str, histograms: &[Bins]) {
     let name = if field == "diffuse_ramp" { "histogram of N·L" } else { "histogram of amounts" };
     let (rect, _) = space(ui, Vec2::new(ui.available_width(), HISTOGRAM), name);
     ui.painter().rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
-    histograms.iter().for_each(|(colour, of)| bins(ui, rect, of, *colour));
+    histograms.iter().for_each(|(colour, bins)| gradient_editor::histogram(ui, rect, bins, *colour));
 }
 
 /// Whose histogram is which.
@@ -183,23 +184,6 @@ fn legend(ui: &mut Ui, histograms: &[Histogram]) {
             ui.weak("No light reaches smoke in the picture");
         }
     });
-}
-
-/// Columns that fade upwards to nothing, with a line along their tops.
-fn bins(ui: &Ui, rect: Rect, bins: &[f32], colour: Color32) {
-    let width = rect.width() / BINS as f32;
-    let mut outline = Vec::new();
-    let mut mesh = Mesh::default();
-    for (index, bin) in bins.iter().enumerate() {
-        let left = rect.left() + index as f32 * width;
-        // A root: what is rare shows as well.
-        let top = rect.bottom() - bin.sqrt() * (rect.height() - 2.0);
-        let column = Rect::from_min_max(egui::pos2(left, top), egui::pos2(left + width, rect.bottom()));
-        mesh.add_colored_rect(column, colour.gamma_multiply(0.25));
-        outline.extend([column.left_top(), column.right_top()]);
-    }
-    ui.painter().add(mesh);
-    ui.painter().add(egui::Shape::line(outline, Stroke::new(1.5, colour)));
 }
 
 /// The specular ramp, amounts upwards, and over it what is looked up.

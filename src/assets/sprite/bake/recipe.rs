@@ -17,7 +17,7 @@ pub const RECIPE_VERSION: u32 = 2;
 #[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SpriteRecipe {
-    /// Format version: 1 bakes as it always did, voxel by voxel; 2 is a hundred times as fast and can do more.
+    /// Format version: 1 bakes as it always did, voxel by voxel; 2 is some fifty times as fast and can do more.
     pub version: u32,
     /// Different seeds give different wisps of the same kind.
     pub seed: u32,
@@ -61,7 +61,7 @@ pub struct SpriteRecipe {
     #[serde(default)]
     pub lumps: f32,
     /// Version 2: how far all of it is carried along a swirling flow and back in one loop. Above 0 the noise is carried too and
-    /// does not turn in its place: frames that travel rather than boil, which motion vectors can follow.
+    /// does not turn in its place: frames that travel rather than boil.
     #[serde(default)]
     pub travel: f32,
 }
