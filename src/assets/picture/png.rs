@@ -3,7 +3,7 @@
 use std::io::{Cursor, ErrorKind};
 use std::path::Path;
 
-use image::codecs::png::{CompressionType, PngDecoder};
+use image::codecs::png::{CompressionType, FilterType, PngDecoder, PngEncoder};
 use image::{DynamicImage, ImageDecoder as _, ImageError, Limits};
 
 use super::chunks::colour_tags;
@@ -103,17 +103,21 @@ pub enum Effort {
 /// # Errors
 /// [`Error::Io`] when it cannot be written.
 pub fn write_png(path: &Path, picture: &DynamicImage, effort: Effort) -> Result<(), Error> {
-    let io = |error: std::io::Error| Error::Io { path: path.into(), error };
-    let mut bytes = Vec::new();
-    let encoder = image::codecs::png::PngEncoder::new_with_quality(
-        &mut bytes,
-        match effort {
-            Effort::Quick => CompressionType::Fast,
-            Effort::Small => CompressionType::Best,
-        },
-        image::codecs::png::FilterType::Adaptive,
-    );
-    picture.write_with_encoder(encoder).map_err(|error| io(std::io::Error::other(error)))?;
+    let encoded = |compression, filter| -> Result<Vec<u8>, Error> {
+        let mut bytes = Vec::new();
+        let encoder = PngEncoder::new_with_quality(&mut bytes, compression, filter);
+        let io = |error| Error::Io { path: path.into(), error: std::io::Error::other::<ImageError>(error) };
+        picture.write_with_encoder(encoder).map_err(io)?;
+        Ok(bytes)
+    };
+    let bytes = match effort {
+        Effort::Quick => encoded(CompressionType::Fast, FilterType::Adaptive)?,
+        Effort::Small => {
+            let adaptive = encoded(CompressionType::Best, FilterType::Adaptive)?;
+            let paeth = encoded(CompressionType::Best, FilterType::Paeth)?;
+            if paeth.len() < adaptive.len() { paeth } else { adaptive }
+        }
+    };
     write_file(path, &bytes)
 }
 

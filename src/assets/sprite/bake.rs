@@ -7,6 +7,7 @@ mod cluster;
 mod cube;
 mod frame;
 mod recipe;
+mod shrink;
 mod slices;
 
 use glam::{IVec2, UVec2};
@@ -19,6 +20,7 @@ use crate::settings::validate;
 
 pub use frame::BakedFrame;
 pub use recipe::{RECIPE_VERSION, SpriteRecipe};
+use shrink::{shrink_detail, shrink_frame};
 use slices::Slices;
 
 /// What a recipe makes.
@@ -45,7 +47,11 @@ impl SpriteRecipe {
         let frames: Vec<_> = (0..self.frame_count()).map(frame).collect();
         let pictures = frames.iter().flat_map(|frame| frame.picture.texels.iter().map(|texel| texel.0));
         let sprite = Sprite::with_levels(self.size, self.frame_count(), pictures.collect());
-        let details: Vec<_> = (0..).zip(&frames).map(|(frame, baked)| detail(&sprite, frame, &baked.offset)).collect();
+        let mut details: Vec<_> =
+            (0..).zip(&frames).map(|(frame, baked)| detail(&sprite, frame, &baked.offset)).collect();
+        if self.tolerance > 0 {
+            details.iter_mut().for_each(|detail| shrink_detail(detail, self.tolerance / 2));
+        }
         Ok(BakedSprite {
             picture: self.sheet(self.size, |frame, at| frames[frame].picture.load(at)),
             detail: self.sheet(detail_size(self.size), |frame, at| details[frame].load(at)),
@@ -65,13 +71,17 @@ impl SpriteRecipe {
     }
 
     /// Bakes moments, with what they share worked out once.
-    fn baker(&self) -> Box<dyn Fn(f32) -> BakedFrame + '_> {
+    fn baker(&self) -> impl Fn(f32) -> BakedFrame + '_ {
         let count = self.frame_count() as f32;
-        if self.version < 2 {
-            return Box::new(move |frame| cube::frame(self, frame / count));
+        let slices = (self.version > 1).then(|| Slices::new(self));
+        move |frame| {
+            let time = frame / count;
+            let mut frame = slices.as_ref().map_or_else(|| cube::frame(self, time), |slices| slices.frame(time));
+            if self.tolerance > 0 {
+                shrink_frame(&mut frame.picture, self.tolerance);
+            }
+            frame
         }
-        let slices = Slices::new(self);
-        Box::new(move |frame| slices.frame(frame / count))
     }
 }
 
