@@ -3,6 +3,8 @@
 #![cfg(feature = "app")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
+#[path = "cli/bench.rs"]
+mod bench;
 #[path = "cli/drivers.rs"]
 mod drivers;
 #[path = "cli/many.rs"]

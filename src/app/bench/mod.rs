@@ -1,25 +1,50 @@
-//! `haze bench`: what smoke costs on this machine.
+//! `haze bench`: what smoke costs on this machine, and what each saving costs in image quality.
 
+mod adapter;
+mod compare;
+mod csv;
+mod json;
+mod limits;
+mod measure;
+mod page;
+mod particles;
+mod quality;
+mod report;
+mod run;
 mod soft_particles;
+mod suites;
+mod table;
+mod verdict;
 
 use clap::{Args, Subcommand};
-use haze::Error;
+
+use super::output::{Failures, write_text};
 
 #[derive(Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct Arguments {
     #[command(subcommand)]
-    suite: Suite,
+    command: Option<Command>,
+    #[command(flatten)]
+    run: run::Arguments,
 }
 
 #[derive(Subcommand)]
-enum Suite {
+enum Command {
     /// NV's experiment: two big sprites drawn 1000 times, by the three ways to test depth.
     #[command(alias = "soft_particles")]
     SoftParticles(soft_particles::Arguments),
+    /// Compare two runs row by row: exits with 1 where the second is slower.
+    Compare(compare::Arguments),
+    /// Print the JSON schema of what `--json` writes.
+    Schema,
 }
 
-pub fn run(arguments: &Arguments) -> Result<(), Error> {
-    match &arguments.suite {
-        Suite::SoftParticles(arguments) => soft_particles::run(arguments),
+pub fn run(arguments: &Arguments) -> Result<(), Failures> {
+    match &arguments.command {
+        Some(Command::SoftParticles(arguments)) => Ok(soft_particles::run(arguments)?),
+        Some(Command::Compare(arguments)) => compare::run(arguments),
+        Some(Command::Schema) => Ok(write_text(json::schema())?),
+        None => run::run(&arguments.run),
     }
 }

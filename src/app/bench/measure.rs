@@ -1,0 +1,241 @@
+//! The shots of a group in turn, frame by frame, so that a machine that does other things as well slows all alike.
+
+use std::collections::{BTreeMap, HashMap};
+use std::time::{Duration, Instant};
+
+use glam::UVec2;
+use haze::demo::shot::Shot;
+use haze::demo::stage::{Stage, StageContext};
+use haze::headless::Headless;
+use haze::preset::PresetSystem;
+use haze::settings::{AccumulationFormat, Path as SmokePath, ShadeTree};
+use haze::{Error, Overdraw, Timing, wgpu};
+
+use super::quality::{Quality, is_right};
+use super::report::{Clock, LeftOut, Milliseconds, Row};
+use super::suites::{Case, Group, Suite};
+use crate::app::interrupt;
+
+/// Rounds that are not counted, at the least.
+const WARM_UP: u32 = 2;
+/// A GPU that had little to do runs slower, and takes a while to notice: it is kept busy before a group is measured, and before
+/// each frame that counts.
+const AWAKE: Duration = Duration::from_secs(2);
+const BUSY: Duration = Duration::from_millis(15);
+/// Most rounds that tell anything more.
+const MOST_ROUNDS: usize = 200;
+
+/// What measures, and what it has found.
+pub struct Bench<'a> {
+    gpu: &'a Headless,
+    context: StageContext,
+    timing: Option<Timing>,
+    /// Milliseconds that a fragment takes at the least, by format.
+    pub limits: HashMap<AccumulationFormat, f64>,
+    /// Longest time that a frame may take.
+    pub longest: Duration,
+    /// Milliseconds by work, of cases that were measured.
+    costs: HashMap<String, f64>,
+    pub discarded: u64,
+    pub rows: Vec<Row>,
+    pub left_out: Vec<LeftOut>,
+}
+
+/// A case while it is measured.
+struct Running<'a> {
+    case: &'a Case,
+    stage: Stage,
+    quality: Quality,
+    times: Vec<f64>,
+    passes: BTreeMap<&'static str, Vec<f64>>,
+}
+
+impl<'a> Bench<'a> {
+    pub fn new(gpu: &'a Headless, longest: Duration) -> Self {
+        let context = StageContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
+        // Without this the passes that light smoke are in no figure.
+        let is_whole = gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
+        Self {
+            timing: context.timing().filter(|_| is_whole),
+            gpu,
+            context,
+            limits: HashMap::new(),
+            longest,
+            costs: HashMap::new(),
+            discarded: 0,
+            rows: Vec::new(),
+            left_out: Vec::new(),
+        }
+    }
+
+    pub fn context(&self) -> &StageContext {
+        &self.context
+    }
+
+    fn clock(&self) -> Clock {
+        if self.timing.is_some() { Clock::Gpu } else { Clock::Wall }
+    }
+
+    /// Measures a group for about as long as it may take. False when Ctrl-C was pressed: what was measured is in the rows.
+    ///
+    /// # Errors
+    /// When the device failed.
+    pub fn group(&mut self, group: &Group, budget: Duration) -> Result<bool, Error> {
+        let started = Instant::now();
+        let mut reference = Stage::new(&self.context, false)?;
+        reference.warm_up(&group.reference)?;
+        reference.draw(self.gpu, &group.reference)?;
+        let mut running = Vec::new();
+        for case in &group.cases {
+            if interrupt::is_asked() {
+                return Ok(false);
+            }
+            match self.begin(group, case, &reference)? {
+                Ok(case) => running.push(case),
+                Err(reason) => self.leave_out(group.suite, &case.name, reason),
+            }
+        }
+        let mut is_whole = true;
+        let woken = Instant::now();
+        let mut awake = AWAKE.min(budget / 4);
+        if self.gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu {
+            awake = Duration::ZERO;
+        }
+        for round in 0.. {
+            is_whole = !interrupt::is_asked();
+            let counted = running.first().map_or(MOST_ROUNDS, |case| case.times.len());
+            if !is_whole || counted >= MOST_ROUNDS || (counted >= 3 && started.elapsed() > budget) {
+                break;
+            }
+            for case in &mut running {
+                let begun = Instant::now();
+                let mut times = self.frame(&mut case.stage, &case.case.shot)?;
+                while begun.elapsed() < BUSY {
+                    times = self.frame(&mut case.stage, &case.case.shot)?;
+                }
+                if round >= WARM_UP && woken.elapsed() >= awake {
+                    case.times.push(times.0);
+                    times.1.iter().for_each(|(name, ms)| case.passes.entry(name).or_default().push(*ms));
+                }
+            }
+        }
+        for case in running {
+            self.costs.insert(case.case.work.0.clone(), median(&case.times) / case.case.work.1);
+            let row = self.row(group.suite, case);
+            self.rows.extend(row);
+        }
+        Ok(is_whole)
+    }
+
+    pub fn leave_out(&mut self, suite: Suite, case: &str, reason: String) {
+        self.left_out.push(LeftOut { suite: suite.name(), case: case.into(), reason });
+    }
+
+    /// Looks at the picture of a case before it is measured; says why it is not where that is so.
+    fn begin<'c>(
+        &mut self,
+        group: &Group,
+        case: &'c Case,
+        reference: &Stage,
+    ) -> Result<Result<Running<'c>, String>, Error> {
+        let seconds = |ms: f64| format!("a frame would take some {:.0} s", ms / 1000.0);
+        let longest = self.longest.as_secs_f64() * 1000.0;
+        if let Some(ms) = self.costs.get(&case.work.0).map(|cost| cost * case.work.1).filter(|&ms| ms > longest) {
+            return Ok(Err(seconds(ms)));
+        }
+        if let Err(reason) = is_right(self.gpu, &self.context, &case.shot)? {
+            return Ok(Err(reason));
+        }
+        let mut stage = Stage::new(&self.context, false)?;
+        stage.warm_up(&case.shot)?;
+        stage.set_timing(self.timing.as_ref())?;
+        let (ms, _) = self.frame(&mut stage, &case.shot)?;
+        if ms > longest {
+            self.costs.insert(case.work.0.clone(), ms / case.work.1);
+            return Ok(Err(seconds(ms)));
+        }
+        let quality = Quality::of(self.gpu, (&stage, &case.shot), (reference, &group.reference))?;
+        Ok(Ok(Running { case, stage, quality, times: Vec::new(), passes: BTreeMap::new() }))
+    }
+
+    /// Milliseconds of the smoke, whole and by pass.
+    fn frame(&mut self, stage: &mut Stage, shot: &Shot) -> Result<(f64, Vec<(&'static str, f64)>), Error> {
+        let Some(timing) = &self.timing else {
+            return Ok((stage.draw(self.gpu, shot)?.as_secs_f64() * 1000.0, Vec::new()));
+        };
+        loop {
+            let before = timing.latest().map(|times| times.frame);
+            let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            stage.record(&mut encoder, shot, &[ShadeTree::Final])?;
+            timing.resolve(&mut encoder);
+            self.gpu.submit(encoder)?;
+            let Some(times) = timing.latest().filter(|times| before != Some(times.frame)) else { continue };
+            self.discarded += u64::from(times.discarded);
+            if times.discarded == 0 {
+                let passes = times.passes.iter().map(|pass| (pass.name, f64::from(pass.ms))).collect();
+                return Ok((f64::from(times.smoke_ms()), passes));
+            }
+            if interrupt::is_asked() {
+                return Ok((f64::from(times.smoke_ms()), Vec::new()));
+            }
+        }
+    }
+
+    /// None where nothing was measured.
+    fn row(&self, suite: Suite, mut running: Running<'_>) -> Option<Row> {
+        let gpu_ms = Milliseconds::of(&mut running.times)?;
+        let shot = &running.case.shot;
+        let system = shot.preset.systems.first()?;
+        let settings = system.settings_for(shot.size.y);
+        let is_forward = settings.path == SmokePath::Forward;
+        // Forward smoke is blended into the picture.
+        let format = if is_forward { AccumulationFormat::Rgba16Float } else { settings.accumulate.format };
+        let Overdraw { fragments, .. } = running.stage.renderer().overdraw();
+        let limit = self.limits.get(&format).map(|ms| ms * fragments).filter(|&ms| ms > 0.0);
+        let mut particles = Vec::new();
+        let alive = |system: &PresetSystem| {
+            system.particles(shot.preset.time, &mut particles);
+            particles.len() as u32
+        };
+        let alive = shot.preset.systems.iter().map(alive).sum();
+        Some(Row {
+            scale: (!is_forward).then_some(settings.accumulate.scale),
+            format: Some(format.name().into()),
+            path: Some(settings.path.name().into()),
+            mode: (!is_forward).then(|| settings.diffuse.mode.name().into()),
+            technique: Some(settings.technique.name().into()),
+            fade: Some(settings.soft_fade.curve.name().into()),
+            layers: Some(running.stage.renderer().overdraw().mean()),
+            alpha: system.emitter.amount.to_string().parse().ok(),
+            lights: Some(shot.preset.lights.len() as u32),
+            particles: Some(alive),
+            samples: running.times.len() as u32,
+            passes: running.passes.iter().map(|(name, times)| ((*name).to_owned(), median(times))).collect(),
+            fragments: Some(fragments as u64),
+            gfragments_per_s: Some(fragments / gpu_ms.median * 1.0e-6),
+            bytes: Some(fragments as u64 * 2 * u64::from(bytes(format))),
+            limit_ratio: limit.map(|limit| gpu_ms.median / limit),
+            psnr_db: running.quality.psnr_db,
+            flip: running.quality.flip,
+            edge_psnr_db: running.quality.edge_psnr_db,
+            ..Row::of(suite, running.case.name.clone(), size_name(shot.size), self.clock(), gpu_ms)
+        })
+    }
+}
+
+/// As rows have it.
+pub fn size_name(size: UVec2) -> String {
+    format!("{}x{}", size.x, size.y)
+}
+
+/// Bytes of a texel that is blended to.
+pub fn bytes(format: AccumulationFormat) -> u32 {
+    match format {
+        AccumulationFormat::Rgba16Float => 8,
+        AccumulationFormat::Rgba8Unorm => 4,
+    }
+}
+
+fn median(times: &[f64]) -> f64 {
+    Milliseconds::of(&mut times.to_vec()).map_or(0.0, |ms| ms.median)
+}

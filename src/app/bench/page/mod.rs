@@ -1,0 +1,223 @@
+//! The report as one page that needs no network: a sentence, charts, tables; light and dark, wide and narrow.
+
+mod chart;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use self::chart::{Axis, COLOURS, Chart, Series, escaped, number};
+use super::report::{Clock, Report, Row};
+use super::verdict::{break_even, sentence};
+
+const STYLE: &str = include_str!("page.css");
+
+/// The whole page.
+pub fn page(report: &Report) -> String {
+    let adapter = &report.adapter;
+    let software = if adapter.software { " <b>software</b>" } else { "" };
+    let partial = if report.complete { "" } else { "<p class=\"partial\">Partial: the run was stopped.</p>" };
+    let said = sentence(report).map(|text| format!("<p class=\"verdict\">{}</p>", escaped(&text))).unwrap_or_default();
+    format!(
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
+         <title>haze bench: {name}</title><style>{STYLE}</style></head><body><main>\n\
+         <h1>What smoke costs</h1><p>{name}{software} · {}, {} · wgpu {} · haze {}</p>{partial}{said}\n\
+         <div class=\"charts\">{}{}{}{}</div>\n{}{}{}</main></body></html>\n",
+        adapter.backend,
+        escaped(&adapter.driver),
+        adapter.wgpu,
+        escaped(&adapter.haze),
+        by_scale(report),
+        by_overdraw(report),
+        by_error(report),
+        by_pass(report),
+        break_even_table(report),
+        rows_table(report),
+        left_out(report),
+        name = escaped(&adapter.name),
+    )
+}
+
+/// Rows of a suite, by what sets lines apart.
+fn lines<'a>(report: &'a Report, suite: &str, name: impl Fn(&Row) -> Option<String>) -> BTreeMap<String, Vec<&'a Row>> {
+    let mut lines = BTreeMap::<_, Vec<_>>::new();
+    for row in report.rows.iter().filter(|row| row.suite == suite) {
+        if let Some(name) = name(row) {
+            lines.entry(name).or_default().push(row);
+        }
+    }
+    lines
+}
+
+fn note(row: &Row) -> String {
+    format!("{}: {} ms", row.case, number(row.gpu_ms.median))
+}
+
+fn by_scale(report: &Report) -> String {
+    let name = |row: &Row| Some(format!("{} {}, {} sprites", row.path.as_ref()?, row.format.as_ref()?, row.particles?));
+    let series = lines(report, "scale", name).into_iter().map(|(name, rows)| {
+        // Forward has no scale: it is full resolution.
+        let point = |row: &&Row| (f64::from(row.scale.unwrap_or(1)), row.gpu_ms.median, note(row));
+        let points: Vec<_> = rows.iter().map(point).collect();
+        Series { name, has_line: points.len() > 1, points }
+    });
+    Chart {
+        title: "Cost against buffer scale",
+        x: ("pixels per texel", Axis::Logarithmic),
+        y: ("ms", Axis::Logarithmic),
+        series: series.collect(),
+    }
+    .figure()
+}
+
+fn by_overdraw(report: &Report) -> String {
+    let name = |row: &Row| Some(format!("{}, amount {}", row.path.as_ref()?, row.alpha?));
+    let series = lines(report, "overdraw", name).into_iter().map(|(name, rows)| {
+        let points = rows.iter().filter_map(|row| Some((row.layers?, row.gpu_ms.median, note(row)))).collect();
+        Series { name, points, has_line: true }
+    });
+    Chart {
+        title: "Cost against overdraw",
+        x: ("layers", Axis::Logarithmic),
+        y: ("ms", Axis::Logarithmic),
+        series: series.collect(),
+    }
+    .figure()
+}
+
+fn by_error(report: &Report) -> String {
+    let with_error = |row: &&Row| ["scale", "upsample", "presets"].contains(&row.suite.as_str()) && row.flip.is_some();
+    // Only deferred: forward smoke is lit in another way, which is no error.
+    let rows: Vec<&Row> = report.rows.iter().filter(with_error).filter(|row| row.scale.is_some()).collect();
+    let suites: BTreeSet<&str> = rows.iter().map(|row| row.suite.as_str()).collect();
+    let point = |row: &Row| (row.gpu_ms.median, row.flip.unwrap_or(0.0), note(row));
+    let mut series: Vec<_> = suites
+        .iter()
+        .map(|suite| Series {
+            name: (*suite).into(),
+            points: rows.iter().filter(|row| row.suite == *suite).map(|row| point(row)).collect(),
+            has_line: false,
+        })
+        .collect();
+    // The front of what was measured on the same smoke.
+    let deepest = rows.iter().filter(|row| row.suite == "scale").filter_map(|row| row.particles).max();
+    let same = rows.iter().filter(|row| row.suite == "scale" && row.particles == deepest);
+    let mut same: Vec<_> = same.map(|row| point(row)).collect();
+    same.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut least = f64::INFINITY;
+    same.retain(|point| {
+        point.1 < least && {
+            least = point.1;
+            true
+        }
+    });
+    series.push(Series { name: "Pareto front of scale".into(), points: same, has_line: true });
+    Chart {
+        title: "Cost against error",
+        x: ("ms", Axis::Logarithmic),
+        y: ("FLIP from full resolution", Axis::Linear),
+        series,
+    }
+    .figure()
+}
+
+/// Passes of the deepest rows of the suite `scale`, as bars.
+fn by_pass(report: &Report) -> String {
+    let deepest = report.rows.iter().filter(|row| row.suite == "scale").filter_map(|row| row.particles).max();
+    let is_shown = |row: &&Row| row.suite == "scale" && row.particles == deepest && !row.passes.is_empty();
+    let rows: Vec<&Row> = report.rows.iter().filter(is_shown).collect();
+    let names: BTreeSet<&str> = rows.iter().flat_map(|row| row.passes.keys()).map(String::as_str).collect();
+    let most = rows.iter().map(|row| row.passes.values().sum::<f64>()).fold(0.0, f64::max);
+    if most <= 0.0 {
+        return String::new();
+    }
+    let bar = |row: &&Row| {
+        let parts = names.iter().enumerate().filter_map(|(index, name)| {
+            let ms = row.passes.get(*name)?;
+            let width = 100.0 * ms / most;
+            let title = format!("{name}: {} ms", number(*ms));
+            Some(format!("<i class=\"c{}\" style=\"width:{width:.2}%\" title=\"{title}\"></i>", index % COLOURS))
+        });
+        let parts: String = parts.collect();
+        format!(
+            "<tr><th>{}</th><td class=\"bar\">{parts}</td><td>{}</td></tr>",
+            escaped(&row.case),
+            number(row.gpu_ms.median)
+        )
+    };
+    let legend =
+        names.iter().enumerate().map(|(index, name)| format!("<span class=\"c{}\">{name}</span>", index % COLOURS));
+    format!(
+        "<figure><figcaption>Milliseconds by pass</figcaption><div class=\"wide\"><table class=\"bars\">{}</table></div>\
+         <p class=\"legend\">{}</p></figure>\n",
+        rows.iter().map(bar).collect::<String>(),
+        legend.collect::<String>()
+    )
+}
+
+fn break_even_table(report: &Report) -> String {
+    let ways = break_even(report);
+    if ways.is_empty() {
+        return String::new();
+    }
+    let row = |way: &super::verdict::BreakEven| {
+        let from = way.from_layers.map_or("never".into(), |layers| format!("from {} layers", number(layers)));
+        let cells = [
+            way.path.clone(),
+            format!("1/{}", way.scale),
+            way.format.clone(),
+            number(way.base_ms),
+            number(way.layer_ms),
+            from,
+        ];
+        format!("<tr>{}</tr>", cells.map(|cell| format!("<td>{}</td>", escaped(&cell))).concat())
+    };
+    format!(
+        "<h2>From which overdraw on it pays</h2><div class=\"wide\"><table><tr><th>path</th><th>scale</th><th>format</th>\
+         <th>ms without layers</th><th>ms a layer</th><th>cheaper than forward</th></tr>{}</table></div>\n",
+        ways.iter().map(row).collect::<String>()
+    )
+}
+
+fn rows_table(report: &Report) -> String {
+    let shown = |value: Option<f64>| value.map_or("–".into(), number);
+    let row = |row: &Row| {
+        let clock = match row.clock {
+            Clock::Gpu => "GPU",
+            Clock::Wall => "wall",
+            Clock::Cpu => "CPU",
+        };
+        let spread = format!("{:.1}", 100.0 * row.gpu_ms.spread());
+        let cells = [
+            row.suite.clone(),
+            row.case.clone(),
+            number(row.gpu_ms.median),
+            spread,
+            clock.into(),
+            shown(row.layers),
+            shown(row.gfragments_per_s),
+            shown(row.limit_ratio),
+            shown(row.psnr_db),
+            shown(row.edge_psnr_db),
+            shown(row.flip),
+        ];
+        format!("<tr>{}</tr>", cells.map(|cell| format!("<td>{}</td>", escaped(&cell))).concat())
+    };
+    let heads = ["suite", "case", "ms", "± %", "clock", "layers", "Gfrag/s", "× limit", "PSNR dB", "edges dB", "FLIP"];
+    format!(
+        "<h2>All figures</h2><div class=\"wide\"><table><tr>{}</tr>{}</table></div>\n",
+        heads.map(|head| format!("<th>{head}</th>")).concat(),
+        report.rows.iter().map(row).collect::<String>()
+    )
+}
+
+fn left_out(report: &Report) -> String {
+    let line = |left: &super::report::LeftOut| {
+        format!("<li>{}: {}: {}</li>", escaped(&left.suite), escaped(&left.case), escaped(&left.reason))
+    };
+    let lines: String = report.left_out.iter().map(line).collect();
+    let discarded = match report.discarded {
+        0 => String::new(),
+        count => format!("<p>{count} timestamps were reversed or zero, and are in no figure.</p>"),
+    };
+    if lines.is_empty() { discarded } else { format!("<h2>Left out</h2><ul>{lines}</ul>{discarded}") }
+}

@@ -1,0 +1,84 @@
+//! What a saving costs in image quality, and whether a picture is right at all.
+
+use glam::{UVec2, Vec2};
+use haze::Error;
+use haze::demo::apart::Apart;
+use haze::demo::develop::{develop, exposure};
+use haze::demo::shot::Shot;
+use haze::demo::stage::{Stage, StageContext};
+use haze::headless::Headless;
+use haze::picture::Picture;
+use image::RgbImage;
+use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, FlipPool, flip};
+
+/// How far a picture is from another; none of what cannot be told.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Quality {
+    pub psnr_db: Option<f64>,
+    pub flip: Option<f64>,
+    pub edge_psnr_db: Option<f64>,
+}
+
+impl Quality {
+    /// Of what two stages of one size have drawn.
+    pub fn of(gpu: &Headless, of: (&Stage, &Shot), from: (&Stage, &Shot)) -> Result<Self, Error> {
+        let [first, second] = [of.0.read(gpu, of.1)?, from.0.read(gpu, from.1)?];
+        let depth = match from.0.linear_depth() {
+            Some(depth) => Some(Picture { size: second.size, texels: gpu.read_r32float(depth)? }),
+            None => None,
+        };
+        let apart = Apart::of(&first, &second, Vec2::new(exposure(of.1), exposure(from.1)), depth.as_ref());
+        let finite = |db: f32| db.is_finite().then_some(f64::from(db));
+        let flip = flip_of(&develop(&second, from.1), &develop(&first, of.1));
+        Ok(Self { psnr_db: finite(apart.psnr), flip: Some(flip), edge_psnr_db: apart.edge_psnr.and_then(finite) })
+    }
+}
+
+/// Mean FLIP, 0 to 1. (Andersson et al., "FLIP: A difference evaluator for alternating images", 2020)
+fn flip_of(reference: &RgbImage, picture: &RgbImage) -> f64 {
+    let [reference, picture] =
+        [reference, picture].map(|image| FlipImageRgb8::with_data(image.width(), image.height(), image.as_raw()));
+    f64::from(FlipPool::from_image(&flip(reference, picture, DEFAULT_PIXELS_PER_DEGREE)).mean())
+}
+
+/// Where both renderers are asked for the same.
+const SMALL: UVec2 = UVec2::new(96, 54);
+/// Most sprites that they are asked for: more are drawn as these are.
+const MOST: f32 = 64.0;
+/// Below this, dB, they do not agree.
+const AGREEMENT: f32 = 40.0;
+
+/// Whether the GPU draws what it should, by the reference renderer; why not where it does not.
+pub fn is_right(gpu: &Headless, context: &StageContext, shot: &Shot) -> Result<Result<(), String>, Error> {
+    let mut shot = Shot { size: SMALL, ..shot.clone() };
+    for system in &mut shot.preset.systems {
+        let fewer = (MOST / system.emitter.most_alive() as f32).min(1.0);
+        system.emitter.rate *= fewer;
+        // What is left covers as much.
+        system.settings.sprite.size /= fewer.sqrt();
+    }
+    let mut stage = Stage::new(context, false)?;
+    stage.warm_up(&shot)?;
+    stage.draw(gpu, &shot)?;
+    let drawn = stage.read(gpu, &shot)?;
+    if drawn.texels.iter().any(|texel| !texel.is_finite()) {
+        return Ok(Err("its picture has pixels that are no numbers".into()));
+    }
+    let exposure = Vec2::splat(exposure(&shot));
+    let apart = Apart::of(&drawn, &shot.render_on_cpu()?, exposure, None).psnr;
+    let reason = || format!("its picture is {apart:.0} dB from what it should be, less than {AGREEMENT} dB");
+    Ok(if apart < AGREEMENT { Err(reason()) } else { Ok(()) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flip_is_0_where_nothing_differs_and_grows_with_what_does() {
+        let grey = |value: u8| RgbImage::from_pixel(64, 64, image::Rgb([value; 3]));
+        assert!(flip_of(&grey(100), &grey(100)) < 1e-6);
+        let (near, far) = (flip_of(&grey(100), &grey(110)), flip_of(&grey(100), &grey(200)));
+        assert!(0.0 < near && near < far && far <= 1.0, "{near} {far}");
+    }
+}

@@ -1,0 +1,260 @@
+//! What is measured: groups of shots that are compared with each other, frame by frame in turn.
+
+use std::path::Path;
+
+use clap::ValueEnum;
+use glam::{UVec2, Vec3};
+use haze::demo::shot::Shot;
+use haze::preset::Preset;
+use haze::settings::{
+    AccumulationFormat, DepthDownsample, FadeCurve, NormalEncoding, Order, Path as SmokePath, Settings, Technique,
+    Upsample,
+};
+use haze::{Error, Light, builtin};
+
+/// What there is to measure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Suite {
+    /// Buffer scale 1 to 1/8, by overdraw, format and path.
+    Scale,
+    /// 4 to 1024 layers of three amounts, by path.
+    Overdraw,
+    /// 1 to 64 lights, deferred against forward.
+    Lights,
+    /// Every technique and every fade, against hard edges.
+    Soft,
+    /// Every way to shrink depth with every way to enlarge smoke.
+    Upsample,
+    /// Every preset, deferred at each scale against forward.
+    Presets,
+    /// A thousand to a million particles: evaluating, sorting, drawing.
+    Particles,
+    /// What this adapter can do at best: bare blending, lookups, copies.
+    Limits,
+    /// All of them.
+    All,
+}
+
+impl Suite {
+    /// As the command line has it.
+    pub fn name(self) -> String {
+        self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+    }
+}
+
+/// Shots that are measured in turn.
+pub struct Group {
+    pub suite: Suite,
+    pub cases: Vec<Case>,
+    /// Deferred, at full resolution: what the pictures are compared with.
+    pub reference: Shot,
+}
+
+/// One shot.
+pub struct Case {
+    /// Unique in its suite.
+    pub name: String,
+    pub shot: Shot,
+    /// What costs about so many times as much as others of the same name: from those it is known whether it takes too long.
+    pub work: (String, f64),
+}
+
+/// The paths that draw in their own way; another joins by its name in the settings.
+fn paths() -> impl Iterator<Item = SmokePath> {
+    SmokePath::ALL.iter().copied().filter(|&path| path != SmokePath::Auto)
+}
+
+const SCALES: [u32; 6] = [1, 2, 3, 4, 6, 8];
+
+/// All groups of a suite, at a size. `quick` leaves out what is between.
+pub fn groups(suite: Suite, size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
+    match suite {
+        Suite::Scale => scale(size, quick),
+        Suite::Overdraw => overdraw(size, quick),
+        Suite::Lights => lights(size, quick),
+        Suite::Soft => soft(size, quick),
+        Suite::Upsample => upsample(size, quick),
+        Suite::Presets => presets(size, quick),
+        Suite::Particles => particles(size, quick),
+        Suite::Limits | Suite::All => Ok(Vec::new()),
+    }
+}
+
+/// So many sprites as large as the picture, among crates, each of an amount.
+fn layers(size: UVec2, count: u32, amount: f32) -> Result<Shot, Error> {
+    let path = Path::new("layers.json");
+    let mut preset = Preset::parse(path, include_str!("soft_particles.json"))?;
+    for system in &mut preset.systems {
+        (system.emitter.rate, system.emitter.amount) = (count as f32, amount);
+        system.emitter.spin = 1.0;
+    }
+    Shot::new(preset, path, size)
+}
+
+fn changed(shot: &Shot, change: impl Fn(&mut Settings)) -> Shot {
+    let mut shot = shot.clone();
+    shot.preset.systems.iter_mut().for_each(|system| change(&mut system.settings));
+    shot
+}
+
+fn at_scale(path: SmokePath, scale: u32) -> impl Fn(&mut Settings) {
+    move |settings| (settings.path, settings.accumulate.scale) = (path, scale)
+}
+
+/// What others are compared with.
+fn full(shot: &Shot) -> Shot {
+    changed(shot, at_scale(SmokePath::Raster, 1))
+}
+
+/// A path at every scale that it has.
+fn scales(path: SmokePath, scales: &[u32]) -> &[u32] {
+    if path == SmokePath::Forward { &[1] } else { scales }
+}
+
+fn scale(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
+    let counts: &[u32] = if quick { &[4, 32] } else { &[4, 16, 64] };
+    let formats: &[AccumulationFormat] =
+        if quick { &[AccumulationFormat::Rgba16Float] } else { AccumulationFormat::ALL };
+    let group = |&count: &u32| {
+        let shot = layers(size, count, 0.1)?;
+        let mut cases = Vec::new();
+        for path in paths() {
+            for &format in if path == SmokePath::Forward { &formats[..1] } else { formats } {
+                for &scale in scales(path, &SCALES) {
+                    let name = format!("{} {} 1/{scale} {count} sprites", path.name(), format.name());
+                    let shot = changed(&shot, |settings| {
+                        at_scale(path, scale)(settings);
+                        set_format(settings, format);
+                    });
+                    let work = (format!("{} {scale}", path.name()), f64::from(count));
+                    cases.push(Case { name, shot, work });
+                }
+            }
+        }
+        Ok(Group { suite: Suite::Scale, cases, reference: full(&shot) })
+    };
+    counts.iter().map(group).collect()
+}
+
+fn set_format(settings: &mut Settings, format: AccumulationFormat) {
+    settings.accumulate.format = format;
+    if format == AccumulationFormat::Rgba8Unorm {
+        // All that it can hold.
+        (settings.accumulate.encoding, settings.accumulate.order) = (NormalEncoding::Biased, Order::Sorted);
+    }
+}
+
+fn overdraw(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
+    let counts: &[u32] = if quick { &[4, 32, 256] } else { &[4, 16, 64, 256, 1024] };
+    let amounts: &[f32] = if quick { &[0.1] } else { &[0.02, 0.1, 0.3] };
+    let group = |&count: &u32| {
+        let mut cases = Vec::new();
+        for &amount in amounts {
+            let shot = layers(size, count, amount)?;
+            for path in paths() {
+                let name = format!("{} {count} sprites of {amount}", path.name());
+                let work = (format!("overdraw {}", path.name()), f64::from(count));
+                cases.push(Case { name, shot: changed(&shot, at_scale(path, 1)), work });
+            }
+        }
+        Ok(Group { suite: Suite::Overdraw, cases, reference: full(&layers(size, count, 0.1)?) })
+    };
+    counts.iter().map(group).collect()
+}
+
+fn lights(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
+    let counts: &[u32] = if quick { &[1, 8, 64] } else { &[1, 2, 4, 8, 16, 32, 64] };
+    let group = |&count: &u32| {
+        let mut shot = layers(size, 16, 0.1)?;
+        let lamp = |index: u32| {
+            let angle = index as f32 * 2.4;
+            let place =
+                Vec3::new(-3.05, 1.2, 0.5) + Vec3::new(angle.cos(), 0.4 * (angle * 0.7).sin(), angle.sin()) * 1.5;
+            let intensity = 12.0 / count as f32;
+            Light { position: place, intensity, range: 50.0, specular_scatter: 0.0, ..Light::default() }
+        };
+        shot.preset.lights = (0..count).map(lamp).collect();
+        let mut cases = Vec::new();
+        for path in paths() {
+            for &scale in scales(path, &[1, 2, 4]) {
+                let name = format!("{} 1/{scale} {count} lights", path.name());
+                let work = (format!("lights {} {scale}", path.name()), f64::from(count));
+                cases.push(Case { name, shot: changed(&shot, at_scale(path, scale)), work });
+            }
+        }
+        Ok(Group { suite: Suite::Lights, cases, reference: full(&shot) })
+    };
+    counts.iter().map(group).collect()
+}
+
+fn soft(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
+    let shot = full(&layers(size, if quick { 4 } else { 16 }, 0.1)?);
+    let mut cases = Vec::new();
+    let mut case = |technique: Technique, curve: FadeCurve| {
+        let shot = changed(&shot, |settings| (settings.technique, settings.soft_fade.curve) = (technique, curve));
+        let name = format!("{} {}", technique.name(), curve.name());
+        cases.push(Case { name, shot, work: ("soft".into(), 1.0) });
+    };
+    Technique::ALL.iter().for_each(|&technique| case(technique, FadeCurve::default()));
+    let others = FadeCurve::ALL.iter().filter(|&&curve| curve != FadeCurve::default());
+    others.for_each(|&curve| case(Technique::Soft, curve));
+    Ok(vec![Group { suite: Suite::Soft, cases, reference: shot }])
+}
+
+fn upsample(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
+    let shot = Shot::load("fence", size)?;
+    let group = |&scale: &u32| {
+        let mut cases = Vec::new();
+        for &downsample in DepthDownsample::ALL {
+            for &upsample in Upsample::ALL {
+                let name = format!("1/{scale} {} {}", downsample.name(), upsample.name());
+                let shot = changed(&shot, |settings| {
+                    at_scale(SmokePath::Raster, scale)(settings);
+                    (settings.accumulate.depth_downsample, settings.accumulate.upsample) = (downsample, upsample);
+                });
+                cases.push(Case { name, shot, work: ("upsample".into(), 1.0) });
+            }
+        }
+        Group { suite: Suite::Upsample, cases, reference: full(&shot) }
+    };
+    Ok(if quick { &[4][..] } else { &[2, 4] }.iter().map(group).collect())
+}
+
+fn presets(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
+    let steps: &[u32] = if quick { &[2, 4] } else { &[1, 2, 4, 8] };
+    let group = |name: &str| {
+        let shot = Shot::load(name, size)?;
+        let mut cases = Vec::new();
+        for path in paths() {
+            for &scale in scales(path, steps) {
+                let name = format!("{name} {} 1/{scale}", path.name());
+                cases.push(Case { name, shot: changed(&shot, at_scale(path, scale)), work: ("presets".into(), 1.0) });
+            }
+        }
+        Ok(Group { suite: Suite::Presets, cases, reference: full(&shot) })
+    };
+    builtin::PRESETS.iter().map(|preset| group(preset.name)).collect()
+}
+
+fn particles(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
+    let counts: &[u32] = if quick { &[1_000, 100_000] } else { &[1_000, 10_000, 100_000, 1_000_000] };
+    let group = |&count: &u32| {
+        let mut shot = layers(size, 1, 0.02)?;
+        for system in &mut shot.preset.systems {
+            // A million births take ten seconds at the greatest rate.
+            system.emitter.rate = count as f32 / 10.0;
+            (system.emitter.duration, system.emitter.extent) = (10.0, Vec3::new(1.5, 0.8, 0.8));
+            // As much on the picture, whatever the number: what grows is what a particle costs by itself.
+            system.settings.sprite.size = 3.2 * 4.0 / (count as f32).sqrt();
+        }
+        shot.preset.time = 10.0;
+        let mut cases = Vec::new();
+        for path in paths() {
+            let name = format!("{} {count} particles", path.name());
+            let work = (format!("particles {}", path.name()), f64::from(count));
+            cases.push(Case { name, shot: changed(&shot, at_scale(path, 2)), work });
+        }
+        Ok(Group { suite: Suite::Particles, cases, reference: full(&shot) })
+    };
+    counts.iter().map(group).collect()
+}

@@ -1,0 +1,159 @@
+//! What the figures mean: from which overdraw on a saving pays, and what to ship.
+
+use super::report::{Report, Row};
+
+/// What a layer costs one way, and what the frame costs without any.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BreakEven {
+    pub path: String,
+    pub scale: u32,
+    pub format: String,
+    /// Milliseconds of a frame without a layer.
+    pub base_ms: f64,
+    /// Milliseconds of each layer.
+    pub layer_ms: f64,
+    /// Layers from which it is cheaper than forward; `None` where it never is.
+    pub from_layers: Option<f64>,
+}
+
+/// PSNR, dB, and FLIP of a picture that may pass for the one at full resolution.
+const GOOD_PSNR: f64 = 35.0;
+const GOOD_FLIP: f64 = 0.05;
+
+/// Of every scale, path and format of the suite `scale`, in their order.
+pub fn break_even(report: &Report) -> Vec<BreakEven> {
+    let rows: Vec<&Row> = report.rows.iter().filter(|row| row.suite == "scale").collect();
+    let line = |matches: &dyn Fn(&Row) -> bool| {
+        let points = rows.iter().filter(|row| matches(row));
+        fit(&points.filter_map(|row| Some((row.layers?, row.gpu_ms.median))).collect::<Vec<_>>())
+    };
+    let Some((forward_base, forward_layer)) = line(&|row| row.path.as_deref() == Some("forward")) else {
+        return Vec::new();
+    };
+    let mut found: Vec<BreakEven> = Vec::new();
+    for row in &rows {
+        let (Some(path), Some(scale), Some(format)) = (&row.path, row.scale, &row.format) else { continue };
+        if found.iter().any(|known| (&known.path, known.scale, &known.format) == (path, scale, format)) {
+            continue;
+        }
+        let same = |row: &Row| {
+            (&row.path, row.scale, &row.format) == (&Some(path.clone()), Some(scale), &Some(format.clone()))
+        };
+        if let Some((base_ms, layer_ms)) = line(&same) {
+            let from_layers = match (base_ms - forward_base, forward_layer - layer_ms) {
+                (more, _) if more <= 0.0 && layer_ms <= forward_layer => Some(0.0),
+                (more, saved) if saved > 0.0 => Some(more / saved),
+                _ => None,
+            };
+            found.push(BreakEven { path: path.clone(), scale, format: format.clone(), base_ms, layer_ms, from_layers });
+        }
+    }
+    found
+}
+
+/// Least squares: where a line through the points begins, and how steep it is. `None` for fewer than two places.
+fn fit(points: &[(f64, f64)]) -> Option<(f64, f64)> {
+    let count = points.len() as f64;
+    let (x, y) = points.iter().fold((0.0, 0.0), |sum, point| (sum.0 + point.0 / count, sum.1 + point.1 / count));
+    let width: f64 = points.iter().map(|point| (point.0 - x).powi(2)).sum();
+    let slope = points.iter().map(|point| (point.0 - x) * (point.1 - y)).sum::<f64>() / width;
+    (width > 1e-9).then_some((y - slope * x, slope))
+}
+
+/// True for a picture that may pass for the one at full resolution; full resolution itself has no figures.
+pub fn is_good(row: &Row) -> bool {
+    row.psnr_db.is_none_or(|psnr| psnr >= GOOD_PSNR) && row.flip.is_none_or(|flip| flip <= GOOD_FLIP)
+}
+
+/// What to ship on this adapter, in a sentence; `None` without the suite `scale`.
+pub fn sentence(report: &Report) -> Option<String> {
+    // Of the most layers that all ways were measured at.
+    let rows = || report.rows.iter().filter(|row| row.suite == "scale");
+    let forwards = rows().filter(|row| row.path.as_deref() == Some("forward"));
+    let forward = forwards.max_by(|a, b| a.layers.unwrap_or(0.0).total_cmp(&b.layers.unwrap_or(0.0)))?;
+    let (layers, forward_ms) = (forward.layers?, forward.gpu_ms.median);
+    let is_as_deep = |row: &&Row| row.particles == forward.particles && row.scale.is_some() && is_good(row);
+    let best = rows().filter(is_as_deep).min_by(|a, b| a.gpu_ms.median.total_cmp(&b.gpu_ms.median))?;
+    let (path, scale, format) = (best.path.as_deref()?, best.scale?, best.format.as_deref()?);
+    let picture = match (best.psnr_db, best.flip) {
+        (Some(psnr), Some(flip)) => format!("{psnr:.0} dB PSNR and FLIP {flip:.3} from full resolution"),
+        _ => "the picture of full resolution".into(),
+    };
+    let times = forward_ms / best.gpu_ms.median;
+    if times <= 1.0 {
+        return Some(format!(
+            "Ship forward: at {layers:.0} layers its {forward_ms:.2} ms are less than any deferred picture as good takes."
+        ));
+    }
+    let known = break_even(report);
+    let from =
+        known.iter().find(|known| (known.path.as_str(), known.scale, known.format.as_str()) == (path, scale, format));
+    let below = match from.and_then(|known| known.from_layers) {
+        Some(layers) if layers >= 1.0 => format!("; below {layers:.0} layers draw forward"),
+        _ => String::new(),
+    };
+    Some(format!(
+        "Ship {path} at 1/{scale} in {format}: at {layers:.0} layers {:.2} ms, {times:.1} times as fast as forward, {picture}{below}.",
+        best.gpu_ms.median
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::report::{Adapter, Clock, Milliseconds};
+    use super::super::suites::Suite;
+    use super::*;
+
+    /// Rows of a frame that costs `base` and so much for each layer.
+    fn report(ways: &[(&str, Option<u32>, f64, f64, Option<f64>)]) -> Report {
+        let mut rows = Vec::new();
+        for &(path, scale, base, layer, psnr_db) in ways {
+            for layers in [4.0, 16.0, 64.0] {
+                let gpu_ms = Milliseconds::of(&mut [base + layer * layers]).unwrap();
+                rows.push(Row {
+                    path: Some(path.into()),
+                    scale,
+                    format: Some("rgba16float".into()),
+                    layers: Some(layers),
+                    particles: Some(layers as u32),
+                    psnr_db,
+                    flip: psnr_db.map(|_| 0.01),
+                    ..Row::of(Suite::Scale, format!("{path} {scale:?} {layers}"), "64x36".into(), Clock::Gpu, gpu_ms)
+                });
+            }
+        }
+        let text = String::new;
+        let adapter =
+            Adapter { name: text(), backend: text(), driver: text(), software: false, wgpu: text(), haze: text() };
+        Report { version: 1, adapter, complete: true, discarded: 0, rows, left_out: Vec::new() }
+    }
+
+    #[test]
+    fn the_break_even_is_where_the_lines_cross() {
+        let report = report(&[
+            ("forward", None, 1.0, 0.5, None),
+            ("raster", Some(1), 6.0, 0.25, None),
+            ("raster", Some(2), 3.0, 0.1, Some(40.0)),
+            ("raster", Some(4), 2.0, 0.05, Some(30.0)),
+            ("raster", Some(8), 2.0, 0.6, Some(20.0)),
+        ]);
+        let found = break_even(&report);
+        let from: Vec<_> = found.iter().map(|way| way.from_layers.map(|layers| layers.round())).collect();
+        assert_eq!(from, [Some(20.0), Some(5.0), Some(2.0), None]);
+        assert!((found[1].layer_ms - 0.1).abs() < 1e-9 && (found[1].base_ms - 3.0).abs() < 1e-9);
+        // A quarter is cheaper, and not good enough.
+        let sentence = sentence(&report).unwrap();
+        assert!(
+            sentence.starts_with("Ship raster at 1/2 in rgba16float: at 64 layers 9.40 ms, 3.5 times"),
+            "{sentence}"
+        );
+        assert!(sentence.ends_with("; below 5 layers draw forward."), "{sentence}");
+    }
+
+    #[test]
+    fn forward_is_said_where_it_is_cheapest() {
+        let report = report(&[("forward", None, 0.0, 0.1, None), ("raster", Some(2), 3.0, 0.2, Some(40.0))]);
+        assert_eq!(break_even(&report)[0].from_layers, None);
+        assert!(sentence(&report).unwrap().starts_with("Ship forward: at 64 layers its 6.40 ms"));
+    }
+}
