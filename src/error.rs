@@ -59,7 +59,7 @@ pub enum Error {
     #[error(transparent)]
     Field(#[from] FieldError),
 
-    /// A ramp or sprite picture could not be used.
+    /// A ramp or sprite picture, or a file of particles, could not be used.
     #[error("{}: {reason}", name(path))]
     Image {
         /// The file, or `builtin:NAME`.
@@ -68,17 +68,17 @@ pub enum Error {
         reason: String,
     },
 
-    /// A picture that a preset names could not be used.
+    /// A picture or a file of particles that a preset names could not be used.
     #[error("{named_by}: {error}")]
     Picture {
         /// The field that names it, after the preset's file and the system where they are known:
         /// `my.json: systems[0].material.sprite`.
         named_by: String,
-        /// What is wrong with the picture.
+        /// What is wrong with the file.
         error: Box<Error>,
     },
 
-    /// A preset or gradient file could not be used.
+    /// A preset or gradient file, or particles as text, could not be used.
     #[error("{}:{line}:{column}: {reason}", name(path))]
     Json {
         /// The file, or `builtin:NAME`.

@@ -15,8 +15,8 @@
 //!
 //! # What it does not do
 //! - It never creates a device, submits, tonemaps, or requires a device feature.
-//! - It simulates nothing: [`emitter`] is a closed-form source of particles; hosts with their own simulation hand over a
-//!   slice or a GPU buffer.
+//! - It simulates nothing: [`emitter`] is a closed-form source of particles, [`cache`] reads those of a simulation from files;
+//!   hosts with their own simulation hand over a slice or a GPU buffer.
 //! - It casts no shadows, neither of the smoke on the scene nor of the smoke on itself.
 //! - It reads single-sampled depth; a multisampled host resolves its depth first.
 //!
@@ -77,7 +77,7 @@ pub mod settings;
 
 pub use assets::material::MaterialAssets;
 #[doc(inline)]
-pub use assets::{builtin, noise, picture, ramp, sprite};
+pub use assets::{builtin, cache, noise, picture, ramp, sprite};
 pub use error::{Error, FieldError};
 pub use frame::{Bounds, Frame, Light, LightKind, Material, Particle, Particles, SceneDepth, System, View};
 pub use renderer::{

@@ -13,6 +13,8 @@ mod many;
 mod names;
 #[path = "cli/outputs.rs"]
 mod outputs;
+#[path = "cli/particles.rs"]
+mod particles;
 #[path = "cli/ramps.rs"]
 mod ramps;
 #[path = "cli/shaders.rs"]

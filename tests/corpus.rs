@@ -8,9 +8,10 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use haze::cache;
 use haze::noise::{NoiseRecipe, NoiseVolume};
 use haze::picture::read_png;
-use haze::preset::Preset;
+use haze::preset::{PictureFolders, Preset};
 use haze::ramp::Ramp;
 use haze::ramp::bake::RampRecipe;
 use haze::ramp::motif::MotifRecipe;
@@ -26,11 +27,12 @@ fn read(kind: &str, path: &Path) -> Result<(), Error> {
         "preset" => {
             let preset = Preset::load(path.to_str().unwrap())?;
             preset.load_materials(path)?;
+            let caches = preset.load_caches(path, &PictureFolders::beside(path))?;
             let mut particles = Vec::new();
             let mut alive = 0;
-            for system in &preset.systems {
+            for (system, cache) in preset.systems.iter().zip(&caches) {
                 // Birth times are jittered, so a few more may be met than live.
-                system.particles(preset.time, &mut particles);
+                system.particles(cache.as_ref(), preset.time, &mut particles);
                 alive += particles.len();
             }
             assert!(alive <= emitter::MAX_PARTICLES as usize + 64, "{alive} particles");
@@ -72,6 +74,13 @@ fn read(kind: &str, path: &Path) -> Result<(), Error> {
             ] {
                 refused.iter().for_each(|error| check_line(path, error));
             }
+        }
+        "csv" | "ply" => {
+            let content = std::fs::read(path).unwrap();
+            let frame = cache::parse(Path::new(&format!("a.{kind}")), &content, 1000);
+            let frame = frame.map_err(|mistake| mistake.of(path))?;
+            assert!(frame.particles().len() <= 1000, "{} particles", frame.particles().len());
+            assert!(frame.particles().iter().all(|particle| particle.position.is_finite() && particle.radius >= 0.0));
         }
         other => panic!("{other} is no kind of file"),
     }

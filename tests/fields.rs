@@ -70,6 +70,9 @@ impl FieldVisitor for Met {
     fn picture(&mut self, name: &'static str, _: &mut String, _: PictureRole) {
         self.field(name);
     }
+    fn particles(&mut self, name: &'static str, _: &mut String) {
+        self.field(name);
+    }
     fn seed(&mut self, name: &'static str, _: &mut u32) {
         self.field(name);
     }

@@ -4,7 +4,8 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
-use haze::preset::{PictureFolders, Preset, picture_file};
+use haze::cache;
+use haze::preset::{PictureFolders, Preset, cache_file, picture_file};
 use haze::settings::{FieldVisitor, Fields, PictureRole};
 
 /// Every place where a picture may lie that a preset names.
@@ -17,6 +18,12 @@ pub fn picture_files(preset: &Preset) -> Vec<PathBuf> {
     let mut names = Names(Vec::new());
     preset.clone().visit(&mut names);
     names.0.iter().filter_map(|name| picture_file(name)).map(Path::to_path_buf).collect()
+}
+
+/// Every particle file that a preset names, and those that may follow it.
+pub fn caches_of(folders: &PictureFolders, preset: &Preset) -> Vec<PathBuf> {
+    let files = preset.systems.iter().filter_map(|system| cache_file(&system.cache.path));
+    files.flat_map(|file| folders.places(file)).flat_map(|place| cache::places(&place)).collect()
 }
 
 struct Names(Vec<String>);

@@ -73,10 +73,10 @@ pub struct ShotArguments {
     small: bool,
 }
 
-/// A folder of pictures that presets share.
+/// A folder of files that presets share.
 #[derive(Args, Clone, Debug, Default)]
 pub struct AssetsArguments {
-    /// A folder in which pictures are looked for that are not beside the preset.
+    /// A folder in which pictures and particle files are looked for that are not beside the preset.
     #[arg(long, value_name = "DIR")]
     assets: Option<PathBuf>,
 }
@@ -95,7 +95,7 @@ impl AssetsArguments {
         }
     }
 
-    /// Where the pictures of a preset are looked for.
+    /// Where the files of a preset are looked for.
     ///
     /// # Errors
     /// As [`AssetsArguments::folder`].

@@ -27,7 +27,7 @@ const SIZE: UVec2 = UVec2::new(1280, 720);
 enum Command {
     /// The built-in presets.
     List,
-    /// Load presets and their pictures, and say all that is wrong with them, what is doubtful, and what is set to no effect.
+    /// Load presets and their files, and say all that is wrong with them, what is doubtful, and what is set to no effect.
     Check {
         /// Names or paths.
         #[arg(required = true)]
@@ -91,7 +91,13 @@ fn check(path: &Path, assets: &AssetsArguments) -> Result<Vec<String>, Vec<Error
     let one = |error| vec![error];
     let preset = Preset::load(path).map_err(one)?;
     let folders = assets.folders(path).map_err(one)?;
-    let materials = preset.check_materials(path, &folders)?;
+    let (materials, caches) = (preset.check_materials(path, &folders), preset.check_caches(path, &folders));
+    let materials = match (materials, caches) {
+        (Ok(materials), Ok(_)) => materials,
+        (materials, caches) => {
+            return Err([materials.err(), caches.err()].into_iter().flatten().flatten().collect());
+        }
+    };
     let shot = Shot::from_folders(preset, path, &folders, SIZE).map_err(one)?;
     let systems = shot.preset.systems.iter().zip(&materials).enumerate();
     let doubts = systems.flat_map(|(index, (system, material))| {

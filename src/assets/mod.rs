@@ -2,6 +2,7 @@
 //! knows a device.
 
 pub mod builtin;
+pub mod cache;
 pub mod file;
 pub mod finding;
 pub mod json;

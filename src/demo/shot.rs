@@ -5,6 +5,7 @@ use std::path::Path;
 use glam::UVec2;
 
 use super::scene::Scene;
+use crate::assets::cache::Cache;
 use crate::assets::material::MaterialAssets;
 use crate::error::Error;
 use crate::frame::Particle;
@@ -22,41 +23,44 @@ pub struct Shot {
     pub shade_tree: ShadeTree,
     /// One per system.
     pub materials: Vec<MaterialAssets>,
+    /// One per system that takes its particles from files; the emitter makes them where there is none.
+    pub caches: Vec<Option<Cache>>,
 }
 
 impl Shot {
-    /// Loads a preset, built in or from a file, and its pictures.
+    /// Loads a preset, built in or from a file, with its pictures and particle files.
     ///
     /// # Errors
-    /// As [`Preset::load`] and [`Preset::load_materials`].
+    /// As [`Preset::load`], [`Preset::load_materials`] and [`Preset::load_caches`].
     pub fn load(name_or_path: impl AsRef<Path>, size: UVec2) -> Result<Self, Error> {
         let path = name_or_path.as_ref();
         Self::new(Preset::load(path)?, path, size)
     }
 
-    /// Loads the pictures of a preset, which are looked for beside `path`.
+    /// Loads the files that a preset names, which are looked for beside `path`.
     ///
     /// # Errors
-    /// As [`Preset::load_materials`].
+    /// As [`Preset::load_materials`] and [`Preset::load_caches`].
     pub fn new(preset: Preset, path: &Path, size: UVec2) -> Result<Self, Error> {
         Self::from_folders(preset, path, &PictureFolders::beside(path), size)
     }
 
-    /// The same, where the pictures are looked for in other folders.
+    /// The same, where they are looked for in other folders.
     ///
     /// # Errors
-    /// As [`Preset::load_materials`].
+    /// As [`Shot::new`].
     pub fn from_folders(preset: Preset, path: &Path, folders: &PictureFolders, size: UVec2) -> Result<Self, Error> {
         let materials = preset.load_materials_from(path, folders)?;
         for (index, (system, material)) in preset.systems.iter().zip(&materials).enumerate() {
             let fits = material.info().validate(index, &system.settings);
             fits.map_err(|error| Error::JsonField { path: path.into(), error })?;
         }
-        Ok(Self { preset, size, shade_tree: ShadeTree::Final, materials })
+        let caches = preset.load_caches(path, folders)?;
+        Ok(Self { preset, size, shade_tree: ShadeTree::Final, materials, caches })
     }
 
-    /// True if both give one picture, before it is developed: exposure is no part of it. Cheap, as ramps and sprites are
-    /// compared by where they are in memory.
+    /// True if both give one picture, before it is developed: exposure is no part of it. Cheap, as what comes from
+    /// files is compared by where it is in memory.
     pub fn is_same(&self, other: &Self) -> bool {
         let shares = |(a, b): (&MaterialAssets, &MaterialAssets)| a.shares(b);
         let is_same_but_exposed = || {
@@ -69,6 +73,7 @@ impl Shot {
             && (self.preset == other.preset || !is_exposed_alike && is_same_but_exposed())
             && self.materials.len() == other.materials.len()
             && self.materials.iter().zip(&other.materials).all(shares)
+            && Cache::all_shared(&self.caches, &other.caches)
     }
 
     /// True if the smoke is shown in the scene; the other stages are shown on black.
@@ -82,11 +87,12 @@ impl Shot {
 
     /// Particles and settings of every system, in order.
     pub(super) fn systems(&self) -> Vec<(Vec<Particle>, Settings)> {
-        let evaluate = |system: &PresetSystem| {
+        let evaluate = |(index, system): (usize, &PresetSystem)| {
             let mut particles = Vec::new();
-            system.particles(self.preset.time, &mut particles);
+            let cache = self.caches.get(index).and_then(Option::as_ref);
+            system.particles(cache, self.preset.time, &mut particles);
             (particles, system.settings_for(self.size.y))
         };
-        self.preset.systems.iter().map(evaluate).collect()
+        self.preset.systems.iter().enumerate().map(evaluate).collect()
     }
 }

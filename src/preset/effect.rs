@@ -33,6 +33,22 @@ const fn row<T>(reason: &'static str, holds: fn(&T, UVec2) -> bool, fields: &'st
 
 /// The first row that holds is the reason.
 const OF_SYSTEMS: &[Row<PresetSystem>] = &[
+    row("the particles come from a cache", |s, _| s.cache.is_used(), &["emitter"]),
+    row(
+        "only with a cache",
+        |s, _| !s.cache.is_used(),
+        &[
+            "cache.units",
+            "cache.up",
+            "cache.position",
+            "cache.fps",
+            "cache.start",
+            "cache.after",
+            "cache.default_radius",
+            "cache.default_amount",
+            "cache.flipbook_rate",
+        ],
+    ),
     row(
         "forward only",
         |s, _| !s.settings.is_forward(),
@@ -85,6 +101,7 @@ const OF_SYSTEMS: &[Row<PresetSystem>] = &[
             "material.y_down",
             "emitter.spin",
             "emitter.frame_rate",
+            "cache.flipbook_rate",
         ],
     ),
     row(
@@ -126,6 +143,7 @@ const OF_SYSTEMS: &[Row<PresetSystem>] = &[
             "settings.sprite.animation",
             "settings.sprite.freeze_animation",
             "emitter.frame_rate",
+            "cache.flipbook_rate",
             "material.sprite",
             "material.detail",
             "material.columns",
@@ -137,18 +155,22 @@ const OF_SYSTEMS: &[Row<PresetSystem>] = &[
     row(
         "the sprite has one frame",
         has_one_frame,
-        &["settings.sprite.animation", "settings.sprite.freeze_animation", "emitter.frame_rate"],
+        &["settings.sprite.animation", "settings.sprite.freeze_animation", "emitter.frame_rate", "cache.flipbook_rate"],
     ),
     row(
         "not with animation still",
         |s, _| s.settings.sprite.animation == SpriteAnimation::Still,
         &["settings.sprite.motion"],
     ),
-    row("only with animation flipbook", plays_no_flipbook, &["settings.sprite.freeze_animation", "emitter.frame_rate"]),
+    row(
+        "only with animation flipbook",
+        plays_no_flipbook,
+        &["settings.sprite.freeze_animation", "emitter.frame_rate", "cache.flipbook_rate"],
+    ),
     row(
         "sprite.freeze_animation holds it",
         |s, _| s.settings.sprite.freeze_animation,
-        &["settings.volumetric.scroll_speed", "emitter.frame_rate"],
+        &["settings.volumetric.scroll_speed", "emitter.frame_rate", "cache.flipbook_rate"],
     ),
     row("nothing moves: frame_rate and scroll_speed are 0", stands_still, &["settings.sprite.freeze_animation"]),
     row("only at an age_colour above 0", |s, _| s.settings.sprite.age_colour <= 0.0, &["material.age_ramp"]),
@@ -321,7 +343,7 @@ fn plays_no_flipbook(system: &PresetSystem, _: UVec2) -> bool {
 
 fn stands_still(system: &PresetSystem, _: UVec2) -> bool {
     let scroll_speed = system.settings.volumetric.scroll_speed;
-    if technique(system).is_volumetric() { scroll_speed == 0.0 } else { system.emitter.frame_rate <= 0.0 }
+    if technique(system).is_volumetric() { scroll_speed == 0.0 } else { system.frame_rate() <= 0.0 }
 }
 
 fn is_painted(system: &PresetSystem) -> bool {

@@ -1,9 +1,8 @@
-//! Where the pictures of a preset are looked for.
+//! Where the pictures and particle files of a preset are looked for.
 
-use std::ffi::OsStr;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use crate::assets::cache::is_there;
 use crate::error::Error;
 
 /// The folder of the preset's file, and after it one that presets share.
@@ -35,21 +34,17 @@ impl PictureFolders {
         Self { shared, ..self }
     }
 
-    /// Every place where a picture may lie, the first wins.
+    /// Every place where a file may lie, the first wins.
     pub fn places(&self, file: &Path) -> impl Iterator<Item = PathBuf> {
         self.all().map(move |folder| folder.join(file))
     }
 
-    /// Where a picture lies. What is there and cannot be read is found: reading it says why.
+    /// Where a file lies, or files that a name with `#` stands for. What is there and cannot be read is found: reading it says why.
     ///
     /// # Errors
     /// [`Error::Image`] where it is in no folder, with the folders, and the name that is most like it.
     pub fn find(&self, file: &Path) -> Result<PathBuf, Error> {
-        let is_there = |place: &PathBuf| match place.symlink_metadata() {
-            Ok(_) => true,
-            Err(error) => error.kind() != ErrorKind::NotFound,
-        };
-        self.places(file).find(is_there).ok_or_else(|| self.missing(file))
+        self.places(file).find(|place| is_there(place)).ok_or_else(|| self.missing(file))
     }
 
     fn all(&self) -> impl Iterator<Item = &Path> {
@@ -68,16 +63,17 @@ impl PictureFolders {
     }
 }
 
-/// The picture of the same folder whose name is most like that of a file, and how much.
+/// The file of the same folder and kind whose name is most like that of a file, and how much.
 fn nearest(file: &Path) -> Option<(f64, String)> {
     let (name, folder) = (file.file_name()?.to_str()?, file.parent()?);
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let is_png =
-        |name: &String| Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case(OsStr::new("png")));
+    let ending = file.extension()?;
+    let is_kind = |name: &String| Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case(ending));
     let names =
         std::fs::read_dir(folder).ok()?.take(MOST_NAMES).filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-    let alike = names.filter(is_png).map(|other| (strsim::jaro_winkler(name, &other), other));
-    alike.filter(|(alike, _)| *alike >= ALIKE).max_by(|a, b| a.0.total_cmp(&b.0))
+    let alike = names.filter(is_kind).map(|other| (strsim::jaro_winkler(name, &other), other));
+    // Of frames that are as much alike the first, whichever way the folder lists them.
+    alike.filter(|(alike, _)| *alike >= ALIKE).max_by(|a, b| a.0.total_cmp(&b.0).then_with(|| b.1.cmp(&a.1)))
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! Presets: a camera, lights and particle systems in a JSON file.
 
+mod cache;
+mod caches;
 mod camera;
 mod effect;
 mod environment;
@@ -17,6 +19,8 @@ mod text;
 #[cfg(feature = "app")]
 mod tooltips;
 
+pub use cache::{CacheEnd, CacheSource, UpAxis, cache_file};
+pub use caches::MAX_CACHE_BYTES;
 pub use camera::Camera;
 pub use environment::{Environment, SceneName};
 pub use folders::PictureFolders;

@@ -137,6 +137,10 @@ impl FieldVisitor for Rows<'_> {
         self.row(name, names.join(", ") + or + "a PNG's path");
     }
 
+    fn particles(&mut self, name: &'static str, _: &mut String) {
+        self.row(name, "the path of a [CSV or PLY](particles.md)");
+    }
+
     fn seed(&mut self, name: &'static str, _: &mut u32) {
         self.row(name, "any whole number");
     }

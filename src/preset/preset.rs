@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
+use super::cache::CacheSource;
 use super::camera::Camera;
 use super::environment::Environment;
 use super::folders::PictureFolders;
 use super::material_names::MaterialNames;
 use super::pictures::Pictures;
+use crate::assets::cache::Cache;
 use crate::assets::material::MaterialAssets;
 use crate::assets::{builtin, json};
 use crate::emitter::{Emitter, MAX_PARTICLES};
@@ -64,6 +66,9 @@ pub struct PresetSystem {
     /// Where its particles come from.
     #[serde(default)]
     pub emitter: Emitter,
+    /// Where they come from instead, if there are files of them.
+    #[serde(default)]
+    pub cache: CacheSource,
     /// Its pictures.
     #[serde(default)]
     pub material: MaterialNames,
@@ -93,6 +98,7 @@ impl Default for PresetSystem {
         Self {
             name: "smoke".into(),
             emitter: Emitter::default(),
+            cache: CacheSource::default(),
             material: MaterialNames::default(),
             settings: Settings::default(),
         }
@@ -120,6 +126,7 @@ impl Fields for PresetSystem {
     fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
         visitor.text("name", &mut self.name);
         visitor.group("emitter", &mut self.emitter);
+        visitor.group("cache", &mut self.cache);
         visitor.group("material", &mut self.material);
         visitor.group("settings", &mut self.settings);
     }
@@ -213,7 +220,9 @@ impl Preset {
         let mut most = 0.0;
         for (index, system) in self.systems.iter().enumerate() {
             system.emitter.validate(|| format!("systems[{index}].emitter"))?;
-            most += system.emitter.most_alive();
+            if !system.cache.is_used() {
+                most += system.emitter.most_alive();
+            }
             if most > f64::from(MAX_PARTICLES) {
                 let field = format!("systems[{index}].emitter.rate");
                 let expected = format!("at most {MAX_PARTICLES} particles alive at once in all systems, not {most:.0}");
@@ -225,8 +234,8 @@ impl Preset {
     }
 }
 
-/// A mistake in the material of system `index`, said with the preset's file.
-fn in_system(path: &Path, index: usize, error: Error) -> Error {
+/// A mistake in the files of system `index`, said with the preset's file.
+pub(super) fn in_system(path: &Path, index: usize, error: Error) -> Error {
     match error {
         Error::Field(mut error) => {
             error.field = format!("systems[{index}].{}", error.field);
@@ -240,13 +249,25 @@ fn in_system(path: &Path, index: usize, error: Error) -> Error {
 }
 
 impl PresetSystem {
-    /// The particles alive at `time`, seconds.
-    pub fn particles(&self, time: f32, particles: &mut Vec<Particle>) {
-        let mut emitter = self.emitter;
-        if self.settings.sprite.freeze_animation {
-            emitter.frame_rate = 0.0;
+    /// The particles alive at `time`, seconds: those of `cache`, the system's files, where it names some and has them, else those of
+    /// its emitter.
+    pub fn particles(&self, cache: Option<&Cache>, time: f32, particles: &mut Vec<Particle>) {
+        let is_frozen = self.settings.sprite.freeze_animation;
+        match cache.filter(|_| self.cache.is_used()) {
+            Some(cache) => {
+                let flipbook_rate = if is_frozen { 0.0 } else { self.cache.flipbook_rate };
+                CacheSource { flipbook_rate, ..self.cache.clone() }.evaluate(cache, time, particles);
+            }
+            None => {
+                let frame_rate = if is_frozen { 0.0 } else { self.emitter.frame_rate };
+                Emitter { frame_rate, ..self.emitter }.evaluate(time, particles);
+            }
         }
-        emitter.evaluate(time, particles);
+    }
+
+    /// Flipbook frames per second, wherever the particles come from.
+    pub(super) fn frame_rate(&self) -> f32 {
+        if self.cache.is_used() { self.cache.flipbook_rate } else { self.emitter.frame_rate }
     }
 
     /// The settings for a picture of this height: what presets give in pixels, they give for [`DESIGN_HEIGHT`].

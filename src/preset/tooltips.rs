@@ -100,6 +100,9 @@ mod tests {
         fn picture(&mut self, name: &'static str, _: &mut String, _: PictureRole) {
             self.row(name);
         }
+        fn particles(&mut self, name: &'static str, _: &mut String) {
+            self.row(name);
+        }
         fn seed(&mut self, name: &'static str, _: &mut u32) {
             self.row(name);
         }

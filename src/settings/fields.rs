@@ -64,6 +64,9 @@ pub trait FieldVisitor {
     /// The name of a picture: a built-in one's, or a file's.
     fn picture(&mut self, _name: &'static str, _value: &mut String, _role: PictureRole) {}
 
+    /// The name of a file of particles, or of one a frame; empty for none.
+    fn particles(&mut self, _name: &'static str, _value: &mut String) {}
+
     /// A random seed: every whole number is as good as the next.
     fn seed(&mut self, _name: &'static str, _value: &mut u32) {}
 

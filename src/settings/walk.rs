@@ -23,7 +23,7 @@ pub enum Leaf<'a> {
     Flag(&'a mut bool),
     /// One of a few.
     Choice(&'a mut dyn Choice),
-    /// Words, or the name of a picture.
+    /// Words, or the name of a file.
     Text(&'a mut String),
 }
 
@@ -163,6 +163,10 @@ impl FieldVisitor for Walk<'_> {
     }
 
     fn picture(&mut self, name: &'static str, value: &mut String, _: PictureRole) {
+        self.leaf(name, Leaf::Text(value));
+    }
+
+    fn particles(&mut self, name: &'static str, value: &mut String) {
         self.leaf(name, Leaf::Text(value));
     }
 

@@ -4,9 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path as File;
 
 use glam::{UVec2, Vec3, Vec4, vec3};
+use haze::cache::Cache;
 use haze::noise::NoiseRecipe;
 use haze::picture::Picture;
-use haze::preset::{Preset, PresetSystem};
+use haze::preset::{CacheEnd, PictureFolders, Preset, PresetSystem};
 use haze::settings::*;
 use haze::{Context, Light, LightKind, MaterialAssets};
 
@@ -22,6 +23,7 @@ const SIZE: UVec2 = UVec2::new(48, 27);
 struct Situation {
     preset: Preset,
     material: MaterialAssets,
+    caches: Vec<Option<Cache>>,
 }
 
 impl Situation {
@@ -39,13 +41,14 @@ impl Situation {
         let material = system.material.load(folder).unwrap();
         let preset = Preset { time: 6.3, lights: vec![light], systems: vec![system], ..Preset::default() };
         preset.validate().unwrap();
-        Self { preset, material }
+        let caches = preset.load_caches(folder, &PictureFolders::at(folder)).unwrap();
+        Self { preset, material, caches }
     }
 
     fn stage(&self) -> Stage {
         let mut stage = Stage::new(SIZE);
         let system = &self.preset.systems[0];
-        system.particles(self.preset.time, &mut stage.particles);
+        system.particles(self.caches[0].as_ref(), self.preset.time, &mut stage.particles);
         stage.lights.clone_from(&self.preset.lights);
         (stage.settings, stage.time) = (system.settings_for(SIZE.y), self.preset.time);
         stage.material = self.material.clone();
@@ -122,7 +125,15 @@ const SITUATIONS: &[fn(&mut PresetSystem, &mut Light)] = &[
         (s.material.sprite, s.material.detail) = ("own.png".into(), "own.png".into());
         s.settings.sprite.motion = 0.7;
     },
+    // Between two frames, after the end.
+    |s, _| {
+        (s.cache.path, s.cache.position) = (PARTICLES.into(), vec3(0.0, -0.5, -6.0));
+        (s.cache.fps, s.cache.after) = (3.0, CacheEnd::Loop);
+    },
 ];
+
+/// One a frame, without radius and amount.
+const PARTICLES: &str = "particles_##.csv";
 
 /// Fields whose other values make no other picture where they can be compared, and why.
 const SAME: [&str; 3] = [
@@ -167,6 +178,13 @@ fn pictures(folder: &File) {
             image::Rgba([128 + lean, 200 - lean, 220 - x as u8, inside])
         });
         picture.save(folder.join(name)).unwrap();
+    }
+    for frame in 0..4 {
+        let particle = |id: i32| {
+            format!("{id},{},{},{}\n", 0.3 * id as f32 + 0.1 * frame as f32, 0.2 * id as f32, 0.1 * id as f32)
+        };
+        let text = "id,x,y,z\n".to_owned() + &(-2..4 - frame).map(particle).collect::<String>();
+        std::fs::write(folder.join(format!("particles_{frame:02}.csv")), text).unwrap();
     }
     let noise = NoiseRecipe { version: 1, seed: 3, size: 16, cells: 2, octaves: 3, gain: 0.5 };
     noise.bake().unwrap().save(folder.join(OTHER_NOISE)).unwrap();
@@ -222,7 +240,7 @@ fn what_has_no_effect_has_none_and_what_is_not_told_so_has_one() {
     assert!(unfelt.is_empty(), "nowhere any effect: {unfelt:?}");
     assert!(untold.keys().all(|path| NOT_ALWAYS.contains(&path.as_str())), "{untold:?}");
     // All but the one that is about the demo scene.
-    assert_eq!(reasons.len(), 38, "{reasons:#?}");
+    assert_eq!(reasons.len(), 40, "{reasons:#?}");
 }
 
 #[cfg(feature = "app")]

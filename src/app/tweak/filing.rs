@@ -6,8 +6,9 @@ use std::sync::Arc;
 use eframe::egui;
 use haze::preset::PictureFolders;
 use haze::ramp::Ramp;
-use haze::{Error, FieldError, MaterialAssets};
+use haze::{Error, FieldError};
 
+use super::caches::{self, Loaded};
 use super::document::document::{Document, OnDisk, Saving};
 use super::messages::short;
 use super::platform::dialog::{Answer, Dialogs, Purpose};
@@ -34,7 +35,7 @@ pub struct Filing {
 /// What ends the work on a document.
 pub enum Next {
     /// Another takes its place.
-    Show(Box<Document>, Vec<MaterialAssets>),
+    Show(Box<Document>, Loaded),
     Close,
 }
 
@@ -46,7 +47,7 @@ pub struct Typed {
 
 /// What was done elsewhere.
 enum Done {
-    Opened(Box<Document>, Vec<MaterialAssets>),
+    Opened(Box<Document>, Loaded),
     /// A ramp's name, to be looked for beside the preset.
     Ramp(String),
     Saved(Box<Saving>, Result<(), Error>),
@@ -262,10 +263,10 @@ fn suggested(session: &Session) -> PathBuf {
     if document.is_built_in() { document.path().with_extension("json") } else { document.path().into() }
 }
 
-fn load(path: &Path, assets: Option<PathBuf>) -> Result<(Document, Vec<MaterialAssets>), Error> {
+fn load(path: &Path, assets: Option<PathBuf>) -> Result<(Document, Loaded), Error> {
     let document = Document::open(path)?;
     let folders = PictureFolders::beside(path).and_shared(assets);
-    let loaded = document.preset.load_materials_from(path, &folders)?;
+    let loaded = caches::load(&document.preset, path, &folders)?;
     Ok((document, loaded))
 }
 

@@ -101,7 +101,7 @@ impl Keeping {
             let document = Document::recovered(one.preset.clone(), &one.source);
             let written = self.recovery.write(&document);
             // Those of another file or other names are loaded as soon as this is seen.
-            let loaded = session.pictures.of(&document.preset);
+            let loaded = (session.pictures.of(&document.preset), session.caches.of(&document.preset));
             session.put(document, loaded);
             // Else it is offered again at the next start.
             if let Err(error) = written {

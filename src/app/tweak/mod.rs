@@ -2,6 +2,7 @@
 
 mod action;
 mod angles;
+mod caches;
 mod compare;
 mod document;
 mod easel;

@@ -1,4 +1,5 @@
-//! Hot reload: ramps, sprites, the preset and shaders are read again when they change on disk, whichever way they were saved.
+//! Hot reload: ramps, sprites, particle files, the preset and shaders are read again when they change on disk, whichever way they were
+//! saved.
 //!
 //! Pictures are decoded and shaders compiled on a thread of their own; what is good takes the place of what was shown, and what is
 //! not is said until it is mended.
@@ -6,12 +7,14 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use haze::cache::Cache;
 use haze::demo::shot::Shot;
 use haze::demo::stage::{Stage, StageContext};
 use haze::preset::{MaterialNames, Preset};
 use haze::shader::{self, Sources};
 use haze::{Error, MaterialAssets};
 
+use super::caches::{Caches, paths};
 use super::document::document::OnDisk;
 use super::easel::Easel;
 use super::pictures::{Pictures, names};
@@ -23,12 +26,16 @@ use crate::app::watch::Watcher;
 pub struct Reload {
     watcher: Watcher,
     worker: Worker<Loaded>,
-    /// The preset's file and the pictures that were asked for last.
-    asked: (PathBuf, Vec<MaterialNames>),
+    /// What was asked for last.
+    asked: Asked,
     /// Those that are on their way.
     pictures: Option<Ticket>,
+    caches: Option<Ticket>,
     shaders: Option<Shaders>,
 }
+
+/// The preset's file, and the pictures and particle files that its systems name.
+type Asked = (PathBuf, Vec<MaterialNames>, Vec<String>);
 
 /// A folder of shaders that someone works on.
 struct Shaders {
@@ -40,6 +47,7 @@ struct Shaders {
 /// What the worker has made.
 enum Loaded {
     Pictures(Box<Preset>, Result<Vec<MaterialAssets>, Error>),
+    Caches(Box<Preset>, Result<Vec<Option<Cache>>, Error>),
     /// With the files that are to be watched.
     Shaders(Vec<PathBuf>, Result<(StageContext, Sources), Error>),
 }
@@ -85,6 +93,7 @@ impl Reload {
             worker: Worker::new("haze reload", move || wake()).map_err(thread)?,
             asked: asked(session),
             pictures: None,
+            caches: None,
             shaders: match shaders {
                 ShaderFolder::None => None,
                 ShaderFolder::Given(folder) | ShaderFolder::Checkout(folder) => Some(Shaders::new(folder)),
@@ -97,6 +106,7 @@ impl Reload {
         }
         // What was written between the reading and the watching.
         reload.load_pictures(session);
+        reload.load_caches(session);
         Ok(reload)
     }
 
@@ -107,24 +117,35 @@ impl Reload {
         }
         let now = asked(session);
         if now != self.asked {
+            let has_caches = (&now.0, &now.2) != (&self.asked.0, &self.asked.2);
             self.asked = now;
             self.watch(session);
             // What was written between the reading and the watching.
             changed_on_disk(session);
             self.load_pictures(session);
+            if has_caches {
+                self.load_caches(session);
+            }
         }
-        let (mut has_pictures, mut has_shaders) = (false, false);
+        let (mut has_pictures, mut has_caches, mut has_shaders) = (false, false, false);
         for file in self.watcher.poll() {
             if self.shaders.as_ref().is_some_and(|shaders| shaders.files.contains(&file)) {
                 has_shaders = true;
             } else if file == session.document.path() {
                 changed_on_disk(session);
-            } else {
+            } else if file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
                 has_pictures = true;
+            } else {
+                has_caches = true;
             }
         }
         if has_pictures {
             self.load_pictures(session);
+        }
+        if has_caches {
+            // Another frame may follow.
+            self.watch(session);
+            self.load_caches(session);
         }
         if has_shaders {
             self.check_shaders(session, easel);
@@ -150,6 +171,19 @@ impl Reload {
         });
         // Only the last are wanted.
         if let Some(before) = self.pictures.replace(ticket) {
+            before.cancel();
+        }
+    }
+
+    /// Reads the particle files that the preset names; as with pictures.
+    fn load_caches(&mut self, session: &Session) {
+        let preset = Box::new(session.document.preset.clone());
+        let (path, folders) = (session.document.path().to_owned(), session.folders());
+        let ticket = self.worker.submit(move |_| {
+            let loaded = preset.load_caches(&path, &folders);
+            Loaded::Caches(preset, loaded)
+        });
+        if let Some(before) = self.caches.replace(ticket) {
             before.cancel();
         }
     }
@@ -181,6 +215,11 @@ impl Reload {
                 session.pictures = Pictures::new(&preset, loaded);
                 session.messages.withdraw("pictures");
             }
+            Some(Loaded::Caches(preset, Ok(loaded))) => {
+                session.caches = Caches::new(&preset, loaded);
+                session.messages.withdraw("caches");
+            }
+            Some(Loaded::Caches(_, Err(error))) => session.messages.complain("caches", error),
             Some(Loaded::Pictures(_, Err(error))) => session.messages.complain("pictures", error),
             Some(Loaded::Shaders(files, checked)) => {
                 if let Some(shaders) = &mut self.shaders {
@@ -209,9 +248,9 @@ impl Shaders {
     }
 }
 
-/// What pictures depend on.
-fn asked(session: &Session) -> (PathBuf, Vec<MaterialNames>) {
-    (session.document.path().to_owned(), names(&session.document.preset))
+fn asked(session: &Session) -> Asked {
+    let preset = &session.document.preset;
+    (session.document.path().to_owned(), names(preset), paths(preset))
 }
 
 /// Where files would take the place of embedded ones.

@@ -86,7 +86,7 @@ pub fn tab_of(path: &str) -> Tab {
     let is_smoke = |part| path.contains(part);
     if !path.starts_with("systems") {
         Tab::Light
-    } else if [".emitter.", ".material.", ".diffuse.", ".soft_scatter.", ".specular_scatter.", ".soft_fade."]
+    } else if [".emitter.", ".cache.", ".material.", ".diffuse.", ".soft_scatter.", ".specular_scatter.", ".soft_fade."]
         .into_iter()
         .any(is_smoke)
     {

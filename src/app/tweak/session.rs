@@ -4,12 +4,14 @@ use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use glam::UVec2;
+use haze::cache::Cache;
 use haze::demo::shot::Shot;
 use haze::preset::{PictureFolders, Preset, Tooltips};
 use haze::settings::{ShadeTree, Value, values};
 use haze::shader::Sources;
 use haze::{Error, Light, MaterialAssets};
 
+use super::caches::{Caches, Loaded, load};
 use super::compare::Compare;
 use super::document::difference::{changed_fields, copy_field};
 use super::document::document::Document;
@@ -50,6 +52,7 @@ pub struct Session {
     pub screenshot: Option<PathBuf>,
     /// As last loaded well.
     pub pictures: Pictures,
+    pub caches: Caches,
     /// Ramps whose stops are changed.
     pub ramps: RampFiles,
     /// An author's, as last compiled well; those that the program has in it if none.
@@ -81,7 +84,7 @@ impl Session {
         let document = Document::open(source)?;
         let preset = &document.preset;
         let folders = PictureFolders::beside(source).and_shared(assets.clone());
-        let loaded = preset.load_materials_from(source, &folders)?;
+        let (materials, caches) = load(preset, source, &folders)?;
         Ok(Self {
             assets,
             playback: Playback::at(preset.time),
@@ -98,7 +101,8 @@ impl Session {
             stages: Tooltips::of::<ShadeTree>(),
             thumbnails: PictureThumbnails::default(),
             screenshot: None,
-            pictures: Pictures::new(preset, loaded),
+            pictures: Pictures::new(preset, materials),
+            caches: Caches::new(preset, caches),
             ramps: RampFiles::default(),
             shaders: None,
             is_changed_on_disk: false,
@@ -118,8 +122,8 @@ impl Session {
         let mut preset = self.document.preset.clone();
         preset.time = self.playback.time;
         preset.lights = self.show.lights.shown(&preset.lights);
-        let materials = self.materials();
-        Shot { preset, size, shade_tree: self.show.stage, materials }
+        let (materials, caches) = (self.materials(), self.caches());
+        Shot { preset, size, shade_tree: self.show.stage, materials, caches }
     }
 
     /// The pictures of every system.
@@ -127,6 +131,11 @@ impl Session {
         let mut materials = self.pictures.of(&self.document.preset);
         self.ramps.apply(&self.document.preset, &mut materials);
         materials
+    }
+
+    /// The particles of every system that has files of them.
+    pub fn caches(&self) -> Vec<Option<Cache>> {
+        self.caches.of(&self.document.preset)
     }
 
     /// Bakes what was changed of ramps, and writes it unless a control is held.
@@ -230,12 +239,13 @@ impl Session {
     }
 
     /// Goes on with another document, as at the beginning.
-    pub fn put(&mut self, document: Document, loaded: Vec<MaterialAssets>) {
-        self.pictures = Pictures::new(&document.preset, loaded);
+    pub fn put(&mut self, document: Document, (materials, caches): Loaded) {
+        self.pictures = Pictures::new(&document.preset, materials);
+        self.caches = Caches::new(&document.preset, caches);
         self.playback = Playback::at(document.preset.time);
         (self.compare, self.show.system, self.is_changed_on_disk) = (Compare::default(), 0, false);
         self.ramps = RampFiles::default();
-        ["preset", "ramp", "pictures", "file"].into_iter().for_each(|about| self.messages.withdraw(about));
+        ["preset", "ramp", "pictures", "caches", "file"].into_iter().for_each(|about| self.messages.withdraw(about));
         self.document = document;
     }
 

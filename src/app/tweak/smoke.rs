@@ -1,31 +1,40 @@
 //! Where the smoke is at the time that is shown.
 
 use glam::Vec3;
+use haze::cache::Cache;
 use haze::frame::bounds_of;
 use haze::preset::{Camera, Preset, PresetSystem};
 use haze::{Bounds, Light, LightKind, Particle};
 
+use super::session::Session;
+
 /// The smoke of a preset; evaluated again when its systems or the time are others.
 #[derive(Default)]
 pub struct Smoke {
-    /// And the bits of the time.
-    of: Option<(Vec<PresetSystem>, u32)>,
+    /// With the bits of the time.
+    of: Option<(Vec<PresetSystem>, Vec<Option<Cache>>, u32)>,
     pub systems: Vec<Vec<Particle>>,
     /// Of each system, sprites included.
     pub bounds: Vec<Bounds>,
 }
 
 impl Smoke {
-    pub fn at(&mut self, preset: &Preset, time: f32) -> &Self {
-        let is_same = self.of.as_ref().is_some_and(|(systems, at)| *at == time.to_bits() && *systems == preset.systems);
+    /// What a session shows.
+    pub fn of(&mut self, session: &Session) -> &Self {
+        self.at(&session.document.preset, session.caches(), session.playback.time)
+    }
+
+    fn at(&mut self, preset: &Preset, caches: Vec<Option<Cache>>, time: f32) -> &Self {
+        let is_same = self.of.as_ref().is_some_and(|(systems, its, at)| {
+            *at == time.to_bits() && *systems == preset.systems && Cache::all_shared(its, &caches)
+        });
         // What cannot be drawn might have too many particles; the last good ones stay.
         if !is_same && preset.validate().is_ok() {
-            self.of = Some((preset.systems.clone(), time.to_bits()));
             self.systems.resize_with(preset.systems.len(), Vec::new);
-            for (system, particles) in preset.systems.iter().zip(&mut self.systems) {
-                particles.clear();
-                system.particles(time, particles);
+            for ((system, cache), particles) in preset.systems.iter().zip(&caches).zip(&mut self.systems) {
+                system.particles(cache.as_ref(), time, particles);
             }
+            self.of = Some((preset.systems.clone(), caches, time.to_bits()));
             let all = preset.systems.iter().zip(&self.systems);
             self.bounds = all.map(|(system, particles)| bounds_of(particles, system.settings.reach())).collect();
         }

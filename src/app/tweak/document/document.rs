@@ -9,7 +9,7 @@ use haze::{Error, FieldError, builtin};
 use super::history::History;
 use super::pictures::copy_beside;
 use super::recipes::{Recipes, Work, name_of};
-use crate::app::inputs::pictures_of;
+use crate::app::inputs::{caches_of, pictures_of};
 use crate::app::tweak::platform::files::{self, Stamp};
 
 /// A preset, where it came from, and how it got to be what it is.
@@ -100,7 +100,8 @@ impl Document {
     /// The files that its picture is made from, of which some may be missing: what is to be watched.
     pub fn files(&self, folders: &PictureFolders) -> Vec<PathBuf> {
         let own = (!self.is_built_in()).then(|| self.path.clone());
-        own.into_iter().chain(pictures_of(folders, &self.preset)).collect()
+        let pictures = pictures_of(folders, &self.preset);
+        own.into_iter().chain(pictures).chain(caches_of(folders, &self.preset)).collect()
     }
 
     /// Whether it has no file yet.

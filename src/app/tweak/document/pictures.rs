@@ -1,36 +1,42 @@
-//! The pictures that go with a preset into another folder.
+//! The pictures and particle files that go with a preset into another folder.
 
 use std::path::Path;
 
 use haze::Error;
-use haze::preset::Preset;
+use haze::preset::{PictureFolders, Preset};
 
-use crate::app::inputs::picture_files;
+use crate::app::inputs::{caches_of, picture_files};
 use crate::app::tweak::platform::files;
 
-/// Copies the pictures that a preset names from its folder into another, to where the preset looks for them there. Nothing is
-/// replaced: before anything is written, another picture in the place of one is refused. A picture that is missing stays so.
+/// Copies the files that a preset names from its folder into another, to where the preset looks for them there. Nothing is
+/// replaced: before anything is written, another file in the place of one is refused. A file that is missing stays so.
 pub fn copy_beside(preset: &Preset, from: &Path, to: &Path) -> Result<(), Error> {
+    let pictures = picture_files(preset).into_iter().map(|file| from.join(file));
+    let sources = pictures.chain(caches_of(&PictureFolders::at(from), preset));
     let mut copies = Vec::new();
-    for file in picture_files(preset) {
-        let (source, target) = (from.join(&file), to.join(&file));
-        if !files::exists(&source) || files::is_same(&source, &target) {
+    for source in sources.filter(|source| files::exists(source)) {
+        let Ok(file) = source.strip_prefix(from) else { continue };
+        let target = to.join(file);
+        if files::is_same(&source, &target) {
             continue;
         }
-        let bytes = files::read_picture(&source)?;
+        let bytes = read(&source)?;
         if !files::exists(&target) {
-            copies.push((target, bytes));
-        } else if files::read_picture(&target)? != bytes {
-            let reason = format!(
-                "not the picture that goes with the preset, {}; expected a folder without it",
-                source.display()
-            );
+            copies.push((source, target));
+        } else if read(&target)? != bytes {
+            let reason =
+                format!("not the file that goes with the preset, {}; expected a folder without it", source.display());
             return Err(Error::Image { path: target, reason });
         }
     }
-    for (target, bytes) in copies {
+    for (source, target) in copies {
         target.parent().map_or(Ok(()), files::make_folder)?;
-        files::write(&target, &bytes)?;
+        files::write(&target, &read(&source)?)?;
     }
     Ok(())
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, Error> {
+    let is_picture = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
+    if is_picture { files::read_picture(path) } else { files::read_particles(path) }
 }

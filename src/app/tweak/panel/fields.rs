@@ -192,6 +192,12 @@ impl FieldVisitor for Rows<'_, '_, '_> {
         });
     }
 
+    fn particles(&mut self, name: &'static str, value: &mut String) {
+        self.row(name, ("", None), |ui, label, _, path, _| {
+            row::path(ui, value, path).labelled_by(label.id);
+        });
+    }
+
     fn seed(&mut self, name: &'static str, value: &mut u32) {
         self.row(name, ("", FIVE), |ui, label, _, _, _| {
             ui.add(egui::DragValue::new(value)).labelled_by(label.id);

@@ -9,10 +9,16 @@ use super::fields::{self, Desk};
 use super::row::{self, Row};
 use crate::app::tweak::angles::{Angles, STEEPEST, from_angles, to_angles};
 use crate::app::tweak::lights::{ShownLights, fresh};
-use crate::app::tweak::smoke::{Smoke, put_behind};
+use crate::app::tweak::smoke::put_behind;
 
-/// Draws the list and what is selected of it. `time` is the time that is shown.
-pub fn panel(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, shown: &mut ShownLights, time: f32) {
+/// Draws the list and what is selected of it. `smoke` is the box round it.
+pub fn panel(
+    ui: &mut Ui,
+    desk: &mut Desk<'_>,
+    preset: &mut Preset,
+    shown: &mut ShownLights,
+    smoke: &dyn Fn() -> Bounds,
+) {
     shown.follow(&preset.lights);
     // A setting that was looked for is the selected light's.
     let sought = desk.sought.and_then(|path| path.strip_prefix("lights[")?.split_once(']')?.0.parse().ok());
@@ -20,7 +26,7 @@ pub fn panel(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, shown: &mut 
     for (index, light) in preset.lights.iter_mut().enumerate() {
         ui.horizontal(|ui| entry(ui, index, light, shown));
     }
-    ui.horizontal(|ui| tools(ui, preset, shown, time));
+    ui.horizontal(|ui| tools(ui, preset, shown, smoke));
     let selected = shown.selected.and_then(|index| Some((index, preset.lights.get_mut(index)?)));
     let Some((index, light)) = selected else {
         ui.weak(if preset.lights.is_empty() { "The preset has no lights." } else { "Select a light to set it." });
@@ -62,13 +68,12 @@ fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut ShownLights) 
 }
 
 /// What is done with the list and the selected light.
-fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut ShownLights, time: f32) {
-    let smoke = |preset: &Preset| Smoke::default().at(preset, time).bounds();
+fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut ShownLights, smoke: &dyn Fn() -> Bounds) {
     ui.add_enabled_ui(preset.lights.len() < MAX_LIGHTS, |ui| {
         ui.menu_button("Add", |ui| {
             for &kind in LightKind::ALL {
                 if ui.button(kind.name()).clicked() {
-                    let light = beside(fresh(kind, &preset.lights), &preset.camera, &smoke(preset));
+                    let light = beside(fresh(kind, &preset.lights), &preset.camera, &smoke());
                     let end = preset.lights.len();
                     shown.insert(&mut preset.lights, end, light);
                 }
@@ -86,7 +91,7 @@ fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut ShownLights, time: f32) {
     }
     let behind = ui.button("Behind the smoke").on_hover_text("Puts the light behind the smoke, as it is seen now");
     if behind.clicked() {
-        let bounds = smoke(preset);
+        let bounds = smoke();
         if let Some(light) = preset.lights.get_mut(index) {
             put_behind(light, &preset.camera, &bounds);
         }

@@ -59,7 +59,9 @@ fn made_row(
     let is_changed = paths.iter().any(|path| desk.changed.contains(path));
     let apart = paths.iter().any(|path| desk.second.is_some_and(|second| second.contains_key(path)));
     let second = desk.second.map(|_| apart.then_some("another value"));
-    let row = Row { name, tooltip, is_changed, second, sheet: None, inert: None };
+    let inert = paths.iter().map(|path| (desk.inert)(path)).collect::<Option<Vec<_>>>();
+    let inert = inert.and_then(|reasons| reasons.first().copied());
+    let row = Row { name, tooltip, is_changed, second, sheet: None, inert };
     let refused = &mut desk.refused;
     let asked: Option<Asked> = row.show(ui, |ui, label| control(ui, label, refused));
     desk.asked.extend(asked.into_iter().flat_map(|asked| paths.iter().map(move |path| (asked, path.clone()))));

@@ -298,6 +298,23 @@ pub fn swatch(ui: &mut Ui, value: &mut Vec3) -> Response {
     button
 }
 
+/// The path of a file: taken when it is whole, not letter by letter; Escape leaves it as it was.
+pub fn path(ui: &mut Ui, value: &mut String, salt: &str) -> Response {
+    let id = ui.make_persistent_id(salt);
+    let mut typed = ui.data(|data| data.get_temp(id)).unwrap_or_else(|| value.clone());
+    let edit = egui::TextEdit::singleline(&mut typed).id(id).hint_text("smoke_####.ply").desired_width(f32::INFINITY);
+    let response = ui.add(edit);
+    if response.has_focus() {
+        ui.data_mut(|data| data.insert_temp(id, typed));
+        return response;
+    }
+    if response.lost_focus() && !ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+        typed.trim().clone_into(value);
+    }
+    ui.data_mut(|data| data.remove::<String>(id));
+    response
+}
+
 /// One of a few; `tooltip` tells what each means.
 pub fn choice<'t>(
     ui: &mut Ui,
@@ -328,6 +345,28 @@ mod tests {
     use egui_kittest::kittest::Queryable as _;
 
     use super::*;
+
+    #[test]
+    fn a_path_is_taken_when_it_is_whole() {
+        let row = |ui: &mut Ui, value: &mut String| {
+            let name = ui.label("path");
+            path(ui, value, "row").labelled_by(name.id);
+        };
+        let mut harness = egui_kittest::Harness::new_ui_state(row, String::new());
+        for (key, expected) in
+            [(egui::Key::Enter, "s.ply"), (egui::Key::Escape, "s.ply"), (egui::Key::Enter, "s.plys.ply")]
+        {
+            let before = harness.state().clone();
+            harness.get_by_role(egui::Role::TextInput).click();
+            harness.run();
+            harness.event(egui::Event::Text("s.ply".into()));
+            harness.run();
+            assert_eq!(*harness.state(), before);
+            harness.key_press(key);
+            harness.run();
+            assert_eq!(*harness.state(), expected);
+        }
+    }
 
     #[test]
     fn what_is_typed_in_vain_into_three_numbers_is_said_and_changes_nothing() {

@@ -10,6 +10,7 @@ use super::{curve, lights, look, ramps};
 use crate::app::tweak::messages::short;
 use crate::app::tweak::session::Session;
 use crate::app::tweak::show::Tab;
+use crate::app::tweak::smoke::Smoke;
 
 /// The tabs, their names, and what is on them.
 pub const TABS: [(Tab, &str, &str); 6] = [
@@ -58,8 +59,9 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
         session.inspect.spot = shown.inner;
         return None;
     }
-    let (time, mut shown) = (session.playback.time, std::mem::take(&mut session.show.lights));
+    let mut shown = std::mem::take(&mut session.show.lights);
     session.thumbnails.follow(session.document.path(), session.assets.as_deref());
+    let bounds = || Smoke::default().of(session).bounds();
     let mut desk = Desk {
         tooltips: &session.tooltips,
         thumbnails: &session.thumbnails,
@@ -78,7 +80,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
     egui::ScrollArea::vertical().id_salt(session.show.tab).auto_shrink(false).show(ui, |ui| match session.show.tab {
         Tab::Look => look::panel(ui, &mut desk, preset, system),
         Tab::Light => {
-            lights::panel(ui, &mut desk, preset, &mut shown, time);
+            lights::panel(ui, &mut desk, preset, &mut shown, &bounds);
             ui.separator();
             surroundings(ui, &mut desk, preset);
         }
@@ -125,6 +127,7 @@ fn smoke(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, index: usize) {
     let Some(system) = preset.systems.get_mut(index) else { return };
     let at = ("systems", Some(index));
     section(ui, desk, "Emitter", &[at, ("emitter", None)], &mut system.emitter);
+    section(ui, desk, "Particles from files", &[at, ("cache", None)], &mut system.cache);
     section(ui, desk, "Sprite and ramps", &[at, ("material", None)], &mut system.material);
     let settings = &mut system.settings;
     let at = |name| [at, ("settings", None), (name, None)];

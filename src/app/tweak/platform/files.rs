@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use haze::Error;
-use haze::assets::{file, json};
+use haze::assets::{cache, file, json};
 use haze::picture::{FileIdentity, MAX_BYTES, write_file};
 use haze::preset::Preset;
 
@@ -23,6 +23,11 @@ pub fn read_text(path: &Path) -> Result<String, Error> {
 /// The bytes of a picture's file.
 pub fn read_picture(path: &Path) -> Result<Vec<u8>, Error> {
     file::read(path, "PNG picture", MAX_BYTES)
+}
+
+/// The bytes of a file of particles.
+pub fn read_particles(path: &Path) -> Result<Vec<u8>, Error> {
+    file::read(path, "CSV or PLY file", cache::MAX_FILE_BYTES)
 }
 
 /// Writes a file whole, or leaves the old one.

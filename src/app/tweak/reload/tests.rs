@@ -373,3 +373,44 @@ fn good_and_bad_reloads_by_turns() {
     reload(&mut Bench::new(SIZE), 24);
     reload_shaders(&mut Bench::new(SIZE), 8);
 }
+
+#[test]
+fn particles_from_files_are_followed_and_the_last_good_ones_stay() {
+    let mut bench = Bench::new(SIZE);
+    let folder = bench.folder.path().to_owned();
+    let write = |frame: u32, text: &str| fs::write(folder.join(format!("smoke_{frame:04}.csv")), text).unwrap();
+    let count = |bench: &mut Bench| {
+        let cache = bench.session().caches().remove(0);
+        cache.map_or(0, |cache| cache.frames().iter().map(|(_, frame)| frame.particles().len()).sum::<usize>())
+    };
+    let set = |bench: &mut Bench, path: &str| bench.session().document.preset.systems[0].cache.path = path.into();
+    let without = bench.shown();
+    write(1, "x,y,z\n0,1,0\n");
+    set(&mut bench, "smoke_####.csv");
+    bench.until(|bench| count(bench) == 1);
+    assert!((bench.shown() - without).abs() > 0.5, "one small sprite in place of a column");
+    write(1, "x,y,z\n0,1,0\n0,2,0\n");
+    bench.until(|bench| count(bench) == 2);
+    // While it is simulated, one frame follows the other.
+    for frame in 2..5 {
+        write(frame, "x,y,z\n0,1,0\n");
+        bench.until(|bench| count(bench) == frame as usize + 1);
+    }
+    write(2, "x,y,z\n0,one,0\n");
+    bench.until(|bench| bench.said().is_some());
+    let said = bench.said().unwrap();
+    assert!(
+        said.contains("my.json: systems[0].cache.path: ") && said.contains("smoke_0002.csv:2:3: y: \"one\""),
+        "{said}"
+    );
+    assert_eq!(count(&mut bench), 5);
+    write(2, "x,y,z\n");
+    bench.until(|bench| bench.said().is_none() && count(bench) == 4);
+    // A name without files keeps what was there.
+    set(&mut bench, "smok_####.csv");
+    bench.until(|bench| bench.said().is_some_and(|said| said.contains("nearest name is \"smoke_0001.csv\"")));
+    assert_eq!(count(&mut bench), 4);
+    set(&mut bench, "");
+    bench.until(|bench| bench.said().is_none() && count(bench) == 0);
+    assert!((bench.shown() - without).abs() < 0.5, "the emitter's again");
+}

@@ -45,9 +45,8 @@ impl Menu {
 fn entries(ui: &mut Ui, at: Pos2, lens: &Lens, session: &mut Session, smoke: &mut Smoke) -> Option<InView> {
     for (kind, name) in ADDED {
         if ui.button(name).clicked() {
-            let preset = &session.document.preset;
-            let middle = smoke.at(preset, session.playback.time).bounds().centre();
-            let light = here(fresh(kind, &preset.lights), at, lens, middle);
+            let middle = smoke.of(session).bounds().centre();
+            let light = here(fresh(kind, &session.document.preset.lights), at, lens, middle);
             session.add_light(light);
         }
     }

@@ -80,7 +80,7 @@ impl Viewport {
         let painter = ui.painter_at(rect);
         let ink = Ink(&painter);
         if session.show.overlays.is_any() {
-            let smoke = self.smoke.at(&session.document.preset, session.playback.time);
+            let smoke = self.smoke.of(session);
             overlay::draw(&ink, &lens, &session.show, smoke, &easel.texels());
         }
         self.gizmo.draw(&ink, &lens, session);
@@ -137,7 +137,7 @@ impl Viewport {
             InView::Behind => self.put_behind(session),
             InView::Overlay(overlay) => session.show.overlays.toggle(overlay),
             InView::Turntable => {
-                let middle = self.smoke.at(&session.document.preset, session.playback.time).bounds().centre();
+                let middle = self.smoke.of(session).bounds().centre();
                 let turn = &mut session.show.lights.turn;
                 *turn = if turn.is_some() { None } else { Some(Turn { middle, angle: 0.0 }) };
             }
@@ -147,8 +147,8 @@ impl Viewport {
 
     /// Puts the selected light, or a new one, behind the smoke.
     fn put_behind(&mut self, session: &mut Session) {
+        let bounds = self.smoke.of(session).bounds();
         let preset = &mut session.document.preset;
-        let bounds = self.smoke.at(preset, session.playback.time).bounds();
         let selected = session.show.lights.selected.and_then(|index| preset.lights.get_mut(index));
         if let Some(light) = selected {
             return put_behind(light, &preset.camera, &bounds);
@@ -160,10 +160,10 @@ impl Viewport {
 
     /// Shows the selected light, or all of the smoke.
     fn frame(&mut self, session: &mut Session) {
+        let mut bounds = self.smoke.of(session).bounds();
         let preset = &mut session.document.preset;
         let selected = session.show.lights.selected.and_then(|index| preset.lights.get(index));
         let light = selected.filter(|light| light.kind != LightKind::Directional);
-        let mut bounds = self.smoke.at(preset, session.playback.time).bounds();
         if let Some(light) = light {
             bounds = Bounds::EMPTY;
             bounds.include(light.position, light.radius.max(CLOSE));

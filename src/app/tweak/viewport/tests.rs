@@ -220,7 +220,7 @@ fn f_shows_all_of_the_smoke_or_the_light_and_home_leads_back() {
     harness.run();
     let mut smoke = Smoke::default();
     let session = &harness.state().session;
-    let bounds = smoke.at(&session.document.preset, session.playback.time).bounds();
+    let bounds = smoke.of(session).bounds();
     assert_eq!(camera(&harness).target, bounds.centre());
     for corner in [bounds.min, bounds.max] {
         assert!(lens(&harness).project(corner).is_some_and(|at| viewport(&harness).contains(at)));
@@ -354,7 +354,7 @@ fn lights_are_added_duplicated_and_deleted_from_the_panel_and_by_key() {
     harness.run();
     let session = &harness.state().session;
     let mut behind = session.document.preset.lights[1];
-    let bounds = Smoke::default().at(&session.document.preset, session.playback.time).bounds();
+    let bounds = Smoke::default().of(session).bounds();
     let is_behind = lens(&harness).depth(behind.position) > lens(&harness).depth(bounds.centre());
     assert!(is_behind && selected(&harness) == Some(1));
     // Set by angles, a direction keeps its azimuth at any elevation.

@@ -175,7 +175,7 @@ fn pictures_come_along_into_another_folder() {
     document.preset.systems[0].material.diffuse_ramp = "ramps/own.png".into();
     fs::write(new.join("ramps/own.png"), "other").unwrap();
     let error = document.save_as(&new.join("second.json")).unwrap_err().to_string();
-    assert!(error.contains("new/ramps/own.png: not the picture that goes with the preset"), "{error}");
+    assert!(error.contains("new/ramps/own.png: not the file that goes with the preset"), "{error}");
     assert!(!new.join("second.json").exists() && fs::read(new.join("ramps/own.png")).unwrap() == b"other");
     assert_eq!(document.path(), old.join("shot.json"));
 }

@@ -1,0 +1,77 @@
+//! Particles from a simulation: named in a preset or on the command line, checked, shown, copied, drawn.
+
+use std::path::Path;
+
+use super::{folder, haze, refusal, stderr};
+
+/// Three frames of two particles, as Houdini writes them.
+fn simulate(folder: &Path) {
+    for frame in 7..10 {
+        let text = format!("id,P[x],P[y],P[z],pscale,Alpha\n1,0,1.{frame},0,0.8,1\n2,0.5,1,0,0.6,0.9\n");
+        std::fs::write(folder.join(format!("smoke_{frame:04}.csv")), text).unwrap();
+    }
+}
+
+#[test]
+fn they_are_drawn_by_a_word_on_the_command_line() {
+    let folder = folder();
+    simulate(folder.path());
+    let render = |output: &str, set: &[&str]| {
+        let arguments = ["render", "column", "--size", "96x54", "--backend", "cpu", "--time", "0.05", "-o", output];
+        let output_of = haze(folder.path(), &[&arguments[..], set].concat());
+        assert!(output_of.status.success(), "{}", stderr(&output_of));
+        std::fs::read(folder.path().join(output)).unwrap()
+    };
+    let path = "systems[0].cache.path=smoke_####.csv";
+    let drawn = render("a.png", &["--set", path]);
+    assert_ne!(drawn, render("b.png", &["--set", path, "--set", "cache.up=z"]));
+    assert_ne!(drawn, render("c.png", &["--set", path, "--set", "cache.start=1"]));
+    // Frame after frame: from 24 frames a second to 24 pictures a second.
+    let arguments = ["render", "column", "--size", "32x18", "--backend", "cpu", "--frames", "0..2", "-o", "f_%04d.png"];
+    let output = haze(folder.path(), &[&arguments[..], &["--set", path]].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    // In the shared folder, too.
+    std::fs::create_dir(folder.path().join("sub")).unwrap();
+    let line = refusal(&folder.path().join("sub"), &["render", "-o", "d.png", "--set", path]);
+    assert!(line.contains("systems[0].cache.path: ") && line.contains("No such file in "), "{line}");
+    let shared = ["render", "--size", "32x18", "--backend", "cpu", "-o", "d.png", "--set", path, "--assets", ".."];
+    assert!(haze(&folder.path().join("sub"), &shared).status.success());
+}
+
+#[test]
+fn they_are_checked_shown_and_copied_with_their_preset() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    simulate(folder.path());
+    let write = |name: &str| {
+        let cache = format!(r#"{{"path": "{name}", "units": 0.01, "up": "z"}}"#);
+        let system = format!(r#"{{"name": "s", "cache": {cache}, "emitter": {{"rate": 9}}}}"#);
+        let text = format!(r#"{{"version": 1, "name": "x", "systems": [{system}]}}"#);
+        std::fs::write(path("my.json"), text).unwrap();
+    };
+    write("smoke_####.csv");
+    let check = haze(folder.path(), &["preset", "check", "my.json"]);
+    let said = String::from_utf8(check.stdout).unwrap();
+    assert_eq!(said, "my.json: good\n  systems[0].emitter.rate has no effect: the particles come from a cache\n");
+    let show = haze(folder.path(), &["preset", "show", "my.json", "--changed"]);
+    let said = String::from_utf8(show.stdout).unwrap();
+    for wanted in
+        ["systems[0].cache.path", "\"smoke_####.csv\"", "default \"\"", "systems[0].cache.units", "0.01", "\"z\""]
+    {
+        assert!(said.contains(wanted), "{said}");
+    }
+    assert!(haze(folder.path(), &["preset", "new", "copy/own", "--from", "my.json"]).status.code() == Some(0));
+    for name in ["smoke_0007.csv", "smoke_0009.csv"] {
+        assert_eq!(std::fs::read(path("copy").join(name)).unwrap(), std::fs::read(path(name)).unwrap());
+    }
+    write("smok_####.csv");
+    let line = refusal(folder.path(), &["preset", "check", "my.json"]);
+    assert!(
+        line.contains("my.json: systems[0].cache.path: ") && line.contains("nearest name is \"smoke_0007.csv\""),
+        "{line}"
+    );
+    write("smoke_####.csv");
+    std::fs::write(path("smoke_0008.csv"), "x,y,z\n1,2\n").unwrap();
+    let line = refusal(folder.path(), &["preset", "check", "my.json"]);
+    assert!(line.trim_end().ends_with("smoke_0008.csv:2:4: 2 cells; expected 3, one for each name"), "{line}");
+}
