@@ -39,7 +39,8 @@ impl PictureFolders {
         self.all().map(move |folder| folder.join(file))
     }
 
-    /// Where a file lies, or files that a name with `#` stands for. What is there and cannot be read is found: reading it says why.
+    /// Where a file lies, or files that a name with `#` stands for. What is there and cannot be read is found: reading it says
+    /// why.
     ///
     /// # Errors
     /// [`Error::Image`] where it is in no folder, with the folders, and the name that is most like it.

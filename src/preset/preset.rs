@@ -249,8 +249,8 @@ pub(super) fn in_system(path: &Path, index: usize, error: Error) -> Error {
 }
 
 impl PresetSystem {
-    /// The particles alive at `time`, seconds: those of `cache`, the system's files, where it names some and has them, else those of
-    /// its emitter.
+    /// The particles alive at `time`, seconds: those of `cache`, the system's files, where it names some and has them, else
+    /// those of its emitter.
     pub fn particles(&self, cache: Option<&Cache>, time: f32, particles: &mut Vec<Particle>) {
         let is_frozen = self.settings.sprite.freeze_animation;
         match cache.filter(|_| self.cache.is_used()) {

@@ -1,5 +1,5 @@
-//! Hot reload: ramps, sprites, particle files, the preset and shaders are read again when they change on disk, whichever way they were
-//! saved.
+//! Hot reload: ramps, sprites, particle files, the preset and shaders are read again when they change on disk, whichever way
+//! they were saved.
 //!
 //! Pictures are decoded and shaders compiled on a thread of their own; what is good takes the place of what was shown, and what is
 //! not is said until it is mended.

@@ -24,8 +24,8 @@ enum Role {
 /// How many roles there are.
 const ROLES: usize = Role::Id as usize + 1;
 
-/// What columns are called in small letters, without points, brackets, colons, lines and blanks; of two for one role the name that
-/// comes first here is read.
+/// What columns are called in small letters, without points, brackets, colons, lines and blanks; of two for one role the name
+/// that comes first here is read.
 const NAMES: [(&str, Role); 12] = [
     ("radius", Role::Radius),
     ("pscale", Role::Radius),

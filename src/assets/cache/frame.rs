@@ -67,9 +67,9 @@ impl CacheFrame {
         size_of_val(self.particles.as_slice()) as u64
     }
 
-    /// Hands over every particle that lives between this frame and the next, and how much of it there is: one that is in both is
-    /// on its way, one that is born or dies in between stands still and grows or dwindles. Without ids in both, or where they give
-    /// different things, those of this frame.
+    /// Hands over every particle that lives between this frame and the next, and how much of it there is: one that is in both
+    /// is on its way, one that is born or dies in between stands still and grows or dwindles. Without ids in both, or where they
+    /// give different things, those of this frame.
     pub fn between(&self, next: Option<&Self>, share: f32, mut each: impl FnMut(&CachedParticle, f32)) {
         let next = next.filter(|next| share > 0.0 && self.given.id && next.given == self.given);
         let Some(next) = next else {
