@@ -14,6 +14,7 @@ settings! {
     /// The pictures of a system: names of built-in ones, or PNG files beside the preset.
     #[derive(Clone, Debug, PartialEq, Eq)]
     pub struct MaterialNames {
+        "sprite":
         /// Flipbook of normal maps.
         sprite: String = "puff".into(), picture(PictureRole::Sprite);
         /// Depth and motion of a sprite from a file, laid out as it; empty for none. A built-in sprite has its own.
@@ -24,6 +25,7 @@ settings! {
         rows: u32 = 1, integer(1..=256, "frames");
         /// True for a sprite file painted with green pointing down.
         y_down: bool = false, flag;
+        "ramps and noise":
         /// Light by dot(n, l).
         diffuse_ramp: String = "diffuse_soft".into(), picture(PictureRole::Ramp);
         /// Light by amount.

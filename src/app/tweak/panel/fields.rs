@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use eframe::egui::{self, Ui};
 use glam::Vec3;
 use haze::preset::Tooltips;
-use haze::settings::{Choice, FieldVisitor, Fields, PictureRole, Value, path_of};
+use haze::settings::{Choice, FieldVisitor, Fields, Headed, PictureRole, Value, path_of};
 
 use super::gallery::gallery;
 use super::row::{self, Asked, Row, Usual, spaced};
@@ -48,9 +48,40 @@ impl Desk<'_> {
 const FIVE: Option<&str> = Some("Five values on a sheet");
 const ALL: Option<&str> = Some("All values on a sheet");
 
-/// Draws the fields of a struct that `path` leads to; groups fold.
+/// Draws the fields of a struct that `path` leads to; groups fold, and what is under a heading. The first heading is open.
 pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fields) {
-    fields.visit(&mut Rows { ui, desk, path: path.to_vec(), only: None });
+    let table = fields.headings();
+    if table.is_empty() {
+        fields.visit(&mut Rows { ui, desk, path: path.to_vec(), under: None, only: None });
+    }
+    for part in table.chunk_by(|_, (_, heading)| heading.is_none()) {
+        let mut rows = |ui: &mut Ui, desk: &mut Desk<'_>| {
+            fields.visit(&mut Rows { ui, desk, path: path.to_vec(), under: Some(part), only: None });
+        };
+        let Some(&(first, Some(heading))) = part.first() else {
+            rows(ui, desk);
+            continue;
+        };
+        let holds = |field: &str| {
+            let below = field.strip_prefix(&path_of(path)).and_then(|rest| rest.strip_prefix('.'));
+            part.iter().any(|(name, _)| below.is_some_and(|below| is_at(below, name)))
+        };
+        let header = header(desk, heading, &holds).id_salt((path, heading)).default_open(first == table[0].0);
+        header.show_unindented(ui, |ui| rows(ui, desk));
+    }
+}
+
+/// What folds away fields: open while one is sought that it holds, with the marks of those that it does.
+pub fn header(desk: &Desk<'_>, title: &str, holds: &dyn Fn(&str) -> bool) -> egui::CollapsingHeader {
+    let mark = if desk.changed.iter().any(|changed| holds(changed)) { " •" } else { "" };
+    let is_apart = desk.second.is_some_and(|second| second.keys().any(|apart| holds(apart)));
+    let apart = if is_apart { " ≠" } else { "" };
+    egui::CollapsingHeader::new(format!("{title}{mark}{apart}")).open(desk.sought.is_some_and(holds).then_some(true))
+}
+
+/// Whether a field is at a path, or below it.
+pub fn is_at(field: &str, path: &str) -> bool {
+    field.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
 /// A field by a name of its own: that, its path, and how far its slider goes.
@@ -60,7 +91,7 @@ pub type Named = (&'static str, &'static str, Usual);
 pub fn show_named(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fields, names: &[Named]) {
     for &(title, wanted, usual) in names {
         let only = Some(Only { title, wanted, usual, depth: path.len() });
-        fields.visit(&mut Rows { ui, desk, path: path.to_vec(), only });
+        fields.visit(&mut Rows { ui, desk, path: path.to_vec(), under: None, only });
     }
 }
 
@@ -68,6 +99,8 @@ struct Rows<'a, 'd, 'u> {
     ui: &'u mut Ui,
     desk: &'a mut Desk<'d>,
     path: Vec<Step>,
+    /// Those under a heading; all if `None`.
+    under: Option<&'static [Headed]>,
     /// All fields if `None`.
     only: Option<Only<'a>>,
 }
@@ -89,6 +122,9 @@ impl Rows<'_, '_, '_> {
         (unit, sheet): (&str, Option<&'static str>),
         control: impl FnOnce(&mut Ui, &egui::Response, &mut Option<String>, &str, &Tooltips),
     ) {
+        if !self.is_here(name) {
+            return;
+        }
         self.path.push((name, None));
         let path = path_of(&self.path);
         let plain = self.path.iter().map(|step| step.0).collect::<Vec<_>>().join(".");
@@ -125,21 +161,23 @@ impl Rows<'_, '_, '_> {
         }
     }
 
+    fn is_here(&self, name: &str) -> bool {
+        self.under.is_none_or(|part| part.iter().any(|(field, _)| *field == name))
+    }
+
     fn nested(&mut self, step: Step, title: &str, fields: &mut dyn Fields) {
-        self.path.push(step);
-        if let Some(only) = self.only {
-            fields.visit(&mut Rows { ui: self.ui, desk: self.desk, path: self.path.clone(), only: Some(only) });
-            self.path.pop();
+        if !self.is_here(step.0) {
             return;
         }
-        let path = path_of(&self.path);
-        let mark = if self.desk.changed.iter().any(|changed| changed.starts_with(&path)) { " •" } else { "" };
-        let is_apart = self.desk.second.is_some_and(|second| second.keys().any(|apart| apart.starts_with(&path)));
-        let apart = if is_apart { " ≠" } else { "" };
-        let header = egui::CollapsingHeader::new(format!("{}{mark}{apart}", spaced(title))).id_salt(&path);
-        let is_sought = self.desk.sought.is_some_and(|sought| sought.starts_with(&path));
-        let header = if is_sought { header.open(Some(true)) } else { header };
-        header.show(self.ui, |ui| show(ui, self.desk, &self.path, fields));
+        self.path.push(step);
+        if self.only.is_some() {
+            let path = self.path.clone();
+            fields.visit(&mut Rows { ui: self.ui, desk: self.desk, path, under: None, only: self.only });
+        } else {
+            let path = path_of(&self.path);
+            let header = header(self.desk, &spaced(title), &|field| is_at(field, &path)).id_salt(&path);
+            header.show(self.ui, |ui| show(ui, self.desk, &self.path, fields));
+        }
         self.path.pop();
     }
 }

@@ -89,9 +89,10 @@ mod tests {
         let mut harness = window(path.to_str().unwrap(), Vec2::new(1000.0, 900.0), Theme::Dark);
         harness.get_by_label("Smoke").click();
         harness.run_steps(3);
-        // Out of the way.
-        harness.get_by_label("Emitter").click();
-        harness.run_steps(30);
+        for fold in ["Emitter", "Sprite and ramps", "ramps and noise"] {
+            harness.get_by_label(fold).click();
+            harness.run_steps(30);
+        }
         harness
     }
 

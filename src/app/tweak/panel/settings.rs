@@ -4,7 +4,7 @@ use eframe::egui::{self, Ui};
 use haze::preset::Preset;
 use haze::settings::{Fields, path_of};
 
-use super::fields::{self, Desk};
+use super::fields::{self, Desk, Step, is_at};
 use super::row::Asked;
 use super::{curve, lights, look, ramps};
 use crate::app::tweak::messages::short;
@@ -108,31 +108,38 @@ fn system_of(path: &str) -> Option<usize> {
     path.strip_prefix("systems[")?.split_once(']')?.0.parse().ok()
 }
 
-/// A part of the preset that folds.
-fn section(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, path: &[fields::Step], fields: &mut dyn Fields) {
-    let is_sought = desk.sought.is_some_and(|sought| sought.starts_with(&path_of(path)));
-    let header = egui::CollapsingHeader::new(title).id_salt(path).default_open(true);
-    let header = if is_sought { header.open(Some(true)) } else { header };
-    header.show(ui, |ui| fields::show(ui, desk, path, fields));
+/// A part of the preset that folds; true while it is open.
+fn section(
+    ui: &mut Ui,
+    desk: &mut Desk<'_>,
+    title: &str,
+    path: &[Step],
+    is_open: bool,
+    fields: &mut dyn Fields,
+) -> bool {
+    let whole = path_of(path);
+    let header = fields::header(desk, title, &|field| is_at(field, &whole)).id_salt(path).default_open(is_open);
+    header.show(ui, |ui| fields::show(ui, desk, path, fields)).fully_open()
 }
 
 fn surroundings(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset) {
-    section(ui, desk, "Sky and scene", &[("environment", None)], &mut preset.environment);
-    section(ui, desk, "Camera", &[("camera", None)], &mut preset.camera);
+    section(ui, desk, "Sky and scene", &[("environment", None)], true, &mut preset.environment);
+    section(ui, desk, "Camera", &[("camera", None)], true, &mut preset.camera);
 }
 
 fn smoke(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, index: usize) {
     let Some(system) = preset.systems.get_mut(index) else { return };
     let at = ("systems", Some(index));
-    section(ui, desk, "Emitter", &[at, ("emitter", None)], &mut system.emitter);
-    section(ui, desk, "Sprite and ramps", &[at, ("material", None)], &mut system.material);
+    section(ui, desk, "Emitter", &[at, ("emitter", None)], true, &mut system.emitter);
+    section(ui, desk, "Sprite and ramps", &[at, ("material", None)], false, &mut system.material);
     let settings = &mut system.settings;
     let at = |name| [at, ("settings", None), (name, None)];
-    section(ui, desk, "Diffuse", &at("diffuse"), &mut settings.diffuse);
-    section(ui, desk, "Soft scatter", &at("soft_scatter"), &mut settings.soft_scatter);
-    section(ui, desk, "Specular scatter", &at("specular_scatter"), &mut settings.specular_scatter);
-    section(ui, desk, "Soft fade", &at("soft_fade"), &mut settings.soft_fade);
-    curve::panel(ui, &settings.soft_fade);
+    section(ui, desk, "Diffuse", &at("diffuse"), false, &mut settings.diffuse);
+    section(ui, desk, "Soft scatter", &at("soft_scatter"), false, &mut settings.soft_scatter);
+    section(ui, desk, "Specular scatter", &at("specular_scatter"), false, &mut settings.specular_scatter);
+    if section(ui, desk, "Soft fade", &at("soft_fade"), false, &mut settings.soft_fade) {
+        curve::panel(ui, &settings.soft_fade);
+    }
 }
 
 fn advanced(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, index: usize) {
@@ -169,6 +176,34 @@ mod tests {
         harness.hover_at(place - Vec2::new(80.0, 0.0));
         harness.run_steps(8);
         assert!(harness.query_all_by_label_contains("No effect here: forward only.").next().is_some());
+    }
+
+    #[test]
+    fn the_smoke_folds_under_headings_and_what_is_sought_unfolds() {
+        let size = Vec2::new(1280.0, 800.0);
+        let mut harness = window("column", size, Theme::Dark);
+        harness.get_by_label("Smoke").click();
+        harness.run_steps(4);
+        let window = eframe::egui::Rect::from_min_size(Default::default(), size);
+        for heading in
+            ["Emitter", "birth", "motion", "turbulence", "size", "appearance", "Sprite and ramps", "Soft fade"]
+        {
+            assert!(window.contains_rect(harness.get_by_label(heading).rect()), "{heading}");
+        }
+        let sliders = harness.query_all_by_role(Role::Slider).filter(|node| node.rect().left() > 800.0).count();
+        assert!(sliders < 10, "{sliders} sliders in one run");
+        assert!(harness.query_by_label("turbulence speed").is_none());
+        // A change that is folded away is marked.
+        harness.state_mut().session.document.preset.systems[0].emitter.turbulence_speed = 0.4;
+        harness.state_mut().session.search.go_to("systems[0].material.specular_ramp".into());
+        harness.run_steps(8);
+        assert!(harness.query_by_label("turbulence •").is_some() && harness.query_by_label("motion").is_some());
+        assert!(window.contains_rect(control(&harness, "specular ramp").rect()));
+        assert!(harness.query_by_label("y down").is_some(), "the first heading is open, too");
+        harness.state_mut().session.search.go_to("systems[0].emitter.turbulence_speed".into());
+        harness.run_steps(8);
+        let row = harness.get_all_by_label("turbulence speed").next().unwrap().rect();
+        assert!(window.contains_rect(row), "{row:?}");
     }
 
     fn undo_name(harness: &Harness<'_, Window>) -> Option<String> {
