@@ -14,6 +14,7 @@ mod icon;
 mod inspect;
 mod keeping;
 mod lights;
+mod made;
 mod messages;
 #[cfg(test)]
 mod motion_tests;

@@ -235,6 +235,7 @@ impl Session {
         self.playback = Playback::at(document.preset.time);
         (self.compare, self.show.system, self.is_changed_on_disk) = (Compare::default(), 0, false);
         self.ramps = RampFiles::default();
+        self.show.lights.forget_keys();
         ["preset", "ramp", "pictures", "file"].into_iter().for_each(|about| self.messages.withdraw(about));
         self.document = document;
     }

@@ -39,7 +39,7 @@ fn the_pixel_under_the_pointer_is_told_and_a_click_keeps_it() {
     let place = smoke(&harness);
     harness.hover_at(place);
     wait_for(&mut harness, |harness| shows(harness, "coverage"));
-    assert!(shows(&harness, "Light 1") && shows(&harness, "soft scatter") && shows(&harness, "as shown, sRGB"));
+    assert!(shows(&harness, "lamp 1 (point)") && shows(&harness, "soft scatter") && shows(&harness, "as shown, sRGB"));
     assert!(shows(&harness, "click keeps it"));
     harness.drag_at(place);
     harness.step();
@@ -75,7 +75,7 @@ fn of_two_pictures_the_one_under_the_pointer_is_told() {
 fn pointing_at_a_ramp_lights_the_smoke_that_looks_there() {
     let mut harness = window("column", SIZE, Theme::Dark);
     harness.get_by_label("Ramps").click();
-    wait_for(&mut harness, |harness| shows(harness, "Light 1"));
+    wait_for(&mut harness, |harness| shows(harness, "lamp 1 (point)"));
     let viewport = harness.get_by_label("viewport").rect();
     let before = brightness(&picture(&mut harness), viewport);
     // The middle of the diffuse ramp: most of what is lit looks there.
@@ -94,7 +94,7 @@ fn a_picture_that_stands_still_is_not_drawn_again() {
     let mut harness = window("column", SIZE, Theme::Dark);
     harness.key_press(Key::I);
     harness.get_by_label("Ramps").click();
-    wait_for(&mut harness, |harness| shows(harness, "Light 1"));
+    wait_for(&mut harness, |harness| shows(harness, "lamp 1 (point)"));
     // No more than the copy that is under way, what is read of it, and the end of its interval.
     for _ in 0..5 {
         picture(&mut harness);

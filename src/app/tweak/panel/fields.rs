@@ -45,7 +45,7 @@ impl Desk<'_> {
 }
 
 /// What a sheet is called of a number's values, and of all there are.
-const FIVE: Option<&str> = Some("Five values on a sheet");
+pub const FIVE: Option<&str> = Some("Five values on a sheet");
 const ALL: Option<&str> = Some("All values on a sheet");
 
 /// Draws the fields of a struct that `path` leads to; groups fold, and what is under a heading. The first heading is open.
@@ -84,8 +84,8 @@ pub fn is_at(field: &str, path: &str) -> bool {
     field.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
-/// A field by a name of its own: that, its path, and how far its slider goes.
-pub type Named = (&'static str, &'static str, Usual);
+/// One field: a title, where its own name would not say enough, its path, and how far its slider goes.
+pub type Named = (Option<&'static str>, &'static str, Usual);
 
 /// Draws some fields of a struct, in the order of `names`; paths are from the struct.
 pub fn show_named(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fields, names: &[Named]) {
@@ -108,7 +108,7 @@ struct Rows<'a, 'd, 'u> {
 /// One field among many.
 #[derive(Clone, Copy)]
 struct Only<'a> {
-    title: &'a str,
+    title: Option<&'a str>,
     /// Its path from a struct that so many steps lead to.
     wanted: &'a str,
     usual: Usual,
@@ -136,7 +136,7 @@ impl Rows<'_, '_, '_> {
         let desk = &mut *self.desk;
         let second = desk.second(&path, unit);
         let row = Row {
-            name: self.only.map_or(name, |only| only.title),
+            name: self.only.and_then(|only| only.title).unwrap_or(name),
             tooltip: desk.tooltips.field(&plain).unwrap_or_default(),
             is_changed: desk.changed.contains(&path),
             second: second.as_ref().map(Option::as_deref),

@@ -8,7 +8,7 @@ use haze::{Bounds, Light, LightKind};
 use super::fields::{self, Desk};
 use super::row::{self, Row};
 use crate::app::tweak::angles::{Angles, STEEPEST, from_angles, to_angles};
-use crate::app::tweak::lights::{ShownLights, fresh};
+use crate::app::tweak::lights::{ShownLights, fresh, name_of};
 use crate::app::tweak::smoke::{Smoke, put_behind};
 
 /// Draws the list and what is selected of it. `time` is the time that is shown.
@@ -35,24 +35,24 @@ pub fn panel(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, shown: &mut 
 
 /// A light in the list.
 fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut ShownLights) {
-    let number = index + 1;
+    let name = name_of(index, light);
     let is_selected = shown.selected == Some(index);
-    let name = egui::Button::selectable(is_selected, format!("{number} {}", light.kind.name()));
+    let button = egui::Button::selectable(is_selected, &name);
     let height = ui.spacing().interact_size.y;
-    let name = ui.add_sized([104.0, height], name.truncate());
-    if name.clicked() {
+    let button = ui.add_sized([104.0, height], button.truncate());
+    if button.clicked() {
         shown.selected = (!is_selected).then_some(index);
     }
-    row::swatch(ui, &mut light.colour).accessible_name(format!("colour of light {number}"));
+    row::swatch(ui, &mut light.colour).accessible_name(format!("colour of {name}"));
     let speed = 0.01 * light.intensity.max(0.1);
     let intensity = egui::DragValue::new(&mut light.intensity).speed(speed).range(0.0..=1.0e9).max_decimals(3);
     let intensity = ui.add_sized([70.0, height], intensity.update_while_editing(false));
-    intensity.on_hover_text("Intensity").accessible_name(format!("intensity of light {number}"));
+    intensity.on_hover_text("Intensity").accessible_name(format!("intensity of {name}"));
     if let Some(marks) = shown.marks(index) {
         let mut toggle = |sign: &str, is_on: &mut bool, what: &str| {
             let button = ui.add(egui::Button::selectable(*is_on, sign).min_size(egui::vec2(22.0, height)));
             let button = button.on_hover_text(format!("{what}. Not a part of the preset."));
-            if button.accessible_name(format!("{what}, light {number}")).clicked() {
+            if button.accessible_name(format!("{what}, {name}")).clicked() {
                 *is_on = !*is_on;
             }
         };

@@ -111,7 +111,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
             at
         });
         if field == "diffuse_ramp" && survey.is_some() {
-            legend(ui, &lights);
+            legend(ui, &lights, &session.show.lights.shown_names(&session.document.preset.lights));
         }
         spot = spot.or(at.and_then(|at| match field {
             "diffuse_ramp" => Some(Spot::Diffuse(at)),
@@ -175,10 +175,11 @@ fn histogram(ui: &mut Ui, field: &str, histograms: &[Bins]) {
 }
 
 /// Whose histogram is which.
-fn legend(ui: &mut Ui, histograms: &[Histogram]) {
+fn legend(ui: &mut Ui, histograms: &[Histogram], names: &[String]) {
     ui.horizontal_wrapped(|ui| {
         for histogram in histograms {
-            ui.colored_label(of_light(histogram.light), format!("Light {}", histogram.light + 1));
+            let name = names.get(histogram.light).map_or("light", String::as_str);
+            ui.colored_label(of_light(histogram.light), name);
         }
         if histograms.is_empty() {
             ui.weak("No light reaches smoke in the picture");

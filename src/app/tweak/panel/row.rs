@@ -119,6 +119,15 @@ fn mark(ui: &mut Ui, sign: Option<(&str, &str)>, name: impl Fn() -> String) -> b
     place.inner == Some(true)
 }
 
+/// A word below a control, about it.
+pub fn note(ui: &mut Ui, text: &str) -> Response {
+    ui.horizontal(|ui| {
+        ui.add_space(MARK + NAME + 2.0 * ui.spacing().item_spacing.x);
+        ui.weak(text)
+    })
+    .inner
+}
+
 /// A name as it is read.
 pub fn spaced(name: &str) -> String {
     name.replace('_', " ")

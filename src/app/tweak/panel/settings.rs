@@ -76,7 +76,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
     let preset = &mut edited;
     let system = session.show.system;
     egui::ScrollArea::vertical().id_salt(session.show.tab).auto_shrink(false).show(ui, |ui| match session.show.tab {
-        Tab::Look => look::panel(ui, &mut desk, preset, system),
+        Tab::Look => look::panel(ui, &mut desk, preset, &mut shown, system),
         Tab::Light => {
             lights::panel(ui, &mut desk, preset, &mut shown, time);
             ui.separator();
@@ -215,7 +215,7 @@ mod tests {
         let mut harness = window("column", Vec2::new(1000.0, 640.0), Theme::Dark);
         let saved = harness.state().session.document.preset.clone();
         let is_marked = |harness: &Harness<'_, Window>, name| harness.query_by_label(name).is_some();
-        let (exposure, rise) = ("take exposure of the second", "take rise of the second");
+        let (exposure, buoyancy) = ("take exposure of the second", "take buoyancy of the second");
         let preset = &mut harness.state_mut().session.document.preset;
         preset.camera.exposure = 3.0;
         preset.systems[0].emitter.buoyancy += 1.0;
@@ -226,17 +226,17 @@ mod tests {
         assert!(!is_marked(&harness, exposure), "the same settings, drawn in another way");
         harness.state_mut().session.compare.against = Some(Against::Saved);
         harness.run_steps(3);
-        assert!(is_marked(&harness, exposure) && is_marked(&harness, rise));
-        assert!(!is_marked(&harness, "take glow of the second"));
+        assert!(is_marked(&harness, exposure) && is_marked(&harness, buoyancy));
+        assert!(!is_marked(&harness, "take specular intensity of the second"));
         harness.get_by_label(exposure).click();
         harness.run_steps(3);
         let now = |harness: &Harness<'_, Window>| harness.state().session.document.preset.clone();
         assert_eq!(now(&harness).camera, saved.camera);
         assert_ne!(now(&harness).systems, saved.systems);
-        assert!(!is_marked(&harness, exposure) && is_marked(&harness, rise));
+        assert!(!is_marked(&harness, exposure) && is_marked(&harness, buoyancy));
         assert_eq!(undo_name(&harness).as_deref(), Some("exposure"));
         // The menu says what it would be.
-        row_menu(&mut harness, "rise");
+        row_menu(&mut harness, "buoyancy");
         let value = shown_value(&Value::Number(saved.systems[0].emitter.buoyancy), "m/s²");
         harness.get_by_label(&format!("Take {value} of the second picture")).click();
         harness.run_steps(3);

@@ -84,7 +84,7 @@ fn a_dragged_axis_moves_the_light_along_it_with_the_pointer_in_one_step() {
         assert!((moved[axis] - 0.6).abs() < 0.02, "axis {axis}: {moved}");
         assert!(moved.with_element(axis, 0.0).length() < 1e-6, "{moved}");
         assert!(handle(&harness, Handle::Axis(axis)).distance(to) < 6.0, "it stays under the pointer");
-        assert_eq!(undo_name(&harness).as_deref(), Some("position of light 1"));
+        assert_eq!(undo_name(&harness).as_deref(), Some("position of lamp 1 (point)"));
         harness.state_mut().session.undo();
         assert_eq!((light(&harness).position, undo_name(&harness)), (before, Some("light removed".into())));
     }
@@ -127,7 +127,7 @@ fn the_middle_follows_the_pointer_exactly_and_escape_puts_it_back() {
     harness.event(press(to + vec2(90.0, 40.0), false));
     harness.run();
     assert_eq!((light(&harness).position, camera(&harness)), (after, eye));
-    assert_eq!(undo_name(&harness).as_deref(), Some("position of light 1"));
+    assert_eq!(undo_name(&harness).as_deref(), Some("position of lamp 1 (point)"));
     assert_eq!(harness.state().session.show.lights.selected, Some(0));
 }
 
@@ -173,7 +173,7 @@ fn radius_cone_and_direction_are_dragged() {
     drag(&mut harness, PointerButton::Primary, &[rim, rim + (middle - rim) * 0.5]);
     assert!(light(&harness).inner_angle < before.inner_angle - 5.0);
     assert!((light(&harness).outer_angle - outer).abs() < 1e-5);
-    assert_eq!(undo_name(&harness).as_deref(), Some("inner_angle of light 1"));
+    assert_eq!(undo_name(&harness).as_deref(), Some("inner_angle of lamp 1 (spot)"));
 }
 
 #[test]
@@ -185,7 +185,7 @@ fn a_sun_is_turned_on_its_dome() {
     drag(&mut harness, PointerButton::Primary, &[from, from + vec2(20.0, 0.0), to]);
     assert!(handle(&harness, Handle::Aim).distance(to) < 1.0);
     assert!((light(&harness).direction.length() - 1.0).abs() < 1e-5);
-    assert_eq!(undo_name(&harness).as_deref(), Some("direction of light 1"));
+    assert_eq!(undo_name(&harness).as_deref(), Some("direction of sun 1"));
 }
 
 #[test]
@@ -319,11 +319,11 @@ fn a_muted_light_is_out_of_the_picture_and_stays_in_the_preset() {
         harness.remove_cursor();
         harness.run();
     };
-    click(&mut harness, "Leave this light out, light 1");
+    click(&mut harness, "Leave this light out, lamp 1 (point)");
     let dark = brightness(&picture(&mut harness), part);
     assert!(dark < lit - 5.0, "{dark} {lit}");
     assert_eq!(undo_name(&harness).as_deref(), Some("light removed"), "only the test's own change");
-    click(&mut harness, "Show this light alone, light 1");
+    click(&mut harness, "Show this light alone, lamp 1 (point)");
     assert!((brightness(&picture(&mut harness), part) - lit).abs() < 0.5);
 }
 
@@ -348,7 +348,7 @@ fn lights_are_added_duplicated_and_deleted_from_the_panel_and_by_key() {
     harness.key_press(Key::Delete);
     harness.run();
     assert_eq!((count(&harness), selected(&harness), undo_name(&harness).as_deref()), (2, None, Some("light removed")));
-    harness.get_by_label("2 spot").click();
+    harness.get_by_label("lamp 2 (spot)").click();
     harness.run();
     harness.get_by_label("Behind the smoke").click();
     harness.run();
