@@ -1,6 +1,7 @@
 //! The lights: a list of all, and the settings of the selected one.
 
 use eframe::egui::{self, Ui};
+use glam::UVec2;
 use haze::frame::MAX_LIGHTS;
 use haze::preset::{Camera, Preset};
 use haze::{Bounds, Light, LightKind};
@@ -11,8 +12,8 @@ use crate::app::tweak::angles::{Angles, STEEPEST, from_angles, to_angles};
 use crate::app::tweak::lights::{ShownLights, fresh, name_of};
 use crate::app::tweak::smoke::{Smoke, put_behind};
 
-/// Draws the list and what is selected of it. `time` is the time that is shown.
-pub fn panel(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, shown: &mut ShownLights, time: f32) {
+/// Draws the list and what is selected of it. `seen` is the time that is shown, and the size of the picture.
+pub fn panel(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, shown: &mut ShownLights, seen: (f32, UVec2)) {
     shown.follow(&preset.lights);
     // A setting that was looked for is the selected light's.
     let sought = desk.sought.and_then(|path| path.strip_prefix("lights[")?.split_once(']')?.0.parse().ok());
@@ -20,7 +21,7 @@ pub fn panel(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, shown: &mut 
     for (index, light) in preset.lights.iter_mut().enumerate() {
         ui.horizontal(|ui| entry(ui, index, light, shown));
     }
-    ui.horizontal(|ui| tools(ui, preset, shown, time));
+    ui.horizontal(|ui| tools(ui, preset, shown, seen));
     let selected = shown.selected.and_then(|index| Some((index, preset.lights.get_mut(index)?)));
     let Some((index, light)) = selected else {
         ui.weak(if preset.lights.is_empty() { "The preset has no lights." } else { "Select a light to set it." });
@@ -62,13 +63,13 @@ fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut ShownLights) 
 }
 
 /// What is done with the list and the selected light.
-fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut ShownLights, time: f32) {
-    let smoke = |preset: &Preset| Smoke::default().at(preset, time).bounds();
+fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut ShownLights, (time, size): (f32, UVec2)) {
     ui.add_enabled_ui(preset.lights.len() < MAX_LIGHTS, |ui| {
         ui.menu_button("Add", |ui| {
             for &kind in LightKind::ALL {
                 if ui.button(kind.name()).clicked() {
-                    let light = beside(fresh(kind, &preset.lights), &preset.camera, &smoke(preset));
+                    let bounds = Smoke::default().at(preset, time).bounds();
+                    let light = beside(fresh(kind, &preset.lights), &preset.camera, &bounds);
                     let end = preset.lights.len();
                     shown.insert(&mut preset.lights, end, light);
                 }
@@ -86,9 +87,11 @@ fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut ShownLights, time: f32) {
     }
     let behind = ui.button("Behind the smoke").on_hover_text("Puts the light behind the smoke, as it is seen now");
     if behind.clicked() {
-        let bounds = smoke(preset);
+        let mut smoke = Smoke::default();
+        let smoke = smoke.at(preset, time);
+        let (eye, point) = (preset.camera.position, smoke.seen(&preset.camera, size));
         if let Some(light) = preset.lights.get_mut(index) {
-            put_behind(light, &preset.camera, &bounds);
+            put_behind(light, eye, point, &smoke.bounds);
         }
     }
 }

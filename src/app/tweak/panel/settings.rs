@@ -58,7 +58,8 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
         session.inspect.spot = shown.inner;
         return None;
     }
-    let (time, mut shown) = (session.playback.time, std::mem::take(&mut session.show.lights));
+    let seen = (session.playback.time, session.show.size);
+    let mut shown = std::mem::take(&mut session.show.lights);
     session.thumbnails.follow(session.document.path(), session.assets.as_deref());
     let mut desk = Desk {
         tooltips: &session.tooltips,
@@ -78,7 +79,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
     egui::ScrollArea::vertical().id_salt(session.show.tab).auto_shrink(false).show(ui, |ui| match session.show.tab {
         Tab::Look => look::panel(ui, &mut desk, preset, &mut shown, system),
         Tab::Light => {
-            lights::panel(ui, &mut desk, preset, &mut shown, time);
+            lights::panel(ui, &mut desk, preset, &mut shown, seen);
             ui.separator();
             surroundings(ui, &mut desk, preset);
         }

@@ -28,6 +28,7 @@ use gizmo::Gizmo;
 use ink::Ink;
 use lens::Lens;
 use menu::Menu;
+use ray::Ray;
 use steer::Steering;
 
 /// What goes on in the viewport.
@@ -97,7 +98,10 @@ impl Viewport {
         // A flight that did not look round is no click.
         let is_click = !self.steering.has_flown;
         if is_click && let Some(action) = self.menu.show(response, lens, session, &mut self.smoke) {
-            self.act(action, session);
+            match self.menu.at.filter(|_| action == InView::Behind) {
+                Some(at) => self.put_behind(session, Some(lens.ray(at))),
+                None => self.act(action, session),
+            }
         }
     }
 
@@ -134,7 +138,7 @@ impl Viewport {
             InView::Home => *camera = saved,
             InView::Delete => session.change_light(ShownLights::remove),
             InView::Duplicate => session.change_light(ShownLights::duplicate),
-            InView::Behind => self.put_behind(session),
+            InView::Behind => self.put_behind(session, None),
             InView::Overlay(overlay) => session.show.overlays.toggle(overlay),
             InView::Turntable => {
                 let middle = self.smoke.at(&session.document.preset, session.playback.time).bounds().centre();
@@ -145,16 +149,19 @@ impl Viewport {
         }
     }
 
-    /// Puts the selected light, or a new one, behind the smoke.
-    fn put_behind(&mut self, session: &mut Session) {
+    /// Puts the selected light, or a new one, behind the smoke that is pointed at, or else behind what is in the picture.
+    fn put_behind(&mut self, session: &mut Session, at: Option<Ray>) {
         let preset = &mut session.document.preset;
-        let bounds = self.smoke.at(preset, session.playback.time).bounds();
+        let smoke = self.smoke.at(preset, session.playback.time);
+        let met = at.and_then(|ray| smoke.met(ray.origin, ray.direction));
+        let point = met.unwrap_or_else(|| smoke.seen(&preset.camera, session.show.size));
+        let eye = preset.camera.position;
         let selected = session.show.lights.selected.and_then(|index| preset.lights.get_mut(index));
         if let Some(light) = selected {
-            return put_behind(light, &preset.camera, &bounds);
+            return put_behind(light, eye, point, &smoke.bounds);
         }
         let mut light = fresh(LightKind::Point, &preset.lights);
-        put_behind(&mut light, &preset.camera, &bounds);
+        put_behind(&mut light, eye, point, &smoke.bounds);
         session.add_light(light);
     }
 

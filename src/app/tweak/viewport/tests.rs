@@ -393,6 +393,35 @@ fn a_right_click_adds_a_light_there_and_another_behind_the_smoke() {
 }
 
 #[test]
+fn a_light_is_put_behind_the_smoke_that_is_clicked_on_or_in_the_picture() {
+    let mut harness = lit(Light::default());
+    let session = &harness.state().session;
+    let mut smoke = Smoke::default();
+    let sprites = &smoke.at(&session.document.preset, session.playback.time).systems[0];
+    let in_view = |at: &Pos2| viewport(&harness).shrink(40.0).contains(*at);
+    let seen = sprites.iter().filter(|sprite| lens(&harness).project(sprite.position).is_some_and(|at| in_view(&at)));
+    let top = seen.max_by(|a, b| a.position.y.total_cmp(&b.position.y)).unwrap().position;
+    let at = lens(&harness).project(top).unwrap();
+    drag(&mut harness, PointerButton::Secondary, &[at]);
+    harness.run_steps(3);
+    harness.get_by_label("Behind the smoke").click();
+    harness.run();
+    let is_behind = |harness: &Harness<'_, Window>| {
+        let (lens, place) = (lens(harness), light(harness).position);
+        assert!(lens.depth(place) > lens.depth(top), "{place}");
+        lens.project(place).unwrap()
+    };
+    assert!(is_behind(&harness).distance(at) < 1.0, "not under the pointer");
+    // So close that the middle of all smoke is out of the picture.
+    let camera = &mut harness.state_mut().session.document.preset.camera;
+    (camera.position, camera.target) = (top + Vec3::new(0.0, -0.1, 1.2), top);
+    harness.run();
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::B);
+    harness.run();
+    assert!(viewport(&harness).contains(is_behind(&harness)));
+}
+
+#[test]
 fn overlays_are_drawn_while_they_are_on() {
     let mut harness = lit(Light::default());
     let part = viewport(&harness);
