@@ -47,6 +47,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
     }
     ui.separator();
     session.inspect.spot = None;
+    session.thumbnails.follow(session.document.path(), session.assets.as_deref());
     if session.show.tab == Tab::Ramps {
         let area = egui::ScrollArea::vertical().id_salt(session.show.tab).auto_shrink(false);
         let system = session.show.system;
@@ -60,7 +61,6 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
     }
     let seen = (session.playback.time, session.show.size);
     let mut shown = std::mem::take(&mut session.show.lights);
-    session.thumbnails.follow(session.document.path(), session.assets.as_deref());
     let mut desk = Desk {
         tooltips: &session.tooltips,
         thumbnails: &session.thumbnails,
