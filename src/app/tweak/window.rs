@@ -19,6 +19,7 @@ use super::inspect::{lit, panel as inspector};
 use super::keeping::{Keeping, Layout};
 use super::messages::short;
 use super::panel;
+use super::platform::clock::Instant;
 use super::preset_thumbnails::PresetThumbnails;
 use super::reload::{Reload, ShaderFolder};
 use super::session::Session;
@@ -298,6 +299,10 @@ fn theme(ui: &mut Ui) {
 
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+        let acts = ui.input(|input| input.pointer.any_pressed() || !input.keys_down.is_empty());
+        if let Some(left) = self.session.messages.advance(Instant::now(), acts) {
+            ui.ctx().request_repaint_after(left);
+        }
         self.keys(ui);
         self.reload.advance(&mut self.session, &self.easel);
         let is_touched = ui.input(|input| input.pointer.any_down() || input.smooth_scroll_delta() != egui::Vec2::ZERO);

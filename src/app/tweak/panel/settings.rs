@@ -88,11 +88,10 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
         Tab::Ramps | Tab::Performance => {}
     });
     let Desk { asked, refused, .. } = desk;
+    let is_edited = session.document.preset != edited;
     session.document.preset = edited;
     session.show.lights = shown;
-    if let Some(refused) = refused {
-        session.messages.complain("typed", refused);
-    }
+    session.refuse(refused, is_edited);
     let mut sheet = None;
     for (asked, path) in asked {
         match asked {

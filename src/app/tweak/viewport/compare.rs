@@ -17,7 +17,10 @@ pub fn other(ui: &Ui, session: &mut Session, shot: &Shot) -> Option<Other> {
     }
     let context = ui.ctx().clone();
     match session.referee.judge(shot, move || context.request_repaint()) {
-        Verdict::Made(picture) => return Some(Other::Picture(picture, exposure(shot))),
+        Verdict::Made(picture) => {
+            session.messages.withdraw("reference");
+            return Some(Other::Picture(picture, exposure(shot)));
+        }
         Verdict::Later(wait) => ui.ctx().request_repaint_after(wait),
         Verdict::Failed(error) => session.messages.complain("reference", error),
         Verdict::Soon => {}
