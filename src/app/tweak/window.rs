@@ -15,7 +15,7 @@ use super::exporting::{Exporting, Product};
 use super::filing::Filing;
 use super::hints::Place;
 use super::inspect::lens::Lens;
-use super::inspect::{lit, panel as inspector};
+use super::inspect::panel as inspector;
 use super::keeping::{Keeping, Layout};
 use super::messages::short;
 use super::panel;
@@ -317,12 +317,15 @@ impl eframe::App for Window {
         if self.session.show.has_strip {
             let aspect = self.session.show.aspect;
             let height = self.layout.strip.unwrap_or((0.12 * ui.available_height()).max(80.0));
-            let panel = egui::Panel::bottom("strip").resizable(true).default_size(height).size_range(56.0..=320.0);
+            let most = (0.25 * ui.available_height()).clamp(56.0, 320.0);
+            let panel = egui::Panel::bottom("strip").resizable(true).default_size(height).size_range(56.0..=most);
             let shown = panel.show(ui, |ui| strip(ui, &mut self.session, &self.easel, aspect));
             self.layout.strip = Some(shown.response.rect.height());
         }
-        let width = self.layout.settings.unwrap_or((0.18 * ui.available_width()).clamp(330.0, 440.0));
-        let settings = egui::Panel::right("settings").default_size(width).size_range(240.0..=560.0);
+        let width = self.layout.settings.unwrap_or((0.18 * ui.available_width()).clamp(360.0, 440.0));
+        // The picture is the largest thing, in a small window too.
+        let most = (0.45 * ui.available_width()).clamp(240.0, 560.0);
+        let settings = egui::Panel::right("settings").default_size(width).size_range(240.0..=most);
         let shown = settings.show(ui, |ui| panel::settings::panel(ui, &mut self.session));
         self.layout.settings = Some(shown.response.rect.width());
         self.session.hints.see(Place::Settings, shown.response.rect);
@@ -336,7 +339,6 @@ impl eframe::App for Window {
             let rect = ui.max_rect();
             self.session.hints.see(Place::Picture, rect);
             self.viewport.show(ui, &mut self.session, &self.easel);
-            lit::paint(ui, rect, &self.session.inspect, self.session.show.system);
             inspector::panel(ui, rect, &self.session);
         });
         if let Some(lens) = &mut self.lens {

@@ -90,6 +90,32 @@ fn pointing_at_a_ramp_lights_the_smoke_that_looks_there() {
 }
 
 #[test]
+fn what_is_lit_lies_under_the_tools_that_stand_on_the_picture() {
+    let mut harness = window("column", SIZE, Theme::Dark);
+    // Smoke all over the picture.
+    let camera = &mut harness.state_mut().session.document.preset.camera;
+    camera.position = camera.target.lerp(camera.position, 0.2);
+    harness.get_by_label("Ramps").click();
+    wait_for(&mut harness, |harness| shows(harness, "lamp 1 (point)"));
+    let ramp = harness.get_by_label("diffuse ramp").rect();
+    let (viewport, tool) = (harness.get_by_label("viewport").rect(), harness.get_by_label("Lit plane").rect());
+    let beside = egui::Rect::from_min_size(tool.left_bottom() + Vec2::new(0.0, 12.0), tool.size());
+    let mut parts = |share: f32| {
+        harness.hover_at(egui::pos2(ramp.left() + share * ramp.width(), ramp.center().y));
+        harness.run_steps(3);
+        let picture = picture(&mut harness);
+        [brightness(&picture, tool), brightness(&picture, beside), brightness(&picture, viewport)]
+    };
+    let all: Vec<_> = (0..12).map(|step| parts(0.04 + 0.08 * step as f32)).collect();
+    let spread = |part: usize| {
+        let values = || all.iter().map(|parts| parts[part]);
+        values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min)
+    };
+    assert!(spread(1) > 1.0, "nothing is lit beside the tools: {all:?}");
+    assert!(spread(0) < 0.01, "{all:?}");
+}
+
+#[test]
 fn a_picture_that_stands_still_is_not_drawn_again() {
     let mut harness = window("column", SIZE, Theme::Dark);
     harness.key_press(Key::I);

@@ -40,7 +40,9 @@ fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut ShownLights) 
     let is_selected = shown.selected == Some(index);
     let button = egui::Button::selectable(is_selected, &name);
     let height = ui.spacing().interact_size.y;
-    let button = ui.add_sized([104.0, height], button.truncate());
+    // What is left beside the rest of the row.
+    let width = (ui.available_width() - 200.0).clamp(40.0, 104.0);
+    let button = ui.add_sized([width, height], button.truncate());
     if button.clicked() {
         shown.selected = (!is_selected).then_some(index);
     }

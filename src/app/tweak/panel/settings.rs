@@ -23,7 +23,9 @@ pub const TABS: [(Tab, &str, &str); 6] = [
 
 /// Gives the path of a field of whose values a sheet is to be made.
 pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        ui.spacing_mut().button_padding.x = 6.0;
         for (tab, name, tooltip) in TABS {
             ui.selectable_value(&mut session.show.tab, tab, name).on_hover_text(tooltip);
         }
@@ -204,6 +206,24 @@ mod tests {
         harness.run_steps(8);
         let row = harness.get_all_by_label("turbulence speed").next().unwrap().rect();
         assert!(window.contains_rect(row), "{row:?}");
+    }
+
+    #[test]
+    fn the_picture_is_the_largest_thing_in_the_smallest_window() {
+        let size = Vec2::new(640.0, 400.0);
+        let mut harness = window("column", size, Theme::Dark);
+        for (_, name, _) in super::TABS {
+            harness.get_by_label(name).click();
+            harness.run_steps(4);
+            let picture = harness.get_by_label("viewport").rect();
+            // The strip has all of the width.
+            let others = [size.x - picture.width(), size.y - picture.bottom()];
+            assert!(picture.width() > others[0] && picture.height() > others[1], "{name}: {picture}");
+            for (_, name, _) in super::TABS {
+                let tab = harness.get_by_label(name).rect();
+                assert!(tab.left() >= picture.right() && tab.right() <= size.x, "{name}: {tab}, beside {picture}");
+            }
+        }
     }
 
     fn undo_name(harness: &Harness<'_, Window>) -> Option<String> {

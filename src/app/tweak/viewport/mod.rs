@@ -20,6 +20,7 @@ use haze::{Bounds, LightKind};
 
 use super::action::InView;
 use super::easel::{Easel, Exhibit};
+use super::inspect::lit;
 use super::lights::{ShownLights, Turn, fresh};
 use super::session::Session;
 use super::smoke::{Smoke, put_behind};
@@ -77,6 +78,8 @@ impl Viewport {
         if compare.against.is_some() && compare.difference == 0.0 {
             divider(ui, rect, &mut compare.split);
         }
+        // Over the picture, and under all that stands on it.
+        lit::paint(ui, rect, &session.inspect, session.show.system);
         let lens = Lens::new(&session.document.preset.camera, rect);
         let painter = ui.painter_at(rect);
         let ink = Ink(&painter);
