@@ -50,6 +50,8 @@ enum Done {
     /// A ramp's name, to be looked for beside the preset.
     Ramp(String),
     Saved(Box<Saving>, Result<(), Error>),
+    /// Where things are.
+    Remembered(Result<(), Error>),
     Failed(Error),
 }
 
@@ -91,6 +93,8 @@ impl Filing {
                         system.material.diffuse_ramp = name;
                     }
                 }
+                Some(Done::Remembered(Ok(()))) => {}
+                Some(Done::Remembered(Err(error))) => session.messages.complain("layout", error),
                 Some(Done::Failed(error)) => session.messages.complain("file", error),
                 None => {
                     session.messages.complain("file", "no file is read or written: the program has a mistake in it");
@@ -112,7 +116,7 @@ impl Filing {
             *when = Some(Next::Close);
         }
         let mark = if session.document.is_dirty() { "* " } else { "" };
-        let title = format!("{mark}{} - haze", short(&session.document.preset.name, 80));
+        let title = format!("{mark}{} - haze", short(&session.document.title(), 80));
         if title != self.title {
             context.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.title = title;
@@ -127,6 +131,11 @@ impl Filing {
         } else {
             self.open(path, session);
         }
+    }
+
+    /// Has something written that is no preset.
+    pub fn remember(&self, write: impl FnOnce() -> Result<(), Error> + Send + 'static) {
+        self.worker.submit(move |_| Done::Remembered(write()));
     }
 
     /// Opens a file, or a built-in preset by name. What cannot be opened changes nothing.

@@ -131,7 +131,8 @@ impl Window {
             if let Some(action) = panel::file::menu(ui, &mut self.session) {
                 self.act(action, ui.ctx());
             }
-            ui.strong(short(&self.session.document.preset.name, 40));
+            ui.strong(short(&self.session.document.title(), 40))
+                .on_hover_text(self.session.document.path().to_string_lossy());
             if self.session.document.is_dirty() {
                 ui.label("•").on_hover_text("Changed since it was saved");
             }
@@ -362,6 +363,7 @@ impl eframe::App for Window {
             keeping.advance(&mut self.session, ui.ctx());
         }
         self.layout.see(ui.ctx(), &self.session);
+        self.keeping.iter_mut().for_each(|keeping| keeping.remember(&self.layout, &self.filing, ui.ctx()));
         let Session { performance, show, document, .. } = &mut self.session;
         let is_seen = show.tab == Tab::Performance;
         if performance.follow(&self.easel, is_seen, frame.info().cpu_usage, &document.preset) {
