@@ -364,8 +364,8 @@ impl eframe::App for Window {
         }
         self.layout.see(ui.ctx(), &self.session);
         self.keeping.iter_mut().for_each(|keeping| keeping.remember(&self.layout, &self.filing, ui.ctx()));
-        let Session { performance, show, document, .. } = &mut self.session;
-        let is_seen = show.tab == Tab::Performance;
+        let Session { performance, show, document, compare, .. } = &mut self.session;
+        let is_seen = show.tab == Tab::Performance || compare.against.is_some();
         if performance.follow(&self.easel, is_seen, frame.info().cpu_usage, &document.preset) {
             ui.ctx().request_repaint();
         }

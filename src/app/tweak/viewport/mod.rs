@@ -88,9 +88,7 @@ impl Viewport {
             overlay::draw(&ink, &lens, &session.show, smoke, &easel.texels());
         }
         self.gizmo.draw(&ink, &lens, session);
-        if let Some(text) = session.gauge.text() {
-            compare::figures(ui, rect, &text);
-        }
+        compare::labels(ui, rect, session);
         if let Some(action) = toolbar::toolbar(ui, rect, session) {
             self.act(action, session);
             ui.ctx().request_repaint();
