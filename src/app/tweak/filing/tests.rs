@@ -120,6 +120,7 @@ fn a_change_is_saved_by_menu_and_key_and_under_another_name() {
     bench.click("File");
     bench.window.get_by_label_contains("Save as").click();
     bench.window.run_steps(3);
+    assert!(bench.window.query_by_label_contains("no dialogs for files: type the path").is_some());
     let folder = format!("in {}", bench.folder.path().display());
     assert!(bench.window.query_by_label(&folder).is_some(), "{folder}");
     let other = bench.path("other.json");

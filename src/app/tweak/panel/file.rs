@@ -89,6 +89,7 @@ fn type_path(ui: &Ui, filing: &mut Filing, session: &mut Session) {
             Purpose::SaveAs => ("Save as", "Save"),
         };
         ui.heading(title);
+        ui.weak("This system has no dialogs for files: type the path.");
         let edit =
             egui::TextEdit::singleline(&mut typed.text).hint_text("Path of a JSON file").desired_width(f32::INFINITY);
         let edit = ui.add(edit);
