@@ -13,9 +13,12 @@ use super::platform::worker::{Ticket, Worker};
 /// How long a picture has to stand still.
 const STILL: Duration = Duration::from_millis(250);
 
+/// A picture, and how long it took to make.
+type Work = Result<(Picture<Vec4>, Duration), Error>;
+
 #[derive(Default)]
 pub struct Referee {
-    worker: Option<Worker<Result<(Picture<Vec4>, Duration), Error>>>,
+    worker: Option<Worker<Work>>,
     /// What was wanted last, and since when.
     wanted: Option<(Shot, Instant)>,
     /// It is being made.

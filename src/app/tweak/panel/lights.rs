@@ -42,7 +42,7 @@ fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut ShownLights) 
     let height = ui.spacing().interact_size.y;
     // What is left beside the rest of the row.
     let width = (ui.available_width() - 200.0).clamp(40.0, 104.0);
-    let button = ui.add_sized([width, height], button.truncate());
+    let button = ui.add_sized([width, height], button.truncate()).on_hover_text(&name);
     if button.clicked() {
         shown.selected = (!is_selected).then_some(index);
     }

@@ -265,7 +265,9 @@ pub fn vector(
 ) {
     let (low, high) = (*range.start(), *range.end());
     let width = (ui.available_width() - 2.0 * ui.spacing().item_spacing.x) / 3.0;
-    ui.spacing_mut().interact_size.x = width.min(ui.spacing().interact_size.x);
+    if width < ui.spacing().interact_size.x {
+        (ui.spacing_mut().interact_size.x, ui.spacing_mut().button_padding.x) = (width, 2.0);
+    }
     let mut axes = value.to_array();
     for (axis, label) in axes.iter_mut().zip(["x", "y", "z"]) {
         let (before, typed) = (*axis, std::cell::RefCell::new(None));

@@ -212,6 +212,7 @@ mod tests {
     fn the_picture_is_the_largest_thing_in_the_smallest_window() {
         let size = Vec2::new(640.0, 400.0);
         let mut harness = window("column", size, Theme::Dark);
+        let mut width = None;
         for (_, name, _) in super::TABS {
             harness.get_by_label(name).click();
             harness.run_steps(4);
@@ -219,6 +220,9 @@ mod tests {
             // The strip has all of the width.
             let others = [size.x - picture.width(), size.y - picture.bottom()];
             assert!(picture.width() > others[0] && picture.height() > others[1], "{name}: {picture}");
+            // Nothing on the tab is too wide for it.
+            let width = *width.get_or_insert(picture.width());
+            assert!((width - picture.width()).abs() < 0.5, "{name}: {width} {picture}");
             for (_, name, _) in super::TABS {
                 let tab = harness.get_by_label(name).rect();
                 assert!(tab.left() >= picture.right() && tab.right() <= size.x, "{name}: {tab}, beside {picture}");
