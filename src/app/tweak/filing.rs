@@ -10,6 +10,7 @@ use haze::{Error, FieldError, MaterialAssets};
 
 use super::document::document::{Document, OnDisk, Saving};
 use super::messages::short;
+use super::platform::clock::{Duration, Instant, sleep};
 use super::platform::dialog::{Answer, Dialogs, Purpose};
 use super::platform::worker::Worker;
 use super::session::Session;
@@ -30,6 +31,9 @@ pub struct Filing {
     is_over: bool,
     title: String,
 }
+
+/// The end waits no longer for what is done elsewhere.
+const LONGEST: Duration = Duration::from_millis(500);
 
 /// What ends the work on a document.
 pub enum Next {
@@ -93,8 +97,8 @@ impl Filing {
                         system.material.diffuse_ramp = name;
                     }
                 }
-                Some(Done::Remembered(Ok(()))) => {}
-                Some(Done::Remembered(Err(error))) => session.messages.complain("layout", error),
+                Some(Done::Remembered(Ok(()))) => session.messages.withdraw("remembered"),
+                Some(Done::Remembered(Err(error))) => session.messages.complain("remembered", error),
                 Some(Done::Failed(error)) => session.messages.complain("file", error),
                 None => {
                     session.messages.complain("file", "no file is read or written: the program has a mistake in it");
@@ -136,6 +140,14 @@ impl Filing {
     /// Has something written that is no preset.
     pub fn remember(&self, write: impl FnOnce() -> Result<(), Error> + Send + 'static) {
         self.worker.submit(move |_| Done::Remembered(write()));
+    }
+
+    /// The end: what is being written is let be written, within reason.
+    pub fn finish(&self) {
+        let begun = Instant::now();
+        while self.worker.is_busy() && begun.elapsed() < LONGEST {
+            sleep(Duration::from_millis(5));
+        }
     }
 
     /// Opens a file, or a built-in preset by name. What cannot be opened changes nothing.

@@ -383,6 +383,7 @@ impl eframe::App for Window {
     }
 
     fn on_exit(&mut self) {
+        self.filing.finish();
         if let Some(keeping) = self.keeping.take() {
             keeping.finish(&self.layout);
         }
