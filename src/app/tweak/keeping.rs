@@ -66,6 +66,11 @@ impl Layout {
         THEMES.into_iter().find(|(name, _)| self.theme.as_deref() == Some(name)).map(|(_, theme)| theme)
     }
 
+    /// All but sizes.
+    fn chosen(&self) -> (Option<bool>, Option<&str>, Option<&[String]>) {
+        (self.has_strip, self.theme.as_deref(), self.hints.as_deref())
+    }
+
     /// Takes note of what the window says about itself.
     pub fn see(&mut self, context: &egui::Context, session: &Session) {
         let shown = context.options(|options| options.theme_preference);
@@ -105,10 +110,12 @@ impl Keeping {
         let now = Instant::now();
         if let Some((written, at)) = &self.written {
             let left = REMEMBER_EVERY.saturating_sub(now.saturating_duration_since(*at));
-            if written == layout {
+            if left > Duration::ZERO || written == layout {
+                // Sizes are for the next frame: none is drawn because a window was resized.
+                if written.chosen() != layout.chosen() {
+                    context.request_repaint_after(left);
+                }
                 return;
-            } else if left > Duration::ZERO {
-                return context.request_repaint_after(left);
             }
         }
         self.written = Some((layout.clone(), now));
