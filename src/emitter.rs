@@ -30,6 +30,7 @@ settings! {
     /// All settings of an emitter. Positions and velocities in world space.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Emitter {
+        "birth":
         /// Different seeds give different smoke of the same kind.
         seed: u32 = 1, seed;
         /// Births per second.
@@ -48,6 +49,7 @@ settings! {
         /// Half the size of the shape.
         #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
         extent: Vec3 = Vec3::splat(0.2), vector(0.0..=1.0e4, "m");
+        "motion":
         /// Velocity at birth.
         #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
         velocity: Vec3 = Vec3::new(0.0, 0.6, 0.0), vector(-1.0e3..=1.0e3, "m/s");
@@ -65,18 +67,21 @@ settings! {
         /// Velocity of the air.
         #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
         wind: Vec3 = Vec3::ZERO, vector(-100.0..=100.0, "m/s");
+        "turbulence":
         /// How far curl noise carries a particle off its path by the end of its life.
         turbulence: f32 = 0.5, number(0.0..=100.0, "m");
         /// Size of the swirls.
         turbulence_scale: f32 = 1.5, number(0.01..=1.0e3, "m");
         /// Turns of the swirls per second.
         turbulence_speed: f32 = 0.05, number(0.0..=10.0, "1/s");
+        "size":
         /// Radius at birth.
         radius_start: f32 = 0.25, number(0.0..=1.0e3, "m");
         /// Radius at death.
         radius_end: f32 = 1.2, number(0.0..=1.0e3, "m");
         /// Share by which radii differ, up and down.
         radius_spread: f32 = 0.25, number(0.0..=0.95, "");
+        "appearance":
         /// Fastest spin, either way, at birth; drag slows it.
         spin: f32 = 0.6, number(0.0..=100.0, "rad/s");
         /// Amount of a full-grown particle.

@@ -14,6 +14,7 @@ settings! {
     /// The pictures of a system: names of built-in ones, or PNG files beside the preset.
     #[derive(Clone, Debug, PartialEq, Eq)]
     pub struct MaterialNames {
+        "sprite":
         /// Flipbook of normal maps.
         sprite: String = "puff".into(), picture(PictureRole::Sprite);
         /// Depth and motion of a sprite from a file, laid out as it; empty for none. A built-in sprite has its own.
@@ -24,6 +25,7 @@ settings! {
         rows: u32 = 1, integer(1..=256, "frames");
         /// True for a sprite file painted with green pointing down.
         y_down: bool = false, flag;
+        "ramps and noise":
         /// Light by dot(n, l).
         diffuse_ramp: String = "diffuse_soft".into(), picture(PictureRole::Ramp);
         /// Light by amount.
@@ -152,7 +154,34 @@ fn kept<T>(found: Result<T, Error>, errors: &mut Vec<Error>) -> Option<T> {
 
 #[cfg(test)]
 mod tests {
+    use std::ops::RangeInclusive;
+
+    use glam::Vec3;
+
     use super::*;
+    use crate::assets::ramp::Role;
+    use crate::settings::{FieldVisitor, Fields};
+
+    #[test]
+    fn every_field_for_a_ramp_has_a_role_and_a_default_of_that_role() {
+        struct Roles(Vec<Role>);
+        impl FieldVisitor for Roles {
+            fn number(&mut self, _: &'static str, _: &mut f32, _: RangeInclusive<f32>, _: &'static str) {}
+            fn integer(&mut self, _: &'static str, _: &mut u32, _: RangeInclusive<u32>, _: &'static str) {}
+            fn vector(&mut self, _: &'static str, _: &mut Vec3, _: RangeInclusive<f32>, _: &'static str) {}
+            fn group(&mut self, _: &'static str, _: &mut dyn Fields) {}
+            fn item(&mut self, _: &'static str, _: usize, _: &mut dyn Fields) {}
+            fn picture(&mut self, name: &'static str, value: &mut String, role: PictureRole) {
+                let wanted = Role::of_field(name);
+                assert_eq!(wanted.is_some(), role == PictureRole::Ramp, "{name}");
+                assert!(wanted.is_none() || wanted == Role::of_name(value), "{name} {value}");
+                self.0.extend(wanted);
+            }
+        }
+        let mut roles = Roles(Vec::new());
+        MaterialNames::default().visit(&mut roles);
+        assert_eq!(roles.0.len(), Role::ALL.len());
+    }
 
     #[test]
     fn assets_stay_inside_the_presets_folder() {

@@ -16,7 +16,16 @@ use crate::error::FieldError;
 pub trait Fields {
     /// Hands every field to `visitor`, in the order of the struct.
     fn visit(&mut self, visitor: &mut dyn FieldVisitor);
+
+    /// Every field in the order of the struct, with the heading that begins at it: for those who show them. Empty for a struct
+    /// without a table.
+    fn headings(&self) -> &'static [Headed] {
+        &[]
+    }
 }
+
+/// A field's name, and the heading that it and those after it stand under.
+pub type Headed = (&'static str, Option<&'static str>);
 
 /// What a picture named by a field is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -183,6 +192,7 @@ mod tests {
         #[derive(Clone)]
         pub struct Inner {
             contrast_power: f32 = 2.0, number(0.1..=16.0, "");
+            "ends":
             steepest: f32 = 16.0, number(|this| this.contrast_power..=16.0, "");
         }
     }
@@ -209,6 +219,12 @@ mod tests {
     #[test]
     fn a_value_in_range_passes() {
         assert!(validate(&outer(4, 2.0), || unreachable!("no error, no path")).is_ok());
+    }
+
+    #[test]
+    fn a_heading_begins_at_its_row() {
+        assert_eq!(Inner::default().headings(), [("contrast_power", None), ("steepest", Some("ends"))]);
+        assert_eq!(outer(1, 2.0).headings(), []);
     }
 
     #[test]

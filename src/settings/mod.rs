@@ -21,7 +21,7 @@ pub use accumulate::{
 pub use budget::{Budget, ScaleBudget};
 pub use choice::Choice;
 pub(crate) use choice::choice;
-pub use fields::{FieldVisitor, Fields, PictureRole, validate};
+pub use fields::{FieldVisitor, Fields, Headed, PictureRole, validate};
 pub use lighting::{CoverageMode, Diffuse, DiffuseMode, RampFilter, SoftScatter, SoftScatterMode, SpecularScatter};
 pub use set::set_field;
 pub use soft_fade::{FadeCurve, SoftFade};

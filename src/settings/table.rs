@@ -2,10 +2,11 @@
 //! `Default`, its JSON and its `Fields` are made. A row cannot be half there.
 
 /// Defines a settings struct. Rows are `name: Type = default, kind(range, unit);`, where kind is a method of
-/// `FieldVisitor`. A range that depends on another field is written `|this| this.near..=10.0`.
+/// `FieldVisitor`. A range that depends on another field is written `|this| this.near..=10.0`. A text before a row is the heading
+/// of what follows.
 macro_rules! settings {
     ($(#[$meta:meta])* pub struct $name:ident {
-        $($(#[$field_meta:meta])* $field:ident: $type:ty = $default:expr, $kind:ident $(($($argument:tt)*))?;)+
+        $($($heading:literal:)? $(#[$field_meta:meta])* $field:ident: $type:ty = $default:expr, $kind:ident $(($($argument:tt)*))?;)+
     }) => {
         $(#[$meta])*
         #[derive(serde::Serialize, serde::Deserialize)]
@@ -23,10 +24,25 @@ macro_rules! settings {
             fn visit(&mut self, visitor: &mut dyn $crate::settings::fields::FieldVisitor) {
                 $($crate::settings::table::visit!(self, visitor, $field, $kind $($($argument)*)?);)+
             }
+
+            fn headings(&self) -> &'static [$crate::settings::fields::Headed] {
+                &[$((stringify!($field), $crate::settings::table::heading!($($heading)?))),+]
+            }
         }
     };
 }
 pub(crate) use settings;
+
+/// The heading before a row, if there is one.
+macro_rules! heading {
+    () => {
+        None
+    };
+    ($heading:literal) => {
+        Some($heading)
+    };
+}
+pub(crate) use heading;
 
 /// One row's call of the visitor.
 macro_rules! visit {

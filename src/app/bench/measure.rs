@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
+use haze::cache::Cache;
 use haze::demo::shot::Shot;
 use haze::demo::stage::{Stage, StageContext};
 use haze::headless::Headless;
@@ -193,11 +194,11 @@ impl<'a> Bench<'a> {
         let Overdraw { fragments, .. } = running.stage.renderer().overdraw();
         let limit = self.limits.get(&format).map(|ms| ms * fragments).filter(|&ms| ms > 0.0);
         let mut particles = Vec::new();
-        let alive = |system: &PresetSystem| {
-            system.particles(shot.preset.time, &mut particles);
+        let alive = |(system, cache): (&PresetSystem, &Option<Cache>)| {
+            system.particles(cache.as_ref(), shot.preset.time, &mut particles);
             particles.len() as u32
         };
-        let alive = shot.preset.systems.iter().map(alive).sum();
+        let alive = shot.preset.systems.iter().zip(&shot.caches).map(alive).sum();
         Some(Row {
             scale: (!is_forward).then_some(settings.accumulate.scale),
             format: Some(format.name().into()),

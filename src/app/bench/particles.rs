@@ -30,7 +30,7 @@ pub fn rows(gpu: &Headless, context: &StageContext, group: &Group) -> Result<Vec
             break;
         }
         let started = Instant::now();
-        shot.preset.systems.iter().for_each(|system| system.particles(shot.preset.time, &mut particles));
+        shot.preset.systems.iter().for_each(|system| system.particles(None, shot.preset.time, &mut particles));
         let mut found = vec![started.elapsed().as_secs_f64() * 1000.0];
         for (stage, shot) in stages.iter_mut().zip(&ordered) {
             let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

@@ -14,6 +14,7 @@ use haze::settings::set_field;
 use haze::{Error, FieldError};
 use image::RgbImage;
 
+use super::made::Made;
 use super::platform::files;
 use super::platform::worker::Worker;
 use super::session::Session;
@@ -266,7 +267,10 @@ fn seeds(shot: &Shot) -> Vec<(String, Shot)> {
 fn variations(shot: &Shot, path: &str) -> Vec<(String, Shot)> {
     let with = |text: String| {
         let mut shot = shot.clone();
-        set_field(&mut shot.preset, path, &text).ok()?;
+        match Made::find(path) {
+            Some((system, made)) => (made.set)(shot.preset.systems.get_mut(system)?, text.parse().ok()?),
+            None => drop(set_field(&mut shot.preset, path, &text).ok()?),
+        }
         shot.preset.validate().ok()?;
         Some((text, shot))
     };

@@ -11,6 +11,7 @@ use haze::{Error, FieldError};
 use super::caches::{self, Loaded};
 use super::document::document::{Document, OnDisk, Saving};
 use super::messages::short;
+use super::platform::clock::{Duration, Instant, sleep};
 use super::platform::dialog::{Answer, Dialogs, Purpose};
 use super::platform::worker::Worker;
 use super::session::Session;
@@ -32,6 +33,9 @@ pub struct Filing {
     title: String,
 }
 
+/// The end waits no longer for what is done elsewhere.
+const LONGEST: Duration = Duration::from_millis(500);
+
 /// What ends the work on a document.
 pub enum Next {
     /// Another takes its place.
@@ -51,6 +55,8 @@ enum Done {
     /// A ramp's name, to be looked for beside the preset.
     Ramp(String),
     Saved(Box<Saving>, Result<(), Error>),
+    /// Where things are.
+    Remembered(Result<(), Error>),
     Failed(Error),
 }
 
@@ -92,6 +98,8 @@ impl Filing {
                         system.material.diffuse_ramp = name;
                     }
                 }
+                Some(Done::Remembered(Ok(()))) => session.messages.withdraw("remembered"),
+                Some(Done::Remembered(Err(error))) => session.messages.complain("remembered", error),
                 Some(Done::Failed(error)) => session.messages.complain("file", error),
                 None => {
                     session.messages.complain("file", "no file is read or written: the program has a mistake in it");
@@ -113,7 +121,7 @@ impl Filing {
             *when = Some(Next::Close);
         }
         let mark = if session.document.is_dirty() { "* " } else { "" };
-        let title = format!("{mark}{} - haze", short(&session.document.preset.name, 80));
+        let title = format!("{mark}{} - haze", short(&session.document.title(), 80));
         if title != self.title {
             context.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.title = title;
@@ -127,6 +135,19 @@ impl Filing {
             self.worker.submit(move |_| ramp_beside(&path, &preset).map_or_else(Done::Failed, Done::Ramp));
         } else {
             self.open(path, session);
+        }
+    }
+
+    /// Has something written that is no preset.
+    pub fn remember(&self, write: impl FnOnce() -> Result<(), Error> + Send + 'static) {
+        self.worker.submit(move |_| Done::Remembered(write()));
+    }
+
+    /// The end: what is being written is let be written, within reason.
+    pub fn finish(&self) {
+        let begun = Instant::now();
+        while self.worker.is_busy() && begun.elapsed() < LONGEST {
+            sleep(Duration::from_millis(5));
         }
     }
 

@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use super::document::document::Document;
 use super::document::recovery::{Abandoned, Recovery, WRITE_EVERY, abandoned};
-use super::platform::clock::Instant;
+use super::filing::Filing;
+use super::platform::clock::{Duration, Instant};
 use super::platform::memory::{recall, remember};
 use super::session::Session;
 
@@ -18,7 +19,12 @@ pub struct Keeping {
     recovery: Recovery,
     /// What crashed tweakers have left; asked about one by one.
     pub abandoned: Vec<Abandoned>,
+    /// Where things were when that was written last, and the time then.
+    written: Option<(Layout, Instant)>,
 }
+
+/// Where things are is written no oftener.
+const REMEMBER_EVERY: Duration = Duration::from_secs(1);
 
 /// Where things were. Points.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -60,6 +66,11 @@ impl Layout {
         THEMES.into_iter().find(|(name, _)| self.theme.as_deref() == Some(name)).map(|(_, theme)| theme)
     }
 
+    /// All but sizes.
+    fn chosen(&self) -> (Option<bool>, Option<&str>, Option<&[String]>) {
+        (self.has_strip, self.theme.as_deref(), self.hints.as_deref())
+    }
+
     /// Takes note of what the window says about itself.
     pub fn see(&mut self, context: &egui::Context, session: &Session) {
         let shown = context.options(|options| options.theme_preference);
@@ -81,7 +92,7 @@ impl Keeping {
     pub fn new(folder: PathBuf, session: &mut Session) -> Self {
         let (abandoned, errors) = abandoned(&folder);
         errors.into_iter().for_each(|error| session.messages.complain("recovery", error));
-        Self { recovery: Recovery::new(&folder), folder, abandoned }
+        Self { recovery: Recovery::new(&folder), folder, abandoned, written: None }
     }
 
     /// Once a frame: writes what is not saved, every few seconds.
@@ -92,6 +103,24 @@ impl Keeping {
         if self.recovery.is_behind(&session.document) {
             context.request_repaint_after(WRITE_EVERY);
         }
+    }
+
+    /// Once a frame: has it written where things are, when that is not what was written last.
+    pub fn remember(&mut self, layout: &Layout, filing: &Filing, context: &egui::Context) {
+        let now = Instant::now();
+        if let Some((written, at)) = &self.written {
+            let left = REMEMBER_EVERY.saturating_sub(now.saturating_duration_since(*at));
+            if left > Duration::ZERO || written == layout {
+                // Sizes are for the next frame: none is drawn because a window was resized.
+                if written.chosen() != layout.chosen() {
+                    context.request_repaint_after(left);
+                }
+                return;
+            }
+        }
+        self.written = Some((layout.clone(), now));
+        let (folder, layout) = (self.folder.clone(), layout.clone());
+        filing.remember(move || remember(&folder, LAYOUT, &layout));
     }
 
     /// Goes on with what was left, or throws it away.
@@ -121,5 +150,45 @@ impl Keeping {
         self.recovery.finish();
         // The window is gone: there is no one to tell.
         let _ = remember(&self.folder, LAYOUT, layout);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use egui_kittest::kittest::Queryable as _;
+
+    use super::*;
+    use crate::app::tweak::reload::ShaderFolder;
+    use crate::app::tweak::testing;
+    use crate::app::tweak::window::Start;
+
+    #[test]
+    fn where_things_are_is_written_when_it_changes_and_not_only_at_the_end() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut session = Session::open("column".as_ref(), None).unwrap();
+        let keeping = Some(Keeping::new(folder.path().into(), &mut session));
+        let start =
+            Start { session, shaders: ShaderFolder::None, keeping, layout: Layout::default(), has_dialogs: false };
+        let mut harness = testing::open(start, egui::Vec2::new(1000.0, 640.0), egui::Theme::Dark);
+        type Bench = egui_kittest::Harness<'static, crate::app::tweak::window::Window>;
+        let until = |harness: &mut Bench, is_so: fn(&Layout) -> bool| {
+            let begin = Instant::now();
+            while !is_so(&Layout::recall(folder.path()).0) {
+                let found = Layout::recall(folder.path());
+                assert!(begin.elapsed() < Duration::from_secs(10), "never written: {found:?}");
+                harness.step();
+            }
+            harness.state().keeping.as_ref().unwrap().written.clone().unwrap().1
+        };
+        until(&mut harness, |layout| layout.hints.as_ref().is_some_and(|left| left.len() == 5));
+        harness.get_by_label("Got it").click();
+        harness.run_steps(3);
+        harness.state_mut().session.show.has_strip = false;
+        let first = until(&mut harness, |layout| {
+            layout.has_strip == Some(false) && layout.hints.as_ref().is_some_and(|left| left.len() == 4)
+        });
+        harness.ctx.set_theme(egui::Theme::Light);
+        let second = until(&mut harness, |layout| layout.theme.as_deref() == Some("light"));
+        assert!(second - first >= REMEMBER_EVERY);
     }
 }

@@ -10,6 +10,8 @@ use haze::{Light, LightKind};
 #[derive(Clone, Debug, Default)]
 pub struct ShownLights {
     pub selected: Option<usize>,
+    /// The light that leads, for each system, once it is chosen.
+    keys: Vec<Option<usize>>,
     /// All lights are sent round.
     pub turn: Option<Turn>,
     entries: Vec<Entry>,
@@ -37,6 +39,15 @@ impl Turn {
         let turn = Quat::from_rotation_y(self.angle);
         let position = self.middle + turn * (light.position - self.middle);
         Light { position, direction: turn * light.direction, ..*light }
+    }
+}
+
+/// What a light is called wherever lights are listed, by its place among them.
+pub fn name_of(index: usize, light: &Light) -> String {
+    let number = index + 1;
+    match light.kind {
+        LightKind::Directional => format!("sun {number}"),
+        kind => format!("lamp {number} ({})", kind.name()),
     }
 }
 
@@ -75,7 +86,7 @@ impl ShownLights {
             let pairs = self.entries[start..].iter().rev().zip(lights[start..].iter().rev());
             let end = pairs.take_while(|(entry, light)| entry.light == **light).count();
             self.entries.splice(start..old - end, lights[start..new - end].iter().map(entry));
-            self.selected = self.selected.and_then(|index| match index {
+            self.renumber(|index| match index {
                 _ if index < start => Some(index),
                 _ if index >= old - end => Some(index + new - old),
                 _ => None,
@@ -84,6 +95,25 @@ impl ShownLights {
         for (entry, light) in self.entries.iter_mut().zip(lights) {
             entry.light = *light;
         }
+    }
+
+    /// What is known by its place has another, or none.
+    fn renumber(&mut self, place: impl Fn(usize) -> Option<usize>) {
+        self.selected = self.selected.and_then(&place);
+        self.keys.iter_mut().for_each(|key| *key = key.and_then(&place));
+    }
+
+    /// The light that leads a system: chosen once, and kept as long as it is there.
+    pub fn key(&mut self, system: usize, choose: impl FnOnce() -> Option<usize>) -> Option<usize> {
+        self.keys.resize(self.keys.len().max(system + 1), None);
+        let key = &mut self.keys[system];
+        *key = key.or_else(choose);
+        *key
+    }
+
+    /// Chooses leading lights anew: the preset is another.
+    pub fn forget_keys(&mut self) {
+        self.keys.clear();
     }
 
     /// The marks of a light, to be changed.
@@ -100,6 +130,14 @@ impl ShownLights {
     /// The lights that are in the picture, as they are there.
     pub fn shown(&self, lights: &[Light]) -> Vec<Light> {
         (0..).zip(lights).filter(|(index, _)| self.is_shown(*index)).map(|(_, light)| self.turned(light)).collect()
+    }
+
+    /// The names of those that are in the picture, in their order there.
+    pub fn shown_names(&self, lights: &[Light]) -> Vec<String> {
+        let mut of_these = self.clone();
+        of_these.follow(lights);
+        let shown = (0..).zip(lights).filter(|(index, _)| of_these.is_shown(*index));
+        shown.map(|(index, light)| name_of(index, light)).collect()
     }
 
     /// The same of another preset's lights, which are known by their places, and by what is alike at both ends of the lists.
@@ -124,6 +162,7 @@ impl ShownLights {
         if lights.len() < MAX_LIGHTS {
             self.follow(lights);
             lights.insert(index, light);
+            self.renumber(|place| Some(place + usize::from(place >= index)));
             self.entries.insert(index, Entry { light, marks: Marks::default() });
             self.selected = Some(index);
         }
@@ -142,8 +181,7 @@ impl ShownLights {
             self.follow(lights);
             lights.remove(index);
             self.entries.remove(index);
-            self.selected = self.selected.filter(|&selected| selected != index);
-            self.selected = self.selected.map(|selected| selected - usize::from(selected > index));
+            self.renumber(|place| (place != index).then(|| place - usize::from(place > index)));
         }
     }
 }
@@ -182,6 +220,31 @@ mod tests {
         shown.duplicate(&mut twins, 1);
         shown.remove(&mut twins, 1);
         assert_eq!((muted(&shown), shown.selected), (vec![], Some(1)));
+    }
+
+    #[test]
+    fn the_light_that_leads_stays_the_one_it_was() {
+        let mut all = lights(&[1.0, 2.0, 3.0]);
+        let mut shown = ShownLights::default();
+        shown.follow(&all);
+        assert_eq!((shown.key(0, || Some(1)), shown.key(1, || Some(2))), (Some(1), Some(2)));
+        shown.insert(&mut all, 0, Light::default());
+        assert_eq!((shown.key(0, || Some(0)), shown.key(1, || Some(0))), (Some(2), Some(3)));
+        shown.remove(&mut all, 2);
+        assert_eq!((shown.key(0, || Some(0)), shown.key(1, || Some(0))), (Some(0), Some(2)));
+        shown.forget_keys();
+        assert_eq!(shown.key(1, || Some(1)), Some(1));
+    }
+
+    #[test]
+    fn names_tell_kind_and_place_of_what_is_in_the_picture() {
+        let mut all = lights(&[1.0, 2.0, 3.0]);
+        (all[0].kind, all[2].kind) = (LightKind::Directional, LightKind::Spot);
+        let mut shown = ShownLights::default();
+        shown.follow(&all);
+        assert_eq!(shown.shown_names(&all), ["sun 1", "lamp 2 (point)", "lamp 3 (spot)"]);
+        shown.marks(0).unwrap().is_muted = true;
+        assert_eq!(shown.shown_names(&all), ["lamp 2 (point)", "lamp 3 (spot)"]);
     }
 
     #[test]

@@ -1,17 +1,25 @@
 //! What the window has to say: one line at a time, and each thing once.
 
+use super::platform::clock::{Duration, Instant};
+
 /// A line at the bottom of the window.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Message {
     pub text: String,
+    /// It holds until it is mended; else it goes by itself.
     pub is_error: bool,
     /// What it is about: a message about the same thing takes its place, and can be taken back.
     about: &'static str,
+    since: Instant,
 }
 
 /// The messages that still hold, the latest last.
 #[derive(Default)]
 pub struct Messages(Vec<Message>);
+
+/// How long what is no error is shown, and how long at least, whatever is done.
+const SHOWN: Duration = Duration::from_secs(8);
+const READ: Duration = Duration::from_secs(1);
 
 /// Most characters of a message.
 const LONGEST: usize = 600;
@@ -32,11 +40,11 @@ const MOST: usize = 20;
 
 impl Messages {
     pub fn say(&mut self, about: &'static str, text: impl ToString) {
-        self.push(Message { text: text.to_string(), is_error: false, about });
+        self.push(&text.to_string(), false, about);
     }
 
     pub fn complain(&mut self, about: &'static str, text: impl ToString) {
-        self.push(Message { text: text.to_string(), is_error: true, about });
+        self.push(&text.to_string(), true, about);
     }
 
     /// What was wrong is mended.
@@ -48,13 +56,24 @@ impl Messages {
         self.0.last()
     }
 
-    fn push(&mut self, mut message: Message) {
+    /// Once a frame: takes away what has been read. `acts`: something is done in the window. Gives the time after which there is
+    /// something to take away.
+    pub fn advance(&mut self, now: Instant, acts: bool) -> Option<Duration> {
+        let age = |message: &Message| now.saturating_duration_since(message.since);
+        let most = if acts { READ } else { SHOWN };
+        self.0.retain(|message| message.is_error || age(message) < most);
+        let left = self.0.iter().filter(|message| !message.is_error).map(|message| SHOWN.saturating_sub(age(message)));
+        left.min()
+    }
+
+    fn push(&mut self, text: &str, is_error: bool, about: &'static str) {
         // Names may have anything in them.
-        message.text = short(&message.text, LONGEST);
-        if self.0.contains(&message) {
+        let message = Message { text: short(text, LONGEST), is_error, about, since: Instant::now() };
+        let is_same = |other: &Message| (&other.text, other.is_error, other.about) == (&message.text, is_error, about);
+        if is_error && self.0.iter().any(is_same) {
             return;
         }
-        self.withdraw(message.about);
+        self.withdraw(about);
         self.0.push(message);
         let surplus = self.0.len().saturating_sub(MOST);
         self.0.drain(..surplus);
@@ -86,5 +105,22 @@ mod tests {
         assert_eq!(messages.latest().map(|message| message.text.as_str()), Some("broken elsewhere"));
         messages.withdraw("ramp");
         assert_eq!(messages.latest().map(|message| message.is_error), Some(false));
+    }
+
+    #[test]
+    fn what_informs_goes_by_itself_or_when_something_is_done_and_errors_stay() {
+        let mut messages = Messages::default();
+        messages.complain("ramp", "broken");
+        messages.say("file", "saved");
+        let begin = Instant::now();
+        let latest = |messages: &Messages| messages.latest().unwrap().text.clone();
+        assert!(messages.advance(begin, true).is_some_and(|left| left <= SHOWN));
+        assert_eq!(latest(&messages), "saved", "no one has read it");
+        messages.advance(begin + READ, false);
+        assert_eq!(latest(&messages), "saved");
+        assert_eq!(messages.advance(begin + READ, true), None);
+        assert_eq!(latest(&messages), "broken");
+        messages.say("file", "saved");
+        assert_eq!((messages.advance(Instant::now() + SHOWN, false), latest(&messages)), (None, "broken".into()));
     }
 }

@@ -15,6 +15,7 @@ mod icon;
 mod inspect;
 mod keeping;
 mod lights;
+mod made;
 mod messages;
 #[cfg(test)]
 mod motion_tests;
@@ -118,6 +119,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     }
     let size = arguments.size.map(|size| size.as_vec2().to_array()).or(layout.window);
     let keeping = state.map(|folder| Keeping::new(folder, &mut session));
-    let start = Start { session, shaders, keeping, layout, has_dialogs: Dialogs::are_likely() };
+    let start =
+        Start { session, shaders, keeping, layout, has_dialogs: Dialogs::are_likely(|name| std::env::var_os(name)) };
     open(start, size.map(egui::Vec2::from))
 }

@@ -65,8 +65,9 @@ impl Performance {
         }
         let before = std::mem::replace(&mut self.figures, easel.figures());
         let is_drawn = self.figures.pictures != before.pictures;
+        let is_second_drawn = self.figures.seconds != before.seconds;
         let times = self.figures.times.take().filter(|times| self.seen.replace(times.frame) != Some(times.frame));
-        self.waiting = if is_drawn { LATE } else { self.waiting.saturating_sub(1) };
+        self.waiting = if is_drawn || is_second_drawn { LATE } else { self.waiting.saturating_sub(1) };
         if let Some(times) = &times {
             self.remember(times.passes.iter().filter(|pass| !pass.of_host).map(|pass| (pass.name, pass.ms)));
         } else if !self.figures.is_timed && is_drawn {

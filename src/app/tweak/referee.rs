@@ -13,14 +13,19 @@ use super::platform::worker::{Ticket, Worker};
 /// How long a picture has to stand still.
 const STILL: Duration = Duration::from_millis(250);
 
+/// A picture, and how long it took to make.
+type Work = Result<(Picture<Vec4>, Duration), Error>;
+
 #[derive(Default)]
 pub struct Referee {
-    worker: Option<Worker<Result<Picture<Vec4>, Error>>>,
+    worker: Option<Worker<Work>>,
     /// What was wanted last, and since when.
     wanted: Option<(Shot, Instant)>,
     /// It is being made.
     ticket: Option<Ticket>,
     made: Option<Arc<Picture<Vec4>>>,
+    /// How long it took to make.
+    pub took: Option<Duration>,
 }
 
 /// How far it is.
@@ -39,7 +44,7 @@ impl Referee {
         let now = Instant::now();
         if !self.wanted.as_ref().is_some_and(|(wanted, _)| wanted.is_same(shot)) {
             self.wanted = Some((shot.clone(), now));
-            self.made = None;
+            (self.made, self.took) = (None, None);
             if let Some(ticket) = self.ticket.take() {
                 ticket.cancel();
             }
@@ -61,13 +66,16 @@ impl Referee {
                 },
             };
             let shot = shot.clone();
-            self.ticket = Some(worker.submit(move |_| shot.render_on_cpu()));
+            self.ticket = Some(worker.submit(move |_| {
+                let begun = Instant::now();
+                shot.render_on_cpu().map(|picture| (picture, begun.elapsed()))
+            }));
         }
         match self.worker.as_ref().and_then(Worker::poll) {
             None => Verdict::Soon,
-            Some(Some(Ok(picture))) => {
+            Some(Some(Ok((picture, took)))) => {
                 let made = Arc::new(picture);
-                self.made = Some(made.clone());
+                (self.made, self.took) = (Some(made.clone()), Some(took));
                 Verdict::Made(made)
             }
             Some(Some(Err(error))) => Verdict::Failed(error),

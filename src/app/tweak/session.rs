@@ -202,6 +202,15 @@ impl Session {
         }
     }
 
+    /// Says why what was typed cannot be, or takes that back when something else was.
+    pub fn refuse(&mut self, refused: Option<String>, is_edited: bool) {
+        match refused {
+            Some(refused) => self.messages.complain("typed", refused),
+            None if is_edited => self.messages.withdraw("typed"),
+            None => {}
+        }
+    }
+
     /// Does something with the selected light, if there is one.
     pub fn change_light(&mut self, change: impl FnOnce(&mut ShownLights, &mut Vec<Light>, usize)) {
         let lights = &mut self.document.preset.lights;
@@ -245,6 +254,7 @@ impl Session {
         self.playback = Playback::at(document.preset.time);
         (self.compare, self.show.system, self.is_changed_on_disk) = (Compare::default(), 0, false);
         self.ramps = RampFiles::default();
+        self.show.lights.forget_keys();
         ["preset", "ramp", "pictures", "caches", "file"].into_iter().for_each(|about| self.messages.withdraw(about));
         self.document = document;
     }

@@ -1,6 +1,6 @@
 //! Where the smoke is at the time that is shown.
 
-use glam::Vec3;
+use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
 use haze::cache::Cache;
 use haze::frame::bounds_of;
 use haze::preset::{Camera, Preset, PresetSystem};
@@ -53,72 +53,141 @@ impl Smoke {
         }
         all
     }
+
+    /// The middle of what is in a picture of this size, by how much sprites cover; of all of it where none is in it.
+    pub fn seen(&self, camera: &Camera, size: UVec2) -> Vec3 {
+        let view = camera.view(size);
+        let clip_from_world = view.clip_from_view * view.view_from_world;
+        let is_seen = |particle: &&Particle| {
+            let clip = clip_from_world * particle.position.extend(1.0);
+            clip.w > camera.near && clip.x.abs() <= clip.w && clip.y.abs() <= clip.w
+        };
+        middle(self.systems.iter().flatten().filter(is_seen)).unwrap_or_else(|| self.bounds().centre())
+    }
+
+    /// The middle of what a line from the eye goes through, on that line; `way` is of unit length.
+    pub fn met(&self, eye: Vec3, way: Vec3) -> Option<Vec3> {
+        let is_met = |particle: &&Particle| {
+            let far = (particle.position - eye).dot(way);
+            far > 0.0 && particle.position.distance(eye + way * far) < particle.radius
+        };
+        let middle = middle(self.systems.iter().flatten().filter(is_met))?;
+        Some(eye + way * (middle - eye).dot(way))
+    }
+}
+
+/// The middle of sprites, weighted by how much they cover; `None` where they cover nothing.
+fn middle<'a>(particles: impl Iterator<Item = &'a Particle>) -> Option<Vec3> {
+    let mut sum = Vec4::ZERO;
+    for particle in particles {
+        sum += particle.position.extend(1.0) * (particle.amount * particle.radius * particle.radius);
+    }
+    (sum.w > 0.0).then(|| sum.xyz() / sum.w)
 }
 
 /// Lowest place of a light that is put somewhere, metres: above the ground.
 const LOWEST: f32 = 0.2;
 
-/// Puts a light behind the middle of the smoke, as a camera sees it, a bit outside the box; a spot or sun shines at the smoke.
-pub fn put_behind(light: &mut Light, camera: &Camera, bounds: &Bounds) {
-    let centre = bounds.centre();
-    let away = (centre - camera.position).normalize_or(Vec3::NEG_Z);
+/// Puts a light behind a point of the smoke, as an eye sees it, a bit outside all boxes there; a spot or sun shines at it.
+pub fn put_behind(light: &mut Light, eye: Vec3, point: Vec3, boxes: &[Bounds]) {
+    let away = (point - eye).normalize_or(Vec3::NEG_Z);
     if light.kind == LightKind::Directional {
         light.direction = -away;
         return;
     }
-    light.position = beyond(bounds, away);
+    light.position = beyond(boxes, point, away);
     if light.position.y < LOWEST {
         // The way down ends in the ground: it goes on along that.
-        light.position = beyond(bounds, away.with_y(0.0).normalize_or(Vec3::NEG_Z)).with_y(LOWEST);
+        light.position = beyond(boxes, point, away.with_y(0.0).normalize_or(Vec3::NEG_Z)).with_y(LOWEST);
     }
     if light.kind == LightKind::Spot {
-        light.direction = (centre - light.position).normalize_or(-away);
+        light.direction = (point - light.position).normalize_or(-away);
     }
 }
 
-/// A bit outside a box, from its middle in a direction.
-fn beyond(bounds: &Bounds, way: Vec3) -> Vec3 {
-    let half = 0.5 * (bounds.max - bounds.min);
-    let leaves = (0..3).map(|axis| half[axis] / way[axis].abs().max(1.0e-6)).fold(f32::INFINITY, f32::min);
-    bounds.centre() + way * (1.1 * leaves + 0.2)
+/// From a point, a bit past the last of the boxes that lie on a way.
+fn beyond(boxes: &[Bounds], point: Vec3, way: Vec3) -> Vec3 {
+    let left = boxes.iter().filter_map(|bounds| leaves(bounds, point, way)).fold(0.0, f32::max);
+    point + way * (1.1 * left + 0.2)
+}
+
+/// Metres from a point on a way to where a box is left; `None` where it is not met.
+fn leaves(bounds: &Bounds, point: Vec3, way: Vec3) -> Option<f32> {
+    let (mut from, mut to) = (0.0_f32, f32::INFINITY);
+    for axis in 0..3 {
+        // A way along a side is never quite that.
+        let slope = if way[axis].abs() < 1.0e-6 { 1.0e-6 } else { way[axis] };
+        let ends = [bounds.min[axis], bounds.max[axis]].map(|end| (end - point[axis]) / slope);
+        (from, to) = (from.max(ends[0].min(ends[1])), to.min(ends[0].max(ends[1])));
+    }
+    (from <= to).then_some(to)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    const BOX: Bounds = Bounds { min: Vec3::new(-1.0, 0.0, -2.0), max: Vec3::new(1.5, 5.0, 1.0) };
+
     #[test]
-    fn a_light_behind_the_smoke_is_hidden_by_its_middle_and_outside_its_box() {
-        let bounds = Bounds { min: Vec3::new(-1.0, 0.0, -2.0), max: Vec3::new(1.5, 5.0, 1.0) };
-        let camera = Camera { position: Vec3::new(4.0, 1.0, 6.0), ..Camera::default() };
+    fn a_light_behind_a_point_is_hidden_by_it_and_outside_the_box() {
+        let eye = Vec3::new(4.0, 1.0, 6.0);
         for &kind in LightKind::ALL {
-            let mut light = Light { kind, ..Light::default() };
-            put_behind(&mut light, &camera, &bounds);
-            let away = (bounds.centre() - camera.position).normalize();
-            if kind != LightKind::Directional {
-                let seen = light.position - camera.position;
-                assert!(seen.normalize().distance(away) < 1e-5 && seen.length() > 1.0);
-                let is_inside = light.position.cmpge(bounds.min) & light.position.cmple(bounds.max);
-                assert!(!is_inside.all(), "{}", light.position);
-            }
-            if kind != LightKind::Point {
-                assert!(light.direction.distance(-away) < 1e-5);
+            for point in [BOX.centre(), Vec3::new(0.9, 4.5, 0.8), Vec3::new(-0.8, 2.0, -1.0)] {
+                let mut light = Light { kind, ..Light::default() };
+                put_behind(&mut light, eye, point, &[BOX]);
+                let away = (point - eye).normalize();
+                if kind != LightKind::Directional {
+                    let seen = light.position - eye;
+                    assert!(seen.normalize().distance(away) < 1e-5 && seen.length() > point.distance(eye));
+                    let is_inside = light.position.cmpge(BOX.min) & light.position.cmple(BOX.max);
+                    assert!(!is_inside.all(), "{}", light.position);
+                }
+                if kind != LightKind::Point {
+                    assert!(light.direction.distance(-away) < 1e-5);
+                }
             }
         }
+        // Past another one that stands behind, and not past one beside.
+        let mut light = Light::default();
+        let moved = |by: Vec3| Bounds { min: BOX.min + by, max: BOX.max + by };
+        let (eye, point) = (Vec3::new(0.0, 2.0, 9.0), Vec3::new(0.0, 2.0, 0.0));
+        let mut put = |by: Vec3| {
+            put_behind(&mut light, eye, point, &[BOX, moved(by)]);
+            light.position.z
+        };
+        assert!(put(Vec3::NEG_Z * 10.0) < -12.0 && (-3.0..-2.0).contains(&put(Vec3::X * 10.0)));
     }
 
     #[test]
     fn seen_from_above_a_light_behind_the_smoke_stays_above_the_ground() {
-        let bounds = Bounds { min: Vec3::new(-1.0, 0.0, -2.0), max: Vec3::new(1.5, 5.0, 1.0) };
-        for position in [Vec3::new(4.0, 9.0, 6.0), Vec3::new(0.25, 20.0, -0.5), Vec3::new(0.3, 6.0, 0.0)] {
-            let camera = Camera { position, ..Camera::default() };
+        for eye in [Vec3::new(4.0, 9.0, 6.0), Vec3::new(0.25, 20.0, -0.5), Vec3::new(0.3, 6.0, 0.0)] {
             let mut light = Light { kind: LightKind::Spot, ..Light::default() };
-            put_behind(&mut light, &camera, &bounds);
+            put_behind(&mut light, eye, BOX.centre(), &[BOX]);
             assert!(light.position.y >= LOWEST, "{}", light.position);
             // Outside the box, at the far side of it, and shining at its middle.
-            assert!(light.position.x < bounds.min.x || light.position.z < bounds.min.z, "{}", light.position);
-            let to_middle = (bounds.centre() - light.position).normalize();
+            assert!(light.position.x < BOX.min.x || light.position.z < BOX.min.z, "{}", light.position);
+            let to_middle = (BOX.centre() - light.position).normalize();
             assert!(light.direction.distance(to_middle) < 1e-5, "{}", light.direction);
         }
+    }
+
+    #[test]
+    fn what_is_seen_is_what_is_in_the_picture_and_what_is_met_what_a_line_goes_through() {
+        let at = |x, y, z| Particle { position: Vec3::new(x, y, z), radius: 0.5, ..Particle::default() };
+        let near = [at(0.5, 2.0, 0.0), at(-0.5, 2.0, 0.0)];
+        // Over the upper edge, and behind the eye.
+        let far = [at(0.0, 40.0, 0.0), at(0.0, 2.0, 20.0)];
+        let smoke =
+            |systems: [&[Particle]; 2]| Smoke { systems: systems.map(<[_]>::to_vec).into(), ..Smoke::default() };
+        let (camera, size) = (Camera::default(), UVec2::new(160, 90));
+        assert!(smoke([&near, &far]).seen(&camera, size).distance(Vec3::new(0.0, 2.0, 0.0)) < 1e-4);
+        let none = smoke([&far, &[]]);
+        assert_eq!(none.seen(&camera, size), none.bounds().centre());
+        let eye = Vec3::new(0.5, 2.0, 8.0);
+        let behind = [at(0.6, 2.0, -4.0)];
+        let met = smoke([&near, &behind]).met(eye, Vec3::NEG_Z).unwrap();
+        assert!(met.distance(Vec3::new(0.5, 2.0, -2.0)) < 1e-4, "{met}");
+        assert_eq!(smoke([&near, &far]).met(eye, Vec3::X), None);
     }
 }

@@ -192,12 +192,14 @@ fn time_is_played_and_stepped() {
     assert!((brightness(&picture(&mut harness), part) - brightness(&before, part)).abs() < 0.01);
 }
 
-/// Writes every tab in both sizes and themes to the folder that HAZE_LOOK names, to be looked at.
+/// Writes every tab in several sizes and both themes to the folder that HAZE_LOOK names, to be looked at.
 #[test]
 #[ignore = "for who wants to look"]
 fn pictures_of_every_tab() {
     let Some(folder) = std::env::var_os("HAZE_LOOK").map(std::path::PathBuf::from) else { return };
-    for (size, theme) in [((1280.0, 800.0), Theme::Dark), ((2560.0, 1440.0), Theme::Light)] {
+    for (size, theme) in
+        [((1280.0, 800.0), Theme::Dark), ((2560.0, 1440.0), Theme::Light), ((640.0, 400.0), Theme::Dark)]
+    {
         let mut harness = window("column", Vec2::from(size), theme);
         for (_, name, _) in super::panel::settings::TABS {
             harness.get_by_label(name).click();

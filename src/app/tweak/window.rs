@@ -15,10 +15,11 @@ use super::exporting::{Exporting, Product};
 use super::filing::Filing;
 use super::hints::Place;
 use super::inspect::lens::Lens;
-use super::inspect::{lit, panel as inspector};
+use super::inspect::panel as inspector;
 use super::keeping::{Keeping, Layout};
 use super::messages::short;
 use super::panel;
+use super::platform::clock::Instant;
 use super::preset_thumbnails::PresetThumbnails;
 use super::reload::{Reload, ShaderFolder};
 use super::session::Session;
@@ -130,7 +131,8 @@ impl Window {
             if let Some(action) = panel::file::menu(ui, &mut self.session) {
                 self.act(action, ui.ctx());
             }
-            ui.strong(short(&self.session.document.preset.name, 40));
+            ui.strong(short(&self.session.document.title(), 40))
+                .on_hover_text(self.session.document.path().to_string_lossy());
             if self.session.document.is_dirty() {
                 ui.label("•").on_hover_text("Changed since it was saved");
             }
@@ -298,6 +300,10 @@ fn theme(ui: &mut Ui) {
 
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+        let acts = ui.input(|input| input.pointer.any_pressed() || !input.keys_down.is_empty());
+        if let Some(left) = self.session.messages.advance(Instant::now(), acts) {
+            ui.ctx().request_repaint_after(left);
+        }
         self.keys(ui);
         self.reload.advance(&mut self.session, &self.easel);
         let is_touched = ui.input(|input| input.pointer.any_down() || input.smooth_scroll_delta() != egui::Vec2::ZERO);
@@ -312,12 +318,15 @@ impl eframe::App for Window {
         if self.session.show.has_strip {
             let aspect = self.session.show.aspect;
             let height = self.layout.strip.unwrap_or((0.12 * ui.available_height()).max(80.0));
-            let panel = egui::Panel::bottom("strip").resizable(true).default_size(height).size_range(56.0..=320.0);
+            let most = (0.25 * ui.available_height()).clamp(56.0, 320.0);
+            let panel = egui::Panel::bottom("strip").resizable(true).default_size(height).size_range(56.0..=most);
             let shown = panel.show(ui, |ui| strip(ui, &mut self.session, &self.easel, aspect));
             self.layout.strip = Some(shown.response.rect.height());
         }
-        let width = self.layout.settings.unwrap_or((0.18 * ui.available_width()).clamp(330.0, 440.0));
-        let settings = egui::Panel::right("settings").default_size(width).size_range(240.0..=560.0);
+        let width = self.layout.settings.unwrap_or((0.18 * ui.available_width()).clamp(360.0, 440.0));
+        // The picture is the largest thing, in a small window too.
+        let most = (0.45 * ui.available_width()).clamp(240.0, 560.0);
+        let settings = egui::Panel::right("settings").default_size(width).size_range(240.0..=most);
         let shown = settings.show(ui, |ui| panel::settings::panel(ui, &mut self.session));
         self.layout.settings = Some(shown.response.rect.width());
         self.session.hints.see(Place::Settings, shown.response.rect);
@@ -331,7 +340,6 @@ impl eframe::App for Window {
             let rect = ui.max_rect();
             self.session.hints.see(Place::Picture, rect);
             self.viewport.show(ui, &mut self.session, &self.easel);
-            lit::paint(ui, rect, &self.session.inspect, self.session.show.system);
             inspector::panel(ui, rect, &self.session);
         });
         if let Some(lens) = &mut self.lens {
@@ -355,8 +363,9 @@ impl eframe::App for Window {
             keeping.advance(&mut self.session, ui.ctx());
         }
         self.layout.see(ui.ctx(), &self.session);
-        let Session { performance, show, document, .. } = &mut self.session;
-        let is_seen = show.tab == Tab::Performance;
+        self.keeping.iter_mut().for_each(|keeping| keeping.remember(&self.layout, &self.filing, ui.ctx()));
+        let Session { performance, show, document, compare, .. } = &mut self.session;
+        let is_seen = show.tab == Tab::Performance || compare.against.is_some();
         if performance.follow(&self.easel, is_seen, frame.info().cpu_usage, &document.preset) {
             ui.ctx().request_repaint();
         }
@@ -374,6 +383,7 @@ impl eframe::App for Window {
     }
 
     fn on_exit(&mut self) {
+        self.filing.finish();
         if let Some(keeping) = self.keeping.take() {
             keeping.finish(&self.layout);
         }

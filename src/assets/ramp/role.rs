@@ -25,4 +25,10 @@ impl Role {
         let first = name.split(['_', '.', '-']).next().unwrap_or_default();
         Self::ALL.iter().copied().find(|role| role.name() == first)
     }
+
+    /// The role of the ramp that a field of a material names: `soft_scatter_ramp` wants one for scatter.
+    pub fn of_field(field: &str) -> Option<Self> {
+        let field = field.strip_suffix("_ramp")?;
+        Self::ALL.iter().copied().find(|role| field.ends_with(role.name()))
+    }
 }

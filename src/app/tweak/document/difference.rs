@@ -5,6 +5,8 @@ use std::collections::HashMap;
 use haze::preset::Preset;
 use haze::settings::{Value, path_of, values, walk};
 
+use crate::app::tweak::lights::name_of;
+
 /// The paths of the fields that differ, `systems[0].settings.boost`. Where lists are not as long as each other the list is one
 /// field, `lights`.
 pub fn changed_fields(before: &Preset, after: &Preset) -> Vec<String> {
@@ -47,16 +49,17 @@ pub fn copy_field(from: &Preset, to: &mut Preset, path: &str) {
 /// What changes when the camera is moved.
 const MOVES: [&str; 2] = ["camera.position", "camera.target"];
 
-/// A name for a step between two presets: "boost of smoke", "colour of light 2", "camera", "3 fields of smoke", "light added".
+/// A name for a step between two presets: "boost of smoke", "colour of sun 2", "camera", "3 fields of smoke", "light added".
 pub fn step_name(before: &Preset, after: &Preset) -> String {
     let changed = changed_fields(before, after);
     let Some(first) = changed.first() else { return "change".into() };
     let owner = owner_of(first);
-    let of = match owner.map(|(list, index)| (list, after.systems.get(index), index + 1)) {
-        Some(("systems", Some(system), _)) if !system.name.is_empty() => format!(" of {}", system.name),
-        Some((list, _, number)) => format!(" of {} {number}", singular(list)),
-        None => String::new(),
-    };
+    let of = owner.map(|(list, index)| match (list, after.systems.get(index), after.lights.get(index)) {
+        ("systems", Some(system), _) if !system.name.is_empty() => format!(" of {}", system.name),
+        ("lights", _, Some(light)) => format!(" of {}", name_of(index, light)),
+        _ => format!(" of {} {}", singular(list), index + 1),
+    });
+    let of = of.unwrap_or_default();
     let length = |preset| lists(preset).into_iter().find(|(list, _)| list == first).map(|(_, length)| length);
     match changed.as_slice() {
         [list] if length(before) < length(after) => format!("{} added", singular(list)),
@@ -111,7 +114,7 @@ mod tests {
         let expect = |said: (String, String), fields: &str, name: &str| assert_eq!(said, (fields.into(), name.into()));
         expect(said(|_| {}), "", "change");
         expect(said(|preset| preset.systems[0].settings.boost = 2.0), "systems[0].settings.boost", "boost of smoke");
-        expect(said(|preset| preset.lights[1].colour.x = 0.0), "lights[1].colour", "colour of light 2");
+        expect(said(|preset| preset.lights[1].colour.x = 0.0), "lights[1].colour", "colour of sun 2");
         expect(said(|preset| preset.camera.exposure = 2.0), "camera.exposure", "exposure");
         expect(said(|preset| preset.camera.target.x += 1.0), "camera.target", "camera");
         expect(said(|preset| preset.lights.push(Light::default())), "lights", "light added");
@@ -120,7 +123,7 @@ mod tests {
         expect(
             said(|preset| (preset.lights[1].colour.x, preset.lights[1].intensity) = (0.0, 0.0)),
             "lights[1].colour lights[1].intensity",
-            "2 fields of light 2",
+            "2 fields of sun 2",
         );
         expect(said(|preset| (preset.time, preset.camera.fov) = (0.0, 20.0)), "time camera.fov", "2 fields");
         // A NaN is a change once, not for ever.

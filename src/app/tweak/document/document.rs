@@ -128,6 +128,11 @@ impl Document {
         self.begin_saving_as(&self.path.clone())
     }
 
+    /// What it is called: as its file, or as the built-in preset.
+    pub fn title(&self) -> String {
+        self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
     /// Begins to write another file, which is the document's once it is there.
     pub fn begin_saving_as(&mut self, path: &Path) -> Result<Saving, Error> {
         if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {

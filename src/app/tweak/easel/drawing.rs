@@ -52,6 +52,9 @@ pub struct Figures {
     pub memory: StageMemory,
     /// What the strip and a second picture hold, bytes.
     pub beside: u64,
+    /// Times that the second picture was drawn, and what the smoke of the two took, milliseconds, where that is known.
+    pub seconds: u64,
+    pub sides: [Option<f32>; 2],
 }
 
 /// All that is drawn, and what it takes.
@@ -82,10 +85,12 @@ pub struct Drawing {
     is_compared: bool,
     /// What multiplies the light of the two.
     exposures: Vec2,
-    /// Times that the picture was drawn.
+    /// Times that the picture was drawn, and the second.
     pictures: u64,
-    /// There while the picture is measured.
+    seconds: u64,
+    /// There while pictures are measured: the first, and the second while it is drawn here.
     timing: Option<Timing>,
+    timing_of_second: Option<Timing>,
     /// Pixels a texel of the accumulation targets that are shown, in place of the preset's.
     pub scale: Option<u32>,
 }
@@ -116,7 +121,9 @@ impl Drawing {
             is_compared: false,
             exposures: Vec2::ZERO,
             pictures: 0,
+            seconds: 0,
             timing: None,
+            timing_of_second: None,
             scale: None,
         })
     }
@@ -150,6 +157,8 @@ impl Drawing {
         self.timing = is_on.then(|| self.context.timing()).flatten();
         // Of the same device.
         let _ = self.main.stage.set_timing(self.timing.as_ref());
+        // Made again, and measured.
+        self.other = None;
         if is_on {
             self.main.shot = None;
         }
@@ -157,9 +166,13 @@ impl Drawing {
 
     pub fn figures(&self, is_timed: bool) -> Figures {
         let beside = [Some(&self.strip), self.other.as_ref()].into_iter().flatten();
+        let times = self.timing.as_ref().and_then(Timing::latest);
+        let of_second = self.timing_of_second.as_ref().and_then(Timing::latest);
         Figures {
+            seconds: self.seconds,
+            sides: [&times, &of_second].map(|times| times.as_ref().map(FrameTimes::smoke_ms)),
             pictures: self.pictures,
-            times: self.timing.as_ref().and_then(Timing::latest),
+            times,
             is_timed,
             counts: self.main.stage.renderer().counts(),
             overdraw: self.main.stage.renderer().overdraw(),
@@ -265,13 +278,22 @@ impl Drawing {
                 if self.other.is_none() {
                     // As the others, which could be made.
                     self.other = Canvas::new(&self.context).ok();
+                    self.timing_of_second = self.timing.as_ref().and_then(|_| self.context.timing());
+                    let timing = self.timing_of_second.as_ref();
+                    // Of the same device.
+                    self.other.iter_mut().for_each(|canvas| drop(canvas.stage.set_timing(timing)));
                 }
-                if let Some(canvas) = &mut self.other {
-                    self.is_compared &= canvas.shows(shot);
+                if let Some(canvas) = self.other.as_mut().filter(|canvas| !canvas.shows(shot)) {
                     is_new = canvas.record(target, shot, &[shot.shade_tree]);
+                    self.timing_of_second.iter().for_each(|timing| timing.resolve(target.encoder));
+                    self.seconds += 1;
+                    self.is_compared = false;
                 }
             }
-            None => is_new = self.other.take().is_some(),
+            None => {
+                is_new = self.other.take().is_some();
+                self.timing_of_second = None;
+            }
         }
         let is_hung = Made::hang(&mut self.made, target, made);
         self.is_compared &= !is_hung;

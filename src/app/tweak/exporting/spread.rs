@@ -6,6 +6,7 @@ use glam::Vec3;
 use haze::preset::Preset;
 use haze::settings::{Choice, FieldVisitor, Fields, path_of};
 
+use crate::app::tweak::made::Made;
 use crate::app::tweak::reach::{is_wide, reach};
 
 /// A name on the way to a field, and a place where it is in a list.
@@ -14,6 +15,10 @@ type Step = (&'static str, Option<usize>);
 /// Five values of a number: all that its slider reaches, or from a quarter to four times what it is where that is too wide; all
 /// choices; on and off. Nothing of other fields. As texts.
 pub fn spread(preset: &Preset, path: &str) -> Vec<String> {
+    if let Some((_, made)) = Made::find(path) {
+        let (low, high) = made.usual;
+        return five(low, low, high, false).map(text).into();
+    }
     let mut spread = Spread { wanted: path, path: Vec::new(), texts: Vec::new() };
     preset.clone().visit(&mut spread);
     spread.texts

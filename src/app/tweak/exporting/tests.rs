@@ -9,6 +9,7 @@ use egui_kittest::kittest::Queryable as _;
 use tempfile::TempDir;
 
 use super::*;
+use crate::app::tweak::made::THICKNESS;
 use crate::app::tweak::testing;
 use crate::app::tweak::window::Window;
 
@@ -148,6 +149,13 @@ fn a_row_makes_the_sheet_of_its_values_that_the_export_makes() {
     bench.until(|window| window.exporting.sheet.is_some());
     let (sheet, _) = bench.window.state_mut().exporting.sheet.take().unwrap();
     assert!(sheet == made, "another sheet");
+    // Rows of several settings, too.
+    testing::row_menu(&mut bench.window, "thickness");
+    bench.window.get_by_label("Five values on a sheet").click();
+    bench.window.run_steps(2);
+    bench.until(|window| window.exporting.sheet.is_some());
+    let (_, path) = bench.window.state_mut().exporting.sheet.take().unwrap();
+    assert!(path.to_string_lossy().contains("thickness"), "{}", path.display());
 }
 
 #[test]
@@ -165,4 +173,14 @@ fn a_field_varies_over_its_slider_or_round_its_value_and_stays_valid() {
     assert!(labels("systems[0].settings.path").contains(&"forward".to_owned()));
     assert!(labels("systems[0].settings.accumulate.scale").iter().all(|label| label.parse::<u32>().unwrap() <= 16));
     assert!(labels("systems[0].name").is_empty());
+    let thicker = variations(&shot, "systems[0].thickness").into_iter().map(|(label, shot)| {
+        let of = &shot.preset.systems[0];
+        let thickness = (THICKNESS.get)(of);
+        assert!((thickness / label.parse::<f32>().unwrap() - 1.0).abs() < 1e-2, "{label} {thickness}");
+        thickness
+    });
+    let thicker: Vec<_> = thicker.collect();
+    assert!(thicker.len() == 5 && thicker.is_sorted(), "{thicker:?}");
+    assert_eq!((labels("systems[0].wind").len(), labels("systems[0].softness").len()), (5, 5));
+    assert!(labels("systems[1].wind").is_empty());
 }

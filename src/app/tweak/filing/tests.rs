@@ -120,9 +120,14 @@ fn a_change_is_saved_by_menu_and_key_and_under_another_name() {
     bench.click("File");
     bench.window.get_by_label_contains("Save as").click();
     bench.window.run_steps(3);
+    assert!(bench.window.query_by_label_contains("no dialogs for files: type the path").is_some());
+    let folder = format!("in {}", bench.folder.path().display());
+    assert!(bench.window.query_by_label(&folder).is_some(), "{folder}");
     let other = bench.path("other.json");
     bench.type_path(&other);
     bench.until(|bench| bench.session().document.path().ends_with("other.json"));
+    bench.window.run_steps(2);
+    assert!(bench.window.query_by_label("other").is_some() && bench.window.query_by_label("my").is_none());
     assert_eq!((exposure(&other), exposure(&bench.path("my.json"))), (50, 150));
     assert_eq!(bench.session().document.path(), other);
     // A name that is no preset's.

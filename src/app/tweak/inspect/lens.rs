@@ -83,7 +83,10 @@ impl Lens {
         while let Some(answer) = self.worker.poll() {
             self.is_asking &= matches!(answer, Some(Ok(Answer::Seen(_) | Answer::Survey(_))));
             match answer {
-                Some(Ok(answer)) => self.take(answer, &mut session.inspect, has_ramps),
+                Some(Ok(answer)) => {
+                    session.messages.withdraw("inspector");
+                    self.take(answer, &mut session.inspect, has_ramps);
+                }
                 Some(Err(error)) => session.messages.complain("inspector", error),
                 None => {}
             }

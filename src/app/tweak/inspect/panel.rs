@@ -59,11 +59,14 @@ fn numbers(ui: &mut Ui, told: &Told, session: &Session) {
             ui.weak(format!("second: {}", against.name()));
         }
     });
+    let preset = session.compare.against.as_ref().filter(|_| *side == Side::Second);
+    let preset = preset.and_then(|against| against.settings(session.saved())).unwrap_or(&session.document.preset);
+    let lights = session.show.lights.shown_names(&preset.lights);
     // The nearest first.
     for system in probe.systems.iter().rev() {
         ui.separator();
         ui.label(RichText::new(names.get(system.system).map_or("smoke", String::as_str)).strong());
-        of_system(ui, system);
+        of_system(ui, system, &lights);
     }
     if probe.systems.is_empty() {
         ui.weak("No smoke here");
@@ -77,7 +80,7 @@ fn numbers(ui: &mut Ui, told: &Told, session: &Session) {
     }
 }
 
-fn of_system(ui: &mut Ui, probe: &SystemProbe) {
+fn of_system(ui: &mut Ui, probe: &SystemProbe, lights: &[String]) {
     ui.horizontal(|ui| {
         ball(ui, probe.normal);
         ui.vertical(|ui| {
@@ -91,7 +94,7 @@ fn of_system(ui: &mut Ui, probe: &SystemProbe) {
             ui.weak(title);
         }
         ui.end_row();
-        probe.lights.iter().for_each(|light| of_light(ui, light));
+        probe.lights.iter().for_each(|light| of_light(ui, light, lights));
     });
     egui::Grid::new(("sums", probe.system)).num_columns(3).spacing([10.0, 2.0]).show(ui, |ui| {
         let scatter = probe.soft_scatter_weight.map_or("by ramp".into(), |weight| format!("weight {weight:.2}"));
@@ -109,8 +112,8 @@ fn of_system(ui: &mut Ui, probe: &SystemProbe) {
     });
 }
 
-fn of_light(ui: &mut Ui, light: &LightProbe) {
-    ui.label(format!("Light {}", light.light + 1));
+fn of_light(ui: &mut Ui, light: &LightProbe, names: &[String]) {
+    ui.label(names.get(light.light).map_or("light", String::as_str));
     ui.label(format!("{:.2}", light.cosine));
     ui.label(format!("{:.2}", light.coordinate));
     ui.label(format!("{:.3}", light.attenuation));

@@ -39,7 +39,7 @@ fn the_pixel_under_the_pointer_is_told_and_a_click_keeps_it() {
     let place = smoke(&harness);
     harness.hover_at(place);
     wait_for(&mut harness, |harness| shows(harness, "coverage"));
-    assert!(shows(&harness, "Light 1") && shows(&harness, "soft scatter") && shows(&harness, "as shown, sRGB"));
+    assert!(shows(&harness, "lamp 1 (point)") && shows(&harness, "soft scatter") && shows(&harness, "as shown, sRGB"));
     assert!(shows(&harness, "click keeps it"));
     harness.drag_at(place);
     harness.step();
@@ -75,7 +75,7 @@ fn of_two_pictures_the_one_under_the_pointer_is_told() {
 fn pointing_at_a_ramp_lights_the_smoke_that_looks_there() {
     let mut harness = window("column", SIZE, Theme::Dark);
     harness.get_by_label("Ramps").click();
-    wait_for(&mut harness, |harness| shows(harness, "Light 1"));
+    wait_for(&mut harness, |harness| shows(harness, "lamp 1 (point)"));
     let viewport = harness.get_by_label("viewport").rect();
     let before = brightness(&picture(&mut harness), viewport);
     // The middle of the diffuse ramp: most of what is lit looks there.
@@ -90,11 +90,37 @@ fn pointing_at_a_ramp_lights_the_smoke_that_looks_there() {
 }
 
 #[test]
+fn what_is_lit_lies_under_the_tools_that_stand_on_the_picture() {
+    let mut harness = window("column", SIZE, Theme::Dark);
+    // Smoke all over the picture.
+    let camera = &mut harness.state_mut().session.document.preset.camera;
+    camera.position = camera.target.lerp(camera.position, 0.2);
+    harness.get_by_label("Ramps").click();
+    wait_for(&mut harness, |harness| shows(harness, "lamp 1 (point)"));
+    let ramp = harness.get_by_label("diffuse ramp").rect();
+    let (viewport, tool) = (harness.get_by_label("viewport").rect(), harness.get_by_label("Lit plane").rect());
+    let beside = egui::Rect::from_min_size(tool.left_bottom() + Vec2::new(0.0, 12.0), tool.size());
+    let mut parts = |share: f32| {
+        harness.hover_at(egui::pos2(ramp.left() + share * ramp.width(), ramp.center().y));
+        harness.run_steps(3);
+        let picture = picture(&mut harness);
+        [brightness(&picture, tool), brightness(&picture, beside), brightness(&picture, viewport)]
+    };
+    let all: Vec<_> = (0..12).map(|step| parts(0.04 + 0.08 * step as f32)).collect();
+    let spread = |part: usize| {
+        let values = || all.iter().map(|parts| parts[part]);
+        values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min)
+    };
+    assert!(spread(1) > 1.0, "nothing is lit beside the tools: {all:?}");
+    assert!(spread(0) < 0.01, "{all:?}");
+}
+
+#[test]
 fn a_picture_that_stands_still_is_not_drawn_again() {
     let mut harness = window("column", SIZE, Theme::Dark);
     harness.key_press(Key::I);
     harness.get_by_label("Ramps").click();
-    wait_for(&mut harness, |harness| shows(harness, "Light 1"));
+    wait_for(&mut harness, |harness| shows(harness, "lamp 1 (point)"));
     // No more than the copy that is under way, what is read of it, and the end of its interval.
     for _ in 0..5 {
         picture(&mut harness);

@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use eframe::egui::{self, Ui};
 use glam::Vec3;
 use haze::preset::Tooltips;
-use haze::settings::{Choice, FieldVisitor, Fields, PictureRole, Value, path_of};
+use haze::settings::{Choice, FieldVisitor, Fields, Headed, PictureRole, Value, path_of};
 
 use super::gallery::gallery;
 use super::row::{self, Asked, Row, Usual, spaced};
@@ -45,22 +45,53 @@ impl Desk<'_> {
 }
 
 /// What a sheet is called of a number's values, and of all there are.
-const FIVE: Option<&str> = Some("Five values on a sheet");
+pub const FIVE: Option<&str> = Some("Five values on a sheet");
 const ALL: Option<&str> = Some("All values on a sheet");
 
-/// Draws the fields of a struct that `path` leads to; groups fold.
+/// Draws the fields of a struct that `path` leads to; groups fold, and what is under a heading. The first heading is open.
 pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fields) {
-    fields.visit(&mut Rows { ui, desk, path: path.to_vec(), only: None });
+    let table = fields.headings();
+    if table.is_empty() {
+        fields.visit(&mut Rows { ui, desk, path: path.to_vec(), under: None, only: None });
+    }
+    for part in table.chunk_by(|_, (_, heading)| heading.is_none()) {
+        let mut rows = |ui: &mut Ui, desk: &mut Desk<'_>| {
+            fields.visit(&mut Rows { ui, desk, path: path.to_vec(), under: Some(part), only: None });
+        };
+        let Some(&(first, Some(heading))) = part.first() else {
+            rows(ui, desk);
+            continue;
+        };
+        let holds = |field: &str| {
+            let below = field.strip_prefix(&path_of(path)).and_then(|rest| rest.strip_prefix('.'));
+            part.iter().any(|(name, _)| below.is_some_and(|below| is_at(below, name)))
+        };
+        let header = header(desk, heading, &holds).id_salt((path, heading)).default_open(first == table[0].0);
+        header.show_unindented(ui, |ui| rows(ui, desk));
+    }
 }
 
-/// A field by a name of its own: that, its path, and how far its slider goes.
-pub type Named = (&'static str, &'static str, Usual);
+/// What folds away fields: open while one is sought that it holds, with the marks of those that it does.
+pub fn header(desk: &Desk<'_>, title: &str, holds: &dyn Fn(&str) -> bool) -> egui::CollapsingHeader {
+    let mark = if desk.changed.iter().any(|changed| holds(changed)) { " •" } else { "" };
+    let is_apart = desk.second.is_some_and(|second| second.keys().any(|apart| holds(apart)));
+    let apart = if is_apart { " ≠" } else { "" };
+    egui::CollapsingHeader::new(format!("{title}{mark}{apart}")).open(desk.sought.is_some_and(holds).then_some(true))
+}
+
+/// Whether a field is at a path, or below it.
+pub fn is_at(field: &str, path: &str) -> bool {
+    field.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+}
+
+/// One field: a title, where its own name would not say enough, its path, and how far its slider goes.
+pub type Named = (Option<&'static str>, &'static str, Usual);
 
 /// Draws some fields of a struct, in the order of `names`; paths are from the struct.
 pub fn show_named(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fields, names: &[Named]) {
     for &(title, wanted, usual) in names {
         let only = Some(Only { title, wanted, usual, depth: path.len() });
-        fields.visit(&mut Rows { ui, desk, path: path.to_vec(), only });
+        fields.visit(&mut Rows { ui, desk, path: path.to_vec(), under: None, only });
     }
 }
 
@@ -68,6 +99,8 @@ struct Rows<'a, 'd, 'u> {
     ui: &'u mut Ui,
     desk: &'a mut Desk<'d>,
     path: Vec<Step>,
+    /// Those under a heading; all if `None`.
+    under: Option<&'static [Headed]>,
     /// All fields if `None`.
     only: Option<Only<'a>>,
 }
@@ -75,7 +108,7 @@ struct Rows<'a, 'd, 'u> {
 /// One field among many.
 #[derive(Clone, Copy)]
 struct Only<'a> {
-    title: &'a str,
+    title: Option<&'a str>,
     /// Its path from a struct that so many steps lead to.
     wanted: &'a str,
     usual: Usual,
@@ -89,6 +122,9 @@ impl Rows<'_, '_, '_> {
         (unit, sheet): (&str, Option<&'static str>),
         control: impl FnOnce(&mut Ui, &egui::Response, &mut Option<String>, &str, &Tooltips),
     ) {
+        if !self.is_here(name) {
+            return;
+        }
         self.path.push((name, None));
         let path = path_of(&self.path);
         let plain = self.path.iter().map(|step| step.0).collect::<Vec<_>>().join(".");
@@ -100,7 +136,7 @@ impl Rows<'_, '_, '_> {
         let desk = &mut *self.desk;
         let second = desk.second(&path, unit);
         let row = Row {
-            name: self.only.map_or(name, |only| only.title),
+            name: self.only.and_then(|only| only.title).unwrap_or(name),
             tooltip: desk.tooltips.field(&plain).unwrap_or_default(),
             is_changed: desk.changed.contains(&path),
             second: second.as_ref().map(Option::as_deref),
@@ -125,21 +161,23 @@ impl Rows<'_, '_, '_> {
         }
     }
 
+    fn is_here(&self, name: &str) -> bool {
+        self.under.is_none_or(|part| part.iter().any(|(field, _)| *field == name))
+    }
+
     fn nested(&mut self, step: Step, title: &str, fields: &mut dyn Fields) {
-        self.path.push(step);
-        if let Some(only) = self.only {
-            fields.visit(&mut Rows { ui: self.ui, desk: self.desk, path: self.path.clone(), only: Some(only) });
-            self.path.pop();
+        if !self.is_here(step.0) {
             return;
         }
-        let path = path_of(&self.path);
-        let mark = if self.desk.changed.iter().any(|changed| changed.starts_with(&path)) { " •" } else { "" };
-        let is_apart = self.desk.second.is_some_and(|second| second.keys().any(|apart| apart.starts_with(&path)));
-        let apart = if is_apart { " ≠" } else { "" };
-        let header = egui::CollapsingHeader::new(format!("{}{mark}{apart}", spaced(title))).id_salt(&path);
-        let is_sought = self.desk.sought.is_some_and(|sought| sought.starts_with(&path));
-        let header = if is_sought { header.open(Some(true)) } else { header };
-        header.show(self.ui, |ui| show(ui, self.desk, &self.path, fields));
+        self.path.push(step);
+        if self.only.is_some() {
+            let path = self.path.clone();
+            fields.visit(&mut Rows { ui: self.ui, desk: self.desk, path, under: None, only: self.only });
+        } else {
+            let path = path_of(&self.path);
+            let header = header(self.desk, &spaced(title), &|field| is_at(field, &path)).id_salt(&path);
+            header.show(self.ui, |ui| show(ui, self.desk, &self.path, fields));
+        }
         self.path.pop();
     }
 }

@@ -89,11 +89,15 @@ fn type_path(ui: &Ui, filing: &mut Filing, session: &mut Session) {
             Purpose::SaveAs => ("Save as", "Save"),
         };
         ui.heading(title);
+        ui.weak("This system has no dialogs for files: type the path.");
         let edit =
             egui::TextEdit::singleline(&mut typed.text).hint_text("Path of a JSON file").desired_width(f32::INFINITY);
         let edit = ui.add(edit);
         edit.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "path"));
         edit.request_focus();
+        if typed.purpose == Purpose::SaveAs {
+            ui.weak(format!("in {}", short(&folder_of(&typed.text), 80)));
+        }
         // What is there is not replaced by a key that was meant for something else.
         let is_entered = button != "Replace" && ui.input(|input| input.key_pressed(Key::Enter));
         is_done = ui.add_enabled(!typed.text.is_empty(), egui::Button::new(button)).clicked() || is_entered;
@@ -105,4 +109,10 @@ fn type_path(ui: &Ui, filing: &mut Filing, session: &mut Session) {
     } else if response.should_close() {
         filing.finish_typing(None, session);
     }
+}
+
+/// The folder that a file of this path would be in.
+fn folder_of(path: &str) -> String {
+    let path = std::path::absolute(path).unwrap_or_default();
+    path.parent().unwrap_or(&path).display().to_string()
 }

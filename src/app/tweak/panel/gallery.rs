@@ -1,6 +1,7 @@
 //! A picture, chosen by what it looks like.
 
 use eframe::egui::{self, Rect, Response, Sense, Stroke, Ui, Vec2};
+use haze::ramp::Role;
 use haze::settings::PictureRole;
 
 use crate::app::tweak::picture_thumbnails::{PictureThumbnails, SIZE};
@@ -11,16 +12,17 @@ const NAME: f32 = 16.0;
 /// Thumbnails in a row.
 const COLUMNS: f32 = 3.0;
 
-/// A field that names a picture: opened, it shows those that there are.
+/// A field that names a picture: opened, it shows those that there are; ramps of the field's role first, and others after them.
+/// `path` is the field's.
 pub fn gallery(
     ui: &mut Ui,
     thumbnails: &PictureThumbnails,
     role: PictureRole,
     value: &mut String,
-    salt: &str,
+    path: &str,
 ) -> Response {
     let shown = if value.is_empty() { "none" } else { value.as_str() };
-    let combo = egui::ComboBox::from_id_salt(salt)
+    let combo = egui::ComboBox::from_id_salt(path)
         .selected_text(shown)
         .width(ui.available_width() - 8.0)
         .height(4.5 * (PICTURE.y + NAME + 8.0));
@@ -28,14 +30,27 @@ pub fn gallery(
         .show_ui(ui, |ui| {
             let gap = ui.spacing().item_spacing.x;
             ui.set_width(COLUMNS * (PICTURE.x + 8.0) + (COLUMNS + 1.0) * gap);
-            ui.horizontal_wrapped(|ui| {
-                for name in thumbnails.names(ui.ctx(), role) {
-                    if cell(ui, thumbnails, role, &name, *value == name).clicked() {
-                        *value = name;
-                        ui.close();
+            let mut cells = |ui: &mut Ui, names: Vec<String>| {
+                ui.horizontal_wrapped(|ui| {
+                    for name in names {
+                        if cell(ui, thumbnails, role, &name, *value == name).clicked() {
+                            *value = name;
+                            ui.close();
+                        }
                     }
-                }
-            });
+                });
+            };
+            let wanted = path.rsplit('.').next().and_then(Role::of_field);
+            // A file that tells no role may be for any.
+            let fits =
+                |name: &String| Role::of_name(name).is_none_or(|role| wanted.is_none_or(|wanted| role == wanted));
+            let (fitting, others): (Vec<_>, Vec<_>) = thumbnails.names(ui.ctx(), role).into_iter().partition(fits);
+            cells(ui, fitting);
+            if !others.is_empty() {
+                ui.separator();
+                ui.weak("others");
+                cells(ui, others);
+            }
             if role == PictureRole::Detail && ui.button("none").clicked() {
                 value.clear();
             }
@@ -71,7 +86,7 @@ fn cell(ui: &mut Ui, thumbnails: &PictureThumbnails, role: PictureRole, name: &s
 
 #[cfg(test)]
 mod tests {
-    use eframe::egui::{Key, Role, Theme, Vec2};
+    use eframe::egui::{Key, Rect, Role, Theme, Vec2};
     use egui_kittest::Harness;
     use egui_kittest::kittest::{NodeT as _, Queryable as _};
     use image::imageops;
@@ -89,9 +104,10 @@ mod tests {
         let mut harness = window(path.to_str().unwrap(), Vec2::new(1000.0, 900.0), Theme::Dark);
         harness.get_by_label("Smoke").click();
         harness.run_steps(3);
-        // Out of the way.
-        harness.get_by_label("Emitter").click();
-        harness.run_steps(30);
+        for fold in ["Emitter", "Sprite and ramps", "ramps and noise"] {
+            harness.get_by_label(fold).click();
+            harness.run_steps(30);
+        }
         harness
     }
 
@@ -132,6 +148,36 @@ mod tests {
             part.pixels().map(|pixel| f64::from(pixel.0[0]) - f64::from(pixel.0[1])).sum::<f64>() / 200_000.0
         };
         assert!(redness(&chosen) > redness(&before) + 1.0, "{} {}", redness(&before), redness(&chosen));
+    }
+
+    #[test]
+    fn ramps_of_the_fields_role_come_first_and_the_others_after_a_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut harness = opened(folder.path());
+        open(&mut harness);
+        let place = |name: &str| -> Rect { harness.get_by_label(name).rect() };
+        let line = place("others").center().y;
+        for name in ["diffuse_ink", "red.png"] {
+            assert!(place(name).bottom() < line, "{name}");
+        }
+        for name in ["scatter_mist", "specular_halo", "coverage_cut", "age_smoke"] {
+            assert!(place(name).top() > line, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_ramp_is_chosen_on_the_tab_of_ramps_too() {
+        let mut harness = window("column", Vec2::new(1000.0, 900.0), Theme::Dark);
+        harness.get_by_label("Ramps").click();
+        harness.run_steps(3);
+        let nodes = harness.get_all_by_label("Coverage, by amount times boost");
+        nodes.into_iter().find(|node| node.accesskit_node().role() == Role::ComboBox).unwrap().click();
+        harness.run_steps(3);
+        harness.get_by_label("coverage_wispy").click();
+        harness.run_steps(3);
+        let session = &harness.state().session;
+        assert_eq!(session.document.preset.systems[0].material.coverage_ramp, "coverage_wispy");
+        assert_eq!(session.document.history().undo_name(), Some("coverage_ramp of smoke"));
     }
 
     #[test]

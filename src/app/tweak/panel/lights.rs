@@ -1,6 +1,7 @@
 //! The lights: a list of all, and the settings of the selected one.
 
 use eframe::egui::{self, Ui};
+use glam::UVec2;
 use haze::frame::MAX_LIGHTS;
 use haze::preset::{Camera, Preset};
 use haze::{Bounds, Light, LightKind};
@@ -8,16 +9,16 @@ use haze::{Bounds, Light, LightKind};
 use super::fields::{self, Desk};
 use super::row::{self, Row};
 use crate::app::tweak::angles::{Angles, STEEPEST, from_angles, to_angles};
-use crate::app::tweak::lights::{ShownLights, fresh};
-use crate::app::tweak::smoke::put_behind;
+use crate::app::tweak::lights::{ShownLights, fresh, name_of};
+use crate::app::tweak::smoke::{Smoke, put_behind};
 
-/// Draws the list and what is selected of it. `smoke` is the box round it.
+/// Draws the list and what is selected of it. `seen` is the smoke that is shown, and the size of the picture.
 pub fn panel(
     ui: &mut Ui,
     desk: &mut Desk<'_>,
     preset: &mut Preset,
     shown: &mut ShownLights,
-    smoke: &dyn Fn() -> Bounds,
+    seen: (&dyn Fn() -> Smoke, UVec2),
 ) {
     shown.follow(&preset.lights);
     // A setting that was looked for is the selected light's.
@@ -26,7 +27,7 @@ pub fn panel(
     for (index, light) in preset.lights.iter_mut().enumerate() {
         ui.horizontal(|ui| entry(ui, index, light, shown));
     }
-    ui.horizontal(|ui| tools(ui, preset, shown, smoke));
+    ui.horizontal(|ui| tools(ui, preset, shown, seen));
     let selected = shown.selected.and_then(|index| Some((index, preset.lights.get_mut(index)?)));
     let Some((index, light)) = selected else {
         ui.weak(if preset.lights.is_empty() { "The preset has no lights." } else { "Select a light to set it." });
@@ -41,24 +42,26 @@ pub fn panel(
 
 /// A light in the list.
 fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut ShownLights) {
-    let number = index + 1;
+    let name = name_of(index, light);
     let is_selected = shown.selected == Some(index);
-    let name = egui::Button::selectable(is_selected, format!("{number} {}", light.kind.name()));
+    let button = egui::Button::selectable(is_selected, &name);
     let height = ui.spacing().interact_size.y;
-    let name = ui.add_sized([104.0, height], name.truncate());
-    if name.clicked() {
+    // What is left beside the rest of the row.
+    let width = (ui.available_width() - 200.0).clamp(40.0, 104.0);
+    let button = ui.add_sized([width, height], button.truncate()).on_hover_text(&name);
+    if button.clicked() {
         shown.selected = (!is_selected).then_some(index);
     }
-    row::swatch(ui, &mut light.colour).accessible_name(format!("colour of light {number}"));
+    row::swatch(ui, &mut light.colour).accessible_name(format!("colour of {name}"));
     let speed = 0.01 * light.intensity.max(0.1);
     let intensity = egui::DragValue::new(&mut light.intensity).speed(speed).range(0.0..=1.0e9).max_decimals(3);
     let intensity = ui.add_sized([70.0, height], intensity.update_while_editing(false));
-    intensity.on_hover_text("Intensity").accessible_name(format!("intensity of light {number}"));
+    intensity.on_hover_text("Intensity").accessible_name(format!("intensity of {name}"));
     if let Some(marks) = shown.marks(index) {
         let mut toggle = |sign: &str, is_on: &mut bool, what: &str| {
             let button = ui.add(egui::Button::selectable(*is_on, sign).min_size(egui::vec2(22.0, height)));
             let button = button.on_hover_text(format!("{what}. Not a part of the preset."));
-            if button.accessible_name(format!("{what}, light {number}")).clicked() {
+            if button.accessible_name(format!("{what}, {name}")).clicked() {
                 *is_on = !*is_on;
             }
         };
@@ -68,12 +71,12 @@ fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut ShownLights) 
 }
 
 /// What is done with the list and the selected light.
-fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut ShownLights, smoke: &dyn Fn() -> Bounds) {
+fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut ShownLights, (smoke, size): (&dyn Fn() -> Smoke, UVec2)) {
     ui.add_enabled_ui(preset.lights.len() < MAX_LIGHTS, |ui| {
         ui.menu_button("Add", |ui| {
             for &kind in LightKind::ALL {
                 if ui.button(kind.name()).clicked() {
-                    let light = beside(fresh(kind, &preset.lights), &preset.camera, &smoke());
+                    let light = beside(fresh(kind, &preset.lights), &preset.camera, &smoke().bounds());
                     let end = preset.lights.len();
                     shown.insert(&mut preset.lights, end, light);
                 }
@@ -91,9 +94,10 @@ fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut ShownLights, smoke: &dyn 
     }
     let behind = ui.button("Behind the smoke").on_hover_text("Puts the light behind the smoke, as it is seen now");
     if behind.clicked() {
-        let bounds = smoke();
+        let smoke = smoke();
+        let (eye, point) = (preset.camera.position, smoke.seen(&preset.camera, size));
         if let Some(light) = preset.lights.get_mut(index) {
-            put_behind(light, &preset.camera, &bounds);
+            put_behind(light, eye, point, &smoke.bounds);
         }
     }
 }

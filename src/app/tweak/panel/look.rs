@@ -1,45 +1,47 @@
 //! The first panel: the few controls that make a look.
 
-use eframe::egui::{self, Ui};
-use glam::Vec3;
+use eframe::egui::Ui;
 use haze::preset::{Preset, PresetSystem};
 use haze::{Light, LightKind};
 
-use super::fields::{self, Desk, Named};
+use super::fields::{self, Desk, FIVE, Named};
 use super::row::{self, Asked, Row};
+use crate::app::tweak::lights::{ShownLights, name_of};
+use crate::app::tweak::made::{Made, SOFTNESS, THICKNESS, WIND};
 
-/// Settings of the system that are shown as they are, under names that tell what they do, as far as they make sense: what comes before the rows of their
-/// own, and after.
+/// Settings of the system that are shown as they are, as far as they make sense: what comes before the rows of their own, and
+/// after.
 const BEFORE: [Named; 3] = [
-    ("size at birth", "emitter.radius_start", Some((0.0, 1.5))),
-    ("size at death", "emitter.radius_end", Some((0.0, 4.0))),
-    ("rise", "emitter.buoyancy", Some((-1.0, 3.0))),
+    (None, "emitter.radius_start", Some((0.0, 1.5))),
+    (None, "emitter.radius_end", Some((0.0, 4.0))),
+    (None, "emitter.buoyancy", Some((-1.0, 3.0))),
 ];
-const AFTER: [Named; 2] = [
-    ("turbulence", "emitter.turbulence", Some((0.0, 3.0))),
-    ("swirl size", "emitter.turbulence_scale", Some((0.1, 6.0))),
-];
-const KEY_LIGHT: [Named; 1] = [("key light", "intensity", Some((0.0, 100.0)))];
+const AFTER: [Named; 2] =
+    [(None, "emitter.turbulence", Some((0.0, 3.0))), (None, "emitter.turbulence_scale", Some((0.1, 6.0)))];
+const KEY_LIGHT: [Named; 1] = [(Some("key light"), "intensity", Some((0.0, 100.0)))];
 const LIGHT: [Named; 2] = [
-    ("scatter colour", "settings.soft_scatter.scatter_colour", None),
-    ("glow", "settings.specular_scatter.intensity", Some((0.0, 4.0))),
+    (None, "settings.soft_scatter.scatter_colour", None),
+    // Elsewhere it stands under that heading.
+    (Some("specular intensity"), "settings.specular_scatter.intensity", Some((0.0, 4.0))),
 ];
-const EXPOSURE: [Named; 1] = [("exposure", "exposure", Some((-4.0, 4.0)))];
+const EXPOSURE: [Named; 1] = [(None, "exposure", Some((-4.0, 4.0)))];
 
 /// Draws the look of one system of the preset.
-pub fn panel(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, index: usize) {
-    let key = key_light(preset, index);
+pub fn panel(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, shown: &mut ShownLights, index: usize) {
+    shown.follow(&preset.lights);
+    let key = shown.key(index, || key_light(preset, index));
     let Some(system) = preset.systems.get_mut(index) else {
         ui.weak("The preset has no smoke.");
         return;
     };
-    thickness(ui, desk, system, index);
+    made_row(ui, desk, system, index, &THICKNESS);
     fields::show_named(ui, desk, &[("systems", Some(index))], system, &BEFORE);
-    wind(ui, desk, system, index);
+    made_row(ui, desk, system, index, &WIND);
     fields::show_named(ui, desk, &[("systems", Some(index))], system, &AFTER);
-    softness(ui, desk, system, index);
+    made_row(ui, desk, system, index, &SOFTNESS);
     if let Some((key, light)) = key.and_then(|key| Some((key, preset.lights.get_mut(key)?))) {
         fields::show_named(ui, desk, &[("lights", Some(key))], light, &KEY_LIGHT);
+        row::note(ui, &name_of(key, light)).on_hover_text(KEY);
     }
     if let Some(system) = preset.systems.get_mut(index) {
         fields::show_named(ui, desk, &[("systems", Some(index))], system, &LIGHT);
@@ -47,81 +49,31 @@ pub fn panel(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, index: usize
     fields::show_named(ui, desk, &[("camera", None)], &mut preset.camera, &EXPOSURE);
 }
 
+/// What the key light is.
+const KEY: &str = "The light that was brightest where the smoke is born when the preset was opened";
+
 /// A row for what several settings make together.
-fn made_row(
-    ui: &mut Ui,
-    desk: &mut Desk<'_>,
-    name: &str,
-    tooltip: &str,
-    paths: &[String],
-    control: impl FnOnce(&mut Ui, &egui::Response, &mut Option<String>),
-) {
+fn made_row(ui: &mut Ui, desk: &mut Desk<'_>, system: &mut PresetSystem, index: usize, made: &Made) {
+    let paths: Vec<_> = made.of.iter().map(|path| format!("systems[{index}].{path}")).collect();
     let is_changed = paths.iter().any(|path| desk.changed.contains(path));
     let apart = paths.iter().any(|path| desk.second.is_some_and(|second| second.contains_key(path)));
     let second = desk.second.map(|_| apart.then_some("another value"));
     let inert = paths.iter().map(|path| (desk.inert)(path)).collect::<Option<Vec<_>>>();
     let inert = inert.and_then(|reasons| reasons.first().copied());
-    let row = Row { name, tooltip, is_changed, second, sheet: None, inert };
+    let sheet = FIVE.filter(|_| desk.has_sheets);
+    let row = Row { name: made.name, tooltip: made.tooltip, is_changed, second, sheet, inert };
     let refused = &mut desk.refused;
-    let asked: Option<Asked> = row.show(ui, |ui, label| control(ui, label, refused));
-    desk.asked.extend(asked.into_iter().flat_map(|asked| paths.iter().map(move |path| (asked, path.clone()))));
-}
-
-fn thickness(ui: &mut Ui, desk: &mut Desk<'_>, system: &mut PresetSystem, index: usize) {
-    let paths = ["emitter.amount", "settings.accumulate.opacity", "settings.boost"];
-    let paths = paths.map(|path| format!("systems[{index}].{path}"));
-    let tooltip = "How much one full-grown sprite covers: amount, opacity and boost together.";
-    made_row(ui, desk, "thickness", tooltip, &paths, |ui, label, refused| {
-        let mut value = thickness_of(system);
-        if row::number(ui, label, &mut value, (&(0.001..=16.0), Some((0.001, 3.0))), "", refused) {
-            set_thickness(system, value);
+    let asked = row.show(ui, |ui, label| {
+        let mut value = (made.get)(system);
+        if row::number(ui, label, &mut value, (&made.range, Some(made.usual)), made.unit, refused) {
+            (made.set)(system, value);
         }
     });
-}
-
-fn thickness_of(system: &PresetSystem) -> f32 {
-    system.emitter.amount * system.settings.accumulate.opacity * system.settings.boost
-}
-
-/// Amount and boost take equal shares, as far as they go; opacity takes what they cannot.
-fn set_thickness(system: &mut PresetSystem, thickness: f32) {
-    // The field, its most, and its share of what is to be gained.
-    let mut of = [
-        (&mut system.emitter.amount, 1.0, 0.5),
-        (&mut system.settings.boost, 16.0, 1.0),
-        (&mut system.settings.accumulate.opacity, 1.0, 1.0),
-    ];
-    // What is nothing cannot be multiplied.
-    of.iter_mut().for_each(|(value, ..)| **value = value.max(1.0e-3));
-    for at in 0..of.len() {
-        let product: f32 = of.iter().map(|(value, ..)| **value).product();
-        let (value, most, share) = &mut of[at];
-        **value = (**value * (thickness / product).powf(*share)).clamp(1.0e-3, *most);
+    match asked {
+        Some(Asked::Sheet) => desk.asked.push((Asked::Sheet, made.path(index))),
+        Some(asked) => desk.asked.extend(paths.into_iter().map(|path| (asked, path))),
+        None => {}
     }
-}
-
-fn wind(ui: &mut Ui, desk: &mut Desk<'_>, system: &mut PresetSystem, index: usize) {
-    let path = [format!("systems[{index}].emitter.wind")];
-    let tooltip =
-        "How fast the air moves. Its direction is a setting of the emitter; from stillness it blows to the right.";
-    made_row(ui, desk, "wind", tooltip, &path, |ui, label, refused| {
-        let wind = &mut system.emitter.wind;
-        let mut speed = wind.length();
-        if row::number(ui, label, &mut speed, (&(0.0..=20.0), Some((0.0, 4.0))), "m/s", refused) {
-            *wind = wind.normalize_or(Vec3::X) * speed;
-        }
-    });
-}
-
-fn softness(ui: &mut Ui, desk: &mut Desk<'_>, system: &mut PresetSystem, index: usize) {
-    let path = [format!("systems[{index}].settings.soft_fade.fade_scale")];
-    let tooltip = "Distance over which smoke dissolves before a surface: 1 / fade_scale.";
-    made_row(ui, desk, "softness", tooltip, &path, |ui, label, refused| {
-        let mut reach = 1.0 / system.settings.soft_fade.fade_scale;
-        if row::number(ui, label, &mut reach, (&(0.001..=10.0), Some((0.01, 2.0))), "m", refused) {
-            system.settings.soft_fade.fade_scale = 1.0 / reach;
-        }
-    });
 }
 
 /// The light that is brightest where the smoke is born.
@@ -138,27 +90,62 @@ fn key_light(preset: &Preset, system: usize) -> Option<usize> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use eframe::egui::{Role, Theme, Vec2};
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
-    #[test]
-    fn thickness_is_what_it_is_set_to_as_far_as_it_goes() {
-        let mut system = PresetSystem::default();
-        for wanted in [0.001, 0.05, 0.3, 1.0, 4.0, 15.0, 0.2] {
-            set_thickness(&mut system, wanted);
-            let found = thickness_of(&system);
-            assert!((found / wanted - 1.0).abs() < 1e-3, "{wanted} {found} {system:?}");
-            let settings = &system.settings;
-            assert!(system.emitter.amount <= 1.0 && settings.boost <= 16.0 && settings.accumulate.opacity <= 1.0);
-        }
+    use crate::app::tweak::panel::settings::TABS;
+    use crate::app::tweak::testing::window;
+    use crate::app::tweak::window::Window;
+
+    fn set_key(harness: &mut Harness<'_, Window>, value: f64) {
+        let sliders = harness.get_all_by_label("key light");
+        let slider = sliders.into_iter().find(|node| node.accesskit_node().role() == Role::Slider);
+        slider.unwrap().set_value_accesskit(value);
+        harness.run_steps(3);
+    }
+
+    fn intensities(harness: &Harness<'_, Window>) -> Vec<f32> {
+        harness.state().session.document.preset.lights.iter().map(|light| light.intensity).collect()
     }
 
     #[test]
-    fn a_little_more_moves_amount_and_boost_alike() {
-        let mut system = PresetSystem::default();
-        let before = system.clone();
-        set_thickness(&mut system, 1.21 * thickness_of(&before));
-        assert!((system.emitter.amount / before.emitter.amount - 1.1).abs() < 1e-3);
-        assert!((system.settings.boost / before.settings.boost - 1.1).abs() < 1e-3);
-        assert!((system.settings.accumulate.opacity / before.settings.accumulate.opacity - 1.0).abs() < 1e-3);
+    fn the_key_light_stays_the_same_when_it_is_dragged_below_another_and_says_which_it_is() {
+        let mut harness = window("column", Vec2::new(1000.0, 640.0), Theme::Dark);
+        let before = intensities(&harness);
+        set_key(&mut harness, 50.0);
+        let bright = intensities(&harness);
+        let key = (0..before.len()).find(|&index| (bright[index] - before[index]).abs() > 1.0e-3).unwrap();
+        let name = super::name_of(key, &harness.state().session.document.preset.lights[key]);
+        assert!(harness.query_by_label(&name).is_some(), "{name}");
+        for value in [0.0, 1.0] {
+            set_key(&mut harness, value);
+        }
+        let mut expected = before;
+        expected[key] = 1.0;
+        assert_eq!(intensities(&harness), expected);
+        // Without it another leads.
+        harness.state_mut().session.document.preset.lights.remove(key);
+        harness.run_steps(3);
+        assert!(harness.query_by_label(&name).is_none(), "{name}");
+        set_key(&mut harness, 7.0);
+        assert!(intensities(&harness).contains(&7.0));
+    }
+
+    #[test]
+    fn a_setting_is_called_the_same_in_the_look_and_where_all_are() {
+        let mut harness = window("column", Vec2::new(1000.0, 900.0), Theme::Dark);
+        let names = ["radius start", "radius end", "buoyancy", "turbulence", "turbulence scale", "wind"];
+        let has = |harness: &Harness<'_, Window>, name| harness.query_all_by_label(name).next().is_some();
+        assert!(names.iter().all(|name| has(&harness, name)));
+        harness.get_by_label(TABS[2].1).click();
+        harness.run_steps(3);
+        for fold in ["motion", "turbulence", "size"] {
+            harness.get_by_label(fold).click();
+            harness.run_steps(12);
+        }
+        for name in names {
+            assert!(has(&harness, name), "{name}");
+        }
     }
 }

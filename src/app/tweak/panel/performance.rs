@@ -115,10 +115,11 @@ fn budget(ui: &mut Ui, session: &mut Session) {
         refused: None,
         sought: None,
     };
+    let before = performance.budget;
     fields::show(ui, &mut desk, &[], &mut performance.budget);
-    if let Some(refused) = desk.refused {
-        session.messages.complain("typed", refused);
-    }
+    let (refused, is_edited) = (desk.refused, session.performance.budget != before);
+    session.refuse(refused, is_edited);
+    let performance = &session.performance;
     let preset = &mut session.document.preset;
     let of_preset = preset.systems.first().map_or(1, |system| system.settings.accumulate.scale);
     let Some(scale) = performance.scale() else { return };

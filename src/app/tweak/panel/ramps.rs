@@ -6,8 +6,9 @@ use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
 use haze::gradient_editor;
 use haze::ramp::Ramp;
 use haze::reference::SystemProbe;
-use haze::settings::RampFilter;
+use haze::settings::{PictureRole, RampFilter, set_field};
 
+use super::gallery::gallery;
 use super::row::spaced;
 use super::stops::{self, Bins, Mark, Named};
 use crate::app::tweak::compare::Side;
@@ -61,10 +62,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
         ("age_ramp", "Age, from birth to death", &system.material.age_ramp),
     ] {
         ui.add_space(6.0);
-        ui.horizontal(|ui| {
-            ui.strong(title);
-            ui.weak(name);
-        });
+        choose(ui, session, title, &format!("systems[{index}].material.{field}"), name);
         if let Some(reason) = inert(session, field) {
             ui.weak(format!("Not used: {reason}"));
             continue;
@@ -111,7 +109,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
             at
         });
         if field == "diffuse_ramp" && survey.is_some() {
-            legend(ui, &lights);
+            legend(ui, &lights, &session.show.lights.shown_names(&session.document.preset.lights));
         }
         spot = spot.or(at.and_then(|at| match field {
             "diffuse_ramp" => Some(Spot::Diffuse(at)),
@@ -122,6 +120,18 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
     }
     session.follow_ramps(true);
     spot
+}
+
+/// The title of a ramp, and which it is: another can be chosen.
+fn choose(ui: &mut Ui, session: &mut Session, title: &str, path: &str, name: &str) {
+    let label = ui.strong(title);
+    let mut chosen = name.to_owned();
+    gallery(ui, &session.thumbnails, PictureRole::Ramp, &mut chosen, path).labelled_by(label.id);
+    if chosen != name
+        && let Err(error) = set_field(&mut session.document.preset, path, &chosen)
+    {
+        session.messages.complain("ramp", error);
+    }
 }
 
 fn of_light(index: usize) -> Color32 {
@@ -175,10 +185,11 @@ fn histogram(ui: &mut Ui, field: &str, histograms: &[Bins]) {
 }
 
 /// Whose histogram is which.
-fn legend(ui: &mut Ui, histograms: &[Histogram]) {
+fn legend(ui: &mut Ui, histograms: &[Histogram], names: &[String]) {
     ui.horizontal_wrapped(|ui| {
         for histogram in histograms {
-            ui.colored_label(of_light(histogram.light), format!("Light {}", histogram.light + 1));
+            let name = names.get(histogram.light).map_or("light", String::as_str);
+            ui.colored_label(of_light(histogram.light), name);
         }
         if histograms.is_empty() {
             ui.weak("No light reaches smoke in the picture");

@@ -10,8 +10,9 @@ use haze::settings::Choice;
 use super::value::{parse, shown, suffix};
 use crate::app::tweak::reach::{is_wide, reach};
 
-/// Width of the names.
+/// Width of the names, and the most that they may have of a row.
 const NAME: f32 = 118.0;
+const SHARE: f32 = 0.36;
 /// Width of the mark before them.
 const MARK: f32 = 12.0;
 
@@ -44,7 +45,7 @@ impl Row<'_> {
     pub fn show(&self, ui: &mut Ui, control: impl FnOnce(&mut Ui, &Response)) -> Option<Asked> {
         let mut asked = None;
         ui.horizontal(|ui| {
-            let height = ui.spacing().interact_size.y;
+            let (width, height) = (name_width(ui), ui.spacing().interact_size.y);
             let tooltip = "Differs from the preset. Click to set it back.";
             if mark(ui, self.is_changed.then_some(("•", tooltip)), || format!("set back {}", self.name)) {
                 asked = Some(Asked::SetBack);
@@ -58,10 +59,10 @@ impl Row<'_> {
             }
             let name = ui
                 .allocate_ui_with_layout(
-                    egui::vec2(NAME, height),
+                    egui::vec2(width, height),
                     egui::Layout::left_to_right(egui::Align::Center),
                     |ui| {
-                        ui.set_min_size(egui::vec2(NAME, height));
+                        ui.set_min_size(egui::vec2(width, height));
                         let text = egui::RichText::new(spaced(self.name));
                         let text = if self.inert.is_some() { text.weak() } else { text };
                         ui.add(egui::Label::new(text).truncate().sense(egui::Sense::click()))
@@ -117,6 +118,19 @@ fn mark(ui: &mut Ui, sign: Option<(&str, &str)>, name: impl Fn() -> String) -> b
         Some(mark.clicked())
     });
     place.inner == Some(true)
+}
+
+fn name_width(ui: &Ui) -> f32 {
+    NAME.min(SHARE * ui.available_width())
+}
+
+/// A word below a control, about it.
+pub fn note(ui: &mut Ui, text: &str) -> Response {
+    ui.horizontal(|ui| {
+        ui.add_space(MARK + name_width(ui) + 2.0 * ui.spacing().item_spacing.x);
+        ui.weak(text)
+    })
+    .inner
 }
 
 /// A name as it is read.
@@ -251,6 +265,9 @@ pub fn vector(
 ) {
     let (low, high) = (*range.start(), *range.end());
     let width = (ui.available_width() - 2.0 * ui.spacing().item_spacing.x) / 3.0;
+    if width < ui.spacing().interact_size.x {
+        (ui.spacing_mut().interact_size.x, ui.spacing_mut().button_padding.x) = (width, 2.0);
+    }
     let mut axes = value.to_array();
     for (axis, label) in axes.iter_mut().zip(["x", "y", "z"]) {
         let (before, typed) = (*axis, std::cell::RefCell::new(None));

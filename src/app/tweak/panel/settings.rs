@@ -4,7 +4,7 @@ use eframe::egui::{self, Ui};
 use haze::preset::Preset;
 use haze::settings::{Fields, path_of};
 
-use super::fields::{self, Desk};
+use super::fields::{self, Desk, Step, is_at};
 use super::row::Asked;
 use super::{curve, lights, look, ramps};
 use crate::app::tweak::messages::short;
@@ -24,7 +24,9 @@ pub const TABS: [(Tab, &str, &str); 6] = [
 
 /// Gives the path of a field of whose values a sheet is to be made.
 pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        ui.spacing_mut().button_padding.x = 6.0;
         for (tab, name, tooltip) in TABS {
             ui.selectable_value(&mut session.show.tab, tab, name).on_hover_text(tooltip);
         }
@@ -48,6 +50,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
     }
     ui.separator();
     session.inspect.spot = None;
+    session.thumbnails.follow(session.document.path(), session.assets.as_deref());
     if session.show.tab == Tab::Ramps {
         let area = egui::ScrollArea::vertical().id_salt(session.show.tab).auto_shrink(false);
         let system = session.show.system;
@@ -60,8 +63,11 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
         return None;
     }
     let mut shown = std::mem::take(&mut session.show.lights);
-    session.thumbnails.follow(session.document.path(), session.assets.as_deref());
-    let bounds = || Smoke::default().of(session).bounds();
+    let whole = || {
+        let mut smoke = Smoke::default();
+        smoke.of(session);
+        smoke
+    };
     let mut desk = Desk {
         tooltips: &session.tooltips,
         thumbnails: &session.thumbnails,
@@ -78,9 +84,9 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
     let preset = &mut edited;
     let system = session.show.system;
     egui::ScrollArea::vertical().id_salt(session.show.tab).auto_shrink(false).show(ui, |ui| match session.show.tab {
-        Tab::Look => look::panel(ui, &mut desk, preset, system),
+        Tab::Look => look::panel(ui, &mut desk, preset, &mut shown, system),
         Tab::Light => {
-            lights::panel(ui, &mut desk, preset, &mut shown, &bounds);
+            lights::panel(ui, &mut desk, preset, &mut shown, (&whole, session.show.size));
             ui.separator();
             surroundings(ui, &mut desk, preset);
         }
@@ -89,11 +95,10 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
         Tab::Ramps | Tab::Performance => {}
     });
     let Desk { asked, refused, .. } = desk;
+    let is_edited = session.document.preset != edited;
     session.document.preset = edited;
     session.show.lights = shown;
-    if let Some(refused) = refused {
-        session.messages.complain("typed", refused);
-    }
+    session.refuse(refused, is_edited);
     let mut sheet = None;
     for (asked, path) in asked {
         match asked {
@@ -110,32 +115,39 @@ fn system_of(path: &str) -> Option<usize> {
     path.strip_prefix("systems[")?.split_once(']')?.0.parse().ok()
 }
 
-/// A part of the preset that folds.
-fn section(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, path: &[fields::Step], fields: &mut dyn Fields) {
-    let is_sought = desk.sought.is_some_and(|sought| sought.starts_with(&path_of(path)));
-    let header = egui::CollapsingHeader::new(title).id_salt(path).default_open(true);
-    let header = if is_sought { header.open(Some(true)) } else { header };
-    header.show(ui, |ui| fields::show(ui, desk, path, fields));
+/// A part of the preset that folds; true while it is open.
+fn section(
+    ui: &mut Ui,
+    desk: &mut Desk<'_>,
+    title: &str,
+    path: &[Step],
+    is_open: bool,
+    fields: &mut dyn Fields,
+) -> bool {
+    let whole = path_of(path);
+    let header = fields::header(desk, title, &|field| is_at(field, &whole)).id_salt(path).default_open(is_open);
+    header.show(ui, |ui| fields::show(ui, desk, path, fields)).fully_open()
 }
 
 fn surroundings(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset) {
-    section(ui, desk, "Sky and scene", &[("environment", None)], &mut preset.environment);
-    section(ui, desk, "Camera", &[("camera", None)], &mut preset.camera);
+    section(ui, desk, "Sky and scene", &[("environment", None)], true, &mut preset.environment);
+    section(ui, desk, "Camera", &[("camera", None)], true, &mut preset.camera);
 }
 
 fn smoke(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, index: usize) {
     let Some(system) = preset.systems.get_mut(index) else { return };
     let at = ("systems", Some(index));
-    section(ui, desk, "Emitter", &[at, ("emitter", None)], &mut system.emitter);
-    section(ui, desk, "Particles from files", &[at, ("cache", None)], &mut system.cache);
-    section(ui, desk, "Sprite and ramps", &[at, ("material", None)], &mut system.material);
+    section(ui, desk, "Emitter", &[at, ("emitter", None)], true, &mut system.emitter);
+    section(ui, desk, "Particles from files", &[at, ("cache", None)], false, &mut system.cache);
+    section(ui, desk, "Sprite and ramps", &[at, ("material", None)], false, &mut system.material);
     let settings = &mut system.settings;
     let at = |name| [at, ("settings", None), (name, None)];
-    section(ui, desk, "Diffuse", &at("diffuse"), &mut settings.diffuse);
-    section(ui, desk, "Soft scatter", &at("soft_scatter"), &mut settings.soft_scatter);
-    section(ui, desk, "Specular scatter", &at("specular_scatter"), &mut settings.specular_scatter);
-    section(ui, desk, "Soft fade", &at("soft_fade"), &mut settings.soft_fade);
-    curve::panel(ui, &settings.soft_fade);
+    section(ui, desk, "Diffuse", &at("diffuse"), false, &mut settings.diffuse);
+    section(ui, desk, "Soft scatter", &at("soft_scatter"), false, &mut settings.soft_scatter);
+    section(ui, desk, "Specular scatter", &at("specular_scatter"), false, &mut settings.specular_scatter);
+    if section(ui, desk, "Soft fade", &at("soft_fade"), false, &mut settings.soft_fade) {
+        curve::panel(ui, &settings.soft_fade);
+    }
 }
 
 fn advanced(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, index: usize) {
@@ -174,6 +186,56 @@ mod tests {
         assert!(harness.query_all_by_label_contains("No effect here: forward only.").next().is_some());
     }
 
+    #[test]
+    fn the_smoke_folds_under_headings_and_what_is_sought_unfolds() {
+        let size = Vec2::new(1280.0, 800.0);
+        let mut harness = window("column", size, Theme::Dark);
+        harness.get_by_label("Smoke").click();
+        harness.run_steps(4);
+        let window = eframe::egui::Rect::from_min_size(Default::default(), size);
+        for heading in
+            ["Emitter", "birth", "motion", "turbulence", "size", "appearance", "Sprite and ramps", "Soft fade"]
+        {
+            assert!(window.contains_rect(harness.get_by_label(heading).rect()), "{heading}");
+        }
+        let sliders = harness.query_all_by_role(Role::Slider).filter(|node| node.rect().left() > 800.0).count();
+        assert!(sliders < 10, "{sliders} sliders in one run");
+        assert!(harness.query_by_label("turbulence speed").is_none());
+        // A change that is folded away is marked.
+        harness.state_mut().session.document.preset.systems[0].emitter.turbulence_speed = 0.4;
+        harness.state_mut().session.search.go_to("systems[0].material.specular_ramp".into());
+        harness.run_steps(8);
+        assert!(harness.query_by_label("turbulence •").is_some() && harness.query_by_label("motion").is_some());
+        assert!(window.contains_rect(control(&harness, "specular ramp").rect()));
+        assert!(harness.query_by_label("y down").is_some(), "the first heading is open, too");
+        harness.state_mut().session.search.go_to("systems[0].emitter.turbulence_speed".into());
+        harness.run_steps(8);
+        let row = harness.get_all_by_label("turbulence speed").next().unwrap().rect();
+        assert!(window.contains_rect(row), "{row:?}");
+    }
+
+    #[test]
+    fn the_picture_is_the_largest_thing_in_the_smallest_window() {
+        let size = Vec2::new(640.0, 400.0);
+        let mut harness = window("column", size, Theme::Dark);
+        let mut width = None;
+        for (_, name, _) in super::TABS {
+            harness.get_by_label(name).click();
+            harness.run_steps(4);
+            let picture = harness.get_by_label("viewport").rect();
+            // The strip has all of the width.
+            let others = [size.x - picture.width(), size.y - picture.bottom()];
+            assert!(picture.width() > others[0] && picture.height() > others[1], "{name}: {picture}");
+            // Nothing on the tab is too wide for it.
+            let width = *width.get_or_insert(picture.width());
+            assert!((width - picture.width()).abs() < 0.5, "{name}: {width} {picture}");
+            for (_, name, _) in super::TABS {
+                let tab = harness.get_by_label(name).rect();
+                assert!(tab.left() >= picture.right() && tab.right() <= size.x, "{name}: {tab}, beside {picture}");
+            }
+        }
+    }
+
     fn undo_name(harness: &Harness<'_, Window>) -> Option<String> {
         harness.state().session.document.history().undo_name().map(str::to_owned)
     }
@@ -183,7 +245,7 @@ mod tests {
         let mut harness = window("column", Vec2::new(1000.0, 640.0), Theme::Dark);
         let saved = harness.state().session.document.preset.clone();
         let is_marked = |harness: &Harness<'_, Window>, name| harness.query_by_label(name).is_some();
-        let (exposure, rise) = ("take exposure of the second", "take rise of the second");
+        let (exposure, buoyancy) = ("take exposure of the second", "take buoyancy of the second");
         let preset = &mut harness.state_mut().session.document.preset;
         preset.camera.exposure = 3.0;
         preset.systems[0].emitter.buoyancy += 1.0;
@@ -194,17 +256,17 @@ mod tests {
         assert!(!is_marked(&harness, exposure), "the same settings, drawn in another way");
         harness.state_mut().session.compare.against = Some(Against::Saved);
         harness.run_steps(3);
-        assert!(is_marked(&harness, exposure) && is_marked(&harness, rise));
-        assert!(!is_marked(&harness, "take glow of the second"));
+        assert!(is_marked(&harness, exposure) && is_marked(&harness, buoyancy));
+        assert!(!is_marked(&harness, "take specular intensity of the second"));
         harness.get_by_label(exposure).click();
         harness.run_steps(3);
         let now = |harness: &Harness<'_, Window>| harness.state().session.document.preset.clone();
         assert_eq!(now(&harness).camera, saved.camera);
         assert_ne!(now(&harness).systems, saved.systems);
-        assert!(!is_marked(&harness, exposure) && is_marked(&harness, rise));
+        assert!(!is_marked(&harness, exposure) && is_marked(&harness, buoyancy));
         assert_eq!(undo_name(&harness).as_deref(), Some("exposure"));
         // The menu says what it would be.
-        row_menu(&mut harness, "rise");
+        row_menu(&mut harness, "buoyancy");
         let value = shown_value(&Value::Number(saved.systems[0].emitter.buoyancy), "m/s²");
         harness.get_by_label(&format!("Take {value} of the second picture")).click();
         harness.run_steps(3);

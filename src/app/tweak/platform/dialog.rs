@@ -1,5 +1,6 @@
 //! The system's dialogs for files, which wait on a thread of their own.
 
+use std::ffi::OsString;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -37,12 +38,14 @@ impl Dialogs {
         Ok(Self { worker: Worker::new("haze dialogs", wake)?, has_dialogs })
     }
 
-    /// Whether the system is likely to have dialogs: on Linux a program asks for them over the session's bus.
-    pub fn are_likely() -> bool {
-        let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
-        let has_bus =
-            || std::env::var_os("XDG_RUNTIME_DIR").is_some_and(|folder| Path::new(&folder).join("bus").exists());
-        !cfg!(target_os = "linux") || is_set("DBUS_SESSION_BUS_ADDRESS") || has_bus()
+    /// Whether the system is likely to have dialogs: on Linux a program asks for them over the session's bus, or has zenity show
+    /// one. `variable` is [`std::env::var_os`], but for tests.
+    pub fn are_likely(variable: impl Fn(&str) -> Option<OsString>) -> bool {
+        let is_set = |name| variable(name).is_some_and(|value| !value.is_empty());
+        let has_bus = || variable("XDG_RUNTIME_DIR").is_some_and(|folder| Path::new(&folder).join("bus").exists());
+        let is_there = |folder: PathBuf| folder.join("zenity").is_file();
+        let has_zenity = || variable("PATH").is_some_and(|folders| std::env::split_paths(&folders).any(is_there));
+        !cfg!(target_os = "linux") || is_set("DBUS_SESSION_BUS_ADDRESS") || has_bus() || has_zenity()
     }
 
     /// Asks for a file like this one; false where the system has no dialogs.
@@ -73,5 +76,27 @@ impl Dialogs {
         let answer = self.worker.poll()?.unwrap_or(Answer::NoDialogs);
         self.has_dialogs &= answer != Answer::NoDialogs;
         Some(answer)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn dialogs_come_over_the_bus_or_from_zenity() {
+        let folder = tempfile::tempdir().unwrap();
+        let likely = |variables: &[(&str, &Path)]| {
+            let find = |name: &str| variables.iter().find(|(variable, _)| *variable == name);
+            Dialogs::are_likely(|name| find(name).map(|(_, value)| (*value).into()))
+        };
+        let here = folder.path();
+        assert!(!likely(&[]) && !likely(&[("XDG_RUNTIME_DIR", here), ("PATH", here)]));
+        assert!(likely(&[("DBUS_SESSION_BUS_ADDRESS", "unix:path=/bus".as_ref())]));
+        for (name, variable) in [("bus", "XDG_RUNTIME_DIR"), ("zenity", "PATH")] {
+            std::fs::write(here.join(name), "").unwrap();
+            assert!(likely(&[(variable, here)]), "{name}");
+        }
     }
 }

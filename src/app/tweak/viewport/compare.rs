@@ -6,6 +6,7 @@ use haze::demo::shot::Shot;
 
 use crate::app::tweak::compare::Against;
 use crate::app::tweak::easel::other::Other;
+use crate::app::tweak::messages::short;
 use crate::app::tweak::referee::Verdict;
 use crate::app::tweak::session::Session;
 
@@ -17,7 +18,10 @@ pub fn other(ui: &Ui, session: &mut Session, shot: &Shot) -> Option<Other> {
     }
     let context = ui.ctx().clone();
     match session.referee.judge(shot, move || context.request_repaint()) {
-        Verdict::Made(picture) => return Some(Other::Picture(picture, exposure(shot))),
+        Verdict::Made(picture) => {
+            session.messages.withdraw("reference");
+            return Some(Other::Picture(picture, exposure(shot)));
+        }
         Verdict::Later(wait) => ui.ctx().request_repaint_after(wait),
         Verdict::Failed(error) => session.messages.complain("reference", error),
         Verdict::Soon => {}
@@ -52,17 +56,76 @@ pub fn divider(ui: &Ui, rect: egui::Rect, split: &mut f32) {
     );
 }
 
-/// How far the two are apart, in the lower right corner.
-pub fn figures(ui: &Ui, rect: egui::Rect, text: &str) {
+/// Which picture is which, with what it takes, in the lower corners; over the second, how far the two are apart.
+pub fn labels(ui: &Ui, rect: egui::Rect, session: &Session) {
+    let Some(against) = &session.compare.against else { return };
+    let edited = if session.document.is_dirty() { ", edited" } else { "" };
+    let first = format!("A  {}{edited}", short(&session.document.title(), 24));
+    let [of_first, of_second] = session.performance.figures.sides.map(|ms| ms.map(|ms| format!("   {ms:.2} ms")));
+    let took = session.referee.took.filter(|_| *against == Against::Reference);
+    let took = took.map(|took| format!("   {:.0} ms of the CPU", 1.0e3 * took.as_secs_f32()));
+    let of_second = if *against == Against::Reference { took } else { of_second };
+    let second = format!("B  {}", against.name());
+    let what = "GPU time of its smoke, where the device tells it";
+    plate(ui, rect, egui::Align2::LEFT_BOTTOM, &(first + &of_first.unwrap_or_default())).on_hover_text(what);
+    let place = plate(ui, rect, egui::Align2::RIGHT_BOTTOM, &(second + &of_second.unwrap_or_default()));
+    let above = rect.with_max_y(place.rect.top());
+    place.on_hover_text(what);
+    if let Some(text) = session.gauge.text() {
+        plate(ui, above, egui::Align2::RIGHT_BOTTOM, &text).on_hover_text(
+            "Peak signal-to-noise ratio of the two as they are shown; over all, and where the scene's depth jumps",
+        );
+    }
+}
+
+/// A text on a dark ground in a corner of a part of the picture.
+fn plate(ui: &Ui, rect: egui::Rect, corner: egui::Align2, text: &str) -> egui::Response {
     let font = egui::TextStyle::Body.resolve(ui.style());
     let galley = ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::WHITE);
-    let at = rect.right_bottom() - galley.size() - egui::vec2(12.0, 10.0);
-    let plate = egui::Rect::from_min_size(at, galley.size()).expand2(egui::vec2(6.0, 3.0));
-    let response = ui.interact(plate, ui.scope_id().with("figures"), Sense::hover());
+    let inside = corner.align_size_within_rect(galley.size(), rect.shrink2(egui::vec2(12.0, 10.0)));
+    let plate = inside.expand2(egui::vec2(6.0, 3.0));
+    let response = ui.interact(plate, ui.scope_id().with((corner, plate.top() as i32)), Sense::hover());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Status, true, text));
     ui.painter().rect_filled(plate, 3.0, egui::Color32::from_black_alpha(170));
-    ui.painter().galley(at, galley, egui::Color32::WHITE);
-    response.on_hover_text(
-        "Peak signal-to-noise ratio of the two as they are shown; over all, and where the scene's depth jumps",
-    );
+    ui.painter().galley(inside.min, galley, egui::Color32::WHITE);
+    response
+}
+
+#[cfg(test)]
+mod tests {
+    use eframe::egui::Vec2;
+    use egui_kittest::kittest::{NodeT as _, Queryable as _};
+
+    use super::*;
+    use crate::app::tweak::testing::{measured, picture};
+
+    #[test]
+    fn both_pictures_say_what_they_are_and_what_they_take() {
+        let mut harness = measured("column", Vec2::new(1000.0, 640.0));
+        harness.state_mut().session.document.preset.camera.exposure = 1.0;
+        let mut label = |against: Against, sign: &str, unit: &str| {
+            harness.state_mut().session.compare.against = Some(against);
+            for _ in 0..300 {
+                picture(&mut harness);
+                let label = harness.query_by_label_contains(sign).and_then(|node| node.accesskit_node().label());
+                if let Some(label) = label.filter(|label| label.ends_with(unit)) {
+                    return label;
+                }
+                std::thread::sleep(std::time::Duration::from_millis(20));
+            }
+            panic!("nothing is said of {sign}");
+        };
+        let ms = |label: &str| label.split_whitespace().rev().nth(1).unwrap().parse::<f32>().unwrap();
+        let first = label(Against::FullResolution, "A  ", " ms");
+        assert!(first.starts_with("A  column, edited   ") && ms(&first) > 0.0, "{first}");
+        // Other programs may hold up either.
+        let is_dearer = (0..5).any(|_| {
+            let whole = label(Against::FullResolution, "B  full resolution   ", " ms");
+            label(Against::Forward, "B  forward   ", " ms");
+            ms(&whole) > ms(&label(Against::FullResolution, "A  ", " ms"))
+        });
+        assert!(is_dearer, "{first}");
+        let judged = label(Against::Reference, "B  CPU reference   ", " ms of the CPU");
+        assert!(judged.ends_with(" ms of the CPU"), "{judged}");
+    }
 }

@@ -13,7 +13,7 @@ use crate::app::tweak::smoke::Smoke;
 /// The menu, and where it was asked for.
 #[derive(Default)]
 pub struct Menu {
-    at: Option<Pos2>,
+    pub at: Option<Pos2>,
 }
 
 /// What is added by the menu.

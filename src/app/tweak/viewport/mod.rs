@@ -20,6 +20,7 @@ use haze::{Bounds, LightKind};
 
 use super::action::InView;
 use super::easel::{Easel, Exhibit};
+use super::inspect::lit;
 use super::lights::{ShownLights, Turn, fresh};
 use super::session::Session;
 use super::smoke::{Smoke, put_behind};
@@ -28,6 +29,7 @@ use gizmo::Gizmo;
 use ink::Ink;
 use lens::Lens;
 use menu::Menu;
+use ray::Ray;
 use steer::Steering;
 
 /// What goes on in the viewport.
@@ -76,6 +78,8 @@ impl Viewport {
         if compare.against.is_some() && compare.difference == 0.0 {
             divider(ui, rect, &mut compare.split);
         }
+        // Over the picture, and under all that stands on it.
+        lit::paint(ui, rect, &session.inspect, session.show.system);
         let lens = Lens::new(&session.document.preset.camera, rect);
         let painter = ui.painter_at(rect);
         let ink = Ink(&painter);
@@ -84,9 +88,7 @@ impl Viewport {
             overlay::draw(&ink, &lens, &session.show, smoke, &easel.texels());
         }
         self.gizmo.draw(&ink, &lens, session);
-        if let Some(text) = session.gauge.text() {
-            compare::figures(ui, rect, &text);
-        }
+        compare::labels(ui, rect, session);
         if let Some(action) = toolbar::toolbar(ui, rect, session) {
             self.act(action, session);
             ui.ctx().request_repaint();
@@ -97,7 +99,10 @@ impl Viewport {
         // A flight that did not look round is no click.
         let is_click = !self.steering.has_flown;
         if is_click && let Some(action) = self.menu.show(response, lens, session, &mut self.smoke) {
-            self.act(action, session);
+            match self.menu.at.filter(|_| action == InView::Behind) {
+                Some(at) => self.put_behind(session, Some(lens.ray(at))),
+                None => self.act(action, session),
+            }
         }
     }
 
@@ -134,7 +139,7 @@ impl Viewport {
             InView::Home => *camera = saved,
             InView::Delete => session.change_light(ShownLights::remove),
             InView::Duplicate => session.change_light(ShownLights::duplicate),
-            InView::Behind => self.put_behind(session),
+            InView::Behind => self.put_behind(session, None),
             InView::Overlay(overlay) => session.show.overlays.toggle(overlay),
             InView::Turntable => {
                 let middle = self.smoke.of(session).bounds().centre();
@@ -145,16 +150,19 @@ impl Viewport {
         }
     }
 
-    /// Puts the selected light, or a new one, behind the smoke.
-    fn put_behind(&mut self, session: &mut Session) {
-        let bounds = self.smoke.of(session).bounds();
+    /// Puts the selected light, or a new one, behind the smoke that is pointed at, or else behind what is in the picture.
+    fn put_behind(&mut self, session: &mut Session, at: Option<Ray>) {
+        let smoke = self.smoke.of(session);
         let preset = &mut session.document.preset;
+        let met = at.and_then(|ray| smoke.met(ray.origin, ray.direction));
+        let point = met.unwrap_or_else(|| smoke.seen(&preset.camera, session.show.size));
+        let eye = preset.camera.position;
         let selected = session.show.lights.selected.and_then(|index| preset.lights.get_mut(index));
         if let Some(light) = selected {
-            return put_behind(light, &preset.camera, &bounds);
+            return put_behind(light, eye, point, &smoke.bounds);
         }
         let mut light = fresh(LightKind::Point, &preset.lights);
-        put_behind(&mut light, &preset.camera, &bounds);
+        put_behind(&mut light, eye, point, &smoke.bounds);
         session.add_light(light);
     }
 

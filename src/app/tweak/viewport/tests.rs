@@ -84,7 +84,7 @@ fn a_dragged_axis_moves_the_light_along_it_with_the_pointer_in_one_step() {
         assert!((moved[axis] - 0.6).abs() < 0.02, "axis {axis}: {moved}");
         assert!(moved.with_element(axis, 0.0).length() < 1e-6, "{moved}");
         assert!(handle(&harness, Handle::Axis(axis)).distance(to) < 6.0, "it stays under the pointer");
-        assert_eq!(undo_name(&harness).as_deref(), Some("position of light 1"));
+        assert_eq!(undo_name(&harness).as_deref(), Some("position of lamp 1 (point)"));
         harness.state_mut().session.undo();
         assert_eq!((light(&harness).position, undo_name(&harness)), (before, Some("light removed".into())));
     }
@@ -127,7 +127,7 @@ fn the_middle_follows_the_pointer_exactly_and_escape_puts_it_back() {
     harness.event(press(to + vec2(90.0, 40.0), false));
     harness.run();
     assert_eq!((light(&harness).position, camera(&harness)), (after, eye));
-    assert_eq!(undo_name(&harness).as_deref(), Some("position of light 1"));
+    assert_eq!(undo_name(&harness).as_deref(), Some("position of lamp 1 (point)"));
     assert_eq!(harness.state().session.show.lights.selected, Some(0));
 }
 
@@ -173,7 +173,7 @@ fn radius_cone_and_direction_are_dragged() {
     drag(&mut harness, PointerButton::Primary, &[rim, rim + (middle - rim) * 0.5]);
     assert!(light(&harness).inner_angle < before.inner_angle - 5.0);
     assert!((light(&harness).outer_angle - outer).abs() < 1e-5);
-    assert_eq!(undo_name(&harness).as_deref(), Some("inner_angle of light 1"));
+    assert_eq!(undo_name(&harness).as_deref(), Some("inner_angle of lamp 1 (spot)"));
 }
 
 #[test]
@@ -185,7 +185,7 @@ fn a_sun_is_turned_on_its_dome() {
     drag(&mut harness, PointerButton::Primary, &[from, from + vec2(20.0, 0.0), to]);
     assert!(handle(&harness, Handle::Aim).distance(to) < 1.0);
     assert!((light(&harness).direction.length() - 1.0).abs() < 1e-5);
-    assert_eq!(undo_name(&harness).as_deref(), Some("direction of light 1"));
+    assert_eq!(undo_name(&harness).as_deref(), Some("direction of sun 1"));
 }
 
 #[test]
@@ -319,11 +319,11 @@ fn a_muted_light_is_out_of_the_picture_and_stays_in_the_preset() {
         harness.remove_cursor();
         harness.run();
     };
-    click(&mut harness, "Leave this light out, light 1");
+    click(&mut harness, "Leave this light out, lamp 1 (point)");
     let dark = brightness(&picture(&mut harness), part);
     assert!(dark < lit - 5.0, "{dark} {lit}");
     assert_eq!(undo_name(&harness).as_deref(), Some("light removed"), "only the test's own change");
-    click(&mut harness, "Show this light alone, light 1");
+    click(&mut harness, "Show this light alone, lamp 1 (point)");
     assert!((brightness(&picture(&mut harness), part) - lit).abs() < 0.5);
 }
 
@@ -348,7 +348,7 @@ fn lights_are_added_duplicated_and_deleted_from_the_panel_and_by_key() {
     harness.key_press(Key::Delete);
     harness.run();
     assert_eq!((count(&harness), selected(&harness), undo_name(&harness).as_deref()), (2, None, Some("light removed")));
-    harness.get_by_label("2 spot").click();
+    harness.get_by_label("lamp 2 (spot)").click();
     harness.run();
     harness.get_by_label("Behind the smoke").click();
     harness.run();
@@ -390,6 +390,35 @@ fn a_right_click_adds_a_light_there_and_another_behind_the_smoke() {
     harness.run();
     assert_eq!(harness.state().session.document.preset.lights.len(), 3);
     assert!(lens(&harness).depth(added(&harness).position) > lens(&harness).depth(spot.position));
+}
+
+#[test]
+fn a_light_is_put_behind_the_smoke_that_is_clicked_on_or_in_the_picture() {
+    let mut harness = lit(Light::default());
+    let session = &harness.state().session;
+    let mut smoke = Smoke::default();
+    let sprites = &smoke.of(session).systems[0];
+    let in_view = |at: &Pos2| viewport(&harness).shrink(40.0).contains(*at);
+    let seen = sprites.iter().filter(|sprite| lens(&harness).project(sprite.position).is_some_and(|at| in_view(&at)));
+    let top = seen.max_by(|a, b| a.position.y.total_cmp(&b.position.y)).unwrap().position;
+    let at = lens(&harness).project(top).unwrap();
+    drag(&mut harness, PointerButton::Secondary, &[at]);
+    harness.run_steps(3);
+    harness.get_by_label("Behind the smoke").click();
+    harness.run();
+    let is_behind = |harness: &Harness<'_, Window>| {
+        let (lens, place) = (lens(harness), light(harness).position);
+        assert!(lens.depth(place) > lens.depth(top), "{place}");
+        lens.project(place).unwrap()
+    };
+    assert!(is_behind(&harness).distance(at) < 1.0, "not under the pointer");
+    // So close that the middle of all smoke is out of the picture.
+    let camera = &mut harness.state_mut().session.document.preset.camera;
+    (camera.position, camera.target) = (top + Vec3::new(0.0, -0.1, 1.2), top);
+    harness.run();
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::B);
+    harness.run();
+    assert!(viewport(&harness).contains(is_behind(&harness)));
 }
 
 #[test]

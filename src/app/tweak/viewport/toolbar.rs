@@ -27,7 +27,7 @@ pub fn toolbar(ui: &mut Ui, rect: Rect, session: &mut Session) -> Option<InView>
     let mut asked = None;
     let builder = egui::UiBuilder::new().max_rect(rect.shrink(6.0)).layout(egui::Layout::top_down(egui::Align::Min));
     ui.scope_builder(builder, |ui| {
-        let fill = ui.visuals().panel_fill.gamma_multiply(0.85);
+        let fill = ui.visuals().panel_fill;
         egui::Frame::new().fill(fill).corner_radius(4.0).inner_margin(3.0).show(ui, |ui| {
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing = egui::vec2(3.0, 3.0);
