@@ -94,7 +94,10 @@ impl Recipe {
             Self::Motif(recipe) => vec![recipe.bake()?],
             Self::Noise(recipe) => vec![recipe.bake()?.into()],
             Self::Sprite(recipe) => {
-                let baked = recipe.bake(progress)?;
+                let baked = recipe.bake(|frames| {
+                    progress(frames);
+                    Ok::<_, FieldError>(())
+                })?;
                 vec![baked.picture.into(), baked.detail.into()]
             }
         })

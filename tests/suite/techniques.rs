@@ -135,7 +135,7 @@ fn every_sprite_setting_agrees() {
 /// A small flipbook and its detail map.
 pub fn flipbook() -> (Sprite, Option<Sprite>) {
     let recipe = recipe();
-    let baked = recipe.bake(|_| ()).unwrap();
+    let baked = recipe.bake(|_| Ok::<_, haze::FieldError>(())).unwrap();
     let decode = |picture| Sprite::from_picture("flipbook".as_ref(), picture, recipe.layout()).unwrap();
     (decode(&baked.picture), Some(decode(&baked.detail)))
 }
@@ -150,7 +150,7 @@ fn recipe() -> SpriteRecipe {
 /// Squared errors of normals and amount half way between frames, against the frame that belongs there: blended, carried along the
 /// motion, and against it.
 fn errors_between_frames(recipe: &SpriteRecipe) -> [f32; 3] {
-    let baked = recipe.bake(|_| ()).unwrap();
+    let baked = recipe.bake(|_| Ok::<_, haze::FieldError>(())).unwrap();
     let decode = |picture: &_, layout| Sprite::from_picture("flipbook".as_ref(), picture, layout).unwrap();
     let (sprite, detail) = (decode(&baked.picture, recipe.layout()), decode(&baked.detail, recipe.layout()));
     let size = recipe.size;

@@ -30,6 +30,8 @@ pub struct Filing {
     pub typed: Option<Typed>,
     /// The window may close, whatever is not saved.
     is_over: bool,
+    /// The window closes when the sprite that is being baked is written.
+    closes_after_baking: bool,
     title: String,
 }
 
@@ -77,6 +79,7 @@ impl Filing {
             then: None,
             typed: None,
             is_over: false,
+            closes_after_baking: false,
             title: String::new(),
         })
     }
@@ -110,9 +113,17 @@ impl Filing {
         if let Some(path) = dropped {
             self.take(path, session);
         }
-        if self.is_over {
+        let is_baking = session.sprites.is_baking();
+        let is_asked_to_close = context.input(|input| input.viewport().close_requested());
+        if self.is_over || self.closes_after_baking && !is_baking {
+            self.closes_after_baking = false;
             context.send_viewport_cmd(egui::ViewportCommand::Close);
-        } else if context.input(|input| input.viewport().close_requested())
+        } else if is_asked_to_close && is_baking && !self.closes_after_baking {
+            // Asked again it is left as it was.
+            context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            self.closes_after_baking = true;
+            session.messages.say("file", "a sprite is being baked: the window closes when it is written");
+        } else if is_asked_to_close
             && (session.document.is_dirty() || session.document.is_being_saved())
             && session.screenshot.is_none()
         {

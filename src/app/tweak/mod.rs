@@ -36,6 +36,7 @@ mod search;
 mod session;
 mod show;
 mod smoke;
+mod sprite;
 mod strip;
 mod surface;
 #[cfg(test)]

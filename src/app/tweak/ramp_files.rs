@@ -113,10 +113,10 @@ impl RampFiles {
             if !is_held && known.stamps != stamps(&known.picture) {
                 // Another program has the last word.
                 *known = Known::read(name, folders);
-                document.recipes.forget(name);
+                document.recipes.ramps.forget(name);
             }
             let Source::Recipe(recipe) = &known.source else { continue };
-            let recipe = document.recipes.get(name).unwrap_or(recipe);
+            let recipe = document.recipes.ramps.get(name).unwrap_or(recipe);
             let has_live = known.live.as_ref().is_some_and(|(live, _)| live == recipe);
             if known.written.as_ref() == Some(recipe) && (known.live.is_none() || has_live) {
                 continue;
@@ -199,15 +199,10 @@ fn copy_of(name: &str, preset: &Path) -> Result<String, Error> {
     let folder = preset.parent().unwrap_or(Path::new(""));
     let Some(builtin) = builtin::find(builtin::RAMPS, name) else { return Ok(name.into()) };
     let recipe = RampRecipe::parse(&builtin::path(name), builtin.recipe)?;
-    let is_free = |file: &String| {
+    let file = files::own_name(name, |file| {
         let picture = folder.join(file);
         !files::exists(&picture) && !files::exists(&recipe_of(&picture))
-    };
-    let names = (1..).map(|number: u32| match number {
-        1 => format!("{name}_mine.png"),
-        number => format!("{name}_mine_{number}.png"),
     });
-    let file = names.into_iter().find(is_free).unwrap_or_default();
     write(&folder.join(&file), &recipe, &recipe.bake()?)?;
     Ok(file)
 }

@@ -20,6 +20,7 @@ use super::easel::Easel;
 use super::pictures::{Pictures, names};
 use super::platform::worker::{Ticket, Worker};
 use super::session::Session;
+use super::sprite::source::recipes_of;
 use crate::app::watch::Watcher;
 
 /// What follows the files of a session.
@@ -157,7 +158,9 @@ impl Reload {
 
     fn watch(&self, session: &Session) {
         let shaders = self.shaders.iter().flat_map(|shaders| shaders.files.iter().cloned());
-        self.watcher.set(session.document.files(&session.folders()).into_iter().chain(shaders));
+        let folders = session.folders();
+        let recipes = recipes_of(&folders, &session.document.preset);
+        self.watcher.set(session.document.files(&folders).into_iter().chain(recipes).chain(shaders));
     }
 
     /// Reads the pictures that the preset names; those of before stay where they cannot be had.
@@ -220,6 +223,8 @@ impl Reload {
                 session.messages.withdraw("caches");
             }
             Some(Loaded::Caches(_, Err(error))) => session.messages.complain("caches", error),
+            // It is read again when it is written.
+            Some(Loaded::Pictures(_, Err(_))) if session.sprites.is_baking() => {}
             Some(Loaded::Pictures(_, Err(error))) => session.messages.complain("pictures", error),
             Some(Loaded::Shaders(files, checked)) => {
                 if let Some(shaders) = &mut self.shaders {

@@ -28,6 +28,7 @@ use super::ramp_files::RampFiles;
 use super::referee::Referee;
 use super::search::Search;
 use super::show::{Show, Tab};
+use super::sprite::files::SpriteFiles;
 
 pub struct Session {
     /// What is edited; panels change its preset directly.
@@ -55,6 +56,8 @@ pub struct Session {
     pub caches: Caches,
     /// Ramps whose stops are changed.
     pub ramps: RampFiles,
+    /// Sprites whose recipes are changed.
+    pub sprites: SpriteFiles,
     /// An author's, as last compiled well; those that the program has in it if none.
     pub shaders: Option<Sources>,
     /// Another program has written the file while something was changed here: which of the two is wanted is not known.
@@ -104,6 +107,7 @@ impl Session {
             pictures: Pictures::new(preset, materials),
             caches: Caches::new(preset, caches),
             ramps: RampFiles::default(),
+            sprites: SpriteFiles::default(),
             shaders: None,
             is_changed_on_disk: false,
             changed: Changed { paths: HashSet::new(), saved: preset.clone(), preset: preset.clone() },
@@ -130,6 +134,7 @@ impl Session {
     pub fn materials(&self) -> Vec<MaterialAssets> {
         let mut materials = self.pictures.of(&self.document.preset);
         self.ramps.apply(&self.document.preset, &mut materials);
+        self.sprites.apply(&self.document.preset, &mut materials);
         materials
     }
 
@@ -147,6 +152,17 @@ impl Session {
         }
         if let Err(error) = done {
             self.messages.complain("ramp", error);
+        }
+    }
+
+    /// Has baked what was changed of sprites, whole and written unless a control is held.
+    fn follow_sprites(&mut self, is_held: bool) {
+        let mut done = self.sprites.advance(&mut self.document, is_held);
+        if !is_held && done.is_ok() {
+            done = self.sprites.make_own(&mut self.document);
+        }
+        if let Err(error) = done {
+            self.messages.complain("sprite", error);
         }
     }
 
@@ -183,6 +199,7 @@ impl Session {
     pub fn track(&mut self, is_held: bool) {
         let is_held = is_held || self.show.tab == Tab::Ramps && self.ramps.is_editing();
         self.follow_ramps(is_held);
+        self.follow_sprites(is_held);
         self.document.track(is_held);
         let (saved, preset) = (self.saved(), &self.document.preset);
         if (&self.changed.saved, &self.changed.preset) != (saved, preset) {
@@ -254,8 +271,10 @@ impl Session {
         self.playback = Playback::at(document.preset.time);
         (self.compare, self.show.system, self.is_changed_on_disk) = (Compare::default(), 0, false);
         self.ramps = RampFiles::default();
+        self.sprites.forget();
         self.show.lights.forget_keys();
-        ["preset", "ramp", "pictures", "caches", "file"].into_iter().for_each(|about| self.messages.withdraw(about));
+        let stale = ["preset", "ramp", "sprite", "pictures", "caches", "file"];
+        stale.into_iter().for_each(|about| self.messages.withdraw(about));
         self.document = document;
     }
 

@@ -4,6 +4,7 @@ use glam::UVec2;
 use haze::settings::ShadeTree;
 
 use super::lights::ShownLights;
+use super::sprite::look::SpriteLook;
 
 /// What is shown of the preset; no part of it.
 #[derive(Clone, Debug)]
@@ -22,6 +23,7 @@ pub struct Show {
     pub system: usize,
     pub lights: ShownLights,
     pub overlays: Overlays,
+    pub sprite: SpriteLook,
 }
 
 /// A part of the settings.
@@ -31,6 +33,7 @@ pub enum Tab {
     Light,
     Smoke,
     Ramps,
+    Sprite,
     Advanced,
     Performance,
 }
@@ -47,6 +50,7 @@ impl Default for Show {
             system: 0,
             lights: ShownLights::default(),
             overlays: Overlays::default(),
+            sprite: SpriteLook::default(),
         }
     }
 }

@@ -323,14 +323,16 @@ impl eframe::App for Window {
             let shown = panel.show(ui, |ui| strip(ui, &mut self.session, &self.easel, aspect));
             self.layout.strip = Some(shown.response.rect.height());
         }
-        let width = self.layout.settings.unwrap_or((0.18 * ui.available_width()).clamp(360.0, 440.0));
+        let width = self.layout.settings.unwrap_or((0.18 * ui.available_width()).clamp(370.0, 440.0));
         // The picture is the largest thing, in a small window too.
         let most = (0.45 * ui.available_width()).clamp(240.0, 560.0);
         let settings = egui::Panel::right("settings").default_size(width).size_range(240.0..=most);
         let shown = settings.show(ui, |ui| panel::settings::panel(ui, &mut self.session));
         self.layout.settings = Some(shown.response.rect.width());
         self.session.hints.see(Place::Settings, shown.response.rect);
-        if std::mem::take(&mut self.session.ramps.wants_place) {
+        let has_no_place =
+            [&mut self.session.ramps.wants_place, &mut self.session.sprites.wants_place].map(std::mem::take);
+        if has_no_place.contains(&true) {
             self.filing.save_as(&self.session);
         }
         if let Some(path) = shown.inner {

@@ -33,18 +33,15 @@ pub struct BakedSprite {
 }
 
 impl SpriteRecipe {
-    /// Bakes the whole sheet and its details. `progress` is told how many frames are done.
+    /// Bakes the whole sheet and its details. `progress` is told how many frames are done; its error ends the work.
     ///
     /// # Errors
-    /// The first number of the recipe that is out of range.
-    pub fn bake(&self, progress: impl Fn(u32)) -> Result<BakedSprite, FieldError> {
+    /// The first number of the recipe that is out of range, or what `progress` says.
+    pub fn bake<E: From<FieldError>>(&self, progress: impl Fn(u32) -> Result<(), E>) -> Result<BakedSprite, E> {
         validate(self, String::new)?;
         let bake = self.baker();
-        let frame = |frame| {
-            progress(frame);
-            bake(frame as f32)
-        };
-        let frames: Vec<_> = (0..self.frame_count()).map(frame).collect();
+        let frame = |frame| progress(frame).map(|()| bake(frame as f32));
+        let frames = (0..self.frame_count()).map(frame).collect::<Result<Vec<_>, E>>()?;
         let pictures = frames.iter().flat_map(|frame| frame.picture.texels.iter().map(|texel| texel.0));
         let sprite = Sprite::with_levels(self.size, self.frame_count(), pictures.collect());
         let mut details: Vec<_> =
@@ -97,6 +94,10 @@ mod tests {
         json::parse(Path::new("puff.sprite.json"), recipe).unwrap()
     }
 
+    fn bake(recipe: &SpriteRecipe) -> Result<BakedSprite, FieldError> {
+        recipe.bake(|_| Ok(()))
+    }
+
     #[test]
     fn every_seed_is_as_good_as_the_next() {
         // The second times 31 is the last word there is.
@@ -118,7 +119,7 @@ mod tests {
         ] {
             let mut recipe = SpriteRecipe { size: 32, columns: 2, rows: 1, ..puff() };
             change(&mut recipe);
-            assert!(recipe.bake(|_| ()).is_err());
+            assert!(bake(&recipe).is_err());
             // Each is seen; `upright` where there are lines.
             let plain = SpriteRecipe { version: 2, length: recipe.length.max(recipe.upright), ..puff() };
             let plain = SpriteRecipe { size: 32, columns: 2, rows: 1, ..plain };
@@ -128,7 +129,7 @@ mod tests {
             } else {
                 plain
             };
-            assert!(recipe.bake(|_| ()).unwrap().picture != plain.bake(|_| ()).unwrap().picture);
+            assert!(bake(&recipe).unwrap().picture != bake(&plain).unwrap().picture);
         }
     }
 
@@ -146,10 +147,31 @@ mod tests {
     }
 
     #[test]
-    fn progress_is_told() {
+    fn progress_is_told_and_ends_the_work() {
         let told = std::cell::RefCell::new(Vec::new());
         let recipe = SpriteRecipe { version: 2, size: 8, columns: 3, rows: 1, ..puff() };
-        recipe.bake(|frame| told.borrow_mut().push(frame)).unwrap();
-        assert_eq!(*told.borrow(), [0, 1, 2]);
+        let bake = |last| {
+            let error = || FieldError::new("", "", "");
+            recipe.bake(|frame| {
+                told.borrow_mut().push(frame);
+                if frame < last { Ok(()) } else { Err(error()) }
+            })
+        };
+        assert!(bake(9).is_ok());
+        assert_eq!(told.take(), [0, 1, 2]);
+        assert!(bake(1).is_err());
+        assert_eq!(told.take(), [0, 1]);
+    }
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        let path = Path::new("a.sprite.json");
+        for recipe in [puff(), SpriteRecipe { version: 2, travel: 0.25, ..puff() }] {
+            let text = recipe.to_text();
+            assert_eq!(json::parse::<SpriteRecipe>(path, &text).unwrap(), recipe);
+            // Programs that know no version 2 read what it is not needed for.
+            assert_eq!(text.contains("\"travel\": 0.25"), recipe.version == 2);
+            assert!(text.ends_with("}\n") && !text.contains("\"length\""), "{text}");
+        }
     }
 }

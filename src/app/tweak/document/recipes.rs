@@ -1,29 +1,49 @@
-//! The recipes of ramps that were changed here, beside the preset.
+//! The recipes of pictures that were changed here, beside the preset.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use haze::preset::Preset;
 use haze::ramp::bake::RampRecipe;
+use haze::sprite::bake::SpriteRecipe;
 
 use super::difference::step_name;
 
-/// By the names that the preset has for their pictures. A clone is cheap.
+/// Those of every kind. A clone is cheap.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Recipes(BTreeMap<String, Arc<RampRecipe>>);
+pub struct Recipes {
+    pub ramps: Of<RampRecipe>,
+    pub sprites: Of<SpriteRecipe>,
+}
 
-impl Recipes {
-    pub fn get(&self, name: &str) -> Option<&RampRecipe> {
+/// By the names that the preset has for their pictures.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Of<T>(BTreeMap<String, Arc<T>>);
+
+impl<T> Default for Of<T> {
+    fn default() -> Self {
+        Self(BTreeMap::new())
+    }
+}
+
+impl<T: PartialEq> Of<T> {
+    pub fn get(&self, name: &str) -> Option<&T> {
         self.0.get(name).map(|recipe| &**recipe)
     }
 
-    pub fn set(&mut self, name: &str, recipe: RampRecipe) {
+    pub fn set(&mut self, name: &str, recipe: T) {
         self.0.insert(name.into(), Arc::new(recipe));
     }
 
     /// Its picture is another's work now.
     pub fn forget(&mut self, name: &str) {
         self.0.remove(name);
+    }
+
+    /// The first that is not as it was.
+    fn changed<'a>(&'a self, before: &'a Self) -> Option<&'a str> {
+        let mut names = self.0.keys().chain(before.0.keys());
+        names.find(|name| before.get(name) != self.get(name)).map(String::as_str)
     }
 }
 
@@ -32,8 +52,11 @@ pub type Work = (Preset, Recipes);
 
 /// What a step is called.
 pub fn name_of(before: &Work, after: &Work) -> String {
-    let names = after.1.0.keys().chain(before.1.0.keys());
-    match names.into_iter().find(|name| before.1.get(name) != after.1.get(name)) {
+    // The preset's columns and rows follow those of the recipe.
+    if let Some(name) = after.1.sprites.changed(&before.1.sprites) {
+        return format!("recipe of {name}");
+    }
+    match after.1.ramps.changed(&before.1.ramps) {
         Some(name) if before.0 == after.0 => format!("stops of {name}"),
         _ => step_name(&before.0, &after.0),
     }

@@ -17,6 +17,7 @@ pub mod ramps;
 pub mod row;
 pub mod search;
 pub mod settings;
+pub mod sprite;
 pub mod stops;
 pub mod time;
 pub mod value;

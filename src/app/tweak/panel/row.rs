@@ -138,7 +138,7 @@ pub fn spaced(name: &str) -> String {
     name.replace('_', " ")
 }
 
-/// Width of what is typed.
+/// Least width of what is typed.
 const VALUE: f32 = 84.0;
 
 /// What cannot be typed is told once.
@@ -214,7 +214,12 @@ impl Control<'_> {
     /// True if the value was changed.
     fn show(&self, ui: &mut Ui, value: &mut f64, refused: &mut Refused) -> bool {
         let height = ui.spacing().interact_size.y;
-        ui.spacing_mut().slider_width = (ui.available_width() - VALUE - ui.spacing().item_spacing.x).max(16.0);
+        // More than there is room for would widen the panel, frame by frame.
+        let font = egui::TextStyle::Button.resolve(ui.style());
+        let text = shown(*value) + &suffix(self.unit);
+        let text = ui.painter().layout_no_wrap(text, font, egui::Color32::WHITE).size().x;
+        let width = VALUE.max(text + 2.0 * ui.spacing().button_padding.x);
+        ui.spacing_mut().slider_width = (ui.available_width() - width - ui.spacing().item_spacing.x).max(16.0);
         let before = *value;
         let slider = egui::Slider::new(value, self.shown.clone())
             .logarithmic(self.is_logarithmic)
@@ -238,7 +243,7 @@ impl Control<'_> {
                 number
             });
         let is_typed =
-            ui.add_sized([VALUE.min(ui.available_width()), height], number).labelled_by(self.name.id).changed();
+            ui.add_sized([width.min(ui.available_width()), height], number).labelled_by(self.name.id).changed();
         if let Some(text) = typed.into_inner() {
             *refused = Some(refusal(&text, *self.range.start(), *self.range.end(), self.unit));
             *value = before;

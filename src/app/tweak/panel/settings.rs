@@ -6,27 +6,29 @@ use haze::settings::{Fields, path_of};
 
 use super::fields::{self, Desk, Step, is_at};
 use super::row::Asked;
-use super::{curve, lights, look, ramps};
+use super::{curve, lights, look, ramps, sprite};
 use crate::app::tweak::messages::short;
 use crate::app::tweak::session::Session;
 use crate::app::tweak::show::Tab;
 use crate::app::tweak::smoke::Smoke;
 
 /// The tabs, their names, and what is on them.
-pub const TABS: [(Tab, &str, &str); 6] = [
+pub const TABS: [(Tab, &str, &str); 7] = [
     (Tab::Look, "Look", "The few controls that make a look"),
     (Tab::Light, "Light", "Lights, the sky, the camera"),
     (Tab::Smoke, "Smoke", "Where smoke comes from, and how it takes light"),
     (Tab::Ramps, "Ramps", "What smoke is lit from, and which part of it this picture looks up"),
+    (Tab::Sprite, "Sprite", "The flipbook under a light that moves, and the recipe that makes it"),
     (Tab::Advanced, "Advanced", "How smoke reaches the picture: techniques, targets, formats"),
     (Tab::Performance, "Cost", "What the picture costs, and a budget for it"),
 ];
 
 /// Gives the path of a field of whose values a sheet is to be made.
 pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
+    // Close together, so that all of them fit beside each other in a narrow panel, too.
     ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        ui.spacing_mut().button_padding.x = 6.0;
+        ui.spacing_mut().item_spacing.x = 3.0;
+        ui.spacing_mut().button_padding.x = 5.0;
         for (tab, name, tooltip) in TABS {
             ui.selectable_value(&mut session.show.tab, tab, name).on_hover_text(tooltip);
         }
@@ -62,6 +64,10 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
         session.inspect.spot = shown.inner;
         return None;
     }
+    if session.show.tab == Tab::Sprite {
+        sprite::panel(ui, session);
+        return None;
+    }
     let mut shown = std::mem::take(&mut session.show.lights);
     let whole = || {
         let mut smoke = Smoke::default();
@@ -92,7 +98,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
         }
         Tab::Smoke => smoke(ui, &mut desk, preset, system),
         Tab::Advanced => advanced(ui, &mut desk, preset, system),
-        Tab::Ramps | Tab::Performance => {}
+        Tab::Ramps | Tab::Sprite | Tab::Performance => {}
     });
     let Desk { asked, refused, .. } = desk;
     let is_edited = session.document.preset != edited;

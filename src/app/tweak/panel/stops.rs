@@ -34,7 +34,7 @@ pub fn editor(
 ) -> Option<Option<f32>> {
     let folders = session.folders();
     let Source::Recipe(recipe) = session.ramps.source(ramp.name, &folders) else { return None };
-    let mut recipe = session.document.recipes.get(ramp.name).unwrap_or(recipe).clone();
+    let mut recipe = session.document.recipes.ramps.get(ramp.name).unwrap_or(recipe).clone();
     let kept = session.inspect.kept_colour();
     let (editor, row) = session.ramps.editor(ramp.field);
     rows(ui, &recipe, row);
@@ -44,7 +44,7 @@ pub fn editor(
     let edited = ui.push_id(ramp.field, |ui| editor.show(ui, shown, &surroundings)).inner;
     let is_changed = edited.is_changed | take_kept(ui, kept, editor, shown);
     if is_changed {
-        session.document.recipes.set(ramp.name, recipe);
+        session.document.recipes.ramps.set(ramp.name, recipe);
     }
     if let Some(refused) = edited.refused {
         session.messages.complain("ramp", refused);

@@ -36,6 +36,7 @@ pub fn suffix(unit: &str) -> String {
     match unit {
         "" => String::new(),
         "degrees" => "°".into(),
+        "half sides" => " side/2".into(),
         unit => format!(" {unit}"),
     }
 }
@@ -43,7 +44,7 @@ pub fn suffix(unit: &str) -> String {
 /// A number as it is typed, with its unit or without; never infinite, never NaN.
 pub fn parse(text: &str, unit: &str) -> Option<f64> {
     let text = text.trim();
-    let text = text.strip_suffix(unit).or(text.strip_suffix('°')).unwrap_or(text).trim();
+    let text = text.strip_suffix(unit).or(text.strip_suffix(suffix(unit).trim())).unwrap_or(text).trim();
     text.parse().ok().filter(|number: &f64| number.is_finite())
 }
 
@@ -92,6 +93,7 @@ mod tests {
     fn numbers_are_typed_with_their_unit_or_without() {
         assert_eq!(parse(" 2.5 m/s ", "m/s"), Some(2.5));
         assert_eq!(parse("1e-3", ""), Some(0.001));
+        assert_eq!((parse("0.2 side/2", "half sides"), parse("0.2 half sides", "half sides")), (Some(0.2), Some(0.2)));
         assert_eq!((parse("35°", "degrees"), parse("35 degrees", "degrees")), (Some(35.0), Some(35.0)));
         for wrong in ["nan", "inf", "2,5", "", "m/s", "two"] {
             assert_eq!(parse(wrong, "m/s"), None, "{wrong}");

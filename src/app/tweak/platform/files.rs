@@ -61,3 +61,12 @@ pub fn exists(path: &Path) -> bool {
 pub fn is_same(one: &Path, other: &Path) -> bool {
     FileIdentity::of(one) == FileIdentity::of(other)
 }
+
+/// `NAME_mine.png`, or the first of `NAME_mine_2.png` and so on that is free: what a copy of a built-in picture is called.
+pub fn own_name(name: &str, is_free: impl Fn(&str) -> bool) -> String {
+    let names = (1..).map(|number: u32| match number {
+        1 => format!("{name}_mine.png"),
+        number => format!("{name}_mine_{number}.png"),
+    });
+    names.into_iter().find(|file| is_free(file)).unwrap_or_default()
+}

@@ -52,22 +52,27 @@ pub struct SpriteRecipe {
     /// Weight of the fine normals, a texel wide, against the broad ones, a twelfth of the sprite wide.
     pub bump: f32,
     /// Version 2: half length of the lines that balls are drawn out to. 0 leaves balls; thin ones become strands.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_unused")]
     pub length: f32,
     /// Version 2: 0 draws them out in any direction, 1 upright: streaks.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_unused")]
     pub upright: f32,
     /// Version 2: how far the noise is round lumps with sharp creases between, a cauliflower, instead of waves.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_unused")]
     pub lumps: f32,
     /// Version 2: how far all of it is carried along a swirling flow and back in one loop. Above 0 the noise is carried too and
     /// does not turn in its place: frames that travel rather than boil. Up to about 0.2 motion can follow.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_unused")]
     pub travel: f32,
     /// How far a texel may be moved to make the file smaller; a normal in thin smoke up to four times as far, depth and motion half
     /// as far. 2 halves the file, and is not seen.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_unused")]
     pub tolerance: u32,
+}
+
+/// At what it is in older files.
+fn is_unused<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 impl Fields for SpriteRecipe {
@@ -107,6 +112,12 @@ impl SpriteRecipe {
     /// [`Error::Io`], [`Error::Json`] or [`Error::JsonField`].
     pub fn load(path: &Path) -> Result<Self, Error> {
         json::load(path, RECIPE_VERSION, |recipe: &Self| validate(recipe, String::new))
+    }
+
+    /// The JSON that [`SpriteRecipe::load`] reads, ending with a line break.
+    pub fn to_text(&self) -> String {
+        // Numbers: there is nothing that could fail.
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
 
     /// Frames on the sheet.

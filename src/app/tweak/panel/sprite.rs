@@ -1,0 +1,30 @@
+//! The sprite of a system: how it is lit, what would show of it, and what it is made from.
+
+mod flipbook;
+mod recipe;
+
+use eframe::egui::{self, Ui};
+
+use crate::app::tweak::messages::short;
+use crate::app::tweak::session::Session;
+
+/// Draws the page of the selected system's sprite.
+pub fn panel(ui: &mut Ui, session: &mut Session) {
+    let index = session.show.system;
+    let material = session.materials().into_iter().nth(index);
+    let Some((system, material)) = session.document.preset.systems.get(index).zip(material) else {
+        ui.weak("The preset has no smoke.");
+        return;
+    };
+    let (names, settings) = (system.material.clone(), system.settings);
+    flipbook::panel(ui, &mut session.show.sprite, &material, &settings);
+    ui.separator();
+    ui.horizontal(|ui| {
+        ui.strong(short(&names.sprite, 40));
+        let sprite = &material.sprite;
+        ui.weak(format!("{} frames of {1}x{1}", sprite.frame_count(), sprite.size()));
+    });
+    // The picture stays where it is while sliders far below are moved.
+    let area = egui::ScrollArea::vertical().id_salt(session.show.tab).auto_shrink(false);
+    area.show(ui, |ui| recipe::panel(ui, session, &names));
+}

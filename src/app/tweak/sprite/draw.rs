@@ -1,0 +1,121 @@
+//! A sprite as it would be lit alone, on the CPU, by the formulas that the renderers have.
+
+use eframe::egui::{Color32, ColorImage};
+use glam::{UVec2, Vec2, Vec3, Vec3Swizzles as _, Vec4Swizzles as _};
+use haze::MaterialAssets;
+use haze::formula::colour::gamma_target_colour;
+use haze::formula::lighting::diffuse_coordinate;
+use haze::formula::normal::normal_from_accumulation;
+use haze::formula::ramp::sample_ramp;
+use haze::formula::sprite::{MOTION_RANGE, flipbook_frames, sample_detail, sample_sprite, sprite_lod};
+use haze::picture::Picture;
+use haze::settings::{NormalDecode, NormalEncoding, RampFilter};
+
+use super::look::Shown;
+
+/// What a picture of a sprite depends on, beside its material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    pub shown: Shown,
+    pub frame: f32,
+    /// Unit vector.
+    pub to_light: Vec3,
+    pub filter: RampFilter,
+    /// Share of the sprite's motion that is followed between frames.
+    pub motion: f32,
+    /// Pixels.
+    pub side: u32,
+}
+
+/// Linear light behind the smoke: dark enough for bright rims, bright enough for dark smoke.
+const BEHIND: Vec3 = Vec3::splat(0.03);
+
+/// Draws it.
+pub fn draw(material: &MaterialAssets, view: &View) -> ColorImage {
+    let mut picture = Picture::new(UVec2::splat(view.side), Color32::BLACK);
+    picture.for_each(|at, pixel| {
+        let uv = (at.as_vec2() + 0.5) / view.side as f32;
+        let [r, g, b] = code(material, view, uv).to_array().map(|code| (code * 255.0).round() as u8);
+        *pixel = Color32::from_rgb(r, g, b);
+    });
+    ColorImage::new([view.side as usize; 2], picture.texels)
+}
+
+/// The sRGB code of a place on the sprite.
+fn code(material: &MaterialAssets, view: &View, uv: Vec2) -> Vec3 {
+    let sprite = &material.sprite;
+    let frames = flipbook_frames(view.frame, sprite.frame_count() as f32);
+    let detail = material.detail.as_ref().map_or(Vec3::ZERO, |detail| {
+        sample_detail(detail, uv, frames, sprite_lod(detail.size() as f32, view.side as f32))
+    });
+    let lod = sprite_lod(sprite.size() as f32, view.side as f32);
+    let texel = sample_sprite(sprite, uv, frames, detail.yz() * view.motion, lod);
+    let (normal, amount) = (texel.xyz(), texel.w);
+    match view.shown {
+        Shown::Lit => {
+            let normal = normal_from_accumulation(NormalEncoding::Signed, NormalDecode::Exact, normal, 1.0);
+            let light = sample_ramp(&material.diffuse_ramp, view.filter, diffuse_coordinate(normal, view.to_light));
+            gamma_target_colour(BEHIND.lerp(light, amount))
+        }
+        Shown::Normals => normal * 0.5 + 0.5,
+        Shown::Amount => Vec3::splat(amount),
+        Shown::Depth => Vec3::splat(detail.x * 0.5 + 0.5),
+        Shown::Motion => (detail.yz() / MOTION_RANGE * 0.5 + 0.5).extend(0.5),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use haze::preset::MaterialNames;
+    use haze::settings::SpriteSettings;
+
+    use super::*;
+
+    fn material() -> MaterialAssets {
+        MaterialNames { sprite: "ball".into(), ..MaterialNames::default() }.load("".as_ref()).unwrap()
+    }
+
+    fn view(shown: Shown, to_light: Vec3) -> View {
+        let motion = SpriteSettings::default().motion;
+        View { shown, frame: 0.0, to_light, filter: RampFilter::default(), motion, side: 64 }
+    }
+
+    /// Mean brightness of the left, right, upper and lower half.
+    fn halves(picture: &ColorImage) -> [f32; 4] {
+        let mean = |is_in: &dyn Fn(usize, usize) -> bool| {
+            let at = |index: usize| (index % 64, index / 64);
+            let of = picture.pixels.iter().enumerate().filter(|(index, _)| is_in(at(*index).0, at(*index).1));
+            of.map(|(_, pixel)| f32::from(pixel.g())).sum::<f32>() / 2048.0
+        };
+        [mean(&|x, _| x < 32), mean(&|x, _| x >= 32), mean(&|_, y| y < 32), mean(&|_, y| y >= 32)]
+    }
+
+    #[test]
+    fn the_side_that_faces_the_light_is_the_brighter_one() {
+        let material = material();
+        let lit = |to_light| halves(&draw(&material, &view(Shown::Lit, to_light)));
+        let [left, right, ..] = lit(Vec3::NEG_X);
+        assert!(left > 1.3 * right, "{left} {right}");
+        let [left, right, ..] = lit(Vec3::X);
+        assert!(right > 1.3 * left, "{left} {right}");
+        let [.., above, below] = lit(Vec3::Y);
+        assert!(above > 1.3 * below, "{above} {below}");
+    }
+
+    #[test]
+    fn what_is_shown_is_what_the_sheet_has() {
+        let material = material();
+        let middle = |shown| draw(&material, &view(shown, Vec3::Z)).pixels[32 * 64 + 32];
+        let corner = |shown| draw(&material, &view(shown, Vec3::Z)).pixels[0];
+        let [normal, amount] = [Shown::Normals, Shown::Amount].map(middle);
+        assert!(normal.b() > 200 && amount.g() > 150, "{normal:?} {amount:?}");
+        assert_eq!(corner(Shown::Amount), Color32::BLACK);
+        // It stands out in its middle.
+        assert!(middle(Shown::Depth).r() > 150, "{:?}", middle(Shown::Depth));
+        // Without a detail map nothing is known of it.
+        let plain = MaterialAssets { detail: None, ..material.clone() };
+        assert_eq!(draw(&plain, &view(Shown::Motion, Vec3::Z)).pixels[2000], Color32::from_rgb(128, 128, 128));
+        let moved = View { frame: 0.5, ..view(Shown::Amount, Vec3::Z) };
+        assert_ne!(draw(&material, &moved), draw(&material, &view(Shown::Amount, Vec3::Z)));
+    }
+}
