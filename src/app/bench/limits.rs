@@ -1,5 +1,7 @@
 //! What this adapter can do at best, with nothing of haze: the floor under every figure.
 
+mod work;
+
 use std::collections::HashMap;
 use std::time::Instant;
 
@@ -8,14 +10,15 @@ use haze::headless::Headless;
 use haze::settings::AccumulationFormat;
 use haze::{Error, wgpu};
 
-use super::measure::{bytes, size_name};
+use super::measure::{bytes, size_name, waking};
 use super::report::{Clock, Milliseconds, Row};
 use super::suites::Suite;
 use crate::app::interrupt;
+use work::{Bench, Work, texture};
 
-/// Milliseconds of a fragment that only blends, by format, and a row for everything that was measured.
+/// Milliseconds of a fragment of an unlit disc, by format, and a row for everything that was measured.
 pub struct Limits {
-    pub blend: HashMap<AccumulationFormat, f64>,
+    pub floor: HashMap<AccumulationFormat, f64>,
     pub rows: Vec<Row>,
 }
 
@@ -27,72 +30,40 @@ struct Bare {
     fragments: u64,
     /// Bytes that are moved at the least.
     bytes: u64,
-    /// Of which `blend` is the limit.
+    /// Of which `floor` is the limit.
     format: Option<AccumulationFormat>,
-}
-
-enum Work {
-    /// So many layers of a pipeline's triangle into a target; none clears it.
-    Draw {
-        pipeline: Option<(wgpu::RenderPipeline, Option<wgpu::BindGroup>)>,
-        target: wgpu::TextureView,
-        layers: u32,
-    },
-    Compute {
-        pipeline: wgpu::ComputePipeline,
-        bindings: wgpu::BindGroup,
-        groups: UVec2,
-    },
-    /// So often.
-    Copy {
-        from: wgpu::Texture,
-        to: wgpu::Texture,
-        times: u32,
-    },
-}
-
-struct Bench<'a> {
-    gpu: &'a Headless,
-    /// Two timestamps, and where they are resolved to.
-    queries: Option<(wgpu::QuerySet, wgpu::Buffer)>,
-    module: wgpu::ShaderModule,
-    sampler: wgpu::Sampler,
-    source: wgpu::TextureView,
-    depth: wgpu::TextureView,
-    size: UVec2,
 }
 
 /// Measures all of them in turn, over and over.
 pub fn measure(gpu: &Headless, size: UVec2, quick: bool) -> Result<Limits, Error> {
     let (layers, rounds) = if quick { (16, 5) } else { (32, 15) };
     let bench = Bench::new(gpu, size);
-    let bare = bench.all(layers);
+    let bare = all(&bench, layers);
     gpu.check()?;
     let mut times = vec![Vec::new(); bare.len()];
-    for round in 0..=rounds {
-        if interrupt::is_asked() {
-            break;
-        }
+    let (started, awake) = (Instant::now(), waking(gpu));
+    let mut round = 0;
+    while round <= rounds && !interrupt::is_asked() {
         for (bare, times) in bare.iter().zip(&mut times) {
             let ms = bench.frame(&bare.work)?;
             if round > 0 {
                 times.push(ms);
             }
         }
+        if started.elapsed() >= awake {
+            round += 1;
+        }
     }
-    let mut blend = HashMap::new();
+    let mut floor = HashMap::new();
     let mut rows = Vec::new();
     for (bare, times) in bare.iter().zip(&mut times) {
         let Some(gpu_ms) = Milliseconds::of(times) else { continue };
         let per_fragment = gpu_ms.median / bare.fragments.max(1) as f64;
         if let Some(format) = bare.format {
-            // The first of a format only blends.
-            blend.entry(format).or_insert(per_fragment);
+            // The first of a format.
+            floor.entry(format).or_insert(per_fragment);
         }
-        let clock = match (&bare.work, &bench.queries) {
-            (Work::Copy { .. }, _) | (_, None) => Clock::Wall,
-            (_, Some(_)) => Clock::Gpu,
-        };
+        let clock = if bench.is_timed(&bare.work) { Clock::Gpu } else { Clock::Wall };
         let rate = (bare.fragments > 0).then(|| bare.fragments as f64 / gpu_ms.median * 1.0e-6);
         rows.push(Row {
             format: bare.format.map(|format| format.name().into()),
@@ -100,278 +71,61 @@ pub fn measure(gpu: &Headless, size: UVec2, quick: bool) -> Result<Limits, Error
             fragments: (bare.fragments > 0).then_some(bare.fragments),
             gfragments_per_s: rate.filter(|_| bare.bytes > 0),
             bytes: (bare.bytes > 0).then_some(bare.bytes),
-            limit_ratio: bare.format.and_then(|format| blend.get(&format)).map(|limit| per_fragment / limit),
+            limit_ratio: bare.format.and_then(|format| floor.get(&format)).map(|limit| per_fragment / limit),
             ..Row::of(Suite::Limits, bare.name.clone(), size_name(size), clock, gpu_ms)
         });
     }
-    Ok(Limits { blend, rows })
+    Ok(Limits { floor, rows })
 }
 
-impl<'a> Bench<'a> {
-    fn new(gpu: &'a Headless, size: UVec2) -> Self {
-        let device = &gpu.device;
-        let target =
-            |format, usage| texture(gpu, size, format, usage).create_view(&wgpu::TextureViewDescriptor::default());
-        let queries = device.features().contains(wgpu::Features::TIMESTAMP_QUERY).then(|| {
-            let set = wgpu::QuerySetDescriptor { label: None, ty: wgpu::QueryType::Timestamp, count: 2 };
-            let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
-            let buffer = wgpu::BufferDescriptor { label: None, size: 16, usage, mapped_at_creation: false };
-            (device.create_query_set(&set), device.create_buffer(&buffer))
-        });
-        Self {
-            gpu,
-            queries,
-            module: device.create_shader_module(wgpu::include_wgsl!("limits.wgsl")),
-            sampler: device.create_sampler(&wgpu::SamplerDescriptor {
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                ..Default::default()
-            }),
-            source: target(wgpu::TextureFormat::Rgba8Unorm, wgpu::TextureUsages::TEXTURE_BINDING),
-            depth: target(wgpu::TextureFormat::Depth32Float, wgpu::TextureUsages::empty()),
-            size,
-        }
-    }
-
-    /// What there is to measure; first of every format the one that only blends.
-    fn all(&self, layers: u32) -> Vec<Bare> {
-        let pixels = u64::from(self.size.x) * u64::from(self.size.y);
-        let mut all = vec![Bare {
-            name: "empty pass".into(),
-            work: self.draw(None, AccumulationFormat::Rgba16Float, 0),
-            fragments: 0,
-            bytes: 0,
-            format: None,
-        }];
-        for &format in AccumulationFormat::ALL {
-            for (what, entry) in [("blend", "constant"), ("one fetch", "one_fetch"), ("two fetches", "two_fetches")] {
-                let fragments = pixels * u64::from(layers);
-                all.push(Bare {
-                    name: format!("{what} {}", format.name()),
-                    work: self.draw(Some(entry), format, layers),
-                    fragments,
-                    bytes: fragments * 2 * u64::from(bytes(format)),
-                    format: Some(format),
-                });
-            }
-        }
-        all.push(Bare {
-            name: "joint bilateral".into(),
-            work: self.draw(Some("joint_bilateral"), AccumulationFormat::Rgba16Float, 1),
-            fragments: pixels,
-            bytes: pixels * 2 * u64::from(bytes(AccumulationFormat::Rgba16Float)),
-            format: None,
-        });
-        if self.gpu.adapter.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS) {
+/// What there is to measure; first of every format the floor: an unlit disc.
+fn all(bench: &Bench<'_>, layers: u32) -> Vec<Bare> {
+    let pixels = u64::from(bench.size.x) * u64::from(bench.size.y);
+    let mut all = vec![Bare {
+        name: "empty pass".into(),
+        work: bench.draw(None, AccumulationFormat::Rgba16Float, 0),
+        fragments: 0,
+        bytes: 0,
+        format: None,
+    }];
+    for &format in AccumulationFormat::ALL {
+        for (what, entry) in [("disc", "one_fetch"), ("disc of two fetches", "two_fetches"), ("blend", "constant")] {
+            let fragments = pixels * u64::from(layers);
             all.push(Bare {
-                name: "one fetch in compute".into(),
-                work: self.compute(layers),
-                fragments: pixels * u64::from(layers),
-                // Each texel is written once.
-                bytes: pixels * 8,
-                format: None,
+                name: format!("{what} {}", format.name()),
+                work: bench.draw(Some(entry), format, layers),
+                fragments,
+                bytes: fragments * 2 * u64::from(bytes(format)),
+                format: Some(format),
             });
         }
-        let times = 16;
-        let usage = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
-        let [from, to] = [(); 2].map(|()| texture(self.gpu, self.size, wgpu::TextureFormat::Rgba16Float, usage));
+    }
+    all.push(Bare {
+        name: "joint bilateral".into(),
+        work: bench.draw(Some("joint_bilateral"), AccumulationFormat::Rgba16Float, 1),
+        fragments: pixels,
+        bytes: pixels * 2 * u64::from(bytes(AccumulationFormat::Rgba16Float)),
+        format: None,
+    });
+    if bench.gpu.adapter.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS) {
         all.push(Bare {
-            name: "copy".into(),
-            work: Work::Copy { from, to, times },
-            fragments: 0,
-            bytes: pixels * 8 * 2 * u64::from(times),
+            name: "disc in compute".into(),
+            work: bench.compute(layers),
+            fragments: pixels * u64::from(layers),
+            // Each texel is written once.
+            bytes: pixels * 8,
             format: None,
         });
-        all
     }
-
-    fn draw(&self, entry: Option<&str>, format: AccumulationFormat, layers: u32) -> Work {
-        let format = texture_format(format);
-        let target = texture(self.gpu, self.size, format, wgpu::TextureUsages::empty());
-        let component = wgpu::BlendComponent {
-            src_factor: wgpu::BlendFactor::One,
-            dst_factor: wgpu::BlendFactor::OneMinusSrcAlpha,
-            operation: wgpu::BlendOperation::Add,
-        };
-        let pipeline = entry.map(|entry| {
-            let pipeline = self.gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(entry),
-                layout: None,
-                vertex: wgpu::VertexState {
-                    module: &self.module,
-                    entry_point: Some("cover"),
-                    compilation_options: Default::default(),
-                    buffers: &[],
-                },
-                primitive: Default::default(),
-                depth_stencil: Some(wgpu::DepthStencilState {
-                    format: wgpu::TextureFormat::Depth32Float,
-                    depth_write_enabled: Some(false),
-                    depth_compare: Some(wgpu::CompareFunction::LessEqual),
-                    stencil: Default::default(),
-                    bias: Default::default(),
-                }),
-                multisample: Default::default(),
-                fragment: Some(wgpu::FragmentState {
-                    module: &self.module,
-                    entry_point: Some(entry),
-                    compilation_options: Default::default(),
-                    targets: &[Some(wgpu::ColorTargetState {
-                        format,
-                        blend: Some(wgpu::BlendState { color: component, alpha: component }),
-                        write_mask: wgpu::ColorWrites::ALL,
-                    })],
-                }),
-                multiview_mask: None,
-                cache: None,
-            });
-            let bindings = self.bindings(&pipeline, entry);
-            (pipeline, bindings)
-        });
-        Work::Draw { pipeline, target: target.create_view(&Default::default()), layers }
-    }
-
-    /// What an entry point reads: layouts have only what is used.
-    fn bindings(&self, pipeline: &wgpu::RenderPipeline, name: &str) -> Option<wgpu::BindGroup> {
-        let entries = [
-            entry(0, wgpu::BindingResource::TextureView(&self.source)),
-            entry(1, wgpu::BindingResource::Sampler(&self.sampler)),
-        ];
-        let entries = match name {
-            "constant" => return None,
-            "joint_bilateral" => &entries[..1],
-            _ => &entries[..],
-        };
-        let layout = &pipeline.get_bind_group_layout(0);
-        Some(self.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries }))
-    }
-
-    fn compute(&self, layers: u32) -> Work {
-        let device = &self.gpu.device;
-        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("blend in registers"),
-            layout: None,
-            module: &self.module,
-            entry_point: Some("blend_in_registers"),
-            compilation_options: wgpu::PipelineCompilationOptions {
-                constants: &[("layers", f64::from(layers))],
-                ..Default::default()
-            },
-            cache: None,
-        });
-        let usage = wgpu::TextureUsages::STORAGE_BINDING;
-        let written = texture(self.gpu, self.size, wgpu::TextureFormat::Rgba16Float, usage);
-        let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &[
-                entry(0, wgpu::BindingResource::TextureView(&self.source)),
-                entry(1, wgpu::BindingResource::Sampler(&self.sampler)),
-                entry(2, wgpu::BindingResource::TextureView(&written.create_view(&Default::default()))),
-            ],
-        });
-        Work::Compute { pipeline, bindings, groups: (self.size + 7) / 8 }
-    }
-}
-
-impl Bench<'_> {
-    /// Milliseconds of the work.
-    fn frame(&self, work: &Work) -> Result<f64, Error> {
-        let device = &self.gpu.device;
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let set = self.queries.as_ref().map(|(set, _)| set);
-        match work {
-            Work::Draw { pipeline, target, layers } => {
-                let ops = wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                    store: wgpu::StoreOp::Store,
-                };
-                let writes = |query_set| wgpu::RenderPassTimestampWrites {
-                    query_set,
-                    beginning_of_pass_write_index: Some(0),
-                    end_of_pass_write_index: Some(1),
-                };
-                let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                    color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                        view: target,
-                        depth_slice: None,
-                        resolve_target: None,
-                        ops,
-                    })],
-                    depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                        view: &self.depth,
-                        depth_ops: Some(wgpu::Operations {
-                            load: wgpu::LoadOp::Clear(1.0),
-                            store: wgpu::StoreOp::Discard,
-                        }),
-                        stencil_ops: None,
-                    }),
-                    timestamp_writes: set.map(writes),
-                    ..Default::default()
-                });
-                if let Some((pipeline, bindings)) = pipeline {
-                    pass.set_pipeline(pipeline);
-                    if let Some(bindings) = bindings {
-                        pass.set_bind_group(0, bindings, &[]);
-                    }
-                    pass.draw(0..3, 0..*layers);
-                }
-            }
-            Work::Compute { pipeline, bindings, groups } => {
-                let writes = |query_set| wgpu::ComputePassTimestampWrites {
-                    query_set,
-                    beginning_of_pass_write_index: Some(0),
-                    end_of_pass_write_index: Some(1),
-                };
-                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                    label: None,
-                    timestamp_writes: set.map(writes),
-                });
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(0, bindings, &[]);
-                pass.dispatch_workgroups(groups.x, groups.y, 1);
-            }
-            Work::Copy { from, to, times } => {
-                for _ in 0..*times {
-                    encoder.copy_texture_to_texture(from.as_image_copy(), to.as_image_copy(), from.size());
-                }
-            }
-        }
-        let queries = self.queries.as_ref().filter(|_| !matches!(work, Work::Copy { .. }));
-        if let Some((set, buffer)) = queries {
-            encoder.resolve_query_set(set, 0..2, buffer, 0);
-        }
-        let started = Instant::now();
-        self.gpu.submit(encoder)?;
-        let wall = started.elapsed().as_secs_f64() * 1000.0;
-        let Some((_, buffer)) = queries else { return Ok(wall) };
-        let ticks: Vec<u64> = self.gpu.read_buffer(buffer)?.chunks_exact(8).map(bytemuck::pod_read_unaligned).collect();
-        let ticks = ticks[1].saturating_sub(ticks[0]);
-        // A clock that stands still tells nothing.
-        Ok(if ticks == 0 { wall } else { ticks as f64 * f64::from(self.gpu.queue.get_timestamp_period()) * 1.0e-6 })
-    }
-}
-
-fn texture(gpu: &Headless, size: UVec2, format: wgpu::TextureFormat, usage: wgpu::TextureUsages) -> wgpu::Texture {
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("limits"),
-        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: usage | wgpu::TextureUsages::RENDER_ATTACHMENT,
-        view_formats: &[],
-    })
-}
-
-fn entry(binding: u32, resource: wgpu::BindingResource<'_>) -> wgpu::BindGroupEntry<'_> {
-    wgpu::BindGroupEntry { binding, resource }
-}
-
-fn texture_format(format: AccumulationFormat) -> wgpu::TextureFormat {
-    match format {
-        AccumulationFormat::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
-        AccumulationFormat::Rgba8Unorm => wgpu::TextureFormat::Rgba8Unorm,
-    }
+    let times = 16;
+    let usage = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
+    let [from, to] = [(); 2].map(|()| texture(bench.gpu, bench.size, wgpu::TextureFormat::Rgba16Float, usage));
+    all.push(Bare {
+        name: "copy".into(),
+        work: Work::Copy { from, to, times },
+        fragments: 0,
+        bytes: pixels * 8 * 2 * u64::from(times),
+        format: None,
+    });
+    all
 }

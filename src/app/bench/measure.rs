@@ -10,7 +10,7 @@ use haze::demo::stage::{Stage, StageContext};
 use haze::headless::Headless;
 use haze::preset::PresetSystem;
 use haze::settings::{AccumulationFormat, Path as SmokePath, ShadeTree};
-use haze::{Error, Overdraw, Timing, wgpu};
+use haze::{Error, Timing, wgpu};
 
 use super::quality::{Quality, is_right};
 use super::report::{Clock, LeftOut, Milliseconds, Row};
@@ -18,13 +18,16 @@ use super::suites::{Case, Group, Suite};
 use crate::app::interrupt;
 
 /// Rounds that are not counted, at the least.
-const WARM_UP: u32 = 2;
-/// A GPU that had little to do runs slower, and takes a while to notice: it is kept busy before a group is measured, and before
+const WARM_UP: usize = 2;
+/// A GPU that had little to do runs slower, and takes a while to notice: it is kept busy before anything is measured, and before
 /// each frame that counts.
 const AWAKE: Duration = Duration::from_secs(2);
 const BUSY: Duration = Duration::from_millis(15);
+/// Frames in a row without a time after which there will be none.
+const MOST_TRIES: u32 = 8;
 /// Most rounds that tell anything more.
 const MOST_ROUNDS: usize = 200;
+const LEAST_ROUNDS: usize = 3;
 
 /// What measures, and what it has found.
 pub struct Bench<'a> {
@@ -40,6 +43,12 @@ pub struct Bench<'a> {
     pub discarded: u64,
     pub rows: Vec<Row>,
     pub left_out: Vec<LeftOut>,
+}
+
+/// Milliseconds of a frame's smoke, and of each pass.
+struct Taken {
+    ms: f64,
+    passes: Vec<(&'static str, f64)>,
 }
 
 /// A case while it is measured.
@@ -69,10 +78,6 @@ impl<'a> Bench<'a> {
         }
     }
 
-    pub fn context(&self) -> &StageContext {
-        &self.context
-    }
-
     fn clock(&self) -> Clock {
         if self.timing.is_some() { Clock::Gpu } else { Clock::Wall }
     }
@@ -98,25 +103,24 @@ impl<'a> Bench<'a> {
         }
         let mut is_whole = true;
         let woken = Instant::now();
-        let mut awake = AWAKE.min(budget / 4);
-        if self.gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu {
-            awake = Duration::ZERO;
-        }
+        let awake = waking(self.gpu).min(budget / 4);
         for round in 0.. {
             is_whole = !interrupt::is_asked();
-            let counted = running.first().map_or(MOST_ROUNDS, |case| case.times.len());
-            if !is_whole || counted >= MOST_ROUNDS || (counted >= 3 && started.elapsed() > budget) {
+            let counted = running.iter().map(|case| case.times.len()).max().unwrap_or(MOST_ROUNDS);
+            let is_enough = counted >= LEAST_ROUNDS && started.elapsed() > budget;
+            if !is_whole || is_enough || counted >= MOST_ROUNDS || round >= 2 * MOST_ROUNDS {
                 break;
             }
             for case in &mut running {
                 let begun = Instant::now();
-                let mut times = self.frame(&mut case.stage, &case.case.shot)?;
+                let mut taken = self.frame(&mut case.stage, &case.case.shot)?;
                 while begun.elapsed() < BUSY {
-                    times = self.frame(&mut case.stage, &case.case.shot)?;
+                    taken = self.frame(&mut case.stage, &case.case.shot)?;
                 }
+                let Some(Taken { ms, passes }) = taken else { continue };
                 if round >= WARM_UP && woken.elapsed() >= awake {
-                    case.times.push(times.0);
-                    times.1.iter().for_each(|(name, ms)| case.passes.entry(name).or_default().push(*ms));
+                    case.times.push(ms);
+                    passes.iter().for_each(|(name, ms)| case.passes.entry(name).or_default().push(*ms));
                 }
             }
         }
@@ -150,21 +154,25 @@ impl<'a> Bench<'a> {
         let mut stage = Stage::new(&self.context, false)?;
         stage.warm_up(&case.shot)?;
         stage.set_timing(self.timing.as_ref())?;
-        let (ms, _) = self.frame(&mut stage, &case.shot)?;
-        if ms > longest {
-            self.costs.insert(case.work.0.clone(), ms / case.work.1);
-            return Ok(Err(seconds(ms)));
+        match self.frame(&mut stage, &case.shot)? {
+            None => return Ok(Err("the GPU gives no time of it".into())),
+            Some(Taken { ms, .. }) if ms > longest => {
+                self.costs.insert(case.work.0.clone(), ms / case.work.1);
+                return Ok(Err(seconds(ms)));
+            }
+            Some(_) => {}
         }
         let quality = Quality::of(self.gpu, (&stage, &case.shot), (reference, &group.reference))?;
         Ok(Ok(Running { case, stage, quality, times: Vec::new(), passes: BTreeMap::new() }))
     }
 
-    /// Milliseconds of the smoke, whole and by pass.
-    fn frame(&mut self, stage: &mut Stage, shot: &Shot) -> Result<(f64, Vec<(&'static str, f64)>), Error> {
+    /// Draws a frame; none where the GPU gives no times, again and again.
+    fn frame(&mut self, stage: &mut Stage, shot: &Shot) -> Result<Option<Taken>, Error> {
         let Some(timing) = &self.timing else {
-            return Ok((stage.draw(self.gpu, shot)?.as_secs_f64() * 1000.0, Vec::new()));
+            let ms = stage.draw(self.gpu, shot)?.as_secs_f64() * 1000.0;
+            return Ok(Some(Taken { ms, passes: Vec::new() }));
         };
-        loop {
+        for _ in 0..MOST_TRIES {
             let before = timing.latest().map(|times| times.frame);
             let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             stage.record(&mut encoder, shot, &[ShadeTree::Final])?;
@@ -174,12 +182,10 @@ impl<'a> Bench<'a> {
             self.discarded += u64::from(times.discarded);
             if times.discarded == 0 {
                 let passes = times.passes.iter().map(|pass| (pass.name, f64::from(pass.ms))).collect();
-                return Ok((f64::from(times.smoke_ms()), passes));
-            }
-            if interrupt::is_asked() {
-                return Ok((f64::from(times.smoke_ms()), Vec::new()));
+                return Ok(Some(Taken { ms: f64::from(times.smoke_ms()), passes }));
             }
         }
+        Ok(None)
     }
 
     /// None where nothing was measured.
@@ -191,7 +197,9 @@ impl<'a> Bench<'a> {
         let is_forward = settings.path == SmokePath::Forward;
         // Forward smoke is blended into the picture.
         let format = if is_forward { AccumulationFormat::Rgba16Float } else { settings.accumulate.format };
-        let Overdraw { fragments, .. } = running.stage.renderer().overdraw();
+        let overdraw = running.stage.renderer().overdraw();
+        let loops = f64::from(settings.sprite.debug_loop);
+        let fragments = overdraw.fragments * loops;
         let limit = self.limits.get(&format).map(|ms| ms * fragments).filter(|&ms| ms > 0.0);
         let mut particles = Vec::new();
         let alive = |(system, cache): (&PresetSystem, &Option<Cache>)| {
@@ -206,7 +214,7 @@ impl<'a> Bench<'a> {
             mode: (!is_forward).then(|| settings.diffuse.mode.name().into()),
             technique: Some(settings.technique.name().into()),
             fade: Some(settings.soft_fade.curve.name().into()),
-            layers: Some(running.stage.renderer().overdraw().mean()),
+            layers: Some(overdraw.mean() * loops),
             alpha: system.emitter.amount.to_string().parse().ok(),
             lights: Some(shot.preset.lights.len() as u32),
             particles: Some(alive),
@@ -222,6 +230,11 @@ impl<'a> Bench<'a> {
             ..Row::of(suite, running.case.name.clone(), size_name(shot.size), self.clock(), gpu_ms)
         })
     }
+}
+
+/// How long to keep a device busy before anything counts.
+pub fn waking(gpu: &Headless) -> Duration {
+    if gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu { Duration::ZERO } else { AWAKE }
 }
 
 /// As rows have it.

@@ -2,10 +2,9 @@
 
 use std::time::Instant;
 
-use haze::demo::stage::{Stage, StageContext};
 use haze::headless::Headless;
-use haze::settings::{Order, ShadeTree};
-use haze::{Error, wgpu};
+use haze::settings::Order;
+use haze::{Descriptor, Error, Frame, Particles, Renderer, SceneDepth, System, wgpu};
 
 use super::measure::size_name;
 use super::report::{Clock, Milliseconds, Row};
@@ -14,15 +13,24 @@ use crate::app::interrupt;
 
 const ROUNDS: u32 = 9;
 
-/// Three rows for the shot of a group: the emitter, and a whole `prepare` with and without the sort.
-pub fn rows(gpu: &Headless, context: &StageContext, group: &Group) -> Result<Vec<Row>, Error> {
+/// Rows for the first system of a group: the emitter, and `prepare` with and without the sort.
+pub fn rows(gpu: &Headless, group: &Group) -> Result<Vec<Row>, Error> {
     let shot = &group.reference;
-    let ordered = [Order::Sorted, Order::Weighted].map(|order| {
-        let mut shot = shot.clone();
-        shot.preset.systems.iter_mut().for_each(|system| system.settings.accumulate.order = order);
-        shot
-    });
-    let mut stages = [Stage::new(context, false)?, Stage::new(context, false)?];
+    let (Some(system), Some(pictures)) = (shot.preset.systems.first(), shot.materials.first()) else {
+        return Ok(Vec::new());
+    };
+    let (device, queue) = (&gpu.device, &gpu.queue);
+    let depth = gpu.target("depth", shot.size, wgpu::TextureFormat::Depth32Float);
+    let depth = depth.create_view(&wgpu::TextureViewDescriptor::default());
+    let view = shot.preset.camera.view(shot.size);
+    let mut renderers = Vec::new();
+    for order in [Order::Sorted, Order::Weighted] {
+        let mut settings = system.settings_for(shot.size.y);
+        settings.accumulate.order = order;
+        let renderer = Renderer::new(device, queue, &Descriptor::default())?;
+        let material = renderer.create_material(device, queue, pictures)?;
+        renderers.push((renderer, material, settings));
+    }
     let mut times = [Vec::new(), Vec::new(), Vec::new()];
     let mut particles = Vec::new();
     for round in 0..=ROUNDS {
@@ -30,33 +38,34 @@ pub fn rows(gpu: &Headless, context: &StageContext, group: &Group) -> Result<Vec
             break;
         }
         let started = Instant::now();
-        shot.preset.systems.iter().for_each(|system| system.particles(None, shot.preset.time, &mut particles));
-        let mut found = vec![started.elapsed().as_secs_f64() * 1000.0];
-        for (stage, shot) in stages.iter_mut().zip(&ordered) {
-            let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        system.particles(None, shot.preset.time, &mut particles);
+        let mut found = vec![started.elapsed()];
+        for (renderer, material, settings) in &mut renderers {
+            let systems = [System::new(Particles::Slice(&particles), settings, material)];
+            let frame = Frame {
+                lights: &shot.preset.lights,
+                systems: &systems,
+                ..Frame::new(view, SceneDepth::Buffer(&depth))
+            };
+            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             let started = Instant::now();
-            stage.record(&mut encoder, shot, &[ShadeTree::Final])?;
-            // Recording evaluates the emitter as well.
-            found.push((started.elapsed().as_secs_f64() * 1000.0 - found[0]).max(0.0));
+            renderer.prepare(device, queue, &mut encoder, &frame)?;
+            found.push(started.elapsed());
             gpu.submit(encoder)?;
         }
         if round > 0 {
-            times.iter_mut().zip(found).for_each(|(times, ms)| times.push(ms));
+            times.iter_mut().zip(found).for_each(|(times, taken)| times.push(taken.as_secs_f64() * 1000.0));
         }
     }
     let count = particles.len() as u32;
     let names = ["evaluate", "prepare sorted", "prepare weighted"];
     let row = |(name, times): (&str, &mut Vec<f64>)| {
+        let gpu_ms = Milliseconds::of(times)?;
+        let case = format!("{name} {count} particles");
         Some(Row {
             particles: Some(count),
             samples: times.len() as u32,
-            ..Row::of(
-                Suite::Particles,
-                format!("{name} {count} particles"),
-                size_name(shot.size),
-                Clock::Cpu,
-                Milliseconds::of(times)?,
-            )
+            ..Row::of(Suite::Particles, case, size_name(shot.size), Clock::Cpu, gpu_ms)
         })
     };
     Ok(names.into_iter().zip(&mut times).filter_map(row).collect())

@@ -54,6 +54,7 @@ pub fn is_right(gpu: &Headless, context: &StageContext, shot: &Shot) -> Result<R
     for system in &mut shot.preset.systems {
         let fewer = (MOST / system.emitter.most_alive() as f32).min(1.0);
         system.emitter.rate *= fewer;
+        system.settings.sprite.debug_loop = 1;
         // What is left covers as much.
         system.settings.sprite.size /= fewer.sqrt();
     }

@@ -114,7 +114,8 @@ pub struct Row {
     pub gfragments_per_s: Option<f64>,
     /// Bytes that blending moves at the least: every fragment reads and writes its texel.
     pub bytes: Option<u64>,
-    /// Time over what the same fragments take unlit, blended into the same format: 1 is the limit of this adapter.
+    /// Time over what as many fragments of an unlit disc take, tested, looked up once and blended into the same format: what any way
+    /// that blends takes at the least on this adapter.
     pub limit_ratio: Option<f64>,
     /// Against the same smoke, deferred, at full resolution, dB; null where it is that, and where both are the same.
     pub psnr_db: Option<f64>,

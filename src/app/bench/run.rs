@@ -111,7 +111,7 @@ impl Arguments {
     fn all(&self, gpu: &Headless, bench: &mut Bench<'_>, size: UVec2) -> Result<bool, Error> {
         // What all others are compared with.
         let limits = watched("haze: limits of this adapter".into(), || limits::measure(gpu, size, self.quick))?;
-        bench.limits = limits.blend;
+        bench.limits = limits.floor;
         if matches!(self.suite, Suite::All | Suite::Limits) {
             bench.rows.extend(limits.rows);
         }
@@ -139,7 +139,7 @@ impl Arguments {
                 return Ok(false);
             }
             if group.suite == Suite::Particles {
-                let rows = particles::rows(gpu, bench.context(), group)?;
+                let rows = particles::rows(gpu, group)?;
                 bench.rows.extend(rows);
             }
         }

@@ -147,25 +147,22 @@ fn set_format(settings: &mut Settings, format: AccumulationFormat) {
 fn overdraw(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
     let counts: &[u32] = if quick { &[4, 32, 256] } else { &[4, 16, 64, 256, 1024] };
     let amounts: &[f32] = if quick { &[0.1] } else { &[0.02, 0.1, 0.3] };
-    let group = |&count: &u32| {
-        let mut cases = Vec::new();
-        for &amount in amounts {
-            let shot = layers(size, count, amount)?;
-            for path in paths() {
-                let name = format!("{} {count} sprites of {amount}", path.name());
-                let work = (format!("overdraw {}", path.name()), f64::from(count));
-                cases.push(Case { name, shot: changed(&shot, at_scale(path, 1)), work });
-            }
-        }
-        Ok(Group { suite: Suite::Overdraw, cases, reference: full(&layers(size, count, 0.1)?) })
+    let group = |(&count, &amount): (&u32, &f32)| {
+        let shot = layers(size, count, amount)?;
+        let case = |path: SmokePath| Case {
+            name: format!("{} {count} sprites of {amount}", path.name()),
+            shot: changed(&shot, at_scale(path, 1)),
+            work: (format!("overdraw {}", path.name()), f64::from(count)),
+        };
+        Ok(Group { suite: Suite::Overdraw, cases: paths().map(case).collect(), reference: full(&shot) })
     };
-    counts.iter().map(group).collect()
+    counts.iter().flat_map(|count| amounts.iter().map(move |amount| (count, amount))).map(group).collect()
 }
 
 fn lights(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
     let counts: &[u32] = if quick { &[1, 8, 64] } else { &[1, 2, 4, 8, 16, 32, 64] };
     let group = |&count: &u32| {
-        let mut shot = layers(size, 16, 0.1)?;
+        let mut shot = layers(size, if quick { 16 } else { 64 }, 0.1)?;
         let lamp = |index: u32| {
             let angle = index as f32 * 2.4;
             let place =
@@ -198,7 +195,20 @@ fn soft(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
     Technique::ALL.iter().for_each(|&technique| case(technique, FadeCurve::default()));
     let others = FadeCurve::ALL.iter().filter(|&&curve| curve != FadeCurve::default());
     others.for_each(|&curve| case(Technique::Soft, curve));
-    Ok(vec![Group { suite: Suite::Soft, cases, reference: shot }])
+    Ok(vec![Group { suite: Suite::Soft, cases, reference: shot }, experiment(size, quick)?])
+}
+
+/// NV's: two big sprites drawn again and again, by the three ways to test depth.
+fn experiment(size: UVec2, quick: bool) -> Result<Group, Error> {
+    let loops = if quick { 20 } else { 200 };
+    let shot = changed(&full(&layers(size, 2, 0.5)?), |settings| settings.sprite.debug_loop = loops);
+    let case = |technique: Technique| Case {
+        name: format!("{} two sprites {loops} times", technique.name()),
+        shot: changed(&shot, |settings| settings.technique = technique),
+        work: ("experiment".into(), 1.0),
+    };
+    let cases = [Technique::Hard, Technique::Soft, Technique::SoftLinear].map(case).into();
+    Ok(Group { suite: Suite::Soft, cases, reference: shot })
 }
 
 fn upsample(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {

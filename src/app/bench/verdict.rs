@@ -104,8 +104,10 @@ mod tests {
     use super::super::suites::Suite;
     use super::*;
 
-    /// Rows of a frame that costs `base` and so much for each layer.
-    fn report(ways: &[(&str, Option<u32>, f64, f64, Option<f64>)]) -> Report {
+    /// Path, scale, milliseconds without a layer and of each, PSNR.
+    type Way = (&'static str, Option<u32>, f64, f64, Option<f64>);
+
+    fn report(ways: &[Way]) -> Report {
         let mut rows = Vec::new();
         for &(path, scale, base, layer, psnr_db) in ways {
             for layers in [4.0, 16.0, 64.0] {
@@ -138,7 +140,7 @@ mod tests {
             ("raster", Some(8), 2.0, 0.6, Some(20.0)),
         ]);
         let found = break_even(&report);
-        let from: Vec<_> = found.iter().map(|way| way.from_layers.map(|layers| layers.round())).collect();
+        let from: Vec<_> = found.iter().map(|way| way.from_layers.map(f64::round)).collect();
         assert_eq!(from, [Some(20.0), Some(5.0), Some(2.0), None]);
         assert!((found[1].layer_ms - 0.1).abs() < 1e-9 && (found[1].base_ms - 3.0).abs() < 1e-9);
         // A quarter is cheaper, and not good enough.

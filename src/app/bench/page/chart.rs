@@ -46,12 +46,16 @@ struct Scale {
 impl Scale {
     fn new(axis: Axis, values: impl Iterator<Item = f64>, from: f64, to: f64) -> Option<Self> {
         let usable = values.filter(|&value| value.is_finite() && (axis == Axis::Linear || value > 0.0));
-        let (low, high) = usable.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+        let (low, high): (f64, f64) =
+            usable.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+        if low > high {
+            return None;
+        }
         let (low, high) = match axis {
             Axis::Linear => (low.min(0.0), if high > 0.0 { high * 1.05 } else { 1.0 }),
             Axis::Logarithmic => (low / 1.2, high * 1.2),
         };
-        (low < high && low.is_finite()).then_some(Self { axis, low, high, from, to })
+        Some(Self { axis, low, high, from, to })
     }
 
     fn place(&self, value: f64) -> f64 {

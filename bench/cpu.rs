@@ -1,0 +1,91 @@
+//! `cargo bench`: what smoke costs a CPU: the emitter, the sort and upload of `prepare`, the reference renderer, bakes.
+
+#![allow(clippy::unwrap_used, reason = "a benchmark fails by panicking")]
+
+use std::path::Path;
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use glam::UVec2;
+use haze::demo::shot::Shot;
+use haze::emitter::Emitter;
+use haze::headless::Headless;
+use haze::ramp::bake::RampRecipe;
+use haze::settings::Order;
+use haze::sprite::bake::SpriteRecipe;
+use haze::{Descriptor, Frame, Light, Particles, Renderer, SceneDepth, Settings, System, wgpu};
+
+const COUNTS: [u32; 3] = [1_000, 10_000, 100_000];
+
+/// So many particles alive, at a moment.
+fn emitter(count: u32) -> (Emitter, f32) {
+    let emitter = Emitter { rate: count as f32, duration: 1.0, lifetime: 100.0, ..Emitter::default() };
+    (emitter, 10.0)
+}
+
+fn evaluate(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("emitter");
+    for count in COUNTS {
+        let (emitter, time) = emitter(count);
+        let mut particles = Vec::new();
+        group.throughput(Throughput::Elements(count.into()));
+        group.bench_function(BenchmarkId::from_parameter(count), |bench| {
+            bench.iter(|| emitter.evaluate(time, &mut particles));
+        });
+    }
+}
+
+/// All that a steady frame costs the CPU but recording the host's pass: `sorted` less `weighted` is the sort.
+fn prepare(criterion: &mut Criterion) {
+    let gpu = Headless::new().unwrap();
+    let (device, queue) = (&gpu.device, &gpu.queue);
+    let size = UVec2::new(640, 360);
+    let depth = gpu.target("depth", size, wgpu::TextureFormat::Depth32Float).create_view(&Default::default());
+    let view = Shot::load("column", size).unwrap().preset.camera.view(size);
+    let mut group = criterion.benchmark_group("prepare");
+    for order in [Order::Sorted, Order::Weighted] {
+        for count in COUNTS {
+            let mut settings = Settings::default();
+            settings.accumulate.order = order;
+            // Small sprites: what is drawn waits for no one here.
+            settings.sprite.size = 0.02;
+            let mut renderer = Renderer::new(device, queue, &Descriptor::default()).unwrap();
+            let pictures = haze::preset::MaterialNames::default().load(Path::new("")).unwrap();
+            let material = renderer.create_material(device, queue, &pictures).unwrap();
+            let (emitter, time) = emitter(count);
+            let mut particles = Vec::new();
+            emitter.evaluate(time, &mut particles);
+            let systems = [System::new(Particles::Slice(&particles), &settings, &material)];
+            let lights = [Light::default()];
+            let frame = Frame { lights: &lights, systems: &systems, ..Frame::new(view, SceneDepth::Buffer(&depth)) };
+            group.throughput(Throughput::Elements(count.into()));
+            group.bench_function(BenchmarkId::new(order.name(), count), |bench| {
+                bench.iter_custom(|rounds| {
+                    let mut taken = std::time::Duration::ZERO;
+                    for _ in 0..rounds {
+                        let mut encoder = device.create_command_encoder(&Default::default());
+                        let started = std::time::Instant::now();
+                        renderer.prepare(device, queue, &mut encoder, &frame).unwrap();
+                        taken += started.elapsed();
+                        gpu.submit(encoder).unwrap();
+                    }
+                    taken
+                });
+            });
+        }
+    }
+}
+
+fn reference(criterion: &mut Criterion) {
+    let shot = Shot::load("column", UVec2::new(160, 90)).unwrap();
+    criterion.bench_function("reference/column 160x90", |bench| bench.iter(|| shot.render_on_cpu().unwrap()));
+}
+
+fn bakes(criterion: &mut Criterion) {
+    let recipe: RampRecipe = serde_json::from_str(include_str!("../ramps/diffuse_soft.ramp.json")).unwrap();
+    criterion.bench_function("ramp bake", |bench| bench.iter(|| recipe.bake().unwrap()));
+    let recipe: SpriteRecipe = serde_json::from_str(include_str!("../sprites/ball.sprite.json")).unwrap();
+    criterion.bench_function("sprite bake/one frame of ball, 128x128", |bench| bench.iter(|| recipe.bake_frame(0.0)));
+}
+
+criterion_group!(benches, evaluate, prepare, reference, bakes);
+criterion_main!(benches);
