@@ -68,6 +68,11 @@ fn a_run_is_a_table_json_csv_and_a_page() {
 
     let page = fs::read_to_string(folder.path().join("run.html")).unwrap();
     assert!(page.contains("Cost against buffer scale") && page.contains("Cost against error"));
+    // The same from the figures alone.
+    let output = haze(folder.path(), &["bench", "page", "run.json", "-o", "again.html"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(page == fs::read_to_string(folder.path().join("again.html")).unwrap());
+    refusal(folder.path(), &["bench", "page", "run.csv", "-o", "again.html"]);
     for outside in ["http:", "https:", "src=", "@import"] {
         assert!(!page.contains(outside), "{outside} needs a network");
     }

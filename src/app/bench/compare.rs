@@ -1,13 +1,13 @@
 //! `haze bench compare`: two runs of one machine, row by row.
 
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
-use haze::assets::json;
 use haze::{Error, FieldError};
 
-use super::report::{Report, Row, VERSION};
+use super::json;
+use super::report::Row;
 use crate::app::output::{Failures, complain, say};
 
 #[derive(Args)]
@@ -36,7 +36,7 @@ struct Ratio {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failures> {
-    let [before, after] = [read(&arguments.before)?, read(&arguments.after)?];
+    let [before, after] = [json::read(&arguments.before)?, json::read(&arguments.after)?];
     for (what, before, after) in [
         ("adapter", &before.adapter.name, &after.adapter.name),
         ("driver", &before.adapter.driver, &after.adapter.driver),
@@ -81,10 +81,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     let path = arguments.after.clone();
     let what = format!("{slower} of {} rows are more than {} % slower", both.len(), arguments.slower);
     Err(Error::Io { path, error: std::io::Error::other(what) }.into())
-}
-
-fn read(path: &Path) -> Result<Report, Error> {
-    json::load(path, VERSION, |_: &Report| Ok(()))
 }
 
 fn ratio(before: &Row, after: &Row) -> Ratio {

@@ -1,6 +1,19 @@
 //! The report as JSON, and the schema that describes it.
 
-use super::report::Report;
+use std::path::Path;
+
+use haze::Error;
+use haze::assets::json::load;
+
+use super::report::{Report, VERSION};
+
+/// What [`json`] made.
+///
+/// # Errors
+/// With file, line and what is wrong.
+pub fn read(path: &Path) -> Result<Report, Error> {
+    load(path, VERSION, |_: &Report| Ok(()))
+}
 
 /// For jq and spreadsheets: see [`schema`].
 pub fn json(report: &Report) -> String {

@@ -16,9 +16,13 @@ mod suites;
 mod table;
 mod verdict;
 
-use clap::{Args, Subcommand};
+use std::path::{Path, PathBuf};
 
-use super::output::{Failures, write_text};
+use clap::{Args, Subcommand};
+use haze::Error;
+use haze::picture::write_file;
+
+use super::output::{Failures, Files, write_text};
 
 #[derive(Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
@@ -36,6 +40,14 @@ enum Command {
     SoftParticles(soft_particles::Arguments),
     /// Compare two runs row by row: exits with 1 where the second is slower.
     Compare(compare::Arguments),
+    /// Make the page of a run on another machine, or of an older one.
+    Page {
+        /// What `--json` wrote.
+        report: PathBuf,
+        /// The page to write.
+        #[arg(short, long, value_name = "FILE.html")]
+        output: PathBuf,
+    },
     /// Print the JSON schema of what `--json` writes.
     Schema,
 }
@@ -44,7 +56,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     match &arguments.command {
         Some(Command::SoftParticles(arguments)) => Ok(soft_particles::run(arguments)?),
         Some(Command::Compare(arguments)) => compare::run(arguments),
+        Some(Command::Page { report, output }) => Ok(make_page(report, output)?),
         Some(Command::Schema) => Ok(write_text(json::schema())?),
         None => run::run(&arguments.run),
     }
+}
+
+fn make_page(report: &Path, output: &Path) -> Result<(), Error> {
+    Files::read([report]).write("--output", output, "html")?;
+    write_file(output, page::page(&json::read(report)?).as_bytes())
 }
