@@ -2,21 +2,24 @@
 
 #import "lib/ramp.wgsl"
 
-// The mip level at which a sprite's texels are as large as the target's. Sprites face the camera, so one level fits the
-// whole sprite and no derivatives are needed.
+// The mip level whose texels are nearest in size to the target's. Sprites face the camera, so one level fits the whole
+// sprite and no derivatives are needed. A whole level is one lookup, not two; docs/bench.md has what the difference is.
 fn sprite_lod(sprite_size: f32, diameter_in_texels: f32) -> f32 {
-    return max(log2(sprite_size / max(diameter_in_texels, 1.0e-3)), 0.0);
+    return max(floor(log2(sprite_size / max(diameter_in_texels, 1.0e-3)) + 0.5), 0.0);
 }
 
 const SPRITE_ANIMATION_FLIPBOOK: u32 = 0u;
 const SPRITE_ANIMATION_VOLUME: u32 = 1u;
 const SPRITE_ANIMATION_STILL: u32 = 2u;
+const SPRITE_ANIMATION_NEAREST: u32 = 3u;
 
 // The fractional frame that a particle shows: its own, its age through the slices of a volume texture, or the first.
+// `nearest` is cut off, so it is half a frame on.
 fn sprite_frame(animation: u32, frame: f32, age: f32, frame_count: f32) -> f32 {
     switch animation {
         case SPRITE_ANIMATION_VOLUME: { return saturate(age) * (frame_count - 1.0); }
         case SPRITE_ANIMATION_STILL: { return 0.0; }
+        case SPRITE_ANIMATION_NEAREST: { return frame + 0.5; }
         default: { return frame; }
     }
 }
@@ -33,6 +36,16 @@ fn flipbook_frames(frame: f32, frame_count: f32) -> FlipbookFrames {
     let first = clamp(floor(wrapped), 0.0, frame_count - 1.0);
     let second = select(first + 1.0, 0.0, first + 1.5 > frame_count);
     return FlipbookFrames(i32(first), i32(second), saturate(wrapped - first));
+}
+
+// The frames as an animation shows them. Where none is blended that is a constant, and the second lookup is compiled away:
+// a branch would not do, llvmpipe takes both sides.
+fn shown_frames(animation: u32, frame: f32, frame_count: f32) -> FlipbookFrames {
+    var frames = flipbook_frames(frame, frame_count);
+    if animation == SPRITE_ANIMATION_STILL || animation == SPRITE_ANIMATION_NEAREST {
+        frames.blend = 0.0;
+    }
+    return frames;
 }
 
 fn load_sprite_bilinear(sprite: texture_2d_array<f32>, uv: vec2f, frame: i32, level: i32) -> vec4f {

@@ -41,7 +41,7 @@ fn technique_fragment(in: SpriteVertex, scene: f32) -> SpriteFragment {
     if is_sphere() {
         return sphere_fragment(in, scene);
     }
-    let frames = flipbook_frames(in.amount_lod_frame_age.z, system.frame_count);
+    let frames = shown_frames(SPRITE_ANIMATION, in.amount_lod_frame_age.z, system.frame_count);
     var amount = in.amount_lod_frame_age.x;
     let view_depth = -in.centre_radius.z;
     let radius = in.centre_radius.w;
@@ -113,7 +113,7 @@ fn sphere_fragment(in: SpriteVertex, scene: f32) -> SpriteFragment {
     }
     // The sprite's picture, laid on the disc through the middle that faces the ray.
     let place = unrotate(interval.axis.xy, in.rotation) / radius;
-    let frames = flipbook_frames(in.amount_lod_frame_age.z, system.frame_count);
+    let frames = shown_frames(SPRITE_ANIMATION, in.amount_lod_frame_age.z, system.frame_count);
     var motion = vec2f(0.0);
     if MOTION {
         let lod = max(in.amount_lod_frame_age.y - system.detail_lod, 0.0);

@@ -9,17 +9,19 @@ use crate::settings::SpriteAnimation;
 /// The largest motion that a detail map holds, in sides of the sprite.
 pub const MOTION_RANGE: f32 = 0.125;
 
-/// The mip level at which a sprite's texels are as large as the target's.
+/// The mip level whose texels are nearest in size to the target's.
 pub fn sprite_lod(sprite_size: f32, diameter_in_texels: f32) -> f32 {
-    (sprite_size / diameter_in_texels.max(1.0e-3)).log2().max(0.0)
+    ((sprite_size / diameter_in_texels.max(1.0e-3)).log2() + 0.5).floor().max(0.0)
 }
 
 /// The fractional frame that a particle shows: its own, its age through the slices of a volume texture, or the first.
+/// `nearest` is cut off, so it is half a frame on.
 pub fn sprite_frame(animation: SpriteAnimation, frame: f32, age: f32, frame_count: f32) -> f32 {
     match animation {
         SpriteAnimation::Flipbook => frame,
         SpriteAnimation::Volume => saturate(age) * (frame_count - 1.0),
         SpriteAnimation::Still => 0.0,
+        SpriteAnimation::Nearest => frame + 0.5,
     }
 }
 
@@ -40,6 +42,15 @@ pub fn flipbook_frames(frame: f32, frame_count: f32) -> FlipbookFrames {
     let first = wrapped.floor().max(0.0).min(frame_count - 1.0);
     let second = if first + 1.5 > frame_count { 0.0 } else { first + 1.0 };
     FlipbookFrames { first: first as i32, second: second as i32, blend: saturate(wrapped - first) }
+}
+
+/// The frames as an animation shows them: some blend none.
+pub fn shown_frames(animation: SpriteAnimation, frame: f32, frame_count: f32) -> FlipbookFrames {
+    let frames = flipbook_frames(frame, frame_count);
+    match animation {
+        SpriteAnimation::Flipbook | SpriteAnimation::Volume => frames,
+        SpriteAnimation::Still | SpriteAnimation::Nearest => FlipbookFrames { blend: 0.0, ..frames },
+    }
 }
 
 fn load_sprite_bilinear(sprite: &impl Texture2dArray, uv: Vec2, frame: i32, level: u32) -> Vec4 {

@@ -158,12 +158,12 @@ const OF_SYSTEMS: &[Row<PresetSystem>] = &[
         &["settings.sprite.animation", "settings.sprite.freeze_animation", "emitter.frame_rate", "cache.flipbook_rate"],
     ),
     row(
-        "not with animation still",
-        |s, _| s.settings.sprite.animation == SpriteAnimation::Still,
+        "only with an animation that blends: flipbook, volume",
+        |s, _| matches!(s.settings.sprite.animation, SpriteAnimation::Still | SpriteAnimation::Nearest),
         &["settings.sprite.motion"],
     ),
     row(
-        "only with animation flipbook",
+        "only with animation flipbook or nearest",
         plays_no_flipbook,
         &["settings.sprite.freeze_animation", "emitter.frame_rate", "cache.flipbook_rate"],
     ),
@@ -338,7 +338,8 @@ fn has_one_frame(system: &PresetSystem, _: UVec2) -> bool {
 }
 
 fn plays_no_flipbook(system: &PresetSystem, _: UVec2) -> bool {
-    !technique(system).is_volumetric() && system.settings.sprite.animation != SpriteAnimation::Flipbook
+    !technique(system).is_volumetric()
+        && matches!(system.settings.sprite.animation, SpriteAnimation::Still | SpriteAnimation::Volume)
 }
 
 fn stands_still(system: &PresetSystem, _: UVec2) -> bool {

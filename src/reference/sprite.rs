@@ -8,7 +8,7 @@ use crate::formula::normal::rotate_normal;
 use crate::formula::order::{optical_depth_in_front, order_weight};
 use crate::formula::soft_fade::soft_fade;
 use crate::formula::sprite::{
-    FlipbookFrames, checkerboard, flipbook_frames, sample_detail, sample_sprite, sprite_frame, sprite_lod, sprite_uv,
+    FlipbookFrames, checkerboard, sample_detail, sample_sprite, shown_frames, sprite_frame, sprite_lod, sprite_uv,
     unrotate,
 };
 use crate::formula::technique::{
@@ -80,7 +80,8 @@ impl Draw<'_> {
             self.square_rectangle(placing.on_screen(centre), radius)
         };
         let diameter = 2.0 * radius * self.pixels_per_metre(view_depth.max(self.view.near)) * texels_per_pixel;
-        let frame = sprite_frame(self.settings.sprite.animation, particle.frame, particle.age, system.frame_count);
+        let animation = self.settings.sprite.animation;
+        let frame = sprite_frame(animation, particle.frame, particle.age, system.frame_count);
         Some(SpriteSetup {
             centre,
             view_depth,
@@ -88,7 +89,7 @@ impl Draw<'_> {
             rotation: Vec2::new(particle.rotation.cos(), particle.rotation.sin()),
             amount,
             lod: sprite_lod(system.sprite_size, diameter),
-            frames: flipbook_frames(frame, system.frame_count),
+            frames: shown_frames(animation, frame, system.frame_count),
             age: particle.age,
             weight: self.order_weight(view_depth),
             min,

@@ -24,7 +24,7 @@ use crate::assets::material::MaterialAssets;
 use crate::error::{Error, FieldError};
 use crate::frame::{Frame, Material};
 use crate::in_view::ViewGeometry;
-use crate::settings::ShadeTree;
+use crate::settings::{Settings, ShadeTree};
 
 pub use context::Context;
 pub use counts::{FrameCounts, Overdraw};
@@ -132,8 +132,12 @@ impl Renderer {
         let shared = self.context.shared();
         for (index, settings) in expected.settings.iter().enumerate() {
             settings.validate(|| format!("settings[{index}]"))?;
-            for back_faces in [false, true] {
-                shared.passes.compile(&shared.device, &plan(&situation, settings, back_faces))?;
+            // Whether its sprite has one frame is not known yet.
+            let sprite = settings.sprite.for_frames(1.0);
+            for settings in [*settings, Settings { sprite, ..*settings }] {
+                for back_faces in [false, true] {
+                    shared.passes.compile(&shared.device, &plan(&situation, &settings, back_faces))?;
+                }
             }
         }
         Ok(())

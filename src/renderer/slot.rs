@@ -19,7 +19,7 @@ use super::targets::TargetViews;
 use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use crate::frame::{Bounds, Frame, Particles, System, bounds_of};
 use crate::in_view::{Grid, Placing, SystemInView, SystemInWorld, ViewGeometry, lights_in_view, system_in_view};
-use crate::settings::Technique;
+use crate::settings::{Settings, Technique};
 
 /// A frame, and what it is drawn with.
 pub(crate) struct FrameContext<'a> {
@@ -190,7 +190,8 @@ impl Slot {
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&in_view.uniform));
         gpu.queue.write_buffer(&self.lights, 0, bytemuck::cast_slice(&self.lights_in_view));
 
-        let plan = plan(context.situation, settings, in_view.back_faces);
+        let sprite = settings.sprite.for_frames(system.material.info.frame_count);
+        let plan = plan(context.situation, &Settings { sprite, ..*settings }, in_view.back_faces);
         let depth = context.bindings.get(plan.reads_linear())?;
         let groups = Groups {
             frame: depth.frame.clone(),

@@ -470,7 +470,11 @@ fn formulas() -> Vec<Formula> {
             reference: |x| vec![sprite::sprite_lod(x[0], x[1])],
             cases: random(50, &[(8.0, 512.0), (0.0, 600.0)]),
             tolerance: TRANSCENDENTAL,
-            mutants: &[("sprite_size / max", "0.5 * sprite_size / max")],
+            mutants: &[
+                ("sprite_size / max", "0.5 * sprite_size / max"),
+                ("1.0e-3)) + 0.5)", "1.0e-3)))"),
+                ("max(floor(", "max(("),
+            ],
         },
         Formula {
             name: "flipbook_frames",
@@ -483,6 +487,21 @@ fn formulas() -> Vec<Formula> {
             cases: (-40_i32..120).map(|i| vec![i as f32 * 0.37, (1 + i.rem_euclid(9)) as f32]).collect(),
             tolerance: 1e-5,
             mutants: &[("first + 1.5 > frame_count", "false"), ("floor(frame / frame_count)", "0.0")],
+        },
+        Formula {
+            name: "shown_frames",
+            file: "lib/sprite.wgsl",
+            wgsl: "let f = shown_frames(u32(x(0)), x(1), 4.0); y(0, f32(f.first)); y(1, f32(f.second)); y(2, f.blend);",
+            reference: |x| {
+                let frames = sprite::shown_frames(SpriteAnimation::ALL[x[0] as usize], x[1], 4.0);
+                vec![frames.first as f32, frames.second as f32, frames.blend]
+            },
+            cases: with_choices(count(SpriteAnimation::ALL), &[(0.0, 9.0)]),
+            tolerance: 1e-5,
+            mutants: &[
+                ("animation == SPRITE_ANIMATION_STILL ||", ""),
+                ("|| animation == SPRITE_ANIMATION_NEAREST", ""),
+            ],
         },
         Formula {
             name: "visibility_tap",
@@ -782,6 +801,7 @@ fn formulas() -> Vec<Formula> {
             mutants: &[
                 ("frame_count - 1.0);", "frame_count);"),
                 ("STILL: { return 0.0; }", "STILL: { return frame; }"),
+                ("return frame + 0.5;", "return frame;"),
             ],
         },
         Formula {
