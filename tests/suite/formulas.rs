@@ -1219,6 +1219,7 @@ const INDIRECT: &[&str] = &[
     "sprite_vertex",
     "diffuse",
     "diffuse_from_lights",
+    "smoke_coverage",
     "light_visibility",
     "stored_depth",
     "soft_scatter",

@@ -127,6 +127,7 @@ fn the_first_frame_after_a_warm_up_compiles_nothing() {
             (stage.depth, stage.attach_depth) = (DepthKind::Both, true);
             (stage.settings.technique, stage.settings.path) = (technique, path);
             stage.settings.diffuse.mode = DiffuseMode::Cubemap;
+            stage.settings.accumulate.lighting_resolution = LightingResolution::Target;
             let mut host = Host::new(gpu(), &stage).unwrap();
             assert_eq!(host.renderer.context().pipeline_count(), 0);
             host.renderer.warm_up(&warm_up(&stage, &[stage.settings])).unwrap();
