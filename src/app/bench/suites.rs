@@ -177,16 +177,14 @@ fn lights(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
                 let name = format!("{} 1/{scale} {count} lights", path.name());
                 let work = (format!("lights {} {scale}", path.name()), f64::from(count));
                 let shot = changed(&shot, at_scale(path, scale));
+                let lit = changed(&shot, |s| s.accumulate.lighting_resolution = LightingResolution::Target);
+                cases.push(Case { name: name.clone(), shot, work });
                 if scale > 1 {
                     // Lit once per texel.
                     let name = format!("{name}, lit at 1/{scale}");
-                    let lit = |settings: &mut Settings| {
-                        settings.accumulate.lighting_resolution = LightingResolution::Target;
-                    };
                     let work = (format!("lights {} {scale} lit", path.name()), f64::from(count));
-                    cases.push(Case { name, shot: changed(&shot, lit), work });
+                    cases.push(Case { name, shot: lit, work });
                 }
-                cases.push(Case { name, shot, work });
             }
         }
         Ok(Group { suite: Suite::Lights, cases, reference: full(&shot) })
