@@ -1,38 +1,21 @@
 // transfer
-// What    Lights the accumulated smoke once per pixel, over the system's bounding box.
+// What    Lights the accumulated smoke once per pixel, over the system's bounding box; or upsamples what light_target lit.
 // Reads   accumulation target, reduced depth, scene depth, lights, ramps, baked diffuse light.
 // Writes  the host's colour target: linear HDR, or sRGB code where GAMMA_TARGET.
 // Blend   ONE, ONE_MINUS_SRC_ALPHA (premultiplied over the scene).
 // Source  OTEE "Transfer & lighting", "Diffuse lighting", "Soft scattering".
 // Space   Lighting in view space, on the plane through the middle of the smoke that faces the viewer.
 
-#import "lib/diffuse.wgsl"
-#import "lib/accumulated.wgsl"
-#import "lib/normal.wgsl"
-#import "lib/diffuse_bake.wgsl"
+#import "lib/lit_smoke.wgsl"
 #import "lib/colour.wgsl"
 
-// Six faces of baked light by normal (cubemap), or one picture of a lit sphere (motif).
-@group(3) @binding(2) var baked_diffuse: texture_2d_array<f32>;
-// What the weights of the normals sum to, where WEIGHT_SUM.
-@group(3) @binding(3) var weight_sum: texture_2d<f32>;
-
-const DIFFUSE_MODE_RAMP: u32 = 0u;
-const DIFFUSE_MODE_CUBEMAP: u32 = 1u;
-const DIFFUSE_MODE_MOTIF: u32 = 2u;
-const DIFFUSE_MODE_PAINTED_MOTIF: u32 = 3u;
-const DIFFUSE_MODE_SPHERICAL_HARMONICS: u32 = 4u;
-override DIFFUSE_MODE: u32 = DIFFUSE_MODE_RAMP;
-override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
-override NORMAL_DECODE: u32 = NORMAL_DECODE_EXACT;
-override WEIGHT_SUM: bool = false;
-const COVERAGE_MODE_LINEAR: u32 = 0u;
-const COVERAGE_MODE_RAMP: u32 = 1u;
-override COVERAGE_MODE: u32 = COVERAGE_MODE_LINEAR;
 // True: draw the back faces, never clipped away by the near plane. False: the front faces, depth-tested.
 override BACK_FACES: bool = false;
 // True: there is no reduced depth, sprites were compared with the host's own.
 override HOST_DEPTH: bool = false;
+
+// True: the accumulation target is what light_target has made of it: light times amount, and amount.
+override LIT: bool = false;
 
 const SHADE_TREE_FINAL: u32 = 0u;
 const SHADE_TREE_COMBINED: u32 = 1u;
@@ -69,23 +52,6 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     return clip;
 }
 
-fn diffuse(normal: vec3f, position: vec3f) -> vec3f {
-    var light = vec3f(0.0);
-    switch DIFFUSE_MODE {
-        case DIFFUSE_MODE_CUBEMAP: {
-            let cube = cube_coordinate(normal);
-            light = sample_baked(baked_diffuse, linear_sampler, cube.position, cube.face);
-        }
-        case DIFFUSE_MODE_MOTIF: { light = sample_baked(baked_diffuse, linear_sampler, motif_position(normal), 0); }
-        case DIFFUSE_MODE_PAINTED_MOTIF: {
-            light = sample_ramp_2d(painted_motif, linear_sampler, motif_position(normal) * 0.5 + 0.5);
-        }
-        case DIFFUSE_MODE_SPHERICAL_HARMONICS: { light = spherical_harmonics(system.spherical_harmonics, normal); }
-        default: { light = diffuse_from_lights(normal, position); }
-    }
-    return light * system.diffuse_intensity;
-}
-
 @fragment
 fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = position.xy - view.origin;
@@ -111,9 +77,10 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     if amount <= 0.0 {
         discard;
     }
-    var covered = coverage(amount, system.boost);
-    if COVERAGE_MODE == COVERAGE_MODE_RAMP {
-        covered = painted_coverage(sample_ramp(coverage_ramp, linear_sampler, covered));
+    let covered = smoke_coverage(amount);
+    if LIT {
+        // The light of the texels, weighted by their amounts. Less than a millionth shows nothing, and must not divide.
+        return vec4f(target_colour(accumulated.rgb / max(amount, 1.0e-6)), 1.0) * covered;
     }
     var weights = amount;
     if WEIGHT_SUM {

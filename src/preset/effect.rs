@@ -68,6 +68,7 @@ const OF_SYSTEMS: &[Row<PresetSystem>] = &[
             "settings.accumulate.depth_source",
             "settings.accumulate.depth_downsample",
             "settings.accumulate.upsample",
+            "settings.accumulate.lighting_resolution",
             "settings.coverage",
             "settings.diffuse.mode",
             "settings.specular_scatter",
@@ -129,7 +130,11 @@ const OF_SYSTEMS: &[Row<PresetSystem>] = &[
     row(
         "only at a scale above 1",
         |s, size| s.settings.accumulate.effective_scale(size) == 1,
-        &["settings.accumulate.depth_downsample", "settings.accumulate.upsample"],
+        &[
+            "settings.accumulate.depth_downsample",
+            "settings.accumulate.upsample",
+            "settings.accumulate.lighting_resolution",
+        ],
     ),
     row(
         "sprite.debug_sprite shows a checkerboard instead",

@@ -16,6 +16,8 @@ pub struct Accumulated<'a> {
     pub accumulation: &'a Picture<Vec4>,
     /// What the weights of the normals sum to, where that is kept.
     pub weight_sum: Option<&'a Picture<Vec4>>,
+    /// What light_target has made of it; `None` where that is worked out texel by texel, as it is read.
+    pub lit: Option<Picture<Vec4>>,
 }
 
 impl Texture2d for Picture<Vec3> {
@@ -31,13 +33,25 @@ impl Texture2d for Picture<Vec3> {
 impl Accumulated<'_> {
     /// A texture of the accumulation target. `sample_target()` in accumulated.wgsl.
     pub fn sample_target(&self, target: &Picture<Vec4>, pixel: Vec2) -> Vec4 {
+        self.sample_texels(|at| target.load(at), pixel)
+    }
+
+    /// Lit smoke.
+    pub fn sample_lit(&self, pixel: Vec2) -> Vec4 {
+        match &self.lit {
+            Some(lit) => self.sample_target(lit, pixel),
+            None => self.sample_texels(|at| self.lit_texel(at), pixel),
+        }
+    }
+
+    fn sample_texels(&self, texel_at: impl Fn(IVec2) -> Vec4, pixel: Vec2) -> Vec4 {
         let system = &self.draw.system;
         let texel = pixel / system.scale - system.target_origin;
         if texel.cmplt(Vec2::ZERO).any() || texel.cmpge(system.target_size).any() {
             return Vec4::ZERO;
         }
         if system.scale < 1.5 {
-            return target.load(texel.as_ivec2());
+            return texel_at(texel.as_ivec2());
         }
         let upsample = self.draw.settings.accumulate.upsample;
         let corner = texel - 0.5;
@@ -54,13 +68,13 @@ impl Accumulated<'_> {
         let fade = 1.0 / system.fade_scale;
         if upsample != Upsample::Guided || is_smooth(depths, depth, fade) {
             let weights = upsample_weights(upsample, fraction, depths, depth);
-            return taps.iter().zip(weights.to_array()).map(|(&tap, weight)| target.load(tap) * weight).sum();
+            return taps.iter().zip(weights.to_array()).map(|(&tap, weight)| texel_at(tap) * weight).sum();
         }
         let fit = (0..16).fold(GuidedFit::default(), |fit, i| {
             let offset = IVec2::new(i % 4, i / 4) - 1;
             let at = base + offset;
             let place = (offset.as_vec2() - fraction).extend(guide(at) - depth);
-            with_texel(&fit, place, guided_weight(place, depth), target.load(at))
+            with_texel(&fit, place, guided_weight(place, depth), texel_at(at))
         });
         fitted_value(&fit, fade)
     }

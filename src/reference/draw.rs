@@ -14,7 +14,7 @@ use crate::frame::{Bounds, Particle, View, bounds_of};
 use crate::in_view::{
     SortScratch, SystemInView, SystemInWorld, ViewGeometry, in_order, lights_in_view, system_in_view,
 };
-use crate::settings::Settings;
+use crate::settings::{Settings, ShadeTree};
 
 /// A system in sight, with what its passes read.
 pub struct Draw<'a> {
@@ -63,6 +63,11 @@ impl<'a> Draw<'a> {
             settings,
             material: system.material,
         })
+    }
+
+    /// True if this stage shows the light of the target's texels.
+    pub fn lights_target(&self, shade_tree: ShadeTree) -> bool {
+        shade_tree.is_picture() && self.settings.accumulate.lights_target(self.view.size.as_uvec2())
     }
 
     pub fn scene_view_depth(&self, pixel: IVec2) -> f32 {

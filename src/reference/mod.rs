@@ -38,7 +38,10 @@ pub fn render(frame: &Frame<'_>, picture: &mut Picture<Vec4>) -> Result<(), Fiel
         let weight_sum = draw.weight_sum(&reduced_depth);
         let baked = draw.diffuse_bake();
         let (reduced_depth, accumulation, weight_sum) = (&reduced_depth, &accumulation, weight_sum.as_ref());
-        let smoke = Accumulated { draw, baked: &baked, reduced_depth, accumulation, weight_sum };
+        let mut smoke = Accumulated { draw, baked: &baked, reduced_depth, accumulation, weight_sum, lit: None };
+        if draw.lights_target(frame.shade_tree) {
+            smoke.lit = Some(smoke.light_target());
+        }
         if frame.shade_tree != ShadeTree::SpecularScatter {
             smoke.transfer(frame.shade_tree, picture);
         }

@@ -139,7 +139,8 @@ impl<'a> Smoke<'a> {
             let value = format!("{}x{}", other.x, other.y);
             return Err(FieldError::new("texels", value, format!("{}x{}, as the system has", size.x, size.y)));
         }
-        let accumulated = Accumulated { draw, baked, reduced_depth, accumulation, weight_sum: weights.as_ref() };
+        let accumulated =
+            Accumulated { draw, baked, reduced_depth, accumulation, weight_sum: weights.as_ref(), lit: None };
         let view = ViewGeometry::new(&crate::View { origin: UVec2::ZERO, ..frame.view })?;
         let mut reached = Vec::new();
         let lights = frame.lights.iter().enumerate().filter(|(_, light)| {

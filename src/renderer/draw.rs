@@ -8,6 +8,7 @@ use super::pass::accumulate::{Accumulate, AccumulateKey, DepthTest};
 use super::pass::depth_downsample::{DepthDownsampleKey, Downsample};
 use super::pass::diffuse_bake::DiffuseBake;
 use super::pass::forward::Forward;
+use super::pass::light_target::LightTarget;
 use super::pass::specular_scatter::SpecularScatter;
 use super::pass::sprites::Sprites;
 use super::pass::transfer::Transfer;
@@ -36,6 +37,7 @@ pub(crate) struct Deferred {
     pub diffuse_bake: Option<DiffuseBake>,
     pub accumulate: Accumulate,
     pub overdraw: Option<Accumulate>,
+    pub light_target: Option<LightTarget>,
     pub transfer: Transfer,
     pub specular_scatter: Option<SpecularScatter>,
 }
@@ -104,11 +106,19 @@ impl Assembly<'_> {
             }),
             accumulate: accumulate(plan.accumulate, &accumulation.attachments),
             overdraw: plan.overdraw.zip(accumulation.overdraw.as_ref()).map(|(key, layers)| accumulate(key, layers)),
+            light_target: plan.light_target.zip(accumulation.lit.as_ref()).map(|(key, target)| LightTarget {
+                pipeline: passes.light_target(device, key),
+                target: target.clone(),
+                size,
+                groups: groups.clone(),
+                inputs: inputs.transfer.clone(),
+            }),
             transfer: Transfer {
                 pipelines,
                 groups: groups.clone(),
                 inputs: inputs.transfer.clone(),
                 overdraw_inputs: inputs.overdraw.clone(),
+                lit_inputs: inputs.lit.clone(),
             },
             specular_scatter: plan.specular_scatter.filter(|_| lights > 0).map(|key| SpecularScatter {
                 pipeline: passes.specular_scatter(device, key),

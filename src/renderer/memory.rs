@@ -3,7 +3,7 @@
 /// Bytes of GPU memory that a renderer holds, its materials aside.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MemoryUse {
-    /// Accumulation targets, reduced depths and baked light of all systems.
+    /// Accumulation targets, lit smoke, reduced depths and baked light of all systems.
     pub targets: u64,
     /// Particles and uniforms.
     pub buffers: u64,

@@ -194,6 +194,8 @@ impl Renderer {
             draw.accumulate.record(encoder, timing);
             // Or counted, where that is to be shown.
             draw.overdraw.iter().for_each(|pass| pass.record(encoder, timing));
+            // Lit, where light is wanted no finer than the target.
+            draw.light_target.iter().for_each(|pass| pass.record(encoder, timing));
         }
         // Far to near; at one distance as the host has them.
         self.order.sort_by(|a, b| b.distance.total_cmp(&a.distance));
@@ -221,7 +223,7 @@ impl Renderer {
                     Timing::inside(timing, "forward", pass, |pass| forward.record(pass));
                 }
                 Some(Draw::Deferred(draw)) => {
-                    // The box, lit once per pixel.
+                    // The box, lit once per pixel, or with the light of the texels.
                     Timing::inside(timing, "transfer", pass, |pass| draw.transfer.record(pass, stage));
                     // The glow of lights behind it.
                     for glow in draw.specular_scatter.iter().filter(|_| stage.glows()) {
@@ -285,6 +287,7 @@ impl Renderer {
             scene_depth,
             reversed: view.depth.reversed,
             mirrored: view.mirrored,
+            size: view.size,
             stages,
         }
     }

@@ -6,6 +6,7 @@ use super::pass::accumulate::{self, AccumulateKey};
 use super::pass::depth_downsample::{self, DepthDownsampleKey};
 use super::pass::diffuse_bake::{self, DiffuseBakeKey};
 use super::pass::forward::{self, ForwardKey};
+use super::pass::light_target::{self, LightingKey};
 use super::pass::specular_scatter::{self, SpecularScatterKey};
 use super::pass::transfer::{self, TransferKey};
 use super::plan::Plan;
@@ -17,6 +18,7 @@ pub(crate) struct Passes {
     depth_downsample: Variants<DepthDownsampleKey>,
     diffuse_bake: Variants<DiffuseBakeKey>,
     accumulate: Variants<AccumulateKey>,
+    light_target: Variants<LightingKey>,
     transfer: Variants<TransferKey>,
     specular_scatter: Variants<SpecularScatterKey>,
     forward: Variants<ForwardKey>,
@@ -44,6 +46,7 @@ impl Passes {
             depth_downsample: variants!(depth_downsample, &frame_and_system),
             diffuse_bake: variants!(diffuse_bake, &material),
             accumulate: variants!(accumulate, &accumulate),
+            light_target: variants!(light_target, &transfer),
             transfer: variants!(transfer, &transfer),
             specular_scatter: variants!(specular_scatter, &transfer),
             forward: variants!(forward, &material),
@@ -55,6 +58,7 @@ impl Passes {
         self.depth_downsample.len()
             + self.diffuse_bake.len()
             + self.accumulate.len()
+            + self.light_target.len()
             + self.transfer.len()
             + self.specular_scatter.len()
             + self.forward.len()
@@ -71,6 +75,7 @@ impl Passes {
                 plan.diffuse_bake.map_or(Ok(()), |key| self.diffuse_bake.check(device, key))?;
                 let mut accumulates = std::iter::once(plan.accumulate).chain(plan.overdraw);
                 accumulates.try_for_each(|key| self.accumulate.check(device, key))?;
+                plan.light_target.map_or(Ok(()), |key| self.light_target.check(device, key))?;
                 plan.transfers().try_for_each(|key| self.transfer.check(device, key))?;
                 plan.specular_scatter.map_or(Ok(()), |key| self.specular_scatter.check(device, key))
             }
@@ -87,6 +92,10 @@ impl Passes {
 
     pub fn accumulate(&self, device: &wgpu::Device, key: AccumulateKey) -> wgpu::RenderPipeline {
         self.accumulate.get(device, key)
+    }
+
+    pub fn light_target(&self, device: &wgpu::Device, key: LightingKey) -> wgpu::RenderPipeline {
+        self.light_target.get(device, key)
     }
 
     pub fn transfer(&self, device: &wgpu::Device, key: TransferKey) -> wgpu::RenderPipeline {

@@ -1,16 +1,19 @@
 //! What a frame draws, and with which pipelines: decided from plain data, before a device is asked for anything.
 
+use glam::UVec2;
+
 use super::gpu::host_pass::HostPass;
 use super::pass::accumulate::{AccumulateKey, DepthTest};
 use super::pass::depth_downsample::DepthDownsampleKey;
 use super::pass::diffuse_bake::DiffuseBakeKey;
 use super::pass::forward::ForwardKey;
+use super::pass::light_target::LightingKey;
 use super::pass::specular_scatter::SpecularScatterKey;
 use super::pass::sprites::SpriteKey;
 use super::pass::transfer::TransferKey;
 use crate::formula::diffuse_bake::baked_size_and_layers;
 use crate::frame::SceneDepth;
-use crate::settings::{DepthSource, DiffuseMode, Path, Settings, ShadeTree, Technique};
+use crate::settings::{DepthSource, DiffuseMode, LightingResolution, Path, Settings, ShadeTree, Technique};
 
 /// Which depth of the scene a host hands over, and the format of the buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +49,8 @@ pub(crate) struct Situation<'a> {
     pub reversed: bool,
     /// The view mirrors.
     pub mirrored: bool,
+    /// Of the view, pixels.
+    pub size: UVec2,
     /// What may be shown.
     pub stages: &'a [ShadeTree],
 }
@@ -78,6 +83,8 @@ pub(crate) struct DeferredPlan<'a> {
     pub accumulate: AccumulateKey,
     /// Counts layers instead.
     pub overdraw: Option<AccumulateKey>,
+    /// Where smoke is lit at the target's resolution.
+    pub light_target: Option<LightingKey>,
     /// One for every stage that the box is drawn for.
     pub transfer: TransferKey,
     pub stages: &'a [ShadeTree],
@@ -107,7 +114,7 @@ pub(crate) fn plan<'a>(situation: &Situation<'a>, settings: &Settings, back_face
 }
 
 /// Plans that draw with every pass between them, for a host of the plainest kind.
-pub(crate) fn one_of_each(read_only_depth: bool) -> [Plan<'static>; 2] {
+pub(crate) fn one_of_each(read_only_depth: bool) -> [Plan<'static>; 3] {
     let depth_format = wgpu::TextureFormat::Depth32Float;
     let situation = Situation {
         host: HostPass { depth_format: Some(depth_format), ..HostPass::plain(wgpu::TextureFormat::Rgba8Unorm) },
@@ -116,12 +123,15 @@ pub(crate) fn one_of_each(read_only_depth: bool) -> [Plan<'static>; 2] {
         scene_depth: SceneDepthKind::Buffer(depth_format),
         reversed: false,
         mirrored: false,
+        size: UVec2::ONE,
         stages: &[ShadeTree::Final],
     };
     let mut deferred = Settings::default();
     deferred.diffuse.mode = DiffuseMode::Cubemap;
+    let mut lit = deferred;
+    lit.accumulate.lighting_resolution = LightingResolution::Target;
     let forward = Settings { path: Path::Forward, ..Settings::default() };
-    [deferred, forward].map(|settings| plan(&situation, &settings, false))
+    [deferred, lit, forward].map(|settings| plan(&situation, &settings, false))
 }
 
 fn deferred<'a>(
@@ -136,6 +146,16 @@ fn deferred<'a>(
     let depth_test = depth_test(situation, settings);
     let downsample = |copy| DepthDownsampleKey { mode: accumulate.depth_downsample, copy };
     let bakes = baked_size_and_layers(settings.diffuse.mode).is_some();
+    let lights_target = stages.iter().any(|stage| stage.is_picture()) && accumulate.lights_target(situation.size);
+    let lighting = LightingKey {
+        encoding: accumulate.encoding,
+        decode: accumulate.decode,
+        sums_weights: accumulate.sums_weights(),
+        diffuse_mode: settings.diffuse.mode,
+        soft_scatter_mode: settings.soft_scatter.mode,
+        ramp_filter,
+        exact_filtering,
+    };
     let glows = stages.iter().any(|stage| stage.glows()) && settings.specular_scatter.intensity > 0.0;
     let accumulate_key = AccumulateKey {
         format: accumulate.format,
@@ -153,13 +173,11 @@ fn deferred<'a>(
         diffuse_bake: bakes.then_some(DiffuseBakeKey { mode: settings.diffuse.mode, ramp_filter, exact_filtering }),
         accumulate: accumulate_key,
         overdraw: stages.contains(&ShadeTree::Overdraw).then_some(AccumulateKey { overdraw: true, ..accumulate_key }),
+        light_target: lights_target.then_some(lighting),
         transfer: TransferKey {
             host,
-            encoding: accumulate.encoding,
-            decode: accumulate.decode,
-            sums_weights: accumulate.sums_weights(),
-            diffuse_mode: settings.diffuse.mode,
-            soft_scatter_mode: settings.soft_scatter.mode,
+            lighting,
+            lit: false,
             upsample: accumulate.upsample,
             host_depth,
             shade_tree: ShadeTree::Final,
@@ -168,8 +186,6 @@ fn deferred<'a>(
             reversed: situation.reversed,
             mirrored: situation.mirrored,
             coverage: settings.coverage,
-            ramp_filter,
-            exact_filtering,
         },
         stages,
         specular_scatter: glows.then_some(SpecularScatterKey {
@@ -210,7 +226,9 @@ impl DeferredPlan<'_> {
     /// What the box is drawn with, stage by stage.
     pub fn transfers(&self) -> impl Iterator<Item = TransferKey> {
         let drawn = self.stages.iter().filter(|stage| **stage != ShadeTree::SpecularScatter);
-        drawn.map(|&shade_tree| TransferKey { shade_tree, ..self.transfer })
+        // The parts of the light are worked out where they are shown.
+        let is_lit = |stage: ShadeTree| self.light_target.is_some() && stage.is_picture();
+        drawn.map(move |&shade_tree| TransferKey { shade_tree, lit: is_lit(shade_tree), ..self.transfer })
     }
 }
 
@@ -239,6 +257,7 @@ mod tests {
             scene_depth: SceneDepthKind::Both(Depth24Plus),
             reversed: false,
             mirrored: false,
+            size: UVec2::new(1280, 720),
             stages: &[ShadeTree::Final],
         }
     }
@@ -327,9 +346,34 @@ mod tests {
     }
 
     #[test]
+    fn light_is_at_the_targets_resolution_where_that_is_asked_for_and_another() {
+        let mut settings = Settings::default();
+        assert_eq!(deferred(&situation(), &settings).light_target, None);
+        settings.accumulate.lighting_resolution = LightingResolution::Target;
+        for &shade_tree in ShadeTree::ALL {
+            let situation = Situation { stages: &[shade_tree], ..situation() };
+            let shown = deferred(&situation, &settings);
+            let is_picture = matches!(shade_tree, ShadeTree::Final | ShadeTree::Combined);
+            assert_eq!(shown.light_target.is_some(), is_picture, "{shade_tree:?}");
+            assert_eq!(shown.transfers().any(|key| key.lit), is_picture, "{shade_tree:?}");
+        }
+        let all = Situation { stages: ShadeTree::ALL, ..situation() };
+        let lit: Vec<_> =
+            deferred(&all, &settings).transfers().filter(|key| key.lit).map(|key| key.shade_tree).collect();
+        assert_eq!(lit, [ShadeTree::Final, ShadeTree::Combined]);
+        settings.accumulate.scale = 1;
+        assert_eq!(deferred(&situation(), &settings).light_target, None);
+        settings.accumulate.max_side = 1279;
+        assert!(deferred(&situation(), &settings).light_target.is_some());
+    }
+
+    #[test]
     fn one_of_each_is_one_of_each() {
         for read_only_depth in [true, false] {
-            let [Plan::Deferred(deferred), Plan::Forward(_)] = one_of_each(read_only_depth) else { panic!() };
+            let [Plan::Deferred(deferred), Plan::Deferred(lit), Plan::Forward(_)] = one_of_each(read_only_depth) else {
+                panic!()
+            };
+            assert!(deferred.light_target.is_none() && lit.light_target.is_some());
             assert!(deferred.depth_downsample.is_some() && deferred.diffuse_bake.is_some());
             assert!(deferred.transfers().count() == 1 && deferred.specular_scatter.is_some());
         }

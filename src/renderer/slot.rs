@@ -205,7 +205,7 @@ impl Slot {
             Plan::Deferred(plan) => {
                 let scale = settings.accumulate.effective_scale(view.size);
                 let limit = UVec2::new(view.size.x.div_ceil(scale), view.size.y.div_ceil(scale));
-                let targets = self.targets.fit(shared, settings, plan.overdraw.is_some(), in_view.rect.size, limit);
+                let targets = self.targets.fit(shared, settings, plan, in_view.rect.size, limit);
                 assembly.deferred(plan, targets, &in_view, depth, frame.scene_depth.buffer())
             }
         };

@@ -4,6 +4,7 @@ use glam::UVec2;
 
 use super::context::Shared;
 use super::layouts::bind_textures;
+use super::plan::DeferredPlan;
 use super::targets::{AccumulationKey, AccumulationTarget, BakedDiffuse};
 use crate::settings::Settings;
 
@@ -20,10 +21,12 @@ pub(crate) struct SystemTargets {
 pub(crate) struct TargetInputs {
     /// Group 3 of accumulate; `None` where sprites are compared with the host's own depth.
     pub accumulate: Option<wgpu::BindGroup>,
-    /// Group 3 of transfer and specular_scatter.
+    /// Group 3 of transfer, specular_scatter and light_target.
     pub transfer: wgpu::BindGroup,
     /// The same with counted layers in place of the amount.
     pub overdraw: Option<wgpu::BindGroup>,
+    /// The same with lit smoke.
+    pub lit: Option<wgpu::BindGroup>,
 }
 
 /// Textures that are ready to be drawn to and read.
@@ -36,12 +39,11 @@ pub(crate) struct ReadyTargets<'a> {
 
 impl SystemTargets {
     /// Makes everything ready for `size` texels; the whole view at this scale has `limit`.
-    /// `overdraw`: layers are counted, too.
     pub fn fit(
         &mut self,
         shared: &Shared,
         settings: &Settings,
-        overdraw: bool,
+        plan: &DeferredPlan<'_>,
         size: UVec2,
         limit: UVec2,
     ) -> ReadyTargets<'_> {
@@ -50,7 +52,8 @@ impl SystemTargets {
             format: settings.accumulate.format,
             sums_weights: settings.accumulate.sums_weights(),
             depth_source: settings.accumulate.depth_source,
-            overdraw,
+            overdraw: plan.overdraw.is_some(),
+            lit: plan.light_target.is_some(),
             depth_copy: !shared.read_only_depth,
         };
         let (accumulation, is_new) = AccumulationTarget::fit(&mut self.accumulation, device, key, size, limit);
@@ -73,6 +76,7 @@ impl SystemTargets {
                 accumulate: depth.map(|depth| bind_textures(device, "haze accumulate inputs", accumulate, [depth])),
                 transfer: transfer(amount),
                 overdraw: accumulation.overdraw.as_ref().map(|layers| transfer(&layers[0])),
+                lit: accumulation.lit.as_ref().map(transfer),
             }
         });
         ReadyTargets { accumulation, baked_diffuse, inputs }

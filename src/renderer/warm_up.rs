@@ -7,7 +7,8 @@ use crate::settings::{Settings, ShadeTree};
 /// What frames will look like, so far as it decides pipelines. See [`Renderer::warm_up`](crate::Renderer::warm_up).
 #[derive(Clone, Copy, Debug)]
 pub struct WarmUp<'a> {
-    /// A camera like those to come: its hand and its depth convention count, not where it stands.
+    /// A camera like those to come: its hand and its depth convention count, and the size of the picture where `max_side` sets
+    /// the scale, not where it stands.
     pub view: View,
     /// The kind of scene depth.
     pub scene_depth: SceneDepthKind,

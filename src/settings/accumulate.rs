@@ -99,6 +99,18 @@ choice! {
     }
 }
 
+choice! {
+    /// How finely diffuse light and soft scatter are worked out. `docs/upsampling.md` has what each costs and loses.
+    LightingResolution {
+        /// Once per pixel of the picture, from the upsampled normal and amount.
+        #[default]
+        Full = "full",
+        /// Once per texel of the target, and upsampled: a light costs `scale`² times less. Hard steps in a
+        /// diffuse ramp turn soft.
+        Target = "target",
+    }
+}
+
 settings! {
     /// The accumulation pass: how sprites become normal + amount.
     #[derive(Clone, Copy, Debug, PartialEq)]
@@ -123,6 +135,8 @@ settings! {
         depth_downsample: DepthDownsample = DepthDownsample::default(), choice;
         /// How the target is brought to full resolution.
         upsample: Upsample = Upsample::default(), choice;
+        /// How finely the smoke is lit; its coverage and the glow of lights are those of pixels.
+        lighting_resolution: LightingResolution = LightingResolution::default(), choice;
         /// Multiplies the amount of every sprite.
         opacity: f32 = 1.0, number(0.0..=1.0, "");
     }
@@ -139,6 +153,11 @@ impl Accumulate {
     /// True if the target holds the sum of the weights of normals, too: biased ones cannot be read without it.
     pub(crate) fn sums_weights(&self) -> bool {
         self.order.sums_weights(self.encoding)
+    }
+
+    /// True if the smoke in a picture of this size is lit once per texel, and that is not once per pixel.
+    pub(crate) fn lights_target(&self, picture: UVec2) -> bool {
+        self.lighting_resolution == LightingResolution::Target && self.effective_scale(picture) > 1
     }
 
     /// The divisor in use: `scale`, raised until the picture's longer side has at most `max_side` texels.

@@ -16,7 +16,8 @@ mod technique;
 mod walk;
 
 pub use accumulate::{
-    Accumulate, AccumulationFormat, DepthDownsample, DepthSource, NormalDecode, NormalEncoding, Order, Upsample,
+    Accumulate, AccumulationFormat, DepthDownsample, DepthSource, LightingResolution, NormalDecode, NormalEncoding,
+    Order, Upsample,
 };
 pub use budget::{Budget, ScaleBudget};
 pub use choice::Choice;

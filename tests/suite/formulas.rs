@@ -1239,6 +1239,7 @@ const INDIRECT: &[&str] = &[
     "sprite_vertex",
     "diffuse",
     "diffuse_from_lights",
+    "smoke_coverage",
     "light_visibility",
     "stored_depth",
     "soft_scatter",

@@ -131,6 +131,7 @@ fn the_first_frame_after_a_warm_up_compiles_nothing() {
             if path == Path::Raster {
                 (stage.material.sprite, stage.material.detail) = crate::techniques::flipbook();
             }
+            stage.settings.accumulate.lighting_resolution = LightingResolution::Target;
             let mut host = Host::new(gpu(), &stage).unwrap();
             assert_eq!(host.renderer.context().pipeline_count(), 0);
             host.renderer.warm_up(&warm_up(&stage, &[stage.settings])).unwrap();

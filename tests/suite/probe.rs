@@ -91,8 +91,9 @@ fn every_stage_is_told_as_it_is_shown() {
         (ShadeTree::Combined, |probe| probe.light() * probe.coverage),
         (ShadeTree::SpecularScatter, SystemProbe::specular),
     ];
-    let changes: [fn(&mut Settings); 5] = [
+    let changes: [fn(&mut Settings); 6] = [
         |_| {},
+        |s| s.accumulate.lighting_resolution = LightingResolution::Target,
         |s| (s.accumulate.encoding, s.accumulate.order) = (NormalEncoding::Biased, Order::Weighted),
         |s| (s.accumulate.scale, s.diffuse.mode) = (4, DiffuseMode::Cubemap),
         |s| (s.accumulate.scale, s.accumulate.depth_source) = (1, DepthSource::Host),

@@ -6,7 +6,9 @@ use haze::frame::bounds_of;
 use haze::picture::Picture;
 use haze::read_only_depth_is_supported;
 use haze::reference::blend_unit::{premultiplied_over, quantise};
-use haze::settings::{AccumulationFormat, DepthSource, DiffuseMode, Order, Path, ShadeTree, Upsample};
+use haze::settings::{
+    AccumulationFormat, DepthSource, DiffuseMode, LightingResolution, Order, Path, ShadeTree, Upsample,
+};
 use haze::{Bounds, Error, Light, Particle, Particles, wgpu};
 use proptest::prelude::*;
 
@@ -509,8 +511,13 @@ fn a_system_at_1080p_half_scale_takes_at_most_8_mb() {
 fn steady_frames_create_nothing() {
     let mut stage = Stage::new(SIZE);
     let mut host = Host::new(gpu(), &stage).unwrap();
-    for mode in [DiffuseMode::Ramp, DiffuseMode::Cubemap] {
+    for (mode, lighting_resolution) in [
+        (DiffuseMode::Ramp, LightingResolution::Full),
+        (DiffuseMode::Cubemap, LightingResolution::Full),
+        (DiffuseMode::Cubemap, LightingResolution::Target),
+    ] {
         stage.settings.diffuse.mode = mode;
+        stage.settings.accumulate.lighting_resolution = lighting_resolution;
         // The first frame does, and the count sees it.
         assert!(creations::count(|| host.draw(gpu(), &stage).unwrap()) > 0);
         let renderer_of = |host: &Host| {

@@ -196,7 +196,7 @@ fn files_may_end_their_lines_and_begin_as_they_like() {
 #[test]
 fn what_is_no_folder_of_shaders_is_refused() {
     let expected = "expected accumulate.wgsl, depth_downsample.wgsl, diffuse_bake.wgsl, forward.wgsl, \
-                    specular_scatter.wgsl, transfer.wgsl or a file of lib/ in it";
+                    light_target.wgsl, specular_scatter.wgsl, transfer.wgsl or a file of lib/ in it";
     let said = |path: &Path| Sources::from_folder(path).unwrap_err().to_string();
     let folder = Folder::new();
     let path = folder.0.path();

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use glam::UVec2;
 use haze::headless::Headless;
-use haze::settings::{DiffuseMode, Path};
+use haze::settings::{DiffuseMode, LightingResolution, Path};
 use haze::{Error, Frame, FrameTimes, Particles, SceneDepth, Settings, System, Timing, wgpu};
 
 use crate::common::gpu;
@@ -91,6 +91,10 @@ fn every_pass_is_named_and_takes_time() {
         assert!((times.smoke_ms() - own).abs() < 1.0e-5 * own, "{times:?}");
         assert!(times.passes.iter().all(|pass| pass.of_host == (pass.name == "host")));
     }
+    stage.settings.accumulate.lighting_resolution = LightingResolution::Target;
+    let lit =
+        ["depth_downsample", "diffuse_bake", "accumulate", "light_target", "host", "transfer", "specular_scatter"];
+    assert_eq!(names(&drawn(gpu, &mut host, &timing, &stage)), lit);
     stage.settings.path = Path::Forward;
     assert_eq!(names(&drawn(gpu, &mut host, &timing, &stage)), ["host", "forward"]);
     stage.particles.clear();

@@ -7,8 +7,8 @@ use glam::{UVec2, Vec3};
 use haze::demo::shot::Shot;
 use haze::preset::Preset;
 use haze::settings::{
-    AccumulationFormat, DepthDownsample, FadeCurve, NormalEncoding, Order, Path as SmokePath, Settings, Technique,
-    Upsample,
+    AccumulationFormat, DepthDownsample, FadeCurve, LightingResolution, NormalEncoding, Order, Path as SmokePath,
+    Settings, Technique, Upsample,
 };
 use haze::{Error, Light, builtin};
 
@@ -176,7 +176,15 @@ fn lights(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
             for &scale in scales(path, &[1, 2, 4]) {
                 let name = format!("{} 1/{scale} {count} lights", path.name());
                 let work = (format!("lights {} {scale}", path.name()), f64::from(count));
-                cases.push(Case { name, shot: changed(&shot, at_scale(path, scale)), work });
+                let shot = changed(&shot, at_scale(path, scale));
+                let lit = changed(&shot, |s| s.accumulate.lighting_resolution = LightingResolution::Target);
+                cases.push(Case { name: name.clone(), shot, work });
+                if scale > 1 {
+                    // Lit once per texel.
+                    let name = format!("{name}, lit at 1/{scale}");
+                    let work = (format!("lights {} {scale} lit", path.name()), f64::from(count));
+                    cases.push(Case { name, shot: lit, work });
+                }
             }
         }
         Ok(Group { suite: Suite::Lights, cases, reference: full(&shot) })

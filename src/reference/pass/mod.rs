@@ -4,5 +4,6 @@ mod accumulate;
 mod depth_downsample;
 mod diffuse_bake;
 mod forward;
+mod light_target;
 mod specular_scatter;
 mod transfer;

@@ -68,7 +68,8 @@ impl Accumulated<'_> {
             let grey = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));
             return Some(Vec3::splat(grey).extend(1.0));
         }
-        let accumulated = self.sample_target(self.accumulation, pixel);
+        let is_lit = self.draw.lights_target(shade_tree);
+        let accumulated = if is_lit { self.sample_lit(pixel) } else { self.sample_target(self.accumulation, pixel) };
         let amount = accumulated.w;
         match shade_tree {
             ShadeTree::Overdraw => return Some(overdraw_colour(amount * 255.0).extend(1.0)),
@@ -79,6 +80,9 @@ impl Accumulated<'_> {
             return None;
         }
         let covered = self.coverage(amount);
+        if is_lit {
+            return Some(bounded_light(accumulated.xyz() / amount.max(1.0e-6)).extend(1.0) * covered);
+        }
         let normal = self.normal(accumulated, pixel);
         if shade_tree == ShadeTree::Normals {
             return Some((normal * 0.5 + 0.5).extend(1.0) * covered);
@@ -104,8 +108,11 @@ impl Accumulated<'_> {
     }
 
     fn normal(&self, accumulated: Vec4, pixel: Vec2) -> Vec3 {
+        self.decode(accumulated, self.weight_sum.map_or(accumulated.w, |sum| self.sample_target(sum, pixel).x))
+    }
+
+    pub fn decode(&self, accumulated: Vec4, weights: f32) -> Vec3 {
         let accumulate = &self.draw.settings.accumulate;
-        let weights = self.weight_sum.map_or(accumulated.w, |sum| self.sample_target(sum, pixel).x);
         normal_from_accumulation(accumulate.encoding, accumulate.decode, accumulated.xyz(), weights)
     }
 

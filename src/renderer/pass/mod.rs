@@ -5,6 +5,7 @@ pub(crate) mod accumulate;
 pub(crate) mod depth_downsample;
 pub(crate) mod diffuse_bake;
 pub(crate) mod forward;
+pub(crate) mod light_target;
 pub(crate) mod specular_scatter;
 pub(crate) mod sprites;
 pub(crate) mod transfer;

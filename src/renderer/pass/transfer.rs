@@ -1,14 +1,13 @@
 //! transfer
-//! What: lights the accumulated smoke once per pixel, over the system's bounding box.
+//! What: lights the accumulated smoke once per pixel, over the system's bounding box; or upsamples what light_target lit.
 //! Reads: accumulation target, reduced depth, scene depth, lights, ramps. Writes: the host's colour target.
 //! Blend: ONE, ONE_MINUS_SRC_ALPHA. Source: OTEE "Transfer & lighting".
 
 use super::Groups;
+use super::light_target::LightingKey;
 use crate::renderer::gpu::host_pass::HostPass;
 use crate::renderer::gpu::pipeline::{PREMULTIPLIED_OVER, PipelineParts, in_front, read_only_depth, switch, variant};
-use crate::settings::{
-    CoverageMode, DiffuseMode, NormalDecode, NormalEncoding, RampFilter, ShadeTree, SoftScatterMode, Upsample,
-};
+use crate::settings::{CoverageMode, ShadeTree, Upsample};
 
 /// Vertices of the box: twelve triangles.
 const BOX_VERTICES: u32 = 36;
@@ -17,11 +16,9 @@ const BOX_VERTICES: u32 = 36;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct TransferKey {
     pub host: HostPass,
-    pub encoding: NormalEncoding,
-    pub decode: NormalDecode,
-    pub sums_weights: bool,
-    pub diffuse_mode: DiffuseMode,
-    pub soft_scatter_mode: SoftScatterMode,
+    pub lighting: LightingKey,
+    /// What is upsampled is light, from light_target.
+    pub lit: bool,
     pub upsample: Upsample,
     pub host_depth: bool,
     pub shade_tree: ShadeTree,
@@ -31,8 +28,6 @@ pub(crate) struct TransferKey {
     /// The view mirrors: faces turn the other way round.
     pub mirrored: bool,
     pub coverage: CoverageMode,
-    pub ramp_filter: RampFilter,
-    pub exact_filtering: bool,
 }
 
 /// The pipeline for a key.
@@ -52,21 +47,15 @@ pub(crate) fn describe(key: TransferKey) -> PipelineParts {
         depth_stencil: key.host.depth_format.map(|format| read_only_depth(format, compare)),
         sample_count: key.host.sample_count,
         targets: key.host.color_targets(PREMULTIPLIED_OVER),
-        constants: vec![
-            variant!("DIFFUSE_MODE", key.diffuse_mode),
-            variant!("SOFT_SCATTER_MODE", key.soft_scatter_mode),
-            variant!("NORMAL_ENCODING", key.encoding),
-            variant!("NORMAL_DECODE", key.decode),
-            switch("WEIGHT_SUM", key.sums_weights),
+        constants: key.lighting.constants([
+            switch("LIT", key.lit),
             variant!("UPSAMPLE", key.upsample),
             variant!("SHADE_TREE", key.shade_tree),
             switch("HOST_DEPTH", key.host_depth),
             switch("BACK_FACES", key.back_faces),
             switch("GAMMA_TARGET", key.host.gamma_target),
             variant!("COVERAGE_MODE", key.coverage),
-            variant!("RAMP_FILTER", key.ramp_filter),
-            switch("EXACT_FILTERING", key.exact_filtering),
-        ],
+        ]),
     }
 }
 
@@ -80,13 +69,19 @@ pub(crate) struct Transfer {
     pub inputs: wgpu::BindGroup,
     /// The same with counted layers in place of the amount.
     pub overdraw_inputs: Option<wgpu::BindGroup>,
+    /// The same with lit smoke in its place, where that is drawn.
+    pub lit_inputs: Option<wgpu::BindGroup>,
 }
 
 impl Transfer {
     /// Draws nothing for a stage that was not to be shown.
     pub fn record(&self, pass: &mut wgpu::RenderPass<'_>, stage: ShadeTree) {
         let Some(pipeline) = &self.pipelines[stage as usize] else { return };
-        let inputs = if stage == ShadeTree::Overdraw { self.overdraw_inputs.as_ref() } else { Some(&self.inputs) };
+        let inputs = match stage {
+            ShadeTree::Overdraw => self.overdraw_inputs.as_ref(),
+            stage if stage.is_picture() => self.lit_inputs.as_ref().or(Some(&self.inputs)),
+            _ => Some(&self.inputs),
+        };
         pass.set_pipeline(pipeline);
         self.groups.bind(pass);
         pass.set_bind_group(3, inputs, &[]);

@@ -33,6 +33,9 @@ pub(crate) const REDUCED_DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat
 /// The copy that OpenGL tests against: half the size, so that a system stays within its memory.
 pub(crate) const DEPTH_COPY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
 
+/// Lit smoke: light is HDR, whatever normals are kept in.
+pub(crate) const LIT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
 /// What decides, beside the size, whether a system's textures can be used again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct AccumulationKey {
@@ -41,6 +44,8 @@ pub(crate) struct AccumulationKey {
     pub depth_source: DepthSource,
     /// Layers are counted as well.
     pub overdraw: bool,
+    /// Smoke is lit at this resolution.
+    pub lit: bool,
     /// A copy of the reduced depth is needed: the backend cannot test what it samples.
     pub depth_copy: bool,
 }
@@ -54,6 +59,8 @@ pub(crate) struct AccumulationTarget {
     pub attachments: Arc<[wgpu::TextureView]>,
     /// The first attachment once more, for counted layers.
     pub overdraw: Option<Arc<[wgpu::TextureView]>>,
+    /// Light times amount, and amount, where smoke is lit at this resolution.
+    pub lit: Option<wgpu::TextureView>,
     /// `None` where sprites are compared with the host's own depth.
     pub reduced_depth: Option<wgpu::TextureView>,
     /// The reduced depth once more, coarser, where the backend cannot test what it samples.
@@ -103,12 +110,13 @@ impl AccumulationTarget {
         };
         let attachments = create(key.sums_weights);
         let overdraw = key.overdraw.then(|| create(false));
+        let lit = key.lit.then(|| textures.create_whole("haze lit smoke", LIT_FORMAT, size));
         let is_reduced = key.depth_source == DepthSource::Reduced;
         let reduced_depth = is_reduced.then(|| textures.create_whole("haze reduced depth", REDUCED_DEPTH_FORMAT, size));
         let depth_copy =
             (is_reduced && key.depth_copy).then(|| textures.create_whole("haze depth copy", DEPTH_COPY_FORMAT, size));
         let bytes = textures.bytes;
-        Self { key, size, spare: Spare::default(), attachments, overdraw, reduced_depth, depth_copy, bytes }
+        Self { key, size, spare: Spare::default(), attachments, overdraw, lit, reduced_depth, depth_copy, bytes }
     }
 }
 

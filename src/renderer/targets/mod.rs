@@ -6,7 +6,7 @@ mod textures;
 mod views;
 
 pub(crate) use accumulation::{
-    AccumulationKey, AccumulationTarget, DEPTH_COPY_FORMAT, REDUCED_DEPTH_FORMAT, accumulation_layout,
+    AccumulationKey, AccumulationTarget, DEPTH_COPY_FORMAT, LIT_FORMAT, REDUCED_DEPTH_FORMAT, accumulation_layout,
 };
 pub(crate) use baked_diffuse::{BAKED_DIFFUSE_FORMAT, BakedDiffuse};
 pub use views::TargetViews;

@@ -1,0 +1,50 @@
+// The light of accumulated smoke by normal, and its coverage: shared by transfer and light_target.
+
+#import "lib/diffuse.wgsl"
+#import "lib/accumulated.wgsl"
+#import "lib/normal.wgsl"
+#import "lib/diffuse_bake.wgsl"
+
+// Six faces of baked light by normal (cubemap), or one picture of a lit sphere (motif).
+@group(3) @binding(2) var baked_diffuse: texture_2d_array<f32>;
+// What the weights of the normals sum to, where WEIGHT_SUM.
+@group(3) @binding(3) var weight_sum: texture_2d<f32>;
+
+const DIFFUSE_MODE_RAMP: u32 = 0u;
+const DIFFUSE_MODE_CUBEMAP: u32 = 1u;
+const DIFFUSE_MODE_MOTIF: u32 = 2u;
+const DIFFUSE_MODE_PAINTED_MOTIF: u32 = 3u;
+const DIFFUSE_MODE_SPHERICAL_HARMONICS: u32 = 4u;
+override DIFFUSE_MODE: u32 = DIFFUSE_MODE_RAMP;
+override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
+override NORMAL_DECODE: u32 = NORMAL_DECODE_EXACT;
+override WEIGHT_SUM: bool = false;
+const COVERAGE_MODE_LINEAR: u32 = 0u;
+const COVERAGE_MODE_RAMP: u32 = 1u;
+override COVERAGE_MODE: u32 = COVERAGE_MODE_LINEAR;
+
+fn diffuse(normal: vec3f, position: vec3f) -> vec3f {
+    var light = vec3f(0.0);
+    switch DIFFUSE_MODE {
+        case DIFFUSE_MODE_CUBEMAP: {
+            let cube = cube_coordinate(normal);
+            light = sample_baked(baked_diffuse, linear_sampler, cube.position, cube.face);
+        }
+        case DIFFUSE_MODE_MOTIF: { light = sample_baked(baked_diffuse, linear_sampler, motif_position(normal), 0); }
+        case DIFFUSE_MODE_PAINTED_MOTIF: {
+            light = sample_ramp_2d(painted_motif, linear_sampler, motif_position(normal) * 0.5 + 0.5);
+        }
+        case DIFFUSE_MODE_SPHERICAL_HARMONICS: { light = spherical_harmonics(system.spherical_harmonics, normal); }
+        default: { light = diffuse_from_lights(normal, position); }
+    }
+    return light * system.diffuse_intensity;
+}
+
+// How much of the scene the smoke hides.
+fn smoke_coverage(amount: f32) -> f32 {
+    let covered = coverage(amount, system.boost);
+    if COVERAGE_MODE == COVERAGE_MODE_RAMP {
+        return painted_coverage(sample_ramp(coverage_ramp, linear_sampler, covered));
+    }
+    return covered;
+}

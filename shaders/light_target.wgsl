@@ -1,0 +1,35 @@
+// light_target
+// What    Lights the accumulated smoke once per texel, where lighting_resolution asks for it; transfer upsamples the light.
+// Reads   accumulation target, lights, ramps, baked diffuse light.
+// Writes  lit smoke: rgb light times amount, a amount; Rgba16Float, linear light.
+// Blend   none.
+// Source  OTEE "Transfer & lighting", at the target's resolution.
+// Space   As transfer.
+
+#import "lib/lit_smoke.wgsl"
+#import "lib/colour.wgsl"
+
+@vertex
+fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    // One triangle that covers the target.
+    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+}
+
+@fragment
+fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let texel = floor(position.xy);
+    let accumulated = textureLoad(accumulation, vec2i(texel), 0);
+    let amount = accumulated.a;
+    if amount <= 0.0 {
+        return vec4f(0.0);
+    }
+    var weights = amount;
+    if WEIGHT_SUM {
+        weights = textureLoad(weight_sum, vec2i(texel), 0).r;
+    }
+    let normal = normal_from_accumulation(NORMAL_ENCODING, NORMAL_DECODE, accumulated.rgb, weights);
+    // The texel's middle stands for all of its pixels.
+    let pixel = (texel + system.target_origin + 0.5) * system.scale;
+    let light = diffuse(normal, lit_position(pixel)) + soft_scatter(amount);
+    return vec4f(bounded_light(light), 1.0) * amount;
+}

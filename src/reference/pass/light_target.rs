@@ -1,0 +1,34 @@
+//! `shaders/light_target.wgsl`.
+
+use glam::{IVec2, Vec4};
+
+use crate::assets::picture::Picture;
+use crate::formula::colour::bounded_light;
+use crate::reference::accumulated::Accumulated;
+use crate::reference::blend_unit::quantise;
+use crate::settings::AccumulationFormat;
+
+impl Accumulated<'_> {
+    /// Light times amount, and amount.
+    pub fn light_target(&self) -> Picture<Vec4> {
+        let mut lit = Picture::new(self.accumulation.size, Vec4::ZERO);
+        lit.for_each(|at, texel| *texel = self.lit_texel(at.as_ivec2()));
+        lit
+    }
+
+    /// A texel of that; those outside are the nearest inside.
+    pub fn lit_texel(&self, at: IVec2) -> Vec4 {
+        let (draw, system) = (self.draw, &self.draw.system);
+        let at = at.clamp(IVec2::ZERO, self.accumulation.size.as_ivec2() - 1);
+        let accumulated = self.accumulation.load(at);
+        let amount = accumulated.w;
+        if amount <= 0.0 {
+            return Vec4::ZERO;
+        }
+        let normal = self.decode(accumulated, self.weight_sum.map_or(amount, |sum| sum.load(at).x));
+        let pixel = (at.as_vec2() + system.target_origin + 0.5) * system.scale;
+        let position = draw.view_position(pixel, -system.centre.z);
+        let light = bounded_light(self.diffuse(normal, position) + draw.soft_scatter(amount));
+        quantise(AccumulationFormat::Rgba16Float, light.extend(1.0) * amount)
+    }
+}

@@ -1,0 +1,76 @@
+//! light_target
+//! What: lights the accumulated smoke once per texel, where `lighting_resolution` asks for it; transfer upsamples the light.
+//! Reads: accumulation target, lights, ramps. Writes: lit smoke, Rgba16Float. Blend: none.
+//! Source: OTEE "Transfer & lighting", at the target's resolution.
+
+use glam::UVec2;
+
+use super::Groups;
+use crate::renderer::gpu::pipeline::{Constant, PipelineParts, color_target, switch, variant};
+use crate::renderer::gpu::record::{begin_pass, color_attachment, set_part};
+use crate::renderer::gpu::timing::Timing;
+use crate::renderer::targets::LIT_FORMAT;
+use crate::settings::{DiffuseMode, NormalDecode, NormalEncoding, RampFilter, SoftScatterMode};
+
+/// What makes light on smoke differ, here and in transfer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct LightingKey {
+    pub encoding: NormalEncoding,
+    pub decode: NormalDecode,
+    pub sums_weights: bool,
+    pub diffuse_mode: DiffuseMode,
+    pub soft_scatter_mode: SoftScatterMode,
+    pub ramp_filter: RampFilter,
+    pub exact_filtering: bool,
+}
+
+impl LightingKey {
+    /// The overrides of `shaders/lib/lit_smoke.wgsl`, and a pass's own.
+    pub fn constants<const N: usize>(&self, of_pass: [Constant; N]) -> Vec<Constant> {
+        let shared = [
+            variant!("DIFFUSE_MODE", self.diffuse_mode),
+            variant!("SOFT_SCATTER_MODE", self.soft_scatter_mode),
+            variant!("NORMAL_ENCODING", self.encoding),
+            variant!("NORMAL_DECODE", self.decode),
+            switch("WEIGHT_SUM", self.sums_weights),
+            variant!("RAMP_FILTER", self.ramp_filter),
+            switch("EXACT_FILTERING", self.exact_filtering),
+        ];
+        shared.into_iter().chain(of_pass).collect()
+    }
+}
+
+/// The pipeline for a key.
+pub(crate) fn describe(key: LightingKey) -> PipelineParts {
+    PipelineParts {
+        buffers: &[],
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        sample_count: 1,
+        targets: vec![color_target(LIT_FORMAT, None)],
+        constants: key.constants([]),
+    }
+}
+
+/// The pass for one system.
+#[derive(Debug)]
+pub(crate) struct LightTarget {
+    pub pipeline: wgpu::RenderPipeline,
+    pub target: wgpu::TextureView,
+    /// Texels in use.
+    pub size: UVec2,
+    pub groups: Groups,
+    /// Group 3: the accumulation target.
+    pub inputs: wgpu::BindGroup,
+}
+
+impl LightTarget {
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
+        let mut pass = begin_pass(encoder, "light_target", &[color_attachment(&self.target)], None, timing);
+        set_part(&mut pass, UVec2::ZERO, self.size);
+        pass.set_pipeline(&self.pipeline);
+        self.groups.bind(&mut pass);
+        pass.set_bind_group(3, &self.inputs, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
