@@ -28,7 +28,8 @@ enum RampCommand {
     New(ramp::new::Arguments),
     /// Write the recipe of a picture, or of another program's gradient.
     Import(ramp::import::Arguments),
-    /// Render a preset under every ramp of a folder, on one labelled sheet.
+    /// Render a preset under every ramp of a folder, on one labelled sheet. Those that cannot be read are told and left out, and it
+    /// exits with 1.
     Sheet(ramp::sheet::Arguments),
     /// Show a ramp in the terminal, with its curve, or as a picture.
     Show(ramp::show::Arguments),
@@ -64,7 +65,7 @@ pub fn run_ramp(arguments: &RampArguments) -> Result<(), Failures> {
         RampCommand::Watch(arguments) => ramp::watch::run(arguments),
         RampCommand::New(arguments) => ramp::new::run(arguments).map_err(Failures::from),
         RampCommand::Import(arguments) => ramp::import::run(arguments).map_err(Failures::from),
-        RampCommand::Sheet(arguments) => ramp::sheet::run(arguments).map_err(Failures::from),
+        RampCommand::Sheet(arguments) => ramp::sheet::run(arguments),
         RampCommand::Show(arguments) => ramp::show::run(arguments).map_err(Failures::from),
         RampCommand::Check(arguments) => ramp::check::run(arguments),
     }

@@ -3,6 +3,7 @@
 
 pub mod builtin;
 pub mod cache;
+mod exact;
 pub mod file;
 pub mod finding;
 pub mod json;

@@ -93,6 +93,9 @@ fn all(ui: &mut Ui, frame: &mut Frame<'_>, at: f32) {
     if button(ui, is_many, "Distribute", "The same distance from each stop to the next") {
         frame.edit("distribute", |all, _| stops::distribute(all));
     }
+    if button(ui, is_many, "Steps", "The same width for what is at the right of each stop: for constant curves") {
+        frame.edit("distribute", |all, _| stops::step_evenly(all));
+    }
     if button(ui, true, "Copy", "All stops, as text of a recipe (Ctrl+C on a stop)") {
         frame.copy(ui, at);
     }

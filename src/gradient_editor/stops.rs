@@ -109,6 +109,15 @@ pub fn distribute(stops: &mut [RampStop]) {
     }
 }
 
+/// Puts stops at even distances from 0 on, so that the parts to the right of each are of one width: for steps.
+pub fn step_evenly(stops: &mut [RampStop]) {
+    sort(stops);
+    let parts = stops.len().max(1) as f32;
+    for (index, stop) in stops.iter_mut().enumerate() {
+        stop.at = index as f32 / parts;
+    }
+}
+
 #[cfg(test)]
 #[allow(clippy::float_cmp, reason = "places that are written out, and halves of them")]
 mod tests {

@@ -258,6 +258,8 @@ fn all_stops_are_turned_distributed_and_replaced_in_one_step() {
     assert_eq!((places(&harness), greys(&harness)), (vec![0.0, 0.8, 1.0], vec![20, 10, 0]));
     press(&mut harness, "Distribute");
     assert_eq!(places(&harness), [0.0, 0.5, 1.0]);
+    press(&mut harness, "Steps");
+    assert_eq!(places(&harness), [0.0, 0.333, 0.667]);
     press(&mut harness, "Templates");
     for template in TEMPLATES {
         assert!(harness.query_by_label(&template.name.replace('_', " ")).is_some(), "{}", template.name);
@@ -266,7 +268,7 @@ fn all_stops_are_turned_distributed_and_replaced_in_one_step() {
     assert_eq!(harness.state().row.stops, Template::find("hard_toon").unwrap().recipe().rows[0].stops);
     press(&mut harness, "Remove");
     assert_eq!(harness.state().row.stops.len(), 2);
-    assert_eq!(steps(&harness), ["flip", "distribute", "template", "remove a stop"]);
+    assert_eq!(steps(&harness), ["flip", "distribute", "distribute", "template", "remove a stop"]);
     assert_eq!(harness.state().row.at, 0.5, "the row stays where it is");
 }
 

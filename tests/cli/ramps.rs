@@ -205,7 +205,20 @@ fn a_shot_is_shown_under_every_ramp_of_a_folder() {
     assert!(cell(&coverage, 1) == render(&["systems.settings.coverage=ramp", "coverage_ramp=coverage_toon"]));
     assert!(cell(&coverage, 0) != cell(&coverage, 1));
 
+    // One that is broken does not take the others with it.
+    fs::write(folder.path().join("ramps/diffuse_broken.png"), "no picture").unwrap();
+    let arguments = ["ramp", "sheet", "fence", "--backend", "cpu", "--ramps", "ramps", "--role", "diffuse"];
+    let output = haze(folder.path(), &[&arguments[..], &["--size", "96x54", "-o", "sheet.png"]].concat());
+    assert_eq!((output.status.code(), stderr(&output).lines().count()), (Some(1), 1), "{}", stderr(&output));
+    assert!(stderr(&output).contains("diffuse_broken.png: not a PNG"), "{}", stderr(&output));
+    let left = haze::picture::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8();
+    assert!(cell(&left, 0) == cell(&diffuse, 0) && cell(&left, 1) == cell(&diffuse, 1));
+
     let line = |arguments: &[&str]| refusal(folder.path(), &[&["ramp", "sheet", "fence"], arguments].concat());
+    fs::create_dir(folder.path().join("broken")).unwrap();
+    fs::rename(folder.path().join("ramps/diffuse_broken.png"), folder.path().join("broken/diffuse_broken.png"))
+        .unwrap();
+    assert!(line(&["--ramps", "broken", "-o", "a.png"]).contains("diffuse_broken.png: not a PNG"));
     assert!(line(&["--ramps", "gone", "-o", "a.png"]).starts_with("haze: gone: "));
     let over = line(&["--ramps", "ramps", "--role", "diffuse", "-o", "ramps/mine.png"]);
     assert!(over.contains("expected a file that is not read"), "{over}");

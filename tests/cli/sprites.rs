@@ -77,6 +77,14 @@ fn pictures_of_other_kinds_become_sprites() {
     assert_eq!(text, "puff.png: 2x2 frames\n");
     let checked = haze(folder.path(), &["sprite", "check", "--columns", "2", "--rows", "2", "puff.png"]);
     assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stdout));
+    // As a shell sorts those without zeros.
+    for number in [9, 10] {
+        let dot = |x: u32, y: u32| image::Luma([if (x, y) == (number, 8) { 255 } else { 0 }]);
+        image::GrayImage::from_fn(16, 16, dot).save(folder.path().join(format!("dot_{number}.png"))).unwrap();
+    }
+    said(&["dot_10.png", "dot_9.png", "--from", "alpha", "-o", "dots.png"]);
+    let dots = image::open(folder.path().join("dots.png")).unwrap().to_rgba8();
+    assert_eq!([dots[(9, 8)].0[3], dots[(16 + 10, 8)].0[3]], [255, 255]);
     let text = refusal(folder.path(), &["sprite", "import", "down.png", "--from", "six_way_unity", "-o", "a.png"]);
     assert!(text.contains("1 sheets; expected 2"), "{text}");
     let text = refusal(folder.path(), &["sprite", "import", "down.png", "-o", "down.png"]);

@@ -15,7 +15,7 @@ use super::strip::strip;
 use super::{is_recipe, picture_of};
 use crate::app::export::{MOST_CELLS, Watch, columns, sheet};
 use crate::app::options::{ShotArguments, choices};
-use crate::app::output::{Files, has_extension};
+use crate::app::output::{Failures, Files, complain, has_extension};
 use crate::app::recipe::picture;
 
 #[derive(Args)]
@@ -51,7 +51,7 @@ enum Source {
     Builtin(&'static builtin::Builtin),
 }
 
-pub fn run(arguments: &Arguments) -> Result<(), Error> {
+pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     let cells = arguments.cells()?;
     let base = arguments.shot.load(&[])?;
     let read = cells.iter().filter_map(|cell| match &cell.source {
@@ -59,25 +59,30 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         Source::Builtin(_) => None,
     });
     Files::read(read).write("--output", &arguments.shot.output, "png")?;
-    let columns = columns(cells.len());
+    let (ramps, left_out) = Failures::of_each(&cells, |cell| Ok((cell, cell.ramp()?)));
+    if ramps.is_empty() {
+        return left_out.into_result();
+    }
+    left_out.errors().iter().for_each(complain);
+    let columns = columns(ramps.len());
     let size = (arguments.shot.run.size / columns).max(UVec2::ONE);
-    let (mut shots, mut ramps) = (Vec::new(), Vec::new());
-    for cell in &cells {
+    let mut shots = Vec::new();
+    for (cell, ramp) in &ramps {
         let mut shot = Shot { size, ..base.clone() };
-        let ramp = cell.ramp()?;
-        paint(&mut shot, cell.role, &ramp);
+        paint(&mut shot, cell.role, ramp);
         shots.push((cell.name.clone(), shot));
-        ramps.push(ramp);
     }
     let backend = arguments.shot.run.backend()?;
     let mut sheet = sheet(&backend, &shots, columns, &arguments.shot.output, &Watch::terminal())?;
-    for (index, (ramp, cell)) in (0..).zip(ramps.iter().zip(&cells)) {
+    for (index, (cell, ramp)) in (0..).zip(&ramps) {
         let has_two_axes = cell.role == Role::Specular;
         let inset = if has_two_axes { size / INSET } else { UVec2::new(size.x, size.y / STRIP) };
         sheet.inset(index, &strip(ramp, inset));
     }
     sheet.add_foot(&format!("{}, {}x{}, {}", base.preset.name, size.x, size.y, backend.description()));
-    arguments.shot.write(sheet.picture, &base, &backend)
+    arguments.shot.write(sheet.picture, &base, &backend)?;
+    // What is left out has been told.
+    if left_out.errors().is_empty() { Ok(()) } else { Err(Failures::default()) }
 }
 
 impl Arguments {

@@ -15,7 +15,8 @@ use crate::app::output::{Files, say};
 
 #[derive(Args)]
 pub struct Arguments {
-    /// PNGs: one sheet, one file for each frame in their order, or the two sheets of six-way light maps.
+    /// PNGs: one sheet, one file for each frame in their order (those that only differ by a number, by that), or the two sheets of
+    /// six-way light maps.
     #[arg(required = true)]
     files: Vec<PathBuf>,
     /// The PNG to write.
@@ -46,9 +47,10 @@ fn strength(text: &str) -> Result<f32, String> {
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let Arguments { files, output, source, columns, rows, y_down, strength } = arguments;
     Files::read(files).write("--output", output, "png")?;
-    let pictures = files.iter().map(|path| Ok((path.as_path(), read_png(path)?.to_rgba8())));
+    let files = by_number(files);
+    let pictures = files.iter().map(|&path| Ok((path, read_png(path)?.to_rgba8())));
     let pictures = pictures.collect::<Result<Vec<_>, Error>>()?;
-    let path = files.first().map_or(Path::new(""), PathBuf::as_path);
+    let path = files.first().copied().unwrap_or(Path::new(""));
     let (sheets, grid) = if pictures.len() > 1 && !source.has_two() {
         let (sheet, grid) = sheet_of(&pictures)?;
         (vec![sheet], grid)
@@ -72,4 +74,19 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         (None, Some(_)) => say!("  green taken to point up: nothing tells; --y-down says it"),
         (None, None) => Ok(()),
     }
+}
+
+/// Frames by their numbers, where their names differ by nothing else: shells put `smoke_10.png` before `smoke_9.png`.
+fn by_number(files: &[PathBuf]) -> Vec<&Path> {
+    let split = |path: &Path| {
+        let stem = path.file_stem()?.to_str()?;
+        let name = stem.trim_end_matches(|c: char| c.is_ascii_digit());
+        Some((path.with_file_name(name), stem[name.len()..].parse::<u64>().ok()?))
+    };
+    let name = |path| split(path).map(|(name, _)| name);
+    let mut frames: Vec<_> = files.iter().map(PathBuf::as_path).collect();
+    if frames.iter().all(|frame| name(frame).is_some() && name(frame) == name(frames[0])) {
+        frames.sort_by_key(|frame| split(frame).map(|(_, number)| number));
+    }
+    frames
 }

@@ -124,6 +124,7 @@ pub const ACTIONS: &[Entry] = &[
     entry(Action::InView(InView::Face(Side::Bottom)), "From below", Modifiers::COMMAND, Key::Num7),
     entry(Action::InView(InView::Face(Side::Top)), "From above", Modifiers::NONE, Key::Num7),
     entry(Action::Help, "This list", Modifiers::NONE, Key::F1),
+    entry(Action::Help, "The same", Modifiers::NONE, Key::Questionmark),
 ];
 
 /// The keys of what the viewport does.

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureOptions};
 use glam::{UVec3, Vec3, Vec4Swizzles};
 use haze::builtin::{self, Builtin};
-use haze::picture::decode_png;
+use haze::picture::{decode_colour_png, decode_png};
 use haze::settings::PictureRole;
 use haze::sprite::Sprite;
 use haze::{Error, noise};
@@ -131,15 +131,19 @@ fn thumbnail(role: PictureRole, source: &Source) -> Result<ColorImage, Error> {
     match (role, source) {
         (PictureRole::Sprite, Source::Builtin(builtin)) => Ok(puff(&builtin.sprite()?)),
         (PictureRole::Noise, Source::Builtin(builtin)) => Ok(slice(&builtin.noise()?)),
-        (_, Source::Builtin(builtin)) => decoded(&builtin::path(builtin.name), builtin.bytes),
-        (_, Source::File(path)) => decoded(path, &files::read_picture(path)?),
+        (_, Source::Builtin(builtin)) => decoded(role, &builtin::path(builtin.name), builtin.bytes),
+        (_, Source::File(path)) => decoded(role, path, &files::read_picture(path)?),
     }
 }
 
-/// The picture as it is, stretched.
-fn decoded(path: &Path, bytes: &[u8]) -> Result<ColorImage, Error> {
+/// The picture as a material has it, stretched.
+fn decoded(role: PictureRole, path: &Path, bytes: &[u8]) -> Result<ColorImage, Error> {
     let [width, height] = SIZE.map(|side| side as u32);
-    let small = imageops::resize(&decode_png(path, bytes)?.to_rgba8(), width, height, FilterType::Triangle);
+    let decode = match role {
+        PictureRole::Ramp | PictureRole::Motif => decode_colour_png,
+        PictureRole::Sprite | PictureRole::Detail | PictureRole::Noise => decode_png,
+    };
+    let small = imageops::resize(&decode(path, bytes)?.to_rgba8(), width, height, FilterType::Triangle);
     Ok(ColorImage::from_rgba_unmultiplied(SIZE, small.as_raw()))
 }
 
@@ -174,4 +178,22 @@ fn slice(noise: &noise::NoiseVolume) -> ColorImage {
         let at = |pixel: usize| (pixel as u32 * side / SIZE[1] as u32) % side;
         Color32::from_gray((noise.texel(UVec3::new(at(x), at(y), 0)).w.clamp(0.0, 1.0) * 255.0) as u8)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ramps_are_shown_in_the_colours_that_light_has() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("clear.png");
+        image::RgbaImage::from_pixel(4, 1, image::Rgba([255, 255, 255, 55])).save(&path).unwrap();
+        let first = |role| thumbnail(role, &Source::File(path.clone())).unwrap().pixels[0];
+        // What is transparent gives as much less light: 55 / 255 is half of white's code.
+        let grey = first(PictureRole::Ramp);
+        assert!(grey.is_opaque() && grey.r().abs_diff(128) <= 1, "{grey:?}");
+        assert_eq!(first(PictureRole::Motif), grey);
+        assert_eq!(first(PictureRole::Noise), Color32::from_rgba_unmultiplied(255, 255, 255, 55));
+    }
 }

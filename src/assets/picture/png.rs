@@ -140,6 +140,18 @@ mod tests {
     }
 
     #[test]
+    fn a_picture_that_is_cut_anywhere_is_refused() {
+        let mut whole = Vec::new();
+        let picture = image::RgbImage::from_fn(16, 2, |x, y| image::Rgb([(x * 16) as u8, y as u8, (x * y) as u8]));
+        picture.write_to(&mut Cursor::new(&mut whole), image::ImageFormat::Png).unwrap();
+        for end in 0..whole.len() {
+            let error = decode_png(Path::new("a.png"), &whole[..end]).unwrap_err().to_string();
+            assert!(error.starts_with("a.png: ") && error.lines().count() == 1, "{end}: {error}");
+        }
+        assert!(decode_png(Path::new("a.png"), &whole).is_ok());
+    }
+
+    #[test]
     fn a_failed_write_leaves_nothing_behind() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("missing").join("a.png");

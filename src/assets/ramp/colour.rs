@@ -1,8 +1,9 @@
-//! Colours of gradients: how they are written, and the spaces they are blended in. Arithmetic that IEEE 754 fixes, and no
-//! function of the platform's, so that every machine bakes the same bytes.
+//! Colours of gradients: how they are written, and the spaces they are blended in. No function of the platform's, so that every
+//! machine bakes the same bytes.
 
 use glam::Vec3;
 
+use crate::assets::exact::{power, raise};
 use crate::error::one_line;
 use crate::settings::choice;
 
@@ -121,38 +122,6 @@ pub(super) fn srgb_from_linear(linear: f32) -> f32 {
     if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * power(linear, 1.0 / 2.4) - 0.055 }
 }
 
-/// `base` to the power of `exponent`, correctly rounded but for one case in millions; 0 for a base that is not positive.
-pub(super) fn power(base: f32, exponent: f32) -> f32 {
-    raise(base, f64::from(exponent)) as f32
-}
-
-fn raise(base: f32, exponent: f64) -> f64 {
-    if base > 0.0 { exp2(exponent * log2(f64::from(base))) } else { 0.0 }
-}
-
-/// For normal numbers above 0.
-fn log2(x: f64) -> f64 {
-    const BIAS: i64 = 1023;
-    // A mantissa of 0.707 to 1.414, so that the logarithm of what is near 1 loses nothing.
-    let bits = x.to_bits() as i64;
-    let half = i64::from(bits & ((1 << 52) - 1) > 0x6_a09e_667f_3bcd);
-    let exponent = (bits >> 52) - BIAS + half;
-    let mantissa = f64::from_bits((bits - (exponent << 52)) as u64);
-    // ln m = 2 artanh s; |s| < 0.172, whose 23rd power is below the last bit.
-    let s = (mantissa - 1.0) / (mantissa + 1.0);
-    let series = (0..11).rev().fold(0.0, |sum, term| sum * s * s + 1.0 / f64::from(2 * term + 1));
-    exponent as f64 + 2.0 * s * series * std::f64::consts::LOG2_E
-}
-
-fn exp2(x: f64) -> f64 {
-    let x = x.clamp(-1000.0, 1000.0);
-    let whole = x.round();
-    let t = (x - whole) * std::f64::consts::LN_2;
-    // |t| < 0.347, whose 15th power over 15! is below the last bit.
-    let series = (1..15).rev().fold(1.0, |sum, term| 1.0 + sum * t / f64::from(term));
-    series * f64::from_bits(((whole as i64 + 1023) << 52) as u64)
-}
-
 /// (Ottosson, "A perceptual color space for image processing", 2020)
 pub(super) fn oklab_from_linear(c: Vec3) -> Vec3 {
     let root = |x: f32| raise(x, 1.0 / 3.0) as f32;
@@ -201,20 +170,6 @@ fn rgb_from_hsv(c: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn powers_are_those_of_the_platform() {
-        for step in 1..4000 {
-            let base = 2.0_f32.powf(step as f32 / 100.0 - 20.0);
-            for exponent in [2.4_f32, 1.0 / 2.4, 1.0 / 3.0, -1.5] {
-                let expected = f64::from(base).powf(f64::from(exponent));
-                let off = raise(base, f64::from(exponent)) / expected - 1.0;
-                assert!(off.abs() < 1.0e-13, "{base}^{exponent}: {off:e}");
-            }
-        }
-        assert_eq!((power(1.0, 2.4), power(0.0, 2.4), power(-1.0, 2.4)), (1.0, 0.0, 0.0));
-        assert_eq!((power(f32::NAN, 2.4), power(1.0e-30, 30.0)), (0.0, 0.0));
-    }
 
     #[test]
     fn every_space_gives_back_what_it_took() {

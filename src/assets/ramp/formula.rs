@@ -1,6 +1,6 @@
 //! Formulas of a place on a ramp, as text: `smoothstep(0, 0.2 + v, u)`.
 
-use super::colour::power;
+use crate::assets::exact::{exp, power};
 use crate::error::{FieldError, one_line};
 
 /// Longest formula, bytes.
@@ -33,7 +33,7 @@ const FUNCTIONS: &[Function] = &[
     ("^", 2, |x| power(x[0], x[1])),
     ("~", 1, |x| -x[0]),
     ("abs", 1, |x| x[0].abs()),
-    ("exp", 1, |x| power(std::f32::consts::E, x[0])),
+    ("exp", 1, |x| exp(x[0])),
     ("max", 2, |x| x[0].max(x[1])),
     ("min", 2, |x| x[0].min(x[1])),
     ("mix", 3, |x| x[0] * (1.0 - x[2]) + x[1] * x[2]),

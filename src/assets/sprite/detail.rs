@@ -9,6 +9,7 @@ use glam::{IVec2, Mat2, UVec2, Vec2, Vec3};
 use image::Rgba;
 
 use super::Sprite;
+use crate::assets::exact::exp;
 use crate::assets::picture::Picture;
 use crate::formula::sprite::MOTION_RANGE;
 
@@ -98,7 +99,7 @@ fn refine(from: &Picture<Vec3>, to: &Picture<Vec3>, flow: &Picture<Vec2>) -> Pic
         *rest = from.load(at) - bilinear(to, moved);
     });
     let offsets = (-WINDOW..=WINDOW).flat_map(|dy| (-WINDOW..=WINDOW).map(move |dx| IVec2::new(dx, dy)));
-    let weight = |offset: IVec2| (-offset.as_vec2().length_squared() / (WINDOW * WINDOW) as f32 * 2.0).exp();
+    let weight = |offset: IVec2| exp(-offset.as_vec2().length_squared() / (WINDOW * WINDOW) as f32 * 2.0);
     let window: Vec<_> = offsets.map(|offset| (offset, weight(offset))).collect();
     let mut refined = Picture::new(from.size, Vec2::ZERO);
     refined.for_each(|at, motion| {

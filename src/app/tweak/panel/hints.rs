@@ -132,7 +132,7 @@ mod tests {
         harness.state_mut().session.document.preset.systems[0].emitter.radius_end *= 1.5;
         harness.run_steps(3);
         assert_eq!(shown(&harness), Some(Hint::Keys));
-        harness.key_press(Key::F1);
+        harness.key_press(Key::Questionmark);
         harness.run_steps(3);
         assert_eq!(shown(&harness), None);
         harness.get_by_label("Show the hints again").click();

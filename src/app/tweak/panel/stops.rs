@@ -1,9 +1,10 @@
 //! The stops of a ramp that has a recipe, and how one without gets some.
 
 use eframe::egui::{self, Color32, Ui};
-use haze::gradient_editor::{GradientEditor, Surroundings};
-use haze::ramp::bake::{HexColour, RampRecipe, RampRow};
+use haze::gradient_editor::Surroundings;
+use haze::ramp::bake::{Blend, HexColour, RECIPE_VERSION, RampRecipe, RampRow};
 
+use super::row;
 use crate::app::tweak::ramp_files::Source;
 use crate::app::tweak::session::Session;
 
@@ -35,15 +36,28 @@ pub fn editor(
     let folders = session.folders();
     let Source::Recipe(recipe) = session.ramps.source(ramp.name, &folders) else { return None };
     let mut recipe = session.document.recipes.ramps.get(ramp.name).unwrap_or(recipe).clone();
-    let kept = session.inspect.kept_colour();
-    let (editor, row) = session.ramps.editor(ramp.field);
-    rows(ui, &recipe, row);
+    let (editor, index) = session.ramps.editor(ramp.field);
+    let mut is_changed = choose(ui, &mut recipe, index);
     let histograms: Vec<_> = bins.iter().map(|(colour, bins)| (*colour, bins.as_slice())).collect();
     let surroundings = Surroundings { blend: recipe.blend, histograms: &histograms, marks };
-    let shown = recipe.rows.get_mut(*row)?;
-    let edited = ui.push_id(ramp.field, |ui| editor.show(ui, shown, &surroundings)).inner;
-    let is_changed = edited.is_changed | take_kept(ui, kept, editor, shown);
+    let mut shown = shown(&recipe, *index)?;
+    let edited = ui.push_id(ramp.field, |ui| editor.show(ui, &mut shown, &surroundings)).inner;
+    let index = *index;
+    let is_taken = ui.horizontal(|ui| {
+        let is_taken = take_pixel(ui, ramp, session, &mut shown);
+        is_changed |= blend(ui, &mut recipe.blend, ramp.field);
+        is_taken
+    });
+    if edited.is_changed | is_taken.inner {
+        match recipe.rows.get_mut(index) {
+            Some(row) => *row = shown,
+            None => recipe.times = shown.stops,
+        }
+        is_changed = true;
+    }
     if is_changed {
+        // What is new in the window is new in the format.
+        recipe.version = RECIPE_VERSION;
         session.document.recipes.ramps.set(ramp.name, recipe);
     }
     if let Some(refused) = edited.refused {
@@ -54,28 +68,80 @@ pub fn editor(
     Some(edited.pointed_at)
 }
 
-/// An eyedropper: the selected stop takes the colour of the pixel that the inspector keeps. True if it did.
-fn take_kept(ui: &mut Ui, kept: Option<[u8; 3]>, editor: &mut GradientEditor, row: &mut RampRow) -> bool {
-    let about = "The selected stop takes the colour of a pixel: inspect (I), and click on it in the picture to keep it";
-    let button = ui.add_enabled(kept.is_some(), egui::Button::new("Take the kept pixel"));
-    let is_taken = button.on_hover_text(about).on_disabled_hover_text(about).clicked();
-    if let Some(colour) = kept.filter(|_| is_taken) {
-        editor.set_colour(row, HexColour(colour));
+/// An eyedropper: the selected stop takes the colour of the pixel that is kept, or of the next one that is clicked on.
+fn take_pixel(ui: &mut Ui, ramp: Named<'_>, session: &mut Session, row: &mut RampRow) -> bool {
+    let about = "The selected stop takes the colour of the pixel that the inspector keeps, or of the next one that is clicked on \
+                 in the picture";
+    let kept = session.inspect.kept_colour();
+    let is_waiting = session.ramps.wants_pixel == Some(ramp.field);
+    let is_asked = ui.selectable_label(is_waiting, "Take a pixel").on_hover_text(about).clicked();
+    let Some(colour) = kept.filter(|_| is_asked || is_waiting) else {
+        if is_asked && is_waiting == session.inspect.is_on {
+            session.inspect.toggle();
+        }
+        if is_asked {
+            session.ramps.wants_pixel = (!is_waiting).then_some(ramp.field);
+        }
+        return false;
+    };
+    if session.ramps.wants_pixel.take().is_some() {
+        session.inspect.toggle();
     }
-    is_taken
+    session.ramps.editor(ramp.field).0.set_colour(row, HexColour(colour));
+    true
 }
 
-/// Which of the rows, where there are more than one.
-fn rows(ui: &mut Ui, recipe: &RampRecipe, row: &mut usize) {
-    *row = (*row).min(recipe.rows.len().saturating_sub(1));
-    if recipe.rows.len() > 1 {
-        ui.horizontal_wrapped(|ui| {
-            ui.label("row at");
-            for (index, of) in recipe.rows.iter().enumerate() {
-                ui.selectable_value(row, index, format!("{:.2}", of.at)).on_hover_text("On the second axis");
-            }
-        });
+/// The space that colours are blended in; true if it is another.
+fn blend(ui: &mut Ui, blend: &mut Blend, field: &str) -> bool {
+    let before = *blend;
+    let label = ui.label("blended in");
+    row::choice(ui, blend, &format!("blend of {field}"), |_| None).labelled_by(label.id);
+    *blend != before
+}
+
+/// The gradient that is edited: a row, or what multiplies them.
+fn shown(recipe: &RampRecipe, index: usize) -> Option<RampRow> {
+    let times = || RampRow { stops: recipe.times.clone(), ..RampRow::default() };
+    recipe.rows.get(index).cloned().or_else(|| (!recipe.times.is_empty()).then(times))
+}
+
+/// Which gradient of a ramp with two axes; rows are added, moved and removed. True if the recipe is another.
+fn choose(ui: &mut Ui, recipe: &mut RampRecipe, index: &mut usize) -> bool {
+    let has_times = !recipe.times.is_empty();
+    *index = (*index).min(recipe.rows.len() - usize::from(!has_times && !recipe.rows.is_empty()));
+    if recipe.height == 1 && recipe.rows.len() == 1 && !has_times {
+        return false;
     }
+    let before = recipe.rows.clone();
+    ui.horizontal_wrapped(|ui| {
+        ui.label("row at");
+        for (place, of) in recipe.rows.iter().enumerate() {
+            ui.selectable_value(index, place, format!("{:.2}", of.at)).on_hover_text("On the second axis");
+        }
+        if has_times {
+            let about = "A gradient up the second axis, whose light multiplies that of the rows";
+            ui.selectable_value(index, recipe.rows.len(), "times").on_hover_text(about);
+        }
+    });
+    let Some(chosen) = recipe.rows.get_mut(*index) else { return false };
+    let (mut is_added, mut is_removed) = (false, false);
+    ui.horizontal(|ui| {
+        let label = ui.label("its place");
+        let field = egui::DragValue::new(&mut chosen.at).range(0.0..=1.0).speed(0.002).update_while_editing(false);
+        ui.add(field).labelled_by(label.id).on_hover_text("On the second axis, 0 to 1");
+        is_added = ui.button("Add a row").on_hover_text("A copy of this one, half way to the next").clicked();
+        is_removed = ui.add_enabled(before.len() > 1, egui::Button::new("Remove the row")).clicked();
+    });
+    if is_added {
+        let above = before.iter().map(|row| row.at).filter(|at| *at > chosen.at).fold(1.0, f32::min);
+        let copy = RampRow { at: 0.5 * (chosen.at + above), ..chosen.clone() };
+        *index += 1;
+        recipe.rows.insert(*index, copy);
+    } else if is_removed {
+        recipe.rows.remove(*index);
+        *index = index.saturating_sub(1);
+    }
+    recipe.rows != before
 }
 
 /// Says where stops are written, or offers some.

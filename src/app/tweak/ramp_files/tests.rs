@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use eframe::egui::{Event, Key, Modifiers, Rect, Theme, Vec2};
+use eframe::egui::{Event, Key, Modifiers, Rect, Role, Theme, Vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use haze::picture::{Effort, read_colour_png, write_png};
 use haze::preset::Preset;
 use haze::ramp::Ramp;
-use haze::ramp::bake::RampRecipe;
+use haze::ramp::bake::{Blend, Curve, RampRecipe};
 use haze::ramp::template::Template;
 
 use crate::app::tweak::testing::{brightness, picture, window};
@@ -205,6 +205,68 @@ fn rows_of_a_plane_are_picked() {
 }
 
 #[test]
+fn rows_and_what_multiplies_them_are_made_in_the_window() {
+    let folder = Folder::new();
+    let mut preset = Preset::load("backlit_fog").unwrap();
+    preset.systems[0].material.specular_ramp = "mine.png".into();
+    std::fs::write(folder.preset(), serde_json::to_string(&preset).unwrap()).unwrap();
+    let recipe = Template::find("neutral_glow").unwrap().recipe();
+    assert!(recipe.rows.len() == 1 && !recipe.times.is_empty());
+    std::fs::write(folder.path("mine.ramp.json"), recipe.to_text()).unwrap();
+    write_png(&folder.path("mine.png"), &recipe.bake().unwrap(), Effort::Quick).unwrap();
+    let mut harness = folder.open();
+    let click = |harness: &mut Harness<'static, Window>, name: &str| {
+        harness.get_by_label(name).click_accesskit();
+        harness.run_steps(4);
+    };
+    click(&mut harness, "Add a row");
+    let [first, second] = &folder.recipe().rows[..] else { panic!("two rows") };
+    assert!((first.at, second.at) == (0.0, 0.5) && first.stops == second.stops);
+    // The new one is what is edited.
+    click(&mut harness, "Flip");
+    assert_eq!(folder.recipe().rows[0], recipe.rows[0]);
+    assert_ne!(folder.recipe().rows[1].stops, recipe.rows[0].stops);
+    click(&mut harness, "times");
+    click(&mut harness, "Flip");
+    assert_ne!(folder.recipe().times, recipe.times);
+    assert!(folder.is_baked());
+    click(&mut harness, "0.50");
+    click(&mut harness, "Remove the row");
+    assert_eq!(folder.recipe().rows, recipe.rows);
+    for _ in 0..4 {
+        press(&mut harness, Key::Z, Modifiers::COMMAND);
+    }
+    assert_eq!(folder.recipe(), recipe, "each was a step");
+}
+
+#[test]
+fn a_recipe_of_the_first_version_takes_what_is_new() {
+    let folder = Folder::new();
+    let recipe = RampRecipe { version: 1, ..Template::find("neutral").unwrap().recipe() };
+    std::fs::write(folder.path("mine.ramp.json"), recipe.to_text()).unwrap();
+    write_png(&folder.path("mine.png"), &recipe.bake().unwrap(), Effort::Quick).unwrap();
+    let mut harness = folder.open();
+    let choose = |harness: &mut Harness<'static, Window>, control: &str, entry: &str| {
+        let control = harness.get_all_by_label(control).find(|node| node.accesskit_node().role() == Role::ComboBox);
+        control.unwrap().click_accesskit();
+        harness.run_steps(3);
+        harness.get_by_label(entry).click_accesskit();
+        harness.run_steps(4);
+    };
+    choose(&mut harness, "then", "constant");
+    assert_eq!(folder.recipe().rows[0].stops[0].curve, Curve::Constant);
+    choose(&mut harness, "blended in", "hsv far");
+    assert_eq!((folder.recipe().blend, folder.recipe().version), (Blend::HsvFar, 2));
+    assert!(folder.is_baked());
+    assert!(harness.state().session.messages.latest().is_none_or(|message| !message.is_error));
+    for _ in 0..2 {
+        harness.state_mut().session.undo();
+        harness.run_steps(4);
+    }
+    assert_eq!(folder.recipe(), recipe);
+}
+
+#[test]
 fn stops_are_pasted_where_the_keyboard_is_and_presets_elsewhere() {
     let folder = Folder::new();
     let mut harness = folder.open();
@@ -247,27 +309,56 @@ fn a_stop_takes_the_colour_of_a_pixel() {
     let folder = Folder::new();
     let mut harness = folder.open();
     let pixel = harness.get_by_label("viewport").rect().center();
+    let click = |harness: &mut Harness<'static, Window>| {
+        harness.hover_at(pixel);
+        wait(harness);
+        harness.drag_at(pixel);
+        harness.step();
+        harness.drop_at(pixel);
+    };
+    let until = |harness: &mut Harness<'static, Window>, is_so: &dyn Fn(&Window) -> bool| {
+        for _ in 0..300 {
+            picture(harness);
+            if is_so(harness.state()) {
+                return;
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        panic!("never");
+    };
+    // Of one that is kept.
     harness.get_by_label("Inspect").click();
     harness.run_steps(2);
-    harness.hover_at(pixel);
-    wait(&mut harness);
-    harness.drag_at(pixel);
-    harness.step();
-    harness.drop_at(pixel);
-    for _ in 0..300 {
-        picture(&mut harness);
-        if harness.state().session.inspect.kept_colour().is_some() {
-            break;
-        }
-        std::thread::sleep(Duration::from_millis(20));
-    }
+    click(&mut harness);
+    until(&mut harness, &|window| window.session.inspect.kept_colour().is_some());
     wait(&mut harness);
     let kept = harness.state().session.inspect.kept_colour().unwrap();
-    harness.get_by_label("Take the kept pixel").click();
+    harness.get_by_label("Take a pixel").click();
     harness.run_steps(4);
     assert_eq!(folder.recipe().rows[0].stops[0].colour.0, kept);
     assert!(folder.is_baked());
     assert_eq!(harness.state().session.document.history().undo_name(), Some("stops of mine.png"));
+    assert!(harness.state().session.inspect.kept_colour().is_some(), "it is kept still");
+    // Of the next that is clicked on.
+    harness.get_by_label("Inspect").click();
+    harness.get_by_label("stop 2").focus();
+    harness.run_steps(2);
+    let before = folder.recipe().rows[0].stops[1].colour;
+    harness.get_by_label("Take a pixel").click();
+    harness.run_steps(2);
+    assert!(harness.state().session.inspect.is_on);
+    click(&mut harness);
+    until(&mut harness, &|window| !window.session.inspect.is_on);
+    wait(&mut harness);
+    let taken = folder.recipe().rows[0].stops[1].colour;
+    assert_ne!(taken, before);
+    assert!(taken.0.iter().zip(kept).all(|(a, b)| a.abs_diff(b) < 40), "{taken:?} for {kept:?}");
+    // It may be given up.
+    for is_on in [true, false] {
+        harness.get_by_label("Take a pixel").click();
+        harness.run_steps(2);
+        assert_eq!(harness.state().session.inspect.is_on, is_on);
+    }
 }
 
 /// `HAZE_LOOK=DIR` says where to.

@@ -1,8 +1,9 @@
 //! What a sprite is made of before noise eats it: balls, or what they are drawn out to.
 
-use glam::{UVec3, Vec2, Vec3};
+use glam::{UVec3, Vec3};
 
 use super::recipe::SpriteRecipe;
+use crate::assets::exact::direction;
 use crate::assets::noise::{pcg3d, unit};
 
 #[derive(Clone, Copy)]
@@ -22,9 +23,9 @@ impl Ball {
     }
 }
 
-/// The balls at a moment, a share of the loop. `from_angle` gives (cos, sin).
-pub(super) fn balls(recipe: &SpriteRecipe, time: f32, from_angle: fn(f32) -> Vec2) -> Vec<Ball> {
-    let phase = from_angle(time * std::f32::consts::TAU);
+/// The balls at a moment, a share of the loop.
+pub(super) fn balls(recipe: &SpriteRecipe, time: f32) -> Vec<Ball> {
+    let phase = direction(time * std::f32::consts::TAU);
     let ball = |index| {
         let random = |salt: u32| {
             let hash = pcg3d(UVec3::new(index, salt, recipe.seed));
@@ -32,12 +33,12 @@ pub(super) fn balls(recipe: &SpriteRecipe, time: f32, from_angle: fn(f32) -> Vec
         };
         let (place, shape) = (random(1), random(2));
         let z = place.x * 2.0 - 1.0;
-        let xy = from_angle(place.y * std::f32::consts::TAU) * (1.0 - z * z).sqrt();
+        let xy = direction(place.y * std::f32::consts::TAU) * (1.0 - z * z).sqrt();
         let distance = recipe.spread * place.z.sqrt();
         // The further out, the smaller: a body with puffs on it.
         let size = shape.x * (1.0 - 0.6 * place.z);
         let radius = recipe.ball_radius_min + (recipe.ball_radius_max - recipe.ball_radius_min) * size;
-        let swing = from_angle(shape.y * std::f32::consts::TAU).rotate(phase) * recipe.drift;
+        let swing = direction(shape.y * std::f32::consts::TAU).rotate(phase) * recipe.drift;
         let any = (random(3) - 0.5).normalize_or(Vec3::Y);
         let upright = Vec3::Y * if any.y < 0.0 { -1.0 } else { 1.0 };
         let axis = any.lerp(upright, recipe.upright).normalize_or(Vec3::Y) * recipe.length;

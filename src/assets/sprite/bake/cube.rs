@@ -6,6 +6,7 @@ use image::Rgba;
 use super::cluster::{Ball, balls};
 use super::frame::{BakedFrame, Ray};
 use super::recipe::SpriteRecipe;
+use crate::assets::exact::{direction, exp};
 use crate::assets::noise::{curl_noise, fractal_noise};
 use crate::assets::picture::Picture;
 use crate::formula::saturate;
@@ -51,7 +52,7 @@ fn march(recipe: &SpriteRecipe, volume: &Picture<f32>, at: UVec2) -> (Rgba<u8>, 
     let mut ray = Ray::new();
     for z in 0..=last {
         let voxel = IVec3::new(at.x as i32, at.y as i32, z);
-        let amount = 1.0 - (-density(voxel) * recipe.extinction * step).exp();
+        let amount = 1.0 - exp(-density(voxel) * recipe.extinction * step);
         if amount <= 0.0 {
             continue;
         }
@@ -73,8 +74,8 @@ struct Cluster<'a> {
 
 impl<'a> Cluster<'a> {
     fn new(recipe: &'a SpriteRecipe, time: f32) -> Self {
-        let balls = balls(recipe, time, Vec2::from_angle);
-        Self { recipe, balls, phase: Vec2::from_angle(time * std::f32::consts::TAU) }
+        let balls = balls(recipe, time);
+        Self { recipe, balls, phase: direction(time * std::f32::consts::TAU) }
     }
 
     /// 0 outside, about 1 inside.
@@ -90,15 +91,12 @@ impl<'a> Cluster<'a> {
         let coarse = curl_noise(q * 0.5, self.phase, seed.wrapping_add(11));
         let p = p + (coarse + curl_noise(q + coarse, self.phase, seed.wrapping_add(17)) * 0.4) * recipe.warp;
         // Wyvill's soft object, (1 − d²/r²)³: value and slope are 0 at its reach. Overlapping balls merge.
-        let field: f32 = self
-            .balls
-            .iter()
-            .map(|ball| (1.0 - ((p - ball.centre) * ball.inverse_radius).length_squared()).max(0.0).powi(3))
-            .sum();
+        let reach = |ball: &Ball| (1.0 - ((p - ball.centre) * ball.inverse_radius).length_squared()).max(0.0);
+        let field: f32 = self.balls.iter().map(reach).map(|inside| inside * inside * inside).sum();
         if field <= 0.0 {
             return 0.0;
         }
-        let body = 1.0 - (-2.0 * field).exp();
+        let body = 1.0 - exp(-2.0 * field);
         let noise = fractal_noise(q, self.phase, seed, recipe.noise_octaves, 2.0, recipe.noise_gain).value;
         // Noise eats from the outside in: less where the body is thick.
         let eaten = recipe.erosion * (0.4 + noise) * (1.0 - 0.7 * body);

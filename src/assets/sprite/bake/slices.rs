@@ -9,6 +9,7 @@ use image::Rgba;
 use super::cluster::{Ball, balls};
 use super::frame::{BakedFrame, Ray};
 use super::recipe::SpriteRecipe;
+use crate::assets::exact::direction;
 use crate::assets::noise::{NoiseCell, curl_noise};
 use crate::assets::picture::Picture;
 use crate::formula::saturate;
@@ -74,12 +75,6 @@ struct Moment {
     near: Vec<Vec<Ball>>,
 }
 
-fn from_angle(angle: f32) -> Vec2 {
-    // Libraries differ in the last bits of f64, which f32 does not keep.
-    let (sin, cos) = f64::from(angle).sin_cos();
-    Vec2::new(cos as f32, sin as f32)
-}
-
 /// exp(−x) for x from 0 to 16 or so.
 fn decay(x: f32) -> f32 {
     let x = x * (1.0 / 32.0);
@@ -98,7 +93,8 @@ fn shaped(noise: f32, lumps: f32) -> f32 {
 impl<'a> Slices<'a> {
     pub fn new(recipe: &'a SpriteRecipe) -> Self {
         let mut slices = Self { recipe, depth: (recipe.size / 4).max(8), octaves: Vec::new() };
-        let octave = |index: u32| (recipe.noise_gain.powi(index as i32), 2_u32.pow(index) as f32, index * 7919);
+        let weight = |index: u32| (0..index).fold(1.0, |weight, _| weight * recipe.noise_gain);
+        let octave = |index: u32| (weight(index), 2_u32.pow(index) as f32, index * 7919);
         let all: Vec<_> = (0..recipe.noise_octaves).map(octave).collect();
         // Without creases they add up before they turn, and where they do not turn, also with them.
         let travels = recipe.travel > 0.0;
@@ -176,7 +172,7 @@ impl<'a> Slices<'a> {
 
     fn moment(&self, time: f32) -> Moment {
         let recipe = self.recipe;
-        let turning = from_angle(time * std::f32::consts::TAU);
+        let turning = direction(time * std::f32::consts::TAU);
         // What travels does not turn in its place.
         let phase = if recipe.travel > 0.0 { Vec2::X } else { turning };
         let nodes = ((recipe.noise_frequency * 8.0) as u32).clamp(16, 64);
@@ -196,7 +192,7 @@ impl<'a> Slices<'a> {
             }
         });
         let margin = shifts.texels.iter().map(|shift| shift.all.length()).fold(0.0, f32::max);
-        Moment { phase, near: self.near(&balls(recipe, time, from_angle), margin), shifts }
+        Moment { phase, near: self.near(&balls(recipe, time), margin), shifts }
     }
 
     /// Boxes along each axis.

@@ -1,0 +1,97 @@
+//! Functions that no standard fixes to the bit, made of arithmetic that IEEE 754 does, so that every machine bakes the same bytes.
+
+use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
+
+use glam::Vec2;
+
+/// `base` to the power of `exponent`, correctly rounded but for one case in millions; 0 for a base that is not positive.
+pub fn power(base: f32, exponent: f32) -> f32 {
+    raise(base, f64::from(exponent)) as f32
+}
+
+/// The same in 64 bits.
+pub fn raise(base: f32, exponent: f64) -> f64 {
+    if base > 0.0 { exp2(exponent * log2(f64::from(base))) } else { 0.0 }
+}
+
+/// e to the power of `x`, rounded as [`power`] is.
+pub fn exp(x: f32) -> f32 {
+    exp2(f64::from(x) * std::f64::consts::LOG2_E) as f32
+}
+
+/// (cos, sin) of an angle of a few turns, radians, rounded as [`power`] is.
+pub fn direction(angle: f32) -> Vec2 {
+    let angle = f64::from(angle);
+    let quarters = (angle * FRAC_2_PI).round();
+    let t = angle - quarters * FRAC_PI_2;
+    // |t| < 0.786, whose 18th power over 18! is below the last bit.
+    let series = |first: i32| {
+        let step = |sum: f64, term: i32| 1.0 - sum * t * t / f64::from((2 * term + first - 1) * (2 * term + first));
+        (1..10).rev().fold(1.0, step)
+    };
+    let (cos, sin) = (series(0) as f32, (series(1) * t) as f32);
+    match (quarters as i64).rem_euclid(4) {
+        0 => Vec2::new(cos, sin),
+        1 => Vec2::new(-sin, cos),
+        2 => Vec2::new(-cos, -sin),
+        _ => Vec2::new(sin, -cos),
+    }
+}
+
+/// For normal numbers above 0.
+fn log2(x: f64) -> f64 {
+    const BIAS: i64 = 1023;
+    // A mantissa of 0.707 to 1.414, so that the logarithm of what is near 1 loses nothing.
+    let bits = x.to_bits() as i64;
+    let half = i64::from(bits & ((1 << 52) - 1) > 0x6_a09e_667f_3bcd);
+    let exponent = (bits >> 52) - BIAS + half;
+    let mantissa = f64::from_bits((bits - (exponent << 52)) as u64);
+    // ln m = 2 artanh s; |s| < 0.172, whose 23rd power is below the last bit.
+    let s = (mantissa - 1.0) / (mantissa + 1.0);
+    let series = (0..11).rev().fold(0.0, |sum, term| sum * s * s + 1.0 / f64::from(2 * term + 1));
+    exponent as f64 + 2.0 * s * series * std::f64::consts::LOG2_E
+}
+
+fn exp2(x: f64) -> f64 {
+    let x = x.clamp(-1000.0, 1000.0);
+    let whole = x.round();
+    let t = (x - whole) * std::f64::consts::LN_2;
+    // |t| < 0.347, whose 15th power over 15! is below the last bit.
+    let series = (1..15).rev().fold(1.0, |sum, term| 1.0 + sum * t / f64::from(term));
+    series * f64::from_bits(((whole as i64 + 1023) << 52) as u64)
+}
+
+#[cfg(test)]
+pub mod tests {
+    use super::*;
+
+    /// FNV-1a: what a bake is compared with that another machine made.
+    pub fn hash(samples: impl IntoIterator<Item = impl Into<u64>>) -> u64 {
+        let step = |hash: u64, sample: u64| (hash ^ sample).wrapping_mul(0x0100_0000_01b3);
+        samples.into_iter().map(Into::into).fold(0xcbf2_9ce4_8422_2325, step)
+    }
+
+    #[test]
+    fn powers_are_those_of_the_platform() {
+        for step in 1..4000 {
+            let base = 2.0_f32.powf(step as f32 / 100.0 - 20.0);
+            for exponent in [2.4_f32, 1.0 / 2.4, 1.0 / 3.0, -1.5] {
+                let expected = f64::from(base).powf(f64::from(exponent));
+                let off = raise(base, f64::from(exponent)) / expected - 1.0;
+                assert!(off.abs() < 1.0e-13, "{base}^{exponent}: {off:e}");
+            }
+        }
+        assert_eq!((power(1.0, 2.4), power(0.0, 2.4), power(-1.0, 2.4)), (1.0, 0.0, 0.0));
+        assert_eq!((power(f32::NAN, 2.4), power(1.0e-30, 30.0)), (0.0, 0.0));
+    }
+
+    #[test]
+    fn angles_and_exponentials_are_those_of_the_platform() {
+        for step in -2000..2000 {
+            let x = step as f32 / 100.0;
+            let (sin, cos) = f64::from(x).sin_cos();
+            let expected = (Vec2::new(cos as f32, sin as f32), f64::from(x).exp() as f32);
+            assert_eq!((direction(x), exp(x)), expected, "{x}");
+        }
+    }
+}
