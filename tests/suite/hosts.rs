@@ -437,9 +437,10 @@ fn passes_of_every_kind_show_the_same_smoke() {
 
 #[test]
 fn a_target_of_code_is_written_in_code() {
-    for path in [Path::Raster, Path::Forward] {
+    use LightingResolution::{Full, Target};
+    for (path, lighting_resolution) in [(Path::Raster, Full), (Path::Raster, Target), (Path::Forward, Full)] {
         let mut stage = Stage::new(SIZE);
-        stage.settings.path = path;
+        (stage.settings.path, stage.settings.accumulate.lighting_resolution) = (path, lighting_resolution);
         stage.settings.specular_scatter.intensity = 0.0;
         // Smoke that hides all there is: what is left is the light's code.
         stage.settings.boost = 16.0;

@@ -499,6 +499,10 @@ fn a_system_at_1080p_half_scale_takes_at_most_8_mb() {
     println!("{:.2} MB", whole as f64 / 1e6);
     assert!(whole <= 8_000_000, "{whole} bytes");
     assert_eq!(drawn.renderer.targets(0).unwrap().size, UVec2::new(960, 540));
+    // Light takes four half floats a texel, where that is its resolution.
+    stage.settings.accumulate.lighting_resolution = LightingResolution::Target;
+    assert_eq!(stage.on_gpu(gpu()).renderer.memory_use().targets, whole + 960 * 540 * 8);
+    stage.settings.accumulate.lighting_resolution = LightingResolution::Full;
     // And no more than the box's rectangle needs.
     stage.bounds = Some(Bounds { min: vec3(-0.5, -0.5, -6.5), max: vec3(0.5, 0.5, -5.5) });
     let drawn = stage.on_gpu(gpu());
