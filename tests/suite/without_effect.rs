@@ -129,6 +129,8 @@ const SITUATIONS: &[fn(&mut PresetSystem, &mut Light)] = &[
     |s, _| {
         (s.cache.path, s.cache.position) = (PARTICLES.into(), vec3(0.0, -0.5, -6.0));
         (s.cache.fps, s.cache.after) = (3.0, CacheEnd::Loop);
+        // Large enough that a level of the detail map is read which has motion left.
+        s.settings.sprite.size = 4.0;
     },
 ];
 
