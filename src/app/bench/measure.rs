@@ -198,8 +198,7 @@ impl<'a> Bench<'a> {
         // Forward smoke is blended into the picture.
         let format = if is_forward { AccumulationFormat::Rgba16Float } else { settings.accumulate.format };
         let overdraw = running.stage.renderer().overdraw();
-        let loops = f64::from(settings.sprite.debug_loop);
-        let fragments = overdraw.fragments * loops;
+        let fragments = overdraw.fragments;
         let limit = self.limits.get(&format).map(|ms| ms * fragments).filter(|&ms| ms > 0.0);
         let mut particles = Vec::new();
         let alive = |(system, cache): (&PresetSystem, &Option<Cache>)| {
@@ -214,7 +213,7 @@ impl<'a> Bench<'a> {
             mode: (!is_forward).then(|| settings.diffuse.mode.name().into()),
             technique: Some(settings.technique.name().into()),
             fade: Some(settings.soft_fade.curve.name().into()),
-            layers: Some(overdraw.mean() * loops),
+            layers: Some(overdraw.mean()),
             alpha: system.emitter.amount.to_string().parse().ok(),
             lights: Some(shot.preset.lights.len() as u32),
             particles: Some(alive),

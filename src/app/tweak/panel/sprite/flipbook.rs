@@ -29,7 +29,7 @@ struct Painted {
 /// Draws it with its controls.
 pub fn panel(ui: &mut Ui, look: &mut SpriteLook, material: &MaterialAssets, settings: &Settings) {
     look.advance(&material.sprite, ui.input(|input| input.stable_dt));
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         for (shown, name, tooltip) in SHOWN {
             let needs_detail = matches!(shown, Shown::Depth | Shown::Motion);
             let button = egui::Button::selectable(look.shown == shown, name);
