@@ -10,16 +10,20 @@ use haze::headless::Headless;
 use haze::settings::AccumulationFormat;
 use haze::{Error, wgpu};
 
-use super::measure::{bytes, size_name, waking};
+use super::measure::{size_name, waking};
 use super::report::{Clock, Milliseconds, Row};
 use super::suites::Suite;
 use crate::app::interrupt;
 use work::{Bench, Work, texture};
 
+pub use work::bytes;
+
 /// Milliseconds of a fragment of an unlit disc, by format, and a row for everything that was measured.
 pub struct Limits {
     pub floor: HashMap<AccumulationFormat, f64>,
     pub rows: Vec<Row>,
+    /// Timestamps that were reversed or zero.
+    pub discarded: u64,
 }
 
 /// One thing to measure.
@@ -40,15 +44,14 @@ pub fn measure(gpu: &Headless, size: UVec2, quick: bool) -> Result<Limits, Error
     let bench = Bench::new(gpu, size);
     let bare = all(&bench, layers);
     gpu.check()?;
-    let mut times = vec![Vec::new(); bare.len()];
+    let (mut times, mut discarded) = (vec![Vec::new(); bare.len()], 0);
     let (started, awake) = (Instant::now(), waking(gpu));
     let mut round = 0;
     while round <= rounds && !interrupt::is_asked() {
         for (bare, times) in bare.iter().zip(&mut times) {
             let ms = bench.frame(&bare.work)?;
-            if round > 0 {
-                times.push(ms);
-            }
+            discarded += u64::from(ms.is_none());
+            times.extend(ms.filter(|_| round > 0));
         }
         if started.elapsed() >= awake {
             round += 1;
@@ -75,7 +78,7 @@ pub fn measure(gpu: &Headless, size: UVec2, quick: bool) -> Result<Limits, Error
             ..Row::of(Suite::Limits, bare.name.clone(), size_name(size), clock, gpu_ms)
         });
     }
-    Ok(Limits { floor, rows })
+    Ok(Limits { floor, rows, discarded })
 }
 
 /// What there is to measure; first of every format the floor: an unlit disc.

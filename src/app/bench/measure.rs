@@ -12,6 +12,7 @@ use haze::preset::PresetSystem;
 use haze::settings::{AccumulationFormat, Path as SmokePath, ShadeTree};
 use haze::{Error, Timing, wgpu};
 
+use super::limits::bytes;
 use super::quality::{Quality, is_right};
 use super::report::{Clock, LeftOut, Milliseconds, Row};
 use super::suites::{Case, Group, Suite};
@@ -37,7 +38,7 @@ pub struct Bench<'a> {
     /// Milliseconds that a fragment takes at the least, by format.
     pub limits: HashMap<AccumulationFormat, f64>,
     /// Longest time that a frame may take.
-    pub longest: Duration,
+    longest: Duration,
     /// Milliseconds by work, of cases that were measured.
     costs: HashMap<String, f64>,
     pub discarded: u64,
@@ -132,7 +133,7 @@ impl<'a> Bench<'a> {
         Ok(is_whole)
     }
 
-    pub fn leave_out(&mut self, suite: Suite, case: &str, reason: String) {
+    fn leave_out(&mut self, suite: Suite, case: &str, reason: String) {
         self.left_out.push(LeftOut { suite: suite.name(), case: case.into(), reason });
     }
 
@@ -214,6 +215,7 @@ impl<'a> Bench<'a> {
             technique: Some(settings.technique.name().into()),
             fade: Some(settings.soft_fade.curve.name().into()),
             layers: Some(overdraw.mean()),
+            // Without the digits that a longer number would show.
             alpha: system.emitter.amount.to_string().parse().ok(),
             lights: Some(shot.preset.lights.len() as u32),
             particles: Some(alive),
@@ -239,14 +241,6 @@ pub fn waking(gpu: &Headless) -> Duration {
 /// As rows have it.
 pub fn size_name(size: UVec2) -> String {
     format!("{}x{}", size.x, size.y)
-}
-
-/// Bytes of a texel that is blended to.
-pub fn bytes(format: AccumulationFormat) -> u32 {
-    match format {
-        AccumulationFormat::Rgba16Float => 8,
-        AccumulationFormat::Rgba8Unorm => 4,
-    }
 }
 
 fn median(times: &[f64]) -> f64 {

@@ -70,6 +70,17 @@ pub enum Clock {
     Cpu,
 }
 
+impl Clock {
+    /// For tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Gpu => "GPU",
+            Self::Wall => "wall",
+            Self::Cpu => "CPU",
+        }
+    }
+}
+
 /// One thing measured. What does not apply is null.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -126,6 +137,10 @@ pub struct Row {
 }
 
 impl Row {
+    pub fn is_of(&self, suite: Suite) -> bool {
+        self.suite == suite.name()
+    }
+
     /// A row of nothing but a time.
     pub fn of(suite: Suite, case: String, size: String, clock: Clock, gpu_ms: Milliseconds) -> Self {
         Self {

@@ -111,7 +111,7 @@ impl Arguments {
     fn all(&self, gpu: &Headless, bench: &mut Bench<'_>, size: UVec2) -> Result<bool, Error> {
         // What all others are compared with.
         let limits = watched("haze: limits of this adapter".into(), || limits::measure(gpu, size, self.quick))?;
-        bench.limits = limits.floor;
+        (bench.limits, bench.discarded) = (limits.floor, limits.discarded);
         if matches!(self.suite, Suite::All | Suite::Limits) {
             bench.rows.extend(limits.rows);
         }

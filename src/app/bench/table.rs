@@ -67,13 +67,9 @@ pub fn write(report: &Report) -> Result<(), Error> {
 
 fn line(row: &Row) -> String {
     let shown = |value: Option<f64>, digits: usize| value.map_or("-".into(), |value| format!("{value:.digits$}"));
-    let clock = match row.clock {
-        Clock::Gpu => "",
-        Clock::Wall => " wall",
-        Clock::Cpu => " CPU",
-    };
+    let clock = if row.clock == Clock::Gpu { "" } else { row.clock.name() };
     format!(
-        "{:<44} {:>10.3} {:>6.1}% {:>8} {:>9} {:>7} {:>6} {:>6} {:>6}{clock}",
+        "{:<44} {:>10.3} {:>6.1}% {:>8} {:>9} {:>7} {:>6} {:>6} {:>6} {clock}",
         row.case,
         row.gpu_ms.median,
         100.0 * row.gpu_ms.spread(),

@@ -1,6 +1,7 @@
 //! What the figures mean: from which overdraw on a saving pays, and what to ship.
 
 use super::report::{Report, Row};
+use super::suites::Suite;
 
 /// What a layer costs one way, and what the frame costs without any.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +23,7 @@ const GOOD_FLIP: f64 = 0.05;
 
 /// Of every scale, path and format of the suite `scale`, in their order.
 pub fn break_even(report: &Report) -> Vec<BreakEven> {
-    let rows: Vec<&Row> = report.rows.iter().filter(|row| row.suite == "scale").collect();
+    let rows: Vec<&Row> = report.rows.iter().filter(|row| row.is_of(Suite::Scale)).collect();
     let line = |matches: &dyn Fn(&Row) -> bool| {
         let points = rows.iter().filter(|row| matches(row));
         fit(&points.filter_map(|row| Some((row.layers?, row.gpu_ms.median))).collect::<Vec<_>>())
@@ -68,7 +69,7 @@ pub fn is_good(row: &Row) -> bool {
 /// What to ship on this adapter, in a sentence; `None` without the suite `scale`.
 pub fn sentence(report: &Report) -> Option<String> {
     // Of the most layers that all ways were measured at.
-    let rows = || report.rows.iter().filter(|row| row.suite == "scale");
+    let rows = || report.rows.iter().filter(|row| row.is_of(Suite::Scale));
     let forwards = rows().filter(|row| row.path.as_deref() == Some("forward"));
     let forward = forwards.max_by(|a, b| a.layers.unwrap_or(0.0).total_cmp(&b.layers.unwrap_or(0.0)))?;
     let (layers, forward_ms) = (forward.layers?, forward.gpu_ms.median);
@@ -101,7 +102,6 @@ pub fn sentence(report: &Report) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::super::report::{Adapter, Clock, Milliseconds};
-    use super::super::suites::Suite;
     use super::*;
 
     /// Path, scale, milliseconds without a layer and of each, PSNR.

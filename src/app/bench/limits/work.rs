@@ -161,8 +161,8 @@ impl Bench<'_> {
         self.queries.is_some() && !matches!(work, Work::Copy { .. })
     }
 
-    /// Milliseconds of the work.
-    pub fn frame(&self, work: &Work) -> Result<f64, Error> {
+    /// Milliseconds of the work; none where the GPU's clock stood still or went back.
+    pub fn frame(&self, work: &Work) -> Result<Option<f64>, Error> {
         let device = &self.gpu.device;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let set = self.queries.as_ref().map(|(set, _)| set);
@@ -230,11 +230,10 @@ impl Bench<'_> {
         let started = Instant::now();
         self.gpu.submit(encoder)?;
         let wall = started.elapsed().as_secs_f64() * 1000.0;
-        let Some((_, buffer)) = queries else { return Ok(wall) };
+        let Some((_, buffer)) = queries else { return Ok(Some(wall)) };
         let ticks: Vec<u64> = self.gpu.read_buffer(buffer)?.chunks_exact(8).map(bytemuck::pod_read_unaligned).collect();
-        let ticks = ticks[1].saturating_sub(ticks[0]);
-        // A clock that stands still tells nothing.
-        Ok(if ticks == 0 { wall } else { ticks as f64 * f64::from(self.gpu.queue.get_timestamp_period()) * 1.0e-6 })
+        let ms_per_tick = f64::from(self.gpu.queue.get_timestamp_period()) * 1.0e-6;
+        Ok((ticks[0] < ticks[1]).then(|| (ticks[1] - ticks[0]) as f64 * ms_per_tick))
     }
 }
 
@@ -271,6 +270,11 @@ pub fn texture(gpu: &Headless, size: UVec2, format: wgpu::TextureFormat, usage: 
 
 fn entry(binding: u32, resource: wgpu::BindingResource<'_>) -> wgpu::BindGroupEntry<'_> {
     wgpu::BindGroupEntry { binding, resource }
+}
+
+/// Bytes of a texel that is blended to.
+pub fn bytes(format: AccumulationFormat) -> u32 {
+    texture_format(format).block_copy_size(None).unwrap_or_default()
 }
 
 fn texture_format(format: AccumulationFormat) -> wgpu::TextureFormat {

@@ -5,7 +5,8 @@ mod chart;
 use std::collections::{BTreeMap, BTreeSet};
 
 use self::chart::{Axis, COLOURS, Chart, Series, escaped, number};
-use super::report::{Clock, Report, Row};
+use super::report::{Report, Row};
+use super::suites::Suite;
 use super::verdict::{break_even, sentence};
 
 const STYLE: &str = include_str!("page.css");
@@ -38,9 +39,9 @@ pub fn page(report: &Report) -> String {
 }
 
 /// Rows of a suite, by what sets lines apart.
-fn lines<'a>(report: &'a Report, suite: &str, name: impl Fn(&Row) -> Option<String>) -> BTreeMap<String, Vec<&'a Row>> {
+fn lines(report: &Report, suite: Suite, name: impl Fn(&Row) -> Option<String>) -> BTreeMap<String, Vec<&Row>> {
     let mut lines = BTreeMap::<_, Vec<_>>::new();
-    for row in report.rows.iter().filter(|row| row.suite == suite) {
+    for row in report.rows.iter().filter(|row| row.is_of(suite)) {
         if let Some(name) = name(row) {
             lines.entry(name).or_default().push(row);
         }
@@ -54,7 +55,7 @@ fn note(row: &Row) -> String {
 
 fn by_scale(report: &Report) -> String {
     let name = |row: &Row| Some(format!("{} {}, {} sprites", row.path.as_ref()?, row.format.as_ref()?, row.particles?));
-    let series = lines(report, "scale", name).into_iter().map(|(name, rows)| {
+    let series = lines(report, Suite::Scale, name).into_iter().map(|(name, rows)| {
         // Forward has no scale: it is full resolution.
         let point = |row: &&Row| (f64::from(row.scale.unwrap_or(1)), row.gpu_ms.median, note(row));
         let points: Vec<_> = rows.iter().map(point).collect();
@@ -71,7 +72,7 @@ fn by_scale(report: &Report) -> String {
 
 fn by_overdraw(report: &Report) -> String {
     let name = |row: &Row| Some(format!("{}, amount {}", row.path.as_ref()?, row.alpha?));
-    let series = lines(report, "overdraw", name).into_iter().map(|(name, rows)| {
+    let series = lines(report, Suite::Overdraw, name).into_iter().map(|(name, rows)| {
         let points = rows.iter().filter_map(|row| Some((row.layers?, row.gpu_ms.median, note(row)))).collect();
         Series { name, points, has_line: true }
     });
@@ -85,7 +86,9 @@ fn by_overdraw(report: &Report) -> String {
 }
 
 fn by_error(report: &Report) -> String {
-    let with_error = |row: &&Row| ["scale", "upsample", "presets"].contains(&row.suite.as_str()) && row.flip.is_some();
+    let with_error = |row: &&Row| {
+        [Suite::Scale, Suite::Upsample, Suite::Presets].iter().any(|suite| row.is_of(*suite)) && row.flip.is_some()
+    };
     // Only deferred: forward smoke is lit in another way, which is no error.
     let rows: Vec<&Row> = report.rows.iter().filter(with_error).filter(|row| row.scale.is_some()).collect();
     let suites: BTreeSet<&str> = rows.iter().map(|row| row.suite.as_str()).collect();
@@ -99,8 +102,8 @@ fn by_error(report: &Report) -> String {
         })
         .collect();
     // The front of what was measured on the same smoke.
-    let deepest = rows.iter().filter(|row| row.suite == "scale").filter_map(|row| row.particles).max();
-    let same = rows.iter().filter(|row| row.suite == "scale" && row.particles == deepest);
+    let deepest = rows.iter().filter(|row| row.is_of(Suite::Scale)).filter_map(|row| row.particles).max();
+    let same = rows.iter().filter(|row| row.is_of(Suite::Scale) && row.particles == deepest);
     let mut same: Vec<_> = same.map(|row| point(row)).collect();
     same.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut least = f64::INFINITY;
@@ -122,8 +125,8 @@ fn by_error(report: &Report) -> String {
 
 /// Passes of the deepest rows of the suite `scale`, as bars.
 fn by_pass(report: &Report) -> String {
-    let deepest = report.rows.iter().filter(|row| row.suite == "scale").filter_map(|row| row.particles).max();
-    let is_shown = |row: &&Row| row.suite == "scale" && row.particles == deepest && !row.passes.is_empty();
+    let deepest = report.rows.iter().filter(|row| row.is_of(Suite::Scale)).filter_map(|row| row.particles).max();
+    let is_shown = |row: &&Row| row.is_of(Suite::Scale) && row.particles == deepest && !row.passes.is_empty();
     let rows: Vec<&Row> = report.rows.iter().filter(is_shown).collect();
     let names: BTreeSet<&str> = rows.iter().flat_map(|row| row.passes.keys()).map(String::as_str).collect();
     let most = rows.iter().map(|row| row.passes.values().sum::<f64>()).fold(0.0, f64::max);
@@ -181,18 +184,13 @@ fn break_even_table(report: &Report) -> String {
 fn rows_table(report: &Report) -> String {
     let shown = |value: Option<f64>| value.map_or("–".into(), number);
     let row = |row: &Row| {
-        let clock = match row.clock {
-            Clock::Gpu => "GPU",
-            Clock::Wall => "wall",
-            Clock::Cpu => "CPU",
-        };
         let spread = format!("{:.1}", 100.0 * row.gpu_ms.spread());
         let cells = [
             row.suite.clone(),
             row.case.clone(),
             number(row.gpu_ms.median),
             spread,
-            clock.into(),
+            row.clock.name().into(),
             shown(row.layers),
             shown(row.gfragments_per_s),
             shown(row.limit_ratio),
