@@ -70,14 +70,16 @@ fn sphere_corner(centre_radius: vec4f, corner: vec2f, texels_per_pixel: f32) -> 
     return clamp((ray - view.ray_offset) / view.ray_scale, -edge, edge);
 }
 
-// `target_from_ndc` moves the picture's NDC to the target's; `texels_per_pixel` is the target's resolution.
-fn sprite_vertex(
-    particle: Particle,
-    corner_index: u32,
-    target_from_ndc: vec4f,
-    texels_per_pixel: f32,
-) -> SpriteVertex {
-    var out: SpriteVertex;
+// A particle in view space, and what all fragments of its sprite share: as SpriteVertex has them.
+struct PlacedSprite {
+    hidden: bool,
+    centre_radius: vec4f,
+    amount_lod_frame_age: vec4f,
+    rotation: vec2f,
+}
+
+// `texels_per_pixel` is the target's resolution.
+fn placed_sprite(particle: Particle, texels_per_pixel: f32) -> PlacedSprite {
     let centre = (view.view_from_world * vec4f(particle.position_radius.xyz, 1.0)).xyz;
     var radius = particle.position_radius.w * system.size;
     if TECHNIQUE == TECHNIQUE_SPHERICAL_BILLBOARD {
@@ -93,18 +95,45 @@ fn sprite_vertex(
     let frame = particle.rotation_amount_frame_age.z;
     let age = particle.rotation_amount_frame_age.w;
 
-    // Hidden sprites collapse outside the clip volume. A host's own buffer may hold anything: the comparisons are false
-    // for NaN, and what is beyond LARGEST has no place in a picture.
+    // A host's own buffer may hold anything: the comparisons are false for NaN, and what is beyond LARGEST has no place in a
+    // picture.
     let finite = dot(abs(centre), vec3f(1.0)) + radius + abs(angle) + abs(frame) + abs(age) < LARGEST;
     let in_view = back > view.near && view_depth - half_depth < view.far;
-    if !(finite && in_view && radius > 0.0 && amount > 0.0) {
+    let shown = finite && in_view && radius > 0.0 && amount > 0.0;
+
+    // Pixels across the sprite: its size in NDC times half the picture's height.
+    let pixels_per_metre =
+        0.5 * view.size.y / view.ray_scale.y * mix(1.0 / max(view_depth, view.near), 1.0, view.orthographic);
+    let diameter = 2.0 * radius * pixels_per_metre * texels_per_pixel;
+    let lod = sprite_lod(system.sprite_size, diameter);
+    let shown_frame = sprite_frame(SPRITE_ANIMATION, frame, age, system.frame_count);
+    return PlacedSprite(
+        !shown,
+        vec4f(centre, radius),
+        vec4f(amount, lod, shown_frame, age),
+        vec2f(cos(angle), sin(angle)),
+    );
+}
+
+// `target_from_ndc` moves the picture's NDC to the target's.
+fn sprite_vertex(
+    particle: Particle,
+    corner_index: u32,
+    target_from_ndc: vec4f,
+    texels_per_pixel: f32,
+) -> SpriteVertex {
+    var out: SpriteVertex;
+    let sprite = placed_sprite(particle, texels_per_pixel);
+    // Hidden sprites collapse outside the clip volume.
+    if sprite.hidden {
         out.position = vec4f(2.0, 2.0, 2.0, 1.0);
         return out;
     }
-
-    out.centre_radius = vec4f(centre, radius);
+    out.centre_radius = sprite.centre_radius;
+    out.amount_lod_frame_age = sprite.amount_lod_frame_age;
+    out.rotation = sprite.rotation;
     out.weight = 1.0;
-    out.rotation = vec2f(cos(angle), sin(angle));
+    let centre = sprite.centre_radius.xyz;
     let corner = sprite_corner(corner_index);
     var clip: vec4f;
     if is_sphere() {
@@ -117,23 +146,12 @@ fn sprite_vertex(
             corner.x * out.rotation.y + corner.y * out.rotation.x,
         );
         // A slab whose middle has passed the near plane is drawn on that.
-        out.view_position = vec3f(centre.xy + turned * radius, min(centre.z, -view.near));
+        out.view_position = vec3f(centre.xy + turned * sprite.centre_radius.w, min(centre.z, -view.near));
         clip = view.clip_from_view * vec4f(out.view_position, 1.0);
         out.uv = sprite_uv(corner);
     }
     let front = view.clip_from_view * vec4f(0.0, 0.0, -sprite_front(out.centre_radius), 1.0);
     let depth = saturate(front.z / front.w);
     out.position = vec4f(clip.xy * target_from_ndc.xy + clip.w * target_from_ndc.zw, depth * clip.w, clip.w);
-
-    // Pixels across the sprite: its size in NDC times half the picture's height.
-    let pixels_per_metre =
-        0.5 * view.size.y / view.ray_scale.y * mix(1.0 / max(view_depth, view.near), 1.0, view.orthographic);
-    let diameter = 2.0 * radius * pixels_per_metre * texels_per_pixel;
-    out.amount_lod_frame_age = vec4f(
-        amount,
-        sprite_lod(system.sprite_size, diameter),
-        sprite_frame(SPRITE_ANIMATION, frame, age, system.frame_count),
-        age,
-    );
     return out;
 }

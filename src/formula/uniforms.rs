@@ -109,3 +109,19 @@ uniform! {
         spherical_harmonics: [Vec4; 9],
     }
 }
+
+uniform! {
+    /// `Tiles` in `shaders/lib/tiles.wgsl`.
+    TilesUniform {
+        count: u32,
+        loops: u32,
+        first: u32,
+        blocks: u32,
+        bin_side: u32,
+        columns: u32,
+        rows: u32,
+        runs: u32,
+        capacity: u32,
+        padding: [u32; 3],
+    }
+}

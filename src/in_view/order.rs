@@ -3,7 +3,6 @@
 
 use super::view::ViewGeometry;
 use crate::frame::Particle;
-use crate::settings::Order;
 
 /// Scratch memory that is kept from frame to frame.
 #[derive(Debug, Default)]
@@ -23,17 +22,16 @@ impl SortScratch {
 pub(crate) fn in_order(
     view: &ViewGeometry,
     particles: &[Particle],
-    order: Order,
+    is_sorted: bool,
     scratch: &mut SortScratch,
     out: &mut Vec<Particle>,
 ) {
-    match order {
-        Order::Sorted => back_to_front(view, particles, scratch, out),
-        Order::Weighted => {
-            out.clear();
-            out.extend(particles.iter().filter(|particle| particle.is_visible()));
-        }
+    if is_sorted {
+        back_to_front(view, particles, scratch, out);
+        return;
     }
+    out.clear();
+    out.extend(particles.iter().filter(|particle| particle.is_visible()));
 }
 
 /// Equal depths keep their order, so that a picture is the same every time.

@@ -8,7 +8,7 @@ use crate::assets::builtin;
 use crate::emitter::EmitterShape;
 use crate::frame::{Light, LightKind};
 use crate::settings::{
-    CoverageMode, DiffuseMode, FadeCurve, Order, SoftScatterMode, SpriteAnimation, Technique, Upsample,
+    CoverageMode, DiffuseMode, FadeCurve, Order, Path, SoftScatterMode, SpriteAnimation, Technique, Upsample,
 };
 
 /// A reason, whether it holds, and what does nothing then: fields, or groups of them.
@@ -63,6 +63,7 @@ const OF_SYSTEMS: &[Row<PresetSystem>] = &[
             "settings.accumulate.decode",
             "settings.accumulate.order",
             "settings.accumulate.depth_weight",
+            "settings.accumulate.layers",
             "settings.accumulate.scale",
             "settings.accumulate.max_side",
             "settings.accumulate.depth_source",
@@ -126,6 +127,11 @@ const OF_SYSTEMS: &[Row<PresetSystem>] = &[
         "only with order weighted",
         |s, _| s.settings.accumulate.order != Order::Weighted,
         &["settings.accumulate.depth_weight"],
+    ),
+    row(
+        "only on the path tiled, with order sorted",
+        |s, _| s.settings.path != Path::Tiled || s.settings.accumulate.order != Order::Sorted,
+        &["settings.accumulate.layers"],
     ),
     row(
         "only at a scale above 1",

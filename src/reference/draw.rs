@@ -14,7 +14,7 @@ use crate::frame::{Bounds, Particle, View, bounds_of};
 use crate::in_view::{
     SortScratch, SystemInView, SystemInWorld, ViewGeometry, in_order, lights_in_view, system_in_view,
 };
-use crate::settings::{Settings, ShadeTree};
+use crate::settings::{Order, Settings, ShadeTree};
 
 /// A system in sight, with what its passes read.
 pub struct Draw<'a> {
@@ -50,7 +50,13 @@ impl<'a> Draw<'a> {
         };
         let in_view = system_in_view(view, frame.view.size, &in_world)?;
         let mut particles = Vec::new();
-        in_order(view, system.particles, settings.order(), &mut SortScratch::default(), &mut particles);
+        in_order(
+            view,
+            system.particles,
+            settings.order() == Order::Sorted,
+            &mut SortScratch::default(),
+            &mut particles,
+        );
         Some(Self {
             view: view.uniform(false),
             world_from_view: view.view_from_world.inverse(),

@@ -10,6 +10,7 @@ use super::material::{SharedTextures, create_material};
 use super::passes::Passes;
 use super::plan::one_of_each;
 use super::shader::{Sources, checked_shader, embedded_shader};
+use super::tiled::Tiled;
 use crate::assets::material::MaterialAssets;
 use crate::error::{Error, FieldError};
 use crate::frame::Material;
@@ -33,6 +34,13 @@ pub(crate) struct Shared {
     pub passes: Passes,
     /// [`read_only_depth_is_supported`], asked once: the answer is one of many that a device makes a copy of each time.
     pub read_only_depth: bool,
+}
+
+impl Shared {
+    /// As [`Situation::tiles`](super::plan::Situation::tiles).
+    pub fn tiles(&self) -> Option<bool> {
+        self.passes.tiled.as_ref().map(Tiled::in_step)
+    }
 }
 
 impl Context {
@@ -64,7 +72,9 @@ impl Context {
         let passes = Passes::new(device, &layouts, pipeline_cache, |name| checked_shader(device, name, sources))?;
         let context = Self::assemble(device, queue, layouts, passes);
         let shared = context.shared();
-        one_of_each(shared.read_only_depth).iter().try_for_each(|plan| shared.passes.compile(device, plan))?;
+        one_of_each(shared.read_only_depth, shared.tiles())
+            .iter()
+            .try_for_each(|plan| shared.passes.compile(device, plan))?;
         Ok(context)
     }
 
@@ -98,6 +108,13 @@ impl Context {
     /// Pipelines compiled so far. It stands still once everything that a program draws has been drawn or warmed up.
     pub fn pipeline_count(&self) -> usize {
         self.0.passes.pipeline_count()
+    }
+
+    /// Whether the workgroups of the path `tiled` walk in step, as is best for GPUs, or each invocation by itself, as is best for
+    /// CPUs: for tests and measurements of the one where the other is chosen. The picture is the same.
+    #[doc(hidden)]
+    pub fn walk_in_step(&self, in_step: bool) {
+        self.0.passes.tiled.iter().for_each(|tiled| tiled.set_in_step(in_step));
     }
 
     pub(crate) fn shared(&self) -> &Shared {

@@ -3,6 +3,8 @@
 use std::sync::Arc;
 
 use super::frame_bindings::DepthBindings;
+use super::gpu::Gpu;
+use super::gpu::timing::Timing;
 use super::pass::Groups;
 use super::pass::accumulate::{Accumulate, AccumulateKey, DepthTest};
 use super::pass::depth_downsample::{DepthDownsampleKey, Downsample};
@@ -15,6 +17,7 @@ use super::pass::transfer::Transfer;
 use super::passes::Passes;
 use super::plan::{DeferredPlan, ForwardPlan};
 use super::system_targets::ReadyTargets;
+use super::tiled::{TiledInputs, TiledPasses, TiledSystem};
 use crate::in_view::SystemInView;
 use crate::settings::ShadeTree;
 
@@ -35,16 +38,34 @@ pub(crate) struct Deferred {
     pub depth_downsample: Option<Downsample>,
     pub depth_copy: Option<Downsample>,
     pub diffuse_bake: Option<DiffuseBake>,
-    pub accumulate: Accumulate,
+    pub accumulate: AccumulatePasses,
     pub overdraw: Option<Accumulate>,
     pub light_target: Option<LightTarget>,
     pub transfer: Transfer,
     pub specular_scatter: Option<SpecularScatter>,
+    pub sprites: Sprites,
+}
+
+/// Either way to accumulate.
+#[derive(Debug)]
+#[allow(clippy::large_enum_variant, reason = "as Draw")]
+pub(crate) enum AccumulatePasses {
+    Raster(Accumulate),
+    Tiled(TiledPasses),
+}
+
+impl AccumulatePasses {
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
+        match self {
+            Self::Raster(accumulate) => accumulate.record(encoder, timing),
+            Self::Tiled(passes) => passes.record(encoder, timing),
+        }
+    }
 }
 
 /// Where passes come from.
 pub(crate) struct Assembly<'a> {
-    pub device: &'a wgpu::Device,
+    pub gpu: Gpu<'a>,
     pub passes: &'a Passes,
     pub groups: Groups,
     pub sprites: Sprites,
@@ -52,7 +73,7 @@ pub(crate) struct Assembly<'a> {
 
 impl Assembly<'_> {
     pub fn forward(self, plan: &ForwardPlan) -> Draw {
-        let pipeline = self.passes.forward(self.device, plan.key);
+        let pipeline = self.passes.forward(self.gpu.device, plan.key);
         Draw::Forward(Forward { pipeline, groups: self.groups, sprites: self.sprites })
     }
 
@@ -60,12 +81,14 @@ impl Assembly<'_> {
     pub fn deferred(
         self,
         plan: &DeferredPlan<'_>,
+        tiles: &mut TiledSystem,
         targets: ReadyTargets<'_>,
         in_view: &SystemInView,
         depth: &DepthBindings,
         host_depth: Option<&wgpu::TextureView>,
     ) -> Draw {
-        let Self { device, passes, groups, sprites } = self;
+        let Self { gpu, passes, groups, sprites } = self;
+        let device = gpu.device;
         let ReadyTargets { accumulation, baked_diffuse, inputs } = targets;
         let size = in_view.rect.size;
         let downsample = |key: Option<DepthDownsampleKey>, target: &Option<wgpu::TextureView>| {
@@ -104,7 +127,19 @@ impl Assembly<'_> {
                 faces: baked_diffuse.faces.clone(),
                 groups: groups.clone(),
             }),
-            accumulate: accumulate(plan.accumulate, &accumulation.attachments),
+            accumulate: match (plan.tiled, &passes.tiled) {
+                (Some(keys), Some(tiled)) => {
+                    let inputs = TiledInputs {
+                        sprites: &sprites,
+                        size,
+                        format: keys.accumulate.format,
+                        attachments: &accumulation.attachments,
+                        depth: accumulation.reduced_depth.as_ref().unwrap_or(&depth.depth),
+                    };
+                    AccumulatePasses::Tiled(tiles.write(&gpu, tiled, keys, &groups, &inputs))
+                }
+                _ => AccumulatePasses::Raster(accumulate(plan.accumulate, &accumulation.attachments)),
+            },
             overdraw: plan.overdraw.zip(accumulation.overdraw.as_ref()).map(|(key, layers)| accumulate(key, layers)),
             light_target: plan.light_target.zip(accumulation.lit.as_ref()).map(|(key, target)| LightTarget {
                 pipeline: passes.light_target(device, key),
@@ -126,6 +161,7 @@ impl Assembly<'_> {
                 inputs: inputs.transfer.clone(),
                 lights,
             }),
+            sprites: sprites.clone(),
         })
     }
 }

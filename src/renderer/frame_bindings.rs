@@ -26,7 +26,7 @@ struct Source {
 /// A depth of the host's, bound.
 #[derive(Debug)]
 pub(crate) struct DepthBindings {
-    depth: wgpu::TextureView,
+    pub depth: wgpu::TextureView,
     /// Group 0.
     pub frame: wgpu::BindGroup,
     /// Group 3 of accumulate, where sprites are compared with the host's own depth.

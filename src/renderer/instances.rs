@@ -5,7 +5,14 @@ use super::gpu::spare::Spare;
 use super::pass::sprites::Sprites;
 use crate::frame::{Particle, Particles};
 use crate::in_view::{SortScratch, ViewGeometry, in_order};
-use crate::settings::Settings;
+use crate::settings::{Order, Settings};
+
+/// Who sorts particles for compute shaders: a CPU is better at it where it draws as well.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum SortedBy {
+    Cpu,
+    Gpu,
+}
 
 #[derive(Debug, Default)]
 pub(crate) struct Instances {
@@ -16,27 +23,32 @@ pub(crate) struct Instances {
 }
 
 impl Instances {
-    /// Uploads a slice, in order; a host's buffer is taken as it is. `None` when there is nothing to draw.
+    /// Uploads a slice, in order, but where compute shaders sort it; a host's buffer is taken as it is. `None` when there is nothing to draw.
     pub fn write(
         &mut self,
         gpu: &Gpu<'_>,
         view: &ViewGeometry,
         particles: Particles<'_>,
         settings: &Settings,
+        tiled: Option<SortedBy>,
     ) -> Option<Sprites> {
         let loops = settings.sprite.debug_loop;
         let particles = match particles {
             Particles::Buffer { buffer, offset, count } => {
                 self.buffer = None;
-                return (count > 0).then(|| Sprites { buffer: buffer.clone(), offset, count, loops });
+                return (count > 0).then(|| Sprites { buffer: buffer.clone(), offset, count, loops, is_sorted: false });
             }
             Particles::Slice(particles) => particles,
         };
-        in_order(view, particles, settings.order(), &mut self.sort, &mut self.sorted);
+        let is_sorted = settings.order() == Order::Sorted && tiled != Some(SortedBy::Gpu);
+        in_order(view, particles, is_sorted, &mut self.sort, &mut self.sorted);
         let needed = size_of_val(self.sorted.as_slice()) as u64;
         let held = self.bytes();
         let gives_back = self.spare.outlasts(needed.next_power_of_two() * 4 <= held);
-        if needed > held || gives_back {
+        let mut usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST;
+        usage.set(wgpu::BufferUsages::STORAGE, tiled.is_some());
+        let fits = self.buffer.as_ref().is_some_and(|buffer| buffer.usage().contains(usage) && needed <= held);
+        if !fits || gives_back {
             self.buffer = None;
             self.sort.shrink();
             self.sorted.shrink_to_fit();
@@ -48,12 +60,12 @@ impl Instances {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("haze particles"),
                 size: needed.next_power_of_two().min(gpu.device.limits().max_buffer_size),
-                usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+                usage,
                 mapped_at_creation: false,
             })
         });
         gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&self.sorted));
-        Some(Sprites { buffer: buffer.clone(), offset: 0, count: self.sorted.len() as u32, loops })
+        Some(Sprites { buffer: buffer.clone(), offset: 0, count: self.sorted.len() as u32, loops, is_sorted })
     }
 
     /// What is drawn, in order; nothing of a host's buffer.

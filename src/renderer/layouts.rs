@@ -1,5 +1,6 @@
 //! Layouts of the bind groups: 0 frame, 1 system, 2 material, 3 the pass's own inputs. `shaders/lib/bindings.wgsl`.
 
+use super::gpu::capabilities::tiles_are_supported;
 use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use crate::frame::MAX_LIGHTS;
 
@@ -31,15 +32,12 @@ impl Layouts {
             view_dimension,
             multisampled: false,
         };
+        let mut visibility = wgpu::ShaderStages::VERTEX_FRAGMENT;
+        visibility.set(wgpu::ShaderStages::COMPUTE, tiles_are_supported(device));
         let layout = |label, types: &[wgpu::BindingType]| {
             let entries: Vec<_> = (0..)
                 .zip(types)
-                .map(|(binding, &ty)| wgpu::BindGroupLayoutEntry {
-                    binding,
-                    visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-                    ty,
-                    count: None,
-                })
+                .map(|(binding, &ty)| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None })
                 .collect();
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
         };

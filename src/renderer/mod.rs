@@ -17,6 +17,7 @@ pub mod shader;
 mod slot;
 mod system_targets;
 mod targets;
+mod tiled;
 mod validate;
 mod warm_up;
 
@@ -284,6 +285,7 @@ impl Renderer {
             host: self.host,
             exact_filtering: self.exact_filtering,
             read_only_depth: self.context.shared().read_only_depth,
+            tiles: self.context.shared().tiles(),
             scene_depth,
             reversed: view.depth.reversed,
             mirrored: view.mirrored,

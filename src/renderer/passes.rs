@@ -1,5 +1,6 @@
 //! The shaders of all passes and their pipelines.
 
+use super::gpu::capabilities::tiles_are_supported;
 use super::gpu::pipeline::{Shader, Variants};
 use super::layouts::Layouts;
 use super::pass::accumulate::{self, AccumulateKey};
@@ -10,6 +11,7 @@ use super::pass::light_target::{self, LightingKey};
 use super::pass::specular_scatter::{self, SpecularScatterKey};
 use super::pass::transfer::{self, TransferKey};
 use super::plan::Plan;
+use super::tiled::Tiled;
 use crate::error::Error;
 
 /// Independent of any size and view: shaders and their pipelines.
@@ -22,6 +24,8 @@ pub(crate) struct Passes {
     transfer: Variants<TransferKey>,
     specular_scatter: Variants<SpecularScatterKey>,
     forward: Variants<ForwardKey>,
+    /// Where the device can.
+    pub tiled: Option<Tiled>,
 }
 
 impl Passes {
@@ -50,6 +54,10 @@ impl Passes {
             transfer: variants!(transfer, &transfer),
             specular_scatter: variants!(specular_scatter, &transfer),
             forward: variants!(forward, &material),
+            tiled: match tiles_are_supported(device) {
+                true => Some(Tiled::new(device, layouts, cache, &shader)?),
+                false => None,
+            },
         })
     }
 
@@ -62,6 +70,7 @@ impl Passes {
             + self.transfer.len()
             + self.specular_scatter.len()
             + self.forward.len()
+            + self.tiled.as_ref().map_or(0, Tiled::pipeline_count)
     }
 
     /// Compiles what a plan draws with, or says what is wrong with the shaders.
@@ -73,8 +82,11 @@ impl Passes {
                 let mut downsamples = plan.depth_downsample.into_iter().chain(plan.depth_copy);
                 downsamples.try_for_each(|key| self.depth_downsample.check(device, key))?;
                 plan.diffuse_bake.map_or(Ok(()), |key| self.diffuse_bake.check(device, key))?;
-                let mut accumulates = std::iter::once(plan.accumulate).chain(plan.overdraw);
-                accumulates.try_for_each(|key| self.accumulate.check(device, key))?;
+                match (plan.tiled, &self.tiled) {
+                    (Some(keys), Some(tiled)) => tiled.compile(device, keys)?,
+                    _ => self.accumulate.check(device, plan.accumulate)?,
+                }
+                plan.overdraw.map_or(Ok(()), |key| self.accumulate.check(device, key))?;
                 plan.light_target.map_or(Ok(()), |key| self.light_target.check(device, key))?;
                 plan.transfers().try_for_each(|key| self.transfer.check(device, key))?;
                 plan.specular_scatter.map_or(Ok(()), |key| self.specular_scatter.check(device, key))

@@ -10,10 +10,15 @@ use super::pass::forward::ForwardKey;
 use super::pass::light_target::LightingKey;
 use super::pass::specular_scatter::SpecularScatterKey;
 use super::pass::sprites::SpriteKey;
+use super::pass::tile_accumulate::TileAccumulateKey;
+use super::pass::tile_project::TileProjectKey;
 use super::pass::transfer::TransferKey;
+use super::tiled::TiledKeys;
 use crate::formula::diffuse_bake::baked_size_and_layers;
 use crate::frame::SceneDepth;
-use crate::settings::{DepthSource, DiffuseMode, LightingResolution, Path, Settings, ShadeTree, Technique};
+use crate::settings::{
+    DepthSource, DiffuseMode, Layers, LightingResolution, Order, Path, Settings, ShadeTree, Technique,
+};
 
 /// Which depth of the scene a host hands over, and the format of the buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,6 +49,8 @@ pub(crate) struct Situation<'a> {
     pub exact_filtering: bool,
     /// One pass can test and sample one depth buffer.
     pub read_only_depth: bool,
+    /// Tiles are walked in step; `None` where there is no tiled path.
+    pub tiles: Option<bool>,
     pub scene_depth: SceneDepthKind,
     /// The near plane is stored as 1.
     pub reversed: bool,
@@ -81,6 +88,8 @@ pub(crate) struct DeferredPlan<'a> {
     pub depth_copy: Option<DepthDownsampleKey>,
     pub diffuse_bake: Option<DiffuseBakeKey>,
     pub accumulate: AccumulateKey,
+    /// Accumulates in place of that.
+    pub tiled: Option<TiledKeys>,
     /// Counts layers instead.
     pub overdraw: Option<AccumulateKey>,
     /// Where smoke is lit at the target's resolution.
@@ -114,12 +123,13 @@ pub(crate) fn plan<'a>(situation: &Situation<'a>, settings: &Settings, back_face
 }
 
 /// Plans that draw with every pass between them, for a host of the plainest kind.
-pub(crate) fn one_of_each(read_only_depth: bool) -> [Plan<'static>; 3] {
+pub(crate) fn one_of_each(read_only_depth: bool, tiles: Option<bool>) -> [Plan<'static>; 4] {
     let depth_format = wgpu::TextureFormat::Depth32Float;
     let situation = Situation {
         host: HostPass { depth_format: Some(depth_format), ..HostPass::plain(wgpu::TextureFormat::Rgba8Unorm) },
         exact_filtering: false,
         read_only_depth,
+        tiles,
         scene_depth: SceneDepthKind::Buffer(depth_format),
         reversed: false,
         mirrored: false,
@@ -131,7 +141,8 @@ pub(crate) fn one_of_each(read_only_depth: bool) -> [Plan<'static>; 3] {
     let mut lit = deferred;
     lit.accumulate.lighting_resolution = LightingResolution::Target;
     let forward = Settings { path: Path::Forward, ..Settings::default() };
-    [deferred, lit, forward].map(|settings| plan(&situation, &settings, false))
+    let tiled = Settings { path: Path::Tiled, ..Settings::default() };
+    [deferred, lit, forward, tiled].map(|settings| plan(&situation, &settings, false))
 }
 
 fn deferred<'a>(
@@ -172,6 +183,10 @@ fn deferred<'a>(
         depth_copy: (depth_test == DepthTest::Copy).then(|| downsample(true)),
         diffuse_bake: bakes.then_some(DiffuseBakeKey { mode: settings.diffuse.mode, ramp_filter, exact_filtering }),
         accumulate: accumulate_key,
+        tiled: situation
+            .tiles
+            .filter(|_| settings.path == Path::Tiled)
+            .map(|in_step| tiled_keys(&accumulate_key, accumulate.layers, in_step, exact_filtering)),
         overdraw: stages.contains(&ShadeTree::Overdraw).then_some(AccumulateKey { overdraw: true, ..accumulate_key }),
         light_target: lights_target.then_some(lighting),
         transfer: TransferKey {
@@ -194,6 +209,26 @@ fn deferred<'a>(
             ramp_filter,
             exact_filtering,
         }),
+    }
+}
+
+fn tiled_keys(key: &AccumulateKey, layers: Layers, in_step: bool, exact_filtering: bool) -> TiledKeys {
+    let &AccumulateKey { format, encoding, order, sprite, host_depth, .. } = key;
+    let weighted = order == Order::Weighted;
+    TiledKeys {
+        project: TileProjectKey { sprite, weighted },
+        accumulate: TileAccumulateKey {
+            sprite,
+            format,
+            encoding,
+            weighted,
+            sums_weights: order.sums_weights(encoding),
+            host_depth,
+            // A weighted normal counts, whatever is in front.
+            stops: layers == Layers::Visible && !weighted,
+            // Where invocations walk alone, lanes of llvmpipe diverge in the level that texels are read from.
+            in_step: in_step || exact_filtering,
+        },
     }
 }
 
@@ -254,6 +289,7 @@ mod tests {
             host: HostPass { depth_format: Some(Depth32Float), ..HostPass::plain(Rgba16Float) },
             exact_filtering: false,
             read_only_depth: true,
+            tiles: Some(true),
             scene_depth: SceneDepthKind::Both(Depth24Plus),
             reversed: false,
             mirrored: false,
@@ -370,12 +406,15 @@ mod tests {
     #[test]
     fn one_of_each_is_one_of_each() {
         for read_only_depth in [true, false] {
-            let [Plan::Deferred(deferred), Plan::Deferred(lit), Plan::Forward(_)] = one_of_each(read_only_depth) else {
+            let [Plan::Deferred(deferred), Plan::Deferred(lit), Plan::Forward(_), Plan::Deferred(tiled)] =
+                one_of_each(read_only_depth, Some(true))
+            else {
                 panic!()
             };
             assert!(deferred.light_target.is_none() && lit.light_target.is_some());
             assert!(deferred.depth_downsample.is_some() && deferred.diffuse_bake.is_some());
             assert!(deferred.transfers().count() == 1 && deferred.specular_scatter.is_some());
+            assert!(tiled.tiled.is_some() && deferred.tiled.is_none());
         }
     }
 

@@ -9,17 +9,18 @@ use super::frame_bindings::FrameBindings;
 use super::gpu::Gpu;
 use super::gpu::record::uniform_buffer;
 use super::gpu::spare::Spare;
-use super::instances::Instances;
+use super::instances::{Instances, SortedBy};
 use super::layouts::LIGHTS_SIZE;
 use super::memory::MemoryUse;
 use super::pass::Groups;
 use super::plan::{Plan, Situation, plan};
 use super::system_targets::SystemTargets;
 use super::targets::TargetViews;
+use super::tiled::TiledSystem;
 use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use crate::frame::{Bounds, Frame, Particles, System, bounds_of};
 use crate::in_view::{Grid, Placing, SystemInView, SystemInWorld, ViewGeometry, lights_in_view, system_in_view};
-use crate::settings::{Settings, Technique};
+use crate::settings::{Path, Settings, Technique};
 
 /// A frame, and what it is drawn with.
 pub(crate) struct FrameContext<'a> {
@@ -44,8 +45,11 @@ pub(crate) struct Slot {
     lights_in_view: Vec<LightUniform>,
     instances: Instances,
     targets: SystemTargets,
+    tiles: TiledSystem,
     /// Counts frames without deferred smoke: its targets are not kept for ever.
     without_targets: Spare,
+    /// Counts frames in which it was not tiled.
+    untiled: Spare,
     /// Counts frames without the system.
     absent: Spare,
     /// `None` when out of sight.
@@ -80,7 +84,9 @@ impl Slot {
             lights_in_view: Vec::new(),
             instances: Instances::default(),
             targets: SystemTargets::default(),
+            tiles: TiledSystem::default(),
             without_targets: Spare::default(),
+            untiled: Spare::default(),
             absent: Spare::default(),
             drawn: None,
         }
@@ -97,7 +103,7 @@ impl Slot {
     }
 
     pub fn memory_use(&self) -> MemoryUse {
-        let buffers = self.uniform.size() + self.lights.size() + self.instances.bytes();
+        let buffers = self.uniform.size() + self.lights.size() + self.instances.bytes() + self.tiles.bytes();
         MemoryUse { targets: self.targets.bytes(), buffers }
     }
 
@@ -105,7 +111,7 @@ impl Slot {
         let (sprites, texels) = match &self.drawn {
             None => return FrameCounts::default(),
             Some(Drawn { draw: Draw::Forward(forward), .. }) => (&forward.sprites, UVec2::ZERO),
-            Some(Drawn { draw: Draw::Deferred(draw), in_view, .. }) => (&draw.accumulate.sprites, in_view.rect.size),
+            Some(Drawn { draw: Draw::Deferred(draw), in_view, .. }) => (&draw.sprites, in_view.rect.size),
         };
         FrameCounts {
             systems: 1,
@@ -127,7 +133,7 @@ impl Slot {
             }
             Draw::Deferred(draw) => {
                 let origin = in_view.rect.origin.as_vec2();
-                (&draw.accumulate.sprites, Grid { origin, scale: in_view.uniform.scale, size: in_view.rect.size })
+                (&draw.sprites, Grid { origin, scale: in_view.uniform.scale, size: in_view.rect.size })
             }
         };
         let placing = Placing { view, system: &in_view.uniform, technique: *technique };
@@ -165,6 +171,9 @@ impl Slot {
         if self.without_targets.outlasts(!is_deferred) {
             self.targets = SystemTargets::default();
         }
+        if self.untiled.outlasts(system.settings.path != Path::Tiled) {
+            self.tiles = TiledSystem::default();
+        }
     }
 
     fn place(&mut self, context: &FrameContext<'_>, system: &System<'_>) -> Option<Drawn> {
@@ -186,7 +195,9 @@ impl Slot {
             time: frame.time,
         };
         let in_view = system_in_view(view, context.host_size, &in_world)?;
-        let sprites = self.instances.write(gpu, view, system.particles, settings)?;
+        let sorted_by = shared.tiles().filter(|_| settings.path == Path::Tiled);
+        let sorted_by = sorted_by.map(|in_step| if in_step { SortedBy::Gpu } else { SortedBy::Cpu });
+        let sprites = self.instances.write(gpu, view, system.particles, settings, sorted_by)?;
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&in_view.uniform));
         gpu.queue.write_buffer(&self.lights, 0, bytemuck::cast_slice(&self.lights_in_view));
 
@@ -198,7 +209,7 @@ impl Slot {
             system: self.bindings.clone(),
             material: system.material.bind_group.clone(),
         };
-        let assembly = Assembly { device: gpu.device, passes: &shared.passes, groups, sprites };
+        let assembly = Assembly { gpu: *gpu, passes: &shared.passes, groups, sprites };
         let draw = match &plan {
             Plan::Nothing => return None,
             Plan::Forward(plan) => assembly.forward(plan),
@@ -206,7 +217,7 @@ impl Slot {
                 let scale = settings.accumulate.effective_scale(view.size);
                 let limit = UVec2::new(view.size.x.div_ceil(scale), view.size.y.div_ceil(scale));
                 let targets = self.targets.fit(shared, settings, plan, in_view.rect.size, limit);
-                assembly.deferred(plan, targets, &in_view, depth, frame.scene_depth.buffer())
+                assembly.deferred(plan, &mut self.tiles, targets, &in_view, depth, frame.scene_depth.buffer())
             }
         };
         Some(Drawn { in_view, technique: settings.technique, draw })

@@ -55,6 +55,7 @@ impl SystemTargets {
             overdraw: plan.overdraw.is_some(),
             lit: plan.light_target.is_some(),
             depth_copy: !shared.read_only_depth,
+            tiled: plan.tiled.is_some(),
         };
         let (accumulation, is_new) = AccumulationTarget::fit(&mut self.accumulation, device, key, size, limit);
         let (baked_diffuse, is_newly_baked) = BakedDiffuse::fit(&mut self.baked_diffuse, device, settings.diffuse.mode);

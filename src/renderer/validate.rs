@@ -5,10 +5,11 @@ use glam::UVec2;
 use super::context::Shared;
 use super::gpu::host_pass::HostPass;
 use super::plan::reads_linear;
+use super::tiled::{PARTICLE_STEP, SPRITE};
 use crate::error::FieldError;
 use crate::frame::validate::{validate_lights, validate_place, validate_settings, validate_time_and_up};
 use crate::frame::{Frame, Particle, Particles, SceneDepth, System, View};
-use crate::settings::{DepthSource, Technique};
+use crate::settings::{DepthSource, Path, Technique};
 
 /// Checks everything but the view's matrices.
 ///
@@ -85,6 +86,10 @@ fn validate_depth_texture(
 
 fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &System<'_>) -> Result<(), FieldError> {
     validate_settings(index, system.settings, frame.view.size)?;
+    if system.settings.path == Path::Tiled && shared.tiles().is_none() {
+        let expected = "\"raster\", or a device with compute shaders and the limits that WebGPU promises";
+        return Err(FieldError::new(format!("systems[{index}].settings.path"), "\"tiled\"", expected));
+    }
     validate_place(index, system.bounds.as_ref(), system.depth)?;
     let field = |name: &str| format!("systems[{index}].{name}");
     validate_particles(shared, system, &field)?;
@@ -114,30 +119,42 @@ fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &Sy
 
 fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str) -> String) -> Result<(), FieldError> {
     let size = size_of::<Particle>() as u64;
+    let is_tiled = system.settings.path == Path::Tiled;
+    let limits = shared.device.limits();
+    let mut most = limits.max_buffer_size / size;
+    if is_tiled {
+        most = most.min(limits.max_storage_buffer_binding_size / SPRITE);
+    }
     match system.particles {
-        Particles::Slice(particles) => {
-            let most = shared.device.limits().max_buffer_size / size;
-            if particles.len() as u64 > most {
-                let value = format!("{} particles", particles.len());
-                return Err(FieldError::new(field("particles"), value, format!("at most {most} on this device")));
-            }
-        }
+        Particles::Slice(particles) => validate_count(particles.len() as u64, most, field)?,
         Particles::Buffer { buffer, offset, count } => {
+            validate_count(u64::from(count), most, field)?;
             if system.bounds.is_none() {
                 let expected = "the box of the particles, which are on the GPU";
                 return Err(FieldError::new(field("bounds"), "None", expected));
             }
-            if !offset.is_multiple_of(wgpu::VERTEX_ALIGNMENT) {
-                let expected = format!("a multiple of {}", wgpu::VERTEX_ALIGNMENT);
+            let alignment = if is_tiled { PARTICLE_STEP } else { wgpu::VERTEX_ALIGNMENT };
+            if !offset.is_multiple_of(alignment) {
+                let expected = format!("a multiple of {alignment}");
                 return Err(FieldError::new(field("particles.offset"), offset, expected));
             }
             let needed = offset.saturating_add(u64::from(count) * size);
-            if buffer.size() < needed || !buffer.usage().contains(wgpu::BufferUsages::VERTEX) {
+            let mut usage = wgpu::BufferUsages::VERTEX;
+            usage.set(wgpu::BufferUsages::STORAGE, is_tiled);
+            if buffer.size() < needed || !buffer.usage().contains(usage) {
                 let value = format!("{} bytes, usage {:?}", buffer.size(), buffer.usage());
-                let expected = format!("at least {needed} bytes, usage VERTEX");
+                let expected = format!("at least {needed} bytes, usage {usage:?}");
                 return Err(FieldError::new(field("particles"), value, expected));
             }
         }
+    }
+    Ok(())
+}
+
+fn validate_count(count: u64, most: u64, field: &impl Fn(&str) -> String) -> Result<(), FieldError> {
+    if count > most {
+        let value = format!("{count} particles");
+        return Err(FieldError::new(field("particles"), value, format!("at most {most} on this device")));
     }
     Ok(())
 }

@@ -111,6 +111,18 @@ choice! {
     }
 }
 
+choice! {
+    /// How far the path `tiled` goes down the layers. `docs/tiled.md` has what it loses.
+    Layers {
+        /// As far as there is something to see: until a texel lets less than a thousandth through. All of them where normals are
+        /// weighted, for they count whatever is in front.
+        #[default]
+        Visible = "visible",
+        /// All of them, as the path `raster`.
+        All = "all",
+    }
+}
+
 settings! {
     /// The accumulation pass: how sprites become normal + amount.
     #[derive(Clone, Copy, Debug, PartialEq)]
@@ -125,6 +137,8 @@ settings! {
         order: Order = Order::default(), choice;
         /// For the order `weighted`: a normal counts e^(-depth_weight · the optical depth in front of its sprite). 0: all alike.
         depth_weight: f32 = 0.4, number(0.0..=4.0, "");
+        /// How far the path `tiled` goes down the layers.
+        layers: Layers = Layers::default(), choice;
         /// Pixels of the picture per texel of the target, along each side. Cost falls with its square.
         scale: u32 = 2, integer(1..=COARSEST, "pixels");
         /// Most texels along the picture's longer side; raises `scale` on large pictures.

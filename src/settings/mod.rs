@@ -16,8 +16,8 @@ mod technique;
 mod walk;
 
 pub use accumulate::{
-    Accumulate, AccumulationFormat, DepthDownsample, DepthSource, LightingResolution, NormalDecode, NormalEncoding,
-    Order, Upsample,
+    Accumulate, AccumulationFormat, DepthDownsample, DepthSource, Layers, LightingResolution, NormalDecode,
+    NormalEncoding, Order, Upsample,
 };
 pub use budget::{Budget, ScaleBudget};
 pub use choice::Choice;
@@ -38,6 +38,9 @@ choice! {
         Auto = "auto",
         /// Deferred: sprites blended into the accumulation target by the hardware, lit once per pixel.
         Raster = "raster",
+        /// The same, accumulated by compute shaders: sprites are listed by tiles of the target and added up front to back, texel by
+        /// texel. Layers cost little, and none that cannot be seen. Not every device can; `docs/tiled.md` compares the two.
+        Tiled = "tiled",
         /// Every fragment lit and blended at full resolution: the classic way, kept as the baseline.
         Forward = "forward",
     }

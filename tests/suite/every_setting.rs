@@ -143,9 +143,13 @@ fn stages() -> Vec<Stage> {
 }
 
 /// Values that make no other picture where they can be compared, and why.
-const SAME: [&str; 3] = [
+const SAME: [&str; 5] = [
     // What the device does best is to accumulate by raster, today.
     "path auto",
+    // The same picture by other means; tiled.rs compares them.
+    "path tiled",
+    // What is left out there cannot be seen.
+    "accumulate.layers all",
     // The same depth, read from another texture.
     "technique soft_linear",
     // At scale 1 the reduced depth is the host's.

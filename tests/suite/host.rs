@@ -19,6 +19,7 @@ pub struct HostKind {
     /// Of the pass; the depth that is handed over is resolved.
     pub samples: u32,
     pub gamma_target: bool,
+    pub exact_filtering: bool,
     /// Size of the targets, where the view is a part of them.
     pub target_size: Option<UVec2>,
 }
@@ -31,6 +32,7 @@ impl Default for HostKind {
             depth_format: wgpu::TextureFormat::Depth32Float,
             samples: 1,
             gamma_target: false,
+            exact_filtering: true,
             target_size: None,
         }
     }
@@ -88,7 +90,7 @@ impl Host {
             depth_format: stage.attach_depth.then_some(kind.depth_format),
             sample_count: kind.samples,
             gamma_target: kind.gamma_target,
-            exact_filtering: true,
+            exact_filtering: kind.exact_filtering,
         };
         let renderer = Renderer::new(&gpu.device, &gpu.queue, &descriptor)?;
         let material = renderer.create_material(&gpu.device, &gpu.queue, &stage.material)?;

@@ -29,6 +29,7 @@ mod shaders;
 mod soak;
 mod stage;
 mod techniques;
+mod tiled;
 mod timing;
 #[cfg(feature = "app")]
 mod upsampling;

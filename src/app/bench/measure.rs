@@ -211,7 +211,11 @@ impl<'a> Bench<'a> {
             scale: (!is_forward).then_some(settings.accumulate.scale),
             format: Some(format.name().into()),
             path: Some(settings.path.name().into()),
-            mode: (!is_forward).then(|| settings.diffuse.mode.name().into()),
+            mode: match settings.path {
+                SmokePath::Forward => None,
+                SmokePath::Tiled => Some(settings.accumulate.layers.name().into()),
+                _ => Some(settings.diffuse.mode.name().into()),
+            },
             technique: Some(settings.technique.name().into()),
             fade: Some(settings.soft_fade.curve.name().into()),
             layers: Some(overdraw.mean()),

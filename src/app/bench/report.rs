@@ -97,7 +97,7 @@ pub struct Row {
     pub format: Option<String>,
     /// `raster`, `forward` …
     pub path: Option<String>,
-    /// How lights answer: `ramp`, `cubemap` …
+    /// How lights answer: `ramp`, `cubemap` …; on the path `tiled`, how far it goes down the layers: `visible`, `all`.
     pub mode: Option<String>,
     /// How sprites meet the scene.
     pub technique: Option<String>,

@@ -7,8 +7,8 @@ use glam::{UVec2, Vec3};
 use haze::demo::shot::Shot;
 use haze::preset::Preset;
 use haze::settings::{
-    AccumulationFormat, DepthDownsample, FadeCurve, LightingResolution, NormalEncoding, Order, Path as SmokePath,
-    Settings, Technique, Upsample,
+    AccumulationFormat, DepthDownsample, FadeCurve, Layers, LightingResolution, NormalEncoding, Order,
+    Path as SmokePath, Settings, Technique, Upsample,
 };
 use haze::{Error, Light, builtin};
 
@@ -62,6 +62,19 @@ pub struct Case {
 /// The paths that draw in their own way; another joins by its name in the settings.
 fn paths() -> impl Iterator<Item = SmokePath> {
     SmokePath::ALL.iter().copied().filter(|&path| path != SmokePath::Auto)
+}
+
+/// The same, and with it how far it goes down the layers, where it has the choice.
+fn paths_and_layers() -> impl Iterator<Item = (SmokePath, Layers)> {
+    paths().flat_map(|path| {
+        let layers = if path == SmokePath::Tiled { Layers::ALL } else { &Layers::ALL[..1] };
+        layers.iter().map(move |&layers| (path, layers))
+    })
+}
+
+/// How rows call it.
+fn name_of((path, layers): (SmokePath, Layers)) -> String {
+    if path == SmokePath::Tiled { format!("{} {}", path.name(), layers.name()) } else { path.name().into() }
 }
 
 const SCALES: [u32; 6] = [1, 2, 3, 4, 6, 8];
@@ -147,16 +160,40 @@ fn set_format(settings: &mut Settings, format: AccumulationFormat) {
 fn overdraw(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
     let counts: &[u32] = if quick { &[4, 32, 256] } else { &[4, 16, 64, 256, 1024] };
     let amounts: &[f32] = if quick { &[0.1] } else { &[0.02, 0.1, 0.3] };
-    let group = |(&count, &amount): (&u32, &f32)| {
-        let shot = layers(size, count, amount)?;
-        let case = |path: SmokePath| Case {
-            name: format!("{} {count} sprites of {amount}", path.name()),
-            shot: changed(&shot, at_scale(path, 1)),
-            work: (format!("overdraw {}", path.name()), f64::from(count)),
+    let group = |shot: Shot, sprites: String, work: f64| {
+        let case = |way: (SmokePath, Layers)| Case {
+            name: format!("{} {sprites}", name_of(way)),
+            shot: changed(&shot, |settings| {
+                at_scale(way.0, 1)(settings);
+                settings.accumulate.layers = way.1;
+            }),
+            work: (format!("overdraw {}", name_of(way)), work),
         };
-        Ok(Group { suite: Suite::Overdraw, cases: paths().map(case).collect(), reference: full(&shot) })
+        Group { suite: Suite::Overdraw, cases: paths_and_layers().map(case).collect(), reference: full(&shot) }
     };
-    counts.iter().flat_map(|count| amounts.iter().map(move |amount| (count, amount))).map(group).collect()
+    let large = counts.iter().flat_map(|&count| amounts.iter().map(move |&amount| (count, amount)));
+    let mut groups = Vec::new();
+    for (count, amount) in large {
+        groups.push(group(layers(size, count, amount)?, format!("{count} sprites of {amount}"), f64::from(count)));
+    }
+    // Many small ones: what a sprite costs counts as well.
+    let crowds: &[(u32, f32)] =
+        if quick { &[(4096, 156.0)] } else { &[(1024, 14.0), (4096, 56.0), (4096, 156.0), (16384, 627.0)] };
+    for &(count, deep) in crowds {
+        groups.push(group(crowd(size, count, deep)?, format!("{count} small sprites, {deep} deep"), f64::from(deep)));
+    }
+    Ok(groups)
+}
+
+/// So many small sprites all over the picture, about so many layers deep.
+fn crowd(size: UVec2, count: u32, deep: f32) -> Result<Shot, Error> {
+    let mut shot = layers(size, count, 0.1)?;
+    for system in &mut shot.preset.systems {
+        (system.emitter.duration, system.emitter.extent) = (1.0, Vec3::new(2.0, 1.1, 0.8));
+        // One as `layers` has it covers two thirds of the picture.
+        system.settings.sprite.size *= (deep / (0.66 * count as f32)).sqrt();
+    }
+    Ok(shot)
 }
 
 fn lights(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {

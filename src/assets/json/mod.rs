@@ -164,7 +164,7 @@ mod tests {
             (r#"{"place": [1, 2, 3, 4]}"#, "a.json:1:21: place: too many entries; expected the list to end here"),
             (
                 r#"{"path": "rastre"}"#,
-                r#"a.json:1:17: path: "rastre" is not valid; expected one of auto, raster, forward"#,
+                r#"a.json:1:17: path: "rastre" is not valid; expected one of auto, raster, tiled, forward"#,
             ),
             (r#"{"path": 3}"#, "a.json:1:10: path: no text; expected a name in double quotes"),
             (

@@ -1,4 +1,4 @@
-//! Render pipelines: their variants, and the states that passes share.
+//! Pipelines: their variants, and the states that passes share.
 
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -18,16 +18,31 @@ pub(crate) struct Shader {
 
 /// A pass's shader, and its pipelines by what distinguishes them. Compiled when first asked for, from any thread.
 #[derive(Debug)]
-pub(crate) struct Variants<K> {
+pub(crate) struct Variants<K, P: Parts = PipelineParts> {
+    common: Common,
+    describe: fn(K) -> P,
+    pipelines: Mutex<HashMap<K, P::Pipeline>>,
+}
+
+/// What all pipelines of a pass have in common.
+#[derive(Debug)]
+pub(crate) struct Common {
+    /// The pass's: its label.
     name: &'static str,
     shader: Shader,
-    describe: fn(K) -> PipelineParts,
     layout: wgpu::PipelineLayout,
     cache: Option<wgpu::PipelineCache>,
-    pipelines: Mutex<HashMap<K, wgpu::RenderPipeline>>,
+}
+
+/// What makes a pipeline, with what it has in common with others of its pass.
+pub(crate) trait Parts {
+    type Pipeline: Clone + std::fmt::Debug;
+
+    fn create(&self, device: &wgpu::Device, common: &Common) -> Self::Pipeline;
 }
 
 /// The parts of a render pipeline that differ from variant to variant.
+#[derive(Debug)]
 pub(crate) struct PipelineParts {
     pub buffers: &'static [Option<wgpu::VertexBufferLayout<'static>>],
     pub primitive: wgpu::PrimitiveState,
@@ -37,13 +52,20 @@ pub(crate) struct PipelineParts {
     pub constants: Vec<Constant>,
 }
 
-impl<K: Copy + Eq + Hash> Variants<K> {
+/// The parts of a compute pipeline that differ from variant to variant.
+#[derive(Debug)]
+pub(crate) struct ComputeParts {
+    pub entry_point: &'static str,
+    pub constants: Vec<Constant>,
+}
+
+impl<K: Copy + Eq + Hash, P: Parts> Variants<K, P> {
     /// `name` is the pass's: its label.
     pub fn new(
         device: &wgpu::Device,
         name: &'static str,
         shader: Shader,
-        describe: fn(K) -> PipelineParts,
+        describe: fn(K) -> P,
         groups: &[Option<&wgpu::BindGroupLayout>],
         cache: Option<&wgpu::PipelineCache>,
     ) -> Self {
@@ -52,11 +74,12 @@ impl<K: Copy + Eq + Hash> Variants<K> {
             bind_group_layouts: groups,
             immediate_size: 0,
         });
-        Self { name, shader, describe, layout, cache: cache.cloned(), pipelines: Mutex::default() }
+        let common = Common { name, shader, layout, cache: cache.cloned() };
+        Self { common, describe, pipelines: Mutex::default() }
     }
 
     /// The pipeline for `key`, compiled the first time. Nobody waits meanwhile but who asks for it.
-    pub fn get(&self, device: &wgpu::Device, key: K) -> wgpu::RenderPipeline {
+    pub fn get(&self, device: &wgpu::Device, key: K) -> P::Pipeline {
         let found = self.lock().get(&key).cloned();
         found.unwrap_or_else(|| self.keep(key, self.compile(device, key)))
     }
@@ -67,15 +90,17 @@ impl<K: Copy + Eq + Hash> Variants<K> {
             return Ok(());
         }
         let compiled = checked(device, || self.compile(device, key)).map_err(|reason| {
-            let reason = reason.replace("ShaderStages(VERTEX)", "vertex").replace("ShaderStages(FRAGMENT)", "fragment");
-            Error::Shader { path: self.shader.path.clone(), line: 1, column: 1, reason: one_line(reason) }
+            let stages = [("VERTEX", "vertex"), ("FRAGMENT", "fragment"), ("COMPUTE", "compute")];
+            let plain = |text: String, (stage, name): (&str, _)| text.replace(&format!("ShaderStages({stage})"), name);
+            let reason = one_line(stages.into_iter().fold(reason, plain));
+            Error::Shader { path: self.common.shader.path.clone(), line: 1, column: 1, reason }
         })?;
         self.keep(key, compiled);
         Ok(())
     }
 
     /// Another thread may have been first.
-    fn keep(&self, key: K, compiled: wgpu::RenderPipeline) -> wgpu::RenderPipeline {
+    fn keep(&self, key: K, compiled: P::Pipeline) -> P::Pipeline {
         self.lock().entry(key).or_insert(compiled).clone()
     }
 
@@ -84,33 +109,55 @@ impl<K: Copy + Eq + Hash> Variants<K> {
         self.lock().len()
     }
 
-    fn lock(&self) -> MutexGuard<'_, HashMap<K, wgpu::RenderPipeline>> {
+    fn lock(&self) -> MutexGuard<'_, HashMap<K, P::Pipeline>> {
         self.pipelines.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn compile(&self, device: &wgpu::Device, key: K) -> wgpu::RenderPipeline {
-        let parts = (self.describe)(key);
-        let options = wgpu::PipelineCompilationOptions { constants: &parts.constants, ..Default::default() };
+    fn compile(&self, device: &wgpu::Device, key: K) -> P::Pipeline {
+        (self.describe)(key).create(device, &self.common)
+    }
+}
+
+impl Parts for PipelineParts {
+    type Pipeline = wgpu::RenderPipeline;
+
+    fn create(&self, device: &wgpu::Device, common: &Common) -> wgpu::RenderPipeline {
+        let options = wgpu::PipelineCompilationOptions { constants: &self.constants, ..Default::default() };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(self.name),
-            layout: Some(&self.layout),
+            label: Some(common.name),
+            layout: Some(&common.layout),
             vertex: wgpu::VertexState {
-                module: &self.shader.module,
+                module: &common.shader.module,
                 entry_point: Some("vertex"),
                 compilation_options: options.clone(),
-                buffers: parts.buffers,
+                buffers: self.buffers,
             },
-            primitive: parts.primitive,
-            depth_stencil: parts.depth_stencil.clone(),
-            multisample: wgpu::MultisampleState { count: parts.sample_count, ..Default::default() },
+            primitive: self.primitive,
+            depth_stencil: self.depth_stencil.clone(),
+            multisample: wgpu::MultisampleState { count: self.sample_count, ..Default::default() },
             fragment: Some(wgpu::FragmentState {
-                module: &self.shader.module,
+                module: &common.shader.module,
                 entry_point: Some("fragment"),
                 compilation_options: options,
-                targets: &parts.targets,
+                targets: &self.targets,
             }),
             multiview_mask: None,
-            cache: self.cache.as_ref(),
+            cache: common.cache.as_ref(),
+        })
+    }
+}
+
+impl Parts for ComputeParts {
+    type Pipeline = wgpu::ComputePipeline;
+
+    fn create(&self, device: &wgpu::Device, common: &Common) -> wgpu::ComputePipeline {
+        device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(common.name),
+            layout: Some(&common.layout),
+            module: &common.shader.module,
+            entry_point: Some(self.entry_point),
+            compilation_options: wgpu::PipelineCompilationOptions { constants: &self.constants, ..Default::default() },
+            cache: common.cache.as_ref(),
         })
     }
 }

@@ -20,7 +20,8 @@ const READ_BACKS: usize = 4;
 /// end of the frame's last encoder. Results come some frames later, without waiting: whichever submission finds the GPU
 /// done brings them.
 ///
-/// The passes that haze begins itself (`depth_downsample`, `diffuse_bake`, `accumulate`) are always measured; those that it
+/// The passes that haze begins itself (`depth_downsample`, `diffuse_bake`, `accumulate`, `light_target`, and those of the path
+/// `tiled`) are always measured; those that it
 /// records into the host's pass (`transfer`, `specular_scatter`, `forward`) where the device has
 /// `Features::TIMESTAMP_QUERY_INSIDE_PASSES`. Elsewhere [`host_pass`](Self::host_pass) measures the whole of the host's pass. A
 /// device without `Features::TIMESTAMP_QUERY` measures nothing: there a host can take the CPU time of its calls, and should say
@@ -152,6 +153,15 @@ impl Timing {
     /// For the descriptor of a pass.
     pub(crate) fn pass(&self, name: &'static str) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
         self.writes(name, false)
+    }
+
+    pub(crate) fn compute_pass(&self, name: &'static str) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
+        let query = self.add(name, false)?;
+        Some(wgpu::ComputePassTimestampWrites {
+            query_set: &self.0.queries,
+            beginning_of_pass_write_index: Some(query),
+            end_of_pass_write_index: Some(query + 1),
+        })
     }
 
     /// Measures what `record` records into a pass, where the device can.

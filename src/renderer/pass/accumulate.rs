@@ -64,7 +64,7 @@ pub(crate) fn describe(key: AccumulateKey) -> PipelineParts {
             DepthTest::Host(format, reversed) => Some(read_only_depth(format, in_front(reversed))),
         },
         sample_count: 1,
-        targets: accumulation_layout(key.format, !key.overdraw && key.order.sums_weights(key.encoding))
+        targets: accumulation_layout(key.format, !key.overdraw && key.order.sums_weights(key.encoding), false)
             .iter()
             .map(|attachment| color_target(attachment.format, Some(blend)))
             .collect(),

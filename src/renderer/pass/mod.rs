@@ -6,8 +6,12 @@ pub(crate) mod depth_downsample;
 pub(crate) mod diffuse_bake;
 pub(crate) mod forward;
 pub(crate) mod light_target;
+pub(crate) mod sort;
 pub(crate) mod specular_scatter;
 pub(crate) mod sprites;
+pub(crate) mod tile_accumulate;
+pub(crate) mod tile_bin;
+pub(crate) mod tile_project;
 pub(crate) mod transfer;
 
 /// Bind groups 0 to 2 of a system's passes.
@@ -20,6 +24,12 @@ pub(crate) struct Groups {
 
 impl Groups {
     fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_bind_group(0, &self.frame, &[]);
+        pass.set_bind_group(1, &self.system, &[]);
+        pass.set_bind_group(2, &self.material, &[]);
+    }
+
+    fn bind_to_compute(&self, pass: &mut wgpu::ComputePass<'_>) {
         pass.set_bind_group(0, &self.frame, &[]);
         pass.set_bind_group(1, &self.system, &[]);
         pass.set_bind_group(2, &self.material, &[]);

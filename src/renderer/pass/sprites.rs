@@ -61,6 +61,8 @@ pub(crate) struct Sprites {
     pub count: u32,
     /// How often all of them are drawn.
     pub loops: u32,
+    /// They are known to be back to front.
+    pub is_sorted: bool,
 }
 
 impl Sprites {

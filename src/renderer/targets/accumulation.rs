@@ -15,15 +15,33 @@ pub(crate) struct AccumulationAttachment {
     pub format: wgpu::TextureFormat,
 }
 
-/// The accumulation target's layout.
-pub(crate) fn accumulation_layout(format: AccumulationFormat, sums_weights: bool) -> Vec<AccumulationAttachment> {
-    let format = match format {
+/// The accumulation target's layout. `tiled`: compute shaders write it.
+pub(crate) fn accumulation_layout(
+    format: AccumulationFormat,
+    sums_weights: bool,
+    tiled: bool,
+) -> Vec<AccumulationAttachment> {
+    let format = texture_format(format);
+    let normal = AccumulationAttachment { label: "haze accumulation: normal + amount", format };
+    let format = if tiled { TILED_WEIGHTS_FORMAT } else { wgpu::TextureFormat::R16Float };
+    let weights = AccumulationAttachment { label: "haze accumulation: weights", format };
+    std::iter::once(normal).chain(sums_weights.then_some(weights)).collect()
+}
+
+/// No device need let compute shaders write `R16Float`, or blend to this.
+const TILED_WEIGHTS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+
+/// The formats of targets that compute shaders write: of either accumulation format, and of the sum of weights.
+pub(crate) fn tiled_formats() -> [wgpu::TextureFormat; 3] {
+    let [float, byte] = [AccumulationFormat::Rgba16Float, AccumulationFormat::Rgba8Unorm].map(texture_format);
+    [float, byte, TILED_WEIGHTS_FORMAT]
+}
+
+fn texture_format(format: AccumulationFormat) -> wgpu::TextureFormat {
+    match format {
         AccumulationFormat::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
         AccumulationFormat::Rgba8Unorm => wgpu::TextureFormat::Rgba8Unorm,
-    };
-    let normal = AccumulationAttachment { label: "haze accumulation: normal + amount", format };
-    let weights = AccumulationAttachment { label: "haze accumulation: weights", format: wgpu::TextureFormat::R16Float };
-    std::iter::once(normal).chain(sums_weights.then_some(weights)).collect()
+    }
 }
 
 /// A depth format: it can be attached, so that the hardware rejects hidden sprites, and every backend can draw to it,
@@ -48,6 +66,8 @@ pub(crate) struct AccumulationKey {
     pub lit: bool,
     /// A copy of the reduced depth is needed: the backend cannot test what it samples.
     pub depth_copy: bool,
+    /// Compute shaders write it.
+    pub tiled: bool,
 }
 
 /// The textures of one system. The part in use is the rectangle from (0, 0) of the size of its screen rectangle.
@@ -103,13 +123,16 @@ impl AccumulationTarget {
     }
 
     fn new(device: &wgpu::Device, key: AccumulationKey, size: UVec2) -> Self {
-        let mut textures = Textures { device, bytes: 0 };
-        let mut create = |sums_weights| -> Arc<[_]> {
-            let layout = accumulation_layout(key.format, sums_weights).into_iter();
+        let mut textures = Textures { device, bytes: 0, storage: false };
+        let mut create = |sums_weights, tiled| -> Arc<[_]> {
+            textures.storage = tiled;
+            let layout = accumulation_layout(key.format, sums_weights, tiled).into_iter();
             layout.map(|attachment| textures.create_whole(attachment.label, attachment.format, size)).collect()
         };
-        let attachments = create(key.sums_weights);
-        let overdraw = key.overdraw.then(|| create(false));
+        let attachments = create(key.sums_weights, key.tiled);
+        // Layers are always counted by the blend unit.
+        let overdraw = key.overdraw.then(|| create(false, false));
+        textures.storage = false;
         let lit = key.lit.then(|| textures.create_whole("haze lit smoke", LIT_FORMAT, size));
         let is_reduced = key.depth_source == DepthSource::Reduced;
         let reduced_depth = is_reduced.then(|| textures.create_whole("haze reduced depth", REDUCED_DEPTH_FORMAT, size));

@@ -7,6 +7,8 @@ mod views;
 
 pub(crate) use accumulation::{
     AccumulationKey, AccumulationTarget, DEPTH_COPY_FORMAT, LIT_FORMAT, REDUCED_DEPTH_FORMAT, accumulation_layout,
+    tiled_formats,
 };
 pub(crate) use baked_diffuse::{BAKED_DIFFUSE_FORMAT, BakedDiffuse};
+pub(crate) use textures::storage_target;
 pub use views::TargetViews;

@@ -6,6 +6,8 @@ use glam::UVec2;
 pub(super) struct Textures<'a> {
     pub device: &'a wgpu::Device,
     pub bytes: u64,
+    /// Compute shaders write them.
+    pub storage: bool,
 }
 
 impl Textures<'_> {
@@ -21,7 +23,8 @@ impl Textures<'_> {
             format,
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT
                 | wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_SRC,
+                | wgpu::TextureUsages::COPY_SRC
+                | if self.storage { wgpu::TextureUsages::STORAGE_BINDING } else { wgpu::TextureUsages::empty() },
             view_formats: &[],
         })
     }
@@ -29,4 +32,14 @@ impl Textures<'_> {
     pub fn create_whole(&mut self, label: &str, format: wgpu::TextureFormat, size: UVec2) -> wgpu::TextureView {
         self.create(label, format, size, 1).create_view(&wgpu::TextureViewDescriptor::default())
     }
+}
+
+/// A texture by itself that compute shaders write.
+pub(crate) fn storage_target(
+    device: &wgpu::Device,
+    label: &str,
+    format: wgpu::TextureFormat,
+    size: UVec2,
+) -> wgpu::TextureView {
+    Textures { device, bytes: 0, storage: true }.create_whole(label, format, size)
 }

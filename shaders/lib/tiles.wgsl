@@ -1,0 +1,43 @@
+// What the tiled path counts with. Mirrors TilesUniform in src/formula/uniforms.rs.
+
+struct Tiles {
+    // Particles, and how often all of them are drawn.
+    count: u32,
+    loops: u32,
+    // vec4f's before the first particle.
+    first: u32,
+    // Blocks of keys that are sorted side by side.
+    blocks: u32,
+    // Texels along a bin's side.
+    bin_side: u32,
+    // Bins along the target's sides.
+    columns: u32,
+    rows: u32,
+    // Runs of sprites, front to back, that are put into bins side by side.
+    runs: u32,
+    // Entries that all lists together hold.
+    capacity: u32,
+    padding0: u32,
+    padding1: u32,
+    padding2: u32,
+}
+
+// What a frame turns out to have.
+struct Tally {
+    // Sprites to draw: the first of the sorted ones.
+    shown: u32,
+    // Entries that the lists would need.
+    entries: atomic<u32>,
+}
+
+// Texels from (x0, y0) to before (x1, y1), 16 bits each: x0 and y0, x1 and y1.
+fn packed_rect(low: vec2u, high: vec2u) -> vec2u {
+    return vec2u(low.x | (low.y << 16u), high.x | (high.y << 16u));
+}
+
+// True if a packed rectangle and one from `low` to before `high` share a texel.
+fn rects_meet(rect: vec2u, low: vec2u, high: vec2u) -> bool {
+    let first = vec2u(rect.x & 0xffffu, rect.x >> 16u);
+    let last = vec2u(rect.y & 0xffffu, rect.y >> 16u);
+    return all(first < high) && all(low < last);
+}

@@ -1,0 +1,112 @@
+// sort
+// What    A stable radix sort, eight bits a time: digits are counted block by block, the counts are summed up, and every key goes
+//         to its place. The same on every device and in every run; nothing depends on subgroups or on the order of atomics.
+// Reads   keys and numbers.
+// Writes  the same, sorted by a digit.
+// Source  Merrill and Grimshaw, "High performance and scalable radix sorting", 2011.
+
+#import "lib/tiles.wgsl"
+#import "lib/scan.wgsl"
+
+@group(0) @binding(0) var<uniform> tiles: Tiles;
+@group(0) @binding(1) var<storage, read> keys: array<u32>;
+@group(0) @binding(2) var<storage, read> numbers: array<u32>;
+@group(0) @binding(3) var<storage, read_write> sorted_keys: array<u32>;
+@group(0) @binding(4) var<storage, read_write> sorted_numbers: array<u32>;
+// By digit, and by block in it: how many there are, and then how many come before.
+@group(0) @binding(5) var<storage, read_write> counts: array<u32>;
+// How many there are of each digit.
+@group(0) @binding(6) var<storage, read_write> totals: array<u32>;
+
+// The digit's lowest bit.
+override SHIFT: u32 = 0u;
+
+const DIGITS: u32 = 256u;
+// Keys of a block that one invocation handles. SORT_BLOCK in src/renderer/tiles.rs is all of them.
+const ROUNDS: u32 = 4u;
+
+var<workgroup> digit_counts: array<atomic<u32>, DIGITS>;
+// A bit for every invocation that has the digit, 32 in a word.
+var<workgroup> holders: array<atomic<u32>, 2048>;
+var<workgroup> next_places: array<u32, DIGITS>;
+
+fn digit_of(key: u32) -> u32 {
+    return (key >> SHIFT) & (DIGITS - 1u);
+}
+
+@compute @workgroup_size(256)
+fn count_digits(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) block: vec3u) {
+    for (var round = 0u; round < ROUNDS; round++) {
+        let at = (block.x * ROUNDS + round) * DIGITS + local;
+        if at < tiles.count {
+            atomicAdd(&digit_counts[digit_of(keys[at])], 1u);
+        }
+    }
+    workgroupBarrier();
+    counts[local * tiles.blocks + block.x] = atomicLoad(&digit_counts[local]);
+}
+
+// One workgroup for each digit.
+@compute @workgroup_size(256)
+fn sum_counts(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) digit: vec3u) {
+    var before = 0u;
+    for (var first = 0u; first < tiles.blocks; first += SCAN_SIZE) {
+        let at = digit.x * tiles.blocks + first + local;
+        let is_inside = first + local < tiles.blocks;
+        var count = 0u;
+        if is_inside {
+            count = counts[at];
+        }
+        let sum = inclusive_sum(local, count);
+        if is_inside {
+            counts[at] = before + sum - count;
+        }
+        before += scan_sums[SCAN_SIZE - 1u];
+    }
+    if local == 0u {
+        totals[digit.x] = before;
+    }
+}
+
+@compute @workgroup_size(256)
+fn scatter(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) block: vec3u) {
+    let total = totals[local];
+    let before = inclusive_sum(local, total) - total;
+    next_places[local] = before + counts[local * tiles.blocks + block.x];
+    let word = local / 32u;
+    let bit = local % 32u;
+    for (var round = 0u; round < ROUNDS; round++) {
+        for (var i = local; i < 2048u; i += DIGITS) {
+            atomicStore(&holders[i], 0u);
+        }
+        workgroupBarrier();
+        let at = (block.x * ROUNDS + round) * DIGITS + local;
+        let is_inside = at < tiles.count;
+        var key = 0u;
+        var digit = 0u;
+        if is_inside {
+            key = keys[at];
+            digit = digit_of(key);
+            atomicOr(&holders[word * DIGITS + digit], 1u << bit);
+        }
+        workgroupBarrier();
+        // How many invocations before this one, and in all, have the digit.
+        var rank = 0u;
+        var all = 0u;
+        for (var i = 0u; i < 8u; i++) {
+            let held = atomicLoad(&holders[i * DIGITS + digit]);
+            let in_front = select(select(0u, 0xffffffffu, i < word), (1u << bit) - 1u, i == word);
+            rank += countOneBits(held & in_front);
+            all += countOneBits(held);
+        }
+        let place = next_places[digit] + rank;
+        workgroupBarrier();
+        if is_inside {
+            sorted_keys[place] = key;
+            sorted_numbers[place] = numbers[at];
+            if rank + 1u == all {
+                next_places[digit] = place + 1u;
+            }
+        }
+    }
+}

@@ -1,0 +1,244 @@
+// tile_accumulate
+// What    Accumulates every sprite's normal and amount, as accumulate does, but texel by texel: walks the sprites of a bin front to
+//         back, adds them up in registers, and writes once.
+// Reads   lists of sprites, sprite flipbook, detail map or noise, reduced depth (or the host's own).
+// Writes  accumulation target, as accumulate.
+// Source  OTEE "Accumulating the particles"; blending front to back: Porter and Duff, "Compositing digital images", 1984.
+// Space   Normals in view space. Depths in metres.
+
+#import "lib/tiles.wgsl"
+#import "lib/tile_sprite.wgsl"
+
+@group(3) @binding(0) var<uniform> tiles: Tiles;
+@group(3) @binding(1) var<storage, read> sprites: array<TileSprite>;
+@group(3) @binding(2) var<storage, read> rects: array<vec2u>;
+@group(3) @binding(3) var<storage, read> numbers: array<u32>;
+@group(3) @binding(4) var<storage, read> lists: array<u32>;
+@group(3) @binding(5) var<storage, read> bins: array<vec2u>;
+// Reduced depth, or the host's depth where HOST_DEPTH.
+@group(3) @binding(6) var tested_depth: texture_2d<f32>;
+// One of the two is the target, by its format.
+@group(3) @binding(7) var float_target: texture_storage_2d<rgba16float, write>;
+@group(3) @binding(8) var byte_target: texture_storage_2d<rgba8unorm, write>;
+@group(3) @binding(9) var weight_target: texture_storage_2d<r32float, write>;
+
+override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
+override HOST_DEPTH: bool = false;
+override WEIGHTED: bool = false;
+override BYTE_TARGET: bool = false;
+override SUMS_WEIGHTS: bool = false;
+// Stop where the smoke is opaque.
+override STOPS: bool = true;
+
+// What still shines through when the walk may stop: less than half a step of 8 bits, and of an f16 near 1.
+const OPAQUE: f32 = 0.0009765625;
+// EVERYTHING in tile_bin.
+const EVERYTHING: u32 = 0xffffffffu;
+// Texels along a workgroup's side.
+const SIDE: u32 = 8u;
+const BATCH: u32 = SIDE * SIDE;
+
+// A texel, and what there is in it so far.
+struct Texel {
+    // Of the target.
+    place: vec2f,
+    ray: vec2f,
+    scene: f32,
+    // Premultiplied normals of all sprites in front.
+    normals: vec4f,
+    weights: f32,
+    transmittance: f32,
+}
+
+fn begun_texel(place: vec2u) -> Texel {
+    var texel: Texel;
+    texel.place = vec2f(place) + 0.5;
+    texel.ray = ray_through_texel(texel.place);
+    texel.transmittance = 1.0;
+    texel.scene = textureLoad(tested_depth, vec2i(place), 0).r;
+    if HOST_DEPTH {
+        texel.scene = host_view_depth(texel.scene);
+    } else {
+        texel.scene *= system.depth_limit;
+    }
+    return texel;
+}
+
+// With a sprite behind all that is there already. `place`: in a square.
+fn with_sprite(texel: Texel, sprite: TileSprite, place: vec2f, is_touched: bool) -> Texel {
+    let in = fragment_of(sprite, texel.place, texel.ray, place);
+    let fragment = technique_fragment(in, texel.scene);
+    let amount = select(0.0, fragment.amount, is_touched && !fragment.hidden);
+    let seen = select(texel.transmittance, 1.0, WEIGHTED);
+    var next = texel;
+    next.normals += accumulation_from_normal(NORMAL_ENCODING, fragment.normal, amount, in.weight) * seen;
+    next.weights += amount * in.weight;
+    next.transmittance *= 1.0 - amount;
+    return next;
+}
+
+// Hidden sprites further on cannot be seen.
+fn is_done(texel: Texel) -> bool {
+    return STOPS && texel.transmittance <= OPAQUE;
+}
+
+fn write_texel(place: vec2u, texel: Texel) {
+    let accumulated = vec4f(texel.normals.rgb, 1.0 - texel.transmittance);
+    if BYTE_TARGET {
+        textureStore(byte_target, place, accumulated);
+    } else {
+        textureStore(float_target, place, accumulated);
+    }
+    if SUMS_WEIGHTS {
+        textureStore(weight_target, place, vec4f(texel.weights));
+    }
+}
+
+// Half-open, as the rasterizer has it: two squares side by side share no texel.
+fn is_inside(place: vec2f) -> bool {
+    return all(place >= vec2f(-1.0)) && all(place < vec2f(1.0));
+}
+
+fn sprite_number(list: vec2u, entry: u32) -> u32 {
+    // All sprites once more, where they are drawn often.
+    let at = entry % list.y;
+    if list.x == EVERYTHING {
+        return numbers[at];
+    }
+    return lists[list.x + at];
+}
+
+fn bin_at(place: vec2u) -> vec2u {
+    let bin = place / tiles.bin_side;
+    return bins[bin.y * tiles.columns + bin.x];
+}
+
+// For adapters whose workgroups are cheap to run in step: a batch of sprites is read by all and kept where all can reach it.
+var<workgroup> batch: array<TileSprite, BATCH>;
+// A bit for every sprite of the batch that touches the tile.
+var<workgroup> touching: array<atomic<u32>, 2>;
+var<workgroup> open: atomic<u32>;
+// Bits of the farthest view depth of the tile's scene, which is positive.
+var<workgroup> farthest: atomic<u32>;
+var<workgroup> is_closed: u32;
+
+@compute @workgroup_size(8, 8)
+fn in_step(
+    @builtin(global_invocation_id) place: vec3u,
+    @builtin(workgroup_id) workgroup: vec3u,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let size = vec2u(system.target_size);
+    let is_drawn = all(place.xy < size);
+    var texel = begun_texel(min(place.xy, size - 1u));
+    atomicMax(&farthest, bitcast<u32>(max(texel.scene, 0.0)));
+    let low = workgroup.xy * SIDE;
+    let list = bin_at(low);
+    let entries = list.y * tiles.loops;
+    let middle = vec2f(low) + 0.5 * f32(SIDE);
+    workgroupBarrier();
+    let end = bitcast<f32>(atomicLoad(&farthest)) + system.fade_through;
+    for (var first = 0u; first < entries; first += BATCH) {
+        if local == 0u {
+            atomicStore(&touching[0], 0u);
+            atomicStore(&touching[1], 0u);
+            atomicStore(&open, 0u);
+        }
+        workgroupBarrier();
+        if is_drawn && !is_done(texel) {
+            atomicOr(&open, 1u);
+        }
+        if first + local < entries {
+            let number = sprite_number(list, first + local);
+            // Most of a bin's sprites are elsewhere in it: no more is read of them.
+            if rects_meet(rects[number], low, low + SIDE) {
+                let sprite = sprites[number];
+                // Only the middle of texels counts.
+                let meets = is_sphere() || square_meets(sprite, middle, vec2f(0.5 * f32(SIDE - 1u)));
+                if meets && sprite.rotation_weight_front.w <= end {
+                    batch[local] = sprite;
+                    atomicOr(&touching[local / 32u], 1u << (local % 32u));
+                }
+            }
+        }
+        workgroupBarrier();
+        if local == 0u {
+            is_closed = u32(atomicLoad(&open) == 0u);
+        }
+        if workgroupUniformLoad(&is_closed) != 0u {
+            break;
+        }
+        for (var word = 0u; word < 2u; word++) {
+            var bits = atomicLoad(&touching[word]);
+            while bits != 0u {
+                let sprite = batch[word * 32u + firstTrailingBit(bits)];
+                bits &= bits - 1u;
+                let in_square = place_in_square(sprite, texel.place);
+                if (is_sphere() || is_inside(in_square)) && !is_done(texel) {
+                    texel = with_sprite(texel, sprite, in_square, true);
+                }
+            }
+        }
+        workgroupBarrier();
+    }
+    if is_drawn {
+        write_texel(place.xy, texel);
+    }
+}
+
+// For CPUs, where a barrier costs more than it saves: every invocation walks alone, for a column of four texels. llvmpipe reads
+// a buffer word by word and lane by lane, so what is read of a sprite should serve many.
+const COLUMN: u32 = 4u;
+
+@compute @workgroup_size(8, 8)
+fn alone(@builtin(global_invocation_id) invocation: vec3u) {
+    let place = invocation.xy * vec2u(1u, COLUMN);
+    let size = vec2u(system.target_size);
+    if any(place >= size) {
+        return;
+    }
+    var a = begun_texel(place);
+    var b = begun_texel(min(place + vec2u(0u, 1u), size - 1u));
+    var c = begun_texel(min(place + vec2u(0u, 2u), size - 1u));
+    var d = begun_texel(min(place + vec2u(0u, 3u), size - 1u));
+    let end = max(max(a.scene, b.scene), max(c.scene, d.scene)) + system.fade_through;
+    let list = bin_at(place);
+    let entries = list.y * tiles.loops;
+    for (var entry = 0u; entry < entries; entry++) {
+        if is_done(a) && is_done(b) && is_done(c) && is_done(d) {
+            break;
+        }
+        let number = sprite_number(list, entry);
+        var in_a = vec2f(0.0);
+        var in_b = vec2f(0.0);
+        var in_c = vec2f(0.0);
+        var in_d = vec2f(0.0);
+        var touched = vec4<bool>(false);
+        if is_sphere() {
+            touched = vec4<bool>(rects_meet(rects[number], place, place + vec2u(1u, COLUMN)));
+        } else {
+            let matrix = sprites[number].place_from_texels;
+            let offset = a.place - sprites[number].centre_radius.xy;
+            in_a = vec2f(dot(matrix.xy, offset), dot(matrix.zw, offset));
+            in_b = in_a + matrix.yw;
+            in_c = in_b + matrix.yw;
+            in_d = in_c + matrix.yw;
+            touched = vec4<bool>(is_inside(in_a), is_inside(in_b), is_inside(in_c), is_inside(in_d));
+        }
+        // A loop of one step: llvmpipe steps over a branch instruction by instruction, and leaves a loop at once.
+        for (var once = any(touched); once; once = false) {
+            let sprite = sprites[number];
+            if sprite.rotation_weight_front.w > end {
+                break;
+            }
+            a = with_sprite(a, sprite, in_a, touched.x);
+            b = with_sprite(b, sprite, in_b, touched.y);
+            c = with_sprite(c, sprite, in_c, touched.z);
+            d = with_sprite(d, sprite, in_d, touched.w);
+        }
+    }
+    write_texel(place, a);
+    if place.y + 1u < size.y { write_texel(place + vec2u(0u, 1u), b); }
+    if place.y + 2u < size.y { write_texel(place + vec2u(0u, 2u), c); }
+    if place.y + 3u < size.y { write_texel(place + vec2u(0u, 3u), d); }
+}

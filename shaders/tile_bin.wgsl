@@ -1,0 +1,131 @@
+// tile_bin
+// What    Lists, for every bin of the target, the sprites that touch it, front to back. Each list is as long as it need be; those
+//         that find no more room are left out, and their bins read all sprites instead.
+// Reads   sorted numbers, rectangles.
+// Writes  lists of sprites, and where each begins.
+
+#import "lib/tiles.wgsl"
+#import "lib/scan.wgsl"
+
+@group(0) @binding(0) var<uniform> tiles: Tiles;
+@group(0) @binding(1) var<storage, read> keys: array<u32>;
+@group(0) @binding(2) var<storage, read> numbers: array<u32>;
+@group(0) @binding(3) var<storage, read> rects: array<vec2u>;
+@group(0) @binding(4) var<storage, read_write> sorted_rects: array<vec2u>;
+// By bin, and by run in it: how many sprites there are, and then where they begin.
+@group(0) @binding(5) var<storage, read_write> counts: array<u32>;
+@group(0) @binding(6) var<storage, read_write> lists: array<u32>;
+// Where the bin's list begins, and its length.
+@group(0) @binding(7) var<storage, read_write> bins: array<vec2u>;
+@group(0) @binding(8) var<storage, read_write> tally: Tally;
+
+// Sprites come in order of their keys, and the hidden ones last.
+override SORTED: bool = true;
+
+const HIDDEN_KEY: u32 = 0xffffffffu;
+// Sprites of a run. BIN_RUN in src/renderer/tiles.rs.
+const RUN: u32 = 256u;
+// In place of where a list begins: there is none.
+const EVERYTHING: u32 = 0xffffffffu;
+
+@compute @workgroup_size(64)
+fn gather(@builtin(global_invocation_id) invocation: vec3u) {
+    let at = invocation.x;
+    if at >= tiles.count {
+        return;
+    }
+    sorted_rects[at] = rects[numbers[at]];
+    let is_last = at + 1u == tiles.count;
+    if !SORTED {
+        if is_last {
+            tally.shown = tiles.count;
+        }
+    } else if keys[at] != HIDDEN_KEY && (is_last || keys[min(at + 1u, tiles.count - 1u)] == HIDDEN_KEY) {
+        tally.shown = at + 1u;
+    }
+}
+
+fn low_of_bin(bin: u32) -> vec2u {
+    return vec2u(bin % tiles.columns, bin / tiles.columns) * tiles.bin_side;
+}
+
+@compute @workgroup_size(64)
+fn count_sprites(@builtin(global_invocation_id) invocation: vec3u) {
+    let bin = invocation.x;
+    let run = invocation.y;
+    if bin >= tiles.columns * tiles.rows {
+        return;
+    }
+    let low = low_of_bin(bin);
+    var count = 0u;
+    for (var at = run * RUN; at < min(run * RUN + RUN, tally.shown); at++) {
+        count += u32(rects_meet(sorted_rects[at], low, low + tiles.bin_side));
+    }
+    counts[bin * tiles.runs + run] = count;
+}
+
+// One workgroup for each bin.
+@compute @workgroup_size(256)
+fn allocate(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bin: vec3u) {
+    var length = 0u;
+    for (var first = 0u; first < tiles.runs; first += SCAN_SIZE) {
+        let at = bin.x * tiles.runs + first + local;
+        let is_inside = first + local < tiles.runs;
+        var count = 0u;
+        if is_inside {
+            count = counts[at];
+        }
+        let sum = inclusive_sum(local, count);
+        if is_inside {
+            counts[at] = length + sum - count;
+        }
+        length += scan_sums[SCAN_SIZE - 1u];
+    }
+    if local == 0u {
+        bins[bin.x] = allocated(length);
+    }
+}
+
+// Room for a list. Lists lie in any order, what is in them does not.
+fn allocated(length: u32) -> vec2u {
+    let first = atomicAdd(&tally.entries, length);
+    let fits = first + length <= tiles.capacity && first + length >= first;
+    return select(vec2u(EVERYTHING, tally.shown), vec2u(first, length), fits);
+}
+
+// The same, one invocation for each bin.
+@compute @workgroup_size(64)
+fn allocate_alone(@builtin(global_invocation_id) invocation: vec3u) {
+    let bin = invocation.x;
+    if bin >= tiles.columns * tiles.rows {
+        return;
+    }
+    var length = 0u;
+    for (var run = 0u; run < tiles.runs; run++) {
+        let count = counts[bin * tiles.runs + run];
+        counts[bin * tiles.runs + run] = length;
+        length += count;
+    }
+    bins[bin] = allocated(length);
+}
+
+@compute @workgroup_size(64)
+fn fill(@builtin(global_invocation_id) invocation: vec3u) {
+    let bin = invocation.x;
+    let run = invocation.y;
+    if bin >= tiles.columns * tiles.rows {
+        return;
+    }
+    let list = bins[bin].x;
+    if list == EVERYTHING {
+        return;
+    }
+    let low = low_of_bin(bin);
+    var place = list + counts[bin * tiles.runs + run];
+    for (var at = run * RUN; at < min(run * RUN + RUN, tally.shown); at++) {
+        if rects_meet(sorted_rects[at], low, low + tiles.bin_side) {
+            lists[place] = numbers[at];
+            place++;
+        }
+    }
+}

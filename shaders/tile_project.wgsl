@@ -1,0 +1,80 @@
+// tile_project
+// What    Places every particle in the view: what its fragments share, which texels it touches, and how near it is.
+// Reads   particles.
+// Writes  sprites, their rectangles, and keys and numbers to sort, the last particle first: what is sorted stably then ends as
+//         the raster path draws it, backwards.
+// Space   View space; rectangles in texels of the target.
+
+#import "lib/tiles.wgsl"
+#import "lib/tile_sprite.wgsl"
+#import "lib/order.wgsl"
+
+@group(3) @binding(0) var<uniform> tiles: Tiles;
+// Two for each, as in Particle.
+@group(3) @binding(1) var<storage, read> particles: array<vec4f>;
+@group(3) @binding(2) var<storage, read_write> sprites: array<TileSprite>;
+@group(3) @binding(3) var<storage, read_write> rects: array<vec2u>;
+@group(3) @binding(4) var<storage, read_write> keys: array<u32>;
+@group(3) @binding(5) var<storage, read_write> numbers: array<u32>;
+
+// Sprites come in any order.
+override WEIGHTED: bool = false;
+
+// Behind all that is shown.
+const HIDDEN_KEY: u32 = 0xffffffffu;
+
+@compute @workgroup_size(64)
+fn project(@builtin(global_invocation_id) invocation: vec3u) {
+    let number = invocation.x;
+    if number >= tiles.count {
+        return;
+    }
+    let at = tiles.first + 2u * number;
+    let particle = Particle(particles[at], particles[at + 1u]);
+    let placed = placed_sprite(particle, 1.0 / system.scale);
+    let centre = placed.centre_radius.xyz;
+    let radius = placed.centre_radius.w;
+    var sprite: TileSprite;
+    sprite.centre_radius = placed.centre_radius;
+    sprite.amount_lod_frame_age = placed.amount_lod_frame_age;
+
+    var low: vec2f;
+    var high: vec2f;
+    if is_sphere() {
+        let texels_per_pixel = 1.0 / system.scale;
+        let a = sphere_corner(placed.centre_radius, vec2f(-1.0, 1.0), texels_per_pixel);
+        let b = sphere_corner(placed.centre_radius, vec2f(1.0, -1.0), texels_per_pixel);
+        low = pixel_from_ndc(a, view.size) / system.scale - system.target_origin;
+        high = pixel_from_ndc(b, view.size) / system.scale - system.target_origin;
+    } else {
+        // A slab whose middle has passed the near plane is drawn on that.
+        let plane = mix(max(-centre.z, view.near), 1.0, view.orthographic);
+        let middle = texel_of_ray(centre.xy / plane);
+        // View-space metres of a texel; the y of texels points down.
+        let metres = view.ray_scale * vec2f(2.0, -2.0) * (plane * system.scale) / view.size;
+        let cosine = placed.rotation.x;
+        let sine = placed.rotation.y;
+        sprite.place_from_texels = vec4f(metres * vec2f(cosine, sine), metres * vec2f(-sine, cosine)) / radius;
+        sprite.centre_radius = vec4f(middle, centre.z, radius);
+        let reach = (abs(cosine) + abs(sine)) * radius / abs(metres);
+        low = middle - reach;
+        high = middle + reach;
+    }
+    // Texels whose centres lie inside, and as many round them as rounding may hide.
+    let first = clamp(floor(low - 0.01), vec2f(0.0), system.target_size);
+    let last = clamp(ceil(high + 0.01), vec2f(0.0), system.target_size);
+
+    var weight = 1.0;
+    if WEIGHTED {
+        let in_front = optical_depth_in_front(system.front_knots, -centre.z, system.smoke_near, system.smoke_far);
+        weight = order_weight(system.depth_weight, in_front);
+    }
+    let front = sprite_front(placed.centre_radius);
+    sprite.rotation_weight_front = vec4f(placed.rotation, weight, front);
+    let shown = !placed.hidden && all(first < last);
+    sprites[number] = sprite;
+    rects[number] = select(vec2u(0u), packed_rect(vec2u(first), vec2u(last)), shown);
+    let backwards = tiles.count - 1u - number;
+    keys[backwards] = select(HIDDEN_KEY, front_to_back_bits(centre.z), shown);
+    numbers[backwards] = number;
+}

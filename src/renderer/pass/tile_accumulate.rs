@@ -1,0 +1,67 @@
+//! tile_accumulate
+//! What: adds up every sprite's normal and amount, texel by texel, front to back.
+//! Reads: lists of sprites, sprite flipbook, detail map or noise, reduced depth or the host's own. Writes: accumulation
+//! target. Source: OTEE "Accumulating the particles"; Porter and Duff, "Compositing digital images", 1984.
+
+use glam::UVec2;
+
+use super::Groups;
+use super::sprites::SpriteKey;
+use crate::renderer::gpu::pipeline::{ComputeParts, switch, variant};
+use crate::settings::{AccumulationFormat, NormalEncoding};
+
+/// Texels along a workgroup's sides: of `in_step`, and of `alone`, in `shaders/tile_accumulate.wgsl`.
+const IN_STEP: UVec2 = UVec2::splat(8);
+const ALONE: UVec2 = UVec2::new(8, 32);
+
+/// What makes one pipeline differ from another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct TileAccumulateKey {
+    pub sprite: SpriteKey,
+    pub format: AccumulationFormat,
+    pub encoding: NormalEncoding,
+    pub weighted: bool,
+    pub sums_weights: bool,
+    /// Sprites are compared with the host's own depth, not the reduced one.
+    pub host_depth: bool,
+    /// The walk ends where a texel is opaque.
+    pub stops: bool,
+    /// Workgroups walk in step.
+    pub in_step: bool,
+}
+
+/// The pipeline for a key.
+pub(crate) fn describe(key: TileAccumulateKey) -> ComputeParts {
+    ComputeParts {
+        entry_point: if key.in_step { "in_step" } else { "alone" },
+        constants: key.sprite.constants([
+            variant!("NORMAL_ENCODING", key.encoding),
+            switch("HOST_DEPTH", key.host_depth),
+            switch("WEIGHTED", key.weighted),
+            switch("BYTE_TARGET", key.format == AccumulationFormat::Rgba8Unorm),
+            switch("SUMS_WEIGHTS", key.sums_weights),
+            switch("STOPS", key.stops),
+        ]),
+    }
+}
+
+/// The pass for one system.
+#[derive(Debug)]
+pub(crate) struct TileAccumulate {
+    pub pipeline: wgpu::ComputePipeline,
+    /// Group 3.
+    pub inputs: wgpu::BindGroup,
+    /// Texels in use.
+    pub size: UVec2,
+    pub in_step: bool,
+}
+
+impl TileAccumulate {
+    pub fn record(&self, pass: &mut wgpu::ComputePass<'_>, groups: &Groups) {
+        pass.set_pipeline(&self.pipeline);
+        groups.bind_to_compute(pass);
+        pass.set_bind_group(3, &self.inputs, &[]);
+        let side = if self.in_step { IN_STEP } else { ALONE };
+        pass.dispatch_workgroups(self.size.x.div_ceil(side.x), self.size.y.div_ceil(side.y), 1);
+    }
+}

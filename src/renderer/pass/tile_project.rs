@@ -1,0 +1,37 @@
+//! tile_project
+//! What: places every particle in the view. Reads: particles. Writes: sprites, their rectangles, keys and numbers to sort.
+
+use super::Groups;
+use super::sprites::SpriteKey;
+use crate::renderer::gpu::pipeline::{ComputeParts, switch};
+
+/// What makes one pipeline differ from another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct TileProjectKey {
+    pub sprite: SpriteKey,
+    pub weighted: bool,
+}
+
+/// The pipeline for a key.
+pub(crate) fn describe(key: TileProjectKey) -> ComputeParts {
+    let constants = key.sprite.constants([switch("WEIGHTED", key.weighted)]);
+    ComputeParts { entry_point: "project", constants }
+}
+
+/// The pass for one system.
+#[derive(Debug)]
+pub(crate) struct TileProject {
+    pub pipeline: wgpu::ComputePipeline,
+    /// Group 3.
+    pub inputs: wgpu::BindGroup,
+    pub particles: u32,
+}
+
+impl TileProject {
+    pub fn record(&self, pass: &mut wgpu::ComputePass<'_>, groups: &Groups) {
+        pass.set_pipeline(&self.pipeline);
+        groups.bind_to_compute(pass);
+        pass.set_bind_group(3, &self.inputs, &[]);
+        pass.dispatch_workgroups(self.particles.div_ceil(64), 1, 1);
+    }
+}

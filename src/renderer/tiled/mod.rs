@@ -1,0 +1,7 @@
+//! Accumulation by compute shaders: what all systems of a device share, and what one system owns.
+
+mod shared;
+mod system;
+
+pub(crate) use shared::{Tiled, TiledKeys};
+pub(crate) use system::{PARTICLE_STEP, SPRITE, TiledInputs, TiledPasses, TiledSystem};

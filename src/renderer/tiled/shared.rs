@@ -1,0 +1,162 @@
+//! Layouts, shaders and pipelines of the tiled passes.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use glam::UVec2;
+
+use crate::error::Error;
+use crate::formula::uniforms::TilesUniform;
+use crate::renderer::gpu::pipeline::{ComputeParts, Shader, Variants};
+use crate::renderer::layouts::Layouts;
+use crate::renderer::pass::sort::{self, SortKey};
+use crate::renderer::pass::tile_accumulate::{self, TileAccumulateKey};
+use crate::renderer::pass::tile_bin::{self, TileBinKey};
+use crate::renderer::pass::tile_project::{self, TileProjectKey};
+use crate::renderer::targets::{storage_target, tiled_formats};
+
+/// Layouts, shaders and pipelines. Only devices that can run them have this.
+#[derive(Debug)]
+pub(crate) struct Tiled {
+    pub layouts: TiledLayouts,
+    /// Workgroups walk in step: not on CPUs.
+    in_step: AtomicBool,
+    /// A texel for each format of a target, bound in place of those that a system has not.
+    pub unwritten: [wgpu::TextureView; 3],
+    project: Variants<TileProjectKey, ComputeParts>,
+    sort: Variants<SortKey, ComputeParts>,
+    bin: Variants<TileBinKey, ComputeParts>,
+    accumulate: Variants<TileAccumulateKey, ComputeParts>,
+}
+
+/// Bind groups of the tiled passes.
+#[derive(Debug)]
+pub(crate) struct TiledLayouts {
+    pub project: wgpu::BindGroupLayout,
+    pub sort: wgpu::BindGroupLayout,
+    pub bin: wgpu::BindGroupLayout,
+    pub accumulate: wgpu::BindGroupLayout,
+}
+
+/// What accumulates a system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct TiledKeys {
+    pub project: TileProjectKey,
+    pub accumulate: TileAccumulateKey,
+}
+
+/// The pipelines of one system.
+pub(crate) struct TiledPipelines {
+    pub project: wgpu::ComputePipeline,
+    pub sort: Option<Vec<wgpu::ComputePipeline>>,
+    pub bin: [wgpu::ComputePipeline; 4],
+    pub accumulate: wgpu::ComputePipeline,
+}
+
+impl Tiled {
+    /// `shader` gives the shader of a pass, by name; `cache` is the host's, where the backend has one.
+    pub fn new<E>(
+        device: &wgpu::Device,
+        layouts: &Layouts,
+        cache: Option<&wgpu::PipelineCache>,
+        shader: impl Fn(&'static str) -> Result<Shader, E>,
+    ) -> Result<Self, E> {
+        let own = TiledLayouts::new(device);
+        let with = |inputs| [Some(&layouts.frame), Some(&layouts.system), Some(&layouts.material), Some(inputs)];
+        macro_rules! variants {
+            ($pass:ident, $groups:expr) => {{
+                let name = stringify!($pass);
+                Variants::new(device, name, shader(name)?, $pass::describe, $groups, cache)
+            }};
+        }
+        Ok(Self {
+            in_step: AtomicBool::new(device.adapter_info().device_type != wgpu::DeviceType::Cpu),
+            unwritten: tiled_formats().map(|format| storage_target(device, "haze unwritten", format, UVec2::ONE)),
+            project: variants!(tile_project, &with(&own.project)),
+            sort: variants!(sort, &[Some(&own.sort)]),
+            bin: variants!(tile_bin, &[Some(&own.bin)]),
+            accumulate: variants!(tile_accumulate, &with(&own.accumulate)),
+            layouts: own,
+        })
+    }
+
+    /// How workgroups walk their tiles.
+    pub fn in_step(&self) -> bool {
+        self.in_step.load(Ordering::Relaxed)
+    }
+
+    pub fn set_in_step(&self, in_step: bool) {
+        self.in_step.store(in_step, Ordering::Relaxed);
+    }
+
+    /// Pipelines compiled so far.
+    pub fn pipeline_count(&self) -> usize {
+        self.project.len() + self.sort.len() + self.bin.len() + self.accumulate.len()
+    }
+
+    /// Compiles what these keys need, or says what is wrong with the shaders.
+    pub fn compile(&self, device: &wgpu::Device, keys: TiledKeys) -> Result<(), Error> {
+        self.project.check(device, keys.project)?;
+        sort::keys().try_for_each(|key| self.sort.check(device, key))?;
+        let bins = [true, false].map(|sorted| tile_bin::keys(keys.accumulate.in_step, sorted));
+        bins.into_iter().flatten().try_for_each(|key| self.bin.check(device, key))?;
+        self.accumulate.check(device, keys.accumulate)
+    }
+
+    /// `sorts`: sprites come in any order, and it matters.
+    pub fn pipelines(&self, device: &wgpu::Device, keys: TiledKeys, sorts: bool) -> TiledPipelines {
+        TiledPipelines {
+            project: self.project.get(device, keys.project),
+            sort: sorts.then(|| sort::keys().map(|key| self.sort.get(device, key)).collect()),
+            bin: tile_bin::keys(keys.accumulate.in_step, sorts).map(|key| self.bin.get(device, key)),
+            accumulate: self.accumulate.get(device, keys.accumulate),
+        }
+    }
+}
+
+impl TiledLayouts {
+    fn new(device: &wgpu::Device) -> Self {
+        let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+        let uniform = wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: wgpu::BufferSize::new(size_of::<TilesUniform>() as u64),
+        };
+        let (read, written) = (
+            buffer(wgpu::BufferBindingType::Storage { read_only: true }),
+            buffer(wgpu::BufferBindingType::Storage { read_only: false }),
+        );
+        let depth = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let target = |format| wgpu::BindingType::StorageTexture {
+            access: wgpu::StorageTextureAccess::WriteOnly,
+            format,
+            view_dimension: wgpu::TextureViewDimension::D2,
+        };
+        let layout = |label, types: &[wgpu::BindingType]| {
+            let entry = |(binding, &ty)| wgpu::BindGroupLayoutEntry {
+                binding,
+                visibility: wgpu::ShaderStages::COMPUTE,
+                ty,
+                count: None,
+            };
+            let entries: Vec<_> = (0..).zip(types).map(entry).collect();
+            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
+        };
+        let [float, byte, weights] = tiled_formats().map(target);
+        Self {
+            project: layout("haze tile_project inputs", &[uniform, read, written, written, written, written]),
+            sort: layout("haze sort inputs", &[uniform, read, read, written, written, written, written]),
+            bin: layout(
+                "haze tile_bin inputs",
+                &[uniform, read, read, read, written, written, written, written, written],
+            ),
+            accumulate: layout(
+                "haze tile_accumulate inputs",
+                &[uniform, read, read, read, read, read, depth, float, byte, weights],
+            ),
+        }
+    }
+}

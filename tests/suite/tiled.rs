@@ -1,0 +1,322 @@
+//! The path `tiled`: the picture of `raster` and of the reference, whatever the settings, and however workgroups walk.
+
+use glam::camera::rh::proj::directx;
+use glam::{UVec2, Vec3, Vec4, vec3};
+#[cfg(feature = "app")]
+use haze::builtin;
+#[cfg(feature = "app")]
+use haze::demo::shot::Shot;
+use haze::headless::Headless;
+use haze::picture::Picture;
+use haze::settings::*;
+use haze::{Bounds, Error, Particle, Particles, wgpu};
+
+use crate::common::{AGREEMENT, STEP_AGREEMENT, gpu, psnr};
+use crate::creations;
+use crate::host::Host;
+use crate::stage::{DepthKind, Stage};
+
+const SIZE: UVec2 = UVec2::new(160, 90);
+
+/// Of the picture of `raster`, dB: they differ by what the blend unit rounds, layer by layer.
+const TO_RASTER: f32 = 55.0;
+/// Of the reference's, which rounds as the blend unit does.
+const TO_REFERENCE: f32 = AGREEMENT;
+
+fn stage(technique: Technique) -> Stage {
+    let mut stage = Stage::new(SIZE);
+    stage.depth = DepthKind::Both;
+    stage.attach_depth = true;
+    stage.settings.technique = technique;
+    stage.settings.volumetric.noise_size = 1.5;
+    stage.settings.accumulate.layers = Layers::All;
+    for (index, particle) in (0..).zip(&mut stage.particles) {
+        particle.age = index as f32 / 59.0;
+    }
+    stage
+}
+
+/// The walk alone has the sampler's own filter.
+fn drawn(stage: &Stage, path: Path, in_step: bool) -> Picture<Vec4> {
+    let mut stage = stage.clone();
+    (stage.settings.path, stage.host.exact_filtering) = (path, in_step);
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    host.renderer.context().walk_in_step(in_step);
+    host.draw(gpu(), &stage).unwrap();
+    gpu().check().unwrap();
+    host.picture(gpu()).unwrap()
+}
+
+fn agreement(name: &str, stage: &Stage) {
+    let steps = stage.settings.sprite.debug_sprite;
+    for in_step in [true, false] {
+        let [tiled, raster] = [Path::Tiled, Path::Raster].map(|path| drawn(stage, path, in_step));
+        let (to_raster, to_reference) = (psnr(&tiled, &raster), psnr(&tiled, &stage.on_cpu()));
+        println!("{name}, in step {in_step}: {to_raster:.1} dB of raster, {to_reference:.1} dB of the reference");
+        assert!(to_raster >= if steps { STEP_AGREEMENT } else { TO_RASTER }, "{name}: {to_raster:.1} dB of raster");
+        let least = if steps { STEP_AGREEMENT } else { TO_REFERENCE };
+        assert!(!in_step || to_reference >= least, "{name}: {to_reference:.1} dB of the reference");
+    }
+}
+
+#[test]
+fn every_technique_is_the_same_on_tiles() {
+    for &technique in Technique::ALL {
+        let name = technique.name();
+        agreement(name, &stage(technique));
+        let mut always = stage(technique);
+        always.settings.soft_fade.curve = FadeCurve::Always;
+        agreement(&format!("{name} always"), &always);
+        let mut host_depth = stage(technique);
+        let accumulate = &mut host_depth.settings.accumulate;
+        (accumulate.depth_source, accumulate.scale) = (DepthSource::Host, 1);
+        agreement(&format!("{name} host depth"), &host_depth);
+        let mut orthographic = stage(technique);
+        orthographic.view.clip_from_view = directx::orthographic(-4.0, 4.0, -2.25, 2.25, 0.1, 80.0);
+        agreement(&format!("{name} orthographic"), &orthographic);
+    }
+}
+
+#[test]
+fn every_way_to_accumulate_is_the_same_on_tiles() {
+    type Change = fn(&mut Stage);
+    let changes: [(&str, Change); 9] = [
+        ("weighted", |s| s.settings.accumulate.order = Order::Weighted),
+        ("biased", |s| s.settings.accumulate.encoding = NormalEncoding::Biased),
+        ("weighted and biased", |s| {
+            s.settings.accumulate.order = Order::Weighted;
+            s.settings.accumulate.encoding = NormalEncoding::Biased;
+        }),
+        ("light of the target", |s| s.settings.accumulate.lighting_resolution = LightingResolution::Target),
+        ("scale 3", |s| s.settings.accumulate.scale = 3),
+        ("drawn three times", |s| {
+            s.settings.sprite.debug_loop = 3;
+            s.settings.accumulate.opacity = 0.2;
+        }),
+        ("checks", |s| s.settings.sprite.debug_sprite = true),
+        ("motion", |s| s.settings.sprite.motion = 1.0),
+        // Most of the sprites over the borders, some round the eye.
+        ("near", |s| s.particles.iter_mut().for_each(|p| p.position.z += 5.5)),
+    ];
+    for (name, change) in changes {
+        let mut stage = stage(Technique::Soft);
+        change(&mut stage);
+        agreement(name, &stage);
+    }
+}
+
+#[test]
+fn eight_bits_are_rounded_once() {
+    // Where each layer is rounded the sum stalls, which the path `tiled` does not know.
+    let mut stage = stage(Technique::Soft);
+    let accumulate = &mut stage.settings.accumulate;
+    (accumulate.format, accumulate.encoding) = (AccumulationFormat::Rgba8Unorm, NormalEncoding::Biased);
+    stage.shade_tree = ShadeTree::Amount;
+    let mut exact = stage.clone();
+    exact.settings.accumulate.format = AccumulationFormat::Rgba16Float;
+    let exact = exact.on_cpu();
+    let [tiled, raster] = [Path::Tiled, Path::Raster].map(|path| psnr(&drawn(&stage, path, true), &exact));
+    println!("8 bits: tiled {tiled:.1} dB, raster {raster:.1} dB");
+    assert!(tiled >= 50.0 && tiled > raster, "{tiled} {raster}");
+}
+
+#[test]
+fn what_cannot_be_seen_is_left_out() {
+    // A stack of layers, opaque after some twenty.
+    let mut stage = stage(Technique::Soft);
+    let layer = |index: u32| Particle {
+        position: vec3(0.0, 0.0, -4.0 - 0.01 * index as f32),
+        radius: 3.0,
+        amount: 0.5,
+        rotation: index as f32,
+        ..Particle::default()
+    };
+    stage.particles = (0..400).map(layer).collect();
+    for in_step in [true, false] {
+        stage.settings.accumulate.layers = Layers::All;
+        let all = drawn(&stage, Path::Tiled, in_step);
+        stage.settings.accumulate.layers = Layers::Visible;
+        let visible = drawn(&stage, Path::Tiled, in_step);
+        let apart = psnr(&visible, &all);
+        println!("visible: {apart:.1} dB of all");
+        // A thousandth of the light, at the most.
+        assert!((55.0..150.0).contains(&apart), "{apart}");
+    }
+}
+
+#[cfg(feature = "app")]
+#[test]
+fn every_preset_is_the_same_on_tiles() {
+    let renderer = |shot: &Shot, path, layers| {
+        let mut shot = shot.clone();
+        for system in &mut shot.preset.systems {
+            system.settings.path = path;
+            system.settings.accumulate.layers = layers;
+        }
+        shot.render_on_gpu(gpu(), false).unwrap()
+    };
+    for preset in builtin::PRESETS {
+        let shot = Shot::load(preset.name, UVec2::new(320, 180)).unwrap();
+        let mut behind = shot.clone();
+        behind.preset.systems.clear();
+        behind.materials.clear();
+        let behind = renderer(&behind, Path::Raster, Layers::All);
+        let raster = renderer(&shot, Path::Raster, Layers::All);
+        for &layers in Layers::ALL {
+            let tiled = renderer(&shot, Path::Tiled, layers);
+            let apart = crate::common::psnr_over([&tiled, &raster], [&behind, &behind]);
+            println!("{}, {} layers: {apart:.1} dB", preset.name, layers.name());
+            assert!(apart >= TO_RASTER, "{}: {apart:.1} dB", preset.name);
+        }
+    }
+}
+
+#[test]
+fn a_run_gives_the_same_bits_and_needs_no_order() {
+    let mut stage = stage(Technique::Soft);
+    // More than a block of the sort, many at one depth, some hidden.
+    let all = |index: u32| {
+        let mut particle = stage.particles[index as usize % 60];
+        particle.position.x += 0.001 * (index / 60) as f32;
+        particle.amount *= 0.1;
+        if index.is_multiple_of(7) {
+            particle.amount = 0.0;
+        }
+        particle
+    };
+    let all: Vec<_> = (0..3000_u32).map(all).collect();
+    stage.particles.clone_from(&all);
+    stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
+    (stage.settings.path, stage.host.exact_filtering) = (Path::Tiled, false);
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    for in_step in [true, false] {
+        host.renderer.context().walk_in_step(in_step);
+        let picture = |host: &mut Host| {
+            host.draw(gpu(), &stage).unwrap();
+            host.picture(gpu()).unwrap()
+        };
+        let first = picture(&mut host);
+        assert!(picture(&mut host) == first);
+        // From a buffer they are sorted by the GPU, whoever walks.
+        let mut buffered = |particles: &[Particle], offset: u64| {
+            let mut bytes = vec![0x7f; offset as usize];
+            bytes.extend_from_slice(bytemuck::cast_slice(particles));
+            let buffer = storage_buffer(&bytes);
+            let particles = Particles::Buffer { buffer: &buffer, offset, count: particles.len() as u32 };
+            host.draw_particles(gpu(), &stage, particles).unwrap();
+            host.picture(gpu()).unwrap()
+        };
+        // Those at one depth stay as they are.
+        let mut sorted = all.clone();
+        sorted.sort_by(|a, b| a.position.z.total_cmp(&b.position.z));
+        let sorted = buffered(&sorted, 0);
+        for offset in [0, 16, 272] {
+            assert!(buffered(&all, offset) == sorted, "{offset}");
+        }
+    }
+    gpu().check().unwrap();
+}
+
+fn storage_buffer(bytes: &[u8]) -> wgpu::Buffer {
+    let buffer = gpu().device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: bytes.len() as u64,
+        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    gpu().queue.write_buffer(&buffer, 0, bytes);
+    buffer
+}
+
+#[test]
+fn lists_that_find_no_room_are_drawn_all_the_same() {
+    // Every sprite in every bin: at first the lists hold a part of that.
+    let mut stage = stage(Technique::Soft);
+    let size = UVec2::new(960, 540);
+    (stage.view, stage.settings.accumulate.scale) = (Stage::new(size).view, 1);
+    let wide = |index: u32| Particle {
+        position: vec3(0.0, 0.0, -6.0 - 0.001 * index as f32),
+        radius: 12.0,
+        amount: 0.01,
+        ..Particle::default()
+    };
+    stage.particles = (0..140).map(wide).collect();
+    for in_step in [true, false] {
+        let raster = drawn(&stage, Path::Raster, in_step);
+        (stage.settings.path, stage.host.exact_filtering) = (Path::Tiled, in_step);
+        let mut host = Host::new(gpu(), &stage).unwrap();
+        host.renderer.context().walk_in_step(in_step);
+        let mut picture = || {
+            host.draw(gpu(), &stage).unwrap();
+            (host.picture(gpu()).unwrap(), host.renderer.memory_use().buffers)
+        };
+        let (first, held) = picture();
+        let (second, held_then) = picture();
+        assert!(held_then > held, "the lists have not grown from {held} bytes");
+        assert!(first == second);
+        // The blend unit has rounded a hundred layers.
+        let apart = psnr(&first, &raster);
+        assert!(apart >= 50.0, "{apart}");
+    }
+    gpu().check().unwrap();
+}
+
+#[test]
+fn steady_frames_on_tiles_create_nothing() {
+    let mut stage = stage(Technique::Soft);
+    stage.settings.path = Path::Tiled;
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    for in_step in [true, false] {
+        host.renderer.context().walk_in_step(in_step);
+        host.draw(gpu(), &stage).unwrap();
+        let created = creations::count(|| {
+            for frame in 0..5 {
+                // Fewer sprites, elsewhere.
+                stage.particles.truncate(60 - frame);
+                stage.particles.iter_mut().for_each(|particle| particle.position.x += 0.001);
+                host.draw(gpu(), &stage).unwrap();
+            }
+        });
+        assert_eq!(created, 0);
+    }
+    // What is not tiled any more gives its buffers back.
+    let held = host.renderer.memory_use().buffers;
+    stage.settings.path = Path::Raster;
+    for _ in 0..130 {
+        host.draw(gpu(), &stage).unwrap();
+    }
+    assert!(host.renderer.memory_use().buffers < held / 4);
+}
+
+#[test]
+fn what_cannot_be_tiled_is_refused() {
+    let mut stage = stage(Technique::Soft);
+    stage.settings.path = Path::Tiled;
+    let refused = |result: Result<(), Error>| match result {
+        Err(Error::Field(error)) => error.to_string(),
+        other => panic!("{other:?}"),
+    };
+    let webgl2 = Headless::with(wgpu::Limits::downlevel_webgl2_defaults(), wgpu::Features::empty()).unwrap();
+    let mut host = Host::new(&webgl2, &stage).unwrap();
+    let message = refused(host.draw(&webgl2, &stage));
+    assert!(message.contains("systems[0].settings.path") && message.contains("raster"), "{message}");
+    stage.settings.path = Path::Auto;
+    host.draw(&webgl2, &stage).unwrap();
+
+    stage.settings.path = Path::Tiled;
+    stage.bounds = Some(Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE });
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    let buffer = storage_buffer(&[0; 128]);
+    let particles = Particles::Buffer { buffer: &buffer, offset: 4, count: 1 };
+    let message = refused(host.draw_particles(gpu(), &stage, particles));
+    assert!(message.contains("particles.offset") && message.contains("16"), "{message}");
+    let vertices = gpu().device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: 128,
+        usage: wgpu::BufferUsages::VERTEX,
+        mapped_at_creation: false,
+    });
+    let particles = Particles::Buffer { buffer: &vertices, offset: 0, count: 1 };
+    let message = refused(host.draw_particles(gpu(), &stage, particles));
+    assert!(message.contains("STORAGE"), "{message}");
+}
