@@ -124,7 +124,7 @@ fn bad_values_are_refused_in_one_line_with_field_value_and_range() {
         ("--time", "-inf", "-100000 to 100000"),
         ("--scale", "-a", "1 to 16"),
         ("--view", "colour", "final, combined, diffuse"),
-        ("--path", "tiled", "auto, raster, tiled, forward"),
+        ("--path", "tilde", "auto, raster, tiled, forward"),
         ("--backend", "tpu", "auto, gpu, cpu"),
         ("--seed", "-1", "0 to 4294967295"),
     ] {

@@ -10,7 +10,7 @@ use haze::headless::Headless;
 use haze::settings::AccumulationFormat;
 use haze::{Error, wgpu};
 
-use super::measure::{size_name, waking};
+use super::adapter::waking;
 use super::report::{Clock, Milliseconds, Row};
 use super::suites::Suite;
 use crate::app::interrupt;
@@ -75,7 +75,7 @@ pub fn measure(gpu: &Headless, size: UVec2, quick: bool) -> Result<Limits, Error
             gfragments_per_s: rate.filter(|_| bare.bytes > 0),
             bytes: (bare.bytes > 0).then_some(bare.bytes),
             limit_ratio: bare.format.and_then(|format| floor.get(&format)).map(|limit| per_fragment / limit),
-            ..Row::of(Suite::Limits, bare.name.clone(), size_name(size), clock, gpu_ms)
+            ..Row::of(Suite::Limits, bare.name.clone(), size, clock, gpu_ms)
         });
     }
     Ok(Limits { floor, rows, discarded })

@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, HashMap};
 use std::time::{Duration, Instant};
 
-use glam::UVec2;
 use haze::cache::Cache;
 use haze::demo::shot::Shot;
 use haze::demo::stage::{Stage, StageContext};
@@ -12,6 +11,7 @@ use haze::preset::PresetSystem;
 use haze::settings::{AccumulationFormat, Path as SmokePath, ShadeTree};
 use haze::{Error, Timing, wgpu};
 
+use super::adapter::waking;
 use super::limits::bytes;
 use super::quality::{Quality, is_right};
 use super::report::{Clock, LeftOut, Milliseconds, Row};
@@ -20,9 +20,7 @@ use crate::app::interrupt;
 
 /// Rounds that are not counted, at the least.
 const WARM_UP: usize = 2;
-/// A GPU that had little to do runs slower, and takes a while to notice: it is kept busy before anything is measured, and before
-/// each frame that counts.
-const AWAKE: Duration = Duration::from_secs(2);
+/// A GPU is kept busy before every frame that counts.
 const BUSY: Duration = Duration::from_millis(15);
 /// Frames in a row without a time after which there will be none.
 const MOST_TRIES: u32 = 8;
@@ -232,19 +230,9 @@ impl<'a> Bench<'a> {
             psnr_db: running.quality.psnr_db,
             flip: running.quality.flip,
             edge_psnr_db: running.quality.edge_psnr_db,
-            ..Row::of(suite, running.case.name.clone(), size_name(shot.size), self.clock(), gpu_ms)
+            ..Row::of(suite, running.case.name.clone(), shot.size, self.clock(), gpu_ms)
         })
     }
-}
-
-/// How long to keep a device busy before anything counts.
-pub fn waking(gpu: &Headless) -> Duration {
-    if gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu { Duration::ZERO } else { AWAKE }
-}
-
-/// As rows have it.
-pub fn size_name(size: UVec2) -> String {
-    format!("{}x{}", size.x, size.y)
 }
 
 fn median(times: &[f64]) -> f64 {

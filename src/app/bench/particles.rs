@@ -6,7 +6,6 @@ use haze::headless::Headless;
 use haze::settings::Order;
 use haze::{Descriptor, Error, Frame, Particles, Renderer, SceneDepth, System, wgpu};
 
-use super::measure::size_name;
 use super::report::{Clock, Milliseconds, Row};
 use super::suites::{Group, Suite};
 use crate::app::interrupt;
@@ -65,7 +64,7 @@ pub fn rows(gpu: &Headless, group: &Group) -> Result<Vec<Row>, Error> {
         Some(Row {
             particles: Some(count),
             samples: times.len() as u32,
-            ..Row::of(Suite::Particles, case, size_name(shot.size), Clock::Cpu, gpu_ms)
+            ..Row::of(Suite::Particles, case, shot.size, Clock::Cpu, gpu_ms)
         })
     };
     Ok(names.into_iter().zip(&mut times).filter_map(row).collect())

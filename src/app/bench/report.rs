@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use glam::UVec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -142,11 +143,11 @@ impl Row {
     }
 
     /// A row of nothing but a time.
-    pub fn of(suite: Suite, case: String, size: String, clock: Clock, gpu_ms: Milliseconds) -> Self {
+    pub fn of(suite: Suite, case: String, size: UVec2, clock: Clock, gpu_ms: Milliseconds) -> Self {
         Self {
             suite: suite.name(),
             case,
-            size,
+            size: format!("{}x{}", size.x, size.y),
             scale: None,
             format: None,
             path: None,

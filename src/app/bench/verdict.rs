@@ -101,6 +101,8 @@ pub fn sentence(report: &Report) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
+    use glam::UVec2;
+
     use super::super::report::{Adapter, Clock, Milliseconds};
     use super::*;
 
@@ -120,7 +122,13 @@ mod tests {
                     particles: Some(layers as u32),
                     psnr_db,
                     flip: psnr_db.map(|_| 0.01),
-                    ..Row::of(Suite::Scale, format!("{path} {scale:?} {layers}"), "64x36".into(), Clock::Gpu, gpu_ms)
+                    ..Row::of(
+                        Suite::Scale,
+                        format!("{path} {scale:?} {layers}"),
+                        UVec2::new(64, 36),
+                        Clock::Gpu,
+                        gpu_ms,
+                    )
                 });
             }
         }
