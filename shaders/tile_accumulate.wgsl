@@ -155,7 +155,7 @@ fn in_step(
                 let sprite = sprites[number];
                 // Only the middle of texels counts.
                 let meets = is_sphere() || square_meets(sprite, middle, vec2f(0.5 * f32(SIDE - 1u)));
-                if meets && sprite.rotation_weight_front.w <= end {
+                if meets && sprite_front(sprite.centre_radius) <= end {
                     batch[local] = sprite;
                     atomicOr(&touching[local / 32u], 1u << (local % 32u));
                 }
@@ -174,7 +174,8 @@ fn in_step(
                 let sprite = batch[word * 32u + firstTrailingBit(bits)];
                 bits &= bits - 1u;
                 let in_square = place_in_square(sprite, texel.place);
-                if (is_sphere() || is_inside(in_square)) && !is_done(texel) {
+                let is_touched = is_sphere() || (is_inside(in_square) && is_filled(sprite.filled, in_square));
+                if is_touched && !is_done(texel) {
                     texel = with_sprite(texel, sprite, in_square, true);
                 }
             }
@@ -224,11 +225,20 @@ fn alone(@builtin(global_invocation_id) invocation: vec3u) {
             in_c = in_b + matrix.yw;
             in_d = in_c + matrix.yw;
             touched = vec4<bool>(is_inside(in_a), is_inside(in_b), is_inside(in_c), is_inside(in_d));
+            for (var once = any(touched); once; once = false) {
+                let filled = sprites[number].filled;
+                touched &= vec4<bool>(
+                    is_filled(filled, in_a),
+                    is_filled(filled, in_b),
+                    is_filled(filled, in_c),
+                    is_filled(filled, in_d),
+                );
+            }
         }
         // A loop of one step: llvmpipe steps over a branch instruction by instruction, and leaves a loop at once.
         for (var once = any(touched); once; once = false) {
             let sprite = sprites[number];
-            if sprite.rotation_weight_front.w > end {
+            if sprite_front(sprite.centre_radius) > end {
                 break;
             }
             a = with_sprite(a, sprite, in_a, touched.x);

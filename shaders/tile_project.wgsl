@@ -36,7 +36,9 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
     let radius = placed.centre_radius.w;
     var sprite: TileSprite;
     sprite.centre_radius = placed.centre_radius;
-    sprite.amount_lod_frame_age = placed.amount_lod_frame_age;
+    sprite.amount_lod_frame = placed.amount_lod_frame_age.xyz;
+    let frames = shown_frames(SPRITE_ANIMATION, sprite.amount_lod_frame.z, system.frame_count);
+    sprite.filled = filled_cells(sprite_filled, frames, sprite.amount_lod_frame.y);
 
     var low: vec2f;
     var high: vec2f;
@@ -64,13 +66,12 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
     let first = clamp(floor(low - 0.01), vec2f(0.0), system.target_size);
     let last = clamp(ceil(high + 0.01), vec2f(0.0), system.target_size);
 
-    var weight = 1.0;
+    sprite.rotation = placed.rotation;
+    sprite.weight = 1.0;
     if WEIGHTED {
         let in_front = optical_depth_in_front(system.front_knots, -centre.z, system.smoke_near, system.smoke_far);
-        weight = order_weight(system.depth_weight, in_front);
+        sprite.weight = order_weight(system.depth_weight, in_front);
     }
-    let front = sprite_front(placed.centre_radius);
-    sprite.rotation_weight_front = vec4f(placed.rotation, weight, front);
     let shown = !placed.hidden && all(first < last);
     sprites[number] = sprite;
     rects[number] = select(vec2u(0u), packed_rect(vec2u(first), vec2u(last)), shown);

@@ -29,6 +29,8 @@ const MAX_LIGHTS: u32 = 128u;
 @group(2) @binding(8) var noise: texture_3d<f32>;
 @group(2) @binding(9) var repeat_sampler: sampler;
 @group(2) @binding(10) var coverage_ramp: texture_2d<f32>;
+// x is the mip level, y the frame: see filled_cells().
+@group(2) @binding(11) var sprite_filled: texture_2d<u32>;
 
 // The host's depth at a pixel of the view.
 fn load_scene_depth(pixel: vec2i) -> f32 {

@@ -7,9 +7,33 @@ struct TileSprite {
     place_from_texels: vec4f,
     // View space. Squares: the middle in texels in xy.
     centre_radius: vec4f,
-    amount_lod_frame_age: vec4f,
-    // Rotation, weight, and the view depth that no part of it is nearer than.
-    rotation_weight_front: vec4f,
+    amount_lod_frame: vec3f,
+    weight: f32,
+    rotation: vec2f,
+    // Which of eight by eight cells of the picture there is something in, a byte for each row from the top.
+    filled: vec2u,
+}
+
+const ALL_FILLED: vec2u = vec2u(0xffffffffu);
+
+// The cells of a sprite's frames, at its mip level.
+fn filled_cells(filled: texture_2d<u32>, frames: FlipbookFrames, lod: f32) -> vec2u {
+    if DEBUG_SPRITE || MOTION {
+        return ALL_FILLED;
+    }
+    let level = min(i32(lod), i32(textureDimensions(filled).x) - 1);
+    var cells = textureLoad(filled, vec2i(level, frames.first), 0).xy;
+    if frames.blend > 0.0 {
+        cells |= textureLoad(filled, vec2i(level, frames.second), 0).xy;
+    }
+    return cells;
+}
+
+// True at a place in a square, -1..1, where its picture is not clear.
+fn is_filled(cells: vec2u, place: vec2f) -> bool {
+    let cell = vec2u(clamp(sprite_uv(place) * 8.0, vec2f(0.0), vec2f(7.0)));
+    let rows = select(cells.x, cells.y, cell.y >= 4u);
+    return ((rows >> ((cell.y & 3u) * 8u + cell.x)) & 1u) == 1u;
 }
 
 // Bits that order as view depths do, near to far: of view z, from front to back. (Herf, "Radix tricks", 2001)
@@ -50,9 +74,9 @@ fn fragment_of(sprite: TileSprite, texel: vec2f, ray: vec2f, place: vec2f) -> Sp
     var out: SpriteVertex;
     out.position = vec4f(texel, 0.0, 1.0);
     out.centre_radius = sprite.centre_radius;
-    out.amount_lod_frame_age = sprite.amount_lod_frame_age;
-    out.rotation = sprite.rotation_weight_front.xy;
-    out.weight = sprite.rotation_weight_front.z;
+    out.amount_lod_frame_age = vec4f(sprite.amount_lod_frame, 0.0);
+    out.rotation = sprite.rotation;
+    out.weight = sprite.weight;
     if is_sphere() {
         out.view_position = view_position(ray, 1.0, view.orthographic);
     } else {

@@ -58,6 +58,7 @@ impl Layouts {
                     texture(filterable, D3),
                     wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
                     texture(filterable, D2),
+                    texture(wgpu::TextureSampleType::Uint, D2),
                 ],
             ),
             accumulate: layout("haze accumulate inputs", &[texture(unfilterable, D2)]),

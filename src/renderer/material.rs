@@ -59,6 +59,7 @@ pub(crate) fn create_material(
     validate_sizes(&gpu.device.limits(), assets)?;
     let mut bytes = 0;
     let sprite = upload_sprite(gpu, "haze sprite", &assets.sprite, &mut bytes);
+    let filled = upload_filled(gpu, &assets.sprite, &mut bytes);
     let detail = assets.detail.as_ref().map(|detail| upload_sprite(gpu, "haze detail", detail, &mut bytes));
     let noise = upload_noise(gpu, &assets.noise, &mut bytes);
     let mut ramp = |label, ramp| upload_ramp(gpu, label, ramp, &mut bytes);
@@ -86,6 +87,7 @@ pub(crate) fn create_material(
             texture(8, &noise),
             sampler(9, &shared.repeat),
             texture(10, &coverage_ramp),
+            texture(11, &filled),
         ],
     });
     Ok(Material { context, bind_group, info: assets.info(), bytes })
@@ -185,6 +187,28 @@ fn upload_sprite(gpu: &Gpu<'_>, label: &str, sprite: &Sprite, bytes: &mut u64) -
         dimension: Some(wgpu::TextureViewDimension::D2Array),
         ..Default::default()
     })
+}
+
+/// Where a sprite is not clear: a texel for each mip level and frame.
+fn upload_filled(gpu: &Gpu<'_>, sprite: &Sprite, bytes: &mut u64) -> wgpu::TextureView {
+    let size = extent(UVec2::new(sprite.level_count(), sprite.frame_count()), 1);
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("haze sprite cells"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rg32Uint,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let cells: Vec<u64> = (0..sprite.frame_count())
+        .flat_map(|frame| (0..sprite.level_count()).map(move |level| sprite.filled_cells(level, frame)))
+        .collect();
+    *bytes += size_of_val(cells.as_slice()) as u64;
+    let data = bytemuck::cast_slice(&cells);
+    gpu.queue.write_texture(texture.as_image_copy(), data, layout(8 * size.width, size.height), size);
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
 fn extent(size: UVec2, layers: u32) -> wgpu::Extent3d {

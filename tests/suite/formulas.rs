@@ -1272,6 +1272,8 @@ const INDIRECT: &[&str] = &[
     "texel_of_ray",
     "place_in_square",
     "square_meets",
+    "filled_cells",
+    "is_filled",
     "fragment_of",
     "digit_of",
     "low_of_bin",
