@@ -34,9 +34,6 @@ override STOPS: bool = true;
 const OPAQUE: f32 = 0.0009765625;
 // EVERYTHING in tile_bin.
 const EVERYTHING: u32 = 0xffffffffu;
-// Texels along a workgroup's side.
-const SIDE: u32 = 8u;
-const BATCH: u32 = SIDE * SIDE;
 
 // A texel, and what there is in it so far.
 struct Texel {
@@ -113,7 +110,12 @@ fn bin_at(place: vec2u) -> vec2u {
     return bins[bin.y * tiles.columns + bin.x];
 }
 
-// For adapters whose workgroups are cheap to run in step: a batch of sprites is read by all and kept where all can reach it.
+// For adapters whose workgroups are cheap to run in step: a batch of sprites is read by all and kept where all can reach it. Each
+// invocation has two texels, one HEIGHT above the other, so that there is something to do while a lookup is on its way.
+const HEIGHT: u32 = 8u;
+const TILE: vec2u = vec2u(8u, 2u * HEIGHT);
+const BATCH: u32 = 64u;
+
 var<workgroup> batch: array<TileSprite, BATCH>;
 // A bit for every sprite of the batch that touches the tile.
 var<workgroup> touching: array<atomic<u32>, 2>;
@@ -124,18 +126,20 @@ var<workgroup> is_closed: u32;
 
 @compute @workgroup_size(8, 8)
 fn in_step(
-    @builtin(global_invocation_id) place: vec3u,
+    @builtin(local_invocation_id) local_place: vec3u,
     @builtin(workgroup_id) workgroup: vec3u,
     @builtin(local_invocation_index) local: u32,
 ) {
     let size = vec2u(system.target_size);
-    let is_drawn = all(place.xy < size);
-    var texel = begun_texel(min(place.xy, size - 1u));
-    atomicMax(&farthest, bitcast<u32>(max(texel.scene, 0.0)));
-    let low = workgroup.xy * SIDE;
+    let low = workgroup.xy * TILE;
+    let place = low + local_place.xy;
+    let below = place + vec2u(0u, HEIGHT);
+    var a = begun_texel(min(place, size - 1u));
+    var b = begun_texel(min(below, size - 1u));
+    atomicMax(&farthest, bitcast<u32>(max(max(a.scene, b.scene), 0.0)));
     let list = bin_at(low);
     let entries = list.y * tiles.loops;
-    let middle = vec2f(low) + 0.5 * f32(SIDE);
+    let middle = vec2f(low) + 0.5 * vec2f(TILE);
     workgroupBarrier();
     let end = bitcast<f32>(atomicLoad(&farthest)) + system.fade_through;
     for (var first = 0u; first < entries; first += BATCH) {
@@ -145,16 +149,16 @@ fn in_step(
             atomicStore(&open, 0u);
         }
         workgroupBarrier();
-        if is_drawn && !is_done(texel) {
+        if !(is_done(a) && is_done(b)) {
             atomicOr(&open, 1u);
         }
         if first + local < entries {
             let number = sprite_number(list, first + local);
             // Most of a bin's sprites are elsewhere in it: no more is read of them.
-            if rects_meet(rects[number], low, low + SIDE) {
+            if rects_meet(rects[number], low, low + TILE) {
                 let sprite = sprites[number];
                 // Only the middle of texels counts.
-                let meets = is_sphere() || square_meets(sprite, middle, vec2f(0.5 * f32(SIDE - 1u)));
+                let meets = is_sphere() || square_meets(sprite, middle, 0.5 * vec2f(TILE - 1u));
                 if meets && sprite_front(sprite.centre_radius) <= end {
                     batch[local] = sprite;
                     atomicOr(&touching[local / 32u], 1u << (local % 32u));
@@ -173,18 +177,29 @@ fn in_step(
             while bits != 0u {
                 let sprite = batch[word * 32u + firstTrailingBit(bits)];
                 bits &= bits - 1u;
-                let in_square = place_in_square(sprite, texel.place);
-                let is_touched = is_sphere() || (is_inside(in_square) && is_filled(sprite.filled, in_square));
-                if is_touched && !is_done(texel) {
-                    texel = with_sprite(texel, sprite, in_square, true);
+                let in_a = place_in_square(sprite, a.place);
+                let in_b = in_a + sprite.place_from_texels.yw * f32(HEIGHT);
+                let touches_a = !is_done(a) && touches(sprite, in_a);
+                let touches_b = !is_done(b) && touches(sprite, in_b);
+                if touches_a || touches_b {
+                    a = with_sprite(a, sprite, in_a, touches_a);
+                    b = with_sprite(b, sprite, in_b, touches_b);
                 }
             }
         }
         workgroupBarrier();
     }
-    if is_drawn {
-        write_texel(place.xy, texel);
+    if all(place < size) {
+        write_texel(place, a);
     }
+    if all(below < size) {
+        write_texel(below, b);
+    }
+}
+
+// True where a sprite may have something. `place`: in a square.
+fn touches(sprite: TileSprite, place: vec2f) -> bool {
+    return is_sphere() || (is_inside(place) && is_filled(sprite.filled, place));
 }
 
 // For CPUs, where a barrier costs more than it saves: every invocation walks alone, for a column of four texels. llvmpipe reads

@@ -1274,6 +1274,7 @@ const INDIRECT: &[&str] = &[
     "square_meets",
     "filled_cells",
     "is_filled",
+    "touches",
     "fragment_of",
     "digit_of",
     "low_of_bin",

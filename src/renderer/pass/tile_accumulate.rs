@@ -11,7 +11,7 @@ use crate::renderer::gpu::pipeline::{ComputeParts, switch, variant};
 use crate::settings::{AccumulationFormat, NormalEncoding};
 
 /// Texels along a workgroup's sides: of `in_step`, and of `alone`, in `shaders/tile_accumulate.wgsl`.
-const IN_STEP: UVec2 = UVec2::splat(8);
+const IN_STEP: UVec2 = UVec2::new(8, 16);
 const ALONE: UVec2 = UVec2::new(8, 32);
 
 /// What makes one pipeline differ from another.
