@@ -49,6 +49,7 @@ mod window;
 use std::path::PathBuf;
 
 pub use document::pictures::copy_beside;
+pub use platform::dialog::is_failure as is_of_dialogs;
 
 use clap::Args;
 use eframe::egui;
