@@ -5,6 +5,7 @@ mod angles;
 mod caches;
 mod compare;
 mod document;
+mod dropped;
 mod easel;
 mod exporting;
 mod filing;
