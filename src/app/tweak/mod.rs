@@ -16,6 +16,7 @@ mod icon;
 mod inspect;
 mod keeping;
 mod lights;
+mod look;
 mod made;
 mod messages;
 #[cfg(test)]

@@ -79,7 +79,8 @@ fn order(ui: &mut Ui, exporting: &mut Exporting, session: &mut Session) {
     if let Product::Values(path) = product {
         let edit = egui::TextEdit::singleline(&mut exporting.wanted).hint_text("Find a setting");
         ui.add(edit).widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "setting to vary"));
-        for found in matches(&session.document.preset, &session.tooltips, &exporting.wanted).into_iter().take(6) {
+        let found = matches(&session.document.preset, &session.tooltips, &session.show.lights, &exporting.wanted);
+        for found in found.into_iter().take(6) {
             let is_chosen = found.path == *path;
             if ui.selectable_label(is_chosen, &found.path).on_hover_text(&found.tooltip).clicked() {
                 path.clone_from(&found.path);
