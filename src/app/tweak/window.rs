@@ -76,6 +76,7 @@ impl Window {
     /// [`Error::Io`] where the system has no thread left.
     pub fn new(easel: Easel, start: Start) -> Result<Self, Error> {
         let Start { mut session, shaders, keeping, layout, has_dialogs } = start;
+        session.follow_window(easel.egui());
         session.show.has_strip = layout.has_strip.unwrap_or(session.show.has_strip);
         match &layout.hints {
             Some(left) => session.hints.go_on(left),

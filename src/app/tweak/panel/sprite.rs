@@ -17,7 +17,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
         return;
     };
     let (names, settings) = (system.material.clone(), system.settings);
-    flipbook::panel(ui, &mut session.show.sprite, &material, &settings);
+    flipbook::panel(ui, (&mut session.show.sprite, &mut session.flipbook), &material, &settings);
     ui.separator();
     ui.horizontal(|ui| {
         ui.strong(short(&names.sprite, 40));

@@ -28,8 +28,8 @@ const LONGEST: usize = 400;
 
 /// Draws what there is of the selected system's sprite.
 pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialNames) {
-    let (folders, context) = (session.folders(), ui.ctx().clone());
-    let Some(known) = session.sprites.ask(names, &folders, move || context.request_repaint()) else { return };
+    let (folders, wake) = (session.folders(), session.wake.clone());
+    let Some(known) = session.sprites.ask(names, &folders, move || wake.call()) else { return };
     if let Some(broken) = &known.broken {
         ui.colored_label(ui.visuals().error_fg_color, short(broken, LONGEST));
     }
