@@ -140,10 +140,12 @@ impl Window {
             ui.separator();
             let undo = self.session.document.history().undo_name().map(str::to_owned);
             let redo = self.session.document.history().redo_name().map(str::to_owned);
-            if ui.add_enabled(undo.is_some(), egui::Button::new("Undo")).clicked() {
+            let button = ui.add_enabled(undo.is_some(), egui::Button::new("Undo"));
+            if button.on_hover_text(undo.unwrap_or_default()).clicked() {
                 self.session.undo();
             }
-            if ui.add_enabled(redo.is_some(), egui::Button::new("Redo")).clicked() {
+            let button = ui.add_enabled(redo.is_some(), egui::Button::new("Redo"));
+            if button.on_hover_text(redo.unwrap_or_default()).clicked() {
                 self.session.redo();
             }
             ui.separator();
