@@ -139,6 +139,19 @@ fn what_is_compared_can_be_taken_over() {
 }
 
 #[test]
+fn the_animation_of_sprites_is_frozen_beside_the_clock() {
+    let mut harness = column();
+    let is_frozen = |harness: &Harness<'_, Window>| {
+        harness.state().session.document.preset.systems.iter().all(|system| system.settings.sprite.freeze_animation)
+    };
+    for expected in [true, false] {
+        harness.get_by_label("Freeze").click();
+        harness.run_steps(3);
+        assert_eq!(is_frozen(&harness), expected);
+    }
+}
+
+#[test]
 fn undo_says_what_it_takes_back() {
     let mut harness = column();
     set(&mut harness, "exposure", 2.0);
@@ -234,8 +247,9 @@ fn pictures_of_every_tab() {
         set(&mut harness, "exposure", 1.5);
         choose(&mut harness, "Compare", "As saved");
         decibels(&mut harness);
-        harness.get_by_label("viewport").hover();
-        for _ in 0..10 {
+        let beside = viewport(&harness).center() - Vec2::new(0.1 * size.0 as f32, 0.0);
+        harness.hover_at(beside);
+        for _ in 0..5 {
             std::thread::sleep(std::time::Duration::from_millis(20));
             picture(&mut harness);
         }
