@@ -170,7 +170,8 @@ impl Window {
         });
     }
 
-    fn status(&self, ui: &mut Ui) {
+    fn status(&mut self, ui: &mut Ui) {
+        let mut is_read = false;
         let line = |ui: &mut Ui| {
             if self.easel.is_software() {
                 ui.colored_label(ui.visuals().warn_fg_color, &self.adapter).on_hover_text(SLOW);
@@ -181,11 +182,15 @@ impl Window {
                 if let Some(message) = self.session.messages.latest() {
                     let text = egui::RichText::new(&message.text);
                     let text = if message.is_error { text.color(ui.visuals().error_fg_color) } else { text };
-                    ui.add(egui::Label::new(text).truncate());
+                    let label = ui.add(egui::Label::new(text).truncate().sense(egui::Sense::click()));
+                    is_read = label.on_hover_text("A click puts it away").clicked();
                 }
             });
         };
         ui.horizontal(|ui| ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), line));
+        if is_read {
+            self.session.messages.put_away();
+        }
     }
 
     /// Does what keys ask for, unless something is typed.

@@ -214,6 +214,11 @@ fn what_cannot_be_opened_is_said_once_and_nothing_is_lost() {
     }
     assert_eq!((bench.session().document.preset.camera.exposure * 100.0) as i32, 150);
     assert_eq!(bench.session().document.path().file_name().unwrap(), "my.json");
+    // A click puts away what was read.
+    let said = bench.said();
+    bench.window.run_steps(2);
+    bench.click(&said);
+    assert_eq!(bench.said(), "");
 }
 
 #[test]
