@@ -29,7 +29,8 @@ pub fn panel(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, shown: &mut 
             Of::KeyLight(field, usual) => {
                 let Some((key, light)) = key.and_then(|key| Some((key, lights.get_mut(key)?))) else { continue };
                 show_named(ui, desk, &[("lights", Some(key))], light, (name, field, usual));
-                row::note(ui, &name_of(key, light)).on_hover_text(KEY);
+                let marks = if desk.second.is_some() { 2.0 } else { 1.0 };
+                row::note(ui, marks, &name_of(key, light)).on_hover_text(KEY);
             }
         }
     }

@@ -124,10 +124,10 @@ fn name_width(ui: &Ui) -> f32 {
     NAME.min(SHARE * ui.available_width())
 }
 
-/// A word below a control, about it.
-pub fn note(ui: &mut Ui, text: &str) -> Response {
+/// A word below a control, about it; `marks`: how many stand before names.
+pub fn note(ui: &mut Ui, marks: f32, text: &str) -> Response {
     ui.horizontal(|ui| {
-        ui.add_space(MARK + name_width(ui) + 2.0 * ui.spacing().item_spacing.x);
+        ui.add_space(marks * MARK + name_width(ui) + (marks + 1.0) * ui.spacing().item_spacing.x);
         ui.weak(text)
     })
     .inner
