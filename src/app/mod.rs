@@ -79,6 +79,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     env_logger::Builder::from_env(
         env_logger::Env::default().default_filter_or("error,wgpu_hal=off,eframe::native::run=off"),
     )
+    .format(|line, record| match tweak::is_of_dialogs(record.target()) {
+        true => Ok(()),
+        false => writeln!(line, "[{} {}] {}", record.level(), record.target(), record.args()),
+    })
     .init();
     let cli = match Cli::try_parse_from(with_subcommand(arguments.into_iter().collect())) {
         Ok(cli) => cli,

@@ -56,6 +56,14 @@ impl Kinds {
     }
 }
 
+/// The kinds of all recipes.
+const KINDS: [&str; 4] = ["ramp", "motif", "sprite", "noise"];
+
+/// Where recipes of a picture would be: `fire.ramp.json`, and so on, of `fire.png`.
+pub fn recipes_of(picture: &Path) -> impl Iterator<Item = PathBuf> {
+    KINDS.into_iter().map(|kind| picture.with_extension(format!("{kind}.json")))
+}
+
 /// `fire.ramp`, of `fire.ramp.json`.
 fn name(path: &Path) -> &Path {
     Path::new(path.file_stem().unwrap_or_default())
@@ -133,5 +141,18 @@ impl<'a> Job<'a> {
             say!("{}: {}x{}", output.display(), picture.width(), picture.height())?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_is_known_to_one_command() {
+        for recipe in recipes_of(Path::new("a/fire.png")) {
+            let is_known = [&RAMPS, &SPRITES].map(|kinds| kinds.find(&recipe).is_ok());
+            assert!(is_known.contains(&true), "{}", recipe.display());
+        }
     }
 }

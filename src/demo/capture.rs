@@ -6,8 +6,10 @@ use super::arriving::Arriving;
 use super::shot::Shot;
 use crate::assets::picture::Picture;
 use crate::error::Error;
+use crate::frame::Particle;
 use crate::reference::{Probe, Texels, probe};
 use crate::renderer::TargetViews;
+use crate::settings::Settings;
 
 /// A copy of a frame's targets, once it has arrived.
 #[derive(Clone, Debug)]
@@ -104,14 +106,34 @@ fn rgb(picture: &Picture<Vec4>) -> Picture<Vec3> {
 }
 
 impl Captured {
-    /// Tells what became of some pixels of the shot that was captured.
+    /// With the shot that was captured: its particles are evaluated here, once for all pixels.
+    pub fn of(self, shot: Shot) -> Witness {
+        Witness { captured: self, systems: shot.systems(), shot }
+    }
+}
+
+/// What came back of a shot, and all else that it takes to tell of its pixels.
+#[derive(Clone, Debug)]
+pub struct Witness {
+    captured: Captured,
+    shot: Shot,
+    systems: Vec<(Vec<Particle>, Settings)>,
+}
+
+impl Witness {
+    /// The shot that it is of.
+    pub fn shot(&self) -> &Shot {
+        &self.shot
+    }
+
+    /// Tells what became of some pixels.
     ///
     /// # Errors
-    /// As [`probe`]: when it was another shot.
-    pub fn probe(&self, shot: &Shot, pixels: &[UVec2]) -> Result<Vec<Probe>, Error> {
-        let particles = shot.systems();
-        let systems = shot.reference_systems(&particles);
-        let frame = shot.reference_frame(&self.scene_depth, &systems);
-        Ok(probe(&frame, &self.systems, &self.behind, pixels)?)
+    /// As [`probe`]: when another shot was captured.
+    pub fn probe(&self, pixels: &[UVec2]) -> Result<Vec<Probe>, Error> {
+        let Captured { scene_depth, behind, systems: texels } = &self.captured;
+        let systems = self.shot.reference_systems(&self.systems);
+        let frame = self.shot.reference_frame(scene_depth, &systems);
+        Ok(probe(&frame, texels, behind, pixels)?)
     }
 }

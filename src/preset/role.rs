@@ -52,8 +52,17 @@ fn of_specular_ramp(ramp: &Ramp) -> Option<String> {
     if shows_normals(ramp) {
         return Some("looks like the normals of a sprite; expected distance² across and amount up".into());
     }
-    (ramp.size().y == 1)
-        .then(|| "its one row is the same for every amount; expected distance² across and amount up".into())
+    let size = ramp.size();
+    if size.y == 1 {
+        return Some("its one row is the same for every amount; expected distance² across and amount up".into());
+    }
+    let differs = |of: &dyn Fn(u32, u32) -> UVec2| {
+        let mut texels = (0..size.y).flat_map(|y| (0..size.x).map(move |x| (x, y)));
+        texels.any(|(x, y)| !ramp.texel(UVec2::new(x, y)).abs_diff_eq(ramp.texel(of(x, y)), SAME))
+    };
+    // One colour all over is no mistake.
+    (differs(&|x, _| UVec2::new(x, 0)) && !differs(&|_, y| UVec2::new(0, y)))
+        .then(|| "the same at every distance; expected distance² across and amount up".into())
 }
 
 fn of_motif(motif: &Ramp) -> Option<String> {
@@ -116,6 +125,7 @@ mod tests {
         });
         sheet.save(folder.path().join("fire.png")).unwrap();
         one(|names| names.sprite = "fire.png".into(), "sprite", "colours, not normals");
+        one(|names| names.specular_ramp = "down.png".into(), "specular_ramp", "the same at every distance");
         one(|names| names.motif = "across.png".into(), "motif", "64x4 pixels");
     }
 }

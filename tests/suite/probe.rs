@@ -71,7 +71,7 @@ fn the_colour_that_is_told_is_the_picture() {
     for preset in builtin::PRESETS {
         let shot = Shot::load(preset.name, SIZE).unwrap();
         let Some((captured, pictures)) = drawn(&shot, &[ShadeTree::Final]) else { return };
-        let probes = captured.probe(&shot, &pixels()).unwrap();
+        let probes = captured.of(shot.clone()).probe(&pixels()).unwrap();
         if shot.preset.systems.iter().any(|system| system.settings.is_forward()) {
             assert!(probes.iter().all(|probe| probe.colour.is_none()), "{}", preset.name);
             continue;
@@ -107,7 +107,7 @@ fn every_stage_is_told_as_it_is_shown() {
         let mut shot = Shot::load("column", SIZE).unwrap();
         change(&mut shot.preset.systems[0].settings);
         let Some((captured, pictures)) = drawn(&shot, &stages.map(|(stage, _)| stage)) else { return };
-        let probes = captured.probe(&shot, &pixels()).unwrap();
+        let probes = captured.of(shot.clone()).probe(&pixels()).unwrap();
         for ((stage, told), picture) in stages.iter().zip(&pictures) {
             let what = format!("{} {index}", stage.name());
             assert_alike(&what, |probe| probe.systems.first().map(told), &probes, picture);
@@ -127,8 +127,8 @@ fn texels_of_another_shot_are_refused() {
     let Some((captured, _)) = drawn(&shot, &[ShadeTree::Final]) else { return };
     let mut other = shot.clone();
     other.preset.systems[0].settings.accumulate.scale = 3;
-    let error = captured.probe(&other, &[UVec2::ONE]).unwrap_err().to_string();
+    let error = captured.clone().of(other).probe(&[UVec2::ONE]).unwrap_err().to_string();
     assert!(error.starts_with("texels: "), "{error}");
     let other = Shot { size: SIZE * 2, ..shot };
-    assert!(captured.probe(&other, &[UVec2::ONE]).is_err());
+    assert!(captured.of(other).probe(&[UVec2::ONE]).is_err());
 }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
+use eframe::egui;
 use glam::UVec2;
 use haze::demo::shot::Shot;
 use haze::picture::{Effort, write_png};
@@ -69,8 +70,17 @@ pub struct Exporting {
     pub order: Order,
     /// What the setting to vary is looked for by.
     pub wanted: String,
-    /// A sheet that was made, and where it would be saved.
-    pub sheet: Option<(RgbImage, PathBuf)>,
+    /// A sheet that was made.
+    pub sheet: Option<Sheet>,
+}
+
+/// A sheet to look at.
+pub struct Sheet {
+    pub picture: RgbImage,
+    /// Where it would be saved.
+    path: PathBuf,
+    /// Once it was shown.
+    pub texture: Option<egui::TextureHandle>,
 }
 
 #[derive(Default)]
@@ -145,7 +155,7 @@ impl Exporting {
 
     /// Writes the sheet that is shown.
     pub fn save_sheet(&mut self) {
-        if let Some((picture, path)) = self.sheet.take() {
+        if let Some(Sheet { picture, path, .. }) = self.sheet.take() {
             self.worker.submit(move |_| write(path, picture).unwrap_or_else(Done::Failed));
         }
     }
@@ -155,7 +165,7 @@ impl Exporting {
         while let Some(done) = self.worker.poll() {
             match done {
                 Some(Done::Written(path)) => session.messages.say("export", format!("written: {}", path.display())),
-                Some(Done::Sheet(picture, path)) => self.sheet = Some((picture, path)),
+                Some(Done::Sheet(picture, path)) => self.sheet = Some(Sheet { picture, path, texture: None }),
                 Some(Done::Failed(error)) => session.messages.complain("export", error),
                 None => session.messages.complain("export", "not made: the program has a mistake in it"),
             }

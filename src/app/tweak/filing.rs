@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use eframe::egui;
+use haze::Error;
 use haze::preset::PictureFolders;
-use haze::ramp::Ramp;
-use haze::{Error, FieldError};
 
 use super::caches::{self, Loaded};
 use super::document::document::{Document, OnDisk, Saving};
+use super::dropped::Dropped;
 use super::messages::short;
 use super::platform::clock::{Duration, Instant, sleep};
 use super::platform::dialog::{Answer, Dialogs, Purpose};
@@ -54,8 +54,8 @@ pub struct Typed {
 /// What was done elsewhere.
 enum Done {
     Opened(Box<Document>, Loaded),
-    /// A ramp's name, to be looked for beside the preset.
-    Ramp(String),
+    /// A picture for a system.
+    Dropped(usize, Dropped),
     Saved(Box<Saving>, Result<(), Error>),
     /// Where things are.
     Remembered(Result<(), Error>),
@@ -96,9 +96,10 @@ impl Filing {
             match done {
                 Some(Done::Opened(document, loaded)) => self.begin_or_ask(Next::Show(document, loaded), session),
                 Some(Done::Saved(saving, done)) => self.saved(*saving, done, session),
-                Some(Done::Ramp(name)) => {
-                    if let Some(system) = session.document.preset.systems.get_mut(session.show.system) {
-                        system.material.diffuse_ramp = name;
+                Some(Done::Dropped(system, dropped)) => {
+                    match dropped.apply(&mut session.document.preset, system, session.show.size) {
+                        Ok(said) => session.messages.say("file", said),
+                        Err(error) => session.messages.complain("file", error),
                     }
                 }
                 Some(Done::Remembered(Ok(()))) => session.messages.withdraw("remembered"),
@@ -139,11 +140,16 @@ impl Filing {
         }
     }
 
-    /// A file that was dropped on the window: a preset to open, or a ramp to light by.
+    /// A file that was dropped on the window: a preset to open, or a picture for the system that is shown.
     fn take(&self, path: PathBuf, session: &Session) {
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-            let preset = session.document.path().to_owned();
-            self.worker.submit(move |_| ramp_beside(&path, &preset).map_or_else(Done::Failed, Done::Ramp));
+            let (folders, index) = (session.folders(), session.show.system);
+            let system = session.document.preset.systems.get(index);
+            let material = system.map(|system| system.material.clone()).unwrap_or_default();
+            self.worker.submit(move |_| match Dropped::read(&path, &folders, &material) {
+                Ok(dropped) => Done::Dropped(index, dropped),
+                Err(error) => Done::Failed(error),
+            });
         } else {
             self.open(path, session);
         }
@@ -300,16 +306,6 @@ fn load(path: &Path, assets: Option<PathBuf>) -> Result<(Document, Loaded), Erro
     let folders = PictureFolders::beside(path).and_shared(assets);
     let loaded = caches::load(&document.preset, path, &folders)?;
     Ok((document, loaded))
-}
-
-/// The name that a preset has for a ramp in its folder.
-fn ramp_beside(path: &Path, preset: &Path) -> Result<String, Error> {
-    let folder = std::path::absolute(preset).ok().and_then(|preset| preset.parent().map(Path::to_owned));
-    let name = folder.and_then(|folder| path.strip_prefix(folder).ok()?.to_str().map(str::to_owned));
-    let expected = "a ramp in the preset's folder, or a preset";
-    let name = name.ok_or_else(|| FieldError::new("dropped file", path.display(), expected))?;
-    Ramp::load(path)?;
-    Ok(name.replace('\\', "/"))
 }
 
 #[cfg(test)]

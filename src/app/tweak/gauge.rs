@@ -4,6 +4,7 @@ use eframe::egui;
 use haze::demo::apart::Apart;
 
 use super::easel::Easel;
+use super::platform::wake::Wake;
 use super::platform::worker::Worker;
 
 #[derive(Default)]
@@ -15,7 +16,7 @@ pub struct Gauge {
 
 impl Gauge {
     /// Takes what has come, and asks for what is missing; once a frame. `is_on`: two pictures are shown.
-    pub fn update(&mut self, context: &egui::Context, easel: &Easel, is_on: bool) {
+    pub fn update(&mut self, context: &egui::Context, easel: &Easel, wake: &Wake, is_on: bool) {
         easel.want_comparison(is_on);
         if !is_on {
             self.apart = None;
@@ -23,7 +24,8 @@ impl Gauge {
         }
         if let Some(comparison) = easel.take_comparison() {
             // Without a thread there are no figures.
-            let worker = self.worker.take().or_else(|| Worker::new("gauge", easel.wake()).ok());
+            let wake = wake.clone();
+            let worker = self.worker.take().or_else(|| Worker::new("gauge", move || wake.call()).ok());
             if let Some(worker) = &worker {
                 worker.submit(move |_| comparison.read());
             }

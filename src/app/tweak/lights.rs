@@ -111,6 +111,11 @@ impl ShownLights {
         *key
     }
 
+    /// The light that leads a system, once it is chosen.
+    pub fn known_key(&self, system: usize) -> Option<usize> {
+        self.keys.get(system).copied().flatten()
+    }
+
     /// Chooses leading lights anew: the preset is another.
     pub fn forget_keys(&mut self) {
         self.keys.clear();

@@ -52,6 +52,11 @@ impl Messages {
         self.0.retain(|message| message.about != about);
     }
 
+    /// The latest was read.
+    pub fn put_away(&mut self) {
+        self.0.pop();
+    }
+
     pub fn latest(&self) -> Option<&Message> {
         self.0.last()
     }

@@ -5,6 +5,7 @@ mod angles;
 mod caches;
 mod compare;
 mod document;
+mod dropped;
 mod easel;
 mod exporting;
 mod filing;
@@ -15,6 +16,7 @@ mod icon;
 mod inspect;
 mod keeping;
 mod lights;
+mod look;
 mod made;
 mod messages;
 #[cfg(test)]
@@ -49,6 +51,7 @@ mod window;
 use std::path::PathBuf;
 
 pub use document::pictures::copy_beside;
+pub use platform::dialog::is_failure as is_of_dialogs;
 
 use clap::Args;
 use eframe::egui;

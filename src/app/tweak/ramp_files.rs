@@ -53,10 +53,17 @@ struct Known {
     written: Option<RampRecipe>,
     /// What it is baked to now.
     live: Option<(RampRecipe, Ramp)>,
+    /// Something was written: its files may be others.
+    is_stale: bool,
 }
 
 impl RampFiles {
-    /// What a ramp is; read again when its files have changed.
+    /// Something was written: files that are others are read again.
+    pub fn look_again(&mut self) {
+        self.known.values_mut().for_each(|known| known.is_stale = true);
+    }
+
+    /// What a ramp is.
     pub fn source(&mut self, name: &str, folders: &PictureFolders) -> &Source {
         let known = self.known.entry(name.into()).or_insert_with(|| Known::read(name, folders));
         &known.source
@@ -112,10 +119,13 @@ impl RampFiles {
             self.preset = document.path().into();
         }
         for (name, known) in &mut self.known {
-            if !is_held && known.stamps != stamps(&known.picture) {
-                // Another program has the last word.
-                *known = Known::read(name, folders);
-                document.recipes.ramps.forget(name);
+            if !is_held && (known.is_stale || known.is_to_be_written(document.recipes.ramps.get(name))) {
+                known.is_stale = false;
+                if known.stamps != stamps(&known.picture) {
+                    // Another program has the last word.
+                    *known = Known::read(name, folders);
+                    document.recipes.ramps.forget(name);
+                }
             }
             let Source::Recipe(recipe) = &known.source else { continue };
             let recipe = document.recipes.ramps.get(name).unwrap_or(recipe);
@@ -173,7 +183,13 @@ impl Known {
             }
         };
         let written = if let Source::Recipe(recipe) = &source { Some(recipe.clone()) } else { None };
-        Self { picture, stamps, source, written, live: None }
+        Self { picture, stamps, source, written, live: None, is_stale: false }
+    }
+
+    /// Another recipe makes it than the one that was written last.
+    fn is_to_be_written(&self, changed: Option<&RampRecipe>) -> bool {
+        let Source::Recipe(recipe) = &self.source else { return false };
+        self.written.as_ref() != Some(changed.unwrap_or(recipe))
     }
 }
 

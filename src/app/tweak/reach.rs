@@ -8,6 +8,9 @@ const MOST_LINEAR: f32 = 100.0;
 /// Where sliders of endless ranges end; more can be typed.
 const FAR: f32 = 1000.0;
 
+/// What is usual of a number, where that is less than what it may be: the slider goes from one to the other, straight.
+pub type Usual = Option<(f32, f32)>;
+
 /// What the slider of a number reaches, and whether that is too wide to be linear.
 pub fn reach(range: &RangeInclusive<f32>, value: f32) -> (RangeInclusive<f32>, bool) {
     let (low, high) = (*range.start(), *range.end());

@@ -20,7 +20,9 @@ use super::easel::Easel;
 use super::pictures::{Pictures, names};
 use super::platform::worker::{Ticket, Worker};
 use super::session::Session;
-use super::sprite::source::recipes_of;
+use super::sprite::source::detail_of;
+use crate::app::inputs::picture_files;
+use crate::app::recipe::recipes_of;
 use crate::app::watch::Watcher;
 
 /// What follows the files of a session.
@@ -123,6 +125,7 @@ impl Reload {
             self.watch(session);
             // What was written between the reading and the watching.
             changed_on_disk(session);
+            look_again(session);
             self.load_pictures(session);
             if has_caches {
                 self.load_caches(session);
@@ -134,8 +137,11 @@ impl Reload {
                 has_shaders = true;
             } else if file == session.document.path() {
                 changed_on_disk(session);
-            } else if file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
+            } else if has_ending(&file, "png") {
                 has_pictures = true;
+                look_again(session);
+            } else if has_ending(&file, "json") {
+                look_again(session);
             } else {
                 has_caches = true;
             }
@@ -159,8 +165,11 @@ impl Reload {
     fn watch(&self, session: &Session) {
         let shaders = self.shaders.iter().flat_map(|shaders| shaders.files.iter().cloned());
         let folders = session.folders();
-        let recipes = recipes_of(&folders, &session.document.preset);
-        self.watcher.set(session.document.files(&folders).into_iter().chain(recipes).chain(shaders));
+        let pictures = picture_files(&session.document.preset);
+        // A sprite's recipe makes its detail, whether the preset names that or not.
+        let beside = pictures.iter().flat_map(|picture| recipes_of(picture).chain([detail_of(picture)]));
+        let beside = beside.flat_map(|file| folders.places(&file).collect::<Vec<_>>());
+        self.watcher.set(session.document.files(&folders).into_iter().chain(beside).chain(shaders));
     }
 
     /// Reads the pictures that the preset names; those of before stay where they cannot be had.
@@ -281,6 +290,16 @@ fn add(files: &mut Vec<PathBuf>, path: &Path) {
     if !files.iter().any(|file| file == path) {
         files.push(path.to_owned());
     }
+}
+
+/// Something was written that ramps or sprites are made from, or into.
+fn look_again(session: &mut Session) {
+    session.ramps.look_again();
+    session.sprites.look_again();
+}
+
+fn has_ending(file: &Path, ending: &str) -> bool {
+    file.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending))
 }
 
 /// The preset's file is another: it is loaded if nothing of it is changed here, else someone has to say which is wanted.

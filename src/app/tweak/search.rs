@@ -3,6 +3,8 @@
 use haze::preset::{Preset, Tooltips};
 use haze::settings::{path_of, walk};
 
+use super::lights::ShownLights;
+use super::look::{LOOK, Of};
 use super::show::Tab;
 
 /// Most that are listed.
@@ -51,12 +53,32 @@ pub struct Found {
     /// What it is part of.
     pub place: String,
     pub tooltip: String,
+    /// Where it is shown.
+    pub tab: Tab,
 }
 
-/// Settings whose names hold all words of a text, those that begin with it first; then those whose tooltips do.
-pub fn matches(preset: &Preset, tooltips: &Tooltips, text: &str) -> Vec<Found> {
+/// Settings whose names hold all words of a text, those that begin with it first; then those whose tooltips do. Those that make a
+/// look are found by the names that they have there, too; `lights` knows which of them lead.
+pub fn matches(preset: &Preset, tooltips: &Tooltips, lights: &ShownLights, text: &str) -> Vec<Found> {
     let words: Vec<_> = text.split_whitespace().map(str::to_lowercase).collect();
+    let holds = |text: &str| words.iter().all(|word| text.to_lowercase().contains(word.as_str()));
+    let begins = |name: &str| name.starts_with(&text.trim().to_lowercase());
     let mut found = Vec::new();
+    for (index, system) in preset.systems.iter().enumerate() {
+        for control in LOOK.iter().filter(|control| holds(control.name)) {
+            let Some(path) = control.path(index, lights.known_key(index)) else { continue };
+            let (is_made, tooltip) = match control.of {
+                Of::Made(made) => (true, made.tooltip.to_owned()),
+                _ => (false, path.clone()),
+            };
+            // Under its own name it is found below.
+            if is_made || !path.ends_with(&format!(".{}", control.name.replace(' ', "_"))) {
+                let place = if preset.systems.len() > 1 { format!("look of {}", system.name) } else { "look".into() };
+                let (name, rank) = (control.name.to_owned(), i32::from(!begins(control.name)));
+                found.push((rank, Found { path, name, place, tooltip, tab: Tab::Look }));
+            }
+        }
+    }
     walk(&mut preset.clone(), &mut |steps, _| {
         let plain = steps.iter().map(|step| step.0).collect::<Vec<_>>().join(".");
         let path = path_of(steps);
@@ -64,32 +86,31 @@ pub fn matches(preset: &Preset, tooltips: &Tooltips, text: &str) -> Vec<Found> {
         let Some((place, name)) = path.rsplit_once('.') else { return };
         let tooltip = tooltips.field(&plain).unwrap_or_default();
         let spelled = path.replace('_', " ");
-        let holds = |text: &str| words.iter().all(|word| text.to_lowercase().contains(word.as_str()));
         let own = name.replace('_', " ");
         let rank = match () {
-            () if own.starts_with(&text.trim().to_lowercase()) => 0,
+            () if begins(&own) => 0,
             () if holds(&own) => 1,
             () if holds(&spelled) => 2,
             () if holds(tooltip) => 3,
             () => return,
         };
-        let found_here = Found { path: path.clone(), name: name.into(), place: place.into(), tooltip: tooltip.into() };
-        found.push((rank, found_here));
+        let (name, place, tooltip, tab) = (name.into(), place.into(), tooltip.into(), tab_of(&path));
+        found.push((rank, Found { path, name, place, tooltip, tab }));
     });
     found.sort_by_key(|(rank, _)| *rank);
     found.truncate(MOST);
     found.into_iter().map(|(_, found)| found).collect()
 }
 
+/// Groups of a system's settings that are with its smoke; the others are advanced.
+pub const ON_SMOKE: [&str; 4] = ["diffuse", "soft_scatter", "specular_scatter", "soft_fade"];
+
 /// The tab that a setting is on.
-pub fn tab_of(path: &str) -> Tab {
-    let is_smoke = |part| path.contains(part);
+fn tab_of(path: &str) -> Tab {
+    let is_in = |part: &&str| path.contains(&format!(".{part}."));
     if !path.starts_with("systems") {
         Tab::Light
-    } else if [".emitter.", ".cache.", ".material.", ".diffuse.", ".soft_scatter.", ".specular_scatter.", ".soft_fade."]
-        .into_iter()
-        .any(is_smoke)
-    {
+    } else if ["emitter", "cache", "material"].iter().chain(&ON_SMOKE).any(is_in) {
         Tab::Smoke
     } else {
         Tab::Advanced
@@ -103,7 +124,8 @@ mod tests {
 
     fn first(text: &str) -> String {
         let preset = Preset::load("column").unwrap();
-        matches(&preset, &Tooltips::of::<Preset>(), text).first().map(|found| found.path.clone()).unwrap_or_default()
+        let found = matches(&preset, &Tooltips::of::<Preset>(), &ShownLights::default(), text);
+        found.first().map(|found| found.path.clone()).unwrap_or_default()
     }
 
     #[test]
@@ -120,7 +142,7 @@ mod tests {
         let preset = Preset::load("column").unwrap();
         let tooltips = Tooltips::of::<Preset>();
         for (path, _) in values(&preset).into_iter().filter(|(path, _)| path.contains('.')) {
-            let found = matches(&preset, &tooltips, &path.replace('_', " "));
+            let found = matches(&preset, &tooltips, &ShownLights::default(), &path.replace('_', " "));
             assert!(found.iter().any(|found| found.path == path), "{path}");
         }
     }

@@ -3,6 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
+use eframe::egui;
 use glam::UVec2;
 use haze::cache::Cache;
 use haze::demo::shot::Shot;
@@ -23,11 +24,13 @@ use super::messages::Messages;
 use super::performance::Performance;
 use super::picture_thumbnails::PictureThumbnails;
 use super::pictures::Pictures;
+use super::platform::wake::Wake;
 use super::playback::Playback;
 use super::ramp_files::RampFiles;
 use super::referee::Referee;
 use super::search::Search;
 use super::show::{Show, Tab};
+use super::sprite::draw::Painted;
 use super::sprite::files::SpriteFiles;
 
 pub struct Session {
@@ -47,6 +50,10 @@ pub struct Session {
     /// What the stages of the shading are.
     pub stages: Tooltips,
     pub thumbnails: PictureThumbnails,
+    /// The flipbook of the page of sprites.
+    pub flipbook: Option<Painted>,
+    /// For what is done on other threads for longer than one window lives.
+    pub wake: Wake,
     /// A folder of pictures that presets share.
     pub assets: Option<PathBuf>,
     /// A picture of the window is wanted here; then it closes.
@@ -103,6 +110,8 @@ impl Session {
             tooltips: Tooltips::of::<Preset>(),
             stages: Tooltips::of::<ShadeTree>(),
             thumbnails: PictureThumbnails::default(),
+            flipbook: None,
+            wake: Wake::default(),
             screenshot: None,
             pictures: Pictures::new(preset, materials),
             caches: Caches::new(preset, caches),
@@ -114,6 +123,12 @@ impl Session {
             second: None,
             document,
         })
+    }
+
+    /// Another window shows it from now on: what is of the last one's device is made anew.
+    pub fn follow_window(&mut self, context: &egui::Context) {
+        self.wake.follow(context);
+        (self.thumbnails, self.flipbook) = (PictureThumbnails::default(), None);
     }
 
     /// Where pictures are looked for.

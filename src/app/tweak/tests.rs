@@ -139,6 +139,30 @@ fn what_is_compared_can_be_taken_over() {
 }
 
 #[test]
+fn the_animation_of_sprites_is_frozen_beside_the_clock() {
+    let mut harness = column();
+    let is_frozen = |harness: &Harness<'_, Window>| {
+        harness.state().session.document.preset.systems.iter().all(|system| system.settings.sprite.freeze_animation)
+    };
+    for expected in [true, false] {
+        harness.get_by_label("Freeze").click();
+        harness.run_steps(3);
+        assert_eq!(is_frozen(&harness), expected);
+    }
+}
+
+#[test]
+fn undo_says_what_it_takes_back() {
+    let mut harness = column();
+    set(&mut harness, "exposure", 2.0);
+    let said = |harness: &Harness<'_, Window>| harness.query_all_by_label("exposure").count();
+    let before = said(&harness);
+    harness.get_by_label("Undo").hover();
+    harness.run_steps(8);
+    assert_eq!(said(&harness), before + 1);
+}
+
+#[test]
 fn any_setting_is_found_and_gone_to() {
     let mut harness = column();
     harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
@@ -192,25 +216,55 @@ fn time_is_played_and_stepped() {
     assert!((brightness(&picture(&mut harness), part) - brightness(&before, part)).abs() < 0.01);
 }
 
-/// Writes every tab in several sizes and both themes to the folder that HAZE_LOOK names, to be looked at.
+/// Writes every tab in several sizes and both themes to the folder that HAZE_LOOK names, to be looked at; HAZE_SIZE=WxH for one
+/// size alone.
 #[test]
 #[ignore = "for who wants to look"]
 fn pictures_of_every_tab() {
     let Some(folder) = std::env::var_os("HAZE_LOOK").map(std::path::PathBuf::from) else { return };
-    for (size, theme) in
-        [((1280.0, 800.0), Theme::Dark), ((2560.0, 1440.0), Theme::Light), ((640.0, 400.0), Theme::Dark)]
-    {
-        let mut harness = window("column", Vec2::from(size), theme);
+    let wanted = std::env::var("HAZE_SIZE").ok();
+    let sizes = [(1280, 800), (2560, 1440), (640, 400)]
+        .into_iter()
+        .filter(|(width, height)| wanted.as_ref().is_none_or(|wanted| *wanted == format!("{width}x{height}")));
+    for (size, theme) in sizes.flat_map(|size| [(size, Theme::Dark), (size, Theme::Light)]) {
+        let mut harness = window("column", Vec2::new(size.0 as f32, size.1 as f32), theme);
+        let save = |harness: &mut Harness<'_, Window>, name: &str| {
+            picture(harness).save(folder.join(format!("{name}_{}_{theme:?}.png", size.0))).unwrap();
+        };
         for (_, name, _) in super::panel::settings::TABS {
             harness.get_by_label(name).click();
             harness.run_steps(4);
-            picture(&mut harness).save(folder.join(format!("{name}_{}.png", size.0))).unwrap();
+            // What is read and counted beside the window comes.
+            for _ in 0..5 {
+                std::thread::sleep(std::time::Duration::from_millis(20));
+                picture(&mut harness);
+            }
+            save(&mut harness, name);
         }
-        choose(&mut harness, "Compare", "Forward");
+        harness.get_by_label("Look").click();
+        harness.get_by_label("Inspect").click();
+        harness.run_steps(3);
+        set(&mut harness, "exposure", 1.5);
+        choose(&mut harness, "Compare", "As saved");
         decibels(&mut harness);
-        picture(&mut harness).save(folder.join(format!("compare_{}.png", size.0))).unwrap();
+        let beside = viewport(&harness).center() - Vec2::new(0.1 * size.0 as f32, 0.0);
+        harness.hover_at(beside);
+        for _ in 0..5 {
+            std::thread::sleep(std::time::Duration::from_millis(20));
+            picture(&mut harness);
+        }
+        save(&mut harness, "compare");
         harness.key_press(Key::F1);
         harness.run_steps(4);
-        picture(&mut harness).save(folder.join(format!("help_{}.png", size.0))).unwrap();
+        save(&mut harness, "help");
+        harness.key_press(Key::Escape);
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::E);
+        harness.run_steps(4);
+        save(&mut harness, "export");
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
+        harness.run_steps(2);
+        harness.get_by_label("find a setting").type_text("size");
+        harness.run_steps(4);
+        save(&mut harness, "find");
     }
 }

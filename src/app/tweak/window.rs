@@ -76,6 +76,7 @@ impl Window {
     /// [`Error::Io`] where the system has no thread left.
     pub fn new(easel: Easel, start: Start) -> Result<Self, Error> {
         let Start { mut session, shaders, keeping, layout, has_dialogs } = start;
+        session.follow_window(easel.egui());
         session.show.has_strip = layout.has_strip.unwrap_or(session.show.has_strip);
         match &layout.hints {
             Some(left) => session.hints.go_on(left),
@@ -139,10 +140,12 @@ impl Window {
             ui.separator();
             let undo = self.session.document.history().undo_name().map(str::to_owned);
             let redo = self.session.document.history().redo_name().map(str::to_owned);
-            if ui.add_enabled(undo.is_some(), egui::Button::new("Undo")).clicked() {
+            let button = ui.add_enabled(undo.is_some(), egui::Button::new("Undo"));
+            if button.on_hover_text(undo.unwrap_or_default()).clicked() {
                 self.session.undo();
             }
-            if ui.add_enabled(redo.is_some(), egui::Button::new("Redo")).clicked() {
+            let button = ui.add_enabled(redo.is_some(), egui::Button::new("Redo"));
+            if button.on_hover_text(redo.unwrap_or_default()).clicked() {
                 self.session.redo();
             }
             ui.separator();
@@ -167,7 +170,8 @@ impl Window {
         });
     }
 
-    fn status(&self, ui: &mut Ui) {
+    fn status(&mut self, ui: &mut Ui) {
+        let mut is_read = false;
         let line = |ui: &mut Ui| {
             if self.easel.is_software() {
                 ui.colored_label(ui.visuals().warn_fg_color, &self.adapter).on_hover_text(SLOW);
@@ -178,11 +182,15 @@ impl Window {
                 if let Some(message) = self.session.messages.latest() {
                     let text = egui::RichText::new(&message.text);
                     let text = if message.is_error { text.color(ui.visuals().error_fg_color) } else { text };
-                    ui.add(egui::Label::new(text).truncate());
+                    let label = ui.add(egui::Label::new(text).truncate().sense(egui::Sense::click()));
+                    is_read = label.on_hover_text("A click puts it away").clicked();
                 }
             });
         };
         ui.horizontal(|ui| ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), line));
+        if is_read {
+            self.session.messages.put_away();
+        }
     }
 
     /// Does what keys ask for, unless something is typed.

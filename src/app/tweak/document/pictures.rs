@@ -1,4 +1,4 @@
-//! The pictures and particle files that go with a preset into another folder.
+//! The pictures, with their recipes, and particle files that go with a preset into another folder.
 
 use std::path::Path;
 
@@ -6,13 +6,16 @@ use haze::Error;
 use haze::preset::{PictureFolders, Preset};
 
 use crate::app::inputs::{caches_of, picture_files};
+use crate::app::recipe::recipes_of;
 use crate::app::tweak::platform::files;
 
 /// Copies the files that a preset names from its folder into another, to where the preset looks for them there. Nothing is
 /// replaced: before anything is written, another file in the place of one is refused. A file that is missing stays so.
 pub fn copy_beside(preset: &Preset, from: &Path, to: &Path) -> Result<(), Error> {
-    let pictures = picture_files(preset).into_iter().map(|file| from.join(file));
-    let sources = pictures.chain(caches_of(&PictureFolders::at(from), preset));
+    let pictures = picture_files(preset);
+    let recipes: Vec<_> = pictures.iter().flat_map(|picture| recipes_of(picture)).collect();
+    let beside = pictures.into_iter().chain(recipes).map(|file| from.join(file));
+    let sources = beside.chain(caches_of(&PictureFolders::at(from), preset));
     let mut copies = Vec::new();
     for source in sources.filter(|source| files::exists(source)) {
         let Ok(file) = source.strip_prefix(from) else { continue };
@@ -37,6 +40,10 @@ pub fn copy_beside(preset: &Preset, from: &Path, to: &Path) -> Result<(), Error>
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, Error> {
-    let is_picture = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
-    if is_picture { files::read_picture(path) } else { files::read_particles(path) }
+    let ends_with = |end: &str| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(end));
+    match () {
+        () if ends_with("png") => files::read_picture(path),
+        () if ends_with("json") => files::read_recipe(path),
+        () => files::read_particles(path),
+    }
 }

@@ -96,6 +96,37 @@ fn frames_are_written_in_every_form() {
 }
 
 #[test]
+fn what_takes_its_time_is_seen_and_stopped_and_another_sheet_takes_the_place_of_one() {
+    let mut bench = bench();
+    let seeds = |bench: &mut Bench, size: UVec2| {
+        bench.window.state_mut().exporting.order.size = size;
+        bench.window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::E);
+        bench.window.run_steps(2);
+    };
+    seeds(&mut bench, UVec2::new(2560, 1440));
+    let start = Instant::now();
+    while bench.window.query_by_label("Stop").is_none() {
+        assert!(start.elapsed() < Duration::from_secs(60) && bench.window.state().exporting.sheet.is_none());
+        bench.window.step();
+    }
+    bench.window.get_by_label("Stop").click();
+    bench.until(|window| window.exporting.progress().is_none());
+    bench.window.run_steps(2);
+    assert!(bench.window.state().exporting.sheet.is_none() && bench.window.query_by_label("Make").is_none());
+    let mut shown = |exposure: f32| {
+        bench.window.state_mut().session.document.preset.camera.exposure = exposure;
+        seeds(&mut bench, UVec2::new(192, 108));
+        // The one before is open meanwhile.
+        bench.until(|window| window.exporting.progress().is_none());
+        bench.window.run_steps(3);
+        let part = bench.window.get_by_label("sheet").rect();
+        testing::brightness(&testing::picture(&mut bench.window), part)
+    };
+    let (dark, bright) = (shown(-3.0), shown(2.0));
+    assert!(bright > dark + 5.0, "{dark} {bright}");
+}
+
+#[test]
 fn sheets_are_shown_and_saved_when_they_are_liked() {
     let mut bench = bench();
     bench.window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::E);
@@ -113,7 +144,7 @@ fn sheets_are_shown_and_saved_when_they_are_liked() {
     {
         bench.make(product);
         bench.until(|window| window.exporting.sheet.is_some());
-        let (picture, _) = bench.window.state_mut().exporting.sheet.take().unwrap();
+        let Sheet { picture, .. } = bench.window.state_mut().exporting.sheet.take().unwrap();
         assert!(picture.width() > 64 && count > 0);
     }
 }
@@ -140,21 +171,21 @@ fn a_row_makes_the_sheet_of_its_values_that_the_export_makes() {
     let path = "camera.exposure";
     bench.make(Product::Values(path.into()));
     bench.until(|window| window.exporting.sheet.is_some());
-    let (made, _) = bench.window.state_mut().exporting.sheet.take().unwrap();
+    let Sheet { picture: made, .. } = bench.window.state_mut().exporting.sheet.take().unwrap();
     bench.window.state_mut().exporting.is_open = false;
     bench.window.run_steps(3);
     testing::row_menu(&mut bench.window, "exposure");
     bench.window.get_by_label("Five values on a sheet").click();
     bench.window.run_steps(2);
     bench.until(|window| window.exporting.sheet.is_some());
-    let (sheet, _) = bench.window.state_mut().exporting.sheet.take().unwrap();
+    let Sheet { picture: sheet, .. } = bench.window.state_mut().exporting.sheet.take().unwrap();
     assert!(sheet == made, "another sheet");
     // Rows of several settings, too.
     testing::row_menu(&mut bench.window, "thickness");
     bench.window.get_by_label("Five values on a sheet").click();
     bench.window.run_steps(2);
     bench.until(|window| window.exporting.sheet.is_some());
-    let (_, path) = bench.window.state_mut().exporting.sheet.take().unwrap();
+    let Sheet { path, .. } = bench.window.state_mut().exporting.sheet.take().unwrap();
     assert!(path.to_string_lossy().contains("thickness"), "{}", path.display());
 }
 

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use eframe::egui::{Event, Key, Modifiers, Theme, Vec2, ViewportEvent, ViewportId};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use haze::FieldError;
 use haze::preset::Preset;
 use tempfile::TempDir;
 
@@ -213,6 +214,11 @@ fn what_cannot_be_opened_is_said_once_and_nothing_is_lost() {
     }
     assert_eq!((bench.session().document.preset.camera.exposure * 100.0) as i32, 150);
     assert_eq!(bench.session().document.path().file_name().unwrap(), "my.json");
+    // A click puts away what was read.
+    let said = bench.said();
+    bench.window.run_steps(2);
+    bench.click(&said);
+    assert_eq!(bench.said(), "");
 }
 
 #[test]
@@ -281,6 +287,13 @@ fn a_dropped_preset_is_opened_and_a_dropped_ramp_lights() {
     haze::picture::write_png(&ramp, &grey.into(), haze::picture::Effort::Quick).unwrap();
     bench.drop_file(&ramp);
     bench.until(|bench| bench.session().document.preset.systems[0].material.diffuse_ramp == "mine.png");
+    assert_eq!(bench.said(), "mine.png is the diffuse ramp of smoke now");
+    bench.session().undo();
+    let scatter = bench.path("scatter_mine.png");
+    fs::rename(&ramp, &scatter).unwrap();
+    bench.drop_file(&scatter);
+    bench.until(|bench| bench.session().document.preset.systems[0].material.soft_scatter_ramp == "scatter_mine.png");
+    assert_ne!(bench.session().document.preset.systems[0].material.diffuse_ramp, "scatter_mine.png");
     bench.session().undo();
     let other = bench.path("other.json");
     fs::write(&other, Preset::load("fence").unwrap().to_text("")).unwrap();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use eframe::egui::{self, Ui};
 use glam::UVec2;
 use haze::Error;
-use haze::demo::capture::{Capture, Captured};
+use haze::demo::capture::{Capture, Witness};
 use haze::demo::shot::Shot;
 
 use super::survey::Survey;
@@ -33,8 +33,7 @@ pub struct Lens {
 /// A picture, and its texels.
 struct Seen {
     side: Side,
-    shot: Shot,
-    captured: Captured,
+    witness: Witness,
 }
 
 /// What the worker found.
@@ -100,7 +99,7 @@ impl Lens {
                 // Ramps are those of the first picture.
                 if has_ramps && seen.side == Side::First {
                     let seen = seen.clone();
-                    self.worker.submit(move |_| Ok(Answer::Survey(Survey::of(&seen.captured, &seen.shot)?)));
+                    self.worker.submit(move |_| Ok(Answer::Survey(Survey::of(&seen.witness)?)));
                 }
                 (self.seen, self.asked) = (Some(seen), None);
             }
@@ -114,7 +113,7 @@ impl Lens {
         let Some((seen, place)) = self.seen.as_ref().filter(|seen| seen.side == side).zip(inspect.place()) else {
             return;
         };
-        let size = seen.shot.size;
+        let size = seen.witness.shot().size;
         let at = |share: f32, side: u32| ((share * side as f32) as u32).min(side - 1);
         let pixel = UVec2::new(at(place.x, size.x), at(place.y, size.y));
         // The next question waits for the answer: a pointer that never rests would get none.
@@ -123,8 +122,8 @@ impl Lens {
         }
         let seen = seen.clone();
         self.worker.submit(move |_| {
-            let probe = seen.captured.probe(&seen.shot, &[pixel])?.remove(0);
-            let preset = &seen.shot.preset;
+            let probe = seen.witness.probe(&[pixel])?.remove(0);
+            let preset = &seen.witness.shot().preset;
             let names = preset.systems.iter().map(|system| system.name.clone()).collect();
             Ok(Answer::Told(Told { pixel, side: seen.side, names, probe, exposure: preset.camera.exposure.exp2() }))
         });
@@ -134,5 +133,5 @@ impl Lens {
 
 fn read(side: Side, shot: Shot, capture: &Capture) -> Result<Seen, Error> {
     let none = || Error::Device("the texels of the picture did not come back".into());
-    Ok(Seen { side, captured: capture.read().ok_or_else(none)?, shot })
+    Ok(Seen { side, witness: capture.read().ok_or_else(none)?.of(shot) })
 }

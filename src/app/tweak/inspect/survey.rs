@@ -2,8 +2,7 @@
 
 use glam::{UVec2, Vec2};
 use haze::Error;
-use haze::demo::capture::Captured;
-use haze::demo::shot::Shot;
+use haze::demo::capture::Witness;
 use haze::reference::SystemProbe;
 
 /// Most pixels that are looked at.
@@ -47,12 +46,12 @@ pub struct Histogram {
 impl Survey {
     /// # Errors
     /// Where the texels are of another shot.
-    pub fn of(captured: &Captured, shot: &Shot) -> Result<Self, Error> {
-        let size = shot.size;
+    pub fn of(witness: &Witness) -> Result<Self, Error> {
+        let size = witness.shot().size;
         let step = (size.element_product() as f32 / MOST as f32).sqrt().ceil().max(1.0) as u32;
         let column = |y| (step / 2..size.x).step_by(step as usize).map(move |x| UVec2::new(x, y));
         let pixels: Vec<_> = (step / 2..size.y).step_by(step as usize).flat_map(column).collect();
-        let probes = captured.probe(shot, &pixels)?;
+        let probes = witness.probe(&pixels)?;
         let of_pixel = |(pixel, probe): (UVec2, haze::reference::Probe)| {
             probe.systems.into_iter().map(move |system| (pixel, system))
         };

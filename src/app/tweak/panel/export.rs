@@ -2,24 +2,28 @@
 
 use eframe::egui::{self, Ui};
 
-use crate::app::tweak::exporting::{Exporting, MOST_PIXELS, Product};
+use crate::app::tweak::exporting::{Exporting, MOST_PIXELS, Product, Sheet};
 use crate::app::tweak::platform::clock::Duration;
 use crate::app::tweak::search::matches;
 use crate::app::tweak::session::Session;
 
-/// Below the menus.
-const CORNER: [f32; 2] = [24.0, 40.0];
+/// Below the menus and the tools on the picture.
+const CORNER: [f32; 2] = [24.0, 76.0];
 
 /// Draws the window for exports and the sheet while they are open.
 pub fn panel(ui: &Ui, exporting: &mut Exporting, session: &mut Session) {
     exporting.advance(session);
-    if exporting.progress().is_some() {
+    let progress = exporting.progress();
+    if progress.is_some() {
         // What is far is seen to move, and no oftener than it does.
         ui.ctx().request_repaint_after(Duration::from_millis(200));
     }
     let mut is_open = exporting.is_open;
-    let window = egui::Window::new("Export").default_pos(CORNER).open(&mut is_open).collapsible(false).resizable(false);
-    window.show(ui.ctx(), |ui| match exporting.progress() {
+    let window = egui::Window::new("Export").default_pos(CORNER).collapsible(false).resizable(false);
+    // What takes its time is seen, and can be stopped, whoever asked for it.
+    let is_long = progress.is_some_and(|(_, count)| count > 1);
+    let window = if is_long && !is_open { window } else { window.open(&mut is_open) };
+    window.show(ui.ctx(), |ui| match progress {
         Some((done, count)) => {
             let share = done as f32 / count.max(1) as f32;
             ui.add(egui::ProgressBar::new(share).text(format!("{done} of {count}")));
@@ -79,7 +83,8 @@ fn order(ui: &mut Ui, exporting: &mut Exporting, session: &mut Session) {
     if let Product::Values(path) = product {
         let edit = egui::TextEdit::singleline(&mut exporting.wanted).hint_text("Find a setting");
         ui.add(edit).widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "setting to vary"));
-        for found in matches(&session.document.preset, &session.tooltips, &exporting.wanted).into_iter().take(6) {
+        let found = matches(&session.document.preset, &session.tooltips, &session.show.lights, &exporting.wanted);
+        for found in found.into_iter().take(6) {
             let is_chosen = found.path == *path;
             if ui.selectable_label(is_chosen, &found.path).on_hover_text(&found.tooltip).clicked() {
                 path.clone_from(&found.path);
@@ -94,28 +99,24 @@ fn order(ui: &mut Ui, exporting: &mut Exporting, session: &mut Session) {
 }
 
 fn sheet(ui: &Ui, exporting: &mut Exporting) {
-    let Some((picture, _)) = &exporting.sheet else { return };
-    let id = egui::Id::unique("sheet");
-    let size = [picture.width() as usize, picture.height() as usize];
+    let Some(Sheet { picture, texture, .. }) = &mut exporting.sheet else { return };
     // Uploaded once.
-    let known = ui.data(|data| data.get_temp::<egui::TextureHandle>(id)).filter(|known| known.size() == size);
-    let texture = known.unwrap_or_else(|| {
+    let texture = texture.get_or_insert_with(|| {
+        let size = [picture.width() as usize, picture.height() as usize];
         let picture = egui::ColorImage::from_rgb(size, picture);
         ui.ctx().load_texture("sheet", picture, egui::TextureOptions::LINEAR)
     });
-    ui.data_mut(|data| data.insert_temp(id, texture.clone()));
     let (mut is_open, mut is_saved) = (true, false);
-    let room = ui.ctx().content_rect().size() - egui::Vec2::new(60.0, 120.0);
+    let room = ui.ctx().content_rect().size() - egui::Vec2::new(60.0, 160.0);
     let window = egui::Window::new("Sheet").default_pos(CORNER).open(&mut is_open).collapsible(false);
     window.show(ui.ctx(), |ui| {
         is_saved = ui.button("Save").on_hover_text("Beside the preset").clicked();
-        ui.add(egui::Image::new(&texture).max_size(room).alt_text("sheet"));
+        ui.add(egui::Image::new(&*texture).max_size(room).alt_text("sheet"));
     });
     if is_saved {
         exporting.save_sheet();
     }
     if is_saved || !is_open {
         exporting.sheet = None;
-        ui.data_mut(|data| data.remove::<egui::TextureHandle>(id));
     }
 }

@@ -6,12 +6,13 @@ use std::ops::RangeInclusive;
 use eframe::egui::{self, Ui};
 use glam::Vec3;
 use haze::preset::Tooltips;
-use haze::settings::{Choice, FieldVisitor, Fields, Headed, PictureRole, Value, path_of};
+use haze::settings::{Choice, FieldVisitor, Fields, PictureRole, Value, path_of};
 
 use super::gallery::gallery;
-use super::row::{self, Asked, Row, Usual, spaced};
+use super::row::{self, Asked, Row, spaced};
 use super::value::shown_value;
 use crate::app::tweak::picture_thumbnails::PictureThumbnails;
+use crate::app::tweak::reach::Usual;
 
 /// A step on the way to a field: its name, and its place where it is one of a list.
 pub type Step = (&'static str, Option<usize>);
@@ -52,11 +53,11 @@ const ALL: Option<&str> = Some("All values on a sheet");
 pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fields) {
     let table = fields.headings();
     if table.is_empty() {
-        fields.visit(&mut Rows { ui, desk, path: path.to_vec(), under: None, only: None });
+        show_where(ui, desk, path, fields, &|_| true);
     }
     for part in table.chunk_by(|_, (_, heading)| heading.is_none()) {
         let mut rows = |ui: &mut Ui, desk: &mut Desk<'_>| {
-            fields.visit(&mut Rows { ui, desk, path: path.to_vec(), under: Some(part), only: None });
+            show_where(ui, desk, path, fields, &|name| part.iter().any(|(field, _)| *field == name));
         };
         let Some(&(first, Some(heading))) = part.first() else {
             rows(ui, desk);
@@ -69,6 +70,17 @@ pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fi
         let header = header(desk, heading, &holds).id_salt((path, heading)).default_open(first == table[0].0);
         header.show_unindented(ui, |ui| rows(ui, desk));
     }
+}
+
+/// Draws those fields of a struct whose names are wanted.
+pub fn show_where(
+    ui: &mut Ui,
+    desk: &mut Desk<'_>,
+    path: &[Step],
+    fields: &mut dyn Fields,
+    is_wanted: &dyn Fn(&str) -> bool,
+) {
+    fields.visit(&mut Rows { ui, desk, path: path.to_vec(), is_wanted, only: None });
 }
 
 /// What folds away fields: open while one is sought that it holds, with the marks of those that it does.
@@ -84,23 +96,29 @@ pub fn is_at(field: &str, path: &str) -> bool {
     field.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
-/// One field: a title, where its own name would not say enough, its path, and how far its slider goes.
-pub type Named = (Option<&'static str>, &'static str, Usual);
+/// One field of a struct: what it is called in place of its own name, its path from there, and how far its slider goes.
+pub type Named<'a> = (&'a str, &'a str, Usual);
 
-/// Draws some fields of a struct, in the order of `names`; paths are from the struct.
-pub fn show_named(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fields, names: &[Named]) {
-    for &(title, wanted, usual) in names {
-        let only = Some(Only { title, wanted, usual, depth: path.len() });
-        fields.visit(&mut Rows { ui, desk, path: path.to_vec(), under: None, only });
-    }
+/// Draws one field of a struct that `path` leads to.
+pub fn show_named(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fields, named: Named<'_>) {
+    let (title, wanted, usual) = named;
+    let only = Some(Only { title, wanted, usual, depth: path.len() });
+    fields.visit(&mut Rows { ui, desk, path: path.to_vec(), is_wanted: &|_| true, only });
+}
+
+/// Brings the row that begins at a place into sight, and marks it: it is the one that was looked for.
+pub fn show_sought(ui: &Ui, begin: egui::Pos2) {
+    let rect = egui::Rect::from_min_max(begin, ui.cursor().min + egui::vec2(ui.available_width(), 0.0));
+    ui.scroll_to_rect(rect, Some(egui::Align::Center));
+    ui.painter().rect_stroke(rect, 2.0, ui.visuals().selection.stroke, egui::StrokeKind::Outside);
 }
 
 struct Rows<'a, 'd, 'u> {
     ui: &'u mut Ui,
     desk: &'a mut Desk<'d>,
     path: Vec<Step>,
-    /// Those under a heading; all if `None`.
-    under: Option<&'static [Headed]>,
+    /// Whether a field of this name is drawn.
+    is_wanted: &'a dyn Fn(&str) -> bool,
     /// All fields if `None`.
     only: Option<Only<'a>>,
 }
@@ -108,7 +126,7 @@ struct Rows<'a, 'd, 'u> {
 /// One field among many.
 #[derive(Clone, Copy)]
 struct Only<'a> {
-    title: Option<&'a str>,
+    title: &'a str,
     /// Its path from a struct that so many steps lead to.
     wanted: &'a str,
     usual: Usual,
@@ -122,7 +140,7 @@ impl Rows<'_, '_, '_> {
         (unit, sheet): (&str, Option<&'static str>),
         control: impl FnOnce(&mut Ui, &egui::Response, &mut Option<String>, &str, &Tooltips),
     ) {
-        if !self.is_here(name) {
+        if !(self.is_wanted)(name) {
             return;
         }
         self.path.push((name, None));
@@ -135,9 +153,15 @@ impl Rows<'_, '_, '_> {
         }
         let desk = &mut *self.desk;
         let second = desk.second(&path, unit);
+        let title = self.only.map_or(name, |only| only.title);
+        let mut tooltip = desk.tooltips.field(&plain).unwrap_or_default().to_owned();
+        if title != spaced(name) && self.only.is_some() {
+            // What it is called in files.
+            tooltip += &format!("\n\n{path}");
+        }
         let row = Row {
-            name: self.only.and_then(|only| only.title).unwrap_or(name),
-            tooltip: desk.tooltips.field(&plain).unwrap_or_default(),
+            name: title,
+            tooltip: &tooltip,
             is_changed: desk.changed.contains(&path),
             second: second.as_ref().map(Option::as_deref),
             sheet: sheet.filter(|_| desk.has_sheets),
@@ -154,25 +178,18 @@ impl Rows<'_, '_, '_> {
             *what = format!("{path}: {what}");
         }
         if desk.sought == Some(path.as_str()) {
-            let rect =
-                egui::Rect::from_min_max(before, self.ui.cursor().min + egui::vec2(self.ui.available_width(), 0.0));
-            self.ui.scroll_to_rect(rect, Some(egui::Align::Center));
-            self.ui.painter().rect_stroke(rect, 2.0, self.ui.visuals().selection.stroke, egui::StrokeKind::Outside);
+            show_sought(self.ui, before);
         }
     }
 
-    fn is_here(&self, name: &str) -> bool {
-        self.under.is_none_or(|part| part.iter().any(|(field, _)| *field == name))
-    }
-
     fn nested(&mut self, step: Step, title: &str, fields: &mut dyn Fields) {
-        if !self.is_here(step.0) {
+        if !(self.is_wanted)(step.0) {
             return;
         }
         self.path.push(step);
         if self.only.is_some() {
             let path = self.path.clone();
-            fields.visit(&mut Rows { ui: self.ui, desk: self.desk, path, under: None, only: self.only });
+            fields.visit(&mut Rows { ui: self.ui, desk: self.desk, path, is_wanted: &|_| true, only: self.only });
         } else {
             let path = path_of(&self.path);
             let header = header(self.desk, &spaced(title), &|field| is_at(field, &path)).id_salt(&path);

@@ -4,49 +4,36 @@ use eframe::egui::Ui;
 use haze::preset::{Preset, PresetSystem};
 use haze::{Light, LightKind};
 
-use super::fields::{self, Desk, FIVE, Named};
+use super::fields::{self, Desk, FIVE, show_named};
 use super::row::{self, Asked, Row};
 use crate::app::tweak::lights::{ShownLights, name_of};
-use crate::app::tweak::made::{Made, SOFTNESS, THICKNESS, WIND};
-
-/// Settings of the system that are shown as they are, as far as they make sense: what comes before the rows of their own, and
-/// after.
-const BEFORE: [Named; 3] = [
-    (None, "emitter.radius_start", Some((0.0, 1.5))),
-    (None, "emitter.radius_end", Some((0.0, 4.0))),
-    (None, "emitter.buoyancy", Some((-1.0, 3.0))),
-];
-const AFTER: [Named; 2] =
-    [(None, "emitter.turbulence", Some((0.0, 3.0))), (None, "emitter.turbulence_scale", Some((0.1, 6.0)))];
-const KEY_LIGHT: [Named; 1] = [(Some("key light"), "intensity", Some((0.0, 100.0)))];
-const LIGHT: [Named; 2] = [
-    (None, "settings.soft_scatter.scatter_colour", None),
-    // Elsewhere it stands under that heading.
-    (Some("specular intensity"), "settings.specular_scatter.intensity", Some((0.0, 4.0))),
-];
-const EXPOSURE: [Named; 1] = [(None, "exposure", Some((-4.0, 4.0)))];
+use crate::app::tweak::look::{LOOK, Of};
+use crate::app::tweak::made::Made;
 
 /// Draws the look of one system of the preset.
 pub fn panel(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, shown: &mut ShownLights, index: usize) {
     shown.follow(&preset.lights);
     let key = shown.key(index, || key_light(preset, index));
-    let Some(system) = preset.systems.get_mut(index) else {
+    let Preset { systems, lights, camera, .. } = preset;
+    let Some(system) = systems.get_mut(index) else {
         ui.weak("The preset has no smoke.");
         return;
     };
-    made_row(ui, desk, system, index, &THICKNESS);
-    fields::show_named(ui, desk, &[("systems", Some(index))], system, &BEFORE);
-    made_row(ui, desk, system, index, &WIND);
-    fields::show_named(ui, desk, &[("systems", Some(index))], system, &AFTER);
-    made_row(ui, desk, system, index, &SOFTNESS);
-    if let Some((key, light)) = key.and_then(|key| Some((key, preset.lights.get_mut(key)?))) {
-        fields::show_named(ui, desk, &[("lights", Some(key))], light, &KEY_LIGHT);
-        row::note(ui, &name_of(key, light)).on_hover_text(KEY);
+    let path = [("systems", Some(index))];
+    for control in LOOK {
+        let name = control.name;
+        match control.of {
+            Of::Made(made) => made_row(ui, desk, system, index, made),
+            Of::System(field, usual) => show_named(ui, desk, &path, system, (name, field, usual)),
+            Of::Camera(field, usual) => show_named(ui, desk, &[("camera", None)], camera, (name, field, usual)),
+            Of::KeyLight(field, usual) => {
+                let Some((key, light)) = key.and_then(|key| Some((key, lights.get_mut(key)?))) else { continue };
+                show_named(ui, desk, &[("lights", Some(key))], light, (name, field, usual));
+                let marks = if desk.second.is_some() { 2.0 } else { 1.0 };
+                row::note(ui, marks, &name_of(key, light)).on_hover_text(KEY);
+            }
+        }
     }
-    if let Some(system) = preset.systems.get_mut(index) {
-        fields::show_named(ui, desk, &[("systems", Some(index))], system, &LIGHT);
-    }
-    fields::show_named(ui, desk, &[("camera", None)], &mut preset.camera, &EXPOSURE);
 }
 
 /// What the key light is.
@@ -63,12 +50,16 @@ fn made_row(ui: &mut Ui, desk: &mut Desk<'_>, system: &mut PresetSystem, index: 
     let sheet = FIVE.filter(|_| desk.has_sheets);
     let row = Row { name: made.name, tooltip: made.tooltip, is_changed, second, sheet, inert };
     let refused = &mut desk.refused;
+    let before = ui.cursor().min;
     let asked = row.show(ui, |ui, label| {
         let mut value = (made.get)(system);
         if row::number(ui, label, &mut value, (&made.range, Some(made.usual)), made.unit, refused) {
             (made.set)(system, value);
         }
     });
+    if desk.sought == Some(made.path(index).as_str()) {
+        fields::show_sought(ui, before);
+    }
     match asked {
         Some(Asked::Sheet) => desk.asked.push((Asked::Sheet, made.path(index))),
         Some(asked) => desk.asked.extend(paths.into_iter().map(|path| (asked, path))),
@@ -90,11 +81,12 @@ fn key_light(preset: &Preset, system: usize) -> Option<usize> {
 
 #[cfg(test)]
 mod tests {
-    use eframe::egui::{Role, Theme, Vec2};
+    use eframe::egui::{Key, Modifiers, Role, Theme, Vec2};
     use egui_kittest::Harness;
     use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
-    use crate::app::tweak::panel::settings::TABS;
+    use crate::app::tweak::look::LOOK;
+    use crate::app::tweak::show::Tab;
     use crate::app::tweak::testing::window;
     use crate::app::tweak::window::Window;
 
@@ -133,19 +125,39 @@ mod tests {
     }
 
     #[test]
-    fn a_setting_is_called_the_same_in_the_look_and_where_all_are() {
+    fn sliders_are_called_as_artists_do_and_are_found_by_either_name() {
         let mut harness = window("column", Vec2::new(1000.0, 900.0), Theme::Dark);
-        let names = ["radius start", "radius end", "buoyancy", "turbulence", "turbulence scale", "wind"];
         let has = |harness: &Harness<'_, Window>, name| harness.query_all_by_label(name).next().is_some();
-        assert!(names.iter().all(|name| has(&harness, name)));
-        harness.get_by_label(TABS[2].1).click();
-        harness.run_steps(3);
-        for fold in ["motion", "turbulence", "size"] {
-            harness.get_by_label(fold).click();
-            harness.run_steps(12);
+        for control in LOOK {
+            assert!(has(&harness, control.name), "{}", control.name);
         }
-        for name in names {
-            assert!(has(&harness, name), "{name}");
+        assert!(!has(&harness, "radius start"));
+        let find = |harness: &mut Harness<'_, Window>, text: &str| {
+            harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
+            harness.run_steps(2);
+            harness.get_by_label("find a setting").type_text(text);
+            harness.run_steps(2);
+            harness.key_press(Key::Enter);
+            harness.run_steps(8);
+        };
+        for (text, tab) in [
+            ("radius start", Tab::Smoke),
+            ("size at birth", Tab::Look),
+            ("buoyancy", Tab::Smoke),
+            ("rise", Tab::Look),
+            ("thickness", Tab::Look),
+            ("specular scatter intensity", Tab::Smoke),
+            ("key light", Tab::Look),
+            ("glow", Tab::Look),
+        ] {
+            find(&mut harness, text);
+            assert_eq!(harness.state().session.show.tab, tab, "{text}");
         }
+        // Undo and files call it by the name that it has there, and the tooltip tells.
+        let sliders = harness.get_all_by_label("rise");
+        let slider = sliders.into_iter().find(|node| node.accesskit_node().role() == Role::Slider).unwrap().rect();
+        harness.hover_at(slider.left_center() - Vec2::new(115.0, 0.0));
+        harness.run_steps(8);
+        assert!(harness.query_all_by_label_contains("systems[0].emitter.buoyancy").next().is_some());
     }
 }

@@ -8,7 +8,7 @@ use glam::Vec3;
 use haze::settings::Choice;
 
 use super::value::{parse, shown, suffix};
-use crate::app::tweak::reach::{is_wide, reach};
+use crate::app::tweak::reach::{Usual, is_wide, reach};
 
 /// Width of the names, and the most that they may have of a row.
 const NAME: f32 = 118.0;
@@ -124,10 +124,10 @@ fn name_width(ui: &Ui) -> f32 {
     NAME.min(SHARE * ui.available_width())
 }
 
-/// A word below a control, about it.
-pub fn note(ui: &mut Ui, text: &str) -> Response {
+/// A word below a control, about it; `marks`: how many stand before names.
+pub fn note(ui: &mut Ui, marks: f32, text: &str) -> Response {
     ui.horizontal(|ui| {
-        ui.add_space(MARK + name_width(ui) + 2.0 * ui.spacing().item_spacing.x);
+        ui.add_space(marks * MARK + name_width(ui) + (marks + 1.0) * ui.spacing().item_spacing.x);
         ui.weak(text)
     })
     .inner
@@ -143,9 +143,6 @@ const VALUE: f32 = 84.0;
 
 /// What cannot be typed is told once.
 pub type Refused = Option<String>;
-
-/// What is usual of a number, where that is less than what it may be: the slider goes from one to the other, straight.
-pub type Usual = Option<(f32, f32)>;
 
 /// A slider for a number, and the number, which can be typed; `refused` is told what was typed in vain. True if it was changed.
 pub fn number(

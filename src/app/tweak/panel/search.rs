@@ -3,7 +3,7 @@
 use eframe::egui::{self, Key, Ui};
 
 use super::row::spaced;
-use crate::app::tweak::search::{matches, tab_of};
+use crate::app::tweak::search::matches;
 use crate::app::tweak::session::Session;
 
 /// Draws the box while it is open.
@@ -15,7 +15,7 @@ pub fn panel(ui: &Ui, session: &mut Session) {
     if !search.is_open {
         return;
     }
-    let found = matches(&session.document.preset, &session.tooltips, &search.text);
+    let found = matches(&session.document.preset, &session.tooltips, &session.show.lights, &search.text);
     let mut gone_to = None;
     let response = egui::Modal::new(egui::Id::unique("search")).show(ui.ctx(), |ui| {
         ui.set_width(460.0);
@@ -35,15 +35,15 @@ pub fn panel(ui: &Ui, session: &mut Session) {
             let text = format!("{}   {}", spaced(&found.name), found.place);
             let entry = ui.selectable_label(index == search.chosen, text).on_hover_text(&found.tooltip);
             if entry.clicked() || is_entered && index == search.chosen {
-                gone_to = Some(found.path.clone());
+                gone_to = Some((found.tab, found.path.clone()));
             }
         }
         if found.is_empty() {
             ui.weak("No setting is called so, or says so.");
         }
     });
-    if let Some(path) = gone_to {
-        session.show.tab = tab_of(&path);
+    if let Some((tab, path)) = gone_to {
+        session.show.tab = tab;
         search.go_to(path);
     } else if response.should_close() {
         search.is_open = false;

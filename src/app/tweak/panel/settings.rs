@@ -8,6 +8,7 @@ use super::fields::{self, Desk, Step, is_at};
 use super::row::Asked;
 use super::{curve, lights, look, ramps, sprite};
 use crate::app::tweak::messages::short;
+use crate::app::tweak::search::ON_SMOKE;
 use crate::app::tweak::session::Session;
 use crate::app::tweak::show::Tab;
 use crate::app::tweak::smoke::Smoke;
@@ -156,10 +157,15 @@ fn smoke(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, index: usize) {
     }
 }
 
+/// Settings that only programmers have a use for.
+const FOR_PROGRAMMERS: [&str; 3] = ["path", "blend_mode", "accumulate"];
+
 fn advanced(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, index: usize) {
     let Some(system) = preset.systems.get_mut(index) else { return };
     let at = [("systems", Some(index)), ("settings", None)];
-    fields::show(ui, desk, &at, &mut system.settings);
+    let is_last = |name: &str| FOR_PROGRAMMERS.contains(&name);
+    fields::show_where(ui, desk, &at, &mut system.settings, &|name| !is_last(name) && !ON_SMOKE.contains(&name));
+    fields::show_where(ui, desk, &at, &mut system.settings, &is_last);
 }
 
 #[cfg(test)]
@@ -190,6 +196,19 @@ mod tests {
         harness.hover_at(place - Vec2::new(80.0, 0.0));
         harness.run_steps(8);
         assert!(harness.query_all_by_label_contains("No effect here: forward only.").next().is_some());
+    }
+
+    #[test]
+    fn what_is_for_programmers_comes_last_and_nothing_stands_on_two_tabs() {
+        let mut harness = window("column", Vec2::new(1280.0, 800.0), Theme::Dark);
+        harness.get_by_label("Advanced").click();
+        harness.run_steps(3);
+        let place = |name: &str| harness.get_all_by_label(name).next().unwrap().rect().top();
+        let before = ["technique", "boost", "sprite", "volumetric"].map(place).into_iter().fold(0.0, f32::max);
+        assert!(["path", "blend mode", "accumulate"].into_iter().all(|name| place(name) > before));
+        for name in super::ON_SMOKE {
+            assert!(harness.query_by_label(&name.replace('_', " ")).is_none(), "{name}");
+        }
     }
 
     #[test]
@@ -251,7 +270,7 @@ mod tests {
         let mut harness = window("column", Vec2::new(1000.0, 640.0), Theme::Dark);
         let saved = harness.state().session.document.preset.clone();
         let is_marked = |harness: &Harness<'_, Window>, name| harness.query_by_label(name).is_some();
-        let (exposure, buoyancy) = ("take exposure of the second", "take buoyancy of the second");
+        let (exposure, buoyancy) = ("take exposure of the second", "take rise of the second");
         let preset = &mut harness.state_mut().session.document.preset;
         preset.camera.exposure = 3.0;
         preset.systems[0].emitter.buoyancy += 1.0;
@@ -263,7 +282,7 @@ mod tests {
         harness.state_mut().session.compare.against = Some(Against::Saved);
         harness.run_steps(3);
         assert!(is_marked(&harness, exposure) && is_marked(&harness, buoyancy));
-        assert!(!is_marked(&harness, "take specular intensity of the second"));
+        assert!(!is_marked(&harness, "take glow of the second"));
         harness.get_by_label(exposure).click();
         harness.run_steps(3);
         let now = |harness: &Harness<'_, Window>| harness.state().session.document.preset.clone();
@@ -272,7 +291,7 @@ mod tests {
         assert!(!is_marked(&harness, exposure) && is_marked(&harness, buoyancy));
         assert_eq!(undo_name(&harness).as_deref(), Some("exposure"));
         // The menu says what it would be.
-        row_menu(&mut harness, "buoyancy");
+        row_menu(&mut harness, "rise");
         let value = shown_value(&Value::Number(saved.systems[0].emitter.buoyancy), "m/s²");
         harness.get_by_label(&format!("Take {value} of the second picture")).click();
         harness.run_steps(3);

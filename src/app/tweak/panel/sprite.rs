@@ -8,6 +8,9 @@ use eframe::egui::{self, Ui};
 use crate::app::tweak::messages::short;
 use crate::app::tweak::session::Session;
 
+/// A page that is no higher, points, scrolls as a whole: beside the picture there is no room for a recipe.
+const SMALL: f32 = 360.0;
+
 /// Draws the page of the selected system's sprite.
 pub fn panel(ui: &mut Ui, session: &mut Session) {
     let index = session.show.system;
@@ -17,14 +20,24 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
         return;
     };
     let (names, settings) = (system.material.clone(), system.settings);
-    flipbook::panel(ui, &mut session.show.sprite, &material, &settings);
-    ui.separator();
-    ui.horizontal(|ui| {
-        ui.strong(short(&names.sprite, 40));
-        let sprite = &material.sprite;
-        ui.weak(format!("{} frames of {1}x{1}", sprite.frame_count(), sprite.size()));
-    });
-    // The picture stays where it is while sliders far below are moved.
     let area = egui::ScrollArea::vertical().id_salt(session.show.tab).auto_shrink(false);
+    let top = |ui: &mut Ui, session: &mut Session| {
+        flipbook::panel(ui, (&mut session.show.sprite, &mut session.flipbook), &material, &settings);
+        ui.separator();
+        ui.horizontal(|ui| {
+            ui.strong(short(&names.sprite, 40));
+            let sprite = &material.sprite;
+            ui.weak(format!("{} frames of {1}x{1}", sprite.frame_count(), sprite.size()));
+        });
+    };
+    if ui.available_height() < SMALL {
+        area.show(ui, |ui| {
+            top(ui, session);
+            recipe::panel(ui, session, &names);
+        });
+        return;
+    }
+    // The picture stays where it is while sliders far below are moved.
+    top(ui, session);
     area.show(ui, |ui| recipe::panel(ui, session, &names));
 }

@@ -1,6 +1,8 @@
 //! Time: play, step, scrub, go round.
 
 use eframe::egui::{self, Ui};
+use glam::UVec2;
+use haze::preset::Preset;
 
 use crate::app::tweak::icon::{self, Icon};
 use crate::app::tweak::session::Session;
@@ -22,7 +24,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
         if icon::button(ui, Icon::Loop, playback.is_looping, "Go round in the range at the right (L)").clicked() {
             playback.is_looping = !playback.is_looping;
         }
-        ui.spacing_mut().slider_width = (ui.available_width() - 440.0).max(60.0);
+        ui.spacing_mut().slider_width = (ui.available_width() - 500.0).max(60.0);
         let scrub = egui::Slider::new(&mut playback.time, playback.range.clone())
             .clamping(egui::SliderClamping::Never)
             .fixed_decimals(2)
@@ -39,6 +41,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
         let speed =
             egui::DragValue::new(&mut playback.speed).speed(0.01).range(-8.0..=8.0).fixed_decimals(2).prefix("x ");
         ui.add(speed).on_hover_text("How fast the clock runs; negative runs backwards");
+        freeze(ui, &mut session.document.preset, session.show.size);
         let preset = &mut session.document.preset;
         let is_kept = preset.time.to_bits() == playback.time.to_bits();
         let keep =
@@ -47,4 +50,19 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
             preset.time = playback.time;
         }
     });
+}
+
+/// Holds what sprites show, of every system.
+fn freeze(ui: &mut Ui, preset: &mut Preset, size: UVec2) {
+    let path = |index| format!("systems[{index}].settings.sprite.freeze_animation");
+    let idle: Option<Vec<_>> =
+        (0..preset.systems.len()).map(|index| preset.without_effect(&path(index), size)).collect();
+    let idle = idle.map(|reasons| reasons.first().copied().unwrap_or("there is no smoke"));
+    let is_frozen = preset.systems.iter().any(|system| system.settings.sprite.freeze_animation);
+    let button = ui.add_enabled(idle.is_none(), egui::Button::selectable(is_frozen, "Freeze"));
+    let button = button.on_hover_text("Holds the pictures of the sprites, which drift on; saved with the preset");
+    if button.on_disabled_hover_text(idle.unwrap_or_default()).clicked() {
+        let systems = preset.systems.iter_mut();
+        systems.for_each(|system| system.settings.sprite.freeze_animation = !is_frozen);
+    }
 }

@@ -3,6 +3,7 @@
 use std::ffi::OsString;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use super::clock::{Duration, Instant};
 use super::worker::Worker;
@@ -29,8 +30,26 @@ pub struct Dialogs {
     has_dialogs: bool,
 }
 
-/// No one says no as soon.
+/// No one says no as soon after a dialog was asked for, or another way to have one was tried.
 const TOO_SOON: Duration = Duration::from_millis(300);
+
+/// When it was last told that a dialog could not be had: where one way fails another is tried, and only the log is told.
+static FAILED: Mutex<Option<Instant>> = Mutex::new(None);
+
+/// Takes note of what is told to the log; true if it is about dialogs, which the window speaks of itself.
+pub fn is_failure(target: &str) -> bool {
+    let is_ours = target.starts_with("rfd::");
+    if is_ours {
+        *FAILED.lock().unwrap_or_else(PoisonError::into_inner) = Some(Instant::now());
+    }
+    is_ours
+}
+
+/// What it means that no file was chosen.
+fn without_choice(begun: Instant, failed: Option<Instant>, now: Instant) -> Answer {
+    let since = failed.map_or(begun, |failed| failed.max(begun));
+    if now.saturating_duration_since(since) < TOO_SOON { Answer::NoDialogs } else { Answer::Cancelled }
+}
 
 impl Dialogs {
     /// `wake` is called from another thread when there is an answer.
@@ -65,8 +84,7 @@ impl Dialogs {
         let begun = Instant::now();
         self.worker.submit(move |_| match pollster::block_on(chosen) {
             Some(file) => Answer::Chosen(file.path().to_owned()),
-            None if begun.elapsed() < TOO_SOON => Answer::NoDialogs,
-            None => Answer::Cancelled,
+            None => without_choice(begun, *FAILED.lock().unwrap_or_else(PoisonError::into_inner), Instant::now()),
         });
         true
     }
@@ -82,6 +100,25 @@ impl Dialogs {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_way_to_have_a_dialog_that_fails_late_is_no_answer_of_anyones() {
+        let begun = Instant::now();
+        let after = |seconds: f32| begun + Duration::from_secs_f32(seconds);
+        for (failed, now, expected) in [
+            (None, 0.1, Answer::NoDialogs),
+            (None, 5.0, Answer::Cancelled),
+            // The bus took its time to say no, and there is no zenity.
+            (Some(25.0), 25.01, Answer::NoDialogs),
+            // There is, and someone has closed it.
+            (Some(25.0), 31.0, Answer::Cancelled),
+        ] {
+            assert_eq!(without_choice(begun, failed.map(after), after(now)), expected, "{failed:?} {now}");
+        }
+        // Of another dialog.
+        assert_eq!(without_choice(after(30.0), Some(after(25.0)), after(40.0)), Answer::Cancelled);
+        assert!(is_failure("rfd::backend::xdg_desktop_portal::portal") && !is_failure("wgpu_core"));
+    }
 
     #[cfg(target_os = "linux")]
     #[test]

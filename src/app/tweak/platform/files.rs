@@ -25,6 +25,11 @@ pub fn read_picture(path: &Path) -> Result<Vec<u8>, Error> {
     file::read(path, "PNG picture", MAX_BYTES)
 }
 
+/// The bytes of a recipe's file.
+pub fn read_recipe(path: &Path) -> Result<Vec<u8>, Error> {
+    file::read(path, "recipe", json::MAX_BYTES)
+}
+
 /// The bytes of a file of particles.
 pub fn read_particles(path: &Path) -> Result<Vec<u8>, Error> {
     file::read(path, "CSV or PLY file", cache::MAX_FILE_BYTES)

@@ -6,4 +6,5 @@ pub mod files;
 pub mod folders;
 pub mod lock;
 pub mod memory;
+pub mod wake;
 pub mod worker;

@@ -7,11 +7,13 @@ use eframe::egui::{Event, Key, Modifiers, Rect, Role, Theme, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use haze::picture::{Effort, read_colour_png, write_png};
-use haze::preset::Preset;
+use haze::preset::{PictureFolders, Preset};
 use haze::ramp::Ramp;
 use haze::ramp::bake::{Blend, Curve, RampRecipe};
 use haze::ramp::template::Template;
 
+use super::{RampFiles, Source};
+use crate::app::tweak::document::document::Document;
 use crate::app::tweak::testing::{brightness, picture, window};
 use crate::app::tweak::window::Window;
 
@@ -141,6 +143,36 @@ fn what_is_painted_outside_wins_and_stops_are_fitted_to_it() {
     press(&mut harness, Key::Delete, Modifiers::NONE);
     assert_eq!(folder.recipe().rows[0].stops.len(), 2);
     assert!(folder.is_baked());
+}
+
+#[test]
+fn files_are_looked_at_when_something_was_written_and_before_they_are_written_over() {
+    let folder = Folder::new();
+    let folders = PictureFolders::beside(&folder.preset());
+    let mut document = Document::open(&folder.preset()).unwrap();
+    let mut ramps = RampFiles::default();
+    let painted = Template::find("hard_toon").unwrap().recipe().bake().unwrap();
+    let is_recipe = |ramps: &mut RampFiles, document: &mut Document, is_held: bool| {
+        ramps.advance(document, &folders, is_held).unwrap();
+        matches!(ramps.source("mine.png", &folders), Source::Recipe(_))
+    };
+    assert!(is_recipe(&mut ramps, &mut document, false));
+    write_png(&folder.path("mine.png"), &painted, Effort::Quick).unwrap();
+    assert!(is_recipe(&mut ramps, &mut document, false), "nobody has said that there is something to look at");
+    ramps.look_again();
+    assert!(is_recipe(&mut ramps, &mut document, true) && !is_recipe(&mut ramps, &mut document, false));
+    // A step that ends before it was said.
+    let folder = Folder::new();
+    let folders = PictureFolders::beside(&folder.preset());
+    let mut document = Document::open(&folder.preset()).unwrap();
+    let mut ramps = RampFiles::default();
+    ramps.advance(&mut document, &folders, false).unwrap();
+    assert!(matches!(ramps.source("mine.png", &folders), Source::Recipe(_)));
+    document.recipes.ramps.set("mine.png", Template::find("moon").unwrap().recipe());
+    ramps.advance(&mut document, &folders, true).unwrap();
+    write_png(&folder.path("mine.png"), &painted, Effort::Quick).unwrap();
+    ramps.advance(&mut document, &folders, false).unwrap();
+    assert_eq!(read_colour_png(&folder.path("mine.png")).unwrap(), painted);
 }
 
 #[test]
@@ -291,7 +323,7 @@ fn what_cannot_be_written_is_said() {
     let mut harness = folder.open();
     std::fs::remove_file(folder.path("mine.ramp.json")).unwrap();
     std::fs::create_dir(folder.path("mine.ramp.json")).unwrap();
-    harness.run_steps(3);
+    wait(&mut harness);
     // The folder in its place is another's work: there is no recipe any more.
     assert!(harness.query_by_label("Fit stops to the picture: mine.png").is_some());
     harness.get_by_label("Fit stops to the picture: mine.png").click();

@@ -1,6 +1,6 @@
 //! A sprite as it would be lit alone, on the CPU, by the formulas that the renderers have.
 
-use eframe::egui::{Color32, ColorImage};
+use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureId, TextureOptions};
 use glam::{UVec2, Vec2, Vec3, Vec3Swizzles as _, Vec4Swizzles as _};
 use haze::MaterialAssets;
 use haze::formula::colour::gamma_target_colour;
@@ -25,6 +25,37 @@ pub struct View {
     pub motion: f32,
     /// Pixels.
     pub side: u32,
+}
+
+/// What was drawn last, and from what.
+pub struct Painted {
+    view: View,
+    material: MaterialAssets,
+    texture: TextureHandle,
+}
+
+impl Painted {
+    /// The picture, drawn again only where it is another.
+    pub fn show(
+        painted: &mut Option<Self>,
+        context: &egui::Context,
+        view: View,
+        material: &MaterialAssets,
+    ) -> TextureId {
+        let is_same = |last: &Self| last.view == view && last.material.shares(material);
+        if let Some(last) = painted.as_ref().filter(|last| is_same(last)) {
+            return last.texture.id();
+        }
+        let image = draw(material, &view);
+        let texture = match painted.take() {
+            Some(Self { mut texture, .. }) => {
+                texture.set(image, TextureOptions::LINEAR);
+                texture
+            }
+            None => context.load_texture("flipbook", image, TextureOptions::LINEAR),
+        };
+        painted.insert(Self { view, material: material.clone(), texture }).texture.id()
+    }
 }
 
 /// Linear light behind the smoke: dark enough for bright rims, bright enough for dark smoke.

@@ -47,6 +47,8 @@ pub struct Known {
     pub whole: Option<Order>,
     /// All that is on its way, wanted or not.
     jobs: Vec<u64>,
+    /// Something was written: its files may be others.
+    is_stale: bool,
 }
 
 impl SpriteFiles {
@@ -141,6 +143,11 @@ impl SpriteFiles {
         }
     }
 
+    /// Something was written: files that are others are read again.
+    pub fn look_again(&mut self) {
+        self.known.values_mut().for_each(|known| known.is_stale = true);
+    }
+
     /// Another document takes the place of theirs. What is on its way is written all the same.
     pub fn forget(&mut self) {
         (self.known, self.wanted) = (BTreeMap::new(), None);
@@ -179,6 +186,7 @@ impl Known {
             coarse: None,
             whole: None,
             jobs: Vec::new(),
+            is_stale: false,
         }
     }
 
@@ -229,13 +237,21 @@ impl Known {
                 (self.live, self.live_is_whole) = (baked, true);
                 self.findings = written?;
             }
-            What::GivenUp => self.whole = self.whole.take().filter(|order| order.job != job),
+            What::GivenUp => {
+                self.whole = self.whole.take().filter(|order| order.job != job);
+                // It may be that files are others: before it is baked once more that is seen.
+                self.is_stale = true;
+            }
         }
         Ok(())
     }
 
     fn follow(&mut self, name: &str, document: &Document, bakery: &mut Bakery, is_held: bool) {
-        if !is_held && self.jobs.is_empty() && self.stamps != stamps(&self.picture) {
+        if !is_held
+            && self.jobs.is_empty()
+            && std::mem::take(&mut self.is_stale)
+            && self.stamps != stamps(&self.picture)
+        {
             return self.look(name, bakery);
         }
         let Source::Recipe(recipe) = &self.source else { return };

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use haze::assets::json;
 use haze::builtin::{self, Builtin};
 use haze::picture::{Effort, decode_png, read_png, write_png};
-use haze::preset::{PictureFolders, Preset, picture_file};
 use haze::sprite::SpriteLayout;
 use haze::sprite::bake::{BakedSprite, SpriteRecipe};
 use haze::sprite::check::check;
@@ -52,12 +51,6 @@ pub fn recipe_of(picture: &Path) -> PathBuf {
 /// `mine.detail.png` of `mine.png`.
 pub fn detail_of(picture: &Path) -> PathBuf {
     picture.with_extension("detail.png")
-}
-
-/// Every place where a recipe of a preset's sprites may lie.
-pub fn recipes_of(folders: &PictureFolders, preset: &Preset) -> Vec<PathBuf> {
-    let pictures = preset.systems.iter().filter_map(|system| picture_file(&system.material.sprite));
-    pictures.flat_map(|picture| folders.places(&recipe_of(picture)).collect::<Vec<_>>()).collect()
 }
 
 pub fn stamps(picture: &Path) -> Stamps {

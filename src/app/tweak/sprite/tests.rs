@@ -15,7 +15,7 @@ use haze::sprite::bake::{BakedSprite, SpriteRecipe};
 use super::bakery::{Bakery, What};
 use super::source::{recipe_of_built_in, stamps};
 use crate::app::tweak::angles::Angles;
-use crate::app::tweak::testing::{brightness, picture, window};
+use crate::app::tweak::testing::{self, brightness, picture, window};
 use crate::app::tweak::window::Window;
 
 const LONG: Duration = Duration::from_secs(30);
@@ -79,7 +79,18 @@ fn page_of(preset: &str) -> Harness<'static, Window> {
     harness.state_mut().session.show.sprite.is_playing = false;
     harness.get_by_label("Sprite").click();
     until(&mut harness, |harness| harness.query_by_label("It is being read.").is_none());
+    unfold(&mut harness);
     harness
+}
+
+/// Opens the parts of the recipe that are folded.
+fn unfold(harness: &mut Harness<'_, Window>) {
+    for heading in ["wisps", "motion", "surface", "sheet"] {
+        if let Some(heading) = harness.query_by_label(heading) {
+            heading.click();
+        }
+        harness.run_steps(12);
+    }
 }
 
 fn until(harness: &mut Harness<'_, Window>, is_so: impl Fn(&Harness<'_, Window>) -> bool) {
@@ -273,6 +284,7 @@ fn a_sprite_without_a_recipe_says_so_and_what_a_check_finds() {
     let material = &harness.state().session.document.preset.systems[0].material;
     assert_eq!((material.sprite.as_str(), material.columns, material.rows), ("ball_mine.png", 2, 2));
     assert!(harness.query_by_label_contains("normals: ").is_none());
+    unfold(&mut harness);
     assert!(!slider(&harness, "erosion").accesskit_node().is_disabled());
 }
 
@@ -301,6 +313,35 @@ fn the_light_goes_where_it_is_sent() {
     harness.run_steps(2);
     let light = harness.state().session.show.sprite.light;
     assert!(light.azimuth < 60.0 && light.elevation > 10.0, "{light:?}");
+}
+
+#[test]
+fn the_recipe_is_within_reach_in_the_smallest_window() {
+    let mut harness = window("column", Vec2::new(640.0, 400.0), Theme::Dark);
+    harness.state_mut().session.show.sprite.is_playing = false;
+    harness.get_by_label("Sprite").click();
+    until(&mut harness, |harness| harness.query_by_label("It is being read.").is_none());
+    slider(&harness, "upright").scroll_to_me();
+    harness.run_steps(8);
+    let (row, page) = (slider(&harness, "upright").rect(), harness.get_by_label("viewport").rect());
+    assert!(row.top() > page.top() && row.bottom() < page.bottom(), "{row} beside {page}");
+}
+
+#[test]
+fn another_window_shows_the_flipbook_and_goes_on_with_what_is_baked() {
+    let folder = Folder::new();
+    let mut harness = folder.open();
+    let before = shown(&mut harness, "flipbook");
+    let memory = harness.ctx.memory(Clone::clone);
+    set(&mut harness, "columns", 8.0);
+    assert!(harness.state().session.sprites.is_baking());
+    let start = harness.into_state().into_start();
+    let mut harness = testing::open(start, Vec2::new(1280.0, 1400.0), Theme::Dark);
+    harness.ctx.memory_mut(|new| *new = memory);
+    until(&mut harness, |harness| !harness.state().session.sprites.is_baking());
+    assert!(folder.recipe().columns == 8 && folder.is_baked());
+    let after = shown(&mut harness, "flipbook");
+    assert!((after - before).abs() < 2.0, "{before} {after}");
 }
 
 #[test]

@@ -16,8 +16,8 @@ pub fn other(ui: &Ui, session: &mut Session, shot: &Shot) -> Option<Other> {
     if against != Against::Reference {
         return Some(Other::Shot(Box::new(against.shot(shot, session.saved(), &session.show.lights))));
     }
-    let context = ui.ctx().clone();
-    match session.referee.judge(shot, move || context.request_repaint()) {
+    let wake = session.wake.clone();
+    match session.referee.judge(shot, move || wake.call()) {
         Verdict::Made(picture) => {
             session.messages.withdraw("reference");
             return Some(Other::Picture(picture, exposure(shot)));

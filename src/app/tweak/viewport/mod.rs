@@ -74,7 +74,7 @@ impl Viewport {
         let compare = &mut session.compare;
         let exhibit = Exhibit { shot, other, split: compare.split, difference: compare.difference };
         easel.show(ui, rect, exhibit);
-        session.gauge.update(ui.ctx(), easel, compare.against.is_some());
+        session.gauge.update(ui.ctx(), easel, &session.wake, compare.against.is_some());
         if compare.against.is_some() && compare.difference == 0.0 {
             divider(ui, rect, &mut compare.split);
         }

@@ -6,7 +6,7 @@ use crate::assets::json;
 use crate::assets::picture::MAX_SIDE;
 use crate::assets::sprite::SpriteLayout;
 use crate::error::Error;
-use crate::settings::{FieldVisitor, Fields, validate};
+use crate::settings::{FieldVisitor, Fields, Headed, validate};
 
 /// The version of the recipe format that this code writes and reads.
 pub const RECIPE_VERSION: u32 = 2;
@@ -103,7 +103,37 @@ impl Fields for SpriteRecipe {
         visitor.number("travel", &mut self.travel, up_to(1.0), "half sides");
         visitor.integer("tolerance", &mut self.tolerance, 0..=8, "of 255");
     }
+
+    fn headings(&self) -> &'static [Headed] {
+        HEADINGS
+    }
 }
+
+/// What is set together.
+const HEADINGS: &[Headed] = &[
+    ("seed", Some("shape")),
+    ("balls", None),
+    ("spread", None),
+    ("ball_radius_min", None),
+    ("ball_radius_max", None),
+    ("length", None),
+    ("upright", None),
+    ("erosion", Some("wisps")),
+    ("noise_frequency", None),
+    ("noise_octaves", None),
+    ("noise_gain", None),
+    ("lumps", None),
+    ("warp", None),
+    ("drift", Some("motion")),
+    ("travel", None),
+    ("extinction", Some("surface")),
+    ("bump", None),
+    ("version", Some("sheet")),
+    ("size", None),
+    ("columns", None),
+    ("rows", None),
+    ("tolerance", None),
+];
 
 impl SpriteRecipe {
     /// Reads a `*.sprite.json`.

@@ -3,6 +3,7 @@ use std::path::Path;
 use super::*;
 use crate::assets::exact::tests::hash;
 use crate::assets::json;
+use crate::settings::{Fields as _, path_of, walk};
 
 fn puff() -> SpriteRecipe {
     let recipe = include_str!("../../../../tests/corpus/sprite/good_first");
@@ -98,4 +99,14 @@ fn what_is_written_is_read_again() {
         assert_eq!(text.contains("\"travel\": 0.25"), recipe.version == 2);
         assert!(text.ends_with("}\n") && !text.contains("\"length\""), "{text}");
     }
+}
+
+#[test]
+fn every_field_stands_under_one_heading() {
+    let mut fields = Vec::new();
+    walk(&mut puff(), &mut |path, _| fields.push(path_of(path)));
+    let mut placed: Vec<_> = puff().headings().iter().map(|(field, _)| (*field).to_owned()).collect();
+    fields.sort();
+    placed.sort();
+    assert_eq!(placed, fields);
 }

@@ -163,7 +163,10 @@ fn pictures_come_along_into_another_folder() {
         ["shot.json", "ramps/own.png", "missing.png"].map(|name| old.join(name))
     );
     fs::copy("ramps/diffuse_soft.png", old.join("ramps/own.png")).unwrap();
+    fs::copy("ramps/diffuse_soft.ramp.json", old.join("ramps/own.ramp.json")).unwrap();
     document.save_as(&new.join("shot.json")).unwrap();
+    let recipe = fs::read(new.join("ramps/own.ramp.json")).unwrap();
+    assert_eq!(recipe, fs::read("ramps/diffuse_soft.ramp.json").unwrap());
     assert_eq!(fs::read(new.join("ramps/own.png")).unwrap(), fs::read("ramps/diffuse_soft.png").unwrap());
     assert!(!new.join("missing.png").exists());
     // Once more, over the same.
@@ -173,6 +176,9 @@ fn pictures_come_along_into_another_folder() {
     // Another by that name is somebody's.
     let mut document = Document::open(&shot(&old)).unwrap();
     document.preset.systems[0].material.diffuse_ramp = "ramps/own.png".into();
+    fs::write(new.join("ramps/own.ramp.json"), "other").unwrap();
+    let error = document.save_as(&new.join("second.json")).unwrap_err().to_string();
+    assert!(error.contains("new/ramps/own.ramp.json: not the file that goes with the preset"), "{error}");
     fs::write(new.join("ramps/own.png"), "other").unwrap();
     let error = document.save_as(&new.join("second.json")).unwrap_err().to_string();
     assert!(error.contains("new/ramps/own.png: not the file that goes with the preset"), "{error}");

@@ -1,13 +1,11 @@
 //! The flipbook, turning under a light.
 
-use std::sync::Arc;
-
-use eframe::egui::{self, Color32, Pos2, Rect, Sense, Stroke, TextureHandle, TextureOptions, Ui, Vec2, pos2};
+use eframe::egui::{self, Color32, Pos2, Rect, Sense, Stroke, Ui, Vec2, pos2};
 use haze::{MaterialAssets, Settings};
 
 use crate::app::tweak::angles::{Angles, STEEPEST, from_angles};
 use crate::app::tweak::icon::{self, Icon};
-use crate::app::tweak::sprite::draw::{View, draw};
+use crate::app::tweak::sprite::draw::{Painted, View};
 use crate::app::tweak::sprite::look::{SHOWN, Shown, SpriteLook};
 
 /// Largest side of the picture, points, and its most pixels: the CPU draws.
@@ -19,15 +17,13 @@ const SHARE: f32 = 0.42;
 /// Degrees that the light goes for each point of a drag.
 const DRAG: f32 = 0.6;
 
-/// What was drawn last, and from what. It is kept with the window's other textures, which a new device begins anew.
-struct Painted {
-    view: View,
-    material: MaterialAssets,
-    texture: TextureHandle,
-}
-
 /// Draws it with its controls.
-pub fn panel(ui: &mut Ui, look: &mut SpriteLook, material: &MaterialAssets, settings: &Settings) {
+pub fn panel(
+    ui: &mut Ui,
+    (look, painted): (&mut SpriteLook, &mut Option<Painted>),
+    material: &MaterialAssets,
+    settings: &Settings,
+) {
     look.advance(&material.sprite, ui.input(|input| input.stable_dt));
     ui.horizontal_wrapped(|ui| {
         for (shown, name, tooltip) in SHOWN {
@@ -39,8 +35,10 @@ pub fn panel(ui: &mut Ui, look: &mut SpriteLook, material: &MaterialAssets, sett
             }
         }
     });
-    let side = ui.available_width().min(SIDE).min((SHARE * ui.available_height()).max(LEAST));
-    ui.vertical_centered(|ui| picture(ui, look, side, material, settings));
+    // What scrolls is endless: what is seen of it counts.
+    let height = ui.available_height().min(ui.clip_rect().height());
+    let side = ui.available_width().min(SIDE).min((SHARE * height).max(LEAST));
+    ui.vertical_centered(|ui| picture(ui, (look, painted), side, material, settings));
     time(ui, look, material.sprite.frame_count());
     if look.shown == Shown::Lit {
         light(ui, look);
@@ -50,7 +48,13 @@ pub fn panel(ui: &mut Ui, look: &mut SpriteLook, material: &MaterialAssets, sett
     }
 }
 
-fn picture(ui: &mut Ui, look: &mut SpriteLook, side: f32, material: &MaterialAssets, settings: &Settings) {
+fn picture(
+    ui: &mut Ui,
+    (look, painted): (&mut SpriteLook, &mut Option<Painted>),
+    side: f32,
+    material: &MaterialAssets,
+    settings: &Settings,
+) {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "flipbook"));
     // The way that a finger came is none of its drag.
@@ -68,9 +72,9 @@ fn picture(ui: &mut Ui, look: &mut SpriteLook, side: f32, material: &MaterialAss
         motion: settings.sprite.motion,
         side: (side * ui.pixels_per_point()).clamp(1.0, MOST) as u32,
     };
-    let texture = painted(ui, view, material);
+    let texture = Painted::show(painted, ui.ctx(), view, material);
     let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
-    ui.painter().image(texture.id(), rect, whole, Color32::WHITE);
+    ui.painter().image(texture, rect, whole, Color32::WHITE);
     if look.shown == Shown::Lit {
         // Where the light stands; hollow behind the sprite.
         let reach = 0.5 * side - 6.0;
@@ -79,27 +83,6 @@ fn picture(ui: &mut Ui, look: &mut SpriteLook, side: f32, material: &MaterialAss
         ui.painter().circle(at, 4.0, fill, Stroke::new(1.5, Color32::from_gray(160)));
     }
     response.on_hover_text("Drag: the light goes round it");
-}
-
-/// The picture, drawn again only where it is another.
-fn painted(ui: &Ui, view: View, material: &MaterialAssets) -> TextureHandle {
-    let id = egui::Id::unique("flipbook");
-    let last = ui.data(|data| data.get_temp::<Arc<Painted>>(id));
-    let mut texture = match &last {
-        Some(last) if last.view == view && last.material.shares(material) => return last.texture.clone(),
-        _ => last.map(|last| last.texture.clone()),
-    };
-    let image = draw(material, &view);
-    let texture = match texture.take() {
-        Some(mut texture) => {
-            texture.set(image, TextureOptions::LINEAR);
-            texture
-        }
-        None => ui.ctx().load_texture("flipbook", image, TextureOptions::LINEAR),
-    };
-    let painted = Painted { view, material: material.clone(), texture: texture.clone() };
-    ui.data_mut(|data| data.insert_temp(id, Arc::new(painted)));
-    texture
 }
 
 fn time(ui: &mut Ui, look: &mut SpriteLook, count: u32) {

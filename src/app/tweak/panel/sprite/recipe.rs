@@ -28,8 +28,8 @@ const LONGEST: usize = 400;
 
 /// Draws what there is of the selected system's sprite.
 pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialNames) {
-    let (folders, context) = (session.folders(), ui.ctx().clone());
-    let Some(known) = session.sprites.ask(names, &folders, move || context.request_repaint()) else { return };
+    let (folders, wake) = (session.folders(), session.wake.clone());
+    let Some(known) = session.sprites.ask(names, &folders, move || wake.call()) else { return };
     if let Some(broken) = &known.broken {
         ui.colored_label(ui.visuals().error_fg_color, short(broken, LONGEST));
     }
@@ -51,7 +51,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialNames) {
             if ui.button("Make my own").on_hover_text(about).clicked() {
                 session.sprites.want_own(session.show.system, name, session.document.is_built_in());
             }
-            rows(ui, session, name, &recipe, false);
+            rows(ui, session, name, &recipe, Some("make your own first"));
         }
         Source::Recipe(recipe) => {
             let recipe = session.document.recipes.sprites.get(name).unwrap_or(&recipe).clone();
@@ -66,7 +66,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialNames) {
                     ui.weak("Saved with each step").on_hover_text(WRITTEN);
                 }
             }
-            rows(ui, session, name, &recipe, !is_broken);
+            rows(ui, session, name, &recipe, is_broken.then_some("mend its file first"));
         }
         Source::Apart(_) => {
             ui.label(format!("{file} makes another picture: one of the two was changed elsewhere."));
@@ -100,11 +100,11 @@ fn templates(ui: &mut Ui, session: &mut Session) {
         .on_hover_text("Writes a copy of a built-in sprite and its recipe beside the preset, in place of this one");
 }
 
-/// The fields of a recipe, by its own table.
-fn rows(ui: &mut Ui, session: &mut Session, name: &str, recipe: &SpriteRecipe, is_own: bool) {
+/// The fields of a recipe, by its own table. `locked`: why none can be changed.
+fn rows(ui: &mut Ui, session: &mut Session, name: &str, recipe: &SpriteRecipe, locked: Option<&'static str>) {
     let (mut edited, mut within) = (recipe.clone(), Within::default());
     edited.visit(&mut within);
-    let inert = |path: &str| within.zero.contains(path).then_some("version 1 cannot do it");
+    let inert = |path: &str| locked.or(within.zero.contains(path).then_some("version 1 cannot do it"));
     let (unchanged, asked) = (HashSet::new(), Vec::new());
     let mut desk = Desk {
         tooltips: &TOOLTIPS,
@@ -117,18 +117,16 @@ fn rows(ui: &mut Ui, session: &mut Session, name: &str, recipe: &SpriteRecipe, i
         refused: None,
         sought: None,
     };
-    ui.add_enabled_ui(is_own, |ui| {
-        if is_own && edited.version < 2 {
-            let about = "Bakes some fifty times as fast, and can do more; what it shows changes a little";
-            ui.horizontal(|ui| {
-                ui.weak("Version 1 is slow to bake.");
-                if ui.button("Convert to version 2").on_hover_text(about).clicked() {
-                    edited.version = 2;
-                }
-            });
-        }
-        fields::show(ui, &mut desk, &[], &mut edited);
-    });
+    if locked.is_none() && edited.version < 2 {
+        let about = "Bakes some fifty times as fast, and can do more; what it shows changes a little";
+        ui.horizontal(|ui| {
+            ui.weak("Version 1 is slow to bake.");
+            if ui.button("Convert to version 2").on_hover_text(about).clicked() {
+                edited.version = 2;
+            }
+        });
+    }
+    fields::show(ui, &mut desk, &[], &mut edited);
     let refused = desk.refused;
     // Ranges may depend on what was changed.
     edited.visit(&mut Within::default());

@@ -1,0 +1,55 @@
+//! The few controls that make a look: what an artist calls them, and what they move.
+
+use super::made::{Made, SOFTNESS, THICKNESS, WIND};
+use super::reach::Usual;
+
+/// A control of the first panel.
+pub struct Control {
+    pub name: &'static str,
+    pub of: Of,
+}
+
+/// What a control moves: a field by its path from there, as far as that makes sense, or what several of them make.
+#[derive(Clone, Copy)]
+pub enum Of {
+    System(&'static str, Usual),
+    KeyLight(&'static str, Usual),
+    Camera(&'static str, Usual),
+    Made(&'static Made),
+}
+
+const fn control(name: &'static str, of: Of) -> Control {
+    Control { name, of }
+}
+
+const fn made(made: &'static Made) -> Control {
+    control(made.name, Of::Made(made))
+}
+
+/// All of them, in their order.
+pub const LOOK: &[Control] = &[
+    made(&THICKNESS),
+    control("size at birth", Of::System("emitter.radius_start", Some((0.0, 1.5)))),
+    control("size at death", Of::System("emitter.radius_end", Some((0.0, 4.0)))),
+    control("rise", Of::System("emitter.buoyancy", Some((-1.0, 3.0)))),
+    made(&WIND),
+    control("turbulence", Of::System("emitter.turbulence", Some((0.0, 3.0)))),
+    control("swirl size", Of::System("emitter.turbulence_scale", Some((0.1, 6.0)))),
+    made(&SOFTNESS),
+    control("key light", Of::KeyLight("intensity", Some((0.0, 100.0)))),
+    control("scatter colour", Of::System("settings.soft_scatter.scatter_colour", None)),
+    control("glow", Of::System("settings.specular_scatter.intensity", Some((0.0, 4.0)))),
+    control("exposure", Of::Camera("exposure", Some((-4.0, 4.0)))),
+];
+
+impl Control {
+    /// What it moves of a system, or of the light that leads it, by its path in the preset.
+    pub fn path(&self, system: usize, key: Option<usize>) -> Option<String> {
+        Some(match self.of {
+            Of::System(path, _) => format!("systems[{system}].{path}"),
+            Of::KeyLight(path, _) => format!("lights[{}].{path}", key?),
+            Of::Camera(path, _) => format!("camera.{path}"),
+            Of::Made(made) => made.path(system),
+        })
+    }
+}
