@@ -7,8 +7,8 @@ use glam::UVec2;
 use haze::Error;
 use haze::picture::{Effort, read_png, write_png};
 use haze::sprite::SpriteLayout;
-use haze::sprite::check::SURE;
 use haze::sprite::import::{Imported, Source, import, sheet_of};
+use haze::sprite::y_direction::SURE;
 
 use crate::app::options::choices;
 use crate::app::output::{Files, say};

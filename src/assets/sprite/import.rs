@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use glam::{IVec2, UVec2, Vec3, Vec4};
+use glam::{UVec2, Vec3, Vec4};
 use image::{Rgba, RgbaImage, imageops};
 
-use super::check::{SURE, YDirection, clear_borders, y_direction};
+use super::check::clear_borders;
+use super::height::{grey, normal_of, puffed};
+use super::y_direction::{SURE, YDirection, y_direction};
 use super::{Sprite, SpriteLayout};
-use crate::assets::picture::Picture;
 use crate::error::Error;
 use crate::formula::saturate;
 use crate::settings::choice;
@@ -147,12 +148,6 @@ pub fn import(
     Ok(Imported { picture, y_direction: found, border })
 }
 
-fn grey(size: UVec2, value: impl Fn(UVec2) -> f32 + Sync) -> Picture<f32> {
-    let mut picture = Picture::new(size, 0.0);
-    picture.for_each(|at, grey| *grey = value(at));
-    picture
-}
-
 fn value(texel: &Rgba<u8>) -> Vec4 {
     Vec4::from(texel.0.map(f32::from)) / 255.0
 }
@@ -162,41 +157,6 @@ fn encode(normal: Vec3, alpha: u8) -> Rgba<u8> {
     let normal = normal.with_z(normal.z.max(0.0)).normalize_or(Vec3::Z);
     let [x, y, z] = normal.to_array().map(|axis| (saturate(axis * 0.5 + 0.5) * 255.0).round() as u8);
     Rgba([x, y, z, alpha])
-}
-
-/// The normal of heights, where a height of 1 is a half side times `strength`.
-fn normal_of(height: &Picture<f32>, at: IVec2, strength: f32) -> Vec3 {
-    let slope =
-        |step: IVec2| (height.load(at - step) - height.load(at + step)) * height.size.x as f32 * 0.25 * strength;
-    Vec3::new(slope(IVec2::X), -slope(IVec2::Y), 1.0)
-}
-
-/// Heights of a dome over the silhouette: blurred ever wider and added up, so that thin parts are low and the middle is high, and
-/// what the amount shows within stays.
-fn puffed(amount: &Picture<f32>) -> Picture<f32> {
-    let mut height = Picture::new(amount.size, 0.0);
-    let mut blurred = amount.clone();
-    let mut reach = 1;
-    while reach < amount.size.x as i32 / 4 {
-        // Thrice a box is nearly a bell.
-        for _ in 0..3 {
-            blurred = boxed(&boxed(&blurred, IVec2::X, reach), IVec2::Y, reach);
-        }
-        let weight = reach as f32 / amount.size.x as f32;
-        height.for_each(|at, height| *height += blurred.load(at.as_ivec2()) * weight);
-        reach *= 2;
-    }
-    let most = height.texels.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
-    // Round at its edge, as a ball is.
-    height.texels.iter_mut().for_each(|height| *height = (*height / most).sqrt());
-    height
-}
-
-fn boxed(picture: &Picture<f32>, step: IVec2, reach: i32) -> Picture<f32> {
-    grey(picture.size, |at| {
-        let sum: f32 = (-reach..=reach).map(|offset| picture.load(at.as_ivec2() + step * offset)).sum();
-        sum / (2 * reach + 1) as f32
-    })
 }
 
 #[cfg(test)]
