@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Color32, Ui};
 use haze::gradient_editor::Surroundings;
-use haze::ramp::bake::{Blend, HexColour, RECIPE_VERSION, RampRecipe, RampRow};
+use haze::ramp::bake::{Blend, RECIPE_VERSION, RampRecipe, RampRow};
 
 use super::row;
 use crate::app::tweak::ramp_files::Source;
@@ -43,12 +43,8 @@ pub fn editor(
     let mut shown = shown(&recipe, *index)?;
     let edited = ui.push_id(ramp.field, |ui| editor.show(ui, &mut shown, &surroundings)).inner;
     let index = *index;
-    let is_taken = ui.horizontal(|ui| {
-        let is_taken = take_pixel(ui, ramp, session, &mut shown);
-        is_changed |= blend(ui, &mut recipe.blend, ramp.field);
-        is_taken
-    });
-    if edited.is_changed | is_taken.inner {
+    is_changed |= ui.horizontal(|ui| blend(ui, &mut recipe.blend, ramp.field)).inner;
+    if edited.is_changed {
         match recipe.rows.get_mut(index) {
             Some(row) => *row = shown,
             None => recipe.times = shown.stops,
@@ -66,29 +62,6 @@ pub fn editor(
         session.messages.withdraw("ramp");
     }
     Some(edited.pointed_at)
-}
-
-/// An eyedropper: the selected stop takes the colour of the pixel that is kept, or of the next one that is clicked on.
-fn take_pixel(ui: &mut Ui, ramp: Named<'_>, session: &mut Session, row: &mut RampRow) -> bool {
-    let about = "The selected stop takes the colour of the pixel that the inspector keeps, or of the next one that is clicked on \
-                 in the picture";
-    let kept = session.inspect.kept_colour();
-    let is_waiting = session.ramps.wants_pixel == Some(ramp.field);
-    let is_asked = ui.selectable_label(is_waiting, "Take a pixel").on_hover_text(about).clicked();
-    let Some(colour) = kept.filter(|_| is_asked || is_waiting) else {
-        if is_asked && is_waiting == session.inspect.is_on {
-            session.inspect.toggle();
-        }
-        if is_asked {
-            session.ramps.wants_pixel = (!is_waiting).then_some(ramp.field);
-        }
-        return false;
-    };
-    if session.ramps.wants_pixel.take().is_some() {
-        session.inspect.toggle();
-    }
-    session.ramps.editor(ramp.field).0.set_colour(row, HexColour(colour));
-    true
 }
 
 /// The space that colours are blended in; true if it is another.
