@@ -51,20 +51,20 @@ impl MaterialNames {
     /// inside the folder, or for more than [`MAX_PICTURE_BYTES`](super::MAX_PICTURE_BYTES).
     pub fn load(&self, folder: &Path) -> Result<MaterialAssets, Error> {
         let loaded = self.load_from(&mut Pictures::new(PictureFolders::at(folder)));
-        loaded.map_err(|mut errors| errors.swap_remove(0))
+        loaded.map_err(|mut errors| errors.swap_remove(0).1)
     }
 
-    /// The same, where other systems may have loaded some already. The errors are those of all fields, in their order: at least
-    /// one.
-    pub(super) fn load_from(&self, pictures: &mut Pictures) -> Result<MaterialAssets, Vec<Error>> {
+    /// The same, where other systems may have loaded some already. The errors are those of all fields, in their order, with the
+    /// field: at least one. What belongs to the sprite is of that field.
+    pub(super) fn load_from(&self, pictures: &mut Pictures) -> Result<MaterialAssets, Vec<(&'static str, Error)>> {
         let mut errors = Vec::new();
-        let sprite = kept(self.load_sprite(pictures), &mut errors);
+        let sprite = kept("sprite", self.load_sprite(pictures), &mut errors);
         let mut ramp = |field, name: &str, list| {
             let found = match builtin::find(list, name) {
                 Some(ramp) => ramp.ramp(),
                 None => inside(field, name, list).and_then(|file| pictures.ramp(field, file)),
             };
-            kept(found, &mut errors)
+            kept(field, found, &mut errors)
         };
         let ramps = (
             ramp("diffuse_ramp", &self.diffuse_ramp, builtin::RAMPS),
@@ -78,7 +78,7 @@ impl MaterialNames {
             Some(noise) => noise.noise(),
             None => inside("noise", &self.noise, builtin::NOISES).and_then(|file| pictures.noise("noise", file)),
         };
-        let noise = kept(noise, &mut errors);
+        let noise = kept("noise", noise, &mut errors);
         match (sprite, ramps, noise) {
             (Some((sprite, detail)), (Some(a), Some(b), Some(c), Some(d), Some(e), Some(f)), Some(noise)) => {
                 Ok(MaterialAssets {
@@ -95,6 +95,29 @@ impl MaterialNames {
             }
             _ => Err(errors),
         }
+    }
+
+    /// The same with the usual pictures for some fields, as [`MaterialNames::load_from`] tells them.
+    pub(super) fn with_usual(&self, fields: &[&str]) -> Self {
+        let usual = Self::default();
+        let mut names = self.clone();
+        for field in fields {
+            let (own, usual) = match *field {
+                "diffuse_ramp" => (&mut names.diffuse_ramp, &usual.diffuse_ramp),
+                "soft_scatter_ramp" => (&mut names.soft_scatter_ramp, &usual.soft_scatter_ramp),
+                "specular_ramp" => (&mut names.specular_ramp, &usual.specular_ramp),
+                "motif" => (&mut names.motif, &usual.motif),
+                "age_ramp" => (&mut names.age_ramp, &usual.age_ramp),
+                "coverage_ramp" => (&mut names.coverage_ramp, &usual.coverage_ramp),
+                "noise" => (&mut names.noise, &usual.noise),
+                _ => {
+                    (names.detail, names.columns, names.rows, names.y_down) = (String::new(), 1, 1, false);
+                    (&mut names.sprite, &usual.sprite)
+                }
+            };
+            own.clone_from(usual);
+        }
+        names
     }
 
     fn load_sprite(&self, pictures: &mut Pictures) -> Result<(Sprite, Option<Sprite>), Error> {
@@ -148,8 +171,8 @@ fn inside<'a>(field: &str, name: &'a str, list: &[builtin::Builtin]) -> Result<&
 }
 
 /// What there is, else takes note of why not.
-fn kept<T>(found: Result<T, Error>, errors: &mut Vec<Error>) -> Option<T> {
-    found.map_err(|error| errors.push(error)).ok()
+fn kept<T>(field: &'static str, found: Result<T, Error>, errors: &mut Vec<(&'static str, Error)>) -> Option<T> {
+    found.map_err(|error| errors.push((field, error))).ok()
 }
 
 #[cfg(test)]
