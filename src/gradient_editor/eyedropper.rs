@@ -14,9 +14,9 @@ use crate::assets::ramp::fit::fit_row;
 /// Shorter than this, points, a stroke is a click.
 const CLICK: f32 = 6.0;
 /// Colours of a stroke, each the mean of its part: what is finer is grain.
-const PARTS: usize = 64;
+const PARTS: usize = 32;
 /// How far stops may be off those colours, steps of 255.
-const ERROR: f32 = 6.0;
+const ERROR: f32 = 10.0;
 
 /// It waits for the pointer, and then for what the window shows.
 #[derive(Clone, Debug, Default)]

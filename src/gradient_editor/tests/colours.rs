@@ -48,9 +48,14 @@ fn a_colour_is_pasted_on_the_stop_that_is_selected() {
     assert_eq!((steps(&harness), harness.state().refused.len()), (vec!["colour of a stop"], 0));
 }
 
+/// By a click so quick that it is in one frame.
 fn begin(harness: &mut Harness<'_, Host>) {
-    harness.get_by_label("Take a colour").click();
-    harness.run_steps(2);
+    let pos = harness.get_by_label("Take a colour").rect().center();
+    harness.hover_at(pos);
+    harness.step();
+    let button = |pressed| Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: NONE };
+    harness.input_mut().events.extend([true, false].map(button));
+    harness.run_steps(3);
     assert!(harness.state().editor.state.eyedropper.is_some());
 }
 
@@ -99,8 +104,8 @@ fn a_stroke_takes_the_gradient_along_it() {
     for step in 5..=95 {
         let at = step as f32 / 100.0;
         let (taken, wanted) = (code(taken.sample(at, 0.0).x), code(wanted.sample(0.99 - 0.98 * at, 0.0).x));
-        // Six of the fit, and what the colour changes over a part.
-        assert!((taken - wanted).abs() < 15.0, "{at}: {taken} {wanted}");
+        // Ten of the fit, and what the colour changes over half a part.
+        assert!((taken - wanted).abs() < 20.0, "{at}: {taken} {wanted}");
     }
     assert_eq!(steps(&harness), ["gradient of a stroke"]);
 }
