@@ -83,10 +83,11 @@ mod tests {
         for (said, begins) in doubts.iter().zip([
             "systems[0].material.diffuse_ramp: down.png: painted from top to bottom",
             "systems[1].material.age_ramp: down.png: painted from top to bottom",
+            "systems[2].material.sprite: clear.png: alpha is 0 everywhere",
             "systems[2].material.coverage_ramp: down.png: painted from top to bottom",
         ]) {
             assert!(said.starts_with(begins), "{begins}: {doubts:?}");
         }
-        assert_eq!(doubts.len(), 3, "{doubts:?}");
+        assert_eq!(doubts.len(), 4, "{doubts:?}");
     }
 }

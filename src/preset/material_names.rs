@@ -2,7 +2,7 @@
 
 use std::path::{Component, Path};
 
-use super::folders::PictureFolders;
+use super::folders::{ALIKE, PictureFolders};
 use super::pictures::Pictures;
 use crate::assets::builtin;
 use crate::assets::material::MaterialAssets;
@@ -165,7 +165,11 @@ fn inside<'a>(field: &str, name: &'a str, list: &[builtin::Builtin]) -> Result<&
     let mut expected = "a PNG inside the preset's folder".to_owned();
     if !list.is_empty() {
         let names: Vec<_> = list.iter().map(|builtin| builtin.name).collect();
-        expected = format!("one of {}, or {expected}", names.join(", "));
+        let small = name.to_ascii_lowercase();
+        let alike = names.iter().map(|other| (strsim::jaro_winkler(&small, other), other));
+        let nearest = alike.filter(|(alike, _)| *alike >= ALIKE).max_by(|a, b| a.0.total_cmp(&b.0));
+        let nearest = nearest.map(|(_, name)| format!("; the nearest name is {name:?}")).unwrap_or_default();
+        expected = format!("one of {}, or {expected}{nearest}", names.join(", "));
     }
     Err(FieldError::new(format!("material.{field}"), format!("{name:?}"), expected).into())
 }
@@ -212,5 +216,9 @@ mod tests {
         for outside in ["../b.png", "/etc/b.png", "a/../../b.png", "puf", "b.jpg"] {
             assert!(inside("sprite", outside, builtin::SPRITES).is_err(), "{outside}");
         }
+        let said = inside("sprite", "Wisps", builtin::SPRITES).unwrap_err().to_string();
+        assert!(said.ends_with("inside the preset's folder; the nearest name is \"wisp\""), "{said}");
+        let said = inside("sprite", "b.jpg", builtin::SPRITES).unwrap_err().to_string();
+        assert!(said.ends_with("inside the preset's folder"), "{said}");
     }
 }

@@ -19,6 +19,7 @@ const LENGTHS: [f32; 2] = [0.85, 1.1];
 
 /// Looks for what would show; the layout tells where frames are, its `y_down` which way green is meant to point.
 ///
+/// - `empty`: no amount anywhere.
 /// - `normals`: a picture of colours, or of heights.
 /// - `length`: normals that are not of unit length.
 /// - `y_down`: green that points the other way.
@@ -40,6 +41,10 @@ pub fn check(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Result<V
             "border",
             format!("frame {frame} has alpha {alpha} on its border; expected 0, or the sprite shows as a square"),
         );
+    }
+    if is_clear(&sprite) {
+        find("empty", NOTHING.into());
+        return Ok(findings);
     }
     if let Some(what) = not_normals(&sprite) {
         find("normals", what.into());
@@ -104,6 +109,14 @@ fn texels(sprite: &Sprite) -> impl Iterator<Item = Vec4> + '_ {
         let (frame, at) = (index / (size * size), index % (size * size));
         sprite.texel(0, frame, at % size, at / size)
     })
+}
+
+/// What is said of a sprite that is clear everywhere.
+pub const NOTHING: &str = "alpha is 0 everywhere; expected the amount in alpha";
+
+/// True if there is nothing to see of a sprite.
+pub fn is_clear(sprite: &Sprite) -> bool {
+    texels(sprite).all(|texel| texel.w <= 0.0)
 }
 
 /// What a sprite shows, if not normals.
@@ -231,6 +244,7 @@ mod tests {
         // Fire, and a sky.
         assert_eq!(names(&changed(|[r, g, _, a]| [255.0, g * 0.6, r * 0.2, a]), LAYOUT), ["normals"]);
         assert_eq!(names(&changed(|[r, g, _, a]| [r * 0.5, g * 0.9, 255.0, a]), LAYOUT), ["normals"]);
+        assert_eq!(names(&changed(|[r, g, b, _]| [r, g, b, 0.0]), LAYOUT), ["empty"]);
         let mut square = wisp();
         square.put_pixel(300, 0, Rgba([128, 128, 255, 9]));
         assert_eq!(names(&square, LAYOUT), ["border"]);

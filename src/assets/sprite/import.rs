@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::{UVec2, Vec3, Vec4};
 use image::{Rgba, RgbaImage, imageops};
 
-use super::check::clear_borders;
+use super::check::{clear_borders, not_normals};
 use super::height::{grey, normal_of, puffed};
 use super::y_direction::{SURE, YDirection, y_direction};
 use super::{Sprite, SpriteLayout};
@@ -44,6 +44,8 @@ pub struct Imported {
     pub picture: RgbaImage,
     /// Which way green pointed in painted normals; none for other sources.
     pub y_direction: Option<YDirection>,
+    /// What painted normals look like, if not like normals.
+    pub doubt: Option<&'static str>,
     /// The frame with the most alpha on its border, which was made clear, and how much.
     pub border: Option<(u32, u8)>,
 }
@@ -88,7 +90,7 @@ pub fn import(
     let refuse = |reason: String| Err(Error::Image { path: path.into(), reason });
     let [first, rest @ ..] = sheets else { return refuse("no picture; expected one".into()) };
     let second = rest.first();
-    if source.has_two() != second.is_some() {
+    if rest.len() != usize::from(source.has_two()) {
         return refuse(format!("{} sheets; expected {}", sheets.len(), 1 + u32::from(source.has_two())));
     }
     if let Some(second) = second.filter(|second| second.dimensions() != first.dimensions()) {
@@ -105,9 +107,10 @@ pub fn import(
     let border = clear_borders(&mut picture, layout);
     // It refuses what does not fit.
     let sprite = Sprite::from_picture(path, &picture, SpriteLayout { y_down: false, ..layout })?;
-    let mut found = None;
+    let (mut found, mut doubt) = (None, None);
     match (source, second) {
         (Source::Normals, _) => {
+            doubt = not_normals(&sprite);
             found = y_direction(&sprite);
             let guess = found.is_some_and(|found| found.is_down && found.sureness >= SURE);
             let turns = y_down.unwrap_or(guess);
@@ -145,7 +148,7 @@ pub fn import(
         }
         (_, None) => {}
     }
-    Ok(Imported { picture, y_direction: found, border })
+    Ok(Imported { picture, y_direction: found, doubt, border })
 }
 
 fn value(texel: &Rgba<u8>) -> Vec4 {
@@ -239,6 +242,10 @@ mod tests {
         };
         assert!(message(&[], Source::Height).contains("expected one"));
         assert!(message(std::slice::from_ref(&sheet), Source::SixWayRltBbf).contains("1 sheets; expected 2"));
+        assert!(
+            message(&[sheet.clone(), sheet.clone(), sheet.clone()], Source::SixWayUnity)
+                .contains("3 sheets; expected 2")
+        );
         let small = RgbaImage::new(64, 64);
         assert!(message(&[sheet, small.clone()], Source::SixWayUnity).contains("expected 128x64 as the first"));
         assert!(message(&[small], Source::Alpha).contains("square frames"));
