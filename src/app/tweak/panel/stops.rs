@@ -25,19 +25,24 @@ pub struct Named<'a> {
 pub type Bins = (Color32, Vec<f32>);
 pub type Mark = (f32, Color32);
 
-/// Draws its editor, and gives the place that is pointed at; nothing for a ramp without stops.
+/// What a picture looks up along an axis of a ramp: how often, and where a pixel does.
+pub type LookedUp = (Vec<Bins>, Vec<Mark>);
+
+/// Draws its editor, and gives the place that is pointed at; nothing for a ramp without stops. What is looked up is shown along
+/// the axis of the gradient that is edited: rows go across, and what multiplies them up.
 pub fn editor(
     ui: &mut Ui,
     session: &mut Session,
     ramp: Named<'_>,
-    bins: &[Bins],
-    marks: &[Mark],
+    across: &LookedUp,
+    up: &LookedUp,
 ) -> Option<Option<f32>> {
     let folders = session.folders();
     let Source::Recipe(recipe) = session.ramps.source(ramp.name, &folders) else { return None };
     let mut recipe = session.document.recipes.ramps.get(ramp.name).unwrap_or(recipe).clone();
     let (editor, index) = session.ramps.editor(ramp.field);
     let mut is_changed = choose(ui, &mut recipe, index);
+    let (bins, marks) = if *index < recipe.rows.len() { across } else { up };
     let histograms: Vec<_> = bins.iter().map(|(colour, bins)| (*colour, bins.as_slice())).collect();
     let surroundings = Surroundings { blend: recipe.blend, histograms: &histograms, marks };
     let mut shown = shown(&recipe, *index)?;
