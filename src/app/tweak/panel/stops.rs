@@ -38,8 +38,8 @@ pub fn editor(
     up: &LookedUp,
 ) -> Option<Option<f32>> {
     let folders = session.folders();
-    let Source::Recipe(recipe) = session.ramps.source(ramp.name, &folders) else { return None };
-    let mut recipe = session.document.recipes.ramps.get(ramp.name).unwrap_or(recipe).clone();
+    let Source::Recipe(read) = session.ramps.source(ramp.name, &folders).clone() else { return None };
+    let mut recipe = session.document.recipes.ramps.get(ramp.name).unwrap_or(&read).clone();
     let (editor, index) = session.ramps.editor(ramp.field);
     let mut is_changed = choose(ui, &mut recipe, index);
     let (bins, marks) = if *index < recipe.rows.len() { across } else { up };
@@ -59,7 +59,13 @@ pub fn editor(
     if is_changed {
         // What is new in the window is new in the format.
         recipe.version = RECIPE_VERSION;
-        session.document.recipes.ramps.set(ramp.name, recipe);
+        let ramps = &mut session.document.recipes.ramps;
+        // Put back to what was read there is no change, and no step.
+        if recipe == (RampRecipe { version: RECIPE_VERSION, ..read }) {
+            ramps.forget(ramp.name);
+        } else {
+            ramps.set(ramp.name, recipe);
+        }
     }
     if let Some(refused) = edited.refused {
         session.messages.complain("ramp", refused);

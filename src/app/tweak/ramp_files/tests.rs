@@ -117,6 +117,28 @@ fn a_drag_is_seen_at_once_and_written_in_the_end() {
 }
 
 #[test]
+fn a_drag_that_is_given_up_is_no_step() {
+    let folder = Folder::new();
+    let mut harness = folder.open();
+    let before = (folder.recipe(), shown(&mut harness));
+    let (from, width) = (harness.get_by_label("stop 3").rect().center(), strip(&harness).width());
+    harness.state_mut().session.show.stage = ShadeTree::Diffuse;
+    harness.drag_at(from);
+    for part in 1..=4 {
+        harness.hover_at(from - Vec2::new(0.2 * width * part as f32, 0.0));
+        harness.step();
+    }
+    press(&mut harness, Key::Escape, Modifiers::NONE);
+    harness.drop_at(from);
+    wait(&mut harness);
+    // Escape is for the drag alone.
+    assert_eq!(harness.state().session.show.stage, ShadeTree::Diffuse);
+    harness.state_mut().session.show.stage = ShadeTree::Final;
+    assert_eq!((folder.recipe(), harness.state().session.document.history().undo_name()), (before.0, None));
+    assert!((shown(&mut harness) - before.1).abs() < 0.5);
+}
+
+#[test]
 fn what_is_painted_outside_wins_and_stops_are_fitted_to_it() {
     let folder = Folder::new();
     let mut harness = folder.open();
