@@ -15,7 +15,7 @@ settings! {
     #[derive(Clone, Debug, PartialEq, Eq)]
     pub struct MaterialNames {
         "sprite":
-        /// Flipbook of normal maps.
+        /// Flipbook of normal maps: the shape of every puff, and of its outline.
         sprite: String = "puff".into(), picture(PictureRole::Sprite);
         /// Depth and motion of a sprite from a file, laid out as it; empty for none. A built-in sprite has its own.
         detail: String = String::new(), picture(PictureRole::Detail);
@@ -26,17 +26,17 @@ settings! {
         /// True for a sprite file painted with green pointing down.
         y_down: bool = false, flag;
         "ramps and noise":
-        /// Light by dot(n, l).
+        /// Light by dot(n, l): the colours of shade, terminator and lit side.
         diffuse_ramp: String = "diffuse_soft".into(), picture(PictureRole::Ramp);
-        /// Light by amount.
+        /// Light by amount: the colours of thin and thick smoke, wherever lights are.
         soft_scatter_ramp: String = "scatter_mist".into(), picture(PictureRole::Ramp);
-        /// Glow by distance² and amount.
+        /// Glow by distance² and amount: how a light behind shines through.
         specular_ramp: String = "specular_halo".into(), picture(PictureRole::Ramp);
-        /// Painted lit sphere.
+        /// Painted lit sphere: light by paint alone.
         motif: String = "motif_studio".into(), picture(PictureRole::Motif);
-        /// Colour by age.
+        /// Colour by age: from flame to ash.
         age_ramp: String = "age_smoke".into(), picture(PictureRole::Ramp);
-        /// Coverage by amount.
+        /// Coverage by amount: soft, wispy or cut silhouettes.
         coverage_ramp: String = "coverage_soft".into(), picture(PictureRole::Ramp);
         /// Tiling 3D noise: a built-in one, or a PNG of slices below each other.
         noise: String = "fbm".into(), picture(PictureRole::Noise);
