@@ -5,7 +5,8 @@ use eframe::egui::{self, Ui};
 use super::eyedropper::Eyedropper;
 use super::frame::Frame;
 use super::{stops, text};
-use crate::assets::ramp::bake::{Curve, HexColour};
+use crate::assets::ramp::bake::{Blend, Curve, HexColour};
+use crate::assets::ramp::fit::fit_row;
 use crate::assets::ramp::template::TEMPLATES;
 
 /// What the curves are, in the order of [`Curve::ALL`].
@@ -114,6 +115,20 @@ fn hue_and_so_on(ui: &mut Ui, frame: &mut Frame<'_>) {
         let colour = HexColour::from_hsv(hsv);
         frame.editor.hsv = Some((colour, hsv));
         frame.recolour(colour);
+    }
+}
+
+/// How far stops of a stroke may be off its colours, steps of 255.
+const ERROR: f32 = 10.0;
+
+/// Lets the eyedropper take what it is for, while there is one: a step.
+pub fn take(ui: &Ui, frame: &mut Frame<'_>, blend: Blend) {
+    let Some(mut eyedropper) = frame.editor.eyedropper.take() else { return };
+    match eyedropper.take(ui).as_deref() {
+        None => frame.editor.eyedropper = Some(eyedropper),
+        Some([]) => {}
+        Some([colour]) => frame.recolour(HexColour::from_srgb(*colour / 255.0)),
+        Some(row) => frame.replace("gradient of a stroke", fit_row(row, blend, ERROR)),
     }
 }
 

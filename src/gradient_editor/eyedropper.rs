@@ -7,16 +7,10 @@ use eframe::egui::{
 };
 use glam::Vec3;
 
-use super::frame::Frame;
-use crate::assets::ramp::bake::{Blend, HexColour};
-use crate::assets::ramp::fit::fit_row;
-
 /// Shorter than this, points, a stroke is a click.
 const CLICK: f32 = 6.0;
 /// Colours of a stroke, each the mean of its part: what is finer is grain.
 const PARTS: usize = 32;
-/// How far stops may be off those colours, steps of 255.
-const ERROR: f32 = 10.0;
 
 /// It waits for the pointer, and then for what the window shows.
 #[derive(Clone, Debug, Default)]
@@ -27,23 +21,18 @@ pub struct Eyedropper {
     shown: Arc<OnceLock<Arc<ColorImage>>>,
 }
 
-/// Gives the pointer to the eyedropper while there is one; what it takes is a step. Escape puts it away.
-pub fn show(ui: &Ui, frame: &mut Frame<'_>, blend: Blend) {
-    let Some(mut eyedropper) = frame.editor.eyedropper.take() else { return };
-    if ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) {
-        return;
-    }
-    eyedropper.follow(ui);
-    let taken = eyedropper.shown.get().filter(|_| eyedropper.is_let_go);
-    match taken.map(|shown| colours(shown, &eyedropper.stroke, ui.pixels_per_point())).as_deref() {
-        Some([]) => {}
-        Some([colour]) => frame.recolour(HexColour::from_srgb(*colour / 255.0)),
-        Some(row) => frame.replace("gradient of a stroke", fit_row(row, blend, ERROR)),
-        None => frame.editor.eyedropper = Some(eyedropper),
-    }
-}
-
 impl Eyedropper {
+    /// Gives it the pointer, and once it is done the colours that it took, steps of 255: one, those of a stroke, or none where
+    /// Escape put it away.
+    pub fn take(&mut self, ui: &Ui) -> Option<Vec<Vec3>> {
+        if ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) {
+            return Some(Vec::new());
+        }
+        self.follow(ui);
+        let shown = self.shown.get().filter(|_| self.is_let_go)?;
+        Some(colours(shown, &self.stroke, ui.pixels_per_point()))
+    }
+
     /// Lies over the whole window, so that nothing else is clicked on.
     fn follow(&mut self, ui: &Ui) {
         let window = ui.ctx().viewport_rect();
@@ -149,7 +138,5 @@ mod tests {
         }
         let back = colours(&picture(), &[there[0], there[1], there[0]], 1.0);
         assert!((back[PARTS - 1].x - back[0].x).abs() < 1.0 && (back[PARTS / 2].x - 98.0).abs() < 3.0, "{back:?}");
-        let stops = fit_row(&row, Blend::Srgb, ERROR);
-        assert!((2..4).contains(&stops.len()), "{stops:?}");
     }
 }

@@ -69,7 +69,7 @@ impl GradientEditor {
             edited.pointed_at = strip::show(ui, &mut frame, surroundings);
             frame.clipboard(ui, at);
             // Before it can begin: the click that it begins with takes no colour.
-            eyedropper::show(ui, &mut frame, surroundings.blend);
+            controls::take(ui, &mut frame, surroundings.blend);
             controls::show(ui, &mut frame, at);
             is_held = is_held_by(ui, frame.editor.has_keyboard);
             (edited.refused, done) = (frame.refused, frame.done);
