@@ -33,62 +33,62 @@ settings! {
         "birth":
         /// Different seeds give different smoke of the same kind.
         seed: u32 = 1, seed;
-        /// Births per second.
+        /// Births per second. More makes it denser and smoother, for the cost of as many sprites.
         rate: f32 = 40.0, number(0.0..=100_000.0, "1/s");
         /// Seconds of emission, from time 0. 0: it has always been smoking and never stops.
         duration: f32 = 0.0, number(0.0..=3600.0, "s");
-        /// Seconds a particle lives.
+        /// Seconds a particle lives: how far the smoke gets before it is gone.
         lifetime: f32 = 6.0, number(0.01..=600.0, "s");
-        /// Share of the lifetime by which lives differ, up and down.
+        /// Share of the lifetime by which lives differ, up and down. Without any the smoke ends along a line.
         lifetime_spread: f32 = 0.2, number(0.0..=0.95, "");
         /// Where particles are born.
         shape: EmitterShape = EmitterShape::Sphere, choice;
-        /// Middle of the shape.
+        /// Middle of the shape: where the smoke begins.
         #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
         position: Vec3 = Vec3::ZERO, vector(-1.0e5..=1.0e5, "m");
-        /// Half the size of the shape.
+        /// Half the size of the shape: from a jet to a carpet of smoke.
         #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
         extent: Vec3 = Vec3::splat(0.2), vector(0.0..=1.0e4, "m");
         "motion":
-        /// Velocity at birth.
+        /// Velocity at birth: the thrust of a vent. Drag soon turns it into the air's.
         #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
         velocity: Vec3 = Vec3::new(0.0, 0.6, 0.0), vector(-1.0e3..=1.0e3, "m/s");
-        /// Speed at birth away from the middle of the shape.
+        /// Speed at birth away from the middle of the shape: a blast.
         burst: f32 = 0.0, number(-1.0e3..=1.0e3, "m/s");
-        /// Random speed at birth, any direction.
+        /// Random speed at birth, any direction: frays the root of the smoke.
         velocity_spread: f32 = 0.2, number(0.0..=1.0e3, "m/s");
-        /// How fast a particle takes on the velocity of the air.
+        /// How fast a particle takes on the velocity of the air: more stops a jet sooner and lets wind bend it.
         drag: f32 = 0.6, number(0.0..=100.0, "1/s");
         /// Upward acceleration of hot smoke; against the drag it ends in a steady rise of buoyancy / drag.
         buoyancy: f32 = 0.6, number(-100.0..=100.0, "m/s²");
         /// The way up, along which hot smoke rises and across which a disc lies; need not be unit length.
         #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
         up: Vec3 = Vec3::Y, vector(-1.0e3..=1.0e3, "");
-        /// Velocity of the air.
+        /// Velocity of the air: leans the smoke over.
         #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
         wind: Vec3 = Vec3::ZERO, vector(-100.0..=100.0, "m/s");
         "turbulence":
-        /// How far curl noise carries a particle off its path by the end of its life.
+        /// How far curl noise carries a particle off its path by the end of its life. More tears the smoke apart.
         turbulence: f32 = 0.5, number(0.0..=100.0, "m");
-        /// Size of the swirls.
+        /// Size of the swirls: small ones fray the smoke, large ones bend the whole of it.
         turbulence_scale: f32 = 1.5, number(0.01..=1.0e3, "m");
-        /// Turns of the swirls per second.
+        /// Turns of the swirls per second: how restless the smoke is.
         turbulence_speed: f32 = 0.05, number(0.0..=10.0, "1/s");
         "size":
-        /// Radius at birth.
+        /// Radius at birth: how thick the root of the smoke is.
         radius_start: f32 = 0.25, number(0.0..=1.0e3, "m");
-        /// Radius at death.
+        /// Radius at death: how wide the smoke spreads, and how soft it looks. Cost grows with its square.
         radius_end: f32 = 1.2, number(0.0..=1.0e3, "m");
-        /// Share by which radii differ, up and down.
+        /// Share by which radii differ, up and down. A mix looks less blobby.
         radius_spread: f32 = 0.25, number(0.0..=0.95, "");
         "appearance":
-        /// Fastest spin, either way, at birth; drag slows it.
+        /// Fastest spin, either way, at birth; drag slows it. Normals and light turn with it.
         spin: f32 = 0.6, number(0.0..=100.0, "rad/s");
-        /// Amount of a full-grown particle.
+        /// Amount of a full-grown particle: how much of what is behind one sprite hides. Less of more sprites is smoother.
         amount: f32 = 0.3, number(0.0..=1.0, "");
-        /// Share of the life over which a particle appears.
+        /// Share of the life over which a particle appears. At 0 sprites pop in.
         fade_in: f32 = 0.12, number(0.0..=1.0, "");
-        /// Share of the life over which it disappears.
+        /// Share of the life over which it disappears. At 0 they pop out; at 1 the top is thin.
         fade_out: f32 = 0.5, number(0.0..=1.0, "");
         /// Flipbook frames per second. 0: still.
         frame_rate: f32 = 4.0, number(0.0..=120.0, "frames/s");

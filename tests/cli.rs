@@ -329,12 +329,15 @@ fn pictures_may_lie_in_a_folder_that_presets_share() {
         let output = haze(folder.path(), &[&["preset", "check", "my.json"], arguments].concat());
         (output.status.code(), stderr(&output), String::from_utf8(output.stdout).unwrap())
     };
-    let (code, said, _) = check(&[]);
-    // All of them, in the order of the fields.
+    let (code, said, notes) = check(&[]);
+    // All of them, in the order of the fields; what else there is to say is said, too.
     let lines: Vec<_> = said.lines().collect();
     assert_eq!((code, lines.len()), (Some(2), 3), "{said}");
+    let idle = "my.json: bad\n  systems[0].material.age_ramp has no effect: forward only\n  systems[0].material.noise has no effect: ";
+    assert!(notes.starts_with(idle) && notes.lines().count() == 3, "{notes}");
     assert!(lines[0].contains("systems[0].material.diffuse_ramp: glow.png: No such file in "), "{said}");
-    let (_, said, _) = check(&["--assets", "team"]);
+    let (_, said, notes) = check(&["--assets", "team"]);
+    assert!(notes.contains("  systems[0].material.diffuse_ramp: glow.png: its 8 rows differ"), "{notes}");
     assert!(said.lines().count() == 2 && said.contains("the nearest name is \"glow.png\""), "{said}");
     std::fs::write(path("my.json"), text.replace("glwo", "glow").replace("fmb.png", "fbm")).unwrap();
     let (code, said, doubts) = check(&["--assets", "team"]);

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use glam::UVec2;
-use haze::demo::shot::Shot;
 use haze::picture::write_file;
 use haze::preset::{Preset, PresetSystem};
 use haze::settings::{Value, values};
@@ -68,13 +67,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
         Command::Check { presets, assets } => {
             let mut failures = Vec::new();
             for path in presets {
-                match check(path, assets) {
-                    Ok(notes) => {
-                        say!("{}: good", path.display())?;
-                        notes.iter().try_for_each(|note| say!("  {note}"))?;
-                    }
-                    Err(wrong) => failures.extend(wrong),
+                let (wrong, notes) = check(path, assets).unwrap_or_else(|error| (vec![error], Vec::new()));
+                if wrong.is_empty() || !notes.is_empty() {
+                    say!("{}: {}", path.display(), if wrong.is_empty() { "good" } else { "bad" })?;
                 }
+                notes.iter().try_for_each(|note| say!("  {note}"))?;
+                failures.extend(wrong);
             }
             return Failures::new(failures).into_result();
         }
@@ -86,28 +84,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     Ok(())
 }
 
-/// Loads a preset as a picture of it would, and tells what someone may not have meant.
-fn check(path: &Path, assets: &AssetsArguments) -> Result<Vec<String>, Vec<Error>> {
-    let one = |error| vec![error];
-    let preset = Preset::load(path).map_err(one)?;
-    let folders = assets.folders(path).map_err(one)?;
-    let (materials, caches) = (preset.check_materials(path, &folders), preset.check_caches(path, &folders));
-    let materials = match (materials, caches) {
-        (Ok(materials), Ok(_)) => materials,
-        (materials, caches) => {
-            return Err([materials.err(), caches.err()].into_iter().flatten().flatten().collect());
-        }
-    };
-    let shot = Shot::from_folders(preset, path, &folders, SIZE).map_err(one)?;
-    let systems = shot.preset.systems.iter().zip(&materials).enumerate();
-    let doubts = systems.flat_map(|(index, (system, material))| {
-        let doubts = system.material.doubts(material).into_iter();
-        doubts.map(move |(field, doubt)| format!("systems[{index}].material.{field}: {doubt}"))
-    });
-    let settings = settings(&shot.preset);
+/// Loads a preset as a picture of it would; gives all that is wrong, and what someone may not have meant.
+fn check(path: &Path, assets: &AssetsArguments) -> Result<(Vec<Error>, Vec<String>), Error> {
+    let preset = Preset::load(path)?;
+    let (wrong, mut notes) = preset.check_files(path, &assets.folders(path)?);
+    let settings = settings(&preset);
     let idle = settings.iter().filter(|setting| !setting.is_default());
-    let idle = idle.filter_map(|setting| Some(format!("{} has no effect: {}", setting.path, setting.idle?)));
-    Ok(doubts.chain(idle).collect())
+    notes.extend(idle.filter_map(|setting| Some(format!("{} has no effect: {}", setting.path, setting.idle?))));
+    Ok((wrong, notes))
 }
 
 /// A field of a preset.

@@ -2,9 +2,11 @@
 
 use eframe::egui::{self, Ui};
 
+use super::eyedropper::Eyedropper;
 use super::frame::Frame;
-use super::stops;
-use crate::assets::ramp::bake::{Curve, HexColour};
+use super::{stops, text};
+use crate::assets::ramp::bake::{Blend, Curve, HexColour};
+use crate::assets::ramp::fit::fit_row;
 use crate::assets::ramp::template::TEMPLATES;
 
 /// What the curves are, in the order of [`Curve::ALL`].
@@ -34,7 +36,14 @@ pub fn show(ui: &mut Ui, frame: &mut Frame<'_>, at: f32) {
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| place(ui, frame));
     });
     ui.horizontal(|ui| colour_and_curve(ui, frame));
-    ui.horizontal_wrapped(|ui| all(ui, frame, at));
+    ui.horizontal(|ui| {
+        hue_and_so_on(ui, frame);
+        eyedropper(ui, frame);
+    });
+    ui.horizontal_wrapped(|ui| {
+        all(ui, frame, at);
+        snap(ui, frame);
+    });
 }
 
 fn place(ui: &mut Ui, frame: &mut Frame<'_>) {
@@ -52,15 +61,15 @@ fn colour_and_curve(ui: &mut Ui, frame: &mut Frame<'_>) {
     let (mut colour, mut curve) = (stop.colour, stop.curve);
     let label = ui.label("colour");
     if ui.color_edit_button_srgb(&mut colour.0).labelled_by(label.id).changed() {
-        frame.edit("colour of a stop", |all, index| all[index].colour = colour);
+        frame.recolour(colour);
     }
     let mut text = frame.editor.typed.take().unwrap_or_else(|| colour.into());
     let field = ui.add(egui::TextEdit::singleline(&mut text).desired_width(66.0)).labelled_by(label.id);
     let field = field.on_hover_text("sRGB, #rrggbb");
     if field.lost_focus() {
-        match HexColour::try_from(text.trim().to_owned()) {
+        match text::colour(&text) {
             Ok(typed) if typed == colour => {}
-            Ok(typed) => frame.edit("colour of a stop", |all, index| all[index].colour = typed),
+            Ok(typed) => frame.recolour(typed),
             Err(reason) => frame.refused = Some(reason),
         }
     } else if field.has_focus() {
@@ -77,6 +86,67 @@ fn colour_and_curve(ui: &mut Ui, frame: &mut Frame<'_>) {
     if curve != frame.stops[frame.editor.selected].curve {
         frame.edit("curve of a stop", |all, index| all[index].curve = curve);
     }
+}
+
+/// Hue, saturation and value of the colour, as paint programs have them.
+fn hue_and_so_on(ui: &mut Ui, frame: &mut Frame<'_>) {
+    let colour = frame.stops[frame.editor.selected].colour;
+    let known = frame.editor.hsv.filter(|(known, _)| *known == colour);
+    let before = known.map_or_else(|| colour.hsv(), |(_, hsv)| hsv);
+    let mut hsv = before;
+    for (channel, (name, letter, most, unit)) in hsv.as_mut().iter_mut().zip([
+        ("hue", "H ", 360.0, "°"),
+        ("saturation", "S ", 100.0, "%"),
+        ("value", "V ", 100.0, "%"),
+    ]) {
+        let mut shown = *channel * most;
+        let field = egui::DragValue::new(&mut shown).range(0.0..=most).max_decimals(1).prefix(letter).suffix(unit);
+        let response = ui.add(field.speed(most / 250.0).update_while_editing(false));
+        let number = f64::from(shown);
+        response.widget_info(|| egui::WidgetInfo {
+            label: Some(name.into()),
+            ..egui::WidgetInfo::drag_value(true, number)
+        });
+        if response.on_hover_text(format!("{name}, of the sRGB colour")).changed() {
+            *channel = shown / most;
+        }
+    }
+    if hsv != before {
+        let colour = HexColour::from_hsv(hsv);
+        frame.editor.hsv = Some((colour, hsv));
+        frame.recolour(colour);
+    }
+}
+
+/// How far stops of a stroke may be off its colours, steps of 255.
+const ERROR: f32 = 10.0;
+
+/// Lets the eyedropper take what it is for, while there is one: a step.
+pub fn take(ui: &Ui, frame: &mut Frame<'_>, blend: Blend) {
+    let Some(mut eyedropper) = frame.editor.eyedropper.take() else { return };
+    match eyedropper.take(ui).as_deref() {
+        None => frame.editor.eyedropper = Some(eyedropper),
+        Some([]) => {}
+        Some([colour]) => frame.recolour(HexColour::from_srgb(*colour / 255.0)),
+        Some(row) => frame.replace("gradient of a stroke", fit_row(row, blend, ERROR)),
+    }
+}
+
+fn eyedropper(ui: &mut Ui, frame: &mut Frame<'_>) {
+    let about = "The selected stop takes the colour that is clicked on next, anywhere in the window; a stroke takes the gradient \
+                 along it. Escape gives it up";
+    let is_on = frame.editor.eyedropper.is_some();
+    if ui.selectable_label(is_on, "Take a colour").on_hover_text(about).clicked() {
+        frame.editor.eyedropper = Some(Eyedropper::default());
+    }
+}
+
+fn snap(ui: &mut Ui, frame: &mut Frame<'_>) {
+    let snap = &mut frame.editor.snap;
+    ui.checkbox(&mut snap.is_on, "Snap").on_hover_text("Without Ctrl; Ctrl lets go then");
+    let field = egui::DragValue::new(&mut snap.parts).range(2..=100).speed(0.1).suffix(" parts");
+    let response = ui.add(field.update_while_editing(false));
+    response.on_hover_text("How many equal parts of the gradient places snap to");
 }
 
 fn all(ui: &mut Ui, frame: &mut Frame<'_>, at: f32) {

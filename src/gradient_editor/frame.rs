@@ -1,17 +1,23 @@
 //! What the parts of the editor share: its state, and the stops in one frame.
 
 use eframe::egui::{self, Color32, Ui};
+use glam::Vec3;
 
+use super::eyedropper::Eyedropper;
 use super::text;
-use crate::assets::ramp::bake::{Blend, RampRow, RampStop};
+use crate::assets::ramp::bake::{Blend, HexColour, RampRow, RampStop};
 
 /// What an editor remembers from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub struct State {
     /// Index of the stop that keys and fields are for.
     pub selected: usize,
-    /// From the pointer to the stop that is dragged, in shares of the strip.
-    pub dragged: Option<f32>,
+    /// What is dragged: the selected one.
+    pub dragged: Option<Drag>,
+    pub snap: Snap,
+    pub eyedropper: Option<Eyedropper>,
+    /// A colour as hue, saturation and value: greys have no hue of their own, and it is not forgotten.
+    pub hsv: Option<(HexColour, Vec3)>,
     /// What is being done, until it is let go.
     pub pending: Option<&'static str>,
     /// A handle has the keyboard.
@@ -20,6 +26,40 @@ pub struct State {
     pub awaits_paste: bool,
     /// The colour that is being typed.
     pub typed: Option<String>,
+}
+
+/// A drag on its way.
+#[derive(Clone, Debug)]
+pub struct Drag {
+    /// From the pointer to the stop, in shares of the strip.
+    pub offset: f32,
+    /// What it is put back to by Escape: the stops, and which was selected.
+    pub before: (Vec<RampStop>, usize),
+}
+
+/// How many equal parts places snap to, and whether they do without Ctrl, which turns it round.
+#[derive(Clone, Copy, Debug)]
+pub struct Snap {
+    pub is_on: bool,
+    pub parts: u32,
+}
+
+impl Default for Snap {
+    fn default() -> Self {
+        Self { is_on: false, parts: 10 }
+    }
+}
+
+impl Snap {
+    /// The parts to snap to with these keys held, if any.
+    pub fn with(self, modifiers: egui::Modifiers) -> Option<u32> {
+        (self.is_on != modifiers.command).then_some(self.parts)
+    }
+
+    /// The same now.
+    pub fn now(self, ui: &Ui) -> Option<u32> {
+        self.with(ui.input(|input| input.modifiers))
+    }
 }
 
 /// What is shown of a gradient beside its stops.
@@ -56,12 +96,29 @@ impl Frame<'_> {
         self.editor.selected = self.edit(what, change);
     }
 
+    /// Gives the selected stop another colour.
+    pub fn recolour(&mut self, colour: HexColour) {
+        self.edit("colour of a stop", |all, index| {
+            if let Some(stop) = all.get_mut(index) {
+                stop.colour = colour;
+            }
+        });
+    }
+
     /// Takes other stops for all of them.
     pub fn replace(&mut self, what: &'static str, stops: Vec<RampStop>) {
         self.edit_and_select(what, |all, _| {
             *all = stops;
             0
         });
+    }
+
+    /// Puts everything back to what it was before the drag, which is no step then.
+    pub fn give_up(&mut self) {
+        if let Some(Drag { before, .. }) = self.editor.dragged.take() {
+            (*self.stops, self.editor.selected) = before;
+            (self.editor.pending, self.done) = (None, None);
+        }
     }
 
     /// Copies for the stop that has the keyboard; takes what comes for it, or was asked for.
@@ -89,9 +146,10 @@ impl Frame<'_> {
         }
         if let Some(pasted) = pasted {
             self.editor.awaits_paste = false;
-            match text::parse(&pasted) {
-                Ok(stops) => self.replace("paste stops", stops),
-                Err(error) => self.refused = Some(format!("nothing is pasted: {error}")),
+            match (text::colour(&pasted), text::parse(&pasted)) {
+                (Ok(colour), _) => self.recolour(colour),
+                (_, Ok(stops)) => self.replace("paste stops", stops),
+                (_, Err(error)) => self.refused = Some(format!("nothing is pasted: {error}")),
             }
         }
     }

@@ -1,14 +1,18 @@
 //! An editor of gradients for egui: the stops of one row of a ramp's recipe, on a strip that shows what they make.
 //!
 //! A click on the strip adds a stop with the colour that is there; stops are dragged, nudged with the arrow keys (Shift: ten times
-//! as far) and removed with Delete; Ctrl snaps to tenths. Handles of stops that are near each other stand apart, each can be grabbed.
-//! Tab goes from stop to stop. `examples/gradient_editor.rs` has one in a window.
+//! as far) and removed with Delete; Ctrl snaps to equal parts, tenths unless others are asked for, Shift to another
+//! stop, Alt leaves a copy; Escape ends a drag as if it had not begun. Handles of stops that are near each other stand apart, each can be grabbed. Tab goes from stop to stop. An eyedropper
+//! takes a colour from anywhere in the window, or a gradient along a stroke: the host must serve egui's requests for screenshots,
+//! as eframe does. `examples/gradient_editor.rs` has one in a window.
 //!
 //! Undo is the host's: [`Edited::committed`] says when a step is done, however long its drag was.
 
 mod controls;
+mod eyedropper;
 mod fan;
 mod frame;
+mod handles;
 mod paint;
 mod stops;
 mod strip;
@@ -21,7 +25,7 @@ use eframe::egui::{self, Ui};
 pub use frame::Surroundings;
 pub use paint::histogram;
 
-use crate::assets::ramp::bake::{HexColour, RampRow};
+use crate::assets::ramp::bake::RampRow;
 use frame::{Frame, State};
 
 /// What became of a gradient in a frame.
@@ -64,6 +68,8 @@ impl GradientEditor {
             };
             edited.pointed_at = strip::show(ui, &mut frame, surroundings);
             frame.clipboard(ui, at);
+            // Before it can begin: the click that it begins with takes no colour.
+            controls::take(ui, &mut frame, surroundings.blend);
             controls::show(ui, &mut frame, at);
             is_held = is_held_by(ui, frame.editor.has_keyboard);
             (edited.refused, done) = (frame.refused, frame.done);
@@ -76,14 +82,6 @@ impl GradientEditor {
             edited.committed = self.state.pending.take();
         }
         edited
-    }
-
-    /// Gives the selected stop of the row another colour, as an eyedropper does: a step that the next frame commits.
-    pub fn set_colour(&mut self, row: &mut RampRow, colour: HexColour) {
-        if let Some(stop) = row.stops.get_mut(self.state.selected).filter(|stop| stop.colour != colour) {
-            stop.colour = colour;
-            self.state.pending = Some("colour of a stop");
-        }
     }
 
     /// A step is being made: what is changed is not committed yet.

@@ -2,7 +2,22 @@
 
 use eframe::egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, StrokeKind, Ui, pos2};
 
-use crate::assets::ramp::bake::RampStop;
+use crate::assets::ramp::bake::{HexColour, RampStop};
+
+pub fn colour32(HexColour([r, g, b]): HexColour) -> Color32 {
+    Color32::from_rgb(r, g, b)
+}
+
+/// The borders of equal parts of the strip, if places snap to some.
+pub fn borders(ui: &Ui, strip: Rect, parts: Option<u32>) {
+    let Some(parts) = parts else { return };
+    for border in 1..parts {
+        let x = strip.left() + strip.width() * border as f32 / parts as f32;
+        for (beside, colour) in [(0.0, Color32::BLACK), (1.0, Color32::WHITE)] {
+            ui.painter().vline(x + beside, strip.y_range(), Stroke::new(1.0, colour.gamma_multiply(0.3)));
+        }
+    }
+}
 
 /// Where the stops are, however many, a tick for each pixel.
 pub fn ticks(ui: &Ui, stops: &[RampStop], strip: Rect) {

@@ -16,6 +16,17 @@ pub fn add(stops: &mut Vec<RampStop>, at: f32, colour: HexColour) -> usize {
     index
 }
 
+/// Puts a copy of a stop behind it; gives its index.
+pub fn copy(stops: &mut Vec<RampStop>, index: usize) -> usize {
+    match stops.get(index).cloned() {
+        Some(stop) => {
+            stops.insert(index + 1, stop);
+            index + 1
+        }
+        None => index,
+    }
+}
+
 /// The place for one more: half way from a stop to the next, or to the one before the last.
 pub fn gap(stops: &[RampStop], index: usize) -> f32 {
     let at = |index: usize| stops.get(index).map(|stop| stop.at);
@@ -49,20 +60,28 @@ pub fn move_to(stops: &mut [RampStop], mut index: usize, at: f32) -> usize {
     index
 }
 
-/// The nearest tenth.
-pub fn tenth(at: f32) -> f32 {
-    (at * 10.0).round() / 10.0
+/// The nearest border of equal parts, if it snaps to those.
+pub fn snapped(at: f32, parts: Option<u32>) -> f32 {
+    parts.map_or(at, |parts| (at * parts as f32).round() / parts as f32)
 }
 
-/// The place some steps from another: thousandths, hundredths if it is `far`, and tenths if it snaps.
-pub fn nudged(at: f32, steps: f32, far: bool, snaps: bool) -> f32 {
+/// The place of another stop that is near, so that the two make a hard edge; else the same place.
+pub fn beside(stops: &[RampStop], index: usize, at: f32) -> f32 {
+    const NEAR: f32 = 0.02;
+    let others = stops.iter().enumerate().filter(|(other, _)| *other != index).map(|(_, stop)| stop.at);
+    let near = others.filter(|other| (other - at).abs() <= NEAR);
+    near.min_by(|a, b| (a - at).abs().total_cmp(&(b - at).abs())).unwrap_or(at)
+}
+
+/// The place some steps from another: thousandths, hundredths if it is `far`, and equal parts if it snaps to those.
+pub fn nudged(at: f32, steps: f32, far: bool, parts: Option<u32>) -> f32 {
     // To where a step leads is rounded: a hundred steps and as many back end where they began.
     let round = |at: f32, unit: f32| (at * unit).round() / unit;
-    match () {
-        // The next tenth, however near it is.
-        () if snaps && steps > 0.0 => ((at * 10.0 + 1.0e-3).floor() + steps) / 10.0,
-        () if snaps => ((at * 10.0 - 1.0e-3).ceil() + steps) / 10.0,
-        () => round(at + steps * if far { 0.01 } else { 0.001 }, 1.0e4),
+    match parts.map(|parts| parts as f32) {
+        // The next border, however near it is.
+        Some(parts) if steps > 0.0 => ((at * parts + 1.0e-3).floor() + steps) / parts,
+        Some(parts) => ((at * parts - 1.0e-3).ceil() + steps) / parts,
+        None => round(at + steps * if far { 0.01 } else { 0.001 }, 1.0e4),
     }
 }
 
@@ -177,19 +196,22 @@ mod tests {
     }
 
     #[test]
-    fn arrows_go_by_thousandths_hundredths_and_to_tenths() {
+    fn arrows_go_by_thousandths_hundredths_and_to_equal_parts() {
         let close = |at: f32, expected: f32| assert!((at - expected).abs() < 1.0e-5, "{at} {expected}");
-        close(nudged(0.25, 1.0, false, false), 0.251);
-        close(nudged(0.25, -1.0, true, false), 0.24);
-        close(nudged(0.25, 1.0, false, true), 0.3);
-        close(nudged(0.25, -1.0, false, true), 0.2);
-        close(nudged(0.3, 1.0, true, true), 0.4);
-        close(nudged(0.3, -1.0, false, true), 0.2);
+        close(nudged(0.25, 1.0, false, None), 0.251);
+        close(nudged(0.25, -1.0, true, None), 0.24);
+        close(nudged(0.25, 1.0, false, Some(10)), 0.3);
+        close(nudged(0.25, -1.0, false, Some(10)), 0.2);
+        close(nudged(0.3, 1.0, true, Some(10)), 0.4);
+        close(nudged(0.3, -1.0, false, Some(10)), 0.2);
+        close(nudged(0.3, 1.0, false, Some(3)), 1.0 / 3.0);
         let mut at = 0.123;
-        (0..100).for_each(|_| at = nudged(at, 1.0, false, false));
-        (0..100).for_each(|_| at = nudged(at, -1.0, false, false));
+        (0..100).for_each(|_| at = nudged(at, 1.0, false, None));
+        (0..100).for_each(|_| at = nudged(at, -1.0, false, None));
         close(at, 0.123);
-        close(tenth(0.349), 0.3);
+        close(snapped(0.349, Some(10)), 0.3);
+        close(snapped(0.349, Some(8)), 0.375);
+        close(snapped(0.349, None), 0.349);
     }
 
     #[test]

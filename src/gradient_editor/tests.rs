@@ -6,6 +6,9 @@ use eframe::egui::{Color32, Event, Key, Modifiers, PointerButton, Pos2, Rect, Ro
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
+mod colours;
+mod drags;
+
 use super::*;
 use crate::assets::ramp::bake::{Curve, HexColour, RampStop};
 use crate::assets::ramp::template::{TEMPLATES, Template};
@@ -35,6 +38,7 @@ fn host(stops: &[(f32, u8)]) -> Harness<'static, Host> {
     let mut harness = Harness::builder()
         .with_size(Vec2::new(330.0, 260.0))
         .with_theme(Theme::Dark)
+        .with_render_cursor(false)
         .build_ui_state(show, Host { row, ..Host::default() });
     harness.run_steps(3);
     harness

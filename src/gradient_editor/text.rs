@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::assets::json;
-use crate::assets::ramp::bake::{RampRow, RampStop};
+use crate::assets::ramp::bake::{HexColour, RampRow, RampStop};
 use crate::assets::ramp::gradient::not_empty;
 use crate::error::Error;
 use crate::settings::validate;
@@ -12,6 +12,12 @@ use crate::settings::validate;
 pub fn to_text(row: &RampRow) -> String {
     // Numbers and texts: there is nothing that could fail.
     serde_json::to_string_pretty(row).unwrap_or_default()
+}
+
+/// A colour as people write it: `#rrggbb`, also without its sign.
+pub fn colour(text: &str) -> Result<HexColour, String> {
+    let text = text.trim();
+    HexColour::try_from(format!("#{text}")).or_else(|_| HexColour::try_from(text.to_owned()))
 }
 
 /// The stops of a row that was copied, in order.
@@ -38,6 +44,16 @@ mod tests {
         ];
         let row = RampRow { at: 0.5, curve: Curve::Ease, stops };
         assert_eq!(parse(&to_text(&row)).unwrap(), row.stops);
+    }
+
+    #[test]
+    fn a_colour_needs_no_sign() {
+        for text in ["#ff8000", " FF8000\n"] {
+            assert_eq!(colour(text), Ok(HexColour([255, 128, 0])));
+        }
+        for text in ["##ff8000", "ff800", "#ff80000", "+f8000"] {
+            assert!(colour(text).unwrap_err().starts_with(&format!("{text:?} is not valid")), "{text}");
+        }
     }
 
     #[test]

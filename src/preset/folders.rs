@@ -1,7 +1,9 @@
 //! Where the pictures and particle files of a preset are looked for.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
+use crate::assets::builtin;
 use crate::assets::cache::is_there;
 use crate::error::Error;
 
@@ -12,11 +14,14 @@ pub struct PictureFolders {
     shared: Option<PathBuf>,
 }
 
+/// Pictures that come with the program: their names have no ending.
+const BUILT_IN: [&[builtin::Builtin]; 4] = [builtin::RAMPS, builtin::MOTIFS, builtin::SPRITES, builtin::NOISES];
+
 /// Most names of a folder that are compared with one that is missing.
 const MOST_NAMES: usize = 10_000;
 
 /// Least likeness of a name to one that is missing, to be spoken of.
-const ALIKE: f64 = 0.75;
+pub(super) const ALIKE: f64 = 0.75;
 
 impl PictureFolders {
     /// The folder of a preset's file alone.
@@ -59,6 +64,9 @@ impl PictureFolders {
             .collect();
         let nearest = self.all().filter_map(|folder| nearest(&folder.join(file))).max_by(|a, b| a.0.total_cmp(&b.0));
         let nearest = nearest.map(|(_, name)| format!("; the nearest name is {name:?}")).unwrap_or_default();
+        let name = file.file_stem().and_then(OsStr::to_str).unwrap_or_default();
+        let is_built_in = BUILT_IN.iter().any(|list| builtin::find(list, name).is_some());
+        let nearest = if is_built_in { format!("; the built-in one is {name:?}") } else { nearest };
         let reason = format!("No such file in {}{nearest}", folders.join(", nor in "));
         Error::Image { path: self.own.join(file), reason }
     }
@@ -96,6 +104,9 @@ mod tests {
         let error = find("wispy_egde.png").unwrap_err().to_string();
         assert!(error.contains("No such file in ") && error.contains(", nor in "), "{error}");
         assert!(error.ends_with("; the nearest name is \"wispy_edge.png\""), "{error}");
+        std::fs::write(path("shots/diffuse_sot.png"), "").unwrap();
+        let error = find("diffuse_soot.png").unwrap_err().to_string();
+        assert!(error.ends_with("; the built-in one is \"diffuse_soot\""), "{error}");
         let error = PictureFolders::at(&path("shots")).find(Path::new("xyz.png")).unwrap_err().to_string();
         assert!(error.ends_with("shots") && !error.contains("nor in"), "{error}");
     }

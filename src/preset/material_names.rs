@@ -2,7 +2,7 @@
 
 use std::path::{Component, Path};
 
-use super::folders::PictureFolders;
+use super::folders::{ALIKE, PictureFolders};
 use super::pictures::Pictures;
 use crate::assets::builtin;
 use crate::assets::material::MaterialAssets;
@@ -15,7 +15,7 @@ settings! {
     #[derive(Clone, Debug, PartialEq, Eq)]
     pub struct MaterialNames {
         "sprite":
-        /// Flipbook of normal maps.
+        /// Flipbook of normal maps: the shape of every puff, and of its outline.
         sprite: String = "puff".into(), picture(PictureRole::Sprite);
         /// Depth and motion of a sprite from a file, laid out as it; empty for none. A built-in sprite has its own.
         detail: String = String::new(), picture(PictureRole::Detail);
@@ -26,17 +26,17 @@ settings! {
         /// True for a sprite file painted with green pointing down.
         y_down: bool = false, flag;
         "ramps and noise":
-        /// Light by dot(n, l).
+        /// Light by dot(n, l): the colours of shade, terminator and lit side.
         diffuse_ramp: String = "diffuse_soft".into(), picture(PictureRole::Ramp);
-        /// Light by amount.
+        /// Light by amount: the colours of thin and thick smoke, wherever lights are.
         soft_scatter_ramp: String = "scatter_mist".into(), picture(PictureRole::Ramp);
-        /// Glow by distance² and amount.
+        /// Glow by distance² and amount: how a light behind shines through.
         specular_ramp: String = "specular_halo".into(), picture(PictureRole::Ramp);
-        /// Painted lit sphere.
+        /// Painted lit sphere: light by paint alone.
         motif: String = "motif_studio".into(), picture(PictureRole::Motif);
-        /// Colour by age.
+        /// Colour by age: from flame to ash.
         age_ramp: String = "age_smoke".into(), picture(PictureRole::Ramp);
-        /// Coverage by amount.
+        /// Coverage by amount: soft, wispy or cut silhouettes.
         coverage_ramp: String = "coverage_soft".into(), picture(PictureRole::Ramp);
         /// Tiling 3D noise: a built-in one, or a PNG of slices below each other.
         noise: String = "fbm".into(), picture(PictureRole::Noise);
@@ -51,20 +51,20 @@ impl MaterialNames {
     /// inside the folder, or for more than [`MAX_PICTURE_BYTES`](super::MAX_PICTURE_BYTES).
     pub fn load(&self, folder: &Path) -> Result<MaterialAssets, Error> {
         let loaded = self.load_from(&mut Pictures::new(PictureFolders::at(folder)));
-        loaded.map_err(|mut errors| errors.swap_remove(0))
+        loaded.map_err(|mut errors| errors.swap_remove(0).1)
     }
 
-    /// The same, where other systems may have loaded some already. The errors are those of all fields, in their order: at least
-    /// one.
-    pub(super) fn load_from(&self, pictures: &mut Pictures) -> Result<MaterialAssets, Vec<Error>> {
+    /// The same, where other systems may have loaded some already. The errors are those of all fields, in their order, with the
+    /// field: at least one. What belongs to the sprite is of that field.
+    pub(super) fn load_from(&self, pictures: &mut Pictures) -> Result<MaterialAssets, Vec<(&'static str, Error)>> {
         let mut errors = Vec::new();
-        let sprite = kept(self.load_sprite(pictures), &mut errors);
+        let sprite = kept("sprite", self.load_sprite(pictures), &mut errors);
         let mut ramp = |field, name: &str, list| {
             let found = match builtin::find(list, name) {
                 Some(ramp) => ramp.ramp(),
                 None => inside(field, name, list).and_then(|file| pictures.ramp(field, file)),
             };
-            kept(found, &mut errors)
+            kept(field, found, &mut errors)
         };
         let ramps = (
             ramp("diffuse_ramp", &self.diffuse_ramp, builtin::RAMPS),
@@ -78,7 +78,7 @@ impl MaterialNames {
             Some(noise) => noise.noise(),
             None => inside("noise", &self.noise, builtin::NOISES).and_then(|file| pictures.noise("noise", file)),
         };
-        let noise = kept(noise, &mut errors);
+        let noise = kept("noise", noise, &mut errors);
         match (sprite, ramps, noise) {
             (Some((sprite, detail)), (Some(a), Some(b), Some(c), Some(d), Some(e), Some(f)), Some(noise)) => {
                 Ok(MaterialAssets {
@@ -95,6 +95,29 @@ impl MaterialNames {
             }
             _ => Err(errors),
         }
+    }
+
+    /// The same with the usual pictures for some fields, as [`MaterialNames::load_from`] tells them.
+    pub(super) fn with_usual(&self, fields: &[&str]) -> Self {
+        let usual = Self::default();
+        let mut names = self.clone();
+        for field in fields {
+            let (own, usual) = match *field {
+                "diffuse_ramp" => (&mut names.diffuse_ramp, &usual.diffuse_ramp),
+                "soft_scatter_ramp" => (&mut names.soft_scatter_ramp, &usual.soft_scatter_ramp),
+                "specular_ramp" => (&mut names.specular_ramp, &usual.specular_ramp),
+                "motif" => (&mut names.motif, &usual.motif),
+                "age_ramp" => (&mut names.age_ramp, &usual.age_ramp),
+                "coverage_ramp" => (&mut names.coverage_ramp, &usual.coverage_ramp),
+                "noise" => (&mut names.noise, &usual.noise),
+                _ => {
+                    (names.detail, names.columns, names.rows, names.y_down) = (String::new(), 1, 1, false);
+                    (&mut names.sprite, &usual.sprite)
+                }
+            };
+            own.clone_from(usual);
+        }
+        names
     }
 
     fn load_sprite(&self, pictures: &mut Pictures) -> Result<(Sprite, Option<Sprite>), Error> {
@@ -142,14 +165,18 @@ fn inside<'a>(field: &str, name: &'a str, list: &[builtin::Builtin]) -> Result<&
     let mut expected = "a PNG inside the preset's folder".to_owned();
     if !list.is_empty() {
         let names: Vec<_> = list.iter().map(|builtin| builtin.name).collect();
-        expected = format!("one of {}, or {expected}", names.join(", "));
+        let small = name.to_ascii_lowercase();
+        let alike = names.iter().map(|other| (strsim::jaro_winkler(&small, other), other));
+        let nearest = alike.filter(|(alike, _)| *alike >= ALIKE).max_by(|a, b| a.0.total_cmp(&b.0));
+        let nearest = nearest.map(|(_, name)| format!("; the nearest name is {name:?}")).unwrap_or_default();
+        expected = format!("one of {}, or {expected}{nearest}", names.join(", "));
     }
     Err(FieldError::new(format!("material.{field}"), format!("{name:?}"), expected).into())
 }
 
 /// What there is, else takes note of why not.
-fn kept<T>(found: Result<T, Error>, errors: &mut Vec<Error>) -> Option<T> {
-    found.map_err(|error| errors.push(error)).ok()
+fn kept<T>(field: &'static str, found: Result<T, Error>, errors: &mut Vec<(&'static str, Error)>) -> Option<T> {
+    found.map_err(|error| errors.push((field, error))).ok()
 }
 
 #[cfg(test)]
@@ -189,5 +216,9 @@ mod tests {
         for outside in ["../b.png", "/etc/b.png", "a/../../b.png", "puf", "b.jpg"] {
             assert!(inside("sprite", outside, builtin::SPRITES).is_err(), "{outside}");
         }
+        let said = inside("sprite", "Wisps", builtin::SPRITES).unwrap_err().to_string();
+        assert!(said.ends_with("inside the preset's folder; the nearest name is \"wisp\""), "{said}");
+        let said = inside("sprite", "b.jpg", builtin::SPRITES).unwrap_err().to_string();
+        assert!(said.ends_with("inside the preset's folder"), "{said}");
     }
 }

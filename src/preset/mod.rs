@@ -3,6 +3,7 @@
 mod cache;
 mod caches;
 mod camera;
+mod check;
 mod effect;
 mod environment;
 mod folders;

@@ -184,23 +184,12 @@ impl Preset {
     /// # Errors
     /// As [`Preset::load_materials`].
     pub fn load_materials_from(&self, path: &Path, folders: &PictureFolders) -> Result<Vec<MaterialAssets>, Error> {
-        self.check_materials(path, folders).map_err(|mut errors| errors.swap_remove(0))
-    }
-
-    /// The same, for all that is wrong.
-    ///
-    /// # Errors
-    /// Those of every picture of every system: at least one.
-    pub fn check_materials(&self, path: &Path, folders: &PictureFolders) -> Result<Vec<MaterialAssets>, Vec<Error>> {
         let mut pictures = Pictures::new(folders.clone());
-        let (mut loaded, mut errors) = (Vec::new(), Vec::new());
-        for (index, system) in self.systems.iter().enumerate() {
-            match system.material.load_from(&mut pictures) {
-                Ok(material) => loaded.push(material),
-                Err(wrong) => errors.extend(wrong.into_iter().map(|error| in_system(path, index, error))),
-            }
-        }
-        if errors.is_empty() { Ok(loaded) } else { Err(errors) }
+        let load = |(index, system): (usize, &PresetSystem)| {
+            let loaded = system.material.load_from(&mut pictures);
+            loaded.map_err(|mut errors| in_system(path, index, errors.swap_remove(0).1))
+        };
+        self.systems.iter().enumerate().map(load).collect()
     }
 
     /// Checks every number, and that no more than [`MAX_PARTICLES`] live at once.

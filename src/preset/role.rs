@@ -5,7 +5,7 @@ use glam::{UVec2, Vec3};
 use super::material_names::MaterialNames;
 use crate::assets::material::MaterialAssets;
 use crate::assets::ramp::Ramp;
-use crate::assets::sprite::check::not_normals;
+use crate::assets::sprite::check::{NOTHING, is_clear, not_normals};
 use crate::formula::colour::srgb_from_linear;
 
 /// Most that channels of linear colours differ which are taken for the same.
@@ -25,7 +25,8 @@ impl MaterialNames {
             ("specular_ramp", &self.specular_ramp, of_specular_ramp(&loaded.specular_ramp)),
             ("motif", &self.motif, of_motif(&loaded.motif)),
         ];
-        let sprite = [("sprite", &self.sprite, not_normals(&loaded.sprite).map(String::from))];
+        let of_sprite = if is_clear(&loaded.sprite) { Some(NOTHING) } else { not_normals(&loaded.sprite) };
+        let sprite = [("sprite", &self.sprite, of_sprite.map(String::from))];
         let doubts = sprite.into_iter().chain(of_ramps).chain(others);
         doubts.filter_map(|(field, name, doubt)| Some((field, format!("{name}: {}", doubt?)))).collect()
     }

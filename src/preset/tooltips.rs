@@ -127,7 +127,7 @@ mod tests {
         assert!(panel.rows > 100, "{} rows", panel.rows);
         assert_eq!(
             tooltips.field("systems.settings.boost"),
-            Some("Multiplies the accumulated amount into coverage. OTEE's value is 3.")
+            Some("Multiplies the accumulated amount into coverage: how soon smoke hides the scene. OTEE's value is 3.")
         );
         assert_eq!(tooltips.field("systems.settings.boots"), None);
         assert_eq!(tooltips.choice("lights.kind", "laser"), None);

@@ -127,13 +127,13 @@ settings! {
     /// The accumulation pass: how sprites become normal + amount.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Accumulate {
-        /// Texel format of the target.
+        /// Texel format of the target: half the memory, or smooth thin smoke.
         format: AccumulationFormat = AccumulationFormat::default(), choice;
         /// How normals are written.
         encoding: NormalEncoding = NormalEncoding::default(), choice;
-        /// How normals are read.
+        /// How normals are read. The wrong way turns thin smoke away from the light.
         decode: NormalDecode = NormalDecode::default(), choice;
-        /// What the normals take their order from.
+        /// What the normals take their order from: crisp layers that pop, or none.
         order: Order = Order::default(), choice;
         /// For the order `weighted`: a normal counts e^(-depth_weight · the optical depth in front of its sprite). 0: all alike.
         depth_weight: f32 = 0.4, number(0.0..=4.0, "");
@@ -145,13 +145,13 @@ settings! {
         max_side: u32 = 4096, integer(16..=16384, "texels");
         /// Which scene depth sprites are compared with.
         depth_source: DepthSource = DepthSource::default(), choice;
-        /// Which depth a reduced texel keeps.
+        /// Which depth a reduced texel keeps: whether thin things in front stay clear of smoke.
         depth_downsample: DepthDownsample = DepthDownsample::default(), choice;
-        /// How the target is brought to full resolution.
+        /// How the target is brought to full resolution: what edges of things in the smoke look like.
         upsample: Upsample = Upsample::default(), choice;
         /// How finely the smoke is lit; its coverage and the glow of lights are those of pixels.
         lighting_resolution: LightingResolution = LightingResolution::default(), choice;
-        /// Multiplies the amount of every sprite.
+        /// Multiplies the amount of every sprite: thinner, or thicker smoke.
         opacity: f32 = 1.0, number(0.0..=1.0, "");
     }
 }

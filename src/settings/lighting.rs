@@ -59,9 +59,9 @@ settings! {
     /// Diffuse light: `ramp(dot(n, l)/2 + 1/2)` per light.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Diffuse {
-        /// How the light of a normal is found.
+        /// How the light of a normal is found: exactly, cheaply for many lights, or by paint.
         mode: DiffuseMode = DiffuseMode::default(), choice;
-        /// Multiplies the sum over all lights.
+        /// Multiplies the sum over all lights: brighter smoke in the same scene.
         intensity: f32 = 1.0, number(0.0..=100.0, "");
     }
 }
@@ -70,19 +70,19 @@ settings! {
     /// Soft scatter: the even backlight of thin smoke, darker as the amount grows.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct SoftScatter {
-        /// Curve or painted ramp.
+        /// Curve or painted ramp: two colours, or any.
         mode: SoftScatterMode = SoftScatterMode::default(), choice;
-        /// Amount at which `scatter_colour` begins to give way.
+        /// Amount at which `scatter_colour` begins to give way: more lets the pale rim reach further in.
         scatter_amount: f32 = 0.0, number(0.0..=1.0, "");
-        /// Amount after that at which `ambient_colour` is reached.
+        /// Amount after that at which `ambient_colour` is reached: little makes an edge, much a slow change.
         scatter_smooth: f32 = 0.7, number(0.0..=1.0, "");
-        /// Linear RGB of thin smoke.
+        /// Linear RGB of thin smoke, where light comes through whatever it comes from.
         #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
         scatter_colour: Vec3 = Vec3::new(0.05, 0.055, 0.065), colour(0.0..=100.0);
-        /// Linear RGB of thick smoke.
+        /// Linear RGB of thick smoke: lifts what no light reaches.
         #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
         ambient_colour: Vec3 = Vec3::new(0.012, 0.013, 0.017), colour(0.0..=100.0);
-        /// Multiplies the result.
+        /// Multiplies the result: milky smoke, or shade that is dark.
         intensity: f32 = 1.0, number(0.0..=100.0, "");
     }
 }
@@ -91,7 +91,7 @@ settings! {
     /// Specular scatter: the glow round a light seen through smoke.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct SpecularScatter {
-        /// Half the side of the quad, whatever the distance.
+        /// Half the side of the quad, whatever the distance: how wide the glow is. Cost grows with its square.
         size: f32 = 160.0, number(1.0..=8192.0, "pixels");
         /// Multiplies the glow. 0 draws no quads.
         intensity: f32 = 1.0, number(0.0..=100.0, "");

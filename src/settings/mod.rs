@@ -111,11 +111,11 @@ settings! {
         blend_mode: BlendMode = BlendMode::Alpha, choice;
         /// How sprites meet the scene.
         technique: Technique = Technique::Soft, choice;
-        /// Multiplies the accumulated amount into coverage. OTEE's value is 3.
+        /// Multiplies the accumulated amount into coverage: how soon smoke hides the scene. OTEE's value is 3.
         boost: f32 = 3.0, number(0.0..=16.0, "");
-        /// How the amount becomes coverage.
+        /// How the amount becomes coverage: soft silhouettes, or any by paint.
         coverage: CoverageMode = CoverageMode::default(), choice;
-        /// What ramps give between two texels.
+        /// What ramps give between two texels: smooth light, or hard steps.
         ramp_filter: RampFilter = RampFilter::default(), choice;
         /// What sprites show.
         sprite: SpriteSettings = SpriteSettings::default(), group;

@@ -25,11 +25,11 @@ settings! {
     /// The soft depth fade: how a sprite dissolves where it meets the scene or the camera.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct SoftFade {
-        /// The curve.
+        /// How a sprite goes from gone, at the scene's surface, to whole.
         curve: FadeCurve = FadeCurve::default(), choice;
         /// Reciprocal of the distance over which a sprite fades. Larger is harder.
         fade_scale: f32 = 2.0, number(0.001..=1000.0, "1/m");
-        /// Steepness of the `contrast` and `exponential` curves. 1 is linear for `contrast`.
+        /// Steepness of the `contrast` and `exponential` curves: more is a sharper step. 1 is linear for `contrast`.
         contrast_power: f32 = 2.0, number(0.1..=16.0, "");
         /// Sprites closer to the surface than this are dropped. 0 keeps everything in front of the surface.
         epsilon: f32 = 0.0, number(0.0..=10.0, "m");

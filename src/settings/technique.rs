@@ -105,9 +105,9 @@ settings! {
     /// Numbers of the technique `spherical_billboard`.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct SphericalBillboard {
-        /// Radius of the sphere, in radii of the particle.
+        /// Radius of the sphere, in radii of the particle: how far in front of things it thins out.
         radius: f32 = 1.0, number(0.0..=10.0, "");
-        /// How fast the amount grows on the way through the middle of the sphere.
+        /// How fast the amount grows on the way through the middle of the sphere: from haze to a solid ball.
         density: f32 = 3.0, number(0.0..=1000.0, "1/m");
     }
 }
@@ -116,7 +116,7 @@ settings! {
     /// The number of the technique `density`.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Density {
-        /// Density of the slab where the sprite's alpha is 1.
+        /// Density of the slab where the sprite's alpha is 1: more hides things nearer to its front.
         density: f32 = 1.0, number(0.0..=1000.0, "1/m");
     }
 }
@@ -125,15 +125,16 @@ settings! {
     /// Numbers of the techniques `volumetric_hard` and `volumetric_soft`.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Volumetric {
-        /// Steps of the march through a sphere.
+        /// Steps of the march through a sphere: fewer are cheaper, and show as layers.
         march_steps: u32 = 6, integer(2..=8, "");
-        /// Side of one tile of the noise, which fills the world.
+        /// Side of one tile of the noise, which fills the world: how large its lumps are.
         noise_size: f32 = 2.5, number(0.01..=1000.0, "m");
-        /// Lookups into the noise for each step, each of three times the frequency and half the weight of the last.
+        /// Lookups into the noise for each step, each of three times the frequency and half the weight of the
+        /// last: finer lumps.
         noise_octaves: u32 = 2, integer(1..=4, "");
         /// How fast the amount grows where the noise is densest.
         opacity: f32 = 3.0, number(0.0..=1000.0, "1/m");
-        /// How fast the noise rises.
+        /// How fast the noise rises through the smoke: it boils.
         scroll_speed: f32 = 0.2, number(-100.0..=100.0, "m/s");
     }
 }

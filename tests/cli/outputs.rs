@@ -132,3 +132,38 @@ fn a_write_that_fails_leaves_the_old_file() {
         assert_eq!(names(folder.path()).len(), 1 + usize::from(other_name));
     }
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_program_that_is_killed_while_it_writes_leaves_the_old_file() {
+    use std::os::unix::process::ExitStatusExt as _;
+    let folder = folder();
+    let recipe = |colour: &str| {
+        // Every row is another: it takes some blocks.
+        let row = |row: u32| {
+            let stop = |at: u32, colour: String| format!(r##"{{"at": {at}, "colour": "#{colour}"}}"##);
+            let stops = [stop(0, format!("{colour}{row:02x}")), stop(1, format!("{row:02x}{colour}"))].join(",");
+            format!(r#"{{"at": {}, "stops": [{stops}]}}"#, f64::from(row) / 31.0)
+        };
+        let rows = (0..32).map(row).collect::<Vec<_>>().join(",");
+        format!(r#"{{"version": 2, "width": 64, "height": 32, "rows": [{rows}]}}"#)
+    };
+    let bake = |blocks: u64| {
+        // At this length the system kills who writes on.
+        let line = format!("ulimit -c 0; ulimit -f {blocks}; exec \"$0\" ramp bake a.ramp.json");
+        let mut command = std::process::Command::new("sh");
+        command.args(["-c", &line, env!("CARGO_BIN_EXE_haze")]).current_dir(folder.path()).output().unwrap().status
+    };
+    fs::write(folder.path().join("a.ramp.json"), recipe("2040")).unwrap();
+    assert!(bake(10_000).success());
+    let picture = || fs::read(folder.path().join("a.png")).unwrap();
+    let old = picture();
+    fs::write(folder.path().join("a.ramp.json"), recipe("8060")).unwrap();
+    let blocks = old.len() as u64 / 512;
+    assert!(blocks > 8, "{blocks}");
+    for limit in (0..blocks / 2).step_by(3) {
+        assert_eq!(bake(limit).signal(), Some(25), "SIGXFSZ at {limit} blocks");
+        assert!(picture() == old, "{limit}");
+    }
+    assert!(bake(10_000).success() && picture() != old);
+}

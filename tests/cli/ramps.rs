@@ -120,6 +120,11 @@ fn what_is_found_is_said_and_exits_with_1() {
     assert!(output.status.success());
     // What cannot be read is bad input.
     assert!(refusal(folder.path(), &["ramp", "check", "gone.png"]).starts_with("haze: gone.png: "));
+    fs::write(folder.path().join("a.ggr"), "GIMP Gradient\n").unwrap();
+    for command in ["check", "show"] {
+        let line = refusal(folder.path(), &["ramp", command, "a.ggr"]);
+        assert!(line.contains("`haze ramp import` makes one of another program's gradient"), "{line}");
+    }
 }
 
 #[test]
@@ -220,6 +225,7 @@ fn a_shot_is_shown_under_every_ramp_of_a_folder() {
         .unwrap();
     assert!(line(&["--ramps", "broken", "-o", "a.png"]).contains("diffuse_broken.png: not a PNG"));
     assert!(line(&["--ramps", "gone", "-o", "a.png"]).starts_with("haze: gone: "));
+    assert!(line(&["--ramps", "sheet.png", "-o", "a.png"]).contains("sheet.png is not valid; expected a folder"));
     let over = line(&["--ramps", "ramps", "--role", "diffuse", "-o", "ramps/mine.png"]);
     assert!(over.contains("expected a file that is not read"), "{over}");
     fs::create_dir(folder.path().join("empty")).unwrap();

@@ -87,6 +87,22 @@ fn pictures_of_other_kinds_become_sprites() {
     assert_eq!([dots[(9, 8)].0[3], dots[(16 + 10, 8)].0[3]], [255, 255]);
     let text = refusal(folder.path(), &["sprite", "import", "down.png", "--from", "six_way_unity", "-o", "a.png"]);
     assert!(text.contains("1 sheets; expected 2"), "{text}");
+    let fire = image::RgbaImage::from_pixel(16, 16, image::Rgba([250, 120, 20, 255]));
+    fire.save(folder.path().join("fire.png")).unwrap();
+    let text = said(&["fire.png", "-o", "a.png"]);
+    assert!(
+        text.contains("  colours, not normals; ") && text.contains("; `--from` says what a picture holds"),
+        "{text}"
+    );
+    // What would be passed over is refused.
+    for (arguments, expected) in [
+        (&["fire.png", "fire.png", "fire.png", "--from", "six_way_unity"][..], "3 sheets; expected 2"),
+        (&["fire.png", "--from", "alpha", "--y-down"], "expected --from normals"),
+        (&["smoke_0000.png", "smoke_0001.png", "--columns", "2"], "2x1 of 2 files is not valid; expected 1x1"),
+    ] {
+        let text = refusal(folder.path(), &[&["sprite", "import", "-o", "a.png"], arguments].concat());
+        assert!(text.contains(expected), "{text}");
+    }
     let text = refusal(folder.path(), &["sprite", "import", "down.png", "-o", "down.png"]);
     assert!(text.contains("expected a file that is not read"), "{text}");
 }

@@ -122,8 +122,10 @@ fn recipes_in_a_folder_come_and_go_and_what_was_painted_over_stays() {
     fs::write(path("painted.ramp.json"), recipe(1)).unwrap();
     assert!(haze(folder.path(), &["ramp", "bake", "painted.ramp.json"]).status.success());
     let picture = fs::read(path("painted.png")).unwrap();
+    fs::write(path("odd.ramp.json"), recipe(1)).unwrap();
+    fs::create_dir(path("odd.png")).unwrap();
     let watching = Watching::new(folder.path(), &["."]);
-    watching.is_still("newer than its recipe");
+    watching.says("haze: output: ./odd.png is not valid", "a folder in the place of a picture");
     fs::write(path("new.ramp.json"), recipe(7)).unwrap();
     watching.says("./new.png: 2x1", "new");
     fs::write(path("ball.motif.json"), MOTIF).unwrap();

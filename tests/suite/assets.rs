@@ -98,6 +98,14 @@ fn sprites_are_what_their_recipes_make() {
 }
 
 #[test]
+fn all_sprites_together_are_less_than_a_megabyte() {
+    let files = std::fs::read_dir(file("sprites", "")).unwrap().map(|entry| entry.unwrap());
+    let pictures = files.filter(|file| file.path().extension().is_some_and(|ending| ending == "png"));
+    let bytes: u64 = pictures.map(|picture| picture.metadata().unwrap().len()).sum();
+    assert!((500_000..1_000_000).contains(&bytes), "{bytes}");
+}
+
+#[test]
 fn noise_is_what_its_recipe_makes() {
     for noise in builtin::NOISES {
         let committed = read_png(&file("sprites", &format!("{}.png", noise.name))).unwrap().to_rgba8();

@@ -10,7 +10,7 @@ use haze::picture::colour_notes;
 use haze::ramp::Role;
 use haze::ramp::check::check;
 
-use super::picture_of;
+use super::{picture_of, refuse_gradient};
 use crate::app::findings::tell;
 use crate::app::options::choices;
 use crate::app::output::{Failures, has_extension};
@@ -32,6 +32,7 @@ pub fn run(Arguments { ramps, role }: &Arguments) -> Result<(), Failures> {
 fn findings(path: &Path, role: Option<Role>) -> Result<Vec<Finding>, Error> {
     let name = path.file_name().and_then(OsStr::to_str).unwrap_or_default();
     let role = role.or_else(|| Role::of_name(name));
+    refuse_gradient(path)?;
     let mut findings = Vec::new();
     if !has_extension(path, "json") {
         let notes = colour_notes(path)?;

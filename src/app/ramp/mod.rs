@@ -23,7 +23,17 @@ fn picture_of(path: &Path) -> Result<(DynamicImage, Option<RampRecipe>), Error> 
         let recipe = RampRecipe::load(path)?;
         return Ok((recipe.bake()?, Some(recipe)));
     }
+    refuse_gradient(path)?;
     Ok((read_colour_png(path)?, None))
+}
+
+/// Says what to do with another program's gradient.
+fn refuse_gradient(path: &Path) -> Result<(), FieldError> {
+    if ["ggr", "tres", "txt"].iter().any(|ending| has_extension(path, ending)) {
+        let expected = "a PNG or a *.ramp.json file: `haze ramp import` makes one of another program's gradient";
+        return Err(FieldError::new("ramp", path.display(), expected));
+    }
+    Ok(())
 }
 
 /// Whether a file is a ramp's recipe, by its name.

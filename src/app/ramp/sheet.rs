@@ -117,6 +117,9 @@ impl Arguments {
 
 /// PNGs in a folder, and recipes that have none, by name.
 fn files(folder: &Path) -> Result<Vec<PathBuf>, Error> {
+    if folder.is_file() {
+        return Err(FieldError::new("--ramps", folder.display(), "a folder").into());
+    }
     let failed = |error| Error::Io { path: folder.into(), error };
     let entries: Result<Vec<_>, _> = fs::read_dir(folder).map_err(failed)?.collect();
     let mut files: Vec<_> = entries.map_err(failed)?.into_iter().map(|entry| entry.path()).collect();

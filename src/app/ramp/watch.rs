@@ -76,7 +76,8 @@ fn files(recipes: &[PathBuf]) -> BTreeSet<PathBuf> {
 }
 
 fn is_newer(picture: &Path, recipe: &Path) -> bool {
-    let modified = |path: &Path| fs::metadata(path).and_then(|found| found.modified()).ok();
+    // A folder is no picture: that it cannot be replaced is said.
+    let modified = |path: &Path| fs::metadata(path).ok().filter(fs::Metadata::is_file)?.modified().ok();
     modified(picture).is_some_and(|picture| modified(recipe) <= Some(picture))
 }
 

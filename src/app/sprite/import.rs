@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::UVec2;
-use haze::Error;
 use haze::picture::{Effort, read_png, write_png};
 use haze::sprite::SpriteLayout;
-use haze::sprite::check::SURE;
 use haze::sprite::import::{Imported, Source, import, sheet_of};
+use haze::sprite::y_direction::SURE;
+use haze::{Error, FieldError};
 
 use crate::app::options::choices;
 use crate::app::output::{Files, say};
@@ -47,6 +47,14 @@ fn strength(text: &str) -> Result<f32, String> {
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let Arguments { files, output, source, columns, rows, y_down, strength } = arguments;
     Files::read(files).write("--output", output, "png")?;
+    let refuse = |option: &str, value: String, expected: &str| Err(FieldError::new(option, value, expected).into());
+    if y_down.is_some() && *source != Source::Normals {
+        return refuse("--y-down", format!("--from {}", source.name()), "--from normals: nothing else has a direction");
+    }
+    if files.len() > 1 && !source.has_two() && (*columns, *rows) != (1, 1) {
+        let expected = "1x1, or one sheet: several files are a frame each";
+        return refuse("--columns and --rows", format!("{columns}x{rows} of {} files", files.len()), expected);
+    }
     let files = by_number(files);
     let pictures = files.iter().map(|&path| Ok((path, read_png(path)?.to_rgba8())));
     let pictures = pictures.collect::<Result<Vec<_>, Error>>()?;
@@ -58,11 +66,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         (pictures.into_iter().map(|(_, picture)| picture).collect(), UVec2::new(*columns, *rows))
     };
     let layout = SpriteLayout { columns: grid.x, rows: grid.y, y_down: false };
-    let Imported { picture, y_direction, border } = import(path, &sheets, *source, layout, *y_down, *strength)?;
+    let Imported { picture, y_direction, doubt, border } = import(path, &sheets, *source, layout, *y_down, *strength)?;
     write_png(output, &picture.into(), Effort::Small)?;
     say!("{}: {}x{} frames", output.display(), grid.x, grid.y)?;
     if let Some((frame, alpha)) = border {
         say!("  border: alpha up to {alpha} in frame {frame}, made clear; leave more room round the smoke")?;
+    }
+    if let Some(doubt) = doubt {
+        say!("  {doubt}; `--from` says what a picture holds")?;
     }
     let direction = |is_down| if is_down { "down, and was turned" } else { "up" };
     match (y_down, y_direction) {

@@ -23,8 +23,6 @@ pub struct RampFiles {
     known: BTreeMap<String, Known>,
     /// An editor for each field, and the row that it shows.
     editors: BTreeMap<&'static str, (GradientEditor, usize)>,
-    /// The field whose selected stop takes the next pixel that is clicked on.
-    pub wants_pixel: Option<&'static str>,
     /// The ramp that is to have a copy beside the preset: a field of a system.
     wanted: Option<(usize, &'static str)>,
     /// The preset has no place yet for it.

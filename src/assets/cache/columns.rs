@@ -1,48 +1,10 @@
-//! What the columns of a file of particles are for, by their names, and what may stand in them.
+//! The columns of a file of particles, and what may stand in them.
 
 use glam::Vec3;
 
 use super::frame::{CachedParticle, Given};
+use super::role::{ROLES, Role, role};
 use crate::error::one_line;
-
-/// What a column is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Role {
-    X,
-    Y,
-    Z,
-    Radius,
-    /// Twice the radius.
-    Width,
-    Rotation,
-    Amount,
-    Age,
-    Life,
-    Id,
-}
-
-/// How many roles there are.
-const ROLES: usize = Role::Id as usize + 1;
-
-/// What columns are called in small letters, without points, brackets, colons, lines and blanks; of two for one role the name
-/// that comes first here is read.
-const NAMES: [(&str, Role); 12] = [
-    ("radius", Role::Radius),
-    ("pscale", Role::Radius),
-    ("width", Role::Width),
-    ("diameter", Role::Width),
-    ("rotation", Role::Rotation),
-    ("rot", Role::Rotation),
-    ("amount", Role::Amount),
-    ("alpha", Role::Amount),
-    ("opacity", Role::Amount),
-    ("age", Role::Age),
-    ("life", Role::Life),
-    ("id", Role::Id),
-];
-
-/// What stands before the x, y and z, or 0, 1 and 2, of a position.
-const POSITION: [&str; 5] = ["", "p", "pos", "position", "location"];
 
 /// Most columns of a file.
 pub const MOST_COLUMNS: usize = 1024;
@@ -185,26 +147,6 @@ impl Columns {
     }
 }
 
-/// What a column of this name is for, and how soon it is taken among several.
-fn role(name: &str) -> Option<(usize, Role)> {
-    let name: String = name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect();
-    if let Some(found) = NAMES.iter().position(|(known, _)| *known == name) {
-        return Some((found, NAMES[found].1));
-    }
-    let (stem, axis) = name.split_at_checked(name.len().checked_sub(1)?)?;
-    let rank = POSITION.iter().position(|known| *known == stem)?;
-    let role = match axis {
-        "x" => Role::X,
-        "y" => Role::Y,
-        "z" => Role::Z,
-        "0" if !stem.is_empty() => Role::X,
-        "1" if !stem.is_empty() => Role::Y,
-        "2" if !stem.is_empty() => Role::Z,
-        _ => return None,
-    };
-    Some((rank, role))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -216,9 +158,6 @@ mod tests {
         }
         for names in [["Px", "Py", "Pz"], ["position_x", "position_y", "position_z"], ["P[0]", "P[1]", "P[2]"]] {
             assert!(Columns::of(&names).is_ok(), "{names:?}");
-        }
-        for name in ["nx", "0", "vx", "Cd[0]", "scale", "", "ä"] {
-            assert_eq!(role(name), None, "{name}");
         }
         let given = |name: &str| Columns::of(&["x", "y", "z", name]).unwrap().given;
         assert!(given("PScale").radius && given("width").radius && given("Alpha").amount && given("ID").id);

@@ -8,6 +8,7 @@ mod csv;
 mod frame;
 mod mistake;
 mod ply;
+mod role;
 mod sequence;
 
 use std::ffi::OsStr;

@@ -41,6 +41,17 @@ impl HexColour {
         Vec3::from(self.0.map(|channel| f32::from(channel) / 255.0))
     }
 
+    /// Hue in turns, saturation and value of the sRGB code, 0..1.
+    pub fn hsv(self) -> Vec3 {
+        let hsv = hsv_from_rgb(self.srgb());
+        hsv.with_x(hsv.x.rem_euclid(1.0))
+    }
+
+    /// The nearest to a hue in turns, saturation and value.
+    pub fn from_hsv(hsv: Vec3) -> Self {
+        Self::from_srgb(rgb_from_hsv(hsv))
+    }
+
     /// The nearest to sRGB code, 0..1; what is beyond is clamped.
     pub fn from_srgb(code: Vec3) -> Self {
         Self(code.to_array().map(|channel| (channel * 255.0).round() as u8))
@@ -179,6 +190,8 @@ mod tests {
                 let linear = blend.linear(blend.of(colour));
                 let back = HexColour::from_srgb(linear.map(srgb_from_linear));
                 assert_eq!(back, colour, "{}", blend.name());
+                assert_eq!(HexColour::from_hsv(colour.hsv()), colour);
+                assert!((0.0..1.0).contains(&colour.hsv().x), "{colour:?}");
                 assert!(
                     srgb16_from_linear(linear).iter().zip(colour.0).all(|(&a, b)| a.abs_diff(u16::from(b) * 257) < 4)
                 );

@@ -49,7 +49,7 @@ pub fn fit(picture: &DynamicImage, most: f32) -> Result<Fit, FieldError> {
     let mean = |x: usize| rows.iter().map(|row| row[x]).sum::<Vec3>() / rows.len() as f32;
     let strip: Vec<Vec<Vec3>> = is_strip.then(|| (0..width as usize).map(mean).collect()).into_iter().collect();
     let texels = if is_strip { &strip } else { &rows };
-    let ways = [(Blend::Oklab, Curve::Monotone), (Blend::Srgb, Curve::Linear), (Blend::Linear, Curve::Linear)];
+    let ways = [Blend::Oklab, Blend::Srgb, Blend::Linear].map(|blend| (blend, usual_curve(blend)));
     // Some rows tell which way takes the fewest stops.
     let some = texels.iter().step_by(texels.len().div_ceil(8));
     let stops_of = |&(blend, curve): &(Blend, Curve)| -> usize {
@@ -68,6 +68,18 @@ pub fn fit(picture: &DynamicImage, most: f32) -> Result<Fit, FieldError> {
     let baked: Vec<Vec3> = baked.pixels().map(|pixel| Vec3::from(pixel.0.map(code))).collect();
     let baked = baked.chunks(width as usize).rev().cycle();
     Ok(Fit { recipe, error: rows.iter().zip(baked).map(|(a, b)| apart(a, b)).fold(0.0, f32::max) })
+}
+
+/// Fits stops to colours from 0 to 1 at even distances, two at least, steps of 255 of sRGB code, so that no channel is off by more
+/// than `most`.
+#[cfg(feature = "app")]
+pub(crate) fn fit_row(row: &[Vec3], blend: Blend, most: f32) -> Vec<RampStop> {
+    fit_stops(row, blend, usual_curve(blend), most)
+}
+
+/// Straight lines where other programs have them, too.
+fn usual_curve(blend: Blend) -> Curve {
+    if matches!(blend, Blend::Srgb | Blend::Linear) { Curve::Linear } else { Curve::Monotone }
 }
 
 /// Refuses an error that stops of 8 bits a channel cannot keep, or that leaves nothing of a picture.

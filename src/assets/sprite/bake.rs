@@ -5,10 +5,14 @@
 
 mod cluster;
 mod cube;
+mod erosion;
 mod frame;
+mod march;
+mod moment;
 mod recipe;
 mod shrink;
 mod slices;
+mod voxels;
 
 use glam::{IVec2, UVec2};
 use image::{Rgba, RgbaImage};

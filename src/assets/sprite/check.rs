@@ -2,24 +2,14 @@
 
 use std::path::Path;
 
-use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
 use image::RgbaImage;
 
+use super::y_direction::{SURE, normal, y_direction};
 use super::{Sprite, SpriteLayout};
 use crate::assets::finding::Finding;
 use crate::error::Error;
 
-/// Which way green points, as far as the picture tells.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct YDirection {
-    /// True where it points down.
-    pub is_down: bool,
-    /// How sure that is: 0 not at all, 1 fully. Below [`SURE`] it is a guess.
-    pub sureness: f32,
-}
-
-/// From which on a direction is taken to be known.
-pub const SURE: f32 = 0.3;
 /// Amount from which on a texel is looked at.
 const SEEN: f32 = 0.1;
 /// Least texels of a finding: what filters of paint programs leave at an edge is none.
@@ -29,6 +19,7 @@ const LENGTHS: [f32; 2] = [0.85, 1.1];
 
 /// Looks for what would show; the layout tells where frames are, its `y_down` which way green is meant to point.
 ///
+/// - `empty`: no amount anywhere.
 /// - `normals`: a picture of colours, or of heights.
 /// - `length`: normals that are not of unit length.
 /// - `y_down`: green that points the other way.
@@ -50,6 +41,10 @@ pub fn check(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Result<V
             "border",
             format!("frame {frame} has alpha {alpha} on its border; expected 0, or the sprite shows as a square"),
         );
+    }
+    if is_clear(&sprite) {
+        find("empty", NOTHING.into());
+        return Ok(findings);
     }
     if let Some(what) = not_normals(&sprite) {
         find("normals", what.into());
@@ -116,8 +111,12 @@ fn texels(sprite: &Sprite) -> impl Iterator<Item = Vec4> + '_ {
     })
 }
 
-fn normal(texel: Vec4) -> Vec3 {
-    texel.xyz() * 2.0 - 1.0
+/// What is said of a sprite that is clear everywhere.
+pub const NOTHING: &str = "alpha is 0 everywhere; expected the amount in alpha";
+
+/// True if there is nothing to see of a sprite.
+pub fn is_clear(sprite: &Sprite) -> bool {
+    texels(sprite).all(|texel| texel.w <= 0.0)
 }
 
 /// What a sprite shows, if not normals.
@@ -163,38 +162,6 @@ fn premultiplied(sprite: &Sprite) -> Option<&'static str> {
         () if explains(grey) => Some("grey"),
         () => None,
     }
-}
-
-/// Which way green points: normals lean out of the silhouette, and heights that they are slopes of must fit together, which those of
-/// a turned green do not. None where nothing leans.
-pub fn y_direction(sprite: &Sprite) -> Option<YDirection> {
-    let (mut agrees, mut all) = (0.0_f32, 0.0_f32);
-    let (mut along, mut total) = (0.0_f32, 0.0_f32);
-    let size = sprite.size();
-    for frame in 0..sprite.frame_count() {
-        for y in 1..size.saturating_sub(1) {
-            for x in 1..size.saturating_sub(1) {
-                let at = |x: u32, y: u32| sprite.texel(0, frame, x, y);
-                let (texel, right, left) = (at(x, y), at(x + 1, y), at(x - 1, y));
-                let (above, below) = (at(x, y - 1), at(x, y + 1));
-                // Amount falls off outwards.
-                let fall = Vec2::new(left.w - right.w, below.w - above.w);
-                let lean = normal(texel).y * fall.y * texel.w;
-                agrees += lean;
-                all += lean.abs();
-                // dz/dx along y is dz/dy along x.
-                let slope = |texel: Vec4| normal(texel).truncate() / normal(texel).z.max(0.25);
-                let weight = texel.w.min(right.w).min(left.w).min(above.w).min(below.w);
-                let (of_x, of_y) = (slope(above).x - slope(below).x, slope(right).y - slope(left).y);
-                along += of_x * of_y * weight;
-                total += (of_x * of_y).abs() * weight;
-            }
-        }
-    }
-    let share = |sum: f32, all: f32| if all > 1.0e-6 { sum / all } else { 0.0 };
-    let (edges, curls) = (share(agrees, all), share(along, total));
-    let sum = (edges + curls).clamp(-1.0, 1.0);
-    (all > 1.0e-6).then_some(YDirection { is_down: sum < 0.0, sureness: sum.abs() })
 }
 
 /// How far the last frame is from the first, and neighbours from each other, where that is much less.
@@ -277,6 +244,7 @@ mod tests {
         // Fire, and a sky.
         assert_eq!(names(&changed(|[r, g, _, a]| [255.0, g * 0.6, r * 0.2, a]), LAYOUT), ["normals"]);
         assert_eq!(names(&changed(|[r, g, _, a]| [r * 0.5, g * 0.9, 255.0, a]), LAYOUT), ["normals"]);
+        assert_eq!(names(&changed(|[r, g, b, _]| [r, g, b, 0.0]), LAYOUT), ["empty"]);
         let mut square = wisp();
         square.put_pixel(300, 0, Rgba([128, 128, 255, 9]));
         assert_eq!(names(&square, LAYOUT), ["border"]);

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use glam::{IVec2, UVec2, Vec3, Vec4};
+use glam::{UVec2, Vec3, Vec4};
 use image::{Rgba, RgbaImage, imageops};
 
-use super::check::{SURE, YDirection, clear_borders, y_direction};
+use super::check::{clear_borders, not_normals};
+use super::height::{grey, normal_of, puffed};
+use super::y_direction::{SURE, YDirection, y_direction};
 use super::{Sprite, SpriteLayout};
-use crate::assets::picture::Picture;
 use crate::error::Error;
 use crate::formula::saturate;
 use crate::settings::choice;
@@ -43,6 +44,8 @@ pub struct Imported {
     pub picture: RgbaImage,
     /// Which way green pointed in painted normals; none for other sources.
     pub y_direction: Option<YDirection>,
+    /// What painted normals look like, if not like normals.
+    pub doubt: Option<&'static str>,
     /// The frame with the most alpha on its border, which was made clear, and how much.
     pub border: Option<(u32, u8)>,
 }
@@ -87,7 +90,7 @@ pub fn import(
     let refuse = |reason: String| Err(Error::Image { path: path.into(), reason });
     let [first, rest @ ..] = sheets else { return refuse("no picture; expected one".into()) };
     let second = rest.first();
-    if source.has_two() != second.is_some() {
+    if rest.len() != usize::from(source.has_two()) {
         return refuse(format!("{} sheets; expected {}", sheets.len(), 1 + u32::from(source.has_two())));
     }
     if let Some(second) = second.filter(|second| second.dimensions() != first.dimensions()) {
@@ -104,9 +107,10 @@ pub fn import(
     let border = clear_borders(&mut picture, layout);
     // It refuses what does not fit.
     let sprite = Sprite::from_picture(path, &picture, SpriteLayout { y_down: false, ..layout })?;
-    let mut found = None;
+    let (mut found, mut doubt) = (None, None);
     match (source, second) {
         (Source::Normals, _) => {
+            doubt = not_normals(&sprite);
             found = y_direction(&sprite);
             let guess = found.is_some_and(|found| found.is_down && found.sureness >= SURE);
             let turns = y_down.unwrap_or(guess);
@@ -144,13 +148,7 @@ pub fn import(
         }
         (_, None) => {}
     }
-    Ok(Imported { picture, y_direction: found, border })
-}
-
-fn grey(size: UVec2, value: impl Fn(UVec2) -> f32 + Sync) -> Picture<f32> {
-    let mut picture = Picture::new(size, 0.0);
-    picture.for_each(|at, grey| *grey = value(at));
-    picture
+    Ok(Imported { picture, y_direction: found, doubt, border })
 }
 
 fn value(texel: &Rgba<u8>) -> Vec4 {
@@ -162,41 +160,6 @@ fn encode(normal: Vec3, alpha: u8) -> Rgba<u8> {
     let normal = normal.with_z(normal.z.max(0.0)).normalize_or(Vec3::Z);
     let [x, y, z] = normal.to_array().map(|axis| (saturate(axis * 0.5 + 0.5) * 255.0).round() as u8);
     Rgba([x, y, z, alpha])
-}
-
-/// The normal of heights, where a height of 1 is a half side times `strength`.
-fn normal_of(height: &Picture<f32>, at: IVec2, strength: f32) -> Vec3 {
-    let slope =
-        |step: IVec2| (height.load(at - step) - height.load(at + step)) * height.size.x as f32 * 0.25 * strength;
-    Vec3::new(slope(IVec2::X), -slope(IVec2::Y), 1.0)
-}
-
-/// Heights of a dome over the silhouette: blurred ever wider and added up, so that thin parts are low and the middle is high, and
-/// what the amount shows within stays.
-fn puffed(amount: &Picture<f32>) -> Picture<f32> {
-    let mut height = Picture::new(amount.size, 0.0);
-    let mut blurred = amount.clone();
-    let mut reach = 1;
-    while reach < amount.size.x as i32 / 4 {
-        // Thrice a box is nearly a bell.
-        for _ in 0..3 {
-            blurred = boxed(&boxed(&blurred, IVec2::X, reach), IVec2::Y, reach);
-        }
-        let weight = reach as f32 / amount.size.x as f32;
-        height.for_each(|at, height| *height += blurred.load(at.as_ivec2()) * weight);
-        reach *= 2;
-    }
-    let most = height.texels.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
-    // Round at its edge, as a ball is.
-    height.texels.iter_mut().for_each(|height| *height = (*height / most).sqrt());
-    height
-}
-
-fn boxed(picture: &Picture<f32>, step: IVec2, reach: i32) -> Picture<f32> {
-    grey(picture.size, |at| {
-        let sum: f32 = (-reach..=reach).map(|offset| picture.load(at.as_ivec2() + step * offset)).sum();
-        sum / (2 * reach + 1) as f32
-    })
 }
 
 #[cfg(test)]
@@ -279,6 +242,10 @@ mod tests {
         };
         assert!(message(&[], Source::Height).contains("expected one"));
         assert!(message(std::slice::from_ref(&sheet), Source::SixWayRltBbf).contains("1 sheets; expected 2"));
+        assert!(
+            message(&[sheet.clone(), sheet.clone(), sheet.clone()], Source::SixWayUnity)
+                .contains("3 sheets; expected 2")
+        );
         let small = RgbaImage::new(64, 64);
         assert!(message(&[sheet, small.clone()], Source::SixWayUnity).contains("expected 128x64 as the first"));
         assert!(message(&[small], Source::Alpha).contains("square frames"));

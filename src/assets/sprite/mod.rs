@@ -3,7 +3,9 @@
 pub mod bake;
 pub mod check;
 pub mod detail;
+mod height;
 pub mod import;
+pub mod y_direction;
 
 use std::path::Path;
 use std::sync::Arc;

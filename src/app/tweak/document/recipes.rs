@@ -35,7 +35,7 @@ impl<T: PartialEq> Of<T> {
         self.0.insert(name.into(), Arc::new(recipe));
     }
 
-    /// Its picture is another's work now.
+    /// Its picture is another's work now, or as it was read.
     pub fn forget(&mut self, name: &str) {
         self.0.remove(name);
     }

@@ -59,12 +59,6 @@ impl Inspect {
         self.pinned.filter(|_| self.is_on).or(self.pointer)
     }
 
-    /// The sRGB colour of the pixel that is kept, as it is shown.
-    pub fn kept_colour(&self) -> Option<[u8; 3]> {
-        let told = self.told.as_ref().filter(|_| self.is_on && self.pinned.is_some())?;
-        Some(code(told.probe.colour?.truncate(), told.exposure))
-    }
-
     pub fn toggle(&mut self) {
         self.is_on = !self.is_on;
         self.pinned = None;

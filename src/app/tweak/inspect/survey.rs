@@ -132,6 +132,21 @@ impl Survey {
     }
 }
 
+/// How often every part of the specular ramp is looked up along each axis, whatever it is on the other: by distance², and by
+/// amount.
+pub fn along(glow: &[f32]) -> [Vec<f32>; 2] {
+    let mut sums = [vec![0.0; SIDE], vec![0.0; SIDE]];
+    for (index, count) in glow.iter().enumerate() {
+        sums[0][index % SIDE] += count;
+        sums[1][index / SIDE % SIDE] += count;
+    }
+    for bins in &mut sums {
+        let most = bins.iter().fold(0.0, |a: f32, b| a.max(*b));
+        scale(bins, most);
+    }
+    sums
+}
+
 fn bin(coordinate: f32, bins: usize) -> usize {
     ((coordinate * bins as f32) as usize).min(bins - 1)
 }
@@ -139,5 +154,24 @@ fn bin(coordinate: f32, bins: usize) -> usize {
 fn scale(bins: &mut [f32], most: f32) {
     if most > 0.0 {
         bins.iter_mut().for_each(|bin| *bin /= most);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_looked_up_along_an_axis_is_counted_whatever_the_other() {
+        let mut glow = vec![0.0; SIDE * SIDE];
+        // Distance² 3 at the amounts 1 and 5, and 8 at 5.
+        for (x, y, count) in [(3, 1, 0.5), (3, 5, 0.25), (8, 5, 1.0)] {
+            glow[y * SIDE + x] = count;
+        }
+        let at = |bins: &[f32], places: [usize; 2]| places.map(|place| bins[place]);
+        let [across, up] = along(&glow);
+        assert_eq!((at(&across, [3, 8]), at(&up, [1, 5])), ([0.75, 1.0], [0.4, 1.0]));
+        assert_eq!((across.iter().filter(|bin| **bin > 0.0).count(), up.len()), (2, SIDE));
+        assert_eq!(along(&[]), [vec![0.0; SIDE], vec![0.0; SIDE]]);
     }
 }

@@ -10,10 +10,10 @@ use haze::settings::{PictureRole, RampFilter, set_field};
 
 use super::gallery::gallery;
 use super::row::spaced;
-use super::stops::{self, Bins, Mark, Named};
+use super::stops::{self, Bins, LookedUp, Mark, Named};
 use crate::app::tweak::compare::Side;
 use crate::app::tweak::inspect::Told;
-use crate::app::tweak::inspect::survey::{Histogram, SIDE, Spot};
+use crate::app::tweak::inspect::survey::{self, Histogram, SIDE, Spot};
 use crate::app::tweak::session::Session;
 
 /// Heights of a ramp's strip and of a histogram.
@@ -93,7 +93,8 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
             "specular_ramp" => {
                 let density = survey.map(|survey| survey.by_glow(index));
                 spot = spot.or(plane(ui, &spoken, (&material.specular_ramp, filter), density.as_deref(), probe));
-                stops::editor(ui, session, ramp, &[], &[]);
+                let [across, up] = looked_up(density.as_deref(), probe, ink);
+                stops::editor(ui, session, ramp, &across, &up);
                 continue;
             }
             _ => (&material.age_ramp, Vec::new(), Vec::new()),
@@ -102,10 +103,11 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
             // Its place is kept: what is below must not move under the pointer when it comes.
             bins.push((ink, Vec::new()));
         }
-        let edited = stops::editor(ui, session, ramp, &bins, &marks);
+        let across = (bins, marks);
+        let edited = stops::editor(ui, session, ramp, &across, &LookedUp::default());
         let at = edited.unwrap_or_else(|| {
-            let at = strip(ui, &spoken, picture, filter, &marks);
-            histogram(ui, field, &bins);
+            let at = strip(ui, &spoken, picture, filter, &across.1);
+            histogram(ui, field, &across.0);
             at
         });
         if field == "diffuse_ramp" && survey.is_some() {
@@ -120,6 +122,18 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
     }
     session.follow_ramps(true);
     spot
+}
+
+/// What is looked up in the specular ramp along each axis.
+fn looked_up(density: Option<&[f32]>, probe: Option<&SystemProbe>, ink: Color32) -> [LookedUp; 2] {
+    let glows = probe.iter().flat_map(|probe| &probe.lights).filter_map(|light| Some((light.light, light.glow?)));
+    let marks: Vec<_> = glows.map(|(light, glow)| (of_light(light), glow.coordinate)).collect();
+    // Without them their place is kept, too.
+    let [across, up] = survey::along(density.unwrap_or_default());
+    [
+        (vec![(ink, across)], marks.iter().map(|(colour, at)| (at.x, *colour)).collect()),
+        (vec![(ink, up)], marks.iter().map(|(colour, at)| (at.y, *colour)).collect()),
+    ]
 }
 
 /// The title of a ramp, and which it is: another can be chosen.

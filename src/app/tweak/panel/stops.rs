@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Color32, Ui};
 use haze::gradient_editor::Surroundings;
-use haze::ramp::bake::{Blend, HexColour, RECIPE_VERSION, RampRecipe, RampRow};
+use haze::ramp::bake::{Blend, RECIPE_VERSION, RampRecipe, RampRow};
 
 use super::row;
 use crate::app::tweak::ramp_files::Source;
@@ -25,30 +25,31 @@ pub struct Named<'a> {
 pub type Bins = (Color32, Vec<f32>);
 pub type Mark = (f32, Color32);
 
-/// Draws its editor, and gives the place that is pointed at; nothing for a ramp without stops.
+/// What a picture looks up along an axis of a ramp: how often, and where a pixel does.
+pub type LookedUp = (Vec<Bins>, Vec<Mark>);
+
+/// Draws its editor, and gives the place that is pointed at; nothing for a ramp without stops. What is looked up is shown along
+/// the axis of the gradient that is edited: rows go across, and what multiplies them up.
 pub fn editor(
     ui: &mut Ui,
     session: &mut Session,
     ramp: Named<'_>,
-    bins: &[Bins],
-    marks: &[Mark],
+    across: &LookedUp,
+    up: &LookedUp,
 ) -> Option<Option<f32>> {
     let folders = session.folders();
-    let Source::Recipe(recipe) = session.ramps.source(ramp.name, &folders) else { return None };
-    let mut recipe = session.document.recipes.ramps.get(ramp.name).unwrap_or(recipe).clone();
+    let Source::Recipe(read) = session.ramps.source(ramp.name, &folders).clone() else { return None };
+    let mut recipe = session.document.recipes.ramps.get(ramp.name).unwrap_or(&read).clone();
     let (editor, index) = session.ramps.editor(ramp.field);
     let mut is_changed = choose(ui, &mut recipe, index);
+    let (bins, marks) = if *index < recipe.rows.len() { across } else { up };
     let histograms: Vec<_> = bins.iter().map(|(colour, bins)| (*colour, bins.as_slice())).collect();
     let surroundings = Surroundings { blend: recipe.blend, histograms: &histograms, marks };
     let mut shown = shown(&recipe, *index)?;
     let edited = ui.push_id(ramp.field, |ui| editor.show(ui, &mut shown, &surroundings)).inner;
     let index = *index;
-    let is_taken = ui.horizontal(|ui| {
-        let is_taken = take_pixel(ui, ramp, session, &mut shown);
-        is_changed |= blend(ui, &mut recipe.blend, ramp.field);
-        is_taken
-    });
-    if edited.is_changed | is_taken.inner {
+    is_changed |= ui.horizontal(|ui| blend(ui, &mut recipe.blend, ramp.field)).inner;
+    if edited.is_changed {
         match recipe.rows.get_mut(index) {
             Some(row) => *row = shown,
             None => recipe.times = shown.stops,
@@ -58,7 +59,13 @@ pub fn editor(
     if is_changed {
         // What is new in the window is new in the format.
         recipe.version = RECIPE_VERSION;
-        session.document.recipes.ramps.set(ramp.name, recipe);
+        let ramps = &mut session.document.recipes.ramps;
+        // Put back to what was read there is no change, and no step.
+        if recipe == (RampRecipe { version: RECIPE_VERSION, ..read }) {
+            ramps.forget(ramp.name);
+        } else {
+            ramps.set(ramp.name, recipe);
+        }
     }
     if let Some(refused) = edited.refused {
         session.messages.complain("ramp", refused);
@@ -66,29 +73,6 @@ pub fn editor(
         session.messages.withdraw("ramp");
     }
     Some(edited.pointed_at)
-}
-
-/// An eyedropper: the selected stop takes the colour of the pixel that is kept, or of the next one that is clicked on.
-fn take_pixel(ui: &mut Ui, ramp: Named<'_>, session: &mut Session, row: &mut RampRow) -> bool {
-    let about = "The selected stop takes the colour of the pixel that the inspector keeps, or of the next one that is clicked on \
-                 in the picture";
-    let kept = session.inspect.kept_colour();
-    let is_waiting = session.ramps.wants_pixel == Some(ramp.field);
-    let is_asked = ui.selectable_label(is_waiting, "Take a pixel").on_hover_text(about).clicked();
-    let Some(colour) = kept.filter(|_| is_asked || is_waiting) else {
-        if is_asked && is_waiting == session.inspect.is_on {
-            session.inspect.toggle();
-        }
-        if is_asked {
-            session.ramps.wants_pixel = (!is_waiting).then_some(ramp.field);
-        }
-        return false;
-    };
-    if session.ramps.wants_pixel.take().is_some() {
-        session.inspect.toggle();
-    }
-    session.ramps.editor(ramp.field).0.set_colour(row, HexColour(colour));
-    true
 }
 
 /// The space that colours are blended in; true if it is another.

@@ -11,6 +11,7 @@ use haze::preset::{PictureFolders, Preset};
 use haze::ramp::Ramp;
 use haze::ramp::bake::{Blend, Curve, RampRecipe};
 use haze::ramp::template::Template;
+use haze::settings::ShadeTree;
 
 use super::{RampFiles, Source};
 use crate::app::tweak::document::document::Document;
@@ -115,6 +116,28 @@ fn a_drag_is_seen_at_once_and_written_in_the_end() {
     press(&mut harness, Key::Z, Modifiers::COMMAND.plus(Modifiers::SHIFT));
     assert_eq!(folder.recipe(), after);
     assert!(!harness.state().session.document.is_dirty(), "the preset is as it was");
+}
+
+#[test]
+fn a_drag_that_is_given_up_is_no_step() {
+    let folder = Folder::new();
+    let mut harness = folder.open();
+    let before = (folder.recipe(), shown(&mut harness));
+    let (from, width) = (harness.get_by_label("stop 3").rect().center(), strip(&harness).width());
+    harness.state_mut().session.show.stage = ShadeTree::Diffuse;
+    harness.drag_at(from);
+    for part in 1..=4 {
+        harness.hover_at(from - Vec2::new(0.2 * width * part as f32, 0.0));
+        harness.step();
+    }
+    press(&mut harness, Key::Escape, Modifiers::NONE);
+    harness.drop_at(from);
+    wait(&mut harness);
+    // Escape is for the drag alone.
+    assert_eq!(harness.state().session.show.stage, ShadeTree::Diffuse);
+    harness.state_mut().session.show.stage = ShadeTree::Final;
+    assert_eq!((folder.recipe(), harness.state().session.document.history().undo_name()), (before.0, None));
+    assert!((shown(&mut harness) - before.1).abs() < 0.5);
 }
 
 #[test]
@@ -337,60 +360,34 @@ fn what_cannot_be_written_is_said() {
 }
 
 #[test]
-fn a_stop_takes_the_colour_of_a_pixel() {
+fn a_stop_takes_a_colour_from_the_picture() {
     let folder = Folder::new();
     let mut harness = folder.open();
     let pixel = harness.get_by_label("viewport").rect().center();
-    let click = |harness: &mut Harness<'static, Window>| {
-        harness.hover_at(pixel);
-        wait(harness);
-        harness.drag_at(pixel);
-        harness.step();
-        harness.drop_at(pixel);
-    };
-    let until = |harness: &mut Harness<'static, Window>, is_so: &dyn Fn(&Window) -> bool| {
-        for _ in 0..300 {
-            picture(harness);
-            if is_so(harness.state()) {
-                return;
-            }
-            std::thread::sleep(Duration::from_millis(20));
-        }
-        panic!("never");
-    };
-    // Of one that is kept.
-    harness.get_by_label("Inspect").click();
-    harness.run_steps(2);
-    click(&mut harness);
-    until(&mut harness, &|window| window.session.inspect.kept_colour().is_some());
+    let camera = harness.state().session.document.preset.camera;
+    harness.get_by_label("Take a colour").click();
     wait(&mut harness);
-    let kept = harness.state().session.inspect.kept_colour().unwrap();
-    harness.get_by_label("Take a pixel").click();
-    harness.run_steps(4);
-    assert_eq!(folder.recipe().rows[0].stops[0].colour.0, kept);
+    let [r, g, b, _] = picture(&mut harness).get_pixel(pixel.x as u32, pixel.y as u32).0;
+    harness.hover_at(pixel);
+    harness.step();
+    harness.drag_at(pixel);
+    harness.step();
+    harness.drop_at(pixel);
+    wait(&mut harness);
+    let taken = folder.recipe().rows[0].stops[0].colour.0;
+    assert!(taken.iter().zip([r, g, b]).all(|(a, b)| a.abs_diff(b) < 3), "{taken:?} {:?}", [r, g, b]);
+    assert_ne!(taken, Template::find("neutral").unwrap().recipe().rows[0].stops[0].colour.0);
     assert!(folder.is_baked());
     assert_eq!(harness.state().session.document.history().undo_name(), Some("stops of mine.png"));
-    assert!(harness.state().session.inspect.kept_colour().is_some(), "it is kept still");
-    // Of the next that is clicked on.
-    harness.get_by_label("Inspect").click();
-    harness.get_by_label("stop 2").focus();
+    // The picture itself was not clicked on; Escape is for the eyedropper alone.
+    assert_eq!(harness.state().session.document.preset.camera, camera);
+    harness.state_mut().session.show.stage = ShadeTree::Normals;
+    harness.get_by_label("Take a colour").click();
     harness.run_steps(2);
-    let before = folder.recipe().rows[0].stops[1].colour;
-    harness.get_by_label("Take a pixel").click();
-    harness.run_steps(2);
-    assert!(harness.state().session.inspect.is_on);
-    click(&mut harness);
-    until(&mut harness, &|window| !window.session.inspect.is_on);
-    wait(&mut harness);
-    let taken = folder.recipe().rows[0].stops[1].colour;
-    assert_ne!(taken, before);
-    assert!(taken.0.iter().zip(kept).all(|(a, b)| a.abs_diff(b) < 40), "{taken:?} for {kept:?}");
-    // It may be given up.
-    for is_on in [true, false] {
-        harness.get_by_label("Take a pixel").click();
-        harness.run_steps(2);
-        assert_eq!(harness.state().session.inspect.is_on, is_on);
-    }
+    press(&mut harness, Key::Escape, Modifiers::NONE);
+    assert_eq!(harness.state().session.show.stage, ShadeTree::Normals);
+    press(&mut harness, Key::Z, Modifiers::COMMAND);
+    assert_ne!(folder.recipe().rows[0].stops[0].colour.0, taken);
 }
 
 /// `HAZE_LOOK=DIR` says where to.

@@ -84,6 +84,9 @@ impl Bench {
     }
 }
 
+/// What is said, and how it comes about at a path.
+type Way<'a> = (&'a str, &'a dyn Fn(&Path));
+
 /// A ramp of one grey.
 fn write_ramp(folder: &Path, grey: u8) {
     let picture = RgbImage::from_pixel(64, 1, Rgb([grey; 3]));
@@ -109,6 +112,29 @@ fn a_ramp_is_seen_as_it_is_saved_and_a_broken_one_is_said_until_it_is_mended() {
         "{said}"
     );
     assert!((bench.shown() - dark).abs() < 0.5, "the last good one stays");
+    // Whatever takes its place.
+    let good = {
+        write_ramp(&bench.path("shaders"), 90);
+        fs::read(bench.path("shaders/mine.png")).unwrap()
+    };
+    let mut huge = good.clone();
+    huge[16..24].copy_from_slice(&[0, 0, 255, 255, 0, 0, 255, 255]);
+    let ways: &[Way<'_>] = &[
+        ("65535x65535 pixels", &|path| fs::write(path, &huge).unwrap()),
+        ("ends too early", &|path| fs::write(path, &good[..good.len() / 2]).unwrap()),
+        ("1073741824 bytes", &|path| fs::File::create(path).unwrap().set_len(1 << 30).unwrap()),
+        ("a folder, not a file", &|path| fs::create_dir(path).unwrap()),
+        #[cfg(unix)]
+        ("which is not there", &|path| std::os::unix::fs::symlink("gone.png", path).unwrap()),
+    ];
+    for (words, way) in ways {
+        let path = bench.path("mine.png");
+        let _ = fs::remove_file(&path).or_else(|_| fs::remove_dir(&path));
+        way(&path);
+        bench.until(|bench| bench.said().is_some_and(|said| said.contains(words)));
+        assert!((bench.shown() - dark).abs() < 0.5, "{words}: the last good one stays");
+    }
+    fs::remove_file(bench.path("mine.png")).unwrap();
     write_ramp(bench.folder.path(), 200);
     bench.until(|bench| bench.said().is_none());
     assert!((bench.shown() - before).abs() < 0.5);

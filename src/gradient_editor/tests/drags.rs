@@ -1,0 +1,91 @@
+//! Drags that snap, copy, or are given up.
+
+use super::*;
+
+#[test]
+fn places_snap_to_as_many_parts_as_are_asked_for() {
+    let mut harness = host(&[(0.0, 0), (0.5, 20), (1.0, 30)]);
+    let width = strip(&harness).width();
+    let parts =
+        harness.get_all_by_role(Role::SpinButton).find(|node| node.value().is_some_and(|text| text.contains("parts")));
+    parts.unwrap().click();
+    harness.run_steps(2);
+    harness.event(Event::Text("8".into()));
+    harness.run_steps(2);
+    key(&mut harness, Key::Enter, NONE);
+    let from = handle(&harness, 1).center();
+    drag(&mut harness, from, 0.14 * width, Modifiers::COMMAND);
+    assert_eq!(places(&harness), [0.0, 0.625, 1.0]);
+    // Switched on it snaps by itself, and Ctrl lets go.
+    harness.get_by_label("Snap").click();
+    harness.run_steps(2);
+    let from = handle(&harness, 1).center();
+    drag(&mut harness, from, 0.11 * width, NONE);
+    assert_eq!(places(&harness), [0.0, 0.75, 1.0]);
+    let from = handle(&harness, 1).center();
+    drag(&mut harness, from, 0.03 * width, Modifiers::COMMAND);
+    assert!((places(&harness)[1] - 0.78).abs() < 0.002, "{:?}", places(&harness));
+    key(&mut harness, Key::ArrowLeft, NONE);
+    assert_eq!(places(&harness), [0.0, 0.75, 1.0]);
+    let at = on_strip(&harness, 0.2);
+    click(&mut harness, at, NONE);
+    assert_eq!(places(&harness), [0.0, 0.25, 0.75, 1.0]);
+}
+
+#[test]
+fn with_shift_a_stop_comes_to_the_place_of_another() {
+    let mut harness = host(&[(0.0, 0), (0.3, 10), (0.6, 20), (1.0, 30)]);
+    let (from, width) = (handle(&harness, 1).center(), strip(&harness).width());
+    drag(&mut harness, from, 0.29 * width, Modifiers::SHIFT);
+    assert_eq!(
+        (harness.state().row.stops[1].at, greys(&harness)),
+        (harness.state().row.stops[2].at, vec![0, 10, 20, 30])
+    );
+    // Only where one is near.
+    let from = handle(&harness, 1).center();
+    drag(&mut harness, from, -0.2 * width, Modifiers::SHIFT);
+    assert!((places(&harness)[1] - 0.4).abs() < 0.005, "{:?}", places(&harness));
+}
+
+/// Presses at a place and moves; does not let go.
+fn hold(harness: &mut Harness<'_, Host>, from: Pos2, by: f32) {
+    harness.hover_at(from);
+    harness.step();
+    button(harness, from, true, NONE);
+    for part in 1..=4 {
+        harness.hover_at(from + Vec2::new(by * part as f32 / 4.0, 0.0));
+        harness.step();
+    }
+}
+
+#[test]
+fn escape_puts_back_what_is_dragged_and_that_is_no_step() {
+    let mut harness = host(&[(0.0, 0), (0.3, 10), (0.5, 20), (1.0, 30)]);
+    let before = harness.state().row.clone();
+    let width = strip(&harness).width();
+    for (from, by) in [(handle(&harness, 1).center(), 0.4), (on_strip(&harness, 0.8), 0.1)] {
+        hold(&mut harness, from, by * width);
+        assert_ne!(harness.state().row, before);
+        key(&mut harness, Key::Escape, NONE);
+        assert_eq!(harness.state().row, before);
+        let end = from + Vec2::new(0.5 * by * width, 0.0);
+        harness.hover_at(end);
+        harness.step();
+        button(&mut harness, end, false, NONE);
+        harness.run_steps(2);
+        assert_eq!((&harness.state().row, steps(&harness).len()), (&before, 0));
+    }
+    // The next one is as any other.
+    let from = handle(&harness, 1).center();
+    drag(&mut harness, from, 0.1 * width, NONE);
+    assert_eq!((places(&harness), steps(&harness)), (vec![0.0, 0.4, 0.5, 1.0], vec!["move a stop"]));
+}
+
+#[test]
+fn a_drag_with_alt_leaves_a_copy() {
+    let mut harness = host(&[(0.0, 0), (0.3, 10), (1.0, 30)]);
+    let (from, width) = (handle(&harness, 1).center(), strip(&harness).width());
+    drag(&mut harness, from, 0.2 * width, Modifiers::ALT);
+    assert_eq!((places(&harness), greys(&harness)), (vec![0.0, 0.3, 0.5, 1.0], vec![0, 10, 10, 30]));
+    assert_eq!((steps(&harness), harness.state().editor.state.selected), (vec!["copy a stop"], 2));
+}
