@@ -22,7 +22,7 @@
 override SHIFT: u32 = 0u;
 
 const DIGITS: u32 = 256u;
-// Keys of a block that one invocation handles. SORT_BLOCK in src/renderer/tiles.rs is all of them.
+// Keys of a block that one invocation handles. BLOCK in src/renderer/pass/sort.rs is those of all.
 const ROUNDS: u32 = 4u;
 
 var<workgroup> digit_counts: array<atomic<u32>, DIGITS>;

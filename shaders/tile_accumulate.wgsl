@@ -32,8 +32,6 @@ override STOPS: bool = true;
 
 // What still shines through when the walk may stop: less than half a step of 8 bits, and of an f16 near 1.
 const OPAQUE: f32 = 0.0009765625;
-// EVERYTHING in tile_bin.
-const EVERYTHING: u32 = 0xffffffffu;
 
 // A texel, and what there is in it so far.
 struct Texel {

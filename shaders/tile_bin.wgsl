@@ -22,11 +22,8 @@
 // Sprites come in order of their keys, and the hidden ones last.
 override SORTED: bool = true;
 
-const HIDDEN_KEY: u32 = 0xffffffffu;
-// Sprites of a run. BIN_RUN in src/renderer/tiles.rs.
+// Sprites of a run. RUN in src/renderer/pass/tile_bin.rs.
 const RUN: u32 = 256u;
-// In place of where a list begins: there is none.
-const EVERYTHING: u32 = 0xffffffffu;
 
 @compute @workgroup_size(64)
 fn gather(@builtin(global_invocation_id) invocation: vec3u) {

@@ -20,9 +20,6 @@
 // Sprites come in any order.
 override WEIGHTED: bool = false;
 
-// Behind all that is shown.
-const HIDDEN_KEY: u32 = 0xffffffffu;
-
 @compute @workgroup_size(64)
 fn project(@builtin(global_invocation_id) invocation: vec3u) {
     let number = invocation.x;

@@ -22,6 +22,11 @@ struct Tiles {
     padding2: u32,
 }
 
+// The key of what is not shown: behind all that is.
+const HIDDEN_KEY: u32 = 0xffffffffu;
+// In place of where a bin's list begins: it has none, and reads all sprites.
+const EVERYTHING: u32 = 0xffffffffu;
+
 // What a frame turns out to have.
 struct Tally {
     // Sprites to draw: the first of the sorted ones.

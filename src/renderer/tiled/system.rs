@@ -38,6 +38,9 @@ const BIN_IN_STEP: u32 = 32;
 const BIN_OF_MANY: u32 = 64;
 const MANY: u32 = 1 << 16;
 
+/// Along each side of a dispatch, on every device.
+const MOST_WORKGROUPS: u32 = 65535;
+
 /// Buffers of one system, kept from frame to frame.
 #[derive(Debug, Default)]
 pub(crate) struct TiledSystem {
@@ -134,7 +137,8 @@ impl TiledSystem {
             (true, false) => BIN_IN_STEP,
             (true, true) => BIN_OF_MANY,
         };
-        while runs.saturating_mul(bins_along(size, bin_side).element_product()) > most {
+        let bins_of = |side| bins_along(size, side).element_product();
+        while runs.saturating_mul(bins_of(bin_side)) > most || bins_of(bin_side) > MOST_WORKGROUPS {
             bin_side *= 2;
         }
         let UVec2 { x: columns, y: rows } = bins_along(size, bin_side);

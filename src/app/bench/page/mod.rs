@@ -8,6 +8,7 @@ use self::chart::{Axis, COLOURS, Chart, Series, escaped, number};
 use super::report::{Report, Row};
 use super::suites::Suite;
 use super::verdict::{break_even, sentence};
+use haze::settings::{Layers, Path as SmokePath};
 
 const STYLE: &str = include_str!("page.css");
 
@@ -71,7 +72,18 @@ fn by_scale(report: &Report) -> String {
 }
 
 fn by_overdraw(report: &Report) -> String {
-    let name = |row: &Row| Some(format!("{}, amount {}", row.path.as_ref()?, row.alpha?));
+    // Of sprites as large as the picture, and of one amount where that does not matter.
+    let name = |row: &Row| {
+        let (path, amount) = (row.path.as_ref()?, row.alpha?);
+        let is_large = row.layers? > 0.5 * f64::from(row.particles?);
+        match row.mode.as_deref().filter(|_| path == SmokePath::Tiled.name()) {
+            Some(mode) if mode == Layers::Visible.name() => {
+                is_large.then(|| format!("{path}, {mode} layers, amount {amount}"))
+            }
+            mode => (is_large && (amount - 0.1).abs() < 1.0e-6)
+                .then(|| mode.map_or(path.clone(), |mode| format!("{path}, {mode} layers"))),
+        }
+    };
     let series = lines(report, Suite::Overdraw, name).into_iter().map(|(name, rows)| {
         let points = rows.iter().filter_map(|row| Some((row.layers?, row.gpu_ms.median, note(row)))).collect();
         Series { name, points, has_line: true }
