@@ -199,7 +199,8 @@ fn crowd(size: UVec2, count: u32, deep: f32) -> Result<Shot, Error> {
 fn lights(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
     let counts: &[u32] = if quick { &[1, 8, 64] } else { &[1, 2, 4, 8, 16, 32, 64] };
     let group = |&count: &u32| {
-        let mut shot = layers(size, if quick { 16 } else { 64 }, 0.1)?;
+        // 64 layers, or a quick ten.
+        let mut shot = layers(size, if quick { 16 } else { 98 }, 0.1)?;
         let lamp = |index: u32| {
             let angle = index as f32 * 2.4;
             let place =
