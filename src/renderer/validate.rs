@@ -87,7 +87,8 @@ fn validate_depth_texture(
 fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &System<'_>) -> Result<(), FieldError> {
     validate_settings(index, system.settings, frame.view.size)?;
     if system.settings.path == Path::Tiled && shared.tiles().is_none() {
-        let expected = "\"raster\", or a device with compute shaders and the limits that WebGPU promises";
+        let expected =
+            "\"raster\", or a device with compute shaders and the limits that WebGPU promises, not of OpenGL";
         return Err(FieldError::new(format!("systems[{index}].settings.path"), "\"tiled\"", expected));
     }
     validate_place(index, system.bounds.as_ref(), system.depth)?;

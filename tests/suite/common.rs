@@ -24,6 +24,15 @@ pub fn gpu() -> &'static Headless {
     })
 }
 
+/// True where there is a path `tiled`: not on OpenGL. It says so where there is none.
+pub fn has_tiles() -> bool {
+    let has_tiles = gpu().adapter.get_info().backend != wgpu::Backend::Gl;
+    if !has_tiles {
+        eprintln!("left out: no path tiled on OpenGL");
+    }
+    has_tiles
+}
+
 /// Least agreement of two correct renderers, dB. They differ by f16 rounding, by the order of f32 operations, and at edges by
 /// 1/256 pixel: 57 to 84 dB on llvmpipe, Vulkan and OpenGL alike. The mistakes in properties.rs are 12 to 36.
 pub const AGREEMENT: f32 = 54.0;

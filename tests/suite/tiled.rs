@@ -11,7 +11,7 @@ use haze::picture::Picture;
 use haze::settings::*;
 use haze::{Bounds, Error, Particle, Particles, wgpu};
 
-use crate::common::{AGREEMENT, STEP_AGREEMENT, gpu, psnr};
+use crate::common::{AGREEMENT, STEP_AGREEMENT, gpu, has_tiles, psnr};
 use crate::creations;
 use crate::host::Host;
 use crate::stage::{DepthKind, Stage};
@@ -61,6 +61,9 @@ fn agreement(name: &str, stage: &Stage) {
 
 #[test]
 fn every_technique_is_the_same_on_tiles() {
+    if !has_tiles() {
+        return;
+    }
     for &technique in Technique::ALL {
         let name = technique.name();
         agreement(name, &stage(technique));
@@ -79,6 +82,9 @@ fn every_technique_is_the_same_on_tiles() {
 
 #[test]
 fn every_way_to_accumulate_is_the_same_on_tiles() {
+    if !has_tiles() {
+        return;
+    }
     type Change = fn(&mut Stage);
     let changes: [(&str, Change); 9] = [
         ("weighted", |s| s.settings.accumulate.order = Order::Weighted),
@@ -107,6 +113,9 @@ fn every_way_to_accumulate_is_the_same_on_tiles() {
 
 #[test]
 fn eight_bits_are_rounded_once() {
+    if !has_tiles() {
+        return;
+    }
     // Where each layer is rounded the sum stalls, which the path `tiled` does not know.
     let mut stage = stage(Technique::Soft);
     let accumulate = &mut stage.settings.accumulate;
@@ -122,6 +131,9 @@ fn eight_bits_are_rounded_once() {
 
 #[test]
 fn what_cannot_be_seen_is_left_out() {
+    if !has_tiles() {
+        return;
+    }
     // A stack of layers, opaque after some twenty.
     let mut stage = stage(Technique::Soft);
     let layer = |index: u32| Particle {
@@ -147,6 +159,9 @@ fn what_cannot_be_seen_is_left_out() {
 #[cfg(feature = "app")]
 #[test]
 fn every_preset_is_the_same_on_tiles() {
+    if !has_tiles() {
+        return;
+    }
     let renderer = |shot: &Shot, path, layers| {
         let mut shot = shot.clone();
         for system in &mut shot.preset.systems {
@@ -173,6 +188,9 @@ fn every_preset_is_the_same_on_tiles() {
 
 #[test]
 fn a_run_gives_the_same_bits_and_needs_no_order() {
+    if !has_tiles() {
+        return;
+    }
     let mut stage = stage(Technique::Soft);
     // More than a block of the sort, many at one depth, some hidden.
     let all = |index: u32| {
@@ -230,6 +248,9 @@ fn storage_buffer(bytes: &[u8]) -> wgpu::Buffer {
 
 #[test]
 fn lists_that_find_no_room_are_drawn_all_the_same() {
+    if !has_tiles() {
+        return;
+    }
     // Every sprite in every bin: at first the lists hold a part of that.
     let mut stage = stage(Technique::Soft);
     let size = UVec2::new(960, 540);
@@ -263,6 +284,9 @@ fn lists_that_find_no_room_are_drawn_all_the_same() {
 
 #[test]
 fn steady_frames_on_tiles_create_nothing() {
+    if !has_tiles() {
+        return;
+    }
     let mut stage = stage(Technique::Soft);
     stage.settings.path = Path::Tiled;
     let mut host = Host::new(gpu(), &stage).unwrap();
@@ -302,7 +326,9 @@ fn what_cannot_be_tiled_is_refused() {
     assert!(message.contains("systems[0].settings.path") && message.contains("raster"), "{message}");
     stage.settings.path = Path::Auto;
     host.draw(&webgl2, &stage).unwrap();
-
+    if !has_tiles() {
+        return;
+    }
     stage.settings.path = Path::Tiled;
     stage.bounds = Some(Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE });
     let mut host = Host::new(gpu(), &stage).unwrap();

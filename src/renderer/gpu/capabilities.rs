@@ -13,10 +13,12 @@ pub(crate) fn array_layers(layers: u32) -> u32 {
     if layers == 1 || layers.is_multiple_of(6) { layers + 1 } else { layers }
 }
 
-/// True for devices with compute shaders and all that the tiled passes bind: WebGPU's defaults are enough.
+/// True for devices with compute shaders and all that the tiled passes bind: WebGPU's defaults are enough. Not on OpenGL, where
+/// compiling them may take longer than wgpu waits for the context, which it then panics about.
 pub(crate) fn tiles_are_supported(device: &wgpu::Device) -> bool {
     let limits = device.limits();
-    limits.max_compute_invocations_per_workgroup >= 256
+    device.adapter_info().backend != wgpu::Backend::Gl
+        && limits.max_compute_invocations_per_workgroup >= 256
         && limits.max_compute_workgroup_size_x >= 256
         && limits.max_compute_workgroup_storage_size >= 16384
         && limits.max_storage_buffers_per_shader_stage >= 8

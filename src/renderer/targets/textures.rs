@@ -6,7 +6,7 @@ use glam::UVec2;
 pub(super) struct Textures<'a> {
     pub device: &'a wgpu::Device,
     pub bytes: u64,
-    /// Compute shaders write them.
+    /// Compute shaders write them, and nothing is drawn to them: not every device could, whatever the format.
     pub storage: bool,
 }
 
@@ -14,6 +14,10 @@ impl Textures<'_> {
     pub fn create(&mut self, label: &str, format: wgpu::TextureFormat, size: UVec2, layers: u32) -> wgpu::Texture {
         let texel = u64::from(format.block_copy_size(None).unwrap_or(16));
         self.bytes += texel * u64::from(size.x) * u64::from(size.y) * u64::from(layers);
+        let written = match self.storage {
+            true => wgpu::TextureUsages::STORAGE_BINDING,
+            false => wgpu::TextureUsages::RENDER_ATTACHMENT,
+        };
         self.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
             size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: layers },
@@ -21,10 +25,7 @@ impl Textures<'_> {
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                | wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_SRC
-                | if self.storage { wgpu::TextureUsages::STORAGE_BINDING } else { wgpu::TextureUsages::empty() },
+            usage: written | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         })
     }
