@@ -147,8 +147,12 @@ impl<'a> Bench<'a> {
         if let Some(ms) = self.costs.get(&case.work.0).map(|cost| cost * case.work.1).filter(|&ms| ms > longest) {
             return Ok(Err(seconds(ms)));
         }
-        if let Err(reason) = is_right(self.gpu, &self.context, &case.shot)? {
-            return Ok(Err(reason));
+        match is_right(self.gpu, &self.context, &case.shot) {
+            Ok(Ok(())) => {}
+            Ok(Err(reason)) => return Ok(Err(reason)),
+            // What this device cannot do.
+            Err(Error::Field(error)) => return Ok(Err(error.to_string())),
+            Err(error) => return Err(error),
         }
         let mut stage = Stage::new(&self.context, false)?;
         stage.warm_up(&case.shot)?;
