@@ -27,13 +27,13 @@ settings! {
     pub struct Light {
         /// Where it shines from.
         kind: LightKind = LightKind::Point, choice;
-        /// World space, metres. Point and spot.
+        /// World space, metres: behind the smoke it glows through, beside it it gives it shape. Point and spot.
         #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
         position: Vec3 = Vec3::ZERO, vector(-1.0e5..=1.0e5, "m");
         /// The way the light travels, world space; need not be unit length. Spot and directional.
         #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
         direction: Vec3 = Vec3::NEG_Y, vector(-1.0e3..=1.0e3, "");
-        /// Linear RGB, usually 0..=1.
+        /// Linear RGB, usually 0..=1: tints what the ramps answer.
         #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
         colour: Vec3 = Vec3::ONE, colour(0.0..=100.0);
         /// Multiplies `colour`. Point and spot: at one metre. Directional: everywhere. In any unit, the scene's: a sun of 120 000
@@ -49,7 +49,7 @@ settings! {
         /// Half angle at which the spot has faded to nothing, degrees; at least `inner_angle`. Between them light falls by the
         /// square of how far the cosine has gone.
         outer_angle: f32 = 35.0, number(|this| this.inner_angle..=89.9, "degrees");
-        /// Multiplies this light's specular scatter quad. 0 draws none.
+        /// Multiplies this light's glow through the smoke, its specular scatter quad. 0 draws none.
         specular_scatter: f32 = 1.0, number(0.0..=100.0, "");
     }
 }

@@ -38,24 +38,24 @@ settings! {
         /// A CSV or PLY file, or one a frame: `smoke_####.ply`, with `#` for the digits of the frame's number. It takes the place of
         /// the emitter; empty for none.
         path: String = String::new(), particles;
-        /// Metres of one unit of the file.
+        /// Metres of one unit of the file: sizes and distances of the smoke grow with it.
         units: f32 = 1.0, number(1.0e-6..=1.0e6, "m");
-        /// Which axis of the file points up.
+        /// Which axis of the file points up: with the wrong one the smoke lies on its side.
         up: UpAxis = UpAxis::Y, choice;
-        /// Where the file's origin is.
+        /// Where the file's origin is: moves all of the smoke.
         #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
         position: Vec3 = Vec3::ZERO, vector(-1.0e5..=1.0e5, "m");
-        /// Frames of the simulation per second.
+        /// Frames of the simulation per second: more plays it faster.
         fps: f32 = 24.0, number(0.01..=1000.0, "frames/s");
-        /// When the first frame is shown.
+        /// When the first frame is shown: later holds it back.
         start: f32 = 0.0, number(-1.0e5..=1.0e5, "s");
         /// What follows the last frame.
         after: CacheEnd = CacheEnd::Hold, choice;
-        /// Radius of particles of a file without one.
+        /// Radius of particles of a file without one: large ones blur into each other, small ones show one by one.
         default_radius: f32 = 0.25, number(0.0..=1.0e3, "m");
-        /// Amount of particles of a file without one.
+        /// Amount of particles of a file without one: how dense the smoke is.
         default_amount: f32 = 0.3, number(0.0..=1.0, "");
-        /// Flipbook frames per second. 0: still.
+        /// Flipbook frames per second: how fast each puff boils. 0: still.
         flipbook_rate: f32 = 4.0, number(0.0..=120.0, "frames/s");
     }
 }

@@ -10,19 +10,20 @@ settings! {
     /// A perspective camera.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Camera {
-        /// World space, metres.
+        /// Where the picture is seen from, world space, metres. In the smoke, sprites fade before they reach it.
         #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
         position: Vec3 = Vec3::new(0.0, 2.0, 8.0), vector(-1.0e5..=1.0e5, "m");
         /// The point in the middle of the picture, metres.
         #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
         target: Vec3 = Vec3::new(0.0, 1.5, 0.0), vector(-1.0e5..=1.0e5, "m");
-        /// Vertical field of view, degrees.
+        /// Vertical field of view, degrees: narrow brings the smoke near and flattens it, wide shows more of the scene round it.
         fov: f32 = 45.0, number(1.0..=150.0, "degrees");
-        /// Near plane, metres.
+        /// Near plane, metres: what is nearer is cut off.
         near: f32 = 0.1, number(0.001..=100.0, "m");
-        /// Far plane, metres.
+        /// Far plane, metres: what is beyond is cut off.
         far: f32 = 200.0, number(|this| this.near * 1.01..=1.0e5, "m");
-        /// Multiplies the linear picture by 2^exposure before it is tonemapped.
+        /// Multiplies the linear picture by 2^exposure before it is tonemapped: up by one, all is twice as bright, and glow turns
+        /// white.
         exposure: f32 = 0.0, number(-16.0..=16.0, "EV");
     }
 }

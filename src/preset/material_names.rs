@@ -23,7 +23,7 @@ settings! {
         columns: u32 = 1, integer(1..=256, "frames");
         /// Frames below each other, for a sprite from a file.
         rows: u32 = 1, integer(1..=256, "frames");
-        /// True for a sprite file painted with green pointing down.
+        /// True for a sprite file painted with green pointing down: the wrong way round, light from above lights it from below.
         y_down: bool = false, flag;
         "ramps and noise":
         /// Light by dot(n, l): the colours of shade, terminator and lit side.

@@ -105,7 +105,7 @@ settings! {
     /// All settings of one particle system.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Settings {
-        /// How the system reaches the picture.
+        /// How the system reaches the picture: what it costs, and, drawn forward, how it is lit.
         path: Path = Path::Auto, choice;
         /// How forward sprites are blended; the deferred path has its own blend.
         blend_mode: BlendMode = BlendMode::Alpha, choice;

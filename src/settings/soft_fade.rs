@@ -33,7 +33,7 @@ settings! {
         contrast_power: f32 = 2.0, number(0.1..=16.0, "");
         /// Sprites closer to the surface than this are dropped. 0 keeps everything in front of the surface.
         epsilon: f32 = 0.0, number(0.0..=10.0, "m");
-        /// View depth at which a sprite is gone.
+        /// View depth at which a sprite is gone: smoke opens before the camera.
         near_fade_start: f32 = 0.0, number(0.0..=1000.0, "m");
         /// View depth from which a sprite is whole; not less than `near_fade_start`. Both 0: no near fade.
         near_fade_end: f32 = 0.5, number(|this| this.near_fade_start..=1000.0, "m");
