@@ -30,7 +30,7 @@ override SUMS_WEIGHTS: bool = false;
 // Stop where the smoke is opaque.
 override STOPS: bool = true;
 
-// What still shines through when the walk may stop: less than half a step of 8 bits, and of an f16 near 1.
+// What still shines through when the walk may stop: 2⁻¹⁰, half of half a step of 8 bits.
 const OPAQUE: f32 = 0.0009765625;
 
 // A texel, and what there is in it so far.

@@ -41,10 +41,8 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
     var high: vec2f;
     if is_sphere() {
         let texels_per_pixel = 1.0 / system.scale;
-        let a = sphere_corner(placed.centre_radius, vec2f(-1.0, 1.0), texels_per_pixel);
-        let b = sphere_corner(placed.centre_radius, vec2f(1.0, -1.0), texels_per_pixel);
-        low = pixel_from_ndc(a, view.size) / system.scale - system.target_origin;
-        high = pixel_from_ndc(b, view.size) / system.scale - system.target_origin;
+        low = texel_of_ndc(sphere_corner(placed.centre_radius, vec2f(-1.0, 1.0), texels_per_pixel));
+        high = texel_of_ndc(sphere_corner(placed.centre_radius, vec2f(1.0, -1.0), texels_per_pixel));
     } else {
         // A slab whose middle has passed the near plane is drawn on that.
         let plane = mix(max(-centre.z, view.near), 1.0, view.orthographic);

@@ -50,7 +50,11 @@ fn ray_through_texel(texel: vec2f) -> vec2f {
 
 // The place of the target, texels, that a ray goes through.
 fn texel_of_ray(ray: vec2f) -> vec2f {
-    let ndc = (ray - view.ray_offset) / view.ray_scale;
+    return texel_of_ndc((ray - view.ray_offset) / view.ray_scale);
+}
+
+// The same of the picture's NDC.
+fn texel_of_ndc(ndc: vec2f) -> vec2f {
     return pixel_from_ndc(ndc, view.size) / system.scale - system.target_origin;
 }
 

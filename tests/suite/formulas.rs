@@ -1270,6 +1270,7 @@ const INDIRECT: &[&str] = &[
     "front_to_back_bits",
     "ray_through_texel",
     "texel_of_ray",
+    "texel_of_ndc",
     "place_in_square",
     "square_meets",
     "filled_cells",

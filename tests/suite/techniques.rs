@@ -14,7 +14,8 @@ use crate::stage::{BACKDROP, DepthKind, Stage};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
-fn stage(technique: Technique) -> Stage {
+/// The cloud, with all that a technique may read.
+pub fn stage(technique: Technique) -> Stage {
     let mut stage = Stage::new(SIZE);
     stage.depth = DepthKind::Both;
     // With a linear target beside it, a depth buffer can be attached on every backend.

@@ -14,9 +14,8 @@ use haze::{Bounds, Error, Particle, Particles, wgpu};
 use crate::common::{AGREEMENT, STEP_AGREEMENT, gpu, has_tiles, psnr};
 use crate::creations;
 use crate::host::Host;
-use crate::stage::{DepthKind, Stage};
-
-const SIZE: UVec2 = UVec2::new(160, 90);
+use crate::stage::Stage;
+use crate::techniques;
 
 /// Of the picture of `raster`, dB: they differ by what the blend unit rounds, layer by layer.
 const TO_RASTER: f32 = 55.0;
@@ -24,15 +23,8 @@ const TO_RASTER: f32 = 55.0;
 const TO_REFERENCE: f32 = AGREEMENT;
 
 fn stage(technique: Technique) -> Stage {
-    let mut stage = Stage::new(SIZE);
-    stage.depth = DepthKind::Both;
-    stage.attach_depth = true;
-    stage.settings.technique = technique;
-    stage.settings.volumetric.noise_size = 1.5;
+    let mut stage = techniques::stage(technique);
     stage.settings.accumulate.layers = Layers::All;
-    for (index, particle) in (0..).zip(&mut stage.particles) {
-        particle.age = index as f32 / 59.0;
-    }
     stage
 }
 

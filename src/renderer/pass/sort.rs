@@ -27,10 +27,16 @@ enum Step {
     Scatter,
 }
 
+/// Of all turns.
+pub(crate) const STEPS: usize = TURNS * EACH_TURN.len();
+const EACH_TURN: [Step; 3] = [Step::CountDigits, Step::SumCounts, Step::Scatter];
+
 /// All of them, in order.
-pub(crate) fn keys() -> impl Iterator<Item = SortKey> {
-    let steps = [Step::CountDigits, Step::SumCounts, Step::Scatter];
-    (0..TURNS as u32).flat_map(move |turn| steps.map(|step| SortKey { step, shift: turn * DIGITS.ilog2() }))
+pub(crate) fn keys() -> [SortKey; STEPS] {
+    std::array::from_fn(|index| SortKey {
+        step: EACH_TURN[index % EACH_TURN.len()],
+        shift: (index / EACH_TURN.len()) as u32 * DIGITS.ilog2(),
+    })
 }
 
 /// The pipeline for a key.
@@ -49,7 +55,7 @@ pub(crate) fn describe(key: SortKey) -> ComputeParts {
 #[derive(Debug)]
 pub(crate) struct Sort {
     /// As [`keys`].
-    pub pipelines: Vec<wgpu::ComputePipeline>,
+    pub pipelines: [wgpu::ComputePipeline; STEPS],
     /// From the first pair of buffers to the second, and back.
     pub there_and_back: [wgpu::BindGroup; 2],
     pub blocks: u32,
@@ -57,7 +63,7 @@ pub(crate) struct Sort {
 
 impl Sort {
     pub fn record(&self, pass: &mut wgpu::ComputePass<'_>) {
-        for (turn, pipelines) in self.pipelines.chunks(self.pipelines.len() / TURNS).enumerate() {
+        for (turn, pipelines) in self.pipelines.chunks(EACH_TURN.len()).enumerate() {
             pass.set_bind_group(0, &self.there_and_back[turn % 2], &[]);
             for (pipeline, workgroups) in pipelines.iter().zip([self.blocks, DIGITS, self.blocks]) {
                 pass.set_pipeline(pipeline);

@@ -20,6 +20,8 @@ pub(crate) struct Tiled {
     pub layouts: TiledLayouts,
     /// Workgroups walk in step: not on CPUs.
     in_step: AtomicBool,
+    /// Asked once: a device makes a copy of them each time.
+    pub limits: wgpu::Limits,
     /// A texel for each format of a target, bound in place of those that a system has not.
     pub unwritten: [wgpu::TextureView; 3],
     project: Variants<TileProjectKey, ComputeParts>,
@@ -47,7 +49,7 @@ pub(crate) struct TiledKeys {
 /// The pipelines of one system.
 pub(crate) struct TiledPipelines {
     pub project: wgpu::ComputePipeline,
-    pub sort: Option<Vec<wgpu::ComputePipeline>>,
+    pub sort: Option<[wgpu::ComputePipeline; sort::STEPS]>,
     pub bin: [wgpu::ComputePipeline; 4],
     pub accumulate: wgpu::ComputePipeline,
 }
@@ -70,6 +72,7 @@ impl Tiled {
         }
         Ok(Self {
             in_step: AtomicBool::new(device.adapter_info().device_type != wgpu::DeviceType::Cpu),
+            limits: device.limits(),
             unwritten: tiled_formats().map(|format| storage_target(device, "haze unwritten", format, UVec2::ONE)),
             project: variants!(tile_project, &with(&own.project)),
             sort: variants!(sort, &[Some(&own.sort)]),
@@ -96,7 +99,7 @@ impl Tiled {
     /// Compiles what these keys need, or says what is wrong with the shaders.
     pub fn compile(&self, device: &wgpu::Device, keys: TiledKeys) -> Result<(), Error> {
         self.project.check(device, keys.project)?;
-        sort::keys().try_for_each(|key| self.sort.check(device, key))?;
+        sort::keys().into_iter().try_for_each(|key| self.sort.check(device, key))?;
         let bins = [true, false].map(|sorted| tile_bin::keys(keys.accumulate.in_step, sorted));
         bins.into_iter().flatten().try_for_each(|key| self.bin.check(device, key))?;
         self.accumulate.check(device, keys.accumulate)
@@ -106,7 +109,7 @@ impl Tiled {
     pub fn pipelines(&self, device: &wgpu::Device, keys: TiledKeys, sorts: bool) -> TiledPipelines {
         TiledPipelines {
             project: self.project.get(device, keys.project),
-            sort: sorts.then(|| sort::keys().map(|key| self.sort.get(device, key)).collect()),
+            sort: sorts.then(|| sort::keys().map(|key| self.sort.get(device, key))),
             bin: tile_bin::keys(keys.accumulate.in_step, sorts).map(|key| self.bin.get(device, key)),
             accumulate: self.accumulate.get(device, keys.accumulate),
         }

@@ -129,7 +129,7 @@ impl TiledSystem {
         inputs: &TiledInputs<'_>,
     ) -> TiledPasses {
         let TiledInputs { sprites, size, format, attachments, depth } = *inputs;
-        let most = most_words(&gpu.device.limits());
+        let most = most_words(&tiled.limits);
         let in_step = keys.accumulate.in_step;
         let runs = sprites.count.div_ceil(RUN);
         let mut bin_side = match (in_step, sprites.count > MANY) {
@@ -148,7 +148,7 @@ impl TiledSystem {
         let needed = Capacity { particles: sprites.count, bins, runs: bins * runs, entries };
         let held = self.fit(gpu, tiled, needed.with_room(most));
         let capacity = held.capacity.entries;
-        let particles = Part::new(gpu.device, sprites);
+        let particles = Part::new(&tiled.limits, sprites);
         let uniform = TilesUniform {
             count: sprites.count,
             loops: sprites.loops,
@@ -389,8 +389,7 @@ impl TiledPasses {
 }
 
 impl Part {
-    fn new(device: &wgpu::Device, sprites: &Sprites) -> Self {
-        let limits = device.limits();
+    fn new(limits: &wgpu::Limits, sprites: &Sprites) -> Self {
         let before = sprites.offset % u64::from(limits.min_storage_buffer_offset_alignment);
         let offset = sprites.offset - before;
         Self {

@@ -4,11 +4,12 @@ mod chart;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use haze::settings::{Layers, Path as SmokePath};
+
 use self::chart::{Axis, COLOURS, Chart, Series, escaped, number};
 use super::report::{Report, Row};
 use super::suites::Suite;
 use super::verdict::{break_even, sentence};
-use haze::settings::{Layers, Path as SmokePath};
 
 const STYLE: &str = include_str!("page.css");
 
