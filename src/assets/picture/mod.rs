@@ -5,13 +5,13 @@ mod colour_space;
 mod file;
 mod png;
 mod profile;
+mod threads;
 
 pub use colour_space::{colour_notes, decode_colour_png, read_colour_png};
 pub use file::{FileIdentity, check_file, write_file};
 pub(crate) use png::is_png;
 pub use png::{Effort, MAX_BYTES, MAX_SIDE, decode_png, read_png, write_png};
-
-use std::sync::{Mutex, PoisonError};
+pub(crate) use threads::{on_all_processors, threads};
 
 use glam::{IVec2, UVec2};
 
@@ -38,25 +38,11 @@ impl<T: Copy + Send> Picture<T> {
 
     /// Calls `f(first_row, rows)` for bands of rows, on all processors.
     pub fn for_bands(&mut self, f: impl Fn(u32, &mut [T]) + Sync) {
-        let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let width = self.size.x as usize;
         // More bands than threads: smoke is rarely spread evenly.
-        let rows = (self.size.y as usize).div_ceil(threads * 4).max(1);
-        let bands = Mutex::new(self.texels.chunks_mut(rows * width).enumerate());
-        let next = || bands.lock().unwrap_or_else(PoisonError::into_inner).next();
-        let work = || {
-            while let Some((index, band)) = next() {
-                f((index * rows) as u32, band);
-            }
-        };
-        std::thread::scope(|scope| {
-            // This thread works as well; it does what is left where no other is to be had.
-            for _ in 1..threads {
-                if std::thread::Builder::new().spawn_scoped(scope, work).is_err() {
-                    break;
-                }
-            }
-            work();
+        let rows = (self.size.y as usize).div_ceil(threads() * 4).max(1);
+        on_all_processors(self.texels.chunks_mut(rows * width).enumerate(), |(index, band)| {
+            f((index * rows) as u32, band);
         });
     }
 

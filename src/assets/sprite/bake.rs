@@ -19,6 +19,7 @@ use image::{Rgba, RgbaImage};
 
 use super::Sprite;
 use super::detail::{detail, detail_size};
+use crate::assets::picture::on_all_processors;
 use crate::error::FieldError;
 use crate::settings::validate;
 
@@ -45,7 +46,8 @@ impl SpriteRecipe {
         validate(self, String::new)?;
         let bake = self.baker();
         let frame = |frame| progress(frame).map(|()| bake(frame as f32));
-        let frames = (0..self.frame_count()).map(frame).collect::<Result<Vec<_>, E>>()?;
+        let mut frames = (0..self.frame_count()).map(frame).collect::<Result<Vec<_>, E>>()?;
+        on_all_processors(frames.iter_mut(), |frame| self.shrink(frame));
         let pictures = frames.iter().flat_map(|frame| frame.picture.texels.iter().map(|texel| texel.0));
         let sprite = Sprite::with_levels(self.size, self.frame_count(), pictures.collect());
         let mut details: Vec<_> =
@@ -68,20 +70,24 @@ impl SpriteRecipe {
 
     /// Bakes one moment of the loop; `frame` 0.5 is half way between the first two.
     pub fn bake_frame(&self, frame: f32) -> BakedFrame {
-        self.baker()(frame)
+        let mut frame = self.baker()(frame);
+        self.shrink(&mut frame);
+        frame
     }
 
-    /// Bakes moments, with what they share worked out once.
+    /// Bakes moments before they are made smaller, with what they share worked out once.
     fn baker(&self) -> impl Fn(f32) -> BakedFrame + '_ {
         let count = self.frame_count() as f32;
         let slices = (self.version > 1).then(|| Slices::new(self));
         move |frame| {
             let time = frame / count;
-            let mut frame = slices.as_ref().map_or_else(|| cube::frame(self, time), |slices| slices.frame(time));
-            if self.tolerance > 0 {
-                shrink_frame(&mut frame.picture, self.tolerance);
-            }
-            frame
+            slices.as_ref().map_or_else(|| cube::frame(self, time), |slices| slices.frame(time))
+        }
+    }
+
+    fn shrink(&self, frame: &mut BakedFrame) {
+        if self.tolerance > 0 {
+            shrink_frame(&mut frame.picture, self.tolerance);
         }
     }
 }

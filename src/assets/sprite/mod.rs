@@ -13,7 +13,7 @@ use std::sync::Arc;
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
 use image::RgbaImage;
 
-use crate::assets::picture::read_png;
+use crate::assets::picture::{Picture, read_png};
 use crate::error::Error;
 use crate::formula::texture::Texture2dArray;
 
@@ -108,19 +108,16 @@ impl Sprite {
         for level in 1..=size.ilog2() {
             let coarse = sprite.level_size(level);
             let fine = sprite.level_size(level - 1);
-            let mut texels = Vec::with_capacity((coarse * coarse * frame_count) as usize);
-            for frame in 0..frame_count {
-                for y in 0..coarse {
-                    for x in 0..coarse {
-                        let at = |dx: u32, dy: u32| {
-                            let (x, y) = ((2 * x + dx).min(fine - 1), (2 * y + dy).min(fine - 1));
-                            sprite.texel(level - 1, frame, x, y)
-                        };
-                        texels.push(average([at(0, 0), at(1, 0), at(0, 1), at(1, 1)]));
-                    }
-                }
-            }
-            sprite.levels.push(texels.into());
+            // Frames below each other.
+            let mut texels = Picture::new(UVec2::new(coarse, coarse * frame_count), [0; 4]);
+            texels.for_each(|at, texel| {
+                let near = |dx: u32, dy: u32| {
+                    let (x, y) = ((2 * at.x + dx).min(fine - 1), (2 * (at.y % coarse) + dy).min(fine - 1));
+                    sprite.texel(level - 1, at.y / coarse, x, y)
+                };
+                *texel = average([near(0, 0), near(1, 0), near(0, 1), near(1, 1)]);
+            });
+            sprite.levels.push(texels.texels.into());
         }
         sprite
     }

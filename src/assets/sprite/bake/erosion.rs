@@ -63,8 +63,8 @@ impl Erosion {
         let size = self.voxels.size;
         let sides = self.voxels.sides().as_vec3();
         let at = ((p * Vec3::new(1.0, -1.0, -1.0) + 1.0) * 0.5 * sides - 0.5).clamp(Vec3::ZERO, sides - 1.0);
-        let (low, share) = (at.floor(), at - at.floor());
-        let low = low.as_uvec3();
+        let low = at.as_uvec3();
+        let share = at - low.as_vec3();
         let high = (low + 1).min(self.voxels.sides() - 1);
         let values = &self.octaves[0].values;
         let load = |x: u32, y: u32, z: u32| {

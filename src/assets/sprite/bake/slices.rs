@@ -66,11 +66,13 @@ impl<'a> Slices<'a> {
         // Far from everything all texels are the same, which costs nothing in a file.
         let is_clear = |at: IVec2| marched.load(at).0.0[3] == 0;
         let is_far = |at: IVec2| (-1..=1).all(|y| (-1..=1).all(|x| is_clear(at + IVec2::new(x, y))));
-        let texels = (0..size * size).map(|index| {
-            let at = UVec2::new(index % size, index / size).as_ivec2();
-            if is_far(at) { (CLEAR, 0.0) } else { marched.load(at) }
+        let mut texels = Picture::new(marched.size, (CLEAR, 0.0));
+        texels.for_each(|at, texel| {
+            if !is_far(at.as_ivec2()) {
+                *texel = marched.load(at.as_ivec2());
+            }
         });
-        BakedFrame::new(size, texels)
+        BakedFrame::new(size, texels.texels)
     }
 
     /// The densities of one row of voxels: 0 outside, about 1 inside.
