@@ -1,6 +1,6 @@
 // diffuse_bake
 // What    Bakes all lights through the diffuse ramp into a small texture by normal, once per system and frame.
-// Reads   lights, diffuse ramp.
+// Reads   lights, diffuse and backlight ramp.
 // Writes  one face of the cubemap, or the motif: Rgba16Float, linear light.
 // Blend   none.
 // Source  OTEE "Diffuse lighting": "use cubemaps", "motif lighting".
@@ -37,5 +37,6 @@ fn fragment(in: BakeVertex) -> @location(0) vec4f {
     if !MOTIF {
         normal = normalize(cube_direction(i32(in.face), place));
     }
-    return vec4f(bounded_light(diffuse_from_lights(normal, system.centre)), 1.0);
+    // By normal alone: as thick smoke has it.
+    return vec4f(bounded_light(diffuse_from_lights(normal, 1.0, system.centre)), 1.0);
 }

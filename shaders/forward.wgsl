@@ -37,10 +37,11 @@ fn fragment(in: SpriteVertex) -> @location(0) vec4f {
     if is_sphere() {
         position = view_position(in.view_position.xy, max(-in.centre_radius.z, view.near), view.orthographic);
     }
-    var light = diffuse_from_lights(normal, position) * system.diffuse_intensity + soft_scatter(amount);
+    let covered = coverage(amount, system.boost);
+    var light = diffuse_from_lights(normal, covered, position) * system.diffuse_intensity + soft_scatter(amount);
     if AGE_COLOUR {
         let colour = sample_ramp(age_ramp, linear_sampler, in.amount_lod_frame_age.w);
         light *= mix(vec3f(1.0), colour, system.age_colour);
     }
-    return forward_fragment(BLEND_MODE, target_colour(light), coverage(amount, system.boost));
+    return forward_fragment(BLEND_MODE, target_colour(light), covered);
 }

@@ -30,6 +30,6 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let normal = normal_from_accumulation(NORMAL_ENCODING, NORMAL_DECODE, accumulated.rgb, weights);
     // The texel's middle stands for all of its pixels.
     let pixel = (texel + system.target_origin + 0.5) * system.scale;
-    let light = diffuse(normal, lit_position(pixel)) + soft_scatter(amount);
+    let light = diffuse(normal, amount, lit_position(pixel)) + soft_scatter(amount);
     return vec4f(bounded_light(light), 1.0) * amount;
 }

@@ -93,7 +93,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
 
     var light = vec3f(0.0);
     if SHADE_TREE != SHADE_TREE_SOFT_SCATTER {
-        light += diffuse(normal, lit_position(pixel));
+        light += diffuse(normal, amount, lit_position(pixel));
     }
     if SHADE_TREE != SHADE_TREE_DIFFUSE {
         light += soft_scatter(amount);

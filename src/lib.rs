@@ -77,7 +77,7 @@ pub mod settings;
 
 pub use assets::material::MaterialAssets;
 #[doc(inline)]
-pub use assets::{builtin, cache, noise, picture, ramp, sprite};
+pub use assets::{builtin, cache, noise, path_trace, picture, ramp, sprite};
 pub use error::{Error, FieldError};
 pub use frame::{Bounds, Frame, Light, LightKind, Material, Particle, Particles, SceneDepth, System, View};
 pub use renderer::{

@@ -17,6 +17,7 @@ const MAX_LIGHTS: u32 = 128u;
 @group(1) @binding(1) var<uniform> lights: array<Light, MAX_LIGHTS>;
 
 @group(2) @binding(0) var sprite: texture_2d_array<f32>;
+// x is where the normal looks, y the amount times boost.
 @group(2) @binding(1) var diffuse_ramp: texture_2d<f32>;
 @group(2) @binding(2) var soft_scatter_ramp: texture_2d<f32>;
 // x is distance², y is the amount.
@@ -31,6 +32,7 @@ const MAX_LIGHTS: u32 = 128u;
 @group(2) @binding(10) var coverage_ramp: texture_2d<f32>;
 // x is the mip level, y the frame: see filled_cells().
 @group(2) @binding(11) var sprite_filled: texture_2d<u32>;
+@group(2) @binding(12) var backlight_ramp: texture_2d<f32>;
 
 // The host's depth at a pixel of the view.
 fn load_scene_depth(pixel: vec2i) -> f32 {

@@ -7,12 +7,23 @@ const SOFT_SCATTER_MODE_SMOOTHSTEP: u32 = 0u;
 const SOFT_SCATTER_MODE_RAMP: u32 = 1u;
 override SOFT_SCATTER_MODE: u32 = SOFT_SCATTER_MODE_SMOOTHSTEP;
 
-// Every light through the diffuse ramp: ramp(dot(n, l) / 2 + 1/2) · colour · attenuation. (OTEE "Diffuse lighting")
-fn diffuse_from_lights(normal: vec3f, position: vec3f) -> vec3f {
+const BACKLIGHT_SAME: u32 = 0u;
+const BACKLIGHT_RAMP: u32 = 1u;
+override BACKLIGHT: u32 = BACKLIGHT_SAME;
+
+// Every light through the diffuse ramp: ramp(dot(n, l) / 2 + 1/2, amount · boost) · colour · attenuation. (OTEE "Diffuse
+// lighting")
+fn diffuse_from_lights(normal: vec3f, covered: f32, position: vec3f) -> vec3f {
+    let to_viewer = direction_to_viewer(position, view.orthographic);
     var sum = vec3f(0.0);
     for (var i = 0u; i < system.light_count; i++) {
         let light = sample_light(lights[i], position);
-        let falloff = sample_ramp(diffuse_ramp, linear_sampler, diffuse_coordinate(normal, light.direction));
+        let at = vec2f(diffuse_coordinate(normal, light.direction), covered);
+        var falloff = sample_ramp_2d(diffuse_ramp, linear_sampler, at);
+        if BACKLIGHT == BACKLIGHT_RAMP {
+            let against = sample_ramp_2d(backlight_ramp, linear_sampler, at);
+            falloff = mix(falloff, against, backlight_weight(light.direction, to_viewer));
+        }
         sum += falloff * lights[i].colour * light.attenuation;
     }
     return sum;

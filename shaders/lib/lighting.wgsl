@@ -59,6 +59,21 @@ fn diffuse_coordinate(normal: vec3f, to_light: vec3f) -> f32 {
     return saturate(dot(normal, to_light) * 0.5 + 0.5);
 }
 
+// The way to the viewer from a point of the smoke.
+fn direction_to_viewer(position: vec3f, orthographic: f32) -> vec3f {
+    if orthographic > 0.5 {
+        return vec3f(0.0, 0.0, 1.0);
+    }
+    return -position * inverseSqrt(max(dot(position, position), 1.0e-12));
+}
+
+// How far a light shines from behind: 0 from the viewer's side, 1 straight against it. Cubed: smoke that scatters onwards glows
+// near the light most of all.
+fn backlight_weight(to_light: vec3f, to_viewer: vec3f) -> f32 {
+    let against = saturate(0.5 - 0.5 * dot(to_light, to_viewer));
+    return against * against * against;
+}
+
 // 0 in thin smoke, 1 in thick: smoothstep(scatter_amount, scatter_amount + scatter_smooth, A), safe at
 // scatter_smooth = 0. (OTEE "Soft scattering")
 fn soft_scatter_weight(amount: f32, scatter_amount: f32, scatter_smooth: f32) -> f32 {

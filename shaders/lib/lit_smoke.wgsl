@@ -23,7 +23,7 @@ const COVERAGE_MODE_LINEAR: u32 = 0u;
 const COVERAGE_MODE_RAMP: u32 = 1u;
 override COVERAGE_MODE: u32 = COVERAGE_MODE_LINEAR;
 
-fn diffuse(normal: vec3f, position: vec3f) -> vec3f {
+fn diffuse(normal: vec3f, amount: f32, position: vec3f) -> vec3f {
     var light = vec3f(0.0);
     switch DIFFUSE_MODE {
         case DIFFUSE_MODE_CUBEMAP: {
@@ -35,7 +35,7 @@ fn diffuse(normal: vec3f, position: vec3f) -> vec3f {
             light = sample_ramp_2d(painted_motif, linear_sampler, motif_position(normal) * 0.5 + 0.5);
         }
         case DIFFUSE_MODE_SPHERICAL_HARMONICS: { light = spherical_harmonics(system.spherical_harmonics, normal); }
-        default: { light = diffuse_from_lights(normal, position); }
+        default: { light = diffuse_from_lights(normal, coverage(amount, system.boost), position); }
     }
     return light * system.diffuse_intensity;
 }

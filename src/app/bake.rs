@@ -28,6 +28,8 @@ enum RampCommand {
     New(ramp::new::Arguments),
     /// Write the recipe of a picture, or of another program's gradient.
     Import(ramp::import::Arguments),
+    /// Path-trace a puff of steam, ash, … under a ring of lights, and write the ramps that answer light as it does.
+    Fit(ramp::fit::Arguments),
     /// Render a preset under every ramp of a folder, on one labelled sheet. Those that cannot be read are told and left out, and it
     /// exits with 1.
     Sheet(ramp::sheet::Arguments),
@@ -55,6 +57,8 @@ enum SpriteCommand {
     /// Say what would show: colours in place of normals, their length, green that points down, borders, premultiplied normals, the
     /// seam of the loop. Exits with 1 if there is anything.
     Check(sprite::check::Arguments),
+    /// Path-trace a sprite as a puff of steam, ash, … under a ring of lights, on one sheet: what it truly looks like.
+    Light(sprite::light::Arguments),
     /// Make a sprite of normals painted elsewhere, heights, alpha alone or six-way light maps; of a sheet or of numbered frames.
     Import(sprite::import::Arguments),
 }
@@ -64,6 +68,7 @@ pub fn run_ramp(arguments: &RampArguments) -> Result<(), Failures> {
         RampCommand::Bake { recipes } => run(recipes, &RAMPS),
         RampCommand::Watch(arguments) => ramp::watch::run(arguments),
         RampCommand::New(arguments) => ramp::new::run(arguments).map_err(Failures::from),
+        RampCommand::Fit(arguments) => ramp::fit::run(arguments).map_err(Failures::from),
         RampCommand::Import(arguments) => ramp::import::run(arguments).map_err(Failures::from),
         RampCommand::Sheet(arguments) => ramp::sheet::run(arguments),
         RampCommand::Show(arguments) => ramp::show::run(arguments).map_err(Failures::from),
@@ -75,6 +80,7 @@ pub fn run_sprite(arguments: &SpriteArguments) -> Result<(), Failures> {
     match &arguments.command {
         SpriteCommand::Bake { recipes } => run(recipes, &SPRITES),
         SpriteCommand::Check(arguments) => sprite::check::run(arguments),
+        SpriteCommand::Light(arguments) => sprite::light::run(arguments).map_err(Failures::from),
         SpriteCommand::Import(arguments) => sprite::import::run(arguments).map_err(Failures::from),
     }
 }

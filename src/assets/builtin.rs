@@ -50,6 +50,18 @@ pub const RAMPS: &[Builtin] = builtin!(
         "diffuse_sunset_backlight",
         "diffuse_soft_toon",
         "diffuse_ink",
+        "diffuse_traced_steam",
+        "diffuse_traced_ash",
+        "diffuse_traced_soot",
+        "diffuse_traced_dust",
+        "diffuse_traced_diesel",
+        "diffuse_traced_milk",
+        "backlight_traced_steam",
+        "backlight_traced_ash",
+        "backlight_traced_soot",
+        "backlight_traced_dust",
+        "backlight_traced_diesel",
+        "backlight_traced_milk",
         "scatter_mist",
         "scatter_soot",
         "specular_halo",
@@ -135,9 +147,15 @@ impl Builtin {
     /// # Errors
     /// As [`decode_png`] and [`Sprite::from_picture`].
     pub fn sprite(&self) -> Result<Sprite, Error> {
-        let path = path(self.name);
-        let recipe: SpriteRecipe = json::parse(&path, self.recipe)?;
-        self.decode(recipe.layout())
+        self.decode(self.sprite_recipe()?.layout())
+    }
+
+    /// How a sprite was made.
+    ///
+    /// # Errors
+    /// [`Error::Json`] for what is no sprite.
+    pub fn sprite_recipe(&self) -> Result<SpriteRecipe, Error> {
+        json::parse(&path(self.name), self.recipe)
     }
 
     /// Decodes the sprite's detail map.
@@ -145,8 +163,8 @@ impl Builtin {
     /// # Errors
     /// As [`Builtin::sprite`].
     pub fn detail(&self) -> Result<Option<Sprite>, Error> {
-        let recipe: SpriteRecipe = json::parse(&path(self.name), self.recipe)?;
-        find(DETAILS, self.name).map(|detail| detail.decode(recipe.layout())).transpose()
+        let layout = self.sprite_recipe()?.layout();
+        find(DETAILS, self.name).map(|detail| detail.decode(layout)).transpose()
     }
 
     fn decode(&self, layout: SpriteLayout) -> Result<Sprite, Error> {

@@ -1,13 +1,13 @@
 //! The pictures of a particle system in memory: its ramps, its sprite flipbook and what belongs to it.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::noise::NoiseVolume;
 use super::ramp::Ramp;
 use super::sprite::Sprite;
 use crate::error::FieldError;
 use crate::formula::diffuse_bake::zonal_coefficients;
-use crate::formula::ramp::sample_ramp;
+use crate::formula::ramp::sample_ramp_2d;
 use crate::settings::{RampFilter, Settings};
 
 /// The pictures in memory. The reference renderer works on these; the GPU renderer uploads them.
@@ -20,8 +20,10 @@ pub struct MaterialAssets {
     pub detail: Option<Sprite>,
     /// What volumetric sprites are made of.
     pub noise: NoiseVolume,
-    /// Light by dot(n, l)/2 + 1/2: facing away at 0, facing the light at 1. One row.
+    /// Light by dot(n, l)/2 + 1/2 (across: facing away at 0, facing the light at 1), and by amount times `boost` (up).
     pub diffuse_ramp: Ramp,
+    /// The same for light from behind, for [`Backlight::Ramp`](crate::settings::Backlight::Ramp).
+    pub backlight_ramp: Ramp,
     /// Light by amount, for [`SoftScatterMode::Ramp`](crate::settings::SoftScatterMode::Ramp). One row.
     pub soft_scatter_ramp: Ramp,
     /// Glow by distance² (across) and amount (up).
@@ -49,7 +51,7 @@ impl MaterialAssets {
             && self.ramps().iter().zip(other.ramps()).all(|(a, b)| a.shares(b))
     }
 
-    fn ramps(&self) -> [&Ramp; 6] {
+    fn ramps(&self) -> [&Ramp; 7] {
         [
             &self.diffuse_ramp,
             &self.soft_scatter_ramp,
@@ -57,10 +59,15 @@ impl MaterialAssets {
             &self.motif,
             &self.age_ramp,
             &self.coverage_ramp,
+            &self.backlight_ramp,
         ]
     }
 
     pub(crate) fn info(&self) -> MaterialInfo {
+        // As thick smoke has it.
+        let zonal = |ramp| {
+            zonal_coefficients(|cos| sample_ramp_2d(ramp, RampFilter::Bilinear, Vec2::new(cos * 0.5 + 0.5, 1.0)))
+        };
         MaterialInfo {
             sprite_size: self.sprite.size() as f32,
             frame_count: self.sprite.frame_count() as f32,
@@ -68,7 +75,8 @@ impl MaterialAssets {
                 frame_count: detail.frame_count(),
                 lod: (self.sprite.size() as f32 / detail.size() as f32).log2(),
             }),
-            zonal: zonal_coefficients(|cos| sample_ramp(&self.diffuse_ramp, RampFilter::Bilinear, cos * 0.5 + 0.5)),
+            zonal: zonal(&self.diffuse_ramp),
+            backlight_zonal: zonal(&self.backlight_ramp),
         }
     }
 }
@@ -81,6 +89,8 @@ pub(crate) struct MaterialInfo {
     pub detail: Option<DetailInfo>,
     /// Zonal harmonics of the diffuse ramp.
     pub zonal: [Vec3; 3],
+    /// Of the backlight ramp.
+    pub backlight_zonal: [Vec3; 3],
 }
 
 /// What it needs to know of a detail map.

@@ -9,6 +9,8 @@ pub mod finding;
 pub mod json;
 pub mod material;
 pub mod noise;
+pub mod path_trace;
 pub mod picture;
 pub mod ramp;
 pub mod sprite;
+mod threads;

@@ -45,6 +45,18 @@ pub fn diffuse_coordinate(normal: Vec3, to_light: Vec3) -> f32 {
     saturate(normal.dot(to_light) * 0.5 + 0.5)
 }
 
+/// The way to the viewer from a point of the smoke, view space.
+pub fn direction_to_viewer(position: Vec3, orthographic: f32) -> Vec3 {
+    if orthographic > 0.5 { Vec3::Z } else { -position / position.length_squared().max(1.0e-12).sqrt() }
+}
+
+/// How far a light shines from behind: 0 from the viewer's side, 1 straight against it. Cubed: smoke that scatters onwards glows
+/// near the light most of all.
+pub fn backlight_weight(to_light: Vec3, to_viewer: Vec3) -> f32 {
+    let against = saturate(0.5 - 0.5 * to_light.dot(to_viewer));
+    against * against * against
+}
+
 /// 0 in thin smoke, 1 in thick: smoothstep(scatter_amount, scatter_amount + scatter_smooth, A).
 /// (OTEE "Soft scattering")
 pub fn soft_scatter_weight(amount: f32, scatter_amount: f32, scatter_smooth: f32) -> f32 {

@@ -9,10 +9,10 @@ use super::view::ViewGeometry;
 use crate::assets::material::MaterialInfo;
 use crate::formula::depth::SKY_VIEW_DEPTH;
 use crate::formula::diffuse_bake::add_light;
-use crate::formula::lighting::sample_light;
+use crate::formula::lighting::{backlight_weight, direction_to_viewer, sample_light};
 use crate::formula::uniforms::{LightUniform, SystemUniform};
 use crate::frame::{Bounds, Particle};
-use crate::settings::{DepthSource, DiffuseMode, Order, Settings};
+use crate::settings::{Backlight, DepthSource, DiffuseMode, Order, Settings};
 
 /// What there is to know about a system before it is placed in a view.
 #[derive(Clone, Copy, Debug)]
@@ -114,10 +114,17 @@ pub(crate) fn system_in_view(view: &ViewGeometry, targets: UVec2, system: &Syste
         spherical_harmonics: [Vec4::ZERO; 9],
     };
     if settings.diffuse.mode == DiffuseMode::SphericalHarmonics {
+        let orthographic = if view.depth.orthographic { 1.0 } else { 0.0 };
+        let to_viewer = direction_to_viewer(uniform.centre, orthographic);
         for light in lights {
             let sample = sample_light(light, uniform.centre);
             let colour = light.colour * sample.attenuation;
-            add_light(&mut uniform.spherical_harmonics, &material.zonal, sample.direction, colour);
+            let against = match settings.diffuse.backlight {
+                Backlight::Same => 0.0,
+                Backlight::Ramp => backlight_weight(sample.direction, to_viewer),
+            };
+            let zonal = std::array::from_fn(|l| material.zonal[l].lerp(material.backlight_zonal[l], against));
+            add_light(&mut uniform.spherical_harmonics, &zonal, sample.direction, colour);
         }
     }
     // The front of the box may be hidden by what sprites show through.

@@ -26,8 +26,10 @@ settings! {
         /// True for a sprite file painted with green pointing down: the wrong way round, light from above lights it from below.
         y_down: bool = false, flag;
         "ramps and noise":
-        /// Light by dot(n, l): the colours of shade, terminator and lit side.
+        /// Light by dot(n, l) and, where it has rows, by amount times boost: the colours of shade, terminator and lit side.
         diffuse_ramp: String = "diffuse_soft".into(), picture(PictureRole::Ramp);
+        /// The same for light from behind: a rim that glows, a middle that stays dark.
+        backlight_ramp: String = "backlight_traced_ash".into(), picture(PictureRole::Ramp);
         /// Light by amount: the colours of thin and thick smoke, wherever lights are.
         soft_scatter_ramp: String = "scatter_mist".into(), picture(PictureRole::Ramp);
         /// Glow by distance² and amount: how a light behind shines through.
@@ -73,6 +75,7 @@ impl MaterialNames {
             ramp("motif", &self.motif, builtin::MOTIFS),
             ramp("age_ramp", &self.age_ramp, builtin::RAMPS),
             ramp("coverage_ramp", &self.coverage_ramp, builtin::RAMPS),
+            ramp("backlight_ramp", &self.backlight_ramp, builtin::RAMPS),
         );
         let noise = match builtin::find(builtin::NOISES, &self.noise) {
             Some(noise) => noise.noise(),
@@ -80,7 +83,7 @@ impl MaterialNames {
         };
         let noise = kept("noise", noise, &mut errors);
         match (sprite, ramps, noise) {
-            (Some((sprite, detail)), (Some(a), Some(b), Some(c), Some(d), Some(e), Some(f)), Some(noise)) => {
+            (Some((sprite, detail)), (Some(a), Some(b), Some(c), Some(d), Some(e), Some(f), Some(g)), Some(noise)) => {
                 Ok(MaterialAssets {
                     sprite,
                     detail,
@@ -91,6 +94,7 @@ impl MaterialNames {
                     motif: d,
                     age_ramp: e,
                     coverage_ramp: f,
+                    backlight_ramp: g,
                 })
             }
             _ => Err(errors),
@@ -109,6 +113,7 @@ impl MaterialNames {
                 "motif" => (&mut names.motif, &usual.motif),
                 "age_ramp" => (&mut names.age_ramp, &usual.age_ramp),
                 "coverage_ramp" => (&mut names.coverage_ramp, &usual.coverage_ramp),
+                "backlight_ramp" => (&mut names.backlight_ramp, &usual.backlight_ramp),
                 "noise" => (&mut names.noise, &usual.noise),
                 _ => {
                     (names.detail, names.columns, names.rows, names.y_down) = (String::new(), 1, 1, false);

@@ -15,13 +15,14 @@ impl MaterialNames {
     /// What is doubtful about pictures in the roles that they have: the field, and what is so.
     pub fn doubts(&self, loaded: &MaterialAssets) -> Vec<(&'static str, String)> {
         let ramps = [
-            ("diffuse_ramp", &self.diffuse_ramp, &loaded.diffuse_ramp),
             ("soft_scatter_ramp", &self.soft_scatter_ramp, &loaded.soft_scatter_ramp),
             ("age_ramp", &self.age_ramp, &loaded.age_ramp),
             ("coverage_ramp", &self.coverage_ramp, &loaded.coverage_ramp),
         ];
         let of_ramps = ramps.iter().map(|(field, name, ramp)| (*field, *name, of_ramp(ramp)));
         let others = [
+            ("diffuse_ramp", &self.diffuse_ramp, of_diffuse_ramp(&loaded.diffuse_ramp)),
+            ("backlight_ramp", &self.backlight_ramp, of_diffuse_ramp(&loaded.backlight_ramp)),
             ("specular_ramp", &self.specular_ramp, of_specular_ramp(&loaded.specular_ramp)),
             ("motif", &self.motif, of_motif(&loaded.motif)),
         ];
@@ -32,21 +33,44 @@ impl MaterialNames {
     }
 }
 
+/// What is wrong with a ramp whose rows are told apart by amount.
+fn of_diffuse_ramp(ramp: &Ramp) -> Option<String> {
+    let size = ramp.size();
+    let is_black = |x: u32| (0..size.y).all(|y| ramp.texel(UVec2::new(x, y)).max_element() < SAME);
+    let is_specular = size.y > 1 && is_black(size.x - 1) && !(0..size.x).all(is_black);
+    let specular =
+        || "black where it faces the light, as a specular ramp is; expected dot(n, l) across, amount up".into();
+    is_specular.then(specular).or_else(|| of_rows(ramp))
+}
+
 /// What is wrong with a ramp of one row.
 fn of_ramp(ramp: &Ramp) -> Option<String> {
+    let rows = ramp.size().y;
+    let differ = || format!("its {rows} rows differ, and only the bottom one is looked up; expected a ramp of one row");
+    of_rows(ramp).or_else(|| (!rows_are_equal(ramp)).then(differ))
+}
+
+fn rows_are_equal(ramp: &Ramp) -> bool {
+    is_everywhere(ramp, |x, _| UVec2::new(x, 0))
+}
+
+/// True if every texel is as another.
+fn is_everywhere(ramp: &Ramp, as_at: impl Fn(u32, u32) -> UVec2) -> bool {
     let size = ramp.size();
-    let all = |same: &dyn Fn(u32, u32) -> bool| (0..size.y).all(|y| (0..size.x).all(|x| same(x, y)));
-    let is_same = |a: UVec2, b: UVec2| ramp.texel(a).abs_diff_eq(ramp.texel(b), SAME);
-    if all(&|x, y| is_same(UVec2::new(x, y), UVec2::new(x, 0))) {
+    let mut texels = (0..size.y).flat_map(|y| (0..size.x).map(move |x| (x, y)));
+    texels.all(|(x, y)| ramp.texel(UVec2::new(x, y)).abs_diff_eq(ramp.texel(as_at(x, y)), SAME))
+}
+
+/// What is wrong with a ramp whose rows differ, and is not that they do.
+fn of_rows(ramp: &Ramp) -> Option<String> {
+    if rows_are_equal(ramp) {
         return None;
     }
     if shows_normals(ramp) {
         return Some("looks like the normals of a sprite; expected a ramp from left to right".into());
     }
-    if all(&|x, y| is_same(UVec2::new(x, y), UVec2::new(0, y))) {
-        return Some("painted from top to bottom; expected a ramp from left to right".into());
-    }
-    Some(format!("its {} rows differ, and only the bottom one is looked up; expected a ramp of one row", size.y))
+    is_everywhere(ramp, |_, y| UVec2::new(0, y))
+        .then(|| "painted from top to bottom; expected a ramp from left to right".into())
 }
 
 fn of_specular_ramp(ramp: &Ramp) -> Option<String> {
@@ -57,12 +81,8 @@ fn of_specular_ramp(ramp: &Ramp) -> Option<String> {
     if size.y == 1 {
         return Some("its one row is the same for every amount; expected distance² across and amount up".into());
     }
-    let differs = |of: &dyn Fn(u32, u32) -> UVec2| {
-        let mut texels = (0..size.y).flat_map(|y| (0..size.x).map(move |x| (x, y)));
-        texels.any(|(x, y)| !ramp.texel(UVec2::new(x, y)).abs_diff_eq(ramp.texel(of(x, y)), SAME))
-    };
     // One colour all over is no mistake.
-    (differs(&|x, _| UVec2::new(x, 0)) && !differs(&|_, y| UVec2::new(0, y)))
+    (!rows_are_equal(ramp) && is_everywhere(ramp, |_, y| UVec2::new(0, y)))
         .then(|| "the same at every distance; expected distance² across and amount up".into())
 }
 
@@ -117,7 +137,8 @@ mod tests {
         assert_eq!(doubts(|names| names.specular_ramp = "both.png".into()), []);
         one(|names| names.diffuse_ramp = "down.png".into(), "diffuse_ramp", "from top to bottom");
         one(|names| names.coverage_ramp = "both.png".into(), "coverage_ramp", "its 64 rows differ");
-        one(|names| names.diffuse_ramp = "specular_halo".into(), "diffuse_ramp", "its 64 rows differ");
+        one(|names| names.diffuse_ramp = "specular_halo".into(), "diffuse_ramp", "as a specular ramp is");
+        assert_eq!(doubts(|names| names.diffuse_ramp = "both.png".into()), []);
         one(|names| names.age_ramp = "normals.png".into(), "age_ramp", "normals of a sprite");
         one(|names| names.specular_ramp = "normals.png".into(), "specular_ramp", "normals of a sprite");
         let sheet = image::RgbaImage::from_fn(16, 16, |x, y| {

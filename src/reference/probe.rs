@@ -171,6 +171,7 @@ impl<'a> Smoke<'a> {
             return None;
         }
         let position = draw.view_position(pixel, -draw.system.centre.z);
+        let covered = coverage(amount, draw.system.boost);
         let light = |((light, glow), &index): ((_, &Option<(Vec2, Vec3)>), &usize)| {
             let sample = sample_light(light, position);
             LightProbe {
@@ -178,7 +179,7 @@ impl<'a> Smoke<'a> {
                 cosine: normal.dot(sample.direction),
                 coordinate: diffuse_coordinate(normal, sample.direction),
                 attenuation: sample.attenuation,
-                diffuse: draw.diffuse_from_light(light, normal, position) * draw.system.diffuse_intensity,
+                diffuse: draw.diffuse_from_light(light, normal, covered, position) * draw.system.diffuse_intensity,
                 glow: glow.map(|(coordinate, specular)| GlowProbe { coordinate, specular }),
             }
         };
@@ -187,11 +188,11 @@ impl<'a> Smoke<'a> {
         Some(SystemProbe {
             system: index,
             amount,
-            coverage_coordinate: coverage(amount, system.boost),
+            coverage_coordinate: covered,
             coverage: smoke.coverage(amount),
             normal,
             lights: draw.lights.iter().zip(&glows).zip(&self.lights).map(light).collect(),
-            diffuse: smoke.diffuse(normal, position),
+            diffuse: smoke.diffuse(normal, amount, position),
             soft_scatter_weight: is_curve
                 .then(|| soft_scatter_weight(amount, system.scatter_amount, system.scatter_smooth)),
             soft_scatter: draw.soft_scatter(amount),

@@ -59,6 +59,7 @@ impl Layouts {
                     wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
                     texture(filterable, D2),
                     texture(wgpu::TextureSampleType::Uint, D2),
+                    texture(filterable, D2),
                 ],
             ),
             accumulate: layout("haze accumulate inputs", &[texture(unfilterable, D2)]),

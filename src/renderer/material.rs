@@ -69,6 +69,7 @@ pub(crate) fn create_material(
     let motif = ramp("haze painted_motif", &assets.motif);
     let age_ramp = ramp("haze age_ramp", &assets.age_ramp);
     let coverage_ramp = ramp("haze coverage_ramp", &assets.coverage_ramp);
+    let backlight_ramp = ramp("haze backlight_ramp", &assets.backlight_ramp);
     let texture = |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
     let sampler =
         |binding, sampler| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::Sampler(sampler) };
@@ -88,6 +89,7 @@ pub(crate) fn create_material(
             sampler(9, &shared.repeat),
             texture(10, &coverage_ramp),
             texture(11, &filled),
+            texture(12, &backlight_ramp),
         ],
     });
     Ok(Material { context, bind_group, info: assets.info(), bytes })
@@ -113,6 +115,7 @@ fn validate_sizes(limits: &wgpu::Limits, assets: &MaterialAssets) -> Result<(), 
         ("motif", &assets.motif),
         ("age_ramp", &assets.age_ramp),
         ("coverage_ramp", &assets.coverage_ramp),
+        ("backlight_ramp", &assets.backlight_ramp),
     ];
     for (name, ramp) in ramps {
         check(name, ramp.size().max_element(), flat)?;

@@ -116,6 +116,7 @@ pub(crate) fn plan<'a>(situation: &Situation<'a>, settings: &Settings, back_face
         age_colour: settings.sprite.age_colour > 0.0,
         shows_through: settings.fade_through() > 0.0,
         soft_scatter_mode: settings.soft_scatter.mode,
+        backlight: settings.diffuse.backlight,
         ramp_filter: settings.ramp_filter,
         reversed: situation.reversed,
     };
@@ -164,6 +165,7 @@ fn deferred<'a>(
         sums_weights: accumulate.sums_weights(),
         diffuse_mode: settings.diffuse.mode,
         soft_scatter_mode: settings.soft_scatter.mode,
+        backlight: settings.diffuse.backlight,
         ramp_filter,
         exact_filtering,
     };
@@ -181,7 +183,12 @@ fn deferred<'a>(
         reads_linear,
         depth_downsample: (!host_depth).then(|| downsample(false)),
         depth_copy: (depth_test == DepthTest::Copy).then(|| downsample(true)),
-        diffuse_bake: bakes.then_some(DiffuseBakeKey { mode: settings.diffuse.mode, ramp_filter, exact_filtering }),
+        diffuse_bake: bakes.then_some(DiffuseBakeKey {
+            mode: settings.diffuse.mode,
+            backlight: settings.diffuse.backlight,
+            ramp_filter,
+            exact_filtering,
+        }),
         accumulate: accumulate_key,
         tiled: situation
             .tiles

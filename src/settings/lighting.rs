@@ -23,6 +23,17 @@ choice! {
 }
 
 choice! {
+    /// What a light that shines from behind the smoke is looked up in.
+    Backlight {
+        /// In the diffuse ramp, as from any side.
+        #[default]
+        Same = "same",
+        /// In the backlight ramp; between the viewer's side and straight against it in a mix of both.
+        Ramp = "ramp",
+    }
+}
+
+choice! {
     /// How soft scatter depends on the amount.
     SoftScatterMode {
         /// From `scatter_colour` to `ambient_colour` by a smoothstep.
@@ -56,11 +67,13 @@ choice! {
 }
 
 settings! {
-    /// Diffuse light: `ramp(dot(n, l)/2 + 1/2)` per light.
+    /// Diffuse light: `ramp(dot(n, l)/2 + 1/2, amount · boost)` per light.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Diffuse {
         /// How the light of a normal is found: exactly, cheaply for many lights, or by paint.
         mode: DiffuseMode = DiffuseMode::default(), choice;
+        /// One ramp for light from all sides, or another for light from behind: smoke that glows against the sun and is grey beside it.
+        backlight: Backlight = Backlight::default(), choice;
         /// Multiplies the sum over all lights: brighter smoke in the same scene.
         intensity: f32 = 1.0, number(0.0..=100.0, "");
     }

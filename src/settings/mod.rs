@@ -23,7 +23,9 @@ pub use budget::{Budget, ScaleBudget};
 pub use choice::Choice;
 pub(crate) use choice::choice;
 pub use fields::{FieldVisitor, Fields, Headed, PictureRole, validate};
-pub use lighting::{CoverageMode, Diffuse, DiffuseMode, RampFilter, SoftScatter, SoftScatterMode, SpecularScatter};
+pub use lighting::{
+    Backlight, CoverageMode, Diffuse, DiffuseMode, RampFilter, SoftScatter, SoftScatterMode, SpecularScatter,
+};
 pub use set::set_field;
 pub use soft_fade::{FadeCurve, SoftFade};
 pub(crate) use table::settings;

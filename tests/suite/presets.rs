@@ -217,6 +217,7 @@ fn every_setting_agrees() {
     let weighted = |s: &mut Settings| {
         (s.accumulate.order, s.accumulate.encoding) = (Order::Weighted, NormalEncoding::Biased);
         (s.coverage, s.soft_scatter.mode) = (CoverageMode::Ramp, SoftScatterMode::Ramp);
+        s.diffuse.backlight = Backlight::Ramp;
     };
     add("lit target", "with weights and ramps", lit(&weighted));
     let rgba8 = |s: &mut Settings| {

@@ -173,6 +173,7 @@ fn setting_enums_agree() {
     assert_choices!(transfer, "NORMAL_DECODE", settings::NormalDecode);
     assert_choices!(transfer, "DIFFUSE_MODE", settings::DiffuseMode);
     assert_choices!(transfer, "SOFT_SCATTER_MODE", settings::SoftScatterMode);
+    assert_choices!(transfer, "BACKLIGHT", settings::Backlight);
     assert_choices!(transfer, "COVERAGE_MODE", settings::CoverageMode);
     assert_choices!(transfer, "RAMP_FILTER", settings::RampFilter);
     assert_choices!(transfer, "SHADE_TREE", settings::ShadeTree);

@@ -93,11 +93,13 @@ pub fn material() -> MaterialAssets {
     let line =
         |from: Vec3, to: Vec3| Ramp::from_linear(UVec2::new(16, 1), (0..16).map(|i| from.lerp(to, i as f32 / 15.0)));
     let glow = |i: u32| Vec3::splat((1.0 - (i % 16) as f32 / 15.0) * (i / 16) as f32 / 7.0);
+    let rim = |i: u32| vec3(0.8, 0.5, 0.3) * (1.2 - (i % 16) as f32 / 15.0) * (1.0 - (i / 16) as f32 / 4.0);
     MaterialAssets {
         sprite: ball_sprite(false),
         detail: Some(ball_detail()),
         noise: recipe_noise(),
         diffuse_ramp: line(Vec3::splat(0.05), Vec3::ONE),
+        backlight_ramp: Ramp::from_linear(UVec2::new(16, 4), (0..64).map(rim)),
         soft_scatter_ramp: line(Vec3::splat(0.3), Vec3::ZERO),
         specular_ramp: Ramp::from_linear(UVec2::new(16, 8), (0..128).map(glow)),
         motif: line(Vec3::ZERO, Vec3::ONE),

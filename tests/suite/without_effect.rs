@@ -120,6 +120,7 @@ const SITUATIONS: &[fn(&mut PresetSystem, &mut Light)] = &[
     |s, _| (s.settings.soft_scatter.intensity, s.settings.specular_scatter.intensity) = (0.0, 0.0),
     |s, _| (s.settings.coverage, s.settings.ramp_filter) = (CoverageMode::Ramp, RampFilter::Nearest),
     |s, _| (s.settings.diffuse.mode, s.settings.specular_scatter.intensity) = (DiffuseMode::SphericalHarmonics, 0.0),
+    |s, _| (s.settings.diffuse.backlight, s.material.backlight_ramp) = (Backlight::Ramp, "diffuse_ember".into()),
     |s, _| (s.emitter.turbulence, s.emitter.extent, s.emitter.buoyancy) = (0.0, Vec3::ZERO, 0.0),
     |s, _| (s.material.sprite, s.material.detail) = ("own.png".into(), "own.png".into()),
     |s, _| {
@@ -250,7 +251,7 @@ fn what_has_no_effect_has_none_and_what_is_not_told_so_has_one() {
     assert!(unfelt.is_empty(), "nowhere any effect: {unfelt:?}");
     assert!(untold.keys().all(|path| NOT_ALWAYS.contains(&path.as_str())), "{untold:?}");
     // All but the one that is about the demo scene.
-    assert_eq!(reasons.len(), 41, "{reasons:#?}");
+    assert_eq!(reasons.len(), 42, "{reasons:#?}");
 }
 
 #[cfg(feature = "app")]

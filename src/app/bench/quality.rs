@@ -8,8 +8,8 @@ use haze::demo::shot::Shot;
 use haze::demo::stage::{Stage, StageContext};
 use haze::headless::Headless;
 use haze::picture::Picture;
-use image::RgbImage;
-use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, FlipPool, flip};
+
+use crate::app::flip::flip_of;
 
 /// How far a picture is from another; none of what cannot be told.
 #[derive(Clone, Copy, Debug, Default)]
@@ -32,13 +32,6 @@ impl Quality {
         let flip = flip_of(&develop(&second, from.1), &develop(&first, of.1));
         Ok(Self { psnr_db: finite(apart.psnr), flip: Some(flip), edge_psnr_db: apart.edge_psnr.and_then(finite) })
     }
-}
-
-/// Mean FLIP, 0 to 1. (Andersson et al., "FLIP: A difference evaluator for alternating images", 2020)
-fn flip_of(reference: &RgbImage, picture: &RgbImage) -> f64 {
-    let [reference, picture] =
-        [reference, picture].map(|image| FlipImageRgb8::with_data(image.width(), image.height(), image.as_raw()));
-    f64::from(FlipPool::from_image(&flip(reference, picture, DEFAULT_PIXELS_PER_DEGREE)).mean())
 }
 
 /// Where both renderers are asked for the same.
@@ -69,17 +62,4 @@ pub fn is_right(gpu: &Headless, context: &StageContext, shot: &Shot) -> Result<R
     let apart = Apart::of(&drawn, &shot.render_on_cpu()?, exposure, None).psnr;
     let reason = || format!("its picture is {apart:.0} dB from what it should be, less than {AGREEMENT} dB");
     Ok(if apart < AGREEMENT { Err(reason()) } else { Ok(()) })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn flip_is_0_where_nothing_differs_and_grows_with_what_does() {
-        let grey = |value: u8| RgbImage::from_pixel(64, 64, image::Rgb([value; 3]));
-        assert!(flip_of(&grey(100), &grey(100)) < 1e-6);
-        let (near, far) = (flip_of(&grey(100), &grey(110)), flip_of(&grey(100), &grey(200)));
-        assert!(0.0 < near && near < far && far <= 1.0, "{near} {far}");
-    }
 }

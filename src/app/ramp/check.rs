@@ -7,11 +7,14 @@ use clap::Args;
 use haze::Error;
 use haze::assets::finding::Finding;
 use haze::picture::colour_notes;
-use haze::ramp::Role;
 use haze::ramp::check::check;
+use haze::ramp::response::{DiffuseRamps, Puff};
+use haze::ramp::{Ramp, Role};
 
+use super::fit::tell_response;
 use super::{picture_of, refuse_gradient};
 use crate::app::findings::tell;
+use crate::app::medium::{PathTraceArguments, named, names, sprite_recipe, usual_sprite};
 use crate::app::options::choices;
 use crate::app::output::{Failures, has_extension};
 
@@ -23,10 +26,37 @@ pub struct Arguments {
     /// What they are used for; else what their names begin with says it.
     #[arg(long = "as", value_name = "ROLE", value_parser = choices::<Role>())]
     role: Option<Role>,
+    /// Say, too, how far a diffuse ramp is from smoke of this, path-traced, light by light.
+    #[arg(long, value_name = "MEDIUM", value_parser = names())]
+    truth: Option<String>,
+    /// With --truth: the ramp for light from behind that goes with it.
+    #[arg(long, value_name = "RAMP", requires = "truth")]
+    backlight: Option<PathBuf>,
 }
 
-pub fn run(Arguments { ramps, role }: &Arguments) -> Result<(), Failures> {
+pub fn run(Arguments { ramps, role, truth, backlight }: &Arguments) -> Result<(), Failures> {
+    if let Some(medium) = truth {
+        tell_truth(ramps, medium, backlight.as_deref())?;
+    }
     tell(ramps, |path| findings(path, *role))
+}
+
+/// How far ramps are from smoke as it is.
+fn tell_truth(ramps: &[PathBuf], medium: &str, backlight: Option<&Path>) -> Result<(), Error> {
+    let load = |path: &Path| Ok::<_, Error>(Ramp::from_picture(&picture_of(path)?.0));
+    let (ramps, backlight) = (
+        ramps.iter().map(|path| Ok((path, load(path)?))).collect::<Result<Vec<_>, Error>>()?,
+        backlight.map(load).transpose()?,
+    );
+    let (recipe, quality) = (sprite_recipe(&usual_sprite())?, PathTraceArguments::default());
+    let path_trace = quality.path_trace();
+    let puff = quality.watched(medium, |progress| Puff::trace(&recipe, &named(medium), &path_trace, progress))?;
+    for (path, diffuse) in &ramps {
+        let ramps = DiffuseRamps { diffuse, backlight: backlight.as_ref() };
+        let name = format!("{} beside {medium}", path.display());
+        tell_response(&name, &puff, ramps, &puff.response(ramps))?;
+    }
+    Ok(())
 }
 
 fn findings(path: &Path, role: Option<Role>) -> Result<Vec<Finding>, Error> {

@@ -1,6 +1,7 @@
 //! `haze ramp`: what an artist does with a ramp besides baking it.
 
 pub mod check;
+pub mod fit;
 pub mod import;
 pub mod new;
 pub mod sheet;

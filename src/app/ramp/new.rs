@@ -58,13 +58,13 @@ const TEXT: f32 = 16.0;
 
 fn write_blank(output: &Path, role: Role) -> Result<(), Error> {
     let across = match role {
-        Role::Diffuse => ["away from the light", "facing it"],
+        Role::Diffuse | Role::Backlight => ["away from the light", "facing it"],
         Role::Scatter => ["thin", "thick"],
         Role::Specular => ["at the light", "far from it: black"],
         Role::Coverage => ["thin; black hides nothing", "thick; white hides all"],
         Role::Age => ["born", "dies"],
     };
-    let has_two_axes = role == Role::Specular;
+    let has_two_axes = matches!(role, Role::Specular | Role::Backlight);
     let size = UVec2::new(512, if has_two_axes { 256 } else { 64 });
     // The first template of its role shows through.
     let Some(template) = TEMPLATES.iter().find(|template| template.role == role) else { return Ok(()) };
@@ -80,7 +80,8 @@ fn write_blank(output: &Path, role: Role) -> Result<(), Error> {
     write(size.x as f32 - 8.0 - width(TEXT, &right), middle, &right);
     if has_two_axes {
         write(180.0, 4.0, "top: thick smoke");
-        write(180.0, size.y as f32 - TEXT - 6.0, "bottom: no smoke: black");
+        let bottom = if role == Role::Specular { "bottom: no smoke: black" } else { "bottom: thin smoke" };
+        write(180.0, size.y as f32 - TEXT - 6.0, bottom);
     }
     write_png(output, &picture.into(), Effort::Small)?;
     say!("{}: a {} ramp to paint over, {}x{}", output.display(), role.name(), size.x, size.y)

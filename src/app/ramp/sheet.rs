@@ -8,7 +8,7 @@ use clap::Args;
 use glam::UVec2;
 use haze::demo::shot::Shot;
 use haze::ramp::{Ramp, Role};
-use haze::settings::{CoverageMode, DiffuseMode, Path as SmokePath, SoftScatterMode};
+use haze::settings::{Backlight, CoverageMode, DiffuseMode, Path as SmokePath, SoftScatterMode};
 use haze::{Error, FieldError, MaterialAssets, builtin};
 
 use super::strip::strip;
@@ -141,13 +141,25 @@ impl Cell {
 fn paint(shot: &mut Shot, role: Role, ramp: &Ramp) {
     for (system, material) in shot.preset.systems.iter_mut().zip(&mut shot.materials) {
         let settings = &mut system.settings;
-        let MaterialAssets { diffuse_ramp, soft_scatter_ramp, specular_ramp, coverage_ramp, age_ramp, .. } = material;
+        let MaterialAssets {
+            diffuse_ramp,
+            backlight_ramp,
+            soft_scatter_ramp,
+            specular_ramp,
+            coverage_ramp,
+            age_ramp,
+            ..
+        } = material;
         let place = match role {
             Role::Diffuse => {
                 if settings.diffuse.mode == DiffuseMode::PaintedMotif {
                     settings.diffuse.mode = DiffuseMode::Ramp;
                 }
                 diffuse_ramp
+            }
+            Role::Backlight => {
+                settings.diffuse.backlight = Backlight::Ramp;
+                backlight_ramp
             }
             Role::Scatter => {
                 settings.soft_scatter.mode = SoftScatterMode::Ramp;

@@ -5,15 +5,15 @@ mod colour_space;
 mod file;
 mod png;
 mod profile;
-mod threads;
 
 pub use colour_space::{colour_notes, decode_colour_png, read_colour_png};
 pub use file::{FileIdentity, check_file, write_file};
 pub(crate) use png::is_png;
 pub use png::{Effort, MAX_BYTES, MAX_SIDE, decode_png, read_png, write_png};
-pub(crate) use threads::{on_all_processors, threads};
 
 use glam::{IVec2, UVec2};
+
+use crate::assets::threads::{on_all_processors, threads};
 
 /// A rectangle of texels, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,8 +8,8 @@ use image::{DynamicImage, ImageDecoder as _, ImageError, Limits};
 
 use super::chunks::colour_tags;
 use super::file::write_file;
-use super::on_all_processors;
 use crate::assets::file;
+use crate::assets::threads::on_all_processors;
 use crate::error::Error;
 
 /// Largest side of a picture that is read, pixels.

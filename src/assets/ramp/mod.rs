@@ -9,6 +9,7 @@ mod ggr;
 pub(crate) mod gradient;
 pub mod import;
 pub mod motif;
+pub mod response;
 mod role;
 pub mod template;
 mod text;

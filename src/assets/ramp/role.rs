@@ -8,6 +8,8 @@ choice! {
         /// Light of a surface, by how far it faces the light.
         #[default]
         Diffuse = "diffuse",
+        /// The same for light from behind.
+        Backlight = "backlight",
         /// Soft scatter, by amount.
         Scatter = "scatter",
         /// Glow of a light behind the smoke, by distance and amount.

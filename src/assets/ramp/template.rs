@@ -106,6 +106,15 @@ pub const TEMPLATES: &[Template] = &[
         Curve::Monotone,
         &[(0.0, 0x05070d), (0.4, 0x1a2333), (0.7, 0x5f7590), (1.0, 0xdfe9f5)],
     ),
+    Template {
+        name: "burning_rim",
+        about: "thin edges burn against the light, the middle stays dark",
+        role: Role::Backlight,
+        curve: Curve::Monotone,
+        stops: &[(0.0, 0xc8b09a), (0.4, 0xfff4e2), (0.7, 0xe0c4a4), (1.0, 0x8a7a70)],
+        times: &[(0.0, 0xffffff), (0.3, 0xd09a68), (0.65, 0x4a3228), (1.0, 0x14100f)],
+        place: "",
+    },
     strip(
         Role::Scatter,
         "fog",

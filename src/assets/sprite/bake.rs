@@ -19,7 +19,8 @@ use image::{Rgba, RgbaImage};
 
 use super::Sprite;
 use super::detail::{detail, detail_size};
-use crate::assets::picture::on_all_processors;
+use crate::assets::path_trace::Volume;
+use crate::assets::threads::on_all_processors;
 use crate::error::FieldError;
 use crate::settings::validate;
 
@@ -73,6 +74,12 @@ impl SpriteRecipe {
         let mut frame = self.baker()(frame);
         self.shrink(&mut frame);
         frame
+    }
+
+    /// The densities that a moment of the loop is marched through.
+    pub fn volume(&self, frame: f32) -> Volume {
+        let time = frame / self.frame_count() as f32;
+        if self.version > 1 { Slices::new(self).volume(time) } else { cube::volume(self, time) }
     }
 
     /// Bakes moments before they are made smaller, with what they share worked out once.

@@ -9,7 +9,7 @@ use super::condition::{
 use super::row::{Row, row};
 use crate::assets::builtin;
 use crate::preset::preset::PresetSystem;
-use crate::settings::{CoverageMode, Order, Path, SoftScatterMode, SpriteAnimation, Technique};
+use crate::settings::{Backlight, CoverageMode, Order, Path, SoftScatterMode, SpriteAnimation, Technique};
 
 /// The first row that holds is the reason.
 pub const OF_SYSTEMS: &[Row<PresetSystem>] = &[
@@ -168,12 +168,18 @@ pub const OF_SYSTEMS: &[Row<PresetSystem>] = &[
     row(
         "only at an intensity of diffuse light above 0",
         |s, _| s.settings.diffuse.intensity <= 0.0,
-        &["settings.diffuse.mode", "material.diffuse_ramp", "material.motif"],
+        &[
+            "settings.diffuse.mode",
+            "settings.diffuse.backlight",
+            "material.diffuse_ramp",
+            "material.backlight_ramp",
+            "material.motif",
+        ],
     ),
     row(
         "diffuse.mode painted_motif takes its light from the motif",
         |s, _| is_painted(s) && !s.settings.is_forward(),
-        &["material.diffuse_ramp"],
+        &["settings.diffuse.backlight", "material.diffuse_ramp", "material.backlight_ramp"],
     ),
     row("only with diffuse.mode painted_motif", |s, _| !is_painted(s), &["material.motif"]),
     row(
@@ -204,6 +210,11 @@ pub const OF_SYSTEMS: &[Row<PresetSystem>] = &[
         &["material.soft_scatter_ramp"],
     ),
     row("only with coverage ramp", |s, _| s.settings.coverage != CoverageMode::Ramp, &["material.coverage_ramp"]),
+    row(
+        "only with diffuse.backlight ramp",
+        |s, _| s.settings.diffuse.backlight != Backlight::Ramp,
+        &["material.backlight_ramp"],
+    ),
     row("no ramp is looked up", looks_up_no_ramp, &["settings.ramp_filter"]),
     row(
         "only at an intensity of specular scatter above 0",

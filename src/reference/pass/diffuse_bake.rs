@@ -1,17 +1,19 @@
 //! `shaders/diffuse_bake.wgsl` and `shaders/lib/diffuse.wgsl`.
 
-use glam::{UVec2, Vec3};
+use glam::{UVec2, Vec2, Vec3};
 use half::f16;
 
 use crate::assets::picture::Picture;
 use crate::assets::ramp::Ramp;
 use crate::formula::colour::bounded_light;
 use crate::formula::diffuse_bake::{baked_size_and_layers, cube_direction, motif_normal};
-use crate::formula::lighting::{diffuse_coordinate, sample_light, soft_scatter_weight};
-use crate::formula::ramp::sample_ramp;
+use crate::formula::lighting::{
+    backlight_weight, diffuse_coordinate, direction_to_viewer, sample_light, soft_scatter_weight,
+};
+use crate::formula::ramp::{sample_ramp, sample_ramp_2d};
 use crate::formula::uniforms::LightUniform;
 use crate::reference::draw::Draw;
-use crate::settings::{DiffuseMode, SoftScatterMode};
+use crate::settings::{Backlight, DiffuseMode, SoftScatterMode};
 
 impl Draw<'_> {
     /// A ramp of one row, as the settings have it looked up.
@@ -19,13 +21,20 @@ impl Draw<'_> {
         sample_ramp(ramp, self.settings.ramp_filter, u)
     }
 
-    pub fn diffuse_from_lights(&self, normal: Vec3, position: Vec3) -> Vec3 {
-        self.lights.iter().map(|light| self.diffuse_from_light(light, normal, position)).sum()
+    pub fn diffuse_from_lights(&self, normal: Vec3, covered: f32, position: Vec3) -> Vec3 {
+        self.lights.iter().map(|light| self.diffuse_from_light(light, normal, covered, position)).sum()
     }
 
-    pub fn diffuse_from_light(&self, light: &LightUniform, normal: Vec3, position: Vec3) -> Vec3 {
+    pub fn diffuse_from_light(&self, light: &LightUniform, normal: Vec3, covered: f32, position: Vec3) -> Vec3 {
         let sample = sample_light(light, position);
-        let falloff = self.sample_ramp(&self.material.diffuse_ramp, diffuse_coordinate(normal, sample.direction));
+        let at = Vec2::new(diffuse_coordinate(normal, sample.direction), covered);
+        let look_up = |ramp| sample_ramp_2d(ramp, self.settings.ramp_filter, at);
+        let mut falloff = look_up(&self.material.diffuse_ramp);
+        if self.settings.diffuse.backlight == Backlight::Ramp {
+            let to_viewer = direction_to_viewer(position, self.view.orthographic);
+            let weight = backlight_weight(sample.direction, to_viewer);
+            falloff = falloff.lerp(look_up(&self.material.backlight_ramp), weight);
+        }
         falloff * light.colour * sample.attenuation
     }
 
@@ -53,7 +62,7 @@ impl Draw<'_> {
                     DiffuseMode::Motif => motif_normal(place),
                     _ => cube_direction(face, place).normalize(),
                 };
-                let light = bounded_light(self.diffuse_from_lights(normal, self.system.centre));
+                let light = bounded_light(self.diffuse_from_lights(normal, 1.0, self.system.centre));
                 *texel = Vec3::from(light.to_array().map(|channel| f16::from_f32(channel).to_f32()));
             });
             baked

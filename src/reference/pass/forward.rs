@@ -24,10 +24,11 @@ impl Draw<'_> {
                 }
                 let normal = fragment.xyz() / fragment.xyz().length_squared().max(1.0e-12).sqrt();
                 let position = self.view_position(at.as_vec2() + 0.5, sprite.view_depth.max(self.view.near));
-                let diffuse = self.diffuse_from_lights(normal, position) * system.diffuse_intensity;
+                let covered = coverage(amount, system.boost);
+                let diffuse = self.diffuse_from_lights(normal, covered, position) * system.diffuse_intensity;
                 let colour = self.sample_ramp(&self.material.age_ramp, sprite.age);
                 let light = (diffuse + self.soft_scatter(amount)) * Vec3::ONE.lerp(colour, system.age_colour);
-                let source = forward_fragment(mode, bounded_light(light), coverage(amount, system.boost));
+                let source = forward_fragment(mode, bounded_light(light), covered);
                 *texel = forward_blend(mode, source, *texel);
             });
         });

@@ -14,10 +14,10 @@ use crate::reference::blend_unit::premultiplied_over;
 use crate::settings::{CoverageMode, DiffuseMode, ShadeTree};
 
 impl Accumulated<'_> {
-    pub fn diffuse(&self, normal: Vec3, position: Vec3) -> Vec3 {
+    pub fn diffuse(&self, normal: Vec3, amount: f32, position: Vec3) -> Vec3 {
         let draw = self.draw;
         let light = match draw.settings.diffuse.mode {
-            DiffuseMode::Ramp => draw.diffuse_from_lights(normal, position),
+            DiffuseMode::Ramp => draw.diffuse_from_lights(normal, coverage(amount, draw.system.boost), position),
             DiffuseMode::Cubemap => {
                 let cube = cube_coordinate(normal);
                 sample_baked(&self.baked[cube.face as usize], cube.position)
@@ -89,7 +89,7 @@ impl Accumulated<'_> {
         }
         let mut light = Vec3::ZERO;
         if shade_tree != ShadeTree::SoftScatter {
-            light += self.diffuse(normal, self.draw.view_position(pixel, -system.centre.z));
+            light += self.diffuse(normal, amount, self.draw.view_position(pixel, -system.centre.z));
         }
         if shade_tree != ShadeTree::Diffuse {
             light += self.draw.soft_scatter(amount);

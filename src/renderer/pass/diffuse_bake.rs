@@ -11,13 +11,14 @@ use crate::renderer::gpu::pipeline::{PipelineParts, color_target, switch, varian
 use crate::renderer::gpu::record::{begin_pass, color_attachment};
 use crate::renderer::gpu::timing::Timing;
 use crate::renderer::targets::BAKED_DIFFUSE_FORMAT;
-use crate::settings::{DiffuseMode, RampFilter};
+use crate::settings::{Backlight, DiffuseMode, RampFilter};
 
 /// What makes one baking pipeline differ from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct DiffuseBakeKey {
     /// One that bakes.
     pub mode: DiffuseMode,
+    pub backlight: Backlight,
     pub ramp_filter: RampFilter,
     pub exact_filtering: bool,
 }
@@ -34,6 +35,7 @@ pub(crate) fn describe(key: DiffuseBakeKey) -> PipelineParts {
         constants: vec![
             switch("MOTIF", key.mode == DiffuseMode::Motif),
             ("BAKE_SIZE", f64::from(side)),
+            variant!("BACKLIGHT", key.backlight),
             variant!("RAMP_FILTER", key.ramp_filter),
             switch("EXACT_FILTERING", key.exact_filtering),
         ],

@@ -9,7 +9,7 @@ use crate::renderer::gpu::host_pass::HostPass;
 use crate::renderer::gpu::pipeline::{
     ADDITIVE, MULTIPLY, PREMULTIPLIED_OVER, PipelineParts, STRIP, in_front, read_only_depth, switch, variant,
 };
-use crate::settings::{BlendMode, RampFilter, SoftScatterMode};
+use crate::settings::{Backlight, BlendMode, RampFilter, SoftScatterMode};
 
 /// What makes one forward pipeline differ from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -21,6 +21,7 @@ pub(crate) struct ForwardKey {
     /// Sprites are seen behind the scene: nothing tests depth.
     pub shows_through: bool,
     pub soft_scatter_mode: SoftScatterMode,
+    pub backlight: Backlight,
     pub ramp_filter: RampFilter,
     pub reversed: bool,
 }
@@ -44,6 +45,7 @@ pub(crate) fn describe(key: ForwardKey) -> PipelineParts {
             switch("AGE_COLOUR", key.age_colour),
             switch("DEPTH_TESTED", key.host.depth_format.is_some() && !key.shows_through),
             variant!("SOFT_SCATTER_MODE", key.soft_scatter_mode),
+            variant!("BACKLIGHT", key.backlight),
             variant!("RAMP_FILTER", key.ramp_filter),
             switch("GAMMA_TARGET", key.host.gamma_target),
         ]),

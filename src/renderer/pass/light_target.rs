@@ -10,7 +10,7 @@ use crate::renderer::gpu::pipeline::{Constant, PipelineParts, color_target, swit
 use crate::renderer::gpu::record::{begin_pass, color_attachment, set_part};
 use crate::renderer::gpu::timing::Timing;
 use crate::renderer::targets::LIT_FORMAT;
-use crate::settings::{DiffuseMode, NormalDecode, NormalEncoding, RampFilter, SoftScatterMode};
+use crate::settings::{Backlight, DiffuseMode, NormalDecode, NormalEncoding, RampFilter, SoftScatterMode};
 
 /// What makes light on smoke differ, here and in transfer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -20,6 +20,7 @@ pub(crate) struct LightingKey {
     pub sums_weights: bool,
     pub diffuse_mode: DiffuseMode,
     pub soft_scatter_mode: SoftScatterMode,
+    pub backlight: Backlight,
     pub ramp_filter: RampFilter,
     pub exact_filtering: bool,
 }
@@ -33,6 +34,7 @@ impl LightingKey {
             variant!("NORMAL_ENCODING", self.encoding),
             variant!("NORMAL_DECODE", self.decode),
             switch("WEIGHT_SUM", self.sums_weights),
+            variant!("BACKLIGHT", self.backlight),
             variant!("RAMP_FILTER", self.ramp_filter),
             switch("EXACT_FILTERING", self.exact_filtering),
         ];

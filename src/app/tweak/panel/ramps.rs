@@ -56,6 +56,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
     }
     for (field, title, name) in [
         ("diffuse_ramp", "Diffuse, by normal and light", &system.material.diffuse_ramp),
+        ("backlight_ramp", "The same, light from behind", &system.material.backlight_ramp),
         ("soft_scatter_ramp", "Soft scatter, by amount", &system.material.soft_scatter_ramp),
         ("specular_ramp", "Specular, by distance² and amount", &system.material.specular_ramp),
         ("coverage_ramp", "Coverage, by amount times boost", &system.material.coverage_ramp),
@@ -74,12 +75,13 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
         let one = |at: Option<f32>| at.map(|at| (at, Color32::WHITE)).into_iter().collect();
         let ink = ui.visuals().text_color();
         let (picture, marks, mut bins): (_, Vec<Mark>, Vec<Bins>) = match field {
-            "diffuse_ramp" => {
+            "diffuse_ramp" | "backlight_ramp" => {
                 let looking = probe.iter().flat_map(|probe| &probe.lights);
                 let marks = looking.map(|light| (light.coordinate, of_light(light.light))).collect();
                 lights = survey.map_or_else(Vec::new, |survey| survey.by_light(index));
                 let bins = lights.iter().map(|histogram| (of_light(histogram.light), histogram.bins.clone()));
-                (&material.diffuse_ramp, marks, bins.collect())
+                let ramp = if field == "diffuse_ramp" { &material.diffuse_ramp } else { &material.backlight_ramp };
+                (ramp, marks, bins.collect())
             }
             "soft_scatter_ramp" => {
                 let bins = survey.map(|survey| (ink, survey.by_amount(index)));
@@ -114,7 +116,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
             legend(ui, &lights, &session.show.lights.shown_names(&session.document.preset.lights));
         }
         spot = spot.or(at.and_then(|at| match field {
-            "diffuse_ramp" => Some(Spot::Diffuse(at)),
+            "diffuse_ramp" | "backlight_ramp" => Some(Spot::Diffuse(at)),
             "soft_scatter_ramp" => Some(Spot::SoftScatter(at)),
             "coverage_ramp" => Some(Spot::Coverage(at)),
             _ => None,

@@ -8,22 +8,34 @@ use super::frame::{BakedFrame, Ray};
 use super::recipe::SpriteRecipe;
 use crate::assets::exact::{direction, exp};
 use crate::assets::noise::{curl_noise, fractal_noise};
+use crate::assets::path_trace::Volume;
 use crate::assets::picture::Picture;
 use crate::formula::saturate;
 
 /// One moment, a share of the loop.
 pub(super) fn frame(recipe: &SpriteRecipe, time: f32) -> BakedFrame {
     let size = recipe.size;
+    let volume = slices(recipe, time);
+    let mut marched = Picture::new(UVec2::splat(size), (Rgba([128, 128, 255, 0]), 0.0));
+    marched.for_each(|at, texel| *texel = march(recipe, &volume, at));
+    BakedFrame::new(size, marched.texels)
+}
+
+/// Its densities.
+pub(super) fn volume(recipe: &SpriteRecipe, time: f32) -> Volume {
+    Volume { size: UVec3::splat(recipe.size), densities: slices(recipe, time).texels }
+}
+
+/// Slices of the volume below each other, the nearest to the viewer first.
+fn slices(recipe: &SpriteRecipe, time: f32) -> Picture<f32> {
+    let size = recipe.size;
     let cluster = Cluster::new(recipe, time);
-    // Slices of the volume below each other, the nearest to the viewer first.
     let mut volume = Picture::new(UVec2::new(size, size * size), 0.0);
     volume.for_each(|at, density| {
         let texel = UVec3::new(at.x, at.y % size, at.y / size);
         *density = cluster.density(position(size, texel));
     });
-    let mut marched = Picture::new(UVec2::splat(size), (Rgba([128, 128, 255, 0]), 0.0));
-    marched.for_each(|at, texel| *texel = march(recipe, &volume, at));
-    BakedFrame::new(size, marched.texels)
+    volume
 }
 
 /// The place of a voxel: x right, y up, z to the viewer.

@@ -5,23 +5,17 @@ use image::Rgba;
 
 use super::frame::Ray;
 use super::recipe::SpriteRecipe;
-use super::voxels::Voxels;
-use crate::assets::picture::Picture;
+use crate::assets::exact::decay;
+use crate::assets::path_trace::Volume;
 
 /// Front to back through the columns of one row of texels.
-pub(super) fn march(
-    recipe: &SpriteRecipe,
-    voxels: Voxels,
-    volume: &Picture<f32>,
-    y: u32,
-    line: &mut [(Rgba<u8>, f32)],
-) {
-    let (size, depth) = (voxels.size as usize, voxels.depth as usize);
+pub(super) fn march(recipe: &SpriteRecipe, volume: &Volume, y: u32, line: &mut [(Rgba<u8>, f32)]) {
+    let (size, depth) = (volume.size.x as usize, volume.size.z as usize);
     // One row of voxels; those outside are as the last inside.
     let row = |dy: isize, z: usize, dz: isize| {
         let y = (y as usize).saturating_add_signed(dy).min(size - 1);
         let start = (z.saturating_add_signed(dz).min(depth - 1) * size + y) * size;
-        &volume.texels[start..start + size]
+        &volume.densities[start..start + size]
     };
     // A voxel is four times as deep as wide.
     let ratio = size as f32 / depth as f32;
@@ -30,7 +24,7 @@ pub(super) fn march(
     let step = 2.0 / depth as f32;
     let mut rays = vec![Ray::new(); size];
     for z in 0..depth {
-        let place = voxels.position(UVec3::new(0, y, z as u32)).z;
+        let place = volume.position(UVec3::new(0, y, z as u32)).z;
         let here = row(0, z, 0);
         // Above, below, in front and behind: wide and fine.
         let around = [0, 1].map(|index| {
@@ -53,17 +47,7 @@ pub(super) fn march(
         }
     }
     for ((x, texel), ray) in (0..).zip(line).zip(rays) {
-        let place = voxels.position(UVec3::new(x, y, 0)).truncate();
+        let place = volume.position(UVec3::new(x, y, 0)).truncate();
         *texel = ray.texel(UVec2::new(x, y), recipe.size, place);
     }
-}
-
-/// exp(−x) for x from 0 to 16 or so.
-pub(super) fn decay(x: f32) -> f32 {
-    let x = x * (1.0 / 32.0);
-    let mut power = 1.0 / (1.0 + x * (1.0 + x * (0.5 + x * (1.0 / 6.0 + x * (1.0 / 24.0)))));
-    for _ in 0..5 {
-        power *= power;
-    }
-    power
 }

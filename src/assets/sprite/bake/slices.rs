@@ -7,10 +7,12 @@ use image::Rgba;
 use super::cluster::Ball;
 use super::erosion::Erosion;
 use super::frame::BakedFrame;
-use super::march::{decay, march};
+use super::march::march;
 use super::moment::Moment;
 use super::recipe::SpriteRecipe;
 use super::voxels::{RUN, Voxels};
+use crate::assets::exact::decay;
+use crate::assets::path_trace::Volume;
 use crate::assets::picture::Picture;
 use crate::formula::saturate;
 
@@ -48,7 +50,8 @@ impl<'a> Slices<'a> {
         Self { recipe, voxels, erosion: Erosion::new(recipe, voxels) }
     }
 
-    pub fn frame(&self, time: f32) -> BakedFrame {
+    /// Slices below each other, the nearest to the viewer first.
+    pub fn volume(&self, time: f32) -> Volume {
         let size = self.recipe.size;
         let moment = Moment::new(self.recipe, self.voxels, time);
         let mut volume = Picture::new(UVec2::new(size, size * self.voxels.depth), 0.0);
@@ -57,10 +60,16 @@ impl<'a> Slices<'a> {
                 self.fill(&moment, row % size, row / size, line);
             }
         });
+        Volume { size: self.voxels.sides(), densities: volume.texels }
+    }
+
+    pub fn frame(&self, time: f32) -> BakedFrame {
+        let size = self.recipe.size;
+        let volume = self.volume(time);
         let mut marched = Picture::new(UVec2::splat(size), (CLEAR, 0.0));
         marched.for_bands(|first, band| {
             for (y, line) in (first..).zip(band.chunks_mut(size as usize)) {
-                march(self.recipe, self.voxels, &volume, y, line);
+                march(self.recipe, &volume, y, line);
             }
         });
         // Far from everything all texels are the same, which costs nothing in a file.

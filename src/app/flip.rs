@@ -1,0 +1,24 @@
+//! How different two pictures look.
+
+use image::RgbImage;
+use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, FlipPool, flip};
+
+/// Mean FLIP, 0 to 1. (Andersson et al., "FLIP: A difference evaluator for alternating images", 2020)
+pub fn flip_of(reference: &RgbImage, picture: &RgbImage) -> f64 {
+    let [reference, picture] =
+        [reference, picture].map(|image| FlipImageRgb8::with_data(image.width(), image.height(), image.as_raw()));
+    f64::from(FlipPool::from_image(&flip(reference, picture, DEFAULT_PIXELS_PER_DEGREE)).mean())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flip_is_0_where_nothing_differs_and_grows_with_what_does() {
+        let grey = |value: u8| RgbImage::from_pixel(64, 64, image::Rgb([value; 3]));
+        assert!(flip_of(&grey(100), &grey(100)) < 1e-6);
+        let (near, far) = (flip_of(&grey(100), &grey(110)), flip_of(&grey(100), &grey(200)));
+        assert!(0.0 < near && near < far && far <= 1.0, "{near} {far}");
+    }
+}

@@ -1,0 +1,90 @@
+//! Puffs of smoke side by side: lit by the path tracer, and by ramps.
+
+use glam::{UVec2, Vec3};
+use haze::formula::colour::srgb_from_linear;
+use haze::picture::Picture;
+use haze::ramp::response::{DiffuseRamps, LIGHTS, Puff};
+use image::imageops::{FilterType, resize};
+use image::{Rgb, RgbImage};
+
+use super::flip::flip_of;
+use super::sheet::Sheet;
+
+/// What stands behind the puffs: darker than most of them, lighter than soot.
+const BEHIND: Vec3 = Vec3::splat(0.03);
+/// Side of a puff on a sheet, pixels.
+const SIDE: u32 = 160;
+/// Lights from the viewer's side to straight behind the puff; the other half of the ring is much the same.
+const SHOWN: usize = LIGHTS as usize / 2 + 1;
+
+/// A puff before a dark ground. Light as bright as `white` is white.
+fn before_ground(light: &Picture<Vec3>, coverage: &Picture<f32>, white: f32) -> RgbImage {
+    let Picture { size, texels } = light;
+    RgbImage::from_fn(size.x, size.y, |x, y| {
+        let index = (y * size.x + x) as usize;
+        let seen = texels[index] / white + BEHIND * (1.0 - coverage.texels[index]);
+        let code = seen.clamp(Vec3::ZERO, Vec3::ONE).to_array().map(srgb_from_linear);
+        Rgb(code.map(|channel| (channel * 255.0).round() as u8))
+    })
+}
+
+/// Light that is shown as white: brighter than all but the glow straight before a light.
+fn white(puff: &Puff) -> f32 {
+    let mut brightest: Vec<f32> = puff.traced().light[..SHOWN - 2]
+        .iter()
+        .flat_map(|picture| picture.texels.iter().map(|light| light.max_element()))
+        .collect();
+    brightest.sort_by(f32::total_cmp);
+    brightest.get(brightest.len() * 995 / 1000).copied().unwrap_or(1.0).max(1.0e-6)
+}
+
+fn degrees(light: usize) -> String {
+    format!("{}°", 360.0 * light as f32 / LIGHTS as f32)
+}
+
+/// The path-traced puff, light by light.
+pub fn traced(puff: &Puff) -> RgbImage {
+    let mut sheet = Sheet::new(UVec2::splat(SIDE), SHOWN as u32, SHOWN as u32);
+    for light in 0..SHOWN {
+        let picture = before_ground(&puff.traced().light[light], &puff.traced().coverage, white(puff));
+        sheet.place(light as u32, &degrees(light), &enlarged(&picture));
+    }
+    sheet.picture
+}
+
+fn enlarged(picture: &RgbImage) -> RgbImage {
+    resize(picture, SIDE, SIDE, FilterType::CatmullRom)
+}
+
+/// The path-traced puff, the same by ramps, and how far they are apart; below each other.
+pub fn compared(puff: &Puff, ramps: DiffuseRamps<'_>, exposure: f32) -> RgbImage {
+    let mut sheet = Sheet::new(UVec2::splat(SIDE), SHOWN as u32, 3 * SHOWN as u32);
+    for light in 0..SHOWN {
+        let [truth, shown] = pair(puff, ramps, exposure, light);
+        let apart = RgbImage::from_fn(truth.width(), truth.height(), |x, y| {
+            let [a, b] = [truth.get_pixel(x, y).0, shown.get_pixel(x, y).0];
+            Rgb(std::array::from_fn(|channel| a[channel].abs_diff(b[channel])))
+        });
+        for (row, (what, picture)) in [("truth", truth), ("ramps", shown), ("apart", apart)].iter().enumerate() {
+            let label = format!("{what}, {}", degrees(light));
+            sheet.place((row * SHOWN + light) as u32, &label, &enlarged(picture));
+        }
+    }
+    sheet.picture
+}
+
+/// Path-traced, and by ramps.
+fn pair(puff: &Puff, ramps: DiffuseRamps<'_>, exposure: f32, light: usize) -> [RgbImage; 2] {
+    let (coverage, white) = (&puff.traced().coverage, white(puff));
+    let shown = puff.shown(ramps, light);
+    [before_ground(&puff.traced().light[light], coverage, white), before_ground(&shown, coverage, white / exposure)]
+}
+
+/// Mean FLIP of all lights: how different they look.
+pub fn flip(puff: &Puff, ramps: DiffuseRamps<'_>, exposure: f32) -> f64 {
+    let of_light = |light| {
+        let [truth, shown] = pair(puff, ramps, exposure, light);
+        flip_of(&truth, &shown)
+    };
+    (0..LIGHTS as usize).map(of_light).sum::<f64>() / f64::from(LIGHTS)
+}

@@ -1,0 +1,78 @@
+use glam::UVec3;
+
+use super::phase::{henyey_greenstein, scattered};
+use super::random::Random;
+use super::*;
+
+/// A ball, soft at its surface.
+fn ball(size: u32) -> Volume {
+    let mut volume = Volume { size: UVec3::splat(size), densities: Vec::new() };
+    for index in 0..size.pow(3) {
+        let voxel = UVec3::new(index % size, index / size % size, index / (size * size));
+        let r = volume.position(voxel).length();
+        volume.densities.push(((1.0 - r / 0.95) / 0.4).clamp(0.0, 1.0));
+    }
+    volume
+}
+
+fn trace(volume: &Volume, medium: Medium, lights: &[Vec3], samples: u32) -> Traced {
+    let trace = PathTrace { size: 24, samples, seed: 1 };
+    trace.run(volume, &medium, lights, |_| Ok::<_, ()>(())).unwrap()
+}
+
+#[test]
+fn a_phase_function_keeps_all_light_and_is_what_is_sampled() {
+    for g in [-0.5, 0.0, 0.5, 0.9] {
+        let steps = 20_000;
+        let cos = |step: u32| (step as f32 + 0.5) / steps as f32 * 2.0 - 1.0;
+        let ring = 4.0 * std::f32::consts::PI / steps as f32;
+        let whole: f32 = (0..steps).map(|step| henyey_greenstein(cos(step), g) * ring).sum();
+        let mut random = Random::new(UVec3::new(1, 2, 3));
+        let along = Vec3::new(0.6, 0.0, 0.8);
+        let mean = (0..20_000).map(|_| scattered(along, g, &mut random).dot(along)).sum::<f32>() / 20_000.0;
+        assert!((whole - 1.0).abs() < 1e-3 && (mean - g).abs() < 0.02, "{g}: {whole}, {mean}");
+    }
+}
+
+#[test]
+fn thin_smoke_scatters_once() {
+    // So thin that light is scattered once: coverage times albedo times phase function.
+    let medium = Medium { albedo: Vec3::new(0.5, 0.25, 1.0), g: 0.4, density: 0.01 };
+    let lights = [Vec3::Z, Vec3::X, Vec3::NEG_Z];
+    let traced = trace(&ball(16), medium, &lights, 4);
+    let coverage = traced.coverage.texels.iter().sum::<f32>() / 576.0;
+    for (index, light) in lights.iter().enumerate() {
+        let expected = medium.albedo * (coverage * henyey_greenstein(-light.z, 0.4) * std::f32::consts::PI);
+        assert!(((traced.mean(index) - expected) / expected).abs().max_element() < 0.02, "{light}");
+    }
+}
+
+#[test]
+fn smoke_that_swallows_nothing_gives_back_all_light() {
+    // Light from all round, on smoke that only scatters, is the same with and without it.
+    let mut lights = Vec::new();
+    for z in [-0.9_f32, -0.7, -0.5, -0.3, -0.1, 0.1, 0.3, 0.5, 0.7, 0.9] {
+        for turn in 0..10 {
+            let around = glam::Vec2::from_angle(turn as f32 * 0.628_318_5 + z * 3.0) * (1.0 - z * z).sqrt();
+            lights.push(around.extend(z));
+        }
+    }
+    let medium = Medium { albedo: Vec3::ONE, g: 0.0, density: 5.0 };
+    let traced = trace(&ball(24), medium, &lights, 16);
+    let coverage: f32 = traced.coverage.texels.iter().sum();
+    // Each stands for 4π / 100; irradiance π of each is radiance 1 from everywhere four times over.
+    let light: f32 = traced.light.iter().flat_map(|picture| &picture.texels).map(|light| light.y).sum();
+    let share = light * 4.0 / 100.0 / coverage;
+    assert!((share - 1.0).abs() < 0.02, "{share}");
+}
+
+#[test]
+fn the_same_seed_is_the_same_picture_and_an_error_ends_it() {
+    let medium = MEDIA[0].medium;
+    let [first, again] = [2, 2].map(|samples| trace(&ball(12), medium, &[Vec3::Z, Vec3::X], samples));
+    assert!(first == again);
+    let path_trace = PathTrace { size: 8, samples: 4, seed: 1 };
+    let stopped =
+        path_trace.run(&ball(12), &medium, &[Vec3::Z], |sample| if sample < 2 { Ok(()) } else { Err(sample) });
+    assert_eq!(stopped.unwrap_err(), 2);
+}

@@ -1,0 +1,147 @@
+//! A puff, as it is and as ramps have it.
+
+use glam::{Vec2, Vec3};
+
+use crate::assets::exact::direction;
+use crate::assets::path_trace::{Medium, PathTrace, Traced};
+use crate::assets::picture::Picture;
+use crate::assets::ramp::Ramp;
+use crate::assets::sprite::bake::SpriteRecipe;
+use crate::formula::colour::luminance;
+use crate::formula::lighting::{backlight_weight, diffuse_coordinate};
+use crate::formula::ramp::sample_ramp_2d;
+use crate::settings::RampFilter;
+
+/// Lights round a puff.
+pub const LIGHTS: u32 = 16;
+
+/// A puff under a ring of lights at its own height, the first at the viewer: what it shows of each, and what ramps go by.
+#[derive(Clone, Debug)]
+pub struct Puff {
+    pub(super) lights: Vec<Vec3>,
+    /// Where there is smoke.
+    pub(super) texels: Vec<Texel>,
+    pub(super) traced: Traced,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Texel {
+    /// Of the picture.
+    pub index: usize,
+    normal: Vec3,
+    pub coverage: f32,
+}
+
+/// The ramps that diffuse light is looked up in.
+#[derive(Clone, Copy, Debug)]
+pub struct DiffuseRamps<'a> {
+    /// `diffuse_ramp` of a material.
+    pub diffuse: &'a Ramp,
+    /// `backlight_ramp`, where light from behind has its own.
+    pub backlight: Option<&'a Ramp>,
+}
+
+/// What ramps make of a puff, beside what is true.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Response {
+    /// What the light of the ramps is multiplied with, to come as near as it can: `diffuse.intensity`.
+    pub exposure: f32,
+    /// For each light.
+    pub lights: Vec<LightResponse>,
+    /// Mean over the lights of how far their brightness is off, as a share of what is true.
+    pub error: f32,
+    /// Root mean square of all errors, pixel by pixel, as a share of the root mean square of what is true.
+    pub pixel_error: f32,
+}
+
+/// Brightness of a puff under one light: mean luminance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightResponse {
+    /// Round the puff, degrees: at 0 the light is at the viewer, at 180 behind the smoke.
+    pub angle: f32,
+    /// Path-traced.
+    pub truth: f32,
+    /// By the ramps, exposed.
+    pub shown: f32,
+}
+
+impl Puff {
+    /// Path-traces the first moment of a sprite whose densities are filled with a medium. `progress` as for [`PathTrace::run`].
+    pub fn trace<E>(
+        recipe: &SpriteRecipe,
+        medium: &Medium,
+        path_trace: &PathTrace,
+        progress: impl Fn(u32) -> Result<(), E>,
+    ) -> Result<Self, E> {
+        // As opaque as the medium, and not smoothed for files.
+        let recipe = SpriteRecipe { size: path_trace.size, extinction: medium.density, tolerance: 0, ..recipe.clone() };
+        let lights: Vec<_> = (0..LIGHTS).map(light).collect();
+        let traced = path_trace.run(&recipe.volume(0.0), medium, &lights, progress)?;
+        let texel = |(index, texel): (usize, &image::Rgba<u8>)| {
+            let [x, y, z, _] = texel.0.map(|channel| f32::from(channel) / 255.0 * 2.0 - 1.0);
+            let (normal, coverage) = (Vec3::new(x, y, z).normalize_or(Vec3::Z), traced.coverage.texels[index]);
+            (coverage > 0.0).then_some(Texel { index, normal, coverage })
+        };
+        let texels = recipe.bake_frame(0.0).picture.texels.iter().enumerate().filter_map(texel).collect();
+        Ok(Self { lights, texels, traced })
+    }
+
+    /// What was path-traced, light by light.
+    pub fn traced(&self) -> &Traced {
+        &self.traced
+    }
+
+    /// What ramps show of it under a light: linear, times coverage.
+    pub fn shown(&self, ramps: DiffuseRamps<'_>, light: usize) -> Picture<Vec3> {
+        let mut picture = Picture::new(self.traced.coverage.size, Vec3::ZERO);
+        for texel in &self.texels {
+            picture.texels[texel.index] = ramps.look_up(texel, self.lights[light]) * texel.coverage;
+        }
+        picture
+    }
+
+    /// How far ramps are from the truth, at the exposure that is best for them.
+    pub fn response(&self, ramps: DiffuseRamps<'_>) -> Response {
+        let shown: Vec<_> = (0..self.lights.len()).map(|light| self.shown(ramps, light)).collect();
+        let mean = |picture: &Picture<Vec3>| luminance(picture.texels.iter().sum()) / picture.texels.len() as f32;
+        let lights: Vec<_> = (0..self.lights.len())
+            .map(|light| LightResponse {
+                angle: 360.0 * light as f32 / self.lights.len() as f32,
+                truth: mean(&self.traced.light[light]),
+                shown: mean(&shown[light]),
+            })
+            .collect();
+        // Least squares of the shares.
+        let share = |light: &LightResponse| light.shown / light.truth.max(f32::MIN_POSITIVE);
+        let squares: f32 = lights.iter().map(|light| share(light).powi(2)).sum();
+        let exposure = lights.iter().map(share).sum::<f32>() / squares.max(f32::MIN_POSITIVE);
+        let off = lights.iter().map(|light| (exposure * share(light) - 1.0).abs());
+        let error = off.sum::<f32>() / lights.len() as f32;
+        let pairs = || shown.iter().zip(&self.traced.light).flat_map(|(a, b)| a.texels.iter().zip(&b.texels));
+        let off: f32 = pairs().map(|(&shown, &truth)| (shown * exposure - truth).length_squared()).sum();
+        let all: f32 = pairs().map(|(_, truth)| truth.length_squared()).sum();
+        let lights = lights.into_iter().map(|light| LightResponse { shown: light.shown * exposure, ..light }).collect();
+        Response { exposure, lights, error, pixel_error: (off / all.max(f32::MIN_POSITIVE)).sqrt() }
+    }
+}
+
+/// The way to a light of the ring.
+fn light(index: u32) -> Vec3 {
+    let turn = direction(index as f32 * std::f32::consts::TAU / LIGHTS as f32);
+    Vec3::new(turn.y, 0.0, turn.x)
+}
+
+impl Texel {
+    /// Where a light is looked up.
+    pub fn coordinate(&self, light: Vec3) -> Vec2 {
+        Vec2::new(diffuse_coordinate(self.normal, light), self.coverage)
+    }
+}
+
+impl DiffuseRamps<'_> {
+    fn look_up(&self, texel: &Texel, light: Vec3) -> Vec3 {
+        let sample = |ramp| sample_ramp_2d(ramp, RampFilter::Bilinear, texel.coordinate(light));
+        let from_front = sample(self.diffuse);
+        self.backlight.map_or(from_front, |ramp| from_front.lerp(sample(ramp), backlight_weight(light, Vec3::Z)))
+    }
+}

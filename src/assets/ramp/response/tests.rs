@@ -1,0 +1,59 @@
+use super::*;
+use crate::assets::builtin;
+use crate::assets::path_trace::MEDIA;
+use crate::assets::path_trace::{Medium, PathTrace};
+use crate::assets::ramp::Ramp;
+use crate::assets::ramp::bake::RampRecipe;
+
+const PATH_TRACE: PathTrace = PathTrace { size: 32, samples: 16, seed: 1 };
+
+fn puff(medium: &Medium) -> Puff {
+    let recipe = builtin::find(builtin::SPRITES, "billow").unwrap().sprite_recipe().unwrap();
+    Puff::trace(&recipe, medium, &PATH_TRACE, |_| Ok::<_, ()>(())).unwrap()
+}
+
+fn baked(recipe: &RampRecipe) -> Ramp {
+    Ramp::from_picture(&recipe.bake().unwrap())
+}
+
+/// What a fit of a shape comes to, as it is baked.
+fn fitted(puff: &Puff, shape: Shape) -> Response {
+    let FittedRamps { diffuse, backlight, exposure } = puff.fit(shape);
+    let (diffuse, backlight) = (baked(&diffuse), backlight.as_ref().map(baked));
+    let response = puff.response(DiffuseRamps { diffuse: &diffuse, backlight: backlight.as_ref() });
+    assert!((response.exposure / exposure - 1.0).abs() < 0.06, "{} {exposure}", response.exposure);
+    response
+}
+
+#[test]
+fn fitted_ramps_answer_every_medium() {
+    for named in MEDIA {
+        let puff = puff(&named.medium);
+        let painted = builtin::find(builtin::RAMPS, "diffuse_soft").unwrap().ramp().unwrap();
+        let painted = puff.response(DiffuseRamps { diffuse: &painted, backlight: None });
+        let one_row = fitted(&puff, Shape { rows: 1, backlight: false, ..Shape::default() });
+        let two_axes = fitted(&puff, Shape { backlight: false, ..Shape::default() });
+        let both = fitted(&puff, Shape::default());
+        let of = |response: &Response| (response.error, response.pixel_error);
+        let told = format!("{}: {:?} {:?} {:?} {:?}", named.name, of(&painted), of(&one_row), of(&two_axes), of(&both));
+        println!("{told}");
+        assert!(both.error < 0.1 && both.pixel_error < 0.6, "{told}");
+        assert!(both.error < one_row.error && both.pixel_error < two_axes.pixel_error, "{told}");
+        assert!(two_axes.error < painted.error && one_row.error < painted.error, "{told}");
+    }
+}
+
+#[test]
+fn the_ramp_that_smoke_was_lit_with_is_found_again() {
+    let mut puff = puff(&MEDIA[1].medium);
+    let rim = builtin::find(builtin::RAMPS, "diffuse_soft").unwrap().ramp().unwrap();
+    for light in 0..LIGHTS as usize {
+        puff.traced.light[light] = puff.shown(DiffuseRamps { diffuse: &rim, backlight: None }, light);
+    }
+    let response = fitted(&puff, Shape { stops: 17, rows: 1, backlight: false });
+    assert!(response.error < 0.01 && response.pixel_error < 0.03, "{response:?}");
+    // Twice as bright is the same ramp at half the exposure.
+    let half = Ramp::from_linear(rim.size(), (0..rim.size().x).map(|x| rim.texel(glam::UVec2::new(x, 0)) * 0.5));
+    let response = puff.response(DiffuseRamps { diffuse: &half, backlight: None });
+    assert!((response.exposure - 2.0).abs() < 0.01 && response.error < 1e-3, "{response:?}");
+}
