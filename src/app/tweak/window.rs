@@ -5,7 +5,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui::{self, Ui};
 use haze::Error;
-use haze::picture::{Effort, write_png};
 use haze::settings::ShadeTree;
 use image::RgbImage;
 
@@ -20,6 +19,7 @@ use super::keeping::{Keeping, Layout};
 use super::messages::short;
 use super::panel;
 use super::platform::clock::Instant;
+use super::platform::files::{Effort, write_png};
 use super::preset_thumbnails::PresetThumbnails;
 use super::reload::{Reload, ShaderFolder};
 use super::session::Session;
