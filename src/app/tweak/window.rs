@@ -18,6 +18,7 @@ use super::inspect::panel as inspector;
 use super::keeping::{Keeping, Layout};
 use super::messages::short;
 use super::panel;
+use super::panel::compare::width;
 use super::platform::clock::Instant;
 use super::platform::files::{Effort, write_png};
 use super::preset_thumbnails::PresetThumbnails;
@@ -132,7 +133,9 @@ impl Window {
             if let Some(action) = panel::file::menu(ui, &mut self.session) {
                 self.act(action, ui.ctx());
             }
-            ui.strong(short(&self.session.document.title(), 40))
+            // A quarter of the row.
+            let letters = (0.25 * ui.available_width() / 7.0).clamp(12.0, 40.0) as usize;
+            ui.strong(short(&self.session.document.title(), letters))
                 .on_hover_text(self.session.document.path().to_string_lossy());
             if self.session.document.is_dirty() {
                 ui.label("•").on_hover_text("Changed since it was saved");
@@ -149,7 +152,9 @@ impl Window {
                 self.session.redo();
             }
             ui.separator();
-            panel::compare::panel(ui, &mut self.session);
+            let others = ["Inspect", "Theme", "Find", "?"];
+            let others: f32 = others.map(|name| width(ui, name) + ui.spacing().item_spacing.x).iter().sum();
+            panel::compare::panel(ui, &mut self.session, ui.available_width() - others);
             let inspect = ui.selectable_label(self.session.inspect.is_on, "Inspect");
             if inspect.on_hover_text("The numbers of the pixel under the pointer (I); a click keeps it").clicked() {
                 self.session.inspect.toggle();
@@ -247,6 +252,7 @@ impl Window {
             Action::Loop => session.playback.is_looping = !session.playback.is_looping,
             Action::Strip => session.show.has_strip = !session.show.has_strip,
             Action::Inspect => session.inspect.toggle(),
+            Action::Compare(against) => session.compare.toggle(against),
             Action::NextStage => session.show.stage = after(session.show.stage),
             Action::Picture if self.exporting.is_open => self.exporting.is_open = false,
             Action::Picture => session.show.stage = ShadeTree::Final,
