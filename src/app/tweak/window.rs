@@ -350,7 +350,9 @@ impl eframe::App for Window {
             self.filing.save_as(&self.session);
         }
         if let Some(path) = shown.inner {
-            self.exporting.begin(Product::Values(path), &mut self.session);
+            let is_seed = path.ends_with(".emitter.seed");
+            let product = if is_seed { Product::Seeds } else { Product::Values(path) };
+            self.exporting.begin(product, &mut self.session);
         }
         egui::CentralPanel::no_frame().show(ui, |ui| {
             let rect = ui.max_rect();

@@ -47,6 +47,7 @@ impl Desk<'_> {
 
 /// What a sheet is called of a number's values, and of all there are.
 pub const FIVE: Option<&str> = Some("Five values on a sheet");
+const SEEDS: Option<&str> = Some("Nine seeds on a sheet");
 const ALL: Option<&str> = Some("All values on a sheet");
 
 /// Draws the fields of a struct that `path` leads to; groups fold, and what is under a heading. The first heading is open.
@@ -254,7 +255,7 @@ impl FieldVisitor for Rows<'_, '_, '_> {
     }
 
     fn seed(&mut self, name: &'static str, value: &mut u32) {
-        self.row(name, ("", FIVE), |ui, label, _, _, _| {
+        self.row(name, ("", SEEDS), |ui, label, _, _, _| {
             ui.add(egui::DragValue::new(value)).labelled_by(label.id);
             if ui.button("next").clicked() {
                 *value = value.wrapping_add(1);

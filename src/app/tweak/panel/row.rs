@@ -8,6 +8,7 @@ use glam::Vec3;
 use haze::settings::Choice;
 
 use super::value::{parse, shown, suffix};
+use crate::app::tweak::icon::{self, Icon};
 use crate::app::tweak::reach::{Usual, is_wide, reach};
 
 /// Width of the names, and the most that they may have of a row.
@@ -57,23 +58,28 @@ impl Row<'_> {
                     asked = Some(Asked::Take);
                 }
             }
-            let name = ui
-                .allocate_ui_with_layout(
-                    egui::vec2(width, height),
-                    egui::Layout::left_to_right(egui::Align::Center),
-                    |ui| {
-                        ui.set_min_size(egui::vec2(width, height));
-                        let text = egui::RichText::new(spaced(self.name));
-                        let text = if self.inert.is_some() { text.weak() } else { text };
-                        ui.add(egui::Label::new(text).truncate().sense(egui::Sense::click()))
-                    },
-                )
-                .inner
-                .on_hover_text(self.hint());
+            let place = ui.allocate_ui_with_layout(
+                egui::vec2(width, height),
+                egui::Layout::left_to_right(egui::Align::Center),
+                |ui| {
+                    ui.set_min_size(egui::vec2(width, height));
+                    let text = egui::RichText::new(spaced(self.name));
+                    let text = if self.inert.is_some() { text.weak() } else { text };
+                    ui.add(egui::Label::new(text).truncate().sense(egui::Sense::click()))
+                },
+            );
+            let (place, name) = (place.response.rect, place.inner.on_hover_text(self.hint()));
             if name.double_clicked() {
                 asked = Some(Asked::SetBack);
             }
             name.context_menu(|ui| asked = self.menu(ui).or(asked));
+            if let Some(sheet) = self.sheet.filter(|_| self.inert.is_none() && ui.rect_contains_pointer(place)) {
+                let corner = place.with_min_x(place.right() - height);
+                let what = format!("{sheet}: {}", spaced(self.name));
+                if icon::button_over(ui, corner, name.id.with(sheet), Icon::Sheet, &what).clicked() {
+                    asked = Some(Asked::Sheet);
+                }
+            }
             ui.add_enabled_ui(self.inert.is_none(), |ui| control(ui, &name));
         });
         asked
