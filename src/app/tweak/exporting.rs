@@ -152,6 +152,11 @@ impl Exporting {
         });
     }
 
+    /// Closes the sheet, or else the window for exports; true if there was one.
+    pub fn dismiss(&mut self) -> bool {
+        self.sheet.take().is_some() || std::mem::take(&mut self.is_open)
+    }
+
     /// Writes the sheet that is shown.
     pub fn save_sheet(&mut self) {
         if let Some(Sheet { picture, path, .. }) = self.sheet.take() {

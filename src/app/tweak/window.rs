@@ -212,7 +212,10 @@ impl Window {
         for text in ui.input(pasted).into_iter().filter(|_| !is_for_stops) {
             self.session.paste(&text);
         }
-        if ui.input(|input| input.key_pressed(egui::Key::Escape)) && self.session.hints.dismiss() {
+        // What lies on top goes first.
+        if ui.input(|input| input.key_pressed(egui::Key::Escape))
+            && (self.exporting.dismiss() || self.session.hints.dismiss())
+        {
             ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Escape));
         }
         // Space and the like are for the control that has the keyboard.
@@ -254,7 +257,6 @@ impl Window {
             Action::Inspect => session.inspect.toggle(),
             Action::Compare(against) => session.compare.toggle(against),
             Action::NextStage => session.show.stage = after(session.show.stage),
-            Action::Picture if self.exporting.is_open => self.exporting.is_open = false,
             Action::Picture => session.show.stage = ShadeTree::Final,
             Action::Help => session.show.help = !session.show.help,
             Action::InView(action) => self.viewport.act(action, session),

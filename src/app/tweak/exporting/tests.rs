@@ -192,6 +192,7 @@ fn a_row_makes_the_sheet_of_its_values_that_the_export_makes() {
 #[test]
 fn a_click_beside_a_name_makes_a_sheet() {
     let mut bench = bench();
+    bench.window.state_mut().session.hints.begin();
     let mut made = |tab: &str, name: &str, button: &str| {
         bench.window.get_by_label(tab).click();
         bench.window.run_steps(3);
@@ -202,7 +203,13 @@ fn a_click_beside_a_name_makes_a_sheet() {
         let place = bench.window.get_by_label(button).rect().center();
         testing::click_at(&mut bench.window, place, PointerButton::Primary);
         bench.until(|window| window.exporting.sheet.is_some());
-        let Sheet { path, .. } = bench.window.state_mut().exporting.sheet.take().unwrap();
+        let path = bench.window.state().exporting.sheet.as_ref().unwrap().path.clone();
+        // Escape closes it, and leaves what lies below.
+        let hints = bench.window.state().session.hints.left();
+        bench.window.key_press(Key::Escape);
+        bench.window.run_steps(2);
+        let window = bench.window.state();
+        assert!(window.exporting.sheet.is_none() && window.session.hints.left() == hints && !hints.is_empty());
         path.file_name().unwrap().to_string_lossy().into_owned()
     };
     assert!(made("Look", "thickness", "Five values on a sheet: thickness").contains("thickness"));
