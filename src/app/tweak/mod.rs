@@ -34,6 +34,7 @@ mod reach;
 mod referee;
 mod release;
 mod reload;
+mod screenshot;
 mod search;
 mod session;
 mod show;

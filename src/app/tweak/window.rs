@@ -1,12 +1,10 @@
 //! The window: what is where, and the order in which a frame happens.
 
 use std::path::Path;
-use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui::{self, Ui};
 use haze::Error;
 use haze::settings::ShadeTree;
-use image::RgbImage;
 
 use super::action::{ACTIONS, Action};
 use super::easel::Easel;
@@ -20,9 +18,9 @@ use super::messages::short;
 use super::panel;
 use super::panel::compare::width;
 use super::platform::clock::Instant;
-use super::platform::files::{Effort, write_png};
 use super::preset_thumbnails::PresetThumbnails;
 use super::reload::{Reload, ShaderFolder};
+use super::screenshot::Screenshot;
 use super::session::Session;
 use super::show::Tab;
 use super::strip::{after, strip};
@@ -58,19 +56,8 @@ pub struct Start {
     pub has_dialogs: bool,
 }
 
-/// A picture of the window on its way.
-#[derive(Default)]
-struct Screenshot {
-    /// Frames that have been shown.
-    frames: u32,
-    taken: Arc<Mutex<Option<Arc<egui::ColorImage>>>>,
-}
-
 /// What it means that the CPU draws.
 const SLOW: &str = "The CPU draws: coarsely while something moves. A smaller window is quicker.";
-
-/// Frames after which a window stands still.
-const SETTLED: u32 = 6;
 
 impl Window {
     /// # Errors
@@ -262,33 +249,6 @@ impl Window {
             Action::InView(action) => self.viewport.act(action, session),
         }
     }
-
-    /// Takes the picture that was asked for, and closes the window.
-    fn take_screenshot(&mut self, ui: &Ui) {
-        let Some(path) = self.session.screenshot.clone() else { return };
-        self.screenshot.frames += 1;
-        let taken = self.screenshot.taken.lock().unwrap_or_else(PoisonError::into_inner).take();
-        if let Some(picture) = taken {
-            if let Err(error) = write(&path, &picture) {
-                self.session.messages.complain("screenshot", error);
-            }
-            ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
-        } else if self.screenshot.frames == SETTLED {
-            let (taken, context) = (self.screenshot.taken.clone(), ui.ctx().clone());
-            ui.ctx().request_screenshot(move |picture| {
-                *taken.lock().unwrap_or_else(PoisonError::into_inner) = Some(picture);
-                context.request_repaint();
-            });
-        }
-        ui.ctx().request_repaint();
-    }
-}
-
-fn write(path: &Path, picture: &egui::ColorImage) -> Result<(), Error> {
-    let [width, height] = picture.size.map(|side| side as u32);
-    let bytes = picture.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()]).collect();
-    let picture = RgbImage::from_raw(width, height, bytes).unwrap_or_default();
-    write_png(path, &picture.into(), Effort::Small)
 }
 
 /// Texts that were pasted.
@@ -399,7 +359,7 @@ impl eframe::App for Window {
         if self.session.playback.is_playing {
             ui.ctx().request_repaint();
         }
-        self.take_screenshot(ui);
+        self.screenshot.advance(ui, &mut self.session);
     }
 
     fn on_exit(&mut self) {
