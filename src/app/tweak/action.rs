@@ -150,6 +150,7 @@ pub const GESTURES: &[(&str, &str)] = &[
     ("Click while inspecting", "Keeps the pixel; another click lets it go"),
     ("Double click on a name", "Sets it back"),
     ("Click on a value", "Type it, with its unit or without"),
+    ("Squares beside a name", "Its values on a sheet, side by side"),
 ];
 
 #[cfg(test)]
