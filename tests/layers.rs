@@ -186,6 +186,76 @@ fn nothing_on_the_ground_knows_a_device() {
     }
 }
 
+/// What touches disk, clock or threads: in the program's own words, or by what the library and the command line have for it.
+const OF_THE_SYSTEM: &[&str] = &[
+    "std::fs",
+    "std::thread",
+    "std::time",
+    "std::process",
+    "fs::",
+    "thread::",
+    "path::absolute",
+    ".exists()",
+    ".is_file()",
+    ".is_dir()",
+    ".metadata()",
+    ".canonicalize()",
+    ".read_dir()",
+    "rfd::",
+    "pollster::",
+    "haze::assets::file",
+    "haze::picture::read_",
+    "haze::picture::write_",
+    "haze::picture::FileIdentity",
+    "json::read(",
+    "Preset::read(",
+    "::load(",
+    ".load(folder",
+    "preset.load_materials",
+    "preset.load_caches",
+    "check_files",
+    "from_folder",
+    "folders.find(",
+    "crate::app::export",
+    "crate::app::watch",
+    "crate::app::inputs::caches_of",
+];
+
+/// Which of these words a file says, imports spelled out.
+fn of_the_system(text: &str) -> Option<&'static str> {
+    let code = code(text);
+    let mut said = vec![code.clone()];
+    for root in ["crate::", "std::", "haze::"] {
+        for (start, _) in code.match_indices(root) {
+            spell_out("", &code[start..], &mut said);
+        }
+    }
+    OF_THE_SYSTEM.iter().find(|word| said.iter().any(|said| said.contains(**word))).copied()
+}
+
+#[test]
+fn the_window_touches_disk_clock_and_threads_in_one_place() {
+    let (mut count, mut behind) = (0, 0);
+    for (file, text) in sources() {
+        let is_test = file.iter().any(|part| part.to_string_lossy().contains("test"));
+        if !file.starts_with("app/tweak") || is_test {
+            continue;
+        }
+        let found = of_the_system(&text);
+        if file.starts_with("app/tweak/platform") {
+            behind += usize::from(found.is_some());
+        } else {
+            assert_eq!(found, None, "{}: belongs behind `platform`", file.display());
+            count += 1;
+        }
+    }
+    assert!(count > 80 && behind > 5, "{count} {behind}");
+    assert_eq!(of_the_system("use std::{env, fs};"), Some("std::fs"));
+    assert_eq!(of_the_system("use haze::picture::{Picture, write_png};"), Some("haze::picture::write_"));
+    assert_eq!(of_the_system("let sprite = Sprite::load(path); // std::fs"), Some("::load("));
+    assert_eq!(of_the_system("use super::platform::clock::Instant;\nflag.load(Ordering::Relaxed);"), None);
+}
+
 #[test]
 fn documents_name_files_that_are_there() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

@@ -3,10 +3,11 @@
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 use glam::Vec3;
 
+use super::compare::Against;
 use super::show::Overlay;
 
 /// Something that the window does when it is told to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
     Presets,
     Open,
@@ -27,6 +28,8 @@ pub enum Action {
     Strip,
     Inspect,
     NextStage,
+    /// Shows it beside the picture, or no longer.
+    Compare(&'static Against),
     Picture,
     Help,
     InView(InView),
@@ -106,6 +109,10 @@ pub const ACTIONS: &[Entry] = &[
     entry(Action::Strip, "Shade tree strip", Modifiers::NONE, Key::F4),
     entry(Action::Inspect, "Inspect the pixel under the pointer", Modifiers::NONE, Key::I),
     entry(Action::NextStage, "Next stage of the shading", Modifiers::NONE, Key::N),
+    entry(Action::Compare(&Against::Saved), "Compare with the file", Modifiers::NONE, Key::F5),
+    entry(Action::Compare(&Against::FullResolution), "Compare with full resolution", Modifiers::NONE, Key::F6),
+    entry(Action::Compare(&Against::Forward), "Compare with forward", Modifiers::NONE, Key::F7),
+    entry(Action::Compare(&Against::Reference), "Compare with the CPU reference", Modifiers::NONE, Key::F8),
     entry(Action::Picture, "Back to the picture", Modifiers::NONE, Key::Escape),
     entry(Action::InView(InView::Frame), "Show the selected light, or all of the smoke", Modifiers::NONE, Key::F),
     entry(Action::InView(InView::Home), "Back to the saved camera", Modifiers::NONE, Key::Home),
@@ -127,9 +134,9 @@ pub const ACTIONS: &[Entry] = &[
     entry(Action::Help, "The same", Modifiers::NONE, Key::Questionmark),
 ];
 
-/// The keys of what the viewport does.
-pub fn keys_of(action: InView) -> Option<KeyboardShortcut> {
-    ACTIONS.iter().find(|entry| entry.action == Action::InView(action)).map(|entry| entry.keys)
+/// The keys of an action.
+pub fn keys_of(action: Action) -> Option<KeyboardShortcut> {
+    ACTIONS.iter().find(|entry| entry.action == action).map(|entry| entry.keys)
 }
 
 /// What else is done with pointer and keys.
@@ -143,6 +150,7 @@ pub const GESTURES: &[(&str, &str)] = &[
     ("Click while inspecting", "Keeps the pixel; another click lets it go"),
     ("Double click on a name", "Sets it back"),
     ("Click on a value", "Type it, with its unit or without"),
+    ("Squares beside a name", "Its values on a sheet, side by side"),
 ];
 
 #[cfg(test)]

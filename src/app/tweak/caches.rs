@@ -1,18 +1,7 @@
 //! The particle files of the systems, as they were last loaded well.
 
-use std::path::Path;
-
 use haze::cache::Cache;
-use haze::preset::{PictureFolders, Preset};
-use haze::{Error, MaterialAssets};
-
-/// What the files hold that the systems of a preset name: pictures, and particles.
-pub type Loaded = (Vec<MaterialAssets>, Vec<Option<Cache>>);
-
-/// Loads all of it.
-pub fn load(preset: &Preset, path: &Path, folders: &PictureFolders) -> Result<Loaded, Error> {
-    Ok((preset.load_materials_from(path, folders)?, preset.load_caches(path, folders)?))
-}
+use haze::preset::Preset;
 
 /// Particles, and the paths that they were loaded by; none of a system without files.
 #[derive(Clone)]

@@ -44,7 +44,33 @@ impl Default for Compare {
     }
 }
 
+/// What one click shows beside the picture.
+pub struct Offer {
+    pub against: Against,
+    /// On a button.
+    pub short: &'static str,
+    /// On a line of its own.
+    pub name: &'static str,
+    pub tooltip: &'static str,
+}
+
+const fn offer(against: Against, short: &'static str, name: &'static str, tooltip: &'static str) -> Offer {
+    Offer { against, short, name, tooltip }
+}
+
+pub static OFFERS: [Offer; 4] = [
+    offer(Against::Saved, "Saved", "As saved", "The preset as it is on disk"),
+    offer(Against::FullResolution, "Full", "Full resolution", "The same smoke without a reduced target"),
+    offer(Against::Forward, "Forward", "Forward", "The same smoke lit and blended sprite by sprite, the classic way"),
+    offer(Against::Reference, "CPU", "CPU reference", "The same by the CPU renderer, the specification: takes a while"),
+];
+
 impl Compare {
+    /// Shows this beside the picture, or no longer.
+    pub fn toggle(&mut self, against: &Against) {
+        self.against = (self.against.as_ref() != Some(against)).then(|| against.clone());
+    }
+
     /// Which of the two is seen at a share of the width. Of their difference, the first.
     pub fn side(&self, x: f32) -> Side {
         let is_second = self.against.is_some() && self.difference == 0.0 && x >= self.split;

@@ -7,10 +7,9 @@ use haze::preset::{MaterialNames, PictureFolders, Preset};
 use haze::ramp::Role;
 use haze::settings::{Leaf, set_field, walk};
 use haze::sprite::SpriteLayout;
-use haze::sprite::bake::SpriteRecipe;
 use haze::{Error, FieldError};
 
-use super::platform::files;
+use super::platform::{assets, files};
 use super::sprite::source::{detail_of, recipe_of};
 
 /// What a picture is to become.
@@ -74,8 +73,8 @@ impl Dropped {
 
 /// The folder of a preset's pictures that a file is in, and its name from there on.
 fn place_of(path: &Path, folders: &PictureFolders) -> Option<(PathBuf, String)> {
-    let path = std::path::absolute(path).ok()?;
-    let folders = folders.places(Path::new(".")).filter_map(|folder| std::path::absolute(folder).ok());
+    let path = files::absolute(path);
+    let folders = folders.places(Path::new(".")).map(|folder| files::absolute(&folder));
     let mut places = folders.filter_map(|folder| {
         let name = path.strip_prefix(&folder).ok()?.to_str()?.replace('\\', "/");
         Some((folder, name))
@@ -119,14 +118,14 @@ fn checked(field: &'static str, folder: &Path, name: &str, material: &MaterialNa
     for (field, value) in &fields {
         set_field(&mut names, field, value)?;
     }
-    let doubts = names.doubts(&names.load(folder)?);
+    let doubts = names.doubts(&assets::material(&names, folder)?);
     Ok((fields, doubts.into_iter().find(|(of, _)| *of == field).map(|(_, doubt)| doubt)))
 }
 
 /// How a sheet is laid out: as its recipe says, or else as the one that it takes the place of.
 fn layout(sheet: &Path, material: &MaterialNames) -> SpriteLayout {
     let as_before = SpriteLayout { columns: material.columns, rows: material.rows, y_down: material.y_down };
-    SpriteRecipe::load(&recipe_of(sheet)).map_or(as_before, |recipe| recipe.layout())
+    assets::sprite_recipe(&recipe_of(sheet)).map_or(as_before, |recipe| recipe.layout())
 }
 
 /// The fields of a material that name pictures.

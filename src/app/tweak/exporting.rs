@@ -9,17 +9,16 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use eframe::egui;
 use glam::UVec2;
 use haze::demo::shot::Shot;
-use haze::picture::{Effort, write_png};
 use haze::preset::Preset;
 use haze::settings::set_field;
 use haze::{Error, FieldError};
 use image::RgbImage;
 
 use super::made::Made;
-use super::platform::files;
+use super::platform::export::{self, Frames, Watch};
+use super::platform::files::{self, Effort, write_png};
 use super::platform::worker::Worker;
 use super::session::Session;
-use crate::app::export::{self, Frames, Watch};
 use crate::app::frames::FrameNames;
 use crate::app::options::Backend;
 use crate::app::shade_tree;
@@ -153,6 +152,11 @@ impl Exporting {
         });
     }
 
+    /// Closes the sheet, or else the window for exports; true if there was one.
+    pub fn dismiss(&mut self) -> bool {
+        self.sheet.take().is_some() || std::mem::take(&mut self.is_open)
+    }
+
     /// Writes the sheet that is shown.
     pub fn save_sheet(&mut self) {
         if let Some(Sheet { picture, path, .. }) = self.sheet.take() {
@@ -197,7 +201,7 @@ impl Place {
         };
         let paths = (1..10_000).map(|number| self.folder.join(name(number)));
         let path = paths.into_iter().find(|path| !files::exists(path)).unwrap_or_else(|| self.folder.join(name(1)));
-        std::path::absolute(&path).unwrap_or(path)
+        files::absolute(&path)
     }
 }
 

@@ -7,10 +7,10 @@ use eframe::egui;
 use haze::Error;
 use haze::preset::PictureFolders;
 
-use super::caches::{self, Loaded};
 use super::document::document::{Document, OnDisk, Saving};
 use super::dropped::Dropped;
 use super::messages::short;
+use super::platform::assets::{self, Loaded};
 use super::platform::clock::{Duration, Instant, sleep};
 use super::platform::dialog::{Answer, Dialogs, Purpose};
 use super::platform::worker::Worker;
@@ -304,7 +304,7 @@ fn suggested(session: &Session) -> PathBuf {
 fn load(path: &Path, assets: Option<PathBuf>) -> Result<(Document, Loaded), Error> {
     let document = Document::open(path)?;
     let folders = PictureFolders::beside(path).and_shared(assets);
-    let loaded = caches::load(&document.preset, path, &folders)?;
+    let loaded = assets::all(&document.preset, path, &folders)?;
     Ok((document, loaded))
 }
 

@@ -1,6 +1,6 @@
 //! Buttons with a drawn sign: the fonts that come with the window have none of these.
 
-use eframe::egui::{self, Color32, Pos2, Response, Sense, Shape, Ui, Vec2, pos2};
+use eframe::egui::{self, Color32, Id, Pos2, Rect, Response, Sense, Shape, Ui, Vec2, pos2};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Icon {
@@ -9,12 +9,23 @@ pub enum Icon {
     Back,
     Forward,
     Loop,
+    Sheet,
 }
 
 /// A button; `name` is its tooltip, and what who cannot see it is told.
 pub fn button(ui: &mut Ui, icon: Icon, is_on: bool, name: &str) -> Response {
     let side = ui.spacing().interact_size.y;
-    let (rect, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::click());
+    let (_, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::click());
+    shown(ui, response, icon, is_on, name)
+}
+
+/// The same over what is there already.
+pub fn button_over(ui: &Ui, rect: Rect, id: Id, icon: Icon, name: &str) -> Response {
+    shown(ui, ui.interact(rect, id, Sense::click()), icon, false, name)
+}
+
+fn shown(ui: &Ui, response: Response, icon: Icon, is_on: bool, name: &str) -> Response {
+    let rect = response.rect;
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, name));
     let visuals = ui.style().interact_selectable(&response, is_on);
     ui.painter().rect_filled(rect, visuals.corner_radius, visuals.weak_bg_fill);
@@ -22,7 +33,7 @@ pub fn button(ui: &mut Ui, icon: Icon, is_on: bool, name: &str) -> Response {
     response.on_hover_text(name)
 }
 
-fn draw(ui: &Ui, icon: Icon, rect: egui::Rect, colour: Color32) {
+fn draw(ui: &Ui, icon: Icon, rect: Rect, colour: Color32) {
     let at = |x: f32, y: f32| -> Pos2 { pos2(rect.left() + x * rect.width(), rect.top() + y * rect.height()) };
     let solid = |points: Vec<Pos2>| Shape::convex_polygon(points, colour, egui::Stroke::NONE);
     let bar = |left: f32| solid(vec![at(left, 0.25), at(left + 0.15, 0.25), at(left + 0.15, 0.75), at(left, 0.75)]);
@@ -33,6 +44,11 @@ fn draw(ui: &Ui, icon: Icon, rect: egui::Rect, colour: Color32) {
         Icon::Pause => vec![bar(0.28), bar(0.57)],
         Icon::Back => vec![bar(0.2), left(0.78)],
         Icon::Forward => vec![right(0.22), bar(0.65)],
+        Icon::Sheet => {
+            let cell = |x: f32, y: f32| Rect::from_min_max(at(x, y), at(x + 0.24, y + 0.24));
+            let cells = [(0.22, 0.22), (0.54, 0.22), (0.22, 0.54), (0.54, 0.54)];
+            cells.map(|(x, y)| Shape::rect_filled(cell(x, y), 0.0, colour)).into()
+        }
         Icon::Loop => {
             let stroke = egui::Stroke::new(1.5, colour);
             let arc = (2..=22).map(|step| {

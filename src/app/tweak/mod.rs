@@ -34,6 +34,7 @@ mod reach;
 mod referee;
 mod release;
 mod reload;
+mod screenshot;
 mod search;
 mod session;
 mod show;
@@ -58,13 +59,12 @@ use eframe::egui;
 use glam::UVec2;
 use haze::Error;
 use haze::settings::set_field;
-use haze::shader::Sources;
 
 use super::options::{AssetsArguments, in_option, parse_assignment, parse_size};
 use keeping::{Keeping, Layout};
 use open::open;
 use platform::dialog::Dialogs;
-use platform::folders;
+use platform::{assets, folders};
 use reload::ShaderFolder;
 use session::Session;
 use window::Start;
@@ -112,7 +112,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     session.document.preset.validate()?;
     session.screenshot = arguments.screenshot.clone();
     let shaders = match &arguments.shaders {
-        Some(folder) => Sources::from_folder(folder).map(|_| ShaderFolder::Given(folder.clone()))?,
+        Some(folder) => assets::shaders(folder).map(|_| ShaderFolder::Given(folder.clone()))?,
         None => ShaderFolder::of_checkout(),
     };
     // A picture of the window is the same wherever it is taken.

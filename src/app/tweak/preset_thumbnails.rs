@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use eframe::egui;
 use glam::UVec2;
 use haze::demo::develop::develop;
-use haze::demo::shot::Shot;
-use haze::preset::{PictureFolders, Preset};
+use haze::preset::PictureFolders;
 use haze::{Error, builtin};
 use image::RgbImage;
 
+use super::platform::assets;
 use super::platform::files::{self, Stamp};
 use super::platform::worker::{Ticket, Worker};
 
@@ -112,7 +112,7 @@ impl PresetThumbnails {
 
 fn draw(path: &Path, assets: Option<PathBuf>) -> Result<Drawn, Error> {
     let folders = PictureFolders::beside(path).and_shared(assets);
-    let shot = Shot::from_folders(Preset::load(path)?, path, &folders, SIZE)?;
+    let shot = assets::shot(path, &folders, SIZE)?;
     let picture = develop(&shot.render_on_cpu()?, &shot);
     Ok(Drawn { picture, name: shot.preset.name, description: shot.preset.description })
 }

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use haze::gradient_editor::GradientEditor;
-use haze::picture::{Effort, read_colour_png, write_png};
-use haze::preset::{PictureFolders, Preset, picture_file};
+use haze::preset::{PictureFolders, Preset};
 use haze::ramp::Ramp;
 use haze::ramp::bake::RampRecipe;
 use haze::ramp::fit::{USUAL_ERROR, fit};
@@ -13,7 +12,8 @@ use haze::settings::{Value, set_field, values};
 use haze::{Error, MaterialAssets, builtin};
 
 use super::document::document::Document;
-use super::platform::files::{self, Stamp};
+use super::platform::assets;
+use super::platform::files::{self, Effort, Stamp, read_colour_png, write_png};
 
 /// Those that panels have asked about, by the names that the preset has for them.
 #[derive(Default)]
@@ -168,14 +168,13 @@ impl RampFiles {
 
 impl Known {
     fn read(name: &str, folders: &PictureFolders) -> Self {
-        let place = |file| folders.find(file).ok().or_else(|| folders.places(file).next());
-        let picture = picture_file(name).and_then(place).unwrap_or_default();
+        let picture = assets::place_of(name, folders);
         // Before they are read: written in between, they are found to have changed.
         let stamps = stamps(&picture);
         let source = if builtin::find(builtin::RAMPS, name).is_some() {
             Source::BuiltIn
         } else {
-            match (Ramp::load(&picture), RampRecipe::load(&recipe_of(&picture))) {
+            match (assets::ramp(&picture), assets::ramp_recipe(&recipe_of(&picture))) {
                 (Err(_), _) => Source::Missing,
                 (Ok(ramp), Ok(recipe)) if makes(&recipe, &ramp) => Source::Recipe(recipe),
                 _ => Source::Painted,

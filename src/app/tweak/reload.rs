@@ -18,12 +18,13 @@ use super::caches::{Caches, paths};
 use super::document::document::OnDisk;
 use super::easel::Easel;
 use super::pictures::{Pictures, names};
+use super::platform::assets;
+use super::platform::files::Watcher;
 use super::platform::worker::{Ticket, Worker};
 use super::session::Session;
 use super::sprite::source::detail_of;
 use crate::app::inputs::picture_files;
 use crate::app::recipe::recipes_of;
-use crate::app::watch::Watcher;
 
 /// What follows the files of a session.
 pub struct Reload {
@@ -178,7 +179,7 @@ impl Reload {
         let path = session.document.path().to_owned();
         let (old, folders) = (session.pictures.clone(), session.folders());
         let ticket = self.worker.submit(move |_| {
-            let loaded = preset.load_materials_from(&path, &folders).map(|loaded| old.keep_same(loaded));
+            let loaded = assets::pictures(&preset, &path, &folders).map(|loaded| old.keep_same(loaded));
             Loaded::Pictures(preset, loaded)
         });
         // Only the last are wanted.
@@ -192,7 +193,7 @@ impl Reload {
         let preset = Box::new(session.document.preset.clone());
         let (path, folders) = (session.document.path().to_owned(), session.folders());
         let ticket = self.worker.submit(move |_| {
-            let loaded = preset.load_caches(&path, &folders);
+            let loaded = assets::particles(&preset, &path, &folders);
             Loaded::Caches(preset, loaded)
         });
         if let Some(before) = self.caches.replace(ticket) {
@@ -279,7 +280,7 @@ fn check(
     shot: &Shot,
     files: &mut Vec<PathBuf>,
 ) -> Result<(StageContext, Sources), Error> {
-    let sources = Sources::from_folder(folder)?;
+    let sources = assets::shaders(folder)?;
     sources.paths().for_each(|path| add(files, path));
     let context = context.with_shaders(&sources)?;
     Stage::new(&context, false)?.warm_up(shot)?;

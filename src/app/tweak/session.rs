@@ -12,7 +12,7 @@ use haze::settings::{ShadeTree, Value, values};
 use haze::shader::Sources;
 use haze::{Error, Light, MaterialAssets};
 
-use super::caches::{Caches, Loaded, load};
+use super::caches::Caches;
 use super::compare::Compare;
 use super::document::difference::{changed_fields, copy_field};
 use super::document::document::Document;
@@ -24,6 +24,7 @@ use super::messages::Messages;
 use super::performance::Performance;
 use super::picture_thumbnails::PictureThumbnails;
 use super::pictures::Pictures;
+use super::platform::assets::{self, Loaded};
 use super::platform::wake::Wake;
 use super::playback::Playback;
 use super::ramp_files::RampFiles;
@@ -94,7 +95,7 @@ impl Session {
         let document = Document::open(source)?;
         let preset = &document.preset;
         let folders = PictureFolders::beside(source).and_shared(assets.clone());
-        let (materials, caches) = load(preset, source, &folders)?;
+        let (materials, caches) = assets::all(preset, source, &folders)?;
         Ok(Self {
             assets,
             playback: Playback::at(preset.time),

@@ -51,14 +51,26 @@ pub fn measured(preset: &str, size: Vec2) -> Harness<'static, Window> {
     settled(Harness::builder().with_size(size).wgpu_setup(setup), start(preset, ShaderFolder::None))
 }
 
-/// Opens the menu of the row whose slider has this name: a right click on the name, which stands at its left.
+/// Opens the menu of the row whose control has this name.
 pub fn row_menu(harness: &mut Harness<'_, Window>, name: &str) {
-    let is_slider = |node: &egui_kittest::Node<'_>| node.accesskit_node().role() == egui::Role::Slider;
-    let slider = harness.get_all_by_label(name).find(is_slider).unwrap().rect();
-    let pos = slider.left_center() - egui::vec2(115.0, 0.0);
+    let pos = row_name(harness, name);
+    click_at(harness, pos, egui::PointerButton::Secondary);
+}
+
+/// Where a row's name stands: at the left of its control.
+pub fn row_name(harness: &Harness<'_, Window>, name: &str) -> egui::Pos2 {
+    let is_control = |node: &egui_kittest::Node<'_>| {
+        [egui::Role::Slider, egui::Role::ComboBox, egui::Role::SpinButton].contains(&node.accesskit_node().role())
+    };
+    let control = harness.get_all_by_label(name).find(is_control).unwrap().rect();
+    control.left_center() - egui::vec2(115.0, 0.0)
+}
+
+/// As a pointer clicks.
+pub fn click_at(harness: &mut Harness<'_, Window>, pos: egui::Pos2, button: egui::PointerButton) {
     harness.hover_at(pos);
     for pressed in [true, false] {
-        let (button, modifiers) = (egui::PointerButton::Secondary, egui::Modifiers::NONE);
+        let modifiers = egui::Modifiers::NONE;
         harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
     }
     harness.run_steps(3);

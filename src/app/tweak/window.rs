@@ -1,13 +1,10 @@
 //! The window: what is where, and the order in which a frame happens.
 
 use std::path::Path;
-use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui::{self, Ui};
 use haze::Error;
-use haze::picture::{Effort, write_png};
 use haze::settings::ShadeTree;
-use image::RgbImage;
 
 use super::action::{ACTIONS, Action};
 use super::easel::Easel;
@@ -19,9 +16,11 @@ use super::inspect::panel as inspector;
 use super::keeping::{Keeping, Layout};
 use super::messages::short;
 use super::panel;
+use super::panel::compare::width;
 use super::platform::clock::Instant;
 use super::preset_thumbnails::PresetThumbnails;
 use super::reload::{Reload, ShaderFolder};
+use super::screenshot::Screenshot;
 use super::session::Session;
 use super::show::Tab;
 use super::strip::{after, strip};
@@ -57,19 +56,8 @@ pub struct Start {
     pub has_dialogs: bool,
 }
 
-/// A picture of the window on its way.
-#[derive(Default)]
-struct Screenshot {
-    /// Frames that have been shown.
-    frames: u32,
-    taken: Arc<Mutex<Option<Arc<egui::ColorImage>>>>,
-}
-
 /// What it means that the CPU draws.
 const SLOW: &str = "The CPU draws: coarsely while something moves. A smaller window is quicker.";
-
-/// Frames after which a window stands still.
-const SETTLED: u32 = 6;
 
 impl Window {
     /// # Errors
@@ -132,7 +120,9 @@ impl Window {
             if let Some(action) = panel::file::menu(ui, &mut self.session) {
                 self.act(action, ui.ctx());
             }
-            ui.strong(short(&self.session.document.title(), 40))
+            // A quarter of the row.
+            let letters = (0.25 * ui.available_width() / 7.0).clamp(12.0, 40.0) as usize;
+            ui.strong(short(&self.session.document.title(), letters))
                 .on_hover_text(self.session.document.path().to_string_lossy());
             if self.session.document.is_dirty() {
                 ui.label("•").on_hover_text("Changed since it was saved");
@@ -149,7 +139,9 @@ impl Window {
                 self.session.redo();
             }
             ui.separator();
-            panel::compare::panel(ui, &mut self.session);
+            let others = ["Inspect", "Theme", "Find", "?"];
+            let others: f32 = others.map(|name| width(ui, name) + ui.spacing().item_spacing.x).iter().sum();
+            panel::compare::panel(ui, &mut self.session, ui.available_width() - others);
             let inspect = ui.selectable_label(self.session.inspect.is_on, "Inspect");
             if inspect.on_hover_text("The numbers of the pixel under the pointer (I); a click keeps it").clicked() {
                 self.session.inspect.toggle();
@@ -207,7 +199,10 @@ impl Window {
         for text in ui.input(pasted).into_iter().filter(|_| !is_for_stops) {
             self.session.paste(&text);
         }
-        if ui.input(|input| input.key_pressed(egui::Key::Escape)) && self.session.hints.dismiss() {
+        // What lies on top goes first.
+        if ui.input(|input| input.key_pressed(egui::Key::Escape))
+            && (self.exporting.dismiss() || self.session.hints.dismiss())
+        {
             ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Escape));
         }
         // Space and the like are for the control that has the keyboard.
@@ -247,40 +242,13 @@ impl Window {
             Action::Loop => session.playback.is_looping = !session.playback.is_looping,
             Action::Strip => session.show.has_strip = !session.show.has_strip,
             Action::Inspect => session.inspect.toggle(),
+            Action::Compare(against) => session.compare.toggle(against),
             Action::NextStage => session.show.stage = after(session.show.stage),
-            Action::Picture if self.exporting.is_open => self.exporting.is_open = false,
             Action::Picture => session.show.stage = ShadeTree::Final,
             Action::Help => session.show.help = !session.show.help,
             Action::InView(action) => self.viewport.act(action, session),
         }
     }
-
-    /// Takes the picture that was asked for, and closes the window.
-    fn take_screenshot(&mut self, ui: &Ui) {
-        let Some(path) = self.session.screenshot.clone() else { return };
-        self.screenshot.frames += 1;
-        let taken = self.screenshot.taken.lock().unwrap_or_else(PoisonError::into_inner).take();
-        if let Some(picture) = taken {
-            if let Err(error) = write(&path, &picture) {
-                self.session.messages.complain("screenshot", error);
-            }
-            ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
-        } else if self.screenshot.frames == SETTLED {
-            let (taken, context) = (self.screenshot.taken.clone(), ui.ctx().clone());
-            ui.ctx().request_screenshot(move |picture| {
-                *taken.lock().unwrap_or_else(PoisonError::into_inner) = Some(picture);
-                context.request_repaint();
-            });
-        }
-        ui.ctx().request_repaint();
-    }
-}
-
-fn write(path: &Path, picture: &egui::ColorImage) -> Result<(), Error> {
-    let [width, height] = picture.size.map(|side| side as u32);
-    let bytes = picture.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()]).collect();
-    let picture = RgbImage::from_raw(width, height, bytes).unwrap_or_default();
-    write_png(path, &picture.into(), Effort::Small)
 }
 
 /// Texts that were pasted.
@@ -344,7 +312,9 @@ impl eframe::App for Window {
             self.filing.save_as(&self.session);
         }
         if let Some(path) = shown.inner {
-            self.exporting.begin(Product::Values(path), &mut self.session);
+            let is_seed = path.ends_with(".emitter.seed");
+            let product = if is_seed { Product::Seeds } else { Product::Values(path) };
+            self.exporting.begin(product, &mut self.session);
         }
         egui::CentralPanel::no_frame().show(ui, |ui| {
             let rect = ui.max_rect();
@@ -389,7 +359,7 @@ impl eframe::App for Window {
         if self.session.playback.is_playing {
             ui.ctx().request_repaint();
         }
-        self.take_screenshot(ui);
+        self.screenshot.advance(ui, &mut self.session);
     }
 
     fn on_exit(&mut self) {

@@ -9,7 +9,8 @@ use haze::{Error, FieldError, builtin};
 use super::history::History;
 use super::pictures::copy_beside;
 use super::recipes::{Recipes, Work, name_of};
-use crate::app::inputs::{caches_of, pictures_of};
+use crate::app::inputs::pictures_of;
+use crate::app::tweak::platform::assets::caches_of;
 use crate::app::tweak::platform::files::{self, Stamp};
 
 /// A preset, where it came from, and how it got to be what it is.

@@ -5,8 +5,9 @@ use std::path::Path;
 use haze::Error;
 use haze::preset::{PictureFolders, Preset};
 
-use crate::app::inputs::{caches_of, picture_files};
+use crate::app::inputs::picture_files;
 use crate::app::recipe::recipes_of;
+use crate::app::tweak::platform::assets::caches_of;
 use crate::app::tweak::platform::files;
 
 /// Copies the files that a preset names from its folder into another, to where the preset looks for them there. Nothing is

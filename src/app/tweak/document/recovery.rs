@@ -56,8 +56,7 @@ impl Recovery {
         if is_written || document.preset.validate().is_err() {
             return Ok(());
         }
-        let path = std::path::absolute(document.path()).unwrap_or_else(|_| document.path().into());
-        let path = if document.is_built_in() { document.path().into() } else { path };
+        let path = if document.is_built_in() { document.path().into() } else { files::absolute(document.path()) };
         let lock = match &mut self.lock {
             Some(lock) => lock,
             none => {

@@ -3,7 +3,7 @@
 use std::fs;
 use std::time::{Duration, Instant};
 
-use eframe::egui::{Key, Modifiers, Theme, Vec2};
+use eframe::egui::{Key, Modifiers, PointerButton, Theme, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use tempfile::TempDir;
@@ -187,6 +187,34 @@ fn a_row_makes_the_sheet_of_its_values_that_the_export_makes() {
     bench.until(|window| window.exporting.sheet.is_some());
     let Sheet { path, .. } = bench.window.state_mut().exporting.sheet.take().unwrap();
     assert!(path.to_string_lossy().contains("thickness"), "{}", path.display());
+}
+
+#[test]
+fn a_click_beside_a_name_makes_a_sheet() {
+    let mut bench = bench();
+    bench.window.state_mut().session.hints.begin();
+    let mut made = |tab: &str, name: &str, button: &str| {
+        bench.window.get_by_label(tab).click();
+        bench.window.run_steps(3);
+        assert!(bench.window.query_by_label(button).is_none());
+        let name = testing::row_name(&bench.window, name);
+        bench.window.hover_at(name);
+        bench.window.run_steps(2);
+        let place = bench.window.get_by_label(button).rect().center();
+        testing::click_at(&mut bench.window, place, PointerButton::Primary);
+        bench.until(|window| window.exporting.sheet.is_some());
+        let path = bench.window.state().exporting.sheet.as_ref().unwrap().path.clone();
+        // Escape closes it, and leaves what lies below.
+        let hints = bench.window.state().session.hints.left();
+        bench.window.key_press(Key::Escape);
+        bench.window.run_steps(2);
+        let window = bench.window.state();
+        assert!(window.exporting.sheet.is_none() && window.session.hints.left() == hints && !hints.is_empty());
+        path.file_name().unwrap().to_string_lossy().into_owned()
+    };
+    assert!(made("Look", "thickness", "Five values on a sheet: thickness").contains("thickness"));
+    assert!(made("Advanced", "coverage", "All values on a sheet: coverage").contains("coverage"));
+    assert!(made("Smoke", "seed", "Nine seeds on a sheet: seed").contains("seeds"));
 }
 
 #[test]

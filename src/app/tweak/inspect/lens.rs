@@ -12,6 +12,7 @@ use super::survey::Survey;
 use super::{Inspect, Told};
 use crate::app::tweak::compare::Side;
 use crate::app::tweak::easel::Easel;
+use crate::app::tweak::platform::clock::Duration;
 use crate::app::tweak::platform::worker::Worker;
 use crate::app::tweak::session::Session;
 use crate::app::tweak::show::Tab;
@@ -77,7 +78,7 @@ impl Lens {
         }
         easel.want_capture((waits <= 0.0).then_some(side));
         if waits > 0.0 {
-            ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(waits.min(INTERVAL)));
+            ui.ctx().request_repaint_after(Duration::from_secs_f64(waits.min(INTERVAL)));
         }
         while let Some(answer) = self.worker.poll() {
             self.is_asking &= matches!(answer, Some(Ok(Answer::Seen(_) | Answer::Survey(_))));

@@ -11,6 +11,9 @@ use crate::app::tweak::session::Session;
 /// How far from the corner.
 const MARGIN: f32 = 8.0;
 
+/// On a smaller picture the numbers are small, points.
+const LARGE: Vec2 = Vec2::new(480.0, 400.0);
+
 /// Draws them while the inspector is on, on the side where the pointer is not.
 pub fn panel(ui: &Ui, viewport: Rect, session: &Session) {
     let (inspect, compare) = (&session.inspect, &session.compare);
@@ -28,11 +31,17 @@ pub fn panel(ui: &Ui, viewport: Rect, session: &Session) {
         (viewport.left_top() + Vec2::splat(MARGIN), egui::Align2::LEFT_TOP)
     };
     let area = egui::Area::new(egui::Id::unique("inspector")).fixed_pos(corner).pivot(pivot).interactable(false);
+    let is_small = viewport.width() < LARGE.x || viewport.height() < LARGE.y;
     area.constrain_to(viewport).show(ui.ctx(), |ui| {
         egui::Frame::popup(ui.style()).show(ui, |ui| {
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+            if is_small {
+                ui.style_mut().override_font_id = Some(egui::FontId::proportional(11.0));
+                ui.spacing_mut().item_spacing = Vec2::new(4.0, 1.0);
+                ui.spacing_mut().interact_size = Vec2::new(26.0, 14.0);
+            }
             match told {
-                Some(told) => numbers(ui, told, session),
+                Some(told) => numbers(ui, told, session, is_small),
                 None => drop(ui.weak("Made by the CPU: no texels are kept to tell from")),
             }
         });
@@ -49,7 +58,7 @@ fn cross(ui: &Ui, at: egui::Pos2, is_pinned: bool) {
     }
 }
 
-fn numbers(ui: &mut Ui, told: &Told, session: &Session) {
+fn numbers(ui: &mut Ui, told: &Told, session: &Session, is_small: bool) {
     let Told { pixel, side, names, probe, exposure } = told;
     let keep = if session.inspect.pinned.is_some() { "kept" } else { "click keeps it" };
     ui.horizontal(|ui| {
@@ -66,7 +75,7 @@ fn numbers(ui: &mut Ui, told: &Told, session: &Session) {
     for system in probe.systems.iter().rev() {
         ui.separator();
         ui.label(RichText::new(names.get(system.system).map_or("smoke", String::as_str)).strong());
-        of_system(ui, system, &lights);
+        of_system(ui, system, &lights, is_small);
     }
     if probe.systems.is_empty() {
         ui.weak("No smoke here");
@@ -80,7 +89,7 @@ fn numbers(ui: &mut Ui, told: &Told, session: &Session) {
     }
 }
 
-fn of_system(ui: &mut Ui, probe: &SystemProbe, lights: &[String]) {
+fn of_system(ui: &mut Ui, probe: &SystemProbe, lights: &[String], is_small: bool) {
     ui.horizontal(|ui| {
         ball(ui, probe.normal);
         ui.vertical(|ui| {
@@ -89,14 +98,14 @@ fn of_system(ui: &mut Ui, probe: &SystemProbe, lights: &[String]) {
             ui.label(format!("normal {x:.2} {y:.2} {z:.2}"));
         });
     });
-    egui::Grid::new(("lights", probe.system)).num_columns(6).spacing([10.0, 2.0]).show(ui, |ui| {
+    egui::Grid::new(("lights", probe.system)).num_columns(6).spacing(gaps(ui)).show(ui, |ui| {
         for title in ["", "N·L", "ramp", "reaches", "diffuse", "specular"] {
             ui.weak(title);
         }
         ui.end_row();
-        probe.lights.iter().for_each(|light| of_light(ui, light, lights));
+        probe.lights.iter().for_each(|light| of_light(ui, light, lights, is_small));
     });
-    egui::Grid::new(("sums", probe.system)).num_columns(3).spacing([10.0, 2.0]).show(ui, |ui| {
+    egui::Grid::new(("sums", probe.system)).num_columns(3).spacing(gaps(ui)).show(ui, |ui| {
         let scatter = probe.soft_scatter_weight.map_or("by ramp".into(), |weight| format!("weight {weight:.2}"));
         for (title, note, light) in [
             ("diffuse", String::new(), probe.diffuse),
@@ -112,7 +121,9 @@ fn of_system(ui: &mut Ui, probe: &SystemProbe, lights: &[String]) {
     });
 }
 
-fn of_light(ui: &mut Ui, light: &LightProbe, names: &[String]) {
+fn of_light(ui: &mut Ui, light: &LightProbe, names: &[String], is_small: bool) {
+    // Their sums have numbers in any case.
+    let colour = if is_small { hue } else { colour };
     ui.label(names.get(light.light).map_or("light", String::as_str));
     ui.label(format!("{:.2}", light.cosine));
     ui.label(format!("{:.2}", light.coordinate));
@@ -127,9 +138,14 @@ fn of_light(ui: &mut Ui, light: &LightProbe, names: &[String]) {
     ui.end_row();
 }
 
+/// Between columns, and between rows.
+fn gaps(ui: &Ui) -> Vec2 {
+    ui.spacing().item_spacing + Vec2::new(2.0, -1.0)
+}
+
 /// What the picture shows, before the film curve and after.
 fn picture(ui: &mut Ui, light: Vec4, exposure: f32) {
-    egui::Grid::new("picture").num_columns(2).spacing([10.0, 2.0]).show(ui, |ui| {
+    egui::Grid::new("picture").num_columns(2).spacing(gaps(ui)).show(ui, |ui| {
         ui.label("picture, linear");
         colour(ui, light.xyz());
         ui.end_row();
@@ -143,11 +159,15 @@ fn picture(ui: &mut Ui, light: Vec4, exposure: f32) {
     });
 }
 
+fn hue(ui: &mut Ui, light: Vec3) {
+    let [r, g, b] = (light / light.max_element().max(1.0)).to_array();
+    swatch(ui, egui::Rgba::from_rgb(r, g, b).into());
+}
+
 /// Linear light, and its hue.
 fn colour(ui: &mut Ui, light: Vec3) {
-    let [r, g, b] = (light / light.max_element().max(1.0)).to_array();
     ui.horizontal(|ui| {
-        swatch(ui, egui::Rgba::from_rgb(r, g, b).into());
+        hue(ui, light);
         ui.label(format!("{:.3} {:.3} {:.3}", light.x, light.y, light.z));
     });
 }

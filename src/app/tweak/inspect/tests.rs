@@ -2,7 +2,7 @@ use std::time::Duration;
 
 use eframe::egui::{self, Key, Pos2, Theme, Vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 use crate::app::tweak::compare::Against;
 use crate::app::tweak::testing::{brightness, picture, window};
@@ -69,6 +69,35 @@ fn of_two_pictures_the_one_under_the_pointer_is_told() {
     assert_eq!(show(Against::Forward, 20.0, "lit sprite by sprite"), [false, true]);
     assert_eq!(show(Against::Reference, 20.0, "Made by the CPU"), [false, false]);
     assert_eq!(show(Against::Reference, -20.0, "coverage"), [true, false]);
+}
+
+#[test]
+fn all_numbers_are_on_the_picture_of_the_smallest_window() {
+    let mut harness = window("column", Vec2::new(640.0, 400.0), Theme::Dark);
+    // A page without colours in numbers.
+    harness.get_by_label("Cost").click();
+    harness.key_press(Key::I);
+    let viewport = harness.get_by_label("viewport").rect();
+    for side in [-10.0, 10.0] {
+        let place = smoke(&harness) + Vec2::new(side, 0.0);
+        harness.hover_at(place);
+        wait_for(&mut harness, |harness| shows(harness, "coverage"));
+        harness.run_steps(3);
+        let is_colour = |node: &egui_kittest::Node<'_>| {
+            let text = node.accesskit_node().value().unwrap_or_default();
+            text.split(' ').filter(|number| number.parse::<f32>().is_ok()).count() == 3
+        };
+        let of_text = |text| harness.query_all_by_label_contains(text);
+        let said: Vec<_> = harness.query_all_by_label_contains(".").filter(is_colour).collect();
+        assert!(said.len() >= 6, "{}", said.len());
+        for node in said.into_iter().chain(of_text("Pixel")).chain(of_text("as shown, sRGB")) {
+            let (rect, label) = (node.rect(), node.accesskit_node().value());
+            assert!(viewport.contains_rect(rect), "{label:?} at {rect} of {viewport}");
+        }
+        if let Some(folder) = std::env::var_os("HAZE_LOOK").map(std::path::PathBuf::from) {
+            picture(&mut harness).save(folder.join(format!("inspector_{side}.png"))).unwrap();
+        }
+    }
 }
 
 #[test]

@@ -8,8 +8,9 @@ use glam::Vec3;
 use haze::preset::Tooltips;
 use haze::settings::{Choice, FieldVisitor, Fields, PictureRole, Value, path_of};
 
+use super::control;
 use super::gallery::gallery;
-use super::row::{self, Asked, Row, spaced};
+use super::row::{Asked, Row, spaced};
 use super::value::shown_value;
 use crate::app::tweak::picture_thumbnails::PictureThumbnails;
 use crate::app::tweak::reach::Usual;
@@ -47,6 +48,7 @@ impl Desk<'_> {
 
 /// What a sheet is called of a number's values, and of all there are.
 pub const FIVE: Option<&str> = Some("Five values on a sheet");
+const SEEDS: Option<&str> = Some("Nine seeds on a sheet");
 const ALL: Option<&str> = Some("All values on a sheet");
 
 /// Draws the fields of a struct that `path` leads to; groups fold, and what is under a heading. The first heading is open.
@@ -203,22 +205,24 @@ impl FieldVisitor for Rows<'_, '_, '_> {
     fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, unit: &'static str) {
         let usual = self.only.and_then(|only| only.usual);
         self.row(name, (unit, FIVE), |ui, label, refused, _, _| {
-            row::number(ui, label, value, (&range, usual), unit, refused);
+            control::number(ui, label, value, (&range, usual), unit, refused);
         });
     }
 
     fn integer(&mut self, name: &'static str, value: &mut u32, range: RangeInclusive<u32>, unit: &'static str) {
         self.row(name, (unit, FIVE), |ui, label, refused, _, _| {
-            row::integer(ui, label, value, &range, unit, refused);
+            control::integer(ui, label, value, &range, unit, refused);
         });
     }
 
     fn vector(&mut self, name: &'static str, value: &mut Vec3, range: RangeInclusive<f32>, unit: &'static str) {
-        self.row(name, (unit, None), |ui, label, refused, _, _| row::vector(ui, value, &range, unit, label, refused));
+        self.row(name, (unit, None), |ui, label, refused, _, _| {
+            control::vector(ui, value, &range, unit, label, refused);
+        });
     }
 
     fn colour(&mut self, name: &'static str, value: &mut Vec3, _: RangeInclusive<f32>) {
-        self.row(name, ("", None), |ui, label, _, _, _| row::colour(ui, value, label));
+        self.row(name, ("", None), |ui, label, _, _, _| control::colour(ui, value, label));
     }
 
     fn flag(&mut self, name: &'static str, value: &mut bool) {
@@ -230,7 +234,7 @@ impl FieldVisitor for Rows<'_, '_, '_> {
     fn choice(&mut self, name: &'static str, value: &mut dyn Choice) {
         let plain = self.path.iter().map(|step| step.0).chain([name]).collect::<Vec<_>>().join(".");
         self.row(name, ("", ALL), |ui, label, _, path, tooltips| {
-            row::choice(ui, value, path, |choice| tooltips.choice(&plain, choice)).labelled_by(label.id);
+            control::choice(ui, value, path, |choice| tooltips.choice(&plain, choice)).labelled_by(label.id);
         });
     }
 
@@ -249,12 +253,12 @@ impl FieldVisitor for Rows<'_, '_, '_> {
 
     fn particles(&mut self, name: &'static str, value: &mut String) {
         self.row(name, ("", None), |ui, label, _, path, _| {
-            row::path(ui, value, path).labelled_by(label.id);
+            control::path(ui, value, path).labelled_by(label.id);
         });
     }
 
     fn seed(&mut self, name: &'static str, value: &mut u32) {
-        self.row(name, ("", FIVE), |ui, label, _, _, _| {
+        self.row(name, ("", SEEDS), |ui, label, _, _, _| {
             ui.add(egui::DragValue::new(value)).labelled_by(label.id);
             if ui.button("next").clicked() {
                 *value = value.wrapping_add(1);

@@ -113,6 +113,6 @@ fn type_path(ui: &Ui, filing: &mut Filing, session: &mut Session) {
 
 /// The folder that a file of this path would be in.
 fn folder_of(path: &str) -> String {
-    let path = std::path::absolute(path).unwrap_or_default();
+    let path = files::absolute(Path::new(path));
     path.parent().unwrap_or(&path).display().to_string()
 }

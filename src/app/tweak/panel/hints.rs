@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Align2, Pos2, Rect, Ui, Vec2, vec2};
 
-use crate::app::tweak::action::{ACTIONS, Action};
+use crate::app::tweak::action::{Action, keys_of};
 use crate::app::tweak::hints::{Doing, HINTS, Hint, Place};
 use crate::app::tweak::session::Session;
 use crate::app::tweak::show::Tab;
@@ -57,7 +57,7 @@ fn with_key(ui: &Ui, hint: Hint, text: &str) -> String {
         Hint::Keys => Action::Help,
         _ => return text.into(),
     };
-    let keys = ACTIONS.iter().find(|entry| entry.action == action).map(|entry| ui.ctx().format_shortcut(&entry.keys));
+    let keys = keys_of(action).map(|keys| ui.ctx().format_shortcut(&keys));
     let sign = if hint == Hint::Keys { "? or " } else { "" };
     format!("{sign}{} {text}", keys.unwrap_or_default())
 }

@@ -6,8 +6,9 @@ use haze::frame::MAX_LIGHTS;
 use haze::preset::{Camera, Preset};
 use haze::{Bounds, Light, LightKind};
 
+use super::control;
 use super::fields::{self, Desk};
-use super::row::{self, Row};
+use super::row::Row;
 use crate::app::tweak::angles::{Angles, STEEPEST, from_angles, to_angles};
 use crate::app::tweak::lights::{ShownLights, fresh, name_of};
 use crate::app::tweak::smoke::{Smoke, put_behind};
@@ -52,7 +53,7 @@ fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut ShownLights) 
     if button.clicked() {
         shown.selected = (!is_selected).then_some(index);
     }
-    row::swatch(ui, &mut light.colour).accessible_name(format!("colour of {name}"));
+    control::swatch(ui, &mut light.colour).accessible_name(format!("colour of {name}"));
     let speed = 0.01 * light.intensity.max(0.1);
     let intensity = egui::DragValue::new(&mut light.intensity).speed(speed).range(0.0..=1.0e9).max_decimals(3);
     let intensity = ui.add_sized([70.0, height], intensity.update_while_editing(false));
@@ -122,7 +123,7 @@ fn angles(ui: &mut Ui, desk: &mut Desk<'_>, index: usize, light: &mut Light) {
         let row = Row { name, tooltip, is_changed: desk.changed.contains(&path), second, sheet: None, inert: None };
         let refused = &mut desk.refused;
         let asked = row.show(ui, |ui, label| {
-            row::number(ui, label, value, (&(-most..=most), None), "degrees", refused);
+            control::number(ui, label, value, (&(-most..=most), None), "degrees", refused);
         });
         desk.asked.extend(asked.map(|asked| (asked, path.clone())));
     };

@@ -4,6 +4,7 @@ use eframe::egui::Ui;
 use haze::preset::{Preset, PresetSystem};
 use haze::{Light, LightKind};
 
+use super::control;
 use super::fields::{self, Desk, FIVE, show_named};
 use super::row::{self, Asked, Row};
 use crate::app::tweak::lights::{ShownLights, name_of};
@@ -53,7 +54,7 @@ fn made_row(ui: &mut Ui, desk: &mut Desk<'_>, system: &mut PresetSystem, index: 
     let before = ui.cursor().min;
     let asked = row.show(ui, |ui, label| {
         let mut value = (made.get)(system);
-        if row::number(ui, label, &mut value, (&made.range, Some(made.usual)), made.unit, refused) {
+        if control::number(ui, label, &mut value, (&made.range, Some(made.usual)), made.unit, refused) {
             (made.set)(system, value);
         }
     });

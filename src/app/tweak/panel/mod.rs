@@ -2,6 +2,7 @@
 
 pub mod browser;
 pub mod compare;
+pub mod control;
 pub mod curve;
 pub mod export;
 pub mod fields;

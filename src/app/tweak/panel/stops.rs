@@ -4,7 +4,7 @@ use eframe::egui::{self, Color32, Ui};
 use haze::gradient_editor::Surroundings;
 use haze::ramp::bake::{Blend, RECIPE_VERSION, RampRecipe, RampRow};
 
-use super::row;
+use super::control;
 use crate::app::tweak::ramp_files::Source;
 use crate::app::tweak::session::Session;
 
@@ -79,7 +79,7 @@ pub fn editor(
 fn blend(ui: &mut Ui, blend: &mut Blend, field: &str) -> bool {
     let before = *blend;
     let label = ui.label("blended in");
-    row::choice(ui, blend, &format!("blend of {field}"), |_| None).labelled_by(label.id);
+    control::choice(ui, blend, &format!("blend of {field}"), |_| None).labelled_by(label.id);
     *blend != before
 }
 

@@ -8,7 +8,8 @@ use haze::assets::{cache, file, json};
 use haze::picture::{FileIdentity, MAX_BYTES, write_file};
 use haze::preset::Preset;
 
-pub use crate::app::watch::Stamp;
+pub use crate::app::watch::{Stamp, Watcher};
+pub use haze::picture::{Effort, read_colour_png, read_png, write_png};
 
 /// A preset and the text that it was read from.
 pub fn read_preset(name_or_path: &Path) -> Result<(Preset, String), Error> {
@@ -60,6 +61,11 @@ pub fn list(folder: &Path) -> Vec<PathBuf> {
 /// Whether something is there.
 pub fn exists(path: &Path) -> bool {
     path.exists()
+}
+
+/// The path from the root on; as it is where that is not known.
+pub fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or(path.into())
 }
 
 /// Whether two paths lead to one place.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use haze::preset::{MaterialNames, PictureFolders, Preset, picture_file};
+use haze::preset::{MaterialNames, PictureFolders, Preset};
 use haze::sprite::SpriteLayout;
 use haze::sprite::bake::SpriteRecipe;
 use haze::{Error, MaterialAssets};
@@ -11,6 +11,7 @@ use haze::{Error, MaterialAssets};
 use super::bakery::{Baked, Bakery, Done, Order, What, Whole};
 use super::source::{Looked, Source, Stamps, copy, detail_of, recipe_of, recipe_of_built_in, stamps};
 use crate::app::tweak::document::document::Document;
+use crate::app::tweak::platform::assets::place_of;
 
 /// By the names that the preset has for them.
 #[derive(Default)]
@@ -65,9 +66,7 @@ impl SpriteFiles {
         let bakery = self.bakery.as_mut()?;
         let layout = SpriteLayout { columns: names.columns, rows: names.rows, y_down: names.y_down };
         let known = self.known.entry(names.sprite.clone()).or_insert_with(|| {
-            let place = |file| folders.find(file).ok().or_else(|| folders.places(file).next());
-            let picture = picture_file(&names.sprite).and_then(place).unwrap_or_default();
-            let mut known = Known::new(picture, layout, Source::Reading);
+            let mut known = Known::new(place_of(&names.sprite, folders), layout, Source::Reading);
             known.look(&names.sprite, bakery);
             known
         });

@@ -4,14 +4,15 @@ use std::path::{Path, PathBuf};
 
 use haze::assets::json;
 use haze::builtin::{self, Builtin};
-use haze::picture::{Effort, decode_png, read_png, write_png};
+use haze::picture::decode_png;
 use haze::sprite::SpriteLayout;
 use haze::sprite::bake::{BakedSprite, SpriteRecipe};
 use haze::sprite::check::check;
 use haze::{Error, FieldError};
 use image::RgbaImage;
 
-use crate::app::tweak::platform::files::{self, Stamp};
+use crate::app::tweak::platform::assets::sprite_recipe;
+use crate::app::tweak::platform::files::{self, Effort, Stamp, read_png, write_png};
 
 /// What a sprite is to who wants to change it.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,7 +83,7 @@ fn file(picture: &Path, layout: SpriteLayout) -> Found {
         Err(error) => return (Source::Missing, vec![error.to_string()], None),
     };
     let recipe = recipe_of(picture);
-    let (source, layout, broken) = match files::exists(&recipe).then(|| SpriteRecipe::load(&recipe)) {
+    let (source, layout, broken) = match files::exists(&recipe).then(|| sprite_recipe(&recipe)) {
         None => (Source::Painted, layout, None),
         Some(Err(error)) => (Source::Painted, layout, Some(error.to_string())),
         Some(Ok(recipe)) if makes(&recipe, &sheet) => {

@@ -29,19 +29,29 @@ pub fn other(ui: &Ui, session: &mut Session, shot: &Shot) -> Option<Other> {
     None
 }
 
-/// What stands between two pictures, and can be moved.
+/// Share of the width that a key moves the divider.
+const STEP: f32 = 0.02;
+
+/// What stands between two pictures, and can be moved: dragged, or by the arrows of the keyboard.
 pub fn divider(ui: &Ui, rect: egui::Rect, split: &mut f32) {
     let x = rect.left() + *split * rect.width();
     let grip = egui::Rect::from_x_y_ranges(x - 5.0..=x + 5.0, rect.y_range());
     let response = ui
-        .interact(grip, ui.scope_id().with("divider"), Sense::drag())
+        .interact(grip, ui.scope_id().with("divider"), Sense::drag() | Sense::focusable_noninteractive())
         .on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
     response.widget_info(|| egui::WidgetInfo::slider(true, f64::from(*split), "divider"));
-    if response.dragged() {
-        *split = (*split + response.drag_delta().x / rect.width()).clamp(0.02, 0.98);
+    let mut moved = response.drag_delta().x / rect.width();
+    if response.has_focus() {
+        let arrows = egui::EventFilter { horizontal_arrows: true, ..Default::default() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
+        let presses = |key| ui.input(|input| input.num_presses(key)) as f32;
+        moved += STEP * (presses(egui::Key::ArrowRight) - presses(egui::Key::ArrowLeft));
+    }
+    if moved != 0.0 {
+        *split = (*split + moved).clamp(0.02, 0.98);
     }
     let x = (rect.left() + *split * rect.width()).round() + 0.5;
-    let colour = if response.hovered() || response.dragged() {
+    let colour = if response.hovered() || response.dragged() || response.has_focus() {
         egui::Color32::WHITE
     } else {
         egui::Color32::from_white_alpha(160)
@@ -97,7 +107,21 @@ mod tests {
     use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
     use super::*;
-    use crate::app::tweak::testing::{measured, picture};
+    use crate::app::tweak::testing::{measured, picture, window};
+
+    #[test]
+    fn the_divider_is_moved_by_keys_too() {
+        let mut harness = window("column", Vec2::new(640.0, 400.0), egui::Theme::Dark);
+        harness.key_press(egui::Key::F6);
+        harness.run_steps(2);
+        harness.get_by_label("divider").focus();
+        harness.run_steps(2);
+        for (key, expected) in [(egui::Key::ArrowRight, 0.5 + STEP), (egui::Key::ArrowLeft, 0.5)] {
+            harness.key_press(key);
+            harness.run_steps(2);
+            assert!((harness.state().session.compare.split - expected).abs() < 1e-6);
+        }
+    }
 
     #[test]
     fn both_pictures_say_what_they_are_and_what_they_take() {

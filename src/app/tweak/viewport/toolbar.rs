@@ -8,7 +8,7 @@ use glam::Vec3;
 use haze::preset::Tooltips;
 use haze::settings::{Choice, FieldVisitor, Fields};
 
-use crate::app::tweak::action::{InView, keys_of};
+use crate::app::tweak::action::{Action, InView, keys_of};
 use crate::app::tweak::panel::row::spaced;
 use crate::app::tweak::session::Session;
 use crate::app::tweak::show::Overlay;
@@ -32,7 +32,8 @@ pub fn toolbar(ui: &mut Ui, rect: Rect, session: &mut Session) -> Option<InView>
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing = egui::vec2(3.0, 3.0);
                 for (action, name, tooltip) in SWITCHES {
-                    let keys = keys_of(action).map_or(String::new(), |keys| ui.ctx().format_shortcut(&keys));
+                    let keys = keys_of(Action::InView(action)).map(|keys| ui.ctx().format_shortcut(&keys));
+                    let keys = keys.unwrap_or_default();
                     let button = ui.selectable_label(is_on(session, action), name);
                     if button.on_hover_text(format!("{tooltip} ({keys})")).clicked() {
                         asked = Some(action);

@@ -13,6 +13,7 @@ use haze::sprite::bake::SpriteRecipe;
 
 use crate::app::tweak::messages::short;
 use crate::app::tweak::panel::fields::{self, Desk};
+use crate::app::tweak::platform::clock::Duration;
 use crate::app::tweak::session::Session;
 use crate::app::tweak::sprite::files::set_recipe;
 use crate::app::tweak::sprite::source::Source;
@@ -60,7 +61,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialNames) {
                     let text = format!("Baking frame {} of {count}", (done + 1).min(count));
                     ui.add(ProgressBar::new(done as f32 / count as f32).text(text));
                     // Frames are told to no one.
-                    ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
+                    ui.ctx().request_repaint_after(Duration::from_millis(100));
                 }
                 None => {
                     ui.weak("Saved with each step").on_hover_text(WRITTEN);
