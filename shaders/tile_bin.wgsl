@@ -85,8 +85,17 @@ fn allocate(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) 
 
 // Room for a list. Lists lie in any order, what is in them does not.
 fn allocated(length: u32) -> vec2u {
-    let first = atomicAdd(&tally.entries, length);
-    let fits = first + length <= tiles.capacity && first + length >= first;
+    var first = atomicLoad(&tally.entries);
+    loop {
+        // More than 32 bits can count are as many as they can.
+        let next = first + min(length, 0xffffffffu - first);
+        let added = atomicCompareExchangeWeak(&tally.entries, first, next);
+        if added.exchanged {
+            break;
+        }
+        first = added.old_value;
+    }
+    let fits = length <= tiles.capacity && first <= tiles.capacity - length;
     return select(vec2u(EVERYTHING, tally.shown), vec2u(first, length), fits);
 }
 

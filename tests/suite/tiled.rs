@@ -6,14 +6,16 @@ use glam::{UVec2, Vec3, Vec4, vec3};
 use haze::builtin;
 #[cfg(feature = "app")]
 use haze::demo::shot::Shot;
+use haze::formula::uniforms::TilesUniform;
 use haze::headless::Headless;
 use haze::picture::Picture;
 use haze::settings::*;
-use haze::{Bounds, Error, Particle, Particles, wgpu};
+use haze::sprite::{Sprite, SpriteLayout};
+use haze::{Bounds, Error, Particle, Particles, shader, wgpu};
 
 use crate::common::{AGREEMENT, STEP_AGREEMENT, gpu, has_tiles, psnr};
 use crate::creations;
-use crate::host::Host;
+use crate::host::{Host, as_floats};
 use crate::stage::Stage;
 use crate::techniques;
 
@@ -337,4 +339,119 @@ fn what_cannot_be_tiled_is_refused() {
     let particles = Particles::Buffer { buffer: &vertices, offset: 0, count: 1 };
     let message = refused(host.draw_particles(gpu(), &stage, particles));
     assert!(message.contains("STORAGE"), "{message}");
+}
+
+#[test]
+fn two_hundred_faint_layers_add_up() {
+    if !has_tiles() {
+        return;
+    }
+    const LAYERS: usize = 256;
+    // Full of amount but for the border.
+    let mut sheet = image::RgbaImage::from_pixel(64, 64, image::Rgba([128, 128, 255, 255]));
+    for i in 0..64 {
+        for (x, y) in [(i, 0), (i, 63), (0, i), (63, i)] {
+            sheet.put_pixel(x, y, image::Rgba([128, 128, 255, 0]));
+        }
+    }
+    let mut stage = stage(Technique::Hard);
+    let sprite = Sprite::from_picture(std::path::Path::new("full"), &sheet, SpriteLayout::default()).unwrap();
+    stage.material.sprite = sprite;
+    stage.settings.accumulate.scale = 1;
+    let particle = Particle { position: vec3(0.0, 0.0, -3.0), radius: 4.0, amount: 0.02, ..Particle::default() };
+    stage.particles = vec![particle; LAYERS];
+    // The sum in f64, front to back.
+    let mut through = 1.0_f64;
+    for _ in 0..LAYERS {
+        through *= 1.0 - f64::from(particle.amount);
+    }
+    let oracle = 1.0 - through;
+    let mut decibels = |path, format, encoding| {
+        stage.settings.path = path;
+        (stage.settings.accumulate.format, stage.settings.accumulate.encoding) = (format, encoding);
+        let mut host = Host::new(gpu(), &stage).unwrap();
+        host.draw(gpu(), &stage).unwrap();
+        let targets = host.renderer.targets(0).unwrap();
+        let texels = as_floats(gpu(), targets.accumulation[0].texture());
+        let (width, size) = (texels.width(), targets.size);
+        let texels = gpu().read_rgba16float(&texels).unwrap();
+        // The middle of the picture.
+        let (mut squares, mut count) = (0.0, 0);
+        for y in size.y / 4..size.y * 3 / 4 {
+            for x in size.x / 4..size.x * 3 / 4 {
+                squares += (f64::from(texels[(y * width + x) as usize].w) - oracle).powi(2);
+                count += 1;
+            }
+        }
+        -10.0 * (squares / f64::from(count)).max(1.0e-12).log10()
+    };
+    let (half, byte) = (AccumulationFormat::Rgba16Float, AccumulationFormat::Rgba8Unorm);
+    let tiled = decibels(Path::Tiled, half, NormalEncoding::Signed);
+    let tiled_byte = decibels(Path::Tiled, byte, NormalEncoding::Biased);
+    let raster = decibels(Path::Raster, half, NormalEncoding::Signed);
+    let raster_byte = decibels(Path::Raster, byte, NormalEncoding::Biased);
+    println!("tiled {tiled:.1} dB, 8 bits {tiled_byte:.1}; raster {raster:.1}, 8 bits {raster_byte:.1}");
+    assert!(tiled >= 60.0, "{tiled}");
+    // A step of 8 bits is 48 dB, its rounding 59.
+    assert!(tiled_byte >= 50.0, "{tiled_byte}");
+    assert!(raster_byte < 30.0, "blending in 8 bits sticks: {raster_byte}");
+}
+
+#[test]
+fn lists_of_more_than_32_bits_can_count_do_not_wrap() {
+    if !has_tiles() {
+        return;
+    }
+    let gpu = gpu();
+    let source = shader::compose(shader::source("tile_bin.wgsl").unwrap()).unwrap();
+    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: None,
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: None,
+        layout: None,
+        module: &module,
+        entry_point: Some("allocate_alone"),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    });
+    // Together 6 more than 2^32 in a buffer of 10: only one of the last two may be in it, or both.
+    let lengths = [3_000_000_000_u32, 1_294_967_292, 4, 6];
+    let tiles = TilesUniform { count: 9, columns: 2, rows: 2, runs: 1, capacity: 10, ..TilesUniform::default() };
+    let buffer = |bytes: &[u8], usage| {
+        let usage = usage | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
+        let size = bytes.len() as u64;
+        let descriptor = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
+        let buffer = gpu.device.create_buffer(&descriptor);
+        gpu.queue.write_buffer(&buffer, 0, bytes);
+        buffer
+    };
+    let (uniform, storage) = (wgpu::BufferUsages::UNIFORM, wgpu::BufferUsages::STORAGE);
+    let uniform = buffer(bytemuck::bytes_of(&tiles), uniform);
+    let [counts, bins, tally] = [bytemuck::cast_slice(&lengths), &[0; 32], bytemuck::cast_slice(&[9_u32, 0])]
+        .map(|bytes| buffer(bytes, storage));
+    let bound = [(0, &uniform), (5, &counts), (7, &bins), (8, &tally)];
+    let entries = bound.map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
+    let layout = pipeline.get_bind_group_layout(0);
+    let group =
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries });
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.dispatch_workgroups(1, 1, 1);
+    }
+    gpu.submit(encoder).unwrap();
+    let words = |buffer| bytemuck::pod_collect_to_vec::<u8, u32>(&gpu.read_buffer(buffer).unwrap());
+    // As many as can be counted, not what is left of them.
+    assert_eq!(words(&tally)[1], u32::MAX);
+    let bins = words(&bins);
+    for (bin, length) in bins.chunks(2).zip(lengths) {
+        match bin[0] {
+            u32::MAX => assert_eq!(bin[1], 9, "it reads all sprites"),
+            first => assert!(bin[1] == length && first + length <= 10, "{bins:?}"),
+        }
+    }
 }
