@@ -79,10 +79,11 @@ pub use assets::material::MaterialAssets;
 #[doc(inline)]
 pub use assets::{builtin, cache, noise, path_trace, picture, ramp, sprite};
 pub use error::{Error, FieldError};
-pub use frame::{Bounds, Frame, Light, LightKind, Material, Particle, Particles, SceneDepth, System, View};
+pub use frame::{Bounds, Emission, Frame, Light, LightKind, Material, Particle, Particles, SceneDepth, System, View};
 pub use renderer::{
-    Context, Descriptor, FrameCounts, FrameTimes, MemoryUse, Overdraw, PassTime, Renderer, SceneDepthKind, TargetViews,
-    Timing, WarmUp, read_only_depth_is_supported, shader,
+    Context, Descriptor, FrameCounts, FrameTimes, MemoryUse, Overdraw, PassTime, PathChoice, PathCosts, PathLoad,
+    PathModel, PathModelSource, PathReason, Renderer, SceneDepthKind, TargetViews, TiledMemory, Timing, WarmUp,
+    read_only_depth_is_supported, shader,
 };
 pub use settings::{ScaleBudget, Settings};
 

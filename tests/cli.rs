@@ -272,7 +272,11 @@ fn presets_are_listed_checked_and_described() {
     assert!(line("settings.blend_mode").ends_with("default \"alpha\"; no effect: forward only"), "{shown}");
     assert_eq!(text(&["preset", "show", "--changed", "idle.json"]).lines().count(), 4);
     assert!(text(&["preset", "schema"]).contains("\"soft_fade\""));
-    assert!(text(&["info"]).contains("gpu: "));
+    let info = text(&["info"]);
+    assert!(info.contains("gpu: ") && info.contains("path auto takes"), "{info}");
+    let reasons: Vec<_> = info.lines().filter(|line| line.starts_with("  ")).collect();
+    let is_reason = |line: &&str| line.contains(": about ") && line.contains("probe") || line.contains("no path tiled");
+    assert!(!reasons.is_empty() && reasons.iter().all(is_reason), "{info}");
     assert!(text(&["--help"]).contains("shade-tree"));
 }
 

@@ -8,9 +8,18 @@ use super::scene::Scene;
 use crate::assets::cache::Cache;
 use crate::assets::material::MaterialAssets;
 use crate::error::Error;
-use crate::frame::Particle;
+use crate::frame::{Emission, Particle};
 use crate::preset::{PictureFolders, Preset, PresetSystem};
 use crate::settings::{Settings, ShadeTree};
+
+/// Births of an emitter from which on it is evaluated where it is drawn.
+const MANY: u32 = 1 << 14;
+
+/// Where the particles of a system are.
+pub(super) enum Source {
+    Particles(Vec<Particle>),
+    Emission(Emission),
+}
 
 /// A preset with its pictures loaded.
 #[derive(Clone, Debug)]
@@ -87,12 +96,30 @@ impl Shot {
 
     /// Particles and settings of every system, in order.
     pub(super) fn systems(&self) -> Vec<(Vec<Particle>, Settings)> {
-        let evaluate = |(index, system): (usize, &PresetSystem)| {
+        self.each_system(|system, cache| {
             let mut particles = Vec::new();
-            let cache = self.caches.get(index).and_then(Option::as_ref);
             system.particles(cache, self.preset.time, &mut particles);
-            (particles, system.settings_for(self.size.y))
+            particles
+        })
+    }
+
+    /// The same for a renderer that may evaluate emitters on the GPU: those of many particles are left to it.
+    pub(super) fn sources(&self) -> Vec<(Source, Settings)> {
+        self.each_system(|system, cache| match system.emission(cache, self.preset.time) {
+            Some(emission) if emission.count() > MANY => Source::Emission(emission),
+            _ => {
+                let mut particles = Vec::new();
+                system.particles(cache, self.preset.time, &mut particles);
+                Source::Particles(particles)
+            }
+        })
+    }
+
+    fn each_system<T>(&self, source: impl Fn(&PresetSystem, Option<&Cache>) -> T) -> Vec<(T, Settings)> {
+        let system = |(index, system): (usize, &PresetSystem)| {
+            let cache = self.caches.get(index).and_then(Option::as_ref);
+            (source(system, cache), system.settings_for(self.size.y))
         };
-        self.preset.systems.iter().enumerate().map(evaluate).collect()
+        self.preset.systems.iter().enumerate().map(system).collect()
     }
 }

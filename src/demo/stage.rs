@@ -7,7 +7,7 @@ use glam::{UVec2, Vec3, Vec4};
 
 use super::capture::Capture;
 use super::scene_renderer::{COLOUR_FORMAT, DEPTH_FORMAT, LINEAR_FORMAT, SceneRenderer, SceneTargets, texture, whole};
-use super::shot::Shot;
+use super::shot::{Shot, Source};
 use crate::assets::material::MaterialAssets;
 use crate::assets::picture::Picture;
 use crate::error::Error;
@@ -16,7 +16,8 @@ use crate::headless::Headless;
 use crate::preset::Environment;
 use crate::renderer::shader::Sources;
 use crate::renderer::{
-    Context, Descriptor, MemoryUse, Renderer, SceneDepthKind, Timing, WarmUp, read_only_depth_is_supported,
+    Context, Descriptor, MemoryUse, PathChoice, PathModel, Renderer, SceneDepthKind, Timing, WarmUp,
+    read_only_depth_is_supported,
 };
 use crate::settings::ShadeTree;
 
@@ -57,6 +58,17 @@ impl StageContext {
     /// What measures the stages of this device; none where it cannot.
     pub fn timing(&self) -> Option<Timing> {
         Timing::new(&self.device, &self.queue)
+    }
+
+    /// As [`Context::measure_paths`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn measure_paths(
+        &self,
+        submit: impl FnMut(wgpu::CommandEncoder) -> Result<(), Error>,
+    ) -> Result<PathModel, Error> {
+        self.haze.measure_paths(&self.device, &self.queue, submit)
     }
 
     /// The same with another context of haze's, of the same device: with other shaders, say.
@@ -140,6 +152,11 @@ impl Stage {
         &self.renderer
     }
 
+    /// What the path `auto` took in the last frame, system by system: those in sight that leave it open.
+    pub fn path_choices(&self) -> impl Iterator<Item = PathChoice> {
+        (0..).zip(&self.materials).filter_map(|(key, _)| self.renderer.path_choice(key))
+    }
+
     /// As [`Renderer::set_timing`].
     ///
     /// # Errors
@@ -183,12 +200,15 @@ impl Stage {
             scene.record(encoder, &set.targets, &shot.scene(), &view);
             set.drawn = Some(drawn);
         }
-        let particles = shot.systems();
+        let sources = shot.sources();
         let systems: Vec<_> = (0..)
-            .zip(particles.iter().zip(&self.materials))
-            .map(|(key, ((particles, settings), (_, material)))| System {
-                key,
-                ..System::new(Particles::Slice(particles), settings, material)
+            .zip(sources.iter().zip(&self.materials))
+            .map(|(key, ((source, settings), (_, material)))| {
+                let particles = match source {
+                    Source::Particles(particles) => Particles::Slice(particles),
+                    Source::Emission(emission) => Particles::Emission(emission),
+                };
+                System { key, ..System::new(particles, settings, material) }
             })
             .collect();
         let depth = &set.targets.depth;

@@ -5,6 +5,8 @@ pub mod blending;
 pub mod colour;
 pub mod depth;
 pub mod diffuse_bake;
+pub mod emitter;
+pub mod gradient_noise;
 pub mod hash;
 pub mod lighting;
 pub mod noise_volume;

@@ -125,3 +125,38 @@ uniform! {
         padding: [u32; 3],
     }
 }
+
+uniform! {
+    /// `Emitter` in `shaders/lib/emitter.wgsl`.
+    EmitterUniform {
+        first: u32,
+        count: u32,
+        seed: u32,
+        shape: u32,
+        since_first: f32,
+        rate: f32,
+        lifetime: f32,
+        lifetime_spread: f32,
+        position: Vec3,
+        burst: f32,
+        extent: Vec3,
+        velocity_spread: f32,
+        velocity: Vec3,
+        drag: f32,
+        rise: Vec3,
+        turbulence: f32,
+        wind: Vec3,
+        turbulence_scale: f32,
+        disc_x: Vec3,
+        radius_start: f32,
+        disc_z: Vec3,
+        radius_end: f32,
+        phase: Vec2,
+        radius_spread: f32,
+        spin: f32,
+        amount: f32,
+        fade_in: f32,
+        fade_out: f32,
+        frame_rate: f32,
+    }
+}

@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::bounds::Bounds;
+use super::emission::Emission;
 use super::light::Light;
 use super::material::Material;
 use super::particle::Particle;
@@ -117,4 +118,20 @@ pub enum Particles<'a> {
         /// How many to draw.
         count: u32,
     },
+    /// Those of an emitter at a time. The path `tiled` evaluates them on the GPU, where they differ from those of
+    /// [`Emission::evaluate`] by what sines, roots and powers of the device are rounded: some micrometres for each metre and second.
+    /// Other paths evaluate them on the CPU. The box is [`Emission::bounds`] where `None` is given, and a thousand
+    /// of them stand for all where their mean depth counts.
+    Emission(&'a Emission),
+}
+
+impl Particles<'_> {
+    /// How many there are, those aside that cannot be seen.
+    pub(crate) fn count(&self) -> u32 {
+        match *self {
+            Self::Slice(particles) => particles.len() as u32,
+            Self::Buffer { count, .. } => count,
+            Self::Emission(emission) => emission.count(),
+        }
+    }
 }

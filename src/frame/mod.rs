@@ -1,6 +1,7 @@
 //! What a host hands over for every frame: a camera, scene depth, lights and particle systems.
 
 mod bounds;
+mod emission;
 #[allow(clippy::module_inception, reason = "one file per thing handed over, and one of them is the frame")]
 mod frame;
 mod light;
@@ -10,6 +11,7 @@ pub(crate) mod validate;
 mod view;
 
 pub use bounds::Bounds;
+pub use emission::Emission;
 pub use frame::{Frame, Particles, SceneDepth, System};
 pub use light::{Light, LightKind, MAX_LIGHTS};
 pub use material::Material;

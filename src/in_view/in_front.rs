@@ -14,10 +14,11 @@ const MEAN_OF_SPRITE: f32 = 0.375;
 /// What a system whose sprites are on the GPU is taken for: optical depth from its near to its far side.
 const OF_BUFFER: f32 = 4.0;
 
-/// Optical depth in front of the knots of `optical_depth_in_front`.
+/// Optical depth in front of the knots of `optical_depth_in_front`, of particles that stand for so many each.
 pub(super) fn optical_depths(
     view: &ViewGeometry,
     particles: &[Particle],
+    stand_for: u32,
     settings: &Settings,
     middle: &Middle,
 ) -> [Vec4; 4] {
@@ -47,7 +48,7 @@ pub(super) fn optical_depths(
     }
     // The picture of the smoke as a rectangle: the variance of a side is a twelfth of its length squared.
     let variance = (squares / total - (sum / total).powf(2.0)).max(DVec2::splat(1.0e-12));
-    let area = 12.0 * (variance.x * variance.y).sqrt() as f32;
+    let area = 12.0 * (variance.x * variance.y).sqrt() as f32 / stand_for as f32;
     let mut in_front = 0.0;
     pack(knots.map(|knot| {
         // Half of what is at a knot is in front of it.
@@ -55,6 +56,11 @@ pub(super) fn optical_depths(
         in_front += knot / area;
         at_knot
     }))
+}
+
+/// Optical depth of a sprite, in the mean over its square.
+pub(crate) fn optical_depth(particle: &Particle, settings: &Settings) -> f32 {
+    MEAN_OF_SPRITE * middle_of_sprite(particle, settings).0
 }
 
 /// Optical depth through the middle of a sprite, and its radius, metres.
@@ -101,7 +107,7 @@ mod tests {
         let wall = |(depth, amount)| (0..256).map(move |i| sprite(depth, amount, i));
         let particles: Vec<_> = [8.0, 12.0].into_iter().zip(amounts).flat_map(wall).collect();
         let middle = Middle { centre: vec3(0.0, 0.0, -10.0), near: 7.0, far: 13.0, farthest: 13.0 };
-        let knots = optical_depths(&view, &particles, &Settings::default(), &middle);
+        let knots = optical_depths(&view, &particles, 1, &Settings::default(), &middle);
         depths.map(|depth| optical_depth_in_front(&knots, depth, middle.near, middle.far))
     }
 

@@ -9,6 +9,7 @@ mod sprites;
 mod system;
 mod view;
 
+pub(crate) use in_front::optical_depth;
 pub(crate) use lights::lights_in_view;
 pub(crate) use order::{SortScratch, in_order};
 pub(crate) use sprites::{Grid, Placing, SpriteInView};

@@ -79,8 +79,17 @@ impl Placing<'_> {
     /// which counts of texels' centres are in the mean over where a sprite may lie. Each of these is shaded once, but for those
     /// that a depth test rejects before.
     pub fn fragments(&self, grid: &Grid, particles: &[Particle]) -> f64 {
+        self.areas(grid, particles.iter()).map(|(area, _)| area).sum()
+    }
+
+    /// Texels that each sprite which is seen covers.
+    pub fn areas<'p>(
+        &self,
+        grid: &Grid,
+        particles: impl Iterator<Item = &'p Particle>,
+    ) -> impl Iterator<Item = (f64, &'p Particle)> {
         let mut scratch = [Vec::with_capacity(8), Vec::with_capacity(8)];
-        let area = |particle: &Particle| {
+        particles.filter_map(move |particle| {
             let sprite = self.sprite(particle)?;
             let corners = if self.technique.is_sphere() {
                 let (min, max) = self.sphere_rectangle(&sprite, grid.scale.recip());
@@ -88,9 +97,9 @@ impl Placing<'_> {
             } else {
                 self.square_corners(&sprite, particle.rotation)
             };
-            Some(area_within(corners.map(|pixel| pixel / grid.scale - grid.origin), grid.size.as_vec2(), &mut scratch))
-        };
-        particles.iter().filter_map(area).sum()
+            let texels = corners.map(|pixel| pixel / grid.scale - grid.origin);
+            Some((area_within(texels, grid.size.as_vec2(), &mut scratch), particle))
+        })
     }
 
     /// In pixels, in order round the square.

@@ -5,6 +5,7 @@ use glam::{DVec3, UVec2, Vec2, Vec3, Vec4};
 use super::bounds::{TargetRect, bounds_in_view, target_rect};
 use super::in_front::optical_depths;
 use super::middle::Middle;
+use super::sprites::Grid;
 use super::view::ViewGeometry;
 use crate::assets::material::MaterialInfo;
 use crate::formula::depth::SKY_VIEW_DEPTH;
@@ -22,6 +23,8 @@ pub(crate) struct SystemInWorld<'a> {
     pub depth: Option<f32>,
     /// None where they are on the GPU.
     pub particles: &'a [Particle],
+    /// How many each of them stands for.
+    pub stand_for: u32,
     pub settings: &'a Settings,
     pub material: &'a MaterialInfo,
     /// View space; those that reach the system.
@@ -47,12 +50,21 @@ pub(crate) struct SystemInView {
     pub lit_depth: f32,
 }
 
+impl SystemInView {
+    /// The texels of its target.
+    pub fn grid(&self) -> Grid {
+        Grid { origin: self.rect.origin.as_vec2(), scale: self.uniform.scale, size: self.rect.size }
+    }
+}
+
 /// Places a system in the view; `None` when it is out of sight. `targets` is the size of the host's targets, of which the view
 /// may be a part.
 pub(crate) fn system_in_view(view: &ViewGeometry, targets: UVec2, system: &SystemInWorld<'_>) -> Option<SystemInView> {
-    let SystemInWorld { bounds, depth, particles, settings, material, lights, up, time } = *system;
+    let SystemInWorld { bounds, depth, particles, stand_for, settings, material, lights, up, time } = *system;
     let in_view = bounds_in_view(bounds, view)?;
     let middle = Middle::new(view, particles, settings.sprite.size, bounds, &in_view, depth);
+    // A few do not tell where the last one is.
+    let farthest = if stand_for == 1 { middle.farthest } else { in_view.far };
     let accumulate = &settings.accumulate;
     let scale = accumulate.effective_scale(view.size);
     let rect = match accumulate.depth_source {
@@ -78,7 +90,7 @@ pub(crate) fn system_in_view(view: &ViewGeometry, targets: UVec2, system: &Syste
         target_size: rect.size.as_vec2(),
         scale: scale as f32,
         depth_limit: (in_view.far + settings.soft_fade.reach()).min(SKY_VIEW_DEPTH),
-        guide_limit: (middle.farthest.min(in_view.far) + settings.soft_fade.reach()).min(SKY_VIEW_DEPTH),
+        guide_limit: (farthest.min(in_view.far) + settings.soft_fade.reach()).min(SKY_VIEW_DEPTH),
         padding: [0.0; 3],
         sprite_size: material.sprite_size,
         frame_count: material.frame_count,
@@ -109,7 +121,7 @@ pub(crate) fn system_in_view(view: &ViewGeometry, targets: UVec2, system: &Syste
         depth_weight: accumulate.depth_weight,
         front_knots: match settings.order() {
             Order::Sorted => [Vec4::ZERO; 4],
-            Order::Weighted => optical_depths(view, particles, settings, &middle),
+            Order::Weighted => optical_depths(view, particles, stand_for, settings, &middle),
         },
         spherical_harmonics: [Vec4::ZERO; 9],
     };

@@ -14,7 +14,7 @@ use crate::assets::{builtin, json};
 use crate::emitter::{Emitter, MAX_PARTICLES};
 use crate::error::{Error, FieldError, name};
 use crate::frame::validate::validate_lights;
-use crate::frame::{Light, Particle};
+use crate::frame::{Emission, Light, Particle};
 use crate::settings::{FieldVisitor, Fields, Settings, validate};
 
 /// The version of the preset format that this code writes and reads.
@@ -241,17 +241,24 @@ impl PresetSystem {
     /// The particles alive at `time`, seconds: those of `cache`, the system's files, where it names some and has them, else
     /// those of its emitter.
     pub fn particles(&self, cache: Option<&Cache>, time: f32, particles: &mut Vec<Particle>) {
-        let is_frozen = self.settings.sprite.freeze_animation;
         match cache.filter(|_| self.cache.is_used()) {
             Some(cache) => {
+                let is_frozen = self.settings.sprite.freeze_animation;
                 let flipbook_rate = if is_frozen { 0.0 } else { self.cache.flipbook_rate };
                 CacheSource { flipbook_rate, ..self.cache.clone() }.evaluate(cache, time, particles);
             }
-            None => {
-                let frame_rate = if is_frozen { 0.0 } else { self.emitter.frame_rate };
-                Emitter { frame_rate, ..self.emitter }.evaluate(time, particles);
-            }
+            None => self.emitter_at(time).evaluate(particles),
         }
+    }
+
+    /// The same of an emitter, not evaluated; `None` of files.
+    pub fn emission(&self, cache: Option<&Cache>, time: f32) -> Option<Emission> {
+        (!self.cache.is_used() || cache.is_none()).then(|| self.emitter_at(time))
+    }
+
+    fn emitter_at(&self, time: f32) -> Emission {
+        let frame_rate = if self.settings.sprite.freeze_animation { 0.0 } else { self.emitter.frame_rate };
+        Emitter { frame_rate, ..self.emitter }.at(time)
     }
 
     /// Flipbook frames per second, wherever the particles come from.

@@ -39,6 +39,7 @@ impl<'a> Draw<'a> {
         let mut lights = Vec::new();
         lights_in_view(view, frame.lights, &bounds, &mut lights);
         let in_world = SystemInWorld {
+            stand_for: 1,
             bounds: &bounds,
             depth: system.depth,
             particles: system.particles,

@@ -1,8 +1,9 @@
 //! What renderers of one device share.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
+use super::auto::PathModel;
 use super::gpu::Gpu;
 use super::gpu::capabilities::read_only_depth_is_supported;
 use super::layouts::Layouts;
@@ -34,12 +35,17 @@ pub(crate) struct Shared {
     pub passes: Passes,
     /// [`read_only_depth_is_supported`], asked once: the answer is one of many that a device makes a copy of each time.
     pub read_only_depth: bool,
+    path_model: Mutex<PathModel>,
 }
 
 impl Shared {
     /// As [`Situation::tiles`](super::plan::Situation::tiles).
     pub fn tiles(&self) -> Option<bool> {
         self.passes.tiled.as_ref().map(Tiled::in_step)
+    }
+
+    pub fn path_model(&self) -> PathModel {
+        *self.path_model.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -85,6 +91,7 @@ impl Context {
             device: device.clone(),
             textures: SharedTextures::new(&Gpu { device, queue }),
             read_only_depth: read_only_depth_is_supported(device),
+            path_model: Mutex::new(PathModel::of_class(device.adapter_info().device_type)),
             layouts,
             passes,
         }))
@@ -108,6 +115,27 @@ impl Context {
     /// Pipelines compiled so far. It stands still once everything that a program draws has been drawn or warmed up.
     pub fn pipeline_count(&self) -> usize {
         self.0.passes.pipeline_count()
+    }
+
+    /// True if the device has the path `tiled`.
+    pub fn has_tiles(&self) -> bool {
+        self.0.tiles().is_some()
+    }
+
+    /// By what the path `auto` chooses: at first, what devices of this kind were measured at.
+    pub fn path_model(&self) -> PathModel {
+        self.0.path_model()
+    }
+
+    /// Sets by what the path `auto` chooses, from the next frame on: what [`measure_paths`](Self::measure_paths) found, now or when the
+    /// program last ran on this device, or a host's own figures.
+    ///
+    /// # Errors
+    /// [`Error::Field`] naming a cost that is negative or not finite.
+    pub fn set_path_model(&self, model: PathModel) -> Result<(), Error> {
+        model.validate()?;
+        *self.0.path_model.lock().unwrap_or_else(PoisonError::into_inner) = model;
+        Ok(())
     }
 
     /// Whether the workgroups of the path `tiled` walk in step, as is best for GPUs, or each invocation by itself, as is best for

@@ -9,6 +9,7 @@ use super::pass::Groups;
 use super::pass::accumulate::{Accumulate, AccumulateKey, DepthTest};
 use super::pass::depth_downsample::{DepthDownsampleKey, Downsample};
 use super::pass::diffuse_bake::DiffuseBake;
+use super::pass::emit::Emit;
 use super::pass::forward::Forward;
 use super::pass::light_target::LightTarget;
 use super::pass::specular_scatter::SpecularScatter;
@@ -38,6 +39,7 @@ pub(crate) struct Deferred {
     pub depth_downsample: Option<Downsample>,
     pub depth_copy: Option<Downsample>,
     pub diffuse_bake: Option<DiffuseBake>,
+    pub emit: Option<Emit>,
     pub accumulate: AccumulatePasses,
     pub overdraw: Option<Accumulate>,
     pub light_target: Option<LightTarget>,
@@ -55,6 +57,10 @@ pub(crate) enum AccumulatePasses {
 }
 
 impl AccumulatePasses {
+    pub fn is_tiled(&self) -> bool {
+        matches!(self, Self::Tiled(_))
+    }
+
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
         match self {
             Self::Raster(accumulate) => accumulate.record(encoder, timing),
@@ -69,6 +75,8 @@ pub(crate) struct Assembly<'a> {
     pub passes: &'a Passes,
     pub groups: Groups,
     pub sprites: Sprites,
+    /// Makes them.
+    pub emit: Option<Emit>,
 }
 
 impl Assembly<'_> {
@@ -87,7 +95,7 @@ impl Assembly<'_> {
         depth: &DepthBindings,
         host_depth: Option<&wgpu::TextureView>,
     ) -> Draw {
-        let Self { gpu, passes, groups, sprites } = self;
+        let Self { gpu, passes, groups, sprites, emit } = self;
         let device = gpu.device;
         let ReadyTargets { accumulation, baked_diffuse, inputs } = targets;
         let size = in_view.rect.size;
@@ -127,6 +135,7 @@ impl Assembly<'_> {
                 faces: baked_diffuse.faces.clone(),
                 groups: groups.clone(),
             }),
+            emit,
             accumulate: match (plan.tiled, &passes.tiled) {
                 (Some(keys), Some(tiled)) => {
                     let inputs = TiledInputs {

@@ -20,6 +20,8 @@ pub(crate) struct Instances {
     spare: Spare,
     sort: SortScratch,
     sorted: Vec<Particle>,
+    /// Of an emitter.
+    evaluated: Vec<Particle>,
 }
 
 impl Instances {
@@ -39,6 +41,10 @@ impl Instances {
                 return (count > 0).then(|| Sprites { buffer: buffer.clone(), offset, count, loops, is_sorted: false });
             }
             Particles::Slice(particles) => particles,
+            Particles::Emission(emission) => {
+                emission.evaluate(&mut self.evaluated);
+                &self.evaluated
+            }
         };
         let is_sorted = settings.order() == Order::Sorted && tiled != Some(SortedBy::Gpu);
         in_order(view, particles, is_sorted, &mut self.sort, &mut self.sorted);

@@ -1,5 +1,6 @@
 //! The frame on the GPU, pass by pass.
 
+mod auto;
 mod context;
 mod counts;
 mod descriptor;
@@ -12,6 +13,7 @@ mod material;
 mod memory;
 mod pass;
 mod passes;
+mod path_probe;
 mod plan;
 pub mod shader;
 mod slot;
@@ -27,13 +29,14 @@ use crate::frame::{Frame, Material};
 use crate::in_view::ViewGeometry;
 use crate::settings::{Settings, ShadeTree};
 
+pub use auto::{PathChoice, PathCosts, PathLoad, PathModel, PathModelSource, PathReason};
 pub use context::Context;
 pub use counts::{FrameCounts, Overdraw};
 pub use descriptor::Descriptor;
 pub use gpu::capabilities::read_only_depth_is_supported;
 pub use gpu::frame_times::{FrameTimes, PassTime};
 pub use gpu::timing::Timing;
-pub use memory::MemoryUse;
+pub use memory::{MemoryUse, TiledMemory};
 pub use plan::SceneDepthKind;
 pub use targets::TargetViews;
 pub use warm_up::WarmUp;
@@ -42,7 +45,7 @@ use draw::Draw;
 use frame_bindings::FrameBindings;
 use gpu::Gpu;
 use gpu::host_pass::HostPass;
-use gpu::record::set_part;
+use gpu::record::{begin_compute, set_part};
 use gpu::submission::Submission;
 use plan::{Situation, plan};
 use slot::{FrameContext, Slot};
@@ -136,8 +139,11 @@ impl Renderer {
             // Whether its sprite has one frame is not known yet.
             let sprite = settings.sprite.for_frames(1.0);
             for settings in [*settings, Settings { sprite, ..*settings }] {
-                for back_faces in [false, true] {
-                    shared.passes.compile(&shared.device, &plan(&situation, &settings, back_faces))?;
+                for &path in settings.path.candidates() {
+                    for back_faces in [false, true] {
+                        let settings = Settings { path, ..settings };
+                        shared.passes.compile(&shared.device, &plan(&situation, &settings, back_faces))?;
+                    }
                 }
             }
         }
@@ -184,6 +190,9 @@ impl Renderer {
             let slot = &mut self.slots[index];
             // Place in the view; lights, settings and particles to the GPU, sprites back to front.
             slot.write(&context, system);
+            if let (Some(timing), Some(choice)) = (timing, slot.choice()) {
+                timing.add_choice(system.key, choice);
+            }
             let Some(draw) = slot.draw() else { continue };
             self.order.push(Seen { slot: index, distance: slot.distance() });
             let Draw::Deferred(draw) = draw else { continue };
@@ -191,6 +200,8 @@ impl Renderer {
             draw.depth_downsample.iter().chain(&draw.depth_copy).for_each(|pass| pass.record(encoder, timing));
             // All lights by normal, for the cubemap and motif variants of diffuse.
             draw.diffuse_bake.iter().for_each(|pass| pass.record(encoder, timing));
+            // The particles of an emitter, evaluated.
+            draw.emit.iter().for_each(|pass| pass.record(&mut begin_compute(encoder, "emit", timing)));
             // Sprites to premultiplied normal + amount.
             draw.accumulate.record(encoder, timing);
             // Or counted, where that is to be shown.
@@ -244,13 +255,19 @@ impl Renderer {
 
     /// Bytes of GPU memory held.
     pub fn memory_use(&self) -> MemoryUse {
-        let own = MemoryUse { targets: 0, buffers: self.bindings.bytes() };
+        let own = MemoryUse { buffers: self.bindings.bytes(), ..MemoryUse::default() };
         self.slots.iter().map(Slot::memory_use).chain([own]).sum()
     }
 
     /// What the last [`prepare`](Self::prepare) gives [`render`](Self::render) to draw.
     pub fn counts(&self) -> FrameCounts {
         self.order.iter().map(|seen| self.slots[seen.slot].counts()).sum()
+    }
+
+    /// What the path `auto` took in the last [`prepare`](Self::prepare) for the system with this key, and why. `None` when it is out of
+    /// sight, or has another path.
+    pub fn path_choice(&self, key: u64) -> Option<PathChoice> {
+        self.slots.iter().find(|slot| slot.key == key)?.choice()
     }
 
     /// In how many layers the sprites of the last [`prepare`](Self::prepare) lie. Every sprite is looked at when this is

@@ -2,6 +2,7 @@
 
 use glam::{UVec2, Vec2, Vec3};
 
+use super::auto::{Chooser, PathChoice, load};
 use super::context::Shared;
 use super::counts::{FrameCounts, Overdraw};
 use super::draw::{Assembly, Draw};
@@ -11,14 +12,15 @@ use super::gpu::record::uniform_buffer;
 use super::gpu::spare::Spare;
 use super::instances::{Instances, SortedBy};
 use super::layouts::LIGHTS_SIZE;
-use super::memory::MemoryUse;
+use super::memory::{MemoryUse, TiledMemory};
 use super::pass::Groups;
 use super::plan::{Plan, Situation, plan};
 use super::system_targets::SystemTargets;
 use super::targets::TargetViews;
-use super::tiled::TiledSystem;
+use super::tiled::{Emitted, TiledSystem};
+use super::validate::tiles_refuse;
 use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
-use crate::frame::{Bounds, Frame, Particles, System, bounds_of};
+use crate::frame::{Bounds, Frame, Particle, Particles, System, bounds_of};
 use crate::in_view::{Grid, Placing, SystemInView, SystemInWorld, ViewGeometry, lights_in_view, system_in_view};
 use crate::settings::{Path, Settings, Technique};
 
@@ -46,6 +48,10 @@ pub(crate) struct Slot {
     instances: Instances,
     targets: SystemTargets,
     tiles: TiledSystem,
+    emitted: Emitted,
+    /// A few particles of an emitter.
+    sample: Vec<Particle>,
+    chooser: Chooser,
     /// Counts frames without deferred smoke: its targets are not kept for ever.
     without_targets: Spare,
     /// Counts frames in which it was not tiled.
@@ -60,6 +66,10 @@ pub(crate) struct Slot {
 struct Drawn {
     in_view: SystemInView,
     technique: Technique,
+    /// Of the path `auto`.
+    choice: Option<PathChoice>,
+    /// How many each particle of the sample stands for, where no other is known.
+    sampled: Option<u32>,
     draw: Draw,
 }
 
@@ -85,6 +95,9 @@ impl Slot {
             instances: Instances::default(),
             targets: SystemTargets::default(),
             tiles: TiledSystem::default(),
+            emitted: Emitted::default(),
+            sample: Vec::new(),
+            chooser: Chooser::default(),
             without_targets: Spare::default(),
             untiled: Spare::default(),
             absent: Spare::default(),
@@ -97,14 +110,20 @@ impl Slot {
         self.drawn.as_ref().map(|drawn| &drawn.draw)
     }
 
+    /// What the path `auto` took this frame.
+    pub fn choice(&self) -> Option<PathChoice> {
+        self.drawn.as_ref()?.choice
+    }
+
     /// View depth of the middle of the smoke.
     pub fn distance(&self) -> f32 {
         self.drawn.as_ref().map_or(0.0, |drawn| drawn.in_view.distance)
     }
 
     pub fn memory_use(&self) -> MemoryUse {
-        let buffers = self.uniform.size() + self.lights.size() + self.instances.bytes() + self.tiles.bytes();
-        MemoryUse { targets: self.targets.bytes(), buffers }
+        let tiled = TiledMemory { emitted: self.emitted.bytes(), ..self.tiles.memory() };
+        let buffers = self.uniform.size() + self.lights.size() + self.instances.bytes() + tiled.total();
+        MemoryUse { targets: self.targets.bytes(), buffers, tiled }
     }
 
     pub fn counts(&self) -> FrameCounts {
@@ -122,8 +141,11 @@ impl Slot {
 
     /// In a view.
     pub fn overdraw(&self, view: &ViewUniform) -> Overdraw {
-        let Some(Drawn { in_view, technique, draw }) = &self.drawn else { return Overdraw::default() };
-        let particles = self.instances.particles();
+        let Some(Drawn { in_view, technique, sampled, draw, .. }) = &self.drawn else { return Overdraw::default() };
+        let (particles, each) = match *sampled {
+            Some(each) => (self.sample.as_slice(), f64::from(each)),
+            None => (self.instances.particles(), 1.0),
+        };
         if particles.is_empty() {
             return Overdraw::default();
         }
@@ -131,14 +153,12 @@ impl Slot {
             Draw::Forward(forward) => {
                 (&forward.sprites, Grid { origin: Vec2::ZERO, scale: 1.0, size: view.size.as_uvec2() })
             }
-            Draw::Deferred(draw) => {
-                let origin = in_view.rect.origin.as_vec2();
-                (&draw.sprites, Grid { origin, scale: in_view.uniform.scale, size: in_view.rect.size })
-            }
+            Draw::Deferred(draw) => (&draw.sprites, in_view.grid()),
         };
         let placing = Placing { view, system: &in_view.uniform, technique: *technique };
         let side = (in_view.pixels.as_dvec2() / f64::from(grid.scale)).ceil();
-        Overdraw { fragments: f64::from(sprites.loops) * placing.fragments(&grid, particles), texels: side.x * side.y }
+        let fragments = f64::from(sprites.loops) * each * placing.fragments(&grid, particles);
+        Overdraw { fragments, texels: side.x * side.y }
     }
 
     pub fn target_views(&self) -> Option<TargetViews<'_>> {
@@ -171,8 +191,9 @@ impl Slot {
         if self.without_targets.outlasts(!is_deferred) {
             self.targets = SystemTargets::default();
         }
-        if self.untiled.outlasts(system.settings.path != Path::Tiled) {
-            self.tiles = TiledSystem::default();
+        let is_tiled = matches!(self.draw(), Some(Draw::Deferred(draw)) if draw.accumulate.is_tiled());
+        if self.untiled.outlasts(!is_tiled) {
+            (self.tiles, self.emitted) = (TiledSystem::default(), Emitted::default());
         }
     }
 
@@ -181,13 +202,13 @@ impl Slot {
         let settings = system.settings;
         let bounds = bounds_of_system(system);
         lights_in_view(view, frame.lights, &bounds, &mut self.lights_in_view);
+        let known = known_particles(system.particles, &mut self.sample);
+        let (particles, stand_for) = known.unwrap_or((&[], 1));
         let in_world = SystemInWorld {
             bounds: &bounds,
             depth: system.depth,
-            particles: match system.particles {
-                Particles::Slice(particles) => particles,
-                Particles::Buffer { .. } => &[],
-            },
+            particles,
+            stand_for,
             settings,
             material: &system.material.info,
             lights: &self.lights_in_view,
@@ -195,9 +216,19 @@ impl Slot {
             time: frame.time,
         };
         let in_view = system_in_view(view, context.host_size, &in_world)?;
+        let choice = choose(&mut self.chooser, context, system, &in_view, known);
+        let settings = &Settings { path: choice.map_or(settings.path, |choice| choice.path), ..*settings };
         let sorted_by = shared.tiles().filter(|_| settings.path == Path::Tiled);
         let sorted_by = sorted_by.map(|in_step| if in_step { SortedBy::Gpu } else { SortedBy::Cpu });
-        let sprites = self.instances.write(gpu, view, system.particles, settings, sorted_by)?;
+        let (sprites, emit) = match (system.particles, &shared.passes.tiled) {
+            (Particles::Emission(emission), Some(tiled)) if settings.path == Path::Tiled => {
+                self.instances = Instances::default();
+                let (sprites, emit) = self.emitted.write(gpu, tiled, emission, settings.sprite.debug_loop)?;
+                (sprites, Some(emit))
+            }
+            _ => (self.instances.write(gpu, view, system.particles, settings, sorted_by)?, None),
+        };
+        let sampled = emit.as_ref().map(|_| stand_for);
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&in_view.uniform));
         gpu.queue.write_buffer(&self.lights, 0, bytemuck::cast_slice(&self.lights_in_view));
 
@@ -209,7 +240,7 @@ impl Slot {
             system: self.bindings.clone(),
             material: system.material.bind_group.clone(),
         };
-        let assembly = Assembly { gpu: *gpu, passes: &shared.passes, groups, sprites };
+        let assembly = Assembly { gpu: *gpu, passes: &shared.passes, groups, sprites, emit };
         let draw = match &plan {
             Plan::Nothing => return None,
             Plan::Forward(plan) => assembly.forward(plan),
@@ -220,7 +251,40 @@ impl Slot {
                 assembly.deferred(plan, &mut self.tiles, targets, &in_view, depth, frame.scene_depth.buffer())
             }
         };
-        Some(Drawn { in_view, technique: settings.technique, draw })
+        Some(Drawn { in_view, technique: settings.technique, choice, sampled, draw })
+    }
+}
+
+/// What the path `auto` takes; `None` for any other.
+fn choose(
+    chooser: &mut Chooser,
+    context: &FrameContext<'_>,
+    system: &System<'_>,
+    in_view: &SystemInView,
+    known: Option<(&[Particle], u32)>,
+) -> Option<PathChoice> {
+    if system.settings.path != Path::Auto {
+        *chooser = Chooser::default();
+        return None;
+    }
+    if let Some(reason) = tiles_refuse(context.shared, system.particles) {
+        return Some(PathChoice { path: Path::Raster, reason });
+    }
+    let view = context.view.uniform(false);
+    let placing = Placing { view: &view, system: &in_view.uniform, technique: system.settings.technique };
+    let load = load(&placing, &in_view.grid(), system.particles.count(), known, system.settings);
+    Some(chooser.choose(&context.shared.path_model(), &load))
+}
+
+/// Particles that the CPU knows, and how many of the system each of them stands for.
+fn known_particles<'a>(particles: Particles<'a>, sample: &'a mut Vec<Particle>) -> Option<(&'a [Particle], u32)> {
+    match particles {
+        Particles::Slice(particles) => Some((particles, 1)),
+        Particles::Buffer { .. } => None,
+        Particles::Emission(emission) => {
+            emission.sample(sample);
+            Some((sample, emission.step))
+        }
     }
 }
 
@@ -228,6 +292,7 @@ fn bounds_of_system(system: &System<'_>) -> Bounds {
     match (system.bounds, system.particles) {
         (Some(bounds), _) => bounds,
         (None, Particles::Slice(particles)) => bounds_of(particles, system.settings.reach()),
+        (None, Particles::Emission(emission)) => emission.bounds(system.settings.reach()),
         // Refused when the frame was validated.
         (None, Particles::Buffer { .. }) => Bounds::EMPTY,
     }

@@ -2,6 +2,7 @@
 
 use glam::UVec2;
 
+use super::auto::PathReason;
 use super::context::Shared;
 use super::gpu::host_pass::HostPass;
 use super::plan::reads_linear;
@@ -118,6 +119,23 @@ fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &Sy
     Ok(())
 }
 
+/// Why the path `auto` cannot take `tiled` for these particles.
+pub(crate) fn tiles_refuse(shared: &Shared, particles: Particles<'_>) -> Option<PathReason> {
+    let Some(tiled) = &shared.passes.tiled else { return Some(PathReason::NoTiles) };
+    let (count, is_readable) = match particles {
+        Particles::Slice(particles) => (particles.len() as u64, true),
+        Particles::Buffer { buffer, offset, count } => {
+            let is_storage = buffer.usage().contains(wgpu::BufferUsages::STORAGE);
+            (u64::from(count), is_storage && offset.is_multiple_of(PARTICLE_STEP))
+        }
+        Particles::Emission(emission) => (u64::from(emission.count()), true),
+    };
+    if !is_readable {
+        return Some(PathReason::BufferOfVertices);
+    }
+    (count > tiled.limits.max_storage_buffer_binding_size / SPRITE).then_some(PathReason::TooMany)
+}
+
 fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str) -> String) -> Result<(), FieldError> {
     let size = size_of::<Particle>() as u64;
     let is_tiled = system.settings.path == Path::Tiled;
@@ -128,6 +146,15 @@ fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str
     }
     match system.particles {
         Particles::Slice(particles) => validate_count(particles.len() as u64, most, field)?,
+        Particles::Emission(emission) => {
+            validate_count(u64::from(emission.count()), most, field)?;
+            let bounds = emission.bounds(system.settings.reach());
+            let is_finite = bounds.min.is_finite() && bounds.max.is_finite();
+            if !bounds.is_empty() && !is_finite {
+                let expected = "that of an emitter that Emitter::validate accepts";
+                return Err(FieldError::new(field("particles"), "an emission without a finite box", expected));
+            }
+        }
         Particles::Buffer { buffer, offset, count } => {
             validate_count(u64::from(count), most, field)?;
             if system.bounds.is_none() {

@@ -35,7 +35,7 @@ pub use walk::{Leaf, Step, Value, path_of, values, walk};
 choice! {
     /// How a system reaches the picture.
     Path {
-        /// The best that the device can do.
+        /// The faster of `raster` and `tiled`, as far as can be told from how many layers there are and what the device takes for them.
         #[default]
         Auto = "auto",
         /// Deferred: sprites blended into the accumulation target by the hardware, lit once per pixel.
@@ -45,6 +45,18 @@ choice! {
         Tiled = "tiled",
         /// Every fragment lit and blended at full resolution: the classic way, kept as the baseline.
         Forward = "forward",
+    }
+}
+
+impl Path {
+    /// What it may turn out to be.
+    pub(crate) fn candidates(self) -> &'static [Self] {
+        match self {
+            Self::Auto => &[Self::Raster, Self::Tiled],
+            Self::Raster => &[Self::Raster],
+            Self::Tiled => &[Self::Tiled],
+            Self::Forward => &[Self::Forward],
+        }
     }
 }
 

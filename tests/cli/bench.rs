@@ -26,7 +26,7 @@ fn rows(report: &Value) -> &Vec<Value> {
 #[test]
 fn every_suite_has_figures_and_says_what_it_left_out() {
     let folder = folder();
-    for suite in ["scale", "overdraw", "lights", "soft", "upsample", "presets", "particles", "limits"] {
+    for suite in ["scale", "overdraw", "lights", "soft", "upsample", "presets", "particles", "auto", "limits"] {
         let report = run(folder.path(), suite, &[]);
         assert!(report["complete"] == true && report["version"] == 1, "{suite}");
         let rows = rows(&report);
@@ -36,6 +36,7 @@ fn every_suite_has_figures_and_says_what_it_left_out() {
         for row in rows {
             assert_eq!(row["suite"], suite);
             assert!(row["gpu_ms"]["median"].as_f64().unwrap() > 0.0, "{row}");
+            assert!(row["path"] != "auto" || row["mode"] == "raster" || row["mode"] == "tiled", "{row}");
         }
         // Every picture was right; only what takes too long may be missing.
         for left in report["left_out"].as_array().unwrap() {

@@ -144,7 +144,7 @@ fn stages() -> Vec<Stage> {
 
 /// Values that make no other picture where they can be compared, and why.
 const SAME: [&str; 5] = [
-    // What the device does best is to accumulate by raster, today.
+    // One of the two that are compared elsewhere.
     "path auto",
     // The same picture by other means; tiled.rs compares them.
     "path tiled",

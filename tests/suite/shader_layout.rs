@@ -1,6 +1,6 @@
 //! Holds what Rust and WGSL both spell out: struct layouts, constants, and the numbers of the setting enums.
 
-use haze::formula::uniforms::{LightUniform, SystemUniform, TilesUniform, UniformField, ViewUniform};
+use haze::formula::uniforms::{EmitterUniform, LightUniform, SystemUniform, TilesUniform, UniformField, ViewUniform};
 use haze::{Particle, formula, frame, settings, shader};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
@@ -91,6 +91,7 @@ fn structs_agree() {
     assert_layout(&module, "Light", LightUniform::FIELDS, size_of::<LightUniform>());
     assert_layout(&module, "System", SystemUniform::FIELDS, size_of::<SystemUniform>());
     assert_layout(&composed("lib/tiles.wgsl"), "Tiles", TilesUniform::FIELDS, size_of::<TilesUniform>());
+    assert_layout(&composed("lib/emitter.wgsl"), "Emitter", EmitterUniform::FIELDS, size_of::<EmitterUniform>());
 }
 
 #[test]
@@ -183,4 +184,5 @@ fn setting_enums_agree() {
     assert_choices!(accumulate, "SPRITE_ANIMATION", settings::SpriteAnimation);
     assert_choices!(composed("depth_downsample.wgsl"), "DEPTH_DOWNSAMPLE", settings::DepthDownsample);
     assert_choices!(composed("forward.wgsl"), "BLEND_MODE", settings::BlendMode);
+    assert_choices!(composed("lib/emitter.wgsl"), "EMITTER_SHAPE", haze::emitter::EmitterShape);
 }

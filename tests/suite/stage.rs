@@ -7,7 +7,7 @@ use haze::noise::{pcg3d, unit};
 use haze::picture::Picture;
 use haze::ramp::Ramp;
 use haze::reference;
-use haze::settings::{Settings, ShadeTree};
+use haze::settings::{Path, Settings, ShadeTree};
 use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Bounds, FieldError, Light, MaterialAssets, Particle, View};
 
@@ -136,7 +136,8 @@ impl Stage {
             ],
             particles: (0..60).map(particle).collect(),
             bounds: None,
-            settings: Settings { boost: 1.5, ..Settings::default() },
+            // Whatever the device is better at.
+            settings: Settings { path: Path::Raster, boost: 1.5, ..Settings::default() },
             material: material(),
             time: 1.0,
             up: Vec3::Y,

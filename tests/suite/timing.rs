@@ -102,6 +102,22 @@ fn every_pass_is_named_and_takes_time() {
 }
 
 #[test]
+fn what_auto_takes_stands_beside_the_times() {
+    let Some(gpu) = timed_gpu() else { return };
+    let mut stage = stage();
+    let (mut host, timing) = timed_host(gpu, &stage);
+    assert_eq!(drawn(gpu, &mut host, &timing, &stage).choices, []);
+    stage.settings.path = Path::Auto;
+    for _ in 0..3 {
+        let times = drawn(gpu, &mut host, &timing, &stage);
+        let choice = host.renderer.path_choice(0).unwrap();
+        assert_eq!(times.choices, [(0, choice)]);
+        let pass = if choice.path == Path::Tiled { "tile_accumulate" } else { "accumulate" };
+        assert!(names(&times).contains(&pass), "{times:?}");
+    }
+}
+
+#[test]
 fn a_renderer_without_timing_is_not_measured() {
     let Some(gpu) = timed_gpu() else { return };
     let stage = stage();

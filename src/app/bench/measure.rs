@@ -77,6 +77,14 @@ impl<'a> Bench<'a> {
         }
     }
 
+    /// By what the path `auto` chooses here.
+    ///
+    /// # Errors
+    /// When the device failed.
+    pub fn measure_paths(&self) -> Result<(), Error> {
+        self.context.measure_paths(|encoder| self.gpu.submit(encoder)).map(|_| ())
+    }
+
     fn clock(&self) -> Clock {
         if self.timing.is_some() { Clock::Gpu } else { Clock::Wall }
     }
@@ -216,6 +224,7 @@ impl<'a> Bench<'a> {
             mode: match settings.path {
                 SmokePath::Forward => None,
                 SmokePath::Tiled => Some(settings.accumulate.layers.name().into()),
+                SmokePath::Auto => running.stage.renderer().path_choice(0).map(|choice| choice.path.name().into()),
                 _ => Some(settings.diffuse.mode.name().into()),
             },
             technique: Some(settings.technique.name().into()),

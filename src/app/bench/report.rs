@@ -98,7 +98,8 @@ pub struct Row {
     pub format: Option<String>,
     /// `raster`, `forward` …
     pub path: Option<String>,
-    /// How lights answer: `ramp`, `cubemap` …; on the path `tiled`, how far it goes down the layers: `visible`, `all`.
+    /// How lights answer: `ramp`, `cubemap` …; on the path `tiled`, how far it goes down the layers: `visible`, `all`; on
+    /// `auto`, the path that it took.
     pub mode: Option<String>,
     /// How sprites meet the scene.
     pub technique: Option<String>,

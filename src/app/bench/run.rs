@@ -51,8 +51,16 @@ pub struct Arguments {
 const QUICK: u64 = 100;
 const THOROUGH: u64 = 540;
 /// Suites of shots; the limits come first.
-const SHOTS: [Suite; 7] =
-    [Suite::Scale, Suite::Overdraw, Suite::Lights, Suite::Soft, Suite::Upsample, Suite::Presets, Suite::Particles];
+const SHOTS: [Suite; 8] = [
+    Suite::Scale,
+    Suite::Overdraw,
+    Suite::Lights,
+    Suite::Soft,
+    Suite::Upsample,
+    Suite::Presets,
+    Suite::Particles,
+    Suite::Auto,
+];
 
 pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     let mut files = Files::read::<PathBuf>([]);
@@ -82,7 +90,7 @@ fn measure(arguments: &Arguments, gpu: &Headless) -> (Report, Option<Error>) {
         arguments.size.unwrap_or(if report.adapter.software { UVec2::new(640, 360) } else { UVec2::new(1280, 720) });
     let longest = Duration::from_millis(if arguments.quick { 1500 } else { 5000 });
     let mut bench = Bench::new(gpu, longest);
-    let result = arguments.all(gpu, &mut bench, size);
+    let result = bench.measure_paths().and_then(|()| arguments.all(gpu, &mut bench, size));
     (report.discarded, report.rows, report.left_out) = (bench.discarded, bench.rows, bench.left_out);
     report.complete = matches!(result, Ok(true));
     let failure = match result {

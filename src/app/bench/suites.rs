@@ -29,6 +29,8 @@ pub enum Suite {
     Presets,
     /// A thousand to a million particles: evaluating, sorting, drawing.
     Particles,
+    /// The path `auto` against the two that it chooses from: overdraw, scale, technique, size.
+    Auto,
     /// What this adapter can do at best: bare blending, lookups, copies.
     Limits,
     /// All of them.
@@ -89,6 +91,7 @@ pub fn groups(suite: Suite, size: UVec2, quick: bool) -> Result<Vec<Group>, Erro
         Suite::Upsample => upsample(size, quick),
         Suite::Presets => presets(size, quick),
         Suite::Particles => particles(size, quick),
+        Suite::Auto => auto(size, quick),
         Suite::Limits | Suite::All => Ok(Vec::new()),
     }
 }
@@ -313,4 +316,38 @@ fn particles(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
         Ok(Group { suite: Suite::Particles, cases, reference: full(&shot) })
     };
     counts.iter().map(group).collect()
+}
+
+fn auto(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
+    let sizes: &[u32] = if quick { &[1] } else { &[1, 2] };
+    let techniques: &[Technique] = if quick {
+        &[Technique::Soft, Technique::VolumetricSoft]
+    } else {
+        &[Technique::Soft, Technique::SphericalBillboard, Technique::VolumetricSoft]
+    };
+    let mut groups = Vec::new();
+    for size in sizes.iter().map(|divisor| (size / divisor).max(UVec2::ONE)) {
+        let shots = [
+            ("4 sprites", layers(size, 4, 0.1)?),
+            ("64 sprites", layers(size, 64, 0.1)?),
+            ("256 thick sprites", layers(size, 256, 0.3)?),
+            ("1024 small sprites", crowd(size, 1024, 14.0)?),
+            ("4096 small sprites", crowd(size, 4096, 156.0)?),
+        ];
+        for (sprites, shot) in &shots {
+            for (&technique, scale) in techniques.iter().flat_map(|technique| [(technique, 1), (technique, 3)]) {
+                let case = |path: SmokePath| {
+                    let what = format!("{sprites} {} 1/{scale} {}x{}", technique.name(), size.x, size.y);
+                    let shot = changed(shot, |settings| {
+                        at_scale(path, scale)(settings);
+                        settings.technique = technique;
+                    });
+                    Case { name: format!("{} {what}", path.name()), shot, work: (what, 1.0) }
+                };
+                let cases = [SmokePath::Raster, SmokePath::Tiled, SmokePath::Auto].map(case).into();
+                groups.push(Group { suite: Suite::Auto, cases, reference: full(shot) });
+            }
+        }
+    }
+    Ok(groups)
 }

@@ -3,7 +3,7 @@
 use haze::Error;
 
 use super::report::{Clock, Report, Row};
-use super::verdict::{BreakEven, break_even, sentence};
+use super::verdict::{AutoCase, BreakEven, auto_cases, break_even, sentence};
 use crate::app::output::say;
 
 pub fn write(report: &Report) -> Result<(), Error> {
@@ -54,6 +54,17 @@ pub fn write(report: &Report) -> Result<(), Error> {
     for BreakEven { path, scale, format, base_ms, layer_ms, from_layers } in ways {
         let from = from_layers.map_or("never".into(), |layers| format!("from {layers:.1} layers"));
         say!("{:<30} {base_ms:>10.3} {layer_ms:>10.4}   {from}", format!("{path} 1/{scale} {format}"))?;
+    }
+    let cases = auto_cases(report);
+    if !cases.is_empty() {
+        say!("")?;
+        say!("{:<52} {:>7} {:>9} {:>9} {:>9}   takes    loss", "what auto takes", "layers", "raster", "tiled", "auto")?;
+    }
+    for AutoCase { what, layers, raster_ms, tiled_ms, auto_ms, takes, loss } in cases {
+        say!(
+            "{what:<52} {layers:>7.1} {raster_ms:>9.3} {tiled_ms:>9.3} {auto_ms:>9.3}   {takes:<6} {:>5.1}%",
+            100.0 * loss
+        )?;
     }
     if let Some(text) = sentence(report) {
         say!("")?;

@@ -52,6 +52,36 @@ pub fn break_even(report: &Report) -> Vec<BreakEven> {
     found
 }
 
+/// What the path `auto` took, beside what there was to take. Times are those of the fastest frame, as what disturbs only lengthens.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AutoCase {
+    pub what: String,
+    pub layers: f64,
+    pub raster_ms: f64,
+    pub tiled_ms: f64,
+    pub auto_ms: f64,
+    /// The path that it took.
+    pub takes: String,
+    /// By how much that path, measured twice, was slower than the better of the two; 0 where it is that.
+    pub loss: f64,
+}
+
+/// Of every case of the suite `auto` that was measured by both paths.
+pub fn auto_cases(report: &Report) -> Vec<AutoCase> {
+    let rows = || report.rows.iter().filter(|row| row.is_of(Suite::Auto));
+    let of = |path: &str, what: &str| rows().find(|row| row.case == format!("{path} {what}")).map(|row| row.gpu_ms.min);
+    let case = |row: &Row| {
+        let what = row.case.strip_prefix("auto ")?;
+        let (raster_ms, tiled_ms) = (of("raster", what)?, of("tiled", what)?);
+        let takes = row.mode.clone()?;
+        let (layers, auto_ms) = (row.layers?, row.gpu_ms.min);
+        let taken_ms = auto_ms.min(if takes == "tiled" { tiled_ms } else { raster_ms });
+        let loss = taken_ms / raster_ms.min(tiled_ms).min(taken_ms) - 1.0;
+        Some(AutoCase { what: what.into(), layers, raster_ms, tiled_ms, auto_ms, takes, loss })
+    };
+    rows().filter_map(case).collect()
+}
+
 /// Least squares: where a line through the points begins, and how steep it is. `None` for fewer than two places.
 fn fit(points: &[(f64, f64)]) -> Option<(f64, f64)> {
     let count = points.len() as f64;
@@ -158,6 +188,34 @@ mod tests {
             "{sentence}"
         );
         assert!(sentence.ends_with("; below 5 layers draw forward."), "{sentence}");
+    }
+
+    #[test]
+    fn auto_loses_what_its_path_takes_more() {
+        let mut report = report(&[]);
+        let mut add = |path: &str, what: &str, ms: f64, mode: &str| {
+            report.rows.push(Row {
+                mode: Some(mode.into()),
+                layers: Some(3.0),
+                ..Row::of(
+                    Suite::Auto,
+                    format!("{path} {what}"),
+                    UVec2::new(64, 36),
+                    Clock::Gpu,
+                    Milliseconds::of(&mut [ms]).unwrap(),
+                )
+            });
+        };
+        for (what, taken) in [("a", "raster"), ("b", "tiled")] {
+            add("raster", what, 2.0, "ramp");
+            add("tiled", what, 3.0, "visible");
+            add("auto", what, 9.0, taken);
+        }
+        // Without one of the two there is nothing to say.
+        add("raster", "c", 2.0, "ramp");
+        add("auto", "c", 2.0, "raster");
+        let found: Vec<_> = auto_cases(&report).into_iter().map(|case| (case.what, case.takes, case.loss)).collect();
+        assert_eq!(found, [("a".into(), "raster".into(), 0.0), ("b".into(), "tiled".into(), 0.5)]);
     }
 
     #[test]

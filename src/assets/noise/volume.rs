@@ -6,10 +6,10 @@ use std::sync::Arc;
 use glam::{UVec3, Vec3, Vec4, Vec4Swizzles};
 use image::{Rgba, RgbaImage};
 
-use super::gradient::tiling_noise;
 use crate::assets::json;
 use crate::assets::picture::read_png;
 use crate::error::{Error, FieldError};
+use crate::formula::gradient_noise::tiling_noise;
 use crate::formula::texture::Texture3d;
 use crate::settings::{FieldVisitor, Fields, validate};
 

@@ -109,8 +109,8 @@ pub const OF_SYSTEMS: &[Row<PresetSystem>] = &[
         &["settings.accumulate.depth_weight"],
     ),
     row(
-        "only on the path tiled, with order sorted",
-        |s, _| s.settings.path != Path::Tiled || s.settings.accumulate.order != Order::Sorted,
+        "only on the paths tiled and auto, with order sorted",
+        |s, _| !matches!(s.settings.path, Path::Tiled | Path::Auto) || s.settings.accumulate.order != Order::Sorted,
         &["settings.accumulate.layers"],
     ),
     row(

@@ -1,5 +1,7 @@
 //! From the timestamps of a frame to milliseconds.
 
+use crate::renderer::auto::PathChoice;
+
 /// GPU time of one frame, by pass. See [`Timing`](crate::Timing).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrameTimes {
@@ -9,6 +11,8 @@ pub struct FrameTimes {
     pub passes: Vec<PassTime>,
     /// From the first beginning to the last end, milliseconds, with all that the GPU did in between.
     pub whole_ms: f32,
+    /// What the path `auto` took in that frame, by the keys of the systems.
+    pub choices: Vec<(u64, PathChoice)>,
     /// Intervals that are in none of the sums: the GPU gave no time, or an end before its beginning, or there were more than are
     /// measured.
     pub discarded: u32,
@@ -51,10 +55,19 @@ pub(crate) struct Results {
 
 impl Results {
     /// Takes the timestamps of a frame, by query. `missed`: intervals that were not measured.
-    pub fn read(&mut self, frame: u64, spans: &[Span], missed: u32, ms_per_tick: f64, tick: impl Fn(u32) -> u64) {
+    pub fn read(
+        &mut self,
+        frame: u64,
+        spans: &[Span],
+        choices: &[(u64, PathChoice)],
+        missed: u32,
+        ms_per_tick: f64,
+        tick: impl Fn(u32) -> u64,
+    ) {
         let times = self.latest.get_or_insert_default();
         (times.frame, times.discarded) = (frame, missed);
         times.passes.clear();
+        choices.clone_into(&mut times.choices);
         let (mut first, mut last) = (u64::MAX, 0);
         for span in spans {
             let ticks = [tick(span.query), tick(span.query + 1)];
@@ -89,7 +102,7 @@ mod tests {
             .zip(spans)
             .map(|(index, &(name, ..))| Span { name, of_host: name == "host", query: 2 * index })
             .collect();
-        results.read(7, &spans, missed, 0.5, |query| ticks[query as usize]);
+        results.read(7, &spans, &[], missed, 0.5, |query| ticks[query as usize]);
         results.latest.clone().unwrap()
     }
 

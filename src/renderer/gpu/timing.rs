@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::frame_times::{FrameTimes, Results, Span};
+use crate::renderer::auto::PathChoice;
 
 /// Queries for passes of the host, first in the set. They are apart from the others, so that whenever the host uses them, none is
 /// written twice in a pass, which wgpu refuses.
@@ -57,6 +58,7 @@ struct ReadBack {
 struct Recording {
     frame: u64,
     spans: Vec<Span>,
+    choices: Vec<(u64, PathChoice)>,
     /// Queries taken, of the host's and of all others.
     host_queries: u32,
     own_queries: u32,
@@ -150,6 +152,10 @@ impl Timing {
         recording.frame
     }
 
+    pub(crate) fn add_choice(&self, key: u64, choice: PathChoice) {
+        lock(&self.0.recording).choices.push((key, choice));
+    }
+
     /// For the descriptor of a pass.
     pub(crate) fn pass(&self, name: &'static str) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
         self.writes(name, false)
@@ -199,9 +205,9 @@ impl Timing {
     fn read(&self, read_back: &ReadBack) {
         let Shared { results, ms_per_tick, .. } = &*self.0;
         if let Ok(view) = read_back.buffer.get_mapped_range(..) {
-            let Recording { frame, spans, missed, .. } = &*lock(&read_back.recorded);
+            let Recording { frame, spans, choices, missed, .. } = &*lock(&read_back.recorded);
             let tick = |query| bytemuck::pod_read_unaligned(&view[bytes(query) as usize..][..size_of::<u64>()]);
-            lock(results).read(*frame, spans, *missed, *ms_per_tick, tick);
+            lock(results).read(*frame, spans, choices, *missed, *ms_per_tick, tick);
         }
         read_back.buffer.unmap();
     }
@@ -211,7 +217,9 @@ impl Recording {
     /// Starts a frame, with the memory of the last.
     fn start(&mut self, frame: u64) {
         self.spans.clear();
-        *self = Self { frame, spans: std::mem::take(&mut self.spans), ..Self::default() };
+        self.choices.clear();
+        let (spans, choices) = (std::mem::take(&mut self.spans), std::mem::take(&mut self.choices));
+        *self = Self { frame, spans, choices, ..Self::default() };
     }
 
     /// The first of the two queries of one more interval.

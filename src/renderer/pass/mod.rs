@@ -4,6 +4,7 @@
 pub(crate) mod accumulate;
 pub(crate) mod depth_downsample;
 pub(crate) mod diffuse_bake;
+pub(crate) mod emit;
 pub(crate) mod forward;
 pub(crate) mod light_target;
 pub(crate) mod sort;

@@ -5,9 +5,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use glam::UVec2;
 
 use crate::error::Error;
-use crate::formula::uniforms::TilesUniform;
+use crate::formula::uniforms::{EmitterUniform, TilesUniform};
 use crate::renderer::gpu::pipeline::{ComputeParts, Shader, Variants};
 use crate::renderer::layouts::Layouts;
+use crate::renderer::pass::emit;
 use crate::renderer::pass::sort::{self, SortKey};
 use crate::renderer::pass::tile_accumulate::{self, TileAccumulateKey};
 use crate::renderer::pass::tile_bin::{self, TileBinKey};
@@ -24,6 +25,7 @@ pub(crate) struct Tiled {
     pub limits: wgpu::Limits,
     /// A texel for each format of a target, bound in place of those that a system has not.
     pub unwritten: [wgpu::TextureView; 3],
+    emit: Variants<(), ComputeParts>,
     project: Variants<TileProjectKey, ComputeParts>,
     sort: Variants<SortKey, ComputeParts>,
     bin: Variants<TileBinKey, ComputeParts>,
@@ -33,6 +35,7 @@ pub(crate) struct Tiled {
 /// Bind groups of the tiled passes.
 #[derive(Debug)]
 pub(crate) struct TiledLayouts {
+    pub emit: wgpu::BindGroupLayout,
     pub project: wgpu::BindGroupLayout,
     pub sort: wgpu::BindGroupLayout,
     pub bin: wgpu::BindGroupLayout,
@@ -74,6 +77,7 @@ impl Tiled {
             in_step: AtomicBool::new(device.adapter_info().device_type != wgpu::DeviceType::Cpu),
             limits: device.limits(),
             unwritten: tiled_formats().map(|format| storage_target(device, "haze unwritten", format, UVec2::ONE)),
+            emit: variants!(emit, &[Some(&own.emit)]),
             project: variants!(tile_project, &with(&own.project)),
             sort: variants!(sort, &[Some(&own.sort)]),
             bin: variants!(tile_bin, &[Some(&own.bin)]),
@@ -93,16 +97,22 @@ impl Tiled {
 
     /// Pipelines compiled so far.
     pub fn pipeline_count(&self) -> usize {
-        self.project.len() + self.sort.len() + self.bin.len() + self.accumulate.len()
+        self.emit.len() + self.project.len() + self.sort.len() + self.bin.len() + self.accumulate.len()
     }
 
     /// Compiles what these keys need, or says what is wrong with the shaders.
     pub fn compile(&self, device: &wgpu::Device, keys: TiledKeys) -> Result<(), Error> {
+        self.emit.check(device, ())?;
         self.project.check(device, keys.project)?;
         sort::keys().into_iter().try_for_each(|key| self.sort.check(device, key))?;
         let bins = [true, false].map(|sorted| tile_bin::keys(keys.accumulate.in_step, sorted));
         bins.into_iter().flatten().try_for_each(|key| self.bin.check(device, key))?;
         self.accumulate.check(device, keys.accumulate)
+    }
+
+    /// What evaluates emitters.
+    pub fn emit(&self, device: &wgpu::Device) -> wgpu::ComputePipeline {
+        self.emit.get(device, ())
     }
 
     /// `sorts`: sprites come in any order, and it matters.
@@ -119,11 +129,12 @@ impl Tiled {
 impl TiledLayouts {
     fn new(device: &wgpu::Device) -> Self {
         let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
-        let uniform = wgpu::BindingType::Buffer {
+        let uniform_of = |size: usize| wgpu::BindingType::Buffer {
             ty: wgpu::BufferBindingType::Uniform,
             has_dynamic_offset: false,
-            min_binding_size: wgpu::BufferSize::new(size_of::<TilesUniform>() as u64),
+            min_binding_size: wgpu::BufferSize::new(size as u64),
         };
+        let uniform = uniform_of(size_of::<TilesUniform>());
         let (read, written) = (
             buffer(wgpu::BufferBindingType::Storage { read_only: true }),
             buffer(wgpu::BufferBindingType::Storage { read_only: false }),
@@ -150,6 +161,7 @@ impl TiledLayouts {
         };
         let [float, byte, weights] = tiled_formats().map(target);
         Self {
+            emit: layout("haze emit inputs", &[uniform_of(size_of::<EmitterUniform>()), written]),
             project: layout("haze tile_project inputs", &[uniform, read, written, written, written, written]),
             sort: layout("haze sort inputs", &[uniform, read, read, written, written, written, written]),
             bin: layout(

@@ -11,6 +11,7 @@ use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::record::{begin_compute, uniform_buffer};
 use crate::renderer::gpu::spare::Spare;
 use crate::renderer::gpu::timing::Timing;
+use crate::renderer::memory::TiledMemory;
 use crate::renderer::pass::Groups;
 use crate::renderer::pass::sort::{BLOCK, DIGITS, Sort};
 use crate::renderer::pass::sprites::Sprites;
@@ -190,8 +191,8 @@ impl TiledSystem {
     }
 
     /// Bytes held.
-    pub fn bytes(&self) -> u64 {
-        self.held.as_ref().map_or(0, |held| held.buffers().map(wgpu::Buffer::size).sum())
+    pub fn memory(&self) -> TiledMemory {
+        self.held.as_ref().map_or(TiledMemory::default(), Held::memory)
     }
 
     fn fit(&mut self, gpu: &Gpu<'_>, tiled: &Tiled, needed: Capacity) -> &mut Held {
@@ -296,21 +297,16 @@ impl Held {
         }
     }
 
-    fn buffers(&self) -> impl Iterator<Item = &wgpu::Buffer> {
-        let single = [
-            &self.uniform,
-            &self.tally,
-            &self.sprites,
-            &self.rects,
-            &self.sorted_rects,
-            &self.digit_counts,
-            &self.digit_totals,
-            &self.bin_counts,
-            &self.lists,
-            &self.bins,
-            &*self.read_back,
-        ];
-        single.into_iter().chain(&self.keys).chain(&self.numbers)
+    fn memory(&self) -> TiledMemory {
+        let bytes = |buffers: &[&wgpu::Buffer]| buffers.iter().map(|buffer| buffer.size()).sum();
+        let ([keys, other_keys], [numbers, other_numbers]) = (&self.keys, &self.numbers);
+        TiledMemory {
+            emitted: 0,
+            sprites: bytes(&[&self.uniform, &self.sprites, &self.rects, &self.sorted_rects]),
+            keys: bytes(&[keys, other_keys, numbers, other_numbers]),
+            counts: bytes(&[&self.digit_counts, &self.digit_totals, &self.bin_counts, &self.tally, &self.read_back]),
+            lists: bytes(&[&self.lists, &self.bins]),
+        }
     }
 
     fn bind_project(&mut self, gpu: &Gpu<'_>, tiled: &Tiled, particles: Part) -> wgpu::BindGroup {
@@ -412,7 +408,7 @@ impl Part {
 }
 
 /// A bind group of resources in the order of its layout.
-fn bind<'a>(
+pub(super) fn bind<'a>(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
     resources: impl IntoIterator<Item = wgpu::BindingResource<'a>>,

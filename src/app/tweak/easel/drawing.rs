@@ -8,7 +8,7 @@ use haze::demo::develop::{Developer, Developing, Shown, exposure};
 use haze::demo::shot::Shot;
 use haze::demo::stage::{StageContext, StageMemory};
 use haze::settings::ShadeTree;
-use haze::{Error, FrameCounts, FrameTimes, Overdraw, Timing};
+use haze::{Error, FrameCounts, FrameTimes, Overdraw, PathChoice, Timing};
 
 use super::canvas::{Canvas, Target, reduced, set_scale};
 use super::motion::Motion;
@@ -49,6 +49,8 @@ pub struct Figures {
     pub is_timed: bool,
     pub counts: FrameCounts,
     pub overdraw: Overdraw,
+    /// Which paths were taken, where the preset leaves it open.
+    pub choices: Vec<PathChoice>,
     pub memory: StageMemory,
     /// What the strip and a second picture hold, bytes.
     pub beside: u64,
@@ -176,6 +178,7 @@ impl Drawing {
             is_timed,
             counts: self.main.stage.renderer().counts(),
             overdraw: self.main.stage.renderer().overdraw(),
+            choices: self.main.stage.path_choices().collect(),
             memory: self.main.stage.memory_use(),
             beside: beside.map(|canvas| canvas.stage.memory_use().total()).sum(),
         }

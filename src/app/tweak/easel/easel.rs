@@ -33,6 +33,14 @@ impl Easel {
         let render = window.wgpu_render_state.as_ref().ok_or_else(none)?;
         let health = Health::watch(&render.device, &window.egui_ctx);
         let context = StageContext::new(&render.adapter, &render.device, &render.queue);
+        if render.adapter.get_info().device_type != wgpu::DeviceType::Cpu {
+            // A fifth of a second; where a CPU draws it is longer, and what those take is much alike.
+            context.measure_paths(|encoder| {
+                render.queue.submit([encoder.finish()]);
+                let waited = render.device.poll(wgpu::PollType::wait_indefinitely());
+                waited.map(|_| ()).map_err(|error| Error::Device(error.to_string()))
+            })?;
+        }
         let developer = Developer::new(&render.device, render.target_format);
         let drawing = Arc::new(Mutex::new(Drawing::new(context, developer)?));
         let (adapter, egui) = (Arc::new(render.adapter.get_info()), window.egui_ctx.clone());

@@ -149,6 +149,10 @@ fn drawn(ui: &mut Ui, performance: &Performance) {
             ("texels", grouped(counts.texels), "Texels of the accumulation targets in use: each is lit once"),
         ],
     );
+    // A system each; presets with the same path everywhere say nothing.
+    for choice in &performance.figures.choices {
+        ui.label(format!("Path auto: {choice}"));
+    }
 }
 
 fn memory(ui: &mut Ui, performance: &Performance) {
@@ -159,6 +163,11 @@ fn memory(ui: &mut Ui, performance: &Performance) {
         &[
             ("targets", size(memory.smoke.targets), "Accumulation targets, reduced depths and baked light"),
             ("buffers", size(memory.smoke.buffers), "Particles and uniforms"),
+            (
+                "of them path tiled",
+                size(memory.smoke.tiled.total()),
+                "Of the buffers: particles in the view, sorted keys, lists",
+            ),
             ("materials", size(memory.materials), "Ramps and sprites"),
             ("scene", size(memory.scene), "The scene's own targets, and the picture"),
             ("strip and second picture", size(beside), "What the stages below and the picture beside hold, together"),

@@ -1,4 +1,4 @@
-//! Gradient noise: integer hashes and plain f32 arithmetic only, so that WGSL can do the same bit for bit.
+//! Gradient noise: integer hashes and plain f32 arithmetic only, so that WGSL can do the same. `shaders/lib/gradient_noise.wgsl`.
 
 use glam::{IVec3, UVec3, Vec2, Vec3};
 
@@ -51,7 +51,7 @@ fn lattice_noise(position: Vec3, lattice_gradient: impl Fn(IVec3) -> Vec3) -> No
 }
 
 /// The gradient at a lattice point: two random vectors, one fading into the other as the phase turns.
-fn lattice_gradient(at: IVec3, phase: Vec2, seed: u32) -> Vec3 {
+pub fn lattice_gradient(at: IVec3, phase: Vec2, seed: u32) -> Vec3 {
     let [first, second] = lattice_gradients(at, seed);
     first * phase.x + second * phase.y
 }

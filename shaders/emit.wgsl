@@ -1,0 +1,17 @@
+// emit
+// What    Evaluates the particles of an emitter, one an invocation.
+// Reads   the emitter at a time.
+// Writes  particles, in the order of their births; those that are not alive have an amount of 0.
+// Space   World space.
+
+#import "lib/emitter.wgsl"
+
+@group(0) @binding(0) var<uniform> emitter: Emitter;
+@group(0) @binding(1) var<storage, read_write> particles: array<Emitted>;
+
+@compute @workgroup_size(64)
+fn emit(@builtin(global_invocation_id) invocation: vec3u) {
+    if invocation.x < emitter.count {
+        particles[invocation.x] = emitted_particle(emitter, invocation.x);
+    }
+}

@@ -1,0 +1,149 @@
+// The particles of an emitter: every one a function of seed, birth and time.
+
+#import "lib/gradient_noise.wgsl"
+
+// An emitter at a time. Mirrors EmitterUniform in src/formula/uniforms.rs; what a setting means is told in src/emitter.rs.
+struct Emitter {
+    // Index of the first birth that may be alive: its lower 32 bits. And how many there are from it on.
+    first: u32,
+    count: u32,
+    seed: u32,
+    // One of the EMITTER_SHAPEs.
+    shape: u32,
+    // Seconds since the interval of the first birth began: less digits than the time itself takes.
+    since_first: f32,
+    rate: f32,
+    lifetime: f32,
+    lifetime_spread: f32,
+    position: vec3f,
+    burst: f32,
+    extent: vec3f,
+    velocity_spread: f32,
+    velocity: vec3f,
+    drag: f32,
+    // Acceleration by buoyancy.
+    rise: vec3f,
+    turbulence: f32,
+    wind: vec3f,
+    turbulence_scale: f32,
+    // Axes of the disc.
+    disc_x: vec3f,
+    radius_start: f32,
+    disc_z: vec3f,
+    radius_end: f32,
+    // Of the swirls: (cos, sin).
+    phase: vec2f,
+    radius_spread: f32,
+    spin: f32,
+    amount: f32,
+    fade_in: f32,
+    fade_out: f32,
+    frame_rate: f32,
+}
+
+const EMITTER_SHAPE_SPHERE: u32 = 0u;
+const EMITTER_SHAPE_BOX: u32 = 1u;
+const EMITTER_SHAPE_DISC: u32 = 2u;
+
+const TURN: f32 = 6.283185307179586;
+
+// A particle, in the layout of instances.
+struct Emitted {
+    position_radius: vec4f,
+    rotation_amount_frame_age: vec4f,
+}
+
+// A direction, evenly distributed. Uses y and z, so that x is free for a distance.
+fn unit_sphere(random: vec3f) -> vec3f {
+    let z = random.z * 2.0 - 1.0;
+    let angle = random.y * TURN;
+    let level = vec2f(cos(angle), sin(angle)) * sqrt(1.0 - z * z);
+    return vec3f(level.x, z, level.y);
+}
+
+// ∫ e^(−k·s) ds and ∫∫ e^(−k·s) ds over 0..t: what is left of a velocity, and of an acceleration, under drag k.
+fn drag_integrals(drag: f32, t: f32) -> vec2f {
+    let x = drag * t;
+    if x < 0.5 {
+        // The closed forms cancel near 0; this much of their series is exact to f32 here.
+        let reached = 1.0 - x / 2.0 * (1.0 - x / 3.0 * (1.0 - x / 4.0 * (1.0 - x / 5.0 * (1.0 - x / 6.0 * (1.0 - x / 7.0)))));
+        let approached = 1.0 - x / 3.0 * (1.0 - x / 4.0 * (1.0 - x / 5.0 * (1.0 - x / 6.0 * (1.0 - x / 7.0 * (1.0 - x / 8.0)))));
+        return vec2f(t * reached, 0.5 * t * t * approached);
+    }
+    let reached = (1.0 - exp(-x)) / drag;
+    return vec2f(reached, (t - reached) / drag);
+}
+
+// 0..1 with no slope at either end.
+fn eased(x: f32) -> f32 {
+    let s = saturate(x);
+    return s * s * (3.0 - 2.0 * s);
+}
+
+// Where in the shape a particle is born, from its middle.
+fn birth_offset(emitter: Emitter, random: vec3f) -> vec3f {
+    switch emitter.shape {
+        case EMITTER_SHAPE_BOX: {
+            return (random * 2.0 - 1.0) * emitter.extent;
+        }
+        case EMITTER_SHAPE_DISC: {
+            let angle = random.y * TURN;
+            let level = vec2f(cos(angle), sin(angle)) * sqrt(random.z) * emitter.extent.xz;
+            return emitter.disc_x * level.x + emitter.disc_z * level.y;
+        }
+        default: {
+            return unit_sphere(random) * emitter.extent * pow(random.x, 1.0 / 3.0);
+        }
+    }
+}
+
+// 0..1, three for each birth and salt.
+fn birth_random(index: u32, salt: u32, seed: u32) -> vec3f {
+    let hash = pcg3d(vec3u(index, salt, seed));
+    return vec3f(unit(hash.x), unit(hash.y), unit(hash.z));
+}
+
+// The particle of a birth, counted from the first; of amount 0 where it is not alive.
+fn emitted_particle(emitter: Emitter, number: u32) -> Emitted {
+    let index = emitter.first + number;
+    let life = birth_random(index, 0u, emitter.seed);
+    let place = birth_random(index, 1u, emitter.seed);
+    let motion = birth_random(index, 2u, emitter.seed);
+    let look = birth_random(index, 3u, emitter.seed);
+    // Births are jittered within their interval, or a fast emitter would pulse.
+    let seconds = emitter.since_first - (f32(number) + life.y) / emitter.rate;
+    let lifetime = emitter.lifetime * (1.0 + emitter.lifetime_spread * (2.0 * life.x - 1.0));
+    if !(seconds >= 0.0 && seconds < lifetime) {
+        return Emitted(vec4f(0.0), vec4f(0.0));
+    }
+    let age = seconds / lifetime;
+
+    let offset = birth_offset(emitter, place);
+    let distance = length(offset);
+    let outward = select(vec3f(0.0), offset / distance, distance > 0.0);
+    let velocity = emitter.velocity + outward * emitter.burst + unit_sphere(motion) * (emitter.velocity_spread * life.z);
+    // v' = drag·(wind − v) + buoyancy, solved: position and spin approach their limits as 1 − e^(−drag·t).
+    let integrals = drag_integrals(emitter.drag, seconds);
+    let reached = integrals.x;
+    let path = velocity * reached + emitter.wind * (seconds - reached) + emitter.rise * integrals.y;
+    let base = emitter.position + offset + path;
+
+    // Swirls grow with age: smoke leaves the source smooth and breaks up on the way.
+    let large = curl_noise(base / emitter.turbulence_scale, emitter.phase, emitter.seed * 977u);
+    let small = curl_noise(base * (2.3 / emitter.turbulence_scale), emitter.phase, emitter.seed * 977u + 5u);
+    let position = base + (large + small * 0.4) * (emitter.turbulence * age);
+
+    // Growth like diffusion: fast at first.
+    let radius = emitter.radius_start + (emitter.radius_end - emitter.radius_start) * sqrt(age);
+    let fade_in = eased(age / max(emitter.fade_in, 1.0e-4));
+    let fade_out = eased((1.0 - age) / max(emitter.fade_out, 1.0e-4));
+    return Emitted(
+        vec4f(position, radius * (1.0 + emitter.radius_spread * (2.0 * look.x - 1.0))),
+        vec4f(
+            look.y * TURN + emitter.spin * (2.0 * look.z - 1.0) * reached,
+            emitter.amount * fade_in * fade_out,
+            place.x * 256.0 + seconds * emitter.frame_rate,
+            age,
+        ),
+    );
+}

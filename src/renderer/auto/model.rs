@@ -1,0 +1,242 @@
+//! What either way to accumulate takes, from what there is to accumulate.
+
+use super::load::PathLoad;
+use crate::error::FieldError;
+use crate::settings::Technique;
+
+/// Texels along the side of what [`PathCosts::entry`] counts.
+const BIN: f64 = 32.0;
+/// Where a walk stops, as optical depth: `OPAQUE` in `shaders/tile_accumulate.wgsl`, and twice that, as texels that walk together
+/// wait for the last of them.
+const OPAQUE_DEPTH: f64 = 2.0 * 10.0 * std::f64::consts::LN_2;
+/// Share of the walks that never stop: those round the borders of the smoke. With both an H200 is met within 5 % where sprites are
+/// large.
+const CLEAR_SHARE: f64 = 0.5;
+
+/// What accumulating takes on a device, by which the path `auto` chooses. Set it with
+/// [`Context::set_path_model`](crate::Context::set_path_model).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathModel {
+    /// Of the path `raster`.
+    pub raster: PathCosts,
+    /// Of the path `tiled`.
+    pub tiled: PathCosts,
+    /// Where the figures are from.
+    pub source: PathModelSource,
+}
+
+/// What one way to accumulate takes, nanoseconds, each 0 or more and finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathCosts {
+    /// Each system.
+    pub frame: f32,
+    /// Each texel of its target.
+    pub texel: f32,
+    /// Each sprite.
+    pub sprite: f32,
+    /// Each square of 32 texels that a sprite touches, sprite by sprite.
+    pub entry: f32,
+    /// Each texel that a flat sprite covers.
+    pub fragment: f32,
+    /// The same of the technique `spherical_billboard`.
+    pub sphere: f32,
+    /// The same of volumetric ones, for each octave of each step.
+    pub march: f32,
+}
+
+/// Where the figures of a [`PathModel`] are from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PathModelSource {
+    /// What GPUs were measured at.
+    Gpu,
+    /// What CPUs that draw were measured at.
+    Cpu,
+    /// Measured on this device: [`Context::measure_paths`](crate::Context::measure_paths).
+    Probe,
+    /// The host's own.
+    Host,
+}
+
+impl PathModelSource {
+    /// In a word or two.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Gpu => "as GPUs have it",
+            Self::Cpu => "as CPUs have it",
+            Self::Probe => "probe",
+            Self::Host => "set by the host",
+        }
+    }
+}
+
+impl PathModel {
+    /// An NVIDIA H200, `bench/results/h200_overdraw.json`; spheres and volumes by what they read.
+    const GPU: Self = Self {
+        raster: PathCosts {
+            frame: 10.0e3,
+            texel: 0.14,
+            sprite: 0.0,
+            entry: 0.0,
+            fragment: 0.08,
+            sphere: 0.09,
+            march: 0.005,
+        },
+        tiled: PathCosts {
+            frame: 80.0e3,
+            texel: 0.01,
+            sprite: 5.0,
+            entry: 0.2,
+            fragment: 0.003,
+            sphere: 0.006,
+            march: 0.005,
+        },
+        source: PathModelSource::Gpu,
+    };
+
+    /// llvmpipe on two cores.
+    const CPU: Self = Self {
+        raster: PathCosts {
+            frame: 50.0e3,
+            texel: 1.0,
+            sprite: 300.0,
+            entry: 0.0,
+            fragment: 13.0,
+            sphere: 18.0,
+            march: 12.5,
+        },
+        tiled: PathCosts {
+            frame: 1.0e6,
+            texel: 10.0,
+            sprite: 1000.0,
+            entry: 14.0e3,
+            fragment: 8.0,
+            sphere: 13.0,
+            march: 14.0,
+        },
+        source: PathModelSource::Cpu,
+    };
+
+    /// By how much the probe finds more than this, by `raster` and by `tiled`, on the very device that the class was measured at:
+    /// its sprites are hidden by nothing, and those of the class in part, which spares `raster` the more.
+    pub(crate) fn probe_finds(&self) -> [f32; 2] {
+        if self.source == PathModelSource::Cpu { [1.4, 1.0] } else { [1.0, 1.0] }
+    }
+
+    /// What devices of this kind take.
+    pub fn of_class(device_type: wgpu::DeviceType) -> Self {
+        if device_type == wgpu::DeviceType::Cpu { Self::CPU } else { Self::GPU }
+    }
+
+    pub(crate) fn validate(&self) -> Result<(), FieldError> {
+        for (path, costs) in [("raster", self.raster), ("tiled", self.tiled)] {
+            let PathCosts { frame, texel, sprite, entry, fragment, sphere, march } = costs;
+            let named = [
+                ("frame", frame),
+                ("texel", texel),
+                ("sprite", sprite),
+                ("entry", entry),
+                ("fragment", fragment),
+                ("sphere", sphere),
+                ("march", march),
+            ];
+            if let Some((name, value)) = named.into_iter().find(|(_, cost)| !(0.0..f32::INFINITY).contains(cost)) {
+                return Err(FieldError::new(format!("{path}.{name}"), value, "nanoseconds, 0 or more"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Milliseconds by `raster` and by `tiled`.
+    pub fn milliseconds(&self, load: &PathLoad) -> [f32; 2] {
+        [(&self.raster, 1.0), (&self.tiled, load.seen_share())].map(|(costs, share)| costs.milliseconds(load, share))
+    }
+}
+
+impl PathCosts {
+    /// `share`: of the sprites' texels, those that are worked out.
+    pub(crate) fn milliseconds(&self, load: &PathLoad, share: f64) -> f32 {
+        let of_fragment = match load.technique {
+            Technique::SphericalBillboard => f64::from(self.sphere),
+            technique if technique.is_volumetric() => f64::from(self.march) * load.lookups,
+            _ => f64::from(self.fragment),
+        };
+        let nanoseconds = f64::from(self.frame)
+            + f64::from(self.texel) * load.texels
+            + f64::from(self.sprite) * load.sprites
+            + (f64::from(self.entry) * load.entries() + of_fragment * load.fragments) * share;
+        (nanoseconds * 1.0e-6) as f32
+    }
+
+    /// All of them so many times as large.
+    pub(crate) fn times(self, factor: f32) -> Self {
+        Self {
+            frame: self.frame * factor,
+            texel: self.texel * factor,
+            sprite: self.sprite * factor,
+            entry: self.entry * factor,
+            fragment: self.fragment * factor,
+            sphere: self.sphere * factor,
+            march: self.march * factor,
+        }
+    }
+}
+
+impl PathLoad {
+    /// Layers over a texel, in the mean.
+    pub fn layers(&self) -> f64 {
+        self.fragments / self.texels.max(1.0)
+    }
+
+    /// Squares of 32 texels that sprites touch, sprite by sprite.
+    fn entries(&self) -> f64 {
+        // Of a square that lies askew.
+        let side = 1.2 * (self.fragments / self.sprites.max(1.0)).sqrt();
+        self.sprites * (side / BIN + 1.0).powi(2).min((self.texels / (BIN * BIN)).max(1.0))
+    }
+
+    /// How much of the sprites a walk sees before it stops, in the mean. Layers are taken to be spread as chance has it, most of them
+    /// in few places.
+    fn seen_share(&self) -> f64 {
+        let layers_seen = OPAQUE_DEPTH / self.optical_depth.max(1.0e-6);
+        1.0 - (1.0 - CLEAR_SHARE) * (-layers_seen / self.layers().max(1.0e-6)).exp()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn load(layers: f64) -> PathLoad {
+        let texels = 1280.0 * 720.0;
+        PathLoad {
+            technique: Technique::Soft,
+            sprites: 1000.0,
+            fragments: layers * texels,
+            texels,
+            optical_depth: 0.05,
+            lookups: 0.0,
+            is_assumed: false,
+        }
+    }
+
+    #[test]
+    fn layers_cost_what_is_seen_of_them() {
+        let model = PathModel::of_class(wgpu::DeviceType::Cpu);
+        let [raster, tiled] = model.milliseconds(&load(4.0));
+        assert!(raster < tiled, "{raster} {tiled}");
+        let [deep_raster, deep_tiled] = model.milliseconds(&load(4000.0));
+        assert!(deep_raster > 500.0 * raster && deep_tiled < 500.0 * tiled, "{deep_raster} {deep_tiled}");
+        // A walk that does not stop sees all of it.
+        let [_, all] = model.milliseconds(&PathLoad { optical_depth: 0.0, ..load(4000.0) });
+        assert!(all > 1.7 * deep_tiled);
+    }
+
+    #[test]
+    fn a_gpu_walks_where_there_is_something_to_walk() {
+        let model = PathModel::of_class(wgpu::DeviceType::DiscreteGpu);
+        for layers in [1.0, 4.0, 64.0, 1024.0] {
+            let [raster, tiled] = model.milliseconds(&load(layers));
+            assert!(tiled < raster, "{layers}: {tiled} {raster}");
+        }
+    }
+}
