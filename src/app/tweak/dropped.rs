@@ -155,7 +155,8 @@ mod tests {
         for name in ["mine.png", "scatter_a.png", "coverage_a.png", "age_a.png", "specular_a.png"] {
             save(name, (64, 1), across);
         }
-        save("plane.png", (64, 64), |x, y| [(x * y / 16) as u8; 3]);
+        save("plane.png", (64, 64), |x, y| [((63 - x) * y / 16) as u8; 3]);
+        save("rows.png", (64, 64), |x, y| [(x * y / 16) as u8; 3]);
         save("down.png", (4, 64), |_, y| [4 * y as u8; 3]);
         save("motif_a.png", (32, 32), across);
         for name in ["sheet.png", "puff.png", "puff.detail.png"] {
@@ -172,7 +173,8 @@ mod tests {
             dropped.apply(&mut preset, 0, UVec2::new(640, 360)).map(|said| (said, preset.systems[0].material.clone()))
         };
         type Field = fn(&MaterialNames) -> &String;
-        let all: [(&str, &str, Field); 9] = [
+        let all: [(&str, &str, Field); 10] = [
+            ("rows.png", "diffuse ramp of smoke", |m| &m.diffuse_ramp),
             ("mine.png", "diffuse ramp of smoke", |m| &m.diffuse_ramp),
             ("scatter_a.png", "soft scatter ramp of smoke", |m| &m.soft_scatter_ramp),
             ("coverage_a.png", "coverage ramp of smoke", |m| &m.coverage_ramp),

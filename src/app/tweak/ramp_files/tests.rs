@@ -249,7 +249,7 @@ fn rows_of_a_plane_are_picked() {
     std::fs::write(folder.path("mine.ramp.json"), recipe.to_text()).unwrap();
     write_png(&folder.path("mine.png"), &recipe.bake().unwrap(), Effort::Quick).unwrap();
     let mut harness = folder.open();
-    harness.get_by_label("1.00").click();
+    harness.get_by_label("1.00").click_accesskit();
     harness.run_steps(3);
     harness.get_by_label("Flip").click_accesskit();
     harness.run_steps(4);
