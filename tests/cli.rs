@@ -325,7 +325,9 @@ fn pictures_may_lie_in_a_folder_that_presets_share() {
     let folder = folder();
     let path = |name: &str| folder.path().join(name);
     std::fs::create_dir_all(path("team")).unwrap();
-    image::RgbImage::from_fn(64, 8, |x, y| image::Rgb([(2 * x + 8 * y) as u8; 3])).save(path("team/glow.png")).unwrap();
+    // A glow, which is no diffuse ramp.
+    let glow = |x, y| image::Rgb([((63 - x) * (y + 1) / 2) as u8; 3]);
+    image::RgbImage::from_fn(64, 8, glow).save(path("team/glow.png")).unwrap();
     let text = r#"{"version": 1, "name": "x", "systems": [{"name": "s", "material":
         {"diffuse_ramp": "glow.png", "age_ramp": "glwo.png", "noise": "fmb.png"}}]}"#;
     std::fs::write(path("my.json"), text).unwrap();
@@ -341,12 +343,12 @@ fn pictures_may_lie_in_a_folder_that_presets_share() {
     assert!(notes.starts_with(idle) && notes.lines().count() == 3, "{notes}");
     assert!(lines[0].contains("systems[0].material.diffuse_ramp: glow.png: No such file in "), "{said}");
     let (_, said, notes) = check(&["--assets", "team"]);
-    assert!(notes.contains("  systems[0].material.diffuse_ramp: glow.png: its 8 rows differ"), "{notes}");
+    assert!(notes.contains("  systems[0].material.diffuse_ramp: glow.png: black where it faces the light"), "{notes}");
     assert!(said.lines().count() == 2 && said.contains("the nearest name is \"glow.png\""), "{said}");
     std::fs::write(path("my.json"), text.replace("glwo", "glow").replace("fmb.png", "fbm")).unwrap();
     let (code, said, doubts) = check(&["--assets", "team"]);
     assert_eq!((code, said.as_str()), (Some(0), ""), "{said}");
-    assert!(doubts.contains("  systems[0].material.diffuse_ramp: glow.png: its 8 rows differ"), "{doubts}");
+    assert!(doubts.contains("  systems[0].material.diffuse_ramp: glow.png: black where it faces the light"), "{doubts}");
     let render = ["render", "my.json", "--size", "32x18", "--backend", "cpu", "-o", "a.png"];
     assert!(haze(folder.path(), &[&render[..], &["--assets", "team"]].concat()).status.success());
     assert!(refusal(folder.path(), &[&render[..], &["--assets", "none"]].concat()).contains("--assets: none"));

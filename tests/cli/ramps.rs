@@ -239,7 +239,7 @@ fn a_blank_of_every_role_is_a_ramp_with_its_axes_on_it() {
     for role in Role::ALL {
         let name = format!("{}_mine.png", role.name());
         let line = said(folder.path(), &["ramp", "new", "--blank", role.name(), "-o", &name]);
-        let size = if *role == Role::Specular { "512x256" } else { "512x64" };
+        let size = if matches!(role, Role::Specular | Role::Backlight) { "512x256" } else { "512x64" };
         assert_eq!(line, format!("{name}: a {} ramp to paint over, {size}\n", role.name()));
         // Ink is written at both ends: from one line to the next a ramp changes little.
         let picture = haze::picture::read_png(&folder.path().join(&name)).unwrap().to_luma8();
@@ -254,4 +254,48 @@ fn a_blank_of_every_role_is_a_ramp_with_its_axes_on_it() {
     }
     let line = refusal(folder.path(), &["ramp", "new", "--blank", "age", "-o", "a.ramp.json"]);
     assert!(line.contains("expected a name that ends in .png"), "{line}");
+}
+
+#[test]
+fn ramps_are_fitted_to_smoke_as_it_is() {
+    let folder = folder();
+    let puff = ["--size", "16", "--samples", "8"];
+    let fit = |rest: &[&str]| [&["ramp", "fit", "-o", "lit.ramp.json"], rest, &puff].concat();
+    let against = fit(&["--medium", "dust", "--backlight", "against.ramp.json", "--sheet", "sheet.png"]);
+    let told = said(folder.path(), &against);
+    // The usual ramp first, then what was fitted.
+    let error = |name: &str| -> f32 {
+        let line = told.lines().find(|line| line.starts_with(name)).unwrap();
+        line.split(' ').nth(2).unwrap().parse().unwrap()
+    };
+    assert!(error("fitted:") < 10.0 && error("diffuse_soft:") > 30.0, "{told}");
+    assert_eq!(told.lines().filter(|line| line.contains('°')).count(), 32, "{told}");
+    for name in ["lit", "against"] {
+        let picture = folder.path().join(name).with_extension("png");
+        assert_eq!(haze::picture::read_png(&picture).unwrap().to_rgb16().dimensions(), (128, 64));
+        assert!(haze::ramp::bake::RampRecipe::load(&picture.with_extension("ramp.json")).unwrap().rows.len() == 5);
+    }
+    assert!(folder.path().join("sheet.png").is_file());
+    let render = ["render", "--size", "32x18", "--backend", "cpu", "-o", "a.png", "--set", "diffuse.backlight=ramp"];
+    assert!(haze(folder.path(), &render).status.success());
+    let check = ["ramp", "check", "lit.png", "--truth", "dust", "--backlight", "against.png"];
+    let output = haze(folder.path(), &check);
+    assert!(String::from_utf8(output.stdout).unwrap().starts_with("lit.png beside dust: brightness "));
+    let refused = |rest: &[&str]| refusal(folder.path(), &fit(rest));
+    assert!(refused(&["--albedo", "1.5"]).contains("--albedo: 1.5 is not valid; expected 0 to 1"));
+    assert!(refused(&["--albedo", "1,2"]).contains("one, or red, green and blue"));
+    assert!(refused(&["--g", "nan"]).contains("--g: NaN is not valid"));
+    assert!(refused(&["--density", "0"]).contains("--density: 0 is not valid; expected 0.1 to 100"));
+    assert!(refused(&["--sprite", "smoke"]).contains("--sprite: smoke is not valid; expected a *.sprite.json file"));
+}
+
+#[test]
+fn a_sprite_is_lit_as_smoke_is() {
+    let folder = folder();
+    let light = ["sprite", "light", "ball", "--medium", "milk", "--size", "16", "--samples", "4", "-o", "a.png"];
+    let told = said(folder.path(), &[&light[..], &["--volume", "ball.vol"]].concat());
+    assert_eq!(told.lines().count(), 17, "{told}");
+    assert_eq!(haze::picture::read_png(&folder.path().join("a.png")).unwrap().height(), 212);
+    let grid = fs::read(folder.path().join("ball.vol")).unwrap();
+    assert!(grid.starts_with(b"VOL\x03\x01\0\0\0\x10\0\0\0\x10\0\0\0"), "{:?}", &grid[..24]);
 }
