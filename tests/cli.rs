@@ -348,7 +348,10 @@ fn pictures_may_lie_in_a_folder_that_presets_share() {
     std::fs::write(path("my.json"), text.replace("glwo", "glow").replace("fmb.png", "fbm")).unwrap();
     let (code, said, doubts) = check(&["--assets", "team"]);
     assert_eq!((code, said.as_str()), (Some(0), ""), "{said}");
-    assert!(doubts.contains("  systems[0].material.diffuse_ramp: glow.png: black where it faces the light"), "{doubts}");
+    assert!(
+        doubts.contains("  systems[0].material.diffuse_ramp: glow.png: black where it faces the light"),
+        "{doubts}"
+    );
     let render = ["render", "my.json", "--size", "32x18", "--backend", "cpu", "-o", "a.png"];
     assert!(haze(folder.path(), &[&render[..], &["--assets", "team"]].concat()).status.success());
     assert!(refusal(folder.path(), &[&render[..], &["--assets", "none"]].concat()).contains("--assets: none"));

@@ -56,7 +56,8 @@ impl MediumArguments {
         };
         medium.g = self.g.unwrap_or(medium.g);
         medium.density = self.density.unwrap_or(medium.density);
-        validate(&medium, || "--".into())?;
+        let of_option = |error: FieldError| FieldError { field: format!("--{}", error.field), ..error };
+        validate(&medium, String::new).map_err(of_option)?;
         Ok(medium)
     }
 

@@ -260,9 +260,9 @@ fn a_blank_of_every_role_is_a_ramp_with_its_axes_on_it() {
 fn ramps_are_fitted_to_smoke_as_it_is() {
     let folder = folder();
     let puff = ["--size", "16", "--samples", "8"];
-    let fit = |rest: &[&str]| [&["ramp", "fit", "-o", "lit.ramp.json"], rest, &puff].concat();
-    let against = fit(&["--medium", "dust", "--backlight", "against.ramp.json", "--sheet", "sheet.png"]);
-    let told = said(folder.path(), &against);
+    let fit = ["ramp", "fit", "-o", "lit.ramp.json"];
+    let both = ["--medium", "dust", "--backlight", "against.ramp.json", "--sheet", "sheet.png"];
+    let told = said(folder.path(), &[&fit[..], &puff, &both].concat());
     // The usual ramp first, then what was fitted.
     let error = |name: &str| -> f32 {
         let line = told.lines().find(|line| line.starts_with(name)).unwrap();
@@ -281,7 +281,7 @@ fn ramps_are_fitted_to_smoke_as_it_is() {
     let check = ["ramp", "check", "lit.png", "--truth", "dust", "--backlight", "against.png"];
     let output = haze(folder.path(), &check);
     assert!(String::from_utf8(output.stdout).unwrap().starts_with("lit.png beside dust: brightness "));
-    let refused = |rest: &[&str]| refusal(folder.path(), &fit(rest));
+    let refused = |rest: &[&str]| refusal(folder.path(), &[&fit[..], &puff, rest].concat());
     assert!(refused(&["--albedo", "1.5"]).contains("--albedo: 1.5 is not valid; expected 0 to 1"));
     assert!(refused(&["--albedo", "1,2"]).contains("one, or red, green and blue"));
     assert!(refused(&["--g", "nan"]).contains("--g: NaN is not valid"));
