@@ -3,7 +3,7 @@
 use glam::{UVec2, Vec3};
 use haze::formula::colour::srgb_from_linear;
 use haze::picture::Picture;
-use haze::ramp::response::{DiffuseRamps, LIGHTS, Puff};
+use haze::ramp::response::{DiffuseRamps, LIGHTS, Puff, angle};
 use image::imageops::{FilterType, resize};
 use image::{Rgb, RgbImage};
 
@@ -39,14 +39,15 @@ fn white(puff: &Puff) -> f32 {
 }
 
 fn degrees(light: usize) -> String {
-    format!("{}°", 360.0 * light as f32 / LIGHTS as f32)
+    format!("{}°", angle(light))
 }
 
 /// The path-traced puff, light by light.
 pub fn traced(puff: &Puff) -> RgbImage {
     let mut sheet = Sheet::new(UVec2::splat(SIDE), SHOWN as u32, SHOWN as u32);
+    let white = white(puff);
     for light in 0..SHOWN {
-        let picture = before_ground(&puff.traced().light[light], &puff.traced().coverage, white(puff));
+        let picture = before_ground(&puff.traced().light[light], &puff.traced().coverage, white);
         sheet.place(light as u32, &degrees(light), &enlarged(&picture));
     }
     sheet.picture
@@ -59,8 +60,10 @@ fn enlarged(picture: &RgbImage) -> RgbImage {
 /// The path-traced puff, the same by ramps, and how far they are apart; below each other.
 pub fn compared(puff: &Puff, ramps: DiffuseRamps<'_>, exposure: f32) -> RgbImage {
     let mut sheet = Sheet::new(UVec2::splat(SIDE), SHOWN as u32, 3 * SHOWN as u32);
+    let white = white(puff);
+    let whites = [white, white / exposure];
     for light in 0..SHOWN {
-        let [truth, shown] = pair(puff, ramps, exposure, light);
+        let [truth, shown] = pair(puff, ramps, whites, light);
         let apart = RgbImage::from_fn(truth.width(), truth.height(), |x, y| {
             let [a, b] = [truth.get_pixel(x, y).0, shown.get_pixel(x, y).0];
             Rgb(std::array::from_fn(|channel| a[channel].abs_diff(b[channel])))
@@ -73,17 +76,19 @@ pub fn compared(puff: &Puff, ramps: DiffuseRamps<'_>, exposure: f32) -> RgbImage
     sheet.picture
 }
 
-/// Path-traced, and by ramps.
-fn pair(puff: &Puff, ramps: DiffuseRamps<'_>, exposure: f32, light: usize) -> [RgbImage; 2] {
-    let (coverage, white) = (&puff.traced().coverage, white(puff));
+/// Path-traced, and by ramps; what is white of either.
+fn pair(puff: &Puff, ramps: DiffuseRamps<'_>, whites: [f32; 2], light: usize) -> [RgbImage; 2] {
+    let coverage = &puff.traced().coverage;
     let shown = puff.shown(ramps, light);
-    [before_ground(&puff.traced().light[light], coverage, white), before_ground(&shown, coverage, white / exposure)]
+    [before_ground(&puff.traced().light[light], coverage, whites[0]), before_ground(&shown, coverage, whites[1])]
 }
 
 /// Mean FLIP of all lights: how different they look.
 pub fn flip(puff: &Puff, ramps: DiffuseRamps<'_>, exposure: f32) -> f64 {
+    let white = white(puff);
+    let whites = [white, white / exposure];
     let of_light = |light| {
-        let [truth, shown] = pair(puff, ramps, exposure, light);
+        let [truth, shown] = pair(puff, ramps, whites, light);
         flip_of(&truth, &shown)
     };
     (0..LIGHTS as usize).map(of_light).sum::<f64>() / f64::from(LIGHTS)

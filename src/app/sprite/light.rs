@@ -6,7 +6,7 @@ use clap::Args;
 use haze::Error;
 use haze::formula::colour::luminance;
 use haze::picture::{Effort, write_file, write_png};
-use haze::ramp::response::{LIGHTS, Puff};
+use haze::ramp::response::{LIGHTS, Puff, angle};
 use haze::sprite::bake::SpriteRecipe;
 
 use crate::app::medium::{MediumArguments, PathTraceArguments, sprite_recipe, usual_sprite};
@@ -44,9 +44,8 @@ pub fn run(Arguments { sprite, medium, quality, output, volume }: &Arguments) ->
     }
     write_png(output, &traced(&puff).into(), Effort::Small)?;
     say!("{}: {} under {LIGHTS} lights; brightness, 1 is a white wall:", output.display(), medium.name())?;
-    for light in 0..LIGHTS {
-        let angle = 360.0 * light as f32 / LIGHTS as f32;
-        say!("{angle:6.1} {:.6}", luminance(puff.traced().mean(light as usize)))?;
+    for light in 0..LIGHTS as usize {
+        say!("{:6.1} {:.6}", angle(light), luminance(puff.traced().mean(light)))?;
     }
     Ok(())
 }

@@ -14,6 +14,7 @@ mod volume;
 
 pub use medium::{MEDIA, Medium, NamedMedium};
 pub use volume::Volume;
+pub(crate) use volume::position;
 
 use glam::{UVec2, Vec3};
 
@@ -59,18 +60,18 @@ impl PathTrace {
         progress: impl Fn(u32) -> Result<(), E>,
     ) -> Result<Traced, E> {
         let tracer = Tracer::new(volume, medium, lights);
-        let (count, steps) = (lights.len(), 2 * volume.size.max_element() as usize);
+        let count = lights.len();
         // Of each pixel, beside each other: the lights, then the coverage.
         let mut sums = Picture::new(UVec2::new(self.size * (count as u32 + 1), self.size), Vec3::ZERO);
         for sample in 0..self.samples {
             progress(sample)?;
             sums.for_bands(|first, band| {
-                let mut column = vec![0.0; steps];
+                let mut scratch = tracer.scratch();
                 for (index, sums) in (0..).zip(band.chunks_mut(count + 1)) {
                     let at = UVec2::new(index % self.size, first + index / self.size);
                     let pixel = Pixel { at, size: self.size, seed: self.seed };
                     let (lights, coverage) = sums.split_at_mut(count);
-                    coverage[0].x += tracer.add_path(&pixel, (sample, self.samples), &mut column, lights);
+                    coverage[0].x += tracer.add_path(&pixel, (sample, self.samples), &mut scratch, lights);
                 }
             });
         }

@@ -23,6 +23,14 @@ pub(super) struct Tracer<'a> {
     majorant: f32,
 }
 
+/// What paths work with, one after the other.
+pub(super) struct Scratch {
+    /// Extinction in front of the end of each step through a column.
+    column: Vec<f32>,
+    /// Densities towards each light.
+    towards: Vec<f32>,
+}
+
 /// Where paths begin.
 pub(super) struct Pixel {
     pub at: UVec2,
@@ -37,10 +45,15 @@ impl<'a> Tracer<'a> {
         Self { volume, medium, lights, shadows, majorant: volume.largest() * medium.density }
     }
 
+    pub fn scratch(&self) -> Scratch {
+        let steps = 2 * self.volume.size.max_element() as usize;
+        Scratch { column: vec![0.0; steps], towards: vec![0.0; self.lights.len()] }
+    }
+
     /// Adds to each light what one path from somewhere in a pixel finds of it, given that its first vertex is in the smoke, times
-    /// how much of the pixel is; gives that. Where the vertex is goes by the stratum, the how-manieth of how many. `column` is
-    /// what the path works with.
-    pub fn add_path(&self, pixel: &Pixel, (index, count): (u32, u32), column: &mut [f32], sums: &mut [Vec3]) -> f32 {
+    /// how much of the pixel is; gives that. Where the vertex is goes by the stratum, the how-manieth of how many.
+    pub fn add_path(&self, pixel: &Pixel, (index, count): (u32, u32), scratch: &mut Scratch, sums: &mut [Vec3]) -> f32 {
+        let Scratch { column, towards } = scratch;
         let key = UVec3::new(pixel.at.x, pixel.at.y, pixel.seed.wrapping_mul(0x9e37_79b9).wrapping_add(index));
         let mut random = Random::new(key);
         let place = pixel.at.as_vec2() + Vec2::new(random.unit(), random.unit());
@@ -54,10 +67,9 @@ impl<'a> Tracer<'a> {
         let mut p = front.extend(met_at(column, -ln((1.0 - met * covered).max(f32::MIN_POSITIVE))));
         let mut direction = Vec3::NEG_Z;
         let mut light = self.medium.albedo * covered;
-        let mut towards = vec![0.0; self.lights.len()];
         for vertex in 1..MOST_VERTICES {
-            self.shadows.at(p, &mut towards);
-            for ((sum, &to_light), depth) in sums.iter_mut().zip(self.lights).zip(&towards) {
+            self.shadows.at(p, towards);
+            for ((sum, &to_light), depth) in sums.iter_mut().zip(self.lights).zip(&*towards) {
                 let phase = henyey_greenstein(direction.dot(to_light), self.medium.g);
                 *sum += light * (phase * decay(depth * self.medium.density));
             }

@@ -52,7 +52,7 @@ impl Volume {
 }
 
 /// The middle of a voxel of a cube of so many.
-pub(super) fn position(size: UVec3, voxel: UVec3) -> Vec3 {
+pub(crate) fn position(size: UVec3, voxel: UVec3) -> Vec3 {
     let p = (voxel.as_vec3() + 0.5) * (2.0 / size.as_vec3()) - 1.0;
     Vec3::new(p.x, -p.y, -p.z)
 }

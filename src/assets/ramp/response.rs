@@ -5,7 +5,7 @@ mod puff;
 mod solve;
 
 pub use fit::{FittedRamps, Shape};
-pub use puff::{DiffuseRamps, LIGHTS, LightResponse, Puff, Response};
+pub use puff::{DiffuseRamps, LIGHTS, LightResponse, Puff, Response, angle};
 
 #[cfg(test)]
 mod tests;

@@ -57,7 +57,7 @@ pub struct Response {
 /// Brightness of a puff under one light: mean luminance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightResponse {
-    /// Round the puff, degrees: at 0 the light is at the viewer, at 180 behind the smoke.
+    /// As [`angle`] has it.
     pub angle: f32,
     /// Path-traced.
     pub truth: f32,
@@ -106,7 +106,7 @@ impl Puff {
         let mean = |picture: &Picture<Vec3>| luminance(picture.texels.iter().sum()) / picture.texels.len() as f32;
         let lights: Vec<_> = (0..self.lights.len())
             .map(|light| LightResponse {
-                angle: 360.0 * light as f32 / self.lights.len() as f32,
+                angle: angle(light),
                 truth: mean(&self.traced.light[light]),
                 shown: mean(&shown[light]),
             })
@@ -123,6 +123,11 @@ impl Puff {
         let lights = lights.into_iter().map(|light| LightResponse { shown: light.shown * exposure, ..light }).collect();
         Response { exposure, lights, error, pixel_error: (off / all.max(f32::MIN_POSITIVE)).sqrt() }
     }
+}
+
+/// Of a light round a puff, degrees: at 0 it is at the viewer, at 180 behind the smoke.
+pub fn angle(light: usize) -> f32 {
+    360.0 * light as f32 / LIGHTS as f32
 }
 
 /// The way to a light of the ring.

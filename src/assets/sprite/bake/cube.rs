@@ -8,7 +8,7 @@ use super::frame::{BakedFrame, Ray};
 use super::recipe::SpriteRecipe;
 use crate::assets::exact::{direction, exp};
 use crate::assets::noise::{curl_noise, fractal_noise};
-use crate::assets::path_trace::Volume;
+use crate::assets::path_trace::{Volume, position};
 use crate::assets::picture::Picture;
 use crate::formula::saturate;
 
@@ -30,22 +30,18 @@ pub(super) fn volume(recipe: &SpriteRecipe, time: f32) -> Volume {
 fn slices(recipe: &SpriteRecipe, time: f32) -> Picture<f32> {
     let size = recipe.size;
     let cluster = Cluster::new(recipe, time);
+    let sides = UVec3::splat(size);
     let mut volume = Picture::new(UVec2::new(size, size * size), 0.0);
     volume.for_each(|at, density| {
         let texel = UVec3::new(at.x, at.y % size, at.y / size);
-        *density = cluster.density(position(size, texel));
+        *density = cluster.density(position(sides, texel));
     });
     volume
 }
 
-/// The place of a voxel: x right, y up, z to the viewer.
-fn position(size: u32, voxel: UVec3) -> Vec3 {
-    let p = (voxel.as_vec3() + 0.5) * (2.0 / size as f32) - 1.0;
-    Vec3::new(p.x, -p.y, -p.z)
-}
-
 /// Front to back through one texel's column: the texel, and how far to the viewer what is seen of it lies.
 fn march(recipe: &SpriteRecipe, volume: &Picture<f32>, at: UVec2) -> (Rgba<u8>, f32) {
+    let sides = UVec3::splat(recipe.size);
     let last = recipe.size as i32 - 1;
     let density = |voxel: IVec3| {
         let voxel = voxel.clamp(IVec3::ZERO, IVec3::splat(last));
@@ -69,12 +65,12 @@ fn march(recipe: &SpriteRecipe, volume: &Picture<f32>, at: UVec2) -> (Rgba<u8>, 
             continue;
         }
         let normal = slope(voxel, wide) + slope(voxel, 1) * recipe.bump;
-        ray.meet(amount, normal, position(recipe.size, voxel.as_uvec3()).z);
+        ray.meet(amount, normal, position(sides, voxel.as_uvec3()).z);
         if ray.is_over() {
             break;
         }
     }
-    ray.texel(at, recipe.size, position(recipe.size, at.extend(0)).truncate())
+    ray.texel(at, recipe.size, position(sides, at.extend(0)).truncate())
 }
 
 /// One moment of the cluster.

@@ -2,6 +2,8 @@
 
 use glam::{UVec3, Vec3};
 
+use crate::assets::path_trace::position;
+
 /// Voxels that are worked out together.
 pub(super) const RUN: usize = 16;
 
@@ -23,9 +25,7 @@ impl Voxels {
 
     /// The place of a voxel: x right, y up, z to the viewer.
     pub fn position(self, voxel: UVec3) -> Vec3 {
-        let size = self.size as f32;
-        let p = (voxel.as_vec3() + 0.5) * (2.0 / Vec3::new(size, size, self.depth as f32)) - 1.0;
-        Vec3::new(p.x, -p.y, -p.z)
+        position(self.sides(), voxel)
     }
 
     /// Boxes along each axis.
