@@ -1,7 +1,8 @@
 // accumulate
 // What    Blends every sprite's normal and amount into the accumulation target.
 // Reads   particles (instances; sorted: back to front), sprite flipbook, detail map or noise, reduced depth (or the host's own).
-// Writes  accumulation target: rgb = sum of premultiplied normals, a = amount; the sum of weights where it is needed.
+// Writes  accumulation target: rgb = sum of premultiplied normals, a = amount; beside it the sum of weights where it is needed.
+//         Of six-way sprites: light from right, top and front with the amount; beside it from left, bottom and back with the weights.
 // Blend   Sorted: ONE, ONE_MINUS_SRC_ALPHA: the normal is blended, the amount adds smoothly, A = 1 - product of (1 - a).
 //         Weighted: ONE, ONE for the normal, the amount as before.
 // Source  OTEE "Accumulating the particles"; techniques: NV, BLOG, MS.
@@ -41,8 +42,8 @@ fn vertex(particle: Particle, @builtin(vertex_index) index: u32) -> SpriteVertex
 
 struct Accumulated {
     @location(0) normal_and_amount: vec4f,
-    // Its sum is kept where biased normals are weighted.
-    @location(1) weight: f32,
+    // Kept where biased normals are weighted, and where SIX_WAY.
+    @location(1) beside: vec4f,
 }
 
 @fragment
@@ -61,8 +62,13 @@ fn fragment(in: SpriteVertex) -> Accumulated {
         discard;
     }
     if OVERDRAW {
-        return Accumulated(vec4f(OVERDRAW_STEP), 0.0);
+        return Accumulated(vec4f(OVERDRAW_STEP), vec4f(0.0));
+    }
+    let weight = fragment.amount * in.weight;
+    if SIX_WAY {
+        let light = fragment.six_way;
+        return Accumulated(vec4f(light.positive * weight, fragment.amount), vec4f(light.negative * weight, weight));
     }
     let accumulated = accumulation_from_normal(NORMAL_ENCODING, fragment.normal, fragment.amount, in.weight);
-    return Accumulated(accumulated, fragment.amount * in.weight);
+    return Accumulated(accumulated, vec4f(weight));
 }

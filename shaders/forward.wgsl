@@ -31,14 +31,20 @@ fn fragment(in: SpriteVertex) -> @location(0) vec4f {
     if fragment.hidden || fragment.amount <= 0.0 {
         discard;
     }
-    let normal = fragment.normal * inverseSqrt(max(dot(fragment.normal, fragment.normal), 1.0e-12));
     let amount = fragment.amount;
     var position = in.view_position;
     if is_sphere() {
         position = view_position(in.view_position.xy, max(-in.centre_radius.z, view.near), view.orthographic);
     }
     let covered = coverage(amount, system.boost);
-    var light = diffuse_from_lights(normal, covered, position) * system.diffuse_intensity + soft_scatter(amount);
+    var light = vec3f(0.0);
+    if SIX_WAY {
+        light = diffuse_from_six_way(fragment.six_way, position);
+    } else {
+        let normal = fragment.normal * inverseSqrt(max(dot(fragment.normal, fragment.normal), 1.0e-12));
+        light = diffuse_from_lights(normal, covered, position);
+    }
+    light = light * system.diffuse_intensity + soft_scatter(amount);
     if AGE_COLOUR {
         let colour = sample_ramp(age_ramp, linear_sampler, in.amount_lod_frame_age.w);
         light *= mix(vec3f(1.0), colour, system.age_colour);

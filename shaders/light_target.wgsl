@@ -23,13 +23,13 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     if amount <= 0.0 {
         return vec4f(0.0);
     }
-    var weights = amount;
-    if WEIGHT_SUM {
-        weights = textureLoad(weight_sum, vec2i(texel), 0).r;
+    var besides = vec4f(0.0);
+    if WEIGHT_SUM || SIX_WAY {
+        besides = textureLoad(beside, vec2i(texel), 0);
     }
-    let normal = normal_from_accumulation(NORMAL_ENCODING, NORMAL_DECODE, accumulated.rgb, weights);
+    let surface = surface_from_accumulation(accumulated, besides);
     // The texel's middle stands for all of its pixels.
     let pixel = (texel + system.target_origin + 0.5) * system.scale;
-    let light = diffuse(normal, amount, lit_position(pixel)) + soft_scatter(amount);
+    let light = diffuse(surface, amount, lit_position(pixel)) + soft_scatter(amount);
     return vec4f(bounded_light(light), 1.0) * amount;
 }

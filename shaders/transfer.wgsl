@@ -82,18 +82,18 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         // The light of the texels, weighted by their amounts. Less than a millionth shows nothing, and must not divide.
         return vec4f(target_colour(accumulated.rgb / max(amount, 1.0e-6)), 1.0) * covered;
     }
-    var weights = amount;
-    if WEIGHT_SUM {
-        weights = sample_target(weight_sum, pixel).r;
+    var besides = vec4f(0.0);
+    if WEIGHT_SUM || SIX_WAY {
+        besides = sample_target(beside, pixel);
     }
-    let normal = normal_from_accumulation(NORMAL_ENCODING, NORMAL_DECODE, accumulated.rgb, weights);
+    let surface = surface_from_accumulation(accumulated, besides);
     if SHADE_TREE == SHADE_TREE_NORMALS {
-        return vec4f(normal * 0.5 + 0.5, 1.0) * covered;
+        return vec4f(surface.normal * 0.5 + 0.5, 1.0) * covered;
     }
 
     var light = vec3f(0.0);
     if SHADE_TREE != SHADE_TREE_SOFT_SCATTER {
-        light += diffuse(normal, amount, lit_position(pixel));
+        light += diffuse(surface, amount, lit_position(pixel));
     }
     if SHADE_TREE != SHADE_TREE_DIFFUSE {
         light += soft_scatter(amount);

@@ -2,6 +2,7 @@
 
 #import "lib/bindings.wgsl"
 #import "lib/ramp.wgsl"
+#import "lib/six_way.wgsl"
 
 const SOFT_SCATTER_MODE_SMOOTHSTEP: u32 = 0u;
 const SOFT_SCATTER_MODE_RAMP: u32 = 1u;
@@ -27,6 +28,17 @@ fn diffuse_from_lights(normal: vec3f, covered: f32, position: vec3f) -> vec3f {
         sum += falloff * lights[i].colour * light.attenuation;
     }
     return sum;
+}
+
+// Every light by what six-way maps show of it.
+fn diffuse_from_six_way(six_way: SixWay, position: vec3f) -> vec3f {
+    var sum = vec3f(0.0);
+    for (var i = 0u; i < system.light_count; i++) {
+        let light = sample_light(lights[i], position);
+        let response = six_way_response(six_way.positive, six_way.negative, light.direction, system.six_way_anisotropy);
+        sum += lights[i].colour * (response * light.attenuation);
+    }
+    return sum * system.six_way_colour;
 }
 
 // The even backlight of smoke by its amount. (OTEE "Soft scattering")

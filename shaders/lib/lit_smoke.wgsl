@@ -1,4 +1,4 @@
-// The light of accumulated smoke by normal, and its coverage: shared by transfer and light_target.
+// The light of accumulated smoke by normal or six-way maps, and its coverage: shared by transfer and light_target.
 
 #import "lib/diffuse.wgsl"
 #import "lib/accumulated.wgsl"
@@ -7,8 +7,9 @@
 
 // Six faces of baked light by normal (cubemap), or one picture of a lit sphere (motif).
 @group(3) @binding(2) var baked_diffuse: texture_2d_array<f32>;
-// What the weights of the normals sum to, where WEIGHT_SUM.
-@group(3) @binding(3) var weight_sum: texture_2d<f32>;
+// r: what the weights of the normals sum to, where WEIGHT_SUM. Light from left, bottom and back and the sum of weights, where
+// SIX_WAY.
+@group(3) @binding(3) var beside: texture_2d<f32>;
 
 const DIFFUSE_MODE_RAMP: u32 = 0u;
 const DIFFUSE_MODE_CUBEMAP: u32 = 1u;
@@ -19,11 +20,42 @@ override DIFFUSE_MODE: u32 = DIFFUSE_MODE_RAMP;
 override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
 override NORMAL_DECODE: u32 = NORMAL_DECODE_EXACT;
 override WEIGHT_SUM: bool = false;
+override SIX_WAY: bool = false;
 const COVERAGE_MODE_LINEAR: u32 = 0u;
 const COVERAGE_MODE_RAMP: u32 = 1u;
 override COVERAGE_MODE: u32 = COVERAGE_MODE_LINEAR;
 
-fn diffuse(normal: vec3f, amount: f32, position: vec3f) -> vec3f {
+// What light falls on.
+struct Surface {
+    // Unit length, view space.
+    normal: vec3f,
+    // Where SIX_WAY.
+    six_way: SixWay,
+}
+
+// From a texel of the target, and what is kept beside it, if anything is.
+fn surface_from_accumulation(accumulated: vec4f, beside: vec4f) -> Surface {
+    var surface: Surface;
+    if SIX_WAY {
+        // Where an upsampler's fit falls below 0 there is no light.
+        let scale = 1.0 / max(beside.a, 1.0e-6);
+        surface.six_way = SixWay(max(accumulated.rgb, vec3f(0.0)) * scale, max(beside.rgb, vec3f(0.0)) * scale);
+        surface.normal = normal_from_six_way(surface.six_way.positive, surface.six_way.negative);
+        return surface;
+    }
+    var weights = accumulated.a;
+    if WEIGHT_SUM {
+        weights = beside.r;
+    }
+    surface.normal = normal_from_accumulation(NORMAL_ENCODING, NORMAL_DECODE, accumulated.rgb, weights);
+    return surface;
+}
+
+fn diffuse(surface: Surface, amount: f32, position: vec3f) -> vec3f {
+    if SIX_WAY {
+        return diffuse_from_six_way(surface.six_way, position) * system.diffuse_intensity;
+    }
+    let normal = surface.normal;
     var light = vec3f(0.0);
     switch DIFFUSE_MODE {
         case DIFFUSE_MODE_CUBEMAP: {

@@ -1,4 +1,5 @@
-// The sprite picture: a flipbook of normal maps, rgb = normal / 2 + 1/2 (y up), a = amount.
+// The sprite picture: a flipbook of normal maps, rgb = normal / 2 + 1/2 (y up), a = amount. With six-way maps two more of as many
+// frames follow: light from right, top and front with the amount, then from left, bottom and back.
 
 #import "lib/ramp.wgsl"
 
@@ -24,7 +25,7 @@ fn sprite_frame(animation: u32, frame: f32, age: f32, frame_count: f32) -> f32 {
     }
 }
 
-// The two frames that a fractional frame blends, and the share of the second. The flipbook repeats.
+// The two frames that a fractional frame blends, and the share of the second. The flipbook repeats. One frame blends with nothing.
 struct FlipbookFrames {
     first: i32,
     second: i32,
@@ -35,7 +36,12 @@ fn flipbook_frames(frame: f32, frame_count: f32) -> FlipbookFrames {
     let wrapped = frame - floor(frame / frame_count) * frame_count;
     let first = clamp(floor(wrapped), 0.0, frame_count - 1.0);
     let second = select(first + 1.0, 0.0, first + 1.5 > frame_count);
-    return FlipbookFrames(i32(first), i32(second), saturate(wrapped - first));
+    return FlipbookFrames(i32(first), i32(second), select(0.0, saturate(wrapped - first), frame_count > 1.0));
+}
+
+// The same frames of a flipbook that comes `layers` later.
+fn frames_after(frames: FlipbookFrames, layers: i32) -> FlipbookFrames {
+    return FlipbookFrames(frames.first + layers, frames.second + layers, frames.blend);
 }
 
 // The frames as an animation shows them. Where none is blended that is a constant, and the second lookup is compiled away:
@@ -81,9 +87,9 @@ fn sample_sprite_frame(sprite: texture_2d_array<f32>, linear_sampler: sampler, u
     return mix(fine, coarse, level - base);
 }
 
-// Normal (-1..1, about unit length) and amount of a sprite. uv 0..1, v down. `motion` is where texels go from the first
-// frame to the second, in uv: each frame is looked up where the texel is at this moment, so that a blend does not ghost.
-fn sample_sprite(
+// A flipbook at a moment between two frames. uv 0..1, v down. `motion` is where texels go from the first frame to the second, in
+// uv: each frame is looked up where the texel is at this moment, so that a blend does not ghost.
+fn sample_flipbook(
     sprite: texture_2d_array<f32>,
     linear_sampler: sampler,
     uv: vec2f,
@@ -97,6 +103,19 @@ fn sample_sprite(
         let next = sample_sprite_frame(sprite, linear_sampler, place, frames.second, lod);
         texel = mix(texel, next, frames.blend);
     }
+    return texel;
+}
+
+// Normal (-1..1, about unit length) and amount of a sprite.
+fn sample_sprite(
+    sprite: texture_2d_array<f32>,
+    linear_sampler: sampler,
+    uv: vec2f,
+    frames: FlipbookFrames,
+    motion: vec2f,
+    lod: f32,
+) -> vec4f {
+    let texel = sample_flipbook(sprite, linear_sampler, uv, frames, motion, lod);
     return vec4f(texel.rgb * 2.0 - 1.0, texel.a);
 }
 

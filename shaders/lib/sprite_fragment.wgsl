@@ -4,9 +4,12 @@
 #import "lib/depth.wgsl"
 #import "lib/noise_volume.wgsl"
 #import "lib/normal.wgsl"
+#import "lib/six_way.wgsl"
 
 override FADE_CURVE: u32 = FADE_CURVE_SMOOTHSTEP;
 override DEBUG_SPRITE: bool = false;
+// Sprites are lit by six-way maps, and their normals are not read.
+override SIX_WAY: bool = false;
 // True where sprite.motion is not 0.
 override MOTION: bool = false;
 // The host's depth is linear.
@@ -17,12 +20,15 @@ override DEPTH_TESTED: bool = false;
 struct SpriteFragment {
     // View space, about unit length.
     normal: vec3f,
+    // View space, where SIX_WAY.
+    six_way: SixWay,
     amount: f32,
     // Behind the scene or outside the sphere: not shaded at all.
     hidden: bool,
 }
 
-const HIDDEN: SpriteFragment = SpriteFragment(vec3f(0.0, 0.0, 1.0), 0.0, true);
+const NO_LIGHT: SixWay = SixWay(vec3f(0.0), vec3f(0.0));
+const HIDDEN: SpriteFragment = SpriteFragment(vec3f(0.0, 0.0, 1.0), NO_LIGHT, 0.0, true);
 
 // True where the technique looks at the scene's depth itself.
 fn reads_scene() -> bool {
@@ -74,10 +80,12 @@ fn technique_fragment(in: SpriteVertex, scene: f32) -> SpriteFragment {
     if !DEPTH_TESTED && fade <= 0.0 {
         return HIDDEN;
     }
-    let texel = sprite_texel(in, in.uv, frames, motion);
-    var fragment = SpriteFragment(rotate_normal(texel.xyz, in.rotation), texel.w * amount * fade, fade <= 0.0);
+    var fragment = sprite_texel(in, in.uv, frames, motion);
+    fragment.hidden = fade <= 0.0;
     if TECHNIQUE == TECHNIQUE_DENSITY {
-        fragment.amount = density_amount(system.density * texel.w * amount, thickness);
+        fragment.amount = density_amount(system.density * fragment.amount * amount, thickness);
+    } else {
+        fragment.amount *= amount * fade;
     }
     return fragment;
 }
@@ -86,12 +94,22 @@ fn fade_before(scene: f32, view_depth: f32) -> f32 {
     return soft_fade(FADE_CURVE, scene - view_depth, system.fade_scale, system.contrast_power, system.epsilon);
 }
 
-// Normal and amount of the sprite's picture.
-fn sprite_texel(in: SpriteVertex, uv: vec2f, frames: FlipbookFrames, motion: vec2f) -> vec4f {
-    if DEBUG_SPRITE {
-        return checkerboard(uv);
+// What the sprite's picture has there, turned with the sprite.
+fn sprite_texel(in: SpriteVertex, uv: vec2f, frames: FlipbookFrames, motion: vec2f) -> SpriteFragment {
+    let lod = in.amount_lod_frame_age.y;
+    if SIX_WAY {
+        let count = i32(system.frame_count);
+        let positive = sample_flipbook(sprite, linear_sampler, uv, frames_after(frames, count), motion, lod);
+        let negative = sample_flipbook(sprite, linear_sampler, uv, frames_after(frames, 2 * count), motion, lod);
+        let light = SixWay(six_way_from_texel(positive.rgb), six_way_from_texel(negative.rgb));
+        let turned = rotate_six_way(light.positive, light.negative, in.rotation);
+        return SpriteFragment(vec3f(0.0, 0.0, 1.0), turned, positive.a, false);
     }
-    return sample_sprite(sprite, linear_sampler, uv, frames, motion, in.amount_lod_frame_age.y);
+    var texel = checkerboard(uv);
+    if !DEBUG_SPRITE {
+        texel = sample_sprite(sprite, linear_sampler, uv, frames, motion, lod);
+    }
+    return SpriteFragment(rotate_normal(texel.xyz, in.rotation), NO_LIGHT, texel.w, false);
 }
 
 fn sphere_fragment(in: SpriteVertex, scene: f32) -> SpriteFragment {
@@ -119,14 +137,10 @@ fn sphere_fragment(in: SpriteVertex, scene: f32) -> SpriteFragment {
         let lod = max(in.amount_lod_frame_age.y - system.detail_lod, 0.0);
         motion = sample_detail(detail, linear_sampler, sprite_uv(place), frames, lod).yz * system.motion;
     }
-    let texel = sprite_texel(in, sprite_uv(place), frames, motion);
-    let density = system.billboard_density * texel.w * amount;
-    let axis_distance = length(interval.axis);
-    return SpriteFragment(
-        rotate_normal(texel.xyz, in.rotation),
-        spherical_billboard_amount(density, axis_distance, radius, stretch),
-        false,
-    );
+    var fragment = sprite_texel(in, sprite_uv(place), frames, motion);
+    let density = system.billboard_density * fragment.amount * amount;
+    fragment.amount = spherical_billboard_amount(density, length(interval.axis), radius, stretch);
+    return fragment;
 }
 
 // March from entry to exit, front to back. (MS "Volumetric particles")
@@ -161,5 +175,5 @@ fn volumetric_fragment(
         transmittance *= 1.0 - amount;
     }
     let total = 1.0 - transmittance;
-    return SpriteFragment(normal / max(total, 1.0e-6), total, false);
+    return SpriteFragment(normal / max(total, 1.0e-6), NO_LIGHT, total, false);
 }

@@ -55,6 +55,9 @@ struct System {
     noise_offset: vec3f,
     // Metres behind the scene that are still seen: of the curve `always`.
     fade_through: f32,
+    // Linear RGB of smoke that is lit by six-way maps.
+    six_way_colour: vec3f,
+    six_way_anisotropy: f32,
     // As depth_limit, for what there is to see of the smoke: it does not jump with the box.
     guide_limit: f32,
     padding0: f32,

@@ -50,15 +50,19 @@ pub struct SpriteArguments {
 enum SpriteCommand {
     /// Write the PNGs beside every recipe: NAME.png, and NAME.detail.png with a sprite's depth and motion.
     Bake {
-        /// `*.sprite.json` and `*.noise.json` files.
+        /// `*.sprite.json` and `*.noise.json` files; with --six-way built-in sprites by their names, too.
         #[arg(required = true)]
         recipes: Vec<PathBuf>,
+        #[command(flatten)]
+        six_way: sprite::six_way::Arguments,
     },
     /// Say what would show: colours in place of normals, their length, green that points down, borders, premultiplied normals, the
     /// seam of the loop. Exits with 1 if there is anything.
     Check(sprite::check::Arguments),
     /// Path-trace a sprite as a puff of steam, ash, … under a ring of lights, on one sheet: what it truly looks like.
     Light(sprite::light::Arguments),
+    /// Write six-way maps as the two light maps that other tools have.
+    Export(sprite::export::Arguments),
     /// Make a sprite of normals painted elsewhere, heights, alpha alone or six-way light maps; of a sheet or of numbered frames.
     Import(sprite::import::Arguments),
 }
@@ -78,7 +82,12 @@ pub fn run_ramp(arguments: &RampArguments) -> Result<(), Failures> {
 
 pub fn run_sprite(arguments: &SpriteArguments) -> Result<(), Failures> {
     match &arguments.command {
-        SpriteCommand::Bake { recipes } => run(recipes, &SPRITES),
+        SpriteCommand::Bake { recipes, six_way } => {
+            six_way.check(recipes)?;
+            run(&six_way.files(recipes), &SPRITES)?;
+            six_way.run(recipes).map_err(Failures::from)
+        }
+        SpriteCommand::Export(arguments) => sprite::export::run(arguments).map_err(Failures::from),
         SpriteCommand::Check(arguments) => sprite::check::run(arguments),
         SpriteCommand::Light(arguments) => sprite::light::run(arguments).map_err(Failures::from),
         SpriteCommand::Import(arguments) => sprite::import::run(arguments).map_err(Failures::from),

@@ -19,6 +19,13 @@ pub struct MediumArguments {
     /// What the smoke is made of.
     #[arg(long, value_parser = names(), default_value = "ash")]
     medium: String,
+    #[command(flatten)]
+    numbers: MediumNumbers,
+}
+
+/// What a medium is made of, number by number.
+#[derive(Args)]
+pub struct MediumNumbers {
     /// In place of the medium's: the share of light that is scattered, 0 to 1; one number, or red, green and blue with commas.
     #[arg(long, value_name = "SHARE", value_delimiter = ',', allow_hyphen_values = true)]
     albedo: Vec<f32>,
@@ -40,11 +47,20 @@ pub fn named(name: &str) -> Medium {
     MEDIA.iter().find(|named| named.name == name).map_or(MEDIA[0].medium, |named| named.medium)
 }
 
-impl MediumArguments {
+impl MediumNumbers {
+    /// The name of the first that is given.
+    pub fn given(&self) -> Option<&'static str> {
+        let given =
+            [("--albedo", !self.albedo.is_empty()), ("--g", self.g.is_some()), ("--density", self.density.is_some())];
+        given.into_iter().find_map(|(name, is_given)| is_given.then_some(name))
+    }
+
+    /// The medium of a name with these in place of its own.
+    ///
     /// # Errors
     /// Names the number that is out of range.
-    pub fn medium(&self) -> Result<Medium, FieldError> {
-        let mut medium = named(&self.medium);
+    pub fn of(&self, name: &str) -> Result<Medium, FieldError> {
+        let mut medium = named(name);
         medium.albedo = match self.albedo[..] {
             [] => medium.albedo,
             [all] => Vec3::splat(all),
@@ -62,8 +78,21 @@ impl MediumArguments {
     }
 
     /// The medium's name, where nothing of it was changed.
+    pub fn name_of<'a>(&self, name: &'a str) -> &'a str {
+        if self.given().is_none() { name } else { "medium" }
+    }
+}
+
+impl MediumArguments {
+    /// # Errors
+    /// As [`MediumNumbers::of`].
+    pub fn medium(&self) -> Result<Medium, FieldError> {
+        self.numbers.of(&self.medium)
+    }
+
+    /// As [`MediumNumbers::name_of`].
     pub fn name(&self) -> &str {
-        if self.albedo.is_empty() && self.g.is_none() && self.density.is_none() { &self.medium } else { "medium" }
+        self.numbers.name_of(&self.medium)
     }
 }
 

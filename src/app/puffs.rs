@@ -1,9 +1,9 @@
-//! Puffs of smoke side by side: lit by the path tracer, and by ramps.
+//! Puffs of smoke side by side: lit by the path tracer, and as the renderer has them.
 
 use glam::{UVec2, Vec3};
 use haze::formula::colour::srgb_from_linear;
 use haze::picture::Picture;
-use haze::ramp::response::{DiffuseRamps, LIGHTS, Puff, angle};
+use haze::ramp::response::{LIGHTS, Puff, angle};
 use image::imageops::{FilterType, resize};
 use image::{Rgb, RgbImage};
 
@@ -57,18 +57,24 @@ fn enlarged(picture: &RgbImage) -> RgbImage {
     resize(picture, SIDE, SIDE, FilterType::CatmullRom)
 }
 
-/// The path-traced puff, the same by ramps, and how far they are apart; below each other.
-pub fn compared(puff: &Puff, ramps: DiffuseRamps<'_>, exposure: f32) -> RgbImage {
+/// What is shown in place of the path-traced puff: what it is called, its picture under a light, and what that is multiplied with.
+pub struct Shown<'a> {
+    pub name: &'a str,
+    pub light: &'a dyn Fn(usize) -> Picture<Vec3>,
+    pub exposure: f32,
+}
+
+/// The path-traced puff, what is shown, and how far they are apart; below each other.
+pub fn compared(puff: &Puff, shown: &Shown<'_>) -> RgbImage {
     let mut sheet = Sheet::new(UVec2::splat(SIDE), SHOWN as u32, 3 * SHOWN as u32);
     let white = white(puff);
-    let whites = [white, white / exposure];
     for light in 0..SHOWN {
-        let [truth, shown] = pair(puff, ramps, whites, light);
+        let [truth, ours] = pair(puff, shown, white, light);
         let apart = RgbImage::from_fn(truth.width(), truth.height(), |x, y| {
-            let [a, b] = [truth.get_pixel(x, y).0, shown.get_pixel(x, y).0];
+            let [a, b] = [truth.get_pixel(x, y).0, ours.get_pixel(x, y).0];
             Rgb(std::array::from_fn(|channel| a[channel].abs_diff(b[channel])))
         });
-        for (row, (what, picture)) in [("truth", truth), ("ramps", shown), ("apart", apart)].iter().enumerate() {
+        for (row, (what, picture)) in [("truth", truth), (shown.name, ours), ("apart", apart)].iter().enumerate() {
             let label = format!("{what}, {}", degrees(light));
             sheet.place((row * SHOWN + light) as u32, &label, &enlarged(picture));
         }
@@ -76,20 +82,22 @@ pub fn compared(puff: &Puff, ramps: DiffuseRamps<'_>, exposure: f32) -> RgbImage
     sheet.picture
 }
 
-/// Path-traced, and by ramps; what is white of either.
-fn pair(puff: &Puff, ramps: DiffuseRamps<'_>, whites: [f32; 2], light: usize) -> [RgbImage; 2] {
+/// Path-traced, and shown.
+fn pair(puff: &Puff, shown: &Shown<'_>, white: f32, light: usize) -> [RgbImage; 2] {
     let coverage = &puff.traced().coverage;
-    let shown = puff.shown(ramps, light);
-    [before_ground(&puff.traced().light[light], coverage, whites[0]), before_ground(&shown, coverage, whites[1])]
+    let ours = (shown.light)(light);
+    [
+        before_ground(&puff.traced().light[light], coverage, white),
+        before_ground(&ours, coverage, white / shown.exposure),
+    ]
 }
 
 /// Mean FLIP of all lights: how different they look.
-pub fn flip(puff: &Puff, ramps: DiffuseRamps<'_>, exposure: f32) -> f64 {
+pub fn flip(puff: &Puff, shown: &Shown<'_>) -> f64 {
     let white = white(puff);
-    let whites = [white, white / exposure];
     let of_light = |light| {
-        let [truth, shown] = pair(puff, ramps, whites, light);
-        flip_of(&truth, &shown)
+        let [truth, ours] = pair(puff, shown, white, light);
+        flip_of(&truth, &ours)
     };
     (0..LIGHTS as usize).map(of_light).sum::<f64>() / f64::from(LIGHTS)
 }

@@ -119,7 +119,7 @@ pub fn of_role(role: PictureRole) -> &'static [Builtin] {
         PictureRole::Ramp => RAMPS,
         PictureRole::Motif => MOTIFS,
         PictureRole::Noise => NOISES,
-        PictureRole::Detail => &[],
+        PictureRole::Detail | PictureRole::SixWay => &[],
     }
 }
 

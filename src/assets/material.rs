@@ -18,6 +18,9 @@ pub struct MaterialAssets {
     /// Depth and motion of the sprite, frame by frame: see [`sprite::detail`](crate::assets::sprite::detail). Depth sprites and
     /// `sprite.motion` need it.
     pub detail: Option<Sprite>,
+    /// The sprite under light from six sides, for [`Lighting::SixWay`](crate::settings::Lighting::SixWay): twice the sprite's frames,
+    /// of its size. See [`sprite::six_way`](crate::assets::sprite::six_way).
+    pub six_way: Option<Sprite>,
     /// What volumetric sprites are made of.
     pub noise: NoiseVolume,
     /// Light by dot(n, l)/2 + 1/2 (across: facing away at 0, facing the light at 1), and by amount times `boost` (up).
@@ -47,6 +50,7 @@ impl MaterialAssets {
         };
         self.sprite.shares(&other.sprite)
             && sprite(&self.detail, &other.detail)
+            && sprite(&self.six_way, &other.six_way)
             && self.noise.shares(&other.noise)
             && self.ramps().iter().zip(other.ramps()).all(|(a, b)| a.shares(b))
     }
@@ -75,6 +79,7 @@ impl MaterialAssets {
                 frame_count: detail.frame_count(),
                 lod: (self.sprite.size() as f32 / detail.size() as f32).log2(),
             }),
+            six_way: self.six_way.as_ref().map(|maps| (maps.size(), maps.frame_count())),
             zonal: zonal(&self.diffuse_ramp),
             backlight_zonal: zonal(&self.backlight_ramp),
         }
@@ -87,6 +92,8 @@ pub(crate) struct MaterialInfo {
     pub sprite_size: f32,
     pub frame_count: f32,
     pub detail: Option<DetailInfo>,
+    /// Size and frames of the six-way maps.
+    pub six_way: Option<(u32, u32)>,
     /// Zonal harmonics of the diffuse ramp.
     pub zonal: [Vec3; 3],
     /// Of the backlight ramp.
@@ -107,6 +114,19 @@ impl MaterialInfo {
         let refuse = |field: &str, value: String, expected: String| {
             Err(FieldError::new(format!("systems[{index}].{field}"), value, expected))
         };
+        let frames = self.frame_count as u32;
+        match self.six_way {
+            None if settings.is_six_way() => {
+                let expected =
+                    "\"normals\", or six-way maps in the material, as `haze sprite bake --six-way` makes them";
+                return refuse("settings.lighting", "\"six_way\"".into(), expected.into());
+            }
+            Some((size, count)) if (size, count) != (self.sprite_size as u32, 2 * frames) => {
+                let expected = format!("twice the sprite's frames, {}, of {} texels", 2 * frames, self.sprite_size);
+                return refuse("material.six_way", format!("{count} frames of {size} texels"), expected);
+            }
+            _ => {}
+        }
         let Some(detail) = &self.detail else {
             let expected = || "another, or a detail map in the material, as `haze sprite bake` makes it".to_owned();
             if settings.technique.is_depth_sprite() {
@@ -117,7 +137,7 @@ impl MaterialInfo {
             }
             return Ok(());
         };
-        if detail.frame_count != self.frame_count as u32 {
+        if detail.frame_count != frames {
             let expected = format!("as many as the sprite has, {}", self.frame_count);
             return refuse("material.detail", format!("{} frames", detail.frame_count), expected);
         }

@@ -24,7 +24,7 @@ pub struct Capture {
 struct Target {
     size: UVec2,
     depth_limit: f32,
-    has_weights: bool,
+    has_beside: bool,
     has_depth: bool,
     /// Faces of baked light.
     faces: usize,
@@ -58,7 +58,7 @@ impl Capture {
         let target = |views: &TargetViews<'_>| Target {
             size: views.size,
             depth_limit: views.depth_limit,
-            has_weights: views.accumulation.len() > 1,
+            has_beside: views.accumulation.len() > 1,
             has_depth: views.reduced_depth.is_some(),
             faces: views.baked_diffuse.len(),
         };
@@ -81,7 +81,7 @@ impl Capture {
         let mut system = |target: &Target| {
             let mut colours = || Some(parts.next()?.colours(&bytes, 0, target.size));
             let accumulation = colours()?;
-            let weights = if target.has_weights { Some(colours()?) } else { None };
+            let beside = if target.has_beside { Some(colours()?) } else { None };
             let reduced_depth = if target.has_depth {
                 let mut depth = parts.next()?.depths(&bytes, target.size);
                 depth.texels.iter_mut().for_each(|depth| *depth *= target.depth_limit);
@@ -94,7 +94,7 @@ impl Capture {
                 let part = parts.next()?;
                 baked = (0..target.faces as u32).map(|face| rgb(&part.colours(&bytes, face, part.size()))).collect();
             }
-            Some(Texels { accumulation, weights, reduced_depth, baked })
+            Some(Texels { accumulation, beside, reduced_depth, baked })
         };
         let systems = self.systems.iter().map(|target| target.as_ref().and_then(&mut system)).collect();
         Some(Captured { scene_depth, behind, systems })

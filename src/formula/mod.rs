@@ -13,6 +13,7 @@ pub mod noise_volume;
 pub mod normal;
 pub mod order;
 pub mod ramp;
+pub mod six_way;
 pub mod soft_fade;
 pub mod sprite;
 pub mod technique;

@@ -36,12 +36,18 @@ pub struct FlipbookFrames {
     pub blend: f32,
 }
 
-/// Splits a fractional frame; the flipbook repeats.
+/// Splits a fractional frame; the flipbook repeats. One frame blends with nothing.
 pub fn flipbook_frames(frame: f32, frame_count: f32) -> FlipbookFrames {
     let wrapped = frame - (frame / frame_count).floor() * frame_count;
     let first = wrapped.floor().max(0.0).min(frame_count - 1.0);
     let second = if first + 1.5 > frame_count { 0.0 } else { first + 1.0 };
-    FlipbookFrames { first: first as i32, second: second as i32, blend: saturate(wrapped - first) }
+    let blend = if frame_count > 1.0 { saturate(wrapped - first) } else { 0.0 };
+    FlipbookFrames { first: first as i32, second: second as i32, blend }
+}
+
+/// The same frames of a flipbook that comes `layers` later.
+pub fn frames_after(frames: FlipbookFrames, layers: i32) -> FlipbookFrames {
+    FlipbookFrames { first: frames.first + layers, second: frames.second + layers, ..frames }
 }
 
 /// The frames as an animation shows them: some blend none.
@@ -75,14 +81,20 @@ fn sample_sprite_frame(sprite: &impl Texture2dArray, uv: Vec2, frame: i32, lod: 
     fine.lerp(coarse, level - base)
 }
 
-/// Normal (−1..1, about unit length) and amount of a sprite. uv 0..1, v down. `motion` is where texels go from the first
-/// frame to the second, in uv.
-pub fn sample_sprite(sprite: &impl Texture2dArray, uv: Vec2, frames: FlipbookFrames, motion: Vec2, lod: f32) -> Vec4 {
+/// A flipbook at a moment between two frames. uv 0..1, v down. `motion` is where texels go from the first frame to the second, in
+/// uv.
+pub fn sample_flipbook(sprite: &impl Texture2dArray, uv: Vec2, frames: FlipbookFrames, motion: Vec2, lod: f32) -> Vec4 {
     let mut texel = sample_sprite_frame(sprite, uv - motion * frames.blend, frames.first, lod);
     if frames.blend > 0.0 {
         let place = uv + motion * (1.0 - frames.blend);
         texel = texel.lerp(sample_sprite_frame(sprite, place, frames.second, lod), frames.blend);
     }
+    texel
+}
+
+/// Normal (−1..1, about unit length) and amount of a sprite.
+pub fn sample_sprite(sprite: &impl Texture2dArray, uv: Vec2, frames: FlipbookFrames, motion: Vec2, lod: f32) -> Vec4 {
+    let texel = sample_flipbook(sprite, uv, frames, motion, lod);
     (texel.xyz() * 2.0 - 1.0).extend(texel.w)
 }
 

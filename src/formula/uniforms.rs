@@ -103,6 +103,8 @@ uniform! {
         depth_weight: f32,
         noise_offset: Vec3,
         fade_through: f32,
+        six_way_colour: Vec3,
+        six_way_anisotropy: f32,
         guide_limit: f32,
         padding: [f32; 3],
         front_knots: [Vec4; 4],

@@ -92,6 +92,8 @@ pub(crate) fn system_in_view(view: &ViewGeometry, targets: UVec2, system: &Syste
         depth_limit: (in_view.far + settings.soft_fade.reach()).min(SKY_VIEW_DEPTH),
         guide_limit: (farthest.min(in_view.far) + settings.soft_fade.reach()).min(SKY_VIEW_DEPTH),
         padding: [0.0; 3],
+        six_way_colour: settings.diffuse.six_way_colour,
+        six_way_anisotropy: settings.diffuse.six_way_anisotropy,
         sprite_size: material.sprite_size,
         frame_count: material.frame_count,
         boost: settings.boost,

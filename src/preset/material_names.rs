@@ -4,8 +4,9 @@ use std::path::{Component, Path};
 
 use super::folders::{ALIKE, PictureFolders};
 use super::pictures::Pictures;
-use crate::assets::builtin;
+use crate::assets::builtin::{self, Builtin};
 use crate::assets::material::MaterialAssets;
+use crate::assets::sprite::six_way::six_way_layout;
 use crate::assets::sprite::{Sprite, SpriteLayout};
 use crate::error::{Error, FieldError};
 use crate::settings::{PictureRole, settings};
@@ -19,6 +20,9 @@ settings! {
         sprite: String = "puff".into(), picture(PictureRole::Sprite);
         /// Depth and motion of a sprite from a file, laid out as it; empty for none. A built-in sprite has its own.
         detail: String = String::new(), picture(PictureRole::Detail);
+        /// The sprite under light from six sides, laid out as it and as high again: right, top and front above, left, bottom and back below.
+        /// A file, of a built-in sprite, too; empty for none. `haze sprite bake --six-way` makes it.
+        six_way: String = String::new(), picture(PictureRole::SixWay);
         /// Frames beside each other, for a sprite from a file. A built-in one knows its own.
         columns: u32 = 1, integer(1..=256, "frames");
         /// Frames below each other, for a sprite from a file.
@@ -83,20 +87,23 @@ impl MaterialNames {
         };
         let noise = kept("noise", noise, &mut errors);
         match (sprite, ramps, noise) {
-            (Some((sprite, detail)), (Some(a), Some(b), Some(c), Some(d), Some(e), Some(f), Some(g)), Some(noise)) => {
-                Ok(MaterialAssets {
-                    sprite,
-                    detail,
-                    noise,
-                    diffuse_ramp: a,
-                    soft_scatter_ramp: b,
-                    specular_ramp: c,
-                    motif: d,
-                    age_ramp: e,
-                    coverage_ramp: f,
-                    backlight_ramp: g,
-                })
-            }
+            (
+                Some(SpritePictures { sprite, detail, six_way }),
+                (Some(a), Some(b), Some(c), Some(d), Some(e), Some(f), Some(g)),
+                Some(noise),
+            ) => Ok(MaterialAssets {
+                sprite,
+                detail,
+                six_way,
+                noise,
+                diffuse_ramp: a,
+                soft_scatter_ramp: b,
+                specular_ramp: c,
+                motif: d,
+                age_ramp: e,
+                coverage_ramp: f,
+                backlight_ramp: g,
+            }),
             _ => Err(errors),
         }
     }
@@ -116,7 +123,8 @@ impl MaterialNames {
                 "backlight_ramp" => (&mut names.backlight_ramp, &usual.backlight_ramp),
                 "noise" => (&mut names.noise, &usual.noise),
                 _ => {
-                    (names.detail, names.columns, names.rows, names.y_down) = (String::new(), 1, 1, false);
+                    (names.detail, names.six_way) = (String::new(), String::new());
+                    (names.columns, names.rows, names.y_down) = (1, 1, false);
                     (&mut names.sprite, &usual.sprite)
                 }
             };
@@ -125,32 +133,56 @@ impl MaterialNames {
         names
     }
 
-    fn load_sprite(&self, pictures: &mut Pictures) -> Result<(Sprite, Option<Sprite>), Error> {
-        if let Some(sprite) = builtin::find(builtin::SPRITES, &self.sprite) {
-            let refuse = |field: &str, value: String, expected: &str| {
-                let expected = format!("{expected} with a built-in sprite, which knows its own");
-                Err(FieldError::new(format!("material.{field}"), value, expected).into())
-            };
-            if !self.detail.is_empty() {
-                return refuse("detail", format!("{:?}", self.detail), "\"\"");
+    fn load_sprite(&self, pictures: &mut Pictures) -> Result<SpritePictures, Error> {
+        let ((sprite, detail), layout) = match builtin::find(builtin::SPRITES, &self.sprite) {
+            Some(builtin) => (self.load_builtin(builtin)?, builtin.sprite_recipe()?.layout()),
+            None => {
+                let layout = SpriteLayout { columns: self.columns, rows: self.rows, y_down: false };
+                let path = inside("sprite", &self.sprite, builtin::SPRITES)?;
+                let sprite = pictures.sprite("sprite", path, SpriteLayout { y_down: self.y_down, ..layout })?;
+                ((sprite, beside(pictures, "detail", &self.detail, layout)?), layout)
             }
-            if (self.columns, self.rows) != (1, 1) {
-                return refuse("columns and rows", format!("{}x{}", self.columns, self.rows), "1 and 1");
-            }
-            if self.y_down {
-                return refuse("y_down", self.y_down.to_string(), "false");
-            }
-            return Ok((sprite.sprite()?, sprite.detail()?));
-        }
-        let layout = SpriteLayout { columns: self.columns, rows: self.rows, y_down: self.y_down };
-        let path = inside("sprite", &self.sprite, builtin::SPRITES)?;
-        let sprite = pictures.sprite("sprite", path, layout)?;
-        if self.detail.is_empty() {
-            return Ok((sprite, None));
-        }
-        let path = inside("detail", &self.detail, &[])?;
-        Ok((sprite, Some(pictures.sprite("detail", path, SpriteLayout { y_down: false, ..layout })?)))
+        };
+        let six_way = beside(pictures, "six_way", &self.six_way, six_way_layout(layout))?;
+        Ok(SpritePictures { sprite, detail, six_way })
     }
+
+    fn load_builtin(&self, sprite: &Builtin) -> Result<(Sprite, Option<Sprite>), Error> {
+        let refuse = |field: &str, value: String, expected: &str| {
+            let expected = format!("{expected} with a built-in sprite, which knows its own");
+            Err(FieldError::new(format!("material.{field}"), value, expected).into())
+        };
+        if !self.detail.is_empty() {
+            return refuse("detail", format!("{:?}", self.detail), "\"\"");
+        }
+        if (self.columns, self.rows) != (1, 1) {
+            return refuse("columns and rows", format!("{}x{}", self.columns, self.rows), "1 and 1");
+        }
+        if self.y_down {
+            return refuse("y_down", self.y_down.to_string(), "false");
+        }
+        Ok((sprite.sprite()?, sprite.detail()?))
+    }
+}
+
+/// What lies beside a sprite, if it is named.
+fn beside(
+    pictures: &mut Pictures,
+    field: &'static str,
+    name: &str,
+    layout: SpriteLayout,
+) -> Result<Option<Sprite>, Error> {
+    if name.is_empty() {
+        return Ok(None);
+    }
+    Ok(Some(pictures.sprite(field, inside(field, name, &[])?, layout)?))
+}
+
+/// A sprite, and what belongs to it.
+struct SpritePictures {
+    sprite: Sprite,
+    detail: Option<Sprite>,
+    six_way: Option<Sprite>,
 }
 
 /// The file that the name of a picture stands for, from the preset's folder on; none for a built-in one's, and for what lies
@@ -163,7 +195,7 @@ pub fn picture_file(name: &str) -> Option<&Path> {
 }
 
 /// The file that a name stands for, from a folder on.
-fn inside<'a>(field: &str, name: &'a str, list: &[builtin::Builtin]) -> Result<&'a Path, Error> {
+fn inside<'a>(field: &str, name: &'a str, list: &[Builtin]) -> Result<&'a Path, Error> {
     if let Some(path) = picture_file(name) {
         return Ok(path);
     }

@@ -14,8 +14,8 @@ pub struct Accumulated<'a> {
     pub baked: &'a [Picture<Vec3>],
     pub reduced_depth: &'a Picture<f32>,
     pub accumulation: &'a Picture<Vec4>,
-    /// What the weights of the normals sum to, where that is kept.
-    pub weight_sum: Option<&'a Picture<Vec4>>,
+    /// What is kept beside it: the sum of the weights of normals, or the other half of six-way light.
+    pub beside: Option<&'a Picture<Vec4>>,
     /// What light_target has made of it; `None` where that is worked out texel by texel, as it is read.
     pub lit: Option<Picture<Vec4>>,
 }

@@ -35,10 +35,10 @@ pub fn render(frame: &Frame<'_>, picture: &mut Picture<Vec4>) -> Result<(), Fiel
         }
         let reduced_depth = draw.depth_downsample();
         let accumulation = draw.accumulate(&reduced_depth, frame.shade_tree == ShadeTree::Overdraw);
-        let weight_sum = draw.weight_sum(&reduced_depth);
+        let beside = draw.beside(&reduced_depth);
         let baked = draw.diffuse_bake();
-        let (reduced_depth, accumulation, weight_sum) = (&reduced_depth, &accumulation, weight_sum.as_ref());
-        let mut smoke = Accumulated { draw, baked: &baked, reduced_depth, accumulation, weight_sum, lit: None };
+        let (reduced_depth, accumulation, beside) = (&reduced_depth, &accumulation, beside.as_ref());
+        let mut smoke = Accumulated { draw, baked: &baked, reduced_depth, accumulation, beside, lit: None };
         if draw.lights_target(frame.shade_tree) {
             smoke.lit = Some(smoke.light_target());
         }

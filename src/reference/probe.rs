@@ -9,6 +9,7 @@ use super::frame::Frame;
 use crate::assets::picture::Picture;
 use crate::error::FieldError;
 use crate::formula::lighting::{coverage, diffuse_coordinate, sample_light, soft_scatter_weight};
+use crate::formula::six_way::SixWay;
 use crate::in_view::{ViewGeometry, lights_in_view};
 use crate::settings::{ShadeTree, SoftScatterMode};
 
@@ -17,8 +18,8 @@ use crate::settings::{ShadeTree, SoftScatterMode};
 pub struct Texels {
     /// Normal and amount, as the target encodes them.
     pub accumulation: Picture<Vec4>,
-    /// What the weights of the normals sum to, in x, where that is kept.
-    pub weights: Option<Picture<Vec4>>,
+    /// What is kept beside it: in x what the weights of the normals sum to, or the other half of six-way light.
+    pub beside: Option<Picture<Vec4>>,
     /// Linear view depth, metres; `None` where sprites are compared with the scene's own.
     pub reduced_depth: Option<Picture<f32>>,
     /// Light by normal: the faces of a cubemap, one motif, or none.
@@ -47,6 +48,8 @@ pub struct SystemProbe {
     pub coverage: f32,
     /// Unit length, view space: z towards the viewer.
     pub normal: Vec3,
+    /// What it shows under light from each side, view space, where that is what it is lit by.
+    pub six_way: Option<SixWay>,
     /// The lights that reach the system.
     pub lights: Vec<LightProbe>,
     /// Diffuse light, as the system's mode finds it, times its intensity.
@@ -70,7 +73,7 @@ pub struct LightProbe {
     pub coordinate: f32,
     /// Multiplies the light's colour.
     pub attenuation: f32,
-    /// What it adds by the diffuse ramp, times the intensity of diffuse light. Other modes than `ramp` sum up otherwise.
+    /// What it adds by the diffuse ramp or six-way maps, times the intensity of diffuse light. Other modes than `ramp` sum up otherwise.
     pub diffuse: Vec3,
     /// Its glow; `None` where its quad does not reach, or the scene hides it.
     pub glow: Option<GlowProbe>,
@@ -132,15 +135,14 @@ impl<'a> Smoke<'a> {
         texels: &'a Texels,
         reduced_depth: &'a Picture<f32>,
     ) -> Result<Self, FieldError> {
-        let Texels { accumulation, weights, baked, .. } = texels;
+        let Texels { accumulation, beside, baked, .. } = texels;
         let size = draw.in_view.rect.size;
-        let sizes = [Some(accumulation.size), weights.as_ref().map(|t| t.size), Some(reduced_depth.size)];
+        let sizes = [Some(accumulation.size), beside.as_ref().map(|t| t.size), Some(reduced_depth.size)];
         if let Some(other) = sizes.into_iter().flatten().find(|other| *other != size) {
             let value = format!("{}x{}", other.x, other.y);
             return Err(FieldError::new("texels", value, format!("{}x{}, as the system has", size.x, size.y)));
         }
-        let accumulated =
-            Accumulated { draw, baked, reduced_depth, accumulation, weight_sum: weights.as_ref(), lit: None };
+        let accumulated = Accumulated { draw, baked, reduced_depth, accumulation, beside: beside.as_ref(), lit: None };
         let view = ViewGeometry::new(&crate::View { origin: UVec2::ZERO, ..frame.view })?;
         let mut reached = Vec::new();
         let lights = frame.lights.iter().enumerate().filter(|(_, light)| {
@@ -166,7 +168,7 @@ impl<'a> Smoke<'a> {
         let glows: Vec<_> =
             draw.lights.iter().map(|light| smoke.glow(light).and_then(|g| smoke.glow_at(&g, pixel))).collect();
         *colour += glows.iter().flatten().map(|(_, glow)| *glow).sum::<Vec3>().extend(0.0);
-        let (amount, normal) = smoke.amount_and_normal(pixel);
+        let (amount, surface) = smoke.amount_and_surface(pixel);
         if amount <= 0.0 {
             return None;
         }
@@ -176,10 +178,10 @@ impl<'a> Smoke<'a> {
             let sample = sample_light(light, position);
             LightProbe {
                 light: index,
-                cosine: normal.dot(sample.direction),
-                coordinate: diffuse_coordinate(normal, sample.direction),
+                cosine: surface.normal.dot(sample.direction),
+                coordinate: diffuse_coordinate(surface.normal, sample.direction),
                 attenuation: sample.attenuation,
-                diffuse: draw.diffuse_from_light(light, normal, covered, position) * draw.system.diffuse_intensity,
+                diffuse: smoke.diffuse_from_light(light, &surface, covered, position) * draw.system.diffuse_intensity,
                 glow: glow.map(|(coordinate, specular)| GlowProbe { coordinate, specular }),
             }
         };
@@ -190,9 +192,10 @@ impl<'a> Smoke<'a> {
             amount,
             coverage_coordinate: covered,
             coverage: smoke.coverage(amount),
-            normal,
+            normal: surface.normal,
+            six_way: draw.settings.is_six_way().then_some(surface.six_way),
             lights: draw.lights.iter().zip(&glows).zip(&self.lights).map(light).collect(),
-            diffuse: smoke.diffuse(normal, amount, position),
+            diffuse: smoke.diffuse(&surface, amount, position),
             soft_scatter_weight: is_curve
                 .then(|| soft_scatter_weight(amount, system.scatter_amount, system.scatter_smooth)),
             soft_scatter: draw.soft_scatter(amount),

@@ -1,15 +1,16 @@
 //! Sprites, fragment by fragment. `shaders/lib/sprite_vertex.wgsl` and `shaders/lib/sprite_fragment.wgsl`.
 
-use glam::{IVec2, Mat3, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
+use glam::{IVec2, Mat3, Vec2, Vec3, Vec3Swizzles, Vec4Swizzles};
 
 use super::draw::Draw;
 use crate::formula::noise_volume::{noise_coordinate, sample_noise_octaves};
 use crate::formula::normal::rotate_normal;
 use crate::formula::order::{optical_depth_in_front, order_weight};
+use crate::formula::six_way::{SixWay, rotate_six_way, six_way_from_texel};
 use crate::formula::soft_fade::soft_fade;
 use crate::formula::sprite::{
-    FlipbookFrames, checkerboard, sample_detail, sample_sprite, shown_frames, sprite_frame, sprite_lod, sprite_uv,
-    unrotate,
+    FlipbookFrames, checkerboard, frames_after, sample_detail, sample_flipbook, sample_sprite, shown_frames,
+    sprite_frame, sprite_lod, sprite_uv, unrotate,
 };
 use crate::formula::technique::{
     RayInterval, density_amount, density_thickness, depth_sprite_depth, hard_fade, ray_sphere, slab_share,
@@ -36,8 +37,18 @@ pub struct SpriteSetup {
     pub max: Vec2,
 }
 
+/// What a sprite has at a texel.
+#[derive(Clone, Copy)]
+pub struct SpriteFragment {
+    /// View space, about unit length.
+    pub normal: Vec3,
+    /// View space, of sprites that are lit by six-way maps.
+    pub six_way: SixWay,
+    pub amount: f32,
+}
+
 impl Draw<'_> {
-    /// Calls `f(texel position, sprite, normal and amount, texel)` for every fragment of every sprite in a band of rows,
+    /// Calls `f(texel position, sprite, fragment, texel)` for every fragment of every sprite in a band of rows,
     /// in order. `scene` is the scene's view depth at a texel.
     pub fn for_fragments<T>(
         &self,
@@ -45,7 +56,7 @@ impl Draw<'_> {
         first_row: u32,
         band: &mut [T],
         scene: impl Fn(IVec2) -> f32,
-        f: impl Fn(IVec2, &SpriteSetup, Vec4, &mut T),
+        f: impl Fn(IVec2, &SpriteSetup, SpriteFragment, &mut T),
     ) {
         let width = grid.size.x as i32;
         let rows = band.len() as i32 / width;
@@ -120,9 +131,8 @@ impl Draw<'_> {
         (a.min(b), a.max(b))
     }
 
-    /// Normal (view space) and amount of a sprite at a pixel in front of a scene of this view depth; `None` where it is
-    /// hidden.
-    pub fn technique_fragment(&self, sprite: &SpriteSetup, pixel: Vec2, scene: f32) -> Option<Vec4> {
+    /// What a sprite has at a pixel in front of a scene of this view depth; `None` where it is hidden.
+    pub fn technique_fragment(&self, sprite: &SpriteSetup, pixel: Vec2, scene: f32) -> Option<SpriteFragment> {
         let (system, technique) = (&self.system, self.settings.technique);
         if technique.is_sphere() {
             return self.sphere_fragment(sprite, pixel, scene);
@@ -154,13 +164,13 @@ impl Draw<'_> {
         }
         let texel = self.sprite_texel(sprite, uv, motion);
         let amount = match technique {
-            Technique::Density => density_amount(system.density * texel.w * sprite.amount, thickness),
+            Technique::Density => density_amount(system.density * texel.amount * sprite.amount, thickness),
             _ if technique.is_depth_sprite() => {
-                texel.w * sprite.amount * fade * slab_share(sprite.view_depth, sprite.radius, self.view.near)
+                texel.amount * sprite.amount * fade * slab_share(sprite.view_depth, sprite.radius, self.view.near)
             }
-            _ => texel.w * sprite.amount * fade,
+            _ => texel.amount * sprite.amount * fade,
         };
-        Some(rotate_normal(texel.xyz(), sprite.rotation).extend(amount))
+        Some(SpriteFragment { amount, ..texel })
     }
 
     fn fade_before(&self, scene: f32, view_depth: f32) -> f32 {
@@ -180,14 +190,25 @@ impl Draw<'_> {
         }
     }
 
-    fn sprite_texel(&self, sprite: &SpriteSetup, uv: Vec2, motion: Vec2) -> Vec4 {
-        if self.settings.sprite.debug_sprite {
-            return checkerboard(uv);
+    /// What the sprite's picture has there, turned with the sprite.
+    fn sprite_texel(&self, sprite: &SpriteSetup, uv: Vec2, motion: Vec2) -> SpriteFragment {
+        let SpriteSetup { frames, lod, rotation, .. } = *sprite;
+        if let Some(maps) = self.material.six_way.as_ref().filter(|_| self.settings.is_six_way()) {
+            let negative = frames_after(frames, self.system.frame_count as i32);
+            let [positive, negative] = [frames, negative].map(|frames| sample_flipbook(maps, uv, frames, motion, lod));
+            let [of_positive, of_negative] = [positive, negative].map(|texel| six_way_from_texel(texel.xyz()));
+            let six_way = rotate_six_way(of_positive, of_negative, rotation);
+            return SpriteFragment { normal: Vec3::Z, six_way, amount: positive.w };
         }
-        sample_sprite(&self.material.sprite, uv, sprite.frames, motion, sprite.lod)
+        let texel = if self.settings.sprite.debug_sprite {
+            checkerboard(uv)
+        } else {
+            sample_sprite(&self.material.sprite, uv, frames, motion, lod)
+        };
+        SpriteFragment { normal: rotate_normal(texel.xyz(), rotation), six_way: SixWay::default(), amount: texel.w }
     }
 
-    fn sphere_fragment(&self, sprite: &SpriteSetup, pixel: Vec2, scene: f32) -> Option<Vec4> {
+    fn sphere_fragment(&self, sprite: &SpriteSetup, pixel: Vec2, scene: f32) -> Option<SpriteFragment> {
         let system = &self.system;
         let ray = self.view_position(pixel, 1.0);
         let (origin, along) =
@@ -204,9 +225,9 @@ impl Draw<'_> {
         }
         let uv = sprite_uv(unrotate(interval.axis.xy(), sprite.rotation) / sprite.radius);
         let texel = self.sprite_texel(sprite, uv, self.detail(sprite, uv).yz() * system.motion);
-        let density = system.billboard_density * texel.w * sprite.amount;
+        let density = system.billboard_density * texel.amount * sprite.amount;
         let amount = spherical_billboard_amount(density, interval.axis.length(), sprite.radius, stretch);
-        Some(rotate_normal(texel.xyz(), sprite.rotation).extend(amount))
+        Some(SpriteFragment { amount, ..texel })
     }
 
     fn volumetric_fragment(
@@ -216,7 +237,7 @@ impl Draw<'_> {
         origin: Vec3,
         along: Vec3,
         interval: RayInterval,
-    ) -> Vec4 {
+    ) -> SpriteFragment {
         let system = &self.system;
         let rotation = Mat3::from_mat4(self.view.view_from_world);
         let step = (interval.leave - interval.enter) / system.march_steps as f32;
@@ -236,6 +257,6 @@ impl Draw<'_> {
             transmittance *= 1.0 - amount;
         }
         let total = 1.0 - transmittance;
-        (normal / total.max(1.0e-6)).extend(total)
+        SpriteFragment { normal: normal / total.max(1.0e-6), six_way: SixWay::default(), amount: total }
     }
 }

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::auto::PathModel;
 use super::gpu::Gpu;
-use super::gpu::capabilities::read_only_depth_is_supported;
+use super::gpu::capabilities::{read_only_depth_is_supported, six_way_is_supported};
 use super::layouts::Layouts;
 use super::material::{SharedTextures, create_material};
 use super::passes::Passes;
@@ -35,6 +35,8 @@ pub(crate) struct Shared {
     pub passes: Passes,
     /// [`read_only_depth_is_supported`], asked once: the answer is one of many that a device makes a copy of each time.
     pub read_only_depth: bool,
+    /// Six-way light is there; else smoke is lit by normals.
+    pub six_way: bool,
     path_model: Mutex<PathModel>,
 }
 
@@ -91,6 +93,7 @@ impl Context {
             device: device.clone(),
             textures: SharedTextures::new(&Gpu { device, queue }),
             read_only_depth: read_only_depth_is_supported(device),
+            six_way: six_way_is_supported(device),
             path_model: Mutex::new(PathModel::of_class(device.adapter_info().device_type)),
             layouts,
             passes,

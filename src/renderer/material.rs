@@ -40,7 +40,7 @@ impl SharedTextures {
         Self {
             linear: sampler("haze linear", wgpu::AddressMode::ClampToEdge),
             repeat: sampler("haze repeat", wgpu::AddressMode::Repeat),
-            no_detail: upload_sprite(gpu, "haze no detail", &no_detail, &mut 0),
+            no_detail: upload_sprite(gpu, "haze no detail", &no_detail, None, &mut 0),
         }
     }
 }
@@ -58,9 +58,9 @@ pub(crate) fn create_material(
 ) -> Result<Material, FieldError> {
     validate_sizes(&gpu.device.limits(), assets)?;
     let mut bytes = 0;
-    let sprite = upload_sprite(gpu, "haze sprite", &assets.sprite, &mut bytes);
+    let sprite = upload_sprite(gpu, "haze sprite", &assets.sprite, assets.six_way.as_ref(), &mut bytes);
     let filled = upload_filled(gpu, &assets.sprite, &mut bytes);
-    let detail = assets.detail.as_ref().map(|detail| upload_sprite(gpu, "haze detail", detail, &mut bytes));
+    let detail = assets.detail.as_ref().map(|detail| upload_sprite(gpu, "haze detail", detail, None, &mut bytes));
     let noise = upload_noise(gpu, &assets.noise, &mut bytes);
     let mut ramp = |label, ramp| upload_ramp(gpu, label, ramp, &mut bytes);
     let diffuse_ramp = ramp("haze diffuse_ramp", &assets.diffuse_ramp);
@@ -125,6 +125,18 @@ fn validate_sizes(limits: &wgpu::Limits, assets: &MaterialAssets) -> Result<(), 
         check(name, sprite.size(), flat)?;
         check(name, array_layers(sprite.frame_count()), limits.max_texture_array_layers)?;
     }
+    if let Some(maps) = &assets.six_way {
+        if maps.size() != assets.sprite.size() {
+            let expected = format!("as many as the sprite's, {}", assets.sprite.size());
+            return Err(FieldError::new("material.six_way", format!("{} texels", maps.size()), expected));
+        }
+        let layers = array_layers(assets.sprite.frame_count() + maps.frame_count());
+        if layers > limits.max_texture_array_layers {
+            let most = limits.max_texture_array_layers;
+            let expected = format!("at most {most} with the sprite's own on this device");
+            return Err(FieldError::new("material.six_way", format!("{} frames", maps.frame_count()), expected));
+        }
+    }
     check("noise", assets.noise.size(), limits.max_texture_dimension_3d)
 }
 
@@ -163,8 +175,15 @@ fn upload_noise(gpu: &Gpu<'_>, noise: &NoiseVolume, bytes: &mut u64) -> wgpu::Te
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-fn upload_sprite(gpu: &Gpu<'_>, label: &str, sprite: &Sprite, bytes: &mut u64) -> wgpu::TextureView {
-    let layers = array_layers(sprite.frame_count());
+/// `after`: further frames of the same size.
+fn upload_sprite(
+    gpu: &Gpu<'_>,
+    label: &str,
+    sprite: &Sprite,
+    after: Option<&Sprite>,
+    bytes: &mut u64,
+) -> wgpu::TextureView {
+    let layers = array_layers(sprite.frame_count() + after.map_or(0, Sprite::frame_count));
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
         size: extent(UVec2::splat(sprite.size()), layers),
@@ -176,15 +195,19 @@ fn upload_sprite(gpu: &Gpu<'_>, label: &str, sprite: &Sprite, bytes: &mut u64) -
         view_formats: &[],
     });
     for level in 0..sprite.level_count() {
-        let data = sprite.level_bytes(level);
         let size = sprite.level_size(level);
         *bytes += 4 * u64::from(size) * u64::from(size) * u64::from(layers);
-        gpu.queue.write_texture(
-            wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() },
-            data,
-            layout(4 * size, size),
-            extent(UVec2::splat(size), sprite.frame_count()),
-        );
+        let mut first = 0;
+        for sprite in std::iter::once(sprite).chain(after) {
+            let origin = wgpu::Origin3d { z: first, ..wgpu::Origin3d::ZERO };
+            gpu.queue.write_texture(
+                wgpu::TexelCopyTextureInfo { mip_level: level, origin, ..texture.as_image_copy() },
+                sprite.level_bytes(level),
+                layout(4 * size, size),
+                extent(UVec2::splat(size), sprite.frame_count()),
+            );
+            first += sprite.frame_count();
+        }
     }
     texture.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(wgpu::TextureViewDimension::D2Array),

@@ -13,6 +13,7 @@ use super::pass::sprites::SpriteKey;
 use super::pass::tile_accumulate::TileAccumulateKey;
 use super::pass::tile_project::TileProjectKey;
 use super::pass::transfer::TransferKey;
+use super::targets::Beside;
 use super::tiled::TiledKeys;
 use crate::formula::diffuse_bake::baked_size_and_layers;
 use crate::frame::SceneDepth;
@@ -157,12 +158,12 @@ fn deferred<'a>(
     let host_depth = accumulate.depth_source == DepthSource::Host;
     let depth_test = depth_test(situation, settings);
     let downsample = |copy| DepthDownsampleKey { mode: accumulate.depth_downsample, copy };
-    let bakes = baked_size_and_layers(settings.diffuse.mode).is_some();
+    let bakes = !settings.is_six_way() && baked_size_and_layers(settings.diffuse.mode).is_some();
     let lights_target = stages.iter().any(|stage| stage.is_picture()) && accumulate.lights_target(situation.size);
     let lighting = LightingKey {
         encoding: accumulate.encoding,
         decode: accumulate.decode,
-        sums_weights: accumulate.sums_weights(),
+        beside: Beside::of(settings),
         diffuse_mode: settings.diffuse.mode,
         soft_scatter_mode: settings.soft_scatter.mode,
         backlight: settings.diffuse.backlight,
@@ -174,6 +175,7 @@ fn deferred<'a>(
         format: accumulate.format,
         encoding: accumulate.encoding,
         order: accumulate.order,
+        beside: Beside::of(settings),
         sprite: SpriteKey::new(settings, reads_linear, exact_filtering),
         host_depth,
         depth_test,
@@ -220,7 +222,7 @@ fn deferred<'a>(
 }
 
 fn tiled_keys(key: &AccumulateKey, layers: Layers, in_step: bool, exact_filtering: bool) -> TiledKeys {
-    let &AccumulateKey { format, encoding, order, sprite, host_depth, .. } = key;
+    let &AccumulateKey { format, encoding, order, beside, sprite, host_depth, .. } = key;
     let weighted = order == Order::Weighted;
     TiledKeys {
         project: TileProjectKey { sprite, weighted },
@@ -229,7 +231,7 @@ fn tiled_keys(key: &AccumulateKey, layers: Layers, in_step: bool, exact_filterin
             format,
             encoding,
             weighted,
-            sums_weights: order.sums_weights(encoding),
+            sums_weights: beside == Beside::Weights,
             host_depth,
             // A weighted normal counts, whatever is in front.
             stops: layers == Layers::Visible && !weighted,

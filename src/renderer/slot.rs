@@ -22,7 +22,7 @@ use super::validate::tiles_refuse;
 use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use crate::frame::{Bounds, Frame, Particle, Particles, System, bounds_of};
 use crate::in_view::{Grid, Placing, SystemInView, SystemInWorld, ViewGeometry, lights_in_view, system_in_view};
-use crate::settings::{Path, Settings, Technique};
+use crate::settings::{Lighting, Path, Settings, Technique};
 
 /// A frame, and what it is drawn with.
 pub(crate) struct FrameContext<'a> {
@@ -217,7 +217,8 @@ impl Slot {
         };
         let in_view = system_in_view(view, context.host_size, &in_world)?;
         let choice = choose(&mut self.chooser, context, system, &in_view, known);
-        let settings = &Settings { path: choice.map_or(settings.path, |choice| choice.path), ..*settings };
+        let lighting = if shared.six_way { settings.lighting } else { Lighting::Normals };
+        let settings = &Settings { path: choice.map_or(settings.path, |choice| choice.path), lighting, ..*settings };
         let sorted_by = shared.tiles().filter(|_| settings.path == Path::Tiled);
         let sorted_by = sorted_by.map(|in_step| if in_step { SortedBy::Gpu } else { SortedBy::Cpu });
         let (sprites, emit) = match (system.particles, &shared.passes.tiled) {
@@ -267,7 +268,7 @@ fn choose(
         *chooser = Chooser::default();
         return None;
     }
-    if let Some(reason) = tiles_refuse(context.shared, system.particles) {
+    if let Some(reason) = tiles_refuse(context.shared, system) {
         return Some(PathChoice { path: Path::Raster, reason });
     }
     let view = context.view.uniform(false);

@@ -5,7 +5,7 @@ use glam::UVec2;
 use super::context::Shared;
 use super::layouts::bind_textures;
 use super::plan::DeferredPlan;
-use super::targets::{AccumulationKey, AccumulationTarget, BakedDiffuse};
+use super::targets::{AccumulationKey, AccumulationTarget, BakedDiffuse, Beside};
 use crate::settings::Settings;
 
 /// The textures of one system, and their bind groups, which are made anew with them.
@@ -50,7 +50,7 @@ impl SystemTargets {
         let device = &shared.device;
         let key = AccumulationKey {
             format: settings.accumulate.format,
-            sums_weights: settings.accumulate.sums_weights(),
+            beside: Beside::of(settings),
             depth_source: settings.accumulate.depth_source,
             overdraw: plan.overdraw.is_some(),
             lit: plan.light_target.is_some(),
@@ -66,11 +66,11 @@ impl SystemTargets {
             let depth = accumulation.reduced_depth.as_ref();
             let amount = &accumulation.attachments[0];
             let (accumulate, transfer) = (&shared.layouts.accumulate, &shared.layouts.transfer);
-            // Without a reduced depth or weights nothing reads them, but something must be bound.
+            // Without a reduced depth or a second texture nothing reads them, but something must be bound.
             let transfer = |amount| {
                 let depth = depth.unwrap_or(amount);
-                let weights = accumulation.attachments.get(1).unwrap_or(amount);
-                let inputs = [amount, depth, &baked_diffuse.array, weights];
+                let beside = accumulation.attachments.get(1).unwrap_or(amount);
+                let inputs = [amount, depth, &baked_diffuse.array, beside];
                 bind_textures(device, "haze transfer inputs", transfer, inputs)
             };
             TargetInputs {

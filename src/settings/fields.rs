@@ -34,6 +34,8 @@ pub enum PictureRole {
     Sprite,
     /// Depth and motion of a flipbook.
     Detail,
+    /// A flipbook under light from six sides.
+    SixWay,
     /// A gradient, or a stack of them.
     Ramp,
     /// A painted lit sphere.

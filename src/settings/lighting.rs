@@ -6,6 +6,18 @@ use super::choice::choice;
 use super::table::settings;
 
 choice! {
+    /// How sprites take on light. `docs/six_way.md` compares the two.
+    Lighting {
+        /// By their normals, through ramps that an artist paints.
+        #[default]
+        Normals = "normals",
+        /// By six-way maps: pictures of the sprite under light from six sides, as smoke truly answers it, shadows within it and all.
+        /// Volumetric sprites, which have no picture, and devices that cannot blend two targets keep to normals.
+        SixWay = "six_way",
+    }
+}
+
+choice! {
     /// How the diffuse light of a normal is found.
     DiffuseMode {
         /// Every light through the diffuse ramp, in every pixel. Point lights vary across the smoke.
@@ -76,6 +88,12 @@ settings! {
         backlight: Backlight = Backlight::default(), choice;
         /// Multiplies the sum over all lights: brighter smoke in the same scene.
         intensity: f32 = 1.0, number(0.0..=100.0, "");
+        /// Linear RGB of smoke that is lit by six-way maps, which hold no colour of their own.
+        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        six_way_colour: Vec3 = Vec3::ONE, colour(0.0..=1.0);
+        /// How six-way maps are mixed for light from between their sides: 0 evenly; towards 1 as smoke that scatters light onwards, whose
+        /// glow keeps close round a light behind it.
+        six_way_anisotropy: f32 = 0.2, number(0.0..=0.95, "");
     }
 }
 

@@ -24,7 +24,7 @@ pub use choice::Choice;
 pub(crate) use choice::choice;
 pub use fields::{FieldVisitor, Fields, Headed, PictureRole, validate};
 pub use lighting::{
-    Backlight, CoverageMode, Diffuse, DiffuseMode, RampFilter, SoftScatter, SoftScatterMode, SpecularScatter,
+    Backlight, CoverageMode, Diffuse, DiffuseMode, Lighting, RampFilter, SoftScatter, SoftScatterMode, SpecularScatter,
 };
 pub use set::set_field;
 pub use soft_fade::{FadeCurve, SoftFade};
@@ -125,6 +125,8 @@ settings! {
         blend_mode: BlendMode = BlendMode::Alpha, choice;
         /// How sprites meet the scene.
         technique: Technique = Technique::Soft, choice;
+        /// How sprites take on light: painted, or path-traced.
+        lighting: Lighting = Lighting::default(), choice;
         /// Multiplies the accumulated amount into coverage: how soon smoke hides the scene. OTEE's value is 3.
         boost: f32 = 3.0, number(0.0..=16.0, "");
         /// How the amount becomes coverage: soft silhouettes, or any by paint.
@@ -156,6 +158,11 @@ impl Settings {
     /// True if the system is lit and blended per fragment.
     pub fn is_forward(&self) -> bool {
         self.path == Path::Forward
+    }
+
+    /// True if sprites are lit by six-way maps.
+    pub fn is_six_way(&self) -> bool {
+        self.lighting == Lighting::SixWay && !self.technique.is_volumetric() && !self.sprite.debug_sprite
     }
 
     /// The order in which sprites are drawn. Forward sprites hide each other and are always sorted.

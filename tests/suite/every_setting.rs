@@ -15,6 +15,8 @@ const SIZE: UVec2 = UVec2::new(96, 54);
 
 /// What a detail map is moved to, beside the sprite's file.
 pub const OTHER_DETAIL: &str = "other.png";
+/// The same for six-way maps.
+pub const OTHER_SIX_WAY: &str = "other.six_way.png";
 /// The same for a noise, of which one is built in.
 pub const OTHER_NOISE: &str = "noise.png";
 
@@ -87,9 +89,13 @@ impl FieldVisitor for Mover {
                 PictureRole::Ramp => builtin::RAMPS,
                 PictureRole::Motif => builtin::MOTIFS,
                 PictureRole::Noise => builtin::NOISES,
-                PictureRole::Detail => &[],
+                PictureRole::Detail | PictureRole::SixWay => &[],
             };
-            let file = if role == PictureRole::Noise { OTHER_NOISE } else { OTHER_DETAIL };
+            let file = match role {
+                PictureRole::Noise => OTHER_NOISE,
+                PictureRole::SixWay => OTHER_SIX_WAY,
+                _ => OTHER_DETAIL,
+            };
             let other = builtins.iter().find(|builtin| builtin.name != value);
             *value = other.map_or(file, |builtin| builtin.name).into();
         }
@@ -120,7 +126,7 @@ fn stages() -> Vec<Stage> {
         for (index, particle) in (0..).zip(&mut stage.particles) {
             (particle.age, particle.frame) = (index as f32 / 59.0, index as f32 * 0.37);
         }
-        (stage.material.sprite, stage.material.detail) = (flipbook.0.clone(), flipbook.1.clone());
+        (stage.material.sprite, stage.material.detail, stage.material.six_way) = flipbook.clone();
         stage.time = 1.3;
         change(&mut stage.settings);
         stage
@@ -130,12 +136,14 @@ fn stages() -> Vec<Stage> {
     let contrast: fn(&mut Settings) = |s| (s.soft_fade.curve, s.soft_fade.near_fade_end) = (FadeCurve::Contrast, 9.0);
     let tested: fn(&mut Settings) = |s| (s.accumulate.scale, s.accumulate.encoding) = (1, NormalEncoding::Biased);
     let weighted: fn(&mut Settings) = |s| s.accumulate.order = Order::Weighted;
+    let six_way: fn(&mut Settings) = |s| s.lighting = Lighting::SixWay;
     vec![
         stage(Technique::Soft, Path::Raster, nothing),
         stage(Technique::Soft, Path::Raster, weighted),
         stage(Technique::Soft, Path::Forward, nothing),
         stage(Technique::Soft, Path::Raster, contrast),
         stage(Technique::Soft, Path::Raster, tested),
+        stage(Technique::Soft, Path::Raster, six_way),
         stage(Technique::SphericalBillboard, Path::Raster, nothing),
         stage(Technique::Density, Path::Raster, nothing),
         stage(Technique::VolumetricSoft, Path::Raster, nothing),

@@ -9,7 +9,7 @@ use haze::formula::texture::Texture2d;
 use haze::formula::uniforms::{EmitterUniform, LightUniform};
 use haze::formula::{
     blending, colour, depth, diffuse_bake, emitter, gradient_noise, lighting, noise_volume, normal, order, ramp,
-    soft_fade, sprite, technique, tonemap, upsample, view,
+    six_way, soft_fade, sprite, technique, tonemap, upsample, view,
 };
 use haze::noise::{NoiseRecipe, NoiseVolume};
 use haze::noise::{pcg3d, unit};
@@ -66,6 +66,13 @@ fn with_choices(choices: u32, ranges: &[(f32, f32)]) -> Vec<Vec<f32>> {
 fn count<T>(choices: &[T]) -> u32 {
     choices.len() as u32
 }
+
+/// What is shown under light from six sides, a way to a light, and an anisotropy.
+const SIX_WAY_AND_LIGHT: [(f32, f32); 10] = {
+    const SHOWN: (f32, f32) = (0.0, 1.0);
+    const AXIS: (f32, f32) = (-1.0, 1.0);
+    [SHOWN, SHOWN, SHOWN, SHOWN, SHOWN, SHOWN, AXIS, AXIS, AXIS, (0.1, 0.95)]
+};
 
 fn unit_vectors(cases: Vec<Vec<f32>>, at: usize) -> Vec<Vec<f32>> {
     let normalise = |mut case: Vec<f32>| {
@@ -402,6 +409,85 @@ fn formulas() -> Vec<Formula> {
                 ("normal.x * rotation.x - normal.y", "normal.x * rotation.x + normal.y"),
                 ("normal.z,", "-normal.z,"),
             ],
+        },
+        Formula {
+            name: "six_way_from_texel",
+            file: "lib/six_way.wgsl",
+            wgsl: "let v = six_way_from_texel(vec3f(x(0), x(1), x(2))); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| six_way::six_way_from_texel(v3(x)).to_array().to_vec(),
+            cases: random(20, &[(0.0, 1.0); 3]),
+            tolerance: ARITHMETIC,
+            mutants: &[("texel * texel", "texel")],
+        },
+        Formula {
+            name: "six_way_response",
+            file: "lib/six_way.wgsl",
+            wgsl: "y(0, six_way_response(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5)), vec3f(x(6), x(7), x(8)), x(9)));",
+            reference: |x| vec![six_way::six_way_response(v3(x), v3(&x[3..]), v3(&x[6..]), x[9])],
+            cases: unit_vectors(random(100, &SIX_WAY_AND_LIGHT), 6),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[("select(negative, positive,", "select(positive, negative,")],
+        },
+        Formula {
+            name: "scattered",
+            file: "lib/six_way.wgsl",
+            wgsl: "y(0, scattered(x(0), x(1)));",
+            reference: |x| vec![six_way::scattered(x[0], x[1])],
+            cases: random(50, &[(-1.0, 1.0), (0.0, 0.9)]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[("- 2.0 * anisotropy", "+ 2.0 * anisotropy"), ("inverseSqrt(base) / base", "1.0 / base")],
+        },
+        Formula {
+            name: "six_way_shares",
+            file: "lib/six_way.wgsl",
+            wgsl: "let v = six_way_shares(vec3f(x(0), x(1), x(2)), x(3)); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| six_way::six_way_shares(v3(x), x[3]).to_array().to_vec(),
+            cases: {
+                let mut cases = unit_vectors(random(100, &SIX_WAY_AND_LIGHT[6..]), 0);
+                cases.extend([0.2, 0.9].map(|anisotropy| vec![0.0, 0.0, -1.0, anisotropy]));
+                cases
+            },
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("to_light.xy * to_light.xy", "abs(to_light.xy)"),
+                ("scattered(-to_light.z, g)", "scattered(to_light.z, g)"),
+                ("1.0 - along", "1.0"),
+                ("to_light.z < 0.0", "to_light.z > 0.0"),
+            ],
+        },
+        Formula {
+            name: "rotate_six_way",
+            file: "lib/six_way.wgsl",
+            wgsl: "let v = rotate_six_way(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5)), vec2f(cos(x(6)), sin(x(6)))); \
+                   y(0, v.positive.x); y(1, v.positive.y); y(2, v.positive.z); \
+                   y(3, v.negative.x); y(4, v.negative.y); y(5, v.negative.z);",
+            reference: |x| {
+                let six_way::SixWay { positive, negative } =
+                    six_way::rotate_six_way(v3(x), v3(&x[3..]), Vec2::from_angle(x[6]));
+                [positive.to_array(), negative.to_array()].concat()
+            },
+            cases: random(100, &[(0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (-4.0, 4.0)]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("vec3f(rotation.x, -rotation.y, 0.0)", "vec3f(rotation.x, rotation.y, 0.0)"),
+                ("negative, -x, 0.0)", "negative, x, 0.0)"),
+                ("0.0), positive.z)", "0.0), negative.z)"),
+            ],
+        },
+        Formula {
+            name: "normal_from_six_way",
+            file: "lib/six_way.wgsl",
+            wgsl: "let v = normal_from_six_way(vec3f(x(0), x(1), x(2)), vec3f(x(3), x(4), x(5))); \
+                   y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| six_way::normal_from_six_way(v3(x), v3(&x[3..])).to_array().to_vec(),
+            cases: {
+                let mut cases = random(50, &[(0.0, 1.0); 6]);
+                // Lit alike from all sides.
+                cases.push(vec![0.5; 6]);
+                cases
+            },
+            tolerance: TRANSCENDENTAL,
+            mutants: &[("positive - negative", "negative - positive"), ("vec3f(0.0, 0.0, 1.0)", "vec3f(0.0)")],
         },
         Formula {
             name: "distance_attenuation",
@@ -863,6 +949,19 @@ fn formulas() -> Vec<Formula> {
                 ("uv - motion * frames.blend", "uv + motion * frames.blend"),
                 ("motion * (1.0 - frames.blend)", "motion * frames.blend"),
             ],
+        },
+        Formula {
+            name: "frames_after",
+            file: "lib/sprite.wgsl",
+            wgsl: "let f = frames_after(flipbook_frames(x(0), 5.0), i32(x(1))); \
+                   y(0, f32(f.first)); y(1, f32(f.second)); y(2, f.blend);",
+            reference: |x| {
+                let frames = sprite::frames_after(sprite::flipbook_frames(x[0], 5.0), x[1] as i32);
+                vec![frames.first as f32, frames.second as f32, frames.blend]
+            },
+            cases: random(50, &[(0.0, 9.0), (0.0, 12.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[("frames.first + layers", "frames.first"), ("frames.second + layers", "frames.first + layers")],
         },
         Formula {
             name: "sprite_frame",
@@ -1451,6 +1550,9 @@ const INDIRECT: &[&str] = &[
     "placed_sprite",
     "diffuse",
     "diffuse_from_lights",
+    "diffuse_from_six_way",
+    "surface_from_accumulation",
+    "sample_flipbook",
     "smoke_coverage",
     "light_visibility",
     "stored_depth",

@@ -129,7 +129,7 @@ fn the_first_frame_after_a_warm_up_compiles_nothing() {
             stage.settings.diffuse.mode = DiffuseMode::Cubemap;
             // One frame or several: sprites are not known to a warm-up.
             if path == Path::Raster {
-                (stage.material.sprite, stage.material.detail) = crate::techniques::flipbook();
+                (stage.material.sprite, stage.material.detail, stage.material.six_way) = crate::techniques::flipbook();
             }
             stage.settings.accumulate.lighting_resolution = LightingResolution::Target;
             let mut host = Host::new(gpu(), &stage).unwrap();

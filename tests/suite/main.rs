@@ -26,6 +26,7 @@ mod probe;
 mod properties;
 mod shader_layout;
 mod shaders;
+mod six_way;
 mod soak;
 mod stage;
 mod techniques;

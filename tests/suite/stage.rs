@@ -8,6 +8,7 @@ use haze::picture::Picture;
 use haze::ramp::Ramp;
 use haze::reference;
 use haze::settings::{Path, Settings, ShadeTree};
+use haze::sprite::six_way::six_way_layout;
 use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Bounds, FieldError, Light, MaterialAssets, Particle, View};
 
@@ -84,6 +85,20 @@ fn ball_detail() -> Sprite {
     Sprite::from_picture(std::path::Path::new("ball.detail"), &picture, SpriteLayout::default()).unwrap()
 }
 
+/// Six-way maps of a sprite that is lit where its normals face, a little from behind, and more from the left.
+pub fn six_way_of(sprite: &Sprite) -> Sprite {
+    let (size, frames) = (sprite.size(), sprite.frame_count());
+    let picture = image::RgbaImage::from_fn(size, 2 * frames * size, |x, y| {
+        let texel = sprite.texel(0, y / size % frames, x, y % size);
+        let normal = texel.truncate() * 2.0 - 1.0;
+        let light = if y / size < frames { normal } else { normal * vec3(-1.3, -0.8, -1.0) + vec3(0.0, 0.0, 0.3) };
+        let code = (light * 0.5 + 0.1).clamp(Vec3::ZERO, Vec3::ONE).map(f32::sqrt);
+        image::Rgba(code.extend(texel.w).to_array().map(|channel| (channel * 255.0).round() as u8))
+    });
+    let layout = six_way_layout(SpriteLayout { rows: frames, ..SpriteLayout::default() });
+    Sprite::from_picture(std::path::Path::new("six_way"), &picture, layout).unwrap()
+}
+
 fn recipe_noise() -> NoiseVolume {
     let recipe = NoiseRecipe { version: 1, seed: 3, size: 16, cells: 2, octaves: 3, gain: 0.5 };
     NoiseVolume::from_picture(std::path::Path::new("noise"), &recipe.bake().unwrap()).unwrap()
@@ -97,6 +112,7 @@ pub fn material() -> MaterialAssets {
     MaterialAssets {
         sprite: ball_sprite(false),
         detail: Some(ball_detail()),
+        six_way: Some(six_way_of(&ball_sprite(false))),
         noise: recipe_noise(),
         diffuse_ramp: line(Vec3::splat(0.05), Vec3::ONE),
         backlight_ramp: Ramp::from_linear(UVec2::new(16, 4), (0..64).map(rim)),

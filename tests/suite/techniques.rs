@@ -10,7 +10,7 @@ use haze::{Bounds, Error, Particle};
 
 use crate::common::{AGREEMENT, STEP_AGREEMENT, gpu, non_finite_texels, psnr};
 use crate::host::Host;
-use crate::stage::{BACKDROP, DepthKind, Stage};
+use crate::stage::{BACKDROP, DepthKind, Stage, six_way_of};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
@@ -121,7 +121,7 @@ fn every_sprite_setting_agrees() {
     for (name, change) in changes {
         for technique in [Technique::Soft, Technique::SphericalBillboard] {
             let mut stage = stage(technique);
-            (stage.material.sprite, stage.material.detail) = flipbook();
+            (stage.material.sprite, stage.material.detail, stage.material.six_way) = flipbook();
             for (index, particle) in (0..).zip(&mut stage.particles) {
                 particle.frame = index as f32 * 0.37;
             }
@@ -142,7 +142,7 @@ fn what_blends_no_frames_looks_none_up_twice() {
             let mut stage = stage(Technique::Soft);
             stage.settings.path = path;
             if has_frames {
-                stage.material.sprite = flipbook().0;
+                (stage.material.sprite, _, stage.material.six_way) = flipbook();
                 stage.material.detail = None;
             }
             let mut host = Host::new(gpu(), &stage).unwrap();
@@ -157,12 +157,14 @@ fn what_blends_no_frames_looks_none_up_twice() {
     }
 }
 
-/// A small flipbook and its detail map.
-pub fn flipbook() -> (Sprite, Option<Sprite>) {
+/// A small flipbook, its detail map and six-way maps.
+pub fn flipbook() -> (Sprite, Option<Sprite>, Option<Sprite>) {
     let recipe = recipe();
     let baked = recipe.bake(|_| Ok::<_, haze::FieldError>(())).unwrap();
     let decode = |picture| Sprite::from_picture("flipbook".as_ref(), picture, recipe.layout()).unwrap();
-    (decode(&baked.picture), Some(decode(&baked.detail)))
+    let sprite = decode(&baked.picture);
+    let six_way = six_way_of(&sprite);
+    (sprite, Some(decode(&baked.detail)), Some(six_way))
 }
 
 /// A puff whose balls travel: what only boils in its place has no motion to follow.

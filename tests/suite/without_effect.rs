@@ -12,7 +12,7 @@ use haze::settings::*;
 use haze::{Context, Light, LightKind, MaterialAssets};
 
 use crate::common::{gpu, has_tiles};
-use crate::every_setting::{Mover, OTHER_DETAIL, OTHER_NOISE};
+use crate::every_setting::{Mover, OTHER_DETAIL, OTHER_NOISE, OTHER_SIX_WAY};
 use crate::host::Host;
 use crate::stage::Stage;
 
@@ -127,6 +127,15 @@ const SITUATIONS: &[fn(&mut PresetSystem, &mut Light)] = &[
         (s.material.sprite, s.material.detail) = ("own.png".into(), "own.png".into());
         s.settings.sprite.motion = 0.7;
     },
+    |s, _| {
+        (s.material.sprite, s.material.six_way) = ("own.png".into(), "six_way.png".into());
+        s.settings.lighting = Lighting::SixWay;
+    },
+    |s, _| {
+        (s.material.sprite, s.material.six_way) = ("own.png".into(), "six_way.png".into());
+        (s.settings.lighting, s.settings.path) = (Lighting::SixWay, Path::Forward);
+        s.settings.specular_scatter.intensity = 0.0;
+    },
     // Between two frames, after the end.
     |s, _| {
         (s.cache.path, s.cache.position) = (PARTICLES.into(), vec3(0.0, -0.5, -6.0));
@@ -151,7 +160,7 @@ const SAME: [&str; 4] = [
 ];
 
 /// Fields that do nothing in some situation without being told so: it depends on more than settings, or on how far they are moved.
-const NOT_ALWAYS: [&str; 16] = [
+const NOT_ALWAYS: [&str; 17] = [
     // What is left out cannot be seen.
     "systems[0].settings.accumulate.layers",
     // Nothing to see of the light: it is hidden, or lights nothing.
@@ -161,7 +170,8 @@ const NOT_ALWAYS: [&str; 16] = [
     "systems[0].material.specular_ramp",
     "systems[0].settings.specular_scatter.intensity",
     "systems[0].settings.specular_scatter.size",
-    // No diffuse light: nothing reads normals, which an artist moves all the same.
+    // No diffuse light: nothing reads normals or six-way maps, which an artist moves all the same.
+    "systems[0].settings.lighting",
     "systems[0].settings.accumulate.decode",
     "systems[0].settings.accumulate.encoding",
     // The most texels are so few that they set the scale, and one depth hides the post from the smoke or not.
@@ -184,6 +194,13 @@ fn pictures(folder: &File) {
         let picture = image::RgbaImage::from_fn(32, 32, |x, y| {
             let inside = 255 - (2 * (x.abs_diff(16).pow(2) + y.abs_diff(12).pow(2))).min(255) as u8;
             image::Rgba([128 + lean, 200 - lean, 220 - x as u8, inside])
+        });
+        picture.save(folder.join(name)).unwrap();
+    }
+    for (name, lean) in [("six_way.png", 40), (OTHER_SIX_WAY, 90)] {
+        let picture = image::RgbaImage::from_fn(32, 64, |x, y| {
+            let inside = 255 - (2 * (x.abs_diff(16).pow(2) + (y % 32).abs_diff(12).pow(2))).min(255) as u8;
+            image::Rgba([128 + lean, 200 - lean, 120 - y as u8, inside])
         });
         picture.save(folder.join(name)).unwrap();
     }
@@ -251,7 +268,7 @@ fn what_has_no_effect_has_none_and_what_is_not_told_so_has_one() {
     assert!(unfelt.is_empty(), "nowhere any effect: {unfelt:?}");
     assert!(untold.keys().all(|path| NOT_ALWAYS.contains(&path.as_str())), "{untold:?}");
     // All but the one that is about the demo scene.
-    assert_eq!(reasons.len(), 42, "{reasons:#?}");
+    assert_eq!(reasons.len(), 44, "{reasons:#?}");
 }
 
 #[cfg(feature = "app")]

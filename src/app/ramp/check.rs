@@ -11,7 +11,7 @@ use haze::ramp::check::check;
 use haze::ramp::response::{DiffuseRamps, Puff};
 use haze::ramp::{Ramp, Role};
 
-use super::fit::tell_response;
+use super::fit::tell_ramps;
 use super::{picture_of, refuse_gradient};
 use crate::app::findings::tell;
 use crate::app::medium::{PathTraceArguments, named, names, sprite_recipe, usual_sprite};
@@ -54,7 +54,7 @@ fn tell_truth(ramps: &[PathBuf], medium: &str, backlight: Option<&Path>) -> Resu
     for (path, diffuse) in &ramps {
         let ramps = DiffuseRamps { diffuse, backlight: backlight.as_ref() };
         let name = format!("{} beside {medium}", path.display());
-        tell_response(&name, &puff, ramps, &puff.response(ramps))?;
+        tell_ramps(&name, &puff, ramps)?;
     }
     Ok(())
 }

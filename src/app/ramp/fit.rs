@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use haze::picture::{Effort, write_png};
+use glam::Vec3;
+use haze::picture::{Effort, Picture, write_png};
 use haze::ramp::Ramp;
 use haze::ramp::bake::RampRecipe;
 use haze::ramp::response::{DiffuseRamps, FittedRamps, Puff, Response, Shape};
@@ -12,7 +13,7 @@ use haze::{Error, builtin};
 use super::{check_output, write_recipe};
 use crate::app::medium::{MediumArguments, PathTraceArguments, sprite_recipe, usual_sprite};
 use crate::app::output::{Files, say};
-use crate::app::puffs::{compared, flip};
+use crate::app::puffs::{Shown, compared, flip};
 use crate::app::recipe::picture;
 
 #[derive(Args)]
@@ -66,25 +67,35 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let ramps = DiffuseRamps { diffuse: &diffuse, backlight: against.as_ref() };
     let after = puff.response(ramps);
     if let Some(sheet) = sheet {
-        write_png(sheet, &compared(&puff, ramps, after.exposure).into(), Effort::Small)?;
+        write_png(sheet, &compared(&puff, &by_ramps(&|light| puff.shown(ramps, light), &after)).into(), Effort::Small)?;
     }
     if let Some(usual) = builtin::find(builtin::RAMPS, "diffuse_soft") {
         let usual = usual.ramp()?;
         let ramps = DiffuseRamps { diffuse: &usual, backlight: None };
-        tell_response("diffuse_soft", &puff, ramps, &puff.response(ramps))?;
+        tell_ramps("diffuse_soft", &puff, ramps)?;
     }
-    tell_response("fitted", &puff, ramps, &after)?;
+    tell_ramps("fitted", &puff, ramps)?;
     say!("{}: diffuse.intensity {exposure:.2} is as bright as {} beside a white wall", output.display(), medium.name())
 }
 
+fn by_ramps<'a>(light: &'a dyn Fn(usize) -> Picture<Vec3>, response: &Response) -> Shown<'a> {
+    Shown { name: "ramps", light, exposure: response.exposure }
+}
+
 /// How far ramps are from the truth, in words and light by light.
-pub fn tell_response(name: &str, puff: &Puff, ramps: DiffuseRamps<'_>, response: &Response) -> Result<(), Error> {
+pub fn tell_ramps(name: &str, puff: &Puff, ramps: DiffuseRamps<'_>) -> Result<(), Error> {
+    let response = puff.response(ramps);
+    tell_response(name, puff, &by_ramps(&|light| puff.shown(ramps, light), &response), &response)
+}
+
+/// How far what is shown is from the truth, in words and light by light.
+pub fn tell_response(name: &str, puff: &Puff, shown: &Shown<'_>, response: &Response) -> Result<(), Error> {
     let percent = |share: f32| 100.0 * share;
     say!(
         "{name}: brightness {:.1} % off in the mean, pixels {:.0} %, FLIP {:.3}, at intensity {:.2}",
         percent(response.error),
         percent(response.pixel_error),
-        flip(puff, ramps, response.exposure),
+        flip(puff, shown),
         response.exposure,
     )?;
     for light in &response.lights {

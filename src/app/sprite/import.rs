@@ -46,7 +46,11 @@ fn strength(text: &str) -> Result<f32, String> {
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let Arguments { files, output, source, columns, rows, y_down, strength } = arguments;
-    Files::read(files).write("--output", output, "png")?;
+    let mut read = Files::read(files);
+    read.write("--output", output, "png")?;
+    if source.has_two() {
+        read.write("--output", &six_way_of(output), "png")?;
+    }
     let refuse = |option: &str, value: String, expected: &str| Err(FieldError::new(option, value, expected).into());
     if y_down.is_some() && *source != Source::Normals {
         return refuse("--y-down", format!("--from {}", source.name()), "--from normals: nothing else has a direction");
@@ -66,9 +70,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         (pictures.into_iter().map(|(_, picture)| picture).collect(), UVec2::new(*columns, *rows))
     };
     let layout = SpriteLayout { columns: grid.x, rows: grid.y, y_down: false };
-    let Imported { picture, y_direction, doubt, border } = import(path, &sheets, *source, layout, *y_down, *strength)?;
+    let Imported { picture, six_way, y_direction, doubt, border } =
+        import(path, &sheets, *source, layout, *y_down, *strength)?;
     write_png(output, &picture.into(), Effort::Small)?;
     say!("{}: {}x{} frames", output.display(), grid.x, grid.y)?;
+    if let Some(maps) = six_way {
+        let path = six_way_of(output);
+        write_png(&path, &maps.into(), Effort::Small)?;
+        say!("{}: the light maps, for lighting six_way", path.display())?;
+    }
     if let Some((frame, alpha)) = border {
         say!("  border: alpha up to {alpha} in frame {frame}, made clear; leave more room round the smoke")?;
     }
@@ -85,6 +95,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         (None, Some(_)) => say!("  green taken to point up: nothing tells; --y-down says it"),
         (None, None) => Ok(()),
     }
+}
+
+/// `smoke.six_way.png` of `smoke.png`.
+pub fn six_way_of(picture: &Path) -> PathBuf {
+    picture.with_extension("six_way.png")
 }
 
 /// Frames by their numbers, where their names differ by nothing else: shells put `smoke_10.png` before `smoke_9.png`.

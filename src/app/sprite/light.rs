@@ -1,17 +1,19 @@
 //! `haze sprite light`: a sprite as smoke of a medium truly looks, from every side.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use haze::Error;
 use haze::formula::colour::luminance;
+use haze::path_trace::PathTrace;
 use haze::picture::{Effort, write_file, write_png};
 use haze::ramp::response::{LIGHTS, Puff, angle};
 use haze::sprite::bake::SpriteRecipe;
 
 use crate::app::medium::{MediumArguments, PathTraceArguments, sprite_recipe, usual_sprite};
 use crate::app::output::{Files, say};
-use crate::app::puffs::traced;
+use crate::app::puffs::{Shown, compared, traced};
+use crate::app::ramp::fit::tell_response;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -28,9 +30,12 @@ pub struct Arguments {
     /// Write the densities, too: a grid that Mitsuba 3 reads.
     #[arg(long, value_name = "FILE.vol")]
     volume: Option<PathBuf>,
+    /// Make six-way maps of it as `haze sprite bake --six-way` does, show below what they look like, and say how far they are off.
+    #[arg(long)]
+    six_way: bool,
 }
 
-pub fn run(Arguments { sprite, medium, quality, output, volume }: &Arguments) -> Result<(), Error> {
+pub fn run(Arguments { sprite, medium, quality, output, volume, six_way }: &Arguments) -> Result<(), Error> {
     let mut files = Files::read([sprite]);
     files.write("--output", output, "png")?;
     if let Some(volume) = volume {
@@ -42,10 +47,31 @@ pub fn run(Arguments { sprite, medium, quality, output, volume }: &Arguments) ->
         let recipe = SpriteRecipe { size: path_trace.size, ..recipe };
         write_file(path, &recipe.volume(0.0).to_mitsuba())?;
     }
+    if *six_way {
+        return beside_six_way(&puff, &recipe, medium, quality, output);
+    }
     write_png(output, &traced(&puff).into(), Effort::Small)?;
     say!("{}: {} under {LIGHTS} lights; brightness, 1 is a white wall:", output.display(), medium.name())?;
     for light in 0..LIGHTS as usize {
         say!("{:6.1} {:.6}", angle(light), luminance(puff.traced().mean(light)))?;
     }
     Ok(())
+}
+
+fn beside_six_way(
+    puff: &Puff,
+    recipe: &SpriteRecipe,
+    medium: &MediumArguments,
+    quality: &PathTraceArguments,
+    output: &Path,
+) -> Result<(), Error> {
+    let PathTrace { size, samples, .. } = quality.path_trace();
+    let (recipe, of) = (SpriteRecipe { size, columns: 1, rows: 1, tolerance: 0, ..recipe.clone() }, medium.medium()?);
+    let what = format!("six-way {}", medium.name());
+    let maps = quality.watched(&what, |progress| recipe.bake_six_way(&of, samples, |_, path| progress(path)))?;
+    let light = |light| puff.shown_six_way(&maps, light);
+    let response = puff.response_of(light);
+    let shown = Shown { name: "six-way", light: &light, exposure: response.exposure };
+    write_png(output, &compared(puff, &shown).into(), Effort::Small)?;
+    tell_response(&format!("{}: six-way maps beside {}", output.display(), medium.name()), puff, &shown, &response)
 }

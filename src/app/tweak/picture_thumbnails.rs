@@ -141,7 +141,7 @@ fn decoded(role: PictureRole, path: &Path, bytes: &[u8]) -> Result<ColorImage, E
     let [width, height] = SIZE.map(|side| side as u32);
     let decode = match role {
         PictureRole::Ramp | PictureRole::Motif => decode_colour_png,
-        PictureRole::Sprite | PictureRole::Detail | PictureRole::Noise => decode_png,
+        PictureRole::Sprite | PictureRole::Detail | PictureRole::SixWay | PictureRole::Noise => decode_png,
     };
     let small = imageops::resize(&decode(path, bytes)?.to_rgba8(), width, height, FilterType::Triangle);
     Ok(ColorImage::from_rgba_unmultiplied(SIZE, small.as_raw()))

@@ -10,7 +10,7 @@ mod frame;
 mod march;
 mod moment;
 mod recipe;
-mod shrink;
+pub(super) mod shrink;
 mod slices;
 mod voxels;
 

@@ -7,10 +7,12 @@ use image::{Rgba, RgbaImage, imageops};
 
 use super::check::{clear_borders, not_normals};
 use super::height::{grey, normal_of, puffed};
+use super::six_way::{Packing, pack};
 use super::y_direction::{SURE, YDirection, y_direction};
 use super::{Sprite, SpriteLayout};
 use crate::error::Error;
 use crate::formula::saturate;
+use crate::formula::six_way::SixWay;
 use crate::settings::choice;
 
 choice! {
@@ -31,9 +33,18 @@ choice! {
 }
 
 impl Source {
+    /// How light maps are packed, where it is those.
+    pub fn packing(self) -> Option<Packing> {
+        match self {
+            Self::SixWayUnity => Some(Packing::Unity),
+            Self::SixWayRltBbf => Some(Packing::RltBbf),
+            Self::Normals | Self::Height | Self::Alpha => None,
+        }
+    }
+
     /// True for those of two pictures.
     pub fn has_two(self) -> bool {
-        matches!(self, Self::SixWayUnity | Self::SixWayRltBbf)
+        self.packing().is_some()
     }
 }
 
@@ -42,6 +53,8 @@ impl Source {
 pub struct Imported {
     /// rgb = normal / 2 + 1/2 (x right, y up, z to the viewer), a = amount.
     pub picture: RgbaImage,
+    /// The light maps, where there are some: see [`six_way`](super::six_way).
+    pub six_way: Option<RgbaImage>,
     /// Which way green pointed in painted normals; none for other sources.
     pub y_direction: Option<YDirection>,
     /// What painted normals look like, if not like normals.
@@ -108,8 +121,8 @@ pub fn import(
     // It refuses what does not fit.
     let sprite = Sprite::from_picture(path, &picture, SpriteLayout { y_down: false, ..layout })?;
     let (mut found, mut doubt) = (None, None);
-    match (source, second) {
-        (Source::Normals, _) => {
+    match source {
+        Source::Normals => {
             doubt = not_normals(&sprite);
             found = y_direction(&sprite);
             let guess = found.is_some_and(|found| found.is_down && found.sureness >= SURE);
@@ -120,7 +133,7 @@ pub fn import(
                 *texel = encode(normal, texel.0[3]);
             }
         }
-        (Source::Height | Source::Alpha, _) => {
+        Source::Height | Source::Alpha => {
             for frame in 0..columns * rows {
                 let origin = UVec2::new(frame % columns, frame / columns) * size;
                 let texel = |at: UVec2| value(picture.get_pixel(origin.x + at.x, origin.y + at.y));
@@ -135,20 +148,17 @@ pub fn import(
                 }
             }
         }
-        (_, Some(second)) => {
-            for (texel, other) in picture.pixels_mut().zip(second.pixels()) {
-                let (a, b) = (value(texel), value(other));
-                let (right, left, top, bottom, front, back) = match source {
-                    Source::SixWayUnity => (a.x, b.x, a.y, b.y, b.z, a.z),
-                    _ => (a.x, a.y, a.z, b.x, b.z, b.y),
-                };
-                let normal = Vec3::new(right - left, top - bottom, front - back);
-                *texel = encode(normal * strength, texel.0[3]);
-            }
-        }
-        (_, None) => {}
+        Source::SixWayUnity | Source::SixWayRltBbf => {}
     }
-    Ok(Imported { picture, y_direction: found, doubt, border })
+    let light = source.packing().zip(second);
+    let six_way = light.map(|(packing, second)| pack(&picture, second, packing));
+    if let Some((packing, second)) = light {
+        for (texel, other) in picture.pixels_mut().zip(second.pixels()) {
+            let SixWay { positive, negative } = packing.six_way(value(texel).truncate(), value(other).truncate());
+            *texel = encode((positive - negative) * strength, texel.0[3]);
+        }
+    }
+    Ok(Imported { picture, six_way, y_direction: found, doubt, border })
 }
 
 fn value(texel: &Rgba<u8>) -> Vec4 {

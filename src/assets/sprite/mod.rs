@@ -5,6 +5,7 @@ pub mod check;
 pub mod detail;
 mod height;
 pub mod import;
+pub mod six_way;
 pub mod y_direction;
 
 use std::path::Path;

@@ -65,7 +65,8 @@ pub fn is_painted(system: &PresetSystem) -> bool {
 pub fn looks_up_no_ramp(system: &PresetSystem, _: UVec2) -> bool {
     let settings = &system.settings;
     let (is_forward, is_lit) = (settings.is_forward(), settings.diffuse.intensity > 0.0);
-    let by_normal = is_lit && (is_forward || settings.diffuse.mode != DiffuseMode::SphericalHarmonics);
+    let by_normal =
+        is_lit && !settings.is_six_way() && (is_forward || settings.diffuse.mode != DiffuseMode::SphericalHarmonics);
     let by_amount = settings.soft_scatter.intensity > 0.0 && settings.soft_scatter.mode == SoftScatterMode::Ramp;
     let others = if is_forward {
         settings.sprite.age_colour > 0.0

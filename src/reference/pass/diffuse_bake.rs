@@ -11,6 +11,7 @@ use crate::formula::lighting::{
     backlight_weight, diffuse_coordinate, direction_to_viewer, sample_light, soft_scatter_weight,
 };
 use crate::formula::ramp::{sample_ramp, sample_ramp_2d};
+use crate::formula::six_way::{SixWay, six_way_response};
 use crate::formula::uniforms::LightUniform;
 use crate::reference::draw::Draw;
 use crate::settings::{Backlight, DiffuseMode, SoftScatterMode};
@@ -36,6 +37,17 @@ impl Draw<'_> {
             falloff = falloff.lerp(look_up(&self.material.backlight_ramp), weight);
         }
         falloff * light.colour * sample.attenuation
+    }
+
+    pub fn diffuse_from_six_way(&self, six_way: &SixWay, position: Vec3) -> Vec3 {
+        self.lights.iter().map(|light| self.six_way_from_light(light, six_way, position)).sum()
+    }
+
+    pub fn six_way_from_light(&self, light: &LightUniform, six_way: &SixWay, position: Vec3) -> Vec3 {
+        let sample = sample_light(light, position);
+        let response =
+            six_way_response(six_way.positive, six_way.negative, sample.direction, self.system.six_way_anisotropy);
+        light.colour * (response * sample.attenuation) * self.system.six_way_colour
     }
 
     pub fn soft_scatter(&self, amount: f32) -> Vec3 {

@@ -1,6 +1,6 @@
 //! `shaders/forward.wgsl`.
 
-use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{Vec2, Vec3, Vec4};
 
 use crate::assets::picture::Picture;
 use crate::formula::blending::forward_fragment;
@@ -18,14 +18,18 @@ impl Draw<'_> {
         picture.for_bands(|first_row, band| {
             let scene = |at| self.scene_view_depth(at);
             self.for_fragments(&grid, first_row, band, scene, |at, sprite, fragment, texel: &mut Vec4| {
-                let amount = fragment.w;
+                let amount = fragment.amount;
                 if amount <= 0.0 {
                     return;
                 }
-                let normal = fragment.xyz() / fragment.xyz().length_squared().max(1.0e-12).sqrt();
+                let normal = fragment.normal / fragment.normal.length_squared().max(1.0e-12).sqrt();
                 let position = self.view_position(at.as_vec2() + 0.5, sprite.view_depth.max(self.view.near));
                 let covered = coverage(amount, system.boost);
-                let diffuse = self.diffuse_from_lights(normal, covered, position) * system.diffuse_intensity;
+                let diffuse = match self.settings.is_six_way() {
+                    true => self.diffuse_from_six_way(&fragment.six_way, position),
+                    false => self.diffuse_from_lights(normal, covered, position),
+                };
+                let diffuse = diffuse * system.diffuse_intensity;
                 let colour = self.sample_ramp(&self.material.age_ramp, sprite.age);
                 let light = (diffuse + self.soft_scatter(amount)) * Vec3::ONE.lerp(colour, system.age_colour);
                 let source = forward_fragment(mode, bounded_light(light), covered);

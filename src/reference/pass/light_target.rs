@@ -25,10 +25,10 @@ impl Accumulated<'_> {
         if amount <= 0.0 {
             return Vec4::ZERO;
         }
-        let normal = self.decode(accumulated, self.weight_sum.map_or(amount, |sum| sum.load(at).x));
+        let surface = self.surface(accumulated, self.beside.map_or(Vec4::ZERO, |beside| beside.load(at)));
         let pixel = (at.as_vec2() + system.target_origin + 0.5) * system.scale;
         let position = draw.view_position(pixel, -system.centre.z);
-        let light = bounded_light(self.diffuse(normal, amount, position) + draw.soft_scatter(amount));
+        let light = bounded_light(self.diffuse(&surface, amount, position) + draw.soft_scatter(amount));
         quantise(AccumulationFormat::Rgba16Float, light.extend(1.0) * amount)
     }
 }

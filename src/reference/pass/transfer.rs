@@ -9,13 +9,26 @@ use crate::formula::lighting::{coverage, painted_coverage};
 use crate::formula::normal::normal_from_accumulation;
 use crate::formula::ramp::sample_ramp_2d;
 use crate::formula::saturate;
+use crate::formula::six_way::{SixWay, normal_from_six_way};
+use crate::formula::uniforms::LightUniform;
 use crate::reference::accumulated::Accumulated;
 use crate::reference::blend_unit::premultiplied_over;
 use crate::settings::{CoverageMode, DiffuseMode, ShadeTree};
 
+/// What light falls on.
+pub struct Surface {
+    /// Unit length, view space.
+    pub normal: Vec3,
+    /// Of six-way maps.
+    pub six_way: SixWay,
+}
+
 impl Accumulated<'_> {
-    pub fn diffuse(&self, normal: Vec3, amount: f32, position: Vec3) -> Vec3 {
-        let draw = self.draw;
+    pub fn diffuse(&self, surface: &Surface, amount: f32, position: Vec3) -> Vec3 {
+        let (draw, normal) = (self.draw, surface.normal);
+        if draw.settings.is_six_way() {
+            return draw.diffuse_from_six_way(&surface.six_way, position) * draw.system.diffuse_intensity;
+        }
         let light = match draw.settings.diffuse.mode {
             DiffuseMode::Ramp => draw.diffuse_from_lights(normal, coverage(amount, draw.system.boost), position),
             DiffuseMode::Cubemap => {
@@ -83,13 +96,13 @@ impl Accumulated<'_> {
         if is_lit {
             return Some(bounded_light(accumulated.xyz() / amount.max(1.0e-6)).extend(1.0) * covered);
         }
-        let normal = self.normal(accumulated, pixel);
+        let surface = self.surface_at(accumulated, pixel);
         if shade_tree == ShadeTree::Normals {
-            return Some((normal * 0.5 + 0.5).extend(1.0) * covered);
+            return Some((surface.normal * 0.5 + 0.5).extend(1.0) * covered);
         }
         let mut light = Vec3::ZERO;
         if shade_tree != ShadeTree::SoftScatter {
-            light += self.diffuse(normal, amount, self.draw.view_position(pixel, -system.centre.z));
+            light += self.diffuse(&surface, amount, self.draw.view_position(pixel, -system.centre.z));
         }
         if shade_tree != ShadeTree::Diffuse {
             light += self.draw.soft_scatter(amount);
@@ -107,17 +120,33 @@ impl Accumulated<'_> {
         }
     }
 
-    fn normal(&self, accumulated: Vec4, pixel: Vec2) -> Vec3 {
-        self.decode(accumulated, self.weight_sum.map_or(accumulated.w, |sum| self.sample_target(sum, pixel).x))
+    fn surface_at(&self, accumulated: Vec4, pixel: Vec2) -> Surface {
+        self.surface(accumulated, self.beside.map_or(Vec4::ZERO, |beside| self.sample_target(beside, pixel)))
     }
 
-    pub fn decode(&self, accumulated: Vec4, weights: f32) -> Vec3 {
+    /// `surface_from_accumulation()` in lit_smoke.wgsl.
+    pub fn surface(&self, accumulated: Vec4, beside: Vec4) -> Surface {
         let accumulate = &self.draw.settings.accumulate;
-        normal_from_accumulation(accumulate.encoding, accumulate.decode, accumulated.xyz(), weights)
+        if self.draw.settings.is_six_way() {
+            let scale = 1.0 / beside.w.max(1.0e-6);
+            let [positive, negative] = [accumulated, beside].map(|light| light.xyz().max(Vec3::ZERO) * scale);
+            return Surface { normal: normal_from_six_way(positive, negative), six_way: SixWay { positive, negative } };
+        }
+        let weights = if accumulate.sums_weights() { beside.x } else { accumulated.w };
+        let normal = normal_from_accumulation(accumulate.encoding, accumulate.decode, accumulated.xyz(), weights);
+        Surface { normal, six_way: SixWay::default() }
     }
 
-    pub fn amount_and_normal(&self, pixel: Vec2) -> (f32, Vec3) {
+    pub fn amount_and_surface(&self, pixel: Vec2) -> (f32, Surface) {
         let accumulated = self.sample_target(self.accumulation, pixel);
-        (accumulated.w, self.normal(accumulated, pixel))
+        (accumulated.w, self.surface_at(accumulated, pixel))
+    }
+
+    /// What a light adds, where none is baked.
+    pub fn diffuse_from_light(&self, light: &LightUniform, surface: &Surface, covered: f32, position: Vec3) -> Vec3 {
+        match self.draw.settings.is_six_way() {
+            true => self.draw.six_way_from_light(light, &surface.six_way, position),
+            false => self.draw.diffuse_from_light(light, surface.normal, covered, position),
+        }
     }
 }

@@ -13,6 +13,12 @@ pub(crate) fn array_layers(layers: u32) -> u32 {
     if layers == 1 || layers.is_multiple_of(6) { layers + 1 } else { layers }
 }
 
+/// True if a device can blend two targets of 8 bytes at once, as six-way light needs.
+pub(crate) fn six_way_is_supported(device: &wgpu::Device) -> bool {
+    let limits = device.limits();
+    limits.max_color_attachments >= 2 && limits.max_color_attachment_bytes_per_sample >= 16
+}
+
 /// True for devices with compute shaders and all that the tiled passes bind: WebGPU's defaults are enough. Not on OpenGL, where
 /// compiling them may take longer than wgpu waits for the context, which it then panics about.
 pub(crate) fn tiles_are_supported(device: &wgpu::Device) -> bool {

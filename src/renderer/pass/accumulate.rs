@@ -1,5 +1,5 @@
 //! accumulate
-//! What: blends every sprite's normal and amount into the accumulation target.
+//! What: blends every sprite's normal and amount, or its six-way light, into the accumulation target.
 //! Reads: particles, sprite flipbook, detail map or noise, reduced depth or the host's own. Writes:
 //! accumulation target. Blend: ONE, ONE_MINUS_SRC_ALPHA; weighted normals ONE, ONE. Source: OTEE "Accumulating the
 //! particles"; techniques: NV, BLOG, MS.
@@ -17,7 +17,7 @@ use crate::renderer::gpu::pipeline::{
 };
 use crate::renderer::gpu::record::{begin_pass, color_attachment, set_part, tested_depth};
 use crate::renderer::gpu::timing::Timing;
-use crate::renderer::targets::{DEPTH_COPY_FORMAT, REDUCED_DEPTH_FORMAT, accumulation_layout};
+use crate::renderer::targets::{Beside, DEPTH_COPY_FORMAT, REDUCED_DEPTH_FORMAT, accumulation_layout};
 use crate::settings::{AccumulationFormat, NormalEncoding, Order};
 
 /// What makes one accumulation pipeline differ from another.
@@ -26,6 +26,7 @@ pub(crate) struct AccumulateKey {
     pub format: AccumulationFormat,
     pub encoding: NormalEncoding,
     pub order: Order,
+    pub beside: Beside,
     pub sprite: SpriteKey,
     /// Sprites are compared with the host's own depth, not the reduced one.
     pub host_depth: bool,
@@ -49,11 +50,14 @@ pub(crate) enum DepthTest {
 
 /// The pipeline for a key.
 pub(crate) fn describe(key: AccumulateKey) -> PipelineParts {
-    let blend = match (key.overdraw, key.order) {
-        (true, _) => COUNT,
-        (false, Order::Sorted) => PREMULTIPLIED_OVER,
-        (false, Order::Weighted) => WEIGHTED_SUM,
+    // Of the first texture, and of what is beside it.
+    let blends = match (key.overdraw, key.order) {
+        (true, _) => [COUNT; 2],
+        (false, Order::Sorted) => [PREMULTIPLIED_OVER; 2],
+        // Weights add up, and nothing else is in the alpha beside.
+        (false, Order::Weighted) => [WEIGHTED_SUM, COUNT],
     };
+    let beside = if key.overdraw { Beside::Nothing } else { key.beside };
     PipelineParts {
         buffers: const { &[Some(PARTICLE_LAYOUT)] },
         primitive: STRIP,
@@ -64,9 +68,10 @@ pub(crate) fn describe(key: AccumulateKey) -> PipelineParts {
             DepthTest::Host(format, reversed) => Some(read_only_depth(format, in_front(reversed))),
         },
         sample_count: 1,
-        targets: accumulation_layout(key.format, !key.overdraw && key.order.sums_weights(key.encoding), false)
+        targets: accumulation_layout(key.format, beside, false)
             .iter()
-            .map(|attachment| color_target(attachment.format, Some(blend)))
+            .zip(blends)
+            .map(|(attachment, blend)| color_target(attachment.format, Some(blend)))
             .collect(),
         constants: key.sprite.constants([
             variant!("NORMAL_ENCODING", key.encoding),

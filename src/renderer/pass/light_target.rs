@@ -9,7 +9,7 @@ use super::Groups;
 use crate::renderer::gpu::pipeline::{Constant, PipelineParts, color_target, switch, variant};
 use crate::renderer::gpu::record::{begin_pass, color_attachment, set_part};
 use crate::renderer::gpu::timing::Timing;
-use crate::renderer::targets::LIT_FORMAT;
+use crate::renderer::targets::{Beside, LIT_FORMAT};
 use crate::settings::{Backlight, DiffuseMode, NormalDecode, NormalEncoding, RampFilter, SoftScatterMode};
 
 /// What makes light on smoke differ, here and in transfer.
@@ -17,7 +17,7 @@ use crate::settings::{Backlight, DiffuseMode, NormalDecode, NormalEncoding, Ramp
 pub(crate) struct LightingKey {
     pub encoding: NormalEncoding,
     pub decode: NormalDecode,
-    pub sums_weights: bool,
+    pub beside: Beside,
     pub diffuse_mode: DiffuseMode,
     pub soft_scatter_mode: SoftScatterMode,
     pub backlight: Backlight,
@@ -33,7 +33,8 @@ impl LightingKey {
             variant!("SOFT_SCATTER_MODE", self.soft_scatter_mode),
             variant!("NORMAL_ENCODING", self.encoding),
             variant!("NORMAL_DECODE", self.decode),
-            switch("WEIGHT_SUM", self.sums_weights),
+            switch("WEIGHT_SUM", self.beside == Beside::Weights),
+            switch("SIX_WAY", self.beside == Beside::SixWay),
             variant!("BACKLIGHT", self.backlight),
             variant!("RAMP_FILTER", self.ramp_filter),
             switch("EXACT_FILTERING", self.exact_filtering),

@@ -44,6 +44,7 @@ pub(super) const SOURCES: &[(&str, &str)] = embed![
     "lib/order.wgsl",
     "lib/ramp.wgsl",
     "lib/scan.wgsl",
+    "lib/six_way.wgsl",
     "lib/soft_fade.wgsl",
     "lib/sprite.wgsl",
     "lib/sprite_fragment.wgsl",

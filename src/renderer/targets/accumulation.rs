@@ -6,7 +6,7 @@ use glam::UVec2;
 
 use super::textures::Textures;
 use crate::renderer::gpu::spare::Spare;
-use crate::settings::{AccumulationFormat, DepthSource};
+use crate::settings::{AccumulationFormat, DepthSource, Settings};
 
 /// One texture of the accumulation target. All share one blend and are cleared to zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -15,17 +15,42 @@ pub(crate) struct AccumulationAttachment {
     pub format: wgpu::TextureFormat,
 }
 
+/// What the target holds beside its first texture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Beside {
+    Nothing,
+    /// What the weights of the normals sum to.
+    Weights,
+    /// Light from left, bottom and back, and the sum of weights: the first texture has light from right, top and front, and the
+    /// amount.
+    SixWay,
+}
+
+impl Beside {
+    pub fn of(settings: &Settings) -> Self {
+        match (settings.is_six_way(), settings.accumulate.sums_weights()) {
+            (true, _) => Self::SixWay,
+            (false, true) => Self::Weights,
+            (false, false) => Self::Nothing,
+        }
+    }
+}
+
 /// The accumulation target's layout. `tiled`: compute shaders write it.
 pub(crate) fn accumulation_layout(
     format: AccumulationFormat,
-    sums_weights: bool,
+    beside: Beside,
     tiled: bool,
 ) -> Vec<AccumulationAttachment> {
     let format = texture_format(format);
-    let normal = AccumulationAttachment { label: "haze accumulation: normal + amount", format };
-    let format = if tiled { TILED_WEIGHTS_FORMAT } else { wgpu::TextureFormat::R16Float };
-    let weights = AccumulationAttachment { label: "haze accumulation: weights", format };
-    std::iter::once(normal).chain(sums_weights.then_some(weights)).collect()
+    let weights = if tiled { TILED_WEIGHTS_FORMAT } else { wgpu::TextureFormat::R16Float };
+    let first = AccumulationAttachment { label: "haze accumulation: normal + amount", format };
+    let beside = match beside {
+        Beside::Nothing => None,
+        Beside::Weights => Some(AccumulationAttachment { label: "haze accumulation: weights", format: weights }),
+        Beside::SixWay => Some(AccumulationAttachment { label: "haze accumulation: six-way", format }),
+    };
+    std::iter::once(first).chain(beside).collect()
 }
 
 /// No device need let compute shaders write `R16Float`, or blend to this.
@@ -58,7 +83,7 @@ pub(crate) const LIT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Fl
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct AccumulationKey {
     pub format: AccumulationFormat,
-    pub sums_weights: bool,
+    pub beside: Beside,
     pub depth_source: DepthSource,
     /// Layers are counted as well.
     pub overdraw: bool,
@@ -124,14 +149,14 @@ impl AccumulationTarget {
 
     fn new(device: &wgpu::Device, key: AccumulationKey, size: UVec2) -> Self {
         let mut textures = Textures { device, bytes: 0, storage: false };
-        let mut create = |sums_weights, tiled| -> Arc<[_]> {
+        let mut create = |beside, tiled| -> Arc<[_]> {
             textures.storage = tiled;
-            let layout = accumulation_layout(key.format, sums_weights, tiled).into_iter();
+            let layout = accumulation_layout(key.format, beside, tiled).into_iter();
             layout.map(|attachment| textures.create_whole(attachment.label, attachment.format, size)).collect()
         };
-        let attachments = create(key.sums_weights, key.tiled);
+        let attachments = create(key.beside, key.tiled);
         // Layers are always counted by the blend unit.
-        let overdraw = key.overdraw.then(|| create(false, false));
+        let overdraw = key.overdraw.then(|| create(Beside::Nothing, false));
         textures.storage = false;
         let lit = key.lit.then(|| textures.create_whole("haze lit smoke", LIT_FORMAT, size));
         let is_reduced = key.depth_source == DepthSource::Reduced;

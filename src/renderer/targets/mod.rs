@@ -6,8 +6,8 @@ mod textures;
 mod views;
 
 pub(crate) use accumulation::{
-    AccumulationKey, AccumulationTarget, DEPTH_COPY_FORMAT, LIT_FORMAT, REDUCED_DEPTH_FORMAT, accumulation_layout,
-    tiled_formats,
+    AccumulationKey, AccumulationTarget, Beside, DEPTH_COPY_FORMAT, LIT_FORMAT, REDUCED_DEPTH_FORMAT,
+    accumulation_layout, tiled_formats,
 };
 pub(crate) use baked_diffuse::{BAKED_DIFFUSE_FORMAT, BakedDiffuse};
 pub(crate) use textures::storage_target;

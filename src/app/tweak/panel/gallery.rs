@@ -51,7 +51,7 @@ pub fn gallery(
                 ui.weak("others");
                 cells(ui, others);
             }
-            if role == PictureRole::Detail && ui.button("none").clicked() {
+            if matches!(role, PictureRole::Detail | PictureRole::SixWay) && ui.button("none").clicked() {
                 value.clear();
             }
         })

@@ -1,15 +1,17 @@
 //! A puff, as it is and as ramps have it.
 
-use glam::{Vec2, Vec3};
+use glam::{UVec2, Vec2, Vec3};
 
 use crate::assets::exact::direction;
 use crate::assets::path_trace::{Medium, PathTrace, Traced};
 use crate::assets::picture::Picture;
 use crate::assets::ramp::Ramp;
 use crate::assets::sprite::bake::SpriteRecipe;
+use crate::assets::sprite::six_way::BakedSixWay;
 use crate::formula::colour::luminance;
 use crate::formula::lighting::{backlight_weight, diffuse_coordinate};
 use crate::formula::ramp::sample_ramp_2d;
+use crate::formula::six_way::{six_way_from_texel, six_way_response};
 use crate::settings::RampFilter;
 
 /// Lights round a puff.
@@ -100,9 +102,31 @@ impl Puff {
         picture
     }
 
+    /// What six-way maps of it show under a light, as [`Puff::shown`]: those of one frame, of its own size.
+    pub fn shown_six_way(&self, maps: &BakedSixWay, light: usize) -> Picture<Vec3> {
+        let size = self.traced.coverage.size;
+        let mut picture = Picture::new(size, Vec3::ZERO);
+        for texel in &self.texels {
+            let at = UVec2::new(texel.index as u32 % size.x, texel.index as u32 / size.x);
+            let half = |y| {
+                let [r, g, b, _] = maps.picture.get_pixel(at.x, y).0.map(|channel| f32::from(channel) / 255.0);
+                six_way_from_texel(Vec3::new(r, g, b))
+            };
+            let (positive, negative) = (half(at.y), half(at.y + size.y));
+            let response = six_way_response(positive, negative, self.lights[light], maps.anisotropy);
+            picture.texels[texel.index] = maps.colour * (response * texel.coverage);
+        }
+        picture
+    }
+
     /// How far ramps are from the truth, at the exposure that is best for them.
     pub fn response(&self, ramps: DiffuseRamps<'_>) -> Response {
-        let shown: Vec<_> = (0..self.lights.len()).map(|light| self.shown(ramps, light)).collect();
+        self.response_of(|light| self.shown(ramps, light))
+    }
+
+    /// How far pictures of it are from the truth, at the exposure that is best for them; one for each light.
+    pub fn response_of(&self, shown: impl Fn(usize) -> Picture<Vec3>) -> Response {
+        let shown: Vec<_> = (0..self.lights.len()).map(shown).collect();
         let mean = |picture: &Picture<Vec3>| luminance(picture.texels.iter().sum()) / picture.texels.len() as f32;
         let lights: Vec<_> = (0..self.lights.len())
             .map(|light| LightResponse {

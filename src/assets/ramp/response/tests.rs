@@ -4,6 +4,7 @@ use crate::assets::path_trace::MEDIA;
 use crate::assets::path_trace::{Medium, PathTrace};
 use crate::assets::ramp::Ramp;
 use crate::assets::ramp::bake::RampRecipe;
+use crate::assets::sprite::bake::SpriteRecipe;
 
 const PATH_TRACE: PathTrace = PathTrace { size: 32, samples: 16, seed: 1 };
 
@@ -57,4 +58,21 @@ fn the_ramp_that_smoke_was_lit_with_is_found_again() {
     let half = Ramp::from_linear(rim.size(), (0..rim.size().x).map(|x| rim.texel(glam::UVec2::new(x, 0)) * 0.5));
     let response = puff.response(DiffuseRamps { diffuse: &half, backlight: None });
     assert!((response.exposure - 2.0).abs() < 0.01 && response.error < 1e-3, "{response:?}");
+}
+
+#[test]
+fn six_way_maps_are_nearer_to_the_truth_than_any_ramp() {
+    for named in MEDIA {
+        let puff = puff(&named.medium);
+        let recipe = builtin::find(builtin::SPRITES, "billow").unwrap().sprite_recipe().unwrap();
+        let recipe = SpriteRecipe { size: PATH_TRACE.size, columns: 1, rows: 1, tolerance: 0, ..recipe };
+        let maps = recipe.bake_six_way(&named.medium, 48, |_, _| Ok::<_, ()>(())).unwrap();
+        let six_way = puff.response_of(|light| puff.shown_six_way(&maps, light));
+        println!("{}: {:.3}, pixels {:.3}", named.name, six_way.error, six_way.pixel_error);
+        assert!(six_way.error < 0.06, "{}: {}", named.name, six_way.error);
+        let ramps = fitted(&puff, Shape::default());
+        assert!(six_way.pixel_error < ramps.pixel_error, "{}: {}", named.name, six_way.pixel_error);
+        // It is as bright as the settings that come with it say.
+        assert!((six_way.exposure / maps.intensity - 1.0).abs() < 0.1, "{} {}", six_way.exposure, maps.intensity);
+    }
 }
