@@ -25,7 +25,7 @@ fn sprite_frame(animation: u32, frame: f32, age: f32, frame_count: f32) -> f32 {
     }
 }
 
-// The two frames that a fractional frame blends, and the share of the second. The flipbook repeats. One frame blends with nothing.
+// The two frames that a fractional frame blends, and the share of the second. The flipbook repeats.
 struct FlipbookFrames {
     first: i32,
     second: i32,
@@ -36,7 +36,7 @@ fn flipbook_frames(frame: f32, frame_count: f32) -> FlipbookFrames {
     let wrapped = frame - floor(frame / frame_count) * frame_count;
     let first = clamp(floor(wrapped), 0.0, frame_count - 1.0);
     let second = select(first + 1.0, 0.0, first + 1.5 > frame_count);
-    return FlipbookFrames(i32(first), i32(second), select(0.0, saturate(wrapped - first), frame_count > 1.0));
+    return FlipbookFrames(i32(first), i32(second), saturate(wrapped - first));
 }
 
 // The same frames of a flipbook that comes `layers` later.

@@ -36,13 +36,12 @@ pub struct FlipbookFrames {
     pub blend: f32,
 }
 
-/// Splits a fractional frame; the flipbook repeats. One frame blends with nothing.
+/// Splits a fractional frame; the flipbook repeats.
 pub fn flipbook_frames(frame: f32, frame_count: f32) -> FlipbookFrames {
     let wrapped = frame - (frame / frame_count).floor() * frame_count;
     let first = wrapped.floor().max(0.0).min(frame_count - 1.0);
     let second = if first + 1.5 > frame_count { 0.0 } else { first + 1.0 };
-    let blend = if frame_count > 1.0 { saturate(wrapped - first) } else { 0.0 };
-    FlipbookFrames { first: first as i32, second: second as i32, blend }
+    FlipbookFrames { first: first as i32, second: second as i32, blend: saturate(wrapped - first) }
 }
 
 /// The same frames of a flipbook that comes `layers` later.
@@ -87,7 +86,8 @@ pub fn sample_flipbook(sprite: &impl Texture2dArray, uv: Vec2, frames: FlipbookF
     let mut texel = sample_sprite_frame(sprite, uv - motion * frames.blend, frames.first, lod);
     if frames.blend > 0.0 {
         let place = uv + motion * (1.0 - frames.blend);
-        texel = texel.lerp(sample_sprite_frame(sprite, place, frames.second, lod), frames.blend);
+        // Exact where both are one.
+        texel += (sample_sprite_frame(sprite, place, frames.second, lod) - texel) * frames.blend;
     }
     texel
 }
