@@ -6,6 +6,8 @@
 
 #[cfg(feature = "app")]
 mod assets;
+#[cfg(feature = "app")]
+mod column_truth;
 mod common;
 mod creations;
 #[cfg(feature = "app")]

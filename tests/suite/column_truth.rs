@@ -1,0 +1,241 @@
+//! A column of many puffs beside a path trace of all their densities together: what ramps and six-way maps are off by in a scene, and
+//! how much of it is that puffs shade each other.
+
+use std::convert::Infallible;
+use std::f32::consts::TAU;
+use std::path::Path;
+
+use glam::camera::rh::proj::directx::orthographic;
+use glam::{Mat4, UVec2, UVec3, Vec2, Vec3, Vec4, Vec4Swizzles, vec3};
+use haze::builtin;
+use haze::noise::{pcg3d, unit};
+use haze::path_trace::{MEDIA, Medium, PathTrace, Traced, Volume};
+use haze::picture::Picture;
+use haze::reference;
+use haze::settings::{Backlight, Lighting, Settings, Technique};
+use haze::sprite::Sprite;
+use haze::sprite::bake::SpriteRecipe;
+use haze::sprite::six_way::six_way_layout;
+use haze::{Light, LightKind, MaterialAssets, Particle, View};
+
+const LIGHTS: usize = 8;
+/// Moments of the flipbook that the puffs are.
+const FRAMES: u32 = 2;
+
+/// Puffs in a cube of 2 metres, and what it is traced with.
+struct Column {
+    particles: Vec<Particle>,
+    recipe: SpriteRecipe,
+    medium: Medium,
+    path_trace: PathTrace,
+}
+
+/// One picture for each light: linear, times coverage.
+type Pictures = Vec<Picture<Vec3>>;
+
+/// How far pictures are from the truth.
+struct Error {
+    /// Mean over the lights of how far brightness is off at the best exposure, as a share.
+    brightness: f32,
+    /// Root mean square over all pixels, as a share of that of the truth.
+    pixels: f32,
+}
+
+impl Column {
+    fn new(medium: Medium, size: u32, samples: u32) -> Self {
+        let puff = |index: u32| {
+            let (a, b) = (pcg3d(UVec3::new(index, 0, 7)), pcg3d(UVec3::new(index, 1, 7)));
+            let place = vec3(unit(a.x), unit(a.y), unit(a.z)) * 2.0 - 1.0;
+            Particle {
+                position: place * vec3(0.25, 0.6, 0.25),
+                radius: 0.26 + 0.12 * unit(b.x),
+                rotation: 0.0,
+                amount: 1.0,
+                frame: (b.y % FRAMES) as f32,
+                age: 0.5,
+            }
+        };
+        let recipe = builtin::find(builtin::SPRITES, "billow").unwrap().sprite_recipe().unwrap();
+        let recipe =
+            SpriteRecipe { size, columns: FRAMES, rows: 1, extinction: medium.density, tolerance: 0, ..recipe };
+        let particles = (0..24).map(puff).collect();
+        Self { particles, recipe, medium, path_trace: PathTrace { size, samples, seed: 1 } }
+    }
+
+    fn trace(&self, volume: &Volume, path_trace: &PathTrace) -> Traced {
+        let Ok(traced) = path_trace.run(volume, &self.medium, &lights(), |_| Ok::<_, Infallible>(()));
+        traced
+    }
+
+    fn puff(&self, frame: u32) -> Volume {
+        SpriteRecipe { size: self.recipe.size / 2, ..self.recipe.clone() }.volume(frame as f32)
+    }
+
+    /// All puffs' densities together.
+    fn truth(&self) -> Pictures {
+        let puffs: Vec<_> = (0..FRAMES).map(|frame| self.puff(frame)).collect();
+        let side = self.path_trace.size;
+        let mut all = Volume { size: UVec3::splat(side), densities: vec![0.0; side.pow(3) as usize] };
+        for index in 0..all.densities.len() as u32 {
+            let voxel = UVec3::new(index % side, index / side % side, index / (side * side));
+            let place = all.position(voxel);
+            let density = |puff: &Particle| {
+                let local = (place - puff.position) / puff.radius;
+                let is_inside = local.abs().max_element() < 1.0;
+                // A smaller puff of the same looks is denser.
+                if is_inside { puffs[puff.frame as usize].density(local) / puff.radius } else { 0.0 }
+            };
+            all.densities[index as usize] = self.particles.iter().map(density).sum();
+        }
+        self.trace(&all, &self.path_trace).light
+    }
+
+    /// Every puff path-traced alone, one over the other: all but what they do to each other's light.
+    fn alone(&self) -> Pictures {
+        let path_trace = PathTrace { size: self.recipe.size / 2, ..self.path_trace };
+        let puffs: Vec<_> = (0..FRAMES).map(|frame| self.trace(&self.puff(frame), &path_trace)).collect();
+        let mut sorted: Vec<_> = self.particles.iter().collect();
+        sorted.sort_by(|a, b| a.position.z.total_cmp(&b.position.z));
+        let of_light = |light: usize| {
+            let mut picture = Picture::new(UVec2::splat(self.path_trace.size), Vec3::ZERO);
+            let scale = 2.0 / self.path_trace.size as f32;
+            picture.for_each(|at, texel| {
+                let place = ((at.as_vec2() + 0.5) * scale - 1.0) * Vec2::new(1.0, -1.0);
+                for puff in &sorted {
+                    let local = (place - puff.position.truncate()) / puff.radius;
+                    if local.abs().max_element() < 1.0 {
+                        let traced = &puffs[puff.frame as usize];
+                        let at = (local * Vec2::new(1.0, -1.0) + 1.0) * 0.5 * path_trace.size as f32;
+                        let at = at.as_ivec2();
+                        *texel = *texel * (1.0 - traced.coverage.load(at)) + traced.light[light].load(at);
+                    }
+                }
+            });
+            picture
+        };
+        (0..LIGHTS).map(of_light).collect()
+    }
+
+    /// As the renderer draws it.
+    fn drawn(&self, settings: &Settings, material: &MaterialAssets) -> Pictures {
+        let size = UVec2::splat(self.path_trace.size);
+        let view = Mat4::from_translation(vec3(0.0, 0.0, -3.0));
+        let view = View::new(view, orthographic(-1.0, 1.0, -1.0, 1.0, 0.1, 10.0), size);
+        let of_light = |to_light: Vec3| {
+            let light = Light { kind: LightKind::Directional, direction: -to_light, ..Light::default() };
+            let mut picture = Picture::new(size, Vec4::ZERO);
+            let frame = reference::Frame {
+                view,
+                scene_depth: &Picture::new(size, 1.0),
+                lights: &[light],
+                systems: &[reference::System::new(&self.particles, settings, material)],
+                time: 0.0,
+                up: Vec3::Y,
+                shade_tree: haze::settings::ShadeTree::Final,
+            };
+            reference::render(&frame, &mut picture).unwrap();
+            Picture { size, texels: picture.texels.iter().map(|texel| texel.xyz()).collect() }
+        };
+        lights().into_iter().map(of_light).collect()
+    }
+
+    fn drawn_by(&self, medium: &str) -> [Pictures; 2] {
+        let mut settings = Settings { boost: 1.0, technique: Technique::Hard, ..Settings::default() };
+        settings.accumulate.scale = 1;
+        settings.diffuse.backlight = Backlight::Ramp;
+        (settings.soft_scatter.intensity, settings.specular_scatter.intensity) = (0.0, 0.0);
+        let ramp =
+            |role: &str| builtin::find(builtin::RAMPS, &format!("{role}_traced_{medium}")).unwrap().ramp().unwrap();
+        let sheet = self.recipe.bake(|_| Ok::<_, haze::Error>(())).unwrap().picture;
+        let Ok(maps) = self.recipe.bake_six_way(&self.medium, self.path_trace.samples, |_, _| Ok::<_, Infallible>(()));
+        let layout = self.recipe.layout();
+        let sprite = |picture, layout| Sprite::from_picture(Path::new("billow"), picture, layout).unwrap();
+        let material = MaterialAssets {
+            sprite: sprite(&sheet, layout),
+            detail: None,
+            six_way: Some(sprite(&maps.picture, six_way_layout(layout))),
+            diffuse_ramp: ramp("diffuse"),
+            backlight_ramp: ramp("backlight"),
+            ..crate::stage::material()
+        };
+        let mut six_way = Settings { lighting: Lighting::SixWay, ..settings };
+        six_way.diffuse.six_way_anisotropy = maps.anisotropy;
+        six_way.diffuse.six_way_colour = maps.colour;
+        [settings, six_way].map(|settings| self.drawn(&settings, &material))
+    }
+}
+
+/// All round at the height of the column, the first at the viewer.
+fn lights() -> Vec<Vec3> {
+    let turns = (0..LIGHTS).map(|index| index as f32 * TAU / LIGHTS as f32);
+    turns.map(|turn| vec3(turn.sin(), 0.0, turn.cos())).collect()
+}
+
+fn mean(picture: &Picture<Vec3>) -> f32 {
+    haze::formula::colour::luminance(picture.texels.iter().sum()) / picture.texels.len() as f32
+}
+
+fn error(shown: &Pictures, truth: &Pictures) -> Error {
+    let shares: Vec<_> = shown.iter().zip(truth).map(|(shown, truth)| mean(shown) / mean(truth)).collect();
+    let exposure = shares.iter().sum::<f32>() / shares.iter().map(|share| share * share).sum::<f32>();
+    let brightness = shares.iter().map(|share| (exposure * share - 1.0).abs()).sum::<f32>() / LIGHTS as f32;
+    let pairs = || shown.iter().zip(truth).flat_map(|(a, b)| a.texels.iter().zip(&b.texels));
+    let off: f32 = pairs().map(|(&shown, &truth)| (shown * exposure - truth).length_squared()).sum();
+    let all: f32 = pairs().map(|(_, truth)| truth.length_squared()).sum();
+    Error { brightness, pixels: (off / all).sqrt() }
+}
+
+/// Brightness by light, the first is 1.
+fn angles(pictures: &Pictures) -> Vec<f32> {
+    pictures.iter().map(|picture| (mean(picture) / mean(&pictures[0]) * 100.0).round() / 100.0).collect()
+}
+
+fn tell(medium: &str, size: u32, samples: u32) -> [Error; 4] {
+    let named = MEDIA.iter().find(|named| named.name == medium).unwrap();
+    let column = Column::new(named.medium, size, samples);
+    let (truth, alone) = (column.truth(), column.alone());
+    let [ramps, six_way] = column.drawn_by(medium);
+    if let Some(folder) = std::env::var_os("HAZE_LOOK") {
+        save(Path::new(&folder), medium, &[&truth, &alone, &ramps, &six_way]);
+    }
+    for (name, pictures) in [("truth", &truth), ("alone", &alone), ("ramps", &ramps), ("six-way", &six_way)] {
+        println!("{medium} {name}: by angle {:?}", angles(pictures));
+    }
+    let errors = [error(&ramps, &truth), error(&six_way, &truth), error(&alone, &truth), error(&six_way, &alone)];
+    let what = ["ramps", "six-way", "puffs alone", "six-way beside puffs alone"];
+    for (what, Error { brightness, pixels }) in what.iter().zip(&errors) {
+        println!("{medium}: {what} {:.1} %, pixels {:.0} %", 100.0 * brightness, 100.0 * pixels);
+    }
+    errors
+}
+
+/// Rows: truth, puffs alone, ramps, six-way; each as bright as the truth.
+fn save(folder: &Path, medium: &str, rows: &[&Pictures]) {
+    let side = rows[0][0].size.x;
+    let white =
+        1.3 * rows[0].iter().flat_map(|picture| &picture.texels).fold(0.0, |most: f32, texel| most.max(texel.x));
+    let picture = image::RgbImage::from_fn(side * LIGHTS as u32, side * rows.len() as u32, |x, y| {
+        let row = rows[(y / side) as usize];
+        let exposure = rows[0].iter().map(mean).sum::<f32>() / row.iter().map(mean).sum::<f32>();
+        let texel = row[(x / side) as usize].load(UVec2::new(x % side, y % side).as_ivec2()) * exposure / white;
+        let code = texel.to_array().map(|light| haze::formula::colour::srgb_from_linear(light.clamp(0.0, 1.0)));
+        image::Rgb(code.map(|code| (code * 255.0).round() as u8))
+    });
+    picture.save(folder.join(format!("column_{medium}.png"))).unwrap();
+}
+
+#[test]
+fn most_of_what_is_wrong_in_a_column_is_that_puffs_do_not_shade_each_other() {
+    let [_, six_way, alone, beside_alone] = tell("ash", 48, 12);
+    assert!(six_way.brightness > beside_alone.brightness, "{} {}", six_way.brightness, beside_alone.brightness);
+    assert!(alone.pixels > 0.5 * six_way.pixels, "{} {}", alone.pixels, six_way.pixels);
+}
+
+/// What docs/light.md has.
+#[test]
+#[ignore = "takes some minutes"]
+fn columns_of_all_media() {
+    for named in MEDIA {
+        tell(named.name, 64, 48);
+    }
+}
