@@ -92,12 +92,14 @@ fn pair(puff: &Puff, shown: &Shown<'_>, white: f32, light: usize) -> [RgbImage; 
     ]
 }
 
+/// Path-traced and shown, for each light.
+pub fn pairs(puff: &Puff, shown: &Shown<'_>) -> Vec<[RgbImage; 2]> {
+    let white = white(puff);
+    (0..LIGHTS as usize).map(|light| pair(puff, shown, white, light)).collect()
+}
+
 /// Mean FLIP of all lights: how different they look.
 pub fn flip(puff: &Puff, shown: &Shown<'_>) -> f64 {
-    let white = white(puff);
-    let of_light = |light| {
-        let [truth, ours] = pair(puff, shown, white, light);
-        flip_of(&truth, &ours)
-    };
-    (0..LIGHTS as usize).map(of_light).sum::<f64>() / f64::from(LIGHTS)
+    let pairs = pairs(puff, shown);
+    pairs.iter().map(|[truth, ours]| flip_of(truth, ours)).sum::<f64>() / f64::from(LIGHTS)
 }

@@ -74,6 +74,11 @@ pub fn picture(path: &Path) -> PathBuf {
     path.with_file_name(name(path).with_extension("png"))
 }
 
+/// `smoke.six_way.png` of `smoke.png`.
+pub fn six_way_of(picture: &Path) -> PathBuf {
+    picture.with_extension("six_way.png")
+}
+
 pub enum Recipe {
     Ramp(RampRecipe),
     Motif(MotifRecipe),

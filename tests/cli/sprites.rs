@@ -106,3 +106,85 @@ fn pictures_of_other_kinds_become_sprites() {
     let text = refusal(folder.path(), &["sprite", "import", "down.png", "-o", "down.png"]);
     assert!(text.contains("expected a file that is not read"), "{text}");
 }
+
+#[test]
+fn six_way_maps_are_baked_exported_and_imported_again() {
+    let folder = folder();
+    let said = |arguments: &[&str]| {
+        let output = haze(folder.path(), arguments);
+        assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let recipe = include_str!("../corpus/sprite/good_first").replace("\"version\": 1", "\"version\": 2");
+    let size = recipe.lines().find(|line| line.contains("\"size\"")).unwrap();
+    fs::write(folder.path().join("mine.sprite.json"), recipe.replace(size, "\"size\": 16,")).unwrap();
+    let text = said(&["sprite", "bake", "mine.sprite.json", "--six-way", "steam", "--samples", "4"]);
+    assert!(
+        text.starts_with("mine.png: 64x32\nmine.detail.png: 16x8\nmine.six_way.png: 64x64\n  as steam: "),
+        "{text}"
+    );
+    // They light smoke.
+    fs::write(
+        folder.path().join("own.json"),
+        r#"{"version": 1, "name": "x", "systems": [{"name": "a", "settings": {"lighting": "six_way"},
+            "material": {"sprite": "mine.png", "six_way": "mine.six_way.png", "columns": 4, "rows": 2}}]}"#,
+    )
+    .unwrap();
+    said(&["preset", "check", "own.json"]);
+    said(&["render", "own.json", "--size", "64x36", "--backend", "cpu", "-o", "lit.png"]);
+    // There and back, but for the steps of light itself.
+    for packing in ["unity", "rlt_bbf"] {
+        said(&["sprite", "export", "mine.six_way.png", "--to", packing, "-o", "a.png", "b.png"]);
+        let from = format!("six_way_{packing}");
+        let text = said(&[
+            "sprite",
+            "import",
+            "a.png",
+            "b.png",
+            "--from",
+            &from,
+            "-o",
+            "again.png",
+            "--columns",
+            "4",
+            "--rows",
+            "2",
+        ]);
+        assert!(text.contains("again.six_way.png: the light maps, for lighting six_way"), "{text}");
+        let [first, again] = ["mine", "again"]
+            .map(|name| image::open(folder.path().join(format!("{name}.six_way.png"))).unwrap().to_rgba8());
+        let light = |code: u8| (f32::from(code) / 255.0).powi(2);
+        let apart = |a: &image::Rgba<u8>, b: &image::Rgba<u8>| {
+            a.0.iter().zip(b.0).map(|(&a, b)| (light(a) - light(b)).abs()).fold(0.0, f32::max)
+        };
+        let seen = first.pixels().zip(again.pixels()).filter(|(texel, _)| texel.0[3] > 0);
+        let most = seen.map(|(a, b)| apart(a, b)).fold(0.0, f32::max);
+        assert!(most < 1.5 / 255.0, "{packing}: {most}");
+    }
+    for (arguments, expected) in [
+        (
+            &["bake", "mine.sprite.json", "--albedo", "0.5"][..],
+            "--albedo: given is not valid; expected it with --six-way",
+        ),
+        (&["bake", "streaks"], "expected a *.sprite.json or *.noise.json file"),
+        (&["bake", "mine.sprite.json", "--six-way", "--g", "2"], "--g: 2 is not valid"),
+        (&["export", "mine.six_way.png", "-o", "mine.six_way.png", "b.png"], "expected a file that is not read"),
+        (
+            &["import", "mine.png", "mine.png", "--from", "six_way_unity", "-o", "mine.png"],
+            "expected a file that is not read",
+        ),
+    ] {
+        let text = refusal(folder.path(), &[&["sprite"], arguments].concat());
+        assert!(text.contains(expected), "{text}");
+    }
+    fs::write(
+        folder.path().join("none.json"),
+        r#"{"version": 1, "name": "x", "systems": [{"name": "a", "settings": {"lighting": "six_way"}}]}"#,
+    )
+    .unwrap();
+    let text = refusal(folder.path(), &["preset", "check", "none.json"]);
+    assert!(
+        text.contains("none.json: systems[0].settings.lighting: \"six_way\"") && text.contains("six-way maps"),
+        "{text}"
+    );
+}

@@ -12,6 +12,7 @@ use haze::{Error, FieldError};
 
 use crate::app::options::choices;
 use crate::app::output::{Files, say};
+use crate::app::recipe::six_way_of;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -95,11 +96,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         (None, Some(_)) => say!("  green taken to point up: nothing tells; --y-down says it"),
         (None, None) => Ok(()),
     }
-}
-
-/// `smoke.six_way.png` of `smoke.png`.
-pub fn six_way_of(picture: &Path) -> PathBuf {
-    picture.with_extension("six_way.png")
 }
 
 /// Frames by their numbers, where their names differ by nothing else: shells put `smoke_10.png` before `smoke_9.png`.

@@ -8,11 +8,10 @@ use haze::picture::{Effort, write_png};
 use haze::sprite::six_way::BakedSixWay;
 use haze::{Error, FieldError, builtin};
 
-use super::import::six_way_of;
 use crate::app::medium::{MediumNumbers, names, sprite_recipe};
 use crate::app::output::{Files, say};
 use crate::app::progress::watched_as;
-use crate::app::recipe::picture;
+use crate::app::recipe::{picture, six_way_of};
 
 #[derive(Args)]
 pub struct Arguments {

@@ -11,6 +11,7 @@ use haze::{Error, FieldError};
 
 use super::platform::{assets, files};
 use super::sprite::source::{detail_of, recipe_of};
+use crate::app::recipe::six_way_of;
 
 /// What a picture is to become.
 pub struct Dropped {
@@ -85,8 +86,9 @@ fn place_of(path: &Path, folders: &PictureFolders) -> Option<(PathBuf, String)> 
 /// The field that the name of a picture is for, or the recipe beside it: `scatter_fog.png` is for soft scatter.
 fn told_by_name(path: &Path) -> Option<&'static str> {
     let name = path.file_name()?.to_str()?;
-    if name.ends_with(".detail.png") {
-        return Some("detail");
+    let beside = [(".detail.png", "detail"), (".six_way.png", "six_way")];
+    if let Some((_, field)) = beside.into_iter().find(|(ending, _)| name.ends_with(ending)) {
+        return Some(field);
     }
     let word = name.split(['_', '.', '-']).next()?;
     let role = Role::of_name(name);
@@ -103,14 +105,16 @@ fn checked(field: &'static str, folder: &Path, name: &str, material: &MaterialNa
     let mut fields = vec![(field, name.to_owned())];
     let mut names = MaterialNames::default();
     if field == "sprite" {
-        let (path, detail) = (folder.join(name), detail_of(Path::new(name)));
-        let SpriteLayout { columns, rows, y_down } = layout(&path, material);
-        let has_detail = files::exists(&folder.join(&detail));
-        let detail = detail.to_str().filter(|_| has_detail).unwrap_or_default();
+        let SpriteLayout { columns, rows, y_down } = layout(&folder.join(name), material);
+        let name = Path::new(name);
+        let beside = |path: PathBuf| {
+            let is_there = files::exists(&folder.join(&path));
+            path.to_str().filter(|_| is_there).unwrap_or_default().to_owned()
+        };
         let layout = [("columns", columns.to_string()), ("rows", rows.to_string()), ("y_down", y_down.to_string())];
-        fields.push(("detail", detail.to_owned()));
+        fields.extend([("detail", beside(detail_of(name))), ("six_way", beside(six_way_of(name)))]);
         fields.extend(layout);
-    } else if field == "detail" {
+    } else if ["detail", "six_way"].contains(&field) {
         // It belongs to the sprite that is there.
         let MaterialNames { sprite, columns, rows, y_down, .. } = material.clone();
         names = MaterialNames { sprite, columns, rows, y_down, ..names };
@@ -164,6 +168,7 @@ mod tests {
             let texel = |x: u32, y: u32| image::Rgba([112 + x as u8, 112 + y as u8, 240, alpha(x, y)]);
             image::RgbaImage::from_fn(32, 32, texel).save(path(name)).unwrap();
         }
+        image::RgbaImage::from_pixel(32, 64, image::Rgba([90, 120, 60, 0])).save(path("puff.six_way.png")).unwrap();
         save("opaque.png", (32, 32), |x, y| [112 + x as u8, 112 + y as u8, 240]);
         std::fs::write(path("broken.png"), "no picture").unwrap();
         let folders = PictureFolders::at(folder.path());
@@ -173,7 +178,7 @@ mod tests {
             dropped.apply(&mut preset, 0, UVec2::new(640, 360)).map(|said| (said, preset.systems[0].material.clone()))
         };
         type Field = fn(&MaterialNames) -> &String;
-        let all: [(&str, &str, Field); 10] = [
+        let all: [(&str, &str, Field); 11] = [
             ("rows.png", "diffuse ramp of smoke", |m| &m.diffuse_ramp),
             ("mine.png", "diffuse ramp of smoke", |m| &m.diffuse_ramp),
             ("scatter_a.png", "soft scatter ramp of smoke", |m| &m.soft_scatter_ramp),
@@ -184,6 +189,7 @@ mod tests {
             ("sheet.png", "sprite of smoke", |m| &m.sprite),
             ("puff.png", "sprite of smoke", |m| &m.sprite),
             ("puff.detail.png", "detail of smoke", |m| &m.detail),
+            ("puff.six_way.png", "six way of smoke", |m| &m.six_way),
         ];
         for (name, told, field) in all {
             let (said, material) = drop(name).unwrap();

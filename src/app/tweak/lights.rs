@@ -35,7 +35,8 @@ impl Turn {
         self.angle = (self.angle + seconds * TAU / TURN).rem_euclid(TAU);
     }
 
-    fn turned(&self, light: &Light) -> Light {
+    /// The light as it stands by now.
+    pub fn turned(&self, light: &Light) -> Light {
         let turn = Quat::from_rotation_y(self.angle);
         let position = self.middle + turn * (light.position - self.middle);
         Light { position, direction: turn * light.direction, ..*light }

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use haze::preset::{MaterialNames, PictureFolders, Preset};
-use haze::sprite::SpriteLayout;
 use haze::sprite::bake::SpriteRecipe;
+use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Error, MaterialAssets};
 
 use super::bakery::{Baked, Bakery, Done, Order, What, Whole};
@@ -131,6 +131,13 @@ impl SpriteFiles {
         for (system, assets) in preset.systems.iter().zip(materials) {
             let live = self.known.get(&system.material.sprite).and_then(|known| known.live.as_ref());
             let Some(live) = live else { continue };
+            // Of the sprite as it was: coarse ones and those of other frames have none.
+            let frames = live.sprite.frame_count();
+            let fits = |maps: &Sprite| (maps.size(), maps.frame_count()) == (live.sprite.size(), 2 * frames);
+            if system.settings.is_six_way() && !assets.six_way.as_ref().is_some_and(fits) {
+                continue;
+            }
+            assets.six_way = assets.six_way.take().filter(fits);
             assets.sprite = live.sprite.clone();
             // Another's must have as many frames.
             let is_own = Path::new(&system.material.detail) == detail_of(Path::new(&system.material.sprite));

@@ -10,6 +10,7 @@ mod lens;
 mod mark;
 mod menu;
 mod overlay;
+mod puff;
 mod ray;
 mod steer;
 mod toolbar;
@@ -29,6 +30,7 @@ use gizmo::Gizmo;
 use ink::Ink;
 use lens::Lens;
 use menu::Menu;
+use puff::TruePuff;
 use ray::Ray;
 use steer::Steering;
 
@@ -39,6 +41,7 @@ pub struct Viewport {
     smoke: Smoke,
     gizmo: Gizmo,
     menu: Menu,
+    puff: TruePuff,
 }
 
 /// Metres round a light that are shown when it is looked at.
@@ -89,6 +92,7 @@ impl Viewport {
         }
         self.gizmo.draw(&ink, &lens, session);
         compare::labels(ui, rect, session);
+        self.puff.show(ui, rect, session);
         if let Some(action) = toolbar::toolbar(ui, rect, session) {
             self.act(action, session);
             ui.ctx().request_repaint();
