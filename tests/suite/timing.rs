@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use glam::UVec2;
 use haze::headless::Headless;
-use haze::settings::{DiffuseMode, LightingResolution, Path};
+use haze::settings::{Backlight, DiffuseMode, Lighting, LightingResolution, Path};
 use haze::{Error, Frame, FrameTimes, Particles, SceneDepth, Settings, System, Timing, wgpu};
 
 use crate::common::gpu;
@@ -334,4 +334,59 @@ fn steady_frames_create_nothing() {
         let created = creations::count(|| host.draw(gpu, &stage).unwrap());
         assert_eq!(created, 0);
     }
+}
+
+/// The median of each pass, milliseconds, of stages that are drawn in turn.
+fn medians(gpu: &Headless, stages: &[Stage], pass: &str) -> Vec<f32> {
+    let mut hosts: Vec<_> = stages.iter().map(|stage| timed_host(gpu, stage)).collect();
+    let mut all = vec![Vec::new(); stages.len()];
+    for turn in 0..24 {
+        for ((stage, (host, timing)), times) in stages.iter().zip(&mut hosts).zip(&mut all) {
+            let drawn = drawn(gpu, host, timing, stage);
+            let pass = drawn.passes.iter().find(|named| named.name == pass).unwrap();
+            // The first ones warm up.
+            if turn >= 4 {
+                times.push(pass.ms);
+            }
+        }
+    }
+    all.iter_mut().for_each(|times| times.sort_by(f32::total_cmp));
+    all.iter().map(|times| times[times.len() / 2]).collect()
+}
+
+/// What docs/six_way.md and docs/light.md have.
+#[test]
+#[ignore = "for who wants to know"]
+fn what_light_costs() {
+    let Some(gpu) = timed_gpu() else { return };
+    let mut stage = Stage::new(UVec2::new(1280, 720));
+    stage.particles.iter_mut().for_each(|particle| particle.radius = 1.6);
+    let other = |change: fn(&mut Settings)| {
+        let mut other = stage.clone();
+        change(&mut other.settings);
+        other
+    };
+    for scale in [1, 2] {
+        let pair = [Lighting::Normals, Lighting::SixWay].map(|lighting| {
+            let mut stage = stage.clone();
+            (stage.settings.accumulate.scale, stage.settings.lighting) = (scale, lighting);
+            stage
+        });
+        for pass in ["accumulate", "transfer"] {
+            let times = medians(gpu, &pair, pass);
+            println!(
+                "1/{scale} {pass}: normals {:.3} ms, six-way {:.3} ms, {:.2}",
+                times[0],
+                times[1],
+                times[1] / times[0]
+            );
+        }
+    }
+    // A ramp of one row, one of many, and another for light from behind.
+    let mut two_axes = stage.clone();
+    two_axes.material.diffuse_ramp = stage.material.backlight_ramp.clone();
+    let backlit = other(|settings| settings.diffuse.backlight = Backlight::Ramp);
+    let times = medians(gpu, &[stage.clone(), two_axes, backlit], "transfer");
+    let [one, two, behind] = times[..] else { return };
+    println!("transfer: one axis {one:.3} ms, two axes {:.2}, light from behind {:.2}", two / one, behind / one);
 }
