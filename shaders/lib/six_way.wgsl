@@ -36,13 +36,18 @@ struct SixWay {
     negative: vec3f,
 }
 
-// Turns the light of a sprite with the sprite: rotation is (cos, sin), counter-clockwise.
+// Turns the light of a sprite with the sprite: rotation is (cos, sin), counter-clockwise. Each side is what six_way_response() has
+// of light that comes from there, to the sprite as it was.
 fn rotate_six_way(positive: vec3f, negative: vec3f, rotation: vec2f) -> SixWay {
-    let x = vec3f(rotation.x, -rotation.y, 0.0);
-    let y = vec3f(rotation.y, rotation.x, 0.0);
+    let squares = rotation * rotation;
+    let turned = rotation > vec2f(0.0);
+    let along = select(negative.xy, positive.xy, turned.x);
+    let against = select(positive.xy, negative.xy, turned.x);
+    let up = select(negative.yx, positive.yx, turned.y);
+    let down = select(positive.yx, negative.yx, turned.y);
     return SixWay(
-        vec3f(six_way_response(positive, negative, x, 0.0), six_way_response(positive, negative, y, 0.0), positive.z),
-        vec3f(six_way_response(positive, negative, -x, 0.0), six_way_response(positive, negative, -y, 0.0), negative.z),
+        vec3f(along * squares.x + vec2f(down.x, up.y) * squares.y, positive.z),
+        vec3f(against * squares.x + vec2f(up.x, down.y) * squares.y, negative.z),
     );
 }
 

@@ -1,6 +1,6 @@
 //! Light on a sprite by six pictures. `shaders/lib/six_way.wgsl`.
 
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec2Swizzles, Vec3};
 
 use super::saturate;
 
@@ -45,13 +45,16 @@ pub fn six_way_response(positive: Vec3, negative: Vec3, to_light: Vec3, anisotro
     six_way_shares(to_light, anisotropy).dot(Vec3::select(to_light.cmpgt(Vec3::ZERO), positive, negative))
 }
 
-/// Turns the light of a sprite with the sprite: rotation is (cos, sin), counter-clockwise.
+/// Turns the light of a sprite with the sprite: rotation is (cos, sin), counter-clockwise. Each side is what [`six_way_response`] has of
+/// light that comes from there, to the sprite as it was.
 pub fn rotate_six_way(positive: Vec3, negative: Vec3, rotation: Vec2) -> SixWay {
-    let (x, y) = (Vec3::new(rotation.x, -rotation.y, 0.0), Vec3::new(rotation.y, rotation.x, 0.0));
-    let response = |to_light| six_way_response(positive, negative, to_light, 0.0);
+    let squares = rotation * rotation;
+    let (p, n) = (positive.truncate(), negative.truncate());
+    let (along, against) = if rotation.x > 0.0 { (p, n) } else { (n, p) };
+    let (up, down) = if rotation.y > 0.0 { (p.yx(), n.yx()) } else { (n.yx(), p.yx()) };
     SixWay {
-        positive: Vec3::new(response(x), response(y), positive.z),
-        negative: Vec3::new(response(-x), response(-y), negative.z),
+        positive: (along * squares.x + Vec2::new(down.x, up.y) * squares.y).extend(positive.z),
+        negative: (against * squares.x + Vec2::new(up.x, down.y) * squares.y).extend(negative.z),
     }
 }
 
@@ -60,4 +63,25 @@ pub fn normal_from_six_way(positive: Vec3, negative: Vec3) -> Vec3 {
     let slope = positive - negative;
     let square = slope.length_squared();
     if square < 1.0e-12 { Vec3::Z } else { slope / square.sqrt() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sprite_that_turns_answers_as_light_that_turns_the_other_way() {
+        let (positive, negative) = (Vec3::new(0.1, 0.5, 0.3), Vec3::new(0.9, 0.2, 0.7));
+        for step in 0..32 {
+            let rotation = Vec2::from_angle(step as f32 * 0.37);
+            let turned = rotate_six_way(positive, negative, rotation);
+            let (x, y) = (Vec3::new(rotation.x, -rotation.y, 0.0), Vec3::new(rotation.y, rotation.x, 0.0));
+            let response = |to_light| six_way_response(positive, negative, to_light, 0.0);
+            let expected =
+                [(x, turned.positive.x), (y, turned.positive.y), (-x, turned.negative.x), (-y, turned.negative.y)];
+            for (to_light, side) in expected {
+                assert!((response(to_light) - side).abs() < 1e-6, "{rotation}");
+            }
+        }
+    }
 }

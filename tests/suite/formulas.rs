@@ -469,9 +469,10 @@ fn formulas() -> Vec<Formula> {
             cases: random(100, &[(0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (-4.0, 4.0)]),
             tolerance: TRANSCENDENTAL,
             mutants: &[
-                ("vec3f(rotation.x, -rotation.y, 0.0)", "vec3f(rotation.x, rotation.y, 0.0)"),
-                ("negative, -x, 0.0)", "negative, x, 0.0)"),
-                ("0.0), positive.z)", "0.0), negative.z)"),
+                ("vec2f(down.x, up.y)", "vec2f(up.x, down.y)"),
+                ("select(negative.xy, positive.xy, turned.x)", "positive.xy"),
+                ("select(positive.yx, negative.yx, turned.y)", "negative.yx"),
+                ("squares.y, positive.z)", "squares.y, negative.z)"),
             ],
         },
         Formula {
