@@ -3,7 +3,8 @@
 use eframe::egui::{self, Color32, Ui};
 use glam::Vec3;
 
-use super::eyedropper::{Across, Eyedropper};
+use super::eyedropper::Eyedropper;
+use super::sampled::Across;
 use super::selection::Selection;
 use super::text;
 use crate::assets::ramp::bake::{Blend, HexColour, RampRow, RampStop};

@@ -203,7 +203,7 @@ fn keys(ui: &Ui, frame: &mut Frame<'_>) {
             Key::ArrowDown => go(frame, (here + 1).min(last), modifiers),
             Key::Home => go(frame, 0, modifiers),
             Key::End => go(frame, last, modifiers),
-            Key::A => frame.editor.selection = Selection::between(0, last),
+            Key::A => (frame.editor.selection, frame.editor.cursor) = (Selection::between(0, last), None),
             Key::Escape => frame.select(frame.editor.selection.lead(), Modifiers::NONE),
             _ => remove(frame),
         }

@@ -22,6 +22,7 @@ mod frame;
 mod handles;
 mod number;
 mod paint;
+mod sampled;
 mod selection;
 mod stops;
 mod strip;
