@@ -20,6 +20,8 @@ pub fn show(ui: &Ui, frame: &mut Frame<'_>, strip: Rect, lane: Rect) {
     ground(ui, frame, lane);
     all(ui, frame, strip, lane);
     drag(ui, frame, strip);
+    // What was selected in this frame may have been removed in it.
+    frame.editor.selection.keep_to(frame.stops.len());
     if frame.wants_keyboard {
         // Not before: a click elsewhere takes the keyboard from handles as they are drawn.
         let index = frame.editor.cursor.unwrap_or(frame.editor.selection.lead());
