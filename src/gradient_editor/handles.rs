@@ -175,6 +175,10 @@ fn remove(frame: &mut Frame<'_>) {
     frame.edit_selected(REMOVE, stops::remove);
 }
 
+/// Keys that are for the stop that has the keyboard, whatever is held with them.
+const OURS: [Key; 8] =
+    [Key::ArrowLeft, Key::ArrowRight, Key::ArrowUp, Key::ArrowDown, Key::Home, Key::End, Key::Delete, Key::Backspace];
+
 /// What keys do while a stop has the keyboard.
 fn keys(ui: &Ui, frame: &mut Frame<'_>) {
     let is_escape_ours = frame.editor.dragged.is_none() && frame.editor.selection.is_many();
@@ -183,11 +187,9 @@ fn keys(ui: &Ui, frame: &mut Frame<'_>) {
         input.events.retain(|event| {
             let egui::Event::Key { key, pressed: true, modifiers, .. } = event else { return true };
             let is_ours = match key {
-                Key::ArrowLeft | Key::ArrowRight | Key::ArrowUp | Key::ArrowDown => true,
-                Key::Home | Key::End | Key::Delete | Key::Backspace => true,
                 Key::A => modifiers.command,
                 Key::Escape => is_escape_ours,
-                _ => false,
+                key => OURS.contains(key),
             };
             if is_ours {
                 pressed.push((*key, *modifiers));
