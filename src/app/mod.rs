@@ -13,6 +13,7 @@ mod frames;
 mod info;
 mod inputs;
 mod interrupt;
+mod kind;
 mod label;
 mod medium;
 mod memory;

@@ -9,6 +9,7 @@ use haze::preset::{Preset, PresetSystem};
 use haze::settings::{Value, values};
 use haze::{Error, FieldError, Light, builtin};
 
+use super::kind::explain;
 use super::options::AssetsArguments;
 use super::output::{Failures, has_extension, say, write_text};
 use super::tweak::copy_beside;
@@ -86,7 +87,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
 
 /// Loads a preset as a picture of it would; gives all that is wrong, and what someone may not have meant.
 fn check(path: &Path, assets: &AssetsArguments) -> Result<(Vec<Error>, Vec<String>), Error> {
-    let preset = Preset::load(path)?;
+    let preset = Preset::load(path).map_err(|error| explain(error, path, "preset", "a preset"))?;
     let (wrong, mut notes) = preset.check_files(path, &assets.folders(path)?);
     let settings = settings(&preset);
     let idle = settings.iter().filter(|setting| !setting.is_default());

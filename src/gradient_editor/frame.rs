@@ -4,18 +4,26 @@ use eframe::egui::{self, Color32, Ui};
 use glam::Vec3;
 
 use super::eyedropper::Eyedropper;
+use super::sampled::Across;
+use super::selection::Selection;
 use super::text;
 use crate::assets::ramp::bake::{Blend, HexColour, RampRow, RampStop};
 
 /// What an editor remembers from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub struct State {
-    /// Index of the stop that keys and fields are for.
-    pub selected: usize,
-    /// What is dragged: the selected one.
+    /// The stops that keys and fields are for.
+    pub selection: Selection,
+    /// The stop that has the keyboard where that is not the lead: to be added to the selection, or taken out.
+    pub cursor: Option<usize>,
+    /// What is dragged: what is selected.
     pub dragged: Option<Drag>,
+    /// Where a band began that selects what is under it, in shares of the strip.
+    pub band: Option<f32>,
     pub snap: Snap,
     pub eyedropper: Option<Eyedropper>,
+    /// How many pixels it takes the mean of.
+    pub across: Across,
     /// A colour as hue, saturation and value: greys have no hue of their own, and it is not forgotten.
     pub hsv: Option<(HexColour, Vec3)>,
     /// What is being done, until it is let go.
@@ -28,13 +36,24 @@ pub struct State {
     pub typed: Option<String>,
 }
 
+/// Stops, and which of them are selected.
+pub type Selected = (Vec<RampStop>, Selection);
+
 /// A drag on its way.
 #[derive(Clone, Debug)]
 pub struct Drag {
-    /// From the pointer to the stop, in shares of the strip.
-    pub offset: f32,
-    /// What it is put back to by Escape: the stops, and which was selected.
-    pub before: (Vec<RampStop>, usize),
+    /// Where the pointer was last, across.
+    pub x: f32,
+    /// Where the lead would be, did it not snap nor end at the gradient's ends.
+    pub place: f32,
+    /// What is moved, as it was before.
+    pub from: Selected,
+    /// What Escape puts back: the same, but for what the drag began with by adding it.
+    pub before: Selected,
+    /// What it has come to. Where the host has something else, by undo or another file, that is the end of it.
+    pub now: Vec<RampStop>,
+    /// Alt makes it fine: where it began with a copy, once that is let go.
+    pub is_alt_free: bool,
 }
 
 /// How many equal parts places snap to, and whether they do without Ctrl, which turns it round.
@@ -80,43 +99,71 @@ pub struct Frame<'a> {
     /// What was done in it first.
     pub done: Option<&'static str>,
     pub refused: Option<String>,
-    /// The selected one is to have it.
+    /// The lead, or the cursor, is to have it.
     pub wants_keyboard: bool,
 }
 
+/// What steps are called, of one stop and of several.
+pub const RECOLOUR: [&str; 2] = ["colour of a stop", "colour of stops"];
+pub const REMOVE: [&str; 2] = ["remove a stop", "remove stops"];
+pub const MOVE: [&str; 2] = ["move a stop", "move stops"];
+
 impl Frame<'_> {
     /// Makes a change, and notes what it was.
-    pub fn edit<T>(&mut self, what: &'static str, change: impl FnOnce(&mut Vec<RampStop>, usize) -> T) -> T {
+    pub fn edit<T>(&mut self, what: &'static str, change: impl FnOnce(&mut Vec<RampStop>, &mut Selection) -> T) -> T {
         self.done.get_or_insert(what);
-        change(self.stops, self.editor.selected)
+        self.editor.cursor = None;
+        change(self.stops, &mut self.editor.selection)
     }
 
-    /// The same where the selected stop is another then.
-    pub fn edit_and_select(&mut self, what: &'static str, change: impl FnOnce(&mut Vec<RampStop>, usize) -> usize) {
-        self.editor.selected = self.edit(what, change);
+    /// The same, called one thing of one stop and another of several.
+    pub fn edit_selected<T>(
+        &mut self,
+        [one, many]: [&'static str; 2],
+        change: impl FnOnce(&mut Vec<RampStop>, &mut Selection) -> T,
+    ) -> T {
+        self.edit(if self.editor.selection.is_many() { many } else { one }, change)
     }
 
-    /// Gives the selected stop another colour.
-    pub fn recolour(&mut self, colour: HexColour) {
-        self.edit("colour of a stop", |all, index| {
-            if let Some(stop) = all.get_mut(index) {
-                stop.colour = colour;
-            }
+    /// Changes each stop that is selected.
+    pub fn edit_each(&mut self, names: [&'static str; 2], mut change: impl FnMut(&mut RampStop)) {
+        self.edit_selected(names, |all, selection| {
+            selection.iter().for_each(|index| all.get_mut(index).into_iter().for_each(&mut change));
         });
+    }
+
+    /// Gives what is selected another colour.
+    pub fn recolour(&mut self, colour: HexColour) {
+        self.edit_each(RECOLOUR, |stop| stop.colour = colour);
     }
 
     /// Takes other stops for all of them.
     pub fn replace(&mut self, what: &'static str, stops: Vec<RampStop>) {
-        self.edit_and_select(what, |all, _| {
-            *all = stops;
-            0
-        });
+        self.edit(what, |all, selection| (*all, *selection) = (stops, Selection::default()));
+    }
+
+    /// The stop that fields show.
+    pub fn lead(&self) -> Option<&RampStop> {
+        self.stops.get(self.editor.selection.lead())
+    }
+
+    /// Selects a stop alone, draws what is selected out to it, or adds it, as lists do.
+    pub fn select(&mut self, index: usize, modifiers: egui::Modifiers) {
+        self.editor.cursor = None;
+        let selection = &mut self.editor.selection;
+        if modifiers.shift {
+            selection.extend_to(index);
+        } else if modifiers.command {
+            selection.toggle(index);
+        } else {
+            *selection = Selection::one(index);
+        }
     }
 
     /// Puts everything back to what it was before the drag, which is no step then.
     pub fn give_up(&mut self) {
         if let Some(Drag { before, .. }) = self.editor.dragged.take() {
-            (*self.stops, self.editor.selected) = before;
+            (*self.stops, self.editor.selection) = before;
             (self.editor.pending, self.done) = (None, None);
         }
     }

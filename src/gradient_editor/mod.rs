@@ -2,9 +2,16 @@
 //!
 //! A click on the strip adds a stop with the colour that is there; stops are dragged, nudged with the arrow keys (Shift: ten times
 //! as far) and removed with Delete; Ctrl snaps to equal parts, tenths unless others are asked for, Shift to another
-//! stop, Alt leaves a copy; Escape ends a drag as if it had not begun. Handles of stops that are near each other stand apart, each can be grabbed. Tab goes from stop to stop. An eyedropper
-//! takes a colour from anywhere in the window, or a gradient along a stroke: the host must serve egui's requests for screenshots,
-//! as eframe does. `examples/gradient_editor.rs` has one in a window.
+//! stop, Alt leaves a copy, or makes a drag ten times as fine where it is pressed on the way; Escape ends a drag as if it had not
+//! begun. Handles of stops that are near each other stand apart, each can be grabbed.
+//!
+//! Several stops are selected as in lists: Shift and a click or the up and down keys for a range, Ctrl and a click for one more,
+//! Ctrl and those keys with Space, Ctrl+A, or a band drawn below the strip. They are moved, coloured, removed, distributed, turned
+//! round and mirrored together. Tab goes from stop to stop. Numbers may be typed as `+0.1` or `*2`.
+//!
+//! An eyedropper takes a colour from anywhere in the window, or a gradient along a stroke, with a magnifier and what would become
+//! of the gradient beside it: the host must serve egui's requests for screenshots, as eframe does. `examples/gradient_editor.rs`
+//! has one in a window.
 //!
 //! Undo is the host's: [`Edited::committed`] says when a step is done, however long its drag was.
 
@@ -13,7 +20,10 @@ mod eyedropper;
 mod fan;
 mod frame;
 mod handles;
+mod number;
 mod paint;
+mod sampled;
+mod selection;
 mod stops;
 mod strip;
 #[cfg(test)]
@@ -33,7 +43,10 @@ use frame::{Frame, State};
 pub struct Edited {
     /// It is another than it was.
     pub is_changed: bool,
-    /// A step is done, and what it was: a drag when it is let go, a number when it is typed. Not before that is a step for undo.
+    /// What is being done, or was when the step is done: a name for undo.
+    pub step: Option<&'static str>,
+    /// The step is done, and what it was: a drag when it is let go, a number when it is typed. Not before that is a step for
+    /// undo.
     pub committed: Option<&'static str>,
     /// What was typed or pasted in vain: what is wrong, and what would be right.
     pub refused: Option<String>,
@@ -54,7 +67,8 @@ impl GradientEditor {
             stops::sort(&mut row.stops);
         }
         let before = row.clone();
-        self.state.selected = self.state.selected.min(row.stops.len().saturating_sub(1));
+        self.state.selection.keep_to(row.stops.len());
+        self.state.cursor = self.state.cursor.filter(|cursor| *cursor < row.stops.len());
         let mut edited = Edited::default();
         let (mut done, mut is_held) = (None, false);
         ui.push_id("gradient", |ui| {
@@ -78,6 +92,7 @@ impl GradientEditor {
         if edited.is_changed {
             self.state.pending = self.state.pending.or(done);
         }
+        edited.step = self.state.pending;
         if !is_held {
             edited.committed = self.state.pending.take();
         }

@@ -1,11 +1,46 @@
 //! How the parts of the editor look.
 
-use eframe::egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, StrokeKind, Ui, pos2};
+use eframe::egui::{
+    Align2, Area, Color32, Frame, Label, Mesh, Order, Pos2, Rect, Shape, Stroke, StrokeKind, Ui, pos2, vec2,
+};
 
 use crate::assets::ramp::bake::{HexColour, RampStop};
 
 pub fn colour32(HexColour([r, g, b]): HexColour) -> Color32 {
     Color32::from_rgb(r, g, b)
+}
+
+/// A gradient across a rectangle, a column for each pixel, by the colour at each share of it.
+pub fn gradient(ui: &Ui, rect: Rect, colour: impl Fn(f32) -> Color32) {
+    let mut mesh = Mesh::default();
+    let columns = (rect.width() * ui.pixels_per_point()).ceil().max(1.0);
+    let width = rect.width() / columns;
+    for column in 0..columns as usize {
+        let left = rect.left() + column as f32 * width;
+        let column = Rect::from_min_max(pos2(left, rect.top()), pos2(left + width, rect.bottom()));
+        mesh.add_colored_rect(column, colour((column.center().x - rect.left()) / rect.width()));
+    }
+    ui.painter().add(mesh);
+}
+
+/// Says a place and its colour beside the pointer, above the strip, or where there is no room below.
+pub fn readout(ui: &Ui, x: f32, strip: Rect, colour: Color32, text: String) {
+    const ROOM: f32 = 28.0;
+    let (pivot, y) = if strip.top() - ui.ctx().viewport_rect().top() < ROOM {
+        (Align2::CENTER_TOP, strip.bottom() + ROOM)
+    } else {
+        (Align2::CENTER_BOTTOM, strip.top() - 3.0)
+    };
+    let area = Area::new(ui.scope_id().with("readout")).order(Order::Tooltip).interactable(false);
+    area.pivot(pivot).fixed_pos(pos2(x, y)).show(ui.ctx(), |ui| {
+        Frame::popup(ui.style()).inner_margin(3.0).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                let (_, swatch) = ui.allocate_space(vec2(10.0, 10.0));
+                ui.painter().rect_filled(swatch, 2.0, colour);
+                ui.add(Label::new(text).extend());
+            });
+        });
+    });
 }
 
 /// The borders of equal parts of the strip, if places snap to some.

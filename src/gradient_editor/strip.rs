@@ -1,12 +1,14 @@
 //! The strip: the gradient with its handles below it, and what is looked up.
 
-use eframe::egui::{self, Color32, CursorIcon, Mesh, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
+use eframe::egui::{self, Color32, CursorIcon, Rect, Sense, Stroke, StrokeKind, Ui, vec2};
 
-use super::frame::{Drag, Frame, Surroundings};
+use super::frame::{Frame, Surroundings};
 use super::handles::{self, GAP, share};
-use super::paint::{borders, colour32, histogram, ticks};
+use super::paint::{borders, colour32, gradient as paint_gradient, histogram, readout, ticks};
+use super::selection::Selection;
 use super::stops;
-use crate::assets::ramp::bake::{Gradient, HexColour, RampRecipe, RampRow};
+use crate::assets::ramp::bake::{Blend, Gradient, HexColour, RampRecipe, RampRow, RampStop};
+use crate::error::FieldError;
 use crate::formula::colour::srgb_from_linear;
 
 /// Heights of the strip, of the room for handles below it, and of histograms.
@@ -23,12 +25,7 @@ pub fn show(ui: &mut Ui, frame: &mut Frame<'_>, surroundings: &Surroundings<'_>)
     let all = all.shrink2(vec2(GAP * 0.5, 0.0));
     let (strip, rest) = all.split_top_bottom_at_y(all.top() + STRIP);
     let (lane, below) = rest.split_top_bottom_at_y(rest.top() + LANE);
-    let recipe = RampRecipe {
-        blend: surroundings.blend,
-        rows: vec![RampRow { stops: frame.stops.clone(), ..RampRow::default() }],
-        ..RampRecipe::default()
-    };
-    let gradient = match recipe.gradient() {
+    let gradient = match gradient(frame.stops, surroundings.blend) {
         Ok(gradient) => gradient,
         Err(error) => {
             ui.put(all, egui::Label::new(format!("Not a gradient: {error}")));
@@ -50,8 +47,14 @@ pub fn show(ui: &mut Ui, frame: &mut Frame<'_>, surroundings: &Surroundings<'_>)
     pointed_at
 }
 
+/// What stops make.
+pub fn gradient(stops: &[RampStop], blend: Blend) -> Result<Gradient, FieldError> {
+    let rows = vec![RampRow { stops: stops.to_vec(), ..RampRow::default() }];
+    RampRecipe { blend, rows, ..RampRecipe::default() }.gradient()
+}
+
 /// The sRGB colour at a place.
-fn colour_at(gradient: &Gradient, at: f32) -> HexColour {
+pub fn colour_at(gradient: &Gradient, at: f32) -> HexColour {
     HexColour::from_srgb(gradient.sample(at, 0.0).map(|light| srgb_from_linear(light.min(1.0))))
 }
 
@@ -59,15 +62,7 @@ fn colour_at(gradient: &Gradient, at: f32) -> HexColour {
 fn ground(ui: &Ui, frame: &mut Frame<'_>, strip: Rect, gradient: &Gradient) -> Option<f32> {
     let response = ui.interact(strip, ui.scope_id().with("strip"), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "gradient: add a stop"));
-    let mut mesh = Mesh::default();
-    let columns = (strip.width() * ui.pixels_per_point()).ceil().max(1.0);
-    let width = strip.width() / columns;
-    for column in 0..columns as usize {
-        let left = strip.left() + column as f32 * width;
-        let colour = colour32(colour_at(gradient, (column as f32 + 0.5) / columns));
-        mesh.add_colored_rect(Rect::from_min_max(pos2(left, strip.top()), pos2(left + width, strip.bottom())), colour);
-    }
-    ui.painter().add(mesh);
+    paint_gradient(ui, strip, |at| colour32(colour_at(gradient, at)));
     let parts = frame.editor.snap.now(ui).filter(|_| response.hovered() || frame.editor.dragged.is_some());
     borders(ui, strip, parts);
     let visuals = ui.style().interact(&response);
@@ -82,19 +77,25 @@ fn ground(ui: &Ui, frame: &mut Frame<'_>, strip: Rect, gradient: &Gradient) -> O
     } else if response.clicked() {
         // By key there is no place.
         let by_pointer = response.interact_pointer_pos().map(|at| place(at.x));
-        Some(by_pointer.unwrap_or_else(|| stops::gap(frame.stops, frame.editor.selected)))
+        Some(by_pointer.unwrap_or_else(|| stops::gap(frame.stops, frame.editor.selection.lead())))
     } else {
         None
     };
-    if let Some(at) = added.map(|at| stops::snapped(at, snap.now(ui))) {
+    if let Some(place) = added {
+        let at = stops::snapped(place, snap.now(ui));
         let colour = colour_at(gradient, at);
-        let before = (frame.stops.clone(), frame.editor.selected);
-        frame.edit_and_select("add a stop", |stops, _| stops::add(stops, at, colour));
-        frame.editor.dragged = response.drag_started().then_some(Drag { offset: 0.0, before });
+        let before = (frame.stops.clone(), frame.editor.selection.clone());
+        frame.edit("add a stop", |stops, selection| *selection = Selection::one(stops::add(stops, at, colour)));
+        if let Some(origin) = origin.filter(|_| response.drag_started()) {
+            handles::begin(frame, origin.x, place, before, true);
+        }
         frame.wants_keyboard = true;
     }
     let hovered = response.hover_pos().filter(|_| frame.editor.dragged.is_none())?;
     ui.set_cursor_icon(CursorIcon::Crosshair);
     response.on_hover_text_at_pointer("Click or drag: a stop with this colour. Ctrl snaps");
-    Some(place(hovered.x))
+    let at = place(hovered.x);
+    let colour = colour_at(gradient, at);
+    readout(ui, hovered.x, strip, colour32(colour), format!("{at:.4}  {}", String::from(colour)));
+    Some(at)
 }

@@ -8,6 +8,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 mod colours;
 mod drags;
+mod several;
 
 use super::*;
 use crate::assets::ramp::bake::{Curve, HexColour, RampStop};
@@ -71,30 +72,33 @@ fn handle(harness: &Harness<'_, Host>, index: usize) -> Rect {
 }
 
 fn button(harness: &mut Harness<'_, Host>, pos: Pos2, pressed: bool, modifiers: Modifiers) {
-    harness
-        .event_modifiers(Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers }, modifiers);
+    harness.event(Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers });
     harness.step();
 }
 
 fn drag(harness: &mut Harness<'_, Host>, from: Pos2, by: f32, modifiers: Modifiers) {
     harness.hover_at(from);
+    // Held all the way, as by a hand.
+    harness.event(Event::ModifiersChanged(modifiers));
     harness.step();
     button(harness, from, true, modifiers);
     for part in 1..=4 {
-        let pos = from + Vec2::new(by * part as f32 / 4.0, 0.0);
-        harness.event_modifiers(Event::PointerMoved(pos), modifiers);
+        harness.hover_at(from + Vec2::new(by * part as f32 / 4.0, 0.0));
         harness.step();
     }
     button(harness, from + Vec2::new(by, 0.0), false, modifiers);
+    harness.event(Event::ModifiersChanged(NONE));
     harness.run_steps(2);
 }
 
 fn click(harness: &mut Harness<'_, Host>, pos: Pos2, modifiers: Modifiers) {
     harness.hover_at(pos);
+    harness.event(Event::ModifiersChanged(modifiers));
     harness.step();
     for pressed in [true, false] {
         button(harness, pos, pressed, modifiers);
     }
+    harness.event(Event::ModifiersChanged(NONE));
     harness.run_steps(2);
 }
 
@@ -118,7 +122,7 @@ fn a_click_adds_a_stop_with_the_colour_that_is_there() {
     click(&mut harness, at, NONE);
     assert_eq!(places(&harness), [0.0, 0.25, 1.0]);
     assert!(greys(&harness)[1].abs_diff(expected) <= 1 && (5..200).contains(&expected), "{expected}");
-    assert_eq!((steps(&harness), harness.state().editor.state.selected), (vec!["add a stop"], 1));
+    assert_eq!((steps(&harness), harness.state().editor.state.selection.lead()), (vec!["add a stop"], 1));
     let at = on_strip(&harness, 0.62);
     click(&mut harness, at, Modifiers::COMMAND);
     assert_eq!(places(&harness), [0.0, 0.25, 0.6, 1.0]);
@@ -137,7 +141,7 @@ fn a_drag_is_one_step_and_passes_other_stops() {
     assert_eq!((places(&harness), greys(&harness)), (vec![0.0, 0.5, 0.7, 1.0], vec![0, 20, 10, 30]));
     assert!(harness.state().changes > 2, "the host sees it on its way");
     assert_eq!(steps(&harness), ["move a stop"]);
-    assert_eq!(harness.state().editor.state.selected, 2);
+    assert_eq!(harness.state().editor.state.selection.lead(), 2);
     let from = handle(&harness, 2).center();
     drag(&mut harness, from, -0.17 * width, Modifiers::COMMAND);
     assert_eq!(places(&harness), [0.0, 0.5, 0.5, 1.0], "Ctrl snaps");
@@ -149,7 +153,7 @@ fn a_drag_is_one_step_and_passes_other_stops() {
     let count = steps(&harness).len();
     let at = handle(&harness, 0).center();
     click(&mut harness, at, NONE);
-    assert_eq!((steps(&harness).len(), harness.state().editor.state.selected), (count, 0));
+    assert_eq!((steps(&harness).len(), harness.state().editor.state.selection.lead()), (count, 0));
 }
 
 #[test]
@@ -175,7 +179,7 @@ fn everything_is_done_by_keys_alone() {
     assert!(has_keyboard(&harness, 0));
     key(&mut harness, Key::Tab, NONE);
     assert!(has_keyboard(&harness, 1));
-    assert_eq!(harness.state().editor.state.selected, 1);
+    assert_eq!(harness.state().editor.state.selection.lead(), 1);
     for (modifiers, pressed, expected) in [
         (NONE, Key::ArrowRight, 0.501),
         (Modifiers::SHIFT, Key::ArrowRight, 0.511),
@@ -272,7 +276,7 @@ fn all_stops_are_turned_distributed_and_replaced_in_one_step() {
     assert_eq!(harness.state().row.stops, Template::find("hard_toon").unwrap().recipe().rows[0].stops);
     press(&mut harness, "Remove");
     assert_eq!(harness.state().row.stops.len(), 2);
-    assert_eq!(steps(&harness), ["flip", "distribute", "distribute", "template", "remove a stop"]);
+    assert_eq!(steps(&harness), ["flip", "distribute", "even steps", "template", "remove a stop"]);
     assert_eq!(harness.state().row.at, 0.5, "the row stays where it is");
 }
 
@@ -325,7 +329,7 @@ fn ten_thousand_stops_are_edited_one_by_one() {
     let (lane, width) = (strip(&harness).bottom() + 3.0, strip(&harness).width());
     let at = pos2(strip(&harness).left() + 0.75 * width, lane);
     click(&mut harness, at, NONE);
-    let selected = harness.state().editor.state.selected;
+    let selected = harness.state().editor.state.selection.lead();
     assert!(selected.abs_diff(7500) < 40, "{selected}");
     let name = format!("stop {}", selected + 1);
     assert!(harness.get_by_label(&name).accesskit_node().is_focused());
@@ -343,7 +347,7 @@ fn nothing_is_cut_off_in_a_narrow_panel() {
         let mut harness = host(&[(0.0, 0), (0.5, 128), (0.5, 200), (1.0, 255)]);
         harness.ctx.set_theme(theme);
         harness.run_steps(2);
-        let names = ["stop 1", "stop 4", "gradient: add a stop", "next stop", "Flip", "Paste", "Templates"];
+        let names = ["stop 1", "stop 4", "gradient: add a stop", "next stop", "Flip", "Mirror", "Paste", "Templates"];
         for name in names {
             let rect = harness.get_by_label(name).rect();
             assert!(rect.left() >= 0.0 && rect.right() <= 330.0 && rect.bottom() <= 260.0, "{name} {rect:?}");
@@ -362,5 +366,25 @@ fn pictures_of_the_editor() {
         harness.get_by_label("stop 3").focus();
         harness.run_steps(3);
         harness.render().unwrap().save(folder.join(format!("gradient_{name}.png"))).unwrap();
+        // Several, held on their way; then the eyedropper.
+        key(&mut harness, Key::ArrowDown, Modifiers::SHIFT);
+        let from = handle(&harness, 3).center();
+        for pos in [from, from, from + Vec2::new(20.0, 0.0), from + Vec2::new(40.0, 0.0)] {
+            harness.hover_at(pos);
+            harness.step();
+            if pos == from {
+                button(&mut harness, from, true, NONE);
+            }
+        }
+        harness.run_steps(3);
+        harness.render().unwrap().save(folder.join(format!("gradient_drag_{name}.png"))).unwrap();
+        button(&mut harness, from + Vec2::new(40.0, 0.0), false, NONE);
+        harness.get_by_label("Take a colour").click();
+        harness.run_steps(5);
+        let at = on_strip(&harness, 0.6);
+        harness.hover_at(at);
+        harness.run_steps(3);
+        key(&mut harness, Key::Num3, NONE);
+        harness.render().unwrap().save(folder.join(format!("gradient_eyedropper_{name}.png"))).unwrap();
     }
 }

@@ -1,12 +1,11 @@
 //! Pictures in a role that they were not painted for: what loads, and is not what an artist meant.
 
-use glam::{UVec2, Vec3};
+use glam::{UVec2, Vec2, Vec3Swizzles as _};
 
 use super::material_names::MaterialNames;
 use crate::assets::material::MaterialAssets;
 use crate::assets::ramp::Ramp;
 use crate::assets::sprite::check::{NOTHING, is_clear, not_normals};
-use crate::formula::colour::srgb_from_linear;
 
 /// Most that channels of linear colours differ which are taken for the same.
 const SAME: f32 = 1.0 / 64.0;
@@ -40,7 +39,7 @@ fn of_diffuse_ramp(ramp: &Ramp) -> Option<String> {
     let is_specular = size.y > 1 && is_black(size.x - 1) && !(0..size.x).all(is_black);
     let specular =
         || "black where it faces the light, as a specular ramp is; expected dot(n, l) across, amount up".into();
-    is_specular.then(specular).or_else(|| of_rows(ramp))
+    of_rows(ramp).or_else(|| is_specular.then(specular))
 }
 
 /// What is wrong with a ramp of one row.
@@ -92,17 +91,28 @@ fn of_motif(motif: &Ramp) -> Option<String> {
         .then(|| format!("{}x{} pixels; expected a square with a lit sphere that fills it", size.x, size.y))
 }
 
-/// True if the colours are those of normals: most of them look at the viewer, a bit to every side.
+/// True if the colours are those of normals, over black where nothing is: more blue than red and green, which go up and down for
+/// themselves. Along a gradient they go together: of the ramps that come with haze none is below 0.4, and no sprite above 0.2.
 fn shows_normals(ramp: &Ramp) -> bool {
+    /// Darker is no colour to judge by.
+    const DARK: f32 = 0.05;
     let size = ramp.size();
-    let mut sum = Vec3::ZERO;
-    for y in 0..size.y {
-        for x in 0..size.x {
-            sum += Vec3::from(ramp.texel(UVec2::new(x, y)).to_array().map(srgb_from_linear));
-        }
+    let texels = || {
+        let all = (0..size.y).flat_map(|y| (0..size.x).map(move |x| ramp.texel(UVec2::new(x, y))));
+        all.filter(|light| light.max_element() >= DARK && light.z > 0.0)
+    };
+    let (sum, blue) = texels().fold((Vec2::ZERO, 0.0), |(sum, blue), light| (sum + light.xy(), blue + light.z));
+    let mean = sum / blue;
+    // Each as a share of blue: so it is the same for what is half transparent. Blue is the weight.
+    let (mut squares, mut product) = (Vec2::ZERO, 0.0);
+    for light in texels() {
+        let apart = light.xy() / light.z - mean;
+        squares += apart * apart * light.z;
+        product += apart.x * apart.y * light.z;
     }
-    let mean = sum / size.element_product() as f32;
-    (mean - Vec3::new(0.5, 0.5, 0.9)).abs().cmplt(Vec3::splat(0.12)).all()
+    let is_blue = mean.cmpgt(Vec2::splat(0.1)).all() && mean.cmplt(Vec2::splat(0.75)).all();
+    let differs = squares.cmpgt(Vec2::splat(1.0e-4 * blue)).all();
+    is_blue && differs && product.abs() < 0.3 * (squares.x * squares.y).sqrt()
 }
 
 #[cfg(test)]
@@ -110,6 +120,7 @@ mod tests {
     use image::{Rgb, RgbImage};
 
     use super::*;
+    use crate::assets::builtin;
 
     #[test]
     fn pictures_in_roles_that_they_were_not_painted_for() {
@@ -139,6 +150,9 @@ mod tests {
         one(|names| names.coverage_ramp = "both.png".into(), "coverage_ramp", "its 64 rows differ");
         one(|names| names.diffuse_ramp = "specular_halo".into(), "diffuse_ramp", "as a specular ramp is");
         assert_eq!(doubts(|names| names.diffuse_ramp = "both.png".into()), []);
+        let ball = builtin::find(builtin::SPRITES, "ball").unwrap();
+        std::fs::write(folder.path().join("ball.png"), ball.bytes).unwrap();
+        one(|names| names.diffuse_ramp = "ball.png".into(), "diffuse_ramp", "normals of a sprite");
         one(|names| names.age_ramp = "normals.png".into(), "age_ramp", "normals of a sprite");
         one(|names| names.specular_ramp = "normals.png".into(), "specular_ramp", "normals of a sprite");
         let sheet = image::RgbaImage::from_fn(16, 16, |x, y| {

@@ -166,4 +166,6 @@ fn a_program_that_is_killed_while_it_writes_leaves_the_old_file() {
         assert!(picture() == old, "{limit}");
     }
     assert!(bake(10_000).success() && picture() != old);
+    // What those that were killed left is gone.
+    assert_eq!(names(folder.path()), ["a.png", "a.ramp.json"]);
 }

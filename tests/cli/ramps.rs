@@ -299,3 +299,34 @@ fn a_sprite_is_lit_as_smoke_is() {
     let grid = fs::read(folder.path().join("ball.vol")).unwrap();
     assert!(grid.starts_with(b"VOL\x03\x01\0\0\0\x10\0\0\0\x10\0\0\0"), "{:?}", &grid[..24]);
 }
+
+#[test]
+fn a_file_of_another_kind_is_told_which_command_takes_it() {
+    let folder = folder();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    write("a.ramp.json", &TEMPLATES[0].recipe().to_text());
+    write("recipe.json", &TEMPLATES[0].recipe().to_text());
+    // By its name, though it is broken.
+    write("broken.sprite.json", "{");
+    write("a.json", &haze::preset::Preset::load(Path::new("column")).unwrap().to_text(""));
+    for (command, file, is) in [
+        ("preset", "a.ramp.json", "a ramp's recipe: `haze ramp check` takes it"),
+        ("preset", "recipe.json", "a ramp's recipe: `haze ramp check` takes it"),
+        ("preset", "broken.sprite.json", "a sprite's recipe: `haze sprite bake` takes it"),
+        ("ramp", "a.json", "a preset: `haze preset check` takes it"),
+        ("ramp", "broken.sprite.json", "a sprite's recipe: `haze sprite bake` takes it"),
+        ("sprite", "a.ramp.json", "a ramp's recipe: `haze ramp check` takes it"),
+        ("sprite", "a.json", "a preset: `haze preset check` takes it"),
+        ("sprite", "broken.sprite.json", "a sprite's recipe: `haze sprite bake` takes it"),
+    ] {
+        let said = refusal(folder.path(), &[command, "check", file]);
+        assert!(
+            said.contains(&format!("{file} is not valid; expected ")) && said.contains(is),
+            "{command} {file}: {said}"
+        );
+    }
+    // What is of the right kind, and what is missing, is told as ever.
+    write("broken.ramp.json", "{");
+    assert!(refusal(folder.path(), &["ramp", "check", "broken.ramp.json"]).contains("broken.ramp.json:1:1: "));
+    assert!(!refusal(folder.path(), &["preset", "check", "gone.ramp.json"]).contains("haze ramp check"));
+}

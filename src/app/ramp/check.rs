@@ -14,6 +14,7 @@ use haze::ramp::{Ramp, Role};
 use super::fit::tell_ramps;
 use super::{picture_of, refuse_gradient};
 use crate::app::findings::tell;
+use crate::app::kind::explain;
 use crate::app::medium::{PathTraceArguments, named, names, sprite_recipe, usual_sprite};
 use crate::app::options::choices;
 use crate::app::output::{Failures, has_extension};
@@ -72,7 +73,7 @@ fn findings(path: &Path, role: Option<Role>) -> Result<Vec<Finding>, Error> {
         Ok((picture, _)) => findings.extend(check(&picture, role)),
         // A space that is refused has been noted.
         Err(Error::Image { .. }) if !findings.is_empty() => {}
-        Err(error) => return Err(error),
+        Err(error) => return Err(explain(error, path, "ramp", "a PNG or a *.ramp.json file")),
     }
     Ok(findings)
 }

@@ -11,6 +11,7 @@ use haze::sprite::bake::SpriteRecipe;
 use haze::sprite::check::check;
 
 use crate::app::findings::tell;
+use crate::app::kind::explain;
 use crate::app::output::Failures;
 
 #[derive(Args)]
@@ -34,7 +35,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
 }
 
 fn findings(path: &Path, Arguments { columns, rows, y_down, .. }: &Arguments) -> Result<Vec<Finding>, Error> {
-    let picture = read_png(path)?.to_rgba8();
+    let picture = read_png(path).map_err(|error| explain(error, path, "picture", "a PNG"))?.to_rgba8();
     let recipe = path.with_extension("sprite.json");
     let beside = if (columns, rows) == (&None, &None) && recipe.is_file() {
         SpriteRecipe::load(&recipe)?.layout()

@@ -1,14 +1,19 @@
 //! Files that are written whole, or left as they were.
 
+use std::collections::BTreeSet;
+use std::ffi::OsStr;
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, ErrorKind, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use crate::error::Error;
 
 /// Writes a file beside its final place and moves it there, so that no reader sees half of it and a failed write leaves the old
-/// one, whose permissions it keeps. A link stays one, and what it points to is written.
+/// one, whose permissions it keeps. A link stays one, and what it points to is written. It is on the disk before it is moved: a
+/// process that is killed, or a machine without power, leaves the old file or the new one. What a killed process left beside it
+/// is removed.
 ///
 /// A file that has several names, or lies in a folder where nothing can be made, is written where it is; what was in it is
 /// put back if that fails.
@@ -53,7 +58,7 @@ impl FileIdentity {
             return Self(Identity::Inode(found.dev(), found.ino()));
         }
         let target = followed(path);
-        let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let folder = folder_of(&target);
         let folder = fs::canonicalize(folder).unwrap_or_else(|_| folder.into());
         Self(Identity::Place(folder.join(target.file_name().unwrap_or_default())))
     }
@@ -84,17 +89,54 @@ fn put(path: &Path, bytes: &[u8]) -> io::Result<()> {
         Err(_) if old.is_some() => return overwrite(path, bytes),
         made => made?,
     };
+    sweep(folder_of(path));
     let write = || {
         file.write_all(bytes)?;
         if let Some(old) = old {
             fs::set_permissions(&partial, old.permissions())?;
         }
-        drop(file);
+        // Else a file system may move it before its bytes are there.
+        file.sync_all()?;
         fs::rename(&partial, path)
     };
     write().inspect_err(|_| {
         let _ = fs::remove_file(&partial);
-    })
+    })?;
+    sync_folder(folder_of(path));
+    Ok(())
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// That a file was moved is on the disk, too, where the system can tell.
+fn sync_folder(folder: &Path) {
+    if cfg!(unix) {
+        // Some file systems have no such thing; the file is whole without.
+        let _ = File::open(folder).and_then(|folder| folder.sync_all());
+    }
+}
+
+const PARTIAL: (&str, &str) = (".haze-", ".partial");
+
+/// Removes what killed processes have left in a folder, once in the life of this one: who lives has its file locked.
+fn sweep(folder: &Path) {
+    static SWEPT: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+    if !SWEPT.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.into()) {
+        return;
+    }
+    // What cannot be looked at stays, and harms nobody.
+    for path in fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
+        let is_partial =
+            |name: &str| name.strip_prefix(PARTIAL.0).is_some_and(|rest| rest.strip_suffix(PARTIAL.1).is_some());
+        if path.file_name().and_then(OsStr::to_str).is_some_and(is_partial)
+            && let Ok(left) = OpenOptions::new().write(true).open(&path)
+            && left.try_lock().is_ok()
+        {
+            let _ = fs::remove_file(&path);
+        }
+    }
 }
 
 #[cfg(unix)]
@@ -107,16 +149,23 @@ fn has_other_names(_: &Metadata) -> bool {
     false
 }
 
-/// A new file in the same folder. Its name has nothing of the other's, which may be as long as names can be.
+/// A new file in the same folder, locked while it is open. Its name has nothing of the other's, which may be as long as names can
+/// be.
 fn partial_beside(path: &Path) -> io::Result<(PathBuf, File)> {
     static COUNT: AtomicU32 = AtomicU32::new(0);
     loop {
-        let name = format!(".haze-{}-{}.partial", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
-        let partial = path.with_file_name(name);
-        match OpenOptions::new().write(true).create_new(true).open(&partial) {
+        let count = COUNT.fetch_add(1, Ordering::Relaxed);
+        let partial = path.with_file_name(format!("{}{}-{count}{}", PARTIAL.0, std::process::id(), PARTIAL.1));
+        let file = match OpenOptions::new().write(true).create_new(true).open(&partial) {
             // Left by another process, long gone.
-            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
-            made => return made.map(|file| (partial, file)),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => continue,
+            made => made?,
+        };
+        // Where there are no locks nothing is swept.
+        let _ = file.lock();
+        // Another process may have swept it before it was locked.
+        if partial.exists() {
+            return Ok((partial, file));
         }
     }
 }
@@ -125,7 +174,8 @@ fn overwrite(path: &Path, bytes: &[u8]) -> io::Result<()> {
     fn write(file: &mut File, bytes: &[u8]) -> io::Result<()> {
         file.rewind()?;
         file.write_all(bytes)?;
-        file.set_len(bytes.len() as u64)
+        file.set_len(bytes.len() as u64)?;
+        file.sync_all()
     }
     let before = fs::read(path)?;
     let mut file = OpenOptions::new().write(true).open(path)?;
@@ -171,6 +221,21 @@ mod tests {
             assert_eq!(fs::read_to_string(&path).unwrap(), text);
         }
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn what_a_killed_process_left_is_removed_and_what_another_writes_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        for name in [".haze-1-0.partial", ".haze-1-1.partial", ".haze-1.png", "haze-1-2.partial"] {
+            fs::write(path(name), "half").unwrap();
+        }
+        let written = OpenOptions::new().write(true).open(path(".haze-1-1.partial")).unwrap();
+        written.lock().unwrap();
+        write_file(&path("a.png"), b"new").unwrap();
+        let mut names: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        names.sort();
+        assert_eq!(names, [".haze-1-1.partial", ".haze-1.png", "a.png", "haze-1-2.partial"]);
     }
 
     #[cfg(unix)]

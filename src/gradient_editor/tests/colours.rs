@@ -62,13 +62,13 @@ fn begin(harness: &mut Harness<'_, Host>) {
 #[test]
 fn a_click_takes_a_colour_from_anywhere_and_touches_nothing_else() {
     let mut harness = host(&[(0.0, 0), (1.0, 255)]);
-    begin(&mut harness);
     let at = on_strip(&harness, 0.7);
     let expected = {
         let shown = harness.render().unwrap();
         let [r, g, b, _] = shown.get_pixel(at.x as u32, at.y as u32).0;
         [r, g, b]
     };
+    begin(&mut harness);
     click(&mut harness, at, NONE);
     harness.run_steps(2);
     assert_eq!((places(&harness), colour(&harness, 0)), (vec![0.0, 1.0], expected));
@@ -108,4 +108,45 @@ fn a_stroke_takes_the_gradient_along_it() {
         assert!((taken - wanted).abs() < 20.0, "{at}: {taken} {wanted}");
     }
     assert_eq!(steps(&harness), ["gradient of a stroke"]);
+}
+
+#[test]
+fn the_eyedropper_magnifies_and_is_moved_by_keys() {
+    let mut harness = host(&[(0.0, 0), (1.0, 255)]);
+    begin(&mut harness);
+    let at = on_strip(&harness, 0.5);
+    harness.hover_at(at);
+    harness.run_steps(3);
+    let said = |harness: &Harness<'_, Host>| {
+        let node = harness.get_by_label_contains("×");
+        node.accesskit_node().label().or_else(|| node.accesskit_node().value()).unwrap_or_default()
+    };
+    assert!(said(&harness).ends_with("1×1"), "{}", said(&harness));
+    let before = said(&harness);
+    // Along a gradient from black to white every ten pixels are lighter.
+    key(&mut harness, Key::ArrowRight, Modifiers::SHIFT);
+    let lighter = said(&harness);
+    assert!(lighter > before, "{before} {lighter}");
+    key(&mut harness, Key::ArrowLeft, Modifiers::SHIFT);
+    assert_eq!(said(&harness), before);
+    key(&mut harness, Key::Num5, NONE);
+    assert!(said(&harness).ends_with("5×5"), "{}", said(&harness));
+    key(&mut harness, Key::Num1, NONE);
+    assert!(steps(&harness).is_empty(), "nothing is taken yet");
+    key(&mut harness, Key::Enter, NONE);
+    assert_eq!(steps(&harness), ["colour of a stop"]);
+    assert!(before.starts_with(&String::from(HexColour(colour(&harness, 0)))), "{before}");
+    // A stroke by keys alone.
+    harness.get_by_label("Take a colour").focus();
+    harness.run_steps(2);
+    key(&mut harness, Key::Enter, NONE);
+    harness.hover_at(at);
+    harness.run_steps(2);
+    key(&mut harness, Key::Space, NONE);
+    for _ in 0..5 {
+        key(&mut harness, Key::ArrowRight, Modifiers::SHIFT);
+    }
+    key(&mut harness, Key::Enter, NONE);
+    assert_eq!(steps(&harness), ["colour of a stop", "gradient of a stroke"]);
+    assert!(greys(&harness).is_sorted(), "{:?}", greys(&harness));
 }

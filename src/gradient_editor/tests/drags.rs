@@ -87,5 +87,40 @@ fn a_drag_with_alt_leaves_a_copy() {
     let (from, width) = (handle(&harness, 1).center(), strip(&harness).width());
     drag(&mut harness, from, 0.2 * width, Modifiers::ALT);
     assert_eq!((places(&harness), greys(&harness)), (vec![0.0, 0.3, 0.5, 1.0], vec![0, 10, 10, 30]));
-    assert_eq!((steps(&harness), harness.state().editor.state.selected), (vec!["copy a stop"], 2));
+    assert_eq!((steps(&harness), harness.state().editor.state.selection.lead()), (vec!["copy a stop"], 2));
+}
+
+#[test]
+fn with_alt_on_the_way_a_drag_is_ten_times_as_fine_and_says_where_it_is() {
+    let mut harness = host(&[(0.0, 0), (0.3, 10), (1.0, 30)]);
+    let (from, width) = (handle(&harness, 1).center(), strip(&harness).width());
+    hold(&mut harness, from, 0.2 * width);
+    assert!(harness.query_by_label("0.5000  #0a0a0a").is_some());
+    let fine = from + Vec2::new(0.3 * width, 0.0);
+    harness.event(Event::ModifiersChanged(Modifiers::ALT));
+    harness.hover_at(fine);
+    harness.run_steps(2);
+    assert!((harness.state().row.stops[1].at - 0.51).abs() < 1.0e-4, "{:?}", places(&harness));
+    assert!(harness.query_by_label("0.5100  #0a0a0a  fine").is_some());
+    // Let go of, it goes on as far as the pointer does.
+    harness.event(Event::ModifiersChanged(NONE));
+    harness.hover_at(from + Vec2::new(0.4 * width, 0.0));
+    harness.run_steps(2);
+    assert!((harness.state().row.stops[1].at - 0.61).abs() < 1.0e-4, "{:?}", places(&harness));
+    button(&mut harness, from + Vec2::new(0.4 * width, 0.0), false, NONE);
+    harness.run_steps(2);
+    assert_eq!((steps(&harness), harness.state().row.stops.len()), (vec!["move a stop"], 3));
+    assert!(harness.query_by_label_contains("#0a0a0a").is_none(), "nothing is left of it");
+}
+
+#[test]
+fn a_drag_ends_where_the_host_has_something_else() {
+    let mut harness = host(&[(0.0, 0), (0.3, 10), (1.0, 30)]);
+    let before = harness.state().row.clone();
+    let (from, width) = (handle(&harness, 1).center(), strip(&harness).width());
+    hold(&mut harness, from, 0.2 * width);
+    harness.state_mut().row = before.clone();
+    harness.hover_at(from + Vec2::new(0.3 * width, 0.0));
+    harness.run_steps(2);
+    assert_eq!(harness.state().row, before);
 }

@@ -8,7 +8,7 @@ use haze::{Error, FieldError, builtin};
 
 use super::history::History;
 use super::pictures::copy_beside;
-use super::recipes::{Recipes, Work, name_of};
+use super::recipes::{GradientStep, Recipes, Work, name_of};
 use crate::app::inputs::pictures_of;
 use crate::app::tweak::platform::assets::caches_of;
 use crate::app::tweak::platform::files::{self, Stamp};
@@ -20,6 +20,8 @@ pub struct Document {
     /// What panels change of ramps; they are written as soon as a step is done.
     pub recipes: Recipes,
     history: History<Work>,
+    /// What is being done to stops, for the name of that step.
+    gradient_step: Option<GradientStep>,
     /// A file, or the name of a built-in preset.
     path: PathBuf,
     /// What is in the file, if it is known.
@@ -74,7 +76,7 @@ impl Document {
         let recipes = Recipes::default();
         let history = History::new((preset.clone(), recipes.clone()));
         let (saved, path) = (Some(preset.clone()), name_or_path.into());
-        Ok(Self { saved, preset, recipes, history, path, text, stamp, writing: Weak::new() })
+        Ok(Self { saved, preset, recipes, history, gradient_step: None, path, text, stamp, writing: Weak::new() })
     }
 
     /// What was being done to a preset when the program was ended. The file that it came from need not be there any more.
@@ -82,6 +84,7 @@ impl Document {
         let mut document = Self::open(name_or_path).unwrap_or_else(|_| Self {
             recipes: Recipes::default(),
             history: History::new((preset.clone(), Recipes::default())),
+            gradient_step: None,
             preset: preset.clone(),
             path: name_or_path.into(),
             saved: None,
@@ -213,9 +216,17 @@ impl Document {
         let (preset, recipes) = self.history.settled();
         if *preset == self.preset && *recipes == self.recipes {
             self.history.rest();
+            self.gradient_step = None;
         } else {
-            self.history.track(&self.work(), is_held, name_of);
+            let step = self.gradient_step.as_ref();
+            let work = (self.preset.clone(), self.recipes.clone());
+            self.history.track(&work, is_held, |before, after| name_of(before, after, step));
         }
+    }
+
+    /// Says what is being done to the stops of a ramp.
+    pub fn name_gradient_step(&mut self, ramp: &str, step: &'static str) {
+        self.gradient_step = Some((ramp.into(), step));
     }
 
     fn work(&self) -> Work {

@@ -50,14 +50,20 @@ impl<T: PartialEq> Of<T> {
 /// What steps are made of: the preset, and the recipes.
 pub type Work = (Preset, Recipes);
 
-/// What a step is called.
-pub fn name_of(before: &Work, after: &Work) -> String {
+/// A change of a ramp's stops, as the editor of gradients calls it, and the ramp that it is made to.
+pub type GradientStep = (String, &'static str);
+
+/// What a step is called; one of stops by what the editor says, if that is what has changed.
+pub fn name_of(before: &Work, after: &Work, step: Option<&GradientStep>) -> String {
     // The preset's columns and rows follow those of the recipe.
     if let Some(name) = after.1.sprites.changed(&before.1.sprites) {
         return format!("recipe of {name}");
     }
     match after.1.ramps.changed(&before.1.ramps) {
-        Some(name) if before.0 == after.0 => format!("stops of {name}"),
+        Some(name) if before.0 == after.0 => match step.filter(|(of, _)| of == name) {
+            Some((_, step)) => format!("{step}: {name}"),
+            None => format!("stops of {name}"),
+        },
         _ => step_name(&before.0, &after.0),
     }
 }

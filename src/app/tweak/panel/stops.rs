@@ -49,6 +49,9 @@ pub fn editor(
     let edited = ui.push_id(ramp.field, |ui| editor.show(ui, &mut shown, &surroundings)).inner;
     let index = *index;
     is_changed |= ui.horizontal(|ui| blend(ui, &mut recipe.blend, ramp.field)).inner;
+    if let Some(step) = edited.step {
+        session.document.name_gradient_step(ramp.name, step);
+    }
     if edited.is_changed {
         match recipe.rows.get_mut(index) {
             Some(row) => *row = shown,

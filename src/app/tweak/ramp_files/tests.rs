@@ -106,7 +106,7 @@ fn a_drag_is_seen_at_once_and_written_in_the_end() {
     // One step, by its name, and back on disk too.
     let undo_name =
         |harness: &Harness<'_, Window>| harness.state().session.document.history().undo_name().map(str::to_owned);
-    assert_eq!(undo_name(&harness).as_deref(), Some("stops of mine.png"));
+    assert_eq!(undo_name(&harness).as_deref(), Some("move a stop: mine.png"));
     wait(&mut harness);
     assert!((shown(&mut harness) - bright).abs() < 0.5, "read again it is the same");
     press(&mut harness, Key::Z, Modifiers::COMMAND);
@@ -365,9 +365,9 @@ fn a_stop_takes_a_colour_from_the_picture() {
     let mut harness = folder.open();
     let pixel = harness.get_by_label("viewport").rect().center();
     let camera = harness.state().session.document.preset.camera;
+    let [r, g, b, _] = picture(&mut harness).get_pixel(pixel.x as u32, pixel.y as u32).0;
     harness.get_by_label("Take a colour").click();
     wait(&mut harness);
-    let [r, g, b, _] = picture(&mut harness).get_pixel(pixel.x as u32, pixel.y as u32).0;
     harness.hover_at(pixel);
     harness.step();
     harness.drag_at(pixel);
@@ -378,7 +378,7 @@ fn a_stop_takes_a_colour_from_the_picture() {
     assert!(taken.iter().zip([r, g, b]).all(|(a, b)| a.abs_diff(b) < 3), "{taken:?} {:?}", [r, g, b]);
     assert_ne!(taken, Template::find("neutral").unwrap().recipe().rows[0].stops[0].colour.0);
     assert!(folder.is_baked());
-    assert_eq!(harness.state().session.document.history().undo_name(), Some("stops of mine.png"));
+    assert_eq!(harness.state().session.document.history().undo_name(), Some("colour of a stop: mine.png"));
     // The picture itself was not clicked on; Escape is for the eyedropper alone.
     assert_eq!(harness.state().session.document.preset.camera, camera);
     harness.state_mut().session.show.stage = ShadeTree::Normals;

@@ -55,7 +55,7 @@ pub fn pack(first: &RgbaImage, second: &RgbaImage, packing: Packing) -> RgbaImag
 /// [`Error::Image`] for a sheet of odd height.
 pub fn unpack(path: &Path, sheet: &RgbaImage, packing: Packing) -> Result<[RgbaImage; 2], Error> {
     let (width, height) = (sheet.width(), sheet.height() / 2);
-    if sheet.height() % 2 != 0 || height == 0 {
+    if !sheet.height().is_multiple_of(2) || height == 0 {
         let reason =
             format!("{width}x{} pixels; expected six-way maps, of two halves below each other", sheet.height());
         return Err(Error::Image { path: path.into(), reason });
