@@ -106,12 +106,12 @@ impl PathModel {
         },
         tiled: PathCosts {
             frame: 1.0e6,
-            texel: 10.0,
+            texel: 31.0,
             sprite: 1000.0,
-            entry: 14.0e3,
-            fragment: 8.0,
-            sphere: 13.0,
-            march: 14.0,
+            entry: 490.0,
+            fragment: 7.7,
+            sphere: 11.0,
+            march: 14.5,
         },
         source: PathModelSource::Cpu,
     };
