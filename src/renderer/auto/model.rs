@@ -105,13 +105,13 @@ impl PathModel {
             march: 12.5,
         },
         tiled: PathCosts {
-            frame: 1.0e6,
+            frame: 0.3e6,
             texel: 31.0,
             sprite: 1000.0,
             entry: 490.0,
             fragment: 7.7,
             sphere: 11.0,
-            march: 14.5,
+            march: 16.0,
         },
         source: PathModelSource::Cpu,
     };
