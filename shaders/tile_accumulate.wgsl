@@ -14,6 +14,7 @@
 @group(3) @binding(2) var<storage, read> rects: array<vec2u>;
 @group(3) @binding(3) var<storage, read> numbers: array<u32>;
 @group(3) @binding(4) var<storage, read> lists: array<u32>;
+// Where the list of a bin begins and its length, or that of a tile.
 @group(3) @binding(5) var<storage, read> bins: array<vec2u>;
 // Reduced depth, or the host's depth where HOST_DEPTH.
 @group(3) @binding(6) var tested_depth: texture_2d<f32>;
@@ -23,7 +24,6 @@
 @group(3) @binding(9) var weight_target: texture_storage_2d<r32float, write>;
 
 override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
-override HOST_DEPTH: bool = false;
 override WEIGHTED: bool = false;
 override BYTE_TARGET: bool = false;
 override SUMS_WEIGHTS: bool = false;
@@ -50,12 +50,7 @@ fn begun_texel(place: vec2u) -> Texel {
     texel.place = vec2f(place) + 0.5;
     texel.ray = ray_through_texel(texel.place);
     texel.transmittance = 1.0;
-    texel.scene = textureLoad(tested_depth, vec2i(place), 0).r;
-    if HOST_DEPTH {
-        texel.scene = host_view_depth(texel.scene);
-    } else {
-        texel.scene *= system.depth_limit;
-    }
+    texel.scene = tested_view_depth(textureLoad(tested_depth, vec2i(place), 0).r);
     return texel;
 }
 
@@ -94,18 +89,11 @@ fn is_inside(place: vec2f) -> bool {
     return all(place >= vec2f(-1.0)) && all(place < vec2f(1.0));
 }
 
-fn sprite_number(list: vec2u, entry: u32) -> u32 {
-    // All sprites once more, where they are drawn often.
-    let at = entry % list.y;
+fn sprite_number(list: vec2u, at: u32) -> u32 {
     if list.x == EVERYTHING {
         return numbers[at];
     }
     return lists[list.x + at];
-}
-
-fn bin_at(place: vec2u) -> vec2u {
-    let bin = place / tiles.bin_side;
-    return bins[bin.y * tiles.columns + bin.x];
 }
 
 // For adapters whose workgroups are cheap to run in step: a batch of sprites is read by all and kept where all can reach it. Each
@@ -135,7 +123,8 @@ fn in_step(
     var a = begun_texel(min(place, size - 1u));
     var b = begun_texel(min(below, size - 1u));
     atomicMax(&farthest, bitcast<u32>(max(max(a.scene, b.scene), 0.0)));
-    let list = bin_at(low);
+    let bin = low / tiles.bin_side;
+    let list = bins[bin.y * tiles.columns + bin.x];
     let entries = list.y * tiles.loops;
     let middle = vec2f(low) + 0.5 * vec2f(TILE);
     workgroupBarrier();
@@ -151,12 +140,13 @@ fn in_step(
             atomicOr(&open, 1u);
         }
         if first + local < entries {
-            let number = sprite_number(list, first + local);
+            // All sprites once more, where they are drawn often.
+            let number = sprite_number(list, (first + local) % list.y);
             // Most of a bin's sprites are elsewhere in it: no more is read of them.
             if rects_meet(rects[number], low, low + TILE) {
                 let sprite = sprites[number];
                 // Only the middle of texels counts.
-                let meets = is_sphere() || square_meets(sprite, middle, 0.5 * vec2f(TILE - 1u));
+                let meets = is_sphere() || square_fills(sprite, middle, 0.5 * vec2f(TILE - 1u));
                 if meets && sprite_front(sprite.centre_radius) <= end {
                     batch[local] = sprite;
                     atomicOr(&touching[local / 32u], 1u << (local % 32u));
@@ -200,68 +190,63 @@ fn touches(sprite: TileSprite, place: vec2f) -> bool {
     return is_sphere() || (is_inside(place) && is_filled(sprite.filled, place));
 }
 
-// For CPUs, where a barrier costs more than it saves: every invocation walks alone, for a column of four texels. llvmpipe reads
-// a buffer word by word and lane by lane, so what is read of a sprite should serve many.
-const COLUMN: u32 = 4u;
+// For CPUs, where a barrier costs more than it saves: every invocation walks alone, for a column of texels. llvmpipe takes both sides
+// of every branch, so nothing is tested here: the tile's list has what the tile has something of. Its lanes are a row of columns,
+// and stay together, as LOADS_SPRITE needs it: no column leaves before all of them are opaque.
+const STRIDE: u32 = 8u;
+
+// Opaque columns of each tile.
+var<workgroup> opaque_columns: array<atomic<u32>, 8>;
 
 @compute @workgroup_size(8, 8)
-fn alone(@builtin(global_invocation_id) invocation: vec3u) {
-    let place = invocation.xy * vec2u(1u, COLUMN);
+fn alone(@builtin(global_invocation_id) invocation: vec3u, @builtin(local_invocation_id) local_place: vec3u) {
+    let low = invocation.xy * vec2u(1u, TILE_ALONE.y);
     let size = vec2u(system.target_size);
-    if any(place >= size) {
+    if any(low >= size) {
         return;
     }
-    var a = begun_texel(place);
-    var b = begun_texel(min(place + vec2u(0u, 1u), size - 1u));
-    var c = begun_texel(min(place + vec2u(0u, 2u), size - 1u));
-    var d = begun_texel(min(place + vec2u(0u, 3u), size - 1u));
-    let end = max(max(a.scene, b.scene), max(c.scene, d.scene)) + system.fade_through;
-    let list = bin_at(place);
+    let last = size - 1u;
+    var a = begun_texel(low);
+    var b = begun_texel(min(low + vec2u(0u, 1u), last));
+    var c = begun_texel(min(low + vec2u(0u, 2u), last));
+    var d = begun_texel(min(low + vec2u(0u, 3u), last));
+    let tile = low / TILE_ALONE;
+    let columns = min(size.x - tile.x * TILE_ALONE.x, TILE_ALONE.x);
+    let list = bins[tile.y * tiles_along(size.x) + tile.x];
     let entries = list.y * tiles.loops;
-    for (var entry = 0u; entry < entries; entry++) {
-        if is_done(a) && is_done(b) && is_done(c) && is_done(d) {
-            break;
+    var at = 0u;
+    var is_opaque = false;
+    for (var first = 0u; first < entries; first += STRIDE) {
+        for (var entry = first; entry < min(first + STRIDE, entries); entry++) {
+            let sprite = sprites[sprite_number(list, at)];
+            // All sprites once more, where they are drawn often.
+            at = select(at + 1u, 0u, at + 1u == list.y);
+            let in_a = place_in_square(sprite, a.place);
+            let in_b = in_a + sprite.place_from_texels.yw;
+            let in_c = in_b + sprite.place_from_texels.yw;
+            let in_d = in_c + sprite.place_from_texels.yw;
+            a = with_sprite(a, sprite, in_a, !is_done(a) && covers(in_a));
+            b = with_sprite(b, sprite, in_b, !is_done(b) && covers(in_b));
+            c = with_sprite(c, sprite, in_c, !is_done(c) && covers(in_c));
+            d = with_sprite(d, sprite, in_d, !is_done(d) && covers(in_d));
         }
-        let number = sprite_number(list, entry);
-        var in_a = vec2f(0.0);
-        var in_b = vec2f(0.0);
-        var in_c = vec2f(0.0);
-        var in_d = vec2f(0.0);
-        var touched = vec4<bool>(false);
-        if is_sphere() {
-            touched = vec4<bool>(rects_meet(rects[number], place, place + vec2u(1u, COLUMN)));
-        } else {
-            let matrix = sprites[number].place_from_texels;
-            let offset = a.place - sprites[number].centre_radius.xy;
-            in_a = vec2f(dot(matrix.xy, offset), dot(matrix.zw, offset));
-            in_b = in_a + matrix.yw;
-            in_c = in_b + matrix.yw;
-            in_d = in_c + matrix.yw;
-            touched = vec4<bool>(is_inside(in_a), is_inside(in_b), is_inside(in_c), is_inside(in_d));
-            for (var once = any(touched); once; once = false) {
-                let filled = sprites[number].filled;
-                touched &= vec4<bool>(
-                    is_filled(filled, in_a),
-                    is_filled(filled, in_b),
-                    is_filled(filled, in_c),
-                    is_filled(filled, in_d),
-                );
+        if STOPS {
+            if !is_opaque && is_done(a) && is_done(b) && is_done(c) && is_done(d) {
+                is_opaque = true;
+                atomicAdd(&opaque_columns[local_place.y], 1u);
             }
-        }
-        // A loop of one step: llvmpipe steps over a branch instruction by instruction, and leaves a loop at once.
-        for (var once = any(touched); once; once = false) {
-            let sprite = sprites[number];
-            if sprite_front(sprite.centre_radius) > end {
+            if atomicLoad(&opaque_columns[local_place.y]) == columns {
                 break;
             }
-            a = with_sprite(a, sprite, in_a, touched.x);
-            b = with_sprite(b, sprite, in_b, touched.y);
-            c = with_sprite(c, sprite, in_c, touched.z);
-            d = with_sprite(d, sprite, in_d, touched.w);
         }
     }
-    write_texel(place, a);
-    if place.y + 1u < size.y { write_texel(place + vec2u(0u, 1u), b); }
-    if place.y + 2u < size.y { write_texel(place + vec2u(0u, 2u), c); }
-    if place.y + 3u < size.y { write_texel(place + vec2u(0u, 3u), d); }
+    write_texel(low, a);
+    if low.y + 1u < size.y { write_texel(low + vec2u(0u, 1u), b); }
+    if low.y + 2u < size.y { write_texel(low + vec2u(0u, 2u), c); }
+    if low.y + 3u < size.y { write_texel(low + vec2u(0u, 3u), d); }
+}
+
+// True where a texel lies in a sprite. `place`: in a square.
+fn covers(place: vec2f) -> bool {
+    return is_sphere() || is_inside(place);
 }

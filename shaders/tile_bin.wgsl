@@ -61,6 +61,20 @@ fn count_sprites(@builtin(global_invocation_id) invocation: vec3u) {
     counts[bin * tiles.runs + run] = count;
 }
 
+// A bin's list of so many, `words` for each. Lists lie in any order, what is in them does not.
+fn bin_list(length: u32, words: u32) -> vec2u {
+    let size = min(length, 0xffffffffu / words) * words;
+    var first = atomicLoad(&tally.entries);
+    loop {
+        let added = atomicCompareExchangeWeak(&tally.entries, first, entries_after(first, size));
+        if added.exchanged {
+            break;
+        }
+        first = added.old_value;
+    }
+    return select(vec2u(EVERYTHING, tally.shown), vec2u(first, length), list_fits(first, size, tiles.capacity));
+}
+
 // One workgroup for each bin.
 @compute @workgroup_size(256)
 fn allocate(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bin: vec3u) {
@@ -79,27 +93,11 @@ fn allocate(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) 
         length += scan_sums[SCAN_SIZE - 1u];
     }
     if local == 0u {
-        bins[bin.x] = allocated(length);
+        bins[bin.x] = bin_list(length, 1u);
     }
 }
 
-// Room for a list. Lists lie in any order, what is in them does not.
-fn allocated(length: u32) -> vec2u {
-    var first = atomicLoad(&tally.entries);
-    loop {
-        // More than 32 bits can count are as many as they can.
-        let next = first + min(length, 0xffffffffu - first);
-        let added = atomicCompareExchangeWeak(&tally.entries, first, next);
-        if added.exchanged {
-            break;
-        }
-        first = added.old_value;
-    }
-    let fits = length <= tiles.capacity && first <= tiles.capacity - length;
-    return select(vec2u(EVERYTHING, tally.shown), vec2u(first, length), fits);
-}
-
-// The same, one invocation for each bin.
+// The same, one invocation for each bin, and with room for what tile_refine finds of each sprite.
 @compute @workgroup_size(64)
 fn allocate_alone(@builtin(global_invocation_id) invocation: vec3u) {
     let bin = invocation.x;
@@ -112,7 +110,7 @@ fn allocate_alone(@builtin(global_invocation_id) invocation: vec3u) {
         counts[bin * tiles.runs + run] = length;
         length += count;
     }
-    bins[bin] = allocated(length);
+    bins[bin] = bin_list(length, 3u);
 }
 
 @compute @workgroup_size(64)

@@ -68,7 +68,12 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
         sprite.weight = order_weight(system.depth_weight, in_front);
     }
     let shown = !placed.hidden && all(first < last);
-    sprites[number] = sprite;
+    if shown {
+        sprites[number] = sprite;
+    } else {
+        // Nothing is seen of it where all sprites are read.
+        sprites[number] = TileSprite();
+    }
     rects[number] = select(vec2u(0u), packed_rect(vec2u(first), vec2u(last)), shown);
     let backwards = tiles.count - 1u - number;
     keys[backwards] = select(HIDDEN_KEY, front_to_back_bits(centre.z), shown);

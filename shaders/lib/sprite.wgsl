@@ -74,17 +74,32 @@ fn load_sprite_bilinear(sprite: texture_2d_array<f32>, uv: vec2f, frame: i32, le
     return mix(top, bottom, fraction.y);
 }
 
+// The mip chain is whole. WebGL2 cannot ask for the number of levels; the small term is for log2's rounding.
+fn last_level(sprite: texture_2d_array<f32>) -> f32 {
+    return floor(log2(f32(textureDimensions(sprite).x)) + 1.0e-3);
+}
+
 fn sample_sprite_frame(sprite: texture_2d_array<f32>, linear_sampler: sampler, uv: vec2f, frame: i32, lod: f32) -> vec4f {
     if !EXACT_FILTERING {
         return textureSampleLevel(sprite, linear_sampler, uv, frame, lod);
     }
-    // The mip chain is whole. WebGL2 cannot ask for the number of levels; the small term is for log2's rounding.
-    let last = floor(log2(f32(textureDimensions(sprite).x)) + 1.0e-3);
+    let last = last_level(sprite);
     let level = min(lod, last);
     let base = floor(level);
     let fine = load_sprite_bilinear(sprite, uv, frame, i32(base));
     let coarse = load_sprite_bilinear(sprite, uv, frame, i32(min(base + 1.0, last)));
     return mix(fine, coarse, level - base);
+}
+
+// Four loads in place of a lookup, at a whole level: llvmpipe takes less time for them in compute shaders, but only right if the level
+// is the same for all invocations that it runs side by side.
+override LOADS_SPRITE: bool = false;
+
+fn sample_at_level(sprite: texture_2d_array<f32>, linear_sampler: sampler, uv: vec2f, frame: i32, level: f32) -> vec4f {
+    if LOADS_SPRITE {
+        return load_sprite_bilinear(sprite, uv, frame, i32(min(level, last_level(sprite))));
+    }
+    return sample_sprite_frame(sprite, linear_sampler, uv, frame, level);
 }
 
 // A flipbook at a moment between two frames. uv 0..1, v down. `motion` is where texels go from the first frame to the second, in
@@ -97,10 +112,10 @@ fn sample_flipbook(
     motion: vec2f,
     lod: f32,
 ) -> vec4f {
-    var texel = sample_sprite_frame(sprite, linear_sampler, uv - motion * frames.blend, frames.first, lod);
+    var texel = sample_at_level(sprite, linear_sampler, uv - motion * frames.blend, frames.first, lod);
     if frames.blend > 0.0 {
         let place = uv + motion * (1.0 - frames.blend);
-        let next = sample_sprite_frame(sprite, linear_sampler, place, frames.second, lod);
+        let next = sample_at_level(sprite, linear_sampler, place, frames.second, lod);
         texel = mix(texel, next, frames.blend);
     }
     return texel;

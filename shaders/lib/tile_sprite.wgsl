@@ -2,6 +2,17 @@
 
 #import "lib/sprite_fragment.wgsl"
 
+// Sprites are compared with the host's depth, not with the reduced one.
+override HOST_DEPTH: bool = false;
+
+// View depth of a texel of the one that they are compared with.
+fn tested_view_depth(texel: f32) -> f32 {
+    if HOST_DEPTH {
+        return host_view_depth(texel);
+    }
+    return texel * system.depth_limit;
+}
+
 struct TileSprite {
     // Squares: rows of the matrix from texels, from the middle, to the place in the square, -1..1.
     place_from_texels: vec4f,
@@ -29,11 +40,32 @@ fn filled_cells(filled: texture_2d<u32>, frames: FlipbookFrames, lod: f32) -> ve
     return cells;
 }
 
+// The cell of a picture at a place in a square, -1..1, or the nearest.
+fn cell_at(place: vec2f) -> vec2u {
+    return vec2u(clamp(sprite_uv(place) * 8.0, vec2f(0.0), vec2f(7.0)));
+}
+
 // True at a place in a square, -1..1, where its picture is not clear.
 fn is_filled(cells: vec2u, place: vec2f) -> bool {
-    let cell = vec2u(clamp(sprite_uv(place) * 8.0, vec2f(0.0), vec2f(7.0)));
+    let cell = cell_at(place);
     let rows = select(cells.x, cells.y, cell.y >= 4u);
     return ((rows >> ((cell.y & 3u) * 8u + cell.x)) & 1u) == 1u;
+}
+
+// True if the picture is not clear everywhere between two places in a square, -1..1.
+fn is_filled_between(cells: vec2u, low: vec2f, high: vec2f) -> bool {
+    // v points down.
+    let first = cell_at(vec2f(low.x, high.y));
+    let last = cell_at(vec2f(high.x, low.y));
+    let columns = ((2u << last.x) - (1u << first.x)) * 0x01010101u;
+    let upper = bytes_below(min(last.y + 1u, 4u)) & ~bytes_below(min(first.y, 4u));
+    let lower = bytes_below(max(last.y, 3u) - 3u) & ~bytes_below(max(first.y, 4u) - 4u);
+    return any((cells & vec2u(upper, lower) & vec2u(columns)) != vec2u(0u));
+}
+
+// All bits of the lowest bytes of a word.
+fn bytes_below(count: u32) -> u32 {
+    return select((1u << (count * 8u)) - 1u, 0xffffffffu, count >= 4u);
 }
 
 // Bits that order as view depths do, near to far: of view z, from front to back. (Herf, "Radix tricks", 2001)
@@ -64,13 +96,13 @@ fn place_in_square(sprite: TileSprite, texel: vec2f) -> vec2f {
     return vec2f(dot(sprite.place_from_texels.xy, offset), dot(sprite.place_from_texels.zw, offset));
 }
 
-// False where a square does not come near a rectangle; half its sides in `half_size`. Exact but for the corners.
-fn square_meets(sprite: TileSprite, middle: vec2f, half_size: vec2f) -> bool {
-    let reach = vec2f(
-        dot(abs(sprite.place_from_texels.xy), half_size),
-        dot(abs(sprite.place_from_texels.zw), half_size),
-    );
-    return all(abs(place_in_square(sprite, middle)) <= reach + 1.0);
+// False where there is nothing of a square in a rectangle of texels, half its sides in `half_size`: exact but for the corners, and for
+// as much of a texel as rounding may hide.
+fn square_fills(sprite: TileSprite, middle: vec2f, half_size: vec2f) -> bool {
+    let matrix = abs(sprite.place_from_texels);
+    let reach = vec2f(dot(matrix.xy, half_size + 0.01), dot(matrix.zw, half_size + 0.01));
+    let place = place_in_square(sprite, middle);
+    return all(abs(place) <= reach + 1.0) && is_filled_between(sprite.filled, place - reach, place + reach);
 }
 
 // What the rasterizer would hand to the fragment at a texel. `ray`: through it.

@@ -27,6 +27,14 @@ const HIDDEN_KEY: u32 = 0xffffffffu;
 // In place of where a bin's list begins: it has none, and reads all sprites.
 const EVERYTHING: u32 = 0xffffffffu;
 
+// Texels of a tile, where invocations walk alone: a row of lanes, and a column for each. ALONE in src/renderer/pass/tile_refine.rs.
+const TILE_ALONE: vec2u = vec2u(8u, 4u);
+
+// How many of them lie along so many texels.
+fn tiles_along(texels: u32) -> u32 {
+    return (texels + TILE_ALONE.x - 1u) / TILE_ALONE.x;
+}
+
 // What a frame turns out to have.
 struct Tally {
     // Sprites to draw: the first of the sorted ones.
@@ -45,4 +53,14 @@ fn rects_meet(rect: vec2u, low: vec2u, high: vec2u) -> bool {
     let first = vec2u(rect.x & 0xffffu, rect.x >> 16u);
     let last = vec2u(rect.y & 0xffffu, rect.y >> 16u);
     return all(first < high) && all(low < last);
+}
+
+// Entries of all lists after one more of so many: as many as 32 bits can count, at the most.
+fn entries_after(entries: u32, length: u32) -> u32 {
+    return entries + min(length, 0xffffffffu - entries);
+}
+
+// True where a list of so many from an entry on is whole.
+fn list_fits(first: u32, length: u32, capacity: u32) -> bool {
+    return length <= capacity && first <= capacity - length;
 }

@@ -235,7 +235,7 @@ fn tiled_keys(key: &AccumulateKey, layers: Layers, in_step: bool, exact_filterin
             host_depth,
             // A weighted normal counts, whatever is in front.
             stops: layers == Layers::Visible && !weighted,
-            // Where invocations walk alone, lanes of llvmpipe diverge in the level that texels are read from.
+            // The walk alone filters the sprite in its own way.
             in_step: in_step || exact_filtering,
         },
     }

@@ -13,6 +13,7 @@ pub(crate) mod sprites;
 pub(crate) mod tile_accumulate;
 pub(crate) mod tile_bin;
 pub(crate) mod tile_project;
+pub(crate) mod tile_refine;
 pub(crate) mod transfer;
 
 /// Bind groups 0 to 2 of a system's passes.

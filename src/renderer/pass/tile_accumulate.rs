@@ -7,12 +7,13 @@ use glam::UVec2;
 
 use super::Groups;
 use super::sprites::SpriteKey;
+use super::tile_refine;
 use crate::renderer::gpu::pipeline::{ComputeParts, switch, variant};
 use crate::settings::{AccumulationFormat, NormalEncoding};
 
 /// Texels along a workgroup's sides: of `in_step`, and of `alone`, in `shaders/tile_accumulate.wgsl`.
 const IN_STEP: UVec2 = UVec2::new(8, 16);
-const ALONE: UVec2 = UVec2::new(8, 32);
+const ALONE: UVec2 = UVec2::new(tile_refine::ALONE.x, 8 * tile_refine::ALONE.y);
 
 /// What makes one pipeline differ from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -41,6 +42,7 @@ pub(crate) fn describe(key: TileAccumulateKey) -> ComputeParts {
             switch("BYTE_TARGET", key.format == AccumulationFormat::Rgba8Unorm),
             switch("SUMS_WEIGHTS", key.sums_weights),
             switch("STOPS", key.stops),
+            switch("LOADS_SPRITE", !key.in_step),
         ]),
     }
 }

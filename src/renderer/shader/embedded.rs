@@ -26,6 +26,7 @@ pub(super) const SOURCES: &[(&str, &str)] = embed![
     "tile_accumulate.wgsl",
     "tile_bin.wgsl",
     "tile_project.wgsl",
+    "tile_refine.wgsl",
     "transfer.wgsl",
     "lib/accumulated.wgsl",
     "lib/bindings.wgsl",

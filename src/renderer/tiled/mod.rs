@@ -1,9 +1,13 @@
 //! Accumulation by compute shaders: what all systems of a device share, and what one system owns.
 
+mod buffers;
 mod emission;
+mod passes;
 mod shared;
 mod system;
 
+pub(crate) use buffers::{PARTICLE_STEP, SPRITE};
 pub(crate) use emission::Emitted;
+pub(crate) use passes::TiledPasses;
 pub(crate) use shared::{Tiled, TiledKeys};
-pub(crate) use system::{PARTICLE_STEP, SPRITE, TiledInputs, TiledPasses, TiledSystem};
+pub(crate) use system::{TiledInputs, TiledSystem};

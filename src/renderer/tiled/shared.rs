@@ -13,6 +13,7 @@ use crate::renderer::pass::sort::{self, SortKey};
 use crate::renderer::pass::tile_accumulate::{self, TileAccumulateKey};
 use crate::renderer::pass::tile_bin::{self, TileBinKey};
 use crate::renderer::pass::tile_project::{self, TileProjectKey};
+use crate::renderer::pass::tile_refine::{self, TileRefineKey};
 use crate::renderer::targets::{storage_target, tiled_formats};
 
 /// Layouts, shaders and pipelines. Only devices that can run them have this.
@@ -29,6 +30,7 @@ pub(crate) struct Tiled {
     project: Variants<TileProjectKey, ComputeParts>,
     sort: Variants<SortKey, ComputeParts>,
     bin: Variants<TileBinKey, ComputeParts>,
+    refine: Variants<TileRefineKey, ComputeParts>,
     accumulate: Variants<TileAccumulateKey, ComputeParts>,
 }
 
@@ -39,6 +41,7 @@ pub(crate) struct TiledLayouts {
     pub project: wgpu::BindGroupLayout,
     pub sort: wgpu::BindGroupLayout,
     pub bin: wgpu::BindGroupLayout,
+    pub refine: wgpu::BindGroupLayout,
     pub accumulate: wgpu::BindGroupLayout,
 }
 
@@ -49,11 +52,21 @@ pub(crate) struct TiledKeys {
     pub accumulate: TileAccumulateKey,
 }
 
+impl TiledKeys {
+    /// None where workgroups walk in step: they read what their bin has.
+    fn refine(&self) -> Option<[TileRefineKey; 2]> {
+        let TileAccumulateKey { sprite, host_depth, in_step, .. } = self.accumulate;
+        (!in_step).then(|| tile_refine::keys(sprite, host_depth))
+    }
+}
+
 /// The pipelines of one system.
 pub(crate) struct TiledPipelines {
     pub project: wgpu::ComputePipeline,
     pub sort: Option<[wgpu::ComputePipeline; sort::STEPS]>,
     pub bin: [wgpu::ComputePipeline; 4],
+    /// Where invocations walk alone.
+    pub refine: Option<[wgpu::ComputePipeline; 2]>,
     pub accumulate: wgpu::ComputePipeline,
 }
 
@@ -81,6 +94,7 @@ impl Tiled {
             project: variants!(tile_project, &with(&own.project)),
             sort: variants!(sort, &[Some(&own.sort)]),
             bin: variants!(tile_bin, &[Some(&own.bin)]),
+            refine: variants!(tile_refine, &with(&own.refine)),
             accumulate: variants!(tile_accumulate, &with(&own.accumulate)),
             layouts: own,
         })
@@ -97,7 +111,12 @@ impl Tiled {
 
     /// Pipelines compiled so far.
     pub fn pipeline_count(&self) -> usize {
-        self.emit.len() + self.project.len() + self.sort.len() + self.bin.len() + self.accumulate.len()
+        self.emit.len()
+            + self.project.len()
+            + self.sort.len()
+            + self.bin.len()
+            + self.refine.len()
+            + self.accumulate.len()
     }
 
     /// Compiles what these keys need, or says what is wrong with the shaders.
@@ -107,6 +126,7 @@ impl Tiled {
         sort::keys().into_iter().try_for_each(|key| self.sort.check(device, key))?;
         let bins = [true, false].map(|sorted| tile_bin::keys(keys.accumulate.in_step, sorted));
         bins.into_iter().flatten().try_for_each(|key| self.bin.check(device, key))?;
+        keys.refine().into_iter().flatten().try_for_each(|key| self.refine.check(device, key))?;
         self.accumulate.check(device, keys.accumulate)
     }
 
@@ -121,6 +141,7 @@ impl Tiled {
             project: self.project.get(device, keys.project),
             sort: sorts.then(|| sort::keys().map(|key| self.sort.get(device, key))),
             bin: tile_bin::keys(keys.accumulate.in_step, sorts).map(|key| self.bin.get(device, key)),
+            refine: keys.refine().map(|keys| keys.map(|key| self.refine.get(device, key))),
             accumulate: self.accumulate.get(device, keys.accumulate),
         }
     }
@@ -168,6 +189,7 @@ impl TiledLayouts {
                 "haze tile_bin inputs",
                 &[uniform, read, read, read, written, written, written, written, written],
             ),
+            refine: layout("haze tile_refine inputs", &[uniform, read, read, read, depth, written, written, written]),
             accumulate: layout(
                 "haze tile_accumulate inputs",
                 &[uniform, read, read, read, read, read, depth, float, byte, weights],

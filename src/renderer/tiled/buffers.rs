@@ -1,0 +1,261 @@
+//! Buffers of one system, and the bind groups of its passes.
+
+use std::sync::Arc;
+
+use super::shared::Tiled;
+use crate::formula::uniforms::TilesUniform;
+use crate::renderer::gpu::Gpu;
+use crate::renderer::gpu::record::uniform_buffer;
+use crate::renderer::memory::TiledMemory;
+use crate::renderer::pass::sort::{BLOCK, DIGITS};
+use crate::renderer::pass::sprites::Sprites;
+use crate::settings::AccumulationFormat;
+
+/// Bytes of a sprite: TileSprite in `shaders/lib/tile_sprite.wgsl`.
+pub(crate) const SPRITE: u64 = 64;
+/// Bytes of a packed rectangle, and of a key, number or count.
+const RECT: u64 = 8;
+pub(super) const WORD: u64 = 4;
+/// Bytes that `first` counts in.
+pub(crate) const PARTICLE_STEP: u64 = 16;
+
+/// What they are bound to, and the buffers between them.
+#[derive(Debug)]
+pub(super) struct Held {
+    pub capacity: Capacity,
+    pub uniform: wgpu::Buffer,
+    pub tally: wgpu::Buffer,
+    sprites: wgpu::Buffer,
+    rects: wgpu::Buffer,
+    /// Two pairs, sorted by turns.
+    keys: [wgpu::Buffer; 2],
+    numbers: [wgpu::Buffer; 2],
+    sorted_rects: wgpu::Buffer,
+    digit_counts: wgpu::Buffer,
+    digit_totals: wgpu::Buffer,
+    bin_counts: wgpu::Buffer,
+    lists: wgpu::Buffer,
+    bins: wgpu::Buffer,
+    tile_lists: wgpu::Buffer,
+    pub read_back: Arc<wgpu::Buffer>,
+    pub there_and_back: [wgpu::BindGroup; 2],
+    pub bin: wgpu::BindGroup,
+    /// With the host's own things, made anew when they are others.
+    project: Option<(Part, wgpu::BindGroup)>,
+    refine: Option<(wgpu::TextureView, wgpu::BindGroup)>,
+    accumulate: Option<(Vec<wgpu::TextureView>, wgpu::BindGroup)>,
+}
+
+/// The part of a buffer with a system's particles: from an offset that can be bound.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Part {
+    buffer: wgpu::Buffer,
+    offset: u64,
+    size: u64,
+    /// The first particle in it, in steps.
+    pub first: u32,
+}
+
+/// How much fits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Capacity {
+    pub particles: u32,
+    pub bins: u32,
+    /// Runs of all bins.
+    pub runs: u32,
+    /// None where workgroups walk in step.
+    pub tiles: u32,
+    pub entries: u32,
+}
+
+impl Capacity {
+    /// With room to grow. Lists that would be longer than a buffer can be are left out.
+    pub fn with_room(self, most: u32) -> Self {
+        Self {
+            particles: self.particles.next_power_of_two(),
+            bins: self.bins.next_power_of_two(),
+            runs: self.runs.next_power_of_two().min(most),
+            tiles: if self.tiles == 0 { 0 } else { self.tiles.next_power_of_two() },
+            entries: self.entries.min(1 << 31).next_power_of_two().min(most),
+        }
+    }
+
+    fn all(&self) -> [u32; 5] {
+        [self.particles, self.bins, self.runs, self.tiles, self.entries]
+    }
+
+    pub fn holds(&self, needed: &Self) -> bool {
+        let walks_alike = (self.tiles == 0) == (needed.tiles == 0);
+        walks_alike && self.all().iter().zip(needed.all()).all(|(held, needed)| *held >= needed)
+    }
+
+    pub fn is_wasted_on(&self, needed: &Self) -> bool {
+        self.all().iter().zip(needed.all()).any(|(held, needed)| *held > 0 && held / 4 >= needed)
+    }
+}
+
+impl Held {
+    pub fn new(device: &wgpu::Device, tiled: &Tiled, capacity: Capacity) -> Self {
+        let storage = |name, count: u32, bytes: u64| {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(name),
+                size: u64::from(count) * bytes,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let Capacity { particles, bins, runs, tiles, entries } = capacity;
+        let uniform = uniform_buffer(device, "haze tiles", size_of::<TilesUniform>() as u64);
+        let tally = storage("haze tally", 2, WORD);
+        let rects = storage("haze sprite rectangles", particles, RECT);
+        let keys = ["haze sort keys", "haze sort keys, sorted"].map(|name| storage(name, particles, WORD));
+        let numbers = ["haze sort numbers", "haze sort numbers, sorted"].map(|name| storage(name, particles, WORD));
+        let sorted_rects = storage("haze sorted rectangles", particles, RECT);
+        let digit_counts = storage("haze digit counts", particles.div_ceil(BLOCK) * DIGITS, WORD);
+        let digit_totals = storage("haze digit totals", DIGITS, WORD);
+        let bin_counts = storage("haze bin counts", runs, WORD);
+        let lists = storage("haze bin lists", entries, WORD);
+        let bins = storage("haze bins", bins, RECT);
+        let read_back = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("haze tally"),
+            size: 2 * WORD,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let there_and_back = [(0, 1), (1, 0)].map(|(from, to)| {
+            let buffers =
+                [&uniform, &keys[from], &numbers[from], &keys[to], &numbers[to], &digit_counts, &digit_totals];
+            bind(device, &tiled.layouts.sort, buffers.map(wgpu::Buffer::as_entire_binding))
+        });
+        let buffers = [&uniform, &keys[0], &numbers[0], &rects, &sorted_rects, &bin_counts, &lists, &bins, &tally];
+        let bin = bind(device, &tiled.layouts.bin, buffers.map(wgpu::Buffer::as_entire_binding));
+        Self {
+            capacity,
+            sprites: storage("haze tile sprites", particles, SPRITE),
+            read_back: Arc::new(read_back),
+            there_and_back,
+            bin,
+            // Something must be bound.
+            tile_lists: storage("haze tile lists", tiles.max(1), RECT),
+            project: None,
+            refine: None,
+            accumulate: None,
+            uniform,
+            tally,
+            rects,
+            keys,
+            numbers,
+            sorted_rects,
+            digit_counts,
+            digit_totals,
+            bin_counts,
+            lists,
+            bins,
+        }
+    }
+
+    pub fn memory(&self) -> TiledMemory {
+        let bytes = |buffers: &[&wgpu::Buffer]| buffers.iter().map(|buffer| buffer.size()).sum();
+        let ([keys, other_keys], [numbers, other_numbers]) = (&self.keys, &self.numbers);
+        TiledMemory {
+            emitted: 0,
+            sprites: bytes(&[&self.uniform, &self.sprites, &self.rects, &self.sorted_rects]),
+            keys: bytes(&[keys, other_keys, numbers, other_numbers]),
+            counts: bytes(&[&self.digit_counts, &self.digit_totals, &self.bin_counts, &self.tally, &self.read_back]),
+            lists: bytes(&[&self.lists, &self.bins, &self.tile_lists]),
+        }
+    }
+
+    pub fn bind_project(&mut self, gpu: &Gpu<'_>, tiled: &Tiled, particles: Part) -> wgpu::BindGroup {
+        match &self.project {
+            Some((bound, group)) if *bound == particles => group.clone(),
+            _ => {
+                let Self { uniform, sprites, rects, keys, numbers, .. } = self;
+                let buffers = [sprites, rects, &keys[0], &numbers[0]].map(wgpu::Buffer::as_entire_binding);
+                let own = [uniform.as_entire_binding(), particles.binding()];
+                let group = bind(gpu.device, &tiled.layouts.project, own.into_iter().chain(buffers));
+                self.project = Some((particles, group.clone()));
+                group
+            }
+        }
+    }
+
+    pub fn bind_refine(&mut self, gpu: &Gpu<'_>, tiled: &Tiled, depth: &wgpu::TextureView) -> wgpu::BindGroup {
+        match &self.refine {
+            Some((bound, group)) if bound == depth => group.clone(),
+            _ => {
+                let Self { uniform, sprites, rects, lists, bins, tile_lists, tally, .. } = self;
+                let read = [&*uniform, sprites, rects, bins].map(wgpu::Buffer::as_entire_binding);
+                let written = [lists, tile_lists, tally].map(|buffer| buffer.as_entire_binding());
+                let depth_binding = wgpu::BindingResource::TextureView(depth);
+                let resources = read.into_iter().chain([depth_binding]).chain(written);
+                let group = bind(gpu.device, &tiled.layouts.refine, resources);
+                self.refine = Some((depth.clone(), group.clone()));
+                group
+            }
+        }
+    }
+
+    pub fn bind_accumulate(
+        &mut self,
+        gpu: &Gpu<'_>,
+        tiled: &Tiled,
+        format: AccumulationFormat,
+        attachments: &[wgpu::TextureView],
+        depth: &wgpu::TextureView,
+    ) -> wgpu::BindGroup {
+        let [float, byte, weights] = &tiled.unwritten;
+        let (float, byte) = match format {
+            AccumulationFormat::Rgba16Float => (attachments.first().unwrap_or(float), byte),
+            AccumulationFormat::Rgba8Unorm => (float, attachments.first().unwrap_or(byte)),
+        };
+        let views = [depth, float, byte, attachments.get(1).unwrap_or(weights)];
+        match &self.accumulate {
+            Some((bound, group)) if bound.iter().eq(views) => group.clone(),
+            _ => {
+                let Self { uniform, sprites, rects, numbers, lists, bins, tile_lists, .. } = self;
+                let listed = if self.capacity.tiles > 0 { tile_lists } else { bins };
+                let buffers = [&*uniform, sprites, rects, &numbers[0], lists, listed];
+                let textures = views.map(wgpu::BindingResource::TextureView);
+                let resources = buffers.map(wgpu::Buffer::as_entire_binding).into_iter().chain(textures);
+                let group = bind(gpu.device, &tiled.layouts.accumulate, resources);
+                self.accumulate = Some((views.map(wgpu::TextureView::clone).to_vec(), group.clone()));
+                group
+            }
+        }
+    }
+}
+
+impl Part {
+    pub fn new(limits: &wgpu::Limits, sprites: &Sprites) -> Self {
+        let before = sprites.offset % u64::from(limits.min_storage_buffer_offset_alignment);
+        let offset = sprites.offset - before;
+        Self {
+            buffer: sprites.buffer.clone(),
+            offset,
+            // All of it, so that another number of particles needs no other binding.
+            size: (sprites.buffer.size() - offset).min(limits.max_storage_buffer_binding_size) & !3,
+            first: (before / PARTICLE_STEP) as u32,
+        }
+    }
+
+    fn binding(&self) -> wgpu::BindingResource<'_> {
+        let Self { buffer, offset, size, .. } = self;
+        wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer,
+            offset: *offset,
+            size: wgpu::BufferSize::new(*size),
+        })
+    }
+}
+
+/// A bind group of resources in the order of its layout.
+pub(super) fn bind<'a>(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    resources: impl IntoIterator<Item = wgpu::BindingResource<'a>>,
+) -> wgpu::BindGroup {
+    let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
+    let entries: Vec<_> = (0..).zip(resources).map(entry).collect();
+    device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("haze tiled"), layout, entries: &entries })
+}
