@@ -221,6 +221,8 @@ fn save(folder: &Path, medium: &str, rows: &[&Pictures]) {
         let code = texel.to_array().map(|light| haze::formula::colour::srgb_from_linear(light.clamp(0.0, 1.0)));
         image::Rgb(code.map(|code| (code * 255.0).round() as u8))
     });
+    let (width, height) = picture.dimensions();
+    let picture = image::imageops::resize(&picture, 2 * width, 2 * height, image::imageops::FilterType::CatmullRom);
     picture.save(folder.join(format!("column_{medium}.png"))).unwrap();
 }
 
