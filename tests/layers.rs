@@ -230,7 +230,13 @@ fn of_the_system(text: &str) -> Option<&'static str> {
             spell_out("", &code[start..], &mut said);
         }
     }
-    OF_THE_SYSTEM.iter().find(|word| said.iter().any(|said| said.contains(**word))).copied()
+    OF_THE_SYSTEM.iter().find(|word| said.iter().any(|said| says(said, word))).copied()
+}
+
+/// A word that begins there: `puffs::` is no `fs::`.
+fn says(text: &str, word: &str) -> bool {
+    let is_name = |letter: char| letter.is_alphanumeric() || letter == '_';
+    text.match_indices(word).any(|(start, _)| !word.starts_with(is_name) || !text[..start].ends_with(is_name))
 }
 
 #[test]
@@ -253,6 +259,7 @@ fn the_window_touches_disk_clock_and_threads_in_one_place() {
     assert_eq!(of_the_system("use std::{env, fs};"), Some("std::fs"));
     assert_eq!(of_the_system("use haze::picture::{Picture, write_png};"), Some("haze::picture::write_"));
     assert_eq!(of_the_system("let sprite = Sprite::load(path); // std::fs"), Some("::load("));
+    assert_eq!(of_the_system("use crate::app::puffs::pairs;"), None);
     assert_eq!(of_the_system("use super::platform::clock::Instant;\nflag.load(Ordering::Relaxed);"), None);
 }
 
