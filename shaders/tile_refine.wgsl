@@ -83,15 +83,10 @@ fn refine(@builtin(global_invocation_id) invocation: vec3u) {
     for (var at = 0u; at < count; at++) {
         length += u32(bitcast<f32>(lists[fronts + at]) <= end) & (lists[marks + at] >> bit);
     }
-    var first = atomicLoad(&tally.entries);
-    loop {
-        let added = atomicCompareExchangeWeak(&tally.entries, first, entries_after(first, length));
-        if added.exchanged {
-            break;
-        }
-        first = added.old_value;
-    }
-    let fits = list.x != EVERYTHING && list_fits(first, length, tiles.capacity);
+    // As bin_list() has it.
+    let is_counted = length <= HALF / (tiles_along(size.x) * ((size.y + TILE_ALONE.y - 1u) / TILE_ALONE.y));
+    let first = atomicAdd(&tally.entries, select(0u, length, is_counted));
+    let fits = is_counted && list.x != EVERYTHING && list_fits(first, length, tiles.capacity);
     tile_lists[invocation.y * tiles_along(size.x) + invocation.x] = select(list, vec2u(first, length), fits);
     // Mesa 22 crashes where the loop is not the first one again.
     let end_of_list = first + select(0u, length, fits);

@@ -39,7 +39,7 @@ fn tiles_along(texels: u32) -> u32 {
 struct Tally {
     // Sprites to draw: the first of the sorted ones.
     shown: u32,
-    // Entries that the lists would need.
+    // Entries that the lists would need, but for those that are too long for 32 bits to count them all.
     entries: atomic<u32>,
 }
 
@@ -55,10 +55,8 @@ fn rects_meet(rect: vec2u, low: vec2u, high: vec2u) -> bool {
     return all(first < high) && all(low < last);
 }
 
-// Entries of all lists after one more of so many: as many as 32 bits can count, at the most.
-fn entries_after(entries: u32, length: u32) -> u32 {
-    return entries + min(length, 0xffffffffu - entries);
-}
+// Entries that bins' lists may come to where tiles have lists as well, and as many again for those.
+const HALF: u32 = 0x7fffffffu;
 
 // True where a list of so many from an entry on is whole.
 fn list_fits(first: u32, length: u32, capacity: u32) -> bool {

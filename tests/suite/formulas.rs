@@ -1598,7 +1598,6 @@ const INDIRECT: &[&str] = &[
     "fragment_of",
     "digit_of",
     "low_of_bin",
-    "entries_after",
     "list_fits",
     "bin_list",
     "tiles_along",
