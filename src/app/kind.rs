@@ -19,8 +19,10 @@ struct Kind {
     is_it: fn(&Path) -> bool,
 }
 
-const KINDS: [Kind; 5] = [
-    Kind { name: "preset", what: "a preset", command: "haze preset check", is_it: |path| Preset::load(path).is_ok() },
+const PRESET: Kind =
+    Kind { name: "preset", what: "a preset", command: "haze preset check", is_it: |path| Preset::load(path).is_ok() };
+
+const RECIPES: [Kind; 4] = [
     Kind {
         name: "ramp",
         what: "a ramp's recipe",
@@ -47,6 +49,11 @@ const KINDS: [Kind; 5] = [
     },
 ];
 
+/// The names of all kinds of recipes.
+pub fn recipes() -> impl Iterator<Item = &'static str> {
+    RECIPES.iter().map(|kind| kind.name)
+}
+
 /// Says of a file that `expected` could not be read from what it is instead, and which command takes it; else the same error.
 /// `own` is the kind that was expected, by its name.
 pub fn explain(error: Error, path: &Path, own: &str, expected: &str) -> Error {
@@ -54,8 +61,9 @@ pub fn explain(error: Error, path: &Path, own: &str, expected: &str) -> Error {
         let stem = Path::new(path.file_stem().unwrap_or_default());
         stem.extension() == Some(OsStr::new(kind.name)) && path.extension() == Some(OsStr::new("json"))
     };
-    let kind =
-        KINDS.iter().find(named).filter(|_| path.is_file()).or_else(|| KINDS.iter().find(|kind| (kind.is_it)(path)));
+    let kinds = || std::iter::once(&PRESET).chain(&RECIPES);
+    let by_name = kinds().find(named).filter(|_| path.is_file());
+    let kind = by_name.or_else(|| kinds().find(|kind| (kind.is_it)(path)));
     match kind.filter(|kind| kind.name != own) {
         Some(Kind { what, command, .. }) => {
             let expected = format!("{expected}; it is {what}: `{command}` takes it");

@@ -12,6 +12,7 @@ use haze::sprite::bake::SpriteRecipe;
 use haze::{Error, FieldError};
 use image::DynamicImage;
 
+use super::kind::recipes;
 use super::output::{Files, say};
 use super::progress::{watched, watched_as};
 
@@ -56,12 +57,9 @@ impl Kinds {
     }
 }
 
-/// The kinds of all recipes.
-const KINDS: [&str; 4] = ["ramp", "motif", "sprite", "noise"];
-
 /// Where recipes of a picture would be: `fire.ramp.json`, and so on, of `fire.png`.
 pub fn recipes_of(picture: &Path) -> impl Iterator<Item = PathBuf> {
-    KINDS.into_iter().map(|kind| picture.with_extension(format!("{kind}.json")))
+    recipes().map(|kind| picture.with_extension(format!("{kind}.json")))
 }
 
 /// `fire.ramp`, of `fire.ramp.json`.
