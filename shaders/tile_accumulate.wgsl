@@ -212,7 +212,7 @@ fn alone(@builtin(global_invocation_id) invocation: vec3u, @builtin(local_invoca
     var d = begun_texel(min(low + vec2u(0u, 3u), last));
     let tile = low / TILE_ALONE;
     let columns = min(size.x - tile.x * TILE_ALONE.x, TILE_ALONE.x);
-    let list = bins[tile.y * tiles_along(size.x) + tile.x];
+    let list = bins[tile.y * tiles_along(size).x + tile.x];
     let entries = list.y * tiles.loops;
     var at = 0u;
     var is_opaque = false;

@@ -67,6 +67,7 @@ fn shown_depth(low: vec2u, high: vec2u) -> f32 {
 @compute @workgroup_size(8, 8)
 fn refine(@builtin(global_invocation_id) invocation: vec3u) {
     let size = vec2u(system.target_size);
+    let all_tiles = tiles_along(size);
     let low = invocation.xy * TILE_ALONE;
     if any(low >= size) {
         return;
@@ -84,10 +85,10 @@ fn refine(@builtin(global_invocation_id) invocation: vec3u) {
         length += u32(bitcast<f32>(lists[fronts + at]) <= end) & (lists[marks + at] >> bit);
     }
     // As bin_list() has it.
-    let is_counted = length <= HALF / (tiles_along(size.x) * ((size.y + TILE_ALONE.y - 1u) / TILE_ALONE.y));
+    let is_counted = length <= HALF / (all_tiles.x * all_tiles.y);
     let first = atomicAdd(&tally.entries, select(0u, length, is_counted));
     let fits = is_counted && list.x != EVERYTHING && list_fits(first, length, tiles.capacity);
-    tile_lists[invocation.y * tiles_along(size.x) + invocation.x] = select(list, vec2u(first, length), fits);
+    tile_lists[invocation.y * all_tiles.x + invocation.x] = select(list, vec2u(first, length), fits);
     // Mesa 22 crashes where the loop is not the first one again.
     let end_of_list = first + select(0u, length, fits);
     var place = first;

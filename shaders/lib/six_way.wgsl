@@ -5,9 +5,9 @@ fn six_way_from_texel(texel: vec3f) -> vec3f {
     return texel * texel;
 }
 
-// How much light is scattered by an angle of this cosine, but for a factor. (Henyey and Greenstein, "Diffuse radiation in the galaxy",
-// 1941) `anisotropy` is the mean cosine.
-fn scattered(cosine: f32, anisotropy: f32) -> f32 {
+// How much light is scattered by an angle of this cosine, but for a factor: (1 - anisotropy^2) / 4 pi makes it a share for each
+// steradian. (Henyey and Greenstein, "Diffuse radiation in the galaxy", 1941) `anisotropy` is the mean cosine, within +-0.95.
+fn henyey_greenstein(cosine: f32, anisotropy: f32) -> f32 {
     let base = 1.0 + anisotropy * anisotropy - 2.0 * anisotropy * cosine;
     return inverseSqrt(base) / base;
 }
@@ -19,9 +19,9 @@ fn scattered(cosine: f32, anisotropy: f32) -> f32 {
 fn six_way_shares(to_light: vec3f, anisotropy: f32) -> vec3f {
     // As if light were scattered evenly, all angles would be alike, and nothing to go by.
     let g = max(anisotropy, 0.02);
-    let beside = scattered(0.0, g);
-    let end = scattered(select(-1.0, 1.0, to_light.z < 0.0), g);
-    let along = saturate((scattered(-to_light.z, g) - beside) / (end - beside));
+    let beside = henyey_greenstein(0.0, g);
+    let end = henyey_greenstein(select(-1.0, 1.0, to_light.z < 0.0), g);
+    let along = saturate((henyey_greenstein(-to_light.z, g) - beside) / (end - beside));
     let squares = to_light.xy * to_light.xy;
     return vec3f(squares * ((1.0 - along) / max(squares.x + squares.y, 1.0e-6)), along);
 }

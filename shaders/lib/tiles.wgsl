@@ -30,9 +30,9 @@ const EVERYTHING: u32 = 0xffffffffu;
 // Texels of a tile, where invocations walk alone: a row of lanes, and a column for each. ALONE in src/renderer/pass/tile_refine.rs.
 const TILE_ALONE: vec2u = vec2u(8u, 4u);
 
-// How many of them lie along so many texels.
-fn tiles_along(texels: u32) -> u32 {
-    return (texels + TILE_ALONE.x - 1u) / TILE_ALONE.x;
+// How many of them lie along the sides of so many texels.
+fn tiles_along(size: vec2u) -> vec2u {
+    return (size + TILE_ALONE - 1u) / TILE_ALONE;
 }
 
 // What a frame turns out to have.

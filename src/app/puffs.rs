@@ -57,15 +57,14 @@ fn enlarged(picture: &RgbImage) -> RgbImage {
     resize(picture, SIDE, SIDE, FilterType::CatmullRom)
 }
 
-/// What is shown in place of the path-traced puff: what it is called, its picture under a light, and what that is multiplied with.
+/// What is shown in place of the path-traced puff: its picture under a light, and what that is multiplied with.
 pub struct Shown<'a> {
-    pub name: &'a str,
     pub light: &'a dyn Fn(usize) -> Picture<Vec3>,
     pub exposure: f32,
 }
 
-/// The path-traced puff, what is shown, and how far they are apart; below each other.
-pub fn compared(puff: &Puff, shown: &Shown<'_>) -> RgbImage {
+/// The path-traced puff, what is shown by a name, and how far they are apart; below each other.
+pub fn compared(puff: &Puff, name: &str, shown: &Shown<'_>) -> RgbImage {
     let mut sheet = Sheet::new(UVec2::splat(SIDE), SHOWN as u32, 3 * SHOWN as u32);
     let white = white(puff);
     for light in 0..SHOWN {
@@ -74,7 +73,7 @@ pub fn compared(puff: &Puff, shown: &Shown<'_>) -> RgbImage {
             let [a, b] = [truth.get_pixel(x, y).0, ours.get_pixel(x, y).0];
             Rgb(std::array::from_fn(|channel| a[channel].abs_diff(b[channel])))
         });
-        for (row, (what, picture)) in [("truth", truth), (shown.name, ours), ("apart", apart)].iter().enumerate() {
+        for (row, (what, picture)) in [("truth", truth), (name, ours), ("apart", apart)].iter().enumerate() {
             let label = format!("{what}, {}", degrees(light));
             sheet.place((row * SHOWN + light) as u32, &label, &enlarged(picture));
         }

@@ -18,9 +18,9 @@ pub fn six_way_from_texel(texel: Vec3) -> Vec3 {
     texel * texel
 }
 
-/// How much light is scattered by an angle of this cosine, but for a factor. (Henyey and Greenstein, "Diffuse radiation in the
-/// galaxy", 1941) `anisotropy` is the mean cosine.
-pub fn scattered(cosine: f32, anisotropy: f32) -> f32 {
+/// How much light is scattered by an angle of this cosine, but for a factor: (1 − anisotropy²) ÷ 4π makes it a share for each
+/// steradian. (Henyey and Greenstein, "Diffuse radiation in the galaxy", 1941) `anisotropy` is the mean cosine, within ±0.95.
+pub fn henyey_greenstein(cosine: f32, anisotropy: f32) -> f32 {
     let base = 1.0 + anisotropy * anisotropy - 2.0 * anisotropy * cosine;
     1.0 / (base * base.sqrt())
 }
@@ -33,8 +33,8 @@ pub fn six_way_shares(to_light: Vec3, anisotropy: f32) -> Vec3 {
     // As if light were scattered evenly, all angles would be alike, and nothing to go by.
     let g = anisotropy.max(0.02);
     let end = if to_light.z < 0.0 { 1.0 } else { -1.0 };
-    let beside = scattered(0.0, g);
-    let along = saturate((scattered(-to_light.z, g) - beside) / (scattered(end, g) - beside));
+    let beside = henyey_greenstein(0.0, g);
+    let along = saturate((henyey_greenstein(-to_light.z, g) - beside) / (henyey_greenstein(end, g) - beside));
     let squares = to_light * to_light;
     let scale = (1.0 - along) / (squares.x + squares.y).max(1.0e-6);
     Vec3::new(squares.x * scale, squares.y * scale, along)

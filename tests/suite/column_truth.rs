@@ -11,6 +11,7 @@ use haze::builtin;
 use haze::noise::{pcg3d, unit};
 use haze::path_trace::{MEDIA, Medium, PathTrace, Traced, Volume};
 use haze::picture::Picture;
+use haze::ramp::response::{LightResponse, Response};
 use haze::reference;
 use haze::settings::{Backlight, Lighting, Settings, Technique};
 use haze::sprite::Sprite;
@@ -32,14 +33,6 @@ struct Column {
 
 /// One picture for each light: linear, times coverage.
 type Pictures = Vec<Picture<Vec3>>;
-
-/// How far pictures are from the truth.
-struct Error {
-    /// Mean over the lights of how far brightness is off at the best exposure, as a share.
-    brightness: f32,
-    /// Root mean square over all pixels, as a share of that of the truth.
-    pixels: f32,
-}
 
 impl Column {
     fn new(medium: Medium, size: u32, samples: u32) -> Self {
@@ -171,26 +164,12 @@ fn lights() -> Vec<Vec3> {
     turns.map(|turn| vec3(turn.sin(), 0.0, turn.cos())).collect()
 }
 
-fn mean(picture: &Picture<Vec3>) -> f32 {
-    haze::formula::colour::luminance(picture.texels.iter().sum()) / picture.texels.len() as f32
+/// Brightness by light, as shares of that of the first.
+fn angles(lights: &[LightResponse]) -> Vec<f32> {
+    lights.iter().map(|light| (light.shown / lights[0].shown * 100.0).round() / 100.0).collect()
 }
 
-fn error(shown: &Pictures, truth: &Pictures) -> Error {
-    let shares: Vec<_> = shown.iter().zip(truth).map(|(shown, truth)| mean(shown) / mean(truth)).collect();
-    let exposure = shares.iter().sum::<f32>() / shares.iter().map(|share| share * share).sum::<f32>();
-    let brightness = shares.iter().map(|share| (exposure * share - 1.0).abs()).sum::<f32>() / LIGHTS as f32;
-    let pairs = || shown.iter().zip(truth).flat_map(|(a, b)| a.texels.iter().zip(&b.texels));
-    let off: f32 = pairs().map(|(&shown, &truth)| (shown * exposure - truth).length_squared()).sum();
-    let all: f32 = pairs().map(|(_, truth)| truth.length_squared()).sum();
-    Error { brightness, pixels: (off / all).sqrt() }
-}
-
-/// Brightness by light, the first is 1.
-fn angles(pictures: &Pictures) -> Vec<f32> {
-    pictures.iter().map(|picture| (mean(picture) / mean(&pictures[0]) * 100.0).round() / 100.0).collect()
-}
-
-fn tell(medium: &str, size: u32, samples: u32) -> [Error; 4] {
+fn tell(medium: &str, size: u32, samples: u32) -> [Response; 4] {
     let named = MEDIA.iter().find(|named| named.name == medium).unwrap();
     let column = Column::new(named.medium, size, samples);
     let (truth, alone) = (column.truth(), column.alone());
@@ -198,15 +177,25 @@ fn tell(medium: &str, size: u32, samples: u32) -> [Error; 4] {
     if let Some(folder) = std::env::var_os("HAZE_LOOK") {
         save(Path::new(&folder), medium, &[&truth, &alone, &ramps, &six_way]);
     }
-    for (name, pictures) in [("truth", &truth), ("alone", &alone), ("ramps", &ramps), ("six-way", &six_way)] {
-        println!("{medium} {name}: by angle {:?}", angles(pictures));
-    }
-    let errors = [error(&ramps, &truth), error(&six_way, &truth), error(&alone, &truth), error(&six_way, &alone)];
-    let what = ["ramps", "six-way", "puffs alone", "six-way beside puffs alone"];
-    for (what, Error { brightness, pixels }) in what.iter().zip(&errors) {
-        println!("{medium}: {what} {:.1} %, pixels {:.0} %", 100.0 * brightness, 100.0 * pixels);
-    }
-    errors
+    let all = [
+        ("truth", &truth, &truth),
+        ("ramps", &ramps, &truth),
+        ("six-way", &six_way, &truth),
+        ("puffs alone", &alone, &truth),
+        ("six-way beside puffs alone", &six_way, &alone),
+    ];
+    let [_, responses @ ..] = all.map(|(what, shown, truth)| {
+        let response = Response::new(shown, truth);
+        let Response { error, pixel_error, lights, .. } = &response;
+        println!(
+            "{medium}: {what} {:.1} %, pixels {:.0} %, by angle {:?}",
+            100.0 * error,
+            100.0 * pixel_error,
+            angles(lights)
+        );
+        response
+    });
+    responses
 }
 
 /// Rows: truth, puffs alone, ramps, six-way; each as bright as the truth.
@@ -214,9 +203,10 @@ fn save(folder: &Path, medium: &str, rows: &[&Pictures]) {
     let side = rows[0][0].size.x;
     let white =
         1.3 * rows[0].iter().flat_map(|picture| &picture.texels).fold(0.0, |most: f32, texel| most.max(texel.x));
+    let exposures: Vec<_> = rows.iter().map(|row| Response::new(row, rows[0]).exposure).collect();
     let picture = image::RgbImage::from_fn(side * LIGHTS as u32, side * rows.len() as u32, |x, y| {
         let row = rows[(y / side) as usize];
-        let exposure = rows[0].iter().map(mean).sum::<f32>() / row.iter().map(mean).sum::<f32>();
+        let exposure = exposures[(y / side) as usize];
         let texel = row[(x / side) as usize].load(UVec2::new(x % side, y % side).as_ivec2()) * exposure / white;
         let code = texel.to_array().map(|light| haze::formula::colour::srgb_from_linear(light.clamp(0.0, 1.0)));
         image::Rgb(code.map(|code| (code * 255.0).round() as u8))
@@ -229,8 +219,8 @@ fn save(folder: &Path, medium: &str, rows: &[&Pictures]) {
 #[test]
 fn most_of_what_is_wrong_in_a_column_is_that_puffs_do_not_shade_each_other() {
     let [_, six_way, alone, beside_alone] = tell("ash", 48, 12);
-    assert!(six_way.brightness > beside_alone.brightness, "{} {}", six_way.brightness, beside_alone.brightness);
-    assert!(alone.pixels > 0.5 * six_way.pixels, "{} {}", alone.pixels, six_way.pixels);
+    assert!(six_way.error > beside_alone.error, "{} {}", six_way.error, beside_alone.error);
+    assert!(alone.pixel_error > 0.5 * six_way.pixel_error, "{} {}", alone.pixel_error, six_way.pixel_error);
 }
 
 /// What docs/light.md has.

@@ -8,7 +8,7 @@ use haze::{Context, wgpu};
 
 use crate::common::gpu;
 use crate::host::Host;
-use crate::hosts::Systems;
+use crate::hosts::kept::Systems;
 use crate::stage::Stage;
 
 const SIZE: UVec2 = UVec2::splat(256);

@@ -1,29 +1,29 @@
 //! The path `tiled`: the picture of `raster` and of the reference, whatever the settings, and however workgroups walk.
 
+mod auto;
+mod emission;
+mod lists;
+
 use glam::camera::rh::proj::directx;
 use glam::{UVec2, Vec3, Vec4, vec3};
 #[cfg(feature = "app")]
 use haze::builtin;
 #[cfg(feature = "app")]
 use haze::demo::shot::Shot;
-use haze::emitter::{Emitter, EmitterShape};
-use haze::formula::uniforms::TilesUniform;
 use haze::headless::Headless;
 use haze::picture::Picture;
 use haze::settings::*;
 use haze::sprite::{Sprite, SpriteLayout};
-use haze::{
-    Bounds, Error, Particle, Particles, PathCosts, PathModel, PathModelSource, PathReason, TiledMemory, shader, wgpu,
-};
+use haze::{Bounds, Error, Particle, Particles, wgpu};
 
 use crate::common::{AGREEMENT, STEP_AGREEMENT, gpu, has_tiles, psnr};
-use crate::creations;
 use crate::host::{Host, as_floats};
 use crate::stage::Stage;
 use crate::techniques;
 
 /// Of the picture of `raster`, dB: they differ by what the blend unit rounds, layer by layer.
 const TO_RASTER: f32 = 55.0;
+
 /// Of the reference's, which rounds as the blend unit does.
 const TO_REFERENCE: f32 = AGREEMENT;
 
@@ -244,72 +244,6 @@ fn storage_buffer(bytes: &[u8]) -> wgpu::Buffer {
 }
 
 #[test]
-fn lists_that_find_no_room_are_drawn_all_the_same() {
-    if !has_tiles() {
-        return;
-    }
-    // Every sprite in every bin: at first the lists hold a part of that.
-    let mut stage = stage(Technique::Soft);
-    let size = UVec2::new(960, 540);
-    (stage.view, stage.settings.accumulate.scale) = (Stage::new(size).view, 1);
-    let wide = |index: u32| Particle {
-        position: vec3(0.0, 0.0, -6.0 - 0.001 * index as f32),
-        radius: 12.0,
-        amount: 0.01,
-        ..Particle::default()
-    };
-    stage.particles = (0..140).map(wide).collect();
-    for in_step in [true, false] {
-        let raster = drawn(&stage, Path::Raster, in_step);
-        (stage.settings.path, stage.host.exact_filtering) = (Path::Tiled, in_step);
-        let mut host = Host::new(gpu(), &stage).unwrap();
-        host.renderer.context().walk_in_step(in_step);
-        let mut picture = || {
-            host.draw(gpu(), &stage).unwrap();
-            (host.picture(gpu()).unwrap(), host.renderer.memory_use().buffers)
-        };
-        let (first, held) = picture();
-        let (second, held_then) = picture();
-        assert!(held_then > held, "the lists have not grown from {held} bytes");
-        assert!(first == second);
-        // The blend unit has rounded a hundred layers.
-        let apart = psnr(&first, &raster);
-        assert!(apart >= 50.0, "{apart}");
-    }
-    gpu().check().unwrap();
-}
-
-#[test]
-fn steady_frames_on_tiles_create_nothing() {
-    if !has_tiles() {
-        return;
-    }
-    let mut stage = stage(Technique::Soft);
-    stage.settings.path = Path::Tiled;
-    let mut host = Host::new(gpu(), &stage).unwrap();
-    for in_step in [true, false] {
-        host.renderer.context().walk_in_step(in_step);
-        host.draw(gpu(), &stage).unwrap();
-        let created = creations::count(|| {
-            for frame in 0..5 {
-                // Fewer sprites, elsewhere.
-                stage.particles.truncate(60 - frame);
-                stage.particles.iter_mut().for_each(|particle| particle.position.x += 0.001);
-                host.draw(gpu(), &stage).unwrap();
-            }
-        });
-        assert_eq!(created, 0);
-    }
-    // What is not tiled any more gives its buffers back.
-    let held = host.renderer.memory_use().buffers;
-    stage.settings.path = Path::Raster;
-    for _ in 0..130 {
-        host.draw(gpu(), &stage).unwrap();
-    }
-    assert!(host.renderer.memory_use().buffers < held / 4);
-}
-
-#[test]
 fn what_cannot_be_tiled_is_refused() {
     let mut stage = stage(Technique::Soft);
     stage.settings.path = Path::Tiled;
@@ -342,79 +276,6 @@ fn what_cannot_be_tiled_is_refused() {
     let particles = Particles::Buffer { buffer: &vertices, offset: 0, count: 1 };
     let message = refused(host.draw_particles(gpu(), &stage, particles));
     assert!(message.contains("STORAGE"), "{message}");
-}
-
-/// An emitter before the stage's camera.
-fn emitter() -> Emitter {
-    Emitter {
-        rate: 60.0,
-        lifetime: 3.0,
-        position: vec3(0.0, -1.0, -5.0),
-        extent: Vec3::splat(0.4),
-        radius_end: 0.6,
-        amount: 0.2,
-        ..Emitter::default()
-    }
-}
-
-#[test]
-fn an_emitter_is_evaluated_where_it_is_drawn() {
-    if !has_tiles() {
-        return;
-    }
-    for shape in [EmitterShape::Sphere, EmitterShape::Box, EmitterShape::Disc] {
-        let emitter = Emitter { shape, ..emitter() };
-        for time in [0.3, 7.0, 10_000.0] {
-            let emission = emitter.at(time);
-            let mut stage = stage(Technique::Soft);
-            emission.evaluate(&mut stage.particles);
-            // Those of the slice, so that both are lit at one place.
-            stage.bounds = Some(emission.bounds(stage.settings.reach()));
-            stage.settings.accumulate.order = Order::Sorted;
-            let mut host = Host::new(gpu(), &stage).unwrap();
-            let particles = stage.particles.clone();
-            let mut drawn = |path, particles| {
-                stage.settings.path = path;
-                host.draw_particles(gpu(), &stage, particles).unwrap();
-                host.picture(gpu()).unwrap()
-            };
-            let tiled = drawn(Path::Tiled, Particles::Emission(&emission));
-            assert!(drawn(Path::Tiled, Particles::Emission(&emission)) == tiled, "not the same again");
-            let raster = drawn(Path::Raster, Particles::Emission(&emission));
-            let slice = drawn(Path::Tiled, Particles::Slice(&particles));
-            let (to_raster, to_slice) = (psnr(&tiled, &raster), psnr(&tiled, &slice));
-            println!("{shape:?} at {time}: {to_raster:.1} dB of raster, {to_slice:.1} dB of the slice");
-            assert!(to_raster >= TO_RASTER && to_slice >= 70.0, "{to_raster} {to_slice}");
-        }
-    }
-    gpu().check().unwrap();
-}
-
-#[test]
-fn a_million_particles_never_are_on_the_cpu_and_fit_into_200_megabytes() {
-    if !has_tiles() {
-        return;
-    }
-    let emitter = Emitter { rate: 100_000.0, lifetime: 8.7, lifetime_spread: 0.2, radius_end: 0.02, ..emitter() };
-    emitter.validate(String::new).unwrap();
-    let emission = emitter.at(60.0);
-    assert!((1_000_000..=haze::emitter::MAX_PARTICLES + 2).contains(&emission.count()), "{}", emission.count());
-    let mut stage = stage(Technique::Soft);
-    (stage.settings.path, stage.settings.accumulate.scale) = (Path::Tiled, 2);
-    stage.view = Stage::new(UVec2::new(1920, 1080)).view;
-    let mut host = Host::new(gpu(), &stage).unwrap();
-    let mut encoder = gpu().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    host.prepare(gpu(), &mut encoder, &stage, Particles::Emission(&emission)).unwrap();
-    let memory = host.renderer.memory_use();
-    println!("{memory:?}");
-    let TiledMemory { emitted, sprites, keys, counts, lists } = memory.tiled;
-    assert!([emitted, sprites, keys, counts, lists].iter().all(|&bytes| bytes > 1 << 20), "{memory:?}");
-    assert_eq!(memory.tiled.total(), emitted + sprites + keys + counts + lists);
-    assert!(memory.buffers >= memory.tiled.total() && memory.targets > 960 * 540 * 8);
-    assert!(memory.targets + memory.buffers <= 200_000_000, "{memory:?}");
-    // Nothing of it was sorted or uploaded.
-    assert!(memory.buffers - memory.tiled.total() < 1 << 16, "{memory:?}");
-    gpu().check().unwrap();
 }
 
 #[test]
@@ -471,172 +332,4 @@ fn two_hundred_faint_layers_add_up() {
     // A step of 8 bits is 48 dB, its rounding 59.
     assert!(tiled_byte >= 50.0, "{tiled_byte}");
     assert!(raster_byte < 30.0, "blending in 8 bits sticks: {raster_byte}");
-}
-
-#[test]
-fn lists_of_more_than_32_bits_can_count_do_not_wrap() {
-    if !has_tiles() {
-        return;
-    }
-    let gpu = gpu();
-    let source = shader::compose(shader::source("tile_bin.wgsl").unwrap()).unwrap();
-    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: None,
-        source: wgpu::ShaderSource::Wgsl(source.into()),
-    });
-    let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: None,
-        layout: None,
-        module: &module,
-        entry_point: Some("allocate_alone"),
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
-        cache: None,
-    });
-    // The first two come to 2^32 words and more, three for each; the others to 30.
-    let lengths = [3_000_000_000_u32, 1_294_967_292, 4, 6];
-    let tiles = TilesUniform { count: 9, columns: 2, rows: 2, runs: 1, capacity: 20, ..TilesUniform::default() };
-    let buffer = |bytes: &[u8], usage| {
-        let usage = usage | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
-        let size = bytes.len() as u64;
-        let descriptor = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
-        let buffer = gpu.device.create_buffer(&descriptor);
-        gpu.queue.write_buffer(&buffer, 0, bytes);
-        buffer
-    };
-    let (uniform, storage) = (wgpu::BufferUsages::UNIFORM, wgpu::BufferUsages::STORAGE);
-    let uniform = buffer(bytemuck::bytes_of(&tiles), uniform);
-    let [counts, bins, tally] = [bytemuck::cast_slice(&lengths), &[0; 32], bytemuck::cast_slice(&[9_u32, 0])]
-        .map(|bytes| buffer(bytes, storage));
-    let bound = [(0, &uniform), (5, &counts), (7, &bins), (8, &tally)];
-    let entries = bound.map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
-    let layout = pipeline.get_bind_group_layout(0);
-    let group =
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries });
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.dispatch_workgroups(1, 1, 1);
-    }
-    gpu.submit(encoder).unwrap();
-    let words = |buffer| bytemuck::pod_collect_to_vec::<u8, u32>(&gpu.read_buffer(buffer).unwrap());
-    // Those that are longer than their share of 32 bits are left out.
-    assert_eq!(words(&tally)[1], 30);
-    let bins = words(&bins);
-    assert_eq!((bins[0], bins[2]), (u32::MAX, u32::MAX));
-    assert!(bins[4] != u32::MAX || bins[6] != u32::MAX, "neither fits: {bins:?}");
-    for (bin, length) in bins.chunks(2).zip(lengths) {
-        match bin[0] {
-            u32::MAX => assert_eq!(bin[1], 9, "it reads all sprites"),
-            first => assert!(bin[1] == length && first + 3 * length <= 20, "{bins:?}"),
-        }
-    }
-}
-
-#[test]
-fn auto_takes_what_is_cheaper_and_says_why() {
-    if !has_tiles() {
-        return;
-    }
-    let mut stage = stage(Technique::Soft);
-    stage.settings.path = Path::Auto;
-    let mut host = Host::new(gpu(), &stage).unwrap();
-    let class = host.renderer.context().path_model();
-    let dear = |costs: PathCosts| PathCosts { fragment: 1.0e3, ..costs };
-    // The first frame takes what is cheaper at once.
-    let models = [(dear(class.raster), class.tiled, Path::Tiled), (class.raster, dear(class.tiled), Path::Raster)];
-    for (raster, tiled, path) in models {
-        let mut host = Host::new(gpu(), &stage).unwrap();
-        let model = PathModel { raster, tiled, source: PathModelSource::Host };
-        host.renderer.context().set_path_model(model).unwrap();
-        assert_eq!(host.renderer.path_choice(0), None);
-        host.draw(gpu(), &stage).unwrap();
-        let choice = host.renderer.path_choice(0).unwrap();
-        assert_eq!(choice.path, path);
-        let PathReason::Expected { raster_ms, tiled_ms, layers: Some(layers), source } = choice.reason else {
-            panic!("{choice}")
-        };
-        assert_eq!((raster_ms < tiled_ms, source), (path == Path::Raster, PathModelSource::Host));
-        // As the renderer counts them, but for the part of the target that the box does not cover.
-        let counted = host.renderer.overdraw().mean() as f32;
-        assert!((0.5..1.1).contains(&(layers / counted)), "{layers} {counted}");
-        assert!(choice.to_string().contains("overdraw"), "{choice}");
-        assert_eq!(host.renderer.memory_use().tiled.total() > 0, path == Path::Tiled);
-    }
-    // A buffer that compute shaders cannot read is drawn all the same.
-    stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
-    host.renderer.context().set_path_model(PathModel { raster: dear(class.raster), ..class }).unwrap();
-    host.draw_buffer(gpu(), &stage, &stage.particles).unwrap();
-    let choice = host.renderer.path_choice(0).unwrap();
-    assert_eq!((choice.path, choice.reason), (Path::Raster, PathReason::BufferOfVertices));
-    let bytes: Vec<u8> = bytemuck::cast_slice(&stage.particles).to_vec();
-    let (buffer, count) = (storage_buffer(&bytes), stage.particles.len() as u32);
-    host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count }).unwrap();
-    let choice = host.renderer.path_choice(0).unwrap();
-    assert!(choice.path == Path::Tiled && choice.to_string().contains("unknown, taken for 16"), "{choice}");
-    // No choice, no reason.
-    stage.settings.path = Path::Raster;
-    host.draw(gpu(), &stage).unwrap();
-    assert_eq!(host.renderer.path_choice(0), None);
-    let model = PathModel { raster: PathCosts { entry: -1.0, ..class.raster }, ..class };
-    let message = host.renderer.context().set_path_model(model).unwrap_err().to_string();
-    assert_eq!(message, "raster.entry: -1 is not valid; expected nanoseconds, 0 or more");
-    gpu().check().unwrap();
-}
-
-#[test]
-fn auto_changes_seldom_and_then_creates_a_few_things_once() {
-    if !has_tiles() {
-        return;
-    }
-    let mut stage = stage(Technique::Soft);
-    stage.settings.path = Path::Auto;
-    let mut host = Host::new(gpu(), &stage).unwrap();
-    let model = host.renderer.context().path_model();
-    let set = |host: &Host, raster: f32, tiled: f32| {
-        let costs = |fragment| PathCosts { frame: 0.0, texel: 0.0, sprite: 0.0, entry: 0.0, fragment, ..model.raster };
-        let model = PathModel { raster: costs(raster), tiled: costs(tiled), source: PathModelSource::Host };
-        host.renderer.context().set_path_model(model).unwrap();
-    };
-    let path = |host: &Host| host.renderer.path_choice(0).unwrap().path;
-    set(&host, 1.0, 100.0);
-    host.draw(gpu(), &stage).unwrap();
-    assert_eq!(path(&host), Path::Raster);
-    // What seems better every other frame never is.
-    let created = creations::count(|| {
-        for frame in 0..80 {
-            set(&host, [1.0, 100.0][frame % 2], [100.0, 1.0][frame % 2]);
-            host.draw(gpu(), &stage).unwrap();
-            assert_eq!(path(&host), Path::Raster);
-        }
-    });
-    assert_eq!(created, 0);
-    set(&host, 100.0, 1.0);
-    let frames = (0..200).take_while(|_| {
-        host.draw(gpu(), &stage).unwrap();
-        path(&host) == Path::Raster
-    });
-    assert!((20..60).contains(&frames.count()));
-    let created = creations::count(|| (0..5).for_each(|_| host.draw(gpu(), &stage).unwrap()));
-    assert_eq!(created, 0);
-}
-
-#[test]
-fn a_probe_measures_both_paths() {
-    if !has_tiles() {
-        return;
-    }
-    let stage = stage(Technique::Soft);
-    let host = Host::new(gpu(), &stage).unwrap();
-    let context = host.renderer.context();
-    let before = context.path_model();
-    let model = context.measure_paths(&gpu().device, &gpu().queue, |encoder| gpu().submit(encoder)).unwrap();
-    assert_eq!((model, model.source), (context.path_model(), PathModelSource::Probe));
-    // Whatever the machine, no millisecond a fragment, and no two thousand a picosecond.
-    for costs in [model.raster, model.tiled] {
-        assert!((1.0e-4..1.0e6).contains(&costs.fragment), "{costs:?}");
-    }
-    assert!(before.source != PathModelSource::Probe);
-    gpu().check().unwrap();
 }

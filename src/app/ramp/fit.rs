@@ -3,11 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use glam::Vec3;
-use haze::picture::{Effort, Picture, write_png};
+use haze::picture::{Effort, write_png};
 use haze::ramp::Ramp;
 use haze::ramp::bake::RampRecipe;
-use haze::ramp::response::{DiffuseRamps, FittedRamps, Puff, Response, Shape};
+use haze::ramp::response::{DiffuseRamps, FittedRamps, Puff, Response, Shape, angle};
 use haze::{Error, builtin};
 
 use super::{check_output, write_recipe};
@@ -67,7 +66,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let ramps = DiffuseRamps { diffuse: &diffuse, backlight: against.as_ref() };
     let after = puff.response(ramps);
     if let Some(sheet) = sheet {
-        write_png(sheet, &compared(&puff, &by_ramps(&|light| puff.shown(ramps, light), &after)).into(), Effort::Small)?;
+        let shown = Shown { light: &|light| puff.shown(ramps, light), exposure: after.exposure };
+        write_png(sheet, &compared(&puff, "ramps", &shown).into(), Effort::Small)?;
     }
     if let Some(usual) = builtin::find(builtin::RAMPS, "diffuse_soft") {
         let usual = usual.ramp()?;
@@ -78,14 +78,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     say!("{}: diffuse.intensity {exposure:.2} is as bright as {} beside a white wall", output.display(), medium.name())
 }
 
-fn by_ramps<'a>(light: &'a dyn Fn(usize) -> Picture<Vec3>, response: &Response) -> Shown<'a> {
-    Shown { name: "ramps", light, exposure: response.exposure }
-}
-
 /// How far ramps are from the truth, in words and light by light.
 pub fn tell_ramps(name: &str, puff: &Puff, ramps: DiffuseRamps<'_>) -> Result<(), Error> {
     let response = puff.response(ramps);
-    tell_response(name, puff, &by_ramps(&|light| puff.shown(ramps, light), &response), &response)
+    let shown = Shown { light: &|light| puff.shown(ramps, light), exposure: response.exposure };
+    tell_response(name, puff, &shown, &response)
 }
 
 /// How far what is shown is from the truth, in words and light by light.
@@ -98,9 +95,9 @@ pub fn tell_response(name: &str, puff: &Puff, shown: &Shown<'_>, response: &Resp
         flip(puff, shown),
         response.exposure,
     )?;
-    for light in &response.lights {
+    for (index, light) in response.lights.iter().enumerate() {
         let off = percent(light.shown / light.truth.max(f32::MIN_POSITIVE) - 1.0);
-        say!("{:7.1}°  true {:.4}  shown {:.4}  {off:+.0} %", light.angle, light.truth, light.shown)?;
+        say!("{:7.1}°  true {:.4}  shown {:.4}  {off:+.0} %", angle(index), light.truth, light.shown)?;
     }
     Ok(())
 }

@@ -71,7 +71,7 @@ fn beside_six_way(
     let maps = quality.watched(&what, |progress| recipe.bake_six_way(&of, samples, |_, path| progress(path)))?;
     let light = |light| puff.shown_six_way(&maps, light);
     let response = puff.response_of(light);
-    let shown = Shown { name: "six-way", light: &light, exposure: response.exposure };
-    write_png(output, &compared(puff, &shown).into(), Effort::Small)?;
+    let shown = Shown { light: &light, exposure: response.exposure };
+    write_png(output, &compared(puff, "six-way", &shown).into(), Effort::Small)?;
     tell_response(&format!("{}: six-way maps beside {}", output.display(), medium.name()), puff, &shown, &response)
 }

@@ -3,7 +3,7 @@
 use glam::{UVec2, UVec3, Vec2, Vec3};
 
 use super::medium::Medium;
-use super::phase::{henyey_greenstein, scattered};
+use super::phase::{phase, scattered};
 use super::random::Random;
 use super::shadows::Shadows;
 use super::volume::{Volume, exit};
@@ -70,7 +70,7 @@ impl<'a> Tracer<'a> {
         for vertex in 1..MOST_VERTICES {
             self.shadows.at(p, towards);
             for ((sum, &to_light), depth) in sums.iter_mut().zip(self.lights).zip(&*towards) {
-                let phase = henyey_greenstein(direction.dot(to_light), self.medium.g);
+                let phase = phase(direction.dot(to_light), self.medium.g);
                 *sum += light * (phase * decay(depth * self.medium.density));
             }
             if vertex >= SURE_VERTICES {

@@ -5,11 +5,11 @@ use std::f32::consts::PI;
 use glam::Vec3;
 
 use super::random::Random;
+use crate::formula::six_way::henyey_greenstein;
 
 /// The share of scattered light that goes on at an angle of this cosine, for each steradian.
-pub fn henyey_greenstein(cos: f32, g: f32) -> f32 {
-    let d = (1.0 + g * g - 2.0 * g * cos).max(1.0e-6);
-    (1.0 - g * g) / (4.0 * PI * d * d.sqrt())
+pub(super) fn phase(cos: f32, g: f32) -> f32 {
+    henyey_greenstein(cos, g) * (1.0 - g * g) / (4.0 * PI)
 }
 
 /// A direction that light which came along `direction` goes on in, as often as the phase function says.

@@ -1,6 +1,6 @@
 use glam::UVec3;
 
-use super::phase::{henyey_greenstein, scattered};
+use super::phase::{phase, scattered};
 use super::random::Random;
 use super::*;
 
@@ -26,7 +26,7 @@ fn a_phase_function_keeps_all_light_and_is_what_is_sampled() {
         let steps = 20_000;
         let cos = |step: u32| (step as f32 + 0.5) / steps as f32 * 2.0 - 1.0;
         let ring = 4.0 * std::f32::consts::PI / steps as f32;
-        let whole: f32 = (0..steps).map(|step| henyey_greenstein(cos(step), g) * ring).sum();
+        let whole: f32 = (0..steps).map(|step| phase(cos(step), g) * ring).sum();
         let mut random = Random::new(UVec3::new(1, 2, 3));
         let along = Vec3::new(0.6, 0.0, 0.8);
         let mean = (0..20_000).map(|_| scattered(along, g, &mut random).dot(along)).sum::<f32>() / 20_000.0;
@@ -42,7 +42,7 @@ fn thin_smoke_scatters_once() {
     let traced = trace(&ball(16), medium, &lights, 4);
     let coverage = traced.coverage.texels.iter().sum::<f32>() / 576.0;
     for (index, light) in lights.iter().enumerate() {
-        let expected = medium.albedo * (coverage * henyey_greenstein(-light.z, 0.4) * std::f32::consts::PI);
+        let expected = medium.albedo * (coverage * phase(-light.z, 0.4) * std::f32::consts::PI);
         assert!(((traced.mean(index) - expected) / expected).abs().max_element() < 0.02, "{light}");
     }
 }

@@ -157,7 +157,7 @@ impl Traced {
             None => self.puff.shown(ramps, light),
         };
         let response = self.puff.response_of(light);
-        let pairs = pairs(&self.puff, &Shown { name: "", light: &light, exposure: response.exposure });
+        let pairs = pairs(&self.puff, &Shown { light: &light, exposure: response.exposure });
         let side = PATH_TRACE.size;
         let sheet = image::RgbImage::from_fn(side * LIGHTS, 2 * side, |x, y| {
             let pair = &pairs[(x / side) as usize];

@@ -43,10 +43,10 @@ pub struct DiffuseRamps<'a> {
     pub backlight: Option<&'a Ramp>,
 }
 
-/// What ramps make of a puff, beside what is true.
+/// How bright smoke is shown under a ring of lights, beside what is true.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Response {
-    /// What the light of the ramps is multiplied with, to come as near as it can: `diffuse.intensity`.
+    /// What the light that is shown is multiplied with, to come as near as it can: `diffuse.intensity`.
     pub exposure: f32,
     /// For each light.
     pub lights: Vec<LightResponse>,
@@ -56,14 +56,12 @@ pub struct Response {
     pub pixel_error: f32,
 }
 
-/// Brightness of a puff under one light: mean luminance.
+/// Brightness under one light: mean luminance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightResponse {
-    /// As [`angle`] has it.
-    pub angle: f32,
     /// Path-traced.
     pub truth: f32,
-    /// By the ramps, exposed.
+    /// As shown, exposed.
     pub shown: f32,
 }
 
@@ -127,25 +125,27 @@ impl Puff {
     /// How far pictures of it are from the truth, at the exposure that is best for them; one for each light.
     pub fn response_of(&self, shown: impl Fn(usize) -> Picture<Vec3>) -> Response {
         let shown: Vec<_> = (0..self.lights.len()).map(shown).collect();
+        Response::new(&shown, &self.traced.light)
+    }
+}
+
+impl Response {
+    /// Of pictures beside true ones, one for each light, at the exposure that is best for all of them: least squares of the shares.
+    pub fn new(shown: &[Picture<Vec3>], truth: &[Picture<Vec3>]) -> Self {
         let mean = |picture: &Picture<Vec3>| luminance(picture.texels.iter().sum()) / picture.texels.len() as f32;
-        let lights: Vec<_> = (0..self.lights.len())
-            .map(|light| LightResponse {
-                angle: angle(light),
-                truth: mean(&self.traced.light[light]),
-                shown: mean(&shown[light]),
-            })
-            .collect();
-        // Least squares of the shares.
+        let both = || shown.iter().zip(truth);
+        let lights: Vec<_> =
+            both().map(|(shown, truth)| LightResponse { truth: mean(truth), shown: mean(shown) }).collect();
         let share = |light: &LightResponse| light.shown / light.truth.max(f32::MIN_POSITIVE);
         let squares: f32 = lights.iter().map(|light| share(light).powi(2)).sum();
         let exposure = lights.iter().map(share).sum::<f32>() / squares.max(f32::MIN_POSITIVE);
         let off = lights.iter().map(|light| (exposure * share(light) - 1.0).abs());
         let error = off.sum::<f32>() / lights.len() as f32;
-        let pairs = || shown.iter().zip(&self.traced.light).flat_map(|(a, b)| a.texels.iter().zip(&b.texels));
-        let off: f32 = pairs().map(|(&shown, &truth)| (shown * exposure - truth).length_squared()).sum();
-        let all: f32 = pairs().map(|(_, truth)| truth.length_squared()).sum();
+        let texels = || both().flat_map(|(shown, truth)| shown.texels.iter().zip(&truth.texels));
+        let off: f32 = texels().map(|(&shown, &truth)| (shown * exposure - truth).length_squared()).sum();
+        let all: f32 = texels().map(|(_, truth)| truth.length_squared()).sum();
         let lights = lights.into_iter().map(|light| LightResponse { shown: light.shown * exposure, ..light }).collect();
-        Response { exposure, lights, error, pixel_error: (off / all.max(f32::MIN_POSITIVE)).sqrt() }
+        Self { exposure, lights, error, pixel_error: (off / all.max(f32::MIN_POSITIVE)).sqrt() }
     }
 }
 

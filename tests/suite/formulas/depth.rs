@@ -1,0 +1,61 @@
+//! `shaders/lib/depth.wgsl`.
+
+use glam::{IVec2, vec4};
+use haze::formula::depth;
+use haze::settings::DepthDownsample;
+
+use super::Formula;
+use super::inputs::{count, random, v4, with_choices};
+
+pub fn formulas() -> Vec<Formula> {
+    vec![
+        Formula {
+            name: "view_depth_from_ndc_depth",
+            file: "lib/depth.wgsl",
+            wgsl: "y(0, view_depth_from_ndc_depth(x(0), vec4f(x(1), x(2), x(3), x(4))));",
+            reference: |x| vec![depth::view_depth_from_ndc_depth(x[0], v4(&x[1..]))],
+            cases: {
+                // Standard, reversed, infinite reversed and orthographic, over the whole buffer.
+                let conventions = [
+                    vec4(0.1, 0.0, 1.0, -0.999),
+                    vec4(0.1, 0.0, 0.001, 0.999),
+                    vec4(0.1, 0.0, 0.0, 1.0),
+                    vec4(0.5, 59.5, 1.0, 0.0),
+                ];
+                let depths = (0..=100).map(|i| i as f32 / 100.0);
+                let case = |d: f32| conventions.map(|c| vec![d, c.x, c.y, c.z, c.w]);
+                depths.flat_map(case).collect()
+            },
+            tolerance: 1e-5,
+            mutants: &[
+                ("coefficients.z + coefficients.w", "coefficients.z - coefficients.w"),
+                ("coefficients.y * ndc_depth", "0.0"),
+            ],
+        },
+        Formula {
+            name: "view_depth_from_linear",
+            file: "lib/depth.wgsl",
+            wgsl: "y(0, view_depth_from_linear(x(0)));",
+            reference: |x| vec![depth::view_depth_from_linear(x[0])],
+            cases: random(50, &[(0.0, 2.0e6)]),
+            tolerance: 0.0,
+            mutants: &[("texel < SKY_VIEW_DEPTH", "true")],
+        },
+        Formula {
+            name: "depth_downsample_keeps_farthest",
+            file: "lib/depth.wgsl",
+            wgsl: "y(0, select(0.0, 1.0, depth_downsample_keeps_farthest(u32(x(0)), vec2i(i32(x(1)), i32(x(2))))));",
+            reference: |x| {
+                let texel = IVec2::new(x[1] as i32, x[2] as i32);
+                let farthest = depth::depth_downsample_keeps_farthest(DepthDownsample::ALL[x[0] as usize], texel);
+                vec![if farthest { 1.0 } else { 0.0 }]
+            },
+            cases: with_choices(count(DepthDownsample::ALL), &[(0.0, 9.0), (0.0, 9.0)]),
+            tolerance: 0.0,
+            mutants: &[
+                ("(texel.x + texel.y) & 1", "(texel.x) & 1"),
+                ("mode == DEPTH_DOWNSAMPLE_MAX", "mode == DEPTH_DOWNSAMPLE_MIN"),
+            ],
+        },
+    ]
+}

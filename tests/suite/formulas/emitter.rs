@@ -1,0 +1,160 @@
+//! `shaders/lib/emitter.wgsl`.
+
+use glam::{Vec3, vec2, vec3};
+use haze::emitter::EmitterShape;
+use haze::formula::emitter;
+use haze::formula::uniforms::EmitterUniform;
+
+use super::Formula;
+use super::inputs::{ARITHMETIC, TRANSCENDENTAL, count, random, v3, with_choices};
+
+/// An emitter of the shape `x(0)`, eight seconds after its first birth.
+fn test_emitter(x: &[f32]) -> EmitterUniform {
+    EmitterUniform {
+        first: u32::MAX - 100,
+        count: 330,
+        seed: 3,
+        shape: x[0] as u32,
+        since_first: 8.0,
+        rate: 40.0,
+        lifetime: 6.0,
+        lifetime_spread: 0.4,
+        position: vec3(1.0, 2.0, 3.0),
+        burst: 0.7,
+        extent: vec3(0.5, 0.25, 0.75),
+        velocity_spread: 0.5,
+        velocity: vec3(0.1, 0.6, 0.0),
+        drag: 0.6,
+        rise: vec3(0.0, 0.5, 0.1),
+        turbulence: 0.5,
+        wind: vec3(0.3, 0.0, -0.2),
+        turbulence_scale: 1.5,
+        disc_x: vec3(0.6, 0.8, 0.0),
+        radius_start: 0.25,
+        disc_z: Vec3::Z,
+        radius_end: 1.5,
+        phase: vec2(0.6, 0.8),
+        radius_spread: 0.25,
+        spin: 0.5,
+        amount: 0.5,
+        fade_in: 0.25,
+        fade_out: 0.5,
+        frame_rate: 4.0,
+    }
+}
+
+macro_rules! wgsl_emitter {
+    ($call:literal) => {
+        concat!(
+            "let e = Emitter(4294967195u, 330u, 3u, u32(x(0)), 8.0, 40.0, 6.0, 0.4, vec3f(1.0, 2.0, 3.0), 0.7, \
+             vec3f(0.5, 0.25, 0.75), 0.5, vec3f(0.1, 0.6, 0.0), 0.6, vec3f(0.0, 0.5, 0.1), 0.5, vec3f(0.3, 0.0, -0.2), \
+             1.5, vec3f(0.6, 0.8, 0.0), 0.25, vec3f(0.0, 0.0, 1.0), 1.5, vec2f(0.6, 0.8), 0.25, 0.5, 0.5, 0.25, 0.5, 4.0); ",
+            $call
+        )
+    };
+}
+
+const WGSL_BIRTH_OFFSET: &str =
+    wgsl_emitter!("let v = birth_offset(e, vec3f(x(1), x(2), x(3))); y(0, v.x); y(1, v.y); y(2, v.z);");
+
+const WGSL_EMITTED: &str = wgsl_emitter!(
+    "let p = emitted_particle(e, u32(x(1))); for (var i = 0u; i < 4u; i++) { y(i, p.position_radius[i]); \
+     y(4u + i, p.rotation_amount_frame_age[i]); }"
+);
+
+pub fn formulas() -> Vec<Formula> {
+    vec![
+        Formula {
+            name: "unit_sphere",
+            file: "lib/emitter.wgsl",
+            wgsl: "let v = unit_sphere(vec3f(x(0), x(1), x(2))); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| emitter::unit_sphere(v3(x)).to_array().to_vec(),
+            cases: random(100, &[(0.0, 1.0); 3]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[("random.z * 2.0 - 1.0", "random.z"), ("sqrt(1.0 - z * z)", "(1.0 - z * z)")],
+        },
+        Formula {
+            name: "drag_integrals",
+            file: "lib/emitter.wgsl",
+            wgsl: "let v = drag_integrals(x(0), x(1)); y(0, v.x); y(1, v.y);",
+            reference: |x| emitter::drag_integrals(x[0], x[1]).to_array().to_vec(),
+            // No drag, some, much; both sides of where the series ends.
+            cases: [(0.0, 0.0), (0.0, 2.0), (0.01, 8.0)]
+                .into_iter()
+                .flat_map(|drag| random(100, &[drag, (0.0, 8.0)]))
+                .collect(),
+            // An exponential less 1, over a drag as small as 0.06 twice.
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("x / 2.0 * (1.0 - x / 3.0", "x / 2.0 * (1.0 - x / 4.0"),
+                ("0.5 * t * t * approached", "t * t * approached"),
+                ("(1.0 - exp(-x)) / drag", "(1.0 - exp(-x))"),
+                ("(t - reached) / drag", "t - reached"),
+            ],
+        },
+        Formula {
+            name: "eased",
+            file: "lib/emitter.wgsl",
+            wgsl: "y(0, eased(x(0)));",
+            reference: |x| vec![emitter::eased(x[0])],
+            cases: random(50, &[(-1.0, 2.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[("3.0 - 2.0 * s", "2.0 - s"), ("let s = saturate(x)", "let s = x")],
+        },
+        Formula {
+            name: "birth_offset",
+            file: "lib/emitter.wgsl",
+            wgsl: WGSL_BIRTH_OFFSET,
+            reference: |x| emitter::birth_offset(&test_emitter(x), v3(&x[1..])).to_array().to_vec(),
+            cases: with_choices(count(EmitterShape::ALL), &[(0.0, 1.0); 3]),
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("pow(random.x, 1.0 / 3.0)", "random.x"),
+                ("(random * 2.0 - 1.0) * emitter.extent", "random * emitter.extent"),
+                ("sqrt(random.z) * emitter.extent.xz", "random.z * emitter.extent.xz"),
+                ("emitter.disc_z * level.y", "emitter.disc_x * level.y"),
+            ],
+        },
+        Formula {
+            name: "birth_random",
+            file: "lib/emitter.wgsl",
+            wgsl: "let v = birth_random(u32(x(0)), u32(x(1)), 9u); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| emitter::birth_random(x[0] as u32, x[1] as u32, 9).to_array().to_vec(),
+            cases: random(50, &[(0.0, 1.0e6), (0.0, 4.0)]),
+            tolerance: 0.0,
+            mutants: &[("vec3u(index, salt, seed)", "vec3u(index, seed, salt)"), ("unit(hash.y)", "unit(hash.x)")],
+        },
+        Formula {
+            name: "emitted_particle",
+            file: "lib/emitter.wgsl",
+            wgsl: WGSL_EMITTED,
+            reference: |x| {
+                let emitted = emitter::emitted_particle(&test_emitter(x), x[1] as u32);
+                [emitted.position_radius, emitted.rotation_amount_frame_age].map(|v| v.to_array()).concat()
+            },
+            // Of 40 births a second the last 8 seconds: some are dead.
+            cases: with_choices(count(EmitterShape::ALL), &[(0.0, 330.0)]),
+            // The driver's sines and roots, carried on by swirls that change by 10 over a turbulence_scale.
+            tolerance: TRANSCENDENTAL,
+            mutants: &[
+                ("(f32(number) + life.y) / emitter.rate", "f32(number) / emitter.rate"),
+                ("seconds < lifetime", "true"),
+                ("2.0 * life.x - 1.0", "life.x"),
+                ("outward * emitter.burst", "vec3f(0.0)"),
+                ("emitter.velocity_spread * life.z", "emitter.velocity_spread"),
+                ("emitter.wind * (seconds - reached)", "emitter.wind * seconds"),
+                ("emitter.rise * integrals.y", "emitter.rise"),
+                ("2.3 / emitter.turbulence_scale", "2.0 / emitter.turbulence_scale"),
+                ("emitter.turbulence * age", "emitter.turbulence"),
+                ("emitter.seed * 977u + 5u", "emitter.seed * 977u"),
+                ("* sqrt(age)", "* age"),
+                ("2.0 * look.x - 1.0", "look.x"),
+                ("(2.0 * look.z - 1.0) * reached", "(2.0 * look.z - 1.0) * seconds"),
+                ("fade_in * fade_out", "fade_in"),
+                ("eased(age / max(emitter.fade_in", "saturate(age / max(emitter.fade_in"),
+                ("place.x * 256.0 + seconds", "place.x * 256.0 - seconds"),
+                ("birth_random(index, 3u", "birth_random(index, 2u"),
+            ],
+        },
+    ]
+}

@@ -1,0 +1,97 @@
+//! What formulas are tested with: numbers, and small pictures of them.
+
+use std::sync::OnceLock;
+
+use glam::{UVec2, UVec3, Vec2, Vec3, Vec4, vec3};
+use haze::formula::texture::Texture2d;
+use haze::noise::{NoiseRecipe, NoiseVolume, pcg3d, unit};
+use haze::ramp::Ramp;
+use haze::sprite::{Sprite, SpriteLayout};
+
+/// f32 arithmetic in another order, with fused or separate multiply-add: a few units in the last place.
+pub const ARITHMETIC: f32 = 2e-6;
+/// As above, through the driver's `pow`, `exp2`, `log2`, `sin` or `inverseSqrt`, which Vulkan lets be that imprecise.
+pub const TRANSCENDENTAL: f32 = 2e-4;
+
+/// `count` cases of numbers in the given ranges, the same every time.
+pub fn random(count: u32, ranges: &[(f32, f32)]) -> Vec<Vec<f32>> {
+    let number = |case: u32, index: usize| unit(pcg3d(UVec3::new(case, index as u32, 77)).x);
+    let pick = |case| (0..).zip(ranges).map(|(i, &(low, high))| low + (high - low) * number(case, i)).collect();
+    (0..count).map(pick).collect()
+}
+
+/// A case for every step of every choice with some random numbers after it.
+pub fn with_choices(choices: u32, ranges: &[(f32, f32)]) -> Vec<Vec<f32>> {
+    let prefix = |(index, mut case): (u32, Vec<f32>)| {
+        case.insert(0, (index % choices) as f32);
+        case
+    };
+    (0..).zip(random(40 * choices, ranges)).map(prefix).collect()
+}
+
+/// How many choices a setting has: a new one is tested without being named here.
+pub fn count<T>(choices: &[T]) -> u32 {
+    choices.len() as u32
+}
+
+pub fn unit_vectors(cases: Vec<Vec<f32>>, at: usize) -> Vec<Vec<f32>> {
+    let normalise = |mut case: Vec<f32>| {
+        let n = vec3(case[at], case[at + 1], case[at + 2]).normalize_or(Vec3::X);
+        case[at..at + 3].copy_from_slice(&n.to_array());
+        case
+    };
+    cases.into_iter().map(normalise).collect()
+}
+
+pub fn v2(x: &[f32]) -> Vec2 {
+    Vec2::from_slice(x)
+}
+
+pub fn v3(x: &[f32]) -> Vec3 {
+    Vec3::from_slice(x)
+}
+
+pub fn v4(x: &[f32]) -> Vec4 {
+    Vec4::from_slice(x)
+}
+
+/// A ramp and a flipbook with a different number in every texel.
+pub fn test_ramp() -> Ramp {
+    let colour = |i: u32| {
+        let hash = pcg3d(UVec3::new(i, 1, 2));
+        vec3(unit(hash.x), unit(hash.y), unit(hash.z)) * 2.0
+    };
+    Ramp::from_linear(UVec2::new(8, 4), (0..32).map(colour))
+}
+
+pub fn test_sprite() -> Sprite {
+    let mut sheet = image::RgbaImage::new(24, 8);
+    for (x, y, pixel) in sheet.enumerate_pixels_mut() {
+        let hash = pcg3d(UVec3::new(x, y, 3));
+        let border = x % 8 == 0 || x % 8 == 7 || y == 0 || y == 7;
+        let alpha = if border { 0 } else { hash.x as u8 };
+        *pixel = image::Rgba([hash.y as u8, hash.z as u8, (hash.y >> 8) as u8, alpha]);
+    }
+    let layout = SpriteLayout { columns: 3, rows: 1, y_down: false };
+    Sprite::from_picture(std::path::Path::new("test"), &sheet, layout).unwrap()
+}
+
+/// One frame of a sprite.
+pub struct Frame(pub Sprite, pub u32);
+
+impl Texture2d for Frame {
+    fn dimensions(&self) -> UVec2 {
+        UVec2::splat(self.0.level_size(0))
+    }
+    fn load(&self, at: UVec2) -> Vec4 {
+        self.0.texel(0, self.1, at.x, at.y)
+    }
+}
+
+pub fn test_noise() -> &'static NoiseVolume {
+    static NOISE: OnceLock<NoiseVolume> = OnceLock::new();
+    NOISE.get_or_init(|| {
+        let recipe = NoiseRecipe { version: 1, seed: 5, size: 8, cells: 2, octaves: 2, gain: 0.5 };
+        NoiseVolume::from_picture(std::path::Path::new("noise"), &recipe.bake().unwrap()).unwrap()
+    })
+}

@@ -1,0 +1,254 @@
+//! Passes of every kind, what they show, and what they cannot be.
+
+use glam::{UVec2, Vec4};
+use haze::formula::colour::gamma_target_colour;
+use haze::picture::Picture;
+use haze::settings::*;
+use haze::{Context, Descriptor, Error, Frame, Renderer, SceneDepth, wgpu};
+
+use super::{SIZE, encoder, featured, field, slice};
+use crate::common::{AGREEMENT, gpu, psnr};
+use crate::host::{Host, HostKind};
+use crate::stage::{BACKDROP, DepthKind, Stage};
+
+#[test]
+fn one_prepare_shows_every_stage() {
+    for path in [Path::Raster, Path::Forward] {
+        let mut all = Stage::new(SIZE);
+        (all.settings.path, all.stages) = (path, Some(ShadeTree::ALL));
+        let mut host = Host::new(gpu(), &all).unwrap();
+        let mut encoder = encoder(gpu());
+        host.prepare(gpu(), &mut encoder, &all, slice(&all)).unwrap();
+        gpu().submit(encoder).unwrap();
+        for &stage in ShadeTree::ALL {
+            let alone = Stage { shade_tree: stage, stages: None, ..Stage::new(SIZE) };
+            let alone = Stage { settings: all.settings, ..alone };
+            all.shade_tree = stage;
+            let mut encoder = self::encoder(gpu());
+            host.render(&mut encoder, &all);
+            gpu().submit(encoder).unwrap();
+            assert!(host.picture(gpu()).unwrap() == alone.on_gpu(gpu()).picture, "{path:?} {stage:?}");
+        }
+    }
+    // A stage that was not to be shown draws nothing.
+    let stage = Stage { stages: Some(&[ShadeTree::Final]), shade_tree: ShadeTree::Overdraw, ..Stage::new(SIZE) };
+    assert!(stage.on_gpu(gpu()).picture.texels.iter().all(|texel| *texel == BACKDROP));
+}
+
+#[test]
+fn passes_of_every_kind_show_the_same_smoke() {
+    use wgpu::TextureFormat as Format;
+    let host = HostKind::default;
+    // The least agreement with the reference: floats of 11 and 10 bits round more than what is compared.
+    let kinds = [
+        ("four samples", AGREEMENT, HostKind { samples: 4, ..host() }),
+        ("four samples, sRGB", AGREEMENT, HostKind { samples: 4, color_format: Format::Rgba8UnormSrgb, ..host() }),
+        ("Depth24Plus", AGREEMENT, HostKind { depth_format: Format::Depth24Plus, ..host() }),
+        ("Depth24PlusStencil8", AGREEMENT, HostKind { depth_format: Format::Depth24PlusStencil8, ..host() }),
+        ("Depth32FloatStencil8", AGREEMENT, HostKind { depth_format: Format::Depth32FloatStencil8, ..host() }),
+        ("Rg11b10Ufloat", 50.0, HostKind { color_format: Format::Rg11b10Ufloat, ..host() }),
+        ("Rgba8UnormSrgb", AGREEMENT, HostKind { color_format: Format::Rgba8UnormSrgb, ..host() }),
+        ("Bgra8UnormSrgb", AGREEMENT, HostKind { color_format: Format::Bgra8UnormSrgb, ..host() }),
+        ("Rgba8Unorm, linear", AGREEMENT, HostKind { color_format: Format::Rgba8Unorm, ..host() }),
+        (
+            "four samples and stencil",
+            AGREEMENT,
+            HostKind { samples: 4, depth_format: Format::Depth24PlusStencil8, ..host() },
+        ),
+        ("velocity", AGREEMENT, HostKind { further: vec![Format::Rg16Float, Format::R8Unorm], ..host() }),
+    ];
+    for (name, least, kind) in kinds {
+        for (path, attach_depth) in [(Path::Raster, true), (Path::Forward, true), (Path::Raster, false)] {
+            let mut stage = Stage::new(SIZE);
+            (stage.depth, stage.attach_depth) = (DepthKind::Both, attach_depth);
+            stage.settings.path = path;
+            stage.host = kind.clone();
+            let mut host = match Host::new(featured(), &stage) {
+                Ok(host) => host,
+                // An adapter without the format says so by name.
+                Err(Error::Field(error)) => {
+                    eprintln!("left out: {name}: {error}");
+                    continue;
+                }
+                Err(error) => panic!("{error}"),
+            };
+            host.draw(featured(), &stage).unwrap();
+            featured().check().unwrap_or_else(|error| panic!("{name}: {error}"));
+            let picture = host.picture(featured()).unwrap();
+            let mut reference = stage.on_cpu();
+            if kind.color_format != Format::Rgba16Float && kind.color_format != Format::Rg11b10Ufloat {
+                reference.texels.iter_mut().for_each(|texel| *texel = texel.min(Vec4::ONE));
+            }
+            if kind.color_format == Format::Rg11b10Ufloat {
+                reference.texels.iter_mut().for_each(|texel| texel.w = 1.0);
+            }
+            let psnr = psnr(&picture, &reference);
+            println!("{name}, {}, depth {attach_depth}: {psnr:.1} dB", path.name());
+            assert!(psnr >= least, "{name}, {}: {psnr:.1} dB", path.name());
+            for (index, format) in kind.further.iter().enumerate() {
+                let untouched = host.further(featured(), index).texels.iter().all(|texel| {
+                    // The host cleared them to the backdrop.
+                    (texel.x - BACKDROP.x).abs() < 1.0 / 255.0
+                });
+                assert!(untouched, "{format:?} was drawn to");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_target_of_code_is_written_in_code() {
+    use LightingResolution::{Full, Target};
+    for (path, lighting_resolution) in [(Path::Raster, Full), (Path::Raster, Target), (Path::Forward, Full)] {
+        let mut stage = Stage::new(SIZE);
+        (stage.settings.path, stage.settings.accumulate.lighting_resolution) = (path, lighting_resolution);
+        stage.settings.specular_scatter.intensity = 0.0;
+        // Smoke that hides all there is: what is left is the light's code.
+        stage.settings.boost = 16.0;
+        stage.particles.iter_mut().for_each(|p| p.amount = 1.0);
+        stage.lights.iter_mut().for_each(|light| light.intensity *= 0.1);
+        let light = stage.on_cpu();
+        stage.host.color_format = wgpu::TextureFormat::Rgba8Unorm;
+        stage.host.gamma_target = true;
+        let code = stage.on_gpu(gpu()).picture;
+        let mut expected = light.clone();
+        expected.for_each(|at, texel| {
+            let light = light.load(at.as_ivec2());
+            *texel = gamma_target_colour(light.truncate()).extend(light.w);
+        });
+        // At the rim smoke is blended: code there is no code of a blend. The middle is opaque.
+        let middle = |picture: &Picture<Vec4>| {
+            let mut part = Picture::new(UVec2::new(40, 20), Vec4::ZERO);
+            part.for_each(|at, texel| *texel = picture.load((at + UVec2::new(60, 35)).as_ivec2()));
+            part
+        };
+        let right = psnr(&middle(&code), &middle(&expected));
+        assert!(right >= AGREEMENT, "{}: {right:.1} dB", path.name());
+        // The mutant: light written as it is.
+        stage.host.gamma_target = false;
+        let dark = psnr(&middle(&stage.on_gpu(gpu()).picture), &middle(&expected));
+        assert!(dark < 35.0, "{}: {dark:.1} dB", path.name());
+    }
+}
+
+#[test]
+fn a_pass_that_the_device_cannot_have_is_refused_by_name() {
+    use wgpu::TextureFormat as Format;
+    let new = |descriptor: &Descriptor<'_>| Renderer::new(&gpu().device, &gpu().queue, descriptor);
+    let refused = |descriptor: Descriptor<'_>| field(new(&descriptor));
+    let plain = Descriptor::default();
+    new(&plain).unwrap();
+    for color_format in
+        [Format::Rgba8Uint, Format::Rgba8Snorm, Format::Rgb9e5Ufloat, Format::Depth32Float, Format::Bc1RgbaUnorm]
+    {
+        assert_eq!(refused(Descriptor { color_format, ..plain }), "color_format", "{color_format:?}");
+    }
+    assert_eq!(refused(Descriptor { depth_format: Some(Format::Rgba8Unorm), ..plain }), "depth_format");
+    assert_eq!(refused(Descriptor { depth_format: Some(Format::Stencil8), ..plain }), "depth_format");
+    for sample_count in [0, 3, 64] {
+        assert_eq!(refused(Descriptor { sample_count, ..plain }), "sample_count", "{sample_count}");
+    }
+    let further = [None, Some(Format::Rgb9e5Ufloat)];
+    assert_eq!(refused(Descriptor { further_color_formats: &further, ..plain }), "further_color_formats[1]");
+    assert_eq!(refused(Descriptor { further_color_formats: &[None; 8], ..plain }), "further_color_formats");
+    let srgb = Descriptor { color_format: Format::Rgba8UnormSrgb, gamma_target: true, ..plain };
+    assert_eq!(refused(srgb), "gamma_target");
+    let error = new(&Descriptor { color_format: Format::Rgba8Uint, ..plain }).unwrap_err().to_string();
+    assert!(error.contains("Rgba8Uint") && error.contains("Rgba16Float") && !error.contains('\n'), "{error}");
+    // The host's error handler has heard nothing of it.
+    gpu().check().unwrap();
+}
+
+#[test]
+fn what_belongs_to_another_device_is_refused() {
+    let stage = Stage::new(SIZE);
+    let here = gpu();
+    // Devices of one adapter share its OpenGL context: what goes with one of them is gone for the other.
+    if here.adapter.get_info().backend == wgpu::Backend::Gl {
+        return;
+    }
+    let (device, queue) = pollster::block_on(here.adapter.request_device(&wgpu::DeviceDescriptor::default())).unwrap();
+    let context = Context::new(&device, &queue, None);
+    let of_another = Descriptor { context: Some(&context), ..Descriptor::default() };
+    assert_eq!(field(Renderer::new(&here.device, &here.queue, &of_another)), "device");
+    let mut host = Host::new(here, &stage).unwrap();
+    assert_eq!(field(host.renderer.create_material(&device, &queue, &stage.material)), "device");
+    let frame = Frame::new(stage.view, SceneDepth::Linear(&host.linear));
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    assert_eq!(field(host.renderer.prepare(&device, &queue, &mut encoder, &frame)), "device");
+
+    let material = context.create_material(&device, &queue, &stage.material).unwrap();
+    let own = std::mem::replace(&mut host.material, material);
+    assert_eq!(field(host.draw(here, &stage)), "systems[0].material");
+    // Nor of another instance, whose devices wgpu itself may take for these.
+    host.material = Host::new(featured(), &stage).unwrap().material;
+    assert_eq!(field(host.draw(here, &stage)), "systems[0].material");
+    host.material = own;
+    let depth = device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: host.depth.texture().size(),
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Depth32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    let depth = depth.create_view(&wgpu::TextureViewDescriptor::default());
+    let own = std::mem::replace(&mut host.depth, depth);
+    assert_eq!(field(host.draw(here, &stage)), "scene_depth");
+    host.depth = own;
+    host.draw(here, &stage).unwrap();
+    here.check().unwrap();
+}
+
+#[test]
+fn depth_that_cannot_be_read_is_refused() {
+    let mut stage = Stage::new(SIZE);
+    stage.host.depth_format = wgpu::TextureFormat::Depth24PlusStencil8;
+    (stage.depth, stage.attach_depth) = (DepthKind::Buffer, false);
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    host.draw(gpu(), &stage).unwrap();
+    let texture = |layers, samples, usage| {
+        gpu().device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: SIZE.x, height: SIZE.y, depth_or_array_layers: layers },
+            mip_level_count: 1,
+            sample_count: samples,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Depth32Float,
+            usage,
+            view_formats: &[],
+        })
+    };
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT;
+    let whole = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+    let both_aspects = whole(host.depth.texture());
+    let cases = [
+        ("both aspects", both_aspects),
+        ("two layers", whole(&texture(2, 1, usage))),
+        ("four samples", whole(&texture(1, 4, usage))),
+        ("not to be sampled", whole(&texture(1, 1, wgpu::TextureUsages::RENDER_ATTACHMENT))),
+        ("a colour", whole(&host.colour)),
+    ];
+    for (name, view) in cases {
+        let own = std::mem::replace(&mut host.depth, view);
+        assert_eq!(field(host.draw(gpu(), &stage)), "scene_depth", "{name}");
+        // Nothing of the last frame is drawn in its place.
+        let mut encoder = encoder(gpu());
+        host.render(&mut encoder, &stage);
+        gpu().submit(encoder).unwrap();
+        assert!(host.picture(gpu()).unwrap().texels.iter().all(|&texel| texel == BACKDROP), "{name}");
+        host.depth = own;
+    }
+    // One layer of an array is as good as a texture of its own.
+    let array = texture(3, 1, usage);
+    host.depth = array.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2),
+        base_array_layer: 1,
+        array_layer_count: Some(1),
+        ..Default::default()
+    });
+    host.draw(gpu(), &stage).unwrap();
+    gpu().check().unwrap();
+}

@@ -1,0 +1,70 @@
+//! Several views in one submission, and a second `prepare` before the first is submitted.
+
+use glam::{Mat4, vec3};
+
+use super::{SIZE, encoder, field, slice};
+use crate::common::{gpu, psnr};
+use crate::host::Host;
+use crate::stage::Stage;
+
+#[test]
+fn two_views_in_one_submission_are_as_two_frames() {
+    let (left, mut right) = (Stage::new(SIZE), Stage::new(SIZE));
+    right.view.view_from_world = Mat4::from_translation(vec3(-0.6, 0.2, 0.5));
+    right.lights[0].intensity = 5.0;
+    let alone = [left.on_gpu(gpu()).picture, right.on_gpu(gpu()).picture];
+    assert!(psnr(&alone[0], &alone[1]) < 30.0, "the views are too much alike to tell");
+
+    let mut one = Host::new(gpu(), &left).unwrap();
+    let context = one.renderer.context().clone();
+    let mut other = Host::on(gpu(), &right, Some(&context)).unwrap();
+    // Materials are the device's, not the view's.
+    other.material = one.material.clone();
+    for _ in 0..2 {
+        let mut encoder = encoder(gpu());
+        one.prepare(gpu(), &mut encoder, &left, slice(&left)).unwrap();
+        other.prepare(gpu(), &mut encoder, &right, slice(&right)).unwrap();
+        one.render(&mut encoder, &left);
+        other.render(&mut encoder, &right);
+        gpu().submit(encoder).unwrap();
+        assert!(one.picture(gpu()).unwrap() == alone[0] && other.picture(gpu()).unwrap() == alone[1]);
+    }
+    // The second view compiled nothing that the first had not.
+    let mut third = Host::on(gpu(), &left, Some(&context)).unwrap();
+    let compiled = context.pipeline_count();
+    third.draw(gpu(), &left).unwrap();
+    assert_eq!(context.pipeline_count(), compiled);
+}
+
+#[test]
+fn a_second_prepare_before_the_first_is_submitted_is_refused() {
+    let stage = Stage::new(SIZE);
+    let picture = stage.on_gpu(gpu()).picture;
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    let refused = |host: &mut Host| {
+        let mut encoder = encoder(gpu());
+        field(host.prepare(gpu(), &mut encoder, &stage, slice(&stage)))
+    };
+    // Neither in the same encoder nor in another.
+    let mut first = encoder(gpu());
+    host.prepare(gpu(), &mut first, &stage, slice(&stage)).unwrap();
+    assert_eq!(field(host.prepare(gpu(), &mut first, &stage, slice(&stage))), "prepare");
+    assert_eq!(refused(&mut host), "prepare");
+    // An encoder that is dropped is forgotten.
+    drop(first);
+    let mut second = encoder(gpu());
+    host.prepare(gpu(), &mut second, &stage, slice(&stage)).unwrap();
+    // Passes in an encoder of their own count as well, also after the first is gone.
+    let mut passes = encoder(gpu());
+    host.render(&mut passes, &stage);
+    gpu().submit(second).unwrap();
+    assert_eq!(refused(&mut host), "prepare");
+    // What is submitted is not waited for.
+    gpu().queue.submit([passes.finish()]);
+    let mut third = encoder(gpu());
+    host.prepare(gpu(), &mut third, &stage, slice(&stage)).unwrap();
+    host.render(&mut third, &stage);
+    gpu().submit(third).unwrap();
+    assert!(host.picture(gpu()).unwrap() == picture);
+    gpu().check().unwrap();
+}

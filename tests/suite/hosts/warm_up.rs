@@ -1,0 +1,96 @@
+//! What is compiled ahead, beside the frame, or comes out of a cache.
+
+use glam::Vec3;
+use haze::settings::*;
+use haze::{Bounds, Context, Descriptor, Renderer, SceneDepthKind, Settings, WarmUp, wgpu};
+
+use super::{SIZE, featured, field};
+use crate::common::gpu;
+use crate::host::Host;
+use crate::stage::{DepthKind, Stage};
+
+fn warm_up<'a>(stage: &'a Stage, settings: &'a [Settings]) -> WarmUp<'a> {
+    let scene_depth = match stage.depth {
+        DepthKind::Buffer => SceneDepthKind::Buffer(stage.host.depth_format),
+        DepthKind::Linear => SceneDepthKind::Linear,
+        DepthKind::Both => SceneDepthKind::Both(stage.host.depth_format),
+    };
+    WarmUp { view: stage.view, scene_depth, settings, stages: std::slice::from_ref(&stage.shade_tree) }
+}
+
+#[test]
+fn the_first_frame_after_a_warm_up_compiles_nothing() {
+    for &technique in Technique::ALL {
+        for path in [Path::Raster, Path::Forward] {
+            let mut stage = Stage::new(SIZE);
+            (stage.depth, stage.attach_depth) = (DepthKind::Both, true);
+            (stage.settings.technique, stage.settings.path) = (technique, path);
+            stage.settings.diffuse.mode = DiffuseMode::Cubemap;
+            // One frame or several: sprites are not known to a warm-up.
+            if path == Path::Raster {
+                (stage.material.sprite, stage.material.detail, stage.material.six_way) = crate::techniques::flipbook();
+            }
+            stage.settings.accumulate.lighting_resolution = LightingResolution::Target;
+            let mut host = Host::new(gpu(), &stage).unwrap();
+            assert_eq!(host.renderer.context().pipeline_count(), 0);
+            host.renderer.warm_up(&warm_up(&stage, &[stage.settings])).unwrap();
+            let warm = host.renderer.context().pipeline_count();
+            assert!(warm > 0);
+            host.draw(gpu(), &stage).unwrap();
+            // With the camera inside the box, too.
+            stage.bounds = Some(Bounds { min: Vec3::splat(-20.0), max: Vec3::splat(20.0) });
+            host.draw(gpu(), &stage).unwrap();
+            assert_eq!(host.renderer.context().pipeline_count(), warm, "{} {}", technique.name(), path.name());
+        }
+    }
+}
+
+#[test]
+fn a_warm_up_runs_beside_the_frame() {
+    let mut stage = Stage::new(SIZE);
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    host.draw(gpu(), &stage).unwrap();
+    let context = host.renderer.context().clone();
+    stage.settings.technique = Technique::SphericalBillboard;
+    let (settings, attach_depth) = ([stage.settings], stage.attach_depth);
+    let expected = warm_up(&stage, &settings);
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            let depth_format = attach_depth.then_some(wgpu::TextureFormat::Depth32Float);
+            let own =
+                Descriptor { context: Some(&context), depth_format, exact_filtering: true, ..Descriptor::default() };
+            Renderer::new(&gpu().device, &gpu().queue, &own).unwrap().warm_up(&expected).unwrap();
+        });
+    });
+    let warm = context.pipeline_count();
+    host.draw(gpu(), &stage).unwrap();
+    assert_eq!(context.pipeline_count(), warm);
+    let unusable = WarmUp { settings: &[Settings { boost: -1.0, ..Settings::default() }], ..expected };
+    assert_eq!(field(host.renderer.warm_up(&unusable)), "settings[0].boost");
+}
+
+#[test]
+#[allow(unsafe_code, reason = "wgpu takes cache data from anywhere, and cannot check it; this is its own")]
+fn pipelines_go_into_the_hosts_cache_and_come_out_of_it() {
+    let gpu = featured();
+    if !gpu.device.features().contains(wgpu::Features::PIPELINE_CACHE) {
+        return;
+    }
+    let draw = |data: Option<&[u8]>| {
+        let descriptor = wgpu::PipelineCacheDescriptor { label: None, data, fallback: true };
+        let cache = unsafe { gpu.device.create_pipeline_cache(&descriptor) };
+        let empty = cache.get_data().map_or(0, |data| data.len());
+        let context = Context::new(&gpu.device, &gpu.queue, Some(&cache));
+        let stage = Stage::new(SIZE);
+        let mut host = Host::on(gpu, &stage, Some(&context)).unwrap();
+        host.draw(gpu, &stage).unwrap();
+        gpu.check().unwrap();
+        (empty, cache.get_data().unwrap(), host.picture(gpu).unwrap())
+    };
+    let (empty, filled, picture) = draw(None);
+    let (loaded, _, again) = draw(Some(&filled));
+    assert!(loaded == filled.len() && again == picture, "{loaded} bytes of {}", filled.len());
+    // Mesa's software driver keeps nothing but a header.
+    let keeps = !gpu.adapter.get_info().name.contains("llvmpipe");
+    assert!(!keeps || filled.len() > empty, "{} bytes after {empty}", filled.len());
+}

@@ -1,0 +1,81 @@
+//! Nothing that is not finite, whatever is handed over.
+
+use glam::{UVec2, Vec3, vec3};
+use haze::settings::Path;
+use haze::{Bounds, Particle};
+
+use super::SIZE;
+use crate::common::{gpu, non_finite_texels};
+use crate::host::Host;
+use crate::stage::{BACKDROP, Stage};
+
+#[test]
+fn no_preset_leaves_a_nan_in_any_target() {
+    for preset in haze::builtin::PRESETS {
+        let preset = haze::preset::Preset::load(preset.name).unwrap();
+        for system in &preset.systems {
+            let size = UVec2::new(320, 180);
+            let mut stage = Stage::new(size);
+            stage.view = preset.camera.view(size);
+            stage.lights.clone_from(&preset.lights);
+            stage.settings = system.settings_for(size.y);
+            stage.settings.path = Path::Raster;
+            stage.material = system.material.load(std::path::Path::new("")).unwrap();
+            system.emitter.evaluate(preset.time, &mut stage.particles);
+            assert_all_finite(&stage, &stage.on_gpu(gpu()), &preset.name);
+        }
+    }
+}
+
+fn assert_all_finite(stage: &Stage, drawn: &crate::host::Drawn, name: &str) {
+    assert!(drawn.picture.texels.iter().all(|texel| texel.is_finite()), "{name}");
+    let targets = drawn.renderer.targets(0).unwrap();
+    assert!(targets.size.cmple(stage.view.size).all());
+    for view in targets.accumulation.iter().chain(targets.reduced_depth) {
+        assert_eq!(non_finite_texels(gpu(), view, targets.size), 0, "{name}");
+    }
+}
+
+#[test]
+fn garbage_in_a_hosts_buffer_is_not_drawn() {
+    let mut stage = Stage::new(SIZE);
+    stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    let good = Particle { position: vec3(0.0, 0.0, -6.0), amount: 0.5, ..Particle::default() };
+    let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30];
+    let mut particles = Vec::new();
+    for x in bad {
+        particles.extend([
+            Particle { position: good.position.with_x(x), ..good },
+            Particle { position: good.position.with_z(x), ..good },
+            Particle { radius: x, ..good },
+            Particle { rotation: x, ..good },
+            Particle { frame: x, ..good },
+        ]);
+    }
+    particles.push(Particle { amount: f32::NAN, ..good });
+    host.draw_buffer(gpu(), &stage, &particles).unwrap();
+    assert!(host.picture(gpu()).unwrap().texels.iter().all(|&texel| texel == BACKDROP));
+    let targets = host.renderer.targets(0).unwrap();
+    assert_eq!(non_finite_texels(gpu(), &targets.accumulation[0], targets.size), 0);
+}
+
+#[test]
+fn degenerate_sprites_leave_no_nan_in_any_target() {
+    let mut stage = Stage::new(SIZE);
+    let somewhere = vec3(0.0, 0.0, -6.0);
+    stage.particles.extend([
+        Particle { position: Vec3::ZERO, radius: 1.0, ..Particle::default() },
+        Particle { position: vec3(0.0, 0.0, -0.1), radius: 1e-20, ..Particle::default() },
+        Particle { position: somewhere, radius: 1e9, ..Particle::default() },
+        Particle { position: somewhere, rotation: 1e30, frame: -1e30, ..Particle::default() },
+        Particle { position: somewhere, frame: f32::MAX, ..Particle::default() },
+    ]);
+    stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
+    for contrast_power in [0.1, 16.0] {
+        stage.settings.soft_fade.curve = haze::settings::FadeCurve::Contrast;
+        stage.settings.soft_fade.contrast_power = contrast_power;
+        stage.settings.soft_fade.fade_scale = 1000.0;
+        assert_all_finite(&stage, &stage.on_gpu(gpu()), "degenerate sprites");
+    }
+}

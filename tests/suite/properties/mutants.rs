@@ -1,0 +1,80 @@
+//! What a mistake in a pass would do to the whole frame, done to the reference.
+
+use glam::{Mat4, UVec2, Vec4, vec3};
+use haze::Bounds;
+use haze::picture::Picture;
+use haze::settings::ShadeTree;
+
+use super::SIZE;
+use crate::common::{AGREEMENT, gpu, psnr};
+use crate::host::Host;
+use crate::stage::{BACKDROP, Stage};
+
+#[test]
+fn mistakes_in_a_pass_are_seen() {
+    type Mistake = fn(&mut Stage);
+    let stage = || {
+        let mut stage = Stage::new(SIZE);
+        stage.settings.specular_scatter.size = 60.0;
+        stage
+    };
+    let picture = stage().on_gpu(gpu()).picture;
+    let agreement = |change: Mistake| {
+        let mut mutant = stage();
+        change(&mut mutant);
+        psnr(&picture, &mutant.on_cpu())
+    };
+    assert!(agreement(|_| {}) >= 60.0);
+    let mutants: &[(&str, Mistake)] = &[
+        ("flipped normal y", |s| s.material.sprite = crate::stage::ball_sprite(true)),
+        ("swapped ramp axes", |s| {
+            let ramp = s.material.specular_ramp.clone();
+            let texels = (0..128).map(|i| ramp.texel(UVec2::new(i / 8, i % 8)));
+            s.material.specular_ramp = haze::ramp::Ramp::from_linear(UVec2::new(8, 16), texels);
+        }),
+        ("reversed diffuse ramp", |s| {
+            let ramp = s.material.diffuse_ramp.clone();
+            let texels = (0..16).map(|i| ramp.texel(UVec2::new(15 - i, 0)));
+            s.material.diffuse_ramp = haze::ramp::Ramp::from_linear(UVec2::new(16, 1), texels);
+        }),
+        ("sprites turned the other way", |s| s.particles.iter_mut().for_each(|p| p.rotation = -p.rotation)),
+        ("no soft fade", |s| s.settings.soft_fade.fade_scale = 1000.0),
+        ("no boost", |s| s.settings.boost = 1.0),
+        ("literal decode", |s| s.settings.accumulate.decode = haze::settings::NormalDecode::Literal),
+        ("a light forgotten", |s| s.lights.truncate(1)),
+        ("half a texel off", |s| s.view.view_from_world = Mat4::from_translation(vec3(0.03, 0.0, 0.0))),
+    ];
+    for (name, change) in mutants {
+        let psnr = agreement(*change);
+        println!("{name}: {psnr:.1} dB");
+        assert!(psnr < AGREEMENT - 10.0, "{name} passes: {psnr:.1} dB");
+    }
+}
+
+#[test]
+fn a_twentieth_in_a_few_pixels_is_seen() {
+    let mut smoke = Picture::new(SIZE, BACKDROP);
+    smoke.texels[..SIZE.element_product() as usize / 100].fill(Vec4::splat(0.7));
+    for channel in Vec4::AXES {
+        let mut off = smoke.clone();
+        let few = off.texels.iter_mut().filter(|texel| **texel != BACKDROP);
+        few.for_each(|texel| *texel -= channel * 0.05);
+        let psnr = psnr(&off, &smoke);
+        assert!(psnr < AGREEMENT, "{channel}: {psnr:.1} dB");
+    }
+}
+
+#[test]
+fn order_matters_to_normals() {
+    // Sorting is the GPU renderer's own; a frame drawn front to back must not pass for one drawn back to front.
+    let mut stage = Stage::new(SIZE);
+    stage.shade_tree = ShadeTree::Normals;
+    stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
+    stage.particles.iter_mut().for_each(|particle| particle.amount = 0.9);
+    let sorted = stage.on_cpu();
+    let mut front_to_back = stage.particles.clone();
+    front_to_back.sort_by(|a, b| b.position.z.total_cmp(&a.position.z));
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    host.draw_buffer(gpu(), &stage, &front_to_back).unwrap();
+    assert!(psnr(&host.picture(gpu()).unwrap(), &sorted) < AGREEMENT - 10.0);
+}

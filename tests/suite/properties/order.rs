@@ -1,0 +1,118 @@
+//! What depends on the order of sprites, and what does not.
+
+use glam::{UVec2, Vec4, vec3};
+use haze::frame::bounds_of;
+use haze::reference::blend_unit::{premultiplied_over, quantise};
+use haze::settings::{AccumulationFormat, Order, ShadeTree};
+use haze::{Bounds, Particle};
+use proptest::prelude::*;
+
+use super::SIZE;
+use crate::common::{AGREEMENT, gpu, psnr};
+use crate::host::Host;
+use crate::stage::{BACKDROP, Stage};
+
+proptest! {
+    #[test]
+    fn amount_is_one_minus_the_product_of_what_each_layer_lets_through(
+        amounts in proptest::collection::vec(0.0_f32..1.0, 1..40),
+        seed in 0_usize..1000,
+    ) {
+        let blend = |amounts: &[f32]| {
+            amounts.iter().fold(Vec4::ZERO, |target, &a| premultiplied_over(Vec4::splat(a), target)).w
+        };
+        let mut shuffled = amounts.clone();
+        for i in (1..shuffled.len()).rev() {
+            shuffled.swap(i, (seed * 31 + i * 17) % (i + 1));
+        }
+        let product = 1.0 - amounts.iter().map(|a| 1.0 - a).product::<f32>();
+        // 40 roundings of 6e-8.
+        prop_assert!((blend(&amounts) - product).abs() < 3e-6);
+        prop_assert!((blend(&shuffled) - product).abs() < 3e-6);
+        // The mutant: SRC_ALPHA, ONE_MINUS_SRC_ALPHA, OTEE's first blend, loses amount.
+        let classic = amounts.iter().fold(0.0, |target, a| a * a + target * (1.0 - a));
+        prop_assert!(amounts.iter().all(|a| !(0.01..0.99).contains(a)) || product - classic > 1e-5);
+    }
+}
+
+#[test]
+fn amount_on_the_gpu_does_not_depend_on_order() {
+    let mut stage = Stage::new(SIZE);
+    stage.shade_tree = ShadeTree::Amount;
+    stage.settings.accumulate.scale = 1;
+    stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    // From a buffer, where the host is responsible for the order.
+    let mut draw = |particles: &[Particle]| {
+        host.draw_buffer(gpu(), &stage, particles).unwrap();
+        host.picture(gpu()).unwrap()
+    };
+    let forwards = draw(&stage.particles);
+    let reversed: Vec<_> = stage.particles.iter().rev().copied().collect();
+    let backwards = draw(&reversed);
+    let difference = forwards.texels.iter().zip(&backwards.texels).map(|(a, b)| (a.x - b.x).abs());
+    // 60 layers, each rounded to f16: 60 halves of 2^-11 at worst, a third of that seen.
+    assert!(difference.fold(0.0, f32::max) < 60.0 * 0.5 / 2048.0);
+    assert!(forwards.texels.iter().any(|texel| texel.x > 0.9));
+}
+
+#[test]
+fn weighted_normals_need_no_order() {
+    let mut stage = Stage::new(SIZE);
+    stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
+    let reversed: Vec<_> = stage.particles.iter().rev().copied().collect();
+    let mut apart = |order| {
+        stage.settings.accumulate.order = order;
+        let mut host = Host::new(gpu(), &stage).unwrap();
+        let mut draw = |particles: &[Particle]| {
+            host.draw_buffer(gpu(), &stage, particles).unwrap();
+            host.picture(gpu()).unwrap()
+        };
+        psnr(&draw(&stage.particles), &draw(&reversed))
+    };
+    let (weighted, sorted) = (apart(Order::Weighted), apart(Order::Sorted));
+    println!("turned round: weighted {weighted:.1} dB, sorted {sorted:.1} dB");
+    // Sums of f16 round in another order.
+    assert!(weighted > AGREEMENT && sorted < AGREEMENT, "{weighted} {sorted}");
+}
+
+#[test]
+fn more_than_all_counts_as_all() {
+    let mut stage = Stage::new(SIZE);
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    let mut draw = |amount: f32| {
+        stage.particles = vec![Particle { position: vec3(0.0, 0.0, -5.0), amount, ..Particle::default() }];
+        stage.bounds = Some(bounds_of(&stage.particles, stage.settings.reach()));
+        host.draw(gpu(), &stage).unwrap();
+        let slice = host.picture(gpu()).unwrap();
+        host.draw_buffer(gpu(), &stage, &stage.particles).unwrap();
+        [slice, host.picture(gpu()).unwrap(), stage.on_cpu()]
+    };
+    let whole = draw(1.0);
+    assert!(whole[0].texels.iter().any(|texel| *texel != BACKDROP));
+    for amount in [1.000_000_1, 3.0, 1.0e6] {
+        for (more, whole) in draw(amount).iter().zip(&whole) {
+            assert!(more.texels == whole.texels, "{amount}");
+        }
+    }
+}
+
+#[test]
+fn eight_bits_lose_thin_smoke_and_sixteen_do_not() {
+    // DESIGN's trap, seen on the GPU: 400 layers of amount 0.02 should reach 1 - 0.98^400 = 0.9997.
+    let stack = |format, encoding| {
+        let mut stage = Stage::new(UVec2::splat(32));
+        let sprite = Particle { position: vec3(0.0, 0.0, -4.0), radius: 3.0, amount: 0.02, ..Particle::default() };
+        stage.particles = vec![sprite; 400];
+        (stage.settings.accumulate.format, stage.settings.accumulate.encoding) = (format, encoding);
+        stage.shade_tree = ShadeTree::Amount;
+        stage.on_gpu(gpu()).picture.load(glam::IVec2::new(8, 16)).x
+    };
+    use haze::settings::NormalEncoding;
+    assert!(stack(AccumulationFormat::Rgba16Float, NormalEncoding::Signed) > 0.97);
+    let eight = stack(AccumulationFormat::Rgba8Unorm, NormalEncoding::Biased);
+    assert!((0.8..0.95).contains(&eight), "{eight}");
+    // And the reference rounds as the GPU does.
+    let layer = |target, _| quantise(AccumulationFormat::Rgba8Unorm, premultiplied_over(Vec4::splat(0.02), target));
+    assert!((0.8..0.95).contains(&(0..400).fold(Vec4::ZERO, layer).w));
+}

@@ -1,0 +1,65 @@
+//! What callers get wrong.
+
+use glam::{Mat4, Vec3};
+use haze::{Bounds, Error, Particles, wgpu};
+
+use super::SIZE;
+use crate::common::gpu;
+use crate::host::Host;
+use crate::stage::{BACKDROP, Stage};
+
+#[test]
+fn bad_frames_are_refused_by_name_and_draw_nothing() {
+    // After a good frame, so that there is something that could be drawn.
+    let refusal = |host: &mut Host, stage: &Stage, particles: Particles<'_>| {
+        host.draw(gpu(), &Stage::new(SIZE)).unwrap();
+        assert!(host.picture(gpu()).unwrap().texels.iter().any(|&texel| texel != BACKDROP));
+        let mut encoder = gpu().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let error = host.prepare(gpu(), &mut encoder, stage, particles).unwrap_err();
+        host.render(&mut encoder, stage);
+        gpu().submit(encoder).unwrap();
+        assert!(
+            host.picture(gpu()).unwrap().texels.iter().all(|&texel| texel == BACKDROP),
+            "{error}: something is drawn"
+        );
+        error
+    };
+    let mut host = Host::new(gpu(), &Stage::new(SIZE)).unwrap();
+    let mut field = |change: fn(&mut Stage)| {
+        let mut stage = Stage::new(SIZE);
+        change(&mut stage);
+        match refusal(&mut host, &stage, Particles::Slice(&stage.particles)) {
+            Error::Field(error) => error.field,
+            other => panic!("{other}"),
+        }
+    };
+    assert_eq!(field(|s| s.settings.soft_fade.fade_scale = f32::NAN), "systems[0].settings.soft_fade.fade_scale");
+    assert_eq!(field(|s| s.settings.accumulate.scale = 17), "systems[0].settings.accumulate.scale");
+    assert_eq!(field(|s| s.lights[1].range = -1.0), "lights[1].range");
+    assert_eq!(field(|s| s.bounds = Some(Bounds { min: Vec3::ZERO, max: Vec3::INFINITY })), "systems[0].bounds");
+    assert_eq!(field(|s| s.view.view_from_world = Mat4::ZERO), "view.view_from_world");
+
+    let mut stage = Stage::new(SIZE);
+    stage.view.size += 1;
+    let error = refusal(&mut host, &stage, Particles::Slice(&stage.particles)).to_string();
+    assert_eq!(
+        error,
+        "view.size: 161x91 from (0, 0) is not valid; expected the size of the scene depth, 160x90, or a part of it"
+    );
+    // Particles on the GPU need a box.
+    stage.view.size = SIZE;
+    let buffer = gpu().device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: 64,
+        usage: wgpu::BufferUsages::VERTEX,
+        mapped_at_creation: false,
+    });
+    let mut refused = |count, bounds| {
+        stage.bounds = bounds;
+        let particles = Particles::Buffer { buffer: &buffer, offset: 0, count };
+        refusal(&mut host, &stage, particles).to_string()
+    };
+    assert!(refused(2, None).starts_with("systems[0].bounds: None"));
+    let somewhere = Some(Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE });
+    assert!(refused(3, somewhere).starts_with("systems[0].particles: 64 bytes"));
+}

@@ -1,0 +1,134 @@
+//! Pictures of any size, without smoke, of many systems and lights.
+
+use glam::camera::rh::proj::directx;
+use glam::{UVec2, Vec3, vec3};
+use haze::read_only_depth_is_supported;
+use haze::settings::{DepthSource, DiffuseMode, Path, Upsample};
+use haze::{Light, Particle};
+
+use super::SIZE;
+use crate::common::{AGREEMENT, gpu, psnr};
+use crate::host::Host;
+use crate::stage::{BACKDROP, Stage};
+
+#[test]
+fn no_smoke_leaves_the_scene_untouched() {
+    let untouched = |stage: &Stage| {
+        let drawn = stage.on_gpu(gpu());
+        drawn.picture.texels.iter().all(|&texel| texel == BACKDROP)
+            && stage.on_cpu().texels.iter().all(|&t| t == BACKDROP)
+    };
+    let mut stage = Stage::new(SIZE);
+    assert!(!untouched(&stage));
+    let particles = std::mem::take(&mut stage.particles);
+    assert!(untouched(&stage));
+    // Sprites that cannot be drawn count as none.
+    stage.particles = vec![
+        Particle { position: Vec3::NAN, ..Particle::default() },
+        Particle { radius: 0.0, position: vec3(0.0, 0.0, -6.0), ..Particle::default() },
+        Particle { amount: 0.0, position: vec3(0.0, 0.0, -6.0), ..Particle::default() },
+        Particle { radius: f32::INFINITY, ..Particle::default() },
+        // Behind the camera.
+        Particle { position: vec3(0.0, 0.0, 6.0), ..Particle::default() },
+    ];
+    assert!(untouched(&stage));
+    // A real one behind the camera and out of sight.
+    stage.particles =
+        particles.iter().map(|p| Particle { position: p.position + vec3(0.0, 0.0, 20.0), ..*p }).collect();
+    assert!(untouched(&stage));
+    for path in [Path::Raster, Path::Forward] {
+        stage.settings.path = path;
+        stage.settings.accumulate.opacity = 0.0;
+        stage.particles.clone_from(&particles);
+        assert!(untouched(&stage));
+    }
+}
+
+#[test]
+fn odd_sizes_and_every_scale_work() {
+    for size in [UVec2::ONE, UVec2::new(1, 97), UVec2::new(641, 359), UVec2::new(3, 2)] {
+        for scale in 1..=16 {
+            let mut stage = Stage::new(size);
+            stage.settings.accumulate.scale = scale;
+            let drawn = stage.on_gpu(gpu());
+            gpu().check().unwrap();
+            assert!(drawn.picture.texels.iter().all(|texel| texel.is_finite()), "{size} scale {scale}");
+            // Hardware places corners on a grid of 1/256 pixel. Where a whole sprite is less than a pixel, that moves it
+            // by a part of its own size, and the pictures of the two renderers are no longer of the same sprite.
+            if size.min_element() > 64 {
+                let psnr = psnr(&drawn.picture, &stage.on_cpu());
+                assert!(psnr >= AGREEMENT, "{size} scale {scale}: {psnr:.1} dB");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_host_may_resize_and_change_everything_from_frame_to_frame() {
+    let mut stage = Stage::new(SIZE);
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    for step in 0..24_u32 {
+        let size = UVec2::new(64 + 37 * (step % 5), 48 + 29 * (step % 7));
+        let next = Stage::new(size);
+        (stage.view, stage.particles) = (next.view, next.particles);
+        let accumulate = &mut stage.settings.accumulate;
+        accumulate.scale = 1 + step % 6;
+        accumulate.upsample = Upsample::ALL[step as usize % Upsample::ALL.len()];
+        let tested = accumulate.scale == 1 && read_only_depth_is_supported(&gpu().device);
+        accumulate.depth_source = if tested { DepthSource::Host } else { DepthSource::Reduced };
+        stage.settings.diffuse.mode = DiffuseMode::ALL[step as usize % DiffuseMode::ALL.len()];
+        stage.settings.path = if step % 11 == 10 { Path::Forward } else { Path::Auto };
+        // The renderer stays, the host's textures are new.
+        let mut resized = Host::on(gpu(), &stage, Some(host.renderer.context())).unwrap();
+        std::mem::swap(&mut resized.renderer, &mut host.renderer);
+        std::mem::swap(&mut resized, &mut host);
+        host.draw(gpu(), &stage).unwrap();
+        gpu().check().unwrap();
+        let psnr = psnr(&host.picture(gpu()).unwrap(), &stage.on_cpu());
+        // The edge of a sprite takes or leaves a whole texel, which may be 36 of few pixels: 53 dB.
+        assert!(psnr >= 50.0, "step {step}: {psnr:.1} dB");
+    }
+}
+
+#[test]
+fn the_clamp_limits_the_target() {
+    let mut stage = Stage::new(UVec2::new(641, 359));
+    stage.settings.accumulate.scale = 1;
+    stage.settings.accumulate.max_side = 100;
+    let drawn = stage.on_gpu(gpu());
+    let targets = drawn.renderer.targets(0).unwrap();
+    assert_eq!(targets.scale, 7);
+    assert!(targets.size.max_element() <= 100);
+    assert!(psnr(&drawn.picture, &stage.on_cpu()) >= AGREEMENT);
+}
+
+#[test]
+fn the_plane_that_is_lit_is_told_as_the_host_measures_depth() {
+    let aspect = SIZE.x as f32 / SIZE.y as f32;
+    // This one's near plane is behind the viewer: inside, it steps back.
+    let orthographic = directx::orthographic(-4.0, 4.0, -2.25, 2.25, -5.0, 80.0);
+    for projection in [directx::perspective(0.8, aspect, 0.1, 80.0), orthographic] {
+        let mut stage = Stage::new(SIZE);
+        stage.view.clip_from_view = projection;
+        stage.particles = vec![Particle { position: vec3(0.0, 0.0, -6.0), ..Particle::default() }];
+        let lit = stage.on_gpu(gpu()).renderer.targets(0).unwrap().lit_depth;
+        assert!((lit - 6.0).abs() < 1e-3, "{lit}");
+    }
+}
+
+#[test]
+fn many_lights_agree_and_too_many_are_refused() {
+    let mut stage = Stage::new(SIZE);
+    let light = |i: usize| Light {
+        position: vec3((i % 16) as f32 - 8.0, (i / 16) as f32 - 4.0, -4.0),
+        colour: vec3((i % 3) as f32, (i % 5) as f32, (i % 7) as f32) * 0.1,
+        range: 4.0,
+        specular_scatter: 0.0,
+        ..Light::default()
+    };
+    stage.lights = (0..haze::frame::MAX_LIGHTS).map(light).collect();
+    assert!(psnr(&stage.on_gpu(gpu()).picture, &stage.on_cpu()) >= AGREEMENT);
+    stage.lights.push(light(0));
+    let Err(error) = stage.try_on_gpu(gpu()) else { panic!("129 lights passed") };
+    assert_eq!(error.to_string(), "lights: 129 lights is not valid; expected at most 128");
+}

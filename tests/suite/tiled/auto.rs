@@ -1,0 +1,117 @@
+//! Which path `auto` takes, why, and how seldom it changes.
+
+use glam::vec3;
+use haze::settings::*;
+use haze::{Bounds, Particles, PathCosts, PathModel, PathModelSource, PathReason};
+
+use super::{stage, storage_buffer};
+use crate::common::{gpu, has_tiles};
+use crate::creations;
+use crate::host::Host;
+
+#[test]
+fn auto_takes_what_is_cheaper_and_says_why() {
+    if !has_tiles() {
+        return;
+    }
+    let mut stage = stage(Technique::Soft);
+    stage.settings.path = Path::Auto;
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    let class = host.renderer.context().path_model();
+    let dear = |costs: PathCosts| PathCosts { fragment: 1.0e3, ..costs };
+    // The first frame takes what is cheaper at once.
+    let models = [(dear(class.raster), class.tiled, Path::Tiled), (class.raster, dear(class.tiled), Path::Raster)];
+    for (raster, tiled, path) in models {
+        let mut host = Host::new(gpu(), &stage).unwrap();
+        let model = PathModel { raster, tiled, source: PathModelSource::Host };
+        host.renderer.context().set_path_model(model).unwrap();
+        assert_eq!(host.renderer.path_choice(0), None);
+        host.draw(gpu(), &stage).unwrap();
+        let choice = host.renderer.path_choice(0).unwrap();
+        assert_eq!(choice.path, path);
+        let PathReason::Expected { raster_ms, tiled_ms, layers: Some(layers), source } = choice.reason else {
+            panic!("{choice}")
+        };
+        assert_eq!((raster_ms < tiled_ms, source), (path == Path::Raster, PathModelSource::Host));
+        // As the renderer counts them, but for the part of the target that the box does not cover.
+        let counted = host.renderer.overdraw().mean() as f32;
+        assert!((0.5..1.1).contains(&(layers / counted)), "{layers} {counted}");
+        assert!(choice.to_string().contains("overdraw"), "{choice}");
+        assert_eq!(host.renderer.memory_use().tiled.total() > 0, path == Path::Tiled);
+    }
+    // A buffer that compute shaders cannot read is drawn all the same.
+    stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
+    host.renderer.context().set_path_model(PathModel { raster: dear(class.raster), ..class }).unwrap();
+    host.draw_buffer(gpu(), &stage, &stage.particles).unwrap();
+    let choice = host.renderer.path_choice(0).unwrap();
+    assert_eq!((choice.path, choice.reason), (Path::Raster, PathReason::BufferOfVertices));
+    let bytes: Vec<u8> = bytemuck::cast_slice(&stage.particles).to_vec();
+    let (buffer, count) = (storage_buffer(&bytes), stage.particles.len() as u32);
+    host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count }).unwrap();
+    let choice = host.renderer.path_choice(0).unwrap();
+    assert!(choice.path == Path::Tiled && choice.to_string().contains("unknown, taken for 16"), "{choice}");
+    // No choice, no reason.
+    stage.settings.path = Path::Raster;
+    host.draw(gpu(), &stage).unwrap();
+    assert_eq!(host.renderer.path_choice(0), None);
+    let model = PathModel { raster: PathCosts { entry: -1.0, ..class.raster }, ..class };
+    let message = host.renderer.context().set_path_model(model).unwrap_err().to_string();
+    assert_eq!(message, "raster.entry: -1 is not valid; expected nanoseconds, 0 or more");
+    gpu().check().unwrap();
+}
+
+#[test]
+fn auto_changes_seldom_and_then_creates_a_few_things_once() {
+    if !has_tiles() {
+        return;
+    }
+    let mut stage = stage(Technique::Soft);
+    stage.settings.path = Path::Auto;
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    let model = host.renderer.context().path_model();
+    let set = |host: &Host, raster: f32, tiled: f32| {
+        let costs = |fragment| PathCosts { frame: 0.0, texel: 0.0, sprite: 0.0, entry: 0.0, fragment, ..model.raster };
+        let model = PathModel { raster: costs(raster), tiled: costs(tiled), source: PathModelSource::Host };
+        host.renderer.context().set_path_model(model).unwrap();
+    };
+    let path = |host: &Host| host.renderer.path_choice(0).unwrap().path;
+    set(&host, 1.0, 100.0);
+    host.draw(gpu(), &stage).unwrap();
+    assert_eq!(path(&host), Path::Raster);
+    // What seems better every other frame never is.
+    let created = creations::count(|| {
+        for frame in 0..80 {
+            set(&host, [1.0, 100.0][frame % 2], [100.0, 1.0][frame % 2]);
+            host.draw(gpu(), &stage).unwrap();
+            assert_eq!(path(&host), Path::Raster);
+        }
+    });
+    assert_eq!(created, 0);
+    set(&host, 100.0, 1.0);
+    let frames = (0..200).take_while(|_| {
+        host.draw(gpu(), &stage).unwrap();
+        path(&host) == Path::Raster
+    });
+    assert!((20..60).contains(&frames.count()));
+    let created = creations::count(|| (0..5).for_each(|_| host.draw(gpu(), &stage).unwrap()));
+    assert_eq!(created, 0);
+}
+
+#[test]
+fn a_probe_measures_both_paths() {
+    if !has_tiles() {
+        return;
+    }
+    let stage = stage(Technique::Soft);
+    let host = Host::new(gpu(), &stage).unwrap();
+    let context = host.renderer.context();
+    let before = context.path_model();
+    let model = context.measure_paths(&gpu().device, &gpu().queue, |encoder| gpu().submit(encoder)).unwrap();
+    assert_eq!((model, model.source), (context.path_model(), PathModelSource::Probe));
+    // Whatever the machine, no millisecond a fragment, and no two thousand a picosecond.
+    for costs in [model.raster, model.tiled] {
+        assert!((1.0e-4..1.0e6).contains(&costs.fragment), "{costs:?}");
+    }
+    assert!(before.source != PathModelSource::Probe);
+    gpu().check().unwrap();
+}

@@ -1,0 +1,84 @@
+//! Emitters that are evaluated where they are drawn.
+
+use glam::{UVec2, Vec3, vec3};
+use haze::emitter::{Emitter, EmitterShape};
+use haze::settings::*;
+use haze::{Particles, TiledMemory, wgpu};
+
+use super::{TO_RASTER, stage};
+use crate::common::{gpu, has_tiles, psnr};
+use crate::host::Host;
+use crate::stage::Stage;
+
+/// An emitter before the stage's camera.
+fn emitter() -> Emitter {
+    Emitter {
+        rate: 60.0,
+        lifetime: 3.0,
+        position: vec3(0.0, -1.0, -5.0),
+        extent: Vec3::splat(0.4),
+        radius_end: 0.6,
+        amount: 0.2,
+        ..Emitter::default()
+    }
+}
+
+#[test]
+fn an_emitter_is_evaluated_where_it_is_drawn() {
+    if !has_tiles() {
+        return;
+    }
+    for shape in [EmitterShape::Sphere, EmitterShape::Box, EmitterShape::Disc] {
+        let emitter = Emitter { shape, ..emitter() };
+        for time in [0.3, 7.0, 10_000.0] {
+            let emission = emitter.at(time);
+            let mut stage = stage(Technique::Soft);
+            emission.evaluate(&mut stage.particles);
+            // Those of the slice, so that both are lit at one place.
+            stage.bounds = Some(emission.bounds(stage.settings.reach()));
+            stage.settings.accumulate.order = Order::Sorted;
+            let mut host = Host::new(gpu(), &stage).unwrap();
+            let particles = stage.particles.clone();
+            let mut drawn = |path, particles| {
+                stage.settings.path = path;
+                host.draw_particles(gpu(), &stage, particles).unwrap();
+                host.picture(gpu()).unwrap()
+            };
+            let tiled = drawn(Path::Tiled, Particles::Emission(&emission));
+            assert!(drawn(Path::Tiled, Particles::Emission(&emission)) == tiled, "not the same again");
+            let raster = drawn(Path::Raster, Particles::Emission(&emission));
+            let slice = drawn(Path::Tiled, Particles::Slice(&particles));
+            let (to_raster, to_slice) = (psnr(&tiled, &raster), psnr(&tiled, &slice));
+            println!("{shape:?} at {time}: {to_raster:.1} dB of raster, {to_slice:.1} dB of the slice");
+            assert!(to_raster >= TO_RASTER && to_slice >= 70.0, "{to_raster} {to_slice}");
+        }
+    }
+    gpu().check().unwrap();
+}
+
+#[test]
+fn a_million_particles_never_are_on_the_cpu_and_fit_into_200_megabytes() {
+    if !has_tiles() {
+        return;
+    }
+    let emitter = Emitter { rate: 100_000.0, lifetime: 8.7, lifetime_spread: 0.2, radius_end: 0.02, ..emitter() };
+    emitter.validate(String::new).unwrap();
+    let emission = emitter.at(60.0);
+    assert!((1_000_000..=haze::emitter::MAX_PARTICLES + 2).contains(&emission.count()), "{}", emission.count());
+    let mut stage = stage(Technique::Soft);
+    (stage.settings.path, stage.settings.accumulate.scale) = (Path::Tiled, 2);
+    stage.view = Stage::new(UVec2::new(1920, 1080)).view;
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    let mut encoder = gpu().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    host.prepare(gpu(), &mut encoder, &stage, Particles::Emission(&emission)).unwrap();
+    let memory = host.renderer.memory_use();
+    println!("{memory:?}");
+    let TiledMemory { emitted, sprites, keys, counts, lists } = memory.tiled;
+    assert!([emitted, sprites, keys, counts, lists].iter().all(|&bytes| bytes > 1 << 20), "{memory:?}");
+    assert_eq!(memory.tiled.total(), emitted + sprites + keys + counts + lists);
+    assert!(memory.buffers >= memory.tiled.total() && memory.targets > 960 * 540 * 8);
+    assert!(memory.targets + memory.buffers <= 200_000_000, "{memory:?}");
+    // Nothing of it was sorted or uploaded.
+    assert!(memory.buffers - memory.tiled.total() < 1 << 16, "{memory:?}");
+    gpu().check().unwrap();
+}

@@ -1,0 +1,139 @@
+//! Lists of sprites: what finds no room, what is too long to count, and what steady frames create.
+
+use glam::{UVec2, vec3};
+use haze::formula::uniforms::TilesUniform;
+use haze::settings::*;
+use haze::{Particle, shader, wgpu};
+
+use super::{drawn, stage};
+use crate::common::{gpu, has_tiles, psnr};
+use crate::creations;
+use crate::host::Host;
+use crate::stage::Stage;
+
+#[test]
+fn lists_that_find_no_room_are_drawn_all_the_same() {
+    if !has_tiles() {
+        return;
+    }
+    // Every sprite in every bin: at first the lists hold a part of that.
+    let mut stage = stage(Technique::Soft);
+    let size = UVec2::new(960, 540);
+    (stage.view, stage.settings.accumulate.scale) = (Stage::new(size).view, 1);
+    let wide = |index: u32| Particle {
+        position: vec3(0.0, 0.0, -6.0 - 0.001 * index as f32),
+        radius: 12.0,
+        amount: 0.01,
+        ..Particle::default()
+    };
+    stage.particles = (0..140).map(wide).collect();
+    for in_step in [true, false] {
+        let raster = drawn(&stage, Path::Raster, in_step);
+        (stage.settings.path, stage.host.exact_filtering) = (Path::Tiled, in_step);
+        let mut host = Host::new(gpu(), &stage).unwrap();
+        host.renderer.context().walk_in_step(in_step);
+        let mut picture = || {
+            host.draw(gpu(), &stage).unwrap();
+            (host.picture(gpu()).unwrap(), host.renderer.memory_use().buffers)
+        };
+        let (first, held) = picture();
+        let (second, held_then) = picture();
+        assert!(held_then > held, "the lists have not grown from {held} bytes");
+        assert!(first == second);
+        // The blend unit has rounded a hundred layers.
+        let apart = psnr(&first, &raster);
+        assert!(apart >= 50.0, "{apart}");
+    }
+    gpu().check().unwrap();
+}
+
+#[test]
+fn steady_frames_on_tiles_create_nothing() {
+    if !has_tiles() {
+        return;
+    }
+    let mut stage = stage(Technique::Soft);
+    stage.settings.path = Path::Tiled;
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    for in_step in [true, false] {
+        host.renderer.context().walk_in_step(in_step);
+        host.draw(gpu(), &stage).unwrap();
+        let created = creations::count(|| {
+            for frame in 0..5 {
+                // Fewer sprites, elsewhere.
+                stage.particles.truncate(60 - frame);
+                stage.particles.iter_mut().for_each(|particle| particle.position.x += 0.001);
+                host.draw(gpu(), &stage).unwrap();
+            }
+        });
+        assert_eq!(created, 0);
+    }
+    // What is not tiled any more gives its buffers back.
+    let held = host.renderer.memory_use().buffers;
+    stage.settings.path = Path::Raster;
+    for _ in 0..130 {
+        host.draw(gpu(), &stage).unwrap();
+    }
+    assert!(host.renderer.memory_use().buffers < held / 4);
+}
+
+#[test]
+fn lists_of_more_than_32_bits_can_count_do_not_wrap() {
+    if !has_tiles() {
+        return;
+    }
+    let gpu = gpu();
+    let source = shader::compose(shader::source("tile_bin.wgsl").unwrap()).unwrap();
+    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: None,
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: None,
+        layout: None,
+        module: &module,
+        entry_point: Some("allocate_alone"),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    });
+    // The first two come to 2^32 words and more, three for each; the others to 30.
+    let lengths = [3_000_000_000_u32, 1_294_967_292, 4, 6];
+    let tiles = TilesUniform { count: 9, columns: 2, rows: 2, runs: 1, capacity: 20, ..TilesUniform::default() };
+    let buffer = |bytes: &[u8], usage| {
+        let usage = usage | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
+        let size = bytes.len() as u64;
+        let descriptor = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
+        let buffer = gpu.device.create_buffer(&descriptor);
+        gpu.queue.write_buffer(&buffer, 0, bytes);
+        buffer
+    };
+    let (uniform, storage) = (wgpu::BufferUsages::UNIFORM, wgpu::BufferUsages::STORAGE);
+    let uniform = buffer(bytemuck::bytes_of(&tiles), uniform);
+    let [counts, bins, tally] = [bytemuck::cast_slice(&lengths), &[0; 32], bytemuck::cast_slice(&[9_u32, 0])]
+        .map(|bytes| buffer(bytes, storage));
+    let bound = [(0, &uniform), (5, &counts), (7, &bins), (8, &tally)];
+    let entries = bound.map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
+    let layout = pipeline.get_bind_group_layout(0);
+    let group =
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries });
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.dispatch_workgroups(1, 1, 1);
+    }
+    gpu.submit(encoder).unwrap();
+    let words = |buffer| bytemuck::pod_collect_to_vec::<u8, u32>(&gpu.read_buffer(buffer).unwrap());
+    // Those that are longer than their share of 32 bits are left out.
+    assert_eq!(words(&tally)[1], 30);
+    let bins = words(&bins);
+    assert_eq!((bins[0], bins[2]), (u32::MAX, u32::MAX));
+    assert!(bins[4] != u32::MAX || bins[6] != u32::MAX, "neither fits: {bins:?}");
+    for (bin, length) in bins.chunks(2).zip(lengths) {
+        match bin[0] {
+            u32::MAX => assert_eq!(bin[1], 9, "it reads all sprites"),
+            first => assert!(bin[1] == length && first + 3 * length <= 20, "{bins:?}"),
+        }
+    }
+}
