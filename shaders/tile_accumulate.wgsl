@@ -1,5 +1,5 @@
 // tile_accumulate
-// What    Accumulates every sprite's normal and amount, as accumulate does, but texel by texel: walks the sprites of a bin front to
+// What    Accumulates every sprite's normal, or light by six-way maps, and amount, as accumulate does, but texel by texel: walks the sprites of a bin front to
 //         back, adds them up in registers, and writes once.
 // Reads   lists of sprites, sprite flipbook, detail map or noise, reduced depth (or the host's own).
 // Writes  accumulation target, as accumulate.
@@ -21,7 +21,9 @@
 // One of the two is the target, by its format.
 @group(3) @binding(7) var float_target: texture_storage_2d<rgba16float, write>;
 @group(3) @binding(8) var byte_target: texture_storage_2d<rgba8unorm, write>;
+// Beside it one of these, or none.
 @group(3) @binding(9) var weight_target: texture_storage_2d<r32float, write>;
+@group(3) @binding(10) var six_way_target: texture_storage_2d<rgba16float, write>;
 
 override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
 override WEIGHTED: bool = false;
@@ -39,8 +41,10 @@ struct Texel {
     place: vec2f,
     ray: vec2f,
     scene: f32,
-    // Premultiplied normals of all sprites in front.
-    normals: vec4f,
+    // Of all sprites in front, premultiplied: normals, or light from right, top and front where SIX_WAY.
+    normals: vec3f,
+    // Light from left, bottom and back.
+    negative: vec3f,
     weights: f32,
     transmittance: f32,
 }
@@ -61,8 +65,14 @@ fn with_sprite(texel: Texel, sprite: TileSprite, place: vec2f, is_touched: bool)
     let amount = select(0.0, fragment.amount, is_touched && !fragment.hidden);
     let seen = select(texel.transmittance, 1.0, WEIGHTED);
     var next = texel;
-    next.normals += accumulation_from_normal(NORMAL_ENCODING, fragment.normal, amount, in.weight) * seen;
-    next.weights += amount * in.weight;
+    let weight = amount * in.weight * seen;
+    if SIX_WAY {
+        next.normals += fragment.six_way.positive * weight;
+        next.negative += fragment.six_way.negative * weight;
+    } else {
+        next.normals += accumulation_from_normal(NORMAL_ENCODING, fragment.normal, amount, in.weight).rgb * seen;
+    }
+    next.weights += weight;
     next.transmittance *= 1.0 - amount;
     return next;
 }
@@ -73,7 +83,7 @@ fn is_done(texel: Texel) -> bool {
 }
 
 fn write_texel(place: vec2u, texel: Texel) {
-    let accumulated = vec4f(texel.normals.rgb, 1.0 - texel.transmittance);
+    let accumulated = vec4f(texel.normals, 1.0 - texel.transmittance);
     if BYTE_TARGET {
         textureStore(byte_target, place, accumulated);
     } else {
@@ -81,6 +91,9 @@ fn write_texel(place: vec2u, texel: Texel) {
     }
     if SUMS_WEIGHTS {
         textureStore(weight_target, place, vec4f(texel.weights));
+    }
+    if SIX_WAY {
+        textureStore(six_way_target, place, vec4f(texel.negative, texel.weights));
     }
 }
 

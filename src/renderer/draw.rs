@@ -142,6 +142,7 @@ impl Assembly<'_> {
                         sprites: &sprites,
                         size,
                         format: keys.accumulate.format,
+                        beside: keys.accumulate.beside,
                         attachments: &accumulation.attachments,
                         depth: accumulation.reduced_depth.as_ref().unwrap_or(&depth.depth),
                     };

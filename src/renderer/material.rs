@@ -59,7 +59,7 @@ pub(crate) fn create_material(
     validate_sizes(&gpu.device.limits(), assets)?;
     let mut bytes = 0;
     let sprite = upload_sprite(gpu, "haze sprite", &assets.sprite, assets.six_way.as_ref(), &mut bytes);
-    let filled = upload_filled(gpu, &assets.sprite, &mut bytes);
+    let filled = upload_filled(gpu, &assets.sprite, assets.six_way.as_ref(), &mut bytes);
     let detail = assets.detail.as_ref().map(|detail| upload_sprite(gpu, "haze detail", detail, None, &mut bytes));
     let noise = upload_noise(gpu, &assets.noise, &mut bytes);
     let mut ramp = |label, ramp| upload_ramp(gpu, label, ramp, &mut bytes);
@@ -215,9 +215,10 @@ fn upload_sprite(
     })
 }
 
-/// Where a sprite is not clear: a texel for each mip level and frame.
-fn upload_filled(gpu: &Gpu<'_>, sprite: &Sprite, bytes: &mut u64) -> wgpu::TextureView {
-    let size = extent(UVec2::new(sprite.level_count(), sprite.frame_count()), 1);
+/// Where a sprite is not clear: a texel for each mip level and frame. `after` as [`upload_sprite`].
+fn upload_filled(gpu: &Gpu<'_>, sprite: &Sprite, after: Option<&Sprite>, bytes: &mut u64) -> wgpu::TextureView {
+    let frames = sprite.frame_count() + after.map_or(0, Sprite::frame_count);
+    let size = extent(UVec2::new(sprite.level_count(), frames), 1);
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("haze sprite cells"),
         size,
@@ -228,8 +229,10 @@ fn upload_filled(gpu: &Gpu<'_>, sprite: &Sprite, bytes: &mut u64) -> wgpu::Textu
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
-    let cells: Vec<u64> = (0..sprite.frame_count())
-        .flat_map(|frame| (0..sprite.level_count()).map(move |level| sprite.filled_cells(level, frame)))
+    let frames = std::iter::once(sprite).chain(after);
+    let frames = frames.flat_map(|sprite| (0..sprite.frame_count()).map(move |frame| (sprite, frame)));
+    let cells: Vec<u64> = frames
+        .flat_map(|(sprite, frame)| (0..sprite.level_count()).map(move |level| sprite.filled_cells(level, frame)))
         .collect();
     *bytes += size_of_val(cells.as_slice()) as u64;
     let data = bytemuck::cast_slice(&cells);

@@ -231,7 +231,7 @@ fn tiled_keys(key: &AccumulateKey, layers: Layers, in_step: bool, exact_filterin
             format,
             encoding,
             weighted,
-            sums_weights: beside == Beside::Weights,
+            beside,
             host_depth,
             // A weighted normal counts, whatever is in front.
             stops: layers == Layers::Visible && !weighted,

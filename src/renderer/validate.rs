@@ -92,10 +92,6 @@ fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &Sy
             "\"raster\", or a device with compute shaders and the limits that WebGPU promises, not of OpenGL";
         return Err(FieldError::new(format!("systems[{index}].settings.path"), "\"tiled\"", expected));
     }
-    if system.settings.path == Path::Tiled && system.settings.is_six_way() {
-        let expected = "\"raster\", or lighting \"normals\"";
-        return Err(FieldError::new(format!("systems[{index}].settings.path"), "\"tiled\"", expected));
-    }
     validate_place(index, system.bounds.as_ref(), system.depth)?;
     let field = |name: &str| format!("systems[{index}].{name}");
     validate_particles(shared, system, &field)?;
@@ -126,9 +122,6 @@ fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &Sy
 /// Why the path `auto` cannot take `tiled` for a system.
 pub(crate) fn tiles_refuse(shared: &Shared, system: &System<'_>) -> Option<PathReason> {
     let Some(tiled) = &shared.passes.tiled else { return Some(PathReason::NoTiles) };
-    if system.settings.is_six_way() {
-        return Some(PathReason::SixWay);
-    }
     let (count, is_readable) = match system.particles {
         Particles::Slice(particles) => (particles.len() as u64, true),
         Particles::Buffer { buffer, offset, count } => {

@@ -4,8 +4,10 @@ mod auto;
 mod emission;
 mod lists;
 
+#[cfg(feature = "app")]
+use glam::UVec2;
 use glam::camera::rh::proj::directx;
-use glam::{UVec2, Vec3, Vec4, vec3};
+use glam::{Vec3, Vec4, vec3};
 #[cfg(feature = "app")]
 use haze::builtin;
 #[cfg(feature = "app")]
@@ -44,7 +46,7 @@ fn drawn(stage: &Stage, path: Path, in_step: bool) -> Picture<Vec4> {
     host.picture(gpu()).unwrap()
 }
 
-fn agreement(name: &str, stage: &Stage) {
+pub fn agreement(name: &str, stage: &Stage) {
     let steps = stage.settings.sprite.debug_sprite;
     for in_step in [true, false] {
         let [tiled, raster] = [Path::Tiled, Path::Raster].map(|path| drawn(stage, path, in_step));

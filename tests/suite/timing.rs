@@ -8,7 +8,7 @@ use haze::headless::Headless;
 use haze::settings::{Backlight, DiffuseMode, Lighting, LightingResolution, Path};
 use haze::{Error, Frame, FrameTimes, Particles, SceneDepth, Settings, System, Timing, wgpu};
 
-use crate::common::gpu;
+use crate::common::{gpu, has_tiles};
 use crate::creations;
 use crate::host::Host;
 use crate::stage::Stage;
@@ -366,13 +366,17 @@ fn what_light_costs() {
         change(&mut other.settings);
         other
     };
+    let raster = [(Path::Raster, "accumulate"), (Path::Raster, "transfer")];
+    let tiled = [(Path::Tiled, "tile_accumulate")];
+    let tiled = if has_tiles() { &tiled[..] } else { &[] };
     for scale in [1, 2] {
-        let pair = [Lighting::Normals, Lighting::SixWay].map(|lighting| {
-            let mut stage = stage.clone();
-            (stage.settings.accumulate.scale, stage.settings.lighting) = (scale, lighting);
-            stage
-        });
-        for pass in ["accumulate", "transfer"] {
+        for &(path, pass) in raster.iter().chain(tiled) {
+            let pair = [Lighting::Normals, Lighting::SixWay].map(|lighting| {
+                let mut stage = stage.clone();
+                (stage.settings.path, stage.settings.lighting) = (path, lighting);
+                stage.settings.accumulate.scale = scale;
+                stage
+            });
             let times = medians(gpu, &pair, pass);
             println!(
                 "1/{scale} {pass}: normals {:.3} ms, six-way {:.3} ms, {:.2}",

@@ -38,8 +38,6 @@ pub enum PathReason {
     NoTiles,
     /// Compute shaders cannot read the host's buffer: it has no `STORAGE` usage, or an offset that is no multiple of 16.
     BufferOfVertices,
-    /// Sprites are lit by six-way maps.
-    SixWay,
     /// There are more particles than fit into what shaders of this device read.
     TooMany,
 }
@@ -76,7 +74,6 @@ impl fmt::Display for PathChoice {
             PathReason::BufferOfVertices => f.write_str(
                 "compute shaders cannot read the particles' buffer: STORAGE usage and an offset of 16 bytes",
             ),
-            PathReason::SixWay => f.write_str("tiles are lit by normals, not by six-way maps"),
             PathReason::TooMany => f.write_str("more particles than shaders of this device can read"),
         }
     }

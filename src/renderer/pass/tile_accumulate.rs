@@ -1,5 +1,5 @@
 //! tile_accumulate
-//! What: adds up every sprite's normal and amount, texel by texel, front to back.
+//! What: adds up every sprite's normal, or light by six-way maps, and amount, texel by texel, front to back.
 //! Reads: lists of sprites, sprite flipbook, detail map or noise, reduced depth or the host's own. Writes: accumulation
 //! target. Source: OTEE "Accumulating the particles"; Porter and Duff, "Compositing digital images", 1984.
 
@@ -9,6 +9,7 @@ use super::Groups;
 use super::sprites::SpriteKey;
 use super::tile_refine;
 use crate::renderer::gpu::pipeline::{ComputeParts, switch, variant};
+use crate::renderer::targets::Beside;
 use crate::settings::{AccumulationFormat, NormalEncoding};
 
 /// Texels along a workgroup's sides: of `in_step`, and of `alone`, in `shaders/tile_accumulate.wgsl`.
@@ -22,7 +23,7 @@ pub(crate) struct TileAccumulateKey {
     pub format: AccumulationFormat,
     pub encoding: NormalEncoding,
     pub weighted: bool,
-    pub sums_weights: bool,
+    pub beside: Beside,
     /// Sprites are compared with the host's own depth, not the reduced one.
     pub host_depth: bool,
     /// The walk ends where a texel is opaque.
@@ -40,7 +41,7 @@ pub(crate) fn describe(key: TileAccumulateKey) -> ComputeParts {
             switch("HOST_DEPTH", key.host_depth),
             switch("WEIGHTED", key.weighted),
             switch("BYTE_TARGET", key.format == AccumulationFormat::Rgba8Unorm),
-            switch("SUMS_WEIGHTS", key.sums_weights),
+            switch("SUMS_WEIGHTS", key.beside == Beside::Weights),
             switch("STOPS", key.stops),
             switch("LOADS_SPRITE", !key.in_step),
         ]),

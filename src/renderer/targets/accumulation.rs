@@ -43,12 +43,13 @@ pub(crate) fn accumulation_layout(
     tiled: bool,
 ) -> Vec<AccumulationAttachment> {
     let format = texture_format(format);
-    let weights = if tiled { TILED_WEIGHTS_FORMAT } else { wgpu::TextureFormat::R16Float };
+    let [weights, six_way] =
+        if tiled { [TILED_WEIGHTS_FORMAT, TILED_SIX_WAY_FORMAT] } else { [wgpu::TextureFormat::R16Float, format] };
     let first = AccumulationAttachment { label: "haze accumulation: normal + amount", format };
     let beside = match beside {
         Beside::Nothing => None,
         Beside::Weights => Some(AccumulationAttachment { label: "haze accumulation: weights", format: weights }),
-        Beside::SixWay => Some(AccumulationAttachment { label: "haze accumulation: six-way", format }),
+        Beside::SixWay => Some(AccumulationAttachment { label: "haze accumulation: six-way", format: six_way }),
     };
     std::iter::once(first).chain(beside).collect()
 }
@@ -56,10 +57,14 @@ pub(crate) fn accumulation_layout(
 /// No device need let compute shaders write `R16Float`, or blend to this.
 const TILED_WEIGHTS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
-/// The formats of targets that compute shaders write: of either accumulation format, and of the sum of weights.
-pub(crate) fn tiled_formats() -> [wgpu::TextureFormat; 3] {
+/// Whatever the first texture is: no device need let a compute shader write to more than four, whose formats it names.
+const TILED_SIX_WAY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
+/// The formats of targets that compute shaders write: the first texture in either accumulation format, and beside it the sum of
+/// weights, or six-way light.
+pub(crate) fn tiled_formats() -> [wgpu::TextureFormat; 4] {
     let [float, byte] = [AccumulationFormat::Rgba16Float, AccumulationFormat::Rgba8Unorm].map(texture_format);
-    [float, byte, TILED_WEIGHTS_FORMAT]
+    [float, byte, TILED_WEIGHTS_FORMAT, TILED_SIX_WAY_FORMAT]
 }
 
 fn texture_format(format: AccumulationFormat) -> wgpu::TextureFormat {

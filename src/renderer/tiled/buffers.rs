@@ -9,6 +9,7 @@ use crate::renderer::gpu::record::uniform_buffer;
 use crate::renderer::memory::TiledMemory;
 use crate::renderer::pass::sort::{BLOCK, DIGITS};
 use crate::renderer::pass::sprites::Sprites;
+use crate::renderer::targets::Beside;
 use crate::settings::AccumulationFormat;
 
 /// Bytes of a sprite: TileSprite in `shaders/lib/tile_sprite.wgsl`.
@@ -200,16 +201,19 @@ impl Held {
         &mut self,
         gpu: &Gpu<'_>,
         tiled: &Tiled,
-        format: AccumulationFormat,
+        (format, beside): (AccumulationFormat, Beside),
         attachments: &[wgpu::TextureView],
         depth: &wgpu::TextureView,
     ) -> wgpu::BindGroup {
-        let [float, byte, weights] = &tiled.unwritten;
+        let [float, byte, weights, six_way] = &tiled.unwritten;
         let (float, byte) = match format {
             AccumulationFormat::Rgba16Float => (attachments.first().unwrap_or(float), byte),
             AccumulationFormat::Rgba8Unorm => (float, attachments.first().unwrap_or(byte)),
         };
-        let views = [depth, float, byte, attachments.get(1).unwrap_or(weights)];
+        let second = |of| attachments.get(1).filter(|_| beside == of);
+        let weights = second(Beside::Weights).unwrap_or(weights);
+        let six_way = second(Beside::SixWay).unwrap_or(six_way);
+        let views = [depth, float, byte, weights, six_way];
         match &self.accumulate {
             Some((bound, group)) if bound.iter().eq(views) => group.clone(),
             _ => {

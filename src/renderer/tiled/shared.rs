@@ -25,7 +25,7 @@ pub(crate) struct Tiled {
     /// Asked once: a device makes a copy of them each time.
     pub limits: wgpu::Limits,
     /// A texel for each format of a target, bound in place of those that a system has not.
-    pub unwritten: [wgpu::TextureView; 3],
+    pub unwritten: [wgpu::TextureView; 4],
     emit: Variants<(), ComputeParts>,
     project: Variants<TileProjectKey, ComputeParts>,
     sort: Variants<SortKey, ComputeParts>,
@@ -180,7 +180,7 @@ impl TiledLayouts {
             let entries: Vec<_> = (0..).zip(types).map(entry).collect();
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
         };
-        let [float, byte, weights] = tiled_formats().map(target);
+        let [float, byte, weights, six_way] = tiled_formats().map(target);
         Self {
             emit: layout("haze emit inputs", &[uniform_of(size_of::<EmitterUniform>()), written]),
             project: layout("haze tile_project inputs", &[uniform, read, written, written, written, written]),
@@ -192,7 +192,7 @@ impl TiledLayouts {
             refine: layout("haze tile_refine inputs", &[uniform, read, read, read, depth, written, written, written]),
             accumulate: layout(
                 "haze tile_accumulate inputs",
-                &[uniform, read, read, read, read, read, depth, float, byte, weights],
+                &[uniform, read, read, read, read, read, depth, float, byte, weights, six_way],
             ),
         }
     }

@@ -19,6 +19,7 @@ use crate::renderer::pass::tile_accumulate::TileAccumulate;
 use crate::renderer::pass::tile_bin::{RUN, TileBin};
 use crate::renderer::pass::tile_project::TileProject;
 use crate::renderer::pass::tile_refine::{TileRefine, tiles_along};
+use crate::renderer::targets::Beside;
 use crate::settings::AccumulationFormat;
 
 /// Entries of all lists at first, for each particle, for each tile, and at the least.
@@ -51,6 +52,7 @@ pub(crate) struct TiledInputs<'a> {
     /// Texels in use.
     pub size: UVec2,
     pub format: AccumulationFormat,
+    pub beside: Beside,
     pub attachments: &'a [wgpu::TextureView],
     /// The depth that sprites are compared with.
     pub depth: &'a wgpu::TextureView,
@@ -66,7 +68,7 @@ impl TiledSystem {
         groups: &Groups,
         inputs: &TiledInputs<'_>,
     ) -> TiledPasses {
-        let TiledInputs { sprites, size, format, attachments, depth } = *inputs;
+        let TiledInputs { sprites, size, format, beside, attachments, depth } = *inputs;
         let most = most_words(&tiled.limits);
         let in_step = keys.accumulate.in_step;
         let runs = sprites.count.div_ceil(RUN);
@@ -109,7 +111,7 @@ impl TiledSystem {
             let inputs = held.bind_refine(gpu, tiled, depth);
             TileRefine { pipelines, inputs, size, bins }
         });
-        let accumulate = held.bind_accumulate(gpu, tiled, format, attachments, depth);
+        let accumulate = held.bind_accumulate(gpu, tiled, (format, beside), attachments, depth);
         TiledPasses {
             groups: groups.clone(),
             project: TileProject { pipeline: pipelines.project, inputs: project, particles: sprites.count },
