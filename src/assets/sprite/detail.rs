@@ -89,14 +89,17 @@ fn features(sprite: &Sprite, frame: u32, level: u32) -> Picture<Vec3> {
 
 /// One step of least squares at every texel.
 fn refine(from: &Picture<Vec3>, to: &Picture<Vec3>, flow: &Picture<Vec2>) -> Picture<Vec2> {
-    // Slope along x and y of each feature, and what is left to explain.
-    let mut local = Picture::new(from.size, (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO));
-    local.for_each(|at, (x, y, rest)| {
+    // Each texel's share of the normal equations.
+    let mut local = Picture::new(from.size, (Mat2::ZERO, Vec2::ZERO));
+    local.for_each(|at, (matrix, right)| {
         let at = at.as_ivec2();
         let moved = at.as_vec2() + flow.load(at);
-        *x = (bilinear(to, moved + Vec2::X) - bilinear(to, moved - Vec2::X)) * 0.5;
-        *y = (bilinear(to, moved + Vec2::Y) - bilinear(to, moved - Vec2::Y)) * 0.5;
-        *rest = from.load(at) - bilinear(to, moved);
+        // Slope along x and y of each feature, and what is left to explain.
+        let x = (bilinear(to, moved + Vec2::X) - bilinear(to, moved - Vec2::X)) * 0.5;
+        let y = (bilinear(to, moved + Vec2::Y) - bilinear(to, moved - Vec2::Y)) * 0.5;
+        let rest = from.load(at) - bilinear(to, moved);
+        *matrix = Mat2::from_cols(Vec2::new(x.dot(x), x.dot(y)), Vec2::new(x.dot(y), y.dot(y)));
+        *right = Vec2::new(x.dot(rest), y.dot(rest));
     });
     let offsets = (-WINDOW..=WINDOW).flat_map(|dy| (-WINDOW..=WINDOW).map(move |dx| IVec2::new(dx, dy)));
     let weight = |offset: IVec2| exp(-offset.as_vec2().length_squared() / (WINDOW * WINDOW) as f32 * 2.0);
@@ -108,9 +111,9 @@ fn refine(from: &Picture<Vec3>, to: &Picture<Vec3>, flow: &Picture<Vec2>) -> Pic
         // The window's own mean motion: neighbours move alike.
         let (mut mean, mut total) = (Vec2::ZERO, 0.0);
         for &(offset, weight) in &window {
-            let (x, y, rest) = local.load(at + offset);
-            matrix += Mat2::from_cols(Vec2::new(x.dot(x), x.dot(y)), Vec2::new(x.dot(y), y.dot(y))) * weight;
-            right += Vec2::new(x.dot(rest), y.dot(rest)) * weight;
+            let (of_texel, right_of_texel) = local.load(at + offset);
+            matrix += of_texel * weight;
+            right += right_of_texel * weight;
             mean += flow.load(at + offset) * weight;
             total += weight;
         }

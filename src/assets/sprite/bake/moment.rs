@@ -22,9 +22,19 @@ impl Shift {
     }
 }
 
+/// One column of voxels: its place, and between which nodes that is.
+#[derive(Clone, Copy)]
+pub(super) struct Column {
+    pub x: f32,
+    pub node: usize,
+    /// Of the way from that node to the next.
+    pub share: f32,
+}
+
 /// One moment.
 pub(super) struct Moment {
     pub phase: Vec2,
+    pub columns: Vec<Column>,
     /// On a cube of `nodes` from −1 to 1, its slices below each other.
     shifts: Picture<Shift>,
     /// The balls that reach each box of [`RUN`] texels a side.
@@ -53,7 +63,14 @@ impl Moment {
             }
         });
         let margin = shifts.texels.iter().map(|shift| shift.all.length()).fold(0.0, f32::max);
-        Self { phase, near: near(voxels, &balls(recipe, time), margin), shifts }
+        let column = |index: u32| {
+            let x = (index as f32 + 0.5) * (2.0 / recipe.size as f32) - 1.0;
+            let place = (x.min(1.0) + 1.0) * 0.5 * (nodes - 1) as f32;
+            let node = (place as u32).min(nodes - 2);
+            Column { x, node: node as usize, share: place - node as f32 }
+        };
+        let columns = (0..recipe.size).map(column).collect();
+        Self { phase, columns, near: near(voxels, &balls(recipe, time), margin), shifts }
     }
 
     /// The shifts of one row: nodes along x.

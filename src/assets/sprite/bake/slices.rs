@@ -8,7 +8,7 @@ use super::cluster::Ball;
 use super::erosion::Erosion;
 use super::frame::BakedFrame;
 use super::march::march;
-use super::moment::Moment;
+use super::moment::{Column, Moment};
 use super::recipe::SpriteRecipe;
 use super::voxels::{RUN, Voxels};
 use crate::assets::exact::decay;
@@ -74,7 +74,7 @@ impl<'a> Slices<'a> {
         });
         // Far from everything all texels are the same, which costs nothing in a file.
         let is_clear = |at: IVec2| marched.load(at).0.0[3] == 0;
-        let is_far = |at: IVec2| (-1..=1).all(|y| (-1..=1).all(|x| is_clear(at + IVec2::new(x, y))));
+        let is_far = |at: IVec2| is_clear(at) && (-1..=1).all(|y| (-1..=1).all(|x| is_clear(at + IVec2::new(x, y))));
         let mut texels = Picture::new(marched.size, (CLEAR, 0.0));
         texels.for_each(|at, texel| {
             if !is_far(at.as_ivec2()) {
@@ -100,19 +100,18 @@ impl<'a> Slices<'a> {
                 continue;
             }
             let start = index * RUN;
+            let columns = &moment.columns[start..start + run.len()];
             let (mut window, mut field) = ([0.0; RUN], [0.0; RUN]);
-            let (mut px, mut py, mut pz, mut flow) = ([0.0; RUN], [0.0; RUN], [0.0; RUN], [Vec3::ZERO; RUN]);
-            for (lane, window) in window.iter_mut().enumerate() {
-                let p = middle.with_x(((start + lane) as f32 + 0.5) * (2.0 / recipe.size as f32) - 1.0);
-                *window = saturate((0.97 - p.length()) * 6.0);
-                let node = (p.x.min(1.0) + 1.0) * 0.5 * (shifts.len() - 1) as f32;
-                let low = (node as usize).min(shifts.len() - 2);
-                let shift = shifts[low].lerp(shifts[low + 1], node - low as f32);
-                flow[lane] = p + shift.flow;
-                [px[lane], py[lane], pz[lane]] = (p + shift.all).to_array();
+            for (window, column) in window.iter_mut().zip(columns) {
+                *window = saturate((0.97 - middle.with_x(column.x).length()) * 6.0);
             }
             if window.iter().all(|&window| window <= 0.0) {
                 continue;
+            }
+            let (mut px, mut py, mut pz) = ([0.0; RUN], [0.0; RUN], [0.0; RUN]);
+            for (lane, &Column { x, node, share }) in columns.iter().enumerate() {
+                let all = shifts[node].all.lerp(shifts[node + 1].all, share);
+                [px[lane], py[lane], pz[lane]] = (middle.with_x(x) + all).to_array();
             }
             for ball in near {
                 ball.add_field([&px, &py, &pz], &mut field);
@@ -121,7 +120,12 @@ impl<'a> Slices<'a> {
                 continue;
             }
             let noise: [f32; RUN] = if recipe.travel > 0.0 {
-                flow.map(|p| self.erosion.carried(p))
+                let mut noise = [0.0; RUN];
+                for (noise, &Column { x, node, share }) in noise.iter_mut().zip(columns) {
+                    let flow = shifts[node].flow.lerp(shifts[node + 1].flow, share);
+                    *noise = self.erosion.carried(middle.with_x(x) + flow);
+                }
+                noise
             } else {
                 let first = ((z * recipe.size + y) * recipe.size) as usize + start;
                 self.erosion.along(first..first + run.len(), moment.phase)
