@@ -1,6 +1,6 @@
 // tile_accumulate
-// What    Accumulates every sprite's normal, or light by six-way maps, and amount, as accumulate does, but texel by texel: walks the sprites of a bin front to
-//         back, adds them up in registers, and writes once.
+// What    Accumulates every sprite's normal, or light by six-way maps, and amount, as accumulate does, but texel by texel: walks the
+//         sprites of a bin front to back, adds them up in registers, and writes once.
 // Reads   lists of sprites, sprite flipbook, detail map or noise, reduced depth (or the host's own).
 // Writes  accumulation target, as accumulate.
 // Source  OTEE "Accumulating the particles"; blending front to back: Porter and Duff, "Compositing digital images", 1984.

@@ -28,5 +28,5 @@ pub(crate) fn tiles_are_supported(device: &wgpu::Device) -> bool {
         && limits.max_compute_workgroup_size_x >= 256
         && limits.max_compute_workgroup_storage_size >= 16384
         && limits.max_storage_buffers_per_shader_stage >= 8
-        && limits.max_storage_textures_per_shader_stage >= 3
+        && limits.max_storage_textures_per_shader_stage >= 4
 }
