@@ -61,26 +61,28 @@ impl Part {
         picture
     }
 
-    /// Of any of the colour formats that there are.
+    /// Of any of the colour formats that there are: four channels of 8 or 16 bits, or one of 16 or 32.
     pub fn colours(&self, bytes: &[u8], layer: u32, size: UVec2) -> Picture<Vec4> {
-        let half = |bytes: &[u8], channel: usize| {
-            bytes.get(2 * channel..2 * channel + 2).map_or(0.0, |b| f16::from_le_bytes([b[0], b[1]]).to_f32())
+        let half = |texel: &[u8], channel: usize| {
+            texel.get(2 * channel..2 * channel + 2).map_or(0.0, |b| f16::from_le_bytes([b[0], b[1]]).to_f32())
         };
-        let is_bytes = self.format == wgpu::TextureFormat::Rgba8Unorm;
-        self.read(bytes, layer, size, Vec4::ZERO, |texel| {
-            Vec4::from(
-                [0, 1, 2, 3].map(
-                    |channel| {
-                        if is_bytes { f32::from(texel[channel]) / 255.0 } else { half(texel, channel) }
-                    },
-                ),
-            )
+        self.read(bytes, layer, size, Vec4::ZERO, |texel| match self.format {
+            wgpu::TextureFormat::Rgba8Unorm => {
+                Vec4::from([0, 1, 2, 3].map(|channel| f32::from(texel[channel]) / 255.0))
+            }
+            wgpu::TextureFormat::R32Float => Vec4::ZERO.with_x(single(texel)),
+            _ => Vec4::from([0, 1, 2, 3].map(|channel| half(texel, channel))),
         })
     }
 
     pub fn depths(&self, bytes: &[u8], size: UVec2) -> Picture<f32> {
-        self.read(bytes, 0, size, 0.0, |b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+        self.read(bytes, 0, size, 0.0, single)
     }
+}
+
+/// A number of 32 bits.
+fn single(texel: &[u8]) -> f32 {
+    f32::from_le_bytes([texel[0], texel[1], texel[2], texel[3]])
 }
 
 impl Arriving {

@@ -10,7 +10,7 @@ use haze::reference::{Probe, SystemProbe};
 use haze::settings::*;
 use haze::wgpu;
 
-use crate::common::gpu;
+use crate::common::{gpu, has_tiles};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
@@ -103,13 +103,16 @@ fn every_stage_is_told_as_it_is_shown() {
             (s.diffuse.mode, s.soft_scatter.mode) = (DiffuseMode::Motif, SoftScatterMode::Ramp);
         },
     ];
-    for (index, change) in changes.iter().enumerate() {
+    let paths = if has_tiles() { &[Path::Raster, Path::Tiled][..] } else { &[Path::Raster] };
+    for (&path, (index, change)) in paths.iter().flat_map(|path| changes.iter().enumerate().map(move |of| (path, of))) {
         let mut shot = Shot::load("column", SIZE).unwrap();
-        change(&mut shot.preset.systems[0].settings);
+        let settings = &mut shot.preset.systems[0].settings;
+        settings.path = path;
+        change(settings);
         let Some((captured, pictures)) = drawn(&shot, &stages.map(|(stage, _)| stage)) else { return };
         let probes = captured.of(shot.clone()).probe(&pixels()).unwrap();
         for ((stage, told), picture) in stages.iter().zip(&pictures) {
-            let what = format!("{} {index}", stage.name());
+            let what = format!("{} {}, {index}", path.name(), stage.name());
             assert_alike(&what, |probe| probe.systems.first().map(told), &probes, picture);
         }
         if shot.preset.systems[0].settings.diffuse.mode == DiffuseMode::Ramp {
