@@ -14,6 +14,7 @@ use haze::settings::{ShadeTree, Technique};
 use image::{DynamicImage, Rgb, RgbImage};
 
 use crate::common::gpu;
+use crate::presets::shot;
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
@@ -48,7 +49,7 @@ fn difference(a: &RgbImage, b: &RgbImage) -> f64 {
 fn techniques_look_as_they_did() {
     // Not depth_sprite_hard: its cut follows the filter's 8-bit weights, a pixel here or there.
     for technique in [Technique::DepthSpriteSoft, Technique::SphericalBillboard, Technique::VolumetricSoft] {
-        let mut shot = Shot::load("crates", SIZE).unwrap();
+        let mut shot = shot("crates", SIZE);
         shot.preset.systems[0].settings.technique = technique;
         compare(&format!("crates_{}", technique.name()), &shot);
     }
@@ -78,20 +79,20 @@ fn compare(name: &str, shot: &Shot) {
 #[test]
 fn presets_look_as_they_did() {
     for preset in builtin::PRESETS {
-        compare(preset.name, &Shot::load(preset.name, SIZE).unwrap());
+        compare(preset.name, &shot(preset.name, SIZE));
     }
 }
 
 #[test]
 fn normals_look_as_they_did() {
-    let mut shot = Shot::load("column", SIZE).unwrap();
+    let mut shot = shot("column", SIZE);
     shot.shade_tree = ShadeTree::Normals;
     compare("column_normals", &shot);
 }
 
 #[test]
 fn a_ramp_shifted_by_a_32nd_is_seen() {
-    let shot = Shot::load("column", SIZE).unwrap();
+    let shot = shot("column", SIZE);
     let mut mutant = shot.clone();
     for material in &mut mutant.materials {
         let ramp = material.diffuse_ramp.clone();
