@@ -33,10 +33,7 @@ fn filled_cells(filled: texture_2d<u32>, frames: FlipbookFrames, lod: f32) -> ve
         return ALL_FILLED;
     }
     let level = min(i32(lod), i32(textureDimensions(filled).x) - 1);
-    var shown = frames;
-    if SIX_WAY {
-        shown = frames_after(frames, i32(system.frame_count));
-    }
+    let shown = frames_after(frames, select(0, i32(system.frame_count), SIX_WAY));
     var cells = textureLoad(filled, vec2i(level, shown.first), 0).xy;
     if shown.blend > 0.0 {
         cells |= textureLoad(filled, vec2i(level, shown.second), 0).xy;

@@ -15,27 +15,16 @@ fn a_dragged_axis_moves_the_light_along_it_with_the_pointer_in_one_step() {
         let mut harness = lit(Light::default());
         let (before, seen) = (light(&harness).position, lens(&harness));
         let from = handle(&harness, Handle::Axis(axis));
-        let along = seen.project(before + [Vec3::X, Vec3::Y][axis]).unwrap() - seen.project(before).unwrap();
+        let along = seen.project(before + Vec3::AXES[axis]).unwrap() - seen.project(before).unwrap();
         let to = from + along * 0.6;
         drag(&mut harness, PointerButton::Primary, &[from, from + along * 0.2, to]);
         let moved = light(&harness).position - before;
         assert!((moved[axis] - 0.6).abs() < 0.02, "axis {axis}: {moved}");
-        assert!(moved.with_element(axis, 0.0).length() < 1e-6, "{moved}");
+        assert!((moved - moved[axis] * Vec3::AXES[axis]).length() < 1e-6, "{moved}");
         assert!(handle(&harness, Handle::Axis(axis)).distance(to) < 6.0, "it stays under the pointer");
         assert_eq!(undo_name(&harness).as_deref(), Some("position of lamp 1 (point)"));
         harness.state_mut().session.undo();
         assert_eq!((light(&harness).position, undo_name(&harness)), (before, Some("light removed".into())));
-    }
-}
-
-trait WithElement {
-    fn with_element(self, index: usize, value: f32) -> Self;
-}
-
-impl WithElement for Vec3 {
-    fn with_element(mut self, index: usize, value: f32) -> Self {
-        self[index] = value;
-        self
     }
 }
 
