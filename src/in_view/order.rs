@@ -9,12 +9,54 @@ use crate::frame::Particle;
 pub(crate) struct SortScratch {
     /// Sort key above, index below.
     keys: Vec<u64>,
+    /// What a round of the sort writes.
+    sorted: Vec<u64>,
 }
 
 impl SortScratch {
     /// Gives back what the last sort did not need.
     pub fn shrink(&mut self) {
         self.keys.shrink_to_fit();
+        self.sorted.shrink_to_fit();
+    }
+}
+
+/// Bits of a key that a round of the sort goes by.
+const DIGIT: u32 = 11;
+const DIGITS: usize = 3;
+/// Below this many the tables of the rounds cost more than they save.
+const MANY: usize = 512;
+
+impl SortScratch {
+    /// By key, and at one key by index. Rounds from the lowest digit up, each of which keeps the order of the one before.
+    fn sort(&mut self) {
+        let Self { keys, sorted } = self;
+        if keys.len() < MANY {
+            keys.sort_unstable();
+            return;
+        }
+        let digit = |key: u64, round: usize| (key >> (32 + DIGIT * round as u32)) as usize & ((1 << DIGIT) - 1);
+        let mut places = [[0_usize; 1 << DIGIT]; DIGITS];
+        for &key in keys.iter() {
+            (0..DIGITS).for_each(|round| places[round][digit(key, round)] += 1);
+        }
+        sorted.resize(keys.len(), 0);
+        for (round, places) in places.iter_mut().enumerate() {
+            // Nothing moves where all have the same.
+            if places[digit(keys[0], round)] == keys.len() {
+                continue;
+            }
+            let mut before = 0;
+            for place in places.iter_mut() {
+                before += std::mem::replace(place, before);
+            }
+            for &key in keys.iter() {
+                let place = &mut places[digit(key, round)];
+                sorted[*place] = key;
+                *place += 1;
+            }
+            std::mem::swap(keys, sorted);
+        }
     }
 }
 
@@ -45,7 +87,7 @@ fn back_to_front(view: &ViewGeometry, particles: &[Particle], scratch: &mut Sort
             (u64::from(ordered_bits(z)) << 32) | index
         },
     ));
-    scratch.keys.sort_unstable();
+    scratch.sort();
     sorted.clear();
     sorted.extend(scratch.keys.iter().map(|&key| particles[(key & 0xffff_ffff) as usize]));
 }
@@ -80,5 +122,19 @@ mod tests {
         back_to_front(&view, &particles, &mut SortScratch::default(), &mut sorted);
         let frames: Vec<_> = sorted.iter().map(|particle| particle.frame).collect();
         assert_eq!(frames, [3.0, 0.0, 4.0, 2.0]);
+    }
+
+    #[test]
+    fn many_are_sorted_as_few_are() {
+        // Depths of all signs and sizes, every one of them twice; and all the same.
+        for spread in [1.0, 1.0e-3, 0.0] {
+            let depth = |index: u32| spread * f32::tan((index % 2000) as f32 * 2.4) - 3.0;
+            let key = |index: u32| (u64::from(ordered_bits(depth(index))) << 32) | u64::from(index);
+            let mut scratch = SortScratch { keys: (0..4000).map(key).collect(), ..SortScratch::default() };
+            let mut expected = scratch.keys.clone();
+            expected.sort_unstable();
+            scratch.sort();
+            assert_eq!(scratch.keys, expected);
+        }
     }
 }

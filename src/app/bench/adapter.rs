@@ -1,14 +1,9 @@
 //! Which machine it is, and what was built.
 
-use std::time::Duration;
-
 use haze::headless::Headless;
 use haze::wgpu;
 
 use super::report::Adapter;
-
-/// A GPU that had little to do runs slower, and takes a while to notice: it is kept busy before anything is measured.
-const AWAKE: Duration = Duration::from_secs(2);
 
 /// Of what is measured on.
 pub fn adapter(gpu: &Headless) -> Adapter {
@@ -22,11 +17,6 @@ pub fn adapter(gpu: &Headless) -> Adapter {
         wgpu: wgpu_version().to_owned(),
         haze: format!("{}{revision}", env!("CARGO_PKG_VERSION")),
     }
-}
-
-/// How long to keep a device busy before anything counts.
-pub fn waking(gpu: &Headless) -> Duration {
-    if gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu { Duration::ZERO } else { AWAKE }
 }
 
 /// Of the checkout that it was built in; `HAZE_REVISION` says it where that is not there.

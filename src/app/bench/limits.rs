@@ -1,22 +1,19 @@
 //! What this adapter can do at best, with nothing of haze: the floor under every figure.
 
-mod work;
+pub mod work;
 
 use std::collections::HashMap;
-use std::time::Instant;
 
 use glam::UVec2;
 use haze::headless::Headless;
 use haze::settings::AccumulationFormat;
 use haze::{Error, wgpu};
 
-use super::adapter::waking;
+use super::awake::Awake;
 use super::report::{Clock, Milliseconds, Row};
 use super::suites::Suite;
 use crate::app::interrupt;
-use work::{Bench, Work, texture};
-
-pub use work::bytes;
+use work::{Bench, Work, bytes, texture};
 
 /// Milliseconds of a fragment of an unlit disc, by format, and a row for everything that was measured.
 pub struct Limits {
@@ -39,22 +36,22 @@ struct Bare {
 }
 
 /// Measures all of them in turn, over and over.
-pub fn measure(gpu: &Headless, size: UVec2, quick: bool) -> Result<Limits, Error> {
+pub fn measure(gpu: &Headless, awake: &Awake<'_>, size: UVec2, quick: bool) -> Result<Limits, Error> {
     let (layers, rounds) = if quick { (16, 5) } else { (32, 15) };
     let bench = Bench::new(gpu, size);
     let bare = all(&bench, layers);
     gpu.check()?;
     let (mut times, mut discarded) = (vec![Vec::new(); bare.len()], 0);
-    let (started, awake) = (Instant::now(), waking(gpu));
-    let mut round = 0;
-    while round <= rounds && !interrupt::is_asked() {
+    for round in 0..=rounds {
+        if interrupt::is_asked() {
+            break;
+        }
         for (bare, times) in bare.iter().zip(&mut times) {
+            let quiet = awake.quiet();
             let ms = bench.frame(&bare.work)?;
+            drop(quiet);
             discarded += u64::from(ms.is_none());
             times.extend(ms.filter(|_| round > 0));
-        }
-        if started.elapsed() >= awake {
-            round += 1;
         }
     }
     let mut floor = HashMap::new();

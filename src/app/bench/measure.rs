@@ -11,8 +11,8 @@ use haze::preset::PresetSystem;
 use haze::settings::{AccumulationFormat, Path as SmokePath, ShadeTree};
 use haze::{Error, Timing, wgpu};
 
-use super::adapter::waking;
-use super::limits::bytes;
+use super::awake::Awake;
+use super::limits::work::bytes;
 use super::quality::{Quality, is_right};
 use super::report::{Clock, LeftOut, Milliseconds, Row};
 use super::suites::{Case, Group, Suite};
@@ -20,8 +20,6 @@ use crate::app::interrupt;
 
 /// Rounds that are not counted, at the least.
 const WARM_UP: usize = 2;
-/// A GPU is kept busy before every frame that counts.
-const BUSY: Duration = Duration::from_millis(15);
 /// Frames in a row without a time after which there will be none.
 const MOST_TRIES: u32 = 8;
 /// Most rounds that tell anything more.
@@ -31,6 +29,7 @@ const LEAST_ROUNDS: usize = 3;
 /// What measures, and what it has found.
 pub struct Bench<'a> {
     gpu: &'a Headless,
+    awake: &'a Awake<'a>,
     context: StageContext,
     timing: Option<Timing>,
     /// Milliseconds that a fragment takes at the least, by format.
@@ -60,13 +59,14 @@ struct Running<'a> {
 }
 
 impl<'a> Bench<'a> {
-    pub fn new(gpu: &'a Headless, longest: Duration) -> Self {
+    pub fn new(gpu: &'a Headless, awake: &'a Awake<'a>, longest: Duration) -> Self {
         let context = StageContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
         // Without this the passes that light smoke are in no figure.
         let is_whole = gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
         Self {
             timing: context.timing().filter(|_| is_whole),
             gpu,
+            awake,
             context,
             limits: HashMap::new(),
             longest,
@@ -82,7 +82,11 @@ impl<'a> Bench<'a> {
     /// # Errors
     /// When the device failed.
     pub fn measure_paths(&self) -> Result<(), Error> {
-        self.context.measure_paths(|encoder| self.gpu.submit(encoder)).map(|_| ())
+        let submit = |encoder| {
+            let _quiet = self.awake.quiet();
+            self.gpu.submit(encoder)
+        };
+        self.context.measure_paths(submit).map(|_| ())
     }
 
     fn clock(&self) -> Clock {
@@ -109,8 +113,6 @@ impl<'a> Bench<'a> {
             }
         }
         let mut is_whole = true;
-        let woken = Instant::now();
-        let awake = waking(self.gpu).min(budget / 4);
         for round in 0.. {
             is_whole = !interrupt::is_asked();
             let counted = running.iter().map(|case| case.times.len()).max().unwrap_or(MOST_ROUNDS);
@@ -119,13 +121,9 @@ impl<'a> Bench<'a> {
                 break;
             }
             for case in &mut running {
-                let begun = Instant::now();
-                let mut taken = self.frame(&mut case.stage, &case.case.shot)?;
-                while begun.elapsed() < BUSY {
-                    taken = self.frame(&mut case.stage, &case.case.shot)?;
-                }
+                let taken = self.frame(&mut case.stage, &case.case.shot)?;
                 let Some(Taken { ms, passes }) = taken else { continue };
-                if round >= WARM_UP && woken.elapsed() >= awake {
+                if round >= WARM_UP {
                     case.times.push(ms);
                     passes.iter().for_each(|(name, ms)| case.passes.entry(name).or_default().push(*ms));
                 }
@@ -180,6 +178,7 @@ impl<'a> Bench<'a> {
     /// Draws a frame; none where the GPU gives no times, again and again.
     fn frame(&mut self, stage: &mut Stage, shot: &Shot) -> Result<Option<Taken>, Error> {
         let Some(timing) = &self.timing else {
+            let _quiet = self.awake.quiet();
             let ms = stage.draw(self.gpu, shot)?.as_secs_f64() * 1000.0;
             return Ok(Some(Taken { ms, passes: Vec::new() }));
         };
@@ -188,7 +187,9 @@ impl<'a> Bench<'a> {
             let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             stage.record(&mut encoder, shot, &[ShadeTree::Final])?;
             timing.resolve(&mut encoder);
+            let quiet = self.awake.quiet();
             self.gpu.submit(encoder)?;
+            drop(quiet);
             let Some(times) = timing.latest().filter(|times| before != Some(times.frame)) else { continue };
             self.discarded += u64::from(times.discarded);
             if times.discarded == 0 {

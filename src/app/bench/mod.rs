@@ -1,6 +1,7 @@
 //! `haze bench`: what smoke costs on this machine, and what each saving costs in image quality.
 
 mod adapter;
+mod awake;
 mod compare;
 mod csv;
 mod json;

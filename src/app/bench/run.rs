@@ -10,6 +10,7 @@ use haze::picture::write_file;
 use haze::{Error, wgpu};
 
 use super::adapter::adapter;
+use super::awake::Awake;
 use super::limits;
 use super::measure::Bench;
 use super::particles;
@@ -70,14 +71,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     let features = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES;
     let gpu = Headless::with(wgpu::Limits::default(), features)?;
     interrupt::catch();
-    let (report, failure) = measure(arguments, &gpu);
+    let awake = Awake::new(&gpu)?;
+    let (report, failure) = awake.during(|| measure(arguments, &gpu, &awake));
     super::table::write(&report)?;
     arguments.write(&report)?;
     failure.map_or(Ok(()), |error| Err(error.into()))
 }
 
 /// Whatever happens, what was measured until then, and why that is not all.
-fn measure(arguments: &Arguments, gpu: &Headless) -> (Report, Option<Error>) {
+fn measure(arguments: &Arguments, gpu: &Headless, awake: &Awake<'_>) -> (Report, Option<Error>) {
     let mut report = Report {
         version: VERSION,
         adapter: adapter(gpu),
@@ -89,8 +91,8 @@ fn measure(arguments: &Arguments, gpu: &Headless) -> (Report, Option<Error>) {
     let size =
         arguments.size.unwrap_or(if report.adapter.software { UVec2::new(640, 360) } else { UVec2::new(1280, 720) });
     let longest = Duration::from_millis(if arguments.quick { 1500 } else { 5000 });
-    let mut bench = Bench::new(gpu, longest);
-    let result = bench.measure_paths().and_then(|()| arguments.all(gpu, &mut bench, size));
+    let mut bench = Bench::new(gpu, awake, longest);
+    let result = bench.measure_paths().and_then(|()| arguments.all(gpu, awake, &mut bench, size));
     (report.discarded, report.rows, report.left_out) = (bench.discarded, bench.rows, bench.left_out);
     report.complete = matches!(result, Ok(true));
     let failure = match result {
@@ -116,9 +118,9 @@ impl Arguments {
     }
 
     /// False when it was stopped.
-    fn all(&self, gpu: &Headless, bench: &mut Bench<'_>, size: UVec2) -> Result<bool, Error> {
+    fn all(&self, gpu: &Headless, awake: &Awake<'_>, bench: &mut Bench<'_>, size: UVec2) -> Result<bool, Error> {
         // What all others are compared with.
-        let limits = watched("haze: limits of this adapter".into(), || limits::measure(gpu, size, self.quick))?;
+        let limits = watched("haze: limits of this adapter".into(), || limits::measure(gpu, awake, size, self.quick))?;
         (bench.limits, bench.discarded) = (limits.floor, limits.discarded);
         if matches!(self.suite, Suite::All | Suite::Limits) {
             bench.rows.extend(limits.rows);
@@ -147,6 +149,8 @@ impl Arguments {
                 return Ok(false);
             }
             if group.suite == Suite::Particles {
+                // What the CPU does, with nothing beside it.
+                let _quiet = awake.quiet();
                 let rows = particles::rows(gpu, group)?;
                 bench.rows.extend(rows);
             }

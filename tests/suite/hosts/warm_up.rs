@@ -1,6 +1,7 @@
 //! What is compiled ahead, beside the frame, or comes out of a cache.
 
 use glam::Vec3;
+use haze::formula::hash::{pcg3d, unit};
 use haze::settings::*;
 use haze::{Bounds, Context, Descriptor, Renderer, SceneDepthKind, Settings, WarmUp, wgpu};
 
@@ -93,4 +94,39 @@ fn pipelines_go_into_the_hosts_cache_and_come_out_of_it() {
     // Mesa's software driver keeps nothing but a header.
     let keeps = !gpu.adapter.get_info().name.contains("llvmpipe");
     assert!(!keeps || filled.len() > empty, "{} bytes after {empty}", filled.len());
+}
+
+/// What docs/bench.md has: the first `prepare` after a warm-up, and steady ones of ten thousand particles.
+#[test]
+#[ignore = "for who wants to know"]
+fn what_a_prepare_costs() {
+    for path in Path::ALL.iter().filter(|&&path| path != Path::Tiled || crate::common::has_tiles()) {
+        let mut stage = Stage::new(glam::UVec2::new(1280, 720));
+        stage.settings.path = *path;
+        let prepare = |host: &mut Host, stage: &Stage| {
+            let mut encoder = gpu().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            let started = std::time::Instant::now();
+            host.prepare(gpu(), &mut encoder, stage, haze::Particles::Slice(&stage.particles)).unwrap();
+            let ms = started.elapsed().as_secs_f64() * 1000.0;
+            host.render(&mut encoder, stage);
+            gpu().submit(encoder).unwrap();
+            ms
+        };
+        let mut host = Host::new(gpu(), &stage).unwrap();
+        host.renderer.warm_up(&warm_up(&stage, &[stage.settings])).unwrap();
+        let first = prepare(&mut host, &stage);
+
+        let few = std::mem::take(&mut stage.particles);
+        let spread = |index: usize| {
+            let mut particle = few[index % few.len()];
+            let random = pcg3d(glam::UVec3::new(index as u32, 0, 0));
+            particle.position += Vec3::from(random.to_array().map(|word| unit(word) - 0.5));
+            (particle.radius, particle.amount) = (0.02, 0.01);
+            particle
+        };
+        stage.particles = (0..10_000).map(spread).collect();
+        let mut steady: Vec<f64> = (0..40).map(|_| prepare(&mut host, &stage)).collect();
+        steady.sort_by(f64::total_cmp);
+        println!("{}: first {first:.2} ms, of 10000 {:.3} ms, fastest {:.3}", path.name(), steady[20], steady[0]);
+    }
 }
