@@ -57,7 +57,7 @@ fn fragment(in: SpriteVertex) -> Accumulated {
             scene *= system.depth_limit;
         }
     }
-    let fragment = technique_fragment(in, scene);
+    let fragment = technique_fragment(in, fragment_frames(in), scene);
     if fragment.hidden && (OVERDRAW || !DEPTH_TESTED) {
         discard;
     }
@@ -66,6 +66,10 @@ fn fragment(in: SpriteVertex) -> Accumulated {
     }
     let weight = fragment.amount * in.weight;
     if SIX_WAY {
+        // Of two targets most fragments have nothing: six of ten texels of a sprite are clear.
+        if fragment.amount <= 0.0 {
+            discard;
+        }
         let light = fragment.six_way;
         return Accumulated(vec4f(light.positive * weight, fragment.amount), vec4f(light.negative * weight, weight));
     }

@@ -27,7 +27,7 @@ fn fragment(in: SpriteVertex) -> @location(0) vec4f {
         // The picture's own pixels: the view's origin is in them already.
         scene = host_view_depth(textureLoad(scene_depth, vec2i(in.position.xy), 0).r);
     }
-    let fragment = technique_fragment(in, scene);
+    let fragment = technique_fragment(in, fragment_frames(in), scene);
     if fragment.hidden || fragment.amount <= 0.0 {
         discard;
     }

@@ -61,7 +61,7 @@ fn begun_texel(place: vec2u) -> Texel {
 // With a sprite behind all that is there already. `place`: in a square.
 fn with_sprite(texel: Texel, sprite: TileSprite, place: vec2f, is_touched: bool) -> Texel {
     let in = fragment_of(sprite, texel.place, texel.ray, place);
-    let fragment = technique_fragment(in, texel.scene);
+    let fragment = technique_fragment(in, frames_of(sprite), texel.scene);
     let amount = select(0.0, fragment.amount, is_touched && !fragment.hidden);
     let seen = select(texel.transmittance, 1.0, WEIGHTED);
     var next = texel;

@@ -23,7 +23,7 @@
 override SORTED: bool = true;
 
 // Sprites of a run. RUN in src/renderer/pass/tile_bin.rs.
-const RUN: u32 = 256u;
+const RUN: u32 = 64u;
 
 @compute @workgroup_size(64)
 fn gather(@builtin(global_invocation_id) invocation: vec3u) {

@@ -33,9 +33,12 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
     let radius = placed.centre_radius.w;
     var sprite: TileSprite;
     sprite.centre_radius = placed.centre_radius;
-    sprite.amount_lod_frame = placed.amount_lod_frame_age.xyz;
-    let frames = shown_frames(SPRITE_ANIMATION, sprite.amount_lod_frame.z, system.frame_count);
-    sprite.filled = filled_cells(sprite_filled, frames, sprite.amount_lod_frame.y);
+    let lod = placed.amount_lod_frame_age.y;
+    let frames = shown_frames(SPRITE_ANIMATION, placed.amount_lod_frame_age.z, system.frame_count);
+    sprite.amount = placed.amount_lod_frame_age.x;
+    sprite.frames_lod = packed_frames(frames, lod);
+    sprite.blend = frames.blend;
+    sprite.filled = filled_cells(sprite_filled, frames, lod);
 
     var low: vec2f;
     var high: vec2f;

@@ -43,11 +43,15 @@ fn host_view_depth(texel: f32) -> f32 {
     return view_depth_from_ndc_depth(texel, view.depth_coefficients);
 }
 
-fn technique_fragment(in: SpriteVertex, scene: f32) -> SpriteFragment {
+// The frames that a fragment of the rasterizer shows.
+fn fragment_frames(in: SpriteVertex) -> FlipbookFrames {
+    return shown_frames(SPRITE_ANIMATION, in.amount_lod_frame_age.z, system.frame_count);
+}
+
+fn technique_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> SpriteFragment {
     if is_sphere() {
-        return sphere_fragment(in, scene);
+        return sphere_fragment(in, frames, scene);
     }
-    let frames = shown_frames(SPRITE_ANIMATION, in.amount_lod_frame_age.z, system.frame_count);
     var amount = in.amount_lod_frame_age.x;
     let view_depth = -in.centre_radius.z;
     let radius = in.centre_radius.w;
@@ -112,7 +116,7 @@ fn sprite_texel(in: SpriteVertex, uv: vec2f, frames: FlipbookFrames, motion: vec
     return SpriteFragment(rotate_normal(texel.xyz, in.rotation), NO_LIGHT, texel.w, false);
 }
 
-fn sphere_fragment(in: SpriteVertex, scene: f32) -> SpriteFragment {
+fn sphere_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> SpriteFragment {
     let centre = in.centre_radius.xyz;
     let radius = in.centre_radius.w;
     // The ray through the pixel; view depth d is d / along.z of the way.
@@ -131,7 +135,6 @@ fn sphere_fragment(in: SpriteVertex, scene: f32) -> SpriteFragment {
     }
     // The sprite's picture, laid on the disc through the middle that faces the ray.
     let place = unrotate(interval.axis.xy, in.rotation) / radius;
-    let frames = shown_frames(SPRITE_ANIMATION, in.amount_lod_frame_age.z, system.frame_count);
     var motion = vec2f(0.0);
     if MOTION {
         let lod = max(in.amount_lod_frame_age.y - system.detail_lod, 0.0);

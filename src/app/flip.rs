@@ -10,6 +10,21 @@ pub fn flip_of(reference: &RgbImage, picture: &RgbImage) -> f64 {
     f64::from(FlipPool::from_image(&flip(reference, picture, DEFAULT_PIXELS_PER_DEGREE)).mean())
 }
 
+/// The same of many pairs, shared among the processors.
+pub fn flips(pairs: &[[&RgbImage; 2]]) -> Vec<f64> {
+    let mut flips = vec![0.0; pairs.len()];
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let each = pairs.len().div_ceil(threads).max(1);
+    std::thread::scope(|scope| {
+        for (pairs, flips) in pairs.chunks(each).zip(flips.chunks_mut(each)) {
+            scope.spawn(move || {
+                pairs.iter().zip(flips).for_each(|([reference, picture], flip)| *flip = flip_of(reference, picture));
+            });
+        }
+    });
+    flips
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -20,5 +35,9 @@ mod tests {
         assert!(flip_of(&grey(100), &grey(100)) < 1e-6);
         let (near, far) = (flip_of(&grey(100), &grey(110)), flip_of(&grey(100), &grey(200)));
         assert!(0.0 < near && near < far && far <= 1.0, "{near} {far}");
+        let [grey_100, grey_110, grey_200] = [100, 110, 200].map(grey);
+        let pairs = [[&grey_100, &grey_110], [&grey_100, &grey_200], [&grey_100, &grey_100]];
+        assert_eq!(flips(&pairs), [near, far, 0.0]);
+        assert!(flips(&[]).is_empty());
     }
 }

@@ -7,7 +7,7 @@ use haze::ramp::response::{LIGHTS, Puff, angle};
 use image::imageops::{FilterType, resize};
 use image::{Rgb, RgbImage};
 
-use super::flip::flip_of;
+use super::flip::flips;
 use super::sheet::Sheet;
 
 /// What stands behind the puffs: darker than most of them, lighter than soot.
@@ -100,5 +100,6 @@ pub fn pairs(puff: &Puff, shown: &Shown<'_>) -> Vec<[RgbImage; 2]> {
 /// Mean FLIP of all lights: how different they look.
 pub fn flip(puff: &Puff, shown: &Shown<'_>) -> f64 {
     let pairs = pairs(puff, shown);
-    pairs.iter().map(|[truth, ours]| flip_of(truth, ours)).sum::<f64>() / f64::from(LIGHTS)
+    let pairs: Vec<_> = pairs.iter().map(|pair| pair.each_ref()).collect();
+    flips(&pairs).iter().sum::<f64>() / f64::from(LIGHTS)
 }

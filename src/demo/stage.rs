@@ -1,6 +1,6 @@
 //! A shot on the GPU, frame after frame: the scene is drawn when it or the camera changes, the smoke every time.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 use std::time::{Duration, Instant};
 
 use glam::{UVec2, Vec3, Vec4};
@@ -28,6 +28,8 @@ pub struct StageContext {
     queue: wgpu::Queue,
     haze: Context,
     scene: Arc<SceneRenderer>,
+    /// What stages that are there have uploaded: pictures that several show are uploaded once.
+    materials: Arc<Mutex<Vec<Weak<Uploaded>>>>,
     /// The depth buffer is attached where it need not be read, or can be all the same.
     tests_depth: bool,
     /// Depth can be copied to a buffer.
@@ -46,6 +48,7 @@ impl StageContext {
             queue: queue.clone(),
             haze: Context::new(device, queue, None),
             scene: Arc::new(SceneRenderer::new(device, queue, draws_linear)),
+            materials: Arc::default(),
             tests_depth: draws_linear || read_only_depth_is_supported(device),
         }
     }
@@ -74,7 +77,8 @@ impl StageContext {
     /// The same with another context of haze's, of the same device: with other shaders, say.
     #[must_use]
     pub fn with_haze(&self, haze: Context) -> Self {
-        Self { haze, ..self.clone() }
+        // Materials are of the context that made them.
+        Self { haze, materials: Arc::default(), ..self.clone() }
     }
 
     /// The same with other shaders.
@@ -84,6 +88,25 @@ impl StageContext {
     pub fn with_shaders(&self, sources: &Sources) -> Result<Self, Error> {
         Ok(self.with_haze(Context::with_shaders(&self.device, &self.queue, None, sources)?))
     }
+
+    fn upload(&self, assets: &MaterialAssets) -> Result<Arc<Uploaded>, Error> {
+        let mut materials = self.materials.lock().unwrap_or_else(PoisonError::into_inner);
+        materials.retain(|uploaded| uploaded.strong_count() > 0);
+        if let Some(uploaded) = materials.iter().filter_map(Weak::upgrade).find(|one| one.assets.shares(assets)) {
+            return Ok(uploaded);
+        }
+        let material = self.haze.create_material(&self.device, &self.queue, assets)?;
+        let uploaded = Arc::new(Uploaded { assets: assets.clone(), material });
+        materials.push(Arc::downgrade(&uploaded));
+        Ok(uploaded)
+    }
+}
+
+/// Pictures of a system, and the same on the GPU.
+#[derive(Debug)]
+struct Uploaded {
+    assets: MaterialAssets,
+    material: Material,
 }
 
 /// See the module.
@@ -91,7 +114,7 @@ impl StageContext {
 pub struct Stage {
     context: StageContext,
     renderer: Renderer,
-    materials: Vec<(MaterialAssets, Material)>,
+    materials: Vec<Arc<Uploaded>>,
     set: Option<Set>,
 }
 
@@ -100,7 +123,7 @@ pub struct Stage {
 pub struct StageMemory {
     /// Of haze's renderer.
     pub smoke: MemoryUse,
-    /// Ramps and sprites.
+    /// Ramps and sprites, those that other stages show as well among them.
     pub materials: u64,
     /// The scene's targets, and the pictures.
     pub scene: u64,
@@ -169,7 +192,7 @@ impl Stage {
     pub fn memory_use(&self) -> StageMemory {
         StageMemory {
             smoke: self.renderer.memory_use(),
-            materials: self.materials.iter().map(|(_, material)| material.memory_use()).sum(),
+            materials: self.materials.iter().map(|uploaded| uploaded.material.memory_use()).sum(),
             scene: self.set.as_ref().map_or(0, Set::bytes),
         }
     }
@@ -203,12 +226,12 @@ impl Stage {
         let sources = shot.sources();
         let systems: Vec<_> = (0..)
             .zip(sources.iter().zip(&self.materials))
-            .map(|(key, ((source, settings), (_, material)))| {
+            .map(|(key, ((source, settings), uploaded))| {
                 let particles = match source {
                     Source::Particles(particles) => Particles::Slice(particles),
                     Source::Emission(emission) => Particles::Emission(emission),
                 };
-                System { key, ..System::new(particles, settings, material) }
+                System { key, ..System::new(particles, settings, &uploaded.material) }
             })
             .collect();
         let depth = &set.targets.depth;
@@ -325,14 +348,10 @@ impl Stage {
     fn upload(&mut self, assets: &[MaterialAssets]) -> Result<(), Error> {
         self.materials.truncate(assets.len());
         for (index, assets) in assets.iter().enumerate() {
-            if self.materials.get(index).is_some_and(|(uploaded, _)| uploaded.shares(assets)) {
-                continue;
-            }
-            let material = self.renderer.create_material(&self.context.device, &self.context.queue, assets)?;
-            let entry = (assets.clone(), material);
             match self.materials.get_mut(index) {
-                Some(slot) => *slot = entry,
-                None => self.materials.push(entry),
+                Some(slot) if slot.assets.shares(assets) => {}
+                Some(slot) => *slot = self.context.upload(assets)?,
+                None => self.materials.push(self.context.upload(assets)?),
             }
         }
         Ok(())

@@ -10,16 +10,19 @@ use haze::headless::Headless;
 use haze::preset::PresetSystem;
 use haze::settings::{AccumulationFormat, Path as SmokePath, ShadeTree};
 use haze::{Error, Timing, wgpu};
+use image::RgbImage;
 
 use super::awake::Awake;
 use super::limits::work::bytes;
-use super::quality::{Quality, is_right};
+use super::quality::{Quality, Reference, is_right};
 use super::report::{Clock, LeftOut, Milliseconds, Row};
 use super::suites::{Case, Group, Suite};
 use crate::app::interrupt;
 
 /// Rounds that are not counted, at the least.
 const WARM_UP: usize = 2;
+/// Milliseconds of a frame after which it needs no warming up: one was drawn before.
+const SLOW_MS: f64 = 300.0;
 /// Frames in a row without a time after which there will be none.
 const MOST_TRIES: u32 = 8;
 /// Most rounds that tell anything more.
@@ -99,31 +102,32 @@ impl<'a> Bench<'a> {
     /// When the device failed.
     pub fn group(&mut self, group: &Group, budget: Duration) -> Result<bool, Error> {
         let started = Instant::now();
-        let mut reference = Stage::new(&self.context, false)?;
-        reference.warm_up(&group.reference)?;
-        reference.draw(self.gpu, &group.reference)?;
-        let mut running = Vec::new();
+        let reference = self.reference(group)?;
+        let (mut running, mut pictures) = (Vec::new(), Vec::new());
         for case in &group.cases {
             if interrupt::is_asked() {
                 return Ok(false);
             }
-            match self.begin(group, case, &reference)? {
-                Ok(case) => running.push(case),
+            match self.begin(case, &reference)? {
+                Ok((case, picture)) => {
+                    running.push(case);
+                    pictures.push(picture);
+                }
                 Err(reason) => self.leave_out(group.suite, &case.name, reason),
             }
         }
+        running.iter_mut().zip(reference.flips(&pictures)).for_each(|(case, flip)| case.quality.flip = Some(flip));
+        drop((reference, pictures));
         let mut is_whole = true;
-        for round in 0.. {
+        for round in 0..WARM_UP + MOST_ROUNDS {
             is_whole = !interrupt::is_asked();
-            let counted = running.iter().map(|case| case.times.len()).max().unwrap_or(MOST_ROUNDS);
-            let is_enough = counted >= LEAST_ROUNDS && started.elapsed() > budget;
-            if !is_whole || is_enough || counted >= MOST_ROUNDS || round >= 2 * MOST_ROUNDS {
+            if !is_whole || (round >= WARM_UP + LEAST_ROUNDS && started.elapsed() > budget) {
                 break;
             }
             for case in &mut running {
                 let taken = self.frame(&mut case.stage, &case.case.shot)?;
                 let Some(Taken { ms, passes }) = taken else { continue };
-                if round >= WARM_UP {
+                if round >= WARM_UP || ms > SLOW_MS {
                     case.times.push(ms);
                     passes.iter().for_each(|(name, ms)| case.passes.entry(name).or_default().push(*ms));
                 }
@@ -137,6 +141,13 @@ impl<'a> Bench<'a> {
         Ok(is_whole)
     }
 
+    fn reference(&self, group: &Group) -> Result<Reference, Error> {
+        let mut stage = Stage::new(&self.context, false)?;
+        stage.warm_up(&group.reference)?;
+        stage.draw(self.gpu, &group.reference)?;
+        Reference::read(self.gpu, &stage, &group.reference)
+    }
+
     fn leave_out(&mut self, suite: Suite, case: &str, reason: String) {
         self.left_out.push(LeftOut { suite: suite.name(), case: case.into(), reason });
     }
@@ -144,10 +155,9 @@ impl<'a> Bench<'a> {
     /// Looks at the picture of a case before it is measured; says why it is not where that is so.
     fn begin<'c>(
         &mut self,
-        group: &Group,
         case: &'c Case,
-        reference: &Stage,
-    ) -> Result<Result<Running<'c>, String>, Error> {
+        reference: &Reference,
+    ) -> Result<Result<(Running<'c>, RgbImage), String>, Error> {
         let seconds = |ms: f64| format!("a frame would take some {:.0} s", ms / 1000.0);
         let longest = self.longest.as_secs_f64() * 1000.0;
         if let Some(ms) = self.costs.get(&case.work.0).map(|cost| cost * case.work.1).filter(|&ms| ms > longest) {
@@ -171,8 +181,8 @@ impl<'a> Bench<'a> {
             }
             Some(_) => {}
         }
-        let quality = Quality::of(self.gpu, (&stage, &case.shot), (reference, &group.reference))?;
-        Ok(Ok(Running { case, stage, quality, times: Vec::new(), passes: BTreeMap::new() }))
+        let (quality, picture) = reference.compare(self.gpu, &stage, &case.shot)?;
+        Ok(Ok((Running { case, stage, quality, times: Vec::new(), passes: BTreeMap::new() }, picture)))
     }
 
     /// Draws a frame; none where the GPU gives no times, again and again.

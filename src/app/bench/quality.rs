@@ -1,6 +1,6 @@
 //! What a saving costs in image quality, and whether a picture is right at all.
 
-use glam::{UVec2, Vec2};
+use glam::{UVec2, Vec2, Vec4};
 use haze::Error;
 use haze::demo::apart::Apart;
 use haze::demo::develop::{develop, exposure};
@@ -8,8 +8,9 @@ use haze::demo::shot::Shot;
 use haze::demo::stage::{Stage, StageContext};
 use haze::headless::Headless;
 use haze::picture::Picture;
+use image::RgbImage;
 
-use crate::app::flip::flip_of;
+use crate::app::flip::flips;
 
 /// How far a picture is from another; none of what cannot be told.
 #[derive(Clone, Copy, Debug, Default)]
@@ -19,18 +20,41 @@ pub struct Quality {
     pub edge_psnr_db: Option<f64>,
 }
 
-impl Quality {
-    /// Of what two stages of one size have drawn.
-    pub fn of(gpu: &Headless, of: (&Stage, &Shot), from: (&Stage, &Shot)) -> Result<Self, Error> {
-        let [first, second] = [of.0.read(gpu, of.1)?, from.0.read(gpu, from.1)?];
-        let depth = match from.0.linear_depth() {
-            Some(depth) => Some(Picture { size: second.size, texels: gpu.read_r32float(depth)? }),
+/// What the pictures of a group are compared with.
+pub struct Reference {
+    picture: Picture<Vec4>,
+    exposure: f32,
+    developed: RgbImage,
+    /// View depth of the scene, where the device tells.
+    depth: Option<Picture<f32>>,
+}
+
+impl Reference {
+    /// What a stage has drawn.
+    pub fn read(gpu: &Headless, stage: &Stage, shot: &Shot) -> Result<Self, Error> {
+        let picture = stage.read(gpu, shot)?;
+        let depth = match stage.linear_depth() {
+            Some(depth) => Some(Picture { size: picture.size, texels: gpu.read_r32float(depth)? }),
             None => None,
         };
-        let apart = Apart::of(&first, &second, Vec2::new(exposure(of.1), exposure(from.1)), depth.as_ref());
+        Ok(Self { exposure: exposure(shot), developed: develop(&picture, shot), picture, depth })
+    }
+
+    /// How far what another stage has drawn is from it, but for FLIP, which takes long: the picture for that as well.
+    pub fn compare(&self, gpu: &Headless, stage: &Stage, shot: &Shot) -> Result<(Quality, RgbImage), Error> {
+        let picture = stage.read(gpu, shot)?;
+        let exposures = Vec2::new(exposure(shot), self.exposure);
+        let apart = Apart::of(&picture, &self.picture, exposures, self.depth.as_ref());
         let finite = |db: f32| db.is_finite().then_some(f64::from(db));
-        let flip = flip_of(&develop(&second, from.1), &develop(&first, of.1));
-        Ok(Self { psnr_db: finite(apart.psnr), flip: Some(flip), edge_psnr_db: apart.edge_psnr.and_then(finite) })
+        let quality =
+            Quality { psnr_db: finite(apart.psnr), flip: None, edge_psnr_db: apart.edge_psnr.and_then(finite) };
+        Ok((quality, develop(&picture, shot)))
+    }
+
+    /// FLIP of pictures.
+    pub fn flips(&self, pictures: &[RgbImage]) -> Vec<f64> {
+        let pairs: Vec<_> = pictures.iter().map(|picture| [&self.developed, picture]).collect();
+        flips(&pairs)
     }
 }
 

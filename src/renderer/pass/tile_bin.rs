@@ -5,7 +5,7 @@
 use crate::renderer::gpu::pipeline::{ComputeParts, switch};
 
 /// Sprites that are put into bins by one invocation: RUN in `shaders/tile_bin.wgsl`.
-pub(crate) const RUN: u32 = 256;
+pub(crate) const RUN: u32 = 64;
 
 /// What makes one pipeline differ from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
