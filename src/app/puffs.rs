@@ -100,6 +100,6 @@ pub fn pairs(puff: &Puff, shown: &Shown<'_>) -> Vec<[RgbImage; 2]> {
 /// Mean FLIP of all lights: how different they look.
 pub fn flip(puff: &Puff, shown: &Shown<'_>) -> f64 {
     let pairs = pairs(puff, shown);
-    let pairs: Vec<_> = pairs.iter().map(|pair| pair.each_ref()).collect();
+    let pairs: Vec<_> = pairs.iter().map(|[truth, ours]| [truth, ours]).collect();
     flips(&pairs).iter().sum::<f64>() / f64::from(LIGHTS)
 }

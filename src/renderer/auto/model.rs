@@ -70,7 +70,7 @@ impl PathModelSource {
 }
 
 impl PathModel {
-    /// An NVIDIA H200, `bench/results/h200_auto.json`; the walk in `h200_overdraw.json`.
+    /// An NVIDIA H200, `bench/results/h200_auto.json`; the walk in `h200.json`.
     const GPU: Self = Self {
         raster: PathCosts {
             frame: 10.0e3,
