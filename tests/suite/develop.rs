@@ -8,6 +8,7 @@ use haze::settings::ShadeTree;
 use haze::wgpu;
 
 use crate::common::gpu;
+use crate::creations;
 use crate::host::as_floats;
 
 const SIZE: UVec2 = UVec2::new(160, 90);
@@ -92,4 +93,24 @@ fn two_pictures_side_by_side_and_how_they_differ() {
         let expected = ((*a - *b).abs() * 2.0).min(Vec4::ONE);
         assert!((*texel - expected).truncate().abs().max_element() < 6.5 / 255.0, "{texel} {expected}");
     }
+}
+
+#[test]
+fn stages_of_a_context_upload_a_picture_once() {
+    let context = StageContext::new(&gpu().adapter, &gpu().device, &gpu().queue);
+    let shot = Shot::load("column", SIZE).unwrap();
+    let drawn = || {
+        let mut stage = Stage::new(&context, true).unwrap();
+        let created = creations::count(|| {
+            stage.draw(gpu(), &shot).unwrap();
+        });
+        (stage, created)
+    };
+    // Compiles all there is.
+    let (first, _) = drawn();
+    let (second, beside) = drawn();
+    drop((first, second));
+    // None is left that has them.
+    let (_, alone) = drawn();
+    assert!(beside < alone, "{beside} {alone}");
 }
