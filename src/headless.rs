@@ -174,9 +174,13 @@ impl Headless {
     }
 
     fn wait(&self) -> Result<(), Error> {
-        if !self.failures.lost.load(Ordering::SeqCst) {
-            let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
-            polled.map_err(|error| Error::Device(error.to_string()))?;
+        while !self.failures.lost.load(Ordering::SeqCst) {
+            match self.device.poll(wgpu::PollType::wait_indefinitely()) {
+                Ok(_) => break,
+                // On OpenGL wgpu waits for four seconds at the most.
+                Err(wgpu::PollError::Timeout) => {}
+                Err(error) => return Err(Error::Device(error.to_string())),
+            }
         }
         self.check()
     }

@@ -18,7 +18,7 @@ const FIRST: Duration = Duration::from_secs(2);
 const PIECE_MS: f64 = 1.0;
 const MOST_LAYERS: u32 = 1 << 16;
 
-/// Does nothing for a CPU that draws.
+/// Does nothing for a CPU that draws, nor on OpenGL.
 pub struct Awake<'a> {
     busy: Option<(Bench<'a>, Work)>,
     /// Taken first, so that who wants the GPU to itself never waits for more than the piece that runs.
@@ -37,8 +37,10 @@ impl<'a> Awake<'a> {
     /// # Errors
     /// When the device failed.
     pub fn new(gpu: &'a Headless) -> Result<Self, Error> {
-        let is_cpu = gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
-        let busy = if is_cpu { None } else { Some(piece(gpu)?) };
+        let info = gpu.adapter.get_info();
+        // A second thread waits for the context of OpenGL no longer than some seconds, which a shader may take to compile.
+        let is_left_alone = info.device_type == wgpu::DeviceType::Cpu || info.backend == wgpu::Backend::Gl;
+        let busy = if is_left_alone { None } else { Some(piece(gpu)?) };
         Ok(Self { busy, next: Mutex::default(), running: Mutex::default(), is_over: AtomicBool::new(false) })
     }
 
