@@ -52,8 +52,7 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
         return out;
     }
     // The light's own fixture may stand in its way: what is nearer than its body does not count. For the sun, anything is.
-    let pixels_per_metre = 0.5 * view.size.y / view.ray_scale.y * mix(1.0 / depth, 1.0, view.orthographic);
-    let body = max(light.radius * pixels_per_metre, 1.5);
+    let body = max(light.radius * pixels_per_metre(view.size.y, view.ray_scale.y, depth, view.orthographic), 1.5);
     let compared_depth = min(depth - 2.0 * light.radius, 0.99 * view.far);
     let visibility = light_visibility(pixel, body, compared_depth);
     if visibility <= 0.0 {

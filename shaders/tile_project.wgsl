@@ -38,7 +38,7 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
     sprite.amount = placed.amount_lod_frame_age.x;
     sprite.frames_lod = packed_frames(frames, lod);
     sprite.blend = frames.blend;
-    sprite.filled = filled_cells(sprite_filled, frames, lod);
+    sprite.filled = filled_cells(frames, lod);
 
     var low: vec2f;
     var high: vec2f;
@@ -56,9 +56,15 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
         let sine = placed.rotation.y;
         sprite.place_from_texels = vec4f(metres * vec2f(cosine, sine), metres * vec2f(-sine, cosine)) / radius;
         sprite.centre_radius = vec4f(middle, centre.z, radius);
-        let reach = (abs(cosine) + abs(sine)) * radius / abs(metres);
-        low = middle - reach;
-        high = middle + reach;
+        // Of what is filled of the square: its middle, and half its sides.
+        let reach = sprite_reach(frames, lod);
+        let texels = radius / metres;
+        let place = 0.5 * (reach.zw - reach.xy);
+        let half_size = 0.5 * (reach.xy + reach.zw);
+        let filled = middle + vec2f(dot(place, vec2f(cosine, -sine)), dot(place, vec2f(sine, cosine))) * texels;
+        let across = vec2f(dot(half_size, abs(vec2f(cosine, sine))), dot(half_size, abs(vec2f(sine, cosine)))) * abs(texels);
+        low = filled - across;
+        high = filled + across;
     }
     // Texels whose centres lie inside, and as many round them as rounding may hide.
     let first = clamp(floor(low - 0.01), vec2f(0.0), system.target_size);

@@ -172,6 +172,11 @@ fn sprite_corner(index: u32) -> vec2f {
     return vec2f(f32(index & 1u) * 2.0 - 1.0, f32(index >> 1u) * 2.0 - 1.0);
 }
 
+// That corner of what a sprite reaches of its square: left, down, right, up.
+fn trimmed_corner(corner: vec2f, reach: vec4f) -> vec2f {
+    return select(-reach.xy, reach.zw, corner > vec2f(0.0));
+}
+
 fn sprite_uv(corner: vec2f) -> vec2f {
     return vec2f(corner.x * 0.5 + 0.5, 0.5 - corner.y * 0.5);
 }

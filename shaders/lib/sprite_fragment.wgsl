@@ -7,11 +7,6 @@
 #import "lib/six_way.wgsl"
 
 override FADE_CURVE: u32 = FADE_CURVE_SMOOTHSTEP;
-override DEBUG_SPRITE: bool = false;
-// Sprites are lit by six-way maps, and their normals are not read.
-override SIX_WAY: bool = false;
-// True where sprite.motion is not 0.
-override MOTION: bool = false;
 // The host's depth is linear.
 override LINEAR_DEPTH: bool = false;
 // The hardware has already dropped what is behind the scene.

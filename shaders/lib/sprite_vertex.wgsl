@@ -1,4 +1,5 @@
-// From a particle to one corner of its camera-facing square, or of the rectangle round its sphere.
+// From a particle to one corner of what is not clear of its camera-facing square, or of the rectangle round its sphere.
+// Half of a puff's square is clear, and would be shaded and blended for nothing. (Persson, "Particle trimming", 2009)
 
 #import "lib/bindings.wgsl"
 #import "lib/sprite.wgsl"
@@ -34,6 +35,11 @@ struct SpriteVertex {
 
 override TECHNIQUE: u32 = TECHNIQUE_SOFT;
 override SPRITE_ANIMATION: u32 = SPRITE_ANIMATION_FLIPBOOK;
+override DEBUG_SPRITE: bool = false;
+// Sprites are lit by six-way maps, and their normals are not read.
+override SIX_WAY: bool = false;
+// True where sprite.motion is not 0.
+override MOTION: bool = false;
 
 // True for techniques whose sprites are spheres.
 fn is_sphere() -> bool {
@@ -101,10 +107,8 @@ fn placed_sprite(particle: Particle, texels_per_pixel: f32) -> PlacedSprite {
     let in_view = back > view.near && view_depth - half_depth < view.far;
     let shown = finite && in_view && radius > 0.0 && amount > 0.0;
 
-    // Pixels across the sprite: its size in NDC times half the picture's height.
-    let pixels_per_metre =
-        0.5 * view.size.y / view.ray_scale.y * mix(1.0 / max(view_depth, view.near), 1.0, view.orthographic);
-    let diameter = 2.0 * radius * pixels_per_metre * texels_per_pixel;
+    let pixels = pixels_per_metre(view.size.y, view.ray_scale.y, max(view_depth, view.near), view.orthographic);
+    let diameter = 2.0 * radius * pixels * texels_per_pixel;
     let lod = sprite_lod(system.sprite_size, diameter);
     let shown_frame = sprite_frame(SPRITE_ANIMATION, frame, age, system.frame_count);
     return PlacedSprite(
@@ -113,6 +117,26 @@ fn placed_sprite(particle: Particle, texels_per_pixel: f32) -> PlacedSprite {
         vec4f(amount, lod, shown_frame, age),
         vec2f(cos(angle), sin(angle)),
     );
+}
+
+const ALL_FILLED: vec4u = vec4u(0xffffffffu);
+
+// What is not clear of a frame at a sprite's mip level. FilledTexel in src/assets/sprite/filled.rs.
+fn filled_texel(frame: i32, lod: f32) -> vec4u {
+    if DEBUG_SPRITE || MOTION {
+        return ALL_FILLED;
+    }
+    let level = min(i32(lod), i32(textureDimensions(sprite_filled).x) - 1);
+    return textureLoad(sprite_filled, vec2i(level, frame + select(0, i32(system.frame_count), SIX_WAY)), 0);
+}
+
+// How far a sprite of these frames reaches from its middle, as a share of half its side: left, down, right, up.
+fn sprite_reach(frames: FlipbookFrames, lod: f32) -> vec4f {
+    let reach = unpack4x8unorm(filled_texel(frames.first, lod).z);
+    if frames.blend > 0.0 {
+        return max(reach, unpack4x8unorm(filled_texel(frames.second, lod).z));
+    }
+    return reach;
 }
 
 // `target_from_ndc` moves the picture's NDC to the target's.
@@ -141,14 +165,16 @@ fn sprite_vertex(
         clip = vec4f(ndc, 0.0, 1.0);
         out.view_position = view_position(ndc * view.ray_scale + view.ray_offset, 1.0, view.orthographic);
     } else {
+        let frames = shown_frames(SPRITE_ANIMATION, out.amount_lod_frame_age.z, system.frame_count);
+        let place = trimmed_corner(corner, sprite_reach(frames, out.amount_lod_frame_age.y));
         let turned = vec2f(
-            corner.x * out.rotation.x - corner.y * out.rotation.y,
-            corner.x * out.rotation.y + corner.y * out.rotation.x,
+            place.x * out.rotation.x - place.y * out.rotation.y,
+            place.x * out.rotation.y + place.y * out.rotation.x,
         );
         // A slab whose middle has passed the near plane is drawn on that.
         out.view_position = vec3f(centre.xy + turned * sprite.centre_radius.w, min(centre.z, -view.near));
         clip = view.clip_from_view * vec4f(out.view_position, 1.0);
-        out.uv = sprite_uv(corner);
+        out.uv = sprite_uv(place);
     }
     let front = view.clip_from_view * vec4f(0.0, 0.0, -sprite_front(out.centre_radius), 1.0);
     let depth = saturate(front.z / front.w);

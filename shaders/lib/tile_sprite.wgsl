@@ -41,18 +41,11 @@ fn lod_of(sprite: TileSprite) -> f32 {
     return f32(sprite.frames_lod >> 24u);
 }
 
-const ALL_FILLED: vec2u = vec2u(0xffffffffu);
-
 // The cells of a sprite's frames, at its mip level.
-fn filled_cells(filled: texture_2d<u32>, frames: FlipbookFrames, lod: f32) -> vec2u {
-    if DEBUG_SPRITE || MOTION {
-        return ALL_FILLED;
-    }
-    let level = min(i32(lod), i32(textureDimensions(filled).x) - 1);
-    let shown = frames_after(frames, select(0, i32(system.frame_count), SIX_WAY));
-    var cells = textureLoad(filled, vec2i(level, shown.first), 0).xy;
-    if shown.blend > 0.0 {
-        cells |= textureLoad(filled, vec2i(level, shown.second), 0).xy;
+fn filled_cells(frames: FlipbookFrames, lod: f32) -> vec2u {
+    let cells = filled_texel(frames.first, lod).xy;
+    if frames.blend > 0.0 {
+        return cells | filled_texel(frames.second, lod).xy;
     }
     return cells;
 }

@@ -34,3 +34,8 @@ fn pixel_from_ndc(ndc: vec2f, size: vec2f) -> vec2f {
 fn view_position(ray: vec2f, view_depth: f32, orthographic: f32) -> vec3f {
     return vec3f(ray * mix(view_depth, 1.0, orthographic), -view_depth);
 }
+
+// At a view depth. `height`: of the picture, pixels; `ray_scale`: the y of View's.
+fn pixels_per_metre(height: f32, ray_scale: f32, view_depth: f32, orthographic: f32) -> f32 {
+    return 0.5 * height / ray_scale * mix(1.0 / view_depth, 1.0, orthographic);
+}

@@ -1,10 +1,13 @@
 //! The pictures of a particle system in memory: its ramps, its sprite flipbook and what belongs to it.
 
+use std::sync::Arc;
+
 use glam::{Vec2, Vec3};
 
 use super::noise::NoiseVolume;
 use super::ramp::Ramp;
 use super::sprite::Sprite;
+use super::sprite::filled::Filled;
 use crate::error::FieldError;
 use crate::formula::diffuse_bake::zonal_coefficients;
 use crate::formula::ramp::sample_ramp_2d;
@@ -74,6 +77,7 @@ impl MaterialAssets {
         };
         MaterialInfo {
             sprite_size: self.sprite.size() as f32,
+            filled: Arc::new(Filled::new(&self.sprite, self.six_way.as_ref())),
             frame_count: self.sprite.frame_count() as f32,
             detail: self.detail.as_ref().map(|detail| DetailInfo {
                 frame_count: detail.frame_count(),
@@ -87,9 +91,11 @@ impl MaterialAssets {
 }
 
 /// What a frame needs to know of a material's pictures.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct MaterialInfo {
     pub sprite_size: f32,
+    /// Of the sprite, and after it the six-way maps.
+    pub filled: Arc<Filled>,
     pub frame_count: f32,
     pub detail: Option<DetailInfo>,
     /// Size and frames of the six-way maps.

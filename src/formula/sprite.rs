@@ -115,6 +115,11 @@ pub fn unrotate(offset: Vec2, rotation: Vec2) -> Vec2 {
     Vec2::new(offset.x * rotation.x + offset.y * rotation.y, offset.y * rotation.x - offset.x * rotation.y)
 }
 
+/// A corner, −1..1 with y up, of what a sprite reaches of its square from the middle: left, down, right, up, as shares of half a side.
+pub fn trimmed_corner(corner: Vec2, reach: Vec4) -> Vec2 {
+    Vec2::select(corner.cmpgt(Vec2::ZERO), reach.zw(), -reach.xy())
+}
+
 /// Place in the picture, 0..1 with v down, of a place on the sprite, -1..1 with y up.
 pub fn sprite_uv(corner: Vec2) -> Vec2 {
     Vec2::new(corner.x * 0.5 + 0.5, 0.5 - corner.y * 0.5)

@@ -17,3 +17,9 @@ pub fn pixel_from_ndc(ndc: Vec2, size: Vec2) -> Vec2 {
 pub fn view_position(ray: Vec2, view_depth: f32, orthographic: f32) -> Vec3 {
     (ray * (view_depth + (1.0 - view_depth) * orthographic)).extend(-view_depth)
 }
+
+/// At a view depth, of a picture so many pixels high; `ray_scale` as in [`view_position`], of y.
+pub fn pixels_per_metre(height: f32, ray_scale: f32, view_depth: f32, orthographic: f32) -> f32 {
+    let of_perspective = 1.0 / view_depth;
+    0.5 * height / ray_scale * (of_perspective + (1.0 - of_perspective) * orthographic)
+}

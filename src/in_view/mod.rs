@@ -12,6 +12,6 @@ mod view;
 pub(crate) use in_front::optical_depth;
 pub(crate) use lights::lights_in_view;
 pub(crate) use order::{SortScratch, in_order};
-pub(crate) use sprites::{Grid, Placing, SpriteInView};
+pub(crate) use sprites::{Grid, Pictures, Placing, SpriteInView};
 pub(crate) use system::{SystemInView, SystemInWorld, system_in_view};
 pub(crate) use view::ViewGeometry;

@@ -1,13 +1,18 @@
 //! Where sprites stand in the view, as `shaders/lib/sprite_vertex.wgsl` places them, and how many fragments they make.
 
-use glam::{DVec2, UVec2, Vec2, Vec3, Vec3Swizzles};
+use std::sync::Arc;
 
+use glam::{DVec2, UVec2, Vec2, Vec3, Vec3Swizzles, Vec4};
+
+use crate::assets::material::MaterialInfo;
+use crate::assets::sprite::filled::Filled;
 use crate::formula::soft_fade::near_fade;
+use crate::formula::sprite::{FlipbookFrames, frames_after, shown_frames, sprite_frame, sprite_lod, trimmed_corner};
 use crate::formula::technique::sphere_axis_bounds;
 use crate::formula::uniforms::{SystemUniform, ViewUniform};
-use crate::formula::view::pixel_from_ndc;
+use crate::formula::view::{pixel_from_ndc, pixels_per_metre};
 use crate::frame::Particle;
-use crate::settings::Technique;
+use crate::settings::{Settings, SpriteAnimation, Technique};
 
 /// The texels that sprites are drawn on: texel (i, j) is the pixels from (origin + (i, j)) · scale.
 #[derive(Clone, Copy, Debug)]
@@ -24,6 +29,34 @@ pub(crate) struct SpriteInView {
     pub radius: f32,
     /// After opacity and near fade.
     pub amount: f32,
+    pub frames: FlipbookFrames,
+    pub lod: f32,
+}
+
+/// What is known of sprites' pictures.
+#[derive(Clone, Debug)]
+pub(crate) struct Pictures {
+    animation: SpriteAnimation,
+    filled: Arc<Filled>,
+    /// The first frame of those that show where there is anything; `None` where that is taken to be everywhere.
+    first_frame: Option<i32>,
+}
+
+impl Pictures {
+    pub fn new(settings: &Settings, material: &MaterialInfo) -> Self {
+        let sprite = &settings.sprite;
+        let first_frame = if settings.is_six_way() { material.frame_count as i32 } else { 0 };
+        Self {
+            animation: sprite.animation,
+            filled: material.filled.clone(),
+            first_frame: (!sprite.debug_sprite && sprite.motion == 0.0).then_some(first_frame),
+        }
+    }
+
+    /// `sprite_reach()`.
+    fn reach(&self, sprite: &SpriteInView) -> Vec4 {
+        self.first_frame.map_or(Vec4::ONE, |first| self.filled.reach(frames_after(sprite.frames, first), sprite.lod))
+    }
 }
 
 /// What places sprites.
@@ -32,12 +65,13 @@ pub(crate) struct Placing<'a> {
     pub view: &'a ViewUniform,
     pub system: &'a SystemUniform,
     pub technique: Technique,
+    pub pictures: &'a Pictures,
 }
 
 impl Placing<'_> {
-    /// The first half of `sprite_vertex()`; `None` when the sprite is hidden.
-    pub fn sprite(&self, particle: &Particle) -> Option<SpriteInView> {
-        let Self { view, system, technique } = *self;
+    /// `placed_sprite()`; `None` when the sprite is hidden.
+    pub fn sprite(&self, particle: &Particle, texels_per_pixel: f32) -> Option<SpriteInView> {
+        let Self { view, system, technique, pictures } = *self;
         let centre = view.view_from_world.transform_point3(particle.position);
         let mut radius = particle.radius * system.size;
         if technique == Technique::SphericalBillboard {
@@ -48,7 +82,25 @@ impl Placing<'_> {
         let fade = near_fade(back, system.near_fade_start, system.near_fade_end);
         let amount = particle.shown_amount() * system.opacity * fade;
         let is_seen = back > view.near && front < view.far && radius > 0.0 && amount > 0.0;
-        is_seen.then_some(SpriteInView { centre, radius, amount })
+        if !is_seen {
+            return None;
+        }
+        let depth = (-centre.z).max(view.near);
+        let pixels = pixels_per_metre(view.size.y, view.ray_scale.y, depth, view.orthographic);
+        let diameter = 2.0 * radius * pixels * texels_per_pixel;
+        let frame = sprite_frame(pictures.animation, particle.frame, particle.age, system.frame_count);
+        Some(SpriteInView {
+            centre,
+            radius,
+            amount,
+            frames: shown_frames(pictures.animation, frame, system.frame_count),
+            lod: sprite_lod(system.sprite_size, diameter),
+        })
+    }
+
+    /// How far a flat sprite reaches from its middle, as a share of half a side: left, down, right, up.
+    pub fn reach(&self, sprite: &SpriteInView) -> Vec4 {
+        self.pictures.reach(sprite)
     }
 
     /// A slab whose middle has passed the near plane is drawn on that.
@@ -90,25 +142,25 @@ impl Placing<'_> {
     ) -> impl Iterator<Item = (f64, &'p Particle)> {
         let mut scratch = [Vec::with_capacity(8), Vec::with_capacity(8)];
         particles.filter_map(move |particle| {
-            let sprite = self.sprite(particle)?;
+            let sprite = self.sprite(particle, grid.scale.recip())?;
             let corners = if self.technique.is_sphere() {
                 let (min, max) = self.sphere_rectangle(&sprite, grid.scale.recip());
                 [min, Vec2::new(max.x, min.y), max, Vec2::new(min.x, max.y)]
             } else {
-                self.square_corners(&sprite, particle.rotation)
+                self.corners(&sprite, particle.rotation)
             };
             let texels = corners.map(|pixel| pixel / grid.scale - grid.origin);
             Some((area_within(texels, grid.size.as_vec2(), &mut scratch), particle))
         })
     }
 
-    /// In pixels, in order round the square.
-    fn square_corners(&self, sprite: &SpriteInView, rotation: f32) -> [Vec2; 4] {
+    /// Of what a flat sprite has of its square: in pixels, in order round it.
+    fn corners(&self, sprite: &SpriteInView, rotation: f32) -> [Vec2; 4] {
         let centre = self.on_screen(sprite.centre);
         let along = if self.view.orthographic > 0.5 { 1.0 } else { -centre.z };
-        let side = Vec2::from_angle(rotation) * sprite.radius;
-        [side + side.perp(), side.perp() - side, -side - side.perp(), side - side.perp()].map(|corner| {
-            let ray = (centre.xy() + corner) / along;
+        let (turn, reach) = (Vec2::from_angle(rotation) * sprite.radius, self.reach(sprite));
+        [Vec2::new(1.0, 1.0), Vec2::new(-1.0, 1.0), Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0)].map(|corner| {
+            let ray = (centre.xy() + turn.rotate(trimmed_corner(corner, reach))) / along;
             pixel_from_ndc(self.ndc(ray), self.view.size)
         })
     }

@@ -12,7 +12,7 @@ use crate::formula::view::{ndc_from_pixel, pixel_from_ndc, view_position};
 use crate::frame::validate::{validate_lights, validate_place, validate_settings, validate_time_and_up};
 use crate::frame::{Bounds, Particle, View, bounds_of};
 use crate::in_view::{
-    SortScratch, SystemInView, SystemInWorld, ViewGeometry, in_order, lights_in_view, system_in_view,
+    Pictures, SortScratch, SystemInView, SystemInWorld, ViewGeometry, in_order, lights_in_view, system_in_view,
 };
 use crate::settings::{Order, Settings, ShadeTree};
 
@@ -26,6 +26,7 @@ pub struct Draw<'a> {
     pub lights: Vec<LightUniform>,
     /// In the order in which they are drawn.
     pub particles: Vec<Particle>,
+    pub pictures: Pictures,
     pub scene_depth: &'a Picture<f32>,
     pub settings: &'a Settings,
     pub material: &'a MaterialAssets,
@@ -66,6 +67,7 @@ impl<'a> Draw<'a> {
             bounds,
             lights,
             particles,
+            pictures: Pictures::new(settings, material),
             scene_depth: frame.scene_depth,
             settings,
             material: system.material,
@@ -90,11 +92,6 @@ impl<'a> Draw<'a> {
     pub fn pixel_from_view(&self, position: Vec3) -> Vec2 {
         let clip = self.view.clip_from_view * position.extend(1.0);
         pixel_from_ndc(clip.xy() / clip.w, self.view.size)
-    }
-
-    pub fn pixels_per_metre(&self, view_depth: f32) -> f32 {
-        let along = if self.view.orthographic > 0.5 { 1.0 } else { 1.0 / view_depth };
-        0.5 * self.view.size.y / self.view.ray_scale.y * along
     }
 }
 

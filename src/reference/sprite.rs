@@ -1,6 +1,6 @@
 //! Sprites, fragment by fragment. `shaders/lib/sprite_vertex.wgsl` and `shaders/lib/sprite_fragment.wgsl`.
 
-use glam::{IVec2, Mat3, Vec2, Vec3, Vec3Swizzles, Vec4Swizzles};
+use glam::{IVec2, Mat3, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 
 use super::draw::Draw;
 use crate::formula::noise_volume::{noise_coordinate, sample_noise_octaves};
@@ -9,8 +9,8 @@ use crate::formula::order::{optical_depth_in_front, order_weight};
 use crate::formula::six_way::{SixWay, rotate_six_way, six_way_from_texel};
 use crate::formula::soft_fade::soft_fade;
 use crate::formula::sprite::{
-    FlipbookFrames, checkerboard, frames_after, sample_detail, sample_flipbook, sample_sprite, shown_frames,
-    sprite_frame, sprite_lod, sprite_uv, unrotate,
+    FlipbookFrames, checkerboard, frames_after, sample_detail, sample_flipbook, sample_sprite, sprite_uv,
+    trimmed_corner, unrotate,
 };
 use crate::formula::technique::{
     RayInterval, density_amount, density_thickness, depth_sprite_depth, hard_fade, ray_sphere, slab_share,
@@ -29,6 +29,8 @@ pub struct SpriteSetup {
     pub amount: f32,
     pub lod: f32,
     pub frames: FlipbookFrames,
+    /// Squares: how far from the middle there is anything, as a share of half a side: left, down, right, up.
+    pub reach: Vec4,
     pub age: f32,
     /// How much the normal counts, where sprites are not sorted.
     pub weight: f32,
@@ -81,26 +83,24 @@ impl Draw<'_> {
 
     /// `sprite_vertex()`; `None` when the sprite is hidden.
     pub fn sprite_setup(&self, particle: &Particle, texels_per_pixel: f32) -> Option<SpriteSetup> {
-        let (system, technique, placing) = (&self.system, self.settings.technique, self.placing());
-        let sprite = placing.sprite(particle)?;
-        let SpriteInView { centre, radius, amount } = sprite;
+        let (technique, placing) = (self.settings.technique, self.placing());
+        let sprite = placing.sprite(particle, texels_per_pixel)?;
+        let SpriteInView { centre, radius, amount, frames, lod } = sprite;
         let view_depth = -centre.z;
         let (min, max) = if technique.is_sphere() {
             placing.sphere_rectangle(&sprite, texels_per_pixel)
         } else {
             self.square_rectangle(placing.on_screen(centre), radius)
         };
-        let diameter = 2.0 * radius * self.pixels_per_metre(view_depth.max(self.view.near)) * texels_per_pixel;
-        let animation = self.settings.sprite.animation;
-        let frame = sprite_frame(animation, particle.frame, particle.age, system.frame_count);
         Some(SpriteSetup {
             centre,
             view_depth,
             radius,
             rotation: Vec2::new(particle.rotation.cos(), particle.rotation.sin()),
             amount,
-            lod: sprite_lod(system.sprite_size, diameter),
-            frames: shown_frames(animation, frame, system.frame_count),
+            lod,
+            frames,
+            reach: placing.reach(&sprite),
             age: particle.age,
             weight: self.order_weight(view_depth),
             min,
@@ -121,7 +121,7 @@ impl Draw<'_> {
     }
 
     fn placing(&self) -> Placing<'_> {
-        Placing { view: &self.view, system: &self.system, technique: self.settings.technique }
+        Placing { view: &self.view, system: &self.system, technique: self.settings.technique, pictures: &self.pictures }
     }
 
     fn square_rectangle(&self, centre: Vec3, radius: f32) -> (Vec2, Vec2) {
@@ -140,7 +140,8 @@ impl Draw<'_> {
         let drawn = self.placing().on_screen(sprite.centre);
         let offset = self.view_position(pixel, -drawn.z) - drawn;
         let local = unrotate(offset.xy(), sprite.rotation) / sprite.radius;
-        if local.abs().max_element() > 1.0 {
+        let (low, high) = (trimmed_corner(Vec2::NEG_ONE, sprite.reach), trimmed_corner(Vec2::ONE, sprite.reach));
+        if local.cmplt(low).any() || local.cmpgt(high).any() {
             return None;
         }
         let uv = sprite_uv(local);

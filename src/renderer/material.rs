@@ -8,6 +8,7 @@ use crate::assets::material::MaterialAssets;
 use crate::assets::noise::NoiseVolume;
 use crate::assets::ramp::Ramp;
 use crate::assets::sprite::Sprite;
+use crate::assets::sprite::filled::Filled;
 use crate::error::FieldError;
 use crate::frame::Material;
 
@@ -59,7 +60,8 @@ pub(crate) fn create_material(
     validate_sizes(&gpu.device.limits(), assets)?;
     let mut bytes = 0;
     let sprite = upload_sprite(gpu, "haze sprite", &assets.sprite, assets.six_way.as_ref(), &mut bytes);
-    let filled = upload_filled(gpu, &assets.sprite, assets.six_way.as_ref(), &mut bytes);
+    let info = assets.info();
+    let filled = upload_filled(gpu, &info.filled, &mut bytes);
     let detail = assets.detail.as_ref().map(|detail| upload_sprite(gpu, "haze detail", detail, None, &mut bytes));
     let noise = upload_noise(gpu, &assets.noise, &mut bytes);
     let mut ramp = |label, ramp| upload_ramp(gpu, label, ramp, &mut bytes);
@@ -92,7 +94,7 @@ pub(crate) fn create_material(
             texture(12, &backlight_ramp),
         ],
     });
-    Ok(Material { context, bind_group, info: assets.info(), bytes })
+    Ok(Material { context, bind_group, info, bytes })
 }
 
 /// Refuses pictures that are too large for the device.
@@ -215,28 +217,22 @@ fn upload_sprite(
     })
 }
 
-/// Where a sprite is not clear: a texel for each mip level and frame. `after` as [`upload_sprite`].
-fn upload_filled(gpu: &Gpu<'_>, sprite: &Sprite, after: Option<&Sprite>, bytes: &mut u64) -> wgpu::TextureView {
-    let frames = sprite.frame_count() + after.map_or(0, Sprite::frame_count);
-    let size = extent(UVec2::new(sprite.level_count(), frames), 1);
+/// A texel for each mip level and frame.
+fn upload_filled(gpu: &Gpu<'_>, filled: &Filled, bytes: &mut u64) -> wgpu::TextureView {
+    let size = extent(filled.size(), 1);
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("haze sprite cells"),
+        label: Some("haze sprite filled"),
         size,
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rg32Uint,
+        format: wgpu::TextureFormat::Rgba32Uint,
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
-    let frames = std::iter::once(sprite).chain(after);
-    let frames = frames.flat_map(|sprite| (0..sprite.frame_count()).map(move |frame| (sprite, frame)));
-    let cells: Vec<u64> = frames
-        .flat_map(|(sprite, frame)| (0..sprite.level_count()).map(move |level| sprite.filled_cells(level, frame)))
-        .collect();
-    *bytes += size_of_val(cells.as_slice()) as u64;
-    let data = bytemuck::cast_slice(&cells);
-    gpu.queue.write_texture(texture.as_image_copy(), data, layout(8 * size.width, size.height), size);
+    let data = filled.bytes();
+    *bytes += data.len() as u64;
+    gpu.queue.write_texture(texture.as_image_copy(), data, layout(16 * size.width, size.height), size);
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 

@@ -21,7 +21,9 @@ use super::tiled::{Emitted, TiledSystem};
 use super::validate::tiles_refuse;
 use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use crate::frame::{Bounds, Frame, Particle, Particles, System, bounds_of};
-use crate::in_view::{Grid, Placing, SystemInView, SystemInWorld, ViewGeometry, lights_in_view, system_in_view};
+use crate::in_view::{
+    Grid, Pictures, Placing, SystemInView, SystemInWorld, ViewGeometry, lights_in_view, system_in_view,
+};
 use crate::settings::{Lighting, Path, Settings, Technique};
 
 /// A frame, and what it is drawn with.
@@ -66,6 +68,7 @@ pub(crate) struct Slot {
 struct Drawn {
     in_view: SystemInView,
     technique: Technique,
+    pictures: Pictures,
     /// Of the path `auto`.
     choice: Option<PathChoice>,
     /// How many each particle of the sample stands for, where no other is known.
@@ -141,7 +144,9 @@ impl Slot {
 
     /// In a view.
     pub fn overdraw(&self, view: &ViewUniform) -> Overdraw {
-        let Some(Drawn { in_view, technique, sampled, draw, .. }) = &self.drawn else { return Overdraw::default() };
+        let Some(Drawn { in_view, technique, pictures, sampled, draw, .. }) = &self.drawn else {
+            return Overdraw::default();
+        };
         let (particles, each) = match *sampled {
             Some(each) => (self.sample.as_slice(), f64::from(each)),
             None => (self.instances.particles(), 1.0),
@@ -155,7 +160,7 @@ impl Slot {
             }
             Draw::Deferred(draw) => (&draw.sprites, in_view.grid()),
         };
-        let placing = Placing { view, system: &in_view.uniform, technique: *technique };
+        let placing = Placing { view, system: &in_view.uniform, technique: *technique, pictures };
         let side = (in_view.pixels.as_dvec2() / f64::from(grid.scale)).ceil();
         let fragments = f64::from(sprites.loops) * each * placing.fragments(&grid, particles);
         Overdraw { fragments, texels: side.x * side.y }
@@ -233,6 +238,7 @@ impl Slot {
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&in_view.uniform));
         gpu.queue.write_buffer(&self.lights, 0, bytemuck::cast_slice(&self.lights_in_view));
 
+        let pictures = Pictures::new(settings, &system.material.info);
         let sprite = settings.sprite.for_frames(system.material.info.frame_count);
         let plan = plan(context.situation, &Settings { sprite, ..*settings }, in_view.back_faces);
         let depth = context.bindings.get(plan.reads_linear())?;
@@ -252,7 +258,7 @@ impl Slot {
                 assembly.deferred(plan, &mut self.tiles, targets, &in_view, depth, frame.scene_depth.buffer())
             }
         };
-        Some(Drawn { in_view, technique: settings.technique, choice, sampled, draw })
+        Some(Drawn { in_view, technique: settings.technique, pictures, choice, sampled, draw })
     }
 }
 
@@ -272,7 +278,9 @@ fn choose(
         return Some(PathChoice { path: Path::Raster, reason });
     }
     let view = context.view.uniform(false);
-    let placing = Placing { view: &view, system: &in_view.uniform, technique: system.settings.technique };
+    let pictures = Pictures::new(system.settings, &system.material.info);
+    let placing =
+        Placing { view: &view, system: &in_view.uniform, technique: system.settings.technique, pictures: &pictures };
     let load = load(&placing, &in_view.grid(), system.particles.count(), known, system.settings);
     Some(chooser.choose(&context.shared.path_model(), &load))
 }

@@ -193,6 +193,8 @@ const INDIRECT: &[&str] = &[
     "packed_frames",
     "frames_of",
     "lod_of",
+    "filled_texel",
+    "sprite_reach",
     "filled_cells",
     "cell_at",
     "is_filled",

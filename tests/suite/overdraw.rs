@@ -89,6 +89,8 @@ fn layers_are_in_the_mean_over_the_pixels_of_the_box() {
 fn layers_do_not_depend_on_the_resolution_and_are_counted_as_often_as_they_are_drawn() {
     let of = |change: &dyn Fn(&mut Stage)| {
         let mut stage = stage();
+        // Whole squares: the coarser a mip level, the further a sprite reaches at it.
+        stage.settings.sprite.debug_sprite = true;
         change(&mut stage);
         overdraw(&stage)
     };
@@ -179,6 +181,8 @@ fn fragments_are_as_many_as_the_gpu_shades() {
     let mut stage = moved(stage(), -6.0);
     (stage.settings.path, stage.shade_tree, stage.attach_depth) = (Path::Forward, ShadeTree::Final, false);
     stage.particles.iter_mut().for_each(|particle| particle.rotation = 0.0);
+    // Whole squares.
+    stage.settings.sprite.debug_sprite = true;
     let sides = sides(&stage);
     let (shaded, found) = shaded(&gpu, &stage);
     let blocks = |side: f64| {

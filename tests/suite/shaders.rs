@@ -4,14 +4,15 @@ use std::path::Path;
 
 use glam::{UVec2, Vec4};
 use haze::picture::Picture;
-use haze::settings::ShadeTree;
+use haze::settings::{Lighting, Path as SmokePath, Settings, ShadeTree, SpriteAnimation};
 use haze::shader::{self, Sources};
+use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Context, Error, SceneDepthKind, WarmUp, wgpu};
 use tempfile::TempDir;
 
-use crate::common::{gpu, has_tiles};
+use crate::common::{gpu, has_tiles, psnr};
 use crate::host::Host;
-use crate::stage::Stage;
+use crate::stage::{Stage, six_way_of};
 
 const SIZE: UVec2 = UVec2::new(96, 64);
 
@@ -51,6 +52,43 @@ impl Folder {
         let error = self.context().unwrap_err();
         gpu().check().unwrap();
         error.to_string().replace(&format!("{}/", self.0.path().display()), "")
+    }
+}
+
+/// A cloud of puffs, each at another moment between two frames.
+fn puffs(size: UVec2) -> Stage {
+    let mut stage = Stage::new(size);
+    let layout = SpriteLayout { columns: 4, rows: 2, y_down: false };
+    stage.material.sprite = Sprite::load(Path::new("sprites/puff.png"), layout).unwrap();
+    (stage.material.six_way, stage.material.detail) = (Some(six_way_of(&stage.material.sprite)), None);
+    (0..).zip(&mut stage.particles).for_each(|(index, particle)| particle.frame = index as f32 * 0.37);
+    stage
+}
+
+#[test]
+fn what_is_trimmed_off_a_sprite_is_clear() {
+    let folder = Folder::new();
+    let whole = folder.edit("lib/sprite_vertex.wgsl", "if DEBUG_SPRITE || MOTION {", "if true {").context().unwrap();
+    let changes: [(&str, fn(&mut Settings)); 4] = [
+        ("soft", |_| ()),
+        ("six-way", |settings| settings.lighting = Lighting::SixWay),
+        ("one frame", |settings| settings.sprite.animation = SpriteAnimation::Nearest),
+        ("forward", |settings| settings.path = SmokePath::Forward),
+    ];
+    // Of small ones coarse mip levels are drawn.
+    let sizes = [1, 8].map(|times| SIZE * times);
+    for (size, (name, change)) in sizes.into_iter().flat_map(|size| changes.map(|change| (size, change))) {
+        let mut stage = puffs(size);
+        change(&mut stage.settings);
+        let drawn = |context| {
+            let mut host = Host::on(gpu(), &stage, context).unwrap();
+            host.draw(gpu(), &stage).unwrap();
+            host.picture(gpu()).unwrap()
+        };
+        // Places between the corners are rounded otherwise.
+        let quality = psnr(&drawn(None), &drawn(Some(&whole)));
+        println!("{name} at {size}: {quality:.1} dB");
+        assert!(quality > 85.0, "{name} at {size}: {quality:.1} dB");
     }
 }
 

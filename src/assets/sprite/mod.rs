@@ -3,6 +3,7 @@
 pub mod bake;
 pub mod check;
 pub mod detail;
+pub(crate) mod filled;
 mod height;
 pub mod import;
 pub mod six_way;
@@ -150,36 +151,15 @@ impl Sprite {
         Vec4::from(texel.map(f32::from)) / 255.0
     }
 
-    /// Which of eight by eight cells of a frame bilinear lookups find an amount in: a bit for each, row by row from the top, the
-    /// first in the lowest bit.
-    pub(crate) fn filled_cells(&self, level: u32, frame: u32) -> u64 {
-        const CELLS: f32 = 8.0;
-        let size = self.level_size(level);
-        let texels = &self.levels[level as usize][(frame * size * size) as usize..][..(size * size) as usize];
-        // A texel is found up to half of one further on, and a little for the sampler's rounding.
-        let touched = |texel: u32| {
-            let place = |texels: f32| ((texels * CELLS / size as f32).clamp(0.0, CELLS - 1.0)) as u64;
-            (place(texel as f32 - 0.55), place(texel as f32 + 1.55))
-        };
-        let columns: Vec<u64> = (0..size)
-            .map(|x| {
-                let (first, last) = touched(x);
-                (2 << last) - (1 << first)
-            })
-            .collect();
-        let mut cells = 0;
-        for (y, row) in (0..).zip(texels.chunks_exact(size as usize)) {
-            let filled = row.iter().zip(&columns).filter(|(texel, _)| texel[3] > 0);
-            let columns = filled.fold(0, |all, (_, columns)| all | columns);
-            let (first, last) = touched(y);
-            cells |= (first..=last).fold(0, |all, row| all | columns << (8 * row));
-        }
-        cells
-    }
-
     /// Bytes that the texels take.
     pub(crate) fn memory(&self) -> u64 {
         self.levels.iter().map(|level| size_of_val(&**level) as u64).sum()
+    }
+
+    /// Row by row, top row first.
+    fn frame_texels(&self, level: u32, frame: u32) -> &[[u8; 4]] {
+        let texels = self.level_size(level).pow(2) as usize;
+        &self.levels[level as usize][frame as usize * texels..][..texels]
     }
 
     pub(crate) fn level_bytes(&self, level: u32) -> &[u8] {
@@ -231,24 +211,6 @@ mod tests {
         assert_eq!((sprite.size(), sprite.frame_count(), sprite.level_count()), (4, 4, 3));
         let texel = sprite.texel(0, 1, 1, 2) * 255.0;
         assert_eq!(texel, Vec4::new(10.0, 235.0, 30.0, 40.0));
-    }
-
-    #[test]
-    fn cells_are_filled_as_far_as_a_lookup_reaches() {
-        let mut sheet = picture(64, 32);
-        sheet.put_pixel(32 + 14, 21, Rgba([128, 128, 255, 1]));
-        let layout = SpriteLayout { columns: 2, ..SpriteLayout::default() };
-        let sprite = Sprite::from_picture(Path::new(""), &sheet, layout).unwrap();
-        assert_eq!(sprite.filled_cells(0, 0), 0);
-        // Texels 13.5 to 15.5 across and 20.5 to 22.5 down, four to a cell.
-        assert_eq!(sprite.filled_cells(0, 1), 1 << (8 * 5 + 3));
-        let mut beside = picture(32, 32);
-        beside.put_pixel(12, 21, Rgba([128, 128, 255, 255]));
-        let sprite = Sprite::from_picture(Path::new(""), &beside, SpriteLayout::default()).unwrap();
-        assert_eq!(sprite.filled_cells(0, 0), 0b1100 << (8 * 5));
-        // A cell is a texel at level 2, and a quarter of one, each way, at level 4.
-        assert_eq!(sprite.filled_cells(2, 0).count_ones(), 3 * 3);
-        assert_eq!(sprite.filled_cells(4, 0).count_ones(), 7 * 7);
     }
 
     #[test]

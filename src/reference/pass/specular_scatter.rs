@@ -8,7 +8,7 @@ use crate::formula::depth::SKY_VIEW_DEPTH;
 use crate::formula::lighting::{VISIBILITY_TAPS, range_window, specular_scatter_fade, visibility_tap};
 use crate::formula::ramp::sample_ramp_2d;
 use crate::formula::uniforms::LightUniform;
-use crate::formula::view::pixel_from_ndc;
+use crate::formula::view::{pixel_from_ndc, pixels_per_metre};
 use crate::reference::accumulated::Accumulated;
 
 /// The quad of a light that glows.
@@ -48,7 +48,7 @@ impl Accumulated<'_> {
         if (centre - 0.5 * view.size).abs().cmpgt(0.5 * view.size + size).any() {
             return None;
         }
-        let body = (light.radius * draw.pixels_per_metre(depth)).max(1.5);
+        let body = (light.radius * pixels_per_metre(view.size.y, view.ray_scale.y, depth, view.orthographic)).max(1.5);
         let compared_depth = (depth - 2.0 * light.radius).min(0.99 * view.far);
         let visibility = self.light_visibility(centre, body, compared_depth);
         (visibility > 0.0).then(|| Glow { light, centre, colour: light.colour * strength * visibility })

@@ -1,5 +1,6 @@
 //! `shaders/lib/sprite.wgsl`.
 
+use glam::{Vec2, Vec4};
 use haze::formula::sprite;
 use haze::settings::SpriteAnimation;
 
@@ -126,6 +127,18 @@ pub fn formulas() -> Vec<Formula> {
             cases: random(50, &[(-1.0, 1.0); 4]),
             tolerance: ARITHMETIC,
             mutants: &[("offset.x * rotation.x + offset.y", "offset.x * rotation.x - offset.y")],
+        },
+        Formula {
+            name: "trimmed_corner",
+            file: "lib/sprite.wgsl",
+            wgsl: "let v = trimmed_corner(sprite_corner(u32(x(0))), vec4f(x(1), x(2), x(3), x(4))); y(0, v.x); y(1, v.y);",
+            reference: |x| {
+                let corner = [Vec2::NEG_ONE, Vec2::new(1.0, -1.0), Vec2::new(-1.0, 1.0), Vec2::ONE][x[0] as usize];
+                sprite::trimmed_corner(corner, Vec4::from_slice(&x[1..])).to_array().to_vec()
+            },
+            cases: with_choices(4, &[(0.0, 1.0); 4]),
+            tolerance: ARITHMETIC,
+            mutants: &[("-reach.xy, reach.zw", "-reach.zw, reach.xy"), ("corner > vec2f(0.0)", "vec2<bool>(true)")],
         },
         Formula {
             name: "sprite_uv",

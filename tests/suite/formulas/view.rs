@@ -34,5 +34,14 @@ pub fn formulas() -> Vec<Formula> {
             tolerance: ARITHMETIC,
             mutants: &[("mix(view_depth, 1.0, orthographic)", "view_depth"), ("-view_depth)", "view_depth)")],
         },
+        Formula {
+            name: "pixels_per_metre",
+            file: "lib/view.wgsl",
+            wgsl: "y(0, pixels_per_metre(x(1), x(2), x(3), x(0)));",
+            reference: |x| vec![view::pixels_per_metre(x[1], x[2], x[3], x[0])],
+            cases: with_choices(2, &[(100.0, 640.0), (0.2, 2.0), (0.1, 50.0)]),
+            tolerance: ARITHMETIC,
+            mutants: &[("mix(1.0 / view_depth, 1.0, orthographic)", "1.0 / view_depth"), ("0.5 * height", "height")],
+        },
     ]
 }
