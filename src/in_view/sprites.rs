@@ -33,6 +33,14 @@ pub(crate) struct SpriteInView {
     pub lod: f32,
 }
 
+/// What a sprite covers of a grid.
+pub(crate) struct Covered<'p> {
+    pub texels: f64,
+    /// Of its square, what it reaches of it; 1 of spheres.
+    pub share: f64,
+    pub particle: &'p Particle,
+}
+
 /// What is known of sprites' pictures.
 #[derive(Clone, Debug)]
 pub(crate) struct Pictures {
@@ -131,34 +139,36 @@ impl Placing<'_> {
     /// which counts of texels' centres are in the mean over where a sprite may lie. Each of these is shaded once, but for those
     /// that a depth test rejects before.
     pub fn fragments(&self, grid: &Grid, particles: &[Particle]) -> f64 {
-        self.areas(grid, particles.iter()).map(|(area, _)| area).sum()
+        self.covered(grid, particles.iter()).map(|covered| covered.texels).sum()
     }
 
-    /// Texels that each sprite which is seen covers.
-    pub fn areas<'p>(
+    /// What each sprite covers that is seen.
+    pub fn covered<'p>(
         &self,
         grid: &Grid,
         particles: impl Iterator<Item = &'p Particle>,
-    ) -> impl Iterator<Item = (f64, &'p Particle)> {
+    ) -> impl Iterator<Item = Covered<'p>> {
         let mut scratch = [Vec::with_capacity(8), Vec::with_capacity(8)];
         particles.filter_map(move |particle| {
             let sprite = self.sprite(particle, grid.scale.recip())?;
-            let corners = if self.technique.is_sphere() {
+            let (corners, share) = if self.technique.is_sphere() {
                 let (min, max) = self.sphere_rectangle(&sprite, grid.scale.recip());
-                [min, Vec2::new(max.x, min.y), max, Vec2::new(min.x, max.y)]
+                ([min, Vec2::new(max.x, min.y), max, Vec2::new(min.x, max.y)], 1.0)
             } else {
-                self.corners(&sprite, particle.rotation)
+                let reach = self.reach(&sprite);
+                let share = 0.25 * (reach.x + reach.z) * (reach.y + reach.w);
+                (self.corners(&sprite, reach, particle.rotation), f64::from(share))
             };
             let texels = corners.map(|pixel| pixel / grid.scale - grid.origin);
-            Some((area_within(texels, grid.size.as_vec2(), &mut scratch), particle))
+            Some(Covered { texels: area_within(texels, grid.size.as_vec2(), &mut scratch), share, particle })
         })
     }
 
     /// Of what a flat sprite has of its square: in pixels, in order round it.
-    fn corners(&self, sprite: &SpriteInView, rotation: f32) -> [Vec2; 4] {
+    fn corners(&self, sprite: &SpriteInView, reach: Vec4, rotation: f32) -> [Vec2; 4] {
         let centre = self.on_screen(sprite.centre);
         let along = if self.view.orthographic > 0.5 { 1.0 } else { -centre.z };
-        let (turn, reach) = (Vec2::from_angle(rotation) * sprite.radius, self.reach(sprite));
+        let turn = Vec2::from_angle(rotation) * sprite.radius;
         [Vec2::new(1.0, 1.0), Vec2::new(-1.0, 1.0), Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0)].map(|corner| {
             let ray = (centre.xy() + turn.rotate(trimmed_corner(corner, reach))) / along;
             pixel_from_ndc(self.ndc(ray), self.view.size)

@@ -44,8 +44,10 @@ pub(crate) fn load(
         Some((particles, each)) => {
             let step = particles.len().div_ceil(SAMPLE).max(1);
             let sample = particles.iter().step_by(step).filter(|particle: &&Particle| particle.is_visible());
-            let (areas, depths) = placing.areas(grid, sample).fold((0.0, 0.0), |(areas, depths), (area, particle)| {
-                (areas + area, depths + area * f64::from(optical_depth(particle, settings)))
+            let (areas, depths) = placing.covered(grid, sample).fold((0.0, 0.0), |(areas, depths), sprite| {
+                // Of what is clear of its square nothing is covered.
+                let depth = f64::from(optical_depth(sprite.particle, settings)) / sprite.share.max(1.0e-6);
+                (areas + sprite.texels, depths + sprite.texels * depth)
             });
             (areas * step as f64 * f64::from(each), depths / f64::max(areas, 1.0e-9))
         }

@@ -36,6 +36,8 @@ pub struct PathCosts {
     pub sprite: f32,
     /// Each square of 32 texels that a sprite touches, sprite by sprite.
     pub entry: f32,
+    /// Each layer that lies over a texel, in the mean: the longest walk is waited for, however few there are.
+    pub layer: f32,
     /// Each texel that a flat sprite covers.
     pub fragment: f32,
     /// The same of the technique `spherical_billboard`.
@@ -77,7 +79,8 @@ impl PathModel {
             texel: 0.06,
             sprite: 0.0,
             entry: 0.0,
-            fragment: 0.08,
+            layer: 0.0,
+            fragment: 0.085,
             sphere: 0.16,
             march: 0.086,
         },
@@ -86,8 +89,9 @@ impl PathModel {
             texel: 0.01,
             sprite: 5.0,
             entry: 0.2,
-            fragment: 0.003,
-            sphere: 0.005,
+            layer: 1500.0,
+            fragment: 0.005,
+            sphere: 0.004,
             march: 0.0032,
         },
         source: PathModelSource::Gpu,
@@ -96,31 +100,33 @@ impl PathModel {
     /// llvmpipe on two cores.
     const CPU: Self = Self {
         raster: PathCosts {
-            frame: 50.0e3,
-            texel: 1.0,
-            sprite: 2500.0,
+            frame: 0.5e6,
+            texel: 5.0,
+            sprite: 4200.0,
             entry: 0.0,
-            fragment: 13.0,
-            sphere: 18.0,
+            layer: 0.0,
+            fragment: 9.8,
+            sphere: 15.0,
             march: 11.0,
         },
         tiled: PathCosts {
-            frame: 0.3e6,
-            texel: 31.0,
-            sprite: 1000.0,
-            entry: 600.0,
-            fragment: 7.7,
-            sphere: 11.0,
+            frame: 1.5e6,
+            texel: 33.0,
+            sprite: 500.0,
+            entry: 1900.0,
+            layer: 0.0,
+            fragment: 5.8,
+            sphere: 8.2,
             march: 13.0,
         },
         source: PathModelSource::Cpu,
     };
 
     /// By how much the probe finds more than this, by `raster` and by `tiled`, on the very device that the class was measured at:
-    /// its sprites are hidden by nothing, and those of the class in part, which spares `raster` the more; and so small a picture
-    /// leaves most of a large GPU idle.
+    /// its sprites are hidden by nothing, and those of the class in part, which spares `raster` the more; and its few sprites stay in
+    /// caches, so that a walk waits less for each.
     pub(crate) fn probe_finds(&self) -> [f32; 2] {
-        if self.source == PathModelSource::Cpu { [1.4, 1.0] } else { [1.55, 3.4] }
+        if self.source == PathModelSource::Cpu { [1.37, 0.86] } else { [1.75, 0.49] }
     }
 
     /// What devices of this kind take.
@@ -130,12 +136,13 @@ impl PathModel {
 
     pub(crate) fn validate(&self) -> Result<(), FieldError> {
         for (path, costs) in [("raster", self.raster), ("tiled", self.tiled)] {
-            let PathCosts { frame, texel, sprite, entry, fragment, sphere, march } = costs;
+            let PathCosts { frame, texel, sprite, entry, layer, fragment, sphere, march } = costs;
             let named = [
                 ("frame", frame),
                 ("texel", texel),
                 ("sprite", sprite),
                 ("entry", entry),
+                ("layer", layer),
                 ("fragment", fragment),
                 ("sphere", sphere),
                 ("march", march),
@@ -164,6 +171,7 @@ impl PathCosts {
         let nanoseconds = f64::from(self.frame)
             + f64::from(self.texel) * load.texels
             + f64::from(self.sprite) * load.sprites
+            + f64::from(self.layer) * load.layers()
             + (f64::from(self.entry) * load.entries() + of_fragment * load.fragments) * share;
         (nanoseconds * 1.0e-6) as f32
     }
@@ -175,6 +183,7 @@ impl PathCosts {
             texel: self.texel * factor,
             sprite: self.sprite * factor,
             entry: self.entry * factor,
+            layer: self.layer * factor,
             fragment: self.fragment * factor,
             sphere: self.sphere * factor,
             march: self.march * factor,
