@@ -107,6 +107,12 @@ fn layers(size: UVec2, count: u32, amount: f32) -> Result<Shot, Error> {
     Shot::new(preset, path, size)
 }
 
+/// How many of those make so many layers.
+fn sprites_of(layers: u32) -> u32 {
+    // One covers 0.418 of the smoke's box: what is clear of its square is not drawn.
+    (layers as f32 / 0.418).round() as u32
+}
+
 fn changed(shot: &Shot, change: impl Fn(&mut Settings)) -> Shot {
     let mut shot = shot.clone();
     shot.preset.systems.iter_mut().for_each(|system| change(&mut system.settings));
@@ -161,7 +167,7 @@ fn set_format(settings: &mut Settings, format: AccumulationFormat) {
 }
 
 fn overdraw(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
-    let counts: &[u32] = if quick { &[4, 32, 256] } else { &[4, 16, 64, 256, 1024] };
+    let depths: &[u32] = if quick { &[4, 32, 256] } else { &[4, 16, 64, 256, 1024] };
     let amounts: &[f32] = if quick { &[0.1] } else { &[0.02, 0.1, 0.3] };
     let group = |shot: Shot, sprites: String, work: f64| {
         let case = |way: (SmokePath, Layers)| Case {
@@ -174,10 +180,11 @@ fn overdraw(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
         };
         Group { suite: Suite::Overdraw, cases: paths_and_layers().map(case).collect(), reference: full(&shot) }
     };
-    let large = counts.iter().flat_map(|&count| amounts.iter().map(move |&amount| (count, amount)));
+    let large = depths.iter().flat_map(|&deep| amounts.iter().map(move |&amount| (deep, amount)));
     let mut groups = Vec::new();
-    for (count, amount) in large {
-        groups.push(group(layers(size, count, amount)?, format!("{count} sprites of {amount}"), f64::from(count)));
+    for (deep, amount) in large {
+        let shot = layers(size, sprites_of(deep), amount)?;
+        groups.push(group(shot, format!("{deep} layers of {amount}"), f64::from(deep)));
     }
     // Many small ones: what a sprite costs counts as well.
     let crowds: &[(u32, f32)] =
@@ -193,8 +200,8 @@ fn crowd(size: UVec2, count: u32, deep: f32) -> Result<Shot, Error> {
     let mut shot = layers(size, count, 0.1)?;
     for system in &mut shot.preset.systems {
         (system.emitter.duration, system.emitter.extent) = (1.0, Vec3::new(2.0, 1.1, 0.8));
-        // One as `layers` has it covers two thirds of the picture.
-        system.settings.sprite.size *= (deep / (0.66 * count as f32)).sqrt();
+        // Those of `layers`, not all of whose sides are in the picture, cover 0.437 of it.
+        system.settings.sprite.size *= (deep / (0.437 * count as f32)).sqrt();
     }
     Ok(shot)
 }
@@ -202,8 +209,7 @@ fn crowd(size: UVec2, count: u32, deep: f32) -> Result<Shot, Error> {
 fn lights(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
     let counts: &[u32] = if quick { &[1, 8, 64] } else { &[1, 2, 4, 8, 16, 32, 64] };
     let group = |&count: &u32| {
-        // 64 layers, or a quick ten.
-        let mut shot = layers(size, if quick { 16 } else { 98 }, 0.1)?;
+        let mut shot = layers(size, sprites_of(if quick { 10 } else { 64 }), 0.1)?;
         let lamp = |index: u32| {
             let angle = index as f32 * 2.4;
             let place =
@@ -331,8 +337,8 @@ fn auto(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
             ("4 sprites", layers(size, 4, 0.1)?),
             ("64 sprites", layers(size, 64, 0.1)?),
             ("256 thick sprites", layers(size, 256, 0.3)?),
-            ("1024 small sprites", crowd(size, 1024, 14.0)?),
-            ("4096 small sprites", crowd(size, 4096, 156.0)?),
+            ("1024 small sprites", crowd(size, 1024, 9.3)?),
+            ("4096 small sprites", crowd(size, 4096, 103.0)?),
         ];
         for (sprites, shot) in &shots {
             for (&technique, scale) in techniques.iter().flat_map(|technique| [(technique, 1), (technique, 3)]) {
