@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::auto::PathLoad;
 use super::frame_bindings::DepthBindings;
 use super::gpu::Gpu;
 use super::gpu::timing::Timing;
@@ -79,6 +80,12 @@ pub(crate) struct Assembly<'a> {
     pub emit: Option<Emit>,
 }
 
+/// A system's own of the path `tiled`, and what there is to accumulate.
+pub(crate) struct TiledPlace<'a> {
+    pub system: &'a mut TiledSystem,
+    pub load: Option<&'a PathLoad>,
+}
+
 impl Assembly<'_> {
     pub fn forward(self, plan: &ForwardPlan) -> Draw {
         let pipeline = self.passes.forward(self.gpu.device, plan.key);
@@ -89,7 +96,7 @@ impl Assembly<'_> {
     pub fn deferred(
         self,
         plan: &DeferredPlan<'_>,
-        tiles: &mut TiledSystem,
+        tiles: TiledPlace<'_>,
         targets: ReadyTargets<'_>,
         in_view: &SystemInView,
         depth: &DepthBindings,
@@ -145,8 +152,9 @@ impl Assembly<'_> {
                         beside: keys.accumulate.beside,
                         attachments: &accumulation.attachments,
                         depth: accumulation.reduced_depth.as_ref().unwrap_or(&depth.depth),
+                        load: tiles.load,
                     };
-                    AccumulatePasses::Tiled(tiles.write(&gpu, tiled, keys, &groups, &inputs))
+                    AccumulatePasses::Tiled(tiles.system.write(&gpu, tiled, keys, &groups, &inputs))
                 }
                 _ => AccumulatePasses::Raster(accumulate(plan.accumulate, &accumulation.attachments)),
             },

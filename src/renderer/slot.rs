@@ -2,10 +2,10 @@
 
 use glam::{UVec2, Vec2, Vec3};
 
-use super::auto::{Chooser, PathChoice, load};
+use super::auto::{Chooser, PathChoice, PathLoad, load};
 use super::context::Shared;
 use super::counts::{FrameCounts, Overdraw};
-use super::draw::{Assembly, Draw};
+use super::draw::{Assembly, Draw, TiledPlace};
 use super::frame_bindings::FrameBindings;
 use super::gpu::Gpu;
 use super::gpu::record::uniform_buffer;
@@ -221,7 +221,14 @@ impl Slot {
             time: frame.time,
         };
         let in_view = system_in_view(view, context.host_size, &in_world)?;
-        let choice = choose(&mut self.chooser, context, system, &in_view, known);
+        let load = matches!(settings.path, Path::Auto | Path::Tiled).then(|| {
+            let view = view.uniform(false);
+            let pictures = Pictures::new(settings, &system.material.info);
+            let placing =
+                Placing { view: &view, system: &in_view.uniform, technique: settings.technique, pictures: &pictures };
+            load(&placing, &in_view.grid(), system.particles.count(), known, settings)
+        });
+        let choice = choose(&mut self.chooser, shared, system, load.as_ref());
         let lighting = if shared.six_way { settings.lighting } else { Lighting::Normals };
         let settings = &Settings { path: choice.map_or(settings.path, |choice| choice.path), lighting, ..*settings };
         let sorted_by = shared.tiles().filter(|_| settings.path == Path::Tiled);
@@ -255,7 +262,8 @@ impl Slot {
                 let scale = settings.accumulate.effective_scale(view.size);
                 let limit = UVec2::new(view.size.x.div_ceil(scale), view.size.y.div_ceil(scale));
                 let targets = self.targets.fit(shared, settings, plan, in_view.rect.size, limit);
-                assembly.deferred(plan, &mut self.tiles, targets, &in_view, depth, frame.scene_depth.buffer())
+                let tiles = TiledPlace { system: &mut self.tiles, load: load.as_ref() };
+                assembly.deferred(plan, tiles, targets, &in_view, depth, frame.scene_depth.buffer())
             }
         };
         Some(Drawn { in_view, technique: settings.technique, pictures, choice, sampled, draw })
@@ -263,26 +271,15 @@ impl Slot {
 }
 
 /// What the path `auto` takes; `None` for any other.
-fn choose(
-    chooser: &mut Chooser,
-    context: &FrameContext<'_>,
-    system: &System<'_>,
-    in_view: &SystemInView,
-    known: Option<(&[Particle], u32)>,
-) -> Option<PathChoice> {
-    if system.settings.path != Path::Auto {
+fn choose(chooser: &mut Chooser, shared: &Shared, system: &System<'_>, load: Option<&PathLoad>) -> Option<PathChoice> {
+    let Some(load) = load.filter(|_| system.settings.path == Path::Auto) else {
         *chooser = Chooser::default();
         return None;
-    }
-    if let Some(reason) = tiles_refuse(context.shared, system) {
+    };
+    if let Some(reason) = tiles_refuse(shared, system) {
         return Some(PathChoice { path: Path::Raster, reason });
     }
-    let view = context.view.uniform(false);
-    let pictures = Pictures::new(system.settings, &system.material.info);
-    let placing =
-        Placing { view: &view, system: &in_view.uniform, technique: system.settings.technique, pictures: &pictures };
-    let load = load(&placing, &in_view.grid(), system.particles.count(), known, system.settings);
-    Some(chooser.choose(&context.shared.path_model(), &load))
+    Some(chooser.choose(&shared.path_model(), load))
 }
 
 /// Particles that the CPU knows, and how many of the system each of them stands for.

@@ -199,9 +199,14 @@ impl PathLoad {
 
     /// Squares of 32 texels that sprites touch, sprite by sprite.
     fn entries(&self) -> f64 {
+        self.sprites * self.touched(BIN, BIN)
+    }
+
+    /// Rectangles of so many texels that a sprite touches, in the mean.
+    pub(crate) fn touched(&self, width: f64, height: f64) -> f64 {
         // Of a square that lies askew.
         let side = 1.2 * (self.fragments / self.sprites.max(1.0)).sqrt();
-        self.sprites * (side / BIN + 1.0).powi(2).min((self.texels / (BIN * BIN)).max(1.0))
+        ((side / width + 1.0) * (side / height + 1.0)).min((self.texels / (width * height)).max(1.0))
     }
 
     /// How much of the sprites a walk sees before it stops, in the mean. Layers are taken to be spread as chance has it, most of them

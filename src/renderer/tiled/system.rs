@@ -9,6 +9,7 @@ use super::buffers::{Capacity, Held, Part, WORD};
 use super::passes::TiledPasses;
 use super::shared::{Tiled, TiledKeys};
 use crate::formula::uniforms::TilesUniform;
+use crate::renderer::auto::PathLoad;
 use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::spare::Spare;
 use crate::renderer::memory::TiledMemory;
@@ -18,14 +19,14 @@ use crate::renderer::pass::sprites::Sprites;
 use crate::renderer::pass::tile_accumulate::TileAccumulate;
 use crate::renderer::pass::tile_bin::{RUN, TileBin};
 use crate::renderer::pass::tile_project::TileProject;
-use crate::renderer::pass::tile_refine::{TileRefine, tiles_along};
+use crate::renderer::pass::tile_refine::{ALONE, TileRefine, tiles_along};
 use crate::renderer::targets::Beside;
 use crate::settings::AccumulationFormat;
 
-/// Entries of all lists at first, for each particle, for each tile, and at the least.
-const ENTRIES_EACH: u32 = 4;
-const ENTRIES_OF_TILE: u32 = 16;
+/// Entries of all lists at the least.
 const LEAST_ENTRIES: u32 = 1 << 16;
+/// Of those that a sprite is expected to have, so many times as many at first: sprites differ in size.
+const TO_BE_SAFE: f64 = 1.5;
 
 /// Texels along a bin's side: where invocations walk alone, by what of its list a tile shows; where workgroups walk in step, by what
 /// of it touches theirs; and for so many particles that counting by bins would cost more than it saves.
@@ -56,6 +57,7 @@ pub(crate) struct TiledInputs<'a> {
     pub attachments: &'a [wgpu::TextureView],
     /// The depth that sprites are compared with.
     pub depth: &'a wgpu::TextureView,
+    pub load: Option<&'a PathLoad>,
 }
 
 impl TiledSystem {
@@ -68,7 +70,7 @@ impl TiledSystem {
         groups: &Groups,
         inputs: &TiledInputs<'_>,
     ) -> TiledPasses {
-        let TiledInputs { sprites, size, format, beside, attachments, depth } = *inputs;
+        let TiledInputs { sprites, size, format, beside, attachments, depth, load } = *inputs;
         let most = most_words(&tiled.limits);
         let in_step = keys.accumulate.in_step;
         let runs = sprites.count.div_ceil(RUN);
@@ -85,7 +87,13 @@ impl TiledSystem {
         let bins = columns * rows;
         let wanted = self.entries.load(Ordering::Relaxed);
         let tiles = if in_step { 0 } else { tiles_along(size).element_product() };
-        let expected = sprites.count.saturating_mul(ENTRIES_EACH).max(tiles * ENTRIES_OF_TILE);
+        // Lists without room are right but slow: all sprites are walked.
+        let touched = load.map_or(0.0, |load| {
+            let [width, height] = ALONE.as_dvec2().to_array();
+            let of_tiles = if in_step { 0.0 } else { load.touched(width, height) };
+            load.touched(f64::from(bin_side), f64::from(bin_side)) + of_tiles
+        });
+        let expected = (TO_BE_SAFE * touched * f64::from(sprites.count)) as u32;
         let entries = wanted.max(expected).max(LEAST_ENTRIES);
         let needed = Capacity { particles: sprites.count, bins, runs: bins * runs, tiles, entries };
         let held = self.fit(gpu, tiled, needed.with_room(most));
