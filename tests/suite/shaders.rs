@@ -69,7 +69,8 @@ fn puffs(size: UVec2) -> Stage {
 fn what_is_trimmed_off_a_sprite_is_clear() {
     let folder = Folder::new();
     let whole = folder.edit("lib/sprite_vertex.wgsl", "if DEBUG_SPRITE || MOTION {", "if true {").context().unwrap();
-    let changes: [(&str, fn(&mut Settings)); 4] = [
+    type Change = fn(&mut Settings);
+    let changes: [(&str, Change); 4] = [
         ("soft", |_| ()),
         ("six-way", |settings| settings.lighting = Lighting::SixWay),
         ("one frame", |settings| settings.sprite.animation = SpriteAnimation::Nearest),
