@@ -14,7 +14,7 @@
 @group(3) @binding(2) var<storage, read> rects: array<vec2u>;
 @group(3) @binding(3) var<storage, read> numbers: array<u32>;
 @group(3) @binding(4) var<storage, read> lists: array<u32>;
-// Where the list of a bin begins and its length, or that of a tile.
+// Where the list of a bin begins, and its length.
 @group(3) @binding(5) var<storage, read> bins: array<vec2u>;
 // Reduced depth, or the host's depth where HOST_DEPTH.
 @group(3) @binding(6) var tested_depth: texture_2d<f32>;
@@ -159,7 +159,8 @@ fn in_step(
             if rects_meet(rects[number], low, low + TILE) {
                 let sprite = sprites[number];
                 // Only the middle of texels counts.
-                let meets = is_sphere() || square_fills(sprite, middle, 0.5 * vec2f(TILE - 1u));
+                let reach = reach_in_square(sprite, 0.5 * vec2f(TILE - 1u));
+                let meets = is_sphere() || square_fills(sprite, place_in_square(sprite, middle), reach);
                 if meets && sprite_front(sprite.centre_radius) <= end {
                     batch[local] = sprite;
                     atomicOr(&touching[local / 32u], 1u << (local % 32u));
@@ -204,7 +205,7 @@ fn touches(sprite: TileSprite, place: vec2f) -> bool {
 }
 
 // For CPUs, where a barrier costs more than it saves: every invocation walks alone, for a column of texels. llvmpipe takes both sides
-// of every branch, so nothing is tested here: the tile's list has what the tile has something of. Its lanes are a row of columns,
+// of every branch, so nothing is tested here: tile_refine has found what the tile has something of. Its lanes are a row of columns,
 // and stay together, as LOADS_SPRITE needs it: no column leaves before all of them are opaque.
 const STRIDE: u32 = 8u;
 
@@ -223,17 +224,29 @@ fn alone(@builtin(global_invocation_id) invocation: vec3u, @builtin(local_invoca
     var b = begun_texel(min(low + vec2u(0u, 1u), last));
     var c = begun_texel(min(low + vec2u(0u, 2u), last));
     var d = begun_texel(min(low + vec2u(0u, 3u), last));
-    let tile = low / TILE_ALONE;
-    let columns = min(size.x - tile.x * TILE_ALONE.x, TILE_ALONE.x);
-    let list = bins[tile.y * tiles_along(size).x + tile.x];
-    let entries = list.y * tiles.loops;
-    var at = 0u;
+    let columns = min(size.x - low.x / TILE_ALONE.x * TILE_ALONE.x, TILE_ALONE.x);
+    let bin = low / tiles.bin_side;
+    let list = bins[bin.y * tiles.columns + bin.x];
+    let part = low % tiles.bin_side / (tiles.bin_side / PARTS);
+    let length = words_of(list.y);
+    let end = length * tiles.loops;
     var is_opaque = false;
-    for (var first = 0u; first < entries; first += STRIDE) {
-        for (var entry = first; entry < min(first + STRIDE, entries); entry++) {
-            let sprite = sprites[sprite_number(list, at)];
-            // All sprites once more, where they are drawn often.
-            at = select(at + 1u, 0u, at + 1u == list.y);
+    var bits = 0u;
+    var batch = 0u;
+    var next = 0u;
+    loop {
+        // To the next batch with a sprite of the tile: all of them once more, where they are drawn often.
+        while bits == 0u && next < end {
+            batch = next % length;
+            bits = bits_of(list, batch, part.y * PARTS.x + part.x);
+            next += BATCH_ALONE;
+        }
+        if bits == 0u {
+            break;
+        }
+        for (var count = 0u; count < STRIDE && bits != 0u; count++) {
+            let sprite = sprites[sprite_number(list, batch + firstTrailingBit(bits))];
+            bits &= bits - 1u;
             let in_a = place_in_square(sprite, a.place);
             let in_b = in_a + sprite.place_from_texels.yw;
             let in_c = in_b + sprite.place_from_texels.yw;
@@ -257,6 +270,19 @@ fn alone(@builtin(global_invocation_id) invocation: vec3u, @builtin(local_invoca
     if low.y + 1u < size.y { write_texel(low + vec2u(0u, 1u), b); }
     if low.y + 2u < size.y { write_texel(low + vec2u(0u, 2u), c); }
     if low.y + 3u < size.y { write_texel(low + vec2u(0u, 3u), d); }
+}
+
+// The sprites of a batch that a part of their bin may show: a bit for each.
+fn bits_of(list: vec2u, batch: u32, part: u32) -> u32 {
+    let all = bits_below(min(list.y - batch, BATCH_ALONE));
+    if list.x == EVERYTHING {
+        return all;
+    }
+    return lists[list.x + list.y + batch + part] & all;
+}
+
+fn bits_below(count: u32) -> u32 {
+    return select((1u << count) - 1u, 0xffffffffu, count >= 32u);
 }
 
 // True where a texel lies in a sprite. `place`: in a square.

@@ -61,13 +61,13 @@ fn count_sprites(@builtin(global_invocation_id) invocation: vec3u) {
     counts[bin * tiles.runs + run] = count;
 }
 
-// A bin's list of so many, `words` for each. Lists lie in any order, what is in them does not. `most` words for all of them, so that
-// none can wrap: a list that is longer than its share is left out. (To add only as far as there is room, by exchange, takes a
+// A bin's list of so many, and as many words more. Lists lie in any order, what is in them does not. A list that is longer than its
+// share of what 32 bits count is left out, so that none can wrap. (To add only as far as there is room, by exchange, takes a
 // millisecond where thousands of bins wait for each other.)
-fn bin_list(length: u32, words: u32, most: u32) -> vec2u {
-    let share = most / (tiles.columns * tiles.rows);
-    let is_counted = length <= share / words;
-    let size = select(0u, length * words, is_counted);
+fn bin_list(length: u32, more: u32) -> vec2u {
+    let share = 0xffffffffu / (tiles.columns * tiles.rows);
+    let is_counted = length <= share && more <= share - length;
+    let size = select(0u, length + more, is_counted);
     let first = atomicAdd(&tally.entries, size);
     let fits = is_counted && list_fits(first, size, tiles.capacity);
     return select(vec2u(EVERYTHING, tally.shown), vec2u(first, length), fits);
@@ -91,7 +91,7 @@ fn allocate(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) 
         length += scan_sums[SCAN_SIZE - 1u];
     }
     if local == 0u {
-        bins[bin.x] = bin_list(length, 1u, 0xffffffffu);
+        bins[bin.x] = bin_list(length, 0u);
     }
 }
 
@@ -108,7 +108,7 @@ fn allocate_alone(@builtin(global_invocation_id) invocation: vec3u) {
         counts[bin * tiles.runs + run] = length;
         length += count;
     }
-    bins[bin] = bin_list(length, 3u, HALF);
+    bins[bin] = bin_list(length, words_of(length));
 }
 
 @compute @workgroup_size(64)

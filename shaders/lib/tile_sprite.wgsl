@@ -52,7 +52,8 @@ fn filled_cells(frames: FlipbookFrames, lod: f32) -> vec2u {
 
 // The cell of a picture at a place in a square, -1..1, or the nearest.
 fn cell_at(place: vec2f) -> vec2u {
-    return vec2u(clamp(sprite_uv(place) * 8.0, vec2f(0.0), vec2f(7.0)));
+    // Signed at first: CPUs have no instruction for the other way.
+    return vec2u(vec2i(clamp(sprite_uv(place) * 8.0, vec2f(0.0), vec2f(7.0))));
 }
 
 // True at a place in a square, -1..1, where its picture is not clear.
@@ -73,9 +74,9 @@ fn is_filled_between(cells: vec2u, low: vec2f, high: vec2f) -> bool {
     return any((cells & vec2u(upper, lower) & vec2u(columns)) != vec2u(0u));
 }
 
-// All bits of the lowest bytes of a word.
+// All bits of the lowest bytes of a word, up to four. No shift is by 32 bits.
 fn bytes_below(count: u32) -> u32 {
-    return select((1u << (count * 8u)) - 1u, 0xffffffffu, count >= 4u);
+    return ~((0xffffffffu << (count * 4u)) << (count * 4u));
 }
 
 // Bits that order as view depths do, near to far: of view z, from front to back. (Herf, "Radix tricks", 2001)
@@ -106,12 +107,15 @@ fn place_in_square(sprite: TileSprite, texel: vec2f) -> vec2f {
     return vec2f(dot(sprite.place_from_texels.xy, offset), dot(sprite.place_from_texels.zw, offset));
 }
 
-// False where there is nothing of a square in a rectangle of texels, half its sides in `half_size`: exact but for the corners, and for
-// as much of a texel as rounding may hide.
-fn square_fills(sprite: TileSprite, middle: vec2f, half_size: vec2f) -> bool {
+// Half the sides of the box in a square that holds a rectangle of texels, half its sides in `half_size`, and as much of a texel more as
+// rounding may hide.
+fn reach_in_square(sprite: TileSprite, half_size: vec2f) -> vec2f {
     let matrix = abs(sprite.place_from_texels);
-    let reach = vec2f(dot(matrix.xy, half_size + 0.01), dot(matrix.zw, half_size + 0.01));
-    let place = place_in_square(sprite, middle);
+    return vec2f(dot(matrix.xy, half_size + 0.01), dot(matrix.zw, half_size + 0.01));
+}
+
+// False where there is nothing of a square so far round a place in it.
+fn square_fills(sprite: TileSprite, place: vec2f, reach: vec2f) -> bool {
     return all(abs(place) <= reach + 1.0) && is_filled_between(sprite.filled, place - reach, place + reach);
 }
 

@@ -15,7 +15,7 @@ struct Tiles {
     rows: u32,
     // Runs of sprites, front to back, that are put into bins side by side.
     runs: u32,
-    // Entries that all lists together hold.
+    // Words that all lists together hold.
     capacity: u32,
     padding0: u32,
     padding1: u32,
@@ -29,17 +29,21 @@ const EVERYTHING: u32 = 0xffffffffu;
 
 // Texels of a tile, where invocations walk alone: a row of lanes, and a column for each. ALONE in src/renderer/pass/tile_refine.rs.
 const TILE_ALONE: vec2u = vec2u(8u, 4u);
+// Parts of a bin. Of one of the usual size they are tiles.
+const PARTS: vec2u = vec2u(4u, 8u);
+// Sprites of a list that share a word for each part: a bit each. As many as there are parts. BATCH in src/renderer/pass/tile_refine.rs.
+const BATCH_ALONE: u32 = 32u;
 
-// How many of them lie along the sides of so many texels.
-fn tiles_along(size: vec2u) -> vec2u {
-    return (size + TILE_ALONE - 1u) / TILE_ALONE;
+// Words for all parts of a list of so many.
+fn words_of(length: u32) -> u32 {
+    return (length + BATCH_ALONE - 1u) / BATCH_ALONE * BATCH_ALONE;
 }
 
 // What a frame turns out to have.
 struct Tally {
     // Sprites to draw: the first of the sorted ones.
     shown: u32,
-    // Entries that the lists would need, but for those that are too long for 32 bits to count them all.
+    // Words that the lists would need, but for those that are too long for 32 bits to count them all.
     entries: atomic<u32>,
 }
 
@@ -54,9 +58,6 @@ fn rects_meet(rect: vec2u, low: vec2u, high: vec2u) -> bool {
     let last = vec2u(rect.y & 0xffffu, rect.y >> 16u);
     return all(first < high) && all(low < last);
 }
-
-// Entries that bins' lists may come to where tiles have lists as well, and as many again for those.
-const HALF: u32 = 0x7fffffffu;
 
 // True where a list of so many from an entry on is whole.
 fn list_fits(first: u32, length: u32, capacity: u32) -> bool {

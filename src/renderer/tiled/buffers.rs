@@ -37,7 +37,6 @@ pub(super) struct Held {
     bin_counts: wgpu::Buffer,
     lists: wgpu::Buffer,
     bins: wgpu::Buffer,
-    tile_lists: wgpu::Buffer,
     pub read_back: Arc<wgpu::Buffer>,
     pub there_and_back: [wgpu::BindGroup; 2],
     pub bin: wgpu::BindGroup,
@@ -64,8 +63,6 @@ pub(super) struct Capacity {
     pub bins: u32,
     /// Runs of all bins.
     pub runs: u32,
-    /// None where workgroups walk in step.
-    pub tiles: u32,
     pub entries: u32,
 }
 
@@ -76,22 +73,20 @@ impl Capacity {
             particles: self.particles.next_power_of_two(),
             bins: self.bins.next_power_of_two(),
             runs: self.runs.next_power_of_two().min(most),
-            tiles: if self.tiles == 0 { 0 } else { self.tiles.next_power_of_two() },
             entries: self.entries.min(1 << 31).next_power_of_two().min(most),
         }
     }
 
-    fn all(&self) -> [u32; 5] {
-        [self.particles, self.bins, self.runs, self.tiles, self.entries]
+    fn all(&self) -> [u32; 4] {
+        [self.particles, self.bins, self.runs, self.entries]
     }
 
     pub fn holds(&self, needed: &Self) -> bool {
-        let walks_alike = (self.tiles == 0) == (needed.tiles == 0);
-        walks_alike && self.all().iter().zip(needed.all()).all(|(held, needed)| *held >= needed)
+        self.all().iter().zip(needed.all()).all(|(held, needed)| *held >= needed)
     }
 
     pub fn is_wasted_on(&self, needed: &Self) -> bool {
-        self.all().iter().zip(needed.all()).any(|(held, needed)| *held > 0 && held / 4 >= needed)
+        self.all().iter().zip(needed.all()).any(|(held, needed)| held / 4 >= needed)
     }
 }
 
@@ -105,7 +100,7 @@ impl Held {
                 mapped_at_creation: false,
             })
         };
-        let Capacity { particles, bins, runs, tiles, entries } = capacity;
+        let Capacity { particles, bins, runs, entries } = capacity;
         let uniform = uniform_buffer(device, "haze tiles", size_of::<TilesUniform>() as u64);
         let tally = storage("haze tally", 2, WORD);
         let rects = storage("haze sprite rectangles", particles, RECT);
@@ -136,8 +131,6 @@ impl Held {
             read_back: Arc::new(read_back),
             there_and_back,
             bin,
-            // Something must be bound.
-            tile_lists: storage("haze tile lists", tiles.max(1), RECT),
             project: None,
             refine: None,
             accumulate: None,
@@ -163,7 +156,7 @@ impl Held {
             sprites: bytes(&[&self.uniform, &self.sprites, &self.rects, &self.sorted_rects]),
             keys: bytes(&[keys, other_keys, numbers, other_numbers]),
             counts: bytes(&[&self.digit_counts, &self.digit_totals, &self.bin_counts, &self.tally, &self.read_back]),
-            lists: bytes(&[&self.lists, &self.bins, &self.tile_lists]),
+            lists: bytes(&[&self.lists, &self.bins]),
         }
     }
 
@@ -185,11 +178,10 @@ impl Held {
         match &self.refine {
             Some((bound, group)) if bound == depth => group.clone(),
             _ => {
-                let Self { uniform, sprites, rects, lists, bins, tile_lists, tally, .. } = self;
+                let Self { uniform, sprites, rects, lists, bins, .. } = self;
                 let read = [&*uniform, sprites, rects, bins].map(wgpu::Buffer::as_entire_binding);
-                let written = [lists, tile_lists, tally].map(|buffer| buffer.as_entire_binding());
                 let depth_binding = wgpu::BindingResource::TextureView(depth);
-                let resources = read.into_iter().chain([depth_binding]).chain(written);
+                let resources = read.into_iter().chain([depth_binding, lists.as_entire_binding()]);
                 let group = bind(gpu.device, &tiled.layouts.refine, resources);
                 self.refine = Some((depth.clone(), group.clone()));
                 group
@@ -217,9 +209,8 @@ impl Held {
         match &self.accumulate {
             Some((bound, group)) if bound.iter().eq(views) => group.clone(),
             _ => {
-                let Self { uniform, sprites, rects, numbers, lists, bins, tile_lists, .. } = self;
-                let listed = if self.capacity.tiles > 0 { tile_lists } else { bins };
-                let buffers = [&*uniform, sprites, rects, &numbers[0], lists, listed];
+                let Self { uniform, sprites, rects, numbers, lists, bins, .. } = self;
+                let buffers = [&*uniform, sprites, rects, &numbers[0], lists, bins];
                 let textures = views.map(wgpu::BindingResource::TextureView);
                 let resources = buffers.map(wgpu::Buffer::as_entire_binding).into_iter().chain(textures);
                 let group = bind(gpu.device, &tiled.layouts.accumulate, resources);

@@ -54,9 +54,9 @@ pub(crate) struct TiledKeys {
 
 impl TiledKeys {
     /// None where workgroups walk in step: they read what their bin has.
-    fn refine(&self) -> Option<[TileRefineKey; 2]> {
+    fn refine(&self) -> Option<TileRefineKey> {
         let TileAccumulateKey { sprite, host_depth, in_step, .. } = self.accumulate;
-        (!in_step).then(|| tile_refine::keys(sprite, host_depth))
+        (!in_step).then_some(TileRefineKey { sprite, host_depth })
     }
 }
 
@@ -66,7 +66,7 @@ pub(crate) struct TiledPipelines {
     pub sort: Option<[wgpu::ComputePipeline; sort::STEPS]>,
     pub bin: [wgpu::ComputePipeline; 4],
     /// Where invocations walk alone.
-    pub refine: Option<[wgpu::ComputePipeline; 2]>,
+    pub refine: Option<wgpu::ComputePipeline>,
     pub accumulate: wgpu::ComputePipeline,
 }
 
@@ -126,7 +126,7 @@ impl Tiled {
         sort::keys().into_iter().try_for_each(|key| self.sort.check(device, key))?;
         let bins = [true, false].map(|sorted| tile_bin::keys(keys.accumulate.in_step, sorted));
         bins.into_iter().flatten().try_for_each(|key| self.bin.check(device, key))?;
-        keys.refine().into_iter().flatten().try_for_each(|key| self.refine.check(device, key))?;
+        keys.refine().into_iter().try_for_each(|key| self.refine.check(device, key))?;
         self.accumulate.check(device, keys.accumulate)
     }
 
@@ -141,7 +141,7 @@ impl Tiled {
             project: self.project.get(device, keys.project),
             sort: sorts.then(|| sort::keys().map(|key| self.sort.get(device, key))),
             bin: tile_bin::keys(keys.accumulate.in_step, sorts).map(|key| self.bin.get(device, key)),
-            refine: keys.refine().map(|keys| keys.map(|key| self.refine.get(device, key))),
+            refine: keys.refine().map(|key| self.refine.get(device, key)),
             accumulate: self.accumulate.get(device, keys.accumulate),
         }
     }
@@ -189,7 +189,7 @@ impl TiledLayouts {
                 "haze tile_bin inputs",
                 &[uniform, read, read, read, written, written, written, written, written],
             ),
-            refine: layout("haze tile_refine inputs", &[uniform, read, read, read, depth, written, written, written]),
+            refine: layout("haze tile_refine inputs", &[uniform, read, read, read, depth, written]),
             accumulate: layout(
                 "haze tile_accumulate inputs",
                 &[uniform, read, read, read, read, read, depth, float, byte, weights, six_way],

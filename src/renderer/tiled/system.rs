@@ -19,7 +19,7 @@ use crate::renderer::pass::sprites::Sprites;
 use crate::renderer::pass::tile_accumulate::TileAccumulate;
 use crate::renderer::pass::tile_bin::{RUN, TileBin};
 use crate::renderer::pass::tile_project::TileProject;
-use crate::renderer::pass::tile_refine::{ALONE, TileRefine, tiles_along};
+use crate::renderer::pass::tile_refine::{BATCH, TileRefine};
 use crate::renderer::targets::Beside;
 use crate::settings::AccumulationFormat;
 
@@ -86,16 +86,13 @@ impl TiledSystem {
         let UVec2 { x: columns, y: rows } = bins_along(size, bin_side);
         let bins = columns * rows;
         let wanted = self.entries.load(Ordering::Relaxed);
-        let tiles = if in_step { 0 } else { tiles_along(size).element_product() };
         // Lists without room are right but slow: all sprites are walked.
-        let touched = load.map_or(0.0, |load| {
-            let [width, height] = ALONE.as_dvec2().to_array();
-            let of_tiles = if in_step { 0.0 } else { load.touched(width, height) };
-            load.touched(f64::from(bin_side), f64::from(bin_side)) + of_tiles
-        });
+        let touched = load.map_or(0.0, |load| load.touched(f64::from(bin_side), f64::from(bin_side)));
         let expected = (TO_BE_SAFE * touched * f64::from(sprites.count)) as u32;
+        // As many words again, to whole batches.
+        let expected = if in_step { expected } else { 2 * expected + BATCH * bins };
         let entries = wanted.max(expected).max(LEAST_ENTRIES);
-        let needed = Capacity { particles: sprites.count, bins, runs: bins * runs, tiles, entries };
+        let needed = Capacity { particles: sprites.count, bins, runs: bins * runs, entries };
         let held = self.fit(gpu, tiled, needed.with_room(most));
         let capacity = held.capacity.entries;
         let particles = Part::new(&tiled.limits, sprites);
@@ -115,9 +112,9 @@ impl TiledSystem {
         let sorts = !keys.project.weighted && !sprites.is_sorted;
         let pipelines = tiled.pipelines(gpu.device, keys, sorts);
         let project = held.bind_project(gpu, tiled, particles);
-        let refine = pipelines.refine.map(|pipelines| {
+        let refine = pipelines.refine.map(|pipeline| {
             let inputs = held.bind_refine(gpu, tiled, depth);
-            TileRefine { pipelines, inputs, size, bins }
+            TileRefine { pipeline, inputs, bins }
         });
         let accumulate = held.bind_accumulate(gpu, tiled, (format, beside), attachments, depth);
         TiledPasses {
