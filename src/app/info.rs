@@ -1,5 +1,6 @@
 //! `haze info`: what this machine renders with.
 
+use glam::UVec2;
 use haze::headless::Headless;
 use haze::settings::{Path, Technique};
 use haze::{Context, Error, PathChoice, PathLoad, PathReason};
@@ -30,12 +31,12 @@ fn choices(gpu: &Headless) -> Result<Vec<PathChoice>, Error> {
     if !context.has_tiles() {
         return Ok(vec![PathChoice { path: Path::Raster, reason: PathReason::NoTiles }]);
     }
-    let texels = 1280.0 * 720.0;
+    let size = UVec2::new(1280, 720);
     let load = |layers: f64| PathLoad {
         technique: Technique::Soft,
         sprites: 16.0 * layers,
-        fragments: layers * texels,
-        texels,
+        fragments: layers * size.as_dvec2().element_product(),
+        size,
         // Sprites of amount 0.3 whose pictures are a third full.
         optical_depth: 0.12,
         lookups: 0.0,

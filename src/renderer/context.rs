@@ -134,7 +134,7 @@ impl Context {
     /// program last ran on this device, or a host's own figures.
     ///
     /// # Errors
-    /// [`Error::Field`] naming a cost that is negative or not finite.
+    /// [`Error::Field`] naming a cost that is negative or not finite, or no cores.
     pub fn set_path_model(&self, model: PathModel) -> Result<(), Error> {
         model.validate()?;
         *self.0.path_model.lock().unwrap_or_else(PoisonError::into_inner) = model;

@@ -61,6 +61,7 @@ impl Context {
             raster: probed(class.raster, seconds[0], finds[0]),
             tiled: probed(class.tiled, seconds[1], finds[1]),
             source: PathModelSource::Probe,
+            ..class
         };
         self.set_path_model(model)?;
         Ok(model)
@@ -119,7 +120,7 @@ impl<'a> Bench<'a> {
             technique: Settings::default().technique,
             sprites: f64::from(SPRITES),
             fragments: self.renderer.overdraw().fragments,
-            texels: SIZE.as_dvec2().element_product(),
+            size: SIZE,
             optical_depth: 0.0,
             lookups: 0.0,
             is_assumed: false,

@@ -109,6 +109,8 @@ impl Chooser {
 
 #[cfg(test)]
 mod tests {
+    use glam::UVec2;
+
     use super::*;
     use crate::settings::Technique;
 
@@ -117,7 +119,7 @@ mod tests {
             technique: Technique::Soft,
             sprites: 100.0,
             fragments: layers * 1.0e6,
-            texels: 1.0e6,
+            size: UVec2::splat(1000),
             optical_depth: 0.1,
             lookups: 0.0,
             is_assumed: false,

@@ -1,5 +1,7 @@
 //! What there is to accumulate of a system, from a few of its sprites.
 
+use glam::UVec2;
+
 use crate::frame::Particle;
 use crate::in_view::{Grid, Placing, optical_depth};
 use crate::settings::{Layers, Order, Settings, Technique};
@@ -19,8 +21,8 @@ pub struct PathLoad {
     pub sprites: f64,
     /// Texels that they cover, one above the other.
     pub fragments: f64,
-    /// Texels of the target.
-    pub texels: f64,
+    /// Sides of the target, texels.
+    pub size: UVec2,
     /// Optical depth of a sprite, −ln(1 − amount), in the mean over what it covers; 0 where no layer may be left out.
     pub optical_depth: f64,
     /// Octaves of all steps of a volumetric sprite.
@@ -57,7 +59,7 @@ pub(crate) fn load(
         technique: settings.technique,
         sprites: f64::from(sprites) * loops,
         fragments: fragments * loops,
-        texels,
+        size: grid.size,
         optical_depth: if stops { depth } else { 0.0 },
         lookups: f64::from(settings.volumetric.march_steps * settings.volumetric.noise_octaves),
         is_assumed: known.is_none(),

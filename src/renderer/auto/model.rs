@@ -1,11 +1,15 @@
 //! What either way to accumulate takes, from what there is to accumulate.
 
+use glam::UVec2;
+
 use super::load::PathLoad;
 use crate::error::FieldError;
 use crate::settings::Technique;
 
 /// Texels along the side of what [`PathCosts::entry`] counts.
 const BIN: f64 = 32.0;
+/// Texels along the side of the squares that a CPU's cores rasterize, one at a time.
+const SQUARE: u32 = 64;
 /// Where a walk stops, as optical depth: `OPAQUE` in `shaders/tile_accumulate.wgsl`, and twice that, as texels that walk together
 /// wait for the last of them.
 const OPAQUE_DEPTH: f64 = 2.0 * 10.0 * std::f64::consts::LN_2;
@@ -21,6 +25,9 @@ pub struct PathModel {
     pub raster: PathCosts,
     /// Of the path `tiled`.
     pub tiled: PathCosts,
+    /// Cores that rasterize, square by square of 64 texels, 1 or more: on a small target some of them have nothing to do. 1 on GPUs,
+    /// where it makes no difference.
+    pub cores: u32,
     /// Where the figures are from.
     pub source: PathModelSource,
 }
@@ -94,6 +101,7 @@ impl PathModel {
             sphere: 0.004,
             march: 0.0032,
         },
+        cores: 1,
         source: PathModelSource::Gpu,
     };
 
@@ -102,7 +110,7 @@ impl PathModel {
         raster: PathCosts {
             frame: 0.5e6,
             texel: 5.0,
-            sprite: 4200.0,
+            sprite: 3500.0,
             entry: 0.0,
             layer: 0.0,
             fragment: 9.8,
@@ -115,10 +123,11 @@ impl PathModel {
             sprite: 500.0,
             entry: 1900.0,
             layer: 0.0,
-            fragment: 5.8,
+            fragment: 7.0,
             sphere: 8.2,
-            march: 13.0,
+            march: 14.0,
         },
+        cores: 2,
         source: PathModelSource::Cpu,
     };
 
@@ -126,15 +135,22 @@ impl PathModel {
     /// its sprites are hidden by nothing, and those of the class in part, which spares `raster` the more; and its few sprites stay in
     /// caches, so that a walk waits less for each.
     pub(crate) fn probe_finds(&self) -> [f32; 2] {
-        if self.source == PathModelSource::Cpu { [1.37, 0.86] } else { [1.75, 0.49] }
+        if self.source == PathModelSource::Cpu { [1.34, 0.8] } else { [1.75, 0.49] }
     }
 
     /// What devices of this kind take.
     pub fn of_class(device_type: wgpu::DeviceType) -> Self {
-        if device_type == wgpu::DeviceType::Cpu { Self::CPU } else { Self::GPU }
+        if device_type != wgpu::DeviceType::Cpu {
+            return Self::GPU;
+        }
+        let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get() as u32);
+        Self { cores, ..Self::CPU }
     }
 
     pub(crate) fn validate(&self) -> Result<(), FieldError> {
+        if self.cores == 0 {
+            return Err(FieldError::new("cores", self.cores, "1 or more"));
+        }
         for (path, costs) in [("raster", self.raster), ("tiled", self.tiled)] {
             let PathCosts { frame, texel, sprite, entry, layer, fragment, sphere, march } = costs;
             let named = [
@@ -156,12 +172,14 @@ impl PathModel {
 
     /// Milliseconds by `raster` and by `tiled`.
     pub fn milliseconds(&self, load: &PathLoad) -> [f32; 2] {
-        [(&self.raster, 1.0), (&self.tiled, load.seen_share())].map(|(costs, share)| costs.milliseconds(load, share))
+        let share = load.seen_share();
+        [(&self.raster, load.busiest(self.cores)), (&self.tiled, share)]
+            .map(|(costs, share)| costs.milliseconds(load, share))
     }
 }
 
 impl PathCosts {
-    /// `share`: of the sprites' texels, those that are worked out.
+    /// `share`: of the sprites' texels, those that are worked out; more than all where some are waited for.
     pub(crate) fn milliseconds(&self, load: &PathLoad, share: f64) -> f32 {
         let of_fragment = match load.technique {
             Technique::SphericalBillboard => f64::from(self.sphere),
@@ -169,7 +187,7 @@ impl PathCosts {
             _ => f64::from(self.fragment),
         };
         let nanoseconds = f64::from(self.frame)
-            + f64::from(self.texel) * load.texels
+            + f64::from(self.texel) * load.texels()
             + f64::from(self.sprite) * load.sprites
             + f64::from(self.layer) * load.layers()
             + (f64::from(self.entry) * load.entries() + of_fragment * load.fragments) * share;
@@ -194,7 +212,18 @@ impl PathCosts {
 impl PathLoad {
     /// Layers over a texel, in the mean.
     pub fn layers(&self) -> f64 {
-        self.fragments / self.texels.max(1.0)
+        self.fragments / self.texels().max(1.0)
+    }
+
+    /// Texels of the target.
+    pub fn texels(&self) -> f64 {
+        self.size.as_dvec2().element_product()
+    }
+
+    /// What the core that has the largest square does, against its share of all: 1 where there are squares enough.
+    fn busiest(&self, cores: u32) -> f64 {
+        let largest = self.size.min(UVec2::splat(SQUARE)).as_dvec2().element_product();
+        (f64::from(cores) * largest / self.texels().max(1.0)).max(1.0)
     }
 
     /// Squares of 32 texels that sprites touch, sprite by sprite.
@@ -206,7 +235,7 @@ impl PathLoad {
     pub(crate) fn touched(&self, width: f64, height: f64) -> f64 {
         // Of a square that lies askew.
         let side = 1.2 * (self.fragments / self.sprites.max(1.0)).sqrt();
-        ((side / width + 1.0) * (side / height + 1.0)).min((self.texels / (width * height)).max(1.0))
+        ((side / width + 1.0) * (side / height + 1.0)).min((self.texels() / (width * height)).max(1.0))
     }
 
     /// How much of the sprites a walk sees before it stops, in the mean. Layers are taken to be spread as chance has it, most of them
@@ -222,12 +251,12 @@ mod tests {
     use super::*;
 
     fn load(layers: f64) -> PathLoad {
-        let texels = 1280.0 * 720.0;
+        let size = UVec2::new(1280, 720);
         PathLoad {
             technique: Technique::Soft,
             sprites: 1000.0,
-            fragments: layers * texels,
-            texels,
+            fragments: layers * size.as_dvec2().element_product(),
+            size,
             optical_depth: 0.05,
             lookups: 0.0,
             is_assumed: false,
@@ -244,6 +273,20 @@ mod tests {
         // A walk that does not stop sees all of it.
         let [_, all] = model.milliseconds(&PathLoad { optical_depth: 0.0, ..load(4000.0) });
         assert!(all > 1.7 * deep_tiled);
+    }
+
+    #[test]
+    fn cores_without_a_square_do_nothing() {
+        let model = PathModel { cores: 2, ..PathModel::CPU };
+        let raster = |width, height| {
+            let size = UVec2::new(width, height);
+            let fragments = 100.0 * size.as_dvec2().element_product();
+            let [raster, _] = model.milliseconds(&PathLoad { size, fragments, sprites: 0.0, ..load(1.0) });
+            f64::from(raster - 1.0e-6 * model.raster.frame) / size.as_dvec2().element_product()
+        };
+        let alike = |a: f64, b: f64| (a / b - 1.0).abs() < 0.05;
+        assert!(alike(raster(64, 64), 2.0 * raster(128, 64)) && alike(raster(128, 64), raster(640, 640)));
+        assert!(alike(raster(96, 64), raster(128, 64) * 4.0 / 3.0), "one of two has two thirds");
     }
 
     #[test]

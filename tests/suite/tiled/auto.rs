@@ -23,7 +23,7 @@ fn auto_takes_what_is_cheaper_and_says_why() {
     let models = [(dear(class.raster), class.tiled, Path::Tiled), (class.raster, dear(class.tiled), Path::Raster)];
     for (raster, tiled, path) in models {
         let mut host = Host::new(gpu(), &stage).unwrap();
-        let model = PathModel { raster, tiled, source: PathModelSource::Host };
+        let model = PathModel { raster, tiled, source: PathModelSource::Host, ..class };
         host.renderer.context().set_path_model(model).unwrap();
         assert_eq!(host.renderer.path_choice(0), None);
         host.draw(gpu(), &stage).unwrap();
@@ -57,6 +57,8 @@ fn auto_takes_what_is_cheaper_and_says_why() {
     let model = PathModel { raster: PathCosts { entry: -1.0, ..class.raster }, ..class };
     let message = host.renderer.context().set_path_model(model).unwrap_err().to_string();
     assert_eq!(message, "raster.entry: -1 is not valid; expected nanoseconds, 0 or more");
+    let message = host.renderer.context().set_path_model(PathModel { cores: 0, ..class }).unwrap_err().to_string();
+    assert_eq!(message, "cores: 0 is not valid; expected 1 or more");
     gpu().check().unwrap();
 }
 
@@ -71,7 +73,7 @@ fn auto_changes_seldom_and_then_creates_a_few_things_once() {
     let model = host.renderer.context().path_model();
     let set = |host: &Host, raster: f32, tiled: f32| {
         let costs = |fragment| PathCosts { frame: 0.0, texel: 0.0, sprite: 0.0, entry: 0.0, fragment, ..model.raster };
-        let model = PathModel { raster: costs(raster), tiled: costs(tiled), source: PathModelSource::Host };
+        let model = PathModel { raster: costs(raster), tiled: costs(tiled), source: PathModelSource::Host, ..model };
         host.renderer.context().set_path_model(model).unwrap();
     };
     let path = |host: &Host| host.renderer.path_choice(0).unwrap().path;
