@@ -107,7 +107,7 @@ pub struct Row {
     pub fade: Option<String>,
     /// Measured overdraw: fragments per texel of the target that the view covers.
     pub layers: Option<f64>,
-    /// Amount of each sprite.
+    /// Mean alpha of what is drawn of a sprite, where nothing fades it.
     pub alpha: Option<f64>,
     /// Lights.
     pub lights: Option<u32>,

@@ -50,7 +50,7 @@ pub struct Arguments {
 
 /// Seconds that a whole run measures for.
 const QUICK: u64 = 100;
-const THOROUGH: u64 = 540;
+const THOROUGH: u64 = 420;
 /// Suites of shots; the limits come first.
 const SHOTS: [Suite; 8] = [
     Suite::Scale,
@@ -138,7 +138,8 @@ impl Arguments {
         for (index, group) in groups.iter().enumerate() {
             // What one does not use, the others have.
             let left = whole.saturating_sub(started.elapsed());
-            let budget = left / (groups.len() - index) as u32;
+            let cases: usize = groups[index..].iter().map(|group| group.cases.len()).sum();
+            let budget = left.mul_f64(group.cases.len() as f64 / cases.max(1) as f64);
             let what = format!(
                 "haze: {}, group {} of {}, about {} s left",
                 group.suite.name(),

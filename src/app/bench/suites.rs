@@ -10,6 +10,7 @@ use haze::settings::{
     AccumulationFormat, DepthDownsample, FadeCurve, Layers, LightingResolution, NormalEncoding, Order,
     Path as SmokePath, Settings, Technique, Upsample,
 };
+use haze::sprite::Sprite;
 use haze::{Error, Light, builtin};
 
 /// What there is to measure.
@@ -17,7 +18,7 @@ use haze::{Error, Light, builtin};
 pub enum Suite {
     /// Buffer scale 1 to 1/8, by overdraw, format and path.
     Scale,
-    /// 4 to 1024 layers of three amounts, by path.
+    /// 4 to 1024 layers, thin to thick, by path.
     Overdraw,
     /// 1 to 64 lights, deferred against forward.
     Lights,
@@ -113,6 +114,32 @@ fn sprites_of(layers: u32) -> u32 {
     (layers as f32 / 0.418).round() as u32
 }
 
+/// Mean alpha of what is drawn of a sprite whose amount is 1: of the rectangle that what is filled lies in.
+pub fn mean_alpha(sprite: &Sprite) -> f32 {
+    let (size, mut sum, mut texels) = (sprite.size(), 0.0, 0.0);
+    for frame in 0..sprite.frame_count() {
+        let (mut low, mut high, mut of_frame) = (UVec2::MAX, UVec2::ZERO, 0.0);
+        for (x, y) in (0..size).flat_map(|y| (0..size).map(move |x| (x, y))) {
+            let alpha = sprite.texel(0, frame, x, y).w;
+            if alpha > 0.0 {
+                (low, high) = (low.min(UVec2::new(x, y)), high.max(UVec2::new(x, y) + 1));
+                of_frame += alpha;
+            }
+        }
+        sum += of_frame;
+        texels += high.saturating_sub(low).as_vec2().element_product();
+    }
+    if texels > 0.0 { sum / texels } else { 0.0 }
+}
+
+/// The same sprites of a mean alpha.
+fn of_alpha(mut shot: Shot, alpha: f32) -> Shot {
+    for (system, material) in shot.preset.systems.iter_mut().zip(&shot.materials) {
+        system.emitter.amount = alpha / mean_alpha(&material.sprite);
+    }
+    shot
+}
+
 fn changed(shot: &Shot, change: impl Fn(&mut Settings)) -> Shot {
     let mut shot = shot.clone();
     shot.preset.systems.iter_mut().for_each(|system| change(&mut system.settings));
@@ -168,7 +195,7 @@ fn set_format(settings: &mut Settings, format: AccumulationFormat) {
 
 fn overdraw(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
     let depths: &[u32] = if quick { &[4, 32, 256] } else { &[4, 16, 64, 256, 1024] };
-    let amounts: &[f32] = if quick { &[0.1] } else { &[0.02, 0.1, 0.3] };
+    let alphas: &[f32] = if quick { &[0.1] } else { &[0.02, 0.1, 0.3] };
     let group = |shot: Shot, sprites: String, work: f64| {
         let case = |way: (SmokePath, Layers)| Case {
             name: format!("{} {sprites}", name_of(way)),
@@ -180,17 +207,21 @@ fn overdraw(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
         };
         Group { suite: Suite::Overdraw, cases: paths_and_layers().map(case).collect(), reference: full(&shot) }
     };
-    let large = depths.iter().flat_map(|&deep| amounts.iter().map(move |&amount| (deep, amount)));
+    let large = depths.iter().flat_map(|&deep| alphas.iter().map(move |&alpha| (deep, alpha)));
     let mut groups = Vec::new();
-    for (deep, amount) in large {
-        let shot = layers(size, sprites_of(deep), amount)?;
-        groups.push(group(shot, format!("{deep} layers of {amount}"), f64::from(deep)));
+    for (deep, alpha) in large {
+        let shot = of_alpha(layers(size, sprites_of(deep), alpha)?, alpha);
+        groups.push(group(shot, format!("{deep} layers of {alpha}"), f64::from(deep)));
     }
     // Many small ones: what a sprite costs counts as well.
-    let crowds: &[(u32, f32)] =
-        if quick { &[(4096, 156.0)] } else { &[(1024, 14.0), (4096, 56.0), (4096, 156.0), (16384, 627.0)] };
-    for &(count, deep) in crowds {
-        groups.push(group(crowd(size, count, deep)?, format!("{count} small sprites, {deep} deep"), f64::from(deep)));
+    let crowds: &[(u32, f32, f32)] = if quick {
+        &[(4096, 156.0, 0.1)]
+    } else {
+        &[(1024, 14.0, 0.1), (4096, 56.0, 0.1), (4096, 156.0, 0.1), (4096, 156.0, 0.3), (16384, 627.0, 0.1)]
+    };
+    for &(count, deep, alpha) in crowds {
+        let shot = of_alpha(crowd(size, count, deep)?, alpha);
+        groups.push(group(shot, format!("{count} small sprites, {deep} deep, of {alpha}"), f64::from(deep)));
     }
     Ok(groups)
 }

@@ -73,16 +73,15 @@ fn by_scale(report: &Report) -> String {
 }
 
 fn by_overdraw(report: &Report) -> String {
-    // Of sprites as large as the picture, and of one amount where that does not matter.
+    // Of sprites as large as the picture, and where it does not matter how thick they are, of those near 0.1.
+    let is_large = |row: &Row| row.layers.zip(row.particles).is_some_and(|(deep, all)| deep > 0.25 * f64::from(all));
+    let alphas = report.rows.iter().filter(|row| row.is_of(Suite::Overdraw)).filter_map(|row| row.alpha);
+    let usual = alphas.min_by(|a, b| (a - 0.1).abs().total_cmp(&(b - 0.1).abs()));
     let name = |row: &Row| {
-        let (path, amount) = (row.path.as_ref()?, row.alpha?);
-        let is_large = row.layers? > 0.5 * f64::from(row.particles?);
+        let (path, alpha) = (row.path.as_ref()?, row.alpha.filter(|_| is_large(row))?);
         match row.mode.as_deref().filter(|_| path == SmokePath::Tiled.name()) {
-            Some(mode) if mode == Layers::Visible.name() => {
-                is_large.then(|| format!("{path}, {mode} layers, amount {amount}"))
-            }
-            mode => (is_large && (amount - 0.1).abs() < 1.0e-6)
-                .then(|| mode.map_or(path.clone(), |mode| format!("{path}, {mode} layers"))),
+            Some(mode) if mode == Layers::Visible.name() => Some(format!("{path}, {mode} layers, alpha {alpha}")),
+            mode => (row.alpha == usual).then(|| mode.map_or(path.clone(), |mode| format!("{path}, {mode} layers"))),
         }
     };
     let series = lines(report, Suite::Overdraw, name).into_iter().map(|(name, rows)| {
