@@ -50,7 +50,7 @@ pub struct Arguments {
 
 /// Seconds that a whole run measures for.
 const QUICK: u64 = 100;
-const THOROUGH: u64 = 420;
+const THOROUGH: u64 = 360;
 /// Suites of shots; the limits come first.
 const SHOTS: [Suite; 8] = [
     Suite::Scale,
@@ -90,7 +90,7 @@ fn measure(arguments: &Arguments, gpu: &Headless, awake: &Awake<'_>) -> (Report,
     };
     let size =
         arguments.size.unwrap_or(if report.adapter.software { UVec2::new(640, 360) } else { UVec2::new(1280, 720) });
-    let longest = Duration::from_millis(if arguments.quick { 1500 } else { 3000 });
+    let longest = Duration::from_millis(if arguments.quick { 1500 } else { 2000 });
     let mut bench = Bench::new(gpu, awake, longest);
     let result = bench.measure_paths().and_then(|()| arguments.all(gpu, awake, &mut bench, size));
     (report.discarded, report.rows, report.left_out) = (bench.discarded, bench.rows, bench.left_out);
