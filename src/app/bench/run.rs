@@ -30,7 +30,7 @@ pub struct Arguments {
     /// Two minutes instead of ten: what is between is left out.
     #[arg(long)]
     quick: bool,
-    /// Seconds to measure for, about; preparing and checking come on top. 100 if quick, else 540, if not given.
+    /// Seconds to measure for, about; preparing and checking come on top. 100 if quick, else 360, if not given.
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
     #[arg(value_parser = clap::value_parser!(u64).range(0..=86_400))]
     seconds: Option<u64>,
