@@ -119,10 +119,10 @@ impl<'a> Bench<'a> {
         let mut is_whole = true;
         for round in 0..WARM_UP + MOST_ROUNDS {
             is_whole = !interrupt::is_asked();
-            if !is_whole || (round >= WARM_UP + LEAST_ROUNDS && started.elapsed() > budget) {
+            let is_late = started.elapsed() > budget;
+            if !is_whole || (is_late && round >= WARM_UP + LEAST_ROUNDS) {
                 break;
             }
-            let is_late = started.elapsed() > budget;
             for case in &mut running {
                 // Slow ones have enough already.
                 if is_late && case.times.len() >= LEAST_ROUNDS {
