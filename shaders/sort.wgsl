@@ -20,12 +20,15 @@
 
 // The digit's lowest bit.
 override SHIFT: u32 = 0u;
+// Keys are few: every block counts all of them, and is handed no counts.
+override FEW: bool = false;
 
 const DIGITS: u32 = 256u;
 // Keys of a block that one invocation handles. BLOCK in src/renderer/pass/sort.rs is those of all.
 const ROUNDS: u32 = 4u;
 
 var<workgroup> digit_counts: array<atomic<u32>, DIGITS>;
+var<workgroup> counts_before: array<atomic<u32>, DIGITS>;
 // A bit for every invocation that has the digit, 32 in a word.
 var<workgroup> holders: array<atomic<u32>, 2048>;
 var<workgroup> next_places: array<u32, DIGITS>;
@@ -68,19 +71,41 @@ fn sum_counts(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id
     }
 }
 
+// Keys of a block are so many times those of all invocations.
+fn rounds() -> u32 {
+    return select(ROUNDS, 1u, FEW);
+}
+
+// How many keys have a digit, and how many of them come before a block.
+fn total_and_before(digit: u32, block: u32) -> vec2u {
+    if !FEW {
+        return vec2u(totals[digit], counts[digit * tiles.blocks + block]);
+    }
+    for (var at = digit; at < tiles.count; at += DIGITS) {
+        let other = digit_of(keys[at]);
+        if at < block * DIGITS {
+            atomicAdd(&counts_before[other], 1u);
+        } else {
+            atomicAdd(&digit_counts[other], 1u);
+        }
+    }
+    workgroupBarrier();
+    let before = atomicLoad(&counts_before[digit]);
+    return vec2u(before + atomicLoad(&digit_counts[digit]), before);
+}
+
 @compute @workgroup_size(256)
 fn scatter(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) block: vec3u) {
-    let total = totals[local];
-    let before = inclusive_sum(local, total) - total;
-    next_places[local] = before + counts[local * tiles.blocks + block.x];
+    let counted = total_and_before(local, block.x);
+    next_places[local] = inclusive_sum(local, counted.x) - counted.x + counted.y;
     let word = local / 32u;
     let bit = local % 32u;
-    for (var round = 0u; round < ROUNDS; round++) {
+    for (var round = 0u; round < rounds(); round++) {
         for (var i = local; i < 2048u; i += DIGITS) {
             atomicStore(&holders[i], 0u);
         }
         workgroupBarrier();
-        let at = (block.x * ROUNDS + round) * DIGITS + local;
+        let at = (block.x * rounds() + round) * DIGITS + local;
         let is_inside = at < tiles.count;
         var key = 0u;
         var digit = 0u;

@@ -58,19 +58,19 @@ fn begun_texel(place: vec2u) -> Texel {
     return texel;
 }
 
-// With a sprite behind all that is there already. `place`: in a square.
-fn with_sprite(texel: Texel, sprite: TileSprite, place: vec2f, is_touched: bool) -> Texel {
-    let in = fragment_of(sprite, texel.place, texel.ray, place);
+// With a sprite behind all that is there already. `uv`: of a square.
+fn with_sprite(texel: Texel, sprite: TileSprite, uv: vec2f, is_touched: bool) -> Texel {
+    let in = fragment_of(sprite, texel.place, texel.ray, uv);
     let fragment = technique_fragment(in, frames_of(sprite), texel.scene);
     let amount = select(0.0, fragment.amount, is_touched && !fragment.hidden);
     let seen = select(texel.transmittance, 1.0, WEIGHTED);
     var next = texel;
-    let weight = amount * in.weight * seen;
+    let weight = amount * seen * select(1.0, in.weight, WEIGHTED);
     if SIX_WAY {
         next.normals += fragment.six_way.positive * weight;
         next.negative += fragment.six_way.negative * weight;
     } else {
-        next.normals += accumulation_from_normal(NORMAL_ENCODING, fragment.normal, amount, in.weight).rgb * seen;
+        next.normals += accumulation_from_normal(NORMAL_ENCODING, fragment.normal, 1.0, weight).rgb;
     }
     next.weights += weight;
     next.transmittance *= 1.0 - amount;
@@ -97,11 +97,6 @@ fn write_texel(place: vec2u, texel: Texel) {
     }
 }
 
-// Half-open, as the rasterizer has it: two squares side by side share no texel.
-fn is_inside(place: vec2f) -> bool {
-    return all(place >= vec2f(-1.0)) && all(place < vec2f(1.0));
-}
-
 fn sprite_number(list: vec2u, at: u32) -> u32 {
     if list.x == EVERYTHING {
         return numbers[at];
@@ -110,18 +105,18 @@ fn sprite_number(list: vec2u, at: u32) -> u32 {
 }
 
 // For adapters whose workgroups are cheap to run in step: a batch of sprites is read by all and kept where all can reach it. Each
-// invocation has two texels, one HEIGHT above the other, so that there is something to do while a lookup is on its way.
-const HEIGHT: u32 = 8u;
-const TILE: vec2u = vec2u(8u, 2u * HEIGHT);
+// invocation has two texels, one below the other, so that there is something to do while a lookup is on its way.
+const TILE: vec2u = vec2u(8u, 16u);
 const BATCH: u32 = 64u;
 
+// Those of a batch that touch the tile, front to back.
 var<workgroup> batch: array<TileSprite, BATCH>;
-// A bit for every sprite of the batch that touches the tile.
+// A bit for each of them.
 var<workgroup> touching: array<atomic<u32>, 2>;
+// 1 where a texel is not opaque.
 var<workgroup> open: atomic<u32>;
 // Bits of the farthest view depth of the tile's scene, which is positive.
 var<workgroup> farthest: atomic<u32>;
-var<workgroup> is_closed: u32;
 
 @compute @workgroup_size(8, 8)
 fn in_step(
@@ -131,8 +126,8 @@ fn in_step(
 ) {
     let size = vec2u(system.target_size);
     let low = workgroup.xy * TILE;
-    let place = low + local_place.xy;
-    let below = place + vec2u(0u, HEIGHT);
+    let place = low + local_place.xy * vec2u(1u, 2u);
+    let below = place + vec2u(0u, 1u);
     var a = begun_texel(min(place, size - 1u));
     var b = begun_texel(min(below, size - 1u));
     atomicMax(&farthest, bitcast<u32>(max(max(a.scene, b.scene), 0.0)));
@@ -146,50 +141,54 @@ fn in_step(
         if local == 0u {
             atomicStore(&touching[0], 0u);
             atomicStore(&touching[1], 0u);
-            atomicStore(&open, 0u);
         }
-        workgroupBarrier();
         if !(is_done(a) && is_done(b)) {
-            atomicOr(&open, 1u);
+            atomicStore(&open, 1u);
         }
+        if workgroupUniformLoad(&open) == 0u {
+            break;
+        }
+        var sprite: TileSprite;
+        var is_kept = false;
         if first + local < entries {
             // All sprites once more, where they are drawn often.
             let number = sprite_number(list, (first + local) % list.y);
             // Most of a bin's sprites are elsewhere in it: no more is read of them.
             if rects_meet(rects[number], low, low + TILE) {
-                let sprite = sprites[number];
+                sprite = sprites[number];
                 // Only the middle of texels counts.
                 let reach = reach_in_square(sprite, 0.5 * vec2f(TILE - 1u));
-                let meets = is_sphere() || square_fills(sprite, place_in_square(sprite, middle), reach);
-                if meets && sprite_front(sprite.centre_radius) <= end {
-                    batch[local] = sprite;
-                    atomicOr(&touching[local / 32u], 1u << (local % 32u));
-                }
+                let meets = is_sphere() || square_fills(sprite, uv_in_square(sprite, middle), reach);
+                is_kept = meets && sprite_front(sprite.centre_radius) <= end;
             }
         }
+        if is_kept {
+            atomicOr(&touching[local / 32u], 1u << (local % 32u));
+        }
         workgroupBarrier();
+        let kept = vec2u(atomicLoad(&touching[0]), atomicLoad(&touching[1]));
+        if is_kept {
+            let nearer = (1u << (local % 32u)) - 1u;
+            let before = countOneBits(select(vec2u(kept.x & nearer, 0u), vec2u(kept.x, kept.y & nearer), local >= 32u));
+            batch[before.x + before.y] = sprite;
+        }
         if local == 0u {
-            is_closed = u32(atomicLoad(&open) == 0u);
-        }
-        if workgroupUniformLoad(&is_closed) != 0u {
-            break;
-        }
-        for (var word = 0u; word < 2u; word++) {
-            var bits = atomicLoad(&touching[word]);
-            while bits != 0u {
-                let sprite = batch[word * 32u + firstTrailingBit(bits)];
-                bits &= bits - 1u;
-                let in_a = place_in_square(sprite, a.place);
-                let in_b = in_a + sprite.place_from_texels.yw * f32(HEIGHT);
-                let touches_a = !is_done(a) && touches(sprite, in_a);
-                let touches_b = !is_done(b) && touches(sprite, in_b);
-                if touches_a || touches_b {
-                    a = with_sprite(a, sprite, in_a, touches_a);
-                    b = with_sprite(b, sprite, in_b, touches_b);
-                }
-            }
+            atomicStore(&open, 0u);
         }
         workgroupBarrier();
+        let counts = countOneBits(kept);
+        let count = counts.x + counts.y;
+        for (var at = 0u; at < count && !(is_done(a) && is_done(b)); at++) {
+            let sprite = batch[at];
+            let in_a = uv_in_square(sprite, a.place);
+            let in_b = in_a + sprite.uv_from_texels.yw;
+            let touches_a = touches(sprite, in_a);
+            let touches_b = touches(sprite, in_b);
+            if touches_a || touches_b {
+                a = with_sprite(a, sprite, in_a, touches_a);
+                b = with_sprite(b, sprite, in_b, touches_b);
+            }
+        }
     }
     if all(place < size) {
         write_texel(place, a);
@@ -199,9 +198,9 @@ fn in_step(
     }
 }
 
-// True where a sprite may have something. `place`: in a square.
-fn touches(sprite: TileSprite, place: vec2f) -> bool {
-    return is_sphere() || (is_inside(place) && is_filled(sprite.filled, place));
+// True where a sprite may have something. `uv`: of a square.
+fn touches(sprite: TileSprite, uv: vec2f) -> bool {
+    return is_sphere() || is_filled(sprite.filled, uv);
 }
 
 // For CPUs, where a barrier costs more than it saves: every invocation walks alone, for a column of texels. llvmpipe takes both sides
@@ -247,10 +246,10 @@ fn alone(@builtin(global_invocation_id) invocation: vec3u, @builtin(local_invoca
         for (var count = 0u; count < STRIDE && bits != 0u; count++) {
             let sprite = sprites[sprite_number(list, batch + firstTrailingBit(bits))];
             bits &= bits - 1u;
-            let in_a = place_in_square(sprite, a.place);
-            let in_b = in_a + sprite.place_from_texels.yw;
-            let in_c = in_b + sprite.place_from_texels.yw;
-            let in_d = in_c + sprite.place_from_texels.yw;
+            let in_a = uv_in_square(sprite, a.place);
+            let in_b = in_a + sprite.uv_from_texels.yw;
+            let in_c = in_b + sprite.uv_from_texels.yw;
+            let in_d = in_c + sprite.uv_from_texels.yw;
             a = with_sprite(a, sprite, in_a, !is_done(a) && covers(in_a));
             b = with_sprite(b, sprite, in_b, !is_done(b) && covers(in_b));
             c = with_sprite(c, sprite, in_c, !is_done(c) && covers(in_c));
@@ -285,7 +284,7 @@ fn bits_below(count: u32) -> u32 {
     return select((1u << count) - 1u, 0xffffffffu, count >= 32u);
 }
 
-// True where a texel lies in a sprite. `place`: in a square.
-fn covers(place: vec2f) -> bool {
-    return is_sphere() || is_inside(place);
+// True where a texel lies in a sprite. `uv`: of a square.
+fn covers(uv: vec2f) -> bool {
+    return is_sphere() || (all(uv >= vec2f(0.0)) && all(uv < vec2f(1.0)));
 }

@@ -54,8 +54,9 @@ fn count_sprites(@builtin(global_invocation_id) invocation: vec3u) {
         return;
     }
     let low = low_of_bin(bin);
+    let end = min(run * RUN + RUN, tally.shown);
     var count = 0u;
-    for (var at = run * RUN; at < min(run * RUN + RUN, tally.shown); at++) {
+    for (var at = run * RUN; at < end; at++) {
         count += u32(rects_meet(sorted_rects[at], low, low + tiles.bin_side));
     }
     counts[bin * tiles.runs + run] = count;
@@ -95,7 +96,46 @@ fn allocate(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) 
     }
 }
 
-// The same, one invocation for each bin, and with room for what tile_refine finds of each sprite.
+// A bit for every sprite that touches the workgroup's bin, 32 in a word. FEW in src/renderer/pass/tile_bin.rs has as many.
+var<workgroup> touching: array<atomic<u32>, 1024>;
+var<workgroup> begin: u32;
+
+// Where sprites are few: counts them and fills the list, too. One workgroup for each bin.
+@compute @workgroup_size(256)
+fn list_few(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bin: vec3u) {
+    let low = low_of_bin(bin.x);
+    let shown = tally.shown;
+    for (var at = local; at < shown; at += SCAN_SIZE) {
+        if rects_meet(sorted_rects[at], low, low + tiles.bin_side) {
+            atomicOr(&touching[at / 32u], 1u << (at % 32u));
+        }
+    }
+    workgroupBarrier();
+    // Each invocation goes on with so many words.
+    let each = (tiles.count + 32u * SCAN_SIZE - 1u) / (32u * SCAN_SIZE);
+    var count = 0u;
+    for (var word = local * each; word < local * each + each; word++) {
+        count += countOneBits(atomicLoad(&touching[word]));
+    }
+    let sum = inclusive_sum(local, count);
+    if local == SCAN_SIZE - 1u {
+        let list = bin_list(sum, 0u);
+        bins[bin.x] = list;
+        begin = list.x;
+    }
+    if workgroupUniformLoad(&begin) == EVERYTHING {
+        return;
+    }
+    var place = begin + sum - count;
+    for (var word = local * each; word < local * each + each; word++) {
+        for (var bits = atomicLoad(&touching[word]); bits != 0u; bits &= bits - 1u) {
+            lists[place] = numbers[word * 32u + firstTrailingBit(bits)];
+            place++;
+        }
+    }
+}
+
+// Where invocations walk alone: one invocation for each bin, and with room for what tile_refine finds of each sprite.
 @compute @workgroup_size(64)
 fn allocate_alone(@builtin(global_invocation_id) invocation: vec3u) {
     let bin = invocation.x;
@@ -124,7 +164,8 @@ fn fill(@builtin(global_invocation_id) invocation: vec3u) {
     }
     let low = low_of_bin(bin);
     var place = list + counts[bin * tiles.runs + run];
-    for (var at = run * RUN; at < min(run * RUN + RUN, tally.shown); at++) {
+    let end = min(run * RUN + RUN, tally.shown);
+    for (var at = run * RUN; at < end; at++) {
         if rects_meet(sorted_rects[at], low, low + tiles.bin_side) {
             lists[place] = numbers[at];
             place++;

@@ -54,7 +54,8 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
         let metres = view.ray_scale * vec2f(2.0, -2.0) * (plane * system.scale) / view.size;
         let cosine = placed.rotation.x;
         let sine = placed.rotation.y;
-        sprite.place_from_texels = vec4f(metres * vec2f(cosine, sine), metres * vec2f(-sine, cosine)) / radius;
+        // v points down.
+        sprite.uv_from_texels = vec4f(metres * vec2f(cosine, sine), metres * vec2f(sine, -cosine)) * (0.5 / radius);
         sprite.centre_radius = vec4f(middle, centre.z, radius);
         // Of what is filled of the square: its middle, and half its sides.
         let reach = sprite_reach(frames, lod);

@@ -36,10 +36,10 @@ fn marks_of(number: u32, low: vec2u, part: vec2u) -> u32 {
     let rect = rects[number];
     let front = sprite_front(sprite.centre_radius);
     let reach = reach_in_square(sprite, 0.5 * vec2f(part - 1u));
-    // Places in the square, from part to part.
-    let place = place_in_square(sprite, vec2f(low) + 0.5 * vec2f(part));
-    let across = sprite.place_from_texels.xz * f32(part.x);
-    let down = sprite.place_from_texels.yw * f32(part.y);
+    // From part to part.
+    let uv = uv_in_square(sprite, vec2f(low) + 0.5 * vec2f(part));
+    let across = sprite.uv_from_texels.xz * f32(part.x);
+    let down = sprite.uv_from_texels.yw * f32(part.y);
     var marks = 0u;
     for (var bit = 0u; bit < BATCH_ALONE; bit++) {
         let at = vec2u(bit % PARTS.x, bit / PARTS.x);
@@ -47,7 +47,7 @@ fn marks_of(number: u32, low: vec2u, part: vec2u) -> u32 {
         if is_sphere() {
             is_there = rects_meet(rect, low + at * part, low + at * part + part);
         } else {
-            is_there = square_fills(sprite, place + across * f32(at.x) + down * f32(at.y), reach);
+            is_there = square_fills(sprite, uv + across * f32(at.x) + down * f32(at.y), reach);
         }
         marks |= select(0u, 1u << bit, is_there && front <= ends[bit]);
     }

@@ -75,10 +75,7 @@ fn technique_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> S
         case TECHNIQUE_DENSITY: { fade = thickness; }
         default: { fade = fade_before(scene, texel_depth); }
     }
-    // Where the hardware has dropped what is behind, few fragments are left to skip, and the branch costs every one.
-    if !DEPTH_TESTED && fade <= 0.0 {
-        return HIDDEN;
-    }
+    // Hidden ones are looked up, too: a branch would cost every one, and few are left that the hardware, or a list, has not dropped.
     var fragment = sprite_texel(in, in.uv, frames, motion);
     fragment.hidden = fade <= 0.0;
     if TECHNIQUE == TECHNIQUE_DENSITY {

@@ -14,8 +14,8 @@ fn tested_view_depth(texel: f32) -> f32 {
 }
 
 struct TileSprite {
-    // Squares: rows of the matrix from texels, from the middle, to the place in the square, -1..1.
-    place_from_texels: vec4f,
+    // Squares: rows of the matrix from texels, from the middle, to uv.
+    uv_from_texels: vec4f,
     // View space. Squares: the middle in texels in xy.
     centre_radius: vec4f,
     amount: f32,
@@ -50,24 +50,25 @@ fn filled_cells(frames: FlipbookFrames, lod: f32) -> vec2u {
     return cells;
 }
 
-// The cell of a picture at a place in a square, -1..1, or the nearest.
-fn cell_at(place: vec2f) -> vec2u {
+// The cell of a picture at uv, or the nearest.
+fn cell_at(uv: vec2f) -> vec2u {
     // Signed at first: CPUs have no instruction for the other way.
-    return vec2u(vec2i(clamp(sprite_uv(place) * 8.0, vec2f(0.0), vec2f(7.0))));
+    return vec2u(vec2i(clamp(uv * 8.0, vec2f(0.0), vec2f(7.0))));
 }
 
-// True at a place in a square, -1..1, where its picture is not clear.
-fn is_filled(cells: vec2u, place: vec2f) -> bool {
-    let cell = cell_at(place);
-    let rows = select(cells.x, cells.y, cell.y >= 4u);
-    return ((rows >> ((cell.y & 3u) * 8u + cell.x)) & 1u) == 1u;
+// True at uv inside the picture where it is not clear. Half-open, as the rasterizer has it: two squares side by side share no texel.
+// A number of 1 to 2 has its eighths in the three highest of its fraction's 23 bits: GPUs turn a float into an integer slowly.
+fn is_filled(cells: vec2u, uv: vec2f) -> bool {
+    let bits = bitcast<vec2u>(uv + 1.0) - 0x3f800000u;
+    let rows = select(cells.x, cells.y, (bits.y & 0x400000u) != 0u);
+    let cell = ((bits.y >> 17u) & 24u) + ((bits.x >> 20u) & 7u);
+    return max(bits.x, bits.y) < 0x800000u && ((rows >> cell) & 1u) == 1u;
 }
 
-// True if the picture is not clear everywhere between two places in a square, -1..1.
+// True if the picture is not clear everywhere between two corners, in uv.
 fn is_filled_between(cells: vec2u, low: vec2f, high: vec2f) -> bool {
-    // v points down.
-    let first = cell_at(vec2f(low.x, high.y));
-    let last = cell_at(vec2f(high.x, low.y));
+    let first = cell_at(low);
+    let last = cell_at(high);
     let columns = ((2u << last.x) - (1u << first.x)) * 0x01010101u;
     let upper = bytes_below(min(last.y + 1u, 4u)) & ~bytes_below(min(first.y, 4u));
     let lower = bytes_below(max(last.y, 3u) - 3u) & ~bytes_below(max(first.y, 4u) - 4u);
@@ -101,26 +102,26 @@ fn texel_of_ndc(ndc: vec2f) -> vec2f {
     return pixel_from_ndc(ndc, view.size) / system.scale - system.target_origin;
 }
 
-// A square's place, -1..1, at a texel.
-fn place_in_square(sprite: TileSprite, texel: vec2f) -> vec2f {
+// A square's uv at a texel.
+fn uv_in_square(sprite: TileSprite, texel: vec2f) -> vec2f {
     let offset = texel - sprite.centre_radius.xy;
-    return vec2f(dot(sprite.place_from_texels.xy, offset), dot(sprite.place_from_texels.zw, offset));
+    return vec2f(dot(sprite.uv_from_texels.xy, offset), dot(sprite.uv_from_texels.zw, offset)) + 0.5;
 }
 
-// Half the sides of the box in a square that holds a rectangle of texels, half its sides in `half_size`, and as much of a texel more as
+// Half the sides of the box in uv that holds a rectangle of texels, half its sides in `half_size`, and as much of a texel more as
 // rounding may hide.
 fn reach_in_square(sprite: TileSprite, half_size: vec2f) -> vec2f {
-    let matrix = abs(sprite.place_from_texels);
+    let matrix = abs(sprite.uv_from_texels);
     return vec2f(dot(matrix.xy, half_size + 0.01), dot(matrix.zw, half_size + 0.01));
 }
 
-// False where there is nothing of a square so far round a place in it.
-fn square_fills(sprite: TileSprite, place: vec2f, reach: vec2f) -> bool {
-    return all(abs(place) <= reach + 1.0) && is_filled_between(sprite.filled, place - reach, place + reach);
+// False where there is nothing of a square so far round uv.
+fn square_fills(sprite: TileSprite, uv: vec2f, reach: vec2f) -> bool {
+    return all(abs(uv - 0.5) <= reach + 0.5) && is_filled_between(sprite.filled, uv - reach, uv + reach);
 }
 
 // What the rasterizer would hand to the fragment at a texel. `ray`: through it.
-fn fragment_of(sprite: TileSprite, texel: vec2f, ray: vec2f, place: vec2f) -> SpriteVertex {
+fn fragment_of(sprite: TileSprite, texel: vec2f, ray: vec2f, uv: vec2f) -> SpriteVertex {
     var out: SpriteVertex;
     out.position = vec4f(texel, 0.0, 1.0);
     out.centre_radius = sprite.centre_radius;
@@ -130,7 +131,7 @@ fn fragment_of(sprite: TileSprite, texel: vec2f, ray: vec2f, place: vec2f) -> Sp
     if is_sphere() {
         out.view_position = view_position(ray, 1.0, view.orthographic);
     } else {
-        out.uv = sprite_uv(place);
+        out.uv = uv;
     }
     return out;
 }

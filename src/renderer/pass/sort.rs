@@ -3,21 +3,23 @@
 //! Reads and writes: keys and numbers, in two pairs of buffers by turns; four turns end where they began.
 //! Source: Merrill and Grimshaw, "High performance and scalable radix sorting", 2011.
 
-use crate::renderer::gpu::pipeline::ComputeParts;
+use crate::renderer::gpu::pipeline::{ComputeParts, switch};
 
 /// Keys that one workgroup sorts: ROUNDS in `shaders/sort.wgsl` times its invocations.
 pub(crate) const BLOCK: u32 = 1024;
 /// Values of a digit.
 pub(crate) const DIGITS: u32 = 256;
 /// Digits of a key.
-const TURNS: usize = 4;
+const TURNS: u32 = 4;
+/// Keys that every block counts by itself: that takes less than dispatches that wait for each other.
+pub(crate) const FEW: u32 = 8192;
 
 /// One of the pipelines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct SortKey {
     step: Step,
-    /// The digit's lowest bit.
-    shift: u32,
+    turn: u32,
+    few: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -27,16 +29,10 @@ enum Step {
     Scatter,
 }
 
-/// Of all turns.
-pub(crate) const STEPS: usize = TURNS * EACH_TURN.len();
-const EACH_TURN: [Step; 3] = [Step::CountDigits, Step::SumCounts, Step::Scatter];
-
-/// All of them, in order.
-pub(crate) fn keys() -> [SortKey; STEPS] {
-    std::array::from_fn(|index| SortKey {
-        step: EACH_TURN[index % EACH_TURN.len()],
-        shift: (index / EACH_TURN.len()) as u32 * DIGITS.ilog2(),
-    })
+/// All of them, in order. `few`: no more keys than [`FEW`].
+pub(crate) fn keys(few: bool) -> impl Iterator<Item = SortKey> {
+    let each_turn: &[Step] = if few { &[Step::Scatter] } else { &[Step::CountDigits, Step::SumCounts, Step::Scatter] };
+    (0..TURNS).flat_map(move |turn| each_turn.iter().map(move |&step| SortKey { step, turn, few }))
 }
 
 /// The pipeline for a key.
@@ -47,7 +43,7 @@ pub(crate) fn describe(key: SortKey) -> ComputeParts {
             Step::SumCounts => "sum_counts",
             Step::Scatter => "scatter",
         },
-        constants: vec![("SHIFT", f64::from(key.shift))],
+        constants: vec![("SHIFT", f64::from(key.turn * DIGITS.ilog2())), switch("FEW", key.few)],
     }
 }
 
@@ -55,20 +51,23 @@ pub(crate) fn describe(key: SortKey) -> ComputeParts {
 #[derive(Debug)]
 pub(crate) struct Sort {
     /// As [`keys`].
-    pub pipelines: [wgpu::ComputePipeline; STEPS],
+    pub pipelines: Vec<(SortKey, wgpu::ComputePipeline)>,
     /// From the first pair of buffers to the second, and back.
     pub there_and_back: [wgpu::BindGroup; 2],
-    pub blocks: u32,
+    pub keys: u32,
 }
 
 impl Sort {
     pub fn record(&self, pass: &mut wgpu::ComputePass<'_>) {
-        for (turn, pipelines) in self.pipelines.chunks(EACH_TURN.len()).enumerate() {
-            pass.set_bind_group(0, &self.there_and_back[turn % 2], &[]);
-            for (pipeline, workgroups) in pipelines.iter().zip([self.blocks, DIGITS, self.blocks]) {
-                pass.set_pipeline(pipeline);
-                pass.dispatch_workgroups(workgroups, 1, 1);
-            }
+        for (key, pipeline) in &self.pipelines {
+            let workgroups = match key {
+                SortKey { step: Step::SumCounts, .. } => DIGITS,
+                SortKey { few: true, .. } => self.keys.div_ceil(DIGITS),
+                _ => self.keys.div_ceil(BLOCK),
+            };
+            pass.set_bind_group(0, &self.there_and_back[key.turn as usize % 2], &[]);
+            pass.set_pipeline(pipeline);
+            pass.dispatch_workgroups(workgroups, 1, 1);
         }
     }
 }

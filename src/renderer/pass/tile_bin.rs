@@ -6,6 +6,8 @@ use crate::renderer::gpu::pipeline::{ComputeParts, switch};
 
 /// Sprites that are put into bins by one invocation: RUN in `shaders/tile_bin.wgsl`.
 pub(crate) const RUN: u32 = 64;
+/// Sprites whose lists are made in one: bits of `touching` in `shaders/tile_bin.wgsl`.
+pub(crate) const FEW: u32 = 1 << 15;
 
 /// What makes one pipeline differ from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -18,15 +20,20 @@ pub(crate) struct TileBinKey {
 enum Step {
     Gather,
     CountSprites,
+    ListFew,
     Allocate,
     AllocateAlone,
     Fill,
 }
 
-/// All of them, in order. `in_step`: workgroups add up together. `sorted`: the hidden sprites are last.
-pub(crate) fn keys(in_step: bool, sorted: bool) -> [TileBinKey; 4] {
-    let allocate = if in_step { Step::Allocate } else { Step::AllocateAlone };
-    [Step::Gather, Step::CountSprites, allocate, Step::Fill].map(|step| TileBinKey { step, sorted })
+/// All of them, in order. `in_step`: workgroups add up together. `sorted`: the hidden sprites are last. `few`: no more than [`FEW`].
+pub(crate) fn keys(in_step: bool, sorted: bool, few: bool) -> impl Iterator<Item = TileBinKey> {
+    let steps: &[Step] = match (in_step, few) {
+        (true, true) => &[Step::Gather, Step::ListFew],
+        (true, false) => &[Step::Gather, Step::CountSprites, Step::Allocate, Step::Fill],
+        (false, _) => &[Step::Gather, Step::CountSprites, Step::AllocateAlone, Step::Fill],
+    };
+    steps.iter().map(move |&step| TileBinKey { step, sorted })
 }
 
 /// The pipeline for a key.
@@ -35,6 +42,7 @@ pub(crate) fn describe(key: TileBinKey) -> ComputeParts {
         entry_point: match key.step {
             Step::Gather => "gather",
             Step::CountSprites => "count_sprites",
+            Step::ListFew => "list_few",
             Step::Allocate => "allocate",
             Step::AllocateAlone => "allocate_alone",
             Step::Fill => "fill",
@@ -47,21 +55,23 @@ pub(crate) fn describe(key: TileBinKey) -> ComputeParts {
 #[derive(Debug)]
 pub(crate) struct TileBin {
     /// As [`keys`].
-    pub pipelines: [wgpu::ComputePipeline; 4],
+    pub pipelines: Vec<(TileBinKey, wgpu::ComputePipeline)>,
     pub inputs: wgpu::BindGroup,
     pub particles: u32,
     pub bins: u32,
     pub runs: u32,
-    pub in_step: bool,
 }
 
 impl TileBin {
     pub fn record(&self, pass: &mut wgpu::ComputePass<'_>) {
         pass.set_bind_group(0, &self.inputs, &[]);
-        let by_bin_and_run = (self.bins.div_ceil(64), self.runs);
-        let by_bin = (if self.in_step { self.bins } else { self.bins.div_ceil(64) }, 1);
-        let workgroups = [(self.particles.div_ceil(64), 1), by_bin_and_run, by_bin, by_bin_and_run];
-        for (pipeline, (x, y)) in self.pipelines.iter().zip(workgroups) {
+        for (key, pipeline) in &self.pipelines {
+            let (x, y) = match key.step {
+                Step::Gather => (self.particles.div_ceil(64), 1),
+                Step::CountSprites | Step::Fill => (self.bins.div_ceil(64), self.runs),
+                Step::Allocate | Step::ListFew => (self.bins, 1),
+                Step::AllocateAlone => (self.bins.div_ceil(64), 1),
+            };
             pass.set_pipeline(pipeline);
             pass.dispatch_workgroups(x, y, 1);
         }

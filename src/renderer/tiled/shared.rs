@@ -63,8 +63,8 @@ impl TiledKeys {
 /// The pipelines of one system.
 pub(crate) struct TiledPipelines {
     pub project: wgpu::ComputePipeline,
-    pub sort: Option<[wgpu::ComputePipeline; sort::STEPS]>,
-    pub bin: [wgpu::ComputePipeline; 4],
+    pub sort: Option<Vec<(SortKey, wgpu::ComputePipeline)>>,
+    pub bin: Vec<(TileBinKey, wgpu::ComputePipeline)>,
     /// Where invocations walk alone.
     pub refine: Option<wgpu::ComputePipeline>,
     pub accumulate: wgpu::ComputePipeline,
@@ -123,9 +123,10 @@ impl Tiled {
     pub fn compile(&self, device: &wgpu::Device, keys: TiledKeys) -> Result<(), Error> {
         self.emit.check(device, ())?;
         self.project.check(device, keys.project)?;
-        sort::keys().into_iter().try_for_each(|key| self.sort.check(device, key))?;
-        let bins = [true, false].map(|sorted| tile_bin::keys(keys.accumulate.in_step, sorted));
-        bins.into_iter().flatten().try_for_each(|key| self.bin.check(device, key))?;
+        [true, false].into_iter().flat_map(sort::keys).try_for_each(|key| self.sort.check(device, key))?;
+        for (sorted, few) in [(true, true), (true, false), (false, true), (false, false)] {
+            tile_bin::keys(keys.accumulate.in_step, sorted, few).try_for_each(|key| self.bin.check(device, key))?;
+        }
         keys.refine().into_iter().try_for_each(|key| self.refine.check(device, key))?;
         self.accumulate.check(device, keys.accumulate)
     }
@@ -136,11 +137,13 @@ impl Tiled {
     }
 
     /// `sorts`: sprites come in any order, and it matters.
-    pub fn pipelines(&self, device: &wgpu::Device, keys: TiledKeys, sorts: bool) -> TiledPipelines {
+    pub fn pipelines(&self, device: &wgpu::Device, keys: TiledKeys, sorts: bool, count: u32) -> TiledPipelines {
+        let sort_key = |key| (key, self.sort.get(device, key));
+        let bin_key = |key| (key, self.bin.get(device, key));
         TiledPipelines {
             project: self.project.get(device, keys.project),
-            sort: sorts.then(|| sort::keys().map(|key| self.sort.get(device, key))),
-            bin: tile_bin::keys(keys.accumulate.in_step, sorts).map(|key| self.bin.get(device, key)),
+            sort: sorts.then(|| sort::keys(count <= sort::FEW).map(sort_key).collect()),
+            bin: tile_bin::keys(keys.accumulate.in_step, sorts, count <= tile_bin::FEW).map(bin_key).collect(),
             refine: keys.refine().map(|key| self.refine.get(device, key)),
             accumulate: self.accumulate.get(device, keys.accumulate),
         }

@@ -110,7 +110,7 @@ impl TiledSystem {
         };
         gpu.queue.write_buffer(&held.uniform, 0, bytemuck::bytes_of(&uniform));
         let sorts = !keys.project.weighted && !sprites.is_sorted;
-        let pipelines = tiled.pipelines(gpu.device, keys, sorts);
+        let pipelines = tiled.pipelines(gpu.device, keys, sorts, sprites.count);
         let project = held.bind_project(gpu, tiled, particles);
         let refine = pipelines.refine.map(|pipeline| {
             let inputs = held.bind_refine(gpu, tiled, depth);
@@ -123,16 +123,9 @@ impl TiledSystem {
             sort: pipelines.sort.map(|pipelines| Sort {
                 pipelines,
                 there_and_back: held.there_and_back.clone(),
-                blocks: uniform.blocks,
+                keys: sprites.count,
             }),
-            bin: TileBin {
-                pipelines: pipelines.bin,
-                inputs: held.bin.clone(),
-                particles: sprites.count,
-                bins,
-                runs,
-                in_step,
-            },
+            bin: TileBin { pipelines: pipelines.bin, inputs: held.bin.clone(), particles: sprites.count, bins, runs },
             refine,
             accumulate: TileAccumulate { pipeline: pipelines.accumulate, inputs: accumulate, size, in_step },
             tally: held.tally.clone(),
