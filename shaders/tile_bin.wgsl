@@ -151,6 +151,63 @@ fn allocate_alone(@builtin(global_invocation_id) invocation: vec3u) {
     bins[bin] = bin_list(length, words_of(length));
 }
 
+// Bins from the first to before the last that a rectangle touches.
+struct TouchedBins {
+    first: vec2u,
+    last: vec2u,
+}
+
+fn touched_bins(rect: vec2u) -> TouchedBins {
+    let low = vec2u(rect.x & 0xffffu, rect.x >> 16u);
+    let high = vec2u(rect.y & 0xffffu, rect.y >> 16u);
+    return TouchedBins(low / tiles.bin_side, (high + tiles.bin_side - 1u) / tiles.bin_side);
+}
+
+// The same as count_sprites and fill, one invocation for each run: goes from sprite to sprite, and to no bin that it does not touch.
+@compute @workgroup_size(8)
+fn count_alone(@builtin(global_invocation_id) invocation: vec3u) {
+    let run = invocation.x;
+    if run >= tiles.runs {
+        return;
+    }
+    for (var bin = 0u; bin < tiles.columns * tiles.rows; bin++) {
+        counts[bin * tiles.runs + run] = 0u;
+    }
+    let end = min(run * RUN + RUN, tally.shown);
+    for (var at = run * RUN; at < end; at++) {
+        let touched = touched_bins(sorted_rects[at]);
+        for (var row = touched.first.y; row < touched.last.y; row++) {
+            for (var column = touched.first.x; column < touched.last.x; column++) {
+                counts[(row * tiles.columns + column) * tiles.runs + run] += 1u;
+            }
+        }
+    }
+}
+
+@compute @workgroup_size(8)
+fn fill_alone(@builtin(global_invocation_id) invocation: vec3u) {
+    let run = invocation.x;
+    if run >= tiles.runs {
+        return;
+    }
+    let end = min(run * RUN + RUN, tally.shown);
+    for (var at = run * RUN; at < end; at++) {
+        let number = numbers[at];
+        let touched = touched_bins(sorted_rects[at]);
+        for (var row = touched.first.y; row < touched.last.y; row++) {
+            for (var column = touched.first.x; column < touched.last.x; column++) {
+                let bin = row * tiles.columns + column;
+                let list = bins[bin].x;
+                if list != EVERYTHING {
+                    let place = counts[bin * tiles.runs + run];
+                    lists[list + place] = number;
+                    counts[bin * tiles.runs + run] = place + 1u;
+                }
+            }
+        }
+    }
+}
+
 @compute @workgroup_size(64)
 fn fill(@builtin(global_invocation_id) invocation: vec3u) {
     let bin = invocation.x;

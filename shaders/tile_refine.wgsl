@@ -16,6 +16,7 @@
 
 // The farthest view depth at which each part of the bin shows anything.
 var<workgroup> ends: array<f32, BATCH_ALONE>;
+var<workgroup> nearest_end: atomic<u32>;
 // Of each sprite of a batch: a bit for every part that it may be seen in.
 var<workgroup> marks: array<u32, BATCH_ALONE>;
 
@@ -49,7 +50,11 @@ fn marks_of(number: u32, low: vec2u, part: vec2u) -> u32 {
         } else {
             is_there = square_fills(sprite, uv + across * f32(at.x) + down * f32(at.y), reach);
         }
-        marks |= select(0u, 1u << bit, is_there && front <= ends[bit]);
+        marks |= select(0u, 1u << bit, is_there);
+    }
+    // Few are behind some of the scene. A CPU reads what lanes share slowly, and skips a loop, but not a branch.
+    for (var bit = select(0u, BATCH_ALONE, front <= bitcast<f32>(atomicLoad(&nearest_end))); bit < BATCH_ALONE; bit++) {
+        marks &= ~select(0u, 1u << bit, front > ends[bit]);
     }
     return marks;
 }
@@ -62,7 +67,11 @@ fn refine(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bi
     let low = vec2u(bin.x % tiles.columns, bin.x / tiles.columns) * tiles.bin_side;
     let part = tiles.bin_side / PARTS;
     let first = low + vec2u(local % PARTS.x, local / PARTS.x) * part;
-    ends[local] = shown_depth(first, min(first + part, vec2u(system.target_size)));
+    let end = shown_depth(first, min(first + part, vec2u(system.target_size)));
+    ends[local] = end;
+    atomicStore(&nearest_end, bitcast<u32>(end));
+    workgroupBarrier();
+    atomicMin(&nearest_end, bitcast<u32>(end));
     workgroupBarrier();
     for (var batch = 0u; batch < count; batch += BATCH_ALONE) {
         let at = batch + local;

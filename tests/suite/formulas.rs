@@ -207,6 +207,7 @@ const INDIRECT: &[&str] = &[
     "rounds",
     "total_and_before",
     "low_of_bin",
+    "touched_bins",
     "list_fits",
     "bin_list",
     "bits_of",

@@ -24,6 +24,8 @@ enum Step {
     Allocate,
     AllocateAlone,
     Fill,
+    CountAlone,
+    FillAlone,
 }
 
 /// All of them, in order. `in_step`: workgroups add up together. `sorted`: the hidden sprites are last. `few`: no more than [`FEW`].
@@ -31,7 +33,7 @@ pub(crate) fn keys(in_step: bool, sorted: bool, few: bool) -> impl Iterator<Item
     let steps: &[Step] = match (in_step, few) {
         (true, true) => &[Step::Gather, Step::ListFew],
         (true, false) => &[Step::Gather, Step::CountSprites, Step::Allocate, Step::Fill],
-        (false, _) => &[Step::Gather, Step::CountSprites, Step::AllocateAlone, Step::Fill],
+        (false, _) => &[Step::Gather, Step::CountAlone, Step::AllocateAlone, Step::FillAlone],
     };
     steps.iter().map(move |&step| TileBinKey { step, sorted })
 }
@@ -46,6 +48,8 @@ pub(crate) fn describe(key: TileBinKey) -> ComputeParts {
             Step::Allocate => "allocate",
             Step::AllocateAlone => "allocate_alone",
             Step::Fill => "fill",
+            Step::CountAlone => "count_alone",
+            Step::FillAlone => "fill_alone",
         },
         constants: vec![switch("SORTED", key.sorted)],
     }
@@ -71,6 +75,7 @@ impl TileBin {
                 Step::CountSprites | Step::Fill => (self.bins.div_ceil(64), self.runs),
                 Step::Allocate | Step::ListFew => (self.bins, 1),
                 Step::AllocateAlone => (self.bins.div_ceil(64), 1),
+                Step::CountAlone | Step::FillAlone => (self.runs.div_ceil(8), 1),
             };
             pass.set_pipeline(pipeline);
             pass.dispatch_workgroups(x, y, 1);
