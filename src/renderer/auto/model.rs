@@ -92,13 +92,13 @@ impl PathModel {
             march: 0.086,
         },
         tiled: PathCosts {
-            frame: 80.0e3,
+            frame: 48.0e3,
             texel: 0.01,
             sprite: 5.0,
-            entry: 0.2,
-            layer: 1500.0,
-            fragment: 0.005,
-            sphere: 0.004,
+            entry: 0.15,
+            layer: 1200.0,
+            fragment: 0.0033,
+            sphere: 0.0035,
             march: 0.0032,
         },
         cores: 1,
@@ -135,7 +135,7 @@ impl PathModel {
     /// its sprites are hidden by nothing, and those of the class in part, which spares `raster` the more; and its few sprites stay in
     /// caches, so that a walk waits less for each.
     pub(crate) fn probe_finds(&self) -> [f32; 2] {
-        if self.source == PathModelSource::Cpu { [1.34, 0.8] } else { [1.75, 0.49] }
+        if self.source == PathModelSource::Cpu { [1.34, 0.8] } else { [1.75, 0.35] }
     }
 
     /// What devices of this kind take.
