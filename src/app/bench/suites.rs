@@ -217,7 +217,14 @@ fn overdraw(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
     let crowds: &[(u32, f32, f32)] = if quick {
         &[(4096, 156.0, 0.1)]
     } else {
-        &[(1024, 14.0, 0.1), (4096, 56.0, 0.1), (4096, 156.0, 0.1), (4096, 156.0, 0.3), (16384, 627.0, 0.1)]
+        &[
+            (1024, 14.0, 0.1),
+            (4096, 64.0, 0.1),
+            (4096, 156.0, 0.1),
+            (4096, 156.0, 0.3),
+            (16384, 627.0, 0.1),
+            (32768, 1024.0, 0.1),
+        ]
     };
     for &(count, deep, alpha) in crowds {
         let shot = of_alpha(crowd(size, count, deep)?, alpha);

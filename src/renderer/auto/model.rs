@@ -292,8 +292,12 @@ mod tests {
     #[test]
     fn a_gpu_walks_where_there_is_something_to_walk() {
         let model = PathModel::of_class(wgpu::DeviceType::DiscreteGpu);
-        for (layers, walks) in [(0.2, false), (16.0, true), (64.0, true), (1024.0, true)] {
-            let [raster, tiled] = model.milliseconds(&load(layers));
+        let small = UVec2::splat(128);
+        let size = load(1.0).size;
+        for (size, layers, walks) in [(small, 0.2, false), (size, 16.0, true), (size, 64.0, true), (size, 1024.0, true)]
+        {
+            let fragments = layers * size.as_dvec2().element_product();
+            let [raster, tiled] = model.milliseconds(&PathLoad { size, fragments, ..load(layers) });
             assert_eq!(tiled < raster, walks, "{layers}: {tiled} {raster}");
         }
     }
