@@ -16,6 +16,7 @@
 
 // The farthest view depth at which each part of the bin shows anything.
 var<workgroup> ends: array<f32, BATCH_ALONE>;
+// Bits of the nearest of them, which is positive.
 var<workgroup> nearest_end: atomic<u32>;
 // Of each sprite of a batch: a bit for every part that it may be seen in.
 var<workgroup> marks: array<u32, BATCH_ALONE>;

@@ -5,7 +5,7 @@
 //! host:                opaque scene ─► scene colour (HDR) + scene depth
 //!                                                              │ sampled
 //! Renderer::prepare    depth_downsample   scene depth ─► reduced depth, linear view metres
-//!   (host's encoder)   sort               particles ─► back to front
+//!   (host's encoder)   sort               particles ─► back to front (a slice by the CPU, a buffer by the GPU)
 //!                      diffuse_bake       lights ─► cubemap or motif, where a system asks for one
 //!                      accumulate         sprites × normal map × soft fade ─► premultiplied normal, amount
 //! Renderer::render     transfer           the system's bounding box: decode, light, upsample, blend on the scene

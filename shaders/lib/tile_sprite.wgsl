@@ -80,12 +80,6 @@ fn bytes_below(count: u32) -> u32 {
     return ~((0xffffffffu << (count * 4u)) << (count * 4u));
 }
 
-// Bits that order as view depths do, near to far: of view z, from front to back. (Herf, "Radix tricks", 2001)
-fn front_to_back_bits(view_z: f32) -> u32 {
-    let bits = bitcast<u32>(view_z);
-    return select(0x7fffffffu - bits, bits, bits >> 31u == 1u);
-}
-
 // Ray (as view_position has it) through a place of the target, texels.
 fn ray_through_texel(texel: vec2f) -> vec2f {
     let pixel = (texel + system.target_origin) * system.scale;

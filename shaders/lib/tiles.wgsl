@@ -59,6 +59,12 @@ fn rects_meet(rect: vec2u, low: vec2u, high: vec2u) -> bool {
     return all(first < high) && all(low < last);
 }
 
+// Bits that order as view depths do, near to far: of view z, from front to back. (Herf, "Radix tricks", 2001)
+fn front_to_back_bits(view_z: f32) -> u32 {
+    let bits = bitcast<u32>(view_z);
+    return select(0x7fffffffu - bits, bits, bits >> 31u == 1u);
+}
+
 // True where a list of so many from an entry on is whole.
 fn list_fits(first: u32, length: u32, capacity: u32) -> bool {
     return length <= capacity && first <= capacity - length;

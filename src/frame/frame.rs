@@ -8,7 +8,7 @@ use super::light::Light;
 use super::material::Material;
 use super::particle::Particle;
 use super::view::View;
-use crate::settings::{Settings, ShadeTree};
+use crate::settings::{Order, Settings, ShadeTree};
 
 /// Everything that [`Renderer::prepare`](crate::Renderer::prepare) needs to know about a frame.
 #[derive(Clone, Copy, Debug)]
@@ -109,14 +109,17 @@ pub enum Particles<'a> {
     /// In memory. Sorted and uploaded by [`Renderer::prepare`](crate::Renderer::prepare). A sprite with a number that
     /// is not finite, or out of its range, is skipped.
     Slice(&'a [Particle]),
-    /// On the GPU, in the layout of [`Particle`], back to front, with `VERTEX` usage. `System::bounds` must be given.
+    /// On the GPU, in the layout of [`Particle`], with `VERTEX` usage. `System::bounds` must be given.
     Buffer {
         /// Holds `count` particles from `offset` on.
         buffer: &'a wgpu::Buffer,
-        /// Bytes before the first particle, a multiple of 4.
+        /// Bytes before the first particle, a multiple of 4; of 16 where compute shaders read them, by `path` or `is_sorted`.
         offset: u64,
         /// How many to draw.
         count: u32,
+        /// They lie back to front. Where they do not, and their order matters, the GPU sorts them, at one depth by number: that
+        /// takes compute shaders, and `STORAGE` usage.
+        is_sorted: bool,
     },
     /// Those of an emitter at a time. The path `tiled` evaluates them on the GPU, where they differ from those of
     /// [`Emission::evaluate`] by what sines, roots and powers of the device are rounded: some micrometres for each metre and second.
@@ -133,5 +136,10 @@ impl Particles<'_> {
             Self::Buffer { count, .. } => count,
             Self::Emission(emission) => emission.count(),
         }
+    }
+
+    /// True for a buffer whose order matters, and is not right.
+    pub(crate) fn need_sorting(&self, settings: &Settings) -> bool {
+        matches!(self, Self::Buffer { is_sorted: false, .. }) && settings.order() == Order::Sorted
     }
 }

@@ -5,10 +5,12 @@ use std::sync::Arc;
 use super::auto::PathLoad;
 use super::frame_bindings::DepthBindings;
 use super::gpu::Gpu;
+use super::gpu::record::begin_compute;
 use super::gpu::timing::Timing;
 use super::pass::Groups;
 use super::pass::accumulate::{Accumulate, AccumulateKey, DepthTest};
 use super::pass::depth_downsample::{DepthDownsampleKey, Downsample};
+use super::pass::depth_sort::DepthSort;
 use super::pass::diffuse_bake::DiffuseBake;
 use super::pass::emit::Emit;
 use super::pass::forward::Forward;
@@ -22,6 +24,25 @@ use super::system_targets::ReadyTargets;
 use super::tiled::{TiledInputs, TiledPasses, TiledSystem};
 use crate::in_view::SystemInView;
 use crate::settings::ShadeTree;
+
+/// What makes a system's particles, where they do not come as they are drawn.
+#[derive(Debug)]
+#[allow(clippy::large_enum_variant, reason = "as Draw")]
+pub(crate) enum ParticlesPass {
+    /// Evaluates an emitter.
+    Emit(Emit),
+    /// Puts a host's own back to front.
+    DepthSort(DepthSort, Groups),
+}
+
+impl ParticlesPass {
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
+        match self {
+            Self::Emit(emit) => emit.record(&mut begin_compute(encoder, "emit", timing)),
+            Self::DepthSort(sort, groups) => sort.record(&mut begin_compute(encoder, "sort", timing), groups),
+        }
+    }
+}
 
 /// How a system reaches the picture.
 #[derive(Debug)]
@@ -40,7 +61,6 @@ pub(crate) struct Deferred {
     pub depth_downsample: Option<Downsample>,
     pub depth_copy: Option<Downsample>,
     pub diffuse_bake: Option<DiffuseBake>,
-    pub emit: Option<Emit>,
     pub accumulate: AccumulatePasses,
     pub overdraw: Option<Accumulate>,
     pub light_target: Option<LightTarget>,
@@ -76,8 +96,6 @@ pub(crate) struct Assembly<'a> {
     pub passes: &'a Passes,
     pub groups: Groups,
     pub sprites: Sprites,
-    /// Makes them.
-    pub emit: Option<Emit>,
 }
 
 /// A system's own of the path `tiled`, and what there is to accumulate.
@@ -102,7 +120,7 @@ impl Assembly<'_> {
         depth: &DepthBindings,
         host_depth: Option<&wgpu::TextureView>,
     ) -> Draw {
-        let Self { gpu, passes, groups, sprites, emit } = self;
+        let Self { gpu, passes, groups, sprites } = self;
         let device = gpu.device;
         let ReadyTargets { accumulation, baked_diffuse, inputs } = targets;
         let size = in_view.rect.size;
@@ -142,7 +160,6 @@ impl Assembly<'_> {
                 faces: baked_diffuse.faces.clone(),
                 groups: groups.clone(),
             }),
-            emit,
             accumulate: match (plan.tiled, &passes.tiled) {
                 (Some(keys), Some(tiled)) => {
                     let inputs = TiledInputs {

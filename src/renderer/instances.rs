@@ -36,9 +36,9 @@ impl Instances {
     ) -> Option<Sprites> {
         let loops = settings.sprite.debug_loop;
         let particles = match particles {
-            Particles::Buffer { buffer, offset, count } => {
+            Particles::Buffer { buffer, offset, count, is_sorted } => {
                 self.buffer = None;
-                return (count > 0).then(|| Sprites { buffer: buffer.clone(), offset, count, loops, is_sorted: false });
+                return (count > 0).then(|| Sprites { buffer: buffer.clone(), offset, count, loops, is_sorted });
             }
             Particles::Slice(particles) => particles,
             Particles::Emission(emission) => {

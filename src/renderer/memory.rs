@@ -7,15 +7,17 @@ pub struct MemoryUse {
     pub targets: u64,
     /// Particles and uniforms, and all of `tiled`.
     pub buffers: u64,
-    /// Of the buffers, what the path `tiled` has made.
+    /// Of the buffers, what compute shaders work on.
     pub tiled: TiledMemory,
 }
 
-/// Bytes of GPU memory that the path `tiled` holds, by what is in it.
+/// Bytes of GPU memory that the path `tiled` holds, by what is in it, and what sorts a host's particles for the others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TiledMemory {
     /// The particles of emitters.
     pub emitted: u64,
+    /// A host's particles, back to front.
+    pub sorted: u64,
     /// Particles as they lie in the view, and the rectangles that they touch.
     pub sprites: u64,
     /// What is sorted: depths, and the numbers of particles.
@@ -29,8 +31,23 @@ pub struct TiledMemory {
 impl TiledMemory {
     /// All of it.
     pub fn total(&self) -> u64 {
-        let Self { emitted, sprites, keys, counts, lists } = self;
-        emitted + sprites + keys + counts + lists
+        let Self { emitted, sorted, sprites, keys, counts, lists } = self;
+        emitted + sorted + sprites + keys + counts + lists
+    }
+}
+
+impl std::ops::Add for TiledMemory {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            emitted: self.emitted + other.emitted,
+            sorted: self.sorted + other.sorted,
+            sprites: self.sprites + other.sprites,
+            keys: self.keys + other.keys,
+            counts: self.counts + other.counts,
+            lists: self.lists + other.lists,
+        }
     }
 }
 
@@ -39,13 +56,7 @@ impl std::iter::Sum for MemoryUse {
         parts.fold(Self::default(), |sum, part| Self {
             targets: sum.targets + part.targets,
             buffers: sum.buffers + part.buffers,
-            tiled: TiledMemory {
-                emitted: sum.tiled.emitted + part.tiled.emitted,
-                sprites: sum.tiled.sprites + part.tiled.sprites,
-                keys: sum.tiled.keys + part.tiled.keys,
-                counts: sum.tiled.counts + part.tiled.counts,
-                lists: sum.tiled.lists + part.tiled.lists,
-            },
+            tiled: sum.tiled + part.tiled,
         })
     }
 }

@@ -45,7 +45,7 @@ use draw::Draw;
 use frame_bindings::FrameBindings;
 use gpu::Gpu;
 use gpu::host_pass::HostPass;
-use gpu::record::{begin_compute, set_part};
+use gpu::record::set_part;
 use gpu::submission::Submission;
 use plan::{Situation, plan};
 use slot::{FrameContext, Slot};
@@ -195,13 +195,13 @@ impl Renderer {
             }
             let Some(draw) = slot.draw() else { continue };
             self.order.push(Seen { slot: index, distance: slot.distance() });
+            // An emitter's particles, evaluated; or a host's, back to front.
+            slot.particles_pass().iter().for_each(|pass| pass.record(encoder, timing));
             let Draw::Deferred(draw) = draw else { continue };
             // Scene depth at the target's resolution, and once more where what is read cannot be tested.
             draw.depth_downsample.iter().chain(&draw.depth_copy).for_each(|pass| pass.record(encoder, timing));
             // All lights by normal, for the cubemap and motif variants of diffuse.
             draw.diffuse_bake.iter().for_each(|pass| pass.record(encoder, timing));
-            // The particles of an emitter, evaluated.
-            draw.emit.iter().for_each(|pass| pass.record(&mut begin_compute(encoder, "emit", timing)));
             // Sprites to premultiplied normal + amount.
             draw.accumulate.record(encoder, timing);
             // Or counted, where that is to be shown.

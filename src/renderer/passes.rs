@@ -77,14 +77,20 @@ impl Passes {
     pub fn compile(&self, device: &wgpu::Device, plan: &Plan<'_>) -> Result<(), Error> {
         match plan {
             Plan::Nothing => Ok(()),
-            Plan::Forward(plan) => self.forward.check(device, plan.key),
+            Plan::Forward(plan) => {
+                self.compile_depth_sort(device)?;
+                self.forward.check(device, plan.key)
+            }
             Plan::Deferred(plan) => {
                 let mut downsamples = plan.depth_downsample.into_iter().chain(plan.depth_copy);
                 downsamples.try_for_each(|key| self.depth_downsample.check(device, key))?;
                 plan.diffuse_bake.map_or(Ok(()), |key| self.diffuse_bake.check(device, key))?;
                 match (plan.tiled, &self.tiled) {
                     (Some(keys), Some(tiled)) => tiled.compile(device, keys)?,
-                    _ => self.accumulate.check(device, plan.accumulate)?,
+                    _ => {
+                        self.compile_depth_sort(device)?;
+                        self.accumulate.check(device, plan.accumulate)?;
+                    }
                 }
                 plan.overdraw.map_or(Ok(()), |key| self.accumulate.check(device, key))?;
                 plan.light_target.map_or(Ok(()), |key| self.light_target.check(device, key))?;
@@ -92,6 +98,11 @@ impl Passes {
                 plan.specular_scatter.map_or(Ok(()), |key| self.specular_scatter.check(device, key))
             }
         }
+    }
+
+    /// What puts a host's particles back to front, should they come in another order.
+    fn compile_depth_sort(&self, device: &wgpu::Device) -> Result<(), Error> {
+        self.tiled.as_ref().map_or(Ok(()), |tiled| tiled.compile_depth_sort(device))
     }
 
     pub fn depth_downsample(&self, device: &wgpu::Device, key: DepthDownsampleKey) -> wgpu::RenderPipeline {

@@ -5,7 +5,7 @@ use glam::{UVec2, Vec2, Vec3};
 use super::auto::{Chooser, PathChoice, PathLoad, load};
 use super::context::Shared;
 use super::counts::{FrameCounts, Overdraw};
-use super::draw::{Assembly, Draw, TiledPlace};
+use super::draw::{Assembly, Draw, ParticlesPass, TiledPlace};
 use super::frame_bindings::FrameBindings;
 use super::gpu::Gpu;
 use super::gpu::record::uniform_buffer;
@@ -14,10 +14,11 @@ use super::instances::{Instances, SortedBy};
 use super::layouts::LIGHTS_SIZE;
 use super::memory::{MemoryUse, TiledMemory};
 use super::pass::Groups;
+use super::pass::sprites::Sprites;
 use super::plan::{Plan, Situation, plan};
 use super::system_targets::SystemTargets;
 use super::targets::TargetViews;
-use super::tiled::{Emitted, TiledSystem};
+use super::tiled::{DepthSorted, Emitted, TiledSystem};
 use super::validate::tiles_refuse;
 use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use crate::frame::{Bounds, Frame, Particle, Particles, System, bounds_of};
@@ -51,6 +52,7 @@ pub(crate) struct Slot {
     targets: SystemTargets,
     tiles: TiledSystem,
     emitted: Emitted,
+    depth_sorted: DepthSorted,
     /// A few particles of an emitter.
     sample: Vec<Particle>,
     chooser: Chooser,
@@ -58,6 +60,8 @@ pub(crate) struct Slot {
     without_targets: Spare,
     /// Counts frames in which it was not tiled.
     untiled: Spare,
+    /// Counts frames in which no host's particles were sorted.
+    unsorted: Spare,
     /// Counts frames without the system.
     absent: Spare,
     /// `None` when out of sight.
@@ -73,6 +77,7 @@ struct Drawn {
     choice: Option<PathChoice>,
     /// How many each particle of the sample stands for, where no other is known.
     sampled: Option<u32>,
+    particles_pass: Option<ParticlesPass>,
     draw: Draw,
 }
 
@@ -99,10 +104,12 @@ impl Slot {
             targets: SystemTargets::default(),
             tiles: TiledSystem::default(),
             emitted: Emitted::default(),
+            depth_sorted: DepthSorted::default(),
             sample: Vec::new(),
             chooser: Chooser::default(),
             without_targets: Spare::default(),
             untiled: Spare::default(),
+            unsorted: Spare::default(),
             absent: Spare::default(),
             drawn: None,
         }
@@ -111,6 +118,11 @@ impl Slot {
     /// This frame's draw; `None` when out of sight.
     pub fn draw(&self) -> Option<&Draw> {
         self.drawn.as_ref().map(|drawn| &drawn.draw)
+    }
+
+    /// What makes its particles, before all else.
+    pub fn particles_pass(&self) -> Option<&ParticlesPass> {
+        self.drawn.as_ref()?.particles_pass.as_ref()
     }
 
     /// What the path `auto` took this frame.
@@ -124,7 +136,8 @@ impl Slot {
     }
 
     pub fn memory_use(&self) -> MemoryUse {
-        let tiled = TiledMemory { emitted: self.emitted.bytes(), ..self.tiles.memory() };
+        let emitted = TiledMemory { emitted: self.emitted.bytes(), ..TiledMemory::default() };
+        let tiled = emitted + self.tiles.memory() + self.depth_sorted.memory();
         let buffers = self.uniform.size() + self.lights.size() + self.instances.bytes() + tiled.total();
         MemoryUse { targets: self.targets.bytes(), buffers, tiled }
     }
@@ -200,6 +213,9 @@ impl Slot {
         if self.untiled.outlasts(!is_tiled) {
             (self.tiles, self.emitted) = (TiledSystem::default(), Emitted::default());
         }
+        if self.unsorted.outlasts(!matches!(self.particles_pass(), Some(ParticlesPass::DepthSort(..)))) {
+            self.depth_sorted = DepthSorted::default();
+        }
     }
 
     fn place(&mut self, context: &FrameContext<'_>, system: &System<'_>) -> Option<Drawn> {
@@ -231,17 +247,6 @@ impl Slot {
         let choice = choose(&mut self.chooser, shared, system, load.as_ref());
         let lighting = if shared.six_way { settings.lighting } else { Lighting::Normals };
         let settings = &Settings { path: choice.map_or(settings.path, |choice| choice.path), lighting, ..*settings };
-        let sorted_by = shared.tiles().filter(|_| settings.path == Path::Tiled);
-        let sorted_by = sorted_by.map(|in_step| if in_step { SortedBy::Gpu } else { SortedBy::Cpu });
-        let (sprites, emit) = match (system.particles, &shared.passes.tiled) {
-            (Particles::Emission(emission), Some(tiled)) if settings.path == Path::Tiled => {
-                self.instances = Instances::default();
-                let (sprites, emit) = self.emitted.write(gpu, tiled, emission, settings.sprite.debug_loop)?;
-                (sprites, Some(emit))
-            }
-            _ => (self.instances.write(gpu, view, system.particles, settings, sorted_by)?, None),
-        };
-        let sampled = emit.as_ref().map(|_| stand_for);
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&in_view.uniform));
         gpu.queue.write_buffer(&self.lights, 0, bytemuck::cast_slice(&self.lights_in_view));
 
@@ -254,7 +259,9 @@ impl Slot {
             system: self.bindings.clone(),
             material: system.material.bind_group.clone(),
         };
-        let assembly = Assembly { gpu: *gpu, passes: &shared.passes, groups, sprites, emit };
+        let (sprites, particles_pass) = self.particles(context, system.particles, settings, &groups)?;
+        let sampled = matches!(particles_pass, Some(ParticlesPass::Emit(_))).then_some(stand_for);
+        let assembly = Assembly { gpu: *gpu, passes: &shared.passes, groups, sprites };
         let draw = match &plan {
             Plan::Nothing => return None,
             Plan::Forward(plan) => assembly.forward(plan),
@@ -266,7 +273,34 @@ impl Slot {
                 assembly.deferred(plan, tiles, targets, &in_view, depth, frame.scene_depth.buffer())
             }
         };
-        Some(Drawn { in_view, technique: settings.technique, pictures, choice, sampled, draw })
+        Some(Drawn { in_view, technique: settings.technique, pictures, choice, sampled, particles_pass, draw })
+    }
+
+    /// What is drawn, uploaded or made by a pass. `None` when there is nothing.
+    fn particles(
+        &mut self,
+        context: &FrameContext<'_>,
+        particles: Particles<'_>,
+        settings: &Settings,
+        groups: &Groups,
+    ) -> Option<(Sprites, Option<ParticlesPass>)> {
+        let FrameContext { gpu, shared, view, .. } = context;
+        let is_tiled = settings.path == Path::Tiled;
+        if let (Particles::Emission(emission), Some(tiled), true) = (particles, &shared.passes.tiled, is_tiled) {
+            self.instances = Instances::default();
+            let (sprites, emit) = self.emitted.write(gpu, tiled, emission, settings.sprite.debug_loop)?;
+            return Some((sprites, Some(ParticlesPass::Emit(emit))));
+        }
+        let sorted_by = shared.tiles().filter(|_| is_tiled);
+        let sorted_by = sorted_by.map(|in_step| if in_step { SortedBy::Gpu } else { SortedBy::Cpu });
+        let sprites = self.instances.write(gpu, view, particles, settings, sorted_by)?;
+        match &shared.passes.tiled {
+            Some(tiled) if !is_tiled && particles.need_sorting(settings) => {
+                let (sprites, sort) = self.depth_sorted.write(gpu, tiled, &sprites);
+                Some((sprites, Some(ParticlesPass::DepthSort(sort, groups.clone()))))
+            }
+            _ => Some((sprites, None)),
+        }
     }
 }
 

@@ -124,7 +124,7 @@ pub(crate) fn tiles_refuse(shared: &Shared, system: &System<'_>) -> Option<PathR
     let Some(tiled) = &shared.passes.tiled else { return Some(PathReason::NoTiles) };
     let (count, is_readable) = match system.particles {
         Particles::Slice(particles) => (particles.len() as u64, true),
-        Particles::Buffer { buffer, offset, count } => {
+        Particles::Buffer { buffer, offset, count, .. } => {
             let is_storage = buffer.usage().contains(wgpu::BufferUsages::STORAGE);
             (u64::from(count), is_storage && offset.is_multiple_of(PARTICLE_STEP))
         }
@@ -139,10 +139,18 @@ pub(crate) fn tiles_refuse(shared: &Shared, system: &System<'_>) -> Option<PathR
 fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str) -> String) -> Result<(), FieldError> {
     let size = size_of::<Particle>() as u64;
     let is_tiled = system.settings.path == Path::Tiled;
+    let needs_sorting = system.particles.need_sorting(system.settings);
+    if needs_sorting && shared.passes.tiled.is_none() {
+        let expected = "true, the order \"weighted\", or a slice: to sort them takes compute shaders and the limits that WebGPU \
+                        promises, not of OpenGL";
+        return Err(FieldError::new(field("particles.is_sorted"), false, expected));
+    }
     let limits = shared.device.limits();
     let mut most = limits.max_buffer_size / size;
     if is_tiled {
         most = most.min(limits.max_storage_buffer_binding_size / SPRITE);
+    } else if needs_sorting {
+        most = most.min(limits.max_storage_buffer_binding_size / size);
     }
     match system.particles {
         Particles::Slice(particles) => validate_count(particles.len() as u64, most, field)?,
@@ -155,20 +163,21 @@ fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str
                 return Err(FieldError::new(field("particles"), "an emission without a finite box", expected));
             }
         }
-        Particles::Buffer { buffer, offset, count } => {
+        Particles::Buffer { buffer, offset, count, .. } => {
             validate_count(u64::from(count), most, field)?;
             if system.bounds.is_none() {
                 let expected = "the box of the particles, which are on the GPU";
                 return Err(FieldError::new(field("bounds"), "None", expected));
             }
-            let alignment = if is_tiled { PARTICLE_STEP } else { wgpu::VERTEX_ALIGNMENT };
+            let is_read = is_tiled || needs_sorting;
+            let alignment = if is_read { PARTICLE_STEP } else { wgpu::VERTEX_ALIGNMENT };
             if !offset.is_multiple_of(alignment) {
                 let expected = format!("a multiple of {alignment}");
                 return Err(FieldError::new(field("particles.offset"), offset, expected));
             }
             let needed = offset.saturating_add(u64::from(count) * size);
             let mut usage = wgpu::BufferUsages::VERTEX;
-            usage.set(wgpu::BufferUsages::STORAGE, is_tiled);
+            usage.set(wgpu::BufferUsages::STORAGE, is_read);
             if buffer.size() < needed || !buffer.usage().contains(usage) {
                 let value = format!("{} bytes, usage {:?}", buffer.size(), buffer.usage());
                 let expected = format!("at least {needed} bytes, usage {usage:?}");

@@ -150,7 +150,7 @@ impl Host {
     /// Draws from a buffer, in the order that it has.
     pub fn draw_buffer(&mut self, gpu: &Headless, stage: &Stage, particles: &[Particle]) -> Result<(), Error> {
         let (buffer, count) = (particle_buffer(gpu, particles), particles.len() as u32);
-        self.draw_particles(gpu, stage, Particles::Buffer { buffer: &buffer, offset: 0, count })
+        self.draw_particles(gpu, stage, Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: true })
     }
 
     /// The first half of a frame.

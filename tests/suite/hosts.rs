@@ -3,6 +3,7 @@
 pub mod kept;
 mod passes;
 mod submissions;
+mod unsorted;
 mod views;
 mod warm_up;
 

@@ -219,7 +219,8 @@ fn a_run_gives_the_same_bits_and_needs_no_order() {
             let mut bytes = vec![0x7f; offset as usize];
             bytes.extend_from_slice(bytemuck::cast_slice(particles));
             let buffer = storage_buffer(&bytes);
-            let particles = Particles::Buffer { buffer: &buffer, offset, count: particles.len() as u32 };
+            let particles =
+                Particles::Buffer { buffer: &buffer, offset, count: particles.len() as u32, is_sorted: false };
             host.draw_particles(gpu(), &stage, particles).unwrap();
             host.picture(gpu()).unwrap()
         };
@@ -266,7 +267,7 @@ fn what_cannot_be_tiled_is_refused() {
     stage.bounds = Some(Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE });
     let mut host = Host::new(gpu(), &stage).unwrap();
     let buffer = storage_buffer(&[0; 128]);
-    let particles = Particles::Buffer { buffer: &buffer, offset: 4, count: 1 };
+    let particles = Particles::Buffer { buffer: &buffer, offset: 4, count: 1, is_sorted: false };
     let message = refused(host.draw_particles(gpu(), &stage, particles));
     assert!(message.contains("particles.offset") && message.contains("16"), "{message}");
     let vertices = gpu().device.create_buffer(&wgpu::BufferDescriptor {
@@ -275,7 +276,7 @@ fn what_cannot_be_tiled_is_refused() {
         usage: wgpu::BufferUsages::VERTEX,
         mapped_at_creation: false,
     });
-    let particles = Particles::Buffer { buffer: &vertices, offset: 0, count: 1 };
+    let particles = Particles::Buffer { buffer: &vertices, offset: 0, count: 1, is_sorted: false };
     let message = refused(host.draw_particles(gpu(), &stage, particles));
     assert!(message.contains("STORAGE"), "{message}");
 }

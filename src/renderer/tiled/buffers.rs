@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use super::shared::Tiled;
+use super::sort_buffers::SortBuffers;
 use crate::formula::uniforms::TilesUniform;
 use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::record::uniform_buffer;
 use crate::renderer::memory::TiledMemory;
-use crate::renderer::pass::sort::{BLOCK, DIGITS};
 use crate::renderer::pass::sprites::Sprites;
 use crate::renderer::targets::Beside;
 use crate::settings::AccumulationFormat;
@@ -28,17 +28,12 @@ pub(super) struct Held {
     pub tally: wgpu::Buffer,
     sprites: wgpu::Buffer,
     rects: wgpu::Buffer,
-    /// Two pairs, sorted by turns.
-    keys: [wgpu::Buffer; 2],
-    numbers: [wgpu::Buffer; 2],
+    pub sort: SortBuffers,
     sorted_rects: wgpu::Buffer,
-    digit_counts: wgpu::Buffer,
-    digit_totals: wgpu::Buffer,
     bin_counts: wgpu::Buffer,
     lists: wgpu::Buffer,
     bins: wgpu::Buffer,
     pub read_back: Arc<wgpu::Buffer>,
-    pub there_and_back: [wgpu::BindGroup; 2],
     pub bin: wgpu::BindGroup,
     /// With the host's own things, made anew when they are others.
     project: Option<(Part, wgpu::BindGroup)>,
@@ -92,23 +87,13 @@ impl Capacity {
 
 impl Held {
     pub fn new(device: &wgpu::Device, tiled: &Tiled, capacity: Capacity) -> Self {
-        let storage = |name, count: u32, bytes: u64| {
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(name),
-                size: u64::from(count) * bytes,
-                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        };
+        let storage = |name, count, bytes| storage(device, name, count, bytes);
         let Capacity { particles, bins, runs, entries } = capacity;
         let uniform = uniform_buffer(device, "haze tiles", size_of::<TilesUniform>() as u64);
         let tally = storage("haze tally", 2, WORD);
         let rects = storage("haze sprite rectangles", particles, RECT);
-        let keys = ["haze sort keys", "haze sort keys, sorted"].map(|name| storage(name, particles, WORD));
-        let numbers = ["haze sort numbers", "haze sort numbers, sorted"].map(|name| storage(name, particles, WORD));
+        let sort = SortBuffers::new(device, tiled, &uniform, particles);
         let sorted_rects = storage("haze sorted rectangles", particles, RECT);
-        let digit_counts = storage("haze digit counts", particles.div_ceil(BLOCK) * DIGITS, WORD);
-        let digit_totals = storage("haze digit totals", DIGITS, WORD);
         let bin_counts = storage("haze bin counts", runs, WORD);
         let lists = storage("haze bin lists", entries, WORD);
         let bins = storage("haze bins", bins, RECT);
@@ -118,18 +103,13 @@ impl Held {
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
-        let there_and_back = [(0, 1), (1, 0)].map(|(from, to)| {
-            let buffers =
-                [&uniform, &keys[from], &numbers[from], &keys[to], &numbers[to], &digit_counts, &digit_totals];
-            bind(device, &tiled.layouts.sort, buffers.map(wgpu::Buffer::as_entire_binding))
-        });
-        let buffers = [&uniform, &keys[0], &numbers[0], &rects, &sorted_rects, &bin_counts, &lists, &bins, &tally];
+        let buffers =
+            [&uniform, sort.keys(), sort.numbers(), &rects, &sorted_rects, &bin_counts, &lists, &bins, &tally];
         let bin = bind(device, &tiled.layouts.bin, buffers.map(wgpu::Buffer::as_entire_binding));
         Self {
             capacity,
             sprites: storage("haze tile sprites", particles, SPRITE),
             read_back: Arc::new(read_back),
-            there_and_back,
             bin,
             project: None,
             refine: None,
@@ -137,11 +117,8 @@ impl Held {
             uniform,
             tally,
             rects,
-            keys,
-            numbers,
+            sort,
             sorted_rects,
-            digit_counts,
-            digit_totals,
             bin_counts,
             lists,
             bins,
@@ -150,13 +127,13 @@ impl Held {
 
     pub fn memory(&self) -> TiledMemory {
         let bytes = |buffers: &[&wgpu::Buffer]| buffers.iter().map(|buffer| buffer.size()).sum();
-        let ([keys, other_keys], [numbers, other_numbers]) = (&self.keys, &self.numbers);
+        let [keys, counts] = self.sort.bytes();
         TiledMemory {
-            emitted: 0,
             sprites: bytes(&[&self.uniform, &self.sprites, &self.rects, &self.sorted_rects]),
-            keys: bytes(&[keys, other_keys, numbers, other_numbers]),
-            counts: bytes(&[&self.digit_counts, &self.digit_totals, &self.bin_counts, &self.tally, &self.read_back]),
+            keys,
+            counts: counts + bytes(&[&self.bin_counts, &self.tally, &self.read_back]),
             lists: bytes(&[&self.lists, &self.bins]),
+            ..TiledMemory::default()
         }
     }
 
@@ -164,8 +141,8 @@ impl Held {
         match &self.project {
             Some((bound, group)) if *bound == particles => group.clone(),
             _ => {
-                let Self { uniform, sprites, rects, keys, numbers, .. } = self;
-                let buffers = [sprites, rects, &keys[0], &numbers[0]].map(wgpu::Buffer::as_entire_binding);
+                let Self { uniform, sprites, rects, sort, .. } = self;
+                let buffers = [&*sprites, rects, sort.keys(), sort.numbers()].map(wgpu::Buffer::as_entire_binding);
                 let own = [uniform.as_entire_binding(), particles.binding()];
                 let group = bind(gpu.device, &tiled.layouts.project, own.into_iter().chain(buffers));
                 self.project = Some((particles, group.clone()));
@@ -209,8 +186,8 @@ impl Held {
         match &self.accumulate {
             Some((bound, group)) if bound.iter().eq(views) => group.clone(),
             _ => {
-                let Self { uniform, sprites, rects, numbers, lists, bins, .. } = self;
-                let buffers = [&*uniform, sprites, rects, &numbers[0], lists, bins];
+                let Self { uniform, sprites, rects, sort, lists, bins, .. } = self;
+                let buffers = [&*uniform, sprites, rects, sort.numbers(), lists, bins];
                 let textures = views.map(wgpu::BindingResource::TextureView);
                 let resources = buffers.map(wgpu::Buffer::as_entire_binding).into_iter().chain(textures);
                 let group = bind(gpu.device, &tiled.layouts.accumulate, resources);
@@ -234,7 +211,7 @@ impl Part {
         }
     }
 
-    fn binding(&self) -> wgpu::BindingResource<'_> {
+    pub fn binding(&self) -> wgpu::BindingResource<'_> {
         let Self { buffer, offset, size, .. } = self;
         wgpu::BindingResource::Buffer(wgpu::BufferBinding {
             buffer,
@@ -242,6 +219,16 @@ impl Part {
             size: wgpu::BufferSize::new(*size),
         })
     }
+}
+
+/// A buffer of so many things of so many bytes.
+pub(super) fn storage(device: &wgpu::Device, name: &str, count: u32, bytes: u64) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(name),
+        size: u64::from(count) * bytes,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
 }
 
 /// A bind group of resources in the order of its layout.

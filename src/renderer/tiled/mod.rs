@@ -1,12 +1,15 @@
 //! Accumulation by compute shaders: what all systems of a device share, and what one system owns.
 
 mod buffers;
+mod depth_sorted;
 mod emission;
 mod passes;
 mod shared;
+mod sort_buffers;
 mod system;
 
 pub(crate) use buffers::{PARTICLE_STEP, SPRITE};
+pub(crate) use depth_sorted::DepthSorted;
 pub(crate) use emission::Emitted;
 pub(crate) use passes::TiledPasses;
 pub(crate) use shared::{Tiled, TiledKeys};

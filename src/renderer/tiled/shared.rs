@@ -8,6 +8,7 @@ use crate::error::Error;
 use crate::formula::uniforms::{EmitterUniform, TilesUniform};
 use crate::renderer::gpu::pipeline::{ComputeParts, Shader, Variants};
 use crate::renderer::layouts::Layouts;
+use crate::renderer::pass::depth_sort::{self, DepthSortKey};
 use crate::renderer::pass::emit;
 use crate::renderer::pass::sort::{self, SortKey};
 use crate::renderer::pass::tile_accumulate::{self, TileAccumulateKey};
@@ -27,6 +28,7 @@ pub(crate) struct Tiled {
     /// A texel for each format of a target, bound in place of those that a system has not.
     pub unwritten: [wgpu::TextureView; 4],
     emit: Variants<(), ComputeParts>,
+    depth_sort: Variants<DepthSortKey, ComputeParts>,
     project: Variants<TileProjectKey, ComputeParts>,
     sort: Variants<SortKey, ComputeParts>,
     bin: Variants<TileBinKey, ComputeParts>,
@@ -38,6 +40,7 @@ pub(crate) struct Tiled {
 #[derive(Debug)]
 pub(crate) struct TiledLayouts {
     pub emit: wgpu::BindGroupLayout,
+    pub depth_sort: wgpu::BindGroupLayout,
     pub project: wgpu::BindGroupLayout,
     pub sort: wgpu::BindGroupLayout,
     pub bin: wgpu::BindGroupLayout,
@@ -91,6 +94,7 @@ impl Tiled {
             limits: device.limits(),
             unwritten: tiled_formats().map(|format| storage_target(device, "haze unwritten", format, UVec2::ONE)),
             emit: variants!(emit, &[Some(&own.emit)]),
+            depth_sort: variants!(depth_sort, &with(&own.depth_sort)),
             project: variants!(tile_project, &with(&own.project)),
             sort: variants!(sort, &[Some(&own.sort)]),
             bin: variants!(tile_bin, &[Some(&own.bin)]),
@@ -112,6 +116,7 @@ impl Tiled {
     /// Pipelines compiled so far.
     pub fn pipeline_count(&self) -> usize {
         self.emit.len()
+            + self.depth_sort.len()
             + self.project.len()
             + self.sort.len()
             + self.bin.len()
@@ -123,7 +128,7 @@ impl Tiled {
     pub fn compile(&self, device: &wgpu::Device, keys: TiledKeys) -> Result<(), Error> {
         self.emit.check(device, ())?;
         self.project.check(device, keys.project)?;
-        [true, false].into_iter().flat_map(sort::keys).try_for_each(|key| self.sort.check(device, key))?;
+        self.compile_sort(device)?;
         for (sorted, few) in [(true, true), (true, false), (false, true), (false, false)] {
             tile_bin::keys(keys.accumulate.in_step, sorted, few).try_for_each(|key| self.bin.check(device, key))?;
         }
@@ -131,18 +136,37 @@ impl Tiled {
         self.accumulate.check(device, keys.accumulate)
     }
 
+    /// Compiles what puts a host's particles back to front.
+    pub fn compile_depth_sort(&self, device: &wgpu::Device) -> Result<(), Error> {
+        self.depth_sort.check(device, DepthSortKey::DepthKeys)?;
+        self.depth_sort.check(device, DepthSortKey::GatherParticles)?;
+        self.compile_sort(device)
+    }
+
+    fn compile_sort(&self, device: &wgpu::Device) -> Result<(), Error> {
+        [true, false].into_iter().flat_map(sort::keys).try_for_each(|key| self.sort.check(device, key))
+    }
+
     /// What evaluates emitters.
     pub fn emit(&self, device: &wgpu::Device) -> wgpu::ComputePipeline {
         self.emit.get(device, ())
     }
 
+    pub fn depth_sort(&self, device: &wgpu::Device, key: DepthSortKey) -> wgpu::ComputePipeline {
+        self.depth_sort.get(device, key)
+    }
+
+    /// What sorts so many keys.
+    pub fn sort(&self, device: &wgpu::Device, count: u32) -> Vec<(SortKey, wgpu::ComputePipeline)> {
+        sort::keys(count <= sort::FEW).map(|key| (key, self.sort.get(device, key))).collect()
+    }
+
     /// `sorts`: sprites come in any order, and it matters.
     pub fn pipelines(&self, device: &wgpu::Device, keys: TiledKeys, sorts: bool, count: u32) -> TiledPipelines {
-        let sort_key = |key| (key, self.sort.get(device, key));
         let bin_key = |key| (key, self.bin.get(device, key));
         TiledPipelines {
             project: self.project.get(device, keys.project),
-            sort: sorts.then(|| sort::keys(count <= sort::FEW).map(sort_key).collect()),
+            sort: sorts.then(|| self.sort(device, count)),
             bin: tile_bin::keys(keys.accumulate.in_step, sorts, count <= tile_bin::FEW).map(bin_key).collect(),
             refine: keys.refine().map(|key| self.refine.get(device, key)),
             accumulate: self.accumulate.get(device, keys.accumulate),
@@ -186,6 +210,7 @@ impl TiledLayouts {
         let [float, byte, weights, six_way] = tiled_formats().map(target);
         Self {
             emit: layout("haze emit inputs", &[uniform_of(size_of::<EmitterUniform>()), written]),
+            depth_sort: layout("haze depth_sort inputs", &[uniform, read, written, written, written]),
             project: layout("haze tile_project inputs", &[uniform, read, written, written, written, written]),
             sort: layout("haze sort inputs", &[uniform, read, read, written, written, written, written]),
             bin: layout(

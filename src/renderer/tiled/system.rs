@@ -122,7 +122,7 @@ impl TiledSystem {
             project: TileProject { pipeline: pipelines.project, inputs: project, particles: sprites.count },
             sort: pipelines.sort.map(|pipelines| Sort {
                 pipelines,
-                there_and_back: held.there_and_back.clone(),
+                there_and_back: held.sort.there_and_back.clone(),
                 keys: sprites.count,
             }),
             bin: TileBin { pipelines: pipelines.bin, inputs: held.bin.clone(), particles: sprites.count, bins, runs },

@@ -25,7 +25,8 @@ fn a_buffer_may_begin_anywhere() {
             mapped_at_creation: false,
         });
         gpu().queue.write_buffer(&buffer, 0, &bytes);
-        let particles = Particles::Buffer { buffer: &buffer, offset, count: stage.particles.len() as u32 };
+        let particles =
+            Particles::Buffer { buffer: &buffer, offset, count: stage.particles.len() as u32, is_sorted: true };
         host.draw_particles(gpu(), &stage, particles).map(|()| host.picture(gpu()).unwrap())
     };
     let first = draw(0).unwrap();
@@ -46,8 +47,9 @@ fn offsets_that_do_not_fit_are_refused() {
         usage: wgpu::BufferUsages::VERTEX,
         mapped_at_creation: false,
     });
-    let mut refused =
-        |offset, count| field(host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset, count }));
+    let mut refused = |offset, count| {
+        field(host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset, count, is_sorted: true }))
+    };
     assert_eq!(refused(2, 1), "systems[0].particles.offset");
     assert_eq!(refused(36, 2), "systems[0].particles");
     assert_eq!(refused(u64::MAX - 3, 2), "systems[0].particles");

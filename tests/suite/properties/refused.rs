@@ -56,7 +56,7 @@ fn bad_frames_are_refused_by_name_and_draw_nothing() {
     });
     let mut refused = |count, bounds| {
         stage.bounds = bounds;
-        let particles = Particles::Buffer { buffer: &buffer, offset: 0, count };
+        let particles = Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: true };
         refusal(&mut host, &stage, particles).to_string()
     };
     assert!(refused(2, None).starts_with("systems[0].bounds: None"));

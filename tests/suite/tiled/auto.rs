@@ -47,7 +47,8 @@ fn auto_takes_what_is_cheaper_and_says_why() {
     assert_eq!((choice.path, choice.reason), (Path::Raster, PathReason::BufferOfVertices));
     let bytes: Vec<u8> = bytemuck::cast_slice(&stage.particles).to_vec();
     let (buffer, count) = (storage_buffer(&bytes), stage.particles.len() as u32);
-    host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count }).unwrap();
+    host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: false })
+        .unwrap();
     let choice = host.renderer.path_choice(0).unwrap();
     assert!(choice.path == Path::Tiled && choice.to_string().contains("unknown, taken for 16"), "{choice}");
     // No choice, no reason.

@@ -35,7 +35,12 @@ fn lists_that_find_no_room_are_drawn_all_the_same() {
         host.renderer.context().walk_in_step(in_step);
         let mut picture = |path| {
             stage.settings.path = path;
-            host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count }).unwrap();
+            host.draw_particles(
+                gpu(),
+                &stage,
+                Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: false },
+            )
+            .unwrap();
             (host.picture(gpu()).unwrap(), host.renderer.memory_use().tiled.lists)
         };
         let (raster, _) = picture(Path::Raster);

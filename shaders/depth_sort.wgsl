@@ -1,0 +1,38 @@
+// depth_sort
+// What    Puts a host's particles back to front, for the paths that blend: keys to sort them by, and then each into its place.
+// Reads   particles; their numbers, sorted.
+// Writes  keys and numbers; particles.
+// Space   View space.
+
+#import "lib/bindings.wgsl"
+#import "lib/tiles.wgsl"
+
+@group(3) @binding(0) var<uniform> tiles: Tiles;
+// Two for each, as in Particle.
+@group(3) @binding(1) var<storage, read> particles: array<vec4f>;
+@group(3) @binding(2) var<storage, read_write> keys: array<u32>;
+@group(3) @binding(3) var<storage, read_write> numbers: array<u32>;
+@group(3) @binding(4) var<storage, read_write> sorted_particles: array<vec4f>;
+
+@compute @workgroup_size(64)
+fn depth_keys(@builtin(global_invocation_id) invocation: vec3u) {
+    let number = invocation.x;
+    if number >= tiles.count {
+        return;
+    }
+    let position = particles[tiles.first + 2u * number].xyz;
+    let view_z = (view.view_from_world * vec4f(position, 1.0)).z;
+    keys[number] = ~front_to_back_bits(view_z);
+    numbers[number] = number;
+}
+
+@compute @workgroup_size(64)
+fn gather_particles(@builtin(global_invocation_id) invocation: vec3u) {
+    let place = invocation.x;
+    if place >= tiles.count {
+        return;
+    }
+    let at = tiles.first + 2u * numbers[place];
+    sorted_particles[2u * place] = particles[at];
+    sorted_particles[2u * place + 1u] = particles[at + 1u];
+}

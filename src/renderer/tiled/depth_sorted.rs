@@ -1,0 +1,96 @@
+//! Where a host's particles are put back to front on the GPU.
+
+use super::buffers::{Part, bind};
+use super::shared::Tiled;
+use super::sort_buffers::SortBuffers;
+use crate::formula::uniforms::TilesUniform;
+use crate::frame::Particle;
+use crate::renderer::gpu::Gpu;
+use crate::renderer::gpu::record::uniform_buffer;
+use crate::renderer::gpu::spare::Spare;
+use crate::renderer::memory::TiledMemory;
+use crate::renderer::pass::depth_sort::{DepthSort, DepthSortKey};
+use crate::renderer::pass::sort::{BLOCK, Sort};
+use crate::renderer::pass::sprites::Sprites;
+
+/// The sorted particles of one system, kept from frame to frame.
+#[derive(Debug, Default)]
+pub(crate) struct DepthSorted {
+    held: Option<Held>,
+    spare: Spare,
+}
+
+#[derive(Debug)]
+struct Held {
+    most: u32,
+    uniform: wgpu::Buffer,
+    sort: SortBuffers,
+    particles: wgpu::Buffer,
+    /// With the host's own buffer, made anew when it is another.
+    inputs: Option<(Part, wgpu::BindGroup)>,
+}
+
+impl DepthSorted {
+    /// Readies the buffers and the pass that fills them: from these sprites to those.
+    pub fn write(&mut self, gpu: &Gpu<'_>, tiled: &Tiled, sprites: &Sprites) -> (Sprites, DepthSort) {
+        let count = sprites.count;
+        let held = self.held.as_ref().map_or(0, |held| held.most);
+        let gives_back = self.spare.outlasts(count.next_power_of_two() <= held / 4);
+        if count > held || gives_back {
+            self.held = None;
+        }
+        let held = self.held.get_or_insert_with(|| Held::new(gpu.device, tiled, count.next_power_of_two()));
+        let part = Part::new(&tiled.limits, sprites);
+        let uniform =
+            TilesUniform { count, first: part.first, blocks: count.div_ceil(BLOCK), ..TilesUniform::default() };
+        gpu.queue.write_buffer(&held.uniform, 0, bytemuck::bytes_of(&uniform));
+        let sorted = Sprites { buffer: held.particles.clone(), offset: 0, is_sorted: true, ..*sprites };
+        let sort = DepthSort {
+            depth_keys: tiled.depth_sort(gpu.device, DepthSortKey::DepthKeys),
+            sort: Sort {
+                pipelines: tiled.sort(gpu.device, count),
+                there_and_back: held.sort.there_and_back.clone(),
+                keys: count,
+            },
+            gather_particles: tiled.depth_sort(gpu.device, DepthSortKey::GatherParticles),
+            inputs: held.bind(gpu.device, tiled, part),
+            particles: count,
+        };
+        (sorted, sort)
+    }
+
+    /// Bytes held.
+    pub fn memory(&self) -> TiledMemory {
+        self.held.as_ref().map_or(TiledMemory::default(), |held| {
+            let [keys, counts] = held.sort.bytes();
+            TiledMemory { sorted: held.particles.size() + held.uniform.size(), keys, counts, ..TiledMemory::default() }
+        })
+    }
+}
+
+impl Held {
+    fn new(device: &wgpu::Device, tiled: &Tiled, most: u32) -> Self {
+        let uniform = uniform_buffer(device, "haze depth_sort", size_of::<TilesUniform>() as u64);
+        let particles = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("haze sorted particles"),
+            size: u64::from(most) * size_of::<Particle>() as u64,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::VERTEX,
+            mapped_at_creation: false,
+        });
+        Self { most, sort: SortBuffers::new(device, tiled, &uniform, most), uniform, particles, inputs: None }
+    }
+
+    fn bind(&mut self, device: &wgpu::Device, tiled: &Tiled, part: Part) -> wgpu::BindGroup {
+        match &self.inputs {
+            Some((bound, group)) if *bound == part => group.clone(),
+            _ => {
+                let own = [self.sort.keys(), self.sort.numbers(), &self.particles];
+                let resources = [self.uniform.as_entire_binding(), part.binding()];
+                let resources = resources.into_iter().chain(own.map(wgpu::Buffer::as_entire_binding));
+                let group = bind(device, &tiled.layouts.depth_sort, resources);
+                self.inputs = Some((part, group.clone()));
+                group
+            }
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! What a sort works on.
+
+use super::buffers::{WORD, bind, storage};
+use super::shared::Tiled;
+use crate::renderer::pass::sort::{BLOCK, DIGITS};
+
+/// Keys, the numbers that go with them, and what is counted.
+#[derive(Debug)]
+pub(super) struct SortBuffers {
+    /// Two pairs, sorted by turns: the first is where they begin and end.
+    keys: [wgpu::Buffer; 2],
+    numbers: [wgpu::Buffer; 2],
+    digit_counts: wgpu::Buffer,
+    digit_totals: wgpu::Buffer,
+    pub there_and_back: [wgpu::BindGroup; 2],
+}
+
+impl SortBuffers {
+    /// For so many keys. `uniform` is bound with them.
+    pub fn new(device: &wgpu::Device, tiled: &Tiled, uniform: &wgpu::Buffer, most: u32) -> Self {
+        let words = |name, count| storage(device, name, count, WORD);
+        let keys = ["haze sort keys", "haze sort keys, sorted"].map(|name| words(name, most));
+        let numbers = ["haze sort numbers", "haze sort numbers, sorted"].map(|name| words(name, most));
+        let digit_counts = words("haze digit counts", most.div_ceil(BLOCK) * DIGITS);
+        let digit_totals = words("haze digit totals", DIGITS);
+        let there_and_back = [(0, 1), (1, 0)].map(|(from, to)| {
+            let buffers = [uniform, &keys[from], &numbers[from], &keys[to], &numbers[to], &digit_counts, &digit_totals];
+            bind(device, &tiled.layouts.sort, buffers.map(wgpu::Buffer::as_entire_binding))
+        });
+        Self { keys, numbers, digit_counts, digit_totals, there_and_back }
+    }
+
+    pub fn keys(&self) -> &wgpu::Buffer {
+        &self.keys[0]
+    }
+
+    pub fn numbers(&self) -> &wgpu::Buffer {
+        &self.numbers[0]
+    }
+
+    /// Bytes of keys and numbers, and of counts.
+    pub fn bytes(&self) -> [u64; 2] {
+        let keys = self.keys.iter().chain(&self.numbers).map(wgpu::Buffer::size).sum();
+        [keys, self.digit_counts.size() + self.digit_totals.size()]
+    }
+}

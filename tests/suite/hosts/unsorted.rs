@@ -1,0 +1,119 @@
+//! A host's particles in any order, which the GPU sorts for the paths that blend.
+
+use glam::vec3;
+use haze::headless::Headless;
+use haze::settings::*;
+use haze::{Bounds, Particle, Particles, wgpu};
+
+use super::{SIZE, field};
+use crate::common::{gpu, has_tiles};
+use crate::creations;
+use crate::host::Host;
+use crate::stage::Stage;
+
+const BOUNDS: Bounds = Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) };
+
+/// With bytes before the first.
+fn buffer(gpu: &Headless, particles: &[Particle], offset: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    let mut bytes = vec![0x7f; offset as usize];
+    bytes.extend_from_slice(bytemuck::cast_slice(particles));
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: bytes.len() as u64,
+        usage: usage | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    gpu.queue.write_buffer(&buffer, 0, &bytes);
+    buffer
+}
+
+const READ: wgpu::BufferUsages = wgpu::BufferUsages::VERTEX.union(wgpu::BufferUsages::STORAGE);
+
+/// Many of the stage's, several at one depth, some hidden.
+fn many(stage: &Stage, count: usize) -> Vec<Particle> {
+    let one = |index: usize| {
+        let mut particle = stage.particles[index % stage.particles.len()];
+        particle.position.x += 1.0e-4 * index as f32;
+        particle.amount *= if index.is_multiple_of(7) { 0.0 } else { 0.1 };
+        particle
+    };
+    (0..count).map(one).collect()
+}
+
+#[test]
+fn particles_in_any_order_are_sorted_where_they_lie() {
+    if !has_tiles() {
+        return;
+    }
+    let mut stage = Stage::new(SIZE);
+    stage.bounds = Some(BOUNDS);
+    for path in [Path::Raster, Path::Forward] {
+        stage.settings.path = path;
+        let mut host = Host::new(gpu(), &stage).unwrap();
+        // One block of the sort, several that count for themselves, and more.
+        for (count, offset) in [(200, 0), (3000, 16), (9000, 272)] {
+            let particles = many(&stage, count);
+            let mut drawn = |particles: &[Particle], is_sorted| {
+                let buffer = buffer(gpu(), particles, offset, READ);
+                let particles = Particles::Buffer { buffer: &buffer, offset, count: count as u32, is_sorted };
+                host.draw_particles(gpu(), &stage, particles).unwrap();
+                host.picture(gpu()).unwrap()
+            };
+            let (sorted, as_they_lie) = (drawn(&particles, false), drawn(&particles, true));
+            assert!(as_they_lie != sorted, "{count}, {path:?}: the order makes no difference");
+            // The camera looks along z. Those at one depth stay as they are.
+            let mut back_to_front = particles;
+            back_to_front.sort_by(|a, b| a.position.z.total_cmp(&b.position.z));
+            assert!(drawn(&back_to_front, true) == sorted, "{count}, {path:?}");
+        }
+    }
+    gpu().check().unwrap();
+}
+
+#[test]
+fn steady_frames_of_unsorted_particles_create_nothing() {
+    if !has_tiles() {
+        return;
+    }
+    let mut stage = Stage::new(SIZE);
+    stage.bounds = Some(BOUNDS);
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    let buffer = buffer(gpu(), &many(&stage, 500), 0, READ);
+    let mut draw = |count| {
+        let particles = Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: false };
+        host.draw_particles(gpu(), &stage, particles).unwrap();
+    };
+    draw(500);
+    assert_eq!(creations::count(|| (490..495).for_each(&mut draw)), 0);
+    let held = host.renderer.memory_use().tiled;
+    assert!(held.sorted >= 500 * 32 && held.keys >= 500 * 16 && held.lists == 0, "{held:?}");
+    // What is not sorted any more gives its buffers back.
+    for _ in 0..130 {
+        host.draw(gpu(), &stage).unwrap();
+    }
+    assert_eq!(host.renderer.memory_use().tiled.total(), 0);
+}
+
+#[test]
+fn what_cannot_be_sorted_is_refused() {
+    let mut stage = Stage::new(SIZE);
+    stage.bounds = Some(BOUNDS);
+    let refused = |gpu: &Headless, stage: &Stage, usage, offset| {
+        let buffer = buffer(gpu, &stage.particles, offset, usage);
+        let count = stage.particles.len() as u32;
+        let particles = Particles::Buffer { buffer: &buffer, offset, count, is_sorted: false };
+        Host::new(gpu, stage).unwrap().draw_particles(gpu, stage, particles)
+    };
+    let webgl2 = Headless::with(wgpu::Limits::downlevel_webgl2_defaults(), wgpu::Features::empty()).unwrap();
+    let vertices = wgpu::BufferUsages::VERTEX;
+    assert_eq!(field(refused(&webgl2, &stage, vertices, 0)), "systems[0].particles.is_sorted");
+    if has_tiles() {
+        assert_eq!(field(refused(gpu(), &stage, vertices, 0)), "systems[0].particles");
+        assert_eq!(field(refused(gpu(), &stage, READ, 4)), "systems[0].particles.offset");
+    }
+    // Where nothing depends on the order, any will do.
+    stage.settings.accumulate.order = Order::Weighted;
+    for gpu in [&webgl2, gpu()] {
+        refused(gpu, &stage, vertices, 4).unwrap();
+    }
+}
