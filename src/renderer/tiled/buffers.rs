@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::shared::Tiled;
 use super::sort_buffers::SortBuffers;
+use super::storage::{WORD, bind, storage};
 use crate::formula::uniforms::TilesUniform;
 use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::record::uniform_buffer;
@@ -14,9 +15,8 @@ use crate::settings::AccumulationFormat;
 
 /// Bytes of a sprite: TileSprite in `shaders/lib/tile_sprite.wgsl`.
 pub(crate) const SPRITE: u64 = 64;
-/// Bytes of a packed rectangle, and of a key, number or count.
+/// Bytes of a packed rectangle.
 const RECT: u64 = 8;
-pub(super) const WORD: u64 = 4;
 /// Bytes that `first` counts in.
 pub(crate) const PARTICLE_STEP: u64 = 16;
 
@@ -219,25 +219,4 @@ impl Part {
             size: wgpu::BufferSize::new(*size),
         })
     }
-}
-
-/// A buffer of so many things of so many bytes.
-pub(super) fn storage(device: &wgpu::Device, name: &str, count: u32, bytes: u64) -> wgpu::Buffer {
-    device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(name),
-        size: u64::from(count) * bytes,
-        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    })
-}
-
-/// A bind group of resources in the order of its layout.
-pub(super) fn bind<'a>(
-    device: &wgpu::Device,
-    layout: &wgpu::BindGroupLayout,
-    resources: impl IntoIterator<Item = wgpu::BindingResource<'a>>,
-) -> wgpu::BindGroup {
-    let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
-    let entries: Vec<_> = (0..).zip(resources).map(entry).collect();
-    device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("haze tiled"), layout, entries: &entries })
 }

@@ -1,8 +1,9 @@
 //! Where a host's particles are put back to front on the GPU.
 
-use super::buffers::{Part, bind};
+use super::buffers::Part;
 use super::shared::Tiled;
 use super::sort_buffers::SortBuffers;
+use super::storage::bind;
 use crate::formula::uniforms::TilesUniform;
 use crate::frame::Particle;
 use crate::renderer::gpu::Gpu;

@@ -1,7 +1,7 @@
 //! Where the particles of an emitter are evaluated on the GPU.
 
-use super::buffers::bind;
 use super::shared::Tiled;
+use super::storage::bind;
 use crate::formula::uniforms::EmitterUniform;
 use crate::frame::{Emission, Particle};
 use crate::renderer::gpu::Gpu;

@@ -6,6 +6,7 @@ mod emission;
 mod passes;
 mod shared;
 mod sort_buffers;
+mod storage;
 mod system;
 
 pub(crate) use buffers::{PARTICLE_STEP, SPRITE};

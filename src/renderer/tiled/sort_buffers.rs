@@ -1,7 +1,7 @@
 //! What a sort works on.
 
-use super::buffers::{WORD, bind, storage};
 use super::shared::Tiled;
+use super::storage::{WORD, bind, storage};
 use crate::renderer::pass::sort::{BLOCK, DIGITS};
 
 /// Keys, the numbers that go with them, and what is counted.

@@ -5,9 +5,10 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use glam::UVec2;
 
-use super::buffers::{Capacity, Held, Part, WORD};
+use super::buffers::{Capacity, Held, Part};
 use super::passes::TiledPasses;
 use super::shared::{Tiled, TiledKeys};
+use super::storage::WORD;
 use crate::formula::uniforms::TilesUniform;
 use crate::renderer::auto::PathLoad;
 use crate::renderer::gpu::Gpu;
