@@ -29,6 +29,9 @@ enum Step {
     Scatter,
 }
 
+/// Pipelines at the most.
+pub(crate) const STEPS: usize = 3 * TURNS as usize;
+
 /// All of them, in order. `few`: no more keys than [`FEW`].
 pub(crate) fn keys(few: bool) -> impl Iterator<Item = SortKey> {
     let each_turn: &[Step] = if few { &[Step::Scatter] } else { &[Step::CountDigits, Step::SumCounts, Step::Scatter] };
@@ -51,7 +54,7 @@ pub(crate) fn describe(key: SortKey) -> ComputeParts {
 #[derive(Debug)]
 pub(crate) struct Sort {
     /// As [`keys`].
-    pub pipelines: Vec<(SortKey, wgpu::ComputePipeline)>,
+    pub pipelines: [Option<(SortKey, wgpu::ComputePipeline)>; STEPS],
     /// From the first pair of buffers to the second, and back.
     pub there_and_back: [wgpu::BindGroup; 2],
     pub keys: u32,
@@ -59,7 +62,7 @@ pub(crate) struct Sort {
 
 impl Sort {
     pub fn record(&self, pass: &mut wgpu::ComputePass<'_>) {
-        for (key, pipeline) in &self.pipelines {
+        for (key, pipeline) in self.pipelines.iter().flatten() {
             let workgroups = match key {
                 SortKey { step: Step::SumCounts, .. } => DIGITS,
                 SortKey { few: true, .. } => self.keys.div_ceil(DIGITS),

@@ -28,6 +28,9 @@ enum Step {
     FillAlone,
 }
 
+/// Pipelines at the most.
+pub(crate) const STEPS: usize = 4;
+
 /// All of them, in order. `in_step`: workgroups add up together. `sorted`: the hidden sprites are last. `few`: no more than [`FEW`].
 pub(crate) fn keys(in_step: bool, sorted: bool, few: bool) -> impl Iterator<Item = TileBinKey> {
     let steps: &[Step] = match (in_step, few) {
@@ -59,7 +62,7 @@ pub(crate) fn describe(key: TileBinKey) -> ComputeParts {
 #[derive(Debug)]
 pub(crate) struct TileBin {
     /// As [`keys`].
-    pub pipelines: Vec<(TileBinKey, wgpu::ComputePipeline)>,
+    pub pipelines: [Option<(TileBinKey, wgpu::ComputePipeline)>; STEPS],
     pub inputs: wgpu::BindGroup,
     pub particles: u32,
     pub bins: u32,
@@ -69,7 +72,7 @@ pub(crate) struct TileBin {
 impl TileBin {
     pub fn record(&self, pass: &mut wgpu::ComputePass<'_>) {
         pass.set_bind_group(0, &self.inputs, &[]);
-        for (key, pipeline) in &self.pipelines {
+        for (key, pipeline) in self.pipelines.iter().flatten() {
             let (x, y) = match key.step {
                 Step::Gather => (self.particles.div_ceil(64), 1),
                 Step::CountSprites | Step::Fill => (self.bins.div_ceil(64), self.runs),

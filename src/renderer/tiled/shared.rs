@@ -63,11 +63,14 @@ impl TiledKeys {
     }
 }
 
+/// As [`sort::keys`]. No list that grows: frames allocate nothing for it.
+type SortPipelines = [Option<(SortKey, wgpu::ComputePipeline)>; sort::STEPS];
+
 /// The pipelines of one system.
 pub(crate) struct TiledPipelines {
     pub project: wgpu::ComputePipeline,
-    pub sort: Option<Vec<(SortKey, wgpu::ComputePipeline)>>,
-    pub bin: Vec<(TileBinKey, wgpu::ComputePipeline)>,
+    pub sort: Option<SortPipelines>,
+    pub bin: [Option<(TileBinKey, wgpu::ComputePipeline)>; tile_bin::STEPS],
     /// Where invocations walk alone.
     pub refine: Option<wgpu::ComputePipeline>,
     pub accumulate: wgpu::ComputePipeline,
@@ -157,17 +160,19 @@ impl Tiled {
     }
 
     /// What sorts so many keys.
-    pub fn sort(&self, device: &wgpu::Device, count: u32) -> Vec<(SortKey, wgpu::ComputePipeline)> {
-        sort::keys(count <= sort::FEW).map(|key| (key, self.sort.get(device, key))).collect()
+    pub fn sort(&self, device: &wgpu::Device, count: u32) -> SortPipelines {
+        let mut keys = sort::keys(count <= sort::FEW).map(|key| (key, self.sort.get(device, key)));
+        std::array::from_fn(|_| keys.next())
     }
 
     /// `sorts`: sprites come in any order, and it matters.
     pub fn pipelines(&self, device: &wgpu::Device, keys: TiledKeys, sorts: bool, count: u32) -> TiledPipelines {
-        let bin_key = |key| (key, self.bin.get(device, key));
+        let bin_keys = tile_bin::keys(keys.accumulate.in_step, sorts, count <= tile_bin::FEW);
+        let mut bin = bin_keys.map(|key| (key, self.bin.get(device, key)));
         TiledPipelines {
             project: self.project.get(device, keys.project),
             sort: sorts.then(|| self.sort(device, count)),
-            bin: tile_bin::keys(keys.accumulate.in_step, sorts, count <= tile_bin::FEW).map(bin_key).collect(),
+            bin: std::array::from_fn(|_| bin.next()),
             refine: keys.refine().map(|key| self.refine.get(device, key)),
             accumulate: self.accumulate.get(device, keys.accumulate),
         }
