@@ -214,32 +214,48 @@ fn overdraw(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
         groups.push(group(shot, format!("{deep} layers of {alpha}"), f64::from(deep)));
     }
     // Many small ones: what a sprite costs counts as well.
-    let crowds: &[(u32, f32, f32)] = if quick {
-        &[(4096, 156.0, 0.1)]
+    let crowds: &[(u32, f32, f32, Reach)] = if quick {
+        &[(4096, 156.0, 0.1, FILLS)]
     } else {
         &[
-            (1024, 14.0, 0.1),
-            (4096, 64.0, 0.1),
-            (4096, 156.0, 0.1),
-            (4096, 156.0, 0.3),
-            (16384, 627.0, 0.1),
-            (32768, 1024.0, 0.1),
+            (1024, 14.0, 0.1, FILLS),
+            (4096, 64.0, 0.1, FILLS),
+            (4096, 64.0, 0.1, GOES_ON),
+            (4096, 156.0, 0.1, FILLS),
+            (4096, 156.0, 0.3, FILLS),
+            (16384, 627.0, 0.1, FILLS),
+            (32768, 1024.0, 0.1, FILLS),
+            (32768, 1024.0, 0.1, GOES_ON),
         ]
     };
-    for &(count, deep, alpha) in crowds {
-        let shot = of_alpha(crowd(size, count, deep)?, alpha);
-        groups.push(group(shot, format!("{count} small sprites, {deep} deep, of {alpha}"), f64::from(deep)));
+    for &(count, deep, alpha, reach) in crowds {
+        let shot = of_alpha(crowd(size, count, deep, reach)?, alpha);
+        let beyond = if reach.pictures > 1.0 { ", on beyond the picture" } else { "" };
+        groups.push(group(shot, format!("{count} small sprites, {deep} deep, of {alpha}{beyond}"), f64::from(deep)));
     }
     Ok(groups)
 }
 
+/// How far a crowd reaches.
+#[derive(Clone, Copy)]
+struct Reach {
+    pictures: f32,
+    /// How much of the picture a sprite of `layers` covers, on the average: not all of its sides are in it.
+    covers: f32,
+}
+
+/// Thin where the picture ends.
+const FILLS: Reach = Reach { pictures: 1.0, covers: 0.437 };
+/// As deep there as anywhere.
+const GOES_ON: Reach = Reach { pictures: 1.6, covers: 0.265 };
+
 /// So many small sprites all over the picture, about so many layers deep.
-fn crowd(size: UVec2, count: u32, deep: f32) -> Result<Shot, Error> {
+fn crowd(size: UVec2, count: u32, deep: f32, reach: Reach) -> Result<Shot, Error> {
     let mut shot = layers(size, count, 0.1)?;
     for system in &mut shot.preset.systems {
-        (system.emitter.duration, system.emitter.extent) = (1.0, Vec3::new(2.0, 1.1, 0.8));
-        // Those of `layers`, not all of whose sides are in the picture, cover 0.437 of it.
-        system.settings.sprite.size *= (deep / (0.437 * count as f32)).sqrt();
+        let extent = Vec3::new(2.0 * reach.pictures, 1.1 * reach.pictures, 0.8);
+        (system.emitter.duration, system.emitter.extent) = (1.0, extent);
+        system.settings.sprite.size *= (deep / (reach.covers * count as f32)).sqrt();
     }
     Ok(shot)
 }
@@ -375,8 +391,8 @@ fn auto(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
             ("4 sprites", layers(size, 4, 0.1)?),
             ("64 sprites", layers(size, 64, 0.1)?),
             ("256 thick sprites", layers(size, 256, 0.3)?),
-            ("1024 small sprites", crowd(size, 1024, 9.3)?),
-            ("4096 small sprites", crowd(size, 4096, 103.0)?),
+            ("1024 small sprites", crowd(size, 1024, 9.3, FILLS)?),
+            ("4096 small sprites", crowd(size, 4096, 103.0, FILLS)?),
         ];
         for (sprites, shot) in &shots {
             for (&technique, scale) in techniques.iter().flat_map(|technique| [(technique, 1), (technique, 3)]) {
