@@ -2,7 +2,8 @@
 // What    Finds for every tile of a few texels, where invocations walk alone, which of its bin's sprites it may show something of:
 //         what is found once here, every texel would find there.
 // Reads   lists of bins, sprites, rectangles, reduced depth (or the host's own).
-// Writes  behind every list: of each batch of its sprites, a word for each part of the bin, a bit for each sprite.
+// Writes  behind every list: of each batch of its sprites, a word for each part of the bin, a bit for each sprite. Where all of the
+//         bin is opaque by then, all bits.
 
 #import "lib/tiles.wgsl"
 #import "lib/tile_sprite.wgsl"
@@ -20,6 +21,16 @@ var<workgroup> ends: array<f32, BATCH_ALONE>;
 var<workgroup> nearest_end: atomic<u32>;
 // Of each sprite of a batch: a bit for every part that it may be seen in.
 var<workgroup> marks: array<u32, BATCH_ALONE>;
+// Amounts of all sprites so far, in 256ths.
+var<workgroup> amounts: atomic<u32>;
+// Parts that walks are expected to leave before they come to more.
+var<workgroup> opaque_parts: atomic<u32>;
+
+// Walks stop where the smoke is opaque.
+override STOPS: bool = true;
+
+// What amounts add up to where hardly a texel is not opaque: sprites are half clear, and so the light is gone three times over.
+const ENOUGH: f32 = 32.0;
 
 // The farthest view depth at which texels show anything.
 fn shown_depth(low: vec2u, high: vec2u) -> f32 {
@@ -74,11 +85,19 @@ fn refine(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bi
     workgroupBarrier();
     atomicMin(&nearest_end, bitcast<u32>(end));
     workgroupBarrier();
-    for (var batch = 0u; batch < count; batch += BATCH_ALONE) {
+    var marked = 0u;
+    var is_opaque = any(first >= vec2u(system.target_size));
+    if is_opaque {
+        atomicAdd(&opaque_parts, 1u);
+    }
+    var batch = 0u;
+    for (; batch < count; batch += BATCH_ALONE) {
         let at = batch + local;
         var mark = 0u;
         if at < count {
-            mark = marks_of(lists[list.x + at], low, part);
+            let number = lists[list.x + at];
+            mark = marks_of(number, low, part);
+            atomicAdd(&amounts, u32(i32(sprites[number].amount * 256.0)));
         }
         marks[local] = mark;
         workgroupBarrier();
@@ -87,6 +106,20 @@ fn refine(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bi
             word |= ((marks[bit] >> local) & 1u) << bit;
         }
         lists[list.x + count + at] = word;
-        workgroupBarrier();
+        if STOPS && !is_sphere() && !is_opaque {
+            marked += countOneBits(word);
+            let mean = f32(atomicLoad(&amounts)) / f32(256u * min(batch + BATCH_ALONE, count));
+            is_opaque = f32(marked) * mean >= ENOUGH;
+            if is_opaque {
+                atomicAdd(&opaque_parts, 1u);
+            }
+        }
+        if workgroupUniformLoad(&opaque_parts) == BATCH_ALONE {
+            break;
+        }
+    }
+    // The few texels that do come to the rest look at all of it.
+    for (batch += BATCH_ALONE; batch < count; batch += BATCH_ALONE) {
+        lists[list.x + count + batch + local] = 0xffffffffu;
     }
 }

@@ -19,11 +19,14 @@ pub(crate) struct TileRefineKey {
     pub sprite: SpriteKey,
     /// Sprites are compared with the host's own depth, not the reduced one.
     pub host_depth: bool,
+    /// Walks end where a texel is opaque.
+    pub stops: bool,
 }
 
 /// The pipeline for a key.
 pub(crate) fn describe(key: TileRefineKey) -> ComputeParts {
-    ComputeParts { entry_point: "refine", constants: key.sprite.constants([switch("HOST_DEPTH", key.host_depth)]) }
+    let constants = key.sprite.constants([switch("HOST_DEPTH", key.host_depth), switch("STOPS", key.stops)]);
+    ComputeParts { entry_point: "refine", constants }
 }
 
 /// The pass for one system.

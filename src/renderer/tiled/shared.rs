@@ -58,8 +58,8 @@ pub(crate) struct TiledKeys {
 impl TiledKeys {
     /// None where workgroups walk in step: they read what their bin has.
     fn refine(&self) -> Option<TileRefineKey> {
-        let TileAccumulateKey { sprite, host_depth, in_step, .. } = self.accumulate;
-        (!in_step).then_some(TileRefineKey { sprite, host_depth })
+        let TileAccumulateKey { sprite, host_depth, in_step, stops, .. } = self.accumulate;
+        (!in_step).then_some(TileRefineKey { sprite, host_depth, stops })
     }
 }
 
