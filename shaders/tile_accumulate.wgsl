@@ -41,6 +41,8 @@ struct Texel {
     place: vec2f,
     ray: vec2f,
     scene: f32,
+    // View depth from where on sprites, and those behind them, are hidden.
+    end: f32,
     // Of all sprites in front, premultiplied: normals, or light from right, top and front where SIX_WAY.
     normals: vec3f,
     // Light from left, bottom and back.
@@ -55,6 +57,7 @@ fn begun_texel(place: vec2u) -> Texel {
     texel.ray = ray_through_texel(texel.place);
     texel.transmittance = 1.0;
     texel.scene = tested_view_depth(textureLoad(tested_depth, vec2i(place), 0).r);
+    texel.end = texel.scene + system.fade_through + tiles.hidden_after;
     return texel;
 }
 
@@ -77,9 +80,14 @@ fn with_sprite(texel: Texel, sprite: TileSprite, uv: vec2f, is_touched: bool) ->
     return next;
 }
 
-// Hidden sprites further on cannot be seen.
+// What is further on cannot be seen through what is there.
 fn is_done(texel: Texel) -> bool {
     return STOPS && texel.transmittance <= OPAQUE;
+}
+
+// Nor can it behind the scene, where no sprite further on begins nearer than `front`.
+fn is_done_before(texel: Texel, front: f32) -> bool {
+    return is_done(texel) || front > texel.end;
 }
 
 fn write_texel(place: vec2u, texel: Texel) {
@@ -113,8 +121,10 @@ const BATCH: u32 = 64u;
 var<workgroup> batch: array<TileSprite, BATCH>;
 // A bit for each of them.
 var<workgroup> touching: array<atomic<u32>, 2>;
-// 1 where a texel is not opaque.
+// 1 where a texel is not done.
 var<workgroup> open: atomic<u32>;
+// Where the first sprite of the batch begins.
+var<workgroup> front: f32;
 // Bits of the farthest view depth of the tile's scene, which is positive.
 var<workgroup> farthest: atomic<u32>;
 
@@ -142,7 +152,7 @@ fn in_step(
             atomicStore(&touching[0], 0u);
             atomicStore(&touching[1], 0u);
         }
-        if !(is_done(a) && is_done(b)) {
+        if !(is_done_before(a, front) && is_done_before(b, front)) {
             atomicStore(&open, 1u);
         }
         if workgroupUniformLoad(&open) == 0u {
@@ -153,6 +163,9 @@ fn in_step(
         if first + local < entries {
             // All sprites once more, where they are drawn often.
             let number = sprite_number(list, (first + local) % list.y);
+            if local == 0u {
+                front = sprite_front(sprites[number].centre_radius);
+            }
             // Most of a bin's sprites are elsewhere in it: no more is read of them.
             if rects_meet(rects[number], low, low + TILE) {
                 sprite = sprites[number];
@@ -205,11 +218,11 @@ fn touches(sprite: TileSprite, uv: vec2f) -> bool {
 
 // For CPUs, where a barrier costs more than it saves: every invocation walks alone, for a column of texels. llvmpipe takes both sides
 // of every branch, so nothing is tested here: tile_refine has found what the tile has something of. Its lanes are a row of columns,
-// and stay together, as LOADS_SPRITE needs it: no column leaves before all of them are opaque.
+// and stay together, as LOADS_SPRITE needs it: no column leaves before all of them are done.
 const STRIDE: u32 = 8u;
 
-// Opaque columns of each tile.
-var<workgroup> opaque_columns: array<atomic<u32>, 8>;
+// Columns of each tile that are done.
+var<workgroup> done_columns: array<atomic<u32>, 8>;
 
 @compute @workgroup_size(8, 8)
 fn alone(@builtin(global_invocation_id) invocation: vec3u, @builtin(local_invocation_id) local_place: vec3u) {
@@ -229,7 +242,7 @@ fn alone(@builtin(global_invocation_id) invocation: vec3u, @builtin(local_invoca
     let part = low % tiles.bin_side / (tiles.bin_side / PARTS);
     let length = words_of(list.y);
     let end = length * tiles.loops;
-    var is_opaque = false;
+    var is_column_done = false;
     var bits = 0u;
     var batch = 0u;
     var next = 0u;
@@ -243,6 +256,7 @@ fn alone(@builtin(global_invocation_id) invocation: vec3u, @builtin(local_invoca
         if bits == 0u {
             break;
         }
+        var last_front = 0.0;
         for (var count = 0u; count < STRIDE && bits != 0u; count++) {
             let sprite = sprites[sprite_number(list, batch + firstTrailingBit(bits))];
             bits &= bits - 1u;
@@ -254,13 +268,15 @@ fn alone(@builtin(global_invocation_id) invocation: vec3u, @builtin(local_invoca
             b = with_sprite(b, sprite, in_b, !is_done(b) && covers(in_b));
             c = with_sprite(c, sprite, in_c, !is_done(c) && covers(in_c));
             d = with_sprite(d, sprite, in_d, !is_done(d) && covers(in_d));
+            last_front = sprite_front(sprite.centre_radius);
         }
-        if STOPS {
-            if !is_opaque && is_done(a) && is_done(b) && is_done(c) && is_done(d) {
-                is_opaque = true;
-                atomicAdd(&opaque_columns[local_place.y], 1u);
+        if STOPS || is_flat() {
+            let above = is_done_before(a, last_front) && is_done_before(b, last_front);
+            if !is_column_done && above && is_done_before(c, last_front) && is_done_before(d, last_front) {
+                is_column_done = true;
+                atomicAdd(&done_columns[local_place.y], 1u);
             }
-            if atomicLoad(&opaque_columns[local_place.y]) == columns {
+            if atomicLoad(&done_columns[local_place.y]) == columns {
                 break;
             }
         }

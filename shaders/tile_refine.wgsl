@@ -2,8 +2,8 @@
 // What    Finds for every tile of a few texels, where invocations walk alone, which of its bin's sprites it may show something of:
 //         what is found once here, every texel would find there.
 // Reads   lists of bins, sprites, rectangles, reduced depth (or the host's own).
-// Writes  behind every list: of each batch of its sprites, a word for each part of the bin, a bit for each sprite. Where all of the
-//         bin is opaque by then, all bits.
+// Writes  behind every list: of each batch of its sprites, a word for each part of the bin, a bit for each sprite. None where all
+//         the rest is hidden; all where the part is opaque before it.
 
 #import "lib/tiles.wgsl"
 #import "lib/tile_sprite.wgsl"
@@ -23,8 +23,8 @@ var<workgroup> nearest_end: atomic<u32>;
 var<workgroup> marks: array<u32, BATCH_ALONE>;
 // Amounts of all sprites so far, in 256ths.
 var<workgroup> amounts: atomic<u32>;
-// Parts that walks are expected to leave before they come to more.
-var<workgroup> opaque_parts: atomic<u32>;
+// Parts whose other words are known.
+var<workgroup> settled_parts: atomic<u32>;
 
 // Walks stop where the smoke is opaque.
 override STOPS: bool = true;
@@ -86,10 +86,12 @@ fn refine(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bi
     atomicMin(&nearest_end, bitcast<u32>(end));
     workgroupBarrier();
     var marked = 0u;
-    var is_opaque = any(first >= vec2u(system.target_size));
-    if is_opaque {
-        atomicAdd(&opaque_parts, 1u);
+    var is_settled = any(first >= vec2u(system.target_size));
+    if is_settled {
+        atomicAdd(&settled_parts, 1u);
     }
+    // What the words are from then on.
+    var rest = 0u;
     var batch = 0u;
     for (; batch < count; batch += BATCH_ALONE) {
         let at = batch + local;
@@ -106,20 +108,24 @@ fn refine(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bi
             word |= ((marks[bit] >> local) & 1u) << bit;
         }
         lists[list.x + count + at] = word;
-        if STOPS && !is_sphere() && !is_opaque {
+        if !is_settled {
+            // The few texels that do come to more look at all of it.
             marked += countOneBits(word);
             let mean = f32(atomicLoad(&amounts)) / f32(256u * min(batch + BATCH_ALONE, count));
-            is_opaque = f32(marked) * mean >= ENOUGH;
-            if is_opaque {
-                atomicAdd(&opaque_parts, 1u);
+            let is_opaque = STOPS && !is_sphere() && f32(marked) * mean >= ENOUGH;
+            // Behind the scene, and so are all further on.
+            let is_hidden = sprite_front(sprites[lists[list.x + batch]].centre_radius) > end + tiles.hidden_after;
+            is_settled = is_opaque || is_hidden;
+            if is_settled {
+                rest = select(0u, 0xffffffffu, is_opaque);
+                atomicAdd(&settled_parts, 1u);
             }
         }
-        if workgroupUniformLoad(&opaque_parts) == BATCH_ALONE {
+        if workgroupUniformLoad(&settled_parts) == BATCH_ALONE {
             break;
         }
     }
-    // The few texels that do come to the rest look at all of it.
     for (batch += BATCH_ALONE; batch < count; batch += BATCH_ALONE) {
-        lists[list.x + count + batch + local] = 0xffffffffu;
+        lists[list.x + count + batch + local] = rest;
     }
 }

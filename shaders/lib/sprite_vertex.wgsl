@@ -52,8 +52,11 @@ fn is_volumetric() -> bool {
 
 // How far in front of its centre and behind it a sprite reaches, metres.
 fn sprite_thickness(radius: f32) -> f32 {
-    let flat_sprite = TECHNIQUE == TECHNIQUE_HARD || TECHNIQUE == TECHNIQUE_SOFT || TECHNIQUE == TECHNIQUE_SOFT_LINEAR;
-    return select(radius, 0.0, flat_sprite);
+    return select(radius, 0.0, is_flat());
+}
+
+fn is_flat() -> bool {
+    return TECHNIQUE == TECHNIQUE_HARD || TECHNIQUE == TECHNIQUE_SOFT || TECHNIQUE == TECHNIQUE_SOFT_LINEAR;
 }
 
 // The view depth at which the hardware tests a sprite: no part of it is nearer.

@@ -17,9 +17,12 @@ struct Tiles {
     runs: u32,
     // Words that all lists together hold.
     capacity: u32,
+    // How much farther than a sprite that is hidden behind the scene all that follow it in a list are hidden, too, metres: 0 where lists
+    // are in order of view depth, else more than there are. (No flag: lavapipe of Mesa 22.3 crashes where a branch in a loop hangs on
+    // one in a uniform.)
+    hidden_after: f32,
     padding0: u32,
     padding1: u32,
-    padding2: u32,
 }
 
 // The key of what is not shown: behind all that is.

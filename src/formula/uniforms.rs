@@ -124,7 +124,8 @@ uniform! {
         rows: u32,
         runs: u32,
         capacity: u32,
-        padding: [u32; 3],
+        hidden_after: f32,
+        padding: [u32; 2],
     }
 }
 

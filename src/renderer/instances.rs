@@ -38,7 +38,9 @@ impl Instances {
         let particles = match particles {
             Particles::Buffer { buffer, offset, count, is_sorted } => {
                 self.buffer = None;
-                return (count > 0).then(|| Sprites { buffer: buffer.clone(), offset, count, loops, is_sorted });
+                let by_view_depth = false;
+                let sprites = Sprites { buffer: buffer.clone(), offset, count, loops, is_sorted, by_view_depth };
+                return (count > 0).then_some(sprites);
             }
             Particles::Slice(particles) => particles,
             Particles::Emission(emission) => {
@@ -71,7 +73,8 @@ impl Instances {
             })
         });
         gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&self.sorted));
-        Some(Sprites { buffer: buffer.clone(), offset: 0, count: self.sorted.len() as u32, loops, is_sorted })
+        let (buffer, count) = (buffer.clone(), self.sorted.len() as u32);
+        Some(Sprites { buffer, offset: 0, count, loops, is_sorted, by_view_depth: is_sorted })
     }
 
     /// What is drawn, in order; nothing of a host's buffer.

@@ -219,6 +219,8 @@ const INDIRECT: &[&str] = &[
     "begun_texel",
     "with_sprite",
     "is_done",
+    "is_done_before",
+    "is_flat",
     "write_texel",
     "sprite_number",
     "covers",

@@ -39,6 +39,10 @@ impl SpriteKey {
         }
     }
 
+    pub fn is_flat(&self) -> bool {
+        self.technique.is_flat()
+    }
+
     /// The overrides of the shared files, and a pass's own.
     pub fn constants<const N: usize>(&self, of_pass: [Constant; N]) -> Vec<Constant> {
         let shared = [
@@ -66,6 +70,8 @@ pub(crate) struct Sprites {
     pub loops: u32,
     /// They are known to be back to front.
     pub is_sorted: bool,
+    /// haze has put them so, by view depth; a host may have another notion of depth.
+    pub by_view_depth: bool,
 }
 
 impl Sprites {

@@ -45,7 +45,8 @@ impl DepthSorted {
         let uniform =
             TilesUniform { count, first: part.first, blocks: count.div_ceil(BLOCK), ..TilesUniform::default() };
         gpu.queue.write_buffer(&held.uniform, 0, bytemuck::bytes_of(&uniform));
-        let sorted = Sprites { buffer: held.particles.clone(), offset: 0, is_sorted: true, ..*sprites };
+        let buffer = held.particles.clone();
+        let sorted = Sprites { buffer, offset: 0, is_sorted: true, by_view_depth: true, ..*sprites };
         let sort = DepthSort {
             depth_keys: tiled.depth_sort(gpu.device, DepthSortKey::DepthKeys),
             sort: Sort {

@@ -39,7 +39,8 @@ impl Emitted {
         }
         let held = self.held.get_or_insert_with(|| Held::new(gpu.device, tiled, needed));
         gpu.queue.write_buffer(&held.uniform, 0, bytemuck::bytes_of(&emission.uniform));
-        let sprites = Sprites { buffer: held.particles.clone(), offset: 0, count, loops, is_sorted: false };
+        let buffer = held.particles.clone();
+        let sprites = Sprites { buffer, offset: 0, count, loops, is_sorted: false, by_view_depth: false };
         Some((sprites, Emit { pipeline: tiled.emit(gpu.device), inputs: held.inputs.clone(), births: count }))
     }
 

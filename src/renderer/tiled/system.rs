@@ -36,6 +36,9 @@ const BIN_IN_STEP: u32 = 32;
 const BIN_OF_MANY: u32 = 64;
 const MANY: u32 = 1 << 16;
 
+/// Than any view depth, metres; twice as much still is a number.
+const FARTHER_THAN_ALL: f32 = 1.0e38;
+
 /// Along each side of a dispatch, on every device.
 const MOST_WORKGROUPS: u32 = 65535;
 
@@ -97,6 +100,8 @@ impl TiledSystem {
         let held = self.fit(gpu, tiled, needed.with_room(most));
         let capacity = held.capacity.entries;
         let particles = Part::new(&tiled.limits, sprites);
+        let sorts = !keys.project.weighted && !sprites.is_sorted;
+        let in_order = keys.project.sprite.is_flat() && (sorts || sprites.by_view_depth) && sprites.loops == 1;
         let uniform = TilesUniform {
             count: sprites.count,
             loops: sprites.loops,
@@ -107,10 +112,10 @@ impl TiledSystem {
             rows,
             runs,
             capacity,
-            padding: [0; 3],
+            hidden_after: if in_order { 0.0 } else { FARTHER_THAN_ALL },
+            padding: [0; 2],
         };
         gpu.queue.write_buffer(&held.uniform, 0, bytemuck::bytes_of(&uniform));
-        let sorts = !keys.project.weighted && !sprites.is_sorted;
         let pipelines = tiled.pipelines(gpu.device, keys, sorts, sprites.count);
         let project = held.bind_project(gpu, tiled, particles);
         let refine = pipelines.refine.map(|pipeline| {
