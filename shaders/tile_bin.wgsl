@@ -1,46 +1,21 @@
 // tile_bin
 // What    Lists, for every bin of the target, the sprites that touch it, front to back. Each list is as long as it need be; those
 //         that find no more room are left out, and their bins read all sprites instead.
-// Reads   sorted numbers, rectangles.
+// Reads   sorted numbers and rectangles.
 // Writes  lists of sprites, and where each begins.
 
 #import "lib/tiles.wgsl"
 #import "lib/scan.wgsl"
 
 @group(0) @binding(0) var<uniform> tiles: Tiles;
-@group(0) @binding(1) var<storage, read> keys: array<u32>;
-@group(0) @binding(2) var<storage, read> numbers: array<u32>;
-@group(0) @binding(3) var<storage, read> rects: array<vec2u>;
-@group(0) @binding(4) var<storage, read_write> sorted_rects: array<vec2u>;
+@group(0) @binding(1) var<storage, read> numbers: array<u32>;
+@group(0) @binding(2) var<storage, read> sorted_rects: array<vec2u>;
 // By bin, and by run in it: how many sprites there are, and then where they begin.
-@group(0) @binding(5) var<storage, read_write> counts: array<u32>;
-@group(0) @binding(6) var<storage, read_write> lists: array<u32>;
+@group(0) @binding(3) var<storage, read_write> counts: array<u32>;
+@group(0) @binding(4) var<storage, read_write> lists: array<u32>;
 // Where the bin's list begins, and its length.
-@group(0) @binding(7) var<storage, read_write> bins: array<vec2u>;
-@group(0) @binding(8) var<storage, read_write> tally: Tally;
-
-// Sprites come in order of their keys, and the hidden ones last.
-override SORTED: bool = true;
-
-// Sprites of a run. RUN in src/renderer/pass/tile_bin.rs.
-const RUN: u32 = 64u;
-
-@compute @workgroup_size(64)
-fn gather(@builtin(global_invocation_id) invocation: vec3u) {
-    let at = invocation.x;
-    if at >= tiles.count {
-        return;
-    }
-    sorted_rects[at] = rects[numbers[at]];
-    let is_last = at + 1u == tiles.count;
-    if !SORTED {
-        if is_last {
-            tally.shown = tiles.count;
-        }
-    } else if keys[at] != HIDDEN_KEY && (is_last || keys[min(at + 1u, tiles.count - 1u)] == HIDDEN_KEY) {
-        tally.shown = at + 1u;
-    }
-}
+@group(0) @binding(5) var<storage, read_write> bins: array<vec2u>;
+@group(0) @binding(6) var<storage, read_write> tally: Tally;
 
 fn low_of_bin(bin: u32) -> vec2u {
     return vec2u(bin % tiles.columns, bin / tiles.columns) * tiles.bin_side;
@@ -77,10 +52,12 @@ fn bin_list(length: u32, more: u32) -> vec2u {
 // One workgroup for each bin.
 @compute @workgroup_size(256)
 fn allocate(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bin: vec3u) {
+    // Those that count_sprites came to.
+    let runs = runs_of(tally.shown);
     var length = 0u;
-    for (var first = 0u; first < tiles.runs; first += SCAN_SIZE) {
+    for (var first = 0u; first < runs; first += SCAN_SIZE) {
         let at = bin.x * tiles.runs + first + local;
-        let is_inside = first + local < tiles.runs;
+        let is_inside = first + local < runs;
         var count = 0u;
         if is_inside {
             count = counts[at];

@@ -21,16 +21,16 @@ var<workgroup> ends: array<f32, BATCH_ALONE>;
 var<workgroup> nearest_end: atomic<u32>;
 // Of each sprite of a batch: a bit for every part that it may be seen in.
 var<workgroup> marks: array<u32, BATCH_ALONE>;
-// Amounts of all sprites so far, in 256ths.
-var<workgroup> amounts: atomic<u32>;
+// Optical depth of all sprites so far in the middle of the bin, about, in 256ths.
+var<workgroup> depth: atomic<u32>;
 // Parts whose other words are known.
 var<workgroup> settled_parts: atomic<u32>;
 
 // Walks stop where the smoke is opaque.
 override STOPS: bool = true;
 
-// What amounts add up to where hardly a texel is not opaque: sprites are half clear, and so the light is gone three times over.
-const ENOUGH: f32 = 32.0;
+// Optical depth of the middle of a bin where hardly a texel of it is not opaque: four times what a walk stops at.
+const OPAQUE_DEPTH: u32 = 28u;
 
 // The farthest view depth at which texels show anything.
 fn shown_depth(low: vec2u, high: vec2u) -> f32 {
@@ -71,6 +71,14 @@ fn marks_of(number: u32, low: vec2u, part: vec2u) -> u32 {
     return marks;
 }
 
+// What a sprite has at a texel, about: puffs are thick in the middle, and thin out.
+fn puff_amount(number: u32, texel: vec2f) -> f32 {
+    let sprite = sprites[number];
+    let place = 2.0 * uv_in_square(sprite, texel) - 1.0;
+    let thickness = max(1.0 - dot(place, place), 0.0);
+    return sprite.amount * thickness * thickness;
+}
+
 @compute @workgroup_size(32)
 fn refine(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bin: vec3u) {
     let list = bins[bin.x];
@@ -85,7 +93,6 @@ fn refine(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bi
     workgroupBarrier();
     atomicMin(&nearest_end, bitcast<u32>(end));
     workgroupBarrier();
-    var marked = 0u;
     var is_settled = any(first >= vec2u(system.target_size));
     if is_settled {
         atomicAdd(&settled_parts, 1u);
@@ -99,7 +106,7 @@ fn refine(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bi
         if at < count {
             let number = lists[list.x + at];
             mark = marks_of(number, low, part);
-            atomicAdd(&amounts, u32(i32(sprites[number].amount * 256.0)));
+            atomicAdd(&depth, u32(i32(256.0 * puff_amount(number, vec2f(low) + 0.5 * f32(tiles.bin_side)))));
         }
         marks[local] = mark;
         workgroupBarrier();
@@ -110,9 +117,7 @@ fn refine(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bi
         lists[list.x + count + at] = word;
         if !is_settled {
             // The few texels that do come to more look at all of it.
-            marked += countOneBits(word);
-            let mean = f32(atomicLoad(&amounts)) / f32(256u * min(batch + BATCH_ALONE, count));
-            let is_opaque = STOPS && !is_sphere() && f32(marked) * mean >= ENOUGH;
+            let is_opaque = STOPS && !is_sphere() && atomicLoad(&depth) >= 256u * OPAQUE_DEPTH;
             // Behind the scene, and so are all further on.
             let is_hidden = sprite_front(sprites[lists[list.x + batch]].centre_radius) > end + tiles.hidden_after;
             is_settled = is_opaque || is_hidden;

@@ -42,6 +42,14 @@ fn words_of(length: u32) -> u32 {
     return (length + BATCH_ALONE - 1u) / BATCH_ALONE * BATCH_ALONE;
 }
 
+// Sprites of a run. RUN in src/renderer/pass/tile_bin.rs.
+const RUN: u32 = 64u;
+
+// Runs of so many sprites.
+fn runs_of(count: u32) -> u32 {
+    return (count + RUN - 1u) / RUN;
+}
+
 // What a frame turns out to have.
 struct Tally {
     // Sprites to draw: the first of the sorted ones.

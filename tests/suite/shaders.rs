@@ -149,7 +149,9 @@ fn what_only_a_pipeline_shows_is_found_too() {
             "sort.wgsl" => "count_digits",
             "depth_sort.wgsl" => "depth_keys",
             "tile_project.wgsl" => "project",
-            "tile_bin.wgsl" => "gather",
+            "tile_gather.wgsl" => "gather",
+            "tile_bin.wgsl" if is_cpu => "allocate_alone",
+            "tile_bin.wgsl" => "list_few",
             // Only where invocations walk alone.
             "tile_refine.wgsl" if !is_cpu => continue,
             "tile_refine.wgsl" => "refine",
@@ -255,7 +257,7 @@ fn files_may_end_their_lines_and_begin_as_they_like() {
 fn what_is_no_folder_of_shaders_is_refused() {
     let expected = "expected accumulate.wgsl, depth_downsample.wgsl, depth_sort.wgsl, diffuse_bake.wgsl, emit.wgsl, \
                     forward.wgsl, light_target.wgsl, sort.wgsl, specular_scatter.wgsl, tile_accumulate.wgsl, tile_bin.wgsl, \
-                    tile_project.wgsl, tile_refine.wgsl, transfer.wgsl or a file of lib/ in it";
+                    tile_gather.wgsl, tile_project.wgsl, tile_refine.wgsl, transfer.wgsl or a file of lib/ in it";
     let said = |path: &Path| Sources::from_folder(path).unwrap_err().to_string();
     let folder = Folder::new();
     let path = folder.0.path();

@@ -13,6 +13,7 @@ pub(crate) mod specular_scatter;
 pub(crate) mod sprites;
 pub(crate) mod tile_accumulate;
 pub(crate) mod tile_bin;
+pub(crate) mod tile_gather;
 pub(crate) mod tile_project;
 pub(crate) mod tile_refine;
 pub(crate) mod transfer;

@@ -1,10 +1,10 @@
 //! tile_bin
 //! What: lists the sprites that touch a bin of the target, front to back, for every bin.
-//! Reads: sorted numbers, rectangles. Writes: lists, and where they begin.
+//! Reads: sorted numbers and rectangles. Writes: lists, and where they begin.
 
-use crate::renderer::gpu::pipeline::{ComputeParts, switch};
+use crate::renderer::gpu::pipeline::ComputeParts;
 
-/// Sprites that are put into bins by one invocation: RUN in `shaders/tile_bin.wgsl`.
+/// Sprites that are put into bins by one invocation: RUN in `shaders/lib/tiles.wgsl`.
 pub(crate) const RUN: u32 = 64;
 /// Sprites whose lists are made in one: bits of `touching` in `shaders/tile_bin.wgsl`.
 pub(crate) const FEW: u32 = 1 << 15;
@@ -13,12 +13,10 @@ pub(crate) const FEW: u32 = 1 << 15;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct TileBinKey {
     step: Step,
-    sorted: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Step {
-    Gather,
     CountSprites,
     ListFew,
     Allocate,
@@ -29,23 +27,22 @@ enum Step {
 }
 
 /// Pipelines at the most.
-pub(crate) const STEPS: usize = 4;
+pub(crate) const STEPS: usize = 3;
 
-/// All of them, in order. `in_step`: workgroups add up together. `sorted`: the hidden sprites are last. `few`: no more than [`FEW`].
-pub(crate) fn keys(in_step: bool, sorted: bool, few: bool) -> impl Iterator<Item = TileBinKey> {
+/// All of them, in order. `in_step`: workgroups add up together. `few`: no more sprites than [`FEW`].
+pub(crate) fn keys(in_step: bool, few: bool) -> impl Iterator<Item = TileBinKey> {
     let steps: &[Step] = match (in_step, few) {
-        (true, true) => &[Step::Gather, Step::ListFew],
-        (true, false) => &[Step::Gather, Step::CountSprites, Step::Allocate, Step::Fill],
-        (false, _) => &[Step::Gather, Step::CountAlone, Step::AllocateAlone, Step::FillAlone],
+        (true, true) => &[Step::ListFew],
+        (true, false) => &[Step::CountSprites, Step::Allocate, Step::Fill],
+        (false, _) => &[Step::CountAlone, Step::AllocateAlone, Step::FillAlone],
     };
-    steps.iter().map(move |&step| TileBinKey { step, sorted })
+    steps.iter().map(|&step| TileBinKey { step })
 }
 
 /// The pipeline for a key.
 pub(crate) fn describe(key: TileBinKey) -> ComputeParts {
     ComputeParts {
         entry_point: match key.step {
-            Step::Gather => "gather",
             Step::CountSprites => "count_sprites",
             Step::ListFew => "list_few",
             Step::Allocate => "allocate",
@@ -54,7 +51,7 @@ pub(crate) fn describe(key: TileBinKey) -> ComputeParts {
             Step::CountAlone => "count_alone",
             Step::FillAlone => "fill_alone",
         },
-        constants: vec![switch("SORTED", key.sorted)],
+        constants: Vec::new(),
     }
 }
 
@@ -64,8 +61,10 @@ pub(crate) struct TileBin {
     /// As [`keys`].
     pub pipelines: [Option<(TileBinKey, wgpu::ComputePipeline)>; STEPS],
     pub inputs: wgpu::BindGroup,
-    pub particles: u32,
+    /// Workgroups for the runs that are shown.
+    pub workgroups: wgpu::Buffer,
     pub bins: u32,
+    /// Of all sprites.
     pub runs: u32,
 }
 
@@ -73,15 +72,14 @@ impl TileBin {
     pub fn record(&self, pass: &mut wgpu::ComputePass<'_>) {
         pass.set_bind_group(0, &self.inputs, &[]);
         for (key, pipeline) in self.pipelines.iter().flatten() {
-            let (x, y) = match key.step {
-                Step::Gather => (self.particles.div_ceil(64), 1),
-                Step::CountSprites | Step::Fill => (self.bins.div_ceil(64), self.runs),
-                Step::Allocate | Step::ListFew => (self.bins, 1),
-                Step::AllocateAlone => (self.bins.div_ceil(64), 1),
-                Step::CountAlone | Step::FillAlone => (self.runs.div_ceil(8), 1),
-            };
             pass.set_pipeline(pipeline);
-            pass.dispatch_workgroups(x, y, 1);
+            match key.step {
+                // Of many some are out of sight, more often than not.
+                Step::CountSprites | Step::Fill => pass.dispatch_workgroups_indirect(&self.workgroups, 0),
+                Step::Allocate | Step::ListFew => pass.dispatch_workgroups(self.bins, 1, 1),
+                Step::AllocateAlone => pass.dispatch_workgroups(self.bins.div_ceil(64), 1, 1),
+                Step::CountAlone | Step::FillAlone => pass.dispatch_workgroups(self.runs.div_ceil(8), 1, 1),
+            }
         }
     }
 }

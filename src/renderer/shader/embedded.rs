@@ -26,6 +26,7 @@ pub(super) const SOURCES: &[(&str, &str)] = embed![
     "specular_scatter.wgsl",
     "tile_accumulate.wgsl",
     "tile_bin.wgsl",
+    "tile_gather.wgsl",
     "tile_project.wgsl",
     "tile_refine.wgsl",
     "transfer.wgsl",

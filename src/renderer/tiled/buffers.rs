@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::shared::Tiled;
 use super::sort_buffers::SortBuffers;
-use super::storage::{WORD, bind, storage};
+use super::storage::{WORD, bind, storage, workgroups};
 use crate::formula::uniforms::TilesUniform;
 use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::record::uniform_buffer;
@@ -26,6 +26,8 @@ pub(super) struct Held {
     pub capacity: Capacity,
     pub uniform: wgpu::Buffer,
     pub tally: wgpu::Buffer,
+    /// For the sprites that are shown.
+    pub workgroups: wgpu::Buffer,
     sprites: wgpu::Buffer,
     rects: wgpu::Buffer,
     pub sort: SortBuffers,
@@ -34,6 +36,7 @@ pub(super) struct Held {
     lists: wgpu::Buffer,
     bins: wgpu::Buffer,
     pub read_back: Arc<wgpu::Buffer>,
+    pub gather: wgpu::BindGroup,
     pub bin: wgpu::BindGroup,
     /// With the host's own things, made anew when they are others.
     project: Option<(Part, wgpu::BindGroup)>,
@@ -103,19 +106,23 @@ impl Held {
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
-        let buffers =
-            [&uniform, sort.keys(), sort.numbers(), &rects, &sorted_rects, &bin_counts, &lists, &bins, &tally];
-        let bin = bind(device, &tiled.layouts.bin, buffers.map(wgpu::Buffer::as_entire_binding));
+        let workgroups = workgroups(device, "haze bin workgroups");
+        let gather = [&uniform, sort.keys(), sort.numbers(), &rects, &sorted_rects, &tally, &workgroups];
+        let gather = bind(device, &tiled.layouts.gather, gather.map(wgpu::Buffer::as_entire_binding));
+        let bin = [&uniform, sort.numbers(), &sorted_rects, &bin_counts, &lists, &bins, &tally];
+        let bin = bind(device, &tiled.layouts.bin, bin.map(wgpu::Buffer::as_entire_binding));
         Self {
             capacity,
             sprites: storage("haze tile sprites", particles, SPRITE),
             read_back: Arc::new(read_back),
+            gather,
             bin,
             project: None,
             refine: None,
             accumulate: None,
             uniform,
             tally,
+            workgroups,
             rects,
             sort,
             sorted_rects,
@@ -131,7 +138,7 @@ impl Held {
         TiledMemory {
             sprites: bytes(&[&self.uniform, &self.sprites, &self.rects, &self.sorted_rects]),
             keys,
-            counts: counts + bytes(&[&self.bin_counts, &self.tally, &self.read_back]),
+            counts: counts + bytes(&[&self.bin_counts, &self.tally, &self.workgroups, &self.read_back]),
             lists: bytes(&[&self.lists, &self.bins]),
             ..TiledMemory::default()
         }

@@ -10,6 +10,7 @@ use crate::renderer::pass::Groups;
 use crate::renderer::pass::sort::Sort;
 use crate::renderer::pass::tile_accumulate::TileAccumulate;
 use crate::renderer::pass::tile_bin::TileBin;
+use crate::renderer::pass::tile_gather::TileGather;
 use crate::renderer::pass::tile_project::TileProject;
 use crate::renderer::pass::tile_refine::TileRefine;
 
@@ -19,6 +20,7 @@ pub(crate) struct TiledPasses {
     pub(super) groups: Groups,
     pub(super) project: TileProject,
     pub(super) sort: Option<Sort>,
+    pub(super) gather: TileGather,
     pub(super) bin: TileBin,
     pub(super) refine: Option<TileRefine>,
     pub(super) accumulate: TileAccumulate,
@@ -32,11 +34,16 @@ impl TiledPasses {
         encoder.clear_buffer(&self.tally, 0, None);
         self.project.record(&mut begin_compute(encoder, "tile_project", timing), &self.groups);
         self.sort.iter().for_each(|sort| sort.record(&mut begin_compute(encoder, "sort", timing)));
-        self.bin.record(&mut begin_compute(encoder, "tile_bin", timing));
+        self.record_bin(&mut begin_compute(encoder, "tile_bin", timing));
         let refine = self.refine.iter();
         refine.for_each(|refine| refine.record(&mut begin_compute(encoder, "tile_refine", timing), &self.groups));
         self.accumulate.record(&mut begin_compute(encoder, "tile_accumulate", timing), &self.groups);
         self.read_entries(encoder);
+    }
+
+    fn record_bin(&self, pass: &mut wgpu::ComputePass<'_>) {
+        self.gather.record(pass);
+        self.bin.record(pass);
     }
 
     /// Learns how long the lists would have been, for frames to come.

@@ -13,6 +13,7 @@ use crate::renderer::pass::emit;
 use crate::renderer::pass::sort::{self, SortKey};
 use crate::renderer::pass::tile_accumulate::{self, TileAccumulateKey};
 use crate::renderer::pass::tile_bin::{self, TileBinKey};
+use crate::renderer::pass::tile_gather::{self, TileGatherKey};
 use crate::renderer::pass::tile_project::{self, TileProjectKey};
 use crate::renderer::pass::tile_refine::{self, TileRefineKey};
 use crate::renderer::targets::{storage_target, tiled_formats};
@@ -31,6 +32,7 @@ pub(crate) struct Tiled {
     depth_sort: Variants<DepthSortKey, ComputeParts>,
     project: Variants<TileProjectKey, ComputeParts>,
     sort: Variants<SortKey, ComputeParts>,
+    gather: Variants<TileGatherKey, ComputeParts>,
     bin: Variants<TileBinKey, ComputeParts>,
     refine: Variants<TileRefineKey, ComputeParts>,
     accumulate: Variants<TileAccumulateKey, ComputeParts>,
@@ -43,6 +45,7 @@ pub(crate) struct TiledLayouts {
     pub depth_sort: wgpu::BindGroupLayout,
     pub project: wgpu::BindGroupLayout,
     pub sort: wgpu::BindGroupLayout,
+    pub gather: wgpu::BindGroupLayout,
     pub bin: wgpu::BindGroupLayout,
     pub refine: wgpu::BindGroupLayout,
     pub accumulate: wgpu::BindGroupLayout,
@@ -70,6 +73,7 @@ type SortPipelines = [Option<(SortKey, wgpu::ComputePipeline)>; sort::STEPS];
 pub(crate) struct TiledPipelines {
     pub project: wgpu::ComputePipeline,
     pub sort: Option<SortPipelines>,
+    pub gather: wgpu::ComputePipeline,
     pub bin: [Option<(TileBinKey, wgpu::ComputePipeline)>; tile_bin::STEPS],
     /// Where invocations walk alone.
     pub refine: Option<wgpu::ComputePipeline>,
@@ -100,6 +104,7 @@ impl Tiled {
             depth_sort: variants!(depth_sort, &with(&own.depth_sort)),
             project: variants!(tile_project, &with(&own.project)),
             sort: variants!(sort, &[Some(&own.sort)]),
+            gather: variants!(tile_gather, &[Some(&own.gather)]),
             bin: variants!(tile_bin, &[Some(&own.bin)]),
             refine: variants!(tile_refine, &with(&own.refine)),
             accumulate: variants!(tile_accumulate, &with(&own.accumulate)),
@@ -122,6 +127,7 @@ impl Tiled {
             + self.depth_sort.len()
             + self.project.len()
             + self.sort.len()
+            + self.gather.len()
             + self.bin.len()
             + self.refine.len()
             + self.accumulate.len()
@@ -132,8 +138,9 @@ impl Tiled {
         self.emit.check(device, ())?;
         self.project.check(device, keys.project)?;
         self.compile_sort(device)?;
-        for (sorted, few) in [(true, true), (true, false), (false, true), (false, false)] {
-            tile_bin::keys(keys.accumulate.in_step, sorted, few).try_for_each(|key| self.bin.check(device, key))?;
+        for either in [true, false] {
+            self.gather.check(device, TileGatherKey { sorted: either })?;
+            tile_bin::keys(keys.accumulate.in_step, either).try_for_each(|key| self.bin.check(device, key))?;
         }
         keys.refine().into_iter().try_for_each(|key| self.refine.check(device, key))?;
         self.accumulate.check(device, keys.accumulate)
@@ -167,11 +174,12 @@ impl Tiled {
 
     /// `sorts`: sprites come in any order, and it matters.
     pub fn pipelines(&self, device: &wgpu::Device, keys: TiledKeys, sorts: bool, count: u32) -> TiledPipelines {
-        let bin_keys = tile_bin::keys(keys.accumulate.in_step, sorts, count <= tile_bin::FEW);
+        let bin_keys = tile_bin::keys(keys.accumulate.in_step, count <= tile_bin::FEW);
         let mut bin = bin_keys.map(|key| (key, self.bin.get(device, key)));
         TiledPipelines {
             project: self.project.get(device, keys.project),
             sort: sorts.then(|| self.sort(device, count)),
+            gather: self.gather.get(device, TileGatherKey { sorted: sorts }),
             bin: std::array::from_fn(|_| bin.next()),
             refine: keys.refine().map(|key| self.refine.get(device, key)),
             accumulate: self.accumulate.get(device, keys.accumulate),
@@ -218,10 +226,8 @@ impl TiledLayouts {
             depth_sort: layout("haze depth_sort inputs", &[uniform, read, written, written, written]),
             project: layout("haze tile_project inputs", &[uniform, read, written, written, written, written]),
             sort: layout("haze sort inputs", &[uniform, read, read, written, written, written, written]),
-            bin: layout(
-                "haze tile_bin inputs",
-                &[uniform, read, read, read, written, written, written, written, written],
-            ),
+            gather: layout("haze tile_gather inputs", &[uniform, read, read, read, written, written, written]),
+            bin: layout("haze tile_bin inputs", &[uniform, read, read, written, written, written, written]),
             refine: layout("haze tile_refine inputs", &[uniform, read, read, read, depth, written]),
             accumulate: layout(
                 "haze tile_accumulate inputs",

@@ -13,6 +13,16 @@ pub(super) fn storage(device: &wgpu::Device, name: &str, count: u32, bytes: u64)
     })
 }
 
+/// How many workgroups a dispatch has, which shaders find.
+pub(super) fn workgroups(device: &wgpu::Device, name: &str) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(name),
+        size: 3 * WORD,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT,
+        mapped_at_creation: false,
+    })
+}
+
 /// A bind group of resources in the order of its layout.
 pub(super) fn bind<'a>(
     device: &wgpu::Device,

@@ -19,6 +19,7 @@ use crate::renderer::pass::sort::{BLOCK, Sort};
 use crate::renderer::pass::sprites::Sprites;
 use crate::renderer::pass::tile_accumulate::TileAccumulate;
 use crate::renderer::pass::tile_bin::{RUN, TileBin};
+use crate::renderer::pass::tile_gather::TileGather;
 use crate::renderer::pass::tile_project::TileProject;
 use crate::renderer::pass::tile_refine::{BATCH, TileRefine};
 use crate::renderer::targets::Beside;
@@ -131,7 +132,14 @@ impl TiledSystem {
                 there_and_back: held.sort.there_and_back.clone(),
                 keys: sprites.count,
             }),
-            bin: TileBin { pipelines: pipelines.bin, inputs: held.bin.clone(), particles: sprites.count, bins, runs },
+            gather: TileGather { pipeline: pipelines.gather, inputs: held.gather.clone(), particles: sprites.count },
+            bin: TileBin {
+                pipelines: pipelines.bin,
+                inputs: held.bin.clone(),
+                workgroups: held.workgroups.clone(),
+                bins,
+                runs,
+            },
             refine,
             accumulate: TileAccumulate { pipeline: pipelines.accumulate, inputs: accumulate, size, in_step },
             tally: held.tally.clone(),

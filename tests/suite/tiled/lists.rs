@@ -125,7 +125,7 @@ fn lists_of_more_than_32_bits_can_count_do_not_wrap() {
     let uniform = buffer(bytemuck::bytes_of(&tiles), uniform);
     let [counts, bins, tally] = [bytemuck::cast_slice(&lengths), &[0; 32], bytemuck::cast_slice(&[9_u32, 0])]
         .map(|bytes| buffer(bytes, storage));
-    let bound = [(0, &uniform), (5, &counts), (7, &bins), (8, &tally)];
+    let bound = [(0, &uniform), (3, &counts), (5, &bins), (6, &tally)];
     let entries = bound.map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
     let layout = pipeline.get_bind_group_layout(0);
     let group =
