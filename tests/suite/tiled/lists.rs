@@ -92,6 +92,39 @@ fn steady_frames_on_tiles_create_nothing() {
 }
 
 #[test]
+fn of_many_those_in_sight_are_listed() {
+    if !has_tiles() {
+        return;
+    }
+    let mut stage = stage(Technique::Soft);
+    stage.settings.path = Path::Tiled;
+    stage.bounds = Some(Bounds { min: vec3(-3.0, -2.0, -7.0), max: vec3(3.0, 2.0, -3.0) });
+    // More than one dispatch lists.
+    let small = |index: u32| Particle {
+        position: vec3(
+            (index % 200) as f32 * 0.02 - 2.0,
+            (index / 200) as f32 * 0.01 - 1.0,
+            -4.0 - (index % 7) as f32 * 0.3,
+        ),
+        radius: 0.03,
+        amount: 0.2,
+        ..Particle::default()
+    };
+    let shown: Vec<_> = (0..33_000).map(small).collect();
+    let behind = |particle: &Particle| Particle { position: particle.position * -1.0, ..*particle };
+    let hidden: Vec<_> = shown.iter().map(behind).collect();
+    let both = shown.iter().zip(&hidden).flat_map(|(shown, hidden)| [*shown, *hidden]).collect();
+    let mut host = Host::new(gpu(), &stage).unwrap();
+    host.renderer.context().walk_in_step(true);
+    let [shown, both, hidden, none] = [shown, both, hidden, Vec::new()].map(|particles| {
+        stage.particles = particles;
+        host.draw(gpu(), &stage).unwrap();
+        host.picture(gpu()).unwrap()
+    });
+    assert!(shown == both && hidden == none && shown != none);
+}
+
+#[test]
 fn lists_of_more_than_32_bits_can_count_do_not_wrap() {
     if !has_tiles() {
         return;
