@@ -7,7 +7,7 @@ use glam::camera::rh::proj::directx::perspective;
 use glam::{Mat4, UVec2, Vec3};
 
 use super::Renderer;
-use super::auto::{PathCosts, PathLoad, PathModel, PathModelSource};
+use super::auto::{PathCosts, PathLoad, PathModel};
 use super::context::Context;
 use super::descriptor::Descriptor;
 use super::gpu::record::{begin_pass, written_depth};
@@ -50,19 +50,14 @@ impl Context {
         let class = PathModel::of_class(device.adapter_info().device_type);
         let mut bench = Bench::new(self, device, queue)?;
         let seconds = bench.seconds(&mut submit)?;
-        let (load, finds) = (bench.load(), class.probe_finds());
-        let probed = |costs: PathCosts, seconds: f64, finds: f32| {
+        let load = bench.load();
+        let times = |costs: PathCosts, seconds: f64| {
             // Of a pass over all sprites, without what comes once a frame.
             let expected = costs.milliseconds(&load, 1.0)
                 - costs.milliseconds(&PathLoad { fragments: 0.0, sprites: 0.0, ..load }, 1.0);
-            costs.times((1.0e3 * seconds) as f32 / (expected * finds))
+            (1.0e3 * seconds) as f32 / expected
         };
-        let model = PathModel {
-            raster: probed(class.raster, seconds[0], finds[0]),
-            tiled: probed(class.tiled, seconds[1], finds[1]),
-            source: PathModelSource::Probe,
-            ..class
-        };
+        let model = class.probed([times(class.raster, seconds[0]), times(class.tiled, seconds[1])]);
         self.set_path_model(model)?;
         Ok(model)
     }

@@ -16,6 +16,9 @@ const OPAQUE_DEPTH: f64 = 2.0 * 10.0 * std::f64::consts::LN_2;
 /// Share of the walks that never stop: those round the borders of the smoke. With both an H200 is met within 5 % where sprites are
 /// large.
 const CLEAR_SHARE: f64 = 0.5;
+/// Where a CPU draws, a path is believed to be dearer against the other than its class has it by as much as it looks more than so many
+/// times dearer: what else runs on the machine slows the walk down 1.5 times more than `raster`, for seconds.
+const CPU_DOUBT: f32 = 1.6;
 
 /// What accumulating takes on a device, by which the path `auto` chooses. Set it with
 /// [`Context::set_path_model`](crate::Context::set_path_model).
@@ -51,6 +54,8 @@ pub struct PathCosts {
     pub sphere: f32,
     /// The same of volumetric ones, for each octave of each step.
     pub march: f32,
+    /// Sides of the blocks that are drawn whole where a sprite covers some of one, texels; 0 where only what it covers takes time.
+    pub block: [u32; 2],
 }
 
 /// Where the figures of a [`PathModel`] are from.
@@ -90,6 +95,7 @@ impl PathModel {
             fragment: 0.085,
             sphere: 0.16,
             march: 0.086,
+            block: [0; 2],
         },
         tiled: PathCosts {
             frame: 48.0e3,
@@ -100,6 +106,7 @@ impl PathModel {
             fragment: 0.0033,
             sphere: 0.0035,
             march: 0.0032,
+            block: [0; 2],
         },
         cores: 1,
         source: PathModelSource::Gpu,
@@ -108,24 +115,26 @@ impl PathModel {
     /// llvmpipe on two cores.
     const CPU: Self = Self {
         raster: PathCosts {
-            frame: 0.5e6,
-            texel: 5.0,
-            sprite: 3500.0,
+            frame: 0.6e6,
+            texel: 13.0,
+            sprite: 3000.0,
             entry: 0.0,
             layer: 0.0,
-            fragment: 9.8,
+            fragment: 10.0,
             sphere: 15.0,
             march: 11.0,
+            block: [4, 4],
         },
         tiled: PathCosts {
-            frame: 1.5e6,
-            texel: 33.0,
-            sprite: 500.0,
+            frame: 0.92e6,
+            texel: 34.0,
+            sprite: 400.0,
             entry: 1900.0,
             layer: 0.0,
-            fragment: 7.0,
-            sphere: 8.2,
-            march: 14.0,
+            fragment: 7.4,
+            sphere: 10.7,
+            march: 12.7,
+            block: [8, 4],
         },
         cores: 2,
         source: PathModelSource::Cpu,
@@ -134,8 +143,23 @@ impl PathModel {
     /// By how much the probe finds more than this, by `raster` and by `tiled`, on the very device that the class was measured at:
     /// its sprites are hidden by nothing, and those of the class in part, which spares `raster` the more; and its few sprites stay in
     /// caches, so that a walk waits less for each.
-    pub(crate) fn probe_finds(&self) -> [f32; 2] {
-        if self.source == PathModelSource::Cpu { [1.34, 0.8] } else { [1.75, 0.35] }
+    fn probe_finds(&self) -> [f32; 2] {
+        if self.source == PathModelSource::Cpu { [1.24, 0.74] } else { [1.75, 0.35] }
+    }
+
+    /// Of a device of this class on which the probe took so many times as long as this has it, by `raster` and by `tiled`.
+    pub(crate) fn probed(self, times: [f32; 2]) -> Self {
+        let finds = self.probe_finds();
+        let [raster, tiled] = [times[0] / finds[0], times[1] / finds[1]];
+        let doubt = if self.source == PathModelSource::Cpu { CPU_DOUBT } else { 1.0 };
+        let apart = tiled / raster;
+        let (both, apart) = ((raster * tiled).sqrt(), (apart / apart.clamp(doubt.recip(), doubt)).sqrt());
+        Self {
+            raster: self.raster.times(both / apart),
+            tiled: self.tiled.times(both * apart),
+            source: PathModelSource::Probe,
+            ..self
+        }
     }
 
     /// What devices of this kind take.
@@ -152,7 +176,7 @@ impl PathModel {
             return Err(FieldError::new("cores", self.cores, "1 or more"));
         }
         for (path, costs) in [("raster", self.raster), ("tiled", self.tiled)] {
-            let PathCosts { frame, texel, sprite, entry, layer, fragment, sphere, march } = costs;
+            let PathCosts { frame, texel, sprite, entry, layer, fragment, sphere, march, block: _ } = costs;
             let named = [
                 ("frame", frame),
                 ("texel", texel),
@@ -190,7 +214,7 @@ impl PathCosts {
             + f64::from(self.texel) * load.texels()
             + f64::from(self.sprite) * load.sprites
             + f64::from(self.layer) * load.layers()
-            + (f64::from(self.entry) * load.entries() + of_fragment * load.fragments) * share;
+            + (f64::from(self.entry) * load.entries() + of_fragment * load.drawn(self.block)) * share;
         (nanoseconds * 1.0e-6) as f32
     }
 
@@ -205,6 +229,7 @@ impl PathCosts {
             fragment: self.fragment * factor,
             sphere: self.sphere * factor,
             march: self.march * factor,
+            block: self.block,
         }
     }
 }
@@ -233,9 +258,19 @@ impl PathLoad {
 
     /// Rectangles of so many texels that a sprite touches, in the mean.
     pub(crate) fn touched(&self, width: f64, height: f64) -> f64 {
-        // Of a square that lies askew.
-        let side = 1.2 * (self.fragments / self.sprites.max(1.0)).sqrt();
+        let side = self.side();
         ((side / width + 1.0) * (side / height + 1.0)).min((self.texels() / (width * height)).max(1.0))
+    }
+
+    /// Of a sprite, texels: that of a square that lies askew.
+    fn side(&self) -> f64 {
+        1.2 * (self.fragments / self.sprites.max(1.0)).sqrt()
+    }
+
+    /// Texels that are drawn, in blocks of these sides.
+    fn drawn(&self, [width, height]: [u32; 2]) -> f64 {
+        let side = self.side().max(1.0);
+        self.fragments * (1.0 + f64::from(width) / side) * (1.0 + f64::from(height) / side)
     }
 
     /// How much of the sprites a walk sees before it stops, in the mean. Layers are taken to be spread as chance has it, most of them
@@ -273,6 +308,23 @@ mod tests {
         // A walk that does not stop sees all of it.
         let [_, all] = model.milliseconds(&PathLoad { optical_depth: 0.0, ..load(4000.0) });
         assert!(all > 1.7 * deep_tiled);
+    }
+
+    #[test]
+    fn a_probe_on_a_cpu_is_doubted() {
+        let apart = |class: PathModel, walk: f32| {
+            let [raster, tiled] = class.probe_finds();
+            let probed = class.probed([3.0 * raster, 3.0 * walk * tiled]);
+            let [raster, tiled] = [probed.raster.march / class.raster.march, probed.tiled.march / class.tiled.march];
+            assert!((raster * tiled / (9.0 * walk) - 1.0).abs() < 1.0e-4, "{raster} {tiled}");
+            tiled / raster
+        };
+        let alike = |a: f32, b: f32| (a / b - 1.0).abs() < 1.0e-4;
+        assert!(alike(apart(PathModel::CPU, 1.5), 1.0) && alike(apart(PathModel::CPU, 0.7), 1.0));
+        assert!(
+            alike(apart(PathModel::CPU, 2.0 * CPU_DOUBT), 2.0) && alike(apart(PathModel::CPU, 0.5 / CPU_DOUBT), 0.5)
+        );
+        assert!(alike(apart(PathModel::GPU, 1.5), 1.5), "a GPU is alone");
     }
 
     #[test]
