@@ -13,7 +13,7 @@
 @group(0) @binding(2) var<storage, read> numbers: array<u32>;
 @group(0) @binding(3) var<storage, read_write> sorted_keys: array<u32>;
 @group(0) @binding(4) var<storage, read_write> sorted_numbers: array<u32>;
-// By digit, and by block in it: how many there are, and then how many come before.
+// By digit, and by block in it: how many there are, and then how many come before. Of few blocks, by block and by digit in it.
 @group(0) @binding(5) var<storage, read_write> counts: array<u32>;
 // How many there are of each digit.
 @group(0) @binding(6) var<storage, read_write> totals: array<u32>;
@@ -22,6 +22,8 @@
 override SHIFT: u32 = 0u;
 // Keys are few: every block counts all of them, and is handed no counts.
 override FEW: bool = false;
+// Blocks are few: every one sums up the counts of all.
+override FEW_BLOCKS: bool = false;
 
 const DIGITS: u32 = 256u;
 // Keys of a block that one invocation handles. BLOCK in src/renderer/pass/sort.rs is those of all.
@@ -46,7 +48,7 @@ fn count_digits(@builtin(local_invocation_index) local: u32, @builtin(workgroup_
         }
     }
     workgroupBarrier();
-    counts[local * tiles.blocks + block.x] = atomicLoad(&digit_counts[local]);
+    counts[select(local * tiles.blocks + block.x, block.x * DIGITS + local, FEW_BLOCKS)] = atomicLoad(&digit_counts[local]);
 }
 
 // One workgroup for each digit.
@@ -78,6 +80,14 @@ fn rounds() -> u32 {
 
 // How many keys have a digit, and how many of them come before a block.
 fn total_and_before(digit: u32, block: u32) -> vec2u {
+    if FEW_BLOCKS {
+        var sums = vec2u(0u);
+        for (var other = 0u; other < tiles.blocks; other++) {
+            let count = counts[other * DIGITS + digit];
+            sums += vec2u(count, select(0u, count, other < block));
+        }
+        return sums;
+    }
     if !FEW {
         return vec2u(totals[digit], counts[digit * tiles.blocks + block]);
     }

@@ -11,15 +11,25 @@ pub(crate) const BLOCK: u32 = 1024;
 pub(crate) const DIGITS: u32 = 256;
 /// Digits of a key.
 const TURNS: u32 = 4;
-/// Keys that every block counts by itself: that takes less than dispatches that wait for each other.
-pub(crate) const FEW: u32 = 8192;
+/// Keys that every block counts by itself on a GPU: that takes less than dispatches that wait for each other.
+const FEW: u32 = 8192;
+/// Keys of whose blocks every one sums up all counts by itself on a CPU, where the steps of a workgroup wait for each other at length.
+const OF_FEW_BLOCKS: u32 = 128 * BLOCK;
 
 /// One of the pipelines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct SortKey {
     step: Step,
     turn: u32,
-    few: bool,
+    number: Number,
+}
+
+/// How many keys there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Number {
+    Few,
+    OfFewBlocks,
+    Many,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -32,10 +42,19 @@ enum Step {
 /// Pipelines at the most.
 pub(crate) const STEPS: usize = 3 * TURNS as usize;
 
-/// All of them, in order. `few`: no more keys than [`FEW`].
-pub(crate) fn keys(few: bool) -> impl Iterator<Item = SortKey> {
-    let each_turn: &[Step] = if few { &[Step::Scatter] } else { &[Step::CountDigits, Step::SumCounts, Step::Scatter] };
-    (0..TURNS).flat_map(move |turn| each_turn.iter().map(move |&step| SortKey { step, turn, few }))
+/// All of them that sort so many keys, in order. `in_step`: workgroups add up together.
+pub(crate) fn keys(in_step: bool, count: u32) -> impl Iterator<Item = SortKey> {
+    let (number, each_turn): (_, &[Step]) = match (in_step, count) {
+        (true, 0..=FEW) => (Number::Few, &[Step::Scatter]),
+        (false, 0..=OF_FEW_BLOCKS) => (Number::OfFewBlocks, &[Step::CountDigits, Step::Scatter]),
+        _ => (Number::Many, &[Step::CountDigits, Step::SumCounts, Step::Scatter]),
+    };
+    (0..TURNS).flat_map(move |turn| each_turn.iter().map(move |&step| SortKey { step, turn, number }))
+}
+
+/// All of them that sort any number.
+pub(crate) fn all_keys(in_step: bool) -> impl Iterator<Item = SortKey> {
+    [0, u32::MAX].into_iter().flat_map(move |count| keys(in_step, count))
 }
 
 /// The pipeline for a key.
@@ -46,7 +65,11 @@ pub(crate) fn describe(key: SortKey) -> ComputeParts {
             Step::SumCounts => "sum_counts",
             Step::Scatter => "scatter",
         },
-        constants: vec![("SHIFT", f64::from(key.turn * DIGITS.ilog2())), switch("FEW", key.few)],
+        constants: vec![
+            ("SHIFT", f64::from(key.turn * DIGITS.ilog2())),
+            switch("FEW", key.number == Number::Few),
+            switch("FEW_BLOCKS", key.number == Number::OfFewBlocks),
+        ],
     }
 }
 
@@ -65,7 +88,7 @@ impl Sort {
         for (key, pipeline) in self.pipelines.iter().flatten() {
             let workgroups = match key {
                 SortKey { step: Step::SumCounts, .. } => DIGITS,
-                SortKey { few: true, .. } => self.keys.div_ceil(DIGITS),
+                SortKey { number: Number::Few, .. } => self.keys.div_ceil(DIGITS),
                 _ => self.keys.div_ceil(BLOCK),
             };
             pass.set_bind_group(0, &self.there_and_back[key.turn as usize % 2], &[]);

@@ -154,7 +154,7 @@ impl Tiled {
     }
 
     fn compile_sort(&self, device: &wgpu::Device) -> Result<(), Error> {
-        [true, false].into_iter().flat_map(sort::keys).try_for_each(|key| self.sort.check(device, key))
+        sort::all_keys(self.in_step()).try_for_each(|key| self.sort.check(device, key))
     }
 
     /// What evaluates emitters.
@@ -168,7 +168,7 @@ impl Tiled {
 
     /// What sorts so many keys.
     pub fn sort(&self, device: &wgpu::Device, count: u32) -> SortPipelines {
-        let mut keys = sort::keys(count <= sort::FEW).map(|key| (key, self.sort.get(device, key)));
+        let mut keys = sort::keys(self.in_step(), count).map(|key| (key, self.sort.get(device, key)));
         std::array::from_fn(|_| keys.next())
     }
 

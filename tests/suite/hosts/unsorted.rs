@@ -47,9 +47,10 @@ fn particles_in_any_order_are_sorted_where_they_lie() {
     }
     let mut stage = Stage::new(SIZE);
     stage.bounds = Some(BOUNDS);
-    for path in [Path::Raster, Path::Forward] {
+    for (path, in_step) in [(Path::Raster, true), (Path::Raster, false), (Path::Forward, true)] {
         stage.settings.path = path;
         let mut host = Host::new(gpu(), &stage).unwrap();
+        host.renderer.context().walk_in_step(in_step);
         // One block of the sort, several that count for themselves, and more.
         for (count, offset) in [(200, 0), (3000, 16), (9000, 272)] {
             let particles = many(&stage, count);
@@ -60,11 +61,11 @@ fn particles_in_any_order_are_sorted_where_they_lie() {
                 host.picture(gpu()).unwrap()
             };
             let (sorted, as_they_lie) = (drawn(&particles, false), drawn(&particles, true));
-            assert!(as_they_lie != sorted, "{count}, {path:?}: the order makes no difference");
+            assert!(as_they_lie != sorted, "{count}, {path:?}, {in_step}: the order makes no difference");
             // The camera looks along z. Those at one depth stay as they are.
             let mut back_to_front = particles;
             back_to_front.sort_by(|a, b| a.position.z.total_cmp(&b.position.z));
-            assert!(drawn(&back_to_front, true) == sorted, "{count}, {path:?}");
+            assert!(drawn(&back_to_front, true) == sorted, "{count}, {path:?}, {in_step}");
         }
     }
     gpu().check().unwrap();
