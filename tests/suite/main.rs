@@ -12,6 +12,7 @@ mod common;
 mod creations;
 #[cfg(feature = "app")]
 mod develop;
+mod effects;
 mod every_setting;
 mod formulas;
 #[cfg(feature = "app")]
@@ -36,4 +37,3 @@ mod tiled;
 mod timing;
 #[cfg(feature = "app")]
 mod upsampling;
-mod without_effect;
