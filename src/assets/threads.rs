@@ -1,10 +1,11 @@
 //! Work that is shared among the processors.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{LazyLock, Mutex, PoisonError};
 
-/// Processors that there are for this program.
+/// Processors that there are for this program. Asked once: on Linux the answer is in several files.
 pub(crate) fn threads() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
+    static THREADS: LazyLock<usize> = LazyLock::new(|| std::thread::available_parallelism().map_or(1, usize::from));
+    *THREADS
 }
 
 /// Calls `f` once for every item. Items are begun in order.

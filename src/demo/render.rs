@@ -1,14 +1,12 @@
-//! A shot as a picture: scene and smoke, by the GPU or by the CPU.
+//! A shot as a picture: scene and smoke, by the CPU. stage.rs has the GPU's.
 
 use glam::{Vec3, Vec4};
 
 use super::cpu;
 use super::shot::Shot;
-use super::stage::{Stage, StageContext};
 use crate::assets::picture::Picture;
 use crate::error::Error;
 use crate::frame::Particle;
-use crate::headless::Headless;
 use crate::reference;
 use crate::settings::Settings;
 
@@ -28,18 +26,6 @@ impl Shot {
         let frame = self.reference_frame(&depth, &systems);
         reference::render(&frame, &mut colour)?;
         Ok(colour)
-    }
-
-    /// Renders on the GPU, linear HDR. `exact_filtering` as in [`Descriptor`](crate::Descriptor).
-    ///
-    /// # Errors
-    /// [`Error::Field`] when the preset was changed to something invalid or a picture is too large for the device,
-    /// [`Error::Device`] when the device failed.
-    pub fn render_on_gpu(&self, gpu: &Headless, exact_filtering: bool) -> Result<Picture<Vec4>, Error> {
-        let context = StageContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
-        let mut stage = Stage::new(&context, exact_filtering)?;
-        stage.draw(gpu, self)?;
-        stage.read(gpu, self)
     }
 
     pub(super) fn reference_systems<'a>(

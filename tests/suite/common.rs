@@ -1,6 +1,6 @@
 //! What the tests share: the device.
 
-use std::sync::OnceLock;
+use std::sync::{LazyLock, OnceLock};
 
 use glam::{UVec2, UVec3, Vec4};
 use haze::headless::Headless;
@@ -8,7 +8,7 @@ use haze::noise::NoiseVolume;
 use haze::picture::Picture;
 use haze::ramp::Ramp;
 use haze::sprite::Sprite;
-use haze::wgpu;
+use haze::{Context, wgpu};
 
 use crate::stage::BACKDROP;
 
@@ -22,6 +22,12 @@ pub fn gpu() -> &'static Headless {
         }
         Err(error) => panic!("{error}"),
     })
+}
+
+/// What renderers may share whose pictures alone matter: no pipeline of theirs is compiled twice. `None` on another device.
+pub fn shared_context(gpu: &Headless) -> Option<&'static Context> {
+    static CONTEXT: LazyLock<Context> = LazyLock::new(|| Context::new(&self::gpu().device, &self::gpu().queue, None));
+    std::ptr::eq(gpu, self::gpu()).then_some(&CONTEXT)
 }
 
 /// True where there is a path `tiled`: not on OpenGL. It says so where there is none.

@@ -277,8 +277,10 @@ fn the_yards_props_are_nowhere_else() {
     use haze::demo::shot::Shot;
     use haze::preset::SceneName;
 
+    use crate::presets::drawn;
+
     let mut shot = Shot::load("column", SIZE).unwrap();
-    let pictures = |shot: &Shot| (shot.render_on_cpu().unwrap(), shot.render_on_gpu(gpu(), true).unwrap());
+    let pictures = |shot: &Shot| (shot.render_on_cpu().unwrap(), drawn(shot, true));
     for &scene in SceneName::ALL {
         shot.preset.environment.scene = scene;
         let plain = pictures(&shot);

@@ -13,8 +13,7 @@ use haze::picture::{Effort, read_png, write_png};
 use haze::settings::{ShadeTree, Technique};
 use image::{DynamicImage, Rgb, RgbImage};
 
-use crate::common::gpu;
-use crate::presets::shot;
+use crate::presets::{drawn, shot};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
@@ -57,7 +56,7 @@ fn techniques_look_as_they_did() {
 
 fn compare(name: &str, shot: &Shot) {
     let path = golden(name);
-    let on_gpu = encode(&shot.render_on_gpu(gpu(), false).unwrap());
+    let on_gpu = encode(&drawn(shot, false));
     if std::env::var_os("HAZE_BLESS").is_some() {
         write_png(&path, &DynamicImage::ImageRgb8(on_gpu), Effort::Small).unwrap();
         return;

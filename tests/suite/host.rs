@@ -7,6 +7,7 @@ use haze::picture::Picture;
 use haze::wgpu::util::DeviceExt;
 use haze::{Context, Descriptor, Error, Frame, Particle, Particles, Renderer, SceneDepth, System, Timing, wgpu};
 
+use crate::common::shared_context;
 use crate::stage::{BACKDROP, DepthKind, Stage};
 
 /// What a host's pass and targets are like.
@@ -68,7 +69,7 @@ impl Stage {
     }
 
     pub fn try_on_gpu(&self, gpu: &Headless) -> Result<Drawn, Error> {
-        let mut host = Host::new(gpu, self)?;
+        let mut host = Host::sharing(gpu, self)?;
         host.draw(gpu, self)?;
         Ok(Drawn { picture: host.picture(gpu)?, renderer: host.renderer })
     }
@@ -77,6 +78,11 @@ impl Stage {
 impl Host {
     pub fn new(gpu: &Headless, stage: &Stage) -> Result<Self, Error> {
         Self::on(gpu, stage, None)
+    }
+
+    /// On the context that tests share, for pictures alone: what is created or compiled says nothing there.
+    pub fn sharing(gpu: &Headless, stage: &Stage) -> Result<Self, Error> {
+        Self::on(gpu, stage, shared_context(gpu))
     }
 
     /// With a renderer on a context of others.

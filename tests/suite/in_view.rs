@@ -220,7 +220,7 @@ fn sprites_are_drawn_in_the_order_of_a_plain_sort() {
     let mut bounds = Bounds::EMPTY;
     stage.particles.iter().for_each(|particle| bounds.include(particle.position, 2.0));
     stage.bounds = Some(bounds);
-    let mut host = Host::new(gpu(), &stage).unwrap();
+    let mut host = Host::sharing(gpu(), &stage).unwrap();
     host.draw(gpu(), &stage).unwrap();
     let sorted_by_renderer = host.picture(gpu()).unwrap();
     // From a buffer, which is drawn in the order that it has.
@@ -291,7 +291,7 @@ fn a_system_is_drawn_exactly_when_it_is_between_all_six_planes() {
     for clip_from_view in projections {
         let mut stage = visible();
         (stage.view.clip_from_view, stage.view.view_from_world) = (clip_from_view, camera());
-        let mut host = Host::new(gpu(), &stage).unwrap();
+        let mut host = Host::sharing(gpu(), &stage).unwrap();
         // The sides, in front of everything in the scene: the middles of the picture's edges are where they are crossed.
         let pixels = SIZE.as_ivec2();
         let edges = [IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
@@ -329,7 +329,7 @@ fn a_flat_box_covers_what_is_in_it_wherever_the_near_plane_is() {
             let middle = side * 0.3;
             let half = side.abs() * 0.05 + side.perp().abs() * 3.0;
             stage.bounds = Some(Bounds { min: (middle - half).extend(-8.0), max: (middle + half).extend(begin) });
-            let mut host = Host::new(gpu(), &stage).unwrap();
+            let mut host = Host::sharing(gpu(), &stage).unwrap();
             for depth in [0.75, 1.0, 1.5, 2.5] {
                 assert!(shows(&mut stage, &mut host, planes, middle.extend(-depth), 0.035), "{side} at {depth} m");
             }

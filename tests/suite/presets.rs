@@ -1,8 +1,11 @@
 //! The GPU renderer against the CPU renderer, whole frames: every preset, and every setting that changes a pipeline.
 
+use std::sync::LazyLock;
+
 use glam::{UVec2, Vec4};
 use haze::builtin;
 use haze::demo::shot::Shot;
+use haze::demo::stage::{Stage, StageContext};
 use haze::picture::Picture;
 use haze::preset::{CacheEnd, Preset, SceneName, UpAxis};
 use haze::settings::*;
@@ -27,8 +30,18 @@ fn behind(shot: &Shot) -> Shot {
     behind
 }
 
+/// A shot as the GPU draws it. `exact_filtering` as in [`Descriptor`](haze::Descriptor).
+pub fn drawn(shot: &Shot, exact_filtering: bool) -> Picture<Vec4> {
+    // Pictures of one context compile no pipeline twice.
+    static CONTEXT: LazyLock<StageContext> =
+        LazyLock::new(|| StageContext::new(&gpu().adapter, &gpu().device, &gpu().queue));
+    let mut stage = Stage::new(&CONTEXT, exact_filtering).unwrap();
+    stage.draw(gpu(), shot).unwrap();
+    stage.read(gpu(), shot).unwrap()
+}
+
 fn on_gpu(shot: &Shot) -> Picture<Vec4> {
-    shot.render_on_gpu(gpu(), true).unwrap()
+    drawn(shot, true)
 }
 
 /// Agreement of the renderers, and the GPU's picture.

@@ -1,5 +1,7 @@
 //! A small shot in memory: a camera, a wall and a post as scene depth, some sprites. host.rs draws it on the GPU.
 
+use std::sync::LazyLock;
+
 use glam::camera::rh;
 use glam::{Mat4, UVec2, UVec3, Vec2, Vec3, Vec4, vec3};
 use haze::noise::{NoiseRecipe, NoiseVolume};
@@ -104,7 +106,13 @@ fn recipe_noise() -> NoiseVolume {
     NoiseVolume::from_picture(std::path::Path::new("noise"), &recipe.bake().unwrap()).unwrap()
 }
 
+/// Made once: most tests begin with it.
 pub fn material() -> MaterialAssets {
+    static MATERIAL: LazyLock<MaterialAssets> = LazyLock::new(baked_material);
+    MATERIAL.clone()
+}
+
+fn baked_material() -> MaterialAssets {
     let line =
         |from: Vec3, to: Vec3| Ramp::from_linear(UVec2::new(16, 1), (0..16).map(|i| from.lerp(to, i as f32 / 15.0)));
     let glow = |i: u32| Vec3::splat((1.0 - (i % 16) as f32 / 15.0) * (i / 16) as f32 / 7.0);

@@ -1,5 +1,7 @@
 //! How sprites meet the scene, technique by technique: both renderers agree, and each holds what it promises.
 
+use std::sync::LazyLock;
+
 use glam::camera::rh::proj::directx;
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles, vec3};
 use haze::formula::sprite::{flipbook_frames, sample_detail, sample_sprite};
@@ -157,14 +159,18 @@ fn what_blends_no_frames_looks_none_up_twice() {
     }
 }
 
-/// A small flipbook, its detail map and six-way maps.
+/// A small flipbook, its detail map and six-way maps. Baked once.
 pub fn flipbook() -> (Sprite, Option<Sprite>, Option<Sprite>) {
-    let recipe = recipe();
-    let baked = recipe.bake(|_| Ok::<_, haze::FieldError>(())).unwrap();
-    let decode = |picture| Sprite::from_picture("flipbook".as_ref(), picture, recipe.layout()).unwrap();
-    let sprite = decode(&baked.picture);
-    let six_way = six_way_of(&sprite);
-    (sprite, Some(decode(&baked.detail)), Some(six_way))
+    static FLIPBOOK: LazyLock<[Sprite; 3]> = LazyLock::new(|| {
+        let recipe = recipe();
+        let baked = recipe.bake(|_| Ok::<_, haze::FieldError>(())).unwrap();
+        let decode = |picture| Sprite::from_picture("flipbook".as_ref(), picture, recipe.layout()).unwrap();
+        let sprite = decode(&baked.picture);
+        let six_way = six_way_of(&sprite);
+        [sprite, decode(&baked.detail), six_way]
+    });
+    let [sprite, detail, six_way] = FLIPBOOK.clone();
+    (sprite, Some(detail), Some(six_way))
 }
 
 /// A puff whose balls travel: what only boils in its place has no motion to follow.
@@ -251,7 +257,7 @@ fn wall(technique: Technique, view_depth: f32) -> Stage {
 
 /// Amount in the middle of the picture, 0..1.
 fn amount(stage: &Stage) -> f32 {
-    let mut host = Host::new(gpu(), stage).unwrap();
+    let mut host = Host::sharing(gpu(), stage).unwrap();
     host.draw(gpu(), stage).unwrap();
     amount_in(&host)
 }
@@ -268,7 +274,7 @@ fn nothing_shows_behind_a_surface_but_under_always() {
     for &technique in Technique::ALL {
         for &curve in FadeCurve::ALL {
             let mut previous = f32::INFINITY;
-            let mut host = Host::new(gpu(), &wall(technique, 5.0)).unwrap();
+            let mut host = Host::sharing(gpu(), &wall(technique, 5.0)).unwrap();
             for step in 0..40 {
                 // The wall is at 6.2 m.
                 let depth = 4.9 + 0.06 * step as f32;
@@ -305,7 +311,7 @@ fn nothing_shows_behind_a_surface_but_under_always() {
 fn largest_step(technique: Technique) -> f32 {
     let mut previous = None;
     let mut largest = 0.0_f32;
-    let mut host = Host::new(gpu(), &one_sprite(technique, 0.9)).unwrap();
+    let mut host = Host::sharing(gpu(), &one_sprite(technique, 0.9)).unwrap();
     for step in 0..=88 {
         // From 0.9 m in front of the middle to 0.7 m behind it; the near plane is at 0.1 m, the radius 0.7 m.
         let stage = one_sprite(technique, 0.9 - 1.2 * step as f32 / 64.0);

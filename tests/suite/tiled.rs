@@ -4,6 +4,8 @@ mod auto;
 mod emission;
 mod lists;
 
+use std::sync::LazyLock;
+
 #[cfg(feature = "app")]
 use glam::UVec2;
 use glam::camera::rh::proj::directx;
@@ -16,7 +18,7 @@ use haze::headless::Headless;
 use haze::picture::Picture;
 use haze::settings::*;
 use haze::sprite::{Sprite, SpriteLayout};
-use haze::{Bounds, Error, Particle, Particles, wgpu};
+use haze::{Bounds, Context, Error, Particle, Particles, wgpu};
 
 use crate::common::{AGREEMENT, STEP_AGREEMENT, gpu, has_tiles, psnr};
 use crate::host::{Host, as_floats};
@@ -35,12 +37,18 @@ fn stage(technique: Technique) -> Stage {
     stage
 }
 
+fn walking(in_step: bool) -> Context {
+    let context = Context::new(&gpu().device, &gpu().queue, None);
+    context.walk_in_step(in_step);
+    context
+}
+
 /// The walk alone has the sampler's own filter.
 fn drawn(stage: &Stage, path: Path, in_step: bool) -> Picture<Vec4> {
     let mut stage = stage.clone();
     (stage.settings.path, stage.host.exact_filtering) = (path, in_step);
-    let mut host = Host::new(gpu(), &stage).unwrap();
-    host.renderer.context().walk_in_step(in_step);
+    static CONTEXTS: [LazyLock<Context>; 2] = [LazyLock::new(|| walking(false)), LazyLock::new(|| walking(true))];
+    let mut host = Host::on(gpu(), &stage, Some(&CONTEXTS[usize::from(in_step)])).unwrap();
     host.draw(gpu(), &stage).unwrap();
     gpu().check().unwrap();
     host.picture(gpu()).unwrap()
@@ -167,7 +175,7 @@ fn every_preset_is_the_same_on_tiles() {
             system.settings.path = path;
             system.settings.accumulate.layers = layers;
         }
-        shot.render_on_gpu(gpu(), false).unwrap()
+        crate::presets::drawn(&shot, false)
     };
     for preset in builtin::PRESETS {
         let shot = Shot::load(preset.name, UVec2::new(320, 180)).unwrap();

@@ -7,7 +7,8 @@ use haze::formula::colour::srgb_from_linear;
 use haze::picture::Picture;
 use haze::settings::{LightingResolution, ShadeTree, Upsample};
 
-use crate::common::{gpu, psnr};
+use crate::common::psnr;
+use crate::presets::drawn;
 
 const SIZE: UVec2 = UVec2::new(640, 360);
 
@@ -17,7 +18,7 @@ fn render(shot: &Shot, scale: u32, upsample: Upsample) -> Picture<Vec4> {
     for system in &mut shot.preset.systems {
         (system.settings.accumulate.scale, system.settings.accumulate.upsample) = (scale, upsample);
     }
-    shot.render_on_gpu(gpu(), true).unwrap()
+    drawn(&shot, true)
 }
 
 /// Pixels with another depth within `reach` of them.
