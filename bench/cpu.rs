@@ -6,13 +6,13 @@ use std::path::Path;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::UVec2;
-use haze::demo::shot::Shot;
 use haze::emitter::Emitter;
-use haze::headless::Headless;
-use haze::ramp::bake::RampRecipe;
 use haze::settings::Order;
-use haze::sprite::bake::SpriteRecipe;
 use haze::{Descriptor, Frame, Light, Particles, Renderer, SceneDepth, Settings, System, wgpu};
+use haze_author::ramp::bake::RampRecipe;
+use haze_author::sprite::bake::SpriteRecipe;
+use haze_demo::headless::Headless;
+use haze_demo::shot::Shot;
 
 const COUNTS: [u32; 3] = [1_000, 10_000, 100_000];
 

@@ -47,14 +47,14 @@ settings! {
         /// Where particles are born.
         shape: EmitterShape = EmitterShape::Sphere, choice;
         /// Middle of the shape: where the smoke begins.
-        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         position: Vec3 = Vec3::ZERO, vector(-1.0e5..=1.0e5, "m");
         /// Half the size of the shape: from a jet to a carpet of smoke.
-        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         extent: Vec3 = Vec3::splat(0.2), vector(0.0..=1.0e4, "m");
         "motion":
         /// Velocity at birth: the thrust of a vent. Drag soon turns it into the air's.
-        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         velocity: Vec3 = Vec3::new(0.0, 0.6, 0.0), vector(-1.0e3..=1.0e3, "m/s");
         /// Speed at birth away from the middle of the shape: a blast.
         burst: f32 = 0.0, number(-1.0e3..=1.0e3, "m/s");
@@ -65,10 +65,10 @@ settings! {
         /// Upward acceleration of hot smoke; against the drag it ends in a steady rise of buoyancy / drag.
         buoyancy: f32 = 0.6, number(-100.0..=100.0, "m/s²");
         /// The way up, along which hot smoke rises and across which a disc lies; need not be unit length.
-        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         up: Vec3 = Vec3::Y, vector(-1.0e3..=1.0e3, "");
         /// Velocity of the air: leans the smoke over.
-        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         wind: Vec3 = Vec3::ZERO, vector(-100.0..=100.0, "m/s");
         "turbulence":
         /// How far curl noise carries a particle off its path by the end of its life. More tears the smoke apart.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// A text from outside, for a message of one line: control characters and marks that turn the direction of writing are
 /// escaped, and a long text is cut.
-pub(crate) fn one_line(text: impl Display) -> String {
+pub fn one_line(text: impl Display) -> String {
     /// Leaves room for what is expected.
     const MOST: usize = 200;
     let text = text.to_string();
@@ -17,7 +17,7 @@ pub(crate) fn one_line(text: impl Display) -> String {
 }
 
 /// A file's name on one line, whole.
-pub(crate) fn name(path: &Path) -> String {
+pub fn name(path: &Path) -> String {
     escape(path.to_string_lossy().chars())
 }
 

@@ -15,8 +15,7 @@
 //!
 //! # What it does not do
 //! - It never creates a device, submits, tonemaps, or requires a device feature.
-//! - It simulates nothing: [`emitter`] is a closed-form source of particles, [`cache`] reads those of a simulation from files;
-//!   hosts with their own simulation hand over a slice or a GPU buffer.
+//! - It simulates nothing: [`emitter`] is a closed-form source of particles; hosts with their own simulation hand over a slice or a GPU buffer.
 //! - It casts no shadows, neither of the smoke on the scene nor of the smoke on itself.
 //! - It reads single-sampled depth; a multisampled host resolves its depth first.
 //!
@@ -59,25 +58,19 @@
 //! sample.
 
 pub mod assets;
-#[cfg(feature = "app")]
-pub mod demo;
 pub mod emitter;
 pub mod error;
 pub mod formula;
 pub mod frame;
-#[cfg(feature = "app")]
-pub mod gradient_editor;
-#[cfg(feature = "headless")]
-pub mod headless;
-mod in_view;
+#[doc(hidden)]
+pub mod in_view;
 pub mod preset;
-pub mod reference;
 mod renderer;
 pub mod settings;
 
 pub use assets::material::MaterialAssets;
 #[doc(inline)]
-pub use assets::{builtin, cache, noise, path_trace, picture, ramp, sprite};
+pub use assets::{builtin, noise, picture, ramp, sprite};
 pub use error::{Error, FieldError};
 pub use frame::{Bounds, Emission, Frame, Light, LightKind, Material, Particle, Particles, SceneDepth, System, View};
 pub use renderer::{

@@ -6,7 +6,6 @@ use super::json;
 use super::noise::NoiseVolume;
 use super::picture::{decode_colour_png, decode_png};
 use super::ramp::Ramp;
-use super::sprite::bake::SpriteRecipe;
 use super::sprite::{Sprite, SpriteLayout};
 use crate::error::Error;
 use crate::settings::PictureRole;
@@ -147,15 +146,7 @@ impl Builtin {
     /// # Errors
     /// As [`decode_png`] and [`Sprite::from_picture`].
     pub fn sprite(&self) -> Result<Sprite, Error> {
-        self.decode(self.sprite_recipe()?.layout())
-    }
-
-    /// How a sprite was made.
-    ///
-    /// # Errors
-    /// [`Error::Json`] for what is no sprite.
-    pub fn sprite_recipe(&self) -> Result<SpriteRecipe, Error> {
-        json::parse(&path(self.name), self.recipe)
+        self.decode(self.sprite_layout()?)
     }
 
     /// Decodes the sprite's detail map.
@@ -163,8 +154,19 @@ impl Builtin {
     /// # Errors
     /// As [`Builtin::sprite`].
     pub fn detail(&self) -> Result<Option<Sprite>, Error> {
-        let layout = self.sprite_recipe()?.layout();
+        let layout = self.sprite_layout()?;
         find(DETAILS, self.name).map(|detail| detail.decode(layout)).transpose()
+    }
+
+    /// The sheet's layout, from its recipe; bakes point y up.
+    pub(crate) fn sprite_layout(&self) -> Result<SpriteLayout, Error> {
+        #[derive(serde::Deserialize)]
+        struct Sheet {
+            columns: u32,
+            rows: u32,
+        }
+        let Sheet { columns, rows } = json::parse(&path(self.name), self.recipe)?;
+        Ok(SpriteLayout { columns, rows, y_down: false })
     }
 
     fn decode(&self, layout: SpriteLayout) -> Result<Sprite, Error> {

@@ -18,11 +18,11 @@ use crate::settings::{RampFilter, Settings};
 pub struct MaterialAssets {
     /// Flipbook of normal maps.
     pub sprite: Sprite,
-    /// Depth and motion of the sprite, frame by frame: see [`sprite::detail`](crate::assets::sprite::detail). Depth sprites and
+    /// Depth and motion of the sprite, frame by frame: see [`sprite::detail`](haze_author::sprite::detail). Depth sprites and
     /// `sprite.motion` need it.
     pub detail: Option<Sprite>,
     /// The sprite under light from six sides, for [`Lighting::SixWay`](crate::settings::Lighting::SixWay): twice the sprite's frames,
-    /// of its size. See [`sprite::six_way`](crate::assets::sprite::six_way).
+    /// of its size. See [`sprite::six_way`](haze_author::sprite::six_way).
     pub six_way: Option<Sprite>,
     /// What volumetric sprites are made of.
     pub noise: NoiseVolume,
@@ -70,7 +70,8 @@ impl MaterialAssets {
         ]
     }
 
-    pub(crate) fn info(&self) -> MaterialInfo {
+    /// Sizes and frame counts, as validation and the view setup need them.
+    pub fn info(&self) -> MaterialInfo {
         // As thick smoke has it.
         let zonal = |ramp| {
             zonal_coefficients(|cos| sample_ramp_2d(ramp, RampFilter::Bilinear, Vec2::new(cos * 0.5 + 0.5, 1.0)))
@@ -92,11 +93,14 @@ impl MaterialAssets {
 
 /// What a frame needs to know of a material's pictures.
 #[derive(Clone, Debug)]
-pub(crate) struct MaterialInfo {
+pub struct MaterialInfo {
+    /// Side of one frame of the sprite, texels.
     pub sprite_size: f32,
     /// Of the sprite, and after it the six-way maps.
     pub filled: Arc<Filled>,
+    /// Frames of the sprite.
     pub frame_count: f32,
+    /// The detail map, if there is one.
     pub detail: Option<DetailInfo>,
     /// Size and frames of the six-way maps.
     pub six_way: Option<(u32, u32)>,
@@ -108,7 +112,8 @@ pub(crate) struct MaterialInfo {
 
 /// What it needs to know of a detail map.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct DetailInfo {
+pub struct DetailInfo {
+    /// Frames of the detail map.
     pub frame_count: u32,
     /// Mip levels that it is smaller than the sprite.
     pub lod: f32,

@@ -3,13 +3,13 @@
 use std::sync::{LazyLock, Mutex, PoisonError};
 
 /// Processors that there are for this program. Asked once: on Linux the answer is in several files.
-pub(crate) fn threads() -> usize {
+pub fn threads() -> usize {
     static THREADS: LazyLock<usize> = LazyLock::new(|| std::thread::available_parallelism().map_or(1, usize::from));
     *THREADS
 }
 
 /// Calls `f` once for every item. Items are begun in order.
-pub(crate) fn on_all_processors<T>(items: impl Iterator<Item = T> + Send, f: impl Fn(T) + Sync) {
+pub fn on_all_processors<T>(items: impl Iterator<Item = T> + Send, f: impl Fn(T) + Sync) {
     let items = Mutex::new(items);
     let next = || items.lock().unwrap_or_else(PoisonError::into_inner).next();
     let work = || {

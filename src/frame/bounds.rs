@@ -41,7 +41,7 @@ impl Bounds {
     }
 
     /// Corner `index` 0..8; bit 0 is x, bit 1 is y, bit 2 is z, set for the maximum. `BOX_CORNERS` in transfer.wgsl.
-    pub(crate) fn corner(&self, index: u32) -> Vec3 {
+    pub fn corner(&self, index: u32) -> Vec3 {
         let pick = |bit: u32, min: f32, max: f32| if index & bit == 0 { min } else { max };
         Vec3::new(pick(1, self.min.x, self.max.x), pick(2, self.min.y, self.max.y), pick(4, self.min.z, self.max.z))
     }

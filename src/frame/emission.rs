@@ -12,9 +12,9 @@ use crate::formula::uniforms::EmitterUniform;
 pub struct Emission {
     pub(crate) uniform: EmitterUniform,
     /// Every one of so many births is looked at where a few tell enough.
-    pub(crate) step: u32,
+    pub step: u32,
     /// Births from `first` on until the next one whose index is a multiple of `step`.
-    pub(crate) first_sample: u32,
+    pub first_sample: u32,
 }
 
 /// How far the swirls of turbulence reach along an axis, in metres of turbulence: more than any of the points that a test looks at.
@@ -34,7 +34,7 @@ impl Emission {
     }
 
     /// A few particles, each of them `step` of all, which are the same ones in the next frame.
-    pub(crate) fn sample(&self, particles: &mut Vec<Particle>) {
+    pub fn sample(&self, particles: &mut Vec<Particle>) {
         self.write(self.first_sample, self.step, particles);
     }
 

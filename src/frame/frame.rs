@@ -130,7 +130,7 @@ pub enum Particles<'a> {
 
 impl Particles<'_> {
     /// How many there are, those aside that cannot be seen.
-    pub(crate) fn count(&self) -> u32 {
+    pub fn count(&self) -> u32 {
         match *self {
             Self::Slice(particles) => particles.len() as u32,
             Self::Buffer { count, .. } => count,
@@ -139,7 +139,7 @@ impl Particles<'_> {
     }
 
     /// True for a buffer whose order matters, and is not right.
-    pub(crate) fn need_sorting(&self, settings: &Settings) -> bool {
+    pub fn need_sorting(&self, settings: &Settings) -> bool {
         matches!(self, Self::Buffer { is_sorted: false, .. }) && settings.order() == Order::Sorted
     }
 }

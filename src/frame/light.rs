@@ -28,13 +28,13 @@ settings! {
         /// Where it shines from.
         kind: LightKind = LightKind::Point, choice;
         /// World space, metres: behind the smoke it glows through, beside it it gives it shape. Point and spot.
-        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         position: Vec3 = Vec3::ZERO, vector(-1.0e5..=1.0e5, "m");
         /// The way the light travels, world space; need not be unit length. Spot and directional.
-        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         direction: Vec3 = Vec3::NEG_Y, vector(-1.0e3..=1.0e3, "");
         /// Linear RGB, usually 0..=1: tints what the ramps answer.
-        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         colour: Vec3 = Vec3::ONE, colour(0.0..=100.0);
         /// Multiplies `colour`. Point and spot: at one metre. Directional: everywhere. In any unit, the scene's: a sun of 120 000
         /// lux is as good as one of 1. What is brighter than half floats can hold is drawn as bright as they can.

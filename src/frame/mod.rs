@@ -7,7 +7,8 @@ mod frame;
 mod light;
 mod material;
 mod particle;
-pub(crate) mod validate;
+#[doc(hidden)]
+pub mod validate;
 mod view;
 
 pub use bounds::Bounds;

@@ -47,7 +47,7 @@ impl Particle {
     }
 
     /// The amount, as far as it counts.
-    pub(crate) fn shown_amount(&self) -> f32 {
+    pub fn shown_amount(&self) -> f32 {
         self.amount.clamp(0.0, 1.0)
     }
 }

@@ -8,7 +8,7 @@ use crate::error::FieldError;
 use crate::settings::{DepthSource, Settings, validate};
 
 /// The settings of system `index` in a picture of this size.
-pub(crate) fn validate_settings(index: usize, settings: &Settings, picture: UVec2) -> Result<(), FieldError> {
+pub fn validate_settings(index: usize, settings: &Settings, picture: UVec2) -> Result<(), FieldError> {
     settings.validate(|| format!("systems[{index}].settings"))?;
     let accumulate = &settings.accumulate;
     let is_host = accumulate.depth_source == DepthSource::Host && !settings.is_forward();
@@ -21,7 +21,7 @@ pub(crate) fn validate_settings(index: usize, settings: &Settings, picture: UVec
 }
 
 /// Where a host says that system `index` is.
-pub(crate) fn validate_place(index: usize, bounds: Option<&Bounds>, depth: Option<f32>) -> Result<(), FieldError> {
+pub fn validate_place(index: usize, bounds: Option<&Bounds>, depth: Option<f32>) -> Result<(), FieldError> {
     if let Some(bounds) = bounds {
         bounds.validate(|| format!("systems[{index}].bounds"))?;
     }
@@ -34,7 +34,7 @@ pub(crate) fn validate_place(index: usize, bounds: Option<&Bounds>, depth: Optio
 }
 
 /// Lights.
-pub(crate) fn validate_lights(lights: &[Light]) -> Result<(), FieldError> {
+pub fn validate_lights(lights: &[Light]) -> Result<(), FieldError> {
     if lights.len() > MAX_LIGHTS {
         return Err(FieldError::new("lights", format!("{} lights", lights.len()), format!("at most {MAX_LIGHTS}")));
     }
@@ -49,7 +49,7 @@ pub(crate) fn validate_lights(lights: &[Light]) -> Result<(), FieldError> {
 }
 
 /// The time of a frame, and its way up.
-pub(crate) fn validate_time_and_up(time: f32, up: Vec3) -> Result<(), FieldError> {
+pub fn validate_time_and_up(time: f32, up: Vec3) -> Result<(), FieldError> {
     if !time.is_finite() {
         return Err(FieldError::new("time", time, "a finite number of seconds"));
     }

@@ -64,7 +64,7 @@ pub(super) fn bounds_in_view(bounds: &Bounds, view: &ViewGeometry) -> Option<Bou
 
 /// A rectangle of texels of the reduced-resolution picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct TargetRect {
+pub struct TargetRect {
     /// First texel, on the grid whose texel (i, j) covers the pixels i·scale .. (i+1)·scale.
     pub origin: IVec2,
     pub size: UVec2,

@@ -59,7 +59,7 @@ pub(super) fn optical_depths(
 }
 
 /// Optical depth of a sprite, in the mean over its square.
-pub(crate) fn optical_depth(particle: &Particle, settings: &Settings) -> f32 {
+pub fn optical_depth(particle: &Particle, settings: &Settings) -> f32 {
     MEAN_OF_SPRITE * middle_of_sprite(particle, settings).0
 }
 

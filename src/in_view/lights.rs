@@ -7,7 +7,7 @@ use crate::formula::uniforms::LightUniform;
 use crate::frame::{Bounds, Light, LightKind};
 
 /// Brings the lights that reach the box into view space.
-pub(crate) fn lights_in_view(view: &ViewGeometry, lights: &[Light], bounds: &Bounds, out: &mut Vec<LightUniform>) {
+pub fn lights_in_view(view: &ViewGeometry, lights: &[Light], bounds: &Bounds, out: &mut Vec<LightUniform>) {
     out.clear();
     let reaches = |light: &&Light| {
         let nearest = light.position.clamp(bounds.min, bounds.max);

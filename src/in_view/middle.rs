@@ -12,7 +12,7 @@ use crate::frame::{Bounds, Particle};
 
 /// Where the smoke is, view space.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Middle {
+pub struct Middle {
     /// Light is flattened to the plane through it that faces the viewer; light by normal is baked for it.
     pub centre: Vec3,
     /// View depths between which most of the smoke lies.

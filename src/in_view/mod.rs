@@ -9,9 +9,9 @@ mod sprites;
 mod system;
 mod view;
 
-pub(crate) use in_front::optical_depth;
-pub(crate) use lights::lights_in_view;
-pub(crate) use order::{SortScratch, in_order};
-pub(crate) use sprites::{Grid, Pictures, Placing, SpriteInView};
-pub(crate) use system::{SystemInView, SystemInWorld, system_in_view};
-pub(crate) use view::ViewGeometry;
+pub use in_front::optical_depth;
+pub use lights::lights_in_view;
+pub use order::{SortScratch, in_order};
+pub use sprites::{Grid, Pictures, Placing, SpriteInView};
+pub use system::{SystemInView, SystemInWorld, system_in_view};
+pub use view::ViewGeometry;

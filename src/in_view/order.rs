@@ -6,7 +6,7 @@ use crate::frame::Particle;
 
 /// Scratch memory that is kept from frame to frame.
 #[derive(Debug, Default)]
-pub(crate) struct SortScratch {
+pub struct SortScratch {
     /// Sort key above, index below.
     keys: Vec<u64>,
     /// What a round of the sort writes.
@@ -61,7 +61,7 @@ impl SortScratch {
 }
 
 /// Writes the visible particles to `out`, sorted farthest first, or as they come.
-pub(crate) fn in_order(
+pub fn in_order(
     view: &ViewGeometry,
     particles: &[Particle],
     is_sorted: bool,

@@ -16,7 +16,7 @@ use crate::settings::{Settings, SpriteAnimation, Technique};
 
 /// The texels that sprites are drawn on: texel (i, j) is the pixels from (origin + (i, j)) · scale.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Grid {
+pub struct Grid {
     pub origin: Vec2,
     pub scale: f32,
     pub size: UVec2,
@@ -24,7 +24,7 @@ pub(crate) struct Grid {
 
 /// A sprite that is not hidden, in view space.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SpriteInView {
+pub struct SpriteInView {
     pub centre: Vec3,
     pub radius: f32,
     /// After opacity and near fade.
@@ -34,7 +34,7 @@ pub(crate) struct SpriteInView {
 }
 
 /// What a sprite covers of a grid.
-pub(crate) struct Covered<'p> {
+pub struct Covered<'p> {
     pub texels: f64,
     /// Of its square, what it reaches of it; 1 of spheres.
     pub share: f64,
@@ -43,7 +43,7 @@ pub(crate) struct Covered<'p> {
 
 /// What is known of sprites' pictures.
 #[derive(Clone, Debug)]
-pub(crate) struct Pictures {
+pub struct Pictures {
     animation: SpriteAnimation,
     filled: Arc<Filled>,
     /// The first frame of those that show where there is anything; `None` where that is taken to be everywhere.
@@ -69,7 +69,7 @@ impl Pictures {
 
 /// What places sprites.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Placing<'a> {
+pub struct Placing<'a> {
     pub view: &'a ViewUniform,
     pub system: &'a SystemUniform,
     pub technique: Technique,

@@ -17,7 +17,7 @@ use crate::settings::{Backlight, DepthSource, DiffuseMode, Order, Settings};
 
 /// What there is to know about a system before it is placed in a view.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SystemInWorld<'a> {
+pub struct SystemInWorld<'a> {
     pub bounds: &'a Bounds,
     /// View depth that the host wants it lit at.
     pub depth: Option<f32>,
@@ -37,7 +37,7 @@ pub(crate) struct SystemInWorld<'a> {
 
 /// A system that is in sight.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SystemInView {
+pub struct SystemInView {
     pub rect: TargetRect,
     /// Pixels that the box covers.
     pub pixels: UVec2,
@@ -59,7 +59,7 @@ impl SystemInView {
 
 /// Places a system in the view; `None` when it is out of sight. `targets` is the size of the host's targets, of which the view
 /// may be a part.
-pub(crate) fn system_in_view(view: &ViewGeometry, targets: UVec2, system: &SystemInWorld<'_>) -> Option<SystemInView> {
+pub fn system_in_view(view: &ViewGeometry, targets: UVec2, system: &SystemInWorld<'_>) -> Option<SystemInView> {
     let SystemInWorld { bounds, depth, particles, stand_for, settings, material, lights, up, time } = *system;
     let in_view = bounds_in_view(bounds, view)?;
     let middle = Middle::new(view, particles, settings.sprite.size, bounds, &in_view, depth);

@@ -14,7 +14,7 @@ const TOLERANCE: f32 = 1.0e-3;
 /// A view in the form that everything else works on: view space has x to the right and y up *in the picture* and z towards the
 /// viewer, and begins at the near plane or in front of it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ViewGeometry {
+pub struct ViewGeometry {
     pub view_from_world: Mat4,
     pub clip_from_view: Mat4,
     pub size: UVec2,

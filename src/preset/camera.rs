@@ -11,10 +11,10 @@ settings! {
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Camera {
         /// Where the picture is seen from, world space, metres. In the smoke, sprites fade before they reach it.
-        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         position: Vec3 = Vec3::new(0.0, 2.0, 8.0), vector(-1.0e5..=1.0e5, "m");
         /// The point in the middle of the picture, metres.
-        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         target: Vec3 = Vec3::new(0.0, 1.5, 0.0), vector(-1.0e5..=1.0e5, "m");
         /// Vertical field of view, degrees: narrow brings the smoke near and flattens it, wide shows more of the scene round it.
         fov: f32 = 45.0, number(1.0..=150.0, "degrees");

@@ -3,8 +3,8 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
+use super::sequence::is_there;
 use crate::assets::builtin;
-use crate::assets::cache::is_there;
 use crate::error::Error;
 
 /// The folder of the preset's file, and after it one that presets share.

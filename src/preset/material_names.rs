@@ -6,8 +6,7 @@ use super::folders::{ALIKE, PictureFolders};
 use super::pictures::Pictures;
 use crate::assets::builtin::{self, Builtin};
 use crate::assets::material::MaterialAssets;
-use crate::assets::sprite::six_way::six_way_layout;
-use crate::assets::sprite::{Sprite, SpriteLayout};
+use crate::assets::sprite::{Sprite, SpriteLayout, six_way_layout};
 use crate::error::{Error, FieldError};
 use crate::settings::{PictureRole, settings};
 
@@ -62,7 +61,7 @@ impl MaterialNames {
 
     /// The same, where other systems may have loaded some already. The errors are those of all fields, in their order, with the
     /// field: at least one. What belongs to the sprite is of that field.
-    pub(super) fn load_from(&self, pictures: &mut Pictures) -> Result<MaterialAssets, Vec<(&'static str, Error)>> {
+    pub fn load_from(&self, pictures: &mut Pictures) -> Result<MaterialAssets, Vec<(&'static str, Error)>> {
         let mut errors = Vec::new();
         let sprite = kept("sprite", self.load_sprite(pictures), &mut errors);
         let mut ramp = |field, name: &str, list| {
@@ -109,7 +108,7 @@ impl MaterialNames {
     }
 
     /// The same with the usual pictures for some fields, as [`MaterialNames::load_from`] tells them.
-    pub(super) fn with_usual(&self, fields: &[&str]) -> Self {
+    pub fn with_usual(&self, fields: &[&str]) -> Self {
         let usual = Self::default();
         let mut names = self.clone();
         for field in fields {
@@ -135,7 +134,7 @@ impl MaterialNames {
 
     fn load_sprite(&self, pictures: &mut Pictures) -> Result<SpritePictures, Error> {
         let ((sprite, detail), layout) = match builtin::find(builtin::SPRITES, &self.sprite) {
-            Some(builtin) => (self.load_builtin(builtin)?, builtin.sprite_recipe()?.layout()),
+            Some(builtin) => (self.load_builtin(builtin)?, builtin.sprite_layout()?),
             None => {
                 let layout = SpriteLayout { columns: self.columns, rows: self.rows, y_down: false };
                 let path = inside("sprite", &self.sprite, builtin::SPRITES)?;

@@ -15,7 +15,7 @@ use crate::error::{Error, FieldError};
 pub const MAX_PICTURE_BYTES: u64 = 1 << 30;
 
 /// What has been loaded so far, by file.
-pub(super) struct Pictures {
+pub struct Pictures {
     folders: PictureFolders,
     ramps: HashMap<PathBuf, Ramp>,
     sprites: HashMap<(PathBuf, SpriteLayout), Sprite>,
@@ -24,6 +24,7 @@ pub(super) struct Pictures {
 }
 
 impl Pictures {
+    /// Nothing loaded yet; files are looked for in `folders`.
     pub fn new(folders: PictureFolders) -> Self {
         let (ramps, sprites, noises) = Default::default();
         Self { folders, ramps, sprites, noises, bytes: 0 }

@@ -8,13 +8,12 @@ use super::environment::Environment;
 use super::folders::PictureFolders;
 use super::material_names::MaterialNames;
 use super::pictures::Pictures;
-use crate::assets::cache::Cache;
 use crate::assets::material::MaterialAssets;
 use crate::assets::{builtin, json};
 use crate::emitter::{Emitter, MAX_PARTICLES};
 use crate::error::{Error, FieldError, name};
 use crate::frame::validate::validate_lights;
-use crate::frame::{Emission, Light, Particle};
+use crate::frame::{Emission, Light};
 use crate::settings::{FieldVisitor, Fields, Settings, validate};
 
 /// The version of the preset format that this code writes and reads.
@@ -29,7 +28,7 @@ pub const MAX_SYSTEMS: usize = 32;
 
 /// A whole shot.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-#[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Preset {
     /// Format version: 1.
@@ -58,7 +57,7 @@ pub struct Preset {
 
 /// One particle system.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-#[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PresetSystem {
     /// What a list shows.
@@ -224,7 +223,7 @@ impl Preset {
 }
 
 /// A mistake in the files of system `index`, said with the preset's file.
-pub(super) fn in_system(path: &Path, index: usize, error: Error) -> Error {
+pub fn in_system(path: &Path, index: usize, error: Error) -> Error {
     match error {
         Error::Field(mut error) => {
             error.field = format!("systems[{index}].{}", error.field);
@@ -238,31 +237,14 @@ pub(super) fn in_system(path: &Path, index: usize, error: Error) -> Error {
 }
 
 impl PresetSystem {
-    /// The particles alive at `time`, seconds: those of `cache`, the system's files, where it names some and has them, else
-    /// those of its emitter.
-    pub fn particles(&self, cache: Option<&Cache>, time: f32, particles: &mut Vec<Particle>) {
-        match cache.filter(|_| self.cache.is_used()) {
-            Some(cache) => {
-                let is_frozen = self.settings.sprite.freeze_animation;
-                let flipbook_rate = if is_frozen { 0.0 } else { self.cache.flipbook_rate };
-                CacheSource { flipbook_rate, ..self.cache.clone() }.evaluate(cache, time, particles);
-            }
-            None => self.emitter_at(time).evaluate(particles),
-        }
-    }
-
-    /// The same of an emitter, not evaluated; `None` of files.
-    pub fn emission(&self, cache: Option<&Cache>, time: f32) -> Option<Emission> {
-        (!self.cache.is_used() || cache.is_none()).then(|| self.emitter_at(time))
-    }
-
-    fn emitter_at(&self, time: f32) -> Emission {
+    /// The emitter at `time`, seconds, frozen where the flipbook is.
+    pub fn emission(&self, time: f32) -> Emission {
         let frame_rate = if self.settings.sprite.freeze_animation { 0.0 } else { self.emitter.frame_rate };
         Emitter { frame_rate, ..self.emitter }.at(time)
     }
 
     /// Flipbook frames per second, wherever the particles come from.
-    pub(super) fn frame_rate(&self) -> f32 {
+    pub fn frame_rate(&self) -> f32 {
         if self.cache.is_used() { self.cache.flipbook_rate } else { self.emitter.frame_rate }
     }
 

@@ -158,19 +158,19 @@ settings! {
 
 impl Order {
     /// True if normals in this order and encoding need the sum of their weights.
-    pub(crate) fn sums_weights(self, encoding: NormalEncoding) -> bool {
+    pub fn sums_weights(self, encoding: NormalEncoding) -> bool {
         (self, encoding) == (Self::Weighted, NormalEncoding::Biased)
     }
 }
 
 impl Accumulate {
     /// True if the target holds the sum of the weights of normals, too: biased ones cannot be read without it.
-    pub(crate) fn sums_weights(&self) -> bool {
+    pub fn sums_weights(&self) -> bool {
         self.order.sums_weights(self.encoding)
     }
 
     /// True if the smoke in a picture of this size is lit once per texel, and that is not once per pixel.
-    pub(crate) fn lights_target(&self, picture: UVec2) -> bool {
+    pub fn lights_target(&self, picture: UVec2) -> bool {
         self.lighting_resolution == LightingResolution::Target && self.effective_scale(picture) > 1
     }
 

@@ -13,11 +13,13 @@ pub trait Choice {
 }
 
 /// Defines a setting enum: its variants, their names, and everything that goes by them.
+#[doc(hidden)]
+#[macro_export]
 macro_rules! choice {
     ($(#[$meta:meta])* $name:ident { $($(#[$variant_meta:meta])* $variant:ident = $text:literal,)+ }) => {
         $(#[$meta])*
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
-        #[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
+        #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
         pub enum $name { $($(#[$variant_meta])* #[serde(rename = $text)] $variant,)+ }
 
         impl $name {
@@ -58,4 +60,4 @@ macro_rules! choice {
         }
     };
 }
-pub(crate) use choice;
+pub use choice;

@@ -2,7 +2,7 @@
 //!
 //! The walk is what checks a preset, and what a user interface builds its panels from, so that a range is written once. The
 //! name given to the visitor is the Rust field, the preset key and the label; the field's doc comment is its tooltip
-//! ([`Tooltips`](crate::preset::Tooltips) has them at run time).
+//! ([`Tooltips`](haze_author::preset::Tooltips) has them at run time).
 
 use std::fmt::Write as _;
 use std::ops::RangeInclusive;

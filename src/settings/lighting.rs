@@ -89,7 +89,7 @@ settings! {
         /// Multiplies the sum over all lights: brighter smoke in the same scene.
         intensity: f32 = 1.0, number(0.0..=100.0, "");
         /// Linear RGB of smoke that is lit by six-way maps, which hold no colour of their own.
-        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         six_way_colour: Vec3 = Vec3::ONE, colour(0.0..=1.0);
         /// How six-way maps are mixed for light from between their sides: 0 evenly; towards 1 as smoke that scatters light onwards, whose
         /// glow keeps close round a light behind it.
@@ -108,10 +108,10 @@ settings! {
         /// Amount after that at which `ambient_colour` is reached: little makes an edge, much a slow change.
         scatter_smooth: f32 = 0.7, number(0.0..=1.0, "");
         /// Linear RGB of thin smoke, where light comes through whatever it comes from.
-        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         scatter_colour: Vec3 = Vec3::new(0.05, 0.055, 0.065), colour(0.0..=100.0);
         /// Linear RGB of thick smoke: lifts what no light reaches.
-        #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+        #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         ambient_colour: Vec3 = Vec3::new(0.012, 0.013, 0.017), colour(0.0..=100.0);
         /// Multiplies the result: milky smoke, or shade that is dark.
         intensity: f32 = 1.0, number(0.0..=100.0, "");

@@ -6,7 +6,8 @@ use crate::error::FieldError;
 
 mod accumulate;
 mod budget;
-pub(crate) mod choice;
+#[doc(hidden)]
+pub mod choice;
 pub(crate) mod fields;
 mod lighting;
 mod set;
@@ -21,7 +22,8 @@ pub use accumulate::{
 };
 pub use budget::{Budget, ScaleBudget};
 pub use choice::Choice;
-pub(crate) use choice::choice;
+#[doc(hidden)]
+pub use choice::choice;
 pub use fields::{FieldVisitor, Fields, Headed, PictureRole, validate};
 pub use lighting::{
     Backlight, CoverageMode, Diffuse, DiffuseMode, Lighting, RampFilter, SoftScatter, SoftScatterMode, SpecularScatter,
@@ -50,7 +52,7 @@ choice! {
 
 impl Path {
     /// What it may turn out to be.
-    pub(crate) fn candidates(self) -> &'static [Self] {
+    pub fn candidates(self) -> &'static [Self] {
         match self {
             Self::Auto => &[Self::Raster, Self::Tiled],
             Self::Raster => &[Self::Raster],
@@ -105,12 +107,12 @@ impl ShadeTree {
     }
 
     /// True for what forward sprites show too: lit smoke.
-    pub(crate) fn is_picture(self) -> bool {
+    pub fn is_picture(self) -> bool {
         matches!(self, Self::Final | Self::Combined)
     }
 
     /// True where the glow of lights is shown.
-    pub(crate) fn glows(self) -> bool {
+    pub fn glows(self) -> bool {
         matches!(self, Self::Final | Self::SpecularScatter)
     }
 }

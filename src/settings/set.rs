@@ -148,7 +148,7 @@ mod tests {
             scale: f32 = 2.0, number(0.1..=16.0, "");
             metal: Metal = Metal::Tin, choice;
             is_hollow: bool = false, flag;
-            #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
+            #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
             place: Vec3 = Vec3::ZERO, vector(-1.0..=1.0, "m");
         }
     }

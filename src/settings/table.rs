@@ -10,7 +10,7 @@ macro_rules! settings {
     }) => {
         $(#[$meta])*
         #[derive(serde::Serialize, serde::Deserialize)]
-        #[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
+        #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
         #[serde(default, deny_unknown_fields)]
         pub struct $name { $($(#[$field_meta])* pub $field: $type,)+ }
 

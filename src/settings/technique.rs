@@ -96,7 +96,7 @@ settings! {
 
 impl SpriteSettings {
     /// These for a sprite of so many frames: one alone is nothing to blend, unless it moves towards itself.
-    pub(crate) fn for_frames(self, count: f32) -> Self {
+    pub fn for_frames(self, count: f32) -> Self {
         if count > 1.0 || self.motion > 0.0 { self } else { Self { animation: SpriteAnimation::Still, ..self } }
     }
 }

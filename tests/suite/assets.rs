@@ -3,17 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use glam::UVec2;
-use haze::demo::develop::develop;
-use haze::demo::shot::Shot;
-use haze::noise::NoiseRecipe;
+use haze::builtin;
 use haze::picture::read_png;
-use haze::ramp::bake::RampRecipe;
-use haze::ramp::motif::MotifRecipe;
-use haze::ramp::template::TEMPLATES;
 use haze::settings::CoverageMode;
-use haze::sprite::bake::SpriteRecipe;
-use haze::sprite::detail::detail;
-use haze::{builtin, preset};
+use haze_author::noise::NoiseRecipe;
+use haze_author::ramp::bake::RampRecipe;
+use haze_author::ramp::motif::MotifRecipe;
+use haze_author::ramp::template::TEMPLATES;
+use haze_author::sprite::bake::SpriteRecipe;
+use haze_author::sprite::detail::detail;
+use haze_demo::develop::develop;
+use haze_demo::shot::Shot;
 use image::{Rgba, RgbaImage, imageops};
 
 fn file(folder: &str, name: &str) -> PathBuf {
@@ -118,11 +118,14 @@ fn noise_is_what_its_recipe_makes() {
 #[test]
 fn the_committed_page_of_settings_is_the_programs() {
     let committed = std::fs::read_to_string(file("docs", "settings.md")).unwrap();
-    assert!(committed == preset::settings_page(), "run `haze preset settings > docs/settings.md`");
+    assert!(committed == haze_author::preset::settings_page(), "run `haze preset settings > docs/settings.md`");
 }
 
 #[test]
 fn the_committed_schema_is_the_programs() {
     let committed = std::fs::read_to_string(file("presets", "preset.schema.json")).unwrap();
-    assert!(committed.trim_end() == preset::schema(), "run `haze preset schema > presets/preset.schema.json`");
+    assert!(
+        committed.trim_end() == haze_author::preset::schema(),
+        "run `haze preset schema > presets/preset.schema.json`"
+    );
 }

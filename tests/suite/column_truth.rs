@@ -9,15 +9,15 @@ use glam::camera::rh::proj::directx::orthographic;
 use glam::{Mat4, UVec2, UVec3, Vec2, Vec3, Vec4, Vec4Swizzles, vec3};
 use haze::builtin;
 use haze::noise::{pcg3d, unit};
-use haze::path_trace::{MEDIA, Medium, PathTrace, Traced, Volume};
 use haze::picture::Picture;
-use haze::ramp::response::{LightResponse, Response};
-use haze::reference;
 use haze::settings::{Backlight, Lighting, Settings, Technique};
 use haze::sprite::Sprite;
-use haze::sprite::bake::SpriteRecipe;
-use haze::sprite::six_way::six_way_layout;
 use haze::{Light, LightKind, MaterialAssets, Particle, View};
+use haze_author::path_trace::{MEDIA, Medium, PathTrace, Traced, Volume};
+use haze_author::ramp::response::{LightResponse, Response};
+use haze_author::sprite::bake::SpriteRecipe;
+use haze_author::sprite::six_way::six_way_layout;
+use haze_reference;
 
 const LIGHTS: usize = 8;
 /// Moments of the flipbook that the puffs are.
@@ -48,7 +48,7 @@ impl Column {
                 age: 0.5,
             }
         };
-        let recipe = builtin::find(builtin::SPRITES, "billow").unwrap().sprite_recipe().unwrap();
+        let recipe = SpriteRecipe::of_builtin(builtin::find(builtin::SPRITES, "billow").unwrap()).unwrap();
         let recipe =
             SpriteRecipe { size, columns: FRAMES, rows: 1, extinction: medium.density, tolerance: 0, ..recipe };
         let particles = (0..24).map(puff).collect();
@@ -117,16 +117,16 @@ impl Column {
         let of_light = |to_light: Vec3| {
             let light = Light { kind: LightKind::Directional, direction: -to_light, ..Light::default() };
             let mut picture = Picture::new(size, Vec4::ZERO);
-            let frame = reference::Frame {
+            let frame = haze_reference::Frame {
                 view,
                 scene_depth: &Picture::new(size, 1.0),
                 lights: &[light],
-                systems: &[reference::System::new(&self.particles, settings, material)],
+                systems: &[haze_reference::System::new(&self.particles, settings, material)],
                 time: 0.0,
                 up: Vec3::Y,
                 shade_tree: haze::settings::ShadeTree::Final,
             };
-            reference::render(&frame, &mut picture).unwrap();
+            haze_reference::render(&frame, &mut picture).unwrap();
             Picture { size, texels: picture.texels.iter().map(|texel| texel.xyz()).collect() }
         };
         lights().into_iter().map(of_light).collect()

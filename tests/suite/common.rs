@@ -3,12 +3,12 @@
 use std::sync::{LazyLock, OnceLock};
 
 use glam::{UVec2, UVec3, Vec4};
-use haze::headless::Headless;
 use haze::noise::NoiseVolume;
 use haze::picture::Picture;
 use haze::ramp::Ramp;
 use haze::sprite::Sprite;
 use haze::{Context, wgpu};
+use haze_demo::headless::Headless;
 
 use crate::stage::BACKDROP;
 

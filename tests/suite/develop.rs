@@ -1,11 +1,11 @@
 //! What a window shows is what the program writes.
 
 use glam::{UVec2, Vec2, Vec4};
-use haze::demo::develop::{Developer, Shown, develop, exposure};
-use haze::demo::shot::Shot;
-use haze::demo::stage::{Stage, StageContext};
 use haze::settings::ShadeTree;
 use haze::wgpu;
+use haze_demo::develop::{Developer, Shown, develop, exposure};
+use haze_demo::shot::Shot;
+use haze_demo::stage::{Stage, StageContext};
 
 use crate::common::gpu;
 use crate::creations;

@@ -4,12 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path as File;
 
 use glam::{UVec2, Vec3, Vec4, vec3};
-use haze::cache::Cache;
-use haze::noise::NoiseRecipe;
 use haze::picture::Picture;
 use haze::preset::{CacheEnd, PictureFolders, Preset, PresetSystem};
 use haze::settings::*;
 use haze::{Context, Light, LightKind, MaterialAssets};
+use haze_author::noise::NoiseRecipe;
+use haze_author::particle_files;
+use haze_author::particle_files::Cache;
+use haze_author::preset::without_effect;
 
 use crate::common::{gpu, has_tiles};
 use crate::every_setting::{Mover, OTHER_DETAIL, OTHER_NOISE, OTHER_SIX_WAY};
@@ -41,14 +43,14 @@ impl Situation {
         let material = system.material.load(folder).unwrap();
         let preset = Preset { time: 6.3, lights: vec![light], systems: vec![system], ..Preset::default() };
         preset.validate().unwrap();
-        let caches = preset.load_caches(folder, &PictureFolders::at(folder)).unwrap();
+        let caches = particle_files::load_caches(&preset, folder, &PictureFolders::at(folder)).unwrap();
         Self { preset, material, caches }
     }
 
     fn stage(&self) -> Stage {
         let mut stage = Stage::new(SIZE);
         let system = &self.preset.systems[0];
-        system.particles(self.caches[0].as_ref(), self.preset.time, &mut stage.particles);
+        particle_files::particles(system, self.caches[0].as_ref(), self.preset.time, &mut stage.particles);
         stage.lights.clone_from(&self.preset.lights);
         (stage.settings, stage.time) = (system.settings_for(SIZE.y), self.preset.time);
         stage.material = self.material.clone();
@@ -236,7 +238,7 @@ fn what_has_no_effect_has_none_and_what_is_not_told_so_has_one() {
         while let Some((moved, path, has_more)) = situation.moved(folder, skip, value) {
             (skip, value) = if has_more { (skip, value + 1) } else { (skip + 1, 0) };
             all.insert(path.clone());
-            let reason = situation.preset.without_effect(&path, SIZE);
+            let reason = without_effect(&situation.preset, &path, SIZE);
             // Not every value goes with every other.
             reasons.extend(reason);
             let on_cpu = moved.as_ref().and_then(|moved| moved.stage().try_on_cpu().ok());
@@ -271,11 +273,10 @@ fn what_has_no_effect_has_none_and_what_is_not_told_so_has_one() {
     assert_eq!(reasons.len(), 44, "{reasons:#?}");
 }
 
-#[cfg(feature = "app")]
 #[test]
 fn the_yards_props_are_nowhere_else() {
-    use haze::demo::shot::Shot;
     use haze::preset::SceneName;
+    use haze_demo::shot::Shot;
 
     use crate::presets::drawn;
 
@@ -287,7 +288,7 @@ fn the_yards_props_are_nowhere_else() {
         for field in ["environment.lamp", "environment.brazier"] {
             let mut other = shot.clone();
             set_field(&mut other.preset, field, "false").unwrap();
-            let is_told = shot.preset.without_effect(field, SIZE).is_some();
+            let is_told = without_effect(&shot.preset, field, SIZE).is_some();
             assert_eq!(is_told, scene != SceneName::Yard, "{field}");
             let moved = pictures(&other);
             assert_eq!(is_told, moved.0 == plain.0, "{field} {}", scene.name());

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 use glam::{UVec2, Vec4};
 use haze::builtin;
-use haze::demo::shot::Shot;
 use haze::formula::colour::srgb_from_linear;
 use haze::picture::Picture;
 use haze::picture::{Effort, read_png, write_png};
 use haze::settings::{ShadeTree, Technique};
+use haze_demo::shot::Shot;
 use image::{DynamicImage, Rgb, RgbImage};
 
 use crate::presets::{drawn, shot};

@@ -2,10 +2,10 @@
 
 use glam::{UVec2, Vec4};
 use haze::formula::colour::gamma_target_colour;
-use haze::headless::Headless;
 use haze::picture::Picture;
 use haze::wgpu::util::DeviceExt;
 use haze::{Context, Descriptor, Error, Frame, Particle, Particles, Renderer, SceneDepth, System, Timing, wgpu};
+use haze_demo::headless::Headless;
 
 use crate::common::shared_context;
 use crate::stage::{BACKDROP, DepthKind, Stage};

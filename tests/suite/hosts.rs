@@ -10,8 +10,8 @@ mod warm_up;
 use std::sync::OnceLock;
 
 use glam::UVec2;
-use haze::headless::Headless;
 use haze::{Error, Particles, wgpu};
+use haze_demo::headless::Headless;
 
 use crate::stage::Stage;
 

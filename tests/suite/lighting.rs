@@ -2,9 +2,9 @@
 
 use glam::{UVec2, Vec3, Vec4, vec3};
 use haze::picture::Picture;
-use haze::reference::{Frame, System};
 use haze::settings::{DiffuseMode, Path, ShadeTree, Technique};
 use haze::{Light, LightKind, Particle};
+use haze_reference::{Frame, System};
 
 use crate::common::{AGREEMENT, gpu, psnr};
 use crate::stage::{BACKDROP, Stage};
@@ -58,7 +58,7 @@ fn a_depth_that_is_no_number_is_refused_by_name() {
     let system = System { depth: Some(f32::NAN), ..System::new(&stage.particles, &stage.settings, &stage.material) };
     let depth = stage.ndc_depth();
     let frame = Frame { systems: &[system], ..Frame::new(stage.view, &depth) };
-    let error = haze::reference::render(&frame, &mut Picture::new(SIZE, Vec4::ZERO)).unwrap_err();
+    let error = haze_reference::render(&frame, &mut Picture::new(SIZE, Vec4::ZERO)).unwrap_err();
     assert_eq!(error.to_string(), "systems[0].depth: NaN is not valid; expected a finite number of metres, or None");
 }
 

@@ -4,27 +4,27 @@
 #![allow(clippy::redundant_closure_for_method_calls, reason = "not every type of wgpu can be named")]
 #![allow(clippy::float_cmp, reason = "what must be equal to the bit is compared so")]
 
-#[cfg(feature = "app")]
+mod anchors;
 mod assets;
-#[cfg(feature = "app")]
+mod budget;
 mod column_truth;
 mod common;
+mod corpus;
 mod creations;
-#[cfg(feature = "app")]
 mod develop;
 mod effects;
 mod every_setting;
+mod fields;
 mod formulas;
-#[cfg(feature = "app")]
 mod goldens;
 mod host;
 mod hosts;
 mod in_view;
+mod layers;
 mod lighting;
 mod overdraw;
-#[cfg(feature = "app")]
+mod particles;
 mod presets;
-#[cfg(feature = "app")]
 mod probe;
 mod properties;
 mod shader_layout;
@@ -35,5 +35,4 @@ mod stage;
 mod techniques;
 mod tiled;
 mod timing;
-#[cfg(feature = "app")]
 mod upsampling;

@@ -3,10 +3,10 @@
 use glam::camera::rh::proj::directx;
 use glam::{Mat4, UVec2, Vec4, vec3};
 use haze::formula::colour::overdraw_colour;
-use haze::headless::Headless;
 use haze::picture::Picture;
 use haze::settings::{DepthSource, Path, ShadeTree, Technique};
 use haze::{Overdraw, Particle, Particles, View, wgpu};
+use haze_demo::headless::Headless;
 
 use crate::common::gpu;
 use crate::host::Host;

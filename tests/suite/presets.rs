@@ -4,11 +4,11 @@ use std::sync::LazyLock;
 
 use glam::{UVec2, Vec4};
 use haze::builtin;
-use haze::demo::shot::Shot;
-use haze::demo::stage::{Stage, StageContext};
 use haze::picture::Picture;
 use haze::preset::{CacheEnd, Preset, SceneName, UpAxis};
 use haze::settings::*;
+use haze_demo::shot::Shot;
+use haze_demo::stage::{Stage, StageContext};
 
 use crate::common::{AGREEMENT, gpu, psnr_over};
 

@@ -2,13 +2,13 @@
 
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
 use haze::builtin;
-use haze::demo::capture::Captured;
-use haze::demo::shot::Shot;
-use haze::demo::stage::{Stage, StageContext};
 use haze::picture::Picture;
-use haze::reference::{Probe, SystemProbe};
 use haze::settings::*;
 use haze::wgpu;
+use haze_demo::capture::Captured;
+use haze_demo::shot::Shot;
+use haze_demo::stage::{Stage, StageContext};
+use haze_reference::{Probe, SystemProbe};
 
 use crate::common::{gpu, has_tiles};
 

@@ -1,11 +1,11 @@
 //! Light by six-way maps: both renderers, everywhere it can be; and where it cannot.
 
 use glam::{UVec2, Vec3, Vec4, vec3};
-use haze::headless::Headless;
 use haze::picture::Picture;
 use haze::settings::*;
 use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Light, LightKind, wgpu};
+use haze_demo::headless::Headless;
 
 use crate::common::{AGREEMENT, gpu, has_tiles, psnr};
 use crate::stage::{Stage, six_way_of};

@@ -4,15 +4,16 @@ use std::sync::LazyLock;
 
 use glam::camera::rh;
 use glam::{Mat4, UVec2, UVec3, Vec2, Vec3, Vec4, vec3};
-use haze::noise::{NoiseRecipe, NoiseVolume};
+use haze::noise::NoiseVolume;
 use haze::noise::{pcg3d, unit};
 use haze::picture::Picture;
 use haze::ramp::Ramp;
-use haze::reference;
 use haze::settings::{Path, Settings, ShadeTree};
-use haze::sprite::six_way::six_way_layout;
 use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Bounds, FieldError, Light, MaterialAssets, Particle, View};
+use haze_author::noise::NoiseRecipe;
+use haze_author::sprite::six_way::six_way_layout;
+use haze_reference;
 
 use crate::common::gpu;
 use crate::host::HostKind;
@@ -217,19 +218,19 @@ impl Stage {
 
     pub fn try_on_cpu(&self) -> Result<Picture<Vec4>, FieldError> {
         let mut picture = Picture::new(self.view.size, BACKDROP);
-        let frame = reference::Frame {
+        let frame = haze_reference::Frame {
             view: self.view,
             scene_depth: &self.ndc_depth(),
             lights: &self.lights,
-            systems: &[reference::System {
+            systems: &[haze_reference::System {
                 bounds: self.bounds,
-                ..reference::System::new(&self.particles, &self.settings, &self.material)
+                ..haze_reference::System::new(&self.particles, &self.settings, &self.material)
             }],
             time: self.time,
             up: self.up,
             shade_tree: self.shade_tree,
         };
-        reference::render(&frame, &mut picture)?;
+        haze_reference::render(&frame, &mut picture)?;
         Ok(picture)
     }
 }

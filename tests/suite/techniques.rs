@@ -6,9 +6,9 @@ use glam::camera::rh::proj::directx;
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles, vec3};
 use haze::formula::sprite::{flipbook_frames, sample_detail, sample_sprite};
 use haze::settings::*;
-use haze::sprite::bake::SpriteRecipe;
 use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Bounds, Error, Particle};
+use haze_author::sprite::bake::SpriteRecipe;
 
 use crate::common::{AGREEMENT, STEP_AGREEMENT, gpu, non_finite_texels, psnr};
 use crate::host::Host;

@@ -6,19 +6,16 @@ mod lists;
 
 use std::sync::LazyLock;
 
-#[cfg(feature = "app")]
 use glam::UVec2;
 use glam::camera::rh::proj::directx;
 use glam::{Vec3, Vec4, vec3};
-#[cfg(feature = "app")]
 use haze::builtin;
-#[cfg(feature = "app")]
-use haze::demo::shot::Shot;
-use haze::headless::Headless;
 use haze::picture::Picture;
 use haze::settings::*;
 use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Bounds, Context, Error, Particle, Particles, wgpu};
+use haze_demo::headless::Headless;
+use haze_demo::shot::Shot;
 
 use crate::common::{AGREEMENT, STEP_AGREEMENT, gpu, has_tiles, psnr};
 use crate::host::{Host, as_floats};
@@ -163,7 +160,6 @@ fn what_cannot_be_seen_is_left_out() {
     }
 }
 
-#[cfg(feature = "app")]
 #[test]
 fn every_preset_is_the_same_on_tiles() {
     if !has_tiles() {

@@ -4,9 +4,9 @@ use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
-use haze::headless::Headless;
 use haze::settings::{Backlight, DiffuseMode, Lighting, LightingResolution, Path};
 use haze::{Error, Frame, FrameTimes, Particles, SceneDepth, Settings, System, Timing, wgpu};
+use haze_demo::headless::Headless;
 
 use crate::common::{gpu, has_tiles};
 use crate::creations;

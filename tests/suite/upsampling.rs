@@ -2,10 +2,10 @@
 
 use glam::{IVec2, UVec2, Vec4, vec3};
 use haze::builtin;
-use haze::demo::shot::Shot;
 use haze::formula::colour::srgb_from_linear;
 use haze::picture::Picture;
 use haze::settings::{LightingResolution, ShadeTree, Upsample};
+use haze_demo::shot::Shot;
 
 use crate::common::psnr;
 use crate::presets::drawn;

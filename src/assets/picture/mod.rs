@@ -8,12 +8,13 @@ mod profile;
 
 pub use colour_space::{colour_notes, decode_colour_png, read_colour_png};
 pub use file::{FileIdentity, check_file, write_file};
-pub(crate) use png::is_png;
+pub use png::is_png;
 pub use png::{Effort, MAX_BYTES, MAX_SIDE, decode_png, read_png, write_png};
 
-use glam::{IVec2, UVec2};
+use glam::{IVec2, UVec2, Vec3, Vec4};
 
 use crate::assets::threads::{on_all_processors, threads};
+use crate::formula::texture::Texture2d;
 
 /// A rectangle of texels, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,5 +55,15 @@ impl<T: Copy + Send> Picture<T> {
                 f(UVec2::new(index % width, first_row + index / width), texel);
             }
         });
+    }
+}
+
+impl Texture2d for Picture<Vec3> {
+    fn dimensions(&self) -> UVec2 {
+        self.size
+    }
+
+    fn load(&self, at: UVec2) -> Vec4 {
+        self.texels[(at.y * self.size.x + at.x) as usize].extend(1.0)
     }
 }

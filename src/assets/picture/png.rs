@@ -23,7 +23,7 @@ const SMALL: CompressionType = CompressionType::Level(6);
 const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
 /// True for a file that begins as a PNG does.
-pub(crate) fn is_png(bytes: &[u8]) -> bool {
+pub fn is_png(bytes: &[u8]) -> bool {
     bytes.starts_with(SIGNATURE)
 }
 

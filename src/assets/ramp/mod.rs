@@ -1,18 +1,6 @@
 //! Ramps: the small textures that an artist paints the light with. `ramps/README.md` has axes, sizes and colour space.
 
-pub mod bake;
-pub mod check;
-mod colour;
-pub mod fit;
-mod formula;
-mod ggr;
-pub(crate) mod gradient;
-pub mod import;
-pub mod motif;
-pub mod response;
 mod role;
-pub mod template;
-mod text;
 
 pub use role::Role;
 
@@ -80,17 +68,17 @@ impl Ramp {
     }
 
     /// True if both are in the same memory.
-    pub(crate) fn shares(&self, other: &Self) -> bool {
+    pub fn shares(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.texels, &other.texels)
     }
 
     /// Bytes that the texels take.
-    pub(crate) fn memory(&self) -> u64 {
+    pub fn memory(&self) -> u64 {
         size_of_val(&*self.texels) as u64
     }
 
     /// The texels as they are uploaded: `Rgba16Float`, the row for 0 first.
-    pub(crate) fn bytes(&self) -> Vec<u8> {
+    pub fn bytes(&self) -> Vec<u8> {
         self.texels.iter().flatten().flat_map(|channel| channel.to_le_bytes()).collect()
     }
 }

@@ -19,7 +19,7 @@ struct FilledTexel {
 
 /// Of all frames of a sprite, and all its mip levels.
 #[derive(Debug)]
-pub(crate) struct Filled {
+pub struct Filled {
     level_count: u32,
     /// Frame by frame.
     texels: Vec<FilledTexel>,
@@ -40,7 +40,7 @@ impl Filled {
         UVec2::new(self.level_count, self.texels.len() as u32 / self.level_count)
     }
 
-    pub fn bytes(&self) -> &[u8] {
+    pub(crate) fn bytes(&self) -> &[u8] {
         bytemuck::cast_slice(&self.texels)
     }
 

@@ -1,13 +1,6 @@
 //! Sprite pictures: flipbooks of normal maps with the amount in alpha.
 
-pub mod bake;
-pub mod check;
-pub mod detail;
-pub(crate) mod filled;
-mod height;
-pub mod import;
-pub mod six_way;
-pub mod y_direction;
+pub mod filled;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -51,7 +44,7 @@ pub const MAX_FRAMES: u32 = 256;
 
 impl Sprite {
     /// True if both are in the same memory.
-    pub(crate) fn shares(&self, other: &Self) -> bool {
+    pub fn shares(&self, other: &Self) -> bool {
         self.levels.len() == other.levels.len() && self.levels.iter().zip(&other.levels).all(|(a, b)| Arc::ptr_eq(a, b))
     }
 
@@ -105,7 +98,8 @@ impl Sprite {
         Self::from_picture(path, &read_png(path)?.to_rgba8(), layout)
     }
 
-    pub(crate) fn with_levels(size: u32, frame_count: u32, texels: Vec<[u8; 4]>) -> Self {
+    /// Builds the mip levels of frames below each other, `size` texels a side each.
+    pub fn with_levels(size: u32, frame_count: u32, texels: Vec<[u8; 4]>) -> Self {
         let mut sprite = Self { size, frame_count, levels: vec![texels.into()] };
         for level in 1..=size.ilog2() {
             let coarse = sprite.level_size(level);
@@ -152,7 +146,7 @@ impl Sprite {
     }
 
     /// Bytes that the texels take.
-    pub(crate) fn memory(&self) -> u64 {
+    pub fn memory(&self) -> u64 {
         self.levels.iter().map(|level| size_of_val(&**level) as u64).sum()
     }
 
@@ -165,6 +159,11 @@ impl Sprite {
     pub(crate) fn level_bytes(&self, level: u32) -> &[u8] {
         bytemuck::cast_slice(&self.levels[level as usize])
     }
+}
+
+/// The layout of a sprite's six-way maps.
+pub fn six_way_layout(sprite: SpriteLayout) -> SpriteLayout {
+    SpriteLayout { rows: sprite.rows.saturating_mul(2), y_down: false, ..sprite }
 }
 
 impl Texture2dArray for Sprite {

@@ -4,9 +4,10 @@ use std::sync::OnceLock;
 
 use glam::{UVec2, UVec3, Vec2, Vec3, Vec4, vec3};
 use haze::formula::texture::Texture2d;
-use haze::noise::{NoiseRecipe, NoiseVolume, pcg3d, unit};
+use haze::noise::{NoiseVolume, pcg3d, unit};
 use haze::ramp::Ramp;
 use haze::sprite::{Sprite, SpriteLayout};
+use haze_author::noise::NoiseRecipe;
 
 /// f32 arithmetic in another order, with fused or separate multiply-add: a few units in the last place.
 pub const ARITHMETIC: f32 = 2e-6;

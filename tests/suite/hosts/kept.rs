@@ -1,9 +1,9 @@
 //! Particles in the host's buffers, systems by their keys, and what is kept of both.
 
 use glam::{Mat4, UVec2, Vec3, vec3};
-use haze::headless::Headless;
 use haze::settings::*;
 use haze::{Bounds, Error, Frame, Particle, Particles, SceneDepth, Settings, System, View, wgpu};
+use haze_demo::headless::Headless;
 
 use super::{SIZE, encoder, field};
 use crate::common::gpu;

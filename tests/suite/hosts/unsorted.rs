@@ -1,9 +1,9 @@
 //! A host's particles in any order, which the GPU sorts for the paths that blend.
 
 use glam::vec3;
-use haze::headless::Headless;
 use haze::settings::*;
 use haze::{Bounds, Particle, Particles, wgpu};
+use haze_demo::headless::Headless;
 
 use super::{SIZE, field};
 use crate::common::{gpu, has_tiles};

@@ -65,7 +65,8 @@ fn a_pass_without_depth_gives_the_same_picture() {
 #[test]
 fn the_limits_of_webgl2_are_enough() {
     let webgl2 =
-        haze::headless::Headless::with(wgpu::Limits::downlevel_webgl2_defaults(), wgpu::Features::empty()).unwrap();
+        haze_demo::headless::Headless::with(wgpu::Limits::downlevel_webgl2_defaults(), wgpu::Features::empty())
+            .unwrap();
     let mut stage = Stage::new(SIZE);
     for mode in DiffuseMode::ALL {
         stage.settings.diffuse.mode = *mode;

@@ -2,9 +2,9 @@
 
 use glam::{UVec2, Vec4, vec3};
 use haze::frame::bounds_of;
-use haze::reference::blend_unit::{premultiplied_over, quantise};
 use haze::settings::{AccumulationFormat, Order, ShadeTree};
 use haze::{Bounds, Particle};
+use haze_reference::blend_unit::{premultiplied_over, quantise};
 use proptest::prelude::*;
 
 use super::SIZE;

@@ -1,0 +1,76 @@
+//! The editor of gradients in a window of its own: give it a `*.ramp.json` to begin with. It changes no file; Copy gives its stops as
+//! text.
+
+use std::path::PathBuf;
+
+use eframe::egui;
+use egui_gradient::{GradientEditor, Surroundings};
+use haze_author::ramp::bake::RampRecipe;
+use haze_author::ramp::template::TEMPLATES;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let recipe = match std::env::args_os().nth(1) {
+        Some(path) => RampRecipe::load(&PathBuf::from(path))?,
+        None => TEMPLATES[1].recipe(),
+    };
+    let app = App { recipe, ..App::default() };
+    eframe::run_native("gradient editor", eframe::NativeOptions::default(), Box::new(|_| Ok(Box::new(app))))?;
+    Ok(())
+}
+
+/// What a step was called, and the recipe on its other side.
+type Step = (&'static str, RampRecipe);
+
+#[derive(Default)]
+struct App {
+    editor: GradientEditor,
+    recipe: RampRecipe,
+    /// The recipe as it was when the step that is being made began.
+    before: Option<RampRecipe>,
+    past: Vec<Step>,
+    future: Vec<Step>,
+    refused: String,
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
+        egui::CentralPanel::default().show(ui, |ui| {
+            ui.horizontal(|ui| {
+                let redo = egui::Modifiers::COMMAND | egui::Modifiers::SHIFT;
+                step(ui, "Redo", redo, &mut self.future, &mut self.past, &mut self.recipe);
+                step(ui, "Undo", egui::Modifiers::COMMAND, &mut self.past, &mut self.future, &mut self.recipe);
+            });
+            let before = self.recipe.clone();
+            let surroundings = Surroundings { blend: self.recipe.blend, ..Surroundings::default() };
+            let edited = self.editor.show(ui, &mut self.recipe.rows[0], &surroundings);
+            if edited.is_changed {
+                self.before.get_or_insert(before);
+                self.refused.clear();
+            }
+            if let (Some(step), Some(before)) = (edited.committed, self.before.take_if(|_| edited.committed.is_some()))
+            {
+                self.past.push((step, before));
+                self.future.clear();
+            }
+            self.refused = edited.refused.unwrap_or(std::mem::take(&mut self.refused));
+            ui.label(&self.refused);
+        });
+    }
+}
+
+/// A button that takes a step back, or forth again, and its key.
+fn step(
+    ui: &mut egui::Ui,
+    name: &str,
+    keys: egui::Modifiers,
+    from: &mut Vec<Step>,
+    to: &mut Vec<Step>,
+    recipe: &mut RampRecipe,
+) {
+    let text = from.last().map_or(name.to_owned(), |(step, _)| format!("{name} {step}"));
+    let is_clicked = ui.add_enabled(!from.is_empty(), egui::Button::new(text)).clicked();
+    let is_pressed = ui.input_mut(|input| input.consume_key(keys, egui::Key::Z));
+    if let Some((step, other)) = (is_clicked || is_pressed).then(|| from.pop()).flatten() {
+        to.push((step, std::mem::replace(recipe, other)));
+    }
+}

@@ -1,0 +1,239 @@
+//! The fields of the selected stop, and what is done to all of them.
+
+use egui::{self, Ui};
+use glam::Vec3;
+
+use super::eyedropper::{Eyedropper, Taken};
+use super::frame::{Frame, MOVE, RECOLOUR, REMOVE};
+use super::number::{self, Typed};
+use super::paint::colour32;
+use super::selection::Selection;
+use super::{stops, strip, text};
+use haze_author::ramp::bake::{Blend, Curve, HexColour, RampStop};
+use haze_author::ramp::fit::fit_row;
+use haze_author::ramp::template::TEMPLATES;
+
+/// What the curves are, in the order of [`Curve::ALL`].
+const CURVES: [&str; 4] =
+    ["smooth, never beyond its neighbours", "straight", "flat at both ends", "a hard edge at the next stop"];
+
+/// Draws them; `at` is the place of the row, for what is copied.
+pub fn show(ui: &mut Ui, frame: &mut Frame<'_>, at: f32) {
+    let Some(lead) = frame.lead().cloned() else { return };
+    ui.horizontal(|ui| {
+        let last = frame.stops.len() - 1;
+        let selected = frame.editor.selection.lead();
+        let step = |ui: &mut Ui, is_enabled, text, name: &str| {
+            let response = ui.add_enabled(is_enabled, egui::Button::new(text));
+            response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, is_enabled, name));
+            response.on_hover_text(name).clicked()
+        };
+        if step(ui, selected > 0, "<", "previous stop") {
+            frame.editor.selection = Selection::one(selected - 1);
+        }
+        if step(ui, selected < last, ">", "next stop") {
+            frame.editor.selection = Selection::one(selected + 1);
+        }
+        match frame.editor.selection.count() {
+            1 => ui.label(format!("Stop {} of {}", selected + 1, last + 1)),
+            count => ui.label(format!("{count} of {} stops", last + 1)),
+        };
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| place(ui, frame, &lead));
+    });
+    ui.horizontal(|ui| colour_and_curve(ui, frame, &lead));
+    ui.horizontal(|ui| {
+        hue_and_so_on(ui, frame, &lead);
+        eyedropper(ui, frame);
+    });
+    ui.horizontal_wrapped(|ui| {
+        all(ui, frame, at);
+        snap(ui, frame);
+    });
+}
+
+fn place(ui: &mut Ui, frame: &mut Frame<'_>, lead: &RampStop) {
+    let (response, typed) = number::field(ui, lead.at, |ui, field| {
+        let field = field.range(0.0..=1.0).speed(0.001).max_decimals(4);
+        ui.add_sized([64.0, ui.spacing().interact_size.y], field)
+    });
+    let label = ui.label("place");
+    response
+        .labelled_by(label.id)
+        .on_hover_text("0 to 1: drag, or click and type. +0.1, -0.1, *2 and /2 are done to it");
+    match typed {
+        None => {}
+        Some(Typed::Times(times)) => frame.edit_selected(MOVE, |all, selection| stops::scale(all, selection, times)),
+        Some(typed) => {
+            let at = typed.of(lead.at);
+            frame.edit_selected(MOVE, |all, selection| stops::move_to(all, selection, at));
+        }
+    }
+}
+
+fn colour_and_curve(ui: &mut Ui, frame: &mut Frame<'_>, lead: &RampStop) {
+    let (mut colour, mut curve) = (lead.colour, lead.curve);
+    let label = ui.label("colour");
+    if ui.color_edit_button_srgb(&mut colour.0).labelled_by(label.id).changed() {
+        frame.recolour(colour);
+    }
+    let mut text = frame.editor.typed.take().unwrap_or_else(|| colour.into());
+    let field = ui.add(egui::TextEdit::singleline(&mut text).desired_width(66.0)).labelled_by(label.id);
+    let field = field.on_hover_text("sRGB, #rrggbb");
+    if field.lost_focus() {
+        match text::colour(&text) {
+            Ok(typed) if typed == colour => {}
+            Ok(typed) => frame.recolour(typed),
+            Err(reason) => frame.refused = Some(reason),
+        }
+    } else if field.has_focus() {
+        frame.editor.typed = Some(text);
+    }
+    let label = ui.label("then");
+    let combo = egui::ComboBox::from_id_salt("curve").selected_text(curve.name()).width(ui.available_width() - 8.0);
+    let combo = combo.show_ui(ui, |ui| {
+        for (entry, about) in Curve::ALL.iter().zip(CURVES) {
+            ui.selectable_value(&mut curve, *entry, entry.name()).on_hover_text(about);
+        }
+    });
+    combo.response.labelled_by(label.id).on_hover_text("How the gradient goes on to the next stop");
+    if curve != lead.curve {
+        frame.edit_each(["curve of a stop", "curve of stops"], |stop| stop.curve = curve);
+    }
+}
+
+/// Hue, saturation and value of the colour, as paint programs have them.
+fn hue_and_so_on(ui: &mut Ui, frame: &mut Frame<'_>, lead: &RampStop) {
+    let known = frame.editor.hsv.filter(|(known, _)| *known == lead.colour);
+    let shown = known.map_or_else(|| lead.colour.hsv(), |(_, hsv)| hsv);
+    for (channel, (name, letter, most, unit)) in
+        [("hue", "H ", 360.0, "°"), ("saturation", "S ", 100.0, "%"), ("value", "V ", 100.0, "%")]
+            .into_iter()
+            .enumerate()
+    {
+        let number = shown[channel] * most;
+        let (response, typed) = number::field(ui, number, |ui, field| {
+            let field = field.range(0.0..=most).max_decimals(1).prefix(letter).suffix(unit);
+            ui.add(field.speed(most / 250.0))
+        });
+        let number = f64::from(number);
+        response.widget_info(|| egui::WidgetInfo {
+            label: Some(name.into()),
+            ..egui::WidgetInfo::drag_value(true, number)
+        });
+        response.on_hover_text(format!("{name}, of the sRGB colour; +10 and *0.5 are done to each that is selected"));
+        if let Some(typed) = typed {
+            let changed = |hsv: Vec3| {
+                let mut hsv = hsv;
+                hsv[channel] = (typed.of(hsv[channel] * most) / most).clamp(0.0, 1.0);
+                hsv
+            };
+            let of_lead = changed(shown);
+            frame.edit_each(RECOLOUR, |stop| {
+                let hsv = if stop.colour == lead.colour { of_lead } else { changed(stop.colour.hsv()) };
+                stop.colour = HexColour::from_hsv(hsv);
+            });
+            frame.editor.hsv = Some((HexColour::from_hsv(of_lead), of_lead));
+        }
+    }
+}
+
+/// How far stops of a stroke may be off its colours, steps of 255.
+const ERROR: f32 = 10.0;
+
+/// Lets the eyedropper take what it is for, while there is one: a step.
+pub fn take(ui: &Ui, frame: &mut Frame<'_>, blend: Blend) {
+    let Some(mut eyedropper) = frame.editor.eyedropper.take() else { return };
+    match eyedropper.take(ui, &mut frame.editor.across) {
+        Taken::Pointed(colours) => {
+            if let Some(Ok(gradient)) = preview(frame, &colours, blend).map(|stops| strip::gradient(&stops, blend)) {
+                let colour = |at: f32| colour32(strip::colour_at(&gradient, at));
+                eyedropper.magnifier(ui, frame.editor.across, &colours, colour);
+            }
+            frame.editor.eyedropper = Some(eyedropper);
+        }
+        Taken::Done(colours) => match colours.as_slice() {
+            [] => {}
+            [colour] => frame.recolour(HexColour::from_srgb(*colour / 255.0)),
+            row => frame.replace("gradient of a stroke", fit_row(row, blend, ERROR)),
+        },
+    }
+}
+
+/// The stops as they would be with what is pointed at.
+fn preview(frame: &Frame<'_>, colours: &[Vec3], blend: Blend) -> Option<Vec<RampStop>> {
+    match colours {
+        [] => None,
+        [colour] => {
+            let mut stops = frame.stops.clone();
+            let selected = frame.editor.selection.iter();
+            selected.for_each(|index| stops[index].colour = HexColour::from_srgb(*colour / 255.0));
+            Some(stops)
+        }
+        row => Some(fit_row(row, blend, ERROR)),
+    }
+}
+
+fn eyedropper(ui: &mut Ui, frame: &mut Frame<'_>) {
+    let about = "What is selected takes the colour that is clicked on next, anywhere in the window; a stroke takes the gradient \
+                 along it. The wheel, or 1, 3 and 5: the mean of so many pixels across. By keys: arrows, Shift ten times as far; \
+                 Enter takes, Space begins a stroke. Escape gives it up";
+    let is_on = frame.editor.eyedropper.is_some();
+    if ui.selectable_label(is_on, "Take a colour").on_hover_text(about).clicked() {
+        frame.editor.eyedropper = Some(Eyedropper::default());
+    }
+}
+
+fn snap(ui: &mut Ui, frame: &mut Frame<'_>) {
+    let snap = &mut frame.editor.snap;
+    ui.checkbox(&mut snap.is_on, "Snap").on_hover_text("Without Ctrl; Ctrl lets go then");
+    let field = egui::DragValue::new(&mut snap.parts).range(2..=100).speed(0.1).suffix(" parts");
+    let response = ui.add(field.update_while_editing(false));
+    response.on_hover_text("How many equal parts of the gradient places snap to");
+}
+
+fn all(ui: &mut Ui, frame: &mut Frame<'_>, at: f32) {
+    let is_many = frame.stops.len() > 1;
+    let is_part = frame.editor.selection.is_many();
+    let of = |all: &str, part: &str| if is_part { part.to_owned() } else { all.to_owned() };
+    let button = |ui: &mut Ui, is_enabled: bool, name: &str, about: &str| {
+        ui.add_enabled(is_enabled, egui::Button::new(name)).on_hover_text(about).clicked()
+    };
+    if button(ui, is_many, "Remove", "What is selected (Delete)") {
+        frame.edit_selected(REMOVE, stops::remove);
+    }
+    let about = of("What is at 0 goes to 1", "What is between the first and the last that are selected, turned round");
+    if button(ui, true, "Flip", &about) {
+        frame.edit_selected(["flip", "flip a part"], stops::flip);
+    }
+    let about = of("The gradient in its first half, and turned round in the other", "The same of what is selected");
+    if button(ui, is_many, "Mirror", &about) {
+        frame.edit_selected(["mirror", "mirror a part"], stops::mirror);
+    }
+    let about = of("The same distance from each stop to the next", "The same distance between those that are selected");
+    if button(ui, is_many, "Distribute", &about) {
+        frame.edit_selected(["distribute", "distribute a part"], |all, selection| stops::distribute(all, selection));
+    }
+    let about = "The same width for what is at the right of each stop: for constant curves";
+    if button(ui, is_many, "Steps", about) {
+        frame
+            .edit_selected(["even steps", "even steps in a part"], |all, selection| stops::step_evenly(all, selection));
+    }
+    if button(ui, true, "Copy", "All stops, as text of a recipe (Ctrl+C on a stop)") {
+        frame.copy(ui, at);
+    }
+    if button(ui, true, "Paste", "Stops that were copied, in place of these (Ctrl+V on a stop)") {
+        frame.editor.awaits_paste = true;
+        ui.ctx().send_viewport_cmd(egui::ViewportCommand::RequestPaste);
+    }
+    ui.menu_button("Templates", |ui| {
+        egui::ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
+            for template in TEMPLATES {
+                if ui.button(template.name.replace('_', " ")).on_hover_text(template.about).clicked() {
+                    let stops = template.recipe().rows.swap_remove(0).stops;
+                    frame.replace("template", stops);
+                    ui.close();
+                }
+            }
+        });
+    });
+}

@@ -1,0 +1,229 @@
+//! Takes colours from anywhere in the window: one by a click, a gradient along a stroke. The window stands still meanwhile: what
+//! is seen is what is taken.
+
+use std::sync::{Arc, OnceLock};
+
+use egui::{
+    self, Area, Color32, ColorImage, CursorIcon, EventFilter, Id, Key, Modifiers, Order, Pos2, Rect, Sense, Stroke,
+    TextureOptions, Ui, Vec2, vec2,
+};
+use glam::Vec3;
+
+use super::paint;
+use super::sampled::{Across, colours, pixel, place};
+use haze_author::ramp::bake::HexColour;
+
+/// It waits for what the window shows, and for a click or a stroke by pointer or keys.
+#[derive(Clone, Debug, Default)]
+pub struct Eyedropper {
+    /// The window as it was when this began.
+    shown: Arc<OnceLock<Arc<ColorImage>>>,
+    /// Frames since.
+    frames: u32,
+    /// Where the pointer was last, and where colours are taken, which keys move too; points.
+    pointer: Option<Pos2>,
+    at: Pos2,
+    /// Where it has been while it was held.
+    stroke: Vec<Pos2>,
+    /// The stroke was begun by a key.
+    is_by_key: bool,
+    is_let_go: bool,
+}
+
+/// Colours, steps of 255: one, those along a stroke, or none.
+pub enum Taken {
+    /// They would be taken now.
+    Pointed(Vec<Vec3>),
+    /// They are. None where Escape put it away.
+    Done(Vec<Vec3>),
+}
+
+impl Eyedropper {
+    /// Gives it pointer and keys.
+    pub fn take(&mut self, ui: &Ui, across: &mut Across) -> Taken {
+        if ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) {
+            return Taken::Done(Vec::new());
+        }
+        self.ask(ui);
+        self.cover(ui);
+        self.follow(ui);
+        self.keys(ui, across);
+        let here = [self.at];
+        let stroke = if self.stroke.is_empty() { &here[..] } else { &self.stroke };
+        let colours = self.shown.get().map(|shown| colours(shown, stroke, ui.pixels_per_point(), *across));
+        match colours {
+            Some(colours) if self.is_let_go => Taken::Done(colours),
+            colours => Taken::Pointed(colours.unwrap_or_default()),
+        }
+    }
+
+    /// Asks for what the window shows, once nothing under the pointer says so any more.
+    fn ask(&mut self, ui: &Ui) {
+        /// Covered in the first, nothing is hovered in the next, and drawn so in the one after.
+        const COVERED: u32 = 3;
+        self.frames = self.frames.saturating_add(1);
+        if self.frames == 1 {
+            self.pointer = ui.input(|input| input.pointer.latest_pos());
+            self.at = self.pointer.unwrap_or(ui.ctx().viewport_rect().center());
+        }
+        if self.frames < COVERED {
+            ui.ctx().request_repaint();
+        }
+        if self.frames != COVERED {
+            return;
+        }
+        let (shown, context) = (Arc::clone(&self.shown), ui.ctx().clone());
+        ui.ctx().request_screenshot(move |image| {
+            // There is one.
+            let _ = shown.set(image);
+            context.request_repaint();
+        });
+    }
+
+    /// Lies over the whole window, so that nothing else is clicked on, and shows it as it was.
+    fn cover(&self, ui: &Ui) {
+        let window = ui.ctx().viewport_rect();
+        let id: Id = ui.scope_id().with("eyedropper");
+        let cover = Area::new(id).order(Order::Foreground).fixed_pos(window.min).constrain(false);
+        let response = cover.show(ui.ctx(), |ui| ui.allocate_response(window.size(), Sense::click_and_drag())).inner;
+        let response = response.on_hover_cursor(CursorIcon::Crosshair);
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "take a colour"));
+        // Its keys are for it.
+        response.request_focus();
+        let filter = EventFilter { tab: true, horizontal_arrows: true, vertical_arrows: true, escape: true };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+        let Some(shown) = self.shown.get() else { return };
+        let painter = ui.ctx().layer_painter(response.layer_id);
+        let [width, height] = shown.size;
+        if width.max(height) <= ui.input(|input| input.max_texture_side) {
+            let picture = ui.ctx().load_texture_cached("eyedropper", id, Arc::clone(shown), TextureOptions::NEAREST);
+            let size = vec2(width as f32, height as f32) / ui.pixels_per_point();
+            let all = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+            painter.image(picture.id(), Rect::from_min_size(Pos2::ZERO, size), all, Color32::WHITE);
+        }
+        for (width, colour) in [(3.0, Color32::BLACK), (1.0, Color32::WHITE)] {
+            painter.line(self.stroke.clone(), Stroke::new(width, colour));
+        }
+    }
+
+    /// What the pointer does.
+    fn follow(&mut self, ui: &Ui) {
+        let (pointer, is_pressed, is_down) = ui
+            .input(|input| (input.pointer.latest_pos(), input.pointer.primary_pressed(), input.pointer.primary_down()));
+        let has_moved = pointer.is_some() && pointer != self.pointer;
+        self.pointer = pointer;
+        if let Some(pointer) = pointer.filter(|_| has_moved || is_pressed) {
+            self.at = pointer;
+        }
+        if is_pressed {
+            (self.stroke, self.is_by_key) = (vec![self.at], false);
+        } else if is_down || self.is_by_key {
+            self.draw_on();
+        }
+        self.is_let_go |= !is_down && !self.is_by_key && !self.stroke.is_empty();
+    }
+
+    fn draw_on(&mut self) {
+        if self.stroke.last().is_some_and(|last| *last != self.at) {
+            self.stroke.push(self.at);
+        }
+    }
+
+    /// Arrows go by pixels, Shift ten times as far; Enter takes; Space begins a stroke; digits and the wheel say how many pixels.
+    fn keys(&mut self, ui: &Ui, across: &mut Across) {
+        let mut pressed = Vec::new();
+        ui.input_mut(|input| {
+            // What is below does not scroll.
+            input.smooth_scroll_delta = Vec2::ZERO;
+            input.events.retain(|event| {
+                match event {
+                    egui::Event::Key { key, pressed: true, repeat, modifiers, .. } => {
+                        pressed.push((*key, *repeat, *modifiers));
+                    }
+                    egui::Event::MouseWheel { delta, .. } if delta.y != 0.0 => {
+                        *across = across.stepped(if delta.y > 0.0 { 1 } else { -1 });
+                    }
+                    _ => return true,
+                }
+                false
+            });
+        });
+        let pixel = ui.pixels_per_point().recip();
+        for (key, is_repeat, modifiers) in pressed {
+            let step = match key {
+                Key::ArrowLeft => Vec2::LEFT,
+                Key::ArrowRight => Vec2::RIGHT,
+                Key::ArrowUp => Vec2::UP,
+                Key::ArrowDown => Vec2::DOWN,
+                Key::Space if !is_repeat && self.stroke.is_empty() => {
+                    (self.stroke, self.is_by_key) = (vec![self.at], true);
+                    continue;
+                }
+                Key::Enter | Key::Space if !is_repeat => {
+                    if self.stroke.is_empty() {
+                        self.stroke.push(self.at);
+                    }
+                    (self.is_by_key, self.is_let_go) = (false, true);
+                    continue;
+                }
+                key => {
+                    *across = Across::ALL.iter().find(|(_, of)| *of == key).map_or(*across, |(across, _)| *across);
+                    continue;
+                }
+            };
+            let window = ui.ctx().viewport_rect();
+            self.at = window.clamp(self.at + step * pixel * if modifiers.shift { 10.0 } else { 1.0 });
+            if self.is_by_key {
+                self.draw_on();
+            }
+        }
+    }
+
+    /// What it is over, magnified, with the colour that would be taken, and below that what `gradient` would be, by place.
+    pub fn magnifier(&self, ui: &Ui, across: Across, colours: &[Vec3], gradient: impl Fn(f32) -> Color32) {
+        /// Pixels across, and how large they are.
+        const SEEN: i32 = 11;
+        const CELL: f32 = 8.0;
+        let (Some(shown), Some(colour)) = (self.shown.get(), colours.last()) else { return };
+        // On the side where there is room for it.
+        let (x, y) = (self.at.x > ui.ctx().viewport_rect().center().x, self.at.y > ui.ctx().viewport_rect().center().y);
+        let side = |is_far: bool| if is_far { egui::Align::Max } else { egui::Align::Min };
+        let away = |is_far: bool| if is_far { -20.0 } else { 20.0 };
+        let area = Area::new(ui.scope_id().with("magnifier")).order(Order::Tooltip).interactable(false);
+        let area = area.pivot(egui::Align2([side(x), side(y)])).fixed_pos(self.at + vec2(away(x), away(y)));
+        let centre = place(shown, self.at, ui.pixels_per_point());
+        area.show(ui.ctx(), |ui| {
+            egui::Frame::popup(ui.style()).inner_margin(4.0).show(ui, |ui| {
+                let (_, seen) = ui.allocate_space(Vec2::splat(SEEN as f32 * CELL));
+                let mut mesh = egui::Mesh::default();
+                let cell =
+                    |x: i32, y: i32| Rect::from_min_size(seen.min + vec2(x as f32, y as f32) * CELL, Vec2::splat(CELL));
+                for (x, y) in (0..SEEN).flat_map(|y| (0..SEEN).map(move |x| (x, y))) {
+                    let pixel = pixel(shown, [centre[0] + x - SEEN / 2, centre[1] + y - SEEN / 2]);
+                    mesh.add_colored_rect(cell(x, y), colour32(pixel));
+                }
+                ui.painter().add(mesh);
+                let (first, last) = (SEEN / 2 - across.reach(), SEEN / 2 + across.reach());
+                let taken = cell(first, first).union(cell(last, last));
+                for (grown, ink) in [(1.0, Color32::BLACK), (0.0, Color32::WHITE)] {
+                    ui.painter().rect_stroke(
+                        taken.expand(grown),
+                        0.0,
+                        Stroke::new(1.0, ink),
+                        egui::StrokeKind::Outside,
+                    );
+                }
+                let (_, swatch) = ui.allocate_space(vec2(seen.width(), 12.0));
+                ui.painter().rect_filled(swatch, 0.0, colour32(*colour));
+                let (_, strip) = ui.allocate_space(vec2(seen.width(), 12.0));
+                paint::gradient(ui, strip, gradient);
+                let hex = String::from(HexColour::from_srgb(*colour / 255.0));
+                ui.label(format!("{hex}  {0}×{0}", across as i32));
+            });
+        });
+    }
+}
+
+fn colour32(colour: Vec3) -> Color32 {
+    paint::colour32(HexColour::from_srgb(colour / 255.0))
+}

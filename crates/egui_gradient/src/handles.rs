@@ -1,0 +1,274 @@
+//! The handles of stops: what pointer and keys do to them.
+
+use egui::{self, CursorIcon, EventFilter, Id, Key, Modifiers, PointerButton, Rect, Response, Sense, Ui};
+use egui::{pos2, vec2};
+
+use super::frame::{Drag, Frame, MOVE, REMOVE, Selected};
+use super::paint::{colour32, handle, readout};
+use super::selection::Selection;
+use super::{fan, stops};
+
+/// A handle's size.
+const HANDLE: egui::Vec2 = vec2(12.0, 16.0);
+/// From the middle of a handle to the next.
+pub const GAP: f32 = 15.0;
+/// How much slower a stop goes than the pointer while Alt is held.
+const FINE: f32 = 0.1;
+
+/// Draws them in their lane, and does what is done to them.
+pub fn show(ui: &Ui, frame: &mut Frame<'_>, strip: Rect, lane: Rect) {
+    ground(ui, frame, lane);
+    all(ui, frame, strip, lane);
+    drag(ui, frame, strip);
+    // What was selected in this frame may have been removed in it.
+    frame.editor.selection.keep_to(frame.stops.len());
+    if frame.wants_keyboard {
+        // Not before: a click elsewhere takes the keyboard from handles as they are drawn.
+        let index = frame.editor.cursor.unwrap_or(frame.editor.selection.lead());
+        ui.memory_mut(|memory| memory.request_focus(handle_id(ui, index)));
+    }
+}
+
+/// Where no handle is, a click selects the stop that is nearest, the way to those without one, and a band what is under it.
+fn ground(ui: &Ui, frame: &mut Frame<'_>, lane: Rect) {
+    let response = ui.interact(lane, ui.scope_id().with("lane"), Sense::click_and_drag());
+    let (origin, modifiers) = ui.input(|input| (input.pointer.press_origin(), input.modifiers));
+    if let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked()) {
+        let at = share(lane, at.x);
+        let apart = |index: &usize| (frame.stops[*index].at - at).abs();
+        let nearest = (0..frame.stops.len()).min_by(|a, b| apart(a).total_cmp(&apart(b)));
+        frame.select(nearest.unwrap_or(0), modifiers);
+        frame.wants_keyboard = true;
+    }
+    if response.drag_started() {
+        frame.editor.band = origin.map(|origin| share(lane, origin.x));
+    }
+    let Some(from) = frame.editor.band else { return };
+    let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) else {
+        frame.editor.band = None;
+        frame.wants_keyboard = true;
+        return;
+    };
+    let to = share(lane, pointer.x);
+    let first = frame.stops.partition_point(|stop| stop.at < from.min(to));
+    let behind = frame.stops.partition_point(|stop| stop.at <= from.max(to));
+    if let Some(last) = behind.checked_sub(1).filter(|last| *last >= first) {
+        frame.editor.cursor = None;
+        frame.editor.selection =
+            if from < to { Selection::between(first, last) } else { Selection::between(last, first) };
+    }
+    let x = |share: f32| lane.left() + share.clamp(0.0, 1.0) * lane.width();
+    let band = Rect::from_x_y_ranges(x(from.min(to))..=x(from.max(to)), lane.y_range());
+    ui.painter().rect_filled(band, 0.0, ui.visuals().selection.bg_fill.gamma_multiply(0.5));
+}
+
+fn handle_id(ui: &Ui, index: usize) -> Id {
+    ui.scope_id().with(("stop", index))
+}
+
+/// A place across, 0 to 1 if it is on the strip.
+pub fn share(strip: Rect, x: f32) -> f32 {
+    (x - strip.left()) / strip.width()
+}
+
+/// A handle for each stop, or those round the selected one where there are more than have room.
+fn all(ui: &Ui, frame: &mut Frame<'_>, strip: Rect, lane: Rect) {
+    let room = (lane.width() / GAP) as usize + 1;
+    let middle = frame.editor.cursor.unwrap_or(frame.editor.selection.lead());
+    let shown = fan::shown(frame.stops.len(), middle, room);
+    let wanted: Vec<_> = frame.stops[shown.clone()].iter().map(|stop| stop.at * lane.width()).collect();
+    let places = fan::fan_out(&wanted, lane.width(), GAP);
+    // As they are drawn, whatever is done to them.
+    let before = (frame.stops.clone(), frame.editor.selection.clone());
+    let mut focused = None;
+    let mut drawn = Vec::new();
+    for ((index, place), wanted) in shown.zip(places).zip(wanted) {
+        let stop = &before.0[index];
+        let middle = pos2(lane.left() + place, lane.bottom() - 0.5 * HANDLE.y - 2.0);
+        let rect = Rect::from_center_size(middle, HANDLE);
+        let response = ui.interact(rect.expand2(vec2(1.0, 2.0)), handle_id(ui, index), Sense::click_and_drag());
+        let name = format!("stop {}", index + 1);
+        response.widget_info(|| egui::WidgetInfo::slider(true, f64::from(stop.at), &name));
+        point(ui, frame, (&response, index), &before);
+        if response.has_focus() {
+            focused = Some(index);
+        }
+        drawn.push((index, rect, lane.left() + wanted, colour32(stop.colour), response.hovered()));
+        if frame.editor.dragged.is_none() && response.hovered() {
+            ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
+            let text = format!(
+                "{name}: {} at {:.4}. Drag: Ctrl snaps to parts, Shift to other stops, Alt leaves a copy; Alt held on the way \
+                 is ten times as fine, Escape puts it back. Click: Shift selects a range, Ctrl adds. Arrow keys: Shift ten \
+                 times as far, Ctrl to the next part. Delete or the middle button removes",
+                String::from(stop.colour),
+                stop.at
+            );
+            response.on_hover_text(text);
+        }
+    }
+    // What is selected is drawn over the others, and its lead over all.
+    let (_, selection) = &before;
+    drawn.sort_by_key(|(index, ..)| (selection.contains(*index), *index == selection.lead()));
+    for (index, rect, x, colour, is_hovered) in drawn {
+        let states = (selection.contains(index), is_hovered, focused == Some(index));
+        handle(ui, rect, pos2(x, strip.bottom()), colour, states);
+    }
+    frame.editor.has_keyboard = focused.is_some();
+    if let Some(index) = focused {
+        // Escape ends a drag or a selection of several then, not that it has the keyboard.
+        let escape = frame.editor.dragged.is_some() || frame.editor.selection.is_many();
+        let filter = EventFilter { horizontal_arrows: true, vertical_arrows: true, escape, ..EventFilter::default() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(handle_id(ui, index), filter));
+        let cursor = frame.editor.cursor;
+        keys(ui, frame);
+        if frame.editor.selection != before.1 || frame.editor.cursor != cursor {
+            frame.wants_keyboard = true;
+        }
+    }
+}
+
+/// What the pointer does to a handle.
+fn point(ui: &Ui, frame: &mut Frame<'_>, (response, index): (&Response, usize), before: &Selected) {
+    let (origin, modifiers, is_space) =
+        ui.input(|input| (input.pointer.press_origin(), input.modifiers, input.key_pressed(Key::Space)));
+    if response.middle_clicked() {
+        if !frame.editor.selection.contains(index) {
+            frame.editor.selection = Selection::one(index);
+        }
+        remove(frame);
+        frame.wants_keyboard = true;
+    } else if response.drag_started_by(PointerButton::Primary) {
+        response.request_focus();
+        // What is selected goes with it.
+        if !frame.editor.selection.contains(index) {
+            frame.editor.selection = Selection::one(index);
+        }
+        frame.editor.selection.lead_with(index);
+        if modifiers.alt {
+            frame.edit_selected(["copy a stop", "copy stops"], stops::copy);
+            frame.wants_keyboard = true;
+        }
+        if let Some(origin) = origin {
+            let place = before.0[index].at;
+            begin(frame, origin.x, place, before.clone(), !modifiers.alt);
+        }
+    } else if response.clicked() {
+        response.request_focus();
+        let modifiers = if is_space { Modifiers::COMMAND } else { modifiers };
+        frame.select(index, modifiers);
+    } else if response.gained_focus() && frame.editor.dragged.is_none() && frame.editor.cursor != Some(index) {
+        // By Tab; what has it by a click or a key is selected as that says.
+        if !frame.editor.selection.contains(index) || frame.editor.selection.lead() != index {
+            frame.select(index, Modifiers::NONE);
+        }
+    }
+}
+
+/// Begins to drag what is selected, with the lead at a place while the pointer is at `x`.
+pub fn begin(frame: &mut Frame<'_>, x: f32, place: f32, before: Selected, is_alt_free: bool) {
+    let from = (frame.stops.clone(), frame.editor.selection.clone());
+    let now = frame.stops.clone();
+    frame.editor.dragged = Some(Drag { x, place, from, before, now, is_alt_free });
+}
+
+fn remove(frame: &mut Frame<'_>) {
+    frame.edit_selected(REMOVE, stops::remove);
+}
+
+/// Keys that are for the stop that has the keyboard, whatever is held with them.
+const OURS: [Key; 8] =
+    [Key::ArrowLeft, Key::ArrowRight, Key::ArrowUp, Key::ArrowDown, Key::Home, Key::End, Key::Delete, Key::Backspace];
+
+/// What keys do while a stop has the keyboard.
+fn keys(ui: &Ui, frame: &mut Frame<'_>) {
+    let is_escape_ours = frame.editor.dragged.is_none() && frame.editor.selection.is_many();
+    let mut pressed = Vec::new();
+    ui.input_mut(|input| {
+        input.events.retain(|event| {
+            let egui::Event::Key { key, pressed: true, modifiers, .. } = event else { return true };
+            let is_ours = match key {
+                Key::A => modifiers.command,
+                Key::Escape => is_escape_ours,
+                key => OURS.contains(key),
+            };
+            if is_ours {
+                pressed.push((*key, *modifiers));
+            }
+            !is_ours
+        });
+    });
+    for (key, modifiers) in pressed {
+        let last = frame.stops.len().saturating_sub(1);
+        let here = frame.editor.cursor.unwrap_or(frame.editor.selection.lead());
+        match key {
+            Key::ArrowLeft => nudge(frame, -1.0, modifiers),
+            Key::ArrowRight => nudge(frame, 1.0, modifiers),
+            Key::ArrowUp => go(frame, here.saturating_sub(1), modifiers),
+            Key::ArrowDown => go(frame, (here + 1).min(last), modifiers),
+            Key::Home => go(frame, 0, modifiers),
+            Key::End => go(frame, last, modifiers),
+            Key::A => (frame.editor.selection, frame.editor.cursor) = (Selection::between(0, last), None),
+            Key::Escape => frame.select(frame.editor.selection.lead(), Modifiers::NONE),
+            _ => remove(frame),
+        }
+    }
+}
+
+fn nudge(frame: &mut Frame<'_>, steps: f32, modifiers: Modifiers) {
+    let Some(at) = frame.lead().map(|lead| lead.at) else { return };
+    let at = stops::nudged(at, steps, modifiers.shift, frame.editor.snap.with(modifiers));
+    frame.edit_selected(MOVE, |all, selection| stops::move_to(all, selection, at));
+}
+
+/// Takes the keyboard to a stop, which is selected alone, as the end of a range, or with Ctrl when Space is pressed.
+fn go(frame: &mut Frame<'_>, index: usize, modifiers: Modifiers) {
+    if modifiers.command {
+        frame.editor.cursor = Some(index);
+    } else {
+        frame.select(index, modifiers);
+    }
+}
+
+/// Moves what is dragged. Its handles may have become others' meanwhile: the pointer tells where it is.
+fn drag(ui: &Ui, frame: &mut Frame<'_>, strip: Rect) {
+    let Some(mut drag) = frame.editor.dragged.take_if(|drag| drag.now == *frame.stops) else {
+        frame.editor.dragged = None;
+        return;
+    };
+    if ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape) || input.pointer.secondary_pressed()) {
+        frame.editor.dragged = Some(drag);
+        frame.give_up();
+        frame.wants_keyboard = true;
+        return;
+    }
+    let (pointer, is_down, modifiers) =
+        ui.input(|input| (input.pointer.latest_pos(), input.pointer.primary_down(), input.modifiers));
+    let Some(pointer) = pointer.filter(|_| is_down) else { return };
+    ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
+    drag.is_alt_free |= !modifiers.alt;
+    let is_fine = modifiers.alt && drag.is_alt_free;
+    drag.place += (pointer.x - drag.x) / strip.width() * if is_fine { FINE } else { 1.0 };
+    drag.x = pointer.x;
+    let (from, selection) = &drag.from;
+    let at = stops::snapped(drag.place, frame.editor.snap.with(modifiers));
+    let at = if modifiers.shift { stops::beside(from, selection, at) } else { at };
+    let led = frame.editor.selection.lead();
+    frame.edit_selected(MOVE, |all, moved| {
+        (*all, *moved) = drag.from.clone();
+        stops::move_to(all, moved, at);
+    });
+    frame.wants_keyboard |= frame.editor.selection.lead() != led;
+    drag.now.clone_from(frame.stops);
+    if let (Some(lead), Some(was)) = (frame.lead(), drag.from.0.get(drag.from.1.lead())) {
+        let mut text = format!("{:.4}  {}", lead.at, String::from(lead.colour));
+        match drag.from.1.count() {
+            1 => {}
+            count => text += &format!("  {:+.4}, {count} stops", lead.at - was.at),
+        }
+        if is_fine {
+            text += "  fine";
+        }
+        readout(ui, strip.left() + lead.at * strip.width(), strip, colour32(lead.colour), text);
+    }
+    frame.editor.dragged = Some(drag);
+}

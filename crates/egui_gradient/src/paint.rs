@@ -1,0 +1,101 @@
+//! How the parts of the editor look.
+
+use egui::{Align2, Area, Color32, Frame, Label, Mesh, Order, Pos2, Rect, Shape, Stroke, StrokeKind, Ui, pos2, vec2};
+
+use haze_author::ramp::bake::{HexColour, RampStop};
+
+pub fn colour32(HexColour([r, g, b]): HexColour) -> Color32 {
+    Color32::from_rgb(r, g, b)
+}
+
+/// A gradient across a rectangle, a column for each pixel, by the colour at each share of it.
+pub fn gradient(ui: &Ui, rect: Rect, colour: impl Fn(f32) -> Color32) {
+    let mut mesh = Mesh::default();
+    let columns = (rect.width() * ui.pixels_per_point()).ceil().max(1.0);
+    let width = rect.width() / columns;
+    for column in 0..columns as usize {
+        let left = rect.left() + column as f32 * width;
+        let column = Rect::from_min_max(pos2(left, rect.top()), pos2(left + width, rect.bottom()));
+        mesh.add_colored_rect(column, colour((column.center().x - rect.left()) / rect.width()));
+    }
+    ui.painter().add(mesh);
+}
+
+/// Says a place and its colour beside the pointer, above the strip, or where there is no room below.
+pub fn readout(ui: &Ui, x: f32, strip: Rect, colour: Color32, text: String) {
+    const ROOM: f32 = 28.0;
+    let (pivot, y) = if strip.top() - ui.ctx().viewport_rect().top() < ROOM {
+        (Align2::CENTER_TOP, strip.bottom() + ROOM)
+    } else {
+        (Align2::CENTER_BOTTOM, strip.top() - 3.0)
+    };
+    let area = Area::new(ui.scope_id().with("readout")).order(Order::Tooltip).interactable(false);
+    area.pivot(pivot).fixed_pos(pos2(x, y)).show(ui.ctx(), |ui| {
+        Frame::popup(ui.style()).inner_margin(3.0).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                let (_, swatch) = ui.allocate_space(vec2(10.0, 10.0));
+                ui.painter().rect_filled(swatch, 2.0, colour);
+                ui.add(Label::new(text).extend());
+            });
+        });
+    });
+}
+
+/// The borders of equal parts of the strip, if places snap to some.
+pub fn borders(ui: &Ui, strip: Rect, parts: Option<u32>) {
+    let Some(parts) = parts else { return };
+    for border in 1..parts {
+        let x = strip.left() + strip.width() * border as f32 / parts as f32;
+        for (beside, colour) in [(0.0, Color32::BLACK), (1.0, Color32::WHITE)] {
+            ui.painter().vline(x + beside, strip.y_range(), Stroke::new(1.0, colour.gamma_multiply(0.3)));
+        }
+    }
+}
+
+/// Where the stops are, however many, a tick for each pixel.
+pub fn ticks(ui: &Ui, stops: &[RampStop], strip: Rect) {
+    let mut last = f32::NEG_INFINITY;
+    for stop in stops {
+        let x = strip.left() + stop.at * strip.width();
+        if x - last >= 1.0 {
+            for (width, colour) in [(3.0, Color32::BLACK), (1.0, Color32::WHITE)] {
+                ui.painter().vline(x, strip.bottom() - 4.0..=strip.bottom(), Stroke::new(width, colour));
+            }
+            last = x;
+        }
+    }
+}
+
+/// A handle, and a line to the place that it is of.
+pub fn handle(
+    ui: &Ui,
+    rect: Rect,
+    place: Pos2,
+    colour: Color32,
+    (is_selected, is_hovered, has_focus): (bool, bool, bool),
+) {
+    let visuals = ui.visuals();
+    let ink = if is_selected { visuals.selection.stroke.color } else { visuals.text_color() };
+    let stroke = Stroke::new(if is_selected || is_hovered { 2.0 } else { 1.0 }, ink);
+    ui.painter().line_segment([place, pos2(rect.center().x, rect.top())], stroke);
+    if has_focus {
+        ui.painter().rect_stroke(rect.expand(3.0), 3.0, Stroke::new(1.0, ink), StrokeKind::Inside);
+    }
+    ui.painter().rect(rect, 2.0, colour, stroke, StrokeKind::Outside);
+}
+
+/// Draws columns of heights from 0 to 1 over a rectangle, which fade upwards to nothing, with a line along their tops.
+pub fn histogram(ui: &Ui, rect: Rect, bins: &[f32], colour: Color32) {
+    let width = rect.width() / bins.len().max(1) as f32;
+    let (mut mesh, mut outline) = (Mesh::default(), Vec::new());
+    for (index, bin) in bins.iter().enumerate() {
+        let left = rect.left() + index as f32 * width;
+        // A root: what is rare shows as well.
+        let top = rect.bottom() - bin.clamp(0.0, 1.0).sqrt() * (rect.height() - 2.0);
+        let column = Rect::from_min_max(pos2(left, top), pos2(left + width, rect.bottom()));
+        mesh.add_colored_rect(column, colour.gamma_multiply(0.25));
+        outline.extend([column.left_top(), column.right_top()]);
+    }
+    ui.painter().add(mesh);
+    ui.painter().add(Shape::line(outline, Stroke::new(1.5, colour)));
+}

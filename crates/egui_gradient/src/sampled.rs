@@ -1,0 +1,139 @@
+//! What an eyedropper takes of a picture of the window.
+
+use egui::{ColorImage, Key, Pos2};
+use glam::Vec3;
+
+/// Shorter than this, points, a stroke is a click.
+const CLICK: f32 = 6.0;
+/// Colours of a stroke, each the mean of its part: what is finer is grain.
+const PARTS: usize = 32;
+
+/// How many pixels, across and down, a colour is the mean of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Across {
+    #[default]
+    One = 1,
+    Three = 3,
+    Five = 5,
+}
+
+impl Across {
+    pub const ALL: [(Self, Key); 3] = [(Self::One, Key::Num1), (Self::Three, Key::Num3), (Self::Five, Key::Num5)];
+
+    /// Pixels on either side of the middle.
+    pub fn reach(self) -> i32 {
+        self as i32 / 2
+    }
+
+    /// The next for some more or fewer.
+    pub fn stepped(self, by: isize) -> Self {
+        let at = Self::ALL.iter().position(|(across, _)| *across == self).unwrap_or(0);
+        Self::ALL[at.saturating_add_signed(by).min(Self::ALL.len() - 1)].0
+    }
+}
+
+/// The pixel at a place, points.
+pub fn place(shown: &ColorImage, at: Pos2, pixels_per_point: f32) -> [i32; 2] {
+    let at = (at.to_vec2() * pixels_per_point).floor();
+    let [width, height] = shown.size.map(|side| side as f32 - 1.0);
+    [at.x.min(width).max(0.0) as i32, at.y.min(height).max(0.0) as i32]
+}
+
+/// A pixel, or the one at the border beside it.
+pub fn pixel(shown: &ColorImage, [x, y]: [i32; 2]) -> Vec3 {
+    let [width, height] = shown.size;
+    let inside = |at: i32, side: usize| usize::try_from(at).unwrap_or(0).min(side.saturating_sub(1));
+    let pixel = shown.pixels.get(inside(y, height) * width + inside(x, width)).copied().unwrap_or_default();
+    let [r, g, b, _] = pixel.to_array();
+    Vec3::from([r, g, b].map(f32::from))
+}
+
+/// The mean of the pixels round one, as they are coded: what a blurred picture would have there.
+fn mean(shown: &ColorImage, [x, y]: [i32; 2], across: Across) -> Vec3 {
+    let reach = across.reach();
+    let around = (-reach..=reach).flat_map(|down| (-reach..=reach).map(move |right| [x + right, y + down]));
+    around.map(|at| pixel(shown, at)).sum::<Vec3>() / (across as i32 * across as i32) as f32
+}
+
+/// The colours along a stroke, steps of 255: one of a click.
+pub fn colours(shown: &ColorImage, stroke: &[Pos2], pixels_per_point: f32, across: Across) -> Vec<Vec3> {
+    let pixel = |at: Pos2| mean(shown, place(shown, at, pixels_per_point), across);
+    let Some(first) = stroke.first().filter(|_| !shown.pixels.is_empty()) else { return Vec::new() };
+    let length: f32 = stroke.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+    if length < CLICK {
+        return vec![pixel(*first)];
+    }
+    let mut parts = vec![(Vec3::ZERO, 0.0); PARTS];
+    let mut before = 0.0;
+    for pair in stroke.windows(2) {
+        let part = pair[0].distance(pair[1]);
+        let steps = (part * pixels_per_point * 2.0).ceil().max(1.0);
+        for step in 0..steps as usize {
+            let share = (step as f32 + 0.5) / steps;
+            let along = (before + part * share) / length;
+            let (sum, weight) = &mut parts[((along * PARTS as f32) as usize).min(PARTS - 1)];
+            *sum += pixel(pair[0].lerp(pair[1], share)) * part / steps;
+            *weight += part / steps;
+        }
+        before += part;
+    }
+    parts.into_iter().filter(|(_, weight)| *weight > 0.0).map(|(sum, weight)| sum / weight).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::{Color32, pos2, vec2};
+
+    use super::*;
+
+    /// Red across, green down.
+    fn picture() -> ColorImage {
+        let pixel = |index: usize| Color32::from_rgb((index % 200) as u8, (index / 200) as u8, 9);
+        ColorImage::new([200, 100], (0..20_000).map(pixel).collect())
+    }
+
+    #[test]
+    fn a_click_takes_the_pixel_that_is_pointed_at() {
+        for (at, scale, expected) in [
+            (pos2(20.7, 30.2), 1.0, [20.0, 30.0]),
+            (pos2(20.7, 30.2), 2.0, [41.0, 60.0]),
+            (pos2(900.0, -5.0), 1.0, [199.0, 0.0]),
+        ] {
+            let colours = colours(&picture(), &[at, at + vec2(1.0, 1.0)], scale, Across::One);
+            assert_eq!(colours, [Vec3::new(expected[0], expected[1], 9.0)]);
+        }
+        assert!(colours(&ColorImage::default(), &[pos2(1.0, 1.0)], 1.0, Across::One).is_empty());
+        assert!(colours(&picture(), &[], 1.0, Across::One).is_empty());
+    }
+
+    #[test]
+    fn the_mean_of_some_pixels_is_taken() {
+        let at = [pos2(20.5, 30.5)];
+        let mut noisy = picture();
+        noisy.pixels[30 * 200 + 20] = Color32::from_rgb(245, 30, 9);
+        for (across, expected) in [(Across::One, 245.0), (Across::Three, 45.0), (Across::Five, 29.0)] {
+            let taken = colours(&noisy, &at, 1.0, across)[0];
+            assert!(taken.abs_diff_eq(Vec3::new(expected, 30.0, 9.0), 1.0e-3), "{across:?}: {taken}");
+        }
+        // At a corner the border goes on.
+        let corner = colours(&picture(), &[pos2(0.0, 0.0)], 1.0, Across::Three)[0];
+        assert!(corner.abs_diff_eq(Vec3::new(1.0 / 3.0, 1.0 / 3.0, 9.0), 1.0e-3), "{corner}");
+        let sizes = [-1, 1, 1, 1].map(|by| Across::Three.stepped(by));
+        assert_eq!(sizes, [Across::One, Across::Five, Across::Five, Across::Five]);
+        assert_eq!((Across::One.stepped(-1), Across::Five.stepped(1)), (Across::One, Across::Five));
+    }
+
+    #[test]
+    fn a_stroke_takes_what_lies_along_it() {
+        // There, and half way back: what counts is the way that the pointer went.
+        let there = [pos2(0.0, 50.5), pos2(100.0, 50.5), pos2(180.0, 50.5)];
+        let row = colours(&picture(), &there, 1.0, Across::One);
+        assert_eq!(row.len(), PARTS);
+        for (index, colour) in row.iter().enumerate() {
+            let expected = (index as f32 + 0.5) / PARTS as f32 * 180.0 - 0.5;
+            assert!((colour.x - expected).abs() < 1.0 && (colour.y - 50.0).abs() < 1.0e-3, "{index}: {colour}");
+        }
+        let back = colours(&picture(), &[there[0], there[1], there[0]], 1.0, Across::One);
+        assert!((back[PARTS - 1].x - back[0].x).abs() < 1.0 && (back[PARTS / 2].x - 98.0).abs() < 3.0, "{back:?}");
+    }
+}

@@ -1,0 +1,220 @@
+//! What can be done to the stops of a gradient, and to those of them that are selected. Nothing here draws.
+
+use std::ops::Range;
+
+use super::selection::Selection;
+use haze_author::ramp::bake::{Curve, HexColour, RampStop};
+
+/// Puts stops in the order of their places; those at one place stay in theirs.
+pub fn sort(stops: &mut [RampStop]) {
+    stops.sort_by(|a, b| a.at.total_cmp(&b.at));
+}
+
+/// The same with what is selected of them.
+fn sort_selected(stops: &mut [RampStop], selection: &mut Selection) {
+    let mut order: Vec<_> = (0..stops.len()).collect();
+    order.sort_by(|a, b| stops[*a].at.total_cmp(&stops[*b].at));
+    let mut moved_to = vec![0; stops.len()];
+    order.iter().enumerate().for_each(|(new, old)| moved_to[*old] = new);
+    *selection = selection.map(|old| moved_to.get(old).copied().unwrap_or(old));
+    sort(stops);
+}
+
+/// Adds a stop that goes on as the one before it does; gives its index.
+pub fn add(stops: &mut Vec<RampStop>, at: f32, colour: HexColour) -> usize {
+    let index = stops.partition_point(|stop| stop.at <= at);
+    let neighbour = stops.get(index.saturating_sub(1));
+    let curve = neighbour.map_or(Curve::default(), |stop| stop.curve);
+    stops.insert(index, RampStop { at, colour, curve });
+    index
+}
+
+/// Puts a copy of each selected stop behind it, and selects the copies.
+pub fn copy(stops: &mut Vec<RampStop>, selection: &mut Selection) {
+    let copied: Vec<_> = selection.iter().filter(|index| *index < stops.len()).collect();
+    for index in copied.iter().rev() {
+        stops.insert(index + 1, stops[*index].clone());
+    }
+    // Behind itself, and behind those of the selected that are before it.
+    *selection = selection.map(|index| index + copied.partition_point(|before| *before <= index));
+}
+
+/// The place for one more: half way from a stop to the next, or to the one before the last.
+pub fn gap(stops: &[RampStop], index: usize) -> f32 {
+    let at = |index: usize| stops.get(index).map(|stop| stop.at);
+    let from = at(index).unwrap_or(0.0);
+    let to = at(index + 1).unwrap_or(if from < 1.0 { 1.0 } else { at(index.wrapping_sub(1)).unwrap_or(0.0) });
+    f32::midpoint(from, to)
+}
+
+/// Removes what is selected, but for the lead where that is all; selects the one to go on with.
+pub fn remove(stops: &mut Vec<RampStop>, selection: &mut Selection) {
+    let is_all = selection.count() >= stops.len();
+    let mut index = 0;
+    stops.retain(|_| {
+        index += 1;
+        !selection.contains(index - 1) || is_all && selection.lead() == index - 1
+    });
+    *selection = Selection::one(selection.range().start.min(stops.len().saturating_sub(1)));
+}
+
+/// Puts the lead elsewhere and the others as far, kept to the gradient with the distances between them. They pass others only
+/// where they go beyond them: come to the place of another a stop stays on its side, and makes a hard edge.
+pub fn move_to(stops: &mut [RampStop], selection: &mut Selection, at: f32) {
+    let Some(lead) = stops.get(selection.lead()).map(|lead| lead.at).filter(|_| at.is_finite()) else { return };
+    let (least, most) = ends(stops, selection.iter());
+    let at = at.min(1.0 - (most - lead)).max(lead - least);
+    for index in selection.iter() {
+        // Those at one place stay together, whatever is rounded.
+        stops[index].at = (at + (stops[index].at - lead)).clamp(0.0, 1.0);
+    }
+    sort_selected(stops, selection);
+}
+
+/// Multiplies the places of what is selected.
+pub fn scale(stops: &mut [RampStop], selection: &mut Selection, times: f32) {
+    for index in selection.iter() {
+        stops[index].at = (stops[index].at * times).clamp(0.0, 1.0);
+    }
+    sort_selected(stops, selection);
+}
+
+/// The places of the first and the last.
+fn ends(stops: &[RampStop], indices: impl Iterator<Item = usize>) -> (f32, f32) {
+    indices.fold((1.0, 0.0), |(least, most): (f32, f32), index| (least.min(stops[index].at), most.max(stops[index].at)))
+}
+
+/// The nearest border of equal parts, if it snaps to those.
+pub fn snapped(at: f32, parts: Option<u32>) -> f32 {
+    parts.map_or(at, |parts| (at * parts as f32).round() / parts as f32)
+}
+
+/// The place of a stop that is near and not selected, so that the two make a hard edge; else the same place.
+pub fn beside(stops: &[RampStop], selection: &Selection, at: f32) -> f32 {
+    const NEAR: f32 = 0.02;
+    let others = stops.iter().enumerate().filter(|(other, _)| !selection.contains(*other)).map(|(_, stop)| stop.at);
+    let near = others.filter(|other| (other - at).abs() <= NEAR);
+    near.min_by(|a, b| (a - at).abs().total_cmp(&(b - at).abs())).unwrap_or(at)
+}
+
+/// The place some steps from another: thousandths, hundredths if it is `far`, and equal parts if it snaps to those.
+pub fn nudged(at: f32, steps: f32, far: bool, parts: Option<u32>) -> f32 {
+    // To where a step leads is rounded: a hundred steps and as many back end where they began.
+    let round = |at: f32, unit: f32| (at * unit).round() / unit;
+    match parts.map(|parts| parts as f32) {
+        // The next border, however near it is.
+        Some(parts) if steps > 0.0 => ((at * parts + 1.0e-3).floor() + steps) / parts,
+        Some(parts) => ((at * parts - 1.0e-3).ceil() + steps) / parts,
+        None => round(at + steps * if far { 0.01 } else { 0.001 }, 1.0e4),
+    }
+}
+
+/// What is turned round or mirrored: what lies between the first and the last that are selected, or the whole gradient if that is
+/// one. The stops, and from where to where.
+fn part(stops: &[RampStop], selection: &Selection) -> (Range<usize>, f32, f32) {
+    let range = selection.range();
+    match (stops.get(range.start), stops.get(range.end.saturating_sub(1))) {
+        (Some(first), Some(last)) if selection.is_many() => (range, first.at, last.at),
+        _ => (0..stops.len(), 0.0, 1.0),
+    }
+}
+
+/// Puts others in the place of a part, and selects them where the part was.
+fn put_part(stops: &mut Vec<RampStop>, selection: &mut Selection, range: Range<usize>, others: Vec<RampStop>) {
+    let end = (range.start + others.len()).saturating_sub(1);
+    if selection.is_many() {
+        *selection = Selection::between(range.start, end);
+    }
+    stops.splice(range, others);
+}
+
+/// Turns a part round, so that what was at its one end is at the other.
+pub fn flip(stops: &mut Vec<RampStop>, selection: &mut Selection) {
+    sort_selected(stops, selection);
+    let (range, from, to) = part(stops, selection);
+    let turned = turned(&stops[range.clone()], from + to, from, to);
+    put_part(stops, selection, range, turned);
+}
+
+/// Squeezes a part into its first half, and puts its mirror picture behind it.
+pub fn mirror(stops: &mut Vec<RampStop>, selection: &mut Selection) {
+    sort_selected(stops, selection);
+    let (range, from, to) = part(stops, selection);
+    let middle = f32::midpoint(from, to);
+    let mut mirrored = stops[range.clone()].to_vec();
+    mirrored.iter_mut().for_each(|stop| stop.at = f32::midpoint(stop.at, from).clamp(from, middle));
+    let back = turned(&mirrored, from + to, middle, to);
+    if let (Some(last), Some(first)) = (mirrored.last(), back.first())
+        && (last.at, last.colour) == (first.at, first.colour)
+    {
+        // They meet in one.
+        mirrored.pop();
+    }
+    mirrored.extend(back);
+    put_part(stops, selection, range, mirrored);
+}
+
+/// Stops in reverse, each at `sum` less its place, which is from `from` to `to`. Curves go with the parts that they are of; a
+/// constant part keeps its colour, which is that of its other end then.
+fn turned(stops: &[RampStop], sum: f32, from: f32, to: f32) -> Vec<RampStop> {
+    let Some(last) = stops.last() else { return Vec::new() };
+    // Whether a stop's colour is held up to the next.
+    let is_held = |index: usize| {
+        let (stop, next) = (&stops[index], stops.get(index + 1));
+        stop.curve == Curve::Constant && next.is_some_and(|next| next.at > stop.at)
+    };
+    let mut flipped = Vec::with_capacity(stops.len() + 1);
+    for (index, stop) in stops.iter().enumerate().rev() {
+        let at = (sum - stop.at).clamp(from, to);
+        let is_last = index + 1 == stops.len();
+        let before = index.checked_sub(1).map(|before| (&stops[before], is_held(before)));
+        if let Some((before, true)) = before {
+            // What it comes to there, unless that is held already.
+            if is_last {
+                flipped.push(RampStop { at: from, colour: stop.colour, curve: Curve::Constant });
+            } else if !is_held(index) {
+                flipped.push(RampStop { at, ..stop.clone() });
+            }
+            flipped.push(RampStop { at, colour: before.colour, curve: Curve::Constant });
+        } else if before.is_some() || !is_held(index) {
+            let curve = before.map_or(last.curve, |(before, _)| before.curve);
+            flipped.push(RampStop { at, colour: stop.colour, curve });
+        }
+    }
+    flipped
+}
+
+/// What is distributed: what is selected, or all where that is one.
+fn distributed(stops: &[RampStop], selection: &Selection) -> Vec<usize> {
+    if selection.is_many() { selection.iter().collect() } else { (0..stops.len()).collect() }
+}
+
+/// Puts stops at even distances between the first and the last, or over the whole if those are at one place.
+pub fn distribute(stops: &mut [RampStop], selection: &mut Selection) {
+    let indices = distributed(stops, selection);
+    let (first, last) = ends(stops, indices.iter().copied());
+    let (from, to) = if first < last { (first, last) } else { (0.0, 1.0) };
+    let parts = indices.len().saturating_sub(1).max(1) as f32;
+    for (place, index) in indices.into_iter().enumerate() {
+        let share = place as f32 / parts;
+        stops[index].at = from * (1.0 - share) + to * share;
+    }
+    sort_selected(stops, selection);
+}
+
+/// Puts stops at even distances so that the parts to the right of each are of one width, for steps: all from 0 on, or those
+/// that are selected from the first of them up to the stop behind the last.
+pub fn step_evenly(stops: &mut [RampStop], selection: &mut Selection) {
+    let indices = distributed(stops, selection);
+    let from = if selection.is_many() { ends(stops, indices.iter().copied()).0 } else { 0.0 };
+    let behind = indices.last().and_then(|last| stops.get(last + 1));
+    let to = behind.map_or(1.0, |behind| behind.at);
+    let parts = indices.len().max(1) as f32;
+    for (place, index) in indices.into_iter().enumerate() {
+        stops[index].at = (from + (to - from) * place as f32 / parts).clamp(from, to);
+    }
+    sort_selected(stops, selection);
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,390 @@
+//! An editor in a window: what pointer and keys do to its stops.
+
+#![allow(clippy::float_cmp, reason = "places are rounded")]
+
+use egui::{Color32, Event, Key, Modifiers, PointerButton, Pos2, Rect, Role, Theme, Ui, Vec2, pos2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+
+mod colours;
+mod drags;
+mod several;
+
+use super::*;
+use haze_author::ramp::bake::{Curve, HexColour, RampStop};
+use haze_author::ramp::template::{TEMPLATES, Template};
+
+/// An editor, and what a host is told.
+#[derive(Default)]
+struct Host {
+    editor: GradientEditor,
+    row: RampRow,
+    steps: Vec<&'static str>,
+    changes: usize,
+    refused: Vec<String>,
+}
+
+fn host(stops: &[(f32, u8)]) -> Harness<'static, Host> {
+    let stop = |&(at, grey): &(f32, u8)| RampStop::new(at, HexColour([grey; 3]));
+    let row = RampRow { at: 0.5, stops: stops.iter().map(stop).collect(), ..RampRow::default() };
+    let show = |ui: &mut Ui, host: &mut Host| {
+        let bins = [0.0, 1.0, 0.25];
+        let histograms: &[(Color32, &[f32])] = &[(Color32::GRAY, &bins)];
+        let surroundings = Surroundings { histograms, ..Surroundings::default() };
+        let edited = host.editor.show(ui, &mut host.row, &surroundings);
+        host.changes += usize::from(edited.is_changed);
+        host.steps.extend(edited.committed);
+        host.refused.extend(edited.refused);
+    };
+    let mut harness = Harness::builder()
+        .with_size(Vec2::new(330.0, 260.0))
+        .with_theme(Theme::Dark)
+        .with_render_cursor(false)
+        .build_ui_state(show, Host { row, ..Host::default() });
+    harness.run_steps(3);
+    harness
+}
+
+fn places(harness: &Harness<'_, Host>) -> Vec<f32> {
+    harness.state().row.stops.iter().map(|stop| (stop.at * 1000.0).round() / 1000.0).collect()
+}
+
+fn greys(harness: &Harness<'_, Host>) -> Vec<u8> {
+    harness.state().row.stops.iter().map(|stop| stop.colour.0[0]).collect()
+}
+
+fn steps(harness: &Harness<'_, Host>) -> Vec<&'static str> {
+    harness.state().steps.clone()
+}
+
+fn strip(harness: &Harness<'_, Host>) -> Rect {
+    harness.get_by_label("gradient: add a stop").rect()
+}
+
+/// A place on the strip, 0 to 1.
+fn on_strip(harness: &Harness<'_, Host>, at: f32) -> Pos2 {
+    let strip = strip(harness);
+    pos2(strip.left() + at * strip.width(), strip.top() + 8.0)
+}
+
+fn handle(harness: &Harness<'_, Host>, index: usize) -> Rect {
+    harness.get_by_label(&format!("stop {}", index + 1)).rect()
+}
+
+fn button(harness: &mut Harness<'_, Host>, pos: Pos2, pressed: bool, modifiers: Modifiers) {
+    harness.event(Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers });
+    harness.step();
+}
+
+fn drag(harness: &mut Harness<'_, Host>, from: Pos2, by: f32, modifiers: Modifiers) {
+    harness.hover_at(from);
+    // Held all the way, as by a hand.
+    harness.event(Event::ModifiersChanged(modifiers));
+    harness.step();
+    button(harness, from, true, modifiers);
+    for part in 1..=4 {
+        harness.hover_at(from + Vec2::new(by * part as f32 / 4.0, 0.0));
+        harness.step();
+    }
+    button(harness, from + Vec2::new(by, 0.0), false, modifiers);
+    harness.event(Event::ModifiersChanged(NONE));
+    harness.run_steps(2);
+}
+
+fn click(harness: &mut Harness<'_, Host>, pos: Pos2, modifiers: Modifiers) {
+    harness.hover_at(pos);
+    harness.event(Event::ModifiersChanged(modifiers));
+    harness.step();
+    for pressed in [true, false] {
+        button(harness, pos, pressed, modifiers);
+    }
+    harness.event(Event::ModifiersChanged(NONE));
+    harness.run_steps(2);
+}
+
+fn key(harness: &mut Harness<'_, Host>, key: Key, modifiers: Modifiers) {
+    harness.key_press_modifiers(modifiers, key);
+    harness.run_steps(3);
+}
+
+const NONE: Modifiers = Modifiers::NONE;
+
+#[test]
+fn a_click_adds_a_stop_with_the_colour_that_is_there() {
+    let mut harness = host(&[(0.0, 0), (1.0, 255)]);
+    let at = on_strip(&harness, 0.25);
+    let expected = {
+        let rows = vec![harness.state().row.clone()];
+        let recipe = haze_author::ramp::bake::RampRecipe { rows, ..Default::default() };
+        let light = recipe.gradient().unwrap().sample(0.25, 0.0).x;
+        (haze::formula::colour::srgb_from_linear(light) * 255.0).round() as u8
+    };
+    click(&mut harness, at, NONE);
+    assert_eq!(places(&harness), [0.0, 0.25, 1.0]);
+    assert!(greys(&harness)[1].abs_diff(expected) <= 1 && (5..200).contains(&expected), "{expected}");
+    assert_eq!((steps(&harness), harness.state().editor.state.selection.lead()), (vec!["add a stop"], 1));
+    let at = on_strip(&harness, 0.62);
+    click(&mut harness, at, Modifiers::COMMAND);
+    assert_eq!(places(&harness), [0.0, 0.25, 0.6, 1.0]);
+    // Pressed and drawn along, it goes with the pointer: one step.
+    let (at, width) = (on_strip(&harness, 0.8), strip(&harness).width());
+    drag(&mut harness, at, 0.1 * width, NONE);
+    assert_eq!(places(&harness), [0.0, 0.25, 0.6, 0.9, 1.0]);
+    assert_eq!(steps(&harness).len(), 3);
+}
+
+#[test]
+fn a_drag_is_one_step_and_passes_other_stops() {
+    let mut harness = host(&[(0.0, 0), (0.3, 10), (0.5, 20), (1.0, 30)]);
+    let (from, width) = (handle(&harness, 1).center(), strip(&harness).width());
+    drag(&mut harness, from, 0.4 * width, NONE);
+    assert_eq!((places(&harness), greys(&harness)), (vec![0.0, 0.5, 0.7, 1.0], vec![0, 20, 10, 30]));
+    assert!(harness.state().changes > 2, "the host sees it on its way");
+    assert_eq!(steps(&harness), ["move a stop"]);
+    assert_eq!(harness.state().editor.state.selection.lead(), 2);
+    let from = handle(&harness, 2).center();
+    drag(&mut harness, from, -0.17 * width, Modifiers::COMMAND);
+    assert_eq!(places(&harness), [0.0, 0.5, 0.5, 1.0], "Ctrl snaps");
+    assert_eq!(greys(&harness), [0, 20, 10, 30], "at one place it stays on its side");
+    let from = handle(&harness, 2).center();
+    drag(&mut harness, from, 9.0 * width, NONE);
+    assert_eq!(places(&harness), [0.0, 0.5, 1.0, 1.0]);
+    // A click that does not move is no step.
+    let count = steps(&harness).len();
+    let at = handle(&harness, 0).center();
+    click(&mut harness, at, NONE);
+    assert_eq!((steps(&harness).len(), harness.state().editor.state.selection.lead()), (count, 0));
+}
+
+#[test]
+fn stops_at_one_place_have_handles_of_their_own() {
+    let mut harness = host(&[(0.5, 1), (0.5, 2), (0.5, 3), (1.0, 4)]);
+    for (index, width) in [(0, -30.0), (2, 30.0)] {
+        let from = handle(&harness, index).center();
+        drag(&mut harness, from, width, NONE);
+    }
+    assert_eq!(greys(&harness), [1, 2, 3, 4]);
+    let at = places(&harness);
+    assert!(at[0] < 0.45 && (at[1] - 0.5).abs() < 1.0e-3 && at[2] > 0.55, "{at:?}");
+}
+
+#[test]
+fn everything_is_done_by_keys_alone() {
+    let mut harness = host(&[(0.0, 0), (0.5, 10), (1.0, 20)]);
+    let has_keyboard = |harness: &Harness<'_, Host>, index: usize| {
+        harness.get_by_label(&format!("stop {}", index + 1)).accesskit_node().is_focused()
+    };
+    harness.get_by_label("stop 1").focus();
+    harness.run_steps(3);
+    assert!(has_keyboard(&harness, 0));
+    key(&mut harness, Key::Tab, NONE);
+    assert!(has_keyboard(&harness, 1));
+    assert_eq!(harness.state().editor.state.selection.lead(), 1);
+    for (modifiers, pressed, expected) in [
+        (NONE, Key::ArrowRight, 0.501),
+        (Modifiers::SHIFT, Key::ArrowRight, 0.511),
+        (Modifiers::COMMAND, Key::ArrowRight, 0.6),
+        (NONE, Key::ArrowLeft, 0.599),
+        (Modifiers::COMMAND, Key::ArrowLeft, 0.5),
+    ] {
+        key(&mut harness, pressed, modifiers);
+        assert_eq!(places(&harness)[1], expected);
+        assert!(has_keyboard(&harness, 1));
+    }
+    assert_eq!(steps(&harness).len(), 5);
+    // Past another, it keeps the keyboard.
+    for _ in 0..6 {
+        key(&mut harness, Key::ArrowRight, Modifiers::COMMAND);
+    }
+    assert_eq!(greys(&harness), [0, 10, 20]);
+    key(&mut harness, Key::Tab, Modifiers::SHIFT);
+    for _ in 0..11 {
+        key(&mut harness, Key::ArrowRight, Modifiers::COMMAND);
+    }
+    assert_eq!(places(&harness), [1.0, 1.0, 1.0]);
+    for _ in 0..2 {
+        key(&mut harness, Key::ArrowLeft, Modifiers::COMMAND);
+    }
+    assert_eq!((places(&harness), greys(&harness)), (vec![0.8, 1.0, 1.0], vec![0, 10, 20]));
+    key(&mut harness, Key::Delete, NONE);
+    key(&mut harness, Key::Delete, NONE);
+    assert_eq!(greys(&harness), [20]);
+    key(&mut harness, Key::Delete, NONE);
+    assert_eq!(greys(&harness), [20], "the last one stays");
+    harness.get_by_label("gradient: add a stop").focus();
+    harness.run_steps(2);
+    key(&mut harness, Key::Enter, NONE);
+    assert_eq!(places(&harness), [0.5, 1.0]);
+    assert!(has_keyboard(&harness, 0));
+}
+
+#[test]
+fn numbers_are_typed() {
+    let mut harness = host(&[(0.0, 0), (0.5, 10), (1.0, 20)]);
+    harness.get_by_label("next stop").click();
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::SpinButton, "place").click();
+    harness.run_steps(2);
+    harness.event(Event::Text("0.125".into()));
+    harness.run_steps(2);
+    key(&mut harness, Key::Enter, NONE);
+    assert_eq!((places(&harness), steps(&harness)), (vec![0.0, 0.125, 1.0], vec!["move a stop"]));
+    for (text, is_good) in [("#ff8000", true), ("orange", false)] {
+        harness.get_by_role_and_label(Role::TextInput, "colour").click();
+        harness.run_steps(2);
+        key(&mut harness, Key::A, Modifiers::COMMAND);
+        harness.event(Event::Text(text.into()));
+        harness.run_steps(2);
+        key(&mut harness, Key::Enter, NONE);
+        assert_eq!(harness.state().row.stops[1].colour, HexColour([255, 128, 0]));
+        assert_eq!(harness.state().refused.is_empty(), is_good);
+    }
+    assert_eq!(steps(&harness), ["move a stop", "colour of a stop"]);
+    assert_eq!(harness.state().refused, [r##""orange" is not valid; expected an sRGB colour, "#rrggbb""##]);
+}
+
+#[test]
+fn each_stop_has_a_curve() {
+    let mut harness = host(&[(0.0, 0), (1.0, 20)]);
+    harness.get_by_role(Role::ComboBox).click();
+    harness.run_steps(3);
+    harness.get_by_label("constant").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().row.stops[0].curve, Curve::Constant);
+    assert_eq!(harness.state().row.stops[1].curve, Curve::Monotone);
+    assert_eq!(steps(&harness), ["curve of a stop"]);
+}
+
+#[test]
+fn all_stops_are_turned_distributed_and_replaced_in_one_step() {
+    let mut harness = host(&[(0.0, 0), (0.2, 10), (1.0, 20)]);
+    let press = |harness: &mut Harness<'_, Host>, name: &str| {
+        harness.get_by_label(name).click();
+        harness.run_steps(3);
+    };
+    press(&mut harness, "Flip");
+    assert_eq!((places(&harness), greys(&harness)), (vec![0.0, 0.8, 1.0], vec![20, 10, 0]));
+    press(&mut harness, "Distribute");
+    assert_eq!(places(&harness), [0.0, 0.5, 1.0]);
+    press(&mut harness, "Steps");
+    assert_eq!(places(&harness), [0.0, 0.333, 0.667]);
+    press(&mut harness, "Templates");
+    for template in TEMPLATES {
+        assert!(harness.query_by_label(&template.name.replace('_', " ")).is_some(), "{}", template.name);
+    }
+    press(&mut harness, "hard toon");
+    assert_eq!(harness.state().row.stops, Template::find("hard_toon").unwrap().recipe().rows[0].stops);
+    press(&mut harness, "Remove");
+    assert_eq!(harness.state().row.stops.len(), 2);
+    assert_eq!(steps(&harness), ["flip", "distribute", "even steps", "template", "remove a stop"]);
+    assert_eq!(harness.state().row.at, 0.5, "the row stays where it is");
+}
+
+#[test]
+fn stops_are_copied_and_pasted_as_text() {
+    let mut harness = host(&[(0.0, 0), (0.2, 10), (1.0, 20)]);
+    let copied = |harness: &Harness<'_, Host>| {
+        let commands = &harness.output().platform_output.commands;
+        commands.iter().find_map(|command| match command {
+            egui::OutputCommand::CopyText(text) => Some(text.clone()),
+            _ => None,
+        })
+    };
+    harness.get_by_label("stop 1").focus();
+    harness.run_steps(2);
+    harness.event(Event::Copy);
+    harness.step();
+    let text = copied(&harness).unwrap();
+    let before = harness.state().row.clone();
+    key(&mut harness, Key::Delete, NONE);
+    harness.event(Event::Paste(text));
+    harness.run_steps(3);
+    assert_eq!(harness.state().row, before);
+    assert_eq!(steps(&harness), ["remove a stop", "paste stops"]);
+    harness.event(Event::Paste("no row".into()));
+    harness.run_steps(3);
+    assert_eq!(harness.state().row, before);
+    assert!(
+        harness.state().refused[0].starts_with("nothing is pasted: pasted text:1:"),
+        "{:?}",
+        harness.state().refused
+    );
+    // What is pasted elsewhere is not for it, unless it was asked for.
+    harness.get_by_label("Distribute").focus();
+    harness.run_steps(2);
+    harness.event(Event::Paste("no row".into()));
+    harness.run_steps(2);
+    assert_eq!(harness.state().refused.len(), 1);
+    harness.get_by_label("Paste").click();
+    harness.run_steps(2);
+    harness.event(Event::Paste("no row".into()));
+    harness.run_steps(2);
+    assert_eq!(harness.state().refused.len(), 2);
+}
+
+#[test]
+fn ten_thousand_stops_are_edited_one_by_one() {
+    let list: Vec<_> = (0..10_000u32).map(|index| (index as f32 / 9999.0, index as u8)).collect();
+    let mut harness = host(&list);
+    let (lane, width) = (strip(&harness).bottom() + 3.0, strip(&harness).width());
+    let at = pos2(strip(&harness).left() + 0.75 * width, lane);
+    click(&mut harness, at, NONE);
+    let selected = harness.state().editor.state.selection.lead();
+    assert!(selected.abs_diff(7500) < 40, "{selected}");
+    let name = format!("stop {}", selected + 1);
+    assert!(harness.get_by_label(&name).accesskit_node().is_focused());
+    key(&mut harness, Key::Delete, NONE);
+    assert_eq!(harness.state().row.stops.len(), 9999);
+    let begun = std::time::Instant::now();
+    harness.run_steps(10);
+    let frame = begun.elapsed() / 10;
+    assert!(frame.as_millis() < 100, "{frame:?} a frame");
+}
+
+#[test]
+fn nothing_is_cut_off_in_a_narrow_panel() {
+    for theme in [Theme::Dark, Theme::Light] {
+        let mut harness = host(&[(0.0, 0), (0.5, 128), (0.5, 200), (1.0, 255)]);
+        harness.ctx.set_theme(theme);
+        harness.run_steps(2);
+        let names = ["stop 1", "stop 4", "gradient: add a stop", "next stop", "Flip", "Mirror", "Paste", "Templates"];
+        for name in names {
+            let rect = harness.get_by_label(name).rect();
+            assert!(rect.left() >= 0.0 && rect.right() <= 330.0 && rect.bottom() <= 260.0, "{name} {rect:?}");
+        }
+    }
+}
+
+/// `HAZE_LOOK=DIR` says where to.
+#[test]
+#[ignore = "pictures to be looked at"]
+fn pictures_of_the_editor() {
+    let folder = std::path::PathBuf::from(std::env::var_os("HAZE_LOOK").unwrap());
+    for (theme, name) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
+        let mut harness = host(&[(0.0, 20), (0.3, 60), (0.3, 160), (0.33, 200), (0.8, 220), (1.0, 255)]);
+        harness.ctx.set_theme(theme);
+        harness.get_by_label("stop 3").focus();
+        harness.run_steps(3);
+        harness.render().unwrap().save(folder.join(format!("gradient_{name}.png"))).unwrap();
+        // Several, held on their way; then the eyedropper.
+        key(&mut harness, Key::ArrowDown, Modifiers::SHIFT);
+        let from = handle(&harness, 3).center();
+        for pos in [from, from, from + Vec2::new(20.0, 0.0), from + Vec2::new(40.0, 0.0)] {
+            harness.hover_at(pos);
+            harness.step();
+            if pos == from {
+                button(&mut harness, from, true, NONE);
+            }
+        }
+        harness.run_steps(3);
+        harness.render().unwrap().save(folder.join(format!("gradient_drag_{name}.png"))).unwrap();
+        button(&mut harness, from + Vec2::new(40.0, 0.0), false, NONE);
+        harness.get_by_label("Take a colour").click();
+        harness.run_steps(5);
+        let at = on_strip(&harness, 0.6);
+        harness.hover_at(at);
+        harness.run_steps(3);
+        key(&mut harness, Key::Num3, NONE);
+        harness.render().unwrap().save(folder.join(format!("gradient_eyedropper_{name}.png"))).unwrap();
+    }
+}

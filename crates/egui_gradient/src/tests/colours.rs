@@ -1,0 +1,152 @@
+//! Where the colour of a stop comes from.
+
+use super::*;
+
+fn colour(harness: &Harness<'_, Host>, index: usize) -> [u8; 3] {
+    harness.state().row.stops[index].colour.0
+}
+
+fn type_into(harness: &mut Harness<'_, Host>, name: &str, text: &str) {
+    harness.get_by_role_and_label(Role::SpinButton, name).click();
+    harness.run_steps(2);
+    harness.event(Event::Text(text.into()));
+    harness.run_steps(2);
+    key(harness, Key::Enter, NONE);
+}
+
+#[test]
+fn hue_saturation_and_value_are_numbers() {
+    let mut harness = host(&[(0.0, 100), (1.0, 20)]);
+    for (name, number, expected) in [
+        // A grey takes a hue, and shows it when it has a saturation.
+        ("hue", "210", [100, 100, 100]),
+        ("saturation", "50", [50, 75, 100]),
+        ("value", "100", [128, 191, 255]),
+        ("saturation", "0", [255, 255, 255]),
+        ("saturation", "100", [0, 128, 255]),
+    ] {
+        type_into(&mut harness, name, number);
+        assert_eq!(colour(&harness, 0), expected, "{name} {number}");
+    }
+    // A hue alone is no step.
+    assert_eq!(steps(&harness), ["colour of a stop"; 4]);
+    // It is that stop's: another has its own.
+    harness.get_by_label("next stop").click();
+    harness.run_steps(2);
+    type_into(&mut harness, "saturation", "50");
+    assert_eq!(colour(&harness, 1), [20, 10, 10]);
+}
+
+#[test]
+fn a_colour_is_pasted_on_the_stop_that_is_selected() {
+    let mut harness = host(&[(0.0, 100), (1.0, 20)]);
+    harness.get_by_label("stop 2").focus();
+    harness.run_steps(2);
+    harness.event(Event::Paste(" #ff8000\n".into()));
+    harness.run_steps(2);
+    assert_eq!((colour(&harness, 0), colour(&harness, 1)), ([100; 3], [255, 128, 0]));
+    assert_eq!((steps(&harness), harness.state().refused.len()), (vec!["colour of a stop"], 0));
+}
+
+/// By a click so quick that it is in one frame.
+fn begin(harness: &mut Harness<'_, Host>) {
+    let pos = harness.get_by_label("Take a colour").rect().center();
+    harness.hover_at(pos);
+    harness.step();
+    let button = |pressed| Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: NONE };
+    harness.input_mut().events.extend([true, false].map(button));
+    harness.run_steps(3);
+    assert!(harness.state().editor.state.eyedropper.is_some());
+}
+
+#[test]
+fn a_click_takes_a_colour_from_anywhere_and_touches_nothing_else() {
+    let mut harness = host(&[(0.0, 0), (1.0, 255)]);
+    let at = on_strip(&harness, 0.7);
+    let expected = {
+        let shown = harness.render().unwrap();
+        let [r, g, b, _] = shown.get_pixel(at.x as u32, at.y as u32).0;
+        [r, g, b]
+    };
+    begin(&mut harness);
+    click(&mut harness, at, NONE);
+    harness.run_steps(2);
+    assert_eq!((places(&harness), colour(&harness, 0)), (vec![0.0, 1.0], expected));
+    assert!(expected[0] > 100, "{expected:?}");
+    assert_eq!(steps(&harness), ["colour of a stop"]);
+    assert!(harness.state().editor.state.eyedropper.is_none());
+    // It is given up by Escape.
+    begin(&mut harness);
+    key(&mut harness, Key::Escape, NONE);
+    assert!(harness.state().editor.state.eyedropper.is_none());
+    click(&mut harness, at, NONE);
+    assert_eq!(places(&harness).len(), 3);
+}
+
+#[test]
+fn a_stroke_takes_the_gradient_along_it() {
+    let mut harness = host(&[(0.0, 0), (0.5, 250), (1.0, 40)]);
+    begin(&mut harness);
+    let (from, width) = (on_strip(&harness, 0.99), strip(&harness).width());
+    // From right to left over its own first half: turned round.
+    let wanted = {
+        let row = harness.state().row.clone();
+        let recipe = haze_author::ramp::bake::RampRecipe { rows: vec![row], ..Default::default() };
+        recipe.gradient().unwrap()
+    };
+    drag(&mut harness, from, -0.98 * width, NONE);
+    harness.run_steps(3);
+    let row = harness.state().row.clone();
+    assert!((3..20).contains(&row.stops.len()), "{row:?}");
+    let recipe = haze_author::ramp::bake::RampRecipe { rows: vec![row], ..Default::default() };
+    let taken = recipe.gradient().unwrap();
+    let code = |light: f32| haze::formula::colour::srgb_from_linear(light) * 255.0;
+    for step in 5..=95 {
+        let at = step as f32 / 100.0;
+        let (taken, wanted) = (code(taken.sample(at, 0.0).x), code(wanted.sample(0.99 - 0.98 * at, 0.0).x));
+        // Ten of the fit, and what the colour changes over half a part.
+        assert!((taken - wanted).abs() < 20.0, "{at}: {taken} {wanted}");
+    }
+    assert_eq!(steps(&harness), ["gradient of a stroke"]);
+}
+
+#[test]
+fn the_eyedropper_magnifies_and_is_moved_by_keys() {
+    let mut harness = host(&[(0.0, 0), (1.0, 255)]);
+    begin(&mut harness);
+    let at = on_strip(&harness, 0.5);
+    harness.hover_at(at);
+    harness.run_steps(3);
+    let said = |harness: &Harness<'_, Host>| {
+        let node = harness.get_by_label_contains("×");
+        node.accesskit_node().label().or_else(|| node.accesskit_node().value()).unwrap_or_default()
+    };
+    assert!(said(&harness).ends_with("1×1"), "{}", said(&harness));
+    let before = said(&harness);
+    // Along a gradient from black to white every ten pixels are lighter.
+    key(&mut harness, Key::ArrowRight, Modifiers::SHIFT);
+    let lighter = said(&harness);
+    assert!(lighter > before, "{before} {lighter}");
+    key(&mut harness, Key::ArrowLeft, Modifiers::SHIFT);
+    assert_eq!(said(&harness), before);
+    key(&mut harness, Key::Num5, NONE);
+    assert!(said(&harness).ends_with("5×5"), "{}", said(&harness));
+    key(&mut harness, Key::Num1, NONE);
+    assert!(steps(&harness).is_empty(), "nothing is taken yet");
+    key(&mut harness, Key::Enter, NONE);
+    assert_eq!(steps(&harness), ["colour of a stop"]);
+    assert!(before.starts_with(&String::from(HexColour(colour(&harness, 0)))), "{before}");
+    // A stroke by keys alone.
+    harness.get_by_label("Take a colour").focus();
+    harness.run_steps(2);
+    key(&mut harness, Key::Enter, NONE);
+    harness.hover_at(at);
+    harness.run_steps(2);
+    key(&mut harness, Key::Space, NONE);
+    for _ in 0..5 {
+        key(&mut harness, Key::ArrowRight, Modifiers::SHIFT);
+    }
+    key(&mut harness, Key::Enter, NONE);
+    assert_eq!(steps(&harness), ["colour of a stop", "gradient of a stroke"]);
+    assert!(greys(&harness).is_sorted(), "{:?}", greys(&harness));
+}

@@ -1,0 +1,71 @@
+//! The stops of a row as text, to be copied and pasted: the row as it stands in a recipe.
+
+use std::path::Path;
+
+use haze::assets::json;
+use haze::error::Error;
+use haze::settings::validate;
+use haze_author::ramp::bake::{HexColour, RampRow, RampStop};
+use haze_author::ramp::gradient::not_empty;
+
+/// The row as in a recipe.
+pub fn to_text(row: &RampRow) -> String {
+    // Numbers and texts: there is nothing that could fail.
+    serde_json::to_string_pretty(row).unwrap_or_default()
+}
+
+/// A colour as people write it: `#rrggbb`, also without its sign.
+pub fn colour(text: &str) -> Result<HexColour, String> {
+    let text = text.trim();
+    HexColour::try_from(format!("#{text}")).or_else(|_| HexColour::try_from(text.to_owned()))
+}
+
+/// The stops of a row that was copied, in order.
+pub fn parse(text: &str) -> Result<Vec<RampStop>, Error> {
+    let path = Path::new("pasted text");
+    let mut row: RampRow = json::parse(path, text)?;
+    let valid = validate(&row, String::new).and_then(|()| not_empty("stops", &row.stops));
+    valid.map_err(|error| Error::JsonField { path: path.into(), error })?;
+    super::stops::sort(&mut row.stops);
+    Ok(row.stops)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haze_author::ramp::bake::{Curve, HexColour};
+
+    #[test]
+    fn what_is_copied_is_what_is_pasted() {
+        let stops = vec![
+            RampStop::new(0.0, HexColour([255, 240, 210])),
+            RampStop { curve: Curve::Constant, ..RampStop::new(0.3, HexColour([1, 2, 3])) },
+            RampStop::new(0.3, HexColour([0; 3])),
+        ];
+        let row = RampRow { at: 0.5, curve: Curve::Ease, stops };
+        assert_eq!(parse(&to_text(&row)).unwrap(), row.stops);
+    }
+
+    #[test]
+    fn a_colour_needs_no_sign() {
+        for text in ["#ff8000", " FF8000\n"] {
+            assert_eq!(colour(text), Ok(HexColour([255, 128, 0])));
+        }
+        for text in ["##ff8000", "ff800", "#ff80000", "+f8000"] {
+            assert!(colour(text).unwrap_err().starts_with(&format!("{text:?} is not valid")), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_row_is_refused_and_said() {
+        for (text, said) in [
+            ("a word", "pasted text:1:1"),
+            (r#"{ "stops": [] }"#, "stops"),
+            (r##"{ "stops": [{ "at": 2, "colour": "#000000" }] }"##, "stops[0].at"),
+            (r##"{ "stops": [{ "at": 1, "colour": "black" }] }"##, "#rrggbb"),
+        ] {
+            let error = parse(text).unwrap_err().to_string();
+            assert!(error.contains(said), "{text}: {error}");
+        }
+    }
+}

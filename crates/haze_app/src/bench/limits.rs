@@ -1,0 +1,131 @@
+//! What this adapter can do at best, with nothing of haze: the floor under every figure.
+
+pub mod work;
+
+use std::collections::HashMap;
+
+use glam::UVec2;
+use haze::settings::AccumulationFormat;
+use haze::{Error, wgpu};
+use haze_demo::headless::Headless;
+
+use super::awake::Awake;
+use super::report::{Clock, Milliseconds, Row};
+use super::suites::Suite;
+use crate::interrupt;
+use work::{Bench, Work, bytes, texture};
+
+/// Milliseconds of a fragment of an unlit disc, by format, and a row for everything that was measured.
+pub struct Limits {
+    pub floor: HashMap<AccumulationFormat, f64>,
+    pub rows: Vec<Row>,
+    /// Timestamps that were reversed or zero.
+    pub discarded: u64,
+}
+
+/// One thing to measure.
+struct Bare {
+    name: String,
+    work: Work,
+    /// Fragments, or texels.
+    fragments: u64,
+    /// Bytes that are moved at the least.
+    bytes: u64,
+    /// Of which `floor` is the limit.
+    format: Option<AccumulationFormat>,
+}
+
+/// Measures all of them in turn, over and over.
+pub fn measure(gpu: &Headless, awake: &Awake<'_>, size: UVec2, quick: bool) -> Result<Limits, Error> {
+    let (layers, rounds) = if quick { (16, 5) } else { (32, 15) };
+    let bench = Bench::new(gpu, size);
+    let bare = all(&bench, layers);
+    gpu.check()?;
+    let (mut times, mut discarded) = (vec![Vec::new(); bare.len()], 0);
+    for round in 0..=rounds {
+        if interrupt::is_asked() {
+            break;
+        }
+        for (bare, times) in bare.iter().zip(&mut times) {
+            let quiet = awake.quiet();
+            let ms = bench.frame(&bare.work)?;
+            drop(quiet);
+            discarded += u64::from(ms.is_none());
+            times.extend(ms.filter(|_| round > 0));
+        }
+    }
+    let mut floor = HashMap::new();
+    let mut rows = Vec::new();
+    for (bare, times) in bare.iter().zip(&mut times) {
+        let Some(gpu_ms) = Milliseconds::of(times) else { continue };
+        let per_fragment = gpu_ms.median / bare.fragments.max(1) as f64;
+        if let Some(format) = bare.format {
+            // The first of a format.
+            floor.entry(format).or_insert(per_fragment);
+        }
+        let clock = if bench.is_timed(&bare.work) { Clock::Gpu } else { Clock::Wall };
+        let rate = (bare.fragments > 0).then(|| bare.fragments as f64 / gpu_ms.median * 1.0e-6);
+        rows.push(Row {
+            format: bare.format.map(|format| format.name().into()),
+            samples: times.len() as u32,
+            fragments: (bare.fragments > 0).then_some(bare.fragments),
+            gfragments_per_s: rate.filter(|_| bare.bytes > 0),
+            bytes: (bare.bytes > 0).then_some(bare.bytes),
+            limit_ratio: bare.format.and_then(|format| floor.get(&format)).map(|limit| per_fragment / limit),
+            ..Row::of(Suite::Limits, bare.name.clone(), size, clock, gpu_ms)
+        });
+    }
+    Ok(Limits { floor, rows, discarded })
+}
+
+/// What there is to measure; first of every format the floor: an unlit disc.
+fn all(bench: &Bench<'_>, layers: u32) -> Vec<Bare> {
+    let pixels = u64::from(bench.size.x) * u64::from(bench.size.y);
+    let mut all = vec![Bare {
+        name: "empty pass".into(),
+        work: bench.draw(None, AccumulationFormat::Rgba16Float, 0),
+        fragments: 0,
+        bytes: 0,
+        format: None,
+    }];
+    for &format in AccumulationFormat::ALL {
+        for (what, entry) in [("disc", "one_fetch"), ("disc of two fetches", "two_fetches"), ("blend", "constant")] {
+            let fragments = pixels * u64::from(layers);
+            all.push(Bare {
+                name: format!("{what} {}", format.name()),
+                work: bench.draw(Some(entry), format, layers),
+                fragments,
+                bytes: fragments * 2 * u64::from(bytes(format)),
+                format: Some(format),
+            });
+        }
+    }
+    all.push(Bare {
+        name: "joint bilateral".into(),
+        work: bench.draw(Some("joint_bilateral"), AccumulationFormat::Rgba16Float, 1),
+        fragments: pixels,
+        bytes: pixels * 2 * u64::from(bytes(AccumulationFormat::Rgba16Float)),
+        format: None,
+    });
+    if bench.gpu.adapter.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS) {
+        all.push(Bare {
+            name: "disc in compute".into(),
+            work: bench.compute(layers),
+            fragments: pixels * u64::from(layers),
+            // Each texel is written once.
+            bytes: pixels * 8,
+            format: None,
+        });
+    }
+    let times = 16;
+    let usage = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
+    let [from, to] = [(); 2].map(|()| texture(bench.gpu, bench.size, wgpu::TextureFormat::Rgba16Float, usage));
+    all.push(Bare {
+        name: "copy".into(),
+        work: Work::Copy { from, to, times },
+        fragments: 0,
+        bytes: pixels * 8 * 2 * u64::from(times),
+        format: None,
+    });
+    all
+}

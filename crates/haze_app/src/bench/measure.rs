@@ -1,0 +1,269 @@
+//! The shots of a group in turn, frame by frame, so that a machine that does other things as well slows all alike.
+
+use std::collections::{BTreeMap, HashMap};
+use std::time::{Duration, Instant};
+
+use haze::preset::PresetSystem;
+use haze::settings::{AccumulationFormat, Path as SmokePath, ShadeTree};
+use haze::{Error, Timing, wgpu};
+use haze_author::particle_files::{self, Cache};
+use haze_demo::headless::Headless;
+use haze_demo::shot::Shot;
+use haze_demo::stage::{Stage, StageContext};
+use image::RgbImage;
+
+use super::awake::Awake;
+use super::limits::work::bytes;
+use super::quality::{Quality, Reference, is_right};
+use super::report::{Clock, LeftOut, Milliseconds, Row};
+use super::suites::{Case, Group, Suite, mean_alpha};
+use crate::interrupt;
+
+/// Rounds that are not counted, at the least.
+const WARM_UP: usize = 2;
+/// Milliseconds of a frame after which it needs no warming up: one was drawn before.
+const SLOW_MS: f64 = 300.0;
+/// Frames in a row without a time after which there will be none.
+const MOST_TRIES: u32 = 8;
+/// Most rounds that tell anything more.
+const MOST_ROUNDS: usize = 200;
+const LEAST_ROUNDS: usize = 3;
+
+/// What measures, and what it has found.
+pub struct Bench<'a> {
+    gpu: &'a Headless,
+    awake: &'a Awake<'a>,
+    context: StageContext,
+    timing: Option<Timing>,
+    /// Milliseconds that a fragment takes at the least, by format.
+    pub limits: HashMap<AccumulationFormat, f64>,
+    /// Longest time that a frame may take.
+    longest: Duration,
+    /// Milliseconds by work, of cases that were measured.
+    costs: HashMap<String, f64>,
+    pub discarded: u64,
+    pub rows: Vec<Row>,
+    pub left_out: Vec<LeftOut>,
+}
+
+/// Milliseconds of a frame's smoke, and of each pass.
+struct Taken {
+    ms: f64,
+    passes: Vec<(&'static str, f64)>,
+}
+
+/// A case while it is measured.
+struct Running<'a> {
+    case: &'a Case,
+    stage: Stage,
+    quality: Quality,
+    times: Vec<f64>,
+    passes: BTreeMap<&'static str, Vec<f64>>,
+}
+
+impl<'a> Bench<'a> {
+    pub fn new(gpu: &'a Headless, awake: &'a Awake<'a>, longest: Duration) -> Self {
+        let context = StageContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
+        // Without this the passes that light smoke are in no figure.
+        let is_whole = gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
+        Self {
+            timing: context.timing().filter(|_| is_whole),
+            gpu,
+            awake,
+            context,
+            limits: HashMap::new(),
+            longest,
+            costs: HashMap::new(),
+            discarded: 0,
+            rows: Vec::new(),
+            left_out: Vec::new(),
+        }
+    }
+
+    /// By what the path `auto` chooses here.
+    ///
+    /// # Errors
+    /// When the device failed.
+    pub fn measure_paths(&self) -> Result<(), Error> {
+        // It goes by the clock on the wall, and waiting for quiet would count.
+        let _quiet = self.awake.quiet();
+        self.context.measure_paths(|encoder| self.gpu.submit(encoder)).map(|_| ())
+    }
+
+    fn clock(&self) -> Clock {
+        if self.timing.is_some() { Clock::Gpu } else { Clock::Wall }
+    }
+
+    /// Measures a group for about as long as it may take. False when Ctrl-C was pressed: what was measured is in the rows.
+    ///
+    /// # Errors
+    /// When the device failed.
+    pub fn group(&mut self, group: &Group, budget: Duration) -> Result<bool, Error> {
+        let started = Instant::now();
+        let reference = self.reference(group)?;
+        let (mut running, mut pictures) = (Vec::new(), Vec::new());
+        for case in &group.cases {
+            if interrupt::is_asked() {
+                return Ok(false);
+            }
+            match self.begin(case, &reference)? {
+                Ok((case, picture)) => {
+                    running.push(case);
+                    pictures.push(picture);
+                }
+                Err(reason) => self.leave_out(group.suite, &case.name, reason),
+            }
+        }
+        running.iter_mut().zip(reference.flips(&pictures)).for_each(|(case, flip)| case.quality.flip = Some(flip));
+        drop((reference, pictures));
+        let mut is_whole = true;
+        for round in 0..WARM_UP + MOST_ROUNDS {
+            is_whole = !interrupt::is_asked();
+            let is_late = started.elapsed() > budget;
+            if !is_whole || (is_late && round >= WARM_UP + LEAST_ROUNDS) {
+                break;
+            }
+            for case in &mut running {
+                // Slow ones have enough already.
+                if is_late && case.times.len() >= LEAST_ROUNDS {
+                    continue;
+                }
+                let taken = self.frame(&mut case.stage, &case.case.shot)?;
+                let Some(Taken { ms, passes }) = taken else { continue };
+                if round >= WARM_UP || ms > SLOW_MS {
+                    case.times.push(ms);
+                    passes.iter().for_each(|(name, ms)| case.passes.entry(name).or_default().push(*ms));
+                }
+            }
+        }
+        for case in running {
+            self.costs.insert(case.case.work.0.clone(), median(&case.times) / case.case.work.1);
+            let row = self.row(group.suite, case);
+            self.rows.extend(row);
+        }
+        Ok(is_whole)
+    }
+
+    fn reference(&self, group: &Group) -> Result<Reference, Error> {
+        let mut stage = Stage::new(&self.context, false)?;
+        stage.warm_up(&group.reference)?;
+        stage.draw(self.gpu, &group.reference)?;
+        Reference::read(self.gpu, &stage, &group.reference)
+    }
+
+    fn leave_out(&mut self, suite: Suite, case: &str, reason: String) {
+        self.left_out.push(LeftOut { suite: suite.name(), case: case.into(), reason });
+    }
+
+    /// Looks at the picture of a case before it is measured; says why it is not where that is so.
+    fn begin<'c>(
+        &mut self,
+        case: &'c Case,
+        reference: &Reference,
+    ) -> Result<Result<(Running<'c>, RgbImage), String>, Error> {
+        let seconds = |ms: f64| format!("a frame would take some {:.0} s", ms / 1000.0);
+        let longest = self.longest.as_secs_f64() * 1000.0;
+        if let Some(ms) = self.costs.get(&case.work.0).map(|cost| cost * case.work.1).filter(|&ms| ms > longest) {
+            return Ok(Err(seconds(ms)));
+        }
+        match is_right(self.gpu, &self.context, &case.shot) {
+            Ok(Ok(())) => {}
+            Ok(Err(reason)) => return Ok(Err(reason)),
+            // What this device cannot do.
+            Err(Error::Field(error)) => return Ok(Err(error.to_string())),
+            Err(error) => return Err(error),
+        }
+        let mut stage = Stage::new(&self.context, false)?;
+        stage.warm_up(&case.shot)?;
+        stage.set_timing(self.timing.as_ref())?;
+        match self.frame(&mut stage, &case.shot)? {
+            None => return Ok(Err("the GPU gives no time of it".into())),
+            Some(Taken { ms, .. }) if ms > longest => {
+                self.costs.insert(case.work.0.clone(), ms / case.work.1);
+                return Ok(Err(seconds(ms)));
+            }
+            Some(_) => {}
+        }
+        let (quality, picture) = reference.compare(self.gpu, &stage, &case.shot)?;
+        Ok(Ok((Running { case, stage, quality, times: Vec::new(), passes: BTreeMap::new() }, picture)))
+    }
+
+    /// Draws a frame; none where the GPU gives no times, again and again.
+    fn frame(&mut self, stage: &mut Stage, shot: &Shot) -> Result<Option<Taken>, Error> {
+        let Some(timing) = &self.timing else {
+            let _quiet = self.awake.quiet();
+            let ms = stage.draw(self.gpu, shot)?.as_secs_f64() * 1000.0;
+            return Ok(Some(Taken { ms, passes: Vec::new() }));
+        };
+        for _ in 0..MOST_TRIES {
+            let before = timing.latest().map(|times| times.frame);
+            let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            stage.record(&mut encoder, shot, &[ShadeTree::Final])?;
+            timing.resolve(&mut encoder);
+            let quiet = self.awake.quiet();
+            self.gpu.submit(encoder)?;
+            drop(quiet);
+            let Some(times) = timing.latest().filter(|times| before != Some(times.frame)) else { continue };
+            self.discarded += u64::from(times.discarded);
+            if times.discarded == 0 {
+                let passes = times.passes.iter().map(|pass| (pass.name, f64::from(pass.ms))).collect();
+                return Ok(Some(Taken { ms: f64::from(times.smoke_ms()), passes }));
+            }
+        }
+        Ok(None)
+    }
+
+    /// None where nothing was measured.
+    fn row(&self, suite: Suite, mut running: Running<'_>) -> Option<Row> {
+        let gpu_ms = Milliseconds::of(&mut running.times)?;
+        let shot = &running.case.shot;
+        let system = shot.preset.systems.first()?;
+        let settings = system.settings_for(shot.size.y);
+        let is_forward = settings.path == SmokePath::Forward;
+        // Forward smoke is blended into the picture.
+        let format = if is_forward { AccumulationFormat::Rgba16Float } else { settings.accumulate.format };
+        let overdraw = running.stage.renderer().overdraw();
+        let fragments = overdraw.fragments;
+        let limit = self.limits.get(&format).map(|ms| ms * fragments).filter(|&ms| ms > 0.0);
+        let mut particles = Vec::new();
+        let alive = |(system, cache): (&PresetSystem, &Option<Cache>)| {
+            particle_files::particles(system, cache.as_ref(), shot.preset.time, &mut particles);
+            particles.len() as u32
+        };
+        let alive = shot.preset.systems.iter().zip(&shot.caches).map(alive).sum();
+        Some(Row {
+            scale: (!is_forward).then_some(settings.accumulate.scale),
+            format: Some(format.name().into()),
+            path: Some(settings.path.name().into()),
+            mode: match settings.path {
+                SmokePath::Forward => None,
+                SmokePath::Tiled => Some(settings.accumulate.layers.name().into()),
+                SmokePath::Auto => running.stage.renderer().path_choice(0).map(|choice| choice.path.name().into()),
+                _ => Some(settings.diffuse.mode.name().into()),
+            },
+            technique: Some(settings.technique.name().into()),
+            fade: Some(settings.soft_fade.curve.name().into()),
+            layers: Some(overdraw.mean()),
+            alpha: shot.materials.first().map(|material| {
+                let alpha = f64::from(system.emitter.amount * mean_alpha(&material.sprite));
+                (alpha * 1000.0).round() / 1000.0
+            }),
+            lights: Some(shot.preset.lights.len() as u32),
+            particles: Some(alive),
+            samples: running.times.len() as u32,
+            passes: running.passes.iter().map(|(name, times)| ((*name).to_owned(), median(times))).collect(),
+            fragments: Some(fragments as u64),
+            gfragments_per_s: Some(fragments / gpu_ms.median * 1.0e-6),
+            bytes: Some(fragments as u64 * 2 * u64::from(bytes(format))),
+            limit_ratio: limit.map(|limit| gpu_ms.median / limit),
+            psnr_db: running.quality.psnr_db,
+            flip: running.quality.flip,
+            edge_psnr_db: running.quality.edge_psnr_db,
+            ..Row::of(suite, running.case.name.clone(), shot.size, self.clock(), gpu_ms)
+        })
+    }
+}
+
+fn median(times: &[f64]) -> f64 {
+    Milliseconds::of(&mut times.to_vec()).map_or(0.0, |ms| ms.median)
+}

@@ -1,0 +1,174 @@
+//! A run: what is asked for, in which order it is measured, and where it is written.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use glam::UVec2;
+use haze::picture::write_file;
+use haze::{Error, wgpu};
+use haze_demo::headless::Headless;
+
+use super::adapter::adapter;
+use super::awake::Awake;
+use super::limits;
+use super::measure::Bench;
+use super::particles;
+use super::report::{Report, VERSION};
+use super::suites::{Group, Suite, groups};
+use crate::interrupt;
+use crate::options::parse_size;
+use crate::output::{Failures, Files};
+use crate::progress::watched;
+
+#[derive(Args)]
+#[group(id = "run")]
+pub struct Arguments {
+    /// What is measured.
+    #[arg(value_enum, default_value = "all")]
+    suite: Suite,
+    /// Two minutes instead of ten: what is between is left out.
+    #[arg(long)]
+    quick: bool,
+    /// Seconds to measure for, about; preparing and checking come on top. 100 if quick, else 360, if not given.
+    #[arg(long, value_name = "S", allow_hyphen_values = true)]
+    #[arg(value_parser = clap::value_parser!(u64).range(0..=86_400))]
+    seconds: Option<u64>,
+    /// Size of the picture, pixels; 1280x720, and 640x360 where a CPU draws, if not given.
+    #[arg(long, value_name = "WxH", value_parser = parse_size, allow_hyphen_values = true)]
+    size: Option<UVec2>,
+    /// Write all figures as JSON.
+    #[arg(long, value_name = "FILE.json")]
+    json: Option<PathBuf>,
+    /// Write one line of figures for each row.
+    #[arg(long, value_name = "FILE.csv")]
+    csv: Option<PathBuf>,
+    /// Write a page with charts.
+    #[arg(long, value_name = "FILE.html")]
+    html: Option<PathBuf>,
+}
+
+/// Seconds that a whole run measures for.
+const QUICK: u64 = 100;
+const THOROUGH: u64 = 360;
+/// Suites of shots; the limits come first.
+const SHOTS: [Suite; 8] = [
+    Suite::Scale,
+    Suite::Overdraw,
+    Suite::Lights,
+    Suite::Soft,
+    Suite::Upsample,
+    Suite::Presets,
+    Suite::Particles,
+    Suite::Auto,
+];
+
+pub fn run(arguments: &Arguments) -> Result<(), Failures> {
+    let mut files = Files::read::<PathBuf>([]);
+    for (option, path, kind) in arguments.outputs() {
+        files.write(option, path, kind)?;
+    }
+    let features = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES;
+    let gpu = Headless::with(wgpu::Limits::default(), features)?;
+    interrupt::catch();
+    let awake = Awake::new(&gpu)?;
+    let (report, failure) = awake.during(|| measure(arguments, &gpu, &awake));
+    super::table::write(&report)?;
+    arguments.write(&report)?;
+    failure.map_or(Ok(()), |error| Err(error.into()))
+}
+
+/// Whatever happens, what was measured until then, and why that is not all.
+fn measure(arguments: &Arguments, gpu: &Headless, awake: &Awake<'_>) -> (Report, Option<Error>) {
+    let mut report = Report {
+        version: VERSION,
+        adapter: adapter(gpu),
+        complete: false,
+        discarded: 0,
+        rows: Vec::new(),
+        left_out: Vec::new(),
+    };
+    let size =
+        arguments.size.unwrap_or(if report.adapter.software { UVec2::new(640, 360) } else { UVec2::new(1280, 720) });
+    let longest = Duration::from_millis(if arguments.quick { 1500 } else { 2000 });
+    let mut bench = Bench::new(gpu, awake, longest);
+    let result = bench.measure_paths().and_then(|()| arguments.all(gpu, awake, &mut bench, size));
+    (report.discarded, report.rows, report.left_out) = (bench.discarded, bench.rows, bench.left_out);
+    report.complete = matches!(result, Ok(true));
+    let failure = match result {
+        Ok(true) => None,
+        Ok(false) => Some(Error::Io {
+            path: "haze bench".into(),
+            error: std::io::Error::other("stopped: what was measured is partial"),
+        }),
+        Err(error) => Some(error),
+    };
+    (report, failure)
+}
+
+impl Arguments {
+    /// Every output that is asked for: its option, and what its name ends in.
+    fn outputs(&self) -> impl Iterator<Item = (&'static str, &PathBuf, &'static str)> {
+        let all = [("--json", &self.json, "json"), ("--csv", &self.csv, "csv"), ("--html", &self.html, "html")];
+        all.into_iter().filter_map(|(option, path, kind)| Some((option, path.as_ref()?, kind)))
+    }
+
+    fn suites(&self) -> impl Iterator<Item = Suite> {
+        SHOTS.into_iter().filter(|&suite| self.suite == Suite::All || self.suite == suite)
+    }
+
+    /// False when it was stopped.
+    fn all(&self, gpu: &Headless, awake: &Awake<'_>, bench: &mut Bench<'_>, size: UVec2) -> Result<bool, Error> {
+        // What all others are compared with.
+        let limits = watched("haze: limits of this adapter".into(), || limits::measure(gpu, awake, size, self.quick))?;
+        (bench.limits, bench.discarded) = (limits.floor, limits.discarded);
+        if matches!(self.suite, Suite::All | Suite::Limits) {
+            bench.rows.extend(limits.rows);
+        }
+        let groups: Vec<Group> = self
+            .suites()
+            // Sixty cases of one suite would take a third of the time of all.
+            .map(|suite| groups(suite, size, self.quick || (suite == Suite::Auto && self.suite == Suite::All)))
+            .collect::<Result<Vec<_>, _>>()?
+            .into_iter()
+            .flatten()
+            .collect();
+        let whole = Duration::from_secs(self.seconds.unwrap_or(if self.quick { QUICK } else { THOROUGH }));
+        let started = Instant::now();
+        for (index, group) in groups.iter().enumerate() {
+            // What one does not use, the others have.
+            let left = whole.saturating_sub(started.elapsed());
+            let cases: usize = groups[index..].iter().map(|group| group.cases.len()).sum();
+            let budget = left.mul_f64(group.cases.len() as f64 / cases.max(1) as f64);
+            let what = format!(
+                "haze: {}, group {} of {}, about {} s left",
+                group.suite.name(),
+                index + 1,
+                groups.len(),
+                left.as_secs()
+            );
+            if !watched(what, || bench.group(group, budget))? {
+                return Ok(false);
+            }
+            if group.suite == Suite::Particles {
+                // What the CPU does, with nothing beside it.
+                let _quiet = awake.quiet();
+                let rows = particles::rows(gpu, group)?;
+                bench.rows.extend(rows);
+            }
+        }
+        Ok(!interrupt::is_asked())
+    }
+
+    fn write(&self, report: &Report) -> Result<(), Error> {
+        for (option, path, _) in self.outputs() {
+            let text = match option {
+                "--json" => super::json::json(report),
+                "--csv" => super::csv::csv(report),
+                _ => super::page::page(report),
+            };
+            write_file(path, text.as_bytes())?;
+        }
+        Ok(())
+    }
+}

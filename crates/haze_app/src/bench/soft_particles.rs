@@ -1,0 +1,100 @@
+//! `haze bench soft-particles`: the experiment of NV's paper, "Performance": two big sprites, size 3.2, drawn 1000 times
+//! each, with hardware depth test, with depth read from the depth buffer, and from a linear target.
+
+use std::path::Path;
+
+use clap::Args;
+use haze::Error;
+use haze::preset::Preset;
+use haze::read_only_depth_is_supported;
+use haze::settings::{DepthSource, Technique};
+use haze_demo::shot::Shot;
+
+use crate::cost::{Timer, interleaved, median_of};
+use crate::options::{Backend, RunArguments};
+use crate::output::{complain, say};
+
+#[derive(Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    run: RunArguments,
+    /// How often the sprites are drawn in a frame.
+    #[arg(long, value_name = "N", default_value = "1000", allow_hyphen_values = true)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    loops: u32,
+    /// How often each technique is measured.
+    #[arg(long, value_name = "N", default_value = "5", allow_hyphen_values = true)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=1000))]
+    rounds: u32,
+}
+
+/// A technique, and the frames per second that the paper gives for it.
+const TECHNIQUES: [(Technique, f64); 3] =
+    [(Technique::Hard, 34.6), (Technique::Soft, 13.3), (Technique::SoftLinear, 26.7)];
+
+pub fn run(arguments: &Arguments) -> Result<(), Error> {
+    let path = Path::new("soft_particles.json");
+    let preset = Preset::parse(path, include_str!("soft_particles.json"))?;
+    let shot = Shot::new(preset, path, arguments.run.size)?;
+    let backend = arguments.run.backend()?;
+    let mut timer = Timer::new(&backend)?;
+    let reads_attached = match &backend {
+        Backend::Gpu(gpu) => read_only_depth_is_supported(&gpu.headless.device),
+        Backend::Cpu => true,
+    };
+    let mut variants = Vec::new();
+    for source in [DepthSource::Reduced, DepthSource::Host] {
+        for (technique, paper) in TECHNIQUES {
+            if source == DepthSource::Host && technique == Technique::Soft && !reads_attached {
+                complain("left out: host soft, on a backend that cannot read the depth buffer that it tests");
+                continue;
+            }
+            let mut shot = shot.clone();
+            for system in &mut shot.preset.systems {
+                let settings = &mut system.settings;
+                (settings.technique, settings.sprite.debug_loop) = (technique, arguments.loops);
+                settings.path = arguments.run.path.unwrap_or(settings.path);
+                settings.accumulate.depth_source = source;
+            }
+            variants.push(Variant { technique, source, paper, shot });
+        }
+    }
+    let costs = interleaved(arguments.rounds, variants.len(), |variant| timer.frame(&variants[variant].shot))?;
+
+    let size = arguments.run.size;
+    say!(
+        "two sprites of size 3.2, drawn {} times, {}x{}, on {}; {}",
+        arguments.loops,
+        size.x,
+        size.y,
+        backend.description(),
+        median_of(arguments.rounds)
+    )?;
+    say!("depth    technique      fps here   spread   / hard   fps NV 2007   / hard")?;
+    let mut hard = 1.0;
+    for (variant, cost) in variants.iter().zip(&costs) {
+        if variant.technique == Technique::Hard {
+            hard = cost.median();
+        }
+        say!(
+            "{:<8} {:<12} {:>10.3} {:>8} {:>8.2} {:>13.1} {:>8.2}",
+            variant.source.name(),
+            variant.technique.name(),
+            1.0 / cost.median(),
+            cost.spread().map_or("-".into(), |spread| format!("{:.1}%", 100.0 * spread)),
+            cost.median() / hard,
+            variant.paper,
+            TECHNIQUES[0].1 / variant.paper
+        )?;
+    }
+    Ok(())
+}
+
+struct Variant {
+    technique: Technique,
+    /// `reduced`, at scale 1, is made linear once a frame; `host` is read as the host has it, as in the paper.
+    source: DepthSource,
+    /// Frames per second.
+    paper: f64,
+    shot: Shot,
+}

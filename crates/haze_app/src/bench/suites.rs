@@ -1,0 +1,413 @@
+//! What is measured: groups of shots that are compared with each other, frame by frame in turn.
+
+use std::path::Path;
+
+use clap::ValueEnum;
+use glam::{UVec2, Vec3};
+use haze::preset::Preset;
+use haze::settings::{
+    AccumulationFormat, DepthDownsample, FadeCurve, Layers, LightingResolution, NormalEncoding, Order,
+    Path as SmokePath, Settings, Technique, Upsample,
+};
+use haze::sprite::Sprite;
+use haze::{Error, Light, builtin};
+use haze_demo::shot::Shot;
+
+/// What there is to measure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Suite {
+    /// Buffer scale 1 to 1/8, by overdraw, format and path.
+    Scale,
+    /// 4 to 1024 layers, thin to thick, by path.
+    Overdraw,
+    /// 1 to 64 lights, deferred against forward.
+    Lights,
+    /// Every technique and every fade, against hard edges.
+    Soft,
+    /// Every way to shrink depth with every way to enlarge smoke.
+    Upsample,
+    /// Every preset, deferred at each scale against forward.
+    Presets,
+    /// A thousand to a million particles: evaluating, sorting, drawing.
+    Particles,
+    /// The path `auto` against the two that it chooses from: overdraw, scale, technique, size.
+    Auto,
+    /// What this adapter can do at best: bare blending, lookups, copies.
+    Limits,
+    /// All of them.
+    All,
+}
+
+impl Suite {
+    /// As the command line has it.
+    pub fn name(self) -> String {
+        self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+    }
+}
+
+/// Shots that are measured in turn.
+pub struct Group {
+    pub suite: Suite,
+    pub cases: Vec<Case>,
+    /// Deferred, at full resolution: what the pictures are compared with.
+    pub reference: Shot,
+}
+
+/// One shot.
+pub struct Case {
+    /// Unique in its suite.
+    pub name: String,
+    pub shot: Shot,
+    /// What costs about so many times as much as others of the same name: from those it is known whether it takes too long.
+    pub work: (String, f64),
+}
+
+/// The paths that draw in their own way; another joins by its name in the settings.
+fn paths() -> impl Iterator<Item = SmokePath> {
+    SmokePath::ALL.iter().copied().filter(|&path| path != SmokePath::Auto)
+}
+
+/// The same, and with it how far it goes down the layers, where it has the choice.
+fn paths_and_layers() -> impl Iterator<Item = (SmokePath, Layers)> {
+    paths().flat_map(|path| {
+        let layers = if path == SmokePath::Tiled { Layers::ALL } else { &Layers::ALL[..1] };
+        layers.iter().map(move |&layers| (path, layers))
+    })
+}
+
+/// How rows call it.
+fn name_of((path, layers): (SmokePath, Layers)) -> String {
+    if path == SmokePath::Tiled { format!("{} {}", path.name(), layers.name()) } else { path.name().into() }
+}
+
+const SCALES: [u32; 6] = [1, 2, 3, 4, 6, 8];
+
+/// All groups of a suite, at a size. `quick` leaves out what is between.
+pub fn groups(suite: Suite, size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
+    match suite {
+        Suite::Scale => scale(size, quick),
+        Suite::Overdraw => overdraw(size, quick),
+        Suite::Lights => lights(size, quick),
+        Suite::Soft => soft(size, quick),
+        Suite::Upsample => upsample(size, quick),
+        Suite::Presets => presets(size, quick),
+        Suite::Particles => particles(size, quick),
+        Suite::Auto => auto(size, quick),
+        Suite::Limits | Suite::All => Ok(Vec::new()),
+    }
+}
+
+/// So many sprites as large as the picture, among crates, each of an amount.
+fn layers(size: UVec2, count: u32, amount: f32) -> Result<Shot, Error> {
+    let path = Path::new("layers.json");
+    let mut preset = Preset::parse(path, include_str!("soft_particles.json"))?;
+    for system in &mut preset.systems {
+        (system.emitter.rate, system.emitter.amount) = (count as f32, amount);
+        system.emitter.spin = 1.0;
+    }
+    Shot::new(preset, path, size)
+}
+
+/// How many of those make so many layers.
+fn sprites_of(layers: u32) -> u32 {
+    // One covers 0.418 of the smoke's box: what is clear of its square is not drawn.
+    (layers as f32 / 0.418).round() as u32
+}
+
+/// Mean alpha of what is drawn of a sprite whose amount is 1: of the rectangle that what is filled lies in.
+pub fn mean_alpha(sprite: &Sprite) -> f32 {
+    let (size, mut sum, mut texels) = (sprite.size(), 0.0, 0.0);
+    for frame in 0..sprite.frame_count() {
+        let (mut low, mut high, mut of_frame) = (UVec2::MAX, UVec2::ZERO, 0.0);
+        for (x, y) in (0..size).flat_map(|y| (0..size).map(move |x| (x, y))) {
+            let alpha = sprite.texel(0, frame, x, y).w;
+            if alpha > 0.0 {
+                (low, high) = (low.min(UVec2::new(x, y)), high.max(UVec2::new(x, y) + 1));
+                of_frame += alpha;
+            }
+        }
+        sum += of_frame;
+        texels += high.saturating_sub(low).as_vec2().element_product();
+    }
+    if texels > 0.0 { sum / texels } else { 0.0 }
+}
+
+/// The same sprites of a mean alpha.
+fn of_alpha(mut shot: Shot, alpha: f32) -> Shot {
+    for (system, material) in shot.preset.systems.iter_mut().zip(&shot.materials) {
+        system.emitter.amount = alpha / mean_alpha(&material.sprite);
+    }
+    shot
+}
+
+fn changed(shot: &Shot, change: impl Fn(&mut Settings)) -> Shot {
+    let mut shot = shot.clone();
+    shot.preset.systems.iter_mut().for_each(|system| change(&mut system.settings));
+    shot
+}
+
+fn at_scale(path: SmokePath, scale: u32) -> impl Fn(&mut Settings) {
+    move |settings| (settings.path, settings.accumulate.scale) = (path, scale)
+}
+
+/// What others are compared with.
+fn full(shot: &Shot) -> Shot {
+    changed(shot, at_scale(SmokePath::Raster, 1))
+}
+
+/// A path at every scale that it has.
+fn scales(path: SmokePath, scales: &[u32]) -> &[u32] {
+    if path == SmokePath::Forward { &[1] } else { scales }
+}
+
+fn scale(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
+    let counts: &[u32] = if quick { &[4, 32] } else { &[4, 16, 64] };
+    let formats: &[AccumulationFormat] =
+        if quick { &[AccumulationFormat::Rgba16Float] } else { AccumulationFormat::ALL };
+    let group = |&count: &u32| {
+        let shot = layers(size, count, 0.1)?;
+        let mut cases = Vec::new();
+        for path in paths() {
+            for &format in if path == SmokePath::Forward { &formats[..1] } else { formats } {
+                for &scale in scales(path, &SCALES) {
+                    let name = format!("{} {} 1/{scale} {count} sprites", path.name(), format.name());
+                    let shot = changed(&shot, |settings| {
+                        at_scale(path, scale)(settings);
+                        set_format(settings, format);
+                    });
+                    let work = (format!("{} {scale}", path.name()), f64::from(count));
+                    cases.push(Case { name, shot, work });
+                }
+            }
+        }
+        Ok(Group { suite: Suite::Scale, cases, reference: full(&shot) })
+    };
+    counts.iter().map(group).collect()
+}
+
+fn set_format(settings: &mut Settings, format: AccumulationFormat) {
+    settings.accumulate.format = format;
+    if format == AccumulationFormat::Rgba8Unorm {
+        // All that it can hold.
+        (settings.accumulate.encoding, settings.accumulate.order) = (NormalEncoding::Biased, Order::Sorted);
+    }
+}
+
+fn overdraw(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
+    let depths: &[u32] = if quick { &[4, 32, 256] } else { &[4, 16, 64, 256, 1024] };
+    let alphas: &[f32] = if quick { &[0.1] } else { &[0.02, 0.1, 0.3] };
+    let group = |shot: Shot, sprites: String, work: f64| {
+        let case = |way: (SmokePath, Layers)| Case {
+            name: format!("{} {sprites}", name_of(way)),
+            shot: changed(&shot, |settings| {
+                at_scale(way.0, 1)(settings);
+                settings.accumulate.layers = way.1;
+            }),
+            work: (format!("overdraw {}", name_of(way)), work),
+        };
+        Group { suite: Suite::Overdraw, cases: paths_and_layers().map(case).collect(), reference: full(&shot) }
+    };
+    let large = depths.iter().flat_map(|&deep| alphas.iter().map(move |&alpha| (deep, alpha)));
+    let mut groups = Vec::new();
+    for (deep, alpha) in large {
+        let shot = of_alpha(layers(size, sprites_of(deep), alpha)?, alpha);
+        groups.push(group(shot, format!("{deep} layers of {alpha}"), f64::from(deep)));
+    }
+    // Many small ones: what a sprite costs counts as well.
+    let crowds: &[(u32, f32, f32, Reach)] = if quick {
+        &[(4096, 156.0, 0.1, FILLS)]
+    } else {
+        &[
+            (1024, 14.0, 0.1, FILLS),
+            (4096, 64.0, 0.1, FILLS),
+            (4096, 64.0, 0.1, GOES_ON),
+            (4096, 156.0, 0.1, FILLS),
+            (4096, 156.0, 0.3, FILLS),
+            (16384, 627.0, 0.1, FILLS),
+            (32768, 1024.0, 0.1, FILLS),
+            (32768, 1024.0, 0.1, GOES_ON),
+        ]
+    };
+    for &(count, deep, alpha, reach) in crowds {
+        let shot = of_alpha(crowd(size, count, deep, reach)?, alpha);
+        let beyond = if reach.pictures > 1.0 { ", on beyond the picture" } else { "" };
+        groups.push(group(shot, format!("{count} small sprites, {deep} deep, of {alpha}{beyond}"), f64::from(deep)));
+    }
+    Ok(groups)
+}
+
+/// How far a crowd reaches.
+#[derive(Clone, Copy)]
+struct Reach {
+    pictures: f32,
+    /// How much of the picture a sprite of `layers` covers, on the average: not all of its sides are in it.
+    covers: f32,
+}
+
+/// Thin where the picture ends.
+const FILLS: Reach = Reach { pictures: 1.0, covers: 0.437 };
+/// As deep there as anywhere.
+const GOES_ON: Reach = Reach { pictures: 1.6, covers: 0.265 };
+
+/// So many small sprites all over the picture, about so many layers deep.
+fn crowd(size: UVec2, count: u32, deep: f32, reach: Reach) -> Result<Shot, Error> {
+    let mut shot = layers(size, count, 0.1)?;
+    for system in &mut shot.preset.systems {
+        let extent = Vec3::new(2.0 * reach.pictures, 1.1 * reach.pictures, 0.8);
+        (system.emitter.duration, system.emitter.extent) = (1.0, extent);
+        system.settings.sprite.size *= (deep / (reach.covers * count as f32)).sqrt();
+    }
+    Ok(shot)
+}
+
+fn lights(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
+    let counts: &[u32] = if quick { &[1, 8, 64] } else { &[1, 2, 4, 8, 16, 32, 64] };
+    let group = |&count: &u32| {
+        let mut shot = layers(size, sprites_of(if quick { 10 } else { 64 }), 0.1)?;
+        let lamp = |index: u32| {
+            let angle = index as f32 * 2.4;
+            let place =
+                Vec3::new(-3.05, 1.2, 0.5) + Vec3::new(angle.cos(), 0.4 * (angle * 0.7).sin(), angle.sin()) * 1.5;
+            let intensity = 12.0 / count as f32;
+            Light { position: place, intensity, range: 50.0, specular_scatter: 0.0, ..Light::default() }
+        };
+        shot.preset.lights = (0..count).map(lamp).collect();
+        let mut cases = Vec::new();
+        for path in paths() {
+            for &scale in scales(path, &[1, 2, 4]) {
+                let name = format!("{} 1/{scale} {count} lights", path.name());
+                let work = (format!("lights {} {scale}", path.name()), f64::from(count));
+                let shot = changed(&shot, at_scale(path, scale));
+                let lit = changed(&shot, |s| s.accumulate.lighting_resolution = LightingResolution::Target);
+                cases.push(Case { name: name.clone(), shot, work });
+                if scale > 1 {
+                    // Lit once per texel.
+                    let name = format!("{name}, lit at 1/{scale}");
+                    let work = (format!("lights {} {scale} lit", path.name()), f64::from(count));
+                    cases.push(Case { name, shot: lit, work });
+                }
+            }
+        }
+        Ok(Group { suite: Suite::Lights, cases, reference: full(&shot) })
+    };
+    counts.iter().map(group).collect()
+}
+
+fn soft(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
+    let shot = full(&layers(size, if quick { 4 } else { 16 }, 0.1)?);
+    let mut cases = Vec::new();
+    let mut case = |technique: Technique, curve: FadeCurve| {
+        let shot = changed(&shot, |settings| (settings.technique, settings.soft_fade.curve) = (technique, curve));
+        let name = format!("{} {}", technique.name(), curve.name());
+        cases.push(Case { name, shot, work: ("soft".into(), 1.0) });
+    };
+    Technique::ALL.iter().for_each(|&technique| case(technique, FadeCurve::default()));
+    let others = FadeCurve::ALL.iter().filter(|&&curve| curve != FadeCurve::default());
+    others.for_each(|&curve| case(Technique::Soft, curve));
+    Ok(vec![Group { suite: Suite::Soft, cases, reference: shot }, experiment(size, quick)?])
+}
+
+/// NV's: two big sprites drawn again and again, by the three ways to test depth.
+fn experiment(size: UVec2, quick: bool) -> Result<Group, Error> {
+    let loops = if quick { 20 } else { 200 };
+    let shot = changed(&full(&layers(size, 2, 0.5)?), |settings| settings.sprite.debug_loop = loops);
+    let case = |technique: Technique| Case {
+        name: format!("{} two sprites {loops} times", technique.name()),
+        shot: changed(&shot, |settings| settings.technique = technique),
+        work: ("experiment".into(), 1.0),
+    };
+    let cases = [Technique::Hard, Technique::Soft, Technique::SoftLinear].map(case).into();
+    Ok(Group { suite: Suite::Soft, cases, reference: shot })
+}
+
+fn upsample(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
+    let shot = Shot::load("fence", size)?;
+    let group = |&scale: &u32| {
+        let mut cases = Vec::new();
+        for &downsample in DepthDownsample::ALL {
+            for &upsample in Upsample::ALL {
+                let name = format!("1/{scale} {} {}", downsample.name(), upsample.name());
+                let shot = changed(&shot, |settings| {
+                    at_scale(SmokePath::Raster, scale)(settings);
+                    (settings.accumulate.depth_downsample, settings.accumulate.upsample) = (downsample, upsample);
+                });
+                cases.push(Case { name, shot, work: ("upsample".into(), 1.0) });
+            }
+        }
+        Group { suite: Suite::Upsample, cases, reference: full(&shot) }
+    };
+    Ok(if quick { &[4][..] } else { &[2, 4] }.iter().map(group).collect())
+}
+
+fn presets(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
+    let steps: &[u32] = if quick { &[2, 4] } else { &[1, 2, 4, 8] };
+    let group = |name: &str| {
+        let shot = Shot::load(name, size)?;
+        let mut cases = Vec::new();
+        for path in paths() {
+            for &scale in scales(path, steps) {
+                let name = format!("{name} {} 1/{scale}", path.name());
+                cases.push(Case { name, shot: changed(&shot, at_scale(path, scale)), work: ("presets".into(), 1.0) });
+            }
+        }
+        Ok(Group { suite: Suite::Presets, cases, reference: full(&shot) })
+    };
+    builtin::PRESETS.iter().map(|preset| group(preset.name)).collect()
+}
+
+fn particles(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
+    let counts: &[u32] = if quick { &[1_000, 100_000] } else { &[1_000, 10_000, 100_000, 1_000_000] };
+    let group = |&count: &u32| {
+        let mut shot = layers(size, 1, 0.02)?;
+        for system in &mut shot.preset.systems {
+            // A million births take ten seconds at the greatest rate.
+            system.emitter.rate = count as f32 / 10.0;
+            (system.emitter.duration, system.emitter.extent) = (10.0, Vec3::new(1.5, 0.8, 0.8));
+            // As much on the picture, whatever the number: what grows is what a particle costs by itself.
+            system.settings.sprite.size = 3.2 * 4.0 / (count as f32).sqrt();
+        }
+        shot.preset.time = 10.0;
+        let mut cases = Vec::new();
+        for path in paths() {
+            let name = format!("{} {count} particles", path.name());
+            let work = (format!("particles {}", path.name()), f64::from(count));
+            cases.push(Case { name, shot: changed(&shot, at_scale(path, 2)), work });
+        }
+        Ok(Group { suite: Suite::Particles, cases, reference: full(&shot) })
+    };
+    counts.iter().map(group).collect()
+}
+
+fn auto(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
+    let sizes: &[u32] = if quick { &[1] } else { &[1, 2] };
+    let techniques: &[Technique] = if quick {
+        &[Technique::Soft, Technique::VolumetricSoft]
+    } else {
+        &[Technique::Soft, Technique::SphericalBillboard, Technique::VolumetricSoft]
+    };
+    let mut groups = Vec::new();
+    for size in sizes.iter().map(|divisor| (size / divisor).max(UVec2::ONE)) {
+        let shots = [
+            ("4 sprites", layers(size, 4, 0.1)?),
+            ("64 sprites", layers(size, 64, 0.1)?),
+            ("256 thick sprites", layers(size, 256, 0.3)?),
+            ("1024 small sprites", crowd(size, 1024, 9.3, FILLS)?),
+            ("4096 small sprites", crowd(size, 4096, 103.0, FILLS)?),
+        ];
+        for (sprites, shot) in &shots {
+            for (&technique, scale) in techniques.iter().flat_map(|technique| [(technique, 1), (technique, 3)]) {
+                let case = |path: SmokePath| {
+                    let what = format!("{sprites} {} 1/{scale} {}x{}", technique.name(), size.x, size.y);
+                    let shot = changed(shot, |settings| {
+                        at_scale(path, scale)(settings);
+                        settings.technique = technique;
+                    });
+                    Case { name: format!("{} {what}", path.name()), shot, work: (what, 1.0) }
+                };
+                let cases = [SmokePath::Raster, SmokePath::Tiled, SmokePath::Auto].map(case).into();
+                groups.push(Group { suite: Suite::Auto, cases, reference: full(shot) });
+            }
+        }
+    }
+    Ok(groups)
+}

@@ -1,0 +1,94 @@
+//! The report on a terminal.
+
+use haze::Error;
+
+use super::report::{Clock, Report, Row};
+use super::verdict::{AutoCase, BreakEven, auto_cases, break_even, sentence};
+use crate::output::say;
+
+pub fn write(report: &Report) -> Result<(), Error> {
+    let adapter = &report.adapter;
+    let software = if adapter.software { ", software" } else { "" };
+    say!(
+        "{} ({}, {}{software}), wgpu {}, haze {}",
+        adapter.name,
+        adapter.backend,
+        adapter.driver,
+        adapter.wgpu,
+        adapter.haze
+    )?;
+    let mut suite = "";
+    for row in &report.rows {
+        if row.suite != suite {
+            suite = &row.suite;
+            say!("")?;
+            say!(
+                "{:<44} {:>10} {:>7} {:>8} {:>9} {:>7} {:>6} {:>6} {:>6}",
+                suite,
+                "ms",
+                "spread",
+                "layers",
+                "Gfrag/s",
+                "limit",
+                "PSNR",
+                "edges",
+                "FLIP"
+            )?;
+        }
+        say!("{}", line(row))?;
+    }
+    if !report.left_out.is_empty() {
+        say!("")?;
+    }
+    for left in &report.left_out {
+        say!("left out: {}: {}: {}", left.suite, left.case, left.reason)?;
+    }
+    if report.discarded > 0 {
+        say!("{} timestamps were reversed or zero, and are in no figure", report.discarded)?;
+    }
+    let ways = break_even(report);
+    if !ways.is_empty() {
+        say!("")?;
+        say!("{:<30} {:>10} {:>10}   cheaper than forward", "from which overdraw on it pays", "ms", "ms a layer")?;
+    }
+    for BreakEven { path, scale, format, base_ms, layer_ms, from_layers } in ways {
+        let from = from_layers.map_or("never".into(), |layers| format!("from {layers:.1} layers"));
+        say!("{:<30} {base_ms:>10.3} {layer_ms:>10.4}   {from}", format!("{path} 1/{scale} {format}"))?;
+    }
+    let cases = auto_cases(report);
+    if !cases.is_empty() {
+        say!("")?;
+        say!("{:<52} {:>7} {:>9} {:>9} {:>9}   takes    loss", "what auto takes", "layers", "raster", "tiled", "auto")?;
+    }
+    for AutoCase { what, layers, raster_ms, tiled_ms, auto_ms, takes, loss } in cases {
+        say!(
+            "{what:<52} {layers:>7.1} {raster_ms:>9.3} {tiled_ms:>9.3} {auto_ms:>9.3}   {takes:<6} {:>5.1}%",
+            100.0 * loss
+        )?;
+    }
+    if let Some(text) = sentence(report) {
+        say!("")?;
+        say!("{text}")?;
+    }
+    if !report.complete {
+        say!("partial: the run was stopped")?;
+    }
+    Ok(())
+}
+
+fn line(row: &Row) -> String {
+    let shown = |value: Option<f64>, digits: usize| value.map_or("-".into(), |value| format!("{value:.digits$}"));
+    let clock = if row.clock == Clock::Gpu { "" } else { row.clock.name() };
+    format!(
+        "{:<44} {:>10.3} {:>6.1}% {:>8} {:>9} {:>7} {:>6} {:>6} {:>6} {clock}",
+        row.case,
+        row.gpu_ms.median,
+        100.0 * row.gpu_ms.spread(),
+        shown(row.layers, 1),
+        shown(row.gfragments_per_s, 3),
+        shown(row.limit_ratio, 2),
+        shown(row.psnr_db, 1),
+        shown(row.edge_psnr_db, 1),
+        shown(row.flip, 3),
+    )
+}

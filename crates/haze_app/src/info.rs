@@ -1,0 +1,46 @@
+//! `haze info`: what this machine renders with.
+
+use glam::UVec2;
+use haze::settings::{Path, Technique};
+use haze::{Context, Error, PathChoice, PathLoad, PathReason};
+use haze_demo::headless::Headless;
+
+use super::output::say;
+
+pub fn run() -> Result<(), Error> {
+    say!("haze {}", env!("CARGO_PKG_VERSION"))?;
+    match Headless::new() {
+        Ok(gpu) => {
+            say!("gpu: {}", gpu.description())?;
+            say!("largest texture: {} pixels a side", gpu.device.limits().max_texture_dimension_2d)?;
+            say!("path auto takes, at 1280x720")?;
+            for choice in choices(&gpu)? {
+                say!("  {choice}")?;
+            }
+        }
+        Err(Error::NoDevice(reason)) => say!("gpu: none ({reason})")?,
+        Err(error) => return Err(error),
+    }
+    say!("cpu: {} threads", std::thread::available_parallelism().map_or(1, usize::from))
+}
+
+/// What the path `auto` takes of a few layers and of many, by what either way takes here.
+fn choices(gpu: &Headless) -> Result<Vec<PathChoice>, Error> {
+    let context = Context::new(&gpu.device, &gpu.queue, None);
+    let model = context.measure_paths(&gpu.device, &gpu.queue, |encoder| gpu.submit(encoder))?;
+    if !context.has_tiles() {
+        return Ok(vec![PathChoice { path: Path::Raster, reason: PathReason::NoTiles }]);
+    }
+    let size = UVec2::new(1280, 720);
+    let load = |layers: f64| PathLoad {
+        technique: Technique::Soft,
+        sprites: 16.0 * layers,
+        fragments: layers * size.as_dvec2().element_product(),
+        size,
+        // Sprites of amount 0.3 whose pictures are a third full.
+        optical_depth: 0.12,
+        lookups: 0.0,
+        is_assumed: false,
+    };
+    Ok([4.0, 16.0, 64.0, 256.0].map(|layers| PathChoice::new(&model, &load(layers))).into())
+}

@@ -1,0 +1,43 @@
+//! The files that a shot is read from.
+
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+use glam::Vec3;
+use haze::preset::{PictureFolders, Preset, cache_file, picture_file};
+use haze::settings::{FieldVisitor, Fields, PictureRole};
+
+/// Every place where a picture may lie that a preset names.
+pub fn pictures_of(folders: &PictureFolders, preset: &Preset) -> Vec<PathBuf> {
+    picture_files(preset).iter().flat_map(|file| folders.places(file)).collect()
+}
+
+/// The same, from the preset's folder on.
+pub fn picture_files(preset: &Preset) -> Vec<PathBuf> {
+    let mut names = Names(Vec::new());
+    preset.clone().visit(&mut names);
+    names.0.iter().filter_map(|name| picture_file(name)).map(Path::to_path_buf).collect()
+}
+
+/// Every particle file that a preset names, and those that may follow it.
+pub fn caches_of(folders: &PictureFolders, preset: &Preset) -> Vec<PathBuf> {
+    let files = preset.systems.iter().filter_map(|system| cache_file(&system.cache.path));
+    files.flat_map(|file| folders.places(file)).flat_map(|place| haze::preset::places(&place)).collect()
+}
+
+struct Names(Vec<String>);
+
+impl FieldVisitor for Names {
+    fn number(&mut self, _: &'static str, _: &mut f32, _: RangeInclusive<f32>, _: &'static str) {}
+    fn integer(&mut self, _: &'static str, _: &mut u32, _: RangeInclusive<u32>, _: &'static str) {}
+    fn vector(&mut self, _: &'static str, _: &mut Vec3, _: RangeInclusive<f32>, _: &'static str) {}
+    fn picture(&mut self, _: &'static str, name: &mut String, _: PictureRole) {
+        self.0.push(name.clone());
+    }
+    fn group(&mut self, _: &'static str, fields: &mut dyn Fields) {
+        fields.visit(self);
+    }
+    fn item(&mut self, _: &'static str, _: usize, fields: &mut dyn Fields) {
+        fields.visit(self);
+    }
+}

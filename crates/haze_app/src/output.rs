@@ -1,0 +1,129 @@
+//! What the program writes: lines, and the files that pictures go to.
+
+use std::fmt::{Arguments, Display};
+use std::io::{ErrorKind, Write};
+use std::path::Path;
+
+use haze::picture::{FileIdentity, check_file};
+use haze::{Error, FieldError};
+
+/// `println!` of one line whose failure is an error, not a panic.
+macro_rules! say {
+    ($($argument:tt)*) => { $crate::output::write_line(format_args!($($argument)*)) };
+}
+pub(crate) use say;
+
+pub fn write_line(line: Arguments<'_>) -> Result<(), Error> {
+    write_text(one_line(line))
+}
+
+/// Writes text of our own, of any number of lines, to standard output.
+pub fn write_text(text: impl Display) -> Result<(), Error> {
+    let mut out = std::io::stdout().lock();
+    match writeln!(out, "{text}").and_then(|()| out.flush()) {
+        // Whoever reads has enough: `haze preset schema | head`.
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        written => written.map_err(|error| Error::Io { path: "standard output".into(), error }),
+    }
+}
+
+/// Writes one line to standard error, if anyone can be told.
+pub fn complain(line: impl Display) {
+    let _ = writeln!(std::io::stderr().lock(), "haze: {}", one_line(line));
+}
+
+/// Control characters, which may come from names of files, as Rust would have them written.
+pub fn one_line(text: impl Display) -> String {
+    let escape = |c: char| if c.is_control() { c.escape_default().collect() } else { String::from(c) };
+    text.to_string().chars().map(escape).collect()
+}
+
+/// What went wrong with the files that a command was given; nothing where that has been said already.
+#[derive(Default)]
+pub struct Failures(Vec<Error>);
+
+impl From<Error> for Failures {
+    fn from(error: Error) -> Self {
+        Self(vec![error])
+    }
+}
+
+impl Failures {
+    pub fn new(errors: Vec<Error>) -> Self {
+        Self(errors)
+    }
+
+    /// Does something with every item, whatever becomes of the others; gives what was done and what was not.
+    pub fn of_each<T, U>(
+        items: impl IntoIterator<Item = T>,
+        work: impl FnMut(T) -> Result<U, Error>,
+    ) -> (Vec<U>, Self) {
+        let (mut done, mut failures) = (Vec::new(), Vec::new());
+        for result in items.into_iter().map(work) {
+            match result {
+                Ok(value) => done.push(value),
+                Err(error) => failures.push(error),
+            }
+        }
+        (done, Self(failures))
+    }
+
+    pub fn into_result(self) -> Result<(), Self> {
+        if self.0.is_empty() { Ok(()) } else { Err(self) }
+    }
+
+    pub fn errors(&self) -> &[Error] {
+        &self.0
+    }
+}
+
+/// The files that a command reads and writes.
+pub struct Files {
+    inputs: Vec<FileIdentity>,
+    outputs: Vec<FileIdentity>,
+}
+
+pub fn has_extension(path: &Path, expected: &str) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(expected))
+}
+
+impl Files {
+    /// Files that a command reads: to be told before those that it writes.
+    pub fn read<P: AsRef<Path>>(inputs: impl IntoIterator<Item = P>) -> Self {
+        let inputs = inputs.into_iter().map(|path| FileIdentity::of(path.as_ref())).collect();
+        Self { inputs, outputs: Vec::new() }
+    }
+
+    /// Refuses a file that a picture cannot be written to, before any work is done and anything is replaced. `kind` is what its
+    /// name ends in.
+    pub fn write(&mut self, option: &str, path: &Path, kind: &str) -> Result<(), Error> {
+        let refuse = |expected: &str| Err(FieldError::new(option, path.display(), expected).into());
+        if !has_extension(path, kind) {
+            return refuse(&format!("a name that ends in .{kind}"));
+        }
+        if !path.parent().is_none_or(|folder| folder.as_os_str().is_empty() || folder.is_dir()) {
+            return refuse("a file in a folder that exists");
+        }
+        // `a.png/` and `a.png/.` have the name `a.png`, and mean a folder.
+        let name = path.file_name().unwrap_or_default().as_encoded_bytes();
+        let found = std::fs::metadata(path);
+        if !path.as_os_str().as_encoded_bytes().ends_with(name) || found.as_ref().is_ok_and(|found| !found.is_file()) {
+            return refuse("a file, or a name that is free");
+        }
+        if found.is_ok_and(|found| found.permissions().readonly()) {
+            return refuse("a file that may be written");
+        }
+        if let Err(error) = check_file(path) {
+            return refuse(&format!("a file that can be written ({error})"));
+        }
+        let identity = FileIdentity::of(path);
+        if self.inputs.contains(&identity) {
+            return refuse("a file that is not read");
+        }
+        if self.outputs.contains(&identity) {
+            return refuse("a file of its own");
+        }
+        self.outputs.push(identity);
+        Ok(())
+    }
+}

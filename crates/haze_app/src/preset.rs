@@ -1,0 +1,161 @@
+//! `haze preset`: list, check, show, new, schema, settings.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Subcommand};
+use glam::UVec2;
+use haze::picture::write_file;
+use haze::preset::{Preset, PresetSystem};
+use haze::settings::{Value, values};
+use haze::{Error, FieldError, Light, builtin};
+use haze_author::preset::{check_files, without_effect};
+
+use super::kind::explain;
+use super::options::AssetsArguments;
+use super::output::{Failures, has_extension, say, write_text};
+use super::tweak::copy_beside;
+
+#[derive(Args)]
+pub struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+/// Of the picture that presets are checked for.
+const SIZE: UVec2 = UVec2::new(1280, 720);
+
+#[derive(Subcommand)]
+enum Command {
+    /// The built-in presets.
+    List,
+    /// Load presets and their files, and say all that is wrong with them, what is doubtful, and what is set to no effect.
+    Check {
+        /// Names or paths.
+        #[arg(required = true)]
+        presets: Vec<PathBuf>,
+        #[command(flatten)]
+        assets: AssetsArguments,
+    },
+    /// Print every setting of a preset: what it is, what it would be by itself, and why it has no effect where it has none.
+    Show {
+        /// A name or path.
+        preset: PathBuf,
+        /// Only what is set to something else.
+        #[arg(long)]
+        changed: bool,
+    },
+    /// Begin a preset as a copy of another, with the pictures that go with it.
+    New {
+        /// The file to write; where it has no ending, .json is added.
+        file: PathBuf,
+        /// What it begins as: a name or path.
+        #[arg(long, value_name = "PRESET", default_value = "column")]
+        from: PathBuf,
+    },
+    /// Print the JSON schema of preset files.
+    Schema,
+    /// Print every setting with its range and default, as Markdown.
+    Settings,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failures> {
+    match &arguments.command {
+        Command::List => {
+            for builtin in builtin::PRESETS {
+                let preset = Preset::load(builtin.name)?;
+                say!("{:<14}{}", builtin.name, preset.description)?;
+            }
+        }
+        Command::Check { presets, assets } => {
+            let mut failures = Vec::new();
+            for path in presets {
+                let (wrong, notes) = check(path, assets).unwrap_or_else(|error| (vec![error], Vec::new()));
+                if wrong.is_empty() || !notes.is_empty() {
+                    say!("{}: {}", path.display(), if wrong.is_empty() { "good" } else { "bad" })?;
+                }
+                notes.iter().try_for_each(|note| say!("  {note}"))?;
+                failures.extend(wrong);
+            }
+            return Failures::new(failures).into_result();
+        }
+        Command::Show { preset, changed } => show(&Preset::load(preset)?, *changed)?,
+        Command::New { file, from } => new(file, from)?,
+        Command::Schema => write_text(haze_author::preset::schema())?,
+        Command::Settings => write_text(haze_author::preset::settings_page().trim_end())?,
+    }
+    Ok(())
+}
+
+/// Loads a preset as a picture of it would; gives all that is wrong, and what someone may not have meant.
+fn check(path: &Path, assets: &AssetsArguments) -> Result<(Vec<Error>, Vec<String>), Error> {
+    let preset = Preset::load(path).map_err(|error| explain(error, path, "preset", "a preset"))?;
+    let (wrong, mut notes) = check_files(&preset, path, &assets.folders(path)?);
+    let settings = settings(&preset);
+    let idle = settings.iter().filter(|setting| !setting.is_default());
+    notes.extend(idle.filter_map(|setting| Some(format!("{} has no effect: {}", setting.path, setting.idle?))));
+    Ok((wrong, notes))
+}
+
+/// A field of a preset.
+struct Setting {
+    path: String,
+    value: Value,
+    default: Value,
+    /// Why it has no effect.
+    idle: Option<&'static str>,
+}
+
+impl Setting {
+    fn is_default(&self) -> bool {
+        self.value == self.default
+    }
+}
+
+fn settings(preset: &Preset) -> Vec<Setting> {
+    let plain = Preset {
+        lights: vec![Light::default(); preset.lights.len()],
+        systems: vec![PresetSystem::default(); preset.systems.len()],
+        ..Preset::default()
+    };
+    let pairs = values(preset).into_iter().zip(values(&plain));
+    let setting = |((path, value), (_, default)): ((String, Value), (String, Value))| {
+        let idle = without_effect(&preset, &path, SIZE);
+        Setting { path, value, default, idle }
+    };
+    pairs.map(setting).collect()
+}
+
+fn show(preset: &Preset, changed: bool) -> Result<(), Error> {
+    let settings = settings(preset);
+    let wide = settings.iter().map(|setting| setting.path.len()).max().unwrap_or_default();
+    for setting in settings.iter().filter(|setting| !(changed && setting.is_default())) {
+        let text = |value: &Value| match value {
+            // JSON has none.
+            Value::Number(number) if !number.is_finite() => number.to_string(),
+            value => serde_json::to_string(value).unwrap_or_default(),
+        };
+        let mark = if setting.is_default() { "default".into() } else { format!("default {}", text(&setting.default)) };
+        let idle = setting.idle.map(|reason| format!("; no effect: {reason}")).unwrap_or_default();
+        say!("{:<wide$}  {:<22} {mark}{idle}", setting.path, text(&setting.value))?;
+    }
+    Ok(())
+}
+
+/// Writes a copy of a preset, and of its pictures beside it.
+fn new(file: &Path, from: &Path) -> Result<(), Error> {
+    let path = if file.extension().is_none() { file.with_extension("json") } else { file.into() };
+    if !has_extension(&path, "json") {
+        return Err(FieldError::new("FILE", path.display(), "a name that ends in .json").into());
+    }
+    if path.symlink_metadata().is_ok() {
+        return Err(FieldError::new("FILE", path.display(), "a name that is free: nothing is replaced").into());
+    }
+    let mut preset = Preset::load(from)?;
+    if let Some(name) = path.file_stem() {
+        preset.name = name.to_string_lossy().into_owned();
+    }
+    let folder = |path: &Path| path.parent().unwrap_or(Path::new("")).to_path_buf();
+    copy_beside(&preset, &folder(from), &folder(&path))?;
+    write_file(&path, preset.to_text("").as_bytes())?;
+    say!("{}: as {}; `haze {0}` opens it", path.display(), from.display())
+}

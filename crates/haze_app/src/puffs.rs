@@ -1,0 +1,105 @@
+//! Puffs of smoke side by side: lit by the path tracer, and as the renderer has them.
+
+use glam::{UVec2, Vec3};
+use haze::formula::colour::srgb_from_linear;
+use haze::picture::Picture;
+use haze_author::ramp::response::{LIGHTS, Puff, angle};
+use image::imageops::{FilterType, resize};
+use image::{Rgb, RgbImage};
+
+use super::flip::flips;
+use super::sheet::Sheet;
+
+/// What stands behind the puffs: darker than most of them, lighter than soot.
+const BEHIND: Vec3 = Vec3::splat(0.03);
+/// Side of a puff on a sheet, pixels.
+const SIDE: u32 = 160;
+/// Lights from the viewer's side to straight behind the puff; the other half of the ring is much the same.
+const SHOWN: usize = LIGHTS as usize / 2 + 1;
+
+/// A puff before a dark ground. Light as bright as `white` is white.
+fn before_ground(light: &Picture<Vec3>, coverage: &Picture<f32>, white: f32) -> RgbImage {
+    let Picture { size, texels } = light;
+    RgbImage::from_fn(size.x, size.y, |x, y| {
+        let index = (y * size.x + x) as usize;
+        let seen = texels[index] / white + BEHIND * (1.0 - coverage.texels[index]);
+        let code = seen.clamp(Vec3::ZERO, Vec3::ONE).to_array().map(srgb_from_linear);
+        Rgb(code.map(|channel| (channel * 255.0).round() as u8))
+    })
+}
+
+/// Light that is shown as white: brighter than all but the glow straight before a light.
+fn white(puff: &Puff) -> f32 {
+    let mut brightest: Vec<f32> = puff.traced().light[..SHOWN - 2]
+        .iter()
+        .flat_map(|picture| picture.texels.iter().map(|light| light.max_element()))
+        .collect();
+    brightest.sort_by(f32::total_cmp);
+    brightest.get(brightest.len() * 995 / 1000).copied().unwrap_or(1.0).max(1.0e-6)
+}
+
+fn degrees(light: usize) -> String {
+    format!("{}°", angle(light))
+}
+
+/// The path-traced puff, light by light.
+pub fn traced(puff: &Puff) -> RgbImage {
+    let mut sheet = Sheet::new(UVec2::splat(SIDE), SHOWN as u32, SHOWN as u32);
+    let white = white(puff);
+    for light in 0..SHOWN {
+        let picture = before_ground(&puff.traced().light[light], &puff.traced().coverage, white);
+        sheet.place(light as u32, &degrees(light), &enlarged(&picture));
+    }
+    sheet.picture
+}
+
+fn enlarged(picture: &RgbImage) -> RgbImage {
+    resize(picture, SIDE, SIDE, FilterType::CatmullRom)
+}
+
+/// What is shown in place of the path-traced puff: its picture under a light, and what that is multiplied with.
+pub struct Shown<'a> {
+    pub light: &'a dyn Fn(usize) -> Picture<Vec3>,
+    pub exposure: f32,
+}
+
+/// The path-traced puff, what is shown by a name, and how far they are apart; below each other.
+pub fn compared(puff: &Puff, name: &str, shown: &Shown<'_>) -> RgbImage {
+    let mut sheet = Sheet::new(UVec2::splat(SIDE), SHOWN as u32, 3 * SHOWN as u32);
+    let white = white(puff);
+    for light in 0..SHOWN {
+        let [truth, ours] = pair(puff, shown, white, light);
+        let apart = RgbImage::from_fn(truth.width(), truth.height(), |x, y| {
+            let [a, b] = [truth.get_pixel(x, y).0, ours.get_pixel(x, y).0];
+            Rgb(std::array::from_fn(|channel| a[channel].abs_diff(b[channel])))
+        });
+        for (row, (what, picture)) in [("truth", truth), (name, ours), ("apart", apart)].iter().enumerate() {
+            let label = format!("{what}, {}", degrees(light));
+            sheet.place((row * SHOWN + light) as u32, &label, &enlarged(picture));
+        }
+    }
+    sheet.picture
+}
+
+/// Path-traced, and shown.
+fn pair(puff: &Puff, shown: &Shown<'_>, white: f32, light: usize) -> [RgbImage; 2] {
+    let coverage = &puff.traced().coverage;
+    let ours = (shown.light)(light);
+    [
+        before_ground(&puff.traced().light[light], coverage, white),
+        before_ground(&ours, coverage, white / shown.exposure),
+    ]
+}
+
+/// Path-traced and shown, for each light.
+pub fn pairs(puff: &Puff, shown: &Shown<'_>) -> Vec<[RgbImage; 2]> {
+    let white = white(puff);
+    (0..LIGHTS as usize).map(|light| pair(puff, shown, white, light)).collect()
+}
+
+/// Mean FLIP of all lights: how different they look.
+pub fn flip(puff: &Puff, shown: &Shown<'_>) -> f64 {
+    let pairs = pairs(puff, shown);
+    let pairs: Vec<_> = pairs.iter().map(|[truth, ours]| [truth, ours]).collect();
+    flips(&pairs).iter().sum::<f64>() / f64::from(LIGHTS)
+}

@@ -1,0 +1,79 @@
+//! `haze ramp check`: what would show.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use haze::Error;
+use haze::picture::colour_notes;
+use haze::ramp::{Ramp, Role};
+use haze_author::finding::Finding;
+use haze_author::ramp::check::check;
+use haze_author::ramp::response::{DiffuseRamps, Puff};
+
+use super::fit::tell_ramps;
+use super::{picture_of, refuse_gradient};
+use crate::findings::tell;
+use crate::kind::explain;
+use crate::medium::{PathTraceArguments, named, names, sprite_recipe, usual_sprite};
+use crate::options::choices;
+use crate::output::{Failures, has_extension};
+
+#[derive(Args)]
+pub struct Arguments {
+    /// PNGs and `*.ramp.json` files.
+    #[arg(required = true)]
+    ramps: Vec<PathBuf>,
+    /// What they are used for; else what their names begin with says it.
+    #[arg(long = "as", value_name = "ROLE", value_parser = choices::<Role>())]
+    role: Option<Role>,
+    /// Say, too, how far a diffuse ramp is from smoke of this, path-traced, light by light.
+    #[arg(long, value_name = "MEDIUM", value_parser = names())]
+    truth: Option<String>,
+    /// With --truth: the ramp for light from behind that goes with it.
+    #[arg(long, value_name = "RAMP", requires = "truth")]
+    backlight: Option<PathBuf>,
+}
+
+pub fn run(Arguments { ramps, role, truth, backlight }: &Arguments) -> Result<(), Failures> {
+    if let Some(medium) = truth {
+        tell_truth(ramps, medium, backlight.as_deref())?;
+    }
+    tell(ramps, |path| findings(path, *role))
+}
+
+/// How far ramps are from smoke as it is.
+fn tell_truth(ramps: &[PathBuf], medium: &str, backlight: Option<&Path>) -> Result<(), Error> {
+    let load = |path: &Path| Ok::<_, Error>(Ramp::from_picture(&picture_of(path)?.0));
+    let (ramps, backlight) = (
+        ramps.iter().map(|path| Ok((path, load(path)?))).collect::<Result<Vec<_>, Error>>()?,
+        backlight.map(load).transpose()?,
+    );
+    let (recipe, quality) = (sprite_recipe(&usual_sprite())?, PathTraceArguments::default());
+    let path_trace = quality.path_trace();
+    let puff = quality.watched(medium, |progress| Puff::trace(&recipe, &named(medium), &path_trace, progress))?;
+    for (path, diffuse) in &ramps {
+        let ramps = DiffuseRamps { diffuse, backlight: backlight.as_ref() };
+        let name = format!("{} beside {medium}", path.display());
+        tell_ramps(&name, &puff, ramps)?;
+    }
+    Ok(())
+}
+
+fn findings(path: &Path, role: Option<Role>) -> Result<Vec<Finding>, Error> {
+    let name = path.file_name().and_then(OsStr::to_str).unwrap_or_default();
+    let role = role.or_else(|| Role::of_name(name));
+    refuse_gradient(path)?;
+    let mut findings = Vec::new();
+    if !has_extension(path, "json") {
+        let notes = colour_notes(path)?;
+        findings.extend(notes.into_iter().map(|what| Finding { name: "colour_space", what }));
+    }
+    match picture_of(path) {
+        Ok((picture, _)) => findings.extend(check(&picture, role)),
+        // A space that is refused has been noted.
+        Err(Error::Image { .. }) if !findings.is_empty() => {}
+        Err(error) => return Err(explain(error, path, "ramp", "a PNG or a *.ramp.json file")),
+    }
+    Ok(findings)
+}

@@ -1,0 +1,103 @@
+//! `haze ramp fit`: the ramps that answer light as smoke does.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use haze::picture::{Effort, write_png};
+use haze::ramp::Ramp;
+use haze::{Error, builtin};
+use haze_author::ramp::bake::RampRecipe;
+use haze_author::ramp::response::{DiffuseRamps, FittedRamps, Puff, Response, Shape, angle};
+
+use super::{check_output, write_recipe};
+use crate::medium::{MediumArguments, PathTraceArguments, sprite_recipe, usual_sprite};
+use crate::output::{Files, say};
+use crate::puffs::{Shown, compared, flip};
+use crate::recipe::picture;
+
+#[derive(Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    medium: MediumArguments,
+    /// The puff that is lit: a `*.sprite.json` file, or a built-in sprite.
+    #[arg(long, default_value_os_t = usual_sprite())]
+    sprite: PathBuf,
+    #[command(flatten)]
+    quality: PathTraceArguments,
+    /// Stops of a row.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(2..=64), default_value_t = Shape::default().stops)]
+    stops: u32,
+    /// Rows by amount; 1 for a ramp of one axis.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=16), default_value_t = Shape::default().rows)]
+    rows: u32,
+    /// The ramp for light from all sides, or, where there is another for light from behind, from the viewer's: recipe, and PNG beside it.
+    #[arg(short, long, value_name = "NAME.ramp.json")]
+    output: PathBuf,
+    /// The ramp for light from behind, `backlight_ramp`.
+    #[arg(long, value_name = "NAME.ramp.json")]
+    backlight: Option<PathBuf>,
+    /// A picture of the puff: path-traced, by the ramps, and how far they are apart.
+    #[arg(long, value_name = "FILE.png")]
+    sheet: Option<PathBuf>,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Error> {
+    let Arguments { medium, sprite, quality, stops, rows, output, backlight, sheet } = arguments;
+    let mut files = Files::read([sprite]);
+    for recipe in [Some(output), backlight.as_ref()].into_iter().flatten() {
+        check_output(&mut files, recipe)?;
+        files.write("--output", &picture(recipe), "png")?;
+    }
+    if let Some(sheet) = sheet {
+        files.write("--sheet", sheet, "png")?;
+    }
+    let (recipe, of, path_trace) = (sprite_recipe(sprite)?, medium.medium()?, quality.path_trace());
+    let puff = quality.watched(medium.name(), |progress| Puff::trace(&recipe, &of, &path_trace, progress))?;
+    let fitted = puff.fit(Shape { stops: *stops, rows: *rows, backlight: backlight.is_some() });
+    let FittedRamps { diffuse, backlight: against, exposure } = &fitted;
+    let write = |path: &PathBuf, recipe: &RampRecipe| {
+        let baked = recipe.bake()?;
+        write_recipe(path, recipe)?;
+        write_png(&picture(path), &baked, Effort::Small)?;
+        Ok::<_, Error>(Ramp::from_picture(&baked))
+    };
+    let diffuse = write(output, diffuse)?;
+    let against = backlight.as_ref().zip(against.as_ref()).map(|(path, recipe)| write(path, recipe)).transpose()?;
+    let ramps = DiffuseRamps { diffuse: &diffuse, backlight: against.as_ref() };
+    let after = puff.response(ramps);
+    if let Some(sheet) = sheet {
+        let shown = Shown { light: &|light| puff.shown(ramps, light), exposure: after.exposure };
+        write_png(sheet, &compared(&puff, "ramps", &shown).into(), Effort::Small)?;
+    }
+    if let Some(usual) = builtin::find(builtin::RAMPS, "diffuse_soft") {
+        let usual = usual.ramp()?;
+        let ramps = DiffuseRamps { diffuse: &usual, backlight: None };
+        tell_ramps("diffuse_soft", &puff, ramps)?;
+    }
+    tell_ramps("fitted", &puff, ramps)?;
+    say!("{}: diffuse.intensity {exposure:.2} is as bright as {} beside a white wall", output.display(), medium.name())
+}
+
+/// How far ramps are from the truth, in words and light by light.
+pub fn tell_ramps(name: &str, puff: &Puff, ramps: DiffuseRamps<'_>) -> Result<(), Error> {
+    let response = puff.response(ramps);
+    let shown = Shown { light: &|light| puff.shown(ramps, light), exposure: response.exposure };
+    tell_response(name, puff, &shown, &response)
+}
+
+/// How far what is shown is from the truth, in words and light by light.
+pub fn tell_response(name: &str, puff: &Puff, shown: &Shown<'_>, response: &Response) -> Result<(), Error> {
+    let percent = |share: f32| 100.0 * share;
+    say!(
+        "{name}: brightness {:.1} % off in the mean, pixels {:.0} %, FLIP {:.3}, at intensity {:.2}",
+        percent(response.error),
+        percent(response.pixel_error),
+        flip(puff, shown),
+        response.exposure,
+    )?;
+    for (index, light) in response.lights.iter().enumerate() {
+        let off = percent(light.shown / light.truth.max(f32::MIN_POSITIVE) - 1.0);
+        say!("{:7.1}°  true {:.4}  shown {:.4}  {off:+.0} %", angle(index), light.truth, light.shown)?;
+    }
+    Ok(())
+}

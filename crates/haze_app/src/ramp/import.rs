@@ -1,0 +1,34 @@
+//! `haze ramp import`: the recipe of a picture, or of another program's gradient.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use haze::Error;
+use haze_author::ramp::fit::USUAL_ERROR;
+use haze_author::ramp::import::import;
+
+use super::{check_output, write_recipe};
+use crate::output::{Files, say};
+use crate::progress::watched;
+
+#[derive(Args)]
+pub struct Arguments {
+    /// A PNG, or a gradient of GIMP (.ggr), Godot (.tres) or, as text, Blender (.txt).
+    file: PathBuf,
+    /// The recipe to write.
+    #[arg(short, long, value_name = "NAME.ramp.json")]
+    output: PathBuf,
+    /// How far a channel may be off, steps of 255 from 1 on: the more, the fewer stops.
+    #[arg(long, value_name = "STEPS", default_value_t = USUAL_ERROR, allow_hyphen_values = true)]
+    error: f32,
+}
+
+pub fn run(Arguments { file, output, error }: &Arguments) -> Result<(), Error> {
+    check_output(&mut Files::read([file]), output)?;
+    let fitted = watched(format!("haze: fitting {}", file.display()), || import(file, *error))?;
+    write_recipe(output, &fitted.recipe)?;
+    let rows = fitted.recipe.rows.len();
+    let stops: usize = fitted.recipe.rows.iter().map(|row| row.stops.len()).sum();
+    let rows = if rows > 1 { format!(" in {rows} rows") } else { String::new() };
+    say!("{}: {stops} stops{rows}, at most {:.1}/255 off", output.display(), fitted.error)
+}

@@ -1,0 +1,88 @@
+//! `haze ramp new`: a recipe to begin with, or a picture to paint over.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use glam::UVec2;
+use haze::picture::{Effort, write_png};
+use haze::ramp::{Ramp, Role};
+use haze::{Error, FieldError};
+use haze_author::ramp::template::{TEMPLATES, Template};
+use image::Rgb;
+
+use super::strip::strip;
+use super::{check_output, write_recipe};
+use crate::label::{draw_text, width};
+use crate::options::choices;
+use crate::output::{Files, say};
+
+#[derive(Args)]
+pub struct Arguments {
+    /// What to begin with.
+    #[arg(long, value_name = "NAME", default_value = "neutral", value_parser = names())]
+    template: String,
+    /// A picture to paint over instead, whose axes are written on it: for ramps of this role.
+    #[arg(long, value_name = "ROLE", value_parser = choices::<Role>(), conflicts_with = "template")]
+    blank: Option<Role>,
+    /// The recipe to write, `NAME.ramp.json`, or the picture, `NAME.png`; there must be none of that name.
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+}
+
+fn names() -> PossibleValuesParser {
+    let about = |template: &Template| format!("{}: {}", template.role.name(), template.about);
+    TEMPLATES.iter().map(|template| PossibleValue::new(template.name).help(about(template))).collect::<Vec<_>>().into()
+}
+
+pub fn run(Arguments { template, blank, output }: &Arguments) -> Result<(), Error> {
+    let mut files = Files::read::<PathBuf>([]);
+    match blank {
+        Some(_) => files.write("--output", output, "png")?,
+        None => check_output(&mut files, output)?,
+    }
+    // Nobody's work is lost to a template.
+    if output.exists() {
+        return Err(FieldError::new("--output", output.display(), "a name that is free").into());
+    }
+    if let Some(role) = blank {
+        return write_blank(output, *role);
+    }
+    let Some(template) = Template::find(template) else { return Ok(()) };
+    write_recipe(output, &template.recipe())?;
+    say!("{}: {}, for {} ramps", output.display(), template.about, template.role.name())
+}
+
+/// Height of what is written on a blank, pixels.
+const TEXT: f32 = 16.0;
+
+fn write_blank(output: &Path, role: Role) -> Result<(), Error> {
+    let across = match role {
+        Role::Diffuse | Role::Backlight => ["away from the light", "facing it"],
+        Role::Scatter => ["thin", "thick"],
+        Role::Specular => ["at the light", "far from it: black"],
+        Role::Coverage => ["thin; black hides nothing", "thick; white hides all"],
+        Role::Age => ["born", "dies"],
+    };
+    let has_two_axes = matches!(role, Role::Specular | Role::Backlight);
+    let size = UVec2::new(512, if has_two_axes { 256 } else { 64 });
+    // The first template of its role shows through.
+    let Some(template) = TEMPLATES.iter().find(|template| template.role == role) else { return Ok(()) };
+    let mut picture = strip(&Ramp::from_picture(&template.recipe().bake()?), size);
+    let mut write = |x: f32, y: f32, text: &str| {
+        // Ink on its shadow: read on any ground.
+        draw_text(&mut picture, x + 1.0, y + 1.0, TEXT, Rgb([0; 3]), text);
+        draw_text(&mut picture, x, y, TEXT, Rgb([255; 3]), text);
+    };
+    let middle = size.y as f32 / 2.0 - TEXT / 2.0;
+    let [left, right] = [format!("< {}", across[0]), format!("{} >", across[1])];
+    write(8.0, middle, &left);
+    write(size.x as f32 - 8.0 - width(TEXT, &right), middle, &right);
+    if has_two_axes {
+        write(180.0, 4.0, "top: thick smoke");
+        let bottom = if role == Role::Specular { "bottom: no smoke: black" } else { "bottom: thin smoke" };
+        write(180.0, size.y as f32 - TEXT - 6.0, bottom);
+    }
+    write_png(output, &picture.into(), Effort::Small)?;
+    say!("{}: a {} ramp to paint over, {}x{}", output.display(), role.name(), size.x, size.y)
+}

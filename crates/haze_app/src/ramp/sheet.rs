@@ -1,0 +1,182 @@
+//! `haze ramp sheet`: one shot under every ramp.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use glam::UVec2;
+use haze::ramp::{Ramp, Role};
+use haze::settings::{Backlight, CoverageMode, DiffuseMode, Path as SmokePath, SoftScatterMode};
+use haze::{Error, FieldError, MaterialAssets, builtin};
+use haze_demo::shot::Shot;
+
+use super::strip::strip;
+use super::{is_recipe, picture_of};
+use crate::export::{MOST_CELLS, Watch, columns, sheet};
+use crate::options::{ShotArguments, choices};
+use crate::output::{Failures, Files, complain, has_extension};
+use crate::recipe::picture;
+
+#[derive(Args)]
+#[command(mut_arg("size", |size| size.help("Size of the pictures of a full row and column together, pixels: each is that much smaller")))]
+pub struct Arguments {
+    #[command(flatten)]
+    shot: ShotArguments,
+    /// A folder of ramps: PNGs, and recipes without one. Those that are built in if not given.
+    #[arg(long, value_name = "DIR")]
+    ramps: Option<PathBuf>,
+    /// The built-in ramps, too.
+    #[arg(long)]
+    builtin: bool,
+    /// Only ramps that are used for this, and those whose names do not say what they are used for.
+    #[arg(long, value_name = "ROLE", value_parser = choices::<Role>())]
+    role: Option<Role>,
+}
+
+/// Of a picture's sides, what a ramp of two axes takes.
+const INSET: u32 = 4;
+/// Of a picture's height, what a ramp of one axis takes.
+const STRIP: u32 = 10;
+
+/// A ramp to show.
+struct Cell {
+    name: String,
+    role: Role,
+    source: Source,
+}
+
+enum Source {
+    File(PathBuf),
+    Builtin(&'static builtin::Builtin),
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failures> {
+    let cells = arguments.cells()?;
+    let base = arguments.shot.load(&[])?;
+    let read = cells.iter().filter_map(|cell| match &cell.source {
+        Source::File(path) => Some(path),
+        Source::Builtin(_) => None,
+    });
+    Files::read(read).write("--output", &arguments.shot.output, "png")?;
+    let (ramps, left_out) = Failures::of_each(&cells, |cell| Ok((cell, cell.ramp()?)));
+    if ramps.is_empty() {
+        return left_out.into_result();
+    }
+    left_out.errors().iter().for_each(complain);
+    let columns = columns(ramps.len());
+    let size = (arguments.shot.run.size / columns).max(UVec2::ONE);
+    let mut shots = Vec::new();
+    for (cell, ramp) in &ramps {
+        let mut shot = Shot { size, ..base.clone() };
+        paint(&mut shot, cell.role, ramp);
+        shots.push((cell.name.clone(), shot));
+    }
+    let backend = arguments.shot.run.backend()?;
+    let mut sheet = sheet(&backend, &shots, columns, &arguments.shot.output, &Watch::terminal())?;
+    for (index, (cell, ramp)) in (0..).zip(&ramps) {
+        let has_two_axes = cell.role == Role::Specular;
+        let inset = if has_two_axes { size / INSET } else { UVec2::new(size.x, size.y / STRIP) };
+        sheet.inset(index, &strip(ramp, inset));
+    }
+    sheet.add_foot(&format!("{}, {}x{}, {}", base.preset.name, size.x, size.y, backend.description()));
+    arguments.shot.write(sheet.picture, &base, &backend)?;
+    // What is left out has been told.
+    if left_out.errors().is_empty() { Ok(()) } else { Err(Failures::default()) }
+}
+
+impl Arguments {
+    /// The ramps that were asked for, by name.
+    fn cells(&self) -> Result<Vec<Cell>, Error> {
+        let mut cells = Vec::new();
+        let mut add = |name: &str, source| {
+            // A motif is a picture of another kind.
+            let named = Role::of_name(name).or(self.role.filter(|_| !name.starts_with("motif_")));
+            if let Some(role) = named.filter(|role| self.role.is_none_or(|wanted| wanted == *role)) {
+                cells.push(Cell { name: name.into(), role, source });
+            }
+        };
+        if self.ramps.is_none() || self.builtin {
+            builtin::RAMPS.iter().for_each(|ramp| add(ramp.name, Source::Builtin(ramp)));
+        }
+        for path in self.ramps.iter().map(|folder| files(folder)).collect::<Result<Vec<_>, _>>()?.concat() {
+            let name = path.file_name().map(OsStr::to_string_lossy).unwrap_or_default();
+            let name = name.split('.').next().unwrap_or_default();
+            add(name, Source::File(path.clone()));
+        }
+        if cells.is_empty() || cells.len() > MOST_CELLS {
+            let folder = self.ramps.as_ref().map_or("the built-in ones".into(), |folder| folder.display().to_string());
+            let named = "whose names begin with what they are used for, such as diffuse_";
+            let which = self.role.map_or(named.into(), |role| format!("for {}", role.name()));
+            let expected = format!("1 to {MOST_CELLS} ramps {which}, not {}", cells.len());
+            return Err(FieldError::new("--ramps", folder, expected).into());
+        }
+        Ok(cells)
+    }
+}
+
+/// PNGs in a folder, and recipes that have none, by name.
+fn files(folder: &Path) -> Result<Vec<PathBuf>, Error> {
+    if folder.is_file() {
+        return Err(FieldError::new("--ramps", folder.display(), "a folder").into());
+    }
+    let failed = |error| Error::Io { path: folder.into(), error };
+    let entries: Result<Vec<_>, _> = fs::read_dir(folder).map_err(failed)?.collect();
+    let mut files: Vec<_> = entries.map_err(failed)?.into_iter().map(|entry| entry.path()).collect();
+    files.retain(|path| has_extension(path, "png") || is_recipe(path) && !picture(path).exists());
+    files.sort();
+    Ok(files)
+}
+
+impl Cell {
+    fn ramp(&self) -> Result<Ramp, Error> {
+        match &self.source {
+            Source::File(path) => Ok(Ramp::from_picture(&picture_of(path)?.0)),
+            Source::Builtin(builtin) => builtin.ramp(),
+        }
+    }
+}
+
+/// Puts a ramp into a shot, with what it takes for the ramp to be seen.
+fn paint(shot: &mut Shot, role: Role, ramp: &Ramp) {
+    for (system, material) in shot.preset.systems.iter_mut().zip(&mut shot.materials) {
+        let settings = &mut system.settings;
+        let MaterialAssets {
+            diffuse_ramp,
+            backlight_ramp,
+            soft_scatter_ramp,
+            specular_ramp,
+            coverage_ramp,
+            age_ramp,
+            ..
+        } = material;
+        let place = match role {
+            Role::Diffuse => {
+                if settings.diffuse.mode == DiffuseMode::PaintedMotif {
+                    settings.diffuse.mode = DiffuseMode::Ramp;
+                }
+                diffuse_ramp
+            }
+            Role::Backlight => {
+                settings.diffuse.backlight = Backlight::Ramp;
+                backlight_ramp
+            }
+            Role::Scatter => {
+                settings.soft_scatter.mode = SoftScatterMode::Ramp;
+                soft_scatter_ramp
+            }
+            Role::Specular => specular_ramp,
+            Role::Coverage => {
+                settings.coverage = CoverageMode::Ramp;
+                coverage_ramp
+            }
+            // Deferred smoke has no colours of its own.
+            Role::Age => {
+                settings.path = SmokePath::Forward;
+                settings.sprite.age_colour = 1.0;
+                age_ramp
+            }
+        };
+        *place = ramp.clone();
+    }
+}

@@ -1,0 +1,134 @@
+//! `haze ramp show`: a ramp and its curve, in the terminal or as a picture.
+
+use std::fmt::Write as _;
+use std::io::IsTerminal as _;
+use std::path::PathBuf;
+
+use clap::Args;
+use glam::{UVec2, Vec3};
+use haze::Error;
+use haze::formula::colour::{linear_from_srgb, luminance, srgb_from_linear};
+use haze::picture::{Effort, write_png};
+use haze::ramp::Ramp;
+use haze_author::ramp::bake::RampRecipe;
+use image::{Rgb, RgbImage, imageops};
+
+use super::picture_of;
+use super::strip::{code, share, strip};
+use crate::output::{Files, one_line, say, write_text};
+use crate::plot::{Curve, LEFT, RIGHT, plot};
+use crate::sheet::PAPER;
+
+#[derive(Args)]
+pub struct Arguments {
+    /// A PNG or a `*.ramp.json` file.
+    ramp: PathBuf,
+    /// Write a picture instead.
+    #[arg(short, long, value_name = "FILE.png")]
+    output: Option<PathBuf>,
+}
+
+/// Characters across.
+const ACROSS: u32 = 64;
+/// Characters up of a ramp with two axes, each of two texels; and of the curve.
+const UP: u32 = 12;
+/// Of the picture, pixels.
+const SIZE: UVec2 = UVec2::new(512, 256);
+/// Most stops that are listed.
+const MOST: usize = 32;
+const EIGHTHS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+
+pub fn run(Arguments { ramp: path, output }: &Arguments) -> Result<(), Error> {
+    if let Some(output) = output {
+        Files::read([path]).write("--output", output, "png")?;
+    }
+    let (picture, recipe) = picture_of(path)?;
+    let ramp = Ramp::from_picture(&picture);
+    let size = ramp.size();
+    if let Some(output) = output {
+        write_png(output, &drawn(&ramp).into(), Effort::Quick)?;
+        return say!("{}: {}, {}x{}", output.display(), path.display(), size.x, size.y);
+    }
+    let is_plain = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    let mut text = format!("{}: {}x{}\n", one_line(path.display()), size.x, size.y);
+    if !is_plain && std::io::stdout().is_terminal() {
+        text += &coloured(&ramp);
+    }
+    text += &curve(&ramp);
+    text += &recipe.as_ref().map(stops).unwrap_or_default();
+    write_text(text.trim_end())
+}
+
+/// Two texels for each character: the upper one is ink, the lower paper.
+fn coloured(ramp: &Ramp) -> String {
+    let up = if ramp.size().y > 1 { UP } else { 2 };
+    let mut text = String::new();
+    for line in (0..up).rev() {
+        for x in 0..ACROSS {
+            let [upper, lower] = [2 * line + 1, 2 * line].map(|y| {
+                let colour = code(ramp, share(x, ACROSS), share(y, 2 * up)) * 255.0;
+                let [r, g, b] = colour.to_array().map(|channel| channel.round() as u8);
+                format!("2;{r};{g};{b}")
+            });
+            let _ = write!(text, "\x1b[38;{upper};48;{lower}m▀");
+        }
+        text += "\x1b[0m\n";
+    }
+    text
+}
+
+/// Of sRGB code, as code.
+fn brightness(code: Vec3) -> f32 {
+    srgb_from_linear(luminance(code.map(linear_from_srgb)))
+}
+
+/// Luminance along the middle of the ramp.
+fn curve(ramp: &Ramp) -> String {
+    let heights: Vec<u32> =
+        (0..ACROSS).map(|x| (brightness(code(ramp, share(x, ACROSS), 0.5)) * (8 * UP) as f32).round() as u32).collect();
+    let mut text = String::new();
+    for line in (0..UP).rev() {
+        let eighth = |height: &u32| EIGHTHS[height.saturating_sub(8 * line).min(8) as usize];
+        let cells: String = heights.iter().map(eighth).collect();
+        text += cells.trim_end();
+        text.push('\n');
+    }
+    text
+}
+
+fn stops(recipe: &RampRecipe) -> String {
+    let mut text = String::new();
+    let all = recipe.rows.iter().flat_map(|row| row.stops.iter().map(move |stop| (row.at, stop)));
+    let count = all.clone().count();
+    for (at, stop) in all.take(MOST) {
+        let row = if recipe.rows.len() > 1 { format!("{at:5.3}  ") } else { String::new() };
+        let _ = writeln!(text, "{row}{:5.3}  {}  {}", stop.at, String::from(stop.colour), stop.curve.name());
+    }
+    if count > MOST {
+        let _ = writeln!(text, "and {} more stops", count - MOST);
+    }
+    text
+}
+
+/// The ramp above the curves of its channels and of its luminance.
+fn drawn(ramp: &Ramp) -> RgbImage {
+    let sample = |channel: fn(Vec3) -> f32| -> Box<dyn Fn(f32) -> f32> {
+        let ramp = ramp.clone();
+        Box::new(move |u| channel(code(&ramp, u, 0.5)))
+    };
+    let curve = |name, colour, channel| Curve { name, colour: Rgb(colour), function: sample(channel) };
+    let curves = [
+        curve("red", [235, 90, 80], |code| code.x),
+        curve("green", [90, 200, 100], |code| code.y),
+        curve("blue", [90, 140, 245], |code| code.z),
+        curve("luminance", [225, 225, 220], brightness),
+    ];
+    let axis = if ramp.size().y > 1 { "across, at the middle of the other axis" } else { "across" };
+    let below = plot(SIZE + UVec2::new((LEFT + RIGHT) as u32, 60), (0.0, 1.0), axis, &curves);
+    let up = if ramp.size().y > 1 { SIZE.y } else { SIZE.y / 4 };
+    let strip = strip(ramp, UVec2::new(SIZE.x, up));
+    let mut picture = RgbImage::from_pixel(below.width(), up + below.height() + 16, PAPER);
+    imageops::replace(&mut picture, &strip, LEFT as i64, 16);
+    imageops::replace(&mut picture, &below, 0, i64::from(up) + 16);
+    picture
+}

@@ -1,0 +1,86 @@
+//! `haze ramp watch`: pictures follow their recipes.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::channel;
+use std::time::Duration;
+
+use clap::Args;
+use haze::Error;
+
+use crate::interrupt;
+use crate::output::{Failures, Files, complain};
+use crate::recipe::{Job, RAMPS, picture};
+use crate::watch::Watcher;
+
+#[derive(Args)]
+pub struct Arguments {
+    /// `*.ramp.json` and `*.motif.json` files, and folders of them.
+    #[arg(required = true)]
+    recipes: Vec<PathBuf>,
+}
+
+/// Between two looks for Ctrl-C and for new recipes in folders.
+const LOOK_EVERY: Duration = Duration::from_millis(200);
+
+pub fn run(Arguments { recipes }: &Arguments) -> Result<(), Failures> {
+    Failures::of_each(recipes, |path| match fs::metadata(path) {
+        Ok(found) if found.is_dir() => Ok(()),
+        Ok(_) => RAMPS.find(path).map(drop),
+        Err(error) => Err(failed(path, error)),
+    })
+    .1
+    .into_result()?;
+    let (wake, woken) = channel();
+    let wake = move || {
+        let _ = wake.send(());
+    };
+    let watcher = Watcher::new(wake).map_err(|error| failed(Path::new("a thread that watches"), error))?;
+    interrupt::catch();
+    let mut known = BTreeSet::new();
+    while !interrupt::is_asked() {
+        watcher.set_unread(files(recipes));
+        let _ = woken.recv_timeout(LOOK_EVERY);
+        watcher.note().iter().for_each(complain);
+        for path in watcher.poll() {
+            // What is newer than its recipe when it is first seen has been painted over, or is as it should be.
+            if !known.insert(path.clone()) || !is_newer(&picture(&path), &path) {
+                bake(&path).unwrap_or_else(complain);
+            }
+        }
+    }
+    Ok(())
+}
+
+fn failed(path: &Path, error: std::io::Error) -> Error {
+    Error::Io { path: path.into(), error }
+}
+
+/// What there is to watch now.
+fn files(recipes: &[PathBuf]) -> BTreeSet<PathBuf> {
+    let mut files = BTreeSet::new();
+    for path in recipes {
+        match fs::read_dir(path) {
+            Ok(folder) => {
+                let inside = folder.flatten().map(|entry| entry.path());
+                files.extend(inside.filter(|path| RAMPS.find(path).is_ok()));
+            }
+            // A folder that is gone may come again.
+            Err(error) if error.kind() == ErrorKind::NotFound && RAMPS.find(path).is_err() => {}
+            Err(_) => drop(files.insert(path.clone())),
+        }
+    }
+    files
+}
+
+fn is_newer(picture: &Path, recipe: &Path) -> bool {
+    // A folder is no picture: that it cannot be replaced is said.
+    let modified = |path: &Path| fs::metadata(path).ok().filter(fs::Metadata::is_file)?.modified().ok();
+    modified(picture).is_some_and(|picture| modified(recipe) <= Some(picture))
+}
+
+fn bake(path: &Path) -> Result<(), Error> {
+    Job::load(path, &RAMPS, &mut Files::read([path]))?.bake()
+}

@@ -1,0 +1,161 @@
+//! A recipe, and the pictures that are made from it.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use haze::picture::{Effort, write_png};
+use haze::{Error, FieldError};
+use haze_author::noise::NoiseRecipe;
+use haze_author::ramp::bake::RampRecipe;
+use haze_author::ramp::motif::MotifRecipe;
+use haze_author::sprite::bake::SpriteRecipe;
+use image::DynamicImage;
+
+use super::kind::recipes;
+use super::output::{Files, say};
+use super::progress::{watched, watched_as};
+
+/// The recipes that a command takes.
+pub struct Kinds {
+    /// What would be right.
+    expected: &'static str,
+    /// By kind: `ramp` of `fire.ramp.json`.
+    load: fn(&str) -> Option<Load>,
+}
+
+type Load = fn(&Path) -> Result<Recipe, Error>;
+
+pub const RAMPS: Kinds = Kinds {
+    expected: "a *.ramp.json or *.motif.json file",
+    load: |kind| match kind {
+        "ramp" => Some(|path| RampRecipe::load(path).map(Recipe::Ramp)),
+        "motif" => Some(|path| MotifRecipe::load(path).map(Recipe::Motif)),
+        _ => None,
+    },
+};
+
+pub const SPRITES: Kinds = Kinds {
+    expected: "a *.sprite.json or *.noise.json file",
+    load: |kind| match kind {
+        "sprite" => Some(|path| SpriteRecipe::load(path).map(Recipe::Sprite)),
+        "noise" => Some(|path| NoiseRecipe::load(path).map(Recipe::Noise)),
+        _ => None,
+    },
+};
+
+impl Kinds {
+    /// How a file is loaded, by its name.
+    ///
+    /// # Errors
+    /// Where it has the name of none of them.
+    pub fn find(&self, path: &Path) -> Result<Load, Error> {
+        let is_json = path.extension().is_some_and(|extension| extension == "json");
+        let kind = name(path).extension().filter(|_| is_json).and_then(OsStr::to_str);
+        let refuse = || FieldError::new("recipe", path.display(), self.expected).into();
+        kind.and_then(self.load).ok_or_else(refuse)
+    }
+}
+
+/// Where recipes of a picture would be: `fire.ramp.json`, and so on, of `fire.png`.
+pub fn recipes_of(picture: &Path) -> impl Iterator<Item = PathBuf> {
+    recipes().map(|kind| picture.with_extension(format!("{kind}.json")))
+}
+
+/// `fire.ramp`, of `fire.ramp.json`.
+fn name(path: &Path) -> &Path {
+    Path::new(path.file_stem().unwrap_or_default())
+}
+
+/// The picture of a ramp's or a motif's recipe.
+pub fn picture(path: &Path) -> PathBuf {
+    path.with_file_name(name(path).with_extension("png"))
+}
+
+/// `smoke.six_way.png` of `smoke.png`.
+pub fn six_way_of(picture: &Path) -> PathBuf {
+    picture.with_extension("six_way.png")
+}
+
+pub enum Recipe {
+    Ramp(RampRecipe),
+    Motif(MotifRecipe),
+    Sprite(SpriteRecipe),
+    Noise(NoiseRecipe),
+}
+
+impl Recipe {
+    /// Extensions of the pictures, in place of the recipe's.
+    fn extensions(&self) -> &'static [&'static str] {
+        match self {
+            Self::Sprite(_) => &["png", "detail.png"],
+            _ => &["png"],
+        }
+    }
+
+    /// Frames that are baked one by one.
+    fn frame_count(&self) -> u32 {
+        if let Self::Sprite(recipe) = self { recipe.frame_count() } else { 1 }
+    }
+
+    /// As many pictures as extensions. `progress` is told how many frames are done.
+    fn bake(&self, progress: impl Fn(u32)) -> Result<Vec<DynamicImage>, FieldError> {
+        Ok(match self {
+            Self::Ramp(recipe) => vec![recipe.bake()?],
+            Self::Motif(recipe) => vec![recipe.bake()?],
+            Self::Noise(recipe) => vec![recipe.bake()?.into()],
+            Self::Sprite(recipe) => {
+                let baked = recipe.bake(|frames| {
+                    progress(frames);
+                    Ok::<_, FieldError>(())
+                })?;
+                vec![baked.picture.into(), baked.detail.into()]
+            }
+        })
+    }
+}
+
+/// A good recipe, with the files that its pictures go to.
+pub struct Job<'a> {
+    path: &'a Path,
+    recipe: Recipe,
+    outputs: Vec<PathBuf>,
+}
+
+impl<'a> Job<'a> {
+    pub fn load(path: &'a Path, kinds: &Kinds, files: &mut Files) -> Result<Self, Error> {
+        let recipe = kinds.find(path)?(path)?;
+        let output = |extension| path.with_file_name(name(path).with_extension(extension));
+        let outputs: Vec<_> = recipe.extensions().iter().map(output).collect();
+        outputs.iter().try_for_each(|output| files.write("output", output, "png"))?;
+        Ok(Self { path, recipe, outputs })
+    }
+
+    /// Writes the pictures, and says so.
+    pub fn bake(&self) -> Result<(), Error> {
+        let (path, done, count) = (self.path.display(), AtomicU32::new(0), self.recipe.frame_count());
+        let what = || match count {
+            1 => format!("haze: baking {path}"),
+            _ => format!("haze: baking {path}, frame {} of {count}", done.load(Ordering::Relaxed) + 1),
+        };
+        let pictures = watched_as(what, || self.recipe.bake(|frames| done.store(frames, Ordering::Relaxed)))?;
+        for (picture, output) in pictures.iter().zip(&self.outputs) {
+            watched(format!("haze: writing {}", output.display()), || write_png(output, picture, Effort::Small))?;
+            say!("{}: {}x{}", output.display(), picture.width(), picture.height())?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_is_known_to_one_command() {
+        for recipe in recipes_of(Path::new("a/fire.png")) {
+            let is_known = [&RAMPS, &SPRITES].map(|kinds| kinds.find(&recipe).is_ok());
+            assert!(is_known.contains(&true), "{}", recipe.display());
+        }
+    }
+}

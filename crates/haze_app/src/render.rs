@@ -1,0 +1,84 @@
+//! `haze render`: one picture, or one for every frame of a stretch of time.
+
+use std::ops::RangeInclusive;
+
+use clap::Args;
+use glam::UVec2;
+use haze::settings::ShadeTree;
+use haze::{Error, FieldError};
+use haze_demo::develop::develop;
+use haze_demo::shot::Shot;
+
+use super::export::{self, Frames, Watch};
+use super::frames::{FrameNames, parse_frames, parse_rate, parse_sheet};
+use super::options::{ShotArguments, choices};
+use super::output::{has_extension, say};
+
+#[derive(Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    shot: ShotArguments,
+    /// Which stage of the shading is shown.
+    #[arg(long, default_value = "final", value_parser = choices::<ShadeTree>())]
+    view: ShadeTree,
+    /// Render frames A to B, both included, into files of their own: the name has the number in it, as in `f_%04d.png`; or into
+    /// one that moves, `f.gif`. Frame 0 is at the preset's time, or at --time.
+    #[arg(long, value_name = "A..B", value_parser = parse_frames)]
+    frames: Option<RangeInclusive<u32>>,
+    /// Frames in a second; 60 if not given, and 25 in a GIF.
+    #[arg(long, value_name = "N", value_parser = parse_rate, requires = "frames")]
+    rate: Option<f32>,
+    /// Put all frames on one sheet of so many rows and columns, a flipbook; --size is the size of a frame.
+    #[arg(long, value_name = "RxC", value_parser = parse_sheet, requires = "frames")]
+    sheet: Option<UVec2>,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Error> {
+    let is_gif = has_extension(&arguments.shot.output, "gif");
+    let frames = arguments.frames.clone().map(|range| {
+        let usual = if is_gif { 25.0 } else { 60.0 };
+        Frames { range, rate: arguments.rate.unwrap_or(usual) }
+    });
+    match (&frames, arguments.sheet) {
+        (Some(frames), None) if is_gif => gif(arguments, frames),
+        (Some(frames), None) => sequence(arguments, frames),
+        (Some(frames), Some(cells)) => flipbook(arguments, frames, cells),
+        (None, _) => {
+            let shot = Shot { shade_tree: arguments.view, ..arguments.shot.load(&[])? };
+            let backend = arguments.shot.run.backend()?;
+            let picture = backend.render(&shot)?;
+            arguments.shot.write(develop(&picture, &shot), &shot, &backend)
+        }
+    }
+}
+
+fn sequence(arguments: &Arguments, frames: &Frames) -> Result<(), Error> {
+    let names = FrameNames::parse(&arguments.shot.output)?;
+    let outputs: Vec<_> = frames.range.clone().map(|frame| ("--output", names.of(frame))).collect();
+    let shot = Shot { shade_tree: arguments.view, ..arguments.shot.load_for(&outputs, "png")? };
+    let backend = arguments.shot.run.backend()?;
+    export::sequence(&backend, &shot, frames, &names, arguments.shot.effort(), &Watch::terminal())?;
+    let (first, last) = (names.of(*frames.range.start()), names.of(*frames.range.end()));
+    say!("{} to {}: {} on {}", first.display(), last.display(), shot.preset.name, backend.description())
+}
+
+fn flipbook(arguments: &Arguments, frames: &Frames, cells: UVec2) -> Result<(), Error> {
+    let shot = Shot { shade_tree: arguments.view, ..arguments.shot.load(&[])? };
+    export::check_flipbook(shot.size, frames, cells)?;
+    let backend = arguments.shot.run.backend()?;
+    let sheet = export::flipbook(&backend, &shot, frames, cells, &arguments.shot.output, &Watch::terminal())?;
+    arguments.shot.write(sheet, &shot, &backend)
+}
+
+fn gif(arguments: &Arguments, frames: &Frames) -> Result<(), Error> {
+    if frames.rate > export::MOST_GIF_RATE {
+        let expected = format!("at most {} frames in a second, for a GIF", export::MOST_GIF_RATE);
+        return Err(FieldError::new("--rate", frames.rate, expected).into());
+    }
+    let path = &arguments.shot.output;
+    let outputs = [("--output", path.clone())];
+    let shot = Shot { shade_tree: arguments.view, ..arguments.shot.load_for(&outputs, "gif")? };
+    let backend = arguments.shot.run.backend()?;
+    export::gif(&backend, &shot, frames, path, &Watch::terminal())?;
+    say!("{}: {} on {}", path.display(), shot.preset.name, backend.description())
+}

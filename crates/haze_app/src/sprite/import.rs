@@ -1,0 +1,114 @@
+//! `haze sprite import`: a sprite of a picture of another kind.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use glam::UVec2;
+use haze::picture::{Effort, read_png, write_png};
+use haze::sprite::SpriteLayout;
+use haze::{Error, FieldError};
+use haze_author::sprite::import::{Imported, Source, import, sheet_of};
+use haze_author::sprite::y_direction::SURE;
+
+use crate::options::choices;
+use crate::output::{Files, say};
+use crate::recipe::six_way_of;
+
+#[derive(Args)]
+pub struct Arguments {
+    /// PNGs: one sheet, one file for each frame in their order (those that only differ by a number, by that), or the two sheets of
+    /// six-way light maps.
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+    /// The PNG to write.
+    #[arg(short, long, value_name = "FILE.png")]
+    output: PathBuf,
+    /// What they hold.
+    #[arg(long = "from", value_name = "SOURCE", value_parser = choices::<Source>(), default_value = "normals")]
+    source: Source,
+    /// Frames beside each other on a sheet.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=256))]
+    columns: u32,
+    /// Frames below each other on a sheet.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=256))]
+    rows: u32,
+    /// Green of normals points down, true or false; guessed without.
+    #[arg(long, num_args = 0..=1, default_missing_value = "true", value_name = "IS_DOWN")]
+    y_down: Option<bool>,
+    /// How much heights, puffs and light maps stand out.
+    #[arg(long, default_value_t = 1.0, value_parser = strength)]
+    strength: f32,
+}
+
+fn strength(text: &str) -> Result<f32, String> {
+    let value = text.parse::<f32>().ok().filter(|value| (0.01..=100.0).contains(value));
+    value.ok_or_else(|| "expected a number from 0.01 to 100".into())
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Error> {
+    let Arguments { files, output, source, columns, rows, y_down, strength } = arguments;
+    let mut read = Files::read(files);
+    read.write("--output", output, "png")?;
+    if source.has_two() {
+        read.write("--output", &six_way_of(output), "png")?;
+    }
+    let refuse = |option: &str, value: String, expected: &str| Err(FieldError::new(option, value, expected).into());
+    if y_down.is_some() && *source != Source::Normals {
+        return refuse("--y-down", format!("--from {}", source.name()), "--from normals: nothing else has a direction");
+    }
+    if files.len() > 1 && !source.has_two() && (*columns, *rows) != (1, 1) {
+        let expected = "1x1, or one sheet: several files are a frame each";
+        return refuse("--columns and --rows", format!("{columns}x{rows} of {} files", files.len()), expected);
+    }
+    let files = by_number(files);
+    let pictures = files.iter().map(|&path| Ok((path, read_png(path)?.to_rgba8())));
+    let pictures = pictures.collect::<Result<Vec<_>, Error>>()?;
+    let path = files.first().copied().unwrap_or(Path::new(""));
+    let (sheets, grid) = if pictures.len() > 1 && !source.has_two() {
+        let (sheet, grid) = sheet_of(&pictures)?;
+        (vec![sheet], grid)
+    } else {
+        (pictures.into_iter().map(|(_, picture)| picture).collect(), UVec2::new(*columns, *rows))
+    };
+    let layout = SpriteLayout { columns: grid.x, rows: grid.y, y_down: false };
+    let Imported { picture, six_way, y_direction, doubt, border } =
+        import(path, &sheets, *source, layout, *y_down, *strength)?;
+    write_png(output, &picture.into(), Effort::Small)?;
+    say!("{}: {}x{} frames", output.display(), grid.x, grid.y)?;
+    if let Some(maps) = six_way {
+        let path = six_way_of(output);
+        write_png(&path, &maps.into(), Effort::Small)?;
+        say!("{}: the light maps, for lighting six_way", path.display())?;
+    }
+    if let Some((frame, alpha)) = border {
+        say!("  border: alpha up to {alpha} in frame {frame}, made clear; leave more room round the smoke")?;
+    }
+    if let Some(doubt) = doubt {
+        say!("  {doubt}; `--from` says what a picture holds")?;
+    }
+    let direction = |is_down| if is_down { "down, and was turned" } else { "up" };
+    match (y_down, y_direction) {
+        (Some(is_down), _) => say!("  green points {}, as said", direction(*is_down)),
+        (None, Some(found)) if found.sureness >= SURE => {
+            let sure = (found.sureness * 100.0).round();
+            say!("  green points {}: a guess, {sure} of 100 sure; --y-down says it", direction(found.is_down))
+        }
+        (None, Some(_)) => say!("  green taken to point up: nothing tells; --y-down says it"),
+        (None, None) => Ok(()),
+    }
+}
+
+/// Frames by their numbers, where their names differ by nothing else: shells put `smoke_10.png` before `smoke_9.png`.
+fn by_number(files: &[PathBuf]) -> Vec<&Path> {
+    let split = |path: &Path| {
+        let stem = path.file_stem()?.to_str()?;
+        let name = stem.trim_end_matches(|c: char| c.is_ascii_digit());
+        Some((path.with_file_name(name), stem[name.len()..].parse::<u64>().ok()?))
+    };
+    let name = |path| split(path).map(|(name, _)| name);
+    let mut frames: Vec<_> = files.iter().map(PathBuf::as_path).collect();
+    if frames.iter().all(|frame| name(frame).is_some() && name(frame) == name(frames[0])) {
+        frames.sort_by_key(|frame| split(frame).map(|(_, number)| number));
+    }
+    frames
+}

@@ -1,0 +1,77 @@
+//! `haze sprite light`: a sprite as smoke of a medium truly looks, from every side.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use haze::Error;
+use haze::formula::colour::luminance;
+use haze::picture::{Effort, write_file, write_png};
+use haze_author::path_trace::PathTrace;
+use haze_author::ramp::response::{LIGHTS, Puff, angle};
+use haze_author::sprite::bake::SpriteRecipe;
+
+use crate::medium::{MediumArguments, PathTraceArguments, sprite_recipe, usual_sprite};
+use crate::output::{Files, say};
+use crate::puffs::{Shown, compared, traced};
+use crate::ramp::fit::tell_response;
+
+#[derive(Args)]
+pub struct Arguments {
+    /// A `*.sprite.json` file, or a built-in sprite.
+    #[arg(default_value_os_t = usual_sprite())]
+    sprite: PathBuf,
+    #[command(flatten)]
+    medium: MediumArguments,
+    #[command(flatten)]
+    quality: PathTraceArguments,
+    /// The picture to write: the puff under nine lights, from the viewer's side to straight behind it.
+    #[arg(short, long, value_name = "FILE.png")]
+    output: PathBuf,
+    /// Write the densities, too: a grid that Mitsuba 3 reads.
+    #[arg(long, value_name = "FILE.vol")]
+    volume: Option<PathBuf>,
+    /// Make six-way maps of it as `haze sprite bake --six-way` does, show below what they look like, and say how far they are off.
+    #[arg(long)]
+    six_way: bool,
+}
+
+pub fn run(Arguments { sprite, medium, quality, output, volume, six_way }: &Arguments) -> Result<(), Error> {
+    let mut files = Files::read([sprite]);
+    files.write("--output", output, "png")?;
+    if let Some(volume) = volume {
+        files.write("--volume", volume, "vol")?;
+    }
+    let (recipe, of, path_trace) = (sprite_recipe(sprite)?, medium.medium()?, quality.path_trace());
+    let puff = quality.watched(medium.name(), |progress| Puff::trace(&recipe, &of, &path_trace, progress))?;
+    if let Some(path) = volume {
+        let recipe = SpriteRecipe { size: path_trace.size, ..recipe };
+        write_file(path, &recipe.volume(0.0).to_mitsuba())?;
+    }
+    if *six_way {
+        return beside_six_way(&puff, &recipe, medium, quality, output);
+    }
+    write_png(output, &traced(&puff).into(), Effort::Small)?;
+    say!("{}: {} under {LIGHTS} lights; brightness, 1 is a white wall:", output.display(), medium.name())?;
+    for light in 0..LIGHTS as usize {
+        say!("{:6.1} {:.6}", angle(light), luminance(puff.traced().mean(light)))?;
+    }
+    Ok(())
+}
+
+fn beside_six_way(
+    puff: &Puff,
+    recipe: &SpriteRecipe,
+    medium: &MediumArguments,
+    quality: &PathTraceArguments,
+    output: &Path,
+) -> Result<(), Error> {
+    let PathTrace { size, samples, .. } = quality.path_trace();
+    let (recipe, of) = (SpriteRecipe { size, columns: 1, rows: 1, tolerance: 0, ..recipe.clone() }, medium.medium()?);
+    let what = format!("six-way {}", medium.name());
+    let maps = quality.watched(&what, |progress| recipe.bake_six_way(&of, samples, |_, path| progress(path)))?;
+    let light = |light| puff.shown_six_way(&maps, light);
+    let response = puff.response_of(light);
+    let shown = Shown { light: &light, exposure: response.exposure };
+    write_png(output, &compared(puff, "six-way", &shown).into(), Effort::Small)?;
+    tell_response(&format!("{}: six-way maps beside {}", output.display(), medium.name()), puff, &shown, &response)
+}

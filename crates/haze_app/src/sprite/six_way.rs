@@ -1,0 +1,99 @@
+//! `haze sprite bake --six-way`: sprites under light from six sides.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use clap::Args;
+use haze::picture::{Effort, write_png};
+use haze::{Error, FieldError, builtin};
+use haze_author::sprite::six_way::BakedSixWay;
+
+use crate::medium::{MediumNumbers, names, sprite_recipe};
+use crate::output::{Files, say};
+use crate::progress::watched_as;
+use crate::recipe::{picture, six_way_of};
+
+#[derive(Args)]
+pub struct Arguments {
+    /// Path-trace sprites filled with a medium, too, for lighting six_way: NAME.six_way.png. Takes some minutes.
+    #[arg(long, value_name = "MEDIUM", value_parser = names(), num_args = 0..=1, default_missing_value = "ash")]
+    six_way: Option<String>,
+    #[command(flatten)]
+    numbers: MediumNumbers,
+    /// With --six-way: paths for each pixel. Noise falls with their square root.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65536), default_value_t = 64)]
+    samples: u32,
+}
+
+impl Arguments {
+    /// Refuses before anything is baked.
+    ///
+    /// # Errors
+    /// Names the option or the file.
+    pub fn check(&self, recipes: &[PathBuf]) -> Result<(), Error> {
+        match &self.six_way {
+            None => match self.numbers.given() {
+                Some(option) => Err(FieldError::new(option, "given", "it with --six-way").into()),
+                None => Ok(()),
+            },
+            Some(name) => {
+                self.numbers.of(name)?;
+                let mut files = Files::read(recipes);
+                sprites(recipes).try_for_each(|path| files.write("output", &six_way_of(&picture(path)), "png"))
+            }
+        }
+    }
+
+    /// The recipes that are baked without light: all that are files.
+    pub fn files(&self, recipes: &[PathBuf]) -> Vec<PathBuf> {
+        let is_file = |path: &&PathBuf| self.six_way.is_none() || !is_builtin(path);
+        recipes.iter().filter(is_file).cloned().collect()
+    }
+
+    /// Bakes the maps of every sprite's recipe, where they are asked for.
+    ///
+    /// # Errors
+    /// As [`sprite_recipe`]; for a file that cannot be written.
+    pub fn run(&self, recipes: &[PathBuf]) -> Result<(), Error> {
+        let Some(name) = &self.six_way else { return Ok(()) };
+        sprites(recipes).try_for_each(|path| self.bake(path, name))
+    }
+
+    fn bake(&self, path: &Path, name: &str) -> Result<(), Error> {
+        let (recipe, medium) = (sprite_recipe(path)?, self.numbers.of(name)?);
+        let done = [const { AtomicU32::new(0) }; 2];
+        let what = || {
+            let [frame, sample] = done.each_ref().map(|count| count.load(Ordering::Relaxed) + 1);
+            let (frames, samples) = (recipe.frame_count(), self.samples);
+            format!("haze: tracing {}, frame {frame} of {frames}, path {sample} of {samples}", path.display())
+        };
+        let baked = watched_as(what, || {
+            recipe.bake_six_way(&medium, self.samples, |frame, sample| {
+                done.iter().zip([frame, sample]).for_each(|(count, now)| count.store(now, Ordering::Relaxed));
+                Ok::<_, Error>(())
+            })
+        })?;
+        let BakedSixWay { picture: maps, intensity, colour, anisotropy } = baked;
+        let output = six_way_of(&picture(path));
+        say!("{}: {}x{}", output.display(), maps.width(), maps.height())?;
+        write_png(&output, &maps.into(), Effort::Small)?;
+        say!(
+            "  as {}: lighting six_way, diffuse.intensity {intensity:.2}, six_way_anisotropy {anisotropy:.2}, \
+             six_way_colour {:.3},{:.3},{:.3}",
+            self.numbers.name_of(name),
+            colour.x,
+            colour.y,
+            colour.z,
+        )
+    }
+}
+
+/// Noise has no six sides.
+fn sprites(recipes: &[PathBuf]) -> impl Iterator<Item = &Path> {
+    let is_sprite = |path: &&Path| is_builtin(path) || path.to_string_lossy().ends_with(".sprite.json");
+    recipes.iter().map(PathBuf::as_path).filter(is_sprite)
+}
+
+fn is_builtin(path: &Path) -> bool {
+    path.to_str().is_some_and(|name| builtin::find(builtin::SPRITES, name).is_some())
+}

@@ -1,0 +1,50 @@
+//! The pictures, with their recipes, and particle files that go with a preset into another folder.
+
+use std::path::Path;
+
+use haze::Error;
+use haze::preset::{PictureFolders, Preset};
+
+use crate::inputs::picture_files;
+use crate::recipe::recipes_of;
+use crate::tweak::platform::assets::caches_of;
+use crate::tweak::platform::files;
+
+/// Copies the files that a preset names from its folder into another, to where the preset looks for them there. Nothing is
+/// replaced: before anything is written, another file in the place of one is refused. A file that is missing stays so.
+pub fn copy_beside(preset: &Preset, from: &Path, to: &Path) -> Result<(), Error> {
+    let pictures = picture_files(preset);
+    let recipes: Vec<_> = pictures.iter().flat_map(|picture| recipes_of(picture)).collect();
+    let beside = pictures.into_iter().chain(recipes).map(|file| from.join(file));
+    let sources = beside.chain(caches_of(&PictureFolders::at(from), preset));
+    let mut copies = Vec::new();
+    for source in sources.filter(|source| files::exists(source)) {
+        let Ok(file) = source.strip_prefix(from) else { continue };
+        let target = to.join(file);
+        if files::is_same(&source, &target) {
+            continue;
+        }
+        let bytes = read(&source)?;
+        if !files::exists(&target) {
+            copies.push((source, target));
+        } else if read(&target)? != bytes {
+            let reason =
+                format!("not the file that goes with the preset, {}; expected a folder without it", source.display());
+            return Err(Error::Image { path: target, reason });
+        }
+    }
+    for (source, target) in copies {
+        target.parent().map_or(Ok(()), files::make_folder)?;
+        files::write(&target, &read(&source)?)?;
+    }
+    Ok(())
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, Error> {
+    let ends_with = |end: &str| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(end));
+    match () {
+        () if ends_with("png") => files::read_picture(path),
+        () if ends_with("json") => files::read_recipe(path),
+        () => files::read_particles(path),
+    }
+}

@@ -1,0 +1,91 @@
+//! How egui calls for the pictures: each part of the window that shows one.
+
+use eframe::egui::epaint::ViewportInPixels;
+use eframe::egui_wgpu::{self, CallbackResources, CallbackTrait, ScreenDescriptor};
+use eframe::{egui, wgpu};
+use haze_demo::shot::Shot;
+
+use super::canvas::Target;
+use super::drawing::Exhibit;
+use super::easel::Easel;
+
+impl Easel {
+    /// Shows the picture in a part of the window.
+    pub fn show(&self, ui: &egui::Ui, rect: egui::Rect, exhibit: Exhibit) {
+        self.add(ui, rect, What::Exhibit(Box::new(exhibit)));
+    }
+
+    /// Shows a stage of a shot as small as the part of the window; all stages of one shot are drawn at once.
+    pub fn show_stage(&self, ui: &egui::Ui, rect: egui::Rect, shot: Shot) {
+        self.add(ui, rect, What::Stage(Box::new(shot)));
+    }
+
+    fn add(&self, ui: &egui::Ui, rect: egui::Rect, what: What) {
+        let callback = Callback { easel: self.clone(), rect, what };
+        ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, callback));
+    }
+}
+
+/// One part of the window on its way through egui.
+struct Callback {
+    easel: Easel,
+    rect: egui::Rect,
+    what: What,
+}
+
+enum What {
+    Exhibit(Box<Exhibit>),
+    Stage(Box<Shot>),
+}
+
+impl CallbackTrait for Callback {
+    fn prepare(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        screen: &ScreenDescriptor,
+        encoder: &mut wgpu::CommandEncoder,
+        _: &mut CallbackResources,
+    ) -> Vec<wgpu::CommandBuffer> {
+        if self.easel.health().is_lost() {
+            return Vec::new();
+        }
+        let place = ViewportInPixels::from_points(&self.rect, screen.pixels_per_point, screen.size_in_pixels);
+        let mut target = Target { device, queue, encoder, place };
+        let mut drawing = self.easel.lock();
+        drawing.is_unpainted = true;
+        match &self.what {
+            What::Exhibit(exhibit) => drawing.record_exhibit(&mut target, exhibit),
+            What::Stage(shot) => drawing.record_stage(&mut target, shot),
+        }
+        if drawing.motion.wants_next() {
+            self.easel.egui().request_repaint();
+        }
+        // What is drawn over the picture is as it was in the last one.
+        if let What::Exhibit(exhibit) = &self.what
+            && drawing.note_texels(exhibit.shot.preset.systems.len())
+        {
+            self.easel.egui().request_repaint();
+        }
+        Vec::new()
+    }
+
+    fn paint(&self, info: egui::PaintCallbackInfo, pass: &mut wgpu::RenderPass<'static>, _: &CallbackResources) {
+        let place = info.viewport_in_pixels();
+        if place.width_px <= 0 || place.height_px <= 0 {
+            return;
+        }
+        let mut drawing = self.easel.lock();
+        drawing.is_unpainted = false;
+        let developing = match &self.what {
+            What::Exhibit(_) => drawing.pair.as_ref(),
+            What::Stage(shot) => drawing.strip.developing[shot.shade_tree as usize].as_ref(),
+        };
+        if let Some(developing) = developing {
+            drawing.developer.record(pass, developing);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,77 @@
+//! What a picture is compared with: another shot, or a picture that was made elsewhere.
+
+use std::sync::Arc;
+
+use eframe::wgpu;
+use glam::Vec4;
+use haze::picture::Picture;
+use haze_demo::develop::exposure;
+use haze_demo::shot::Shot;
+
+use super::canvas::{Target, reduced};
+
+/// What a picture is compared with.
+#[derive(Clone)]
+pub enum Other {
+    Shot(Box<Shot>),
+    /// Made elsewhere, and its exposure.
+    Picture(Arc<Picture<Vec4>>, f32),
+}
+
+/// A picture that was made elsewhere, on the GPU.
+pub struct Made {
+    picture: Arc<Picture<Vec4>>,
+    pub texture: wgpu::Texture,
+}
+
+impl Other {
+    /// As the picture is while something moves.
+    pub fn reduced(&self, divisor: u32) -> Self {
+        match self {
+            Self::Shot(shot) => Self::Shot(Box::new(reduced(shot, divisor))),
+            Self::Picture(picture, exposure) => Self::Picture(picture.clone(), *exposure),
+        }
+    }
+
+    pub fn exposure(&self) -> f32 {
+        match self {
+            Self::Shot(shot) => exposure(shot),
+            Self::Picture(_, exposure) => *exposure,
+        }
+    }
+}
+
+impl Made {
+    /// Puts a picture that was made elsewhere on the GPU, or takes it down; tells whether it is another than before.
+    pub fn hang(made: &mut Option<Self>, target: &Target<'_>, picture: Option<&Arc<Picture<Vec4>>>) -> bool {
+        let is_up = match (&*made, picture) {
+            (Some(made), Some(picture)) => Arc::ptr_eq(&made.picture, picture),
+            (None, None) => true,
+            _ => false,
+        };
+        if !is_up {
+            *made = picture.map(|picture| Self { texture: upload(target, picture), picture: picture.clone() });
+        }
+        !is_up
+    }
+}
+
+/// A picture of linear HDR as a texture of half floats.
+fn upload(target: &Target<'_>, picture: &Picture<Vec4>) -> wgpu::Texture {
+    let size = wgpu::Extent3d { width: picture.size.x, height: picture.size.y, depth_or_array_layers: 1 };
+    let texture = target.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("made picture"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba16Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    });
+    let texels: Vec<_> = picture.texels.iter().flat_map(|texel| texel.to_array().map(half::f16::from_f32)).collect();
+    let bytes: Vec<_> = texels.iter().flat_map(|channel| channel.to_le_bytes()).collect();
+    let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(8 * size.width), rows_per_image: None };
+    target.queue.write_texture(texture.as_image_copy(), &bytes, rows, size);
+    texture
+}

@@ -1,0 +1,295 @@
+//! Pictures that are written, and sheets to look at: drawn elsewhere, as the command line draws them, while the work goes on.
+
+mod spread;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+
+use eframe::egui;
+use glam::UVec2;
+use haze::preset::Preset;
+use haze::settings::set_field;
+use haze::{Error, FieldError};
+use haze_demo::shot::Shot;
+use image::RgbImage;
+
+use super::made::Made;
+use super::platform::export::{self, Frames, Watch};
+use super::platform::files::{self, Effort, write_png};
+use super::platform::worker::Worker;
+use super::session::Session;
+use crate::frames::FrameNames;
+use crate::options::Backend;
+use crate::shade_tree;
+use spread::spread;
+
+/// What can be made of the preset.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Product {
+    Picture,
+    Sequence,
+    Flipbook,
+    Gif,
+    ShadeTree,
+    /// The smoke of nine seeds on one sheet.
+    Seeds,
+    /// A field at several values on one sheet.
+    Values(String),
+}
+
+/// How it is made.
+#[derive(Clone, Debug)]
+pub struct Order {
+    /// Pixels of a picture; of a whole sheet's full row and column.
+    pub size: UVec2,
+    pub first: u32,
+    pub last: u32,
+    /// Frames in a second.
+    pub rate: f32,
+    /// Rows and columns of a flipbook.
+    pub cells: UVec2,
+}
+
+impl Default for Order {
+    fn default() -> Self {
+        Self { size: UVec2::new(1280, 720), first: 0, last: 31, rate: 25.0, cells: UVec2::new(4, 8) }
+    }
+}
+
+/// Most pixels along a side of a picture.
+pub const MOST_PIXELS: u32 = 8192;
+
+/// See the module.
+pub struct Exporting {
+    worker: Worker<Done>,
+    progress: Arc<Progress>,
+    pub is_open: bool,
+    pub product: Product,
+    pub order: Order,
+    /// What the setting to vary is looked for by.
+    pub wanted: String,
+    /// A sheet that was made.
+    pub sheet: Option<Sheet>,
+}
+
+/// A sheet to look at.
+pub struct Sheet {
+    pub picture: RgbImage,
+    /// Where it would be saved.
+    path: PathBuf,
+    /// Once it was shown.
+    pub texture: Option<egui::TextureHandle>,
+}
+
+#[derive(Default)]
+struct Progress {
+    done: AtomicU32,
+    count: AtomicU32,
+    is_stopped: AtomicBool,
+}
+
+enum Done {
+    Written(PathBuf),
+    Sheet(RgbImage, PathBuf),
+    Failed(Error),
+}
+
+impl Exporting {
+    /// `wake` is called from another thread when there is something new to see.
+    ///
+    /// # Errors
+    /// [`Error::Io`] where the system has no thread left.
+    pub fn new(wake: impl Fn() + Send + 'static) -> Result<Self, Error> {
+        let worker = Worker::new("haze export", wake);
+        let worker = worker.map_err(|error| Error::Io { path: "a thread to export".into(), error })?;
+        Ok(Self {
+            worker,
+            progress: Arc::default(),
+            is_open: false,
+            product: Product::Sequence,
+            order: Order::default(),
+            wanted: String::new(),
+            sheet: None,
+        })
+    }
+
+    /// How many of how many pictures are done, while something is being made.
+    pub fn progress(&self) -> Option<(u32, u32)> {
+        let read = |number: &AtomicU32| number.load(Ordering::Relaxed);
+        self.worker.is_busy().then(|| (read(&self.progress.done), read(&self.progress.count)))
+    }
+
+    /// Stops what is being made; files that are there are whole.
+    pub fn stop(&self) {
+        self.progress.is_stopped.store(true, Ordering::Relaxed);
+    }
+
+    /// Makes something of what is to be seen now.
+    pub fn begin(&mut self, product: Product, session: &mut Session) {
+        if self.worker.is_busy() {
+            return session.messages.complain("export", "one thing at a time: something is being made");
+        }
+        let mut size = self.order.size;
+        if product == Product::Picture {
+            // As it is seen.
+            size.x = ((size.y as f32 * session.show.aspect).round() as u32).clamp(1, MOST_PIXELS);
+        }
+        let shot = session.shot(size);
+        let place = Place::new(session.document.path(), &shot.preset);
+        let progress = Arc::<Progress>::default();
+        self.progress = Arc::clone(&progress);
+        let (order, shaders) = (self.order.clone(), session.shaders.clone());
+        self.worker.submit(move |ticket| {
+            let go_on = |done, count| {
+                progress.done.store(done, Ordering::Relaxed);
+                progress.count.store(count, Ordering::Relaxed);
+                !progress.is_stopped.load(Ordering::Relaxed) && !ticket.is_cancelled()
+            };
+            let made = Backend::open(shaders.as_ref())
+                .and_then(|backend| make(&backend, &product, &shot, &order, &place, &Watch::Caller(&go_on)));
+            made.unwrap_or_else(Done::Failed)
+        });
+    }
+
+    /// Closes the sheet, or else the window for exports; true if there was one.
+    pub fn dismiss(&mut self) -> bool {
+        self.sheet.take().is_some() || std::mem::take(&mut self.is_open)
+    }
+
+    /// Writes the sheet that is shown.
+    pub fn save_sheet(&mut self) {
+        if let Some(Sheet { picture, path, .. }) = self.sheet.take() {
+            self.worker.submit(move |_| write(path, picture).unwrap_or_else(Done::Failed));
+        }
+    }
+
+    /// Once a frame: says what became of it.
+    pub fn advance(&mut self, session: &mut Session) {
+        while let Some(done) = self.worker.poll() {
+            match done {
+                Some(Done::Written(path)) => session.messages.say("export", format!("written: {}", path.display())),
+                Some(Done::Sheet(picture, path)) => self.sheet = Some(Sheet { picture, path, texture: None }),
+                Some(Done::Failed(error)) => session.messages.complain("export", error),
+                None => session.messages.complain("export", "not made: the program has a mistake in it"),
+            }
+        }
+    }
+}
+
+/// Where files go, and what their names begin with.
+struct Place {
+    folder: PathBuf,
+    stem: String,
+}
+
+impl Place {
+    /// Beside the preset's file, by its name and time.
+    fn new(document: &Path, preset: &Preset) -> Self {
+        let plain = |c: char| if c.is_alphanumeric() || c == '-' { c } else { '_' };
+        let name: String = preset.name.chars().map(plain).take(60).collect();
+        let folder = document.parent().unwrap_or(Path::new("")).to_owned();
+        Self { folder, stem: format!("{name}_{:.2}s", preset.time) }
+    }
+
+    /// A path that is free.
+    fn free(&self, what: &str, end: &str) -> PathBuf {
+        let what = if what.is_empty() { String::new() } else { format!("_{what}") };
+        let name = |number| match number {
+            1 => format!("{}{what}{end}", self.stem),
+            _ => format!("{}{what}_{number}{end}", self.stem),
+        };
+        let paths = (1..10_000).map(|number| self.folder.join(name(number)));
+        let path = paths.into_iter().find(|path| !files::exists(path)).unwrap_or_else(|| self.folder.join(name(1)));
+        files::absolute(&path)
+    }
+}
+
+fn write(path: PathBuf, picture: RgbImage) -> Result<Done, Error> {
+    write_png(&path, &picture.into(), Effort::Quick)?;
+    Ok(Done::Written(path))
+}
+
+fn make(
+    backend: &Backend,
+    product: &Product,
+    shot: &Shot,
+    order: &Order,
+    place: &Place,
+    watch: &Watch<'_>,
+) -> Result<Done, Error> {
+    let frames = Frames { range: order.first..=order.last.max(order.first), rate: order.rate };
+    let sheet = |name: &str, cells: Vec<(String, Shot)>| {
+        let path = place.free(name, ".png");
+        let columns = export::columns(cells.len());
+        let size = (shot.size / columns).max(UVec2::ONE);
+        let small = |(label, shot): (String, Shot)| (label, Shot { size, ..shot });
+        let cells: Vec<_> = cells.into_iter().map(small).collect();
+        let mut sheet = export::sheet(backend, &cells, columns, &path, watch)?;
+        sheet.add_foot(&format!("{name}; {}, {}", shot.preset.name, backend.description()));
+        Ok(Done::Sheet(sheet.picture, path))
+    };
+    match product {
+        Product::Picture => {
+            let path = place.free("", ".png");
+            let one = Frames { range: 0..=0, rate: 1.0 };
+            write(path.clone(), export::flipbook(backend, shot, &one, UVec2::ONE, &path, watch)?)
+        }
+        Product::Sequence => {
+            let folder = place.free("frames", "");
+            files::make_folder(&folder)?;
+            let names = FrameNames::parse(&folder.join("%04d.png"))?;
+            export::sequence(backend, shot, &frames, &names, Effort::Quick, watch)?;
+            Ok(Done::Written(folder))
+        }
+        Product::Flipbook => {
+            export::check_flipbook(shot.size, &frames, order.cells)?;
+            let path = place.free("flipbook", ".png");
+            write(path.clone(), export::flipbook(backend, shot, &frames, order.cells, &path, watch)?)
+        }
+        Product::Gif => {
+            let path = place.free("", ".gif");
+            export::gif(backend, shot, &frames, &path, watch)?;
+            Ok(Done::Written(path))
+        }
+        Product::ShadeTree => sheet("shade_tree", shade_tree::stages(shot)),
+        Product::Seeds => sheet("seeds", seeds(shot)),
+        Product::Values(path) => {
+            let cells = variations(shot, path);
+            if cells.is_empty() {
+                return Err(FieldError::new("export", path, "a setting of numbers, of choices, or on and off").into());
+            }
+            sheet(path.rsplit('.').next().unwrap_or(path), cells)
+        }
+    }
+}
+
+/// The shot with this seed and the eight after it.
+fn seeds(shot: &Shot) -> Vec<(String, Shot)> {
+    let with = |more: u32| {
+        let mut shot = shot.clone();
+        for system in &mut shot.preset.systems {
+            system.emitter.seed = system.emitter.seed.wrapping_add(more);
+        }
+        let seed = shot.preset.systems.first().map_or(more, |system| system.emitter.seed);
+        (format!("seed {seed}"), shot)
+    };
+    (0..9).map(with).collect()
+}
+
+/// The shot with a field at the values of its [`spread`]. Only those that are valid.
+fn variations(shot: &Shot, path: &str) -> Vec<(String, Shot)> {
+    let with = |text: String| {
+        let mut shot = shot.clone();
+        match Made::find(path) {
+            Some((system, made)) => (made.set)(shot.preset.systems.get_mut(system)?, text.parse().ok()?),
+            None => drop(set_field(&mut shot.preset, path, &text).ok()?),
+        }
+        shot.preset.validate().ok()?;
+        Some((text, shot))
+    };
+    spread(&shot.preset, path).into_iter().filter_map(with).collect()
+}
+
+#[cfg(test)]
+mod tests;

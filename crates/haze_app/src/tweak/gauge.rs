@@ -1,0 +1,48 @@
+//! Tells how far the two pictures of a comparison are apart, without holding up a frame.
+
+use eframe::egui;
+use haze_demo::apart::Apart;
+
+use super::easel::Easel;
+use super::platform::wake::Wake;
+use super::platform::worker::Worker;
+
+#[derive(Default)]
+pub struct Gauge {
+    worker: Option<Worker<Option<Apart>>>,
+    /// Of the last two that stood still.
+    pub apart: Option<Apart>,
+}
+
+impl Gauge {
+    /// Takes what has come, and asks for what is missing; once a frame. `is_on`: two pictures are shown.
+    pub fn update(&mut self, context: &egui::Context, easel: &Easel, wake: &Wake, is_on: bool) {
+        easel.want_comparison(is_on);
+        if !is_on {
+            self.apart = None;
+            return;
+        }
+        if let Some(comparison) = easel.take_comparison() {
+            // Without a thread there are no figures.
+            let wake = wake.clone();
+            let worker = self.worker.take().or_else(|| Worker::new("gauge", move || wake.call()).ok());
+            if let Some(worker) = &worker {
+                worker.submit(move |_| comparison.read());
+            }
+            self.worker = worker;
+        } else if easel.is_comparing() {
+            context.request_repaint();
+        }
+        if let Some(answer) = self.worker.as_ref().and_then(Worker::poll) {
+            self.apart = answer.flatten();
+        }
+    }
+
+    /// In words.
+    pub fn text(&self) -> Option<String> {
+        let decibels = |figure: f32| if figure.is_finite() { format!("{figure:.1} dB") } else { "the same".into() };
+        let Apart { psnr, edge_psnr } = self.apart?;
+        let edges = edge_psnr.map(|figure| format!("   edges {}", decibels(figure))).unwrap_or_default();
+        Some(format!("PSNR {}{edges}", decibels(psnr)))
+    }
+}

@@ -1,0 +1,276 @@
+//! A settings struct as rows: every field that the table has, with its range, unit and doc comment.
+
+use std::collections::{HashMap, HashSet};
+use std::ops::RangeInclusive;
+
+use eframe::egui::{self, Ui};
+use glam::Vec3;
+use haze::settings::{Choice, FieldVisitor, Fields, PictureRole, Value, path_of};
+use haze_author::preset::Tooltips;
+
+use super::control;
+use super::gallery::gallery;
+use super::row::{Asked, Row, spaced};
+use super::value::shown_value;
+use crate::tweak::picture_thumbnails::PictureThumbnails;
+use crate::tweak::reach::Usual;
+
+/// A step on the way to a field: its name, and its place where it is one of a list.
+pub type Step = (&'static str, Option<usize>);
+
+/// What rows are drawn with, and what they ask for.
+pub struct Desk<'a> {
+    pub tooltips: &'a Tooltips,
+    /// What pictures look like.
+    pub thumbnails: &'a PictureThumbnails,
+    /// Paths of what differs from the preset on disk.
+    pub changed: &'a HashSet<String>,
+    /// What the second picture of a comparison has, by path, where it is another; `None` without settings of its own.
+    pub second: Option<&'a HashMap<String, Value>>,
+    /// The fields are the preset's: sheets of their values can be made.
+    pub has_sheets: bool,
+    /// Why a field does nothing, by path.
+    pub inert: &'a dyn Fn(&str) -> Option<&'static str>,
+    /// What is asked for, and of which fields.
+    pub asked: Vec<(Asked, String)>,
+    /// Why what was typed cannot be.
+    pub refused: Option<String>,
+    /// A field that is to be brought into sight.
+    pub sought: Option<&'a str>,
+}
+
+impl Desk<'_> {
+    /// What a row says of a field that the second picture has, too.
+    pub fn second(&self, path: &str, unit: &str) -> Option<Option<String>> {
+        Some(self.second?.get(path).map(|value| shown_value(value, unit)))
+    }
+}
+
+/// What a sheet is called of a number's values, and of all there are.
+pub const FIVE: Option<&str> = Some("Five values on a sheet");
+const SEEDS: Option<&str> = Some("Nine seeds on a sheet");
+const ALL: Option<&str> = Some("All values on a sheet");
+
+/// Draws the fields of a struct that `path` leads to; groups fold, and what is under a heading. The first heading is open.
+pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fields) {
+    let table = fields.headings();
+    if table.is_empty() {
+        show_where(ui, desk, path, fields, &|_| true);
+    }
+    for part in table.chunk_by(|_, (_, heading)| heading.is_none()) {
+        let mut rows = |ui: &mut Ui, desk: &mut Desk<'_>| {
+            show_where(ui, desk, path, fields, &|name| part.iter().any(|(field, _)| *field == name));
+        };
+        let Some(&(first, Some(heading))) = part.first() else {
+            rows(ui, desk);
+            continue;
+        };
+        let holds = |field: &str| {
+            let below = field.strip_prefix(&path_of(path)).and_then(|rest| rest.strip_prefix('.'));
+            part.iter().any(|(name, _)| below.is_some_and(|below| is_at(below, name)))
+        };
+        let header = header(desk, heading, &holds).id_salt((path, heading)).default_open(first == table[0].0);
+        header.show_unindented(ui, |ui| rows(ui, desk));
+    }
+}
+
+/// Draws those fields of a struct whose names are wanted.
+pub fn show_where(
+    ui: &mut Ui,
+    desk: &mut Desk<'_>,
+    path: &[Step],
+    fields: &mut dyn Fields,
+    is_wanted: &dyn Fn(&str) -> bool,
+) {
+    fields.visit(&mut Rows { ui, desk, path: path.to_vec(), is_wanted, only: None });
+}
+
+/// What folds away fields: open while one is sought that it holds, with the marks of those that it does.
+pub fn header(desk: &Desk<'_>, title: &str, holds: &dyn Fn(&str) -> bool) -> egui::CollapsingHeader {
+    let mark = if desk.changed.iter().any(|changed| holds(changed)) { " •" } else { "" };
+    let is_apart = desk.second.is_some_and(|second| second.keys().any(|apart| holds(apart)));
+    let apart = if is_apart { " ≠" } else { "" };
+    egui::CollapsingHeader::new(format!("{title}{mark}{apart}")).open(desk.sought.is_some_and(holds).then_some(true))
+}
+
+/// Whether a field is at a path, or below it.
+pub fn is_at(field: &str, path: &str) -> bool {
+    field.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+}
+
+/// One field of a struct: what it is called in place of its own name, its path from there, and how far its slider goes.
+pub type Named<'a> = (&'a str, &'a str, Usual);
+
+/// Draws one field of a struct that `path` leads to.
+pub fn show_named(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fields, named: Named<'_>) {
+    let (title, wanted, usual) = named;
+    let only = Some(Only { title, wanted, usual, depth: path.len() });
+    fields.visit(&mut Rows { ui, desk, path: path.to_vec(), is_wanted: &|_| true, only });
+}
+
+/// Brings the row that begins at a place into sight, and marks it: it is the one that was looked for.
+pub fn show_sought(ui: &Ui, begin: egui::Pos2) {
+    let rect = egui::Rect::from_min_max(begin, ui.cursor().min + egui::vec2(ui.available_width(), 0.0));
+    ui.scroll_to_rect(rect, Some(egui::Align::Center));
+    ui.painter().rect_stroke(rect, 2.0, ui.visuals().selection.stroke, egui::StrokeKind::Outside);
+}
+
+struct Rows<'a, 'd, 'u> {
+    ui: &'u mut Ui,
+    desk: &'a mut Desk<'d>,
+    path: Vec<Step>,
+    /// Whether a field of this name is drawn.
+    is_wanted: &'a dyn Fn(&str) -> bool,
+    /// All fields if `None`.
+    only: Option<Only<'a>>,
+}
+
+/// One field among many.
+#[derive(Clone, Copy)]
+struct Only<'a> {
+    title: &'a str,
+    /// Its path from a struct that so many steps lead to.
+    wanted: &'a str,
+    usual: Usual,
+    depth: usize,
+}
+
+impl Rows<'_, '_, '_> {
+    fn row(
+        &mut self,
+        name: &'static str,
+        (unit, sheet): (&str, Option<&'static str>),
+        control: impl FnOnce(&mut Ui, &egui::Response, &mut Option<String>, &str, &Tooltips),
+    ) {
+        if !(self.is_wanted)(name) {
+            return;
+        }
+        self.path.push((name, None));
+        let path = path_of(&self.path);
+        let plain = self.path.iter().map(|step| step.0).collect::<Vec<_>>().join(".");
+        let below = self.only.map(|only| path_of(&self.path[only.depth..]));
+        self.path.pop();
+        if self.only.zip(below).is_some_and(|(only, path)| path != only.wanted) {
+            return;
+        }
+        let desk = &mut *self.desk;
+        let second = desk.second(&path, unit);
+        let title = self.only.map_or(name, |only| only.title);
+        let mut tooltip = desk.tooltips.field(&plain).unwrap_or_default().to_owned();
+        if title != spaced(name) && self.only.is_some() {
+            // What it is called in files.
+            tooltip += &format!("\n\n{path}");
+        }
+        let row = Row {
+            name: title,
+            tooltip: &tooltip,
+            is_changed: desk.changed.contains(&path),
+            second: second.as_ref().map(Option::as_deref),
+            sheet: sheet.filter(|_| desk.has_sheets),
+            inert: (desk.inert)(&path),
+        };
+        let refused = &mut desk.refused;
+        let tooltips = desk.tooltips;
+        let before = self.ui.cursor().min;
+        let asked = row.show(self.ui, |ui, label| control(ui, label, refused, &path, tooltips));
+        desk.asked.extend(asked.map(|asked| (asked, path.clone())));
+        if let Some(what) = &mut desk.refused
+            && !what.contains(": ")
+        {
+            *what = format!("{path}: {what}");
+        }
+        if desk.sought == Some(path.as_str()) {
+            show_sought(self.ui, before);
+        }
+    }
+
+    fn nested(&mut self, step: Step, title: &str, fields: &mut dyn Fields) {
+        if !(self.is_wanted)(step.0) {
+            return;
+        }
+        self.path.push(step);
+        if self.only.is_some() {
+            let path = self.path.clone();
+            fields.visit(&mut Rows { ui: self.ui, desk: self.desk, path, is_wanted: &|_| true, only: self.only });
+        } else {
+            let path = path_of(&self.path);
+            let header = header(self.desk, &spaced(title), &|field| is_at(field, &path)).id_salt(&path);
+            header.show(self.ui, |ui| show(ui, self.desk, &self.path, fields));
+        }
+        self.path.pop();
+    }
+}
+
+impl FieldVisitor for Rows<'_, '_, '_> {
+    fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, unit: &'static str) {
+        let usual = self.only.and_then(|only| only.usual);
+        self.row(name, (unit, FIVE), |ui, label, refused, _, _| {
+            control::number(ui, label, value, (&range, usual), unit, refused);
+        });
+    }
+
+    fn integer(&mut self, name: &'static str, value: &mut u32, range: RangeInclusive<u32>, unit: &'static str) {
+        self.row(name, (unit, FIVE), |ui, label, refused, _, _| {
+            control::integer(ui, label, value, &range, unit, refused);
+        });
+    }
+
+    fn vector(&mut self, name: &'static str, value: &mut Vec3, range: RangeInclusive<f32>, unit: &'static str) {
+        self.row(name, (unit, None), |ui, label, refused, _, _| {
+            control::vector(ui, value, &range, unit, label, refused);
+        });
+    }
+
+    fn colour(&mut self, name: &'static str, value: &mut Vec3, _: RangeInclusive<f32>) {
+        self.row(name, ("", None), |ui, label, _, _, _| control::colour(ui, value, label));
+    }
+
+    fn flag(&mut self, name: &'static str, value: &mut bool) {
+        self.row(name, ("", ALL), |ui, label, _, _, _| {
+            ui.checkbox(value, "").labelled_by(label.id);
+        });
+    }
+
+    fn choice(&mut self, name: &'static str, value: &mut dyn Choice) {
+        let plain = self.path.iter().map(|step| step.0).chain([name]).collect::<Vec<_>>().join(".");
+        self.row(name, ("", ALL), |ui, label, _, path, tooltips| {
+            control::choice(ui, value, path, |choice| tooltips.choice(&plain, choice)).labelled_by(label.id);
+        });
+    }
+
+    fn text(&mut self, name: &'static str, value: &mut String) {
+        self.row(name, ("", None), |ui, label, _, _, _| {
+            ui.add(egui::TextEdit::singleline(value).desired_width(f32::INFINITY)).labelled_by(label.id);
+        });
+    }
+
+    fn picture(&mut self, name: &'static str, value: &mut String, role: PictureRole) {
+        let thumbnails = self.desk.thumbnails;
+        self.row(name, ("", None), |ui, label, _, path, _| {
+            gallery(ui, thumbnails, role, value, path).labelled_by(label.id);
+        });
+    }
+
+    fn particles(&mut self, name: &'static str, value: &mut String) {
+        self.row(name, ("", None), |ui, label, _, path, _| {
+            control::path(ui, value, path).labelled_by(label.id);
+        });
+    }
+
+    fn seed(&mut self, name: &'static str, value: &mut u32) {
+        self.row(name, ("", SEEDS), |ui, label, _, _, _| {
+            ui.add(egui::DragValue::new(value)).labelled_by(label.id);
+            if ui.button("next").clicked() {
+                *value = value.wrapping_add(1);
+            }
+        });
+    }
+
+    fn group(&mut self, name: &'static str, fields: &mut dyn Fields) {
+        self.nested((name, None), name, fields);
+    }
+
+    fn item(&mut self, name: &'static str, index: usize, fields: &mut dyn Fields) {
+        self.nested((name, Some(index)), &format!("{} {}", name.trim_end_matches('s'), index + 1), fields);
+    }
+}

@@ -1,0 +1,43 @@
+//! The sprite of a system: how it is lit, what would show of it, and what it is made from.
+
+mod flipbook;
+mod recipe;
+
+use eframe::egui::{self, Ui};
+
+use crate::tweak::messages::short;
+use crate::tweak::session::Session;
+
+/// A page that is no higher, points, scrolls as a whole: beside the picture there is no room for a recipe.
+const SMALL: f32 = 360.0;
+
+/// Draws the page of the selected system's sprite.
+pub fn panel(ui: &mut Ui, session: &mut Session) {
+    let index = session.show.system;
+    let material = session.materials().into_iter().nth(index);
+    let Some((system, material)) = session.document.preset.systems.get(index).zip(material) else {
+        ui.weak("The preset has no smoke.");
+        return;
+    };
+    let (names, settings) = (system.material.clone(), system.settings);
+    let area = egui::ScrollArea::vertical().id_salt(session.show.tab).auto_shrink(false);
+    let top = |ui: &mut Ui, session: &mut Session| {
+        flipbook::panel(ui, (&mut session.show.sprite, &mut session.flipbook), &material, &settings);
+        ui.separator();
+        ui.horizontal(|ui| {
+            ui.strong(short(&names.sprite, 40));
+            let sprite = &material.sprite;
+            ui.weak(format!("{} frames of {1}x{1}", sprite.frame_count(), sprite.size()));
+        });
+    };
+    if ui.available_height() < SMALL {
+        area.show(ui, |ui| {
+            top(ui, session);
+            recipe::panel(ui, session, &names);
+        });
+        return;
+    }
+    // The picture stays where it is while sliders far below are moved.
+    top(ui, session);
+    area.show(ui, |ui| recipe::panel(ui, session, &names));
+}

@@ -1,0 +1,118 @@
+//! Small pictures of presets, drawn one after the other on a thread of their own.
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui;
+use glam::UVec2;
+use haze::preset::PictureFolders;
+use haze::{Error, builtin};
+use haze_demo::develop::develop;
+use image::RgbImage;
+
+use super::platform::assets;
+use super::platform::files::{self, Stamp};
+use super::platform::worker::{Ticket, Worker};
+
+/// Pixels of a thumbnail.
+pub const SIZE: UVec2 = UVec2::new(160, 90);
+
+/// Most files of a folder that are looked at.
+const MOST: usize = 200;
+
+/// The presets that there are to begin with.
+pub struct PresetThumbnails {
+    worker: Worker<(PathBuf, Result<Drawn, Error>)>,
+    pub entries: Vec<Entry>,
+    tickets: Vec<Ticket>,
+}
+
+/// A preset of the list.
+pub struct Entry {
+    /// A file, or the name of a built-in preset.
+    pub path: PathBuf,
+    /// As it was when it was drawn.
+    stamp: Option<Stamp>,
+    /// None until it is drawn.
+    pub shown: Option<Shown>,
+}
+
+/// What is known of a preset that was drawn.
+pub struct Shown {
+    pub name: String,
+    pub description: String,
+    pub picture: egui::TextureHandle,
+}
+
+struct Drawn {
+    name: String,
+    description: String,
+    picture: RgbImage,
+}
+
+impl PresetThumbnails {
+    /// `wake` is called from another thread when there is a new picture.
+    ///
+    /// # Errors
+    /// [`Error::Io`] where the system has no thread left.
+    pub fn new(wake: impl Fn() + Send + 'static) -> Result<Self, Error> {
+        let worker = Worker::new("haze thumbnails", wake);
+        let worker = worker.map_err(|error| Error::Io { path: "a thread to draw thumbnails".into(), error })?;
+        Ok(Self { worker, entries: Vec::new(), tickets: Vec::new() })
+    }
+
+    /// Lists the built-in presets and the JSON files of a folder, whose pictures may lie in `assets`, too, and draws those that are new or changed.
+    pub fn list(&mut self, folder: &Path, assets: Option<&Path>) {
+        let built_in = builtin::PRESETS.iter().map(|preset| PathBuf::from(preset.name));
+        let is_preset = |path: &PathBuf| {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            // Others are recipes: a.ramp.json.
+            name.ends_with(".json") && name.matches('.').count() == 1
+        };
+        let files = files::list(folder).into_iter().filter(is_preset).take(MOST);
+        let mut known = std::mem::take(&mut self.entries);
+        self.tickets.drain(..).for_each(|ticket| ticket.cancel());
+        for path in built_in.chain(files) {
+            let stamp = Stamp::of(&path);
+            let same =
+                known.iter().position(|entry| entry.path == path && entry.stamp == stamp && entry.shown.is_some());
+            if let Some(same) = same {
+                self.entries.push(known.swap_remove(same));
+                continue;
+            }
+            self.entries.push(Entry { path: path.clone(), stamp, shown: None });
+            let assets = assets.map(Path::to_owned);
+            let job = move |_: &Ticket| (path.clone(), draw(&path, assets));
+            self.tickets.push(self.worker.submit(job));
+        }
+    }
+
+    /// Takes what was drawn since. What is no preset leaves the list.
+    pub fn advance(&mut self, context: &egui::Context) {
+        while let Some(done) = self.worker.poll() {
+            let Some((path, drawn)) = done else { continue };
+            match drawn {
+                Ok(drawn) => {
+                    let picture = egui::ColorImage::from_rgb([SIZE.x as usize, SIZE.y as usize], &drawn.picture);
+                    let picture = context.load_texture(drawn.name.clone(), picture, egui::TextureOptions::LINEAR);
+                    let shown = Shown { name: drawn.name, description: drawn.description, picture };
+                    if let Some(entry) = self.entries.iter_mut().find(|entry| entry.path == path) {
+                        entry.shown = Some(shown);
+                    }
+                }
+                Err(_) => self.entries.retain(|entry| entry.path != path),
+            }
+        }
+    }
+
+    /// Draws no more.
+    pub fn stop(&mut self) {
+        self.tickets.drain(..).for_each(|ticket| ticket.cancel());
+    }
+}
+
+fn draw(path: &Path, assets: Option<PathBuf>) -> Result<Drawn, Error> {
+    let folders = PictureFolders::beside(path).and_shared(assets);
+    let shot = assets::shot(path, &folders, SIZE)?;
+    let picture = develop(&shot.render_on_cpu()?, &shot);
+    Ok(Drawn { picture, name: shot.preset.name, description: shot.preset.description })
+}

@@ -1,0 +1,85 @@
+//! The picture as the CPU renderer has it: made in the background, once the picture stands still.
+
+use std::sync::Arc;
+
+use glam::Vec4;
+use haze::Error;
+use haze::picture::Picture;
+use haze_demo::shot::Shot;
+
+use super::platform::clock::{Duration, Instant};
+use super::platform::worker::{Ticket, Worker};
+
+/// How long a picture has to stand still.
+const STILL: Duration = Duration::from_millis(250);
+
+/// A picture, and how long it took to make.
+type Work = Result<(Picture<Vec4>, Duration), Error>;
+
+#[derive(Default)]
+pub struct Referee {
+    worker: Option<Worker<Work>>,
+    /// What was wanted last, and since when.
+    wanted: Option<(Shot, Instant)>,
+    /// It is being made.
+    ticket: Option<Ticket>,
+    made: Option<Arc<Picture<Vec4>>>,
+    /// How long it took to make.
+    pub took: Option<Duration>,
+}
+
+/// How far it is.
+pub enum Verdict {
+    /// Another look is worth while then.
+    Later(Duration),
+    /// `wake` will be called.
+    Soon,
+    Made(Arc<Picture<Vec4>>),
+    Failed(Error),
+}
+
+impl Referee {
+    /// The picture of a shot. `wake` is called from another thread when it is made.
+    pub fn judge(&mut self, shot: &Shot, wake: impl Fn() + Send + 'static) -> Verdict {
+        let now = Instant::now();
+        if !self.wanted.as_ref().is_some_and(|(wanted, _)| wanted.is_same(shot)) {
+            self.wanted = Some((shot.clone(), now));
+            (self.made, self.took) = (None, None);
+            if let Some(ticket) = self.ticket.take() {
+                ticket.cancel();
+            }
+        }
+        if let Some(made) = &self.made {
+            return Verdict::Made(made.clone());
+        }
+        if self.ticket.is_none() {
+            let since = self.wanted.as_ref().map_or(now, |(_, since)| *since);
+            let left = STILL.saturating_sub(now.duration_since(since));
+            if left > Duration::ZERO {
+                return Verdict::Later(left);
+            }
+            let worker = match &self.worker {
+                Some(worker) => worker,
+                None => match Worker::new("reference", wake) {
+                    Ok(worker) => self.worker.insert(worker),
+                    Err(error) => return Verdict::Failed(Error::Io { path: "a thread".into(), error }),
+                },
+            };
+            let shot = shot.clone();
+            self.ticket = Some(worker.submit(move |_| {
+                let begun = Instant::now();
+                shot.render_on_cpu().map(|picture| (picture, begun.elapsed()))
+            }));
+        }
+        match self.worker.as_ref().and_then(Worker::poll) {
+            None => Verdict::Soon,
+            Some(Some(Ok((picture, took)))) => {
+                let made = Arc::new(picture);
+                (self.made, self.took) = (Some(made.clone()), Some(took));
+                Verdict::Made(made)
+            }
+            Some(Some(Err(error))) => Verdict::Failed(error),
+            Some(None) => Verdict::Failed(Error::Device("the CPU renderer ended".into())),
+        }
+    }
+}

@@ -1,0 +1,323 @@
+//! Hot reload: ramps, sprites, particle files, the preset and shaders are read again when they change on disk, whichever way
+//! they were saved.
+//!
+//! Pictures are decoded and shaders compiled on a thread of their own; what is good takes the place of what was shown, and what is
+//! not is said until it is mended.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use haze::preset::{MaterialNames, Preset};
+use haze::shader::{self, Sources};
+use haze::{Error, MaterialAssets};
+use haze_author::particle_files::Cache;
+use haze_demo::shot::Shot;
+use haze_demo::stage::{Stage, StageContext};
+
+use super::caches::{Caches, paths};
+use super::document::document::OnDisk;
+use super::easel::Easel;
+use super::pictures::{Pictures, names};
+use super::platform::assets;
+use super::platform::files::Watcher;
+use super::platform::worker::{Ticket, Worker};
+use super::session::Session;
+use super::sprite::source::detail_of;
+use crate::inputs::picture_files;
+use crate::recipe::recipes_of;
+
+/// What follows the files of a session.
+pub struct Reload {
+    watcher: Watcher,
+    worker: Worker<Loaded>,
+    /// What was asked for last.
+    asked: Asked,
+    /// Those that are on their way.
+    pictures: Option<Ticket>,
+    caches: Option<Ticket>,
+    shaders: Option<Shaders>,
+}
+
+/// The preset's file, and the pictures and particle files that its systems name.
+type Asked = (PathBuf, Vec<MaterialNames>, Vec<String>);
+
+/// A folder of shaders that someone works on.
+struct Shaders {
+    folder: PathBuf,
+    files: Vec<PathBuf>,
+    checking: Option<Ticket>,
+}
+
+/// What the worker has made.
+enum Loaded {
+    Pictures(Box<Preset>, Result<Vec<MaterialAssets>, Error>),
+    Caches(Box<Preset>, Result<Vec<Option<Cache>>, Error>),
+    /// With the files that are to be watched.
+    Shaders(Vec<PathBuf>, Result<(StageContext, Sources), Error>),
+}
+
+/// Which shaders are followed.
+#[derive(Clone, Debug)]
+pub enum ShaderFolder {
+    /// Those that the program has in it, nothing to follow.
+    None,
+    /// A folder that takes their place from the beginning.
+    Given(PathBuf),
+    /// The folder that the program's own were compiled from: the same until it changes.
+    Checkout(PathBuf),
+}
+
+impl ShaderFolder {
+    /// What is followed where none is given: the checkout's folder, when `cargo run` started the program.
+    pub fn of_checkout() -> Self {
+        let checkout = env!("CARGO_MANIFEST_DIR");
+        match std::env::var_os("CARGO_MANIFEST_DIR") {
+            Some(folder) if folder == checkout => Self::Checkout(Path::new(checkout).join("../../shaders")),
+            _ => Self::None,
+        }
+    }
+}
+
+impl Reload {
+    /// Follows the files of a session. `wake` is called from other threads when something has changed.
+    ///
+    /// # Errors
+    /// [`Error::Io`] where the system has no thread left.
+    pub fn new(
+        session: &Session,
+        shaders: &ShaderFolder,
+        easel: &Easel,
+        wake: impl Fn() + Send + Sync + 'static,
+    ) -> Result<Self, Error> {
+        let thread = |error| Error::Io { path: "a thread to follow files".into(), error };
+        let wake = Arc::new(wake);
+        let its = Arc::clone(&wake);
+        let mut reload = Self {
+            watcher: Watcher::new(move || its()).map_err(thread)?,
+            worker: Worker::new("haze reload", move || wake()).map_err(thread)?,
+            asked: asked(session),
+            pictures: None,
+            caches: None,
+            shaders: match shaders {
+                ShaderFolder::None => None,
+                ShaderFolder::Given(folder) | ShaderFolder::Checkout(folder) => Some(Shaders::new(folder)),
+            },
+        };
+        reload.watch(session);
+        // Those of another device, too.
+        if matches!(shaders, ShaderFolder::Given(_)) || session.shaders.is_some() {
+            reload.check_shaders(session, easel);
+        }
+        // What was written between the reading and the watching.
+        reload.load_pictures(session);
+        reload.load_caches(session);
+        Ok(reload)
+    }
+
+    /// Once a frame: sees what has changed, and puts what was loaded in its place.
+    pub fn advance(&mut self, session: &mut Session, easel: &Easel) {
+        if let Some(note) = self.watcher.note() {
+            session.messages.say("watch", note);
+        }
+        let now = asked(session);
+        if now != self.asked {
+            let has_caches = (&now.0, &now.2) != (&self.asked.0, &self.asked.2);
+            self.asked = now;
+            self.watch(session);
+            // What was written between the reading and the watching.
+            changed_on_disk(session);
+            look_again(session);
+            self.load_pictures(session);
+            if has_caches {
+                self.load_caches(session);
+            }
+        }
+        let (mut has_pictures, mut has_caches, mut has_shaders) = (false, false, false);
+        for file in self.watcher.poll() {
+            if self.shaders.as_ref().is_some_and(|shaders| shaders.files.contains(&file)) {
+                has_shaders = true;
+            } else if file == session.document.path() {
+                changed_on_disk(session);
+            } else if has_ending(&file, "png") {
+                has_pictures = true;
+                look_again(session);
+            } else if has_ending(&file, "json") {
+                look_again(session);
+            } else {
+                has_caches = true;
+            }
+        }
+        if has_pictures {
+            self.load_pictures(session);
+        }
+        if has_caches {
+            // Another frame may follow.
+            self.watch(session);
+            self.load_caches(session);
+        }
+        if has_shaders {
+            self.check_shaders(session, easel);
+        }
+        while let Some(loaded) = self.worker.poll() {
+            self.put(loaded, session, easel);
+        }
+    }
+
+    fn watch(&self, session: &Session) {
+        let shaders = self.shaders.iter().flat_map(|shaders| shaders.files.iter().cloned());
+        let folders = session.folders();
+        let pictures = picture_files(&session.document.preset);
+        // A sprite's recipe makes its detail, whether the preset names that or not.
+        let beside = pictures.iter().flat_map(|picture| recipes_of(picture).chain([detail_of(picture)]));
+        let beside = beside.flat_map(|file| folders.places(&file).collect::<Vec<_>>());
+        self.watcher.set(session.document.files(&folders).into_iter().chain(beside).chain(shaders));
+    }
+
+    /// Reads the pictures that the preset names; those of before stay where they cannot be had.
+    fn load_pictures(&mut self, session: &Session) {
+        let preset = Box::new(session.document.preset.clone());
+        let path = session.document.path().to_owned();
+        let (old, folders) = (session.pictures.clone(), session.folders());
+        let ticket = self.worker.submit(move |_| {
+            let loaded = assets::pictures(&preset, &path, &folders).map(|loaded| old.keep_same(loaded));
+            Loaded::Pictures(preset, loaded)
+        });
+        // Only the last are wanted.
+        if let Some(before) = self.pictures.replace(ticket) {
+            before.cancel();
+        }
+    }
+
+    /// Reads the particle files that the preset names; as with pictures.
+    fn load_caches(&mut self, session: &Session) {
+        let preset = Box::new(session.document.preset.clone());
+        let (path, folders) = (session.document.path().to_owned(), session.folders());
+        let ticket = self.worker.submit(move |_| {
+            let loaded = assets::particles(&preset, &path, &folders);
+            Loaded::Caches(preset, loaded)
+        });
+        if let Some(before) = self.caches.replace(ticket) {
+            before.cancel();
+        }
+    }
+
+    /// Compiles the shaders, and what the preset needs of them, elsewhere.
+    pub fn check_shaders(&mut self, session: &Session, easel: &Easel) {
+        let Some(shaders) = &mut self.shaders else { return };
+        let (folder, context) = (shaders.folder.clone(), easel.context());
+        let shot = session.shot(glam::UVec2::new(64, 36));
+        let ticket = self.worker.submit(move |_| {
+            let mut files = embedded_names(&folder);
+            let checked = check(&folder, &context, &shot, &mut files);
+            if let Err(Error::Io { path, .. } | Error::Shader { path, .. }) = &checked
+                && path.starts_with(&folder)
+            {
+                // One that could not be read is to be watched like those that could.
+                add(&mut files, path);
+            }
+            Loaded::Shaders(files, checked)
+        });
+        if let Some(before) = shaders.checking.replace(ticket) {
+            before.cancel();
+        }
+    }
+
+    fn put(&mut self, loaded: Option<Loaded>, session: &mut Session, easel: &Easel) {
+        match loaded {
+            Some(Loaded::Pictures(preset, Ok(loaded))) => {
+                session.pictures = Pictures::new(&preset, loaded);
+                session.messages.withdraw("pictures");
+            }
+            Some(Loaded::Caches(preset, Ok(loaded))) => {
+                session.caches = Caches::new(&preset, loaded);
+                session.messages.withdraw("caches");
+            }
+            Some(Loaded::Caches(_, Err(error))) => session.messages.complain("caches", error),
+            // It is read again when it is written.
+            Some(Loaded::Pictures(_, Err(_))) if session.sprites.is_baking() => {}
+            Some(Loaded::Pictures(_, Err(error))) => session.messages.complain("pictures", error),
+            Some(Loaded::Shaders(files, checked)) => {
+                if let Some(shaders) = &mut self.shaders {
+                    shaders.files = files;
+                }
+                self.watch(session);
+                let put = checked.and_then(|(context, sources)| easel.set_context(context).map(|()| sources));
+                match put {
+                    Ok(sources) => {
+                        session.shaders = Some(sources);
+                        session.messages.withdraw("shaders");
+                    }
+                    Err(error) => session.messages.complain("shaders", error),
+                }
+            }
+            None => {
+                session.messages.complain("reload", "a file cannot be read: the program has a mistake in it");
+            }
+        }
+    }
+}
+
+impl Shaders {
+    fn new(folder: &Path) -> Self {
+        Self { folder: folder.into(), files: embedded_names(folder), checking: None }
+    }
+}
+
+fn asked(session: &Session) -> Asked {
+    let preset = &session.document.preset;
+    (session.document.path().to_owned(), names(preset), paths(preset))
+}
+
+/// Where files would take the place of embedded ones.
+fn embedded_names(folder: &Path) -> Vec<PathBuf> {
+    shader::sources().iter().map(|(name, _)| folder.join(name)).collect()
+}
+
+/// A context with the folder's shaders that draws the shot. Adds the files that are imported to `files`.
+fn check(
+    folder: &Path,
+    context: &StageContext,
+    shot: &Shot,
+    files: &mut Vec<PathBuf>,
+) -> Result<(StageContext, Sources), Error> {
+    let sources = assets::shaders(folder)?;
+    sources.paths().for_each(|path| add(files, path));
+    let context = context.with_shaders(&sources)?;
+    Stage::new(&context, false)?.warm_up(shot)?;
+    Ok((context, sources))
+}
+
+fn add(files: &mut Vec<PathBuf>, path: &Path) {
+    if !files.iter().any(|file| file == path) {
+        files.push(path.to_owned());
+    }
+}
+
+/// Something was written that ramps or sprites are made from, or into.
+fn look_again(session: &mut Session) {
+    session.ramps.look_again();
+    session.sprites.look_again();
+}
+
+fn has_ending(file: &Path, ending: &str) -> bool {
+    file.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending))
+}
+
+/// The preset's file is another: it is loaded if nothing of it is changed here, else someone has to say which is wanted.
+fn changed_on_disk(session: &mut Session) {
+    match session.document.on_disk() {
+        OnDisk::Same => {
+            session.is_changed_on_disk = false;
+            session.messages.withdraw("preset");
+        }
+        OnDisk::Gone => {
+            let name = session.document.path().display();
+            session.messages.complain("preset", format!("{name}: gone; Save writes it anew"));
+        }
+        OnDisk::Changed if session.document.is_dirty() => session.is_changed_on_disk = true,
+        OnDisk::Changed => session.revert(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,150 @@
+//! Any setting by its name, or by what its tooltip says.
+
+use haze::preset::Preset;
+use haze::settings::{path_of, walk};
+use haze_author::preset::Tooltips;
+
+use super::lights::ShownLights;
+use super::look::{LOOK, Of};
+use super::show::Tab;
+
+/// Most that are listed.
+const MOST: usize = 12;
+
+/// What is looked for, while it is.
+#[derive(Default)]
+pub struct Search {
+    pub is_open: bool,
+    pub text: String,
+    /// Which of the settings that are listed.
+    pub chosen: usize,
+    /// The setting that was found last, and for how many frames it is still to be shown.
+    pub found: Option<(String, u32)>,
+}
+
+/// Frames that it takes for folded parts to open and scroll.
+const FRAMES: u32 = 60;
+
+impl Search {
+    pub fn open(&mut self) {
+        *self = Self { is_open: true, ..Self::default() };
+    }
+
+    /// Goes to a setting.
+    pub fn go_to(&mut self, path: String) {
+        *self = Self { found: Some((path, FRAMES)), ..Self::default() };
+    }
+
+    /// To be called once a frame; true while a setting is to be brought into sight.
+    pub fn advance(&mut self) -> bool {
+        if let Some((_, frames)) = &mut self.found {
+            *frames -= 1;
+            if *frames == 0 {
+                self.found = None;
+            }
+        }
+        self.found.is_some()
+    }
+}
+
+/// A setting that was found.
+pub struct Found {
+    pub path: String,
+    pub name: String,
+    /// What it is part of.
+    pub place: String,
+    pub tooltip: String,
+    /// Where it is shown.
+    pub tab: Tab,
+}
+
+/// Settings whose names hold all words of a text, those that begin with it first; then those whose tooltips do. Those that make a
+/// look are found by the names that they have there, too; `lights` knows which of them lead.
+pub fn matches(preset: &Preset, tooltips: &Tooltips, lights: &ShownLights, text: &str) -> Vec<Found> {
+    let words: Vec<_> = text.split_whitespace().map(str::to_lowercase).collect();
+    let holds = |text: &str| words.iter().all(|word| text.to_lowercase().contains(word.as_str()));
+    let begins = |name: &str| name.starts_with(&text.trim().to_lowercase());
+    let mut found = Vec::new();
+    for (index, system) in preset.systems.iter().enumerate() {
+        for control in LOOK.iter().filter(|control| holds(control.name)) {
+            let Some(path) = control.path(index, lights.known_key(index)) else { continue };
+            let (is_made, tooltip) = match control.of {
+                Of::Made(made) => (true, made.tooltip.to_owned()),
+                _ => (false, path.clone()),
+            };
+            // Under its own name it is found below.
+            if is_made || !path.ends_with(&format!(".{}", control.name.replace(' ', "_"))) {
+                let place = if preset.systems.len() > 1 { format!("look of {}", system.name) } else { "look".into() };
+                let (name, rank) = (control.name.to_owned(), i32::from(!begins(control.name)));
+                found.push((rank, Found { path, name, place, tooltip, tab: Tab::Look }));
+            }
+        }
+    }
+    walk(&mut preset.clone(), &mut |steps, _| {
+        let plain = steps.iter().map(|step| step.0).collect::<Vec<_>>().join(".");
+        let path = path_of(steps);
+        // The preset's own name and words are on no tab.
+        let Some((place, name)) = path.rsplit_once('.') else { return };
+        let tooltip = tooltips.field(&plain).unwrap_or_default();
+        let spelled = path.replace('_', " ");
+        let own = name.replace('_', " ");
+        let rank = match () {
+            () if begins(&own) => 0,
+            () if holds(&own) => 1,
+            () if holds(&spelled) => 2,
+            () if holds(tooltip) => 3,
+            () => return,
+        };
+        let (name, place, tooltip, tab) = (name.into(), place.into(), tooltip.into(), tab_of(&path));
+        found.push((rank, Found { path, name, place, tooltip, tab }));
+    });
+    found.sort_by_key(|(rank, _)| *rank);
+    found.truncate(MOST);
+    found.into_iter().map(|(_, found)| found).collect()
+}
+
+/// Groups of a system's settings that are with its smoke; the others are advanced.
+pub const ON_SMOKE: [&str; 4] = ["diffuse", "soft_scatter", "specular_scatter", "soft_fade"];
+
+/// The tab that a setting is on.
+fn tab_of(path: &str) -> Tab {
+    let is_in = |part: &&str| path.contains(&format!(".{part}."));
+    if !path.starts_with("systems") {
+        Tab::Light
+    } else if ["emitter", "cache", "material"].iter().chain(&ON_SMOKE).any(is_in) {
+        Tab::Smoke
+    } else {
+        Tab::Advanced
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haze::settings::values;
+
+    fn first(text: &str) -> String {
+        let preset = Preset::load("column").unwrap();
+        let found = matches(&preset, &Tooltips::of::<Preset>(), &ShownLights::default(), text);
+        found.first().map(|found| found.path.clone()).unwrap_or_default()
+    }
+
+    #[test]
+    fn settings_are_found_by_name_by_place_and_by_what_they_mean() {
+        assert_eq!(first("boost"), "systems[0].settings.boost");
+        assert_eq!(first("fade sc"), "systems[0].settings.soft_fade.fade_scale");
+        assert_eq!(first("specular intensity"), "systems[0].settings.specular_scatter.intensity");
+        assert_eq!(first("Births per second"), "systems[0].emitter.rate");
+        assert_eq!(first("no such thing"), "");
+    }
+
+    #[test]
+    fn every_setting_can_be_gone_to() {
+        let preset = Preset::load("column").unwrap();
+        let tooltips = Tooltips::of::<Preset>();
+        for (path, _) in values(&preset).into_iter().filter(|(path, _)| path.contains('.')) {
+            let found = matches(&preset, &tooltips, &ShownLights::default(), &path.replace('_', " "));
+            assert!(found.iter().any(|found| found.path == path), "{path}");
+        }
+    }
+}

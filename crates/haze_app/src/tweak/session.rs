@@ -1,0 +1,305 @@
+//! What is edited and how it is looked at: all that is worth keeping when a device is lost.
+
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
+
+use eframe::egui;
+use glam::UVec2;
+use haze::preset::{PictureFolders, Preset};
+use haze::settings::{ShadeTree, Value, values};
+use haze::shader::Sources;
+use haze::{Error, Light, MaterialAssets};
+use haze_author::particle_files::Cache;
+use haze_author::preset::Tooltips;
+use haze_demo::shot::Shot;
+
+use super::caches::Caches;
+use super::compare::Compare;
+use super::document::difference::{changed_fields, copy_field};
+use super::document::document::Document;
+use super::gauge::Gauge;
+use super::hints::Hints;
+use super::inspect::Inspect;
+use super::lights::ShownLights;
+use super::messages::Messages;
+use super::performance::Performance;
+use super::picture_thumbnails::PictureThumbnails;
+use super::pictures::Pictures;
+use super::platform::assets::{self, Loaded};
+use super::platform::wake::Wake;
+use super::playback::Playback;
+use super::ramp_files::RampFiles;
+use super::referee::Referee;
+use super::search::Search;
+use super::show::{Show, Tab};
+use super::sprite::draw::Painted;
+use super::sprite::files::SpriteFiles;
+
+pub struct Session {
+    /// What is edited; panels change its preset directly.
+    pub document: Document,
+    pub playback: Playback,
+    pub show: Show,
+    pub compare: Compare,
+    pub gauge: Gauge,
+    pub referee: Referee,
+    pub inspect: Inspect,
+    pub search: Search,
+    pub hints: Hints,
+    pub messages: Messages,
+    pub performance: Performance,
+    pub tooltips: Tooltips,
+    /// What the stages of the shading are.
+    pub stages: Tooltips,
+    pub thumbnails: PictureThumbnails,
+    /// The flipbook of the page of sprites.
+    pub flipbook: Option<Painted>,
+    /// For what is done on other threads for longer than one window lives.
+    pub wake: Wake,
+    /// A folder of pictures that presets share.
+    pub assets: Option<PathBuf>,
+    /// A picture of the window is wanted here; then it closes.
+    pub screenshot: Option<PathBuf>,
+    /// As last loaded well.
+    pub pictures: Pictures,
+    pub caches: Caches,
+    /// Ramps whose stops are changed.
+    pub ramps: RampFiles,
+    /// Sprites whose recipes are changed.
+    pub sprites: SpriteFiles,
+    /// An author's, as last compiled well; those that the program has in it if none.
+    pub shaders: Option<Sources>,
+    /// Another program has written the file while something was changed here: which of the two is wanted is not known.
+    pub is_changed_on_disk: bool,
+    changed: Changed,
+    /// There while the second picture has settings of its own.
+    second: Option<Second>,
+}
+
+/// Paths of the fields that differ from the preset on disk, and the two that they were found between.
+struct Changed {
+    paths: HashSet<String>,
+    saved: Preset,
+    preset: Preset,
+}
+
+/// What the second picture has, by path, where it is another, and the two settings that this was found between.
+struct Second {
+    apart: HashMap<String, Value>,
+    settings: Preset,
+    preset: Preset,
+}
+
+impl Session {
+    /// Opens a built-in preset by name, or a file. Its pictures are looked for beside it and in `assets`.
+    pub fn open(source: &Path, assets: Option<PathBuf>) -> Result<Self, Error> {
+        let document = Document::open(source)?;
+        let preset = &document.preset;
+        let folders = PictureFolders::beside(source).and_shared(assets.clone());
+        let (materials, caches) = assets::all(preset, source, &folders)?;
+        Ok(Self {
+            assets,
+            playback: Playback::at(preset.time),
+            show: Show::default(),
+            compare: Compare::default(),
+            gauge: Gauge::default(),
+            referee: Referee::default(),
+            inspect: Inspect::default(),
+            search: Search::default(),
+            hints: Hints::default(),
+            messages: Messages::default(),
+            performance: Performance::default(),
+            tooltips: Tooltips::of::<Preset>(),
+            stages: Tooltips::of::<ShadeTree>(),
+            thumbnails: PictureThumbnails::default(),
+            flipbook: None,
+            wake: Wake::default(),
+            screenshot: None,
+            pictures: Pictures::new(preset, materials),
+            caches: Caches::new(preset, caches),
+            ramps: RampFiles::default(),
+            sprites: SpriteFiles::default(),
+            shaders: None,
+            is_changed_on_disk: false,
+            changed: Changed { paths: HashSet::new(), saved: preset.clone(), preset: preset.clone() },
+            second: None,
+            document,
+        })
+    }
+
+    /// Another window shows it from now on: what is of the last one's device is made anew.
+    pub fn follow_window(&mut self, context: &egui::Context) {
+        self.wake.follow(context);
+        (self.thumbnails, self.flipbook) = (PictureThumbnails::default(), None);
+    }
+
+    /// Where pictures are looked for.
+    pub fn folders(&self) -> PictureFolders {
+        PictureFolders::beside(self.document.path()).and_shared(self.assets.clone())
+    }
+
+    /// What is to be seen now.
+    pub fn shot(&self, size: UVec2) -> Shot {
+        let mut preset = self.document.preset.clone();
+        preset.time = self.playback.time;
+        preset.lights = self.show.lights.shown(&preset.lights);
+        let (materials, caches) = (self.materials(), self.caches());
+        Shot { preset, size, shade_tree: self.show.stage, materials, caches }
+    }
+
+    /// The pictures of every system.
+    pub fn materials(&self) -> Vec<MaterialAssets> {
+        let mut materials = self.pictures.of(&self.document.preset);
+        self.ramps.apply(&self.document.preset, &mut materials);
+        self.sprites.apply(&self.document.preset, &mut materials);
+        materials
+    }
+
+    /// The particles of every system that has files of them.
+    pub fn caches(&self) -> Vec<Option<Cache>> {
+        self.caches.of(&self.document.preset)
+    }
+
+    /// Bakes what was changed of ramps, and writes it unless a control is held.
+    pub fn follow_ramps(&mut self, is_held: bool) {
+        let folders = self.folders();
+        let mut done = self.ramps.advance(&mut self.document, &folders, is_held);
+        if !is_held && done.is_ok() {
+            done = self.ramps.make_own(&mut self.document);
+        }
+        if let Err(error) = done {
+            self.messages.complain("ramp", error);
+        }
+    }
+
+    /// Has baked what was changed of sprites, whole and written unless a control is held.
+    fn follow_sprites(&mut self, is_held: bool) {
+        let mut done = self.sprites.advance(&mut self.document, is_held);
+        if !is_held && done.is_ok() {
+            done = self.sprites.make_own(&mut self.document);
+        }
+        if let Err(error) = done {
+            self.messages.complain("sprite", error);
+        }
+    }
+
+    /// The preset as it is on disk; as it is here where that is not known.
+    pub fn saved(&self) -> &Preset {
+        self.document.saved().unwrap_or(&self.document.preset)
+    }
+
+    /// Paths of the fields that differ from the preset on disk.
+    pub fn changed(&self) -> &HashSet<String> {
+        &self.changed.paths
+    }
+
+    /// Sets a field, a group or a list back to what is on disk.
+    pub fn set_back(&mut self, path: &str) {
+        let saved = self.saved().clone();
+        copy_field(&saved, &mut self.document.preset, path);
+    }
+
+    /// What the second picture of a comparison has, by path, where it is another; `None` without settings of its own.
+    pub fn second(&self) -> Option<&HashMap<String, Value>> {
+        self.second.as_ref().map(|second| &second.apart)
+    }
+
+    /// Gives a field, a group or a list what the second picture has.
+    pub fn take(&mut self, path: &str) {
+        if let Some(second) = self.compare.against.as_ref().and_then(|against| against.settings(self.saved())).cloned()
+        {
+            copy_field(&second, &mut self.document.preset, path);
+        }
+    }
+
+    /// Takes note of what the panels changed. `is_held`: a control is still being moved, or typed into.
+    pub fn track(&mut self, is_held: bool) {
+        let is_held = is_held || self.show.tab == Tab::Ramps && self.ramps.is_editing();
+        self.follow_ramps(is_held);
+        self.follow_sprites(is_held);
+        self.document.track(is_held);
+        let (saved, preset) = (self.saved(), &self.document.preset);
+        if (&self.changed.saved, &self.changed.preset) != (saved, preset) {
+            let paths = changed_fields(saved, preset).into_iter().collect();
+            self.changed = Changed { paths, saved: saved.clone(), preset: preset.clone() };
+        }
+        let second = self.compare.against.as_ref().and_then(|against| against.settings(self.saved()));
+        let Some(settings) = second else {
+            self.second = None;
+            return;
+        };
+        let preset = &self.document.preset;
+        if self.second.as_ref().is_none_or(|known| (&known.settings, &known.preset) != (settings, preset)) {
+            let paths: HashSet<_> = changed_fields(settings, preset).into_iter().collect();
+            let apart = values(settings).into_iter().filter(|(path, _)| paths.contains(path)).collect();
+            self.second = Some(Second { apart, settings: settings.clone(), preset: preset.clone() });
+        }
+    }
+
+    /// Says why what was typed cannot be, or takes that back when something else was.
+    pub fn refuse(&mut self, refused: Option<String>, is_edited: bool) {
+        match refused {
+            Some(refused) => self.messages.complain("typed", refused),
+            None if is_edited => self.messages.withdraw("typed"),
+            None => {}
+        }
+    }
+
+    /// Does something with the selected light, if there is one.
+    pub fn change_light(&mut self, change: impl FnOnce(&mut ShownLights, &mut Vec<Light>, usize)) {
+        let lights = &mut self.document.preset.lights;
+        if let Some(index) = self.show.lights.selected.filter(|&index| index < lights.len()) {
+            change(&mut self.show.lights, lights, index);
+        }
+    }
+
+    /// Adds a light, and selects it.
+    pub fn add_light(&mut self, light: Light) {
+        let lights = &mut self.document.preset.lights;
+        let end = lights.len();
+        self.show.lights.insert(lights, end, light);
+    }
+
+    pub fn undo(&mut self) {
+        if let Some(name) = self.document.undo() {
+            self.messages.say("undo", format!("undone: {name}"));
+        }
+    }
+
+    pub fn redo(&mut self) {
+        if let Some(name) = self.document.redo() {
+            self.messages.say("undo", format!("done again: {name}"));
+        }
+    }
+
+    /// Reads the file again; what was changed is one step back.
+    pub fn revert(&mut self) {
+        self.is_changed_on_disk = false;
+        match self.document.revert() {
+            Ok(()) => self.messages.withdraw("preset"),
+            Err(error) => self.messages.complain("preset", error),
+        }
+    }
+
+    /// Goes on with another document, as at the beginning.
+    pub fn put(&mut self, document: Document, (materials, caches): Loaded) {
+        self.pictures = Pictures::new(&document.preset, materials);
+        self.caches = Caches::new(&document.preset, caches);
+        self.playback = Playback::at(document.preset.time);
+        (self.compare, self.show.system, self.is_changed_on_disk) = (Compare::default(), 0, false);
+        self.ramps = RampFiles::default();
+        self.sprites.forget();
+        self.show.lights.forget_keys();
+        let stale = ["preset", "ramp", "sprite", "pictures", "caches", "file"];
+        stale.into_iter().for_each(|about| self.messages.withdraw(about));
+        self.document = document;
+    }
+
+    /// Makes it the preset of a text.
+    pub fn paste(&mut self, text: &str) {
+        match self.document.paste(text) {
+            Ok(()) => self.messages.say("file", "pasted a preset"),
+            Err(error) => self.messages.complain("file", format!("nothing is pasted: {error}")),
+        }
+    }
+}

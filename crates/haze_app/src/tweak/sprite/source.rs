@@ -1,0 +1,147 @@
+//! What a sprite is made from: read, checked, written and copied.
+
+use std::path::{Path, PathBuf};
+
+use haze::assets::json;
+use haze::builtin::{self, Builtin};
+use haze::picture::decode_png;
+use haze::sprite::SpriteLayout;
+use haze::{Error, FieldError};
+use haze_author::sprite::bake::{BakedSprite, SpriteRecipe};
+use haze_author::sprite::check::check;
+use image::RgbaImage;
+
+use crate::tweak::platform::assets::sprite_recipe;
+use crate::tweak::platform::files::{self, Effort, Stamp, read_png, write_png};
+
+/// What a sprite is to who wants to change it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Source {
+    /// Not known yet.
+    Reading,
+    /// It comes with the program.
+    BuiltIn(SpriteRecipe),
+    /// It can be changed.
+    Recipe(SpriteRecipe),
+    /// The recipe beside it makes another picture: one of the two was changed elsewhere.
+    Apart(SpriteRecipe),
+    /// No recipe lies beside it.
+    Painted,
+    /// It cannot be read.
+    Missing,
+}
+
+/// The picture's file, its detail's and the recipe's, as they were.
+pub type Stamps = [Option<Stamp>; 3];
+
+/// What was found of a sprite.
+pub struct Looked {
+    pub source: Source,
+    pub stamps: Stamps,
+    /// What a check of the picture says, line by line.
+    pub findings: Vec<String>,
+    /// What is wrong with the recipe's file.
+    pub broken: Option<String>,
+}
+
+/// `mine.sprite.json` of `mine.png`.
+pub fn recipe_of(picture: &Path) -> PathBuf {
+    picture.with_extension("sprite.json")
+}
+
+/// `mine.detail.png` of `mine.png`.
+pub fn detail_of(picture: &Path) -> PathBuf {
+    picture.with_extension("detail.png")
+}
+
+pub fn stamps(picture: &Path) -> Stamps {
+    [picture, &detail_of(picture), &recipe_of(picture)].map(Stamp::of)
+}
+
+/// Reads a sprite and its recipe. `layout` is how the preset has it.
+pub fn look(name: &str, picture: &Path, layout: SpriteLayout) -> Looked {
+    // Before they are read: written in between, they are found to have changed.
+    let stamps = stamps(picture);
+    let (source, findings, broken) = match builtin::find(builtin::SPRITES, name) {
+        Some(found) => built_in(found).unwrap_or_else(|error| (Source::Missing, vec![error.to_string()], None)),
+        None => file(picture, layout),
+    };
+    Looked { source, stamps, findings, broken }
+}
+
+type Found = (Source, Vec<String>, Option<String>);
+
+fn built_in(found: &Builtin) -> Result<Found, Error> {
+    let (path, recipe) = (builtin::path(found.name), recipe_of_built_in(found.name)?);
+    let findings = findings(&path, &decode_png(&path, found.bytes)?.to_rgba8(), recipe.layout());
+    Ok((Source::BuiltIn(recipe), findings, None))
+}
+
+fn file(picture: &Path, layout: SpriteLayout) -> Found {
+    let sheet = match read_png(picture) {
+        Ok(sheet) => sheet.to_rgba8(),
+        Err(error) => return (Source::Missing, vec![error.to_string()], None),
+    };
+    let recipe = recipe_of(picture);
+    let (source, layout, broken) = match files::exists(&recipe).then(|| sprite_recipe(&recipe)) {
+        None => (Source::Painted, layout, None),
+        Some(Err(error)) => (Source::Painted, layout, Some(error.to_string())),
+        Some(Ok(recipe)) if makes(&recipe, &sheet) => {
+            let layout = recipe.layout();
+            (Source::Recipe(recipe), layout, None)
+        }
+        Some(Ok(recipe)) => (Source::Apart(recipe), layout, None),
+    };
+    (source, findings(picture, &sheet, layout), broken)
+}
+
+/// Whether a recipe makes a sheet.
+fn makes(recipe: &SpriteRecipe, sheet: &RgbaImage) -> bool {
+    if sheet.dimensions() != (recipe.size * recipe.columns, recipe.size * recipe.rows) {
+        return false;
+    }
+    if recipe.version < 2 {
+        // Of a minute's work the first frame tells enough.
+        let frame = recipe.bake_frame(0.0).picture;
+        let size = frame.size.x as usize;
+        return frame.texels.chunks(size).zip(sheet.rows()).all(|(ours, theirs)| ours.iter().eq(theirs.take(size)));
+    }
+    recipe.bake(|_| Ok::<_, FieldError>(())).is_ok_and(|baked| baked.picture == *sheet)
+}
+
+/// What a check says of a sheet.
+pub fn findings(path: &Path, sheet: &RgbaImage, layout: SpriteLayout) -> Vec<String> {
+    match check(path, sheet, layout) {
+        Ok(findings) => findings.into_iter().map(|finding| format!("{}: {}", finding.name, finding.what)).collect(),
+        Err(error) => vec![error.to_string()],
+    }
+}
+
+/// The recipe first: of the three the pictures can be made again.
+pub fn write(picture: &Path, recipe: &SpriteRecipe, baked: BakedSprite) -> Result<(), Error> {
+    files::write(&recipe_of(picture), recipe.to_text().as_bytes())?;
+    write_png(&detail_of(picture), &baked.detail.into(), Effort::Small)?;
+    write_png(picture, &baked.picture.into(), Effort::Small)
+}
+
+/// The recipe of a built-in sprite.
+pub fn recipe_of_built_in(name: &str) -> Result<SpriteRecipe, Error> {
+    json::parse(&builtin::path(name), builtin::find(builtin::SPRITES, name).map_or("", |builtin| builtin.recipe))
+}
+
+/// Writes a copy of a built-in sprite beside a preset, under a name that is free, and gives that.
+pub fn copy(name: &str, preset: &Path) -> Result<String, Error> {
+    let folder = preset.parent().unwrap_or(Path::new(""));
+    let file = files::own_name(name, |file| {
+        let picture = folder.join(file);
+        stamps(&picture) == [None; 3]
+    });
+    let picture = folder.join(&file);
+    let find = |list| builtin::find(list, name);
+    if let Some((sprite, detail)) = find(builtin::SPRITES).zip(find(builtin::DETAILS)) {
+        files::write(&recipe_of(&picture), sprite.recipe.as_bytes())?;
+        files::write(&detail_of(&picture), detail.bytes)?;
+        files::write(&picture, sprite.bytes)?;
+    }
+    Ok(file)
+}

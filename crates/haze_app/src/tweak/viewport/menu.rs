@@ -1,0 +1,75 @@
+//! What a right click on the picture offers.
+
+use eframe::egui::{Pos2, Response, Ui};
+use glam::Vec3;
+use haze::{Light, LightKind};
+
+use super::lens::Lens;
+use crate::tweak::action::InView;
+use crate::tweak::lights::fresh;
+use crate::tweak::session::Session;
+use crate::tweak::smoke::Smoke;
+
+/// The menu, and where it was asked for.
+#[derive(Default)]
+pub struct Menu {
+    pub at: Option<Pos2>,
+}
+
+/// What is added by the menu.
+const ADDED: [(LightKind, &str); 3] = [
+    (LightKind::Point, "Add point light here"),
+    (LightKind::Spot, "Add spot light here"),
+    (LightKind::Directional, "Add sun from here"),
+];
+
+impl Menu {
+    /// Draws the menu while it is open; gives what is left to do.
+    pub fn show(
+        &mut self,
+        response: &Response,
+        lens: &Lens,
+        session: &mut Session,
+        smoke: &mut Smoke,
+    ) -> Option<InView> {
+        if response.secondary_clicked() {
+            self.at = response.interact_pointer_pos();
+        }
+        let at = self.at?;
+        let mut asked = None;
+        response.context_menu(|ui| asked = entries(ui, at, lens, session, smoke));
+        asked
+    }
+}
+
+fn entries(ui: &mut Ui, at: Pos2, lens: &Lens, session: &mut Session, smoke: &mut Smoke) -> Option<InView> {
+    for (kind, name) in ADDED {
+        if ui.button(name).clicked() {
+            let middle = smoke.of(session).bounds().centre();
+            let light = here(fresh(kind, &session.document.preset.lights), at, lens, middle);
+            session.add_light(light);
+        }
+    }
+    ui.separator();
+    let mut asked = None;
+    for (action, name) in [(InView::Behind, "Behind the smoke"), (InView::Frame, "Frame")] {
+        if ui.button(name).clicked() {
+            asked = Some(action);
+        }
+    }
+    asked
+}
+
+/// A light on the plane through the middle of the smoke that faces the viewer, under the pointer; a sun from there on its dome.
+fn here(mut light: Light, at: Pos2, lens: &Lens, middle: Vec3) -> Light {
+    let (centre, radius) = lens.dome;
+    light.position = lens.facing(at, middle);
+    let to_middle = middle - light.position;
+    light.direction = match light.kind {
+        LightKind::Directional => centre - lens.ray(at).on_sphere(centre, radius, true),
+        _ if to_middle.length() > 0.1 => to_middle,
+        _ => lens.ahead,
+    };
+    light.direction = light.direction.normalize_or(Vec3::NEG_Y);
+    light
+}

@@ -1,0 +1,152 @@
+//! What is drawn over the picture to show how it is made.
+
+use eframe::egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
+use glam::{UVec2, Vec3};
+use haze::{Bounds, Particle};
+
+use super::ink::Ink;
+use super::lens::Lens;
+use crate::tweak::easel::Texels;
+use crate::tweak::show::{Overlay, Show};
+use crate::tweak::smoke::Smoke;
+
+/// Most particles of all systems that are drawn.
+const MOST: usize = 4096;
+/// Closest that lines of the grid stand, points.
+const CLOSEST: f32 = 4.0;
+
+/// Colours of systems, over and over.
+const SYSTEMS: [Color32; 4] = [
+    Color32::from_rgb(255, 196, 84),
+    Color32::from_rgb(110, 214, 255),
+    Color32::from_rgb(186, 255, 120),
+    Color32::from_rgb(255, 140, 214),
+];
+
+/// Draws what is on. `texels` are of each system in the last picture.
+pub fn draw(ink: &Ink<'_>, lens: &Lens, show: &Show, smoke: &Smoke, texels: &[Option<Texels>]) {
+    let systems = smoke.systems.len().max(1);
+    for (index, (particles, bounds)) in smoke.systems.iter().zip(&smoke.bounds).enumerate() {
+        let colour = SYSTEMS[index % SYSTEMS.len()];
+        if show.overlays.has(Overlay::Particles) {
+            points(ink.0, lens, particles, MOST / systems);
+        }
+        if show.overlays.has(Overlay::Bounds) && !bounds.is_empty() {
+            for [from, to] in edges(bounds) {
+                if let Some(ends) = lens.segment(from, to) {
+                    ink.line(&ends, 1.0, colour);
+                }
+            }
+        }
+        let Some(texels) = texels.get(index).copied().flatten() else { continue };
+        if show.overlays.has(Overlay::LitPlane) {
+            plane(ink, lens, bounds, texels.lit_depth, colour);
+        }
+        if show.overlays.has(Overlay::Grid) {
+            grid(ink.0, lens.rect, &texels, colour);
+        }
+    }
+}
+
+/// The twelve edges of a box.
+fn edges(bounds: &Bounds) -> impl Iterator<Item = [Vec3; 2]> {
+    let (min, max) = (bounds.min, bounds.max);
+    let corner = move |index: usize| {
+        Vec3::from([0, 1, 2].map(|axis| if index & (1 << axis) == 0 { min[axis] } else { max[axis] }))
+    };
+    let starts = (0..3).flat_map(|axis| (0..8).map(move |index| (index, 1 << axis)));
+    starts.filter(|(index, bit)| index & bit == 0).map(move |(index, bit)| [corner(index), corner(index | bit)])
+}
+
+/// Where the plane that faces the viewer at a depth cuts a box, in order round the middle.
+fn section(bounds: &Bounds, lens: &Lens, depth: f32) -> Vec<Pos2> {
+    let cut = |[from, to]: [Vec3; 2]| {
+        let (a, b) = (lens.depth(from) - depth, lens.depth(to) - depth);
+        (a * b < 0.0).then(|| from.lerp(to, a / (a - b))).and_then(|at| lens.project(at))
+    };
+    let mut corners: Vec<_> = edges(bounds).filter_map(cut).collect();
+    let middle = corners.iter().fold(Vec2::ZERO, |sum, at| sum + at.to_vec2()) / corners.len().max(1) as f32;
+    corners.sort_by(|a, b| (a.to_vec2() - middle).angle().total_cmp(&(b.to_vec2() - middle).angle()));
+    corners
+}
+
+fn plane(ink: &Ink<'_>, lens: &Lens, bounds: &Bounds, depth: f32, colour: Color32) {
+    let mut corners = section(bounds, lens, depth);
+    let Some(&first) = corners.first() else { return };
+    ink.0.add(Shape::convex_polygon(corners.clone(), colour.gamma_multiply(0.18), Stroke::NONE));
+    corners.push(first);
+    ink.line(&corners, 1.0, colour);
+    let lowest = corners.iter().copied().fold(first, |low, at| if at.y > low.y { at } else { low });
+    label(ink.0, lens.rect, lowest + vec2(4.0, -18.0), &format!("lit at {depth:.2} m"));
+}
+
+/// A mark for every so many particles.
+fn points(painter: &Painter, lens: &Lens, particles: &[Particle], most: usize) {
+    let mut mesh = Mesh::default();
+    let step = particles.len().div_ceil(most.max(1)).max(1);
+    for particle in particles.iter().step_by(step).filter(|particle| particle.is_visible()) {
+        if let Some(at) = lens.project(particle.position).filter(|at| lens.rect.contains(*at)) {
+            mesh.add_colored_rect(Rect::from_center_size(at, Vec2::splat(5.0)), Color32::from_black_alpha(160));
+            mesh.add_colored_rect(Rect::from_center_size(at, Vec2::splat(3.0)), age(particle.age));
+        }
+    }
+    painter.add(mesh);
+}
+
+/// Warm when young, cold when old.
+fn age(age: f32) -> Color32 {
+    Color32::from_rgb(255, 214, 92).lerp_to_gamma(Color32::from_rgb(92, 130, 255), age.clamp(0.0, 1.0))
+}
+
+/// The texels of a target; where they are too small to be told apart, every so many.
+fn grid(painter: &Painter, rect: Rect, texels: &Texels, colour: Color32) {
+    let pixel = rect.width() / texels.picture.x.max(1) as f32;
+    let texel = pixel * texels.scale as f32;
+    let every = (CLOSEST / texel).ceil().max(1.0) as u32;
+    let place = |x: i32, y: i32| pos2(rect.left() + x as f32 * texel, rect.top() + y as f32 * texel);
+    let (start, end) = (texels.origin, texels.origin + texels.size.as_ivec2());
+    let shown = Rect::from_two_pos(place(start.x, start.y), place(end.x, end.y));
+    let line = Stroke::new(1.0, colour.gamma_multiply(0.3));
+    for column in (0..=texels.size.x).step_by(every as usize) {
+        painter.vline(place(start.x + column as i32, 0).x, shown.y_range(), line);
+    }
+    for row in (0..=texels.size.y).step_by(every as usize) {
+        painter.hline(shown.x_range(), place(0, start.y + row as i32).y, line);
+    }
+    painter.rect_stroke(shown, 0.0, Stroke::new(1.0, colour), eframe::egui::StrokeKind::Middle);
+    let UVec2 { x, y } = texels.size;
+    let which = if every > 1 { format!(", a line for every {every}") } else { String::new() };
+    let text = format!("{x} x {y} texels of {0} x {0} pixels{which}", texels.scale);
+    label(painter, rect, shown.left_bottom() + vec2(4.0, -18.0), &text);
+}
+
+/// Words on a dark ground, kept within the picture.
+fn label(painter: &Painter, rect: Rect, at: Pos2, text: &str) {
+    let text = painter.layout_no_wrap(text.to_owned(), FontId::proportional(12.0), Color32::WHITE);
+    let room = rect.shrink(4.0);
+    let most = (room.max - text.size()).max(room.min);
+    let place = Align2::LEFT_TOP.anchor_size(at.clamp(room.min, most), text.size());
+    painter.rect_filled(place.expand(2.0), 2.0, Color32::from_black_alpha(170));
+    painter.galley(place.min, text, Color32::WHITE);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haze::preset::Camera;
+
+    #[test]
+    fn a_box_has_twelve_edges_and_is_cut_where_the_plane_is() {
+        let bounds = Bounds { min: Vec3::new(-1.0, 0.5, -1.0), max: Vec3::new(1.0, 2.5, 1.0) };
+        let all: Vec<_> = edges(&bounds).collect();
+        assert_eq!(all.len(), 12);
+        assert!(all.iter().all(|[from, to]| (from.distance(*to) - 2.0).abs() < 1e-6));
+        let lens = Lens::new(&Camera::default(), Rect::from_min_size(Pos2::ZERO, vec2(400.0, 300.0)));
+        let middle = lens.depth(bounds.centre());
+        let corners = section(&bounds, &lens, middle);
+        assert!(corners.len() >= 4, "{corners:?}");
+        let inside = lens.project(bounds.centre()).unwrap();
+        assert!(Rect::from_points(&corners).contains(inside));
+        assert!(section(&bounds, &lens, middle + 9.0).is_empty());
+    }
+}

@@ -1,0 +1,229 @@
+mod camera;
+mod gizmo;
+mod turntable;
+
+use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Theme, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use glam::Vec3;
+use haze::preset::Camera;
+use haze::{Light, LightKind};
+
+use super::handle::{Handle, Shape, handles};
+use super::lens::Lens;
+use crate::tweak::show::Tab;
+use crate::tweak::smoke::Smoke;
+use crate::tweak::testing::{brightness, picture, window};
+use crate::tweak::window::Window;
+
+const SIZE: [f32; 2] = [1100.0, 700.0];
+
+/// A window with one light of its own, selected, one metre before the smoke.
+fn lit(light: Light) -> Harness<'static, Window> {
+    let mut harness = window("column", SIZE.into(), Theme::Dark);
+    let session = &mut harness.state_mut().session;
+    session.document.preset.lights = vec![Light { position: Vec3::new(0.4, 1.6, 1.0), ..light }];
+    session.track(false);
+    session.show.lights.follow(&session.document.preset.lights);
+    session.show.lights.selected = Some(0);
+    harness.run();
+    harness
+}
+
+/// Where the picture is in the window.
+fn viewport(harness: &Harness<'_, Window>) -> Rect {
+    harness.get_by_label("viewport").rect()
+}
+
+/// Presses a button of the pointer, moves by way of some places and lets go.
+fn drag(harness: &mut Harness<'_, Window>, button: PointerButton, places: &[Pos2]) {
+    let press = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE };
+    harness.hover_at(places[0]);
+    harness.event(press(places[0], true));
+    for &place in &places[1..] {
+        harness.hover_at(place);
+    }
+    harness.event(press(places[places.len() - 1], false));
+    harness.run();
+}
+
+fn lens(harness: &Harness<'_, Window>) -> Lens {
+    Lens::new(&harness.state().session.document.preset.camera, viewport(harness))
+}
+
+fn camera(harness: &Harness<'_, Window>) -> Camera {
+    harness.state().session.document.preset.camera
+}
+
+fn light(harness: &Harness<'_, Window>) -> Light {
+    harness.state().session.document.preset.lights[0]
+}
+
+fn undo_name(harness: &Harness<'_, Window>) -> Option<String> {
+    harness.state().session.document.history().undo_name().map(str::to_owned)
+}
+
+/// Where a handle of the first light can be grabbed.
+fn handle(harness: &Harness<'_, Window>, handle: Handle) -> Pos2 {
+    let shapes = handles(&light(harness), &lens(harness));
+    match shapes.into_iter().find(|shape| shape.0 == handle).unwrap().1 {
+        Shape::Arrow([from, to]) => from.lerp(to, 0.7),
+        Shape::Quad([a, _, c, _]) => a.lerp(c, 0.5),
+        Shape::Square(at) | Shape::Knob(at) => at,
+    }
+}
+
+#[test]
+fn a_muted_light_is_out_of_the_picture_and_stays_in_the_preset() {
+    let mut harness = lit(Light { intensity: 200.0, ..Light::default() });
+    harness.state_mut().session.show.tab = Tab::Light;
+    let part = viewport(&harness);
+    let lit = brightness(&picture(&mut harness), part);
+    let click = |harness: &mut Harness<'_, Window>, label| {
+        harness.get_by_label(label).click();
+        harness.run();
+        // Tooltips reach over the picture.
+        harness.remove_cursor();
+        harness.run();
+    };
+    click(&mut harness, "Leave this light out, lamp 1 (point)");
+    let dark = brightness(&picture(&mut harness), part);
+    assert!(dark < lit - 5.0, "{dark} {lit}");
+    assert_eq!(undo_name(&harness).as_deref(), Some("light removed"), "only the test's own change");
+    click(&mut harness, "Show this light alone, lamp 1 (point)");
+    assert!((brightness(&picture(&mut harness), part) - lit).abs() < 0.5);
+}
+
+#[test]
+fn lights_are_added_duplicated_and_deleted_from_the_panel_and_by_key() {
+    let mut harness = lit(Light::default());
+    harness.state_mut().session.show.tab = Tab::Light;
+    harness.run();
+    let count = |harness: &Harness<'_, Window>| harness.state().session.document.preset.lights.len();
+    let selected = |harness: &Harness<'_, Window>| harness.state().session.show.lights.selected;
+    harness.get_by_label("Add").click();
+    harness.run_steps(4);
+    harness.get_by_label("spot").click();
+    harness.run();
+    assert_eq!(
+        (count(&harness), selected(&harness), undo_name(&harness).as_deref()),
+        (2, Some(1), Some("light added"))
+    );
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::D);
+    harness.run();
+    assert_eq!((count(&harness), selected(&harness)), (3, Some(2)));
+    harness.key_press(Key::Delete);
+    harness.run();
+    assert_eq!((count(&harness), selected(&harness), undo_name(&harness).as_deref()), (2, None, Some("light removed")));
+    harness.get_by_label("lamp 2 (spot)").click();
+    harness.run();
+    harness.get_by_label("Behind the smoke").click();
+    harness.run();
+    let session = &harness.state().session;
+    let mut behind = session.document.preset.lights[1];
+    let bounds = Smoke::default().of(session).bounds();
+    let is_behind = lens(&harness).depth(behind.position) > lens(&harness).depth(bounds.centre());
+    assert!(is_behind && selected(&harness) == Some(1));
+    // Set by angles, a direction keeps its azimuth at any elevation.
+    behind.direction = Vec3::NEG_Z;
+    harness.state_mut().session.document.preset.lights[1] = behind;
+    harness.run();
+    let elevation = |value: f64, harness: &mut Harness<'_, Window>| {
+        let role = eframe::egui::Role::Slider;
+        let is_slider = |node: &egui_kittest::Node<'_>| node.accesskit_node().role() == role;
+        harness.get_all_by_label("elevation").find(is_slider).unwrap().set_value_accesskit(value);
+        harness.run();
+    };
+    elevation(90.0, &mut harness);
+    assert!(harness.state().session.document.preset.lights[1].direction.y < -0.99);
+    elevation(0.0, &mut harness);
+    assert!(harness.state().session.document.preset.lights[1].direction.distance(Vec3::NEG_Z) < 0.01);
+}
+
+#[test]
+fn a_right_click_adds_a_light_there_and_another_behind_the_smoke() {
+    let mut harness = lit(Light::default());
+    let at = viewport(&harness).center() + vec2(-160.0, -40.0);
+    drag(&mut harness, PointerButton::Secondary, &[at]);
+    harness.run_steps(3);
+    harness.get_by_label("Add spot light here").click();
+    harness.run();
+    let added = |harness: &Harness<'_, Window>| *harness.state().session.document.preset.lights.last().unwrap();
+    let spot = added(&harness);
+    assert!(spot.kind == LightKind::Spot && lens(&harness).project(spot.position).unwrap().distance(at) < 1.0);
+    assert_eq!(undo_name(&harness).as_deref(), Some("light added"));
+    harness.state_mut().session.show.lights.selected = None;
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::B);
+    harness.run();
+    assert_eq!(harness.state().session.document.preset.lights.len(), 3);
+    assert!(lens(&harness).depth(added(&harness).position) > lens(&harness).depth(spot.position));
+}
+
+#[test]
+fn a_light_is_put_behind_the_smoke_that_is_clicked_on_or_in_the_picture() {
+    let mut harness = lit(Light::default());
+    let session = &harness.state().session;
+    let mut smoke = Smoke::default();
+    let sprites = &smoke.of(session).systems[0];
+    let in_view = |at: &Pos2| viewport(&harness).shrink(40.0).contains(*at);
+    let seen = sprites.iter().filter(|sprite| lens(&harness).project(sprite.position).is_some_and(|at| in_view(&at)));
+    let top = seen.max_by(|a, b| a.position.y.total_cmp(&b.position.y)).unwrap().position;
+    let at = lens(&harness).project(top).unwrap();
+    drag(&mut harness, PointerButton::Secondary, &[at]);
+    harness.run_steps(3);
+    harness.get_by_label("Behind the smoke").click();
+    harness.run();
+    let is_behind = |harness: &Harness<'_, Window>| {
+        let (lens, place) = (lens(harness), light(harness).position);
+        assert!(lens.depth(place) > lens.depth(top), "{place}");
+        lens.project(place).unwrap()
+    };
+    assert!(is_behind(&harness).distance(at) < 1.0, "not under the pointer");
+    // So close that the middle of all smoke is out of the picture.
+    let camera = &mut harness.state_mut().session.document.preset.camera;
+    (camera.position, camera.target) = (top + Vec3::new(0.0, -0.1, 1.2), top);
+    harness.run();
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::B);
+    harness.run();
+    assert!(viewport(&harness).contains(is_behind(&harness)));
+}
+
+#[test]
+fn overlays_are_drawn_while_they_are_on() {
+    let mut harness = lit(Light::default());
+    let part = viewport(&harness);
+    let plain = picture(&mut harness);
+    for name in ["Bounds", "Lit plane", "Particles", "Grid"] {
+        let mut click = || {
+            harness.get_by_label(name).click();
+            harness.remove_cursor();
+            harness.run();
+            // What is drawn is known from the picture before.
+            picture(&mut harness);
+            picture(&mut harness)
+        };
+        let (on, off) = (click(), click());
+        let changed = |other: &image::RgbaImage| {
+            let pixels = plain.enumerate_pixels().zip(other.pixels());
+            let in_view =
+                pixels.filter(|((x, y, _), _)| part.shrink2(vec2(0.0, 40.0)).contains(Pos2::new(*x as f32, *y as f32)));
+            in_view.filter(|((_, _, a), b)| a != b).count()
+        };
+        assert!(changed(&on) > 300, "{name}: {}", changed(&on));
+        assert!(changed(&off) < 20, "{name}: {}", changed(&off));
+    }
+}
+
+#[test]
+fn the_scene_is_chosen_and_its_props_are_put_away() {
+    let mut harness = lit(Light { intensity: 30.0, ..Light::default() });
+    let environment = |harness: &Harness<'_, Window>| harness.state().session.document.preset.environment;
+    harness.get_by_label("Scene").click();
+    harness.run_steps(3);
+    harness.get_by_label("lamp").click();
+    harness.run_steps(3);
+    assert!(!environment(&harness).lamp && environment(&harness).brazier);
+    harness.get_by_label("studio").click();
+    harness.run_steps(3);
+    assert_eq!(environment(&harness).scene.name(), "studio");
+}

@@ -1,0 +1,96 @@
+//! A small row over the picture: what is drawn on it, and the scene round the smoke.
+
+use std::ops::RangeInclusive;
+
+use eframe::egui::containers::menu::{MenuButton, MenuConfig};
+use eframe::egui::{self, PopupCloseBehavior, Rect, Ui};
+use glam::Vec3;
+use haze::settings::{Choice, FieldVisitor, Fields};
+use haze_author::preset::Tooltips;
+
+use crate::tweak::action::{Action, InView, keys_of};
+use crate::tweak::panel::row::spaced;
+use crate::tweak::session::Session;
+use crate::tweak::show::Overlay;
+
+/// What can be switched, and what it is called.
+const SWITCHES: [(InView, &str, &str); 5] = [
+    (InView::Overlay(Overlay::Bounds), "Bounds", "The box round each system"),
+    (InView::Overlay(Overlay::LitPlane), "Lit plane", "The plane that light is flattened to, where it cuts the box"),
+    (InView::Overlay(Overlay::Particles), "Particles", "Middles of the sprites, young ones warm, old ones cold"),
+    (InView::Overlay(Overlay::Grid), "Grid", "The texels that the smoke is accumulated in"),
+    (InView::Turntable, "Turntable", "Sends all lights round the smoke; the preset stays as it is"),
+];
+
+/// Draws the row into the upper left corner of the picture; gives what was switched.
+pub fn toolbar(ui: &mut Ui, rect: Rect, session: &mut Session) -> Option<InView> {
+    let mut asked = None;
+    let builder = egui::UiBuilder::new().max_rect(rect.shrink(6.0)).layout(egui::Layout::top_down(egui::Align::Min));
+    ui.scope_builder(builder, |ui| {
+        let fill = ui.visuals().panel_fill;
+        egui::Frame::new().fill(fill).corner_radius(4.0).inner_margin(3.0).show(ui, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                ui.spacing_mut().item_spacing = egui::vec2(3.0, 3.0);
+                for (action, name, tooltip) in SWITCHES {
+                    let keys = keys_of(Action::InView(action)).map(|keys| ui.ctx().format_shortcut(&keys));
+                    let keys = keys.unwrap_or_default();
+                    let button = ui.selectable_label(is_on(session, action), name);
+                    if button.on_hover_text(format!("{tooltip} ({keys})")).clicked() {
+                        asked = Some(action);
+                    }
+                }
+                // Several may be switched at once.
+                let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+                MenuButton::new("Scene").config(config).ui(ui, |ui| {
+                    let tooltips = &session.tooltips;
+                    session.document.preset.environment.visit(&mut Switches { ui, tooltips });
+                });
+            });
+        });
+    });
+    asked
+}
+
+fn is_on(session: &Session, action: InView) -> bool {
+    match action {
+        InView::Overlay(overlay) => session.show.overlays.has(overlay),
+        _ => session.show.lights.turn.is_some(),
+    }
+}
+
+/// What of a struct can be switched: choices and flags.
+struct Switches<'a> {
+    ui: &'a mut Ui,
+    tooltips: &'a Tooltips,
+}
+
+impl FieldVisitor for Switches<'_> {
+    fn number(&mut self, _: &'static str, _: &mut f32, _: RangeInclusive<f32>, _: &'static str) {}
+
+    fn integer(&mut self, _: &'static str, _: &mut u32, _: RangeInclusive<u32>, _: &'static str) {}
+
+    fn vector(&mut self, _: &'static str, _: &mut Vec3, _: RangeInclusive<f32>, _: &'static str) {}
+
+    fn flag(&mut self, name: &'static str, value: &mut bool) {
+        let tooltip = self.tooltips.field(&format!("environment.{name}")).unwrap_or_default();
+        self.ui.checkbox(value, spaced(name)).on_hover_text(tooltip);
+    }
+
+    fn choice(&mut self, name: &'static str, value: &mut dyn Choice) {
+        let mut index = value.index();
+        for (place, &choice) in value.names().iter().enumerate() {
+            let tooltip = self.tooltips.choice(&format!("environment.{name}"), choice).unwrap_or_default();
+            self.ui.radio_value(&mut index, place, spaced(choice)).on_hover_text(tooltip);
+        }
+        value.set_index(index);
+        self.ui.separator();
+    }
+
+    fn group(&mut self, _: &'static str, fields: &mut dyn Fields) {
+        fields.visit(self);
+    }
+
+    fn item(&mut self, _: &'static str, _: usize, fields: &mut dyn Fields) {
+        fields.visit(self);
+    }
+}

@@ -1,0 +1,183 @@
+//! `haze bench`: what it writes, how it is stopped, how runs are compared.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use super::{folder, haze, refusal, stderr};
+
+const SMALL: [&str; 6] = ["--quick", "--seconds", "0", "--size", "64x36", "--json"];
+
+/// A short run of a suite, as its JSON.
+fn run(folder: &Path, suite: &str, more: &[&str]) -> Value {
+    let output = haze(folder, &[&["bench", suite], &SMALL[..], &["run.json"], more].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    serde_json::from_slice(&fs::read(folder.join("run.json")).unwrap()).unwrap()
+}
+
+fn rows(report: &Value) -> &Vec<Value> {
+    report["rows"].as_array().unwrap()
+}
+
+#[test]
+fn every_suite_has_figures_and_says_what_it_left_out() {
+    let folder = folder();
+    for suite in ["scale", "overdraw", "lights", "soft", "upsample", "presets", "particles", "auto", "limits"] {
+        let report = run(folder.path(), suite, &[]);
+        assert!(report["complete"] == true && report["version"] == 1, "{suite}");
+        let rows = rows(&report);
+        assert!(rows.len() > 2, "{suite}: {report}");
+        let names: BTreeSet<_> = rows.iter().map(|row| row["case"].as_str().unwrap()).collect();
+        assert_eq!(names.len(), rows.len(), "{suite}: a case is there twice");
+        for row in rows {
+            assert_eq!(row["suite"], suite);
+            assert!(row["gpu_ms"]["median"].as_f64().unwrap() > 0.0, "{row}");
+            assert!(row["path"] != "auto" || row["mode"] == "raster" || row["mode"] == "tiled", "{row}");
+        }
+        // Every picture was right; only what takes too long may be missing.
+        for left in report["left_out"].as_array().unwrap() {
+            assert!(left["reason"].as_str().unwrap().starts_with("a frame would take"), "{left}");
+        }
+    }
+}
+
+#[test]
+fn a_run_is_a_table_json_csv_and_a_page() {
+    let folder = folder();
+    let report = run(folder.path(), "scale", &["--csv", "run.csv", "--html", "run.html"]);
+    let rows = rows(&report);
+    let deferred: Vec<_> = rows.iter().filter(|row| row["path"] == "raster").collect();
+    // The coarser the fewer fragments, and the further from full resolution.
+    let [full, half, eighth] = [1, 2, 8].map(|scale| deferred.iter().rfind(|row| row["scale"] == scale).unwrap());
+    let number = |row: &Value, name: &str| row[name].as_f64().unwrap();
+    assert!(number(half, "fragments") < 0.3 * number(full, "fragments"));
+    assert!(full["psnr_db"].is_null() && number(half, "psnr_db") > number(eighth, "psnr_db"));
+    assert!(number(full, "flip") < 1e-6 && number(half, "flip") < number(eighth, "flip"));
+    assert!(number(full, "limit_ratio") > 1.0, "{full}");
+
+    let csv = fs::read_to_string(folder.path().join("run.csv")).unwrap();
+    let mut lines = csv.lines();
+    let columns: Vec<_> = lines.next().unwrap().split(',').collect();
+    assert_eq!(columns[..3], ["suite", "case", "size"]);
+    assert!(columns.contains(&"gpu_ms.median") && columns.contains(&"limit_ratio"), "{columns:?}");
+    assert_eq!(lines.clone().count(), rows.len());
+    assert!(lines.all(|line| line.split(',').count() == columns.len()));
+
+    let page = fs::read_to_string(folder.path().join("run.html")).unwrap();
+    assert!(page.contains("Cost against buffer scale") && page.contains("Cost against error"));
+    // The same from the figures alone.
+    let output = haze(folder.path(), &["bench", "page", "run.json", "-o", "again.html"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(page == fs::read_to_string(folder.path().join("again.html")).unwrap());
+    refusal(folder.path(), &["bench", "page", "run.csv", "-o", "again.html"]);
+    for outside in ["http:", "https:", "src=", "@import"] {
+        assert!(!page.contains(outside), "{outside} needs a network");
+    }
+}
+
+#[test]
+fn the_page_fits_in_a_browser_however_wide() {
+    let folder = folder();
+    run(folder.path(), "scale", &["--html", "run.html"]);
+    let page = fs::read_to_string(folder.path().join("run.html")).unwrap();
+    // The browser itself says how wide the page is, and what is drawn.
+    let script = "<script>document.title = [document.documentElement.scrollWidth <= innerWidth, \
+        document.querySelectorAll('svg circle').length > 10, \
+        [...document.querySelectorAll('svg')].every(svg => svg.getBoundingClientRect().width > 250)].join()</script></body>";
+    fs::write(folder.path().join("told.html"), page.replace("</body>", script)).unwrap();
+    let path = format!("file://{}", folder.path().join("told.html").display());
+    for width in [500, 1280] {
+        let output = Command::new("chromium")
+            .args(["--headless", "--no-sandbox", "--disable-gpu", "--dump-dom"])
+            .arg(format!("--window-size={width},900"))
+            .arg(format!("--user-data-dir={}", folder.path().join("profile").display()))
+            .arg(&path)
+            .stderr(Stdio::null())
+            .output()
+            .unwrap();
+        let shown = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(shown.contains("<title>true,true,true</title>"), "{width}: {}", &shown[..shown.len().min(400)]);
+    }
+}
+
+#[test]
+fn ctrl_c_writes_what_is_done() {
+    let folder = folder();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_haze"))
+        .args(["bench", "scale", "--quick", "--seconds", "600", "--size", "64x36", "--json", "run.json"])
+        .current_dir(folder.path())
+        .env("XDG_RUNTIME_DIR", folder.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // By then it measures.
+    std::thread::sleep(Duration::from_secs(6));
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let asked = Instant::now();
+    let code = child.wait().unwrap().code();
+    assert!(asked.elapsed() < Duration::from_secs(20), "{:?}", asked.elapsed());
+    assert_eq!(code, Some(1));
+    let report: Value = serde_json::from_slice(&fs::read(folder.path().join("run.json")).unwrap()).unwrap();
+    assert_eq!(report["complete"], false);
+}
+
+#[test]
+fn runs_are_compared_row_by_row() {
+    let folder = folder();
+    let mut report = run(folder.path(), "upsample", &[]);
+    let compare = |arguments: &[&str]| {
+        let output = haze(folder.path(), &[&["bench", "compare", "run.json", "after.json"], arguments].concat());
+        (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned(), stderr(&output))
+    };
+    let write = |report: &Value| fs::write(folder.path().join("after.json"), report.to_string()).unwrap();
+    write(&report);
+    let (code, text, _) = compare(&[]);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("geometric mean 1.000; 0 rows are in one run only"), "{text}");
+    // One row takes twice as long, without doubt.
+    let row = &mut report["rows"][1];
+    let slow = 2.0 * row["gpu_ms"]["median"].as_f64().unwrap();
+    row["gpu_ms"] = serde_json::json!({"median": slow, "min": slow, "max": slow, "quartiles": [slow, slow]});
+    row["samples"] = 1000.into();
+    let before = fs::read(folder.path().join("run.json")).unwrap();
+    let mut certain: Value = serde_json::from_slice(&before).unwrap();
+    certain["rows"][1]["samples"] = 1_000_000.into();
+    fs::write(folder.path().join("run.json"), certain.to_string()).unwrap();
+    write(&report);
+    let (code, text, said) = compare(&[]);
+    assert_eq!((code, text.matches("  slower").count()), (Some(1), 1), "{text}");
+    assert!(said.contains("1 of ") && said.contains("rows are more than 10 % slower"), "{said}");
+    assert_eq!(compare(&["--slower", "150"]).0, Some(0));
+
+    // What is no report says where.
+    fs::write(folder.path().join("after.json"), "{\"version\": 1, \"rows\": [}").unwrap();
+    let text = refusal(folder.path(), &["bench", "compare", "run.json", "after.json"]);
+    assert!(text.contains("after.json:1:"), "{text}");
+    refusal(folder.path(), &["bench", "compare", "run.json", "gone.json"]);
+    refusal(folder.path(), &["bench", "compare", "run.json", "run.json", "--slower", "-1"]);
+}
+
+#[test]
+fn what_cannot_be_written_is_found_before_the_run() {
+    let folder = folder();
+    for output in [["--json", "none/a.json"], ["--csv", "a.json"], ["--html", "."]] {
+        refusal(folder.path(), &[&["bench", "limits"][..], &output].concat());
+    }
+    refusal(folder.path(), &["bench", "scales"]);
+}
+
+#[test]
+fn the_committed_schema_is_the_programs() {
+    let folder = folder();
+    let output = haze(folder.path(), &["bench", "schema"]);
+    let committed = include_str!("../../../../../bench/report.schema.json");
+    assert!(
+        committed == String::from_utf8(output.stdout).unwrap(),
+        "run `haze bench schema > bench/report.schema.json`"
+    );
+}

@@ -1,0 +1,171 @@
+//! Files that are written: refused before any work, or kept as they are but for what is in them.
+
+use std::fs;
+use std::path::Path;
+
+use super::{MOTIF, folder, haze, refusal, render, size_of, stderr};
+
+const SMALL: [&str; 6] = ["render", "--size", "8x8", "--backend", "cpu", "-o"];
+const SHEET: [&str; 6] = ["techniques", "--size", "8x8", "--backend", "cpu", "-o"];
+
+/// The names in a folder.
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<_> = entries.collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn what_cannot_be_written_is_refused_before_the_work() {
+    let folder = folder();
+    fs::create_dir_all(folder.path().join("cells/soft.png")).unwrap();
+    let line = |command: &[&str], more: &[&str]| refusal(folder.path(), &[command, more].concat());
+    assert!(line(&SMALL, &["a.png/"]).contains("a.png/ is not valid"));
+    assert!(line(&SMALL, &["a.png/."]).contains("a.png/. is not valid"));
+    assert!(line(&SMALL, &["cells/soft.png"]).contains("expected a file, or a name that is free"));
+    assert!(line(&SMALL, &[&format!("{}.png", "n".repeat(300))]).contains("expected a file that can be written"));
+    let curves = line(&SHEET, &["a.png", "--curves", "missing/c.png"]);
+    assert!(curves.contains("--curves: missing/c.png") && curves.contains("a folder that exists"), "{curves}");
+    let cells = line(&SHEET, &["a.png", "--cells", "missing"]);
+    assert!(cells.contains("--cells: missing") && cells.contains("a folder that exists"), "{cells}");
+    let cells = line(&SHEET, &["a.png", "--cells", "cells"]);
+    assert!(cells.contains("soft.png") && cells.contains("a name that is free"), "{cells}");
+    assert_eq!(
+        (names(folder.path()), names(&folder.path().join("cells"))),
+        (vec!["cells".into()], vec!["soft.png".into()])
+    );
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_folder_where_nothing_can_be_made_is_refused_before_the_work() {
+    let folder = folder();
+    for place in ["/proc/a.png", "link.png"] {
+        std::os::unix::fs::symlink("missing/a.png", folder.path().join("link.png")).ok();
+        let line = refusal(folder.path(), &[&SMALL[..], &[place]].concat());
+        assert!(line.contains(place) && line.contains("a file that can be written (No such file"), "{line}");
+    }
+}
+
+#[test]
+fn what_is_read_is_not_written() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    fs::create_dir(path("shots")).unwrap();
+    fs::copy(concat!(env!("CARGO_MANIFEST_DIR"), "/../../sprites/wisp.png"), path("shots/mine.png")).unwrap();
+    let material = r#"{"sprite": "mine.png", "columns": 4, "rows": 2}"#;
+    let text = format!(r#"{{"version": 1, "name": "x", "systems": [{{"name": "s", "material": {material}}}]}}"#);
+    fs::write(path("shots/my.json"), &text).unwrap();
+    fs::hard_link(path("shots/my.json"), path("preset.png")).unwrap();
+    let line = |output: &str| refusal(folder.path(), &[&SMALL[..], &[output, "shots/my.json"]].concat());
+    for output in ["shots/mine.png", "shots/../shots/mine.png", "preset.png"] {
+        assert!(line(output).contains("expected a file that is not read"));
+    }
+    assert_eq!(fs::read_to_string(path("shots/my.json")).unwrap(), text);
+
+    let stops = r##"[{"at": 0, "colour": "#000000"}, {"at": 1, "colour": "#ff8000"}]"##;
+    let ramp = format!(r#"{{"version": 1, "width": 32, "height": 1, "rows": [{{"stops": {stops}}}]}}"#);
+    fs::write(path("fire.ramp.json"), &ramp).unwrap();
+    fs::hard_link(path("fire.ramp.json"), path("fire.png")).unwrap();
+    assert!(refusal(folder.path(), &["ramp", "bake", "fire.ramp.json"]).contains("a file that is not read"));
+    assert_eq!(fs::read_to_string(path("fire.ramp.json")).unwrap(), ramp);
+}
+
+#[test]
+fn no_file_is_written_twice() {
+    let folder = folder();
+    let sheet = |more: &[&str]| refusal(folder.path(), &[&SHEET[..], more].concat());
+    assert!(
+        sheet(&["a.png", "--curves", "./a.png"]).contains("--curves: ./a.png is not valid; expected a file of its own")
+    );
+    assert!(sheet(&["hard.png", "--cells", "."]).contains("expected a file of its own"));
+    assert!(sheet(&["a.png", "--cells", ".", "--curves", "soft.png"]).contains("expected a file of its own"));
+
+    fs::write(folder.path().join("a.motif.json"), MOTIF).unwrap();
+    let twice = refusal(folder.path(), &["ramp", "bake", "a.motif.json", "./a.motif.json"]);
+    assert!(twice.contains("a file of its own"), "{twice}");
+    assert_eq!(names(folder.path()), ["a.motif.json"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn what_a_file_is_besides_its_bytes_is_kept() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    // To a picture that is not there yet.
+    symlink("real.png", path("out.png")).unwrap();
+    assert!(render(folder.path(), &[]).status.success());
+    assert!(path("out.png").is_symlink() && !path("real.png").is_symlink());
+    fs::set_permissions(path("real.png"), fs::Permissions::from_mode(0o604)).unwrap();
+    assert!(render(folder.path(), &["--time", "3"]).status.success());
+    assert_eq!(fs::metadata(path("real.png")).unwrap().permissions().mode() & 0o777, 0o604);
+    fs::hard_link(path("real.png"), path("other.png")).unwrap();
+    assert!(haze(folder.path(), &[&SMALL[..], &["out.png"]].concat()).status.success());
+    assert_eq!((size_of(&path("real.png")), size_of(&path("other.png"))), ((8, 8), (8, 8)));
+
+    let long = format!("{}.png", "n".repeat(240));
+    let output = haze(folder.path(), &[&SMALL[..], &[&long]].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert_eq!(names(folder.path()).len(), 4);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_write_that_fails_leaves_the_old_file() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    fs::write(path("out.png"), "old").unwrap();
+    for other_name in [false, true] {
+        if other_name {
+            fs::hard_link(path("out.png"), path("other.png")).unwrap();
+        }
+        // No file may be longer than a block, and the program is told so.
+        let line = "trap '' XFSZ; ulimit -f 1; exec \"$0\" render --size 64x36 --backend cpu -o out.png";
+        let mut command = std::process::Command::new("sh");
+        let output =
+            command.args(["-c", line, env!("CARGO_BIN_EXE_haze")]).current_dir(folder.path()).output().unwrap();
+        assert_eq!((output.status.code(), stderr(&output).lines().count()), (Some(1), 1), "{}", stderr(&output));
+        assert!(stderr(&output).starts_with("haze: out.png: "), "{}", stderr(&output));
+        assert_eq!(fs::read_to_string(path("out.png")).unwrap(), "old");
+        assert_eq!(names(folder.path()).len(), 1 + usize::from(other_name));
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_program_that_is_killed_while_it_writes_leaves_the_old_file() {
+    use std::os::unix::process::ExitStatusExt as _;
+    let folder = folder();
+    let recipe = |colour: &str| {
+        // Every row is another: it takes some blocks.
+        let row = |row: u32| {
+            let stop = |at: u32, colour: String| format!(r##"{{"at": {at}, "colour": "#{colour}"}}"##);
+            let stops = [stop(0, format!("{colour}{row:02x}")), stop(1, format!("{row:02x}{colour}"))].join(",");
+            format!(r#"{{"at": {}, "stops": [{stops}]}}"#, f64::from(row) / 31.0)
+        };
+        let rows = (0..32).map(row).collect::<Vec<_>>().join(",");
+        format!(r#"{{"version": 2, "width": 64, "height": 32, "rows": [{rows}]}}"#)
+    };
+    let bake = |blocks: u64| {
+        // At this length the system kills who writes on.
+        let line = format!("ulimit -c 0; ulimit -f {blocks}; exec \"$0\" ramp bake a.ramp.json");
+        let mut command = std::process::Command::new("sh");
+        command.args(["-c", &line, env!("CARGO_BIN_EXE_haze")]).current_dir(folder.path()).output().unwrap().status
+    };
+    fs::write(folder.path().join("a.ramp.json"), recipe("2040")).unwrap();
+    assert!(bake(10_000).success());
+    let picture = || fs::read(folder.path().join("a.png")).unwrap();
+    let old = picture();
+    fs::write(folder.path().join("a.ramp.json"), recipe("8060")).unwrap();
+    let blocks = old.len() as u64 / 512;
+    assert!(blocks > 8, "{blocks}");
+    for limit in (0..blocks / 2).step_by(3) {
+        assert_eq!(bake(limit).signal(), Some(25), "SIGXFSZ at {limit} blocks");
+        assert!(picture() == old, "{limit}");
+    }
+    assert!(bake(10_000).success() && picture() != old);
+    // What those that were killed left is gone.
+    assert_eq!(names(folder.path()), ["a.png", "a.ramp.json"]);
+}

@@ -1,0 +1,334 @@
+//! `haze ramp`: the authoring loop.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+#[cfg(target_os = "linux")]
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use haze::ramp::Role;
+use haze_author::ramp::template::TEMPLATES;
+use image::{DynamicImage, GrayImage, ImageBuffer, Luma, LumaA};
+
+use super::{folder, haze, refusal, stderr};
+
+#[test]
+fn a_ramp_of_very_many_stops_is_soon_baked() {
+    let folder = folder();
+    let recipe = |rows: u32, stops: u32, height: u32| {
+        let mut text = format!(r#"{{"version": 2, "width": 256, "height": {height}, "rows": ["#);
+        for row in 0..rows {
+            let _ =
+                write!(text, r#"{}{{"at": {}, "stops": ["#, if row > 0 { "," } else { "" }, row as f32 / rows as f32);
+            for stop in 0..stops {
+                let (at, colour) = (stop as f32 / stops as f32, (row * 7919 + stop * 104_729) % 0x100_0000);
+                let _ =
+                    write!(text, r##"{}{{"at": {at}, "colour": "#{colour:06x}"}}"##, if stop > 0 { "," } else { "" });
+            }
+            text += "]}";
+        }
+        text + "]}"
+    };
+    fs::write(folder.path().join("wide.ramp.json"), recipe(100, 1000, 256)).unwrap();
+    fs::write(folder.path().join("long.ramp.json"), recipe(1, 10_000, 1)).unwrap();
+    let started = Instant::now();
+    let output = haze(folder.path(), &["ramp", "bake", "wide.ramp.json", "long.ramp.json"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    // 0.3 s for a release build on two cores; here other tests run at the same time, and serde_json is not optimised.
+    assert!(started.elapsed() < Duration::from_secs(10), "{:?}", started.elapsed());
+}
+
+/// The standard output of what goes well.
+fn said(folder: &Path, arguments: &[&str]) -> String {
+    let output = haze(folder, arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn every_template_is_made_baked_shown_and_good() {
+    let folder = folder();
+    for template in TEMPLATES {
+        let name = format!("{}_{}", template.role.name(), template.name);
+        let recipe = format!("{name}.ramp.json");
+        let line = said(folder.path(), &["ramp", "new", "--template", template.name, "-o", &recipe]);
+        assert!(line.starts_with(&format!("{recipe}: {}", template.about)), "{line}");
+        said(folder.path(), &["ramp", "bake", &recipe]);
+        let picture = format!("{name}.png");
+        let checked = said(folder.path(), &["ramp", "check", &recipe, &picture]);
+        assert_eq!(checked, format!("{recipe}: good\n{picture}: good\n"));
+    }
+    // Nobody's work is lost.
+    let again = refusal(folder.path(), &["ramp", "new", "-o", "diffuse_moon.ramp.json"]);
+    assert!(again.contains("expected a name that is free"), "{again}");
+    let name = refusal(folder.path(), &["ramp", "new", "-o", "moon.json"]);
+    assert!(name.contains("expected a name that ends in .ramp.json"), "{name}");
+    let unknown = refusal(folder.path(), &["ramp", "new", "--template", "tune", "-o", "a.ramp.json"]);
+    assert!(unknown.contains("soft_toon") && unknown.contains("night_lamp"), "{unknown}");
+}
+
+#[test]
+fn a_picture_becomes_a_recipe_and_a_picture_again() {
+    let folder = folder();
+    for (name, error) in [("specular_halo", 2.0), ("diffuse_dusk", 2.0)] {
+        let source = format!("{}/../../ramps/{name}.png", env!("CARGO_MANIFEST_DIR"));
+        let line = said(folder.path(), &["ramp", "import", &source, "-o", "mine.ramp.json", "--error", "2"]);
+        let stated: f32 = line.rsplit("at most ").next().unwrap().split('/').next().unwrap().parse().unwrap();
+        assert!(line.starts_with("mine.ramp.json: ") && stated <= error, "{line}");
+        said(folder.path(), &["ramp", "bake", "mine.ramp.json"]);
+        let read = |path: &Path| haze::picture::read_png(path).unwrap().into_rgb16();
+        let (before, after) = (read(source.as_ref()), read(&folder.path().join("mine.png")));
+        let off = before.iter().zip(after.iter()).map(|(a, b)| a.abs_diff(*b)).max().unwrap();
+        assert!((f32::from(off) / 257.0 - stated).abs() < 0.06, "{line}: {off}");
+    }
+    fs::write(folder.path().join("a.txt"), "0 (0 0 0)\n1 (1 1 1)\n").unwrap();
+    let line = said(folder.path(), &["ramp", "import", "a.txt", "-o", "a.ramp.json"]);
+    assert_eq!(line, "a.ramp.json: 2 stops, at most 0.5/255 off\n");
+    let line = refusal(folder.path(), &["ramp", "import", "a.txt", "-o", "a.txt"]);
+    assert!(line.contains("expected a name that ends in .ramp.json"), "{line}");
+    fs::write(folder.path().join("a.png"), "GIF89a").unwrap();
+    let line = refusal(folder.path(), &["ramp", "import", "a.png", "-o", "a.ramp.json"]);
+    assert_eq!(line, "haze: a.png: not a PNG file; export it as PNG\n");
+    let line = refusal(folder.path(), &["ramp", "import", "a.txt", "-o", "a.ramp.json", "--error=-1"]);
+    assert_eq!(line, "haze: error: -1 is not valid; expected 1 to 64 steps of 255\n");
+    assert_eq!(said(folder.path(), &["ramp", "bake", "a.ramp.json"]), "a.png: 256x1\n");
+}
+
+#[test]
+fn what_is_found_is_said_and_exits_with_1() {
+    let folder = folder();
+    let save = |name: &str, picture: DynamicImage| picture.save(folder.path().join(name)).unwrap();
+    save("specular_grey.png", DynamicImage::ImageLuma8(GrayImage::from_pixel(16, 16, Luma([90]))));
+    let slope = |x: u32| Luma([(20 + x * 40 / 256) as u8]);
+    save("a.png", DynamicImage::ImageLuma8(GrayImage::from_fn(256, 1, |x, _| slope(x))));
+    save("age.png", DynamicImage::ImageLumaA8(ImageBuffer::from_pixel(4, 1, LumaA([90, 128]))));
+    let output = haze(folder.path(), &["ramp", "check", "specular_grey.png", "a.png", "age.png"]);
+    let text = String::from_utf8(output.stdout.clone()).unwrap();
+    assert_eq!((output.status.code(), stderr(&output)), (Some(1), String::new()), "{text}");
+    let names: Vec<_> = text.lines().map(|line| line.rsplitn(2, ';').last().unwrap()).collect();
+    assert_eq!(
+        names,
+        [
+            "specular_grey.png: ends: 90 of 255 at amount 0, the bottom row",
+            "specular_grey.png: ends: 90 of 255 at distance 1, the last column",
+            "a.png: banding: a slope of steps at 0.10 across",
+            "age.png: colour_space: transparent texels",
+        ]
+    );
+    let output = haze(folder.path(), &["ramp", "check", "--as", "diffuse", "specular_grey.png"]);
+    assert!(output.status.success());
+    // What cannot be read is bad input.
+    assert!(refusal(folder.path(), &["ramp", "check", "gone.png"]).starts_with("haze: gone.png: "));
+    fs::write(folder.path().join("a.ggr"), "GIMP Gradient\n").unwrap();
+    for command in ["check", "show"] {
+        let line = refusal(folder.path(), &["ramp", command, "a.ggr"]);
+        assert!(line.contains("`haze ramp import` makes one of another program's gradient"), "{line}");
+    }
+}
+
+#[test]
+fn a_ramp_is_shown_as_text_and_as_a_picture() {
+    let folder = folder();
+    said(folder.path(), &["ramp", "new", "--template", "hard_toon", "-o", "toon.ramp.json"]);
+    let text = said(folder.path(), &["ramp", "show", "toon.ramp.json"]);
+    // Not to a terminal: no colours, the curve and the stops.
+    assert!(!text.contains('\u{1b}') && text.contains('█'), "{text}");
+    assert!(text.starts_with("toon.ramp.json: 256x1\n") && text.ends_with("0.720  #f6efe2  constant\n"), "{text}");
+    said(folder.path(), &["ramp", "show", "toon.ramp.json", "-o", "toon.png"]);
+    let picture = haze::picture::read_png(&folder.path().join("toon.png")).unwrap().into_rgb8();
+    assert_eq!(picture.get_pixel(100, 40).0, [0x2b, 0x2a, 0x3a]);
+    assert_eq!(picture.get_pixel(540, 40).0, [0xf6, 0xef, 0xe2]);
+    let line = refusal(folder.path(), &["ramp", "show", "toon.png", "-o", "toon.png"]);
+    assert!(line.contains("expected a file that is not read"), "{line}");
+}
+
+/// What a program says to a terminal.
+#[cfg(target_os = "linux")]
+fn said_to_a_terminal(folder: &Path, arguments: &str, no_color: &str) -> String {
+    let command = format!("{} {arguments}", env!("CARGO_BIN_EXE_haze"));
+    let script = Command::new("script")
+        .args(["-qec", &command, "/dev/null"])
+        .current_dir(folder)
+        .env("NO_COLOR", no_color)
+        .output();
+    String::from_utf8(script.unwrap().stdout).unwrap()
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_terminal_shows_colours_unless_it_is_told_not_to() {
+    let folder = folder();
+    said(folder.path(), &["ramp", "new", "--template", "hard_toon", "-o", "toon.ramp.json"]);
+    let coloured = said_to_a_terminal(folder.path(), "ramp show toon.ramp.json", "");
+    assert!(coloured.contains("\u{1b}[38;2;43;42;58;48;2;43;42;58m"), "{coloured:?}");
+    let plain = said_to_a_terminal(folder.path(), "ramp show toon.ramp.json", "1");
+    assert!(!plain.contains('\u{1b}') && plain.contains("#f6efe2"), "{plain:?}");
+}
+
+#[test]
+fn a_shot_is_shown_under_every_ramp_of_a_folder() {
+    let folder = folder();
+    let new = |template: &str, name: &str| {
+        said(folder.path(), &["ramp", "new", "--template", template, "-o", &format!("ramps/{name}.ramp.json")]);
+    };
+    fs::create_dir(folder.path().join("ramps")).unwrap();
+    new("soot", "diffuse_soot");
+    new("sunset_backlight", "mine");
+    new("wide_glow", "specular_wide");
+    // One has a picture already, which is what is loaded.
+    said(folder.path(), &["ramp", "bake", "ramps/mine.ramp.json"]);
+    fs::write(folder.path().join("ramps/mine.ramp.json"), "{").unwrap();
+    fs::write(folder.path().join("ramps/notes.txt"), "").unwrap();
+    let sheet = |arguments: &[&str]| {
+        let fixed = ["ramp", "sheet", "fence", "--backend", "cpu", "-o", "sheet.png"];
+        said(folder.path(), &[&fixed[..], arguments].concat());
+        haze::picture::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8()
+    };
+    // Above the ramp itself.
+    let above = |picture: &image::RgbImage, x, y| image::imageops::crop_imm(picture, x, y, 48, 25).to_image();
+    let render = |sets: &[&str]| {
+        let fixed = ["render", "fence", "--backend", "cpu", "--size", "48x27", "--assets", "ramps", "-o", "one.png"];
+        let sets: Vec<_> = sets.iter().flat_map(|set| ["--set", set]).collect();
+        said(folder.path(), &[&fixed[..], &sets].concat());
+        above(&haze::picture::read_png(&folder.path().join("one.png")).unwrap().to_rgb8(), 0, 0)
+    };
+    let cell = |sheet: &image::RgbImage, x: u32| above(sheet, 12 + x * 60, 40);
+    // Two to a row, in the order of their names.
+    let diffuse = sheet(&["--ramps", "ramps", "--role", "diffuse", "--size", "96x54"]);
+    said(folder.path(), &["ramp", "bake", "ramps/diffuse_soot.ramp.json"]);
+    assert!(cell(&diffuse, 0) == render(&["diffuse_ramp=diffuse_soot.png"]));
+    assert!(cell(&diffuse, 1) == render(&["diffuse_ramp=mine.png"]));
+    // The ramp below: 2 of 27 lines.
+    let below = |x: u32| diffuse[(12 + x * 60 + 47, 40 + 26)].0;
+    assert_eq!([below(0), below(1)], [[0x6a, 0x61, 0x5a], [0xff, 0xe3, 0xb0]]);
+    // Without a role, those whose names say it.
+    let named = sheet(&["--ramps", "ramps", "--size", "96x54"]);
+    assert!(cell(&named, 0) == cell(&diffuse, 0) && cell(&named, 1) != cell(&diffuse, 1));
+    // A ramp is seen whatever the preset has in its place.
+    let coverage = sheet(&["--role", "coverage", "--size", "96x54"]);
+    assert!(cell(&coverage, 1) == render(&["systems.settings.coverage=ramp", "coverage_ramp=coverage_toon"]));
+    assert!(cell(&coverage, 0) != cell(&coverage, 1));
+
+    // One that is broken does not take the others with it.
+    fs::write(folder.path().join("ramps/diffuse_broken.png"), "no picture").unwrap();
+    let arguments = ["ramp", "sheet", "fence", "--backend", "cpu", "--ramps", "ramps", "--role", "diffuse"];
+    let output = haze(folder.path(), &[&arguments[..], &["--size", "96x54", "-o", "sheet.png"]].concat());
+    assert_eq!((output.status.code(), stderr(&output).lines().count()), (Some(1), 1), "{}", stderr(&output));
+    assert!(stderr(&output).contains("diffuse_broken.png: not a PNG"), "{}", stderr(&output));
+    let left = haze::picture::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8();
+    assert!(cell(&left, 0) == cell(&diffuse, 0) && cell(&left, 1) == cell(&diffuse, 1));
+
+    let line = |arguments: &[&str]| refusal(folder.path(), &[&["ramp", "sheet", "fence"], arguments].concat());
+    fs::create_dir(folder.path().join("broken")).unwrap();
+    fs::rename(folder.path().join("ramps/diffuse_broken.png"), folder.path().join("broken/diffuse_broken.png"))
+        .unwrap();
+    assert!(line(&["--ramps", "broken", "-o", "a.png"]).contains("diffuse_broken.png: not a PNG"));
+    assert!(line(&["--ramps", "gone", "-o", "a.png"]).starts_with("haze: gone: "));
+    assert!(line(&["--ramps", "sheet.png", "-o", "a.png"]).contains("sheet.png is not valid; expected a folder"));
+    let over = line(&["--ramps", "ramps", "--role", "diffuse", "-o", "ramps/mine.png"]);
+    assert!(over.contains("expected a file that is not read"), "{over}");
+    fs::create_dir(folder.path().join("empty")).unwrap();
+    let none = line(&["--ramps", "empty", "--role", "age", "-o", "a.png"]);
+    assert!(none.contains("--ramps: empty is not valid; expected 1 to 64 ramps for age, not 0"), "{none}");
+}
+
+#[test]
+fn a_blank_of_every_role_is_a_ramp_with_its_axes_on_it() {
+    let folder = folder();
+    for role in Role::ALL {
+        let name = format!("{}_mine.png", role.name());
+        let line = said(folder.path(), &["ramp", "new", "--blank", role.name(), "-o", &name]);
+        let size = if matches!(role, Role::Specular | Role::Backlight) { "512x256" } else { "512x64" };
+        assert_eq!(line, format!("{name}: a {} ramp to paint over, {size}\n", role.name()));
+        // Ink is written at both ends: from one line to the next a ramp changes little.
+        let picture = haze::picture::read_png(&folder.path().join(&name)).unwrap().to_luma8();
+        let middle = picture.height() / 2;
+        for end in [0..150, 362..512] {
+            let is_edge = |x: &u32, y| picture[(*x, y)].0[0].abs_diff(picture[(*x, y + 1)].0[0]) > 60;
+            let edges = (middle - 10..middle + 10).map(|y| end.clone().filter(|x| is_edge(x, y)).count());
+            let edges: usize = edges.sum();
+            assert!(edges > 20, "{name}, {end:?}: {edges}");
+        }
+        assert!(refusal(folder.path(), &["ramp", "new", "--blank", role.name(), "-o", &name]).contains("that is free"));
+    }
+    let line = refusal(folder.path(), &["ramp", "new", "--blank", "age", "-o", "a.ramp.json"]);
+    assert!(line.contains("expected a name that ends in .png"), "{line}");
+}
+
+#[test]
+fn ramps_are_fitted_to_smoke_as_it_is() {
+    let folder = folder();
+    let puff = ["--size", "16", "--samples", "8"];
+    let fit = ["ramp", "fit", "-o", "lit.ramp.json"];
+    let both = ["--medium", "dust", "--backlight", "against.ramp.json", "--sheet", "sheet.png"];
+    let told = said(folder.path(), &[&fit[..], &puff, &both].concat());
+    // The usual ramp first, then what was fitted.
+    let error = |name: &str| -> f32 {
+        let line = told.lines().find(|line| line.starts_with(name)).unwrap();
+        line.split(' ').nth(2).unwrap().parse().unwrap()
+    };
+    assert!(error("fitted:") < 10.0 && error("diffuse_soft:") > 30.0, "{told}");
+    assert_eq!(told.lines().filter(|line| line.contains('°')).count(), 32, "{told}");
+    for name in ["lit", "against"] {
+        let picture = folder.path().join(name).with_extension("png");
+        assert_eq!(haze::picture::read_png(&picture).unwrap().to_rgb16().dimensions(), (128, 64));
+        assert!(
+            haze_author::ramp::bake::RampRecipe::load(&picture.with_extension("ramp.json")).unwrap().rows.len() == 5
+        );
+    }
+    assert!(folder.path().join("sheet.png").is_file());
+    let render = ["render", "--size", "32x18", "--backend", "cpu", "-o", "a.png", "--set", "diffuse.backlight=ramp"];
+    assert!(haze(folder.path(), &render).status.success());
+    let check = ["ramp", "check", "lit.png", "--truth", "dust", "--backlight", "against.png"];
+    let output = haze(folder.path(), &check);
+    assert!(String::from_utf8(output.stdout).unwrap().starts_with("lit.png beside dust: brightness "));
+    let refused = |rest: &[&str]| refusal(folder.path(), &[&fit[..], &puff, rest].concat());
+    assert!(refused(&["--albedo", "1.5"]).contains("--albedo: 1.5 is not valid; expected 0 to 1"));
+    assert!(refused(&["--albedo", "1,2"]).contains("one, or red, green and blue"));
+    assert!(refused(&["--g", "nan"]).contains("--g: NaN is not valid"));
+    assert!(refused(&["--density", "0"]).contains("--density: 0 is not valid; expected 0.1 to 100"));
+    assert!(refused(&["--sprite", "smoke"]).contains("--sprite: smoke is not valid; expected a *.sprite.json file"));
+}
+
+#[test]
+fn a_sprite_is_lit_as_smoke_is() {
+    let folder = folder();
+    let light = ["sprite", "light", "ball", "--medium", "milk", "--size", "16", "--samples", "4", "-o", "a.png"];
+    let told = said(folder.path(), &[&light[..], &["--volume", "ball.vol"]].concat());
+    assert_eq!(told.lines().count(), 17, "{told}");
+    assert_eq!(haze::picture::read_png(&folder.path().join("a.png")).unwrap().height(), 212);
+    let grid = fs::read(folder.path().join("ball.vol")).unwrap();
+    assert!(grid.starts_with(b"VOL\x03\x01\0\0\0\x10\0\0\0\x10\0\0\0"), "{:?}", &grid[..24]);
+}
+
+#[test]
+fn a_file_of_another_kind_is_told_which_command_takes_it() {
+    let folder = folder();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    write("a.ramp.json", &TEMPLATES[0].recipe().to_text());
+    write("recipe.json", &TEMPLATES[0].recipe().to_text());
+    // By its name, though it is broken.
+    write("broken.sprite.json", "{");
+    write("a.json", &haze::preset::Preset::load(Path::new("column")).unwrap().to_text(""));
+    for (command, file, is) in [
+        ("preset", "a.ramp.json", "a ramp's recipe: `haze ramp check` takes it"),
+        ("preset", "recipe.json", "a ramp's recipe: `haze ramp check` takes it"),
+        ("preset", "broken.sprite.json", "a sprite's recipe: `haze sprite bake` takes it"),
+        ("ramp", "a.json", "a preset: `haze preset check` takes it"),
+        ("ramp", "broken.sprite.json", "a sprite's recipe: `haze sprite bake` takes it"),
+        ("sprite", "a.ramp.json", "a ramp's recipe: `haze ramp check` takes it"),
+        ("sprite", "a.json", "a preset: `haze preset check` takes it"),
+        ("sprite", "broken.sprite.json", "a sprite's recipe: `haze sprite bake` takes it"),
+    ] {
+        let said = refusal(folder.path(), &[command, "check", file]);
+        assert!(
+            said.contains(&format!("{file} is not valid; expected ")) && said.contains(is),
+            "{command} {file}: {said}"
+        );
+    }
+    // What is of the right kind, and what is missing, is told as ever.
+    write("broken.ramp.json", "{");
+    assert!(refusal(folder.path(), &["ramp", "check", "broken.ramp.json"]).contains("broken.ramp.json:1:1: "));
+    assert!(!refusal(folder.path(), &["preset", "check", "gone.ramp.json"]).contains("haze ramp check"));
+}

@@ -1,0 +1,46 @@
+//! `--shaders`: what an author sees of their work from the shell.
+
+use std::path::Path;
+
+use super::{folder, haze, refusal, stderr};
+
+const COLOUR: &str = include_str!("../../../../../shaders/lib/colour.wgsl");
+
+fn write(folder: &Path, text: &str) {
+    std::fs::create_dir_all(folder.join("shaders/lib")).unwrap();
+    std::fs::write(folder.join("shaders/lib/colour.wgsl"), text).unwrap();
+}
+
+#[test]
+fn a_broken_shader_is_one_line_and_a_good_one_changes_the_picture() {
+    let folder = folder();
+    let folder = folder.path();
+    let arguments = ["render", "--size", "64x36", "--backend", "gpu", "--shaders", "shaders", "-o", "a.png"];
+    let picture = || {
+        let output = haze(folder, &arguments);
+        assert!(output.status.success(), "{}", stderr(&output));
+        std::fs::read(folder.join("a.png")).unwrap()
+    };
+    write(folder, COLOUR);
+    let plain = picture();
+    write(folder, &COLOUR.replace("return bounded_light(light);", "return bounded_light(light * 0.5);"));
+    assert_ne!(picture(), plain);
+
+    write(folder, &COLOUR.replace("saturate(light)", "saturat(light)"));
+    let line = COLOUR.lines().position(|line| line.contains("saturate(light)")).unwrap() + 1;
+    let said = format!("haze: shaders/lib/colour.wgsl:{line}:17: no definition in scope for identifier: `saturat`\n");
+    assert_eq!(refusal(folder, &arguments), said);
+    for command in ["shade-tree", "techniques"] {
+        assert_eq!(refusal(folder, &[command, "--size", "64x36", "--shaders", "shaders", "-o", "b.png"]), said);
+    }
+    let absent = refusal(folder, &["render", "--shaders", "shader", "-o", "a.png"]);
+    assert!(absent.starts_with("haze: shader: No such file"), "{absent}");
+}
+
+#[test]
+fn shaders_need_a_gpu() {
+    let folder = folder();
+    write(folder.path(), COLOUR);
+    let said = refusal(folder.path(), &["render", "--shaders", "shaders", "--backend", "cpu", "-o", "a.png"]);
+    assert_eq!(said, "haze: --shaders: with --backend cpu is not valid; expected a GPU: the CPU runs no shaders\n");
+}

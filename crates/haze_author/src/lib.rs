@@ -1,0 +1,12 @@
+//! Makes the assets that haze draws with: path tracing, sprite and ramp bakes, fits, importers, checks, particle files.
+//!
+//! The library `haze` links none of this: it loads the PNG files and presets that this crate writes.
+
+pub mod exact;
+pub mod finding;
+pub mod noise;
+pub mod particle_files;
+pub mod path_trace;
+pub mod preset;
+pub mod ramp;
+pub mod sprite;

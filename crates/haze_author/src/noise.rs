@@ -1,0 +1,121 @@
+//! Tiling noise volumes, baked.
+
+use std::path::Path;
+
+use glam::{UVec3, Vec3, Vec4, Vec4Swizzles};
+use haze::assets::json;
+use haze::error::{Error, FieldError};
+use haze::formula::gradient_noise::tiling_noise;
+use haze::settings::{FieldVisitor, Fields, validate};
+use image::{Rgba, RgbaImage};
+
+/// The version of the recipe format that this code writes and reads.
+pub const RECIPE_VERSION: u32 = 1;
+
+/// How a noise was made: the contents of a `*.noise.json`.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct NoiseRecipe {
+    /// Format version.
+    pub version: u32,
+    /// Different seeds give different noise of the same kind.
+    pub seed: u32,
+    /// Voxels along each side.
+    pub size: u32,
+    /// Cells of the coarsest octave along each side.
+    pub cells: u32,
+    /// Octaves, each of twice the frequency of the last.
+    pub octaves: u32,
+    /// Weight of an octave relative to the coarser one.
+    pub gain: f32,
+}
+
+impl Fields for NoiseRecipe {
+    fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
+        visitor.integer("version", &mut self.version, RECIPE_VERSION..=RECIPE_VERSION, "");
+        visitor.seed("seed", &mut self.seed);
+        visitor.integer("size", &mut self.size, 4..=64, "voxels");
+        visitor.integer("cells", &mut self.cells, 1..=64, "");
+        visitor.integer("octaves", &mut self.octaves, 1..=8, "");
+        visitor.number("gain", &mut self.gain, 0.0..=1.0, "");
+    }
+}
+
+impl NoiseRecipe {
+    /// Reads a `*.noise.json`.
+    ///
+    /// # Errors
+    /// [`Error::Io`], [`Error::Json`] or [`Error::JsonField`].
+    pub fn load(path: &Path) -> Result<Self, Error> {
+        json::load(path, RECIPE_VERSION, |recipe: &Self| validate(recipe, String::new))
+    }
+
+    /// Bakes the slices, below each other.
+    ///
+    /// # Errors
+    /// The first number of the recipe that is out of range.
+    pub fn bake(&self) -> Result<RgbaImage, FieldError> {
+        validate(self, String::new)?;
+        let size = self.size;
+        // Gradient in xyz, density in w.
+        let sample = |index: u32| self.sample(UVec3::new(index % size, index / size % size, index / (size * size)));
+        let field: Vec<Vec4> = (0..size.pow(3)).map(sample).collect();
+        let least = field.iter().map(|v| v.w).fold(f32::INFINITY, f32::min);
+        let most = field.iter().map(|v| v.w).fold(f32::NEG_INFINITY, f32::max);
+        let steepest = field.iter().map(|v| v.xyz().length()).fold(f32::MIN_POSITIVE, f32::max);
+        let channel = |value: f32| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
+        // With the slices below each other, the picture's rows are in the voxels' order.
+        Ok(RgbaImage::from_fn(size, size * size, |x, y| {
+            let value = field[(y * size + x) as usize];
+            let away = -value.xyz() / steepest * 0.5 + 0.5;
+            let density = (value.w - least) / (most - least).max(f32::MIN_POSITIVE);
+            Rgba([channel(away.x), channel(away.y), channel(away.z), channel(density)])
+        }))
+    }
+
+    fn sample(&self, voxel: UVec3) -> Vec4 {
+        let place = (voxel.as_vec3() + 0.5) / self.size as f32;
+        let mut sum = Vec4::ZERO;
+        let (mut period, mut weight) = (self.cells, 1.0);
+        for octave in 0..self.octaves {
+            let noise = tiling_noise(place * period as f32, period, self.seed.wrapping_add(octave * 7919));
+            let gradient: Vec3 = noise.gradient * period as f32;
+            sum += gradient.extend(noise.value) * weight;
+            period *= 2;
+            weight *= self.gain;
+        }
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use haze::noise::NoiseVolume;
+
+    use super::*;
+
+    fn recipe() -> NoiseRecipe {
+        NoiseRecipe { version: 1, seed: 1, size: 16, cells: 2, octaves: 3, gain: 0.5 }
+    }
+
+    #[test]
+    fn the_gradient_points_to_where_there_is_less() {
+        let baked = recipe().bake().unwrap();
+        let volume = NoiseVolume::from_picture(Path::new("test"), &baked).unwrap();
+        let mut agreeing = 0;
+        for index in 0..16 * 16 * 16_u32 {
+            let at = UVec3::new(index % 16, index / 16 % 16, index / 256);
+            // Central differences, wrapped round: also across the border of the tile.
+            let density = |step: UVec3| volume.texel((at + step) % 16).w;
+            let slope = Vec3::new(
+                density(UVec3::new(1, 0, 0)) - density(UVec3::new(15, 0, 0)),
+                density(UVec3::new(0, 1, 0)) - density(UVec3::new(0, 15, 0)),
+                density(UVec3::new(0, 0, 1)) - density(UVec3::new(0, 0, 15)),
+            );
+            agreeing += u32::from((volume.texel(at).xyz() - 0.5).dot(-slope) >= 0.0);
+        }
+        // Differences over two voxels smooth the finest octave away.
+        assert!(agreeing > 3900, "{agreeing} of 4096");
+    }
+}

@@ -1,0 +1,203 @@
+//! The columns of a file of particles, and what may stand in them.
+
+use glam::Vec3;
+
+use super::frame::{CachedParticle, Given};
+use super::role::{ROLES, Role, role};
+use haze::error::one_line;
+
+/// Most columns of a file.
+pub const MOST_COLUMNS: usize = 1024;
+
+/// Largest number that is read: what is beyond is no scene.
+const LARGEST: f64 = 1.0e9;
+
+/// Largest whole number that every double up to it can hold.
+const LARGEST_ID: f64 = 9_007_199_254_740_992.0;
+
+/// How far a share may be beyond 0 and 1: simulations reach the end of a life a bit late.
+const SLACK: f64 = 0.001;
+
+/// The columns of a file.
+pub struct Columns {
+    columns: Vec<Column>,
+    /// Age is in seconds, of a life that has a column too.
+    has_lives: bool,
+    /// A radius of its own, not half a width.
+    has_radius: bool,
+    pub given: Given,
+}
+
+struct Column {
+    name: String,
+    role: Option<Role>,
+    /// What stands for 1.
+    one: f64,
+}
+
+/// The numbers of a row, by role.
+#[derive(Clone, Copy, Default)]
+pub struct Values([f64; ROLES]);
+
+impl Columns {
+    /// Columns of these names, in the order of the file. Fails with what is missing.
+    pub fn of(names: &[&str]) -> Result<Self, String> {
+        let ranks: Vec<_> = names.iter().map(|name| role(name)).collect();
+        let chosen = |role: Role| {
+            let of_role =
+                ranks.iter().enumerate().filter_map(|(at, rank)| Some((rank.filter(|rank| rank.1 == role)?.0, at)));
+            of_role.min().map(|(_, at)| at)
+        };
+        let columns = names.iter().zip(&ranks).enumerate().map(|(at, (name, rank))| {
+            let role = rank.map(|rank| rank.1).filter(|role| chosen(*role) == Some(at));
+            Column { name: one_line(name.trim()), role, one: 1.0 }
+        });
+        let columns = Self { columns: columns.collect(), has_lives: false, has_radius: false, given: Given::default() };
+        let has = |role: Role| columns.columns.iter().any(|column| column.role == Some(role));
+        for (role, axis) in [(Role::X, 'x'), (Role::Y, 'y'), (Role::Z, 'z')] {
+            if !has(role) {
+                let names: Vec<_> = columns.columns.iter().map(|column| column.name.as_str()).collect();
+                let names = one_line(names.join(", "));
+                return Err(format!(
+                    "no column for the {axis} of positions among {names}; expected {axis}, P.{axis}, P[{axis}] or position_{axis}"
+                ));
+            }
+        }
+        let given = Given {
+            id: has(Role::Id),
+            radius: has(Role::Radius) || has(Role::Width),
+            rotation: has(Role::Rotation),
+            amount: has(Role::Amount),
+        };
+        Ok(Self { has_lives: has(Role::Age) && has(Role::Life), has_radius: has(Role::Radius), given, ..columns })
+    }
+
+    pub fn len(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// Whether a column's numbers are wanted.
+    pub fn is_read(&self, column: usize) -> bool {
+        self.columns.get(column).is_some_and(|column| column.role.is_some())
+    }
+
+    /// The amounts of a column are whole numbers up to this.
+    pub fn set_amount_one(&mut self, column: usize, one: f64) {
+        if let Some(column) = self.columns.get_mut(column).filter(|column| column.role == Some(Role::Amount)) {
+            column.one = one;
+        }
+    }
+
+    /// Reads a number from a text, as [`Columns::put`].
+    pub fn put_text(&self, column: usize, text: &str, values: &mut Values) -> Result<(), String> {
+        match text.trim().parse() {
+            Ok(value) => self.put(column, value, values),
+            Err(_) => Err(self.refuse(column, format!("{:?}", one_line(text)), "a number")),
+        }
+    }
+
+    /// Takes a number of a column that is read. Fails with what would be right.
+    pub fn put(&self, column: usize, value: f64, values: &mut Values) -> Result<(), String> {
+        let Some(Column { role: Some(role), one, .. }) = self.columns.get(column) else { return Ok(()) };
+        let share = -SLACK..=1.0 + SLACK;
+        // Ranges hold no NaN.
+        let (is_good, expected) = match role {
+            Role::X | Role::Y | Role::Z | Role::Rotation | Role::Amount => {
+                (value.abs() <= LARGEST, "a number up to 1e9")
+            }
+            Role::Radius | Role::Width => ((0.0..=LARGEST).contains(&value), "0 or more, up to 1e9"),
+            Role::Age if self.has_lives => (value.abs() <= LARGEST, "a number up to 1e9"),
+            Role::Life if self.has_lives => ((0.0..=LARGEST).contains(&value), "0 or more, up to 1e9"),
+            Role::Age => {
+                (share.contains(&value), "the share of its life that has passed, 0 to 1, or a column life beside it")
+            }
+            Role::Life => {
+                (share.contains(&value), "the share of it that has passed, 0 to 1, or a column age beside it")
+            }
+            Role::Id => (value.abs() <= LARGEST_ID && value.fract() == 0.0, "a whole number"),
+        };
+        if !is_good {
+            return Err(self.refuse(column, value, expected));
+        }
+        values.0[*role as usize] = value / one;
+        Ok(())
+    }
+
+    /// The particle of a row, from the numbers that were put.
+    pub fn particle(&self, row: usize, values: &Values) -> CachedParticle {
+        let of = |role: Role| values.0[role as usize];
+        let age = match self.has_lives {
+            true => of(Role::Age) / of(Role::Life).max(f64::MIN_POSITIVE),
+            // The one that there is; the other is 0.
+            false => of(Role::Age) + of(Role::Life),
+        };
+        CachedParticle {
+            id: if self.given.id { of(Role::Id) as i64 } else { row as i64 },
+            position: Vec3::new(of(Role::X) as f32, of(Role::Y) as f32, of(Role::Z) as f32),
+            radius: if self.has_radius { of(Role::Radius) } else { 0.5 * of(Role::Width) } as f32,
+            rotation: of(Role::Rotation) as f32,
+            amount: of(Role::Amount) as f32,
+            age: age.clamp(0.0, 1.0) as f32,
+        }
+    }
+
+    fn refuse(&self, column: usize, found: impl std::fmt::Display, expected: &str) -> String {
+        let name = self.columns.get(column).map_or("", |column| column.name.as_str());
+        format!("{name}: {found} is not valid; expected {expected}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_known_by_the_names_that_programs_give_them() {
+        for names in [["x", "y", "z"], ["P.x", "P.y", "P.z"], ["P[x]", "P[y]", "P[z]"], ["P:x", "P:y", "P:z"]] {
+            assert!(Columns::of(&names).is_ok(), "{names:?}");
+        }
+        for names in [["Px", "Py", "Pz"], ["position_x", "position_y", "position_z"], ["P[0]", "P[1]", "P[2]"]] {
+            assert!(Columns::of(&names).is_ok(), "{names:?}");
+        }
+        let given = |name: &str| Columns::of(&["x", "y", "z", name]).unwrap().given;
+        assert!(given("PScale").radius && given("width").radius && given("Alpha").amount && given("ID").id);
+        assert!(given("rotation").rotation && given("age") == Given::default());
+        let missing = Columns::of(&["x", "Z", "ny"]).map(|_| ()).unwrap_err();
+        let expected = "expected y, P.y, P[y] or position_y";
+        assert_eq!(missing, format!("no column for the y of positions among x, Z, ny; {expected}"));
+    }
+
+    #[test]
+    fn the_first_of_several_names_is_read_and_a_width_is_halved() {
+        let columns = Columns::of(&["x", "y", "z", "width", "alpha", "amount", "pscale", "age", "life"]).unwrap();
+        let mut values = Values::default();
+        for (column, value) in [1.0, 2.0, 3.0, 9.0, 0.9, 0.25, 0.5, 3.0, 4.0].into_iter().enumerate() {
+            columns.put(column, value, &mut values).unwrap();
+        }
+        let particle = columns.particle(7, &values);
+        assert_eq!((particle.position, particle.id), (Vec3::new(1.0, 2.0, 3.0), 7));
+        assert_eq!((particle.radius, particle.amount, particle.age), (0.5, 0.25, 0.75));
+        let columns = Columns::of(&["x", "y", "z", "width", "life"]).unwrap();
+        let mut values = Values::default();
+        columns.put(3, 3.0, &mut values).unwrap();
+        columns.put(4, 0.4, &mut values).unwrap();
+        let particle = columns.particle(0, &values);
+        assert_eq!((particle.radius, particle.age), (1.5, 0.4));
+    }
+
+    #[test]
+    fn what_is_no_particle_is_refused_with_what_would_be_right() {
+        let columns = Columns::of(&["x", "y", "z", "pscale", "age", "id"]).unwrap();
+        let mut values = Values::default();
+        let mut refusal = |column, value| columns.put(column, value, &mut values).unwrap_err();
+        assert_eq!(refusal(0, f64::NAN), "x: NaN is not valid; expected a number up to 1e9");
+        assert_eq!(refusal(2, 1e30), "z: 1000000000000000000000000000000 is not valid; expected a number up to 1e9");
+        assert_eq!(refusal(3, -0.5), "pscale: -0.5 is not valid; expected 0 or more, up to 1e9");
+        assert!(refusal(4, 3.5).ends_with("0 to 1, or a column life beside it"));
+        assert_eq!(refusal(5, 1.5), "id: 1.5 is not valid; expected a whole number");
+        assert_eq!(
+            columns.put_text(0, "one", &mut Values::default()).unwrap_err(),
+            "x: \"one\" is not valid; expected a number"
+        );
+    }
+}

@@ -1,0 +1,100 @@
+//! The particles of a time, from the frames of files.
+
+use glam::{UVec3, Vec3};
+use haze::Particle;
+use haze::noise::{pcg3d, unit};
+use haze::preset::{CacheEnd, CacheSource, UpAxis};
+
+use super::{Around, Cache};
+
+impl Cache {
+    /// Writes the particles at `time`, seconds. Same input, same output.
+    pub fn evaluate(&self, source: &CacheSource, time: f32, particles: &mut Vec<Particle>) {
+        particles.clear();
+        let mut frame = (f64::from(time) - f64::from(source.start)) * f64::from(source.fps);
+        if source.after == CacheEnd::Loop {
+            frame = frame.rem_euclid(f64::from(self.length()));
+        }
+        let Some(Around { before, after, share }) = self.around(frame) else { return };
+        let given = before.given();
+        before.between(after, share, |cached, there| {
+            let id = cached.id as u64;
+            let random = pcg3d(UVec3::new(id as u32, (id >> 32) as u32, 0));
+            let [x, y, z] = cached.position.to_array();
+            let position = if source.up == UpAxis::Z { Vec3::new(x, z, -y) } else { cached.position };
+            particles.push(Particle {
+                position: source.position + position * source.units,
+                radius: if given.radius { cached.radius * source.units } else { source.default_radius },
+                // Sprites that are all turned alike are seen to be one.
+                rotation: if given.rotation { cached.rotation } else { unit(random.x) * std::f32::consts::TAU },
+                amount: there * if given.amount { cached.amount } else { source.default_amount },
+                frame: unit(random.y) * 256.0 + time * source.flipbook_rate,
+                age: cached.age,
+            });
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Limits;
+    use super::*;
+
+    fn cache(texts: &[&str]) -> Cache {
+        let folder = tempfile::tempdir().unwrap();
+        for (number, text) in texts.iter().enumerate() {
+            std::fs::write(folder.path().join(format!("{number}.csv")), text).unwrap();
+        }
+        Cache::load(&folder.path().join("#.csv"), Limits { particles: 9, bytes: 1 << 20 }).unwrap()
+    }
+
+    fn at(source: &CacheSource, cache: &Cache, time: f32) -> Vec<Particle> {
+        let mut particles = Vec::new();
+        cache.evaluate(source, time, &mut particles);
+        particles
+    }
+
+    #[test]
+    fn units_and_axes_are_the_shots() {
+        let cache = cache(&["x,y,z,pscale,amount,rotation,age\n1,2,3,4,0.5,6,0.25"]);
+        let plain = CacheSource { flipbook_rate: 0.0, ..CacheSource::default() };
+        let [y_up] = at(&plain, &cache, 0.0)[..] else { panic!("one particle") };
+        assert_eq!((y_up.position, y_up.radius), (Vec3::new(1.0, 2.0, 3.0), 4.0));
+        assert_eq!((y_up.amount, y_up.rotation, y_up.age), (0.5, 6.0, 0.25));
+        let moved = CacheSource { up: UpAxis::Z, units: 0.01, position: Vec3::new(0.0, 10.0, 0.0), ..plain };
+        let [z_up] = at(&moved, &cache, 0.0)[..] else { panic!("one particle") };
+        // Blender's way forward, y, is away from the viewer.
+        assert!(z_up.position.distance(Vec3::new(0.01, 10.03, -0.02)) < 1e-6 && (z_up.radius - 0.04).abs() < 1e-7);
+        assert_eq!(Particle { position: y_up.position, radius: y_up.radius, ..z_up }, y_up);
+    }
+
+    #[test]
+    fn frames_are_held_or_begin_again() {
+        let cache = cache(&["id,x,y,z\n1,0,0,0", "id,x,y,z\n1,1,0,0\n2,0,0,0", "id,x,y,z\n2,4,0,0"]);
+        let mut source = CacheSource { fps: 2.0, start: 1.0, default_amount: 0.4, ..CacheSource::default() };
+        let mut seen = |after, time| {
+            source.after = after;
+            at(&source, &cache, time).iter().map(|particle| (particle.position.x, particle.amount)).collect::<Vec<_>>()
+        };
+        assert_eq!(seen(CacheEnd::Hold, 0.9), []);
+        assert_eq!(seen(CacheEnd::Hold, 1.0), [(0.0, 0.4)]);
+        assert_eq!(seen(CacheEnd::Hold, 1.25), [(0.5, 0.4), (0.0, 0.2)]);
+        assert_eq!(seen(CacheEnd::Hold, 1.75), [(1.0, 0.2), (2.0, 0.4)]);
+        assert_eq!(seen(CacheEnd::Hold, 50.0), [(4.0, 0.4)]);
+        assert_eq!(seen(CacheEnd::Loop, 2.25), [(4.0, 0.4)]);
+        for turn in [-3.0, 0.0, 3.0] {
+            assert_eq!(seen(CacheEnd::Loop, 2.75 + turn), [(0.5, 0.4), (0.0, 0.2)]);
+        }
+    }
+
+    #[test]
+    fn what_a_file_does_not_say_is_the_settings_and_stays_with_the_id() {
+        let cache = cache(&["id,x,y,z\n7,0,0,0\n8,0,0,0", "id,x,y,z\n8,0,0,0\n7,0,0,0"]);
+        let source = CacheSource { default_radius: 0.5, fps: 1.0, flipbook_rate: 0.0, ..CacheSource::default() };
+        let (first, second) = (at(&source, &cache, 0.0), at(&source, &cache, 1.0));
+        assert_eq!(first, second);
+        assert_eq!((first[0].radius, first[0].amount), (0.5, 0.3));
+        let apart = [first[0].rotation - first[1].rotation, first[0].frame - first[1].frame];
+        assert!(apart.iter().all(|apart| apart.abs() > 0.01) && first.iter().all(Particle::is_valid));
+    }
+}

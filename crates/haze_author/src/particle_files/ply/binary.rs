@@ -1,0 +1,99 @@
+//! PLY files whose numbers are bytes.
+
+use super::header::{Element, Kind, Scalar};
+use crate::particle_files::columns::{Columns, Values};
+use crate::particle_files::frame::CachedParticle;
+use crate::particle_files::mistake::Mistake;
+
+/// Reads the vertices of what follows a header of `start` bytes.
+pub fn read(
+    body: &[u8],
+    start: usize,
+    is_big: bool,
+    before: &[Element],
+    vertices: &Element,
+    columns: &Columns,
+) -> Result<Vec<CachedParticle>, Mistake> {
+    let mut reader = Reader { body, at: 0, is_big };
+    for element in before {
+        if element.has_lists() {
+            for row in 0..element.count {
+                let passed = element.properties.iter().try_for_each(|property| reader.pass(property.kind));
+                passed.ok_or_else(|| ended(element, row, start + reader.at))?;
+            }
+        } else {
+            // As long as the header's counts were found to fit into the file.
+            reader.at += element.count * element.least_bytes();
+        }
+    }
+    let mut particles = Vec::with_capacity(vertices.count);
+    for row in 0..vertices.count {
+        let mut values = Values::default();
+        for (column, property) in vertices.properties.iter().enumerate() {
+            let at = start + reader.at;
+            match property.kind {
+                Kind::One(scalar) if columns.is_read(column) => {
+                    let value = reader.scalar(scalar).ok_or_else(|| ended(vertices, row, at))?;
+                    let put = columns.put(column, value, &mut values);
+                    put.map_err(|reason| Mistake::Whole(format!("vertex {row} at byte {at}: {reason}")))?;
+                }
+                kind => reader.pass(kind).ok_or_else(|| ended(vertices, row, at))?,
+            }
+        }
+        particles.push(columns.particle(row, &values));
+    }
+    Ok(particles)
+}
+
+fn ended(element: &Element, row: usize, at: usize) -> Mistake {
+    let Element { name, count, .. } = element;
+    Mistake::Whole(format!("ends within {name} {row} at byte {at}; expected {count} of them, as the header says"))
+}
+
+struct Reader<'a> {
+    body: &'a [u8],
+    at: usize,
+    is_big: bool,
+}
+
+impl Reader<'_> {
+    /// The next bytes; none beyond the end.
+    fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let bytes = *self.body.get(self.at..)?.first_chunk::<N>()?;
+        self.at += N;
+        Some(bytes)
+    }
+
+    fn scalar(&mut self, scalar: Scalar) -> Option<f64> {
+        /// The bytes as the type has them, in either order.
+        macro_rules! number {
+            ($type:ty) => {{
+                let bytes = self.take()?;
+                (if self.is_big { <$type>::from_be_bytes(bytes) } else { <$type>::from_le_bytes(bytes) }).into()
+            }};
+        }
+        Some(match scalar {
+            Scalar::I8 => number!(i8),
+            Scalar::U8 => number!(u8),
+            Scalar::I16 => number!(i16),
+            Scalar::U16 => number!(u16),
+            Scalar::I32 => number!(i32),
+            Scalar::U32 => number!(u32),
+            Scalar::F32 => number!(f32),
+            Scalar::F64 => number!(f64),
+        })
+    }
+
+    /// Goes on behind a property. A list of less than nothing has no end, too.
+    fn pass(&mut self, kind: Kind) -> Option<()> {
+        let bytes = match kind {
+            Kind::One(scalar) => scalar.bytes(),
+            Kind::List { count, item } => {
+                let count = self.scalar(count).filter(|count| *count >= 0.0)?;
+                (count as usize).checked_mul(item.bytes())?
+            }
+        };
+        self.at = self.at.checked_add(bytes).filter(|at| *at <= self.body.len())?;
+        Some(())
+    }
+}

@@ -1,0 +1,196 @@
+//! What a PLY file says that is in it.
+
+use crate::particle_files::columns::MOST_COLUMNS;
+use crate::particle_files::mistake::Mistake;
+use haze::error::one_line;
+
+/// Longest header, bytes.
+const MOST_BYTES: usize = 1 << 16;
+
+pub struct Header {
+    pub format: Format,
+    pub elements: Vec<Element>,
+    /// Of the header, bytes and lines.
+    pub length: usize,
+    pub lines: usize,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    Ascii,
+    Binary {
+        /// The first byte is the largest.
+        is_big: bool,
+    },
+}
+
+/// A list of things that are alike.
+pub struct Element {
+    pub name: String,
+    pub count: usize,
+    pub properties: Vec<Property>,
+}
+
+pub struct Property {
+    pub name: String,
+    pub kind: Kind,
+}
+
+#[derive(Clone, Copy)]
+pub enum Kind {
+    One(Scalar),
+    List { count: Scalar, item: Scalar },
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Scalar {
+    fn of(name: &str) -> Result<Self, String> {
+        Ok(match name {
+            "char" | "int8" => Self::I8,
+            "uchar" | "uint8" => Self::U8,
+            "short" | "int16" => Self::I16,
+            "ushort" | "uint16" => Self::U16,
+            "int" | "int32" => Self::I32,
+            "uint" | "uint32" => Self::U32,
+            "float" | "float32" => Self::F32,
+            "double" | "float64" => Self::F64,
+            _ => {
+                let types = "char, uchar, short, ushort, int, uint, float, double, or int8 to float64";
+                return Err(format!("type {:?} is not known; expected one of {types}", one_line(name)));
+            }
+        })
+    }
+
+    pub fn bytes(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+}
+
+impl Element {
+    /// Fewest bytes of one in a binary file: its lists may be empty.
+    pub fn least_bytes(&self) -> usize {
+        let bytes = |property: &Property| match property.kind {
+            Kind::One(scalar) => scalar.bytes(),
+            Kind::List { count, .. } => count.bytes(),
+        };
+        self.properties.iter().map(bytes).sum()
+    }
+
+    pub fn has_lists(&self) -> bool {
+        self.properties.iter().any(|property| matches!(property.kind, Kind::List { .. }))
+    }
+}
+
+impl Header {
+    /// Reads the header, and compares what it promises with the length of the file.
+    pub fn parse(content: &[u8]) -> Result<Self, Mistake> {
+        let (mut format, mut elements) = (None, Vec::<Element>::new());
+        let (mut length, mut properties) = (0, 0);
+        for number in 1.. {
+            let rest = &content[length..content.len().min(MOST_BYTES)];
+            let Some(end) = rest.iter().position(|byte| *byte == b'\n') else {
+                let reason = format!("no end_header in the first {MOST_BYTES} bytes; expected a PLY file");
+                return Err(Mistake::Whole(reason));
+            };
+            length += end + 1;
+            let line = String::from_utf8_lossy(&rest[..end]);
+            let refuse = |reason: String| Mistake::after(number, "", reason);
+            let words: Vec<_> = line.split_ascii_whitespace().collect();
+            match words[..] {
+                ["ply"] if number == 1 => {}
+                _ if number == 1 => return Err(refuse("not a PLY file; expected \"ply\"".into())),
+                ["comment" | "obj_info", ..] | [] => {}
+                ["format", name, "1.0"] => format = Some(parse_format(name).map_err(refuse)?),
+                ["element", name, count] => {
+                    let refused = || refuse(format!("{:?} is no count; expected a whole number", one_line(count)));
+                    let count = count.parse().map_err(|_| refused())?;
+                    elements.push(Element { name: one_line(name), count, properties: Vec::new() });
+                }
+                ["property", ref words @ ..] => {
+                    let Some(element) = elements.last_mut() else {
+                        return Err(refuse("a property of nothing; expected an element before it".into()));
+                    };
+                    properties += 1;
+                    if properties > MOST_COLUMNS {
+                        return Err(refuse(format!("more than {MOST_COLUMNS} properties; expected no more")));
+                    }
+                    element.properties.push(parse_property(words).map_err(refuse)?);
+                }
+                ["end_header"] => {
+                    let format = format
+                        .ok_or_else(|| refuse("no format before; expected \"format ascii 1.0\", for example".into()))?;
+                    let header = Self { format, elements, length, lines: number };
+                    return header.check_counts(content.len() - length).map(|()| header);
+                }
+                _ => {
+                    let expected = "format, element, property, comment, obj_info or end_header";
+                    return Err(refuse(format!("{:?} is not known; expected {expected}", one_line(line.trim()))));
+                }
+            }
+        }
+        Err(Mistake::Whole("no end_header; expected a PLY file".into()))
+    }
+
+    /// Refuses more than the rest of the file can hold, before anything is made for it.
+    fn check_counts(&self, left: usize) -> Result<(), Mistake> {
+        let mut needed = 0_usize;
+        for element in &self.elements {
+            let least = match self.format {
+                Format::Binary { .. } => element.least_bytes(),
+                // A digit and what parts it from the next.
+                Format::Ascii => 2 * element.properties.len(),
+            };
+            needed = needed.saturating_add(element.count.saturating_mul(least));
+            // The last of a text need not be parted from anything.
+            if needed > left.saturating_add(1) || needed > left && self.format != Format::Ascii {
+                let Element { name, count, .. } = element;
+                let reason = format!(
+                    "{count} of element {name} of at least {least} bytes each are more than the {left} bytes that follow the header; \
+                     expected the whole file"
+                );
+                return Err(Mistake::Whole(reason));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn parse_format(name: &str) -> Result<Format, String> {
+    match name {
+        "ascii" => Ok(Format::Ascii),
+        "binary_little_endian" => Ok(Format::Binary { is_big: false }),
+        "binary_big_endian" => Ok(Format::Binary { is_big: true }),
+        _ => {
+            let expected = "ascii, binary_little_endian or binary_big_endian";
+            Err(format!("format {:?} is not known; expected {expected}", one_line(name)))
+        }
+    }
+}
+
+fn parse_property(words: &[&str]) -> Result<Property, String> {
+    let (name, kind) = match *words {
+        ["list", count, item, name] => (name, Kind::List { count: Scalar::of(count)?, item: Scalar::of(item)? }),
+        [scalar, name] => (name, Kind::One(Scalar::of(scalar)?)),
+        _ => return Err("a property of other parts; expected \"property float x\", for example".into()),
+    };
+    if let Kind::List { count: Scalar::F32 | Scalar::F64, .. } = kind {
+        return Err(format!("list {:?} is counted by a float; expected a whole number's type", one_line(name)));
+    }
+    Ok(Property { name: name.into(), kind })
+}

@@ -1,0 +1,144 @@
+//! The particle files of one preset: each is read once, and all together are bounded.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use super::{Cache, Limits};
+use haze::emitter::MAX_PARTICLES;
+use haze::error::{Error, FieldError};
+use haze::preset::{CacheSource, PictureFolders, Preset, PresetSystem, cache_file, in_system};
+use haze::{Emission, Particle};
+
+/// Most memory that the particle files of a preset take, bytes.
+pub const MAX_CACHE_BYTES: u64 = 1 << 30;
+
+/// Loads the particle files of every system that names some, each once: one of each system, `None` where an emitter makes the
+/// particles. They are looked for as pictures are; `path`, the preset's, is for errors alone.
+///
+/// # Errors
+/// As [`Cache::load`], naming the preset and the system too; [`Error::JsonField`] for a path that is none, and for more than
+/// [`MAX_PARTICLES`] or [`MAX_CACHE_BYTES`] in all systems.
+pub fn load_caches(preset: &Preset, path: &Path, folders: &PictureFolders) -> Result<Vec<Option<Cache>>, Error> {
+    check_caches(preset, path, folders).map_err(|mut errors| errors.swap_remove(0))
+}
+
+/// The same, for all that is wrong.
+///
+/// # Errors
+/// Those of every system: at least one.
+pub fn check_caches(preset: &Preset, path: &Path, folders: &PictureFolders) -> Result<Vec<Option<Cache>>, Vec<Error>> {
+    let mut known = HashMap::new();
+    let (mut bytes, mut particles) = (0, 0.0);
+    let (mut loaded, mut errors) = (Vec::new(), Vec::new());
+    for (index, system) in preset.systems.iter().enumerate() {
+        if !system.cache.is_used() {
+            particles += system.emitter.most_alive();
+            loaded.push(None);
+            continue;
+        }
+        let name = &system.cache.path;
+        let cache = match known.get(name) {
+            Some(cache) => Ok(Cache::clone(cache)),
+            None => load(name, folders, MAX_CACHE_BYTES - bytes).inspect(|cache| {
+                bytes += cache.bytes();
+                known.insert(name, cache.clone());
+            }),
+        };
+        let counted = cache.and_then(|cache| {
+            particles += cache.most() as f64;
+            if particles <= f64::from(MAX_PARTICLES) {
+                return Ok(cache);
+            }
+            let expected =
+                format!("at most {MAX_PARTICLES} particles alive at once in all systems, not {particles:.0}");
+            Err(FieldError::new("cache.path", format!("{name:?}"), expected).into())
+        });
+        match counted {
+            Ok(cache) => loaded.push(Some(cache)),
+            Err(error) => errors.push(in_system(path, index, error)),
+        }
+    }
+    if errors.is_empty() { Ok(loaded) } else { Err(errors) }
+}
+
+/// Writes the particles of a system at `time`, seconds: those of `files` if the system names some and they are loaded, else those
+/// of its emitter.
+pub fn particles(system: &PresetSystem, files: Option<&Cache>, time: f32, particles: &mut Vec<Particle>) {
+    match files.filter(|_| system.cache.is_used()) {
+        Some(files) => {
+            let is_frozen = system.settings.sprite.freeze_animation;
+            let flipbook_rate = if is_frozen { 0.0 } else { system.cache.flipbook_rate };
+            files.evaluate(&CacheSource { flipbook_rate, ..system.cache.clone() }, time, particles);
+        }
+        None => system.emission(time).evaluate(particles),
+    }
+}
+
+/// The emission of a system at `time`, seconds; `None` if its particles come from `files`.
+pub fn emission(system: &PresetSystem, files: Option<&Cache>, time: f32) -> Option<Emission> {
+    (!system.cache.is_used() || files.is_none()).then(|| system.emission(time))
+}
+
+fn load(name: &str, folders: &PictureFolders, bytes: u64) -> Result<Cache, Error> {
+    let Some(file) = cache_file(name) else {
+        let expected =
+            "a CSV or PLY file inside the preset's folder; one run of # in its name for the digits of frames";
+        return Err(FieldError::new("cache.path", format!("{name:?}"), expected).into());
+    };
+    let limits = Limits { particles: MAX_PARTICLES as usize, bytes };
+    let cache = folders.find(file).and_then(|file| Cache::load(&file, limits));
+    cache.map_err(|error| Error::Picture { named_by: "cache.path".into(), error: Box::new(error) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_system_is_told_what_is_wrong_with_its_files() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+        write("good.csv", "x,y,z\n1,2,3\n");
+        write("smoke_01.csv", "x,y,z\n1,2,3\n");
+        write("smoke_02.csv", "x,y,z\n1,2,-\n");
+        let preset = |paths: &[&str]| {
+            let mut preset = Preset::default();
+            for path in paths {
+                let mut system = PresetSystem::default();
+                system.cache.path = (*path).into();
+                preset.systems.push(system);
+            }
+            preset
+        };
+        let folders = PictureFolders::at(folder.path());
+        let check = |paths: &[&str]| check_caches(&preset(paths), Path::new("my.json"), &folders);
+        let loaded = check(&["good.csv", "", "good.csv"]).unwrap();
+        let [Some(first), None, Some(second)] = &loaded[..] else { panic!("two files") };
+        assert!(first.shares(second));
+        let said: Vec<_> = check(&["", "smok_##.csv", "good.csv", "smoke_##.csv", "../good.csv"])
+            .unwrap_err()
+            .iter()
+            .map(ToString::to_string)
+            .collect();
+        let [missing, broken, outside] = &said[..] else { panic!("{said:?}") };
+        assert!(
+            missing.starts_with("my.json: systems[1].cache.path: ") && missing.contains("No such file in "),
+            "{missing}"
+        );
+        assert!(missing.ends_with("; the nearest name is \"smoke_01.csv\""), "{missing}");
+        assert!(broken.starts_with("my.json: systems[3].cache.path: "), "{broken}");
+        assert!(broken.ends_with("smoke_02.csv:2:5: z: \"-\" is not valid; expected a number"), "{broken}");
+        assert!(outside.starts_with("my.json: systems[4].cache.path: \"../good.csv\" is not valid; "), "{outside}");
+        // What an emitter may make counts too, but not that of a system which has files.
+        let mut crowded = preset(&["", "good.csv"]);
+        for system in &mut crowded.systems {
+            (system.emitter.rate, system.emitter.lifetime, system.emitter.lifetime_spread) = (10_000.0, 104.8576, 0.0);
+        }
+        crowded.validate().unwrap();
+        let said = load_caches(&crowded, Path::new("my.json"), &folders).unwrap_err().to_string();
+        assert!(
+            said.ends_with("expected at most 1048576 particles alive at once in all systems, not 1048577"),
+            "{said}"
+        );
+    }
+}

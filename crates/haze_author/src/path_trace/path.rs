@@ -1,0 +1,126 @@
+//! Paths of light, followed from the viewer.
+
+use glam::{UVec2, UVec3, Vec2, Vec3};
+
+use super::medium::Medium;
+use super::phase::{phase, scattered};
+use super::random::Random;
+use super::shadows::Shadows;
+use super::volume::{Volume, exit};
+use crate::exact::{decay, exp, ln};
+
+/// A path ends here at the latest: what is left of its light shows nothing.
+const MOST_VERTICES: u32 = 1024;
+/// From this vertex on paths are dropped by chance where little light is left on them; the others make up for it.
+const SURE_VERTICES: u32 = 4;
+
+pub(super) struct Tracer<'a> {
+    volume: &'a Volume,
+    medium: &'a Medium,
+    lights: &'a [Vec3],
+    shadows: Shadows,
+    /// Largest extinction that there is.
+    majorant: f32,
+}
+
+/// What paths work with, one after the other.
+pub(super) struct Scratch {
+    /// Extinction in front of the end of each step through a column.
+    column: Vec<f32>,
+    /// Densities towards each light.
+    towards: Vec<f32>,
+}
+
+/// Where paths begin.
+pub(super) struct Pixel {
+    pub at: UVec2,
+    /// Pixels along a side of the picture.
+    pub size: u32,
+    pub seed: u32,
+}
+
+impl<'a> Tracer<'a> {
+    pub fn new(volume: &'a Volume, medium: &'a Medium, lights: &'a [Vec3]) -> Self {
+        let shadows = Shadows::new(volume, lights);
+        Self { volume, medium, lights, shadows, majorant: volume.largest() * medium.density }
+    }
+
+    pub fn scratch(&self) -> Scratch {
+        let steps = 2 * self.volume.size.max_element() as usize;
+        Scratch { column: vec![0.0; steps], towards: vec![0.0; self.lights.len()] }
+    }
+
+    /// Adds to each light what one path from somewhere in a pixel finds of it, given that its first vertex is in the smoke, times
+    /// how much of the pixel is; gives that. Where the vertex is goes by the stratum, the how-manieth of how many.
+    pub fn add_path(&self, pixel: &Pixel, (index, count): (u32, u32), scratch: &mut Scratch, sums: &mut [Vec3]) -> f32 {
+        let Scratch { column, towards } = scratch;
+        let key = UVec3::new(pixel.at.x, pixel.at.y, pixel.seed.wrapping_mul(0x9e37_79b9).wrapping_add(index));
+        let mut random = Random::new(key);
+        let place = pixel.at.as_vec2() + Vec2::new(random.unit(), random.unit());
+        let front = (place * (2.0 / pixel.size as f32) - 1.0) * Vec2::new(1.0, -1.0);
+        let whole = self.fill(front, column);
+        if whole <= 0.0 {
+            return 0.0;
+        }
+        let covered = 1.0 - exp(-whole);
+        let met = (index as f32 + random.unit()) / count as f32;
+        let mut p = front.extend(met_at(column, -ln((1.0 - met * covered).max(f32::MIN_POSITIVE))));
+        let mut direction = Vec3::NEG_Z;
+        let mut light = self.medium.albedo * covered;
+        for vertex in 1..MOST_VERTICES {
+            self.shadows.at(p, towards);
+            for ((sum, &to_light), depth) in sums.iter_mut().zip(self.lights).zip(&*towards) {
+                let phase = phase(direction.dot(to_light), self.medium.g);
+                *sum += light * (phase * decay(depth * self.medium.density));
+            }
+            if vertex >= SURE_VERTICES {
+                let stays = (light.max_element() / covered).min(1.0);
+                if random.unit() >= stays {
+                    break;
+                }
+                light /= stays;
+            }
+            direction = scattered(direction, self.medium.g, &mut random);
+            let Some(next) = self.next(p, direction, &mut random) else { break };
+            p = next;
+            light *= self.medium.albedo;
+        }
+        covered
+    }
+
+    /// Extinction added up from the front of a column, at the ends of equal steps; gives all of it.
+    fn fill(&self, front: Vec2, column: &mut [f32]) -> f32 {
+        let step = 2.0 / column.len() as f32;
+        let mut sum = 0.0;
+        for (index, depth) in column.iter_mut().enumerate() {
+            let place = front.extend(1.0 - (index as f32 + 0.5) * step);
+            sum += self.volume.density(place) * self.medium.density * step;
+            *depth = sum;
+        }
+        sum
+    }
+
+    /// Where a ray is scattered next, if it does not leave. (Woodcock et al., 1965)
+    fn next(&self, p: Vec3, direction: Vec3, random: &mut Random) -> Option<Vec3> {
+        let most = exit(p, direction);
+        let mut way = 0.0;
+        loop {
+            way -= ln(1.0 - random.unit()) / self.majorant;
+            if way >= most {
+                return None;
+            }
+            let place = p + direction * way;
+            if random.unit() * self.majorant < self.volume.density(place) * self.medium.density {
+                return Some(place);
+            }
+        }
+    }
+}
+
+/// Where in a column so much extinction lies in front.
+fn met_at(column: &[f32], depth: f32) -> f32 {
+    let step = column.partition_point(|&end| end < depth).min(column.len() - 1);
+    let before = if step == 0 { 0.0 } else { column[step - 1] };
+    let within = (depth - before) / (column[step] - before).max(f32::MIN_POSITIVE);
+    1.0 - (step as f32 + within.clamp(0.0, 1.0)) * (2.0 / column.len() as f32)
+}

@@ -1,0 +1,27 @@
+//! Where light goes that is scattered. (Henyey and Greenstein, 1941)
+
+use std::f32::consts::PI;
+
+use glam::Vec3;
+
+use super::random::Random;
+use haze::formula::six_way::henyey_greenstein;
+
+/// The share of scattered light that goes on at an angle of this cosine, for each steradian.
+pub(super) fn phase(cos: f32, g: f32) -> f32 {
+    henyey_greenstein(cos, g) * (1.0 - g * g) / (4.0 * PI)
+}
+
+/// A direction that light which came along `direction` goes on in, as often as the phase function says.
+pub(super) fn scattered(direction: Vec3, g: f32, random: &mut Random) -> Vec3 {
+    let share = random.unit();
+    let cos = if g.abs() < 1.0e-3 {
+        1.0 - 2.0 * share
+    } else {
+        let s = (1.0 - g * g) / (1.0 - g + 2.0 * g * share);
+        ((1.0 + g * g - s * s) / (2.0 * g)).clamp(-1.0, 1.0)
+    };
+    let (x, y) = direction.any_orthonormal_pair();
+    let around = random.on_circle() * (1.0 - cos * cos).max(0.0).sqrt();
+    (direction * cos + x * around.x + y * around.y).normalize()
+}

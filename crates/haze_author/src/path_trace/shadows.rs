@@ -1,0 +1,52 @@
+//! What stands between every voxel and every light.
+
+use glam::{UVec2, UVec3, Vec3};
+
+use super::volume::{Volume, corners, exit, position};
+use haze::assets::picture::Picture;
+
+/// Densities added up from each voxel towards each light. Those of a voxel stand beside each other.
+pub(super) struct Shadows {
+    size: UVec3,
+    depths: Picture<f32>,
+    lights: usize,
+}
+
+impl Shadows {
+    pub fn new(volume: &Volume, lights: &[Vec3]) -> Self {
+        // As fine along each axis: what lies between would come out too dark.
+        let size = UVec3::splat(volume.size.max_element());
+        let UVec3 { x: width, y: height, z: depth } = size;
+        let count = lights.len();
+        let mut depths = Picture::new(UVec2::new(width * count as u32, height * depth), 0.0);
+        // Half of the narrowest side of a voxel.
+        let step = 1.0 / volume.size.max_element() as f32;
+        depths.for_bands(|first, band| {
+            for (row, line) in (first..).zip(band.chunks_mut(width as usize * count)) {
+                for (x, depths) in (0..width).zip(line.chunks_mut(count)) {
+                    let from = position(size, UVec3::new(x, row % height, row / height));
+                    for (depth, &light) in depths.iter_mut().zip(lights) {
+                        let way = exit(from, light);
+                        let steps = (way / step).ceil().max(1.0);
+                        let step = way / steps;
+                        let place = |index: u32| from + light * ((index as f32 + 0.5) * step);
+                        *depth = (0..steps as u32).map(|index| volume.density(place(index))).sum::<f32>() * step;
+                    }
+                }
+            }
+        });
+        Self { size, depths, lights: count }
+    }
+
+    /// Towards every light, from a place between voxels.
+    pub fn at(&self, p: Vec3, sums: &mut [f32]) {
+        sums.fill(0.0);
+        let corners = corners(self.size, p);
+        for (&voxel, weight) in corners.voxels.iter().zip(corners.weights) {
+            let of_voxel = &self.depths.texels[voxel * self.lights..][..self.lights];
+            for (sum, depth) in sums.iter_mut().zip(of_voxel) {
+                *sum += depth * weight;
+            }
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! All that is wrong or doubtful about the files that a preset names, in one go.
+
+use std::path::Path;
+
+use haze::preset::{MaterialNames, PictureFolders, Pictures, Preset, in_system};
+
+use super::role::doubts;
+use crate::particle_files::check_caches;
+use haze::error::Error;
+
+/// Loads the pictures and particle files of every system, and gives all that is wrong with them, and what is doubtful about
+/// those that are not: pictures in roles that they were not painted for, each with its field. They are looked for in
+/// `folders`; `path`, the preset's, is for errors alone.
+pub fn check_files(preset: &Preset, path: &Path, folders: &PictureFolders) -> (Vec<Error>, Vec<String>) {
+    let mut pictures = Pictures::new(folders.clone());
+    let (mut wrong, mut doubtful) = (Vec::new(), Vec::new());
+    for (index, system) in preset.systems.iter().enumerate() {
+        let found = match system.material.load_from(&mut pictures) {
+            Ok(material) => {
+                let fits = material.info().validate(index, &system.settings);
+                wrong.extend(fits.err().map(|error| Error::JsonField { path: path.into(), error }));
+                doubts(&system.material, &material)
+            }
+            Err(errors) => {
+                let fields: Vec<_> = errors.iter().map(|(field, _)| *field).collect();
+                wrong.extend(errors.into_iter().map(|(_, error)| in_system(path, index, error)));
+                doubts_of_others(&system.material, &fields, folders)
+            }
+        };
+        let told = |(field, doubt)| format!("systems[{index}].material.{field}: {doubt}");
+        doubtful.extend(found.into_iter().map(told));
+    }
+    wrong.extend(check_caches(preset, path, folders).err().into_iter().flatten());
+    (wrong, doubtful)
+}
+
+/// What is doubtful about pictures besides those of some fields.
+fn doubts_of_others(names: &MaterialNames, fields: &[&str], folders: &PictureFolders) -> Vec<(&'static str, String)> {
+    let others = names.with_usual(fields);
+    let loaded = others.load_from(&mut Pictures::new(folders.clone()));
+    loaded.map(|material| doubts(&others, &material)).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use image::{Rgb, RgbImage};
+
+    use super::*;
+    use haze::preset::PresetSystem;
+    use haze::settings::Technique;
+
+    #[test]
+    fn what_is_wrong_hides_nothing_of_the_rest() {
+        let folder = tempfile::tempdir().unwrap();
+        RgbImage::from_fn(4, 64, |_, y| Rgb([4 * y as u8; 3])).save(folder.path().join("down.png")).unwrap();
+        RgbImage::from_pixel(16, 16, Rgb([0; 3])).save(folder.path().join("flat.png")).unwrap();
+        let mut preset = Preset { systems: vec![PresetSystem::default(); 4], ..Preset::default() };
+        let mut name = |index: usize, change: fn(&mut PresetSystem)| change(&mut preset.systems[index]);
+        name(0, |system| (system.material.sprite, system.material.columns) = ("gone.png".into(), 3));
+        name(0, |system| system.material.diffuse_ramp = "down.png".into());
+        name(1, |system| system.material.noise = "flat.png".into());
+        name(1, |system| system.material.motif = "none".into());
+        name(1, |system| system.material.age_ramp = "down.png".into());
+        name(2, |system| system.material.coverage_ramp = "down.png".into());
+        name(2, |system| system.settings.technique = Technique::DepthSpriteSoft);
+        name(2, |system| system.material.sprite = "clear.png".into());
+        name(3, |system| system.cache.path = "gone.csv".into());
+        image::RgbaImage::new(16, 16).save(folder.path().join("clear.png")).unwrap();
+        let (wrong, doubts) = check_files(&preset, Path::new("my.json"), &PictureFolders::at(folder.path()));
+        let wrong: Vec<_> = wrong.iter().map(ToString::to_string).collect();
+        for (said, begins) in wrong.iter().zip([
+            "my.json: systems[0].material.sprite: ",
+            "my.json: systems[1].material.motif: \"none\" is not valid",
+            "my.json: systems[1].material.noise: ",
+            "my.json: systems[2].settings.technique: ",
+            "my.json: systems[3].cache.path: ",
+        ]) {
+            assert!(said.starts_with(begins), "{begins}: {wrong:?}");
+        }
+        assert_eq!(wrong.len(), 5, "{wrong:?}");
+        for (said, begins) in doubts.iter().zip([
+            "systems[0].material.diffuse_ramp: down.png: painted from top to bottom",
+            "systems[1].material.age_ramp: down.png: painted from top to bottom",
+            "systems[2].material.sprite: clear.png: alpha is 0 everywhere",
+            "systems[2].material.coverage_ramp: down.png: painted from top to bottom",
+        ]) {
+            assert!(said.starts_with(begins), "{begins}: {doubts:?}");
+        }
+        assert_eq!(doubts.len(), 4, "{doubts:?}");
+    }
+}

@@ -1,0 +1,107 @@
+//! Which settings do nothing where they are, and why.
+
+mod condition;
+mod row;
+mod system;
+
+use glam::UVec2;
+
+use haze::frame::{Light, LightKind};
+use haze::preset::{Environment, Preset, SceneName};
+use row::{Row, find, row};
+use system::OF_SYSTEMS;
+
+const OF_LIGHTS: &[Row<Light>] = &[
+    row(
+        "the light's intensity is 0",
+        |light, _| light.intensity <= 0.0,
+        &[
+            "kind",
+            "position",
+            "direction",
+            "colour",
+            "range",
+            "radius",
+            "inner_angle",
+            "outer_angle",
+            "specular_scatter",
+        ],
+    ),
+    row(
+        "a directional light shines from infinitely far",
+        |light, _| light.kind == LightKind::Directional,
+        &["position", "range"],
+    ),
+    row("a point light shines every way", |light, _| light.kind == LightKind::Point, &["direction"]),
+    row("only with kind spot", |light, _| light.kind != LightKind::Spot, &["inner_angle", "outer_angle"]),
+];
+
+const OF_ENVIRONMENTS: &[Row<Environment>] =
+    &[row("only in the yard", |environment, _| environment.scene != SceneName::Yard, &["lamp", "brazier"])];
+
+/// Why a field has no effect as the rest stands; `None` if it has one. `path` is as [`path_of`](haze::settings::path_of)
+/// spells it; `size` is the picture's, in pixels.
+pub fn without_effect(preset: &Preset, path: &str, size: UVec2) -> Option<&'static str> {
+    let item = |list: &str| {
+        let (index, field) = path.strip_prefix(list)?.strip_prefix('[')?.split_once("].")?;
+        Some((index.parse::<usize>().ok()?, field))
+    };
+    if let Some((index, field)) = item("systems") {
+        return find(OF_SYSTEMS, preset.systems.get(index)?, field, size);
+    }
+    if let Some((index, field)) = item("lights") {
+        return find(OF_LIGHTS, preset.lights.get(index)?, field, size);
+    }
+    find(OF_ENVIRONMENTS, &preset.environment, path.strip_prefix("environment.")?, size)
+}
+
+/// The conditions that a field's effect has, told as such: of a dotted path without places in lists.
+pub(super) fn conditions(path: &str) -> impl Iterator<Item = &'static str> {
+    fn of<T>(rows: &'static [Row<T>], field: Option<&str>) -> Vec<&'static str> {
+        let Some(field) = field else { return Vec::new() };
+        rows.iter().filter(|row| row.names(field)).map(|row| row.reason).collect()
+    }
+    let all = [
+        of(OF_SYSTEMS, path.strip_prefix("systems.")),
+        of(OF_LIGHTS, path.strip_prefix("lights.")),
+        of(OF_ENVIRONMENTS, path.strip_prefix("environment.")),
+    ];
+    let is_condition =
+        |reason: &&str| reason.starts_with("only ") || reason.starts_with("not ") || reason.contains(" only");
+    all.into_iter().flatten().filter(is_condition)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haze::preset::PresetSystem;
+    use haze::settings::values;
+
+    #[test]
+    fn every_row_names_fields_that_there_are() {
+        let preset =
+            Preset { lights: vec![Light::default()], systems: vec![PresetSystem::default()], ..Preset::default() };
+        let paths: Vec<_> = values(&preset).into_iter().map(|(path, _)| path).collect();
+        let systems = OF_SYSTEMS.iter().flat_map(|row| row.fields).map(|field| format!("systems[0].{field}"));
+        let lights = OF_LIGHTS.iter().flat_map(|row| row.fields).map(|field| format!("lights[0].{field}"));
+        let environments =
+            OF_ENVIRONMENTS.iter().flat_map(|row| row.fields).map(|field| format!("environment.{field}"));
+        for field in systems.chain(lights).chain(environments) {
+            let group = format!("{field}.");
+            assert!(paths.iter().any(|path| *path == field || path.starts_with(&group)), "{field}");
+        }
+    }
+
+    #[test]
+    fn a_reason_is_told_once_and_only_for_what_it_is_about() {
+        let preset = Preset { systems: vec![PresetSystem::default()], ..Preset::default() };
+        let reason = |path: &str| without_effect(&preset, path, UVec2::new(640, 360));
+        assert_eq!(reason("systems[0].settings.blend_mode"), Some("forward only"));
+        assert_eq!(reason("systems[0].settings.boost"), None);
+        assert_eq!(reason("systems[1].settings.blend_mode"), None);
+        assert_eq!(reason("camera.fov"), None);
+        let mut reasons: Vec<_> = OF_SYSTEMS.iter().map(|row| row.reason).collect();
+        reasons.sort_unstable();
+        assert!(reasons.windows(2).all(|pair| pair[0] != pair[1]));
+    }
+}

@@ -1,0 +1,172 @@
+//! Every setting on one page, `docs/settings.md`: from the rows and doc comments of the settings.
+
+use std::collections::HashMap;
+use std::fmt::{Display, Write as _};
+use std::ops::RangeInclusive;
+
+use glam::Vec3;
+
+use super::effect::conditions;
+use super::schema::widest;
+use super::tooltips::Tooltips;
+use haze::assets::builtin;
+use haze::frame::Light;
+use haze::preset::{Preset, PresetSystem};
+use haze::settings::{Choice, FieldVisitor, Fields, PictureRole, Value, values};
+
+const HEAD: &str = "\
+# Settings
+
+Made by `haze preset settings > docs/settings.md` from the tables in the code, as the sliders of the window are. What to turn for which
+look is on [another page](looks.md). A field that is left out of a preset has its default. Fields of lights are those of each of
+`lights`, fields of systems those of each of `systems`. Where a setting says *when*, it does nothing elsewhere: `haze preset check`
+tells of your preset, and the window greys it.
+";
+
+/// The page, as Markdown.
+pub fn settings_page() -> String {
+    let mut preset = widest();
+    let plain = Preset { lights: vec![Light::default()], systems: vec![PresetSystem::default()], ..Preset::default() };
+    let defaults = values(&plain).into_iter().map(|(path, value)| (path.replace("[0]", ""), value)).collect();
+    let mut page = Page { tooltips: Tooltips::of::<Preset>(), defaults, path: Vec::new(), parts: Vec::new() };
+    page.part("preset", "What a file holds.".into(), &mut preset);
+    let mut text = HEAD.to_owned();
+    for Part { title, about, rows } in page.parts.iter().filter(|part| !part.rows.is_empty()) {
+        let head = "| field | what it does | range | default |\n|---|---|---|---|";
+        let _ = write!(text, "\n## {title}\n\n{about}\n\n{head}\n{rows}");
+    }
+    text
+}
+
+/// A struct with its fields.
+struct Part {
+    title: String,
+    about: String,
+    rows: String,
+}
+
+struct Page {
+    tooltips: Tooltips,
+    /// By path, without places in lists.
+    defaults: HashMap<String, Value>,
+    path: Vec<&'static str>,
+    parts: Vec<Part>,
+}
+
+impl Page {
+    /// Everything in a struct: its own fields, then the parts that it has.
+    fn part(&mut self, title: &str, about: String, fields: &mut dyn Fields) {
+        self.parts.push(Part { title: title.to_owned(), about, rows: String::new() });
+        fields.visit(&mut Rows { part: self.parts.len() - 1, page: self });
+    }
+}
+
+/// Writes the rows of one part.
+struct Rows<'a> {
+    page: &'a mut Page,
+    part: usize,
+}
+
+impl Rows<'_> {
+    fn path(&self, name: &'static str) -> String {
+        [&self.page.path[..], &[name]].concat().join(".")
+    }
+
+    fn row(&mut self, name: &'static str, range: impl Display) {
+        let path = self.path(name);
+        let mut about = self.page.tooltips.field(&path).unwrap_or_default().replace('\n', " ").replace('|', "\\|");
+        let when: Vec<_> = conditions(&path).collect();
+        if !when.is_empty() {
+            let _ = write!(about, " *When: {}.*", when.join("; "));
+        }
+        let default = self.page.defaults.get(&path).map(shown).unwrap_or_default();
+        let rows = &mut self.page.parts[self.part].rows;
+        let _ = writeln!(rows, "| `{name}` | {about} | {range} | {default} |");
+    }
+
+    fn nested(&mut self, name: &'static str, fields: &mut dyn Fields) {
+        let path = self.path(name);
+        let about = self.page.tooltips.field(&path).unwrap_or_default().replace('\n', " ");
+        self.page.path.push(name);
+        self.page.part(&path, about, fields);
+        self.page.path.pop();
+    }
+}
+
+impl FieldVisitor for Rows<'_> {
+    fn number(&mut self, name: &'static str, _: &mut f32, range: RangeInclusive<f32>, unit: &'static str) {
+        self.row(name, span(&range, unit));
+    }
+
+    fn integer(&mut self, name: &'static str, _: &mut u32, range: RangeInclusive<u32>, unit: &'static str) {
+        self.row(name, span(&range, unit));
+    }
+
+    fn vector(&mut self, name: &'static str, _: &mut Vec3, range: RangeInclusive<f32>, unit: &'static str) {
+        self.row(name, format_args!("three numbers, {}", span(&range, unit)));
+    }
+
+    fn colour(&mut self, name: &'static str, _: &mut Vec3, range: RangeInclusive<f32>) {
+        self.row(name, format_args!("linear RGB, {}", span(&range, "")));
+    }
+
+    fn flag(&mut self, name: &'static str, _: &mut bool) {
+        self.row(name, "`true`, `false`");
+    }
+
+    fn choice(&mut self, name: &'static str, value: &mut dyn Choice) {
+        let path = self.path(name);
+        let about = |choice: &&'static str| {
+            let about = self.page.tooltips.choice(&path, choice).unwrap_or_default();
+            format!("`{choice}`: {}", about.replace('\n', " ").replace('|', "\\|"))
+        };
+        let choices: Vec<_> = value.names().iter().map(about).collect();
+        self.row(name, choices.join("<br>"));
+    }
+
+    fn text(&mut self, name: &'static str, _: &mut String) {
+        self.row(name, "any words");
+    }
+
+    fn picture(&mut self, name: &'static str, _: &mut String, role: PictureRole) {
+        if role == PictureRole::Ramp {
+            return self.row(name, "[a built-in ramp](../ramps/README.md), or a PNG's path");
+        }
+        let names: Vec<_> = builtin::of_role(role).iter().map(|built_in| format!("`{}`", built_in.name)).collect();
+        let or = if names.is_empty() { "" } else { ", or " };
+        self.row(name, names.join(", ") + or + "a PNG's path");
+    }
+
+    fn particles(&mut self, name: &'static str, _: &mut String) {
+        self.row(name, "the path of a [CSV or PLY](particles.md)");
+    }
+
+    fn seed(&mut self, name: &'static str, _: &mut u32) {
+        self.row(name, "any whole number");
+    }
+
+    fn group(&mut self, name: &'static str, fields: &mut dyn Fields) {
+        self.nested(name, fields);
+    }
+
+    fn item(&mut self, name: &'static str, _: usize, fields: &mut dyn Fields) {
+        self.nested(name, fields);
+    }
+}
+
+fn span<T: Display + PartialEq>(range: &RangeInclusive<T>, unit: &str) -> String {
+    let space = if unit.is_empty() { "" } else { " " };
+    format!("{} to {}{space}{unit}", range.start(), range.end())
+}
+
+fn shown(value: &Value) -> String {
+    match value {
+        Value::Number(number) => number.to_string(),
+        Value::Whole(number) => number.to_string(),
+        Value::Vector(vector) => vector.to_array().map(|axis| axis.to_string()).join(", "),
+        Value::Flag(flag) => format!("`{flag}`"),
+        Value::Choice(name) => format!("`{name}`"),
+        Value::Text(text) if text.is_empty() => "none".into(),
+        Value::Text(text) => format!("`{text}`"),
+    }
+}

@@ -1,0 +1,113 @@
+//! The JSON schema of preset files: the structs as serde reads them, with the ranges that `Fields` checks.
+
+use std::ops::RangeInclusive;
+
+use glam::Vec3;
+use serde_json::{Value, json};
+
+use haze::frame::Light;
+use haze::preset::{Camera, Preset, PresetSystem};
+use haze::settings::{FieldVisitor, Fields};
+
+/// The JSON schema of preset files, as text.
+pub fn schema() -> String {
+    let mut schema = schemars::schema_for!(Preset).to_value();
+    let mut preset = widest();
+    preset.visit(&mut Ranges { schema: &mut schema, definition: String::new() });
+    tidy(&mut schema);
+    serde_json::to_string_pretty(&schema).unwrap_or_default()
+}
+
+/// One of each part, whose ranges are told: where one begins at another field's value, that leaves the widest.
+pub(super) fn widest() -> Preset {
+    Preset {
+        camera: Camera { near: 0.001, ..Camera::default() },
+        lights: vec![Light { inner_angle: 0.0, ..Light::default() }],
+        systems: vec![PresetSystem::default()],
+        ..Preset::default()
+    }
+}
+
+/// Writes defaults as the f32 they are, not as the f64 nearest to it.
+fn tidy(value: &mut Value) {
+    match value {
+        Value::Array(items) => items.iter_mut().for_each(tidy),
+        Value::Object(entries) => entries.values_mut().for_each(tidy),
+        Value::Number(number) if number.is_f64() => *value = decimal(number.as_f64().unwrap_or_default() as f32),
+        _ => {}
+    }
+}
+
+/// Writes the range of every number it visits into a struct's definition.
+struct Ranges<'a> {
+    schema: &'a mut Value,
+    /// JSON pointer to the struct being walked; "" is the preset itself.
+    definition: String,
+}
+
+impl Ranges<'_> {
+    fn property(&mut self, name: &str) -> Option<&mut Value> {
+        self.schema.pointer_mut(&format!("{}/properties/{name}", self.definition))
+    }
+
+    /// Walks a struct that a field refers to.
+    fn enter(&mut self, name: &str, fields: &mut dyn Fields) {
+        let reference = self.property(name).and_then(|property| property["$ref"].as_str());
+        if let Some(definition) = reference.and_then(|path| path.strip_prefix('#')).map(str::to_owned) {
+            fields.visit(&mut Ranges { schema: self.schema, definition });
+        }
+    }
+
+    fn limit(&mut self, name: &str, item: &str, minimum: Value, maximum: Value) {
+        if let Some(property) = self.property(&format!("{name}{item}")) {
+            property["minimum"] = minimum;
+            // Infinity is no JSON.
+            if !maximum.is_null() {
+                property["maximum"] = maximum;
+            }
+        }
+    }
+}
+
+/// The shortest decimal that reads back as the same f32.
+fn decimal(number: f32) -> Value {
+    number.to_string().parse::<f64>().map_or(Value::Null, |number| json!(number))
+}
+
+impl FieldVisitor for Ranges<'_> {
+    fn number(&mut self, name: &'static str, _: &mut f32, range: RangeInclusive<f32>, _: &'static str) {
+        self.limit(name, "", decimal(*range.start()), decimal(*range.end()));
+    }
+
+    fn integer(&mut self, name: &'static str, _: &mut u32, range: RangeInclusive<u32>, _: &'static str) {
+        self.limit(name, "", json!(range.start()), json!(range.end()));
+    }
+
+    fn vector(&mut self, name: &'static str, _: &mut Vec3, range: RangeInclusive<f32>, _: &'static str) {
+        self.limit(name, "/items", decimal(*range.start()), decimal(*range.end()));
+    }
+
+    fn group(&mut self, name: &'static str, fields: &mut dyn Fields) {
+        self.enter(name, fields);
+    }
+
+    fn item(&mut self, name: &'static str, _: usize, fields: &mut dyn Fields) {
+        self.enter(&format!("{name}/items"), fields);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_reach_nested_structs() {
+        let schema: Value = serde_json::from_str(&schema()).unwrap();
+        let property = |path: &str| schema.pointer(&format!("/$defs/{path}")).unwrap_or_else(|| panic!("{path}"));
+        assert_eq!(property("SoftFade/properties/fade_scale")["minimum"], 0.001);
+        assert_eq!(property("Accumulate/properties/scale")["maximum"], 16);
+        assert_eq!(property("Light/properties/colour/items")["maximum"], 100.0);
+        assert_eq!(property("Light/properties/outer_angle")["minimum"], 0.0);
+        assert!(property("Upsample").to_string().contains("nearest_depth"));
+    }
+}

@@ -1,0 +1,137 @@
+//! What fields and choices mean, at run time: their doc comments.
+
+use serde_json::Value;
+
+/// The doc comments of a settings struct, by dotted path as in [`FieldVisitor`](haze::settings::FieldVisitor): a field is
+/// `soft_fade.fade_scale`, whatever its place in a list: `lights.range`.
+#[derive(Clone, Debug)]
+pub struct Tooltips {
+    schema: Value,
+}
+
+impl Tooltips {
+    /// Those of `T` and everything in it.
+    pub fn of<T: schemars::JsonSchema>() -> Self {
+        Self { schema: schemars::schema_for!(T).to_value() }
+    }
+
+    /// What a field means.
+    pub fn field(&self, path: &str) -> Option<&str> {
+        self.property(path)?["description"].as_str()
+    }
+
+    /// What one choice of a field means; `name` is the one that presets use. `path` is "" where `T` is itself a choice.
+    pub fn choice(&self, path: &str, name: &str) -> Option<&str> {
+        let choices = self.resolve(self.property(path)?)["oneOf"].as_array()?;
+        let choice = choices.iter().find(|choice| choice["const"] == name)?;
+        choice["description"].as_str()
+    }
+
+    fn property(&self, path: &str) -> Option<&Value> {
+        let mut at = &self.schema;
+        for name in path.split('.').filter(|name| !name.is_empty()) {
+            at = self.resolve(at).get("properties")?.get(name)?;
+        }
+        Some(at)
+    }
+
+    /// The struct or choice that a field holds, or holds a list of.
+    fn resolve<'a>(&'a self, value: &'a Value) -> &'a Value {
+        let value = value.get("items").unwrap_or(value);
+        let pointer = value.get("$ref").and_then(Value::as_str).and_then(|reference| reference.strip_prefix('#'));
+        pointer.and_then(|pointer| self.schema.pointer(pointer)).unwrap_or(value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+    use haze::preset::{Preset, PresetSystem};
+    use haze::settings::{Choice, FieldVisitor, Fields, PictureRole};
+    use std::ops::RangeInclusive;
+
+    /// Walks a preset as a user interface would, and asks for every tooltip.
+    struct Panel<'a> {
+        tooltips: &'a Tooltips,
+        path: Vec<&'static str>,
+        rows: usize,
+    }
+
+    impl Panel<'_> {
+        fn row(&mut self, name: &'static str) -> String {
+            let path = [&self.path[..], &[name]].concat().join(".");
+            let tooltip = self.tooltips.field(&path);
+            assert!(tooltip.is_some_and(|text| text.len() > 4), "{path} has no tooltip");
+            self.rows += 1;
+            path
+        }
+
+        fn nested(&mut self, name: &'static str, fields: &mut dyn Fields) {
+            self.row(name);
+            self.path.push(name);
+            fields.visit(self);
+            self.path.pop();
+        }
+    }
+
+    impl FieldVisitor for Panel<'_> {
+        fn number(&mut self, name: &'static str, _: &mut f32, _: RangeInclusive<f32>, _: &'static str) {
+            self.row(name);
+        }
+        fn integer(&mut self, name: &'static str, _: &mut u32, _: RangeInclusive<u32>, _: &'static str) {
+            self.row(name);
+        }
+        fn vector(&mut self, name: &'static str, _: &mut Vec3, _: RangeInclusive<f32>, _: &'static str) {
+            self.row(name);
+        }
+        fn flag(&mut self, name: &'static str, _: &mut bool) {
+            self.row(name);
+        }
+        fn choice(&mut self, name: &'static str, value: &mut dyn Choice) {
+            let path = self.row(name);
+            for choice in value.names() {
+                assert!(self.tooltips.choice(&path, choice).is_some(), "{path}: {choice} has no tooltip");
+            }
+        }
+        fn text(&mut self, name: &'static str, _: &mut String) {
+            self.row(name);
+        }
+        fn picture(&mut self, name: &'static str, _: &mut String, _: PictureRole) {
+            self.row(name);
+        }
+        fn particles(&mut self, name: &'static str, _: &mut String) {
+            self.row(name);
+        }
+        fn seed(&mut self, name: &'static str, _: &mut u32) {
+            self.row(name);
+        }
+        fn group(&mut self, name: &'static str, fields: &mut dyn Fields) {
+            self.nested(name, fields);
+        }
+        fn item(&mut self, name: &'static str, _: usize, fields: &mut dyn Fields) {
+            self.nested(name, fields);
+        }
+    }
+
+    #[test]
+    fn every_field_and_choice_of_a_preset_has_its_tooltip() {
+        let tooltips = Tooltips::of::<Preset>();
+        let mut preset = Preset {
+            lights: vec![haze::Light::default()],
+            systems: vec![PresetSystem::default()],
+            ..Preset::default()
+        };
+        let mut panel = Panel { tooltips: &tooltips, path: Vec::new(), rows: 0 };
+        preset.visit(&mut panel);
+        assert!(panel.rows > 100, "{} rows", panel.rows);
+        assert_eq!(
+            tooltips.field("systems.settings.boost"),
+            Some("Multiplies the accumulated amount into coverage: how soon smoke hides the scene. OTEE's value is 3.")
+        );
+        assert_eq!(tooltips.field("systems.settings.boots"), None);
+        assert_eq!(tooltips.choice("lights.kind", "laser"), None);
+        let stages = Tooltips::of::<haze::settings::ShadeTree>();
+        assert_eq!(stages.choice("", "amount"), Some("Accumulated amount, as grey."));
+    }
+}

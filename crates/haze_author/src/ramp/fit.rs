@@ -1,0 +1,262 @@
+//! Stops fitted to pictures.
+
+use std::ops::Range;
+
+use glam::Vec3;
+use image::DynamicImage;
+
+use super::bake::{Blend, Curve, HexColour, RampRecipe, RampRow, RampStop};
+use super::gradient::Rows;
+use haze::error::FieldError;
+use haze::formula::colour::srgb_from_linear;
+
+/// How far a fit is off if nothing is said, steps of 255: one that dithering takes, and half a one that rounding a stop's colour
+/// takes.
+pub const USUAL_ERROR: f32 = 1.5;
+
+/// Most stops of a fit: what takes more is no picture of gradients, and its recipe would be longer than those that are read.
+const MOST_STOPS: usize = 50_000;
+
+/// A recipe, and how far what it bakes is off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// Of the picture's size; one row for a picture whose rows are equal.
+    pub recipe: RampRecipe,
+    /// Largest difference of a channel, steps of 255 of sRGB code.
+    pub error: f32,
+}
+
+/// Fits stops to an sRGB picture, so that no channel is off by more than `most`, steps of 255 from 1 on. Hard edges are kept as
+/// such: by constant stops between flat parts, by two stops at one place between others.
+///
+/// # Errors
+/// [`FieldError`] for a `most` that cannot be kept, or a picture that takes more than 50 000 stops.
+pub fn fit(picture: &DynamicImage, most: f32) -> Result<Fit, FieldError> {
+    check_error(most)?;
+    let pixels = picture.to_rgb16();
+    if pixels.is_empty() {
+        return Err(FieldError::new("picture", "one without pixels", "some"));
+    }
+    let code = |channel: u16| f32::from(channel) / 257.0;
+    let mut rows: Vec<Vec<Vec3>> =
+        pixels.rows().rev().map(|row| row.map(|pixel| Vec3::from(pixel.0.map(code))).collect()).collect();
+    let (width, height) = (pixels.width().max(2), pixels.height());
+    for row in &mut rows {
+        row.resize(width as usize, row.first().copied().unwrap_or_default());
+    }
+    // Rows that dithering alone makes different are one.
+    let is_strip = rows.iter().all(|row| apart(row, &rows[0]) <= 1.0);
+    let mean = |x: usize| rows.iter().map(|row| row[x]).sum::<Vec3>() / rows.len() as f32;
+    let strip: Vec<Vec<Vec3>> = is_strip.then(|| (0..width as usize).map(mean).collect()).into_iter().collect();
+    let texels = if is_strip { &strip } else { &rows };
+    let ways = [Blend::Oklab, Blend::Srgb, Blend::Linear].map(|blend| (blend, usual_curve(blend)));
+    // Some rows tell which way takes the fewest stops.
+    let some = texels.iter().step_by(texels.len().div_ceil(8));
+    let stops_of = |&(blend, curve): &(Blend, Curve)| -> usize {
+        some.clone().map(|row| fit_stops(row, blend, curve, most).len()).sum()
+    };
+    let (blend, curve) = ways.into_iter().min_by_key(stops_of).unwrap_or_default();
+    let height = if is_strip { 1 } else { height };
+    let recipe =
+        RampRecipe { width, height, blend, rows: fit_rows(texels, blend, curve, most), ..RampRecipe::default() };
+    let count = recipe.rows.iter().map(|row| row.stops.len()).sum::<usize>();
+    if count > MOST_STOPS {
+        let expected = format!("at most {MOST_STOPS}: a picture of gradients, or a larger error");
+        return Err(FieldError::new("stops", count, expected));
+    }
+    let baked = recipe.bake()?.into_rgb16();
+    let baked: Vec<Vec3> = baked.pixels().map(|pixel| Vec3::from(pixel.0.map(code))).collect();
+    let baked = baked.chunks(width as usize).rev().cycle();
+    Ok(Fit { recipe, error: rows.iter().zip(baked).map(|(a, b)| apart(a, b)).fold(0.0, f32::max) })
+}
+
+/// Fits stops to colours from 0 to 1 at even distances, two at least, steps of 255 of sRGB code, so that no channel is off by more
+/// than `most`.
+
+pub fn fit_row(row: &[Vec3], blend: Blend, most: f32) -> Vec<RampStop> {
+    fit_stops(row, blend, usual_curve(blend), most)
+}
+
+/// Straight lines where other programs have them, too.
+fn usual_curve(blend: Blend) -> Curve {
+    if matches!(blend, Blend::Srgb | Blend::Linear) { Curve::Linear } else { Curve::Monotone }
+}
+
+/// Refuses an error that stops of 8 bits a channel cannot keep, or that leaves nothing of a picture.
+pub(super) fn check_error(most: f32) -> Result<(), FieldError> {
+    let is_good = (1.0..=64.0).contains(&most);
+    if is_good { Ok(()) } else { Err(FieldError::new("error", most, "1 to 64 steps of 255")) }
+}
+
+/// Largest difference of a channel.
+fn apart(a: &[Vec3], b: &[Vec3]) -> f32 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs().max_element()).fold(0.0, f32::max)
+}
+
+/// A stop or row to be: which of the texels or rows of texels, and where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Key {
+    index: usize,
+    at: f32,
+    curve: Curve,
+}
+
+/// The recipe's rows; `texels` from the row for 0 on.
+fn fit_rows(texels: &[Vec<Vec3>], blend: Blend, curve: Curve, most: f32) -> Vec<RampRow> {
+    if let [row] = texels {
+        return vec![RampRow { stops: fit_stops(row, blend, curve, most), ..RampRow::default() }];
+    }
+    // What is between rows needs some room as well.
+    let mut fitted: Vec<Option<Vec<RampStop>>> = vec![None; texels.len()];
+    let mut rows_of = |keys: &[Key]| -> Vec<RampRow> {
+        let row = |&Key { index, at, curve: row_curve }: &Key| {
+            let stops = fitted[index].get_or_insert_with(|| fit_stops(&texels[index], blend, curve, most * 0.75));
+            RampRow { at, curve: row_curve, stops: stops.clone() }
+        };
+        keys.iter().map(row).collect()
+    };
+    let keys = choose(
+        texels.len(),
+        curve,
+        most,
+        |a, b| apart(&texels[a], &texels[b]),
+        |keys, range| {
+            let (rows, last) = (Rows::new(blend, &rows_of(keys)), (texels.len() - 1) as f32);
+            range
+                .map(|index| {
+                    off(&rows, index as f32 / last, &texels[index], 0..texels[index].len())
+                        .into_iter()
+                        .fold(0.0, f32::max)
+                })
+                .collect()
+        },
+    );
+    rows_of(&keys)
+}
+
+fn fit_stops(row: &[Vec3], blend: Blend, curve: Curve, most: f32) -> Vec<RampStop> {
+    let stops_of = |keys: &[Key]| -> Vec<RampStop> {
+        let colour = |index: usize| HexColour::from_srgb(row[index] / 255.0);
+        keys.iter().map(|key| RampStop { at: key.at, colour: colour(key.index), curve: key.curve }).collect()
+    };
+    let keys = choose(
+        row.len(),
+        curve,
+        most,
+        |a, b| (row[a] - row[b]).abs().max_element(),
+        |keys, range| {
+            let rows = Rows::new(blend, &[RampRow { stops: stops_of(keys), ..RampRow::default() }]);
+            off(&rows, 0.0, row, range)
+        },
+    );
+    stops_of(&keys)
+}
+
+/// How far every texel of a range is off.
+fn off(rows: &Rows, v: f32, row: &[Vec3], range: Range<usize>) -> Vec<f32> {
+    let last = (row.len() - 1) as f32;
+    let error = |index: usize| {
+        let light = rows.sample(index as f32 / last, v).min(Vec3::ONE);
+        (light.map(srgb_from_linear) * 255.0 - row[index]).abs().max_element()
+    };
+    range.map(error).collect()
+}
+
+/// Chooses keys of `count` texels, two at least: those that must be, then the worst between two that are until none is off by
+/// more than `most`, then none that can be done without. `apart` tells two texels apart, `errors` how far each of a range is off
+/// for some keys in a row.
+fn choose(
+    count: usize,
+    curve: Curve,
+    most: f32,
+    apart: impl Fn(usize, usize) -> f32,
+    mut errors: impl FnMut(&[Key], Range<usize>) -> Vec<f32>,
+) -> Vec<Key> {
+    let place = |index: f32| (index / (count - 1) as f32 * 1.0e6).round() / 1.0e6;
+    let mut chosen = Vec::new();
+    let mut start = 0;
+    for end in (1..=count).filter(|&end| end == count || is_edge(end, count, &apart)) {
+        let middle = usize::midpoint(start, end);
+        let at = if start == 0 { 0.0 } else { place(start as f32 - 0.5) };
+        if (start..end).all(|index| apart(index, middle) <= most - 0.5) {
+            chosen.push(Key { index: middle, at, curve: Curve::Constant });
+        } else {
+            let until = if end == count { 1.0 } else { place(end as f32 - 0.5) };
+            let key = |index: usize| Key { index, at: place(index as f32), curve };
+            let mut keys = vec![Key { index: start, at, curve }, Key { index: end - 1, at: until, curve }];
+            refine(&mut keys, start..end, most, key, &mut errors);
+            prune(&mut keys, start..end, most, &mut errors);
+            chosen.extend(keys);
+        }
+        start = end;
+    }
+    // A gradient of one colour, or the last part, goes on to nothing.
+    if let Some(last) = chosen.last_mut() {
+        last.curve = curve;
+    }
+    chosen
+}
+
+/// Whether there is a hard edge between a texel and the one before: a jump that stands out from the slopes beside it.
+fn is_edge(index: usize, count: usize, apart: impl Fn(usize, usize) -> f32) -> bool {
+    // A twentieth of white: less is no edge to the eye, and may be noise.
+    const LEAST: f32 = 12.0;
+    let jump = apart(index - 1, index);
+    let before = if index >= 2 { apart(index - 2, index - 1) } else { 0.0 };
+    let after = if index + 1 < count { apart(index, index + 1) } else { 0.0 };
+    jump >= LEAST && jump >= 3.0 * before.max(after)
+}
+
+/// Adds the worst texel between any two keys until all are good; in the end every texel is one.
+fn refine(
+    keys: &mut Vec<Key>,
+    range: Range<usize>,
+    most: f32,
+    key: impl Fn(usize) -> Key,
+    errors: &mut impl FnMut(&[Key], Range<usize>) -> Vec<f32>,
+) {
+    loop {
+        let mut worst = vec![None; keys.len() - 1];
+        let mut pair = 0;
+        for (index, error) in range.clone().zip(errors(keys, range.clone())) {
+            let key = key(index);
+            while pair + 1 < worst.len() && keys[pair + 1].at < key.at {
+                pair += 1;
+            }
+            let is_worse = worst[pair].is_none_or(|(most, _)| error > most);
+            if error > most && is_worse && !keys[pair..pair + 2].contains(&key) {
+                worst[pair] = Some((error, key));
+            }
+        }
+        let more: Vec<_> = worst.into_iter().flatten().map(|(_, key)| key).collect();
+        if more.is_empty() {
+            return;
+        }
+        keys.extend(more);
+        keys.sort_by(|a, b| a.at.total_cmp(&b.at));
+    }
+}
+
+/// Takes away keys that are not missed.
+fn prune(
+    keys: &mut Vec<Key>,
+    range: Range<usize>,
+    most: f32,
+    errors: &mut impl FnMut(&[Key], Range<usize>) -> Vec<f32>,
+) {
+    let mut at = 1;
+    while at + 1 < keys.len() {
+        // A key moves the curve up to two keys away, which is known from one more.
+        let near = at.saturating_sub(3)..keys.len().min(at + 4);
+        let others: Vec<_> = keys[near.clone()].iter().filter(|key| **key != keys[at]).copied().collect();
+        let (from, to) = (keys[at.saturating_sub(2)].index, keys[(at + 2).min(keys.len() - 1)].index);
+        if errors(&others, from.max(range.start)..(to + 1).min(range.end)).iter().all(|&error| error <= most) {
+            keys.remove(at);
+        } else {
+            at += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

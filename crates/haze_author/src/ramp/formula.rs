@@ -1,0 +1,229 @@
+//! Formulas of a place on a ramp, as text: `smoothstep(0, 0.2 + v, u)`.
+
+use crate::exact::{exp, power};
+use haze::error::{FieldError, one_line};
+
+/// Longest formula, bytes.
+const MOST: usize = 1000;
+/// Deepest nesting of brackets and signs.
+const DEEPEST: u32 = 64;
+
+/// A formula of `u` and `v`, the two axes from 0 to 1: numbers, `+ - * / ^`, brackets, and the functions of [`FUNCTIONS`].
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Formula(Vec<Step>);
+
+/// What is done next to a stack of numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Step {
+    Number(f32),
+    U,
+    V,
+    /// Takes as many numbers as the function has arguments.
+    Call(usize),
+}
+
+type Function = (&'static str, usize, fn(&[f32]) -> f32);
+
+/// Names, numbers of arguments, meanings. The first are what signs stand for, `~` that before a number.
+const FUNCTIONS: &[Function] = &[
+    ("+", 2, |x| x[0] + x[1]),
+    ("-", 2, |x| x[0] - x[1]),
+    ("*", 2, |x| x[0] * x[1]),
+    ("/", 2, |x| x[0] / x[1]),
+    ("^", 2, |x| power(x[0], x[1])),
+    ("~", 1, |x| -x[0]),
+    ("abs", 1, |x| x[0].abs()),
+    ("exp", 1, |x| exp(x[0])),
+    ("max", 2, |x| x[0].max(x[1])),
+    ("min", 2, |x| x[0].min(x[1])),
+    ("mix", 3, |x| x[0] * (1.0 - x[2]) + x[1] * x[2]),
+    ("pow", 2, |x| power(x[0], x[1])),
+    ("smoothstep", 3, |x| {
+        let t = ((x[2] - x[0]) / (x[1] - x[0])).clamp(0.0, 1.0);
+        t * t * (3.0 - 2.0 * t)
+    }),
+    ("sqrt", 1, |x| x[0].max(0.0).sqrt()),
+    ("step", 2, |x| f32::from(u8::from(x[1] >= x[0]))),
+];
+
+impl Formula {
+    /// Reads a formula.
+    pub fn parse(field: &str, text: &str) -> Result<Self, FieldError> {
+        let refuse = |expected: &str| FieldError::new(field, format!("{text:?}"), expected);
+        if text.len() > MOST {
+            return Err(refuse(&format!("at most {MOST} characters")));
+        }
+        let mut reader = Reader { rest: text.trim_start(), steps: Vec::new(), depth: 0 };
+        let read = reader
+            .sum()
+            .and_then(|()| if reader.rest.is_empty() { Ok(()) } else { Err("an operator, or the end".to_owned()) });
+        read.map_err(|expected| {
+            let rest = one_line(reader.rest.chars().take(20).collect::<String>());
+            let place = if rest.is_empty() { "at its end".to_owned() } else { format!("before {rest:?}") };
+            refuse(&format!("{expected} {place}"))
+        })?;
+        Ok(Self(reader.steps))
+    }
+
+    /// Its value clamped to 0 to 1; 0 where it has none.
+    pub fn place(&self, u: f32, v: f32) -> f32 {
+        let mut stack = Vec::with_capacity(8);
+        for step in &self.0 {
+            let value = match *step {
+                Step::Number(number) => number,
+                Step::U => u,
+                Step::V => v,
+                Step::Call(index) => {
+                    let (_, count, function) = FUNCTIONS[index];
+                    let arguments = stack.split_off(stack.len().saturating_sub(count));
+                    function(&arguments)
+                }
+            };
+            stack.push(value);
+        }
+        // NaN is less than nothing.
+        stack.pop().filter(|&place| place >= 0.0).unwrap_or(0.0).min(1.0)
+    }
+}
+
+/// Recursive descent; the error is what was expected at the rest.
+struct Reader<'a> {
+    rest: &'a str,
+    steps: Vec<Step>,
+    depth: u32,
+}
+
+impl Reader<'_> {
+    fn sum(&mut self) -> Result<(), String> {
+        self.chain(&["+", "-"], |reader| reader.chain(&["*", "/"], Self::signed))
+    }
+
+    /// Parts joined by signs, from the left.
+    fn chain(&mut self, signs: &[&str], part: impl Fn(&mut Self) -> Result<(), String>) -> Result<(), String> {
+        part(self)?;
+        while let Some(sign) = signs.iter().find(|sign| self.takes(sign)) {
+            part(self)?;
+            self.call(sign);
+        }
+        Ok(())
+    }
+
+    /// A sign binds less than a power, whose exponent may have one.
+    fn signed(&mut self) -> Result<(), String> {
+        self.depth += 1;
+        if self.depth > DEEPEST {
+            return Err(format!("at most {DEEPEST} brackets and signs in each other"));
+        }
+        if self.takes("-") {
+            self.signed()?;
+            self.call("~");
+        } else {
+            self.value()?;
+            if self.takes("^") {
+                self.signed()?;
+                self.call("^");
+            }
+        }
+        self.depth -= 1;
+        Ok(())
+    }
+
+    fn value(&mut self) -> Result<(), String> {
+        if self.takes("(") {
+            self.sum()?;
+            return self.expect(")");
+        }
+        let is_number = self.rest.starts_with(|c: char| c.is_ascii_digit() || c == '.');
+        let part_of = |c: char| if is_number { c.is_ascii_digit() || c == '.' } else { c.is_ascii_alphabetic() };
+        let end = self.rest.find(|c| !part_of(c)).unwrap_or(self.rest.len());
+        let (word, rest) = self.rest.split_at(end);
+        let function =
+            FUNCTIONS.iter().position(|&(name, ..)| name == word).filter(|_| rest.trim_start().starts_with('('));
+        let step = match (word, word.parse(), function) {
+            ("u", ..) => Step::U,
+            ("v", ..) => Step::V,
+            (_, Ok(number), _) if is_number => Step::Number(number),
+            (.., Some(function)) => Step::Call(function),
+            _ => {
+                let names: Vec<_> = FUNCTIONS.iter().map(|&(name, ..)| name).filter(|name| name.len() > 1).collect();
+                return Err(format!("a number, u, v, a bracket, or one of {} with its arguments,", names.join(", ")));
+            }
+        };
+        self.rest = rest.trim_start();
+        if let Step::Call(function) = step {
+            for argument in 0..FUNCTIONS[function].1 {
+                self.expect(if argument == 0 { "(" } else { "," })?;
+                self.sum()?;
+            }
+            self.expect(")")?;
+        }
+        self.steps.push(step);
+        Ok(())
+    }
+
+    fn call(&mut self, name: &str) {
+        self.steps.extend(FUNCTIONS.iter().position(|function| function.0 == name).map(Step::Call));
+    }
+
+    fn takes(&mut self, sign: &str) -> bool {
+        let rest = self.rest.strip_prefix(sign);
+        self.rest = rest.map_or(self.rest, str::trim_start);
+        rest.is_some()
+    }
+
+    fn expect(&mut self, sign: &str) -> Result<(), String> {
+        if self.takes(sign) { Ok(()) } else { Err(format!("\"{sign}\"")) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formulas_are_worked_out_as_written() {
+        for (text, expected) in [
+            ("u", 0.25),
+            (" v ", 0.5),
+            ("u + v * u", 0.375),
+            ("(u + v) * u", 0.1875),
+            ("1 - u - v", 0.25),
+            ("u / v / 2", 0.25),
+            ("v ^ 2", 0.25),
+            ("-v ^ 2 + 1", 0.75),
+            ("0.5 ^ -1 - 1.5", 0.5),
+            ("2 ^ 2 ^ 0 - 1.5", 0.5),
+            ("--u", 0.25),
+            ("min(u, v) + max(u, v)", 0.75),
+            ("smoothstep(0, 1, v)", 0.5),
+            ("step(0.3, u) + step(0.3, v)/2", 0.5),
+            ("mix(u, v, 0.5)", 0.375),
+            ("sqrt(u)", 0.5),
+            ("abs(u - 1) - .5", 0.25),
+            ("exp(0) / 2", 0.5),
+            ("9", 1.0),
+            ("-9", 0.0),
+            ("0 / 0", 0.0),
+            ("u / 0", 1.0),
+        ] {
+            let place = Formula::parse("place", text).unwrap().place(0.25, 0.5);
+            assert!((place - expected).abs() < 1.0e-6, "{text}: {place}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_formula_is_named_with_its_place() {
+        let error = |text: &str| Formula::parse("place", text).unwrap_err().to_string();
+        assert_eq!(error("u v"), r#"place: "u v" is not valid; expected an operator, or the end before "v""#);
+        assert!(error("u +").ends_with("with its arguments, at its end"), "{}", error("u +"));
+        assert!(error("min(u)").ends_with(r#"expected "," before ")""#), "{}", error("min(u)"));
+        for text in ["", "1.2.3", "é", "sin(u)", "u(", "min", "min(u, v", "+", "u ** v", "1e5", "\u{1b}[2J"] {
+            assert!(Formula::parse("place", text).is_err(), "{text}");
+        }
+        for deep in ["(", "-", "2^", "abs("] {
+            let error = error(&format!("{}u", deep.repeat(200)));
+            assert!(error.contains("at most 64 brackets and signs"), "{error}");
+        }
+        assert!(error(&"u+".repeat(600)).contains("at most 1000 characters"));
+    }
+}

@@ -1,0 +1,132 @@
+//! Bakes a motif: a picture of a lit sphere, looked up by the normal's xy. (OTEE "Diffuse lighting", "motif lighting")
+
+use std::path::Path;
+
+use glam::{UVec2, Vec2, Vec3};
+use image::DynamicImage;
+
+use super::bake::image_of;
+use super::colour::{HexColour, srgb16_from_linear};
+use haze::assets::json;
+use haze::assets::picture::Picture;
+use haze::error::{Error, FieldError};
+use haze::formula::diffuse_bake::motif_normal;
+use haze::formula::saturate;
+use haze::settings::{FieldVisitor, Fields, validate};
+
+/// The version of the recipe format that this code writes and reads.
+pub const RECIPE_VERSION: u32 = 1;
+
+/// Most lights of one motif: every texel adds them up.
+const MAX_LIGHTS: usize = 256;
+
+/// How a motif was made: the contents of a `*.motif.json`.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct MotifRecipe {
+    /// Format version.
+    pub version: u32,
+    /// Side of the picture.
+    pub size: u32,
+    /// sRGB, where no light reaches.
+    pub ambient: HexColour,
+    /// Lights on the sphere.
+    pub lights: Vec<MotifLight>,
+}
+
+/// One light of a motif.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct MotifLight {
+    /// Towards the light, view space: x right, y up, z to the viewer. Need not be unit length.
+    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
+    pub direction: Vec3,
+    /// sRGB at the brightest point.
+    pub colour: HexColour,
+    /// How far the light wraps round: 0 ends at the terminator, 1 reaches the far side.
+    pub wrap: f32,
+}
+
+impl Fields for MotifRecipe {
+    fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
+        visitor.integer("version", &mut self.version, RECIPE_VERSION..=RECIPE_VERSION, "");
+        visitor.integer("size", &mut self.size, 8..=1024, "texels");
+        visitor.srgb("ambient", &mut self.ambient.0);
+        for (index, light) in self.lights.iter_mut().enumerate() {
+            visitor.item("lights", index, light);
+        }
+    }
+}
+
+impl Fields for MotifLight {
+    fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
+        visitor.vector("direction", &mut self.direction, -1.0e3..=1.0e3, "");
+        visitor.srgb("colour", &mut self.colour.0);
+        visitor.number("wrap", &mut self.wrap, 0.0..=1.0, "");
+    }
+}
+
+impl MotifRecipe {
+    /// Reads a `*.motif.json`.
+    ///
+    /// # Errors
+    /// [`Error::Io`], [`Error::Json`] or [`Error::JsonField`].
+    pub fn load(path: &Path) -> Result<Self, Error> {
+        json::load(path, RECIPE_VERSION, Self::validate)
+    }
+
+    /// Checks ranges and the number of lights.
+    ///
+    /// # Errors
+    /// The first field that is not valid.
+    pub fn validate(&self) -> Result<(), FieldError> {
+        validate(self, String::new)?;
+        if self.lights.len() > MAX_LIGHTS {
+            let expected = format!("at most {MAX_LIGHTS} lights");
+            return Err(FieldError::new("lights", format!("{} lights", self.lights.len()), expected));
+        }
+        Ok(())
+    }
+
+    /// Bakes the picture: sRGB, 16 bits a channel.
+    ///
+    /// # Errors
+    /// The first field that is not valid.
+    pub fn bake(&self) -> Result<DynamicImage, FieldError> {
+        self.validate()?;
+        let last = (self.size - 1) as f32;
+        let light = |light: &MotifLight| (light.direction.normalize_or(Vec3::Z), light.colour.linear(), light.wrap);
+        let lights: Vec<_> = self.lights.iter().map(light).collect();
+        let mut picture = Picture::new(UVec2::splat(self.size), [0; 3]);
+        picture.for_each(|at, texel| {
+            let normal = motif_normal(Vec2::new(at.x as f32 / last * 2.0 - 1.0, 1.0 - at.y as f32 / last * 2.0));
+            let lit = lights.iter().map(|&(direction, colour, wrap)| {
+                let amount = saturate((normal.dot(direction) + wrap) / (1.0 + wrap));
+                colour * amount * amount
+            });
+            *texel = srgb16_from_linear(self.ambient.linear() + lit.sum::<Vec3>());
+        });
+        Ok(image_of(picture))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lights_are_counted() {
+        let light = MotifLight { direction: Vec3::Z, colour: HexColour([9; 3]), wrap: 0.0 };
+        let recipe = |lights| MotifRecipe {
+            version: 1,
+            size: 8,
+            ambient: HexColour([0; 3]),
+            lights: vec![light.clone(); lights],
+        };
+        assert!(recipe(MAX_LIGHTS).bake().is_ok());
+        let error = recipe(20_000).bake().unwrap_err().to_string();
+        assert_eq!(error, "lights: 20000 lights is not valid; expected at most 256 lights");
+    }
+}

@@ -1,0 +1,124 @@
+//! The ramps that come nearest to the truth.
+
+use glam::Vec3;
+
+use super::puff::{Puff, Texel};
+use super::solve::{Equations, knots};
+use crate::ramp::bake::{Blend, Curve, HexColour, RampRecipe, RampRow, RampStop};
+use crate::ramp::colour::srgb_from_linear;
+use haze::formula::colour::luminance;
+use haze::formula::lighting::backlight_weight;
+
+/// How many numbers a fit has to spend.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shape {
+    /// Stops of a row, at least 2.
+    pub stops: u32,
+    /// Rows by amount; 1 for a ramp of one axis.
+    pub rows: u32,
+    /// Whether light from behind has a ramp of its own.
+    pub backlight: bool,
+}
+
+/// As many as an artist can overlook.
+impl Default for Shape {
+    fn default() -> Self {
+        Self { stops: 9, rows: 5, backlight: true }
+    }
+}
+
+/// Ramps that were fitted. Their brightest stop is white or nearly.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FittedRamps {
+    /// For light from the viewer's side, or from all sides.
+    pub diffuse: RampRecipe,
+    /// For light from behind.
+    pub backlight: Option<RampRecipe>,
+    /// What light is multiplied with, to be as bright as the medium is beside white paper: `diffuse.intensity`.
+    pub exposure: f32,
+}
+
+/// How much the brightness of a light counts against all of its pixels.
+const BRIGHTNESS: f32 = 30.0;
+/// How much neighbouring stops hold on to each other, as a share of what the pixels ask of a stop: what no pixel looks up goes on as
+/// its neighbours do.
+const STIFFNESS: f64 = 0.02;
+/// Steps of the solver. Twice as many move a stop in ten, by 1 of 255.
+const STEPS: u32 = 400;
+
+impl Puff {
+    /// Least squares over everything that the renderer would look up, each light by its own brightness: a shadow's error counts as
+    /// that of a lit side.
+    pub fn fit(&self, shape: Shape) -> FittedRamps {
+        let Shape { stops, rows, backlight } = shape;
+        let (stops, rows) = (stops.max(2) as usize, rows.max(1) as usize);
+        let ramps = if backlight { 2 } else { 1 };
+        let place = |ramp: usize, row: usize, stop: usize| (ramp * rows + row) * stops + stop;
+        let terms = |texel: &Texel, light: Vec3| {
+            let (at, against) = (texel.coordinate(light), backlight_weight(light, Vec3::Z));
+            let of_ramp = if backlight { [1.0 - against, against] } else { [1.0, 0.0] };
+            let mut terms = Vec::with_capacity(8);
+            for (ramp, of_ramp) in of_ramp.into_iter().enumerate().take(ramps) {
+                for (row, of_row) in knots(at.y, rows) {
+                    for (stop, of_stop) in knots(at.x, stops) {
+                        terms.push((place(ramp, row, stop), of_ramp * of_row * of_stop * texel.coverage));
+                    }
+                }
+            }
+            terms
+        };
+        let mut equations = Equations::new(ramps * rows * stops);
+        let count = self.texels.len().max(1) as f32;
+        for (&light, truth) in self.lights.iter().zip(&self.traced.light) {
+            let whole: Vec3 = truth.texels.iter().sum();
+            let weight = 1.0 / (luminance(whole) / count).powi(2).max(1.0e-12);
+            let mut sums = vec![0.0; ramps * rows * stops];
+            for texel in &self.texels {
+                let terms = terms(texel, light);
+                equations.add(&terms, truth.texels[texel.index], weight / count);
+                terms.iter().for_each(|&(place, share)| sums[place] += share / count);
+            }
+            let sums: Vec<_> = sums.into_iter().enumerate().collect();
+            equations.add(&sums, whole / count, BRIGHTNESS * weight);
+        }
+        let stiffness = (equations.mean_square() * STIFFNESS) as f32;
+        let mut hold = |[before, here, after]: [usize; 3]| {
+            equations.add(&[(before, 1.0), (here, -2.0), (after, 1.0)], Vec3::ZERO, stiffness);
+        };
+        for ramp in 0..ramps {
+            for row in 0..rows {
+                (2..stops).for_each(|stop| hold([2, 1, 0].map(|back| place(ramp, row, stop - back))));
+            }
+            for stop in 0..stops {
+                (2..rows).for_each(|row| hold([2, 1, 0].map(|back| place(ramp, row - back, stop))));
+            }
+        }
+        let values = equations.solve(STEPS);
+        let exposure = values.iter().map(|value| value.max_element()).fold(f32::MIN_POSITIVE, f32::max);
+        let recipe = |ramp: usize| recipe(&values[place(ramp, 0, 0)..][..rows * stops], stops, exposure);
+        FittedRamps { diffuse: recipe(0), backlight: backlight.then(|| recipe(1)), exposure }
+    }
+}
+
+/// What was solved for, as it is looked up: straight in linear light from stop to stop, and from row to row.
+fn recipe(values: &[Vec3], stops: usize, exposure: f32) -> RampRecipe {
+    let rows = values.len() / stops;
+    let share = |index: usize, count: usize| if count > 1 { index as f32 / (count - 1) as f32 } else { 0.0 };
+    let stop = |(index, &value): (usize, &Vec3)| {
+        let code = (value / exposure).to_array().map(srgb_from_linear);
+        let colour = HexColour::from_srgb(Vec3::from(code));
+        RampStop { curve: Curve::Linear, ..RampStop::new(share(index, stops), colour) }
+    };
+    let row = |(index, values): (usize, &[Vec3])| RampRow {
+        at: share(index, rows),
+        curve: Curve::Linear,
+        stops: values.iter().enumerate().map(stop).collect(),
+    };
+    RampRecipe {
+        width: 128,
+        height: if rows > 1 { 64 } else { 1 },
+        blend: Blend::Linear,
+        rows: values.chunks(stops).enumerate().map(row).collect(),
+        ..RampRecipe::default()
+    }
+}

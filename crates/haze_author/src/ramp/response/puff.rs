@@ -1,0 +1,176 @@
+//! A puff, as it is and as ramps have it.
+
+use glam::{UVec2, Vec2, Vec3};
+
+use crate::exact::direction;
+use crate::path_trace::{Medium, PathTrace, Traced};
+use crate::sprite::bake::SpriteRecipe;
+use crate::sprite::six_way::BakedSixWay;
+use haze::assets::picture::Picture;
+use haze::assets::ramp::Ramp;
+use haze::formula::colour::luminance;
+use haze::formula::lighting::{backlight_weight, diffuse_coordinate};
+use haze::formula::ramp::sample_ramp_2d;
+use haze::formula::six_way::{six_way_from_texel, six_way_response};
+use haze::settings::RampFilter;
+
+/// Lights round a puff.
+pub const LIGHTS: u32 = 16;
+
+/// A puff under a ring of lights at its own height, the first at the viewer: what it shows of each, and what ramps go by.
+#[derive(Clone, Debug)]
+pub struct Puff {
+    pub(super) lights: Vec<Vec3>,
+    /// Where there is smoke.
+    pub(super) texels: Vec<Texel>,
+    pub(super) traced: Traced,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Texel {
+    /// Of the picture.
+    pub index: usize,
+    normal: Vec3,
+    pub coverage: f32,
+}
+
+/// The ramps that diffuse light is looked up in.
+#[derive(Clone, Copy, Debug)]
+pub struct DiffuseRamps<'a> {
+    /// `diffuse_ramp` of a material.
+    pub diffuse: &'a Ramp,
+    /// `backlight_ramp`, where light from behind has its own.
+    pub backlight: Option<&'a Ramp>,
+}
+
+/// How bright smoke is shown under a ring of lights, beside what is true.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Response {
+    /// What the light that is shown is multiplied with, to come as near as it can: `diffuse.intensity`.
+    pub exposure: f32,
+    /// For each light.
+    pub lights: Vec<LightResponse>,
+    /// Mean over the lights of how far their brightness is off, as a share of what is true.
+    pub error: f32,
+    /// Root mean square of all errors, pixel by pixel, as a share of the root mean square of what is true.
+    pub pixel_error: f32,
+}
+
+/// Brightness under one light: mean luminance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightResponse {
+    /// Path-traced.
+    pub truth: f32,
+    /// As shown, exposed.
+    pub shown: f32,
+}
+
+impl Puff {
+    /// Path-traces the first moment of a sprite whose densities are filled with a medium. `progress` as for [`PathTrace::run`].
+    pub fn trace<E>(
+        recipe: &SpriteRecipe,
+        medium: &Medium,
+        path_trace: &PathTrace,
+        progress: impl Fn(u32) -> Result<(), E>,
+    ) -> Result<Self, E> {
+        // As opaque as the medium, and not smoothed for files.
+        let recipe = SpriteRecipe { size: path_trace.size, extinction: medium.density, tolerance: 0, ..recipe.clone() };
+        let lights: Vec<_> = (0..LIGHTS).map(light).collect();
+        let traced = path_trace.run(&recipe.volume(0.0), medium, &lights, progress)?;
+        let texel = |(index, texel): (usize, &image::Rgba<u8>)| {
+            let [x, y, z, _] = texel.0.map(|channel| f32::from(channel) / 255.0 * 2.0 - 1.0);
+            let (normal, coverage) = (Vec3::new(x, y, z).normalize_or(Vec3::Z), traced.coverage.texels[index]);
+            (coverage > 0.0).then_some(Texel { index, normal, coverage })
+        };
+        let texels = recipe.bake_frame(0.0).picture.texels.iter().enumerate().filter_map(texel).collect();
+        Ok(Self { lights, texels, traced })
+    }
+
+    /// What was path-traced, light by light.
+    pub fn traced(&self) -> &Traced {
+        &self.traced
+    }
+
+    /// What ramps show of it under a light: linear, times coverage.
+    pub fn shown(&self, ramps: DiffuseRamps<'_>, light: usize) -> Picture<Vec3> {
+        let mut picture = Picture::new(self.traced.coverage.size, Vec3::ZERO);
+        for texel in &self.texels {
+            picture.texels[texel.index] = ramps.look_up(texel, self.lights[light]) * texel.coverage;
+        }
+        picture
+    }
+
+    /// What six-way maps of it show under a light, as [`Puff::shown`]: those of one frame, of its own size.
+    pub fn shown_six_way(&self, maps: &BakedSixWay, light: usize) -> Picture<Vec3> {
+        let size = self.traced.coverage.size;
+        let mut picture = Picture::new(size, Vec3::ZERO);
+        for texel in &self.texels {
+            let at = UVec2::new(texel.index as u32 % size.x, texel.index as u32 / size.x);
+            let half = |y| {
+                let [r, g, b, _] = maps.picture.get_pixel(at.x, y).0.map(|channel| f32::from(channel) / 255.0);
+                six_way_from_texel(Vec3::new(r, g, b))
+            };
+            let (positive, negative) = (half(at.y), half(at.y + size.y));
+            let response = six_way_response(positive, negative, self.lights[light], maps.anisotropy);
+            picture.texels[texel.index] = maps.colour * (response * texel.coverage);
+        }
+        picture
+    }
+
+    /// How far ramps are from the truth, at the exposure that is best for them.
+    pub fn response(&self, ramps: DiffuseRamps<'_>) -> Response {
+        self.response_of(|light| self.shown(ramps, light))
+    }
+
+    /// How far pictures of it are from the truth, at the exposure that is best for them; one for each light.
+    pub fn response_of(&self, shown: impl Fn(usize) -> Picture<Vec3>) -> Response {
+        let shown: Vec<_> = (0..self.lights.len()).map(shown).collect();
+        Response::new(&shown, &self.traced.light)
+    }
+}
+
+impl Response {
+    /// Of pictures beside true ones, one for each light, at the exposure that is best for all of them: least squares of the shares.
+    pub fn new(shown: &[Picture<Vec3>], truth: &[Picture<Vec3>]) -> Self {
+        let mean = |picture: &Picture<Vec3>| luminance(picture.texels.iter().sum()) / picture.texels.len() as f32;
+        let both = || shown.iter().zip(truth);
+        let lights: Vec<_> =
+            both().map(|(shown, truth)| LightResponse { truth: mean(truth), shown: mean(shown) }).collect();
+        let share = |light: &LightResponse| light.shown / light.truth.max(f32::MIN_POSITIVE);
+        let squares: f32 = lights.iter().map(|light| share(light).powi(2)).sum();
+        let exposure = lights.iter().map(share).sum::<f32>() / squares.max(f32::MIN_POSITIVE);
+        let off = lights.iter().map(|light| (exposure * share(light) - 1.0).abs());
+        let error = off.sum::<f32>() / lights.len() as f32;
+        let texels = || both().flat_map(|(shown, truth)| shown.texels.iter().zip(&truth.texels));
+        let off: f32 = texels().map(|(&shown, &truth)| (shown * exposure - truth).length_squared()).sum();
+        let all: f32 = texels().map(|(_, truth)| truth.length_squared()).sum();
+        let lights = lights.into_iter().map(|light| LightResponse { shown: light.shown * exposure, ..light }).collect();
+        Self { exposure, lights, error, pixel_error: (off / all.max(f32::MIN_POSITIVE)).sqrt() }
+    }
+}
+
+/// Of a light round a puff, degrees: at 0 it is at the viewer, at 180 behind the smoke.
+pub fn angle(light: usize) -> f32 {
+    360.0 * light as f32 / LIGHTS as f32
+}
+
+/// The way to a light of the ring.
+fn light(index: u32) -> Vec3 {
+    let turn = direction(index as f32 * std::f32::consts::TAU / LIGHTS as f32);
+    Vec3::new(turn.y, 0.0, turn.x)
+}
+
+impl Texel {
+    /// Where a light is looked up.
+    pub fn coordinate(&self, light: Vec3) -> Vec2 {
+        Vec2::new(diffuse_coordinate(self.normal, light), self.coverage)
+    }
+}
+
+impl DiffuseRamps<'_> {
+    fn look_up(&self, texel: &Texel, light: Vec3) -> Vec3 {
+        let sample = |ramp| sample_ramp_2d(ramp, RampFilter::Bilinear, texel.coordinate(light));
+        let from_front = sample(self.diffuse);
+        self.backlight.map_or(from_front, |ramp| from_front.lerp(sample(ramp), backlight_weight(light, Vec3::Z)))
+    }
+}

@@ -1,0 +1,78 @@
+use super::*;
+use crate::path_trace::MEDIA;
+use crate::path_trace::{Medium, PathTrace};
+use crate::ramp::bake::RampRecipe;
+use crate::sprite::bake::SpriteRecipe;
+use haze::assets::builtin;
+use haze::assets::ramp::Ramp;
+
+const PATH_TRACE: PathTrace = PathTrace { size: 32, samples: 16, seed: 1 };
+
+fn puff(medium: &Medium) -> Puff {
+    let recipe = SpriteRecipe::of_builtin(builtin::find(builtin::SPRITES, "billow").unwrap()).unwrap();
+    Puff::trace(&recipe, medium, &PATH_TRACE, |_| Ok::<_, ()>(())).unwrap()
+}
+
+fn baked(recipe: &RampRecipe) -> Ramp {
+    Ramp::from_picture(&recipe.bake().unwrap())
+}
+
+/// What a fit of a shape comes to, as it is baked.
+fn fitted(puff: &Puff, shape: Shape) -> Response {
+    let FittedRamps { diffuse, backlight, exposure } = puff.fit(shape);
+    let (diffuse, backlight) = (baked(&diffuse), backlight.as_ref().map(baked));
+    let response = puff.response(DiffuseRamps { diffuse: &diffuse, backlight: backlight.as_ref() });
+    // The fit weighs squares of all pixels, the best exposure shares of brightness alone.
+    assert!((response.exposure / exposure - 1.0).abs() < 0.06, "{} {exposure}", response.exposure);
+    response
+}
+
+#[test]
+fn fitted_ramps_answer_every_medium() {
+    for named in MEDIA {
+        let puff = puff(&named.medium);
+        let painted = builtin::find(builtin::RAMPS, "diffuse_soft").unwrap().ramp().unwrap();
+        let painted = puff.response(DiffuseRamps { diffuse: &painted, backlight: None });
+        let one_row = fitted(&puff, Shape { rows: 1, backlight: false, ..Shape::default() });
+        let two_axes = fitted(&puff, Shape { backlight: false, ..Shape::default() });
+        let both = fitted(&puff, Shape::default());
+        let of = |response: &Response| (response.error, response.pixel_error);
+        let told = format!("{}: {:?} {:?} {:?} {:?}", named.name, of(&painted), of(&one_row), of(&two_axes), of(&both));
+        // A tenth is what fitted ramps promise; of the pixels steam leaves the most, over half.
+        assert!(both.error < 0.1 && both.pixel_error < 0.6, "{told}");
+        assert!(both.error < one_row.error && both.pixel_error < two_axes.pixel_error, "{told}");
+        assert!(two_axes.error < painted.error && one_row.error < painted.error, "{told}");
+    }
+}
+
+#[test]
+fn the_ramp_that_smoke_was_lit_with_is_found_again() {
+    let mut puff = puff(&MEDIA[1].medium);
+    let rim = builtin::find(builtin::RAMPS, "diffuse_soft").unwrap().ramp().unwrap();
+    for light in 0..LIGHTS as usize {
+        puff.traced.light[light] = puff.shown(DiffuseRamps { diffuse: &rim, backlight: None }, light);
+    }
+    let response = fitted(&puff, Shape { stops: 17, rows: 1, backlight: false });
+    assert!(response.error < 0.01 && response.pixel_error < 0.03, "{response:?}");
+    // Twice as bright is the same ramp at half the exposure.
+    let half = Ramp::from_linear(rim.size(), (0..rim.size().x).map(|x| rim.texel(glam::UVec2::new(x, 0)) * 0.5));
+    let response = puff.response(DiffuseRamps { diffuse: &half, backlight: None });
+    assert!((response.exposure - 2.0).abs() < 0.01 && response.error < 1e-3, "{response:?}");
+}
+
+#[test]
+fn six_way_maps_are_nearer_to_the_truth_than_any_ramp() {
+    for named in MEDIA {
+        let puff = puff(&named.medium);
+        let recipe = SpriteRecipe::of_builtin(builtin::find(builtin::SPRITES, "billow").unwrap()).unwrap();
+        let recipe = SpriteRecipe { size: PATH_TRACE.size, columns: 1, rows: 1, tolerance: 0, ..recipe };
+        let maps = recipe.bake_six_way(&named.medium, 48, |_, _| Ok::<_, ()>(())).unwrap();
+        let six_way = puff.response_of(|light| puff.shown_six_way(&maps, light));
+        println!("{}: {:.3}, pixels {:.3}", named.name, six_way.error, six_way.pixel_error);
+        assert!(six_way.error < 0.06, "{}: {}", named.name, six_way.error);
+        let ramps = fitted(&puff, Shape::default());
+        assert!(six_way.pixel_error < ramps.pixel_error, "{}: {}", named.name, six_way.pixel_error);
+        // It is as bright as the settings that come with it say.
+        assert!((six_way.exposure / maps.intensity - 1.0).abs() < 0.1, "{} {}", six_way.exposure, maps.intensity);
+    }
+}

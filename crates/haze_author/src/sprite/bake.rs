@@ -1,0 +1,103 @@
+//! Bakes a sprite flipbook: a cluster of metaballs, eroded by turbulent noise, seen from the front.
+//!
+//! OTEE: "Grayscale heightmaps never get curvy enough … use metaballs, then add some procedural bump." So the baker has no
+//! height map at all: it marches through a density volume and collects the normals on the way.
+
+mod cluster;
+mod cube;
+mod erosion;
+mod frame;
+mod march;
+mod moment;
+mod recipe;
+pub(super) mod shrink;
+mod slices;
+mod voxels;
+
+use glam::{IVec2, UVec2};
+use image::{Rgba, RgbaImage};
+
+use super::detail::{detail, detail_size};
+use crate::path_trace::Volume;
+use haze::assets::threads::on_all_processors;
+use haze::error::FieldError;
+use haze::settings::validate;
+use haze::sprite::Sprite;
+
+pub use frame::BakedFrame;
+pub use recipe::{RECIPE_VERSION, SpriteRecipe};
+use shrink::{shrink_detail, shrink_frame};
+use slices::Slices;
+
+/// What a recipe makes.
+#[derive(Clone, Debug)]
+pub struct BakedSprite {
+    /// The flipbook: rgb = normal / 2 + 1/2 (x right, y up, z to the viewer), a = amount.
+    pub picture: RgbaImage,
+    /// Depth and motion, see [`detail`](crate::sprite::detail).
+    pub detail: RgbaImage,
+}
+
+impl SpriteRecipe {
+    /// Bakes the whole sheet and its details. `progress` is told how many frames are done; its error ends the work.
+    ///
+    /// # Errors
+    /// The first number of the recipe that is out of range, or what `progress` says.
+    pub fn bake<E: From<FieldError>>(&self, progress: impl Fn(u32) -> Result<(), E>) -> Result<BakedSprite, E> {
+        validate(self, String::new)?;
+        let bake = self.baker();
+        let frame = |frame| progress(frame).map(|()| bake(frame as f32));
+        let mut frames = (0..self.frame_count()).map(frame).collect::<Result<Vec<_>, E>>()?;
+        on_all_processors(frames.iter_mut(), |frame| self.shrink(frame));
+        let pictures = frames.iter().flat_map(|frame| frame.picture.texels.iter().map(|texel| texel.0));
+        let sprite = Sprite::with_levels(self.size, self.frame_count(), pictures.collect());
+        let mut details: Vec<_> =
+            (0..).zip(&frames).map(|(frame, baked)| detail(&sprite, frame, &baked.offset)).collect();
+        if self.tolerance > 0 {
+            details.iter_mut().for_each(|detail| shrink_detail(detail, self.tolerance / 2));
+        }
+        Ok(BakedSprite {
+            picture: self.sheet(self.size, |frame, at| frames[frame].picture.load(at)),
+            detail: self.sheet(detail_size(self.size), |frame, at| details[frame].load(at)),
+        })
+    }
+
+    fn sheet(&self, size: u32, texel: impl Fn(usize, IVec2) -> Rgba<u8>) -> RgbaImage {
+        RgbaImage::from_fn(size * self.columns, size * self.rows, |x, y| {
+            let frame = y / size * self.columns + x / size;
+            texel(frame as usize, UVec2::new(x % size, y % size).as_ivec2())
+        })
+    }
+
+    /// Bakes one moment of the loop; `frame` 0.5 is half way between the first two.
+    pub fn bake_frame(&self, frame: f32) -> BakedFrame {
+        let mut frame = self.baker()(frame);
+        self.shrink(&mut frame);
+        frame
+    }
+
+    /// The densities that a moment of the loop is marched through.
+    pub fn volume(&self, frame: f32) -> Volume {
+        let time = frame / self.frame_count() as f32;
+        if self.version > 1 { Slices::new(self).volume(time) } else { cube::volume(self, time) }
+    }
+
+    /// Bakes moments before they are made smaller, with what they share worked out once.
+    fn baker(&self) -> impl Fn(f32) -> BakedFrame + '_ {
+        let count = self.frame_count() as f32;
+        let slices = (self.version > 1).then(|| Slices::new(self));
+        move |frame| {
+            let time = frame / count;
+            slices.as_ref().map_or_else(|| cube::frame(self, time), |slices| slices.frame(time))
+        }
+    }
+
+    fn shrink(&self, frame: &mut BakedFrame) {
+        if self.tolerance > 0 {
+            shrink_frame(&mut frame.picture, self.tolerance);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,48 @@
+//! What a sprite is made of before noise eats it: balls, or what they are drawn out to.
+
+use glam::{UVec3, Vec3};
+
+use super::recipe::SpriteRecipe;
+use crate::exact::direction;
+use haze::assets::noise::{pcg3d, unit};
+
+#[derive(Clone, Copy)]
+pub(super) struct Ball {
+    pub centre: Vec3,
+    pub inverse_radius: f32,
+    /// Half of the line that it is drawn out along.
+    pub axis: Vec3,
+}
+
+impl Ball {
+    /// From the nearest place of its line.
+    pub fn offset(&self, p: Vec3) -> Vec3 {
+        let from = p - self.centre;
+        let along = from.dot(self.axis) / self.axis.length_squared().max(f32::MIN_POSITIVE);
+        from - self.axis * along.clamp(-1.0, 1.0)
+    }
+}
+
+/// The balls at a moment, a share of the loop.
+pub(super) fn balls(recipe: &SpriteRecipe, time: f32) -> Vec<Ball> {
+    let phase = direction(time * std::f32::consts::TAU);
+    let ball = |index| {
+        let random = |salt: u32| {
+            let hash = pcg3d(UVec3::new(index, salt, recipe.seed));
+            Vec3::new(unit(hash.x), unit(hash.y), unit(hash.z))
+        };
+        let (place, shape) = (random(1), random(2));
+        let z = place.x * 2.0 - 1.0;
+        let xy = direction(place.y * std::f32::consts::TAU) * (1.0 - z * z).sqrt();
+        let distance = recipe.spread * place.z.sqrt();
+        // The further out, the smaller: a body with puffs on it.
+        let size = shape.x * (1.0 - 0.6 * place.z);
+        let radius = recipe.ball_radius_min + (recipe.ball_radius_max - recipe.ball_radius_min) * size;
+        let swing = direction(shape.y * std::f32::consts::TAU).rotate(phase) * recipe.drift;
+        let any = (random(3) - 0.5).normalize_or(Vec3::Y);
+        let upright = Vec3::Y * if any.y < 0.0 { -1.0 } else { 1.0 };
+        let axis = any.lerp(upright, recipe.upright).normalize_or(Vec3::Y) * recipe.length;
+        Ball { centre: xy.extend(z) * distance + swing.extend(0.0), inverse_radius: 1.0 / radius, axis }
+    };
+    (0..recipe.balls).map(ball).collect()
+}

@@ -1,0 +1,109 @@
+//! The noise that eats a body of version 2, of every voxel: worked out once for all frames.
+
+use std::ops::Range;
+
+use glam::{UVec2, UVec3, Vec2, Vec3};
+
+use super::recipe::SpriteRecipe;
+use super::voxels::{RUN, Voxels};
+use haze::assets::noise::NoiseCell;
+use haze::assets::picture::Picture;
+
+/// Noise in 16 bits: it stays within ±4.
+const NOISE_SCALE: f32 = 8192.0;
+
+pub(super) struct Erosion {
+    voxels: Voxels,
+    octaves: Vec<Octave>,
+}
+
+/// Noise of every voxel: at the loop's start, and a quarter later.
+struct Octave {
+    weight: f32,
+    lumps: f32,
+    values: Picture<[i16; 2]>,
+}
+
+impl Erosion {
+    pub fn new(recipe: &SpriteRecipe, voxels: Voxels) -> Self {
+        let weight = |index: u32| (0..index).fold(1.0, |weight, _| weight * recipe.noise_gain);
+        let octave = |index: u32| (weight(index), 2_u32.pow(index) as f32, index * 7919);
+        let all: Vec<_> = (0..recipe.noise_octaves).map(octave).collect();
+        // Without creases they add up before they turn, and where they do not turn, also with them.
+        let travels = recipe.travel > 0.0;
+        let lumps = recipe.lumps;
+        let octaves = if lumps > 0.0 && !travels {
+            let alone = |&(weight, frequency, salt): &(f32, f32, u32)| Octave {
+                weight,
+                lumps,
+                values: values(recipe, voxels, &[(1.0, frequency, salt)], 0.0),
+            };
+            all.iter().map(alone).collect()
+        } else {
+            let inside = if travels { lumps } else { 0.0 };
+            vec![Octave { weight: 1.0, lumps: 0.0, values: values(recipe, voxels, &all, inside) }]
+        };
+        Self { voxels, octaves }
+    }
+
+    /// Of a run of voxels.
+    pub fn along(&self, voxels: Range<usize>, phase: Vec2) -> [f32; RUN] {
+        let mut sums = [0.0; RUN];
+        for octave in &self.octaves {
+            for (sum, &[start, later]) in sums.iter_mut().zip(&octave.values.texels[voxels.clone()]) {
+                let noise = (f32::from(start) * phase.x + f32::from(later) * phase.y) * (1.0 / NOISE_SCALE);
+                *sum += shaped(noise, octave.lumps) * octave.weight;
+            }
+        }
+        sums
+    }
+
+    /// Noise between voxels, where it does not turn: all of it is in one octave.
+    pub fn carried(&self, p: Vec3) -> f32 {
+        let size = self.voxels.size;
+        let sides = self.voxels.sides().as_vec3();
+        let at = ((p * Vec3::new(1.0, -1.0, -1.0) + 1.0) * 0.5 * sides - 0.5).clamp(Vec3::ZERO, sides - 1.0);
+        let low = at.as_uvec3();
+        let share = at - low.as_vec3();
+        let high = (low + 1).min(self.voxels.sides() - 1);
+        let values = &self.octaves[0].values;
+        let load = |x: u32, y: u32, z: u32| {
+            f32::from(values.texels[((z * size + y) * size + x) as usize][0]) * (1.0 / NOISE_SCALE)
+        };
+        let mix = |a: f32, b: f32, share: f32| a + (b - a) * share;
+        let row = |y, z| mix(load(low.x, y, z), load(high.x, y, z), share.x);
+        let slice = |z| mix(row(low.y, z), row(high.y, z), share.y);
+        mix(slice(low.z), slice(high.z), share.z)
+    }
+}
+
+/// The octaves added up.
+fn values(recipe: &SpriteRecipe, voxels: Voxels, octaves: &[(f32, f32, u32)], lumps: f32) -> Picture<[i16; 2]> {
+    let size = voxels.size;
+    let mut values = Picture::new(UVec2::new(size, size * voxels.depth), [0_i16; 2]);
+    let seed = recipe.seed.wrapping_mul(31);
+    values.for_bands(|first, band| {
+        for (row, line) in (first..).zip(band.chunks_mut(size as usize)) {
+            for &(weight, frequency, salt) in octaves {
+                let mut cell = NoiseCell::new(seed.wrapping_add(salt));
+                for (x, value) in (0..).zip(&mut *line) {
+                    let p = voxels.position(UVec3::new(x, row % size, row / size));
+                    // Nothing is seen further out, but what travels may come from there.
+                    if p.length_squared() > 1.0 + recipe.travel {
+                        continue;
+                    }
+                    let noise = cell.turning(p * recipe.noise_frequency * frequency);
+                    for (sum, noise) in value.iter_mut().zip(noise) {
+                        *sum = sum.saturating_add((shaped(noise, lumps) * weight * NOISE_SCALE) as i16);
+                    }
+                }
+            }
+        }
+    });
+    values
+}
+
+/// Round lumps with sharp creases between, in place of waves; about as much of either.
+fn shaped(noise: f32, lumps: f32) -> f32 {
+    noise + (0.4 - 2.0 * noise.abs() - noise) * lumps
+}

@@ -1,0 +1,61 @@
+//! One moment of a sprite, and a texel of it as rays through smoke find it.
+
+use glam::{UVec2, Vec2, Vec3};
+use image::Rgba;
+
+use haze::assets::picture::Picture;
+use haze::formula::saturate;
+
+/// One moment of a sprite.
+#[derive(Clone, Debug)]
+pub struct BakedFrame {
+    /// rgb = normal / 2 + 1/2, a = amount.
+    pub picture: Picture<Rgba<u8>>,
+    /// How far towards the viewer what is seen lies, -1..1 half sides.
+    pub offset: Picture<f32>,
+}
+
+impl BakedFrame {
+    pub(super) fn new(size: u32, texels: impl IntoIterator<Item = (Rgba<u8>, f32)>) -> Self {
+        let (picture, offset) = texels.into_iter().unzip();
+        let size = UVec2::splat(size);
+        Self { picture: Picture { size, texels: picture }, offset: Picture { size, texels: offset } }
+    }
+}
+
+/// What a ray has met, front to back.
+#[derive(Clone, Copy)]
+pub(super) struct Ray {
+    pub transmittance: f32,
+    normal: Vec3,
+    offset: f32,
+}
+
+impl Ray {
+    pub fn new() -> Self {
+        Self { transmittance: 1.0, normal: Vec3::ZERO, offset: 0.0 }
+    }
+
+    /// True where what follows cannot be seen.
+    pub fn is_over(&self) -> bool {
+        self.transmittance < 1.0 / 512.0
+    }
+
+    pub fn meet(&mut self, amount: f32, normal: Vec3, offset: f32) {
+        self.normal += normal * (self.transmittance * amount);
+        self.offset += offset * self.transmittance * amount;
+        self.transmittance *= 1.0 - amount;
+    }
+
+    /// The texel, and how far to the viewer what is seen of it lies. `place` is the texel's own.
+    pub fn texel(&self, at: UVec2, size: u32, place: Vec2) -> (Rgba<u8>, f32) {
+        let border = at.min_element() == 0 || at.max_element() == size - 1;
+        let amount = if border { 0.0 } else { 1.0 - self.transmittance };
+        // Where there is nothing the normal leans outwards, for filters that reach across the edge.
+        let outwards = place.extend(0.5);
+        let encoded = self.normal.normalize_or(outwards.normalize()) * 0.5 + 0.5;
+        let channel = |value: f32| (saturate(value) * 255.0).round() as u8;
+        let texel = Rgba([channel(encoded.x), channel(encoded.y), channel(encoded.z), channel(amount)]);
+        (texel, self.offset / (1.0 - self.transmittance).max(1.0e-6))
+    }
+}

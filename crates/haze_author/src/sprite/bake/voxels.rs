@@ -1,0 +1,35 @@
+//! The box of voxels that a frame of version 2 is marched through, a quarter as deep as wide.
+
+use glam::{UVec3, Vec3};
+
+use crate::path_trace::position;
+
+/// Voxels that are worked out together.
+pub(super) const RUN: usize = 16;
+
+#[derive(Clone, Copy)]
+pub(super) struct Voxels {
+    /// Across, and up.
+    pub size: u32,
+    pub depth: u32,
+}
+
+impl Voxels {
+    pub fn new(size: u32) -> Self {
+        Self { size, depth: (size / 4).max(8) }
+    }
+
+    pub fn sides(self) -> UVec3 {
+        UVec3::new(self.size, self.size, self.depth)
+    }
+
+    /// The place of a voxel: x right, y up, z to the viewer.
+    pub fn position(self, voxel: UVec3) -> Vec3 {
+        position(self.sides(), voxel)
+    }
+
+    /// Boxes along each axis.
+    pub fn boxes(self) -> UVec3 {
+        self.sides().map(|side| side.div_ceil(RUN as u32))
+    }
+}

@@ -1,0 +1,159 @@
+//! What a sprite picture tells beside its normals: how far each texel stands out towards the viewer, for depth sprites,
+//! and where it moves until the next frame, for flipbooks without ghosts.
+//!
+//! A detail map is laid out as its sprite, at a quarter of its size: r = offset towards the viewer, g and b = motion to
+//! the right and down, a = amount. 128 is none; 1 and 255 are -1 and 1 half sides of the sprite (r), and
+//! [`MOTION_RANGE`] of its side (g, b).
+
+use glam::{IVec2, Mat2, UVec2, Vec2, Vec3};
+use image::Rgba;
+
+use crate::exact::exp;
+use haze::assets::picture::Picture;
+use haze::formula::sprite::MOTION_RANGE;
+use haze::sprite::Sprite;
+
+/// Mip level of the sprite that is as large as its detail map: depth and motion are smooth.
+const LEVEL: u32 = 2;
+
+/// Side of one frame of the detail map.
+pub(crate) fn detail_size(sprite_size: u32) -> u32 {
+    (sprite_size >> LEVEL).max(1)
+}
+
+/// One frame of the detail map. `offset` is at the sprite's own size.
+pub fn detail(sprite: &Sprite, frame: u32, offset: &Picture<f32>) -> Picture<Rgba<u8>> {
+    let size = detail_size(sprite.size());
+    let motion = motion(sprite, frame);
+    let mut picture = Picture::new(UVec2::splat(size), Rgba([128, 128, 128, 0]));
+    let scale = sprite.size() / size;
+    picture.for_each(|at, texel| {
+        // Mean offset of the texels that it stands for, by their amount.
+        let (mut sum, mut weight) = (0.0, 0.0);
+        for index in 0..scale * scale {
+            let fine = at * scale + UVec2::new(index % scale, index / scale);
+            let amount = sprite.texel(0, frame, fine.x, fine.y).w;
+            sum += offset.load(fine.as_ivec2()) * amount;
+            weight += amount;
+        }
+        let signed = |value: f32| (128.0 + 127.0 * value.clamp(-1.0, 1.0)).round() as u8;
+        let motion = motion.load(at.as_ivec2()) / MOTION_RANGE;
+        // Clear at the border, as sprites must be.
+        let border = at.min_element() == 0 || at.max_element() == size - 1;
+        let amount = if border { 0.0 } else { sprite.texel(LEVEL, frame, at.x, at.y).w };
+        let offset = if weight > 0.0 { sum / weight } else { 0.0 };
+        *texel = Rgba([signed(offset), signed(motion.x), signed(motion.y), (amount * 255.0).round() as u8]);
+    });
+    picture
+}
+
+/// Where each texel moves from `frame` to the next, in sides of the sprite, y down: optical flow by least squares in a
+/// window, coarse to fine. (Lucas and Kanade, "An iterative image registration technique", 1981; in a pyramid as Bouguet,
+/// 2001)
+pub fn motion(sprite: &Sprite, frame: u32) -> Picture<Vec2> {
+    let next = (frame + 1) % sprite.frame_count();
+    let coarsest = (LEVEL + 2).min(sprite.level_count() - 1);
+    let mut flow = Picture::new(UVec2::ONE, Vec2::ZERO);
+    for level in (LEVEL.min(coarsest)..=coarsest).rev() {
+        let (from, to) = (features(sprite, frame, level), features(sprite, next, level));
+        // In texels of this level; the coarser level's start.
+        let size = from.size.x as f32;
+        let mut finer = Picture::new(from.size, Vec2::ZERO);
+        finer.for_each(|at, texel| {
+            *texel = bilinear(&flow, (at.as_vec2() + 0.5) * flow.size.as_vec2() / size - 0.5) * size;
+        });
+        for _ in 0..ITERATIONS {
+            finer = refine(&from, &to, &finer);
+        }
+        finer.texels.iter_mut().for_each(|motion| *motion /= size);
+        flow = finer;
+    }
+    flow
+}
+
+const ITERATIONS: u32 = 6;
+/// Texels round a texel that must agree on its motion.
+const WINDOW: i32 = 4;
+/// Keeps texels still where nothing tells how they move.
+const STIFFNESS: f32 = 0.02;
+
+/// What is recognised from frame to frame: the amount, and which way it faces.
+fn features(sprite: &Sprite, frame: u32, level: u32) -> Picture<Vec3> {
+    let mut picture = Picture::new(UVec2::splat(sprite.level_size(level)), Vec3::ZERO);
+    picture.for_each(|at, feature| {
+        let texel = sprite.texel(level, frame, at.x, at.y);
+        *feature = Vec3::new(1.0, texel.x * 2.0 - 1.0, texel.y * 2.0 - 1.0) * texel.w;
+    });
+    picture
+}
+
+/// One step of least squares at every texel.
+fn refine(from: &Picture<Vec3>, to: &Picture<Vec3>, flow: &Picture<Vec2>) -> Picture<Vec2> {
+    // Each texel's share of the normal equations.
+    let mut local = Picture::new(from.size, (Mat2::ZERO, Vec2::ZERO));
+    local.for_each(|at, (matrix, right)| {
+        let at = at.as_ivec2();
+        let moved = at.as_vec2() + flow.load(at);
+        // Slope along x and y of each feature, and what is left to explain.
+        let x = (bilinear(to, moved + Vec2::X) - bilinear(to, moved - Vec2::X)) * 0.5;
+        let y = (bilinear(to, moved + Vec2::Y) - bilinear(to, moved - Vec2::Y)) * 0.5;
+        let rest = from.load(at) - bilinear(to, moved);
+        *matrix = Mat2::from_cols(Vec2::new(x.dot(x), x.dot(y)), Vec2::new(x.dot(y), y.dot(y)));
+        *right = Vec2::new(x.dot(rest), y.dot(rest));
+    });
+    let offsets = (-WINDOW..=WINDOW).flat_map(|dy| (-WINDOW..=WINDOW).map(move |dx| IVec2::new(dx, dy)));
+    let weight = |offset: IVec2| exp(-offset.as_vec2().length_squared() / (WINDOW * WINDOW) as f32 * 2.0);
+    let window: Vec<_> = offsets.map(|offset| (offset, weight(offset))).collect();
+    let mut refined = Picture::new(from.size, Vec2::ZERO);
+    refined.for_each(|at, motion| {
+        let at = at.as_ivec2();
+        let (mut matrix, mut right) = (Mat2::from_diagonal(Vec2::splat(STIFFNESS)), Vec2::ZERO);
+        // The window's own mean motion: neighbours move alike.
+        let (mut mean, mut total) = (Vec2::ZERO, 0.0);
+        for &(offset, weight) in &window {
+            let (of_texel, right_of_texel) = local.load(at + offset);
+            matrix += of_texel * weight;
+            right += right_of_texel * weight;
+            mean += flow.load(at + offset) * weight;
+            total += weight;
+        }
+        let step = matrix.inverse() * right;
+        *motion = flow.load(at).lerp(mean / total, 0.5) + step.clamp_length_max(1.0);
+    });
+    refined
+}
+
+fn bilinear<T>(picture: &Picture<T>, at: Vec2) -> T
+where
+    T: Copy + Send + std::ops::Add<Output = T> + std::ops::Sub<Output = T> + std::ops::Mul<f32, Output = T>,
+{
+    let base = at.floor();
+    let f = at - base;
+    let load = |dx, dy| picture.load(base.as_ivec2() + IVec2::new(dx, dy));
+    let top = load(0, 0) + (load(1, 0) - load(0, 0)) * f.x;
+    let bottom = load(0, 1) + (load(1, 1) - load(0, 1)) * f.x;
+    top + (bottom - top) * f.y
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haze::assets::sprite::SpriteLayout;
+    use image::RgbaImage;
+
+    #[test]
+    fn a_ball_that_moves_is_followed() {
+        // Two frames of 64: a ball, then the same 3 to the right and 2 up.
+        let sheet = RgbaImage::from_fn(128, 64, |x, y| {
+            let middle = if x < 64 { Vec2::new(30.0, 33.0) } else { Vec2::new(64.0 + 33.0, 31.0) };
+            let p = (Vec2::new(x as f32, y as f32) - middle) / 18.0;
+            let inside = (1.0 - p.length_squared()).max(0.0);
+            let channel = |v: f32| (v * 255.0) as u8;
+            Rgba([channel(p.x * 0.5 + 0.5), channel(0.5 - p.y * 0.5), 255, channel(inside)])
+        });
+        let layout = SpriteLayout { columns: 2, rows: 1, y_down: false };
+        let sprite = Sprite::from_picture(std::path::Path::new("ball"), &sheet, layout).unwrap();
+        let found = motion(&sprite, 0).load(IVec2::new(7, 8)) * 64.0;
+        assert!(found.distance(Vec2::new(3.0, -2.0)) < 0.4, "{found}");
+    }
+}

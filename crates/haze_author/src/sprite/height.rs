@@ -1,0 +1,46 @@
+//! Normals of heights, and heights of a silhouette.
+
+use glam::{IVec2, UVec2, Vec3};
+
+use haze::assets::picture::Picture;
+
+pub fn grey(size: UVec2, value: impl Fn(UVec2) -> f32 + Sync) -> Picture<f32> {
+    let mut picture = Picture::new(size, 0.0);
+    picture.for_each(|at, grey| *grey = value(at));
+    picture
+}
+
+/// The normal of heights, where a height of 1 is a half side times `strength`.
+pub fn normal_of(height: &Picture<f32>, at: IVec2, strength: f32) -> Vec3 {
+    let slope =
+        |step: IVec2| (height.load(at - step) - height.load(at + step)) * height.size.x as f32 * 0.25 * strength;
+    Vec3::new(slope(IVec2::X), -slope(IVec2::Y), 1.0)
+}
+
+/// Heights of a dome over the silhouette: blurred ever wider and added up, so that thin parts are low and the middle is high, and
+/// what the amount shows within stays.
+pub fn puffed(amount: &Picture<f32>) -> Picture<f32> {
+    let mut height = Picture::new(amount.size, 0.0);
+    let mut blurred = amount.clone();
+    let mut reach = 1;
+    while reach < amount.size.x as i32 / 4 {
+        // Thrice a box is nearly a bell.
+        for _ in 0..3 {
+            blurred = boxed(&boxed(&blurred, IVec2::X, reach), IVec2::Y, reach);
+        }
+        let weight = reach as f32 / amount.size.x as f32;
+        height.for_each(|at, height| *height += blurred.load(at.as_ivec2()) * weight);
+        reach *= 2;
+    }
+    let most = height.texels.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
+    // Round at its edge, as a ball is.
+    height.texels.iter_mut().for_each(|height| *height = (*height / most).sqrt());
+    height
+}
+
+fn boxed(picture: &Picture<f32>, step: IVec2, reach: i32) -> Picture<f32> {
+    grey(picture.size, |at| {
+        let sum: f32 = (-reach..=reach).map(|offset| picture.load(at.as_ivec2() + step * offset)).sum();
+        sum / (2 * reach + 1) as f32
+    })
+}

@@ -1,0 +1,274 @@
+//! Sprites from pictures of other kinds: normals painted elsewhere, heights, alpha alone, and six-way light maps.
+
+use std::path::Path;
+
+use glam::{UVec2, Vec3, Vec4};
+use image::{Rgba, RgbaImage, imageops};
+
+use super::check::{clear_borders, not_normals};
+use super::height::{grey, normal_of, puffed};
+use super::six_way::{Packing, pack};
+use super::y_direction::{SURE, YDirection, y_direction};
+use haze::error::Error;
+use haze::formula::saturate;
+use haze::formula::six_way::SixWay;
+use haze::settings::choice;
+use haze::sprite::{Sprite, SpriteLayout};
+
+choice! {
+    /// What a picture holds that becomes a sprite.
+    Source {
+        /// rgb = normals, a = amount.
+        #[default]
+        Normals = "normals",
+        /// Grey = height, a = amount.
+        Height = "height",
+        /// a = amount, or grey where there is no alpha: puffed up.
+        Alpha = "alpha",
+        /// Two light maps as Unity's VFX Graph has them: right, top, back; left, bottom, front. Alpha of the first = amount.
+        SixWayUnity = "six_way_unity",
+        /// Two light maps: right, left, top; bottom, back, front. Alpha of the first = amount.
+        SixWayRltBbf = "six_way_rlt_bbf",
+    }
+}
+
+impl Source {
+    /// How light maps are packed, where it is those.
+    pub fn packing(self) -> Option<Packing> {
+        match self {
+            Self::SixWayUnity => Some(Packing::Unity),
+            Self::SixWayRltBbf => Some(Packing::RltBbf),
+            Self::Normals | Self::Height | Self::Alpha => None,
+        }
+    }
+
+    /// True for those of two pictures.
+    pub fn has_two(self) -> bool {
+        self.packing().is_some()
+    }
+}
+
+/// What is made of pictures, and what was found out on the way.
+#[derive(Clone, Debug)]
+pub struct Imported {
+    /// rgb = normal / 2 + 1/2 (x right, y up, z to the viewer), a = amount.
+    pub picture: RgbaImage,
+    /// The light maps, where there are some: see [`six_way`](super::six_way).
+    pub six_way: Option<RgbaImage>,
+    /// Which way green pointed in painted normals; none for other sources.
+    pub y_direction: Option<YDirection>,
+    /// What painted normals look like, if not like normals.
+    pub doubt: Option<&'static str>,
+    /// The frame with the most alpha on its border, which was made clear, and how much.
+    pub border: Option<(u32, u8)>,
+}
+
+/// Puts numbered frames of one size beside and below each other, as square as can be; gives the sheet and its columns and rows.
+///
+/// # Errors
+/// [`Error::Image`] for a frame that is not as large as the first.
+pub fn sheet_of(frames: &[(&Path, RgbaImage)]) -> Result<(RgbaImage, UVec2), Error> {
+    let Some((_, first)) = frames.first() else { return Ok((RgbaImage::new(0, 0), UVec2::ZERO)) };
+    let (width, height) = first.dimensions();
+    let count = frames.len() as u32;
+    // Without a gap: a sheet has columns times rows frames.
+    let columns = (1..=count).filter(|&columns| count.is_multiple_of(columns) && columns * columns >= count).min();
+    let columns = columns.unwrap_or(count);
+    let mut sheet = RgbaImage::new(width * columns, height * (count / columns));
+    for (index, (path, frame)) in (0..).zip(frames) {
+        if frame.dimensions() != (width, height) {
+            let reason =
+                format!("{}x{} pixels; expected {width}x{height} as the first frame", frame.width(), frame.height());
+            return Err(Error::Image { path: path.to_path_buf(), reason });
+        }
+        let at = UVec2::new(index % columns * width, index / columns * height);
+        imageops::replace(&mut sheet, frame, at.x.into(), at.y.into());
+    }
+    Ok((sheet, UVec2::new(columns, count / columns)))
+}
+
+/// Makes a sprite of a sheet, and of a second one for sources that have two. `y_down` says which way green points in normals;
+/// without, it is guessed, and up where that is not sure. `strength` is how much heights and puffs stand out, 1 as a half sphere.
+///
+/// # Errors
+/// [`Error::Image`] for sheets that do not fit the layout or each other.
+pub fn import(
+    path: &Path,
+    sheets: &[RgbaImage],
+    source: Source,
+    layout: SpriteLayout,
+    y_down: Option<bool>,
+    strength: f32,
+) -> Result<Imported, Error> {
+    let refuse = |reason: String| Err(Error::Image { path: path.into(), reason });
+    let [first, rest @ ..] = sheets else { return refuse("no picture; expected one".into()) };
+    let second = rest.first();
+    if rest.len() != usize::from(source.has_two()) {
+        return refuse(format!("{} sheets; expected {}", sheets.len(), 1 + u32::from(source.has_two())));
+    }
+    if let Some(second) = second.filter(|second| second.dimensions() != first.dimensions()) {
+        let size = |sheet: &RgbaImage| format!("{}x{}", sheet.width(), sheet.height());
+        return refuse(format!("{} pixels of the second sheet; expected {} as the first", size(second), size(first)));
+    }
+    let mut picture = first.clone();
+    let has_alpha = picture.pixels().any(|texel| texel.0[3] != 255);
+    if matches!(source, Source::Alpha) && !has_alpha {
+        picture.pixels_mut().for_each(|texel| texel.0[3] = texel.0[0]);
+    }
+    let (columns, rows) = (layout.columns.max(1), layout.rows.max(1));
+    let size = UVec2::new(picture.width() / columns, picture.height() / rows);
+    let border = clear_borders(&mut picture, layout);
+    // It refuses what does not fit.
+    let sprite = Sprite::from_picture(path, &picture, SpriteLayout { y_down: false, ..layout })?;
+    let (mut found, mut doubt) = (None, None);
+    match source {
+        Source::Normals => {
+            doubt = not_normals(&sprite);
+            found = y_direction(&sprite);
+            let guess = found.is_some_and(|found| found.is_down && found.sureness >= SURE);
+            let turns = y_down.unwrap_or(guess);
+            for texel in picture.pixels_mut() {
+                let normal = value(texel).truncate() * 2.0 - 1.0;
+                let normal = if turns { normal.with_y(-normal.y) } else { normal };
+                *texel = encode(normal, texel.0[3]);
+            }
+        }
+        Source::Height | Source::Alpha => {
+            for frame in 0..columns * rows {
+                let origin = UVec2::new(frame % columns, frame / columns) * size;
+                let texel = |at: UVec2| value(picture.get_pixel(origin.x + at.x, origin.y + at.y));
+                let height = match source {
+                    Source::Height => grey(size, |at| texel(at).x),
+                    _ => puffed(&grey(size, |at| texel(at).w)),
+                };
+                for at in (0..size.element_product()).map(|index| UVec2::new(index % size.x, index / size.x)) {
+                    let normal = normal_of(&height, at.as_ivec2(), strength);
+                    let out = picture.get_pixel_mut(origin.x + at.x, origin.y + at.y);
+                    *out = encode(normal, out.0[3]);
+                }
+            }
+        }
+        Source::SixWayUnity | Source::SixWayRltBbf => {}
+    }
+    let light = source.packing().zip(second);
+    let six_way = light.map(|(packing, second)| pack(&picture, second, packing));
+    if let Some((packing, second)) = light {
+        for (texel, other) in picture.pixels_mut().zip(second.pixels()) {
+            let SixWay { positive, negative } = packing.six_way(value(texel).truncate(), value(other).truncate());
+            *texel = encode((positive - negative) * strength, texel.0[3]);
+        }
+    }
+    Ok(Imported { picture, six_way, y_direction: found, doubt, border })
+}
+
+fn value(texel: &Rgba<u8>) -> Vec4 {
+    Vec4::from(texel.0.map(f32::from)) / 255.0
+}
+
+/// Of unit length, and never away from the viewer, so that overlapping sprites do not cancel.
+fn encode(normal: Vec3, alpha: u8) -> Rgba<u8> {
+    let normal = normal.with_z(normal.z.max(0.0)).normalize_or(Vec3::Z);
+    let [x, y, z] = normal.to_array().map(|axis| (saturate(axis * 0.5 + 0.5) * 255.0).round() as u8);
+    Rgba([x, y, z, alpha])
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+
+    use super::*;
+    use crate::sprite::check::check;
+
+    /// Two half spheres beside each other; `texel` gives what is painted for a normal and an amount.
+    fn balls(texel: impl Fn(Vec3, f32) -> [f32; 4]) -> RgbaImage {
+        RgbaImage::from_fn(128, 64, |x, y| {
+            let p = (Vec2::new((x % 64) as f32, y as f32) - 31.5) / 28.0;
+            let z = (1.0 - p.length_squared()).max(0.0).sqrt();
+            let inside = saturate((1.0 - p.length()) * 8.0);
+            Rgba(texel(Vec3::new(p.x, -p.y, z), inside).map(|channel| (saturate(channel) * 255.0).round() as u8))
+        })
+    }
+
+    const LAYOUT: SpriteLayout = SpriteLayout { columns: 2, rows: 1, y_down: false };
+
+    /// Imports, and gives how far normals are from those of the balls on average.
+    fn off(sheets: &[RgbaImage], source: Source, y_down: Option<bool>, strength: f32) -> f32 {
+        let imported = import(Path::new("a.png"), sheets, source, LAYOUT, y_down, strength).unwrap();
+        assert_eq!(check(Path::new("a.png"), &imported.picture, LAYOUT).unwrap(), [], "{source:?}");
+        let wanted = balls(|normal, amount| (normal * 0.5 + 0.5).extend(amount).to_array());
+        let solid = wanted.pixels().zip(imported.picture.pixels()).filter(|(wanted, _)| wanted.0[3] > 200);
+        let apart = |(a, b): (&Rgba<u8>, &Rgba<u8>)| {
+            let normal = |texel| value(texel).truncate() * 2.0 - 1.0;
+            normal(a).distance(normal(b))
+        };
+        let off: Vec<f32> = solid.map(apart).collect();
+        off.iter().sum::<f32>() / off.len() as f32
+    }
+
+    #[test]
+    fn painted_normals_are_turned_as_said_or_guessed() {
+        let sheet = |y: f32| [balls(|n, amount| ((n * Vec3::new(1.0, y, 1.0)) * 0.5 + 0.5).extend(amount).to_array())];
+        assert!(off(&sheet(1.0), Source::Normals, None, 1.0) < 0.01);
+        assert!(off(&sheet(-1.0), Source::Normals, None, 1.0) < 0.01);
+        assert!(off(&sheet(-1.0), Source::Normals, Some(true), 1.0) < 0.01);
+        let imported = import(Path::new(""), &sheet(-1.0), Source::Normals, LAYOUT, None, 1.0).unwrap();
+        let found = imported.y_direction.unwrap();
+        assert!(found.is_down && found.sureness > 0.9, "{found:?}");
+        // What is said counts.
+        let kept = import(Path::new(""), &sheet(-1.0), Source::Normals, LAYOUT, Some(false), 1.0).unwrap();
+        assert!(
+            kept.picture
+                .pixels()
+                .zip(sheet(-1.0)[0].pixels())
+                .all(|(a, b)| a.0[1].abs_diff(b.0[1]) <= 2 || a.0[3] == 0)
+        );
+    }
+
+    #[test]
+    fn heights_alpha_and_light_maps_become_normals() {
+        let height = balls(|normal, amount| [normal.z, normal.z, normal.z, amount]);
+        assert!(off(&[height], Source::Height, None, 28.0 / 32.0) < 0.05);
+        // A puff is no ball, but round as one: normals that all face the viewer are 0.75 off.
+        let alpha = balls(|_, amount| [1.0, 1.0, 1.0, amount]);
+        assert!(off(&[alpha], Source::Alpha, None, 1.0) < 0.45);
+        let grey = balls(|_, amount| [amount, amount, amount, 1.0]);
+        assert!(off(&[grey], Source::Alpha, None, 1.0) < 0.45);
+        // Light of a surface from each side.
+        let light = |axis: Vec3| move |normal: Vec3| 0.1 + 0.9 * normal.dot(axis).max(0.0);
+        let sheet = |axes: [Vec3; 3]| {
+            let [r, g, b] = axes.map(light);
+            balls(move |normal, amount| [r(normal), g(normal), b(normal), amount])
+        };
+        let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
+        assert!(off(&[sheet([x, -x, y]), sheet([-y, -z, z])], Source::SixWayRltBbf, None, 1.0) < 0.02);
+        assert!(off(&[sheet([x, y, -z]), sheet([-x, -y, z])], Source::SixWayUnity, None, 1.0) < 0.02);
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused() {
+        let sheet = balls(|_, _| [0.5; 4]);
+        let message = |sheets: &[RgbaImage], source| {
+            import(Path::new("a.png"), sheets, source, LAYOUT, None, 1.0).unwrap_err().to_string()
+        };
+        assert!(message(&[], Source::Height).contains("expected one"));
+        assert!(message(std::slice::from_ref(&sheet), Source::SixWayRltBbf).contains("1 sheets; expected 2"));
+        assert!(
+            message(&[sheet.clone(), sheet.clone(), sheet.clone()], Source::SixWayUnity)
+                .contains("3 sheets; expected 2")
+        );
+        let small = RgbaImage::new(64, 64);
+        assert!(message(&[sheet, small.clone()], Source::SixWayUnity).contains("expected 128x64 as the first"));
+        assert!(message(&[small], Source::Alpha).contains("square frames"));
+    }
+
+    #[test]
+    fn numbered_frames_make_a_sheet_without_gaps() {
+        let frame = |grey: u8| (Path::new("a.png"), RgbaImage::from_pixel(4, 4, Rgba([grey; 4])));
+        let frames: Vec<_> = (0..6).map(|index| frame(index * 10)).collect();
+        let (sheet, layout) = sheet_of(&frames).unwrap();
+        assert_eq!((sheet.dimensions(), layout), ((12, 8), UVec2::new(3, 2)));
+        assert_eq!(sheet.get_pixel(5, 5).0[0], 40);
+        let odd = [frame(1), (Path::new("b.png"), RgbaImage::new(5, 4))];
+        assert!(sheet_of(&odd).unwrap_err().to_string().starts_with("b.png: 5x4 pixels; expected 4x4"));
+    }
+}

@@ -1,0 +1,138 @@
+//! Six-way maps of a recipe's sprite, filled with a medium.
+
+use glam::{IVec2, UVec2, Vec3};
+use image::{Rgba, RgbaImage};
+
+use super::packing::texel;
+use super::trace::{SixWayMix, TracedSixWay};
+use crate::exact::exp;
+use crate::path_trace::{Medium, PathTrace};
+use crate::sprite::bake::SpriteRecipe;
+use crate::sprite::bake::shrink::shrink_frame;
+use haze::assets::picture::Picture;
+use haze::formula::six_way::SixWay;
+
+/// What a recipe makes with a medium.
+#[derive(Clone, Debug)]
+pub struct BakedSixWay {
+    /// The sheet, as the module has it.
+    pub picture: RgbaImage,
+    /// What to set `diffuse.intensity` to, so that smoke is as bright as the medium is beside white paper.
+    pub intensity: f32,
+    /// `diffuse.six_way_colour`.
+    pub colour: Vec3,
+    /// `diffuse.six_way_anisotropy`.
+    pub anisotropy: f32,
+}
+
+/// The share of texels that may be brighter than what is stored as white.
+const BRIGHTER: f32 = 0.002;
+
+impl SpriteRecipe {
+    /// Path-traces every frame filled with a medium; amounts are those of the sprite itself. Light is traced at a half of the sprite's size
+    /// with so many paths for each pixel, and brought to its own along its normals. `progress` is told the frame and how many of its
+    /// paths are done; its error ends the work.
+    ///
+    /// # Errors
+    /// What `progress` says.
+    pub fn bake_six_way<E>(
+        &self,
+        medium: &Medium,
+        samples: u32,
+        progress: impl Fn(u32, u32) -> Result<(), E>,
+    ) -> Result<BakedSixWay, E> {
+        let size = (self.size / 2).max(8);
+        let filled = Self { size, extinction: medium.density, ..self.clone() };
+        let (mut mix, mut frames) = (None::<SixWayMix>, Vec::new());
+        for frame in 0..self.frame_count() {
+            let path_trace = PathTrace { size, samples, seed: frame };
+            let volume = filled.volume(frame as f32);
+            let traced = TracedSixWay::trace(&volume, medium, &path_trace, mix.as_ref(), |path| progress(frame, path))?;
+            let shape = self.bake_frame(frame as f32).picture;
+            let light = along_normals(&traced, &shape);
+            mix.get_or_insert(traced.mix);
+            frames.push((shape, light));
+        }
+        let white = white(&frames);
+        let halves = frames.iter().flat_map(|(shape, light)| {
+            [false, true].map(|below| {
+                let mut half = Picture::new(shape.size, Rgba([0; 4]));
+                half.for_each(|at, pixel| {
+                    let SixWay { positive, negative } = light.load(at.as_ivec2());
+                    let alpha = shape.load(at.as_ivec2()).0[3];
+                    *pixel = texel(if below { negative } else { positive } / white, alpha);
+                });
+                shrink_frame(&mut half, self.tolerance);
+                half
+            })
+        });
+        let halves: Vec<_> = halves.collect();
+        let picture = RgbaImage::from_fn(self.size * self.columns, 2 * self.size * self.rows, |x, y| {
+            let row = y / self.size;
+            let frame = row % self.rows * self.columns + x / self.size;
+            let half = &halves[(2 * frame + row / self.rows) as usize];
+            half.load(UVec2::new(x % self.size, y % self.size).as_ivec2())
+        });
+        let (colour, anisotropy) = mix.map_or((Vec3::ONE, 0.0), |mix| (mix.colour, mix.anisotropy));
+        let brightest = colour.max_element();
+        Ok(BakedSixWay { picture, intensity: white * brightest, colour: colour / brightest, anisotropy })
+    }
+}
+
+/// Light that is stored as white: of what is seen of all frames, all but a little is darker.
+fn white(frames: &[(Picture<Rgba<u8>>, Picture<SixWay>)]) -> f32 {
+    let seen = frames.iter().flat_map(|(shape, light)| shape.texels.iter().zip(&light.texels));
+    let seen = seen.filter(|(texel, _)| texel.0[3] > 25);
+    let mut light: Vec<f32> = seen.map(|(_, light)| light.positive.max(light.negative).max_element()).collect();
+    light.sort_by(f32::total_cmp);
+    let index = (light.len() as f32 * (1.0 - BRIGHTER)) as usize;
+    light.get(index.min(light.len().saturating_sub(1))).copied().unwrap_or(1.0).max(1.0e-6)
+}
+
+/// Texels of the traced picture that light is taken from, round a texel of the sprite.
+const REACH: i32 = 2;
+/// How far normals may differ to lie on one side of the smoke.
+const SLOPE: f32 = 0.35;
+
+/// Brings light to the sprite's own size: a mean of the texels around, of those most whose normals are alike. It smooths the noise of the
+/// paths, and keeps the shape.
+fn along_normals(traced: &TracedSixWay, shape: &Picture<Rgba<u8>>) -> Picture<SixWay> {
+    let (fine, coarse) = (shape.size, traced.light.size);
+    let normals = coarse_normals(shape, coarse);
+    let mut light = Picture::new(fine, SixWay::default());
+    light.for_each(|at, texel| {
+        let place = (at.as_vec2() + 0.5) * coarse.as_vec2() / fine.as_vec2() - 0.5;
+        let middle = place.round().as_ivec2();
+        let normal = normal_of(shape.load(at.as_ivec2()));
+        let (mut sum, mut weights) = (SixWay::default(), 0.0);
+        for y in -REACH..=REACH {
+            for x in -REACH..=REACH {
+                let tap = (middle + IVec2::new(x, y)).clamp(IVec2::ZERO, coarse.as_ivec2() - 1);
+                let distance = (tap.as_vec2() - place).length_squared();
+                let slope = (normals.load(tap) - normal).length_squared() / (SLOPE * SLOPE);
+                let weight = exp(-0.5 * (distance + slope)) * traced.coverage.load(tap).max(1.0e-6);
+                let SixWay { positive, negative } = traced.light.load(tap);
+                (sum.positive, sum.negative) = (sum.positive + positive * weight, sum.negative + negative * weight);
+                weights += weight;
+            }
+        }
+        *texel = SixWay { positive: sum.positive / weights, negative: sum.negative / weights };
+    });
+    light
+}
+
+fn coarse_normals(shape: &Picture<Rgba<u8>>, size: UVec2) -> Picture<Vec3> {
+    let mut normals = Picture::new(size, Vec3::Z);
+    let scale = shape.size.as_vec2() / size.as_vec2();
+    normals.for_each(|at, normal| {
+        let [low, high] = [at, at + 1].map(|corner| (corner.as_vec2() * scale).as_ivec2());
+        let texels = (low.y..high.y).flat_map(|y| (low.x..high.x).map(move |x| IVec2::new(x, y)));
+        *normal = texels.map(|at| normal_of(shape.load(at))).sum::<Vec3>().normalize_or(Vec3::Z);
+    });
+    normals
+}
+
+fn normal_of(texel: Rgba<u8>) -> Vec3 {
+    let [x, y, z, _] = texel.0.map(|channel| f32::from(channel) / 255.0 * 2.0 - 1.0);
+    Vec3::new(x, y, z)
+}

@@ -1,0 +1,121 @@
+//! Six-way light maps as other tools have them: two pictures of three sides each, of the light itself.
+
+use std::path::Path;
+
+use glam::Vec3;
+use image::{Rgba, RgbaImage};
+
+use haze::error::Error;
+use haze::formula::six_way::{SixWay, six_way_from_texel};
+use haze::settings::choice;
+
+choice! {
+    /// Which sides two light maps hold, in red, green and blue. Alpha of the first is the amount.
+    Packing {
+        /// As Unity's VFX Graph has it: right, top, back; left, bottom, front.
+        #[default]
+        Unity = "unity",
+        /// As many shaders for Unreal and Houdini have it: right, left, top; bottom, back, front.
+        RltBbf = "rlt_bbf",
+    }
+}
+
+impl Packing {
+    /// The sides that two texels hold.
+    pub fn six_way(self, first: Vec3, second: Vec3) -> SixWay {
+        let (a, b) = (first, second);
+        match self {
+            Self::Unity => SixWay { positive: Vec3::new(a.x, a.y, b.z), negative: Vec3::new(b.x, b.y, a.z) },
+            Self::RltBbf => SixWay { positive: Vec3::new(a.x, a.z, b.z), negative: Vec3::new(a.y, b.x, b.y) },
+        }
+    }
+
+    /// The texels that hold them.
+    fn texels(self, SixWay { positive: p, negative: n }: SixWay) -> [Vec3; 2] {
+        match self {
+            Self::Unity => [Vec3::new(p.x, p.y, n.z), Vec3::new(n.x, n.y, p.z)],
+            Self::RltBbf => [Vec3::new(p.x, n.x, p.y), Vec3::new(n.y, n.z, p.z)],
+        }
+    }
+}
+
+/// A sheet of six-way maps of two light maps of one size.
+pub fn pack(first: &RgbaImage, second: &RgbaImage, packing: Packing) -> RgbaImage {
+    let (width, height) = first.dimensions();
+    RgbaImage::from_fn(width, 2 * height, |x, y| {
+        let [a, b] = [first, second].map(|map| map.get_pixel(x, y % height));
+        let light = packing.six_way(value(a), value(b));
+        texel(if y < height { light.positive } else { light.negative }, a.0[3])
+    })
+}
+
+/// Two light maps of a sheet. Alpha of both is the amount.
+///
+/// # Errors
+/// [`Error::Image`] for a sheet of odd height.
+pub fn unpack(path: &Path, sheet: &RgbaImage, packing: Packing) -> Result<[RgbaImage; 2], Error> {
+    let (width, height) = (sheet.width(), sheet.height() / 2);
+    if !sheet.height().is_multiple_of(2) || height == 0 {
+        let reason =
+            format!("{width}x{} pixels; expected six-way maps, of two halves below each other", sheet.height());
+        return Err(Error::Image { path: path.into(), reason });
+    }
+    Ok([0, 1].map(|map| {
+        RgbaImage::from_fn(width, height, |x, y| {
+            let [positive, negative] = [y, y + height].map(|y| sheet.get_pixel(x, y));
+            let [p, n] = [positive, negative].map(|texel| six_way_from_texel(value(texel)));
+            let light = packing.texels(SixWay { positive: p, negative: n })[map];
+            let [r, g, b] = light.to_array().map(|light| (light * 255.0).round() as u8);
+            Rgba([r, g, b, positive.0[3]])
+        })
+    }))
+}
+
+/// A texel of either half.
+pub(super) fn texel(light: Vec3, alpha: u8) -> Rgba<u8> {
+    let [r, g, b] = light.to_array().map(|light| (light.clamp(0.0, 1.0).sqrt() * 255.0).round() as u8);
+    Rgba([r, g, b, alpha])
+}
+
+fn value(texel: &Rgba<u8>) -> Vec3 {
+    let [r, g, b, _] = texel.0.map(|channel| f32::from(channel) / 255.0);
+    Vec3::new(r, g, b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every side another shade, as far as 8 bits of light itself tell.
+    fn sheet() -> RgbaImage {
+        RgbaImage::from_fn(3, 4, |x, y| {
+            let half = (y / 2) as f32;
+            texel(Vec3::new(0.9, 0.5, 0.2) - 0.1 * half - 0.01 * x as f32, 40 * (y % 2) as u8)
+        })
+    }
+
+    #[test]
+    fn what_is_packed_comes_back() {
+        for &packing in Packing::ALL {
+            let sheet = sheet();
+            let [first, second] = unpack(Path::new("smoke.png"), &sheet, packing).unwrap();
+            assert_eq!(first.dimensions(), (3, 2));
+            let again = pack(&first, &second, packing).into_raw();
+            let apart = again.into_iter().zip(sheet.into_raw()).map(|(a, b)| a.abs_diff(b));
+            assert!(apart.max().unwrap() <= 1, "{}", packing.name());
+        }
+        let odd = RgbaImage::new(4, 5);
+        assert!(unpack(Path::new("smoke.png"), &odd, Packing::Unity).unwrap_err().to_string().contains("two halves"));
+    }
+
+    #[test]
+    fn sides_are_where_other_tools_have_them() {
+        let (a, b) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(4.0, 5.0, 6.0));
+        let unity = SixWay { positive: Vec3::new(1.0, 2.0, 6.0), negative: Vec3::new(4.0, 5.0, 3.0) };
+        let rlt_bbf = SixWay { positive: Vec3::new(1.0, 3.0, 6.0), negative: Vec3::new(2.0, 4.0, 5.0) };
+        for (packing, light) in [(Packing::Unity, unity), (Packing::RltBbf, rlt_bbf)] {
+            assert_eq!(packing.six_way(a, b), light);
+            assert_eq!(packing.texels(light), [a, b]);
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! What a puff shows under light from all sides, told by six pictures.
+
+use glam::Vec3;
+
+use crate::exact::direction;
+use crate::path_trace::{Medium, PathTrace, Traced, Volume};
+use haze::assets::picture::Picture;
+use haze::formula::colour::luminance;
+use haze::formula::six_way::{SixWay, six_way_shares};
+
+/// A puff of a medium, as six-way maps have it.
+#[derive(Clone, Debug)]
+pub struct TracedSixWay {
+    /// Luminance of what hides all behind it, over that of white paper that faces the light.
+    pub light: Picture<SixWay>,
+    /// The share of what is behind that is hidden.
+    pub coverage: Picture<f32>,
+    /// How the pictures are mixed and coloured.
+    pub mix: SixWayMix,
+}
+
+/// How six pictures stand for light from everywhere.
+#[derive(Clone, Debug)]
+pub struct SixWayMix {
+    /// Of the light, of luminance 1: `diffuse.six_way_colour`, but for its brightness.
+    pub colour: Vec3,
+    /// `diffuse.six_way_anisotropy`.
+    pub anisotropy: f32,
+    /// How much each of the traced lights counts for each side: right, top, front, left, bottom, back.
+    sides: [Vec<f64>; 6],
+}
+
+impl TracedSixWay {
+    /// Path-traces a volume of a medium under light from all sides, and takes the six pictures from which
+    /// [`six_way_response`](haze::formula::six_way::six_way_response) comes nearest to all of them. `mix`: as it was found for
+    /// another moment of the same, where that is to hold for both. `progress` as for [`PathTrace::run`].
+    pub fn trace<E>(
+        volume: &Volume,
+        medium: &Medium,
+        path_trace: &PathTrace,
+        mix: Option<&SixWayMix>,
+        progress: impl Fn(u32) -> Result<(), E>,
+    ) -> Result<Self, E> {
+        let lights = lights();
+        let traced = path_trace.run(volume, medium, &lights, progress)?;
+        let mix = mix.cloned().unwrap_or_else(|| SixWayMix::new(&lights, &traced));
+        let mut light = Picture::new(traced.coverage.size, SixWay::default());
+        light.for_each(|at, texel| {
+            let index = (at.y * traced.coverage.size.x + at.x) as usize;
+            let coverage = traced.coverage.texels[index].max(1.0e-3);
+            let seen = |light: usize| f64::from(luminance(traced.light[light].texels[index]) / coverage);
+            let side =
+                |shares: &Vec<f64>| shares.iter().enumerate().map(|(light, share)| share * seen(light)).sum::<f64>();
+            let [px, py, pz, nx, ny, nz] = mix.sides.each_ref().map(|shares| side(shares).max(0.0) as f32);
+            *texel = SixWay { positive: Vec3::new(px, py, pz), negative: Vec3::new(nx, ny, nz) };
+        });
+        Ok(Self { light, coverage: traced.coverage, mix })
+    }
+}
+
+impl SixWayMix {
+    fn new(lights: &[Vec3], traced: &Traced) -> Self {
+        let means: Vec<_> = (0..lights.len()).map(|light| traced.mean(light)).collect();
+        let brightness: Vec<f64> = means.iter().map(|&mean| luminance(mean).max(1.0e-9).into()).collect();
+        let plain = Fit::new(lights, &brightness, 0.0);
+        let fits = ANISOTROPIES.iter().map(|&anisotropy| Fit::new(lights, &brightness, anisotropy));
+        let Fit { anisotropy, sides, .. } =
+            fits.fold(plain, |best, fit| if fit.error < best.error { fit } else { best });
+        // Each light counts alike.
+        let colour: Vec3 = means.iter().zip(&brightness).map(|(&mean, &brightness)| mean / brightness as f32).sum();
+        Self { colour: colour / luminance(colour).max(f32::MIN_POSITIVE), anisotropy, sides }
+    }
+}
+
+/// The ways to the faces, edges and corners of a cube, and a ring round the back, where smoke that scatters onwards changes most.
+fn lights() -> Vec<Vec3> {
+    let step = |index: i32| index as f32 - 1.0;
+    let cube = (0..27).map(|index| Vec3::new(step(index % 3), step(index / 3 % 3), step(index / 9)));
+    let ring = (0..8).map(|index| {
+        let way = direction(index as f32 * std::f32::consts::TAU / 8.0);
+        Vec3::new(way.x * RING, way.y * RING, -1.0)
+    });
+    let ways = cube.filter(|way| *way != Vec3::ZERO).chain(ring);
+    ways.map(|way| way / way.length_squared().sqrt()).collect()
+}
+
+/// Tangent of the ring's angle to the back: 22.5 degrees.
+const RING: f32 = 0.414_213_57;
+/// Values of `diffuse.six_way_anisotropy` that are tried.
+const ANISOTROPIES: [f32; 19] =
+    [0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95];
+
+/// How six pictures are taken from those of all lights.
+struct Fit {
+    anisotropy: f32,
+    /// How much each light counts for each side: right, top, front, left, bottom, back.
+    sides: [Vec<f64>; 6],
+    /// What is left of the lights' brightness: squares, each as a share of it.
+    error: f64,
+}
+
+impl Fit {
+    /// Least squares, each light by its own brightness, so that a shadow's error counts as that of a lit side.
+    fn new(lights: &[Vec3], brightness: &[f64], anisotropy: f32) -> Self {
+        let terms = |way: &Vec3| {
+            let mut terms = [0.0; 6];
+            for (axis, share) in six_way_shares(*way, anisotropy).to_array().into_iter().enumerate() {
+                terms[axis + 3 * usize::from(way[axis] <= 0.0)] = f64::from(share);
+            }
+            terms
+        };
+        let mut rows = [[0.0; 6]; 6];
+        let mut right: [Vec<f64>; 6] = std::array::from_fn(|_| vec![0.0; lights.len()]);
+        for (light, (way, brightness)) in lights.iter().zip(brightness).enumerate() {
+            let (terms, weight) = (terms(way), 1.0 / (brightness * brightness));
+            for i in 0..6 {
+                (0..6).for_each(|j| rows[i][j] += terms[i] * terms[j] * weight);
+                right[i][light] = terms[i] * weight;
+            }
+        }
+        let sides = solve(rows, right);
+        let of_sides = sides.each_ref().map(|side| side.iter().zip(brightness).map(|(a, b)| a * b).sum::<f64>());
+        let error = |(way, brightness): (&Vec3, &f64)| {
+            let shown: f64 = terms(way).iter().zip(of_sides).map(|(share, side)| share * side.max(0.0)).sum();
+            (shown / brightness - 1.0).powi(2)
+        };
+        let error = lights.iter().zip(brightness).map(error).sum();
+        Self { anisotropy, sides, error }
+    }
+}
+
+/// Gauss and Jordan; the matrix is positive definite, for every side has a light of its own.
+fn solve(mut rows: [[f64; 6]; 6], mut right: [Vec<f64>; 6]) -> [Vec<f64>; 6] {
+    for i in 0..6 {
+        let scale = 1.0 / rows[i][i];
+        rows[i].iter_mut().chain(&mut right[i]).for_each(|value| *value *= scale);
+        let (row, known) = (rows[i], right[i].clone());
+        for j in (0..6).filter(|&j| j != i) {
+            let factor = rows[j][i];
+            rows[j].iter_mut().zip(row).for_each(|(value, of_row)| *value -= factor * of_row);
+            right[j].iter_mut().zip(&known).for_each(|(value, of_row)| *value -= factor * of_row);
+        }
+    }
+    right
+}

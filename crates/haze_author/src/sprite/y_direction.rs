@@ -1,0 +1,53 @@
+//! Which way green points in a sprite's normals.
+
+use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+
+use haze::sprite::Sprite;
+
+/// Which way green points, as far as the picture tells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct YDirection {
+    /// True where it points down.
+    pub is_down: bool,
+    /// How sure that is: 0 not at all, 1 fully. Below [`SURE`] it is a guess.
+    pub sureness: f32,
+}
+
+/// From which on a direction is taken to be known.
+pub const SURE: f32 = 0.3;
+/// Which way green points: normals lean out of the silhouette, and heights that they are slopes of must fit together, which those of
+/// a turned green do not. None where nothing leans.
+pub fn y_direction(sprite: &Sprite) -> Option<YDirection> {
+    let (mut agrees, mut all) = (0.0_f32, 0.0_f32);
+    let (mut along, mut total) = (0.0_f32, 0.0_f32);
+    let size = sprite.size();
+    for frame in 0..sprite.frame_count() {
+        for y in 1..size.saturating_sub(1) {
+            for x in 1..size.saturating_sub(1) {
+                let at = |x: u32, y: u32| sprite.texel(0, frame, x, y);
+                let (texel, right, left) = (at(x, y), at(x + 1, y), at(x - 1, y));
+                let (above, below) = (at(x, y - 1), at(x, y + 1));
+                // Amount falls off outwards.
+                let fall = Vec2::new(left.w - right.w, below.w - above.w);
+                let lean = normal(texel).y * fall.y * texel.w;
+                agrees += lean;
+                all += lean.abs();
+                // dz/dx along y is dz/dy along x.
+                let slope = |texel: Vec4| normal(texel).truncate() / normal(texel).z.max(0.25);
+                let weight = texel.w.min(right.w).min(left.w).min(above.w).min(below.w);
+                let (of_x, of_y) = (slope(above).x - slope(below).x, slope(right).y - slope(left).y);
+                along += of_x * of_y * weight;
+                total += (of_x * of_y).abs() * weight;
+            }
+        }
+    }
+    let share = |sum: f32, all: f32| if all > 1.0e-6 { sum / all } else { 0.0 };
+    let (edges, curls) = (share(agrees, all), share(along, total));
+    let sum = (edges + curls).clamp(-1.0, 1.0);
+    (all > 1.0e-6).then_some(YDirection { is_down: sum < 0.0, sureness: sum.abs() })
+}
+
+/// What a texel's colour stands for.
+pub(super) fn normal(texel: Vec4) -> Vec3 {
+    texel.xyz() * 2.0 - 1.0
+}

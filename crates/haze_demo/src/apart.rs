@@ -1,0 +1,127 @@
+//! How far two pictures are apart, as a screen shows them.
+
+use glam::{IVec2, Vec2, Vec4, Vec4Swizzles};
+
+use super::arriving::Arriving;
+use haze::assets::picture::Picture;
+use haze::formula::tonemap::developed;
+
+/// The peak signal-to-noise ratio of two pictures in sRGB code, dB; infinite where they are the same.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Apart {
+    /// Over all pixels.
+    pub psnr: f32,
+    /// Over the pixels by which the scene's depth jumps: where a reduced target is put to the test. `None` where there are none,
+    /// or depth is not known.
+    pub edge_psnr: Option<f32>,
+}
+
+/// Share of the depth by which an edge jumps.
+const JUMP: f32 = 0.1;
+/// Pixels on either side of an edge that count.
+const NEAR: i32 = 2;
+
+impl Apart {
+    /// Of two pictures of linear HDR of one size. `exposure` of each, 0 where it holds numbers; `depth`: the scene's view depth.
+    pub fn of(first: &Picture<Vec4>, second: &Picture<Vec4>, exposure: Vec2, depth: Option<&Picture<f32>>) -> Self {
+        let code = |picture: &Picture<Vec4>, at: IVec2, exposure| {
+            let colour = picture.load(at).xyz();
+            if exposure == 0.0 { colour.saturate() } else { developed(colour, exposure) }
+        };
+        let mut errors = Picture::new(first.size, (0.0, false));
+        errors.for_each(|at, error| {
+            let at = at.as_ivec2();
+            let apart = code(first, at, exposure.x) - code(second, at, exposure.y);
+            *error = (apart.length_squared() / 3.0, depth.is_some_and(|depth| is_by_an_edge(depth, at)));
+        });
+        let psnr = |errors: &mut dyn Iterator<Item = f32>| {
+            let (count, sum) = errors.fold((0_u32, 0.0), |(count, sum), error| (count + 1, sum + f64::from(error)));
+            (count > 0).then(|| (-10.0 * (sum / f64::from(count)).log10()) as f32)
+        };
+        let all = &errors.texels;
+        Self {
+            psnr: psnr(&mut all.iter().map(|error| error.0)).unwrap_or(f32::INFINITY),
+            edge_psnr: psnr(&mut all.iter().filter(|error| error.1).map(|error| error.0)),
+        }
+    }
+}
+
+/// True if the depth jumps between any two neighbours close by.
+fn is_by_an_edge(depth: &Picture<f32>, at: IVec2) -> bool {
+    let inside = |at: IVec2| at.clamp(IVec2::ZERO, depth.size.as_ivec2() - 1);
+    let jumps = |a: IVec2, b: IVec2| {
+        let (a, b) = (depth.load(inside(a)), depth.load(inside(b)));
+        (a - b).abs() > JUMP * a.min(b)
+    };
+    (-NEAR..NEAR).any(|step| {
+        let (x, y) = (at + IVec2::X * step, at + IVec2::Y * step);
+        jumps(x, x + IVec2::X) || jumps(y, y + IVec2::Y)
+    })
+}
+
+/// Two pictures on their way back from the GPU, to be compared.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    arriving: Arriving,
+    exposure: Vec2,
+}
+
+impl Comparison {
+    /// Records copies of two `Rgba16Float` pictures of one size, and of the scene's linear depth; `None` where the sizes differ.
+    pub fn record(
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        pictures: [&wgpu::Texture; 2],
+        exposure: Vec2,
+        depth: Option<&wgpu::Texture>,
+    ) -> Option<Self> {
+        let [first, second] = pictures;
+        let depth = depth.filter(|depth| depth.size() == first.size());
+        let textures: Vec<_> = pictures.into_iter().chain(depth).collect();
+        let is_of_one_size = first.size() == second.size();
+        is_of_one_size.then(|| Self { arriving: Arriving::record(device, encoder, &textures), exposure })
+    }
+
+    /// True once they are here, or are known not to come.
+    pub fn has_arrived(&self) -> bool {
+        self.arriving.has_arrived()
+    }
+
+    /// Compares what has arrived, once; `None` where it did not. Takes a while for a large picture.
+    pub fn read(&self) -> Option<Apart> {
+        let bytes = self.arriving.take()?;
+        let [first, second, depth @ ..] = self.arriving.parts.as_slice() else { return None };
+        let size = first.size();
+        let depth = depth.first().map(|part| part.depths(&bytes, size));
+        let [first, second] = [first, second].map(|part| part.colours(&bytes, 0, size));
+        Some(Apart::of(&first, &second, self.exposure, depth.as_ref()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::UVec2;
+
+    #[test]
+    fn figures_are_those_of_the_definition() {
+        let size = UVec2::new(20, 10);
+        let (black, mut grey) = (Picture::new(size, Vec4::W), Picture::new(size, Vec4::splat(0.1)));
+        // Numbers: an error of a tenth is 20 dB.
+        fn apart(a: &Picture<Vec4>, b: &Picture<Vec4>, depth: Option<&Picture<f32>>) -> Apart {
+            Apart::of(a, b, Vec2::ZERO, depth)
+        }
+        assert!((apart(&black, &grey, None).psnr - 20.0).abs() < 1e-3);
+        assert_eq!(apart(&grey, &grey, None), Apart { psnr: f32::INFINITY, edge_psnr: None });
+        // An error at the edge only.
+        let mut depth = Picture::new(size, 5.0);
+        depth.for_each(|at, depth| *depth = if at.x < 10 { 5.0 } else { 9.0 });
+        grey.for_each(|at, grey| *grey = if (8..12).contains(&at.x) { Vec4::splat(0.1) } else { Vec4::W });
+        let found = apart(&black, &grey, Some(&depth));
+        assert!((found.edge_psnr.unwrap() - 20.0).abs() < 1e-3, "{found:?}");
+        assert!((found.psnr - 20.0 - 10.0 * 5.0_f32.log10()).abs() < 1e-3, "{found:?}");
+        // Without an edge there is no figure of edges.
+        depth.texels.fill(5.0);
+        assert_eq!(apart(&black, &grey, Some(&depth)).edge_psnr, None);
+    }
+}

@@ -1,0 +1,165 @@
+//! From linear HDR to what a screen shows: in memory, for files, and on the GPU, for windows. The library never tonemaps a host's
+//! picture; this is the demo program's own taste.
+
+use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
+use image::RgbImage;
+
+use super::shot::Shot;
+use haze::assets::picture::Picture;
+use haze::formula::tonemap::{developed, dither};
+use haze::shader;
+
+/// Develops a rendered shot: exposure and a film curve for pictures, the bare values for data.
+pub fn develop(picture: &Picture<Vec4>, shot: &Shot) -> RgbImage {
+    let exposure = exposure(shot);
+    let mut rounded = Picture::new(picture.size, [0_u8; 3]);
+    rounded.for_each(|at, out| {
+        let colour = picture.load(at.as_ivec2()).xyz();
+        *out = quantise(if exposure == 0.0 { colour } else { developed(colour, exposure) }, at);
+    });
+    // A texel for every pixel, so never empty.
+    RgbImage::from_raw(picture.size.x, picture.size.y, rounded.texels.into_flattened()).unwrap_or_default()
+}
+
+/// What multiplies the light of a shot; 0 where the stage that is shown holds numbers.
+pub fn exposure(shot: &Shot) -> f32 {
+    if shot.shade_tree.is_data() { 0.0 } else { shot.preset.camera.exposure.exp2() }
+}
+
+/// Rounds to 8 bits.
+fn quantise(encoded: Vec3, at: UVec2) -> [u8; 3] {
+    // Rounded by the cast, which also clamps.
+    ((encoded + dither(at)) * 255.0 + 0.5).to_array().map(|channel| channel as u8)
+}
+
+/// Shows pictures on targets of one format, as [`develop`] does.
+#[derive(Debug)]
+pub struct Developer {
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::RenderPipeline,
+    sampler: wgpu::Sampler,
+}
+
+/// What is shown where. `Develop` in develop.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct Shown {
+    /// Upper left pixel in the target.
+    pub origin: Vec2,
+    /// Pixels; a picture of another size is stretched.
+    pub size: Vec2,
+    /// [`exposure`] of the first picture and of the second.
+    pub exposure: Vec2,
+    /// Pixels from the left from which on the second picture is shown.
+    pub split: f32,
+    /// Multiplies the difference of the two, in sRGB code; 0: none is shown.
+    pub difference: f32,
+}
+
+/// Two pictures, bound to be shown.
+#[derive(Debug)]
+pub struct Developing {
+    buffer: wgpu::Buffer,
+    group: wgpu::BindGroup,
+}
+
+impl Developer {
+    /// For targets that hold sRGB code without the hardware knowing: not a format that ends in `Srgb`.
+    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
+        // Embedded, and composed by the tests.
+        let source = shader::compose(include_str!("develop.wgsl")).unwrap_or_default();
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("develop"),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
+        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty,
+            count: None,
+        };
+        let texture = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let uniform = wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        };
+        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("develop"),
+            entries: &[entry(0, uniform), entry(1, texture), entry(2, texture), entry(3, sampler)],
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("develop"),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("develop"),
+            layout: Some(&pipeline_layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vertex"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("fragment"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &[Some(format.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("develop"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        Self { layout, pipeline, sampler }
+    }
+
+    /// Binds two pictures; the same twice where there is one.
+    pub fn bind(&self, device: &wgpu::Device, first: &wgpu::Texture, second: &wgpu::Texture) -> Developing {
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("develop"),
+            size: size_of::<Shown>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let [first, second] =
+            [first, second].map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("develop"),
+            layout: &self.layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&first) },
+                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(&second) },
+                wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::Sampler(&self.sampler) },
+            ],
+        });
+        Developing { buffer, group }
+    }
+
+    /// Says what is to be shown of the pictures in the next submission.
+    pub fn prepare(&self, queue: &wgpu::Queue, developing: &Developing, shown: &Shown) {
+        queue.write_buffer(&developing.buffer, 0, bytemuck::bytes_of(shown));
+    }
+
+    /// Shows it, within the viewport and scissor that are set.
+    pub fn record(&self, pass: &mut wgpu::RenderPass<'_>, developing: &Developing) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &developing.group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}

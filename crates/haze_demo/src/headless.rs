@@ -1,0 +1,277 @@
+//! A device without a window, and pictures read back from it: for tests, tools and examples.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError, mpsc};
+use std::time::Duration;
+
+use glam::{UVec2, Vec4};
+use half::f16;
+
+use haze::error::{Error, FieldError};
+
+/// Far longer than a callback takes once the GPU is done.
+const READ_BACK_TIMEOUT: Duration = Duration::from_secs(10);
+
+/// What to install where there is no adapter.
+const INSTALL_LINE: &str = "no graphics adapter was found; on Debian and Ubuntu \
+    `apt-get install mesa-vulkan-drivers` installs a software one";
+
+/// The fastest adapter, or the one that `WGPU_ADAPTER_NAME` and `WGPU_BACKEND` choose.
+fn find_adapter() -> Result<wgpu::Adapter, Error> {
+    let variable = |name| std::env::var_os(name).unwrap_or_default().to_string_lossy().into_owned();
+    let (backends, name) = (variable("WGPU_BACKEND"), variable("WGPU_ADAPTER_NAME"));
+    let built_in = wgpu::Instance::enabled_backend_features();
+    let list = || {
+        let names: Vec<_> = wgpu::Backend::ALL.into_iter().filter(|&b| built_in.contains(b.into())).collect();
+        names.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+    };
+    let mut wanted = wgpu::Backends::all();
+    if !backends.is_empty() {
+        wanted = wgpu::Backends::from_comma_list(&backends);
+        if wanted.is_empty() {
+            return Err(FieldError::new("WGPU_BACKEND", format!("{backends:?}"), format!("some of {}", list())).into());
+        }
+    }
+    let mut others = Vec::new();
+    // OpenGL only where nothing else is found: opening it makes noise on machines without a display.
+    for group in [wgpu::Backends::PRIMARY, wgpu::Backends::SECONDARY] {
+        let group = group & wanted & built_in;
+        if group.is_empty() {
+            continue;
+        }
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends: group,
+            ..wgpu::InstanceDescriptor::new_without_display_handle_from_env()
+        });
+        if name.is_empty() {
+            let options = wgpu::RequestAdapterOptions {
+                power_preference: wgpu::PowerPreference::HighPerformance,
+                ..Default::default()
+            };
+            if let Ok(adapter) = pollster::block_on(instance.request_adapter(&options)) {
+                return Ok(adapter);
+            }
+        } else {
+            for adapter in pollster::block_on(instance.enumerate_adapters(group)) {
+                let info = adapter.get_info();
+                if info.name.to_lowercase().contains(&name.to_lowercase()) {
+                    return Ok(adapter);
+                }
+                others.push(format!("{:?} ({})", info.name, info.backend));
+            }
+        }
+    }
+    if !others.is_empty() {
+        let expected = format!("a part of {}", others.join(" or "));
+        return Err(FieldError::new("WGPU_ADAPTER_NAME", format!("{name:?}"), expected).into());
+    }
+    let mut reason = INSTALL_LINE.to_owned();
+    if !backends.is_empty() {
+        reason += &format!("; WGPU_BACKEND allows only {backends:?} of {}", list());
+    }
+    Err(Error::NoDevice(reason))
+}
+
+/// A device with its failures caught: nothing panics when the driver gives up.
+#[derive(Debug)]
+pub struct Headless {
+    /// The adapter that was chosen.
+    pub adapter: wgpu::Adapter,
+    /// The device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    failures: Arc<Failures>,
+}
+
+#[derive(Debug, Default)]
+struct Failures {
+    /// Once set the device must not be polled any more: wgpu panics.
+    lost: AtomicBool,
+    /// The first message.
+    message: Mutex<Option<String>>,
+}
+
+impl Failures {
+    fn record(&self, message: String) {
+        self.message.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(message);
+    }
+}
+
+impl Headless {
+    /// Takes the fastest adapter; `WGPU_ADAPTER_NAME` and `WGPU_BACKEND` choose another.
+    ///
+    /// # Errors
+    /// [`Error::NoDevice`] with the line that installs a software adapter; [`Error::Field`] when one of the variables chooses
+    /// what there is not.
+    pub fn new() -> Result<Self, Error> {
+        Self::with(wgpu::Limits::default(), wgpu::Features::empty())
+    }
+
+    /// As [`Headless::new`], with a device that promises no more than these limits, but for textures, which may be as large as
+    /// the adapter can make them; and with those of `features` that the adapter has. haze needs none.
+    ///
+    /// # Errors
+    /// As [`Headless::new`]; [`Error::NoDevice`] also when the adapter has less than these limits.
+    pub fn with(limits: wgpu::Limits, features: wgpu::Features) -> Result<Self, Error> {
+        let adapter = find_adapter()?;
+        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("haze headless"),
+            required_limits: limits.using_resolution(adapter.limits()),
+            required_features: features & adapter.features(),
+            ..Default::default()
+        }))
+        .map_err(|error| Error::NoDevice(format!("{}: {error}", adapter.get_info().name)))?;
+
+        let failures = Arc::new(Failures::default());
+        let lost = failures.clone();
+        device.set_device_lost_callback(move |reason, message| {
+            if reason != wgpu::DeviceLostReason::Destroyed {
+                lost.lost.store(true, Ordering::SeqCst);
+                lost.record(format!("the device was lost: {message}"));
+            }
+        });
+        let errors = failures.clone();
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            errors.record(match error {
+                wgpu::Error::OutOfMemory { .. } => "out of memory; a smaller picture takes less".into(),
+                error => error.to_string(),
+            });
+        }));
+        Ok(Self { adapter, device, queue, failures })
+    }
+
+    /// Adapter, backend and driver, and whether it is software, in one line.
+    pub fn description(&self) -> String {
+        let info = self.adapter.get_info();
+        let driver = format!("{} {}", info.driver, info.driver_info);
+        let software = if info.device_type == wgpu::DeviceType::Cpu { ", software" } else { "" };
+        format!("{} ({:?}, {}{software})", info.name, info.backend, driver.trim())
+    }
+
+    /// True if the adapter can draw to a format, which OpenGL does not promise of every one.
+    pub fn can_draw_to(&self, format: wgpu::TextureFormat) -> bool {
+        let usages = self.adapter.get_texture_format_features(format).allowed_usages;
+        usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT)
+    }
+
+    /// The first failure since the device was made.
+    ///
+    /// # Errors
+    /// [`Error::Device`] with the driver's message.
+    pub fn check(&self) -> Result<(), Error> {
+        let message = self.failures.message.lock().unwrap_or_else(PoisonError::into_inner);
+        message.as_ref().map_or(Ok(()), |message| Err(Error::Device(message.clone())))
+    }
+
+    /// Submits and waits.
+    ///
+    /// # Errors
+    /// [`Error::Device`] when the device failed, now or before.
+    pub fn submit(&self, encoder: wgpu::CommandEncoder) -> Result<(), Error> {
+        self.queue.submit([encoder.finish()]);
+        self.wait()
+    }
+
+    fn wait(&self) -> Result<(), Error> {
+        while !self.failures.lost.load(Ordering::SeqCst) {
+            match self.device.poll(wgpu::PollType::wait_indefinitely()) {
+                Ok(_) => break,
+                // On OpenGL wgpu waits for four seconds at the most.
+                Err(wgpu::PollError::Timeout) => {}
+                Err(error) => return Err(Error::Device(error.to_string())),
+            }
+        }
+        self.check()
+    }
+
+    /// Makes a texture that can be drawn to, sampled and read back.
+    pub fn target(&self, label: &str, size: UVec2, format: wgpu::TextureFormat) -> wgpu::Texture {
+        self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        })
+    }
+
+    /// Reads a buffer with `COPY_SRC` usage.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    pub fn read_buffer(&self, buffer: &wgpu::Buffer) -> Result<Vec<u8>, Error> {
+        let read = self.read_back_buffer(buffer.size());
+        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.copy_buffer_to_buffer(buffer, 0, &read, 0, buffer.size());
+        self.map(encoder, &read)
+    }
+
+    /// Reads an `Rgba16Float` texture, row by row from the top.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    pub fn read_rgba16float(&self, texture: &wgpu::Texture) -> Result<Vec<Vec4>, Error> {
+        let bytes = self.read_texture(texture, 8)?;
+        let channel = |bytes: &[u8]| f16::from_le_bytes([bytes[0], bytes[1]]).to_f32();
+        let texel = |t: &[u8]| Vec4::new(channel(&t[0..2]), channel(&t[2..4]), channel(&t[4..6]), channel(&t[6..8]));
+        Ok(bytes.chunks_exact(8).map(texel).collect())
+    }
+
+    /// Reads a `Depth32Float` or `R32Float` texture, row by row from the top.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    pub fn read_r32float(&self, texture: &wgpu::Texture) -> Result<Vec<f32>, Error> {
+        let bytes = self.read_texture(texture, 4)?;
+        Ok(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
+    }
+
+    fn read_texture(&self, texture: &wgpu::Texture, texel_size: u32) -> Result<Vec<u8>, Error> {
+        let row = texture.width() * texel_size;
+        let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let read = self.read_back_buffer(u64::from(padded) * u64::from(texture.height()));
+        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.copy_texture_to_buffer(
+            texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &read,
+                layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },
+            },
+            texture.size(),
+        );
+        let bytes = self.map(encoder, &read)?;
+        let rows: Vec<_> = bytes.chunks_exact(padded as usize).map(|line| &line[..row as usize]).collect();
+        Ok(rows.concat())
+    }
+
+    fn read_back_buffer(&self, size: u64) -> wgpu::Buffer {
+        self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("haze read back"),
+            size,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        })
+    }
+
+    fn map(&self, encoder: wgpu::CommandEncoder, read: &wgpu::Buffer) -> Result<Vec<u8>, Error> {
+        self.queue.submit([encoder.finish()]);
+        let (sender, mapped) = mpsc::channel();
+        read.map_async(wgpu::MapMode::Read, .., move |result| {
+            // Nobody listens any more only when waiting failed, which is reported.
+            let _ = sender.send(result);
+        });
+        self.wait()?;
+        // Another thread's poll may be the one that runs the callback, a moment after this one's has returned.
+        let mapped = mapped.recv_timeout(READ_BACK_TIMEOUT).map_err(|error| Error::Device(error.to_string()))?;
+        mapped.map_err(|error| Error::Device(error.to_string()))?;
+        let bytes = read.get_mapped_range(..).map_err(|error| Error::Device(error.to_string()))?.to_vec();
+        read.unmap();
+        Ok(bytes)
+    }
+}

@@ -1,0 +1,150 @@
+//! Which boxes can matter to a place of the scene: those that can stand between it and a light, and those that can take light
+//! of the sky from it. Found once for a scene and its lights, cell by cell of a grid; whoever shades a point asks only those.
+//!
+//! A box is left out only where it cannot change a thing, so the picture is the same with it or without.
+
+use glam::{UVec2, UVec3, Vec3};
+
+use super::boxes::{
+    AMBIENT_REACH, MAX_BOXES, SUN_DISTANCE, SUN_SPREAD, SceneBox, Surface, WIDEST_PIXEL, box_distance, box_interval,
+};
+use haze::assets::picture::Picture;
+use haze::formula::uniforms::LightUniform;
+
+/// Cells along x, y and z. `OCCLUDER_CELLS` in scene.wgsl.
+pub(crate) const CELLS: UVec3 = UVec3::new(40, 8, 40);
+/// The corner where they begin, metres; what is outside of the grid is asked of every box. `OCCLUDER_ORIGIN` in scene.wgsl.
+pub(crate) const ORIGIN: Vec3 = Vec3::new(-20.0, -0.5, -24.0);
+/// Side of a cell, metres.
+const CELL: f32 = 1.0;
+/// Points on the border of a cell may be rounded across it.
+const ROUNDING: f32 = 1.0e-3;
+
+/// A bit for each box.
+pub(crate) type Boxes = [u32; 4];
+const ALL: Boxes = [u32::MAX; 4];
+const _: () = assert!(MAX_BOXES <= 32 * ALL.len());
+
+/// For the sky and for every light, the boxes that matter to each cell.
+#[derive(Clone, Debug)]
+pub(crate) struct Occluders {
+    /// As the texture in scene.wgsl: x + z of a cell across; y of it, list by list, down. List 0 is the sky's.
+    pub masks: Picture<Boxes>,
+}
+
+impl Occluders {
+    pub fn new(boxes: &[SceneBox], lights: &[LightUniform]) -> Self {
+        let size = UVec2::new(CELLS.x * CELLS.z, CELLS.y * (1 + lights.len() as u32));
+        let mut masks = Picture::new(size, ALL);
+        masks.for_each(|at, mask| {
+            let cell = UVec3::new(at.x % CELLS.x, at.y % CELLS.y, at.x / CELLS.x);
+            let centre = ORIGIN + (cell.as_vec3() + 0.5) * CELL;
+            let half = Vec3::splat(0.5 * CELL + ROUNDING);
+            // Nothing is shaded where there is no surface.
+            if !boxes.iter().any(|b| box_distance(b, b.to_local(centre - b.centre)).abs() <= half.length()) {
+                return;
+            }
+            let light = (at.y / CELLS.y).checked_sub(1).and_then(|light| lights.get(light as usize));
+            *mask = [0; 4];
+            for (index, b) in boxes.iter().enumerate() {
+                let matters = match light {
+                    Some(light) => can_shade(b, light, centre, half),
+                    None => can_darken(b, centre, half),
+                };
+                mask[index / 32] |= u32::from(matters) << (index % 32);
+            }
+        });
+        Self { masks }
+    }
+
+    /// The boxes that matter to a point: of list 0 for the sky, 1 for the first light …
+    pub fn at(&self, list: u32, point: Vec3) -> Boxes {
+        let cell = ((point - ORIGIN) / CELL).floor();
+        if cell.cmplt(Vec3::ZERO).any() || cell.cmpge(CELLS.as_vec3()).any() {
+            return ALL;
+        }
+        let cell = cell.as_uvec3();
+        self.masks.load(UVec2::new(cell.x + cell.z * CELLS.x, list * CELLS.y + cell.y).as_ivec2())
+    }
+}
+
+/// The indices of the boxes that a mask names.
+pub(crate) fn indices(mask: Boxes, count: usize) -> impl Iterator<Item = usize> {
+    let words = mask.into_iter().enumerate();
+    let bits = words.flat_map(|(word, mut bits)| {
+        std::iter::from_fn(move || {
+            let bit = bits.trailing_zeros();
+            bits &= bits.wrapping_sub(1);
+            (bit < 32).then_some(word * 32 + bit as usize)
+        })
+    });
+    bits.take_while(move |&index| index < count)
+}
+
+/// True if the box can come between a light and a point of the cell, or so close to the way that it dims it.
+fn can_shade(b: &SceneBox, light: &LightUniform, centre: Vec3, half: Vec3) -> bool {
+    if b.surface == Surface::Glow as u32 {
+        return false;
+    }
+    let (towards, reach, dims) = if light.directional > 0.5 {
+        // A box dims from as far off as the sun's disc is wide where the ray passes it.
+        let beyond = (b.centre - centre).length() + b.half_size.length() + half.length();
+        (-light.direction * SUN_DISTANCE, 1.0, (beyond * SUN_SPREAD).min(SUN_DISTANCE * SUN_SPREAD))
+    } else {
+        (light.position - centre, 1.0, light.radius)
+    };
+    // From any point of the cell to the light: the way from its middle, past a box that is larger by half a cell.
+    let cell =
+        Vec3::new(half.x * b.cos.abs() + half.z * b.sin.abs(), half.y, half.z * b.cos.abs() + half.x * b.sin.abs());
+    let grown = SceneBox { half_size: b.half_size + cell + dims.max(WIDEST_PIXEL), ..*b };
+    let (enter, leave) = box_interval(&grown, b.to_local(centre - b.centre), b.to_local(towards));
+    enter <= leave && leave >= 0.0 && enter <= reach
+}
+
+/// True if the box can be near enough to a point of the cell to take light of the sky from it.
+fn can_darken(b: &SceneBox, centre: Vec3, half: Vec3) -> bool {
+    box_distance(b, b.to_local(centre - b.centre)) <= 2.0 * AMBIENT_REACH + half.length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+    use haze::assets::noise::{pcg3d, unit};
+    use haze::preset::Preset;
+
+    #[test]
+    fn boxes_that_are_left_out_change_nothing() {
+        for name in ["column", "corridor", "explosion"] {
+            let preset = Preset::load(name).unwrap();
+            let scene = Scene::new(&preset.environment, &preset.lights);
+            let everything = Scene { occluders: Occluders { masks: Picture::new(UVec2::ONE, ALL) }, ..scene.clone() };
+            let (mut points, mut asked) = (0, 0);
+            for index in 0..4000_u32 {
+                let random = |salt| {
+                    let hash = pcg3d(UVec3::new(index, salt, 3));
+                    Vec3::new(unit(hash.x), unit(hash.y), unit(hash.z)) * 2.0 - 1.0
+                };
+                // A point on a face of a box.
+                let b = &scene.boxes[index as usize % scene.boxes.len()];
+                let (place, side) = (random(0), random(1));
+                let normal = side.signum()
+                    * Vec3::select(side.abs().cmpeq(Vec3::splat(side.abs().max_element())), Vec3::ONE, Vec3::ZERO);
+                let local = Vec3::select(normal.cmpeq(Vec3::ZERO), place, normal) * b.half_size;
+                let world = b.centre + b.to_world(local);
+                let normal = b.to_world(normal);
+                let pixel = WIDEST_PIXEL * unit(pcg3d(UVec3::splat(index)).x);
+                assert_eq!(
+                    scene.irradiance(world, normal, pixel),
+                    everything.irradiance(world, normal, pixel),
+                    "{world}"
+                );
+                points += 1;
+                asked += indices(scene.occluders.at(1, world), scene.boxes.len()).count();
+            }
+            let share = asked as f32 / (points * scene.boxes.len()) as f32;
+            println!("{name}: {share:.2} of the boxes are asked");
+            assert!(share < 0.4, "{name}: {share}");
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! A shot as a picture: scene and smoke, by the CPU. stage.rs has the GPU's.
+
+use glam::{Vec3, Vec4};
+
+use super::cpu;
+use super::shot::Shot;
+use haze::assets::picture::Picture;
+use haze::error::Error;
+use haze::frame::Particle;
+use haze::settings::Settings;
+
+impl Shot {
+    /// Renders on the CPU, linear HDR.
+    ///
+    /// # Errors
+    /// [`Error::Field`] when the preset was changed to something invalid.
+    pub fn render_on_cpu(&self) -> Result<Picture<Vec4>, Error> {
+        let view = self.preset.camera.view(self.size);
+        let (mut colour, depth) = cpu::render(&self.scene(), &view);
+        if !self.shows_scene() {
+            colour.texels.fill(Vec4::W);
+        }
+        let particles = self.systems();
+        let systems = self.reference_systems(&particles);
+        let frame = self.reference_frame(&depth, &systems);
+        haze_reference::render(&frame, &mut colour)?;
+        Ok(colour)
+    }
+
+    pub(super) fn reference_systems<'a>(
+        &'a self,
+        particles: &'a [(Vec<Particle>, Settings)],
+    ) -> Vec<haze_reference::System<'a>> {
+        let system = |((particles, settings), material)| haze_reference::System::new(particles, settings, material);
+        let particles = particles.iter().map(|(particles, settings)| (particles.as_slice(), settings));
+        particles.zip(&self.materials).map(system).collect()
+    }
+
+    pub(super) fn reference_frame<'a>(
+        &'a self,
+        scene_depth: &'a Picture<f32>,
+        systems: &'a [haze_reference::System<'a>],
+    ) -> haze_reference::Frame<'a> {
+        haze_reference::Frame {
+            lights: &self.preset.lights,
+            systems,
+            time: self.preset.time,
+            up: Vec3::Y,
+            shade_tree: self.shade_tree,
+            ..haze_reference::Frame::new(self.preset.camera.view(self.size), scene_depth)
+        }
+    }
+}

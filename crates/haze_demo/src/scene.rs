@@ -1,0 +1,60 @@
+//! The scene as data: boxes, sky and lights.
+
+use glam::{Mat4, Vec3};
+
+use super::boxes::{MAX_BOXES, SceneBox};
+use super::layout;
+use super::occluders::Occluders;
+use haze::formula::uniforms::LightUniform;
+use haze::frame::Light;
+use haze::preset::Environment;
+
+/// What the scene's shader reads. `Scene` in scene.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct SceneUniform {
+    pub clip_from_world: Mat4,
+    pub world_from_clip: Mat4,
+    pub eye: Vec3,
+    pub box_count: u32,
+    pub zenith: Vec3,
+    pub light_count: u32,
+    pub horizon: Vec3,
+    pub padding0: f32,
+    pub ground: Vec3,
+    pub padding1: f32,
+}
+
+/// A scene, ready to be drawn by either renderer.
+#[derive(Clone, Debug)]
+pub(crate) struct Scene {
+    pub boxes: Vec<SceneBox>,
+    pub environment: Environment,
+    /// World space.
+    pub lights: Vec<LightUniform>,
+    pub occluders: Occluders,
+}
+
+impl Scene {
+    pub fn new(environment: &Environment, lights: &[Light]) -> Self {
+        let mut boxes = layout::boxes(environment);
+        boxes.truncate(MAX_BOXES);
+        let lights: Vec<_> = lights.iter().map(|light| light.uniform(&Mat4::IDENTITY)).collect();
+        Self { environment: *environment, occluders: Occluders::new(&boxes, &lights), boxes, lights }
+    }
+
+    pub fn uniform(&self, clip_from_world: Mat4, eye: Vec3) -> SceneUniform {
+        SceneUniform {
+            clip_from_world,
+            world_from_clip: clip_from_world.inverse(),
+            eye,
+            box_count: self.boxes.len() as u32,
+            zenith: self.environment.zenith,
+            light_count: self.lights.len() as u32,
+            horizon: self.environment.horizon,
+            padding0: 0.0,
+            ground: self.environment.ground,
+            padding1: 0.0,
+        }
+    }
+}

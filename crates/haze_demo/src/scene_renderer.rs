@@ -1,0 +1,284 @@
+//! The demo scene on the GPU: painted at two by two samples a pixel, then lit; depth at pixel centres, as a depth buffer and
+//! linear.
+
+use glam::{UVec2, Vec3};
+
+use super::boxes::{MAX_BOXES, SceneBox};
+use super::occluders::Occluders;
+use super::scene::{Scene, SceneUniform};
+use haze::formula::depth::SKY_VIEW_DEPTH;
+use haze::formula::uniforms::LightUniform;
+use haze::frame::{MAX_LIGHTS, View};
+use haze::shader;
+
+pub(crate) const COLOUR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+pub(crate) const LINEAR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+
+/// The scene's pipelines, for any number of stages of one device.
+#[derive(Debug)]
+pub(crate) struct SceneRenderer {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    scene_layout: wgpu::BindGroupLayout,
+    paint_layout: wgpu::BindGroupLayout,
+    /// Reflectance and face, two by two samples a pixel.
+    paint: wgpu::RenderPipeline,
+    /// Depth, and linear depth as a colour where it can be drawn.
+    depth: wgpu::RenderPipeline,
+    /// Light on what is painted.
+    light: wgpu::RenderPipeline,
+    pub draws_linear: bool,
+}
+
+/// Colour and depth of a scene, and what it takes to draw them.
+#[derive(Debug)]
+pub(crate) struct SceneTargets {
+    pub colour: wgpu::Texture,
+    pub depth: wgpu::TextureView,
+    /// Linear view depth, on adapters that can draw to `R32Float`.
+    pub linear: Option<wgpu::TextureView>,
+    /// Two by two samples a pixel.
+    paint: wgpu::TextureView,
+    paint_depth: wgpu::TextureView,
+    paint_group: wgpu::BindGroup,
+    /// Scene, boxes and lights.
+    buffers: [wgpu::Buffer; 3],
+}
+
+impl SceneTargets {
+    pub fn textures(&self) -> impl Iterator<Item = &wgpu::Texture> {
+        let views = [&self.depth, &self.paint, &self.paint_depth].into_iter().chain(&self.linear);
+        std::iter::once(&self.colour).chain(views.map(wgpu::TextureView::texture))
+    }
+}
+
+impl SceneRenderer {
+    /// `draws_linear`: the adapter can draw to `R32Float`.
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, draws_linear: bool) -> Self {
+        let source = shader::compose(include_str!("scene.wgsl")).unwrap_or_default();
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("demo scene"),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
+        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+            ty,
+            count: None,
+        };
+        let uniform = wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        };
+        let texture = |sample_type| wgpu::BindingType::Texture {
+            sample_type,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let layout = |entries: &[wgpu::BindGroupLayoutEntry]| {
+            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("demo scene"), entries })
+        };
+        let masks = texture(wgpu::TextureSampleType::Uint);
+        let scene_layout = layout(&[entry(0, uniform), entry(1, uniform), entry(2, uniform), entry(3, masks)]);
+        let paint_layout = layout(&[entry(0, texture(wgpu::TextureSampleType::Float { filterable: false }))]);
+        type Fragment<'a> = Option<(&'a str, wgpu::TextureFormat)>;
+        let pipeline = |vertex, fragment: Fragment<'_>, groups: &[Option<&wgpu::BindGroupLayout>], depth: bool| {
+            let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some("demo scene"),
+                bind_group_layouts: groups,
+                immediate_size: 0,
+            });
+            let targets = [fragment.map(|(_, format)| format.into())];
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some("demo scene"),
+                layout: Some(&layout),
+                vertex: wgpu::VertexState {
+                    module: &module,
+                    entry_point: Some(vertex),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    buffers: &[],
+                },
+                primitive: wgpu::PrimitiveState::default(),
+                depth_stencil: depth.then(|| wgpu::DepthStencilState {
+                    format: DEPTH_FORMAT,
+                    depth_write_enabled: Some(true),
+                    depth_compare: Some(wgpu::CompareFunction::LessEqual),
+                    stencil: wgpu::StencilState::default(),
+                    bias: wgpu::DepthBiasState::default(),
+                }),
+                multisample: wgpu::MultisampleState::default(),
+                fragment: fragment.map(|(entry_point, _)| wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some(entry_point),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    targets: &targets,
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        };
+        let linear = draws_linear.then_some(("linear_fragment", LINEAR_FORMAT));
+        let scene_group = [Some(&scene_layout)];
+        Self {
+            paint: pipeline("box_vertex", Some(("paint_fragment", COLOUR_FORMAT)), &scene_group, true),
+            depth: pipeline("box_vertex", linear, &scene_group, true),
+            light: pipeline(
+                "picture_vertex",
+                Some(("light_fragment", COLOUR_FORMAT)),
+                &[Some(&scene_layout), Some(&paint_layout)],
+                false,
+            ),
+            scene_layout,
+            paint_layout,
+            draws_linear,
+            device: device.clone(),
+            queue: queue.clone(),
+        }
+    }
+
+    /// Targets of this size.
+    pub fn targets(&self, size: UVec2) -> SceneTargets {
+        let texture = |label, size, format| texture(&self.device, label, size, format);
+        let target = |label, size, format| whole(&texture(label, size, format));
+        let paint = target("demo scene paint", size * 2, COLOUR_FORMAT);
+        let buffer = |size| {
+            self.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("demo scene"),
+                size: size as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let (boxes, lights) = (size_of::<[SceneBox; MAX_BOXES]>(), size_of::<[LightUniform; MAX_LIGHTS]>());
+        SceneTargets {
+            colour: texture("demo scene colour", size, COLOUR_FORMAT),
+            depth: target("demo scene depth", size, DEPTH_FORMAT),
+            linear: self.draws_linear.then(|| target("demo scene linear", size, LINEAR_FORMAT)),
+            paint_depth: target("demo scene paint depth", size * 2, DEPTH_FORMAT),
+            paint_group: self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("demo scene paint"),
+                layout: &self.paint_layout,
+                entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&paint) }],
+            }),
+            paint,
+            buffers: [size_of::<SceneUniform>(), boxes, lights].map(buffer),
+        }
+    }
+
+    /// Draws a scene, whole. One for each target in a submission.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, targets: &SceneTargets, scene: &Scene, view: &View) {
+        let eye = view.view_from_world.inverse().transform_point3(Vec3::ZERO);
+        let uniform = scene.uniform(view.clip_from_view * view.view_from_world, eye);
+        let mut boxes = [SceneBox::default(); MAX_BOXES];
+        boxes[..scene.boxes.len()].copy_from_slice(&scene.boxes);
+        let mut lights = [LightUniform::default(); MAX_LIGHTS];
+        lights[..scene.lights.len()].copy_from_slice(&scene.lights);
+        let contents: [&[u8]; 3] =
+            [bytemuck::bytes_of(&uniform), bytemuck::cast_slice(&boxes), bytemuck::cast_slice(&lights)];
+        for (buffer, bytes) in targets.buffers.iter().zip(contents) {
+            self.queue.write_buffer(buffer, 0, bytes);
+        }
+        let occluders = whole(&self.occluder_texture(&scene.occluders));
+        let buffer = |binding: usize| wgpu::BindGroupEntry {
+            binding: binding as u32,
+            resource: targets.buffers[binding].as_entire_binding(),
+        };
+        let masks = wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::TextureView(&occluders) };
+        let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("demo scene"),
+            layout: &self.scene_layout,
+            entries: &[buffer(0), buffer(1), buffer(2), masks],
+        });
+        let count = scene.boxes.len() as u32;
+        {
+            let mut pass = begin(encoder, Some((&targets.paint, NOTHING)), Some(&targets.paint_depth));
+            pass.set_bind_group(0, &group, &[]);
+            pass.set_pipeline(&self.paint);
+            pass.draw(0..36, 0..count);
+        }
+        {
+            let mut pass = begin(encoder, targets.linear.as_ref().zip(Some(NO_SURFACE)), Some(&targets.depth));
+            pass.set_bind_group(0, &group, &[]);
+            pass.set_pipeline(&self.depth);
+            pass.draw(0..36, 0..count);
+        }
+        {
+            let mut pass = begin(encoder, Some((&whole(&targets.colour), wgpu::Color::BLACK)), None);
+            pass.set_bind_group(0, &group, &[]);
+            pass.set_bind_group(1, &targets.paint_group, &[]);
+            pass.set_pipeline(&self.light);
+            pass.draw(0..3, 0..1);
+        }
+    }
+
+    fn occluder_texture(&self, occluders: &Occluders) -> wgpu::Texture {
+        let masks = &occluders.masks;
+        let size = wgpu::Extent3d { width: masks.size.x, height: masks.size.y, depth_or_array_layers: 1 };
+        let texture = self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("demo scene occluders"),
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba32Uint,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        let rows =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * size.width), rows_per_image: None };
+        self.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(&masks.texels), rows, size);
+        texture
+    }
+}
+
+/// A texture that can be drawn to, sampled and copied.
+pub(crate) fn texture(device: &wgpu::Device, label: &str, size: UVec2, format: wgpu::TextureFormat) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC
+            | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
+}
+
+pub(crate) fn whole(texture: &wgpu::Texture) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// Paint where no box is: `NOTHING` in scene.wgsl.
+const NOTHING: wgpu::Color = wgpu::Color { a: -1.0, ..wgpu::Color::TRANSPARENT };
+/// Linear depth where no box is.
+const NO_SURFACE: wgpu::Color = wgpu::Color { r: SKY_VIEW_DEPTH as f64, ..wgpu::Color::BLACK };
+
+fn begin<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    colour: Option<(&wgpu::TextureView, wgpu::Color)>,
+    depth: Option<&wgpu::TextureView>,
+) -> wgpu::RenderPass<'a> {
+    let attachment = colour.map(|(view, clear)| wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
+    });
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("demo scene"),
+        color_attachments: if attachment.is_some() { std::slice::from_ref(&attachment) } else { &[] },
+        depth_stencil_attachment: depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
+            view,
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    })
+}

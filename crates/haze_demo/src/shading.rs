@@ -1,0 +1,174 @@
+//! The light and the materials of the demo scene on the CPU. `scene.wgsl` is the same on the GPU, function by function.
+
+use glam::{IVec3, Vec2, Vec3, Vec3Swizzles};
+
+use super::boxes::{
+    AMBIENT_REACH, SUN_DISTANCE, SUN_SPREAD, SceneBox, Surface, WIDEST_PIXEL, box_distance, box_interval,
+};
+use super::occluders::{Boxes, indices};
+use super::scene::Scene;
+use haze::assets::noise::{pcg3d, unit};
+use haze::formula::lighting::sample_light;
+use haze::formula::saturate;
+use haze::formula::uniforms::LightUniform;
+
+fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
+    let t = saturate((x - low) / (high - low));
+    t * t * (3.0 - 2.0 * t)
+}
+
+fn mix(a: f32, b: f32, t: f32) -> f32 {
+    a + (b - a) * t
+}
+
+fn hash(at: IVec3) -> f32 {
+    unit(pcg3d(at.as_uvec3()).x)
+}
+
+/// 0..1.
+fn value_noise(p: Vec3) -> f32 {
+    let cell = p.floor();
+    let f = p - cell;
+    let w = f * f * (3.0 - 2.0 * f);
+    let i = cell.as_ivec3();
+    let corner = |x, y, z| hash(i.wrapping_add(IVec3::new(x, y, z)));
+    let plane = |z| mix(mix(corner(0, 0, z), corner(1, 0, z), w.x), mix(corner(0, 1, z), corner(1, 1, z), w.x), w.y);
+    mix(plane(0), plane(1), w.z)
+}
+
+fn stains(p: Vec3) -> f32 {
+    value_noise(p * 0.7) * 0.5 + value_noise(p * 2.3) * 0.3 + value_noise(p * 9.1) * 0.2
+}
+
+/// 0 on a joint between tiles of `size`, 1 on a tile.
+fn joints(uv: Vec2, size: Vec2, width: f32) -> f32 {
+    let place = uv / size;
+    let from_edge = (0.5 - (place - place.floor() - 0.5).abs()) * size;
+    smoothstep(0.0, width, from_edge.min_element())
+}
+
+/// Reflectance of a point of a box, or what it glows with. `p` and `n` are in the box's frame, `world` tells boxes apart.
+pub(crate) fn albedo(b: &SceneBox, p: Vec3, n: Vec3, world: Vec3) -> Vec3 {
+    let uv = if n.x.abs() > 0.5 {
+        p.zy()
+    } else if n.y.abs() > 0.5 {
+        p.xz()
+    } else {
+        p.xy()
+    };
+    let is = |surface: Surface| b.surface == surface as u32;
+    if is(Surface::Glow) || is(Surface::Even) {
+        return b.colour;
+    }
+    let dirt = stains(world);
+    if is(Surface::Slabs) {
+        let size = Vec2::splat(1.6);
+        let tile = (uv / size).floor().as_ivec2();
+        let tone = 0.85 + 0.3 * hash(tile.extend(5));
+        return b.colour * tone * (0.55 + 0.7 * dirt) * mix(0.45, 1.0, joints(uv, size, 0.035));
+    }
+    if is(Surface::Brick) {
+        let size = Vec2::new(0.48, 0.17);
+        let row = (uv.y / size.y).floor();
+        let shifted = Vec2::new(uv.x + row * 0.5 * size.x, uv.y);
+        let tile = (shifted / size).floor().extend(n.x * 3.0 + n.z).as_ivec3();
+        let tone = 0.7 + 0.6 * hash(tile);
+        let tint = Vec3::ONE.lerp(Vec3::new(1.15, 0.92, 0.8), hash(tile.wrapping_add(IVec3::new(7, 3, 1))));
+        let brick = b.colour * tone * tint * (0.6 + 0.6 * dirt);
+        let mortar = Vec3::new(0.16, 0.155, 0.15) * (0.6 + 0.6 * dirt);
+        return mortar.lerp(brick, joints(shifted, size, 0.02));
+    }
+    if is(Surface::Wood) {
+        let plank = (uv.y / 0.2).floor();
+        let grain = value_noise(Vec3::new(uv.x * 2.0, uv.y * 40.0, plank * 7.0 + b.centre.x * 3.0));
+        let salt = IVec3::new(plank as i32, (b.centre.x * 10.0) as i32, (b.centre.z * 10.0) as i32);
+        let tone = 0.8 + 0.4 * hash(salt);
+        let edge = Vec3::select(n.abs().cmpgt(Vec3::splat(0.5)), Vec3::splat(10.0), b.half_size - p.abs());
+        let framed = smoothstep(0.09, 0.075, edge.min_element());
+        let boards = tone * mix(0.5, 1.0, joints(Vec2::new(25.0, uv.y), Vec2::new(50.0, 0.2), 0.015));
+        return b.colour * mix(boards, 1.15, framed) * (0.7 + 0.4 * grain) * (0.75 + 0.4 * dirt);
+    }
+    if is(Surface::Plaster) {
+        let damp = smoothstep(0.0, 1.2, world.y + dirt * 0.8 - 0.3);
+        return b.colour * (0.6 + 0.55 * dirt) * mix(0.6, 1.0, damp);
+    }
+    b.colour * (0.8 + 0.4 * dirt)
+}
+
+/// The way from a point to a light.
+struct ShadowRay {
+    origin: Vec3,
+    direction: Vec3,
+    distance: f32,
+    /// Angular size of the light: radius / distance.
+    spread: f32,
+}
+
+impl Scene {
+    /// How much of a light is seen past the boxes.
+    fn light_visibility(&self, boxes: Boxes, ray: &ShadowRay, pixel: f32) -> f32 {
+        let &ShadowRay { origin, direction, distance, spread } = ray;
+        let mut visible = 1.0_f32;
+        for b in indices(boxes, self.boxes.len()).map(|index| &self.boxes[index]) {
+            if b.surface == Surface::Glow as u32 {
+                continue;
+            }
+            let (o, d) = (b.to_local(origin - b.centre), b.to_local(direction));
+            let (enter, leave) = box_interval(b, o, d);
+            if enter < leave {
+                if leave > 0.0 && enter < distance {
+                    return 0.0;
+                }
+                continue;
+            }
+            // The ray is nearest to the box between these two places, if it has not passed it.
+            for place in [enter.min(distance), leave.min(distance)].into_iter().filter(|&place| place > 0.0) {
+                visible = visible.min(box_distance(b, o + d * place) / (place * spread).max(pixel));
+            }
+        }
+        smoothstep(0.0, 1.0, visible)
+    }
+
+    /// Share of the sky that the boxes leave open over a point.
+    fn ambient_visibility(&self, p: Vec3, n: Vec3) -> f32 {
+        let (near, far) = (p + n * 0.15, p + n * AMBIENT_REACH);
+        let (mut open_near, mut open_far) = (0.15_f32, AMBIENT_REACH);
+        for b in indices(self.occluders.at(0, p), self.boxes.len()).map(|index| &self.boxes[index]) {
+            open_near = open_near.min(box_distance(b, b.to_local(near - b.centre)));
+            open_far = open_far.min(box_distance(b, b.to_local(far - b.centre)));
+        }
+        mix(0.25, 1.0, saturate(open_near / 0.15)) * mix(0.35, 1.0, saturate(open_far / AMBIENT_REACH))
+    }
+
+    /// Radiance of the sky in a direction.
+    pub fn sky(&self, direction: Vec3) -> Vec3 {
+        let up = saturate(direction.y);
+        self.environment.horizon.lerp(self.environment.zenith, 1.0 - (1.0 - up).powi(3))
+    }
+
+    /// Light on a point of a box, where a pixel is so many metres wide.
+    pub fn irradiance(&self, world: Vec3, normal: Vec3, pixel: f32) -> Vec3 {
+        let sky = self.environment.horizon.lerp(self.environment.zenith, 0.5);
+        let ambient = self.environment.ground.lerp(sky, normal.y * 0.5 + 0.5);
+        let direct = (0..).zip(&self.lights).map(|(index, light)| self.direct(index, light, world, normal, pixel));
+        ambient * self.ambient_visibility(world, normal) + direct.sum::<Vec3>()
+    }
+
+    fn direct(&self, index: u32, light: &LightUniform, world: Vec3, normal: Vec3, pixel: f32) -> Vec3 {
+        let sample = sample_light(light, world);
+        let facing = normal.dot(sample.direction);
+        if facing <= 0.0 || sample.attenuation <= 0.0 {
+            return Vec3::ZERO;
+        }
+        let (distance, spread) = if light.directional > 0.5 {
+            (SUN_DISTANCE, SUN_SPREAD)
+        } else {
+            let distance = (light.position - world).length();
+            (distance, light.radius / distance.max(0.1))
+        };
+        let boxes = self.occluders.at(1 + index, world);
+        let ray = ShadowRay { origin: world + normal * 2.0e-3, direction: sample.direction, distance, spread };
+        let visible = self.light_visibility(boxes, &ray, pixel.min(WIDEST_PIXEL));
+        light.colour * (facing * sample.attenuation * visible)
+    }
+}

@@ -1,0 +1,70 @@
+//! A system's finished target, read at full resolution. `shaders/lib/accumulated.wgsl`.
+
+use glam::{IVec2, Vec2, Vec3, Vec4};
+
+use super::draw::Draw;
+use haze::assets::picture::Picture;
+use haze::formula::upsample::{GuidedFit, fitted_value, guided_weight, is_smooth, upsample_weights, with_texel};
+use haze::settings::Upsample;
+
+/// A system's finished target.
+pub struct Accumulated<'a> {
+    pub draw: &'a Draw<'a>,
+    pub baked: &'a [Picture<Vec3>],
+    pub reduced_depth: &'a Picture<f32>,
+    pub accumulation: &'a Picture<Vec4>,
+    /// What is kept beside it: the sum of the weights of normals, or the other half of six-way light.
+    pub beside: Option<&'a Picture<Vec4>>,
+    /// What light_target has made of it; `None` where that is worked out texel by texel, as it is read.
+    pub lit: Option<Picture<Vec4>>,
+}
+
+impl Accumulated<'_> {
+    /// A texture of the accumulation target. `sample_target()` in accumulated.wgsl.
+    pub fn sample_target(&self, target: &Picture<Vec4>, pixel: Vec2) -> Vec4 {
+        self.sample_texels(|at| target.load(at), pixel)
+    }
+
+    /// Lit smoke.
+    pub fn sample_lit(&self, pixel: Vec2) -> Vec4 {
+        match &self.lit {
+            Some(lit) => self.sample_target(lit, pixel),
+            None => self.sample_texels(|at| self.lit_texel(at), pixel),
+        }
+    }
+
+    fn sample_texels(&self, texel_at: impl Fn(IVec2) -> Vec4, pixel: Vec2) -> Vec4 {
+        let system = &self.draw.system;
+        let texel = pixel / system.scale - system.target_origin;
+        if texel.cmplt(Vec2::ZERO).any() || texel.cmpge(system.target_size).any() {
+            return Vec4::ZERO;
+        }
+        if system.scale < 1.5 {
+            return texel_at(texel.as_ivec2());
+        }
+        let upsample = self.draw.settings.accumulate.upsample;
+        let corner = texel - 0.5;
+        let (base, fraction) = (corner.floor().as_ivec2(), corner - corner.floor());
+        let taps = [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE].map(|offset| base + offset);
+        let guide = |tap| self.reduced_depth.load(tap).min(system.guide_limit);
+        let (depths, depth) = match upsample {
+            Upsample::Bilinear => (Vec4::ZERO, 0.0),
+            _ => {
+                let depth = self.draw.scene_view_depth(pixel.as_ivec2()).min(system.guide_limit);
+                (Vec4::from(taps.map(guide)), depth)
+            }
+        };
+        let fade = 1.0 / system.fade_scale;
+        if upsample != Upsample::Guided || is_smooth(depths, depth, fade) {
+            let weights = upsample_weights(upsample, fraction, depths, depth);
+            return taps.iter().zip(weights.to_array()).map(|(&tap, weight)| texel_at(tap) * weight).sum();
+        }
+        let fit = (0..16).fold(GuidedFit::default(), |fit, i| {
+            let offset = IVec2::new(i % 4, i / 4) - 1;
+            let at = base + offset;
+            let place = (offset.as_vec2() - fraction).extend(guide(at) - depth);
+            with_texel(&fit, place, guided_weight(place, depth), texel_at(at))
+        });
+        fitted_value(&fit, fade)
+    }
+}

@@ -1,0 +1,120 @@
+//! A system in sight, and the geometry that its passes share.
+
+use glam::{IVec2, Mat4, UVec2, Vec2, Vec3, Vec4Swizzles};
+
+use super::frame::{Frame, System};
+use haze::assets::material::{MaterialAssets, MaterialInfo};
+use haze::assets::picture::Picture;
+use haze::error::FieldError;
+use haze::formula::depth::view_depth_from_ndc_depth;
+use haze::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
+use haze::formula::view::{ndc_from_pixel, pixel_from_ndc, view_position};
+use haze::frame::validate::{validate_lights, validate_place, validate_settings, validate_time_and_up};
+use haze::frame::{Bounds, Particle, View, bounds_of};
+use haze::in_view::{
+    Pictures, SortScratch, SystemInView, SystemInWorld, ViewGeometry, in_order, lights_in_view, system_in_view,
+};
+use haze::settings::{Order, Settings, ShadeTree};
+
+/// A system in sight, with what its passes read.
+pub struct Draw<'a> {
+    pub view: ViewUniform,
+    pub world_from_view: Mat4,
+    pub system: SystemUniform,
+    pub in_view: SystemInView,
+    pub bounds: Bounds,
+    pub lights: Vec<LightUniform>,
+    /// In the order in which they are drawn.
+    pub particles: Vec<Particle>,
+    pub pictures: Pictures,
+    pub scene_depth: &'a Picture<f32>,
+    pub settings: &'a Settings,
+    pub material: &'a MaterialAssets,
+}
+
+impl<'a> Draw<'a> {
+    /// `None` when the system is out of sight.
+    pub fn new(view: &ViewGeometry, frame: &Frame<'a>, system: &System<'a>, material: &MaterialInfo) -> Option<Self> {
+        let settings = system.settings;
+        let bounds = system.bounds.unwrap_or_else(|| bounds_of(system.particles, settings.reach()));
+        let mut lights = Vec::new();
+        lights_in_view(view, frame.lights, &bounds, &mut lights);
+        let in_world = SystemInWorld {
+            stand_for: 1,
+            bounds: &bounds,
+            depth: system.depth,
+            particles: system.particles,
+            settings,
+            material,
+            lights: &lights,
+            up: frame.up.normalize_or(Vec3::Y),
+            time: frame.time,
+        };
+        let in_view = system_in_view(view, frame.view.size, &in_world)?;
+        let mut particles = Vec::new();
+        in_order(
+            view,
+            system.particles,
+            settings.order() == Order::Sorted,
+            &mut SortScratch::default(),
+            &mut particles,
+        );
+        Some(Self {
+            view: view.uniform(false),
+            world_from_view: view.view_from_world.inverse(),
+            system: in_view.uniform,
+            in_view,
+            bounds,
+            lights,
+            particles,
+            pictures: Pictures::new(settings, material),
+            scene_depth: frame.scene_depth,
+            settings,
+            material: system.material,
+        })
+    }
+
+    /// True if this stage shows the light of the target's texels.
+    pub fn lights_target(&self, shade_tree: ShadeTree) -> bool {
+        shade_tree.is_picture() && self.settings.accumulate.lights_target(self.view.size.as_uvec2())
+    }
+
+    pub fn scene_view_depth(&self, pixel: IVec2) -> f32 {
+        view_depth_from_ndc_depth(self.scene_depth.load(pixel), self.view.depth_coefficients)
+    }
+
+    /// The view-space point at a view depth on the ray through a pixel.
+    pub fn view_position(&self, pixel: Vec2, view_depth: f32) -> Vec3 {
+        let ray = ndc_from_pixel(pixel, self.view.size) * self.view.ray_scale + self.view.ray_offset;
+        view_position(ray, view_depth, self.view.orthographic)
+    }
+
+    pub fn pixel_from_view(&self, position: Vec3) -> Vec2 {
+        let clip = self.view.clip_from_view * position.extend(1.0);
+        pixel_from_ndc(clip.xy() / clip.w, self.view.size)
+    }
+}
+
+/// The systems in sight, with their places in the frame, far to near; for a picture of this size.
+pub fn visible<'a>(frame: &Frame<'a>, picture: UVec2) -> Result<Vec<(usize, Draw<'a>)>, FieldError> {
+    // The picture is the view, wherever that lies in a host's targets.
+    let view = ViewGeometry::new(&View { origin: UVec2::ZERO, ..frame.view })?;
+    validate_lights(frame.lights)?;
+    validate_time_and_up(frame.time, frame.up)?;
+    for (name, size) in [("scene_depth", frame.scene_depth.size), ("picture", picture)] {
+        if size != frame.view.size {
+            let value = format!("{}x{}", size.x, size.y);
+            return Err(FieldError::new(name, value, format!("{}x{}", frame.view.size.x, frame.view.size.y)));
+        }
+    }
+    let mut draws = Vec::new();
+    for (index, system) in frame.systems.iter().enumerate() {
+        validate_settings(index, system.settings, frame.view.size)?;
+        validate_place(index, system.bounds.as_ref(), system.depth)?;
+        let info = system.material.info();
+        info.validate(index, system.settings)?;
+        draws.extend(Draw::new(&view, frame, system, &info).map(|draw| (index, draw)));
+    }
+    draws.sort_by(|(_, a), (_, b)| b.in_view.distance.total_cmp(&a.in_view.distance));
+    Ok(draws)
+}

@@ -1,0 +1,53 @@
+//! The whole frame on the CPU, pass by pass as the GPU renderer has it, in f32: the oracle of the tests, and what draws on a
+//! machine without a GPU driver.
+
+mod accumulated;
+pub mod blend_unit;
+mod draw;
+mod frame;
+mod pass;
+mod probe;
+mod sprite;
+
+use glam::Vec4;
+
+use haze::assets::picture::Picture;
+use haze::error::FieldError;
+use haze::settings::ShadeTree;
+
+use accumulated::Accumulated;
+use draw::visible;
+pub use frame::{Frame, System};
+pub use probe::{GlowProbe, LightProbe, Probe, SystemProbe, Texels, probe};
+
+/// Blends the frame's smoke over `picture`, linear HDR.
+///
+/// # Errors
+/// The view, light or setting that cannot be used; `picture` is untouched then.
+pub fn render(frame: &Frame<'_>, picture: &mut Picture<Vec4>) -> Result<(), FieldError> {
+    let draws = visible(frame, picture.size)?;
+    for (_, draw) in &draws {
+        if draw.settings.is_forward() {
+            if frame.shade_tree.is_picture() {
+                draw.forward(picture);
+            }
+            continue;
+        }
+        let reduced_depth = draw.depth_downsample();
+        let accumulation = draw.accumulate(&reduced_depth, frame.shade_tree == ShadeTree::Overdraw);
+        let beside = draw.beside(&reduced_depth);
+        let baked = draw.diffuse_bake();
+        let (reduced_depth, accumulation, beside) = (&reduced_depth, &accumulation, beside.as_ref());
+        let mut smoke = Accumulated { draw, baked: &baked, reduced_depth, accumulation, beside, lit: None };
+        if draw.lights_target(frame.shade_tree) {
+            smoke.lit = Some(smoke.light_target());
+        }
+        if frame.shade_tree != ShadeTree::SpecularScatter {
+            smoke.transfer(frame.shade_tree, picture);
+        }
+        if frame.shade_tree.glows() {
+            smoke.specular_scatter(picture);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,74 @@
+//! `shaders/accumulate.wgsl`.
+
+use glam::Vec4;
+
+use crate::blend_unit::{premultiplied_over, quantise, weighted_sum};
+use crate::draw::Draw;
+use crate::sprite::SpriteFragment;
+use haze::assets::picture::Picture;
+use haze::formula::normal::accumulation_from_normal;
+use haze::in_view::Grid;
+use haze::settings::{AccumulationFormat, Order};
+
+impl Draw<'_> {
+    pub fn accumulate(&self, reduced_depth: &Picture<f32>, overdraw: bool) -> Picture<Vec4> {
+        let accumulate = &self.settings.accumulate;
+        self.blend(reduced_depth, |fragment, weight, texel| {
+            let SpriteFragment { normal, six_way, amount } = fragment;
+            let blended = if overdraw {
+                texel + Vec4::splat(1.0 / 255.0)
+            } else {
+                let source = if self.settings.is_six_way() {
+                    (six_way.positive * (amount * weight)).extend(amount)
+                } else {
+                    accumulation_from_normal(accumulate.encoding, normal, amount, weight)
+                };
+                match self.settings.order() {
+                    Order::Sorted => premultiplied_over(source, texel),
+                    Order::Weighted => weighted_sum(source, texel),
+                }
+            };
+            quantise(accumulate.format, blended)
+        })
+    }
+
+    /// What is kept beside that: what the weights of the normals sum to, in x; or light from left, bottom and back and the sum of
+    /// weights.
+    pub fn beside(&self, reduced_depth: &Picture<f32>) -> Option<Picture<Vec4>> {
+        let accumulate = &self.settings.accumulate;
+        if self.settings.is_six_way() {
+            let light = |fragment: SpriteFragment, weight: f32, texel: Vec4| {
+                let weight = fragment.amount * weight;
+                let source = (fragment.six_way.negative * weight).extend(weight);
+                let blended = match self.settings.order() {
+                    Order::Sorted => premultiplied_over(source, texel),
+                    Order::Weighted => source + texel,
+                };
+                quantise(accumulate.format, blended)
+            };
+            return Some(self.blend(reduced_depth, light));
+        }
+        let sum = |fragment: SpriteFragment, weight: f32, texel| {
+            quantise(AccumulationFormat::Rgba16Float, weighted_sum(Vec4::X * (fragment.amount * weight), texel))
+        };
+        accumulate.sums_weights().then(|| self.blend(reduced_depth, sum))
+    }
+
+    /// Blends `f(fragment, weight, texel)` of every fragment into a target.
+    fn blend(
+        &self,
+        reduced_depth: &Picture<f32>,
+        f: impl Fn(SpriteFragment, f32, Vec4) -> Vec4 + Sync,
+    ) -> Picture<Vec4> {
+        let mut target = Picture::new(self.in_view.rect.size, Vec4::ZERO);
+        let origin = self.in_view.rect.origin.as_vec2();
+        let scene = |at| reduced_depth.load(at);
+        target.for_bands(|first_row, band| {
+            let grid = Grid { origin, scale: self.system.scale, size: self.in_view.rect.size };
+            self.for_fragments(&grid, first_row, band, scene, |_, sprite, fragment, texel: &mut Vec4| {
+                *texel = f(fragment, sprite.weight, *texel);
+            });
+        });
+        target
+    }
+}

@@ -1,0 +1,39 @@
+//! `shaders/depth_downsample.wgsl`.
+
+use glam::IVec2;
+
+use crate::draw::Draw;
+use haze::assets::picture::Picture;
+use haze::formula::depth::{SKY_VIEW_DEPTH, depth_downsample_keeps_farthest};
+use haze::settings::{DepthDownsample, DepthSource};
+
+impl Draw<'_> {
+    pub fn depth_downsample(&self) -> Picture<f32> {
+        let mut reduced = Picture::new(self.in_view.rect.size, 0.0);
+        let mode = self.settings.accumulate.depth_downsample;
+        let scale = self.system.scale as i32;
+        let limit = |depth: f32| depth.min(self.system.depth_limit);
+        reduced.for_each(|at, texel| {
+            let at = at.as_ivec2() + self.in_view.rect.origin;
+            let first = at * scale;
+            let last = self.scene_depth.size.as_ivec2() - 1;
+            *texel = if self.settings.accumulate.depth_source == DepthSource::Host {
+                self.scene_view_depth(first)
+            } else if mode == DepthDownsample::Point {
+                limit(self.scene_view_depth((first + scale / 2).min(last)))
+            } else {
+                let (mut nearest, mut farthest) = (SKY_VIEW_DEPTH, 0.0_f32);
+                let end = (first + scale - 1).min(last);
+                for y in first.y..=end.y {
+                    for x in first.x..=end.x {
+                        let depth = self.scene_view_depth(IVec2::new(x, y));
+                        nearest = nearest.min(depth);
+                        farthest = farthest.max(depth);
+                    }
+                }
+                limit(if depth_downsample_keeps_farthest(mode, at) { farthest } else { nearest })
+            };
+        });
+        reduced
+    }
+}

@@ -1,0 +1,84 @@
+//! `shaders/diffuse_bake.wgsl` and `shaders/lib/diffuse.wgsl`.
+
+use glam::{UVec2, Vec2, Vec3};
+use half::f16;
+
+use crate::draw::Draw;
+use haze::assets::picture::Picture;
+use haze::assets::ramp::Ramp;
+use haze::formula::colour::bounded_light;
+use haze::formula::diffuse_bake::{baked_size_and_layers, cube_direction, motif_normal};
+use haze::formula::lighting::{
+    backlight_weight, diffuse_coordinate, direction_to_viewer, sample_light, soft_scatter_weight,
+};
+use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
+use haze::formula::six_way::{SixWay, six_way_response};
+use haze::formula::uniforms::LightUniform;
+use haze::settings::{Backlight, DiffuseMode, SoftScatterMode};
+
+impl Draw<'_> {
+    /// A ramp of one row, as the settings have it looked up.
+    pub fn sample_ramp(&self, ramp: &Ramp, u: f32) -> Vec3 {
+        sample_ramp(ramp, self.settings.ramp_filter, u)
+    }
+
+    pub fn diffuse_from_lights(&self, normal: Vec3, covered: f32, position: Vec3) -> Vec3 {
+        self.lights.iter().map(|light| self.diffuse_from_light(light, normal, covered, position)).sum()
+    }
+
+    pub fn diffuse_from_light(&self, light: &LightUniform, normal: Vec3, covered: f32, position: Vec3) -> Vec3 {
+        let sample = sample_light(light, position);
+        let at = Vec2::new(diffuse_coordinate(normal, sample.direction), covered);
+        let look_up = |ramp| sample_ramp_2d(ramp, self.settings.ramp_filter, at);
+        let mut falloff = look_up(&self.material.diffuse_ramp);
+        if self.settings.diffuse.backlight == Backlight::Ramp {
+            let to_viewer = direction_to_viewer(position, self.view.orthographic);
+            let weight = backlight_weight(sample.direction, to_viewer);
+            falloff = falloff.lerp(look_up(&self.material.backlight_ramp), weight);
+        }
+        falloff * light.colour * sample.attenuation
+    }
+
+    pub fn diffuse_from_six_way(&self, six_way: &SixWay, position: Vec3) -> Vec3 {
+        self.lights.iter().map(|light| self.six_way_from_light(light, six_way, position)).sum()
+    }
+
+    pub fn six_way_from_light(&self, light: &LightUniform, six_way: &SixWay, position: Vec3) -> Vec3 {
+        let sample = sample_light(light, position);
+        let response =
+            six_way_response(six_way.positive, six_way.negative, sample.direction, self.system.six_way_anisotropy);
+        light.colour * (response * sample.attenuation) * self.system.six_way_colour
+    }
+
+    pub fn soft_scatter(&self, amount: f32) -> Vec3 {
+        let system = &self.system;
+        let colour = match self.settings.soft_scatter.mode {
+            SoftScatterMode::Ramp => self.sample_ramp(&self.material.soft_scatter_ramp, amount),
+            SoftScatterMode::Smoothstep => {
+                let weight = soft_scatter_weight(amount, system.scatter_amount, system.scatter_smooth);
+                system.scatter_colour.lerp(system.ambient_colour, weight)
+            }
+        };
+        colour * system.soft_scatter_intensity
+    }
+
+    /// Faces of the cubemap, or the motif; the first row is −1.
+    pub fn diffuse_bake(&self) -> Vec<Picture<Vec3>> {
+        let mode = self.settings.diffuse.mode;
+        let Some((side, layers)) = baked_size_and_layers(mode) else { return Vec::new() };
+        let face = |face: i32| {
+            let mut baked = Picture::new(UVec2::splat(side), Vec3::ZERO);
+            baked.for_each(|at, texel| {
+                let place = at.as_vec2() / (side - 1) as f32 * 2.0 - 1.0;
+                let normal = match mode {
+                    DiffuseMode::Motif => motif_normal(place),
+                    _ => cube_direction(face, place).normalize(),
+                };
+                let light = bounded_light(self.diffuse_from_lights(normal, 1.0, self.system.centre));
+                *texel = Vec3::from(light.to_array().map(|channel| f16::from_f32(channel).to_f32()));
+            });
+            baked
+        };
+        (0..layers as i32).map(face).collect()
+    }
+}

@@ -1,0 +1,40 @@
+//! `shaders/forward.wgsl`.
+
+use glam::{Vec2, Vec3, Vec4};
+
+use crate::blend_unit::forward_blend;
+use crate::draw::Draw;
+use haze::assets::picture::Picture;
+use haze::formula::blending::forward_fragment;
+use haze::formula::colour::bounded_light;
+use haze::formula::lighting::coverage;
+use haze::in_view::Grid;
+
+impl Draw<'_> {
+    pub fn forward(&self, picture: &mut Picture<Vec4>) {
+        let grid = Grid { origin: Vec2::ZERO, scale: 1.0, size: picture.size };
+        let mode = self.settings.blend_mode;
+        let system = &self.system;
+        picture.for_bands(|first_row, band| {
+            let scene = |at| self.scene_view_depth(at);
+            self.for_fragments(&grid, first_row, band, scene, |at, sprite, fragment, texel: &mut Vec4| {
+                let amount = fragment.amount;
+                if amount <= 0.0 {
+                    return;
+                }
+                let normal = fragment.normal / fragment.normal.length_squared().max(1.0e-12).sqrt();
+                let position = self.view_position(at.as_vec2() + 0.5, sprite.view_depth.max(self.view.near));
+                let covered = coverage(amount, system.boost);
+                let diffuse = match self.settings.is_six_way() {
+                    true => self.diffuse_from_six_way(&fragment.six_way, position),
+                    false => self.diffuse_from_lights(normal, covered, position),
+                };
+                let diffuse = diffuse * system.diffuse_intensity;
+                let colour = self.sample_ramp(&self.material.age_ramp, sprite.age);
+                let light = (diffuse + self.soft_scatter(amount)) * Vec3::ONE.lerp(colour, system.age_colour);
+                let source = forward_fragment(mode, bounded_light(light), covered);
+                *texel = forward_blend(mode, source, *texel);
+            });
+        });
+    }
+}

@@ -1,0 +1,34 @@
+//! `shaders/light_target.wgsl`.
+
+use glam::{IVec2, Vec4};
+
+use crate::accumulated::Accumulated;
+use crate::blend_unit::quantise;
+use haze::assets::picture::Picture;
+use haze::formula::colour::bounded_light;
+use haze::settings::AccumulationFormat;
+
+impl Accumulated<'_> {
+    /// Light times amount, and amount.
+    pub fn light_target(&self) -> Picture<Vec4> {
+        let mut lit = Picture::new(self.accumulation.size, Vec4::ZERO);
+        lit.for_each(|at, texel| *texel = self.lit_texel(at.as_ivec2()));
+        lit
+    }
+
+    /// A texel of that; those outside are the nearest inside.
+    pub fn lit_texel(&self, at: IVec2) -> Vec4 {
+        let (draw, system) = (self.draw, &self.draw.system);
+        let at = at.clamp(IVec2::ZERO, self.accumulation.size.as_ivec2() - 1);
+        let accumulated = self.accumulation.load(at);
+        let amount = accumulated.w;
+        if amount <= 0.0 {
+            return Vec4::ZERO;
+        }
+        let surface = self.surface(accumulated, self.beside.map_or(Vec4::ZERO, |beside| beside.load(at)));
+        let pixel = (at.as_vec2() + system.target_origin + 0.5) * system.scale;
+        let position = draw.view_position(pixel, -system.centre.z);
+        let light = bounded_light(self.diffuse(&surface, amount, position) + draw.soft_scatter(amount));
+        quantise(AccumulationFormat::Rgba16Float, light.extend(1.0) * amount)
+    }
+}

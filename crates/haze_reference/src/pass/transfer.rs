@@ -1,0 +1,152 @@
+//! `shaders/transfer.wgsl`.
+
+use glam::{IVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
+
+use crate::accumulated::Accumulated;
+use crate::blend_unit::premultiplied_over;
+use haze::assets::picture::Picture;
+use haze::formula::colour::{bounded_light, overdraw_colour};
+use haze::formula::diffuse_bake::{cube_coordinate, motif_position, sample_baked, spherical_harmonics};
+use haze::formula::lighting::{coverage, painted_coverage};
+use haze::formula::normal::normal_from_accumulation;
+use haze::formula::ramp::sample_ramp_2d;
+use haze::formula::saturate;
+use haze::formula::six_way::{SixWay, normal_from_six_way};
+use haze::formula::uniforms::LightUniform;
+use haze::settings::{CoverageMode, DiffuseMode, ShadeTree};
+
+/// What light falls on.
+pub struct Surface {
+    /// Unit length, view space.
+    pub normal: Vec3,
+    /// Of six-way maps.
+    pub six_way: SixWay,
+}
+
+impl Accumulated<'_> {
+    pub fn diffuse(&self, surface: &Surface, amount: f32, position: Vec3) -> Vec3 {
+        let (draw, normal) = (self.draw, surface.normal);
+        if draw.settings.is_six_way() {
+            return draw.diffuse_from_six_way(&surface.six_way, position) * draw.system.diffuse_intensity;
+        }
+        let light = match draw.settings.diffuse.mode {
+            DiffuseMode::Ramp => draw.diffuse_from_lights(normal, coverage(amount, draw.system.boost), position),
+            DiffuseMode::Cubemap => {
+                let cube = cube_coordinate(normal);
+                sample_baked(&self.baked[cube.face as usize], cube.position)
+            }
+            DiffuseMode::Motif => sample_baked(&self.baked[0], motif_position(normal)),
+            DiffuseMode::PaintedMotif => {
+                let filter = draw.settings.ramp_filter;
+                sample_ramp_2d(&draw.material.motif, filter, motif_position(normal) * 0.5 + 0.5)
+            }
+            DiffuseMode::SphericalHarmonics => spherical_harmonics(&draw.system.spherical_harmonics, normal),
+        };
+        light * draw.system.diffuse_intensity
+    }
+
+    pub fn transfer(&self, shade_tree: ShadeTree, picture: &mut Picture<Vec4>) {
+        picture.for_each(|at, texel| {
+            let pixel = at.as_vec2() + 0.5;
+            if self.box_is_drawn(at.as_ivec2(), pixel)
+                && let Some(source) = self.transfer_fragment(shade_tree, pixel)
+            {
+                *texel = premultiplied_over(source, *texel);
+            }
+        });
+    }
+
+    /// True if the face of the box that the transfer draws covers the pixel and passes the depth test.
+    pub fn box_is_drawn(&self, at: IVec2, pixel: Vec2) -> bool {
+        let draw = self.draw;
+        // The ray by view depth: from the eye, or straight ahead.
+        let (start, end) = (draw.view_position(pixel, 0.0), draw.view_position(pixel, 1.0));
+        let origin = draw.world_from_view.transform_point3(start);
+        let direction = draw.world_from_view.transform_vector3(end - start);
+        let t0 = (draw.system.bounds_min - origin) / direction;
+        let t1 = (draw.system.bounds_max - origin) / direction;
+        let enter = t0.min(t1).max_element();
+        let exit = t0.max(t1).min_element();
+        if draw.in_view.back_faces {
+            enter <= exit && exit > 0.0
+        } else {
+            enter <= exit && enter <= draw.scene_view_depth(at)
+        }
+    }
+
+    pub fn transfer_fragment(&self, shade_tree: ShadeTree, pixel: Vec2) -> Option<Vec4> {
+        let system = &self.draw.system;
+        if shade_tree == ShadeTree::ReducedDepth {
+            let depth = self.reduced_depth.load((pixel / system.scale - system.target_origin).as_ivec2());
+            let grey = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));
+            return Some(Vec3::splat(grey).extend(1.0));
+        }
+        let is_lit = self.draw.lights_target(shade_tree);
+        let accumulated = if is_lit { self.sample_lit(pixel) } else { self.sample_target(self.accumulation, pixel) };
+        let amount = accumulated.w;
+        match shade_tree {
+            ShadeTree::Overdraw => return Some(overdraw_colour(amount * 255.0).extend(1.0)),
+            ShadeTree::Amount => return Some(Vec3::splat(amount).extend(1.0)),
+            _ => {}
+        }
+        if amount <= 0.0 {
+            return None;
+        }
+        let covered = self.coverage(amount);
+        if is_lit {
+            return Some(bounded_light(accumulated.xyz() / amount.max(1.0e-6)).extend(1.0) * covered);
+        }
+        let surface = self.surface_at(accumulated, pixel);
+        if shade_tree == ShadeTree::Normals {
+            return Some((surface.normal * 0.5 + 0.5).extend(1.0) * covered);
+        }
+        let mut light = Vec3::ZERO;
+        if shade_tree != ShadeTree::SoftScatter {
+            light += self.diffuse(&surface, amount, self.draw.view_position(pixel, -system.centre.z));
+        }
+        if shade_tree != ShadeTree::Diffuse {
+            light += self.draw.soft_scatter(amount);
+        }
+        Some(bounded_light(light).extend(1.0) * covered)
+    }
+
+    /// How much of the scene the smoke hides.
+    pub fn coverage(&self, amount: f32) -> f32 {
+        let draw = self.draw;
+        let linear = coverage(amount, draw.system.boost);
+        match draw.settings.coverage {
+            CoverageMode::Linear => linear,
+            CoverageMode::Ramp => painted_coverage(draw.sample_ramp(&draw.material.coverage_ramp, linear)),
+        }
+    }
+
+    fn surface_at(&self, accumulated: Vec4, pixel: Vec2) -> Surface {
+        self.surface(accumulated, self.beside.map_or(Vec4::ZERO, |beside| self.sample_target(beside, pixel)))
+    }
+
+    /// `surface_from_accumulation()` in lit_smoke.wgsl.
+    pub fn surface(&self, accumulated: Vec4, beside: Vec4) -> Surface {
+        let accumulate = &self.draw.settings.accumulate;
+        if self.draw.settings.is_six_way() {
+            let scale = 1.0 / beside.w.max(1.0e-6);
+            let [positive, negative] = [accumulated, beside].map(|light| light.xyz().max(Vec3::ZERO) * scale);
+            return Surface { normal: normal_from_six_way(positive, negative), six_way: SixWay { positive, negative } };
+        }
+        let weights = if accumulate.sums_weights() { beside.x } else { accumulated.w };
+        let normal = normal_from_accumulation(accumulate.encoding, accumulate.decode, accumulated.xyz(), weights);
+        Surface { normal, six_way: SixWay::default() }
+    }
+
+    pub fn amount_and_surface(&self, pixel: Vec2) -> (f32, Surface) {
+        let accumulated = self.sample_target(self.accumulation, pixel);
+        (accumulated.w, self.surface_at(accumulated, pixel))
+    }
+
+    /// What a light adds, where none is baked.
+    pub fn diffuse_from_light(&self, light: &LightUniform, surface: &Surface, covered: f32, position: Vec3) -> Vec3 {
+        match self.draw.settings.is_six_way() {
+            true => self.draw.six_way_from_light(light, &surface.six_way, position),
+            false => self.draw.diffuse_from_light(light, surface.normal, covered, position),
+        }
+    }
+}

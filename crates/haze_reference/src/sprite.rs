@@ -1,0 +1,263 @@
+//! Sprites, fragment by fragment. `shaders/lib/sprite_vertex.wgsl` and `shaders/lib/sprite_fragment.wgsl`.
+
+use glam::{IVec2, Mat3, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
+
+use super::draw::Draw;
+use haze::formula::noise_volume::{noise_coordinate, sample_noise_octaves};
+use haze::formula::normal::rotate_normal;
+use haze::formula::order::{optical_depth_in_front, order_weight};
+use haze::formula::six_way::{SixWay, rotate_six_way, six_way_from_texel};
+use haze::formula::soft_fade::soft_fade;
+use haze::formula::sprite::{
+    FlipbookFrames, checkerboard, frames_after, sample_detail, sample_flipbook, sample_sprite, sprite_uv,
+    trimmed_corner, unrotate,
+};
+use haze::formula::technique::{
+    RayInterval, density_amount, density_thickness, depth_sprite_depth, hard_fade, ray_sphere, slab_share,
+    spherical_billboard_amount, volumetric_density, volumetric_falloff, volumetric_normal,
+};
+use haze::frame::Particle;
+use haze::in_view::{Grid, Placing, SpriteInView};
+use haze::settings::{Order, Technique};
+
+/// A sprite in view space.
+pub struct SpriteSetup {
+    pub centre: Vec3,
+    pub view_depth: f32,
+    pub radius: f32,
+    pub rotation: Vec2,
+    pub amount: f32,
+    pub lod: f32,
+    pub frames: FlipbookFrames,
+    /// Squares: how far from the middle there is anything, as a share of half a side: left, down, right, up.
+    pub reach: Vec4,
+    pub age: f32,
+    /// How much the normal counts, where sprites are not sorted.
+    pub weight: f32,
+    /// Pixels that it can cover: upper left and lower right corner.
+    pub min: Vec2,
+    pub max: Vec2,
+}
+
+/// What a sprite has at a texel.
+#[derive(Clone, Copy)]
+pub struct SpriteFragment {
+    /// View space, about unit length.
+    pub normal: Vec3,
+    /// View space, of sprites that are lit by six-way maps.
+    pub six_way: SixWay,
+    pub amount: f32,
+}
+
+impl Draw<'_> {
+    /// Calls `f(texel position, sprite, fragment, texel)` for every fragment of every sprite in a band of rows,
+    /// in order. `scene` is the scene's view depth at a texel.
+    pub fn for_fragments<T>(
+        &self,
+        grid: &Grid,
+        first_row: u32,
+        band: &mut [T],
+        scene: impl Fn(IVec2) -> f32,
+        f: impl Fn(IVec2, &SpriteSetup, SpriteFragment, &mut T),
+    ) {
+        let width = grid.size.x as i32;
+        let rows = band.len() as i32 / width;
+        let (top, bottom) = (first_row as i32, first_row as i32 + rows);
+        let loops = 0..self.settings.sprite.debug_loop;
+        for particle in loops.flat_map(|_| &self.particles) {
+            let Some(sprite) = self.sprite_setup(particle, 1.0 / grid.scale) else { continue };
+            let texel = |pixel: Vec2| pixel / grid.scale - grid.origin;
+            let min = texel(sprite.min).floor().as_ivec2().max(IVec2::new(0, top));
+            let max = texel(sprite.max).ceil().as_ivec2().min(IVec2::new(width, bottom));
+            for y in min.y..max.y {
+                for x in min.x..max.x {
+                    let at = IVec2::new(x, y);
+                    let pixel = (at.as_vec2() + 0.5 + grid.origin) * grid.scale;
+                    if let Some(fragment) = self.technique_fragment(&sprite, pixel, scene(at)) {
+                        f(at, &sprite, fragment, &mut band[((y - top) * width + x) as usize]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// `sprite_vertex()`; `None` when the sprite is hidden.
+    pub fn sprite_setup(&self, particle: &Particle, texels_per_pixel: f32) -> Option<SpriteSetup> {
+        let (technique, placing) = (self.settings.technique, self.placing());
+        let sprite = placing.sprite(particle, texels_per_pixel)?;
+        let SpriteInView { centre, radius, amount, frames, lod } = sprite;
+        let view_depth = -centre.z;
+        let (min, max) = if technique.is_sphere() {
+            placing.sphere_rectangle(&sprite, texels_per_pixel)
+        } else {
+            self.square_rectangle(placing.on_screen(centre), radius)
+        };
+        Some(SpriteSetup {
+            centre,
+            view_depth,
+            radius,
+            rotation: Vec2::new(particle.rotation.cos(), particle.rotation.sin()),
+            amount,
+            lod,
+            frames,
+            reach: placing.reach(&sprite),
+            age: particle.age,
+            weight: self.order_weight(view_depth),
+            min,
+            max,
+        })
+    }
+
+    fn order_weight(&self, view_depth: f32) -> f32 {
+        let system = &self.system;
+        match self.settings.order() {
+            Order::Sorted => 1.0,
+            Order::Weighted => {
+                let (near, far) = (system.smoke_near, system.smoke_far);
+                let in_front = optical_depth_in_front(&system.front_knots, view_depth, near, far);
+                order_weight(system.depth_weight, in_front)
+            }
+        }
+    }
+
+    fn placing(&self) -> Placing<'_> {
+        Placing { view: &self.view, system: &self.system, technique: self.settings.technique, pictures: &self.pictures }
+    }
+
+    fn square_rectangle(&self, centre: Vec3, radius: f32) -> (Vec2, Vec2) {
+        // Half the diagonal holds the sprite at every rotation.
+        let reach = Vec3::new(1.0, 1.0, 0.0) * (radius * std::f32::consts::SQRT_2);
+        let (a, b) = (self.pixel_from_view(centre - reach), self.pixel_from_view(centre + reach));
+        (a.min(b), a.max(b))
+    }
+
+    /// What a sprite has at a pixel in front of a scene of this view depth; `None` where it is hidden.
+    pub fn technique_fragment(&self, sprite: &SpriteSetup, pixel: Vec2, scene: f32) -> Option<SpriteFragment> {
+        let (system, technique) = (&self.system, self.settings.technique);
+        if technique.is_sphere() {
+            return self.sphere_fragment(sprite, pixel, scene);
+        }
+        let drawn = self.placing().on_screen(sprite.centre);
+        let offset = self.view_position(pixel, -drawn.z) - drawn;
+        let local = unrotate(offset.xy(), sprite.rotation) / sprite.radius;
+        let (low, high) = (trimmed_corner(Vec2::NEG_ONE, sprite.reach), trimmed_corner(Vec2::ONE, sprite.reach));
+        if local.cmplt(low).any() || local.cmpgt(high).any() {
+            return None;
+        }
+        let uv = sprite_uv(local);
+        let detail = self.detail(sprite, uv);
+        let motion = detail.yz() * system.motion;
+        let thickness = density_thickness(sprite.view_depth, sprite.radius, self.view.near, scene);
+        let fade = match technique {
+            Technique::Hard => hard_fade(scene - sprite.view_depth),
+            Technique::DepthSpriteHard => {
+                hard_fade(scene - depth_sprite_depth(sprite.view_depth, detail.x, sprite.radius))
+            }
+            Technique::DepthSpriteSoft => {
+                self.fade_before(scene, depth_sprite_depth(sprite.view_depth, detail.x, sprite.radius))
+            }
+            // Hidden where nothing is left of the slab.
+            Technique::Density => thickness,
+            _ => self.fade_before(scene, sprite.view_depth),
+        };
+        if fade <= 0.0 {
+            return None;
+        }
+        let texel = self.sprite_texel(sprite, uv, motion);
+        let amount = match technique {
+            Technique::Density => density_amount(system.density * texel.amount * sprite.amount, thickness),
+            _ if technique.is_depth_sprite() => {
+                texel.amount * sprite.amount * fade * slab_share(sprite.view_depth, sprite.radius, self.view.near)
+            }
+            _ => texel.amount * sprite.amount * fade,
+        };
+        Some(SpriteFragment { amount, ..texel })
+    }
+
+    fn fade_before(&self, scene: f32, view_depth: f32) -> f32 {
+        let system = &self.system;
+        let curve = self.settings.soft_fade.curve;
+        soft_fade(curve, scene - view_depth, system.fade_scale, system.contrast_power, system.epsilon)
+    }
+
+    /// The detail map where a technique or setting reads it.
+    fn detail(&self, sprite: &SpriteSetup, uv: Vec2) -> Vec3 {
+        let is_read = self.settings.technique.is_depth_sprite() || self.system.motion > 0.0;
+        match &self.material.detail {
+            Some(detail) if is_read => {
+                sample_detail(detail, uv, sprite.frames, (sprite.lod - self.system.detail_lod).max(0.0))
+            }
+            _ => Vec3::ZERO,
+        }
+    }
+
+    /// What the sprite's picture has there, turned with the sprite.
+    fn sprite_texel(&self, sprite: &SpriteSetup, uv: Vec2, motion: Vec2) -> SpriteFragment {
+        let SpriteSetup { frames, lod, rotation, .. } = *sprite;
+        if let Some(maps) = self.material.six_way.as_ref().filter(|_| self.settings.is_six_way()) {
+            let negative = frames_after(frames, self.system.frame_count as i32);
+            let [positive, negative] = [frames, negative].map(|frames| sample_flipbook(maps, uv, frames, motion, lod));
+            let [of_positive, of_negative] = [positive, negative].map(|texel| six_way_from_texel(texel.xyz()));
+            let six_way = rotate_six_way(of_positive, of_negative, rotation);
+            return SpriteFragment { normal: Vec3::Z, six_way, amount: positive.w };
+        }
+        let texel = if self.settings.sprite.debug_sprite {
+            checkerboard(uv)
+        } else {
+            sample_sprite(&self.material.sprite, uv, frames, motion, lod)
+        };
+        SpriteFragment { normal: rotate_normal(texel.xyz(), rotation), six_way: SixWay::default(), amount: texel.w }
+    }
+
+    fn sphere_fragment(&self, sprite: &SpriteSetup, pixel: Vec2, scene: f32) -> Option<SpriteFragment> {
+        let system = &self.system;
+        let ray = self.view_position(pixel, 1.0);
+        let (origin, along) =
+            if self.view.orthographic > 0.5 { (ray.with_z(0.0), Vec3::NEG_Z) } else { (Vec3::ZERO, ray.normalize()) };
+        let per_depth = -1.0 / along.z;
+        let end = (scene + system.fade_through) * per_depth;
+        let interval = ray_sphere(origin, along, sprite.centre, sprite.radius, self.view.near * per_depth, end);
+        let stretch = interval.leave - interval.enter;
+        if stretch <= 0.0 || interval.axis.length_squared() >= sprite.radius * sprite.radius {
+            return None;
+        }
+        if self.settings.technique.is_volumetric() {
+            return Some(self.volumetric_fragment(sprite, scene, origin, along, interval));
+        }
+        let uv = sprite_uv(unrotate(interval.axis.xy(), sprite.rotation) / sprite.radius);
+        let texel = self.sprite_texel(sprite, uv, self.detail(sprite, uv).yz() * system.motion);
+        let density = system.billboard_density * texel.amount * sprite.amount;
+        let amount = spherical_billboard_amount(density, interval.axis.length(), sprite.radius, stretch);
+        Some(SpriteFragment { amount, ..texel })
+    }
+
+    fn volumetric_fragment(
+        &self,
+        sprite: &SpriteSetup,
+        scene: f32,
+        origin: Vec3,
+        along: Vec3,
+        interval: RayInterval,
+    ) -> SpriteFragment {
+        let system = &self.system;
+        let rotation = Mat3::from_mat4(self.view.view_from_world);
+        let step = (interval.leave - interval.enter) / system.march_steps as f32;
+        let opacity = system.volume_opacity * sprite.amount * step;
+        let (mut normal, mut transmittance) = (Vec3::ZERO, 1.0);
+        for i in 0..system.march_steps {
+            let position = origin + along * (interval.enter + (i as f32 + 0.5) * step);
+            let place = (position - sprite.centre) / sprite.radius;
+            let from_eye = rotation.transpose() * position;
+            let coordinate = noise_coordinate(from_eye, system.noise_size, system.noise_offset);
+            let texel = sample_noise_octaves(&self.material.noise, coordinate, system.noise_octaves);
+            let mut amount = density_amount(opacity, volumetric_density(texel.w, volumetric_falloff(place)));
+            if self.settings.technique == Technique::VolumetricSoft {
+                amount *= self.fade_before(scene, -position.z);
+            }
+            normal += volumetric_normal(place, rotation * texel.xyz()) * (amount * transmittance);
+            transmittance *= 1.0 - amount;
+        }
+        let total = 1.0 - transmittance;
+        SpriteFragment { normal: normal / total.max(1.0e-6), six_way: SixWay::default(), amount: total }
+    }
+}

@@ -1,3 +1,0 @@
-//! Pictures as the command line draws and writes them.
-
-pub use crate::app::export::{Frames, Watch, check_flipbook, columns, flipbook, gif, sequence, sheet};

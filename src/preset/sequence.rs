@@ -1,0 +1,133 @@
+//! Files of which there is one a frame, named by `#` for the digits of the frame's number.
+
+use std::io::{Error as IoError, ErrorKind};
+use std::path::{Path, PathBuf};
+
+use crate::error::Error;
+
+/// Most names of a folder that are looked at.
+const MOST_NAMES: usize = 100_000;
+
+/// Most frames.
+const MOST_FRAMES: usize = 10_000;
+
+/// Names like `smoke_####.ply`: at least as many digits as there are `#`, zeros before them up to that.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sequence {
+    folder: PathBuf,
+    before: String,
+    digits: usize,
+    after: String,
+}
+
+impl Sequence {
+    /// That of a path; none where its name has no `#`, or more than one run of them.
+    pub fn of(path: &Path) -> Option<Self> {
+        let name = path.file_name()?.to_str()?;
+        let start = name.find('#')?;
+        let digits = name[start..].bytes().take_while(|byte| *byte == b'#').count();
+        let after = &name[start + digits..];
+        let folder = path.parent().unwrap_or(Path::new("")).into();
+        (!after.contains('#')).then(|| Self { folder, before: name[..start].into(), digits, after: after.into() })
+    }
+
+    /// The number of the frame that a name is of.
+    fn number(&self, name: &str) -> Option<u32> {
+        let digits = name.strip_prefix(&self.before)?.strip_suffix(&self.after)?;
+        let is_number = digits.bytes().all(|byte| byte.is_ascii_digit());
+        let is_padded = digits.len() == self.digits || digits.len() > self.digits && !digits.starts_with('0');
+        digits.parse().ok().filter(|_| is_number && is_padded)
+    }
+
+    /// The file of a frame, whether it is there or not.
+    fn file(&self, number: u32) -> PathBuf {
+        self.folder.join(format!("{}{number:0digits$}{}", self.before, self.after, digits = self.digits))
+    }
+
+    /// The frames that are there, in their order.
+    fn frames(&self) -> Result<Vec<(u32, PathBuf)>, IoError> {
+        let folder = if self.folder.as_os_str().is_empty() { Path::new(".") } else { &self.folder };
+        let names = std::fs::read_dir(folder)?.take(MOST_NAMES);
+        let names = names.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+        let mut frames: Vec<_> = names.filter_map(|name| Some((self.number(&name)?, self.folder.join(name)))).collect();
+        frames.sort();
+        Ok(frames)
+    }
+}
+
+/// The frames of a path, with their numbers: one alone is frame 0.
+pub fn frame_files(path: &Path) -> Result<Vec<(u32, PathBuf)>, Error> {
+    let Some(sequence) = Sequence::of(path) else { return Ok(vec![(0, path.into())]) };
+    let io = |error| Error::Io { path: path.into(), error };
+    let frames = sequence.frames().map_err(io)?;
+    if frames.is_empty() {
+        let reason = "no such files; expected some with digits in the place of #";
+        return Err(io(IoError::new(ErrorKind::NotFound, reason)));
+    }
+    if frames.len() > MOST_FRAMES {
+        let reason = format!("{} files; expected at most {MOST_FRAMES} frames", frames.len());
+        return Err(io(IoError::new(ErrorKind::InvalidData, reason)));
+    }
+    Ok(frames)
+}
+
+/// Whether there is a file at a path, or a frame of it. What cannot be looked at is there: reading it says why.
+pub fn is_there(path: &Path) -> bool {
+    match Sequence::of(path) {
+        Some(sequence) => sequence.frames().is_ok_and(|frames| !frames.is_empty()),
+        None => match path.symlink_metadata() {
+            Ok(_) => true,
+            Err(error) => error.kind() != ErrorKind::NotFound,
+        },
+    }
+}
+
+/// Every file that a path stands for now, and the one that may follow: what is to be watched.
+pub fn places(path: &Path) -> Vec<PathBuf> {
+    let Some(sequence) = Sequence::of(path) else { return vec![path.into()] };
+    let frames = sequence.frames().unwrap_or_default();
+    let next = frames.last().map_or(1, |(last, _)| last.saturating_add(1));
+    frames.into_iter().take(MOST_FRAMES).map(|(_, file)| file).chain([sequence.file(next)]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_stand_where_the_signs_are() {
+        let sequence = Sequence::of(Path::new("sim/smoke_####.ply")).unwrap();
+        for (name, number) in [
+            ("smoke_0001.ply", Some(1)),
+            ("smoke_12345.ply", Some(12345)),
+            ("smoke_00001.ply", None),
+            ("smoke_001.ply", None),
+            ("smoke_+001.ply", None),
+            ("smoke_0001.csv", None),
+            ("smoke_.ply", None),
+            ("smoke_99999999999.ply", None),
+        ] {
+            assert_eq!(sequence.number(name), number, "{name}");
+        }
+        assert_eq!(sequence.file(7), Path::new("sim/smoke_0007.ply"));
+        assert_eq!(Sequence::of(Path::new("#.csv")).unwrap().number("120.csv"), Some(120));
+        assert!(["a.ply", "a_#_#.ply", "#/a.ply"].iter().all(|path| Sequence::of(Path::new(path)).is_none()));
+    }
+
+    #[test]
+    fn frames_are_found_in_their_order_and_the_next_is_waited_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        let pattern = path("s##.csv");
+        assert!(!is_there(&pattern) && places(&pattern) == [path("s01.csv")]);
+        let error = frame_files(&pattern).unwrap_err().to_string();
+        assert!(error.ends_with("s##.csv: no such files; expected some with digits in the place of #"), "{error}");
+        for name in ["s100.csv", "s09.csv", "s10.csv", "s1.csv", "other.csv"] {
+            std::fs::write(path(name), "").unwrap();
+        }
+        let numbers: Vec<_> = frame_files(&pattern).unwrap().into_iter().map(|(number, _)| number).collect();
+        assert_eq!(numbers, [9, 10, 100]);
+        assert!(is_there(&pattern) && places(&pattern).last() == Some(&path("s101.csv")));
+        assert!(is_there(&path("s1.csv")) && !is_there(&path("s2.csv")));
+    }
+}

@@ -1,0 +1,268 @@
+//! Numbers from the papers, worked out by hand: a formula that is written down twice can be wrong twice. Both renderers go by
+//! `formula`; what is wrong there passes every comparison of the two.
+
+use haze::formula::diffuse_bake::{
+    add_light, cube_coordinate, cube_direction, motif_normal, motif_position, spherical_harmonics, zonal_coefficients,
+};
+use haze::formula::lighting::{
+    coverage, diffuse_coordinate, distance_attenuation, soft_scatter_weight, specular_scatter_fade,
+};
+use haze::formula::normal::{accumulation_from_normal, normal_from_accumulation, rotate_normal};
+use haze::formula::soft_fade::{fade_contrast, fade_exponential, near_fade, soft_fade};
+use haze::formula::technique::{density_amount, depth_sprite_depth, ray_sphere, spherical_billboard_amount};
+use haze::formula::{colour, depth};
+use haze::glam::{Vec2, Vec3, Vec4, Vec4Swizzles, vec2, vec3};
+use haze::settings::{FadeCurve, NormalDecode, NormalEncoding};
+use haze_reference::blend_unit::premultiplied_over;
+
+/// Some roundings of f32.
+const ROUNDING: f32 = 1e-6;
+
+#[track_caller]
+fn is(found: f32, expected: f32) {
+    assert!((found - expected).abs() <= ROUNDING * expected.abs().max(1.0), "{found} is not {expected}");
+}
+
+#[track_caller]
+fn is_vector(found: Vec3, expected: Vec3) {
+    assert!(found.distance(expected) <= 3.0 * ROUNDING, "{found} is not {expected}");
+}
+
+// OTEE
+
+/// Layers of (normal, amount) over each other.
+fn accumulate(encoding: NormalEncoding, layers: &[(Vec3, f32)]) -> Vec4 {
+    let over = |target, &(normal, amount): &(Vec3, f32)| {
+        premultiplied_over(accumulation_from_normal(encoding, normal, amount, 1.0), target)
+    };
+    layers.iter().fold(Vec4::ZERO, over)
+}
+
+#[test]
+fn amounts_add_smoothly() {
+    // 1 - 0.5 · 0.5 · 0.5 · 0.5.
+    let four = accumulate(NormalEncoding::Signed, &[(Vec3::Z, 0.5); 4]);
+    is(four.w, 0.9375);
+    // "RGB is still blended": the last layer half, the one below it a quarter.
+    let two = accumulate(NormalEncoding::Signed, &[(Vec3::X, 0.5), (Vec3::Y, 0.5)]);
+    is_vector(two.xyz(), vec3(0.25, 0.5, 0.0));
+    is(two.w, 0.75);
+}
+
+#[test]
+fn normals_come_out_as_they_went_in() {
+    let normal = Vec3::ONE.normalize();
+    let decode = |decode, layers: &[(Vec3, f32)]| {
+        let accumulated = accumulate(NormalEncoding::Biased, layers);
+        normal_from_accumulation(NormalEncoding::Biased, decode, accumulated.xyz(), accumulated.w)
+    };
+    is_vector(decode(NormalDecode::Exact, &[(normal, 0.125)]), normal);
+    is_vector(decode(NormalDecode::Exact, &[(normal, 0.5); 4]), normal);
+    // The talk's own decode is right where the smoke is opaque, and points the other way where it is half that:
+    // (0.789 · 0.5) · 2 - 1 is negative.
+    is_vector(decode(NormalDecode::Literal, &[(normal, 1.0)]), normal);
+    is_vector(decode(NormalDecode::Literal, &[(normal, 0.5)]), -normal);
+    // A quarter turn counter-clockwise takes what leans right to what leans up.
+    is_vector(rotate_normal(vec3(0.6, 0.0, 0.8), Vec2::Y), vec3(0.0, 0.6, 0.8));
+}
+
+#[test]
+fn the_diffuse_ramp_is_looked_up_from_behind_to_in_front() {
+    for (to_light, place) in
+        [(Vec3::NEG_Z, 0.0), (Vec3::X, 0.5), (vec3(0.0, 0.75_f32.sqrt(), 0.5), 0.75), (Vec3::Z, 1.0)]
+    {
+        is(diffuse_coordinate(Vec3::Z, to_light), place);
+    }
+}
+
+#[test]
+fn backlight_darkens_by_a_smoothstep() {
+    // smoothstep(0.2, 0.2 + 0.4, A): x²(3 - 2x) at 0, ¼, ½, ¾ and 1.
+    for (amount, weight) in [(0.1, 0.0), (0.2, 0.0), (0.3, 0.15625), (0.4, 0.5), (0.5, 0.84375), (0.6, 1.0), (0.9, 1.0)]
+    {
+        is(soft_scatter_weight(amount, 0.2, 0.4), weight);
+    }
+}
+
+#[test]
+fn alpha_is_boosted_threefold() {
+    is(coverage(0.2, 3.0), 0.6);
+    is(coverage(0.5, 3.0), 1.0);
+}
+
+#[test]
+fn the_glow_fades_as_its_light_goes_through_the_box() {
+    for (light, fade) in [(3.0, 0.0), (4.0, 0.0), (5.0, 0.25), (8.0, 1.0), (9.0, 1.0)] {
+        is(specular_scatter_fade(light, 4.0, 8.0), fade);
+    }
+}
+
+// NV and BLOG
+
+#[test]
+fn the_linear_fade_is_the_scaled_difference() {
+    let fade = |distance| soft_fade(FadeCurve::Linear, distance, 2.0, 1.0, 0.0);
+    for (distance, expected) in [(-0.1, 0.0), (0.0, 0.0), (0.125, 0.25), (0.5, 1.0), (3.0, 1.0)] {
+        is(fade(distance), expected);
+    }
+    // The fragment is killed below the threshold.
+    is(soft_fade(FadeCurve::Linear, 0.125, 2.0, 1.0, 0.126), 0.0);
+}
+
+#[test]
+fn the_contrast_fade_is_as_printed() {
+    // Output = 0.5*pow(saturate(2*((Input > 0.5) ? 1-Input : Input)), ContrastPower);
+    // Output = (Input > 0.5) ? 1-Output : Output;
+    for (x, power, expected) in
+        [(0.25, 1.0, 0.25), (0.25, 2.0, 0.125), (0.25, 3.0, 0.0625), (0.75, 2.0, 0.875), (0.125, 0.5, 0.25)]
+    {
+        is(fade_contrast(x, power), expected);
+    }
+    for power in [0.1, 0.5, 1.0, 1.5, 2.0, 4.0, 16.0] {
+        is(fade_contrast(0.0, power), 0.0);
+        is(fade_contrast(0.5, power), 0.5);
+        is(fade_contrast(1.0, power), 1.0);
+        let mut before = 0.0;
+        for step in 0..=100_i16 {
+            let x = f32::from(step) / 100.0;
+            let fade = fade_contrast(x, power);
+            // "Symmetric at the central point (0.5, 0.5)", and continuous: it never falls.
+            is(fade + fade_contrast(1.0 - x, power), 1.0);
+            assert!(fade >= before, "{fade} at {x} after {before}, power {power}");
+            before = fade;
+        }
+    }
+}
+
+#[test]
+fn the_exponential_fade_is_not_symmetric_and_ends_short() {
+    // 1 - 2^(-2 · (2x)^c): ¾ in the middle for every c, 15/16 at the end for c = 1, 255/256 for c = 2.
+    for power in [0.5, 1.0, 2.0, 8.0] {
+        is(fade_exponential(0.0, power), 0.0);
+        is(fade_exponential(0.5, power), 0.75);
+    }
+    is(fade_exponential(0.25, 1.0), 0.5);
+    is(fade_exponential(1.0, 1.0), 0.9375);
+    is(fade_exponential(1.0, 2.0), 255.0 / 256.0);
+}
+
+#[test]
+fn the_always_fade_ends_behind_the_surface() {
+    // 1 - saturate(softness · (sprite - scene)).
+    let fade = |distance| soft_fade(FadeCurve::Always, distance, 2.0, 1.0, 0.0);
+    for (distance, expected) in [(1.0, 1.0), (0.0, 1.0), (-0.25, 0.5), (-0.5, 0.0), (-2.0, 0.0)] {
+        is(fade(distance), expected);
+    }
+}
+
+#[test]
+fn depth_is_read_back_from_what_the_projection_wrote() {
+    let coefficients = |near, far, reversed, orthographic| {
+        depth::depth_coefficients(&depth::DepthConvention { near, far, reversed, orthographic })
+    };
+    // NV's projection writes f(z - n) / ((f - n)z). It prints z = fn / (f - zbuf(f + n)); at the far plane, 1, that is
+    // negative.
+    let standard = coefficients(1.0, 10.0, false, false);
+    for z in [1.0, 2.0, 4.0, 10.0] {
+        is(depth::view_depth_from_ndc_depth(10.0 * (z - 1.0) / (9.0 * z), standard), z);
+    }
+    is(depth::view_depth_from_ndc_depth(0.25, coefficients(0.5, f32::INFINITY, true, false)), 2.0);
+    is(depth::view_depth_from_ndc_depth(0.25, coefficients(2.0, 10.0, false, true)), 4.0);
+    is(depth::view_depth_from_ndc_depth(0.25, coefficients(2.0, 10.0, true, true)), 8.0);
+}
+
+#[test]
+fn sprites_near_the_camera_fade() {
+    // By a smoothstep.
+    for (view_depth, fade) in [(0.5, 0.0), (1.0, 0.0), (1.5, 0.15625), (2.0, 0.5), (3.0, 1.0), (9.0, 1.0)] {
+        is(near_fade(view_depth, 1.0, 3.0), fade);
+    }
+}
+
+#[test]
+fn volumes_let_through_what_beer_and_lambert_say() {
+    // Spherical billboards: 1 - exp(-ρ (1 - d/r) Δs). ln 2 of density and metres lets half through.
+    is(spherical_billboard_amount(std::f32::consts::LN_2, 0.0, 1.0, 1.0), 0.5);
+    is(spherical_billboard_amount(std::f32::consts::LN_2, 0.5, 1.0, 2.0), 0.5);
+    is(spherical_billboard_amount(5.0, 1.0, 1.0, 1.0), 0.0);
+    is(density_amount(std::f32::consts::LN_2, 2.0), 0.75);
+}
+
+// MS
+
+#[test]
+fn rays_meet_spheres_where_they_should() {
+    // Enter, leave, and how far the ray passes by.
+    let ahead = |centre, near, scene| {
+        let found = ray_sphere(Vec3::ZERO, Vec3::NEG_Z, centre, 1.0, near, scene);
+        vec3(found.enter, found.leave, found.axis.length())
+    };
+    let deep = vec3(0.0, 0.0, -5.0);
+    is_vector(ahead(deep, 0.0, 100.0), vec3(4.0, 6.0, 0.0));
+    // 0.6 off the axis the chord is 2 · 0.8.
+    is_vector(ahead(deep + vec3(0.6, 0.0, 0.0), 0.0, 100.0), vec3(4.2, 5.8, 0.6));
+    // "The rear exit point" becomes the scene's depth; the front one the near plane.
+    is_vector(ahead(deep, 4.5, 5.5), vec3(4.5, 5.5, 0.0));
+    // A texel that stands out by half a radius is that much nearer.
+    is(depth_sprite_depth(5.0, 0.5, 2.0), 4.0);
+}
+
+// light
+
+#[test]
+fn lamps_fall_off_with_the_square_of_the_distance() {
+    is(distance_attenuation(4.0, 0.0, 0.0), 0.25);
+    // Half of the way to its range a lamp is windowed by (1 - 1/16)²; there it is out.
+    is(distance_attenuation(4.0, 0.25, 0.0), 0.25 * 0.878_906_25);
+    is(distance_attenuation(16.0, 0.25, 0.0), 0.0);
+}
+
+#[test]
+fn cube_directions_are_found_again() {
+    let axes = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
+    for (face, axis) in (0..).zip(axes) {
+        assert_eq!(cube_direction(face, Vec2::ZERO), axis);
+        for position in [Vec2::ZERO, vec2(0.3, -0.7), vec2(-0.9, 0.2), vec2(0.99, 0.98)] {
+            // Of any length.
+            let found = cube_coordinate(cube_direction(face, position) * 7.5);
+            assert_eq!(found.face, face, "{position} of {axis}");
+            assert!(found.position.distance(position) < ROUNDING, "{position} of {axis}");
+        }
+    }
+}
+
+#[test]
+fn motif_normals_are_found_again() {
+    is_vector(motif_normal(Vec2::ZERO), Vec3::Z);
+    is_vector(motif_normal(vec2(0.6, 0.0)), vec3(0.6, 0.0, 0.8));
+    is_vector(motif_normal(vec2(3.0, 4.0)), vec3(0.6, 0.8, 0.0));
+    assert_eq!(motif_position(vec3(0.6, 0.0, 0.8)), vec2(0.6, 0.0));
+}
+
+#[test]
+fn harmonics_hold_what_is_known_of_them() {
+    // Ramamoorthi and Hanrahan, "An efficient representation for irradiance environment maps", 2001, eq. 8: the clamped cosine
+    // has A = π, 2π/3 and π/4; a zonal coefficient is A_l · sqrt((2l + 1) / 4π).
+    let lambert = zonal_coefficients(|cos| Vec3::splat(cos.max(0.0)));
+    for (found, expected) in lambert.into_iter().zip([0.886_227, 1.023_327, 0.495_416]) {
+        // A sum of 256 steps.
+        assert!((found.x - expected).abs() < 1e-4, "{found} is not {expected}");
+    }
+    // Even light is even.
+    let mut even = [Vec4::ZERO; 9];
+    add_light(&mut even, &zonal_coefficients(|_| Vec3::ONE), vec3(0.6, 0.0, 0.8), vec3(1.0, 0.5, 0.25));
+    for normal in [Vec3::X, Vec3::NEG_Y, vec3(0.48, 0.64, -0.6)] {
+        assert!(spherical_harmonics(&even, normal).distance(vec3(1.0, 0.5, 0.25)) < 1e-4);
+    }
+}
+
+// colour
+
+#[test]
+fn srgb_is_the_standards() {
+    // IEC 61966-2-1.
+    for (linear, encoded) in [(0.0, 0.0), (0.001, 0.012_92), (0.214_041, 0.5), (0.5, 0.735_357), (1.0, 1.0)] {
+        is(colour::srgb_from_linear(linear), encoded);
+        is(colour::linear_from_srgb(encoded), linear);
+    }
+}

@@ -1,0 +1,243 @@
+//! Files from outside, whole and mangled: nothing panics, nothing goes beyond its limits, and what is refused is refused in one
+//! line that names the file. `scripts/fuzz` does the same for longer.
+//!
+//! `tests/corpus/KIND/` holds the files to begin with; `good_…` are read, `bad_…` are refused.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use haze::noise::NoiseVolume;
+use haze::picture::read_png;
+use haze::preset::{PictureFolders, Preset};
+use haze::ramp::Ramp;
+use haze::sprite::{Sprite, SpriteLayout};
+use haze::{Error, emitter};
+use haze_author::noise::NoiseRecipe;
+use haze_author::particle_files;
+use haze_author::ramp::bake::RampRecipe;
+use haze_author::ramp::motif::MotifRecipe;
+use haze_author::sprite::bake::SpriteRecipe;
+use proptest::prelude::*;
+use proptest::sample::{Index, select};
+
+/// Reads a file as what its folder in the corpus says, and makes of it what the program would.
+fn read(kind: &str, path: &Path) -> Result<(), Error> {
+    match kind {
+        "preset" => {
+            let preset = Preset::load(path.to_str().unwrap())?;
+            preset.load_materials(path)?;
+            let caches = particle_files::load_caches(&preset, path, &PictureFolders::beside(path))?;
+            let mut particles = Vec::new();
+            let mut alive = 0;
+            for (system, cache) in preset.systems.iter().zip(&caches) {
+                // Birth times are jittered, so a few more may be met than live.
+                particle_files::particles(system, cache.as_ref(), preset.time, &mut particles);
+                alive += particles.len();
+            }
+            assert!(alive <= emitter::MAX_PARTICLES as usize + 64, "{alive} particles");
+        }
+        "ramp" => {
+            let recipe = RampRecipe::load(path)?;
+            if recipe.width * recipe.height <= 1 << 12 {
+                recipe.bake()?;
+            }
+        }
+        "motif" => {
+            let recipe = MotifRecipe::load(path)?;
+            if recipe.size <= 64 {
+                recipe.bake()?;
+            }
+        }
+        "sprite" => {
+            let recipe = SpriteRecipe::load(path)?;
+            if recipe.size <= 16 {
+                recipe.bake_frame(0.5);
+            }
+        }
+        "noise" => {
+            let recipe = NoiseRecipe::load(path)?;
+            if recipe.size <= 16 {
+                recipe.bake()?;
+            }
+        }
+        "png" => {
+            let picture = read_png(path)?;
+            assert!(picture.as_bytes().len() <= 64 << 20, "{} bytes", picture.as_bytes().len());
+            assert!(picture.width().max(picture.height()) <= 4096);
+            Ramp::from_picture(&picture);
+            // A picture that is no sprite and no noise is refused as such, in a line too.
+            let picture = picture.to_rgba8();
+            for refused in [
+                Sprite::from_picture(path, &picture, SpriteLayout::default()).err(),
+                NoiseVolume::from_picture(path, &picture).err(),
+            ] {
+                refused.iter().for_each(|error| check_line(path, error));
+            }
+        }
+        "csv" | "ply" => {
+            let content = std::fs::read(path).unwrap();
+            let frame = particle_files::parse(Path::new(&format!("a.{kind}")), &content, 1000);
+            let frame = frame.map_err(|mistake| mistake.of(path))?;
+            assert!(frame.particles().len() <= 1000, "{} particles", frame.particles().len());
+            assert!(frame.particles().iter().all(|particle| particle.position.is_finite() && particle.radius >= 0.0));
+        }
+        other => panic!("{other} is no kind of file"),
+    }
+    Ok(())
+}
+
+/// One line, of sane length, that names the file and holds no structs of the program.
+fn check_line(path: &Path, error: &Error) {
+    let line = error.to_string();
+    assert!(line.contains(path.to_str().unwrap()), "{line}");
+    assert!(!line.chars().any(char::is_control), "{line:?}");
+    assert!(line.len() < 2000, "{} bytes: {line}", line.len());
+    assert!(!line.contains(" { ") && !line.contains("Error"), "{line}");
+}
+
+/// A file of the corpus.
+#[derive(Clone, Debug)]
+struct Sample {
+    kind: String,
+    name: String,
+    bytes: Vec<u8>,
+}
+
+fn corpus() -> Vec<Sample> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus");
+    let entries = |folder: &Path| -> Vec<PathBuf> {
+        let mut entries: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+        entries.sort();
+        entries
+    };
+    let name = |path: &Path| path.file_name().unwrap().to_str().unwrap().to_owned();
+    let sample = |path: &PathBuf| Sample {
+        kind: name(path.parent().unwrap()),
+        name: name(path),
+        bytes: std::fs::read(path).unwrap(),
+    };
+    entries(&root).iter().flat_map(|folder| entries(folder)).map(|path| sample(&path)).collect()
+}
+
+#[derive(Clone, Debug)]
+enum Mutation {
+    /// Some bits of a byte.
+    Flip(Index, u8),
+    /// The end is lost.
+    Truncate(Index),
+    /// A part of another file, in place of what was there.
+    Splice(Index, Vec<u8>),
+    /// A part once more.
+    Repeat(Index, usize),
+    /// What readers stumble over.
+    Insert(Index, &'static [u8]),
+}
+
+const STUMBLING: &[&[u8]] = &[
+    b"-1",
+    b"0",
+    b"1e39",
+    b"1e-46",
+    b"4294967296",
+    b"99999999999999999999",
+    b"null",
+    b"true",
+    b"\"\"",
+    b"[]",
+    b"{}",
+    b"[[[[",
+    b",",
+    b"\n",
+    b"\0",
+    b"\x1b[2J",
+    b"\\u0000",
+    b"\\ud800",
+    b"\xff",
+    b"\xef\xbb\xbf",
+    b"\xe2\x80\xae",
+    b"\xff\xff\xff\xff",
+    b"\x7f\xff\xff\xff",
+    b"\0\0\x10\0",
+];
+
+fn mutations(corpus: &[Sample]) -> impl Strategy<Value = Vec<Mutation>> + use<> {
+    let others: Vec<_> = corpus.iter().map(|sample| sample.bytes.clone()).filter(|bytes| !bytes.is_empty()).collect();
+    let part = (select(others), any::<Index>(), 1_usize..64).prop_map(|(bytes, at, length)| {
+        let at = at.index(bytes.len());
+        bytes[at..bytes.len().min(at + length)].to_vec()
+    });
+    let mutation = prop_oneof![
+        4 => (any::<Index>(), 1_u8..).prop_map(|(at, bits)| Mutation::Flip(at, bits)),
+        1 => any::<Index>().prop_map(Mutation::Truncate),
+        2 => (any::<Index>(), part).prop_map(|(at, part)| Mutation::Splice(at, part)),
+        1 => (any::<Index>(), 1_usize..64).prop_map(|(at, length)| Mutation::Repeat(at, length)),
+        4 => (any::<Index>(), select(STUMBLING)).prop_map(|(at, bytes)| Mutation::Insert(at, bytes)),
+    ];
+    proptest::collection::vec(mutation, 1..6)
+}
+
+fn mutate(bytes: &mut Vec<u8>, mutation: &Mutation) {
+    let place = |at: &Index, bytes: &Vec<u8>| at.index(bytes.len() + 1);
+    match mutation {
+        Mutation::Flip(at, bits) => {
+            let at = place(at, bytes);
+            bytes.get_mut(at).into_iter().for_each(|byte| *byte ^= bits);
+        }
+        Mutation::Truncate(at) => bytes.truncate(place(at, bytes)),
+        Mutation::Splice(at, part) => {
+            let at = place(at, bytes);
+            bytes.splice(at..bytes.len().min(at + part.len()), part.iter().copied());
+        }
+        Mutation::Repeat(at, length) => {
+            let at = place(at, bytes);
+            let part = bytes[at..bytes.len().min(at + length)].to_vec();
+            bytes.splice(at..at, part);
+        }
+        Mutation::Insert(at, part) => {
+            let at = place(at, bytes);
+            bytes.splice(at..at, part.iter().copied());
+        }
+    }
+}
+
+#[test]
+fn the_corpus_is_read_or_refused_as_it_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let corpus = corpus();
+    assert!(corpus.len() > 30);
+    for Sample { kind, name, bytes } in corpus {
+        let path = folder.path().join(format!("{kind}_{name}"));
+        std::fs::write(&path, bytes).unwrap();
+        match read(&kind, &path) {
+            Ok(()) => assert!(name.starts_with("good"), "{kind}/{name} is read"),
+            Err(error) => {
+                println!("{kind}/{name}: {}", error.to_string().replace(path.to_str().unwrap(), "FILE"));
+                check_line(&path, &error);
+                assert!(name.starts_with("bad"), "{kind}/{name}: {error}");
+            }
+        }
+    }
+}
+
+#[test]
+fn mangled_files_are_read_or_refused_in_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mangled");
+    let corpus = corpus();
+    let strategy = (select(corpus.clone()), mutations(&corpus));
+    // A failure is printed whole; it becomes a file of the corpus.
+    let config = ProptestConfig { failure_persistence: None, ..ProptestConfig::default() };
+    proptest!(config, |((sample, mutations) in strategy)| {
+        let mut bytes = sample.bytes.clone();
+        mutations.iter().for_each(|mutation| mutate(&mut bytes, mutation));
+        std::fs::write(&path, &bytes).unwrap();
+        let started = Instant::now();
+        if let Err(error) = read(&sample.kind, &path) {
+            check_line(&path, &error);
+        }
+        // Milliseconds on a machine that has nothing else to do.
+        prop_assert!(started.elapsed() < Duration::from_secs(20), "{:?}", started.elapsed());
+    });
+}

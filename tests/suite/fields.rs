@@ -1,0 +1,153 @@
+//! No field is forgotten: what a preset or recipe file may hold is what the walk over its fields meets.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::collections::BTreeSet;
+use std::ops::RangeInclusive;
+
+use haze::glam::Vec3;
+use haze::preset::{Preset, PresetSystem};
+use haze::settings::{Choice, FieldVisitor, Fields, PictureRole};
+use haze::{Light, Settings};
+use haze_author::noise::NoiseRecipe;
+use haze_author::ramp::bake::RampRecipe;
+use haze_author::ramp::motif::MotifRecipe;
+use haze_author::sprite::bake::SpriteRecipe;
+use serde_json::Value;
+
+/// The paths of all fields that a walk meets.
+#[derive(Default)]
+struct Met {
+    path: Vec<String>,
+    fields: BTreeSet<String>,
+}
+
+impl Met {
+    fn field(&mut self, name: &str) {
+        let path = [&self.path[..], &[name.to_owned()]].concat().join(".");
+        assert!(self.fields.insert(path.clone()), "{path} is met twice");
+    }
+
+    fn nested(&mut self, step: String, fields: &mut dyn Fields) {
+        self.path.push(step);
+        fields.visit(self);
+        self.path.pop();
+    }
+}
+
+impl FieldVisitor for Met {
+    fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, _: &'static str) {
+        assert!(range.contains(value), "{name}: the default is out of its range");
+        self.field(name);
+    }
+    fn integer(&mut self, name: &'static str, value: &mut u32, range: RangeInclusive<u32>, _: &'static str) {
+        assert!(range.contains(value), "{name}: the default is out of its range");
+        self.field(name);
+    }
+    fn vector(&mut self, name: &'static str, _: &mut Vec3, _: RangeInclusive<f32>, _: &'static str) {
+        self.field(name);
+    }
+    fn srgb(&mut self, name: &'static str, _: &mut [u8; 3]) {
+        self.field(name);
+    }
+    fn flag(&mut self, name: &'static str, _: &mut bool) {
+        self.field(name);
+    }
+    fn choice(&mut self, name: &'static str, value: &mut dyn Choice) {
+        let was = value.index();
+        for index in 0..value.names().len() {
+            value.set_index(index);
+            assert_eq!(value.index(), index, "{name}");
+        }
+        value.set_index(usize::MAX);
+        assert_eq!(value.index(), value.names().len() - 1, "{name}: beyond the last is no choice");
+        value.set_index(was);
+        self.field(name);
+    }
+    fn text(&mut self, name: &'static str, _: &mut String) {
+        self.field(name);
+    }
+    fn picture(&mut self, name: &'static str, _: &mut String, _: PictureRole) {
+        self.field(name);
+    }
+    fn particles(&mut self, name: &'static str, _: &mut String) {
+        self.field(name);
+    }
+    fn seed(&mut self, name: &'static str, _: &mut u32) {
+        self.field(name);
+    }
+    fn group(&mut self, name: &'static str, fields: &mut dyn Fields) {
+        self.nested(name.to_owned(), fields);
+    }
+    fn item(&mut self, name: &'static str, index: usize, fields: &mut dyn Fields) {
+        self.nested(format!("{name}.{index}"), fields);
+    }
+}
+
+/// The paths of all fields in a file. A list of numbers is one field.
+fn written(value: &Value, path: &str, fields: &mut BTreeSet<String>) {
+    let join = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
+    match value {
+        Value::Object(entries) => entries.iter().for_each(|(name, value)| written(value, &join(name), fields)),
+        Value::Array(items) if !items.iter().all(Value::is_number) || items.is_empty() => {
+            items.iter().enumerate().for_each(|(index, value)| written(value, &join(&index.to_string()), fields));
+        }
+        _ => {
+            fields.insert(path.to_owned());
+        }
+    }
+}
+
+/// Fields that are only met, and fields that are only written.
+fn forgotten(value: &mut (impl Fields + serde::Serialize)) -> (Vec<String>, Vec<String>) {
+    let json = serde_json::to_value(&*value).unwrap();
+    let (mut met, mut file) = (Met::default(), BTreeSet::new());
+    value.visit(&mut met);
+    written(&json, "", &mut file);
+    assert!(file.len() > 2);
+    assert_eq!(json, serde_json::to_value(&*value).unwrap(), "the walk changes what it meets");
+    (met.fields.difference(&file).cloned().collect(), file.difference(&met.fields).cloned().collect())
+}
+
+#[test]
+fn every_field_of_every_file_is_met() {
+    let none = (Vec::new(), Vec::new());
+    let mut preset = Preset {
+        lights: vec![Light::default(), Light::default()],
+        systems: vec![PresetSystem::default()],
+        ..Preset::default()
+    };
+    assert_eq!(forgotten(&mut preset), none);
+    let file = |name: &str| std::fs::read_to_string(format!("{}/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    let recipe = |name| file(name);
+    let puff: SpriteRecipe = serde_json::from_str(&recipe("sprites/puff.sprite.json")).unwrap();
+    // What is not used is not written.
+    let mut used =
+        SpriteRecipe { version: 2, length: 0.1, upright: 0.1, lumps: 0.1, travel: 0.1, tolerance: 1, ..puff };
+    assert_eq!(forgotten(&mut used), none);
+    assert_eq!(forgotten(&mut serde_json::from_str::<NoiseRecipe>(&recipe("sprites/fbm.noise.json")).unwrap()), none);
+    assert_eq!(
+        forgotten(&mut serde_json::from_str::<RampRecipe>(&recipe("tests/corpus/ramp/good_rich")).unwrap()),
+        none
+    );
+    assert_eq!(
+        forgotten(&mut serde_json::from_str::<MotifRecipe>(&recipe("ramps/motif_studio.motif.json")).unwrap()),
+        none
+    );
+}
+
+#[test]
+fn a_forgotten_field_is_seen() {
+    /// A walk that leaves out what `Settings` has besides its boost.
+    #[derive(serde::Serialize)]
+    struct Forgetful(Settings);
+    impl Fields for Forgetful {
+        fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
+            visitor.number("boost", &mut self.0.boost, 0.0..=16.0, "");
+            visitor.number("bost", &mut self.0.boost, 0.0..=16.0, "");
+        }
+    }
+    let (invented, left_out) = forgotten(&mut Forgetful(Settings::default()));
+    assert_eq!(invented, ["bost"]);
+    assert!(left_out.contains(&"soft_fade.fade_scale".to_owned()) && left_out.len() > 30, "{left_out:?}");
+}
