@@ -1,4 +1,4 @@
-//! `cargo bench`: what smoke costs a CPU: the emitter, the sort and upload of `prepare`, the reference renderer, bakes.
+//! Benchmarks of CPU work (`cargo bench`): emitter, sort and upload in `prepare`, reference renderer, bakes.
 
 #![allow(clippy::unwrap_used, reason = "a benchmark fails by panicking")]
 
@@ -16,7 +16,7 @@ use haze_demo::shot::Shot;
 
 const COUNTS: [u32; 3] = [1_000, 10_000, 100_000];
 
-/// So many particles alive, at a moment.
+/// Returns an emitter and a time, in seconds, at which `count` particles are alive.
 fn emitter(count: u32) -> (Emitter, f32) {
     let emitter = Emitter { rate: count as f32, duration: 1.0, lifetime: 100.0, ..Emitter::default() };
     (emitter, 10.0)
@@ -34,7 +34,7 @@ fn evaluate(criterion: &mut Criterion) {
     }
 }
 
-/// All that a steady frame costs the CPU but recording the host's pass: `sorted` less `weighted` is the sort.
+/// CPU time of `prepare` in a steady frame. The difference between `sorted` and `weighted` is the sort.
 fn prepare(criterion: &mut Criterion) {
     let gpu = Headless::new().unwrap();
     let (device, queue) = (&gpu.device, &gpu.queue);
@@ -46,7 +46,7 @@ fn prepare(criterion: &mut Criterion) {
         for count in COUNTS {
             let mut settings = Settings::default();
             settings.accumulate.order = order;
-            // Small sprites: what is drawn waits for no one here.
+            // Small sprites keep the GPU work short, so that it does not delay the next `prepare`.
             settings.sprite.size = 0.02;
             let mut renderer = Renderer::new(device, queue, &Descriptor::default()).unwrap();
             let pictures = haze::preset::MaterialNames::default().load(Path::new("")).unwrap();

@@ -1,4 +1,4 @@
-//! haze inside a host that has its own device, depth buffer and pass, and no window. Writes `embed_headless.png`.
+//! Embeds haze in a host without a window: own device, depth buffer and render pass. Writes `embed_headless.png`.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // The host: a device, targets, a camera.
+    // The host creates a device, targets and a camera.
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))?;
     let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         })
     };
     let colour = target(COLOUR, wgpu::TextureUsages::COPY_SRC);
-    let depth = target(DEPTH, wgpu::TextureUsages::TEXTURE_BINDING); // haze samples it
+    let depth = target(DEPTH, wgpu::TextureUsages::TEXTURE_BINDING); // haze reads the depth
     let (colour_view, depth_view) = (colour.create_view(&Default::default()), depth.create_view(&Default::default()));
     let view = View::new(
         rh::view::look_at_mat4(vec3(0.0, 1.6, 6.5), vec3(0.0, 1.7, 0.0), Vec3::Y),
@@ -37,12 +37,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         SIZE,
     );
 
-    // haze, once.
+    // haze setup, done once.
     let descriptor = Descriptor { color_format: COLOUR, depth_format: Some(DEPTH), ..Descriptor::default() };
     let mut smoke = Renderer::new(&device, &queue, &descriptor)?;
     let material = smoke.create_material(&device, &queue, &MaterialNames::default().load(Path::new(""))?)?;
 
-    // haze, every frame.
+    // haze work of one frame.
     let mut particles = Vec::new();
     haze::emitter::Emitter::default().evaluate(8.0, &mut particles);
     let (settings, orange) = (Settings::default(), vec3(1.0, 0.7, 0.4));
@@ -53,7 +53,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ..Frame::new(view, SceneDepth::Buffer(&depth_view))
     };
     let mut encoder = device.create_command_encoder(&Default::default());
-    // The host's own scene is nothing but a dark wall across the view, that the smoke reaches into.
+    // The host's scene is only a dark wall across the view; the smoke intersects it.
     let wall = view.clip_from_view.project_point3(vec3(0.0, 0.0, -6.6)).z;
     drop(host_pass(
         &mut encoder,
@@ -64,7 +64,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     smoke.prepare(&device, &queue, &mut encoder, &frame)?;
     smoke.render(&mut host_pass(&mut encoder, &colour_view, &depth_view, None));
 
-    // The host: submit, read back, save. Rows of 640 pixels need no padding.
+    // The host submits, reads back and saves. Rows of 640 pixels are a multiple of 256 bytes, so they need no padding.
     let size = u64::from(4 * SIZE.x * SIZE.y);
     let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
     let read = device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false });
@@ -78,7 +78,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// A pass on the host's targets. Where haze draws, the depth buffer is attached read-only: no `depth_ops`.
+/// Begins a pass on the host's targets. With `clear` it writes colour and depth; without, the depth buffer is attached
+/// read-only (no `depth_ops`), as haze requires.
 fn host_pass<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     colour: &wgpu::TextureView,

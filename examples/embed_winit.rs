@@ -1,4 +1,4 @@
-//! haze in a window, with the camera going round the smoke. Close the window or press Escape to end.
+//! Embeds haze in a winit window; the camera orbits the smoke. Close the window or press Escape to quit.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -32,7 +32,7 @@ struct App {
     failure: Option<Failure>,
 }
 
-/// What any wgpu program has, and the four things of haze's: a renderer, a material, particles, settings.
+/// State of any wgpu program, and haze's four parts: renderer, material, particles, settings.
 struct Host {
     window: Arc<Window>,
     surface: wgpu::Surface<'static>,
@@ -99,7 +99,7 @@ impl Host {
         let mut configuration = surface
             .get_default_config(&adapter, size.width.max(1), size.height.max(1))
             .ok_or("the adapter cannot draw to this window")?;
-        // Linear light in the shader, sRGB on the screen.
+        // Shaders write linear light; the hardware encodes it to sRGB.
         configuration.format = configuration.format.add_srgb_suffix();
         surface.configure(&device, &configuration);
 
@@ -125,7 +125,7 @@ impl Host {
     }
 
     fn resize(&mut self, size: UVec2) {
-        // A minimised window has no size, and configuring a surface to it panics.
+        // A minimised window has size 0, and configuring a surface of size 0 panics.
         if size.min_element() > 0 {
             (self.configuration.width, self.configuration.height) = (size.x, size.y);
             self.surface.configure(&self.device, &self.configuration);
@@ -142,7 +142,7 @@ impl Host {
                 self.resize(UVec2::new(self.configuration.width, self.configuration.height));
                 return Ok(());
             }
-            // Occluded, or too slow: try again with the next frame.
+            // Occluded or timed out: try again with the next frame.
             _ => {
                 self.window.request_redraw();
                 return Ok(());
@@ -172,7 +172,7 @@ impl Host {
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let colour = target.texture.create_view(&Default::default());
         let clear = wgpu::Color { r: 0.02, g: 0.03, b: 0.05, a: 1.0 };
-        // The host's scene would be drawn in this pass; here it is empty.
+        // The host draws its opaque scene in this pass; this example has none.
         drop(begin(&mut encoder, &colour, &self.depth, Some(clear)));
         self.smoke.prepare(&self.device, &self.queue, &mut encoder, &frame)?;
         self.smoke.render(&mut begin(&mut encoder, &colour, &self.depth, None));
@@ -198,7 +198,7 @@ fn depth_target(device: &wgpu::Device, configuration: &wgpu::SurfaceConfiguratio
     texture.create_view(&Default::default())
 }
 
-/// A pass on the window. With a clear colour it writes depth; without, depth is read-only, as haze needs it.
+/// Begins a pass on the window. With `clear` it writes colour and depth; without, depth is read-only, as haze requires.
 fn begin<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     colour: &wgpu::TextureView,

@@ -1,5 +1,5 @@
-//! The editor of gradients in a window of its own: give it a `*.ramp.json` to begin with. It changes no file; Copy gives its stops as
-//! text.
+//! Shows haze's gradient editor in its own window. Takes the path of a `*.ramp.json` to start with. Changes no file:
+//! *Copy* copies the stops as text.
 
 use std::path::PathBuf;
 
@@ -18,14 +18,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// What a step was called, and the recipe on its other side.
+/// Name of an undo step, and the recipe to restore.
 type Step = (&'static str, RampRecipe);
 
 #[derive(Default)]
 struct App {
     editor: GradientEditor,
     recipe: RampRecipe,
-    /// The recipe as it was when the step that is being made began.
+    /// Recipe before the edit that is in progress.
     before: Option<RampRecipe>,
     past: Vec<Step>,
     future: Vec<Step>,
@@ -58,7 +58,7 @@ impl eframe::App for App {
     }
 }
 
-/// A button that takes a step back, or forth again, and its key.
+/// Shows the *Undo* or *Redo* button; moves one step from `from` to `to` when it is clicked or its shortcut is pressed.
 fn step(
     ui: &mut egui::Ui,
     name: &str,
