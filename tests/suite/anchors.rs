@@ -1,5 +1,5 @@
-//! Numbers from the papers, worked out by hand: a formula that is written down twice can be wrong twice. Both renderers go by
-//! `formula`; what is wrong there passes every comparison of the two.
+//! Values from the papers, worked out by hand. Both renderers use `formula`, so an error there passes every comparison
+//! of the two.
 
 use haze::formula::diffuse_bake::{
     add_light, cube_coordinate, cube_direction, motif_normal, motif_position, spherical_harmonics, zonal_coefficients,
@@ -15,7 +15,7 @@ use haze::glam::{Vec2, Vec3, Vec4, Vec4Swizzles, vec2, vec3};
 use haze::settings::{FadeCurve, NormalDecode, NormalEncoding};
 use haze_reference::blend_unit::premultiplied_over;
 
-/// Some roundings of f32.
+/// A few roundings of f32.
 const ROUNDING: f32 = 1e-6;
 
 #[track_caller]
@@ -30,7 +30,7 @@ fn is_vector(found: Vec3, expected: Vec3) {
 
 // OTEE
 
-/// Layers of (normal, amount) over each other.
+/// Accumulates layers of (normal, amount), each over those before.
 fn accumulate(encoding: NormalEncoding, layers: &[(Vec3, f32)]) -> Vec4 {
     let over = |target, &(normal, amount): &(Vec3, f32)| {
         premultiplied_over(accumulation_from_normal(encoding, normal, amount, 1.0), target)
@@ -39,18 +39,18 @@ fn accumulate(encoding: NormalEncoding, layers: &[(Vec3, f32)]) -> Vec4 {
 }
 
 #[test]
-fn amounts_add_smoothly() {
+fn amounts_add_like_opacities() {
     // 1 - 0.5 · 0.5 · 0.5 · 0.5.
     let four = accumulate(NormalEncoding::Signed, &[(Vec3::Z, 0.5); 4]);
     is(four.w, 0.9375);
-    // "RGB is still blended": the last layer half, the one below it a quarter.
+    // "RGB is still blended": the last layer counts half, the one below it a quarter.
     let two = accumulate(NormalEncoding::Signed, &[(Vec3::X, 0.5), (Vec3::Y, 0.5)]);
     is_vector(two.xyz(), vec3(0.25, 0.5, 0.0));
     is(two.w, 0.75);
 }
 
 #[test]
-fn normals_come_out_as_they_went_in() {
+fn normals_survive_accumulation_and_decoding() {
     let normal = Vec3::ONE.normalize();
     let decode = |decode, layers: &[(Vec3, f32)]| {
         let accumulated = accumulate(NormalEncoding::Biased, layers);
@@ -58,16 +58,16 @@ fn normals_come_out_as_they_went_in() {
     };
     is_vector(decode(NormalDecode::Exact, &[(normal, 0.125)]), normal);
     is_vector(decode(NormalDecode::Exact, &[(normal, 0.5); 4]), normal);
-    // The talk's own decode is right where the smoke is opaque, and points the other way where it is half that:
-    // (0.789 · 0.5) · 2 - 1 is negative.
+    // The talk's literal decode is right for opaque smoke, and reversed for half of it: (0.789 · 0.5) · 2 - 1 is
+    // negative.
     is_vector(decode(NormalDecode::Literal, &[(normal, 1.0)]), normal);
     is_vector(decode(NormalDecode::Literal, &[(normal, 0.5)]), -normal);
-    // A quarter turn counter-clockwise takes what leans right to what leans up.
+    // A quarter turn counter-clockwise turns a normal that leans right into one that leans up.
     is_vector(rotate_normal(vec3(0.6, 0.0, 0.8), Vec2::Y), vec3(0.0, 0.6, 0.8));
 }
 
 #[test]
-fn the_diffuse_ramp_is_looked_up_from_behind_to_in_front() {
+fn diffuse_coordinate_runs_from_behind_to_in_front() {
     for (to_light, place) in
         [(Vec3::NEG_Z, 0.0), (Vec3::X, 0.5), (vec3(0.0, 0.75_f32.sqrt(), 0.5), 0.75), (Vec3::Z, 1.0)]
     {
@@ -76,7 +76,7 @@ fn the_diffuse_ramp_is_looked_up_from_behind_to_in_front() {
 }
 
 #[test]
-fn backlight_darkens_by_a_smoothstep() {
+fn soft_scatter_weight_is_a_smoothstep_of_the_amount() {
     // smoothstep(0.2, 0.2 + 0.4, A): x²(3 - 2x) at 0, ¼, ½, ¾ and 1.
     for (amount, weight) in [(0.1, 0.0), (0.2, 0.0), (0.3, 0.15625), (0.4, 0.5), (0.5, 0.84375), (0.6, 1.0), (0.9, 1.0)]
     {
@@ -85,13 +85,13 @@ fn backlight_darkens_by_a_smoothstep() {
 }
 
 #[test]
-fn alpha_is_boosted_threefold() {
+fn coverage_is_the_amount_times_the_boost() {
     is(coverage(0.2, 3.0), 0.6);
     is(coverage(0.5, 3.0), 1.0);
 }
 
 #[test]
-fn the_glow_fades_as_its_light_goes_through_the_box() {
+fn specular_scatter_fades_while_the_light_passes_through_the_box() {
     for (light, fade) in [(3.0, 0.0), (4.0, 0.0), (5.0, 0.25), (8.0, 1.0), (9.0, 1.0)] {
         is(specular_scatter_fade(light, 4.0, 8.0), fade);
     }
@@ -105,7 +105,7 @@ fn the_linear_fade_is_the_scaled_difference() {
     for (distance, expected) in [(-0.1, 0.0), (0.0, 0.0), (0.125, 0.25), (0.5, 1.0), (3.0, 1.0)] {
         is(fade(distance), expected);
     }
-    // The fragment is killed below the threshold.
+    // Below epsilon the fragment is discarded.
     is(soft_fade(FadeCurve::Linear, 0.125, 2.0, 1.0, 0.126), 0.0);
 }
 
@@ -126,7 +126,7 @@ fn the_contrast_fade_is_as_printed() {
         for step in 0..=100_i16 {
             let x = f32::from(step) / 100.0;
             let fade = fade_contrast(x, power);
-            // "Symmetric at the central point (0.5, 0.5)", and continuous: it never falls.
+            // "Symmetric at the central point (0.5, 0.5)", and monotonic.
             is(fade + fade_contrast(1.0 - x, power), 1.0);
             assert!(fade >= before, "{fade} at {x} after {before}, power {power}");
             before = fade;
@@ -156,12 +156,12 @@ fn the_always_fade_ends_behind_the_surface() {
 }
 
 #[test]
-fn depth_is_read_back_from_what_the_projection_wrote() {
+fn view_depth_inverts_the_projection() {
     let coefficients = |near, far, reversed, orthographic| {
         depth::depth_coefficients(&depth::DepthConvention { near, far, reversed, orthographic })
     };
-    // NV's projection writes f(z - n) / ((f - n)z). It prints z = fn / (f - zbuf(f + n)); at the far plane, 1, that is
-    // negative.
+    // NV's projection writes f(z - n) / ((f - n)z). NV prints z = fn / (f - zbuf(f + n)), which is negative at the far
+    // plane, zbuf = 1.
     let standard = coefficients(1.0, 10.0, false, false);
     for z in [1.0, 2.0, 4.0, 10.0] {
         is(depth::view_depth_from_ndc_depth(10.0 * (z - 1.0) / (9.0 * z), standard), z);
@@ -173,15 +173,15 @@ fn depth_is_read_back_from_what_the_projection_wrote() {
 
 #[test]
 fn sprites_near_the_camera_fade() {
-    // By a smoothstep.
+    // A smoothstep between the two distances.
     for (view_depth, fade) in [(0.5, 0.0), (1.0, 0.0), (1.5, 0.15625), (2.0, 0.5), (3.0, 1.0), (9.0, 1.0)] {
         is(near_fade(view_depth, 1.0, 3.0), fade);
     }
 }
 
 #[test]
-fn volumes_let_through_what_beer_and_lambert_say() {
-    // Spherical billboards: 1 - exp(-ρ (1 - d/r) Δs). ln 2 of density and metres lets half through.
+fn volume_amounts_follow_the_beer_lambert_law() {
+    // Spherical billboards: 1 - exp(-ρ (1 - d/r) Δs). A density of ln 2 over one metre lets half the light through.
     is(spherical_billboard_amount(std::f32::consts::LN_2, 0.0, 1.0, 1.0), 0.5);
     is(spherical_billboard_amount(std::f32::consts::LN_2, 0.5, 1.0, 2.0), 0.5);
     is(spherical_billboard_amount(5.0, 1.0, 1.0, 1.0), 0.0);
@@ -191,39 +191,39 @@ fn volumes_let_through_what_beer_and_lambert_say() {
 // MS
 
 #[test]
-fn rays_meet_spheres_where_they_should() {
-    // Enter, leave, and how far the ray passes by.
+fn ray_sphere_gives_entry_exit_and_distance() {
+    // Entry, exit, and distance of the ray from the centre.
     let ahead = |centre, near, scene| {
         let found = ray_sphere(Vec3::ZERO, Vec3::NEG_Z, centre, 1.0, near, scene);
         vec3(found.enter, found.leave, found.axis.length())
     };
     let deep = vec3(0.0, 0.0, -5.0);
     is_vector(ahead(deep, 0.0, 100.0), vec3(4.0, 6.0, 0.0));
-    // 0.6 off the axis the chord is 2 · 0.8.
+    // At 0.6 from the axis, the chord is 2 · 0.8.
     is_vector(ahead(deep + vec3(0.6, 0.0, 0.0), 0.0, 100.0), vec3(4.2, 5.8, 0.6));
-    // "The rear exit point" becomes the scene's depth; the front one the near plane.
+    // The exit is clamped to the scene's depth ("the rear exit point"), the entry to the near plane.
     is_vector(ahead(deep, 4.5, 5.5), vec3(4.5, 5.5, 0.0));
-    // A texel that stands out by half a radius is that much nearer.
+    // A texel that stands out by half a radius is nearer by half a radius.
     is(depth_sprite_depth(5.0, 0.5, 2.0), 4.0);
 }
 
 // light
 
 #[test]
-fn lamps_fall_off_with_the_square_of_the_distance() {
+fn point_lights_fall_off_with_the_square_of_the_distance() {
     is(distance_attenuation(4.0, 0.0, 0.0), 0.25);
-    // Half of the way to its range a lamp is windowed by (1 - 1/16)²; there it is out.
+    // At half its range, a light is multiplied by (1 - 1/16)²; at its range it is 0.
     is(distance_attenuation(4.0, 0.25, 0.0), 0.25 * 0.878_906_25);
     is(distance_attenuation(16.0, 0.25, 0.0), 0.0);
 }
 
 #[test]
-fn cube_directions_are_found_again() {
+fn cube_coordinate_inverts_cube_direction() {
     let axes = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
     for (face, axis) in (0..).zip(axes) {
         assert_eq!(cube_direction(face, Vec2::ZERO), axis);
         for position in [Vec2::ZERO, vec2(0.3, -0.7), vec2(-0.9, 0.2), vec2(0.99, 0.98)] {
-            // Of any length.
+            // The length of the direction does not matter.
             let found = cube_coordinate(cube_direction(face, position) * 7.5);
             assert_eq!(found.face, face, "{position} of {axis}");
             assert!(found.position.distance(position) < ROUNDING, "{position} of {axis}");
@@ -232,7 +232,7 @@ fn cube_directions_are_found_again() {
 }
 
 #[test]
-fn motif_normals_are_found_again() {
+fn motif_position_inverts_motif_normal() {
     is_vector(motif_normal(Vec2::ZERO), Vec3::Z);
     is_vector(motif_normal(vec2(0.6, 0.0)), vec3(0.6, 0.0, 0.8));
     is_vector(motif_normal(vec2(3.0, 4.0)), vec3(0.6, 0.8, 0.0));
@@ -240,7 +240,7 @@ fn motif_normals_are_found_again() {
 }
 
 #[test]
-fn harmonics_hold_what_is_known_of_them() {
+fn spherical_harmonics_match_published_values() {
     // Ramamoorthi and Hanrahan, "An efficient representation for irradiance environment maps", 2001, eq. 8: the clamped cosine
     // has A = π, 2π/3 and π/4; a zonal coefficient is A_l · sqrt((2l + 1) / 4π).
     let lambert = zonal_coefficients(|cos| Vec3::splat(cos.max(0.0)));
@@ -248,7 +248,7 @@ fn harmonics_hold_what_is_known_of_them() {
         // A sum of 256 steps.
         assert!((found.x - expected).abs() < 1e-4, "{found} is not {expected}");
     }
-    // Even light is even.
+    // Constant light stays constant.
     let mut even = [Vec4::ZERO; 9];
     add_light(&mut even, &zonal_coefficients(|_| Vec3::ONE), vec3(0.6, 0.0, 0.8), vec3(1.0, 0.5, 0.25));
     for normal in [Vec3::X, Vec3::NEG_Y, vec3(0.48, 0.64, -0.6)] {
@@ -259,7 +259,7 @@ fn harmonics_hold_what_is_known_of_them() {
 // colour
 
 #[test]
-fn srgb_is_the_standards() {
+fn srgb_matches_the_standard() {
     // IEC 61966-2-1.
     for (linear, encoded) in [(0.0, 0.0), (0.001, 0.012_92), (0.214_041, 0.5), (0.5, 0.735_357), (1.0, 1.0)] {
         is(colour::srgb_from_linear(linear), encoded);

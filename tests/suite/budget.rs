@@ -1,4 +1,4 @@
-//! `ScaleBudget` against loads of every kind, as a host would drive it.
+//! `ScaleBudget` under loads of every kind, driven as by a host.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -6,10 +6,10 @@ use haze::ScaleBudget;
 use haze::settings::Budget;
 use proptest::prelude::*;
 
-/// Part of the budget that a finer scale stays below.
+/// Share of the budget that the time at a finer scale must stay below.
 const ROOM: f32 = 0.85;
 
-/// Milliseconds at scale 1: what is fixed, and what falls with the scale.
+/// Milliseconds at scale 1: a fixed part, and a part that falls with the square of the scale.
 #[derive(Clone, Copy, Debug)]
 struct Load {
     fixed: f32,
@@ -22,7 +22,7 @@ impl Load {
     }
 }
 
-/// A host: it draws with the scale, and its times come some frames late.
+/// A host that renders at the chosen scale and gets its times some frames late.
 struct Host {
     chooser: ScaleBudget,
     in_flight: std::collections::VecDeque<f32>,
@@ -34,7 +34,7 @@ impl Host {
         Self { chooser: ScaleBudget::new(budget, scale), in_flight: [].into(), seed: 1 }
     }
 
-    /// A frame, with even noise of so much either way.
+    /// Renders a frame, with uniform noise of up to this share of its time either way.
     fn draw(&mut self, load: Load, noise: f32) -> u32 {
         self.seed = self.seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         let noise = noise * ((self.seed >> 8) as f32 / (1 << 23) as f32 - 1.0);
@@ -45,7 +45,7 @@ impl Host {
         self.chooser.scale()
     }
 
-    /// The scales of so many frames, without repetition.
+    /// Returns the scales of so many frames, without consecutive repetitions.
     fn scales(&mut self, frames: usize, mut load: impl FnMut(usize) -> Load, noise: f32) -> Vec<u32> {
         let mut scales: Vec<_> = (0..frames).map(|frame| self.draw(load(frame), noise)).collect();
         scales.dedup();
@@ -57,7 +57,7 @@ fn budget(milliseconds: f32) -> Budget {
     Budget { milliseconds, min_scale: 1, max_scale: 16 }
 }
 
-/// How often a list of scales turns round.
+/// Counts how often a list of scales changes direction.
 fn turns(scales: &[u32]) -> usize {
     let is_finer: Vec<_> = scales.windows(2).map(|pair| pair[1] < pair[0]).collect();
     is_finer.windows(2).filter(|pair| pair[0] != pair[1]).count()
@@ -76,21 +76,21 @@ proptest! {
         prop_assert_eq!(settled.len(), 1, "{:?}", settled);
         let settled = settled[0];
         prop_assert!((min_scale..=max_scale).contains(&settled));
-        // f32 sums of 64.
+        // Tolerance for f32 sums of 64 times.
         prop_assert!(load.ms(settled) <= 2.0 * 1.0001 || settled == max_scale, "{} ms at {settled}", load.ms(settled));
         let finer = load.ms(settled.max(2) - 1);
         prop_assert!(settled == min_scale || finer > ROOM * 2.0 * 0.999, "{finer} ms finer than {settled}");
     }
 
     #[test]
-    fn noise_makes_no_oscillation(
+    fn noise_causes_no_oscillation(
         fixed in 0.0_f32..4.0, falling in 0.0_f32..64.0, scale in 1_u32..=16, seed in any::<u32>(),
     ) {
         let load = Load { fixed: fixed.max(0.01), falling };
         let mut host = Host { seed, ..Host::new(budget(2.0), scale) };
         host.scales(4000, |_| load, 0.2);
         let scales = host.scales(20_000, |_| load, 0.2);
-        // Noise may take a scale across a threshold that it is near to, once.
+        // Noise may cross a threshold that is near, once.
         let [ms, finer_ms] = [scales[0], scales[0].max(2) - 1].map(|scale| load.ms(scale) / 2.0);
         let may_change = [ms, finer_ms].iter().any(|ms| (0.85 * ROOM..1.1).contains(ms));
         prop_assert!(turns(&scales) <= 1 && (scales.len() == 1 || may_change), "{:?}", scales);
@@ -110,14 +110,14 @@ proptest! {
         prop_assert_eq!(host.scales(50, |_| at(ms), 0.0), [scale]);
         let scales = host.scales(30, |_| at(4.0 * ms), noise);
         prop_assert!(scales.len() > 1 && scales.windows(2).all(|pair| pair[1] <= 2 * pair[0]), "{:?}", scales);
-        // Where half the resolution is enough, the budget is held by then.
+        // If half the resolution is enough, the budget is held by then.
         let last = *scales.last().unwrap();
         prop_assert!(at(4.0 * ms).ms(2 * scale) > 2.0 || at(4.0 * ms).ms(last) <= 2.0 * 1.25, "{:?}", scales);
     }
 }
 
 #[test]
-fn the_first_step_is_no_longer_than_it_must_be() {
+fn the_first_step_is_no_larger_than_needed() {
     let mut host = Host::new(budget(2.0), 2);
     assert_eq!(host.scales(1000, |_| Load { fixed: 0.0, falling: 10.0 }, 0.0), [2, 3]);
     let mut host = Host::new(budget(2.0), 8);
@@ -125,7 +125,7 @@ fn the_first_step_is_no_longer_than_it_must_be() {
 }
 
 #[test]
-fn what_gets_slower_and_faster_again_is_followed_one_way_at_a_time() {
+fn a_slowly_changing_load_is_followed_without_reversals() {
     let mut host = Host::new(budget(2.0), 1);
     let at = |t: f32| Load { fixed: 0.2 * t, falling: t };
     let up = host.scales(4000, |frame| at(1.0 + frame as f32 / 400.0), 0.1);
@@ -136,7 +136,7 @@ fn what_gets_slower_and_faster_again_is_followed_one_way_at_a_time() {
 }
 
 #[test]
-fn a_load_that_no_scale_changes_goes_to_a_limit() {
+fn a_load_that_no_scale_changes_ends_at_a_limit() {
     let constant = |fixed| Load { fixed, falling: 0.0 };
     let mut host = Host::new(budget(2.0), 4);
     assert_eq!(host.scales(2000, |_| constant(3.0), 0.2).last(), Some(&16));
@@ -144,8 +144,8 @@ fn a_load_that_no_scale_changes_goes_to_a_limit() {
 }
 
 #[test]
-fn a_load_that_comes_and_goes_is_not_followed_for_ever() {
-    // Smoke that breathes, faster and slower than decisions are made.
+fn a_periodic_load_is_not_followed_for_ever() {
+    // A load that oscillates faster and slower than decisions are made.
     for period in [40.0, 120.0, 300.0, 600.0] {
         let mut host = Host::new(budget(2.0), 2);
         let load = |frame: usize| {
@@ -154,20 +154,20 @@ fn a_load_that_comes_and_goes_is_not_followed_for_ever() {
         };
         host.scales(6000, load, 0.1);
         let scales = host.scales(12_000, load, 0.1);
-        // Once patience is longer than a breath, its peak is not forgotten in its trough.
+        // Once the chooser waits longer than a period, it still knows the peak in the trough.
         assert!(turns(&scales) <= 1, "{period}: {scales:?}");
     }
 }
 
 #[test]
-fn what_is_no_time_is_ignored() {
+fn invalid_times_are_ignored() {
     let mut chooser = ScaleBudget::new(budget(2.0), 3);
     let fresh = chooser.clone();
     for nonsense in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -0.0, -5.0] {
         assert!((0..200).all(|_| chooser.update(nonsense) == 3));
     }
     assert_eq!(chooser, fresh);
-    // Nor do single frames that stand out count, in a load that fits: a driver compiles, a disk spins up.
+    // Single outliers in a load that fits do not count either: a driver that compiles, a disk that spins up.
     let mut chooser = ScaleBudget::new(budget(2.0), 1);
     assert!((0..2000).all(|frame| chooser.update(if frame % 4 == 0 { 50.0 } else { 1.9 }) == 1));
 }
@@ -181,7 +181,7 @@ fn the_budget_may_be_changed_while_it_is_held() {
     assert_eq!(host.scales(500, |_| load, 0.1).last(), Some(&1));
     host.chooser.budget.min_scale = 5;
     assert_eq!(host.scales(500, |_| load, 0.1), [5]);
-    // Limits and times that no budget should have are survived.
+    // Invalid limits and times are tolerated.
     host.chooser.budget = Budget { milliseconds: f32::NAN, min_scale: 9, max_scale: 0 };
     assert_eq!(host.scales(100, |_| load, 0.1).last(), Some(&9));
     host.chooser.budget.min_scale = 0;

@@ -1,7 +1,7 @@
-//! Files from outside, whole and mangled: nothing panics, nothing goes beyond its limits, and what is refused is refused in one
-//! line that names the file. `scripts/fuzz` does the same for longer.
+//! Valid, invalid and mutated input files: nothing panics or exceeds its limits, and an error is one line that names
+//! the file. `scripts/fuzz` does the same for longer.
 //!
-//! `tests/corpus/KIND/` holds the files to begin with; `good_…` are read, `bad_…` are refused.
+//! `tests/corpus/KIND/` holds the original files; `good_…` are read, `bad_…` are refused.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -22,7 +22,7 @@ use haze_author::sprite::bake::SpriteRecipe;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 
-/// Reads a file as what its folder in the corpus says, and makes of it what the program would.
+/// Reads a file as the kind that its folder in the corpus names, and uses it as the program would.
 fn read(kind: &str, path: &Path) -> Result<(), Error> {
     match kind {
         "preset" => {
@@ -32,7 +32,7 @@ fn read(kind: &str, path: &Path) -> Result<(), Error> {
             let mut particles = Vec::new();
             let mut alive = 0;
             for (system, cache) in preset.systems.iter().zip(&caches) {
-                // Birth times are jittered, so a few more may be met than live.
+                // Birth times are jittered, so a few more particles than the limit may be alive.
                 particle_files::particles(system, cache.as_ref(), preset.time, &mut particles);
                 alive += particles.len();
             }
@@ -67,7 +67,7 @@ fn read(kind: &str, path: &Path) -> Result<(), Error> {
             assert!(picture.as_bytes().len() <= 64 << 20, "{} bytes", picture.as_bytes().len());
             assert!(picture.width().max(picture.height()) <= 4096);
             Ramp::from_picture(&picture);
-            // A picture that is no sprite and no noise is refused as such, in a line too.
+            // An image that is not a sprite or noise is refused with one line too.
             let picture = picture.to_rgba8();
             for refused in [
                 Sprite::from_picture(path, &picture, SpriteLayout::default()).err(),
@@ -83,12 +83,12 @@ fn read(kind: &str, path: &Path) -> Result<(), Error> {
             assert!(frame.particles().len() <= 1000, "{} particles", frame.particles().len());
             assert!(frame.particles().iter().all(|particle| particle.position.is_finite() && particle.radius >= 0.0));
         }
-        other => panic!("{other} is no kind of file"),
+        other => panic!("tests/corpus/{other}: no reader for this kind of file"),
     }
     Ok(())
 }
 
-/// One line, of sane length, that names the file and holds no structs of the program.
+/// Checks that an error is one line of reasonable length that names the file and shows no Rust structs.
 fn check_line(path: &Path, error: &Error) {
     let line = error.to_string();
     assert!(line.contains(path.to_str().unwrap()), "{line}");
@@ -123,15 +123,15 @@ fn corpus() -> Vec<Sample> {
 
 #[derive(Clone, Debug)]
 enum Mutation {
-    /// Some bits of a byte.
+    /// Flips some bits of a byte.
     Flip(Index, u8),
-    /// The end is lost.
+    /// Cuts off the end.
     Truncate(Index),
-    /// A part of another file, in place of what was there.
+    /// Overwrites bytes with a part of another file.
     Splice(Index, Vec<u8>),
-    /// A part once more.
+    /// Repeats a part.
     Repeat(Index, usize),
-    /// What readers stumble over.
+    /// Inserts bytes that are likely to break a parser.
     Insert(Index, &'static [u8]),
 }
 
@@ -203,7 +203,7 @@ fn mutate(bytes: &mut Vec<u8>, mutation: &Mutation) {
 }
 
 #[test]
-fn the_corpus_is_read_or_refused_as_it_is_named() {
+fn the_corpus_is_read_or_refused_as_file_names_say() {
     let folder = tempfile::tempdir().unwrap();
     let corpus = corpus();
     assert!(corpus.len() > 30);
@@ -211,7 +211,7 @@ fn the_corpus_is_read_or_refused_as_it_is_named() {
         let path = folder.path().join(format!("{kind}_{name}"));
         std::fs::write(&path, bytes).unwrap();
         match read(&kind, &path) {
-            Ok(()) => assert!(name.starts_with("good"), "{kind}/{name} is read"),
+            Ok(()) => assert!(name.starts_with("good"), "{kind}/{name} was read; it should be refused"),
             Err(error) => {
                 println!("{kind}/{name}: {}", error.to_string().replace(path.to_str().unwrap(), "FILE"));
                 check_line(&path, &error);
@@ -222,12 +222,12 @@ fn the_corpus_is_read_or_refused_as_it_is_named() {
 }
 
 #[test]
-fn mangled_files_are_read_or_refused_in_one_line() {
+fn mutated_files_are_read_or_refused_in_one_line() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mangled");
     let corpus = corpus();
     let strategy = (select(corpus.clone()), mutations(&corpus));
-    // A failure is printed whole; it becomes a file of the corpus.
+    // A failure is printed whole, so that it can be added to the corpus.
     let config = ProptestConfig { failure_persistence: None, ..ProptestConfig::default() };
     proptest!(config, |((sample, mutations) in strategy)| {
         let mut bytes = sample.bytes.clone();
@@ -237,7 +237,7 @@ fn mangled_files_are_read_or_refused_in_one_line() {
         if let Err(error) = read(&sample.kind, &path) {
             check_line(&path, &error);
         }
-        // Milliseconds on a machine that has nothing else to do.
+        // Milliseconds on an idle machine.
         prop_assert!(started.elapsed() < Duration::from_secs(20), "{:?}", started.elapsed());
     });
 }

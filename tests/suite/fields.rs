@@ -1,4 +1,4 @@
-//! No field is forgotten: what a preset or recipe file may hold is what the walk over its fields meets.
+//! Completeness of field traversals: they visit every field that a preset or recipe file may hold.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -15,7 +15,7 @@ use haze_author::ramp::motif::MotifRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
 use serde_json::Value;
 
-/// The paths of all fields that a walk meets.
+/// Paths of all fields that a traversal visits.
 #[derive(Default)]
 struct Met {
     path: Vec<String>,
@@ -25,7 +25,7 @@ struct Met {
 impl Met {
     fn field(&mut self, name: &str) {
         let path = [&self.path[..], &[name.to_owned()]].concat().join(".");
-        assert!(self.fields.insert(path.clone()), "{path} is met twice");
+        assert!(self.fields.insert(path.clone()), "{path} is visited twice");
     }
 
     fn nested(&mut self, step: String, fields: &mut dyn Fields) {
@@ -60,7 +60,7 @@ impl FieldVisitor for Met {
             assert_eq!(value.index(), index, "{name}");
         }
         value.set_index(usize::MAX);
-        assert_eq!(value.index(), value.names().len() - 1, "{name}: beyond the last is no choice");
+        assert_eq!(value.index(), value.names().len() - 1, "{name}: an index beyond the last gives the last choice");
         value.set_index(was);
         self.field(name);
     }
@@ -84,7 +84,7 @@ impl FieldVisitor for Met {
     }
 }
 
-/// The paths of all fields in a file. A list of numbers is one field.
+/// Collects the paths of all fields in a file. A list of numbers is one field.
 fn written(value: &Value, path: &str, fields: &mut BTreeSet<String>) {
     let join = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
     match value {
@@ -98,19 +98,19 @@ fn written(value: &Value, path: &str, fields: &mut BTreeSet<String>) {
     }
 }
 
-/// Fields that are only met, and fields that are only written.
+/// Returns the fields that are only visited, and the fields that are only written.
 fn forgotten(value: &mut (impl Fields + serde::Serialize)) -> (Vec<String>, Vec<String>) {
     let json = serde_json::to_value(&*value).unwrap();
     let (mut met, mut file) = (Met::default(), BTreeSet::new());
     value.visit(&mut met);
     written(&json, "", &mut file);
     assert!(file.len() > 2);
-    assert_eq!(json, serde_json::to_value(&*value).unwrap(), "the walk changes what it meets");
+    assert_eq!(json, serde_json::to_value(&*value).unwrap(), "the traversal changes the values");
     (met.fields.difference(&file).cloned().collect(), file.difference(&met.fields).cloned().collect())
 }
 
 #[test]
-fn every_field_of_every_file_is_met() {
+fn every_field_of_every_file_is_visited() {
     let none = (Vec::new(), Vec::new());
     let mut preset = Preset {
         lights: vec![Light::default(), Light::default()],
@@ -121,7 +121,7 @@ fn every_field_of_every_file_is_met() {
     let file = |name: &str| std::fs::read_to_string(format!("{}/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap();
     let recipe = |name| file(name);
     let puff: SpriteRecipe = serde_json::from_str(&recipe("sprites/puff.sprite.json")).unwrap();
-    // What is not used is not written.
+    // Unused fields are not written, so this recipe uses all of them.
     let mut used =
         SpriteRecipe { version: 2, length: 0.1, upright: 0.1, lumps: 0.1, travel: 0.1, tolerance: 1, ..puff };
     assert_eq!(forgotten(&mut used), none);
@@ -137,8 +137,8 @@ fn every_field_of_every_file_is_met() {
 }
 
 #[test]
-fn a_forgotten_field_is_seen() {
-    /// A walk that leaves out what `Settings` has besides its boost.
+fn a_forgotten_field_is_detected() {
+    /// A traversal that leaves out all fields of `Settings` but `boost`.
     #[derive(serde::Serialize)]
     struct Forgetful(Settings);
     impl Fields for Forgetful {

@@ -1,4 +1,4 @@
-//! Particles from files, as large as they come: how long it takes to have them.
+//! Time to load large particle files.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use haze::preset::{PictureFolders, Preset, PresetSystem};
 use haze_author::particle_files;
 
-/// A binary file of particles on their way, with columns that are not read.
+/// Returns a binary PLY file of moving particles, with columns that are not read.
 fn binary(frame: u32, count: u32) -> Vec<u8> {
     let names = ["x", "y", "z", "nx", "ny", "nz", "pscale", "age"].map(|name| format!("property float {name}\n"));
     let names = names.concat() + "property uchar alpha\nproperty int id\n";
@@ -22,10 +22,10 @@ fn binary(frame: u32, count: u32) -> Vec<u8> {
     file
 }
 
-/// Promised of a release build with the machine to itself: a second, and a millisecond. Tests are optimized too, but share the
-/// machine with others: four times that.
+/// A release build on an idle machine takes at most a second and a millisecond. Tests are optimized too, but share the
+/// machine with others, so the limits are four times that.
 #[test]
-fn a_hundred_frames_of_ten_thousand_are_read_within_a_second_and_seen_within_a_millisecond() {
+fn a_hundred_frames_of_ten_thousand_particles_load_in_a_second_and_evaluate_in_a_millisecond() {
     let folder = tempfile::tempdir().unwrap();
     for number in 0..100 {
         std::fs::write(folder.path().join(format!("s{number}.ply")), binary(number, 10_000)).unwrap();
@@ -39,7 +39,7 @@ fn a_hundred_frames_of_ten_thousand_are_read_within_a_second_and_seen_within_a_m
     let (mut particles, mut seen) = (Vec::new(), Duration::MAX);
     for _ in 0..10 {
         let start = Instant::now();
-        // Between two frames.
+        // A time between two frames.
         particle_files::particles(&preset.systems[0], caches[0].as_ref(), 41.5 / 24.0, &mut particles);
         seen = seen.min(start.elapsed());
         assert_eq!(particles.len(), 10_000);

@@ -1,4 +1,5 @@
-//! `haze ramp` and `haze sprite`; `bake`: pictures from their recipes.
+//! Arguments and dispatch of `haze ramp` and `haze sprite`, and their subcommand `bake`, which makes images from
+//! recipes.
 
 use std::path::PathBuf;
 
@@ -16,27 +17,27 @@ pub struct RampArguments {
 
 #[derive(Subcommand)]
 enum RampCommand {
-    /// Write the PNG beside every recipe.
+    /// Bake every recipe to a PNG beside it.
     Bake {
         /// `*.ramp.json` and `*.motif.json` files.
         #[arg(required = true)]
         recipes: Vec<PathBuf>,
     },
-    /// Write the PNG beside a recipe whenever it is saved, until Ctrl-C.
+    /// Bake recipes again whenever they are saved, until Ctrl-C.
     Watch(ramp::watch::Arguments),
-    /// Write a recipe to begin with.
+    /// Write a new recipe from a template, or a blank ramp to paint over.
     New(ramp::new::Arguments),
-    /// Write the recipe of a picture, or of another program's gradient.
+    /// Convert a PNG, or another program's gradient, to a recipe.
     Import(ramp::import::Arguments),
-    /// Path-trace a puff of steam, ash, … under a ring of lights, and write the ramps that answer light as it does.
+    /// Path-trace a puff of steam, ash, … under a ring of lights, and write ramps that are fitted to its brightness.
     Fit(ramp::fit::Arguments),
-    /// Render a preset under every ramp of a folder, on one labelled sheet. Those that cannot be read are told and left out, and it
-    /// exits with 1.
+    /// Render a preset with every ramp of a folder, on one labelled sheet. Ramps that cannot be read are reported and
+    /// left out; the command then exits with 1.
     Sheet(ramp::sheet::Arguments),
-    /// Show a ramp in the terminal, with its curve, or as a picture.
+    /// Show a ramp and its luminance curve in the terminal, or write them as an image.
     Show(ramp::show::Arguments),
-    /// Say what would show: banding, steps, seams, specular ramps that are not black at their ends, colour spaces. Exits with 1
-    /// if there is anything.
+    /// Report visible flaws: banding, steps, seams, specular ramps that do not end in black, wrong colour spaces. Exits
+    /// with 1 if there are any.
     Check(ramp::check::Arguments),
 }
 
@@ -48,22 +49,23 @@ pub struct SpriteArguments {
 
 #[derive(Subcommand)]
 enum SpriteCommand {
-    /// Write the PNGs beside every recipe: NAME.png, and NAME.detail.png with a sprite's depth and motion.
+    /// Bake every recipe to PNGs beside it: NAME.png, and for a sprite also NAME.detail.png with its depth and motion.
     Bake {
-        /// `*.sprite.json` and `*.noise.json` files; with --six-way built-in sprites by their names, too.
+        /// `*.sprite.json` and `*.noise.json` files; with --six-way also names of built-in sprites.
         #[arg(required = true)]
         recipes: Vec<PathBuf>,
         #[command(flatten)]
         six_way: sprite::six_way::Arguments,
     },
-    /// Say what would show: colours in place of normals, their length, green that points down, borders, premultiplied normals, the
-    /// seam of the loop. Exits with 1 if there is anything.
+    /// Report visible flaws: colours instead of normals, normals of wrong length, green that points down, opaque
+    /// borders, premultiplied normals, a seam in the loop. Exits with 1 if there are any.
     Check(sprite::check::Arguments),
-    /// Path-trace a sprite as a puff of steam, ash, … under a ring of lights, on one sheet: what it truly looks like.
+    /// Path-trace a sprite as a puff of steam, ash, … under a ring of lights, and write the result as one sheet.
     Light(sprite::light::Arguments),
-    /// Write six-way maps as the two light maps that other tools have.
+    /// Write six-way maps as the two light maps that other tools use.
     Export(sprite::export::Arguments),
-    /// Make a sprite of normals painted elsewhere, heights, alpha alone or six-way light maps; of a sheet or of numbered frames.
+    /// Make a sprite from painted normals, heights, alpha or six-way light maps, given as one sheet or as numbered
+    /// frames.
     Import(sprite::import::Arguments),
 }
 
@@ -94,7 +96,7 @@ pub fn run_sprite(arguments: &SpriteArguments) -> Result<(), Failures> {
     }
 }
 
-/// Bakes recipes if all are good.
+/// Bakes all recipes if every one of them is valid.
 fn run(recipes: &[PathBuf], kinds: &Kinds) -> Result<(), Failures> {
     let mut files = Files::read(recipes);
     let (jobs, failures) = Failures::of_each(recipes, |path| Job::load(path, kinds, &mut files));

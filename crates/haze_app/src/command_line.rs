@@ -1,7 +1,7 @@
-//! The command line: what each subcommand takes, and how failure is reported.
+//! Command line: subcommands, dispatch and error reporting.
 //!
-//! Exit codes: 0 done, 1 the work failed, 2 bad usage or bad input. One line on stderr says what is wrong, where, and what
-//! would be right.
+//! Exit codes: 0 success, 1 the work failed, 2 bad usage or bad input. One line on stderr says what is wrong, where,
+//! and what would be right.
 
 use std::ffi::OsString;
 use std::io::Write;
@@ -15,7 +15,7 @@ use haze::{Error, builtin};
 use crate::output::{self, Failures, complain, one_line, write_text};
 use crate::{bake, bench, info, preset, render, shade_tree, techniques, tweak, vary};
 
-/// Lit, soft smoke for wgpu: accumulated small, lit once per pixel, painted by ramps.
+/// Lit, soft smoke for wgpu: accumulated at low resolution, lit once per pixel from ramps that artists paint.
 #[derive(Parser)]
 #[command(name = "haze", version, max_term_width = 100)]
 struct Cli {
@@ -25,31 +25,31 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Light smoke by hand, in a window: what `haze` alone and `haze PRESET` do.
+    /// Open the tweaker, a window to edit lights, ramps and smoke in; also `haze` alone and `haze PRESET`.
     Tweak(tweak::Arguments),
-    /// Render a preset to a PNG, or to one for every frame.
+    /// Render a preset to a PNG, to one PNG per frame, to a flipbook or to a GIF.
     Render(render::Arguments),
     /// Render every stage of the shading on one labelled sheet.
     ShadeTree(shade_tree::Arguments),
-    /// Render a preset with one field at several values, on one labelled sheet.
+    /// Render a preset with several values of one field, on one labelled sheet.
     Sheet(vary::Arguments),
-    /// Render a preset under every soft-particle technique, with what each costs, on one labelled sheet.
+    /// Render a preset with every soft-particle technique and its cost, on one labelled sheet.
     Techniques(techniques::Arguments),
-    /// Measure what smoke costs here.
+    /// Measure the cost of smoke on this machine.
     Bench(bench::Arguments),
-    /// List, check and describe presets.
+    /// List, check, show, create and describe presets.
     Preset(preset::Arguments),
-    /// Make, import, watch, show and check ramps.
+    /// Create, bake, import, fit, watch, show and check ramps.
     Ramp(bake::RampArguments),
-    /// Make, import and check sprites.
+    /// Bake, import, export, light and check sprites.
     Sprite(bake::SpriteArguments),
-    /// Say what this machine renders with.
+    /// Print what this machine renders with: GPU, driver and CPU, and the choices of path auto.
     Info,
 }
 
-/// Runs the program and reports how it went.
+/// Runs the program and returns its exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    // wgpu-hal logs every driver that it looks for and does not find, eframe that there is none: an error of ours.
+    // wgpu-hal logs every driver that is missing, and eframe logs that none was found, which haze reports itself.
     env_logger::Builder::from_env(
         env_logger::Env::default().default_filter_or("error,wgpu_hal=off,eframe::native::run=off"),
     )
@@ -61,7 +61,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let cli = match Cli::try_parse_from(with_subcommand(arguments.into_iter().collect())) {
         Ok(cli) => cli,
         Err(help) if !help.use_stderr() => {
-            // The text ends its last line itself.
+            // `write_text` adds the last line break.
             return report(write_text(help.to_string().trim_end()).map_err(Failures::from));
         }
         Err(help) if help.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
@@ -88,7 +88,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     })
 }
 
-/// `haze PRESET` is `haze tweak PRESET`; a subcommand of that name comes first.
+/// Inserts `tweak` before the name of a preset: `haze PRESET` is `haze tweak PRESET`. A subcommand of the same name
+/// takes precedence.
 fn with_subcommand(mut arguments: Vec<OsString>) -> Vec<OsString> {
     let is_preset = |name: &OsString| {
         let path = Path::new(name);
@@ -105,13 +106,14 @@ fn with_subcommand(mut arguments: Vec<OsString>) -> Vec<OsString> {
 fn report(done: Result<(), Failures>) -> ExitCode {
     let Err(failures) = done else { return ExitCode::SUCCESS };
     failures.errors().iter().for_each(complain);
-    // None at all: what failed has been said.
+    // Without any error, the failure has been reported already.
     ExitCode::from(failures.errors().iter().map(exit_code).max().unwrap_or(1))
 }
 
-/// clap explains over several lines; the first says what is wrong and what would be right.
+/// Returns clap's error as one line. clap explains over several lines; the first one says what is wrong and what would
+/// be right.
 fn usage_line(mut error: clap::Error) -> String {
-    // What was given may have line breaks of its own.
+    // Arguments may contain line breaks.
     let given = |(kind, value): (_, &_)| match value {
         ContextValue::String(given) => Some((kind, ContextValue::String(one_line(given)))),
         _ => None,
@@ -122,7 +124,7 @@ fn usage_line(mut error: clap::Error) -> String {
     let text = error.to_string();
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
     let first = lines.next().unwrap_or_default().trim_start_matches("error: ");
-    // Lists ("the following required arguments were not provided:", "[possible values: …]") go on one line more.
+    // Lists ("the following required arguments were not provided:", "[possible values: …]") continue on the next line.
     let more = lines.next().filter(|line| first.ends_with(':') || line.starts_with("[possible values"));
     match more {
         Some(more) => format!("{first} {more}"),
@@ -139,7 +141,7 @@ fn exit_code(error: &Error) -> u8 {
         | Error::Shader { .. }
         | Error::NoDevice(_) => 2,
         Error::Picture { error, .. } => exit_code(error),
-        // A file that is not there, or may not be read, is bad input; a full disk is not.
+        // A file that is missing or may not be read is bad input; a full disk is not.
         Error::Io { error, .. } => match error.kind() {
             std::io::ErrorKind::NotFound
             | std::io::ErrorKind::PermissionDenied

@@ -1,5 +1,5 @@
-//! What drawing costs, measured so that machines which do other things as well can be compared: all variants in turn, over
-//! and over, and the median of each.
+//! Measures draw times of several variants in turn, round by round, so that other load on the machine slows all of them
+//! alike; takes the median of each.
 
 use std::time::Instant;
 
@@ -10,7 +10,7 @@ use haze_demo::stage::Stage;
 
 use super::options::Backend;
 
-/// Times of one variant, seconds, ascending.
+/// Times of one variant in seconds, ascending.
 pub struct Cost(Vec<f64>);
 
 impl Cost {
@@ -20,19 +20,19 @@ impl Cost {
         if times.len() % 2 == 1 { times[middle] } else { 0.5 * (times[middle - 1] + times[middle]) }
     }
 
-    /// Half the distance between the quartiles, as a share of the median; none of a single time.
+    /// Half the distance between the quartiles, as a share of the median; `None` for a single time.
     pub fn spread(&self) -> Option<f64> {
         let at = |share: f64| self.0[((self.0.len() - 1) as f64 * share).round() as usize];
         (self.0.len() > 1).then(|| 0.5 * (at(0.75) - at(0.25)) / self.median())
     }
 }
 
-/// What a figure is of so many rounds.
+/// Says how a figure was measured, for tables.
 pub fn median_of(rounds: u32) -> String {
     if rounds == 1 { "one round".into() } else { format!("median of {rounds} rounds") }
 }
 
-/// Measures every variant in every round, after a round that is not counted. `measure` gives seconds.
+/// Measures every variant once per round, after one warm-up round. `measure` returns seconds.
 pub fn interleaved(
     rounds: u32,
     variants: usize,
@@ -54,12 +54,12 @@ pub fn interleaved(
     Ok(times.into_iter().map(sorted).collect())
 }
 
-/// Seconds against which a frame's own unsteadiness is small.
+/// Seconds of work beside which the jitter of a frame is small.
 const LONG_ENOUGH: f64 = 0.05;
-/// With the one that they are compared with, within the range of `debug_loop`.
+/// Most passes over the sprites; with the single pass they are compared with, within the range of `debug_loop`.
 const MOST_LOOPS: u32 = 8192;
 
-/// Draws the smoke of a shot again and again.
+/// Measures the time of a shot's smoke.
 pub enum Timer<'a> {
     Gpu(Box<Stage>, &'a Headless),
     Cpu,
@@ -73,7 +73,7 @@ impl<'a> Timer<'a> {
         })
     }
 
-    /// Seconds of one frame; on the CPU with the scene behind it.
+    /// Draws a frame and returns its seconds; on the CPU they include the scene.
     pub fn frame(&mut self, shot: &Shot) -> Result<f64, Error> {
         match self {
             Self::Gpu(stage, gpu) => Ok(stage.draw(gpu, shot)?.as_secs_f64()),
@@ -85,7 +85,7 @@ impl<'a> Timer<'a> {
         }
     }
 
-    /// How often to draw all sprites so that the clock can tell what once costs.
+    /// Returns a number of passes over all sprites that takes long enough to measure.
     pub fn loops_that_tell(&mut self, shot: &Shot) -> Result<u32, Error> {
         let mut loops = 1;
         // The first frame compiles pipelines.
@@ -96,7 +96,8 @@ impl<'a> Timer<'a> {
         Ok(loops)
     }
 
-    /// Seconds that it takes to draw all sprites once, and nothing else: what more passes over them cost, per pass.
+    /// Seconds per pass over all sprites, without the fixed cost of a frame: the time that `loops` more passes take,
+    /// divided by `loops`.
     pub fn sprites(&mut self, shot: &Shot, loops: u32) -> Result<f64, Error> {
         let mut shot = shot.clone();
         let mut frame = |times: u32| {

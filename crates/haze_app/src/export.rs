@@ -1,4 +1,5 @@
-//! Many pictures of a shot: a sequence, a flipbook, a GIF, a labelled sheet. For the command line and for the window.
+//! Renders many images of a shot: a sequence, a flipbook, a GIF, a labelled sheet. Used by the command line and the
+//! tweaker.
 
 use std::io::{Error as IoError, ErrorKind};
 use std::ops::RangeInclusive;
@@ -19,33 +20,34 @@ use super::options::Backend;
 use super::progress::watched;
 use super::sheet::Sheet;
 
-/// A stretch of time. Frame 0 is at the preset's.
+/// Range of frames. Frame 0 is at the preset's time.
 pub struct Frames {
     pub range: RangeInclusive<u32>,
-    /// Frames in a second.
+    /// Frames per second.
     pub rate: f32,
 }
 
-/// Who waits for the work.
+/// Receiver of the progress, which can stop the work.
 pub enum Watch<'a> {
-    /// Someone at a terminal, who can press Ctrl-C.
+    /// A terminal, where Ctrl-C stops the work.
     Terminal,
-    /// Is told before every picture how many of how many are done; false stops the work.
+    /// A callback that gets the numbers of finished and of all images before each image; it returns false to stop the
+    /// work.
     Caller(&'a dyn Fn(u32, u32) -> bool),
 }
 
 impl Watch<'_> {
-    /// Looks forward to Ctrl-C, and stops what is begun from now on when it comes.
+    /// Catches Ctrl-C from now on; it then stops the work after the current image.
     pub fn terminal() -> Self {
         interrupt::catch();
         Self::Terminal
     }
 
-    /// Renders a picture; none when the work is to stop.
+    /// Renders an image; `None` if the work is to stop.
     fn render(&self, done: u32, count: u32, backend: &Backend, shot: &Shot) -> Result<Option<RgbImage>, Error> {
         let picture = match self {
             Self::Terminal if interrupt::is_asked() => return Ok(None),
-            Self::Terminal => watched(format!("haze: picture {} of {count}", done + 1), || backend.render(shot))?,
+            Self::Terminal => watched(format!("haze: image {} of {count}", done + 1), || backend.render(shot))?,
             Self::Caller(go_on) if !go_on(done, count) => return Ok(None),
             Self::Caller(_) => backend.render(shot)?,
         };
@@ -58,7 +60,8 @@ impl Frames {
         self.range.end() - self.range.start() + 1
     }
 
-    /// Renders every frame, and hands it on with its number. `unfinished` says what is there when it is stopped after so many.
+    /// Renders every frame and passes it to `take` with its number. `unfinished` makes the error of a run that was
+    /// stopped after so many frames.
     fn render(
         &self,
         backend: &Backend,
@@ -81,12 +84,12 @@ fn stopped(path: &Path, what: String) -> Error {
     Error::Io { path: path.into(), error: IoError::new(ErrorKind::Interrupted, format!("stopped: {what}")) }
 }
 
-/// Nothing is written of what is one file.
+/// Error of a single output file, which is not written if the work is stopped.
 fn unfinished(path: &Path, done: u32, count: u32) -> Error {
-    stopped(path, format!("not written, {done} of {count} pictures were done"))
+    stopped(path, format!("not written; {done} of {count} images were rendered"))
 }
 
-/// Writes every frame to a file of its own. Stopped, it leaves those that are done.
+/// Writes every frame to its own file. If it is stopped, the files written so far stay.
 pub fn sequence(
     backend: &Backend,
     shot: &Shot,
@@ -96,11 +99,11 @@ pub fn sequence(
     watch: &Watch<'_>,
 ) -> Result<(), Error> {
     let write = |frame, picture: RgbImage| write_png(&names.of(frame), &picture.into(), effort);
-    let (first, last) = (*frames.range.start(), *frames.range.end());
+    let first = *frames.range.start();
     frames.render(backend, shot, watch, write, |done| {
         stopped(
             &names.of(first + done),
-            format!("not written; this sequence is partial, {done} of {} frames up to {last}", frames.count()),
+            format!("not written; this sequence is partial, {done} of {} frames are written", frames.count()),
         )
     })
 }
@@ -108,12 +111,12 @@ pub fn sequence(
 /// Most pixels along a side of a flipbook.
 const MOST_PIXELS: u32 = 32_768;
 
-/// Refuses a flipbook that has no room for its frames, or that there is none for.
+/// Refuses a flipbook that has too few cells for its frames, or that is too large for an image or for the memory.
 pub fn check_flipbook(size: UVec2, frames: &Frames, cells: UVec2) -> Result<(), Error> {
     let (rows, columns) = (cells.x, cells.y);
     let count = frames.count();
     if count > cells.element_product() {
-        let expected = format!("room for {count} frames");
+        let expected = format!("at least {count} cells, one for each frame");
         return Err(FieldError::new("--sheet", format!("{rows}x{columns}"), expected).into());
     }
     let size = size * UVec2::new(columns, rows);
@@ -124,7 +127,7 @@ pub fn check_flipbook(size: UVec2, frames: &Frames, cells: UVec2) -> Result<(), 
     check_memory("--sheet", size)
 }
 
-/// Renders all frames onto one sheet of `cells` rows and columns. `path` is where it is to go.
+/// Renders all frames onto one sheet of `cells.x` rows and `cells.y` columns. `path` is the output file, for errors.
 pub fn flipbook(
     backend: &Backend,
     shot: &Shot,
@@ -147,17 +150,18 @@ pub fn flipbook(
     Ok(sheet)
 }
 
-/// Frames in a second: those of a GIF last whole hundredths of one, and programs make longer those that last less than two.
+/// Highest frame rate of a GIF. GIF delays are whole hundredths of a second, and viewers lengthen delays below two
+/// hundredths.
 pub const MOST_GIF_RATE: f32 = 50.0;
 
-/// Writes all frames into one picture that moves, over and over.
+/// Writes all frames into one animated GIF that loops for ever.
 pub fn gif(backend: &Backend, shot: &Shot, frames: &Frames, path: &Path, watch: &Watch<'_>) -> Result<(), Error> {
     let failed = |error| Error::Image { path: path.into(), reason: format!("{error}") };
     let mut bytes = Vec::new();
     let mut encoder = GifEncoder::new_with_speed(&mut bytes, 10);
     encoder.set_repeat(Repeat::Infinite).map_err(failed)?;
     let mut index = 0;
-    // What is rounded off is not lost: the whole is as long as it should be.
+    // Delays are differences of rounded end times, so that rounding does not change the total duration.
     let end = |index: u32| (index as f32 * 100.0 / frames.rate).round() as u32;
     let encode = |_, picture: RgbImage| {
         let delay = Delay::from_numer_denom_ms(10 * (end(index + 1) - end(index)), 1);
@@ -170,10 +174,10 @@ pub fn gif(backend: &Backend, shot: &Shot, frames: &Frames, path: &Path, watch: 
     write_file(path, &bytes)
 }
 
-/// Most pictures of a labelled sheet.
+/// Most images on a labelled sheet.
 pub const MOST_CELLS: usize = 64;
 
-/// Renders shots with their labels onto one sheet. All are of one size; `path` is where it is to go.
+/// Renders shots with their labels onto one sheet. All shots have one size; `path` is the output file, for errors.
 pub fn sheet(
     backend: &Backend,
     cells: &[(String, Shot)],
@@ -191,7 +195,7 @@ pub fn sheet(
     Ok(sheet)
 }
 
-/// Columns of a sheet that is about as wide as high.
+/// Number of columns of a sheet that is about square.
 pub fn columns(count: usize) -> u32 {
     (1..).find(|side| side * side >= count as u32).unwrap_or(1)
 }

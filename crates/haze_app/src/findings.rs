@@ -1,4 +1,4 @@
-//! What checks found, file by file.
+//! Reports the findings of checks, file by file.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,8 @@ use haze_author::finding::Finding;
 
 use super::output::{Failures, say};
 
-/// Says what there is about every file, whatever becomes of the others. Findings are failures that have been told.
+/// Checks and reports every file, even if others fail. Findings make it fail without an error, because they are
+/// reported already.
 pub fn tell(files: &[PathBuf], find: impl Fn(&Path) -> Result<Vec<Finding>, Error>) -> Result<(), Failures> {
     let (checked, failures) = Failures::of_each(files, |path| Ok((path, find(path)?)));
     let mut is_good = true;

@@ -1,4 +1,4 @@
-//! How different two pictures look.
+//! FLIP, the perceived difference of two images.
 
 use image::RgbImage;
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, FlipPool, flip};
@@ -10,7 +10,7 @@ pub fn flip_of(reference: &RgbImage, picture: &RgbImage) -> f64 {
     f64::from(FlipPool::from_image(&flip(reference, picture, DEFAULT_PIXELS_PER_DEGREE)).mean())
 }
 
-/// The same of many pairs, shared among the processors.
+/// Mean FLIP of many pairs, computed on all processors.
 pub fn flips(pairs: &[[&RgbImage; 2]]) -> Vec<f64> {
     let mut flips = vec![0.0; pairs.len()];
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
@@ -30,7 +30,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn flip_is_0_where_nothing_differs_and_grows_with_what_does() {
+    fn flip_is_0_for_equal_images_and_grows_with_the_difference() {
         let grey = |value: u8| RgbImage::from_pixel(64, 64, image::Rgb([value; 3]));
         assert!(flip_of(&grey(100), &grey(100)) < 1e-6);
         let (near, far) = (flip_of(&grey(100), &grey(110)), flip_of(&grey(100), &grey(200)));

@@ -1,4 +1,4 @@
-//! A stretch of frames, and the files that they go to.
+//! Frame ranges, and the file names of frames.
 
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -9,29 +9,31 @@ use haze::FieldError;
 /// Most frames of one run.
 const MOST: u32 = 100_000;
 
-/// Most pictures along a side of a sheet.
+/// Most images along a side of a sheet.
 const MOST_CELLS: u32 = 64;
 
 pub fn parse_frames(text: &str) -> Result<RangeInclusive<u32>, String> {
     let frames = text.split_once("..").and_then(|(first, last)| Some(first.parse().ok()?..=last.parse().ok()?));
     let fits = |frames: &RangeInclusive<u32>| !frames.is_empty() && frames.end() - frames.start() < MOST;
-    frames
-        .filter(fits)
-        .ok_or_else(|| format!("{text:?} are no frames; expected A..B, at most {MOST}, for example 0..59"))
+    frames.filter(fits).ok_or_else(|| {
+        format!("{text:?} is not a range of frames; expected A..B, at most {MOST} frames, for example 0..59")
+    })
 }
 
 pub fn parse_rate(text: &str) -> Result<f32, String> {
     let rate = text.parse().ok().filter(|rate| (0.001..=10_000.0).contains(rate));
-    rate.ok_or_else(|| format!("{text:?} is no rate; expected 0.001 to 10000 frames in a second"))
+    rate.ok_or_else(|| format!("{text:?} is not a frame rate; expected 0.001 to 10000 frames per second"))
 }
 
 pub fn parse_sheet(text: &str) -> Result<UVec2, String> {
     let side = |text: &str| text.parse().ok().filter(|side| (1..=MOST_CELLS).contains(side));
     let cells = text.split_once(['x', 'X']).and_then(|(rows, columns)| Some(UVec2::new(side(rows)?, side(columns)?)));
-    cells.ok_or_else(|| format!("{text:?} is no sheet; expected ROWSxCOLUMNS, each 1 to {MOST_CELLS}, for example 4x8"))
+    cells.ok_or_else(|| {
+        format!("{text:?} is not a sheet layout; expected ROWSxCOLUMNS, each 1 to {MOST_CELLS}, for example 4x8")
+    })
 }
 
-/// Names with a number in them.
+/// File names that contain the number of a frame.
 pub struct FrameNames {
     folder: PathBuf,
     before: String,
@@ -40,10 +42,14 @@ pub struct FrameNames {
 }
 
 impl FrameNames {
-    /// Of `f_%04d.png`: four digits and more, filled with zeros.
+    /// Parses a name such as `f_%04d.png`: the number replaces `%04d`, padded with zeros to at least four digits.
     pub fn parse(path: &Path) -> Result<Self, FieldError> {
         let refuse = || {
-            FieldError::new("--output", path.display(), "a name with one place for the frame, for example f_%04d.png")
+            FieldError::new(
+                "--output",
+                path.display(),
+                "a name with one place for the frame number, for example f_%04d.png",
+            )
         };
         let name = path.file_name().and_then(|name| name.to_str()).ok_or_else(refuse)?;
         let (before, rest) = name.split_once('%').ok_or_else(refuse)?;
@@ -71,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_have_the_number_in_them() {
+    fn frame_names_contain_the_frame_number() {
         let name = |text: &str, frame| Some(FrameNames::parse(Path::new(text)).ok()?.of(frame));
         assert_eq!(name("a/f_%04d.png", 7), Some("a/f_0007.png".into()));
         assert_eq!(name("%d.png", 70_000), Some("70000.png".into()));
@@ -82,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn stretches_are_not_empty_and_not_endless() {
+    fn frame_ranges_are_neither_empty_nor_endless() {
         assert_eq!(parse_frames("3..9"), Ok(3..=9));
         assert_eq!(parse_frames("3..3"), Ok(3..=3));
         for wrong in ["9..3", "3", "..", "-1..4", "0..100000", "a..b"] {

@@ -1,4 +1,4 @@
-//! `haze info`: what this machine renders with.
+//! `haze info`: prints what this machine renders with.
 
 use glam::UVec2;
 use haze::settings::{Path, Technique};
@@ -12,8 +12,8 @@ pub fn run() -> Result<(), Error> {
     match Headless::new() {
         Ok(gpu) => {
             say!("gpu: {}", gpu.description())?;
-            say!("largest texture: {} pixels a side", gpu.device.limits().max_texture_dimension_2d)?;
-            say!("path auto takes, at 1280x720")?;
+            say!("largest texture: {} pixels per side", gpu.device.limits().max_texture_dimension_2d)?;
+            say!("choices of path auto at 1280x720:")?;
             for choice in choices(&gpu)? {
                 say!("  {choice}")?;
             }
@@ -24,7 +24,7 @@ pub fn run() -> Result<(), Error> {
     say!("cpu: {} threads", std::thread::available_parallelism().map_or(1, usize::from))
 }
 
-/// What the path `auto` takes of a few layers and of many, by what either way takes here.
+/// Returns the choices of the path `auto` for few layers and for many, from the measured costs of this adapter.
 fn choices(gpu: &Headless) -> Result<Vec<PathChoice>, Error> {
     let context = Context::new(&gpu.device, &gpu.queue, None);
     let model = context.measure_paths(&gpu.device, &gpu.queue, |encoder| gpu.submit(encoder))?;
@@ -37,7 +37,7 @@ fn choices(gpu: &Headless) -> Result<Vec<PathChoice>, Error> {
         sprites: 16.0 * layers,
         fragments: layers * size.as_dvec2().element_product(),
         size,
-        // Sprites of amount 0.3 whose pictures are a third full.
+        // -ln(1 - amount) of sprites of amount 0.3, averaged over a texture that is one third full.
         optical_depth: 0.12,
         lookups: 0.0,
         is_assumed: false,

@@ -1,4 +1,4 @@
-//! The files that a shot is read from.
+//! Files that a shot is read from.
 
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -7,19 +7,19 @@ use glam::Vec3;
 use haze::preset::{PictureFolders, Preset, cache_file, picture_file};
 use haze::settings::{FieldVisitor, Fields, PictureRole};
 
-/// Every place where a picture may lie that a preset names.
+/// Returns every path where an image that a preset names may lie.
 pub fn pictures_of(folders: &PictureFolders, preset: &Preset) -> Vec<PathBuf> {
     picture_files(preset).iter().flat_map(|file| folders.places(file)).collect()
 }
 
-/// The same, from the preset's folder on.
+/// Returns the same files, relative to the preset's folder.
 pub fn picture_files(preset: &Preset) -> Vec<PathBuf> {
     let mut names = Names(Vec::new());
     preset.clone().visit(&mut names);
     names.0.iter().filter_map(|name| picture_file(name)).map(Path::to_path_buf).collect()
 }
 
-/// Every particle file that a preset names, and those that may follow it.
+/// Returns every particle file that a preset names, and the next file of each sequence, which may be written later.
 pub fn caches_of(folders: &PictureFolders, preset: &Preset) -> Vec<PathBuf> {
     let files = preset.systems.iter().filter_map(|system| cache_file(&system.cache.path));
     files.flat_map(|file| folders.places(file)).flat_map(|place| haze::preset::places(&place)).collect()

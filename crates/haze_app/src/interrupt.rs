@@ -1,17 +1,18 @@
-//! Ctrl-C while much is being made: it stops where the files are whole. A second one ends the program.
+//! Ctrl-C during long work: the first one stops the work at a point where all files are complete, a second one ends the
+//! program.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static IS_ASKED: AtomicBool = AtomicBool::new(false);
 
-/// Whether it has been pressed since [`catch`].
+/// Returns true if Ctrl-C was pressed since [`catch`].
 pub fn is_asked() -> bool {
     IS_ASKED.load(Ordering::Relaxed)
 }
 
-/// From now on it ends the program no more, but is noted.
+/// From now on the first Ctrl-C only sets a flag.
 #[cfg(unix)]
-#[allow(unsafe_code, reason = "there is no other way to hear of a signal")]
+#[allow(unsafe_code, reason = "the standard library has no signal handlers")]
 pub fn catch() {
     const SIGINT: i32 = 2;
     const DEFAULT: usize = 0;
@@ -20,14 +21,14 @@ pub fn catch() {
     }
     extern "C" fn note(number: i32) {
         IS_ASKED.store(true, Ordering::Relaxed);
-        // SAFETY: a handler may call it.
+        // SAFETY: `signal` is async-signal-safe.
         unsafe { signal(number, DEFAULT) };
     }
     let note: extern "C" fn(i32) = note;
-    // SAFETY: the handler only writes an atomic, and calls what a handler may.
+    // SAFETY: the handler only writes an atomic and calls `signal`, both async-signal-safe.
     unsafe { signal(SIGINT, note as usize) };
 }
 
-/// Elsewhere it ends the program; a file is written whole or not at all.
+/// On other systems Ctrl-C ends the program; a file is written completely or not at all.
 #[cfg(not(unix))]
 pub fn catch() {}

@@ -1,4 +1,4 @@
-//! What a file is that was handed to a command for another kind.
+//! Recognizes a file that was passed to a command for another kind of file.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -11,10 +11,10 @@ use haze_author::ramp::motif::MotifRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
 
 struct Kind {
-    /// As in `fire.ramp.json`.
+    /// Part of the file name: `ramp` in `fire.ramp.json`.
     name: &'static str,
     what: &'static str,
-    /// What takes it.
+    /// Command that reads this kind.
     command: &'static str,
     is_it: fn(&Path) -> bool,
 }
@@ -25,37 +25,37 @@ const PRESET: Kind =
 const RECIPES: [Kind; 4] = [
     Kind {
         name: "ramp",
-        what: "a ramp's recipe",
+        what: "a ramp recipe",
         command: "haze ramp check",
         is_it: |path| RampRecipe::load(path).is_ok(),
     },
     Kind {
         name: "motif",
-        what: "a motif's recipe",
+        what: "a motif recipe",
         command: "haze ramp bake",
         is_it: |path| MotifRecipe::load(path).is_ok(),
     },
     Kind {
         name: "sprite",
-        what: "a sprite's recipe",
+        what: "a sprite recipe",
         command: "haze sprite bake",
         is_it: |path| SpriteRecipe::load(path).is_ok(),
     },
     Kind {
         name: "noise",
-        what: "a noise's recipe",
+        what: "a noise recipe",
         command: "haze sprite bake",
         is_it: |path| NoiseRecipe::load(path).is_ok(),
     },
 ];
 
-/// The names of all kinds of recipes.
+/// Returns the names of all kinds of recipes.
 pub fn recipes() -> impl Iterator<Item = &'static str> {
     RECIPES.iter().map(|kind| kind.name)
 }
 
-/// Says of a file that `expected` could not be read from what it is instead, and which command takes it; else the same error.
-/// `own` is the kind that was expected, by its name.
+/// Explains an error of a file that could not be read as `expected`: if the file is of another kind, returns an error
+/// that names the kind and the command that reads it, else the same error. `own` is the name of the expected kind.
 pub fn explain(error: Error, path: &Path, own: &str, expected: &str) -> Error {
     let named = |kind: &&Kind| {
         let stem = Path::new(path.file_stem().unwrap_or_default());
@@ -66,7 +66,7 @@ pub fn explain(error: Error, path: &Path, own: &str, expected: &str) -> Error {
     let kind = by_name.or_else(|| kinds().find(|kind| (kind.is_it)(path)));
     match kind.filter(|kind| kind.name != own) {
         Some(Kind { what, command, .. }) => {
-            let expected = format!("{expected}; it is {what}: `{command}` takes it");
+            let expected = format!("{expected}, but it is {what}: use `{command}`");
             FieldError::new(own, path.display(), expected).into()
         }
         None => error,

@@ -1,9 +1,9 @@
-//! Text on pictures.
+//! Draws text on images.
 
 use ab_glyph::{Font, FontRef, GlyphId, InvalidFont, PxScale, ScaleFont, point};
 use image::{Rgb, RgbImage};
 
-/// Writes `text` with its upper left corner at (`x`, `y`); what does not fit is cut off.
+/// Draws `text`, `height` pixels high, with its upper left corner at (`x`, `y`); text beyond the image is cut off.
 pub fn draw_text(picture: &mut RgbImage, x: f32, y: f32, height: f32, colour: Rgb<u8>, text: &str) {
     let Ok(font) = font() else { return };
     let baseline = y + font.as_scaled(PxScale::from(height)).ascent();
@@ -26,12 +26,12 @@ pub fn draw_text(picture: &mut RgbImage, x: f32, y: f32, height: f32, colour: Rg
     }
 }
 
-/// How wide `text` is, pixels.
+/// Width of `text`, pixels.
 pub fn width(height: f32, text: &str) -> f32 {
     font().map_or(0.0, |font| place(&font, height, text).1)
 }
 
-/// Breaks `text` between words into lines of at most `width` pixels; a word that is wider has a line of its own.
+/// Breaks `text` between words into lines of at most `width` pixels; a wider word gets its own line.
 pub fn wrap(height: f32, width: f32, text: &str) -> Vec<String> {
     let Ok(font) = font() else { return Vec::new() };
     let mut lines: Vec<String> = Vec::new();
@@ -52,7 +52,7 @@ fn font() -> Result<FontRef<'static>, InvalidFont> {
     FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT)
 }
 
-/// Glyphs with their left ends, and the width of all.
+/// Returns the glyphs with their left edges, and the width of all, pixels.
 fn place(font: &FontRef<'_>, height: f32, text: &str) -> (Vec<(GlyphId, f32)>, f32) {
     let scaled = font.as_scaled(PxScale::from(height));
     let mut x = 0.0;

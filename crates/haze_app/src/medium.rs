@@ -1,4 +1,4 @@
-//! What smoke is made of, and how finely it is path-traced, on the command line.
+//! Options for the medium that smoke is made of, and for the quality of its path tracing.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -16,49 +16,50 @@ use super::progress::watched_as;
 
 #[derive(Args)]
 pub struct MediumArguments {
-    /// What the smoke is made of.
+    /// Medium that the smoke is made of.
     #[arg(long, value_parser = names(), default_value = "ash")]
     medium: String,
     #[command(flatten)]
     numbers: MediumNumbers,
 }
 
-/// What a medium is made of, number by number.
+/// Single parameters of a medium.
 #[derive(Args)]
 pub struct MediumNumbers {
-    /// In place of the medium's: the share of light that is scattered, 0 to 1; one number, or red, green and blue with commas.
+    /// Share of light that is scattered, 0 to 1, instead of the medium's; one number, or red, green and blue separated
+    /// by commas.
     #[arg(long, value_name = "SHARE", value_delimiter = ',', allow_hyphen_values = true)]
     albedo: Vec<f32>,
-    /// In place of the medium's: mean cosine of the angle that light is scattered by, -0.95 back to 0.95 onwards.
+    /// Mean cosine of the scattering angle, -0.95 (backward) to 0.95 (forward), instead of the medium's.
     #[arg(long, value_name = "COSINE", allow_hyphen_values = true)]
     g: Option<f32>,
-    /// In place of the medium's: extinction in the middle of the puff, for each half side of it, 0.1 to 100.
+    /// Extinction in the middle of the puff, per half side of it, 0.1 to 100, instead of the medium's.
     #[arg(long, value_name = "EXTINCTION", allow_hyphen_values = true)]
     density: Option<f32>,
 }
 
-/// The names that media have.
+/// Parser of the names of media.
 pub fn names() -> PossibleValuesParser {
     PossibleValuesParser::new(MEDIA.iter().map(|named| named.name))
 }
 
-/// The medium of a name.
+/// Returns the medium of this name.
 pub fn named(name: &str) -> Medium {
     MEDIA.iter().find(|named| named.name == name).map_or(MEDIA[0].medium, |named| named.medium)
 }
 
 impl MediumNumbers {
-    /// The name of the first that is given.
+    /// Returns the first option that is given.
     pub fn given(&self) -> Option<&'static str> {
         let given =
             [("--albedo", !self.albedo.is_empty()), ("--g", self.g.is_some()), ("--density", self.density.is_some())];
         given.into_iter().find_map(|(name, is_given)| is_given.then_some(name))
     }
 
-    /// The medium of a name with these in place of its own.
+    /// Returns the medium of this name with the given numbers instead of its own.
     ///
     /// # Errors
-    /// Names the number that is out of range.
+    /// Names the option that is out of range.
     pub fn of(&self, name: &str) -> Result<Medium, FieldError> {
         let mut medium = named(name);
         medium.albedo = match self.albedo[..] {
@@ -67,7 +68,7 @@ impl MediumNumbers {
             [r, g, b] => Vec3::new(r, g, b),
             _ => {
                 let given = format!("{} numbers", self.albedo.len());
-                return Err(FieldError::new("--albedo", given, "one, or red, green and blue"));
+                return Err(FieldError::new("--albedo", given, "one number, or three: red, green and blue"));
             }
         };
         medium.g = self.g.unwrap_or(medium.g);
@@ -77,7 +78,7 @@ impl MediumNumbers {
         Ok(medium)
     }
 
-    /// The medium's name, where nothing of it was changed.
+    /// Returns the medium's name, or `medium` if a number of it was changed.
     pub fn name_of<'a>(&self, name: &'a str) -> &'a str {
         if self.given().is_none() { name } else { "medium" }
     }
@@ -101,15 +102,15 @@ pub struct PathTraceArguments {
     /// Pixels along a side of the puff.
     #[arg(long, value_parser = clap::value_parser!(u32).range(8..=256), default_value_t = Self::default().size)]
     size: u32,
-    /// Paths for each pixel.
+    /// Paths per pixel.
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65536), default_value_t = Self::default().samples)]
     samples: u32,
-    /// Of the noise.
+    /// Seed of the noise.
     #[arg(long, default_value_t = Self::default().seed)]
     seed: u32,
 }
 
-/// A few seconds of work.
+/// Quality that takes a few seconds.
 impl Default for PathTraceArguments {
     fn default() -> Self {
         Self { size: 48, samples: 64, seed: 1 }
@@ -121,7 +122,7 @@ impl PathTraceArguments {
         PathTrace { size: self.size, samples: self.samples, seed: self.seed }
     }
 
-    /// Does the work, and says how much of it is done.
+    /// Does the work, and shows the progress on a terminal.
     pub fn watched<T>(&self, what: &str, work: impl FnOnce(&dyn Fn(u32) -> Result<(), Error>) -> T) -> T {
         let done = AtomicU32::new(0);
         let line = || format!("haze: tracing {what}, path {} of {}", done.load(Ordering::Relaxed) + 1, self.samples);
@@ -134,10 +135,10 @@ impl PathTraceArguments {
     }
 }
 
-/// A sprite's recipe: a file, or a built-in one by its name.
+/// Loads a sprite recipe: a file, or a built-in one by name.
 ///
 /// # Errors
-/// As [`SpriteRecipe::load`]; for a name that is neither.
+/// As [`SpriteRecipe::load`], and if the name is neither a file nor built in.
 pub fn sprite_recipe(name: &Path) -> Result<SpriteRecipe, Error> {
     if has_extension(name, "json") {
         return SpriteRecipe::load(name);

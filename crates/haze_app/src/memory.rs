@@ -1,25 +1,25 @@
-//! Whether there is memory for a picture.
+//! Checks that an image fits into memory.
 
 use glam::UVec2;
 use haze::Error;
 
-/// Bytes that a pixel takes on the way to a file. On the CPU 40: colour 16, depth 4, and at full scale accumulated 16 and
-/// reduced depth 4; read back from the GPU 32: twice 8, then 16. Half as much again is for what an allocator keeps to itself.
-/// Textures are the driver's, which says when it has no room.
+/// Bytes of memory per pixel between rendering and the file. The CPU renderer takes 40: colour 16, depth 4, and at full
+/// scale accumulation 16 and reduced depth 4. A readback from the GPU takes 32: two buffers of 8, then 16. Half as much
+/// again allows for the allocator's overhead. Texture memory is checked by the driver.
 const BYTES_A_PIXEL: u64 = 60;
 
-/// Refuses a picture that there is no memory for: later, in the midst of the work, running out ends the program. `option` asks
-/// for it.
+/// Refuses an image that does not fit into memory. Without this check, running out during the work would abort the
+/// program. `option` is the option that asked for the size.
 pub fn check_memory(option: &str, size: UVec2) -> Result<(), Error> {
     let bytes = u64::from(size.x) * u64::from(size.y) * BYTES_A_PIXEL;
     let mut room = Vec::<u8>::new();
     let had = usize::try_from(bytes).is_ok_and(|bytes| room.try_reserve_exact(bytes).is_ok());
-    // Else the compiler sees that nobody uses it.
+    // Without this the compiler may remove the unused allocation.
     std::hint::black_box(&room);
     if had {
         return Ok(());
     }
-    let reason = format!("out of memory: it takes {} MiB; expected a smaller picture", bytes >> 20);
+    let reason = format!("out of memory: it needs {} MiB; expected a smaller size", bytes >> 20);
     let error = std::io::Error::new(std::io::ErrorKind::OutOfMemory, reason);
     Err(Error::Io { path: format!("{option} {}x{}", size.x, size.y).into(), error })
 }

@@ -1,4 +1,4 @@
-//! What several subcommands take: a preset and changes to it, a size, a backend.
+//! Options shared by several subcommands: a preset and changes to it, an image size, a renderer.
 
 use std::cell::RefCell;
 use std::path::PathBuf;
@@ -22,53 +22,53 @@ use super::inputs::pictures_of;
 use super::memory::check_memory;
 use super::output::{Files, complain, say};
 
-/// How a picture is drawn, whatever it shows.
+/// Options of rendering that do not depend on the shot.
 #[derive(Args)]
 pub struct RunArguments {
-    /// Size of the picture, pixels.
+    /// Image size in pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size, allow_hyphen_values = true)]
     pub size: UVec2,
-    /// How smoke reaches the picture; the preset's own if not given.
+    /// Rendering path of the smoke. Default: the preset's.
     #[arg(long, value_parser = choices::<Path>())]
     pub path: Option<Path>,
-    /// Which renderer.
+    /// Renderer.
     #[arg(long, value_enum, default_value = "auto")]
     backend: BackendName,
-    /// A folder like haze's own `shaders`: its files take the place of those of the same names that the program has in it.
+    /// Folder with WGSL files laid out as in haze's `shaders`. They replace the built-in files of the same names.
     #[arg(long, value_name = "DIR")]
     shaders: Option<PathBuf>,
 }
 
-/// A preset, and what is changed about it for this run.
+/// A preset, and changes to it for this run.
 #[derive(Args)]
 pub struct ShotArguments {
-    /// A built-in preset's name (see `haze preset list`), or the path of a JSON file.
+    /// Name of a built-in preset (see `haze preset list`), or path of a preset file (JSON).
     #[arg(default_value = "column")]
     preset: PathBuf,
     #[command(flatten)]
     pub run: RunArguments,
-    /// Seconds into the emission; the preset's own if not given.
+    /// Seconds since the start of the emission. Default: the preset's.
     #[arg(long, value_name = "S", value_parser = parse_time, allow_hyphen_values = true)]
     time: Option<f32>,
-    /// Pixels per texel of the accumulation target, 1 to 16; the preset's own if not given.
+    /// Pixels per texel of the accumulation target, 1 to 16. Default: the preset's.
     #[arg(long, value_name = "N", value_parser = parse_scale, allow_hyphen_values = true)]
     scale: Option<u32>,
-    /// How sprites meet the scene; the preset's own if not given.
+    /// Soft-particle technique. Default: the preset's.
     #[arg(long, value_name = "T", value_parser = choices::<Technique>())]
     pub technique: Option<Technique>,
-    /// Seed of every emitter; the preset's own if not given.
+    /// Seed of every emitter. Default: the preset's.
     #[arg(long, value_name = "N", value_parser = parse_seed, allow_hyphen_values = true)]
     seed: Option<u32>,
-    /// Sets a field of the preset, by its name or the end of it: `accumulate.scale=4`, `lights[0].intensity=30`. May be given
-    /// more than once.
+    /// Set a field of the preset, named by its path or the end of it: `accumulate.scale=4`, `lights[0].intensity=30`.
+    /// May be given more than once.
     #[arg(long, value_name = "FIELD=VALUE", value_parser = parse_assignment)]
     set: Vec<(String, String)>,
-    /// The PNG to write.
+    /// PNG to write.
     #[arg(short, long, value_name = "FILE.png")]
     pub output: PathBuf,
     #[command(flatten)]
     assets: AssetsArguments,
-    /// Take a second more to make the file a tenth smaller.
+    /// Compress more: takes about a second longer, for a file that is a tenth smaller.
     #[arg(long)]
     small: bool,
 }
@@ -76,16 +76,16 @@ pub struct ShotArguments {
 /// A folder of files that presets share.
 #[derive(Args, Clone, Debug, Default)]
 pub struct AssetsArguments {
-    /// A folder in which pictures and particle files are looked for that are not beside the preset.
+    /// Folder to search for images and particle files that are not beside the preset.
     #[arg(long, value_name = "DIR")]
     assets: Option<PathBuf>,
 }
 
 impl AssetsArguments {
-    /// The folder.
+    /// Returns the folder.
     ///
     /// # Errors
-    /// Where it is none.
+    /// If it is not a folder.
     pub fn folder(&self) -> Result<Option<PathBuf>, Error> {
         match &self.assets {
             Some(folder) if !folder.is_dir() => {
@@ -95,7 +95,7 @@ impl AssetsArguments {
         }
     }
 
-    /// Where the files of a preset are looked for.
+    /// Returns the folders to search for the files of a preset.
     ///
     /// # Errors
     /// As [`AssetsArguments::folder`].
@@ -104,14 +104,14 @@ impl AssetsArguments {
     }
 }
 
-/// The renderers.
+/// Choice of a renderer.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum BackendName {
-    /// The GPU where there is one, else the CPU.
+    /// The GPU if there is one, else the CPU.
     Auto,
-    /// The GPU, or fail.
+    /// The GPU; fails if there is none.
     Gpu,
-    /// The reference renderer: slow, and the same everywhere.
+    /// The reference renderer on the CPU: slow, with the same result on every machine.
     Cpu,
 }
 
@@ -121,7 +121,7 @@ pub enum Backend {
     Cpu,
 }
 
-/// A device, and what draws on it, from picture to picture.
+/// A device, and the renderer on it, which is kept for all images.
 pub struct Gpu {
     pub headless: Headless,
     pub context: StageContext,
@@ -129,14 +129,14 @@ pub struct Gpu {
 }
 
 impl ShotArguments {
-    /// Loads the preset, or the default, and applies the changes. Refuses an output that cannot be written, `--output` or
-    /// another that comes with the option which asks for it.
+    /// Loads the preset, applies the changes, and builds the shot. Refuses `--output`, and `others` (option and path),
+    /// if they cannot be written.
     pub fn load(&self, others: &[(&str, PathBuf)]) -> Result<Shot, Error> {
         let output = ("--output", self.output.clone());
         self.load_for(&[&[output], others].concat(), "png")
     }
 
-    /// The same for outputs in place of `--output`, whose names end in `kind`.
+    /// Like [`Self::load`], with `outputs` in place of `--output`; their names end in `kind`.
     pub fn load_for(&self, outputs: &[(&str, PathBuf)], kind: &str) -> Result<Shot, Error> {
         let mut preset = Preset::load(&self.preset)?;
         for system in &mut preset.systems {
@@ -156,18 +156,18 @@ impl ShotArguments {
         Ok(shot)
     }
 
-    /// A shot of the preset, changed.
+    /// Builds a shot of a changed preset.
     pub fn shot(&self, preset: Preset) -> Result<Shot, Error> {
         preset.validate()?;
         Shot::from_folders(preset, &self.preset, &self.assets.folders(&self.preset)?, self.run.size)
     }
 
-    /// How much work the size of files is worth.
+    /// Effort to compress PNGs.
     pub fn effort(&self) -> Effort {
         if self.small { Effort::Small } else { Effort::Quick }
     }
 
-    /// Writes the picture, and says so.
+    /// Writes the image, and prints a line that says so.
     pub fn write(&self, picture: RgbImage, shot: &Shot, backend: &Backend) -> Result<(), Error> {
         write_png(&self.output, &picture.into(), self.effort())?;
         say!("{}: {} on {}", self.output.display(), shot.preset.name, backend.description())
@@ -175,14 +175,15 @@ impl ShotArguments {
 }
 
 impl RunArguments {
-    /// Opens the renderer that was asked for.
+    /// Opens the requested renderer.
     pub fn backend(&self) -> Result<Backend, Error> {
         check_memory("--size", self.size)?;
         let sources = self.shaders.as_ref().map(Sources::from_folder).transpose()?;
         if self.backend == BackendName::Cpu {
             return match sources {
                 Some(_) => {
-                    Err(FieldError::new("--shaders", "with --backend cpu", "a GPU: the CPU runs no shaders").into())
+                    Err(FieldError::new("--backend", "cpu", "auto or gpu with --shaders: the CPU runs no shaders")
+                        .into())
                 }
                 None => Ok(Backend::Cpu),
             };
@@ -207,7 +208,7 @@ impl RunArguments {
 }
 
 impl Backend {
-    /// The GPU where there is one, else the CPU, which draws without an author's shaders only.
+    /// Opens the GPU if there is one, else the CPU, which cannot use custom shaders.
     pub fn open(sources: Option<&Sources>) -> Result<Self, Error> {
         match Headless::new() {
             Ok(gpu) => Self::on(gpu, sources),
@@ -225,7 +226,7 @@ impl Backend {
         Ok(Self::Gpu(Box::new(Gpu { headless: gpu, context, stage })))
     }
 
-    /// Renders, linear HDR.
+    /// Renders an image in linear HDR.
     pub fn render(&self, shot: &Shot) -> Result<Picture<Vec4>, Error> {
         match self {
             Self::Gpu(gpu) => {
@@ -238,7 +239,7 @@ impl Backend {
         }
     }
 
-    /// What renders, in one line.
+    /// Describes the renderer in one line.
     pub fn description(&self) -> String {
         match self {
             Self::Gpu(gpu) => gpu.headless.description(),
@@ -247,7 +248,7 @@ impl Backend {
     }
 }
 
-/// A mistake in what an option sets.
+/// Adds the option to the field that an error names.
 pub fn in_option(option: &str, mut error: FieldError) -> FieldError {
     error.field = format!("{option} {}", error.field);
     error
@@ -264,7 +265,7 @@ pub fn parse_size(text: &str) -> Result<UVec2, String> {
 
 pub fn parse_assignment(text: &str) -> Result<(String, String), String> {
     let (field, value) = text.split_once('=').ok_or_else(|| {
-        format!("{text:?} sets nothing; expected a field and its value, for example accumulate.scale=4")
+        format!("{text:?} is not an assignment; expected FIELD=VALUE, for example accumulate.scale=4")
     })?;
     Ok((field.into(), value.into()))
 }
@@ -277,14 +278,14 @@ fn parse_time(text: &str) -> Result<f32, String> {
 
 fn parse_scale(text: &str) -> Result<u32, String> {
     let scale = text.parse().ok().filter(|scale| (1..=16).contains(scale));
-    scale.ok_or_else(|| format!("{text:?} is not a scale; expected 1 to 16 pixels"))
+    scale.ok_or_else(|| format!("{text:?} is not a scale; expected 1 to 16 pixels per texel"))
 }
 
 fn parse_seed(text: &str) -> Result<u32, String> {
     text.parse().map_err(|_| format!("{text:?} is not a seed; expected 0 to {}", u32::MAX))
 }
 
-/// A setting enum by the names that it has in presets.
+/// Parser of a setting enum, by its names in presets.
 pub fn choices<T>() -> impl TypedValueParser<Value = T>
 where
     T: Choice + Default + FromStr<Err = FieldError> + Clone + Send + Sync + 'static,

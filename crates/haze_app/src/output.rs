@@ -1,4 +1,4 @@
-//! What the program writes: lines, and the files that pictures go to.
+//! Output of the program: lines on standard output and error, and the files it writes.
 
 use std::fmt::{Arguments, Display};
 use std::io::{ErrorKind, Write};
@@ -7,7 +7,7 @@ use std::path::Path;
 use haze::picture::{FileIdentity, check_file};
 use haze::{Error, FieldError};
 
-/// `println!` of one line whose failure is an error, not a panic.
+/// `println!` of one line that returns an error instead of panicking.
 macro_rules! say {
     ($($argument:tt)*) => { $crate::output::write_line(format_args!($($argument)*)) };
 }
@@ -17,28 +17,28 @@ pub fn write_line(line: Arguments<'_>) -> Result<(), Error> {
     write_text(one_line(line))
 }
 
-/// Writes text of our own, of any number of lines, to standard output.
+/// Writes text of the program's own, with any number of lines, to standard output.
 pub fn write_text(text: impl Display) -> Result<(), Error> {
     let mut out = std::io::stdout().lock();
     match writeln!(out, "{text}").and_then(|()| out.flush()) {
-        // Whoever reads has enough: `haze preset schema | head`.
+        // The reader has closed the pipe, as in `haze preset schema | head`.
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
         written => written.map_err(|error| Error::Io { path: "standard output".into(), error }),
     }
 }
 
-/// Writes one line to standard error, if anyone can be told.
+/// Writes one line to standard error; a failure is ignored, because it cannot be reported.
 pub fn complain(line: impl Display) {
     let _ = writeln!(std::io::stderr().lock(), "haze: {}", one_line(line));
 }
 
-/// Control characters, which may come from names of files, as Rust would have them written.
+/// Escapes control characters, which may come from file names.
 pub fn one_line(text: impl Display) -> String {
     let escape = |c: char| if c.is_control() { c.escape_default().collect() } else { String::from(c) };
     text.to_string().chars().map(escape).collect()
 }
 
-/// What went wrong with the files that a command was given; nothing where that has been said already.
+/// Errors of the files that a command was given; empty if they have been reported already.
 #[derive(Default)]
 pub struct Failures(Vec<Error>);
 
@@ -53,7 +53,7 @@ impl Failures {
         Self(errors)
     }
 
-    /// Does something with every item, whatever becomes of the others; gives what was done and what was not.
+    /// Applies `work` to every item, even if others fail; returns the results and the errors.
     pub fn of_each<T, U>(
         items: impl IntoIterator<Item = T>,
         work: impl FnMut(T) -> Result<U, Error>,
@@ -77,7 +77,7 @@ impl Failures {
     }
 }
 
-/// The files that a command reads and writes.
+/// Files that a command reads and writes.
 pub struct Files {
     inputs: Vec<FileIdentity>,
     outputs: Vec<FileIdentity>,
@@ -88,14 +88,14 @@ pub fn has_extension(path: &Path, expected: &str) -> bool {
 }
 
 impl Files {
-    /// Files that a command reads: to be told before those that it writes.
+    /// Starts with the files that a command reads; it refuses to write them.
     pub fn read<P: AsRef<Path>>(inputs: impl IntoIterator<Item = P>) -> Self {
         let inputs = inputs.into_iter().map(|path| FileIdentity::of(path.as_ref())).collect();
         Self { inputs, outputs: Vec::new() }
     }
 
-    /// Refuses a file that a picture cannot be written to, before any work is done and anything is replaced. `kind` is what its
-    /// name ends in.
+    /// Refuses a file that cannot be written, before any work is done and any file is replaced. `kind` is the required
+    /// extension.
     pub fn write(&mut self, option: &str, path: &Path, kind: &str) -> Result<(), Error> {
         let refuse = |expected: &str| Err(FieldError::new(option, path.display(), expected).into());
         if !has_extension(path, kind) {
@@ -104,24 +104,24 @@ impl Files {
         if !path.parent().is_none_or(|folder| folder.as_os_str().is_empty() || folder.is_dir()) {
             return refuse("a file in a folder that exists");
         }
-        // `a.png/` and `a.png/.` have the name `a.png`, and mean a folder.
+        // `a.png/` and `a.png/.` have the file name `a.png`, but mean a folder.
         let name = path.file_name().unwrap_or_default().as_encoded_bytes();
         let found = std::fs::metadata(path);
         if !path.as_os_str().as_encoded_bytes().ends_with(name) || found.as_ref().is_ok_and(|found| !found.is_file()) {
-            return refuse("a file, or a name that is free");
+            return refuse("a file, or a name that does not exist yet");
         }
         if found.is_ok_and(|found| found.permissions().readonly()) {
-            return refuse("a file that may be written");
+            return refuse("a file with write permission");
         }
         if let Err(error) = check_file(path) {
             return refuse(&format!("a file that can be written ({error})"));
         }
         let identity = FileIdentity::of(path);
         if self.inputs.contains(&identity) {
-            return refuse("a file that is not read");
+            return refuse("a file that is not also an input");
         }
         if self.outputs.contains(&identity) {
-            return refuse("a file of its own");
+            return refuse("a different file for each output");
         }
         self.outputs.push(identity);
         Ok(())

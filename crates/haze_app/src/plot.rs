@@ -1,4 +1,4 @@
-//! Curves on a picture.
+//! Plots curves on an image.
 
 use glam::{UVec2, Vec2};
 use image::{Rgb, RgbImage};
@@ -7,7 +7,7 @@ use super::label::draw_text;
 use super::sheet::{INK, PAPER};
 
 const GRID: Rgb<u8> = Rgb([58, 60, 66]);
-/// Beside the curves, pixels.
+/// Margins beside the curves, pixels; the right one holds their names.
 pub const LEFT: f32 = 44.0;
 pub const RIGHT: f32 = 150.0;
 const TOP: f32 = 16.0;
@@ -15,14 +15,14 @@ const BOTTOM: f32 = 44.0;
 /// Half the width of a line, pixels.
 const HALF_WIDTH: f32 = 1.2;
 
-/// A function and how it is shown.
+/// A function with its name and colour.
 pub struct Curve {
     pub name: &'static str,
     pub colour: Rgb<u8>,
     pub function: Box<dyn Fn(f32) -> f32>,
 }
 
-/// Plots functions over `from..to`; values are 0..1.
+/// Plots functions over `from..to`; values are 0..1. `axis` labels the x axis.
 pub fn plot(size: UVec2, (from, to): (f32, f32), axis: &str, curves: &[Curve]) -> RgbImage {
     let mut picture = RgbImage::from_pixel(size.x, size.y, PAPER);
     let area = size.as_vec2() - Vec2::new(LEFT + RIGHT, TOP + BOTTOM);
@@ -50,7 +50,7 @@ pub fn plot(size: UVec2, (from, to): (f32, f32), axis: &str, curves: &[Curve]) -
     picture
 }
 
-/// A smooth line through points whose x ascends.
+/// Draws an antialiased line through points of ascending x.
 fn line(picture: &mut RgbImage, colour: Rgb<u8>, points: &[Vec2]) {
     for (&a, &b) in points.iter().zip(&points[1..]) {
         let reach = Vec2::splat(HALF_WIDTH + 1.0);
@@ -64,7 +64,7 @@ fn line(picture: &mut RgbImage, colour: Rgb<u8>, points: &[Vec2]) {
                 let covered = (HALF_WIDTH + 0.5 - p.distance(a.lerp(b, along))).clamp(0.0, 1.0);
                 let pixel = picture.get_pixel_mut(x, y);
                 for (channel, ink) in pixel.0.iter_mut().zip(colour.0) {
-                    // Neighbouring pieces overlap: the stronger ink stays.
+                    // Overlapping segments blend towards the same ink.
                     let mixed = f32::from(*channel) + (f32::from(ink) - f32::from(*channel)) * covered;
                     *channel = mixed.round() as u8;
                 }

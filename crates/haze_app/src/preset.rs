@@ -21,34 +21,34 @@ pub struct Arguments {
     command: Command,
 }
 
-/// Of the picture that presets are checked for.
+/// Image size that presets are checked for.
 const SIZE: UVec2 = UVec2::new(1280, 720);
 
 #[derive(Subcommand)]
 enum Command {
-    /// The built-in presets.
+    /// List the built-in presets.
     List,
-    /// Load presets and their files, and say all that is wrong with them, what is doubtful, and what is set to no effect.
+    /// Load presets and their files, and report errors, doubtful values, and settings without effect.
     Check {
-        /// Names or paths.
+        /// Names or paths of presets.
         #[arg(required = true)]
         presets: Vec<PathBuf>,
         #[command(flatten)]
         assets: AssetsArguments,
     },
-    /// Print every setting of a preset: what it is, what it would be by itself, and why it has no effect where it has none.
+    /// Print every setting of a preset with its value, its default, and the reason if it has no effect.
     Show {
-        /// A name or path.
+        /// Name or path of a preset.
         preset: PathBuf,
-        /// Only what is set to something else.
+        /// Only settings that differ from their defaults.
         #[arg(long)]
         changed: bool,
     },
-    /// Begin a preset as a copy of another, with the pictures that go with it.
+    /// Create a preset as a copy of another, with the images that it uses.
     New {
-        /// The file to write; where it has no ending, .json is added.
+        /// File to write; .json is added to a name without extension.
         file: PathBuf,
-        /// What it begins as: a name or path.
+        /// Preset to copy: a name or path.
         #[arg(long, value_name = "PRESET", default_value = "column")]
         from: PathBuf,
     },
@@ -86,7 +86,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     Ok(())
 }
 
-/// Loads a preset as a picture of it would; gives all that is wrong, and what someone may not have meant.
+/// Loads a preset and its files as rendering does. Returns all errors, and notes on values that may be unintended.
 fn check(path: &Path, assets: &AssetsArguments) -> Result<(Vec<Error>, Vec<String>), Error> {
     let preset = Preset::load(path).map_err(|error| explain(error, path, "preset", "a preset"))?;
     let (wrong, mut notes) = check_files(&preset, path, &assets.folders(path)?);
@@ -96,12 +96,12 @@ fn check(path: &Path, assets: &AssetsArguments) -> Result<(Vec<Error>, Vec<Strin
     Ok((wrong, notes))
 }
 
-/// A field of a preset.
+/// A setting of a preset.
 struct Setting {
     path: String,
     value: Value,
     default: Value,
-    /// Why it has no effect.
+    /// Reason why it has no effect.
     idle: Option<&'static str>,
 }
 
@@ -130,7 +130,7 @@ fn show(preset: &Preset, changed: bool) -> Result<(), Error> {
     let wide = settings.iter().map(|setting| setting.path.len()).max().unwrap_or_default();
     for setting in settings.iter().filter(|setting| !(changed && setting.is_default())) {
         let text = |value: &Value| match value {
-            // JSON has none.
+            // JSON has no infinity.
             Value::Number(number) if !number.is_finite() => number.to_string(),
             value => serde_json::to_string(value).unwrap_or_default(),
         };
@@ -141,14 +141,16 @@ fn show(preset: &Preset, changed: bool) -> Result<(), Error> {
     Ok(())
 }
 
-/// Writes a copy of a preset, and of its pictures beside it.
+/// Writes a copy of a preset, and of its images beside it.
 fn new(file: &Path, from: &Path) -> Result<(), Error> {
     let path = if file.extension().is_none() { file.with_extension("json") } else { file.into() };
     if !has_extension(&path, "json") {
         return Err(FieldError::new("FILE", path.display(), "a name that ends in .json").into());
     }
     if path.symlink_metadata().is_ok() {
-        return Err(FieldError::new("FILE", path.display(), "a name that is free: nothing is replaced").into());
+        return Err(
+            FieldError::new("FILE", path.display(), "a name that does not exist yet: no file is replaced").into()
+        );
     }
     let mut preset = Preset::load(from)?;
     if let Some(name) = path.file_stem() {
@@ -157,5 +159,5 @@ fn new(file: &Path, from: &Path) -> Result<(), Error> {
     let folder = |path: &Path| path.parent().unwrap_or(Path::new("")).to_path_buf();
     copy_beside(&preset, &folder(from), &folder(&path))?;
     write_file(&path, preset.to_text("").as_bytes())?;
-    say!("{}: as {}; `haze {0}` opens it", path.display(), from.display())
+    say!("{}: a copy of {}; open it with `haze {0}`", path.display(), from.display())
 }

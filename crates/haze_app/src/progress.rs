@@ -1,15 +1,15 @@
-//! A line on stderr that says that long work goes on: only where someone watches, and gone when the work is done.
+//! Progress line of long work on stderr: only on a terminal, and erased when the work is done.
 
 use std::io::{IsTerminal as _, Write};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-/// Does the work, and says what it is and for how long already. Work of less than a second says nothing.
+/// Does the work, and shows `what` and the elapsed time. Work of less than a second shows nothing.
 pub fn watched<T>(what: String, work: impl FnOnce() -> T) -> T {
     watched_as(|| what.clone(), work)
 }
 
-/// The same, where what it is changes.
+/// The same, with a description that changes during the work.
 pub fn watched_as<T>(what: impl Fn() -> String + Send, work: impl FnOnce() -> T) -> T {
     let stderr = std::io::stderr();
     if stderr.is_terminal() { watched_on(stderr, what, Duration::from_secs(1), work) } else { work() }
@@ -26,14 +26,14 @@ fn watched_on<T>(
         let started = Instant::now();
         let mut erase = "";
         while end.recv_timeout(every) == Err(RecvTimeoutError::Timeout) {
-            // A terminal that is gone is no reason to stop.
+            // A closed terminal does not stop the work.
             let _ = write!(out, "\r{}, {} s ", what(), started.elapsed().as_secs()).and_then(|()| out.flush());
             erase = "\r\x1b[K";
         }
         let _ = write!(out, "{erase}").and_then(|()| out.flush());
     };
     std::thread::scope(move |scope| {
-        // Without a thread the work goes on unseen.
+        // Without a thread the work continues, but shows nothing.
         let _ = std::thread::Builder::new().spawn_scoped(scope, tell);
         let result = work();
         drop(done);
@@ -52,15 +52,15 @@ mod tests {
     }
 
     #[test]
-    fn long_work_is_seen_and_leaves_no_trace() {
+    fn long_work_shows_a_progress_line_and_erases_it() {
         let text = shown(Duration::from_millis(1), Duration::from_millis(200));
         assert!(text.starts_with("\rbaking puff, 0 s ") && text.ends_with("\r\x1b[K"), "{text:?}");
         assert_eq!(shown(Duration::from_secs(60), Duration::ZERO), "");
     }
 
     #[test]
-    fn a_terminal_that_is_gone_is_no_failure() {
-        // A writer without room.
+    fn a_closed_terminal_does_not_stop_the_work() {
+        // A writer that is full.
         let full: &mut [u8] = &mut [];
         let work = || std::thread::sleep(Duration::from_millis(50));
         watched_on(full, || "baking".into(), Duration::from_millis(1), work);

@@ -1,4 +1,4 @@
-//! Puffs of smoke side by side: lit by the path tracer, and as the renderer has them.
+//! Sheets of smoke puffs, path-traced beside the renderer's.
 
 use glam::{UVec2, Vec3};
 use haze::formula::colour::srgb_from_linear;
@@ -10,14 +10,14 @@ use image::{Rgb, RgbImage};
 use super::flip::flips;
 use super::sheet::Sheet;
 
-/// What stands behind the puffs: darker than most of them, lighter than soot.
+/// Linear background of the puffs: darker than most of them, lighter than soot.
 const BEHIND: Vec3 = Vec3::splat(0.03);
 /// Side of a puff on a sheet, pixels.
 const SIDE: u32 = 160;
-/// Lights from the viewer's side to straight behind the puff; the other half of the ring is much the same.
+/// Lights from the viewer's side to straight behind the puff; the other half of the ring looks much the same.
 const SHOWN: usize = LIGHTS as usize / 2 + 1;
 
-/// A puff before a dark ground. Light as bright as `white` is white.
+/// Composites a puff over the background. Light as bright as `white` becomes white.
 fn before_ground(light: &Picture<Vec3>, coverage: &Picture<f32>, white: f32) -> RgbImage {
     let Picture { size, texels } = light;
     RgbImage::from_fn(size.x, size.y, |x, y| {
@@ -28,7 +28,7 @@ fn before_ground(light: &Picture<Vec3>, coverage: &Picture<f32>, white: f32) -> 
     })
 }
 
-/// Light that is shown as white: brighter than all but the glow straight before a light.
+/// Returns the light that is shown as white: brighter than all but the glow when the light is nearly behind the puff.
 fn white(puff: &Puff) -> f32 {
     let mut brightest: Vec<f32> = puff.traced().light[..SHOWN - 2]
         .iter()
@@ -42,7 +42,7 @@ fn degrees(light: usize) -> String {
     format!("{}°", angle(light))
 }
 
-/// The path-traced puff, light by light.
+/// Sheet of the path-traced puff, light by light.
 pub fn traced(puff: &Puff) -> RgbImage {
     let mut sheet = Sheet::new(UVec2::splat(SIDE), SHOWN as u32, SHOWN as u32);
     let white = white(puff);
@@ -57,23 +57,23 @@ fn enlarged(picture: &RgbImage) -> RgbImage {
     resize(picture, SIDE, SIDE, FilterType::CatmullRom)
 }
 
-/// What is shown in place of the path-traced puff: its picture under a light, and what that is multiplied with.
+/// Images that are compared with the path-traced puff: one for each light, and the factor they are multiplied by.
 pub struct Shown<'a> {
     pub light: &'a dyn Fn(usize) -> Picture<Vec3>,
     pub exposure: f32,
 }
 
-/// The path-traced puff, what is shown by a name, and how far they are apart; below each other.
+/// Sheet of the path-traced puff, the images called `name`, and their difference, in three rows.
 pub fn compared(puff: &Puff, name: &str, shown: &Shown<'_>) -> RgbImage {
     let mut sheet = Sheet::new(UVec2::splat(SIDE), SHOWN as u32, 3 * SHOWN as u32);
     let white = white(puff);
     for light in 0..SHOWN {
         let [truth, ours] = pair(puff, shown, white, light);
-        let apart = RgbImage::from_fn(truth.width(), truth.height(), |x, y| {
+        let difference = RgbImage::from_fn(truth.width(), truth.height(), |x, y| {
             let [a, b] = [truth.get_pixel(x, y).0, ours.get_pixel(x, y).0];
             Rgb(std::array::from_fn(|channel| a[channel].abs_diff(b[channel])))
         });
-        for (row, (what, picture)) in [("truth", truth), (name, ours), ("apart", apart)].iter().enumerate() {
+        for (row, (what, picture)) in [("traced", truth), (name, ours), ("error", difference)].iter().enumerate() {
             let label = format!("{what}, {}", degrees(light));
             sheet.place((row * SHOWN + light) as u32, &label, &enlarged(picture));
         }
@@ -81,7 +81,7 @@ pub fn compared(puff: &Puff, name: &str, shown: &Shown<'_>) -> RgbImage {
     sheet.picture
 }
 
-/// Path-traced, and shown.
+/// The path-traced image and the compared image under one light, at the same exposure.
 fn pair(puff: &Puff, shown: &Shown<'_>, white: f32, light: usize) -> [RgbImage; 2] {
     let coverage = &puff.traced().coverage;
     let ours = (shown.light)(light);
@@ -91,13 +91,13 @@ fn pair(puff: &Puff, shown: &Shown<'_>, white: f32, light: usize) -> [RgbImage; 
     ]
 }
 
-/// Path-traced and shown, for each light.
+/// Pairs of the path-traced and the compared image, for each light.
 pub fn pairs(puff: &Puff, shown: &Shown<'_>) -> Vec<[RgbImage; 2]> {
     let white = white(puff);
     (0..LIGHTS as usize).map(|light| pair(puff, shown, white, light)).collect()
 }
 
-/// Mean FLIP of all lights: how different they look.
+/// Mean FLIP over all lights.
 pub fn flip(puff: &Puff, shown: &Shown<'_>) -> f64 {
     let pairs = pairs(puff, shown);
     let pairs: Vec<_> = pairs.iter().map(|[truth, ours]| [truth, ours]).collect();

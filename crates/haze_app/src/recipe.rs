@@ -1,4 +1,4 @@
-//! A recipe, and the pictures that are made from it.
+//! Recipes, and the images that are baked from them.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -16,11 +16,11 @@ use super::kind::recipes;
 use super::output::{Files, say};
 use super::progress::{watched, watched_as};
 
-/// The recipes that a command takes.
+/// Kinds of recipes that a command takes.
 pub struct Kinds {
-    /// What would be right.
+    /// Valid file names, for messages.
     expected: &'static str,
-    /// By kind: `ramp` of `fire.ramp.json`.
+    /// Loader by kind, which is `ramp` for `fire.ramp.json`.
     load: fn(&str) -> Option<Load>,
 }
 
@@ -45,10 +45,10 @@ pub const SPRITES: Kinds = Kinds {
 };
 
 impl Kinds {
-    /// How a file is loaded, by its name.
+    /// Returns the loader for a file name.
     ///
     /// # Errors
-    /// Where it has the name of none of them.
+    /// If the name is of none of these kinds.
     pub fn find(&self, path: &Path) -> Result<Load, Error> {
         let is_json = path.extension().is_some_and(|extension| extension == "json");
         let kind = name(path).extension().filter(|_| is_json).and_then(OsStr::to_str);
@@ -57,22 +57,22 @@ impl Kinds {
     }
 }
 
-/// Where recipes of a picture would be: `fire.ramp.json`, and so on, of `fire.png`.
+/// Returns the possible recipes of an image: `fire.ramp.json`, and so on, for `fire.png`.
 pub fn recipes_of(picture: &Path) -> impl Iterator<Item = PathBuf> {
     recipes().map(|kind| picture.with_extension(format!("{kind}.json")))
 }
 
-/// `fire.ramp`, of `fire.ramp.json`.
+/// Name without `.json`: `fire.ramp` for `fire.ramp.json`.
 fn name(path: &Path) -> &Path {
     Path::new(path.file_stem().unwrap_or_default())
 }
 
-/// The picture of a ramp's or a motif's recipe.
+/// Returns the path of the image of a ramp or motif recipe.
 pub fn picture(path: &Path) -> PathBuf {
     path.with_file_name(name(path).with_extension("png"))
 }
 
-/// `smoke.six_way.png` of `smoke.png`.
+/// Returns the path of a sprite's six-way maps: `smoke.six_way.png` for `smoke.png`.
 pub fn six_way_of(picture: &Path) -> PathBuf {
     picture.with_extension("six_way.png")
 }
@@ -85,7 +85,7 @@ pub enum Recipe {
 }
 
 impl Recipe {
-    /// Extensions of the pictures, in place of the recipe's.
+    /// Extensions of the images, in place of the recipe's `KIND.json`.
     fn extensions(&self) -> &'static [&'static str] {
         match self {
             Self::Sprite(_) => &["png", "detail.png"],
@@ -93,12 +93,12 @@ impl Recipe {
         }
     }
 
-    /// Frames that are baked one by one.
+    /// Number of frames that are baked one by one.
     fn frame_count(&self) -> u32 {
         if let Self::Sprite(recipe) = self { recipe.frame_count() } else { 1 }
     }
 
-    /// As many pictures as extensions. `progress` is told how many frames are done.
+    /// Bakes one image per extension. `progress` gets the number of finished frames.
     fn bake(&self, progress: impl Fn(u32)) -> Result<Vec<DynamicImage>, FieldError> {
         Ok(match self {
             Self::Ramp(recipe) => vec![recipe.bake()?],
@@ -115,7 +115,7 @@ impl Recipe {
     }
 }
 
-/// A good recipe, with the files that its pictures go to.
+/// A valid recipe, with the files that its images go to.
 pub struct Job<'a> {
     path: &'a Path,
     recipe: Recipe,
@@ -131,7 +131,7 @@ impl<'a> Job<'a> {
         Ok(Self { path, recipe, outputs })
     }
 
-    /// Writes the pictures, and says so.
+    /// Writes the images, and prints a line for each.
     pub fn bake(&self) -> Result<(), Error> {
         let (path, done, count) = (self.path.display(), AtomicU32::new(0), self.recipe.frame_count());
         let what = || match count {
@@ -152,7 +152,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_kind_is_known_to_one_command() {
+    fn every_recipe_kind_is_baked_by_one_command() {
         for recipe in recipes_of(Path::new("a/fire.png")) {
             let is_known = [&RAMPS, &SPRITES].map(|kinds| kinds.find(&recipe).is_ok());
             assert!(is_known.contains(&true), "{}", recipe.display());

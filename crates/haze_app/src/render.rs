@@ -1,4 +1,4 @@
-//! `haze render`: one picture, or one for every frame of a stretch of time.
+//! `haze render`: renders one image, one per frame of a range, a flipbook or a GIF.
 
 use std::ops::RangeInclusive;
 
@@ -18,17 +18,17 @@ use super::output::{has_extension, say};
 pub struct Arguments {
     #[command(flatten)]
     shot: ShotArguments,
-    /// Which stage of the shading is shown.
+    /// Stage of the shading to show.
     #[arg(long, default_value = "final", value_parser = choices::<ShadeTree>())]
     view: ShadeTree,
-    /// Render frames A to B, both included, into files of their own: the name has the number in it, as in `f_%04d.png`; or into
-    /// one that moves, `f.gif`. Frame 0 is at the preset's time, or at --time.
+    /// Render frames A to B, both included: to one PNG per frame, with the frame number in its name as in `f_%04d.png`,
+    /// or to one animated GIF, `f.gif`. Frame 0 is at the preset's time, or at --time.
     #[arg(long, value_name = "A..B", value_parser = parse_frames)]
     frames: Option<RangeInclusive<u32>>,
-    /// Frames in a second; 60 if not given, and 25 in a GIF.
+    /// Frames per second. Default: 60, or 25 for a GIF.
     #[arg(long, value_name = "N", value_parser = parse_rate, requires = "frames")]
     rate: Option<f32>,
-    /// Put all frames on one sheet of so many rows and columns, a flipbook; --size is the size of a frame.
+    /// Put all frames on one sheet of R rows and C columns, a flipbook; --size is the size of a frame.
     #[arg(long, value_name = "RxC", value_parser = parse_sheet, requires = "frames")]
     sheet: Option<UVec2>,
 }
@@ -72,7 +72,7 @@ fn flipbook(arguments: &Arguments, frames: &Frames, cells: UVec2) -> Result<(), 
 
 fn gif(arguments: &Arguments, frames: &Frames) -> Result<(), Error> {
     if frames.rate > export::MOST_GIF_RATE {
-        let expected = format!("at most {} frames in a second, for a GIF", export::MOST_GIF_RATE);
+        let expected = format!("at most {} frames per second for a GIF", export::MOST_GIF_RATE);
         return Err(FieldError::new("--rate", frames.rate, expected).into());
     }
     let path = &arguments.shot.output;

@@ -1,4 +1,4 @@
-//! `haze shade-tree`: every stage of the shading on one sheet, as OTEE's slide "Shade tree" shows it.
+//! `haze shade-tree`: renders every stage of the shading on one sheet, as OTEE's slide "Shade tree" does.
 
 use clap::Args;
 use haze::Error;
@@ -9,13 +9,13 @@ use super::export::{Watch, sheet};
 use super::options::ShotArguments;
 
 #[derive(Args)]
-#[command(mut_arg("size", |size| size.help("Three times the size of a picture on the sheet, which has three to a row, pixels")))]
+#[command(mut_arg("size", |size| size.help("Size of all images together in pixels, without margins; each image is a third as wide and as high")))]
 pub struct Arguments {
     #[command(flatten)]
     shot: ShotArguments,
 }
 
-/// In the order in which they are made, three to a row.
+/// Stages in the order of the frame, three per row.
 pub const STAGES: [(ShadeTree, &str); ShadeTree::ALL.len()] = [
     (ShadeTree::ReducedDepth, "Reduced depth"),
     (ShadeTree::Normals, "Accumulated normals"),
@@ -32,14 +32,14 @@ pub const COLUMNS: u32 = 3;
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let mut shot = arguments.shot.load(&[])?;
-    // So the sheet costs what a picture costs.
+    // The sheet then costs about as much as one image.
     shot.size = (arguments.shot.run.size / COLUMNS).max(glam::UVec2::ONE);
     let backend = arguments.shot.run.backend()?;
     let sheet = sheet(&backend, &stages(&shot), COLUMNS, &arguments.shot.output, &Watch::terminal())?;
     arguments.shot.write(sheet.picture, &shot, &backend)
 }
 
-/// A shot of every stage, with its name.
+/// Returns one shot per stage, with its label.
 pub fn stages(shot: &Shot) -> Vec<(String, Shot)> {
     STAGES.map(|(stage, label)| (label.into(), Shot { shade_tree: stage, ..shot.clone() })).into()
 }

@@ -1,4 +1,4 @@
-//! Labelled pictures on one sheet.
+//! Lays out labelled images on a sheet.
 
 use glam::UVec2;
 use image::{Rgb, RgbImage, imageops};
@@ -6,16 +6,16 @@ use image::{Rgb, RgbImage, imageops};
 use super::label::{draw_text, wrap};
 
 const MARGIN: u32 = 12;
-/// Height of a label.
+/// Height of a label's row, pixels.
 const LABEL: u32 = 28;
-/// Height of what is written.
+/// Height of the text, pixels.
 const TEXT: f32 = 20.0;
-/// Height of a line at the bottom.
+/// Height of a line at the bottom, pixels.
 const FOOT: u32 = 24;
 pub const INK: Rgb<u8> = Rgb([225, 225, 220]);
 pub const PAPER: Rgb<u8> = Rgb([24, 25, 28]);
 
-/// Cells of one size, row by row.
+/// Grid of cells of one size, row by row.
 pub struct Sheet {
     pub picture: RgbImage,
     columns: u32,
@@ -23,7 +23,7 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// An empty sheet.
+    /// Creates an empty sheet for `count` images of `size` pixels.
     pub fn new(size: UVec2, columns: u32, count: u32) -> Self {
         let cell = size + UVec2::new(MARGIN, MARGIN + LABEL);
         let rows = count.div_ceil(columns);
@@ -31,21 +31,21 @@ impl Sheet {
         Self { picture, columns, cell }
     }
 
-    /// Puts a picture and its label into a cell.
+    /// Puts an image and its label into a cell.
     pub fn place(&mut self, index: u32, label: &str, picture: &RgbImage) {
         let corner = UVec2::new(index % self.columns, index / self.columns) * self.cell + MARGIN;
         draw_text(&mut self.picture, corner.x as f32 + 2.0, corner.y as f32, TEXT, INK, label);
         imageops::replace(&mut self.picture, picture, i64::from(corner.x), i64::from(corner.y + LABEL));
     }
 
-    /// Covers the lower left corner of a cell's picture.
+    /// Draws an inset over the lower left corner of a cell's image.
     pub fn inset(&mut self, index: u32, inset: &RgbImage) {
         let end = UVec2::new(index % self.columns, index / self.columns + 1) * self.cell;
         let corner = end + UVec2::new(MARGIN, 0) - UVec2::new(0, inset.height());
         imageops::replace(&mut self.picture, inset, i64::from(corner.x), i64::from(corner.y));
     }
 
-    /// Adds a text below the cells, over as many lines as it takes.
+    /// Adds text below the cells, wrapped to the width of the sheet.
     pub fn add_foot(&mut self, text: &str) {
         let (width, height) = self.picture.dimensions();
         let left = MARGIN as f32 + 2.0;
@@ -64,10 +64,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_foot_is_on_the_sheet_whatever_its_width() {
+    fn footer_text_is_wrapped_to_the_width_of_the_sheet() {
         let text = "ms: all sprites once, median of 5 rounds; 450x253, llvmpipe (LLVM 15.0.6, 256 bits) (Vulkan, \
             llvmpipe Mesa 22.3.6 (LLVM 15.0.6), software)";
-        // Ink, and whether any is beyond the margin at the right.
+        // Returns the number of text pixels, whether any is beyond the right margin, and the number of lines.
         let ink = |side: u32| {
             let mut sheet = Sheet::new(UVec2::new(side, 10), 2, 2);
             let above = sheet.picture.height();
@@ -82,7 +82,7 @@ mod tests {
         for side in [450, 300, 100] {
             let (inked, beyond, lines) = ink(side);
             assert!(!beyond && lines > 1, "{side}: {lines} lines");
-            // Glyphs stand elsewhere between pixels, no more.
+            // Glyphs differ only by their position between pixels.
             assert!(inked.abs_diff(whole) < whole / 10, "{side}: {inked} pixels for {whole}");
         }
     }

@@ -1,4 +1,5 @@
-//! `haze techniques`: one shot under every technique, labelled with what it costs, the intersection zoomed.
+//! `haze techniques`: renders one shot with every technique, labelled with its cost, and enlarges the intersection with
+//! the scene.
 
 use std::path::PathBuf;
 
@@ -20,14 +21,14 @@ use super::sheet::Sheet;
 
 #[derive(Args)]
 #[command(
-    // The shot that shows the differences best.
+    // This preset shows the differences best.
     mut_arg("preset", |preset| preset.default_value("crates")),
-    mut_arg("size", |size| size.help("Twice the size of a picture on the sheet, which has two to a row, pixels")),
+    mut_arg("size", |size| size.help("Twice the size of an image on the sheet, in pixels; the sheet has two columns")),
 )]
 pub struct Arguments {
     #[command(flatten)]
     shot: ShotArguments,
-    /// Also write every picture as FOLDER/NAME.png.
+    /// Also write every image as FOLDER/NAME.png.
     #[arg(long, value_name = "FOLDER")]
     cells: Option<PathBuf>,
     /// Also plot the fade curves.
@@ -37,14 +38,19 @@ pub struct Arguments {
 
 const COLUMNS: u32 = 2;
 
-/// How often each technique is measured.
+/// Rounds in which every technique is measured.
 const ROUNDS: u32 = 5;
-/// The CPU is slow, and alone with its work.
+/// The CPU renderer is slow, and its times are steady.
 const ROUNDS_ON_CPU: u32 = 1;
 
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
     if let Some(technique) = arguments.shot.technique {
-        return Err(FieldError::new("--technique", technique.name(), "nothing: the sheet shows every technique").into());
+        return Err(FieldError::new(
+            "--technique",
+            technique.name(),
+            "no --technique: the sheet shows every technique",
+        )
+        .into());
     }
     let in_cells = |name: &str| arguments.cells.as_ref().map(|folder| folder.join(format!("{name}.png")));
     let cells = variants().filter_map(|variant| Some(("--cells", in_cells(variant.name)?)));
@@ -71,7 +77,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     }
     let measured = match costs {
         Some(_) => format!("ms: all sprites once, {}", median_of(rounds)),
-        None => "no smoke in sight, so no costs".into(),
+        None => "no smoke is visible, so costs are left out".into(),
     };
     sheet.add_foot(&format!("{measured}; {}x{}, {}", shot.size.x, shot.size.y, backend.description()));
     if let Some(curves) = &arguments.curves {
@@ -80,15 +86,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     arguments.shot.write(sheet.picture, &shot, &backend)
 }
 
-/// What may be in a cell.
+/// Content of a cell.
 struct Variant {
     name: &'static str,
     technique: Technique,
-    /// With the fade that has no depth test.
+    /// True for the fade curve `always`, which has no depth test.
     always: bool,
 }
 
-/// `hard` and `soft` are the first two.
+/// Returns all variants; `hard` and `soft` are the first two.
 fn variants() -> impl Iterator<Item = Variant> {
     let plain = Technique::ALL.iter().map(|&technique| Variant { name: technique.name(), technique, always: false });
     plain.chain([Variant { name: "soft_always", technique: Technique::Soft, always: true }])
@@ -100,7 +106,7 @@ struct Cell {
     picture: RgbImage,
 }
 
-/// Renders the shot under every technique that can show it; `hard` and `soft` always can.
+/// Renders the shot with every technique that is possible; `hard` and `soft` always are.
 fn render_cells(backend: &Backend, shot: &Shot) -> Result<Vec<Cell>, Error> {
     let mut cells = Vec::new();
     for variant in variants() {
@@ -113,7 +119,7 @@ fn render_cells(backend: &Backend, shot: &Shot) -> Result<Vec<Cell>, Error> {
         }
         match backend.render(&shot) {
             Ok(picture) => cells.push(Cell { picture: develop(&picture, &shot), name: variant.name, shot }),
-            // What a sprite without a detail map, or an adapter that cannot draw to R32Float, leaves no way to show.
+            // The sprite has no detail map, or the adapter cannot render to R32Float.
             Err(Error::Field(error)) if error.field.ends_with("settings.technique") => {
                 complain(format_args!("left out: {error}"));
             }
@@ -123,13 +129,13 @@ fn render_cells(backend: &Backend, shot: &Shot) -> Result<Vec<Cell>, Error> {
     Ok(cells)
 }
 
-/// What every cell costs; nothing where no cell shows more than the bare scene.
+/// Measures the cost of every cell; `None` if every cell looks like the scene without smoke.
 fn measure(backend: &Backend, shot: &Shot, cells: &[Cell], rounds: u32) -> Result<Option<Vec<Cost>>, Error> {
     let mut bare = shot.clone();
     bare.preset.systems.clear();
     let bare = develop(&backend.render(&bare)?, &bare);
     if cells.iter().all(|cell| cell.picture == bare) {
-        complain("no smoke in sight: costs are left out");
+        complain("no smoke is visible: costs are left out");
         return Ok(None);
     }
     let mut timer = Timer::new(backend)?;
@@ -137,7 +143,7 @@ fn measure(backend: &Backend, shot: &Shot, cells: &[Cell], rounds: u32) -> Resul
     interleaved(rounds, cells.len(), |cell| timer.sprites(&cells[cell].shot, loops)).map(Some)
 }
 
-/// The fade by distance, of every curve, as the reference has it.
+/// Plots the fade by distance for every curve, from the reference formulas.
 fn fade_curves() -> RgbImage {
     const COLOURS: [Rgb<u8>; FadeCurve::ALL.len()] =
         [Rgb([240, 196, 110]), Rgb([225, 225, 220]), Rgb([120, 190, 240]), Rgb([240, 130, 120]), Rgb([150, 210, 140])];
@@ -157,17 +163,17 @@ fn describe(cost: &Cost, hard: &Cost) -> String {
     format!("{:.3} ms, {:.2} x hard", 1000.0 * cost.median(), cost.median() / hard.median())
 }
 
-/// A square of the picture that is shown enlarged in one of its corners.
+/// A square of the image that is shown enlarged in one of the image's corners.
 struct Zoom {
     corner: UVec2,
     side: u32,
 }
 
-/// How much larger.
+/// Magnification.
 const ENLARGED: u32 = 3;
 
 impl Zoom {
-    /// The square in which one picture has the most edges that the other has not.
+    /// Finds the square in which the edges of the two images differ most.
     fn where_they_differ(a: &RgbImage, b: &RgbImage) -> Self {
         let size = UVec2::from(a.dimensions());
         let side = (size.y / 7).max(1).min(size.x);
@@ -191,7 +197,7 @@ impl Zoom {
         let enlarged = (self.side * ENLARGED).min(size.min_element());
         let part = imageops::crop_imm(&picture, self.corner.x, self.corner.y, self.side, self.side).to_image();
         let part = imageops::resize(&part, enlarged, enlarged, imageops::FilterType::CatmullRom);
-        // At the right, or at the left if that would hide what it shows.
+        // In the right corner, or in the left one if it would hide the square itself.
         let covers = self.corner.x + self.side > size.x - enlarged;
         let at = UVec2::new(if covers { 0 } else { size.x - enlarged }, size.y - enlarged);
         imageops::replace(&mut picture, &part, i64::from(at.x), i64::from(at.y));

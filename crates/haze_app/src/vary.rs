@@ -1,4 +1,4 @@
-//! `haze sheet`: one field over several values, side by side.
+//! `haze sheet`: renders one shot with several values of a field, side by side.
 
 use clap::Args;
 use glam::UVec2;
@@ -9,12 +9,12 @@ use super::export::{MOST_CELLS, Watch, columns, sheet};
 use super::options::{ShotArguments, in_option, parse_assignment};
 
 #[derive(Args)]
-#[command(mut_arg("size", |size| size.help("Size of the pictures of a full row and column together, pixels: each is that much smaller")))]
+#[command(mut_arg("size", |size| size.help("Size of all images together in pixels, without margins; each image is this size divided by the number of columns")))]
 pub struct Arguments {
     #[command(flatten)]
     shot: ShotArguments,
-    /// The field, by its name or the end of it, and its values: `accumulate.scale=1,2,4`; of three numbers each,
-    /// `lights[0].colour=1,0,0;0,1,0`.
+    /// Field, named by its path or the end of it, and its values: `accumulate.scale=1,2,4`. Values of three numbers are
+    /// separated by semicolons: `lights[0].colour=1,0,0;0,1,0`.
     #[arg(long, value_name = "FIELD=A,B,C", value_parser = parse_variation)]
     vary: (String, Vec<String>),
 }

@@ -1,11 +1,11 @@
-//! Which machine it is, and what was built.
+//! Describes the adapter, and the versions of wgpu and haze.
 
 use haze::wgpu;
 use haze_demo::headless::Headless;
 
 use super::report::Adapter;
 
-/// Of what is measured on.
+/// Returns the adapter, the driver and the versions that a report names.
 pub fn adapter(gpu: &Headless) -> Adapter {
     let info = gpu.adapter.get_info();
     let revision = revision().map(|revision| format!(" ({revision})")).unwrap_or_default();
@@ -19,7 +19,7 @@ pub fn adapter(gpu: &Headless) -> Adapter {
     }
 }
 
-/// Of the checkout that it was built in; `HAZE_REVISION` says it where that is not there.
+/// Returns the git revision: `HAZE_REVISION` if it is set, else that of the source checkout; `None` without either.
 fn revision() -> Option<String> {
     let found = || {
         let arguments = ["-C", env!("CARGO_MANIFEST_DIR"), "describe", "--always", "--dirty", "--exclude=*"];

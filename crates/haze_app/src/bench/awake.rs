@@ -1,5 +1,5 @@
-//! Keeps a GPU's clock up. One that idles while a CPU gets the next frame ready runs several times slower, and takes a while
-//! to notice that it has work again.
+//! Keeps the GPU's clock up while the benchmark runs. A GPU that idles while the CPU prepares the next frame lowers its
+//! clock, runs several times slower, and takes a while to raise it again.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -12,22 +12,22 @@ use haze_demo::headless::Headless;
 
 use super::limits::work::{Bench, Work};
 
-/// How long it is kept busy before anything is measured.
+/// Time for which the GPU is kept busy before the first measurement.
 const FIRST: Duration = Duration::from_secs(2);
-/// Milliseconds that a piece of work takes at the least: what is measured waits for no more than one or two of them.
+/// Least duration of one piece of filler work, milliseconds. A measurement waits for one or two pieces at most.
 const PIECE_MS: f64 = 1.0;
 const MOST_LAYERS: u32 = 1 << 16;
 
-/// Does nothing for a CPU that draws, nor on OpenGL.
+/// Keeps the GPU busy from a second thread. Does nothing on a CPU adapter or on OpenGL.
 pub struct Awake<'a> {
     busy: Option<(Bench<'a>, Work)>,
-    /// Taken first, so that who wants the GPU to itself never waits for more than the piece that runs.
+    /// Locked before `running`, so that [`Self::quiet`] waits only for the piece in flight.
     next: Mutex<()>,
     running: Mutex<()>,
     is_over: AtomicBool,
 }
 
-/// While it lives the GPU does what its owner submits, and nothing else.
+/// While this exists, the GPU executes only what the holder submits.
 pub struct Quiet<'a> {
     _next: MutexGuard<'a, ()>,
     _running: MutexGuard<'a, ()>,
@@ -35,16 +35,16 @@ pub struct Quiet<'a> {
 
 impl<'a> Awake<'a> {
     /// # Errors
-    /// When the device failed.
+    /// If the device failed.
     pub fn new(gpu: &'a Headless) -> Result<Self, Error> {
         let info = gpu.adapter.get_info();
-        // A second thread waits for the context of OpenGL no longer than some seconds, which a shader may take to compile.
+        // On OpenGL a second thread waits only a few seconds for the context, and a shader may take longer to compile.
         let is_left_alone = info.device_type == wgpu::DeviceType::Cpu || info.backend == wgpu::Backend::Gl;
         let busy = if is_left_alone { None } else { Some(piece(gpu)?) };
         Ok(Self { busy, next: Mutex::default(), running: Mutex::default(), is_over: AtomicBool::new(false) })
     }
 
-    /// Keeps the GPU busy until `work` is done, but where that asks for quiet.
+    /// Runs `work`, and keeps the GPU busy until it returns, except while a [`Quiet`] exists.
     pub fn during<R>(&self, work: impl FnOnce() -> R) -> R {
         let Some((bench, piece)) = &self.busy else { return work() };
         std::thread::scope(|scope| {
@@ -53,7 +53,7 @@ impl<'a> Awake<'a> {
                     let next = lock(&self.next);
                     let _running = lock(&self.running);
                     drop(next);
-                    // A device that failed tells those who measure as well.
+                    // The measuring thread gets the error of a failed device itself.
                     if bench.frame(piece).is_err() {
                         break;
                     }
@@ -71,7 +71,7 @@ impl<'a> Awake<'a> {
     }
 }
 
-/// Ends the thread, whichever way the work ends.
+/// Ends the thread when the work returns or panics.
 struct Over<'a>(&'a AtomicBool);
 
 impl Drop for Over<'_> {
@@ -84,7 +84,7 @@ fn lock(mutex: &Mutex<()>) -> MutexGuard<'_, ()> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// As many layers as keep this GPU busy for a piece.
+/// Finds a number of layers that keeps this GPU busy for at least [`PIECE_MS`].
 fn piece(gpu: &Headless) -> Result<(Bench<'_>, Work), Error> {
     let bench = Bench::new(gpu, UVec2::splat(512));
     let mut layers = 64;

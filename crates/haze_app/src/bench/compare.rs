@@ -1,10 +1,10 @@
-//! `haze bench compare`: two runs of one machine, row by row.
+//! `haze bench compare`: compares two runs of one machine row by row.
 
 use std::collections::HashMap;
 use std::path::PathBuf;
 
 use clap::Args;
-use haze::{Error, FieldError};
+use haze::Error;
 
 use super::json;
 use super::report::Row;
@@ -12,11 +12,11 @@ use crate::output::{Failures, complain, say};
 
 #[derive(Args)]
 pub struct Arguments {
-    /// What `--json` wrote before.
+    /// JSON report of the first run, as `--json` writes it.
     before: PathBuf,
-    /// What it wrote after.
+    /// JSON report of the second run.
     after: PathBuf,
-    /// Percent by which a row may be slower, beyond what chance explains, before the command exits with 1.
+    /// Percent by which a row may be slower, beyond its statistical uncertainty, before the command exits with 1.
     #[arg(long, value_name = "PERCENT", default_value = "10", allow_hyphen_values = true)]
     #[arg(value_parser = parse_percent)]
     slower: f64,
@@ -27,11 +27,11 @@ fn parse_percent(text: &str) -> Result<f64, String> {
     percent.ok_or_else(|| format!("{text:?} is not a percentage; expected 0 to 1000, for example 10"))
 }
 
-/// How many times as long a row takes, and how far that may be off by chance.
+/// Ratio of the median times of a row, second run to first run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ratio {
     ratio: f64,
-    /// Either way, as a share: 19 of 20 times it is within.
+    /// Half width of the 95 % confidence interval, as a share of the ratio.
     uncertainty: f64,
 }
 
@@ -42,7 +42,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
         ("driver", &before.adapter.driver, &after.adapter.driver),
     ] {
         if before != after {
-            complain(format_args!("not the same {what}: {before:?} and {after:?}"));
+            complain(format_args!("the runs differ in their {what}: {before:?} and {after:?}"));
         }
     }
     let known: HashMap<_, _> = before.rows.iter().map(|row| ((&row.suite, &row.case, &row.size), row)).collect();
@@ -52,10 +52,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
         .filter_map(|row| Some((row, ratio(known.get(&(&row.suite, &row.case, &row.size))?, row))))
         .collect();
     if both.is_empty() {
-        let expected = format!("rows that {} has", arguments.before.display());
-        return Err(
-            Error::from(FieldError::new(arguments.after.display().to_string(), "no row of them", expected)).into()
+        let size = |rows: &[Row]| rows.first().map_or("no rows".into(), |row| row.size.clone());
+        let what = format!(
+            "no case of it is also in {} ({} against {}); expected runs of the same suite and size",
+            arguments.before.display(),
+            size(&after.rows),
+            size(&before.rows)
         );
+        let error = std::io::Error::new(std::io::ErrorKind::InvalidData, what);
+        return Err(Error::Io { path: arguments.after.clone(), error }.into());
     }
     say!("{:<10} {:<44} {:>10} {:>10} {:>8} {:>8}", "suite", "case", "before ms", "after ms", "ratio", "±")?;
     let mut slower = 0;
@@ -74,7 +79,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     }
     let mean = (both.iter().map(|(_, ratio)| ratio.ratio.ln()).sum::<f64>() / both.len() as f64).exp();
     let alone = before.rows.len() + after.rows.len() - 2 * both.len();
-    say!("{} rows, geometric mean {mean:.3}; {alone} rows are in one run only", both.len())?;
+    say!("{} rows compared, geometric mean of the ratios {mean:.3}; {alone} rows are in one run only", both.len())?;
     if slower == 0 {
         return Ok(());
     }
@@ -84,7 +89,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
 }
 
 fn ratio(before: &Row, after: &Row) -> Ratio {
-    // The standard error of a median, from the distance of the quartiles.
+    // Standard error of a median of normally distributed times: sqrt(π/2) · σ / √n, with σ = half the interquartile
+    // range / 0.6745; the constants give 1.858.
     let off = |row: &Row| 1.858 * row.gpu_ms.spread() / f64::from(row.samples.max(1)).sqrt();
     let uncertainty = 1.96 * off(before).hypot(off(after));
     Ratio { ratio: after.gpu_ms.median / before.gpu_ms.median, uncertainty }

@@ -1,4 +1,4 @@
-//! The rows as CSV: the columns are those of the JSON, a pass a column of its own.
+//! Writes the rows as CSV with the columns of the JSON; each pass has its own column.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ use super::report::Report;
 pub fn csv(report: &Report) -> String {
     let rows: Vec<Vec<(String, String)>> =
         report.rows.iter().filter_map(|row| Some(columns(&serde_json::to_value(row).ok()?))).collect();
-    // What a row is comes first, passes come last.
+    // Columns that identify a row come first, passes come last.
     let mut names = vec!["suite", "case", "size"];
     let mut passes = BTreeSet::new();
     for (name, _) in rows.iter().flatten() {
@@ -29,7 +29,7 @@ pub fn csv(report: &Report) -> String {
     text
 }
 
-/// Names and cells of a row.
+/// Returns column names and cells of a row.
 fn columns(row: &Value) -> Vec<(String, String)> {
     let mut columns = Vec::new();
     flatten("", row, &mut columns);
@@ -49,7 +49,7 @@ fn flatten(name: &str, value: &Value, columns: &mut Vec<(String, String)>) {
     }
 }
 
-/// As RFC 4180 has it.
+/// Quotes a cell as RFC 4180 says, if it needs quotes.
 fn quoted(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.into() }
 }

@@ -1,4 +1,4 @@
-//! The report as JSON, and the schema that describes it.
+//! Reads and writes the report as JSON, and prints its schema.
 
 use std::path::Path;
 
@@ -7,21 +7,21 @@ use haze::assets::json::load;
 
 use super::report::{Report, VERSION};
 
-/// What [`json`] made.
+/// Reads a report that [`json`] wrote.
 ///
 /// # Errors
-/// With file, line and what is wrong.
+/// Names the file, the line and what is wrong.
 pub fn read(path: &Path) -> Result<Report, Error> {
     load(path, VERSION, |_: &Report| Ok(()))
 }
 
-/// For jq and spreadsheets: see [`schema`].
+/// Serializes a report, for jq and spreadsheets; [`schema`] describes the format.
 pub fn json(report: &Report) -> String {
-    // Numbers and text are all that it holds.
+    // Serialization cannot fail: a report holds only numbers and text.
     serde_json::to_string_pretty(report).unwrap_or_default() + "\n"
 }
 
-/// JSON schema of a report.
+/// Returns the JSON schema of a report.
 pub fn schema() -> String {
     serde_json::to_string_pretty(&schemars::schema_for!(Report)).unwrap_or_default()
 }

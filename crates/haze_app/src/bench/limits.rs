@@ -1,4 +1,4 @@
-//! What this adapter can do at best, with nothing of haze: the floor under every figure.
+//! Measures the best this adapter can do without any code of haze: the floor that all other figures are compared with.
 
 pub mod work;
 
@@ -15,27 +15,27 @@ use super::suites::Suite;
 use crate::interrupt;
 use work::{Bench, Work, bytes, texture};
 
-/// Milliseconds of a fragment of an unlit disc, by format, and a row for everything that was measured.
+/// Times of the bare passes: milliseconds per fragment of an unlit disc, by format, and a row for every case.
 pub struct Limits {
     pub floor: HashMap<AccumulationFormat, f64>,
     pub rows: Vec<Row>,
-    /// Timestamps that were reversed or zero.
+    /// Number of timestamps that were reversed or zero.
     pub discarded: u64,
 }
 
-/// One thing to measure.
+/// One case to measure.
 struct Bare {
     name: String,
     work: Work,
-    /// Fragments, or texels.
+    /// Fragments of a draw, or texels times layers of a dispatch; 0 if it has none.
     fragments: u64,
-    /// Bytes that are moved at the least.
+    /// Least number of bytes that are moved; 0 for an empty pass.
     bytes: u64,
-    /// Of which `floor` is the limit.
+    /// Format whose floor this case sets or is compared with.
     format: Option<AccumulationFormat>,
 }
 
-/// Measures all of them in turn, over and over.
+/// Measures all cases in turn, round by round; the first round is a warm-up.
 pub fn measure(gpu: &Headless, awake: &Awake<'_>, size: UVec2, quick: bool) -> Result<Limits, Error> {
     let (layers, rounds) = if quick { (16, 5) } else { (32, 15) };
     let bench = Bench::new(gpu, size);
@@ -60,7 +60,7 @@ pub fn measure(gpu: &Headless, awake: &Awake<'_>, size: UVec2, quick: bool) -> R
         let Some(gpu_ms) = Milliseconds::of(times) else { continue };
         let per_fragment = gpu_ms.median / bare.fragments.max(1) as f64;
         if let Some(format) = bare.format {
-            // The first of a format.
+            // The first case of a format sets its floor.
             floor.entry(format).or_insert(per_fragment);
         }
         let clock = if bench.is_timed(&bare.work) { Clock::Gpu } else { Clock::Wall };
@@ -78,7 +78,7 @@ pub fn measure(gpu: &Headless, awake: &Awake<'_>, size: UVec2, quick: bool) -> R
     Ok(Limits { floor, rows, discarded })
 }
 
-/// What there is to measure; first of every format the floor: an unlit disc.
+/// Lists the cases. The first case of every format is its floor: an unlit disc.
 fn all(bench: &Bench<'_>, layers: u32) -> Vec<Bare> {
     let pixels = u64::from(bench.size.x) * u64::from(bench.size.y);
     let mut all = vec![Bare {
@@ -112,7 +112,7 @@ fn all(bench: &Bench<'_>, layers: u32) -> Vec<Bare> {
             name: "disc in compute".into(),
             work: bench.compute(layers),
             fragments: pixels * u64::from(layers),
-            // Each texel is written once.
+            // Compute writes every texel once.
             bytes: pixels * 8,
             format: None,
         });

@@ -1,4 +1,4 @@
-//! The shots of a group in turn, frame by frame, so that a machine that does other things as well slows all alike.
+//! Measures the shots of a group in turn, frame by frame, so that other load on the machine slows all of them alike.
 
 use std::collections::{BTreeMap, HashMap};
 use std::time::{Duration, Instant};
@@ -19,40 +19,40 @@ use super::report::{Clock, LeftOut, Milliseconds, Row};
 use super::suites::{Case, Group, Suite, mean_alpha};
 use crate::interrupt;
 
-/// Rounds that are not counted, at the least.
+/// Least number of warm-up rounds, which are not counted.
 const WARM_UP: usize = 2;
-/// Milliseconds of a frame after which it needs no warming up: one was drawn before.
+/// Frames slower than this, milliseconds, count in the warm-up rounds too: the first look at a case has warmed it up.
 const SLOW_MS: f64 = 300.0;
-/// Frames in a row without a time after which there will be none.
+/// Consecutive frames without a valid time after which a case is given up.
 const MOST_TRIES: u32 = 8;
-/// Most rounds that tell anything more.
+/// Most rounds of a group; more rounds add no information.
 const MOST_ROUNDS: usize = 200;
 const LEAST_ROUNDS: usize = 3;
 
-/// What measures, and what it has found.
+/// Measures groups and collects the results.
 pub struct Bench<'a> {
     gpu: &'a Headless,
     awake: &'a Awake<'a>,
     context: StageContext,
     timing: Option<Timing>,
-    /// Milliseconds that a fragment takes at the least, by format.
+    /// Floor of the time per fragment, milliseconds, by format.
     pub limits: HashMap<AccumulationFormat, f64>,
-    /// Longest time that a frame may take.
+    /// Longest time that a frame may take; cases with slower frames are left out.
     longest: Duration,
-    /// Milliseconds by work, of cases that were measured.
+    /// Milliseconds per unit of work, by kind of work, of the cases measured so far.
     costs: HashMap<String, f64>,
     pub discarded: u64,
     pub rows: Vec<Row>,
     pub left_out: Vec<LeftOut>,
 }
 
-/// Milliseconds of a frame's smoke, and of each pass.
+/// Milliseconds of a frame's smoke, and of each of its passes.
 struct Taken {
     ms: f64,
     passes: Vec<(&'static str, f64)>,
 }
 
-/// A case while it is measured.
+/// State of a case that is being measured.
 struct Running<'a> {
     case: &'a Case,
     stage: Stage,
@@ -64,7 +64,7 @@ struct Running<'a> {
 impl<'a> Bench<'a> {
     pub fn new(gpu: &'a Headless, awake: &'a Awake<'a>, longest: Duration) -> Self {
         let context = StageContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
-        // Without this the passes that light smoke are in no figure.
+        // Without this feature the passes that light the smoke have no timestamps.
         let is_whole = gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
         Self {
             timing: context.timing().filter(|_| is_whole),
@@ -80,12 +80,12 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// By what the path `auto` chooses here.
+    /// Measures the cost model by which the path `auto` chooses on this adapter.
     ///
     /// # Errors
-    /// When the device failed.
+    /// If the device failed.
     pub fn measure_paths(&self) -> Result<(), Error> {
-        // It goes by the clock on the wall, and waiting for quiet would count.
+        // The model comes from wall time, which would include the wait for filler work.
         let _quiet = self.awake.quiet();
         self.context.measure_paths(|encoder| self.gpu.submit(encoder)).map(|_| ())
     }
@@ -94,10 +94,11 @@ impl<'a> Bench<'a> {
         if self.timing.is_some() { Clock::Gpu } else { Clock::Wall }
     }
 
-    /// Measures a group for about as long as it may take. False when Ctrl-C was pressed: what was measured is in the rows.
+    /// Measures a group for about `budget`. Returns false if Ctrl-C was pressed; the cases measured so far are in the
+    /// rows.
     ///
     /// # Errors
-    /// When the device failed.
+    /// If the device failed.
     pub fn group(&mut self, group: &Group, budget: Duration) -> Result<bool, Error> {
         let started = Instant::now();
         let reference = self.reference(group)?;
@@ -124,7 +125,7 @@ impl<'a> Bench<'a> {
                 break;
             }
             for case in &mut running {
-                // Slow ones have enough already.
+                // Past the budget, only cases with too few times go on.
                 if is_late && case.times.len() >= LEAST_ROUNDS {
                     continue;
                 }
@@ -155,21 +156,23 @@ impl<'a> Bench<'a> {
         self.left_out.push(LeftOut { suite: suite.name(), case: case.into(), reason });
     }
 
-    /// Looks at the picture of a case before it is measured; says why it is not where that is so.
+    /// Checks the image of a case before it is measured. The inner `Err` is the reason why the case is left out.
     fn begin<'c>(
         &mut self,
         case: &'c Case,
         reference: &Reference,
     ) -> Result<Result<(Running<'c>, RgbImage), String>, Error> {
-        let seconds = |ms: f64| format!("a frame would take some {:.0} s", ms / 1000.0);
         let longest = self.longest.as_secs_f64() * 1000.0;
+        let seconds = |ms: f64| {
+            format!("a frame would take about {:.1} s, more than the limit of {:.1} s", ms / 1000.0, longest / 1000.0)
+        };
         if let Some(ms) = self.costs.get(&case.work.0).map(|cost| cost * case.work.1).filter(|&ms| ms > longest) {
             return Ok(Err(seconds(ms)));
         }
         match is_right(self.gpu, &self.context, &case.shot) {
             Ok(Ok(())) => {}
             Ok(Err(reason)) => return Ok(Err(reason)),
-            // What this device cannot do.
+            // This device does not support the case.
             Err(Error::Field(error)) => return Ok(Err(error.to_string())),
             Err(error) => return Err(error),
         }
@@ -177,7 +180,7 @@ impl<'a> Bench<'a> {
         stage.warm_up(&case.shot)?;
         stage.set_timing(self.timing.as_ref())?;
         match self.frame(&mut stage, &case.shot)? {
-            None => return Ok(Err("the GPU gives no time of it".into())),
+            None => return Ok(Err("the GPU returned no valid timestamps for it".into())),
             Some(Taken { ms, .. }) if ms > longest => {
                 self.costs.insert(case.work.0.clone(), ms / case.work.1);
                 return Ok(Err(seconds(ms)));
@@ -188,7 +191,7 @@ impl<'a> Bench<'a> {
         Ok(Ok((Running { case, stage, quality, times: Vec::new(), passes: BTreeMap::new() }, picture)))
     }
 
-    /// Draws a frame; none where the GPU gives no times, again and again.
+    /// Draws a frame; `None` if the GPU returned no valid timestamps in [`MOST_TRIES`] frames.
     fn frame(&mut self, stage: &mut Stage, shot: &Shot) -> Result<Option<Taken>, Error> {
         let Some(timing) = &self.timing else {
             let _quiet = self.awake.quiet();
@@ -213,14 +216,14 @@ impl<'a> Bench<'a> {
         Ok(None)
     }
 
-    /// None where nothing was measured.
+    /// Builds the row of a case; `None` if nothing was measured.
     fn row(&self, suite: Suite, mut running: Running<'_>) -> Option<Row> {
         let gpu_ms = Milliseconds::of(&mut running.times)?;
         let shot = &running.case.shot;
         let system = shot.preset.systems.first()?;
         let settings = system.settings_for(shot.size.y);
         let is_forward = settings.path == SmokePath::Forward;
-        // Forward smoke is blended into the picture.
+        // Forward smoke is blended directly into the scene colour.
         let format = if is_forward { AccumulationFormat::Rgba16Float } else { settings.accumulate.format };
         let overdraw = running.stage.renderer().overdraw();
         let fragments = overdraw.fragments;

@@ -1,4 +1,4 @@
-//! `haze bench`: what smoke costs on this machine, and what each saving costs in image quality.
+//! `haze bench`: measures the cost of smoke on this machine, and the image quality that each saving costs.
 
 mod adapter;
 mod awake;
@@ -36,20 +36,20 @@ pub struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// NV's experiment: two big sprites drawn 1000 times, by the three ways to test depth.
+    /// Run NV's experiment: two big sprites drawn 1000 times, with each of the three depth tests.
     #[command(alias = "soft_particles")]
     SoftParticles(soft_particles::Arguments),
-    /// Compare two runs row by row: exits with 1 where the second is slower.
+    /// Compare two runs row by row; exits with 1 if the second is slower.
     Compare(compare::Arguments),
-    /// Make the page of a run on another machine, or of an older one.
+    /// Make the HTML page of an earlier run, or of a run on another machine.
     Page {
-        /// What `--json` wrote.
+        /// JSON report, as `--json` writes it.
         report: PathBuf,
-        /// The page to write.
+        /// HTML page to write.
         #[arg(short, long, value_name = "FILE.html")]
         output: PathBuf,
     },
-    /// Print the JSON schema of what `--json` writes.
+    /// Print the JSON schema of the report that `--json` writes.
     Schema,
 }
 

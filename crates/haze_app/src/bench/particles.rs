@@ -1,4 +1,4 @@
-//! What particles cost a CPU core before anything is drawn: evaluating them, sorting and uploading them.
+//! Measures the CPU time of particles before anything is drawn: evaluating, sorting and uploading them.
 
 use std::time::Instant;
 
@@ -13,7 +13,7 @@ use crate::interrupt;
 
 const ROUNDS: u32 = 9;
 
-/// Rows for the first system of a group: the emitter, and `prepare` with and without the sort.
+/// Returns rows for the first system of a group: evaluation of the emitter, and `prepare` with and without the sort.
 pub fn rows(gpu: &Headless, group: &Group) -> Result<Vec<Row>, Error> {
     let shot = &group.reference;
     let (Some(system), Some(pictures)) = (shot.preset.systems.first(), shot.materials.first()) else {

@@ -1,4 +1,4 @@
-//! What a saving costs in image quality, and whether a picture is right at all.
+//! Measures the image error of a saving, and checks that an image is right at all.
 
 use glam::{UVec2, Vec2, Vec4};
 use haze::Error;
@@ -12,7 +12,7 @@ use image::RgbImage;
 
 use crate::flip::flips;
 
-/// How far a picture is from another; none of what cannot be told.
+/// Difference of an image from its reference; `None` where it is infinite or not measured.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Quality {
     pub psnr_db: Option<f64>,
@@ -20,17 +20,17 @@ pub struct Quality {
     pub edge_psnr_db: Option<f64>,
 }
 
-/// What the pictures of a group are compared with.
+/// Full-resolution image that the images of a group are compared with.
 pub struct Reference {
     picture: Picture<Vec4>,
     exposure: f32,
     developed: RgbImage,
-    /// View depth of the scene, where the device tells.
+    /// View depth of the scene, metres, if the device can read it back.
     depth: Option<Picture<f32>>,
 }
 
 impl Reference {
-    /// What a stage has drawn.
+    /// Reads back what a stage has drawn.
     pub fn read(gpu: &Headless, stage: &Stage, shot: &Shot) -> Result<Self, Error> {
         let picture = stage.read(gpu, shot)?;
         let depth = match stage.linear_depth() {
@@ -40,7 +40,8 @@ impl Reference {
         Ok(Self { exposure: exposure(shot), developed: develop(&picture, shot), picture, depth })
     }
 
-    /// How far what another stage has drawn is from it, but for FLIP, which takes long: the picture for that as well.
+    /// Compares another stage's image with this one, except for FLIP, which is slow. Also returns the tonemapped image
+    /// for [`Self::flips`].
     pub fn compare(&self, gpu: &Headless, stage: &Stage, shot: &Shot) -> Result<(Quality, RgbImage), Error> {
         let picture = stage.read(gpu, shot)?;
         let exposures = Vec2::new(exposure(shot), self.exposure);
@@ -51,28 +52,28 @@ impl Reference {
         Ok((quality, develop(&picture, shot)))
     }
 
-    /// FLIP of pictures.
+    /// Returns the FLIP of tonemapped images against this one.
     pub fn flips(&self, pictures: &[RgbImage]) -> Vec<f64> {
         let pairs: Vec<_> = pictures.iter().map(|picture| [&self.developed, picture]).collect();
         flips(&pairs)
     }
 }
 
-/// Where both renderers are asked for the same.
+/// Image size at which the GPU is compared with the reference renderer.
 const SMALL: UVec2 = UVec2::new(96, 54);
-/// Most sprites that they are asked for: more are drawn as these are.
+/// Most sprites in that comparison; emitters with more are thinned out.
 const MOST: f32 = 64.0;
-/// Below this, dB, they do not agree.
+/// PSNR, dB, below which the two renderers disagree.
 const AGREEMENT: f32 = 40.0;
 
-/// Whether the GPU draws what it should, by the reference renderer; why not where it does not.
+/// Checks the GPU's image of a shot against the reference renderer. The inner `Err` says what is wrong with it.
 pub fn is_right(gpu: &Headless, context: &StageContext, shot: &Shot) -> Result<Result<(), String>, Error> {
     let mut shot = Shot { size: SMALL, ..shot.clone() };
     for system in &mut shot.preset.systems {
         let fewer = (MOST / system.emitter.most_alive() as f32).min(1.0);
         system.emitter.rate *= fewer;
         system.settings.sprite.debug_loop = 1;
-        // What is left covers as much.
+        // The fewer sprites cover the same area.
         system.settings.sprite.size /= fewer.sqrt();
     }
     let mut stage = Stage::new(context, false)?;
@@ -80,10 +81,11 @@ pub fn is_right(gpu: &Headless, context: &StageContext, shot: &Shot) -> Result<R
     stage.draw(gpu, &shot)?;
     let drawn = stage.read(gpu, &shot)?;
     if drawn.texels.iter().any(|texel| !texel.is_finite()) {
-        return Ok(Err("its picture has pixels that are no numbers".into()));
+        return Ok(Err("its image has pixels that are NaN or infinite".into()));
     }
     let exposure = Vec2::splat(exposure(&shot));
     let apart = Apart::of(&drawn, &shot.render_on_cpu()?, exposure, None).psnr;
-    let reason = || format!("its picture is {apart:.0} dB from what it should be, less than {AGREEMENT} dB");
+    let reason =
+        || format!("its image has {apart:.0} dB PSNR against the CPU renderer; expected at least {AGREEMENT} dB");
     Ok(if apart < AGREEMENT { Err(reason()) } else { Ok(()) })
 }

@@ -1,4 +1,4 @@
-//! What a run of the benchmark says: rows that a spreadsheet or jq reads as they are.
+//! Format of a benchmark report, whose rows a spreadsheet or jq reads directly.
 
 use std::collections::BTreeMap;
 
@@ -8,71 +8,71 @@ use serde::{Deserialize, Serialize};
 
 use super::suites::Suite;
 
-/// Newest version of the format.
+/// Newest version of the report format.
 pub const VERSION: u32 = 1;
 
-/// A run, as `--json` writes it.
+/// Report of a run, as `--json` writes it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Report {
     /// Format version.
     pub version: u32,
-    /// Where it was measured, and with what.
+    /// Adapter, driver and versions of the run.
     pub adapter: Adapter,
-    /// False if the run was stopped, or the device was lost: what is there is whole.
+    /// False if the run was stopped or the device was lost; the rows that are present are valid.
     pub complete: bool,
-    /// Timestamps that were reversed or zero, and are in no figure.
+    /// Number of timestamps that were discarded because they were reversed or zero.
     pub discarded: u64,
-    /// One for each thing measured, in the order of the suites.
+    /// One row per measured case, in the order of the suites.
     pub rows: Vec<Row>,
-    /// What was not measured, and why.
+    /// Cases that were not measured, with the reasons.
     pub left_out: Vec<LeftOut>,
 }
 
-/// Something that was not measured.
+/// A case that was not measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LeftOut {
-    /// Its suite.
+    /// Suite of the case.
     pub suite: String,
-    /// Its case.
+    /// Name of the case.
     pub case: String,
-    /// Why not.
+    /// Reason why it was not measured.
     pub reason: String,
 }
 
-/// A machine, and what was built.
+/// Adapter, driver and versions of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Adapter {
-    /// As the driver names it.
+    /// Name of the adapter, from the driver.
     pub name: String,
     /// `Vulkan`, `Metal`, `Dx12`, `Gl`.
     pub backend: String,
-    /// The driver, and its version.
+    /// Name and version of the driver.
     pub driver: String,
-    /// True where a CPU draws.
+    /// True if a CPU renders in software.
     pub software: bool,
     /// Version of wgpu.
     pub wgpu: String,
-    /// Version of haze, and the git revision where it was built in a checkout.
+    /// Version of haze, and the git revision if it was built in a checkout.
     pub haze: String,
 }
 
-/// Which clock a time is from.
+/// Clock that a time was measured with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Clock {
     /// GPU timestamps of haze's own passes.
     Gpu,
-    /// Wall time of the whole frame: the adapter has no timestamps.
+    /// Wall time of the whole frame, because the adapter has no timestamps.
     Wall,
     /// Time of one CPU core.
     Cpu,
 }
 
 impl Clock {
-    /// For tables.
+    /// Name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Gpu => "GPU",
@@ -82,59 +82,60 @@ impl Clock {
     }
 }
 
-/// One thing measured. What does not apply is null.
+/// One measured case. Fields that do not apply are null.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Row {
-    /// The suite it belongs to.
+    /// Suite of the case.
     pub suite: String,
-    /// What sets it apart within its suite: with the suite it is unique, and the same from run to run.
+    /// Name of the case: unique within its suite, and the same in every run.
     pub case: String,
-    /// Size of the picture, as `1280x720`.
+    /// Image size in pixels, for example `1280x720`.
     pub size: String,
     /// Pixels per texel of the accumulation target.
     pub scale: Option<u32>,
     /// Format of the accumulation target.
     pub format: Option<String>,
-    /// `raster`, `forward` …
+    /// Rendering path: `raster`, `tiled`, `forward` or `auto`.
     pub path: Option<String>,
-    /// How lights answer: `ramp`, `cubemap` …; on the path `tiled`, how far it goes down the layers: `visible`, `all`; on
-    /// `auto`, the path that it took.
+    /// Lighting mode, for example `ramp` or `cubemap`; on the path `tiled` the layers that are blended, `visible` or
+    /// `all`; on `auto` the path that was chosen.
     pub mode: Option<String>,
-    /// How sprites meet the scene.
+    /// Soft-particle technique.
     pub technique: Option<String>,
     /// Curve of the soft fade.
     pub fade: Option<String>,
-    /// Measured overdraw: fragments per texel of the target that the view covers.
+    /// Measured overdraw: fragments per texel of the target that the smoke's box covers.
     pub layers: Option<f64>,
-    /// Mean alpha of what is drawn of a sprite, where nothing fades it.
+    /// Mean alpha of a sprite's drawn rectangle, before any fade.
     pub alpha: Option<f64>,
-    /// Lights.
+    /// Number of lights.
     pub lights: Option<u32>,
-    /// Particles alive.
+    /// Number of live particles.
     pub particles: Option<u32>,
-    /// Which clock the times are from.
+    /// Clock of the times.
     pub clock: Clock,
-    /// How many frames were measured.
+    /// Number of measured frames.
     pub samples: u32,
-    /// Of the smoke, milliseconds a frame.
+    /// Milliseconds per frame of the smoke.
     pub gpu_ms: Milliseconds,
-    /// Median milliseconds by pass.
+    /// Median milliseconds per frame, by pass.
     pub passes: BTreeMap<String, f64>,
-    /// Fragments shaded a frame.
+    /// Fragments shaded per frame.
     pub fragments: Option<u64>,
-    /// Billions of fragments a second, by the median.
+    /// Billions of fragments per second, from the median.
     pub gfragments_per_s: Option<f64>,
-    /// Bytes that blending moves at the least: every fragment reads and writes its texel.
+    /// Least number of bytes that blending moves per frame: every fragment reads and writes its texel.
     pub bytes: Option<u64>,
-    /// Time over what as many fragments of an unlit disc take, tested, looked up once and blended into the same format: what any way
-    /// that blends takes at the least on this adapter.
+    /// Median time divided by the time that as many fragments of an unlit disc take, each depth-tested, with one
+    /// texture fetch, and blended into the same format: the floor of every method that blends on this adapter is 1.
     pub limit_ratio: Option<f64>,
-    /// Against the same smoke, deferred, at full resolution, dB; null where it is that, and where both are the same.
+    /// PSNR in dB against the same smoke, deferred, at full resolution; null for that case itself and for identical
+    /// images.
     pub psnr_db: Option<f64>,
-    /// FLIP against the same, 0 to 1: 0 where nobody sees a difference.
+    /// FLIP against the same image, 0 to 1; 0 means no visible difference.
     pub flip: Option<f64>,
-    /// PSNR over the pixels by which the scene's depth jumps, dB.
+    /// PSNR in dB over the pixels near jumps in the scene's depth.
     pub edge_psnr_db: Option<f64>,
 }
 
@@ -143,7 +144,7 @@ impl Row {
         self.suite == suite.name()
     }
 
-    /// A row of nothing but a time.
+    /// Creates a row with a time and no other figures.
     pub fn of(suite: Suite, case: String, size: UVec2, clock: Clock, gpu_ms: Milliseconds) -> Self {
         Self {
             suite: suite.name(),
@@ -174,7 +175,7 @@ impl Row {
     }
 }
 
-/// What a time is over many frames.
+/// Statistics of the times of many frames, milliseconds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Milliseconds {
@@ -186,11 +187,11 @@ pub struct Milliseconds {
 }
 
 impl Milliseconds {
-    /// Of at least one time; they are sorted.
+    /// Sorts the times and returns their statistics; `None` without times.
     pub fn of(times: &mut [f64]) -> Option<Self> {
         times.sort_by(f64::total_cmp);
         let (&min, &max) = (times.first()?, times.last()?);
-        // Between the two nearest, by how near they are.
+        // Interpolates linearly between the two nearest times.
         let at = |share: f64| {
             let place = (times.len() - 1) as f64 * share;
             let (low, high) = (times[place.floor() as usize], times[place.ceil() as usize]);
@@ -210,7 +211,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn figures_are_those_of_the_definition() {
+    fn median_and_quartiles_match_their_definition() {
         assert_eq!(Milliseconds::of(&mut []), None);
         let of = |times: &[f64]| Milliseconds::of(&mut times.to_vec()).unwrap();
         assert_eq!(of(&[3.0]), Milliseconds { median: 3.0, min: 3.0, max: 3.0, quartiles: [3.0; 2] });

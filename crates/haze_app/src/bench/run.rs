@@ -1,4 +1,4 @@
-//! A run: what is asked for, in which order it is measured, and where it is written.
+//! Options of a run of `haze bench`, the order of its measurements, and its output files.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -24,34 +24,34 @@ use crate::progress::watched;
 #[derive(Args)]
 #[group(id = "run")]
 pub struct Arguments {
-    /// What is measured.
+    /// Suite to measure.
     #[arg(value_enum, default_value = "all")]
     suite: Suite,
-    /// Two minutes instead of ten: what is between is left out.
+    /// Measure for two minutes instead of ten, with fewer cases.
     #[arg(long)]
     quick: bool,
-    /// Seconds to measure for, about; preparing and checking come on top. 100 if quick, else 360, if not given.
+    /// Seconds of measurement, about; preparation and checks come on top. Default: 100 with --quick, else 360.
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
     #[arg(value_parser = clap::value_parser!(u64).range(0..=86_400))]
     seconds: Option<u64>,
-    /// Size of the picture, pixels; 1280x720, and 640x360 where a CPU draws, if not given.
+    /// Image size in pixels. Default: 1280x720, or 640x360 on a software adapter.
     #[arg(long, value_name = "WxH", value_parser = parse_size, allow_hyphen_values = true)]
     size: Option<UVec2>,
-    /// Write all figures as JSON.
+    /// Write the report as JSON.
     #[arg(long, value_name = "FILE.json")]
     json: Option<PathBuf>,
-    /// Write one line of figures for each row.
+    /// Write the rows as CSV.
     #[arg(long, value_name = "FILE.csv")]
     csv: Option<PathBuf>,
-    /// Write a page with charts.
+    /// Write an HTML page with charts.
     #[arg(long, value_name = "FILE.html")]
     html: Option<PathBuf>,
 }
 
-/// Seconds that a whole run measures for.
+/// Default seconds of measurement of a run.
 const QUICK: u64 = 100;
 const THOROUGH: u64 = 360;
-/// Suites of shots; the limits come first.
+/// Suites that render shots; the limits are measured before them.
 const SHOTS: [Suite; 8] = [
     Suite::Scale,
     Suite::Overdraw,
@@ -78,7 +78,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     failure.map_or(Ok(()), |error| Err(error.into()))
 }
 
-/// Whatever happens, what was measured until then, and why that is not all.
+/// Returns everything that was measured, and the error that ended the run early, if there was one.
 fn measure(arguments: &Arguments, gpu: &Headless, awake: &Awake<'_>) -> (Report, Option<Error>) {
     let mut report = Report {
         version: VERSION,
@@ -99,7 +99,7 @@ fn measure(arguments: &Arguments, gpu: &Headless, awake: &Awake<'_>) -> (Report,
         Ok(true) => None,
         Ok(false) => Some(Error::Io {
             path: "haze bench".into(),
-            error: std::io::Error::other("stopped: what was measured is partial"),
+            error: std::io::Error::other("stopped by Ctrl-C; the report is partial"),
         }),
         Err(error) => Some(error),
     };
@@ -107,7 +107,7 @@ fn measure(arguments: &Arguments, gpu: &Headless, awake: &Awake<'_>) -> (Report,
 }
 
 impl Arguments {
-    /// Every output that is asked for: its option, and what its name ends in.
+    /// Returns the requested outputs: option, path, file extension.
     fn outputs(&self) -> impl Iterator<Item = (&'static str, &PathBuf, &'static str)> {
         let all = [("--json", &self.json, "json"), ("--csv", &self.csv, "csv"), ("--html", &self.html, "html")];
         all.into_iter().filter_map(|(option, path, kind)| Some((option, path.as_ref()?, kind)))
@@ -117,17 +117,19 @@ impl Arguments {
         SHOTS.into_iter().filter(|&suite| self.suite == Suite::All || self.suite == suite)
     }
 
-    /// False when it was stopped.
+    /// Measures all requested suites. Returns false if Ctrl-C stopped the run.
     fn all(&self, gpu: &Headless, awake: &Awake<'_>, bench: &mut Bench<'_>, size: UVec2) -> Result<bool, Error> {
-        // What all others are compared with.
-        let limits = watched("haze: limits of this adapter".into(), || limits::measure(gpu, awake, size, self.quick))?;
+        // All other rows are compared with the limits.
+        let limits = watched("haze: measuring the limits of this adapter".into(), || {
+            limits::measure(gpu, awake, size, self.quick)
+        })?;
         (bench.limits, bench.discarded) = (limits.floor, limits.discarded);
         if matches!(self.suite, Suite::All | Suite::Limits) {
             bench.rows.extend(limits.rows);
         }
         let groups: Vec<Group> = self
             .suites()
-            // Sixty cases of one suite would take a third of the time of all.
+            // In full, this suite of sixty cases would take a third of the time of all suites.
             .map(|suite| groups(suite, size, self.quick || (suite == Suite::Auto && self.suite == Suite::All)))
             .collect::<Result<Vec<_>, _>>()?
             .into_iter()
@@ -136,7 +138,7 @@ impl Arguments {
         let whole = Duration::from_secs(self.seconds.unwrap_or(if self.quick { QUICK } else { THOROUGH }));
         let started = Instant::now();
         for (index, group) in groups.iter().enumerate() {
-            // What one does not use, the others have.
+            // Time that a group does not use goes to the later groups.
             let left = whole.saturating_sub(started.elapsed());
             let cases: usize = groups[index..].iter().map(|group| group.cases.len()).sum();
             let budget = left.mul_f64(group.cases.len() as f64 / cases.max(1) as f64);
@@ -151,7 +153,7 @@ impl Arguments {
                 return Ok(false);
             }
             if group.suite == Suite::Particles {
-                // What the CPU does, with nothing beside it.
+                // The CPU is measured without filler work on the GPU.
                 let _quiet = awake.quiet();
                 let rows = particles::rows(gpu, group)?;
                 bench.rows.extend(rows);

@@ -1,5 +1,6 @@
-//! `haze bench soft-particles`: the experiment of NV's paper, "Performance": two big sprites, size 3.2, drawn 1000 times
-//! each, with hardware depth test, with depth read from the depth buffer, and from a linear target.
+//! `haze bench soft-particles`: the experiment of NV's paper, section "Performance": two big sprites of size 3.2, drawn
+//! 1000 times each, with the hardware depth test, with depth read from the depth buffer, and with depth read from a
+//! linear target.
 
 use std::path::Path;
 
@@ -18,17 +19,17 @@ use crate::output::{complain, say};
 pub struct Arguments {
     #[command(flatten)]
     run: RunArguments,
-    /// How often the sprites are drawn in a frame.
+    /// Number of times that the sprites are drawn per frame.
     #[arg(long, value_name = "N", default_value = "1000", allow_hyphen_values = true)]
     #[arg(value_parser = clap::value_parser!(u32).range(1..=10_000))]
     loops: u32,
-    /// How often each technique is measured.
+    /// Number of measurements of each technique.
     #[arg(long, value_name = "N", default_value = "5", allow_hyphen_values = true)]
     #[arg(value_parser = clap::value_parser!(u32).range(1..=1000))]
     rounds: u32,
 }
 
-/// A technique, and the frames per second that the paper gives for it.
+/// Techniques, with the paper's frames per second.
 const TECHNIQUES: [(Technique, f64); 3] =
     [(Technique::Hard, 34.6), (Technique::Soft, 13.3), (Technique::SoftLinear, 26.7)];
 
@@ -46,7 +47,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     for source in [DepthSource::Reduced, DepthSource::Host] {
         for (technique, paper) in TECHNIQUES {
             if source == DepthSource::Host && technique == Technique::Soft && !reads_attached {
-                complain("left out: host soft, on a backend that cannot read the depth buffer that it tests");
+                complain("left out: host soft; this backend cannot sample the depth buffer that it tests against");
                 continue;
             }
             let mut shot = shot.clone();
@@ -92,9 +93,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
 
 struct Variant {
     technique: Technique,
-    /// `reduced`, at scale 1, is made linear once a frame; `host` is read as the host has it, as in the paper.
+    /// `reduced`, at scale 1, is linearized once per frame; `host` reads the host's depth buffer directly, as the paper
+    /// does.
     source: DepthSource,
-    /// Frames per second.
+    /// Frames per second in the paper.
     paper: f64,
     shot: Shot,
 }

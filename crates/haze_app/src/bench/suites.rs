@@ -1,4 +1,4 @@
-//! What is measured: groups of shots that are compared with each other, frame by frame in turn.
+//! Suites of the benchmark: groups of shots that are measured in turn and compared with each other.
 
 use std::path::Path;
 
@@ -13,33 +13,33 @@ use haze::sprite::Sprite;
 use haze::{Error, Light, builtin};
 use haze_demo::shot::Shot;
 
-/// What there is to measure.
+/// A suite of measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Suite {
     /// Buffer scale 1 to 1/8, by overdraw, format and path.
     Scale,
-    /// 4 to 1024 layers, thin to thick, by path.
+    /// 4 to 1024 layers of different alpha, by path.
     Overdraw,
     /// 1 to 64 lights, deferred against forward.
     Lights,
-    /// Every technique and every fade, against hard edges.
+    /// Every technique and every fade curve, against hard edges.
     Soft,
-    /// Every way to shrink depth with every way to enlarge smoke.
+    /// Every depth downsample with every upsample filter.
     Upsample,
     /// Every preset, deferred at each scale against forward.
     Presets,
-    /// A thousand to a million particles: evaluating, sorting, drawing.
+    /// 1,000 to 1,000,000 particles: evaluating, sorting, drawing.
     Particles,
-    /// The path `auto` against the two that it chooses from: overdraw, scale, technique, size.
+    /// The path `auto` against `raster` and `tiled`, which it chooses from, by overdraw, scale, technique and size.
     Auto,
-    /// What this adapter can do at best: bare blending, lookups, copies.
+    /// The limits of this adapter: bare blending, texture fetches, copies.
     Limits,
-    /// All of them.
+    /// All suites.
     All,
 }
 
 impl Suite {
-    /// As the command line has it.
+    /// Name on the command line.
     pub fn name(self) -> String {
         self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
     }
@@ -49,25 +49,26 @@ impl Suite {
 pub struct Group {
     pub suite: Suite,
     pub cases: Vec<Case>,
-    /// Deferred, at full resolution: what the pictures are compared with.
+    /// Deferred shot at full resolution that the images are compared with.
     pub reference: Shot,
 }
 
-/// One shot.
+/// One shot to measure.
 pub struct Case {
     /// Unique in its suite.
     pub name: String,
     pub shot: Shot,
-    /// What costs about so many times as much as others of the same name: from those it is known whether it takes too long.
+    /// Kind of work and its amount. The cost of cases of one kind is about proportional to the amount, which predicts
+    /// the ones that take too long.
     pub work: (String, f64),
 }
 
-/// The paths that draw in their own way; another joins by its name in the settings.
+/// Returns all paths but `auto`. A path that is added to the settings is included.
 fn paths() -> impl Iterator<Item = SmokePath> {
     SmokePath::ALL.iter().copied().filter(|&path| path != SmokePath::Auto)
 }
 
-/// The same, and with it how far it goes down the layers, where it has the choice.
+/// Returns the same paths, each with every choice of layers that it supports.
 fn paths_and_layers() -> impl Iterator<Item = (SmokePath, Layers)> {
     paths().flat_map(|path| {
         let layers = if path == SmokePath::Tiled { Layers::ALL } else { &Layers::ALL[..1] };
@@ -75,14 +76,14 @@ fn paths_and_layers() -> impl Iterator<Item = (SmokePath, Layers)> {
     })
 }
 
-/// How rows call it.
+/// Name of a path in rows.
 fn name_of((path, layers): (SmokePath, Layers)) -> String {
     if path == SmokePath::Tiled { format!("{} {}", path.name(), layers.name()) } else { path.name().into() }
 }
 
 const SCALES: [u32; 6] = [1, 2, 3, 4, 6, 8];
 
-/// All groups of a suite, at a size. `quick` leaves out what is between.
+/// Returns all groups of a suite at an image size. `quick` leaves out intermediate cases.
 pub fn groups(suite: Suite, size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
     match suite {
         Suite::Scale => scale(size, quick),
@@ -97,7 +98,7 @@ pub fn groups(suite: Suite, size: UVec2, quick: bool) -> Result<Vec<Group>, Erro
     }
 }
 
-/// So many sprites as large as the picture, among crates, each of an amount.
+/// A shot of `count` sprites as large as the image, each of this amount, among crates.
 fn layers(size: UVec2, count: u32, amount: f32) -> Result<Shot, Error> {
     let path = Path::new("layers.json");
     let mut preset = Preset::parse(path, include_str!("soft_particles.json"))?;
@@ -108,13 +109,14 @@ fn layers(size: UVec2, count: u32, amount: f32) -> Result<Shot, Error> {
     Shot::new(preset, path, size)
 }
 
-/// How many of those make so many layers.
+/// Number of those sprites that makes so many layers.
 fn sprites_of(layers: u32) -> u32 {
-    // One covers 0.418 of the smoke's box: what is clear of its square is not drawn.
+    // Each covers 0.418 of the smoke's box: transparent parts of its square are not drawn.
     (layers as f32 / 0.418).round() as u32
 }
 
-/// Mean alpha of what is drawn of a sprite whose amount is 1: of the rectangle that what is filled lies in.
+/// Mean alpha of what is drawn of a sprite whose amount is 1: of the bounding rectangles of its frames' non-zero
+/// texels.
 pub fn mean_alpha(sprite: &Sprite) -> f32 {
     let (size, mut sum, mut texels) = (sprite.size(), 0.0, 0.0);
     for frame in 0..sprite.frame_count() {
@@ -132,7 +134,7 @@ pub fn mean_alpha(sprite: &Sprite) -> f32 {
     if texels > 0.0 { sum / texels } else { 0.0 }
 }
 
-/// The same sprites of a mean alpha.
+/// Changes the amount of the sprites so that their mean alpha is `alpha`.
 fn of_alpha(mut shot: Shot, alpha: f32) -> Shot {
     for (system, material) in shot.preset.systems.iter_mut().zip(&shot.materials) {
         system.emitter.amount = alpha / mean_alpha(&material.sprite);
@@ -150,12 +152,12 @@ fn at_scale(path: SmokePath, scale: u32) -> impl Fn(&mut Settings) {
     move |settings| (settings.path, settings.accumulate.scale) = (path, scale)
 }
 
-/// What others are compared with.
+/// The reference of a group: deferred, at full resolution.
 fn full(shot: &Shot) -> Shot {
     changed(shot, at_scale(SmokePath::Raster, 1))
 }
 
-/// A path at every scale that it has.
+/// Scales to measure on a path; forward has only full resolution.
 fn scales(path: SmokePath, scales: &[u32]) -> &[u32] {
     if path == SmokePath::Forward { &[1] } else { scales }
 }
@@ -188,7 +190,7 @@ fn scale(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
 fn set_format(settings: &mut Settings, format: AccumulationFormat) {
     settings.accumulate.format = format;
     if format == AccumulationFormat::Rgba8Unorm {
-        // All that it can hold.
+        // Rgba8Unorm supports no other encoding and order.
         (settings.accumulate.encoding, settings.accumulate.order) = (NormalEncoding::Biased, Order::Sorted);
     }
 }
@@ -213,7 +215,7 @@ fn overdraw(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
         let shot = of_alpha(layers(size, sprites_of(deep), alpha)?, alpha);
         groups.push(group(shot, format!("{deep} layers of {alpha}"), f64::from(deep)));
     }
-    // Many small ones: what a sprite costs counts as well.
+    // Many small sprites, where the cost per sprite matters too.
     let crowds: &[(u32, f32, f32, Reach)] = if quick {
         &[(4096, 156.0, 0.1, FILLS)]
     } else {
@@ -236,20 +238,21 @@ fn overdraw(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
     Ok(groups)
 }
 
-/// How far a crowd reaches.
+/// Extent of a crowd of sprites.
 #[derive(Clone, Copy)]
 struct Reach {
+    /// Extent relative to the image.
     pictures: f32,
-    /// How much of the picture a sprite of `layers` covers, on the average: not all of its sides are in it.
+    /// Mean share of the image that a sprite of `layers` covers, without the parts outside the image.
     covers: f32,
 }
 
-/// Thin where the picture ends.
+/// Ends at the edges of the image, where it is thin.
 const FILLS: Reach = Reach { pictures: 1.0, covers: 0.437 };
-/// As deep there as anywhere.
+/// Extends beyond the image, and is as deep at its edges as elsewhere.
 const GOES_ON: Reach = Reach { pictures: 1.6, covers: 0.265 };
 
-/// So many small sprites all over the picture, about so many layers deep.
+/// A shot of `count` small sprites all over the image, about `deep` layers deep.
 fn crowd(size: UVec2, count: u32, deep: f32, reach: Reach) -> Result<Shot, Error> {
     let mut shot = layers(size, count, 0.1)?;
     for system in &mut shot.preset.systems {
@@ -281,7 +284,7 @@ fn lights(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
                 let lit = changed(&shot, |s| s.accumulate.lighting_resolution = LightingResolution::Target);
                 cases.push(Case { name: name.clone(), shot, work });
                 if scale > 1 {
-                    // Lit once per texel.
+                    // The same, lit once per texel of the target.
                     let name = format!("{name}, lit at 1/{scale}");
                     let work = (format!("lights {} {scale} lit", path.name()), f64::from(count));
                     cases.push(Case { name, shot: lit, work });
@@ -307,7 +310,7 @@ fn soft(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
     Ok(vec![Group { suite: Suite::Soft, cases, reference: shot }, experiment(size, quick)?])
 }
 
-/// NV's: two big sprites drawn again and again, by the three ways to test depth.
+/// NV's experiment: two big sprites drawn many times, with each of the three depth tests.
 fn experiment(size: UVec2, quick: bool) -> Result<Group, Error> {
     let loops = if quick { 20 } else { 200 };
     let shot = changed(&full(&layers(size, 2, 0.5)?), |settings| settings.sprite.debug_loop = loops);
@@ -360,10 +363,10 @@ fn particles(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
     let group = |&count: &u32| {
         let mut shot = layers(size, 1, 0.02)?;
         for system in &mut shot.preset.systems {
-            // A million births take ten seconds at the greatest rate.
+            // At the greatest rate, a million births take ten seconds.
             system.emitter.rate = count as f32 / 10.0;
             (system.emitter.duration, system.emitter.extent) = (10.0, Vec3::new(1.5, 0.8, 0.8));
-            // As much on the picture, whatever the number: what grows is what a particle costs by itself.
+            // All counts cover the same area, so the difference in cost is the cost per particle.
             system.settings.sprite.size = 3.2 * 4.0 / (count as f32).sqrt();
         }
         shot.preset.time = 10.0;

@@ -1,4 +1,4 @@
-//! The report on a terminal.
+//! Prints the report on a terminal.
 
 use haze::Error;
 
@@ -44,12 +44,12 @@ pub fn write(report: &Report) -> Result<(), Error> {
         say!("left out: {}: {}: {}", left.suite, left.case, left.reason)?;
     }
     if report.discarded > 0 {
-        say!("{} timestamps were reversed or zero, and are in no figure", report.discarded)?;
+        say!("{} timestamps were reversed or zero and were discarded", report.discarded)?;
     }
     let ways = break_even(report);
     if !ways.is_empty() {
         say!("")?;
-        say!("{:<30} {:>10} {:>10}   cheaper than forward", "from which overdraw on it pays", "ms", "ms a layer")?;
+        say!("{:<30} {:>10} {:>10}   cheaper than forward", "deferred against forward", "fixed ms", "ms/layer")?;
     }
     for BreakEven { path, scale, format, base_ms, layer_ms, from_layers } in ways {
         let from = from_layers.map_or("never".into(), |layers| format!("from {layers:.1} layers"));
@@ -58,7 +58,7 @@ pub fn write(report: &Report) -> Result<(), Error> {
     let cases = auto_cases(report);
     if !cases.is_empty() {
         say!("")?;
-        say!("{:<52} {:>7} {:>9} {:>9} {:>9}   takes    loss", "what auto takes", "layers", "raster", "tiled", "auto")?;
+        say!("{:<52} {:>7} {:>9} {:>9} {:>9}   chosen   loss", "choices of auto", "layers", "raster", "tiled", "auto")?;
     }
     for AutoCase { what, layers, raster_ms, tiled_ms, auto_ms, takes, loss } in cases {
         say!(
@@ -71,7 +71,7 @@ pub fn write(report: &Report) -> Result<(), Error> {
         say!("{text}")?;
     }
     if !report.complete {
-        say!("partial: the run was stopped")?;
+        say!("partial: the run ended early")?;
     }
     Ok(())
 }

@@ -1,9 +1,9 @@
-//! What the figures mean: from which overdraw on a saving pays, and what to ship.
+//! Conclusions from the figures: the overdraw from which a saving pays off, and what to ship.
 
 use super::report::{Report, Row};
 use super::suites::Suite;
 
-/// What a layer costs one way, and what the frame costs without any.
+/// Linear cost model of one way of drawing: milliseconds of a frame without layers, and of each layer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BreakEven {
     pub path: String,
@@ -13,15 +13,15 @@ pub struct BreakEven {
     pub base_ms: f64,
     /// Milliseconds of each layer.
     pub layer_ms: f64,
-    /// Layers from which it is cheaper than forward; `None` where it never is.
+    /// Layers from which it is cheaper than forward; `None` if it never is.
     pub from_layers: Option<f64>,
 }
 
-/// PSNR, dB, and FLIP of a picture that may pass for the one at full resolution.
+/// Least PSNR, dB, and greatest FLIP of an image that is as good as full resolution.
 const GOOD_PSNR: f64 = 35.0;
 const GOOD_FLIP: f64 = 0.05;
 
-/// Of every scale, path and format of the suite `scale`, in their order.
+/// Returns the model of every scale, path and format of the suite `scale`, in the order of the rows.
 pub fn break_even(report: &Report) -> Vec<BreakEven> {
     let rows: Vec<&Row> = report.rows.iter().filter(|row| row.is_of(Suite::Scale)).collect();
     let line = |matches: &dyn Fn(&Row) -> bool| {
@@ -52,7 +52,8 @@ pub fn break_even(report: &Report) -> Vec<BreakEven> {
     found
 }
 
-/// What the path `auto` took, beside what there was to take. Times are those of the fastest frame, as what disturbs only lengthens.
+/// Choice of the path `auto`, beside the two paths it chooses from. Times are those of the fastest frame, because
+/// disturbances only lengthen a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AutoCase {
     pub what: String,
@@ -60,13 +61,14 @@ pub struct AutoCase {
     pub raster_ms: f64,
     pub tiled_ms: f64,
     pub auto_ms: f64,
-    /// The path that it took.
+    /// Path that `auto` chose.
     pub takes: String,
-    /// By how much that path, measured twice, was slower than the better of the two; 0 where it is that.
+    /// Loss of that path, from the better of its two measurements, against the faster path, as a share; 0 if it is the
+    /// faster one.
     pub loss: f64,
 }
 
-/// Of every case of the suite `auto` that was measured by both paths.
+/// Returns all cases of the suite `auto` that were measured on both paths.
 pub fn auto_cases(report: &Report) -> Vec<AutoCase> {
     let rows = || report.rows.iter().filter(|row| row.is_of(Suite::Auto));
     let of = |path: &str, what: &str| rows().find(|row| row.case == format!("{path} {what}")).map(|row| row.gpu_ms.min);
@@ -82,7 +84,7 @@ pub fn auto_cases(report: &Report) -> Vec<AutoCase> {
     rows().filter_map(case).collect()
 }
 
-/// Least squares: where a line through the points begins, and how steep it is. `None` for fewer than two places.
+/// Fits a line by least squares; returns intercept and slope. `None` if the points have fewer than two different x.
 fn fit(points: &[(f64, f64)]) -> Option<(f64, f64)> {
     let count = points.len() as f64;
     let (x, y) = points.iter().fold((0.0, 0.0), |sum, point| (sum.0 + point.0 / count, sum.1 + point.1 / count));
@@ -91,14 +93,14 @@ fn fit(points: &[(f64, f64)]) -> Option<(f64, f64)> {
     (width > 1e-9).then_some((y - slope * x, slope))
 }
 
-/// True for a picture that may pass for the one at full resolution; full resolution itself has no figures.
+/// Returns true if an image is as good as full resolution. Full resolution itself has no figures and is good.
 pub fn is_good(row: &Row) -> bool {
     row.psnr_db.is_none_or(|psnr| psnr >= GOOD_PSNR) && row.flip.is_none_or(|flip| flip <= GOOD_FLIP)
 }
 
-/// What to ship on this adapter, in a sentence; `None` without the suite `scale`.
+/// Says in one sentence what to ship on this adapter; `None` without the suite `scale`.
 pub fn sentence(report: &Report) -> Option<String> {
-    // Of the most layers that all ways were measured at.
+    // Compares at the most layers that forward was measured at.
     let rows = || report.rows.iter().filter(|row| row.is_of(Suite::Scale));
     let forwards = rows().filter(|row| row.path.as_deref() == Some("forward"));
     let forward = forwards.max_by(|a, b| a.layers.unwrap_or(0.0).total_cmp(&b.layers.unwrap_or(0.0)))?;
@@ -107,13 +109,13 @@ pub fn sentence(report: &Report) -> Option<String> {
     let best = rows().filter(is_as_deep).min_by(|a, b| a.gpu_ms.median.total_cmp(&b.gpu_ms.median))?;
     let (path, scale, format) = (best.path.as_deref()?, best.scale?, best.format.as_deref()?);
     let picture = match (best.psnr_db, best.flip) {
-        (Some(psnr), Some(flip)) => format!("{psnr:.0} dB PSNR and FLIP {flip:.3} from full resolution"),
-        _ => "the picture of full resolution".into(),
+        (Some(psnr), Some(flip)) => format!("with {psnr:.0} dB PSNR and FLIP {flip:.3} against full resolution"),
+        _ => "with the image of full resolution".into(),
     };
     let times = forward_ms / best.gpu_ms.median;
     if times <= 1.0 {
         return Some(format!(
-            "Ship forward: at {layers:.0} layers its {forward_ms:.2} ms are less than any deferred picture as good takes."
+            "Ship forward: at {layers:.0} layers it takes {forward_ms:.2} ms, less than any deferred image of the same quality."
         ));
     }
     let known = break_even(report);
@@ -136,7 +138,7 @@ mod tests {
     use super::super::report::{Adapter, Clock, Milliseconds};
     use super::*;
 
-    /// Path, scale, milliseconds without a layer and of each, PSNR.
+    /// Path, scale, milliseconds without layers, milliseconds per layer, PSNR.
     type Way = (&'static str, Option<u32>, f64, f64, Option<f64>);
 
     fn report(ways: &[Way]) -> Report {
@@ -169,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn the_break_even_is_where_the_lines_cross() {
+    fn break_even_is_where_the_cost_lines_cross() {
         let report = report(&[
             ("forward", None, 1.0, 0.5, None),
             ("raster", Some(1), 6.0, 0.25, None),
@@ -181,7 +183,7 @@ mod tests {
         let from: Vec<_> = found.iter().map(|way| way.from_layers.map(f64::round)).collect();
         assert_eq!(from, [Some(20.0), Some(5.0), Some(2.0), None]);
         assert!((found[1].layer_ms - 0.1).abs() < 1e-9 && (found[1].base_ms - 3.0).abs() < 1e-9);
-        // A quarter is cheaper, and not good enough.
+        // A quarter of the resolution is cheaper, but its PSNR is too low.
         let sentence = sentence(&report).unwrap();
         assert!(
             sentence.starts_with("Ship raster at 1/2 in rgba16float: at 64 layers 9.40 ms, 3.5 times"),
@@ -191,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn auto_loses_what_its_path_takes_more() {
+    fn loss_of_auto_is_the_extra_time_of_the_chosen_path() {
         let mut report = report(&[]);
         let mut add = |path: &str, what: &str, ms: f64, mode: &str| {
             report.rows.push(Row {
@@ -211,7 +213,7 @@ mod tests {
             add("tiled", what, 3.0, "visible");
             add("auto", what, 9.0, taken);
         }
-        // Without one of the two there is nothing to say.
+        // A case without both paths is left out.
         add("raster", "c", 2.0, "ramp");
         add("auto", "c", 2.0, "raster");
         let found: Vec<_> = auto_cases(&report).into_iter().map(|case| (case.what, case.takes, case.loss)).collect();
@@ -219,9 +221,9 @@ mod tests {
     }
 
     #[test]
-    fn forward_is_said_where_it_is_cheapest() {
+    fn verdict_is_forward_where_it_is_cheapest() {
         let report = report(&[("forward", None, 0.0, 0.1, None), ("raster", Some(2), 3.0, 0.2, Some(40.0))]);
         assert_eq!(break_even(&report)[0].from_layers, None);
-        assert!(sentence(&report).unwrap().starts_with("Ship forward: at 64 layers its 6.40 ms"));
+        assert!(sentence(&report).unwrap().starts_with("Ship forward: at 64 layers it takes 6.40 ms"));
     }
 }

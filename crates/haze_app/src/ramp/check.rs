@@ -1,4 +1,4 @@
-//! `haze ramp check`: what would show.
+//! `haze ramp check`: reports visible flaws of ramps.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -21,16 +21,16 @@ use crate::output::{Failures, has_extension};
 
 #[derive(Args)]
 pub struct Arguments {
-    /// PNGs and `*.ramp.json` files.
+    /// PNGs and `*.ramp.json` files to check.
     #[arg(required = true)]
     ramps: Vec<PathBuf>,
-    /// What they are used for; else what their names begin with says it.
+    /// Role of the ramps. Default: the beginning of each file name.
     #[arg(long = "as", value_name = "ROLE", value_parser = choices::<Role>())]
     role: Option<Role>,
-    /// Say, too, how far a diffuse ramp is from smoke of this, path-traced, light by light.
+    /// Also compare a diffuse ramp with path-traced smoke of this medium, light by light.
     #[arg(long, value_name = "MEDIUM", value_parser = names())]
     truth: Option<String>,
-    /// With --truth: the ramp for light from behind that goes with it.
+    /// With --truth: the backlight ramp that belongs to the diffuse ramp.
     #[arg(long, value_name = "RAMP", requires = "truth")]
     backlight: Option<PathBuf>,
 }
@@ -42,7 +42,7 @@ pub fn run(Arguments { ramps, role, truth, backlight }: &Arguments) -> Result<()
     tell(ramps, |path| findings(path, *role))
 }
 
-/// How far ramps are from smoke as it is.
+/// Prints how far ramps are from path-traced smoke.
 fn tell_truth(ramps: &[PathBuf], medium: &str, backlight: Option<&Path>) -> Result<(), Error> {
     let load = |path: &Path| Ok::<_, Error>(Ramp::from_picture(&picture_of(path)?.0));
     let (ramps, backlight) = (
@@ -54,7 +54,7 @@ fn tell_truth(ramps: &[PathBuf], medium: &str, backlight: Option<&Path>) -> Resu
     let puff = quality.watched(medium, |progress| Puff::trace(&recipe, &named(medium), &path_trace, progress))?;
     for (path, diffuse) in &ramps {
         let ramps = DiffuseRamps { diffuse, backlight: backlight.as_ref() };
-        let name = format!("{} beside {medium}", path.display());
+        let name = format!("{} against {medium}", path.display());
         tell_ramps(&name, &puff, ramps)?;
     }
     Ok(())
@@ -71,7 +71,7 @@ fn findings(path: &Path, role: Option<Role>) -> Result<Vec<Finding>, Error> {
     }
     match picture_of(path) {
         Ok((picture, _)) => findings.extend(check(&picture, role)),
-        // A space that is refused has been noted.
+        // A colour space that is refused has been noted already.
         Err(Error::Image { .. }) if !findings.is_empty() => {}
         Err(error) => return Err(explain(error, path, "ramp", "a PNG or a *.ramp.json file")),
     }

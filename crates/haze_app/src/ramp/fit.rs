@@ -1,4 +1,4 @@
-//! `haze ramp fit`: the ramps that answer light as smoke does.
+//! `haze ramp fit`: fits ramps to path-traced smoke.
 
 use std::path::PathBuf;
 
@@ -19,24 +19,25 @@ use crate::recipe::picture;
 pub struct Arguments {
     #[command(flatten)]
     medium: MediumArguments,
-    /// The puff that is lit: a `*.sprite.json` file, or a built-in sprite.
+    /// Sprite that shapes the puff: a `*.sprite.json` file, or the name of a built-in sprite.
     #[arg(long, default_value_os_t = usual_sprite())]
     sprite: PathBuf,
     #[command(flatten)]
     quality: PathTraceArguments,
-    /// Stops of a row.
+    /// Stops per row.
     #[arg(long, value_parser = clap::value_parser!(u32).range(2..=64), default_value_t = Shape::default().stops)]
     stops: u32,
-    /// Rows by amount; 1 for a ramp of one axis.
+    /// Rows along the amount axis; 1 for a ramp of one axis.
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=16), default_value_t = Shape::default().rows)]
     rows: u32,
-    /// The ramp for light from all sides, or, where there is another for light from behind, from the viewer's: recipe, and PNG beside it.
+    /// Recipe to write, with its PNG beside it: the ramp for light from all sides, or with --backlight only from the
+    /// viewer's side.
     #[arg(short, long, value_name = "NAME.ramp.json")]
     output: PathBuf,
-    /// The ramp for light from behind, `backlight_ramp`.
+    /// Recipe to write of the ramp for light from behind, `backlight_ramp`.
     #[arg(long, value_name = "NAME.ramp.json")]
     backlight: Option<PathBuf>,
-    /// A picture of the puff: path-traced, by the ramps, and how far they are apart.
+    /// Image to write of the puff: path-traced, with the ramps, and the difference.
     #[arg(long, value_name = "FILE.png")]
     sheet: Option<PathBuf>,
 }
@@ -75,21 +76,25 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         tell_ramps("diffuse_soft", &puff, ramps)?;
     }
     tell_ramps("fitted", &puff, ramps)?;
-    say!("{}: diffuse.intensity {exposure:.2} is as bright as {} beside a white wall", output.display(), medium.name())
+    say!(
+        "{}: diffuse.intensity {exposure:.2} matches the brightness of {} relative to a white wall",
+        output.display(),
+        medium.name()
+    )
 }
 
-/// How far ramps are from the truth, in words and light by light.
+/// Prints how far ramps are from path-traced smoke, in total and light by light.
 pub fn tell_ramps(name: &str, puff: &Puff, ramps: DiffuseRamps<'_>) -> Result<(), Error> {
     let response = puff.response(ramps);
     let shown = Shown { light: &|light| puff.shown(ramps, light), exposure: response.exposure };
     tell_response(name, puff, &shown, &response)
 }
 
-/// How far what is shown is from the truth, in words and light by light.
+/// Prints how far compared images are from path-traced smoke, in total and light by light.
 pub fn tell_response(name: &str, puff: &Puff, shown: &Shown<'_>, response: &Response) -> Result<(), Error> {
     let percent = |share: f32| 100.0 * share;
     say!(
-        "{name}: brightness {:.1} % off in the mean, pixels {:.0} %, FLIP {:.3}, at intensity {:.2}",
+        "{name}: brightness {:.1} % off on average, pixels {:.0} % off, FLIP {:.3}, at intensity {:.2}",
         percent(response.error),
         percent(response.pixel_error),
         flip(puff, shown),
@@ -97,7 +102,7 @@ pub fn tell_response(name: &str, puff: &Puff, shown: &Shown<'_>, response: &Resp
     )?;
     for (index, light) in response.lights.iter().enumerate() {
         let off = percent(light.shown / light.truth.max(f32::MIN_POSITIVE) - 1.0);
-        say!("{:7.1}°  true {:.4}  shown {:.4}  {off:+.0} %", angle(index), light.truth, light.shown)?;
+        say!("{:7.1}°  traced {:.4}  shown {:.4}  {off:+.0} %", angle(index), light.truth, light.shown)?;
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! `haze ramp import`: the recipe of a picture, or of another program's gradient.
+//! `haze ramp import`: converts a PNG, or another program's gradient, to a recipe.
 
 use std::path::PathBuf;
 
@@ -13,12 +13,12 @@ use crate::progress::watched;
 
 #[derive(Args)]
 pub struct Arguments {
-    /// A PNG, or a gradient of GIMP (.ggr), Godot (.tres) or, as text, Blender (.txt).
+    /// A PNG, or a gradient of GIMP (.ggr), Godot (.tres) or Blender (.txt, as text).
     file: PathBuf,
-    /// The recipe to write.
+    /// Recipe to write.
     #[arg(short, long, value_name = "NAME.ramp.json")]
     output: PathBuf,
-    /// How far a channel may be off, steps of 255 from 1 on: the more, the fewer stops.
+    /// Greatest error of a channel, in steps of 1/255, at least 1. A larger error gives fewer stops.
     #[arg(long, value_name = "STEPS", default_value_t = USUAL_ERROR, allow_hyphen_values = true)]
     error: f32,
 }

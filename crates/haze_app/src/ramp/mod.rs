@@ -1,4 +1,4 @@
-//! `haze ramp`: what an artist does with a ramp besides baking it.
+//! `haze ramp`: the subcommands other than `bake`.
 
 pub mod check;
 pub mod fit;
@@ -18,7 +18,7 @@ use image::DynamicImage;
 
 use super::output::{Files, has_extension};
 
-/// A ramp's picture: a PNG, or what a recipe bakes, with the recipe.
+/// Loads the image of a ramp: a PNG, or a recipe, which is baked and returned as well.
 fn picture_of(path: &Path) -> Result<(DynamicImage, Option<RampRecipe>), Error> {
     if has_extension(path, "json") {
         let recipe = RampRecipe::load(path)?;
@@ -28,21 +28,21 @@ fn picture_of(path: &Path) -> Result<(DynamicImage, Option<RampRecipe>), Error> 
     Ok((read_colour_png(path)?, None))
 }
 
-/// Says what to do with another program's gradient.
+/// Refuses another program's gradient, and names the command that converts it.
 fn refuse_gradient(path: &Path) -> Result<(), FieldError> {
     if ["ggr", "tres", "txt"].iter().any(|ending| has_extension(path, ending)) {
-        let expected = "a PNG or a *.ramp.json file: `haze ramp import` makes one of another program's gradient";
+        let expected = "a PNG or a *.ramp.json file; convert this gradient with `haze ramp import`";
         return Err(FieldError::new("ramp", path.display(), expected));
     }
     Ok(())
 }
 
-/// Whether a file is a ramp's recipe, by its name.
+/// Returns true if a file name is that of a ramp recipe.
 fn is_recipe(path: &Path) -> bool {
     has_extension(path, "json") && has_extension(Path::new(path.file_stem().unwrap_or_default()), "ramp")
 }
 
-/// Refuses a name that recipes do not have, and a file that cannot be written.
+/// Refuses a name that does not end in .ramp.json, and a file that cannot be written.
 fn check_output(files: &mut Files, output: &Path) -> Result<(), Error> {
     if !is_recipe(output) {
         return Err(FieldError::new("--output", output.display(), "a name that ends in .ramp.json").into());

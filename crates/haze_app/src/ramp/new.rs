@@ -1,4 +1,4 @@
-//! `haze ramp new`: a recipe to begin with, or a picture to paint over.
+//! `haze ramp new`: writes a recipe from a template, or a blank image to paint over.
 
 use std::path::{Path, PathBuf};
 
@@ -19,13 +19,13 @@ use crate::output::{Files, say};
 
 #[derive(Args)]
 pub struct Arguments {
-    /// What to begin with.
+    /// Template to start from.
     #[arg(long, value_name = "NAME", default_value = "neutral", value_parser = names())]
     template: String,
-    /// A picture to paint over instead, whose axes are written on it: for ramps of this role.
+    /// Write an image with labelled axes to paint over instead, for ramps of this role.
     #[arg(long, value_name = "ROLE", value_parser = choices::<Role>(), conflicts_with = "template")]
     blank: Option<Role>,
-    /// The recipe to write, `NAME.ramp.json`, or the picture, `NAME.png`; there must be none of that name.
+    /// File to write: a recipe, `NAME.ramp.json`, or with --blank an image, `NAME.png`. It must not exist yet.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 }
@@ -41,9 +41,9 @@ pub fn run(Arguments { template, blank, output }: &Arguments) -> Result<(), Erro
         Some(_) => files.write("--output", output, "png")?,
         None => check_output(&mut files, output)?,
     }
-    // Nobody's work is lost to a template.
+    // A template never replaces an existing file.
     if output.exists() {
-        return Err(FieldError::new("--output", output.display(), "a name that is free").into());
+        return Err(FieldError::new("--output", output.display(), "a name that does not exist yet").into());
     }
     if let Some(role) = blank {
         return write_blank(output, *role);
@@ -53,7 +53,7 @@ pub fn run(Arguments { template, blank, output }: &Arguments) -> Result<(), Erro
     say!("{}: {}, for {} ramps", output.display(), template.about, template.role.name())
 }
 
-/// Height of what is written on a blank, pixels.
+/// Height of the text on a blank, pixels.
 const TEXT: f32 = 16.0;
 
 fn write_blank(output: &Path, role: Role) -> Result<(), Error> {
@@ -66,11 +66,11 @@ fn write_blank(output: &Path, role: Role) -> Result<(), Error> {
     };
     let has_two_axes = matches!(role, Role::Specular | Role::Backlight);
     let size = UVec2::new(512, if has_two_axes { 256 } else { 64 });
-    // The first template of its role shows through.
+    // The first template of the role is the background.
     let Some(template) = TEMPLATES.iter().find(|template| template.role == role) else { return Ok(()) };
     let mut picture = strip(&Ramp::from_picture(&template.recipe().bake()?), size);
     let mut write = |x: f32, y: f32, text: &str| {
-        // Ink on its shadow: read on any ground.
+        // White text with a black shadow is legible on any background.
         draw_text(&mut picture, x + 1.0, y + 1.0, TEXT, Rgb([0; 3]), text);
         draw_text(&mut picture, x, y, TEXT, Rgb([255; 3]), text);
     };

@@ -1,4 +1,4 @@
-//! `haze ramp sheet`: one shot under every ramp.
+//! `haze ramp sheet`: renders one shot with every ramp.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -19,27 +19,27 @@ use crate::output::{Failures, Files, complain, has_extension};
 use crate::recipe::picture;
 
 #[derive(Args)]
-#[command(mut_arg("size", |size| size.help("Size of the pictures of a full row and column together, pixels: each is that much smaller")))]
+#[command(mut_arg("size", |size| size.help("Size of all images together in pixels, without margins; each image is this size divided by the number of columns")))]
 pub struct Arguments {
     #[command(flatten)]
     shot: ShotArguments,
-    /// A folder of ramps: PNGs, and recipes without one. Those that are built in if not given.
+    /// Folder of ramps: PNGs, and recipes without a PNG. Default: the built-in ramps.
     #[arg(long, value_name = "DIR")]
     ramps: Option<PathBuf>,
-    /// The built-in ramps, too.
+    /// Also show the built-in ramps.
     #[arg(long)]
     builtin: bool,
-    /// Only ramps that are used for this, and those whose names do not say what they are used for.
+    /// Only ramps of this role, and ramps whose names do not tell their role.
     #[arg(long, value_name = "ROLE", value_parser = choices::<Role>())]
     role: Option<Role>,
 }
 
-/// Of a picture's sides, what a ramp of two axes takes.
+/// Divisor of an image's sides that gives the size of a ramp with two axes.
 const INSET: u32 = 4;
-/// Of a picture's height, what a ramp of one axis takes.
+/// Divisor of an image's height that gives the height of a ramp with one axis.
 const STRIP: u32 = 10;
 
-/// A ramp to show.
+/// A ramp on the sheet.
 struct Cell {
     name: String,
     role: Role,
@@ -81,16 +81,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     }
     sheet.add_foot(&format!("{}, {}x{}, {}", base.preset.name, size.x, size.y, backend.description()));
     arguments.shot.write(sheet.picture, &base, &backend)?;
-    // What is left out has been told.
+    // Ramps that were left out have been reported.
     if left_out.errors().is_empty() { Ok(()) } else { Err(Failures::default()) }
 }
 
 impl Arguments {
-    /// The ramps that were asked for, by name.
+    /// Returns the requested ramps: built-in ones, then files, sorted by name.
     fn cells(&self) -> Result<Vec<Cell>, Error> {
         let mut cells = Vec::new();
         let mut add = |name: &str, source| {
-            // A motif is a picture of another kind.
+            // A motif is another kind of image.
             let named = Role::of_name(name).or(self.role.filter(|_| !name.starts_with("motif_")));
             if let Some(role) = named.filter(|role| self.role.is_none_or(|wanted| wanted == *role)) {
                 cells.push(Cell { name: name.into(), role, source });
@@ -106,7 +106,7 @@ impl Arguments {
         }
         if cells.is_empty() || cells.len() > MOST_CELLS {
             let folder = self.ramps.as_ref().map_or("the built-in ones".into(), |folder| folder.display().to_string());
-            let named = "whose names begin with what they are used for, such as diffuse_";
+            let named = "whose names begin with their role, such as diffuse_";
             let which = self.role.map_or(named.into(), |role| format!("for {}", role.name()));
             let expected = format!("1 to {MOST_CELLS} ramps {which}, not {}", cells.len());
             return Err(FieldError::new("--ramps", folder, expected).into());
@@ -115,7 +115,7 @@ impl Arguments {
     }
 }
 
-/// PNGs in a folder, and recipes that have none, by name.
+/// Returns the PNGs in a folder, and the recipes without a PNG, sorted by name.
 fn files(folder: &Path) -> Result<Vec<PathBuf>, Error> {
     if folder.is_file() {
         return Err(FieldError::new("--ramps", folder.display(), "a folder").into());
@@ -137,7 +137,7 @@ impl Cell {
     }
 }
 
-/// Puts a ramp into a shot, with what it takes for the ramp to be seen.
+/// Puts a ramp into a shot, and changes the settings so that the ramp is used.
 fn paint(shot: &mut Shot, role: Role, ramp: &Ramp) {
     for (system, material) in shot.preset.systems.iter_mut().zip(&mut shot.materials) {
         let settings = &mut system.settings;
@@ -170,7 +170,7 @@ fn paint(shot: &mut Shot, role: Role, ramp: &Ramp) {
                 settings.coverage = CoverageMode::Ramp;
                 coverage_ramp
             }
-            // Deferred smoke has no colours of its own.
+            // Only forward smoke uses the age ramp.
             Role::Age => {
                 settings.path = SmokePath::Forward;
                 settings.sprite.age_colour = 1.0;

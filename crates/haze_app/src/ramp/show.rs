@@ -1,4 +1,4 @@
-//! `haze ramp show`: a ramp and its curve, in the terminal or as a picture.
+//! `haze ramp show`: prints a ramp and its luminance curve, or writes them as an image.
 
 use std::fmt::Write as _;
 use std::io::IsTerminal as _;
@@ -23,16 +23,16 @@ use crate::sheet::PAPER;
 pub struct Arguments {
     /// A PNG or a `*.ramp.json` file.
     ramp: PathBuf,
-    /// Write a picture instead.
+    /// Write an image instead of text.
     #[arg(short, long, value_name = "FILE.png")]
     output: Option<PathBuf>,
 }
 
-/// Characters across.
+/// Characters per line.
 const ACROSS: u32 = 64;
-/// Characters up of a ramp with two axes, each of two texels; and of the curve.
+/// Lines of a ramp with two axes, of two texels each; also lines of the curve.
 const UP: u32 = 12;
-/// Of the picture, pixels.
+/// Size of the ramp in the image, pixels.
 const SIZE: UVec2 = UVec2::new(512, 256);
 /// Most stops that are listed.
 const MOST: usize = 32;
@@ -59,7 +59,7 @@ pub fn run(Arguments { ramp: path, output }: &Arguments) -> Result<(), Error> {
     write_text(text.trim_end())
 }
 
-/// Two texels for each character: the upper one is ink, the lower paper.
+/// Draws two texels per character: the upper one in the foreground colour, the lower one in the background colour.
 fn coloured(ramp: &Ramp) -> String {
     let up = if ramp.size().y > 1 { UP } else { 2 };
     let mut text = String::new();
@@ -77,12 +77,12 @@ fn coloured(ramp: &Ramp) -> String {
     text
 }
 
-/// Of sRGB code, as code.
+/// Returns the luminance of an sRGB code, as sRGB code.
 fn brightness(code: Vec3) -> f32 {
     srgb_from_linear(luminance(code.map(linear_from_srgb)))
 }
 
-/// Luminance along the middle of the ramp.
+/// Draws the luminance along the middle of the ramp.
 fn curve(ramp: &Ramp) -> String {
     let heights: Vec<u32> =
         (0..ACROSS).map(|x| (brightness(code(ramp, share(x, ACROSS), 0.5)) * (8 * UP) as f32).round() as u32).collect();
@@ -110,7 +110,7 @@ fn stops(recipe: &RampRecipe) -> String {
     text
 }
 
-/// The ramp above the curves of its channels and of its luminance.
+/// Draws the ramp above the curves of its channels and its luminance.
 fn drawn(ramp: &Ramp) -> RgbImage {
     let sample = |channel: fn(Vec3) -> f32| -> Box<dyn Fn(f32) -> f32> {
         let ramp = ramp.clone();

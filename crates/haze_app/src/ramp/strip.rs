@@ -1,4 +1,4 @@
-//! A ramp as it is painted.
+//! Draws a ramp as an image.
 
 use glam::{UVec2, Vec3};
 use haze::formula::colour::srgb_from_linear;
@@ -6,7 +6,7 @@ use haze::formula::texture::Texture2d as _;
 use haze::ramp::Ramp;
 use image::{Rgb, RgbImage};
 
-/// sRGB code, 0 to 1, at a share of either axis.
+/// Returns the sRGB code, 0 to 1, of the texel nearest to `u` and `v`, both 0 to 1.
 pub fn code(ramp: &Ramp, u: f32, v: f32) -> Vec3 {
     let at = |share: f32, count: u32| (share * (count - 1) as f32).round() as u32;
     let size = ramp.dimensions();
@@ -17,7 +17,7 @@ pub fn share(index: u32, count: u32) -> f32 {
     index as f32 / (count - 1).max(1) as f32
 }
 
-/// The ramp as a picture of this size.
+/// Draws the ramp as an image of this size.
 pub fn strip(ramp: &Ramp, size: UVec2) -> RgbImage {
     RgbImage::from_fn(size.x, size.y, |x, y| {
         let colour = code(ramp, share(x, size.x), share(size.y - 1 - y, size.y)) * 255.0;

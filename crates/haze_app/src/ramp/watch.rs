@@ -1,4 +1,4 @@
-//! `haze ramp watch`: pictures follow their recipes.
+//! `haze ramp watch`: bakes recipes whenever they are saved.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -22,7 +22,7 @@ pub struct Arguments {
     recipes: Vec<PathBuf>,
 }
 
-/// Between two looks for Ctrl-C and for new recipes in folders.
+/// Interval of the checks for Ctrl-C and for new recipes in folders.
 const LOOK_EVERY: Duration = Duration::from_millis(200);
 
 pub fn run(Arguments { recipes }: &Arguments) -> Result<(), Failures> {
@@ -37,7 +37,7 @@ pub fn run(Arguments { recipes }: &Arguments) -> Result<(), Failures> {
     let wake = move || {
         let _ = wake.send(());
     };
-    let watcher = Watcher::new(wake).map_err(|error| failed(Path::new("a thread that watches"), error))?;
+    let watcher = Watcher::new(wake).map_err(|error| failed(Path::new("cannot start the watcher thread"), error))?;
     interrupt::catch();
     let mut known = BTreeSet::new();
     while !interrupt::is_asked() {
@@ -45,7 +45,7 @@ pub fn run(Arguments { recipes }: &Arguments) -> Result<(), Failures> {
         let _ = woken.recv_timeout(LOOK_EVERY);
         watcher.note().iter().for_each(complain);
         for path in watcher.poll() {
-            // What is newer than its recipe when it is first seen has been painted over, or is as it should be.
+            // When a recipe is seen for the first time, an image newer than it is up to date or was painted over.
             if !known.insert(path.clone()) || !is_newer(&picture(&path), &path) {
                 bake(&path).unwrap_or_else(complain);
             }
@@ -58,7 +58,7 @@ fn failed(path: &Path, error: std::io::Error) -> Error {
     Error::Io { path: path.into(), error }
 }
 
-/// What there is to watch now.
+/// Returns the recipes to watch now.
 fn files(recipes: &[PathBuf]) -> BTreeSet<PathBuf> {
     let mut files = BTreeSet::new();
     for path in recipes {
@@ -67,7 +67,7 @@ fn files(recipes: &[PathBuf]) -> BTreeSet<PathBuf> {
                 let inside = folder.flatten().map(|entry| entry.path());
                 files.extend(inside.filter(|path| RAMPS.find(path).is_ok()));
             }
-            // A folder that is gone may come again.
+            // A deleted folder may be created again.
             Err(error) if error.kind() == ErrorKind::NotFound && RAMPS.find(path).is_err() => {}
             Err(_) => drop(files.insert(path.clone())),
         }
@@ -76,7 +76,7 @@ fn files(recipes: &[PathBuf]) -> BTreeSet<PathBuf> {
 }
 
 fn is_newer(picture: &Path, recipe: &Path) -> bool {
-    // A folder is no picture: that it cannot be replaced is said.
+    // A folder in place of the image counts as older, so that baking reports that it cannot be replaced.
     let modified = |path: &Path| fs::metadata(path).ok().filter(fs::Metadata::is_file)?.modified().ok();
     modified(picture).is_some_and(|picture| modified(recipe) <= Some(picture))
 }

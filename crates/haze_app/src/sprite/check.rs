@@ -1,4 +1,4 @@
-//! `haze sprite check`: what would show.
+//! `haze sprite check`: reports visible flaws of sprites.
 
 use std::path::{Path, PathBuf};
 
@@ -16,16 +16,16 @@ use crate::output::Failures;
 
 #[derive(Args)]
 pub struct Arguments {
-    /// PNGs.
+    /// PNGs to check.
     #[arg(required = true)]
     sprites: Vec<PathBuf>,
-    /// Frames beside each other; else as the recipe beside a PNG says, or 1.
+    /// Frames per row of the sheet. Default: from the recipe beside the PNG, else 1.
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=256))]
     columns: Option<u32>,
-    /// Frames below each other; likewise.
+    /// Rows of frames. Default: from the recipe beside the PNG, else 1.
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=256))]
     rows: Option<u32>,
-    /// They are loaded with `"y_down": true`.
+    /// Normals point down in green: the preset loads the sprites with `"y_down": true`.
     #[arg(long)]
     y_down: bool,
 }
@@ -35,7 +35,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
 }
 
 fn findings(path: &Path, Arguments { columns, rows, y_down, .. }: &Arguments) -> Result<Vec<Finding>, Error> {
-    let picture = read_png(path).map_err(|error| explain(error, path, "picture", "a PNG"))?.to_rgba8();
+    let picture = read_png(path).map_err(|error| explain(error, path, "image", "a PNG"))?.to_rgba8();
     let recipe = path.with_extension("sprite.json");
     let beside = if (columns, rows) == (&None, &None) && recipe.is_file() {
         SpriteRecipe::load(&recipe)?.layout()

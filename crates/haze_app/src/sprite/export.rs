@@ -1,4 +1,4 @@
-//! `haze sprite export`: six-way maps for other tools.
+//! `haze sprite export`: converts six-way maps for other tools.
 
 use std::path::PathBuf;
 
@@ -12,12 +12,12 @@ use crate::output::{Files, say};
 
 #[derive(Args)]
 pub struct Arguments {
-    /// Six-way maps: a `*.six_way.png`.
+    /// Six-way maps: a `*.six_way.png` file.
     maps: PathBuf,
-    /// Which sides go where.
+    /// Order of the sides in the two PNGs.
     #[arg(long = "to", value_name = "PACKING", value_parser = choices::<Packing>(), default_value = "unity")]
     packing: Packing,
-    /// The two PNGs to write. They hold light itself: no sRGB.
+    /// The two PNGs to write. They hold linear light, not sRGB.
     #[arg(short, long, num_args = 2, required = true, value_names = ["FIRST.png", "SECOND.png"])]
     output: Vec<PathBuf>,
 }

@@ -1,4 +1,4 @@
-//! `haze sprite import`: a sprite of a picture of another kind.
+//! `haze sprite import`: makes a sprite from an image of another kind.
 
 use std::path::{Path, PathBuf};
 
@@ -16,26 +16,26 @@ use crate::recipe::six_way_of;
 
 #[derive(Args)]
 pub struct Arguments {
-    /// PNGs: one sheet, one file for each frame in their order (those that only differ by a number, by that), or the two sheets of
-    /// six-way light maps.
+    /// PNGs: one sheet, one file per frame in their order, or the two sheets of six-way light maps. Files whose names
+    /// differ only by a number are sorted by it.
     #[arg(required = true)]
     files: Vec<PathBuf>,
-    /// The PNG to write.
+    /// PNG to write.
     #[arg(short, long, value_name = "FILE.png")]
     output: PathBuf,
-    /// What they hold.
+    /// Contents of the files.
     #[arg(long = "from", value_name = "SOURCE", value_parser = choices::<Source>(), default_value = "normals")]
     source: Source,
-    /// Frames beside each other on a sheet.
+    /// Frames per row of the sheet.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=256))]
     columns: u32,
-    /// Frames below each other on a sheet.
+    /// Rows of frames of the sheet.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=256))]
     rows: u32,
-    /// Green of normals points down, true or false; guessed without.
+    /// Green of the normals points down, true or false. Default: guessed from the image.
     #[arg(long, num_args = 0..=1, default_missing_value = "true", value_name = "IS_DOWN")]
     y_down: Option<bool>,
-    /// How much heights, puffs and light maps stand out.
+    /// Strength of the relief of normals made from heights, alpha or light maps.
     #[arg(long, default_value_t = 1.0, value_parser = strength)]
     strength: f32,
 }
@@ -54,11 +54,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     }
     let refuse = |option: &str, value: String, expected: &str| Err(FieldError::new(option, value, expected).into());
     if y_down.is_some() && *source != Source::Normals {
-        return refuse("--y-down", format!("--from {}", source.name()), "--from normals: nothing else has a direction");
+        return refuse(
+            "--y-down",
+            format!("--from {}", source.name()),
+            "--from normals: other sources have no green direction",
+        );
     }
     if files.len() > 1 && !source.has_two() && (*columns, *rows) != (1, 1) {
-        let expected = "1x1, or one sheet: several files are a frame each";
-        return refuse("--columns and --rows", format!("{columns}x{rows} of {} files", files.len()), expected);
+        let expected = "1x1: each of several files is one frame";
+        return refuse("--columns and --rows", format!("{columns}x{rows} for {} files", files.len()), expected);
     }
     let files = by_number(files);
     let pictures = files.iter().map(|&path| Ok((path, read_png(path)?.to_rgba8())));
@@ -81,24 +85,26 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         say!("{}: the light maps, for lighting six_way", path.display())?;
     }
     if let Some((frame, alpha)) = border {
-        say!("  border: alpha up to {alpha} in frame {frame}, made clear; leave more room round the smoke")?;
+        say!("  border: alpha up to {alpha} in frame {frame} was cleared; leave more room around the smoke")?;
     }
     if let Some(doubt) = doubt {
-        say!("  {doubt}; `--from` says what a picture holds")?;
+        say!("  {doubt}; set --from to the contents of the image")?;
     }
-    let direction = |is_down| if is_down { "down, and was turned" } else { "up" };
+    let direction = |is_down| if is_down { "down and was flipped" } else { "up" };
     match (y_down, y_direction) {
-        (Some(is_down), _) => say!("  green points {}, as said", direction(*is_down)),
+        (Some(is_down), _) => say!("  green points {}, as --y-down says", direction(*is_down)),
         (None, Some(found)) if found.sureness >= SURE => {
             let sure = (found.sureness * 100.0).round();
-            say!("  green points {}: a guess, {sure} of 100 sure; --y-down says it", direction(found.is_down))
+            say!("  green points {}: a guess, {sure} % sure; set --y-down if it is wrong", direction(found.is_down))
         }
-        (None, Some(_)) => say!("  green taken to point up: nothing tells; --y-down says it"),
+        (None, Some(_)) => {
+            say!("  green is assumed to point up, because the image does not tell; set --y-down if it is wrong")
+        }
         (None, None) => Ok(()),
     }
 }
 
-/// Frames by their numbers, where their names differ by nothing else: shells put `smoke_10.png` before `smoke_9.png`.
+/// Sorts frames by number if their names differ by nothing else: shells put `smoke_10.png` before `smoke_9.png`.
 fn by_number(files: &[PathBuf]) -> Vec<&Path> {
     let split = |path: &Path| {
         let stem = path.file_stem()?.to_str()?;

@@ -1,4 +1,4 @@
-//! `haze sprite light`: a sprite as smoke of a medium truly looks, from every side.
+//! `haze sprite light`: path-traces a sprite of a medium under lights from all sides.
 
 use std::path::{Path, PathBuf};
 
@@ -17,20 +17,21 @@ use crate::ramp::fit::tell_response;
 
 #[derive(Args)]
 pub struct Arguments {
-    /// A `*.sprite.json` file, or a built-in sprite.
+    /// A `*.sprite.json` file, or the name of a built-in sprite.
     #[arg(default_value_os_t = usual_sprite())]
     sprite: PathBuf,
     #[command(flatten)]
     medium: MediumArguments,
     #[command(flatten)]
     quality: PathTraceArguments,
-    /// The picture to write: the puff under nine lights, from the viewer's side to straight behind it.
+    /// PNG to write: the puff under nine lights, from the viewer's side to straight behind it.
     #[arg(short, long, value_name = "FILE.png")]
     output: PathBuf,
-    /// Write the densities, too: a grid that Mitsuba 3 reads.
+    /// Also write the densities, as a grid that Mitsuba 3 reads.
     #[arg(long, value_name = "FILE.vol")]
     volume: Option<PathBuf>,
-    /// Make six-way maps of it as `haze sprite bake --six-way` does, show below what they look like, and say how far they are off.
+    /// Bake six-way maps as `haze sprite bake --six-way` does, add their images and the differences to the sheet, and
+    /// print their errors.
     #[arg(long)]
     six_way: bool,
 }
@@ -51,7 +52,11 @@ pub fn run(Arguments { sprite, medium, quality, output, volume, six_way }: &Argu
         return beside_six_way(&puff, &recipe, medium, quality, output);
     }
     write_png(output, &traced(&puff).into(), Effort::Small)?;
-    say!("{}: {} under {LIGHTS} lights; brightness, 1 is a white wall:", output.display(), medium.name())?;
+    say!(
+        "{}: {} under {LIGHTS} lights; brightness by angle in degrees, 1 is a white wall:",
+        output.display(),
+        medium.name()
+    )?;
     for light in 0..LIGHTS as usize {
         say!("{:6.1} {:.6}", angle(light), luminance(puff.traced().mean(light)))?;
     }
@@ -73,5 +78,5 @@ fn beside_six_way(
     let response = puff.response_of(light);
     let shown = Shown { light: &light, exposure: response.exposure };
     write_png(output, &compared(puff, "six-way", &shown).into(), Effort::Small)?;
-    tell_response(&format!("{}: six-way maps beside {}", output.display(), medium.name()), puff, &shown, &response)
+    tell_response(&format!("{}: six-way maps against {}", output.display(), medium.name()), puff, &shown, &response)
 }

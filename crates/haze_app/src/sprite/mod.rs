@@ -1,4 +1,4 @@
-//! `haze sprite`: what an artist does with a sprite besides baking it.
+//! `haze sprite`: the subcommands other than `bake`, and the six-way maps of `bake`.
 
 pub mod check;
 pub mod export;

@@ -1,4 +1,4 @@
-//! `haze sprite bake --six-way`: sprites under light from six sides.
+//! `haze sprite bake --six-way`: bakes sprites under light from six sides.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -15,25 +15,26 @@ use crate::recipe::{picture, six_way_of};
 
 #[derive(Args)]
 pub struct Arguments {
-    /// Path-trace sprites filled with a medium, too, for lighting six_way: NAME.six_way.png. Takes some minutes.
+    /// Also path-trace the sprites, filled with this medium, to NAME.six_way.png for `lighting: six_way`. Takes some
+    /// minutes.
     #[arg(long, value_name = "MEDIUM", value_parser = names(), num_args = 0..=1, default_missing_value = "ash")]
     six_way: Option<String>,
     #[command(flatten)]
     numbers: MediumNumbers,
-    /// With --six-way: paths for each pixel. Noise falls with their square root.
+    /// With --six-way: paths per pixel. The noise falls with their square root.
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65536), default_value_t = 64)]
     samples: u32,
 }
 
 impl Arguments {
-    /// Refuses before anything is baked.
+    /// Refuses bad options and outputs before anything is baked.
     ///
     /// # Errors
     /// Names the option or the file.
     pub fn check(&self, recipes: &[PathBuf]) -> Result<(), Error> {
         match &self.six_way {
             None => match self.numbers.given() {
-                Some(option) => Err(FieldError::new(option, "given", "it with --six-way").into()),
+                Some(option) => Err(FieldError::new(option, "use without --six-way", "--six-way as well").into()),
                 None => Ok(()),
             },
             Some(name) => {
@@ -44,16 +45,16 @@ impl Arguments {
         }
     }
 
-    /// The recipes that are baked without light: all that are files.
+    /// Returns the recipes that are baked without light: with --six-way all but built-in sprites, which have no file.
     pub fn files(&self, recipes: &[PathBuf]) -> Vec<PathBuf> {
         let is_file = |path: &&PathBuf| self.six_way.is_none() || !is_builtin(path);
         recipes.iter().filter(is_file).cloned().collect()
     }
 
-    /// Bakes the maps of every sprite's recipe, where they are asked for.
+    /// Bakes the maps of every sprite recipe, if they were asked for.
     ///
     /// # Errors
-    /// As [`sprite_recipe`]; for a file that cannot be written.
+    /// As [`sprite_recipe`], and if a file cannot be written.
     pub fn run(&self, recipes: &[PathBuf]) -> Result<(), Error> {
         let Some(name) = &self.six_way else { return Ok(()) };
         sprites(recipes).try_for_each(|path| self.bake(path, name))
@@ -78,7 +79,7 @@ impl Arguments {
         say!("{}: {}x{}", output.display(), maps.width(), maps.height())?;
         write_png(&output, &maps.into(), Effort::Small)?;
         say!(
-            "  as {}: lighting six_way, diffuse.intensity {intensity:.2}, six_way_anisotropy {anisotropy:.2}, \
+            "  to look like {}: lighting six_way, diffuse.intensity {intensity:.2}, six_way_anisotropy {anisotropy:.2}, \
              six_way_colour {:.3},{:.3},{:.3}",
             self.numbers.name_of(name),
             colour.x,
@@ -88,7 +89,7 @@ impl Arguments {
     }
 }
 
-/// Noise has no six sides.
+/// Returns the sprite recipes; noise has no six-way maps.
 fn sprites(recipes: &[PathBuf]) -> impl Iterator<Item = &Path> {
     let is_sprite = |path: &&Path| is_builtin(path) || path.to_string_lossy().ends_with(".sprite.json");
     recipes.iter().map(PathBuf::as_path).filter(is_sprite)

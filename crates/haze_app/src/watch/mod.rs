@@ -1,8 +1,9 @@
-//! Tells which files have changed, whichever way they are written.
+//! Detects changed files, however they are written.
 //!
-//! The system gives notice of whatever happens in the folders on the way to the files; that is only a sign to look. What counts is
-//! whether a file looks another, and has stayed so for a moment: writing in place, renaming over, deleting and making anew, and
-//! swapping a link are all one then. Without notice the files are looked at twice a second.
+//! File-system events in the folders on the way to a file only trigger a re-check. A file counts as changed when its
+//! size, modification time or inode differs and then stays the same for a moment, so in-place writes, atomic renames,
+//! deletion and re-creation, and swapped links are handled alike. Without file-system events, the files are checked
+//! twice a second.
 
 mod notice;
 mod quiet;
@@ -22,19 +23,19 @@ use notice::{Folders, Make};
 use quiet::Seen;
 use state::Shared;
 
-/// Between two looks at the files where the system gives no notice.
+/// Interval of the checks without file-system events.
 const LOOK_EVERY: Duration = Duration::from_millis(500);
 
-/// What happens at once is looked at once.
+/// Delay that gathers events of one moment into one check.
 const GATHER: Duration = Duration::from_millis(5);
 
-/// A set of files, and a thread that sleeps until something happens to one of them.
+/// A set of files, and a thread that sleeps until one of them may have changed.
 pub struct Watcher {
     shared: Arc<Shared>,
 }
 
 impl Watcher {
-    /// Watches nothing yet. `wake` is called from another thread when [`Watcher::poll`] has something new.
+    /// Creates a watcher of no files. `wake` is called from another thread when [`Watcher::poll`] has new changes.
     pub fn new(wake: impl Fn() + Send + 'static) -> io::Result<Self> {
         Self::start(wake, notice::system)
     }
@@ -46,13 +47,13 @@ impl Watcher {
         Ok(Self { shared })
     }
 
-    /// Watches these files, of which some may not be there yet, and no others. To be called before they are read: what happens
-    /// from now on is told.
+    /// Watches these files, and no others; they need not exist yet. Call this before reading them: every change from
+    /// now on is reported.
     pub fn set(&self, files: impl IntoIterator<Item = PathBuf>) {
         self.watch(files, true);
     }
 
-    /// The same for who has not read them: those that are new to it are told as they are.
+    /// The same for files that have not been read yet: files that are new to the watcher are reported once as they are.
     pub fn set_unread(&self, files: impl IntoIterator<Item = PathBuf>) {
         self.watch(files, false);
     }
@@ -72,12 +73,12 @@ impl Watcher {
         self.shared.signal(false);
     }
 
-    /// The files that have changed since it was asked last, or are gone: each once, when it is whole.
+    /// Returns the files that were changed or deleted since the last call, each once and only when it is complete.
     pub fn poll(&self) -> Vec<PathBuf> {
         std::mem::take(&mut self.shared.lock().changed).into_iter().collect()
     }
 
-    /// What is to be said about the watching itself, once.
+    /// Returns a message about the watcher itself, once.
     pub fn note(&self) -> Option<String> {
         self.shared.lock().note.take()
     }
@@ -92,7 +93,7 @@ impl Drop for Watcher {
 fn run(shared: &Arc<Shared>, wake: impl Fn(), make: Make) {
     let give_up = |error: notify::Error| {
         let said =
-            format!("changes of files are seen twice a second only: the system gives no notice of them ({error})");
+            format!("files are checked for changes only twice a second: the system reports no file events ({error})");
         shared.lock().note = Some(said);
         wake();
     };

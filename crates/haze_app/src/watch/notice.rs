@@ -1,4 +1,4 @@
-//! Notice from the system that something happened in a folder.
+//! File-system events in folders, from the `notify` crate.
 
 use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
@@ -10,15 +10,15 @@ use notify::{ErrorKind, Event, RecommendedWatcher, RecursiveMode, Watcher as _};
 use super::route::places;
 use super::state::Shared;
 
-/// What makes a notifier: that of the system, but for tests of how it is when there is none.
+/// Creates a notifier. Tests pass one that fails.
 pub type Make = fn(Arc<Shared>) -> notify::Result<RecommendedWatcher>;
 
-/// The system's.
+/// Creates the system's notifier.
 pub fn system(shared: Arc<Shared>) -> notify::Result<RecommendedWatcher> {
     notify::recommended_watcher(move |event| happened(&shared, event))
 }
 
-/// Called for all that happens in the folders, on a thread of notify's that must not wait.
+/// Handles an event in one of the folders. Runs on notify's thread and must not block.
 fn happened(shared: &Shared, event: notify::Result<Event>) {
     let Ok(event) = event else { return shared.signal(true) };
     if event.kind.is_access() {
@@ -31,7 +31,8 @@ fn happened(shared: &Shared, event: notify::Result<Event>) {
     shared.signal_at(&event.paths, !writes);
 }
 
-/// The folders that are watched. Never the files: an editor that renames would take the watch away with the old one.
+/// The watched folders. The files themselves are not watched: an editor that renames would move the watch away with the
+/// old file.
 pub struct Folders {
     notifier: RecommendedWatcher,
     watched: BTreeSet<PathBuf>,
@@ -42,15 +43,16 @@ impl Folders {
         Self { notifier, watched: BTreeSet::new() }
     }
 
-    /// Watches every folder on the way to these files, all anew if `is_lost`: one of them may be another by the same name.
+    /// Watches every folder on the way to these files. If `is_lost`, creates all watches anew, because a folder may
+    /// have been replaced by another of the same name.
     ///
     /// # Errors
-    /// Why a folder with a file in it cannot be watched.
+    /// The error of a folder that contains a file and cannot be watched.
     pub fn follow(&mut self, shared: &Shared, files: &[PathBuf], is_lost: bool) -> Result<(), notify::Error> {
         if is_lost {
             std::mem::take(&mut self.watched).into_iter().for_each(|folder| drop(self.notifier.unwatch(&folder)));
         }
-        /// What moves while it is looked at gives notice itself, once its folder is watched.
+        /// Most passes over the paths. What moves during a pass sends an event itself, once its folder is watched.
         const MOST_LOOKS: u32 = 3;
         for _ in 0..MOST_LOOKS {
             let routes: Vec<_> = files.iter().map(|file| places(file)).collect();
@@ -64,7 +66,7 @@ impl Folders {
                 self.watched.remove(&folder);
                 let _ = self.notifier.unwatch(&folder);
             }
-            // Outer ones first, so that they tell when an inner one moves.
+            // Outer folders first, so that they report when an inner one moves.
             let mut new: Vec<_> = folders.into_iter().filter(|folder| !self.watched.contains(*folder)).collect();
             if new.is_empty() {
                 break;
@@ -74,7 +76,7 @@ impl Folders {
                 match self.notifier.watch(folder, RecursiveMode::NonRecursive) {
                     Ok(()) => drop(self.watched.insert(folder.into())),
                     Err(error) if is_final(&error) || ends.contains(folder) && folder.is_dir() => return Err(error),
-                    // Gone again, or a folder that may be gone through and not listed.
+                    // The folder is gone again, or it may be traversed but not listed.
                     Err(_) => {}
                 }
             }

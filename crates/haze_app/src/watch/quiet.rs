@@ -1,35 +1,35 @@
-//! Whether a file is whole: it has stayed as it is for a while.
+//! Decides that a file is complete: it has not changed for a while.
 
 use std::time::{Duration, Instant};
 
 use super::stamp::Stamp;
 
-/// Programs that write a file in parts take less between them.
+/// Time without a change after which a file is complete. Programs that write a file in parts pause for less.
 pub const QUIET: Duration = Duration::from_millis(50);
 
-/// A file that is empty or gone will not stay so, if a program is about to write it anew.
+/// The same for a file that is empty or gone, which a program may be about to write anew.
 pub const QUIET_IF_HOLLOW: Duration = Duration::from_millis(200);
 
-/// A file as it was told last, and as it was seen last.
+/// A file as it was last reported, and as it was last seen.
 pub struct Seen {
     told: Option<Stamp>,
     now: Option<Stamp>,
     since: Instant,
 }
 
-/// What there is to do about a file.
+/// Action to take for a file.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Todo {
-    /// It is as it was told.
+    /// It is as it was reported.
     Nothing,
-    /// It has changed and is whole.
+    /// It has changed and is complete.
     Tell,
-    /// It has changed; to be looked at again then.
+    /// It has changed; check it again at this time.
     LookAgain(Instant),
 }
 
 impl Seen {
-    /// `is_told`: what is there now is known.
+    /// `is_told`: the caller knows the current state of the file.
     pub fn new(stamp: Option<Stamp>, is_told: bool, at: Instant) -> Self {
         Self { told: stamp.filter(|_| is_told), now: stamp, since: at }
     }
@@ -56,7 +56,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_is_told_once_when_it_is_whole() {
+    fn a_change_is_reported_once_when_the_file_is_complete() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a");
         let stamp = |text: &str| {
@@ -67,7 +67,7 @@ mod tests {
         let at = |milliseconds| start + Duration::from_millis(milliseconds);
         let mut seen = Seen::new(None, true, start);
         assert_eq!(seen.look(None, at(1000)), Todo::Nothing);
-        // Made, then written in two parts, 30 ms between.
+        // Created, then written in two parts with 30 ms between them.
         assert_eq!(seen.look(stamp(""), at(1000)), Todo::LookAgain(at(1200)));
         assert_eq!(seen.look(stamp("1"), at(1010)), Todo::LookAgain(at(1060)));
         let whole = stamp("12");
@@ -75,12 +75,12 @@ mod tests {
         assert_eq!(seen.look(whole, at(1060)), Todo::LookAgain(at(1090)));
         assert_eq!(seen.look(whole, at(1090)), Todo::Tell);
         assert_eq!(seen.look(whole, at(1200)), Todo::Nothing);
-        // Gone, and back as it was: nothing has happened. Gone for good is told.
+        // Deleted and restored unchanged: no report. Deleted for good: reported.
         assert_eq!(seen.look(None, at(1300)), Todo::LookAgain(at(1500)));
         assert_eq!(seen.look(whole, at(1310)), Todo::Nothing);
         assert_eq!(seen.look(None, at(1400)), Todo::LookAgain(at(1600)));
         assert_eq!(seen.look(None, at(1600)), Todo::Tell);
-        // One that nobody has read is told as it is.
+        // An unread file is reported as it is.
         let mut seen = Seen::new(whole, false, start);
         assert_eq!(seen.look(whole, at(0)), Todo::LookAgain(at(50)));
         assert_eq!(seen.look(whole, at(50)), Todo::Tell);

@@ -1,4 +1,4 @@
-//! Where a path leads, link by link.
+//! Resolves a path link by link.
 
 use std::ffi::OsString;
 use std::fs;
@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 /// As many links as Linux follows.
 const MOST_LINKS: u32 = 40;
 
-/// Every place that decides what a path leads to, from the root on: the folders and links on the way and the file itself, each named
-/// without links before it. The way ends where nothing is, so that the last place is the one to wait for.
+/// Returns every place that decides where a path leads, from the root on: the folders and links on the way and the file
+/// itself, each named without links before it. The list ends at the first place that does not exist, which is the one
+/// to wait for.
 pub fn places(path: &Path) -> Vec<PathBuf> {
     let steps =
         |path: &Path| path.components().rev().map(|part| part.as_os_str().to_owned()).collect::<Vec<OsString>>();
@@ -20,7 +21,7 @@ pub fn places(path: &Path) -> Vec<PathBuf> {
             at.pop();
             continue;
         }
-        // A root takes the place of all that was before.
+        // A root replaces everything before it.
         let place = at.join(&step);
         if place.parent().is_none() || step == "." {
             at = place;
@@ -47,7 +48,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn links_and_what_is_missing_are_on_the_way() {
+    fn places_include_links_and_end_at_the_first_missing_one() {
         let folder = tempfile::tempdir().unwrap();
         let root = fs::canonicalize(folder.path()).unwrap();
         let ways = |name: &str| -> Vec<String> {

@@ -1,21 +1,22 @@
-//! What tells that a file has been written.
+//! Stamp of a file, which differs after the file was written.
 
 use std::fs;
 use std::path::Path;
 use std::time::SystemTime;
 
-/// What a file looks like from outside: as long as it stays, the file has not been written.
+/// Size, modification time and inode of a file. While they stay the same, the file has not been written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stamp {
-    /// In bytes.
+    /// Bytes.
     pub length: u64,
     modified: Option<SystemTime>,
-    /// Device and inode, and when that was changed, which no program can set back.
+    /// Device, inode, and the time of the inode's last change, which no program can set back. Zero on systems other
+    /// than Unix.
     inode: (u64, u64, i64, i64),
 }
 
 impl Stamp {
-    /// Of what is there now; links are followed.
+    /// Returns the stamp of the current file, following links; `None` if there is none.
     pub fn of(path: &Path) -> Option<Self> {
         let found = fs::metadata(path).ok()?;
         #[cfg(unix)]

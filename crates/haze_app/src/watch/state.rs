@@ -1,4 +1,4 @@
-//! What the threads of a watcher share.
+//! State that the threads of a watcher share.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::path::PathBuf;
@@ -8,7 +8,8 @@ use std::time::Instant;
 use super::quiet::{Seen, Todo};
 use super::stamp::Stamp;
 
-/// Nothing in here grows with what happens: signals are flags, and a file is told once however often it was written.
+/// Its size does not grow with events: signals are flags, and a changed file is listed once however often it was
+/// written.
 #[derive(Default)]
 pub struct Shared {
     state: Mutex<State>,
@@ -20,20 +21,20 @@ pub struct State {
     pub files: BTreeMap<PathBuf, Seen>,
     /// All places that decide where the files are.
     pub places: HashSet<PathBuf>,
-    /// The files that have changed.
+    /// Changed files that have not been polled.
     pub changed: BTreeSet<PathBuf>,
-    /// To be said once.
+    /// Message to report once.
     pub note: Option<String>,
     pub is_over: bool,
     signal: Option<Signal>,
 }
 
-/// Something has happened.
+/// Events since the last check.
 #[derive(Clone, Copy, Default)]
 pub struct Signal {
-    /// The files may be elsewhere.
+    /// Paths of files may lead elsewhere now.
     pub has_moved: bool,
-    /// A folder on the way may be another by the same name.
+    /// A folder on the way may have been replaced by another of the same name.
     pub is_lost: bool,
 }
 
@@ -42,12 +43,12 @@ impl Shared {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Says that something has happened somewhere.
+    /// Signals that something has happened at an unknown place.
     pub fn signal(&self, is_lost: bool) {
         self.add(&mut self.lock(), Signal { has_moved: true, is_lost });
     }
 
-    /// Says that something has happened there, if it matters.
+    /// Signals that something has happened at these paths, if one of them matters.
     pub fn signal_at(&self, paths: &[PathBuf], has_moved: bool) {
         let mut state = self.lock();
         let Some(path) = paths.iter().find(|path| state.places.contains(*path)) else { return };
@@ -68,7 +69,7 @@ impl Shared {
         self.has_changed.notify_all();
     }
 
-    /// Waits for a signal, or until then; for ever where there is no then. None when it is over.
+    /// Waits for a signal, or until a time; for ever without a time. Returns `None` when the watcher ends.
     pub fn wait(&self, until: Option<Instant>) -> Option<Signal> {
         let mut state = self.lock();
         loop {
@@ -86,9 +87,9 @@ impl Shared {
         }
     }
 
-    /// Looks at every file. Gives whether there is something new to tell, and when to look again.
+    /// Checks every file. Returns true if there are new changes to report, and the time of the next check.
     pub fn look(&self) -> (bool, Option<Instant>) {
-        // Not while the state is locked: a disk may be slow.
+        // The state is not locked meanwhile, because a disk may be slow.
         let files: Vec<_> = self.lock().files.keys().cloned().collect();
         let stamps: Vec<_> = files.into_iter().map(|file| (Stamp::of(&file), file)).collect();
         let mut state = self.lock();

@@ -1,4 +1,4 @@
-//! Real files, saved in every way that programs know.
+//! Watches real files that are saved in every way that programs use.
 
 use std::fs::{self, File};
 use std::io::Write as _;
@@ -9,15 +9,15 @@ use std::sync::mpsc::{self, Receiver};
 
 use super::*;
 
-/// Late on a machine that does other things too.
+/// Timeout, long enough for a busy machine.
 const LATE: Duration = Duration::from_secs(10);
 
-/// Nothing more comes after this.
+/// Time after which no further report is expected.
 const STILL: Duration = Duration::from_millis(400);
 
 struct Watched {
     watcher: Watcher,
-    /// What was in the files whenever there was something to tell.
+    /// Contents of the files at every wake-up.
     woken: Receiver<Vec<Option<String>>>,
     files: Vec<PathBuf>,
 }
@@ -49,12 +49,12 @@ impl Watched {
         self.watcher.poll()
     }
 
-    /// Nothing is told that nobody has done.
+    /// Returns true if nothing is reported.
     fn is_still(&self) -> bool {
         self.woken.recv_timeout(STILL).is_err() && self.watcher.poll().is_empty()
     }
 
-    /// Does something to a file. It is told; once, if it took no time; and last when it was done.
+    /// Makes a change to a file. It must be reported: once if it took no time, and finally after it was done.
     fn told(&self, file: &Path, what: &str, change: impl FnOnce()) {
         let start = Instant::now();
         change();
@@ -78,7 +78,7 @@ fn shell(folder: &Path, script: &str) {
 }
 
 #[test]
-fn every_way_of_saving_is_told() {
+fn every_way_of_saving_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.json");
     fs::write(&path, "old").unwrap();
@@ -95,7 +95,7 @@ fn every_way_of_saving_is_told() {
         "echo 9 > b; ln -f b a.json",
         ": > a.json; sleep 0.1; echo 10 > a.json",
         "rm a.json; sleep 0.1; echo 11 > a.json",
-        // With the length and the time of the one before.
+        // With the length and the modification time of the file before.
         "echo 12 > b; touch -r a.json b; mv b a.json",
         "touch -r a.json t; echo 13 > a.json; touch -r t a.json",
         "chmod 600 a.json",
@@ -104,19 +104,19 @@ fn every_way_of_saving_is_told() {
     ] {
         watched.told_after(&path, folder.path(), script);
     }
-    // Files beside it, and reading, are nothing.
+    // Writing other files and reading cause no report.
     shell(folder.path(), "echo 1 > other; cat a.json > /dev/null; ls > /dev/null");
     assert!(watched.is_still());
     assert_eq!(watched.watcher.note(), None);
 }
 
 #[test]
-fn a_slow_write_is_told_when_it_is_done() {
+fn a_slow_write_is_reported_when_it_is_complete() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.json");
     fs::write(&path, "old").unwrap();
     let watched = Watched::new(&[&path]);
-    /// On a machine that does other things too, a sleep may be as long as a pause between two saves.
+    /// On a busy machine, a sleep may be as long as a pause between two saves.
     const MOST_TRIES: u32 = 50;
     for _ in 0..MOST_TRIES {
         let mut file = File::create(&path).unwrap();
@@ -135,11 +135,11 @@ fn a_slow_write_is_told_when_it_is_done() {
         }
         while !watched.is_still() {}
     }
-    panic!("no sleep of this machine's is short");
+    panic!("no sleep on this machine was short enough");
 }
 
 #[test]
-fn folders_and_links_on_the_way_may_change() {
+fn changed_folders_and_links_on_the_way_are_followed() {
     let folder = tempfile::tempdir().unwrap();
     let root = folder.path();
     let (mounted, deep) = (root.join("mounted/a.json"), root.join("in/deep/b.json"));
@@ -149,12 +149,12 @@ fn folders_and_links_on_the_way_may_change() {
     symlink("..data/a.json", &mounted).unwrap();
     let watched = Watched::new(&[&mounted, &deep]);
     for (script, file) in [
-        // As Kubernetes does.
+        // As Kubernetes updates mounted files.
         ("cd mounted; mkdir ..2; echo 2 > ..2/a.json; ln -s ..2 ..new; mv -T ..new ..data; rm -r ..1", &mounted),
         ("echo 3 > mounted/..2/a.json", &mounted),
         ("ln -sfn ../c mounted/a.json; sleep 0.1; echo 4 > c", &mounted),
         ("echo 5 > c", &mounted),
-        // Folders that are not there yet, and others by the same name.
+        // Folders that do not exist yet, and others of the same name.
         ("mkdir in; sleep 0.1; mkdir in/deep; sleep 0.1; echo 1 > in/deep/b.json", &deep),
         ("echo 2 > in/deep/b.json", &deep),
         ("mkdir -p new/deep; echo 3 > new/deep/b.json; mv in old; mv new in", &deep),
@@ -164,7 +164,7 @@ fn folders_and_links_on_the_way_may_change() {
     ] {
         watched.told_after(file, root, script);
     }
-    // What has been left is not heard any more.
+    // Places that files no longer use are not watched.
     shell(root, "echo 7 > old/deep/b.json; echo 7 > mounted/..2/a.json");
     assert!(watched.is_still());
     watched.watcher.set([mounted.clone()]);
@@ -172,7 +172,7 @@ fn folders_and_links_on_the_way_may_change() {
 }
 
 #[test]
-fn folders_that_change_places_are_followed() {
+fn swapped_folders_are_followed() {
     let folder = tempfile::tempdir().unwrap();
     let [one, other, between] = ["one", "other", "between"].map(|name| folder.path().join(name));
     let path = one.join("in/a.json");
@@ -181,7 +181,7 @@ fn folders_that_change_places_are_followed() {
         fs::write(folder.join("in/a.json"), "old").unwrap();
     }
     let watched = Watched::new(&[&path]);
-    // Often, so that it is too quick for the thread at least once.
+    // Repeated, so that at least one swap is too quick for the thread.
     for number in 0..20 {
         for (from, to) in [(&one, &between), (&other, &one), (&between, &other)] {
             fs::rename(from, to).unwrap();
@@ -193,7 +193,7 @@ fn folders_that_change_places_are_followed() {
 }
 
 #[test]
-fn a_save_is_told_in_a_quarter_of_a_second() {
+fn a_save_is_reported_within_a_fifth_of_a_second() {
     let folder = tempfile::tempdir().unwrap();
     let (path, partial) = (folder.path().join("a.png"), folder.path().join("partial"));
     fs::write(&path, "old").unwrap();
@@ -212,11 +212,11 @@ fn a_save_is_told_in_a_quarter_of_a_second() {
         })
         .collect();
     took.sort();
-    // The 95th of a hundred takes 60 ms where nothing else runs; what is left of 250 ms is for the picture.
+    // The 95th percentile is 60 ms on an idle machine; the rest of 250 ms is for the image.
     assert!(took[47] < Duration::from_millis(200), "{took:?}");
 }
 
-/// Handles and threads of this process that are of watchers.
+/// Counts the inotify handles and the watcher threads of this process.
 fn counts() -> (usize, usize) {
     let handles = fs::read_dir("/proc/self/fd").unwrap().flatten();
     let of_inotify = |target: &PathBuf| target.to_string_lossy().contains("inotify");
@@ -229,14 +229,14 @@ fn counts() -> (usize, usize) {
 }
 
 #[test]
-fn thousands_of_saves_leave_nothing_behind() {
+fn thousands_of_saves_leak_no_state_handles_or_threads() {
     let folder = tempfile::tempdir().unwrap();
     let paths: Vec<_> = (0..3).map(|number| folder.path().join(format!("{number}.json"))).collect();
     let watched = Watched::new(&[&paths[0], &paths[1], &paths[2]]);
     let partial = folder.path().join("partial");
     for number in 0..5000 {
         let path = &paths[number % 3];
-        // Good ones and bad ones, in each of the ways.
+        // Valid and invalid texts, in each way of saving.
         let text = if number % 2 == 0 { "{\"version\": 1}" } else { "{" };
         match number / 3 % 4 {
             0 => fs::write(path, text).unwrap(),
@@ -259,13 +259,13 @@ fn thousands_of_saves_leave_nothing_behind() {
     let state = watched.watcher.shared.lock();
     assert_eq!((state.files.len(), state.changed.len()), (3, 0));
     drop(state);
-    // Still awake, with what it had.
+    // It still reports changes.
     watched.told(&paths[1], "after all", || fs::write(&paths[1], "{}").unwrap());
-    // Other tests have watchers too: what this one has is what a hundred more leave when they are gone.
+    // Other tests have watchers too, so this checks that a hundred more leave nothing behind.
     drop(watched);
     (0..100).for_each(|_| drop(Watched::new(&[&paths[0]])));
     let start = Instant::now();
-    // At most one for each of the other tests.
+    // At most one watcher for each of the other tests.
     while counts().0 > 8 || counts().1 > 16 {
         assert!(start.elapsed() < LATE, "{:?}", counts());
         thread::sleep(STILL);
@@ -273,14 +273,14 @@ fn thousands_of_saves_leave_nothing_behind() {
 }
 
 #[test]
-fn without_notice_files_are_looked_at_and_that_is_said_once() {
+fn without_file_events_files_are_polled_and_one_message_says_so() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.json");
     fs::write(&path, "old").unwrap();
     let watched = Watched::with(&[&path], |_| Err(notify::Error::new(notify::ErrorKind::MaxFilesWatch)));
     watched.woken.recv_timeout(LATE).unwrap();
     let note = watched.watcher.note().unwrap();
-    assert!(note.starts_with("changes of files are seen twice a second only: ") && !note.contains('\n'), "{note}");
+    assert!(note.starts_with("files are checked for changes only twice a second: ") && !note.contains('\n'), "{note}");
     for _ in 0..3 {
         watched.told_after(&path, folder.path(), "echo 1 >> a.json");
     }

@@ -1,4 +1,4 @@
-//! The command line: what it makes, and how it says what is wrong.
+//! Command line: results and error messages.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -32,14 +32,14 @@ use std::process::{Command, Output};
 use haze::settings::ShadeTree;
 use tempfile::TempDir;
 
-/// A recipe that is soon baked.
+/// A recipe that bakes quickly.
 const MOTIF: &str = r##"{"version": 1, "size": 8, "ambient": "#000000", "lights": []}"##;
 
 fn haze(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_haze"))
         .args(arguments)
         .current_dir(folder)
-        // Without it a layer of Mesa's complains on stderr.
+        // Without this variable, a Mesa layer complains on stderr.
         .env("XDG_RUNTIME_DIR", folder)
         .output()
         .unwrap()
@@ -53,7 +53,7 @@ fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// The one line that a mistake gets.
+/// Runs a command that must be refused with exit code 2, and returns its one line on stderr.
 fn refusal(folder: &Path, arguments: &[&str]) -> String {
     let output = haze(folder, arguments);
     let text = stderr(&output);
@@ -73,7 +73,7 @@ fn size_of(path: &Path) -> (u32, u32) {
 }
 
 #[test]
-fn both_renderers_make_a_picture_of_the_size_asked_for() {
+fn both_renderers_write_an_image_of_the_requested_size() {
     let folder = folder();
     for backend in ["cpu", "gpu", "auto"] {
         let output = haze(folder.path(), &["render", "--size", "65x37", "--backend", backend, "-o", "a.png"]);
@@ -85,7 +85,7 @@ fn both_renderers_make_a_picture_of_the_size_asked_for() {
 }
 
 #[test]
-fn every_option_changes_the_picture() {
+fn every_option_changes_the_image() {
     let folder = folder();
     let picture = |arguments: &[&str]| {
         let output = render(folder.path(), arguments);
@@ -161,7 +161,7 @@ fn bad_presets_are_refused_with_file_and_place() {
 }
 
 #[test]
-fn a_preset_finds_its_own_files() {
+fn a_preset_finds_files_in_its_folder() {
     let folder = folder();
     let sprites = folder.path().join("shots");
     std::fs::create_dir(&sprites).unwrap();
@@ -174,7 +174,7 @@ fn a_preset_finds_its_own_files() {
 }
 
 #[test]
-fn a_failure_leaves_the_last_good_picture() {
+fn a_failed_render_keeps_the_old_image() {
     let folder = folder();
     assert!(render(folder.path(), &[]).status.success());
     let before = std::fs::read(folder.path().join("out.png")).unwrap();
@@ -185,13 +185,13 @@ fn a_failure_leaves_the_last_good_picture() {
 }
 
 #[test]
-fn without_an_adapter_the_cpu_draws_and_says_so() {
+fn without_an_adapter_the_cpu_renders_and_says_so() {
     let folder = folder();
     let blind = |backend: &str| {
         Command::new(env!("CARGO_BIN_EXE_haze"))
             .args(["render", "--size", "64x36", "--backend", backend, "-o", "a.png"])
             .current_dir(folder.path())
-            // A backend that this system does not have: the same as no driver.
+            // This system does not have the backend, which is the same as having no driver.
             .env("WGPU_BACKEND", if cfg!(target_os = "windows") { "metal" } else { "dx12" })
             .output()
             .unwrap()
@@ -210,12 +210,12 @@ fn without_an_adapter_the_cpu_draws_and_says_so() {
 }
 
 #[test]
-fn the_shade_tree_is_one_sheet() {
+fn shade_tree_sheet_shows_every_stage() {
     let folder = folder();
     let output = haze(folder.path(), &["shade-tree", "--size", "192x108", "--backend", "cpu", "-o", "sheet.png"]);
     assert!(output.status.success(), "{}", stderr(&output));
     let sheet = haze::picture::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8();
-    // Every stage is on it, as it is rendered alone: three rows of three.
+    // Every stage is on the sheet as `haze render --view` renders it, in three rows of three.
     let mut corners = BTreeSet::new();
     for stage in ShadeTree::ALL {
         let output = render(folder.path(), &["--view", stage.name()]);
@@ -234,7 +234,7 @@ fn the_shade_tree_is_one_sheet() {
 }
 
 #[test]
-fn recipes_are_baked_beside_themselves() {
+fn recipes_are_baked_to_images_beside_them() {
     let folder = folder();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     let stops = r##"[{"at": 0, "colour": "#000000"}, {"at": 1, "colour": "#ff8000"}]"##;
@@ -272,7 +272,7 @@ fn presets_are_listed_checked_and_described() {
     assert_eq!(text(&["preset", "show", "--changed", "idle.json"]).lines().count(), 4);
     assert!(text(&["preset", "schema"]).contains("\"soft_fade\""));
     let info = text(&["info"]);
-    assert!(info.contains("gpu: ") && info.contains("path auto takes"), "{info}");
+    assert!(info.contains("gpu: ") && info.contains("choices of path auto"), "{info}");
     let reasons: Vec<_> = info.lines().filter(|line| line.starts_with("  ")).collect();
     let is_reason = |line: &&str| line.contains(": about ") && line.contains("probe") || line.contains("no path tiled");
     assert!(!reasons.is_empty() && reasons.iter().all(is_reason), "{info}");
@@ -280,7 +280,7 @@ fn presets_are_listed_checked_and_described() {
 }
 
 #[test]
-fn presets_are_begun_as_copies_with_their_pictures() {
+fn preset_new_copies_a_preset_with_its_images() {
     let folder = folder();
     let path = |name: &str| folder.path().join(name);
     std::fs::create_dir_all(path("theirs")).unwrap();
@@ -296,16 +296,16 @@ fn presets_are_begun_as_copies_with_their_pictures() {
     assert!(std::fs::read_to_string(path("mine.json")).unwrap().contains("\"name\": \"mine\""));
     assert!(path("own.png").exists());
     let again = refusal(folder.path(), &["preset", "new", "mine"]);
-    assert!(again.contains("mine.json") && again.contains("nothing is replaced"), "{again}");
+    assert!(again.contains("mine.json") && again.contains("no file is replaced"), "{again}");
     assert!(refusal(folder.path(), &["preset", "new", "a.png"]).contains("ends in .json"));
-    // Another picture of that name is there.
+    // Another image of that name exists.
     image::RgbImage::from_pixel(8, 1, image::Rgb([7; 3])).save(path("own.png")).unwrap();
     assert!(refusal(folder.path(), &["preset", "new", "b", "--from", "theirs/first.json"]).contains("own.png"));
     assert!(!path("b.json").exists());
 }
 
 #[test]
-fn every_line_of_the_page_of_looks_makes_another_picture() {
+fn every_command_in_looks_md_renders_a_different_image() {
     let folder = folder();
     let mut made = std::collections::HashSet::new();
     for line in include_str!("../../../../docs/looks.md").lines().filter(|line| line.starts_with("haze ")) {
@@ -314,17 +314,20 @@ fn every_line_of_the_page_of_looks_makes_another_picture() {
         assert!(output.starts_with("docs/pictures/looks/"), "{line}");
         let done = haze(folder.path(), &[&arguments[..], &["a.png", "--size", "48x27", "--backend", "cpu"]].concat());
         assert!(done.status.success(), "{line}: {}", stderr(&done));
-        assert!(made.insert(std::fs::read(folder.path().join("a.png")).unwrap()), "{line}: nothing new");
+        assert!(
+            made.insert(std::fs::read(folder.path().join("a.png")).unwrap()),
+            "{line}: the image of an earlier command"
+        );
     }
     assert!(made.len() > 5);
 }
 
 #[test]
-fn pictures_may_lie_in_a_folder_that_presets_share() {
+fn images_are_found_in_the_shared_assets_folder() {
     let folder = folder();
     let path = |name: &str| folder.path().join(name);
     std::fs::create_dir_all(path("team")).unwrap();
-    // A glow, which is no diffuse ramp.
+    // A glow is wrong as a diffuse ramp.
     let glow = |x, y| image::Rgb([((63 - x) * (y + 1) / 2) as u8; 3]);
     image::RgbImage::from_fn(64, 8, glow).save(path("team/glow.png")).unwrap();
     let text = r#"{"version": 1, "name": "x", "systems": [{"name": "s", "material":
@@ -335,7 +338,7 @@ fn pictures_may_lie_in_a_folder_that_presets_share() {
         (output.status.code(), stderr(&output), String::from_utf8(output.stdout).unwrap())
     };
     let (code, said, notes) = check(&[]);
-    // All of them, in the order of the fields; what else there is to say is said, too.
+    // All errors in the order of the fields; notes are printed too.
     let lines: Vec<_> = said.lines().collect();
     assert_eq!((code, lines.len()), (Some(2), 3), "{said}");
     let idle = "my.json: bad\n  systems[0].material.age_ramp has no effect: forward only\n  systems[0].material.noise has no effect: ";
@@ -357,7 +360,7 @@ fn pictures_may_lie_in_a_folder_that_presets_share() {
 }
 
 #[test]
-fn techniques_are_on_one_sheet_with_their_costs() {
+fn techniques_sheet_shows_every_technique_with_its_cost() {
     let folder = folder();
     for backend in ["cpu", "gpu"] {
         let arguments = ["techniques", "--size", "128x72", "--backend", backend, "-o", "t.png", "--curves", "c.png"];
@@ -370,13 +373,13 @@ fn techniques_are_on_one_sheet_with_their_costs() {
         assert_eq!(size_of(&folder.path().join("c.png")), (800, 360));
     }
     let help = String::from_utf8(haze(folder.path(), &["techniques", "--help"]).stdout).unwrap();
-    assert!(help.contains("Twice the size of a picture on the sheet"), "{help}");
+    assert!(help.contains("Twice the size of an image on the sheet"), "{help}");
     let unknown = refusal(folder.path(), &["render", "--technique", "softest", "-o", "a.png"]);
     assert!(unknown.contains("volumetric_soft"), "{unknown}");
 }
 
 #[test]
-fn without_smoke_in_sight_there_are_no_costs() {
+fn without_visible_smoke_costs_are_left_out() {
     let folder = folder();
     let run = |time: &str| {
         let arguments =
@@ -384,17 +387,17 @@ fn without_smoke_in_sight_there_are_no_costs() {
         let output = haze(folder.path(), &arguments);
         assert!(output.status.success(), "{}", stderr(&output));
         let sheet = haze::picture::read_png(&folder.path().join("t.png")).unwrap().to_rgb8();
-        // Behind the name of the first cell, `hard`, up to its picture.
+        // Right of the name of the first cell, `hard`, and above its image.
         let costs = image::imageops::crop_imm(&sheet, 70, 12, 130, 28).to_image();
         let paper = *sheet.get_pixel(0, 0);
         (stderr(&output), costs.pixels().any(|pixel| *pixel != paper))
     };
     assert_eq!(run("0.5"), (String::new(), true));
-    assert_eq!(run("1000"), ("haze: no smoke in sight: costs are left out\n".into(), false));
+    assert_eq!(run("1000"), ("haze: no smoke is visible: costs are left out\n".into(), false));
 }
 
 #[test]
-fn the_experiment_prints_the_papers_figures_beside_its_own() {
+fn nv_experiment_prints_the_papers_figures_beside_its_own() {
     let folder = folder();
     let output = haze(folder.path(), &["bench", "soft-particles", "--loops", "2", "--rounds", "1", "--size", "64x36"]);
     assert!(output.status.success(), "{}", stderr(&output));
@@ -424,9 +427,9 @@ fn outputs_are_checked_before_anything_is_drawn_or_replaced() {
     std::fs::write(folder.path().join("old.png"), "old").unwrap();
     let refused = |output: &str| refusal(folder.path(), &["render", "own.json", "--size", "8x8", "-o", output]);
     assert!(refused("own.json").contains("ends in .png"));
-    assert!(refused("folder.png").contains("a file, or a name that is free"));
+    assert!(refused("folder.png").contains("a file, or a name that does not exist yet"));
     assert!(refused("missing/a.png").contains("a folder that exists"));
-    // A sheet that cannot be written leaves the pictures beside it alone.
+    // A sheet that cannot be written leaves the other outputs unchanged.
     let sheet = ["techniques", "--size", "8x8", "-o", "missing/a.png", "--curves", "old.png"];
     assert!(refusal(folder.path(), &sheet).contains("a folder that exists"));
     assert_eq!(std::fs::read_to_string(folder.path().join("old.png")).unwrap(), "old");
@@ -437,7 +440,7 @@ fn outputs_are_checked_before_anything_is_drawn_or_replaced() {
 
 #[cfg(unix)]
 #[test]
-fn a_link_is_followed() {
+fn an_output_that_is_a_link_is_followed() {
     let folder = folder();
     std::fs::create_dir(folder.path().join("pictures")).unwrap();
     std::os::unix::fs::symlink("pictures/real.png", folder.path().join("out.png")).unwrap();
@@ -449,7 +452,7 @@ fn a_link_is_followed() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn an_output_that_is_closed_or_full_is_no_panic() {
+fn a_closed_or_full_stdout_does_not_panic() {
     let folder = folder();
     let run = |redirect: &str| {
         let line = format!("'{}' preset schema {redirect}", env!("CARGO_BIN_EXE_haze"));
@@ -462,7 +465,7 @@ fn an_output_that_is_closed_or_full_is_no_panic() {
 }
 
 #[test]
-fn a_preset_that_cannot_be_drawn_is_not_called_good() {
+fn preset_check_refuses_a_preset_that_cannot_be_rendered() {
     let folder = folder();
     let preset = |material: &str, technique: &str| {
         let text = format!(

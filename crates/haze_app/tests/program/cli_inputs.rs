@@ -1,5 +1,5 @@
-//! Files from outside, as the program meets them: refused at once, in one line that says which, what it is and what would be
-//! right.
+//! Input files on the command line: a bad file is refused at once, in one line that says which file it is, what is
+//! wrong and what would be right.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -15,10 +15,10 @@ fn folder() -> TempDir {
     tempfile::tempdir().unwrap()
 }
 
-/// Nothing here takes a second; a pipe that is waited for takes for ever.
+/// Timeout. Nothing here takes a second; waiting for a pipe would never end.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// The one line that a refused file gets.
+/// Runs a command that must be refused with exit code 2, and returns its one line on stderr.
 fn refusal(folder: &Path, arguments: &[&str]) -> String {
     let mut child: Child = Command::new(env!("CARGO_BIN_EXE_haze"))
         .args(arguments)
@@ -43,7 +43,7 @@ fn refusal(folder: &Path, arguments: &[&str]) -> String {
     text.trim_end().to_owned()
 }
 
-/// What is said of a preset whose systems have these contents besides their names.
+/// Returns the refusal of a preset whose systems have these contents besides their names.
 fn preset(folder: &Path, systems: &[&str]) -> String {
     let systems: Vec<_> = systems.iter().map(|inside| format!("{{\"name\": \"s\", {inside}}}")).collect();
     let text = format!("{{\"version\": 1, \"name\": \"x\",\n\"systems\": [{}]}}", systems.join(", "));
@@ -51,13 +51,13 @@ fn preset(folder: &Path, systems: &[&str]) -> String {
     refusal(folder, &["preset", "check", "my.json"])
 }
 
-/// What is said of a system of a preset, whose first one is good.
+/// Returns the refusal of a preset whose first system is valid and whose second one has this content.
 fn system(folder: &Path, inside: &str) -> String {
     preset(folder, &["\"settings\": {}", inside])
 }
 
 #[test]
-fn only_files_of_a_sane_length_are_read() {
+fn overlong_files_and_folders_are_refused() {
     let folder = folder();
     let refused = |name: &str| refusal(folder.path(), &["preset", "check", name]);
     std::fs::create_dir(folder.path().join("folder.json")).unwrap();
@@ -71,12 +71,12 @@ fn only_files_of_a_sane_length_are_read() {
         "haze: long.json: 104857600 bytes; expected a JSON file of at most 1048576 bytes (1 MiB)"
     );
     for (command, recipe) in [("ramp", "a.ramp.json"), ("ramp", "a.motif.json"), ("sprite", "a.noise.json")] {
-        // A ramp may have many stops.
+        // Ramp recipes may be longer, because they may have many stops.
         let most = if recipe == "a.ramp.json" { 16 } else { 1 };
         File::create(folder.path().join(recipe)).unwrap().set_len((most + 1) << 20).unwrap();
         assert!(refusal(folder.path(), &[command, "bake", recipe]).contains(&format!("({most} MiB)")));
     }
-    // Sparse: it takes no room on the disk.
+    // A sparse file, which takes no room on the disk.
     File::create(folder.path().join("long.png")).unwrap().set_len(3 << 30).unwrap();
     assert_eq!(
         system(folder.path(), "\"material\": {\"motif\": \"long.png\"}"),
@@ -87,7 +87,7 @@ fn only_files_of_a_sane_length_are_read() {
 
 #[cfg(unix)]
 #[test]
-fn pipes_and_devices_are_not_waited_for() {
+fn pipes_and_devices_are_refused_without_waiting() {
     let folder = folder();
     for name in ["pipe.json", "pipe.png"] {
         assert!(Command::new("mkfifo").arg(folder.path().join(name)).status().unwrap().success());
@@ -103,7 +103,7 @@ fn pipes_and_devices_are_not_waited_for() {
 }
 
 #[test]
-fn pictures_have_one_limit_in_memory_and_another_together() {
+fn images_have_a_limit_each_and_a_limit_in_total() {
     let folder = folder();
     let save = |name: &str, picture: DynamicImage| {
         picture.save_with_format(folder.path().join(name), ImageFormat::Png).unwrap();
@@ -133,7 +133,7 @@ fn pictures_have_one_limit_in_memory_and_another_together() {
 }
 
 #[test]
-fn what_is_no_json_is_named() {
+fn files_that_are_not_json_are_refused_with_their_kind() {
     let folder = folder();
     let said = |bytes: &[u8]| {
         std::fs::write(folder.path().join("a.json"), bytes).unwrap();
@@ -154,12 +154,12 @@ fn what_is_no_json_is_named() {
         said(b"{\n \"name\": \"caf\xe9\"}"),
         "haze: a.json:2:14: bytes that are no UTF-8 text; expected JSON as UTF-8 text"
     );
-    // A byte order mark is no mistake: what is missing is the name.
+    // A byte order mark is accepted: only the name is missing.
     assert_eq!(said(format!("\u{feff}{text}").as_bytes()), "haze: a.json:1:14: missing field `name`");
 }
 
 #[test]
-fn mistakes_name_the_system_and_the_field() {
+fn errors_name_the_system_and_the_field() {
     let folder = folder();
     let said = |inside: &str| system(folder.path(), inside);
     assert_eq!(
@@ -200,7 +200,7 @@ fn mistakes_name_the_system_and_the_field() {
 }
 
 #[test]
-fn names_cannot_forge_a_message() {
+fn file_names_cannot_forge_a_message() {
     let folder = folder();
     let forged = system(folder.path(), r#""material": {"sprite": "a\nhaze: \u001b[2Jgood\u202e.png"}"#);
     assert!(

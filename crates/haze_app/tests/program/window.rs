@@ -1,4 +1,4 @@
-//! The window itself: the program under an X server without a screen, on whichever adapter the machine has.
+//! The tweaker's window: the program under an X server without a screen, on any adapter.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -15,13 +15,13 @@ use image::RgbImage;
 use tempfile::TempDir;
 use x11::{Display, Key};
 
-/// One window at a time: some of them are timed.
+/// Allows one window at a time, because some tests measure time.
 fn alone() -> MutexGuard<'static, ()> {
     static ONE: Mutex<()> = Mutex::new(());
     ONE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A program that remembers what it does in `folder`.
+/// Returns the command of a program that keeps its state in `folder`.
 fn haze(folder: &Path, display: &str, variables: &[(&str, &str)], arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_haze"));
     command.args(arguments).current_dir(folder).stderr(Stdio::piped()).env_remove("WAYLAND_DISPLAY");
@@ -38,7 +38,7 @@ fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// The one line of a program that ends with this code.
+/// Runs a program that must end with this code and one line on stderr; returns the line.
 fn line(mut command: Command, code: i32) -> String {
     let output = command.output().unwrap();
     let text = stderr(&output);
@@ -48,7 +48,7 @@ fn line(mut command: Command, code: i32) -> String {
 
 const BRIGHT: [&str; 4] = ["--set", "camera.exposure=2.5", "--set", "time=3"];
 
-/// What the window shows with these arguments, and how long that took.
+/// Returns a screenshot of the window with these arguments, and the time it took.
 fn picture(display: &Display, variables: &[(&str, &str)], arguments: &[&str]) -> (RgbImage, Duration) {
     let folder = folder();
     let all = [&["tweak", "--size", "700x420", "--screenshot", "a.png"], arguments].concat();
@@ -64,24 +64,24 @@ fn brightness(picture: &RgbImage) -> f64 {
 }
 
 #[test]
-fn it_opens_changes_a_setting_saves_a_picture_and_closes_and_a_lost_device_changes_nothing() {
+fn screenshots_follow_settings_and_a_lost_device_changes_nothing() {
     let _alone = alone();
     let display = Display::start();
     let (plain, _) = picture(&display, &[], &[]);
     let (bright, taken) = picture(&display, &[], &BRIGHT);
     assert_eq!(plain.dimensions(), (700, 420));
     assert!(brightness(&bright) > brightness(&plain) + 5.0);
-    // The machine may have other things to do: the best of some.
+    // The machine may be busy, so this takes the best of some tries.
     let rebuilt = (0..4).find_map(|_| {
         let (again, longer) = picture(&display, &[("HAZE_TEST_LOSE_DEVICE", "3")], &BRIGHT);
-        assert!(again == bright, "settings, time, undo and panels are as they were");
+        assert!(again == bright, "a lost device changed settings, time, undo or panels");
         (longer.saturating_sub(taken) < Duration::from_secs(2)).then_some(())
     });
-    assert!(rebuilt.is_some(), "a window is not rebuilt within two seconds");
+    assert!(rebuilt.is_some(), "the window was not rebuilt within two seconds");
 }
 
 #[test]
-fn a_device_that_is_lost_twice_is_given_up_and_the_work_is_kept() {
+fn a_device_lost_twice_ends_the_program_and_keeps_unsaved_work() {
     let _alone = alone();
     let (display, folder) = (Display::start(), folder());
     let command = |arguments: &[&str]| {
@@ -91,7 +91,7 @@ fn a_device_that_is_lost_twice_is_given_up_and_the_work_is_kept() {
     assert!(text.contains("lost twice within 10 seconds") && text.contains("kept for the next start"), "{text}");
     let kept = Preset::load(folder.path().join("state/recovery-1.json")).unwrap();
     assert!((kept.camera.exposure - 2.5).abs() < 1e-6 && (kept.time - 3.0).abs() < 1e-6);
-    // Nothing is kept of what nobody has changed.
+    // Unchanged work is not kept.
     assert!(line(command(&[]), 1).contains("nothing was unsaved"));
     assert!(!folder.path().join("state/recovery-2.json").exists());
 }
@@ -102,7 +102,7 @@ fn without_a_display_or_an_adapter_one_line_says_what_to_do() {
     let (display, folder) = (Display::start(), folder());
     let text = line(haze(folder.path(), "", &[], &["tweak"]), 2);
     assert!(text.contains("DISPLAY") && text.contains("`haze render`"), "{text}");
-    // No driver of either kind that Linux has.
+    // Neither a Vulkan nor an OpenGL driver.
     let none = [
         ("VK_DRIVER_FILES", "/nonexistent"),
         ("VK_ICD_FILENAMES", "/nonexistent"),
@@ -112,7 +112,7 @@ fn without_a_display_or_an_adapter_one_line_says_what_to_do() {
     assert!(text.contains("apt-get install mesa-vulkan-drivers") && text.contains("`haze render`"), "{text}");
 }
 
-/// A program ends well, and soon.
+/// Waits for a program, which must end soon and successfully.
 fn ends(mut child: Child) {
     let start = Instant::now();
     while child.try_wait().unwrap().is_none() && start.elapsed() < Duration::from_secs(20) {
@@ -123,7 +123,7 @@ fn ends(mut child: Child) {
     assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
 }
 
-/// Looks until something is so.
+/// Waits until a condition holds.
 fn until(what: &str, mut is_so: impl FnMut() -> bool) {
     let start = Instant::now();
     while !is_so() {
@@ -133,7 +133,7 @@ fn until(what: &str, mut is_so: impl FnMut() -> bool) {
 }
 
 #[test]
-fn work_that_a_kill_ends_is_offered_by_the_next_window_and_a_clean_end_leaves_nothing() {
+fn unsaved_work_of_a_killed_window_is_offered_by_the_next_one() {
     let _alone = alone();
     let (display, folder) = (Display::start(), folder());
     let (first, second) = (folder.path().join("state/recovery-1.json"), folder.path().join("state/recovery-2.json"));
@@ -142,7 +142,7 @@ fn work_that_a_kill_ends_is_offered_by_the_next_window_and_a_clean_end_leaves_no
     let mut child = start();
     let window = client.window();
     client.focus(window);
-    // The camera is moved until that is kept, and is moved still.
+    // Moves the camera until the work is kept, and then once more.
     until("work is kept", || {
         client.key(&[], Key::Three);
         first.exists()
@@ -155,7 +155,7 @@ fn work_that_a_kill_ends_is_offered_by_the_next_window_and_a_clean_end_leaves_no
 
     let child = start();
     let window = client.window();
-    // The bar below the menus, from the left: the first button in it.
+    // Searches the bar below the menus for its first button, from the left.
     let mut places = (150..650).step_by(15).cycle();
     until("the work is offered", || {
         client.click(places.next().unwrap(), 45);
@@ -174,7 +174,7 @@ fn work_that_a_kill_ends_is_offered_by_the_next_window_and_a_clean_end_leaves_no
     assert_eq!(left, ["layout.json"]);
 }
 
-/// Ticks of the clock that a program has had of the CPUs, a hundredth of a second each.
+/// CPU time of a program, in clock ticks of a hundredth of a second.
 fn ticks(child: &Child) -> u64 {
     let stat = std::fs::read_to_string(format!("/proc/{}/stat", child.id())).unwrap();
     let fields: Vec<_> = stat.rsplit_once(')').unwrap().1.split_whitespace().collect();
@@ -186,7 +186,7 @@ fn wait() {
 }
 
 #[test]
-fn a_window_of_any_size_lives_rests_when_nothing_happens_and_closes() {
+fn a_window_of_any_size_runs_idles_and_closes() {
     let _alone = alone();
     let (display, folder) = (Display::start(), folder());
     let mut child = haze(folder.path(), &display.name, &[], &["tweak", "--size", "700x420"]).spawn().unwrap();
@@ -202,16 +202,16 @@ fn a_window_of_any_size_lives_rests_when_nothing_happens_and_closes() {
     wait();
     let before = ticks(&child);
     wait();
-    assert!(ticks(&child) - before < 10, "a window that is not seen works");
+    assert!(ticks(&child) - before < 10, "a hidden window uses CPU time");
     client.map(window);
     wait();
-    // Whatever follows a change has happened when nothing happens for a while.
+    // After a while without events, the work that follows a change is done.
     let rests = (0..20).any(|_| {
         let before = ticks(&child);
         wait();
         ticks(&child) - before <= 1
     });
-    assert!(rests, "a window works while nothing happens in it");
+    assert!(rests, "an idle window uses CPU time");
     client.close(window);
     ends(child);
 }

@@ -1,4 +1,4 @@
-// What an adapter can do at best: fragments that blend and do as good as nothing else.
+// Measures the best an adapter can do: fragments that fetch texels, blend, and do nothing else.
 
 @group(0) @binding(0) var source: texture_2d<f32>;
 @group(0) @binding(1) var smoothly: sampler;
@@ -9,7 +9,7 @@ struct Varyings {
     @location(0) uv: vec2f,
 }
 
-// A triangle over the whole target, once for each layer, half way to the far plane.
+// A triangle over the whole target, one instance per layer, at depth 0.5.
 @vertex
 fn cover(@builtin(vertex_index) index: u32) -> Varyings {
     let corner = vec2f(f32(index & 1u), f32(index >> 1u)) * 2.0;
@@ -18,7 +18,7 @@ fn cover(@builtin(vertex_index) index: u32) -> Varyings {
 
 @fragment
 fn constant() -> @location(0) vec4f {
-    // Everywhere: a disc has corners that are clear.
+    // Every fragment blends: unlike the disc, a constant has no transparent corners.
     return vec4f(0.05, 0.04, 0.03, 0.1);
 }
 
@@ -34,7 +34,7 @@ fn two_fetches(in: Varyings) -> @location(0) vec4f {
     return vec4f(texel.rgb, 1.0) * (texel.a * 0.1);
 }
 
-// Three by three texels, weighed by how near their fourth channel is.
+// Averages 3 x 3 texels, with weights that fall with the difference in the fourth channel.
 @fragment
 fn joint_bilateral(in: Varyings) -> @location(0) vec4f {
     let size = vec2i(textureDimensions(source));
@@ -54,7 +54,7 @@ fn joint_bilateral(in: Varyings) -> @location(0) vec4f {
 
 override layers: u32 = 1u;
 
-// The same as `one_fetch`, blended in registers and written once.
+// The layers of `one_fetch`, blended in registers and written once.
 @compute @workgroup_size(8, 8)
 fn blend_in_registers(@builtin(global_invocation_id) at: vec3u) {
     let size = textureDimensions(written);

@@ -1,4 +1,4 @@
-//! Passes with nothing of haze in them, and how long they take.
+//! Passes without any code of haze, and their execution time.
 
 use std::time::Instant;
 
@@ -8,7 +8,7 @@ use haze::{Error, wgpu};
 use haze_demo::headless::Headless;
 
 pub enum Work {
-    /// So many layers of a pipeline's triangle into a target; none clears it.
+    /// Draws `layers` instances of the pipeline's triangle; without a pipeline it only clears the target.
     Draw {
         pipeline: Option<(wgpu::RenderPipeline, Option<wgpu::BindGroup>)>,
         target: wgpu::TextureView,
@@ -19,7 +19,7 @@ pub enum Work {
         bindings: wgpu::BindGroup,
         groups: UVec2,
     },
-    /// So often.
+    /// Copies the texture `times` times.
     Copy {
         from: wgpu::Texture,
         to: wgpu::Texture,
@@ -29,7 +29,7 @@ pub enum Work {
 
 pub struct Bench<'a> {
     pub gpu: &'a Headless,
-    /// Two timestamps, and where they are resolved to.
+    /// A query set of two timestamps and the buffer that they are resolved to; `None` without timestamp queries.
     queries: Option<(wgpu::QuerySet, wgpu::Buffer)>,
     module: wgpu::ShaderModule,
     sampler: wgpu::Sampler,
@@ -64,7 +64,7 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// Layers of an entry point's fragments; of none, an empty pass.
+    /// Prepares a pass of `layers` layers with a fragment entry point; `None` makes an empty pass.
     pub fn draw(&self, entry: Option<&str>, format: AccumulationFormat, layers: u32) -> Work {
         let format = texture_format(format);
         let target = texture(self.gpu, self.size, format, wgpu::TextureUsages::empty());
@@ -111,7 +111,7 @@ impl<'a> Bench<'a> {
         Work::Draw { pipeline, target: target.create_view(&Default::default()), layers }
     }
 
-    /// What an entry point reads: layouts have only what is used.
+    /// Creates the bind group of an entry point. An automatic layout has only the bindings that the entry point uses.
     fn bindings(&self, pipeline: &wgpu::RenderPipeline, name: &str) -> Option<wgpu::BindGroup> {
         let entries = [
             entry(0, wgpu::BindingResource::TextureView(&self.source)),
@@ -126,7 +126,7 @@ impl<'a> Bench<'a> {
         Some(self.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries }))
     }
 
-    /// As many, blended in registers.
+    /// Prepares a dispatch that blends `layers` layers in registers.
     pub fn compute(&self, layers: u32) -> Work {
         let device = &self.gpu.device;
         let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -156,18 +156,18 @@ impl<'a> Bench<'a> {
 }
 
 impl Bench<'_> {
-    /// Whether the GPU tells how long this takes.
+    /// Returns true if GPU timestamps measure this work; other work is measured by wall time.
     pub fn is_timed(&self, work: &Work) -> bool {
         let tells = match work {
             Work::Draw { .. } => true,
-            // llvmpipe's clock stands still where nothing is drawn.
+            // llvmpipe's timestamps do not advance where nothing is drawn.
             Work::Compute { .. } => self.gpu.adapter.get_info().device_type != wgpu::DeviceType::Cpu,
             Work::Copy { .. } => false,
         };
         tells && self.queries.is_some()
     }
 
-    /// Milliseconds of the work; none where the GPU's clock stood still or went back.
+    /// Executes the work and returns its milliseconds; `None` if the GPU's timestamps are equal or reversed.
     pub fn frame(&self, work: &Work) -> Result<Option<f64>, Error> {
         let device = &self.gpu.device;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -243,10 +243,11 @@ impl Bench<'_> {
     }
 }
 
-/// Side of the disc's texture.
+/// Side of the disc's texture, texels.
 const DISC: u32 = 256;
 
-/// What sprites are at the least: an amount that fades to nothing within a circle. Clear fragments cost less than others.
+/// Creates the simplest sprite: an amount that fades to zero within a circle. It has transparent corners because
+/// transparent fragments cost less than others.
 fn disc(gpu: &Headless) -> wgpu::TextureView {
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
     let disc = texture(gpu, UVec2::splat(DISC), wgpu::TextureFormat::Rgba8Unorm, usage);
@@ -278,7 +279,7 @@ fn entry(binding: u32, resource: wgpu::BindingResource<'_>) -> wgpu::BindGroupEn
     wgpu::BindGroupEntry { binding, resource }
 }
 
-/// Bytes of a texel that is blended to.
+/// Bytes per texel of a blend target.
 pub fn bytes(format: AccumulationFormat) -> u32 {
     texture_format(format).block_copy_size(None).unwrap_or_default()
 }

@@ -1,20 +1,20 @@
-//! Charts as SVG that needs nothing: a line or dots for each series, on linear or logarithmic axes.
+//! Draws charts as self-contained SVG: a line or dots for each series, on linear or logarithmic axes.
 
 use std::fmt::Write as _;
 
-/// One kind of axis.
+/// Scale of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
-    /// From 0.
+    /// Linear; it includes 0.
     Linear,
-    /// By factors.
+    /// Logarithmic; values up to 0 are left out.
     Logarithmic,
 }
 
-/// A line, or dots.
+/// Points of one colour, with or without a line.
 pub struct Series {
     pub name: String,
-    /// Place, and what a pointer over it reads.
+    /// x, y and tooltip of each point.
     pub points: Vec<(f64, f64, String)>,
     pub has_line: bool,
 }
@@ -31,10 +31,10 @@ const LEFT: f64 = 64.0;
 const BOTTOM: f64 = 52.0;
 const RIGHT: f64 = 14.0;
 const TOP: f64 = 12.0;
-/// How many colours the page has.
+/// Number of series colours in page.css.
 pub const COLOURS: usize = 8;
 
-/// Values to places along a stretch.
+/// Maps the values of an axis to SVG coordinates.
 struct Scale {
     axis: Axis,
     low: f64,
@@ -66,7 +66,7 @@ impl Scale {
         self.from + (self.to - self.from) * share
     }
 
-    /// Round values, some five of them.
+    /// Returns about five round values.
     fn ticks(&self) -> Vec<f64> {
         match self.axis {
             Axis::Linear => {
@@ -89,7 +89,7 @@ impl Scale {
 }
 
 impl Chart<'_> {
-    /// The figure with its legend; nothing without points.
+    /// Returns the chart with its legend as HTML; an empty string if no point can be shown.
     pub fn figure(&self) -> String {
         let points = || self.series.iter().flat_map(|series| &series.points);
         let x = Scale::new(self.x.1, points().map(|point| point.0), LEFT, SIZE.0 - RIGHT);
@@ -117,7 +117,7 @@ impl Chart<'_> {
 
     fn axes(&self, svg: &mut String, x: &Scale, y: &Scale) {
         let (right, bottom) = (SIZE.0 - RIGHT, SIZE.1 - BOTTOM);
-        // Writing to a string does not fail.
+        // Writing to a string cannot fail.
         for tick in y.ticks() {
             let at = y.place(tick);
             let _ = write!(svg, "<path class=\"grid\" d=\"M{LEFT} {at:.1}H{right}\"/>");
@@ -156,7 +156,7 @@ impl Series {
     }
 }
 
-/// Without digits that say nothing.
+/// Formats a number without insignificant digits.
 pub fn number(value: f64) -> String {
     let digits = match value.abs() {
         0.0 => 0,
@@ -170,7 +170,7 @@ pub fn number(value: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
 }
 
-/// Text that HTML takes as it is.
+/// Escapes text for HTML.
 pub fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
@@ -180,13 +180,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn axes_have_round_ticks_within_them() {
+    fn axis_ticks_are_round_and_within_the_axis() {
         let scale = |axis, low: f64, high: f64| Scale::new(axis, [low, high].into_iter(), 0.0, 100.0).unwrap();
         assert_eq!(scale(Axis::Linear, 3.0, 10.0).ticks(), [0.0, 5.0, 10.0]);
         assert_eq!(scale(Axis::Logarithmic, 1.0, 9.0).ticks(), [1.0, 2.0, 5.0, 10.0]);
         let log = scale(Axis::Logarithmic, 4.0, 1024.0);
         assert!(log.place(4.0) > 0.0 && log.place(64.0) > 40.0 && log.place(1024.0) < 100.0);
-        // Nothing to show, or nothing that can be shown.
+        // No scale without a value that the axis can show.
         assert!(Scale::new(Axis::Logarithmic, [0.0, -1.0].into_iter(), 0.0, 1.0).is_none());
         assert!(Scale::new(Axis::Linear, [f64::NAN].into_iter(), 0.0, 1.0).is_none());
     }

@@ -1,4 +1,5 @@
-//! The report as one page that needs no network: a sentence, charts, tables; light and dark, wide and narrow.
+//! Renders the report as one self-contained HTML page: verdict, charts and tables, for light and dark colour schemes
+//! and any width.
 
 mod chart;
 
@@ -13,17 +14,17 @@ use super::verdict::{break_even, sentence};
 
 const STYLE: &str = include_str!("page.css");
 
-/// The whole page.
+/// Renders the whole page.
 pub fn page(report: &Report) -> String {
     let adapter = &report.adapter;
     let software = if adapter.software { " <b>software</b>" } else { "" };
-    let partial = if report.complete { "" } else { "<p class=\"partial\">Partial: the run was stopped.</p>" };
+    let partial = if report.complete { "" } else { "<p class=\"partial\">Partial: the run ended early.</p>" };
     let said = sentence(report).map(|text| format!("<p class=\"verdict\">{}</p>", escaped(&text))).unwrap_or_default();
     format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
          <title>haze bench: {name}</title><style>{STYLE}</style></head><body><main>\n\
-         <h1>What smoke costs</h1><p>{name}{software} · {}, {} · wgpu {} · haze {}</p>{partial}{said}\n\
+         <h1>Cost of smoke</h1><p>{name}{software} · {}, {} · wgpu {} · haze {}</p>{partial}{said}\n\
          <div class=\"charts\">{}{}{}{}</div>\n{}{}{}</main></body></html>\n",
         adapter.backend,
         escaped(&adapter.driver),
@@ -40,7 +41,8 @@ pub fn page(report: &Report) -> String {
     )
 }
 
-/// Rows of a suite, by what sets lines apart.
+/// Groups the rows of a suite into lines of a chart. `name` returns the name of a row's line, or `None` to leave the
+/// row out.
 fn lines(report: &Report, suite: Suite, name: impl Fn(&Row) -> Option<String>) -> BTreeMap<String, Vec<&Row>> {
     let mut lines = BTreeMap::<_, Vec<_>>::new();
     for row in report.rows.iter().filter(|row| row.is_of(suite)) {
@@ -58,7 +60,7 @@ fn note(row: &Row) -> String {
 fn by_scale(report: &Report) -> String {
     let name = |row: &Row| Some(format!("{} {}, {} sprites", row.path.as_ref()?, row.format.as_ref()?, row.particles?));
     let series = lines(report, Suite::Scale, name).into_iter().map(|(name, rows)| {
-        // Forward has no scale: it is full resolution.
+        // Forward has no scale: it renders at full resolution.
         let point = |row: &&Row| (f64::from(row.scale.unwrap_or(1)), row.gpu_ms.median, note(row));
         let points: Vec<_> = rows.iter().map(point).collect();
         Series { name, has_line: points.len() > 1, points }
@@ -73,7 +75,7 @@ fn by_scale(report: &Report) -> String {
 }
 
 fn by_overdraw(report: &Report) -> String {
-    // Of sprites as large as the picture, and where it does not matter how thick they are, of those near 0.1.
+    // Only sprites as large as the image. Where alpha does not change the cost, only the alpha nearest to 0.1.
     let is_large = |row: &Row| row.layers.zip(row.particles).is_some_and(|(deep, all)| deep > 0.25 * f64::from(all));
     let alphas = report.rows.iter().filter(|row| row.is_of(Suite::Overdraw)).filter_map(|row| row.alpha);
     let usual = alphas.min_by(|a, b| (a - 0.1).abs().total_cmp(&(b - 0.1).abs()));
@@ -101,7 +103,7 @@ fn by_error(report: &Report) -> String {
     let with_error = |row: &&Row| {
         [Suite::Scale, Suite::Upsample, Suite::Presets].iter().any(|suite| row.is_of(*suite)) && row.flip.is_some()
     };
-    // Only deferred: forward smoke is lit in another way, which is no error.
+    // Only deferred rows: forward smoke is lit differently, which is no error.
     let rows: Vec<&Row> = report.rows.iter().filter(with_error).filter(|row| row.scale.is_some()).collect();
     let suites: BTreeSet<&str> = rows.iter().map(|row| row.suite.as_str()).collect();
     let point = |row: &Row| (row.gpu_ms.median, row.flip.unwrap_or(0.0), note(row));
@@ -113,7 +115,7 @@ fn by_error(report: &Report) -> String {
             has_line: false,
         })
         .collect();
-    // The front of what was measured on the same smoke.
+    // Pareto front of the rows that show the same smoke.
     let deepest = rows.iter().filter(|row| row.is_of(Suite::Scale)).filter_map(|row| row.particles).max();
     let same = rows.iter().filter(|row| row.is_of(Suite::Scale) && row.particles == deepest);
     let mut same: Vec<_> = same.map(|row| point(row)).collect();
@@ -129,13 +131,13 @@ fn by_error(report: &Report) -> String {
     Chart {
         title: "Cost against error",
         x: ("ms", Axis::Logarithmic),
-        y: ("FLIP from full resolution", Axis::Linear),
+        y: ("FLIP against full resolution", Axis::Linear),
         series,
     }
     .figure()
 }
 
-/// Passes of the deepest rows of the suite `scale`, as bars.
+/// Draws the passes of the rows of suite `scale` with the most sprites, as bars.
 fn by_pass(report: &Report) -> String {
     let deepest = report.rows.iter().filter(|row| row.is_of(Suite::Scale)).filter_map(|row| row.particles).max();
     let is_shown = |row: &&Row| row.is_of(Suite::Scale) && row.particles == deepest && !row.passes.is_empty();
@@ -187,8 +189,8 @@ fn break_even_table(report: &Report) -> String {
         format!("<tr>{}</tr>", cells.map(|cell| format!("<td>{}</td>", escaped(&cell))).concat())
     };
     format!(
-        "<h2>From which overdraw on it pays</h2><div class=\"wide\"><table><tr><th>path</th><th>scale</th><th>format</th>\
-         <th>ms without layers</th><th>ms a layer</th><th>cheaper than forward</th></tr>{}</table></div>\n",
+        "<h2>Overdraw from which deferred is cheaper</h2><div class=\"wide\"><table><tr><th>path</th><th>scale</th><th>format</th>\
+         <th>ms at 0 layers</th><th>ms per layer</th><th>cheaper than forward</th></tr>{}</table></div>\n",
         ways.iter().map(row).collect::<String>()
     )
 }
@@ -212,7 +214,8 @@ fn rows_table(report: &Report) -> String {
         ];
         format!("<tr>{}</tr>", cells.map(|cell| format!("<td>{}</td>", escaped(&cell))).concat())
     };
-    let heads = ["suite", "case", "ms", "± %", "clock", "layers", "Gfrag/s", "× limit", "PSNR dB", "edges dB", "FLIP"];
+    let heads =
+        ["suite", "case", "ms", "± %", "clock", "layers", "Gfrag/s", "× limit", "PSNR dB", "edge PSNR dB", "FLIP"];
     format!(
         "<h2>All figures</h2><div class=\"wide\"><table><tr>{}</tr>{}</table></div>\n",
         heads.map(|head| format!("<th>{head}</th>")).concat(),
@@ -227,7 +230,7 @@ fn left_out(report: &Report) -> String {
     let lines: String = report.left_out.iter().map(line).collect();
     let discarded = match report.discarded {
         0 => String::new(),
-        count => format!("<p>{count} timestamps were reversed or zero, and are in no figure.</p>"),
+        count => format!("<p>{count} timestamps were reversed or zero and were discarded.</p>"),
     };
     if lines.is_empty() { discarded } else { format!("<h2>Left out</h2><ul>{lines}</ul>{discarded}") }
 }

@@ -1,4 +1,4 @@
-//! `haze bench`: what it writes, how it is stopped, how runs are compared.
+//! `haze bench`: outputs, interruption, comparison of runs.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -12,7 +12,7 @@ use super::{folder, haze, refusal, stderr};
 
 const SMALL: [&str; 6] = ["--quick", "--seconds", "0", "--size", "64x36", "--json"];
 
-/// A short run of a suite, as its JSON.
+/// Runs a suite briefly and returns its JSON report.
 fn run(folder: &Path, suite: &str, more: &[&str]) -> Value {
     let output = haze(folder, &[&["bench", suite], &SMALL[..], &["run.json"], more].concat());
     assert!(output.status.success(), "{}", stderr(&output));
@@ -32,13 +32,13 @@ fn every_suite_has_figures_and_says_what_it_left_out() {
         let rows = rows(&report);
         assert!(rows.len() > 2, "{suite}: {report}");
         let names: BTreeSet<_> = rows.iter().map(|row| row["case"].as_str().unwrap()).collect();
-        assert_eq!(names.len(), rows.len(), "{suite}: a case is there twice");
+        assert_eq!(names.len(), rows.len(), "{suite}: a case occurs twice");
         for row in rows {
             assert_eq!(row["suite"], suite);
             assert!(row["gpu_ms"]["median"].as_f64().unwrap() > 0.0, "{row}");
             assert!(row["path"] != "auto" || row["mode"] == "raster" || row["mode"] == "tiled", "{row}");
         }
-        // Every picture was right; only what takes too long may be missing.
+        // Every image was right; only slow cases may be left out.
         for left in report["left_out"].as_array().unwrap() {
             assert!(left["reason"].as_str().unwrap().starts_with("a frame would take"), "{left}");
         }
@@ -46,12 +46,12 @@ fn every_suite_has_figures_and_says_what_it_left_out() {
 }
 
 #[test]
-fn a_run_is_a_table_json_csv_and_a_page() {
+fn a_run_writes_json_csv_and_a_page() {
     let folder = folder();
     let report = run(folder.path(), "scale", &["--csv", "run.csv", "--html", "run.html"]);
     let rows = rows(&report);
     let deferred: Vec<_> = rows.iter().filter(|row| row["path"] == "raster").collect();
-    // The coarser the fewer fragments, and the further from full resolution.
+    // A coarser scale has fewer fragments and a larger error.
     let [full, half, eighth] = [1, 2, 8].map(|scale| deferred.iter().rfind(|row| row["scale"] == scale).unwrap());
     let number = |row: &Value, name: &str| row[name].as_f64().unwrap();
     assert!(number(half, "fragments") < 0.3 * number(full, "fragments"));
@@ -69,7 +69,7 @@ fn a_run_is_a_table_json_csv_and_a_page() {
 
     let page = fs::read_to_string(folder.path().join("run.html")).unwrap();
     assert!(page.contains("Cost against buffer scale") && page.contains("Cost against error"));
-    // The same from the figures alone.
+    // The same page is made from the JSON report.
     let output = haze(folder.path(), &["bench", "page", "run.json", "-o", "again.html"]);
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(page == fs::read_to_string(folder.path().join("again.html")).unwrap());
@@ -80,11 +80,11 @@ fn a_run_is_a_table_json_csv_and_a_page() {
 }
 
 #[test]
-fn the_page_fits_in_a_browser_however_wide() {
+fn the_page_fits_browser_windows_of_any_width() {
     let folder = folder();
     run(folder.path(), "scale", &["--html", "run.html"]);
     let page = fs::read_to_string(folder.path().join("run.html")).unwrap();
-    // The browser itself says how wide the page is, and what is drawn.
+    // The browser writes into the title whether the page fits and the charts are drawn.
     let script = "<script>document.title = [document.documentElement.scrollWidth <= innerWidth, \
         document.querySelectorAll('svg circle').length > 10, \
         [...document.querySelectorAll('svg')].every(svg => svg.getBoundingClientRect().width > 250)].join()</script></body>";
@@ -105,7 +105,7 @@ fn the_page_fits_in_a_browser_however_wide() {
 }
 
 #[test]
-fn ctrl_c_writes_what_is_done() {
+fn ctrl_c_writes_a_partial_report() {
     let folder = folder();
     let mut child = Command::new(env!("CARGO_BIN_EXE_haze"))
         .args(["bench", "scale", "--quick", "--seconds", "600", "--size", "64x36", "--json", "run.json"])
@@ -115,7 +115,7 @@ fn ctrl_c_writes_what_is_done() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // By then it measures.
+    // By then the run is measuring.
     std::thread::sleep(Duration::from_secs(6));
     assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
     let asked = Instant::now();
@@ -138,8 +138,8 @@ fn runs_are_compared_row_by_row() {
     write(&report);
     let (code, text, _) = compare(&[]);
     assert_eq!(code, Some(0), "{text}");
-    assert!(text.contains("geometric mean 1.000; 0 rows are in one run only"), "{text}");
-    // One row takes twice as long, without doubt.
+    assert!(text.contains("geometric mean of the ratios 1.000; 0 rows are in one run only"), "{text}");
+    // One row takes twice as long, with a small uncertainty.
     let row = &mut report["rows"][1];
     let slow = 2.0 * row["gpu_ms"]["median"].as_f64().unwrap();
     row["gpu_ms"] = serde_json::json!({"median": slow, "min": slow, "max": slow, "quartiles": [slow, slow]});
@@ -154,7 +154,7 @@ fn runs_are_compared_row_by_row() {
     assert!(said.contains("1 of ") && said.contains("rows are more than 10 % slower"), "{said}");
     assert_eq!(compare(&["--slower", "150"]).0, Some(0));
 
-    // What is no report says where.
+    // An invalid report is refused with the place of the error.
     fs::write(folder.path().join("after.json"), "{\"version\": 1, \"rows\": [}").unwrap();
     let text = refusal(folder.path(), &["bench", "compare", "run.json", "after.json"]);
     assert!(text.contains("after.json:1:"), "{text}");
@@ -163,7 +163,7 @@ fn runs_are_compared_row_by_row() {
 }
 
 #[test]
-fn what_cannot_be_written_is_found_before_the_run() {
+fn unwritable_outputs_are_refused_before_the_run() {
     let folder = folder();
     for output in [["--json", "none/a.json"], ["--csv", "a.json"], ["--html", "."]] {
         refusal(folder.path(), &[&["bench", "limits"][..], &output].concat());

@@ -1,4 +1,4 @@
-//! Which driver draws: chosen by variables, named where figures are, or not there at all.
+//! Choice of the graphics driver: by environment variables, named in the output, or missing.
 
 use std::process::{Command, Output};
 
@@ -17,7 +17,7 @@ fn with(variables: &[(&str, &str)], arguments: &[&str]) -> Output {
 const RENDER: [&str; 5] = ["render", "--size", "64x36", "-o", "a.png"];
 
 #[test]
-fn a_choice_that_there_is_not_is_named_with_those_that_there_are() {
+fn an_unknown_adapter_or_backend_is_refused_with_the_available_ones() {
     let adapter = Headless::new().unwrap().adapter.get_info().name;
     let backend = if cfg!(target_os = "macos") { "metal" } else { "vulkan" };
     for (variable, there) in [("WGPU_ADAPTER_NAME", adapter.as_str()), ("WGPU_BACKEND", backend)] {
@@ -45,7 +45,7 @@ fn without_a_driver_one_line_says_so() {
 }
 
 #[test]
-fn figures_of_a_software_adapter_are_called_so() {
+fn output_names_software_adapters_as_software() {
     let gpu = Headless::new().unwrap();
     let is_software = gpu.adapter.get_info().device_type == DeviceType::Cpu;
     let folder = folder();

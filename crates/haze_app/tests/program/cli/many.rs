@@ -1,4 +1,4 @@
-//! Many pictures of one preset: fields that are set and varied, frames, flipbooks.
+//! Many images of one preset: fields that are set and varied, frames, flipbooks, GIFs.
 
 use std::fs;
 
@@ -14,7 +14,7 @@ fn a_field_is_set_by_its_name() {
         assert!(output.status.success(), "{}", stderr(&output));
         fs::read(folder.path().join("out.png")).unwrap()
     };
-    // The same by an option, by its end, and by its place.
+    // The same field by its option, by the end of its path, and by its whole path.
     let scale = picture(&["--scale", "4"]);
     assert_eq!(scale, picture(&["--set", "accumulate.scale=4"]));
     assert_eq!(scale, picture(&["--set", "systems[0].settings.accumulate.scale=4"]));
@@ -22,10 +22,10 @@ fn a_field_is_set_by_its_name() {
 }
 
 #[test]
-fn what_cannot_be_set_is_refused_before_the_work() {
+fn invalid_assignments_are_refused_before_rendering() {
     let folder = folder();
     let line = |set: &str| refusal(folder.path(), &[&SMALL[..], &["out.png", "--set", set]].concat());
-    assert!(line("accumulate.scale").contains("expected a field and its value"));
+    assert!(line("accumulate.scale").contains("expected FIELD=VALUE"));
     assert!(
         line("accumulate.scales=1").contains("--set field: \"accumulate.scales\" is not valid"),
         "{}",
@@ -41,7 +41,7 @@ fn what_cannot_be_set_is_refused_before_the_work() {
 }
 
 #[test]
-fn a_sheet_has_a_picture_of_every_value() {
+fn a_sheet_has_one_image_per_value() {
     let folder = folder();
     let sheet = |vary: &str| {
         let arguments = ["sheet", "fence", "--vary", vary, "--size", "96x54", "--backend", "cpu", "-o", "sheet.png"];
@@ -49,7 +49,7 @@ fn a_sheet_has_a_picture_of_every_value() {
         assert!(output.status.success(), "{}", stderr(&output));
         haze::picture::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8()
     };
-    // Two to a row, the last place empty.
+    // Two images per row, the last cell empty.
     let picture = sheet("accumulate.scale=1,4,16");
     let cell = |x: u32, y: u32| image::imageops::crop_imm(&picture, 12 + x * 60, 40 + y * 67, 48, 27).to_image();
     let cells = [cell(0, 0), cell(1, 0), cell(0, 1), cell(1, 1)];
@@ -64,7 +64,7 @@ fn a_sheet_has_a_picture_of_every_value() {
 }
 
 #[test]
-fn frames_go_to_files_of_their_own() {
+fn each_frame_is_written_to_its_own_file() {
     let folder = folder();
     let run = |arguments: &[&str]| {
         let output = haze(folder.path(), &[&SMALL[..], arguments].concat());
@@ -76,7 +76,7 @@ fn frames_go_to_files_of_their_own() {
     assert_eq!(read("f_010.png"), read("one.png"));
     assert_ne!(read("f_009.png"), read("f_011.png"));
     assert!(!folder.path().join("f_%03d.png").exists());
-    // The same on one sheet, read row by row.
+    // The same frames on one sheet, row by row.
     run(&["flipbook.png", "--frames", "9..11", "--rate", "2", "--time", "4", "--sheet", "2x2"]);
     assert_eq!(size_of(&folder.path().join("flipbook.png")), (64, 36));
     let picture = |name: &str| haze::picture::read_png(&folder.path().join(name)).unwrap().to_rgb8();
@@ -84,9 +84,9 @@ fn frames_go_to_files_of_their_own() {
     assert_eq!(image::imageops::crop_imm(&flipbook, 0, 18, 32, 18).to_image(), picture("f_011.png"));
 
     let line = |arguments: &[&str]| refusal(folder.path(), &[&SMALL[..], arguments].concat());
-    assert!(line(&["f.png", "--frames", "0..3"]).contains("expected a name with one place for the frame"));
-    assert!(line(&["f_%d.png", "--frames", "3..0"]).contains("are no frames; expected A..B"));
-    assert!(line(&["f.png", "--frames", "0..9", "--sheet", "3x3"]).contains("expected room for 10 frames"));
+    assert!(line(&["f.png", "--frames", "0..3"]).contains("expected a name with one place for the frame number"));
+    assert!(line(&["f_%d.png", "--frames", "3..0"]).contains("is not a range of frames; expected A..B"));
+    assert!(line(&["f.png", "--frames", "0..9", "--sheet", "3x3"]).contains("expected at least 10 cells"));
     let huge =
         ["render", "--size", "8000x8000", "--frames", "0..1", "--sheet", "64x64", "--backend", "cpu", "-o", "f.png"];
     let huge = refusal(folder.path(), &huge);
@@ -96,7 +96,7 @@ fn frames_go_to_files_of_their_own() {
 }
 
 #[test]
-fn frames_go_into_a_gif() {
+fn frames_are_written_to_a_gif() {
     use image::AnimationDecoder as _;
     let folder = folder();
     let output = haze(folder.path(), &[&SMALL[..], &["a.gif", "--frames", "0..6", "--rate", "30"]].concat());
@@ -105,7 +105,7 @@ fn frames_go_into_a_gif() {
     let decoder = image::codecs::gif::GifDecoder::new(std::io::Cursor::new(bytes)).unwrap();
     let frames = decoder.into_frames().collect_frames().unwrap();
     let milliseconds: u32 = frames.iter().map(|frame| frame.delay().numer_denom_ms().0).sum();
-    // 7 of 30 in a second.
+    // Seven frames at 30 frames per second, rounded to hundredths of a second.
     assert_eq!((frames.len(), milliseconds), (7, 230));
     assert!(frames[0].buffer() != frames[6].buffer());
     let refused = |more: &[&str]| refusal(folder.path(), &[&SMALL[..], more].concat());
@@ -117,7 +117,7 @@ fn frames_go_into_a_gif() {
 
 #[cfg(unix)]
 #[test]
-fn a_sequence_that_is_stopped_leaves_whole_files_and_says_so() {
+fn an_interrupted_sequence_leaves_complete_files_and_says_so() {
     use std::process::{Command, Stdio};
     let folder = folder();
     let arguments = [&SMALL[..], &["f_%04d.png", "--frames", "0..9999"]].concat();

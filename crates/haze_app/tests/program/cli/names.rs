@@ -1,9 +1,9 @@
-//! Names of any bytes, and many of them.
+//! File names of arbitrary bytes, and commands with many files.
 
 use super::{MOTIF, folder, haze, refusal, stderr};
 
 #[test]
-fn every_file_is_checked_and_every_mistake_told() {
+fn every_file_is_checked_and_every_error_reported() {
     let folder = folder();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     write("bad.json", "{");
@@ -19,12 +19,12 @@ fn every_file_is_checked_and_every_mistake_told() {
     let text = stderr(&output);
     assert_eq!((output.status.code(), text.lines().count()), (Some(2), 2), "{text}");
     assert!(text.contains("bad.ramp.json:1:1") && text.contains("expected a *.ramp.json"), "{text}");
-    assert!(!folder.path().join("good.png").exists(), "all are baked, or none");
+    assert!(!folder.path().join("good.png").exists(), "one bad recipe stops all from being baked");
     assert!(haze(folder.path(), &["ramp", "bake", "good.motif.json"]).status.success());
 }
 
 #[test]
-fn control_characters_are_written_out() {
+fn control_characters_in_names_are_escaped() {
     let folder = folder();
     let name = "a\u{1b}[31m\nb\u{9b}";
     let escaped = "a\\u{1b}[31m\\nb\\u{9b}";
@@ -45,7 +45,7 @@ fn control_characters_are_written_out() {
 fn a_preset_alone_opens_the_tweaker() {
     let folder = folder();
     std::fs::write(folder.path().join("my"), r#"{"version": 1, "name": "x"}"#).unwrap();
-    // Refused by the tweaker, so that no window is opened.
+    // The tweaker refuses the option before it opens a window.
     for preset in ["column", "my", "none.json"] {
         let line = refusal(folder.path(), &[preset, "--set", "camera.exposure=bright"]);
         let expected = if preset == "none.json" { "none.json: No such file" } else { "--set camera.exposure" };
@@ -53,14 +53,14 @@ fn a_preset_alone_opens_the_tweaker() {
     }
     let line = refusal(folder.path(), &["colum"]);
     assert!(line.contains("unrecognized subcommand 'colum'"), "{line}");
-    // A subcommand comes first, and keeps its own mistakes.
+    // A subcommand takes precedence, and reports its own errors.
     std::fs::write(folder.path().join("render"), "").unwrap();
     assert!(refusal(folder.path(), &["render"]).contains("--output"));
 }
 
 #[cfg(target_os = "linux")]
 #[test]
-fn names_that_are_no_unicode_are_files_like_others() {
+fn file_names_may_be_invalid_unicode() {
     use std::ffi::OsStr;
     use std::os::unix::ffi::OsStrExt;
     use std::process::Command;

@@ -1,4 +1,4 @@
-//! Files that are written: refused before any work, or kept as they are but for what is in them.
+//! Output files: refused before any work, or replaced with their links and permissions kept.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use super::{MOTIF, folder, haze, refusal, render, size_of, stderr};
 const SMALL: [&str; 6] = ["render", "--size", "8x8", "--backend", "cpu", "-o"];
 const SHEET: [&str; 6] = ["techniques", "--size", "8x8", "--backend", "cpu", "-o"];
 
-/// The names in a folder.
+/// Returns the names in a folder, sorted.
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
     let mut names: Vec<_> = entries.collect();
@@ -17,20 +17,20 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn what_cannot_be_written_is_refused_before_the_work() {
+fn unwritable_outputs_are_refused_before_rendering() {
     let folder = folder();
     fs::create_dir_all(folder.path().join("cells/soft.png")).unwrap();
     let line = |command: &[&str], more: &[&str]| refusal(folder.path(), &[command, more].concat());
     assert!(line(&SMALL, &["a.png/"]).contains("a.png/ is not valid"));
     assert!(line(&SMALL, &["a.png/."]).contains("a.png/. is not valid"));
-    assert!(line(&SMALL, &["cells/soft.png"]).contains("expected a file, or a name that is free"));
+    assert!(line(&SMALL, &["cells/soft.png"]).contains("expected a file, or a name that does not exist yet"));
     assert!(line(&SMALL, &[&format!("{}.png", "n".repeat(300))]).contains("expected a file that can be written"));
     let curves = line(&SHEET, &["a.png", "--curves", "missing/c.png"]);
     assert!(curves.contains("--curves: missing/c.png") && curves.contains("a folder that exists"), "{curves}");
     let cells = line(&SHEET, &["a.png", "--cells", "missing"]);
     assert!(cells.contains("--cells: missing") && cells.contains("a folder that exists"), "{cells}");
     let cells = line(&SHEET, &["a.png", "--cells", "cells"]);
-    assert!(cells.contains("soft.png") && cells.contains("a name that is free"), "{cells}");
+    assert!(cells.contains("soft.png") && cells.contains("a name that does not exist yet"), "{cells}");
     assert_eq!(
         (names(folder.path()), names(&folder.path().join("cells"))),
         (vec!["cells".into()], vec!["soft.png".into()])
@@ -39,7 +39,7 @@ fn what_cannot_be_written_is_refused_before_the_work() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_folder_where_nothing_can_be_made_is_refused_before_the_work() {
+fn folders_that_allow_no_new_file_are_refused_before_rendering() {
     let folder = folder();
     for place in ["/proc/a.png", "link.png"] {
         std::os::unix::fs::symlink("missing/a.png", folder.path().join("link.png")).ok();
@@ -49,7 +49,7 @@ fn a_folder_where_nothing_can_be_made_is_refused_before_the_work() {
 }
 
 #[test]
-fn what_is_read_is_not_written() {
+fn inputs_are_not_overwritten() {
     let folder = folder();
     let path = |name: &str| folder.path().join(name);
     fs::create_dir(path("shots")).unwrap();
@@ -60,7 +60,7 @@ fn what_is_read_is_not_written() {
     fs::hard_link(path("shots/my.json"), path("preset.png")).unwrap();
     let line = |output: &str| refusal(folder.path(), &[&SMALL[..], &[output, "shots/my.json"]].concat());
     for output in ["shots/mine.png", "shots/../shots/mine.png", "preset.png"] {
-        assert!(line(output).contains("expected a file that is not read"));
+        assert!(line(output).contains("expected a file that is not also an input"));
     }
     assert_eq!(fs::read_to_string(path("shots/my.json")).unwrap(), text);
 
@@ -68,33 +68,36 @@ fn what_is_read_is_not_written() {
     let ramp = format!(r#"{{"version": 1, "width": 32, "height": 1, "rows": [{{"stops": {stops}}}]}}"#);
     fs::write(path("fire.ramp.json"), &ramp).unwrap();
     fs::hard_link(path("fire.ramp.json"), path("fire.png")).unwrap();
-    assert!(refusal(folder.path(), &["ramp", "bake", "fire.ramp.json"]).contains("a file that is not read"));
+    assert!(refusal(folder.path(), &["ramp", "bake", "fire.ramp.json"]).contains("a file that is not also an input"));
     assert_eq!(fs::read_to_string(path("fire.ramp.json")).unwrap(), ramp);
 }
 
 #[test]
-fn no_file_is_written_twice() {
+fn two_outputs_must_not_be_the_same_file() {
     let folder = folder();
     let sheet = |more: &[&str]| refusal(folder.path(), &[&SHEET[..], more].concat());
     assert!(
-        sheet(&["a.png", "--curves", "./a.png"]).contains("--curves: ./a.png is not valid; expected a file of its own")
+        sheet(&["a.png", "--curves", "./a.png"])
+            .contains("--curves: ./a.png is not valid; expected a different file for each output")
     );
-    assert!(sheet(&["hard.png", "--cells", "."]).contains("expected a file of its own"));
-    assert!(sheet(&["a.png", "--cells", ".", "--curves", "soft.png"]).contains("expected a file of its own"));
+    assert!(sheet(&["hard.png", "--cells", "."]).contains("expected a different file for each output"));
+    assert!(
+        sheet(&["a.png", "--cells", ".", "--curves", "soft.png"]).contains("expected a different file for each output")
+    );
 
     fs::write(folder.path().join("a.motif.json"), MOTIF).unwrap();
     let twice = refusal(folder.path(), &["ramp", "bake", "a.motif.json", "./a.motif.json"]);
-    assert!(twice.contains("a file of its own"), "{twice}");
+    assert!(twice.contains("a different file for each output"), "{twice}");
     assert_eq!(names(folder.path()), ["a.motif.json"]);
 }
 
 #[cfg(unix)]
 #[test]
-fn what_a_file_is_besides_its_bytes_is_kept() {
+fn replacing_a_file_keeps_its_links_and_permissions() {
     use std::os::unix::fs::{PermissionsExt, symlink};
     let folder = folder();
     let path = |name: &str| folder.path().join(name);
-    // To a picture that is not there yet.
+    // A link to an image that does not exist yet.
     symlink("real.png", path("out.png")).unwrap();
     assert!(render(folder.path(), &[]).status.success());
     assert!(path("out.png").is_symlink() && !path("real.png").is_symlink());
@@ -113,7 +116,7 @@ fn what_a_file_is_besides_its_bytes_is_kept() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_write_that_fails_leaves_the_old_file() {
+fn a_failed_write_keeps_the_old_file() {
     let folder = folder();
     let path = |name: &str| folder.path().join(name);
     fs::write(path("out.png"), "old").unwrap();
@@ -121,7 +124,7 @@ fn a_write_that_fails_leaves_the_old_file() {
         if other_name {
             fs::hard_link(path("out.png"), path("other.png")).unwrap();
         }
-        // No file may be longer than a block, and the program is told so.
+        // A file may be one block long at most; without the signal, the write returns an error.
         let line = "trap '' XFSZ; ulimit -f 1; exec \"$0\" render --size 64x36 --backend cpu -o out.png";
         let mut command = std::process::Command::new("sh");
         let output =
@@ -135,11 +138,11 @@ fn a_write_that_fails_leaves_the_old_file() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_program_that_is_killed_while_it_writes_leaves_the_old_file() {
+fn a_program_killed_during_a_write_keeps_the_old_file() {
     use std::os::unix::process::ExitStatusExt as _;
     let folder = folder();
     let recipe = |colour: &str| {
-        // Every row is another: it takes some blocks.
+        // Every row differs, so that the PNG takes several blocks.
         let row = |row: u32| {
             let stop = |at: u32, colour: String| format!(r##"{{"at": {at}, "colour": "#{colour}"}}"##);
             let stops = [stop(0, format!("{colour}{row:02x}")), stop(1, format!("{row:02x}{colour}"))].join(",");
@@ -149,7 +152,7 @@ fn a_program_that_is_killed_while_it_writes_leaves_the_old_file() {
         format!(r#"{{"version": 2, "width": 64, "height": 32, "rows": [{rows}]}}"#)
     };
     let bake = |blocks: u64| {
-        // At this length the system kills who writes on.
+        // At this file length, the system kills the program.
         let line = format!("ulimit -c 0; ulimit -f {blocks}; exec \"$0\" ramp bake a.ramp.json");
         let mut command = std::process::Command::new("sh");
         command.args(["-c", &line, env!("CARGO_BIN_EXE_haze")]).current_dir(folder.path()).output().unwrap().status
@@ -166,6 +169,6 @@ fn a_program_that_is_killed_while_it_writes_leaves_the_old_file() {
         assert!(picture() == old, "{limit}");
     }
     assert!(bake(10_000).success() && picture() != old);
-    // What those that were killed left is gone.
+    // Partial files of the killed runs are gone.
     assert_eq!(names(folder.path()), ["a.png", "a.ramp.json"]);
 }

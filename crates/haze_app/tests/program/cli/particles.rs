@@ -1,4 +1,4 @@
-//! Particles from a simulation: named in a preset or on the command line, checked, shown, copied, drawn.
+//! Particle files of a simulation: named in a preset or on the command line, checked, shown, copied, rendered.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ fn simulate(folder: &Path) {
 }
 
 #[test]
-fn they_are_drawn_by_a_word_on_the_command_line() {
+fn particle_files_set_on_the_command_line_are_rendered() {
     let folder = folder();
     simulate(folder.path());
     let render = |output: &str, set: &[&str]| {
@@ -26,11 +26,11 @@ fn they_are_drawn_by_a_word_on_the_command_line() {
     let drawn = render("a.png", &["--set", path]);
     assert_ne!(drawn, render("b.png", &["--set", path, "--set", "cache.up=z"]));
     assert_ne!(drawn, render("c.png", &["--set", path, "--set", "cache.start=1"]));
-    // Frame after frame: from 24 frames a second to 24 pictures a second.
+    // A sequence of images.
     let arguments = ["render", "column", "--size", "32x18", "--backend", "cpu", "--frames", "0..2", "-o", "f_%04d.png"];
     let output = haze(folder.path(), &[&arguments[..], &["--set", path]].concat());
     assert!(output.status.success(), "{}", stderr(&output));
-    // In the shared folder, too.
+    // The files are also found in the shared folder.
     std::fs::create_dir(folder.path().join("sub")).unwrap();
     let line = refusal(&folder.path().join("sub"), &["render", "-o", "d.png", "--set", path]);
     assert!(line.contains("systems[0].cache.path: ") && line.contains("No such file in "), "{line}");
@@ -39,7 +39,7 @@ fn they_are_drawn_by_a_word_on_the_command_line() {
 }
 
 #[test]
-fn they_are_checked_shown_and_copied_with_their_preset() {
+fn particle_files_are_checked_shown_and_copied_with_their_preset() {
     let folder = folder();
     let path = |name: &str| folder.path().join(name);
     simulate(folder.path());

@@ -1,4 +1,4 @@
-//! `haze ramp`: the authoring loop.
+//! `haze ramp`: the authoring commands.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -14,7 +14,7 @@ use image::{DynamicImage, GrayImage, ImageBuffer, Luma, LumaA};
 use super::{folder, haze, refusal, stderr};
 
 #[test]
-fn a_ramp_of_very_many_stops_is_soon_baked() {
+fn a_ramp_of_very_many_stops_bakes_quickly() {
     let folder = folder();
     let recipe = |rows: u32, stops: u32, height: u32| {
         let mut text = format!(r#"{{"version": 2, "width": 256, "height": {height}, "rows": ["#);
@@ -39,7 +39,7 @@ fn a_ramp_of_very_many_stops_is_soon_baked() {
     assert!(started.elapsed() < Duration::from_secs(10), "{:?}", started.elapsed());
 }
 
-/// The standard output of what goes well.
+/// Runs a command that must succeed, and returns its standard output.
 fn said(folder: &Path, arguments: &[&str]) -> String {
     let output = haze(folder, arguments);
     assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
@@ -47,7 +47,7 @@ fn said(folder: &Path, arguments: &[&str]) -> String {
 }
 
 #[test]
-fn every_template_is_made_baked_shown_and_good() {
+fn every_template_can_be_written_and_baked_and_passes_the_check() {
     let folder = folder();
     for template in TEMPLATES {
         let name = format!("{}_{}", template.role.name(), template.name);
@@ -59,9 +59,9 @@ fn every_template_is_made_baked_shown_and_good() {
         let checked = said(folder.path(), &["ramp", "check", &recipe, &picture]);
         assert_eq!(checked, format!("{recipe}: good\n{picture}: good\n"));
     }
-    // Nobody's work is lost.
+    // Existing files are not replaced.
     let again = refusal(folder.path(), &["ramp", "new", "-o", "diffuse_moon.ramp.json"]);
-    assert!(again.contains("expected a name that is free"), "{again}");
+    assert!(again.contains("expected a name that does not exist yet"), "{again}");
     let name = refusal(folder.path(), &["ramp", "new", "-o", "moon.json"]);
     assert!(name.contains("expected a name that ends in .ramp.json"), "{name}");
     let unknown = refusal(folder.path(), &["ramp", "new", "--template", "tune", "-o", "a.ramp.json"]);
@@ -69,7 +69,7 @@ fn every_template_is_made_baked_shown_and_good() {
 }
 
 #[test]
-fn a_picture_becomes_a_recipe_and_a_picture_again() {
+fn an_imported_image_bakes_back_within_the_stated_error() {
     let folder = folder();
     for (name, error) in [("specular_halo", 2.0), ("diffuse_dusk", 2.0)] {
         let source = format!("{}/../../ramps/{name}.png", env!("CARGO_MANIFEST_DIR"));
@@ -96,7 +96,7 @@ fn a_picture_becomes_a_recipe_and_a_picture_again() {
 }
 
 #[test]
-fn what_is_found_is_said_and_exits_with_1() {
+fn ramp_check_reports_findings_and_exits_with_1() {
     let folder = folder();
     let save = |name: &str, picture: DynamicImage| picture.save(folder.path().join(name)).unwrap();
     save("specular_grey.png", DynamicImage::ImageLuma8(GrayImage::from_pixel(16, 16, Luma([90]))));
@@ -118,21 +118,21 @@ fn what_is_found_is_said_and_exits_with_1() {
     );
     let output = haze(folder.path(), &["ramp", "check", "--as", "diffuse", "specular_grey.png"]);
     assert!(output.status.success());
-    // What cannot be read is bad input.
+    // A file that cannot be read is bad input.
     assert!(refusal(folder.path(), &["ramp", "check", "gone.png"]).starts_with("haze: gone.png: "));
     fs::write(folder.path().join("a.ggr"), "GIMP Gradient\n").unwrap();
     for command in ["check", "show"] {
         let line = refusal(folder.path(), &["ramp", command, "a.ggr"]);
-        assert!(line.contains("`haze ramp import` makes one of another program's gradient"), "{line}");
+        assert!(line.contains("convert this gradient with `haze ramp import`"), "{line}");
     }
 }
 
 #[test]
-fn a_ramp_is_shown_as_text_and_as_a_picture() {
+fn a_ramp_is_shown_as_text_and_as_an_image() {
     let folder = folder();
     said(folder.path(), &["ramp", "new", "--template", "hard_toon", "-o", "toon.ramp.json"]);
     let text = said(folder.path(), &["ramp", "show", "toon.ramp.json"]);
-    // Not to a terminal: no colours, the curve and the stops.
+    // Standard output is not a terminal: no colours, but the curve and the stops.
     assert!(!text.contains('\u{1b}') && text.contains('█'), "{text}");
     assert!(text.starts_with("toon.ramp.json: 256x1\n") && text.ends_with("0.720  #f6efe2  constant\n"), "{text}");
     said(folder.path(), &["ramp", "show", "toon.ramp.json", "-o", "toon.png"]);
@@ -140,10 +140,10 @@ fn a_ramp_is_shown_as_text_and_as_a_picture() {
     assert_eq!(picture.get_pixel(100, 40).0, [0x2b, 0x2a, 0x3a]);
     assert_eq!(picture.get_pixel(540, 40).0, [0xf6, 0xef, 0xe2]);
     let line = refusal(folder.path(), &["ramp", "show", "toon.png", "-o", "toon.png"]);
-    assert!(line.contains("expected a file that is not read"), "{line}");
+    assert!(line.contains("expected a file that is not also an input"), "{line}");
 }
 
-/// What a program says to a terminal.
+/// Runs a command on a terminal and returns its output.
 #[cfg(target_os = "linux")]
 fn said_to_a_terminal(folder: &Path, arguments: &str, no_color: &str) -> String {
     let command = format!("{} {arguments}", env!("CARGO_BIN_EXE_haze"));
@@ -157,7 +157,7 @@ fn said_to_a_terminal(folder: &Path, arguments: &str, no_color: &str) -> String 
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_terminal_shows_colours_unless_it_is_told_not_to() {
+fn a_terminal_shows_colours_unless_no_color_is_set() {
     let folder = folder();
     said(folder.path(), &["ramp", "new", "--template", "hard_toon", "-o", "toon.ramp.json"]);
     let coloured = said_to_a_terminal(folder.path(), "ramp show toon.ramp.json", "");
@@ -167,7 +167,7 @@ fn a_terminal_shows_colours_unless_it_is_told_not_to() {
 }
 
 #[test]
-fn a_shot_is_shown_under_every_ramp_of_a_folder() {
+fn ramp_sheet_renders_a_shot_with_every_ramp_of_a_folder() {
     let folder = folder();
     let new = |template: &str, name: &str| {
         said(folder.path(), &["ramp", "new", "--template", template, "-o", &format!("ramps/{name}.ramp.json")]);
@@ -176,7 +176,7 @@ fn a_shot_is_shown_under_every_ramp_of_a_folder() {
     new("soot", "diffuse_soot");
     new("sunset_backlight", "mine");
     new("wide_glow", "specular_wide");
-    // One has a picture already, which is what is loaded.
+    // This recipe has a PNG already, which is what is loaded.
     said(folder.path(), &["ramp", "bake", "ramps/mine.ramp.json"]);
     fs::write(folder.path().join("ramps/mine.ramp.json"), "{").unwrap();
     fs::write(folder.path().join("ramps/notes.txt"), "").unwrap();
@@ -185,7 +185,7 @@ fn a_shot_is_shown_under_every_ramp_of_a_folder() {
         said(folder.path(), &[&fixed[..], arguments].concat());
         haze::picture::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8()
     };
-    // Above the ramp itself.
+    // The image above the strip of the ramp.
     let above = |picture: &image::RgbImage, x, y| image::imageops::crop_imm(picture, x, y, 48, 25).to_image();
     let render = |sets: &[&str]| {
         let fixed = ["render", "fence", "--backend", "cpu", "--size", "48x27", "--assets", "ramps", "-o", "one.png"];
@@ -194,23 +194,23 @@ fn a_shot_is_shown_under_every_ramp_of_a_folder() {
         above(&haze::picture::read_png(&folder.path().join("one.png")).unwrap().to_rgb8(), 0, 0)
     };
     let cell = |sheet: &image::RgbImage, x: u32| above(sheet, 12 + x * 60, 40);
-    // Two to a row, in the order of their names.
+    // Two images per row, sorted by name.
     let diffuse = sheet(&["--ramps", "ramps", "--role", "diffuse", "--size", "96x54"]);
     said(folder.path(), &["ramp", "bake", "ramps/diffuse_soot.ramp.json"]);
     assert!(cell(&diffuse, 0) == render(&["diffuse_ramp=diffuse_soot.png"]));
     assert!(cell(&diffuse, 1) == render(&["diffuse_ramp=mine.png"]));
-    // The ramp below: 2 of 27 lines.
+    // The strip of the ramp below: 2 of 27 lines.
     let below = |x: u32| diffuse[(12 + x * 60 + 47, 40 + 26)].0;
     assert_eq!([below(0), below(1)], [[0x6a, 0x61, 0x5a], [0xff, 0xe3, 0xb0]]);
-    // Without a role, those whose names say it.
+    // Without a role: ramps whose names tell their role.
     let named = sheet(&["--ramps", "ramps", "--size", "96x54"]);
     assert!(cell(&named, 0) == cell(&diffuse, 0) && cell(&named, 1) != cell(&diffuse, 1));
-    // A ramp is seen whatever the preset has in its place.
+    // A ramp is used whatever mode the preset has.
     let coverage = sheet(&["--role", "coverage", "--size", "96x54"]);
     assert!(cell(&coverage, 1) == render(&["systems.settings.coverage=ramp", "coverage_ramp=coverage_toon"]));
     assert!(cell(&coverage, 0) != cell(&coverage, 1));
 
-    // One that is broken does not take the others with it.
+    // A broken ramp does not stop the others.
     fs::write(folder.path().join("ramps/diffuse_broken.png"), "no picture").unwrap();
     let arguments = ["ramp", "sheet", "fence", "--backend", "cpu", "--ramps", "ramps", "--role", "diffuse"];
     let output = haze(folder.path(), &[&arguments[..], &["--size", "96x54", "-o", "sheet.png"]].concat());
@@ -227,21 +227,21 @@ fn a_shot_is_shown_under_every_ramp_of_a_folder() {
     assert!(line(&["--ramps", "gone", "-o", "a.png"]).starts_with("haze: gone: "));
     assert!(line(&["--ramps", "sheet.png", "-o", "a.png"]).contains("sheet.png is not valid; expected a folder"));
     let over = line(&["--ramps", "ramps", "--role", "diffuse", "-o", "ramps/mine.png"]);
-    assert!(over.contains("expected a file that is not read"), "{over}");
+    assert!(over.contains("expected a file that is not also an input"), "{over}");
     fs::create_dir(folder.path().join("empty")).unwrap();
     let none = line(&["--ramps", "empty", "--role", "age", "-o", "a.png"]);
     assert!(none.contains("--ramps: empty is not valid; expected 1 to 64 ramps for age, not 0"), "{none}");
 }
 
 #[test]
-fn a_blank_of_every_role_is_a_ramp_with_its_axes_on_it() {
+fn a_blank_of_every_role_has_labelled_axes() {
     let folder = folder();
     for role in Role::ALL {
         let name = format!("{}_mine.png", role.name());
         let line = said(folder.path(), &["ramp", "new", "--blank", role.name(), "-o", &name]);
         let size = if matches!(role, Role::Specular | Role::Backlight) { "512x256" } else { "512x64" };
         assert_eq!(line, format!("{name}: a {} ramp to paint over, {size}\n", role.name()));
-        // Ink is written at both ends: from one line to the next a ramp changes little.
+        // Text at both ends: without it, a ramp changes little from one line to the next.
         let picture = haze::picture::read_png(&folder.path().join(&name)).unwrap().to_luma8();
         let middle = picture.height() / 2;
         for end in [0..150, 362..512] {
@@ -250,20 +250,23 @@ fn a_blank_of_every_role_is_a_ramp_with_its_axes_on_it() {
             let edges: usize = edges.sum();
             assert!(edges > 20, "{name}, {end:?}: {edges}");
         }
-        assert!(refusal(folder.path(), &["ramp", "new", "--blank", role.name(), "-o", &name]).contains("that is free"));
+        assert!(
+            refusal(folder.path(), &["ramp", "new", "--blank", role.name(), "-o", &name])
+                .contains("does not exist yet")
+        );
     }
     let line = refusal(folder.path(), &["ramp", "new", "--blank", "age", "-o", "a.ramp.json"]);
     assert!(line.contains("expected a name that ends in .png"), "{line}");
 }
 
 #[test]
-fn ramps_are_fitted_to_smoke_as_it_is() {
+fn ramps_are_fitted_to_path_traced_smoke() {
     let folder = folder();
     let puff = ["--size", "16", "--samples", "8"];
     let fit = ["ramp", "fit", "-o", "lit.ramp.json"];
     let both = ["--medium", "dust", "--backlight", "against.ramp.json", "--sheet", "sheet.png"];
     let told = said(folder.path(), &[&fit[..], &puff, &both].concat());
-    // The usual ramp first, then what was fitted.
+    // First the default ramp, then the fitted one.
     let error = |name: &str| -> f32 {
         let line = told.lines().find(|line| line.starts_with(name)).unwrap();
         line.split(' ').nth(2).unwrap().parse().unwrap()
@@ -282,17 +285,17 @@ fn ramps_are_fitted_to_smoke_as_it_is() {
     assert!(haze(folder.path(), &render).status.success());
     let check = ["ramp", "check", "lit.png", "--truth", "dust", "--backlight", "against.png"];
     let output = haze(folder.path(), &check);
-    assert!(String::from_utf8(output.stdout).unwrap().starts_with("lit.png beside dust: brightness "));
+    assert!(String::from_utf8(output.stdout).unwrap().starts_with("lit.png against dust: brightness "));
     let refused = |rest: &[&str]| refusal(folder.path(), &[&fit[..], &puff, rest].concat());
     assert!(refused(&["--albedo", "1.5"]).contains("--albedo: 1.5 is not valid; expected 0 to 1"));
-    assert!(refused(&["--albedo", "1,2"]).contains("one, or red, green and blue"));
+    assert!(refused(&["--albedo", "1,2"]).contains("one number, or three: red, green and blue"));
     assert!(refused(&["--g", "nan"]).contains("--g: NaN is not valid"));
     assert!(refused(&["--density", "0"]).contains("--density: 0 is not valid; expected 0.1 to 100"));
     assert!(refused(&["--sprite", "smoke"]).contains("--sprite: smoke is not valid; expected a *.sprite.json file"));
 }
 
 #[test]
-fn a_sprite_is_lit_as_smoke_is() {
+fn sprite_light_path_traces_a_sprite() {
     let folder = folder();
     let light = ["sprite", "light", "ball", "--medium", "milk", "--size", "16", "--samples", "4", "-o", "a.png"];
     let told = said(folder.path(), &[&light[..], &["--volume", "ball.vol"]].concat());
@@ -303,23 +306,23 @@ fn a_sprite_is_lit_as_smoke_is() {
 }
 
 #[test]
-fn a_file_of_another_kind_is_told_which_command_takes_it() {
+fn a_file_of_another_kind_is_refused_with_the_right_command() {
     let folder = folder();
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
     write("a.ramp.json", &TEMPLATES[0].recipe().to_text());
     write("recipe.json", &TEMPLATES[0].recipe().to_text());
-    // By its name, though it is broken.
+    // Recognized by its name, although its content is broken.
     write("broken.sprite.json", "{");
     write("a.json", &haze::preset::Preset::load(Path::new("column")).unwrap().to_text(""));
     for (command, file, is) in [
-        ("preset", "a.ramp.json", "a ramp's recipe: `haze ramp check` takes it"),
-        ("preset", "recipe.json", "a ramp's recipe: `haze ramp check` takes it"),
-        ("preset", "broken.sprite.json", "a sprite's recipe: `haze sprite bake` takes it"),
-        ("ramp", "a.json", "a preset: `haze preset check` takes it"),
-        ("ramp", "broken.sprite.json", "a sprite's recipe: `haze sprite bake` takes it"),
-        ("sprite", "a.ramp.json", "a ramp's recipe: `haze ramp check` takes it"),
-        ("sprite", "a.json", "a preset: `haze preset check` takes it"),
-        ("sprite", "broken.sprite.json", "a sprite's recipe: `haze sprite bake` takes it"),
+        ("preset", "a.ramp.json", "a ramp recipe: use `haze ramp check`"),
+        ("preset", "recipe.json", "a ramp recipe: use `haze ramp check`"),
+        ("preset", "broken.sprite.json", "a sprite recipe: use `haze sprite bake`"),
+        ("ramp", "a.json", "a preset: use `haze preset check`"),
+        ("ramp", "broken.sprite.json", "a sprite recipe: use `haze sprite bake`"),
+        ("sprite", "a.ramp.json", "a ramp recipe: use `haze ramp check`"),
+        ("sprite", "a.json", "a preset: use `haze preset check`"),
+        ("sprite", "broken.sprite.json", "a sprite recipe: use `haze sprite bake`"),
     ] {
         let said = refusal(folder.path(), &[command, "check", file]);
         assert!(
@@ -327,7 +330,7 @@ fn a_file_of_another_kind_is_told_which_command_takes_it() {
             "{command} {file}: {said}"
         );
     }
-    // What is of the right kind, and what is missing, is told as ever.
+    // A broken file of the right kind and a missing file keep their own errors.
     write("broken.ramp.json", "{");
     assert!(refusal(folder.path(), &["ramp", "check", "broken.ramp.json"]).contains("broken.ramp.json:1:1: "));
     assert!(!refusal(folder.path(), &["preset", "check", "gone.ramp.json"]).contains("haze ramp check"));

@@ -1,4 +1,4 @@
-//! `--shaders`: what an author sees of their work from the shell.
+//! `--shaders`: results and errors of edited shaders on the command line.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ fn write(folder: &Path, text: &str) {
 }
 
 #[test]
-fn a_broken_shader_is_one_line_and_a_good_one_changes_the_picture() {
+fn a_broken_shader_gives_one_line_and_a_valid_one_changes_the_image() {
     let folder = folder();
     let folder = folder.path();
     let arguments = ["render", "--size", "64x36", "--backend", "gpu", "--shaders", "shaders", "-o", "a.png"];
@@ -42,5 +42,8 @@ fn shaders_need_a_gpu() {
     let folder = folder();
     write(folder.path(), COLOUR);
     let said = refusal(folder.path(), &["render", "--shaders", "shaders", "--backend", "cpu", "-o", "a.png"]);
-    assert_eq!(said, "haze: --shaders: with --backend cpu is not valid; expected a GPU: the CPU runs no shaders\n");
+    assert_eq!(
+        said,
+        "haze: --backend: cpu is not valid; expected auto or gpu with --shaders: the CPU runs no shaders\n"
+    );
 }

@@ -1,4 +1,4 @@
-//! `haze sprite`: the authoring loop.
+//! `haze sprite`: the authoring commands.
 
 use std::fs;
 use std::time::{Duration, Instant};
@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use super::{folder, haze, refusal, stderr};
 
 #[test]
-fn a_large_flipbook_is_soon_baked() {
+fn a_large_flipbook_bakes_quickly() {
     let folder = folder();
     let recipe =
         include_str!("../../../../../tests/corpus/sprite/good_first").replace("\"version\": 1", "\"version\": 2");
@@ -16,15 +16,16 @@ fn a_large_flipbook_is_soon_baked() {
     let output = haze(folder.path(), &["sprite", "bake", "puff.sprite.json"]);
     assert_eq!(String::from_utf8_lossy(&output.stdout), "puff.png: 2048x2048\npuff.detail.png: 512x512\n");
     assert!(output.status.success(), "{}", stderr(&output));
-    // 8 s of two cores' time, 4.4 to 5.3 s; here other tests run at the same time. Version 1 takes more than 400 s of it.
+    // 8 s of CPU time on two cores, 4.4 to 5.3 s elapsed; here other tests run at the same time. Version 1 takes more
+    // than 400 s of CPU time.
     assert!(started.elapsed() < Duration::from_secs(40), "{:?}", started.elapsed());
 }
 
 #[test]
-fn what_is_found_in_sprites_is_said_and_exits_with_1() {
+fn sprite_check_reports_findings_and_exits_with_1() {
     let folder = folder();
     let wisp = concat!(env!("CARGO_MANIFEST_DIR"), "/../../sprites/wisp.png");
-    // Its recipe is beside it, and says how it is laid out.
+    // The recipe beside the sprite gives its layout.
     let output = haze(folder.path(), &["sprite", "check", wisp]);
     assert_eq!(String::from_utf8_lossy(&output.stdout), format!("{wisp}: good\n"), "{}", stderr(&output));
     let sheet = image::open(wisp).unwrap().to_rgba8();
@@ -42,13 +43,13 @@ fn what_is_found_in_sprites_is_said_and_exits_with_1() {
     let output = haze(folder.path(), &["sprite", "check", "fire.png"]);
     let text = String::from_utf8_lossy(&output.stdout);
     assert!(text.contains("fire.png: border: frame 0 has alpha 255") && text.contains("fire.png: normals: "), "{text}");
-    // What cannot be cut into frames is bad input.
+    // A sheet that does not divide into frames is bad input.
     let text = refusal(folder.path(), &["sprite", "check", "--columns", "3", "down.png"]);
     assert!(text.contains("square frames"), "{text}");
 }
 
 #[test]
-fn pictures_of_other_kinds_become_sprites() {
+fn images_of_other_kinds_are_imported_as_sprites() {
     let folder = folder();
     let said = |arguments: &[&str]| {
         let output = haze(folder.path(), &[&["sprite", "import"], arguments].concat());
@@ -63,9 +64,9 @@ fn pictures_of_other_kinds_become_sprites() {
     down.pixels_mut().for_each(|texel| texel.0[1] = 255 - texel.0[1]);
     down.save(folder.path().join("down.png")).unwrap();
     let text = said(&[&["down.png", "-o", "turned.png"], &grid[..]].concat());
-    assert!(text.contains("green points down, and was turned: a guess, "), "{text}");
+    assert!(text.contains("green points down and was flipped: a guess, "), "{text}");
     let text = said(&[&["down.png", "-o", "told.png", "--y-down"], &grid[..]].concat());
-    assert!(text.contains("green points down, and was turned, as said"), "{text}");
+    assert!(text.contains("green points down and was flipped, as --y-down says"), "{text}");
     let read = |name: &str| fs::read(folder.path().join(name)).unwrap();
     assert_eq!(read("turned.png"), read("told.png"));
     // Numbered frames.
@@ -78,7 +79,7 @@ fn pictures_of_other_kinds_become_sprites() {
     assert_eq!(text, "puff.png: 2x2 frames\n");
     let checked = haze(folder.path(), &["sprite", "check", "--columns", "2", "--rows", "2", "puff.png"]);
     assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stdout));
-    // As a shell sorts those without zeros.
+    // Numbers without leading zeros, in the order of a shell.
     for number in [9, 10] {
         let dot = |x: u32, y: u32| image::Luma([if (x, y) == (number, 8) { 255 } else { 0 }]);
         image::GrayImage::from_fn(16, 16, dot).save(folder.path().join(format!("dot_{number}.png"))).unwrap();
@@ -92,20 +93,20 @@ fn pictures_of_other_kinds_become_sprites() {
     fire.save(folder.path().join("fire.png")).unwrap();
     let text = said(&["fire.png", "-o", "a.png"]);
     assert!(
-        text.contains("  colours, not normals; ") && text.contains("; `--from` says what a picture holds"),
+        text.contains("  colours, not normals; ") && text.contains("; set --from to the contents of the image"),
         "{text}"
     );
-    // What would be passed over is refused.
+    // Options that would be ignored are refused.
     for (arguments, expected) in [
         (&["fire.png", "fire.png", "fire.png", "--from", "six_way_unity"][..], "3 sheets; expected 2"),
         (&["fire.png", "--from", "alpha", "--y-down"], "expected --from normals"),
-        (&["smoke_0000.png", "smoke_0001.png", "--columns", "2"], "2x1 of 2 files is not valid; expected 1x1"),
+        (&["smoke_0000.png", "smoke_0001.png", "--columns", "2"], "2x1 for 2 files is not valid; expected 1x1"),
     ] {
         let text = refusal(folder.path(), &[&["sprite", "import", "-o", "a.png"], arguments].concat());
         assert!(text.contains(expected), "{text}");
     }
     let text = refusal(folder.path(), &["sprite", "import", "down.png", "-o", "down.png"]);
-    assert!(text.contains("expected a file that is not read"), "{text}");
+    assert!(text.contains("expected a file that is not also an input"), "{text}");
 }
 
 #[test]
@@ -122,10 +123,10 @@ fn six_way_maps_are_baked_exported_and_imported_again() {
     fs::write(folder.path().join("mine.sprite.json"), recipe.replace(size, "\"size\": 16,")).unwrap();
     let text = said(&["sprite", "bake", "mine.sprite.json", "--six-way", "steam", "--samples", "4"]);
     assert!(
-        text.starts_with("mine.png: 64x32\nmine.detail.png: 16x8\nmine.six_way.png: 64x64\n  as steam: "),
+        text.starts_with("mine.png: 64x32\nmine.detail.png: 16x8\nmine.six_way.png: 64x64\n  to look like steam: "),
         "{text}"
     );
-    // They light smoke.
+    // Smoke can be rendered with them.
     fs::write(
         folder.path().join("own.json"),
         r#"{"version": 1, "name": "x", "systems": [{"name": "a", "settings": {"lighting": "six_way"},
@@ -134,7 +135,7 @@ fn six_way_maps_are_baked_exported_and_imported_again() {
     .unwrap();
     said(&["preset", "check", "own.json"]);
     said(&["render", "own.json", "--size", "64x36", "--backend", "cpu", "-o", "lit.png"]);
-    // There and back, but for the steps of light itself.
+    // Export and import give the same light, within one of its steps.
     for packing in ["unity", "rlt_bbf"] {
         said(&["sprite", "export", "mine.six_way.png", "--to", packing, "-o", "a.png", "b.png"]);
         let from = format!("six_way_{packing}");
@@ -166,14 +167,17 @@ fn six_way_maps_are_baked_exported_and_imported_again() {
     for (arguments, expected) in [
         (
             &["bake", "mine.sprite.json", "--albedo", "0.5"][..],
-            "--albedo: given is not valid; expected it with --six-way",
+            "--albedo: use without --six-way is not valid; expected --six-way as well",
         ),
         (&["bake", "streaks"], "expected a *.sprite.json or *.noise.json file"),
         (&["bake", "mine.sprite.json", "--six-way", "--g", "2"], "--g: 2 is not valid"),
-        (&["export", "mine.six_way.png", "-o", "mine.six_way.png", "b.png"], "expected a file that is not read"),
+        (
+            &["export", "mine.six_way.png", "-o", "mine.six_way.png", "b.png"],
+            "expected a file that is not also an input",
+        ),
         (
             &["import", "mine.png", "mine.png", "--from", "six_way_unity", "-o", "mine.png"],
-            "expected a file that is not read",
+            "expected a file that is not also an input",
         ),
     ] {
         let text = refusal(folder.path(), &[&["sprite"], arguments].concat());

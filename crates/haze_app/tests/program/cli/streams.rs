@@ -1,4 +1,4 @@
-//! Standard output and error that take nothing, threads and memory that are not to be had: never a panic.
+//! Closed and full output streams, and lack of threads and memory: the program never panics.
 
 #![cfg(target_os = "linux")]
 
@@ -10,7 +10,7 @@ use super::{MOTIF, folder, haze, refusal, render, stderr};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_haze");
 
-/// A pipe that nobody reads.
+/// A pipe without a reader.
 fn closed() -> Stdio {
     std::io::pipe().unwrap().1.into()
 }
@@ -25,12 +25,12 @@ fn shell(folder: &Path, line: &str) -> Output {
 }
 
 #[test]
-fn an_error_output_that_takes_nothing_costs_no_picture() {
+fn a_closed_or_full_stderr_does_not_stop_rendering() {
     let folder = folder();
     for sink in [full, closed] {
         let status = |arguments: &[&str]| {
             let mut command = Command::new(PROGRAM);
-            // There is something to say: no adapter, so the CPU.
+            // Without an adapter, the program prints a message and renders on the CPU.
             command.args(arguments).current_dir(folder.path()).env("WGPU_BACKEND", "dx12").stdout(Stdio::null());
             command.stderr(sink()).status().unwrap().code()
         };
@@ -43,7 +43,7 @@ fn an_error_output_that_takes_nothing_costs_no_picture() {
 }
 
 #[test]
-fn an_output_that_takes_nothing_is_one_line_or_none() {
+fn a_full_stdout_gives_one_error_line_and_a_closed_one_none() {
     let folder = folder();
     let run = |sink: Stdio, arguments: &[&str]| {
         Command::new(PROGRAM).args(arguments).current_dir(folder.path()).stdout(sink).stderr(Stdio::piped()).output()
@@ -61,11 +61,11 @@ fn an_output_that_takes_nothing_is_one_line_or_none() {
 }
 
 #[test]
-fn without_threads_the_picture_is_the_same() {
+fn without_threads_the_image_is_the_same() {
     let folder = folder();
     assert!(render(folder.path(), &[]).status.success());
     let expected = read(folder.path().join("out.png")).unwrap();
-    // A stack for which no machine has room.
+    // No machine has memory for a stack of this size.
     let line = "RUST_MIN_STACK=1000000000000000 exec \"$0\" render --size 64x36 --backend cpu -o out.png";
     let output = shell(folder.path(), line);
     assert!(output.status.success(), "{}", stderr(&output));
@@ -73,7 +73,7 @@ fn without_threads_the_picture_is_the_same() {
 }
 
 #[test]
-fn a_picture_that_there_is_no_memory_for_is_refused() {
+fn an_image_that_does_not_fit_into_memory_is_refused() {
     let folder = folder();
     for backend in ["cpu", "gpu"] {
         let line = format!("ulimit -v 2000000; exec \"$0\" render --size 8192x8192 --backend {backend} -o out.png");
@@ -85,7 +85,7 @@ fn a_picture_that_there_is_no_memory_for_is_refused() {
 }
 
 #[test]
-fn without_a_session_nothing_is_said() {
+fn without_xdg_runtime_dir_stderr_is_empty() {
     let folder = folder();
     for runtime in [None, Some("here")] {
         let mut command = Command::new(PROGRAM);

@@ -1,4 +1,4 @@
-//! `haze ramp watch`: pictures follow their recipes.
+//! `haze ramp watch`: bakes recipes whenever they are saved.
 
 #![cfg(unix)]
 
@@ -11,12 +11,12 @@ use std::time::Duration;
 
 use super::{MOTIF, folder, haze, refusal};
 
-/// Late on a machine that does other things too.
+/// Timeout, long enough for a busy machine.
 const LATE: Duration = Duration::from_secs(20);
-/// Nothing more comes after this.
+/// Time after which no further line is expected.
 const STILL: Duration = Duration::from_millis(700);
 
-/// A program that watches, and the lines that it says.
+/// A running `haze ramp watch`, and the lines that it prints.
 struct Watching {
     child: Child,
     lines: Receiver<String>,
@@ -39,7 +39,7 @@ impl Watching {
         Self { child, lines }
     }
 
-    /// One line is said, and no more.
+    /// Waits for one line, and checks that no other follows.
     fn says(&self, line: &str, what: &str) {
         let said = self.lines.recv_timeout(LATE).unwrap_or_default();
         assert!(said.starts_with(line), "{what}: {said}");
@@ -106,7 +106,7 @@ fn every_way_of_saving_bakes_once() {
         assert_eq!(colour(&path("a.png")), before + 1, "{what}");
     }
     assert_eq!(colour(&path("b.png")), 1);
-    // A mistake is said, and the picture stays.
+    // An error is reported, and the image stays.
     fs::write(path("a.ramp.json"), "{").unwrap();
     watching.says("haze: a.ramp.json:1:1", "broken");
     assert_eq!(colour(&path("a.png")), 5);
@@ -116,7 +116,7 @@ fn every_way_of_saving_bakes_once() {
 }
 
 #[test]
-fn recipes_in_a_folder_come_and_go_and_what_was_painted_over_stays() {
+fn recipes_of_a_folder_are_followed_and_painted_images_are_kept() {
     let folder = folder();
     let path = |name: &str| folder.path().join(name);
     fs::write(path("painted.ramp.json"), recipe(1)).unwrap();
@@ -125,14 +125,14 @@ fn recipes_in_a_folder_come_and_go_and_what_was_painted_over_stays() {
     fs::write(path("odd.ramp.json"), recipe(1)).unwrap();
     fs::create_dir(path("odd.png")).unwrap();
     let watching = Watching::new(folder.path(), &["."]);
-    watching.says("haze: output: ./odd.png is not valid", "a folder in the place of a picture");
+    watching.says("haze: output: ./odd.png is not valid", "a folder in place of the image");
     fs::write(path("new.ramp.json"), recipe(7)).unwrap();
     watching.says("./new.png: 2x1", "new");
     fs::write(path("ball.motif.json"), MOTIF).unwrap();
     watching.says("./ball.png: 8x8", "a motif");
     fs::write(path("other.json"), "{").unwrap();
     fs::remove_file(path("new.ramp.json")).unwrap();
-    watching.is_still("none of its own, and gone");
+    watching.is_still("a file of another kind, and a deleted recipe");
     fs::write(path("new.ramp.json"), recipe(8)).unwrap();
     watching.says("./new.png: 2x1", "back");
     assert_eq!(colour(&path("new.png")), 8);
@@ -142,7 +142,7 @@ fn recipes_in_a_folder_come_and_go_and_what_was_painted_over_stays() {
 }
 
 #[test]
-fn an_interrupt_is_a_clean_end() {
+fn ctrl_c_ends_the_watch_with_exit_code_0() {
     let folder = folder();
     fs::write(folder.path().join("a.ramp.json"), recipe(1)).unwrap();
     let mut watching = Watching::new(folder.path(), &["."]);
@@ -153,7 +153,7 @@ fn an_interrupt_is_a_clean_end() {
 }
 
 #[test]
-fn what_cannot_be_watched_is_refused() {
+fn files_of_other_kinds_and_missing_files_are_refused() {
     let folder = folder();
     fs::write(folder.path().join("a.json"), "{}").unwrap();
     let line = |name: &str| refusal(folder.path(), &["ramp", "watch", name]);

@@ -1,14 +1,15 @@
-//! A display of the tests' own, and as much of the X protocol as it takes to treat a window as its user would.
+//! An X display for the tests, and as much of the X protocol as is needed to act like a user of a window.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// What is to be installed where there is no Xvfb.
-const MISSING: &str = "Xvfb is not here: the window cannot be tested; on Debian and Ubuntu `apt-get install xvfb`";
+/// Message if Xvfb is missing.
+const MISSING: &str =
+    "Xvfb is not installed, so the window cannot be tested; on Debian and Ubuntu run `apt-get install xvfb`";
 
-/// An X server without a screen, which ends with this.
+/// An X server without a screen, which ends when this is dropped.
 pub struct Display {
     server: Child,
     pub name: String,
@@ -42,11 +43,11 @@ impl Drop for Display {
 pub struct Client {
     stream: UnixStream,
     root: u32,
-    /// What the requests of that extension are.
+    /// Major opcode of the XTEST extension.
     xtest: u8,
 }
 
-/// Keys, by where they are on any PC's keyboard.
+/// Keys by their codes on a PC keyboard.
 #[derive(Clone, Copy)]
 pub enum Key {
     Three = 12,
@@ -54,7 +55,7 @@ pub enum Key {
     Z = 52,
 }
 
-/// One request: what it is, its small argument, and the rest in words of 32 bits.
+/// Encodes a request: opcode, data byte, and the rest as 32-bit words.
 fn request(code: u8, small: u8, words: &[u32]) -> Vec<u8> {
     let length = (words.len() as u16 + 1).to_le_bytes();
     let head = [code, small, length[0], length[1]];
@@ -72,7 +73,7 @@ impl Client {
         stream.write_all(&[b'l', 0, 11, 0, 0, 0, 0, 0, 0, 0, 0, 0]).unwrap();
         let mut head = [0; 8];
         stream.read_exact(&mut head).unwrap();
-        assert_eq!(head[0], 1, "the display lets nobody in");
+        assert_eq!(head[0], 1, "the display refused the connection");
         let mut setup = vec![0; 4 * usize::from(u16::from_le_bytes([head[6], head[7]]))];
         stream.read_exact(&mut setup).unwrap();
         let vendor = usize::from(u16::from_le_bytes([setup[16], setup[17]])).next_multiple_of(4);
@@ -89,14 +90,14 @@ impl Client {
         self.stream.write_all(request).unwrap();
     }
 
-    /// Sends a request that is answered.
+    /// Sends a request and returns its reply.
     fn ask(&mut self, request: &[u8]) -> Vec<u8> {
         self.send(request);
         loop {
             let mut answer = vec![0; 32];
             self.stream.read_exact(&mut answer).unwrap();
             match answer[0] {
-                // What was asked about is gone.
+                // An error: the resource is gone.
                 0 => return vec![0; 64],
                 1 => {
                     let mut more = vec![0; 4 * word(&answer, 4) as usize];
@@ -113,12 +114,12 @@ impl Client {
         let name = padded.as_bytes().chunks(4).map(|bytes| word(bytes, 0));
         let words: Vec<_> = [name.len() as u32 * 4].into_iter().chain(name).collect();
         let mut request = request(16, 0, &words);
-        // The length without what fills it up.
+        // The length of the name without padding.
         request[4] = padded.trim_end_matches('\0').len() as u8;
         word(&self.ask(&request), 8)
     }
 
-    /// The window that is to be seen, once there is one.
+    /// Waits for a visible window and returns it.
     pub fn window(&mut self) -> u32 {
         let start = Instant::now();
         while start.elapsed() < Duration::from_secs(60) {
@@ -131,14 +132,14 @@ impl Client {
             }
             std::thread::sleep(Duration::from_millis(50));
         }
-        panic!("no window came");
+        panic!("no window appeared");
     }
 
     pub fn resize(&mut self, window: u32, width: u32, height: u32) {
         self.send(&request(12, 0, &[window, 0x4 | 0x8, width, height]));
     }
 
-    /// Takes a window away, as a window manager does that minimises it.
+    /// Hides a window, as a window manager does to minimise it.
     pub fn unmap(&mut self, window: u32) {
         self.send(&request(10, 0, &[window]));
     }
@@ -147,31 +148,31 @@ impl Client {
         self.send(&request(8, 0, &[window]));
     }
 
-    /// Gives a window the keyboard, as a window manager does.
+    /// Gives a window the keyboard focus, as a window manager does.
     pub fn focus(&mut self, window: u32) {
         self.send(&request(42, 1, &[window, 0]));
     }
 
-    /// Presses a key and lets it go, as the keyboard does, while others are held.
+    /// Presses and releases a key while other keys are held.
     pub fn key(&mut self, held: &[Key], key: Key) {
         let keys = || held.iter().chain([&key]);
         keys().for_each(|key| self.fake(2, *key as u32, 0));
         keys().rev().for_each(|key| self.fake(3, *key as u32, 0));
     }
 
-    /// Presses the left button at a place of the display and lets it go, as the mouse does.
+    /// Clicks the left mouse button at a place of the display.
     pub fn click(&mut self, x: u32, y: u32) {
         for (kind, button) in [(6, 0), (4, 1), (5, 1)] {
             self.fake(kind, button, x | y << 16);
         }
     }
 
-    /// An event of the display's own keyboard and mouse: XTEST's FakeInput.
+    /// Sends a keyboard or mouse event of the display: XTEST's FakeInput.
     fn fake(&mut self, kind: u32, detail: u32, place: u32) {
         self.send(&request(self.xtest, 2, &[kind | detail << 8, 0, self.root, 0, 0, place, 0, 0]));
     }
 
-    /// What the button at the upper right of a window does.
+    /// Asks a window to close, as its close button does.
     pub fn close(&mut self, window: u32) {
         let [protocols, delete] = ["WM_PROTOCOLS", "WM_DELETE_WINDOW"].map(|name| self.atom(name));
         let message = 33 | 32 << 8;
