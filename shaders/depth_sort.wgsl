@@ -1,14 +1,16 @@
 // depth_sort
-// What    Puts a host's particles back to front, for the paths that blend: keys to sort them by, and then each into its place.
-// Reads   particles; their numbers, sorted.
-// Writes  keys and numbers; particles.
+// Sorts a host's particles back to front, for the paths that blend: computes the sort keys before the sort, and moves
+// each particle to its place after it.
+//
+// Reads   particles; after the sort, the sorted particle indices.
+// Writes  keys and particle indices; after the sort, sorted particles.
 // Space   View space.
 
 #import "lib/bindings.wgsl"
 #import "lib/tiles.wgsl"
 
 @group(3) @binding(0) var<uniform> tiles: Tiles;
-// Two for each, as in Particle.
+// Two per particle, as in Particle.
 @group(3) @binding(1) var<storage, read> particles: array<vec4f>;
 @group(3) @binding(2) var<storage, read_write> keys: array<u32>;
 @group(3) @binding(3) var<storage, read_write> numbers: array<u32>;

@@ -1,7 +1,8 @@
 // emit
-// What    Evaluates the particles of an emitter, one an invocation.
+// Evaluates the particles of an emitter, one per invocation.
+//
 // Reads   the emitter at a time.
-// Writes  particles, in the order of their births; those that are not alive have an amount of 0.
+// Writes  particles, in the order of their births; those that are not alive have amount 0.
 // Space   World space.
 
 #import "lib/emitter.wgsl"

@@ -1,8 +1,10 @@
 // sort
-// What    A stable radix sort, eight bits a time: digits are counted block by block, the counts are summed up, and every key goes
-//         to its place. The same on every device and in every run; nothing depends on subgroups or on the order of atomics.
-// Reads   keys and numbers.
-// Writes  the same, sorted by a digit.
+// Stable radix sort, 8 bits at a time: counts the digits block by block, sums up the counts, and moves every key to its
+// place. The result is the same on every device and in every run: nothing depends on subgroups or on the order of
+// atomics.
+//
+// Reads   keys and numbers (the particle indices that belong to them).
+// Writes  the same, sorted by one digit.
 // Source  Merrill and Grimshaw, "High performance and scalable radix sorting", 2011.
 
 #import "lib/tiles.wgsl"
@@ -13,25 +15,26 @@
 @group(0) @binding(2) var<storage, read> numbers: array<u32>;
 @group(0) @binding(3) var<storage, read_write> sorted_keys: array<u32>;
 @group(0) @binding(4) var<storage, read_write> sorted_numbers: array<u32>;
-// By digit, and by block in it: how many there are, and then how many come before. Of few blocks, by block and by digit in it.
+// By digit, then by block: the count, later the number of keys of that digit in earlier blocks. If FEW_BLOCKS: by
+// block, then by digit.
 @group(0) @binding(5) var<storage, read_write> counts: array<u32>;
-// How many there are of each digit.
+// Total number of keys per digit.
 @group(0) @binding(6) var<storage, read_write> totals: array<u32>;
 
-// The digit's lowest bit.
+// Lowest bit of the digit.
 override SHIFT: u32 = 0u;
-// Keys are few: every block counts all of them, and is handed no counts.
+// Few keys: every workgroup counts all keys itself, without `counts`.
 override FEW: bool = false;
-// Blocks are few: every one sums up the counts of all.
+// Few blocks: every workgroup sums up the counts of all blocks itself.
 override FEW_BLOCKS: bool = false;
 
 const DIGITS: u32 = 256u;
-// Keys of a block that one invocation handles. BLOCK in src/renderer/pass/sort.rs is those of all.
+// Keys of a block per invocation. BLOCK in src/renderer/pass/sort.rs is ROUNDS times the invocations of a workgroup.
 const ROUNDS: u32 = 4u;
 
 var<workgroup> digit_counts: array<atomic<u32>, DIGITS>;
 var<workgroup> counts_before: array<atomic<u32>, DIGITS>;
-// A bit for every invocation that has the digit, 32 in a word.
+// One bit for every invocation whose key has the digit, 32 per word.
 var<workgroup> holders: array<atomic<u32>, 2048>;
 var<workgroup> next_places: array<u32, DIGITS>;
 
@@ -51,7 +54,7 @@ fn count_digits(@builtin(local_invocation_index) local: u32, @builtin(workgroup_
     counts[select(local * tiles.blocks + block.x, block.x * DIGITS + local, FEW_BLOCKS)] = atomicLoad(&digit_counts[local]);
 }
 
-// One workgroup for each digit.
+// One workgroup per digit.
 @compute @workgroup_size(256)
 fn sum_counts(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) digit: vec3u) {
     var before = 0u;
@@ -73,12 +76,12 @@ fn sum_counts(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id
     }
 }
 
-// Keys of a block are so many times those of all invocations.
+// Returns the keys of a block per invocation.
 fn rounds() -> u32 {
     return select(ROUNDS, 1u, FEW);
 }
 
-// How many keys have a digit, and how many of them come before a block.
+// Returns the number of keys that have a digit, and how many of them are in earlier blocks.
 fn total_and_before(digit: u32, block: u32) -> vec2u {
     if FEW_BLOCKS {
         var sums = vec2u(0u);
@@ -125,7 +128,7 @@ fn scatter(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) b
             atomicOr(&holders[word * DIGITS + digit], 1u << bit);
         }
         workgroupBarrier();
-        // How many invocations before this one, and in all, have the digit.
+        // Invocations whose key has the digit: those before this one, and all.
         var rank = 0u;
         var all = 0u;
         for (var i = 0u; i < 8u; i++) {

@@ -1,9 +1,11 @@
 // tile_accumulate
-// What    Accumulates every sprite's normal, or light by six-way maps, and amount, as accumulate does, but texel by texel: walks the
-//         sprites of a bin front to back, adds them up in registers, and writes once.
-// Reads   lists of sprites, sprite flipbook, detail map or noise, reduced depth (or the host's own).
-// Writes  accumulation target, as accumulate.
-// Source  OTEE "Accumulating the particles"; blending front to back: Porter and Duff, "Compositing digital images", 1984.
+// Accumulates every sprite's normal, or its six-way light, and amount, like accumulate, but per texel: traverses the
+// sprites of a bin front to back, sums them in registers, and writes each texel once.
+//
+// Reads   sprite lists, sprite flipbook, detail map or noise, reduced depth (or the host's own).
+// Writes  accumulation target, as accumulate does.
+// Source  OTEE "Accumulating the particles"; front-to-back blending: Porter and Duff, "Compositing digital images",
+//         1984.
 // Space   Normals in view space. Depths in metres.
 
 #import "lib/tiles.wgsl"
@@ -14,14 +16,14 @@
 @group(3) @binding(2) var<storage, read> rects: array<vec2u>;
 @group(3) @binding(3) var<storage, read> numbers: array<u32>;
 @group(3) @binding(4) var<storage, read> lists: array<u32>;
-// Where the list of a bin begins, and its length.
+// Start of each bin's list, and its length.
 @group(3) @binding(5) var<storage, read> bins: array<vec2u>;
-// Reduced depth, or the host's depth where HOST_DEPTH.
+// Reduced depth, or the host's depth if HOST_DEPTH.
 @group(3) @binding(6) var tested_depth: texture_2d<f32>;
-// One of the two is the target, by its format.
+// One of these two is the target, depending on its format.
 @group(3) @binding(7) var float_target: texture_storage_2d<rgba16float, write>;
 @group(3) @binding(8) var byte_target: texture_storage_2d<rgba8unorm, write>;
-// Beside it one of these, or none.
+// Second target: one of these, or none.
 @group(3) @binding(9) var weight_target: texture_storage_2d<r32float, write>;
 @group(3) @binding(10) var six_way_target: texture_storage_2d<rgba16float, write>;
 
@@ -29,21 +31,21 @@ override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
 override WEIGHTED: bool = false;
 override BYTE_TARGET: bool = false;
 override SUMS_WEIGHTS: bool = false;
-// Stop where the smoke is opaque.
+// True: the traversal stops where the smoke is opaque.
 override STOPS: bool = true;
 
-// What still shines through when the walk may stop: 2⁻¹⁰, half of half a step of 8 bits.
+// Transmittance at which the traversal may stop: 2⁻¹⁰, a quarter of an 8-bit step.
 const OPAQUE: f32 = 0.0009765625;
 
-// A texel, and what there is in it so far.
+// A texel, and its accumulated values so far.
 struct Texel {
-    // Of the target.
+    // Position in the target, texels.
     place: vec2f,
     ray: vec2f,
     scene: f32,
-    // View depth from where on sprites, and those behind them, are hidden.
+    // If the front of a sprite is beyond this view depth, it and all later sprites of the list are hidden.
     end: f32,
-    // Of all sprites in front, premultiplied: normals, or light from right, top and front where SIX_WAY.
+    // Premultiplied sum over all sprites in front: normals, or light from right, top and front if SIX_WAY.
     normals: vec3f,
     // Light from left, bottom and back.
     negative: vec3f,
@@ -61,7 +63,7 @@ fn begun_texel(place: vec2u) -> Texel {
     return texel;
 }
 
-// With a sprite behind all that is there already. `uv`: of a square.
+// Returns the texel with one more sprite, behind all accumulated ones. `uv`: position in the sprite's square.
 fn with_sprite(texel: Texel, sprite: TileSprite, uv: vec2f, is_touched: bool) -> Texel {
     let in = fragment_of(sprite, texel.place, texel.ray, uv);
     let fragment = technique_fragment(in, frames_of(sprite), texel.scene);
@@ -80,12 +82,12 @@ fn with_sprite(texel: Texel, sprite: TileSprite, uv: vec2f, is_touched: bool) ->
     return next;
 }
 
-// What is further on cannot be seen through what is there.
+// True if the smoke in front hides all further sprites.
 fn is_done(texel: Texel) -> bool {
     return STOPS && texel.transmittance <= OPAQUE;
 }
 
-// Nor can it behind the scene, where no sprite further on begins nearer than `front`.
+// True also if the scene hides all further sprites. `front`: view depth before which no further sprite begins.
 fn is_done_before(texel: Texel, front: f32) -> bool {
     return is_done(texel) || front > texel.end;
 }
@@ -112,20 +114,21 @@ fn sprite_number(list: vec2u, at: u32) -> u32 {
     return lists[list.x + at];
 }
 
-// For adapters whose workgroups are cheap to run in step: a batch of sprites is read by all and kept where all can reach it. Each
-// invocation has two texels, one below the other, so that there is something to do while a lookup is on its way.
+// Cooperative traversal, for adapters with cheap barriers: a workgroup reads a batch of sprites once and shares it in
+// workgroup memory. Each invocation has two texels, one below the other, so that it has other work while it waits for a
+// texture lookup.
 const TILE: vec2u = vec2u(8u, 16u);
 const BATCH: u32 = 64u;
 
-// Those of a batch that touch the tile, front to back.
+// Sprites of a batch that touch the tile, front to back.
 var<workgroup> batch: array<TileSprite, BATCH>;
-// A bit for each of them.
+// One bit for each of them.
 var<workgroup> touching: array<atomic<u32>, 2>;
-// 1 where a texel is not done.
+// 1 if any texel of the tile is not done.
 var<workgroup> open: atomic<u32>;
-// Where the first sprite of the batch begins.
+// Front of the batch's first sprite, view depth.
 var<workgroup> front: f32;
-// Bits of the farthest view depth of the tile's scene, which is positive.
+// Bits of the farthest view depth of the scene in the tile. It is positive, so that its bits order as an integer.
 var<workgroup> farthest: atomic<u32>;
 
 @compute @workgroup_size(8, 8)
@@ -161,15 +164,15 @@ fn in_step(
         var sprite: TileSprite;
         var is_kept = false;
         if first + local < entries {
-            // All sprites once more, where they are drawn often.
+            // `debug_loop`: repeats the list.
             let number = sprite_number(list, (first + local) % list.y);
             if local == 0u {
                 front = sprite_front(sprites[number].centre_radius);
             }
-            // Most of a bin's sprites are elsewhere in it: no more is read of them.
+            // Most sprites of a bin do not touch this tile: reads only the rectangle of those.
             if rects_meet(rects[number], low, low + TILE) {
                 sprite = sprites[number];
-                // Only the middle of texels counts.
+                // Only texel centres count.
                 let reach = reach_in_square(sprite, 0.5 * vec2f(TILE - 1u));
                 let meets = is_sphere() || square_fills(sprite, uv_in_square(sprite, middle), reach);
                 is_kept = meets && sprite_front(sprite.centre_radius) <= end;
@@ -211,17 +214,18 @@ fn in_step(
     }
 }
 
-// True where a sprite may have something. `uv`: of a square.
+// True if a sprite may have something at `uv`, a position in its square.
 fn touches(sprite: TileSprite, uv: vec2f) -> bool {
     return is_sphere() || is_filled(sprite.filled, uv);
 }
 
-// For CPUs, where a barrier costs more than it saves: every invocation walks alone, for a column of texels. llvmpipe takes both sides
-// of every branch, so nothing is tested here: tile_refine has found what the tile has something of. Its lanes are a row of columns,
-// and stay together, as LOADS_SPRITE needs it: no column leaves before all of them are done.
+// Per-invocation traversal, for CPUs, where a barrier costs more than it saves: every invocation traverses the list for
+// a column of texels. llvmpipe executes both sides of every branch, so nothing is tested here: tile_refine has found
+// the sprites of each tile. The lanes of a SIMD vector are a row of columns. LOADS_SPRITE requires the same mip level,
+// and so the same sprite, in all lanes; therefore no column leaves the loop before all are done.
 const STRIDE: u32 = 8u;
 
-// Columns of each tile that are done.
+// Number of columns of each tile that are done.
 var<workgroup> done_columns: array<atomic<u32>, 8>;
 
 @compute @workgroup_size(8, 8)
@@ -247,7 +251,7 @@ fn alone(@builtin(global_invocation_id) invocation: vec3u, @builtin(local_invoca
     var batch = 0u;
     var next = 0u;
     loop {
-        // To the next batch with a sprite of the tile: all of them once more, where they are drawn often.
+        // Skips to the next batch that has a sprite of this tile; repeats the list for `debug_loop`.
         while bits == 0u && next < end {
             batch = next % length;
             bits = bits_of(list, batch, part.y * PARTS.x + part.x);
@@ -287,7 +291,7 @@ fn alone(@builtin(global_invocation_id) invocation: vec3u, @builtin(local_invoca
     if low.y + 3u < size.y { write_texel(low + vec2u(0u, 3u), d); }
 }
 
-// The sprites of a batch that a part of their bin may show: a bit for each.
+// Returns the sprites of a batch that may be visible in a part of their bin, one bit each.
 fn bits_of(list: vec2u, batch: u32, part: u32) -> u32 {
     let all = bits_below(min(list.y - batch, BATCH_ALONE));
     if list.x == EVERYTHING {
@@ -300,7 +304,7 @@ fn bits_below(count: u32) -> u32 {
     return select((1u << count) - 1u, 0xffffffffu, count >= 32u);
 }
 
-// True where a texel lies in a sprite. `uv`: of a square.
+// True if a texel lies in a sprite. `uv`: position in the sprite's square.
 fn covers(uv: vec2f) -> bool {
     return is_sphere() || (all(uv >= vec2f(0.0)) && all(uv < vec2f(1.0)));
 }

@@ -1,8 +1,9 @@
 // tile_bin
-// What    Lists, for every bin of the target, the sprites that touch it, front to back. Each list is as long as it need be; those
-//         that find no more room are left out, and their bins read all sprites instead.
-// Reads   sorted numbers and rectangles.
-// Writes  lists of sprites, and where each begins.
+// Lists, for every bin of the target, the sprites that touch it, front to back. The lists share one buffer, and each is
+// only as long as it must be. If a list overflows the buffer, it is dropped, and its bin reads all sprites instead.
+//
+// Reads   sorted sprite indices and rectangles.
+// Writes  sprite lists, and the start and length of each.
 
 #import "lib/tiles.wgsl"
 #import "lib/scan.wgsl"
@@ -10,10 +11,10 @@
 @group(0) @binding(0) var<uniform> tiles: Tiles;
 @group(0) @binding(1) var<storage, read> numbers: array<u32>;
 @group(0) @binding(2) var<storage, read> sorted_rects: array<vec2u>;
-// By bin, and by run in it: how many sprites there are, and then where they begin.
+// By bin, then by run: the number of sprites, later the position in the bin's list at which the run begins.
 @group(0) @binding(3) var<storage, read_write> counts: array<u32>;
 @group(0) @binding(4) var<storage, read_write> lists: array<u32>;
-// Where the bin's list begins, and its length.
+// Start of each bin's list, and its length.
 @group(0) @binding(5) var<storage, read_write> bins: array<vec2u>;
 @group(0) @binding(6) var<storage, read_write> tally: Tally;
 
@@ -37,9 +38,10 @@ fn count_sprites(@builtin(global_invocation_id) invocation: vec3u) {
     counts[bin * tiles.runs + run] = count;
 }
 
-// A bin's list of so many, and as many words more. Lists lie in any order, what is in them does not. A list that is longer than its
-// share of what 32 bits count is left out, so that none can wrap. (To add only as far as there is room, by exchange, takes a
-// millisecond where thousands of bins wait for each other.)
+// Allocates a bin's list of `length` sprites and `more` further words. Lists are in no particular order, but the
+// content of each is deterministic. A list that is longer than its share of a 32-bit count is dropped, so that the sum
+// cannot wrap. (Adding only as far as there is room, by compare-exchange, takes a millisecond if thousands of bins
+// contend.)
 fn bin_list(length: u32, more: u32) -> vec2u {
     let share = 0xffffffffu / (tiles.columns * tiles.rows);
     let is_counted = length <= share && more <= share - length;
@@ -49,10 +51,10 @@ fn bin_list(length: u32, more: u32) -> vec2u {
     return select(vec2u(EVERYTHING, tally.shown), vec2u(first, length), fits);
 }
 
-// One workgroup for each bin.
+// One workgroup per bin.
 @compute @workgroup_size(256)
 fn allocate(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bin: vec3u) {
-    // Those that count_sprites came to.
+    // Runs that count_sprites has counted.
     let runs = runs_of(tally.shown);
     var length = 0u;
     for (var first = 0u; first < runs; first += SCAN_SIZE) {
@@ -73,11 +75,12 @@ fn allocate(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) 
     }
 }
 
-// A bit for every sprite that touches the workgroup's bin, 32 in a word. FEW in src/renderer/pass/tile_bin.rs has as many.
+// One bit for every sprite that touches the workgroup's bin, 32 per word. FEW in src/renderer/pass/tile_bin.rs is their
+// number.
 var<workgroup> touching: array<atomic<u32>, 1024>;
 var<workgroup> begin: u32;
 
-// Where sprites are few: counts them and fills the list, too. One workgroup for each bin.
+// For few sprites: counts them and fills the list in one dispatch. One workgroup per bin.
 @compute @workgroup_size(256)
 fn list_few(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bin: vec3u) {
     let low = low_of_bin(bin.x);
@@ -88,7 +91,7 @@ fn list_few(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) 
         }
     }
     workgroupBarrier();
-    // Each invocation goes on with so many words.
+    // Words that each invocation processes from here on.
     let each = (tiles.count + 32u * SCAN_SIZE - 1u) / (32u * SCAN_SIZE);
     var count = 0u;
     for (var word = local * each; word < local * each + each; word++) {
@@ -112,7 +115,7 @@ fn list_few(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) 
     }
 }
 
-// Where invocations walk alone: one invocation for each bin, and with room for what tile_refine finds of each sprite.
+// For per-invocation traversal: one invocation per bin. Allocates room for the bits of tile_refine too.
 @compute @workgroup_size(64)
 fn allocate_alone(@builtin(global_invocation_id) invocation: vec3u) {
     let bin = invocation.x;
@@ -128,7 +131,7 @@ fn allocate_alone(@builtin(global_invocation_id) invocation: vec3u) {
     bins[bin] = bin_list(length, words_of(length));
 }
 
-// Bins from the first to before the last that a rectangle touches.
+// Bins that a rectangle touches: from `first` to before `last`.
 struct TouchedBins {
     first: vec2u,
     last: vec2u,
@@ -140,7 +143,8 @@ fn touched_bins(rect: vec2u) -> TouchedBins {
     return TouchedBins(low / tiles.bin_side, (high + tiles.bin_side - 1u) / tiles.bin_side);
 }
 
-// The same as count_sprites and fill, one invocation for each run: goes from sprite to sprite, and to no bin that it does not touch.
+// Same result as count_sprites and fill, for per-invocation traversal: one invocation per run, which visits each sprite
+// once and only the bins that it touches.
 @compute @workgroup_size(8)
 fn count_alone(@builtin(global_invocation_id) invocation: vec3u) {
     let run = invocation.x;

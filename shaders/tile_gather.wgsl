@@ -1,7 +1,8 @@
 // tile_gather
-// What    Puts the rectangles of sprites in order, as their numbers are, and finds how many are shown: so many tile_bin lists.
-// Reads   sorted keys and numbers, rectangles.
-// Writes  sorted rectangles; how many sprites there are to draw; workgroups for those that list them.
+// Copies the sprites' rectangles into sorted order, and counts the visible sprites, which tile_bin then lists.
+//
+// Reads   sorted keys and sprite indices, rectangles.
+// Writes  sorted rectangles; the number of visible sprites; the indirect dispatch size of tile_bin.
 
 #import "lib/tiles.wgsl"
 
@@ -11,10 +12,10 @@
 @group(0) @binding(3) var<storage, read> rects: array<vec2u>;
 @group(0) @binding(4) var<storage, read_write> sorted_rects: array<vec2u>;
 @group(0) @binding(5) var<storage, read_write> tally: Tally;
-// By bins, 64 to each, and runs.
+// Dispatch size: bins, 64 per workgroup; runs; 1.
 @group(0) @binding(6) var<storage, read_write> workgroups: array<u32, 3>;
 
-// Sprites come in order of their keys, and the hidden ones last.
+// True: sprites are sorted by key, hidden ones last.
 override SORTED: bool = true;
 
 fn is_shown(at: u32) -> bool {
@@ -31,7 +32,7 @@ fn gather(@builtin(global_invocation_id) invocation: vec3u) {
     if at + 1u < tiles.count && is_shown(at + 1u) {
         return;
     }
-    // The last that is shown knows how many are; the first, if none is.
+    // The invocation of the last visible sprite writes the count; if none is visible, the first invocation does.
     if is_shown(at) || at == 0u {
         let shown = select(0u, at + 1u, is_shown(at));
         tally.shown = shown;

@@ -1,8 +1,10 @@
 // tile_project
-// What    Places every particle in the view: what its fragments share, which texels it touches, and how near it is.
+// Projects every particle into the view: computes the data that its fragments share, the texels that it touches, and
+// its depth.
+//
 // Reads   particles.
-// Writes  sprites, their rectangles, and keys and numbers to sort, the last particle first: what is sorted stably then ends as
-//         the raster path draws it, backwards.
+// Writes  sprites, their rectangles, and keys and indices to sort, last particle first: after a stable sort, sprites of
+//         equal depth are then in the reverse of the raster path's drawing order.
 // Space   View space; rectangles in texels of the target.
 
 #import "lib/tiles.wgsl"
@@ -10,14 +12,14 @@
 #import "lib/order.wgsl"
 
 @group(3) @binding(0) var<uniform> tiles: Tiles;
-// Two for each, as in Particle.
+// Two per particle, as in Particle.
 @group(3) @binding(1) var<storage, read> particles: array<vec4f>;
 @group(3) @binding(2) var<storage, read_write> sprites: array<TileSprite>;
 @group(3) @binding(3) var<storage, read_write> rects: array<vec2u>;
 @group(3) @binding(4) var<storage, read_write> keys: array<u32>;
 @group(3) @binding(5) var<storage, read_write> numbers: array<u32>;
 
-// Sprites come in any order.
+// True: sprites are unsorted and their normals are weighted.
 override WEIGHTED: bool = false;
 
 @compute @workgroup_size(64)
@@ -47,17 +49,17 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
         low = texel_of_ndc(sphere_corner(placed.centre_radius, vec2f(-1.0, 1.0), texels_per_pixel));
         high = texel_of_ndc(sphere_corner(placed.centre_radius, vec2f(1.0, -1.0), texels_per_pixel));
     } else {
-        // A slab whose middle has passed the near plane is drawn on that.
+        // A slab whose centre has passed the near plane is drawn on that plane.
         let plane = mix(max(-centre.z, view.near), 1.0, view.orthographic);
         let middle = texel_of_ray(centre.xy / plane);
-        // View-space metres of a texel; the y of texels points down.
+        // Size of a texel in view space, metres; the y of texels points down.
         let metres = view.ray_scale * vec2f(2.0, -2.0) * (plane * system.scale) / view.size;
         let cosine = placed.rotation.x;
         let sine = placed.rotation.y;
         // v points down.
         sprite.uv_from_texels = vec4f(metres * vec2f(cosine, sine), metres * vec2f(sine, -cosine)) * (0.5 / radius);
         sprite.centre_radius = vec4f(middle, centre.z, radius);
-        // Of what is filled of the square: its middle, and half its sides.
+        // Filled part of the square: its centre, and half its sides.
         let reach = sprite_reach(frames, lod);
         let texels = radius / metres;
         let place = 0.5 * (reach.zw - reach.xy);
@@ -67,7 +69,7 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
         low = filled - across;
         high = filled + across;
     }
-    // Texels whose centres lie inside, and as many round them as rounding may hide.
+    // Texels whose centres lie inside, with a margin of 0.01 texels for rounding.
     let first = clamp(floor(low - 0.01), vec2f(0.0), system.target_size);
     let last = clamp(ceil(high + 0.01), vec2f(0.0), system.target_size);
 
@@ -81,7 +83,7 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
     if shown {
         sprites[number] = sprite;
     } else {
-        // Nothing is seen of it where all sprites are read.
+        // A sprite of zeros is invisible in bins that read all sprites.
         sprites[number] = TileSprite();
     }
     rects[number] = select(vec2u(0u), packed_rect(vec2u(first), vec2u(last)), shown);

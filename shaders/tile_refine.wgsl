@@ -1,9 +1,10 @@
 // tile_refine
-// What    Finds for every tile of a few texels, where invocations walk alone, which of its bin's sprites it may show something of:
-//         what is found once here, every texel would find there.
-// Reads   lists of bins, sprites, rectangles, reduced depth (or the host's own).
-// Writes  behind every list: of each batch of its sprites, a word for each part of the bin, a bit for each sprite. None where all
-//         the rest is hidden; all where the part is opaque before it.
+// Finds, for per-invocation traversal, which sprites of a bin may be visible in each of its tiles (parts of a few
+// texels), so that tile_accumulate need not test them per texel.
+//
+// Reads   sprite lists of the bins, sprites, rectangles, reduced depth (or the host's own).
+// Writes  behind every list: for each batch of its sprites one word per part of the bin, one bit per sprite. Once the
+//         scene hides all further sprites in a part, its bits are 0; once the part is opaque, its bits are 1.
 
 #import "lib/tiles.wgsl"
 #import "lib/tile_sprite.wgsl"
@@ -15,24 +16,25 @@
 @group(3) @binding(4) var tested_depth: texture_2d<f32>;
 @group(3) @binding(5) var<storage, read_write> lists: array<u32>;
 
-// The farthest view depth at which each part of the bin shows anything.
+// Farthest view depth at which each part of the bin shows anything.
 var<workgroup> ends: array<f32, BATCH_ALONE>;
-// Bits of the nearest of them, which is positive.
+// Bits of the nearest of them. It is positive, so that its bits order as an integer.
 var<workgroup> nearest_end: atomic<u32>;
-// Of each sprite of a batch: a bit for every part that it may be seen in.
+// For each sprite of a batch, one bit for every part in which it may be visible.
 var<workgroup> marks: array<u32, BATCH_ALONE>;
-// Optical depth of all sprites so far in the middle of the bin, about, in 256ths.
+// Approximate optical depth of all sprites so far at the centre of the bin, in 1/256.
 var<workgroup> depth: atomic<u32>;
-// Parts whose other words are known.
+// Number of parts whose remaining words are known.
 var<workgroup> settled_parts: atomic<u32>;
 
-// Walks stop where the smoke is opaque.
+// True: the traversal stops where the smoke is opaque.
 override STOPS: bool = true;
 
-// Optical depth of the middle of a bin where hardly a texel of it is not opaque: four times what a walk stops at.
+// Optical depth at the centre of a bin at which almost all of its texels are opaque: four times the depth at which a
+// traversal stops.
 const OPAQUE_DEPTH: u32 = 28u;
 
-// The farthest view depth at which texels show anything.
+// Returns the farthest view depth at which these texels show anything.
 fn shown_depth(low: vec2u, high: vec2u) -> f32 {
     var farthest = 0.0;
     for (var y = low.y; y < high.y; y++) {
@@ -43,13 +45,13 @@ fn shown_depth(low: vec2u, high: vec2u) -> f32 {
     return farthest + system.fade_through;
 }
 
-// The parts of a bin in which a sprite may be seen.
+// Returns the parts of a bin in which a sprite may be visible, one bit each.
 fn marks_of(number: u32, low: vec2u, part: vec2u) -> u32 {
     let sprite = sprites[number];
     let rect = rects[number];
     let front = sprite_front(sprite.centre_radius);
     let reach = reach_in_square(sprite, 0.5 * vec2f(part - 1u));
-    // From part to part.
+    // Steps from part to part.
     let uv = uv_in_square(sprite, vec2f(low) + 0.5 * vec2f(part));
     let across = sprite.uv_from_texels.xz * f32(part.x);
     let down = sprite.uv_from_texels.yw * f32(part.y);
@@ -64,14 +66,15 @@ fn marks_of(number: u32, low: vec2u, part: vec2u) -> u32 {
         }
         marks |= select(0u, 1u << bit, is_there);
     }
-    // Few are behind some of the scene. A CPU reads what lanes share slowly, and skips a loop, but not a branch.
+    // Few sprites are behind part of the scene. llvmpipe reads workgroup memory slowly and executes both sides of a
+    // branch, but it can skip a loop: the test therefore selects the loop's start.
     for (var bit = select(0u, BATCH_ALONE, front <= bitcast<f32>(atomicLoad(&nearest_end))); bit < BATCH_ALONE; bit++) {
         marks &= ~select(0u, 1u << bit, front > ends[bit]);
     }
     return marks;
 }
 
-// What a sprite has at a texel, about: puffs are thick in the middle, and thin out.
+// Returns the approximate amount of a sprite at a texel: puffs are thick in the centre and thin out.
 fn puff_amount(number: u32, texel: vec2f) -> f32 {
     let sprite = sprites[number];
     let place = 2.0 * uv_in_square(sprite, texel) - 1.0;
@@ -97,7 +100,7 @@ fn refine(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bi
     if is_settled {
         atomicAdd(&settled_parts, 1u);
     }
-    // What the words are from then on.
+    // Value of all remaining words.
     var rest = 0u;
     var batch = 0u;
     for (; batch < count; batch += BATCH_ALONE) {
@@ -116,9 +119,9 @@ fn refine(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bi
         }
         lists[list.x + count + at] = word;
         if !is_settled {
-            // The few texels that do come to more look at all of it.
+            // The few texels that are not opaque yet then visit all further sprites.
             let is_opaque = STOPS && !is_sphere() && atomicLoad(&depth) >= 256u * OPAQUE_DEPTH;
-            // Behind the scene, and so are all further on.
+            // The scene hides this sprite and all further ones.
             let is_hidden = sprite_front(sprites[lists[list.x + batch]].centre_radius) > end + tiles.hidden_after;
             is_settled = is_opaque || is_hidden;
             if is_settled {

@@ -1,16 +1,16 @@
-// The particles of an emitter: every one a function of seed, birth and time.
+// Particles of an emitter, each a function of seed, birth index and time.
 
 #import "lib/gradient_noise.wgsl"
 
-// An emitter at a time. Mirrors EmitterUniform in src/formula/uniforms.rs; what a setting means is told in src/emitter.rs.
+// An emitter at a time. Mirrors EmitterUniform in src/formula/uniforms.rs; src/emitter.rs documents the settings.
 struct Emitter {
-    // Index of the first birth that may be alive: its lower 32 bits. And how many there are from it on.
+    // Lower 32 bits of the index of the first birth that may be alive, and the number of births from there on.
     first: u32,
     count: u32,
     seed: u32,
-    // One of the EMITTER_SHAPEs.
+    // One of the EMITTER_SHAPE constants.
     shape: u32,
-    // Seconds since the interval of the first birth began: less digits than the time itself takes.
+    // Seconds since the interval of the first birth began, which needs fewer digits than the time itself.
     since_first: f32,
     rate: f32,
     lifetime: f32,
@@ -31,7 +31,7 @@ struct Emitter {
     radius_start: f32,
     disc_z: vec3f,
     radius_end: f32,
-    // Of the swirls: (cos, sin).
+    // Phase of the turbulence: (cos, sin).
     phase: vec2f,
     radius_spread: f32,
     spin: f32,
@@ -47,13 +47,13 @@ const EMITTER_SHAPE_DISC: u32 = 2u;
 
 const TURN: f32 = 6.283185307179586;
 
-// A particle, in the layout of instances.
+// A particle, in the layout of the instance buffer.
 struct Emitted {
     position_radius: vec4f,
     rotation_amount_frame_age: vec4f,
 }
 
-// A direction, evenly distributed. Uses y and z, so that x is free for a distance.
+// Returns a uniformly distributed direction. Uses y and z, so that x is free for a distance.
 fn unit_sphere(random: vec3f) -> vec3f {
     let z = random.z * 2.0 - 1.0;
     let angle = random.y * TURN;
@@ -61,11 +61,11 @@ fn unit_sphere(random: vec3f) -> vec3f {
     return vec3f(level.x, z, level.y);
 }
 
-// ∫ e^(−k·s) ds and ∫∫ e^(−k·s) ds over 0..t: what is left of a velocity, and of an acceleration, under drag k.
+// ∫ e^(−k·s) ds and ∫∫ e^(−k·s) ds over 0..t: the factors of a velocity and of an acceleration under drag k.
 fn drag_integrals(drag: f32, t: f32) -> vec2f {
     let x = drag * t;
     if x < 0.5 {
-        // The closed forms cancel near 0; this much of their series is exact to f32 here.
+        // The closed forms cancel near 0; this part of their series is exact to f32 here.
         let reached = 1.0 - x / 2.0 * (1.0 - x / 3.0 * (1.0 - x / 4.0 * (1.0 - x / 5.0 * (1.0 - x / 6.0 * (1.0 - x / 7.0)))));
         let approached = 1.0 - x / 3.0 * (1.0 - x / 4.0 * (1.0 - x / 5.0 * (1.0 - x / 6.0 * (1.0 - x / 7.0 * (1.0 - x / 8.0)))));
         return vec2f(t * reached, 0.5 * t * t * approached);
@@ -74,13 +74,13 @@ fn drag_integrals(drag: f32, t: f32) -> vec2f {
     return vec2f(reached, (t - reached) / drag);
 }
 
-// 0..1 with no slope at either end.
+// Smoothstep: 0..1 with slope 0 at both ends.
 fn eased(x: f32) -> f32 {
     let s = saturate(x);
     return s * s * (3.0 - 2.0 * s);
 }
 
-// Where in the shape a particle is born, from its middle.
+// Returns the birth position of a particle, relative to the centre of the shape.
 fn birth_offset(emitter: Emitter, random: vec3f) -> vec3f {
     switch emitter.shape {
         case EMITTER_SHAPE_BOX: {
@@ -97,13 +97,13 @@ fn birth_offset(emitter: Emitter, random: vec3f) -> vec3f {
     }
 }
 
-// 0..1, three for each birth and salt.
+// Returns three random numbers, 0..1, for a birth and a salt.
 fn birth_random(index: u32, salt: u32, seed: u32) -> vec3f {
     let hash = pcg3d(vec3u(index, salt, seed));
     return vec3f(unit(hash.x), unit(hash.y), unit(hash.z));
 }
 
-// The particle of a birth, counted from the first; of amount 0 where it is not alive.
+// Returns the particle of a birth, counted from the first; its amount is 0 if it is not alive.
 fn emitted_particle(emitter: Emitter, number: u32) -> Emitted {
     let index = emitter.first + number;
     let life = birth_random(index, 0u, emitter.seed);
@@ -122,13 +122,13 @@ fn emitted_particle(emitter: Emitter, number: u32) -> Emitted {
     let distance = length(offset);
     let outward = select(vec3f(0.0), offset / distance, distance > 0.0);
     let velocity = emitter.velocity + outward * emitter.burst + unit_sphere(motion) * (emitter.velocity_spread * life.z);
-    // v' = drag·(wind − v) + buoyancy, solved: position and spin approach their limits as 1 − e^(−drag·t).
+    // Solution of v' = drag·(wind − v) + buoyancy: position and spin approach their limits as 1 − e^(−drag·t).
     let integrals = drag_integrals(emitter.drag, seconds);
     let reached = integrals.x;
     let path = velocity * reached + emitter.wind * (seconds - reached) + emitter.rise * integrals.y;
     let base = emitter.position + offset + path;
 
-    // Swirls grow with age: smoke leaves the source smooth and breaks up on the way.
+    // Turbulence grows with age: smoke leaves the source smoothly and breaks up later.
     let large = curl_noise(base / emitter.turbulence_scale, emitter.phase, emitter.seed * 977u);
     let small = curl_noise(base * (2.3 / emitter.turbulence_scale), emitter.phase, emitter.seed * 977u + 5u);
     let position = base + (large + small * 0.4) * (emitter.turbulence * age);

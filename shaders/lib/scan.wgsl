@@ -1,11 +1,11 @@
-// Sums over a workgroup.
+// Prefix sums over a workgroup.
 
 const SCAN_SIZE: u32 = 256u;
 
 var<workgroup> scan_sums: array<u32, SCAN_SIZE>;
 
-// The sum of the values up to an invocation's own. Every invocation of the workgroup must be here. (Hillis and Steele, "Data
-// parallel algorithms", 1986)
+// Returns the sum of the values of all invocations up to and including this one. Must be called by every invocation of
+// the workgroup. (Hillis and Steele, "Data parallel algorithms", 1986)
 fn inclusive_sum(local: u32, value: u32) -> u32 {
     workgroupBarrier();
     scan_sums[local] = value;

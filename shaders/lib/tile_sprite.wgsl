@@ -1,11 +1,11 @@
-// A sprite as the tiled path keeps it: what all of its fragments share, worked out once.
+// Sprite data of the tiled path: everything that a sprite's fragments share, computed once.
 
 #import "lib/sprite_fragment.wgsl"
 
-// Sprites are compared with the host's depth, not with the reduced one.
+// True: sprites are compared with the host's depth, not with the reduced depth.
 override HOST_DEPTH: bool = false;
 
-// View depth of a texel of the one that they are compared with.
+// Returns the view depth of a texel of the depth that sprites are compared with.
 fn tested_view_depth(texel: f32) -> f32 {
     if HOST_DEPTH {
         return host_view_depth(texel);
@@ -14,21 +14,22 @@ fn tested_view_depth(texel: f32) -> f32 {
 }
 
 struct TileSprite {
-    // Squares: rows of the matrix from texels, from the middle, to uv.
+    // Squares: rows of the matrix from texels, relative to the centre, to uv.
     uv_from_texels: vec4f,
-    // View space. Squares: the middle in texels in xy.
+    // View space. Squares: xy is the centre in texels.
     centre_radius: vec4f,
     amount: f32,
     weight: f32,
-    // Both frames and the mip level, and the share of the second frame: worked out for every texel they took a sixteenth of the walk.
+    // Both frames and the mip level, and the weight of the second frame. Computing them per texel took a sixteenth of
+    // the traversal.
     frames_lod: u32,
     blend: f32,
     rotation: vec2f,
-    // Which of eight by eight cells of the picture there is something in, a byte for each row from the top.
+    // Cells of the sprite image, 8 by 8, that are not fully transparent: one byte per row, from the top.
     filled: vec2u,
 }
 
-// A device has no more than 2048 layers of frames, and a sprite's level is whole.
+// 12 bits per frame suffice, because no device has more than 2048 array layers; a sprite's mip level is an integer.
 fn packed_frames(frames: FlipbookFrames, lod: f32) -> u32 {
     return u32(frames.first) | (u32(frames.second) << 12u) | (u32(min(lod, 255.0)) << 24u);
 }
@@ -41,7 +42,7 @@ fn lod_of(sprite: TileSprite) -> f32 {
     return f32(sprite.frames_lod >> 24u);
 }
 
-// The cells of a sprite's frames, at its mip level.
+// Returns the filled cells of a sprite's frames at its mip level.
 fn filled_cells(frames: FlipbookFrames, lod: f32) -> vec2u {
     let cells = filled_texel(frames.first, lod).xy;
     if frames.blend > 0.0 {
@@ -50,14 +51,15 @@ fn filled_cells(frames: FlipbookFrames, lod: f32) -> vec2u {
     return cells;
 }
 
-// The cell of a picture at uv, or the nearest.
+// Returns the cell of the sprite image at uv, or the nearest one.
 fn cell_at(uv: vec2f) -> vec2u {
-    // Signed at first: CPUs have no instruction for the other way.
+    // Converts to signed integers first: CPUs have no instruction for a direct conversion to unsigned ones.
     return vec2u(vec2i(clamp(uv * 8.0, vec2f(0.0), vec2f(7.0))));
 }
 
-// True at uv inside the picture where it is not clear. Half-open, as the rasterizer has it: two squares side by side share no texel.
-// A number of 1 to 2 has its eighths in the three highest of its fraction's 23 bits: GPUs turn a float into an integer slowly.
+// True if uv is inside the image and its cell is filled. The range is half-open, as in the rasterizer: adjacent squares
+// share no texel. A number from 1 to 2 has its eighths in the three highest of its 23 fraction bits; this avoids the
+// conversion from float to integer, which is slow on GPUs.
 fn is_filled(cells: vec2u, uv: vec2f) -> bool {
     let bits = bitcast<vec2u>(uv + 1.0) - 0x3f800000u;
     let rows = select(cells.x, cells.y, (bits.y & 0x400000u) != 0u);
@@ -65,7 +67,7 @@ fn is_filled(cells: vec2u, uv: vec2f) -> bool {
     return max(bits.x, bits.y) < 0x800000u && ((rows >> cell) & 1u) == 1u;
 }
 
-// True if the picture is not clear everywhere between two corners, in uv.
+// True if any cell between two corners, in uv, is filled.
 fn is_filled_between(cells: vec2u, low: vec2f, high: vec2f) -> bool {
     let first = cell_at(low);
     let last = cell_at(high);
@@ -75,46 +77,47 @@ fn is_filled_between(cells: vec2u, low: vec2f, high: vec2f) -> bool {
     return any((cells & vec2u(upper, lower) & vec2u(columns)) != vec2u(0u));
 }
 
-// All bits of the lowest bytes of a word, up to four. No shift is by 32 bits.
+// Returns a word whose lowest `count` bytes are set, up to four. Shifts twice, because WGSL takes shift amounts modulo
+// 32.
 fn bytes_below(count: u32) -> u32 {
     return ~((0xffffffffu << (count * 4u)) << (count * 4u));
 }
 
-// Ray (as view_position has it) through a place of the target, texels.
+// Returns the ray (as in view_position) through a position in the target, texels.
 fn ray_through_texel(texel: vec2f) -> vec2f {
     let pixel = (texel + system.target_origin) * system.scale;
     return ndc_from_pixel(pixel, view.size) * view.ray_scale + view.ray_offset;
 }
 
-// The place of the target, texels, that a ray goes through.
+// Returns the position in the target, texels, that a ray goes through.
 fn texel_of_ray(ray: vec2f) -> vec2f {
     return texel_of_ndc((ray - view.ray_offset) / view.ray_scale);
 }
 
-// The same of the picture's NDC.
+// Returns the position in the target, texels, of the view's NDC.
 fn texel_of_ndc(ndc: vec2f) -> vec2f {
     return pixel_from_ndc(ndc, view.size) / system.scale - system.target_origin;
 }
 
-// A square's uv at a texel.
+// Returns the uv in a sprite's square at a texel.
 fn uv_in_square(sprite: TileSprite, texel: vec2f) -> vec2f {
     let offset = texel - sprite.centre_radius.xy;
     return vec2f(dot(sprite.uv_from_texels.xy, offset), dot(sprite.uv_from_texels.zw, offset)) + 0.5;
 }
 
-// Half the sides of the box in uv that holds a rectangle of texels, half its sides in `half_size`, and as much of a texel more as
-// rounding may hide.
+// Returns half the sides of the uv box that contains a rectangle of texels with half sides `half_size`, with a margin
+// of 0.01 texels for rounding.
 fn reach_in_square(sprite: TileSprite, half_size: vec2f) -> vec2f {
     let matrix = abs(sprite.uv_from_texels);
     return vec2f(dot(matrix.xy, half_size + 0.01), dot(matrix.zw, half_size + 0.01));
 }
 
-// False where there is nothing of a square so far round uv.
+// False if the sprite's square has nothing within `reach` of uv.
 fn square_fills(sprite: TileSprite, uv: vec2f, reach: vec2f) -> bool {
     return all(abs(uv - 0.5) <= reach + 0.5) && is_filled_between(sprite.filled, uv - reach, uv + reach);
 }
 
-// What the rasterizer would hand to the fragment at a texel. `ray`: through it.
+// Returns the input that the rasterizer would give the fragment shader at a texel. `ray`: through the texel.
 fn fragment_of(sprite: TileSprite, texel: vec2f, ray: vec2f, uv: vec2f) -> SpriteVertex {
     var out: SpriteVertex;
     out.position = vec4f(texel, 0.0, 1.0);

@@ -1,23 +1,24 @@
-//! Where the box round a particle system stands in a view: what the transfer pass draws, and how much target it needs.
+//! Projection of a system's bounding box: the pixels and depths that it covers. The transfer pass draws the box, and
+//! its screen rectangle determines the size of the accumulation target.
 
 use glam::{IVec2, UVec2, Vec2, Vec3};
 
 use super::view::ViewGeometry;
 use crate::frame::Bounds;
 
-/// Where a box stands in a view.
+/// Screen rectangle and depth range of a bounding box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct BoundsInView {
     /// Smallest view depth of the box, metres; negative if it reaches behind the eye.
     pub near: f32,
     /// Largest view depth of the box, metres.
     pub far: f32,
-    /// Covered pixels, `min` inclusive, `max` exclusive, inside the picture and not empty.
+    /// Covered pixels: `min` inclusive, `max` exclusive, inside the view and not empty.
     pub min: UVec2,
     pub max: UVec2,
 }
 
-/// Finds the pixels and depths that `bounds` covers; `None` when it is out of sight.
+/// Computes the pixels and depths that `bounds` covers; `None` if it is out of sight.
 pub(super) fn bounds_in_view(bounds: &Bounds, view: &ViewGeometry) -> Option<BoundsInView> {
     if bounds.is_empty() {
         return None;
@@ -43,7 +44,7 @@ pub(super) fn bounds_in_view(bounds: &Bounds, view: &ViewGeometry) -> Option<Bou
         if depths[index] >= clip_depth {
             include(corner);
         }
-        // The twelve edges: those that cross the near plane are cut there.
+        // Clips each of the twelve edges at the near plane.
         for bit in [1, 2, 4] {
             let other = index | bit;
             if other != index && (depths[index] < clip_depth) != (depths[other] < clip_depth) {
@@ -62,7 +63,7 @@ pub(super) fn bounds_in_view(bounds: &Bounds, view: &ViewGeometry) -> Option<Bou
     (min.cmplt(max).all()).then_some(BoundsInView { near, far, min, max })
 }
 
-/// A rectangle of texels of the reduced-resolution picture.
+/// A rectangle of texels on the grid of reduced resolution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TargetRect {
     /// First texel, on the grid whose texel (i, j) covers the pixels i·scale .. (i+1)·scale.
@@ -70,10 +71,10 @@ pub struct TargetRect {
     pub size: UVec2,
 }
 
-/// The texels that an upsampler can touch for the pixels of `bounds`.
+/// Returns the texels that an upsampler can read for the pixels of `bounds`.
 pub(super) fn target_rect(bounds: &BoundsInView, scale: u32, picture: UVec2) -> TargetRect {
     let grid = UVec2::new(picture.x.div_ceil(scale), picture.y.div_ceil(scale));
-    // Two texels more on every side: the widest footprint of a border pixel.
+    // Two texels more on every side: the widest footprint of an upsampler at a border pixel.
     let border = UVec2::splat(2);
     let min = (bounds.min / scale).saturating_sub(border);
     let max = UVec2::new(bounds.max.x.div_ceil(scale), bounds.max.y.div_ceil(scale)) + border;
@@ -98,14 +99,14 @@ mod tests {
     }
 
     #[test]
-    fn a_box_ahead_covers_the_middle_only() {
+    fn box_in_front_of_the_camera_covers_the_image_centre() {
         let found = bounds_in_view(&cube(Vec3::new(0.0, 0.0, -10.0), 1.0), &view(UVec2::new(640, 360))).unwrap();
         assert!((found.near - 9.0).abs() < 1e-5 && (found.far - 11.0).abs() < 1e-5);
         assert!(found.min.x > 250 && found.max.x < 390 && found.min.y > 130 && found.max.y < 230, "{found:?}");
     }
 
     #[test]
-    fn a_box_round_the_eye_covers_everything_and_one_behind_nothing() {
+    fn box_around_the_eye_covers_the_image_and_a_box_out_of_sight_nothing() {
         let view = view(UVec2::new(641, 359));
         let found = bounds_in_view(&cube(Vec3::ZERO, 2.0), &view).unwrap();
         assert_eq!((found.min, found.max), (UVec2::ZERO, UVec2::new(641, 359)));
@@ -116,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn the_rectangle_holds_every_bilinear_footprint() {
+    fn target_rectangle_contains_every_bilinear_footprint() {
         let picture = UVec2::new(641, 359);
         for scale in 1..=16 {
             let bounds = BoundsInView { near: 1.0, far: 2.0, min: UVec2::new(100, 50), max: UVec2::new(301, 200) };

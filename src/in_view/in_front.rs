@@ -1,4 +1,5 @@
-//! How much smoke lies in front of a view depth, on the average over the smoke's picture: what the order `weighted` goes by.
+//! Optical depth of the smoke in front of a view depth, averaged over the smoke's screen area, for the order
+//! `weighted`.
 
 use glam::{DVec2, Vec3Swizzles, Vec4};
 
@@ -8,13 +9,14 @@ use crate::formula::order::{FRONT_KNOTS, place_among_knots};
 use crate::frame::Particle;
 use crate::settings::{Settings, Technique};
 
-/// Mean of a sprite's optical depth over its square, of what it is in the middle: sprites thin out to their borders.
+/// Mean optical depth of a sprite over its square, relative to its centre: sprites thin out towards their borders.
 const MEAN_OF_SPRITE: f32 = 0.375;
 
-/// What a system whose sprites are on the GPU is taken for: optical depth from its near to its far side.
+/// Assumed optical depth from the near to the far side of a system whose sprites are on the GPU.
 const OF_BUFFER: f32 = 4.0;
 
-/// Optical depth in front of the knots of `optical_depth_in_front`, of particles that stand for so many each.
+/// Computes the optical depth in front of each knot of `optical_depth_in_front`. `stand_for`: number of sprites that
+/// each particle represents.
 pub(super) fn optical_depths(
     view: &ViewGeometry,
     particles: &[Particle],
@@ -23,7 +25,8 @@ pub(super) fn optical_depths(
     middle: &Middle,
 ) -> [Vec4; 4] {
     let mut knots = [0.0_f32; FRONT_KNOTS];
-    // Optical depth times area of every sprite, shared out between the two knots next to it, and where on the screen it is.
+    // Distributes optical depth times area of every sprite to the two nearest knots, and sums the first two moments of
+    // the view-space positions.
     let (mut total, mut sum, mut squares) = (0.0_f64, DVec2::ZERO, DVec2::ZERO);
     for particle in particles.iter().filter(|particle| particle.is_visible()) {
         let position = view.view_position(particle.position);
@@ -41,29 +44,29 @@ pub(super) fn optical_depths(
         sum += position.xy().as_dvec2() * share;
         squares += (position.xy().as_dvec2().powf(2.0) + f64::from(radius * radius) / 3.0) * share;
     }
-    // NaN: sprites of no size.
+    // NaN comes from sprites of size 0.
     if total.is_nan() || total <= 0.0 {
         let of_place = |knot: usize| (knot as f32 / (FRONT_KNOTS - 1) as f32 * 2.0 - 0.5).clamp(0.0, 1.0) * OF_BUFFER;
         return pack(std::array::from_fn(of_place));
     }
-    // The picture of the smoke as a rectangle: the variance of a side is a twelfth of its length squared.
+    // Approximates the smoke's outline by a rectangle: the variance along a side is its squared length divided by 12.
     let variance = (squares / total - (sum / total).powf(2.0)).max(DVec2::splat(1.0e-12));
     let area = 12.0 * (variance.x * variance.y).sqrt() as f32 / stand_for as f32;
     let mut in_front = 0.0;
     pack(knots.map(|knot| {
-        // Half of what is at a knot is in front of it.
+        // Half of a knot's own optical depth lies in front of the knot.
         let at_knot = in_front + 0.5 * knot / area;
         in_front += knot / area;
         at_knot
     }))
 }
 
-/// Optical depth of a sprite, in the mean over its square.
+/// Returns the mean optical depth of a sprite over its square.
 pub fn optical_depth(particle: &Particle, settings: &Settings) -> f32 {
     MEAN_OF_SPRITE * middle_of_sprite(particle, settings).0
 }
 
-/// Optical depth through the middle of a sprite, and its radius, metres.
+/// Returns the optical depth through a sprite's centre, and its radius in metres.
 fn middle_of_sprite(particle: &Particle, settings: &Settings) -> (f32, f32) {
     let amount = particle.shown_amount() * settings.accumulate.opacity;
     let radius = particle.radius * settings.sprite.size;
@@ -73,7 +76,7 @@ fn middle_of_sprite(particle: &Particle, settings: &Settings) -> (f32, f32) {
             (2.0 * radius * settings.spherical_billboard.density * amount, radius)
         }
         Technique::Density => (2.0 * radius * settings.density.density * amount, radius),
-        // The noise is half empty.
+        // Half of the noise volume is empty.
         Technique::VolumetricHard | Technique::VolumetricSoft => {
             (radius * settings.volumetric.opacity * amount, radius)
         }
@@ -94,7 +97,7 @@ mod tests {
     use crate::formula::order::optical_depth_in_front;
     use crate::frame::View;
 
-    /// Optical depth in front of each of `depths`, of walls of sprites at 8 and 12 m.
+    /// Returns the optical depth in front of each of `depths`, for walls of sprites at 8 and 12 m.
     fn in_front_of(amounts: [f32; 2], depths: [f32; 4]) -> [f32; 4] {
         let view = View::new(Mat4::IDENTITY, perspective(0.8, 1.0, 0.1, 80.0), UVec2::splat(64));
         let view = ViewGeometry::new(&view).unwrap();
@@ -112,9 +115,10 @@ mod tests {
     }
 
     #[test]
-    fn walls_of_sprites_add_up() {
+    fn optical_depths_of_sprite_walls_add_up() {
         let of_amount = |amount: f32| -(1.0 - amount).ln();
-        // Sprites of half a metre every quarter metre: four over each other, three eighths of each on the average.
+        // Sprites are 0.5 m wide and 0.25 m apart: four overlap everywhere, each with 3/8 of its optical depth on
+        // average.
         let of_wall = |amount| 4.0 * 0.375 * of_amount(amount);
         let (first, second) = (of_wall(0.3), of_wall(0.6));
         let [before, between, behind, far_behind] = in_front_of([0.3, 0.6], [6.0, 10.0, 14.5, 40.0]);

@@ -1,4 +1,4 @@
-//! Lights in a view.
+//! Lights in view space.
 
 use glam::Vec3;
 
@@ -6,7 +6,7 @@ use super::view::ViewGeometry;
 use crate::formula::uniforms::LightUniform;
 use crate::frame::{Bounds, Light, LightKind};
 
-/// Brings the lights that reach the box into view space.
+/// Writes the lights that reach the bounding box to `out`, in view space.
 pub fn lights_in_view(view: &ViewGeometry, lights: &[Light], bounds: &Bounds, out: &mut Vec<LightUniform>) {
     out.clear();
     let reaches = |light: &&Light| {

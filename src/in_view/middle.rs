@@ -1,8 +1,9 @@
-//! Where in a view the smoke of a system is: the plane that light is flattened to, and the depths between which lights come
-//! to stand behind it.
+//! Extent of a system's smoke in the view: the plane that light is flattened to, and the range of depths in which
+//! lights gradually move behind the smoke.
 //!
-//! A box would not do: it jumps with every sprite that is born or dies, and one stray sprite moves it. Here every sprite
-//! counts by what there is to see of it, so what is faint or small moves nothing, and what fades in or out moves it slowly.
+//! The bounding box is not suitable: it jumps with every birth and death, and one stray sprite moves it. Here every
+//! sprite is weighted by its visible amount and area, so faint or small sprites have little effect, and sprites that
+//! fade in or out move the result slowly.
 
 use glam::{DVec3, Vec3};
 
@@ -10,23 +11,26 @@ use super::bounds::BoundsInView;
 use super::view::ViewGeometry;
 use crate::frame::{Bounds, Particle};
 
-/// Where the smoke is, view space.
+/// Extent of the smoke, view space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Middle {
-    /// Light is flattened to the plane through it that faces the viewer; light by normal is baked for it.
+    /// Light is flattened to the plane through this point that faces the viewer; light by normal is baked for this
+    /// point.
     pub centre: Vec3,
-    /// View depths between which most of the smoke lies.
+    /// View depths between which most of the smoke lies, metres.
     pub near: f32,
     pub far: f32,
-    /// View depth behind which nothing is; sprites that are all but gone draw back from it.
+    /// View depth behind which there is no smoke, metres. A nearly transparent sprite contributes less, so that its
+    /// death causes no jump.
     pub farthest: f32,
 }
 
-/// The amount below which a sprite is all but gone.
+/// Amount below which a sprite counts as nearly transparent.
 const FAINT: f32 = 0.05;
 
 impl Middle {
-    /// Of the sprites that are in memory, or else of the box, `depth` being the host's choice.
+    /// Measures the particles in memory, or uses the bounding box if there are none. `depth`: view depth of the centre
+    /// that the host chose, metres.
     pub fn new(
         view: &ViewGeometry,
         particles: &[Particle],
@@ -43,25 +47,26 @@ impl Middle {
         middle
     }
 
-    /// Weighted by amount and area; `size` multiplies radii. `None` when nothing is in front of the viewer.
+    /// Measures particles, weighted by amount and area. `size` multiplies radii. Returns `None` if no particle is in
+    /// front of the viewer.
     fn of_particles(view: &ViewGeometry, particles: &[Particle], size: f32) -> Option<Self> {
-        // f64: a million sprites, squared.
+        // f64, because the squares of up to a million sprites are summed.
         let (mut weights, mut sum, mut squares) = (0.0_f64, DVec3::ZERO, 0.0_f64);
         for particle in particles.iter().filter(|particle| particle.is_visible()) {
             let position = view.view_position(particle.position).as_dvec3();
             let radius = f64::from(particle.radius * size);
-            // What passes the near plane loses its weight on the way there.
+            // The weight of a sprite fades out while it passes the near plane.
             let in_front = ((-position.z - f64::from(view.depth.near)) / radius).clamp(0.0, 1.0);
             let weight = f64::from(particle.shown_amount()) * in_front * radius * radius;
             weights += weight;
             sum += position * weight;
-            // A sprite stands for a puff as thick as it is wide.
+            // A sprite represents a puff as thick as it is wide.
             squares += (position.z * position.z + radius * radius / 3.0) * weight;
         }
-        // False for NaN: sprites of no size.
+        // False for NaN, which comes from sprites of size 0.
         (weights > 0.0).then(|| {
             let centre = sum / weights;
-            // The variance of a slab is a third of its half thickness, squared.
+            // The variance of a slab is its squared half thickness divided by 3.
             let half = (3.0 * (squares / weights - centre.z * centre.z)).max(0.0).sqrt();
             let (near, far) = ((-centre.z - half) as f32, (-centre.z + half) as f32);
             let behind = |particle: &Particle| {
@@ -74,7 +79,7 @@ impl Middle {
         })
     }
 
-    /// In the middle of what of the box is in front of the viewer.
+    /// Returns the centre of the part of the box that is in front of the viewer.
     fn of_bounds(view: &ViewGeometry, bounds: &Bounds, in_view: &BoundsInView) -> Self {
         let depth = 0.5 * (in_view.near.max(view.depth.near) + in_view.far);
         let centre = view.view_position(bounds.centre()).with_z(-depth);
@@ -103,37 +108,37 @@ mod tests {
     }
 
     #[test]
-    fn sprites_count_by_amount_and_area() {
+    fn sprites_are_weighted_by_amount_and_area() {
         let near_and_far = |amount, radius| -middle(&[puff(4.0, 1.0, 1.0), puff(8.0, radius, amount)], None).centre.z;
         assert!((near_and_far(1.0, 1.0) - 6.0).abs() < 1e-4);
         assert!((near_and_far(0.5, 1.0) - (4.0 + 8.0 * 0.5) / 1.5).abs() < 1e-4);
         assert!((near_and_far(1.0, 2.0) - (4.0 + 8.0 * 4.0) / 5.0).abs() < 1e-4);
-        // More than all counts as all.
+        // Amounts above 1 count as 1.
         assert!((near_and_far(1.0, 1.0) - near_and_far(7.0, 1.0)).abs() < 1e-6);
     }
 
     #[test]
-    fn a_single_puff_reaches_a_radius_either_way() {
+    fn single_puff_extends_one_radius_to_the_front_and_to_the_back() {
         let middle = middle(&[puff(5.0, 1.0, 1.0)], None);
         assert!((middle.near - 4.0).abs() < 1e-3 && (middle.far - 6.0).abs() < 1e-3, "{middle:?}");
     }
 
     #[test]
-    fn what_passes_the_near_plane_leaves_slowly() {
+    fn sprite_that_passes_the_near_plane_moves_the_centre_slowly() {
         let at = |depth| -middle(&[puff(6.0, 1.0, 1.0), puff(depth, 1.0, 1.0)], None).centre.z;
         let steps = (0..=400).map(|i| at(2.0 - 0.01 * i as f32));
         let largest = steps.clone().zip(steps.skip(1)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-        // It moves by 0.01 m a step; a sprite that left at once would take the middle 3 m with it.
+        // The sprite moves by 0.01 m per step. If it lost its weight at once, the centre would jump by 3 m.
         assert!(largest < 0.06, "{largest}");
         assert!((at(-2.0) - 6.0).abs() < 1e-4);
     }
 
     #[test]
-    fn a_host_may_choose() {
+    fn host_can_set_the_depth_of_the_centre() {
         let puffs = [puff(5.0, 1.0, 1.0)];
         let chosen = middle(&puffs, Some(9.0));
         assert!((chosen.centre.z + 9.0).abs() < 1e-5, "{chosen:?}");
-        // Behind the viewer there is no plane to light.
+        // A depth behind the viewer is clamped to the near plane.
         assert!((middle(&puffs, Some(-3.0)).centre.z + 0.1).abs() < 1e-5);
     }
 }

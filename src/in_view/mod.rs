@@ -1,4 +1,5 @@
-//! What is derived from a frame without a device: where things stand in the view, in uniforms that both renderers read.
+//! Device-independent data of a frame: the placement of systems and sprites in the view, and the uniforms that both
+//! renderers read.
 
 mod bounds;
 mod in_front;

@@ -1,34 +1,34 @@
-//! The sprites that there is something to see of, in the order in which they are drawn. Sorted normals are blended over each
-//! other and depend on it; the amount does not. (OTEE "Accumulating")
+//! Visible sprites in drawing order. Sorted normals are blended over each other and depend on the order; the amount
+//! does not. (OTEE "Accumulating")
 
 use super::view::ViewGeometry;
 use crate::frame::Particle;
 
-/// Scratch memory that is kept from frame to frame.
+/// Scratch memory, kept between frames.
 #[derive(Debug, Default)]
 pub struct SortScratch {
-    /// Sort key above, index below.
+    /// Sort key in the upper 32 bits, index in the lower 32 bits.
     keys: Vec<u64>,
-    /// What a round of the sort writes.
+    /// Output of a round of the sort.
     sorted: Vec<u64>,
 }
 
 impl SortScratch {
-    /// Gives back what the last sort did not need.
+    /// Releases memory that the last sort did not need.
     pub fn shrink(&mut self) {
         self.keys.shrink_to_fit();
         self.sorted.shrink_to_fit();
     }
 }
 
-/// Bits of a key that a round of the sort goes by.
+/// Bits of the key that one round of the sort uses.
 const DIGIT: u32 = 11;
 const DIGITS: usize = 3;
-/// Below this many the tables of the rounds cost more than they save.
+/// Minimum number of keys for the radix sort; for fewer, its tables cost more than they save.
 const MANY: usize = 512;
 
 impl SortScratch {
-    /// By key, and at one key by index. Rounds from the lowest digit up, each of which keeps the order of the one before.
+    /// Sorts by key, and by index for equal keys: a radix sort from the lowest digit up, each round stable.
     fn sort(&mut self) {
         let Self { keys, sorted } = self;
         if keys.len() < MANY {
@@ -42,7 +42,7 @@ impl SortScratch {
         }
         sorted.resize(keys.len(), 0);
         for (round, places) in places.iter_mut().enumerate() {
-            // Nothing moves where all have the same.
+            // A round in which all keys have the same digit moves nothing.
             if places[digit(keys[0], round)] == keys.len() {
                 continue;
             }
@@ -60,7 +60,7 @@ impl SortScratch {
     }
 }
 
-/// Writes the visible particles to `out`, sorted farthest first, or as they come.
+/// Writes the visible particles to `out`: farthest first if `is_sorted`, otherwise in the given order.
 pub fn in_order(
     view: &ViewGeometry,
     particles: &[Particle],
@@ -76,9 +76,9 @@ pub fn in_order(
     out.extend(particles.iter().filter(|particle| particle.is_visible()));
 }
 
-/// Equal depths keep their order, so that a picture is the same every time.
+/// Writes the visible particles back to front. Equal depths keep their order, so that the image is reproducible.
 fn back_to_front(view: &ViewGeometry, particles: &[Particle], scratch: &mut SortScratch, sorted: &mut Vec<Particle>) {
-    // The third row of view_from_world: view z, which grows towards the viewer.
+    // Third row of view_from_world: gives view z, which increases towards the viewer.
     let row = view.view_from_world.row(2);
     scratch.keys.clear();
     scratch.keys.extend((0u64..).zip(particles).filter(|(_, particle)| particle.is_visible()).map(
@@ -92,7 +92,7 @@ fn back_to_front(view: &ViewGeometry, particles: &[Particle], scratch: &mut Sort
     sorted.extend(scratch.keys.iter().map(|&key| particles[(key & 0xffff_ffff) as usize]));
 }
 
-/// Bits that order as the numbers do. (Herf, "Radix tricks", 2001)
+/// Maps a number to bits that sort in the same order. (Herf, "Radix tricks", 2001)
 fn ordered_bits(value: f32) -> u32 {
     let bits = value.to_bits();
     if bits >> 31 == 0 { bits | 0x8000_0000 } else { !bits }
@@ -106,7 +106,7 @@ mod tests {
     use glam::{Mat4, UVec2, Vec3};
 
     #[test]
-    fn farthest_first_hidden_dropped_ties_in_order() {
+    fn particles_are_sorted_farthest_first_ties_in_order_and_invisible_ones_dropped() {
         let clip_from_view = rh::proj::directx::perspective(1.0, 1.0, 0.1, 100.0);
         let view = ViewGeometry::new(&View::new(Mat4::IDENTITY, clip_from_view, UVec2::ONE)).unwrap();
         let at = |z: f32, frame: f32| Particle { position: Vec3::new(0.0, 0.0, z), frame, ..Particle::default() };
@@ -125,8 +125,8 @@ mod tests {
     }
 
     #[test]
-    fn many_are_sorted_as_few_are() {
-        // Depths of all signs and sizes, every one of them twice; and all the same.
+    fn radix_sort_matches_the_standard_sort() {
+        // Depths of all signs and magnitudes, each twice; in the last case all equal.
         for spread in [1.0, 1.0e-3, 0.0] {
             let depth = |index: u32| spread * f32::tan((index % 2000) as f32 * 2.4) - 3.0;
             let key = |index: u32| (u64::from(ordered_bits(depth(index))) << 32) | u64::from(index);

@@ -1,4 +1,5 @@
-//! Where sprites stand in the view, as `shaders/lib/sprite_vertex.wgsl` places them, and how many fragments they make.
+//! Projection of sprites into the view, as in `shaders/lib/sprite_vertex.wgsl`, and the number of fragments that they
+//! cover.
 
 use std::sync::Arc;
 
@@ -14,7 +15,7 @@ use crate::formula::view::{pixel_from_ndc, pixels_per_metre};
 use crate::frame::Particle;
 use crate::settings::{Settings, SpriteAnimation, Technique};
 
-/// The texels that sprites are drawn on: texel (i, j) is the pixels from (origin + (i, j)) · scale.
+/// Texel grid that sprites are drawn on: texel (i, j) covers `scale` by `scale` pixels from (origin + (i, j)) · scale.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid {
     pub origin: Vec2,
@@ -22,31 +23,31 @@ pub struct Grid {
     pub size: UVec2,
 }
 
-/// A sprite that is not hidden, in view space.
+/// A visible sprite, in view space.
 #[derive(Clone, Copy, Debug)]
 pub struct SpriteInView {
     pub centre: Vec3,
     pub radius: f32,
-    /// After opacity and near fade.
+    /// Amount after opacity and near fade.
     pub amount: f32,
     pub frames: FlipbookFrames,
     pub lod: f32,
 }
 
-/// What a sprite covers of a grid.
+/// Area that a sprite covers on a grid.
 pub struct Covered<'p> {
     pub texels: f64,
-    /// Of its square, what it reaches of it; 1 of spheres.
+    /// Share of the sprite's square that is not trimmed; 1 for spheres.
     pub share: f64,
     pub particle: &'p Particle,
 }
 
-/// What is known of sprites' pictures.
+/// Trimming of sprites to the filled part of their frames.
 #[derive(Clone, Debug)]
 pub struct Pictures {
     animation: SpriteAnimation,
     filled: Arc<Filled>,
-    /// The first frame of those that show where there is anything; `None` where that is taken to be everywhere.
+    /// First frame whose filled part is used for trimming; `None` if sprites are not trimmed.
     first_frame: Option<i32>,
 }
 
@@ -61,13 +62,13 @@ impl Pictures {
         }
     }
 
-    /// `sprite_reach()`.
+    /// Same as `sprite_reach()` in the shader.
     fn reach(&self, sprite: &SpriteInView) -> Vec4 {
         self.first_frame.map_or(Vec4::ONE, |first| self.filled.reach(frames_after(sprite.frames, first), sprite.lod))
     }
 }
 
-/// What places sprites.
+/// Projects sprites into a view.
 #[derive(Clone, Copy, Debug)]
 pub struct Placing<'a> {
     pub view: &'a ViewUniform,
@@ -77,7 +78,7 @@ pub struct Placing<'a> {
 }
 
 impl Placing<'_> {
-    /// `placed_sprite()`; `None` when the sprite is hidden.
+    /// Same as `placed_sprite()` in the shader; `None` if the sprite is hidden.
     pub fn sprite(&self, particle: &Particle, texels_per_pixel: f32) -> Option<SpriteInView> {
         let Self { view, system, technique, pictures } = *self;
         let centre = view.view_from_world.transform_point3(particle.position);
@@ -106,17 +107,18 @@ impl Placing<'_> {
         })
     }
 
-    /// How far a flat sprite reaches from its middle, as a share of half a side: left, down, right, up.
+    /// Returns the extent of a flat sprite from its centre, as fractions of half a side: left, down, right, up.
     pub fn reach(&self, sprite: &SpriteInView) -> Vec4 {
         self.pictures.reach(sprite)
     }
 
-    /// A slab whose middle has passed the near plane is drawn on that.
+    /// Returns the position at which a sprite is drawn: a slab whose centre has passed the near plane is drawn on that
+    /// plane.
     pub fn on_screen(&self, centre: Vec3) -> Vec3 {
         centre.with_z(centre.z.min(-self.view.near))
     }
 
-    /// `sphere_corner()`: upper left and lower right corner, in pixels.
+    /// Same as `sphere_corner()` in the shader: returns the upper left and the lower right corner, in pixels.
     pub fn sphere_rectangle(&self, sprite: &SpriteInView, texels_per_pixel: f32) -> (Vec2, Vec2) {
         let (view, SpriteInView { centre, radius, .. }) = (self.view, *sprite);
         let rays = if view.orthographic > 0.5 {
@@ -135,14 +137,14 @@ impl Placing<'_> {
         (ray - self.view.ray_offset) / self.view.ray_scale
     }
 
-    /// How many texels of a grid the sprites cover, one above the other, as if nothing of the scene stood in front: their areas,
-    /// which counts of texels' centres are in the mean over where a sprite may lie. Each of these is shaded once, but for those
-    /// that a depth test rejects before.
+    /// Returns the number of texels of a grid that the sprites cover, counted once per sprite, as if nothing of the
+    /// scene were in front. Uses areas, which equal the mean number of covered texel centres over all positions of a
+    /// sprite. Each of these texels is shaded once, unless a depth test rejects it first.
     pub fn fragments(&self, grid: &Grid, particles: &[Particle]) -> f64 {
         self.covered(grid, particles.iter()).map(|covered| covered.texels).sum()
     }
 
-    /// What each sprite covers that is seen.
+    /// Returns the coverage of each visible sprite.
     pub fn covered<'p>(
         &self,
         grid: &Grid,
@@ -164,7 +166,7 @@ impl Placing<'_> {
         })
     }
 
-    /// Of what a flat sprite has of its square: in pixels, in order round it.
+    /// Returns the corners of the trimmed square of a flat sprite, in pixels, in order around it.
     fn corners(&self, sprite: &SpriteInView, reach: Vec4, rotation: f32) -> [Vec2; 4] {
         let centre = self.on_screen(sprite.centre);
         let along = if self.view.orthographic > 0.5 { 1.0 } else { -centre.z };
@@ -176,11 +178,11 @@ impl Placing<'_> {
     }
 }
 
-/// The area of a convex polygon within 0..size. (Sutherland and Hodgman, 1974)
+/// Returns the area of a convex polygon within 0..size. (Sutherland and Hodgman, 1974)
 fn area_within(corners: [Vec2; 4], size: Vec2, scratch: &mut [Vec<DVec2>; 2]) -> f64 {
     let [polygon, clipped] = scratch;
     polygon.clear();
-    // A sprite close to the eye may be far larger than a target.
+    // f64, because a sprite close to the eye may be far larger than the target.
     polygon.extend(corners.map(Vec2::as_dvec2));
     let size = size.as_dvec2();
     let min = corners.into_iter().fold(Vec2::INFINITY, Vec2::min).as_dvec2();
@@ -206,7 +208,7 @@ fn area_within(corners: [Vec2; 4], size: Vec2, scratch: &mut [Vec<DVec2>; 2]) ->
     0.5 * pairs(polygon).map(|(a, b)| a.perp_dot(*b)).sum::<f64>().abs()
 }
 
-/// The sides of a polygon.
+/// Returns the sides of a polygon, as pairs of corners.
 fn pairs(polygon: &[DVec2]) -> impl Iterator<Item = (&DVec2, &DVec2)> {
     polygon.iter().zip(polygon.iter().cycle().skip(1))
 }
@@ -216,7 +218,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_is_on_the_target_counts() {
+    fn area_counts_only_the_part_on_the_target() {
         let square = |middle: Vec2, half: f32, angle: f32| {
             let side = Vec2::from_angle(angle) * half;
             [side + side.perp(), side.perp() - side, -side - side.perp(), side - side.perp()]
@@ -226,7 +228,7 @@ mod tests {
         let diamond = std::f32::consts::FRAC_PI_4;
         let cases = [
             (square(Vec2::new(50.0, 30.0), 10.0, 0.3), 400.0),
-            // Half, a quarter, all of the target, nothing of it.
+            // Half of the square; a quarter of it; the whole target; nothing.
             (square(Vec2::new(0.0, 30.0), 10.0, 0.0), 200.0),
             (square(Vec2::new(100.0, 60.0), 10.0, diamond), 100.0),
             (square(Vec2::new(50.0, 30.0), 1.0e9, 0.7), 6000.0),

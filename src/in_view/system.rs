@@ -1,4 +1,4 @@
-//! One particle system in a view: the texels it needs and its uniforms.
+//! One particle system in a view: the texels of its target, and its uniforms.
 
 use glam::{DVec3, UVec2, Vec2, Vec3, Vec4};
 
@@ -15,19 +15,19 @@ use crate::formula::uniforms::{LightUniform, SystemUniform};
 use crate::frame::{Bounds, Particle};
 use crate::settings::{Backlight, DepthSource, DiffuseMode, Order, Settings};
 
-/// What there is to know about a system before it is placed in a view.
+/// Properties of a system before it is placed in a view.
 #[derive(Clone, Copy, Debug)]
 pub struct SystemInWorld<'a> {
     pub bounds: &'a Bounds,
-    /// View depth that the host wants it lit at.
+    /// View depth that the host chose for lighting, metres.
     pub depth: Option<f32>,
-    /// None where they are on the GPU.
+    /// Empty if the particles are on the GPU.
     pub particles: &'a [Particle],
-    /// How many each of them stands for.
+    /// Number of particles that each of them represents.
     pub stand_for: u32,
     pub settings: &'a Settings,
     pub material: &'a MaterialInfo,
-    /// View space; those that reach the system.
+    /// Lights that reach the system, view space.
     pub lights: &'a [LightUniform],
     /// Unit length.
     pub up: Vec3,
@@ -35,41 +35,42 @@ pub struct SystemInWorld<'a> {
     pub time: f32,
 }
 
-/// A system that is in sight.
+/// A visible system.
 #[derive(Clone, Copy, Debug)]
 pub struct SystemInView {
     pub rect: TargetRect,
-    /// Pixels that the box covers.
+    /// Size of the bounding box on the screen, pixels.
     pub pixels: UVec2,
     pub uniform: SystemUniform,
-    /// The transfer draws the back faces of the box: it reaches to or behind the near plane, or shows through the scene.
+    /// True if the transfer draws the back faces of the box: it reaches to or behind the near plane, or its sprites
+    /// show through the scene.
     pub back_faces: bool,
-    /// View depth of the middle of the smoke.
+    /// View depth of the smoke's centre, metres.
     pub distance: f32,
-    /// The same as the host measures it.
+    /// The same in the host's view space, metres.
     pub lit_depth: f32,
 }
 
 impl SystemInView {
-    /// The texels of its target.
+    /// Returns the texel grid of the system's target.
     pub fn grid(&self) -> Grid {
         Grid { origin: self.rect.origin.as_vec2(), scale: self.uniform.scale, size: self.rect.size }
     }
 }
 
-/// Places a system in the view; `None` when it is out of sight. `targets` is the size of the host's targets, of which the view
-/// may be a part.
+/// Places a system in the view; `None` if it is out of sight. `targets`: size of the host's targets, pixels; the view
+/// may be a part of them.
 pub fn system_in_view(view: &ViewGeometry, targets: UVec2, system: &SystemInWorld<'_>) -> Option<SystemInView> {
     let SystemInWorld { bounds, depth, particles, stand_for, settings, material, lights, up, time } = *system;
     let in_view = bounds_in_view(bounds, view)?;
     let middle = Middle::new(view, particles, settings.sprite.size, bounds, &in_view, depth);
-    // A few do not tell where the last one is.
+    // A sample does not include the farthest particle.
     let farthest = if stand_for == 1 { middle.farthest } else { in_view.far };
     let accumulate = &settings.accumulate;
     let scale = accumulate.effective_scale(view.size);
     let rect = match accumulate.depth_source {
         DepthSource::Reduced => target_rect(&in_view, scale, view.size),
-        // Attachments of one pass are of one size.
+        // All attachments of a pass must have one size.
         DepthSource::Host => TargetRect { origin: -view.origin.as_ivec2(), size: targets },
     };
 
@@ -141,15 +142,15 @@ pub fn system_in_view(view: &ViewGeometry, targets: UVec2, system: &SystemInWorl
             add_light(&mut uniform.spherical_harmonics, &zonal, sample.direction, colour);
         }
     }
-    // The front of the box may be hidden by what sprites show through.
+    // If sprites show through the scene, the scene may hide the front of the box.
     let back_faces = in_view.near <= view.depth.near || uniform.fade_through > 0.0;
     let distance = -uniform.centre.z;
     let pixels = in_view.max - in_view.min;
     Some(SystemInView { rect, pixels, uniform, back_faces, distance, lit_depth: distance - view.depth_offset })
 }
 
-/// Where the eye stands in the noise, which has risen: within one tile of it, so that f32 stays fine after hours and far from
-/// the world's origin.
+/// Returns the position of the eye in the noise, which rises with time. The position is wrapped to one tile, so that
+/// f32 is precise enough after hours and far from the world's origin.
 fn noise_offset(view: &ViewGeometry, settings: &Settings, up: Vec3, time: f32) -> Vec3 {
     let volumetric = &settings.volumetric;
     let seconds = if settings.sprite.freeze_animation { 0.0 } else { f64::from(time) };
@@ -159,11 +160,11 @@ fn noise_offset(view: &ViewGeometry, settings: &Settings, up: Vec3, time: f32) -
     DVec3::from(place.to_array().map(|axis| axis.rem_euclid(size))).as_vec3()
 }
 
-/// Scale (xy) and offset (zw) from the picture's NDC to the target's.
+/// Returns scale (xy) and offset (zw) from the view's NDC to the target's.
 ///
-/// A pixel p is at texel p / scale − origin of the target, so in x, with p = (ndc/2 + 1/2)·W and target NDC = 2·t/w − 1:
-/// scale = W / (s·w), offset = (W/s − 2·origin) / w − 1. In y, which points up in NDC and down in texels, the offset's
-/// sign is the other way round.
+/// A pixel p is at texel p / scale − origin of the target. In x, with p = (ndc/2 + 1/2)·W and target NDC = 2·t/w − 1:
+/// scale = W / (s·w), offset = (W/s − 2·origin) / w − 1. In y, which points up in NDC and down in texels, the offset
+/// has the opposite sign.
 fn target_from_ndc(rect: &TargetRect, scale: u32, picture: UVec2) -> Vec4 {
     let texels = picture.as_vec2() / scale as f32;
     let size = rect.size.as_vec2();

@@ -1,4 +1,4 @@
-//! A host's camera, brought into one form, and what follows from it.
+//! A host's camera in one normal form, and values derived from it.
 
 use glam::{Mat3, Mat4, UVec2, Vec2, Vec3, Vec4};
 
@@ -7,12 +7,12 @@ use crate::formula::depth::{DepthConvention, SKY_VIEW_DEPTH, depth_coefficients}
 use crate::formula::uniforms::ViewUniform;
 use crate::frame::View;
 
-/// How far an entry of a matrix may be off what a rigid transform or a plain projection has there: what f32 leaves of a product
-/// of many rotations.
+/// Tolerance for the entries of a rigid transform or of a plain projection: allows for f32 rounding in a product of
+/// many rotations.
 const TOLERANCE: f32 = 1.0e-3;
 
-/// A view in the form that everything else works on: view space has x to the right and y up *in the picture* and z towards the
-/// viewer, and begins at the near plane or in front of it.
+/// A view in the normal form that all other code uses: in view space, x points right and y up *in the image*, z points
+/// towards the viewer, and the near plane is not behind the eye.
 #[derive(Clone, Copy, Debug)]
 pub struct ViewGeometry {
     pub view_from_world: Mat4,
@@ -25,9 +25,9 @@ pub struct ViewGeometry {
     pub ray_scale: Vec2,
     /// View-space xy at the NDC origin, same units; zero for a centred projection.
     pub ray_offset: Vec2,
-    /// Added to the host's view depth: not 0 for an orthographic view that begins behind the viewer.
+    /// Added to the host's view depth, metres. Not 0 for an orthographic view whose near plane is behind the viewer.
     pub depth_offset: f32,
-    /// `view_from_world` mirrors: what is counter-clockwise in the world is clockwise in the picture.
+    /// True if `view_from_world` mirrors: counter-clockwise in the world is then clockwise in the image.
     pub mirrored: bool,
 }
 
@@ -40,7 +40,7 @@ impl ViewGeometry {
         validate_rigid(&view.view_from_world)?;
         let projection = plain_projection(&view.clip_from_view)?;
 
-        // Axes that the projection turns over are turned in the view instead.
+        // Moves flipped axes from the projection to the view matrix.
         let flip = Vec3::new(
             projection.x_axis.x.signum(),
             projection.y_axis.y.signum(),
@@ -50,7 +50,8 @@ impl ViewGeometry {
         let mut view_from_world = flip * view.view_from_world;
         let mut clip_from_view = projection * flip;
         let mut depth = DepthConvention::from_clip_from_view(&clip_from_view)?;
-        // Where an orthographic viewer stands changes nothing: this one steps back to the near plane.
+        // The position of an orthographic viewer along its view direction is arbitrary: moves it back to the near
+        // plane.
         let depth_offset = if depth.orthographic { (-depth.near).max(0.0) } else { 0.0 };
         if depth_offset > 0.0 {
             let back = Mat4::from_translation(Vec3::new(0.0, 0.0, -depth_offset));
@@ -79,7 +80,7 @@ impl ViewGeometry {
         self.view_from_world.transform_point3(world)
     }
 
-    /// `linear_depth`: the scene depth is view depth already.
+    /// Returns the view's uniforms. `linear_depth`: true if the scene depth is linear view depth.
     pub fn uniform(&self, linear_depth: bool) -> ViewUniform {
         let linear = Vec4::new(self.depth_offset, 1.0, 1.0, 0.0);
         ViewUniform {
@@ -105,11 +106,11 @@ fn validate_rigid(view_from_world: &Mat4) -> Result<(), FieldError> {
     if view_from_world.is_finite() && rotates && view_from_world.row(3) == Vec4::W {
         return Ok(());
     }
-    let expected = "finite numbers that turn, move or mirror, without scale or shear";
+    let expected = "a finite matrix that only rotates, translates or mirrors, without scale or shear";
     Err(FieldError::new("view.view_from_world", view_from_world, expected))
 }
 
-/// The projection with w = ±z or w = 1; refuses those that tilt, shear or roll.
+/// Returns the projection scaled to w = ±z or w = 1. Refuses projections that tilt, shear or roll.
 fn plain_projection(clip_from_view: &Mat4) -> Result<Mat4, FieldError> {
     let refuse = |expected: &str| Err(FieldError::new("view.clip_from_view", clip_from_view, expected));
     if !clip_from_view.is_finite() {
@@ -125,23 +126,23 @@ fn plain_projection(clip_from_view: &Mat4) -> Result<Mat4, FieldError> {
     if !orthographic && m.w_axis.w != 0.0 {
         return refuse("w = -z or w = z, without a constant");
     }
-    // What must be 0, in units of the picture.
+    // These entries must be 0, relative to the focal scale.
     let off = |entries: &[f32]| entries.iter().any(|entry| entry.abs() > TOLERANCE * focal.max_element());
     if off(&[m.x_axis.y, m.y_axis.x]) {
-        return refuse("a projection that does not roll: turn view_from_world instead");
+        return refuse("a projection that does not roll: rotate view_from_world instead");
     }
     if off(&[m.x_axis.z, m.y_axis.z, m.x_axis.w, m.y_axis.w]) {
-        return refuse("near and far planes that face the viewer: an oblique near plane cannot be read back as depth");
+        return refuse("near and far planes perpendicular to the view direction (no oblique near plane)");
     }
     let shear = if orthographic { m.z_axis } else { m.w_axis };
     if off(&[shear.x, shear.y]) {
-        return refuse("a projection that does not shear: move view_from_world instead");
+        return refuse("a projection that does not shear: translate view_from_world instead");
     }
     Ok(*clip_from_view * (1.0 / w))
 }
 
-/// True if the viewer looks along +z of view space. An orthographic projection says so by where its planes are; one that reaches
-/// as far behind the viewer as in front is taken to look along −z.
+/// Returns true if the viewer looks along +z of view space. For an orthographic projection, the positions of the near
+/// and far planes decide; if it reaches as far behind the viewer as in front, −z is assumed.
 fn looks_along_positive_z(projection: &Mat4) -> bool {
     let (scale, offset) = (projection.z_axis.z, projection.w_axis.z);
     if projection.z_axis.w != 0.0 { projection.z_axis.w > 0.0 } else { (0.5 - offset) / scale > 0.0 }
@@ -165,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn every_convention_is_read_off_its_matrix() {
+    fn depth_convention_is_derived_from_the_projection_matrix() {
         let (perspective, orthographic) = (
             rh::proj::directx::perspective(FOV, 1.5, 0.2, 80.0),
             rh::proj::directx::orthographic(-4.0, 4.0, -3.0, 3.0, 0.5, 60.0),
@@ -178,13 +179,13 @@ mod tests {
             (reversed(perspective), 0.2, 80.0, true, false),
             (orthographic, 0.5, 60.0, false, true),
             (reversed(orthographic), 0.5, 60.0, true, true),
-            // A far plane that f32 rounds beyond infinity.
+            // A far plane so distant that it is infinite in f32.
             (rh::proj::directx::perspective(FOV, 1.5, 0.2, 1.0e9), 0.2, infinite, false, false),
-            // The same from +z view space.
+            // The same with view space that looks along +z.
             (lh::proj::directx::perspective(FOV, 1.5, 0.2, 80.0), 0.2, 80.0, false, false),
             (reversed(lh::proj::directx::perspective(FOV, 1.5, 0.2, 80.0)), 0.2, 80.0, true, false),
             (lh::proj::directx::orthographic(-4.0, 4.0, -3.0, 3.0, 0.5, 60.0), 0.5, 60.0, false, true),
-            // A scale of all of clip space changes nothing.
+            // A uniform scale of clip space changes nothing.
             (perspective * 3.0, 0.2, 80.0, false, false),
         ];
         for (matrix, near, far, reversed, orthographic) in cases {
@@ -212,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn whatever_the_axes_a_point_of_the_world_is_where_the_host_puts_it() {
+    fn world_points_project_as_in_the_host_for_all_axis_conventions() {
         let rh_view = rh::view::look_at_mat4(vec3(1.0, 2.0, 5.0), Vec3::ZERO, Vec3::Y);
         let lh_view = lh::view::look_at_mat4(vec3(1.0, 2.0, 5.0), Vec3::ZERO, Vec3::Y);
         let rh_projection = rh::proj::directx::perspective(FOV, 1.5, 0.1, 100.0);
@@ -235,7 +236,7 @@ mod tests {
                 let expected = (clip_from_view * view_from_world).project_point3(world);
                 let position = g.view_position(world);
                 assert!(g.clip_from_view.project_point3(position).distance(expected) < 1e-4, "case {index}");
-                // In front of the viewer, to the right and up in the picture.
+                // The point is in front of the viewer; x is to the right and y is up in the image.
                 assert!(position.z < 0.0, "case {index}");
                 let from_axis = position - vec3(g.ray_offset.x, g.ray_offset.y, 0.0);
                 assert_eq!(from_axis.x > 0.0, expected.x > 0.0, "case {index}");
@@ -245,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn unusable_views_are_refused_with_the_field() {
+    fn invalid_views_are_refused_and_the_field_is_named() {
         let perspective = rh::proj::directx::perspective(FOV, 1.5, 0.1, 100.0);
         let view = View::new(Mat4::IDENTITY, perspective, UVec2::new(4, 4));
         let field = |view: View| ViewGeometry::new(&view).unwrap_err().field;
@@ -277,7 +278,7 @@ mod tests {
         ] {
             assert_eq!(field(View { view_from_world: scaled, ..view }), "view.view_from_world", "{scaled}");
         }
-        // What a long chain of rotations leaves of a rigid transform is taken.
+        // The rounding errors of a long chain of rotations are accepted.
         let worn = (0..1000).fold(Mat4::IDENTITY, |m, i| Mat4::from_rotation_y(0.1 + i as f32) * m);
         ViewGeometry::new(&View { view_from_world: worn, ..view }).unwrap();
     }

@@ -1,4 +1,4 @@
-//! What renderers of one device share.
+//! Resources that the renderers of one device share.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -16,32 +16,32 @@ use crate::assets::material::MaterialAssets;
 use crate::error::{Error, FieldError};
 use crate::frame::Material;
 
-/// What all renderers of one device share: shader modules, bind group layouts, samplers and pipelines. A clone is the same
-/// context; it may be used from any thread.
+/// Resources that all renderers of one device share: shader modules, bind group layouts, samplers and pipelines. A
+/// clone refers to the same context. A context can be used from any thread.
 ///
-/// A program with one view needs none of its own: [`Renderer::new`](crate::Renderer::new) makes one. For split screens, stereo,
-/// shadow or reflection views, make a renderer for each view, and hand the same context to each: they are cheap then, and no
-/// pipeline is compiled twice.
+/// A program with one view needs no explicit context: [`Renderer::new`](crate::Renderer::new) creates one. For split
+/// screens, stereo, shadow or reflection views, create one renderer per view and give each the same context: creating a
+/// renderer is then cheap, and no pipeline is compiled twice.
 #[derive(Clone, Debug)]
 pub struct Context(Arc<Shared>);
 
 #[derive(Debug)]
 pub(crate) struct Shared {
-    /// No other context has it. wgpu compares devices by a number that two instances may both give.
+    /// Unique in the process. wgpu compares devices by an ID that two instances may both assign.
     pub number: u64,
     pub device: wgpu::Device,
     pub layouts: Layouts,
     textures: SharedTextures,
     pub passes: Passes,
-    /// [`read_only_depth_is_supported`], asked once: the answer is one of many that a device makes a copy of each time.
+    /// [`read_only_depth_is_supported`], queried once, because every query copies the adapter's information.
     pub read_only_depth: bool,
-    /// Six-way light is there; else smoke is lit by normals.
+    /// True if the device supports six-way lighting; otherwise smoke is lit by normals.
     pub six_way: bool,
     path_model: Mutex<PathModel>,
 }
 
 impl Shared {
-    /// As [`Situation::tiles`](super::plan::Situation::tiles).
+    /// Returns the traversal of the path `tiled`, as in [`Situation::tiles`](super::plan::Situation::tiles).
     pub fn tiles(&self) -> Option<bool> {
         self.passes.tiled.as_ref().map(Tiled::in_step)
     }
@@ -52,24 +52,24 @@ impl Shared {
 }
 
 impl Context {
-    /// Compiles the shader modules. Pipelines are compiled by the first `prepare` that needs them, or ahead by
+    /// Compiles the shader modules. Pipelines are compiled by the first `prepare` that needs them, or in advance by
     /// [`Renderer::warm_up`](crate::Renderer::warm_up).
     ///
-    /// `pipeline_cache`: one that the host made from what it saved the last time, on backends that have them (today Vulkan, with
-    /// `Features::PIPELINE_CACHE`). Pipelines are looked up in it and added to it; the host takes its contents out with
-    /// `get_data` when it likes.
+    /// `pipeline_cache`: a cache that the host created from saved data, on backends that support it (today Vulkan, with
+    /// `Features::PIPELINE_CACHE`). Pipelines are looked up in it and added to it. The host reads its contents with
+    /// `get_data` to save them.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, pipeline_cache: Option<&wgpu::PipelineCache>) -> Self {
         let layouts = Layouts::new(device);
         let Ok(passes) = Passes::new(device, &layouts, pipeline_cache, |name| embedded_shader(device, name));
         Self::assemble(device, queue, layouts, passes)
     }
 
-    /// The same with shaders that someone works on. They are compiled and checked before the context is made: the modules, and a
-    /// pipeline of every pass. What only other settings bring to light, [`Renderer::warm_up`](crate::Renderer::warm_up)
-    /// reports. On its error keep the context that there is, and its renderers.
+    /// Creates a context with custom shaders, for shader development. Compiles and validates all shader modules and one
+    /// pipeline of every pass before it creates the context. [`Renderer::warm_up`](crate::Renderer::warm_up) reports
+    /// errors that occur only with other settings. After an error, keep using the previous context and its renderers.
     ///
     /// # Errors
-    /// [`Error::Shader`]: the first mistake, with its place in the file that has it.
+    /// [`Error::Shader`]: the first error, with its line and column in the file that contains it.
     pub fn with_shaders(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
@@ -100,10 +100,12 @@ impl Context {
         }))
     }
 
-    /// Uploads ramps and sprite pictures. Make each material once and keep it; all renderers of this context draw with it.
+    /// Uploads ramps and sprite images. Create each material once and keep it; all renderers of this context can use
+    /// it.
     ///
     /// # Errors
-    /// [`Error::Field`] naming a picture that is too large for the device, or the device if it is another than this context's.
+    /// [`Error::Field`] names an image that is too large for the device, six-way maps whose size differs from the
+    /// sprite's, or `device` if it is not this context's device.
     pub fn create_material(
         &self,
         device: &wgpu::Device,
@@ -115,34 +117,38 @@ impl Context {
         Ok(create_material(&Gpu { device, queue }, &layouts.material, textures, *number, assets)?)
     }
 
-    /// Pipelines compiled so far. It stands still once everything that a program draws has been drawn or warmed up.
+    /// Returns the number of pipelines compiled so far. It stays constant once everything that a program draws has been
+    /// drawn or warmed up.
     pub fn pipeline_count(&self) -> usize {
         self.0.passes.pipeline_count()
     }
 
-    /// True if the device has the path `tiled`.
+    /// Returns true if the device supports the path `tiled`.
     pub fn has_tiles(&self) -> bool {
         self.0.tiles().is_some()
     }
 
-    /// By what the path `auto` chooses: at first, what devices of this kind were measured at.
+    /// Returns the cost model by which the path `auto` chooses. Initially, it contains figures measured on a device of
+    /// this type.
     pub fn path_model(&self) -> PathModel {
         self.0.path_model()
     }
 
-    /// Sets by what the path `auto` chooses, from the next frame on: what [`measure_paths`](Self::measure_paths) found, now or when the
-    /// program last ran on this device, or a host's own figures.
+    /// Sets the cost model by which the path `auto` chooses, from the next frame on: the result of
+    /// [`measure_paths`](Self::measure_paths), from this run or from an earlier run on this device, or the host's own
+    /// figures.
     ///
     /// # Errors
-    /// [`Error::Field`] naming a cost that is negative or not finite, or no cores.
+    /// [`Error::Field`] names a cost that is negative or not finite, or `cores` if it is 0.
     pub fn set_path_model(&self, model: PathModel) -> Result<(), Error> {
         model.validate()?;
         *self.0.path_model.lock().unwrap_or_else(PoisonError::into_inner) = model;
         Ok(())
     }
 
-    /// Whether the workgroups of the path `tiled` walk in step, as is best for GPUs, or each invocation by itself, as is best for
-    /// CPUs: for tests and measurements of the one where the other is chosen. The picture is the same.
+    /// Selects the traversal of the path `tiled`: true for cooperative (a workgroup shares each batch of sprites;
+    /// default on GPUs), false for per invocation (default on CPUs). For tests and measurements of the variant that is
+    /// not the device's default. Both give the same image.
     #[doc(hidden)]
     pub fn walk_in_step(&self, in_step: bool) {
         self.0.passes.tiled.iter().for_each(|tiled| tiled.set_in_step(in_step));
@@ -152,11 +158,11 @@ impl Context {
         &self.0
     }
 
-    /// Refuses any device but this context's.
+    /// Refuses any device other than this context's.
     pub(crate) fn validate_device(&self, device: &wgpu::Device) -> Result<(), FieldError> {
         if self.0.device == *device {
             return Ok(());
         }
-        Err(FieldError::new("device", "another than the context's", "the device that the context was made with"))
+        Err(FieldError::new("device", "a device other than the context's", "the device that created the context"))
     }
 }

@@ -1,13 +1,14 @@
-//! What a frame draws, and in how many layers.
+//! Counts of a frame's draws, and its overdraw.
 
-/// What the last frame draws, as far as the CPU knows.
+/// Counts of the last frame, as far as the CPU knows them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameCounts {
-    /// Systems in sight.
+    /// Visible systems.
     pub systems: u64,
-    /// Their sprites: those of a slice that can be drawn, all of a buffer; times `debug_loop`.
+    /// Their sprites, times `debug_loop`. Of a slice, only visible particles count; of a buffer, all of them; of an
+    /// emitter that the GPU evaluates, all births that may be alive.
     pub sprites: u64,
-    /// Texels of the accumulation targets that are in use. Forward systems have none.
+    /// Texels in use in the accumulation targets; 0 for forward systems.
     pub texels: u64,
 }
 
@@ -21,20 +22,20 @@ impl std::iter::Sum for FrameCounts {
     }
 }
 
-/// How many layers the sprites of a frame lie in.
+/// Overdraw of the sprites of a frame.
 ///
-/// Worked out from where each sprite stands, without the scene: a depth test spares what is hidden, if the hardware rejects it before
-/// it is shaded. Systems whose particles are in a buffer are left out, as the CPU does not know them.
+/// Computed from sprite positions, without the scene: a depth test removes hidden fragments if the hardware rejects
+/// them before shading. Systems whose particles are in a buffer are excluded, because the CPU does not know them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Overdraw {
-    /// Fragments: the areas of all sprites, in texels of the accumulation targets, and in pixels where they are drawn forward.
+    /// Sum of the areas of all sprites, in texels of the accumulation targets; in pixels for forward systems.
     pub fragments: f64,
-    /// What they fall on: the texels, and pixels, that the boxes of the systems cover.
+    /// Texels that the bounding boxes of the systems cover; pixels for forward systems.
     pub texels: f64,
 }
 
 impl Overdraw {
-    /// Layers over each other in the mean; 0 where there is nothing.
+    /// Returns the mean number of layers; 0 if nothing is drawn.
     pub fn mean(&self) -> f64 {
         self.fragments / self.texels.max(1.0)
     }

@@ -1,35 +1,38 @@
-//! The pass that a renderer will draw into.
+//! Description of a renderer and of the host's render pass.
 
 use super::context::Context;
 use super::gpu::host_pass::{HostPass, MAX_ATTACHMENTS};
 use crate::error::FieldError;
 
-/// Describes a renderer: the host's pass, and what it shares with other renderers. All of it is fixed for the life of a
-/// [`Renderer`](crate::Renderer).
+/// Describes a renderer: the host's render pass, and the context that it shares with other renderers. All fields are
+/// fixed for the lifetime of a [`Renderer`](crate::Renderer).
 #[derive(Clone, Copy, Debug)]
 pub struct Descriptor<'a> {
-    /// What is shared with the renderers of other views; `None` for a context of its own.
+    /// Context shared with the renderers of other views; `None` creates a context for this renderer alone.
     pub context: Option<&'a Context>,
-    /// Format of the first colour attachment: blendable. `Rgba16Float` for HDR.
+    /// Format of the first colour attachment. It must be blendable. Use `Rgba16Float` for HDR.
     pub color_format: wgpu::TextureFormat,
-    /// Formats of the pass's further colour attachments (velocity, object numbers …), in order; `None` for a hole. haze leaves
-    /// them as they are.
+    /// Formats of the pass's further colour attachments (velocity, object IDs …), in order, at most 7; `None` for an
+    /// unused index. haze does not write to them.
     pub further_color_formats: &'a [Option<wgpu::TextureFormat>],
-    /// Format of the pass's depth attachment, `None` if it has none. The attachment is the scene depth of the frame,
-    /// read-only (`depth_ops: None`), because haze samples it too. OpenGL and WebGL2 cannot do both with one
-    /// texture: there either hand over a linear target ([`SceneDepth::Both`](crate::SceneDepth::Both)), or say `None`. See
-    /// [`read_only_depth_is_supported`](crate::read_only_depth_is_supported). The passes of a multisampled host test the
-    /// multisampled buffer and hand over a resolved one.
+    /// Format of the pass's depth attachment, `None` if it has none.
+    ///
+    /// The attachment is the frame's scene depth. It must be read-only (`depth_ops: None`), because haze samples it
+    /// too. OpenGL and WebGL2 cannot test and sample one texture in the same pass: there, supply a linear target
+    /// ([`SceneDepth::Both`](crate::SceneDepth::Both)) or set `None`. See
+    /// [`read_only_depth_is_supported`](crate::read_only_depth_is_supported). A multisampled host attaches its
+    /// multisampled depth buffer and supplies a resolved one as scene depth.
     pub depth_format: Option<wgpu::TextureFormat>,
-    /// Samples per pixel of the pass.
+    /// Samples per pixel of the pass: 1, or a count that the device supports for these formats.
     pub sample_count: u32,
-    /// True where the first attachment holds sRGB code and the hardware does not know it: an `Rgba8Unorm` picture that is
-    /// shown as it is. haze then writes code, clamped to 0..1, and blends code. Leave it false for linear light, and for
-    /// formats that end in `Srgb`, which encode by themselves.
+    /// True if the first attachment stores sRGB-encoded values in a format that the hardware does not encode, for
+    /// example an `Rgba8Unorm` texture that is displayed as is. haze then encodes its output, clamped to 0..1, and
+    /// blends encoded values. Set false for linear light, and for formats that end in `Srgb`, which the hardware
+    /// encodes.
     pub gamma_target: bool,
-    /// Filter ramps and sprites in the shader in f32 instead of by the sampler: slower, and equal to the reference on
-    /// every driver. For tests. Samplers weigh texels in steps of 1/256, so without it thin smoke under lights of 1000 and more is
-    /// a little off in up to 0.3 % of the pixels.
+    /// Filters ramps and sprites in the shader in f32 instead of by the sampler: slower, but equal to the CPU reference
+    /// on every driver. Intended for tests. Samplers quantize filter weights to 1/256; without exact filtering, thin
+    /// smoke under light intensities of 1000 and more differs slightly from the reference in up to 0.3 % of the pixels.
     pub exact_filtering: bool,
 }
 
@@ -48,7 +51,10 @@ impl Default for Descriptor<'_> {
 }
 
 impl Descriptor<'_> {
-    /// The pass, if the device can have one like it.
+    /// Returns the pass.
+    ///
+    /// # Errors
+    /// Names the field that the device does not support.
     pub(crate) fn host_pass(&self, device: &wgpu::Device) -> Result<HostPass, FieldError> {
         let pass = HostPass {
             depth_format: self.depth_format,
@@ -62,7 +68,7 @@ impl Descriptor<'_> {
             return Err(FieldError::new("further_color_formats", value, expected));
         };
         if self.gamma_target && self.color_format.is_srgb() {
-            let expected = "false for a format that encodes by itself";
+            let expected = "false for a format that ends in Srgb, which the hardware encodes";
             return Err(FieldError::new("gamma_target", "true", expected));
         }
         pass.validate(device)?;

@@ -1,4 +1,4 @@
-//! What one frame records for a system: its passes with everything that they bind.
+//! Passes that one frame records for a system, with all their bindings.
 
 use std::sync::Arc;
 
@@ -25,13 +25,13 @@ use super::tiled::{TiledInputs, TiledPasses, TiledSystem};
 use crate::in_view::SystemInView;
 use crate::settings::ShadeTree;
 
-/// What makes a system's particles, where they do not come as they are drawn.
+/// Pass that produces a system's particles on the GPU, if their buffer cannot be drawn as is.
 #[derive(Debug)]
 #[allow(clippy::large_enum_variant, reason = "as Draw")]
 pub(crate) enum ParticlesPass {
     /// Evaluates an emitter.
     Emit(Emit),
-    /// Puts a host's own back to front.
+    /// Sorts a host's particles back to front.
     DepthSort(DepthSort, Groups),
 }
 
@@ -44,18 +44,18 @@ impl ParticlesPass {
     }
 }
 
-/// How a system reaches the picture.
+/// Passes that draw a system.
 #[derive(Debug)]
 #[allow(
     clippy::large_enum_variant,
-    reason = "one for each system, made in its place; a box would be an allocation a frame"
+    reason = "one per system, built in place; a box would cost an allocation per frame"
 )]
 pub(crate) enum Draw {
     Forward(Forward),
     Deferred(Deferred),
 }
 
-/// The passes of the deferred path, in order.
+/// Passes of the deferred path, in execution order.
 #[derive(Debug)]
 pub(crate) struct Deferred {
     pub depth_downsample: Option<Downsample>,
@@ -69,7 +69,7 @@ pub(crate) struct Deferred {
     pub sprites: Sprites,
 }
 
-/// Either way to accumulate.
+/// Accumulation by either path.
 #[derive(Debug)]
 #[allow(clippy::large_enum_variant, reason = "as Draw")]
 pub(crate) enum AccumulatePasses {
@@ -90,7 +90,7 @@ impl AccumulatePasses {
     }
 }
 
-/// Where passes come from.
+/// Resources from which a system's passes are built.
 pub(crate) struct Assembly<'a> {
     pub gpu: Gpu<'a>,
     pub passes: &'a Passes,
@@ -98,7 +98,7 @@ pub(crate) struct Assembly<'a> {
     pub sprites: Sprites,
 }
 
-/// A system's own of the path `tiled`, and what there is to accumulate.
+/// State of the path `tiled` that a system keeps between frames, and its workload.
 pub(crate) struct TiledPlace<'a> {
     pub system: &'a mut TiledSystem,
     pub load: Option<&'a PathLoad>,
@@ -110,7 +110,8 @@ impl Assembly<'_> {
         Draw::Forward(Forward { pipeline, groups: self.groups, sprites: self.sprites })
     }
 
-    /// `depth` is what the plan reads of the host's depth, `host_depth` its depth buffer.
+    /// `depth`: the host depth that the plan reads. `host_depth`: the host's depth buffer, for a hardware depth test
+    /// against it.
     pub fn deferred(
         self,
         plan: &DeferredPlan<'_>,

@@ -1,4 +1,4 @@
-//! Group 0 of every pass: the view and the scene's depth.
+//! Bind group 0 of every pass: view uniforms and scene depth.
 
 use super::gpu::Gpu;
 use super::gpu::checked::checked;
@@ -9,27 +9,28 @@ use crate::formula::uniforms::ViewUniform;
 use crate::frame::SceneDepth;
 use crate::in_view::ViewGeometry;
 
-/// The view's uniforms with either kind of scene depth.
+/// View uniforms, bound with each kind of scene depth.
 #[derive(Debug)]
 pub(crate) struct FrameBindings {
     buffer: Source,
     linear: Source,
 }
 
-/// One kind of scene depth, and bind groups that are made anew when the host hands over another texture.
+/// View uniforms for one kind of scene depth, and bind groups that are recreated when the host supplies another
+/// texture.
 #[derive(Debug)]
 struct Source {
     view: wgpu::Buffer,
     bound: Option<DepthBindings>,
 }
 
-/// A depth of the host's, bound.
+/// Bind groups of one depth texture of the host.
 #[derive(Debug)]
 pub(crate) struct DepthBindings {
     pub depth: wgpu::TextureView,
     /// Group 0.
     pub frame: wgpu::BindGroup,
-    /// Group 3 of accumulate, where sprites are compared with the host's own depth.
+    /// Group 3 of accumulate, if sprites are compared with the host's own depth.
     pub accumulate_inputs: wgpu::BindGroup,
 }
 
@@ -38,13 +39,13 @@ impl FrameBindings {
         Self { buffer: Source::new(device), linear: Source::new(device) }
     }
 
-    /// Bytes held.
+    /// Returns the bytes of GPU memory held.
     pub fn bytes(&self) -> u64 {
         self.buffer.view.size() + self.linear.view.size()
     }
 
     /// # Errors
-    /// The field `scene_depth` when a view of it cannot be read.
+    /// Names the field `scene_depth` if one of its views cannot be bound.
     pub fn write(
         &mut self,
         gpu: &Gpu<'_>,
@@ -56,7 +57,8 @@ impl FrameBindings {
         self.linear.write(gpu, layouts, &view.uniform(true), scene_depth.linear())
     }
 
-    /// `linear`: those of the linear target. `None` when the frame has no depth of that kind.
+    /// Returns the bindings of the linear target if `linear` is true, else those of the depth buffer. `None` if the
+    /// frame has no depth of that kind.
     pub fn get(&self, linear: bool) -> Option<&DepthBindings> {
         if linear { self.linear.bound.as_ref() } else { self.buffer.bound.as_ref() }
     }

@@ -1,4 +1,4 @@
-//! The instance buffer of a system whose particles are in memory.
+//! Instance buffer of a system whose particles are in CPU memory.
 
 use super::gpu::Gpu;
 use super::gpu::spare::Spare;
@@ -7,7 +7,8 @@ use crate::frame::{Particle, Particles};
 use crate::in_view::{SortScratch, ViewGeometry, in_order};
 use crate::settings::{Order, Settings};
 
-/// Who sorts particles for compute shaders: a CPU is better at it where it draws as well.
+/// Processor that sorts particles for compute shaders. If the CPU also draws (software adapters), sorting on the CPU
+/// directly is faster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SortedBy {
     Cpu,
@@ -20,12 +21,13 @@ pub(crate) struct Instances {
     spare: Spare,
     sort: SortScratch,
     sorted: Vec<Particle>,
-    /// Of an emitter.
+    /// Particles of an emitter, evaluated on the CPU.
     evaluated: Vec<Particle>,
 }
 
 impl Instances {
-    /// Uploads a slice, in order, but where compute shaders sort it; a host's buffer is taken as it is. `None` when there is nothing to draw.
+    /// Uploads a slice or an emitter's particles, sorted unless compute shaders sort them. Uses a host's buffer as is.
+    /// Returns `None` if there is nothing to draw.
     pub fn write(
         &mut self,
         gpu: &Gpu<'_>,
@@ -77,12 +79,12 @@ impl Instances {
         Some(Sprites { buffer, offset: 0, count, loops, is_sorted, by_view_depth: is_sorted })
     }
 
-    /// What is drawn, in order; nothing of a host's buffer.
+    /// Returns the uploaded particles in drawing order; empty for a host's buffer.
     pub fn particles(&self) -> &[Particle] {
         if self.buffer.is_some() { &self.sorted } else { &[] }
     }
 
-    /// Bytes held.
+    /// Returns the bytes of GPU memory held.
     pub fn bytes(&self) -> u64 {
         self.buffer.as_ref().map_or(0, wgpu::Buffer::size)
     }

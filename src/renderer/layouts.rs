@@ -1,10 +1,10 @@
-//! Layouts of the bind groups: 0 frame, 1 system, 2 material, 3 the pass's own inputs. `shaders/lib/bindings.wgsl`.
+//! Layouts of the bind groups: 0 frame, 1 system, 2 material, 3 the pass's own inputs. See `shaders/lib/bindings.wgsl`.
 
 use super::gpu::capabilities::tiles_are_supported;
 use crate::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use crate::frame::MAX_LIGHTS;
 
-/// Bytes of the lights' uniform block.
+/// Size of the lights' uniform block, bytes.
 pub(crate) const LIGHTS_SIZE: u64 = (MAX_LIGHTS * size_of::<LightUniform>()) as u64;
 
 #[derive(Debug)]
@@ -20,7 +20,7 @@ impl Layouts {
     pub fn new(device: &wgpu::Device) -> Self {
         use wgpu::TextureViewDimension::{D2, D2Array, D3};
         let filterable = wgpu::TextureSampleType::Float { filterable: true };
-        // Depth buffers and R32Float alike.
+        // Suits depth buffers and R32Float.
         let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
         let uniform = |size: u64| wgpu::BindingType::Buffer {
             ty: wgpu::BufferBindingType::Uniform,
@@ -76,7 +76,7 @@ impl Layouts {
     }
 }
 
-/// A bind group of textures, in the order of its layout.
+/// Creates a bind group of textures, in the order of its layout.
 pub(crate) fn bind_textures<const N: usize>(
     device: &wgpu::Device,
     label: &str,

@@ -1,4 +1,4 @@
-//! Pictures to the GPU.
+//! Upload of materials: sprite images, ramps and noise.
 
 use glam::UVec2;
 
@@ -12,14 +12,14 @@ use crate::assets::sprite::filled::Filled;
 use crate::error::FieldError;
 use crate::frame::Material;
 
-/// What every material is bound with.
+/// Samplers and textures that every material binds.
 #[derive(Debug)]
 pub(crate) struct SharedTextures {
-    /// Ramps and sprites: clamped at the border.
+    /// For ramps and sprites: clamps at the border.
     linear: wgpu::Sampler,
-    /// Noise: round and round.
+    /// For noise: repeats.
     repeat: wgpu::Sampler,
-    /// In place of a detail map. Nothing reads it, but something must be bound.
+    /// Placeholder for a missing detail map. No shader reads it, but the binding must be filled.
     no_detail: wgpu::TextureView,
 }
 
@@ -46,10 +46,10 @@ impl SharedTextures {
     }
 }
 
-/// Uploads the pictures and binds them.
+/// Uploads the images and binds them.
 ///
 /// # Errors
-/// Names a picture that is too large for the device.
+/// Names an image that is too large for the device, or six-way maps that do not fit the sprite.
 pub(crate) fn create_material(
     gpu: &Gpu<'_>,
     layout: &wgpu::BindGroupLayout,
@@ -97,7 +97,7 @@ pub(crate) fn create_material(
     Ok(Material { context, bind_group, info, bytes })
 }
 
-/// Refuses pictures that are too large for the device.
+/// Refuses images that are too large for the device, and six-way maps that do not fit the sprite.
 fn validate_sizes(limits: &wgpu::Limits, assets: &MaterialAssets) -> Result<(), FieldError> {
     let check = |name: &str, side: u32, most: u32| {
         if side <= most {
@@ -129,13 +129,13 @@ fn validate_sizes(limits: &wgpu::Limits, assets: &MaterialAssets) -> Result<(), 
     }
     if let Some(maps) = &assets.six_way {
         if maps.size() != assets.sprite.size() {
-            let expected = format!("as many as the sprite's, {}", assets.sprite.size());
+            let expected = format!("the size of the sprite, {}", assets.sprite.size());
             return Err(FieldError::new("material.six_way", format!("{} texels", maps.size()), expected));
         }
         let layers = array_layers(assets.sprite.frame_count() + maps.frame_count());
         if layers > limits.max_texture_array_layers {
             let most = limits.max_texture_array_layers;
-            let expected = format!("at most {most} with the sprite's own on this device");
+            let expected = format!("at most {most} on this device, with the sprite's own");
             return Err(FieldError::new("material.six_way", format!("{} frames", maps.frame_count()), expected));
         }
     }
@@ -177,7 +177,7 @@ fn upload_noise(gpu: &Gpu<'_>, noise: &NoiseVolume, bytes: &mut u64) -> wgpu::Te
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// `after`: further frames of the same size.
+/// Uploads a sprite as an array texture with all mip levels. `after`: further frames of the same size, appended.
 fn upload_sprite(
     gpu: &Gpu<'_>,
     label: &str,
@@ -217,7 +217,7 @@ fn upload_sprite(
     })
 }
 
-/// A texel for each mip level and frame.
+/// Uploads the alpha bounds of a sprite: one texel per mip level and frame.
 fn upload_filled(gpu: &Gpu<'_>, filled: &Filled, bytes: &mut u64) -> wgpu::TextureView {
     let size = extent(filled.size(), 1);
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {

@@ -1,35 +1,35 @@
-//! What a renderer holds.
+//! GPU memory that a renderer holds.
 
-/// Bytes of GPU memory that a renderer holds, its materials aside.
+/// GPU memory that a renderer holds, without its materials. All figures are bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MemoryUse {
     /// Accumulation targets, lit smoke, reduced depths and baked light of all systems.
     pub targets: u64,
-    /// Particles and uniforms, and all of `tiled`.
+    /// Particles, uniforms, and everything counted in `tiled`.
     pub buffers: u64,
-    /// Of the buffers, what compute shaders work on.
+    /// Part of `buffers` that compute shaders use.
     pub tiled: TiledMemory,
 }
 
-/// Bytes of GPU memory that the path `tiled` holds, by what is in it, and what sorts a host's particles for the others.
+/// GPU memory of the path `tiled`, and of the sort of a host's particles for the other paths. All figures are bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TiledMemory {
-    /// The particles of emitters.
+    /// Particles of emitters that the GPU evaluates.
     pub emitted: u64,
-    /// A host's particles, back to front.
+    /// A host's particles, sorted back to front.
     pub sorted: u64,
-    /// Particles as they lie in the view, and the rectangles that they touch.
+    /// Projected sprites, and the rectangles of texels that they touch.
     pub sprites: u64,
-    /// What is sorted: depths, and the numbers of particles.
+    /// Sort keys (depths) and particle indices.
     pub keys: u64,
-    /// How many there are of each digit, and in each bin.
+    /// Counts per digit of the sort, and per bin.
     pub counts: u64,
-    /// The sprites of every bin, front to back.
+    /// Sprite lists of all bins, front to back.
     pub lists: u64,
 }
 
 impl TiledMemory {
-    /// All of it.
+    /// Returns the sum of all fields.
     pub fn total(&self) -> u64 {
         let Self { emitted, sorted, sprites, keys, counts, lists } = self;
         emitted + sorted + sprites + keys + counts + lists

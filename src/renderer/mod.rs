@@ -1,4 +1,4 @@
-//! The frame on the GPU, pass by pass.
+//! GPU renderer: records a frame, pass by pass.
 
 mod auto;
 mod context;
@@ -53,9 +53,9 @@ use validate::{host_size, validate};
 
 /// Draws particle systems into a host's frame.
 ///
-/// One renderer serves one view: [`prepare`](Self::prepare) writes buffers and targets that the [`render`](Self::render) of the
-/// same submission reads, so prepare once, render as often as the pass needs, submit, and begin again. Further views have
-/// renderers of their own on the same [`Context`].
+/// One renderer serves one view. [`prepare`](Self::prepare) writes buffers and targets that [`render`](Self::render)
+/// reads within the same submission: call `prepare` once, call `render` any number of times, and submit before the next
+/// `prepare`. Each further view needs a renderer of its own; create it on the same [`Context`].
 #[derive(Debug)]
 pub struct Renderer {
     context: Context,
@@ -63,31 +63,32 @@ pub struct Renderer {
     exact_filtering: bool,
     submission: Submission,
     timing: Option<Timing>,
-    /// The frame of `timing` that was prepared last.
+    /// Frame number of `timing` at the last `prepare`.
     timed_frame: Option<u64>,
     bindings: FrameBindings,
     slots: Vec<Slot>,
-    /// The slots in sight, farthest first.
+    /// Visible systems, farthest first.
     order: Vec<Seen>,
-    /// Of the last frame.
+    /// View of the last successful `prepare`.
     view: Option<ViewGeometry>,
 }
 
-/// A slot that is in sight.
+/// A visible system.
 #[derive(Clone, Copy, Debug)]
 struct Seen {
     slot: usize,
-    /// View depth.
+    /// View depth of the smoke's centre, metres.
     distance: f32,
 }
 
 impl Renderer {
-    /// Makes a renderer for a view. Without a context in the descriptor it makes one of its own and compiles the shaders;
-    /// with one it is cheap. Pipelines are compiled by the first [`prepare`](Self::prepare) that needs them, or by
-    /// [`warm_up`](Self::warm_up).
+    /// Creates a renderer for a view. Without a context in the descriptor, it creates one of its own and compiles the
+    /// shaders; with a context, creation is cheap. Pipelines are compiled by the first [`prepare`](Self::prepare) that
+    /// needs them, or by [`warm_up`](Self::warm_up).
     ///
     /// # Errors
-    /// [`Error::Field`] naming what the device does not take: a format, a number of samples, or a context of another device.
+    /// [`Error::Field`] names the property that the device does not support: a format, the sample count, or a context
+    /// that was created on another device.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, descriptor: &Descriptor<'_>) -> Result<Self, Error> {
         let host = descriptor.host_pass(device)?;
         let context = descriptor.context.cloned().unwrap_or_else(|| Context::new(device, queue, None));
@@ -106,15 +107,15 @@ impl Renderer {
         })
     }
 
-    /// What this renderer shares, for renderers of further views.
+    /// Returns the context, for renderers of further views.
     pub fn context(&self) -> &Context {
         &self.context
     }
 
-    /// As [`Context::create_material`].
+    /// Uploads ramps and sprite images: see [`Context::create_material`].
     ///
     /// # Errors
-    /// As there.
+    /// Those of [`Context::create_material`].
     pub fn create_material(
         &self,
         device: &wgpu::Device,
@@ -124,19 +125,20 @@ impl Renderer {
         self.context.create_material(device, queue, assets)
     }
 
-    /// Compiles every pipeline that frames like these need; the first such frame compiles nothing then. To do it off the
-    /// frame's thread, make a second renderer there on the same [`Context`] and with the same [`Descriptor`].
+    /// Compiles every pipeline that the described frames need, so that the first such frame compiles none. To compile
+    /// outside the render thread, create a second renderer on another thread, with the same [`Context`] and the same
+    /// [`Descriptor`].
     ///
     /// # Errors
-    /// [`Error::Field`] naming the view or setting that cannot be used, [`Error::Shader`] naming the file of a pass of which the
-    /// device takes no such pipeline: one of [`Context::with_shaders`], or a mistake of the driver's.
+    /// [`Error::Field`] names the view or setting that is not valid. [`Error::Shader`] names the file of a pass whose
+    /// pipeline the device rejects, because of a shader of [`Context::with_shaders`] or a driver error.
     pub fn warm_up(&self, expected: &WarmUp<'_>) -> Result<(), Error> {
         let view = ViewGeometry::new(&expected.view)?;
         let situation = self.situation(&view, expected.scene_depth, expected.stages);
         let shared = self.context.shared();
         for (index, settings) in expected.settings.iter().enumerate() {
             settings.validate(|| format!("settings[{index}]"))?;
-            // Whether its sprite has one frame is not known yet.
+            // The sprite's frame count is not known yet: compiles for one frame and for several.
             let sprite = settings.sprite.for_frames(1.0);
             for settings in [*settings, Settings { sprite, ..*settings }] {
                 for &path in settings.path.candidates() {
@@ -150,15 +152,15 @@ impl Renderer {
         Ok(())
     }
 
-    /// Records everything that happens before the host's pass: every system accumulated into a small target of its own.
+    /// Records all work that precedes the host's pass: accumulates every system into a target of its own.
     ///
-    /// Allocates and compiles only when a system, the picture's size or a setting that changes a pipeline is new; a
-    /// steady frame creates nothing. What is no longer needed is given back after two seconds' worth of frames.
+    /// Allocates and compiles only when a system, the view's size or a setting that selects a pipeline is new; a steady
+    /// frame creates nothing. Memory that has not been needed for 120 frames is released.
     ///
     /// # Errors
-    /// [`Error::Field`] naming the view, light, setting or system that cannot be used, or `prepare` itself, when the commands of
-    /// the one before were neither submitted nor dropped yet. Nothing is drawn by [`render`](Self::render) until the next
-    /// `prepare` that succeeds.
+    /// [`Error::Field`] names the view, light, setting or system that is not valid. It names `prepare` if the commands
+    /// of the previous call were neither submitted nor dropped. After an error, [`render`](Self::render) draws nothing
+    /// until a `prepare` succeeds.
     pub fn prepare(
         &mut self,
         device: &wgpu::Device,
@@ -175,7 +177,7 @@ impl Renderer {
         let view = ViewGeometry::new(&frame.view)?;
         validate(shared, &self.host, frame)?;
         let situation = self.situation(&view, frame.scene_depth.kind(), frame.stages);
-        // The view and the scene's depth, for every system.
+        // Bind group 0 of every system: view and scene depth.
         self.bindings.write(&gpu, &shared.layouts, &view, &frame.scene_depth)?;
         self.keep_slots(frame);
         self.submission.follow(encoder);
@@ -188,41 +190,42 @@ impl Renderer {
         for system in frame.systems {
             let Some(index) = self.slots.iter().position(|slot| slot.key == system.key) else { continue };
             let slot = &mut self.slots[index];
-            // Place in the view; lights, settings and particles to the GPU, sprites back to front.
+            // Computes the placement in the view; uploads lights, settings and sorted particles.
             slot.write(&context, system);
             if let (Some(timing), Some(choice)) = (timing, slot.choice()) {
                 timing.add_choice(system.key, choice);
             }
             let Some(draw) = slot.draw() else { continue };
             self.order.push(Seen { slot: index, distance: slot.distance() });
-            // An emitter's particles, evaluated; or a host's, back to front.
+            // Evaluates an emitter's particles, or sorts a host's particles back to front.
             slot.particles_pass().iter().for_each(|pass| pass.record(encoder, timing));
             let Draw::Deferred(draw) = draw else { continue };
-            // Scene depth at the target's resolution, and once more where what is read cannot be tested.
+            // Downsamples the scene depth; writes a second copy if the backend cannot test what it samples.
             draw.depth_downsample.iter().chain(&draw.depth_copy).for_each(|pass| pass.record(encoder, timing));
-            // All lights by normal, for the cubemap and motif variants of diffuse.
+            // Bakes all lights by normal, for the diffuse modes cubemap and motif.
             draw.diffuse_bake.iter().for_each(|pass| pass.record(encoder, timing));
-            // Sprites to premultiplied normal + amount.
+            // Accumulates sprites as premultiplied normal + amount.
             draw.accumulate.record(encoder, timing);
-            // Or counted, where that is to be shown.
+            // Counts layers, for the overdraw view.
             draw.overdraw.iter().for_each(|pass| pass.record(encoder, timing));
-            // Lit, where light is wanted no finer than the target.
+            // Lights the target, if the lighting resolution is the target's.
             draw.light_target.iter().for_each(|pass| pass.record(encoder, timing));
         }
-        // Far to near; at one distance as the host has them.
+        // Far to near; systems at equal distance keep the host's order.
         self.order.sort_by(|a, b| b.distance.total_cmp(&a.distance));
         self.view = Some(view);
         Ok(())
     }
 
-    /// Records the smoke into the host's pass, systems far to near. Sets its own pipelines, bind groups 0 to 3, vertex
-    /// buffer 0, and viewport and scissor to the view; leaves stencil reference and blend constant as they are.
+    /// Records the smoke into the host's pass, systems far to near. Sets its own pipelines, bind groups 0 to 3 and
+    /// vertex buffer 0, and sets viewport and scissor rectangle to the view. Leaves stencil reference and blend
+    /// constant unchanged.
     pub fn render(&self, pass: &mut wgpu::RenderPass<'_>) {
         self.render_stage(pass, ShadeTree::Final);
     }
 
-    /// As [`render`](Self::render), for a stage of the shading: one of the frame's [`stages`](Frame::stages), or nothing is drawn.
-    /// Any number of them may be drawn of one `prepare`.
+    /// Records one stage of the shading instead of the final image. Draws nothing unless `stage` is one of the frame's
+    /// [`stages`](Frame::stages). After one `prepare`, any number of stages can be drawn.
     pub fn render_stage(&self, pass: &mut wgpu::RenderPass<'_>, stage: ShadeTree) {
         let Some(view) = self.view.as_ref().filter(|_| !self.order.is_empty()) else { return };
         self.submission.follow_pass(pass);
@@ -230,14 +233,14 @@ impl Renderer {
         set_part(pass, view.origin, view.size);
         for seen in &self.order {
             match self.slots[seen.slot].draw() {
-                // Every sprite lit per fragment, for systems that ask for the classic way.
+                // Path `forward`: lights every sprite fragment.
                 Some(Draw::Forward(forward)) if stage.is_picture() => {
                     Timing::inside(timing, "forward", pass, |pass| forward.record(pass));
                 }
                 Some(Draw::Deferred(draw)) => {
-                    // The box, lit once per pixel, or with the light of the texels.
+                    // Draws the bounding box: lights each pixel once, or upsamples the lit target.
                     Timing::inside(timing, "transfer", pass, |pass| draw.transfer.record(pass, stage));
-                    // The glow of lights behind it.
+                    // Adds the glow of lights behind the smoke.
                     for glow in draw.specular_scatter.iter().filter(|_| stage.glows()) {
                         Timing::inside(timing, "specular_scatter", pass, |pass| glow.record(pass));
                     }
@@ -247,45 +250,46 @@ impl Renderer {
         }
     }
 
-    /// The targets of the system with this key as the last [`prepare`](Self::prepare) left them, for tools and for a host's own
-    /// passes. `None` when it is out of sight or drawn forward.
+    /// Returns the targets of the system with this key, as the last [`prepare`](Self::prepare) fills them, for tools
+    /// and for a host's own passes. `None` if the system is out of sight or drawn forward.
     pub fn targets(&self, key: u64) -> Option<TargetViews<'_>> {
         self.slots.iter().find(|slot| slot.key == key)?.target_views()
     }
 
-    /// Bytes of GPU memory held.
+    /// Returns the GPU memory that this renderer holds, in bytes.
     pub fn memory_use(&self) -> MemoryUse {
         let own = MemoryUse { buffers: self.bindings.bytes(), ..MemoryUse::default() };
         self.slots.iter().map(Slot::memory_use).chain([own]).sum()
     }
 
-    /// What the last [`prepare`](Self::prepare) gives [`render`](Self::render) to draw.
+    /// Counts the systems, sprites and texels that [`render`](Self::render) draws after the last
+    /// [`prepare`](Self::prepare).
     pub fn counts(&self) -> FrameCounts {
         self.order.iter().map(|seen| self.slots[seen.slot].counts()).sum()
     }
 
-    /// What the path `auto` took in the last [`prepare`](Self::prepare) for the system with this key, and why. `None` when it is out of
-    /// sight, or has another path.
+    /// Returns the path that `auto` chose in the last [`prepare`](Self::prepare) for the system with this key, with the
+    /// reason. `None` if the system is out of sight or its path setting is not `auto`.
     pub fn path_choice(&self, key: u64) -> Option<PathChoice> {
         self.slots.iter().find(|slot| slot.key == key)?.choice()
     }
 
-    /// In how many layers the sprites of the last [`prepare`](Self::prepare) lie. Every sprite is looked at when this is
-    /// called: half a millisecond of CPU time for ten thousand.
+    /// Computes the overdraw of the sprites of the last [`prepare`](Self::prepare). Every call iterates over all
+    /// sprites on the CPU: about 0.5 ms for 10,000 sprites.
     pub fn overdraw(&self) -> Overdraw {
         let Some(view) = self.view.map(|view| view.uniform(false)) else { return Overdraw::default() };
         self.order.iter().map(|seen| self.slots[seen.slot].overdraw(&view)).sum()
     }
 
-    /// Measures the GPU time of this renderer's passes from the next [`prepare`](Self::prepare) on; `None`, as at first, measures
-    /// nothing and costs nothing.
+    /// Measures the GPU time of this renderer's passes from the next [`prepare`](Self::prepare) on. `None`, the initial
+    /// state, measures nothing and costs nothing.
     ///
     /// # Errors
-    /// [`Error::Field`] when it was made with another device.
+    /// [`Error::Field`] if the `Timing` was created on another device.
     pub fn set_timing(&mut self, timing: Option<&Timing>) -> Result<(), Error> {
         if timing.is_some_and(|timing| !timing.is_of(&self.context.shared().device)) {
-            let expected = "one made with the device of the renderer's context";
-            return Err(FieldError::new("timing", "of another device", expected).into());
+            let expected = "a Timing created on the device of the renderer's context";
+            return Err(FieldError::new("timing", "a Timing of another device", expected).into());
         }
         self.timing = timing.cloned();
         self.timed_frame = None;
@@ -311,17 +315,19 @@ impl Renderer {
         }
     }
 
-    /// What was recorded for the last frame still reads what this one would overwrite.
+    /// Refuses a second `prepare` before the commands of the first are submitted or dropped: those commands read the
+    /// buffers that this call would overwrite.
     fn validate_submitted(&self) -> Result<(), FieldError> {
         if !self.submission.is_outstanding() {
             return Ok(());
         }
-        let value = "a second call while commands of the first are neither submitted nor dropped";
-        let expected = "a renderer of its own for every view of a submission; on one Context they are cheap";
+        let value = "a second call before the commands of the first are submitted or dropped";
+        let expected = "one renderer per view of a submission; renderers that share a Context are cheap";
         Err(FieldError::new("prepare", value, expected))
     }
 
-    /// A slot for every system of the frame, found by its key; those long without a system go.
+    /// Keeps one state per system of the frame, found by its key. Drops states whose system has been absent for more
+    /// than 120 frames.
     fn keep_slots(&mut self, frame: &Frame<'_>) {
         let is_missing = |slot: &Slot| !frame.systems.iter().any(|system| system.key == slot.key);
         self.slots.retain_mut(|slot| {

@@ -1,4 +1,4 @@
-//! The shaders of all passes and their pipelines.
+//! Shaders of all passes, and their pipelines.
 
 use super::gpu::capabilities::tiles_are_supported;
 use super::gpu::pipeline::{Shader, Variants};
@@ -14,7 +14,7 @@ use super::plan::Plan;
 use super::tiled::Tiled;
 use crate::error::Error;
 
-/// Independent of any size and view: shaders and their pipelines.
+/// Shaders and pipelines of all passes, independent of size and view.
 #[derive(Debug)]
 pub(crate) struct Passes {
     depth_downsample: Variants<DepthDownsampleKey>,
@@ -24,12 +24,13 @@ pub(crate) struct Passes {
     transfer: Variants<TransferKey>,
     specular_scatter: Variants<SpecularScatterKey>,
     forward: Variants<ForwardKey>,
-    /// Where the device can.
+    /// `None` if the device does not support the path `tiled`.
     pub tiled: Option<Tiled>,
 }
 
 impl Passes {
-    /// `shader` gives the shader of a pass, by name; `cache` is the host's, where the backend has one.
+    /// Creates the shader modules and pipeline layouts. `shader` returns the shader of a pass by name; `cache` is the
+    /// host's pipeline cache, if the backend supports one.
     pub fn new<E>(
         device: &wgpu::Device,
         layouts: &Layouts,
@@ -61,7 +62,7 @@ impl Passes {
         })
     }
 
-    /// Pipelines compiled so far.
+    /// Returns the number of pipelines compiled so far.
     pub fn pipeline_count(&self) -> usize {
         self.depth_downsample.len()
             + self.diffuse_bake.len()
@@ -73,7 +74,7 @@ impl Passes {
             + self.tiled.as_ref().map_or(0, Tiled::pipeline_count)
     }
 
-    /// Compiles what a plan draws with, or says what is wrong with the shaders.
+    /// Compiles the pipelines of a plan, or returns the shader error.
     pub fn compile(&self, device: &wgpu::Device, plan: &Plan<'_>) -> Result<(), Error> {
         match plan {
             Plan::Nothing => Ok(()),
@@ -100,7 +101,7 @@ impl Passes {
         }
     }
 
-    /// What puts a host's particles back to front, should they come in another order.
+    /// Compiles the sort of a host's particles, which is needed if they arrive unsorted.
     fn compile_depth_sort(&self, device: &wgpu::Device) -> Result<(), Error> {
         self.tiled.as_ref().map_or(Ok(()), |tiled| tiled.compile_depth_sort(device))
     }

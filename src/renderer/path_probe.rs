@@ -1,4 +1,4 @@
-//! What the two ways to accumulate take on a device, measured by a few small frames.
+//! Measurement of both accumulation paths on a device, by a few small frames.
 
 use std::path::Path as FilePath;
 use std::time::{Duration, Instant};
@@ -16,28 +16,31 @@ use crate::frame::{Frame, Material, Particle, Particles, SceneDepth, System, Vie
 use crate::preset::MaterialNames;
 use crate::settings::{Layers, Path, Settings};
 
-/// What is drawn: sprites one behind the other, each as large as the picture.
+/// Test scene: `SPRITES` sprites, one behind the other, each covering an image of `SIZE` pixels.
 const SIZE: UVec2 = UVec2::splat(256);
 const SPRITES: u32 = 16;
-/// Against which a clock's and a queue's own unsteadiness is small; and so many times what a frame takes in which all is drawn once.
+/// Minimum time of a measured frame. It is also at least `MORE_THAN_ONCE` times the time of a frame that draws all
+/// sprites once. Jitter of clock and queue is small against it.
 const LONG_ENOUGH: Duration = Duration::from_millis(4);
 const MORE_THAN_ONCE: u32 = 2;
-/// Times that all sprites are drawn, at the most.
+/// Maximum number of times that a frame draws all sprites.
 const MOST_LOOPS: u32 = 4096;
-/// Times that each is measured; the shortest counts, as what disturbs only lengthens. Many short ones find a quiet moment.
+/// Frames measured per path and loop count. The shortest counts, because disturbances only lengthen a frame; many short
+/// frames are likely to include an undisturbed one.
 const ROUNDS: u32 = 8;
-/// And before that, to find how often it must be drawn.
+/// Frames measured per step of the search for the loop count.
 const FEW: u32 = 3;
 
 impl Context {
-    /// Measures what the two ways to accumulate take on this device, for the path `auto`, and sets it as its
-    /// [`path_model`](Self::path_model): some fifty small frames, a fifth of a second on a GPU, and two or three seconds where a CPU draws.
-    /// Do it when the program starts, or keep what it found from run to run. A device without the path `tiled` keeps what it has.
+    /// Measures the cost of both accumulation paths on this device for the path `auto`, and sets the result as the
+    /// [`path_model`](Self::path_model). Renders about fifty small frames: about 0.2 s on a GPU, 2 to 3 s on a software
+    /// adapter. Call it when the program starts, or save the result between runs. A device without the path `tiled`
+    /// keeps its model.
     ///
-    /// haze never submits: `submit` does, and waits until the device is done.
+    /// haze never submits commands: `submit` must submit the encoder and wait until the device has finished.
     ///
     /// # Errors
-    /// As [`Renderer::prepare`], and those of `submit`.
+    /// Those of [`Renderer::prepare`] and of `submit`.
     pub fn measure_paths(
         &self,
         device: &wgpu::Device,
@@ -52,7 +55,7 @@ impl Context {
         let seconds = bench.seconds(&mut submit)?;
         let load = bench.load();
         let times = |costs: PathCosts, seconds: f64| {
-            // Of a pass over all sprites, without what comes once a frame.
+            // Expected time of one pass over all sprites, without the costs per frame.
             let expected = costs.milliseconds(&load, 1.0)
                 - costs.milliseconds(&PathLoad { fragments: 0.0, sprites: 0.0, ..load }, 1.0);
             (1.0e3 * seconds) as f32 / expected
@@ -65,7 +68,7 @@ impl Context {
 
 const PATHS: [Path; 2] = [Path::Raster, Path::Tiled];
 
-/// What draws.
+/// Renderer and test scene of the measurement.
 struct Bench<'a> {
     device: &'a wgpu::Device,
     queue: &'a wgpu::Queue,
@@ -109,7 +112,7 @@ impl<'a> Bench<'a> {
         })
     }
 
-    /// Of the last frame, in which all sprites were drawn once.
+    /// Returns the workload of the last frame, which drew all sprites once.
     fn load(&self) -> PathLoad {
         PathLoad {
             technique: Settings::default().technique,
@@ -122,14 +125,14 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// Seconds of a pass over all sprites, by either path.
+    /// Measures one pass over all sprites by `raster` and by `tiled`, in seconds.
     fn seconds(
         &mut self,
         submit: &mut impl FnMut(wgpu::CommandEncoder) -> Result<(), Error>,
     ) -> Result<[f64; 2], Error> {
         let mut loops = [2; 2];
         for (path, loops) in PATHS.into_iter().zip(&mut loops) {
-            // The first frame compiles.
+            // The first frame compiles pipelines and is not measured.
             self.frame(path, 1, submit)?;
             let enough = LONG_ENOUGH.max(MORE_THAN_ONCE * self.frame(path, 1, submit)?);
             while *loops < MOST_LOOPS && self.shortest(path, *loops, submit)? < enough {
@@ -146,12 +149,12 @@ impl<'a> Bench<'a> {
         }
         Ok([0, 1].map(|way| {
             let more = shortest[way][0].saturating_sub(shortest[way][1]);
-            // A clock may stand still.
+            // The clock may be too coarse to advance.
             more.max(Duration::from_nanos(1)).as_secs_f64() / f64::from(loops[way] - 1)
         }))
     }
 
-    /// Of a few frames: one that something held up would look long enough.
+    /// Returns the time of the shortest of a few frames: a single delayed frame could pass for a long one.
     fn shortest(
         &mut self,
         path: Path,
@@ -165,7 +168,7 @@ impl<'a> Bench<'a> {
         Ok(shortest)
     }
 
-    /// Draws all sprites so many times, and tells how long that took.
+    /// Draws all sprites `loops` times. Returns the time from submission to completion.
     fn frame(
         &mut self,
         path: Path,
@@ -175,7 +178,7 @@ impl<'a> Bench<'a> {
         let mut settings = Settings { path, ..Settings::default() };
         settings.sprite.debug_loop = loops;
         settings.accumulate.scale = 1;
-        // What shines through is all the same to a walk that does not stop.
+        // Without early stops of the traversal, the time does not depend on the sprites' opacity.
         settings.accumulate.layers = Layers::All;
         let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         drop(begin_pass(&mut encoder, "haze probe", &[], Some(written_depth(&self.depth)), None));

@@ -1,4 +1,4 @@
-//! What a frame draws, and with which pipelines: decided from plain data, before a device is asked for anything.
+//! Plan of a system's passes and pipeline keys, decided from plain data before any device call.
 
 use glam::UVec2;
 
@@ -21,7 +21,7 @@ use crate::settings::{
     DepthSource, DiffuseMode, Layers, LightingResolution, Order, Path, Settings, ShadeTree, Technique,
 };
 
-/// Which depth of the scene a host hands over, and the format of the buffer.
+/// Kind of scene depth that a host supplies, and the format of the depth buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SceneDepthKind {
     /// [`SceneDepth::Buffer`].
@@ -33,7 +33,7 @@ pub enum SceneDepthKind {
 }
 
 impl SceneDepth<'_> {
-    /// Its kind.
+    /// Returns the kind of this scene depth.
     pub fn kind(&self) -> SceneDepthKind {
         match self {
             Self::Buffer(view) => SceneDepthKind::Buffer(view.texture().format()),
@@ -43,31 +43,31 @@ impl SceneDepth<'_> {
     }
 }
 
-/// What all systems of a frame have in common.
+/// Inputs that all systems of a frame share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Situation<'a> {
     pub host: HostPass,
     pub exact_filtering: bool,
-    /// One pass can test and sample one depth buffer.
+    /// True if one pass can test and sample the same depth buffer.
     pub read_only_depth: bool,
-    /// Tiles are walked in step; `None` where there is no tiled path.
+    /// True if the traversal of tiles is cooperative, false if it is per invocation; `None` without the path `tiled`.
     pub tiles: Option<bool>,
     pub scene_depth: SceneDepthKind,
-    /// The near plane is stored as 1.
+    /// True if the depth buffer stores the near plane as 1.
     pub reversed: bool,
-    /// The view mirrors.
+    /// True if the view mirrors.
     pub mirrored: bool,
-    /// Of the view, pixels.
+    /// Size of the view, pixels.
     pub size: UVec2,
-    /// What may be shown.
+    /// Stages that may be shown.
     pub stages: &'a [ShadeTree],
 }
 
-/// What is drawn for one system.
+/// Passes and pipeline keys of one system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(clippy::large_enum_variant, reason = "one lives at a time, on the stack")]
+#[allow(clippy::large_enum_variant, reason = "only one exists at a time, on the stack")]
 pub(crate) enum Plan<'a> {
-    /// Forward sprites have no stages to show.
+    /// The path `forward` has no intermediate stages to show.
     Nothing,
     Forward(ForwardPlan),
     Deferred(DeferredPlan<'a>),
@@ -75,7 +75,7 @@ pub(crate) enum Plan<'a> {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ForwardPlan {
-    /// The scene's depth is read from the linear target, not from the depth buffer.
+    /// True if the scene depth is read from the linear target instead of the depth buffer.
     pub reads_linear: bool,
     pub key: ForwardKey,
 }
@@ -85,23 +85,24 @@ pub(crate) struct DeferredPlan<'a> {
     /// As in [`ForwardPlan`].
     pub reads_linear: bool,
     pub depth_downsample: Option<DepthDownsampleKey>,
-    /// The same for the copy of the reduced depth.
+    /// Same pass, for the coarse copy of the reduced depth.
     pub depth_copy: Option<DepthDownsampleKey>,
     pub diffuse_bake: Option<DiffuseBakeKey>,
     pub accumulate: AccumulateKey,
-    /// Accumulates in place of that.
+    /// Compute passes that replace `accumulate`.
     pub tiled: Option<TiledKeys>,
-    /// Counts layers instead.
+    /// Accumulation variant that counts layers.
     pub overdraw: Option<AccumulateKey>,
-    /// Where smoke is lit at the target's resolution.
+    /// Present if smoke is lit at the target's resolution.
     pub light_target: Option<LightingKey>,
-    /// One for every stage that the box is drawn for.
+    /// Key of the stage `Final`; `transfers` derives the keys of all stages from it.
     pub transfer: TransferKey,
     pub stages: &'a [ShadeTree],
     pub specular_scatter: Option<SpecularScatterKey>,
 }
 
-/// Plans a system. `back_faces`: the near plane cuts its box, or it shows through the scene.
+/// Plans the passes of a system. `back_faces`: true if the near plane cuts its bounding box, or its sprites show
+/// through the scene.
 pub(crate) fn plan<'a>(situation: &Situation<'a>, settings: &Settings, back_faces: bool) -> Plan<'a> {
     let reads_linear = reads_linear(situation.scene_depth, situation.read_only_depth, settings);
     if !settings.is_forward() {
@@ -124,7 +125,7 @@ pub(crate) fn plan<'a>(situation: &Situation<'a>, settings: &Settings, back_face
     Plan::Forward(ForwardPlan { reads_linear, key })
 }
 
-/// Plans that draw with every pass between them, for a host of the plainest kind.
+/// Returns plans that together use every pass, for a minimal host pass.
 pub(crate) fn one_of_each(read_only_depth: bool, tiles: Option<bool>) -> [Plan<'static>; 4] {
     let depth_format = wgpu::TextureFormat::Depth32Float;
     let situation = Situation {
@@ -205,7 +206,8 @@ fn deferred<'a>(
             upsample: accumulate.upsample,
             host_depth,
             shade_tree: ShadeTree::Final,
-            // Faces that nothing tests must not be the front ones: they would stand before the scene.
+            // Without a depth attachment, the hardware cannot hide the box behind the scene, so front faces have no
+            // advantage; back faces are never clipped by the near plane.
             back_faces: back_faces || host.depth_format.is_none(),
             reversed: situation.reversed,
             mirrored: situation.mirrored,
@@ -233,15 +235,15 @@ fn tiled_keys(key: &AccumulateKey, layers: Layers, in_step: bool, exact_filterin
             weighted,
             beside,
             host_depth,
-            // A weighted normal counts, whatever is in front.
+            // With weighted normals every sprite counts, even behind opaque smoke.
             stops: layers == Layers::Visible && !weighted,
-            // The walk alone filters the sprite in its own way.
+            // Per-invocation traversal loads sprite texels in its own way, which is not the reference's filter.
             in_step: in_step || exact_filtering,
         },
     }
 }
 
-/// What rejects hidden sprites before they are shaded.
+/// Selects the depth test that rejects hidden sprites before shading.
 fn depth_test(situation: &Situation, settings: &Settings) -> DepthTest {
     if settings.fade_through() > 0.0 {
         return DepthTest::InShader;
@@ -251,33 +253,33 @@ fn depth_test(situation: &Situation, settings: &Settings) -> DepthTest {
     }
     match situation.scene_depth {
         SceneDepthKind::Buffer(format) | SceneDepthKind::Both(format) => DepthTest::Host(format, situation.reversed),
-        // Refused when the frame was validated.
+        // `validate` refuses this case.
         SceneDepthKind::Linear => DepthTest::InShader,
     }
 }
 
-/// True if a system reads the scene's linear target, not its depth buffer.
+/// Returns true if a system reads the scene's linear target instead of its depth buffer.
 pub(crate) fn reads_linear(scene_depth: SceneDepthKind, read_only_depth: bool, settings: &Settings) -> bool {
     match scene_depth {
         SceneDepthKind::Buffer(_) => false,
         SceneDepthKind::Linear => true,
-        // Where a depth buffer cannot be tested and read in one pass, it is left to the tests.
+        // A backend that cannot test and sample one depth buffer samples the linear target and only tests the buffer.
         SceneDepthKind::Both(_) => settings.technique == Technique::SoftLinear || !read_only_depth,
     }
 }
 
 impl DeferredPlan<'_> {
-    /// What the box is drawn with, stage by stage.
+    /// Returns the transfer keys of all stages that draw the bounding box.
     pub fn transfers(&self) -> impl Iterator<Item = TransferKey> {
         let drawn = self.stages.iter().filter(|stage| **stage != ShadeTree::SpecularScatter);
-        // The parts of the light are worked out where they are shown.
+        // Stages that show a part of the light compute it in transfer, not in light_target.
         let is_lit = |stage: ShadeTree| self.light_target.is_some() && stage.is_picture();
         drawn.map(move |&shade_tree| TransferKey { shade_tree, lit: is_lit(shade_tree), ..self.transfer })
     }
 }
 
 impl Plan<'_> {
-    /// True if it reads the scene's linear target.
+    /// Returns true if the plan reads the scene's linear target.
     pub fn reads_linear(&self) -> bool {
         match self {
             Self::Nothing => false,
@@ -315,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn the_table_in_the_docs_is_what_is_planned() {
+    fn planned_depth_reads_and_tests_match_the_table_in_the_docs() {
         let table = include_str!("../../docs/depth.md");
         let rows =
             table.lines().filter(|line| ["| Buffer ", "| Linear ", "| Both "].iter().any(|k| line.starts_with(k)));
@@ -332,7 +334,7 @@ mod tests {
                 read_only_depth: backend != "OpenGL",
                 ..situation()
             };
-            // "soft" stands for all others.
+            // "soft" in the table stands for all other techniques.
             let techniques =
                 Technique::ALL.iter().filter(|t| (**t == Technique::SoftLinear) == (technique == "soft_linear"));
             for &technique in techniques {
@@ -359,7 +361,7 @@ mod tests {
     }
 
     #[test]
-    fn stages_draw_no_more_than_they_show() {
+    fn each_stage_plans_only_the_passes_that_it_shows() {
         for &shade_tree in ShadeTree::ALL {
             let mut settings = Settings::default();
             let situation = Situation { stages: &[shade_tree], ..situation() };
@@ -373,7 +375,7 @@ mod tests {
             assert!(!shown.accumulate.overdraw);
             settings.specular_scatter.intensity = 0.0;
             assert_eq!(deferred(&situation, &settings).specular_scatter, None);
-            // Forward sprites are lit as they are drawn: there are no stages to show.
+            // Forward sprites are lit as they are drawn: there are no intermediate stages to show.
             settings.path = Path::Forward;
             let is_picture = matches!(shade_tree, ShadeTree::Final | ShadeTree::Combined);
             assert_eq!(plan(&situation, &settings, false) != Plan::Nothing, is_picture, "{shade_tree:?}");
@@ -381,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn light_is_baked_where_a_mode_asks_for_it() {
+    fn only_the_modes_cubemap_and_motif_bake_light() {
         for &mode in DiffuseMode::ALL {
             let mut settings = Settings::default();
             settings.diffuse.mode = mode;
@@ -391,7 +393,7 @@ mod tests {
     }
 
     #[test]
-    fn light_is_at_the_targets_resolution_where_that_is_asked_for_and_another() {
+    fn light_target_is_planned_only_for_final_images_at_reduced_resolution() {
         let mut settings = Settings::default();
         assert_eq!(deferred(&situation(), &settings).light_target, None);
         settings.accumulate.lighting_resolution = LightingResolution::Target;
@@ -413,7 +415,7 @@ mod tests {
     }
 
     #[test]
-    fn one_of_each_is_one_of_each() {
+    fn one_of_each_covers_every_pass() {
         for read_only_depth in [true, false] {
             let [Plan::Deferred(deferred), Plan::Deferred(lit), Plan::Forward(_), Plan::Deferred(tiled)] =
                 one_of_each(read_only_depth, Some(true))
@@ -428,7 +430,7 @@ mod tests {
     }
 
     #[test]
-    fn boxes_turn_with_the_view() {
+    fn transfer_key_follows_mirroring_reversed_depth_and_missing_depth_attachment() {
         let transfer = |situation: &Situation, back_faces| match plan(situation, &Settings::default(), back_faces) {
             Plan::Deferred(plan) => plan.transfer,
             other => panic!("{other:?}"),
@@ -438,7 +440,7 @@ mod tests {
         assert!(transfer(&situation(), true).back_faces);
         assert!(transfer(&Situation { mirrored: true, ..situation() }, false).mirrored);
         assert!(transfer(&Situation { reversed: true, ..situation() }, false).reversed);
-        // What nothing tests must not be drawn by its front.
+        // Without a depth attachment, back faces are drawn.
         let untested = Situation { host: HostPass::plain(Rgba16Float), ..situation() };
         assert!(transfer(&untested, false).back_faces);
     }

@@ -1,4 +1,4 @@
-//! One particle system's place in a renderer: its buffers, its targets, and what this frame draws with them.
+//! State of one particle system in a renderer: its buffers, its targets, and its passes of the current frame.
 
 use glam::{UVec2, Vec2, Vec3};
 
@@ -27,22 +27,22 @@ use crate::in_view::{
 };
 use crate::settings::{Lighting, Path, Settings, Technique};
 
-/// A frame, and what it is drawn with.
+/// A frame, with the resources that every system needs.
 pub(crate) struct FrameContext<'a> {
     pub gpu: Gpu<'a>,
     pub shared: &'a Shared,
     pub frame: &'a Frame<'a>,
     pub view: &'a ViewGeometry,
-    /// Size of the host's targets.
+    /// Size of the host's targets, pixels.
     pub host_size: UVec2,
     pub situation: &'a Situation<'a>,
     pub bindings: &'a FrameBindings,
 }
 
-/// Buffers and targets of one system, and this frame's draw.
+/// Buffers and targets of one system, and its passes of the current frame.
 #[derive(Debug)]
 pub(crate) struct Slot {
-    /// The system's.
+    /// Key of the system.
     pub key: u64,
     uniform: wgpu::Buffer,
     lights: wgpu::Buffer,
@@ -53,18 +53,18 @@ pub(crate) struct Slot {
     tiles: TiledSystem,
     emitted: Emitted,
     depth_sorted: DepthSorted,
-    /// A few particles of an emitter.
+    /// Sample of an emitter's particles, for estimates.
     sample: Vec<Particle>,
     chooser: Chooser,
-    /// Counts frames without deferred smoke: its targets are not kept for ever.
+    /// Counts frames without deferred drawing, after which the targets are released.
     without_targets: Spare,
-    /// Counts frames in which it was not tiled.
+    /// Counts frames without the path `tiled`, after which its buffers are released.
     untiled: Spare,
-    /// Counts frames in which no host's particles were sorted.
+    /// Counts frames in which no host's particles were sorted, after which the sort's buffers are released.
     unsorted: Spare,
-    /// Counts frames without the system.
+    /// Counts frames without the system, after which this state is dropped.
     absent: Spare,
-    /// `None` when out of sight.
+    /// `None` if the system is out of sight.
     drawn: Option<Drawn>,
 }
 
@@ -73,9 +73,9 @@ struct Drawn {
     in_view: SystemInView,
     technique: Technique,
     pictures: Pictures,
-    /// Of the path `auto`.
+    /// Choice of the path `auto`; `None` for any other path setting.
     choice: Option<PathChoice>,
-    /// How many each particle of the sample stands for, where no other is known.
+    /// Number of particles that each one of `sample` represents, if the GPU evaluates the emitter; otherwise `None`.
     sampled: Option<u32>,
     particles_pass: Option<ParticlesPass>,
     draw: Draw,
@@ -115,22 +115,22 @@ impl Slot {
         }
     }
 
-    /// This frame's draw; `None` when out of sight.
+    /// Returns this frame's passes; `None` if the system is out of sight.
     pub fn draw(&self) -> Option<&Draw> {
         self.drawn.as_ref().map(|drawn| &drawn.draw)
     }
 
-    /// What makes its particles, before all else.
+    /// Returns the pass that produces the system's particles. It runs before all other passes.
     pub fn particles_pass(&self) -> Option<&ParticlesPass> {
         self.drawn.as_ref()?.particles_pass.as_ref()
     }
 
-    /// What the path `auto` took this frame.
+    /// Returns this frame's choice of the path `auto`.
     pub fn choice(&self) -> Option<PathChoice> {
         self.drawn.as_ref()?.choice
     }
 
-    /// View depth of the middle of the smoke.
+    /// Returns the view depth of the smoke's centre, metres.
     pub fn distance(&self) -> f32 {
         self.drawn.as_ref().map_or(0.0, |drawn| drawn.in_view.distance)
     }
@@ -155,7 +155,7 @@ impl Slot {
         }
     }
 
-    /// In a view.
+    /// Computes the overdraw of the system in `view`.
     pub fn overdraw(&self, view: &ViewUniform) -> Overdraw {
         let Some(Drawn { in_view, technique, pictures, sampled, draw, .. }) = &self.drawn else {
             return Overdraw::default();
@@ -194,7 +194,8 @@ impl Slot {
         })
     }
 
-    /// Tells of a frame in which the system may be missing; true once it has been for long.
+    /// Counts a frame in which the system may be missing. Returns true once it has been missing for more than 120
+    /// frames in a row.
     pub fn is_abandoned(&mut self, is_missing: bool) -> bool {
         if is_missing {
             self.drawn = None;
@@ -202,7 +203,7 @@ impl Slot {
         self.absent.outlasts(is_missing)
     }
 
-    /// Places the system in the view, uploads what the passes read, and readies targets and pipelines.
+    /// Places the system in the view, uploads its data, and prepares targets and pipelines.
     pub fn write(&mut self, context: &FrameContext<'_>, system: &System<'_>) {
         self.drawn = self.place(context, system);
         let is_deferred = matches!(self.draw(), Some(Draw::Deferred(_)));
@@ -276,7 +277,7 @@ impl Slot {
         Some(Drawn { in_view, technique: settings.technique, pictures, choice, sampled, particles_pass, draw })
     }
 
-    /// What is drawn, uploaded or made by a pass. `None` when there is nothing.
+    /// Uploads the particles, or prepares the pass that produces them. Returns `None` if there is nothing to draw.
     fn particles(
         &mut self,
         context: &FrameContext<'_>,
@@ -304,7 +305,7 @@ impl Slot {
     }
 }
 
-/// What the path `auto` takes; `None` for any other.
+/// Chooses the path if the setting is `auto`; otherwise returns `None`.
 fn choose(chooser: &mut Chooser, shared: &Shared, system: &System<'_>, load: Option<&PathLoad>) -> Option<PathChoice> {
     let Some(load) = load.filter(|_| system.settings.path == Path::Auto) else {
         *chooser = Chooser::default();
@@ -316,7 +317,8 @@ fn choose(chooser: &mut Chooser, shared: &Shared, system: &System<'_>, load: Opt
     Some(chooser.choose(&shared.path_model(), load))
 }
 
-/// Particles that the CPU knows, and how many of the system each of them stands for.
+/// Returns the particles that the CPU knows, and the number of particles that each represents. `None` for a host's
+/// buffer.
 fn known_particles<'a>(particles: Particles<'a>, sample: &'a mut Vec<Particle>) -> Option<(&'a [Particle], u32)> {
     match particles {
         Particles::Slice(particles) => Some((particles, 1)),
@@ -333,7 +335,7 @@ fn bounds_of_system(system: &System<'_>) -> Bounds {
         (Some(bounds), _) => bounds,
         (None, Particles::Slice(particles)) => bounds_of(particles, system.settings.reach()),
         (None, Particles::Emission(emission)) => emission.bounds(system.settings.reach()),
-        // Refused when the frame was validated.
+        // `validate` refuses a buffer without bounds.
         (None, Particles::Buffer { .. }) => Bounds::EMPTY,
     }
 }

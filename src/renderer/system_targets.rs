@@ -1,4 +1,4 @@
-//! What one system is accumulated into and lit from, bound for the passes that read it.
+//! Textures that one system is accumulated into and lit from, bound for the passes that read them.
 
 use glam::UVec2;
 
@@ -8,7 +8,7 @@ use super::plan::DeferredPlan;
 use super::targets::{AccumulationKey, AccumulationTarget, BakedDiffuse, Beside};
 use crate::settings::Settings;
 
-/// The textures of one system, and their bind groups, which are made anew with them.
+/// Textures of one system, and their bind groups, which are recreated with the textures.
 #[derive(Debug, Default)]
 pub(crate) struct SystemTargets {
     accumulation: Option<AccumulationTarget>,
@@ -19,17 +19,17 @@ pub(crate) struct SystemTargets {
 /// Bind groups of the textures.
 #[derive(Debug)]
 pub(crate) struct TargetInputs {
-    /// Group 3 of accumulate; `None` where sprites are compared with the host's own depth.
+    /// Group 3 of accumulate; `None` if sprites are compared with the host's own depth.
     pub accumulate: Option<wgpu::BindGroup>,
     /// Group 3 of transfer, specular_scatter and light_target.
     pub transfer: wgpu::BindGroup,
-    /// The same with counted layers in place of the amount.
+    /// As `transfer`, with counted layers in place of the first attachment.
     pub overdraw: Option<wgpu::BindGroup>,
-    /// The same with lit smoke.
+    /// As `transfer`, with lit smoke in place of the first attachment.
     pub lit: Option<wgpu::BindGroup>,
 }
 
-/// Textures that are ready to be drawn to and read.
+/// Textures that fit the current frame, and their bind groups.
 #[derive(Clone, Copy)]
 pub(crate) struct ReadyTargets<'a> {
     pub accumulation: &'a AccumulationTarget,
@@ -38,7 +38,7 @@ pub(crate) struct ReadyTargets<'a> {
 }
 
 impl SystemTargets {
-    /// Makes everything ready for `size` texels; the whole view at this scale has `limit`.
+    /// Makes all textures fit `size` texels. `limit`: size of the whole view at this scale, texels.
     pub fn fit(
         &mut self,
         shared: &Shared,
@@ -66,7 +66,8 @@ impl SystemTargets {
             let depth = accumulation.reduced_depth.as_ref();
             let amount = &accumulation.attachments[0];
             let (accumulate, transfer) = (&shared.layouts.accumulate, &shared.layouts.transfer);
-            // Without a reduced depth or a second texture nothing reads them, but something must be bound.
+            // Placeholders: without a reduced depth or a second attachment no shader reads these bindings, but they
+            // must be filled.
             let transfer = |amount| {
                 let depth = depth.unwrap_or(amount);
                 let beside = accumulation.attachments.get(1).unwrap_or(amount);
@@ -83,12 +84,12 @@ impl SystemTargets {
         ReadyTargets { accumulation, baked_diffuse, inputs }
     }
 
-    /// The textures, if there are any.
+    /// Returns the textures, if they exist.
     pub fn textures(&self) -> Option<(&AccumulationTarget, &BakedDiffuse)> {
         self.accumulation.as_ref().zip(self.baked_diffuse.as_ref())
     }
 
-    /// Bytes held.
+    /// Returns the bytes of GPU memory held.
     pub fn bytes(&self) -> u64 {
         let accumulation = self.accumulation.as_ref().map_or(0, |target| target.bytes);
         accumulation + self.baked_diffuse.as_ref().map_or(0, |baked| baked.bytes)

@@ -1,4 +1,4 @@
-//! What the GPU renderer refuses about a frame.
+//! Validation of a frame for the GPU renderer.
 
 use glam::UVec2;
 
@@ -12,10 +12,10 @@ use crate::frame::validate::{validate_lights, validate_place, validate_settings,
 use crate::frame::{Frame, Particle, Particles, SceneDepth, System, View};
 use crate::settings::{DepthSource, Path, Technique};
 
-/// Checks everything but the view's matrices.
+/// Validates everything except the view's matrices.
 ///
 /// # Errors
-/// The first field that cannot be used.
+/// Names the first field that is not valid.
 pub(crate) fn validate(shared: &Shared, host: &HostPass, frame: &Frame<'_>) -> Result<(), FieldError> {
     validate_time_and_up(frame.time, frame.up)?;
     let size = validate_scene_depth(frame)?;
@@ -27,14 +27,14 @@ pub(crate) fn validate(shared: &Shared, host: &HostPass, frame: &Frame<'_>) -> R
     }
     let reads_attached = host.depth_format.is_some() && frame.scene_depth.linear().is_none();
     if reads_attached && !shared.read_only_depth && host.sample_count == 1 {
-        let expected = "SceneDepth::Linear or Both, or None as the descriptor's depth_format: this backend (OpenGL) \
-                        cannot read the depth buffer that the pass tests";
+        let expected = "SceneDepth::Linear or Both, or a descriptor with depth_format None: this backend (OpenGL) \
+                        cannot sample the depth buffer that the pass tests";
         return Err(FieldError::new("scene_depth", "Buffer", expected));
     }
     validate_lights(frame.lights)?;
     for (index, system) in frame.systems.iter().enumerate() {
         if let Some(other) = frame.systems[..index].iter().position(|other| other.key == system.key) {
-            let expected = format!("a key of its own; systems[{other}] has it already");
+            let expected = format!("a unique key; systems[{other}] has the same one");
             return Err(FieldError::new(format!("systems[{index}].key"), system.key, expected));
         }
         validate_system(shared, index, frame, system)?;
@@ -42,7 +42,7 @@ pub(crate) fn validate(shared: &Shared, host: &HostPass, frame: &Frame<'_>) -> R
     Ok(())
 }
 
-/// The size of the host's targets.
+/// Returns the size of the host's targets, pixels.
 pub(crate) fn host_size(scene_depth: &SceneDepth<'_>) -> UVec2 {
     let (SceneDepth::Buffer(view) | SceneDepth::Linear(view) | SceneDepth::Both { buffer: view, .. }) = scene_depth;
     UVec2::new(view.texture().width(), view.texture().height())
@@ -80,7 +80,7 @@ fn validate_depth_texture(
         return refuse(format!("{:?}", texture.format()), expected);
     }
     if !texture.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
-        return refuse(format!("usage {:?}", texture.usage()), "TEXTURE_BINDING in it");
+        return refuse(format!("usage {:?}", texture.usage()), "a usage that includes TEXTURE_BINDING");
     }
     Ok(())
 }
@@ -89,15 +89,15 @@ fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &Sy
     validate_settings(index, system.settings, frame.view.size)?;
     if system.settings.path == Path::Tiled && shared.tiles().is_none() {
         let expected =
-            "\"raster\", or a device with compute shaders and the limits that WebGPU promises, not of OpenGL";
+            "\"raster\", or a device with compute shaders and WebGPU's default limits; OpenGL is not supported";
         return Err(FieldError::new(format!("systems[{index}].settings.path"), "\"tiled\"", expected));
     }
     validate_place(index, system.bounds.as_ref(), system.depth)?;
     let field = |name: &str| format!("systems[{index}].{name}");
     validate_particles(shared, system, &field)?;
     if system.material.context != shared.number {
-        let expected = "one that this renderer's context has made; renderers share materials by sharing a context";
-        return Err(FieldError::new(field("material"), "of another context", expected));
+        let expected = "a material created by this renderer's context; renderers share materials by sharing a context";
+        return Err(FieldError::new(field("material"), "a material of another context", expected));
     }
     system.material.info.validate(index, system.settings)?;
     if system.settings.technique == Technique::SoftLinear && frame.scene_depth.linear().is_none() {
@@ -119,7 +119,7 @@ fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &Sy
     Ok(())
 }
 
-/// Why the path `auto` cannot take `tiled` for a system.
+/// Returns the reason why the path `auto` cannot choose `tiled` for a system; `None` if it can.
 pub(crate) fn tiles_refuse(shared: &Shared, system: &System<'_>) -> Option<PathReason> {
     let Some(tiled) = &shared.passes.tiled else { return Some(PathReason::NoTiles) };
     let (count, is_readable) = match system.particles {
@@ -141,8 +141,8 @@ fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str
     let is_tiled = system.settings.path == Path::Tiled;
     let needs_sorting = system.particles.need_sorting(system.settings);
     if needs_sorting && shared.passes.tiled.is_none() {
-        let expected = "true, the order \"weighted\", or a slice: to sort them takes compute shaders and the limits that WebGPU \
-                        promises, not of OpenGL";
+        let expected = "true, the order \"weighted\", or a slice: sorting a buffer needs compute shaders and \
+                        WebGPU's default limits; OpenGL is not supported";
         return Err(FieldError::new(field("particles.is_sorted"), false, expected));
     }
     let limits = shared.device.limits();
@@ -159,14 +159,14 @@ fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str
             let bounds = emission.bounds(system.settings.reach());
             let is_finite = bounds.min.is_finite() && bounds.max.is_finite();
             if !bounds.is_empty() && !is_finite {
-                let expected = "that of an emitter that Emitter::validate accepts";
-                return Err(FieldError::new(field("particles"), "an emission without a finite box", expected));
+                let expected = "an emission of an emitter that Emitter::validate accepts";
+                return Err(FieldError::new(field("particles"), "an emission whose bounds are not finite", expected));
             }
         }
         Particles::Buffer { buffer, offset, count, .. } => {
             validate_count(u64::from(count), most, field)?;
             if system.bounds.is_none() {
-                let expected = "the box of the particles, which are on the GPU";
+                let expected = "the bounding box of the particles: the CPU does not read a GPU buffer";
                 return Err(FieldError::new(field("bounds"), "None", expected));
             }
             let is_read = is_tiled || needs_sorting;

@@ -1,19 +1,19 @@
-//! What is known of frames before they come.
+//! Description of future frames, for compiling their pipelines in advance.
 
 use super::plan::SceneDepthKind;
 use crate::frame::View;
 use crate::settings::{Settings, ShadeTree};
 
-/// What frames will look like, so far as it decides pipelines. See [`Renderer::warm_up`](crate::Renderer::warm_up).
+/// Properties of future frames that select pipelines. See [`Renderer::warm_up`](crate::Renderer::warm_up).
 #[derive(Clone, Copy, Debug)]
 pub struct WarmUp<'a> {
-    /// A camera like those to come: its hand and its depth convention count, and the size of the picture where `max_side` sets
-    /// the scale, not where it stands.
+    /// A camera like those of the future frames. Its handedness and depth convention matter, and its size if `max_side`
+    /// determines the scale; its position does not.
     pub view: View,
-    /// The kind of scene depth.
+    /// Kind of scene depth.
     pub scene_depth: SceneDepthKind,
-    /// Settings of the systems to come.
+    /// Settings of the future systems.
     pub settings: &'a [Settings],
-    /// The stages that will be shown.
+    /// Stages that will be shown.
     pub stages: &'a [ShadeTree],
 }

@@ -213,10 +213,10 @@ fn imports_that_lead_nowhere_are_named() {
         let reason = format!("there is no shader file {outside:?} to import; expected a .wgsl file inside the folder");
         assert_eq!(refused, format!("{place}: {reason}"));
     }
-    let circle = "imports go round in a circle: lib/round.wgsl → lib/about.wgsl → lib/round.wgsl";
+    let circle = "circular import: lib/round.wgsl → lib/about.wgsl → lib/round.wgsl";
     assert_eq!(imports("lib/round.wgsl").0, format!("lib/about.wgsl:2:9: {circle}"));
     let (itself, place) = imports("lib/colour.wgsl");
-    assert_eq!(itself, format!("{place}: imports go round in a circle: lib/colour.wgsl → lib/colour.wgsl"));
+    assert_eq!(itself, format!("{place}: circular import: lib/colour.wgsl → lib/colour.wgsl"));
 }
 
 #[test]
@@ -269,7 +269,7 @@ fn what_is_no_folder_of_shaders_is_refused() {
 
     assert_eq!(
         folder.write("lib/ramp.wgsl", b"// f\xc3\xbcr\n// f\xfcr\n").refusal(),
-        "lib/ramp.wgsl:2:5: not a text; expected UTF-8"
+        "lib/ramp.wgsl:2:5: not a text file; expected UTF-8"
     );
     folder.write("lib/ramp.wgsl", vec![b' '; (1 << 20) + 1]);
     assert_eq!(folder.refusal(), "lib/ramp.wgsl: 1048577 bytes; expected a WGSL file of at most 1048576 bytes (1 MiB)");

@@ -1,4 +1,4 @@
-//! The choice, with its reason; and that it is kept.
+//! Choice of the accumulation path for `auto`, with its reason and a delay before a switch.
 
 use std::fmt;
 
@@ -6,44 +6,45 @@ use super::load::PathLoad;
 use super::model::{PathModel, PathModelSource};
 use crate::settings::Path;
 
-/// Frames for which the other path must look better before it is taken: half a second of most games.
+/// Frames for which the other path must look better before a switch: 0.5 s at 60 frames per second.
 const PATIENCE: u32 = 30;
-/// How much better it must look.
+/// The other path looks better if its expected time is below this fraction of the current path's.
 const GAIN: f32 = 0.95;
 
-/// What the path `auto` takes for a system, and why. Its `Display` is one sentence.
+/// Path that `auto` chose for a system, with the reason. `Display` formats it as one sentence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathChoice {
     /// [`Path::Raster`] or [`Path::Tiled`].
     pub path: Path,
-    /// Why it is that.
+    /// Reason for the choice.
     pub reason: PathReason,
 }
 
-/// Why a path is taken.
+/// Reason for a [`PathChoice`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PathReason {
-    /// It is expected to take less time, or not so much more that another would be worth the change.
+    /// The path is expected to take less time than the other, or not enough more to justify a switch.
     Expected {
-        /// Milliseconds to accumulate by `raster`.
+        /// Expected time to accumulate by `raster`, milliseconds.
         raster_ms: f32,
-        /// The same by `tiled`.
+        /// Expected time to accumulate by `tiled`, milliseconds.
         tiled_ms: f32,
-        /// Layers over a texel, in the mean; `None` where particles are in a host's buffer, which the CPU does not know.
+        /// Mean overdraw, layers per texel; `None` for particles in a host's buffer, which the CPU does not know.
         layers: Option<f32>,
-        /// Where the figures are from.
+        /// Origin of the cost model.
         source: PathModelSource,
     },
-    /// The device has no path `tiled`.
+    /// The device does not support the path `tiled`.
     NoTiles,
-    /// Compute shaders cannot read the host's buffer: it has no `STORAGE` usage, or an offset that is no multiple of 16.
+    /// Compute shaders cannot read the host's buffer: it lacks `STORAGE` usage, or its offset is not a multiple of 16
+    /// bytes.
     BufferOfVertices,
-    /// There are more particles than fit into what shaders of this device read.
+    /// There are more particles than one storage buffer binding of this device can hold.
     TooMany,
 }
 
 impl PathChoice {
-    /// The better of the two for a load, whatever was taken before.
+    /// Returns the path with the lower expected time for a load, regardless of earlier choices.
     pub fn new(model: &PathModel, load: &PathLoad) -> Self {
         let [raster_ms, tiled_ms] = model.milliseconds(load);
         let layers = (!load.is_assumed).then(|| load.layers() as f32);
@@ -66,30 +67,31 @@ impl fmt::Display for PathChoice {
                 write!(f, "about {} ms against {name}'s {} (overdraw ", digits(own), digits(other))?;
                 match layers {
                     Some(layers) => write!(f, "{layers:.0}")?,
-                    None => f.write_str("unknown, taken for 16")?,
+                    None => f.write_str("unknown, assumed 16")?,
                 }
                 write!(f, ", {})", source.name())
             }
-            PathReason::NoTiles => f.write_str("this device has no path tiled"),
+            PathReason::NoTiles => f.write_str("this device does not support the path tiled"),
             PathReason::BufferOfVertices => f.write_str(
-                "compute shaders cannot read the particles' buffer: STORAGE usage and an offset of 16 bytes",
+                "compute shaders cannot read the particle buffer; expected STORAGE usage, an offset divisible by 16",
             ),
-            PathReason::TooMany => f.write_str("more particles than shaders of this device can read"),
+            PathReason::TooMany => f.write_str("more particles than a shader can read on this device"),
         }
     }
 }
 
-/// Two digits or more that count.
+/// Formats milliseconds with about two significant digits.
 fn digits(ms: f32) -> String {
     let digits = if ms < 0.1 { 3 } else { usize::from(ms < 100.0) + usize::from(ms < 1.0) };
     format!("{ms:.digits$}")
 }
 
-/// Keeps to a path until the other has looked better for a while, so that pipelines and targets do not come and go.
+/// Switches paths only after the other has looked better for a while, so that pipelines and targets are not recreated
+/// every few frames.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Chooser {
     taken: Option<Path>,
-    /// Frames for which the other has looked better.
+    /// Consecutive frames for which the other path has looked better.
     other: u32,
 }
 
@@ -127,23 +129,23 @@ mod tests {
     }
 
     #[test]
-    fn a_choice_is_a_sentence() {
+    fn display_formats_a_choice_as_one_sentence() {
         let reason =
             PathReason::Expected { raster_ms: 9.8, tiled_ms: 3.12, layers: Some(64.2), source: PathModelSource::Probe };
         let choice = PathChoice { path: Path::Tiled, reason };
         assert_eq!(choice.to_string(), "tiled: about 3.1 ms against raster's 9.8 (overdraw 64, probe)");
         let choice = PathChoice { path: Path::Raster, reason: PathReason::NoTiles };
-        assert_eq!(choice.to_string(), "raster: this device has no path tiled");
+        assert_eq!(choice.to_string(), "raster: this device does not support the path tiled");
         assert_eq!([0.0123, 0.234, 2.345, 234.5].map(digits), ["0.012", "0.23", "2.3", "234"]);
     }
 
     #[test]
-    fn the_first_choice_is_at_once_and_another_takes_time() {
+    fn first_choice_is_immediate_and_a_switch_is_delayed() {
         let model = PathModel::of_class(wgpu::DeviceType::Cpu);
         let [few, many] = [load(2.0), load(2000.0)];
         let mut chooser = Chooser::default();
         assert_eq!(chooser.choose(&model, &few).path, Path::Raster);
-        // What comes and goes changes nothing.
+        // A short advantage does not cause a switch.
         for _ in 0..10 {
             assert!((0..PATIENCE).all(|_| chooser.choose(&model, &many).path == Path::Raster));
             assert_eq!(chooser.choose(&model, &few).path, Path::Raster);
@@ -154,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_hardly_better_is_not_worth_a_change() {
+    fn small_gain_does_not_cause_a_switch() {
         let mut model = PathModel::of_class(wgpu::DeviceType::Cpu);
         let mut chooser = Chooser::default();
         model.tiled = model.raster.times(2.0);

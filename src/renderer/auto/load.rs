@@ -1,4 +1,4 @@
-//! What there is to accumulate of a system, from a few of its sprites.
+//! Estimate of a system's accumulation workload from a sample of its sprites.
 
 use glam::UVec2;
 
@@ -6,32 +6,33 @@ use crate::frame::Particle;
 use crate::in_view::{Grid, Placing, optical_depth};
 use crate::settings::{Layers, Order, Settings, Technique};
 
-/// Sprites that are looked at, of all: some ten microseconds.
+/// Maximum number of sprites sampled; the estimate takes about ten microseconds.
 const SAMPLE: usize = 256;
-/// Layers of sprites that the CPU does not know, and the optical depth of each.
+/// Overdraw assumed for sprites that the CPU does not know, and the optical depth of each.
 const ASSUMED_LAYERS: f64 = 16.0;
 const ASSUMED_DEPTH: f64 = 0.05;
 
-/// What there is to accumulate.
+/// Accumulation workload of a system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathLoad {
-    /// How its sprites meet the scene.
+    /// Technique of the sprites.
     pub technique: Technique,
-    /// Sprites.
+    /// Number of sprites, times `debug_loop`.
     pub sprites: f64,
-    /// Texels that they cover, one above the other.
+    /// Texels that the sprites cover, counted once per sprite.
     pub fragments: f64,
-    /// Sides of the target, texels.
+    /// Size of the target, texels.
     pub size: UVec2,
-    /// Optical depth of a sprite, −ln(1 − amount), in the mean over what it covers; 0 where no layer may be left out.
+    /// Mean optical depth of a sprite, −ln(1 − amount), over the texels that it covers; 0 if no layer may be skipped.
     pub optical_depth: f64,
-    /// Octaves of all steps of a volumetric sprite.
+    /// Noise lookups per fragment of a volumetric sprite: octaves times march steps.
     pub lookups: f64,
-    /// Nothing is known of the sprites but their number.
+    /// True if only the number of sprites is known.
     pub is_assumed: bool,
 }
 
-/// Of so many sprites on a target. `known`: particles that stand for all, and how many each of them is.
+/// Estimates the workload of `sprites` sprites on a target. `known`: particles that stand for all, and the number of
+/// sprites that each represents.
 pub(crate) fn load(
     placing: &Placing<'_>,
     grid: &Grid,
@@ -47,7 +48,7 @@ pub(crate) fn load(
             let step = particles.len().div_ceil(SAMPLE).max(1);
             let sample = particles.iter().step_by(step).filter(|particle: &&Particle| particle.is_visible());
             let (areas, depths) = placing.covered(grid, sample).fold((0.0, 0.0), |(areas, depths), sprite| {
-                // Of what is clear of its square nothing is covered.
+                // `optical_depth` is the mean over the whole square; only the share that is not trimmed is covered.
                 let depth = f64::from(optical_depth(sprite.particle, settings)) / sprite.share.max(1.0e-6);
                 (areas + sprite.texels, depths + sprite.texels * depth)
             });

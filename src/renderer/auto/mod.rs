@@ -1,4 +1,4 @@
-//! Which way to accumulate the path `auto` takes, and why.
+//! Choice of the accumulation path for `auto`: workload, cost model and decision.
 
 mod choice;
 mod load;

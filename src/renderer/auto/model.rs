@@ -1,4 +1,4 @@
-//! What either way to accumulate takes, from what there is to accumulate.
+//! Cost model of both accumulation paths.
 
 use glam::UVec2;
 
@@ -6,77 +6,79 @@ use super::load::PathLoad;
 use crate::error::FieldError;
 use crate::settings::Technique;
 
-/// Texels along the side of what [`PathCosts::entry`] counts.
+/// Side of the squares that [`PathCosts::entry`] counts, texels.
 const BIN: f64 = 32.0;
-/// Texels along the side of the squares that a CPU's cores rasterize, one at a time.
+/// Side of the squares that a CPU's cores rasterize, one core per square, texels.
 const SQUARE: u32 = 64;
-/// Where a walk stops, as optical depth: `OPAQUE` in `shaders/tile_accumulate.wgsl`, and twice that, as texels that walk together
-/// wait for the last of them.
+/// Optical depth at which a traversal stops: `OPAQUE` in `shaders/tile_accumulate.wgsl`, doubled because texels that
+/// are traversed together wait for the last of them.
 const OPAQUE_DEPTH: f64 = 2.0 * 10.0 * std::f64::consts::LN_2;
-/// Share of the walks that never stop: those round the borders of the smoke. With both an H200 is met within 5 % where sprites are
-/// large.
+/// Fraction of the traversals that never stop: those at the borders of the smoke. With this value and `OPAQUE_DEPTH`,
+/// the model is within 5 % of an H200 for large sprites.
 const CLEAR_SHARE: f64 = 0.5;
-/// Where a CPU draws, a path is believed to be dearer against the other than its class has it by as much as it looks more than so many
-/// times dearer: what else runs on the machine slows the walk down 1.5 times more than `raster`, for seconds.
+/// Tolerance of a probe on a CPU: if the measured ratio of the two paths differs from the class's by less than this
+/// factor, it is ignored; otherwise only the excess counts. Reason: other load on the machine slows the traversal 1.5
+/// times more than `raster`, for seconds.
 const CPU_DOUBT: f32 = 1.6;
 
-/// What accumulating takes on a device, by which the path `auto` chooses. Set it with
+/// Cost model by which the path `auto` chooses. Set it with
 /// [`Context::set_path_model`](crate::Context::set_path_model).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathModel {
-    /// Of the path `raster`.
+    /// Costs of the path `raster`.
     pub raster: PathCosts,
-    /// Of the path `tiled`.
+    /// Costs of the path `tiled`.
     pub tiled: PathCosts,
-    /// Cores that rasterize, square by square of 64 texels, 1 or more: on a small target some of them have nothing to do. 1 on GPUs,
-    /// where it makes no difference.
+    /// CPU cores that rasterize, each one square of 64 by 64 texels at a time; 1 or more. On a small target some of
+    /// them are idle. 1 on GPUs, where it has no effect.
     pub cores: u32,
-    /// Where the figures are from.
+    /// Origin of the figures.
     pub source: PathModelSource,
 }
 
-/// What one way to accumulate takes, nanoseconds, each 0 or more and finite.
+/// Costs of one accumulation path, nanoseconds, each 0 or more and finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathCosts {
-    /// Each system.
+    /// Per system.
     pub frame: f32,
-    /// Each texel of its target.
+    /// Per texel of the system's target.
     pub texel: f32,
-    /// Each sprite.
+    /// Per sprite.
     pub sprite: f32,
-    /// Each square of 32 texels that a sprite touches, sprite by sprite.
+    /// Per square of 32 by 32 texels that a sprite touches, summed over all sprites.
     pub entry: f32,
-    /// Each layer that lies over a texel, in the mean: the longest walk is waited for, however few there are.
+    /// Per layer of mean overdraw: the pass waits for the longest traversal, however few texels need it.
     pub layer: f32,
-    /// Each texel that a flat sprite covers.
+    /// Per texel that a flat sprite covers.
     pub fragment: f32,
-    /// The same of the technique `spherical_billboard`.
+    /// Per texel that a sprite of the technique `spherical_billboard` covers.
     pub sphere: f32,
-    /// The same of volumetric ones, for each octave of each step.
+    /// Per texel that a volumetric sprite covers, for each noise octave of each march step.
     pub march: f32,
-    /// Sides of the blocks that are drawn whole where a sprite covers some of one, texels; 0 where only what it covers takes time.
+    /// Width and height of the blocks that are shaded whole if a sprite covers any part of one, texels; 0 if only
+    /// covered texels cost time.
     pub block: [u32; 2],
 }
 
-/// Where the figures of a [`PathModel`] are from.
+/// Origin of the figures of a [`PathModel`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PathModelSource {
-    /// What GPUs were measured at.
+    /// Defaults, measured on a GPU.
     Gpu,
-    /// What CPUs that draw were measured at.
+    /// Defaults, measured on a CPU that renders (software adapter).
     Cpu,
     /// Measured on this device: [`Context::measure_paths`](crate::Context::measure_paths).
     Probe,
-    /// The host's own.
+    /// Set by the host.
     Host,
 }
 
 impl PathModelSource {
-    /// In a word or two.
+    /// Returns a short description.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Gpu => "as GPUs have it",
-            Self::Cpu => "as CPUs have it",
+            Self::Gpu => "GPU defaults",
+            Self::Cpu => "CPU defaults",
             Self::Probe => "probe",
             Self::Host => "set by the host",
         }
@@ -84,7 +86,7 @@ impl PathModelSource {
 }
 
 impl PathModel {
-    /// An NVIDIA H200, `bench/results/h200_auto.json`; the walk in `h200.json`.
+    /// Measured on an NVIDIA H200: `bench/results/h200_auto.json`; the traversal in `h200.json`.
     const GPU: Self = Self {
         raster: PathCosts {
             frame: 10.0e3,
@@ -112,7 +114,7 @@ impl PathModel {
         source: PathModelSource::Gpu,
     };
 
-    /// llvmpipe on two cores.
+    /// Measured on llvmpipe with two cores.
     const CPU: Self = Self {
         raster: PathCosts {
             frame: 0.6e6,
@@ -140,14 +142,16 @@ impl PathModel {
         source: PathModelSource::Cpu,
     };
 
-    /// By how much the probe finds more than this, by `raster` and by `tiled`, on the very device that the class was measured at:
-    /// its sprites are hidden by nothing, and those of the class in part, which spares `raster` the more; and its few sprites stay in
-    /// caches, so that a walk waits less for each.
+    /// Returns the factors by which the probe exceeds this model, for `raster` and `tiled`, on the very device on which
+    /// the class was measured. The scene hides part of the sprites in the class's measurement, which saves more time in
+    /// `raster`, and none in the probe. The probe's few sprites stay in caches, so that a traversal waits less for
+    /// each.
     fn probe_finds(&self) -> [f32; 2] {
         if self.source == PathModelSource::Cpu { [1.24, 0.74] } else { [1.75, 0.35] }
     }
 
-    /// Of a device of this class on which the probe took so many times as long as this has it, by `raster` and by `tiled`.
+    /// Scales this class's model to a device. `times`: the probe's time divided by this model's expectation, for
+    /// `raster` and `tiled`.
     pub(crate) fn probed(self, times: [f32; 2]) -> Self {
         let finds = self.probe_finds();
         let [raster, tiled] = [times[0] / finds[0], times[1] / finds[1]];
@@ -162,7 +166,7 @@ impl PathModel {
         }
     }
 
-    /// What devices of this kind take.
+    /// Returns the default model of a device type.
     pub fn of_class(device_type: wgpu::DeviceType) -> Self {
         if device_type != wgpu::DeviceType::Cpu {
             return Self::GPU;
@@ -194,7 +198,7 @@ impl PathModel {
         Ok(())
     }
 
-    /// Milliseconds by `raster` and by `tiled`.
+    /// Returns the expected milliseconds of `raster` and of `tiled`.
     pub fn milliseconds(&self, load: &PathLoad) -> [f32; 2] {
         let share = load.seen_share();
         [(&self.raster, load.busiest(self.cores)), (&self.tiled, share)]
@@ -203,7 +207,8 @@ impl PathModel {
 }
 
 impl PathCosts {
-    /// `share`: of the sprites' texels, those that are worked out; more than all where some are waited for.
+    /// Returns the expected milliseconds. `share`: fraction of the sprites' texels that are shaded; above 1 if the pass
+    /// waits for the busiest core.
     pub(crate) fn milliseconds(&self, load: &PathLoad, share: f64) -> f32 {
         let of_fragment = match load.technique {
             Technique::SphericalBillboard => f64::from(self.sphere),
@@ -218,7 +223,7 @@ impl PathCosts {
         (nanoseconds * 1.0e-6) as f32
     }
 
-    /// All of them so many times as large.
+    /// Returns all costs multiplied by a factor.
     pub(crate) fn times(self, factor: f32) -> Self {
         Self {
             frame: self.frame * factor,
@@ -235,46 +240,47 @@ impl PathCosts {
 }
 
 impl PathLoad {
-    /// Layers over a texel, in the mean.
+    /// Returns the mean overdraw, layers per texel.
     pub fn layers(&self) -> f64 {
         self.fragments / self.texels().max(1.0)
     }
 
-    /// Texels of the target.
+    /// Returns the number of texels of the target.
     pub fn texels(&self) -> f64 {
         self.size.as_dvec2().element_product()
     }
 
-    /// What the core that has the largest square does, against its share of all: 1 where there are squares enough.
+    /// Returns the work of the core with the largest square, relative to an even share: 1 if there are enough squares
+    /// for all cores.
     fn busiest(&self, cores: u32) -> f64 {
         let largest = self.size.min(UVec2::splat(SQUARE)).as_dvec2().element_product();
         (f64::from(cores) * largest / self.texels().max(1.0)).max(1.0)
     }
 
-    /// Squares of 32 texels that sprites touch, sprite by sprite.
+    /// Returns the number of squares of 32 by 32 texels that sprites touch, summed over all sprites.
     fn entries(&self) -> f64 {
         self.sprites * self.touched(BIN, BIN)
     }
 
-    /// Rectangles of so many texels that a sprite touches, in the mean.
+    /// Returns the mean number of rectangles of `width` by `height` texels that a sprite touches.
     pub(crate) fn touched(&self, width: f64, height: f64) -> f64 {
         let side = self.side();
         ((side / width + 1.0) * (side / height + 1.0)).min((self.texels() / (width * height)).max(1.0))
     }
 
-    /// Of a sprite, texels: that of a square that lies askew.
+    /// Returns the side of a mean sprite's screen box, texels; the factor 1.2 accounts for rotated squares.
     fn side(&self) -> f64 {
         1.2 * (self.fragments / self.sprites.max(1.0)).sqrt()
     }
 
-    /// Texels that are drawn, in blocks of these sides.
+    /// Returns the number of texels that are shaded in blocks of these sides.
     fn drawn(&self, [width, height]: [u32; 2]) -> f64 {
         let side = self.side().max(1.0);
         self.fragments * (1.0 + f64::from(width) / side) * (1.0 + f64::from(height) / side)
     }
 
-    /// How much of the sprites a walk sees before it stops, in the mean. Layers are taken to be spread as chance has it, most of them
-    /// in few places.
+    /// Returns the mean fraction of the sprites that a traversal visits before it stops. Assumes that overdraw is
+    /// distributed exponentially over the texels: most layers lie in few places.
     fn seen_share(&self) -> f64 {
         let layers_seen = OPAQUE_DEPTH / self.optical_depth.max(1.0e-6);
         1.0 - (1.0 - CLEAR_SHARE) * (-layers_seen / self.layers().max(1.0e-6)).exp()
@@ -299,19 +305,19 @@ mod tests {
     }
 
     #[test]
-    fn layers_cost_what_is_seen_of_them() {
+    fn early_stop_limits_the_cost_of_tiled_but_not_of_raster() {
         let model = PathModel::of_class(wgpu::DeviceType::Cpu);
         let [raster, tiled] = model.milliseconds(&load(4.0));
         assert!(raster < tiled, "{raster} {tiled}");
         let [deep_raster, deep_tiled] = model.milliseconds(&load(4000.0));
         assert!(deep_raster > 500.0 * raster && deep_tiled < 500.0 * tiled, "{deep_raster} {deep_tiled}");
-        // A walk that does not stop sees all of it.
+        // A traversal that does not stop visits all layers.
         let [_, all] = model.milliseconds(&PathLoad { optical_depth: 0.0, ..load(4000.0) });
         assert!(all > 1.7 * deep_tiled);
     }
 
     #[test]
-    fn a_probe_on_a_cpu_is_doubted() {
+    fn small_deviations_of_a_cpu_probe_are_ignored() {
         let apart = |class: PathModel, walk: f32| {
             let [raster, tiled] = class.probe_finds();
             let probed = class.probed([3.0 * raster, 3.0 * walk * tiled]);
@@ -324,11 +330,11 @@ mod tests {
         assert!(
             alike(apart(PathModel::CPU, 2.0 * CPU_DOUBT), 2.0) && alike(apart(PathModel::CPU, 0.5 / CPU_DOUBT), 0.5)
         );
-        assert!(alike(apart(PathModel::GPU, 1.5), 1.5), "a GPU is alone");
+        assert!(alike(apart(PathModel::GPU, 1.5), 1.5), "a GPU's probe counts as measured");
     }
 
     #[test]
-    fn cores_without_a_square_do_nothing() {
+    fn idle_cores_on_a_small_target_raise_the_cost_per_texel() {
         let model = PathModel { cores: 2, ..PathModel::CPU };
         let raster = |width, height| {
             let size = UVec2::new(width, height);
@@ -338,11 +344,11 @@ mod tests {
         };
         let alike = |a: f64, b: f64| (a / b - 1.0).abs() < 0.05;
         assert!(alike(raster(64, 64), 2.0 * raster(128, 64)) && alike(raster(128, 64), raster(640, 640)));
-        assert!(alike(raster(96, 64), raster(128, 64) * 4.0 / 3.0), "one of two has two thirds");
+        assert!(alike(raster(96, 64), raster(128, 64) * 4.0 / 3.0), "one core of two does two thirds of the work");
     }
 
     #[test]
-    fn a_gpu_walks_where_there_is_something_to_walk() {
+    fn gpu_model_prefers_tiled_unless_the_load_is_small() {
         let model = PathModel::of_class(wgpu::DeviceType::DiscreteGpu);
         let small = UVec2::splat(128);
         let size = load(1.0).size;

@@ -1,26 +1,28 @@
-//! What backends differ in.
+//! Capabilities in which devices and backends differ.
 
-/// True if a pass of this device can test and sample one depth buffer. OpenGL and WebGL2 cannot: what is sampled there must
-/// be a linear target, or else [`Descriptor::depth_format`](crate::Descriptor::depth_format) `None`, and the shaders alone hide
-/// what is behind the scene.
+/// Returns true if a pass of this device can test and sample the same depth buffer. OpenGL and WebGL2 cannot: there,
+/// supply a linear target to sample, or set [`Descriptor::depth_format`](crate::Descriptor::depth_format) to `None`, so
+/// that only the shaders hide smoke behind the scene.
 pub fn read_only_depth_is_supported(device: &wgpu::Device) -> bool {
     device.adapter_info().backend != wgpu::Backend::Gl
 }
 
-/// Layers to allocate for a square array texture of `layers`. wgpu's OpenGL backend takes a texture of one layer for a plain
-/// one, and a square texture of six, or a multiple, for a cube: neither can then be sampled as an array.
+/// Returns the number of layers to allocate for a square array texture of `layers`. wgpu's OpenGL backend creates a
+/// plain texture for one layer, and a cube for a square texture of six layers or a multiple of six; neither can be
+/// sampled as an array. One more layer avoids both.
 pub(crate) fn array_layers(layers: u32) -> u32 {
     if layers == 1 || layers.is_multiple_of(6) { layers + 1 } else { layers }
 }
 
-/// True if a device can blend two targets of 8 bytes at once, as six-way light needs.
+/// Returns true if a device can blend two targets of 8 bytes per texel in one pass, which six-way lighting needs.
 pub(crate) fn six_way_is_supported(device: &wgpu::Device) -> bool {
     let limits = device.limits();
     limits.max_color_attachments >= 2 && limits.max_color_attachment_bytes_per_sample >= 16
 }
 
-/// True for devices with compute shaders and all that the tiled passes bind: WebGPU's defaults are enough. Not on OpenGL, where
-/// compiling them may take longer than wgpu waits for the context, which it then panics about.
+/// Returns true if a device has compute shaders and the limits that the tiled passes need: WebGPU's defaults suffice.
+/// False on OpenGL, where compiling these shaders can exceed the time that wgpu waits for the context, after which wgpu
+/// panics.
 pub(crate) fn tiles_are_supported(device: &wgpu::Device) -> bool {
     let limits = device.limits();
     device.adapter_info().backend != wgpu::Backend::Gl

@@ -1,20 +1,20 @@
-//! Asking wgpu whether it takes something, without the host's error handler hearing of it.
+//! Validation by wgpu's error scopes, without calling the host's error handler.
 
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 
-/// Makes something and gives it back, or else the last line of what wgpu says against it: the one that names the fault.
+/// Returns what `create` creates, or the last line of wgpu's error message: the line that names the cause.
 ///
-/// In a browser the answer comes only later. There everything is taken to be right, and the host's error handler hears of what
-/// is not.
+/// In a browser, errors arrive asynchronously. There this always returns `Ok`, and the host's error handler receives
+/// the errors.
 pub(crate) fn checked<T>(device: &wgpu::Device, create: impl FnOnce() -> T) -> Result<T, String> {
     if cfg!(target_arch = "wasm32") {
         return Ok(create());
     }
-    // What the driver's own compiler does not take is an internal error.
+    // Errors of the driver's own compiler are internal errors.
     let scopes = [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::Validation].map(|kind| device.push_error_scope(kind));
     let created = create();
-    // The scope that was opened last is closed first.
+    // Error scopes are closed in reverse order.
     let errors = scopes.into_iter().rev().filter_map(|scope| answer(scope.pop()).flatten());
     match errors.reduce(|first, _| first) {
         Some(error) => {
@@ -26,7 +26,7 @@ pub(crate) fn checked<T>(device: &wgpu::Device, create: impl FnOnce() -> T) -> R
     }
 }
 
-/// What is known at once; `None` in a browser.
+/// Returns the future's output if it is ready at once; in a browser it is not: `None`.
 pub(crate) fn answer<T>(future: impl Future<Output = T>) -> Option<T> {
     match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
         Poll::Ready(answer) => Some(answer),

@@ -1,60 +1,61 @@
-//! From the timestamps of a frame to milliseconds.
+//! Conversion of a frame's timestamps to milliseconds.
 
 use crate::renderer::auto::PathChoice;
 
 /// GPU time of one frame, by pass. See [`Timing`](crate::Timing).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrameTimes {
-    /// A number that grows from frame to frame: by it a host knows a new result from one that it has seen.
+    /// Frame number, which increases. A host compares it to detect a new result.
     pub frame: u64,
-    /// In the order in which the frame first recorded them.
+    /// Passes, in the order in which the frame first recorded them.
     pub passes: Vec<PassTime>,
-    /// From the first beginning to the last end, milliseconds, with all that the GPU did in between.
+    /// Time from the first begin to the last end, milliseconds, including other GPU work in between.
     pub whole_ms: f32,
-    /// What the path `auto` took in that frame, by the keys of the systems.
+    /// Choices of the path `auto` in that frame, by system key.
     pub choices: Vec<(u64, PathChoice)>,
-    /// Intervals that are in none of the sums: the GPU gave no time, or an end before its beginning, or there were more than are
-    /// measured.
+    /// Intervals that are excluded from all sums: the GPU wrote no timestamp, the end precedes the begin, or there were
+    /// more intervals than can be measured.
     pub discarded: u32,
 }
 
 /// GPU time of all passes of one name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PassTime {
-    /// A pass's own name (`"accumulate"`), or the host's label.
+    /// Name of the pass (`"accumulate"`), or the host's label.
     pub name: &'static str,
     /// Milliseconds.
     pub ms: f32,
-    /// True for a pass of the host. It contains what haze draws in it.
+    /// True for a pass of the host. Its time includes what haze draws in it.
     pub of_host: bool,
 }
 
 impl FrameTimes {
-    /// What the smoke costs, milliseconds: all passes that the device could measure, but the host's.
+    /// Returns the GPU time of the smoke, milliseconds: the sum of all measured passes except the host's.
     pub fn smoke_ms(&self) -> f32 {
         self.passes.iter().filter(|pass| !pass.of_host).map(|pass| pass.ms).sum()
     }
 }
 
-/// An interval that is measured.
+/// A measured interval.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Span {
     pub name: &'static str,
     pub of_host: bool,
-    /// Where its beginning is written; its end is written next to it.
+    /// Index of the query for its begin. The query for its end is the next one.
     pub query: u32,
 }
 
-/// What was read last.
+/// Latest result, and the timestamps that it was read from.
 #[derive(Debug, Default)]
 pub(crate) struct Results {
     pub latest: Option<FrameTimes>,
-    /// By query. What was not written in a frame still holds what it held.
+    /// Last timestamp by query. A query that a frame does not write keeps its old value.
     seen: Vec<u64>,
 }
 
 impl Results {
-    /// Takes the timestamps of a frame, by query. `missed`: intervals that were not measured.
+    /// Converts the timestamps of a frame. `tick` returns the timestamp of a query; `missed`: number of intervals that
+    /// were not measured.
     pub fn read(
         &mut self,
         frame: u64,
@@ -95,7 +96,7 @@ impl Results {
 mod tests {
     use super::*;
 
-    /// Reads spans of haze's own with these timestamps.
+    /// Reads spans with these timestamps; a span named "host" belongs to the host.
     fn read(results: &mut Results, spans: &[(&'static str, u64, u64)], missed: u32) -> FrameTimes {
         let ticks: Vec<_> = spans.iter().flat_map(|span| [span.1, span.2]).collect();
         let spans: Vec<_> = (0..)
@@ -111,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn intervals_of_one_name_add_up_in_order_of_the_frame() {
+    fn intervals_of_one_name_are_summed_in_recording_order() {
         let spans = [("host", 1, 41), ("b", 10, 14), ("a", 15, 16), ("b", 20, 30)];
         let times = read(&mut Results::default(), &spans, 0);
         assert_eq!(named(&times), [("host", 20.0), ("b", 7.0), ("a", 0.5)]);
@@ -120,14 +121,15 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_counted_and_not_shown() {
+    fn invalid_intervals_are_counted_and_excluded() {
         let mut results = Results::default();
         let times = read(&mut results, &[("reversed", 9, 8), ("unwritten", 0, 0), ("half", 0, 5), ("a", 8, 10)], 3);
         assert_eq!((named(&times), times.discarded, times.whole_ms), (vec![("a", 1.0)], 6, 1.0));
-        // Neither is what still holds the times of an earlier frame; a coarse clock may well stand still within a pass.
+        // Timestamps that an earlier frame left are excluded too. Equal begin and end are valid: a coarse clock may not
+        // advance within a pass.
         let times = read(&mut results, &[("a", 20, 20), ("b", 21, 24), ("c", 30, 31), ("stale", 8, 10)], 0);
         assert_eq!((named(&times), times.discarded), (vec![("a", 0.0), ("b", 1.5), ("c", 0.5)], 1));
-        // Nothing is left of a frame without passes.
+        // A frame without passes clears the previous result.
         let times = read(&mut results, &[], 0);
         assert_eq!((times.passes.len(), times.whole_ms, times.discarded), (0, 0.0, 0));
     }

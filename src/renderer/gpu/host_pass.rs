@@ -1,13 +1,13 @@
-//! The host's pass: what pipelines that draw into it must agree with.
+//! Formats of the host's render pass, which pipelines that draw into it must match.
 
 use super::checked::checked;
 use super::pipeline::read_only_depth;
 use crate::error::FieldError;
 
-/// Most colour attachments of a pass.
+/// Maximum number of colour attachments of a pass.
 pub(crate) const MAX_ATTACHMENTS: usize = 8;
 
-/// Formats and samples of a pass.
+/// Formats and sample count of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct HostPass {
     pub color_format: wgpu::TextureFormat,
@@ -15,12 +15,12 @@ pub(crate) struct HostPass {
     pub further_count: usize,
     pub depth_format: Option<wgpu::TextureFormat>,
     pub sample_count: u32,
-    /// The first target holds sRGB code, which the hardware takes for linear.
+    /// True if the first target stores sRGB-encoded values that the hardware treats as linear.
     pub gamma_target: bool,
 }
 
 impl HostPass {
-    /// A pass with one colour attachment and nothing else.
+    /// Returns a pass with one colour attachment and nothing else.
     pub const fn plain(color_format: wgpu::TextureFormat) -> Self {
         Self {
             color_format,
@@ -32,14 +32,14 @@ impl HostPass {
         }
     }
 
-    /// The same with further colour attachments; `None` for more than a pass can have.
+    /// Returns the pass with further colour attachments; `None` if there are more than a pass can have.
     pub fn with_further(mut self, formats: &[Option<wgpu::TextureFormat>]) -> Option<Self> {
         self.further.get_mut(..formats.len())?.copy_from_slice(formats);
         self.further_count = formats.len();
         Some(self)
     }
 
-    /// The pass's colour targets: the first is blended, the others are left as they are.
+    /// Returns the pass's colour targets: the first is blended, the others are not written.
     pub fn color_targets(&self, blend: wgpu::BlendState) -> Vec<Option<wgpu::ColorTargetState>> {
         let first = wgpu::ColorTargetState {
             format: self.color_format,
@@ -52,36 +52,36 @@ impl HostPass {
         std::iter::once(Some(first)).chain(self.further[..self.further_count].iter().map(masked)).collect()
     }
 
-    /// Asks wgpu for the plainest pipeline that draws into the pass.
+    /// Validates the pass: asks wgpu for a minimal pipeline that draws into it.
     ///
     /// # Errors
-    /// Names the field of the descriptor that the device does not take.
+    /// Names the field of the descriptor that the device does not support.
     pub fn validate(&self, device: &wgpu::Device) -> Result<(), FieldError> {
         let Err(whole) = self.probe(device) else { return Ok(()) };
         let refuse = |field: String, value: String, reason: &str, expected: &str| {
             Err(FieldError::new(field, value, format!("{expected} ({reason})")))
         };
-        // Which part is it? Each once, in a pass that is plain otherwise.
+        // Finds the field at fault: tests each one in an otherwise plain pass.
         if let Err(reason) = Self::plain(self.color_format).probe(device) {
-            let expected = "a format that this device can draw to and blend, for example Rgba16Float";
+            let expected = "a format that this device can render to and blend, for example Rgba16Float";
             return refuse("color_format".into(), format!("{:?}", self.color_format), &reason, expected);
         }
         let plain = Self::plain(wgpu::TextureFormat::Rgba8Unorm);
         if let (Some(format), Err(reason)) =
             (self.depth_format, Self { depth_format: self.depth_format, ..plain }.probe(device))
         {
-            let expected = "a depth format of this device, or None";
+            let expected = "a depth format that this device supports, or None";
             return refuse("depth_format".into(), format!("{format:?}"), &reason, expected);
         }
         for (index, &format) in self.further[..self.further_count].iter().enumerate() {
             let one = plain.with_further(&[format]).map_or(Ok(()), |pass| pass.probe(device));
             if let (Some(format), Err(reason)) = (format, one) {
                 let field = format!("further_color_formats[{index}]");
-                let expected = "a format that this device can draw to, masked, beside another";
+                let expected = "a format that this device can render to as a further attachment";
                 return refuse(field, format!("{format:?}"), &reason, expected);
             }
         }
-        let expected = "a number of samples that this device has for these formats: 1, or 4 for most";
+        let expected = "a sample count that this device supports for these formats: 1, or 4 for most";
         refuse("sample_count".into(), self.sample_count.to_string(), &whole, expected)
     }
 

@@ -1,4 +1,4 @@
-//! wgpu, as every pass uses it. Nothing here knows smoke.
+//! wgpu helpers that all passes share. Nothing here is specific to smoke.
 
 pub(crate) mod capabilities;
 pub(crate) mod checked;
@@ -10,7 +10,7 @@ pub(crate) mod spare;
 pub(crate) mod submission;
 pub(crate) mod timing;
 
-/// Where things are made, and what brings their contents there.
+/// Device that creates resources, and queue that uploads their contents.
 #[derive(Clone, Copy)]
 pub(crate) struct Gpu<'a> {
     pub device: &'a wgpu::Device,

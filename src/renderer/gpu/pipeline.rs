@@ -1,4 +1,4 @@
-//! Pipelines: their variants, and the states that passes share.
+//! Pipeline variants, and the states that passes share.
 
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -8,15 +8,15 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use super::checked::checked;
 use crate::error::{Error, one_line};
 
-/// A pass's shader.
+/// Shader of a pass.
 #[derive(Debug)]
 pub(crate) struct Shader {
     pub module: wgpu::ShaderModule,
-    /// The pass's file.
+    /// File of the pass.
     pub path: PathBuf,
 }
 
-/// A pass's shader, and its pipelines by what distinguishes them. Compiled when first asked for, from any thread.
+/// Shader of a pass, and its pipelines by key. A pipeline is compiled on first use, from any thread.
 #[derive(Debug)]
 pub(crate) struct Variants<K, P: Parts = PipelineParts> {
     common: Common,
@@ -24,17 +24,17 @@ pub(crate) struct Variants<K, P: Parts = PipelineParts> {
     pipelines: Mutex<HashMap<K, P::Pipeline>>,
 }
 
-/// What all pipelines of a pass have in common.
+/// Properties that all pipelines of a pass share.
 #[derive(Debug)]
 pub(crate) struct Common {
-    /// The pass's: its label.
+    /// Name of the pass, used as label.
     name: &'static str,
     shader: Shader,
     layout: wgpu::PipelineLayout,
     cache: Option<wgpu::PipelineCache>,
 }
 
-/// What makes a pipeline, with what it has in common with others of its pass.
+/// Variant-specific parts of a pipeline; together with the properties that its pass shares, they create it.
 pub(crate) trait Parts {
     type Pipeline: Clone + std::fmt::Debug;
 
@@ -60,7 +60,7 @@ pub(crate) struct ComputeParts {
 }
 
 impl<K: Copy + Eq + Hash, P: Parts> Variants<K, P> {
-    /// `name` is the pass's: its label.
+    /// `name`: name of the pass, used as label.
     pub fn new(
         device: &wgpu::Device,
         name: &'static str,
@@ -78,13 +78,14 @@ impl<K: Copy + Eq + Hash, P: Parts> Variants<K, P> {
         Self { common, describe, pipelines: Mutex::default() }
     }
 
-    /// The pipeline for `key`, compiled the first time. Nobody waits meanwhile but who asks for it.
+    /// Returns the pipeline for `key`; compiles it on first use. The lock is not held during compilation, so other
+    /// threads do not wait.
     pub fn get(&self, device: &wgpu::Device, key: K) -> P::Pipeline {
         let found = self.lock().get(&key).cloned();
         found.unwrap_or_else(|| self.keep(key, self.compile(device, key)))
     }
 
-    /// Compiles the pipeline for `key`, or says what is wrong with the shader.
+    /// Compiles the pipeline for `key`, or returns the shader error.
     pub fn check(&self, device: &wgpu::Device, key: K) -> Result<(), Error> {
         if self.lock().contains_key(&key) {
             return Ok(());
@@ -99,12 +100,12 @@ impl<K: Copy + Eq + Hash, P: Parts> Variants<K, P> {
         Ok(())
     }
 
-    /// Another thread may have been first.
+    /// Stores a compiled pipeline, unless another thread stored one first; returns the stored one.
     fn keep(&self, key: K, compiled: P::Pipeline) -> P::Pipeline {
         self.lock().entry(key).or_insert(compiled).clone()
     }
 
-    /// Pipelines compiled so far.
+    /// Returns the number of pipelines compiled so far.
     pub fn len(&self) -> usize {
         self.lock().len()
     }
@@ -162,15 +163,15 @@ impl Parts for ComputeParts {
     }
 }
 
-/// A WGSL override and its value.
+/// A WGSL override constant: its name and its value.
 pub(crate) type Constant = (&'static str, f64);
 
-/// A switch of the shader.
+/// Returns a boolean override constant.
 pub(crate) fn switch(name: &'static str, on: bool) -> Constant {
     (name, if on { 1.0 } else { 0.0 })
 }
 
-/// A setting enum as the shader's number: the variant's place.
+/// Makes an override constant from a setting's enum: the value is the variant's index.
 macro_rules! variant {
     ($name:literal, $value:expr) => {
         ($name, f64::from($value as u32))
@@ -178,10 +179,10 @@ macro_rules! variant {
 }
 pub(crate) use variant;
 
-/// ONE, ONE_MINUS_SRC_ALPHA: the source's colour over what is there, both premultiplied.
+/// ONE, ONE_MINUS_SRC_ALPHA: source over destination, both premultiplied.
 pub(crate) const PREMULTIPLIED_OVER: wgpu::BlendState = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
 
-/// ONE, ONE on colour; alpha is left alone.
+/// ONE, ONE on colour; alpha is not changed.
 pub(crate) const ADDITIVE: wgpu::BlendState = wgpu::BlendState { color: ADD, alpha: KEEP };
 
 /// ONE, ONE on colour; ONE, ONE_MINUS_SRC_ALPHA on alpha.
@@ -190,7 +191,7 @@ pub(crate) const WEIGHTED_SUM: wgpu::BlendState = wgpu::BlendState { color: ADD,
 /// ONE, ONE on colour and alpha.
 pub(crate) const COUNT: wgpu::BlendState = wgpu::BlendState { color: ADD, alpha: ADD };
 
-/// DST, ZERO on colour: what is there times the source; alpha is left alone.
+/// DST, ZERO on colour: destination times source; alpha is not changed.
 pub(crate) const MULTIPLY: wgpu::BlendState = wgpu::BlendState {
     color: wgpu::BlendComponent {
         src_factor: wgpu::BlendFactor::Dst,
@@ -212,7 +213,7 @@ const KEEP: wgpu::BlendComponent = wgpu::BlendComponent {
     operation: wgpu::BlendOperation::Add,
 };
 
-/// A colour target with or without a blend.
+/// Returns a colour target with or without blending.
 pub(crate) fn color_target(
     format: wgpu::TextureFormat,
     blend: Option<wgpu::BlendState>,
@@ -220,7 +221,7 @@ pub(crate) fn color_target(
     Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL })
 }
 
-/// A depth attachment that is compared with but not written.
+/// Returns a depth state that tests but does not write.
 pub(crate) fn read_only_depth(format: wgpu::TextureFormat, compare: wgpu::CompareFunction) -> wgpu::DepthStencilState {
     wgpu::DepthStencilState {
         format,
@@ -231,12 +232,12 @@ pub(crate) fn read_only_depth(format: wgpu::TextureFormat, compare: wgpu::Compar
     }
 }
 
-/// "In front of or at the surface" in a depth buffer.
+/// Returns the comparison "in front of the surface or on it".
 pub(crate) fn in_front(reversed: bool) -> wgpu::CompareFunction {
     if reversed { wgpu::CompareFunction::GreaterEqual } else { wgpu::CompareFunction::LessEqual }
 }
 
-/// The primitive of quads: a strip of four corners, both sides.
+/// Primitive state of quads: a strip of four corners, visible from both sides.
 pub(crate) const STRIP: wgpu::PrimitiveState = wgpu::PrimitiveState {
     topology: wgpu::PrimitiveTopology::TriangleStrip,
     strip_index_format: None,

@@ -1,8 +1,8 @@
-//! Recording: the passes that haze begins by itself, and buffers.
+//! Recording helpers: passes that haze begins itself, and buffers.
 
 use super::timing::Timing;
 
-/// Cleared to zero.
+/// Returns a colour attachment that is cleared to zero.
 pub(crate) fn color_attachment(view: &wgpu::TextureView) -> Option<wgpu::RenderPassColorAttachment<'_>> {
     Some(wgpu::RenderPassColorAttachment {
         view,
@@ -12,12 +12,12 @@ pub(crate) fn color_attachment(view: &wgpu::TextureView) -> Option<wgpu::RenderP
     })
 }
 
-/// Depth that is tested against, not written.
+/// Returns a depth attachment that is tested, not written.
 pub(crate) fn tested_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
     wgpu::RenderPassDepthStencilAttachment { view, depth_ops: None, stencil_ops: None }
 }
 
-/// Depth that is written, all of it.
+/// Returns a depth attachment that is cleared to 1 and written.
 pub(crate) fn written_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
     wgpu::RenderPassDepthStencilAttachment {
         view,
@@ -57,7 +57,7 @@ pub(crate) fn set_part(pass: &mut wgpu::RenderPass<'_>, origin: glam::UVec2, siz
     pass.set_scissor_rect(origin.x, origin.y, size.x, size.y);
 }
 
-/// A buffer for one uniform block.
+/// Creates a buffer for one uniform block.
 pub(crate) fn uniform_buffer(device: &wgpu::Device, label: &str, size: u64) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),

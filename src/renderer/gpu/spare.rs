@@ -1,16 +1,16 @@
-//! When to give memory back: not at once, for what grew once may grow again.
+//! Delayed release of memory: memory that was needed once may be needed again soon.
 
-/// Frames for which something must have been too large, or not in use, before it is given up: two seconds of most games.
+/// Frames for which memory must have been too large or unused before it is released: 2 s at 60 frames per second.
 const PATIENCE: u32 = 120;
 
-/// Counts frames in which memory was to spare.
+/// Counts consecutive frames in which memory was too large or unused.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Spare {
     frames: u32,
 }
 
 impl Spare {
-    /// Tells of one more frame; true once it is time to give the memory back.
+    /// Counts one more frame. Returns true once the memory should be released.
     pub fn outlasts(&mut self, is_to_spare: bool) -> bool {
         self.frames = if is_to_spare { self.frames + 1 } else { 0 };
         self.frames > PATIENCE
@@ -22,7 +22,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_lasts_is_given_back() {
+    fn memory_is_released_only_after_enough_consecutive_spare_frames() {
         let mut spare = Spare::default();
         assert!((0..PATIENCE).all(|_| !spare.outlasts(true)));
         assert!(!spare.outlasts(false) && !spare.outlasts(true));

@@ -1,16 +1,16 @@
-//! Whether what was recorded has been submitted.
+//! Detection of recorded commands that were not submitted yet.
 
 use std::sync::Arc;
 
-/// Follows commands from their encoder to the queue.
+/// Tracks commands from their encoder to the queue.
 ///
-/// wgpu maps a buffer for whoever asked an encoder for it, once that encoder is submitted. This one is mapped from the start, so
-/// that the request is answered within the submission: the answer, or the encoder that is dropped with it, lets go of a share of
-/// `recorded`.
+/// An encoder maps a buffer on request once it is submitted. The buffer `probe` is already mapped, so wgpu answers the
+/// request within the submission. The callback drops a reference to `recorded` when it is called, or when it is dropped
+/// together with an encoder that is never submitted.
 #[derive(Debug)]
 pub(crate) struct Submission {
     probe: wgpu::Buffer,
-    /// Shared with every encoder that is still to be submitted.
+    /// Shared with every encoder that is not yet submitted.
     recorded: Arc<()>,
 }
 
@@ -25,18 +25,18 @@ impl Submission {
         Self { probe, recorded: Arc::new(()) }
     }
 
-    /// True if an encoder or pass that is followed was neither submitted nor dropped.
+    /// Returns true if a tracked encoder or pass was neither submitted nor dropped.
     pub fn is_outstanding(&self) -> bool {
         Arc::strong_count(&self.recorded) > 1
     }
 
-    /// Follows an encoder.
+    /// Tracks an encoder.
     pub fn follow(&self, encoder: &wgpu::CommandEncoder) {
         let recorded = self.recorded.clone();
         encoder.map_buffer_on_submit(&self.probe, wgpu::MapMode::Read, .., move |_| drop(recorded));
     }
 
-    /// Follows the encoder of a pass.
+    /// Tracks the encoder of a pass.
     pub fn follow_pass(&self, pass: &wgpu::RenderPass<'_>) {
         let recorded = self.recorded.clone();
         pass.map_buffer_on_submit(&self.probe, wgpu::MapMode::Read, .., move |_| drop(recorded));

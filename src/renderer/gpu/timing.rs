@@ -1,34 +1,36 @@
-//! GPU time by timestamps: queries written by passes, resolved once a frame, read back when the GPU is done.
+//! GPU timing by timestamp queries: passes write them, each frame resolves them once, and they are read back when the
+//! GPU has finished.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::frame_times::{FrameTimes, Results, Span};
 use crate::renderer::auto::PathChoice;
 
-/// Queries for passes of the host, first in the set. They are apart from the others, so that whenever the host uses them, none is
-/// written twice in a pass, which wgpu refuses.
+/// Queries for passes of the host, first in the set. They are separate from haze's queries, so that no query is written
+/// twice in one pass (which wgpu refuses), whenever the host uses them.
 const HOST_QUERIES: u32 = 64;
 
-/// All queries, two an interval: some 100 systems.
+/// Total number of queries, two per interval: enough for about 100 systems.
 const QUERIES: u32 = 1024;
 
-/// Frames that may be in flight. When more are, some are not measured.
+/// Maximum number of frames in flight. Further frames are not measured.
 const READ_BACKS: usize = 4;
 
-/// Measures the GPU time of every pass. A clone is the same; one serves all renderers of a frame.
+/// Measures the GPU time of every pass. A clone refers to the same measurement; one `Timing` serves all renderers of a
+/// frame.
 ///
-/// Hand it to the renderers with [`Renderer::set_timing`](crate::Renderer::set_timing) and call [`resolve`](Self::resolve) at the
-/// end of the frame's last encoder. Results come some frames later, without waiting: whichever submission finds the GPU
-/// done brings them.
+/// Pass it to the renderers with [`Renderer::set_timing`](crate::Renderer::set_timing), and call
+/// [`resolve`](Self::resolve) at the end of the frame's last encoder. Results arrive some frames later, without
+/// blocking: the first submission after the GPU has finished delivers them.
 ///
-/// The passes that haze begins itself (`depth_downsample`, `diffuse_bake`, `accumulate`, `light_target`, and those of the path
-/// `tiled`) are always measured; those that it
-/// records into the host's pass (`transfer`, `specular_scatter`, `forward`) where the device has
-/// `Features::TIMESTAMP_QUERY_INSIDE_PASSES`. Elsewhere [`host_pass`](Self::host_pass) measures the whole of the host's pass. A
-/// device without `Features::TIMESTAMP_QUERY` measures nothing: there a host can take the CPU time of its calls, and should say
-/// that this is what it shows, for it tells little of the GPU.
+/// Passes that haze begins itself (`depth_downsample`, `diffuse_bake`, `accumulate`, `light_target`, and those of the
+/// path `tiled`) are always measured. Passes that haze records into the host's pass (`transfer`, `specular_scatter`,
+/// `forward`) are measured if the device has `Features::TIMESTAMP_QUERY_INSIDE_PASSES`. Without it,
+/// [`host_pass`](Self::host_pass) measures the host's whole pass. A device without `Features::TIMESTAMP_QUERY` measures
+/// nothing. There, a host can measure the CPU time of its calls, and should label it as such, because it says little
+/// about GPU time.
 ///
-/// At most 480 intervals of haze and 32 of the host are measured in a frame; what is beyond is counted in
+/// At most 480 intervals of haze and 32 of the host are measured in a frame; more are counted in
 /// [`FrameTimes::discarded`].
 #[derive(Clone, Debug)]
 pub struct Timing(Arc<Shared>);
@@ -45,28 +47,28 @@ struct Shared {
     results: Mutex<Results>,
 }
 
-/// A buffer, and what was recorded of the frame whose timestamps come into it. In use while the encoder, or wgpu after it, holds
-/// another share of it.
+/// Buffer for the timestamps of a frame, and the recording that they belong to. It is in use while an encoder, or wgpu
+/// after submission, holds another reference.
 #[derive(Debug)]
 struct ReadBack {
     buffer: wgpu::Buffer,
     recorded: Mutex<Recording>,
 }
 
-/// What is measured in a frame.
+/// Measured intervals of a frame.
 #[derive(Debug, Default)]
 struct Recording {
     frame: u64,
     spans: Vec<Span>,
     choices: Vec<(u64, PathChoice)>,
-    /// Queries taken, of the host's and of all others.
+    /// Queries used by the host, and by haze.
     host_queries: u32,
     own_queries: u32,
     missed: u32,
 }
 
 impl Timing {
-    /// `None` where the device lacks `Features::TIMESTAMP_QUERY`.
+    /// Creates the queries and read-back buffers. `None` if the device lacks `Features::TIMESTAMP_QUERY`.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Option<Self> {
         let features = device.features();
         let period = queue.get_timestamp_period();
@@ -101,13 +103,14 @@ impl Timing {
         })))
     }
 
-    /// To measure a pass of the host under a label: `timestamp_writes` of its descriptor. `None` beyond 32 a frame.
+    /// Returns `timestamp_writes` for the descriptor of a host's pass, to measure it under a label. `None` after 32
+    /// passes in a frame.
     pub fn host_pass(&self, label: &'static str) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
         self.writes(label, true)
     }
 
-    /// Ends the frame. Call it once, after the last pass: the commands go to the end of this encoder. Without it there is no
-    /// result; of a renderer that is prepared twice before, only the second time counts.
+    /// Ends the frame. Call it once, after the last pass; its commands go to the end of this encoder. Without this call
+    /// there is no result. If a renderer is prepared twice before it, only the second time counts.
     pub fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
         let shared = &*self.0;
         let mut recording = lock(&shared.recording);
@@ -132,7 +135,7 @@ impl Timing {
         recording.start(next_frame);
     }
 
-    /// The newest result, from some frames ago; `None` before the first.
+    /// Returns the newest result, from some frames ago; `None` before the first.
     pub fn latest(&self) -> Option<FrameTimes> {
         lock(&self.0.results).latest.clone()
     }
@@ -141,8 +144,9 @@ impl Timing {
         self.0.device == *device
     }
 
-    /// A renderer is prepared, last in the frame `last`, and this is the frame now. If that was this one, its commands were
-    /// dropped, or submitted without [`resolve`](Self::resolve), and what was recorded goes.
+    /// Registers that a renderer is prepared, and returns the current frame. `last`: the frame in which it was prepared
+    /// before. If that is the current frame, its commands were dropped, or submitted without
+    /// [`resolve`](Self::resolve), and the frame's recording is discarded.
     pub(crate) fn enter(&self, last: Option<u64>) -> u64 {
         let mut recording = lock(&self.0.recording);
         if last == Some(recording.frame) {
@@ -156,7 +160,7 @@ impl Timing {
         lock(&self.0.recording).choices.push((key, choice));
     }
 
-    /// For the descriptor of a pass.
+    /// Returns the timestamp writes for the descriptor of a pass.
     pub(crate) fn pass(&self, name: &'static str) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
         self.writes(name, false)
     }
@@ -170,7 +174,7 @@ impl Timing {
         })
     }
 
-    /// Measures what `record` records into a pass, where the device can.
+    /// Measures the commands of `record` in a pass, if the device supports timestamps inside passes.
     pub(crate) fn inside(
         timing: Option<&Self>,
         name: &'static str,
@@ -201,7 +205,7 @@ impl Timing {
         lock(&self.0.recording).add(name, of_host)
     }
 
-    /// Takes what has come into a buffer that is mapped.
+    /// Reads the timestamps of a mapped buffer.
     fn read(&self, read_back: &ReadBack) {
         let Shared { results, ms_per_tick, .. } = &*self.0;
         if let Ok(view) = read_back.buffer.get_mapped_range(..) {
@@ -214,7 +218,7 @@ impl Timing {
 }
 
 impl Recording {
-    /// Starts a frame, with the memory of the last.
+    /// Starts a frame and reuses the memory of the last.
     fn start(&mut self, frame: u64) {
         self.spans.clear();
         self.choices.clear();
@@ -222,7 +226,7 @@ impl Recording {
         *self = Self { frame, spans, choices, ..Self::default() };
     }
 
-    /// The first of the two queries of one more interval.
+    /// Adds an interval. Returns the first of its two queries, or `None` if no queries are left.
     fn add(&mut self, name: &'static str, of_host: bool) -> Option<u32> {
         let (taken, range) = if of_host {
             (&mut self.host_queries, 0..HOST_QUERIES)
@@ -240,7 +244,7 @@ impl Recording {
     }
 }
 
-/// Bytes of so many timestamps.
+/// Returns the bytes of this many timestamps.
 fn bytes(queries: u32) -> u64 {
     u64::from(queries) * u64::from(wgpu::QUERY_SIZE)
 }

@@ -1,8 +1,9 @@
-//! accumulate
-//! What: blends every sprite's normal and amount, or its six-way light, into the accumulation target.
-//! Reads: particles, sprite flipbook, detail map or noise, reduced depth or the host's own. Writes:
-//! accumulation target. Blend: ONE, ONE_MINUS_SRC_ALPHA; weighted normals ONE, ONE. Source: OTEE "Accumulating the
-//! particles"; techniques: NV, BLOG, MS.
+//! accumulate: blends every sprite's normal and amount, or its six-way light, into the accumulation target.
+//!
+//! Reads: particles, sprite flipbook, detail map or noise, reduced depth or the host's own.
+//! Writes: accumulation target.
+//! Blend: ONE, ONE_MINUS_SRC_ALPHA; weighted normals ONE, ONE.
+//! Source: OTEE "Accumulating the particles"; techniques: NV, BLOG, MS.
 
 use std::sync::Arc;
 
@@ -20,7 +21,7 @@ use crate::renderer::gpu::timing::Timing;
 use crate::renderer::targets::{Beside, DEPTH_COPY_FORMAT, REDUCED_DEPTH_FORMAT, accumulation_layout};
 use crate::settings::{AccumulationFormat, NormalEncoding, Order};
 
-/// What makes one accumulation pipeline differ from another.
+/// Key of an accumulation pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct AccumulateKey {
     pub format: AccumulationFormat,
@@ -28,33 +29,33 @@ pub(crate) struct AccumulateKey {
     pub order: Order,
     pub beside: Beside,
     pub sprite: SpriteKey,
-    /// Sprites are compared with the host's own depth, not the reduced one.
+    /// True if sprites are compared with the host's own depth instead of the reduced depth.
     pub host_depth: bool,
     pub depth_test: DepthTest,
-    /// Count layers instead of blending normals.
+    /// True to count layers instead of blending normals.
     pub overdraw: bool,
 }
 
-/// What rejects hidden sprites before they are shaded.
+/// Depth test that rejects hidden sprites before they are shaded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum DepthTest {
-    /// Nothing: what is behind the scene may show.
+    /// No hardware test: sprites behind the scene may show.
     InShader,
-    /// The hardware, against the reduced depth, which the shader samples too.
+    /// Hardware test against the reduced depth, which the shader samples too.
     Reduced,
-    /// The hardware, against a coarse copy of the reduced depth: this backend cannot test what the shader samples.
+    /// Hardware test against a coarse copy of the reduced depth: this backend cannot test what the shader samples.
     Copy,
-    /// The hardware, against the host's depth: its format, and whether it is reversed.
+    /// Hardware test against the host's depth: its format, and true if it is reversed.
     Host(wgpu::TextureFormat, bool),
 }
 
-/// The pipeline for a key.
+/// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: AccumulateKey) -> PipelineParts {
-    // Of the first texture, and of what is beside it.
+    // Blend states of the first and the second texture.
     let blends = match (key.overdraw, key.order) {
         (true, _) => [COUNT; 2],
         (false, Order::Sorted) => [PREMULTIPLIED_OVER; 2],
-        // Weights add up, and nothing else is in the alpha beside.
+        // Weights add up; the second texture's alpha has nothing else.
         (false, Order::Weighted) => [WEIGHTED_SUM, COUNT],
     };
     let beside = if key.overdraw { Beside::Nothing } else { key.beside };
@@ -77,7 +78,7 @@ pub(crate) fn describe(key: AccumulateKey) -> PipelineParts {
             variant!("NORMAL_ENCODING", key.encoding),
             switch("HOST_DEPTH", key.host_depth),
             switch("WEIGHTED", key.order == Order::Weighted),
-            // The copy is too coarse to stand in for the shader's own test.
+            // The copy is too coarse to replace the shader's own test.
             switch("DEPTH_TESTED", !matches!(key.depth_test, DepthTest::InShader | DepthTest::Copy)),
             switch("OVERDRAW", key.overdraw),
         ]),
@@ -89,9 +90,9 @@ pub(crate) fn describe(key: AccumulateKey) -> PipelineParts {
 pub(crate) struct Accumulate {
     pub pipeline: wgpu::RenderPipeline,
     pub targets: Arc<[wgpu::TextureView]>,
-    /// The depth that the hardware tests sprites against.
+    /// Depth that the hardware tests sprites against.
     pub tested_depth: Option<wgpu::TextureView>,
-    /// Texels in use.
+    /// Size of the part in use, texels.
     pub size: UVec2,
     pub groups: Groups,
     /// Group 3: the depth that the shader reads.

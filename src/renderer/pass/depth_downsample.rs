@@ -1,7 +1,9 @@
-//! depth_downsample
-//! What: brings the scene's depth to the resolution of the accumulation target.
-//! Reads: scene depth. Writes: reduced depth, Depth32Float, linear view depth over `depth_limit`; where a backend cannot
-//! test what it samples, a coarse copy as well, never nearer than the original. Blend: none.
+//! depth_downsample: reduces the scene depth to the resolution of the accumulation target.
+//!
+//! Reads: scene depth.
+//! Writes: reduced depth, Depth32Float, linear view depth divided by `depth_limit`. If the backend cannot test what it
+//! samples, also a coarse copy, never nearer than the original.
+//! Blend: none.
 //! Source: OTEE "Transfer & lighting", option 1.
 
 use glam::UVec2;
@@ -12,15 +14,15 @@ use crate::renderer::gpu::timing::Timing;
 use crate::renderer::targets::{DEPTH_COPY_FORMAT, REDUCED_DEPTH_FORMAT};
 use crate::settings::DepthDownsample;
 
-/// What makes one downsampling pipeline differ from another.
+/// Key of a downsampling pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct DepthDownsampleKey {
     pub mode: DepthDownsample,
-    /// For the copy.
+    /// True for the coarse copy.
     pub copy: bool,
 }
 
-/// The pipeline for a key.
+/// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: DepthDownsampleKey) -> PipelineParts {
     let format = if key.copy { DEPTH_COPY_FORMAT } else { REDUCED_DEPTH_FORMAT };
     PipelineParts {
@@ -41,7 +43,7 @@ pub(crate) fn describe(key: DepthDownsampleKey) -> PipelineParts {
 pub(crate) struct Downsample {
     pub pipeline: wgpu::RenderPipeline,
     pub target: wgpu::TextureView,
-    /// Texels in use.
+    /// Size of the part in use, texels.
     pub size: UVec2,
     pub frame: wgpu::BindGroup,
     pub system: wgpu::BindGroup,

@@ -1,18 +1,20 @@
-//! depth_sort
-//! What: puts a host's particles back to front. Reads: particles, their numbers, sorted. Writes: keys and numbers; particles.
+//! depth_sort: sorts a host's particles back to front.
+//!
+//! Reads: particles; after the sort, the sorted particle indices.
+//! Writes: keys and particle indices; after the sort, sorted particles.
 
 use super::Groups;
 use super::sort::Sort;
 use crate::renderer::gpu::pipeline::ComputeParts;
 
-/// What makes one pipeline differ from another: before the sort, and after it.
+/// Key of a pipeline: the step before the sort, and the step after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum DepthSortKey {
     DepthKeys,
     GatherParticles,
 }
 
-/// The pipeline for a key.
+/// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: DepthSortKey) -> ComputeParts {
     let entry_point = match key {
         DepthSortKey::DepthKeys => "depth_keys",

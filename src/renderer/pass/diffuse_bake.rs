@@ -1,6 +1,8 @@
-//! diffuse_bake
-//! What: bakes all lights through the diffuse ramp into a small texture by normal, once per system and frame.
-//! Reads: lights, diffuse ramp. Writes: cubemap faces or motif, Rgba16Float. Blend: none.
+//! diffuse_bake: bakes all lights through the diffuse ramp into a small texture by normal, once per system and frame.
+//!
+//! Reads: lights, diffuse ramp.
+//! Writes: cubemap faces or motif, Rgba16Float.
+//! Blend: none.
 //! Source: OTEE "Diffuse lighting": "use cubemaps", "motif lighting".
 
 use std::sync::Arc;
@@ -13,17 +15,17 @@ use crate::renderer::gpu::timing::Timing;
 use crate::renderer::targets::BAKED_DIFFUSE_FORMAT;
 use crate::settings::{Backlight, DiffuseMode, RampFilter};
 
-/// What makes one baking pipeline differ from another.
+/// Key of a baking pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct DiffuseBakeKey {
-    /// One that bakes.
+    /// A mode that bakes.
     pub mode: DiffuseMode,
     pub backlight: Backlight,
     pub ramp_filter: RampFilter,
     pub exact_filtering: bool,
 }
 
-/// The pipeline for a key.
+/// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: DiffuseBakeKey) -> PipelineParts {
     let (side, _) = baked_size_and_layers(key.mode).unwrap_or((1, 1));
     PipelineParts {

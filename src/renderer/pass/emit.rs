@@ -1,9 +1,11 @@
-//! emit
-//! What: evaluates the particles of an emitter. Reads: the emitter at a time. Writes: particles.
+//! emit: evaluates the particles of an emitter.
+//!
+//! Reads: the emitter at a time.
+//! Writes: particles.
 
 use crate::renderer::gpu::pipeline::ComputeParts;
 
-/// The pipeline: there is one.
+/// Returns the parts of the only pipeline.
 pub(crate) fn describe((): ()) -> ComputeParts {
     ComputeParts { entry_point: "emit", constants: Vec::new() }
 }

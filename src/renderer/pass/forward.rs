@@ -1,7 +1,9 @@
-//! forward
-//! What: the classic way: every sprite fragment lit and blended at full resolution.
-//! Reads: particles back to front, sprite flipbook, detail map or noise, scene depth, lights, ramps. Writes: the host's colour target.
-//! Blend: alpha, additive or multiply. Source: OTEE "Typical game particles so far".
+//! forward: lights and blends every sprite fragment at full resolution, the classic way.
+//!
+//! Reads: particles back to front, sprite flipbook, detail map or noise, scene depth, lights, ramps.
+//! Writes: the host's colour target.
+//! Blend: alpha, additive or multiply.
+//! Source: OTEE "Typical game particles so far".
 
 use super::Groups;
 use super::sprites::{PARTICLE_LAYOUT, SpriteKey, Sprites};
@@ -11,14 +13,14 @@ use crate::renderer::gpu::pipeline::{
 };
 use crate::settings::{Backlight, BlendMode, RampFilter, SoftScatterMode};
 
-/// What makes one forward pipeline differ from another.
+/// Key of a forward pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct ForwardKey {
     pub host: HostPass,
     pub blend_mode: BlendMode,
     pub sprite: SpriteKey,
     pub age_colour: bool,
-    /// Sprites are seen behind the scene: nothing tests depth.
+    /// True if sprites show through the scene: there is no depth test.
     pub shows_through: bool,
     pub soft_scatter_mode: SoftScatterMode,
     pub backlight: Backlight,
@@ -26,7 +28,7 @@ pub(crate) struct ForwardKey {
     pub reversed: bool,
 }
 
-/// The pipeline for a key.
+/// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: ForwardKey) -> PipelineParts {
     let blend = match key.blend_mode {
         BlendMode::Alpha => PREMULTIPLIED_OVER,

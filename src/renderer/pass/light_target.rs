@@ -1,6 +1,9 @@
-//! light_target
-//! What: lights the accumulated smoke once per texel, where `lighting_resolution` asks for it; transfer upsamples the light.
-//! Reads: accumulation target, lights, ramps. Writes: lit smoke, Rgba16Float. Blend: none.
+//! light_target: lights the accumulated smoke once per texel, if `lighting_resolution` selects it; transfer then
+//! upsamples the light.
+//!
+//! Reads: accumulation target, lights, ramps.
+//! Writes: lit smoke, Rgba16Float.
+//! Blend: none.
 //! Source: OTEE "Transfer & lighting", at the target's resolution.
 
 use glam::UVec2;
@@ -12,7 +15,7 @@ use crate::renderer::gpu::timing::Timing;
 use crate::renderer::targets::{Beside, LIT_FORMAT};
 use crate::settings::{Backlight, DiffuseMode, NormalDecode, NormalEncoding, RampFilter, SoftScatterMode};
 
-/// What makes light on smoke differ, here and in transfer.
+/// Lighting options that select a pipeline, here and in transfer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct LightingKey {
     pub encoding: NormalEncoding,
@@ -26,7 +29,7 @@ pub(crate) struct LightingKey {
 }
 
 impl LightingKey {
-    /// The overrides of `shaders/lib/lit_smoke.wgsl`, and a pass's own.
+    /// Returns the override constants of `shaders/lib/lit_smoke.wgsl`, followed by the pass's own.
     pub fn constants<const N: usize>(&self, of_pass: [Constant; N]) -> Vec<Constant> {
         let shared = [
             variant!("DIFFUSE_MODE", self.diffuse_mode),
@@ -43,7 +46,7 @@ impl LightingKey {
     }
 }
 
-/// The pipeline for a key.
+/// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: LightingKey) -> PipelineParts {
     PipelineParts {
         buffers: &[],
@@ -60,7 +63,7 @@ pub(crate) fn describe(key: LightingKey) -> PipelineParts {
 pub(crate) struct LightTarget {
     pub pipeline: wgpu::RenderPipeline,
     pub target: wgpu::TextureView,
-    /// Texels in use.
+    /// Size of the part in use, texels.
     pub size: UVec2,
     pub groups: Groups,
     /// Group 3: the accumulation target.

@@ -1,5 +1,5 @@
-//! The passes, one file each: what its pipelines differ in, and how it is recorded. A pass is handed values: bind groups,
-//! buffers, counts, targets. It does not know who holds them.
+//! Passes, one file each: pipeline keys, pipeline parts and recording. A pass receives values (bind groups, buffers,
+//! counts, targets) and does not depend on their owner.
 
 pub(crate) mod accumulate;
 pub(crate) mod depth_downsample;

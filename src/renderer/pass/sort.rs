@@ -1,22 +1,25 @@
-//! sort
-//! What: a stable radix sort of keys and the numbers that go with them.
-//! Reads and writes: keys and numbers, in two pairs of buffers by turns; four turns end where they began.
+//! sort: stable radix sort of keys and of the particle indices that belong to them (`numbers`).
+//!
+//! Reads and writes: keys and indices, alternating between two pairs of buffers; after four digits the result is in the
+//! first pair.
 //! Source: Merrill and Grimshaw, "High performance and scalable radix sorting", 2011.
 
 use crate::renderer::gpu::pipeline::{ComputeParts, switch};
 
-/// Keys that one workgroup sorts: ROUNDS in `shaders/sort.wgsl` times its invocations.
+/// Keys per workgroup: `ROUNDS` in `shaders/sort.wgsl` times its invocations.
 pub(crate) const BLOCK: u32 = 1024;
-/// Values of a digit.
+/// Number of values of a digit.
 pub(crate) const DIGITS: u32 = 256;
-/// Digits of a key.
+/// Number of digits of a key.
 const TURNS: u32 = 4;
-/// Keys that every block counts by itself on a GPU: that takes less than dispatches that wait for each other.
+/// Up to this many keys, every workgroup on a GPU counts the digits of all keys itself, which takes less time than
+/// dispatches that wait for each other.
 const FEW: u32 = 8192;
-/// Keys of whose blocks every one sums up all counts by itself on a CPU, where the steps of a workgroup wait for each other at length.
+/// Up to this many keys, every workgroup on a CPU sums up the counts of all blocks itself, because barriers within a
+/// workgroup are slow on CPUs.
 const OF_FEW_BLOCKS: u32 = 128 * BLOCK;
 
-/// One of the pipelines.
+/// Key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct SortKey {
     step: Step,
@@ -24,7 +27,7 @@ pub(crate) struct SortKey {
     number: Number,
 }
 
-/// How many keys there are.
+/// Size class of the number of keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Number {
     Few,
@@ -39,10 +42,11 @@ enum Step {
     Scatter,
 }
 
-/// Pipelines at the most.
+/// Maximum number of pipelines of one sort.
 pub(crate) const STEPS: usize = 3 * TURNS as usize;
 
-/// All of them that sort so many keys, in order. `in_step`: workgroups add up together.
+/// Returns the keys of the pipelines that sort `count` keys, in order. `in_step`: true for cooperative workgroups, as
+/// on GPUs.
 pub(crate) fn keys(in_step: bool, count: u32) -> impl Iterator<Item = SortKey> {
     let (number, each_turn): (_, &[Step]) = match (in_step, count) {
         (true, 0..=FEW) => (Number::Few, &[Step::Scatter]),
@@ -52,12 +56,12 @@ pub(crate) fn keys(in_step: bool, count: u32) -> impl Iterator<Item = SortKey> {
     (0..TURNS).flat_map(move |turn| each_turn.iter().map(move |&step| SortKey { step, turn, number }))
 }
 
-/// All of them that sort any number.
+/// Returns the keys of all pipelines that sort any number of keys.
 pub(crate) fn all_keys(in_step: bool) -> impl Iterator<Item = SortKey> {
     [0, u32::MAX].into_iter().flat_map(move |count| keys(in_step, count))
 }
 
-/// The pipeline for a key.
+/// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: SortKey) -> ComputeParts {
     ComputeParts {
         entry_point: match key.step {
@@ -76,9 +80,9 @@ pub(crate) fn describe(key: SortKey) -> ComputeParts {
 /// The sort of one system.
 #[derive(Debug)]
 pub(crate) struct Sort {
-    /// As [`keys`].
+    /// Pipelines in the order of [`keys`].
     pub pipelines: [Option<(SortKey, wgpu::ComputePipeline)>; STEPS],
-    /// From the first pair of buffers to the second, and back.
+    /// Bind groups: from the first pair of buffers to the second, and back.
     pub there_and_back: [wgpu::BindGroup; 2],
     pub keys: u32,
 }

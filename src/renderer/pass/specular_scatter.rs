@@ -1,14 +1,16 @@
-//! specular_scatter
-//! What: the glow of lights behind the smoke, one quad of constant pixel size round each.
-//! Reads: accumulation target, reduced depth, scene depth, lights, specular ramp. Writes: the host's colour target.
-//! Blend: ONE, ONE. Source: OTEE "Specular scattering".
+//! specular_scatter: adds the glow of lights behind the smoke, one quad of constant pixel size around each light.
+//!
+//! Reads: accumulation target, reduced depth, scene depth, lights, specular ramp.
+//! Writes: the host's colour target.
+//! Blend: ONE, ONE.
+//! Source: OTEE "Specular scattering".
 
 use super::Groups;
 use crate::renderer::gpu::host_pass::HostPass;
 use crate::renderer::gpu::pipeline::{ADDITIVE, PipelineParts, STRIP, read_only_depth, switch, variant};
 use crate::settings::{RampFilter, Upsample};
 
-/// What makes one specular scatter pipeline differ from another.
+/// Key of a specular scatter pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct SpecularScatterKey {
     pub host: HostPass,
@@ -17,7 +19,7 @@ pub(crate) struct SpecularScatterKey {
     pub exact_filtering: bool,
 }
 
-/// The pipeline for a key.
+/// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: SpecularScatterKey) -> PipelineParts {
     let always = |format| read_only_depth(format, wgpu::CompareFunction::Always);
     PipelineParts {

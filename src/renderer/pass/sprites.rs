@@ -1,17 +1,18 @@
-//! What accumulate and forward share: sprites, and the variants of `shaders/lib/sprite_vertex.wgsl` and `sprite_fragment.wgsl`.
+//! Sprites, shared by accumulate and forward, and the variants of `shaders/lib/sprite_vertex.wgsl` and
+//! `sprite_fragment.wgsl`.
 
 use crate::frame::Particle;
 use crate::renderer::gpu::pipeline::{Constant, switch, variant};
 use crate::settings::{FadeCurve, Settings, SpriteAnimation, Technique};
 
-/// The instance buffer's layout: one [`Particle`] per sprite.
+/// Layout of the instance buffer: one [`Particle`] per sprite.
 pub(crate) const PARTICLE_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: size_of::<Particle>() as u64,
     step_mode: wgpu::VertexStepMode::Instance,
     attributes: &wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4],
 };
 
-/// What makes the sprites of one pipeline differ from another's.
+/// Sprite options that select a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct SpriteKey {
     technique: Technique,
@@ -25,7 +26,7 @@ pub(crate) struct SpriteKey {
 }
 
 impl SpriteKey {
-    /// `linear_depth`: the host's depth is linear.
+    /// `linear_depth`: true if the host's depth is linear.
     pub fn new(settings: &Settings, linear_depth: bool, exact_filtering: bool) -> Self {
         Self {
             technique: settings.technique,
@@ -43,7 +44,7 @@ impl SpriteKey {
         self.technique.is_flat()
     }
 
-    /// The overrides of the shared files, and a pass's own.
+    /// Returns the override constants of the shared files, followed by the pass's own.
     pub fn constants<const N: usize>(&self, of_pass: [Constant; N]) -> Vec<Constant> {
         let shared = [
             variant!("TECHNIQUE", self.technique),
@@ -59,18 +60,18 @@ impl SpriteKey {
     }
 }
 
-/// A run of sprites in a buffer.
+/// A range of sprites in a buffer.
 #[derive(Clone, Debug)]
 pub(crate) struct Sprites {
     pub buffer: wgpu::Buffer,
-    /// Bytes before the first.
+    /// Offset of the first sprite, bytes.
     pub offset: u64,
     pub count: u32,
-    /// How often all of them are drawn.
+    /// Number of times that all of them are drawn.
     pub loops: u32,
-    /// They are known to be back to front.
+    /// True if they are known to be back to front.
     pub is_sorted: bool,
-    /// haze has put them so, by view depth; a host may have another notion of depth.
+    /// True if haze has sorted them, by view depth; a host may sort by another measure of depth.
     pub by_view_depth: bool,
 }
 

@@ -1,7 +1,8 @@
-//! tile_accumulate
-//! What: adds up every sprite's normal, or light by six-way maps, and amount, texel by texel, front to back.
-//! Reads: lists of sprites, sprite flipbook, detail map or noise, reduced depth or the host's own. Writes: accumulation
-//! target. Source: OTEE "Accumulating the particles"; Porter and Duff, "Compositing digital images", 1984.
+//! tile_accumulate: accumulates every sprite's normal, or its six-way light, and amount, texel by texel, front to back.
+//!
+//! Reads: sprite lists, sprite flipbook, detail map or noise, reduced depth or the host's own.
+//! Writes: accumulation target.
+//! Source: OTEE "Accumulating the particles"; Porter and Duff, "Compositing digital images", 1984.
 
 use glam::UVec2;
 
@@ -12,11 +13,11 @@ use crate::renderer::gpu::pipeline::{ComputeParts, switch, variant};
 use crate::renderer::targets::Beside;
 use crate::settings::{AccumulationFormat, NormalEncoding};
 
-/// Texels along a workgroup's sides: of `in_step`, and of `alone`, in `shaders/tile_accumulate.wgsl`.
+/// Texels per workgroup of the entry points `in_step` and `alone` in `shaders/tile_accumulate.wgsl`.
 const IN_STEP: UVec2 = UVec2::new(8, 16);
 const ALONE: UVec2 = UVec2::new(tile_refine::ALONE.x, 8 * tile_refine::ALONE.y);
 
-/// What makes one pipeline differ from another.
+/// Key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct TileAccumulateKey {
     pub sprite: SpriteKey,
@@ -24,15 +25,15 @@ pub(crate) struct TileAccumulateKey {
     pub encoding: NormalEncoding,
     pub weighted: bool,
     pub beside: Beside,
-    /// Sprites are compared with the host's own depth, not the reduced one.
+    /// True if sprites are compared with the host's own depth instead of the reduced depth.
     pub host_depth: bool,
-    /// The walk ends where a texel is opaque.
+    /// True if the traversal stops where a texel is opaque.
     pub stops: bool,
-    /// Workgroups walk in step.
+    /// True for cooperative traversal, false for per-invocation traversal.
     pub in_step: bool,
 }
 
-/// The pipeline for a key.
+/// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: TileAccumulateKey) -> ComputeParts {
     ComputeParts {
         entry_point: if key.in_step { "in_step" } else { "alone" },
@@ -54,7 +55,7 @@ pub(crate) struct TileAccumulate {
     pub pipeline: wgpu::ComputePipeline,
     /// Group 3.
     pub inputs: wgpu::BindGroup,
-    /// Texels in use.
+    /// Size of the part in use, texels.
     pub size: UVec2,
     pub in_step: bool,
 }

@@ -1,15 +1,16 @@
-//! tile_bin
-//! What: lists the sprites that touch a bin of the target, front to back, for every bin.
-//! Reads: sorted numbers and rectangles. Writes: lists, and where they begin.
+//! tile_bin: lists, for every bin of the target, the sprites that touch it, front to back.
+//!
+//! Reads: sorted sprite indices and rectangles.
+//! Writes: sprite lists, and the start of each.
 
 use crate::renderer::gpu::pipeline::ComputeParts;
 
-/// Sprites that are put into bins by one invocation: RUN in `shaders/lib/tiles.wgsl`.
+/// Sprites that one invocation assigns to bins: `RUN` in `shaders/lib/tiles.wgsl`.
 pub(crate) const RUN: u32 = 64;
-/// Sprites whose lists are made in one: bits of `touching` in `shaders/tile_bin.wgsl`.
+/// Up to this many sprites, one dispatch makes all lists: the number of bits of `touching` in `shaders/tile_bin.wgsl`.
 pub(crate) const FEW: u32 = 1 << 15;
 
-/// What makes one pipeline differ from another.
+/// Key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct TileBinKey {
     step: Step,
@@ -26,10 +27,11 @@ enum Step {
     FillAlone,
 }
 
-/// Pipelines at the most.
+/// Maximum number of pipelines in one frame.
 pub(crate) const STEPS: usize = 3;
 
-/// All of them, in order. `in_step`: workgroups add up together. `few`: no more sprites than [`FEW`].
+/// Returns the keys of a frame's pipelines, in order. `in_step`: true for cooperative workgroups. `few`: true for at
+/// most [`FEW`] sprites.
 pub(crate) fn keys(in_step: bool, few: bool) -> impl Iterator<Item = TileBinKey> {
     let steps: &[Step] = match (in_step, few) {
         (true, true) => &[Step::ListFew],
@@ -39,7 +41,7 @@ pub(crate) fn keys(in_step: bool, few: bool) -> impl Iterator<Item = TileBinKey>
     steps.iter().map(|&step| TileBinKey { step })
 }
 
-/// The pipeline for a key.
+/// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: TileBinKey) -> ComputeParts {
     ComputeParts {
         entry_point: match key.step {
@@ -58,13 +60,13 @@ pub(crate) fn describe(key: TileBinKey) -> ComputeParts {
 /// The pass for one system.
 #[derive(Debug)]
 pub(crate) struct TileBin {
-    /// As [`keys`].
+    /// Pipelines in the order of [`keys`].
     pub pipelines: [Option<(TileBinKey, wgpu::ComputePipeline)>; STEPS],
     pub inputs: wgpu::BindGroup,
-    /// Workgroups for the runs that are shown.
+    /// Indirect dispatch size for the runs of visible sprites.
     pub workgroups: wgpu::Buffer,
     pub bins: u32,
-    /// Of all sprites.
+    /// Number of runs of all sprites.
     pub runs: u32,
 }
 
@@ -74,7 +76,7 @@ impl TileBin {
         for (key, pipeline) in self.pipelines.iter().flatten() {
             pass.set_pipeline(pipeline);
             match key.step {
-                // Of many some are out of sight, more often than not.
+                // Of many sprites some are usually out of sight, so the dispatch covers only the visible ones.
                 Step::CountSprites | Step::Fill => pass.dispatch_workgroups_indirect(&self.workgroups, 0),
                 Step::Allocate | Step::ListFew => pass.dispatch_workgroups(self.bins, 1, 1),
                 Step::AllocateAlone => pass.dispatch_workgroups(self.bins.div_ceil(64), 1, 1),

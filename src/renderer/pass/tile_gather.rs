@@ -1,17 +1,18 @@
-//! tile_gather
-//! What: puts the rectangles of sprites in order, and finds how many are shown.
-//! Reads: sorted keys and numbers, rectangles. Writes: sorted rectangles, the number, and workgroups for as many.
+//! tile_gather: copies the sprites' rectangles into sorted order, and counts the visible sprites.
+//!
+//! Reads: sorted keys and sprite indices, rectangles.
+//! Writes: sorted rectangles, the count, and the indirect dispatch size for it.
 
 use crate::renderer::gpu::pipeline::{ComputeParts, switch};
 
-/// What makes one pipeline differ from another.
+/// Key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct TileGatherKey {
-    /// The hidden sprites are last.
+    /// True if the sprites are sorted by key, hidden ones last.
     pub sorted: bool,
 }
 
-/// The pipeline for a key.
+/// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: TileGatherKey) -> ComputeParts {
     ComputeParts { entry_point: "gather", constants: vec![switch("SORTED", key.sorted)] }
 }

@@ -1,18 +1,20 @@
-//! tile_project
-//! What: places every particle in the view. Reads: particles. Writes: sprites, their rectangles, keys and numbers to sort.
+//! tile_project: projects every particle into the view.
+//!
+//! Reads: particles.
+//! Writes: sprites, their rectangles, and the keys and indices to sort.
 
 use super::Groups;
 use super::sprites::SpriteKey;
 use crate::renderer::gpu::pipeline::{ComputeParts, switch};
 
-/// What makes one pipeline differ from another.
+/// Key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct TileProjectKey {
     pub sprite: SpriteKey,
     pub weighted: bool,
 }
 
-/// The pipeline for a key.
+/// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: TileProjectKey) -> ComputeParts {
     let constants = key.sprite.constants([switch("WEIGHTED", key.weighted)]);
     ComputeParts { entry_point: "project", constants }

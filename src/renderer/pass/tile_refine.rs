@@ -1,6 +1,7 @@
-//! tile_refine
-//! What: finds which of a bin's sprites each of its tiles, of a few texels, may show something of.
-//! Reads: lists of bins, sprites, reduced depth or the host's own. Writes: a bit for every sprite and tile.
+//! tile_refine: finds the sprites of a bin that may be visible in each of its tiles of a few texels.
+//!
+//! Reads: sprite lists of the bins, sprites, rectangles, reduced depth or the host's own.
+//! Writes: one bit per sprite and tile.
 
 use glam::UVec2;
 
@@ -8,22 +9,22 @@ use super::Groups;
 use super::sprites::SpriteKey;
 use crate::renderer::gpu::pipeline::{ComputeParts, switch};
 
-/// Texels of a tile: TILE_ALONE in `shaders/lib/tiles.wgsl`.
+/// Texels of a tile: `TILE_ALONE` in `shaders/lib/tiles.wgsl`.
 pub(crate) const ALONE: UVec2 = UVec2::new(8, 4);
-/// Sprites of a list whose bits are in one word: BATCH_ALONE in `shaders/lib/tiles.wgsl`.
+/// Sprites of a list whose bits share one word: `BATCH_ALONE` in `shaders/lib/tiles.wgsl`.
 pub(crate) const BATCH: u32 = 32;
 
-/// What makes one pipeline differ from another.
+/// Key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct TileRefineKey {
     pub sprite: SpriteKey,
-    /// Sprites are compared with the host's own depth, not the reduced one.
+    /// True if sprites are compared with the host's own depth instead of the reduced depth.
     pub host_depth: bool,
-    /// Walks end where a texel is opaque.
+    /// True if the traversal stops where a texel is opaque.
     pub stops: bool,
 }
 
-/// The pipeline for a key.
+/// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: TileRefineKey) -> ComputeParts {
     let constants = key.sprite.constants([switch("HOST_DEPTH", key.host_depth), switch("STOPS", key.stops)]);
     ComputeParts { entry_point: "refine", constants }

@@ -1,7 +1,10 @@
-//! transfer
-//! What: lights the accumulated smoke once per pixel, over the system's bounding box; or upsamples what light_target lit.
-//! Reads: accumulation target, reduced depth, scene depth, lights, ramps. Writes: the host's colour target.
-//! Blend: ONE, ONE_MINUS_SRC_ALPHA. Source: OTEE "Transfer & lighting".
+//! transfer: lights the accumulated smoke once per pixel, over the system's bounding box; or upsamples the output of
+//! light_target.
+//!
+//! Reads: accumulation target, reduced depth, scene depth, lights, ramps.
+//! Writes: the host's colour target.
+//! Blend: ONE, ONE_MINUS_SRC_ALPHA.
+//! Source: OTEE "Transfer & lighting".
 
 use super::Groups;
 use super::light_target::LightingKey;
@@ -12,25 +15,25 @@ use crate::settings::{CoverageMode, ShadeTree, Upsample};
 /// Vertices of the box: twelve triangles.
 const BOX_VERTICES: u32 = 36;
 
-/// What makes one transfer pipeline differ from another.
+/// Key of a transfer pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct TransferKey {
     pub host: HostPass,
     pub lighting: LightingKey,
-    /// What is upsampled is light, from light_target.
+    /// True if the upsampled input is light from light_target.
     pub lit: bool,
     pub upsample: Upsample,
     pub host_depth: bool,
     pub shade_tree: ShadeTree,
-    /// Draw the back faces, untested: the near plane cuts the box, or nothing tests depth.
+    /// True to draw the back faces, untested: the near plane cuts the box, or there is no depth attachment.
     pub back_faces: bool,
     pub reversed: bool,
-    /// The view mirrors: faces turn the other way round.
+    /// True if the view mirrors, which reverses the winding of faces.
     pub mirrored: bool,
     pub coverage: CoverageMode,
 }
 
-/// The pipeline for a key.
+/// Returns the pipeline's parts for a key.
 pub(crate) fn describe(key: TransferKey) -> PipelineParts {
     let (cull, compare) = if key.back_faces {
         (wgpu::Face::Front, wgpu::CompareFunction::Always)
@@ -62,19 +65,19 @@ pub(crate) fn describe(key: TransferKey) -> PipelineParts {
 /// The pass for one system, in the host's pass.
 #[derive(Debug)]
 pub(crate) struct Transfer {
-    /// By stage, of those that may be shown.
+    /// Pipelines by stage; `None` for stages that are not shown.
     pub pipelines: [Option<wgpu::RenderPipeline>; ShadeTree::ALL.len()],
     pub groups: Groups,
     /// Group 3: the targets.
     pub inputs: wgpu::BindGroup,
-    /// The same with counted layers in place of the amount.
+    /// As `inputs`, with counted layers in place of the first texture.
     pub overdraw_inputs: Option<wgpu::BindGroup>,
-    /// The same with lit smoke in its place, where that is drawn.
+    /// As `inputs`, with lit smoke in place of the first texture, if smoke is lit at the target's resolution.
     pub lit_inputs: Option<wgpu::BindGroup>,
 }
 
 impl Transfer {
-    /// Draws nothing for a stage that was not to be shown.
+    /// Draws the box for a stage. Draws nothing for a stage that was not planned.
     pub fn record(&self, pass: &mut wgpu::RenderPass<'_>, stage: ShadeTree) {
         let Some(pipeline) = &self.pipelines[stage as usize] else { return };
         let inputs = match stage {

@@ -1,4 +1,4 @@
-//! Modules from sources, and what the compiler says against them, said of the file that has the mistake.
+//! Shader modules from sources, with compiler errors located in the file that contains them.
 
 use std::convert::Infallible;
 
@@ -9,17 +9,18 @@ use crate::error::Error;
 use crate::renderer::gpu::checked::{answer, checked};
 use crate::renderer::gpu::pipeline::Shader;
 
-/// The embedded shader of a pass.
+/// Creates the embedded shader of a pass.
 pub(crate) fn embedded_shader(device: &wgpu::Device, name: &'static str) -> Result<Shader, Infallible> {
-    // A test composes every one, so this cannot fail; an empty module would be reported by the device like any other.
+    // A test composes every embedded shader, so this cannot fail. The device would report an empty module like any
+    // other error.
     let composed = Sources::embedded().compose(&file_of(name)).unwrap_or_default();
     Ok(Shader { module: create(device, name, &composed), path: composed.path })
 }
 
-/// The shader of a pass, from sources that may have mistakes.
+/// Creates the shader of a pass from sources that may contain errors.
 ///
 /// # Errors
-/// [`Error::Shader`]: the first one.
+/// [`Error::Shader`]: the first error.
 pub(crate) fn checked_shader(device: &wgpu::Device, name: &'static str, sources: &Sources) -> Result<Shader, Error> {
     let composed = sources.compose(&file_of(name))?;
     let mut module = None;

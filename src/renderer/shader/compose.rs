@@ -1,4 +1,4 @@
-//! One text out of many files, and the way back from its lines to theirs.
+//! Composition of one shader text from many files, with a map from its lines back to theirs.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -6,13 +6,13 @@ use std::sync::Arc;
 use super::sources::{File, IMPORT_COLUMN, Sources, import, is_inside};
 use crate::error::{Error, one_line};
 
-/// A text without imports.
+/// A shader text without imports.
 #[derive(Debug, Default)]
 pub(crate) struct Composed {
     pub text: String,
-    /// The file that it was made from.
+    /// File from which the text was composed.
     pub path: PathBuf,
-    /// Where each of its lines comes from.
+    /// Origin of each line.
     places: Vec<Place>,
 }
 
@@ -24,13 +24,14 @@ struct Place {
 }
 
 impl Composed {
-    /// The column of a byte of a line, all 1-based.
+    /// Converts a byte position on a line to a column, all 1-based.
     pub fn column(&self, line: usize, byte: usize) -> usize {
         let text = self.text.lines().nth(line.saturating_sub(1)).unwrap_or_default();
         text.char_indices().take_while(|(at, _)| at + 1 < byte).count() + 1
     }
 
-    /// A mistake at a line and column of the text, as one in the file that has it. The end of the text is behind its last line.
+    /// Creates an error for a line and column of the composed text, located in the file that contains it. Lines beyond
+    /// the end count as the last line.
     pub fn mistake(&self, line: usize, column: usize, reason: &str) -> Error {
         let index = line.clamp(1, self.places.len().max(1)) - 1;
         let (path, line) = match self.places.get(index) {
@@ -42,7 +43,7 @@ impl Composed {
 }
 
 impl Sources {
-    /// The file of a pass, composed.
+    /// Composes the file of a pass.
     pub(super) fn compose(&self, name: &str) -> Result<Composed, Error> {
         match self.find(name) {
             Some(file) => self.compose_file(file),
@@ -50,7 +51,7 @@ impl Sources {
         }
     }
 
-    /// A text that has no name.
+    /// Composes a text that has no file name.
     pub(super) fn compose_text(&self, text: &str) -> Result<Composed, Error> {
         self.compose_file(&File::embedded("", text.to_owned()))
     }
@@ -66,9 +67,9 @@ impl Sources {
 struct Composer<'a> {
     sources: &'a Sources,
     composed: Composed,
-    /// What has been imported.
+    /// Files imported so far.
     done: Vec<&'a str>,
-    /// The files from the pass's down to the one that is being read.
+    /// Chain of files from the pass's own to the one that is being read.
     open: Vec<&'a str>,
 }
 
@@ -85,7 +86,7 @@ impl<'a> Composer<'a> {
             let refuse = |reason| Err(file.mistake(line, IMPORT_COLUMN, reason));
             if let Some(start) = self.open.iter().position(|open| *open == import) {
                 let circle = [&self.open[start..], &[import]].concat().join(" → ");
-                return refuse(format!("imports go round in a circle: {circle}"));
+                return refuse(format!("circular import: {circle}"));
             }
             if self.done.contains(&import) {
                 continue;

@@ -1,11 +1,11 @@
-//! The shader files that are built in.
+//! Embedded shader files.
 
-/// Looks up an embedded shader file by its path under `shaders/`.
+/// Returns the embedded shader file with this path under `shaders/`; `None` if there is no such file.
 pub fn source(file: &str) -> Option<&'static str> {
     SOURCES.iter().find(|(name, _)| *name == file).map(|(_, text)| *text)
 }
 
-/// Every embedded shader file: path under `shaders/`, text.
+/// Returns every embedded shader file: its path under `shaders/`, and its text.
 pub fn sources() -> &'static [(&'static str, &'static str)] {
     SOURCES
 }

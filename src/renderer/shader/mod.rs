@@ -1,7 +1,7 @@
-//! The WGSL sources, and their composition from `#import "FILE"` lines.
+//! WGSL sources, and their composition from `#import "FILE"` lines.
 //!
-//! An import is replaced by the file, once. That is all: names stay what they are in the source, so a driver's message,
-//! a capture and a search show the same function. (naga_oil renames what it imports.)
+//! An import is replaced by the text of the file, once per composed shader. Names are not changed, so driver messages,
+//! frame captures and searches show the names of the sources. (naga_oil renames imported items.)
 
 mod check;
 mod compose;
@@ -17,7 +17,7 @@ pub(crate) use check::{checked_shader, embedded_shader};
 use crate::error::Error;
 
 /// Replaces every `#import "lib/X.wgsl"` line of `text` by that embedded file, and the imports in it, each file once.
-/// A host may use it to call haze's functions from shaders of its own.
+/// Hosts can use it to call haze's functions from their own shaders.
 ///
 /// # Errors
 /// Names the line of an import that is not an embedded file.

@@ -1,4 +1,4 @@
-//! Where shaders come from: those that are embedded, or files of a folder in their place.
+//! Shader sources: the embedded files, or files of a folder that replace them.
 
 use std::borrow::Cow;
 use std::io::{self, ErrorKind};
@@ -10,49 +10,51 @@ use super::words::unclosed;
 use crate::assets::{builtin, file};
 use crate::error::{Error, one_line};
 
-/// Largest file that is read, bytes: the longest of haze's own has some ten thousand.
+/// Maximum size of a file, bytes. The longest of haze's own has about 10,000.
 const MAX_BYTES: u64 = 1 << 20;
-/// Most files, imported ones and all. A chain of imports is followed no deeper.
+/// Maximum number of files, including imported ones. It also limits the depth of import chains.
 const MAX_FILES: usize = 256;
 
 const IMPORT: &str = "#import ";
-/// Where the name begins on the line of an import.
+/// Column of the file name on an import line, 1-based.
 pub(super) const IMPORT_COLUMN: usize = IMPORT.len() + 1;
 
-/// The shaders of a [`Context`](crate::Context): haze's own, or an author's in place of them. A clone is the same sources.
+/// Shader sources of a [`Context`](crate::Context): haze's own, or custom files that replace some of them. A clone
+/// shares the same sources.
 #[derive(Clone, Debug)]
 pub struct Sources {
     files: Arc<[File]>,
-    /// Where files would be that are imported, and are not there.
+    /// Paths of imported files that do not exist.
     missing: Arc<[PathBuf]>,
 }
 
 #[derive(Debug)]
 pub(super) struct File {
-    /// As imports have it.
+    /// Name that imports use.
     pub name: Cow<'static, str>,
-    /// As messages have it.
+    /// Path that messages show.
     pub path: Arc<Path>,
     pub text: Cow<'static, str>,
     is_embedded: bool,
 }
 
 impl Sources {
-    /// The shaders that haze is built with.
+    /// Returns the embedded shaders.
     pub fn embedded() -> Self {
         let files = SOURCES.iter().map(|&(name, text)| File::embedded(name, text)).collect();
         Self { files, missing: Arc::default() }
     }
 
-    /// Reads a folder like haze's own `shaders/`: every file that it has takes the place of the embedded one of that name, so
-    /// an author keeps only those that differ. Files of other names are read where one of these imports them, by their path
-    /// inside the folder, with `/`. Nothing is compiled yet.
+    /// Reads a folder that is laid out like haze's own `shaders/`. Each of its files replaces the embedded file of the
+    /// same name, so the folder needs only the files that differ. Files with other names are read if one of these files
+    /// imports them, by their path inside the folder, with `/`. Nothing is compiled yet.
     ///
-    /// UTF-8, with or without a byte order mark; lines end in LF or CRLF. At most 1 MiB a file, 256 files.
+    /// Files are UTF-8, with or without a byte order mark; lines end in LF or CRLF. Limits: 1 MiB per file, 256 files.
     ///
     /// # Errors
-    /// [`Error::Io`] if the folder, or a file in it, cannot be read, or if no file in it has the name of an embedded one:
-    /// it would change nothing, and is another folder than was meant. [`Error::Shader`] for a file that is not UTF-8.
+    /// [`Error::Io`] if the folder or a file in it cannot be read, or if no file in it has the name of an embedded one:
+    /// such a folder would change nothing and is probably the wrong one. [`Error::Shader`] for a file that is not
+    /// UTF-8, or for more than 256 files.
     pub fn from_folder(folder: impl AsRef<Path>) -> Result<Self, Error> {
         let folder = folder.as_ref();
         let io = |error| Error::Io { path: folder.into(), error };
@@ -76,7 +78,7 @@ impl Sources {
             let mut imported = Vec::new();
             for (line, name) in imports(&file.text) {
                 let is_known = |files: &[File]| files.iter().any(|file| file.name == name);
-                // One that is not there is named where the text is composed.
+                // Composition reports missing files.
                 if !is_inside(name) || is_known(&files) || is_known(&imported) {
                     continue;
                 }
@@ -94,14 +96,14 @@ impl Sources {
         Ok(Self { files: files.into(), missing: missing.into() })
     }
 
-    /// What is to be watched: the files that were read, none of those that are embedded, and where those would be that are
-    /// imported and were not there.
+    /// Returns the paths to watch for changes: the files that were read (not the embedded ones), and the paths of
+    /// imported files that do not exist.
     pub fn paths(&self) -> impl Iterator<Item = &Path> {
         let read = self.files.iter().filter(|file| !file.is_embedded).map(|file| &*file.path);
         read.chain(self.missing.iter().map(PathBuf::as_path))
     }
 
-    /// A bracket that an author left open.
+    /// Returns an error for the first custom file that leaves a bracket open.
     pub(super) fn unclosed(&self) -> Option<Error> {
         let own = self.files.iter().filter(|file| !file.is_embedded);
         own.filter_map(|file| Some((file, unclosed(&file.text)?)))
@@ -119,7 +121,7 @@ impl File {
         Self { name: name.into(), path: builtin::path(name).into(), text: text.into(), is_embedded: true }
     }
 
-    /// A file of the folder; `None` if it is not there.
+    /// Reads a file of the folder; `None` if it does not exist.
     fn read(folder: &Path, name: &str) -> Result<Option<Self>, Error> {
         let path: Arc<Path> = folder.join(name).into();
         let bytes = match file::read(&path, "WGSL file", MAX_BYTES) {
@@ -131,38 +133,38 @@ impl File {
             Err(error) => {
                 let good = String::from_utf8_lossy(&error.as_bytes()[..error.utf8_error().valid_up_to()]).into_owned();
                 let (line, column) = end_of(&good);
-                let reason = "not a text; expected UTF-8".to_owned();
+                let reason = "not a text file; expected UTF-8".to_owned();
                 return Err(Error::Shader { path: path.to_path_buf(), line, column, reason });
             }
         };
         Ok(Some(Self { name: name.to_owned().into(), path, text: text.into(), is_embedded: false }))
     }
 
-    /// A mistake in this file.
+    /// Creates an error in this file.
     pub fn mistake(&self, line: usize, column: usize, reason: String) -> Error {
         Error::Shader { path: self.path.to_path_buf(), line, column, reason: one_line(reason) }
     }
 }
 
-/// Line and column of what follows a text.
+/// Returns line and column of the position behind a text, 1-based.
 fn end_of(text: &str) -> (usize, usize) {
     let last = text.rsplit('\n').next().unwrap_or_default();
     (text.matches('\n').count() + 1, last.chars().count() + 1)
 }
 
-/// True for a path of a shader that cannot lead out of the folder.
+/// Returns true for the path of a shader file that cannot lead out of the folder.
 pub(super) fn is_inside(name: &str) -> bool {
     name.ends_with(".wgsl")
         && !name.contains(char::is_control)
         && Path::new(name).components().all(|part| matches!(part, Component::Normal(_)))
 }
 
-/// The file that a line imports.
+/// Returns the file that a line imports; `None` for any other line.
 pub(super) fn import(line: &str) -> Option<&str> {
     Some(line.strip_prefix(IMPORT)?.trim().trim_matches('"'))
 }
 
-/// The imports of a text, with their lines.
+/// Returns the imports of a text, with their 1-based lines.
 fn imports(text: &str) -> impl Iterator<Item = (usize, &str)> {
     (1..).zip(text.lines()).filter_map(|(line, text)| Some((line, import(text)?)))
 }

@@ -1,6 +1,7 @@
-//! What the compiler says of a module, in an author's words. naga draws the lines of the source, and numbers what it speaks of.
+//! Conversion of naga's error messages to WGSL terms. naga prints an excerpt of the source and refers to expressions by
+//! number.
 
-/// naga's names of types, and WGSL's.
+/// naga's names of types, and the names in WGSL.
 const TYPES: &[(&str, &str)] = &[
     ("Scalar { kind: Float, width: 4 }", "f32"),
     ("Scalar { kind: Sint, width: 4 }", "i32"),
@@ -19,7 +20,8 @@ const TYPES: &[(&str, &str)] = &[
     ("Scalar(bool)", "bool"),
 ];
 
-/// The message without the picture: a line with "error: " before it, and notes below the picture, each nearer to the cause.
+/// Returns the message without the source excerpt: the text behind "error: ", followed by the notes below the excerpt,
+/// each closer to the cause.
 pub(super) fn plain(message: &str) -> String {
     let mut lines = message.lines().map(str::trim).filter(|line| !line.is_empty());
     let first = lines.next().unwrap_or_default();
@@ -38,11 +40,11 @@ fn without_numbers(said: &str) -> String {
         let returned = word.strip_prefix("Some(").and_then(|rest| rest.strip_suffix(')'));
         let number = returned.unwrap_or(word).strip_prefix('[').and_then(|rest| rest.strip_suffix(']'));
         if word == "\u{1}" {
-            // The type will do.
+            // The type alone identifies the operand.
             words.pop_if(|before| *before == "this");
             typed = true;
         } else if number.is_some_and(|digits| digits.parse::<u32>().is_ok()) {
-            // "Function [3] 'name'" has a name, "the `return` expression Some([3])" is the one that is pointed at.
+            // "Function [3] 'name'" has a name; "the `return` expression Some([3])" is the one that the excerpt marks.
             let is_named = words.last().is_some_and(|before| before.starts_with(char::is_uppercase));
             words.extend((returned.is_none() && !is_named).then_some("this"));
         } else if typed && word.ends_with(')') {
@@ -55,10 +57,10 @@ fn without_numbers(said: &str) -> String {
     words.join(" ")
 }
 
-/// Line and column of the innermost thing that the picture points at, 1-based: of a function that is invalid, the expression
-/// that makes it so. `None` where it points at the whole function.
+/// Returns line and column, 1-based, of the innermost mark in the excerpt: for an invalid function, the expression that
+/// makes it invalid. `None` if only the whole function is marked.
 pub(super) fn pointed_at(message: &str, source: &str) -> Option<(usize, usize)> {
-    // What does not parse has its place already.
+    // Parse errors have their own location.
     if !message.trim_start().starts_with("Shader validation") {
         return None;
     }
@@ -68,22 +70,22 @@ pub(super) fn pointed_at(message: &str, source: &str) -> Option<(usize, usize)> 
             row = Some((number, line));
             continue;
         }
-        // "╰─^" ends what began further up.
+        // "╰─^" ends a mark that began on an earlier line.
         if let (Some(at), Some((number, row))) = (line.find('^'), row)
             && !line[..at].contains('╰')
         {
             let text = source.lines().nth(number.checked_sub(1)?)?;
             let before = row.strip_suffix(text.trim_end()).map(|before| before.chars().count());
             let column = before.and_then(|before| (line[..at].chars().count() + 1).checked_sub(before));
-            // Tabs are drawn as spaces: there the line must do.
+            // naga prints tabs as spaces, which hides the column: uses the start of the line's text.
             return Some((number, column.unwrap_or(text.len() - text.trim_start().len() + 1)));
         }
     }
     None
 }
 
-/// Line and column of a bracket that is not closed when the text ends. The compiler would miss it in the file that comes
-/// next.
+/// Returns line, column (1-based) and character of a bracket that is still open at the end of the text. The compiler
+/// would report it in the file that follows in the composed text.
 pub(super) fn unclosed(text: &str) -> Option<(usize, usize, char)> {
     let mut open = Vec::new();
     let mut comments = 0_u32;
@@ -117,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_naga_says_is_told_in_wgsl() {
+    fn naga_messages_are_converted_to_wgsl_terms() {
         let f32s = "Vector { size: Tri, scalar: Scalar { kind: Float, width: 4 } }";
         let message = format!(
             "\nShader validation error: Function [23] 'f' is invalid\n    ┌─ a:1:1\n    │\n    = Expression [4] is invalid\n    \

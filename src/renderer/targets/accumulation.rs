@@ -1,4 +1,4 @@
-//! What sprites are accumulated into, and the depth that they are compared with.
+//! Accumulation target of a system, and the depth that its sprites are compared with.
 
 use std::sync::Arc;
 
@@ -8,21 +8,21 @@ use super::textures::Textures;
 use crate::renderer::gpu::spare::Spare;
 use crate::settings::{AccumulationFormat, DepthSource, Settings};
 
-/// One texture of the accumulation target. All share one blend and are cleared to zero.
+/// Description of one texture of the accumulation target. Every texture is cleared to zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct AccumulationAttachment {
     pub label: &'static str,
     pub format: wgpu::TextureFormat,
 }
 
-/// What the target holds beside its first texture.
+/// Content of the target's second texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Beside {
     Nothing,
-    /// What the weights of the normals sum to.
+    /// Sum of the normals' weights.
     Weights,
-    /// Light from left, bottom and back, and the sum of weights: the first texture has light from right, top and front, and the
-    /// amount.
+    /// Light from left, bottom and back, and the sum of weights. The first texture then has light from right, top and
+    /// front, and the amount.
     SixWay,
 }
 
@@ -36,7 +36,7 @@ impl Beside {
     }
 }
 
-/// The accumulation target's layout. `tiled`: compute shaders write it.
+/// Returns the textures of the accumulation target. `tiled`: true if compute shaders write it.
 pub(crate) fn accumulation_layout(
     format: AccumulationFormat,
     beside: Beside,
@@ -54,14 +54,16 @@ pub(crate) fn accumulation_layout(
     std::iter::once(first).chain(beside).collect()
 }
 
-/// No device need let compute shaders write `R16Float`, or blend to this.
+/// Differs from raster's `R16Float`: WebGPU guarantees neither storage writes to `R16Float` nor blending into
+/// `R32Float`.
 const TILED_WEIGHTS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
-/// Whatever the first texture is: no device need let a compute shader write to more than four, whose formats it names.
+/// Independent of the first texture's format: WebGPU guarantees only four storage textures per shader, and a shader
+/// declares the format of each.
 const TILED_SIX_WAY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
-/// The formats of targets that compute shaders write: the first texture in either accumulation format, and beside it the sum of
-/// weights, or six-way light.
+/// Returns the formats of the targets that compute shaders write: the first texture in either accumulation format, the
+/// sum of weights, and six-way light.
 pub(crate) fn tiled_formats() -> [wgpu::TextureFormat; 4] {
     let [float, byte] = [AccumulationFormat::Rgba16Float, AccumulationFormat::Rgba8Unorm].map(texture_format);
     [float, byte, TILED_WEIGHTS_FORMAT, TILED_SIX_WAY_FORMAT]
@@ -74,53 +76,53 @@ fn texture_format(format: AccumulationFormat) -> wgpu::TextureFormat {
     }
 }
 
-/// A depth format: it can be attached, so that the hardware rejects hidden sprites, and every backend can draw to it,
-/// which is not so of `R32Float`.
+/// A depth format, so that it can be attached and the hardware rejects hidden sprites. Every backend can render to it,
+/// which does not hold for `R32Float`.
 pub(crate) const REDUCED_DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// The copy that OpenGL tests against: half the size, so that a system stays within its memory.
+/// Format of the copy that OpenGL tests against: half the size of the reduced depth, to limit the memory per system.
 pub(crate) const DEPTH_COPY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
 
-/// Lit smoke: light is HDR, whatever normals are kept in.
+/// Format of lit smoke: light is HDR, whatever the format of the normals.
 pub(crate) const LIT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
-/// What decides, beside the size, whether a system's textures can be used again.
+/// Properties that decide, in addition to the size, whether a system's textures can be reused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct AccumulationKey {
     pub format: AccumulationFormat,
     pub beside: Beside,
     pub depth_source: DepthSource,
-    /// Layers are counted as well.
+    /// True if layers are counted as well.
     pub overdraw: bool,
-    /// Smoke is lit at this resolution.
+    /// True if smoke is lit at this resolution.
     pub lit: bool,
-    /// A copy of the reduced depth is needed: the backend cannot test what it samples.
+    /// True if the backend cannot test what it samples, so that a copy of the reduced depth is needed.
     pub depth_copy: bool,
-    /// Compute shaders write it.
+    /// True if compute shaders write the target.
     pub tiled: bool,
 }
 
-/// The textures of one system. The part in use is the rectangle from (0, 0) of the size of its screen rectangle.
+/// Textures of one system. The part in use starts at (0, 0) and has the size of the system's screen rectangle.
 #[derive(Debug)]
 pub(crate) struct AccumulationTarget {
     key: AccumulationKey,
     size: UVec2,
     spare: Spare,
     pub attachments: Arc<[wgpu::TextureView]>,
-    /// The first attachment once more, for counted layers.
+    /// Counted layers, in the format of the first attachment.
     pub overdraw: Option<Arc<[wgpu::TextureView]>>,
-    /// Light times amount, and amount, where smoke is lit at this resolution.
+    /// Light times amount in rgb and amount in a, if smoke is lit at this resolution.
     pub lit: Option<wgpu::TextureView>,
-    /// `None` where sprites are compared with the host's own depth.
+    /// `None` if sprites are compared with the host's own depth.
     pub reduced_depth: Option<wgpu::TextureView>,
-    /// The reduced depth once more, coarser, where the backend cannot test what it samples.
+    /// Coarser copy of the reduced depth, if the backend cannot test what it samples.
     pub depth_copy: Option<wgpu::TextureView>,
     pub bytes: u64,
 }
 
 impl AccumulationTarget {
-    /// Makes the target ready for `size` texels; `limit` is the size of the whole view at this scale, and the textures need
-    /// never be larger. Gives the target, and whether it is new.
+    /// Makes the target fit `size` texels. `limit`: size of the whole view at this scale; the textures never need to be
+    /// larger. Returns the target, and true if it is new.
     pub fn fit<'a>(
         target: &'a mut Option<Self>,
         device: &wgpu::Device,
@@ -130,19 +132,19 @@ impl AccumulationTarget {
     ) -> (&'a Self, bool) {
         let old = target.as_ref().filter(|target| target.key == key).map_or(UVec2::ZERO, |target| target.size);
         if !target.as_mut().is_some_and(|target| target.key == key && target.serves(size)) {
-            // The old textures go before the new ones come.
+            // Drops the old textures before it creates new ones.
             *target = None;
         }
         let is_new = target.is_none();
         let target = target.get_or_insert_with(|| {
-            // Attachments of one pass are of one size: with the host's depth, of its.
+            // All attachments of a pass must have one size: with the host's depth, the host's size.
             let is_host = key.depth_source == DepthSource::Host;
             Self::new(device, key, if is_host { size } else { grown(old, size).min(limit) })
         });
         (target, is_new)
     }
 
-    /// True if these textures hold `size` texels, and are not too large for them for long.
+    /// Returns true if the textures hold `size` texels and have not been much too large for more than 120 frames.
     fn serves(&mut self, size: UVec2) -> bool {
         if self.key.depth_source == DepthSource::Host {
             return self.size == size;
@@ -160,7 +162,7 @@ impl AccumulationTarget {
             layout.map(|attachment| textures.create_whole(attachment.label, attachment.format, size)).collect()
         };
         let attachments = create(key.beside, key.tiled);
-        // Layers are always counted by the blend unit.
+        // Layers are always counted by hardware blending.
         let overdraw = key.overdraw.then(|| create(Beside::Nothing, false));
         textures.storage = false;
         let lit = key.lit.then(|| textures.create_whole("haze lit smoke", LIT_FORMAT, size));
@@ -173,14 +175,15 @@ impl AccumulationTarget {
     }
 }
 
-/// Rounds up, so that a box that grows or drifts a little keeps its textures.
+/// Rounds up to multiples of 64 texels, so that a box that grows or moves slightly keeps its textures.
 fn padded(size: UVec2) -> UVec2 {
     let step = |side: u32| side.next_multiple_of(64);
     UVec2::new(step(size.x), step(size.y))
 }
 
-/// A side that is too short becomes half as long again, so that a box which grows on is not followed texel by texel; one that
-/// is long enough stays, unless the whole would be four times too large.
+/// Returns the size of new textures. A side that is too short becomes at least half as long again, so that a growing
+/// box does not need new textures every few frames. A side that is long enough stays, unless the area would exceed four
+/// times the needed area.
 fn grown(old: UVec2, needed: UVec2) -> UVec2 {
     let side = |old: u32, needed: u32| if needed <= old { old } else { needed.max(old + old / 2) };
     let grown = padded(UVec2::new(side(old.x, needed.x), side(old.y, needed.y)));
@@ -192,7 +195,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_box_that_grows_steadily_is_given_new_textures_a_few_times_only() {
+    fn steadily_growing_box_needs_new_textures_only_a_few_times() {
         let (mut size, mut renewals) = (UVec2::splat(64), 0);
         for side in 64..2000 {
             let needed = UVec2::new(side, 64 + side / 3);
@@ -202,7 +205,7 @@ mod tests {
             }
             assert!(needed.cmple(size).all() && size.element_product() <= 4 * padded(needed).element_product());
         }
-        // log(2000 / 64) / log(1.5) = 8.5 for either side; step by step of 64 it would be 31.
+        // log(2000 / 64) / log(1.5) = 8.5 for each side; steps of 64 texels would need 31.
         assert!(renewals <= 17, "{renewals}");
     }
 }

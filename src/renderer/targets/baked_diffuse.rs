@@ -1,4 +1,4 @@
-//! Light by normal, baked: the faces of a cubemap, or a motif.
+//! Light baked by normal: the faces of a cubemap, or a motif.
 
 use std::sync::Arc;
 
@@ -11,20 +11,20 @@ use crate::settings::DiffuseMode;
 
 pub(crate) const BAKED_DIFFUSE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
-/// The texture of one system. It does not depend on the size of the picture.
+/// Baked light of one system, independent of the view's size.
 #[derive(Debug)]
 pub(crate) struct BakedDiffuse {
-    /// `None` for the modes that bake nothing.
+    /// `None` for modes that bake nothing.
     size_and_layers: Option<(u32, u32)>,
     /// One view per face of the cubemap, one for the motif, none for the other diffuse modes.
     pub faces: Arc<[wgpu::TextureView]>,
-    /// All of it. A texel that nothing reads for the modes that bake nothing.
+    /// View of all layers. For modes that bake nothing, a placeholder of one texel that no shader reads.
     pub array: wgpu::TextureView,
     pub bytes: u64,
 }
 
 impl BakedDiffuse {
-    /// Makes the texture ready for a mode. Gives it, and whether it is new.
+    /// Makes the texture fit a mode. Returns it, and true if it is new.
     pub fn fit<'a>(baked: &'a mut Option<Self>, device: &wgpu::Device, mode: DiffuseMode) -> (&'a Self, bool) {
         let size_and_layers = baked_size_and_layers(mode);
         if baked.as_ref().is_some_and(|baked| baked.size_and_layers != size_and_layers) {

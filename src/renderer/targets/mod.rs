@@ -1,4 +1,4 @@
-//! Textures that depend on a size, and nothing else.
+//! Textures whose size depends on the view or on a setting.
 
 mod accumulation;
 mod baked_diffuse;

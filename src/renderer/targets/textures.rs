@@ -1,12 +1,13 @@
-//! Making textures.
+//! Creation of target textures.
 
 use glam::UVec2;
 
-/// Makes textures and counts their bytes.
+/// Creates textures and counts their bytes.
 pub(super) struct Textures<'a> {
     pub device: &'a wgpu::Device,
     pub bytes: u64,
-    /// Compute shaders write them, and nothing is drawn to them: not every device could, whatever the format.
+    /// True if compute shaders write the textures. They are then not render attachments, because not every device can
+    /// render to every storage format.
     pub storage: bool,
 }
 
@@ -35,7 +36,7 @@ impl Textures<'_> {
     }
 }
 
-/// A texture by itself that compute shaders write.
+/// Creates a single texture that compute shaders write.
 pub(crate) fn storage_target(
     device: &wgpu::Device,
     label: &str,

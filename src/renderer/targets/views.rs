@@ -1,27 +1,28 @@
-//! Targets, as tools and a host's own passes see them.
+//! Views of a system's targets, for tools and a host's own passes.
 
 use glam::{IVec2, UVec2};
 
-/// The textures of one system. All share one grid: texel (i, j) covers `scale` by `scale` pixels of the view from
-/// (`origin` + (i, j)) · `scale`. The textures may be larger than the part in use, `size` from (0, 0);
-/// they can be copied from.
+/// Textures of one system. All share one grid: texel (i, j) covers `scale` by `scale` pixels of the view, from `scale`
+/// · (`origin` + (i, j)). The part in use has `size` texels and starts at texel (0, 0) of the textures, which may be
+/// larger. All have the usage `COPY_SRC`.
 #[derive(Clone, Copy, Debug)]
 pub struct TargetViews<'a> {
-    /// First: premultiplied normal in rgb, amount in a.
+    /// First texture: premultiplied normal in rgb, amount in a. With six-way light: light from right, top and front in
+    /// rgb. A second texture, if any, has the sum of weights, or the other three sides of six-way light.
     pub accumulation: &'a [wgpu::TextureView],
-    /// `Depth32Float` linear view depth divided by `depth_limit`; `None` where sprites are compared with the host's own
+    /// Linear view depth divided by `depth_limit`, `Depth32Float`; `None` if sprites are compared with the host's own
     /// depth.
     pub reduced_depth: Option<&'a wgpu::TextureView>,
-    /// Light by normal: six faces of a cubemap, one motif, or none, `Rgba16Float`.
+    /// Light by normal, `Rgba16Float`: six faces of a cubemap, one motif, or none.
     pub baked_diffuse: &'a [wgpu::TextureView],
-    /// First texel of the view's grid.
+    /// First texel, on the view's grid.
     pub origin: IVec2,
-    /// Texels in use.
+    /// Size of the part in use, texels.
     pub size: UVec2,
     /// Pixels per texel.
     pub scale: u32,
-    /// View depth stored as 1, metres: what lies beyond looks alike to the system.
+    /// View depth that is stored as 1, metres. All depths beyond it are equal to this system.
     pub depth_limit: f32,
-    /// View depth of the plane that light is flattened to, metres: as [`System::depth`](crate::System::depth).
+    /// View depth of the plane on which light is evaluated, metres. See [`System::depth`](crate::System::depth).
     pub lit_depth: f32,
 }

@@ -1,4 +1,4 @@
-//! Buffers of one system, and the bind groups of its passes.
+//! Buffers of one system, and the bind groups of its tiled passes.
 
 use std::sync::Arc;
 
@@ -13,20 +13,20 @@ use crate::renderer::pass::sprites::Sprites;
 use crate::renderer::targets::Beside;
 use crate::settings::AccumulationFormat;
 
-/// Bytes of a sprite: TileSprite in `shaders/lib/tile_sprite.wgsl`.
+/// Bytes of a sprite: `TileSprite` in `shaders/lib/tile_sprite.wgsl`.
 pub(crate) const SPRITE: u64 = 64;
 /// Bytes of a packed rectangle.
 const RECT: u64 = 8;
-/// Bytes that `first` counts in.
+/// Unit of `TilesUniform::first`, bytes.
 pub(crate) const PARTICLE_STEP: u64 = 16;
 
-/// What they are bound to, and the buffers between them.
+/// Buffers of the tiled passes, and their bind groups.
 #[derive(Debug)]
 pub(super) struct Held {
     pub capacity: Capacity,
     pub uniform: wgpu::Buffer,
     pub tally: wgpu::Buffer,
-    /// For the sprites that are shown.
+    /// Indirect dispatch size for the visible sprites.
     pub workgroups: wgpu::Buffer,
     sprites: wgpu::Buffer,
     rects: wgpu::Buffer,
@@ -38,34 +38,35 @@ pub(super) struct Held {
     pub read_back: Arc<wgpu::Buffer>,
     pub gather: wgpu::BindGroup,
     pub bin: wgpu::BindGroup,
-    /// With the host's own things, made anew when they are others.
+    /// Bind groups that include resources from outside, next to those resources; recreated when the resources change.
     project: Option<(Part, wgpu::BindGroup)>,
     refine: Option<(wgpu::TextureView, wgpu::BindGroup)>,
     accumulate: Option<(Vec<wgpu::TextureView>, wgpu::BindGroup)>,
 }
 
-/// The part of a buffer with a system's particles: from an offset that can be bound.
+/// Range of a buffer that has a system's particles. It starts at an offset that can be bound.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Part {
     buffer: wgpu::Buffer,
     offset: u64,
     size: u64,
-    /// The first particle in it, in steps.
+    /// Start of the first particle in the range, in units of `PARTICLE_STEP`.
     pub first: u32,
 }
 
-/// How much fits.
+/// Number of elements that the buffers can hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Capacity {
     pub particles: u32,
     pub bins: u32,
-    /// Runs of all bins.
+    /// Sprite counts: one per bin and run.
     pub runs: u32,
     pub entries: u32,
 }
 
 impl Capacity {
-    /// With room to grow. Lists that would be longer than a buffer can be are left out.
+    /// Rounds up to leave room for growth. `most`: words of the largest buffer. Lists that do not fit into it are
+    /// dropped; their bins read all sprites instead.
     pub fn with_room(self, most: u32) -> Self {
         Self {
             particles: self.particles.next_power_of_two(),
@@ -212,7 +213,7 @@ impl Part {
         Self {
             buffer: sprites.buffer.clone(),
             offset,
-            // All of it, so that another number of particles needs no other binding.
+            // Binds the rest of the buffer, so that a change of the particle count needs no new bind group.
             size: (sprites.buffer.size() - offset).min(limits.max_storage_buffer_binding_size) & !3,
             first: (before / PARTICLE_STEP) as u32,
         }

@@ -1,4 +1,4 @@
-//! Where a host's particles are put back to front on the GPU.
+//! Sort of a host's particles back to front on the GPU.
 
 use super::buffers::Part;
 use super::shared::Tiled;
@@ -14,7 +14,7 @@ use crate::renderer::pass::depth_sort::{DepthSort, DepthSortKey};
 use crate::renderer::pass::sort::{BLOCK, Sort};
 use crate::renderer::pass::sprites::Sprites;
 
-/// The sorted particles of one system, kept from frame to frame.
+/// Buffers for the sorted particles of one system, kept between frames.
 #[derive(Debug, Default)]
 pub(crate) struct DepthSorted {
     held: Option<Held>,
@@ -27,12 +27,12 @@ struct Held {
     uniform: wgpu::Buffer,
     sort: SortBuffers,
     particles: wgpu::Buffer,
-    /// With the host's own buffer, made anew when it is another.
+    /// Bind group with the host's own buffer; recreated when that is another.
     inputs: Option<(Part, wgpu::BindGroup)>,
 }
 
 impl DepthSorted {
-    /// Readies the buffers and the pass that fills them: from these sprites to those.
+    /// Prepares the buffers and the pass that sorts `sprites` into them. Returns the sorted sprites and the pass.
     pub fn write(&mut self, gpu: &Gpu<'_>, tiled: &Tiled, sprites: &Sprites) -> (Sprites, DepthSort) {
         let count = sprites.count;
         let held = self.held.as_ref().map_or(0, |held| held.most);
@@ -61,7 +61,7 @@ impl DepthSorted {
         (sorted, sort)
     }
 
-    /// Bytes held.
+    /// Returns the bytes of GPU memory held.
     pub fn memory(&self) -> TiledMemory {
         self.held.as_ref().map_or(TiledMemory::default(), |held| {
             let [keys, counts] = held.sort.bytes();

@@ -1,4 +1,4 @@
-//! Where the particles of an emitter are evaluated on the GPU.
+//! Evaluation of an emitter's particles on the GPU.
 
 use super::shared::Tiled;
 use super::storage::bind;
@@ -10,7 +10,7 @@ use crate::renderer::gpu::spare::Spare;
 use crate::renderer::pass::emit::Emit;
 use crate::renderer::pass::sprites::Sprites;
 
-/// The particles of one system, kept from frame to frame.
+/// Buffer for the particles of one system, kept between frames.
 #[derive(Debug, Default)]
 pub(crate) struct Emitted {
     held: Option<Held>,
@@ -25,7 +25,7 @@ struct Held {
 }
 
 impl Emitted {
-    /// Readies the buffer and the pass that fills it. `None` when there is nothing to draw.
+    /// Prepares the buffer and the pass that fills it. Returns `None` if there is nothing to draw.
     pub fn write(&mut self, gpu: &Gpu<'_>, tiled: &Tiled, emission: &Emission, loops: u32) -> Option<(Sprites, Emit)> {
         let count = emission.count();
         let needed = u64::from(count.next_power_of_two()) * size_of::<Particle>() as u64;
@@ -44,7 +44,7 @@ impl Emitted {
         Some((sprites, Emit { pipeline: tiled.emit(gpu.device), inputs: held.inputs.clone(), births: count }))
     }
 
-    /// Bytes held.
+    /// Returns the bytes of GPU memory held.
     pub fn bytes(&self) -> u64 {
         self.held.as_ref().map_or(0, |held| held.particles.size() + held.uniform.size())
     }
@@ -56,7 +56,7 @@ impl Held {
         let particles = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("haze emitted particles"),
             size,
-            // Counted layers are drawn from it.
+            // A vertex buffer as well: the raster pass that counts layers draws from it.
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::VERTEX,
             mapped_at_creation: false,
         });

@@ -1,4 +1,4 @@
-//! Accumulation by compute shaders: what all systems of a device share, and what one system owns.
+//! Accumulation by compute shaders: resources that all systems of a device share, and those of each system.
 
 mod buffers;
 mod depth_sorted;

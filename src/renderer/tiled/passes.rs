@@ -1,4 +1,4 @@
-//! The tiled passes of one system in a frame.
+//! Tiled passes of one system in a frame.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -14,7 +14,7 @@ use crate::renderer::pass::tile_gather::TileGather;
 use crate::renderer::pass::tile_project::TileProject;
 use crate::renderer::pass::tile_refine::TileRefine;
 
-/// One frame's passes.
+/// Tiled passes of one frame.
 #[derive(Debug)]
 pub(crate) struct TiledPasses {
     pub(super) groups: Groups,
@@ -46,9 +46,9 @@ impl TiledPasses {
         self.bin.record(pass);
     }
 
-    /// Learns how long the lists would have been, for frames to come.
+    /// Reads back how many list entries this frame needs, to size the buffer of later frames.
     fn read_entries(&self, encoder: &mut wgpu::CommandEncoder) {
-        // The system's share and this frame's; more while one is on its way.
+        // One reference belongs to the system, one to this frame. More mean that a read-back is in flight.
         if Arc::strong_count(&self.read_back) > 2 {
             return;
         }

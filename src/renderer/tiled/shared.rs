@@ -18,15 +18,15 @@ use crate::renderer::pass::tile_project::{self, TileProjectKey};
 use crate::renderer::pass::tile_refine::{self, TileRefineKey};
 use crate::renderer::targets::{storage_target, tiled_formats};
 
-/// Layouts, shaders and pipelines. Only devices that can run them have this.
+/// Layouts, shaders and pipelines of the tiled passes. Only devices that support them have this.
 #[derive(Debug)]
 pub(crate) struct Tiled {
     pub layouts: TiledLayouts,
-    /// Workgroups walk in step: not on CPUs.
+    /// True for cooperative traversal, false for per-invocation traversal; false at first on CPUs only.
     in_step: AtomicBool,
-    /// Asked once: a device makes a copy of them each time.
+    /// Queried once, because every query copies all limits.
     pub limits: wgpu::Limits,
-    /// A texel for each format of a target, bound in place of those that a system has not.
+    /// Placeholder of one texel for each target format, bound in place of targets that a system does not have.
     pub unwritten: [wgpu::TextureView; 4],
     emit: Variants<(), ComputeParts>,
     depth_sort: Variants<DepthSortKey, ComputeParts>,
@@ -38,7 +38,7 @@ pub(crate) struct Tiled {
     accumulate: Variants<TileAccumulateKey, ComputeParts>,
 }
 
-/// Bind groups of the tiled passes.
+/// Bind group layouts of the tiled passes.
 #[derive(Debug)]
 pub(crate) struct TiledLayouts {
     pub emit: wgpu::BindGroupLayout,
@@ -51,7 +51,7 @@ pub(crate) struct TiledLayouts {
     pub accumulate: wgpu::BindGroupLayout,
 }
 
-/// What accumulates a system.
+/// Pipeline keys of a system's tiled passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TiledKeys {
     pub project: TileProjectKey,
@@ -59,29 +59,31 @@ pub(crate) struct TiledKeys {
 }
 
 impl TiledKeys {
-    /// None where workgroups walk in step: they read what their bin has.
+    /// Returns the key of tile_refine. `None` for cooperative traversal, in which each workgroup filters its bin's list
+    /// itself.
     fn refine(&self) -> Option<TileRefineKey> {
         let TileAccumulateKey { sprite, host_depth, in_step, stops, .. } = self.accumulate;
         (!in_step).then_some(TileRefineKey { sprite, host_depth, stops })
     }
 }
 
-/// As [`sort::keys`]. No list that grows: frames allocate nothing for it.
+/// Pipelines in the order of [`sort::keys`]. An array, so that a frame allocates nothing for it.
 type SortPipelines = [Option<(SortKey, wgpu::ComputePipeline)>; sort::STEPS];
 
-/// The pipelines of one system.
+/// Pipelines of one system.
 pub(crate) struct TiledPipelines {
     pub project: wgpu::ComputePipeline,
     pub sort: Option<SortPipelines>,
     pub gather: wgpu::ComputePipeline,
     pub bin: [Option<(TileBinKey, wgpu::ComputePipeline)>; tile_bin::STEPS],
-    /// Where invocations walk alone.
+    /// Present for per-invocation traversal.
     pub refine: Option<wgpu::ComputePipeline>,
     pub accumulate: wgpu::ComputePipeline,
 }
 
 impl Tiled {
-    /// `shader` gives the shader of a pass, by name; `cache` is the host's, where the backend has one.
+    /// Creates layouts and shader modules. `shader` returns the shader of a pass by name; `cache` is the host's
+    /// pipeline cache, if the backend supports one.
     pub fn new<E>(
         device: &wgpu::Device,
         layouts: &Layouts,
@@ -112,7 +114,7 @@ impl Tiled {
         })
     }
 
-    /// How workgroups walk their tiles.
+    /// Returns true for cooperative traversal, false for per-invocation traversal.
     pub fn in_step(&self) -> bool {
         self.in_step.load(Ordering::Relaxed)
     }
@@ -121,7 +123,7 @@ impl Tiled {
         self.in_step.store(in_step, Ordering::Relaxed);
     }
 
-    /// Pipelines compiled so far.
+    /// Returns the number of pipelines compiled so far.
     pub fn pipeline_count(&self) -> usize {
         self.emit.len()
             + self.depth_sort.len()
@@ -133,7 +135,7 @@ impl Tiled {
             + self.accumulate.len()
     }
 
-    /// Compiles what these keys need, or says what is wrong with the shaders.
+    /// Compiles the pipelines for these keys, or returns the shader error.
     pub fn compile(&self, device: &wgpu::Device, keys: TiledKeys) -> Result<(), Error> {
         self.emit.check(device, ())?;
         self.project.check(device, keys.project)?;
@@ -146,7 +148,7 @@ impl Tiled {
         self.accumulate.check(device, keys.accumulate)
     }
 
-    /// Compiles what puts a host's particles back to front.
+    /// Compiles the pipelines that sort a host's particles back to front.
     pub fn compile_depth_sort(&self, device: &wgpu::Device) -> Result<(), Error> {
         self.depth_sort.check(device, DepthSortKey::DepthKeys)?;
         self.depth_sort.check(device, DepthSortKey::GatherParticles)?;
@@ -157,7 +159,7 @@ impl Tiled {
         sort::all_keys(self.in_step()).try_for_each(|key| self.sort.check(device, key))
     }
 
-    /// What evaluates emitters.
+    /// Returns the pipeline that evaluates emitters.
     pub fn emit(&self, device: &wgpu::Device) -> wgpu::ComputePipeline {
         self.emit.get(device, ())
     }
@@ -166,13 +168,14 @@ impl Tiled {
         self.depth_sort.get(device, key)
     }
 
-    /// What sorts so many keys.
+    /// Returns the pipelines that sort `count` keys.
     pub fn sort(&self, device: &wgpu::Device, count: u32) -> SortPipelines {
         let mut keys = sort::keys(self.in_step(), count).map(|key| (key, self.sort.get(device, key)));
         std::array::from_fn(|_| keys.next())
     }
 
-    /// `sorts`: sprites come in any order, and it matters.
+    /// Returns the pipelines of a system with `count` sprites. `sorts`: true if the sprites are unsorted and their
+    /// order matters.
     pub fn pipelines(&self, device: &wgpu::Device, keys: TiledKeys, sorts: bool, count: u32) -> TiledPipelines {
         let bin_keys = tile_bin::keys(keys.accumulate.in_step, count <= tile_bin::FEW);
         let mut bin = bin_keys.map(|key| (key, self.bin.get(device, key)));

@@ -1,13 +1,13 @@
-//! What a sort works on.
+//! Buffers of a sort.
 
 use super::shared::Tiled;
 use super::storage::{WORD, bind, storage};
 use crate::renderer::pass::sort::{BLOCK, DIGITS};
 
-/// Keys, the numbers that go with them, and what is counted.
+/// Keys, the particle indices that belong to them, and digit counts.
 #[derive(Debug)]
 pub(super) struct SortBuffers {
-    /// Two pairs, sorted by turns: the first is where they begin and end.
+    /// Two pairs, which the sort uses alternately. It begins and ends in the first.
     keys: [wgpu::Buffer; 2],
     numbers: [wgpu::Buffer; 2],
     digit_counts: wgpu::Buffer,
@@ -16,7 +16,7 @@ pub(super) struct SortBuffers {
 }
 
 impl SortBuffers {
-    /// For so many keys. `uniform` is bound with them.
+    /// Creates buffers for `most` keys. `uniform` is bound with them.
     pub fn new(device: &wgpu::Device, tiled: &Tiled, uniform: &wgpu::Buffer, most: u32) -> Self {
         let words = |name, count| storage(device, name, count, WORD);
         let keys = ["haze sort keys", "haze sort keys, sorted"].map(|name| words(name, most));
@@ -38,7 +38,7 @@ impl SortBuffers {
         &self.numbers[0]
     }
 
-    /// Bytes of keys and numbers, and of counts.
+    /// Returns the bytes of keys and indices, and of counts.
     pub fn bytes(&self) -> [u64; 2] {
         let keys = self.keys.iter().chain(&self.numbers).map(wgpu::Buffer::size).sum();
         [keys, self.digit_counts.size() + self.digit_totals.size()]

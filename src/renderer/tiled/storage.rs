@@ -1,9 +1,9 @@
-//! How buffers are made and bound.
+//! Creation of buffers and bind groups.
 
-/// Bytes of a key, number or count.
+/// Bytes of a key, index or count.
 pub(super) const WORD: u64 = 4;
 
-/// A buffer of so many things of so many bytes.
+/// Creates a storage buffer of `count` elements of `bytes` bytes each.
 pub(super) fn storage(device: &wgpu::Device, name: &str, count: u32, bytes: u64) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(name),
@@ -13,7 +13,7 @@ pub(super) fn storage(device: &wgpu::Device, name: &str, count: u32, bytes: u64)
     })
 }
 
-/// How many workgroups a dispatch has, which shaders find.
+/// Creates a buffer for the size of an indirect dispatch, which shaders write.
 pub(super) fn workgroups(device: &wgpu::Device, name: &str) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(name),
@@ -23,7 +23,7 @@ pub(super) fn workgroups(device: &wgpu::Device, name: &str) -> wgpu::Buffer {
     })
 }
 
-/// A bind group of resources in the order of its layout.
+/// Creates a bind group of resources, in the order of its layout.
 pub(super) fn bind<'a>(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,

@@ -1,4 +1,4 @@
-//! What one system owns of the tiled passes, frame after frame.
+//! Tiled state of one system, kept between frames.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -25,48 +25,49 @@ use crate::renderer::pass::tile_refine::{BATCH, TileRefine};
 use crate::renderer::targets::Beside;
 use crate::settings::AccumulationFormat;
 
-/// Entries of all lists at the least.
+/// Minimum number of entries of all lists together.
 const LEAST_ENTRIES: u32 = 1 << 16;
-/// Of those that a sprite is expected to have, so many times as many at first: sprites differ in size.
+/// Safety factor on the estimated number of entries, used until a frame has been counted: sprites differ in size.
 const TO_BE_SAFE: f64 = 1.5;
 
-/// Texels along a bin's side: where invocations walk alone, by what of its list a tile shows; where workgroups walk in step, by what
-/// of it touches theirs; and for so many particles that counting by bins would cost more than it saves.
+/// Side of a bin, texels: for per-invocation traversal, tuned by how much of a bin's list each tile shows; for
+/// cooperative traversal, tuned by how much of the list touches a workgroup's tile; and for more than `MANY` particles,
+/// where counting for small bins would cost more than it saves.
 const BIN_ALONE: u32 = 32;
 const BIN_IN_STEP: u32 = 32;
 const BIN_OF_MANY: u32 = 64;
 const MANY: u32 = 1 << 16;
 
-/// Than any view depth, metres; twice as much still is a number.
+/// Larger than any view depth, metres. Twice this value is still finite in f32.
 const FARTHER_THAN_ALL: f32 = 1.0e38;
 
-/// Along each side of a dispatch, on every device.
+/// Maximum number of workgroups per dimension of a dispatch, on every device.
 const MOST_WORKGROUPS: u32 = 65535;
 
-/// Buffers of one system, kept from frame to frame.
+/// Buffers of one system, kept between frames.
 #[derive(Debug, Default)]
 pub(crate) struct TiledSystem {
     held: Option<Held>,
     spare: Spare,
-    /// Entries that the lists of some frames ago would have needed.
+    /// List entries that a frame some frames ago needed.
     entries: Arc<AtomicU32>,
 }
 
-/// What a system's passes work on.
+/// Inputs of a system's tiled passes.
 pub(crate) struct TiledInputs<'a> {
     pub sprites: &'a Sprites,
-    /// Texels in use.
+    /// Size of the part in use, texels.
     pub size: UVec2,
     pub format: AccumulationFormat,
     pub beside: Beside,
     pub attachments: &'a [wgpu::TextureView],
-    /// The depth that sprites are compared with.
+    /// Depth that sprites are compared with.
     pub depth: &'a wgpu::TextureView,
     pub load: Option<&'a PathLoad>,
 }
 
 impl TiledSystem {
-    /// Readies buffers and passes for a frame.
+    /// Prepares buffers and passes for a frame.
     pub fn write(
         &mut self,
         gpu: &Gpu<'_>,
@@ -91,10 +92,11 @@ impl TiledSystem {
         let UVec2 { x: columns, y: rows } = bins_along(size, bin_side);
         let bins = columns * rows;
         let wanted = self.entries.load(Ordering::Relaxed);
-        // Lists without room are right but slow: all sprites are walked.
+        // If the lists do not fit, the image is still correct, but bins without a list iterate over all sprites, which
+        // is slow.
         let touched = load.map_or(0.0, |load| load.touched(f64::from(bin_side), f64::from(bin_side)));
         let expected = (TO_BE_SAFE * touched * f64::from(sprites.count)) as u32;
-        // As many words again, to whole batches.
+        // tile_refine needs as many words again, in whole batches per bin.
         let expected = if in_step { expected } else { 2 * expected + BATCH * bins };
         let entries = wanted.max(expected).max(LEAST_ENTRIES);
         let needed = Capacity { particles: sprites.count, bins, runs: bins * runs, entries };
@@ -148,7 +150,7 @@ impl TiledSystem {
         }
     }
 
-    /// Bytes held.
+    /// Returns the bytes of GPU memory held.
     pub fn memory(&self) -> TiledMemory {
         self.held.as_ref().map_or(TiledMemory::default(), Held::memory)
     }
@@ -157,19 +159,19 @@ impl TiledSystem {
         let is_to_spare = self.held.as_ref().is_some_and(|held| held.capacity.is_wasted_on(&needed));
         let gives_back = self.spare.outlasts(is_to_spare);
         if gives_back || !self.held.as_ref().is_some_and(|held| held.capacity.holds(&needed)) {
-            // The old ones go before the new ones come.
+            // Drops the old buffers before it creates new ones.
             self.held = None;
         }
         self.held.get_or_insert_with(|| Held::new(gpu.device, tiled, needed))
     }
 }
 
-/// Most numbers of a buffer that a shader can read.
+/// Returns the number of words in the largest buffer that a shader can read.
 fn most_words(limits: &wgpu::Limits) -> u32 {
     (limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) / WORD).try_into().unwrap_or(u32::MAX)
 }
 
-/// Bins along the sides of a target.
+/// Returns the number of bins along the sides of a target.
 fn bins_along(size: UVec2, bin_side: u32) -> UVec2 {
     UVec2::new(size.x.div_ceil(bin_side), size.y.div_ceil(bin_side))
 }

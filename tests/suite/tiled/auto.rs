@@ -50,7 +50,7 @@ fn auto_takes_what_is_cheaper_and_says_why() {
     host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: false })
         .unwrap();
     let choice = host.renderer.path_choice(0).unwrap();
-    assert!(choice.path == Path::Tiled && choice.to_string().contains("unknown, taken for 16"), "{choice}");
+    assert!(choice.path == Path::Tiled && choice.to_string().contains("unknown, assumed 16"), "{choice}");
     // No choice, no reason.
     stage.settings.path = Path::Raster;
     host.draw(gpu(), &stage).unwrap();
