@@ -129,7 +129,7 @@ fn pictures_have_one_limit_in_memory_and_another_together() {
     assert_eq!(
         preset(folder.path(), &[&five, &four]),
         "haze: my.json: systems[1].material.motif: 1152 MiB of pictures is not valid; \
-         expected at most 1024 MiB for all pictures of the preset, each as often as it is named"
+         expected at most 1024 MiB for all pictures of the preset, each counted as often as it is named"
     );
 }
 

@@ -1,4 +1,4 @@
-//! Particles of a system that come from files in place of an emitter.
+//! Particles of a system from files, in place of an emitter.
 
 use std::path::{Component, Path};
 
@@ -10,63 +10,64 @@ use crate::frame::Particle;
 use crate::settings::{choice, settings};
 
 choice! {
-    /// Which axis of a file points up.
+    /// Axis of a file that points up.
     UpAxis {
-        /// y, as Houdini has it.
+        /// y, as in Houdini.
         #[default]
         Y = "y",
-        /// z, as Blender has it.
+        /// z, as in Blender.
         Z = "z",
     }
 }
 
 choice! {
-    /// What follows the last frame.
+    /// Continuation after the last frame.
     CacheEnd {
         /// The last frame stays.
         #[default]
         Hold = "hold",
-        /// The first frame; it has always been so.
+        /// The sequence repeats, before its start too.
         Loop = "loop",
     }
 }
 
 settings! {
-    /// Particles from a simulation, in files: docs/particles.md.
+    /// Particles of a simulation, from files: docs/particles.md.
     #[derive(Clone, Debug, PartialEq)]
     pub struct CacheSource {
-        /// A CSV or PLY file, or one a frame: `smoke_####.ply`, with `#` for the digits of the frame's number. It takes the place of
-        /// the emitter; empty for none.
+        /// CSV or PLY file, or one file per frame: `smoke_####.ply`, with `#` for the digits of the frame's number. It
+        /// replaces the emitter; empty for none.
         path: String = String::new(), particles;
-        /// Metres of one unit of the file: sizes and distances of the smoke grow with it.
+        /// Metres per unit of the file. Higher: larger smoke.
         units: f32 = 1.0, number(1.0e-6..=1.0e6, "m");
-        /// Which axis of the file points up: with the wrong one the smoke lies on its side.
+        /// Axis of the file that points up. With the wrong one the smoke lies on its side.
         up: UpAxis = UpAxis::Y, choice;
-        /// Where the file's origin is: moves all of the smoke.
+        /// Position of the file's origin. Moves all of the smoke.
         #[cfg_attr(feature = "app", schemars(with = "[f32; 3]"))]
         position: Vec3 = Vec3::ZERO, vector(-1.0e5..=1.0e5, "m");
-        /// Frames of the simulation per second: more plays it faster.
+        /// Frames of the simulation per second. Higher: faster playback.
         fps: f32 = 24.0, number(0.01..=1000.0, "frames/s");
-        /// When the first frame is shown: later holds it back.
+        /// Time at which the first frame is shown. Higher: delays the smoke.
         start: f32 = 0.0, number(-1.0e5..=1.0e5, "s");
-        /// What follows the last frame.
+        /// Continuation after the last frame: hold it, or repeat.
         after: CacheEnd = CacheEnd::Hold, choice;
-        /// Radius of particles of a file without one: large ones blur into each other, small ones show one by one.
+        /// Radius of particles if the file has none. Higher: particles blur into each other. Lower: they show one by
+        /// one.
         default_radius: f32 = 0.25, number(0.0..=1.0e3, "m");
-        /// Amount of particles of a file without one: how dense the smoke is.
+        /// Amount of particles if the file has none. Higher: denser smoke.
         default_amount: f32 = 0.3, number(0.0..=1.0, "");
-        /// Flipbook frames per second: how fast each puff boils. 0: still.
+        /// Flipbook frames per second. Higher: puffs boil faster. 0: still.
         flipbook_rate: f32 = 4.0, number(0.0..=120.0, "frames/s");
     }
 }
 
 impl CacheSource {
-    /// Whether particles come from files.
+    /// True if particles come from files.
     pub fn is_used(&self) -> bool {
         !self.path.is_empty()
     }
 
-    /// Writes the particles at `time`, seconds. Same input, same output.
+    /// Replaces `particles` with those at `time`, seconds. The same input gives the same output.
     pub fn evaluate(&self, cache: &Cache, time: f32, particles: &mut Vec<Particle>) {
         particles.clear();
         let mut frame = (f64::from(time) - f64::from(self.start)) * f64::from(self.fps);
@@ -83,7 +84,7 @@ impl CacheSource {
             particles.push(Particle {
                 position: self.position + position * self.units,
                 radius: if given.radius { cached.radius * self.units } else { self.default_radius },
-                // Sprites that are all turned alike are seen to be one.
+                // Random rotations hide that all sprites have the same image.
                 rotation: if given.rotation { cached.rotation } else { unit(random.x) * std::f32::consts::TAU },
                 amount: there * if given.amount { cached.amount } else { self.default_amount },
                 frame: unit(random.y) * 256.0 + time * self.flipbook_rate,
@@ -93,8 +94,8 @@ impl CacheSource {
     }
 }
 
-/// The file that the path of a cache stands for, from the preset's folder on; none for what is no CSV or PLY, and for what lies
-/// outside.
+/// File that the path of a cache stands for, relative to the preset's folder. `None` if it is no CSV or PLY, lies
+/// outside, or has more than one run of `#`.
 pub fn cache_file(name: &str) -> Option<&Path> {
     let path = Path::new(name);
     let ending = path.extension()?;
@@ -124,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn units_and_axes_are_the_shots() {
+    fn units_and_up_axis_of_the_settings_are_applied() {
         let cache = cache(&["x,y,z,pscale,amount,rotation,age\n1,2,3,4,0.5,6,0.25"]);
         let plain = CacheSource { flipbook_rate: 0.0, ..CacheSource::default() };
         let [y_up] = at(&plain, &cache, 0.0)[..] else { panic!("one particle") };
@@ -132,13 +133,13 @@ mod tests {
         assert_eq!((y_up.amount, y_up.rotation, y_up.age), (0.5, 6.0, 0.25));
         let moved = CacheSource { up: UpAxis::Z, units: 0.01, position: Vec3::new(0.0, 10.0, 0.0), ..plain };
         let [z_up] = at(&moved, &cache, 0.0)[..] else { panic!("one particle") };
-        // Blender's way forward, y, is away from the viewer.
+        // Blender's forward axis, y, points away from the viewer.
         assert!(z_up.position.distance(Vec3::new(0.01, 10.03, -0.02)) < 1e-6 && (z_up.radius - 0.04).abs() < 1e-7);
         assert_eq!(Particle { position: y_up.position, radius: y_up.radius, ..z_up }, y_up);
     }
 
     #[test]
-    fn frames_are_held_or_begin_again() {
+    fn last_frame_is_held_or_the_sequence_repeats() {
         let cache = cache(&["id,x,y,z\n1,0,0,0", "id,x,y,z\n1,1,0,0\n2,0,0,0", "id,x,y,z\n2,4,0,0"]);
         let mut source = CacheSource { fps: 2.0, start: 1.0, default_amount: 0.4, ..CacheSource::default() };
         let mut seen = |after, time| {
@@ -157,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_file_does_not_say_is_the_settings_and_stays_with_the_id() {
+    fn missing_columns_come_from_the_settings_and_stay_with_the_id() {
         let cache = cache(&["id,x,y,z\n7,0,0,0\n8,0,0,0", "id,x,y,z\n8,0,0,0\n7,0,0,0"]);
         let source = CacheSource { default_radius: 0.5, fps: 1.0, flipbook_rate: 0.0, ..CacheSource::default() };
         let (first, second) = (at(&source, &cache, 0.0), at(&source, &cache, 1.0));
@@ -168,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn caches_stay_inside_the_presets_folder() {
+    fn particle_files_stay_inside_the_presets_folder() {
         for inside in ["a.ply", "sim/smoke_####.PLY", "./1_#.csv"] {
             assert_eq!(cache_file(inside), Some(Path::new(inside)));
         }

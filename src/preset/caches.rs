@@ -1,4 +1,4 @@
-//! The particle files of one preset: each is read once, and all together are bounded.
+//! Loads the particle files of one preset: each is read once, and their total size is limited.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -10,24 +10,26 @@ use crate::assets::cache::{Cache, Limits};
 use crate::emitter::MAX_PARTICLES;
 use crate::error::{Error, FieldError};
 
-/// Most memory that the particle files of a preset take, bytes.
+/// Maximum memory of the particle files of a preset, bytes.
 pub const MAX_CACHE_BYTES: u64 = 1 << 30;
 
 impl Preset {
-    /// Loads the particle files of every system that names some, each once: one of each system, `None` where an emitter makes the
-    /// particles. They are looked for as pictures are; `path`, the preset's, is for errors alone.
+    /// Loads the particle files of every system that names some, each once. The result has one entry for each system,
+    /// `None` if an emitter makes its particles. The files are searched for like images; `path`, the preset's file, is
+    /// only named in errors.
     ///
     /// # Errors
-    /// As [`Cache::load`], naming the preset and the system too; [`Error::JsonField`] for a path that is none, and for more than
-    /// [`MAX_PARTICLES`] or [`MAX_CACHE_BYTES`] in all systems.
+    /// As [`Cache::load`], wrapped in [`Error::Picture`] with the preset and the system, also for more than
+    /// [`MAX_CACHE_BYTES`]; [`Error::JsonField`] for an invalid path, and for more than [`MAX_PARTICLES`] in all
+    /// systems.
     pub fn load_caches(&self, path: &Path, folders: &PictureFolders) -> Result<Vec<Option<Cache>>, Error> {
         self.check_caches(path, folders).map_err(|mut errors| errors.swap_remove(0))
     }
 
-    /// The same, for all that is wrong.
+    /// As [`Preset::load_caches`], but returns all errors.
     ///
     /// # Errors
-    /// Those of every system: at least one.
+    /// Errors of every system: at least one.
     pub fn check_caches(&self, path: &Path, folders: &PictureFolders) -> Result<Vec<Option<Cache>>, Vec<Error>> {
         let mut known = HashMap::new();
         let (mut bytes, mut particles) = (0, 0.0);
@@ -66,8 +68,7 @@ impl Preset {
 
 fn load(name: &str, folders: &PictureFolders, bytes: u64) -> Result<Cache, Error> {
     let Some(file) = cache_file(name) else {
-        let expected =
-            "a CSV or PLY file inside the preset's folder; one run of # in its name for the digits of frames";
+        let expected = "a CSV or PLY file inside the preset's folder; one run of # in its name for a frame's digits";
         return Err(FieldError::new("cache.path", format!("{name:?}"), expected).into());
     };
     let limits = Limits { particles: MAX_PARTICLES as usize, bytes };
@@ -81,7 +82,7 @@ mod tests {
     use crate::preset::PresetSystem;
 
     #[test]
-    fn every_system_is_told_what_is_wrong_with_its_files() {
+    fn errors_of_every_systems_files_are_reported() {
         let folder = tempfile::tempdir().unwrap();
         let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
         write("good.csv", "x,y,z\n1,2,3\n");
@@ -115,7 +116,7 @@ mod tests {
         assert!(broken.starts_with("my.json: systems[3].cache.path: "), "{broken}");
         assert!(broken.ends_with("smoke_02.csv:2:5: z: \"-\" is not valid; expected a number"), "{broken}");
         assert!(outside.starts_with("my.json: systems[4].cache.path: \"../good.csv\" is not valid; "), "{outside}");
-        // What an emitter may make counts too, but not that of a system which has files.
+        // Particles that an emitter may make count too, except for systems that use files.
         let mut crowded = preset(&["", "good.csv"]);
         for system in &mut crowded.systems {
             (system.emitter.rate, system.emitter.lifetime, system.emitter.lifetime_spread) = (10_000.0, 104.8576, 0.0);
