@@ -1,35 +1,36 @@
-// accumulate
-// What    Blends every sprite's normal and amount into the accumulation target.
-// Reads   particles (instances; sorted: back to front), sprite flipbook, detail map or noise, reduced depth (or the host's own).
-// Writes  accumulation target: rgb = sum of premultiplied normals, a = amount; beside it the sum of weights where it is needed.
-//         Of six-way sprites: light from right, top and front with the amount; beside it from left, bottom and back with the weights.
-// Blend   Sorted: ONE, ONE_MINUS_SRC_ALPHA: the normal is blended, the amount adds smoothly, A = 1 - product of (1 - a).
-//         Weighted: ONE, ONE for the normal, the amount as before.
+// accumulate: blends the normal and the amount of every sprite into the accumulation target.
+// Reads   particles (instances; sorted: back to front), sprite flipbook, detail map or noise, reduced depth (or the
+//         host's own).
+// Writes  accumulation target: rgb = sum of premultiplied normals, a = amount; second target: sum of weights if needed.
+//         Six-way sprites: light from right, top and front with the amount; second target: light from left, bottom and
+//         back with the sum of weights.
+// Blend   sorted: ONE, ONE_MINUS_SRC_ALPHA: normals are blended, amounts add smoothly, A = 1 - product of (1 - a).
+//         weighted: ONE, ONE for normals, amounts as for sorted.
 // Source  OTEE "Accumulating the particles"; techniques: NV, BLOG, MS.
 // Space   Normals in view space. Depths in metres.
 
 #import "lib/sprite_fragment.wgsl"
 #import "lib/order.wgsl"
 
-// Reduced depth, or the host's depth where HOST_DEPTH.
+// Reduced depth, or the host's depth if HOST_DEPTH.
 @group(3) @binding(0) var tested_depth: texture_2d<f32>;
 
 override NORMAL_ENCODING: u32 = NORMAL_ENCODING_SIGNED;
 override HOST_DEPTH: bool = false;
-// Sprites come in any order.
+// True: sprites are drawn in any order, with weighted normals.
 override WEIGHTED: bool = false;
-// Counts layers instead: every fragment that is shaded adds one.
+// True: counts layers instead. Every shaded fragment adds one.
 override OVERDRAW: bool = false;
 
-// One layer, in the smallest step of an 8-bit target.
+// One layer: the smallest step of an 8-bit target.
 const OVERDRAW_STEP: f32 = 1.0 / 255.0;
 
 @vertex
 fn vertex(particle: Particle, @builtin(vertex_index) index: u32) -> SpriteVertex {
     var out = sprite_vertex(particle, index, system.target_from_ndc, 1.0 / system.scale);
-    // A hidden sprite stays outside the clip volume by its x.
+    // The x of a hidden sprite keeps it outside the clip volume.
     if !HOST_DEPTH {
-        // Depth as the reduced target stores it.
+        // Depth in the units of the reduced target.
         out.position.z = saturate(sprite_front(out.centre_radius) / system.depth_limit) * out.position.w;
     }
     if WEIGHTED {
@@ -42,7 +43,7 @@ fn vertex(particle: Particle, @builtin(vertex_index) index: u32) -> SpriteVertex
 
 struct Accumulated {
     @location(0) normal_and_amount: vec4f,
-    // Kept where biased normals are weighted, and where SIX_WAY.
+    // Used if biased normals are weighted, and if SIX_WAY.
     @location(1) beside: vec4f,
 }
 
@@ -66,7 +67,7 @@ fn fragment(in: SpriteVertex) -> Accumulated {
     }
     let weight = fragment.amount * in.weight;
     if SIX_WAY {
-        // Of two targets most fragments have nothing: six of ten texels of a sprite are clear.
+        // Saves blending two targets: six of ten texels of a sprite are clear.
         if fragment.amount <= 0.0 {
             discard;
         }

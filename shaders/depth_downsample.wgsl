@@ -1,15 +1,15 @@
-// depth_downsample
-// What    Brings the scene's depth to the resolution of the accumulation target: one kept depth per texel.
+// depth_downsample: brings the scene's depth to the resolution of the accumulation target, one kept depth per texel.
 // Reads   scene_depth (full resolution, as the host stores it).
 // Writes  reduced depth: linear view depth over system.depth_limit, 0..1, as a depth buffer.
 // Blend   none.
-// Source  OTEE "Transfer & lighting", option 1; DESIGN "Reduced resolution".
+// Source  OTEE "Transfer & lighting", option 1.
 
 #import "lib/bindings.wgsl"
 #import "lib/depth.wgsl"
 
 override DEPTH_DOWNSAMPLE: u32 = DEPTH_DOWNSAMPLE_CHECKERBOARD;
-// Written to Depth16Unorm, one step too far: a sprite that the original lets through is never lost to rounding.
+// True for a copy in Depth16Unorm. It is stored one step too far, so that rounding never hides a sprite that the 32-bit
+// depth shows.
 override COARSE_COPY: bool = false;
 
 fn stored_depth(view_depth: f32) -> f32 {

@@ -1,5 +1,4 @@
-// diffuse_bake
-// What    Bakes all lights through the diffuse ramp into a small texture by normal, once per system and frame.
+// diffuse_bake: bakes all lights through the diffuse ramp into a small texture by normal, once per system and frame.
 // Reads   lights, diffuse and backlight ramp.
 // Writes  one face of the cubemap, or the motif: Rgba16Float, linear light.
 // Blend   none.
@@ -11,7 +10,7 @@
 #import "lib/colour.wgsl"
 
 override MOTIF: bool = false;
-// Texels along a side of the target.
+// Number of texels along a side of the target.
 override BAKE_SIZE: f32 = 32.0;
 
 struct BakeVertex {
@@ -19,7 +18,7 @@ struct BakeVertex {
     @location(0) @interpolate(flat, either) face: u32,
 }
 
-// Face i is drawn with the vertices 3i .. 3i + 2.
+// Face i is drawn with vertices 3i to 3i + 2.
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> BakeVertex {
     let corner = index % 3u;
@@ -37,6 +36,6 @@ fn fragment(in: BakeVertex) -> @location(0) vec4f {
     if !MOTIF {
         normal = normalize(cube_direction(i32(in.face), place));
     }
-    // By normal alone: as thick smoke has it.
+    // Baked by normal only, with the coverage of thick smoke.
     return vec4f(bounded_light(diffuse_from_lights(normal, 1.0, system.centre)), 1.0);
 }

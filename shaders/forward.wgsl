@@ -1,7 +1,7 @@
-// forward
-// What    The classic way: every sprite fragment lit and blended at full resolution. The baseline of every comparison.
+// forward: lights and blends every sprite fragment at full resolution. The classic method, and the baseline of every
+// comparison.
 // Reads   particles (instances, back to front), sprite flipbook, detail map or noise, scene depth, lights, ramps.
-// Writes  the host's colour target: linear HDR, or sRGB code where GAMMA_TARGET.
+// Writes  the host's colour target: linear HDR, or sRGB code if GAMMA_TARGET.
 // Blend   alpha: ONE, ONE_MINUS_SRC_ALPHA (premultiplied) · additive: ONE, ONE · multiply: DST, ZERO.
 // Source  OTEE "Typical game particles so far"; techniques: NV, BLOG, MS; age ramp: MS.
 
@@ -10,7 +10,7 @@
 #import "lib/blending.wgsl"
 #import "lib/colour.wgsl"
 
-// True where sprite.age_colour is not 0.
+// True if sprite.age_colour is not 0.
 override AGE_COLOUR: bool = false;
 
 override BLEND_MODE: u32 = BLEND_MODE_ALPHA;
@@ -24,7 +24,7 @@ fn vertex(particle: Particle, @builtin(vertex_index) index: u32) -> SpriteVertex
 fn fragment(in: SpriteVertex) -> @location(0) vec4f {
     var scene = SKY_VIEW_DEPTH;
     if reads_scene() {
-        // The picture's own pixels: the view's origin is in them already.
+        // Pixels of the target, which include the view's origin already.
         scene = host_view_depth(textureLoad(scene_depth, vec2i(in.position.xy), 0).r);
     }
     let fragment = technique_fragment(in, fragment_frames(in), scene);

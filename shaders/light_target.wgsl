@@ -1,10 +1,10 @@
-// light_target
-// What    Lights the accumulated smoke once per texel, where lighting_resolution asks for it; transfer upsamples the light.
+// light_target: lights the accumulated smoke once per texel, under lighting_resolution `target`. transfer upsamples the
+// light.
 // Reads   accumulation target, lights, ramps, baked diffuse light.
 // Writes  lit smoke: rgb light times amount, a amount; Rgba16Float, linear light.
 // Blend   none.
 // Source  OTEE "Transfer & lighting", at the target's resolution.
-// Space   As transfer.
+// Space   As in transfer.
 
 #import "lib/lit_smoke.wgsl"
 #import "lib/colour.wgsl"
@@ -28,7 +28,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         besides = textureLoad(beside, vec2i(texel), 0);
     }
     let surface = surface_from_accumulation(accumulated, besides);
-    // The texel's middle stands for all of its pixels.
+    // The centre of the texel represents all of its pixels.
     let pixel = (texel + system.target_origin + 0.5) * system.scale;
     let light = diffuse(surface, amount, lit_position(pixel)) + soft_scatter(amount);
     return vec4f(bounded_light(light), 1.0) * amount;

@@ -1,8 +1,7 @@
-// specular_scatter
-// What    The glow of lights behind the smoke: one quad of constant pixel size round each light.
+// specular_scatter: draws the glow of lights behind the smoke, one quad of constant pixel size around each light.
 // Reads   accumulation target, reduced depth, scene depth, lights, specular ramp.
-// Writes  the host's colour target: linear HDR, or sRGB code where GAMMA_TARGET.
-// Blend   ONE, ONE (additive); alpha is left alone.
+// Writes  the host's colour target: linear HDR, or sRGB code if GAMMA_TARGET.
+// Blend   ONE, ONE (additive); alpha is unchanged.
 // Source  OTEE "Specular scattering".
 
 #import "lib/accumulated.wgsl"
@@ -14,13 +13,13 @@ struct QuadVertex {
     @builtin(position) position: vec4f,
     // -1..1 across the quad.
     @location(0) uv: vec2f,
-    // Light colour times all fades but that of its range.
+    // Light colour times all fades except that of the range.
     @location(1) @interpolate(flat, either) colour: vec3f,
     // Position, and 1 / range.
     @location(2) @interpolate(flat, either) position_inverse_range: vec4f,
 }
 
-// The share of a light's body that the scene leaves visible.
+// Share of a light's body that the scene leaves visible.
 fn light_visibility(pixel: vec2f, radius: f32, light_depth: f32) -> f32 {
     var visible = 0.0;
     for (var i = 0u; i < VISIBILITY_TAPS; i++) {
@@ -33,7 +32,7 @@ fn light_visibility(pixel: vec2f, radius: f32, light_depth: f32) -> f32 {
 @vertex
 fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> QuadVertex {
     var out: QuadVertex;
-    // Outside the clip volume, until shown to be seen.
+    // Outside the clip volume, until the light is known to be visible.
     out.position = vec4f(2.0, 2.0, 2.0, 1.0);
 
     let light = lights[instance];
@@ -47,11 +46,12 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
     }
     let centre = clip.xy / clip.w;
     let pixel = pixel_from_ndc(centre, view.size);
-    // The glow ends with its quad: a light further outside the picture than that shows nothing.
+    // The glow ends with its quad: a light that is further outside the view shows nothing.
     if any(abs(pixel - 0.5 * view.size) > 0.5 * view.size + system.specular_scatter_size) {
         return out;
     }
-    // The light's own fixture may stand in its way: what is nearer than its body does not count. For the sun, anything is.
+    // Surfaces less than the diameter of the light's body in front of it do not hide it, because they may be its own
+    // fixture. Any surface hides a directional light.
     let body = max(light.radius * pixels_per_metre(view.size.y, view.ray_scale.y, depth, view.orthographic), 1.5);
     let compared_depth = min(depth - 2.0 * light.radius, 0.99 * view.far);
     let visibility = light_visibility(pixel, body, compared_depth);

@@ -1,7 +1,7 @@
-// transfer
-// What    Lights the accumulated smoke once per pixel, over the system's bounding box; or upsamples what light_target lit.
+// transfer: lights the accumulated smoke once per pixel over the system's bounding box, or upsamples the output of
+// light_target.
 // Reads   accumulation target, reduced depth, scene depth, lights, ramps, baked diffuse light.
-// Writes  the host's colour target: linear HDR, or sRGB code where GAMMA_TARGET.
+// Writes  the host's colour target: linear HDR, or sRGB code if GAMMA_TARGET.
 // Blend   ONE, ONE_MINUS_SRC_ALPHA (premultiplied over the scene).
 // Source  OTEE "Transfer & lighting", "Diffuse lighting", "Soft scattering".
 // Space   Lighting in view space, on the plane through the middle of the smoke that faces the viewer.
@@ -9,12 +9,12 @@
 #import "lib/lit_smoke.wgsl"
 #import "lib/colour.wgsl"
 
-// True: draw the back faces, never clipped away by the near plane. False: the front faces, depth-tested.
+// True: draw back faces, which the near plane never clips away. False: draw front faces, depth-tested.
 override BACK_FACES: bool = false;
-// True: there is no reduced depth, sprites were compared with the host's own.
+// True: there is no reduced depth; sprites were compared with the host's own depth.
 override HOST_DEPTH: bool = false;
 
-// True: the accumulation target is what light_target has made of it: light times amount, and amount.
+// True: the accumulation target is the output of light_target, light times amount, and amount.
 override LIT: bool = false;
 
 const SHADE_TREE_FINAL: u32 = 0u;
@@ -28,7 +28,7 @@ const SHADE_TREE_OVERDRAW: u32 = 7u;
 const SHADE_TREE_REDUCED_DEPTH: u32 = 8u;
 override SHADE_TREE: u32 = SHADE_TREE_FINAL;
 
-// The twelve triangles of a box, counter-clockwise from outside. Bit 0 of a corner is x, bit 1 y, bit 2 z.
+// The twelve triangles of a box, counter-clockwise seen from outside. Bit 0 of a corner is x, bit 1 is y, bit 2 is z.
 const BOX_CORNERS = array<u32, 36>(
     0u, 2u, 1u, 1u, 2u, 3u,
     4u, 5u, 6u, 5u, 7u, 6u,
@@ -46,7 +46,7 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     let world = mix(system.bounds_min, system.bounds_max, side);
     var clip = view.clip_from_view * (view.view_from_world * vec4f(world, 1.0));
     if BACK_FACES {
-        // Not depth-tested: only the half-space in front of the eye matters, not the near and far planes.
+        // Not depth-tested: the near and far planes do not matter, only the half-space in front of the eye.
         clip.z = 0.5 * clip.w;
     }
     return clip;
@@ -79,7 +79,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     }
     let covered = smoke_coverage(amount);
     if LIT {
-        // The light of the texels, weighted by their amounts. Less than a millionth shows nothing, and must not divide.
+        // Light of the texels, weighted by their amounts. Amounts below a millionth are invisible, and must not divide.
         return vec4f(target_colour(accumulated.rgb / max(amount, 1.0e-6)), 1.0) * covered;
     }
     var besides = vec4f(0.0);

@@ -1,7 +1,8 @@
-//! A seekable emitter: every particle is a closed-form function of (seed, birth index, time).
+//! Seekable emitter: every particle is a closed-form function of (seed, birth index, time).
 //!
-//! Nothing is stepped, so time can be scrubbed, frames rendered in any order, and two pictures compared. The arithmetic
-//! is integer hashes and plain f32, in `src/formula/emitter.rs` and, for GPUs, `shaders/lib/emitter.wgsl`.
+//! There is no simulation state, so time can be scrubbed, frames can be rendered in any order, and two images can be
+//! compared. The arithmetic is integer hashes and plain f32, in `src/formula/emitter.rs` and, for GPUs,
+//! `shaders/lib/emitter.wgsl`.
 
 use glam::{Quat, Vec2, Vec3};
 
@@ -10,96 +11,98 @@ use crate::formula::uniforms::EmitterUniform;
 use crate::frame::{Emission, Particle};
 use crate::settings::{choice, settings, validate};
 
-/// Most particles of one emitter, and of all emitters of a preset together.
+/// Maximum number of particles of one emitter, and of all emitters of a preset together.
 pub const MAX_PARTICLES: u32 = 1 << 20;
 
-/// Particles, about, of which a few are enough.
+/// Approximate number of particles in a sample.
 const SAMPLE: f64 = 1024.0;
 
 choice! {
-    /// Where particles are born.
+    /// Shape in which particles are born.
     EmitterShape {
-        /// In an ellipsoid.
+        /// An ellipsoid.
         #[default]
         Sphere = "sphere",
-        /// In a box.
+        /// A box.
         Box = "box",
-        /// On a flat disc across `up`, its extent's x and z.
+        /// A flat disc perpendicular to `up`, with the extent's x and z.
         Disc = "disc",
     }
 }
 
 settings! {
-    /// All settings of an emitter. Positions and velocities in world space.
+    /// Settings of an emitter. Positions and velocities are in world space.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Emitter {
         "birth":
-        /// Different seeds give different smoke of the same kind.
+        /// Seed of the random numbers. Each value gives different smoke of the same kind.
         seed: u32 = 1, seed;
-        /// Births per second. More makes it denser and smoother, for the cost of as many sprites.
+        /// Births per second. Higher: denser and smoother smoke, at the cost of more sprites.
         rate: f32 = 40.0, number(0.0..=100_000.0, "1/s");
-        /// Seconds of emission, from time 0. 0: it has always been smoking and never stops.
+        /// Seconds of emission, from time 0. 0: emission has no beginning and no end.
         duration: f32 = 0.0, number(0.0..=3600.0, "s");
-        /// Seconds a particle lives: how far the smoke gets before it is gone.
+        /// Seconds that a particle lives. Higher: the smoke gets further before it disappears.
         lifetime: f32 = 6.0, number(0.01..=600.0, "s");
-        /// Share of the lifetime by which lives differ, up and down. Without any the smoke ends along a line.
+        /// Random variation of the lifetime, up and down, as a share of it. At 0 the smoke ends along a line.
         lifetime_spread: f32 = 0.2, number(0.0..=0.95, "");
-        /// Where particles are born.
+        /// Shape in which particles are born.
         shape: EmitterShape = EmitterShape::Sphere, choice;
-        /// Middle of the shape: where the smoke begins.
+        /// Middle of the shape, where the smoke begins.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         position: Vec3 = Vec3::ZERO, vector(-1.0e5..=1.0e5, "m");
-        /// Half the size of the shape: from a jet to a carpet of smoke.
+        /// Half the size of the shape. Lower: a jet. Higher: a carpet of smoke.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         extent: Vec3 = Vec3::splat(0.2), vector(0.0..=1.0e4, "m");
         "motion":
-        /// Velocity at birth: the thrust of a vent. Drag soon turns it into the air's.
+        /// Velocity at birth: the thrust of a vent. Drag changes it to the velocity of the air.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         velocity: Vec3 = Vec3::new(0.0, 0.6, 0.0), vector(-1.0e3..=1.0e3, "m/s");
-        /// Speed at birth away from the middle of the shape: a blast.
+        /// Speed at birth, away from the middle of the shape: a blast.
         burst: f32 = 0.0, number(-1.0e3..=1.0e3, "m/s");
-        /// Random speed at birth, any direction: frays the root of the smoke.
+        /// Random speed at birth, in any direction. Higher: the root of the smoke frays.
         velocity_spread: f32 = 0.2, number(0.0..=1.0e3, "m/s");
-        /// How fast a particle takes on the velocity of the air: more stops a jet sooner and lets wind bend it.
+        /// Rate at which particles take on the velocity of the air. Higher: jets stop sooner, and wind bends them.
         drag: f32 = 0.6, number(0.0..=100.0, "1/s");
-        /// Upward acceleration of hot smoke; against the drag it ends in a steady rise of buoyancy / drag.
+        /// Upward acceleration of hot smoke. Higher: faster rise, which drag limits to buoyancy / drag.
         buoyancy: f32 = 0.6, number(-100.0..=100.0, "m/s²");
-        /// The way up, along which hot smoke rises and across which a disc lies; need not be unit length.
+        /// Up direction, along which hot smoke rises and across which a disc lies; need not be unit length.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         up: Vec3 = Vec3::Y, vector(-1.0e3..=1.0e3, "");
-        /// Velocity of the air: leans the smoke over.
+        /// Velocity of the air. Leans the smoke over.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         wind: Vec3 = Vec3::ZERO, vector(-100.0..=100.0, "m/s");
         "turbulence":
-        /// How far curl noise carries a particle off its path by the end of its life. More tears the smoke apart.
+        /// Distance by which curl noise moves a particle off its path by the end of its life. Higher: tears the smoke
+        /// apart.
         turbulence: f32 = 0.5, number(0.0..=100.0, "m");
-        /// Size of the swirls: small ones fray the smoke, large ones bend the whole of it.
+        /// Size of the swirls. Lower: frays the smoke. Higher: bends all of it.
         turbulence_scale: f32 = 1.5, number(0.01..=1.0e3, "m");
-        /// Turns of the swirls per second: how restless the smoke is.
+        /// Turns of the swirls per second. Higher: restless smoke.
         turbulence_speed: f32 = 0.05, number(0.0..=10.0, "1/s");
         "size":
-        /// Radius at birth: how thick the root of the smoke is.
+        /// Radius at birth: thickness of the smoke at its root.
         radius_start: f32 = 0.25, number(0.0..=1.0e3, "m");
-        /// Radius at death: how wide the smoke spreads, and how soft it looks. Cost grows with its square.
+        /// Radius at death. Higher: smoke spreads wider and looks softer; cost grows with its square.
         radius_end: f32 = 1.2, number(0.0..=1.0e3, "m");
-        /// Share by which radii differ, up and down. A mix looks less blobby.
+        /// Random variation of the radius, up and down, as a share of it. Higher: less uniform puffs.
         radius_spread: f32 = 0.25, number(0.0..=0.95, "");
         "appearance":
-        /// Fastest spin, either way, at birth; drag slows it. Normals and light turn with it.
+        /// Fastest spin at birth, either way; drag slows it. Normals and light turn with the sprite.
         spin: f32 = 0.6, number(0.0..=100.0, "rad/s");
-        /// Amount of a full-grown particle: how much of what is behind one sprite hides. Less of more sprites is smoother.
+        /// Amount of a full-grown particle: share of the background that one sprite hides. A lower amount with more
+        /// sprites is smoother.
         amount: f32 = 0.3, number(0.0..=1.0, "");
-        /// Share of the life over which a particle appears. At 0 sprites pop in.
+        /// Share of the life over which a particle fades in. At 0 sprites pop in.
         fade_in: f32 = 0.12, number(0.0..=1.0, "");
-        /// Share of the life over which it disappears. At 0 they pop out; at 1 the top is thin.
+        /// Share of the life over which a particle fades out. At 0 sprites pop out; at 1 the top of the smoke is thin.
         fade_out: f32 = 0.5, number(0.0..=1.0, "");
-        /// Flipbook frames per second. 0: still.
+        /// Flipbook frames per second. Higher: puffs boil faster. 0: still.
         frame_rate: f32 = 4.0, number(0.0..=120.0, "frames/s");
     }
 }
 
 impl Emitter {
-    /// Checks ranges, and that no more than [`MAX_PARTICLES`] live at once. `path` is put before the field's name.
+    /// Checks ranges, and that no more than [`MAX_PARTICLES`] live at once. `path` precedes the field's name.
     ///
     /// # Errors
     /// The first field that is not valid.
@@ -116,18 +119,18 @@ impl Emitter {
         Ok(())
     }
 
-    /// How many particles may live at once.
+    /// Maximum number of particles that live at once.
     pub fn most_alive(&self) -> f64 {
         let longest = f64::from(self.lifetime * (1.0 + self.lifetime_spread));
         f64::from(self.rate) * if self.duration > 0.0 { longest.min(f64::from(self.duration)) } else { longest }
     }
 
-    /// Writes the particles alive at `time`, seconds. Same input, same output, to the bit.
+    /// Replaces `particles` with those alive at `time`, seconds. The same input gives the same output, to the bit.
     pub fn evaluate(&self, time: f32, particles: &mut Vec<Particle>) {
         self.at(time).evaluate(particles);
     }
 
-    /// The particles alive at `time`, seconds, not evaluated: for [`Particles::Emission`](crate::Particles::Emission).
+    /// Particles alive at `time`, seconds, not evaluated, for [`Particles::Emission`](crate::Particles::Emission).
     pub fn at(&self, time: f32) -> Emission {
         let (first, last) = self.births(time);
         let up = self.up.normalize_or(Vec3::Y);
@@ -137,7 +140,7 @@ impl Emitter {
             count: (last - first) as u32,
             seed: self.seed,
             shape: self.shape as u32,
-            // f64: at 100 000 births a second f32 could not tell two apart after three minutes.
+            // f64, because at 100 000 births a second f32 could not tell two births apart after three minutes.
             since_first: (f64::from(time) - first as f64 / f64::from(self.rate)) as f32,
             rate: self.rate,
             lifetime: self.lifetime,
@@ -169,7 +172,7 @@ impl Emitter {
         Emission { uniform, step, first_sample }
     }
 
-    /// Range of birth indices that may be alive at `time`; index i is born at i / rate.
+    /// Range of birth indices that may be alive at `time`. Birth i happens at i / rate.
     fn births(&self, time: f32) -> (i64, i64) {
         if self.rate <= 0.0 {
             return (0, 0);
@@ -199,20 +202,20 @@ mod tests {
     }
 
     #[test]
-    fn any_time_can_be_had_in_any_order() {
+    fn particles_do_not_depend_on_earlier_evaluations() {
         let emitter = Emitter::default();
         let later = at(&emitter, 30.0);
         assert_eq!(later, at(&emitter, 30.0));
         let _ = at(&emitter, 1.0);
         assert_eq!(later, at(&emitter, 30.0));
         assert!(later.iter().all(Particle::is_valid));
-        // Rate times lifetime, give or take the jitter.
+        // Rate times lifetime, within the jitter.
         assert!((200..=280).contains(&later.len()), "{}", later.len());
     }
 
     #[test]
-    fn every_seed_is_as_good_as_the_next() {
-        // The second times 977 is the last word there is.
+    fn extreme_seeds_give_smoke_too() {
+        // The second seed times 977 wraps to the largest word.
         for seed in [0, 769_313_487, u32::MAX] {
             assert!(at(&Emitter { seed, ..Emitter::default() }, 2.0).len() > 50);
         }
@@ -235,7 +238,7 @@ mod tests {
     #[test]
     fn smoke_rises_along_up() {
         let upwards = Emitter { shape: EmitterShape::Disc, turbulence: 0.0, ..Emitter::default() };
-        // x becomes y, y becomes z, z becomes x.
+        // Cycles the axes: x becomes y, y becomes z, z becomes x.
         let turned = |v: Vec3| Vec3::new(v.z, v.x, v.y);
         let along_z =
             Emitter { up: Vec3::Z * 3.0, velocity: turned(upwards.velocity), velocity_spread: 0.0, ..upwards };
@@ -255,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn emission_ends_and_the_smoke_with_it() {
+    fn smoke_ends_after_emission_has_ended() {
         let emitter = Emitter { duration: 0.5, rate: 100.0, ..Emitter::default() };
         assert!(at(&emitter, -1.0).is_empty());
         assert!((48..=50).contains(&at(&emitter, 0.6).len()));
@@ -290,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn the_box_of_an_emission_holds_it() {
+    fn box_of_an_emission_contains_its_particles() {
         for emitter in emitters() {
             for time in [0.0, 0.05, 1.0, 3.0, 50.0] {
                 let reach = std::f32::consts::SQRT_2;
@@ -305,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn a_few_stand_for_all_and_stay_the_same_ones() {
+    fn sample_represents_all_particles_and_stays_the_same() {
         let emitter = Emitter { rate: 20_000.0, lifetime: 5.0, lifetime_spread: 0.0, ..Emitter::default() };
         let few = |time| {
             let mut particles = Vec::new();
@@ -316,7 +319,7 @@ mod tests {
         assert!((900..=1100).contains(&now.len()), "{}", now.len());
         let mean = |particles: &[Particle]| particles.iter().map(|p| p.position).sum::<Vec3>() / particles.len() as f32;
         assert!((mean(&all) - mean(&now)).length() < 0.1);
-        // A birth or a death aside.
+        // Except for a birth or a death.
         let same = |a: &&Particle| soon.iter().any(|b| a.position.distance(b.position) < 0.002);
         assert!(now.iter().filter(same).count() >= now.len() - 2);
     }

@@ -1,4 +1,4 @@
-//! Deferred particle shading for wgpu: smoke that is accumulated as *normal and amount* into a small offscreen target, then
+//! Deferred particle shading for wgpu: smoke is accumulated as *normal and amount* into a small offscreen target, then
 //! lit **once per pixel** from ramp textures that an artist can paint.
 //!
 //! ```text
@@ -6,18 +6,19 @@
 //!                                                              │ sampled
 //! Renderer::prepare    depth_downsample   scene depth ─► reduced depth, linear view metres
 //!   (host's encoder)   sort               particles ─► back to front (a slice by the CPU, a buffer by the GPU)
-//!                      diffuse_bake       lights ─► cubemap or motif, where a system asks for one
+//!                      diffuse_bake       lights ─► cubemap or motif, if a system uses one
 //!                      accumulate         sprites × normal map × soft fade ─► premultiplied normal, amount
 //! Renderer::render     transfer           the system's bounding box: decode, light, upsample, blend on the scene
 //!   (host's pass)      specular_scatter   the glow of lights behind the smoke
-//!                      forward            or: every fragment lit and blended, the classic way
+//!                      forward            or: every fragment lit and blended at full resolution
 //! ```
 //!
-//! # What it does not do
+//! # Limits
 //! - It never creates a device, submits, tonemaps, or requires a device feature.
-//! - It simulates nothing: [`emitter`] is a closed-form source of particles; hosts with their own simulation hand over a slice or a GPU buffer.
+//! - It does not simulate. [`emitter`] is a closed-form source of particles, [`cache`] reads the particles of a
+//!   simulation from files, and hosts with their own simulation pass a slice or a GPU buffer.
 //! - It casts no shadows, neither of the smoke on the scene nor of the smoke on itself.
-//! - It reads single-sampled depth; a multisampled host resolves its depth first.
+//! - It reads single-sampled depth. A multisampled host resolves its depth first.
 //!
 //! # Quick start
 //! ```no_run
@@ -47,15 +48,17 @@
 //! ```
 //!
 //! # Conventions
-//! Metres, seconds, radians; angles in settings are degrees. World space is the host's, of either hand; so is its view space.
-//! Inside, view space has x to the right and y up in the picture and z towards the viewer. Depth is linear *view depth*,
-//! positive in front of the camera. Colour is linear; ramps are sRGB pictures, decoded when loaded. NDC depth is 0..1, in any of
-//! the usual conventions, read off the projection. `shaders/README.md` and `ramps/README.md` say the rest.
+//! Metres, seconds, radians; angles in settings are degrees. World and view space are the host's, left- or
+//! right-handed. Internally, view space has x to the right, y up and z towards the viewer. Depth is linear *view
+//! depth*, positive in front of the camera. Colour is linear; ramps are sRGB images, decoded when loaded. NDC depth is
+//! 0..1, in any of the usual conventions, which is derived from the projection. `shaders/README.md` and
+//! `ramps/README.md` have the details.
 //!
 //! # Sources
-//! OTEE: N. Francis, *Deferred Particle Shading* (over the edge entertainment). NV: T. Lorach, *Soft Particles*, NVIDIA,
-//! 2007. BLOG: *Soft Particles*, after Umenhoffer et al., *Spherical Billboards*, 2006. MS: the DirectX 10 *SoftParticles*
-//! sample.
+//! - OTEE: N. Francis, *Deferred Particle Shading* (over the edge entertainment).
+//! - NV: T. Lorach, *Soft Particles*, NVIDIA, 2007.
+//! - BLOG: *Soft Particles*, after Umenhoffer et al., *Spherical Billboards*, 2006.
+//! - MS: the DirectX 10 *SoftParticles* sample.
 
 pub mod assets;
 pub mod emitter;
@@ -83,7 +86,7 @@ pub use settings::{ScaleBudget, Settings};
 pub use glam;
 pub use wgpu;
 
-/// The code in the documents compiles as it is printed.
+/// Compiles the code in the documents as a test.
 #[cfg(doctest)]
 mod documents {
     #[doc = include_str!("../README.md")]

@@ -1,4 +1,4 @@
-// Reading the accumulation target at full resolution: shared by transfer and specular_scatter.
+// Sampling of the accumulation target at full resolution, shared by transfer and specular_scatter.
 
 #import "lib/bindings.wgsl"
 #import "lib/depth.wgsl"
@@ -18,7 +18,8 @@ fn clamped_texel(texel: vec2i) -> vec2i {
     return clamp(texel, vec2i(0), vec2i(system.target_size) - 1);
 }
 
-// A texture of the accumulation target at a pixel of the view; zero outside the part of the view that it covers.
+// Samples a texture of the accumulation target at a pixel of the view. It is zero outside the part of the view that the
+// target covers.
 fn sample_target(target_texture: texture_2d<f32>, pixel: vec2f) -> vec4f {
     let texel = pixel / system.scale - system.target_origin;
     if any(texel < vec2f(0.0)) || any(texel >= system.target_size) {
@@ -52,7 +53,7 @@ fn sample_target(target_texture: texture_2d<f32>, pixel: vec2f) -> vec4f {
     if UPSAMPLE != UPSAMPLE_GUIDED {
         return value;
     }
-    // No texels are no steps of the loop.
+    // Smooth pixels skip the loop with a count of 0.
     let fade = 1.0 / system.fade_scale;
     let count = select(16, 0, is_smooth(depths, depth, fade));
     var fit: GuidedFit;
@@ -71,8 +72,8 @@ fn sample_target(target_texture: texture_2d<f32>, pixel: vec2f) -> vec4f {
     return fitted_value(fit, fade);
 }
 
-// The point of the smoke that is lit at a pixel, view space: on the pixel's ray, flattened to one plane, or the box would
-// show its faces.
+// Point of the smoke that is lit at a pixel, view space. It is on the pixel's ray, flattened to one plane; otherwise
+// the faces of the box would show.
 fn lit_position(pixel: vec2f) -> vec3f {
     let ray = ndc_from_pixel(pixel, view.size) * view.ray_scale + view.ray_offset;
     return view_position(ray, -system.centre.z, view.orthographic);

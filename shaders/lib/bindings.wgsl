@@ -1,4 +1,4 @@
-// What every pass can see. The layouts are in src/renderer/layouts.rs.
+// Bindings of every pass. The layouts are in src/renderer/layouts.rs.
 
 #import "lib/view.wgsl"
 #import "lib/system.wgsl"
@@ -8,16 +8,16 @@
 const MAX_LIGHTS: u32 = 128u;
 
 @group(0) @binding(0) var<uniform> view: View;
-// The host's depth buffer, or its R32Float view depth; read with textureLoad as unfilterable float, which every backend
-// can do with either.
+// The host's depth buffer, or its R32Float view depth. Read with textureLoad as unfilterable float, which every backend
+// supports for both.
 @group(0) @binding(1) var scene_depth: texture_2d<f32>;
 
 @group(1) @binding(0) var<uniform> system: System;
-// view space; only those that reach the system
+// View space. Only lights that reach the system.
 @group(1) @binding(1) var<uniform> lights: array<Light, MAX_LIGHTS>;
 
 @group(2) @binding(0) var sprite: texture_2d_array<f32>;
-// x is where the normal looks, y the amount times boost.
+// x is the diffuse coordinate of the normal, y the amount times boost.
 @group(2) @binding(1) var diffuse_ramp: texture_2d<f32>;
 @group(2) @binding(2) var soft_scatter_ramp: texture_2d<f32>;
 // x is distance², y is the amount.
@@ -30,11 +30,11 @@ const MAX_LIGHTS: u32 = 128u;
 @group(2) @binding(8) var noise: texture_3d<f32>;
 @group(2) @binding(9) var repeat_sampler: sampler;
 @group(2) @binding(10) var coverage_ramp: texture_2d<f32>;
-// x is the mip level, y the frame: see filled_texel().
+// x is the mip level, y the frame; see filled_texel().
 @group(2) @binding(11) var sprite_filled: texture_2d<u32>;
 @group(2) @binding(12) var backlight_ramp: texture_2d<f32>;
 
-// The host's depth at a pixel of the view.
+// Depth of the host at a pixel of the view.
 fn load_scene_depth(pixel: vec2i) -> f32 {
     return textureLoad(scene_depth, pixel + vec2i(view.origin), 0).r;
 }

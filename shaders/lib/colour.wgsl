@@ -1,9 +1,9 @@
-// Light and its sRGB code; the colours of overdraw.
+// sRGB encoding, luminance, and the colour scale of overdraw.
 
-// True: the host's target holds sRGB code, and the hardware takes it for linear.
+// True: the host's target stores sRGB code, and the hardware treats it as linear.
 override GAMMA_TARGET: bool = false;
 
-// Linear to sRGB 0..1. (IEC 61966-2-1)
+// Encodes linear light as sRGB, 0..1. (IEC 61966-2-1)
 fn srgb_from_linear(linear: f32) -> f32 {
     if linear <= 0.0031308 {
         return linear * 12.92;
@@ -11,27 +11,27 @@ fn srgb_from_linear(linear: f32) -> f32 {
     return 1.055 * pow(linear, 1.0 / 2.4) - 0.055;
 }
 
-// How bright linear RGB is to the eye. (ITU-R BT.709)
+// Luminance of linear RGB. (ITU-R BT.709)
 fn luminance(light: vec3f) -> f32 {
     return dot(light, vec3f(0.2126, 0.7152, 0.0722));
 }
 
-// What is written to a target that holds sRGB code without the hardware knowing it: linear light clamped to what such a
-// target can show, and encoded.
+// Colour for a target that stores sRGB code in a format that the hardware treats as linear: linear light, clamped to
+// 0..1 and encoded.
 fn gamma_target_colour(light: vec3f) -> vec3f {
     let shown = saturate(light);
     return vec3f(srgb_from_linear(shown.r), srgb_from_linear(shown.g), srgb_from_linear(shown.b));
 }
 
-// Half of what a half float holds: light never becomes infinite there, not even where a glow is added to smoke.
+// Half of the largest half float: light never becomes infinite in the target, even if a glow is added to smoke.
 const BRIGHTEST: f32 = 32752.0;
 
-// Light that a target of half floats can hold.
+// Light, limited to what a target of half floats can store.
 fn bounded_light(light: vec3f) -> vec3f {
     return min(light, vec3f(BRIGHTEST));
 }
 
-// Light as the host's target holds it.
+// Light as the host's target stores it.
 fn target_colour(light: vec3f) -> vec3f {
     if GAMMA_TARGET {
         return gamma_target_colour(light);
@@ -39,7 +39,7 @@ fn target_colour(light: vec3f) -> vec3f {
     return bounded_light(light);
 }
 
-// Black, blue, green, yellow, red, white at 0, 4, 8, 16, 32, 64 layers.
+// Colour scale of overdraw: black, blue, green, yellow, red, white at 0, 4, 8, 16, 32, 64 layers.
 fn overdraw_colour(layers: f32) -> vec3f {
     var colours = array<vec3f, 6>(
         vec3f(0.0),

@@ -1,21 +1,21 @@
 // Scene depth as linear view depth, metres.
 
-// View depth where there is no surface. SKY_VIEW_DEPTH in src/formula/depth.rs.
+// View depth of pixels without a surface. SKY_VIEW_DEPTH in src/formula/depth.rs.
 const SKY_VIEW_DEPTH: f32 = 1.0e6;
 
-// view_depth = (c.x + c.y·d) / (c.z + c.w·d). One form for every convention; the coefficients and their derivation
-// are depth_coefficients() in src/formula/depth.rs.
+// view_depth = (c.x + c.y·d) / (c.z + c.w·d), one form for every convention. The coefficients and their derivation are
+// in depth_coefficients() in src/formula/depth.rs.
 fn view_depth_from_ndc_depth(ndc_depth: f32, coefficients: vec4f) -> f32 {
     let numerator = coefficients.x + coefficients.y * ndc_depth;
     let denominator = coefficients.z + coefficients.w * ndc_depth;
-    // A zero denominator is an infinite far plane: the sky. `!(a > b)` also catches NaN.
+    // A zero denominator is an infinite far plane: the sky. `!(a > b)` is true for NaN too.
     if !(denominator * SKY_VIEW_DEPTH > numerator) {
         return SKY_VIEW_DEPTH;
     }
     return numerator / denominator;
 }
 
-// A linear target's texel: anything from SKY_VIEW_DEPTH up is the sky, and so is NaN.
+// View depth of a linear target's texel. Values from SKY_VIEW_DEPTH up are sky, and so is NaN.
 fn view_depth_from_linear(texel: f32) -> f32 {
     return select(SKY_VIEW_DEPTH, texel, texel < SKY_VIEW_DEPTH);
 }
@@ -25,8 +25,8 @@ const DEPTH_DOWNSAMPLE_MAX: u32 = 1u;
 const DEPTH_DOWNSAMPLE_MIN: u32 = 2u;
 const DEPTH_DOWNSAMPLE_POINT: u32 = 3u;
 
-// True if the reduced texel keeps the farthest depth under it, false for the nearest. Checkerboard alternates, so that
-// every 2x2 footprint of an upsampler holds both sides of an edge.
+// True if the reduced texel keeps the farthest depth under it, false if it keeps the nearest. Checkerboard alternates,
+// so that every 2x2 footprint of an upsampler has both sides of an edge.
 fn depth_downsample_keeps_farthest(mode: u32, texel: vec2i) -> bool {
     if mode == DEPTH_DOWNSAMPLE_CHECKERBOARD {
         return ((texel.x + texel.y) & 1) == 0;

@@ -1,4 +1,4 @@
-// Light on smoke: shared by transfer, forward and diffuse_bake.
+// Lighting of smoke, shared by transfer, forward and diffuse_bake.
 
 #import "lib/bindings.wgsl"
 #import "lib/ramp.wgsl"
@@ -12,8 +12,8 @@ const BACKLIGHT_SAME: u32 = 0u;
 const BACKLIGHT_RAMP: u32 = 1u;
 override BACKLIGHT: u32 = BACKLIGHT_SAME;
 
-// Every light through the diffuse ramp: ramp(dot(n, l) / 2 + 1/2, amount · boost) · colour · attenuation. (OTEE "Diffuse
-// lighting")
+// Sum of all lights through the diffuse ramp: ramp(dot(n, l) / 2 + 1/2, amount · boost) · colour · attenuation. (OTEE
+// "Diffuse lighting")
 fn diffuse_from_lights(normal: vec3f, covered: f32, position: vec3f) -> vec3f {
     let to_viewer = direction_to_viewer(position, view.orthographic);
     var sum = vec3f(0.0);
@@ -30,7 +30,7 @@ fn diffuse_from_lights(normal: vec3f, covered: f32, position: vec3f) -> vec3f {
     return sum;
 }
 
-// Every light by what six-way maps show of it.
+// Sum of all lights through six-way maps.
 fn diffuse_from_six_way(six_way: SixWay, position: vec3f) -> vec3f {
     var sum = vec3f(0.0);
     for (var i = 0u; i < system.light_count; i++) {
@@ -41,7 +41,7 @@ fn diffuse_from_six_way(six_way: SixWay, position: vec3f) -> vec3f {
     return sum * system.six_way_colour;
 }
 
-// The even backlight of smoke by its amount. (OTEE "Soft scattering")
+// Even backlight of smoke by its amount. (OTEE "Soft scattering")
 fn soft_scatter(amount: f32) -> vec3f {
     if SOFT_SCATTER_MODE == SOFT_SCATTER_MODE_RAMP {
         return sample_ramp(soft_scatter_ramp, linear_sampler, amount) * system.soft_scatter_intensity;

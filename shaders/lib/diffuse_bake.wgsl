@@ -1,17 +1,17 @@
-// Diffuse light by normal, baked: the geometry of the cubemap and of the motif, and spherical harmonics.
+// Baked diffuse light by normal: the geometry of the cubemap and of the motif, and spherical harmonics.
 
 #import "lib/ramp.wgsl"
 
-// Cube faces in the order +x -x +y -y +z -z. A face's edge texel centres lie exactly on the cube's edges, so that two
-// faces share the texels there and bilinear lookups meet without a seam.
+// Cube faces are in the order +x -x +y -y +z -z. The centres of a face's edge texels lie exactly on the cube's edges,
+// so that two faces share the texels there and bilinear lookups meet without a seam.
 
 struct CubeCoordinate {
     face: i32,
-    // -1..1 on the face.
+    // Position on the face, -1..1.
     position: vec2f,
 }
 
-// The direction, not normalised, of a point on a face.
+// Direction (not normalised) of a point on a face.
 fn cube_direction(face: i32, position: vec2f) -> vec3f {
     switch face {
         case 0: { return vec3f(1.0, position.y, -position.x); }
@@ -23,7 +23,7 @@ fn cube_direction(face: i32, position: vec2f) -> vec3f {
     }
 }
 
-// The face and point that a direction hits; it need not be normalised.
+// Face and point that a direction hits. The direction need not be normalised.
 fn cube_coordinate(direction: vec3f) -> CubeCoordinate {
     let size = abs(direction);
     let largest = max(max(size.x, size.y), max(size.z, 1.0e-12));
@@ -40,7 +40,7 @@ fn cube_coordinate(direction: vec3f) -> CubeCoordinate {
     return CubeCoordinate(5, vec2f(-d.x, d.y));
 }
 
-// The normal seen at a point, -1..1, of a picture of a sphere; outside the disc, that of the nearest rim point.
+// Normal seen at a point (-1..1) of an image of a sphere. Outside the disc it is the normal of the nearest rim point.
 fn motif_normal(position: vec2f) -> vec3f {
     let square = dot(position, position);
     if square >= 1.0 {
@@ -49,7 +49,7 @@ fn motif_normal(position: vec2f) -> vec3f {
     return vec3f(position, sqrt(1.0 - square));
 }
 
-// Where a normal is seen in a picture of a sphere, -1..1. Normals that face away look at the rim.
+// Position (-1..1) of a normal in an image of a sphere. Normals that face away map to the rim.
 fn motif_position(normal: vec3f) -> vec2f {
     if normal.z >= 0.0 {
         return normal.xy;
@@ -57,7 +57,7 @@ fn motif_position(normal: vec3f) -> vec2f {
     return normal.xy * inverseSqrt(max(dot(normal.xy, normal.xy), 1.0e-12));
 }
 
-// Baked light. `position` is -1..1 on the face or motif; the first row is -1.
+// Samples baked light. `position` is -1..1 on the face or motif; the first row is at -1.
 fn sample_baked(baked: texture_2d_array<f32>, linear_sampler: sampler, position: vec2f, layer: i32) -> vec3f {
     let size = vec2f(textureDimensions(baked));
     let texel = saturate(position * 0.5 + 0.5) * (size - 1.0);
@@ -81,7 +81,7 @@ fn sample_baked(baked: texture_2d_array<f32>, linear_sampler: sampler, position:
     return mix(bottom, top, fraction.y).rgb;
 }
 
-// Light by normal from nine coefficients: the real spherical harmonics to L2, with the basis' constants.
+// Light on a normal from nine coefficients: the real spherical harmonics up to L2, with the constants of the basis.
 fn spherical_harmonics(coefficients: array<vec4f, 9>, n: vec3f) -> vec3f {
     let c = coefficients;
     var light = 0.282094792 * c[0].rgb;
@@ -89,6 +89,6 @@ fn spherical_harmonics(coefficients: array<vec4f, 9>, n: vec3f) -> vec3f {
     light += 1.092548431 * (n.x * n.y * c[4].rgb + n.y * n.z * c[5].rgb + n.x * n.z * c[7].rgb);
     light += 0.315391565 * (3.0 * n.z * n.z - 1.0) * c[6].rgb;
     light += 0.546274215 * (n.x * n.x - n.y * n.y) * c[8].rgb;
-    // L2 overshoots on hard ramps; light is never negative.
+    // L2 overshoots with hard ramps; light must not be negative.
     return max(light, vec3f(0.0));
 }

@@ -1,14 +1,14 @@
-// Gradient noise with a lattice of 1, whose gradients turn.
+// Gradient noise on a lattice of spacing 1, with lattice gradients that rotate.
 
 #import "lib/hash.wgsl"
 
-// Noise at a point, and how it changes there.
+// Noise and its gradient at a point.
 struct Noise {
     value: f32,
     gradient: vec3f,
 }
 
-// The gradient at a lattice point: two random vectors, one fading into the other as the phase turns.
+// Gradient at a lattice point: two random vectors, of which the first is weighted by cos and the second by sin.
 fn lattice_gradient(at: vec3i, phase: vec2f, seed: u32) -> vec3f {
     let hash = pcg3d(vec3u(at) + vec3u(seed, seed ^ 0x9e3779b9u, 0u));
     let first = vec3f(hash >> vec3u(16u)) * (2.0 / 65535.0) - 1.0;
@@ -16,7 +16,8 @@ fn lattice_gradient(at: vec3i, phase: vec2f, seed: u32) -> vec3f {
     return first * phase.x + second * phase.y;
 }
 
-// `phase`: (cos, sin). (Perlin, "Improving noise", 2002; turning: Perlin and Neyret, "Flow noise", 2001)
+// Gradient noise. `phase` is (cos, sin). (Perlin, "Improving noise", 2002; rotation: Perlin and Neyret, "Flow noise",
+// 2001)
 fn gradient_noise(position: vec3f, phase: vec2f, seed: u32) -> Noise {
     let cell = floor(position);
     let f = position - cell;
@@ -27,7 +28,7 @@ fn gradient_noise(position: vec3f, phase: vec2f, seed: u32) -> Noise {
         let offset = vec3u(corner & 1u, (corner >> 1u) & 1u, corner >> 2u);
         let lattice = lattice_gradient(vec3i(cell) + vec3i(offset), phase, seed);
         let along = dot(lattice, f - vec3f(offset));
-        // Weight of the corner on each axis, and its slope.
+        // Weight of the corner along each axis, and its derivative.
         let is_far = offset == vec3u(1u);
         let w = select(1.0 - fade, fade, is_far);
         let s = select(-slope, slope, is_far);
@@ -38,8 +39,8 @@ fn gradient_noise(position: vec3f, phase: vec2f, seed: u32) -> Noise {
     return noise;
 }
 
-// A divergence-free flow: the curl of three noise fields. (Bridson, Hourihan and Nordenstam, "Curl-noise for procedural fluid
-// flow", 2007)
+// Divergence-free flow: the curl of three noise fields. (Bridson, Hourihan and Nordenstam, "Curl-noise for procedural
+// fluid flow", 2007)
 fn curl_noise(position: vec3f, phase: vec2f, seed: u32) -> vec3f {
     let x = gradient_noise(position, phase, seed).gradient;
     let y = gradient_noise(position, phase, seed + 1u).gradient;

@@ -1,4 +1,4 @@
-// The light of one point of the smoke. View space, metres, linear colour.
+// Lighting of a single point of the smoke. View space, metres, linear colour.
 
 #import "lib/colour.wgsl"
 
@@ -8,7 +8,7 @@ struct Light {
     position: vec3f,
     // 1 / range; 0 for directional lights.
     inverse_range: f32,
-    // The way the light travels, unit length. Spot and directional.
+    // Direction in which the light travels, unit length. Spot and directional.
     direction: vec3f,
     // 1 for directional lights, else 0.
     directional: f32,
@@ -28,20 +28,21 @@ struct LightSample {
     attenuation: f32,
 }
 
-// 1 at a light, exactly 0 at its range. (Karis, "Real Shading in Unreal Engine 4", 2013, eq. 9)
+// Window of a light's range: 1 at the light, exactly 0 at its range. (Karis, "Real Shading in Unreal Engine 4", 2013,
+// eq. 9)
 fn range_window(distance_squared: f32, inverse_range: f32) -> f32 {
     let ratio = distance_squared * inverse_range * inverse_range;
     let window = saturate(1.0 - ratio * ratio);
     return window * window;
 }
 
-// Falloff of a light with distance: inverse square, softened inside the light's own body, or the last centimetre, windowed
-// to reach 0 at the range.
+// Inverse-square falloff with distance, windowed to 0 at the range. The light's radius, and at least 1 cm, keep it
+// finite close by.
 fn distance_attenuation(distance_squared: f32, inverse_range: f32, radius: f32) -> f32 {
     return range_window(distance_squared, inverse_range) / max(distance_squared + radius * radius, 1.0e-4);
 }
 
-// Direction to the light and what is left of it at `position`.
+// Direction to the light and its attenuation at `position`.
 fn sample_light(light: Light, position: vec3f) -> LightSample {
     if light.directional > 0.5 {
         return LightSample(-light.direction, 1.0);
@@ -54,12 +55,13 @@ fn sample_light(light: Light, position: vec3f) -> LightSample {
     return LightSample(direction, attenuation);
 }
 
-// Where a normal looks into the diffuse ramp: 0 facing away from the light, 1 facing it. (OTEE "Diffuse lighting")
+// Lookup coordinate of the diffuse ramp: 0 for a normal that faces away from the light, 1 for one that faces it. (OTEE
+// "Diffuse lighting")
 fn diffuse_coordinate(normal: vec3f, to_light: vec3f) -> f32 {
     return saturate(dot(normal, to_light) * 0.5 + 0.5);
 }
 
-// The way to the viewer from a point of the smoke.
+// Unit vector from a point of the smoke to the viewer.
 fn direction_to_viewer(position: vec3f, orthographic: f32) -> vec3f {
     if orthographic > 0.5 {
         return vec3f(0.0, 0.0, 1.0);
@@ -67,40 +69,41 @@ fn direction_to_viewer(position: vec3f, orthographic: f32) -> vec3f {
     return -position * inverseSqrt(max(dot(position, position), 1.0e-12));
 }
 
-// How far a light shines from behind: 0 from the viewer's side, 1 straight against it. Cubed: smoke that scatters onwards glows
-// near the light most of all.
+// Weight of the backlight ramp: 0 for a light on the viewer's side, 1 for a light exactly behind the smoke. Cubed,
+// because forward scattering is strongest close to the direction of the light.
 fn backlight_weight(to_light: vec3f, to_viewer: vec3f) -> f32 {
     let against = saturate(0.5 - 0.5 * dot(to_light, to_viewer));
     return against * against * against;
 }
 
-// 0 in thin smoke, 1 in thick: smoothstep(scatter_amount, scatter_amount + scatter_smooth, A), safe at
-// scatter_smooth = 0. (OTEE "Soft scattering")
+// Weight of `ambient_colour`, 0 in thin smoke and 1 in thick: smoothstep(scatter_amount, scatter_amount +
+// scatter_smooth, A), safe at scatter_smooth = 0. (OTEE "Soft scattering")
 fn soft_scatter_weight(amount: f32, scatter_amount: f32, scatter_smooth: f32) -> f32 {
     let x = saturate((amount - scatter_amount) / max(scatter_smooth, 1.0e-4));
     return x * x * (3.0 - 2.0 * x);
 }
 
-// How much of the scene the smoke hides. (OTEE "Diffuse lighting", col.a)
+// Share of the scene that the smoke hides. (OTEE "Diffuse lighting", col.a)
 fn coverage(amount: f32, boost: f32) -> f32 {
     return saturate(amount * boost);
 }
 
-// How much of the scene smoke hides where the coverage ramp is this light. Paint is read as it looks, the sRGB code of its
-// luminance: grey in the middle hides half.
+// Share of the scene that the smoke hides, read from the coverage ramp. It is the sRGB code of the texel's luminance,
+// so that a displayed middle grey hides half.
 fn painted_coverage(paint: vec3f) -> f32 {
     return srgb_from_linear(saturate(luminance(paint)));
 }
 
-// How much of the smoke, by view depth, lies in front of a light: 0 before its near side, 1 behind its far side.
-// (OTEE "Specular scattering": fade out the quad as it goes through the bounding box)
+// Share of the smoke's depth range that lies in front of a light: 0 before its near side, 1 behind its far side. (OTEE
+// "Specular scattering": fade out the quad as it goes through the bounding box)
 fn specular_scatter_fade(light_depth: f32, smoke_near: f32, smoke_far: f32) -> f32 {
     return saturate((light_depth - smoke_near) / max(smoke_far - smoke_near, 1.0e-4));
 }
 
 const VISIBILITY_TAPS: u32 = 9u;
 
-// Where a light's body is looked for, from its middle: a ring of 8 taps at its radius, and the middle.
+// Offset of a visibility tap from the centre of a light, pixels: 8 taps on a ring of `radius`, and the centre as the
+// last.
 fn visibility_tap(index: u32, radius: f32) -> vec2f {
     let angle = f32(index) * 0.785398163;
     return select(vec2f(cos(angle), sin(angle)) * radius, vec2f(0.0), index == 8u);

@@ -1,14 +1,14 @@
-// The light of accumulated smoke by normal or six-way maps, and its coverage: shared by transfer and light_target.
+// Lighting of accumulated smoke by normal or six-way maps, and its coverage, shared by transfer and light_target.
 
 #import "lib/diffuse.wgsl"
 #import "lib/accumulated.wgsl"
 #import "lib/normal.wgsl"
 #import "lib/diffuse_bake.wgsl"
 
-// Six faces of baked light by normal (cubemap), or one picture of a lit sphere (motif).
+// Six faces of baked light by normal (cubemap), or one image of a lit sphere (motif).
 @group(3) @binding(2) var baked_diffuse: texture_2d_array<f32>;
-// r: what the weights of the normals sum to, where WEIGHT_SUM. Light from left, bottom and back and the sum of weights, where
-// SIX_WAY.
+// Second target. If WEIGHT_SUM: the sum of the normals' weights in r. If SIX_WAY: light from left, bottom and back, and
+// the sum of weights.
 @group(3) @binding(3) var beside: texture_2d<f32>;
 
 const DIFFUSE_MODE_RAMP: u32 = 0u;
@@ -25,19 +25,19 @@ const COVERAGE_MODE_LINEAR: u32 = 0u;
 const COVERAGE_MODE_RAMP: u32 = 1u;
 override COVERAGE_MODE: u32 = COVERAGE_MODE_LINEAR;
 
-// What light falls on.
+// Surface that light falls on.
 struct Surface {
     // Unit length, view space.
     normal: vec3f,
-    // Where SIX_WAY.
+    // If SIX_WAY.
     six_way: SixWay,
 }
 
-// From a texel of the target, and what is kept beside it, if anything is.
+// Decodes a texel of the target, and of the second target if there is one.
 fn surface_from_accumulation(accumulated: vec4f, beside: vec4f) -> Surface {
     var surface: Surface;
     if SIX_WAY {
-        // Where an upsampler's fit falls below 0 there is no light.
+        // The fit of an upsampler may fall below 0, which means no light.
         let scale = 1.0 / max(beside.a, 1.0e-6);
         surface.six_way = SixWay(max(accumulated.rgb, vec3f(0.0)) * scale, max(beside.rgb, vec3f(0.0)) * scale);
         surface.normal = normal_from_six_way(surface.six_way.positive, surface.six_way.negative);
@@ -72,7 +72,7 @@ fn diffuse(surface: Surface, amount: f32, position: vec3f) -> vec3f {
     return light * system.diffuse_intensity;
 }
 
-// How much of the scene the smoke hides.
+// Share of the scene that the smoke hides.
 fn smoke_coverage(amount: f32) -> f32 {
     let covered = coverage(amount, system.boost);
     if COVERAGE_MODE == COVERAGE_MODE_RAMP {

@@ -1,13 +1,13 @@
-// The tiling 3D noise of volumetric sprites: rgb = inverse density gradient / 2 + 1/2, a = density.
+// Tiling 3D noise of volumetric sprites: rgb = inverse density gradient / 2 + 1/2, a = density.
 
 #import "lib/ramp.wgsl"
 
 fn load_noise_volume(noise: texture_3d<f32>, texel: vec3i, size: vec3i) -> vec4f {
-    // `%` keeps the sign of a negative number.
+    // `%` has the sign of its first operand.
     return textureLoad(noise, ((texel % size) + size) % size, 0);
 }
 
-// Inverse density gradient (-1..1) and density. The noise repeats with every unit of `coordinate`.
+// Samples inverse density gradient (-1..1) and density. The noise repeats with every unit of `coordinate`.
 fn sample_noise_volume(noise: texture_3d<f32>, repeat_sampler: sampler, coordinate: vec3f) -> vec4f {
     let place = fract(coordinate);
     if !EXACT_FILTERING {
@@ -33,7 +33,8 @@ fn sample_noise_volume(noise: texture_3d<f32>, repeat_sampler: sampler, coordina
     return vec4f(texel.rgb * 2.0 - 1.0, texel.a);
 }
 
-// Octaves of the noise, each of three times the frequency and half the weight of the last; weights sum to 1. (MS)
+// Sums octaves of the noise. Each has three times the frequency and half the weight of the one before; weights sum to
+// 1. (MS)
 fn sample_noise_octaves(noise: texture_3d<f32>, repeat_sampler: sampler, coordinate: vec3f, octaves: u32) -> vec4f {
     var sum = vec4f(0.0);
     var total = 0.0;
@@ -48,8 +49,8 @@ fn sample_noise_octaves(noise: texture_3d<f32>, repeat_sampler: sampler, coordin
     return sum / total;
 }
 
-// Where a point of the world stands in the noise. `from_eye` is where it is seen from the eye, in the world's axes;
-// `noise_offset` is where the eye stands, less what the noise has risen. (MS "Animating the volume particles")
+// Noise coordinate of a point. `from_eye` is its position relative to the eye, in world axes; `noise_offset` is the
+// position of the eye minus the rise of the noise. (MS "Animating the volume particles")
 fn noise_coordinate(from_eye: vec3f, noise_size: f32, noise_offset: vec3f) -> vec3f {
     return (from_eye + noise_offset) / noise_size;
 }

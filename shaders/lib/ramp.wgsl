@@ -1,13 +1,15 @@
-// Ramp lookups. A ramp's first and last texel centres stand for 0 and 1, so that a gradient's end stops are reached.
+// Ramp lookups. The centres of a ramp's first and last texel are at 0 and 1, so that the end stops of a gradient are
+// reached.
 
-// True: filter in the shader in f32, as the reference does. False: the sampler's filter, often 8 bits of weight.
+// True: filter in the shader in f32, as the CPU renderer does. False: use the sampler's filter, often with 8-bit
+// weights.
 override EXACT_FILTERING: bool = false;
 
 const RAMP_FILTER_BILINEAR: u32 = 0u;
 const RAMP_FILTER_NEAREST: u32 = 1u;
 override RAMP_FILTER: u32 = RAMP_FILTER_BILINEAR;
 
-// Where a coordinate lies among the texels.
+// Texel coordinate of a ramp coordinate.
 fn ramp_texel(size: vec2f, coordinate: vec2f) -> vec2f {
     return saturate(coordinate) * (size - 1.0);
 }

@@ -1,23 +1,25 @@
-// Light on a sprite by six pictures: what it shows under light from its right, top and front, and from its left, bottom and back.
+// Lighting of sprites by six-way maps: responses to light from right, top and front, and from left, bottom and back.
 
-// What a texel of either half of a six-way map stands for. Its square root is stored: dark sides keep their steps in 8 bits.
+// Decodes a texel of either half of a six-way map. Maps store the square root, so that dark sides keep precision in 8
+// bits.
 fn six_way_from_texel(texel: vec3f) -> vec3f {
     return texel * texel;
 }
 
-// How much light is scattered by an angle of this cosine, but for a factor: (1 - anisotropy^2) / 4 pi makes it a share for each
-// steradian. (Henyey and Greenstein, "Diffuse radiation in the galaxy", 1941) `anisotropy` is the mean cosine, within +-0.95.
+// Henyey-Greenstein phase function of a cosine, without its constant factor (1 - anisotropy^2) / 4 pi, which would make
+// it a share per steradian. `anisotropy` is the mean cosine, within +-0.95. (Henyey and Greenstein, "Diffuse radiation
+// in the galaxy", 1941)
 fn henyey_greenstein(cosine: f32, anisotropy: f32) -> f32 {
     let base = 1.0 + anisotropy * anisotropy - 2.0 * anisotropy * cosine;
     return inverseSqrt(base) / base;
 }
 
-// How much each axis counts for a light. Between the side and the front or the back, as light is scattered between those angles: smoke
-// that scatters onwards glows straight before a light, and much less beside it. What is left is shared by right or left and top or
-// bottom, by the squares of the light's shares of them. (After McTaggart, "Half-Life 2 / Valve Source shading", GDC 2004: the
+// Weights of the axes for a light. The z axis is weighted by the phase function between light from the side and light
+// from the front or back: smoke that scatters forward glows in line with a light and much less beside it. The rest goes
+// to x and y, by the squares of the direction. (After McTaggart, "Half-Life 2 / Valve Source shading", GDC 2004: the
 // ambient cube)
 fn six_way_shares(to_light: vec3f, anisotropy: f32) -> vec3f {
-    // As if light were scattered evenly, all angles would be alike, and nothing to go by.
+    // At an anisotropy of 0 the phase function is constant, and `along` would be 0 / 0.
     let g = max(anisotropy, 0.02);
     let beside = henyey_greenstein(0.0, g);
     let end = henyey_greenstein(select(-1.0, 1.0, to_light.z < 0.0), g);
@@ -26,7 +28,7 @@ fn six_way_shares(to_light: vec3f, anisotropy: f32) -> vec3f {
     return vec3f(squares * ((1.0 - along) / max(squares.x + squares.y, 1.0e-6)), along);
 }
 
-// What is shown of a light. `positive` under light from x, y and z, `negative` from the other side.
+// Response to a light. `positive` is for light from +x, +y and +z, `negative` for light from the opposite sides.
 fn six_way_response(positive: vec3f, negative: vec3f, to_light: vec3f, anisotropy: f32) -> f32 {
     return dot(six_way_shares(to_light, anisotropy), select(negative, positive, to_light > vec3f(0.0)));
 }
@@ -36,8 +38,8 @@ struct SixWay {
     negative: vec3f,
 }
 
-// Turns the light of a sprite with the sprite: rotation is (cos, sin), counter-clockwise. Each side is what six_way_response() has
-// of light that comes from there, to the sprite as it was.
+// Rotates the response of a sprite with the sprite. `rotation` is (cos, sin), counter-clockwise. Each side becomes the
+// six_way_response() of the unrotated sprite to light from that side.
 fn rotate_six_way(positive: vec3f, negative: vec3f, rotation: vec2f) -> SixWay {
     let squares = rotation * rotation;
     let turned = rotation > vec2f(0.0);
@@ -51,7 +53,8 @@ fn rotate_six_way(positive: vec3f, negative: vec3f, rotation: vec2f) -> SixWay {
     );
 }
 
-// Where smoke faces that is lit more from one side than from the other: the normal that a six-way map stands for.
+// Normal of a six-way response: the direction of the largest difference between opposite sides; (0, 0, 1) if there is
+// none.
 fn normal_from_six_way(positive: vec3f, negative: vec3f) -> vec3f {
     let slope = positive - negative;
     let square = dot(slope, slope);

@@ -1,10 +1,11 @@
-// The sprite picture: a flipbook of normal maps, rgb = normal / 2 + 1/2 (y up), a = amount. With six-way maps two more of as many
-// frames follow: light from right, top and front with the amount, then from left, bottom and back.
+// Sprite lookups: a flipbook of normal maps, rgb = normal / 2 + 1/2 (y up), a = amount. With six-way maps, two sets of
+// as many frames follow: light from right, top and front with the amount, then light from left, bottom and back.
 
 #import "lib/ramp.wgsl"
 
-// The mip level whose texels are nearest in size to the target's. Sprites face the camera, so one level fits the whole
-// sprite and no derivatives are needed. A whole level is one lookup, not two; docs/bench.md has what the difference is.
+// Mip level whose texels are closest in size to the target's. Sprites face the camera, so one level fits the whole
+// sprite and no derivatives are needed. A whole level takes one lookup instead of two; docs/bench.md has the
+// difference.
 fn sprite_lod(sprite_size: f32, diameter_in_texels: f32) -> f32 {
     return max(floor(log2(sprite_size / max(diameter_in_texels, 1.0e-3)) + 0.5), 0.0);
 }
@@ -14,8 +15,8 @@ const SPRITE_ANIMATION_VOLUME: u32 = 1u;
 const SPRITE_ANIMATION_STILL: u32 = 2u;
 const SPRITE_ANIMATION_NEAREST: u32 = 3u;
 
-// The fractional frame that a particle shows: its own, its age through the slices of a volume texture, or the first.
-// `nearest` is cut off, so it is half a frame on.
+// Fractional frame that a particle shows: its own frame, its age through the slices of a volume texture, or the first
+// frame. `nearest` adds half a frame, because its fraction is cut off later.
 fn sprite_frame(animation: u32, frame: f32, age: f32, frame_count: f32) -> f32 {
     switch animation {
         case SPRITE_ANIMATION_VOLUME: { return saturate(age) * (frame_count - 1.0); }
@@ -25,7 +26,7 @@ fn sprite_frame(animation: u32, frame: f32, age: f32, frame_count: f32) -> f32 {
     }
 }
 
-// The two frames that a fractional frame blends, and the share of the second. The flipbook repeats.
+// The two frames that a fractional frame blends, and the weight of the second. The flipbook repeats.
 struct FlipbookFrames {
     first: i32,
     second: i32,
@@ -39,13 +40,13 @@ fn flipbook_frames(frame: f32, frame_count: f32) -> FlipbookFrames {
     return FlipbookFrames(i32(first), i32(second), saturate(wrapped - first));
 }
 
-// The same frames of a flipbook that comes `layers` later.
+// The same frames of a flipbook that starts `layers` layers later.
 fn frames_after(frames: FlipbookFrames, layers: i32) -> FlipbookFrames {
     return FlipbookFrames(frames.first + layers, frames.second + layers, frames.blend);
 }
 
-// The frames as an animation shows them. Where none is blended that is a constant, and the second lookup is compiled away:
-// a branch would not do, llvmpipe takes both sides.
+// Frames as an animation shows them. If an animation does not blend, the weight is a constant and the compiler removes
+// the second lookup. A branch would not do: llvmpipe takes both sides.
 fn shown_frames(animation: u32, frame: f32, frame_count: f32) -> FlipbookFrames {
     var frames = flipbook_frames(frame, frame_count);
     if animation == SPRITE_ANIMATION_STILL || animation == SPRITE_ANIMATION_NEAREST {
@@ -74,7 +75,7 @@ fn load_sprite_bilinear(sprite: texture_2d_array<f32>, uv: vec2f, frame: i32, le
     return mix(top, bottom, fraction.y);
 }
 
-// The mip chain is whole. WebGL2 cannot ask for the number of levels; the small term is for log2's rounding.
+// The mip chain is complete. WebGL2 cannot query the number of levels; the small term covers the rounding of log2.
 fn last_level(sprite: texture_2d_array<f32>) -> f32 {
     return floor(log2(f32(textureDimensions(sprite).x)) + 1.0e-3);
 }
@@ -91,8 +92,8 @@ fn sample_sprite_frame(sprite: texture_2d_array<f32>, linear_sampler: sampler, u
     return mix(fine, coarse, level - base);
 }
 
-// Four loads in place of a lookup, at a whole level: llvmpipe takes less time for them in compute shaders, but only right if the level
-// is the same for all invocations that it runs side by side.
+// True: four loads replace a filtered lookup at a whole mip level. In compute shaders on llvmpipe loads take less time,
+// but the level must be the same for all invocations that it runs side by side.
 override LOADS_SPRITE: bool = false;
 
 fn sample_at_level(sprite: texture_2d_array<f32>, linear_sampler: sampler, uv: vec2f, frame: i32, level: f32) -> vec4f {
@@ -102,8 +103,8 @@ fn sample_at_level(sprite: texture_2d_array<f32>, linear_sampler: sampler, uv: v
     return sample_sprite_frame(sprite, linear_sampler, uv, frame, level);
 }
 
-// A flipbook at a moment between two frames. uv 0..1, v down. `motion` is where texels go from the first frame to the second, in
-// uv: each frame is looked up where the texel is at this moment, so that a blend does not ghost.
+// Samples a flipbook between two frames. `uv` is 0..1, v down. `motion` is the motion of texels from the first frame to
+// the second, in uv. Each frame is looked up at the texel's position at this moment, so that blending does not ghost.
 fn sample_flipbook(
     sprite: texture_2d_array<f32>,
     linear_sampler: sampler,
@@ -121,7 +122,7 @@ fn sample_flipbook(
     return texel;
 }
 
-// Normal (-1..1, about unit length) and amount of a sprite.
+// Samples a sprite: normal (-1..1, about unit length) and amount.
 fn sample_sprite(
     sprite: texture_2d_array<f32>,
     linear_sampler: sampler,
@@ -134,16 +135,16 @@ fn sample_sprite(
     return vec4f(texel.rgb * 2.0 - 1.0, texel.a);
 }
 
-// The largest motion that a detail map holds, in uv. MOTION_RANGE in src/formula/sprite.rs.
+// Largest motion that a detail map can store, in uv. MOTION_RANGE in src/formula/sprite.rs.
 const MOTION_RANGE: f32 = 0.125;
 
-// A detail map's texel: x = how far it stands out towards the viewer, -1..1 radii; yz = motion to the next frame, in uv.
-// 128 of 255 is none.
+// Decodes a detail map's texel: x = offset towards the viewer, -1..1 radii; yz = motion to the next frame, in uv. A
+// value of 128 out of 255 is zero.
 fn detail_from_texel(texel: vec3f) -> vec3f {
     return (texel * 255.0 - 128.0) / 127.0 * vec3f(1.0, MOTION_RANGE, MOTION_RANGE);
 }
 
-// The detail map at a moment between two frames. Motion is the first frame's.
+// Samples the detail map between two frames. The motion is the first frame's.
 fn sample_detail(
     detail: texture_2d_array<f32>,
     linear_sampler: sampler,
@@ -161,7 +162,7 @@ fn unrotate(offset: vec2f, rotation: vec2f) -> vec2f {
     return vec2f(offset.x * rotation.x + offset.y * rotation.y, offset.y * rotation.x - offset.x * rotation.y);
 }
 
-// NV's debug sprite: eight by eight checks, every other one of a quarter of the amount.
+// NV's debug sprite: 8 x 8 checks with amounts of 1 and 0.25 in turn.
 fn checkerboard(uv: vec2f) -> vec4f {
     let check = vec2i(floor(uv * 8.0));
     return vec4f(0.0, 0.0, 1.0, select(0.25, 1.0, ((check.x + check.y) & 1) == 0));
@@ -172,7 +173,8 @@ fn sprite_corner(index: u32) -> vec2f {
     return vec2f(f32(index & 1u) * 2.0 - 1.0, f32(index >> 1u) * 2.0 - 1.0);
 }
 
-// That corner of what a sprite reaches of its square: left, down, right, up.
+// Corner of a sprite's trimmed rectangle, -1..1, y up. `corner` is the one of the full square; `reach` is the extent
+// from the centre to the left, bottom, right and top, as shares of half a side.
 fn trimmed_corner(corner: vec2f, reach: vec4f) -> vec2f {
     return select(-reach.xy, reach.zw, corner > vec2f(0.0));
 }

@@ -1,4 +1,4 @@
-// A fragment of a sprite under every technique: shared by accumulate and forward.
+// Fragment of a sprite under every technique, shared by accumulate and forward.
 
 #import "lib/sprite_vertex.wgsl"
 #import "lib/depth.wgsl"
@@ -7,25 +7,25 @@
 #import "lib/six_way.wgsl"
 
 override FADE_CURVE: u32 = FADE_CURVE_SMOOTHSTEP;
-// The host's depth is linear.
+// True: the host's depth is linear.
 override LINEAR_DEPTH: bool = false;
-// The hardware has already dropped what is behind the scene.
+// True: the hardware has already rejected fragments behind the scene.
 override DEPTH_TESTED: bool = false;
 
 struct SpriteFragment {
     // View space, about unit length.
     normal: vec3f,
-    // View space, where SIX_WAY.
+    // View space, if SIX_WAY.
     six_way: SixWay,
     amount: f32,
-    // Behind the scene or outside the sphere: not shaded at all.
+    // True behind the scene and outside the sphere: the fragment is not shaded.
     hidden: bool,
 }
 
 const NO_LIGHT: SixWay = SixWay(vec3f(0.0), vec3f(0.0));
 const HIDDEN: SpriteFragment = SpriteFragment(vec3f(0.0, 0.0, 1.0), NO_LIGHT, 0.0, true);
 
-// True where the technique looks at the scene's depth itself.
+// True if the technique reads the scene's depth in the shader.
 fn reads_scene() -> bool {
     return !(DEPTH_TESTED && TECHNIQUE == TECHNIQUE_HARD);
 }
@@ -38,7 +38,7 @@ fn host_view_depth(texel: f32) -> f32 {
     return view_depth_from_ndc_depth(texel, view.depth_coefficients);
 }
 
-// The frames that a fragment of the rasterizer shows.
+// Frames that a rasterized fragment shows.
 fn fragment_frames(in: SpriteVertex) -> FlipbookFrames {
     return shown_frames(SPRITE_ANIMATION, in.amount_lod_frame_age.z, system.frame_count);
 }
@@ -71,11 +71,12 @@ fn technique_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> S
             if !DEPTH_TESTED { fade = hard_fade(scene - view_depth); }
         }
         case TECHNIQUE_DEPTH_SPRITE_HARD: { fade = hard_fade(scene - texel_depth); }
-        // Hidden where nothing is left of the slab.
+        // Hidden if nothing is left of the slab.
         case TECHNIQUE_DENSITY: { fade = thickness; }
         default: { fade = fade_before(scene, texel_depth); }
     }
-    // Hidden ones are looked up, too: a branch would cost every one, and few are left that the hardware, or a list, has not dropped.
+    // Hidden fragments are looked up too: a branch would slow down all fragments, and the hardware or a list has
+    // rejected most hidden ones.
     var fragment = sprite_texel(in, in.uv, frames, motion);
     fragment.hidden = fade <= 0.0;
     if TECHNIQUE == TECHNIQUE_DENSITY {
@@ -90,7 +91,7 @@ fn fade_before(scene: f32, view_depth: f32) -> f32 {
     return soft_fade(FADE_CURVE, scene - view_depth, system.fade_scale, system.contrast_power, system.epsilon);
 }
 
-// What the sprite's picture has there, turned with the sprite.
+// Values of the sprite's image at a position, rotated with the sprite.
 fn sprite_texel(in: SpriteVertex, uv: vec2f, frames: FlipbookFrames, motion: vec2f) -> SpriteFragment {
     let lod = in.amount_lod_frame_age.y;
     if SIX_WAY {
@@ -111,7 +112,7 @@ fn sprite_texel(in: SpriteVertex, uv: vec2f, frames: FlipbookFrames, motion: vec
 fn sphere_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> SpriteFragment {
     let centre = in.centre_radius.xyz;
     let radius = in.centre_radius.w;
-    // The ray through the pixel; view depth d is d / along.z of the way.
+    // Ray through the pixel. View depth d is at a distance of d · per_depth along it.
     let origin = vec3f(in.view_position.xy * view.orthographic, 0.0);
     let along = normalize(vec3f(in.view_position.xy * (1.0 - view.orthographic), -1.0));
     let per_depth = -1.0 / along.z;
@@ -125,7 +126,7 @@ fn sphere_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> Spri
     if is_volumetric() {
         return volumetric_fragment(in, scene, origin, along, interval);
     }
-    // The sprite's picture, laid on the disc through the middle that faces the ray.
+    // The sprite's image is on the disc through the centre that faces the ray.
     let place = unrotate(interval.axis.xy, in.rotation) / radius;
     var motion = vec2f(0.0);
     if MOTION {
@@ -138,7 +139,7 @@ fn sphere_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> Spri
     return fragment;
 }
 
-// March from entry to exit, front to back. (MS "Volumetric particles")
+// Marches from entry to exit, front to back. (MS "Volumetric particles")
 fn volumetric_fragment(
     in: SpriteVertex,
     scene: f32,
@@ -165,7 +166,7 @@ fn volumetric_fragment(
         if TECHNIQUE == TECHNIQUE_VOLUMETRIC_SOFT {
             amount *= fade_before(scene, -position.z);
         }
-        // The gradient in view space: a row vector times the inverse turns forward.
+        // Gradient in view space: a row vector times the inverse rotates forward.
         normal += volumetric_normal(place, texel.xyz * world_from_view) * (amount * transmittance);
         transmittance *= 1.0 - amount;
     }

@@ -1,12 +1,13 @@
-// From a particle to one corner of what is not clear of its camera-facing square, or of the rectangle round its sphere.
-// Half of a puff's square is clear, and would be shaded and blended for nothing. (Persson, "Particle trimming", 2009)
+// From a particle to one corner of its trimmed camera-facing square, or of the rectangle around its sphere. Trimming
+// matters because half of a puff's square is clear and would be shaded and blended for nothing. (Persson, "Particle
+// trimming", 2009)
 
 #import "lib/bindings.wgsl"
 #import "lib/sprite.wgsl"
 #import "lib/soft_fade.wgsl"
 #import "lib/technique.wgsl"
 
-// One instance. The layout is that of `Particle` in src/frame/particle.rs.
+// One instance, in the layout of `Particle` in src/frame/particle.rs.
 struct Particle {
     // World space; radius in w.
     @location(0) position_radius: vec4f,
@@ -14,14 +15,14 @@ struct Particle {
     @location(1) rotation_amount_frame_age: vec4f,
 }
 
-// Largest number of a particle that is drawn. LARGEST in src/frame/particle.rs.
+// Largest magnitude of a particle's numbers that is drawn. LARGEST in src/frame/particle.rs.
 const LARGEST: f32 = 1.0e9;
 
 struct SpriteVertex {
     @builtin(position) position: vec4f,
     // Squares only.
     @location(0) uv: vec2f,
-    // View space. Squares: the point of the sprite. Spheres: a point of the ray through the pixel, at view depth 1.
+    // View space. Squares: the point on the sprite. Spheres: a point on the ray through the pixel, at view depth 1.
     @location(1) view_position: vec3f,
     // Amount after near fade and opacity, mip level, frame, age.
     @location(2) @interpolate(flat, either) amount_lod_frame_age: vec4f,
@@ -29,16 +30,16 @@ struct SpriteVertex {
     @location(3) @interpolate(flat, either) centre_radius: vec4f,
     // Cosine and sine of the rotation.
     @location(4) @interpolate(flat, either) rotation: vec2f,
-    // How much the normal counts, where sprites are not sorted.
+    // Weight of the normal under the order `weighted`.
     @location(5) @interpolate(flat, either) weight: f32,
 }
 
 override TECHNIQUE: u32 = TECHNIQUE_SOFT;
 override SPRITE_ANIMATION: u32 = SPRITE_ANIMATION_FLIPBOOK;
 override DEBUG_SPRITE: bool = false;
-// Sprites are lit by six-way maps, and their normals are not read.
+// True: sprites are lit by six-way maps, and their normals are not read.
 override SIX_WAY: bool = false;
-// True where sprite.motion is not 0.
+// True if sprite.motion is not 0.
 override MOTION: bool = false;
 
 // True for techniques whose sprites are spheres.
@@ -50,7 +51,7 @@ fn is_volumetric() -> bool {
     return TECHNIQUE == TECHNIQUE_VOLUMETRIC_HARD || TECHNIQUE == TECHNIQUE_VOLUMETRIC_SOFT;
 }
 
-// How far in front of its centre and behind it a sprite reaches, metres.
+// Extent of a sprite in front of its centre and behind it, metres.
 fn sprite_thickness(radius: f32) -> f32 {
     return select(radius, 0.0, is_flat());
 }
@@ -59,13 +60,13 @@ fn is_flat() -> bool {
     return TECHNIQUE == TECHNIQUE_HARD || TECHNIQUE == TECHNIQUE_SOFT || TECHNIQUE == TECHNIQUE_SOFT_LINEAR;
 }
 
-// The view depth at which the hardware tests a sprite: no part of it is nearer.
+// View depth at which the hardware tests a sprite. No part of the sprite is nearer.
 fn sprite_front(centre_radius: vec4f) -> f32 {
     return max(-centre_radius.z - sprite_thickness(centre_radius.w), view.near);
 }
 
-// NDC of a corner of the rectangle round a sphere's picture, cut half a texel outside the picture: the last texels may
-// reach that far out.
+// NDC of a corner of the rectangle around a sphere's projection, clipped half a texel outside the view, because the
+// last texels may extend that far.
 fn sphere_corner(centre_radius: vec4f, corner: vec2f, texels_per_pixel: f32) -> vec2f {
     let centre = centre_radius.xyz;
     let radius = centre_radius.w;
@@ -79,7 +80,7 @@ fn sphere_corner(centre_radius: vec4f, corner: vec2f, texels_per_pixel: f32) -> 
     return clamp((ray - view.ray_offset) / view.ray_scale, -edge, edge);
 }
 
-// A particle in view space, and what all fragments of its sprite share: as SpriteVertex has them.
+// Particle in view space, with the values that all fragments of its sprite share, as in SpriteVertex.
 struct PlacedSprite {
     hidden: bool,
     centre_radius: vec4f,
@@ -87,7 +88,7 @@ struct PlacedSprite {
     rotation: vec2f,
 }
 
-// `texels_per_pixel` is the target's resolution.
+// Projects a particle. `texels_per_pixel` is the target's resolution.
 fn placed_sprite(particle: Particle, texels_per_pixel: f32) -> PlacedSprite {
     let centre = (view.view_from_world * vec4f(particle.position_radius.xyz, 1.0)).xyz;
     var radius = particle.position_radius.w * system.size;
@@ -96,7 +97,7 @@ fn placed_sprite(particle: Particle, texels_per_pixel: f32) -> PlacedSprite {
     }
     let view_depth = -centre.z;
     let angle = particle.rotation_amount_frame_age.x;
-    // A sprite is seen until its far side has passed the near plane; its fade goes by that side.
+    // A sprite is visible until its far side has passed the near plane, so the near fade uses that side.
     let half_depth = sprite_thickness(radius);
     let back = view_depth + half_depth;
     let amount = saturate(particle.rotation_amount_frame_age.y) * system.opacity
@@ -104,8 +105,8 @@ fn placed_sprite(particle: Particle, texels_per_pixel: f32) -> PlacedSprite {
     let frame = particle.rotation_amount_frame_age.z;
     let age = particle.rotation_amount_frame_age.w;
 
-    // A host's own buffer may hold anything: the comparisons are false for NaN, and what is beyond LARGEST has no place in a
-    // picture.
+    // A host's own buffer may contain anything. The comparisons are false for NaN, and numbers beyond LARGEST are not
+    // drawn.
     let finite = dot(abs(centre), vec3f(1.0)) + radius + abs(angle) + abs(frame) + abs(age) < LARGEST;
     let in_view = back > view.near && view_depth - half_depth < view.far;
     let shown = finite && in_view && radius > 0.0 && amount > 0.0;
@@ -124,7 +125,8 @@ fn placed_sprite(particle: Particle, texels_per_pixel: f32) -> PlacedSprite {
 
 const ALL_FILLED: vec4u = vec4u(0xffffffffu);
 
-// What is not clear of a frame at a sprite's mip level. FilledTexel in src/assets/sprite/filled.rs.
+// Part of a frame that is not clear, at a sprite's mip level: a bit for each cell in xy, the extent in z. FilledTexel in
+// src/assets/sprite/filled.rs.
 fn filled_texel(frame: i32, lod: f32) -> vec4u {
     if DEBUG_SPRITE || MOTION {
         return ALL_FILLED;
@@ -133,7 +135,7 @@ fn filled_texel(frame: i32, lod: f32) -> vec4u {
     return textureLoad(sprite_filled, vec2i(level, frame + select(0, i32(system.frame_count), SIX_WAY)), 0);
 }
 
-// How far a sprite of these frames reaches from its middle, as a share of half its side: left, down, right, up.
+// Extent of a sprite with these frames from its centre to the left, bottom, right and top, as shares of half its side.
 fn sprite_reach(frames: FlipbookFrames, lod: f32) -> vec4f {
     let reach = unpack4x8unorm(filled_texel(frames.first, lod).z);
     if frames.blend > 0.0 {
@@ -142,7 +144,7 @@ fn sprite_reach(frames: FlipbookFrames, lod: f32) -> vec4f {
     return reach;
 }
 
-// `target_from_ndc` moves the picture's NDC to the target's.
+// Computes one corner of a sprite. `target_from_ndc` maps the view's NDC to the target's.
 fn sprite_vertex(
     particle: Particle,
     corner_index: u32,
@@ -174,7 +176,7 @@ fn sprite_vertex(
             place.x * out.rotation.x - place.y * out.rotation.y,
             place.x * out.rotation.y + place.y * out.rotation.x,
         );
-        // A slab whose middle has passed the near plane is drawn on that.
+        // A slab whose centre has passed the near plane is drawn on the near plane.
         out.view_position = vec3f(centre.xy + turned * sprite.centre_radius.w, min(centre.z, -view.near));
         clip = view.clip_from_view * vec4f(out.view_position, 1.0);
         out.uv = sprite_uv(place);

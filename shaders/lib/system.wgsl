@@ -1,4 +1,5 @@
-// One particle system in this view. Mirrors SystemUniform in src/formula/uniforms.rs; the fields named like settings are those settings.
+// One particle system in this view. Mirrors SystemUniform in src/formula/uniforms.rs. Fields named like settings have
+// the values of those settings.
 
 struct System {
     // World space.
@@ -6,9 +7,9 @@ struct System {
     // View depth of the box's near side.
     bounds_near: f32,
     bounds_max: vec3f,
-    // View depths between which most of the smoke lies.
+    // Most of the smoke lies between this view depth and smoke_far.
     smoke_near: f32,
-    // View space: the middle of the smoke. Light is flattened to the plane through it that faces the viewer.
+    // View space: the middle of the smoke. Light is evaluated on the plane through it that faces the viewer.
     centre: vec3f,
     smoke_far: f32,
     scatter_colour: vec3f,
@@ -22,7 +23,7 @@ struct System {
     target_size: vec2f,
     // Pixels per reduced texel.
     scale: f32,
-    // Depths beyond this look alike to the system: the far side of the box plus the length of the fade.
+    // Depths beyond this are equivalent for the system: the far side of the box plus the length of the fade.
     depth_limit: f32,
     sprite_size: f32,
     frame_count: f32,
@@ -41,7 +42,7 @@ struct System {
     size: f32,
     motion: f32,
     age_colour: f32,
-    // How many mip levels the detail map is smaller than the sprite.
+    // Number of mip levels by which the detail map is smaller than the sprite.
     detail_lod: f32,
     billboard_radius: f32,
     billboard_density: f32,
@@ -51,14 +52,14 @@ struct System {
     march_steps: u32,
     noise_octaves: u32,
     depth_weight: f32,
-    // From the eye to the noise's origin, metres, within one tile of it.
+    // Position of the eye minus the rise of the noise, metres, modulo one tile.
     noise_offset: vec3f,
-    // Metres behind the scene that are still seen: of the curve `always`.
+    // Metres behind the scene at which sprites still show, under the curve `always`.
     fade_through: f32,
     // Linear RGB of smoke that is lit by six-way maps.
     six_way_colour: vec3f,
     six_way_anisotropy: f32,
-    // As depth_limit, for what there is to see of the smoke: it does not jump with the box.
+    // Like depth_limit, but from the visible smoke: it does not jump with the box.
     guide_limit: f32,
     padding0: f32,
     padding1: f32,

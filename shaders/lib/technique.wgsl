@@ -1,4 +1,4 @@
-// How a sprite keeps from cutting into the scene: the formulas of the techniques. docs/techniques.md compares them.
+// Formulas of the techniques, by which sprites meet the scene. docs/techniques.md compares them.
 
 const TECHNIQUE_HARD: u32 = 0u;
 const TECHNIQUE_SOFT: u32 = 1u;
@@ -10,27 +10,27 @@ const TECHNIQUE_DENSITY: u32 = 6u;
 const TECHNIQUE_VOLUMETRIC_HARD: u32 = 7u;
 const TECHNIQUE_VOLUMETRIC_SOFT: u32 = 8u;
 
-// 1 in front of the scene or on it, 0 behind it: what the hardware's depth test does. (NV 3)
+// 1 in front of the scene or on it, 0 behind it: the result of the hardware's depth test. (NV 3)
 fn hard_fade(distance: f32) -> f32 {
     return select(0.0, 1.0, distance >= 0.0);
 }
 
-// View depth of a texel of a depth sprite: `offset` -1..1 is how far it stands out towards the viewer, in radii.
-// (MS "2D particles with depth")
+// View depth of a texel that is displaced towards the viewer by `offset` radii, -1..1. (MS "2D particles with depth")
 fn depth_sprite_depth(view_depth: f32, offset: f32, radius: f32) -> f32 {
     return view_depth - offset * radius;
 }
 
-// The stretch of a ray inside a sphere, cut at the near plane and at the scene. All distances along the ray, metres.
+// Part of a ray inside a sphere, clipped at the near plane and at the scene. All distances are along the ray, metres.
 struct RayInterval {
     enter: f32,
-    // leave <= enter: there is nothing.
+    // The interval is empty if leave <= enter.
     leave: f32,
-    // From the middle of the sphere to the nearest point of the ray's line.
+    // Vector from the centre of the sphere to the nearest point of the ray's line.
     axis: vec3f,
 }
 
-// `direction` is of unit length; `near` and `scene` are distances along the ray. w = sqrt(r² - q²), BLOG 2.
+// Intersects a ray of unit length with a sphere. `near` and `scene` are distances along the ray. Half the chord is w =
+// sqrt(r² - q²). (BLOG 2)
 fn ray_sphere(origin: vec3f, direction: vec3f, centre: vec3f, radius: f32, near: f32, scene: f32) -> RayInterval {
     let to_centre = centre - origin;
     let middle = dot(to_centre, direction);
@@ -39,56 +39,58 @@ fn ray_sphere(origin: vec3f, direction: vec3f, centre: vec3f, radius: f32, near:
     return RayInterval(max(middle - half_chord, near), min(middle + half_chord, scene), axis);
 }
 
-// Umenhoffer's spherical billboard: a = 1 - exp(-density · (1 - q/r) · Δs), Δs the stretch inside the sphere that near
-// plane and scene leave. (BLOG 2)
+// Umenhoffer's spherical billboard: a = 1 - exp(-density · (1 - q/r) · Δs), where Δs is the length of the ray inside
+// the sphere, between near plane and scene. (BLOG 2)
 fn spherical_billboard_amount(density: f32, axis_distance: f32, radius: f32, stretch: f32) -> f32 {
     let inwards = saturate(1.0 - axis_distance / max(radius, 1.0e-6));
     return 1.0 - exp(-density * inwards * max(stretch, 0.0));
 }
 
-// How much of a slab, a radius before and behind the sprite, lies between near plane and scene, metres.
+// Thickness of the slab between near plane and scene, metres. The slab extends one radius in front of the sprite and
+// one behind it.
 fn density_thickness(view_depth: f32, radius: f32, near: f32, scene: f32) -> f32 {
     return max(min(scene, view_depth + radius) - max(near, view_depth - radius), 0.0);
 }
 
-// The share of that slab which lies behind the near plane.
+// Share of that slab that lies beyond the near plane.
 fn slab_share(view_depth: f32, radius: f32, near: f32) -> f32 {
     return saturate((view_depth + radius - near) / max(2.0 * radius, 1.0e-6));
 }
 
-// The sprite's alpha is a density: a = 1 - exp(-density · thickness). (BLOG 3)
+// Amount of a slab, with the sprite's alpha as density: a = 1 - exp(-density · thickness). (BLOG 3)
 fn density_amount(density: f32, thickness: f32) -> f32 {
     return 1.0 - exp(-density * thickness);
 }
 
-// Falloff of a volume from its middle; `place` is -1..1 in the sphere. (MS "March", step 3)
+// Falloff of a volume from its centre. `place` is the position in the sphere, -1..1. (MS "March", step 3)
 fn volumetric_falloff(place: vec3f) -> f32 {
     return saturate(1.0 - dot(place, place));
 }
 
-// Density of a volume, 0..1: the noise, eaten away from the outside in. (MS "March", steps 1 and 3)
+// Density of a volume, 0..1: noise that is eroded from the outside in. (MS "March", steps 1 and 3)
 fn volumetric_density(noise: f32, falloff: f32) -> f32 {
     return saturate(2.0 * noise - 1.0 + falloff) * falloff;
 }
 
-// Which way a place in a volume faces, in view space: out of the sphere and down the noise's density. What faces away is
-// turned side-on, so that steps and sprites behind each other never cancel. (MS "March", step 2)
+// View-space normal at a point of a volume: out of the sphere and down the noise's density. Normals that face away are
+// turned sideways, so that steps and sprites behind each other never cancel. (MS "March", step 2)
 fn volumetric_normal(place: vec3f, gradient: vec3f) -> vec3f {
     let normal = place + 2.0 * gradient;
     return normalize(vec3f(normal.xy, max(normal.z, 0.1)));
 }
 
-// Lower and upper bound of a sphere's picture on one axis, as position / depth, cut at the near plane; `centre` is
-// (position on the axis, depth). (Mara and McGuire, "2D polyhedral bounds of a clipped, perspective-projected 3D
+// Lower and upper bound of a sphere's projection on one axis, as position / depth, clipped at the near plane. `centre`
+// is (position on the axis, depth). (Mara and McGuire, "2D polyhedral bounds of a clipped, perspective-projected 3D
 // sphere", JCGT 2013)
 fn sphere_axis_bounds(centre: vec2f, radius: f32, near: f32) -> vec2f {
     let clipped = centre.y - radius < near;
-    // The disc that the near plane cuts out of the sphere.
+    // Half the width of the disc that the near plane cuts out of the sphere.
     let cut = sqrt(max(radius * radius - (near - centre.y) * (near - centre.y), 0.0));
     var bounds = vec2f(centre.x - cut, centre.x + cut) / near;
     let tangent_squared = dot(centre, centre) - radius * radius;
     if tangent_squared > 0.0 {
-        // The direction of the middle, turned to either tangent; the tangent points lie `cosine` of the way out.
+        // Rotates the direction of the centre to either tangent. The tangent points are at `cosine` times the distance
+        // of the centre.
         let distance = length(centre);
         let cosine = sqrt(tangent_squared) / distance;
         let sine = radius / distance;

@@ -1,9 +1,9 @@
-// From linear HDR to what a screen shows: the demo program's taste, never done to a host's picture.
+// Tonemap of the demo program: linear HDR to sRGB code. A host's image is never tonemapped.
 
 #import "lib/colour.wgsl"
 #import "lib/hash.wgsl"
 
-// The ACES film curve. (Hill, "BakingLab", 2016: a fit of the reference and output transforms)
+// ACES tonemap curve. (Hill, "BakingLab", 2016: a fit of the reference and output transforms)
 fn film(colour: vec3f) -> vec3f {
     let input = mat3x3f(0.59719, 0.076, 0.0284, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777);
     let output = mat3x3f(1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605, 1.07602);
@@ -12,13 +12,13 @@ fn film(colour: vec3f) -> vec3f {
     return saturate(output * fitted);
 }
 
-// sRGB code of light, seen with an exposure that multiplies it.
+// sRGB code of tonemapped light. `exposure` multiplies the light first.
 fn developed(colour: vec3f, exposure: f32) -> vec3f {
     return gamma_target_colour(film(colour * exposure));
 }
 
-// What is added to code before it is rounded to 8 bits, so that slow gradients do not band: triangular, up to half a step either
-// way.
+// Dither to add before rounding to 8 bits, so that slow gradients do not band: triangular noise, within half a step
+// either way.
 fn dither(at: vec2u) -> f32 {
     let hash = pcg3d(vec3u(at, 0u));
     return (unit(hash.x) - unit(hash.y)) * (0.5 / 255.0);

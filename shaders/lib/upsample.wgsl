@@ -1,30 +1,32 @@
-// From the reduced target to full resolution: the weights of the texels round a pixel.
+// Upsampling of the reduced target to full resolution: weights of the texels around a pixel.
 
 const UPSAMPLE_GUIDED: u32 = 0u;
 const UPSAMPLE_JOINT_BILATERAL: u32 = 1u;
 const UPSAMPLE_NEAREST_DEPTH: u32 = 2u;
 const UPSAMPLE_BILINEAR: u32 = 3u;
 
-// Depths that differ by less than this share of the pixel's own count as one surface: a floor seen at a grazing angle
-// stays smooth, a fence a metre before a wall does not.
+// Depths that differ by less than this share of the pixel's depth count as one surface: a floor at a grazing angle
+// stays smooth, a fence one metre in front of a wall stays separate.
 const SAME_SURFACE: f32 = 0.1;
 
-// Depths within this share of the length of a soft fade let as much smoke be seen.
+// Depths that differ by less than this share of a soft fade's length show about the same amount of smoke.
 const SAME_SMOKE: f32 = 0.4;
 
-// True where smoke hardly depends on depth: bilinear weights do. `fade`: metres that a soft fade is long.
+// True if smoke hardly depends on depth here, so that bilinear weights suffice. `fade` is the length of a soft fade,
+// metres.
 fn is_smooth(depths: vec4f, depth: f32, fade: f32) -> bool {
     let low = min(min(min(depths.x, depths.y), min(depths.z, depths.w)), depth);
     let high = max(max(max(depths.x, depths.y), max(depths.z, depths.w)), depth);
     return high - low < SAME_SMOKE * fade;
 }
 
-// Weights of the texels (0,0) (1,0) (0,1) (1,1). `fraction` is the pixel's place between them, `depths` their view
-// depths, `depth` the pixel's own.
-// nearest_depth: bilinear if all four lie on the pixel's surface, else the closest alone. (Jansen and Bavoil, "Fast
-// rendering of opacity-mapped particles using DirectX 11 tessellation and mixed resolutions", 2011)
-// joint_bilateral: bilinear times a Gaussian of the depth difference. (Kopf et al., "Joint bilateral upsampling", 2007)
-// guided: bilinear, where is_smooth; else a GuidedFit.
+// Weights of the texels (0,0) (1,0) (0,1) (1,1). `fraction` is the pixel's position between them, `depths` are their
+// view depths, `depth` is the pixel's.
+// - nearest_depth: bilinear if all four are on the pixel's surface, else the closest texel alone. (Jansen and Bavoil,
+//   "Fast rendering of opacity-mapped particles using DirectX 11 tessellation and mixed resolutions", 2011)
+// - joint_bilateral: bilinear times a Gaussian of the depth difference. (Kopf et al., "Joint bilateral upsampling",
+//   2007)
+// - guided: bilinear, for pixels where is_smooth() holds; the others use a GuidedFit.
 fn upsample_weights(mode: u32, fraction: vec2f, depths: vec4f, depth: f32) -> vec4f {
     let g = 1.0 - fraction;
     let bilinear = vec4f(g.x * g.y, fraction.x * g.y, g.x * fraction.y, fraction.x * fraction.y);
@@ -33,11 +35,11 @@ fn upsample_weights(mode: u32, fraction: vec2f, depths: vec4f, depth: f32) -> ve
     }
     let difference = abs(depths - depth);
     if mode == UPSAMPLE_JOINT_BILATERAL {
-        // A depth SAME_SURFACE away is two sigma out.
+        // A depth difference of SAME_SURFACE is two sigma.
         let sigmas = difference * (2.0 / (SAME_SURFACE * max(depth, 1.0e-6)));
         let weights = bilinear * exp(-0.5 * sigmas * sigmas);
         let total = weights.x + weights.y + weights.z + weights.w;
-        // No texel near the pixel's surface: the closest stands in, as below.
+        // If no texel is near the pixel's surface, the closest one is used below.
         if total > 1.0e-3 {
             return weights / total;
         }
@@ -51,9 +53,9 @@ fn upsample_weights(mode: u32, fraction: vec2f, depths: vec4f, depth: f32) -> ve
     return vec4f(0.0, 0.0, 0.0, 1.0);
 }
 
-// What there is at a pixel if smoke is linear in place and depth, by least squares over the texels around it. Places are
-// from the pixel: x and y in texels, z the texel's depth less the pixel's. Sums of weight times what is named; a sum needs
-// no array, and a GPU that steps over a branch's every instruction steps over one texel's.
+// Least-squares fit over the texels around a pixel, for smoke that is linear in position and depth. Positions are
+// relative to the pixel: x and y in texels, z the texel's depth minus the pixel's. The fields are weighted sums: they
+// need no array, and a GPU that steps through the instructions of a skipped loop steps through those of one texel only.
 // (He, Sun and Tang, "Guided image filtering", 2010, with the scene's depth as the guide)
 struct GuidedFit {
     total: f32,
@@ -66,18 +68,18 @@ struct GuidedFit {
     x_value: vec4f,
     y_value: vec4f,
     z_value: vec4f,
-    // What texels hold, and how far in depth they are.
+    // Range of the texels' values, and of their depth differences.
     low: vec4f,
     high: vec4f,
     nearest: f32,
     farthest: f32,
 }
 
-// Texels count by distance, two of them away to nothing, and by depth: SAME_SURFACE is two sigma out.
+// Weight of a texel. It falls to zero two texels away, and with depth as a Gaussian of which SAME_SURFACE is two sigma.
 fn guided_weight(place: vec3f, depth: f32) -> f32 {
     let tent = max(1.0 - abs(place.xy) * 0.5, vec2f(0.0));
     let sigmas = place.z * (2.0 / (SAME_SURFACE * max(depth, 1.0e-6)));
-    // Never nothing: a pixel may lie on a surface that no texel has seen.
+    // Never zero by depth, because a pixel may be on a surface that no texel has seen.
     return tent.x * tent.x * tent.y * tent.y * (exp(-0.5 * sigmas * sigmas) + 1.0e-4);
 }
 
@@ -99,24 +101,24 @@ fn with_texel(fit: GuidedFit, place: vec3f, weight: f32, value: vec4f) -> Guided
     );
 }
 
-// `fade`: metres that a soft fade is long.
+// Value of the fit at the pixel. `fade` is the length of a soft fade, metres.
 fn fitted_value(fit: GuidedFit, fade: f32) -> vec4f {
     let mean = fit.place / fit.total;
     let value = fit.value / fit.total;
-    // Covariances. Slopes that little speaks for are held down.
+    // Covariances. The added terms damp slopes that the texels hardly determine.
     let held = 0.05 * fade;
     let square = fit.squares / fit.total - mean * mean + vec3f(0.02, 0.02, held * held);
     let product = fit.products / fit.total - mean.xxy * mean.yzz;
     let a = vec3f(square.x, product.x, product.y);
     let b = vec3f(product.x, square.y, product.z);
     let c = vec3f(product.y, product.z, square.z);
-    // The pixel, no nearer and no farther than its texels.
+    // Depth of the pixel, clamped to the range of its texels.
     let at = vec3f(0.0, 0.0, clamp(0.0, fit.nearest, fit.farthest)) - mean;
     let way = vec3f(dot(cross(b, c), at), dot(cross(c, a), at), dot(cross(a, b), at)) / dot(a, cross(b, c));
     let fitted = value
         + (fit.x_value / fit.total - value * mean.x) * way.x
         + (fit.y_value / fit.total - value * mean.y) * way.y
         + (fit.z_value / fit.total - value * mean.z) * way.z;
-    // A line goes on beyond its points, smoke does not.
+    // A line extends beyond its points, smoke does not.
     return clamp(fitted, fit.low, fit.high);
 }

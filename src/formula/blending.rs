@@ -1,10 +1,10 @@
-//! What a lit fragment hands to the blend unit. `shaders/lib/blending.wgsl`.
+//! Output of lit fragments to the blend unit. WGSL: `shaders/lib/blending.wgsl`.
 
 use glam::{Vec3, Vec4};
 
 use crate::settings::BlendMode;
 
-/// What a forward fragment hands to its blend: premultiplied for alpha and additive, a filter colour for multiply.
+/// Output of a forward fragment: premultiplied for alpha and additive, a filter colour for multiply.
 pub fn forward_fragment(mode: BlendMode, light: Vec3, coverage: f32) -> Vec4 {
     match mode {
         BlendMode::Alpha => light.extend(1.0) * coverage,

@@ -1,39 +1,39 @@
-//! Light and its sRGB code; the colours of overdraw. `shaders/lib/colour.wgsl`.
+//! sRGB encoding, luminance, and the colour scale of overdraw. WGSL: `shaders/lib/colour.wgsl`.
 
 use glam::Vec3;
 
 use super::saturate;
 
-/// sRGB 0..1 to linear. (IEC 61966-2-1)
+/// Decodes sRGB, 0..1, to linear. (IEC 61966-2-1)
 pub fn linear_from_srgb(encoded: f32) -> f32 {
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
-/// Linear to sRGB 0..1. (IEC 61966-2-1)
+/// Encodes linear light as sRGB, 0..1. (IEC 61966-2-1)
 pub fn srgb_from_linear(linear: f32) -> f32 {
     if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// How bright linear RGB is to the eye. (ITU-R BT.709)
+/// Luminance of linear RGB. (ITU-R BT.709)
 pub fn luminance(light: Vec3) -> f32 {
     light.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
-/// What is written to a target that holds sRGB code without the hardware knowing it: linear light clamped to what such a
-/// target can show, and encoded.
+/// Colour for a target that stores sRGB code in a format that the hardware treats as linear: linear light, clamped to
+/// 0..1 and encoded.
 pub fn gamma_target_colour(light: Vec3) -> Vec3 {
     light.clamp(Vec3::ZERO, Vec3::ONE).map(srgb_from_linear)
 }
 
-/// Half of what a half float holds.
+/// Upper limit of light in half floats: half of the largest half float.
 pub const BRIGHTEST: f32 = 32752.0;
 
-/// Light that a target of half floats can hold.
+/// Light, limited to what a target of half floats can store.
 pub fn bounded_light(light: Vec3) -> Vec3 {
     light.min(Vec3::splat(BRIGHTEST))
 }
 
-/// Black, blue, green, yellow, red, white at 0, 4, 8, 16, 32, 64 layers.
+/// Colour scale of overdraw: black, blue, green, yellow, red, white at 0, 4, 8, 16, 32, 64 layers.
 pub fn overdraw_colour(layers: f32) -> Vec3 {
     let heat = if layers > 4.0 { layers.log2() - 1.0 } else { layers * 0.25 };
     let colours = [Vec3::ZERO, Vec3::Z, Vec3::Y, Vec3::new(1.0, 1.0, 0.0), Vec3::X, Vec3::ONE];

@@ -1,37 +1,39 @@
-//! Scene depth as linear view depth, metres. `shaders/lib/depth.wgsl`.
+//! Scene depth as linear view depth, metres. WGSL: `shaders/lib/depth.wgsl`.
 
 use glam::{IVec2, Mat4, Vec4};
 
 use crate::error::FieldError;
 use crate::settings::DepthDownsample;
 
-/// View depth given to pixels where the scene has no surface, metres. Finite, so that differences stay finite.
+/// View depth of pixels without a surface, metres. Finite, so that depth differences stay finite.
 pub const SKY_VIEW_DEPTH: f32 = 1.0e6;
 
-/// How a depth buffer encodes distance. Read off the projection, so that it can never disagree with it.
+/// Encoding of distance in a depth buffer. It is derived from the projection, so the two cannot disagree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthConvention {
-    /// View depth of the near plane, metres. Positive; for an orthographic view it may be anything.
+    /// View depth of the near plane, metres. Positive for a perspective view; any sign for an orthographic one.
     pub near: f32,
     /// View depth of the far plane, metres; infinite for an infinite projection.
     pub far: f32,
     /// True if the near plane is stored as 1 and the far plane as 0.
     pub reversed: bool,
-    /// True if depth is linear in the distance.
+    /// True if depth is linear in distance.
     pub orthographic: bool,
 }
 
-/// A far plane this many times as far as the near plane is as good as infinitely far: f32 cannot tell.
+/// Rounding can put an infinite far plane at a large negative distance. Beyond this many times the near plane's
+/// distance, it counts as infinite.
 const FARTHEST: f64 = 1.0e6;
 
 impl DepthConvention {
-    /// Reads the convention off a projection with w = −z (perspective) or w = 1 (orthographic).
+    /// Derives the convention from a projection with w = −z (perspective) or w = 1 (orthographic).
     ///
     /// # Errors
-    /// When no near plane is in front of a far plane, or a perspective's is not in front of the viewer.
+    /// Fails if the near plane is not in front of the far plane, or if the near plane of a perspective is not in front
+    /// of the viewer.
     pub fn from_clip_from_view(clip_from_view: &Mat4) -> Result<Self, FieldError> {
         let orthographic = clip_from_view.z_axis.w == 0.0;
-        // In f64: the effective far plane hides in the last bits of a matrix entry close to 1.
+        // In f64, because the far plane depends on the last bits of a matrix entry close to 1.
         let (scale, offset) = (f64::from(clip_from_view.z_axis.z), f64::from(clip_from_view.w_axis.z));
         let view_depth_at = |ndc_depth: f64| {
             if orthographic { (offset - ndc_depth) / scale } else { offset / (ndc_depth + scale) }
@@ -39,7 +41,7 @@ impl DepthConvention {
         let (at_zero, at_one) = (view_depth_at(0.0), view_depth_at(1.0));
         let reversed = if orthographic { at_zero > at_one } else { at_zero.abs() > at_one.abs() };
         let (near, far) = if reversed { (at_one, at_zero) } else { (at_zero, at_one) };
-        // Rounding may leave a far plane at infinity, or just beyond: at a large negative distance.
+        // Rounding may leave a far plane at infinity or just beyond, which is at a large negative distance.
         let is_infinite = far.is_infinite() || (!orthographic && far < -FARTHEST * near);
         let far = if is_infinite { f64::INFINITY } else { far };
         if !(near.is_finite() && near < far && (orthographic || near > 0.0)) {
@@ -50,9 +52,9 @@ impl DepthConvention {
     }
 }
 
-/// Coefficients of [`view_depth_from_ndc_depth`] for a depth buffer 0..1.
+/// Coefficients of [`view_depth_from_ndc_depth`] for a depth buffer with values 0..1.
 ///
-/// The projection stores, at view depth z, with near n and far f:
+/// The projection stores depth d at view depth z, with near plane n and far plane f:
 /// - standard: d = f·(z − n) / (z·(f − n)), so z = n·f / (f − d·(f − n)); NV prints (f + n), which is wrong
 /// - reversed: d' = 1 − d, so z = n·f / (n + d'·(f − n))
 /// - infinite: the limit f → ∞, so z = n / (1 − d), or n / d' when reversed
@@ -62,7 +64,7 @@ pub fn depth_coefficients(convention: &DepthConvention) -> Vec4 {
     let [a, b, c, d] = match (convention.orthographic, convention.reversed) {
         (false, false) if f.is_infinite() => [n, 0.0, 1.0, -1.0],
         (false, true) if f.is_infinite() => [n, 0.0, 0.0, 1.0],
-        // Divided through by f: keeps all four near 1.
+        // Divided by f, which keeps all four near 1.
         (false, false) => [n, 0.0, 1.0, -(f - n) / f],
         (false, true) => [n, 0.0, n / f, (f - n) / f],
         (true, false) => [n, f - n, 1.0, 0.0],
@@ -71,19 +73,19 @@ pub fn depth_coefficients(convention: &DepthConvention) -> Vec4 {
     Vec4::new(a as f32, b as f32, c as f32, d as f32)
 }
 
-/// View depth = (c.x + c.y·d) / (c.z + c.w·d); where the denominator vanishes there is sky.
+/// View depth = (c.x + c.y·d) / (c.z + c.w·d). Where the denominator vanishes, it is [`SKY_VIEW_DEPTH`].
 pub fn view_depth_from_ndc_depth(ndc_depth: f32, coefficients: Vec4) -> f32 {
     let numerator = coefficients.x + coefficients.y * ndc_depth;
     let denominator = coefficients.z + coefficients.w * ndc_depth;
     if denominator * SKY_VIEW_DEPTH > numerator { numerator / denominator } else { SKY_VIEW_DEPTH }
 }
 
-/// A linear target's texel: anything from [`SKY_VIEW_DEPTH`] up is the sky, and so is NaN.
+/// View depth of a linear target's texel. Values from [`SKY_VIEW_DEPTH`] up are sky, and so is NaN.
 pub fn view_depth_from_linear(texel: f32) -> f32 {
     if texel < SKY_VIEW_DEPTH { texel } else { SKY_VIEW_DEPTH }
 }
 
-/// True if the reduced texel keeps the farthest depth under it, false for the nearest.
+/// True if the reduced texel keeps the farthest depth under it, false if it keeps the nearest.
 pub fn depth_downsample_keeps_farthest(mode: DepthDownsample, texel: IVec2) -> bool {
     match mode {
         DepthDownsample::Checkerboard => (texel.x + texel.y) & 1 == 0,
@@ -99,7 +101,7 @@ mod tests {
     };
     use glam::{Mat4, Vec3};
 
-    /// Projections of every convention; reversed is depth' = 1 − depth.
+    /// Projections of every convention. Reversed means depth' = 1 − depth.
     fn projections() -> [Mat4; 6] {
         let reverse = Mat4::from_cols(Vec4::X, Vec4::Y, Vec4::new(0.0, 0.0, -1.0, 0.0), Vec4::new(0.0, 0.0, 1.0, 1.0));
         let (standard, flat) = (perspective(1.0, 1.5, 0.25, 60.0), orthographic(-4.0, 4.0, -3.0, 3.0, 0.25, 60.0));
@@ -113,7 +115,7 @@ mod tests {
         ]
     }
 
-    /// Largest relative error over 0.3..50 m when a depth buffer is read back with coefficients `f` makes.
+    /// Largest relative error over 0.3..50 m when a depth buffer is read back with the coefficients that `f` returns.
     fn error(projection: &Mat4, f: impl Fn(&DepthConvention) -> Vec4) -> f32 {
         let coefficients = f(&DepthConvention::from_clip_from_view(projection).unwrap());
         let depths = (0..100).map(|i| 0.3 * (50.0_f32 / 0.3).powf(i as f32 / 99.0));
@@ -125,22 +127,22 @@ mod tests {
     }
 
     #[test]
-    fn every_convention_reads_back_what_it_stored() {
+    fn every_depth_convention_round_trips() {
         for projection in projections() {
-            // At 50 m a 0..1 buffer with a near plane of 0.25 m has steps of 6e-8 · 50² / 0.25 m, a part in 80 000.
+            // At 50 m a 0..1 buffer with a near plane at 0.25 m has steps of 6e-8 · 50² / 0.25 m, 1 part in 80 000.
             assert!(error(&projection, depth_coefficients) < 3e-5, "{projection}");
         }
     }
 
     #[test]
-    fn the_printed_formula_of_nv_fails() {
+    fn formula_printed_by_nvidia_is_wrong() {
         // z = n·f / (f − d·(f + n)): the sign of n is wrong.
         let printed = |c: &DepthConvention| Vec4::new(c.near, 0.0, 1.0, -(c.far + c.near) / c.far);
         assert!(error(&projections()[0], printed) > 0.1);
     }
 
     #[test]
-    fn where_nothing_was_drawn_there_is_sky() {
+    fn cleared_depth_reads_as_sky() {
         for projection in [perspective_infinite(1.0, 1.5, 0.25), perspective_infinite_reverse(1.0, 1.5, 0.25)] {
             let convention = DepthConvention::from_clip_from_view(&projection).unwrap();
             let cleared = if convention.reversed { 0.0 } else { 1.0 };

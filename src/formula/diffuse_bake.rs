@@ -1,4 +1,4 @@
-//! Diffuse light by normal, baked: cubemap, motif and spherical harmonics. `shaders/lib/diffuse_bake.wgsl`.
+//! Baked diffuse light by normal: cubemap, motif and spherical harmonics. WGSL: `shaders/lib/diffuse_bake.wgsl`.
 
 use glam::{Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 
@@ -6,8 +6,9 @@ use super::ramp::sample_ramp_2d;
 use super::texture::Texture2d;
 use crate::settings::{DiffuseMode, RampFilter};
 
-/// Side and layers of the texture that a mode bakes into; `None` for those that bake nothing. A ramp's gradient is broad: 32
-/// texels across 90 degrees resolve it; the motif has to hold the rim, where its texels shrink, and gets twice that.
+/// Side and layer count of the texture that a mode bakes into; `None` for modes that bake nothing. A ramp's gradient is
+/// broad, so 32 texels across 90 degrees resolve it. The motif gets twice that, because a sphere is foreshortened at
+/// its rim.
 pub fn baked_size_and_layers(mode: DiffuseMode) -> Option<(u32, u32)> {
     match mode {
         DiffuseMode::Cubemap => Some((32, 6)),
@@ -16,16 +17,16 @@ pub fn baked_size_and_layers(mode: DiffuseMode) -> Option<(u32, u32)> {
     }
 }
 
-/// A place on a cube's face.
+/// Position on a face of a cube.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CubeCoordinate {
-    /// 0..6: +x −x +y −y +z −z.
+    /// Face 0..6: +x −x +y −y +z −z.
     pub face: i32,
-    /// −1..1 on the face.
+    /// Position on the face, −1..1.
     pub position: Vec2,
 }
 
-/// The direction, not normalised, of a point on a face.
+/// Direction (not normalised) of a point on a face.
 pub fn cube_direction(face: i32, position: Vec2) -> Vec3 {
     let Vec2 { x, y } = position;
     match face {
@@ -38,7 +39,7 @@ pub fn cube_direction(face: i32, position: Vec2) -> Vec3 {
     }
 }
 
-/// The face and point that a direction hits; it need not be normalised.
+/// Face and point that a direction hits. The direction need not be normalised.
 pub fn cube_coordinate(direction: Vec3) -> CubeCoordinate {
     let size = direction.abs();
     let d = direction / size.max_element().max(1.0e-12);
@@ -54,13 +55,13 @@ pub fn cube_coordinate(direction: Vec3) -> CubeCoordinate {
     CubeCoordinate { face, position }
 }
 
-/// The normal seen at a point, −1..1, of a picture of a sphere; outside the disc, that of the nearest rim point.
+/// Normal seen at a point (−1..1) of an image of a sphere. Outside the disc it is the normal of the nearest rim point.
 pub fn motif_normal(position: Vec2) -> Vec3 {
     let square = position.length_squared();
     if square >= 1.0 { (position / square.sqrt()).extend(0.0) } else { position.extend((1.0 - square).sqrt()) }
 }
 
-/// Where a normal is seen in a picture of a sphere, −1..1. Normals that face away look at the rim.
+/// Position (−1..1) of a normal in an image of a sphere. Normals that face away map to the rim.
 pub fn motif_position(normal: Vec3) -> Vec2 {
     if normal.z >= 0.0 {
         return normal.xy();
@@ -68,12 +69,12 @@ pub fn motif_position(normal: Vec3) -> Vec2 {
     normal.xy() / normal.xy().length_squared().max(1.0e-12).sqrt()
 }
 
-/// Baked light, of one face or the motif. `position` is −1..1 on it; the first row is −1.
+/// Samples the baked light of one face or of the motif. `position` is −1..1; the first row is at −1.
 pub fn sample_baked(baked: &impl Texture2d, position: Vec2) -> Vec3 {
     sample_ramp_2d(baked, RampFilter::Bilinear, position * 0.5 + 0.5)
 }
 
-/// The nine real spherical-harmonic basis functions to L2 in a direction, in the order of the coefficients.
+/// The nine real spherical-harmonic basis functions up to L2 in a direction, in the order of the coefficients.
 pub fn spherical_harmonics_basis(n: Vec3) -> [f32; 9] {
     [
         0.282_094_79,
@@ -88,14 +89,14 @@ pub fn spherical_harmonics_basis(n: Vec3) -> [f32; 9] {
     ]
 }
 
-/// Light by normal from nine coefficients, never negative.
+/// Light on a normal from nine coefficients, clamped to 0 or more.
 pub fn spherical_harmonics(coefficients: &[Vec4; 9], n: Vec3) -> Vec3 {
     let basis = spherical_harmonics_basis(n);
     let light: Vec3 = coefficients.iter().zip(basis).map(|(c, b)| c.xyz() * b).sum();
     light.max(Vec3::ZERO)
 }
 
-/// The zonal coefficients to L2 of a function of cos θ: `z[l] = ∫ f(cos θ) Y_l0 dω`.
+/// Zonal coefficients up to L2 of a function of cos θ: `z[l] = ∫ f(cos θ) Y_l0 dω`.
 pub fn zonal_coefficients(f: impl Fn(f32) -> Vec3) -> [Vec3; 3] {
     const STEPS: usize = 256;
     let mut zonal = [Vec3::ZERO; 3];
@@ -111,8 +112,9 @@ pub fn zonal_coefficients(f: impl Fn(f32) -> Vec3) -> [Vec3; 3] {
     zonal
 }
 
-/// Adds one light, seen through a ramp with these zonal coefficients, to the nine of the sum. A zonal function turned to
-/// `direction` has c_lm = √(4π / (2l + 1)) · z_l · Y_lm(direction). (Sloan, "Stupid Spherical Harmonics Tricks", 2008)
+/// Adds one light to the nine coefficients, as seen through a ramp with these zonal coefficients. A zonal function
+/// rotated to `direction` has c_lm = √(4π / (2l + 1)) · z_l · Y_lm(direction). (Sloan, "Stupid Spherical Harmonics
+/// Tricks", 2008)
 pub fn add_light(coefficients: &mut [Vec4; 9], zonal: &[Vec3; 3], direction: Vec3, colour: Vec3) {
     const BAND: [usize; 9] = [0, 1, 1, 1, 2, 2, 2, 2, 2];
     for ((c, basis), band) in coefficients.iter_mut().zip(spherical_harmonics_basis(direction)).zip(BAND) {

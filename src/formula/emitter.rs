@@ -1,4 +1,4 @@
-//! The particles of an emitter: every one a function of seed, birth and time. `shaders/lib/emitter.wgsl`.
+//! Particles of an emitter, each a closed-form function of seed, birth and time. WGSL: `shaders/lib/emitter.wgsl`.
 
 use glam::{UVec3, Vec2, Vec3, Vec3Swizzles, Vec4};
 
@@ -6,11 +6,11 @@ use super::gradient_noise::curl_noise;
 use super::hash::{pcg3d, unit};
 use super::uniforms::EmitterUniform;
 
-/// Numbers of the shapes that particles are born in; any other is a sphere.
+/// Numbers of the birth shapes. Any other number is a sphere.
 const EMITTER_SHAPE_BOX: u32 = 1;
 const EMITTER_SHAPE_DISC: u32 = 2;
 
-/// A particle, in the layout of instances.
+/// Particle in the layout of the instance buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[allow(missing_docs, reason = "documented in WGSL")]
 pub struct Emitted {
@@ -18,18 +18,19 @@ pub struct Emitted {
     pub rotation_amount_frame_age: Vec4,
 }
 
-/// A direction, evenly distributed. Uses y and z, so that x is free for a distance.
+/// Uniformly distributed direction. Uses y and z only, so that x is free for a distance.
 pub fn unit_sphere(random: Vec3) -> Vec3 {
     let z = random.z * 2.0 - 1.0;
     let xy = Vec2::from_angle(random.y * std::f32::consts::TAU) * (1.0 - z * z).sqrt();
     Vec3::new(xy.x, z, xy.y)
 }
 
-/// ∫ e^(−k·s) ds and ∫∫ e^(−k·s) ds over 0..t: what is left of a velocity, and of an acceleration, under drag k.
+/// ∫ e^(−k·s) ds and ∫∫ e^(−k·s) ds over 0..t: the displacement under drag k, per unit of initial velocity and per unit
+/// of constant acceleration.
 pub fn drag_integrals(drag: f32, t: f32) -> Vec2 {
     let x = drag * t;
     if x < 0.5 {
-        // The closed forms cancel near 0; this much of their series is exact to f32 here.
+        // The closed forms cancel near 0. This many terms of their series are exact to f32 here.
         let series = |terms: [f32; 6]| terms.into_iter().rev().fold(1.0, |sum, term| 1.0 - x / term * sum);
         let (reached, approached) = (series([2.0, 3.0, 4.0, 5.0, 6.0, 7.0]), series([3.0, 4.0, 5.0, 6.0, 7.0, 8.0]));
         return Vec2::new(t * reached, 0.5 * t * t * approached);
@@ -38,13 +39,13 @@ pub fn drag_integrals(drag: f32, t: f32) -> Vec2 {
     Vec2::new(reached, (t - reached) / drag)
 }
 
-/// 0..1 with no slope at either end.
+/// Smoothstep: 0..1 with zero slope at both ends.
 pub fn eased(x: f32) -> f32 {
     let s = x.clamp(0.0, 1.0);
     s * s * (3.0 - 2.0 * s)
 }
 
-/// Where in the shape a particle is born, from its middle.
+/// Birth position relative to the centre of the shape, metres.
 pub fn birth_offset(emitter: &EmitterUniform, random: Vec3) -> Vec3 {
     match emitter.shape {
         EMITTER_SHAPE_BOX => (random * 2.0 - 1.0) * emitter.extent,
@@ -57,18 +58,18 @@ pub fn birth_offset(emitter: &EmitterUniform, random: Vec3) -> Vec3 {
     }
 }
 
-/// 0..1, three for each birth and salt.
+/// Three random numbers 0..1 for a birth and a salt.
 pub fn birth_random(index: u32, salt: u32, seed: u32) -> Vec3 {
     let hash = pcg3d(UVec3::new(index, salt, seed));
     Vec3::new(unit(hash.x), unit(hash.y), unit(hash.z))
 }
 
-/// The particle of a birth, counted from the first; of amount 0 where it is not alive.
+/// Particle of birth `number`, counted from the emitter's first. Its amount is 0 if it is not alive.
 pub fn emitted_particle(emitter: &EmitterUniform, number: u32) -> Emitted {
     let index = emitter.first.wrapping_add(number);
     let random = |salt| birth_random(index, salt, emitter.seed);
     let (life, place, motion, look) = (random(0), random(1), random(2), random(3));
-    // Births are jittered within their interval, or a fast emitter would pulse.
+    // Births are jittered within their interval. Without that a fast emitter would pulse.
     let seconds = emitter.since_first - (number as f32 + life.y) / emitter.rate;
     let lifetime = emitter.lifetime * (1.0 + emitter.lifetime_spread * (2.0 * life.x - 1.0));
     if !(0.0..lifetime).contains(&seconds) {
@@ -80,18 +81,18 @@ pub fn emitted_particle(emitter: &EmitterUniform, number: u32) -> Emitted {
     let velocity = emitter.velocity
         + offset.normalize_or_zero() * emitter.burst
         + unit_sphere(motion) * (emitter.velocity_spread * life.z);
-    // v' = drag·(wind − v) + buoyancy, solved: position and spin approach their limits as 1 − e^(−drag·t).
+    // Solution of v' = drag·(wind − v) + buoyancy. Position and spin approach their limits as 1 − e^(−drag·t).
     let Vec2 { x: reached, y: approached } = drag_integrals(emitter.drag, seconds);
     let path = velocity * reached + emitter.wind * (seconds - reached) + emitter.rise * approached;
     let base = emitter.position + offset + path;
 
-    // Swirls grow with age: smoke leaves the source smooth and breaks up on the way.
+    // Swirls grow with age: smoke leaves the source smooth and breaks up later.
     let seed = emitter.seed.wrapping_mul(977);
     let large = curl_noise(base / emitter.turbulence_scale, emitter.phase, seed);
     let small = curl_noise(base * (2.3 / emitter.turbulence_scale), emitter.phase, seed.wrapping_add(5));
     let position = base + (large + small * 0.4) * (emitter.turbulence * age);
 
-    // Growth like diffusion: fast at first.
+    // Grows with the square root of age, like diffusion.
     let radius = emitter.radius_start + (emitter.radius_end - emitter.radius_start) * age.sqrt();
     let fade_in = eased(age / emitter.fade_in.max(1.0e-4));
     let fade_out = eased((1.0 - age) / emitter.fade_out.max(1.0e-4));

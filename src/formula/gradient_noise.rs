@@ -1,25 +1,27 @@
-//! Gradient noise: integer hashes and plain f32 arithmetic only, so that WGSL can do the same. `shaders/lib/gradient_noise.wgsl`.
+//! Gradient noise from integer hashes and plain f32 arithmetic, which WGSL can reproduce. WGSL:
+//! `shaders/lib/gradient_noise.wgsl`.
 
 use glam::{IVec3, UVec3, Vec2, Vec3};
 
 use crate::formula::hash::pcg3d;
 
-/// Noise at a point, and how it changes there.
+/// Noise and its gradient at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
     /// About −1..1, mean 0.
     pub value: f32,
-    /// Change per unit of x, y and z.
+    /// Derivatives along x, y and z.
     pub gradient: Vec3,
 }
 
-/// Gradient noise with a lattice of 1, whose gradients turn by `phase` = (cos, sin): a full turn is a seamless loop in
-/// time that swirls rather than drifts. (Perlin, "Improving noise", 2002; turning: Perlin and Neyret, "Flow noise", 2001)
+/// Gradient noise on a lattice of spacing 1. The lattice gradients rotate with `phase` = (cos, sin): a full turn is a
+/// seamless loop in time that swirls without drifting. (Perlin, "Improving noise", 2002; rotation: Perlin and Neyret,
+/// "Flow noise", 2001)
 pub fn gradient_noise(position: Vec3, phase: Vec2, seed: u32) -> Noise {
     lattice_noise(position, |cell| lattice_gradient(cell, phase, seed))
 }
 
-/// The same, repeating every `period` cells along each axis.
+/// [`gradient_noise`] at phase (1, 0) that repeats every `period` cells along each axis.
 pub fn tiling_noise(position: Vec3, period: u32, seed: u32) -> Noise {
     let period = IVec3::splat(period.max(1) as i32);
     lattice_noise(position, |cell| lattice_gradient(cell.rem_euclid(period), Vec2::X, seed))
@@ -38,7 +40,7 @@ fn lattice_noise(position: Vec3, lattice_gradient: impl Fn(IVec3) -> Vec3) -> No
         let offset = IVec3::new(corner & 1, (corner >> 1) & 1, corner >> 2);
         let lattice = lattice_gradient(cell.wrapping_add(offset));
         let dot = lattice.dot(f - offset.as_vec3());
-        // Weight of the corner on each axis, and its slope.
+        // Weight of the corner along each axis, and its derivative.
         let pick = |axis: usize| {
             if offset[axis] == 1 { (fade[axis], slope[axis]) } else { (1.0 - fade[axis], -slope[axis]) }
         };
@@ -50,7 +52,7 @@ fn lattice_noise(position: Vec3, lattice_gradient: impl Fn(IVec3) -> Vec3) -> No
     Noise { value, gradient }
 }
 
-/// The gradient at a lattice point: two random vectors, one fading into the other as the phase turns.
+/// Gradient at a lattice point: two random vectors, of which the first is weighted by cos and the second by sin.
 pub fn lattice_gradient(at: IVec3, phase: Vec2, seed: u32) -> Vec3 {
     let [first, second] = lattice_gradients(at, seed);
     first * phase.x + second * phase.y
@@ -64,7 +66,8 @@ fn lattice_gradients(at: IVec3, seed: u32) -> [Vec3; 2] {
     [first, second]
 }
 
-/// Gradient noise along a line: neighbours share a lattice cell, which is looked up once.
+/// Gradient noise along a line. The hashes of the current lattice cell are cached, because neighbouring points share
+/// it.
 pub struct NoiseCell {
     seed: u32,
     cell: IVec3,
@@ -72,13 +75,14 @@ pub struct NoiseCell {
 }
 
 impl NoiseCell {
-    /// Of the noise of a seed.
+    /// Creates the noise of a seed.
     pub fn new(seed: u32) -> Self {
         let cell = IVec3::ZERO;
         Self { seed, cell, corners: corners(cell, seed) }
     }
 
-    /// [`gradient_noise`] at the start of a turn, and a quarter later: times cos and sin of the phase they add up to it.
+    /// Returns [`gradient_noise`] at the phases (1, 0) and (0, 1). Weighted by cos and sin of any phase, the two sum to
+    /// the noise at that phase.
     pub fn turning(&mut self, position: Vec3) -> [f32; 2] {
         let cell = position.floor();
         let f = position - cell;
@@ -109,7 +113,8 @@ fn corners(cell: IVec3, seed: u32) -> [[Vec3; 2]; 8] {
     std::array::from_fn(|index| lattice_gradients(cell.wrapping_add(corner(index)), seed))
 }
 
-/// Octaves of [`gradient_noise`]: each of `lacunarity` times the frequency and `gain` times the weight of the last.
+/// Octaves of [`gradient_noise`]. Each has `lacunarity` times the frequency and `gain` times the weight of the one
+/// before.
 pub fn fractal_noise(position: Vec3, phase: Vec2, seed: u32, octaves: u32, lacunarity: f32, gain: f32) -> Noise {
     let (mut frequency, mut weight) = (1.0, 1.0);
     let mut sum = Noise { value: 0.0, gradient: Vec3::ZERO };
@@ -123,8 +128,8 @@ pub fn fractal_noise(position: Vec3, phase: Vec2, seed: u32, octaves: u32, lacun
     sum
 }
 
-/// A divergence-free flow: the curl of three noise fields. Smoke that follows it swirls and never bunches up.
-/// (Bridson, Hourihan and Nordenstam, "Curl-noise for procedural fluid flow", 2007)
+/// Divergence-free flow: the curl of three noise fields. Smoke that follows it swirls and does not bunch up. (Bridson,
+/// Hourihan and Nordenstam, "Curl-noise for procedural fluid flow", 2007)
 pub fn curl_noise(position: Vec3, phase: Vec2, seed: u32) -> Vec3 {
     let x = gradient_noise(position, phase, seed).gradient;
     let y = gradient_noise(position, phase, seed.wrapping_add(1)).gradient;
@@ -145,12 +150,12 @@ mod tests {
     }
 
     #[test]
-    fn the_gradient_is_that_of_the_value() {
+    fn gradient_is_the_derivative_of_the_value() {
         let phase = Vec2::from_angle(0.7);
         for p in points() {
             let noise = gradient_noise(p, phase, 3);
             for axis in Vec3::AXES {
-                // Central differences of f32 noise at step 1/256: error about 1e-3.
+                // Central differences of f32 noise with a step of 1/256 have an error of about 1e-3.
                 let h = 1.0 / 256.0;
                 let ahead = gradient_noise(p + axis * h, phase, 3).value;
                 let behind = gradient_noise(p - axis * h, phase, 3).value;
@@ -161,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_along_a_line_is_the_same() {
+    fn noise_cell_matches_gradient_noise() {
         let mut cell = NoiseCell::new(3);
         let phase = Vec2::from_angle(0.7);
         for p in points() {
@@ -172,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn a_full_turn_is_a_loop() {
+    fn full_turn_of_the_phase_loops_seamlessly() {
         for p in points() {
             let start = gradient_noise(p, Vec2::from_angle(0.0), 1).value;
             let end = gradient_noise(p, Vec2::from_angle(std::f32::consts::TAU), 1).value;
@@ -189,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn curl_noise_has_no_sources() {
+    fn curl_noise_is_divergence_free() {
         let phase = Vec2::X;
         for p in points() {
             let h = 1.0 / 128.0;

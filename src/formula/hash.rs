@@ -1,8 +1,8 @@
-//! Random words from numbers: integer arithmetic only, so that WGSL does the same bit for bit. `shaders/lib/hash.wgsl`.
+//! Integer hashes, the same in WGSL bit for bit. WGSL: `shaders/lib/hash.wgsl`.
 
 use glam::UVec3;
 
-/// Three random words from three. (Jarzynski and Olano, "Hash functions for GPU rendering", 2020, pcg3d)
+/// Hashes three words to three random words. (Jarzynski and Olano, "Hash functions for GPU rendering", 2020, pcg3d)
 pub fn pcg3d(v: UVec3) -> UVec3 {
     let [mut x, mut y, mut z] = v.to_array().map(|c| c.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
     let mix = |x: &mut u32, y: &mut u32, z: &mut u32| {
@@ -16,7 +16,7 @@ pub fn pcg3d(v: UVec3) -> UVec3 {
     UVec3::new(x, y, z)
 }
 
-/// 0..1 from the upper 24 bits of a random word: exact in f32.
+/// Maps the upper 24 bits of a random word to 0..1, exactly in f32.
 pub fn unit(word: u32) -> f32 {
     (word >> 8) as f32 * (1.0 / 16_777_216.0)
 }

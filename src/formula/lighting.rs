@@ -1,4 +1,4 @@
-//! The light of one point of the smoke. `shaders/lib/lighting.wgsl`.
+//! Lighting of a single point of the smoke. WGSL: `shaders/lib/lighting.wgsl`.
 
 use glam::{Vec2, Vec3};
 
@@ -6,7 +6,7 @@ use super::colour::{luminance, srgb_from_linear};
 use super::saturate;
 use super::uniforms::LightUniform;
 
-/// Direction to a light, and what is left of it.
+/// Direction to a light, and its attenuation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSample {
     /// Unit vector towards the light.
@@ -15,19 +15,21 @@ pub struct LightSample {
     pub attenuation: f32,
 }
 
-/// 1 at a light, exactly 0 at its range. (Karis, "Real Shading in Unreal Engine 4", 2013, eq. 9)
+/// Window of a light's range: 1 at the light, exactly 0 at its range. (Karis, "Real Shading in Unreal Engine 4", 2013,
+/// eq. 9)
 pub fn range_window(distance_squared: f32, inverse_range: f32) -> f32 {
     let ratio = distance_squared * inverse_range * inverse_range;
     let window = saturate(1.0 - ratio * ratio);
     window * window
 }
 
-/// Inverse square, softened inside the light's body or the last centimetre, windowed to 0 at the range.
+/// Inverse-square falloff with distance, windowed to 0 at the range. The light's radius, and at least 1 cm, keep it
+/// finite close by.
 pub fn distance_attenuation(distance_squared: f32, inverse_range: f32, radius: f32) -> f32 {
     range_window(distance_squared, inverse_range) / (distance_squared + radius * radius).max(1.0e-4)
 }
 
-/// Direction to the light and what is left of it at `position`, view space.
+/// Direction to the light and its attenuation at `position`, view space.
 pub fn sample_light(light: &LightUniform, position: Vec3) -> LightSample {
     if light.directional > 0.5 {
         return LightSample { direction: -light.direction, attenuation: 1.0 };
@@ -40,50 +42,53 @@ pub fn sample_light(light: &LightUniform, position: Vec3) -> LightSample {
     LightSample { direction, attenuation }
 }
 
-/// Where a normal looks into the diffuse ramp: 0 facing away from the light, 1 facing it. (OTEE "Diffuse lighting")
+/// Lookup coordinate of the diffuse ramp: 0 for a normal that faces away from the light, 1 for one that faces it. (OTEE
+/// "Diffuse lighting")
 pub fn diffuse_coordinate(normal: Vec3, to_light: Vec3) -> f32 {
     saturate(normal.dot(to_light) * 0.5 + 0.5)
 }
 
-/// The way to the viewer from a point of the smoke, view space.
+/// Unit vector from a point of the smoke to the viewer, view space.
 pub fn direction_to_viewer(position: Vec3, orthographic: f32) -> Vec3 {
     if orthographic > 0.5 { Vec3::Z } else { -position / position.length_squared().max(1.0e-12).sqrt() }
 }
 
-/// How far a light shines from behind: 0 from the viewer's side, 1 straight against it. Cubed: smoke that scatters onwards glows
-/// near the light most of all.
+/// Weight of the backlight ramp: 0 for a light on the viewer's side, 1 for a light exactly behind the smoke. Cubed,
+/// because forward scattering is strongest close to the direction of the light.
 pub fn backlight_weight(to_light: Vec3, to_viewer: Vec3) -> f32 {
     let against = saturate(0.5 - 0.5 * to_light.dot(to_viewer));
     against * against * against
 }
 
-/// 0 in thin smoke, 1 in thick: smoothstep(scatter_amount, scatter_amount + scatter_smooth, A).
-/// (OTEE "Soft scattering")
+/// Weight of `ambient_colour`, 0 in thin smoke and 1 in thick: smoothstep(scatter_amount, scatter_amount +
+/// scatter_smooth, A). (OTEE "Soft scattering")
 pub fn soft_scatter_weight(amount: f32, scatter_amount: f32, scatter_smooth: f32) -> f32 {
     let x = saturate((amount - scatter_amount) / scatter_smooth.max(1.0e-4));
     x * x * (3.0 - 2.0 * x)
 }
 
-/// How much of the scene the smoke hides. (OTEE "Diffuse lighting", col.a)
+/// Share of the scene that the smoke hides, 0..1. (OTEE "Diffuse lighting", col.a)
 pub fn coverage(amount: f32, boost: f32) -> f32 {
     saturate(amount * boost)
 }
 
-/// How much of the scene smoke hides where the coverage ramp is this light. Paint is read as it looks, the sRGB code of its
-/// luminance: grey in the middle hides half.
+/// Share of the scene that the smoke hides, read from the coverage ramp. It is the sRGB code of the texel's luminance,
+/// so that a displayed middle grey hides half.
 pub fn painted_coverage(paint: Vec3) -> f32 {
     srgb_from_linear(saturate(luminance(paint)))
 }
 
-/// How much of the box, by view depth, lies in front of a light. (OTEE "Specular scattering")
+/// Share of the smoke's depth range that lies in front of a light: 0 before its near side, 1 behind its far side. (OTEE
+/// "Specular scattering")
 pub fn specular_scatter_fade(light_depth: f32, smoke_near: f32, smoke_far: f32) -> f32 {
     saturate((light_depth - smoke_near) / (smoke_far - smoke_near).max(1.0e-4))
 }
 
-/// Taps of [`visibility_tap`].
+/// Number of taps of [`visibility_tap`].
 pub const VISIBILITY_TAPS: u32 = 9;
 
-/// Where a light's body is looked for, from its middle: a ring of 8 taps at its radius, and the middle.
+/// Offset of a visibility tap from the centre of a light, pixels: 8 taps on a ring of `radius`, and the centre as the
+/// last.
 pub fn visibility_tap(index: u32, radius: f32) -> Vec2 {
     if index == 8 { Vec2::ZERO } else { Vec2::from_angle(index as f32 * std::f32::consts::FRAC_PI_4) * radius }
 }

@@ -1,5 +1,5 @@
-//! The specification: every formula once, in plain Rust on glam, under the name it has in `shaders/lib/`, one file for each file
-//! there. Both renderers, the bakers and the tests go by it.
+//! Executable specification: every formula once, in plain Rust on glam, under the same name and in a file of the same
+//! name as in `shaders/lib/`. Both renderers, the bakers and the tests use it.
 
 pub mod blending;
 pub mod colour;
@@ -23,7 +23,7 @@ pub mod uniforms;
 pub mod upsample;
 pub mod view;
 
-/// Clamps to 0..=1; NaN gives 0, as WGSL's `saturate` may.
+/// Clamps to 0..=1. Returns 0 for NaN, as WGSL's `saturate` may.
 pub fn saturate(x: f32) -> f32 {
     if x > 0.0 { x.min(1.0) } else { 0.0 }
 }

@@ -1,10 +1,10 @@
-//! The tiling 3D noise of volumetric sprites. `shaders/lib/noise_volume.wgsl`.
+//! Sampling of the tiling 3D noise of volumetric sprites. WGSL: `shaders/lib/noise_volume.wgsl`.
 
 use glam::{IVec3, Vec3, Vec4, Vec4Swizzles};
 
 use super::texture::Texture3d;
 
-/// Inverse density gradient (−1..1) and density. The noise repeats with every unit of `coordinate`.
+/// Samples inverse density gradient (−1..1) and density. The noise repeats with every unit of `coordinate`.
 pub fn sample_noise_volume(noise: &impl Texture3d, coordinate: Vec3) -> Vec4 {
     let size = noise.dimensions() as i32;
     let at = (coordinate - coordinate.floor()) * size as f32 - 0.5;
@@ -22,7 +22,8 @@ pub fn sample_noise_volume(noise: &impl Texture3d, coordinate: Vec3) -> Vec4 {
     (texel.xyz() * 2.0 - 1.0).extend(texel.w)
 }
 
-/// Octaves of the noise, each of three times the frequency and half the weight of the last; weights sum to 1. (MS)
+/// Sums octaves of the noise. Each has three times the frequency and half the weight of the one before; weights sum to
+/// 1. (MS)
 pub fn sample_noise_octaves(noise: &impl Texture3d, coordinate: Vec3, octaves: u32) -> Vec4 {
     let (mut sum, mut total, mut weight, mut place) = (Vec4::ZERO, 0.0, 1.0, coordinate);
     for _ in 0..octaves {
@@ -34,8 +35,8 @@ pub fn sample_noise_octaves(noise: &impl Texture3d, coordinate: Vec3, octaves: u
     sum / total
 }
 
-/// Where a point of the world stands in the noise. `from_eye` is where it is seen from the eye, in the world's axes;
-/// `noise_offset` is where the eye stands, less what the noise has risen. (MS "Animating the volume particles")
+/// Noise coordinate of a point. `from_eye` is its position relative to the eye, in world axes; `noise_offset` is the
+/// position of the eye minus the rise of the noise. (MS "Animating the volume particles")
 pub fn noise_coordinate(from_eye: Vec3, noise_size: f32, noise_offset: Vec3) -> Vec3 {
     (from_eye + noise_offset) / noise_size
 }

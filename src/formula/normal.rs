@@ -1,11 +1,11 @@
-//! Normals in and out of the accumulation target. `shaders/lib/normal.wgsl`.
+//! Encoding and decoding of normals in the accumulation target. WGSL: `shaders/lib/normal.wgsl`.
 
 use glam::{Vec2, Vec3, Vec4};
 
 use crate::settings::{NormalDecode, NormalEncoding};
 
-/// One sprite fragment for the blend unit: normal times amount, and the amount. (OTEE "Accumulating") `weight` is how much the
-/// normal counts: 1 where sprites are sorted.
+/// Output of one sprite fragment to the blend unit: normal times amount, and the amount. (OTEE "Accumulating") `weight`
+/// scales the normal; it is 1 under the order `sorted`.
 pub fn accumulation_from_normal(encoding: NormalEncoding, normal: Vec3, amount: f32, weight: f32) -> Vec4 {
     match encoding {
         NormalEncoding::Biased => ((normal * 0.5 + 0.5) * (amount * weight)).extend(amount),
@@ -13,10 +13,10 @@ pub fn accumulation_from_normal(encoding: NormalEncoding, normal: Vec3, amount: 
     }
 }
 
-/// The unit normal of an accumulated texel; (0, 0, 1) where there is none.
+/// Unit normal of an accumulated texel; (0, 0, 1) if it is empty or cancels out.
 ///
-/// With Σ weights = A, biased normals sum to rgb = Σw·n/2 + A/2, so n ∝ 2·rgb − A exactly. OTEE's literal decode equals
-/// that only at A = 1. `weights` is Σ weights where normals are weighted.
+/// With Σ weights = A, biased normals sum to rgb = Σw·n/2 + A/2, so n ∝ 2·rgb − A is exact. OTEE's literal decode
+/// equals it only at A = 1. `weights` is Σ weights: A itself, unless normals are weighted.
 pub fn normal_from_accumulation(encoding: NormalEncoding, decode: NormalDecode, rgb: Vec3, weights: f32) -> Vec3 {
     let normal = match (decode, encoding) {
         (NormalDecode::Literal, _) => rgb * 2.0 - 1.0,
@@ -27,7 +27,7 @@ pub fn normal_from_accumulation(encoding: NormalEncoding, decode: NormalDecode, 
     if square < 1.0e-12 { Vec3::Z } else { normal / square.sqrt() }
 }
 
-/// Turns a sprite's normal with the sprite: rotation is (cos, sin), counter-clockwise.
+/// Rotates a sprite's normal with the sprite. `rotation` is (cos, sin), counter-clockwise.
 pub fn rotate_normal(normal: Vec3, rotation: Vec2) -> Vec3 {
     Vec3::new(normal.x * rotation.x - normal.y * rotation.y, normal.x * rotation.y + normal.y * rotation.x, normal.z)
 }

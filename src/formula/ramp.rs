@@ -1,21 +1,21 @@
-//! Ramp lookups. `shaders/lib/ramp.wgsl`.
+//! Ramp lookups. WGSL: `shaders/lib/ramp.wgsl`.
 
 use glam::{UVec2, Vec2, Vec3, Vec4Swizzles};
 
 use super::texture::Texture2d;
 use crate::settings::RampFilter;
 
-/// Where a coordinate lies among the texels: the first and last texel centres stand for 0 and 1.
+/// Texel coordinate of a ramp coordinate: 0 and 1 map to the centres of the first and the last texel.
 pub fn ramp_texel(size: UVec2, coordinate: Vec2) -> Vec2 {
     coordinate.clamp(Vec2::ZERO, Vec2::ONE) * (size.as_vec2() - 1.0)
 }
 
-/// The texel that is nearest.
+/// Value of the nearest texel.
 pub fn sample_ramp_nearest(ramp: &impl Texture2d, coordinate: Vec2) -> Vec3 {
     ramp.load((ramp_texel(ramp.dimensions(), coordinate) + 0.5).as_uvec2()).xyz()
 }
 
-/// A ramp of two axes.
+/// Samples a ramp with two axes.
 pub fn sample_ramp_2d(ramp: &impl Texture2d, filter: RampFilter, coordinate: Vec2) -> Vec3 {
     if filter == RampFilter::Nearest {
         return sample_ramp_nearest(ramp, coordinate);
@@ -32,7 +32,7 @@ pub fn sample_ramp_2d(ramp: &impl Texture2d, filter: RampFilter, coordinate: Vec
     bottom.lerp(top, fraction.y).xyz()
 }
 
-/// A ramp of one row.
+/// Samples a ramp with one row.
 pub fn sample_ramp(ramp: &impl Texture2d, filter: RampFilter, u: f32) -> Vec3 {
     sample_ramp_2d(ramp, filter, Vec2::new(u, 0.0))
 }

@@ -1,36 +1,39 @@
-//! Light on a sprite by six pictures. `shaders/lib/six_way.wgsl`.
+//! Lighting of sprites by six-way maps. WGSL: `shaders/lib/six_way.wgsl`.
 
 use glam::{Vec2, Vec2Swizzles, Vec3};
 
 use super::saturate;
 
-/// What a sprite shows under light from each side, view space or its own: x right, y up, z to the viewer.
+/// Response of a sprite to light from each of six sides. View space or the sprite's own: x right, y up, z towards the
+/// viewer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SixWay {
-    /// Under light from the right, the top and the front.
+    /// Response to light from the right, the top and the front.
     pub positive: Vec3,
-    /// Under light from the left, the bottom and the back.
+    /// Response to light from the left, the bottom and the back.
     pub negative: Vec3,
 }
 
-/// What a texel of either half of a six-way map stands for. Its square root is stored: dark sides keep their steps in 8 bits.
+/// Decodes a texel of either half of a six-way map. Maps store the square root, so that dark sides keep precision in 8
+/// bits.
 pub fn six_way_from_texel(texel: Vec3) -> Vec3 {
     texel * texel
 }
 
-/// How much light is scattered by an angle of this cosine, but for a factor: (1 − anisotropy²) ÷ 4π makes it a share for each
-/// steradian. (Henyey and Greenstein, "Diffuse radiation in the galaxy", 1941) `anisotropy` is the mean cosine, within ±0.95.
+/// Henyey-Greenstein phase function of a cosine, without its constant factor (1 − anisotropy²) ÷ 4π, which would make
+/// it a share per steradian. `anisotropy` is the mean cosine, within ±0.95. (Henyey and Greenstein, "Diffuse radiation
+/// in the galaxy", 1941)
 pub fn henyey_greenstein(cosine: f32, anisotropy: f32) -> f32 {
     let base = 1.0 + anisotropy * anisotropy - 2.0 * anisotropy * cosine;
     1.0 / (base * base.sqrt())
 }
 
-/// How much each axis counts for a light. Between the side and the front or the back, as light is scattered between those angles: smoke
-/// that scatters onwards glows straight before a light, and much less beside it. What is left is shared by right or left and top or
-/// bottom, by the squares of the light's shares of them. (After McTaggart, "Half-Life 2 / Valve Source shading", GDC 2004: the
-/// ambient cube)
+/// Weights of the axes for a light. The z axis is weighted by the phase function between light from the side and light
+/// from the front or back: smoke that scatters forward glows in line with a light and much less beside it. The rest
+/// goes to x and y, by the squares of the direction. (After McTaggart, "Half-Life 2 / Valve Source shading", GDC 2004:
+/// the ambient cube)
 pub fn six_way_shares(to_light: Vec3, anisotropy: f32) -> Vec3 {
-    // As if light were scattered evenly, all angles would be alike, and nothing to go by.
+    // At an anisotropy of 0 the phase function is constant, and `along` would be 0 / 0.
     let g = anisotropy.max(0.02);
     let end = if to_light.z < 0.0 { 1.0 } else { -1.0 };
     let beside = henyey_greenstein(0.0, g);
@@ -40,13 +43,13 @@ pub fn six_way_shares(to_light: Vec3, anisotropy: f32) -> Vec3 {
     Vec3::new(squares.x * scale, squares.y * scale, along)
 }
 
-/// What is shown of a light. `positive` under light from x, y and z, `negative` from the other side.
+/// Response to a light. `positive` is for light from +x, +y and +z, `negative` for light from the opposite sides.
 pub fn six_way_response(positive: Vec3, negative: Vec3, to_light: Vec3, anisotropy: f32) -> f32 {
     six_way_shares(to_light, anisotropy).dot(Vec3::select(to_light.cmpgt(Vec3::ZERO), positive, negative))
 }
 
-/// Turns the light of a sprite with the sprite: rotation is (cos, sin), counter-clockwise. Each side is what [`six_way_response`] has of
-/// light that comes from there, to the sprite as it was.
+/// Rotates the response of a sprite with the sprite. `rotation` is (cos, sin), counter-clockwise. Each side becomes the
+/// [`six_way_response`] of the unrotated sprite to light from that side.
 pub fn rotate_six_way(positive: Vec3, negative: Vec3, rotation: Vec2) -> SixWay {
     let squares = rotation * rotation;
     let (p, n) = (positive.truncate(), negative.truncate());
@@ -58,7 +61,8 @@ pub fn rotate_six_way(positive: Vec3, negative: Vec3, rotation: Vec2) -> SixWay 
     }
 }
 
-/// Where smoke faces that is lit more from one side than from the other: the normal that a six-way map stands for.
+/// Normal of a six-way response: the direction of the largest difference between opposite sides; (0, 0, 1) if there is
+/// none.
 pub fn normal_from_six_way(positive: Vec3, negative: Vec3) -> Vec3 {
     let slope = positive - negative;
     let square = slope.length_squared();
@@ -70,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_sprite_that_turns_answers_as_light_that_turns_the_other_way() {
+    fn rotating_the_sprite_equals_rotating_the_light_the_other_way() {
         let (positive, negative) = (Vec3::new(0.1, 0.5, 0.3), Vec3::new(0.9, 0.2, 0.7));
         for step in 0..32 {
             let rotation = Vec2::from_angle(step as f32 * 0.37);

@@ -1,4 +1,4 @@
-//! The sprite picture: a flipbook of normal maps. `shaders/lib/sprite.wgsl`.
+//! Sprite lookups: a flipbook of normal maps. WGSL: `shaders/lib/sprite.wgsl`.
 
 use glam::{IVec2, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
@@ -6,16 +6,16 @@ use super::saturate;
 use super::texture::Texture2dArray;
 use crate::settings::SpriteAnimation;
 
-/// The largest motion that a detail map holds, in sides of the sprite.
+/// Largest motion that a detail map can store, in sides of the sprite.
 pub const MOTION_RANGE: f32 = 0.125;
 
-/// The mip level whose texels are nearest in size to the target's.
+/// Mip level whose texels are closest in size to the target's.
 pub fn sprite_lod(sprite_size: f32, diameter_in_texels: f32) -> f32 {
     ((sprite_size / diameter_in_texels.max(1.0e-3)).log2() + 0.5).floor().max(0.0)
 }
 
-/// The fractional frame that a particle shows: its own, its age through the slices of a volume texture, or the first.
-/// `nearest` is cut off, so it is half a frame on.
+/// Fractional frame that a particle shows: its own frame, its age through the slices of a volume texture, or the first
+/// frame. `nearest` adds half a frame, because its fraction is cut off later.
 pub fn sprite_frame(animation: SpriteAnimation, frame: f32, age: f32, frame_count: f32) -> f32 {
     match animation {
         SpriteAnimation::Flipbook => frame,
@@ -25,18 +25,18 @@ pub fn sprite_frame(animation: SpriteAnimation, frame: f32, age: f32, frame_coun
     }
 }
 
-/// The two frames that a fractional frame blends, and the share of the second.
+/// The two frames that a fractional frame blends, and the weight of the second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlipbookFrames {
     /// Index of the frame shown.
     pub first: i32,
-    /// Index of the frame after it.
+    /// Index of the next frame.
     pub second: i32,
-    /// 0 shows the first, 1 the second.
+    /// Weight of the second frame: 0 shows the first, 1 the second.
     pub blend: f32,
 }
 
-/// Splits a fractional frame; the flipbook repeats.
+/// Splits a fractional frame. The flipbook repeats.
 pub fn flipbook_frames(frame: f32, frame_count: f32) -> FlipbookFrames {
     let wrapped = frame - (frame / frame_count).floor() * frame_count;
     let first = wrapped.floor().max(0.0).min(frame_count - 1.0);
@@ -44,12 +44,12 @@ pub fn flipbook_frames(frame: f32, frame_count: f32) -> FlipbookFrames {
     FlipbookFrames { first: first as i32, second: second as i32, blend: saturate(wrapped - first) }
 }
 
-/// The same frames of a flipbook that comes `layers` later.
+/// The same frames of a flipbook that starts `layers` layers later.
 pub fn frames_after(frames: FlipbookFrames, layers: i32) -> FlipbookFrames {
     FlipbookFrames { first: frames.first + layers, second: frames.second + layers, ..frames }
 }
 
-/// The frames as an animation shows them: some blend none.
+/// Frames as an animation shows them; `still` and `nearest` do not blend.
 pub fn shown_frames(animation: SpriteAnimation, frame: f32, frame_count: f32) -> FlipbookFrames {
     let frames = flipbook_frames(frame, frame_count);
     match animation {
@@ -80,30 +80,30 @@ fn sample_sprite_frame(sprite: &impl Texture2dArray, uv: Vec2, frame: i32, lod: 
     fine.lerp(coarse, level - base)
 }
 
-/// A flipbook at a moment between two frames. uv 0..1, v down. `motion` is where texels go from the first frame to the second, in
-/// uv.
+/// Samples a flipbook between two frames. `uv` is 0..1, v down. `motion` is the motion of texels from the first frame
+/// to the second, in uv.
 pub fn sample_flipbook(sprite: &impl Texture2dArray, uv: Vec2, frames: FlipbookFrames, motion: Vec2, lod: f32) -> Vec4 {
     let mut texel = sample_sprite_frame(sprite, uv - motion * frames.blend, frames.first, lod);
     if frames.blend > 0.0 {
         let place = uv + motion * (1.0 - frames.blend);
-        // Exact where both are one.
+        // In this form the result is exact if both samples are equal.
         texel += (sample_sprite_frame(sprite, place, frames.second, lod) - texel) * frames.blend;
     }
     texel
 }
 
-/// Normal (−1..1, about unit length) and amount of a sprite.
+/// Samples a sprite: normal (−1..1, about unit length) and amount.
 pub fn sample_sprite(sprite: &impl Texture2dArray, uv: Vec2, frames: FlipbookFrames, motion: Vec2, lod: f32) -> Vec4 {
     let texel = sample_flipbook(sprite, uv, frames, motion, lod);
     (texel.xyz() * 2.0 - 1.0).extend(texel.w)
 }
 
-/// A detail map's texel: how far it stands out towards the viewer, −1..1 radii, and its motion to the next frame, in uv.
+/// Decodes a detail map's texel: offset towards the viewer, −1..1 radii, and motion to the next frame, in uv.
 pub fn detail_from_texel(texel: Vec3) -> Vec3 {
     (texel * 255.0 - 128.0) / 127.0 * Vec3::new(1.0, MOTION_RANGE, MOTION_RANGE)
 }
 
-/// The detail map at a moment between two frames. Motion is the first frame's.
+/// Samples the detail map between two frames. The motion is the first frame's.
 pub fn sample_detail(detail: &impl Texture2dArray, uv: Vec2, frames: FlipbookFrames, lod: f32) -> Vec3 {
     let sample = |frame| detail_from_texel(sample_sprite_frame(detail, uv, frame, lod).xyz());
     let (first, second) = (sample(frames.first), sample(frames.second));
@@ -115,17 +115,18 @@ pub fn unrotate(offset: Vec2, rotation: Vec2) -> Vec2 {
     Vec2::new(offset.x * rotation.x + offset.y * rotation.y, offset.y * rotation.x - offset.x * rotation.y)
 }
 
-/// A corner, −1..1 with y up, of what a sprite reaches of its square from the middle: left, down, right, up, as shares of half a side.
+/// Corner of a sprite's trimmed rectangle, −1..1, y up. `corner` is the one of the full square; `reach` is the extent
+/// from the centre to the left, bottom, right and top, as shares of half a side.
 pub fn trimmed_corner(corner: Vec2, reach: Vec4) -> Vec2 {
     Vec2::select(corner.cmpgt(Vec2::ZERO), reach.zw(), -reach.xy())
 }
 
-/// Place in the picture, 0..1 with v down, of a place on the sprite, -1..1 with y up.
+/// Texture coordinates, 0..1 with v down, of a position on the sprite, −1..1 with y up.
 pub fn sprite_uv(corner: Vec2) -> Vec2 {
     Vec2::new(corner.x * 0.5 + 0.5, 0.5 - corner.y * 0.5)
 }
 
-/// NV's debug sprite: eight by eight checks, every other one of a quarter of the amount.
+/// NV's debug sprite: 8 × 8 checks with amounts of 1 and 0.25 in turn.
 pub fn checkerboard(uv: Vec2) -> Vec4 {
     let check = (uv * 8.0).floor().as_ivec2();
     Vec4::new(0.0, 0.0, 1.0, if (check.x + check.y) & 1 == 0 { 1.0 } else { 0.25 })

@@ -1,31 +1,32 @@
-//! How a sprite keeps from cutting into the scene. `shaders/lib/technique.wgsl`.
+//! Formulas of the techniques, by which sprites meet the scene. WGSL: `shaders/lib/technique.wgsl`.
 
 use glam::{Vec2, Vec3};
 
 use super::saturate;
 
-/// 1 in front of the scene or on it, 0 behind it: what the hardware's depth test does. (NV 3)
+/// 1 in front of the scene or on it, 0 behind it: the result of the hardware's depth test. (NV 3)
 pub fn hard_fade(distance: f32) -> f32 {
     if distance >= 0.0 { 1.0 } else { 0.0 }
 }
 
-/// View depth of a texel that stands out towards the viewer by `offset` radii, −1..1. (MS "2D particles with depth")
+/// View depth of a texel that is displaced towards the viewer by `offset` radii, −1..1. (MS "2D particles with depth")
 pub fn depth_sprite_depth(view_depth: f32, offset: f32, radius: f32) -> f32 {
     view_depth - offset * radius
 }
 
-/// The stretch of a ray inside a sphere, cut at the near plane and at the scene. Distances along the ray, metres.
+/// Part of a ray inside a sphere, clipped at the near plane and at the scene. Distances are along the ray, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayInterval {
-    /// Where the ray enters.
+    /// Distance at which the ray enters.
     pub enter: f32,
-    /// Where it leaves; not beyond `enter`: there is nothing.
+    /// Distance at which the ray leaves. The interval is empty if this is not greater than `enter`.
     pub leave: f32,
-    /// From the middle of the sphere to the nearest point of the ray's line.
+    /// Vector from the centre of the sphere to the nearest point of the ray's line.
     pub axis: Vec3,
 }
 
-/// Intersects a ray of unit length with a sphere; `near` and `scene` are distances along the ray. w = √(r² − q²), BLOG 2.
+/// Intersects a ray of unit length with a sphere. `near` and `scene` are distances along the ray. Half the chord is w =
+/// √(r² − q²). (BLOG 2)
 pub fn ray_sphere(origin: Vec3, direction: Vec3, centre: Vec3, radius: f32, near: f32, scene: f32) -> RayInterval {
     let to_centre = centre - origin;
     let middle = to_centre.dot(direction);
@@ -34,46 +35,48 @@ pub fn ray_sphere(origin: Vec3, direction: Vec3, centre: Vec3, radius: f32, near
     RayInterval { enter: (middle - half_chord).max(near), leave: (middle + half_chord).min(scene), axis }
 }
 
-/// a = 1 − exp(−density · (1 − q/r) · Δs): Umenhoffer's spherical billboard. (BLOG 2)
+/// Umenhoffer's spherical billboard: a = 1 − exp(−density · (1 − q/r) · Δs), where q is `axis_distance` and Δs is
+/// `stretch`. (BLOG 2)
 pub fn spherical_billboard_amount(density: f32, axis_distance: f32, radius: f32, stretch: f32) -> f32 {
     let inwards = saturate(1.0 - axis_distance / radius.max(1.0e-6));
     1.0 - (-density * inwards * stretch.max(0.0)).exp()
 }
 
-/// How much of a slab, a radius before and behind the sprite, lies between near plane and scene, metres.
+/// Thickness of the slab between near plane and scene, metres. The slab extends one radius in front of the sprite and
+/// one behind it.
 pub fn density_thickness(view_depth: f32, radius: f32, near: f32, scene: f32) -> f32 {
     (scene.min(view_depth + radius) - near.max(view_depth - radius)).max(0.0)
 }
 
-/// The share of that slab which lies behind the near plane.
+/// Share of that slab that lies beyond the near plane.
 pub fn slab_share(view_depth: f32, radius: f32, near: f32) -> f32 {
     saturate((view_depth + radius - near) / (2.0 * radius).max(1.0e-6))
 }
 
-/// a = 1 − exp(−density · thickness). (BLOG 3)
+/// Amount of a slab: a = 1 − exp(−density · thickness). (BLOG 3)
 pub fn density_amount(density: f32, thickness: f32) -> f32 {
     1.0 - (-density * thickness).exp()
 }
 
-/// Falloff of a volume from its middle; `place` is −1..1 in the sphere. (MS "March", step 3)
+/// Falloff of a volume from its centre. `place` is the position in the sphere, −1..1. (MS "March", step 3)
 pub fn volumetric_falloff(place: Vec3) -> f32 {
     saturate(1.0 - place.length_squared())
 }
 
-/// Density of a volume, 0..1: the noise, eaten away from the outside in. (MS "March", steps 1 and 3)
+/// Density of a volume, 0..1: noise that is eroded from the outside in. (MS "March", steps 1 and 3)
 pub fn volumetric_density(noise: f32, falloff: f32) -> f32 {
     saturate(2.0 * noise - 1.0 + falloff) * falloff
 }
 
-/// Which way a place in a volume faces, in view space: out of the sphere and down the noise's density, and never away
-/// from the viewer. (MS "March", step 2)
+/// View-space normal at a point of a volume: out of the sphere and down the noise's density, and never away from the
+/// viewer. (MS "March", step 2)
 pub fn volumetric_normal(place: Vec3, gradient: Vec3) -> Vec3 {
     let normal = place + 2.0 * gradient;
     normal.with_z(normal.z.max(0.1)).normalize()
 }
 
-/// Lower and upper bound of a sphere's picture on one axis, as position / depth, cut at the near plane; `centre` is
-/// (position on the axis, depth). (Mara and McGuire, JCGT 2013)
+/// Lower and upper bound of a sphere's projection on one axis, as position / depth, clipped at the near plane. `centre`
+/// is (position on the axis, depth). (Mara and McGuire, JCGT 2013)
 pub fn sphere_axis_bounds(centre: Vec2, radius: f32, near: f32) -> Vec2 {
     let clipped = centre.y - radius < near;
     let cut = (radius * radius - (near - centre.y) * (near - centre.y)).max(0.0).sqrt();
@@ -99,9 +102,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_bounds_hold_every_visible_point_of_the_sphere_and_little_more() {
+    fn sphere_bounds_contain_every_visible_point_and_are_tight() {
         let near = 0.1;
-        // Beside, round, and half behind the near plane.
+        // Beside the near plane, around it, and half behind it.
         let spheres = [
             (Vec2::new(1.0, 5.0), 0.7),
             (Vec2::new(-3.0, 1.0), 0.9),

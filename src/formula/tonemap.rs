@@ -1,4 +1,4 @@
-//! From linear HDR to what a screen shows. The library never does this to a host's picture: it is the demo program's taste.
+//! Tonemap of the demo program: linear HDR to sRGB code. The library never tonemaps a host's image. WGSL:
 //! `shaders/lib/tonemap.wgsl`.
 
 use glam::{Mat3, UVec2, Vec3, vec3};
@@ -6,7 +6,8 @@ use glam::{Mat3, UVec2, Vec3, vec3};
 use super::colour::srgb_from_linear;
 use super::hash::{pcg3d, unit};
 
-/// The ACES film curve. (Hill, "BakingLab", 2016: a fit of the reference and output transforms)
+/// ACES tonemap curve, linear HDR to linear 0..1. (Hill, "BakingLab", 2016: a fit of the reference and output
+/// transforms)
 pub fn film(colour: Vec3) -> Vec3 {
     const INPUT: Mat3 = Mat3::from_cols(
         vec3(0.597_19, 0.076, 0.028_4),
@@ -23,13 +24,13 @@ pub fn film(colour: Vec3) -> Vec3 {
     (OUTPUT * fitted).clamp(Vec3::ZERO, Vec3::ONE)
 }
 
-/// sRGB code of light, seen with an exposure that multiplies it.
+/// sRGB code of tonemapped light. `exposure` multiplies the light first.
 pub fn developed(colour: Vec3, exposure: f32) -> Vec3 {
     film(colour * exposure).map(srgb_from_linear)
 }
 
-/// What is added to code before it is rounded to 8 bits, so that slow gradients do not band: triangular, up to half a step either
-/// way.
+/// Dither to add before rounding to 8 bits, so that slow gradients do not band: triangular noise, within half a step
+/// either way.
 pub fn dither(at: UVec2) -> f32 {
     let hash = pcg3d(at.extend(0));
     (unit(hash.x) - unit(hash.y)) * (0.5 / 255.0)
@@ -40,7 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_film_keeps_black_and_white_and_never_turns_back() {
+    fn tonemap_curve_keeps_black_and_white_and_is_monotonic() {
         assert!(film(Vec3::ZERO).max_element() < 1e-3);
         assert!(film(Vec3::splat(100.0)).min_element() > 0.99);
         let greys: Vec<_> = (0..200).map(|step| film(Vec3::splat(0.02 * step as f32)).x).collect();

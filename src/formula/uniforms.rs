@@ -1,13 +1,13 @@
-//! Every struct that WGSL sees, field by field. `tests/suite/shader_layout.rs` holds each against its WGSL twin: name, offset
-//! and size.
+//! Rust mirrors of the WGSL structs. `tests/suite/shader_layout.rs` compares each with its WGSL struct: field names,
+//! offsets and sizes.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
-/// A field of a uniform struct: its name, and its first byte and size in it.
+/// Field of a uniform struct: name, offset and size in bytes.
 pub type UniformField = (&'static str, usize, usize);
 
-/// Defines a uniform struct with a list of its fields. What a field means is written in WGSL.
+/// Defines a uniform struct with a list of its fields, which are documented in WGSL.
 macro_rules! uniform {
     ($(#[$meta:meta])* $name:ident { $($field:ident: $type:ty,)+ }) => {
         $(#[$meta])*
@@ -17,7 +17,7 @@ macro_rules! uniform {
         pub struct $name { $(pub $field: $type,)+ }
 
         impl $name {
-            /// All fields, in order.
+            /// All fields, in order of declaration.
             pub const FIELDS: &[UniformField] =
                 &[$((stringify!($field), std::mem::offset_of!($name, $field), size_of::<$type>()),)+];
         }

@@ -1,25 +1,28 @@
-//! From the reduced target to full resolution. `shaders/lib/upsample.wgsl`.
+//! Upsampling of the reduced target to full resolution. WGSL: `shaders/lib/upsample.wgsl`.
 
 use glam::{Vec2, Vec3, Vec3Swizzles, Vec4, vec3};
 
 use crate::settings::Upsample;
 
-/// Depths that differ by less than this share of the pixel's own count as one surface.
+/// Depths that differ by less than this share of the pixel's depth count as one surface.
 pub const SAME_SURFACE: f32 = 0.1;
 
-/// Depths within this share of the length of a soft fade let as much smoke be seen.
+/// Depths that differ by less than this share of a soft fade's length show about the same amount of smoke.
 pub const SAME_SMOKE: f32 = 0.4;
 
-/// True where smoke hardly depends on depth: bilinear weights do. `fade`: metres that a soft fade is long.
+/// True if smoke hardly depends on depth here, so that bilinear weights suffice. `fade` is the length of a soft fade,
+/// metres.
 pub fn is_smooth(depths: Vec4, depth: f32, fade: f32) -> bool {
     depths.max_element().max(depth) - depths.min_element().min(depth) < SAME_SMOKE * fade
 }
 
-/// Weights of the texels (0,0) (1,0) (0,1) (1,1) round a pixel at `fraction` between them.
+/// Weights of the texels (0,0) (1,0) (0,1) (1,1) around a pixel at `fraction` between them. `depths` are the texels'
+/// view depths, `depth` is the pixel's.
 ///
-/// nearest_depth: bilinear if all four lie on the pixel's surface, else the closest alone. (Jansen and Bavoil, 2011)
-/// joint_bilateral: bilinear times a Gaussian of the depth difference. (Kopf et al., 2007)
-/// guided: bilinear, where [`is_smooth`]; else a [`GuidedFit`].
+/// - nearest_depth: bilinear if all four are on the pixel's surface, else the closest texel alone. (Jansen and Bavoil,
+///   2011)
+/// - joint_bilateral: bilinear times a Gaussian of the depth difference. (Kopf et al., 2007)
+/// - guided: bilinear, for pixels where [`is_smooth`] holds; the others use a [`GuidedFit`].
 pub fn upsample_weights(mode: Upsample, fraction: Vec2, depths: Vec4, depth: f32) -> Vec4 {
     let g = 1.0 - fraction;
     let bilinear = Vec4::new(g.x * g.y, fraction.x * g.y, g.x * fraction.y, fraction.x * fraction.y);
@@ -45,34 +48,34 @@ pub fn upsample_weights(mode: Upsample, fraction: Vec2, depths: Vec4, depth: f32
     Vec4::AXES[index]
 }
 
-/// What there is at a pixel if smoke is linear in place and depth, by least squares over the texels around it. Places are
-/// from the pixel: x and y in texels, z the texel's depth less the pixel's. (He, Sun and Tang, "Guided image filtering",
-/// 2010, with the scene's depth as the guide)
+/// Least-squares fit over the texels around a pixel, for smoke that is linear in position and depth. Positions are
+/// relative to the pixel: x and y in texels, z the texel's depth minus the pixel's. (He, Sun and Tang, "Guided image
+/// filtering", 2010, with the scene's depth as the guide)
 #[derive(Clone, Copy, Debug)]
 pub struct GuidedFit {
-    /// Sum of the weights; those below are times weight.
+    /// Sum of the weights. All sums below are weighted.
     pub total: f32,
-    /// Sum of places.
+    /// Sum of the positions.
     pub place: Vec3,
-    /// x², y², z².
+    /// Sums of x², y², z².
     pub squares: Vec3,
-    /// xy, xz, yz.
+    /// Sums of xy, xz, yz.
     pub products: Vec3,
-    /// Sum of what texels hold.
+    /// Sum of the texels' values.
     pub value: Vec4,
-    /// The same times x.
+    /// Sum of the values times x.
     pub x_value: Vec4,
-    /// The same times y.
+    /// Sum of the values times y.
     pub y_value: Vec4,
-    /// The same times z.
+    /// Sum of the values times z.
     pub z_value: Vec4,
-    /// Least of what texels hold.
+    /// Smallest value of the texels, by channel.
     pub low: Vec4,
-    /// Most of what texels hold.
+    /// Largest value of the texels, by channel.
     pub high: Vec4,
-    /// Least z.
+    /// Smallest z.
     pub nearest: f32,
-    /// Most z.
+    /// Largest z.
     pub farthest: f32,
 }
 
@@ -95,14 +98,15 @@ impl Default for GuidedFit {
     }
 }
 
-/// Texels count by distance, two of them away to nothing, and by depth: [`SAME_SURFACE`] is two sigma out.
+/// Weight of a texel. It falls to zero two texels away, and with depth as a Gaussian of which [`SAME_SURFACE`] is two
+/// sigma.
 pub fn guided_weight(place: Vec3, depth: f32) -> f32 {
     let tent = (1.0 - place.xy().abs() * 0.5).max(Vec2::ZERO);
     let sigmas = place.z * (2.0 / (SAME_SURFACE * depth.max(1.0e-6)));
     tent.x * tent.x * tent.y * tent.y * ((-0.5 * sigmas * sigmas).exp() + 1.0e-4)
 }
 
-/// The fit with one texel more.
+/// Returns the fit with one more texel.
 pub fn with_texel(fit: &GuidedFit, place: Vec3, weight: f32, value: Vec4) -> GuidedFit {
     let w = place * weight;
     GuidedFit {
@@ -121,7 +125,7 @@ pub fn with_texel(fit: &GuidedFit, place: Vec3, weight: f32, value: Vec4) -> Gui
     }
 }
 
-/// What the fit says of the pixel, clamped to what the texels hold. `fade`: metres that a soft fade is long.
+/// Value of the fit at the pixel, clamped to the values of the texels. `fade` is the length of a soft fade, metres.
 pub fn fitted_value(fit: &GuidedFit, fade: f32) -> Vec4 {
     let mean = fit.place / fit.total;
     let value = fit.value / fit.total;

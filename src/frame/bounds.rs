@@ -1,34 +1,34 @@
-//! The box round a particle system.
+//! Bounding box of a particle system.
 
 use glam::Vec3;
 
 use crate::error::FieldError;
 
-/// An axis-aligned box in world space, metres. Holds every particle of a system, sprites included.
+/// Axis-aligned box in world space, metres. Contains every particle of a system with its sprite.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Bounds {
-    /// Smallest corner.
+    /// Minimum corner.
     pub min: Vec3,
-    /// Largest corner.
+    /// Maximum corner.
     pub max: Vec3,
 }
 
 impl Bounds {
-    /// Holds nothing; grows with [`Bounds::include`].
+    /// Empty box, which grows with [`Bounds::include`].
     pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
-    /// Grows the box to hold a sphere.
+    /// Grows the box to contain a sphere.
     pub fn include(&mut self, centre: Vec3, radius: f32) {
         self.min = self.min.min(centre - radius);
         self.max = self.max.max(centre + radius);
     }
 
-    /// True if the box holds nothing.
+    /// True if the box is empty.
     pub fn is_empty(&self) -> bool {
         self.min.cmpgt(self.max).any()
     }
 
-    /// The middle of the box.
+    /// Centre of the box.
     pub fn centre(&self) -> Vec3 {
         0.5 * (self.min + self.max)
     }
@@ -40,7 +40,8 @@ impl Bounds {
         Err(FieldError::new(path(), format!("{}..{}", self.min, self.max), "finite corners"))
     }
 
-    /// Corner `index` 0..8; bit 0 is x, bit 1 is y, bit 2 is z, set for the maximum. `BOX_CORNERS` in transfer.wgsl.
+    /// Corner `index`, 0..8: bit 0 is x, bit 1 is y, bit 2 is z; a set bit selects the maximum. `BOX_CORNERS` in
+    /// transfer.wgsl counts alike.
     pub fn corner(&self, index: u32) -> Vec3 {
         let pick = |bit: u32, min: f32, max: f32| if index & bit == 0 { min } else { max };
         Vec3::new(pick(1, self.min.x, self.max.x), pick(2, self.min.y, self.max.y), pick(4, self.min.z, self.max.z))

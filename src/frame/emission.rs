@@ -1,4 +1,4 @@
-//! An emitter at a time: particles that need not be evaluated where they are drawn by a GPU.
+//! Unevaluated particles of an emitter at one time. A GPU can evaluate them where it draws them.
 
 use glam::Vec3;
 
@@ -7,33 +7,35 @@ use super::particle::Particle;
 use crate::formula::emitter::{drag_integrals, emitted_particle};
 use crate::formula::uniforms::EmitterUniform;
 
-/// Particles that [`Emitter::at`](crate::emitter::Emitter::at) promises.
+/// Particles of an emitter at one time, not yet evaluated. [`Emitter::at`](crate::emitter::Emitter::at) returns it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emission {
     pub(crate) uniform: EmitterUniform,
-    /// Every one of so many births is looked at where a few tell enough.
+    /// Step of the sample: one birth stands for so many.
     pub step: u32,
-    /// Births from `first` on until the next one whose index is a multiple of `step`.
+    /// Births from `first` to the first one whose index is a multiple of `step`.
     pub first_sample: u32,
 }
 
-/// How far the swirls of turbulence reach along an axis, in metres of turbulence: more than any of the points that a test looks at.
+/// Bound on the displacement by turbulence along an axis, in units of `turbulence`: more than at any point that the
+/// test below samples.
 const SWIRL: f32 = 5.0;
-/// Ages for which the box is worked out.
+/// Number of intervals of age for which the box is computed.
 const AGES: u32 = 16;
 
 impl Emission {
-    /// Births that may be alive: at least as many as are.
+    /// Number of births that may be alive. No fewer than are alive.
     pub fn count(&self) -> u32 {
         self.uniform.count
     }
 
-    /// Writes the particles that are alive.
+    /// Replaces `particles` with those that are alive.
     pub fn evaluate(&self, particles: &mut Vec<Particle>) {
         self.write(0, 1, particles);
     }
 
-    /// A few particles, each of them `step` of all, which are the same ones in the next frame.
+    /// Replaces `particles` with a sample, each of which stands for `step` particles. The sample has the same particles
+    /// in every frame.
     pub fn sample(&self, particles: &mut Vec<Particle>) {
         self.write(self.first_sample, self.step, particles);
     }
@@ -44,15 +46,16 @@ impl Emission {
             let [rotation, amount, frame, age] = emitted.rotation_amount_frame_age.to_array();
             let radius = emitted.position_radius.w;
             let position = emitted.position_radius.truncate();
-            // Those that are not alive are nowhere, and as good as those that have faded out.
+            // Particles that are not alive have an amount of 0 and no position. They are dropped, as are those that
+            // have faded out.
             (amount > 0.0).then_some(Particle { position, radius, rotation, amount, frame, age })
         };
         particles.clear();
         particles.extend((first..self.uniform.count).step_by(step as usize).filter_map(alive));
     }
 
-    /// A box that holds every sprite, from the emitter's numbers alone; larger than that of the particles. `reach` as in
-    /// [`bounds_of`](super::bounds_of).
+    /// Box that contains every sprite, from the emitter's settings alone. It is larger than that of the particles.
+    /// `reach` is as in [`bounds_of`](super::bounds_of).
     pub fn bounds(&self, reach: f32) -> Bounds {
         let e = &self.uniform;
         let mut bounds = Bounds::EMPTY;
@@ -63,13 +66,13 @@ impl Emission {
             return bounds;
         }
         let disc = |axis: Vec3, extent: f32| axis.abs() * extent;
-        // Whichever the shape is.
+        // Large enough for every shape.
         let born = e.extent.max(disc(e.disc_x, e.extent.x) + disc(e.disc_z, e.extent.z));
         let at = |step: u32| youngest + (oldest - youngest) * step as f32 / AGES as f32;
         for step in 0..AGES {
             let (early, late) = (at(step), at(step + 1));
             let (reached_early, reached_late) = (drag_integrals(e.drag, early), drag_integrals(e.drag, late));
-            // Each of them only grows.
+            // The factors only grow with age, so the ends of an interval bound them.
             let ways = [
                 (e.velocity, reached_early.x, reached_late.x),
                 (e.wind, early - reached_early.x, late - reached_late.x),
@@ -99,7 +102,7 @@ mod tests {
     use crate::formula::hash::{pcg3d, unit};
 
     #[test]
-    fn swirls_reach_no_further_than_the_box_allows_for() {
+    fn turbulence_stays_within_its_bound() {
         let mut farthest = 0.0_f32;
         for index in 0..400_000 {
             let [place, turn] = [0, 1].map(|salt| pcg3d(UVec3::new(index, salt, 5)));

@@ -1,4 +1,4 @@
-//! One frame.
+//! Input of one frame.
 
 use glam::Vec3;
 
@@ -10,45 +10,45 @@ use super::particle::Particle;
 use super::view::View;
 use crate::settings::{Order, Settings, ShadeTree};
 
-/// Everything that [`Renderer::prepare`](crate::Renderer::prepare) needs to know about a frame.
+/// Input of [`Renderer::prepare`](crate::Renderer::prepare) for one frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
     /// The camera.
     pub view: View,
-    /// The opaque scene's depth, already rendered in this encoder or an earlier one.
+    /// Depth of the opaque scene, already rendered in this encoder or an earlier one.
     pub scene_depth: SceneDepth<'a>,
-    /// At most [`MAX_LIGHTS`](crate::frame::MAX_LIGHTS).
+    /// At most [`MAX_LIGHTS`](crate::frame::MAX_LIGHTS) lights.
     pub lights: &'a [Light],
-    /// Drawn far to near, whatever their order here.
+    /// Particle systems, in any order. They are drawn far to near.
     pub systems: &'a [System<'a>],
-    /// Seconds, from any start: the noise of volumetric sprites rises with it.
+    /// Seconds from any start. The noise of volumetric sprites rises with time.
     pub time: f32,
-    /// The way up in the world, along which noise rises; need not be unit length.
+    /// Up direction of the world, along which the noise rises; need not be unit length.
     pub up: Vec3,
-    /// Which stages of the shading may be shown of this frame; [`ShadeTree::Final`] for a picture. One accumulation serves all
-    /// of them but [`ShadeTree::Overdraw`], which takes a pass of its own.
+    /// Debug views that may be shown of this frame; [`ShadeTree::Final`] for a normal image. All of them share one
+    /// accumulation, except [`ShadeTree::Overdraw`], which needs a pass of its own.
     pub stages: &'a [ShadeTree],
 }
 
 impl<'a> Frame<'a> {
-    /// A frame without lights and smoke; y is up.
+    /// Frame without lights and systems; y is up.
     pub const fn new(view: View, scene_depth: SceneDepth<'a>) -> Self {
         let stages = &[ShadeTree::Final];
         Self { view, scene_depth, lights: &[], systems: &[], time: 0.0, up: Vec3::Y, stages }
     }
 }
 
-/// The opaque scene's depth at full resolution, single-sampled, with `TEXTURE_BINDING` usage, as large as the host's colour
-/// target. Which of the two is read, and which tested, when, is a table in `docs/depth.md`.
+/// Depth of the opaque scene at full resolution: single-sampled, with `TEXTURE_BINDING` usage, as large as the host's
+/// colour target. `docs/depth.md` has a table of which of the two is read and which is tested.
 #[derive(Clone, Copy, Debug)]
 pub enum SceneDepth<'a> {
-    /// A depth buffer written with the view's projection: a 2D view of its depth aspect.
+    /// Depth buffer written with the view's projection: a 2D view of its depth aspect.
     Buffer(&'a wgpu::TextureView),
-    /// An `R32Float` target with linear view depth in metres; no surface: anything from 1e6 up.
+    /// `R32Float` target with linear view depth in metres. Values from 1e6 up mean that there is no surface.
     Linear(&'a wgpu::TextureView),
-    /// Both of the same scene. The buffer is read, but by systems of the technique
-    /// [`SoftLinear`](crate::settings::Technique::SoftLinear), and where the backend (OpenGL) cannot read the buffer that
-    /// is attached to the pass.
+    /// Both, of the same scene. The buffer is read, with two exceptions: systems of the technique
+    /// [`SoftLinear`](crate::settings::Technique::SoftLinear), and backends (OpenGL) that cannot read a buffer that is
+    /// attached to the pass.
     Both {
         /// As in [`SceneDepth::Buffer`].
         buffer: &'a wgpu::TextureView,
@@ -78,58 +78,61 @@ impl<'a> SceneDepth<'a> {
 /// One particle system: sprites that are accumulated together and lit as one body.
 #[derive(Clone, Copy, Debug)]
 pub struct System<'a> {
-    /// A number of its own, by which the renderer knows the system again in the next frame, whatever its place in the list.
+    /// Identifies the system from frame to frame, whatever its position in the list. Must be unique within a frame.
     pub key: u64,
     /// The sprites, in any order.
     pub particles: Particles<'a>,
-    /// A box in world space that holds every sprite, corners and all: [`Settings::reach`] radii round each. It decides which
-    /// pixels are lit, which lights reach the smoke, and whether it is in sight; what is outside may be cut off, and what is
-    /// larger than it need be only costs. `None` measures the slice with [`bounds_of`](crate::frame::bounds_of).
+    /// World-space box that contains every sprite with its corners: [`Settings::reach`] radii around each particle. It
+    /// decides which pixels are lit, which lights reach the smoke, and whether the system is visible. Sprites outside
+    /// the box may be cut off; a box that is too large costs time. `None` measures a slice with
+    /// [`bounds_of`](crate::frame::bounds_of).
     pub bounds: Option<Bounds>,
-    /// View depth, metres, of the plane that light is flattened to, and by which systems are drawn far to near. It should move
-    /// without jumps: the mean depth of the sprites, by amount and area, is best, and is what `None` takes of a slice. For a
-    /// buffer, `None` takes the middle of the part of `bounds` that is in front of the viewer, which jumps when `bounds` does.
+    /// View depth, metres, of the plane on which light is evaluated, and by which systems are drawn far to near. It
+    /// should move without jumps. The mean depth of the sprites, weighted by amount and area, is best; `None` uses it
+    /// for a slice. For a buffer `None` uses the middle of the part of `bounds` in front of the viewer, which jumps
+    /// when `bounds` does.
     pub depth: Option<f32>,
-    /// Everything a slider moves.
+    /// Settings of the system.
     pub settings: &'a Settings,
-    /// Ramps and sprite picture.
+    /// Ramps and sprite images.
     pub material: &'a Material,
 }
 
 impl<'a> System<'a> {
-    /// A system whose box is measured. With more than one in a frame, give each a `key`.
+    /// System with a measured box. If a frame has more than one system, give each a `key`.
     pub const fn new(particles: Particles<'a>, settings: &'a Settings, material: &'a Material) -> Self {
         Self { key: 0, particles, bounds: None, depth: None, settings, material }
     }
 }
 
-/// Where the sprites are.
+/// Source of the sprites.
 #[derive(Clone, Copy, Debug)]
 pub enum Particles<'a> {
-    /// In memory. Sorted and uploaded by [`Renderer::prepare`](crate::Renderer::prepare). A sprite with a number that
-    /// is not finite, or out of its range, is skipped.
+    /// Particles in memory. [`Renderer::prepare`](crate::Renderer::prepare) sorts and uploads them. A sprite with a
+    /// number that is not finite or out of range is skipped.
     Slice(&'a [Particle]),
-    /// On the GPU, in the layout of [`Particle`], with `VERTEX` usage. `System::bounds` must be given.
+    /// Particles on the GPU, in the layout of [`Particle`], with `VERTEX` usage. Requires `System::bounds`.
     Buffer {
-        /// Holds `count` particles from `offset` on.
+        /// Contains `count` particles from `offset` on.
         buffer: &'a wgpu::Buffer,
-        /// Bytes before the first particle, a multiple of 4; of 16 where compute shaders read them, by `path` or `is_sorted`.
+        /// Bytes before the first particle: a multiple of 4, or of 16 if compute shaders read the buffer because of
+        /// `path` or `is_sorted`.
         offset: u64,
-        /// How many to draw.
+        /// Number of particles to draw.
         count: u32,
-        /// They lie back to front. Where they do not, and their order matters, the GPU sorts them, at one depth by number: that
-        /// takes compute shaders, and `STORAGE` usage.
+        /// True if the particles are ordered back to front. If they are not and their order matters, the GPU sorts
+        /// them, at equal depth by index. That needs compute shaders and `STORAGE` usage.
         is_sorted: bool,
     },
-    /// Those of an emitter at a time. The path `tiled` evaluates them on the GPU, where they differ from those of
-    /// [`Emission::evaluate`] by what sines, roots and powers of the device are rounded: some micrometres for each metre and second.
-    /// Other paths evaluate them on the CPU. The box is [`Emission::bounds`] where `None` is given, and a thousand
-    /// of them stand for all where their mean depth counts.
+    /// Particles of an emitter at one time. The path `tiled` evaluates them on the GPU, with differences from
+    /// [`Emission::evaluate`] by the device's rounding of sines, roots and powers: some micrometres per metre and
+    /// second. Other paths evaluate them on the CPU. If `System::bounds` is `None`, the box is [`Emission::bounds`].
+    /// The mean depth is taken from a sample of about a thousand.
     Emission(&'a Emission),
 }
 
 impl Particles<'_> {
-    /// How many there are, those aside that cannot be seen.
+    /// Number of particles, including invisible ones.
     pub fn count(&self) -> u32 {
         match *self {
             Self::Slice(particles) => particles.len() as u32,
@@ -138,7 +141,7 @@ impl Particles<'_> {
         }
     }
 
-    /// True for a buffer whose order matters, and is not right.
+    /// True for a buffer that is not sorted although its order matters.
     pub fn need_sorting(&self, settings: &Settings) -> bool {
         matches!(self, Self::Buffer { is_sorted: false, .. }) && settings.order() == Order::Sorted
     }

@@ -1,22 +1,23 @@
-//! Lights, as the host gives them: world space, linear colour, metres.
+//! Lights of a host: world space, linear colour, metres.
 
 use glam::{Mat4, Vec3};
 
 use crate::formula::uniforms::LightUniform;
 use crate::settings::{choice, settings};
 
-/// Most lights in one frame. 128 lights of 64 bytes are half of the 16 KiB that WebGL2 promises a uniform block.
+/// Maximum number of lights in one frame. 128 lights of 64 bytes are half of the 16 KiB that WebGL2 guarantees for a
+/// uniform block.
 pub const MAX_LIGHTS: usize = 128;
 
 choice! {
-    /// Where a light shines from.
+    /// Type of a light.
     LightKind {
-        /// From `position`, every way.
+        /// Shines from `position` in all directions.
         #[default]
         Point = "point",
-        /// From `position`, in a cone round `direction`.
+        /// Shines from `position`, in a cone around `direction`.
         Spot = "spot",
-        /// From infinitely far, along `direction`. `position` and `range` are not used.
+        /// Shines along `direction`, from infinitely far. `position` and `range` are not used.
         Directional = "directional",
     }
 }
@@ -25,40 +26,42 @@ settings! {
     /// One light.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Light {
-        /// Where it shines from.
+        /// Type of the light.
         kind: LightKind = LightKind::Point, choice;
-        /// World space, metres: behind the smoke it glows through, beside it it gives it shape. Point and spot.
+        /// Position in world space, metres. Behind the smoke, the light glows through it; beside the smoke, it shows
+        /// its shape. Point and spot.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         position: Vec3 = Vec3::ZERO, vector(-1.0e5..=1.0e5, "m");
-        /// The way the light travels, world space; need not be unit length. Spot and directional.
+        /// Direction in which the light travels, world space; need not be unit length. Spot and directional.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         direction: Vec3 = Vec3::NEG_Y, vector(-1.0e3..=1.0e3, "");
-        /// Linear RGB, usually 0..=1: tints what the ramps answer.
+        /// Linear RGB, usually 0 to 1. Tints the light on smoke and scene.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         colour: Vec3 = Vec3::ONE, colour(0.0..=100.0);
-        /// Multiplies `colour`. Point and spot: at one metre. Directional: everywhere. In any unit, the scene's: a sun of 120 000
-        /// lux is as good as one of 1. What is brighter than half floats can hold is drawn as bright as they can.
+        /// Multiplies `colour`. Higher: brighter. Point and spot: at one metre. Directional: everywhere. Any unit that
+        /// fits the scene: a sun of 120 000 lux works like one of 1. Light is limited to what half floats can hold.
         intensity: f32 = 1.0, number(0.0..=1.0e9, "");
-        /// Metres at which a point or spot light has faded to nothing; infinite: never. Smaller is cheaper: systems beyond it skip
-        /// the light.
+        /// Distance at which a point or spot light has faded to nothing, metres; infinite: never. Lower is cheaper,
+        /// because systems beyond it skip the light.
         range: f32 = 20.0, number(0.01..=f32::INFINITY, "m");
-        /// Radius of the glowing body, metres: softens the falloff close by and lets the body show past its own fixture.
+        /// Radius of the glowing body, metres. Higher: softer falloff close by, and the glow is visible past its own
+        /// fixture.
         radius: f32 = 0.1, number(0.0..=1.0e4, "m");
-        /// Half angle of the spot's bright core, degrees.
+        /// Half angle of the spot's bright core, degrees. Higher: a wider core.
         inner_angle: f32 = 20.0, number(0.0..=89.0, "degrees");
-        /// Half angle at which the spot has faded to nothing, degrees; at least `inner_angle`. Between them light falls by the
-        /// square of how far the cosine has gone.
+        /// Half angle at which the spot has faded to nothing, degrees; at least `inner_angle`. Higher: a softer edge.
+        /// In between, light falls with the square of the cosine's progress.
         outer_angle: f32 = 35.0, number(|this| this.inner_angle..=89.9, "degrees");
-        /// Multiplies this light's glow through the smoke, its specular scatter quad. 0 draws none.
+        /// Multiplies the glow of this light through the smoke, its specular scatter quad. 0 draws none.
         specular_scatter: f32 = 1.0, number(0.0..=100.0, "");
     }
 }
 
 impl Light {
-    /// The light as the shaders see it, in the space that `space_from_world` (rigid) leads to.
+    /// Returns the light as the shaders read it, in the space that `space_from_world` (rigid) leads to.
     pub fn uniform(&self, space_from_world: &Mat4) -> LightUniform {
         let directional = self.kind == LightKind::Directional;
-        // Cone fade: cos = cos(inner) gives 1, cos(outer) gives 0.
+        // Cone fade: 1 at cos(inner), 0 at cos(outer).
         let (spot_scale, spot_offset) = if self.kind == LightKind::Spot {
             let (inner, outer) = (self.inner_angle.to_radians().cos(), self.outer_angle.to_radians().cos());
             let scale = 1.0 / (inner - outer).max(1.0e-4);

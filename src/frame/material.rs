@@ -1,12 +1,12 @@
-//! The pictures of a particle system on the GPU.
+//! Images of a particle system on the GPU.
 
 use crate::assets::material::MaterialInfo;
 
-/// Ramps and sprite pictures on the GPU. Cheap to clone and to share between systems, renderers and frames; made by
-/// [`Renderer::create_material`](crate::Renderer::create_material).
+/// Ramps and sprite images on the GPU. Cheap to clone and to share between systems, renderers and frames.
+/// [`Renderer::create_material`](crate::Renderer::create_material) creates it.
 #[derive(Clone, Debug)]
 pub struct Material {
-    /// Number of the context that made it.
+    /// Number of the context that created it.
     pub(crate) context: u64,
     pub(crate) bind_group: wgpu::BindGroup,
     pub(crate) info: MaterialInfo,
@@ -14,7 +14,7 @@ pub struct Material {
 }
 
 impl Material {
-    /// Bytes of GPU memory that the pictures take.
+    /// GPU memory of the images, bytes.
     pub fn memory_use(&self) -> u64 {
         self.bytes
     }

@@ -1,8 +1,8 @@
-//! What a host hands over for every frame: a camera, scene depth, lights and particle systems.
+//! Input of a frame from the host: camera, scene depth, lights and particle systems.
 
 mod bounds;
 mod emission;
-#[allow(clippy::module_inception, reason = "one file per thing handed over, and one of them is the frame")]
+#[allow(clippy::module_inception, reason = "one file per part of the input, and one of them is the frame")]
 mod frame;
 mod light;
 mod material;

@@ -4,25 +4,25 @@ use glam::Vec3;
 
 use super::bounds::Bounds;
 
-/// One camera-facing sprite. The layout is that of the instance buffer: 32 bytes, tightly packed.
+/// Camera-facing sprite, in the layout of the instance buffer: 32 bytes, tightly packed.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Particle {
     /// Centre in world space, metres.
     pub position: Vec3,
-    /// Half the side of the square sprite, metres. Zero draws nothing.
+    /// Half the side of the square sprite, metres. 0 draws nothing.
     pub radius: f32,
     /// Rotation on the screen, radians, counter-clockwise. Rotates the sprite's normals too.
     pub rotation: f32,
-    /// Multiplies the sprite's amount, 0..=1; what is beyond is clamped. Zero draws nothing.
+    /// Multiplies the sprite's amount, 0..=1; larger values are clamped. 0 draws nothing.
     pub amount: f32,
-    /// Flipbook frame. Wraps round; a fraction blends with the next frame.
+    /// Flipbook frame. Wraps around; a fraction blends with the next frame.
     pub frame: f32,
-    /// Share of its life that has passed, 0..=1.
+    /// Share of the particle's life that has passed, 0..=1.
     pub age: f32,
 }
 
-/// Largest number of a particle that is drawn: far beyond any scene, and far from where f32 runs out.
+/// Largest magnitude of a particle's numbers that is drawn: far beyond any scene, and far below the limits of f32.
 pub const LARGEST: f32 = 1.0e9;
 
 impl Default for Particle {
@@ -32,28 +32,27 @@ impl Default for Particle {
 }
 
 impl Particle {
-    /// True if every number is finite, in range and no more than [`LARGEST`]; a sprite that is not is skipped, never
-    /// drawn.
+    /// True if every number is finite, in range and at most [`LARGEST`]. Sprites that are not valid are skipped.
     pub fn is_valid(&self) -> bool {
         let [x, y, z] = self.position.to_array();
         let numbers = [x, y, z, self.rotation, self.amount, self.frame, self.age];
-        // Both are false for NaN.
+        // Both comparisons are false for NaN.
         numbers.iter().all(|number| number.abs() <= LARGEST) && (0.0..=LARGEST).contains(&self.radius)
     }
 
-    /// True if it is valid and there is something of it to see.
+    /// True if the particle is valid, and its radius and amount are above 0.
     pub fn is_visible(&self) -> bool {
         self.is_valid() && self.radius > 0.0 && self.amount > 0.0
     }
 
-    /// The amount, as far as it counts.
+    /// Amount, clamped to 0..=1.
     pub fn shown_amount(&self) -> f32 {
         self.amount.clamp(0.0, 1.0)
     }
 }
 
-/// The box that holds the sprites of every visible particle. `reach`: how far a sprite's corners are from its middle, in
-/// radii, see [`Settings::reach`](crate::Settings::reach).
+/// Box that contains the sprites of all visible particles. `reach` is the distance of a sprite's corners from its
+/// centre, in radii; see [`Settings::reach`](crate::Settings::reach).
 pub fn bounds_of(particles: &[Particle], reach: f32) -> Bounds {
     let mut bounds = Bounds::EMPTY;
     for particle in particles.iter().filter(|particle| particle.is_visible()) {

@@ -1,4 +1,4 @@
-//! What both renderers refuse.
+//! Validation of the input that both renderers share.
 
 use glam::{UVec2, Vec3};
 
@@ -7,7 +7,7 @@ use super::light::{Light, LightKind, MAX_LIGHTS};
 use crate::error::FieldError;
 use crate::settings::{DepthSource, Settings, validate};
 
-/// The settings of system `index` in a picture of this size.
+/// Validates the settings of system `index` for a picture of this size.
 pub fn validate_settings(index: usize, settings: &Settings, picture: UVec2) -> Result<(), FieldError> {
     settings.validate(|| format!("systems[{index}].settings"))?;
     let accumulate = &settings.accumulate;
@@ -20,7 +20,7 @@ pub fn validate_settings(index: usize, settings: &Settings, picture: UVec2) -> R
     Ok(())
 }
 
-/// Where a host says that system `index` is.
+/// Validates box and depth that a host gives for system `index`.
 pub fn validate_place(index: usize, bounds: Option<&Bounds>, depth: Option<f32>) -> Result<(), FieldError> {
     if let Some(bounds) = bounds {
         bounds.validate(|| format!("systems[{index}].bounds"))?;
@@ -33,7 +33,7 @@ pub fn validate_place(index: usize, bounds: Option<&Bounds>, depth: Option<f32>)
     }
 }
 
-/// Lights.
+/// Validates the lights.
 pub fn validate_lights(lights: &[Light]) -> Result<(), FieldError> {
     if lights.len() > MAX_LIGHTS {
         return Err(FieldError::new("lights", format!("{} lights", lights.len()), format!("at most {MAX_LIGHTS}")));
@@ -48,7 +48,7 @@ pub fn validate_lights(lights: &[Light]) -> Result<(), FieldError> {
     Ok(())
 }
 
-/// The time of a frame, and its way up.
+/// Validates time and up direction of a frame.
 pub fn validate_time_and_up(time: f32, up: Vec3) -> Result<(), FieldError> {
     if !time.is_finite() {
         return Err(FieldError::new("time", time, "a finite number of seconds"));

@@ -1,4 +1,4 @@
-//! Particles of a system that come from files in place of an emitter.
+//! Particles of a system from files, in place of an emitter.
 
 use std::path::{Component, Path};
 
@@ -8,65 +8,66 @@ use super::sequence::Sequence;
 use crate::settings::{choice, settings};
 
 choice! {
-    /// Which axis of a file points up.
+    /// Axis of a file that points up.
     UpAxis {
-        /// y, as Houdini has it.
+        /// y, as in Houdini.
         #[default]
         Y = "y",
-        /// z, as Blender has it.
+        /// z, as in Blender.
         Z = "z",
     }
 }
 
 choice! {
-    /// What follows the last frame.
+    /// Continuation after the last frame.
     CacheEnd {
         /// The last frame stays.
         #[default]
         Hold = "hold",
-        /// The first frame; it has always been so.
+        /// The sequence repeats, before its start too.
         Loop = "loop",
     }
 }
 
 settings! {
-    /// Particles from a simulation, in files: docs/particles.md.
+    /// Particles of a simulation, from files: docs/particles.md.
     #[derive(Clone, Debug, PartialEq)]
     pub struct CacheSource {
-        /// A CSV or PLY file, or one a frame: `smoke_####.ply`, with `#` for the digits of the frame's number. It takes the place of
-        /// the emitter; empty for none.
+        /// CSV or PLY file, or one file per frame: `smoke_####.ply`, with `#` for the digits of the frame's number. It
+        /// replaces the emitter; empty for none.
         path: String = String::new(), particles;
-        /// Metres of one unit of the file: sizes and distances of the smoke grow with it.
+        /// Metres per unit of the file. Higher: larger smoke.
         units: f32 = 1.0, number(1.0e-6..=1.0e6, "m");
-        /// Which axis of the file points up: with the wrong one the smoke lies on its side.
+        /// Axis of the file that points up. With the wrong one the smoke lies on its side.
         up: UpAxis = UpAxis::Y, choice;
-        /// Where the file's origin is: moves all of the smoke.
+        /// Position of the file's origin. Moves all of the smoke.
         #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
         position: Vec3 = Vec3::ZERO, vector(-1.0e5..=1.0e5, "m");
-        /// Frames of the simulation per second: more plays it faster.
+        /// Frames of the simulation per second. Higher: faster playback.
         fps: f32 = 24.0, number(0.01..=1000.0, "frames/s");
-        /// When the first frame is shown: later holds it back.
+        /// Time at which the first frame is shown. Higher: delays the smoke.
         start: f32 = 0.0, number(-1.0e5..=1.0e5, "s");
-        /// What follows the last frame.
+        /// Continuation after the last frame: hold it, or repeat.
         after: CacheEnd = CacheEnd::Hold, choice;
-        /// Radius of particles of a file without one: large ones blur into each other, small ones show one by one.
+        /// Radius of particles if the file has none. Higher: particles blur into each other. Lower: they show one by
+        /// one.
         default_radius: f32 = 0.25, number(0.0..=1.0e3, "m");
-        /// Amount of particles of a file without one: how dense the smoke is.
+        /// Amount of particles if the file has none. Higher: denser smoke.
         default_amount: f32 = 0.3, number(0.0..=1.0, "");
-        /// Flipbook frames per second: how fast each puff boils. 0: still.
+        /// Flipbook frames per second. Higher: puffs boil faster. 0: still.
         flipbook_rate: f32 = 4.0, number(0.0..=120.0, "frames/s");
     }
 }
 
 impl CacheSource {
-    /// Whether particles come from files.
+    /// True if particles come from files.
     pub fn is_used(&self) -> bool {
         !self.path.is_empty()
     }
 }
 
-/// The file that the path of a cache stands for, from the preset's folder on; none for what is no CSV or PLY, and for what lies
-/// outside.
+/// File that the path of a cache stands for, relative to the preset's folder. `None` if it is no CSV or PLY, lies
+/// outside, or has more than one run of `#`.
 pub fn cache_file(name: &str) -> Option<&Path> {
     let path = Path::new(name);
     let ending = path.extension()?;
@@ -81,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn caches_stay_inside_the_presets_folder() {
+    fn particle_files_stay_inside_the_presets_folder() {
         for inside in ["a.ply", "sim/smoke_####.PLY", "./1_#.csv"] {
             assert_eq!(cache_file(inside), Some(Path::new(inside)));
         }

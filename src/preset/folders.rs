@@ -1,4 +1,4 @@
-//! Where the pictures and particle files of a preset are looked for.
+//! Folders in which the images and particle files of a preset are searched for.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -7,20 +7,20 @@ use super::sequence::is_there;
 use crate::assets::builtin;
 use crate::error::Error;
 
-/// The folder of the preset's file, and after it one that presets share.
+/// Folder of the preset's file, followed by one that presets share.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PictureFolders {
     own: PathBuf,
     shared: Option<PathBuf>,
 }
 
-/// Pictures that come with the program: their names have no ending.
+/// Images that come with the program. Their names have no extension.
 const BUILT_IN: [&[builtin::Builtin]; 4] = [builtin::RAMPS, builtin::MOTIFS, builtin::SPRITES, builtin::NOISES];
 
-/// Most names of a folder that are compared with one that is missing.
+/// Maximum number of names in a folder that are compared with a missing one.
 const MOST_NAMES: usize = 10_000;
 
-/// Least likeness of a name to one that is missing, to be spoken of.
+/// Minimum similarity of a name to a missing one, to be suggested.
 pub(super) const ALIKE: f64 = 0.75;
 
 impl PictureFolders {
@@ -29,26 +29,26 @@ impl PictureFolders {
         Self::at(preset.parent().unwrap_or(Path::new("")))
     }
 
-    /// One folder alone; the empty path is the one that the program was started in.
+    /// One folder alone. The empty path is the working directory.
     pub fn at(folder: &Path) -> Self {
         Self { own: folder.into(), shared: None }
     }
 
-    /// These, and then a folder that presets share.
+    /// Adds a folder that presets share, to be searched last.
     pub fn and_shared(self, shared: Option<PathBuf>) -> Self {
         Self { shared, ..self }
     }
 
-    /// Every place where a file may lie, the first wins.
+    /// All paths that a file may have. The first that exists is used.
     pub fn places(&self, file: &Path) -> impl Iterator<Item = PathBuf> {
         self.all().map(move |folder| folder.join(file))
     }
 
-    /// Where a file lies, or files that a name with `#` stands for. What is there and cannot be read is found: reading it says
-    /// why.
+    /// Path of a file, or of files that a name with `#` stands for. A file that exists but cannot be read is found;
+    /// reading it gives the reason.
     ///
     /// # Errors
-    /// [`Error::Image`] where it is in no folder, with the folders, and the name that is most like it.
+    /// [`Error::Image`] if no folder has it, with the folders and the most similar name.
     pub fn find(&self, file: &Path) -> Result<PathBuf, Error> {
         self.places(file).find(|place| is_there(place)).ok_or_else(|| self.missing(file))
     }
@@ -72,7 +72,7 @@ impl PictureFolders {
     }
 }
 
-/// The file of the same folder and kind whose name is most like that of a file, and how much.
+/// Most similar name of a file in the same folder with the same extension, and its similarity.
 fn nearest(file: &Path) -> Option<(f64, String)> {
     let (name, folder) = (file.file_name()?.to_str()?, file.parent()?);
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
@@ -81,7 +81,7 @@ fn nearest(file: &Path) -> Option<(f64, String)> {
     let names =
         std::fs::read_dir(folder).ok()?.take(MOST_NAMES).filter_map(|entry| entry.ok()?.file_name().into_string().ok());
     let alike = names.filter(is_kind).map(|other| (strsim::jaro_winkler(name, &other), other));
-    // Of frames that are as much alike the first, whichever way the folder lists them.
+    // Among equally similar frames the first by name, in whatever order the folder lists them.
     alike.filter(|(alike, _)| *alike >= ALIKE).max_by(|a, b| a.0.total_cmp(&b.0).then_with(|| b.1.cmp(&a.1)))
 }
 
@@ -90,7 +90,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_presets_own_folder_comes_first_and_what_is_nowhere_is_told_with_what_is_like_it() {
+    fn the_presets_own_folder_comes_first_and_missing_files_suggest_a_similar_name() {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
         for file in ["shots/both.png", "team/both.png", "team/theirs.png", "team/wispy_edge.png", "shots/a.txt"] {

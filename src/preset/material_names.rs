@@ -1,4 +1,4 @@
-//! The pictures that a preset names, and where they are looked for.
+//! Names of the images of a preset, and their loading.
 
 use std::path::{Component, Path};
 
@@ -11,56 +11,59 @@ use crate::error::{Error, FieldError};
 use crate::settings::{PictureRole, settings};
 
 settings! {
-    /// The pictures of a system: names of built-in ones, or PNG files beside the preset.
+    /// Images of a system: names of built-in ones, or PNG files beside the preset.
     #[derive(Clone, Debug, PartialEq, Eq)]
     pub struct MaterialNames {
         "sprite":
-        /// Flipbook of normal maps: the shape of every puff, and of its outline.
+        /// Flipbook of normal maps: shape and outline of every puff.
         sprite: String = "puff".into(), picture(PictureRole::Sprite);
-        /// Depth and motion of a sprite from a file, laid out as it; empty for none. A built-in sprite has its own.
+        /// Depth and motion of a sprite file, with the same layout; empty for none. Built-in sprites have their own.
         detail: String = String::new(), picture(PictureRole::Detail);
-        /// The sprite under light from six sides, laid out as it and as high again: right, top and front above, left, bottom and back below.
-        /// A file, of a built-in sprite, too; empty for none. `haze sprite bake --six-way` makes it.
+        /// The sprite under light from six sides, with the same layout but twice as high: right, top and front above;
+        /// left, bottom and back below. A file, for built-in sprites too; empty for none. `haze sprite bake --six-way`
+        /// makes it.
         six_way: String = String::new(), picture(PictureRole::SixWay);
-        /// Frames beside each other, for a sprite from a file. A built-in one knows its own.
+        /// Number of frames side by side in a sprite file. Built-in sprites have their own.
         columns: u32 = 1, integer(1..=256, "frames");
-        /// Frames below each other, for a sprite from a file.
+        /// Number of frames one below the other in a sprite file.
         rows: u32 = 1, integer(1..=256, "frames");
-        /// True for a sprite file painted with green pointing down: the wrong way round, light from above lights it from below.
+        /// True for a sprite file painted with green pointing down. With the wrong value, light from above lights it
+        /// from below.
         y_down: bool = false, flag;
         "ramps and noise":
-        /// Light by dot(n, l) and, where it has rows, by amount times boost: the colours of shade, terminator and lit side.
+        /// Light by dot(n, l) and, if it has rows, by amount times boost: the colours of shade, terminator and lit
+        /// side.
         diffuse_ramp: String = "diffuse_soft".into(), picture(PictureRole::Ramp);
-        /// The same for light from behind: a rim that glows, a middle that stays dark.
+        /// The same for light from behind: a glowing rim, a dark middle.
         backlight_ramp: String = "backlight_traced_ash".into(), picture(PictureRole::Ramp);
-        /// Light by amount: the colours of thin and thick smoke, wherever lights are.
+        /// Light by amount: the colours of thin and thick smoke, independent of the lights.
         soft_scatter_ramp: String = "scatter_mist".into(), picture(PictureRole::Ramp);
-        /// Glow by distance² and amount: how a light behind shines through.
+        /// Glow by distance² and amount: the look of a light that shines through smoke.
         specular_ramp: String = "specular_halo".into(), picture(PictureRole::Ramp);
         /// Painted lit sphere: light by paint alone.
         motif: String = "motif_studio".into(), picture(PictureRole::Motif);
         /// Colour by age: from flame to ash.
         age_ramp: String = "age_smoke".into(), picture(PictureRole::Ramp);
-        /// Coverage by amount: soft, wispy or cut silhouettes.
+        /// Coverage by amount: soft, wispy or sharp silhouettes.
         coverage_ramp: String = "coverage_soft".into(), picture(PictureRole::Ramp);
-        /// Tiling 3D noise: a built-in one, or a PNG of slices below each other.
+        /// Tiling 3D noise: a built-in one, or a PNG of slices one below the other.
         noise: String = "fbm".into(), picture(PictureRole::Noise);
     }
 }
 
 impl MaterialNames {
-    /// Loads every picture. `folder` is the preset's; files are looked for there and nowhere else.
+    /// Loads all images. `folder` is the preset's; files are searched for there only.
     ///
     /// # Errors
-    /// [`Error::Picture`] naming the field and the file, or [`Error::Field`] for a name that is neither built in nor a file
-    /// inside the folder, or for more than [`MAX_PICTURE_BYTES`](super::MAX_PICTURE_BYTES).
+    /// [`Error::Picture`] with the field and the file, or [`Error::Field`] for a name that is neither built in nor a
+    /// file inside the folder, and for more than [`MAX_PICTURE_BYTES`](super::MAX_PICTURE_BYTES).
     pub fn load(&self, folder: &Path) -> Result<MaterialAssets, Error> {
         let loaded = self.load_from(&mut Pictures::new(PictureFolders::at(folder)));
         loaded.map_err(|mut errors| errors.swap_remove(0).1)
     }
 
-    /// The same, where other systems may have loaded some already. The errors are those of all fields, in their order, with the
-    /// field: at least one. What belongs to the sprite is of that field.
+    /// As [`MaterialNames::load`], with the images that other systems have loaded already. The errors are those of all
+    /// fields in order, at least one, each with its field. Images that belong to the sprite report under `sprite`.
     pub fn load_from(&self, pictures: &mut Pictures) -> Result<MaterialAssets, Vec<(&'static str, Error)>> {
         let mut errors = Vec::new();
         let sprite = kept("sprite", self.load_sprite(pictures), &mut errors);
@@ -107,7 +110,7 @@ impl MaterialNames {
         }
     }
 
-    /// The same with the usual pictures for some fields, as [`MaterialNames::load_from`] tells them.
+    /// Copy with default images for some fields, named as in the errors of [`MaterialNames::load_from`].
     pub fn with_usual(&self, fields: &[&str]) -> Self {
         let usual = Self::default();
         let mut names = self.clone();
@@ -148,7 +151,7 @@ impl MaterialNames {
 
     fn load_builtin(&self, sprite: &Builtin) -> Result<(Sprite, Option<Sprite>), Error> {
         let refuse = |field: &str, value: String, expected: &str| {
-            let expected = format!("{expected} with a built-in sprite, which knows its own");
+            let expected = format!("{expected} with a built-in sprite, which has its own");
             Err(FieldError::new(format!("material.{field}"), value, expected).into())
         };
         if !self.detail.is_empty() {
@@ -164,7 +167,7 @@ impl MaterialNames {
     }
 }
 
-/// What lies beside a sprite, if it is named.
+/// Loads an image that accompanies a sprite, if one is named.
 fn beside(
     pictures: &mut Pictures,
     field: &'static str,
@@ -177,14 +180,14 @@ fn beside(
     Ok(Some(pictures.sprite(field, inside(field, name, &[])?, layout)?))
 }
 
-/// A sprite, and what belongs to it.
+/// Sprite with its accompanying images.
 struct SpritePictures {
     sprite: Sprite,
     detail: Option<Sprite>,
     six_way: Option<Sprite>,
 }
 
-/// The file that the name of a picture stands for, from the preset's folder on; none for a built-in one's, and for what lies
+/// File that the name of an image stands for, relative to the preset's folder. `None` for built-in images and for files
 /// outside.
 pub fn picture_file(name: &str) -> Option<&Path> {
     let path = Path::new(name);
@@ -193,7 +196,7 @@ pub fn picture_file(name: &str) -> Option<&Path> {
     (is_png && stays).then_some(path)
 }
 
-/// The file that a name stands for, from a folder on.
+/// File that a name stands for, relative to the preset's folder.
 fn inside<'a>(field: &str, name: &'a str, list: &[Builtin]) -> Result<&'a Path, Error> {
     if let Some(path) = picture_file(name) {
         return Ok(path);
@@ -210,7 +213,7 @@ fn inside<'a>(field: &str, name: &'a str, list: &[Builtin]) -> Result<&'a Path, 
     Err(FieldError::new(format!("material.{field}"), format!("{name:?}"), expected).into())
 }
 
-/// What there is, else takes note of why not.
+/// Returns the value, or records the error.
 fn kept<T>(field: &'static str, found: Result<T, Error>, errors: &mut Vec<(&'static str, Error)>) -> Option<T> {
     found.map_err(|error| errors.push((field, error))).ok()
 }
@@ -247,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn assets_stay_inside_the_presets_folder() {
+    fn image_files_stay_inside_the_presets_folder() {
         assert_eq!(inside("sprite", "a/b.png", &[]).unwrap(), Path::new("a/b.png"));
         for outside in ["../b.png", "/etc/b.png", "a/../../b.png", "puf", "b.jpg"] {
             assert!(inside("sprite", outside, builtin::SPRITES).is_err(), "{outside}");

@@ -1,4 +1,4 @@
-//! The pictures of one preset: each is decoded once, and all together are bounded.
+//! Images of one preset: each is decoded once, and their total size is limited.
 
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -10,11 +10,11 @@ use crate::assets::ramp::Ramp;
 use crate::assets::sprite::{Sprite, SpriteLayout};
 use crate::error::{Error, FieldError};
 
-/// Most memory that the pictures of a preset take, bytes. A picture counts for every field that names it, as renderers
-/// upload it.
+/// Maximum memory of the images of a preset, bytes. An image counts for every field that names it, because renderers
+/// upload it for each.
 pub const MAX_PICTURE_BYTES: u64 = 1 << 30;
 
-/// What has been loaded so far, by file.
+/// Images loaded so far, by file.
 pub struct Pictures {
     folders: PictureFolders,
     ramps: HashMap<PathBuf, Ramp>,
@@ -30,7 +30,7 @@ impl Pictures {
         Self { folders, ramps, sprites, noises, bytes: 0 }
     }
 
-    /// The ramp of this file, for a field of the material.
+    /// Loads the ramp of this file, for a field of the material.
     pub fn ramp(&mut self, field: &str, file: &Path) -> Result<Ramp, Error> {
         self.count(field, 0)?;
         let folders = &self.folders;
@@ -40,7 +40,7 @@ impl Pictures {
         Ok(ramp)
     }
 
-    /// The sprite of this file.
+    /// Loads the sprite of this file.
     pub fn sprite(&mut self, field: &str, file: &Path, layout: SpriteLayout) -> Result<Sprite, Error> {
         self.count(field, 0)?;
         let folders = &self.folders;
@@ -50,7 +50,7 @@ impl Pictures {
         Ok(sprite)
     }
 
-    /// The noise of this file.
+    /// Loads the noise of this file.
     pub fn noise(&mut self, field: &str, file: &Path) -> Result<NoiseVolume, Error> {
         self.count(field, 0)?;
         let folders = &self.folders;
@@ -60,14 +60,15 @@ impl Pictures {
         Ok(noise)
     }
 
-    /// Refuses more than there may be: nothing is decoded after that.
+    /// Counts bytes. Fails above the limit, after which nothing is decoded.
     fn count(&mut self, field: &str, bytes: u64) -> Result<(), FieldError> {
         self.bytes += bytes;
         if self.bytes <= MAX_PICTURE_BYTES {
             return Ok(());
         }
         let [found, most] = [self.bytes, MAX_PICTURE_BYTES].map(|bytes| bytes >> 20);
-        let expected = format!("at most {most} MiB for all pictures of the preset, each as often as it is named");
+        let expected =
+            format!("at most {most} MiB for all pictures of the preset, each counted as often as it is named");
         Err(FieldError::new(format!("material.{field}"), format!("{found} MiB of pictures"), expected))
     }
 }
@@ -85,7 +86,7 @@ fn once<K: Hash + Eq, T: Clone>(
     Ok(picture)
 }
 
-/// Adds to a picture's error which field of the preset asks for it.
+/// Adds the field of the preset that names it to the error of an image.
 fn named_by(field: &str, error: Error) -> Error {
     Error::Picture { named_by: format!("material.{field}"), error: Box::new(error) }
 }
@@ -109,7 +110,7 @@ mod tests {
         assert_eq!(pictures.ramp("age_ramp", file).unwrap(), ramp);
         assert_eq!(pictures.noise("noise", file).unwrap(), noise);
         assert_eq!(pictures.sprite("detail", file, layout).unwrap(), sprite);
-        // Half floats of four channels; twice four bytes.
+        // The ramp has four half floats a texel, the noise and the sprite four bytes.
         assert_eq!(pictures.bytes, 2 * (8 + 4 + 4));
         let other = SpriteLayout { y_down: true, ..layout };
         let error = pictures.sprite("sprite", file, other).unwrap_err().to_string();

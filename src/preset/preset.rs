@@ -1,4 +1,4 @@
-//! A preset: camera, lights and particle systems of a shot.
+//! Preset: camera, lights and particle systems of a shot.
 
 use std::path::Path;
 
@@ -16,41 +16,41 @@ use crate::frame::validate::validate_lights;
 use crate::frame::{Emission, Light};
 use crate::settings::{FieldVisitor, Fields, Settings, validate};
 
-/// The version of the preset format that this code writes and reads.
+/// Version of the preset format that this code reads and writes.
 pub const PRESET_VERSION: u32 = 1;
 
-/// Height of the picture that pixel sizes in presets are meant for. A renderer of another height scales them, so that a
+/// Height of the picture that pixel sizes in presets refer to. A renderer of another height scales them, so that a
 /// preset looks the same at every size.
 pub const DESIGN_HEIGHT: f32 = 720.0;
 
-/// Most systems of one preset.
+/// Maximum number of systems in a preset.
 pub const MAX_SYSTEMS: usize = 32;
 
-/// A whole shot.
+/// Preset of a whole shot.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Preset {
     /// Format version: 1.
     pub version: u32,
-    /// What a list shows.
+    /// Name shown in lists.
     pub name: String,
-    /// What there is to see.
+    /// Description of the shot.
     #[serde(default)]
     pub description: String,
-    /// Seconds into the emission that is shown.
+    /// Time that is shown, seconds since the start of emission.
     #[serde(default)]
     pub time: f32,
-    /// Where it is seen from.
+    /// Camera of the shot.
     #[serde(default)]
     pub camera: Camera,
-    /// What stands round the smoke in the demo program. A host shows its own scene instead.
+    /// Scene around the smoke in the demo program. A host shows its own scene instead.
     #[serde(default)]
     pub environment: Environment,
     /// Lights on scene and smoke.
     #[serde(default)]
     pub lights: Vec<Light>,
-    /// The smoke.
+    /// Particle systems: the smoke.
     #[serde(default)]
     pub systems: Vec<PresetSystem>,
 }
@@ -60,24 +60,24 @@ pub struct Preset {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PresetSystem {
-    /// What a list shows.
+    /// Name shown in lists.
     pub name: String,
-    /// Where its particles come from.
+    /// Source of the particles.
     #[serde(default)]
     pub emitter: Emitter,
-    /// Where they come from instead, if there are files of them.
+    /// Particle files, which replace the emitter.
     #[serde(default)]
     pub cache: CacheSource,
-    /// Its pictures.
+    /// Images of the system.
     #[serde(default)]
     pub material: MaterialNames,
-    /// Everything a slider moves.
+    /// Settings of the system: its rendering, fade and lighting.
     #[serde(default)]
     pub settings: Settings,
 }
 
 impl Default for Preset {
-    /// The default camera in the default scene, without lights and smoke.
+    /// Default camera in the default scene, without lights and systems.
     fn default() -> Self {
         Self {
             version: PRESET_VERSION,
@@ -132,7 +132,7 @@ impl Fields for PresetSystem {
 }
 
 impl Preset {
-    /// Reads a preset from a file, or a built-in one by name.
+    /// Loads a preset from a file, or a built-in one by name.
     ///
     /// # Errors
     /// [`Error::Io`], [`Error::Json`] with line and column, or [`Error::JsonField`] with the field and its range.
@@ -140,7 +140,7 @@ impl Preset {
         Self::read(name_or_path).map(|(preset, _)| preset)
     }
 
-    /// The same, with the text that it was read from: to see later whether the file has changed.
+    /// As [`Preset::load`], with the text that it was read from, to detect later changes of the file.
     ///
     /// # Errors
     /// As [`Preset::load`].
@@ -160,7 +160,7 @@ impl Preset {
         Ok((Self::parse(path, &text)?, text))
     }
 
-    /// Parses and checks a preset. `path` is only named in errors.
+    /// Parses and validates a preset. `path` is only named in errors.
     ///
     /// # Errors
     /// As [`Preset::load`].
@@ -170,15 +170,15 @@ impl Preset {
         Ok(preset)
     }
 
-    /// Loads the pictures of every system, each file once. They are looked for beside `path`, the preset's.
+    /// Loads the images of every system, each file once. They are searched for beside `path`, the preset's file.
     ///
     /// # Errors
-    /// As [`MaterialNames::load`], naming the preset and the system too.
+    /// As [`MaterialNames::load`], with the preset and the system.
     pub fn load_materials(&self, path: &Path) -> Result<Vec<MaterialAssets>, Error> {
         self.load_materials_from(path, &PictureFolders::beside(path))
     }
 
-    /// The same from other folders. `path`, the preset's, is for errors alone.
+    /// As [`Preset::load_materials`], from other folders. `path`, the preset's file, is only named in errors.
     ///
     /// # Errors
     /// As [`Preset::load_materials`].
@@ -222,7 +222,7 @@ impl Preset {
     }
 }
 
-/// A mistake in the files of system `index`, said with the preset's file.
+/// Adds the preset's file and the system to an error of the system's files.
 pub fn in_system(path: &Path, index: usize, error: Error) -> Error {
     match error {
         Error::Field(mut error) => {
@@ -237,18 +237,18 @@ pub fn in_system(path: &Path, index: usize, error: Error) -> Error {
 }
 
 impl PresetSystem {
-    /// The emitter at `time`, seconds, frozen where the flipbook is.
+    /// Unevaluated particles of the emitter at `time`, seconds.
     pub fn emission(&self, time: f32) -> Emission {
         let frame_rate = if self.settings.sprite.freeze_animation { 0.0 } else { self.emitter.frame_rate };
         Emitter { frame_rate, ..self.emitter }.at(time)
     }
 
-    /// Flipbook frames per second, wherever the particles come from.
+    /// Flipbook frames per second, of the emitter or the files.
     pub fn frame_rate(&self) -> f32 {
         if self.cache.is_used() { self.cache.flipbook_rate } else { self.emitter.frame_rate }
     }
 
-    /// The settings for a picture of this height: what presets give in pixels, they give for [`DESIGN_HEIGHT`].
+    /// Settings for a picture of this height. Pixel sizes in presets refer to [`DESIGN_HEIGHT`].
     pub fn settings_for(&self, height: u32) -> Settings {
         let mut settings = self.settings;
         settings.specular_scatter.size = (settings.specular_scatter.size * height as f32 / DESIGN_HEIGHT).max(1.0);
@@ -287,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_name_the_file_and_the_field() {
+    fn errors_name_the_file_and_the_field() {
         let parse = |text: &str| Preset::parse(Path::new("my.json"), text).unwrap_err().to_string();
         let range = parse(r#"{"version": 1, "name": "x", "camera": {"fov": 200}}"#);
         assert_eq!(range, "my.json: camera.fov: 200 is not valid; expected 1 to 150 degrees");

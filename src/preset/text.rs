@@ -1,5 +1,5 @@
-//! Presets as text: what differs from the defaults, in the order of the documentation, so that a change of one slider is a
-//! change of one line.
+//! Presets as text: only what differs from the defaults, in the order of the documentation, so that moving one slider
+//! changes one line.
 
 use std::collections::HashMap;
 
@@ -9,14 +9,14 @@ use super::preset::{Preset, PresetSystem};
 use crate::frame::Light;
 use crate::settings::{Step, Value, walk};
 
-/// Fields that are written whatever their value: without them one does not see what it is.
+/// Fields that are always written, because they say what the file is.
 const ALWAYS: &[&str] = &["version", "name", "kind"];
 
 impl Preset {
-    /// The JSON that [`Preset::parse`] makes this preset from, ending with a line break; for a preset that is valid. Fields at
-    /// their defaults are left out, but for those that stand in `old`, the text that is to be replaced, or "".
+    /// Formats this preset, which must be valid, as JSON that [`Preset::parse`] reads back, ending with a line break.
+    /// Fields at their defaults are left out, unless they are in `old`, the text to be replaced, or "".
     ///
-    /// JSON has no infinity: the largest number stands for it.
+    /// JSON has no infinity: the largest number replaces it.
     pub fn to_text(&self, old: &str) -> String {
         let old = serde_json::from_str(old).unwrap_or_default();
         let lists = (vec![Light::default()], vec![PresetSystem::default()]);
@@ -33,12 +33,12 @@ impl Preset {
                 insert(&mut root, path, finite(value));
             }
         });
-        // A tree of numbers and texts with texts for names: there is nothing that could fail.
+        // A tree of numbers and texts with texts as names: serialisation cannot fail.
         serde_json::to_string_pretty(&Node::Object(root)).unwrap_or_default() + "\n"
     }
 }
 
-/// Names without places in lists: every light has the same defaults.
+/// Names without list indices, because every light has the same defaults.
 fn plain(path: &[Step<'static>]) -> Vec<&'static str> {
     path.iter().map(|step| step.0).collect()
 }
@@ -61,7 +61,7 @@ fn finite(value: Value) -> Value {
     }
 }
 
-/// JSON that keeps its order.
+/// JSON that keeps the order of its fields.
 enum Node {
     Value(Value),
     Object(Vec<(&'static str, Node)>),
@@ -84,7 +84,7 @@ fn insert(fields: &mut Vec<(&'static str, Node)>, path: &[Step<'static>], value:
         fields.push((name, Node::Value(value)));
         return;
     }
-    // Fields come in order: what is not the last is new.
+    // Fields come in order, so a name that is not the last one is new.
     if fields.last().is_none_or(|(last, _)| last != name) {
         let new = if index.is_some() { Node::List(Vec::new()) } else { Node::Object(Vec::new()) };
         fields.push((name, new));
@@ -113,7 +113,7 @@ mod tests {
     use crate::settings::Leaf;
 
     #[test]
-    fn shipped_presets_are_as_they_are_written() {
+    fn shipped_presets_are_formatted_as_they_are_written() {
         for shipped in builtin::PRESETS {
             let (preset, text) = Preset::read(shipped.name).unwrap();
             let written = preset.to_text(&text);
@@ -150,7 +150,7 @@ mod tests {
             let text = preset.to_text("");
             let read: Preset = json::parse(Path::new("a.json"), &text).unwrap();
             assert_eq!(read, preset, "field {moved}");
-            // What stood in the old text stays, also where it is the default again.
+            // Fields of the old text stay, even if they are at their default again.
             let kept = usual.to_text(&text);
             assert!(kept.lines().count() >= text.lines().count(), "field {moved}: {kept}");
             assert_eq!(Preset::parse(Path::new("a.json"), &kept).unwrap(), usual);
@@ -159,16 +159,16 @@ mod tests {
     }
 
     #[test]
-    fn what_json_cannot_hold_is_the_largest_number() {
+    fn infinity_is_written_as_the_largest_number() {
         let preset = Preset { lights: vec![Light { range: f32::INFINITY, ..Light::default() }], ..Preset::default() };
         let read = Preset::parse(Path::new("a.json"), &preset.to_text("")).unwrap();
         assert_eq!(read.lights[0].range.to_bits(), f32::MAX.to_bits());
     }
 
     proptest! {
-        /// But for the sign of a zero: it is written as any other default, not at all.
+        /// Except for the sign of a zero, which is written like any other default: not at all.
         #[test]
-        fn numbers_come_back_to_the_last_bit(bits: u32) {
+        fn numbers_round_trip_to_the_last_bit(bits: u32) {
             let number = f32::from_bits(bits);
             prop_assume!(number.is_finite());
             let preset = Preset { time: number, ..Preset::default() };

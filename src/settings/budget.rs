@@ -1,88 +1,91 @@
-//! Which scale of the accumulation target holds a budget of GPU time.
+//! Choice of the accumulation target's scale by a budget of GPU time.
 
 use super::accumulate::COARSEST;
 use super::table::settings;
 
 settings! {
-    /// What the smoke may cost, and what it may give up for it.
+    /// GPU time that the smoke may take, and the scales that it may use to stay within it.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Budget {
-        /// GPU time of the smoke that is held where a scale within the limits can.
+        /// GPU time of the smoke per frame. Lower: cheaper and less sharp. It is kept as far as the scales allow.
         milliseconds: f32 = 2.0, number(0.05..=100.0, "ms");
-        /// The finest scale that is chosen.
+        /// Finest scale that may be chosen. Lower: sharper smoke when there is time for it.
         min_scale: u32 = 1, integer(1..=COARSEST, "pixels");
-        /// The coarsest: it is kept where none holds the budget.
+        /// Coarsest scale that may be chosen. It is used even if it takes longer than the budget.
         max_scale: u32 = 8, integer(|this| this.min_scale..=COARSEST, "pixels");
     }
 }
 
-/// Part of the budget that a finer scale must be expected to stay below. What is left is for what the expectation is wrong by: a
-/// block's mean is off by up to 5 % where measurements are off by 20.
+/// Share of the budget that the expected cost of a finer scale must stay below. The rest is a margin for the error of
+/// the estimate: if measurements are off by 20 %, the mean of a block is off by up to 5 %.
 const ROOM: f32 = 0.85;
 
-/// So many times the budget is far too much, and not waited for. More than noise of 20 % makes of the budget.
+/// A median above this multiple of the budget makes the scale coarser at once. Noise of 20 % on a load at the budget
+/// stays below it.
 const OVERLOAD: f32 = 1.25;
 
-/// Measurements that a median is taken of: two that stand out do not count.
+/// Number of measurements in a median: two outliers do not affect it.
 const MEDIAN: usize = 5;
 
-/// Measurements after a change that may be of frames before it: those in flight, and some.
+/// Number of measurements to skip after a change of scale, because they may belong to frames in flight.
 const LATE: u32 = 8;
 
-/// Measurements that a mean is taken of: a second.
+/// Number of measurements in a block, of which the mean is taken: one second.
 const BLOCK: u32 = 64;
 
-/// Blocks after which a finer scale is thought of, at first and at most: two seconds and 17.
+/// Number of blocks between attempts at a finer scale, at first and at most: two seconds and 17.
 const PATIENCE: u32 = 2;
 const MAX_PATIENCE: u32 = 16;
 
-/// Picks [`Accumulate::scale`](super::Accumulate::scale) from measured GPU time, so that a [`Budget`] is held. Plain data: it
-/// knows neither a clock nor a device.
+/// Picks [`Accumulate::scale`](super::Accumulate::scale) from measured GPU time, so that a [`Budget`] is kept. Plain
+/// data, without a clock or a device.
 ///
-/// What is far too slow gets a coarser scale within a few measurements, what is a little too slow within two seconds; a
-/// finer scale comes after two more, where it can be expected to take no more than 85 % of the budget. So a load that does
-/// not change settles on one scale: that is the coarsest limit, or costs no more than the budget; and the next finer one
-/// costs more than 85 % of it. A finer scale that does not last is tried half as often the next time, down to once in 17 seconds,
-/// so that a load which comes and goes does not make the picture pump. (Times are those of 60 measurements a second.)
+/// A scale that is far too slow becomes coarser within a few measurements, one that is a little too slow within two
+/// seconds. A finer scale is tried after two more seconds, if its expected cost is at most 85 % of the budget. A
+/// constant load therefore settles on one scale, which is the coarsest limit or costs no more than the budget, and of
+/// which the next finer one costs more than 85 % of it. If a finer scale soon has to be given up again, the next
+/// attempt waits twice as long, up to 17 seconds, so that a load that comes and goes does not make the picture pulse.
+/// (Times are for 60 measurements a second.)
 ///
-/// The cost of a scale is taken for a fixed part and one that falls with its square; how much is fixed is learned from each
-/// change.
+/// The cost is modelled as a fixed part and a part that falls with the square of the scale. Their ratio is learned from
+/// each change of scale.
 ///
-/// What is measured may be one system or all of them; they then share the scale. Systems that are compared with the host's own
-/// depth ([`DepthSource::Host`](super::DepthSource::Host)) have no other scale than 1. `docs/recipes.md` has a host.
+/// The measurements may be of one system, or of all of them, which then share the scale. Systems that are compared with
+/// the host's own depth ([`DepthSource::Host`](super::DepthSource::Host)) support scale 1 only. `docs/recipes.md` has
+/// an example host.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScaleBudget {
     /// May be changed at any time.
     pub budget: Budget,
     scale: u32,
-    /// How much of the cost at scale 1 falls with the square of the scale, 0 to 1, where that was seen.
+    /// Share of the cost at scale 1 that falls with the square of the scale, 0 to 1. `None` until it has been measured.
     share: Option<f32>,
-    /// What the scale before took, until this one is known.
+    /// Previous scale and its cost, milliseconds, until the cost of the current one is known.
     before: Option<(u32, f32)>,
-    /// True if this scale is finer than the one before.
+    /// True if the current scale is finer than the previous one.
     is_finer: bool,
-    /// Blocks for which a finer scale must be within reach.
+    /// Blocks between attempts at a finer scale.
     patience: u32,
     seen: Seen,
 }
 
-/// What was measured at a scale.
+/// Measurements at the current scale.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Seen {
     measurements: u32,
     last: [f32; MEDIAN],
-    /// Medians of the block that is not full yet.
+    /// Medians in the current block, which is not full yet.
     count: u32,
     sum: f32,
     blocks: u32,
     /// Mean of the last full block.
     mean: f32,
-    /// The most that a block took since a finer scale was last thought of.
+    /// Largest mean of a block since the last attempt at a finer scale.
     peak: f32,
 }
 
 impl ScaleBudget {
-    /// Starts from a scale, pixels per texel.
+    /// Starts from a scale, pixels per texel, clamped to the limits of the budget.
     pub fn new(budget: Budget, scale: u32) -> Self {
         let mut new = Self {
             budget,
@@ -97,13 +100,13 @@ impl ScaleBudget {
         new
     }
 
-    /// The scale to draw with.
+    /// Scale to draw with, pixels per texel.
     pub fn scale(&self) -> u32 {
         self.scale
     }
 
-    /// Takes the GPU time of a frame, milliseconds, and gives the scale to draw with. Call it once for each frame that was
-    /// measured; results may come up to 8 frames late. What is not above 0 and finite is ignored.
+    /// Takes the GPU time of a frame, milliseconds, and returns the scale to draw with. Call it once for each measured
+    /// frame; results may come up to 8 frames late. Values that are not above 0 and finite are ignored.
     pub fn update(&mut self, measured_ms: f32) -> u32 {
         self.keep_within_limits();
         if measured_ms > 0.0
@@ -124,7 +127,7 @@ impl ScaleBudget {
         let before = self.seen.mean;
         let Some(mean) = self.seen.block(median) else { return };
         self.learn(mean);
-        // Twice running: a load that just fits is not given up for noise.
+        // Two blocks in a row: noise does not end a scale that just fits.
         if mean.min(before) > limit && may_be_coarser {
             self.coarser(mean);
         } else if self.seen.blocks.is_multiple_of(self.patience) {
@@ -132,7 +135,8 @@ impl ScaleBudget {
         }
     }
 
-    /// Goes to the finest scale that fits, but to twice this one at most: what was learned may hold no more.
+    /// Goes to the finest scale that is expected to fit, but to twice the current one at most, because the learned
+    /// share may not hold beyond.
     fn coarser(&mut self, ms: f32) {
         self.learn(ms);
         if self.is_finer {
@@ -140,16 +144,17 @@ impl ScaleBudget {
             self.patience = if did_last { PATIENCE } else { MAX_PATIENCE.min(2 * self.patience) };
         }
         let last = self.limits().1.min(2 * self.scale);
-        // Not knowing better, all of it falls with the scale.
+        // If the share is unknown, all of the cost is taken to fall with the scale.
         let cost = |scale: &u32| ms * relative_cost(self.share.unwrap_or(1.0), self.scale, *scale);
         let scale = (self.scale + 1..=last).find(|scale| cost(scale) <= self.budget.milliseconds);
         self.go_to(scale.unwrap_or(last), ms);
     }
 
-    /// Goes to the finest scale that leaves room, but to half of this one at most; stays where none does.
+    /// Goes to the finest scale that is expected to leave a margin, but to half of the current one at most. Stays if
+    /// there is none.
     fn finer(&mut self, ms: f32) {
         let peak = std::mem::take(&mut self.seen.peak);
-        // Not knowing better, a finer scale is free; one step tells.
+        // If the share is unknown, a finer scale is taken to be free, and a single step measures it.
         let (share, first) = self.share.map_or((0.0, self.scale - 1), |share| (share, self.scale.div_ceil(2)));
         let fits = |scale: &u32| peak * relative_cost(share, self.scale, *scale) <= ROOM * self.budget.milliseconds;
         if let Some(scale) = (first.max(self.limits().0)..self.scale).find(fits) {
@@ -164,16 +169,17 @@ impl ScaleBudget {
         self.seen = Seen::default();
     }
 
-    /// Learns from what the scale before took and what this one takes how much falls with the scale.
+    /// Learns the share of the cost that falls with the scale, from the costs of the previous scale and the current
+    /// one.
     fn learn(&mut self, ms: f32) {
         let Some((scale, ms_before)) = self.before.take() else { return };
         let [before, now] = [scale, self.scale].map(|scale| 1.0 / (scale * scale) as f32);
-        // Between nothing and all.
+        // Between no dependence on the scale and full dependence.
         let ratio = (ms / ms_before).clamp(f32::min(1.0, now / before), f32::max(1.0, now / before));
         self.share = Some((1.0 - ratio) / (1.0 - now - ratio * (1.0 - before)));
     }
 
-    /// The budget's, made to be some.
+    /// Scale limits of the budget, made valid.
     fn limits(&self) -> (u32, u32) {
         let min = self.budget.min_scale.clamp(1, COARSEST);
         (min, self.budget.max_scale.clamp(min, COARSEST))
@@ -189,7 +195,7 @@ impl ScaleBudget {
 }
 
 impl Seen {
-    /// Takes a measurement; gives the median of the last ones, once they are of this scale.
+    /// Takes a measurement. Returns the median of the last ones, or `None` while they may belong to another scale.
     fn median(&mut self, ms: f32) -> Option<f32> {
         self.last.rotate_left(1);
         self.last[MEDIAN - 1] = ms;
@@ -199,7 +205,7 @@ impl Seen {
         (self.measurements >= LATE + MEDIAN as u32).then_some(sorted[MEDIAN / 2])
     }
 
-    /// Takes a median; gives the mean of a block with its last.
+    /// Takes a median. Returns the mean of the block if this one completes it.
     fn block(&mut self, median: f32) -> Option<f32> {
         (self.sum, self.count) = (self.sum + median, self.count + 1);
         if self.count < BLOCK {
@@ -212,7 +218,7 @@ impl Seen {
     }
 }
 
-/// Cost at one scale over that at another: a share falls with the square.
+/// Cost at scale `to` relative to the cost at `from`, if `share` of it falls with the square of the scale.
 fn relative_cost(share: f32, from: u32, to: u32) -> f32 {
     let cost = |scale: u32| 1.0 - share + share / (scale * scale) as f32;
     cost(to) / cost(from)

@@ -1,18 +1,18 @@
-//! Settings that are one of a few: enums with names, that a user interface can list.
+//! Settings with a fixed set of named choices, which a user interface can list.
 
-/// A setting enum, for whatever lists its choices.
+/// Setting enum, for code that lists its choices.
 pub trait Choice {
-    /// The names of all choices, as presets, the command line and user interfaces have them.
+    /// Names of all choices, as in presets, on the command line and in user interfaces.
     fn names(&self) -> &'static [&'static str];
 
-    /// Which of the names it is.
+    /// Index of the current choice in the names.
     fn index(&self) -> usize;
 
-    /// Makes it another; an index beyond the names changes nothing.
+    /// Selects a choice. An index beyond the names changes nothing.
     fn set_index(&mut self, index: usize);
 }
 
-/// Defines a setting enum: its variants, their names, and everything that goes by them.
+/// Defines a setting enum: variants, names, `FromStr` and serde.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! choice {
@@ -23,12 +23,12 @@ macro_rules! choice {
         pub enum $name { $($(#[$variant_meta])* #[serde(rename = $text)] $variant,)+ }
 
         impl $name {
-            /// Every choice, in the order of the documentation.
+            /// All choices, in the order of the documentation.
             pub const ALL: &[Self] = &[$(Self::$variant,)+];
-            /// Their names.
+            /// Names of all choices, in the same order.
             pub const NAMES: &[&str] = &[$($text,)+];
 
-            /// The name used in presets, on the command line and in user interfaces.
+            /// Name used in presets, on the command line and in user interfaces.
             pub const fn name(self) -> &'static str {
                 Self::NAMES[self as usize]
             }

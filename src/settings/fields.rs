@@ -1,8 +1,8 @@
-//! One table per settings struct: every field's name, kind, valid range and unit, walked by a visitor.
+//! One table per settings struct: name, kind, valid range and unit of every field, visited by a visitor.
 //!
-//! The walk is what checks a preset, and what a user interface builds its panels from, so that a range is written once. The
-//! name given to the visitor is the Rust field, the preset key and the label; the field's doc comment is its tooltip
-//! ([`Tooltips`](haze_author::preset::Tooltips) has them at run time).
+//! The same traversal validates presets and builds the panels of user interfaces, so that a range is written once. The
+//! name passed to the visitor is the Rust field, the preset key and the label. The field's doc comment is its tooltip
+//! ([`Tooltips`](crate::preset::Tooltips) returns it at run time).
 
 use std::fmt::Write as _;
 use std::ops::RangeInclusive;
@@ -12,47 +12,47 @@ use glam::Vec3;
 use super::choice::Choice;
 use crate::error::FieldError;
 
-/// A settings struct whose fields can be walked.
+/// Settings struct whose fields can be visited.
 pub trait Fields {
-    /// Hands every field to `visitor`, in the order of the struct.
+    /// Passes every field to `visitor`, in the order of the struct.
     fn visit(&mut self, visitor: &mut dyn FieldVisitor);
 
-    /// Every field in the order of the struct, with the heading that begins at it: for those who show them. Empty for a struct
-    /// without a table.
+    /// Every field in the order of the struct, with the heading above it if there is one, for user interfaces. Empty
+    /// for a struct without a table.
     fn headings(&self) -> &'static [Headed] {
         &[]
     }
 }
 
-/// A field's name, and the heading that it and those after it stand under.
+/// Name of a field, and the heading above it if a group of fields starts there.
 pub type Headed = (&'static str, Option<&'static str>);
 
-/// What a picture named by a field is for.
+/// Use of an image that a field names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PictureRole {
-    /// A flipbook of normal maps.
+    /// Flipbook of normal maps.
     Sprite,
     /// Depth and motion of a flipbook.
     Detail,
-    /// A flipbook under light from six sides.
+    /// Flipbook lit from six sides.
     SixWay,
-    /// A gradient, or a stack of them.
+    /// Gradient, or a stack of gradients.
     Ramp,
-    /// A painted lit sphere.
+    /// Painted image of a lit sphere.
     Motif,
     /// Slices of a tiling noise.
     Noise,
 }
 
-/// What walks the fields of a settings struct. Those that are no numbers may be left alone.
+/// Visitor of the fields of a settings struct. Fields that are not numbers are ignored by default.
 pub trait FieldVisitor {
-    /// A real number. `unit` is "" for a ratio.
+    /// Real number. `unit` is "" for a ratio.
     fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, unit: &'static str);
 
-    /// A whole number.
+    /// Whole number.
     fn integer(&mut self, name: &'static str, value: &mut u32, range: RangeInclusive<u32>, unit: &'static str);
 
-    /// A position, direction or size: three numbers that share a range.
+    /// Position, direction or size: three numbers that share a range.
     fn vector(&mut self, name: &'static str, value: &mut Vec3, range: RangeInclusive<f32>, unit: &'static str);
 
     /// Linear RGB.
@@ -60,39 +60,39 @@ pub trait FieldVisitor {
         self.vector(name, value, range, "");
     }
 
-    /// An sRGB colour of 8 bits a channel.
+    /// sRGB colour with 8 bits a channel.
     fn srgb(&mut self, _name: &'static str, _value: &mut [u8; 3]) {}
 
-    /// On or off.
+    /// Boolean.
     fn flag(&mut self, _name: &'static str, _value: &mut bool) {}
 
-    /// One of a few.
+    /// Enum.
     fn choice(&mut self, _name: &'static str, _value: &mut dyn Choice) {}
 
-    /// Any words.
+    /// Free text.
     fn text(&mut self, _name: &'static str, _value: &mut String) {}
 
-    /// The name of a picture: a built-in one's, or a file's.
+    /// Name of an image: a built-in one, or a file.
     fn picture(&mut self, _name: &'static str, _value: &mut String, _role: PictureRole) {}
 
-    /// The name of a file of particles, or of one a frame; empty for none.
+    /// Name of a particle file, or of one file per frame; empty for none.
     fn particles(&mut self, _name: &'static str, _value: &mut String) {}
 
-    /// A random seed: every whole number is as good as the next.
+    /// Random seed. Every whole number is valid.
     fn seed(&mut self, _name: &'static str, _value: &mut u32) {}
 
-    /// A nested struct.
+    /// Nested struct.
     fn group(&mut self, name: &'static str, fields: &mut dyn Fields);
 
-    /// An entry of a list.
+    /// Entry of a list.
     fn item(&mut self, name: &'static str, index: usize, fields: &mut dyn Fields);
 }
 
-/// Checks every number of `settings` against its range. `path` leads to the struct and is put before the
-/// field's name in the message: `systems[0].settings` gives `systems[0].settings.soft_fade.fade_scale`.
+/// Checks every number of `settings` against its range. `path` is the path of the struct and precedes the field's name
+/// in the message: `systems[0].settings` gives `systems[0].settings.soft_fade.fade_scale`.
 ///
 /// # Errors
-/// The first field that is not a finite number inside its range.
+/// The first field that is NaN or outside its range.
 pub fn validate<T: Fields + Clone>(settings: &T, path: impl FnOnce() -> String) -> Result<(), FieldError> {
     let mut validator = Validator { path: [Step::default(); MAX_DEPTH], depth: 0, error: None };
     settings.clone().visit(&mut validator);
@@ -108,13 +108,14 @@ pub fn validate<T: Fields + Clone>(settings: &T, path: impl FnOnce() -> String) 
     }
 }
 
-/// Deepest nesting; no settings struct comes near it.
+/// Maximum nesting depth. No settings struct comes near it.
 const MAX_DEPTH: usize = 8;
 
-/// A struct on the way to a field: its name, and its place where it is one of a list.
+/// Struct on the path to a field: its name, and its index if it is in a list.
 type Step = (&'static str, Option<usize>);
 
-/// Fixed storage: a frame validates its settings and must not allocate while all is well.
+/// Stores the path without allocation, because every frame validates its settings and must not allocate if they are
+/// valid.
 struct Validator {
     path: [Step; MAX_DEPTH],
     depth: usize,
@@ -129,7 +130,7 @@ impl Validator {
         range: &RangeInclusive<T>,
         unit: &str,
     ) {
-        // `contains` is false for NaN, which is what we want.
+        // `contains` is false for NaN, as intended.
         if self.error.is_some() || range.contains(&value) {
             return;
         }
@@ -224,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn a_heading_begins_at_its_row() {
+    fn headings_belong_to_the_row_that_follows() {
         assert_eq!(Inner::default().headings(), [("contrast_power", None), ("steepest", Some("ends"))]);
         assert_eq!(outer(1, 2.0).headings(), []);
     }

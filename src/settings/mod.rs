@@ -1,6 +1,6 @@
-//! Everything a slider moves: the settings of one particle system. Plain data with units and ranges.
+//! Settings of one particle system: plain data with units and ranges. Every slider moves one of their fields.
 //!
-//! The order of the variants is the order of the constants in the shaders; `tests/suite/shader_layout.rs` holds the two together.
+//! The order of the variants is the order of the constants in the shaders, which `tests/suite/shader_layout.rs` checks.
 
 use crate::error::FieldError;
 
@@ -35,23 +35,24 @@ pub use technique::{Density, SphericalBillboard, SpriteAnimation, SpriteSettings
 pub use walk::{Leaf, Step, Value, path_of, values, walk};
 
 choice! {
-    /// How a system reaches the picture.
+    /// Rendering path of a system.
     Path {
-        /// The faster of `raster` and `tiled`, as far as can be told from how many layers there are and what the device takes for them.
+        /// The faster of `raster` and `tiled`, estimated from the number of layers and their cost on the device.
         #[default]
         Auto = "auto",
-        /// Deferred: sprites blended into the accumulation target by the hardware, lit once per pixel.
+        /// Deferred: the hardware blends sprites into the accumulation target, which is lit once per pixel.
         Raster = "raster",
-        /// The same, accumulated by compute shaders: sprites are listed by tiles of the target and added up front to back, texel by
-        /// texel. Layers cost little, and none that cannot be seen. Not every device can; `docs/tiled.md` compares the two.
+        /// Deferred, accumulated by compute shaders: sprites are listed by tiles of the target and added up front to
+        /// back, texel by texel. Layers are cheap, and hidden ones are skipped. Not every device supports it;
+        /// `docs/tiled.md` compares the two.
         Tiled = "tiled",
-        /// Every fragment lit and blended at full resolution: the classic way, kept as the baseline.
+        /// Every fragment is lit and blended at full resolution: the classic method, kept as the baseline.
         Forward = "forward",
     }
 }
 
 impl Path {
-    /// What it may turn out to be.
+    /// Paths that this setting may select.
     pub fn candidates(self) -> &'static [Self] {
         match self {
             Self::Auto => &[Self::Raster, Self::Tiled],
@@ -63,31 +64,31 @@ impl Path {
 }
 
 choice! {
-    /// How forward sprites are blended: OTEE's three.
+    /// Blend mode of forward sprites: OTEE's three.
     BlendMode {
-        /// Greyish smoke: covers what is behind it.
+        /// Greyish smoke: covers the background.
         #[default]
         Alpha = "alpha",
-        /// Fiery things: adds light, hides nothing.
+        /// Fire: adds light, hides nothing.
         Additive = "additive",
-        /// Dark smoke: darkens what is behind it.
+        /// Dark smoke: darkens the background.
         Multiply = "multiply",
     }
 }
 
 choice! {
-    /// Which stage of the shading is shown. OTEE's "Shade tree".
+    /// Debug view: the stage of the shading that is shown. OTEE's "Shade tree".
     ShadeTree {
-        /// The smoke, lit, over the scene.
+        /// Lit smoke over the scene.
         #[default]
         Final = "final",
-        /// Diffuse and soft scatter, without the specular quads.
+        /// Diffuse light and soft scatter, without specular scatter.
         Combined = "combined",
-        /// Diffuse light alone.
+        /// Diffuse light only.
         Diffuse = "diffuse",
-        /// Soft scatter alone.
+        /// Soft scatter only.
         SoftScatter = "soft_scatter",
-        /// The specular quads alone.
+        /// Specular scatter only.
         SpecularScatter = "specular_scatter",
         /// Decoded normals, n/2 + 1/2.
         Normals = "normals",
@@ -95,23 +96,23 @@ choice! {
         Amount = "amount",
         /// Sprite layers per pixel: black 0, blue 4, green 8, yellow 16, red 32, white 64 and more.
         Overdraw = "overdraw",
-        /// The depth that sprites are compared with: white at the near side of the box, black beyond the far side.
+        /// Depth that sprites are compared with: white at the near side of the box, black beyond the far side.
         ReducedDepth = "reduced_depth",
     }
 }
 
 impl ShadeTree {
-    /// True for stages that show numbers, not light: they are neither exposed nor tonemapped.
+    /// True for stages that show data instead of light, which are neither exposed nor tonemapped.
     pub fn is_data(self) -> bool {
         matches!(self, Self::Normals | Self::Amount | Self::Overdraw | Self::ReducedDepth)
     }
 
-    /// True for what forward sprites show too: lit smoke.
+    /// True for stages that show lit smoke, which forward sprites show too.
     pub fn is_picture(self) -> bool {
         matches!(self, Self::Final | Self::Combined)
     }
 
-    /// True where the glow of lights is shown.
+    /// True for stages that show the glow of lights.
     pub fn glows(self) -> bool {
         matches!(self, Self::Final | Self::SpecularScatter)
     }
@@ -121,37 +122,37 @@ settings! {
     /// All settings of one particle system.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Settings {
-        /// How the system reaches the picture: what it costs, and, drawn forward, how it is lit.
+        /// Rendering path: its cost, and with `forward`, its lighting too.
         path: Path = Path::Auto, choice;
-        /// How forward sprites are blended; the deferred path has its own blend.
+        /// Blend mode of forward sprites. Deferred paths have a blend of their own.
         blend_mode: BlendMode = BlendMode::Alpha, choice;
-        /// How sprites meet the scene.
+        /// Technique by which sprites meet the scene: hard cut, soft fade, or volume.
         technique: Technique = Technique::Soft, choice;
-        /// How sprites take on light: painted, or path-traced.
+        /// Lighting model of sprites: painted, or path-traced.
         lighting: Lighting = Lighting::default(), choice;
-        /// Multiplies the accumulated amount into coverage: how soon smoke hides the scene. OTEE's value is 3.
+        /// Multiplies the accumulated amount into coverage. Higher: smoke hides the scene sooner. OTEE uses 3.
         boost: f32 = 3.0, number(0.0..=16.0, "");
-        /// How the amount becomes coverage: soft silhouettes, or any by paint.
+        /// Conversion of the amount to coverage: soft silhouettes, or painted ones.
         coverage: CoverageMode = CoverageMode::default(), choice;
-        /// What ramps give between two texels: smooth light, or hard steps.
+        /// Values of ramps between two texels: smooth light, or hard steps.
         ramp_filter: RampFilter = RampFilter::default(), choice;
-        /// What sprites show.
+        /// Size and animation of sprites.
         sprite: SpriteSettings = SpriteSettings::default(), group;
-        /// Sprites to normal + amount.
+        /// Accumulation of sprites into normal and amount.
         accumulate: Accumulate = Accumulate::default(), group;
-        /// The fade against scene and camera.
+        /// Fade of sprites near the scene and near the camera.
         soft_fade: SoftFade = SoftFade::default(), group;
-        /// For the technique of that name.
+        /// Settings of the technique of that name.
         spherical_billboard: SphericalBillboard = SphericalBillboard::default(), group;
-        /// For the technique of that name.
+        /// Settings of the technique of that name.
         density: Density = Density::default(), group;
-        /// For the techniques of that name.
+        /// Settings of the techniques of that name.
         volumetric: Volumetric = Volumetric::default(), group;
-        /// Light by normal.
+        /// Diffuse light, by normal.
         diffuse: Diffuse = Diffuse::default(), group;
-        /// Light by amount.
+        /// Soft scatter, by amount: light without a source.
         soft_scatter: SoftScatter = SoftScatter::default(), group;
-        /// Glow round lights behind.
+        /// Glow around lights behind the smoke.
         specular_scatter: SpecularScatter = SpecularScatter::default(), group;
     }
 }
@@ -167,18 +168,18 @@ impl Settings {
         self.lighting == Lighting::SixWay && !self.technique.is_volumetric() && !self.sprite.debug_sprite
     }
 
-    /// The order in which sprites are drawn. Forward sprites hide each other and are always sorted.
+    /// Order in which sprites are drawn. Forward sprites hide each other and are always sorted.
     pub fn order(&self) -> Order {
         if self.is_forward() { Order::Sorted } else { self.accumulate.order }
     }
 
-    /// Metres behind the scene at which sprites are still seen: none, but for the curve `always`.
+    /// Distance behind the scene at which sprites still show, metres: 0, except under the curve `always`.
     pub fn fade_through(&self) -> f32 {
         let shows_through = self.soft_fade.curve == FadeCurve::Always && self.technique.is_soft();
         if shows_through { 1.0 / self.soft_fade.fade_scale } else { 0.0 }
     }
 
-    /// How far the corners of a sprite reach, whichever way it turns, in radii of its particle.
+    /// Distance of a sprite's corners from its centre, at any rotation, in radii of its particle.
     pub fn reach(&self) -> f32 {
         let of_technique = match self.technique {
             Technique::SphericalBillboard => self.spherical_billboard.radius,
@@ -188,10 +189,10 @@ impl Settings {
         self.sprite.size * of_technique
     }
 
-    /// Checks ranges and the settings that exclude each other.
+    /// Checks ranges, and settings that exclude each other.
     ///
     /// # Errors
-    /// The first field in conflict; `path` is put before its name.
+    /// The first field that is out of range or in conflict. `path` precedes its name.
     pub fn validate(&self, path: impl Fn() -> String) -> Result<(), FieldError> {
         validate(self, &path)?;
         let conflict = |field: &str, value: &str, expected: &str| {
@@ -201,10 +202,10 @@ impl Settings {
         };
         let accumulate = &self.accumulate;
         if accumulate.format == AccumulationFormat::Rgba8Unorm && accumulate.encoding == NormalEncoding::Signed {
-            return conflict("encoding", "signed", "\"biased\" with format \"rgba8unorm\", which holds no sign");
+            return conflict("encoding", "signed", "\"biased\" with format \"rgba8unorm\", which cannot hold signs");
         }
         if accumulate.format == AccumulationFormat::Rgba8Unorm && accumulate.order == Order::Weighted {
-            return conflict("order", "weighted", "\"sorted\" with format \"rgba8unorm\", which holds no sums");
+            return conflict("order", "weighted", "\"sorted\" with format \"rgba8unorm\", which cannot hold sums");
         }
         if accumulate.depth_source == DepthSource::Host && accumulate.scale != 1 {
             return conflict("scale", &accumulate.scale.to_string(), "1 with depth_source \"host\"");
@@ -236,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn settings_that_exclude_each_other_are_refused() {
+    fn conflicting_settings_are_rejected() {
         let mut settings = Settings::default();
         settings.accumulate.format = AccumulationFormat::Rgba8Unorm;
         assert_eq!(settings.validate(|| "s".into()).unwrap_err().field, "s.accumulate.encoding");

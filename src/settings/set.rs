@@ -1,4 +1,4 @@
-//! Fields by name: what the command line sets, and a user interface finds.
+//! Assignment of fields by name, for the command line and user interfaces.
 
 use std::collections::BTreeSet;
 
@@ -6,17 +6,17 @@ use super::fields::Fields;
 use super::walk::{Leaf, Step, walk};
 use crate::error::FieldError;
 
-/// Sets the fields that `path` names to `value`; gives the name of each, without its place in lists.
+/// Sets the fields that `path` names to `value`. Returns their name without list indices.
 ///
-/// `systems[1].settings.accumulate.scale` is one field, `systems.settings.accumulate.scale` that of every system, and so
-/// is `accumulate.scale`, or any end that only one field has. A value is what a preset has there, without quotes; of three
-/// numbers, `1,2,3`. Ranges are not looked at: validate the whole afterwards.
+/// `systems[1].settings.accumulate.scale` is one field, `systems.settings.accumulate.scale` is that field of every
+/// system. So is `accumulate.scale`, or any other ending that belongs to one field only. A value is written as in a
+/// preset, without quotes; three numbers are written `1,2,3`. Ranges are not checked: validate the settings afterwards.
 ///
 /// # Errors
-/// No field has this name, several have, or the value is of another kind; nothing is changed then.
+/// Fails if no field has this name, if several have it, or if the value is of another kind. Nothing is changed then.
 pub fn set_field<T: Fields + Clone>(settings: &mut T, path: &str, value: &str) -> Result<String, FieldError> {
     let wanted = parse_path(path)?;
-    // A copy, so that nothing is half changed.
+    // Works on a copy, so that an error leaves nothing half changed.
     let mut changed = settings.clone();
     let mut names = Names::default();
     walk(&mut changed, &mut |path, _| {
@@ -46,23 +46,23 @@ fn parse_path(path: &str) -> Result<Vec<Step<'_>>, FieldError> {
     };
     let is_name = |(name, _): &Step<'_>| !name.is_empty() && !name.contains(['[', ']']);
     let steps: Option<Vec<_>> = path.split('.').map(|text| step(text).filter(is_name)).collect();
-    let expected = "names with points between them, such as systems[0].settings.boost";
+    let expected = "names separated by dots, such as systems[0].settings.boost";
     steps.ok_or_else(|| FieldError::new("field", format!("{path:?}"), expected))
 }
 
-/// Whether a field's path ends as is wanted.
+/// True if the path of a field ends with the wanted steps.
 fn is_wanted(path: &[Step<'_>], wanted: &[Step<'_>]) -> bool {
     let tail = path.len().checked_sub(wanted.len()).map(|start| &path[start..]);
     let fits = |(at, wanted): (&Step<'_>, &Step<'_>)| at.0 == wanted.0 && (wanted.1.is_none() || at.1 == wanted.1);
     tail.is_some_and(|tail| tail.iter().zip(wanted).all(fits))
 }
 
-/// A path without places in lists.
+/// Path without list indices.
 fn plain(path: &[Step<'_>]) -> String {
     path.iter().map(|step| step.0).collect::<Vec<_>>().join(".")
 }
 
-/// Which fields there are.
+/// Names of the fields that match, and of the others.
 #[derive(Default)]
 struct Names {
     wanted: BTreeSet<String>,
@@ -70,7 +70,7 @@ struct Names {
 }
 
 impl Names {
-    /// The name that is wanted: a whole one, or the only one.
+    /// The name that matches: in full, or as the only one.
     fn the_one(mut self, path: &str, wanted: &[Step<'_>]) -> Result<String, FieldError> {
         if let Some(name) = self.wanted.take(&plain(wanted)) {
             return Ok(name);
@@ -98,14 +98,14 @@ impl Names {
     }
 }
 
-/// Fails with what would be right.
+/// Parses and assigns a value. The error says which value is expected.
 fn assign(leaf: Leaf<'_>, text: &str) -> Result<(), String> {
     fn parse<T: std::str::FromStr>(text: &str, expected: &str) -> Result<T, String> {
         text.trim().parse().map_err(|_| expected.into())
     }
     match leaf {
         Leaf::Number(value) => *value = parse(text, "a number")?,
-        Leaf::Whole(value) => *value = parse(text, "a whole number from 0 on")?,
+        Leaf::Whole(value) => *value = parse(text, "a whole number, 0 or more")?,
         Leaf::Flag(value) => *value = parse(text, "true or false")?,
         Leaf::Text(value) => text.clone_into(value),
         Leaf::Choice(value) => {
@@ -177,14 +177,14 @@ mod tests {
     }
 
     #[test]
-    fn one_field_or_that_of_every_item() {
+    fn path_sets_one_field_or_that_field_of_every_item() {
         let mut settings = outer();
         assert_eq!(set_field(&mut settings, "layers[1].place", "1, 2,3").unwrap(), "layers.place");
         assert_eq!(settings.layers.iter().map(|layer| layer.place.z).collect::<Vec<_>>(), [0.0, 3.0, 0.0]);
         set_field(&mut settings, "layers.metal", "lead").unwrap();
         assert!(settings.layers.iter().all(|layer| layer.metal == Metal::Lead));
         assert_eq!(settings.core, Inner::default());
-        // A whole name goes before the end of another.
+        // A full name has precedence over the ending of another.
         set_field(&mut settings, "scale", "7").unwrap();
         assert_eq!((settings.scale, settings.core.scale), (7, 2.0));
         set_field(&mut settings, "core.is_hollow", "true").unwrap();
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_say_what_would_be_right_and_change_nothing() {
+    fn errors_name_the_expected_value_and_change_nothing() {
         let mut settings = outer();
         for (path, value, message) in [
             ("metal", "tin", "field: \"metal\" is not valid; expected one of core.metal, layers.metal"),
@@ -211,12 +211,12 @@ mod tests {
             (
                 "layers[.scale",
                 "1",
-                "field: \"layers[.scale\" is not valid; expected names with points between them, such as systems[0].settings.boost",
+                "field: \"layers[.scale\" is not valid; expected names separated by dots, such as systems[0].settings.boost",
             ),
             ("core.metal", "gold", "core.metal: \"gold\" is not valid; expected one of tin, lead"),
             ("core.scale", "1,5", "core.scale: \"1,5\" is not valid; expected a number"),
             ("core.place", "1,2", "core.place: \"1,2\" is not valid; expected three numbers, such as 0.5,1,2"),
-            ("scale", "-1", "scale: \"-1\" is not valid; expected a whole number from 0 on"),
+            ("scale", "-1", "scale: \"-1\" is not valid; expected a whole number, 0 or more"),
             ("core.is_hollow", "yes", "core.is_hollow: \"yes\" is not valid; expected true or false"),
         ] {
             assert_eq!(set_field(&mut settings, path, value).unwrap_err().to_string(), message);

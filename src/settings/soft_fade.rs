@@ -1,47 +1,48 @@
-//! The fade of sprites before scene and camera.
+//! Fade of sprites near the scene and near the camera.
 
 use super::choice::choice;
 use super::table::settings;
 
 choice! {
-    /// The curve from depth difference to fade; x is the difference times `fade_scale`, clamped to 0..1.
+    /// Curve from depth difference to fade. x is the difference times `fade_scale`, clamped to 0..1.
     FadeCurve {
         /// 3x² - 2x³: no crease at either end.
         #[default]
         Smoothstep = "smoothstep",
-        /// x.
+        /// x: linear.
         Linear = "linear",
         /// NV's symmetric power curve.
         Contrast = "contrast",
-        /// NV's `1 - 2^(-2 (2x)^c)`. Does not reach 1: 0.9375 at x = 1 for c = 1.
+        /// NV's `1 - 2^(-2 (2x)^c)`. Ends below 1: 0.9375 at x = 1 for c = 1.
         Exponential = "exponential",
-        /// Whole up to the surface, and linearly gone `1 / fade_scale` metres behind it: sprites show through. Techniques
-        /// that fade have no depth test then; the others know no curve. (BLOG, comment)
+        /// Full up to the surface, then linearly down to nothing `1 / fade_scale` metres behind it: sprites show
+        /// through. Techniques that fade have no depth test then; the others ignore the curve. (BLOG, comment)
         Always = "always",
     }
 }
 
 settings! {
-    /// The soft depth fade: how a sprite dissolves where it meets the scene or the camera.
+    /// Soft depth fade: sprites dissolve where they meet the scene or the camera.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct SoftFade {
-        /// How a sprite goes from gone, at the scene's surface, to whole.
+        /// Curve by which a sprite appears, from nothing at the scene's surface to full.
         curve: FadeCurve = FadeCurve::default(), choice;
-        /// Reciprocal of the distance over which a sprite fades. Larger is harder.
+        /// Reciprocal of the distance over which a sprite fades. Higher: harder edges.
         fade_scale: f32 = 2.0, number(0.001..=1000.0, "1/m");
-        /// Steepness of the `contrast` and `exponential` curves: more is a sharper step. 1 is linear for `contrast`.
+        /// Steepness of the `contrast` and `exponential` curves. Higher: a sharper step. 1 is linear for `contrast`.
         contrast_power: f32 = 2.0, number(0.1..=16.0, "");
-        /// Sprites closer to the surface than this are dropped. 0 keeps everything in front of the surface.
+        /// Distance in front of the surface within which sprites are dropped. 0 keeps everything in front of the
+        /// surface.
         epsilon: f32 = 0.0, number(0.0..=10.0, "m");
-        /// View depth at which a sprite is gone: smoke opens before the camera.
+        /// View depth at which a sprite has faded to nothing. Higher: smoke opens further in front of the camera.
         near_fade_start: f32 = 0.0, number(0.0..=1000.0, "m");
-        /// View depth from which a sprite is whole; not less than `near_fade_start`. Both 0: no near fade.
+        /// View depth from which a sprite is full; not less than `near_fade_start`. Both 0: no near fade.
         near_fade_end: f32 = 0.5, number(|this| this.near_fade_start..=1000.0, "m");
     }
 }
 
 impl SoftFade {
-    /// Distance beyond which the scene behind a sprite changes nothing, metres.
+    /// Distance beyond which the scene behind a sprite has no effect on it, metres.
     pub fn reach(&self) -> f32 {
         (1.0 / self.fade_scale).max(self.epsilon)
     }

@@ -1,9 +1,9 @@
-//! Settings structs as tables: a field's type, default, kind, range and unit in one row, from which the struct, its
-//! `Default`, its JSON and its `Fields` are made. A row cannot be half there.
+//! Settings structs as tables. A row has a field's type, default, kind, range and unit; the struct, its `Default`, its
+//! JSON and its `Fields` are generated from it. A row cannot be incomplete.
 
 /// Defines a settings struct. Rows are `name: Type = default, kind(range, unit);`, where kind is a method of
-/// `FieldVisitor`. A range that depends on another field is written `|this| this.near..=10.0`. A text before a row is the heading
-/// of what follows.
+/// `FieldVisitor`. A range that depends on another field is written `|this| this.near..=10.0`. A string before a row is
+/// the heading of the rows that follow.
 macro_rules! settings {
     ($(#[$meta:meta])* pub struct $name:ident {
         $($($heading:literal:)? $(#[$field_meta:meta])* $field:ident: $type:ty = $default:expr, $kind:ident $(($($argument:tt)*))?;)+
@@ -33,7 +33,7 @@ macro_rules! settings {
 }
 pub(crate) use settings;
 
-/// The heading before a row, if there is one.
+/// Heading before a row, or `None`.
 macro_rules! heading {
     () => {
         None
@@ -44,7 +44,7 @@ macro_rules! heading {
 }
 pub(crate) use heading;
 
-/// One row's call of the visitor.
+/// Call of the visitor for one row.
 macro_rules! visit {
     ($self:ident, $visitor:ident, $field:ident, $kind:ident |$this:ident| $range:expr, $unit:expr) => {
         let range = {

@@ -1,36 +1,35 @@
-//! How a sprite keeps from cutting into the scene, what it shows, and the numbers of the techniques that have their own.
-//! `docs/techniques.md` compares them.
+//! Sprite techniques and their settings, and the appearance of sprites. `docs/techniques.md` compares the techniques.
 
 use super::choice::choice;
 use super::table::settings;
 
 choice! {
-    /// How a sprite meets the scene.
+    /// Technique by which a sprite meets the scene.
     Technique {
-        /// Cut off where the scene begins, by the hardware's depth test. (NV, MS)
+        /// Cut off at the scene, by the hardware's depth test. (NV, MS)
         Hard = "hard",
-        /// Fades out before the scene, whose depth buffer is read as a texture. (NV, MS)
+        /// Fades out in front of the scene, whose depth buffer is read as a texture. (NV, MS)
         #[default]
         Soft = "soft",
-        /// The same with an `R32Float` view depth that the scene pass wrote. (NV)
+        /// The same, with an `R32Float` view depth that the scene pass wrote. (NV)
         SoftLinear = "soft_linear",
-        /// Every texel at a depth of its own, from the sprite's detail map, and cut off there. (MS)
+        /// Every texel has its own depth, from the sprite's detail map, and is cut off at the scene. (MS)
         DepthSpriteHard = "depth_sprite_hard",
-        /// Every texel at a depth of its own, and faded. (MS)
+        /// Every texel has its own depth, and fades out in front of the scene. (MS)
         DepthSpriteSoft = "depth_sprite_soft",
-        /// A sphere of gas: its amount grows with the way through it, which scene and near plane cut short. (BLOG 2)
+        /// Sphere of gas: the amount grows with the length of the ray inside it, between near plane and scene. (BLOG 2)
         SphericalBillboard = "spherical_billboard",
-        /// The sprite's alpha is the density of a slab, which scene and near plane cut short. (BLOG 3)
+        /// Slab of gas between near plane and scene, with the sprite's alpha as its density. (BLOG 3)
         Density = "density",
-        /// A sphere of 3D noise, marched through as far as the scene. (MS)
+        /// Sphere of 3D noise, ray-marched up to the scene. (MS)
         VolumetricHard = "volumetric_hard",
-        /// The same, every step faded before the scene. (MS)
+        /// The same, with every step faded in front of the scene. (MS)
         VolumetricSoft = "volumetric_soft",
     }
 }
 
 impl Technique {
-    /// True if the sprite is a sphere, drawn wherever its silhouette is; the others are squares.
+    /// True if the sprite is a sphere, drawn over its silhouette. Other sprites are squares.
     pub fn is_sphere(self) -> bool {
         matches!(self, Self::SphericalBillboard) || self.is_volumetric()
     }
@@ -40,101 +39,102 @@ impl Technique {
         matches!(self, Self::Hard | Self::Soft | Self::SoftLinear)
     }
 
-    /// True if the sprite fades by `soft_fade`.
+    /// True if `soft_fade` applies to the sprite.
     pub fn is_soft(self) -> bool {
         matches!(self, Self::Soft | Self::SoftLinear | Self::DepthSpriteSoft | Self::VolumetricSoft)
     }
 
-    /// True if the sprite is marched through.
+    /// True if the sprite is ray-marched.
     pub fn is_volumetric(self) -> bool {
         matches!(self, Self::VolumetricHard | Self::VolumetricSoft)
     }
 
-    /// True if the sprite's detail map is read for depth.
+    /// True if depth is read from the sprite's detail map.
     pub fn is_depth_sprite(self) -> bool {
         matches!(self, Self::DepthSpriteHard | Self::DepthSpriteSoft)
     }
 }
 
 choice! {
-    /// What moves through the frames of a sprite.
+    /// Source of the flipbook frame.
     SpriteAnimation {
-        /// The particle's `frame`, round and round, neighbours blended.
+        /// The particle's `frame`, repeating, with neighbours blended.
         #[default]
         Flipbook = "flipbook",
-        /// The particle's age: the frames are the slices of a volume texture, the first at birth, the last at death,
-        /// neighbours blended. (MS)
+        /// The particle's age: frames are the slices of a volume texture, the first at birth and the last at death,
+        /// with neighbours blended. (MS)
         Volume = "volume",
-        /// Nothing: the first frame.
+        /// None: always the first frame.
         Still = "still",
-        /// As `flipbook`, but the nearest frame alone: half the lookups, and it jumps from one to the next.
+        /// As `flipbook`, but only the nearest frame: half the lookups, with visible jumps between frames.
         Nearest = "nearest",
     }
 }
 
 settings! {
-    /// What a sprite shows.
+    /// Size and animation of sprites.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct SpriteSettings {
-        /// Multiplies the radius of every particle. 0 draws nothing.
+        /// Multiplies the radius of every particle. Higher: larger puffs that overlap more. 0 draws nothing.
         size: f32 = 1.0, number(0.0..=100.0, "");
-        /// What moves through the frames.
+        /// Source of the flipbook frame: time, age, or none.
         animation: SpriteAnimation = SpriteAnimation::default(), choice;
-        /// Holds every sprite at the frame it was born with, and the noise of volumetric sprites where it is at time 0.
-        /// Frames come from the emitter: a host with its own simulation stops them itself.
+        /// Holds every sprite at the frame it was born with, and the noise of volumetric sprites at time 0. Frames come
+        /// from the emitter: a host with its own simulation has to stop them itself.
         freeze_animation: bool = false, flag;
-        /// How far texels are carried along the detail map's motion between two frames: 0 only blends, 1 goes all the way.
+        /// Motion of texels between two frames, by the detail map. 0: frames are only blended. 1: texels move all the
+        /// way.
         motion: f32 = 0.0, number(0.0..=1.0, "");
-        /// How much the age ramp colours a particle, forward only: 0 not at all, 1 wholly. (MS)
+        /// Strength of the age ramp's colour, forward only. 0: none. 1: full. (MS)
         age_colour: f32 = 0.0, number(0.0..=1.0, "");
-        /// Shows a checkerboard in place of the sprite. (NV)
+        /// Shows a checkerboard instead of the sprite. (NV)
         debug_sprite: bool = false, flag;
-        /// Draws all sprites this many times, to make the cost of a fragment stand out. (NV)
+        /// Draws all sprites this many times, to measure the cost of fragments. (NV)
         debug_loop: u32 = 1, integer(1..=10_000, "");
     }
 }
 
 impl SpriteSettings {
-    /// These for a sprite of so many frames: one alone is nothing to blend, unless it moves towards itself.
+    /// Settings for a sprite with this many frames. A single frame is not blended, unless it moves towards itself.
     pub fn for_frames(self, count: f32) -> Self {
         if count > 1.0 || self.motion > 0.0 { self } else { Self { animation: SpriteAnimation::Still, ..self } }
     }
 }
 
 settings! {
-    /// Numbers of the technique `spherical_billboard`.
+    /// Settings of the technique `spherical_billboard`.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct SphericalBillboard {
-        /// Radius of the sphere, in radii of the particle: how far in front of things it thins out.
+        /// Radius of the sphere, in radii of the particle. Higher: smoke thins out further in front of objects.
         radius: f32 = 1.0, number(0.0..=10.0, "");
-        /// How fast the amount grows on the way through the middle of the sphere: from haze to a solid ball.
+        /// Growth of the amount along a ray through the middle of the sphere. Higher: from haze to a solid ball.
         density: f32 = 3.0, number(0.0..=1000.0, "1/m");
     }
 }
 
 settings! {
-    /// The number of the technique `density`.
+    /// Settings of the technique `density`.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Density {
-        /// Density of the slab where the sprite's alpha is 1: more hides things nearer to its front.
+        /// Density of the slab where the sprite's alpha is 1. Higher: objects are hidden closer to its front.
         density: f32 = 1.0, number(0.0..=1000.0, "1/m");
     }
 }
 
 settings! {
-    /// Numbers of the techniques `volumetric_hard` and `volumetric_soft`.
+    /// Settings of the techniques `volumetric_hard` and `volumetric_soft`.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Volumetric {
-        /// Steps of the march through a sphere: fewer are cheaper, and show as layers.
+        /// Steps of the ray march through a sphere. Lower: cheaper, but layers show.
         march_steps: u32 = 6, integer(2..=8, "");
-        /// Side of one tile of the noise, which fills the world: how large its lumps are.
+        /// Side of one tile of the noise, which fills the world. Higher: larger lumps.
         noise_size: f32 = 2.5, number(0.01..=1000.0, "m");
-        /// Lookups into the noise for each step, each of three times the frequency and half the weight of the
-        /// last: finer lumps.
+        /// Octaves of the noise, looked up at each step. Each has three times the frequency and half the weight of the
+        /// one before. Higher: finer lumps at a higher cost.
         noise_octaves: u32 = 2, integer(1..=4, "");
-        /// How fast the amount grows where the noise is densest.
+        /// Growth of the amount where the noise is densest. Higher: denser smoke.
         opacity: f32 = 3.0, number(0.0..=1000.0, "1/m");
-        /// How fast the noise rises through the smoke: it boils.
+        /// Speed at which the noise rises through the smoke. Higher: the smoke boils faster.
         scroll_speed: f32 = 0.2, number(-100.0..=100.0, "m/s");
     }
 }

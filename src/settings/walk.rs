@@ -1,4 +1,4 @@
-//! Every field of a settings struct, with the path that leads to it.
+//! Traversal of every field of a settings struct, with the path that leads to it.
 
 use std::fmt::Write as _;
 use std::ops::RangeInclusive;
@@ -8,40 +8,40 @@ use glam::Vec3;
 use super::choice::Choice;
 use super::fields::{FieldVisitor, Fields, PictureRole};
 
-/// A name on the way to a field, and a place where it is in a list.
+/// Name on the path to a field, and its index if it is in a list.
 pub type Step<'a> = (&'a str, Option<usize>);
 
-/// A field where it lies.
+/// Reference to a field.
 pub enum Leaf<'a> {
-    /// A real number.
+    /// Real number.
     Number(&'a mut f32),
-    /// A whole number, or a seed.
+    /// Whole number, or a seed.
     Whole(&'a mut u32),
     /// Three numbers, or linear RGB.
     Vector(&'a mut Vec3),
-    /// On or off.
+    /// Boolean.
     Flag(&'a mut bool),
-    /// One of a few.
+    /// Enum.
     Choice(&'a mut dyn Choice),
-    /// Words, or the name of a file.
+    /// Text, or the name of a file.
     Text(&'a mut String),
 }
 
-/// The value of a field. A NaN equals a NaN here.
+/// Value of a field. NaN equals NaN here.
 #[derive(Clone, Debug, serde::Serialize)]
 #[serde(untagged)]
 pub enum Value {
-    /// Of [`Leaf::Number`].
+    /// Value of a [`Leaf::Number`].
     Number(f32),
-    /// Of [`Leaf::Whole`].
+    /// Value of a [`Leaf::Whole`].
     Whole(u32),
-    /// Of [`Leaf::Vector`].
+    /// Value of a [`Leaf::Vector`].
     Vector(Vec3),
-    /// Of [`Leaf::Flag`].
+    /// Value of a [`Leaf::Flag`].
     Flag(bool),
-    /// Of [`Leaf::Choice`]: its name.
+    /// Name of the choice of a [`Leaf::Choice`].
     Choice(&'static str),
-    /// Of [`Leaf::Text`].
+    /// Value of a [`Leaf::Text`].
     Text(String),
 }
 
@@ -62,7 +62,7 @@ impl PartialEq for Value {
 }
 
 impl Leaf<'_> {
-    /// What it is now.
+    /// Returns the current value.
     pub fn value(&self) -> Value {
         match self {
             Self::Number(value) => Value::Number(**value),
@@ -74,7 +74,7 @@ impl Leaf<'_> {
         }
     }
 
-    /// Makes it another; a value of another kind, or an unknown name, changes nothing.
+    /// Sets the value. A value of another kind, or an unknown name, changes nothing.
     pub fn set(self, value: &Value) {
         match (self, value) {
             (Self::Number(field), Value::Number(value)) => *field = *value,
@@ -92,20 +92,20 @@ impl Leaf<'_> {
     }
 }
 
-/// Calls `at` for every field but [`FieldVisitor::srgb`], which presets have none of, in the order of the struct, with the steps
-/// that lead to it; the last is its own name.
+/// Calls `at` for every field in the order of the struct, with the steps that lead to it; the last is the field's own
+/// name. [`FieldVisitor::srgb`] fields are skipped, because presets have none.
 pub fn walk(settings: &mut dyn Fields, at: &mut dyn FnMut(&[Step<'static>], Leaf<'_>)) {
     settings.visit(&mut Walk { path: Vec::new(), at });
 }
 
-/// Every field's path, as [`path_of`] spells it, and value.
+/// Path, as [`path_of`] formats it, and value of every field.
 pub fn values<T: Fields + Clone>(settings: &T) -> Vec<(String, Value)> {
     let mut values = Vec::new();
     walk(&mut settings.clone(), &mut |path, leaf| values.push((path_of(path), leaf.value())));
     values
 }
 
-/// A path as one text: `systems[0].settings.boost`.
+/// Formats a path: `systems[0].settings.boost`.
 pub fn path_of(path: &[Step<'_>]) -> String {
     let mut text = String::new();
     for (name, index) in path {

@@ -226,7 +226,7 @@ fn a_change_is_seen_and_taken_back() {
     folder.edit("lib/colour.wgsl", "return bounded_light(light);", "return bounded_light(light * TINT);");
     assert!(folder.refusal().contains("`TINT`"));
     // In a file of its own, which others import.
-    folder.edit("lib/blending.wgsl", "// What", "#import \"mine/tint.wgsl\"\n// What");
+    folder.edit("lib/blending.wgsl", "// Output", "#import \"mine/tint.wgsl\"\n// Output");
     folder.edit("lib/normal.wgsl", "//", "#import \"mine/tint.wgsl\"\n//");
     let text = std::fs::read_to_string(folder.0.path().join("lib/colour.wgsl")).unwrap();
     folder.write("lib/colour.wgsl", format!("#import \"mine/tint.wgsl\"\n{text}"));

@@ -1,4 +1,4 @@
-//! The `haze` binary: subcommand dispatch only.
+//! Entry point of the `haze` program.
 
 mod bake;
 mod bench;
@@ -39,14 +39,15 @@ fn main() -> ExitCode {
     command_line::run(std::env::args_os())
 }
 
-/// A Vulkan layer of Mesa's asks Wayland which device the display has. Where nobody is logged in, libwayland complains to
-/// standard error that it does not know where to look; given a place where nothing is, it is quiet.
-#[allow(unsafe_code, reason = "there is no other way to give a library of this process a variable")]
+/// Points `XDG_RUNTIME_DIR` to a folder that does not exist if it is not set. A Vulkan layer of Mesa asks Wayland for
+/// the device of the display. If the variable is missing, as without a login session, libwayland prints an error; if
+/// the folder is missing, it does not.
+#[allow(unsafe_code, reason = "there is no other way to set a variable for a library in this process")]
 fn without_a_session() {
     const VARIABLE: &str = "XDG_RUNTIME_DIR";
     let is_set = std::env::var_os(VARIABLE).is_some_and(|folder| std::path::Path::new(&folder).is_absolute());
     if cfg!(target_os = "linux") && !is_set {
-        // SAFETY: the program has just begun, no other thread reads variables.
+        // SAFETY: this is the first call in `main`; no other thread exists yet that could read variables.
         unsafe { std::env::set_var(VARIABLE, "/nonexistent") };
     }
 }

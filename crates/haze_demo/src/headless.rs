@@ -1,4 +1,4 @@
-//! A device without a window, and pictures read back from it: for tests, tools and examples.
+//! Device without a window, and read-back of images, for tests, tools and examples.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
@@ -9,14 +9,14 @@ use half::f16;
 
 use haze::error::{Error, FieldError};
 
-/// Far longer than a callback takes once the GPU is done.
+/// Time to wait for a callback after the GPU is done. Far longer than it takes.
 const READ_BACK_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// What to install where there is no adapter.
+/// Hint for machines without an adapter.
 const INSTALL_LINE: &str = "no graphics adapter was found; on Debian and Ubuntu \
     `apt-get install mesa-vulkan-drivers` installs a software one";
 
-/// The fastest adapter, or the one that `WGPU_ADAPTER_NAME` and `WGPU_BACKEND` choose.
+/// Returns the fastest adapter, or the one that `WGPU_ADAPTER_NAME` and `WGPU_BACKEND` select.
 fn find_adapter() -> Result<wgpu::Adapter, Error> {
     let variable = |name| std::env::var_os(name).unwrap_or_default().to_string_lossy().into_owned();
     let (backends, name) = (variable("WGPU_BACKEND"), variable("WGPU_ADAPTER_NAME"));
@@ -33,7 +33,7 @@ fn find_adapter() -> Result<wgpu::Adapter, Error> {
         }
     }
     let mut others = Vec::new();
-    // OpenGL only where nothing else is found: opening it makes noise on machines without a display.
+    // OpenGL last: opening it prints warnings on machines without a display.
     for group in [wgpu::Backends::PRIMARY, wgpu::Backends::SECONDARY] {
         let group = group & wanted & built_in;
         if group.is_empty() {
@@ -62,7 +62,7 @@ fn find_adapter() -> Result<wgpu::Adapter, Error> {
         }
     }
     if !others.is_empty() {
-        let expected = format!("a part of {}", others.join(" or "));
+        let expected = format!("a part of a name: {}", others.join(" or "));
         return Err(FieldError::new("WGPU_ADAPTER_NAME", format!("{name:?}"), expected).into());
     }
     let mut reason = INSTALL_LINE.to_owned();
@@ -72,23 +72,23 @@ fn find_adapter() -> Result<wgpu::Adapter, Error> {
     Err(Error::NoDevice(reason))
 }
 
-/// A device with its failures caught: nothing panics when the driver gives up.
+/// Device that records its failures: nothing panics when the driver fails.
 #[derive(Debug)]
 pub struct Headless {
-    /// The adapter that was chosen.
+    /// Selected adapter.
     pub adapter: wgpu::Adapter,
-    /// The device.
+    /// Device of the adapter.
     pub device: wgpu::Device,
-    /// Its queue.
+    /// Queue of the device.
     pub queue: wgpu::Queue,
     failures: Arc<Failures>,
 }
 
 #[derive(Debug, Default)]
 struct Failures {
-    /// Once set the device must not be polled any more: wgpu panics.
+    /// Set once the device is lost. After that it must not be polled, because wgpu panics.
     lost: AtomicBool,
-    /// The first message.
+    /// Message of the first failure.
     message: Mutex<Option<String>>,
 }
 
@@ -99,20 +99,20 @@ impl Failures {
 }
 
 impl Headless {
-    /// Takes the fastest adapter; `WGPU_ADAPTER_NAME` and `WGPU_BACKEND` choose another.
+    /// Opens the fastest adapter; `WGPU_ADAPTER_NAME` and `WGPU_BACKEND` select another.
     ///
     /// # Errors
-    /// [`Error::NoDevice`] with the line that installs a software adapter; [`Error::Field`] when one of the variables chooses
-    /// what there is not.
+    /// [`Error::NoDevice`] with the command that installs a software adapter; [`Error::Field`] if one of the variables
+    /// selects something that does not exist.
     pub fn new() -> Result<Self, Error> {
         Self::with(wgpu::Limits::default(), wgpu::Features::empty())
     }
 
-    /// As [`Headless::new`], with a device that promises no more than these limits, but for textures, which may be as large as
-    /// the adapter can make them; and with those of `features` that the adapter has. haze needs none.
+    /// As [`Headless::new`], with a device that has no more than these limits, except for textures, which may be as
+    /// large as the adapter allows, and with those of `features` that the adapter has. haze needs no features.
     ///
     /// # Errors
-    /// As [`Headless::new`]; [`Error::NoDevice`] also when the adapter has less than these limits.
+    /// As [`Headless::new`]; [`Error::NoDevice`] also if the adapter does not have these limits.
     pub fn with(limits: wgpu::Limits, features: wgpu::Features) -> Result<Self, Error> {
         let adapter = find_adapter()?;
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
@@ -134,14 +134,14 @@ impl Headless {
         let errors = failures.clone();
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             errors.record(match error {
-                wgpu::Error::OutOfMemory { .. } => "out of memory; a smaller picture takes less".into(),
+                wgpu::Error::OutOfMemory { .. } => "out of memory; a smaller picture needs less".into(),
                 error => error.to_string(),
             });
         }));
         Ok(Self { adapter, device, queue, failures })
     }
 
-    /// Adapter, backend and driver, and whether it is software, in one line.
+    /// Adapter, backend and driver, and a note for software adapters, in one line.
     pub fn description(&self) -> String {
         let info = self.adapter.get_info();
         let driver = format!("{} {}", info.driver, info.driver_info);
@@ -149,25 +149,25 @@ impl Headless {
         format!("{} ({:?}, {}{software})", info.name, info.backend, driver.trim())
     }
 
-    /// True if the adapter can draw to a format, which OpenGL does not promise of every one.
+    /// True if the adapter can draw to a format. OpenGL does not guarantee that for every format.
     pub fn can_draw_to(&self, format: wgpu::TextureFormat) -> bool {
         let usages = self.adapter.get_texture_format_features(format).allowed_usages;
         usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT)
     }
 
-    /// The first failure since the device was made.
+    /// Checks for failures since the device was created.
     ///
     /// # Errors
-    /// [`Error::Device`] with the driver's message.
+    /// [`Error::Device`] with the message of the first failure.
     pub fn check(&self) -> Result<(), Error> {
         let message = self.failures.message.lock().unwrap_or_else(PoisonError::into_inner);
         message.as_ref().map_or(Ok(()), |message| Err(Error::Device(message.clone())))
     }
 
-    /// Submits and waits.
+    /// Submits and waits until the GPU is done.
     ///
     /// # Errors
-    /// [`Error::Device`] when the device failed, now or before.
+    /// [`Error::Device`] if the device has failed, now or before.
     pub fn submit(&self, encoder: wgpu::CommandEncoder) -> Result<(), Error> {
         self.queue.submit([encoder.finish()]);
         self.wait()
@@ -177,7 +177,7 @@ impl Headless {
         while !self.failures.lost.load(Ordering::SeqCst) {
             match self.device.poll(wgpu::PollType::wait_indefinitely()) {
                 Ok(_) => break,
-                // On OpenGL wgpu waits for four seconds at the most.
+                // On OpenGL wgpu waits for four seconds at most.
                 Err(wgpu::PollError::Timeout) => {}
                 Err(error) => return Err(Error::Device(error.to_string())),
             }
@@ -185,7 +185,7 @@ impl Headless {
         self.check()
     }
 
-    /// Makes a texture that can be drawn to, sampled and read back.
+    /// Creates a texture that can be drawn to, sampled and read back.
     pub fn target(&self, label: &str, size: UVec2, format: wgpu::TextureFormat) -> wgpu::Texture {
         self.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
@@ -201,7 +201,7 @@ impl Headless {
         })
     }
 
-    /// Reads a buffer with `COPY_SRC` usage.
+    /// Reads back a buffer with `COPY_SRC` usage.
     ///
     /// # Errors
     /// [`Error::Device`].
@@ -212,7 +212,7 @@ impl Headless {
         self.map(encoder, &read)
     }
 
-    /// Reads an `Rgba16Float` texture, row by row from the top.
+    /// Reads back an `Rgba16Float` texture, row by row from the top.
     ///
     /// # Errors
     /// [`Error::Device`].
@@ -223,7 +223,7 @@ impl Headless {
         Ok(bytes.chunks_exact(8).map(texel).collect())
     }
 
-    /// Reads a `Depth32Float` or `R32Float` texture, row by row from the top.
+    /// Reads back a `Depth32Float` or `R32Float` texture, row by row from the top.
     ///
     /// # Errors
     /// [`Error::Device`].
@@ -263,11 +263,11 @@ impl Headless {
         self.queue.submit([encoder.finish()]);
         let (sender, mapped) = mpsc::channel();
         read.map_async(wgpu::MapMode::Read, .., move |result| {
-            // Nobody listens any more only when waiting failed, which is reported.
+            // The receiver is gone only if waiting failed, which is reported.
             let _ = sender.send(result);
         });
         self.wait()?;
-        // Another thread's poll may be the one that runs the callback, a moment after this one's has returned.
+        // Another thread's poll may run the callback, a moment after this thread's poll has returned.
         let mapped = mapped.recv_timeout(READ_BACK_TIMEOUT).map_err(|error| Error::Device(error.to_string()))?;
         mapped.map_err(|error| Error::Device(error.to_string()))?;
         let bytes = read.get_mapped_range(..).map_err(|error| Error::Device(error.to_string()))?.to_vec();

@@ -1,4 +1,4 @@
-//! A system's finished target, read at full resolution. `shaders/lib/accumulated.wgsl`.
+//! Finished target of a system, read at full resolution. WGSL: `shaders/lib/accumulated.wgsl`.
 
 use glam::{IVec2, Vec2, Vec3, Vec4};
 
@@ -7,25 +7,25 @@ use haze::assets::picture::Picture;
 use haze::formula::upsample::{GuidedFit, fitted_value, guided_weight, is_smooth, upsample_weights, with_texel};
 use haze::settings::Upsample;
 
-/// A system's finished target.
+/// Finished target of a system.
 pub struct Accumulated<'a> {
     pub draw: &'a Draw<'a>,
     pub baked: &'a [Picture<Vec3>],
     pub reduced_depth: &'a Picture<f32>,
     pub accumulation: &'a Picture<Vec4>,
-    /// What is kept beside it: the sum of the weights of normals, or the other half of six-way light.
+    /// Second target: the sum of the normals' weights, or the other half of six-way light.
     pub beside: Option<&'a Picture<Vec4>>,
-    /// What light_target has made of it; `None` where that is worked out texel by texel, as it is read.
+    /// Output of light_target. `None` if texels are lit as they are read.
     pub lit: Option<Picture<Vec4>>,
 }
 
 impl Accumulated<'_> {
-    /// A texture of the accumulation target. `sample_target()` in accumulated.wgsl.
+    /// Samples a texture of the accumulation target. `sample_target()` in accumulated.wgsl.
     pub fn sample_target(&self, target: &Picture<Vec4>, pixel: Vec2) -> Vec4 {
         self.sample_texels(|at| target.load(at), pixel)
     }
 
-    /// Lit smoke.
+    /// Samples the lit smoke.
     pub fn sample_lit(&self, pixel: Vec2) -> Vec4 {
         match &self.lit {
             Some(lit) => self.sample_target(lit, pixel),

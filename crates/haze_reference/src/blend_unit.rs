@@ -1,4 +1,4 @@
-//! What the hardware's blend unit does, rounding included. The blend states are in `src/renderer/gpu/pipeline.rs`.
+//! Emulation of the hardware's blend unit, with its rounding. The blend states are in `src/renderer/gpu/pipeline.rs`.
 
 use glam::{Vec4, Vec4Swizzles};
 use half::f16;
@@ -15,7 +15,7 @@ pub fn weighted_sum(source: Vec4, target: Vec4) -> Vec4 {
     (source.xyz() + target.xyz()).extend(source.w + target.w * (1.0 - source.w))
 }
 
-/// OTEE's three classic blends of a forward fragment on the picture.
+/// OTEE's three classic blends of a forward fragment over the image.
 pub fn forward_blend(mode: BlendMode, source: Vec4, target: Vec4) -> Vec4 {
     match mode {
         BlendMode::Alpha => premultiplied_over(source, target),
@@ -24,7 +24,7 @@ pub fn forward_blend(mode: BlendMode, source: Vec4, target: Vec4) -> Vec4 {
     }
 }
 
-/// Rounds to what a texel of the accumulation target can hold.
+/// Rounds to the precision of the accumulation target.
 pub fn quantise(format: AccumulationFormat, value: Vec4) -> Vec4 {
     match format {
         AccumulationFormat::Rgba16Float => Vec4::from(value.to_array().map(|channel| f16::from_f32(channel).to_f32())),

@@ -1,4 +1,4 @@
-//! A system in sight, and the geometry that its passes share.
+//! Visible system, with the geometry that its passes share.
 
 use glam::{IVec2, Mat4, UVec2, Vec2, Vec3, Vec4Swizzles};
 
@@ -16,7 +16,7 @@ use haze::in_view::{
 };
 use haze::settings::{Order, Settings, ShadeTree};
 
-/// A system in sight, with what its passes read.
+/// Visible system, with the input of its passes.
 pub struct Draw<'a> {
     pub view: ViewUniform,
     pub world_from_view: Mat4,
@@ -24,7 +24,7 @@ pub struct Draw<'a> {
     pub in_view: SystemInView,
     pub bounds: Bounds,
     pub lights: Vec<LightUniform>,
-    /// In the order in which they are drawn.
+    /// In drawing order.
     pub particles: Vec<Particle>,
     pub pictures: Pictures,
     pub scene_depth: &'a Picture<f32>,
@@ -33,7 +33,7 @@ pub struct Draw<'a> {
 }
 
 impl<'a> Draw<'a> {
-    /// `None` when the system is out of sight.
+    /// Returns `None` if the system is not visible.
     pub fn new(view: &ViewGeometry, frame: &Frame<'a>, system: &System<'a>, material: &MaterialInfo) -> Option<Self> {
         let settings = system.settings;
         let bounds = system.bounds.unwrap_or_else(|| bounds_of(system.particles, settings.reach()));
@@ -74,7 +74,7 @@ impl<'a> Draw<'a> {
         })
     }
 
-    /// True if this stage shows the light of the target's texels.
+    /// True if this debug view shows the light of the target's texels.
     pub fn lights_target(&self, shade_tree: ShadeTree) -> bool {
         shade_tree.is_picture() && self.settings.accumulate.lights_target(self.view.size.as_uvec2())
     }
@@ -83,7 +83,7 @@ impl<'a> Draw<'a> {
         view_depth_from_ndc_depth(self.scene_depth.load(pixel), self.view.depth_coefficients)
     }
 
-    /// The view-space point at a view depth on the ray through a pixel.
+    /// View-space point at a view depth on the ray through a pixel.
     pub fn view_position(&self, pixel: Vec2, view_depth: f32) -> Vec3 {
         let ray = ndc_from_pixel(pixel, self.view.size) * self.view.ray_scale + self.view.ray_offset;
         view_position(ray, view_depth, self.view.orthographic)
@@ -95,9 +95,9 @@ impl<'a> Draw<'a> {
     }
 }
 
-/// The systems in sight, with their places in the frame, far to near; for a picture of this size.
+/// Visible systems with their indices in the frame, far to near, for a picture of this size.
 pub fn visible<'a>(frame: &Frame<'a>, picture: UVec2) -> Result<Vec<(usize, Draw<'a>)>, FieldError> {
-    // The picture is the view, wherever that lies in a host's targets.
+    // The picture is the view, whatever its origin in a host's targets.
     let view = ViewGeometry::new(&View { origin: UVec2::ZERO, ..frame.view })?;
     validate_lights(frame.lights)?;
     validate_time_and_up(frame.time, frame.up)?;

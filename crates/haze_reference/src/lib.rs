@@ -1,5 +1,5 @@
-//! The whole frame on the CPU, pass by pass as the GPU renderer has it, in f32: the oracle of the tests, and what draws on a
-//! machine without a GPU driver.
+//! CPU renderer: the whole frame in f32, with the same passes as the GPU renderer. It is the oracle of the tests, and
+//! draws on machines without a GPU driver.
 
 mod accumulated;
 pub mod blend_unit;
@@ -23,7 +23,7 @@ pub use probe::{GlowProbe, LightProbe, Probe, SystemProbe, Texels, probe};
 /// Blends the frame's smoke over `picture`, linear HDR.
 ///
 /// # Errors
-/// The view, light or setting that cannot be used; `picture` is untouched then.
+/// The first view, light or setting that is invalid; `picture` is untouched then.
 pub fn render(frame: &Frame<'_>, picture: &mut Picture<Vec4>) -> Result<(), FieldError> {
     let draws = visible(frame, picture.size)?;
     for (_, draw) in &draws {

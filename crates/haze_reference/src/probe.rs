@@ -1,4 +1,4 @@
-//! One pixel, number by number: what the passes worked with, from texels as the GPU left them.
+//! Values of the passes at single pixels, computed from texels that the GPU wrote.
 
 use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
@@ -13,86 +13,88 @@ use haze::formula::six_way::SixWay;
 use haze::in_view::{ViewGeometry, lights_in_view};
 use haze::settings::{ShadeTree, SoftScatterMode};
 
-/// What a system was accumulated into, as read back: the textures of [`TargetViews`](haze::TargetViews), of the part in use.
+/// Textures that a system was accumulated into, as read back from [`TargetViews`](crate::TargetViews), cropped to the
+/// part in use.
 #[derive(Clone, Debug)]
 pub struct Texels {
     /// Normal and amount, as the target encodes them.
     pub accumulation: Picture<Vec4>,
-    /// What is kept beside it: in x what the weights of the normals sum to, or the other half of six-way light.
+    /// Second target: in x the sum of the normals' weights, or the other half of six-way light.
     pub beside: Option<Picture<Vec4>>,
-    /// Linear view depth, metres; `None` where sprites are compared with the scene's own.
+    /// Linear view depth, metres; `None` if sprites are compared with the scene's own.
     pub reduced_depth: Option<Picture<f32>>,
-    /// Light by normal: the faces of a cubemap, one motif, or none.
+    /// Light by normal: the faces of a cubemap, one motif, or empty.
     pub baked: Vec<Picture<Vec3>>,
 }
 
-/// What became of a pixel.
+/// Values at a pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probe {
-    /// Every deferred system whose box is drawn there and that has smoke there, far to near.
+    /// Deferred systems whose box is drawn at the pixel and that have smoke there, far to near.
     pub systems: Vec<SystemProbe>,
-    /// The picture's colour, linear HDR. `None` where a system is forward: that keeps no texels to tell from.
+    /// Colour of the pixel, linear HDR. `None` if a system is forward, because those leave no texels.
     pub colour: Option<Vec4>,
 }
 
-/// What a system adds to a pixel.
+/// Contribution of a system to a pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SystemProbe {
-    /// Which of the frame's systems.
+    /// Index of the system in the frame.
     pub system: usize,
     /// Accumulated alpha, 0 to 1.
     pub amount: f32,
-    /// Amount times `boost`, 0 to 1: where the coverage ramp is looked up.
+    /// Amount times `boost`, 0 to 1: the lookup coordinate of the coverage ramp.
     pub coverage_coordinate: f32,
-    /// Share of what is behind that is hidden.
+    /// Share of the background that is hidden.
     pub coverage: f32,
-    /// Unit length, view space: z towards the viewer.
+    /// Normal of unit length, view space: z towards the viewer.
     pub normal: Vec3,
-    /// What it shows under light from each side, view space, where that is what it is lit by.
+    /// Response to light from each side, view space, if the system is lit by six-way maps.
     pub six_way: Option<SixWay>,
-    /// The lights that reach the system.
+    /// Lights that reach the system.
     pub lights: Vec<LightProbe>,
-    /// Diffuse light, as the system's mode finds it, times its intensity.
+    /// Diffuse light by the system's mode, times its intensity.
     pub diffuse: Vec3,
-    /// How far soft scatter has gone from `scatter_colour` to `ambient_colour`; `None` where it comes from a ramp.
+    /// Weight of `ambient_colour` against `scatter_colour` in soft scatter; `None` if it comes from a ramp.
     pub soft_scatter_weight: Option<f32>,
     /// Soft scatter, times its intensity.
     pub soft_scatter: Vec3,
-    /// Premultiplied light and coverage, as it is blended.
+    /// Premultiplied light and coverage, as blended.
     pub blended: Vec4,
 }
 
-/// What a light does to a pixel of a system.
+/// Contribution of a light to a pixel of a system.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightProbe {
-    /// Which of the frame's lights.
+    /// Index of the light in the frame.
     pub light: usize,
-    /// Of normal and direction to the light.
+    /// Cosine between the normal and the direction to the light.
     pub cosine: f32,
-    /// Where the diffuse ramp is looked up, 0 to 1.
+    /// Lookup coordinate of the diffuse ramp, 0 to 1.
     pub coordinate: f32,
     /// Multiplies the light's colour.
     pub attenuation: f32,
-    /// What it adds by the diffuse ramp or six-way maps, times the intensity of diffuse light. Other modes than `ramp` sum up otherwise.
+    /// Light added through the diffuse ramp or six-way maps, times the intensity of diffuse light. Modes other than
+    /// `ramp` sum lights up differently.
     pub diffuse: Vec3,
-    /// Its glow; `None` where its quad does not reach, or the scene hides it.
+    /// Glow of the light; `None` if its quad does not reach the pixel, or the scene hides it.
     pub glow: Option<GlowProbe>,
 }
 
-/// A light's glow in a pixel.
+/// Glow of a light at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GlowProbe {
-    /// Where the specular ramp is looked up: distance² and amount, 0 to 1.
+    /// Lookup coordinate of the specular ramp: distance² and amount, 0 to 1.
     pub coordinate: Vec2,
-    /// What it adds.
+    /// Light that the glow adds.
     pub specular: Vec3,
 }
 
-/// Tells what became of some pixels of a frame, by the formulas that draw it. `texels` has those of every system, by its place in
-/// the frame, nothing for those that are out of sight or forward; `behind` is the scene without smoke.
+/// Computes the values at some pixels of a frame, with the formulas that draw it. `texels` has one entry per system of
+/// the frame, `None` for systems that are not visible or forward; `behind` is the scene without smoke.
 ///
 /// # Errors
-/// As [`render`](super::render); and texels that are not of the system's size.
+/// As [`render`](super::render), and for texels that do not have the system's size.
 pub fn probe(
     frame: &Frame<'_>,
     texels: &[Option<Texels>],
@@ -103,7 +105,7 @@ pub fn probe(
     let mut deferred = Vec::new();
     for (index, draw) in draws.iter().filter(|(_, draw)| !draw.settings.is_forward()) {
         let Some(Some(texels)) = texels.get(*index) else { continue };
-        // The scene's own depth, where sprites are compared with that.
+        // The scene's own depth, if sprites are compared with it.
         let own_depth = texels.reduced_depth.is_none().then(|| draw.depth_downsample());
         deferred.push((*index, draw, texels, own_depth));
     }
@@ -121,10 +123,10 @@ pub fn probe(
     Ok(pixels.iter().map(at).collect())
 }
 
-/// A system, and its texels.
+/// System with its texels.
 struct Smoke<'a> {
     accumulated: Accumulated<'a>,
-    /// Places of its lights among the frame's.
+    /// Indices of its lights in the frame.
     lights: Vec<usize>,
 }
 
@@ -140,7 +142,7 @@ impl<'a> Smoke<'a> {
         let sizes = [Some(accumulation.size), beside.as_ref().map(|t| t.size), Some(reduced_depth.size)];
         if let Some(other) = sizes.into_iter().flatten().find(|other| *other != size) {
             let value = format!("{}x{}", other.x, other.y);
-            return Err(FieldError::new("texels", value, format!("{}x{}, as the system has", size.x, size.y)));
+            return Err(FieldError::new("texels", value, format!("{}x{}, the size of the system", size.x, size.y)));
         }
         let accumulated = Accumulated { draw, baked, reduced_depth, accumulation, beside: beside.as_ref(), lit: None };
         let view = ViewGeometry::new(&haze::View { origin: UVec2::ZERO, ..frame.view })?;
@@ -153,7 +155,7 @@ impl<'a> Smoke<'a> {
         Ok(Self { accumulated, lights })
     }
 
-    /// What is seen of the system, which is blended over `colour`.
+    /// Contribution of the system, which is blended over `colour`.
     fn at(&self, index: usize, at: UVec2, colour: &mut Vec4) -> Option<SystemProbe> {
         let smoke = &self.accumulated;
         let draw = smoke.draw;
@@ -205,12 +207,12 @@ impl<'a> Smoke<'a> {
 }
 
 impl SystemProbe {
-    /// The glow of all lights.
+    /// Glow of all lights.
     pub fn specular(&self) -> Vec3 {
         self.lights.iter().filter_map(|light| light.glow).map(|glow| glow.specular).sum()
     }
 
-    /// Light before it is covered: what the stage `combined` shows.
+    /// Light before coverage is applied: the value of the debug view `combined`.
     pub fn light(&self) -> Vec3 {
         if self.coverage > 0.0 { self.blended.xyz() / self.coverage } else { Vec3::ZERO }
     }

@@ -1,4 +1,4 @@
-//! Sprites, fragment by fragment. `shaders/lib/sprite_vertex.wgsl` and `shaders/lib/sprite_fragment.wgsl`.
+//! Sprites, fragment by fragment. WGSL: `shaders/lib/sprite_vertex.wgsl` and `shaders/lib/sprite_fragment.wgsl`.
 
 use glam::{IVec2, Mat3, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 
@@ -20,7 +20,7 @@ use haze::frame::Particle;
 use haze::in_view::{Grid, Placing, SpriteInView};
 use haze::settings::{Order, Technique};
 
-/// A sprite in view space.
+/// Sprite in view space.
 pub struct SpriteSetup {
     pub centre: Vec3,
     pub view_depth: f32,
@@ -29,29 +29,29 @@ pub struct SpriteSetup {
     pub amount: f32,
     pub lod: f32,
     pub frames: FlipbookFrames,
-    /// Squares: how far from the middle there is anything, as a share of half a side: left, down, right, up.
+    /// Squares only: extent from the centre to the left, bottom, right and top, as shares of half a side.
     pub reach: Vec4,
     pub age: f32,
-    /// How much the normal counts, where sprites are not sorted.
+    /// Weight of the normal under the order `weighted`.
     pub weight: f32,
-    /// Pixels that it can cover: upper left and lower right corner.
+    /// Pixels that the sprite can cover: upper left and lower right corner.
     pub min: Vec2,
     pub max: Vec2,
 }
 
-/// What a sprite has at a texel.
+/// Values of a sprite at a texel.
 #[derive(Clone, Copy)]
 pub struct SpriteFragment {
     /// View space, about unit length.
     pub normal: Vec3,
-    /// View space, of sprites that are lit by six-way maps.
+    /// View space, for sprites lit by six-way maps.
     pub six_way: SixWay,
     pub amount: f32,
 }
 
 impl Draw<'_> {
-    /// Calls `f(texel position, sprite, fragment, texel)` for every fragment of every sprite in a band of rows,
-    /// in order. `scene` is the scene's view depth at a texel.
+    /// Calls `f(texel position, sprite, fragment, texel)` for every fragment of every sprite in a band of rows, in
+    /// order. `scene` returns the scene's view depth at a texel.
     pub fn for_fragments<T>(
         &self,
         grid: &Grid,
@@ -81,7 +81,7 @@ impl Draw<'_> {
         }
     }
 
-    /// `sprite_vertex()`; `None` when the sprite is hidden.
+    /// `sprite_vertex()`; `None` if the sprite is hidden.
     pub fn sprite_setup(&self, particle: &Particle, texels_per_pixel: f32) -> Option<SpriteSetup> {
         let (technique, placing) = (self.settings.technique, self.placing());
         let sprite = placing.sprite(particle, texels_per_pixel)?;
@@ -125,13 +125,13 @@ impl Draw<'_> {
     }
 
     fn square_rectangle(&self, centre: Vec3, radius: f32) -> (Vec2, Vec2) {
-        // Half the diagonal holds the sprite at every rotation.
+        // Half the diagonal contains the sprite at every rotation.
         let reach = Vec3::new(1.0, 1.0, 0.0) * (radius * std::f32::consts::SQRT_2);
         let (a, b) = (self.pixel_from_view(centre - reach), self.pixel_from_view(centre + reach));
         (a.min(b), a.max(b))
     }
 
-    /// What a sprite has at a pixel in front of a scene of this view depth; `None` where it is hidden.
+    /// Values of a sprite at a pixel in front of a scene of this view depth; `None` if it is hidden.
     pub fn technique_fragment(&self, sprite: &SpriteSetup, pixel: Vec2, scene: f32) -> Option<SpriteFragment> {
         let (system, technique) = (&self.system, self.settings.technique);
         if technique.is_sphere() {
@@ -156,7 +156,7 @@ impl Draw<'_> {
             Technique::DepthSpriteSoft => {
                 self.fade_before(scene, depth_sprite_depth(sprite.view_depth, detail.x, sprite.radius))
             }
-            // Hidden where nothing is left of the slab.
+            // Hidden if nothing is left of the slab.
             Technique::Density => thickness,
             _ => self.fade_before(scene, sprite.view_depth),
         };
@@ -180,7 +180,7 @@ impl Draw<'_> {
         soft_fade(curve, scene - view_depth, system.fade_scale, system.contrast_power, system.epsilon)
     }
 
-    /// The detail map where a technique or setting reads it.
+    /// Detail map, if a technique or setting reads it.
     fn detail(&self, sprite: &SpriteSetup, uv: Vec2) -> Vec3 {
         let is_read = self.settings.technique.is_depth_sprite() || self.system.motion > 0.0;
         match &self.material.detail {
@@ -191,7 +191,7 @@ impl Draw<'_> {
         }
     }
 
-    /// What the sprite's picture has there, turned with the sprite.
+    /// Values of the sprite's image at a position, rotated with the sprite.
     fn sprite_texel(&self, sprite: &SpriteSetup, uv: Vec2, motion: Vec2) -> SpriteFragment {
         let SpriteSetup { frames, lod, rotation, .. } = *sprite;
         if let Some(maps) = self.material.six_way.as_ref().filter(|_| self.settings.is_six_way()) {

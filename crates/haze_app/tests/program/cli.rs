@@ -480,7 +480,7 @@ fn preset_check_refuses_a_preset_that_cannot_be_rendered() {
     let lacks = preset(r#"{"sprite": "mine.png"}"#, "depth_sprite_soft");
     assert!(lacks.starts_with("haze: own.json: systems[0].settings.technique"), "{lacks}");
     let ignored = preset(r#"{"detail": "mine.png"}"#, "soft");
-    assert!(ignored.contains("material.detail") && ignored.contains("knows its own"), "{ignored}");
+    assert!(ignored.contains("material.detail") && ignored.contains("has its own"), "{ignored}");
     let columns = preset(r#"{"columns": 0}"#, "soft");
     assert!(columns.contains("systems[0].material.columns: 0 is not valid; expected 1 to 256 frames"), "{columns}");
     let ignored = preset(r#"{"columns": 2}"#, "soft");

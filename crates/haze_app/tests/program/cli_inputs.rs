@@ -128,7 +128,7 @@ fn images_have_a_limit_each_and_a_limit_in_total() {
     assert_eq!(
         preset(folder.path(), &[&five, &four]),
         "haze: my.json: systems[1].material.motif: 1152 MiB of pictures is not valid; \
-         expected at most 1024 MiB for all pictures of the preset, each as often as it is named"
+         expected at most 1024 MiB for all pictures of the preset, each counted as often as it is named"
     );
 }
 

@@ -1,4 +1,4 @@
-//! All that is wrong or doubtful about the files that a preset names, in one go.
+//! Checks all files that a preset names, and reports every error and warning.
 
 use std::path::Path;
 
@@ -8,9 +8,9 @@ use super::role::doubts;
 use crate::particle_files::check_caches;
 use haze::error::Error;
 
-/// Loads the pictures and particle files of every system, and gives all that is wrong with them, and what is doubtful about
-/// those that are not: pictures in roles that they were not painted for, each with its field. They are looked for in
-/// `folders`; `path`, the preset's, is for errors alone.
+    /// Loads the images and particle files of every system. Returns all errors, and warnings about loaded images that
+    /// do not seem to fit their role, each with its field. Files are searched for in `folders`; `path`, the preset's
+    /// file, is only named in errors.
 pub fn check_files(preset: &Preset, path: &Path, folders: &PictureFolders) -> (Vec<Error>, Vec<String>) {
     let mut pictures = Pictures::new(folders.clone());
     let (mut wrong, mut doubtful) = (Vec::new(), Vec::new());
@@ -34,7 +34,7 @@ pub fn check_files(preset: &Preset, path: &Path, folders: &PictureFolders) -> (V
     (wrong, doubtful)
 }
 
-/// What is doubtful about pictures besides those of some fields.
+/// Warnings about the images of all fields but some.
 fn doubts_of_others(names: &MaterialNames, fields: &[&str], folders: &PictureFolders) -> Vec<(&'static str, String)> {
     let others = names.with_usual(fields);
     let loaded = others.load_from(&mut Pictures::new(folders.clone()));
@@ -50,7 +50,7 @@ mod tests {
     use haze::settings::Technique;
 
     #[test]
-    fn what_is_wrong_hides_nothing_of_the_rest() {
+    fn an_error_hides_no_other_error_or_warning() {
         let folder = tempfile::tempdir().unwrap();
         RgbImage::from_fn(4, 64, |_, y| Rgb([4 * y as u8; 3])).save(folder.path().join("down.png")).unwrap();
         RgbImage::from_pixel(16, 16, Rgb([0; 3])).save(folder.path().join("flat.png")).unwrap();

@@ -1,4 +1,4 @@
-//! Which settings do nothing where they are, and why.
+//! Reasons why settings have no effect in their context.
 
 mod condition;
 mod row;
@@ -32,15 +32,15 @@ const OF_LIGHTS: &[Row<Light>] = &[
         |light, _| light.kind == LightKind::Directional,
         &["position", "range"],
     ),
-    row("a point light shines every way", |light, _| light.kind == LightKind::Point, &["direction"]),
+    row("a point light shines in all directions", |light, _| light.kind == LightKind::Point, &["direction"]),
     row("only with kind spot", |light, _| light.kind != LightKind::Spot, &["inner_angle", "outer_angle"]),
 ];
 
 const OF_ENVIRONMENTS: &[Row<Environment>] =
     &[row("only in the yard", |environment, _| environment.scene != SceneName::Yard, &["lamp", "brazier"])];
 
-/// Why a field has no effect as the rest stands; `None` if it has one. `path` is as [`path_of`](haze::settings::path_of)
-/// spells it; `size` is the picture's, in pixels.
+/// Returns the reason why a field has no effect with the other values as they are; `None` if it has an effect. `path` is
+/// formatted as by [`path_of`](haze::settings::path_of); `size` is the picture's, in pixels.
 pub fn without_effect(preset: &Preset, path: &str, size: UVec2) -> Option<&'static str> {
     let item = |list: &str| {
         let (index, field) = path.strip_prefix(list)?.strip_prefix('[')?.split_once("].")?;
@@ -55,7 +55,7 @@ pub fn without_effect(preset: &Preset, path: &str, size: UVec2) -> Option<&'stat
     find(OF_ENVIRONMENTS, &preset.environment, path.strip_prefix("environment.")?, size)
 }
 
-/// The conditions that a field's effect has, told as such: of a dotted path without places in lists.
+/// Conditions under which a field has an effect, for a dotted path without list indices.
 pub(super) fn conditions(path: &str) -> impl Iterator<Item = &'static str> {
     fn of<T>(rows: &'static [Row<T>], field: Option<&str>) -> Vec<&'static str> {
         let Some(field) = field else { return Vec::new() };
@@ -78,7 +78,7 @@ mod tests {
     use haze::settings::values;
 
     #[test]
-    fn every_row_names_fields_that_there_are() {
+    fn every_row_names_existing_fields() {
         let preset =
             Preset { lights: vec![Light::default()], systems: vec![PresetSystem::default()], ..Preset::default() };
         let paths: Vec<_> = values(&preset).into_iter().map(|(path, _)| path).collect();
@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reason_is_told_once_and_only_for_what_it_is_about() {
+    fn reasons_are_unique_and_apply_to_their_fields_only() {
         let preset = Preset { systems: vec![PresetSystem::default()], ..Preset::default() };
         let reason = |path: &str| without_effect(&preset, path, UVec2::new(640, 360));
         assert_eq!(reason("systems[0].settings.blend_mode"), Some("forward only"));

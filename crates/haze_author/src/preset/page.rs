@@ -1,4 +1,4 @@
-//! Every setting on one page, `docs/settings.md`: from the rows and doc comments of the settings.
+//! Generates `docs/settings.md`, one page with every setting, from the rows and doc comments of the settings.
 
 use std::collections::HashMap;
 use std::fmt::{Display, Write as _};
@@ -17,19 +17,19 @@ use haze::settings::{Choice, FieldVisitor, Fields, PictureRole, Value, values};
 const HEAD: &str = "\
 # Settings
 
-Made by `haze preset settings > docs/settings.md` from the tables in the code, as the sliders of the window are. What to turn for which
-look is on [another page](looks.md). A field that is left out of a preset has its default. Fields of lights are those of each of
-`lights`, fields of systems those of each of `systems`. Where a setting says *when*, it does nothing elsewhere: `haze preset check`
-tells of your preset, and the window greys it.
+`haze preset settings > docs/settings.md` generates this page from the tables in the code that the sliders of the window use too.
+[Another page](looks.md) says which settings to move for which look. A field that is left out of a preset has its default. Fields of
+lights are those of each entry of `lights`, fields of systems those of each entry of `systems`. A setting with a *When* has no effect
+otherwise: `haze preset check` reports such settings of your preset, and the window greys them out.
 ";
 
-/// The page, as Markdown.
+/// Returns the page as Markdown.
 pub fn settings_page() -> String {
     let mut preset = widest();
     let plain = Preset { lights: vec![Light::default()], systems: vec![PresetSystem::default()], ..Preset::default() };
     let defaults = values(&plain).into_iter().map(|(path, value)| (path.replace("[0]", ""), value)).collect();
     let mut page = Page { tooltips: Tooltips::of::<Preset>(), defaults, path: Vec::new(), parts: Vec::new() };
-    page.part("preset", "What a file holds.".into(), &mut preset);
+    page.part("preset", "Contents of a preset file.".into(), &mut preset);
     let mut text = HEAD.to_owned();
     for Part { title, about, rows } in page.parts.iter().filter(|part| !part.rows.is_empty()) {
         let head = "| field | what it does | range | default |\n|---|---|---|---|";
@@ -38,7 +38,7 @@ pub fn settings_page() -> String {
     text
 }
 
-/// A struct with its fields.
+/// Section of the page: a struct with its fields.
 struct Part {
     title: String,
     about: String,
@@ -47,21 +47,21 @@ struct Part {
 
 struct Page {
     tooltips: Tooltips,
-    /// By path, without places in lists.
+    /// Defaults by path without list indices.
     defaults: HashMap<String, Value>,
     path: Vec<&'static str>,
     parts: Vec<Part>,
 }
 
 impl Page {
-    /// Everything in a struct: its own fields, then the parts that it has.
+    /// Adds a section for the fields of a struct, followed by the sections of its nested structs.
     fn part(&mut self, title: &str, about: String, fields: &mut dyn Fields) {
         self.parts.push(Part { title: title.to_owned(), about, rows: String::new() });
         fields.visit(&mut Rows { part: self.parts.len() - 1, page: self });
     }
 }
 
-/// Writes the rows of one part.
+/// Writes the rows of one section.
 struct Rows<'a> {
     page: &'a mut Page,
     part: usize,
@@ -125,7 +125,7 @@ impl FieldVisitor for Rows<'_> {
     }
 
     fn text(&mut self, name: &'static str, _: &mut String) {
-        self.row(name, "any words");
+        self.row(name, "any text");
     }
 
     fn picture(&mut self, name: &'static str, _: &mut String, role: PictureRole) {

@@ -1,4 +1,4 @@
-//! Pictures in a role that they were not painted for: what loads, and is not what an artist meant.
+//! Checks images against their role: files that load, but were probably made for another purpose.
 
 use glam::{UVec2, Vec2, Vec3Swizzles as _};
 
@@ -7,10 +7,10 @@ use haze::assets::material::MaterialAssets;
 use haze::assets::ramp::Ramp;
 use haze::preset::MaterialNames;
 
-/// Most that channels of linear colours differ which are taken for the same.
+/// Largest difference between channels of linear colours that count as equal.
 const SAME: f32 = 1.0 / 64.0;
 
-/// What is doubtful about pictures in the roles that they have: the field, and what is so.
+/// Warnings about images that do not seem to fit their role: the field, and the warning.
 pub fn doubts(names: &MaterialNames, loaded: &MaterialAssets) -> Vec<(&'static str, String)> {
     let ramps = [
         ("soft_scatter_ramp", &names.soft_scatter_ramp, &loaded.soft_scatter_ramp),
@@ -30,7 +30,7 @@ pub fn doubts(names: &MaterialNames, loaded: &MaterialAssets) -> Vec<(&'static s
     doubts.filter_map(|(field, name, doubt)| Some((field, format!("{name}: {}", doubt?)))).collect()
 }
 
-/// What is wrong with a ramp whose rows are told apart by amount.
+/// Checks a ramp whose rows are looked up by amount.
 fn of_diffuse_ramp(ramp: &Ramp) -> Option<String> {
     let size = ramp.size();
     let is_black = |x: u32| (0..size.y).all(|y| ramp.texel(UVec2::new(x, y)).max_element() < SAME);
@@ -40,7 +40,7 @@ fn of_diffuse_ramp(ramp: &Ramp) -> Option<String> {
     of_rows(ramp).or_else(|| is_specular.then(specular))
 }
 
-/// What is wrong with a ramp of one row.
+/// Checks a ramp of which one row is looked up.
 fn of_ramp(ramp: &Ramp) -> Option<String> {
     let rows = ramp.size().y;
     let differ = || format!("its {rows} rows differ, and only the bottom one is looked up; expected a ramp of one row");
@@ -51,14 +51,14 @@ fn rows_are_equal(ramp: &Ramp) -> bool {
     is_everywhere(ramp, |x, _| UVec2::new(x, 0))
 }
 
-/// True if every texel is as another.
+/// True if every texel equals the one at `as_at` of its position.
 fn is_everywhere(ramp: &Ramp, as_at: impl Fn(u32, u32) -> UVec2) -> bool {
     let size = ramp.size();
     let mut texels = (0..size.y).flat_map(|y| (0..size.x).map(move |x| (x, y)));
     texels.all(|(x, y)| ramp.texel(UVec2::new(x, y)).abs_diff_eq(ramp.texel(as_at(x, y)), SAME))
 }
 
-/// What is wrong with a ramp whose rows differ, and is not that they do.
+/// Checks a ramp with different rows for the signs of another kind of image.
 fn of_rows(ramp: &Ramp) -> Option<String> {
     if rows_are_equal(ramp) {
         return None;
@@ -78,7 +78,7 @@ fn of_specular_ramp(ramp: &Ramp) -> Option<String> {
     if size.y == 1 {
         return Some("its one row is the same for every amount; expected distance² across and amount up".into());
     }
-    // One colour all over is no mistake.
+    // A single colour is not a mistake.
     (!rows_are_equal(ramp) && is_everywhere(ramp, |_, y| UVec2::new(0, y)))
         .then(|| "the same at every distance; expected distance² across and amount up".into())
 }
@@ -89,10 +89,11 @@ fn of_motif(motif: &Ramp) -> Option<String> {
         .then(|| format!("{}x{} pixels; expected a square with a lit sphere that fills it", size.x, size.y))
 }
 
-/// True if the colours are those of normals, over black where nothing is: more blue than red and green, which go up and down for
-/// themselves. Along a gradient they go together: of the ramps that come with haze none is below 0.4, and no sprite above 0.2.
+/// True if the colours are those of normals on black: more blue than red and green, which vary independently. In a
+/// gradient they vary together: the correlation of red and green is at least 0.4 in all ramps that come with haze, and
+/// at most 0.2 in all sprites.
 fn shows_normals(ramp: &Ramp) -> bool {
-    /// Darker is no colour to judge by.
+    /// Darker texels have no colour to judge by.
     const DARK: f32 = 0.05;
     let size = ramp.size();
     let texels = || {
@@ -101,7 +102,7 @@ fn shows_normals(ramp: &Ramp) -> bool {
     };
     let (sum, blue) = texels().fold((Vec2::ZERO, 0.0), |(sum, blue), light| (sum + light.xy(), blue + light.z));
     let mean = sum / blue;
-    // Each as a share of blue: so it is the same for what is half transparent. Blue is the weight.
+    // Red and green as shares of blue, so that half-transparent texels give the same. Blue is the weight.
     let (mut squares, mut product) = (Vec2::ZERO, 0.0);
     for light in texels() {
         let apart = light.xy() / light.z - mean;
@@ -121,7 +122,7 @@ mod tests {
     use haze::assets::builtin;
 
     #[test]
-    fn pictures_in_roles_that_they_were_not_painted_for() {
+    fn images_in_the_wrong_role_are_reported() {
         let folder = tempfile::tempdir().unwrap();
         let save = |name: &str, size: (u32, u32), colour: fn(u32, u32) -> [u8; 3]| {
             let picture = RgbImage::from_fn(size.0, size.1, |x, y| Rgb(colour(x, y)));

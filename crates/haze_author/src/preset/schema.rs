@@ -1,4 +1,4 @@
-//! The JSON schema of preset files: the structs as serde reads them, with the ranges that `Fields` checks.
+//! JSON schema of preset files: the structs as serde reads them, with the ranges that `Fields` checks.
 
 use std::ops::RangeInclusive;
 
@@ -9,7 +9,7 @@ use haze::frame::Light;
 use haze::preset::{Camera, Preset, PresetSystem};
 use haze::settings::{FieldVisitor, Fields};
 
-/// The JSON schema of preset files, as text.
+/// Returns the JSON schema of preset files.
 pub fn schema() -> String {
     let mut schema = schemars::schema_for!(Preset).to_value();
     let mut preset = widest();
@@ -18,7 +18,8 @@ pub fn schema() -> String {
     serde_json::to_string_pretty(&schema).unwrap_or_default()
 }
 
-/// One of each part, whose ranges are told: where one begins at another field's value, that leaves the widest.
+/// Preset with one of each part, whose ranges are listed. If a range starts at another field's value, that value makes
+/// it the widest.
 pub(super) fn widest() -> Preset {
     Preset {
         camera: Camera { near: 0.001, ..Camera::default() },
@@ -28,7 +29,7 @@ pub(super) fn widest() -> Preset {
     }
 }
 
-/// Writes defaults as the f32 they are, not as the f64 nearest to it.
+/// Writes defaults as f32, not as the nearest f64.
 fn tidy(value: &mut Value) {
     match value {
         Value::Array(items) => items.iter_mut().for_each(tidy),
@@ -38,10 +39,10 @@ fn tidy(value: &mut Value) {
     }
 }
 
-/// Writes the range of every number it visits into a struct's definition.
+/// Writes the range of every visited number into the definition of its struct.
 struct Ranges<'a> {
     schema: &'a mut Value,
-    /// JSON pointer to the struct being walked; "" is the preset itself.
+    /// JSON pointer to the struct being visited; "" is the preset itself.
     definition: String,
 }
 
@@ -50,7 +51,7 @@ impl Ranges<'_> {
         self.schema.pointer_mut(&format!("{}/properties/{name}", self.definition))
     }
 
-    /// Walks a struct that a field refers to.
+    /// Visits a struct that a field refers to.
     fn enter(&mut self, name: &str, fields: &mut dyn Fields) {
         let reference = self.property(name).and_then(|property| property["$ref"].as_str());
         if let Some(definition) = reference.and_then(|path| path.strip_prefix('#')).map(str::to_owned) {
@@ -61,7 +62,7 @@ impl Ranges<'_> {
     fn limit(&mut self, name: &str, item: &str, minimum: Value, maximum: Value) {
         if let Some(property) = self.property(&format!("{name}{item}")) {
             property["minimum"] = minimum;
-            // Infinity is no JSON.
+            // JSON has no infinity.
             if !maximum.is_null() {
                 property["maximum"] = maximum;
             }
@@ -69,7 +70,7 @@ impl Ranges<'_> {
     }
 }
 
-/// The shortest decimal that reads back as the same f32.
+/// Shortest decimal that reads back as the same f32.
 fn decimal(number: f32) -> Value {
     number.to_string().parse::<f64>().map_or(Value::Null, |number| json!(number))
 }

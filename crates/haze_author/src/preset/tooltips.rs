@@ -1,26 +1,26 @@
-//! What fields and choices mean, at run time: their doc comments.
+//! Doc comments of fields and choices, at run time.
 
 use serde_json::Value;
 
-/// The doc comments of a settings struct, by dotted path as in [`FieldVisitor`](haze::settings::FieldVisitor): a field is
-/// `soft_fade.fade_scale`, whatever its place in a list: `lights.range`.
+/// Doc comments of a settings struct, by the dotted paths of [`FieldVisitor`](crate::settings::FieldVisitor), such as
+/// `soft_fade.fade_scale`. Fields in lists have no index: `lights.range`.
 #[derive(Clone, Debug)]
 pub struct Tooltips {
     schema: Value,
 }
 
 impl Tooltips {
-    /// Those of `T` and everything in it.
+    /// Doc comments of `T` and everything in it.
     pub fn of<T: schemars::JsonSchema>() -> Self {
         Self { schema: schemars::schema_for!(T).to_value() }
     }
 
-    /// What a field means.
+    /// Doc comment of a field.
     pub fn field(&self, path: &str) -> Option<&str> {
         self.property(path)?["description"].as_str()
     }
 
-    /// What one choice of a field means; `name` is the one that presets use. `path` is "" where `T` is itself a choice.
+    /// Doc comment of one choice of a field. `name` is the one that presets use; `path` is "" if `T` itself is an enum.
     pub fn choice(&self, path: &str, name: &str) -> Option<&str> {
         let choices = self.resolve(self.property(path)?)["oneOf"].as_array()?;
         let choice = choices.iter().find(|choice| choice["const"] == name)?;
@@ -35,7 +35,7 @@ impl Tooltips {
         Some(at)
     }
 
-    /// The struct or choice that a field holds, or holds a list of.
+    /// Struct or enum that a field holds, or holds a list of.
     fn resolve<'a>(&'a self, value: &'a Value) -> &'a Value {
         let value = value.get("items").unwrap_or(value);
         let pointer = value.get("$ref").and_then(Value::as_str).and_then(|reference| reference.strip_prefix('#'));
@@ -51,7 +51,7 @@ mod tests {
     use haze::settings::{Choice, FieldVisitor, Fields, PictureRole};
     use std::ops::RangeInclusive;
 
-    /// Walks a preset as a user interface would, and asks for every tooltip.
+    /// Visits a preset as a user interface would, and asks for every tooltip.
     struct Panel<'a> {
         tooltips: &'a Tooltips,
         path: Vec<&'static str>,
@@ -127,7 +127,7 @@ mod tests {
         assert!(panel.rows > 100, "{} rows", panel.rows);
         assert_eq!(
             tooltips.field("systems.settings.boost"),
-            Some("Multiplies the accumulated amount into coverage: how soon smoke hides the scene. OTEE's value is 3.")
+            Some("Multiplies the accumulated amount into coverage. Higher: smoke hides the scene sooner. OTEE uses 3.")
         );
         assert_eq!(tooltips.field("systems.settings.boots"), None);
         assert_eq!(tooltips.choice("lights.kind", "laser"), None);

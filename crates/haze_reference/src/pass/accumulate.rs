@@ -1,4 +1,4 @@
-//! `shaders/accumulate.wgsl`.
+//! CPU version of `shaders/accumulate.wgsl`.
 
 use glam::Vec4;
 
@@ -32,8 +32,8 @@ impl Draw<'_> {
         })
     }
 
-    /// What is kept beside that: what the weights of the normals sum to, in x; or light from left, bottom and back and the sum of
-    /// weights.
+    /// Second target: the sum of the normals' weights in x; or, for six-way maps, light from left, bottom and back, and
+    /// the sum of weights.
     pub fn beside(&self, reduced_depth: &Picture<f32>) -> Option<Picture<Vec4>> {
         let accumulate = &self.settings.accumulate;
         if self.settings.is_six_way() {

@@ -1,4 +1,4 @@
-//! `shaders/depth_downsample.wgsl`.
+//! CPU version of `shaders/depth_downsample.wgsl`.
 
 use glam::IVec2;
 

@@ -1,4 +1,4 @@
-//! `shaders/diffuse_bake.wgsl` and `shaders/lib/diffuse.wgsl`.
+//! CPU version of `shaders/diffuse_bake.wgsl` and `shaders/lib/diffuse.wgsl`.
 
 use glam::{UVec2, Vec2, Vec3};
 use half::f16;
@@ -17,7 +17,7 @@ use haze::formula::uniforms::LightUniform;
 use haze::settings::{Backlight, DiffuseMode, SoftScatterMode};
 
 impl Draw<'_> {
-    /// A ramp of one row, as the settings have it looked up.
+    /// Samples a ramp of one row with the filter of the settings.
     pub fn sample_ramp(&self, ramp: &Ramp, u: f32) -> Vec3 {
         sample_ramp(ramp, self.settings.ramp_filter, u)
     }
@@ -62,7 +62,7 @@ impl Draw<'_> {
         colour * system.soft_scatter_intensity
     }
 
-    /// Faces of the cubemap, or the motif; the first row is −1.
+    /// Faces of the cubemap, or the motif; the first row is at −1.
     pub fn diffuse_bake(&self) -> Vec<Picture<Vec3>> {
         let mode = self.settings.diffuse.mode;
         let Some((side, layers)) = baked_size_and_layers(mode) else { return Vec::new() };

@@ -1,4 +1,4 @@
-//! `shaders/forward.wgsl`.
+//! CPU version of `shaders/forward.wgsl`.
 
 use glam::{Vec2, Vec3, Vec4};
 

@@ -1,4 +1,4 @@
-//! `shaders/light_target.wgsl`.
+//! CPU version of `shaders/light_target.wgsl`.
 
 use glam::{IVec2, Vec4};
 
@@ -9,14 +9,14 @@ use haze::formula::colour::bounded_light;
 use haze::settings::AccumulationFormat;
 
 impl Accumulated<'_> {
-    /// Light times amount, and amount.
+    /// Lit target: light times amount, and amount.
     pub fn light_target(&self) -> Picture<Vec4> {
         let mut lit = Picture::new(self.accumulation.size, Vec4::ZERO);
         lit.for_each(|at, texel| *texel = self.lit_texel(at.as_ivec2()));
         lit
     }
 
-    /// A texel of that; those outside are the nearest inside.
+    /// Texel of the lit target. Positions outside are clamped to the nearest texel inside.
     pub fn lit_texel(&self, at: IVec2) -> Vec4 {
         let (draw, system) = (self.draw, &self.draw.system);
         let at = at.clamp(IVec2::ZERO, self.accumulation.size.as_ivec2() - 1);

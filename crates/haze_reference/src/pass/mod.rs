@@ -1,4 +1,4 @@
-//! The passes of the reference renderer, each beside its shader: the formulas of the modules above, pixel by pixel.
+//! Passes of the CPU renderer, each named like its shader.
 
 mod accumulate;
 mod depth_downsample;

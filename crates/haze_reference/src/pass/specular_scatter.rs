@@ -1,4 +1,4 @@
-//! `shaders/specular_scatter.wgsl`.
+//! CPU version of `shaders/specular_scatter.wgsl`.
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
@@ -11,12 +11,12 @@ use haze::formula::ramp::sample_ramp_2d;
 use haze::formula::uniforms::LightUniform;
 use haze::formula::view::{pixel_from_ndc, pixels_per_metre};
 
-/// The quad of a light that glows.
+/// Quad of a light that glows.
 pub struct Glow<'a> {
     light: &'a LightUniform,
     /// Pixels.
     centre: Vec2,
-    /// Before ramp and range.
+    /// Before the specular ramp and the range are applied.
     colour: Vec3,
 }
 
@@ -31,7 +31,7 @@ impl Accumulated<'_> {
         }
     }
 
-    /// The light's quad, if there is anything of it to be seen.
+    /// Quad of the light, if any of it is visible.
     pub fn glow<'a>(&self, light: &'a LightUniform) -> Option<Glow<'a>> {
         let draw = self.draw;
         let (size, view) = (draw.system.specular_scatter_size, &draw.view);
@@ -54,7 +54,8 @@ impl Accumulated<'_> {
         (visibility > 0.0).then(|| Glow { light, centre, colour: light.colour * strength * visibility })
     }
 
-    /// Where a pixel looks into the specular ramp, and what it finds; `None` outside the quad and where there is no smoke.
+    /// Lookup coordinate of the specular ramp at a pixel, and the light found there; `None` outside the quad and where
+    /// there is no smoke.
     pub fn glow_at(&self, glow: &Glow<'_>, pixel: Vec2) -> Option<(Vec2, Vec3)> {
         let draw = self.draw;
         let uv = (pixel - glow.centre) / draw.system.specular_scatter_size;
@@ -73,7 +74,7 @@ impl Accumulated<'_> {
         Some((coordinate, bounded_light(found * glow.colour * window)))
     }
 
-    /// The share of a light's body that the scene leaves visible.
+    /// Share of a light's body that the scene leaves visible.
     pub fn light_visibility(&self, pixel: Vec2, radius: f32, light_depth: f32) -> f32 {
         let visible =
             |i: u32| self.draw.scene_view_depth((pixel + visibility_tap(i, radius)).floor().as_ivec2()) >= light_depth;

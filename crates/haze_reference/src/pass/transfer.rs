@@ -1,4 +1,4 @@
-//! `shaders/transfer.wgsl`.
+//! CPU version of `shaders/transfer.wgsl`.
 
 use glam::{IVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
@@ -15,11 +15,11 @@ use haze::formula::six_way::{SixWay, normal_from_six_way};
 use haze::formula::uniforms::LightUniform;
 use haze::settings::{CoverageMode, DiffuseMode, ShadeTree};
 
-/// What light falls on.
+/// Surface that light falls on.
 pub struct Surface {
     /// Unit length, view space.
     pub normal: Vec3,
-    /// Of six-way maps.
+    /// From six-way maps.
     pub six_way: SixWay,
 }
 
@@ -59,7 +59,7 @@ impl Accumulated<'_> {
     /// True if the face of the box that the transfer draws covers the pixel and passes the depth test.
     pub fn box_is_drawn(&self, at: IVec2, pixel: Vec2) -> bool {
         let draw = self.draw;
-        // The ray by view depth: from the eye, or straight ahead.
+        // The ray is parametrised by view depth: from the eye, or straight ahead.
         let (start, end) = (draw.view_position(pixel, 0.0), draw.view_position(pixel, 1.0));
         let origin = draw.world_from_view.transform_point3(start);
         let direction = draw.world_from_view.transform_vector3(end - start);
@@ -110,7 +110,7 @@ impl Accumulated<'_> {
         Some(bounded_light(light).extend(1.0) * covered)
     }
 
-    /// How much of the scene the smoke hides.
+    /// Share of the scene that the smoke hides.
     pub fn coverage(&self, amount: f32) -> f32 {
         let draw = self.draw;
         let linear = coverage(amount, draw.system.boost);
@@ -142,7 +142,7 @@ impl Accumulated<'_> {
         (accumulated.w, self.surface_at(accumulated, pixel))
     }
 
-    /// What a light adds, where none is baked.
+    /// Contribution of a light if none is baked.
     pub fn diffuse_from_light(&self, light: &LightUniform, surface: &Surface, covered: f32, position: Vec3) -> Vec3 {
         match self.draw.settings.is_six_way() {
             true => self.draw.six_way_from_light(light, &surface.six_way, position),

@@ -52,7 +52,7 @@ fn particle_files_are_checked_shown_and_copied_with_their_preset() {
     write("smoke_####.csv");
     let check = haze(folder.path(), &["preset", "check", "my.json"]);
     let said = String::from_utf8(check.stdout).unwrap();
-    assert_eq!(said, "my.json: good\n  systems[0].emitter.rate has no effect: the particles come from a cache\n");
+    assert_eq!(said, "my.json: good\n  systems[0].emitter.rate has no effect: the particles come from files\n");
     let show = haze(folder.path(), &["preset", "show", "my.json", "--changed"]);
     let said = String::from_utf8(show.stdout).unwrap();
     for wanted in

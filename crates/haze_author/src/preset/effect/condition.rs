@@ -1,4 +1,4 @@
-//! When settings of a system do nothing, where that takes more than a word.
+//! Longer conditions under which settings of a system have no effect.
 
 use glam::UVec2;
 
@@ -15,7 +15,7 @@ pub fn is_hard(system: &PresetSystem, _: UVec2) -> bool {
     !technique(system).is_soft()
 }
 
-/// True if the way back to full resolution looks at depths: it asks how far sprites fade, whether they do or not.
+/// True if the upsampling compares depths. It then uses the length of the fade, whether sprites fade or not.
 pub fn weighs_depth(system: &PresetSystem, size: UVec2) -> bool {
     let accumulate = &system.settings.accumulate;
     let is_reduced = !system.settings.is_forward() && accumulate.effective_scale(size) > 1;
@@ -30,7 +30,7 @@ pub fn has_no_power(system: &PresetSystem, _: UVec2) -> bool {
     !matches!(system.settings.soft_fade.curve, FadeCurve::Contrast | FadeCurve::Exponential)
 }
 
-/// True if the checkerboard is all that is seen of a sprite: depth sprites take their depth from it still.
+/// True if the checkerboard replaces everything of a sprite. Depth sprites still read depth from it.
 pub fn is_checked(system: &PresetSystem, _: UVec2) -> bool {
     let is_read = technique(system).is_volumetric() || technique(system).is_depth_sprite();
     system.settings.sprite.debug_sprite && !is_read

@@ -1,8 +1,8 @@
-//! A row of the tables of settings that do nothing.
+//! Row in the tables of settings without effect.
 
 use glam::UVec2;
 
-/// A reason, whether it holds, and what does nothing then: fields, or groups of them.
+/// Reason, its condition, and the fields or groups of fields that have no effect then.
 pub struct Row<T> {
     pub reason: &'static str,
     pub holds: fn(&T, UVec2) -> bool,
@@ -10,7 +10,7 @@ pub struct Row<T> {
 }
 
 impl<T> Row<T> {
-    /// Whether it is about a field.
+    /// True if the row is about a field.
     pub fn names(&self, field: &str) -> bool {
         let is_named =
             |name: &&str| field.strip_prefix(*name).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
@@ -22,7 +22,7 @@ pub const fn row<T>(reason: &'static str, holds: fn(&T, UVec2) -> bool, fields: 
     Row { reason, holds, fields }
 }
 
-/// The first row that holds is the reason.
+/// Returns the reason of the first row that holds.
 pub fn find<T>(rows: &[Row<T>], of: &T, field: &str, size: UVec2) -> Option<&'static str> {
     let holds = |row: &&Row<T>| row.names(field) && (row.holds)(of, size);
     rows.iter().find(holds).map(|row| row.reason)

@@ -1,4 +1,4 @@
-//! Which settings of a system do nothing where they are, and why: one row for each reason.
+//! Settings of a system that have no effect in their context: one row for each reason.
 
 use glam::Vec3;
 
@@ -11,11 +11,11 @@ use haze::assets::builtin;
 use haze::preset::PresetSystem;
 use haze::settings::{Backlight, CoverageMode, Order, Path, SoftScatterMode, SpriteAnimation, Technique};
 
-/// The first row that holds is the reason.
+/// The first row that holds gives the reason.
 pub const OF_SYSTEMS: &[Row<PresetSystem>] = &[
-    row("the particles come from a cache", |s, _| s.cache.is_used(), &["emitter"]),
+    row("the particles come from files", |s, _| s.cache.is_used(), &["emitter"]),
     row(
-        "only with a cache",
+        "only with particle files",
         |s, _| !s.cache.is_used(),
         &[
             "cache.units",
@@ -91,7 +91,7 @@ pub const OF_SYSTEMS: &[Row<PresetSystem>] = &[
         ],
     ),
     row(
-        "a built-in sprite knows its own",
+        "a built-in sprite has its own",
         |s, _| builtin::find(builtin::SPRITES, &s.material.sprite).is_some(),
         &["material.detail", "material.columns", "material.rows", "material.y_down"],
     ),
