@@ -1,4 +1,4 @@
-//! The ramps, sprites and presets that come with haze, embedded.
+//! Ramps, sprites and presets that are embedded in the library.
 
 use std::path::{Path, PathBuf};
 
@@ -18,7 +18,7 @@ pub struct Builtin {
     pub name: &'static str,
     /// The PNG, or the preset's JSON.
     pub bytes: &'static [u8],
-    /// The JSON it was made from; empty for presets and details.
+    /// The recipe's JSON; empty for presets and detail maps.
     pub recipe: &'static str,
 }
 
@@ -32,7 +32,7 @@ macro_rules! builtin {
     };
 }
 
-/// Ramps of every role. `ramps/README.md`.
+/// Ramps of every role; `ramps/README.md` describes them.
 pub const RAMPS: &[Builtin] = builtin!(
     "ramps",
     ".ramp.json",
@@ -75,7 +75,7 @@ pub const RAMPS: &[Builtin] = builtin!(
     ]
 );
 
-/// Painted lit spheres.
+/// Motifs: painted images of a lit sphere.
 pub const MOTIFS: &[Builtin] = builtin!("ramps", ".motif.json", ["motif_studio"]);
 
 /// Flipbooks of normal maps.
@@ -92,10 +92,10 @@ macro_rules! details {
     };
 }
 
-/// Depth and motion of the flipbooks, by the same names.
+/// Detail maps (depth and motion) of the flipbooks, under the same names.
 pub const DETAILS: &[Builtin] = details!(["puff", "wisp", "billow", "ball", "cauliflower", "strands", "streaks"]);
 
-/// Tiling 3D noise.
+/// Tiling 3D noise volumes.
 pub const NOISES: &[Builtin] = builtin!("sprites", ".noise.json", ["fbm"]);
 
 macro_rules! presets {
@@ -108,11 +108,11 @@ macro_rules! presets {
     };
 }
 
-/// The presets; the first is the default.
+/// Presets; the first is the default.
 pub const PRESETS: &[Builtin] =
     presets!(["column", "backlit_fog", "corridor", "explosion", "fence", "inside", "crates", "dust_storm"]);
 
-/// The pictures that there are for a role.
+/// Returns the built-in images for a role; empty for details and six-way maps.
 pub fn of_role(role: PictureRole) -> &'static [Builtin] {
     match role {
         PictureRole::Sprite => SPRITES,
@@ -128,7 +128,7 @@ pub fn find(list: &'static [Builtin], name: &str) -> Option<&'static Builtin> {
     list.iter().find(|builtin| builtin.name == name)
 }
 
-/// The name that errors give a built-in file.
+/// Returns the path that error messages use for a built-in file: `builtin:/name`.
 pub fn path(name: &str) -> PathBuf {
     Path::new("builtin:").join(name)
 }
@@ -142,7 +142,7 @@ impl Builtin {
         Ok(Ramp::from_picture(&decode_colour_png(&path(self.name), self.bytes)?))
     }
 
-    /// Decodes a sprite, laid out as its recipe says.
+    /// Decodes a sprite with the layout of its recipe.
     ///
     /// # Errors
     /// As [`decode_png`] and [`Sprite::from_picture`].
@@ -150,15 +150,15 @@ impl Builtin {
         self.decode(self.sprite_recipe()?.layout())
     }
 
-    /// How a sprite was made.
+    /// Parses the sprite's recipe.
     ///
     /// # Errors
-    /// [`Error::Json`] for what is no sprite.
+    /// [`Error::Json`] if this built-in is not a sprite.
     pub fn sprite_recipe(&self) -> Result<SpriteRecipe, Error> {
         json::parse(&path(self.name), self.recipe)
     }
 
-    /// Decodes the sprite's detail map.
+    /// Decodes the sprite's detail map, if it has one.
     ///
     /// # Errors
     /// As [`Builtin::sprite`].
@@ -172,7 +172,7 @@ impl Builtin {
         Sprite::from_picture(&path, &decode_png(&path, self.bytes)?.to_rgba8(), layout)
     }
 
-    /// Decodes a noise.
+    /// Decodes a noise volume.
     ///
     /// # Errors
     /// As [`decode_png`] and [`NoiseVolume::from_picture`].

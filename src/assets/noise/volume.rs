@@ -1,4 +1,4 @@
-//! The tiling 3D noise that fills volumetric particles: density in alpha, its inverse gradient in rgb.
+//! Tiling 3D noise for volumetric particles: density in alpha, negated density gradient in rgb.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -13,37 +13,37 @@ use crate::formula::gradient_noise::tiling_noise;
 use crate::formula::texture::Texture3d;
 use crate::settings::{FieldVisitor, Fields, validate};
 
-/// The version of the recipe format that this code writes and reads.
+/// Recipe format version that this code writes and reads.
 pub const RECIPE_VERSION: u32 = 1;
 
-/// Largest side in voxels: its slices below each other are as high as a picture may be.
+/// Maximum side in voxels. 64 slices of 64 rows reach the maximum image height of 4096 pixels.
 pub const MAX_SIZE: u32 = 64;
 
-/// A decoded cube of noise that repeats in every direction. Texels are rgb = inverse density gradient (it points to
-/// where there is less) / 2 + 1/2, scaled so that the steepest place is of unit length, and a = density, 8 bits each.
-/// A clone shares its texels.
+/// A decoded cube of noise that tiles in every direction. Texels have 8 bits per channel: a = density; rgb = direction
+/// towards lower density (negated gradient) / 2 + 1/2, scaled so that the steepest gradient has unit length. A clone
+/// shares its texels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoiseVolume {
     size: u32,
-    /// Slice by slice, row by row.
+    /// Texels in order of slices, then rows.
     texels: Arc<[[u8; 4]]>,
 }
 
 impl NoiseVolume {
-    /// True if both are in the same memory.
+    /// True if both share the same memory.
     pub(crate) fn shares(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.texels, &other.texels)
     }
 
-    /// Cuts a picture into slices: `size` texels wide, the slices below each other.
+    /// Cuts an image into slices: the image is `size` texels wide and has `size` slices below each other.
     ///
     /// # Errors
-    /// [`Error::Image`] when the picture is not `size` by `size` squared, `size` 1 to [`MAX_SIZE`].
+    /// [`Error::Image`] if the image is not `size` by `size`², with `size` 1 to [`MAX_SIZE`].
     pub fn from_picture(path: &Path, picture: &RgbaImage) -> Result<Self, Error> {
         let (size, height) = picture.dimensions();
         if size == 0 || size > MAX_SIZE || height != size * size {
             let reason = format!(
-                "{size}x{height} pixels are no cube; expected slices below each other, for example 32x1024 pixels, \
+                "{size}x{height} pixels are not a cube; expected slices below each other, for example 32x1024 pixels, \
                  and at most {MAX_SIZE} a side"
             );
             return Err(Error::Image { path: path.into(), reason });
@@ -51,7 +51,7 @@ impl NoiseVolume {
         Ok(Self { size, texels: picture.pixels().map(|pixel| pixel.0).collect() })
     }
 
-    /// Reads a PNG.
+    /// Loads a PNG.
     ///
     /// # Errors
     /// As [`read_png`] and [`NoiseVolume::from_picture`].
@@ -59,18 +59,18 @@ impl NoiseVolume {
         Self::from_picture(path, &read_png(path)?.to_rgba8())
     }
 
-    /// Voxels along each side.
+    /// Returns the number of voxels along each side.
     pub fn size(&self) -> u32 {
         self.size
     }
 
-    /// One texel, 0..1 in each channel.
+    /// Returns one texel, 0..1 in each channel.
     pub fn texel(&self, at: UVec3) -> Vec4 {
         let index = (at.z * self.size + at.y) * self.size + at.x;
         Vec4::from(self.texels[index as usize].map(f32::from)) / 255.0
     }
 
-    /// Bytes that the texels take.
+    /// Returns the size of the texels, bytes.
     pub(crate) fn memory(&self) -> u64 {
         size_of_val(&*self.texels) as u64
     }
@@ -90,7 +90,7 @@ impl Texture3d for NoiseVolume {
     }
 }
 
-/// How a noise was made: the contents of a `*.noise.json`.
+/// Recipe of a noise volume: the contents of a `*.noise.json`.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "app", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -103,7 +103,7 @@ pub struct NoiseRecipe {
     pub size: u32,
     /// Cells of the coarsest octave along each side.
     pub cells: u32,
-    /// Octaves, each of twice the frequency of the last.
+    /// Number of octaves, each at twice the frequency of the previous one.
     pub octaves: u32,
     /// Weight of an octave relative to the coarser one.
     pub gain: f32,
@@ -121,7 +121,7 @@ impl Fields for NoiseRecipe {
 }
 
 impl NoiseRecipe {
-    /// Reads a `*.noise.json`.
+    /// Loads a `*.noise.json`.
     ///
     /// # Errors
     /// [`Error::Io`], [`Error::Json`] or [`Error::JsonField`].
@@ -129,10 +129,10 @@ impl NoiseRecipe {
         json::load(path, RECIPE_VERSION, |recipe: &Self| validate(recipe, String::new))
     }
 
-    /// Bakes the slices, below each other.
+    /// Bakes the image of slices below each other.
     ///
     /// # Errors
-    /// The first number of the recipe that is out of range.
+    /// The first field of the recipe that is out of range.
     pub fn bake(&self) -> Result<RgbaImage, FieldError> {
         validate(self, String::new)?;
         let size = self.size;
@@ -143,7 +143,7 @@ impl NoiseRecipe {
         let most = field.iter().map(|v| v.w).fold(f32::NEG_INFINITY, f32::max);
         let steepest = field.iter().map(|v| v.xyz().length()).fold(f32::MIN_POSITIVE, f32::max);
         let channel = |value: f32| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
-        // With the slices below each other, the picture's rows are in the voxels' order.
+        // With the slices below each other, the image's pixels are in the order of the voxels.
         Ok(RgbaImage::from_fn(size, size * size, |x, y| {
             let value = field[(y * size + x) as usize];
             let away = -value.xyz() / steepest * 0.5 + 0.5;
@@ -176,13 +176,13 @@ mod tests {
     }
 
     #[test]
-    fn the_gradient_points_to_where_there_is_less() {
+    fn the_gradient_points_towards_lower_density() {
         let baked = recipe().bake().unwrap();
         let volume = NoiseVolume::from_picture(Path::new("test"), &baked).unwrap();
         let mut agreeing = 0;
         for index in 0..16 * 16 * 16_u32 {
             let at = UVec3::new(index % 16, index / 16 % 16, index / 256);
-            // Central differences, wrapped round: also across the border of the tile.
+            // Central differences that wrap at the border of the tile.
             let density = |step: UVec3| volume.texel((at + step) % 16).w;
             let slope = Vec3::new(
                 density(UVec3::new(1, 0, 0)) - density(UVec3::new(15, 0, 0)),
@@ -191,12 +191,12 @@ mod tests {
             );
             agreeing += u32::from((volume.texel(at).xyz() - 0.5).dot(-slope) >= 0.0);
         }
-        // Differences over two voxels smooth the finest octave away.
+        // Not all 4096 agree: differences over two voxels blur the finest octave.
         assert!(agreeing > 3900, "{agreeing} of 4096");
     }
 
     #[test]
-    fn pictures_that_are_no_cube_are_refused() {
+    fn images_that_are_not_a_cube_are_refused() {
         let refused = |width, height| {
             let picture = RgbaImage::new(width, height);
             NoiseVolume::from_picture(Path::new("fbm.png"), &picture).unwrap_err().to_string()
