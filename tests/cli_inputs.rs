@@ -151,10 +151,7 @@ fn what_is_no_json_is_named() {
     let mut png = Vec::new();
     DynamicImage::new_rgb8(1, 1).write_to(&mut std::io::Cursor::new(&mut png), ImageFormat::Png).unwrap();
     assert_eq!(said(&png), "haze: a.json:1:1: a PNG picture; expected JSON as UTF-8 text");
-    assert_eq!(
-        said(b"{\n \"name\": \"caf\xe9\"}"),
-        "haze: a.json:2:14: not UTF-8; expected JSON as UTF-8 text"
-    );
+    assert_eq!(said(b"{\n \"name\": \"caf\xe9\"}"), "haze: a.json:2:14: not UTF-8; expected JSON as UTF-8 text");
     // A byte order mark is no mistake: what is missing is the name.
     assert_eq!(said(format!("\u{feff}{text}").as_bytes()), "haze: a.json:1:14: missing field `name`");
 }

@@ -135,7 +135,8 @@ impl MaterialInfo {
             _ => {}
         }
         let Some(detail) = &self.detail else {
-            let expected = || "another value, or a material with a detail map, as `haze sprite bake` makes it".to_owned();
+            let expected =
+                || "another value, or a material with a detail map, as `haze sprite bake` makes it".to_owned();
             if settings.technique.is_depth_sprite() {
                 return refuse("settings.technique", format!("{:?}", settings.technique.name()), expected());
             }

@@ -109,12 +109,8 @@ impl Columns {
             Role::Radius | Role::Width => ((0.0..=LARGEST).contains(&value), "0 or more, up to 1e9"),
             Role::Age if self.has_lives => (value.abs() <= LARGEST, "a number up to 1e9"),
             Role::Life if self.has_lives => ((0.0..=LARGEST).contains(&value), "0 or more, up to 1e9"),
-            Role::Age => {
-                (share.contains(&value), "a fraction of the lifetime, 0 to 1, or a life column as well")
-            }
-            Role::Life => {
-                (share.contains(&value), "a fraction of the lifetime, 0 to 1, or an age column as well")
-            }
+            Role::Age => (share.contains(&value), "a fraction of the lifetime, 0 to 1, or a life column as well"),
+            Role::Life => (share.contains(&value), "a fraction of the lifetime, 0 to 1, or an age column as well"),
             Role::Id => (value.abs() <= LARGEST_ID && value.fract() == 0.0, "a whole number"),
         };
         if !is_good {

@@ -13,7 +13,7 @@ pub enum Mistake {
         line: usize,
         /// 1-based, characters.
         column: usize,
-        /// What is wrong and what is expected.
+        /// The problem and the expected value.
         reason: String,
     },
     /// An error of the whole file, or at a position that the reason names.

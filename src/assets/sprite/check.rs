@@ -69,7 +69,10 @@ pub fn check(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Result<V
         );
     } else if off(&[faint, solid].concat()) > FEW {
         let share = (off(&lengths(SEEN, 2.0)) * 100.0).round();
-        find("length", format!("{share} % of normals are not of unit length; expected unit normals: normalise the map"));
+        find(
+            "length",
+            format!("{share} % of normals are not of unit length; expected unit normals: normalise the map"),
+        );
     }
     if let Some(found) = y_direction(&sprite).filter(|found| found.is_down && found.sureness >= SURE) {
         let sure = (found.sureness * 100.0).round();
@@ -81,7 +84,9 @@ pub fn check(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Result<V
         let times = seam / mean;
         find(
             "loop",
-            format!("the last frame differs from the first {times:.1} times as much as neighbouring frames do; expected a loop"),
+            format!(
+                "the last frame differs from the first {times:.1} times as much as neighbouring frames do; expected a loop"
+            ),
         );
     }
     Ok(findings)

@@ -133,8 +133,9 @@ impl Header {
                     element.properties.push(parse_property(words).map_err(refuse)?);
                 }
                 ["end_header"] => {
-                    let format = format
-                        .ok_or_else(|| refuse("no format line in the header; expected for example \"format ascii 1.0\"".into()))?;
+                    let format = format.ok_or_else(|| {
+                        refuse("no format line in the header; expected for example \"format ascii 1.0\"".into())
+                    })?;
                     let header = Self { format, elements, length, lines: number };
                     return header.check_counts(content.len() - length).map(|()| header);
                 }
