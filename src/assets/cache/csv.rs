@@ -57,7 +57,7 @@ pub fn text(content: &[u8]) -> Result<&str, Mistake> {
     std::str::from_utf8(content).map_err(|error| {
         let before = &content[..error.valid_up_to()];
         let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
-        Mistake::after(line, "", "not UTF-8; expected CSV as UTF-8 text")
+        Mistake::after(line, "", "not UTF-8; expected UTF-8 text")
     })
 }
 
@@ -165,7 +165,7 @@ mod tests {
             read(&format!("x,y,z\n{}", "1,2,3\n".repeat(5))),
             at(6, 1, "more than 4 particles; expected at most that many in a frame")
         );
-        assert_eq!(super::read(b"x,y,z\n1,2,\xff", 4), at(2, 1, "not UTF-8; expected CSV as UTF-8 text"));
+        assert_eq!(super::read(b"x,y,z\n1,2,\xff", 4), at(2, 1, "not UTF-8; expected UTF-8 text"));
         let twice = "id 7 is used twice; expected unique ids within a frame, or no id column";
         assert_eq!(read("x,y,z,id\n1,2,3,7\n1,2,3,8\n1,2,3,7"), Err(Mistake::Whole(twice.into())));
         for (text, reason) in [("", "no line of column names"), ("# x,y,z", "no line of column names")] {
