@@ -1,4 +1,4 @@
-//! The ramps, sprites and presets that come with haze, embedded.
+//! Ramps, sprites and presets that are embedded in the library.
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ pub struct Builtin {
     pub name: &'static str,
     /// The PNG, or the preset's JSON.
     pub bytes: &'static [u8],
-    /// The JSON it was made from; empty for presets and details.
+    /// The recipe's JSON; empty for presets and detail maps.
     pub recipe: &'static str,
 }
 
@@ -31,7 +31,7 @@ macro_rules! builtin {
     };
 }
 
-/// Ramps of every role. `ramps/README.md`.
+/// Ramps of every role; `ramps/README.md` describes them.
 pub const RAMPS: &[Builtin] = builtin!(
     "ramps",
     ".ramp.json",
@@ -74,7 +74,7 @@ pub const RAMPS: &[Builtin] = builtin!(
     ]
 );
 
-/// Painted lit spheres.
+/// Motifs: painted images of a lit sphere.
 pub const MOTIFS: &[Builtin] = builtin!("ramps", ".motif.json", ["motif_studio"]);
 
 /// Flipbooks of normal maps.
@@ -91,10 +91,10 @@ macro_rules! details {
     };
 }
 
-/// Depth and motion of the flipbooks, by the same names.
+/// Detail maps (depth and motion) of the flipbooks, under the same names.
 pub const DETAILS: &[Builtin] = details!(["puff", "wisp", "billow", "ball", "cauliflower", "strands", "streaks"]);
 
-/// Tiling 3D noise.
+/// Tiling 3D noise volumes.
 pub const NOISES: &[Builtin] = builtin!("sprites", ".noise.json", ["fbm"]);
 
 macro_rules! presets {
@@ -107,11 +107,11 @@ macro_rules! presets {
     };
 }
 
-/// The presets; the first is the default.
+/// Presets; the first is the default.
 pub const PRESETS: &[Builtin] =
     presets!(["column", "backlit_fog", "corridor", "explosion", "fence", "inside", "crates", "dust_storm"]);
 
-/// The pictures that there are for a role.
+/// Returns the built-in images for a role; empty for details and six-way maps.
 pub fn of_role(role: PictureRole) -> &'static [Builtin] {
     match role {
         PictureRole::Sprite => SPRITES,
@@ -127,7 +127,7 @@ pub fn find(list: &'static [Builtin], name: &str) -> Option<&'static Builtin> {
     list.iter().find(|builtin| builtin.name == name)
 }
 
-/// The name that errors give a built-in file.
+/// Returns the path that error messages use for a built-in file: `builtin:/name`.
 pub fn path(name: &str) -> PathBuf {
     Path::new("builtin:").join(name)
 }
@@ -141,7 +141,7 @@ impl Builtin {
         Ok(Ramp::from_picture(&decode_colour_png(&path(self.name), self.bytes)?))
     }
 
-    /// Decodes a sprite, laid out as its recipe says.
+    /// Decodes a sprite with the layout of its recipe.
     ///
     /// # Errors
     /// As [`decode_png`] and [`Sprite::from_picture`].
@@ -149,7 +149,7 @@ impl Builtin {
         self.decode(self.sprite_layout()?)
     }
 
-    /// Decodes the sprite's detail map.
+    /// Decodes the sprite's detail map, if it has one.
     ///
     /// # Errors
     /// As [`Builtin::sprite`].
@@ -174,7 +174,7 @@ impl Builtin {
         Sprite::from_picture(&path, &decode_png(&path, self.bytes)?.to_rgba8(), layout)
     }
 
-    /// Decodes a noise.
+    /// Decodes a noise volume.
     ///
     /// # Errors
     /// As [`decode_png`] and [`NoiseVolume::from_picture`].

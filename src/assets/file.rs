@@ -1,4 +1,4 @@
-//! Files from outside: looked at before they are read.
+//! Bounded reading of user files: type and length are checked before the contents are read.
 
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, ErrorKind, Read as _};
@@ -6,10 +6,11 @@ use std::path::Path;
 
 use crate::error::{Error, one_line};
 
-/// Reads a file of at most `most` bytes. Pipes, devices and folders are refused; `kind` is what was hoped for.
+/// Reads a file of at most `most` bytes. Pipes, devices and folders are refused. `kind` names the expected file type in
+/// errors.
 ///
 /// # Errors
-/// [`Error::Io`], which says what is there instead and what would be right.
+/// [`Error::Io`], which names what was found and what is expected.
 pub fn read(path: &Path, kind: &str, most: u64) -> Result<Vec<u8>, Error> {
     let io = |error| Error::Io { path: path.into(), error };
     let refuse = |found: String| {
@@ -21,7 +22,7 @@ pub fn read(path: &Path, kind: &str, most: u64) -> Result<Vec<u8>, Error> {
         found if found.len() > most => Err(refuse(format!("{} bytes", found.len()))),
         _ => Ok(()),
     };
-    // Looked at before, and again in case the name has changed hands.
+    // Checked by path first, and again on the open file in case the path was replaced in between.
     let found = std::fs::metadata(path).map_err(|error| match std::fs::read_link(path) {
         Ok(target) if error.kind() == ErrorKind::NotFound => {
             let reason = format!("a link to {}, which is not there", one_line(target.display()));
@@ -34,20 +35,20 @@ pub fn read(path: &Path, kind: &str, most: u64) -> Result<Vec<u8>, Error> {
     check(&file.metadata().map_err(io)?)?;
     let mut bytes = Vec::new();
     file.take(most + 1).read_to_end(&mut bytes).map_err(io)?;
-    // It may have grown meanwhile, or not have told its length.
+    // The file may have grown since the check, or report no length.
     if bytes.len() as u64 > most {
         return Err(refuse(format!("more than {most} bytes")));
     }
     Ok(bytes)
 }
 
-/// `O_NONBLOCK`: to open a pipe is to wait for whoever writes to it, but with this.
+/// `O_NONBLOCK`. Without it, opening a pipe blocks until a process opens it for writing.
 #[cfg(target_os = "linux")]
 const NONBLOCK: i32 = 0o4000;
 #[cfg(target_os = "macos")]
 const NONBLOCK: i32 = 4;
 
-/// Opens whatever is there, without waiting.
+/// Opens a path of any type without blocking.
 fn open(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     #[cfg(any(target_os = "linux", target_os = "macos"))]
@@ -78,7 +79,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_pipe_that_takes_the_place_of_a_file_is_not_waited_for() {
+    fn opening_a_pipe_in_place_of_a_file_does_not_block() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());

@@ -1,4 +1,4 @@
-//! The pictures of a particle system in memory: its ramps, its sprite flipbook and what belongs to it.
+//! Decoded images of a particle system: ramps, sprite flipbook, detail map, six-way maps and noise.
 
 use std::sync::Arc;
 
@@ -13,38 +13,39 @@ use crate::formula::diffuse_bake::zonal_coefficients;
 use crate::formula::ramp::sample_ramp_2d;
 use crate::settings::{RampFilter, Settings};
 
-/// The pictures in memory. The reference renderer works on these; the GPU renderer uploads them.
+/// Decoded images of a particle system. The reference renderer samples these; the GPU renderer uploads them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MaterialAssets {
     /// Flipbook of normal maps.
     pub sprite: Sprite,
-    /// Depth and motion of the sprite, frame by frame: see [`sprite::detail`](haze_author::sprite::detail). Depth sprites and
-    /// `sprite.motion` need it.
+    /// Depth and motion of the sprite, one per frame: see [`sprite::detail`](crate::assets::sprite::detail). Required
+    /// by depth sprites and `sprite.motion`.
     pub detail: Option<Sprite>,
-    /// The sprite under light from six sides, for [`Lighting::SixWay`](crate::settings::Lighting::SixWay): twice the sprite's frames,
-    /// of its size. See [`sprite::six_way`](haze_author::sprite::six_way).
+    /// Six-way light maps of the sprite, for [`Lighting::SixWay`](crate::settings::Lighting::SixWay): twice as many
+    /// frames as the sprite, of the same size. See [`sprite::six_way`](crate::assets::sprite::six_way).
     pub six_way: Option<Sprite>,
-    /// What volumetric sprites are made of.
+    /// Density noise of volumetric sprites.
     pub noise: NoiseVolume,
-    /// Light by dot(n, l)/2 + 1/2 (across: facing away at 0, facing the light at 1), and by amount times `boost` (up).
+    /// Diffuse light. u (across) = dot(n, l)/2 + 1/2: 0 faces away from the light, 1 faces it. v (up) = amount times
+    /// `boost`.
     pub diffuse_ramp: Ramp,
-    /// The same for light from behind, for [`Backlight::Ramp`](crate::settings::Backlight::Ramp).
+    /// Diffuse light from behind, with the same axes, for [`Backlight::Ramp`](crate::settings::Backlight::Ramp).
     pub backlight_ramp: Ramp,
-    /// Light by amount, for [`SoftScatterMode::Ramp`](crate::settings::SoftScatterMode::Ramp). One row.
+    /// Soft scatter by amount, for [`SoftScatterMode::Ramp`](crate::settings::SoftScatterMode::Ramp). One row.
     pub soft_scatter_ramp: Ramp,
-    /// Glow by distance² (across) and amount (up).
+    /// Specular scatter by distance² (across) and amount (up).
     pub specular_ramp: Ramp,
-    /// A painted lit sphere, for [`DiffuseMode::PaintedMotif`](crate::settings::DiffuseMode::PaintedMotif).
+    /// Painted image of a lit sphere, for [`DiffuseMode::PaintedMotif`](crate::settings::DiffuseMode::PaintedMotif).
     pub motif: Ramp,
-    /// Colour of a particle by its age, forward only. One row. (MS)
+    /// Particle colour by age; forward path only. One row. (MS)
     pub age_ramp: Ramp,
-    /// Coverage by amount times `boost`, for [`CoverageMode::Ramp`](crate::settings::CoverageMode::Ramp): black hides nothing, white
-    /// all. One row.
+    /// Coverage by amount times `boost`, for [`CoverageMode::Ramp`](crate::settings::CoverageMode::Ramp): black is
+    /// transparent, white opaque. One row.
     pub coverage_ramp: Ramp,
 }
 
 impl MaterialAssets {
-    /// True if both hold the very same pictures, in the same memory: cheap, unlike `==`.
+    /// True if both share the memory of every image. Cheap, unlike `==`.
     pub fn shares(&self, other: &Self) -> bool {
         let sprite = |a: &Option<Sprite>, b: &Option<Sprite>| match (a, b) {
             (Some(a), Some(b)) => a.shares(b),
@@ -72,7 +73,7 @@ impl MaterialAssets {
 
     /// Sizes and frame counts, as validation and the view setup need them.
     pub fn info(&self) -> MaterialInfo {
-        // As thick smoke has it.
+        // v = 1: the row of fully opaque smoke.
         let zonal = |ramp| {
             zonal_coefficients(|cos| sample_ramp_2d(ramp, RampFilter::Bilinear, Vec2::new(cos * 0.5 + 0.5, 1.0)))
         };
@@ -91,36 +92,36 @@ impl MaterialAssets {
     }
 }
 
-/// What a frame needs to know of a material's pictures.
+/// Properties of a material's images that preparing a frame needs.
 #[derive(Clone, Debug)]
 pub struct MaterialInfo {
     /// Side of one frame of the sprite, texels.
     pub sprite_size: f32,
-    /// Of the sprite, and after it the six-way maps.
+    /// Frames of the sprite, followed by those of the six-way maps.
     pub filled: Arc<Filled>,
     /// Frames of the sprite.
     pub frame_count: f32,
     /// The detail map, if there is one.
     pub detail: Option<DetailInfo>,
-    /// Size and frames of the six-way maps.
+    /// Frame size in texels and frame count of the six-way maps.
     pub six_way: Option<(u32, u32)>,
-    /// Zonal harmonics of the diffuse ramp.
+    /// Zonal harmonic coefficients of the diffuse ramp.
     pub zonal: [Vec3; 3],
-    /// Of the backlight ramp.
+    /// Zonal harmonic coefficients of the backlight ramp.
     pub backlight_zonal: [Vec3; 3],
 }
 
-/// What it needs to know of a detail map.
+/// Properties of a detail map that preparing a frame needs.
 #[derive(Clone, Copy, Debug)]
 pub struct DetailInfo {
     /// Frames of the detail map.
     pub frame_count: u32,
-    /// Mip levels that it is smaller than the sprite.
+    /// log2 of the sprite's size over the detail map's size.
     pub lod: f32,
 }
 
 impl MaterialInfo {
-    /// Refuses settings that need a picture which the material of system `index` lacks.
+    /// Returns an error if the settings need an image that the material of system `index` lacks.
     pub fn validate(&self, index: usize, settings: &Settings) -> Result<(), FieldError> {
         let refuse = |field: &str, value: String, expected: String| {
             Err(FieldError::new(format!("systems[{index}].{field}"), value, expected))
@@ -139,7 +140,8 @@ impl MaterialInfo {
             _ => {}
         }
         let Some(detail) = &self.detail else {
-            let expected = || "another, or a detail map in the material, as `haze sprite bake` makes it".to_owned();
+            let expected =
+                || "another value, or a material with a detail map, as `haze sprite bake` makes it".to_owned();
             if settings.technique.is_depth_sprite() {
                 return refuse("settings.technique", format!("{:?}", settings.technique.name()), expected());
             }

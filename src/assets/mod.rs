@@ -1,5 +1,5 @@
-//! Pictures and the recipes that they are made from: ramps, sprites, noise. Everything here is in memory or in files; nothing
-//! knows a device.
+//! Images and the recipes they are baked from: ramps, sprites, noise. This module works on memory and files only and
+//! never uses a GPU device.
 
 pub mod builtin;
 pub mod file;

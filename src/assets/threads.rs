@@ -1,14 +1,14 @@
-//! Work that is shared among the processors.
+//! Parallel iteration on all processors.
 
 use std::sync::{LazyLock, Mutex, PoisonError};
 
-/// Processors that there are for this program. Asked once: on Linux the answer is in several files.
+/// Returns the number of processors available to this process. Cached: on Linux the query reads several files.
 pub fn threads() -> usize {
     static THREADS: LazyLock<usize> = LazyLock::new(|| std::thread::available_parallelism().map_or(1, usize::from));
     *THREADS
 }
 
-/// Calls `f` once for every item. Items are begun in order.
+/// Calls `f` once for every item, in parallel. Items start in order.
 pub fn on_all_processors<T>(items: impl Iterator<Item = T> + Send, f: impl Fn(T) + Sync) {
     let items = Mutex::new(items);
     let next = || items.lock().unwrap_or_else(PoisonError::into_inner).next();
@@ -18,7 +18,7 @@ pub fn on_all_processors<T>(items: impl Iterator<Item = T> + Send, f: impl Fn(T)
         }
     };
     std::thread::scope(|scope| {
-        // This thread works as well; it does what is left where no other is to be had.
+        // The calling thread works too, so all items are processed even if no thread can be spawned.
         for _ in 1..threads() {
             if std::thread::Builder::new().spawn_scoped(scope, work).is_err() {
                 break;

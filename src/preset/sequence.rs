@@ -1,17 +1,18 @@
-//! Files of which there is one a frame, named by `#` for the digits of the frame's number.
+//! Sequences of files with one file per frame. `#` in the file name stands for the digits of the frame number.
 
 use std::io::{Error as IoError, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
 
-/// Most names of a folder that are looked at.
+/// Maximum number of folder entries that are examined.
 const MOST_NAMES: usize = 100_000;
 
-/// Most frames.
+/// Maximum number of frames.
 const MOST_FRAMES: usize = 10_000;
 
-/// Names like `smoke_####.ply`: at least as many digits as there are `#`, zeros before them up to that.
+/// File name pattern like `smoke_####.ply`: frame numbers are zero-padded to the number of `#` and may have more
+/// digits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sequence {
     folder: PathBuf,
@@ -21,7 +22,7 @@ pub struct Sequence {
 }
 
 impl Sequence {
-    /// That of a path; none where its name has no `#`, or more than one run of them.
+    /// Parses the pattern of a path. `None` if the file name has no `#` or more than one run of them.
     pub fn of(path: &Path) -> Option<Self> {
         let name = path.file_name()?.to_str()?;
         let start = name.find('#')?;
@@ -31,7 +32,7 @@ impl Sequence {
         (!after.contains('#')).then(|| Self { folder, before: name[..start].into(), digits, after: after.into() })
     }
 
-    /// The number of the frame that a name is of.
+    /// Returns the frame number of a file name that matches the pattern.
     fn number(&self, name: &str) -> Option<u32> {
         let digits = name.strip_prefix(&self.before)?.strip_suffix(&self.after)?;
         let is_number = digits.bytes().all(|byte| byte.is_ascii_digit());
@@ -39,12 +40,12 @@ impl Sequence {
         digits.parse().ok().filter(|_| is_number && is_padded)
     }
 
-    /// The file of a frame, whether it is there or not.
+    /// Returns the path of a frame; the file need not exist.
     fn file(&self, number: u32) -> PathBuf {
         self.folder.join(format!("{}{number:0digits$}{}", self.before, self.after, digits = self.digits))
     }
 
-    /// The frames that are there, in their order.
+    /// Lists the existing frames in order.
     fn frames(&self) -> Result<Vec<(u32, PathBuf)>, IoError> {
         let folder = if self.folder.as_os_str().is_empty() { Path::new(".") } else { &self.folder };
         let names = std::fs::read_dir(folder)?.take(MOST_NAMES);
@@ -55,13 +56,13 @@ impl Sequence {
     }
 }
 
-/// The frames of a path, with their numbers: one alone is frame 0.
+/// Lists the files of a path with their frame numbers. A path without `#` is frame 0.
 pub fn frame_files(path: &Path) -> Result<Vec<(u32, PathBuf)>, Error> {
     let Some(sequence) = Sequence::of(path) else { return Ok(vec![(0, path.into())]) };
     let io = |error| Error::Io { path: path.into(), error };
     let frames = sequence.frames().map_err(io)?;
     if frames.is_empty() {
-        let reason = "no such files; expected some with digits in the place of #";
+        let reason = "no such files; expected names with digits in place of #";
         return Err(io(IoError::new(ErrorKind::NotFound, reason)));
     }
     if frames.len() > MOST_FRAMES {
@@ -71,7 +72,8 @@ pub fn frame_files(path: &Path) -> Result<Vec<(u32, PathBuf)>, Error> {
     Ok(frames)
 }
 
-/// Whether there is a file at a path, or a frame of it. What cannot be looked at is there: reading it says why.
+/// True if the file, or at least one frame of the sequence, exists. Also true if the path cannot be examined: reading
+/// it then reports the reason.
 pub fn is_there(path: &Path) -> bool {
     match Sequence::of(path) {
         Some(sequence) => sequence.frames().is_ok_and(|frames| !frames.is_empty()),
@@ -82,7 +84,7 @@ pub fn is_there(path: &Path) -> bool {
     }
 }
 
-/// Every file that a path stands for now, and the one that may follow: what is to be watched.
+/// Returns the paths to watch for changes: every existing file of the path, and the next frame.
 pub fn places(path: &Path) -> Vec<PathBuf> {
     let Some(sequence) = Sequence::of(path) else { return vec![path.into()] };
     let frames = sequence.frames().unwrap_or_default();
@@ -95,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_stand_where_the_signs_are() {
+    fn frame_numbers_are_parsed_in_place_of_the_hash_signs() {
         let sequence = Sequence::of(Path::new("sim/smoke_####.ply")).unwrap();
         for (name, number) in [
             ("smoke_0001.ply", Some(1)),
@@ -115,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_are_found_in_their_order_and_the_next_is_waited_for() {
+    fn existing_frames_are_listed_in_order_and_the_next_one_is_watched() {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
         let pattern = path("s##.csv");

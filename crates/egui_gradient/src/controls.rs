@@ -1,4 +1,4 @@
-//! The fields of the selected stop, and what is done to all of them.
+//! Fields of the selected stop, and buttons that act on all or all selected stops.
 
 use egui::{self, Ui};
 use glam::Vec3;
@@ -13,11 +13,10 @@ use haze_author::ramp::bake::{Blend, Curve, HexColour, RampStop};
 use haze_author::ramp::fit::fit_row;
 use haze_author::ramp::template::TEMPLATES;
 
-/// What the curves are, in the order of [`Curve::ALL`].
-const CURVES: [&str; 4] =
-    ["smooth, never beyond its neighbours", "straight", "flat at both ends", "a hard edge at the next stop"];
+/// Hover texts of the curves, in the order of [`Curve::ALL`].
+const CURVES: [&str; 4] = ["smooth, without overshoot", "linear", "flat at both ends", "a hard edge at the next stop"];
 
-/// Draws them; `at` is the place of the row, for what is copied.
+/// Draws the controls. `at` is the position of the row, for copied text.
 pub fn show(ui: &mut Ui, frame: &mut Frame<'_>, at: f32) {
     let Some(lead) = frame.lead().cloned() else { return };
     ui.horizontal(|ui| {
@@ -59,7 +58,7 @@ fn place(ui: &mut Ui, frame: &mut Frame<'_>, lead: &RampStop) {
     let label = ui.label("place");
     response
         .labelled_by(label.id)
-        .on_hover_text("0 to 1: drag, or click and type. +0.1, -0.1, *2 and /2 are done to it");
+        .on_hover_text("0 to 1: drag, or click and type. +0.1, -0.1, *2 and /2 change the current number");
     match typed {
         None => {}
         Some(Typed::Times(times)) => frame.edit_selected(MOVE, |all, selection| stops::scale(all, selection, times)),
@@ -95,13 +94,13 @@ fn colour_and_curve(ui: &mut Ui, frame: &mut Frame<'_>, lead: &RampStop) {
             ui.selectable_value(&mut curve, *entry, entry.name()).on_hover_text(about);
         }
     });
-    combo.response.labelled_by(label.id).on_hover_text("How the gradient goes on to the next stop");
+    combo.response.labelled_by(label.id).on_hover_text("Interpolation to the next stop");
     if curve != lead.curve {
         frame.edit_each(["curve of a stop", "curve of stops"], |stop| stop.curve = curve);
     }
 }
 
-/// Hue, saturation and value of the colour, as paint programs have them.
+/// Draws fields for hue, saturation and value of the colour.
 fn hue_and_so_on(ui: &mut Ui, frame: &mut Frame<'_>, lead: &RampStop) {
     let known = frame.editor.hsv.filter(|(known, _)| *known == lead.colour);
     let shown = known.map_or_else(|| lead.colour.hsv(), |(_, hsv)| hsv);
@@ -120,7 +119,7 @@ fn hue_and_so_on(ui: &mut Ui, frame: &mut Frame<'_>, lead: &RampStop) {
             label: Some(name.into()),
             ..egui::WidgetInfo::drag_value(true, number)
         });
-        response.on_hover_text(format!("{name}, of the sRGB colour; +10 and *0.5 are done to each that is selected"));
+        response.on_hover_text(format!("{name} of the sRGB colour; +10 or *0.5 changes each selected stop"));
         if let Some(typed) = typed {
             let changed = |hsv: Vec3| {
                 let mut hsv = hsv;
@@ -137,10 +136,10 @@ fn hue_and_so_on(ui: &mut Ui, frame: &mut Frame<'_>, lead: &RampStop) {
     }
 }
 
-/// How far stops of a stroke may be off its colours, steps of 255.
+/// Error bound of the stops fitted to a stroke, steps of 255.
 const ERROR: f32 = 10.0;
 
-/// Lets the eyedropper take what it is for, while there is one: a step.
+/// Updates the active eyedropper and applies its result as one undo step.
 pub fn take(ui: &Ui, frame: &mut Frame<'_>, blend: Blend) {
     let Some(mut eyedropper) = frame.editor.eyedropper.take() else { return };
     match eyedropper.take(ui, &mut frame.editor.across) {
@@ -159,7 +158,7 @@ pub fn take(ui: &Ui, frame: &mut Frame<'_>, blend: Blend) {
     }
 }
 
-/// The stops as they would be with what is pointed at.
+/// Returns the stops that the eyedropper's current colours would give.
 fn preview(frame: &Frame<'_>, colours: &[Vec3], blend: Blend) -> Option<Vec<RampStop>> {
     match colours {
         [] => None,
@@ -174,9 +173,9 @@ fn preview(frame: &Frame<'_>, colours: &[Vec3], blend: Blend) -> Option<Vec<Ramp
 }
 
 fn eyedropper(ui: &mut Ui, frame: &mut Frame<'_>) {
-    let about = "What is selected takes the colour that is clicked on next, anywhere in the window; a stroke takes the gradient \
-                 along it. The wheel, or 1, 3 and 5: the mean of so many pixels across. By keys: arrows, Shift ten times as far; \
-                 Enter takes, Space begins a stroke. Escape gives it up";
+    let about = "Click anywhere in the window to give its colour to the selected stops, or draw a stroke to take the gradient \
+                 along it. Wheel, or 1, 3 and 5: pixels across that are averaged. Keys: arrows move, with Shift ten times as far; \
+                 Enter takes the colour, Space begins a stroke. Escape cancels";
     let is_on = frame.editor.eyedropper.is_some();
     if ui.selectable_label(is_on, "Take a colour").on_hover_text(about).clicked() {
         frame.editor.eyedropper = Some(Eyedropper::default());
@@ -185,10 +184,10 @@ fn eyedropper(ui: &mut Ui, frame: &mut Frame<'_>) {
 
 fn snap(ui: &mut Ui, frame: &mut Frame<'_>) {
     let snap = &mut frame.editor.snap;
-    ui.checkbox(&mut snap.is_on, "Snap").on_hover_text("Without Ctrl; Ctrl lets go then");
+    ui.checkbox(&mut snap.is_on, "Snap").on_hover_text("Snap positions without Ctrl; Ctrl then turns it off");
     let field = egui::DragValue::new(&mut snap.parts).range(2..=100).speed(0.1).suffix(" parts");
     let response = ui.add(field.update_while_editing(false));
-    response.on_hover_text("How many equal parts of the gradient places snap to");
+    response.on_hover_text("Number of equal parts that positions snap to");
 }
 
 fn all(ui: &mut Ui, frame: &mut Frame<'_>, at: f32) {
@@ -198,30 +197,30 @@ fn all(ui: &mut Ui, frame: &mut Frame<'_>, at: f32) {
     let button = |ui: &mut Ui, is_enabled: bool, name: &str, about: &str| {
         ui.add_enabled(is_enabled, egui::Button::new(name)).on_hover_text(about).clicked()
     };
-    if button(ui, is_many, "Remove", "What is selected (Delete)") {
+    if button(ui, is_many, "Remove", "Remove the selected stops (Delete)") {
         frame.edit_selected(REMOVE, stops::remove);
     }
-    let about = of("What is at 0 goes to 1", "What is between the first and the last that are selected, turned round");
+    let about = of("Reverse the gradient", "Reverse the part from the first to the last selected stop");
     if button(ui, true, "Flip", &about) {
         frame.edit_selected(["flip", "flip a part"], stops::flip);
     }
-    let about = of("The gradient in its first half, and turned round in the other", "The same of what is selected");
+    let about = of("Compress into the first half and mirror into the second", "Mirror the selected part");
     if button(ui, is_many, "Mirror", &about) {
         frame.edit_selected(["mirror", "mirror a part"], stops::mirror);
     }
-    let about = of("The same distance from each stop to the next", "The same distance between those that are selected");
+    let about = of("Space all stops evenly", "Space the selected stops evenly");
     if button(ui, is_many, "Distribute", &about) {
         frame.edit_selected(["distribute", "distribute a part"], |all, selection| stops::distribute(all, selection));
     }
-    let about = "The same width for what is at the right of each stop: for constant curves";
+    let about = "Give the range after each stop the same width: for constant curves";
     if button(ui, is_many, "Steps", about) {
         frame
             .edit_selected(["even steps", "even steps in a part"], |all, selection| stops::step_evenly(all, selection));
     }
-    if button(ui, true, "Copy", "All stops, as text of a recipe (Ctrl+C on a stop)") {
+    if button(ui, true, "Copy", "Copy all stops as recipe text (Ctrl+C on a stop)") {
         frame.copy(ui, at);
     }
-    if button(ui, true, "Paste", "Stops that were copied, in place of these (Ctrl+V on a stop)") {
+    if button(ui, true, "Paste", "Replace the stops by copied ones (Ctrl+V on a stop)") {
         frame.editor.awaits_paste = true;
         ui.ctx().send_viewport_cmd(egui::ViewportCommand::RequestPaste);
     }

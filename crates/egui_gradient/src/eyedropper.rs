@@ -1,5 +1,5 @@
-//! Takes colours from anywhere in the window: one by a click, a gradient along a stroke. The window stands still meanwhile: what
-//! is seen is what is taken.
+//! Eyedropper: picks colours from anywhere in the window, one by a click or a gradient along a stroke. While it is
+//! active, the window shows a screenshot of itself, so the picked colours are exactly the visible ones.
 
 use std::sync::{Arc, OnceLock};
 
@@ -13,33 +13,34 @@ use super::paint;
 use super::sampled::{Across, colours, pixel, place};
 use haze_author::ramp::bake::HexColour;
 
-/// It waits for what the window shows, and for a click or a stroke by pointer or keys.
+/// State of an active eyedropper: waits for a screenshot of the window, then for a click or a stroke by pointer or
+/// keys.
 #[derive(Clone, Debug, Default)]
 pub struct Eyedropper {
-    /// The window as it was when this began.
+    /// Screenshot of the window from when the eyedropper was activated.
     shown: Arc<OnceLock<Arc<ColorImage>>>,
-    /// Frames since.
+    /// Frames since activation.
     frames: u32,
-    /// Where the pointer was last, and where colours are taken, which keys move too; points.
+    /// Last pointer position, and the picked position, which keys move too; points.
     pointer: Option<Pos2>,
     at: Pos2,
-    /// Where it has been while it was held.
+    /// Picked positions since the button was pressed.
     stroke: Vec<Pos2>,
-    /// The stroke was begun by a key.
+    /// True if a key began the stroke.
     is_by_key: bool,
     is_let_go: bool,
 }
 
-/// Colours, steps of 255: one, those along a stroke, or none.
+/// Picked sRGB colours, 0 to 255: one, those along a stroke, or none.
 pub enum Taken {
-    /// They would be taken now.
+    /// Colours at the current position; the eyedropper stays active.
     Pointed(Vec<Vec3>),
-    /// They are. None where Escape put it away.
+    /// Final colours. Empty if Escape cancelled the eyedropper.
     Done(Vec<Vec3>),
 }
 
 impl Eyedropper {
-    /// Gives it pointer and keys.
+    /// Handles pointer and keys for one frame.
     pub fn take(&mut self, ui: &Ui, across: &mut Across) -> Taken {
         if ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) {
             return Taken::Done(Vec::new());
@@ -57,9 +58,9 @@ impl Eyedropper {
         }
     }
 
-    /// Asks for what the window shows, once nothing under the pointer says so any more.
+    /// Requests a screenshot, once no widget is drawn as hovered any more.
     fn ask(&mut self, ui: &Ui) {
-        /// Covered in the first, nothing is hovered in the next, and drawn so in the one after.
+        /// The cover is added in frame 1, widgets lose their hover in frame 2 and are drawn without it in frame 3.
         const COVERED: u32 = 3;
         self.frames = self.frames.saturating_add(1);
         if self.frames == 1 {
@@ -74,13 +75,13 @@ impl Eyedropper {
         }
         let (shown, context) = (Arc::clone(&self.shown), ui.ctx().clone());
         ui.ctx().request_screenshot(move |image| {
-            // There is one.
+            // Fails only if it is set already.
             let _ = shown.set(image);
             context.request_repaint();
         });
     }
 
-    /// Lies over the whole window, so that nothing else is clicked on, and shows it as it was.
+    /// Covers the whole window, so that no other widget gets clicks, and draws the screenshot and the stroke.
     fn cover(&self, ui: &Ui) {
         let window = ui.ctx().viewport_rect();
         let id: Id = ui.scope_id().with("eyedropper");
@@ -88,7 +89,7 @@ impl Eyedropper {
         let response = cover.show(ui.ctx(), |ui| ui.allocate_response(window.size(), Sense::click_and_drag())).inner;
         let response = response.on_hover_cursor(CursorIcon::Crosshair);
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "take a colour"));
-        // Its keys are for it.
+        // Takes all keys.
         response.request_focus();
         let filter = EventFilter { tab: true, horizontal_arrows: true, vertical_arrows: true, escape: true };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
@@ -106,7 +107,7 @@ impl Eyedropper {
         }
     }
 
-    /// What the pointer does.
+    /// Updates position and stroke by the pointer.
     fn follow(&mut self, ui: &Ui) {
         let (pointer, is_pressed, is_down) = ui
             .input(|input| (input.pointer.latest_pos(), input.pointer.primary_pressed(), input.pointer.primary_down()));
@@ -129,11 +130,12 @@ impl Eyedropper {
         }
     }
 
-    /// Arrows go by pixels, Shift ten times as far; Enter takes; Space begins a stroke; digits and the wheel say how many pixels.
+    /// Handles keys and wheel. Arrows move by pixels, Shift ten times as far. Enter picks, Space begins a stroke.
+    /// Digits and the wheel set the sample size.
     fn keys(&mut self, ui: &Ui, across: &mut Across) {
         let mut pressed = Vec::new();
         ui.input_mut(|input| {
-            // What is below does not scroll.
+            // Prevents scrolling of widgets below.
             input.smooth_scroll_delta = Vec2::ZERO;
             input.events.retain(|event| {
                 match event {
@@ -179,13 +181,14 @@ impl Eyedropper {
         }
     }
 
-    /// What it is over, magnified, with the colour that would be taken, and below that what `gradient` would be, by place.
+    /// Draws a magnifier: pixels around the position, the colour that would be picked, and below the resulting
+    /// gradient, where `gradient` returns the colour at a position.
     pub fn magnifier(&self, ui: &Ui, across: Across, colours: &[Vec3], gradient: impl Fn(f32) -> Color32) {
-        /// Pixels across, and how large they are.
+        /// Number of magnified pixels across, and the size of each in points.
         const SEEN: i32 = 11;
         const CELL: f32 = 8.0;
         let (Some(shown), Some(colour)) = (self.shown.get(), colours.last()) else { return };
-        // On the side where there is room for it.
+        // Placed on the side with more room.
         let (x, y) = (self.at.x > ui.ctx().viewport_rect().center().x, self.at.y > ui.ctx().viewport_rect().center().y);
         let side = |is_far: bool| if is_far { egui::Align::Max } else { egui::Align::Min };
         let away = |is_far: bool| if is_far { -20.0 } else { 20.0 };

@@ -1,22 +1,22 @@
-//! Where the handles of stops stand, so that each can be grabbed however near to each other the stops are.
+//! Layout of the stops' handles: handles never overlap, even if stops are close together.
 
 use std::ops::Range;
 
-/// Handles where not all have room: few, so that they stand near their stops.
+/// Number of handles if not all fit. Small, so that handles stay near their stops.
 const FEW: usize = 9;
 
-/// Which of `count` stops have handles: all, or if there is no room for them, some round the one that is selected.
+/// Returns the stops with handles out of `count`: all, or if not all fit, a few around the selected one.
 pub fn shown(count: usize, selected: usize, room: usize) -> Range<usize> {
     let room = if count <= room { count } else { room.clamp(1, FEW) };
     let start = selected.saturating_sub(room / 2).min(count.saturating_sub(room));
     start..count.min(start + room)
 }
 
-/// Places from 0 to `width` in order, at least `gap` apart and as near as can be to those wanted, which are in order too. More
-/// than have room end beyond `width`.
+/// Returns sorted positions from 0 to `width` that are at least `gap` apart and as close as possible to the `wanted`
+/// ones, which must be sorted. If they do not all fit, the last ones exceed `width`.
 pub fn fan_out(wanted: &[f32], width: f32, gap: f32) -> Vec<f32> {
-    // Less what those before need, places only have to be in order: runs that are not become their mean. (Pool adjacent violators:
-    // the least squares)
+    // After subtracting index times gap, positions only have to be sorted: the least-squares solution by the pool
+    // adjacent violators algorithm replaces unsorted runs by their mean.
     let mut runs: Vec<(f32, usize)> = Vec::new();
     for (index, place) in wanted.iter().enumerate() {
         let mut run = (place - index as f32 * gap, 1);
@@ -38,7 +38,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn handles_stand_where_their_stops_are_if_they_have_room() {
+    fn handles_are_at_their_stops_if_there_is_room() {
         assert_eq!(fan_out(&[0.0, 30.0, 100.0], 100.0, 10.0), [0.0, 30.0, 100.0]);
         assert_eq!(fan_out(&[50.0, 50.0, 50.0], 100.0, 10.0), [40.0, 50.0, 60.0]);
         assert_eq!(fan_out(&[100.0, 100.0], 100.0, 10.0), [90.0, 100.0]);
@@ -46,7 +46,7 @@ mod tests {
     }
 
     #[test]
-    fn the_selected_one_is_always_shown() {
+    fn the_selected_stop_always_has_a_handle() {
         assert_eq!(shown(5, 4, 20), 0..5);
         assert_eq!(shown(20, 4, 20), 0..20);
         assert_eq!(shown(100, 50, 20), 46..55);
@@ -59,7 +59,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_two_are_nearer_than_the_gap(mut wanted in prop::collection::vec(0.0f32..=200.0, 1..20)) {
+        fn handles_are_at_least_a_gap_apart(mut wanted in prop::collection::vec(0.0f32..=200.0, 1..20)) {
             wanted.sort_by(f32::total_cmp);
             let places = fan_out(&wanted, 200.0, 10.0);
             prop_assert_eq!(places.len(), wanted.len());

@@ -1,4 +1,4 @@
-//! What the parts of the editor share: its state, and the stops in one frame.
+//! State of the editor, and the context of one frame, shared by its parts.
 
 use egui::{self, Color32, Ui};
 use glam::Vec3;
@@ -9,54 +9,55 @@ use super::selection::Selection;
 use super::text;
 use haze_author::ramp::bake::{Blend, HexColour, RampRow, RampStop};
 
-/// What an editor remembers from frame to frame.
+/// State of an editor across frames.
 #[derive(Clone, Debug, Default)]
 pub struct State {
-    /// The stops that keys and fields are for.
+    /// Selected stops, which keys and fields act on.
     pub selection: Selection,
-    /// The stop that has the keyboard where that is not the lead: to be added to the selection, or taken out.
+    /// The stop with keyboard focus if it is not the lead. Space adds it to the selection or removes it.
     pub cursor: Option<usize>,
-    /// What is dragged: what is selected.
+    /// The current drag of the selected stops.
     pub dragged: Option<Drag>,
-    /// Where a band began that selects what is under it, in shares of the strip.
+    /// Start of a rubber-band selection, as a fraction of the strip.
     pub band: Option<f32>,
     pub snap: Snap,
     pub eyedropper: Option<Eyedropper>,
-    /// How many pixels it takes the mean of.
+    /// Sample size of the eyedropper.
     pub across: Across,
-    /// A colour as hue, saturation and value: greys have no hue of their own, and it is not forgotten.
+    /// Last colour set by hue, saturation and value, with these values: keeps the hue of greys, which have none.
     pub hsv: Option<(HexColour, Vec3)>,
-    /// What is being done, until it is let go.
+    /// Name of the undo step in progress, until the pointer or key is released.
     pub pending: Option<&'static str>,
-    /// A handle has the keyboard.
+    /// True if a handle has keyboard focus.
     pub has_keyboard: bool,
-    /// The clipboard was asked for.
+    /// True if the clipboard's contents were requested.
     pub awaits_paste: bool,
-    /// The colour that is being typed.
+    /// Text of the colour being typed.
     pub typed: Option<String>,
 }
 
-/// Stops, and which of them are selected.
+/// Stops with their selection.
 pub type Selected = (Vec<RampStop>, Selection);
 
-/// A drag on its way.
+/// A drag in progress.
 #[derive(Clone, Debug)]
 pub struct Drag {
-    /// Where the pointer was last, across.
+    /// Last pointer x, points.
     pub x: f32,
-    /// Where the lead would be, did it not snap nor end at the gradient's ends.
+    /// Position of the lead before snapping and clamping.
     pub place: f32,
-    /// What is moved, as it was before.
+    /// Stops and selection when the drag began, including any stop that the drag added.
     pub from: Selected,
-    /// What Escape puts back: the same, but for what the drag began with by adding it.
+    /// Stops and selection before the drag, without any added stop. Escape restores them.
     pub before: Selected,
-    /// What it has come to. Where the host has something else, by undo or another file, that is the end of it.
+    /// Stops that the drag produced last. If the host's stops differ, after undo or loading another file, the drag
+    /// ends.
     pub now: Vec<RampStop>,
-    /// Alt makes it fine: where it began with a copy, once that is let go.
+    /// True if Alt makes the drag fine. If Alt began the drag with a copy, only after Alt was released once.
     pub is_alt_free: bool,
 }
 
-/// How many equal parts places snap to, and whether they do without Ctrl, which turns it round.
+/// Snapping of positions to equal parts. Ctrl inverts `is_on`.
 #[derive(Clone, Copy, Debug)]
 pub struct Snap {
     pub is_on: bool,
@@ -70,53 +71,53 @@ impl Default for Snap {
 }
 
 impl Snap {
-    /// The parts to snap to with these keys held, if any.
+    /// Returns the number of parts to snap to with these modifiers, if any.
     pub fn with(self, modifiers: egui::Modifiers) -> Option<u32> {
         (self.is_on != modifiers.command).then_some(self.parts)
     }
 
-    /// The same now.
+    /// Returns the number of parts to snap to with the current modifiers, if any.
     pub fn now(self, ui: &Ui) -> Option<u32> {
         self.with(ui.input(|input| input.modifiers))
     }
 }
 
-/// What is shown of a gradient beside its stops.
+/// Display options of a gradient besides its stops.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Surroundings<'a> {
-    /// The space that its colours are blended in.
+    /// Colour space for blending.
     pub blend: Blend,
-    /// How often each part of it is looked up, from 0 to 1, drawn below the strip in their colours.
+    /// Histograms of lookups along the gradient, heights 0 to 1, drawn below the strip in the given colours.
     pub histograms: &'a [(Color32, &'a [f32])],
-    /// Places on it that are marked.
+    /// Marked positions on the gradient, 0 to 1.
     pub marks: &'a [(f32, Color32)],
 }
 
-/// What one frame of an editor works on.
+/// Context of one frame of an editor.
 pub struct Frame<'a> {
     pub editor: &'a mut State,
     pub stops: &'a mut Vec<RampStop>,
-    /// What was done in it first.
+    /// Name of the frame's first edit.
     pub done: Option<&'static str>,
     pub refused: Option<String>,
-    /// The lead, or the cursor, is to have it.
+    /// True to give keyboard focus to the cursor or the lead.
     pub wants_keyboard: bool,
 }
 
-/// What steps are called, of one stop and of several.
+/// Undo names of edits, for one stop and for several.
 pub const RECOLOUR: [&str; 2] = ["colour of a stop", "colour of stops"];
 pub const REMOVE: [&str; 2] = ["remove a stop", "remove stops"];
 pub const MOVE: [&str; 2] = ["move a stop", "move stops"];
 
 impl Frame<'_> {
-    /// Makes a change, and notes what it was.
+    /// Applies an edit and records its name.
     pub fn edit<T>(&mut self, what: &'static str, change: impl FnOnce(&mut Vec<RampStop>, &mut Selection) -> T) -> T {
         self.done.get_or_insert(what);
         self.editor.cursor = None;
         change(self.stops, &mut self.editor.selection)
     }
 
-    /// The same, called one thing of one stop and another of several.
+    /// Applies an edit whose name depends on whether one or several stops are selected.
     pub fn edit_selected<T>(
         &mut self,
         [one, many]: [&'static str; 2],
@@ -125,29 +126,29 @@ impl Frame<'_> {
         self.edit(if self.editor.selection.is_many() { many } else { one }, change)
     }
 
-    /// Changes each stop that is selected.
+    /// Changes each selected stop.
     pub fn edit_each(&mut self, names: [&'static str; 2], mut change: impl FnMut(&mut RampStop)) {
         self.edit_selected(names, |all, selection| {
             selection.iter().for_each(|index| all.get_mut(index).into_iter().for_each(&mut change));
         });
     }
 
-    /// Gives what is selected another colour.
+    /// Sets the colour of the selected stops.
     pub fn recolour(&mut self, colour: HexColour) {
         self.edit_each(RECOLOUR, |stop| stop.colour = colour);
     }
 
-    /// Takes other stops for all of them.
+    /// Replaces all stops.
     pub fn replace(&mut self, what: &'static str, stops: Vec<RampStop>) {
         self.edit(what, |all, selection| (*all, *selection) = (stops, Selection::default()));
     }
 
-    /// The stop that fields show.
+    /// Returns the lead: the stop whose values the fields show.
     pub fn lead(&self) -> Option<&RampStop> {
         self.stops.get(self.editor.selection.lead())
     }
 
-    /// Selects a stop alone, draws what is selected out to it, or adds it, as lists do.
+    /// Selects only this stop, or with Shift extends the range to it, or with Ctrl toggles it.
     pub fn select(&mut self, index: usize, modifiers: egui::Modifiers) {
         self.editor.cursor = None;
         let selection = &mut self.editor.selection;
@@ -160,7 +161,7 @@ impl Frame<'_> {
         }
     }
 
-    /// Puts everything back to what it was before the drag, which is no step then.
+    /// Cancels the drag: restores the state before it, without an undo step.
     pub fn give_up(&mut self) {
         if let Some(Drag { before, .. }) = self.editor.dragged.take() {
             (*self.stops, self.editor.selection) = before;
@@ -168,14 +169,14 @@ impl Frame<'_> {
         }
     }
 
-    /// Copies for the stop that has the keyboard; takes what comes for it, or was asked for.
+    /// Handles copy if a handle has keyboard focus, and paste if a handle has focus or a paste was requested.
     pub fn clipboard(&mut self, ui: &Ui, at: f32) {
         if !self.editor.has_keyboard && !self.editor.awaits_paste {
             return;
         }
         let (mut copies, mut pasted) = (false, None);
         if ui.input(|input| input.pointer.any_pressed()) {
-            // Nothing came, as where the clipboard has no text.
+            // No paste arrived, for example because the clipboard has no text.
             self.editor.awaits_paste = false;
         }
         ui.input_mut(|input| {

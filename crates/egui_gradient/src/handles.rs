@@ -1,4 +1,4 @@
-//! The handles of stops: what pointer and keys do to them.
+//! Handles of the stops: drawing, and input by pointer and keys.
 
 use egui::{self, CursorIcon, EventFilter, Id, Key, Modifiers, PointerButton, Rect, Response, Sense, Ui};
 use egui::{pos2, vec2};
@@ -8,28 +8,29 @@ use super::paint::{colour32, handle, readout};
 use super::selection::Selection;
 use super::{fan, stops};
 
-/// A handle's size.
+/// Size of a handle, points.
 const HANDLE: egui::Vec2 = vec2(12.0, 16.0);
-/// From the middle of a handle to the next.
+/// Minimum distance between the centres of two handles, points.
 pub const GAP: f32 = 15.0;
-/// How much slower a stop goes than the pointer while Alt is held.
+/// Speed of a stop relative to the pointer while Alt is held.
 const FINE: f32 = 0.1;
 
-/// Draws them in their lane, and does what is done to them.
+/// Draws the handles in their lane and handles their input.
 pub fn show(ui: &Ui, frame: &mut Frame<'_>, strip: Rect, lane: Rect) {
     ground(ui, frame, lane);
     all(ui, frame, strip, lane);
     drag(ui, frame, strip);
-    // What was selected in this frame may have been removed in it.
+    // Stops selected in this frame may have been removed in it.
     frame.editor.selection.keep_to(frame.stops.len());
     if frame.wants_keyboard {
-        // Not before: a click elsewhere takes the keyboard from handles as they are drawn.
+        // Must come last: drawing the handles after a click elsewhere removes their focus.
         let index = frame.editor.cursor.unwrap_or(frame.editor.selection.lead());
         ui.memory_mut(|memory| memory.request_focus(handle_id(ui, index)));
     }
 }
 
-/// Where no handle is, a click selects the stop that is nearest, the way to those without one, and a band what is under it.
+/// Handles input on the lane outside the handles. A click selects the nearest stop, also one without a handle; a drag
+/// selects the stops under the band.
 fn ground(ui: &Ui, frame: &mut Frame<'_>, lane: Rect) {
     let response = ui.interact(lane, ui.scope_id().with("lane"), Sense::click_and_drag());
     let (origin, modifiers) = ui.input(|input| (input.pointer.press_origin(), input.modifiers));
@@ -66,19 +67,19 @@ fn handle_id(ui: &Ui, index: usize) -> Id {
     ui.scope_id().with(("stop", index))
 }
 
-/// A place across, 0 to 1 if it is on the strip.
+/// Converts x to a position on the strip: 0 to 1 inside it.
 pub fn share(strip: Rect, x: f32) -> f32 {
     (x - strip.left()) / strip.width()
 }
 
-/// A handle for each stop, or those round the selected one where there are more than have room.
+/// Draws and handles all handles that fit.
 fn all(ui: &Ui, frame: &mut Frame<'_>, strip: Rect, lane: Rect) {
     let room = (lane.width() / GAP) as usize + 1;
     let middle = frame.editor.cursor.unwrap_or(frame.editor.selection.lead());
     let shown = fan::shown(frame.stops.len(), middle, room);
     let wanted: Vec<_> = frame.stops[shown.clone()].iter().map(|stop| stop.at * lane.width()).collect();
     let places = fan::fan_out(&wanted, lane.width(), GAP);
-    // As they are drawn, whatever is done to them.
+    // State before any edit in this frame.
     let before = (frame.stops.clone(), frame.editor.selection.clone());
     let mut focused = None;
     let mut drawn = Vec::new();
@@ -97,16 +98,16 @@ fn all(ui: &Ui, frame: &mut Frame<'_>, strip: Rect, lane: Rect) {
         if frame.editor.dragged.is_none() && response.hovered() {
             ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
             let text = format!(
-                "{name}: {} at {:.4}. Drag: Ctrl snaps to parts, Shift to other stops, Alt leaves a copy; Alt held on the way \
-                 is ten times as fine, Escape puts it back. Click: Shift selects a range, Ctrl adds. Arrow keys: Shift ten \
-                 times as far, Ctrl to the next part. Delete or the middle button removes",
+                "{name}: {} at {:.4}. Drag: Ctrl snaps to equal parts, Shift to other stops; Alt at the start moves a copy, \
+                 Alt during the drag slows it to a tenth; Escape cancels. Click: Shift selects a range, Ctrl adds. Arrow keys: \
+                 Shift ten times as far, Ctrl to the next part. Delete or the middle button removes",
                 String::from(stop.colour),
                 stop.at
             );
             response.on_hover_text(text);
         }
     }
-    // What is selected is drawn over the others, and its lead over all.
+    // Selected handles are drawn over the others, the lead over all.
     let (_, selection) = &before;
     drawn.sort_by_key(|(index, ..)| (selection.contains(*index), *index == selection.lead()));
     for (index, rect, x, colour, is_hovered) in drawn {
@@ -115,7 +116,7 @@ fn all(ui: &Ui, frame: &mut Frame<'_>, strip: Rect, lane: Rect) {
     }
     frame.editor.has_keyboard = focused.is_some();
     if let Some(index) = focused {
-        // Escape ends a drag or a selection of several then, not that it has the keyboard.
+        // Then Escape cancels the drag or reduces the selection instead of removing the focus.
         let escape = frame.editor.dragged.is_some() || frame.editor.selection.is_many();
         let filter = EventFilter { horizontal_arrows: true, vertical_arrows: true, escape, ..EventFilter::default() };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(handle_id(ui, index), filter));
@@ -127,7 +128,7 @@ fn all(ui: &Ui, frame: &mut Frame<'_>, strip: Rect, lane: Rect) {
     }
 }
 
-/// What the pointer does to a handle.
+/// Handles pointer input on a handle, and focus changes.
 fn point(ui: &Ui, frame: &mut Frame<'_>, (response, index): (&Response, usize), before: &Selected) {
     let (origin, modifiers, is_space) =
         ui.input(|input| (input.pointer.press_origin(), input.modifiers, input.key_pressed(Key::Space)));
@@ -139,7 +140,7 @@ fn point(ui: &Ui, frame: &mut Frame<'_>, (response, index): (&Response, usize), 
         frame.wants_keyboard = true;
     } else if response.drag_started_by(PointerButton::Primary) {
         response.request_focus();
-        // What is selected goes with it.
+        // All selected stops are dragged together.
         if !frame.editor.selection.contains(index) {
             frame.editor.selection = Selection::one(index);
         }
@@ -157,14 +158,14 @@ fn point(ui: &Ui, frame: &mut Frame<'_>, (response, index): (&Response, usize), 
         let modifiers = if is_space { Modifiers::COMMAND } else { modifiers };
         frame.select(index, modifiers);
     } else if response.gained_focus() && frame.editor.dragged.is_none() && frame.editor.cursor != Some(index) {
-        // By Tab; what has it by a click or a key is selected as that says.
+        // Focus by Tab selects the stop. Focus by a click or another key has already set the selection.
         if !frame.editor.selection.contains(index) || frame.editor.selection.lead() != index {
             frame.select(index, Modifiers::NONE);
         }
     }
 }
 
-/// Begins to drag what is selected, with the lead at a place while the pointer is at `x`.
+/// Begins a drag of the selected stops, with the lead at `place` and the pointer at `x`.
 pub fn begin(frame: &mut Frame<'_>, x: f32, place: f32, before: Selected, is_alt_free: bool) {
     let from = (frame.stops.clone(), frame.editor.selection.clone());
     let now = frame.stops.clone();
@@ -175,11 +176,11 @@ fn remove(frame: &mut Frame<'_>) {
     frame.edit_selected(REMOVE, stops::remove);
 }
 
-/// Keys that are for the stop that has the keyboard, whatever is held with them.
+/// Keys that the focused stop handles, with any modifiers.
 const OURS: [Key; 8] =
     [Key::ArrowLeft, Key::ArrowRight, Key::ArrowUp, Key::ArrowDown, Key::Home, Key::End, Key::Delete, Key::Backspace];
 
-/// What keys do while a stop has the keyboard.
+/// Handles keys while a stop has keyboard focus.
 fn keys(ui: &Ui, frame: &mut Frame<'_>) {
     let is_escape_ours = frame.editor.dragged.is_none() && frame.editor.selection.is_many();
     let mut pressed = Vec::new();
@@ -220,7 +221,8 @@ fn nudge(frame: &mut Frame<'_>, steps: f32, modifiers: Modifiers) {
     frame.edit_selected(MOVE, |all, selection| stops::move_to(all, selection, at));
 }
 
-/// Takes the keyboard to a stop, which is selected alone, as the end of a range, or with Ctrl when Space is pressed.
+/// Moves keyboard focus to a stop and selects it; with Shift extends the range to it; with Ctrl leaves the selection
+/// unchanged until Space is pressed.
 fn go(frame: &mut Frame<'_>, index: usize, modifiers: Modifiers) {
     if modifiers.command {
         frame.editor.cursor = Some(index);
@@ -229,7 +231,7 @@ fn go(frame: &mut Frame<'_>, index: usize, modifiers: Modifiers) {
     }
 }
 
-/// Moves what is dragged. Its handles may have become others' meanwhile: the pointer tells where it is.
+/// Updates the drag by the pointer. Uses no response of a handle, since the stops' indices may change during the drag.
 fn drag(ui: &Ui, frame: &mut Frame<'_>, strip: Rect) {
     let Some(mut drag) = frame.editor.dragged.take_if(|drag| drag.now == *frame.stops) else {
         frame.editor.dragged = None;

@@ -1,19 +1,20 @@
-//! An editor of gradients for egui: the stops of one row of a ramp's recipe, on a strip that shows what they make.
+//! Gradient editor for egui. Edits the stops of one row of a ramp recipe on a strip that shows the gradient.
 //!
-//! A click on the strip adds a stop with the colour that is there; stops are dragged, nudged with the arrow keys (Shift: ten times
-//! as far) and removed with Delete; Ctrl snaps to equal parts, tenths unless others are asked for, Shift to another
-//! stop, Alt leaves a copy, or makes a drag ten times as fine where it is pressed on the way; Escape ends a drag as if it had not
-//! begun. Handles of stops that are near each other stand apart, each can be grabbed.
+//! A click on the strip adds a stop with the colour at that position. Stops are dragged, nudged with the arrow keys
+//! (Shift: ten times as far) and removed with Delete. During a drag, Ctrl snaps to equal parts (ten by default), Shift
+//! snaps to another stop, and Alt slows the drag to a tenth. A drag that begins with Alt moves a copy. Escape cancels a
+//! drag. Handles of stops that are close together are spread out, so that each can be grabbed.
 //!
-//! Several stops are selected as in lists: Shift and a click or the up and down keys for a range, Ctrl and a click for one more,
-//! Ctrl and those keys with Space, Ctrl+A, or a band drawn below the strip. They are moved, coloured, removed, distributed, turned
-//! round and mirrored together. Tab goes from stop to stop. Numbers may be typed as `+0.1` or `*2`.
+//! Several stops are selected as in lists: Shift with a click or the up and down keys selects a range; Ctrl with a
+//! click, or Ctrl with the up and down keys and Space, toggles one stop; Ctrl+A selects all; a drag below the strip
+//! selects the stops in its range. Selected stops are moved, coloured, removed, distributed, flipped and mirrored
+//! together. Tab moves from stop to stop. Number fields accept changes such as `+0.1` or `*2`.
 //!
-//! An eyedropper takes a colour from anywhere in the window, or a gradient along a stroke, with a magnifier and what would become
-//! of the gradient beside it: the host must serve egui's requests for screenshots, as eframe does. `examples/gradient_editor.rs`
-//! has one in a window.
+//! An eyedropper picks a colour from anywhere in the window, or a gradient along a stroke, with a magnifier and a
+//! preview of the gradient. The host must serve egui's screenshot requests, as eframe does.
+//! `examples/gradient_editor.rs` shows an editor in a window.
 //!
-//! Undo is the host's: [`Edited::committed`] says when a step is done, however long its drag was.
+//! The host implements undo: [`Edited::committed`] names each completed step. A whole drag is one step.
 
 mod controls;
 mod eyedropper;
@@ -38,30 +39,31 @@ pub use paint::histogram;
 use frame::{Frame, State};
 use haze_author::ramp::bake::RampRow;
 
-/// What became of a gradient in a frame.
+/// Changes to a gradient in one frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Edited {
-    /// It is another than it was.
+    /// True if the gradient changed in this frame.
     pub is_changed: bool,
-    /// What is being done, or was when the step is done: a name for undo.
+    /// Name of the undo step in progress, or of the step completed in this frame.
     pub step: Option<&'static str>,
-    /// The step is done, and what it was: a drag when it is let go, a number when it is typed. Not before that is a step for
-    /// undo.
+    /// Name of the undo step completed in this frame: a drag when it is released, a number when it is entered. The host
+    /// should record an undo step only then.
     pub committed: Option<&'static str>,
-    /// What was typed or pasted in vain: what is wrong, and what would be right.
+    /// Error message for rejected typed or pasted text.
     pub refused: Option<String>,
-    /// The place that is pointed at, 0 to 1.
+    /// Position under the pointer, 0 to 1.
     pub pointed_at: Option<f32>,
 }
 
-/// An editor of one gradient, kept from frame to frame.
+/// Editor of one gradient. Keep it across frames.
 #[derive(Clone, Debug, Default)]
 pub struct GradientEditor {
     state: State,
 }
 
 impl GradientEditor {
-    /// Shows the editor of a row and changes its stops; the row's own place is left alone. It takes the width that there is.
+    /// Shows the editor of a row, at the available width, and edits its stops. The row's own position and curve stay
+    /// unchanged.
     pub fn show(&mut self, ui: &mut Ui, row: &mut RampRow, surroundings: &Surroundings<'_>) -> Edited {
         if !row.stops.is_sorted_by(|a, b| a.at <= b.at) {
             stops::sort(&mut row.stops);
@@ -82,7 +84,7 @@ impl GradientEditor {
             };
             edited.pointed_at = strip::show(ui, &mut frame, surroundings);
             frame.clipboard(ui, at);
-            // Before it can begin: the click that it begins with takes no colour.
+            // Before the controls, so that the click that activates the eyedropper picks no colour.
             controls::take(ui, &mut frame, surroundings.blend);
             controls::show(ui, &mut frame, at);
             is_held = is_held_by(ui, frame.editor.has_keyboard);
@@ -99,18 +101,18 @@ impl GradientEditor {
         edited
     }
 
-    /// A step is being made: what is changed is not committed yet.
+    /// True if an undo step is in progress and not yet committed.
     pub fn is_editing(&self) -> bool {
         self.state.pending.is_some()
     }
 
-    /// What is pasted is for it: it was asked for, or one of its stops has the keyboard.
+    /// True if the editor handles paste events: a paste was requested, or one of its stops has keyboard focus.
     pub fn takes_paste(&self) -> bool {
         self.state.has_keyboard || self.state.awaits_paste
     }
 }
 
-/// A pointer, a field or a key is not let go yet.
+/// True while a pointer button or arrow key is down, or a text field is being edited.
 fn is_held_by(ui: &Ui, has_keyboard: bool) -> bool {
     let keys = [egui::Key::ArrowLeft, egui::Key::ArrowRight];
     let is_down = |input: &egui::InputState| {

@@ -1,17 +1,17 @@
-//! Fields of numbers that take `+0.1` and `*2` as well.
+//! Number fields that also accept changes such as `+0.1` and `*2`.
 
 use std::cell::Cell;
 
 use egui::{DragValue, Response, Ui};
 
-/// What is typed into a field of numbers that are not negative.
+/// Input to a field of non-negative numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Typed {
-    /// The number itself.
+    /// A number.
     To(f32),
-    /// `+0.1`, `-0.1`: so much more or less.
+    /// `+0.1`, `-0.1`: an amount to add.
     By(f32),
-    /// `*2`, `/2`: so many times.
+    /// `*2`, `/2`: a factor.
     Times(f32),
 }
 
@@ -38,7 +38,8 @@ impl Typed {
     }
 }
 
-/// Shows a number, in a field that `style` makes; gives what is to be done to it, and to others like it.
+/// Shows a number in a field that `style` lays out. Returns the change to apply to it, and to the same number of other
+/// selected stops.
 pub fn field(
     ui: &mut Ui,
     number: f32,
@@ -51,14 +52,15 @@ pub fn field(
             typed.set(true);
             Some(f64::from(to))
         }
-        // Not the field's to apply: it reads what is typed again in the next frame, unless the number is another by then.
+        // The caller applies the change. If the field applied it, it would parse the text and apply it again in the
+        // next frame.
         by_or_times => {
             way.set(Some(by_or_times));
             None
         }
     };
     let response = style(ui, DragValue::new(&mut shown).custom_parser(parse).update_while_editing(false));
-    // As it was kept to the range; by a drag the others go along.
+    // A typed number is used as clamped to the range. A drag is a relative change, so that other selected stops follow.
     let changed = || if typed.get() { Typed::To(shown) } else { Typed::By(shown - number) };
     let done = way.get().or_else(|| response.changed().then(changed));
     (response, done)
@@ -69,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_typed_is_a_number_or_a_way_to_one() {
+    fn typed_text_is_a_number_or_a_relative_change() {
         for (text, expected) in [
             ("0.25", Typed::To(0.25)),
             (" .5 ", Typed::To(0.5)),

@@ -1,4 +1,4 @@
-//! How the parts of the editor look.
+//! Painting of the editor's parts.
 
 use egui::{Align2, Area, Color32, Frame, Label, Mesh, Order, Pos2, Rect, Shape, Stroke, StrokeKind, Ui, pos2, vec2};
 
@@ -8,7 +8,7 @@ pub fn colour32(HexColour([r, g, b]): HexColour) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// A gradient across a rectangle, a column for each pixel, by the colour at each share of it.
+/// Draws a gradient across a rectangle, one column per pixel. `colour` returns the colour at a position, 0 to 1.
 pub fn gradient(ui: &Ui, rect: Rect, colour: impl Fn(f32) -> Color32) {
     let mut mesh = Mesh::default();
     let columns = (rect.width() * ui.pixels_per_point()).ceil().max(1.0);
@@ -21,7 +21,7 @@ pub fn gradient(ui: &Ui, rect: Rect, colour: impl Fn(f32) -> Color32) {
     ui.painter().add(mesh);
 }
 
-/// Says a place and its colour beside the pointer, above the strip, or where there is no room below.
+/// Shows a text with a colour swatch at `x` above the strip, or below it if there is no room.
 pub fn readout(ui: &Ui, x: f32, strip: Rect, colour: Color32, text: String) {
     const ROOM: f32 = 28.0;
     let (pivot, y) = if strip.top() - ui.ctx().viewport_rect().top() < ROOM {
@@ -41,7 +41,7 @@ pub fn readout(ui: &Ui, x: f32, strip: Rect, colour: Color32, text: String) {
     });
 }
 
-/// The borders of equal parts of the strip, if places snap to some.
+/// Draws the borders of the equal parts that positions snap to, if any.
 pub fn borders(ui: &Ui, strip: Rect, parts: Option<u32>) {
     let Some(parts) = parts else { return };
     for border in 1..parts {
@@ -52,7 +52,7 @@ pub fn borders(ui: &Ui, strip: Rect, parts: Option<u32>) {
     }
 }
 
-/// Where the stops are, however many, a tick for each pixel.
+/// Draws ticks at the stops' positions, at most one per point.
 pub fn ticks(ui: &Ui, stops: &[RampStop], strip: Rect) {
     let mut last = f32::NEG_INFINITY;
     for stop in stops {
@@ -66,7 +66,7 @@ pub fn ticks(ui: &Ui, stops: &[RampStop], strip: Rect) {
     }
 }
 
-/// A handle, and a line to the place that it is of.
+/// Draws a handle and a line to its stop's position.
 pub fn handle(
     ui: &Ui,
     rect: Rect,
@@ -84,13 +84,13 @@ pub fn handle(
     ui.painter().rect(rect, 2.0, colour, stroke, StrokeKind::Outside);
 }
 
-/// Draws columns of heights from 0 to 1 over a rectangle, which fade upwards to nothing, with a line along their tops.
+/// Draws a histogram with heights from 0 to 1 over a rectangle: translucent columns and a line along their tops.
 pub fn histogram(ui: &Ui, rect: Rect, bins: &[f32], colour: Color32) {
     let width = rect.width() / bins.len().max(1) as f32;
     let (mut mesh, mut outline) = (Mesh::default(), Vec::new());
     for (index, bin) in bins.iter().enumerate() {
         let left = rect.left() + index as f32 * width;
-        // A root: what is rare shows as well.
+        // The square root makes rare values visible.
         let top = rect.bottom() - bin.clamp(0.0, 1.0).sqrt() * (rect.height() - 2.0);
         let column = Rect::from_min_max(pos2(left, top), pos2(left + width, rect.bottom()));
         mesh.add_colored_rect(column, colour.gamma_multiply(0.25));

@@ -1,14 +1,14 @@
-//! What an eyedropper takes of a picture of the window.
+//! Samples colours from a screenshot for the eyedropper.
 
 use egui::{ColorImage, Key, Pos2};
 use glam::Vec3;
 
-/// Shorter than this, points, a stroke is a click.
+/// Minimum length of a stroke, points. Shorter ones count as clicks.
 const CLICK: f32 = 6.0;
-/// Colours of a stroke, each the mean of its part: what is finer is grain.
+/// Number of colours along a stroke, each the mean over its part. Finer detail would be noise.
 const PARTS: usize = 32;
 
-/// How many pixels, across and down, a colour is the mean of.
+/// Sample size: side of the square of pixels that are averaged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Across {
     #[default]
@@ -20,26 +20,26 @@ pub enum Across {
 impl Across {
     pub const ALL: [(Self, Key); 3] = [(Self::One, Key::Num1), (Self::Three, Key::Num3), (Self::Five, Key::Num5)];
 
-    /// Pixels on either side of the middle.
+    /// Returns the number of pixels on either side of the middle.
     pub fn reach(self) -> i32 {
         self as i32 / 2
     }
 
-    /// The next for some more or fewer.
+    /// Returns the sample size `by` steps larger or smaller.
     pub fn stepped(self, by: isize) -> Self {
         let at = Self::ALL.iter().position(|(across, _)| *across == self).unwrap_or(0);
         Self::ALL[at.saturating_add_signed(by).min(Self::ALL.len() - 1)].0
     }
 }
 
-/// The pixel at a place, points.
+/// Returns the pixel at a position in points, clamped to the image.
 pub fn place(shown: &ColorImage, at: Pos2, pixels_per_point: f32) -> [i32; 2] {
     let at = (at.to_vec2() * pixels_per_point).floor();
     let [width, height] = shown.size.map(|side| side as f32 - 1.0);
     [at.x.min(width).max(0.0) as i32, at.y.min(height).max(0.0) as i32]
 }
 
-/// A pixel, or the one at the border beside it.
+/// Returns the colour of a pixel, 0 to 255. Positions outside are clamped to the border.
 pub fn pixel(shown: &ColorImage, [x, y]: [i32; 2]) -> Vec3 {
     let [width, height] = shown.size;
     let inside = |at: i32, side: usize| usize::try_from(at).unwrap_or(0).min(side.saturating_sub(1));
@@ -48,14 +48,14 @@ pub fn pixel(shown: &ColorImage, [x, y]: [i32; 2]) -> Vec3 {
     Vec3::from([r, g, b].map(f32::from))
 }
 
-/// The mean of the pixels round one, as they are coded: what a blurred picture would have there.
+/// Returns the mean sRGB code of the pixels around one, as in a blurred image.
 fn mean(shown: &ColorImage, [x, y]: [i32; 2], across: Across) -> Vec3 {
     let reach = across.reach();
     let around = (-reach..=reach).flat_map(|down| (-reach..=reach).map(move |right| [x + right, y + down]));
     around.map(|at| pixel(shown, at)).sum::<Vec3>() / (across as i32 * across as i32) as f32
 }
 
-/// The colours along a stroke, steps of 255: one of a click.
+/// Returns the sRGB colours along a stroke, 0 to 255; one colour for a click.
 pub fn colours(shown: &ColorImage, stroke: &[Pos2], pixels_per_point: f32, across: Across) -> Vec<Vec3> {
     let pixel = |at: Pos2| mean(shown, place(shown, at, pixels_per_point), across);
     let Some(first) = stroke.first().filter(|_| !shown.pixels.is_empty()) else { return Vec::new() };
@@ -86,14 +86,14 @@ mod tests {
 
     use super::*;
 
-    /// Red across, green down.
+    /// Image whose red increases across and green downwards.
     fn picture() -> ColorImage {
         let pixel = |index: usize| Color32::from_rgb((index % 200) as u8, (index / 200) as u8, 9);
         ColorImage::new([200, 100], (0..20_000).map(pixel).collect())
     }
 
     #[test]
-    fn a_click_takes_the_pixel_that_is_pointed_at() {
+    fn a_click_samples_the_pixel_under_the_pointer() {
         for (at, scale, expected) in [
             (pos2(20.7, 30.2), 1.0, [20.0, 30.0]),
             (pos2(20.7, 30.2), 2.0, [41.0, 60.0]),
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn the_mean_of_some_pixels_is_taken() {
+    fn larger_sample_sizes_average_pixels() {
         let at = [pos2(20.5, 30.5)];
         let mut noisy = picture();
         noisy.pixels[30 * 200 + 20] = Color32::from_rgb(245, 30, 9);
@@ -115,7 +115,7 @@ mod tests {
             let taken = colours(&noisy, &at, 1.0, across)[0];
             assert!(taken.abs_diff_eq(Vec3::new(expected, 30.0, 9.0), 1.0e-3), "{across:?}: {taken}");
         }
-        // At a corner the border goes on.
+        // At a corner the border pixels are repeated.
         let corner = colours(&picture(), &[pos2(0.0, 0.0)], 1.0, Across::Three)[0];
         assert!(corner.abs_diff_eq(Vec3::new(1.0 / 3.0, 1.0 / 3.0, 9.0), 1.0e-3), "{corner}");
         let sizes = [-1, 1, 1, 1].map(|by| Across::Three.stepped(by));
@@ -124,8 +124,8 @@ mod tests {
     }
 
     #[test]
-    fn a_stroke_takes_what_lies_along_it() {
-        // There, and half way back: what counts is the way that the pointer went.
+    fn a_stroke_samples_colours_along_its_path() {
+        // Positions along a stroke are measured by path length, also on the way back.
         let there = [pos2(0.0, 50.5), pos2(100.0, 50.5), pos2(180.0, 50.5)];
         let row = colours(&picture(), &there, 1.0, Across::One);
         assert_eq!(row.len(), PARTS);

@@ -1,15 +1,15 @@
-//! Which stops are selected.
+//! Selection of stops.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-/// One stop that fields show, and any that are changed with it.
+/// Set of selected stops. The fields show one of them, the lead.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Selection {
     lead: usize,
-    /// Where a range begins that is drawn out to another stop.
+    /// Start of the range that [`Selection::extend_to`] selects.
     anchor: usize,
-    /// All of them, the lead too.
+    /// All selected stops, including the lead.
     all: BTreeSet<usize>,
 }
 
@@ -24,12 +24,12 @@ impl Selection {
         Self { lead: index, anchor: index, all: [index].into() }
     }
 
-    /// Those from one to another, which is the lead.
+    /// Selects the range from `anchor` to `lead`.
     pub fn between(anchor: usize, lead: usize) -> Self {
         Self { lead, anchor, all: (anchor.min(lead)..=anchor.max(lead)).collect() }
     }
 
-    /// The same stops where their indices are others.
+    /// Returns the selection with changed indices.
     pub fn map(&self, mut of: impl FnMut(usize) -> usize) -> Self {
         Self { lead: of(self.lead), anchor: of(self.anchor), all: self.all.iter().map(|index| of(*index)).collect() }
     }
@@ -54,24 +54,24 @@ impl Selection {
         self.count() > 1
     }
 
-    /// From the first to the last of them.
+    /// Returns the range from the first to the last selected stop.
     pub fn range(&self) -> Range<usize> {
         self.all.first().map_or(0, |first| *first)..self.all.last().map_or(0, |last| last + 1)
     }
 
-    /// Makes another of them the lead.
+    /// Makes another selected stop the lead.
     pub fn lead_with(&mut self, index: usize) {
         if self.contains(index) {
             (self.lead, self.anchor) = (index, index);
         }
     }
 
-    /// Draws the range from where it began out to a stop.
+    /// Selects the range from the anchor to a stop.
     pub fn extend_to(&mut self, index: usize) {
         *self = Self::between(self.anchor, index);
     }
 
-    /// Adds a stop, or takes it out unless it is the last.
+    /// Adds a stop, or removes it unless it is the only selected one.
     pub fn toggle(&mut self, index: usize) {
         if !self.all.remove(&index) {
             self.all.insert(index);
@@ -85,7 +85,7 @@ impl Selection {
         }
     }
 
-    /// Keeps to as many stops as there are.
+    /// Limits the indices to `count` stops.
     pub fn keep_to(&mut self, count: usize) {
         if self.all.last().is_some_and(|last| *last >= count) || self.anchor >= count {
             *self = self.map(|index| index.min(count.saturating_sub(1)));
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn a_range_is_drawn_out_from_where_it_began() {
+    fn a_range_extends_from_its_anchor() {
         let mut selection = Selection::one(4);
         for (to, expected) in [(6, vec![4, 5, 6]), (5, vec![4, 5]), (2, vec![2, 3, 4]), (4, vec![4])] {
             selection.extend_to(to);
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn stops_are_added_and_taken_out_one_by_one_and_one_stays() {
+    fn toggling_adds_and_removes_stops_but_keeps_the_last_one() {
         let mut selection = Selection::one(4);
         for (index, expected, lead) in
             [(1, vec![1, 4], 1), (7, vec![1, 4, 7], 7), (7, vec![1, 4], 4), (1, vec![4], 4), (4, vec![4], 4)]
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn it_keeps_to_what_there_is() {
+    fn indices_are_limited_to_the_number_of_stops() {
         let mut selection = Selection::between(2, 6);
         selection.keep_to(7);
         assert_eq!(selection, Selection::between(2, 6));

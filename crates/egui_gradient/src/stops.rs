@@ -1,16 +1,16 @@
-//! What can be done to the stops of a gradient, and to those of them that are selected. Nothing here draws.
+//! Operations on the stops of a gradient and its selection, without any drawing.
 
 use std::ops::Range;
 
 use super::selection::Selection;
 use haze_author::ramp::bake::{Curve, HexColour, RampStop};
 
-/// Puts stops in the order of their places; those at one place stay in theirs.
+/// Sorts stops by position, stably.
 pub fn sort(stops: &mut [RampStop]) {
     stops.sort_by(|a, b| a.at.total_cmp(&b.at));
 }
 
-/// The same with what is selected of them.
+/// Sorts stops by position, stably, and updates the selection.
 fn sort_selected(stops: &mut [RampStop], selection: &mut Selection) {
     let mut order: Vec<_> = (0..stops.len()).collect();
     order.sort_by(|a, b| stops[*a].at.total_cmp(&stops[*b].at));
@@ -20,7 +20,7 @@ fn sort_selected(stops: &mut [RampStop], selection: &mut Selection) {
     sort(stops);
 }
 
-/// Adds a stop that goes on as the one before it does; gives its index.
+/// Adds a stop with the curve of the previous one. Returns its index.
 pub fn add(stops: &mut Vec<RampStop>, at: f32, colour: HexColour) -> usize {
     let index = stops.partition_point(|stop| stop.at <= at);
     let neighbour = stops.get(index.saturating_sub(1));
@@ -29,17 +29,18 @@ pub fn add(stops: &mut Vec<RampStop>, at: f32, colour: HexColour) -> usize {
     index
 }
 
-/// Puts a copy of each selected stop behind it, and selects the copies.
+/// Inserts a copy after each selected stop and selects the copies.
 pub fn copy(stops: &mut Vec<RampStop>, selection: &mut Selection) {
     let copied: Vec<_> = selection.iter().filter(|index| *index < stops.len()).collect();
     for index in copied.iter().rev() {
         stops.insert(index + 1, stops[*index].clone());
     }
-    // Behind itself, and behind those of the selected that are before it.
+    // Shifted by its own copy and by the copies of selected stops before it.
     *selection = selection.map(|index| index + copied.partition_point(|before| *before <= index));
 }
 
-/// The place for one more: half way from a stop to the next, or to the one before the last.
+/// Returns the position for a new stop: halfway to the next stop or to 1; for a last stop at 1, halfway to the previous
+/// one.
 pub fn gap(stops: &[RampStop], index: usize) -> f32 {
     let at = |index: usize| stops.get(index).map(|stop| stop.at);
     let from = at(index).unwrap_or(0.0);
@@ -47,7 +48,8 @@ pub fn gap(stops: &[RampStop], index: usize) -> f32 {
     f32::midpoint(from, to)
 }
 
-/// Removes what is selected, but for the lead where that is all; selects the one to go on with.
+/// Removes the selected stops, but keeps the lead if all are selected. Selects the stop that takes the first one's
+/// place.
 pub fn remove(stops: &mut Vec<RampStop>, selection: &mut Selection) {
     let is_all = selection.count() >= stops.len();
     let mut index = 0;
@@ -58,20 +60,21 @@ pub fn remove(stops: &mut Vec<RampStop>, selection: &mut Selection) {
     *selection = Selection::one(selection.range().start.min(stops.len().saturating_sub(1)));
 }
 
-/// Puts the lead elsewhere and the others as far, kept to the gradient with the distances between them. They pass others only
-/// where they go beyond them: come to the place of another a stop stays on its side, and makes a hard edge.
+/// Moves the lead to `at` and the other selected stops by the same distance, limited so that all stay within 0 to 1. A
+/// stop changes order with another only if it moves past it. At equal positions the order is kept, and the two stops
+/// form a hard edge.
 pub fn move_to(stops: &mut [RampStop], selection: &mut Selection, at: f32) {
     let Some(lead) = stops.get(selection.lead()).map(|lead| lead.at).filter(|_| at.is_finite()) else { return };
     let (least, most) = ends(stops, selection.iter());
     let at = at.min(1.0 - (most - lead)).max(lead - least);
     for index in selection.iter() {
-        // Those at one place stay together, whatever is rounded.
+        // Computed relative to the lead, so that stops at equal positions stay equal despite rounding.
         stops[index].at = (at + (stops[index].at - lead)).clamp(0.0, 1.0);
     }
     sort_selected(stops, selection);
 }
 
-/// Multiplies the places of what is selected.
+/// Multiplies the positions of the selected stops.
 pub fn scale(stops: &mut [RampStop], selection: &mut Selection, times: f32) {
     for index in selection.iter() {
         stops[index].at = (stops[index].at * times).clamp(0.0, 1.0);
@@ -79,17 +82,17 @@ pub fn scale(stops: &mut [RampStop], selection: &mut Selection, times: f32) {
     sort_selected(stops, selection);
 }
 
-/// The places of the first and the last.
+/// Returns the smallest and the largest position.
 fn ends(stops: &[RampStop], indices: impl Iterator<Item = usize>) -> (f32, f32) {
     indices.fold((1.0, 0.0), |(least, most): (f32, f32), index| (least.min(stops[index].at), most.max(stops[index].at)))
 }
 
-/// The nearest border of equal parts, if it snaps to those.
+/// Returns the nearest border of equal parts, or `at` without snapping.
 pub fn snapped(at: f32, parts: Option<u32>) -> f32 {
     parts.map_or(at, |parts| (at * parts as f32).round() / parts as f32)
 }
 
-/// The place of a stop that is near and not selected, so that the two make a hard edge; else the same place.
+/// Returns the position of an unselected stop nearby, so that the two form a hard edge; otherwise `at`.
 pub fn beside(stops: &[RampStop], selection: &Selection, at: f32) -> f32 {
     const NEAR: f32 = 0.02;
     let others = stops.iter().enumerate().filter(|(other, _)| !selection.contains(*other)).map(|(_, stop)| stop.at);
@@ -97,20 +100,20 @@ pub fn beside(stops: &[RampStop], selection: &Selection, at: f32) -> f32 {
     near.min_by(|a, b| (a - at).abs().total_cmp(&(b - at).abs())).unwrap_or(at)
 }
 
-/// The place some steps from another: thousandths, hundredths if it is `far`, and equal parts if it snaps to those.
+/// Returns `at` moved by `steps`: steps of 0.001, of 0.01 if `far`, or to the next borders of equal parts.
 pub fn nudged(at: f32, steps: f32, far: bool, parts: Option<u32>) -> f32 {
-    // To where a step leads is rounded: a hundred steps and as many back end where they began.
+    // Rounding makes a hundred steps and a hundred steps back return to the start.
     let round = |at: f32, unit: f32| (at * unit).round() / unit;
     match parts.map(|parts| parts as f32) {
-        // The next border, however near it is.
+        // The next border, unless `at` is already there within 1e-3 of a part.
         Some(parts) if steps > 0.0 => ((at * parts + 1.0e-3).floor() + steps) / parts,
         Some(parts) => ((at * parts - 1.0e-3).ceil() + steps) / parts,
         None => round(at + steps * if far { 0.01 } else { 0.001 }, 1.0e4),
     }
 }
 
-/// What is turned round or mirrored: what lies between the first and the last that are selected, or the whole gradient if that is
-/// one. The stops, and from where to where.
+/// Returns the part to flip or mirror: its stops and its start and end. From the first to the last selected stop, or
+/// the whole gradient if only one stop is selected.
 fn part(stops: &[RampStop], selection: &Selection) -> (Range<usize>, f32, f32) {
     let range = selection.range();
     match (stops.get(range.start), stops.get(range.end.saturating_sub(1))) {
@@ -119,7 +122,7 @@ fn part(stops: &[RampStop], selection: &Selection) -> (Range<usize>, f32, f32) {
     }
 }
 
-/// Puts others in the place of a part, and selects them where the part was.
+/// Replaces the stops of a part, and selects the new ones if several stops were selected.
 fn put_part(stops: &mut Vec<RampStop>, selection: &mut Selection, range: Range<usize>, others: Vec<RampStop>) {
     let end = (range.start + others.len()).saturating_sub(1);
     if selection.is_many() {
@@ -128,7 +131,7 @@ fn put_part(stops: &mut Vec<RampStop>, selection: &mut Selection, range: Range<u
     stops.splice(range, others);
 }
 
-/// Turns a part round, so that what was at its one end is at the other.
+/// Reverses a part.
 pub fn flip(stops: &mut Vec<RampStop>, selection: &mut Selection) {
     sort_selected(stops, selection);
     let (range, from, to) = part(stops, selection);
@@ -136,7 +139,7 @@ pub fn flip(stops: &mut Vec<RampStop>, selection: &mut Selection) {
     put_part(stops, selection, range, turned);
 }
 
-/// Squeezes a part into its first half, and puts its mirror picture behind it.
+/// Compresses a part into its first half and appends its mirror image.
 pub fn mirror(stops: &mut Vec<RampStop>, selection: &mut Selection) {
     sort_selected(stops, selection);
     let (range, from, to) = part(stops, selection);
@@ -147,18 +150,18 @@ pub fn mirror(stops: &mut Vec<RampStop>, selection: &mut Selection) {
     if let (Some(last), Some(first)) = (mirrored.last(), back.first())
         && (last.at, last.colour) == (first.at, first.colour)
     {
-        // They meet in one.
+        // The two halves share the middle stop.
         mirrored.pop();
     }
     mirrored.extend(back);
     put_part(stops, selection, range, mirrored);
 }
 
-/// Stops in reverse, each at `sum` less its place, which is from `from` to `to`. Curves go with the parts that they are of; a
-/// constant part keeps its colour, which is that of its other end then.
+/// Returns the stops in reverse, each at `sum` minus its position, clamped to `from`..`to`. Each curve stays with its
+/// segment. A constant segment keeps its colour, which then comes from its other end.
 fn turned(stops: &[RampStop], sum: f32, from: f32, to: f32) -> Vec<RampStop> {
     let Some(last) = stops.last() else { return Vec::new() };
-    // Whether a stop's colour is held up to the next.
+    // True if the segment after a stop is constant and not empty.
     let is_held = |index: usize| {
         let (stop, next) = (&stops[index], stops.get(index + 1));
         stop.curve == Curve::Constant && next.is_some_and(|next| next.at > stop.at)
@@ -169,7 +172,7 @@ fn turned(stops: &[RampStop], sum: f32, from: f32, to: f32) -> Vec<RampStop> {
         let is_last = index + 1 == stops.len();
         let before = index.checked_sub(1).map(|before| (&stops[before], is_held(before)));
         if let Some((before, true)) = before {
-            // What it comes to there, unless that is held already.
+            // The stop's own colour must be kept as well, unless the segment after it holds it already.
             if is_last {
                 flipped.push(RampStop { at: from, colour: stop.colour, curve: Curve::Constant });
             } else if !is_held(index) {
@@ -184,12 +187,12 @@ fn turned(stops: &[RampStop], sum: f32, from: f32, to: f32) -> Vec<RampStop> {
     flipped
 }
 
-/// What is distributed: what is selected, or all where that is one.
+/// Returns the stops to distribute: the selected ones, or all if only one is selected.
 fn distributed(stops: &[RampStop], selection: &Selection) -> Vec<usize> {
     if selection.is_many() { selection.iter().collect() } else { (0..stops.len()).collect() }
 }
 
-/// Puts stops at even distances between the first and the last, or over the whole if those are at one place.
+/// Spaces stops evenly between the first and the last, or from 0 to 1 if those are at one position.
 pub fn distribute(stops: &mut [RampStop], selection: &mut Selection) {
     let indices = distributed(stops, selection);
     let (first, last) = ends(stops, indices.iter().copied());
@@ -202,8 +205,8 @@ pub fn distribute(stops: &mut [RampStop], selection: &mut Selection) {
     sort_selected(stops, selection);
 }
 
-/// Puts stops at even distances so that the parts to the right of each are of one width, for steps: all from 0 on, or those
-/// that are selected from the first of them up to the stop behind the last.
+/// Spaces stops so that the segments after them have equal width, for constant curves. All stops from 0 to 1, or the
+/// selected ones from the first to the stop after the last.
 pub fn step_evenly(stops: &mut [RampStop], selection: &mut Selection) {
     let indices = distributed(stops, selection);
     let from = if selection.is_many() { ends(stops, indices.iter().copied()).0 } else { 0.0 };

@@ -1,4 +1,4 @@
-//! The strip: the gradient with its handles below it, and what is looked up.
+//! The strip: the gradient, its handles and the histogram of lookups below it.
 
 use egui::{self, Color32, CursorIcon, Rect, Sense, Stroke, StrokeKind, Ui, vec2};
 
@@ -11,17 +11,17 @@ use haze::error::FieldError;
 use haze::formula::colour::srgb_from_linear;
 use haze_author::ramp::bake::{Blend, Gradient, HexColour, RampRecipe, RampRow, RampStop};
 
-/// Heights of the strip, of the room for handles below it, and of histograms.
+/// Heights of the strip, of the lane for handles below it, and of histograms, points.
 const STRIP: f32 = 30.0;
 const LANE: f32 = 26.0;
 const HISTOGRAM: f32 = 44.0;
 
-/// Draws all of it, and gives the place that is pointed at.
+/// Draws strip, handles and histograms. Returns the position under the pointer.
 pub fn show(ui: &mut Ui, frame: &mut Frame<'_>, surroundings: &Surroundings<'_>) -> Option<f32> {
     let has_histogram = !surroundings.histograms.is_empty();
     let height = STRIP + LANE + if has_histogram { HISTOGRAM } else { 0.0 };
     let (_, all) = ui.allocate_space(vec2(ui.available_width().max(4.0 * GAP), height));
-    // Handles of stops at both ends are inside.
+    // Margin for the handles of stops at both ends.
     let all = all.shrink2(vec2(GAP * 0.5, 0.0));
     let (strip, rest) = all.split_top_bottom_at_y(all.top() + STRIP);
     let (lane, below) = rest.split_top_bottom_at_y(rest.top() + LANE);
@@ -47,18 +47,18 @@ pub fn show(ui: &mut Ui, frame: &mut Frame<'_>, surroundings: &Surroundings<'_>)
     pointed_at
 }
 
-/// What stops make.
+/// Builds the gradient of the stops.
 pub fn gradient(stops: &[RampStop], blend: Blend) -> Result<Gradient, FieldError> {
     let rows = vec![RampRow { stops: stops.to_vec(), ..RampRow::default() }];
     RampRecipe { blend, rows, ..RampRecipe::default() }.gradient()
 }
 
-/// The sRGB colour at a place.
+/// Returns the sRGB colour at a position.
 pub fn colour_at(gradient: &Gradient, at: f32) -> HexColour {
     HexColour::from_srgb(gradient.sample(at, 0.0).map(|light| srgb_from_linear(light.min(1.0))))
 }
 
-/// The gradient itself, where a click or the beginning of a drag adds a stop.
+/// Draws the gradient. A click on it, or the start of a drag, adds a stop. Returns the hovered position.
 fn ground(ui: &Ui, frame: &mut Frame<'_>, strip: Rect, gradient: &Gradient) -> Option<f32> {
     let response = ui.interact(strip, ui.scope_id().with("strip"), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "gradient: add a stop"));
@@ -75,7 +75,7 @@ fn ground(ui: &Ui, frame: &mut Frame<'_>, strip: Rect, gradient: &Gradient) -> O
     let added = if response.drag_started() {
         origin.map(|origin| place(origin.x))
     } else if response.clicked() {
-        // By key there is no place.
+        // A click by keyboard has no position.
         let by_pointer = response.interact_pointer_pos().map(|at| place(at.x));
         Some(by_pointer.unwrap_or_else(|| stops::gap(frame.stops, frame.editor.selection.lead())))
     } else {
@@ -93,7 +93,7 @@ fn ground(ui: &Ui, frame: &mut Frame<'_>, strip: Rect, gradient: &Gradient) -> O
     }
     let hovered = response.hover_pos().filter(|_| frame.editor.dragged.is_none())?;
     ui.set_cursor_icon(CursorIcon::Crosshair);
-    response.on_hover_text_at_pointer("Click or drag: a stop with this colour. Ctrl snaps");
+    response.on_hover_text_at_pointer("Click or drag to add a stop with this colour. Ctrl snaps");
     let at = place(hovered.x);
     let colour = colour_at(gradient, at);
     readout(ui, hovered.x, strip, colour32(colour), format!("{at:.4}  {}", String::from(colour)));

@@ -1,6 +1,6 @@
-//! An editor in a window: what pointer and keys do to its stops.
+//! Tests of the editor in a window: input by pointer and keys.
 
-#![allow(clippy::float_cmp, reason = "places are rounded")]
+#![allow(clippy::float_cmp, reason = "positions are rounded")]
 
 use egui::{Color32, Event, Key, Modifiers, PointerButton, Pos2, Rect, Role, Theme, Ui, Vec2, pos2};
 use egui_kittest::Harness;
@@ -14,7 +14,7 @@ use super::*;
 use haze_author::ramp::bake::{Curve, HexColour, RampStop};
 use haze_author::ramp::template::{TEMPLATES, Template};
 
-/// An editor, and what a host is told.
+/// An editor, and the results that its host has received.
 #[derive(Default)]
 struct Host {
     editor: GradientEditor,
@@ -61,7 +61,7 @@ fn strip(harness: &Harness<'_, Host>) -> Rect {
     harness.get_by_label("gradient: add a stop").rect()
 }
 
-/// A place on the strip, 0 to 1.
+/// Returns the screen position of a position on the strip, 0 to 1.
 fn on_strip(harness: &Harness<'_, Host>, at: f32) -> Pos2 {
     let strip = strip(harness);
     pos2(strip.left() + at * strip.width(), strip.top() + 8.0)
@@ -78,7 +78,7 @@ fn button(harness: &mut Harness<'_, Host>, pos: Pos2, pressed: bool, modifiers: 
 
 fn drag(harness: &mut Harness<'_, Host>, from: Pos2, by: f32, modifiers: Modifiers) {
     harness.hover_at(from);
-    // Held all the way, as by a hand.
+    // Modifiers are held during the whole drag.
     harness.event(Event::ModifiersChanged(modifiers));
     harness.step();
     button(harness, from, true, modifiers);
@@ -110,7 +110,7 @@ fn key(harness: &mut Harness<'_, Host>, key: Key, modifiers: Modifiers) {
 const NONE: Modifiers = Modifiers::NONE;
 
 #[test]
-fn a_click_adds_a_stop_with_the_colour_that_is_there() {
+fn a_click_adds_a_stop_with_the_colour_at_that_position() {
     let mut harness = host(&[(0.0, 0), (1.0, 255)]);
     let at = on_strip(&harness, 0.25);
     let expected = {
@@ -126,7 +126,7 @@ fn a_click_adds_a_stop_with_the_colour_that_is_there() {
     let at = on_strip(&harness, 0.62);
     click(&mut harness, at, Modifiers::COMMAND);
     assert_eq!(places(&harness), [0.0, 0.25, 0.6, 1.0]);
-    // Pressed and drawn along, it goes with the pointer: one step.
+    // A press followed by a drag adds a stop and moves it, in one step.
     let (at, width) = (on_strip(&harness, 0.8), strip(&harness).width());
     drag(&mut harness, at, 0.1 * width, NONE);
     assert_eq!(places(&harness), [0.0, 0.25, 0.6, 0.9, 1.0]);
@@ -134,7 +134,7 @@ fn a_click_adds_a_stop_with_the_colour_that_is_there() {
 }
 
 #[test]
-fn a_drag_is_one_step_and_passes_other_stops() {
+fn a_drag_is_one_step_and_can_pass_other_stops() {
     let mut harness = host(&[(0.0, 0), (0.3, 10), (0.5, 20), (1.0, 30)]);
     let (from, width) = (handle(&harness, 1).center(), strip(&harness).width());
     drag(&mut harness, from, 0.4 * width, NONE);
@@ -149,7 +149,7 @@ fn a_drag_is_one_step_and_passes_other_stops() {
     let from = handle(&harness, 2).center();
     drag(&mut harness, from, 9.0 * width, NONE);
     assert_eq!(places(&harness), [0.0, 0.5, 1.0, 1.0]);
-    // A click that does not move is no step.
+    // A click without movement is not a step.
     let count = steps(&harness).len();
     let at = handle(&harness, 0).center();
     click(&mut harness, at, NONE);
@@ -157,7 +157,7 @@ fn a_drag_is_one_step_and_passes_other_stops() {
 }
 
 #[test]
-fn stops_at_one_place_have_handles_of_their_own() {
+fn stops_at_one_position_have_separate_handles() {
     let mut harness = host(&[(0.5, 1), (0.5, 2), (0.5, 3), (1.0, 4)]);
     for (index, width) in [(0, -30.0), (2, 30.0)] {
         let from = handle(&harness, index).center();
@@ -169,7 +169,7 @@ fn stops_at_one_place_have_handles_of_their_own() {
 }
 
 #[test]
-fn everything_is_done_by_keys_alone() {
+fn stops_are_edited_by_keyboard_alone() {
     let mut harness = host(&[(0.0, 0), (0.5, 10), (1.0, 20)]);
     let has_keyboard = |harness: &Harness<'_, Host>, index: usize| {
         harness.get_by_label(&format!("stop {}", index + 1)).accesskit_node().is_focused()
@@ -192,7 +192,7 @@ fn everything_is_done_by_keys_alone() {
         assert!(has_keyboard(&harness, 1));
     }
     assert_eq!(steps(&harness).len(), 5);
-    // Past another, it keeps the keyboard.
+    // A stop that passes another keeps the focus.
     for _ in 0..6 {
         key(&mut harness, Key::ArrowRight, Modifiers::COMMAND);
     }
@@ -219,7 +219,7 @@ fn everything_is_done_by_keys_alone() {
 }
 
 #[test]
-fn numbers_are_typed() {
+fn positions_and_colours_can_be_typed() {
     let mut harness = host(&[(0.0, 0), (0.5, 10), (1.0, 20)]);
     harness.get_by_label("next stop").click();
     harness.run_steps(2);
@@ -244,7 +244,7 @@ fn numbers_are_typed() {
 }
 
 #[test]
-fn each_stop_has_a_curve() {
+fn a_curve_is_set_for_the_selected_stop_only() {
     let mut harness = host(&[(0.0, 0), (1.0, 20)]);
     harness.get_by_role(Role::ComboBox).click();
     harness.run_steps(3);
@@ -256,7 +256,7 @@ fn each_stop_has_a_curve() {
 }
 
 #[test]
-fn all_stops_are_turned_distributed_and_replaced_in_one_step() {
+fn each_button_is_one_undo_step() {
     let mut harness = host(&[(0.0, 0), (0.2, 10), (1.0, 20)]);
     let press = |harness: &mut Harness<'_, Host>, name: &str| {
         harness.get_by_label(name).click();
@@ -309,7 +309,7 @@ fn stops_are_copied_and_pasted_as_text() {
         "{:?}",
         harness.state().refused
     );
-    // What is pasted elsewhere is not for it, unless it was asked for.
+    // A paste while another widget has focus is ignored, unless it was requested by the button.
     harness.get_by_label("Distribute").focus();
     harness.run_steps(2);
     harness.event(Event::Paste("no row".into()));
@@ -323,7 +323,7 @@ fn stops_are_copied_and_pasted_as_text() {
 }
 
 #[test]
-fn ten_thousand_stops_are_edited_one_by_one() {
+fn ten_thousand_stops_can_be_edited() {
     let list: Vec<_> = (0..10_000u32).map(|index| (index as f32 / 9999.0, index as u8)).collect();
     let mut harness = host(&list);
     let (lane, width) = (strip(&harness).bottom() + 3.0, strip(&harness).width());
@@ -342,7 +342,7 @@ fn ten_thousand_stops_are_edited_one_by_one() {
 }
 
 #[test]
-fn nothing_is_cut_off_in_a_narrow_panel() {
+fn all_controls_fit_in_a_narrow_panel() {
     for theme in [Theme::Dark, Theme::Light] {
         let mut harness = host(&[(0.0, 0), (0.5, 128), (0.5, 200), (1.0, 255)]);
         harness.ctx.set_theme(theme);
@@ -355,10 +355,10 @@ fn nothing_is_cut_off_in_a_narrow_panel() {
     }
 }
 
-/// `HAZE_LOOK=DIR` says where to.
+/// Writes screenshots to the folder `HAZE_LOOK`.
 #[test]
-#[ignore = "pictures to be looked at"]
-fn pictures_of_the_editor() {
+#[ignore = "writes screenshots for manual review"]
+fn screenshots_of_the_editor() {
     let folder = std::path::PathBuf::from(std::env::var_os("HAZE_LOOK").unwrap());
     for (theme, name) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
         let mut harness = host(&[(0.0, 20), (0.3, 60), (0.3, 160), (0.33, 200), (0.8, 220), (1.0, 255)]);
@@ -366,7 +366,7 @@ fn pictures_of_the_editor() {
         harness.get_by_label("stop 3").focus();
         harness.run_steps(3);
         harness.render().unwrap().save(folder.join(format!("gradient_{name}.png"))).unwrap();
-        // Several, held on their way; then the eyedropper.
+        // Several stops during a drag; then the eyedropper.
         key(&mut harness, Key::ArrowDown, Modifiers::SHIFT);
         let from = handle(&harness, 3).center();
         for pos in [from, from, from + Vec2::new(20.0, 0.0), from + Vec2::new(40.0, 0.0)] {

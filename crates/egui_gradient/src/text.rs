@@ -1,4 +1,4 @@
-//! The stops of a row as text, to be copied and pasted: the row as it stands in a recipe.
+//! Clipboard text of a row's stops, in the format of a recipe.
 
 use std::path::Path;
 
@@ -8,19 +8,19 @@ use haze::settings::validate;
 use haze_author::ramp::bake::{HexColour, RampRow, RampStop};
 use haze_author::ramp::gradient::not_empty;
 
-/// The row as in a recipe.
+/// Returns the row as JSON, as in a recipe.
 pub fn to_text(row: &RampRow) -> String {
-    // Numbers and texts: there is nothing that could fail.
+    // Numbers and strings only, so serialisation cannot fail.
     serde_json::to_string_pretty(row).unwrap_or_default()
 }
 
-/// A colour as people write it: `#rrggbb`, also without its sign.
+/// Parses a colour: `#rrggbb` or `rrggbb`.
 pub fn colour(text: &str) -> Result<HexColour, String> {
     let text = text.trim();
     HexColour::try_from(format!("#{text}")).or_else(|_| HexColour::try_from(text.to_owned()))
 }
 
-/// The stops of a row that was copied, in order.
+/// Parses the stops of a copied row and sorts them.
 pub fn parse(text: &str) -> Result<Vec<RampStop>, Error> {
     let path = Path::new("pasted text");
     let mut row: RampRow = json::parse(path, text)?;
@@ -36,7 +36,7 @@ mod tests {
     use haze_author::ramp::bake::{Curve, HexColour};
 
     #[test]
-    fn what_is_copied_is_what_is_pasted() {
+    fn copied_stops_are_pasted_unchanged() {
         let stops = vec![
             RampStop::new(0.0, HexColour([255, 240, 210])),
             RampStop { curve: Curve::Constant, ..RampStop::new(0.3, HexColour([1, 2, 3])) },
@@ -47,7 +47,7 @@ mod tests {
     }
 
     #[test]
-    fn a_colour_needs_no_sign() {
+    fn a_colour_may_be_written_without_the_hash_sign() {
         for text in ["#ff8000", " FF8000\n"] {
             assert_eq!(colour(text), Ok(HexColour([255, 128, 0])));
         }
@@ -57,7 +57,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_row_is_refused_and_said() {
+    fn malformed_rows_are_refused_with_a_message() {
         for (text, said) in [
             ("a word", "pasted text:1:1"),
             (r#"{ "stops": [] }"#, "stops"),

@@ -1,30 +1,32 @@
-//! Functions that no standard fixes to the bit, made of arithmetic that IEEE 754 does, so that every machine bakes the same bytes.
+//! Transcendental functions built only from operations that IEEE 754 defines exactly, so bakes are bit-identical on
+//! every machine. The standard library's `powf`, `exp` and `sin` may differ between platforms.
 
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
 use glam::Vec2;
 
-/// `base` to the power of `exponent`, correctly rounded but for one case in millions; 0 for a base that is not positive.
+/// Returns `base` to the power of `exponent`, correctly rounded except for about one input in millions; 0 if `base` is
+/// not positive.
 pub fn power(base: f32, exponent: f32) -> f32 {
     raise(base, f64::from(exponent)) as f32
 }
 
-/// The same in 64 bits.
+/// Same as [`power`] with an f64 exponent and result.
 pub fn raise(base: f32, exponent: f64) -> f64 {
     if base > 0.0 { exp2(exponent * log2(f64::from(base))) } else { 0.0 }
 }
 
-/// e to the power of `x`, rounded as [`power`] is.
+/// Returns e to the power of `x`, rounded as in [`power`].
 pub fn exp(x: f32) -> f32 {
     exp2(f64::from(x) * std::f64::consts::LOG2_E) as f32
 }
 
-/// The natural logarithm of a normal number above 0, rounded as [`power`] is.
+/// Returns the natural logarithm of a positive normal number, rounded as in [`power`].
 pub fn ln(x: f32) -> f32 {
     (log2(f64::from(x)) * std::f64::consts::LN_2) as f32
 }
 
-/// exp(-x), quickly: off by a millionth of itself at 3, a two-hundredth at 16, where it is below a ten-millionth.
+/// Fast approximation of exp(-x). Relative error is 1e-6 at x = 3 and 5e-3 at x = 16, where the value is below 2e-7.
 pub fn decay(x: f32) -> f32 {
     let x = x * (1.0 / 32.0);
     let mut power = 1.0 / (1.0 + x * (1.0 + x * (0.5 + x * (1.0 / 6.0 + x * (1.0 / 24.0)))));
@@ -34,12 +36,12 @@ pub fn decay(x: f32) -> f32 {
     power
 }
 
-/// (cos, sin) of an angle of a few turns, radians, rounded as [`power`] is.
+/// Returns (cos, sin) of an angle in radians, at most a few turns, rounded as in [`power`].
 pub fn direction(angle: f32) -> Vec2 {
     let angle = f64::from(angle);
     let quarters = (angle * FRAC_2_PI).round();
     let t = angle - quarters * FRAC_PI_2;
-    // |t| < 0.786, whose 18th power over 18! is below the last bit.
+    // |t| < 0.786; the last term, t^18 / 18!, is already below the last bit.
     let series = |first: i32| {
         let step = |sum: f64, term: i32| 1.0 - sum * t * t / f64::from((2 * term + first - 1) * (2 * term + first));
         (1..10).rev().fold(1.0, step)
@@ -53,15 +55,15 @@ pub fn direction(angle: f32) -> Vec2 {
     }
 }
 
-/// For normal numbers above 0.
+/// Base-2 logarithm of a positive normal number.
 fn log2(x: f64) -> f64 {
     const BIAS: i64 = 1023;
-    // A mantissa of 0.707 to 1.414, so that the logarithm of what is near 1 loses nothing.
+    // The mantissa is in 0.707 to 1.414, so logarithms of numbers near 1 keep their precision.
     let bits = x.to_bits() as i64;
     let half = i64::from(bits & ((1 << 52) - 1) > 0x6_a09e_667f_3bcd);
     let exponent = (bits >> 52) - BIAS + half;
     let mantissa = f64::from_bits((bits - (exponent << 52)) as u64);
-    // ln m = 2 artanh s; |s| < 0.172, whose 23rd power is below the last bit.
+    // ln m = 2 artanh s; |s| < 0.172, so s^23 is below the last bit.
     let s = (mantissa - 1.0) / (mantissa + 1.0);
     let series = (0..11).rev().fold(0.0, |sum, term| sum * s * s + 1.0 / f64::from(2 * term + 1));
     exponent as f64 + 2.0 * s * series * std::f64::consts::LOG2_E
@@ -71,7 +73,7 @@ fn exp2(x: f64) -> f64 {
     let x = x.clamp(-1000.0, 1000.0);
     let whole = x.round();
     let t = (x - whole) * std::f64::consts::LN_2;
-    // |t| < 0.347, whose 15th power over 15! is below the last bit.
+    // |t| < 0.347; the first omitted term, t^15 / 15!, is below the last bit.
     let series = (1..15).rev().fold(1.0, |sum, term| 1.0 + sum * t / f64::from(term));
     series * f64::from_bits(((whole as i64 + 1023) << 52) as u64)
 }
@@ -80,14 +82,14 @@ fn exp2(x: f64) -> f64 {
 pub mod tests {
     use super::*;
 
-    /// FNV-1a: what a bake is compared with that another machine made.
+    /// FNV-1a hash, for comparing a bake with the expected hash in a test.
     pub fn hash(samples: impl IntoIterator<Item = impl Into<u64>>) -> u64 {
         let step = |hash: u64, sample: u64| (hash ^ sample).wrapping_mul(0x0100_0000_01b3);
         samples.into_iter().map(Into::into).fold(0xcbf2_9ce4_8422_2325, step)
     }
 
     #[test]
-    fn powers_are_those_of_the_platform() {
+    fn powers_match_the_standard_library() {
         for step in 1..4000 {
             let base = 2.0_f32.powf(step as f32 / 100.0 - 20.0);
             for exponent in [2.4_f32, 1.0 / 2.4, 1.0 / 3.0, -1.5] {
@@ -101,7 +103,7 @@ pub mod tests {
     }
 
     #[test]
-    fn angles_and_exponentials_are_those_of_the_platform() {
+    fn angles_and_exponentials_match_the_standard_library() {
         for step in -2000..2000 {
             let x = step as f32 / 100.0;
             let (sin, cos) = f64::from(x).sin_cos();

@@ -1,10 +1,10 @@
-//! What checks of pictures find.
+//! Findings of image checks.
 
-/// One thing that would show.
+/// One visible defect.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
-    /// Its kind, as the check lists them.
+    /// Kind of defect, as listed in the check's documentation.
     pub name: &'static str,
-    /// What it is, where, and what would be right.
+    /// Description: what is wrong, where, and what is expected.
     pub what: String,
 }

@@ -9,10 +9,10 @@ use haze::formula::gradient_noise::tiling_noise;
 use haze::settings::{FieldVisitor, Fields, validate};
 use image::{Rgba, RgbaImage};
 
-/// The version of the recipe format that this code writes and reads.
+/// Recipe format version that this code writes and reads.
 pub const RECIPE_VERSION: u32 = 1;
 
-/// How a noise was made: the contents of a `*.noise.json`.
+/// Recipe of a noise volume: the contents of a `*.noise.json`.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -25,7 +25,7 @@ pub struct NoiseRecipe {
     pub size: u32,
     /// Cells of the coarsest octave along each side.
     pub cells: u32,
-    /// Octaves, each of twice the frequency of the last.
+    /// Number of octaves, each at twice the frequency of the previous one.
     pub octaves: u32,
     /// Weight of an octave relative to the coarser one.
     pub gain: f32,
@@ -43,7 +43,7 @@ impl Fields for NoiseRecipe {
 }
 
 impl NoiseRecipe {
-    /// Reads a `*.noise.json`.
+    /// Loads a `*.noise.json`.
     ///
     /// # Errors
     /// [`Error::Io`], [`Error::Json`] or [`Error::JsonField`].
@@ -51,10 +51,10 @@ impl NoiseRecipe {
         json::load(path, RECIPE_VERSION, |recipe: &Self| validate(recipe, String::new))
     }
 
-    /// Bakes the slices, below each other.
+    /// Bakes the image of slices below each other.
     ///
     /// # Errors
-    /// The first number of the recipe that is out of range.
+    /// The first field of the recipe that is out of range.
     pub fn bake(&self) -> Result<RgbaImage, FieldError> {
         validate(self, String::new)?;
         let size = self.size;
@@ -65,7 +65,7 @@ impl NoiseRecipe {
         let most = field.iter().map(|v| v.w).fold(f32::NEG_INFINITY, f32::max);
         let steepest = field.iter().map(|v| v.xyz().length()).fold(f32::MIN_POSITIVE, f32::max);
         let channel = |value: f32| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
-        // With the slices below each other, the picture's rows are in the voxels' order.
+        // With the slices below each other, the image's pixels are in the order of the voxels.
         Ok(RgbaImage::from_fn(size, size * size, |x, y| {
             let value = field[(y * size + x) as usize];
             let away = -value.xyz() / steepest * 0.5 + 0.5;
@@ -100,13 +100,13 @@ mod tests {
     }
 
     #[test]
-    fn the_gradient_points_to_where_there_is_less() {
+    fn the_gradient_points_towards_lower_density() {
         let baked = recipe().bake().unwrap();
         let volume = NoiseVolume::from_picture(Path::new("test"), &baked).unwrap();
         let mut agreeing = 0;
         for index in 0..16 * 16 * 16_u32 {
             let at = UVec3::new(index % 16, index / 16 % 16, index / 256);
-            // Central differences, wrapped round: also across the border of the tile.
+            // Central differences that wrap at the border of the tile.
             let density = |step: UVec3| volume.texel((at + step) % 16).w;
             let slope = Vec3::new(
                 density(UVec3::new(1, 0, 0)) - density(UVec3::new(15, 0, 0)),
@@ -115,7 +115,7 @@ mod tests {
             );
             agreeing += u32::from((volume.texel(at).xyz() - 0.5).dot(-slope) >= 0.0);
         }
-        // Differences over two voxels smooth the finest octave away.
+        // Not all 4096 agree: differences over two voxels blur the finest octave.
         assert!(agreeing > 3900, "{agreeing} of 4096");
     }
 }

@@ -1,4 +1,4 @@
-//! How far two pictures are apart, as a screen shows them.
+//! Image metrics: PSNR of two images as displayed.
 
 use glam::{IVec2, Vec2, Vec4, Vec4Swizzles};
 
@@ -6,23 +6,24 @@ use super::arriving::Arriving;
 use haze::assets::picture::Picture;
 use haze::formula::tonemap::developed;
 
-/// The peak signal-to-noise ratio of two pictures in sRGB code, dB; infinite where they are the same.
+/// Peak signal-to-noise ratio of two images in sRGB code, dB. Infinite if the images are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Apart {
-    /// Over all pixels.
+    /// PSNR over all pixels.
     pub psnr: f32,
-    /// Over the pixels by which the scene's depth jumps: where a reduced target is put to the test. `None` where there are none,
-    /// or depth is not known.
+    /// PSNR over the pixels near discontinuities of the scene's depth, where upsampling of a reduced target is most
+    /// difficult. `None` if there are no discontinuities or the depth is unknown.
     pub edge_psnr: Option<f32>,
 }
 
-/// Share of the depth by which an edge jumps.
+/// Minimum jump of an edge, relative to the smaller depth.
 const JUMP: f32 = 0.1;
-/// Pixels on either side of an edge that count.
+/// Distance from an edge up to which pixels count, pixels.
 const NEAR: i32 = 2;
 
 impl Apart {
-    /// Of two pictures of linear HDR of one size. `exposure` of each, 0 where it holds numbers; `depth`: the scene's view depth.
+    /// Compares two linear HDR images of equal size. `exposure` is the exposure factor of each; 0 for data, which is
+    /// not tonemapped. `depth` is the scene's view depth, metres.
     pub fn of(first: &Picture<Vec4>, second: &Picture<Vec4>, exposure: Vec2, depth: Option<&Picture<f32>>) -> Self {
         let code = |picture: &Picture<Vec4>, at: IVec2, exposure| {
             let colour = picture.load(at).xyz();
@@ -46,7 +47,7 @@ impl Apart {
     }
 }
 
-/// True if the depth jumps between any two neighbours close by.
+/// True if the depth jumps between two neighbours within [`NEAR`] pixels, horizontally or vertically.
 fn is_by_an_edge(depth: &Picture<f32>, at: IVec2) -> bool {
     let inside = |at: IVec2| at.clamp(IVec2::ZERO, depth.size.as_ivec2() - 1);
     let jumps = |a: IVec2, b: IVec2| {
@@ -59,7 +60,7 @@ fn is_by_an_edge(depth: &Picture<f32>, at: IVec2) -> bool {
     })
 }
 
-/// Two pictures on their way back from the GPU, to be compared.
+/// Pending readback of two images for comparison.
 #[derive(Clone, Debug)]
 pub struct Comparison {
     arriving: Arriving,
@@ -67,7 +68,8 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Records copies of two `Rgba16Float` pictures of one size, and of the scene's linear depth; `None` where the sizes differ.
+    /// Records copies of two `Rgba16Float` textures and of the scene's linear depth. `None` if the textures differ in
+    /// size; the depth is ignored if its size differs.
     pub fn record(
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
@@ -82,12 +84,13 @@ impl Comparison {
         is_of_one_size.then(|| Self { arriving: Arriving::record(device, encoder, &textures), exposure })
     }
 
-    /// True once they are here, or are known not to come.
+    /// True once the readback has finished or failed.
     pub fn has_arrived(&self) -> bool {
         self.arriving.has_arrived()
     }
 
-    /// Compares what has arrived, once; `None` where it did not. Takes a while for a large picture.
+    /// Compares the images. Returns `None` if the readback has not finished or has failed, and on every call after the
+    /// first. Slow for large images.
     pub fn read(&self) -> Option<Apart> {
         let bytes = self.arriving.take()?;
         let [first, second, depth @ ..] = self.arriving.parts.as_slice() else { return None };
@@ -104,23 +107,23 @@ mod tests {
     use glam::UVec2;
 
     #[test]
-    fn figures_are_those_of_the_definition() {
+    fn psnr_matches_its_definition() {
         let size = UVec2::new(20, 10);
         let (black, mut grey) = (Picture::new(size, Vec4::W), Picture::new(size, Vec4::splat(0.1)));
-        // Numbers: an error of a tenth is 20 dB.
+        // Exposure 0 means data: an error of 0.1 is 20 dB.
         fn apart(a: &Picture<Vec4>, b: &Picture<Vec4>, depth: Option<&Picture<f32>>) -> Apart {
             Apart::of(a, b, Vec2::ZERO, depth)
         }
         assert!((apart(&black, &grey, None).psnr - 20.0).abs() < 1e-3);
         assert_eq!(apart(&grey, &grey, None), Apart { psnr: f32::INFINITY, edge_psnr: None });
-        // An error at the edge only.
+        // Errors only near the edge.
         let mut depth = Picture::new(size, 5.0);
         depth.for_each(|at, depth| *depth = if at.x < 10 { 5.0 } else { 9.0 });
         grey.for_each(|at, grey| *grey = if (8..12).contains(&at.x) { Vec4::splat(0.1) } else { Vec4::W });
         let found = apart(&black, &grey, Some(&depth));
         assert!((found.edge_psnr.unwrap() - 20.0).abs() < 1e-3, "{found:?}");
         assert!((found.psnr - 20.0 - 10.0 * 5.0_f32.log10()).abs() < 1e-3, "{found:?}");
-        // Without an edge there is no figure of edges.
+        // Without an edge there is no edge PSNR.
         depth.texels.fill(5.0);
         assert_eq!(apart(&black, &grey, Some(&depth)).edge_psnr, None);
     }

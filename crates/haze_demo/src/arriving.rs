@@ -1,4 +1,4 @@
-//! Textures on their way back from the GPU, without anybody waiting.
+//! Asynchronous readback of textures from the GPU.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -7,14 +7,14 @@ use half::f16;
 
 use haze::assets::picture::Picture;
 
-/// Copies of textures in one buffer, once they have arrived.
+/// Pending readback of several textures through one buffer.
 #[derive(Clone, Debug)]
 pub(super) struct Arriving {
     pub parts: Vec<Part>,
     bytes: Arc<Mutex<Option<Vec<u8>>>>,
 }
 
-/// A texture in the buffer.
+/// Location of one texture in the buffer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Part {
     format: wgpu::TextureFormat,
@@ -23,7 +23,7 @@ pub(super) struct Part {
 }
 
 impl Part {
-    /// Texels of a layer.
+    /// Returns the size of a layer, texels.
     pub fn size(&self) -> UVec2 {
         UVec2::new(self.size.width, self.size.height)
     }
@@ -40,7 +40,7 @@ impl Part {
         u64::from(self.bytes_per_row()) * u64::from(self.size.height) * u64::from(self.size.depth_or_array_layers)
     }
 
-    /// The texels of a layer in the upper left `size`.
+    /// Decodes the upper left `size` texels of a layer.
     fn read<T: Copy + Send>(
         &self,
         bytes: &[u8],
@@ -61,7 +61,7 @@ impl Part {
         picture
     }
 
-    /// Of any of the colour formats that there are: four channels of 8 or 16 bits, or one of 16 or 32.
+    /// Decodes a colour texture: four channels of 8 or 16 bits, or one of 16 or 32 bits.
     pub fn colours(&self, bytes: &[u8], layer: u32, size: UVec2) -> Picture<Vec4> {
         let half = |texel: &[u8], channel: usize| {
             texel.get(2 * channel..2 * channel + 2).map_or(0.0, |b| f16::from_le_bytes([b[0], b[1]]).to_f32())
@@ -80,13 +80,13 @@ impl Part {
     }
 }
 
-/// A number of 32 bits.
+/// Decodes an f32.
 fn single(texel: &[u8]) -> f32 {
     f32::from_le_bytes([texel[0], texel[1], texel[2], texel[3]])
 }
 
 impl Arriving {
-    /// Records copies of textures.
+    /// Records copies of textures into a new buffer, which is mapped when the encoder's commands have run.
     pub fn record(device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder, textures: &[&wgpu::Texture]) -> Self {
         let mut parts = Vec::new();
         let mut offset = 0;
@@ -113,7 +113,7 @@ impl Arriving {
         let bytes = Arc::new(Mutex::new(None));
         let (arrived, mapped) = (bytes.clone(), buffer.clone());
         encoder.map_buffer_on_submit(&buffer, wgpu::MapMode::Read, .., move |result| {
-            // Nothing, where it could not be had: nobody is to wait for it.
+            // Empty on failure, so that `has_arrived` still becomes true.
             let view = if result.is_ok() { mapped.get_mapped_range(..).ok() } else { None };
             let bytes = view.map(|view| view.to_vec()).unwrap_or_default();
             *arrived.lock().unwrap_or_else(PoisonError::into_inner) = Some(bytes);
@@ -122,12 +122,13 @@ impl Arriving {
         Self { parts, bytes }
     }
 
-    /// True once they are here, or are known not to come: whichever submission or poll finds the GPU done brings them.
+    /// True once the readback has finished or failed. Progresses only when the device is polled or work is submitted.
     pub fn has_arrived(&self) -> bool {
         self.bytes.lock().unwrap_or_else(PoisonError::into_inner).is_some()
     }
 
-    /// What has arrived, once; `None` where it did not.
+    /// Takes the bytes. Returns `None` if the readback has not finished or has failed, and on every call after the
+    /// first success.
     pub fn take(&self) -> Option<Vec<u8>> {
         let bytes = self.bytes.lock().unwrap_or_else(PoisonError::into_inner).take()?;
         let all = self.parts.last().map_or(0, |part| part.offset + part.bytes());

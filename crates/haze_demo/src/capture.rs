@@ -1,4 +1,4 @@
-//! What a stage drew, on its way back from the GPU: the texels that tell what became of every pixel.
+//! Readback of a frame's intermediate targets, from which the pixel probe explains each pixel.
 
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
 
@@ -11,38 +11,38 @@ use haze::frame::Particle;
 use haze::settings::Settings;
 use haze_reference::{Probe, Texels, probe};
 
-/// A copy of a frame's targets, once it has arrived.
+/// Pending readback of a frame's targets.
 #[derive(Clone, Debug)]
 pub struct Capture {
     arriving: Arriving,
-    /// What its parts are: of every system, nothing where it is out of sight or forward.
+    /// Targets of every system; `None` for systems that are out of view or use the forward path.
     systems: Vec<Option<Target>>,
 }
 
-/// The part in use of a system's textures.
+/// Used part of a system's textures.
 #[derive(Clone, Copy, Debug)]
 struct Target {
     size: UVec2,
     depth_limit: f32,
     has_beside: bool,
     has_depth: bool,
-    /// Faces of baked light.
+    /// Number of cube faces of baked light.
     faces: usize,
 }
 
-/// What came back of a frame.
+/// Targets of a frame after readback.
 #[derive(Clone, Debug)]
 pub struct Captured {
-    /// The scene's depth buffer.
+    /// Depth buffer of the scene, 0..1.
     pub scene_depth: Picture<f32>,
-    /// The scene without smoke, linear HDR.
+    /// Scene colour without smoke, linear HDR.
     pub behind: Picture<Vec4>,
-    /// The systems' targets, nothing for those out of sight or forward.
+    /// Targets of the systems; `None` for systems that are out of view or use the forward path.
     pub systems: Vec<Option<Texels>>,
 }
 
 impl Capture {
-    /// Records copies of all that a frame was drawn from.
+    /// Records copies of all targets that a frame was composed from.
     pub(super) fn record(
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
@@ -66,12 +66,13 @@ impl Capture {
         Self { arriving, systems: systems.iter().map(|views| views.as_ref().map(target)).collect() }
     }
 
-    /// True once it is here, or is known not to come: whichever submission or poll finds the GPU done brings it.
+    /// True once the readback has finished or failed. Progresses only when the device is polled or work is submitted.
     pub fn has_arrived(&self) -> bool {
         self.arriving.has_arrived()
     }
 
-    /// Reads what has arrived, once; `None` where it did not.
+    /// Decodes the targets. Returns `None` if the readback has not finished or has failed, and on every call after the
+    /// first success.
     pub fn read(&self) -> Option<Captured> {
         let bytes = self.arriving.take()?;
         let mut parts = self.arriving.parts.iter();
@@ -106,13 +107,13 @@ fn rgb(picture: &Picture<Vec4>) -> Picture<Vec3> {
 }
 
 impl Captured {
-    /// With the shot that was captured: its particles are evaluated here, once for all pixels.
+    /// Combines the targets with the captured shot. Evaluates the shot's particles once for all pixels.
     pub fn of(self, shot: Shot) -> Witness {
         Witness { captured: self, systems: shot.systems(), shot }
     }
 }
 
-/// What came back of a shot, and all else that it takes to tell of its pixels.
+/// Captured targets with the shot's particles: the inputs of the pixel probe.
 #[derive(Clone, Debug)]
 pub struct Witness {
     captured: Captured,
@@ -121,15 +122,15 @@ pub struct Witness {
 }
 
 impl Witness {
-    /// The shot that it is of.
+    /// Returns the captured shot.
     pub fn shot(&self) -> &Shot {
         &self.shot
     }
 
-    /// Tells what became of some pixels.
+    /// Explains how some pixels were shaded.
     ///
     /// # Errors
-    /// As [`probe`]: when another shot was captured.
+    /// As [`probe`], if the targets belong to another shot.
     pub fn probe(&self, pixels: &[UVec2]) -> Result<Vec<Probe>, Error> {
         let Captured { scene_depth, behind, systems: texels } = &self.captured;
         let systems = self.shot.reference_systems(&self.systems);

@@ -1,4 +1,4 @@
-//! The demo scene by ray casting: colour and depth as the GPU would leave them.
+//! CPU ray caster for the demo scene: renders the same colour and depth as the GPU.
 
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
@@ -9,7 +9,7 @@ use super::shading::albedo;
 use haze::assets::picture::Picture;
 use haze::frame::View;
 
-/// Renders linear colour, four samples a pixel, and depth 0..1 at pixel centres.
+/// Renders linear colour with four samples per pixel, and depth 0..1 at pixel centres.
 pub(crate) fn render(scene: &Scene, view: &View) -> (Picture<Vec4>, Picture<f32>) {
     let caster = Caster {
         scene,
@@ -32,7 +32,7 @@ struct Caster<'a> {
     clip_from_world: Mat4,
     world_from_clip: Mat4,
     eye: Vec3,
-    /// The boxes that may be seen in each tile of the picture.
+    /// Boxes that may be visible in each tile of the image.
     tiles: Picture<Boxes>,
 }
 
@@ -48,7 +48,7 @@ fn boxes_by_tile(boxes: &[SceneBox], clip_from_world: &Mat4, size: UVec2) -> Pic
             let world = b.centre + b.to_world(Vec3::new(side(1), side(2), side(4)) * b.half_size);
             let clip = *clip_from_world * world.extend(1.0);
             let ndc = clip.xy() / clip.w;
-            // A corner at or behind the eye may be seen anywhere.
+            // A corner at or behind the eye has no projection: the box may cover any pixel.
             let is_ahead = clip.w > 1.0e-3;
             is_ahead.then(|| Vec2::new(ndc.x * 0.5 + 0.5, 0.5 - ndc.y * 0.5) * size.as_vec2())
         });
@@ -56,7 +56,7 @@ fn boxes_by_tile(boxes: &[SceneBox], clip_from_world: &Mat4, size: UVec2) -> Pic
         let (min, max) = corners.map_or((Vec2::NEG_INFINITY, Vec2::INFINITY), |corners| {
             corners.iter().fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(min, max), &p| (min.min(p), max.max(p)))
         });
-        // A pixel more on every side, for rounding.
+        // One more pixel on every side, for rounding.
         let first = ((min - 1.0) / TILE as f32).clamp(Vec2::ZERO, tiles.as_vec2()).as_uvec2();
         let last = ((max + 1.0) / TILE as f32).ceil().clamp(Vec2::ZERO, tiles.as_vec2()).as_uvec2();
         for y in first.y..last.y {
@@ -68,7 +68,7 @@ fn boxes_by_tile(boxes: &[SceneBox], clip_from_world: &Mat4, size: UVec2) -> Pic
     seen
 }
 
-/// What a ray meets.
+/// Intersection of a ray with the scene.
 struct Hit<'a> {
     surface: &'a SceneBox,
     world: Vec3,
@@ -83,7 +83,7 @@ impl Hit<'_> {
 }
 
 impl Caster<'_> {
-    /// Where a pixel is on the near plane (0) or the far plane (1), seen from the eye.
+    /// Returns the offset from the eye to a pixel's point on the near plane (0) or the far plane (1).
     fn on_plane(&self, pixel: Vec2, ndc_depth: f32) -> Vec3 {
         let uv = pixel / self.size;
         let place = self.world_from_clip * Vec4::new(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0, ndc_depth, 1.0);
@@ -94,7 +94,7 @@ impl Caster<'_> {
         self.on_plane(pixel, 1.0).normalize()
     }
 
-    /// What the ray of a place in the picture hits between near and far plane.
+    /// Returns the first hit between the near and the far plane, for a position in the image in pixels.
     fn hit(&self, pixel: Vec2) -> Option<Hit<'_>> {
         let at = pixel.as_uvec2();
         let (near, far) = (self.on_plane(pixel, 0.0), self.on_plane(pixel, 1.0));
@@ -108,7 +108,7 @@ impl Caster<'_> {
             if enter >= leave {
                 continue;
             }
-            // A box that the near plane cuts open shows its far side.
+            // If the near plane cuts a box open, its far side is visible.
             let distance = [enter, leave].into_iter().find(|distance| seen.contains(distance));
             if let Some(distance) = distance.filter(|distance| *distance < nearest) {
                 nearest = distance;
@@ -116,7 +116,7 @@ impl Caster<'_> {
             }
         }
         let (surface, local) = hit?;
-        // The face whose plane the point lies on.
+        // Finds the face on which the point lies.
         let depth = (local.abs() - surface.half_size).to_array();
         let axis = if depth[0] >= depth[1] && depth[0] >= depth[2] {
             Vec3::X
@@ -129,8 +129,8 @@ impl Caster<'_> {
         Some(Hit { surface, world: self.eye + direction * nearest, local, local_normal })
     }
 
-    /// Four samples, weighted so that one bright sample does not outshine the edge. Light falls on each of them where they
-    /// are of several faces, and once on the pixel's middle where they are of one.
+    /// Averages four samples, weighted so that a single bright sample does not dominate an edge. Light is evaluated per
+    /// sample if they lie on different faces, otherwise once at the pixel's centre.
     fn colour(&self, at: UVec2) -> Vec3 {
         const OFFSETS: [Vec2; 4] =
             [Vec2::new(0.25, 0.25), Vec2::new(0.75, 0.25), Vec2::new(0.25, 0.75), Vec2::new(0.75, 0.75)];
@@ -156,7 +156,8 @@ impl Caster<'_> {
         sum / weights
     }
 
-    /// Light on the face that was hit, where the ray meets its plane; what the sky sends where none was.
+    /// Returns the light at the point where the ray meets the plane of the face that was hit; the sky's radiance
+    /// without a hit.
     fn light(&self, hit: &Option<Hit<'_>>, direction: Vec3, pixel_angle: f32) -> Vec3 {
         let Some(Hit { surface: b, local_normal: normal, .. }) = hit else { return self.scene.sky(direction) };
         if b.surface == Surface::Glow as u32 {

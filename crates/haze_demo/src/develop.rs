@@ -1,5 +1,5 @@
-//! From linear HDR to what a screen shows: in memory, for files, and on the GPU, for windows. The library never tonemaps a host's
-//! picture; this is the demo program's own taste.
+//! Tonemapping from linear HDR to sRGB: on the CPU for files, on the GPU for windows. Only the demo program tonemaps;
+//! the library never changes a host's colours.
 
 use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use image::RgbImage;
@@ -9,7 +9,8 @@ use haze::assets::picture::Picture;
 use haze::formula::tonemap::{developed, dither};
 use haze::shader;
 
-/// Develops a rendered shot: exposure and a film curve for pictures, the bare values for data.
+/// Converts a rendered shot to 8-bit sRGB with dithering: exposure and the ACES curve for colours, unchanged values for
+/// data.
 pub fn develop(picture: &Picture<Vec4>, shot: &Shot) -> RgbImage {
     let exposure = exposure(shot);
     let mut rounded = Picture::new(picture.size, [0_u8; 3]);
@@ -17,22 +18,22 @@ pub fn develop(picture: &Picture<Vec4>, shot: &Shot) -> RgbImage {
         let colour = picture.load(at.as_ivec2()).xyz();
         *out = quantise(if exposure == 0.0 { colour } else { developed(colour, exposure) }, at);
     });
-    // A texel for every pixel, so never empty.
+    // Never the default: there is one texel per pixel.
     RgbImage::from_raw(picture.size.x, picture.size.y, rounded.texels.into_flattened()).unwrap_or_default()
 }
 
-/// What multiplies the light of a shot; 0 where the stage that is shown holds numbers.
+/// Returns the exposure factor of a shot; 0 if its debug view shows data.
 pub fn exposure(shot: &Shot) -> f32 {
     if shot.shade_tree.is_data() { 0.0 } else { shot.preset.camera.exposure.exp2() }
 }
 
-/// Rounds to 8 bits.
+/// Dithers and rounds to 8 bits.
 fn quantise(encoded: Vec3, at: UVec2) -> [u8; 3] {
-    // Rounded by the cast, which also clamps.
+    // With the added 0.5 the cast rounds; it also clamps.
     ((encoded + dither(at)) * 255.0 + 0.5).to_array().map(|channel| channel as u8)
 }
 
-/// Shows pictures on targets of one format, as [`develop`] does.
+/// Pass that tonemaps images to targets of one format, as [`develop`] does on the CPU.
 #[derive(Debug)]
 pub struct Developer {
     layout: wgpu::BindGroupLayout,
@@ -40,23 +41,23 @@ pub struct Developer {
     sampler: wgpu::Sampler,
 }
 
-/// What is shown where. `Develop` in develop.wgsl.
+/// Uniforms of the pass. `Develop` in develop.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Shown {
-    /// Upper left pixel in the target.
+    /// Upper left corner in the target, pixels.
     pub origin: Vec2,
-    /// Pixels; a picture of another size is stretched.
+    /// Size in the target, pixels. Images are stretched to it.
     pub size: Vec2,
-    /// [`exposure`] of the first picture and of the second.
+    /// [`exposure`] of the first and the second image.
     pub exposure: Vec2,
-    /// Pixels from the left from which on the second picture is shown.
+    /// Distance from the left, pixels, from which on the second image is shown.
     pub split: f32,
-    /// Multiplies the difference of the two, in sRGB code; 0: none is shown.
+    /// Factor on the difference of the two images in sRGB code. 0 shows the images instead.
     pub difference: f32,
 }
 
-/// Two pictures, bound to be shown.
+/// Bind group of two images.
 #[derive(Debug)]
 pub struct Developing {
     buffer: wgpu::Buffer,
@@ -64,9 +65,9 @@ pub struct Developing {
 }
 
 impl Developer {
-    /// For targets that hold sRGB code without the hardware knowing: not a format that ends in `Srgb`.
+    /// Creates the pass. `format` must store sRGB codes without conversion, so it must not end in `Srgb`.
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
-        // Embedded, and composed by the tests.
+        // Cannot fail: the source is embedded, and tests compose it.
         let source = shader::compose(include_str!("develop.wgsl")).unwrap_or_default();
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("develop"),
@@ -128,7 +129,7 @@ impl Developer {
         Self { layout, pipeline, sampler }
     }
 
-    /// Binds two pictures; the same twice where there is one.
+    /// Binds two images; pass a single image twice.
     pub fn bind(&self, device: &wgpu::Device, first: &wgpu::Texture, second: &wgpu::Texture) -> Developing {
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("develop"),
@@ -151,12 +152,12 @@ impl Developer {
         Developing { buffer, group }
     }
 
-    /// Says what is to be shown of the pictures in the next submission.
+    /// Writes the uniforms for the next submission.
     pub fn prepare(&self, queue: &wgpu::Queue, developing: &Developing, shown: &Shown) {
         queue.write_buffer(&developing.buffer, 0, bytemuck::bytes_of(shown));
     }
 
-    /// Shows it, within the viewport and scissor that are set.
+    /// Draws within the current viewport and scissor rectangle.
     pub fn record(&self, pass: &mut wgpu::RenderPass<'_>, developing: &Developing) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &developing.group, &[]);

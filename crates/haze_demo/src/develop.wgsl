@@ -1,16 +1,22 @@
-// Shows pictures of linear HDR on a screen: one, two side by side, or how they differ.
+// develop
+// What    Tonemaps linear HDR images: one, two side by side, or their difference.
+// Reads   two images; the same image twice to show one.
+// Writes  a target that holds sRGB code in a format without sRGB conversion.
+// Blend   none.
+// Source  Hill, "BakingLab", 2016, for the curve in lib/tonemap.wgsl.
+// Space   target pixels.
 
 #import "lib/tonemap.wgsl"
 
 struct Develop {
-    // Upper left pixel in the target, and size.
+    // Upper left corner and size in the target, pixels.
     origin: vec2f,
     size: vec2f,
-    // Multiplies the light of either picture. 0: the picture holds numbers, which are shown as they are.
+    // Exposure factor of each image. 0: the image holds data, which is shown unchanged.
     exposure: vec2f,
-    // Pixels from the left from which on the second picture is shown.
+    // Distance from the left, pixels, from which on the second image is shown.
     split: f32,
-    // Multiplies the difference of the two; 0: none is shown.
+    // Factor on the difference of the two images in sRGB code. 0 shows the images instead.
     difference: f32,
 }
 

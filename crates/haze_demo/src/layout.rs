@@ -1,4 +1,4 @@
-//! Where the boxes of the demo scenes stand. Metres; x right, y up, z to the default camera.
+//! Box layouts of the demo scenes. Metres; x right, y up, z towards the default camera.
 
 use glam::{Vec3, vec3};
 
@@ -14,7 +14,7 @@ pub(crate) fn boxes(environment: &Environment) -> Vec<SceneBox> {
     }
 }
 
-/// A box standing with the middle of its underside at `foot`.
+/// Creates a box with the centre of its underside at `foot`. `turn` is the rotation about the vertical axis, radians.
 fn standing(foot: Vec3, size: Vec3, turn: f32, colour: Vec3, surface: Surface) -> SceneBox {
     SceneBox {
         centre: foot + Vec3::Y * (0.5 * size.y),
@@ -33,7 +33,7 @@ const PLASTER: Vec3 = vec3(0.46, 0.42, 0.36);
 const PAVING: Vec3 = vec3(0.30, 0.29, 0.28);
 const IRON: Vec3 = vec3(0.06, 0.06, 0.065);
 const PAINTED: Vec3 = vec3(0.20, 0.21, 0.20);
-/// A photographer's grey card.
+/// Reflectance of a photographic grey card.
 const GREY: Vec3 = Vec3::splat(0.18);
 
 fn pillar(boxes: &mut Vec<SceneBox>, foot: Vec3, height: f32) {
@@ -47,7 +47,7 @@ fn yard(environment: &Environment) -> Vec<SceneBox> {
     let at = vec3;
     boxes.push(standing(at(0.0, -1.0, 0.0), vec3(60.0, 1.0, 60.0), 0.0, PAVING, Surface::Slabs));
 
-    // Back wall with coping and a doorway's dark recess, left wall, a house on the right.
+    // Back wall with coping, left wall with coping, and a house with window and door on the right.
     boxes.push(standing(at(0.0, 0.0, -6.4), vec3(26.0, 3.4, 0.6), 0.0, BRICK, Surface::Brick));
     boxes.push(standing(at(0.0, 3.4, -6.4), vec3(26.0, 0.18, 0.85), 0.0, STONE, Surface::Plaster));
     boxes.push(standing(at(-7.6, 0.0, -1.0), vec3(0.6, 3.0, 12.0), 0.0, PLASTER, Surface::Plaster));
@@ -56,12 +56,12 @@ fn yard(environment: &Environment) -> Vec<SceneBox> {
     boxes.push(standing(at(9.2, 5.2, -3.4), vec3(5.2, 0.3, 6.8), 0.0, BRICK, Surface::Plain));
     boxes.push(standing(at(7.18, 1.2, -2.2), vec3(0.12, 1.5, 1.1), 0.0, IRON, Surface::Plain));
     boxes.push(standing(at(7.18, 0.0, -4.6), vec3(0.12, 2.2, 1.2), 0.0, WOOD * 0.6, Surface::Wood));
-    // Roofs beyond the wall.
+    // Buildings behind the wall.
     boxes.push(standing(at(-9.0, 0.0, -24.0), vec3(9.0, 7.0, 6.0), 0.1, PAINTED, Surface::Plain));
     boxes.push(standing(at(3.0, 0.0, -30.0), vec3(12.0, 9.0, 6.0), -0.1, PAINTED, Surface::Plain));
     boxes.push(standing(at(14.0, 0.0, -22.0), vec3(7.0, 6.0, 6.0), 0.2, PAINTED, Surface::Plain));
 
-    // A pergola: pillars that carry a beam.
+    // A pergola: pillars with a beam.
     for x in [-4.4, -0.6, 3.2] {
         pillar(&mut boxes, at(x, 0.0, -3.6), 3.0);
     }
@@ -75,7 +75,7 @@ fn yard(environment: &Environment) -> Vec<SceneBox> {
     boxes.push(standing(at(4.6, 0.0, -1.6), vec3(1.2, 1.2, 1.2), 0.2, WOOD * 0.9, Surface::Wood));
     boxes.push(standing(at(5.7, 0.0, -0.9), vec3(0.8, 0.8, 0.8), -0.5, WOOD, Surface::Wood));
 
-    // A brazier that smokes.
+    // A brazier, the source of the smoke.
     if environment.brazier {
         boxes.push(standing(at(0.0, 0.0, 0.0), vec3(0.7, 0.12, 0.7), 0.3, IRON, Surface::Plain));
         boxes.push(standing(at(0.0, 0.12, 0.0), vec3(0.46, 0.36, 0.46), 0.3, IRON, Surface::Plain));
@@ -90,7 +90,7 @@ fn yard(environment: &Environment) -> Vec<SceneBox> {
         boxes.push(standing(at(1.1, 2.62, -2.4), vec3(0.36, 0.06, 0.36), 0.0, IRON, Surface::Plain));
     }
 
-    // A thin fence for hard depth edges.
+    // A thin fence, for hard depth edges.
     for rail in [0.28, 0.82] {
         boxes.push(standing(at(3.1, rail, 1.7), vec3(3.9, 0.07, 0.04), 0.0, PAINTED, Surface::Plain));
     }
@@ -105,7 +105,7 @@ fn corridor() -> Vec<SceneBox> {
     let mut boxes = Vec::new();
     let at = vec3;
     boxes.push(standing(at(0.0, -1.0, -6.0), vec3(30.0, 1.0, 40.0), 0.0, PAVING, Surface::Slabs));
-    // Right wall and vault; the left side is open between its pillars.
+    // Right wall and ceiling; the left side is open between pillars.
     boxes.push(standing(at(3.0, 0.0, -7.0), vec3(0.6, 4.4, 30.0), 0.0, BRICK, Surface::Brick));
     boxes.push(standing(at(0.0, 4.2, -7.0), vec3(6.8, 0.4, 30.0), 0.0, PLASTER, Surface::Plaster));
     boxes.push(standing(at(-2.75, 3.5, -7.0), vec3(0.7, 0.7, 30.0), 0.0, STONE, Surface::Plaster));
@@ -115,7 +115,7 @@ fn corridor() -> Vec<SceneBox> {
         boxes.push(standing(at(2.6, 0.0, z), vec3(0.3, 4.2, 0.5), 0.0, STONE, Surface::Plaster));
         boxes.push(standing(at(0.0, 3.95, z), vec3(5.6, 0.25, 0.34), 0.0, WOOD * 0.8, Surface::Wood));
     }
-    // The far wall with a door that light falls through.
+    // Far wall with a bright doorway.
     boxes.push(standing(at(-1.9, 0.0, -17.0), vec3(2.2, 4.2, 0.5), 0.0, BRICK, Surface::Brick));
     boxes.push(standing(at(1.9, 0.0, -17.0), vec3(2.2, 4.2, 0.5), 0.0, BRICK, Surface::Brick));
     boxes.push(standing(at(0.0, 2.9, -17.0), vec3(1.6, 1.3, 0.5), 0.0, BRICK, Surface::Brick));
@@ -132,7 +132,7 @@ fn corridor() -> Vec<SceneBox> {
 }
 
 fn studio() -> Vec<SceneBox> {
-    // Higher and wider than the presets' cameras see.
+    // Extends beyond the view of the presets' cameras.
     let floor = standing(vec3(0.0, -1.0, 0.0), vec3(60.0, 1.0, 60.0), 0.0, GREY, Surface::Even);
     let wall = standing(vec3(0.0, 0.0, -10.0), vec3(60.0, 16.0, 1.0), 0.0, GREY, Surface::Even);
     vec![floor, wall]
@@ -143,7 +143,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_glows_goes_with_its_prop() {
+    fn glowing_boxes_are_only_present_with_lamp_and_brazier() {
         let glowing = |lamp, brazier| {
             let boxes = boxes(&Environment { lamp, brazier, ..Environment::default() });
             boxes.iter().filter(|b| b.surface == Surface::Glow as u32).count()
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn the_studio_is_an_even_grey() {
+    fn the_studio_is_uniformly_grey() {
         let boxes = boxes(&Environment { scene: SceneName::Studio, ..Environment::default() });
         assert!(boxes.iter().all(|b| b.colour == Vec3::splat(0.18) && b.surface == Surface::Even as u32));
     }

@@ -1,5 +1,5 @@
-//! The demo scene that smoke is shown in: boxes with procedural materials, lit by the preset's lights, drawn on the GPU and
-//! on the CPU alike.
+//! Demo scene for the smoke: boxes with procedural materials, lit by the preset's lights. A GPU and a CPU renderer draw
+//! the same image.
 
 pub mod apart;
 mod arriving;

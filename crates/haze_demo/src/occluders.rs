@@ -1,7 +1,7 @@
-//! Which boxes can matter to a place of the scene: those that can stand between it and a light, and those that can take light
-//! of the sky from it. Found once for a scene and its lights, cell by cell of a grid; whoever shades a point asks only those.
+//! Grid of potential occluders: for each cell, the boxes that can shadow a light and the boxes that can occlude the
+//! sky. Built once per scene and lights; shading tests only these boxes.
 //!
-//! A box is left out only where it cannot change a thing, so the picture is the same with it or without.
+//! The grid is conservative: a box is left out only if it cannot change the result, so the image is unchanged.
 
 use glam::{UVec2, UVec3, Vec3};
 
@@ -11,24 +11,25 @@ use super::boxes::{
 use haze::assets::picture::Picture;
 use haze::formula::uniforms::LightUniform;
 
-/// Cells along x, y and z. `OCCLUDER_CELLS` in scene.wgsl.
+/// Number of cells along x, y and z. `OCCLUDER_CELLS` in scene.wgsl.
 pub(crate) const CELLS: UVec3 = UVec3::new(40, 8, 40);
-/// The corner where they begin, metres; what is outside of the grid is asked of every box. `OCCLUDER_ORIGIN` in scene.wgsl.
+/// Minimum corner of the grid, metres. Points outside the grid test every box. `OCCLUDER_ORIGIN` in scene.wgsl.
 pub(crate) const ORIGIN: Vec3 = Vec3::new(-20.0, -0.5, -24.0);
 /// Side of a cell, metres.
 const CELL: f32 = 1.0;
-/// Points on the border of a cell may be rounded across it.
+/// Margin of a cell, metres: rounding may move points on its border to the neighbour.
 const ROUNDING: f32 = 1.0e-3;
 
-/// A bit for each box.
+/// Bit mask with one bit per box.
 pub(crate) type Boxes = [u32; 4];
 const ALL: Boxes = [u32::MAX; 4];
 const _: () = assert!(MAX_BOXES <= 32 * ALL.len());
 
-/// For the sky and for every light, the boxes that matter to each cell.
+/// Occluder masks of each cell, for the sky and for every light.
 #[derive(Clone, Debug)]
 pub(crate) struct Occluders {
-    /// As the texture in scene.wgsl: x + z of a cell across; y of it, list by list, down. List 0 is the sky's.
+    /// Layout of the texture in scene.wgsl: column = x + z * [`CELLS`].x, row = list * [`CELLS`].y + y. List 0 is the
+    /// sky.
     pub masks: Picture<Boxes>,
 }
 
@@ -40,7 +41,7 @@ impl Occluders {
             let cell = UVec3::new(at.x % CELLS.x, at.y % CELLS.y, at.x / CELLS.x);
             let centre = ORIGIN + (cell.as_vec3() + 0.5) * CELL;
             let half = Vec3::splat(0.5 * CELL + ROUNDING);
-            // Nothing is shaded where there is no surface.
+            // Cells without a surface are never shaded; they keep the full mask.
             if !boxes.iter().any(|b| box_distance(b, b.to_local(centre - b.centre)).abs() <= half.length()) {
                 return;
             }
@@ -57,7 +58,7 @@ impl Occluders {
         Self { masks }
     }
 
-    /// The boxes that matter to a point: of list 0 for the sky, 1 for the first light …
+    /// Returns the occluders of a point: list 0 for the sky, 1 for the first light, and so on.
     pub fn at(&self, list: u32, point: Vec3) -> Boxes {
         let cell = ((point - ORIGIN) / CELL).floor();
         if cell.cmplt(Vec3::ZERO).any() || cell.cmpge(CELLS.as_vec3()).any() {
@@ -68,7 +69,7 @@ impl Occluders {
     }
 }
 
-/// The indices of the boxes that a mask names.
+/// Iterates over the indices below `count` that are set in a mask.
 pub(crate) fn indices(mask: Boxes, count: usize) -> impl Iterator<Item = usize> {
     let words = mask.into_iter().enumerate();
     let bits = words.flat_map(|(word, mut bits)| {
@@ -81,19 +82,19 @@ pub(crate) fn indices(mask: Boxes, count: usize) -> impl Iterator<Item = usize> 
     bits.take_while(move |&index| index < count)
 }
 
-/// True if the box can come between a light and a point of the cell, or so close to the way that it dims it.
+/// True if the box can block or, by its penumbra, dim a light at some point of the cell.
 fn can_shade(b: &SceneBox, light: &LightUniform, centre: Vec3, half: Vec3) -> bool {
     if b.surface == Surface::Glow as u32 {
         return false;
     }
     let (towards, reach, dims) = if light.directional > 0.5 {
-        // A box dims from as far off as the sun's disc is wide where the ray passes it.
+        // The penumbra at the box is as wide as the sun's disc appears at the box's distance.
         let beyond = (b.centre - centre).length() + b.half_size.length() + half.length();
         (-light.direction * SUN_DISTANCE, 1.0, (beyond * SUN_SPREAD).min(SUN_DISTANCE * SUN_SPREAD))
     } else {
         (light.position - centre, 1.0, light.radius)
     };
-    // From any point of the cell to the light: the way from its middle, past a box that is larger by half a cell.
+    // Instead of rays from every point of the cell, tests the ray from its centre against the box grown by half a cell.
     let cell =
         Vec3::new(half.x * b.cos.abs() + half.z * b.sin.abs(), half.y, half.z * b.cos.abs() + half.x * b.sin.abs());
     let grown = SceneBox { half_size: b.half_size + cell + dims.max(WIDEST_PIXEL), ..*b };
@@ -101,7 +102,7 @@ fn can_shade(b: &SceneBox, light: &LightUniform, centre: Vec3, half: Vec3) -> bo
     enter <= leave && leave >= 0.0 && enter <= reach
 }
 
-/// True if the box can be near enough to a point of the cell to take light of the sky from it.
+/// True if the box can be close enough to a point of the cell to occlude the sky.
 fn can_darken(b: &SceneBox, centre: Vec3, half: Vec3) -> bool {
     box_distance(b, b.to_local(centre - b.centre)) <= 2.0 * AMBIENT_REACH + half.length()
 }
@@ -114,7 +115,7 @@ mod tests {
     use haze::preset::Preset;
 
     #[test]
-    fn boxes_that_are_left_out_change_nothing() {
+    fn omitting_non_occluders_does_not_change_the_light() {
         for name in ["column", "corridor", "explosion"] {
             let preset = Preset::load(name).unwrap();
             let scene = Scene::new(&preset.environment, &preset.lights);
@@ -125,7 +126,7 @@ mod tests {
                     let hash = pcg3d(UVec3::new(index, salt, 3));
                     Vec3::new(unit(hash.x), unit(hash.y), unit(hash.z)) * 2.0 - 1.0
                 };
-                // A point on a face of a box.
+                // A random point on a face of a box.
                 let b = &scene.boxes[index as usize % scene.boxes.len()];
                 let (place, side) = (random(0), random(1));
                 let normal = side.signum()

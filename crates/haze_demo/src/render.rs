@@ -1,4 +1,4 @@
-//! A shot as a picture: scene and smoke, by the CPU. stage.rs has the GPU's.
+//! Renders a shot, scene and smoke, on the CPU. stage.rs does so on the GPU.
 
 use glam::{Vec3, Vec4};
 
@@ -10,10 +10,10 @@ use haze::frame::Particle;
 use haze::settings::Settings;
 
 impl Shot {
-    /// Renders on the CPU, linear HDR.
+    /// Renders the shot on the CPU. Returns linear HDR.
     ///
     /// # Errors
-    /// [`Error::Field`] when the preset was changed to something invalid.
+    /// [`Error::Field`] if the preset was changed to invalid values.
     pub fn render_on_cpu(&self) -> Result<Picture<Vec4>, Error> {
         let view = self.preset.camera.view(self.size);
         let (mut colour, depth) = cpu::render(&self.scene(), &view);

@@ -1,4 +1,4 @@
-//! The scene as data: boxes, sky and lights.
+//! Scene data: boxes, sky, lights and occluders.
 
 use glam::{Mat4, Vec3};
 
@@ -9,7 +9,7 @@ use haze::formula::uniforms::LightUniform;
 use haze::frame::Light;
 use haze::preset::Environment;
 
-/// What the scene's shader reads. `Scene` in scene.wgsl.
+/// Uniforms of the scene's shader. `Scene` in scene.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct SceneUniform {
@@ -25,12 +25,12 @@ pub(crate) struct SceneUniform {
     pub padding1: f32,
 }
 
-/// A scene, ready to be drawn by either renderer.
+/// A scene prepared for drawing on the GPU or the CPU.
 #[derive(Clone, Debug)]
 pub(crate) struct Scene {
     pub boxes: Vec<SceneBox>,
     pub environment: Environment,
-    /// World space.
+    /// Lights in world space.
     pub lights: Vec<LightUniform>,
     pub occluders: Occluders,
 }

@@ -1,10 +1,14 @@
-// The demo scene: boxes with procedural materials. src/demo/shading.rs is the same on the CPU.
+// demo scene What    Draws boxes with procedural materials: paint (reflectance and face, 2x2 samples per pixel), depth,
+// then light. Reads   scene, boxes and lights (uniforms), occluder masks; the light pass also reads paint. Writes
+// paint, depth buffer and linear view depth, scene colour (linear HDR). Blend   none. Source  Karis, "Tone mapping",
+// 2013, for the weights of the samples. Space   World space, metres, y up. src/demo/shading.rs implements the same
+// functions on the CPU.
 
 #import "lib/lighting.wgsl"
 
 struct Box {
     centre: vec3f,
-    // Turn about the vertical.
+    // Rotation about the vertical axis.
     cosine: f32,
     half_size: vec3f,
     sine: f32,
@@ -28,7 +32,8 @@ struct Scene {
 @group(0) @binding(0) var<uniform> scene: Scene;
 @group(0) @binding(1) var<uniform> boxes: array<Box, 96>;
 @group(0) @binding(2) var<uniform> lights: array<Light, 128>;
-// For the sky (list 0) and every light (from list 1), a bit for each box that matters to a cell: src/demo/occluders.rs.
+// Bit masks of the boxes that can occlude the sky (list 0) or a light (from list 1 on), per grid cell:
+// src/demo/occluders.rs.
 @group(0) @binding(3) var occluders: texture_2d<u32>;
 
 const OCCLUDER_CELLS = vec3i(40, 8, 40);
@@ -63,7 +68,7 @@ fn hash(at: vec3i) -> f32 {
     return f32(v.x >> 8u) * (1.0 / 16777216.0);
 }
 
-// 0..1.
+// Returns 0..1.
 fn value_noise(p: vec3f) -> f32 {
     let cell = floor(p);
     let f = p - cell;
@@ -86,13 +91,14 @@ fn stains(p: vec3f) -> f32 {
     return value_noise(p * 0.7) * 0.5 + value_noise(p * 2.3) * 0.3 + value_noise(p * 9.1) * 0.2;
 }
 
-// 0 on a joint between tiles of `size`, 1 on a tile.
+// Returns 0 on a joint between tiles of `size`, 1 on a tile.
 fn joints(uv: vec2f, size: vec2f, width: f32) -> f32 {
     let from_edge = (0.5 - abs(fract(uv / size) - 0.5)) * size;
     return smoothstep(0.0, width, min(from_edge.x, from_edge.y));
 }
 
-// Reflectance of a point of a box. `p` and `n` are in the box's frame, `world` tells boxes apart.
+// Returns the reflectance at a point of a box. `p` and `n` are in the box's frame; `world` makes stains differ between
+// boxes.
 fn albedo(b: Box, p: vec3f, n: vec3f, world: vec3f) -> vec3f {
     var uv = p.xy;
     if abs(n.x) > 0.5 { uv = p.zy; }
@@ -118,7 +124,7 @@ fn albedo(b: Box, p: vec3f, n: vec3f, world: vec3f) -> vec3f {
         let plank = floor(uv.y / 0.2);
         let grain = value_noise(vec3f(uv.x * 2.0, uv.y * 40.0, plank * 7.0 + b.centre.x * 3.0));
         let tone = 0.8 + 0.4 * hash(vec3i(i32(plank), i32(b.centre.x * 10.0), i32(b.centre.z * 10.0)));
-        // A frame of boards round every face of a crate.
+        // A frame of boards around every face of a crate.
         var edge = b.half_size - abs(p);
         edge = select(edge, vec3f(10.0), abs(n) > vec3f(0.5));
         let framed = smoothstep(0.09, 0.075, min(edge.x, min(edge.y, edge.z)));
@@ -132,7 +138,7 @@ fn albedo(b: Box, p: vec3f, n: vec3f, world: vec3f) -> vec3f {
     return b.colour * (0.8 + 0.4 * dirt);
 }
 
-// Distances along a ray at which it enters and leaves a box, in the box's frame.
+// Returns the distances at which a ray, in the box's frame, enters and leaves the box. Enter > leave on a miss.
 fn box_interval(b: Box, origin: vec3f, direction: vec3f) -> vec2f {
     let inverse = 1.0 / select(direction, vec3f(1.0e-6), abs(direction) < vec3f(1.0e-6));
     let middle = -origin * inverse;
@@ -147,7 +153,7 @@ fn box_distance(b: Box, p: vec3f) -> f32 {
     return length(max(q, vec3f(0.0))) + min(max(q.x, max(q.y, q.z)), 0.0);
 }
 
-// The boxes that matter to a point. Cells are a metre wide.
+// Returns the mask of potential occluders of a point. Cells are one metre wide.
 fn boxes_at(list: u32, point: vec3f) -> vec4u {
     let cell = vec3i(floor(point - OCCLUDER_ORIGIN));
     if any(cell < vec3i(0)) || any(cell >= OCCLUDER_CELLS) {
@@ -157,8 +163,9 @@ fn boxes_at(list: u32, point: vec3f) -> vec4u {
     return textureLoad(occluders, at, 0);
 }
 
-// How much of a light of angular size `spread` (radius / distance) is seen past the boxes. Rays that miss a box are
-// dimmed by how close they pass it, seen from the point: a penumbra without samples. It is as wide as a pixel, or wider.
+// Returns the visible fraction of a light of angular size `spread` (radius / distance). A ray that misses a box is
+// dimmed by its angular distance to the box, which gives a penumbra from one ray. The penumbra is at least `pixel`
+// metres wide.
 fn light_visibility(mask: vec4u, origin: vec3f, direction: vec3f, distance: f32, spread: f32, pixel: f32) -> f32 {
     var visible = 1.0;
     for (var word = 0u; word < 3u; word++) {
@@ -174,7 +181,7 @@ fn light_visibility(mask: vec4u, origin: vec3f, direction: vec3f, distance: f32,
                 if interval.y > 0.0 && interval.x < distance { return 0.0; }
                 continue;
             }
-            // The ray is nearest to the box between these two places, if it has not passed it.
+            // Approximates the closest approach by the two ends of this interval. Ends behind the origin do not count.
             let places = min(interval, vec2f(distance));
             for (var end = 0; end < 2; end++) {
                 let place = places[end];
@@ -186,7 +193,7 @@ fn light_visibility(mask: vec4u, origin: vec3f, direction: vec3f, distance: f32,
     return smoothstep(0.0, 1.0, visible);
 }
 
-// Share of the sky that the boxes leave open over a point: looks at how close they come to two points out on the normal.
+// Returns the unoccluded fraction of the sky over a point, from the boxes' distance to two points along the normal.
 fn ambient_visibility(p: vec3f, n: vec3f) -> f32 {
     let near = p + n * 0.15;
     let far = p + n * AMBIENT_REACH;
@@ -210,7 +217,7 @@ fn sky(direction: vec3f) -> vec3f {
     return mix(scene.horizon, scene.zenith, 1.0 - pow(1.0 - up, 3.0));
 }
 
-// Light on a point of a box, where a pixel is so many metres wide.
+// Returns the light at a point of a box. `pixel` is the width of a pixel there, metres.
 fn irradiance(world: vec3f, normal: vec3f, pixel: f32) -> vec3f {
     let ambient = mix(scene.ground, mix(scene.horizon, scene.zenith, 0.5), normal.y * 0.5 + 0.5);
     var light = ambient * ambient_visibility(world, normal);
@@ -225,7 +232,8 @@ fn irradiance(world: vec3f, normal: vec3f, pixel: f32) -> vec3f {
             distance = length(lights[i].position - world);
             spread = lights[i].radius / max(distance, 0.1);
         }
-        // No boxes rather than a branch: llvmpipe runs both sides of a branch, but ends a loop that nothing is in.
+        // An empty mask instead of a branch: llvmpipe executes both sides of a branch, but leaves a loop once no lane
+        // is active.
         let boxes = select(vec4u(0u), boxes_at(i + 1u, world), is_lit);
         let visible = light_visibility(boxes, origin, sample.direction, distance, spread, min(pixel, WIDEST_PIXEL));
         light += lights[i].colour * (max(facing, 0.0) * sample.attenuation * visible);
@@ -233,7 +241,7 @@ fn irradiance(world: vec3f, normal: vec3f, pixel: f32) -> vec3f {
     return light;
 }
 
-// A face looks along axis face / 2, backwards if face is even.
+// A face's normal is along axis face / 2, negative if face is even.
 fn face_normal(face: u32) -> vec3f {
     let sign = f32(face & 1u) * 2.0 - 1.0;
     return select(vec3f(0.0), vec3f(sign), vec3<bool>(face / 2u == 0u, face / 2u == 1u, face / 2u == 2u));
@@ -244,14 +252,14 @@ struct BoxVertex {
     @location(0) world: vec3f,
     @location(1) local: vec3f,
     @location(2) @interpolate(flat, either) local_normal: vec3f,
-    // Six to a box.
+    // Box index * 6 + face of the box.
     @location(3) @interpolate(flat, either) face: u32,
 }
 
-// Six faces of two triangles.
+// Draws 36 vertices per instance: six faces of two triangles.
 @vertex
 fn box_vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> BoxVertex {
-    // Small boxes are named last and drawn first: what they hide is not painted.
+    // Reverse order: small boxes come last in the list and are drawn first, so the depth test skips what they hide.
     let index = scene.box_count - 1u - instance;
     let b = boxes[index];
     let face = vertex / 6u;
@@ -271,7 +279,7 @@ fn box_vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) insta
     return BoxVertex(scene.clip_from_world * vec4f(world, 1.0), world, local, normal, index * 6u + face);
 }
 
-// Reflectance (radiance of what glows), and the face: at twice the size of the picture. Cleared to NOTHING.
+// Writes reflectance (radiance of emissive boxes) and the face, at twice the size of the image. Cleared to NOTHING.
 @fragment
 fn paint_fragment(in: BoxVertex) -> @location(0) vec4f {
     let b = boxes[in.face / 6u];
@@ -282,7 +290,7 @@ fn paint_fragment(in: BoxVertex) -> @location(0) vec4f {
     return vec4f(paint, f32(in.face));
 }
 
-// View depth, metres: w of a perspective projection.
+// Writes view depth, metres: w of a perspective projection.
 @fragment
 fn linear_fragment(in: BoxVertex) -> @location(0) vec4f {
     return vec4f((scene.clip_from_world * vec4f(in.world, 1.0)).w, 0.0, 0.0, 1.0);
@@ -295,25 +303,25 @@ fn picture_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f
 
 @group(1) @binding(0) var paint: texture_2d<f32>;
 
-// In the alpha of paint, where no box is.
+// Alpha of paint without a box.
 const NOTHING: f32 = -1.0;
 
-// The way of the ray through a place of the picture, pixels.
+// Returns the direction of the ray through a position in the image, pixels.
 fn ray_direction(place: vec2f) -> vec3f {
     let uv = place * 2.0 / vec2f(textureDimensions(paint));
     let far = scene.world_from_clip * vec4f(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0, 1.0, 1.0);
     return normalize(far.xyz / far.w - scene.eye);
 }
 
-// Where the ray meets the plane of a face.
+// Returns the point at which the ray meets the plane of a face.
 fn point_on_face(b: Box, normal: vec3f, direction: vec3f) -> vec3f {
     let origin = to_local(b, scene.eye - b.centre);
     let distance = (dot(abs(normal), b.half_size) - dot(normal, origin)) / dot(normal, to_local(b, direction));
     return scene.eye + direction * distance;
 }
 
-// Four samples for every pixel, weighted so that one bright sample does not outshine the edge (Karis, "Tone mapping", 2013).
-// Light falls on each of them where they are of several faces, and once on the pixel's middle where they are of one.
+// Averages four samples per pixel, weighted so that a single bright sample does not dominate an edge (Karis, "Tone
+// mapping", 2013). Light is evaluated per sample if they lie on different faces, otherwise once at the pixel's centre.
 @fragment
 fn light_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let first = vec2i(position.xy) * 2;

@@ -1,5 +1,5 @@
-//! The demo scene on the GPU: painted at two by two samples a pixel, then lit; depth at pixel centres, as a depth buffer and
-//! linear.
+//! GPU renderer of the demo scene. Three passes: paint (reflectance at 2x2 samples per pixel), depth (depth buffer and
+//! linear view depth at pixel centres), and light.
 
 use glam::{UVec2, Vec3};
 
@@ -16,34 +16,34 @@ pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth3
 
 pub(crate) const LINEAR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
-/// The scene's pipelines, for any number of stages of one device.
+/// Pipelines of the scene, shared by all [`Stage`](super::stage::Stage)s of a device.
 #[derive(Debug)]
 pub(crate) struct SceneRenderer {
     device: wgpu::Device,
     queue: wgpu::Queue,
     scene_layout: wgpu::BindGroupLayout,
     paint_layout: wgpu::BindGroupLayout,
-    /// Reflectance and face, two by two samples a pixel.
+    /// Writes reflectance and face at 2x2 samples per pixel.
     paint: wgpu::RenderPipeline,
-    /// Depth, and linear depth as a colour where it can be drawn.
+    /// Writes the depth buffer, and linear depth if `R32Float` is renderable.
     depth: wgpu::RenderPipeline,
-    /// Light on what is painted.
+    /// Lights the paint.
     light: wgpu::RenderPipeline,
     pub draws_linear: bool,
 }
 
-/// Colour and depth of a scene, and what it takes to draw them.
+/// Targets and buffers of a scene at one size.
 #[derive(Debug)]
 pub(crate) struct SceneTargets {
     pub colour: wgpu::Texture,
     pub depth: wgpu::TextureView,
-    /// Linear view depth, on adapters that can draw to `R32Float`.
+    /// Linear view depth, if the adapter can render to `R32Float`.
     pub linear: Option<wgpu::TextureView>,
-    /// Two by two samples a pixel.
+    /// Reflectance and face at 2x2 samples per pixel.
     paint: wgpu::TextureView,
     paint_depth: wgpu::TextureView,
     paint_group: wgpu::BindGroup,
-    /// Scene, boxes and lights.
+    /// Uniform buffers of scene, boxes and lights.
     buffers: [wgpu::Buffer; 3],
 }
 
@@ -55,7 +55,7 @@ impl SceneTargets {
 }
 
 impl SceneRenderer {
-    /// `draws_linear`: the adapter can draw to `R32Float`.
+    /// Compiles the pipelines. `draws_linear`: the adapter can render to `R32Float`.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, draws_linear: bool) -> Self {
         let source = shader::compose(include_str!("scene.wgsl")).unwrap_or_default();
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -139,7 +139,7 @@ impl SceneRenderer {
         }
     }
 
-    /// Targets of this size.
+    /// Creates targets of a size in pixels.
     pub fn targets(&self, size: UVec2) -> SceneTargets {
         let texture = |label, size, format| texture(&self.device, label, size, format);
         let target = |label, size, format| whole(&texture(label, size, format));
@@ -168,7 +168,8 @@ impl SceneRenderer {
         }
     }
 
-    /// Draws a scene, whole. One for each target in a submission.
+    /// Records all passes of a scene. At most once per targets and submission, since the uniforms are written by the
+    /// queue.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, targets: &SceneTargets, scene: &Scene, view: &View) {
         let eye = view.view_from_world.inverse().transform_point3(Vec3::ZERO);
         let uniform = scene.uniform(view.clip_from_view * view.view_from_world, eye);
@@ -234,7 +235,7 @@ impl SceneRenderer {
     }
 }
 
-/// A texture that can be drawn to, sampled and copied.
+/// Creates a texture that can be rendered to, sampled and copied.
 pub(crate) fn texture(device: &wgpu::Device, label: &str, size: UVec2, format: wgpu::TextureFormat) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
@@ -255,9 +256,9 @@ pub(crate) fn whole(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// Paint where no box is: `NOTHING` in scene.wgsl.
+/// Clear value of paint. `NOTHING` in scene.wgsl.
 const NOTHING: wgpu::Color = wgpu::Color { a: -1.0, ..wgpu::Color::TRANSPARENT };
-/// Linear depth where no box is.
+/// Clear value of linear depth.
 const NO_SURFACE: wgpu::Color = wgpu::Color { r: SKY_VIEW_DEPTH as f64, ..wgpu::Color::BLACK };
 
 fn begin<'a>(

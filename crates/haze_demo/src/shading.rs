@@ -1,4 +1,4 @@
-//! The light and the materials of the demo scene on the CPU. `scene.wgsl` is the same on the GPU, function by function.
+//! Lighting and materials of the demo scene on the CPU. `scene.wgsl` implements the same functions on the GPU.
 
 use glam::{IVec3, Vec2, Vec3, Vec3Swizzles};
 
@@ -25,7 +25,7 @@ fn hash(at: IVec3) -> f32 {
     unit(pcg3d(at.as_uvec3()).x)
 }
 
-/// 0..1.
+/// Returns 0..1.
 fn value_noise(p: Vec3) -> f32 {
     let cell = p.floor();
     let f = p - cell;
@@ -40,14 +40,15 @@ fn stains(p: Vec3) -> f32 {
     value_noise(p * 0.7) * 0.5 + value_noise(p * 2.3) * 0.3 + value_noise(p * 9.1) * 0.2
 }
 
-/// 0 on a joint between tiles of `size`, 1 on a tile.
+/// Returns 0 on a joint between tiles of `size`, 1 on a tile.
 fn joints(uv: Vec2, size: Vec2, width: f32) -> f32 {
     let place = uv / size;
     let from_edge = (0.5 - (place - place.floor() - 0.5).abs()) * size;
     smoothstep(0.0, width, from_edge.min_element())
 }
 
-/// Reflectance of a point of a box, or what it glows with. `p` and `n` are in the box's frame, `world` tells boxes apart.
+/// Returns the reflectance at a point of a box, or its radiance if it is emissive. `p` and `n` are in the box's frame;
+/// `world` makes stains differ between boxes.
 pub(crate) fn albedo(b: &SceneBox, p: Vec3, n: Vec3, world: Vec3) -> Vec3 {
     let uv = if n.x.abs() > 0.5 {
         p.zy()
@@ -95,7 +96,7 @@ pub(crate) fn albedo(b: &SceneBox, p: Vec3, n: Vec3, world: Vec3) -> Vec3 {
     b.colour * (0.8 + 0.4 * dirt)
 }
 
-/// The way from a point to a light.
+/// Ray from a point to a light.
 struct ShadowRay {
     origin: Vec3,
     direction: Vec3,
@@ -105,7 +106,7 @@ struct ShadowRay {
 }
 
 impl Scene {
-    /// How much of a light is seen past the boxes.
+    /// Returns the visible fraction of a light, 0 to 1. `pixel` is the minimum width of the penumbra, metres.
     fn light_visibility(&self, boxes: Boxes, ray: &ShadowRay, pixel: f32) -> f32 {
         let &ShadowRay { origin, direction, distance, spread } = ray;
         let mut visible = 1.0_f32;
@@ -121,7 +122,7 @@ impl Scene {
                 }
                 continue;
             }
-            // The ray is nearest to the box between these two places, if it has not passed it.
+            // Approximates the closest approach by the two ends of this interval. Ends behind the origin do not count.
             for place in [enter.min(distance), leave.min(distance)].into_iter().filter(|&place| place > 0.0) {
                 visible = visible.min(box_distance(b, o + d * place) / (place * spread).max(pixel));
             }
@@ -129,7 +130,7 @@ impl Scene {
         smoothstep(0.0, 1.0, visible)
     }
 
-    /// Share of the sky that the boxes leave open over a point.
+    /// Returns the unoccluded fraction of the sky over a point.
     fn ambient_visibility(&self, p: Vec3, n: Vec3) -> f32 {
         let (near, far) = (p + n * 0.15, p + n * AMBIENT_REACH);
         let (mut open_near, mut open_far) = (0.15_f32, AMBIENT_REACH);
@@ -140,13 +141,13 @@ impl Scene {
         mix(0.25, 1.0, saturate(open_near / 0.15)) * mix(0.35, 1.0, saturate(open_far / AMBIENT_REACH))
     }
 
-    /// Radiance of the sky in a direction.
+    /// Returns the radiance of the sky in a direction.
     pub fn sky(&self, direction: Vec3) -> Vec3 {
         let up = saturate(direction.y);
         self.environment.horizon.lerp(self.environment.zenith, 1.0 - (1.0 - up).powi(3))
     }
 
-    /// Light on a point of a box, where a pixel is so many metres wide.
+    /// Returns the light at a point of a box. `pixel` is the width of a pixel there, metres.
     pub fn irradiance(&self, world: Vec3, normal: Vec3, pixel: f32) -> Vec3 {
         let sky = self.environment.horizon.lerp(self.environment.zenith, 0.5);
         let ambient = self.environment.ground.lerp(sky, normal.y * 0.5 + 0.5);

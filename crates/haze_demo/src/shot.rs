@@ -1,4 +1,4 @@
-//! A preset with its pictures loaded: what there is to draw, whoever draws it.
+//! A preset with its images and particle files loaded, independent of the renderer.
 
 use std::path::Path;
 
@@ -12,32 +12,32 @@ use haze::preset::{PictureFolders, Preset, PresetSystem};
 use haze::settings::{Settings, ShadeTree};
 use haze_author::particle_files::{self, Cache, load_caches};
 
-/// Births of an emitter from which on it is evaluated where it is drawn.
+/// An emitter with more births than this is evaluated on the GPU.
 const MANY: u32 = 1 << 14;
 
-/// Where the particles of a system are.
+/// Source of a system's particles.
 pub(super) enum Source {
     Particles(Vec<Particle>),
     Emission(Emission),
 }
 
-/// A preset with its pictures loaded.
+/// A preset with its images and particle files loaded.
 #[derive(Clone, Debug)]
 pub struct Shot {
-    /// The preset; change it freely.
+    /// The preset. May be changed between frames.
     pub preset: Preset,
-    /// Picture size.
+    /// Image size, pixels.
     pub size: UVec2,
-    /// Which stage of the shading is shown.
+    /// The debug view that is shown.
     pub shade_tree: ShadeTree,
-    /// One per system.
+    /// Images, one entry per system.
     pub materials: Vec<MaterialAssets>,
-    /// One per system that takes its particles from files; the emitter makes them where there is none.
+    /// Particle files, one entry per system. `None` if the system uses its emitter.
     pub caches: Vec<Option<Cache>>,
 }
 
 impl Shot {
-    /// Loads a preset, built in or from a file, with its pictures and particle files.
+    /// Loads a preset, built in or from a file, with its images and particle files.
     ///
     /// # Errors
     /// As [`Preset::load`], [`Preset::load_materials`] and [`Preset::load_caches`].
@@ -46,7 +46,7 @@ impl Shot {
         Self::new(Preset::load(path)?, path, size)
     }
 
-    /// Loads the files that a preset names, which are looked for beside `path`.
+    /// Loads the files that a preset names, relative to the folder of `path`.
     ///
     /// # Errors
     /// As [`Preset::load_materials`] and [`Preset::load_caches`].
@@ -54,7 +54,7 @@ impl Shot {
         Self::from_folders(preset, path, &PictureFolders::beside(path), size)
     }
 
-    /// The same, where they are looked for in other folders.
+    /// Loads the files that a preset names from the given folders.
     ///
     /// # Errors
     /// As [`Shot::new`].
@@ -68,8 +68,8 @@ impl Shot {
         Ok(Self { preset, size, shade_tree: ShadeTree::Final, materials, caches })
     }
 
-    /// True if both give one picture, before it is developed: exposure is no part of it. Cheap, as what comes from
-    /// files is compared by where it is in memory.
+    /// True if both give the same image before tonemapping; exposure is ignored. Cheap: images and particles from files
+    /// are compared by address.
     pub fn is_same(&self, other: &Self) -> bool {
         let shares = |(a, b): (&MaterialAssets, &MaterialAssets)| a.shares(b);
         let is_same_but_exposed = || {
@@ -85,7 +85,7 @@ impl Shot {
             && Cache::all_shared(&self.caches, &other.caches)
     }
 
-    /// True if the smoke is shown in the scene; the other stages are shown on black.
+    /// True if the scene is visible. Debug views other than the final image are shown on black.
     pub(super) fn shows_scene(&self) -> bool {
         self.shade_tree == ShadeTree::Final
     }
@@ -94,7 +94,7 @@ impl Shot {
         Scene::new(&self.preset.environment, &self.preset.lights)
     }
 
-    /// Particles and settings of every system, in order.
+    /// Evaluates the particles and settings of every system, in order.
     pub(super) fn systems(&self) -> Vec<(Vec<Particle>, Settings)> {
         self.each_system(|system, cache| {
             let mut particles = Vec::new();
@@ -103,7 +103,8 @@ impl Shot {
         })
     }
 
-    /// The same for a renderer that may evaluate emitters on the GPU: those of many particles are left to it.
+    /// Returns particles and settings of every system for the GPU renderer. Emitters with many particles are not
+    /// evaluated here but on the GPU.
     pub(super) fn sources(&self) -> Vec<(Source, Settings)> {
         self.each_system(|system, cache| match particle_files::emission(system, cache, self.preset.time) {
             Some(emission) if emission.count() > MANY => Source::Emission(emission),

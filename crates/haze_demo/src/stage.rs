@@ -1,4 +1,4 @@
-//! A shot on the GPU, frame after frame: the scene is drawn when it or the camera changes, the smoke every time.
+//! Off-screen GPU renderer for shots. Draws the smoke every frame, and the scene only if it or the camera has changed.
 
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 use std::time::{Duration, Instant};
@@ -21,23 +21,24 @@ use haze::{
     read_only_depth_is_supported,
 };
 
-/// What the stages of one device share. A clone is the same.
+/// Pipelines and materials that all [`Stage`]s of a device share. A clone shares them too.
 #[derive(Clone, Debug)]
 pub struct StageContext {
     device: wgpu::Device,
     queue: wgpu::Queue,
     haze: Context,
     scene: Arc<SceneRenderer>,
-    /// What stages that are there have uploaded: pictures that several show are uploaded once.
+    /// Materials that existing renderers have uploaded. Shared images are uploaded once.
     materials: Arc<Mutex<Vec<Weak<Uploaded>>>>,
-    /// The depth buffer is attached where it need not be read, or can be all the same.
+    /// True to attach the scene's depth buffer to the smoke pass: it is not sampled there, or the device supports
+    /// read-only depth.
     tests_depth: bool,
-    /// Depth can be copied to a buffer.
+    /// True if depth can be copied to a buffer.
     copies_depth: bool,
 }
 
 impl StageContext {
-    /// Compiles the scene's shader and haze's.
+    /// Compiles the shaders of the scene and of haze.
     pub fn new(adapter: &wgpu::Adapter, device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
         let usages = adapter.get_texture_format_features(LINEAR_FORMAT).allowed_usages;
         let draws_linear = usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT);
@@ -53,20 +54,20 @@ impl StageContext {
         }
     }
 
-    /// Whether [`Stage::capture`] can copy what was drawn.
+    /// True if [`Stage::capture`] is supported.
     pub fn can_capture(&self) -> bool {
         self.copies_depth
     }
 
-    /// What measures the stages of this device; none where it cannot.
+    /// Creates timestamp queries; `None` if the device does not support them.
     pub fn timing(&self) -> Option<Timing> {
         Timing::new(&self.device, &self.queue)
     }
 
-    /// As [`Context::measure_paths`].
+    /// Same as [`Context::measure_paths`].
     ///
     /// # Errors
-    /// As there.
+    /// As [`Context::measure_paths`].
     pub fn measure_paths(
         &self,
         submit: impl FnMut(wgpu::CommandEncoder) -> Result<(), Error>,
@@ -74,14 +75,14 @@ impl StageContext {
         self.haze.measure_paths(&self.device, &self.queue, submit)
     }
 
-    /// The same with another context of haze's, of the same device: with other shaders, say.
+    /// Returns a copy with another haze [`Context`] of the same device, for example one with other shaders.
     #[must_use]
     pub fn with_haze(&self, haze: Context) -> Self {
-        // Materials are of the context that made them.
+        // Materials belong to the context that created them.
         Self { haze, materials: Arc::default(), ..self.clone() }
     }
 
-    /// The same with other shaders.
+    /// Returns a copy with other shaders.
     ///
     /// # Errors
     /// As [`Context::with_shaders`].
@@ -102,14 +103,14 @@ impl StageContext {
     }
 }
 
-/// Pictures of a system, and the same on the GPU.
+/// Images of a system in memory and on the GPU.
 #[derive(Debug)]
 struct Uploaded {
     assets: MaterialAssets,
     material: Material,
 }
 
-/// See the module.
+/// Off-screen renderer; see the module's documentation.
 #[derive(Debug)]
 pub struct Stage {
     context: StageContext,
@@ -118,34 +119,34 @@ pub struct Stage {
     set: Option<Set>,
 }
 
-/// Bytes of GPU memory that a stage holds.
+/// GPU memory of an off-screen renderer, bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StageMemory {
-    /// Of haze's renderer.
+    /// Memory of haze's renderer.
     pub smoke: MemoryUse,
-    /// Ramps and sprites, those that other stages show as well among them.
+    /// Ramps and sprites, including those shared with other renderers.
     pub materials: u64,
-    /// The scene's targets, and the pictures.
+    /// Targets of the scene, and output images.
     pub scene: u64,
 }
 
 impl StageMemory {
-    /// All of it.
+    /// Returns the total.
     pub fn total(&self) -> u64 {
         self.smoke.targets + self.smoke.buffers + self.materials + self.scene
     }
 }
 
-/// What depends on the picture's size.
+/// Resources that depend on the image size.
 #[derive(Debug)]
 struct Set {
     targets: SceneTargets,
-    /// What the targets show.
+    /// Inputs of the scene that the targets currently show.
     drawn: Option<Drawn>,
     pictures: [Option<wgpu::Texture>; ShadeTree::ALL.len()],
 }
 
-/// What a picture of the scene depends on.
+/// Inputs of the scene's image; the scene is redrawn if they change.
 #[derive(Clone, Debug, PartialEq)]
 struct Drawn {
     environment: Environment,
@@ -154,10 +155,10 @@ struct Drawn {
 }
 
 impl Stage {
-    /// An empty stage. `exact_filtering` as in [`Descriptor`].
+    /// Creates a renderer without targets. `exact_filtering` as in [`Descriptor`].
     ///
     /// # Errors
-    /// [`Error::Field`] where the device cannot draw to half floats.
+    /// [`Error::Field`] if the device cannot render to half floats.
     pub fn new(context: &StageContext, exact_filtering: bool) -> Result<Self, Error> {
         let descriptor = Descriptor {
             context: Some(&context.haze),
@@ -170,25 +171,25 @@ impl Stage {
         Ok(Self { context: context.clone(), renderer, materials: Vec::new(), set: None })
     }
 
-    /// haze's renderer of this stage.
+    /// Returns haze's renderer.
     pub fn renderer(&self) -> &Renderer {
         &self.renderer
     }
 
-    /// What the path `auto` took in the last frame, system by system: those in sight that leave it open.
+    /// Iterates over the paths chosen in the last frame, for visible systems whose path is `auto`.
     pub fn path_choices(&self) -> impl Iterator<Item = PathChoice> {
         (0..).zip(&self.materials).filter_map(|(key, _)| self.renderer.path_choice(key))
     }
 
-    /// As [`Renderer::set_timing`].
+    /// Same as [`Renderer::set_timing`].
     ///
     /// # Errors
-    /// As there.
+    /// As [`Renderer::set_timing`].
     pub fn set_timing(&mut self, timing: Option<&Timing>) -> Result<(), Error> {
         self.renderer.set_timing(timing)
     }
 
-    /// Bytes of GPU memory held.
+    /// Returns the GPU memory in use.
     pub fn memory_use(&self) -> StageMemory {
         StageMemory {
             smoke: self.renderer.memory_use(),
@@ -197,12 +198,12 @@ impl Stage {
         }
     }
 
-    /// Records a frame: the scene if anything of it is new, the smoke, and a picture of every one of `stages`. One call for each
-    /// submission.
+    /// Records a frame: the scene if it has changed, the smoke, and one output image for each of `stages`. At most one
+    /// call per submission.
     ///
     /// # Errors
-    /// [`Error::Field`] when the preset was changed to something invalid or a picture is too large for the device. The pictures
-    /// are as they were then.
+    /// [`Error::Field`] if the preset was changed to invalid values or an image is too large for the device. The output
+    /// images then keep their contents.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -253,7 +254,7 @@ impl Stage {
         for &stage in stages {
             let picture = set.pictures[stage as usize]
                 .get_or_insert_with(|| texture(device, "demo picture", size, COLOUR_FORMAT));
-            // Other stages than the picture are shown on black.
+            // Debug views other than the final image are shown on black.
             let mut load = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
             if stage == ShadeTree::Final {
                 let colour = &set.targets.colour;
@@ -280,15 +281,16 @@ impl Stage {
         Ok(())
     }
 
-    /// What was recorded last was dropped: the next frame draws all of it again.
+    /// Forces the scene to be redrawn in the next frame. Call it if the last recorded encoder was dropped without being
+    /// submitted.
     pub fn forget(&mut self) {
         self.set.iter_mut().for_each(|set| set.drawn = None);
     }
 
-    /// Compiles what a shot is drawn with.
+    /// Compiles the pipelines that a shot needs.
     ///
     /// # Errors
-    /// [`Error::Shader`] naming the pass that cannot be compiled, of a context with shaders of an author's.
+    /// [`Error::Shader`] with the name of the pass, if custom shaders cannot be compiled.
     pub fn warm_up(&self, shot: &Shot) -> Result<(), Error> {
         let settings: Vec<_> = shot.preset.systems.iter().map(|system| system.settings_for(shot.size.y)).collect();
         self.renderer.warm_up(&WarmUp {
@@ -303,13 +305,13 @@ impl Stage {
         })
     }
 
-    /// The picture of a stage as last recorded: linear HDR, `Rgba16Float`, of the shot's size.
+    /// Returns the output image of a debug view as last recorded: linear HDR, `Rgba16Float`, of the shot's size.
     pub fn picture(&self, stage: ShadeTree) -> Option<&wgpu::Texture> {
         self.set.as_ref()?.pictures[stage as usize].as_ref()
     }
 
-    /// Records a copy of what the last frame was drawn from, after it in its encoder; `None` where there was none, and on OpenGL,
-    /// which copies no depth.
+    /// Records copies of the last frame's intermediate targets, after the frame in the same encoder. `None` if no frame
+    /// was recorded, and on OpenGL, which cannot copy depth.
     pub fn capture(&self, encoder: &mut wgpu::CommandEncoder) -> Option<Capture> {
         let targets = &self.set.as_ref().filter(|_| self.context.copies_depth)?.targets;
         let systems: Vec<_> = (0..).zip(&self.materials).map(|(key, _)| self.renderer.targets(key)).collect();
@@ -317,15 +319,15 @@ impl Stage {
         Some(Capture::record(&self.context.device, encoder, scene, &systems))
     }
 
-    /// The scene's view depth, `R32Float`, metres, on devices that can draw it.
+    /// Returns the scene's view depth, `R32Float`, metres, if the device can render to it.
     pub fn linear_depth(&self) -> Option<&wgpu::Texture> {
         self.set.as_ref()?.targets.linear.as_ref().map(wgpu::TextureView::texture)
     }
 
-    /// Draws a shot's stage now, and tells how long the device took.
+    /// Draws a shot and waits for the device. Returns the time from submission to completion.
     ///
     /// # Errors
-    /// As [`record`](Self::record); [`Error::Device`] when the device failed.
+    /// As [`record`](Self::record); [`Error::Device`] if the device failed.
     pub fn draw(&mut self, gpu: &Headless, shot: &Shot) -> Result<Duration, Error> {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         self.record(&mut encoder, shot, &[shot.shade_tree])?;
@@ -334,17 +336,17 @@ impl Stage {
         Ok(start.elapsed())
     }
 
-    /// Reads a shot's stage back, linear HDR; black if it was never drawn.
+    /// Reads back the image of the shot's debug view, linear HDR. Black if it was never drawn.
     ///
     /// # Errors
-    /// [`Error::Device`] when the device failed.
+    /// [`Error::Device`] if the device failed.
     pub fn read(&self, gpu: &Headless, shot: &Shot) -> Result<Picture<Vec4>, Error> {
         let Some(picture) = self.picture(shot.shade_tree) else { return Ok(Picture::new(shot.size, Vec4::W)) };
         let size = UVec2::new(picture.width(), picture.height());
         Ok(Picture { size, texels: gpu.read_rgba16float(picture)? })
     }
 
-    /// Puts pictures on the GPU that are not there yet.
+    /// Uploads images that are not on the GPU yet.
     fn upload(&mut self, assets: &[MaterialAssets]) -> Result<(), Error> {
         self.materials.truncate(assets.len());
         for (index, assets) in assets.iter().enumerate() {

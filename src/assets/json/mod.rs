@@ -1,4 +1,4 @@
-//! JSON files with a `version`: newer ones are refused untouched, mistakes are named with line, column and field.
+//! JSON files with a `version` field. Newer versions are refused; errors name line, column and field.
 
 mod words;
 
@@ -10,10 +10,10 @@ use super::file;
 use super::picture::is_png;
 use crate::error::{Error, FieldError};
 
-/// Largest file of most kinds, bytes: a preset is some thousands.
+/// Size limit of most JSON files, bytes. A preset has a few thousand.
 pub const MAX_BYTES: u64 = 1 << 20;
 
-/// Parses `text`. `path` is only named in errors.
+/// Parses `text`. `path` is used only in errors.
 ///
 /// # Errors
 /// [`Error::Json`] with line, column and field, naming what was expected.
@@ -25,10 +25,10 @@ pub fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, Error> {
     });
     let whole = parsed.and_then(|value| json.end().map(|()| value).map_err(|error| (String::new(), error)));
     whole.map_err(|(field, error)| {
-        // serde_json ends its message with the place, which the error says already.
+        // Strips " at line …" from serde_json's message: the error has line and column already.
         let message = error.to_string();
         let message = message.rsplit_once(" at line ").map_or(message.as_str(), |(message, _)| message);
-        // Where a field is not known, its own name is no place to look at.
+        // For an unknown field, serde's path includes the unknown name; the error names its parent.
         let unknown = message.strip_prefix("unknown field `").and_then(|rest| rest.rsplit_once("`, expected "));
         let field = field.strip_suffix(unknown.map_or("", |(name, _)| name)).unwrap_or(&field).trim_end_matches('.');
         let (line, column) = (error.line().max(1), error.column().max(1));
@@ -38,7 +38,7 @@ pub fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, Error> {
     })
 }
 
-/// Parses a file whose `version` this program must know. A newer one is refused before anything else is looked at.
+/// Parses a file with a `version` from 1 to `newest`. The version is checked before any other field is parsed.
 ///
 /// # Errors
 /// [`Error::Json`].
@@ -61,10 +61,10 @@ pub fn parse_versioned<T: DeserializeOwned>(path: &Path, text: &str, newest: u32
     parse(path, text)
 }
 
-/// Reads, parses and checks a file with a version, of at most [`MAX_BYTES`].
+/// Reads, parses and validates a versioned file of at most [`MAX_BYTES`].
 ///
 /// # Errors
-/// [`Error::Io`], [`Error::Json`], or [`Error::JsonField`] for what `validate` finds.
+/// [`Error::Io`], [`Error::Json`], or [`Error::JsonField`] if `validate` fails.
 pub fn load<T: DeserializeOwned>(
     path: &Path,
     newest: u32,
@@ -78,12 +78,12 @@ pub fn load<T: DeserializeOwned>(
 /// Reads the text of a file of at most `most` bytes.
 ///
 /// # Errors
-/// [`Error::Io`], or [`Error::Json`] for what is no text.
+/// [`Error::Io`], or [`Error::Json`] if the file is not UTF-8 text.
 pub fn read(path: &Path, most: u64) -> Result<String, Error> {
     text(path, &file::read(path, "JSON file", most)?).map(str::to_owned)
 }
 
-/// The text of a file. Other encodings and pictures are named.
+/// Decodes UTF-8. The error names the kind of file if it is a PNG or UTF-16.
 fn text<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, Error> {
     let refuse = |(line, column), reason: &str| {
         Err(Error::Json { path: path.into(), line, column, reason: format!("{reason}; expected JSON as UTF-8 text") })
@@ -94,20 +94,20 @@ fn text<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, Error> {
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         return refuse((1, 1), "text in UTF-16");
     }
-    // Some editors begin a file with a byte order mark.
+    // Some editors write a byte order mark.
     let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
     std::str::from_utf8(bytes).or_else(|error| {
         let before = String::from_utf8_lossy(&bytes[..error.valid_up_to()]);
-        refuse(place(&before), "bytes that are no UTF-8 text")
+        refuse(place(&before), "not UTF-8")
     })
 }
 
-/// Line and column, 1-based, of what follows `before`.
+/// Returns the 1-based line and column of the position after `before`.
 fn place(before: &str) -> (usize, usize) {
     (before.matches('\n').count() + 1, before.len() - before.rfind('\n').map_or(0, |at| at + 1) + 1)
 }
 
-/// Line and column, 1-based, of the first occurrence of a key.
+/// Returns the 1-based line and column of the first occurrence of `key`.
 fn place_of(text: &str, key: &str) -> (usize, usize) {
     place(&text[..text.find(key).unwrap_or(0)])
 }
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_say_where_and_what_would_be_right() {
+    fn errors_name_the_position_and_the_expected_value() {
         parse_versioned::<Sample>(Path::new("a.json"), "{\"version\": 1, \"boost\": 3}", 1).unwrap();
         let unknown = message("{\"version\": 1, \"boost\": 3,\n  \"bost\": 4}");
         assert!(unknown.starts_with("a.json:2:8: unknown field `bost`, expected `version` or `boost`"), "{unknown}");
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_are_said_in_plain_words() {
+    fn serde_errors_are_translated_to_plain_words() {
         #[derive(Debug, serde::Deserialize)]
         #[serde(deny_unknown_fields)]
         #[allow(dead_code, reason = "only read from files")]
@@ -166,7 +166,7 @@ mod tests {
                 r#"{"path": "rastre"}"#,
                 r#"a.json:1:17: path: "rastre" is not valid; expected one of auto, raster, tiled, forward"#,
             ),
-            (r#"{"path": 3}"#, "a.json:1:10: path: no text; expected a name in double quotes"),
+            (r#"{"path": 3}"#, "a.json:1:10: path: not a text; expected a name in double quotes"),
             (
                 r#"{"parts": [{"version": 1, "boost": []}]}"#,
                 "a.json:1:35: parts[0].boost: a list is not valid; expected a number",
@@ -181,7 +181,7 @@ mod tests {
             (r#"{"count": 1,}"#, "a.json:1:13: a comma before the closing bracket; expected none"),
             (
                 r#"{"count": .5}"#,
-                "a.json:1:11: count: no value; expected a number, a text in double quotes, a list or an object",
+                "a.json:1:11: count: not a value; expected a number, a text in double quotes, a list or an object",
             ),
             ("{count: 1}", "a.json:1:2: expected a field's name in double quotes"),
             (
@@ -201,13 +201,13 @@ mod tests {
             "{}",
             message(text)
         );
-        // However long what is found, what is expected is said.
+        // A very long value is shortened; the expected value is still printed.
         let long = said(&format!("{{\"count\": \"{}\"}}", "x".repeat(1 << 20)));
         assert!(long.len() < 300 && long.ends_with("expected a whole number, 0 to 4294967295"), "{long}");
     }
 
     #[test]
-    fn a_newer_version_is_refused_whatever_else_is_in_it() {
+    fn a_newer_version_is_refused_before_other_fields_are_parsed() {
         let newer = message("{\n  \"version\": 2, \"tint\": []}");
         assert!(newer.starts_with("a.json:2:3: version 2 is newer"), "{newer}");
         assert!(message("{\"version\": 0}").contains("expected 1 to 1"));

@@ -1,8 +1,8 @@
-//! What serde says of a JSON file, in words that need no Rust.
+//! Translates serde's error messages into words that need no knowledge of Rust.
 
 use crate::error::one_line;
 
-/// What serde_json says of syntax, and what is said instead.
+/// Messages of serde_json about syntax, and their replacements.
 const SYNTAX: &[(&str, &str)] = &[
     ("EOF while parsing a list", "the file ends inside a list; expected `]`"),
     ("EOF while parsing an object", "the file ends inside an object; expected `}`"),
@@ -11,24 +11,24 @@ const SYNTAX: &[(&str, &str)] = &[
     ("expected `:`", "expected `:` between a name and its value"),
     ("expected `,` or `]`", "expected `,` or `]` after an entry of a list"),
     ("expected `,` or `}`", "expected `,` or `}` after a field"),
-    ("expected ident", "no value; expected true, false, null, or a text in double quotes"),
-    ("expected value", "no value; expected a number, a text in double quotes, a list or an object"),
+    ("expected ident", "not a value; expected true, false, null, or a text in double quotes"),
+    ("expected value", "not a value; expected a number, a text in double quotes, a list or an object"),
     ("key must be a string", "expected a field's name in double quotes"),
     ("trailing comma", "a comma before the closing bracket; expected none"),
     ("trailing characters", "more text after the end; expected nothing"),
-    ("invalid number", "no number; expected digits, for example 0.5"),
-    ("number out of range", "too large a number"),
+    ("invalid number", "malformed number; expected digits, for example 0.5"),
+    ("number out of range", "number too large; expected at most 1.8e308"),
     ("invalid escape", "an unknown escape in a text; expected for example \\n, \\\" or \\\\"),
-    ("invalid unicode code point", "a broken escape in a text; expected \\u and four digits of a character"),
-    ("lone leading surrogate in hex escape", "a broken escape in a text; expected \\u and four digits of a character"),
-    ("unexpected end of hex escape", "a broken escape in a text; expected \\u and four digits of a character"),
+    ("invalid unicode code point", "malformed escape in a text; expected \\u and four hexadecimal digits"),
+    ("lone leading surrogate in hex escape", "malformed escape in a text; expected \\u and four hexadecimal digits"),
+    ("unexpected end of hex escape", "malformed escape in a text; expected \\u and four hexadecimal digits"),
     (
         "control character (\\u0000-\\u001F) found while parsing a string",
         "a line break, tab or control character in a text; expected an escape, for example \\n",
     ),
 ];
 
-/// What serde calls what it expected.
+/// Type names in serde's "expected …", and their replacements.
 const EXPECTED: &[(&str, &str)] = &[
     ("f32", "a number"),
     ("u32", "a whole number, 0 to 4294967295"),
@@ -38,13 +38,13 @@ const EXPECTED: &[(&str, &str)] = &[
     ("a sequence of 3 f32 values", "a list of 3 numbers"),
 ];
 
-/// Says `message`, serde_json's without the place, for the field at `path` ("" for the whole file). `rest` is the text from the
-/// place of the mistake on.
+/// Translates `message`, serde_json's error without its position, for the field at `path` ("" for the whole file).
+/// `rest` is the text from the position of the error on.
 pub fn plain(message: &str, path: &str, rest: &str) -> String {
     let said = match message {
-        // A value, and a good one elsewhere.
+        // A valid value of another type: serde_json reports it as a syntax error where an enum name is expected.
         "expected value" if rest.starts_with(|c: char| c.is_ascii_digit() || "-[tfn".contains(c)) => {
-            "no text; expected a name in double quotes".to_owned()
+            "not a text; expected a name in double quotes".to_owned()
         }
         "trailing characters" if !path.is_empty() => "too many entries; expected the list to end here".to_owned(),
         _ => lookup(SYNTAX, message)
@@ -55,7 +55,7 @@ pub fn plain(message: &str, path: &str, rest: &str) -> String {
     if path.is_empty() { said } else { format!("{}: {said}", one_line(path)) }
 }
 
-/// A value of the wrong type, or a name that is none of the right ones.
+/// Translates errors about unknown fields, unknown names and values of the wrong type; `None` for other messages.
 fn mismatch(message: &str) -> Option<String> {
     if let Some(field) = message.strip_prefix("unknown field `") {
         let (field, expected) = field.rsplit_once("`, expected ")?;
@@ -70,7 +70,7 @@ fn mismatch(message: &str) -> Option<String> {
         "sequence" => "a list".to_owned(),
         _ if kind == "invalid length " => format!("a list of {found}"),
         _ if kind == "unknown variant " => one_line(format!("{:?}", found.trim_matches('`'))),
-        // Its type comes before a value: string "x", integer `1`.
+        // serde puts the type before the value: string "x", integer `1`.
         _ => match found.find(['"', '`']) {
             Some(at) => one_line(found[at..].trim_matches('`')),
             None => one_line(found),

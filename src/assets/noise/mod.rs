@@ -1,4 +1,4 @@
-//! Noise: by formula, and baked into a tiling volume.
+//! Procedural noise, and noise baked into a tiling volume.
 
 mod volume;
 

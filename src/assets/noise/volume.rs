@@ -1,4 +1,4 @@
-//! The tiling 3D noise that fills volumetric particles: density in alpha, its inverse gradient in rgb.
+//! Tiling 3D noise for volumetric particles: density in alpha, negated density gradient in rgb.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -10,34 +10,34 @@ use crate::assets::picture::read_png;
 use crate::error::Error;
 use crate::formula::texture::Texture3d;
 
-/// Largest side in voxels: its slices below each other are as high as a picture may be.
+/// Maximum side in voxels. 64 slices of 64 rows reach the maximum image height of 4096 pixels.
 pub const MAX_SIZE: u32 = 64;
 
-/// A decoded cube of noise that repeats in every direction. Texels are rgb = inverse density gradient (it points to
-/// where there is less) / 2 + 1/2, scaled so that the steepest place is of unit length, and a = density, 8 bits each.
-/// A clone shares its texels.
+/// A decoded cube of noise that tiles in every direction. Texels have 8 bits per channel: a = density; rgb = direction
+/// towards lower density (negated gradient) / 2 + 1/2, scaled so that the steepest gradient has unit length. A clone
+/// shares its texels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoiseVolume {
     size: u32,
-    /// Slice by slice, row by row.
+    /// Texels in order of slices, then rows.
     texels: Arc<[[u8; 4]]>,
 }
 
 impl NoiseVolume {
-    /// True if both are in the same memory.
+    /// True if both share the same memory.
     pub(crate) fn shares(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.texels, &other.texels)
     }
 
-    /// Cuts a picture into slices: `size` texels wide, the slices below each other.
+    /// Cuts an image into slices: the image is `size` texels wide and has `size` slices below each other.
     ///
     /// # Errors
-    /// [`Error::Image`] when the picture is not `size` by `size` squared, `size` 1 to [`MAX_SIZE`].
+    /// [`Error::Image`] if the image is not `size` by `size`², with `size` 1 to [`MAX_SIZE`].
     pub fn from_picture(path: &Path, picture: &RgbaImage) -> Result<Self, Error> {
         let (size, height) = picture.dimensions();
         if size == 0 || size > MAX_SIZE || height != size * size {
             let reason = format!(
-                "{size}x{height} pixels are no cube; expected slices below each other, for example 32x1024 pixels, \
+                "{size}x{height} pixels are not a cube; expected slices below each other, for example 32x1024 pixels, \
                  and at most {MAX_SIZE} a side"
             );
             return Err(Error::Image { path: path.into(), reason });
@@ -45,7 +45,7 @@ impl NoiseVolume {
         Ok(Self { size, texels: picture.pixels().map(|pixel| pixel.0).collect() })
     }
 
-    /// Reads a PNG.
+    /// Loads a PNG.
     ///
     /// # Errors
     /// As [`read_png`] and [`NoiseVolume::from_picture`].
@@ -53,18 +53,18 @@ impl NoiseVolume {
         Self::from_picture(path, &read_png(path)?.to_rgba8())
     }
 
-    /// Voxels along each side.
+    /// Returns the number of voxels along each side.
     pub fn size(&self) -> u32 {
         self.size
     }
 
-    /// One texel, 0..1 in each channel.
+    /// Returns one texel, 0..1 in each channel.
     pub fn texel(&self, at: UVec3) -> Vec4 {
         let index = (at.z * self.size + at.y) * self.size + at.x;
         Vec4::from(self.texels[index as usize].map(f32::from)) / 255.0
     }
 
-    /// Bytes that the texels take.
+    /// Returns the size of the texels, bytes.
     pub(crate) fn memory(&self) -> u64 {
         size_of_val(&*self.texels) as u64
     }
@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pictures_that_are_no_cube_are_refused() {
+    fn images_that_are_not_a_cube_are_refused() {
         let refused = |width, height| {
             let picture = RgbaImage::new(width, height);
             NoiseVolume::from_picture(Path::new("fbm.png"), &picture).unwrap_err().to_string()

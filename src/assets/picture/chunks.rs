@@ -1,21 +1,21 @@
-//! The chunks of a PNG: whether the file is whole, and what it says of its colours.
+//! Reads the chunks of a PNG: checks that the file is complete and extracts its colour tags.
 
-/// What a PNG says of its colours. (PNG 3, 4.3 "Colour spaces")
+/// Colour tags of a PNG. (PNG 3, 4.3 "Colour spaces")
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ColourTags {
-    /// Code points of primaries, transfer function and matrix, and whether all codes are used.
+    /// cICP: code points of primaries, transfer function and matrix, and the full-range flag.
     pub cicp: Option<[u8; 4]>,
-    /// The name of a colour profile.
+    /// Name of the embedded ICC profile.
     pub profile: Option<String>,
-    /// Whether it is sRGB by its own words.
+    /// True if the file has an sRGB chunk.
     pub srgb: bool,
-    /// The exponent that code was made with, times 100000.
+    /// gAMA: the encoding exponent, times 100000.
     pub gamma: Option<u32>,
-    /// x and y of white, red, green and blue, times 100000.
+    /// cHRM: x and y of white, red, green and blue, times 100000.
     pub primaries: Option<[[u32; 2]; 4]>,
 }
 
-/// Reads the tags; `None` for a file that ends before its last chunk does. Decodes nothing.
+/// Reads the tags without decoding pixels. `None` if the file ends before its last chunk does.
 pub fn colour_tags(bytes: &[u8]) -> Option<ColourTags> {
     let mut rest = bytes.get(8..)?;
     let mut tags = ColourTags::default();
@@ -25,12 +25,12 @@ pub fn colour_tags(bytes: &[u8]) -> Option<ColourTags> {
         let (kind, after) = after.split_first_chunk::<4>()?;
         let length = u32::from_be_bytes(*length) as usize;
         let data = after.get(..length)?;
-        // After the data, its check sum.
+        // A 4-byte checksum follows the data.
         rest = after.get(length.checked_add(4)?..)?;
         match kind {
             b"IEND" => return Some(tags),
             b"IDAT" => has_pixels = true,
-            // Said too late.
+            // Colour chunks are only valid before the pixels.
             _ if has_pixels => {}
             b"cICP" => tags.cicp = tags.cicp.or(data.try_into().ok()),
             b"sRGB" => tags.srgb = true,

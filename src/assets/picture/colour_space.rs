@@ -1,4 +1,4 @@
-//! Pictures of colours, whatever space they are in: brought into sRGB by what the file says.
+//! Decodes PNGs of colours and converts them to sRGB by the file's colour tags.
 
 use std::path::Path;
 
@@ -12,14 +12,15 @@ use crate::assets::file;
 use crate::error::{Error, name};
 use crate::formula::colour::{linear_from_srgb, srgb_from_linear};
 
-/// Decodes a PNG of colours: a ramp or a motif. The result is sRGB and opaque.
+/// Decodes a PNG of colours, such as a ramp or a motif. The result is sRGB and opaque.
 ///
-/// Of several tags the first of cICP, iCCP, sRGB, gAMA with cHRM holds (PNG 3, 4.3); without any it is sRGB. cICP may have the
-/// primaries of sRGB, Display P3 or BT.2020 and the transfer function of sRGB, linear, 2.2 or 2.8; cHRM any primaries with
-/// the white D65; what lies beyond sRGB is clamped. A profile must be sRGB. What is transparent gives as much less light.
+/// Of several tags the first of cICP, iCCP, sRGB, gAMA with cHRM applies (PNG 3, 4.3); without tags the image is sRGB.
+/// cICP may have the primaries of sRGB, Display P3 or BT.2020 and the transfer function sRGB, linear, 2.2 or 2.8. cHRM
+/// may have any primaries with white point D65. An ICC profile must be sRGB. Colours outside sRGB are clamped.
+/// Transparent pixels are composited over black in linear light.
 ///
 /// # Errors
-/// As [`decode_png`](super::decode_png), and [`Error::Image`] for colours of another space.
+/// As [`decode_png`](super::decode_png), and [`Error::Image`] for an unsupported colour space.
 pub fn decode_colour_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Error> {
     let tags = colour_tags(bytes).unwrap_or_default();
     let space = |profile: Option<&[u8]>| {
@@ -28,7 +29,7 @@ pub fn decode_colour_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Erro
             Error::Image { path: path.into(), reason }
         })
     };
-    // Some code points the decoder takes for damage.
+    // The decoder reports some code points as a damaged file, so they are checked first.
     if is_png(bytes) && tags.cicp.is_some() {
         space(None)?;
     }
@@ -40,15 +41,16 @@ pub fn decode_colour_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Erro
 /// Reads and decodes a PNG file of colours.
 ///
 /// # Errors
-/// [`Error::Io`] when it cannot be read or is larger than 64 MiB, else as [`decode_colour_png`].
+/// [`Error::Io`] if the file cannot be read or is larger than 64 MiB, otherwise as [`decode_colour_png`].
 pub fn read_colour_png(path: &Path) -> Result<DynamicImage, Error> {
     decode_colour_png(path, &file::read(path, "PNG file", MAX_BYTES)?)
 }
 
-/// What a reader of colours does to a PNG file, or why it refuses it: nothing for one that is opaque and sRGB, said or unsaid.
+/// Returns notes about the conversions that [`decode_colour_png`] applies to a file, or why it refuses the file. Empty
+/// for an opaque sRGB image.
 ///
 /// # Errors
-/// As [`read_colour_png`], but for colours of another space.
+/// As [`read_colour_png`], except that an unsupported colour space is a note.
 pub fn colour_notes(path: &Path) -> Result<Vec<String>, Error> {
     let bytes = file::read(path, "PNG file", MAX_BYTES)?;
     let (picture, profile) = decode_with_profile(path, &bytes)?;
@@ -57,15 +59,15 @@ pub fn colour_notes(path: &Path) -> Result<Vec<String>, Error> {
         Err(found) => notes.push(format!("{found}; expected sRGB: it is refused")),
         Ok(space) => {
             if let Transfer::Power(power) = space.transfer {
-                notes.push(format!("code to the power of {power:.2} is light; expected sRGB: it is converted"));
+                notes.push(format!("gamma {power:.2}; expected sRGB: it is converted"));
             }
             if space.srgb_from_linear.is_some() {
-                notes.push("primaries of another space; expected sRGB: what is beyond is clamped".into());
+                notes.push("primaries of another colour space; expected sRGB: colours outside sRGB are clamped".into());
             }
         }
     }
     if !is_opaque(&picture) {
-        notes.push("transparent texels; expected opaque ones: they give as much less light".into());
+        notes.push("transparent texels; expected opaque ones: they are composited over black".into());
     }
     Ok(notes)
 }
@@ -74,22 +76,22 @@ fn is_opaque(picture: &DynamicImage) -> bool {
     !picture.color().has_alpha() || picture.to_rgba16().pixels().all(|pixel| pixel.0[3] == u16::MAX)
 }
 
-/// How the code of a picture becomes light.
+/// Conversion from an image's code values to linear light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Space {
     transfer: Transfer,
-    /// Linear sRGB from its own linear light, where that is another.
+    /// Matrix from the image's primaries to linear sRGB; `None` for sRGB primaries.
     srgb_from_linear: Option<DMat3>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Transfer {
     Srgb,
-    /// Light is code to this power.
+    /// Light = code ^ power.
     Power(f32),
 }
 
-/// White, red, green and blue.
+/// xy chromaticities of white, red, green and blue.
 type Primaries = [[f64; 2]; 4];
 
 const D65: [f64; 2] = [0.3127, 0.329];
@@ -98,12 +100,12 @@ const DISPLAY_P3: Primaries = [D65, [0.68, 0.32], [0.265, 0.69], [0.15, 0.06]];
 const BT2020: Primaries = [D65, [0.708, 0.292], [0.17, 0.797], [0.131, 0.046]];
 
 impl ColourTags {
-    /// The space, or what is found in its place.
+    /// Returns the colour space of the tags. The error describes an unsupported one.
     fn space(&self, profile: Option<&[u8]>) -> Result<Space, String> {
         let srgb = Space { transfer: Transfer::Srgb, srgb_from_linear: None };
         if let Some(code @ [primaries, transfer, matrix, full]) = self.cicp {
             let [a, b, c, d] = code;
-            let found = || format!("colours of the code points {a}-{b}-{c}-{d}");
+            let found = || format!("colours of the cICP code points {a}-{b}-{c}-{d}");
             let primaries = match primaries {
                 1 => SRGB,
                 9 => BT2020,
@@ -129,7 +131,7 @@ impl ColourTags {
         if self.srgb {
             return Ok(srgb);
         }
-        // An exponent of 0 says nothing.
+        // An exponent of 0 is invalid and ignored.
         let power = |&gamma: &u32| (gamma > 0).then(|| Transfer::Power(100_000.0 / gamma as f32));
         let transfer = self.gamma.as_ref().and_then(power).unwrap_or(Transfer::Srgb);
         let primaries = self.primaries.map(|primaries| primaries.map(|place| place.map(|x| f64::from(x) / 100_000.0)));
@@ -137,17 +139,17 @@ impl ColourTags {
     }
 }
 
-/// Linear sRGB from linear light of these primaries; `None` for those of sRGB.
+/// Returns the matrix from linear light of these primaries to linear sRGB; `None` for sRGB primaries.
 fn from_primaries(primaries: Primaries) -> Result<Option<DMat3>, String> {
     let far = |(a, b): (&[f64; 2], &[f64; 2])| (DVec2::from(*a) - DVec2::from(*b)).abs().max_element() > 0.002;
     if far((&primaries[0], &D65)) {
-        return Err(format!("colours whose white is {}, {}", primaries[0][0], primaries[0][1]));
+        return Err(format!("colours with the white point {}, {}", primaries[0][0], primaries[0][1]));
     }
     if !primaries.iter().zip(&SRGB).any(far) {
         return Ok(None);
     }
     let matrix = xyz_from_linear(SRGB).inverse() * xyz_from_linear(primaries);
-    if matrix.is_finite() { Ok(Some(matrix)) } else { Err("primaries that span no colours".into()) }
+    if matrix.is_finite() { Ok(Some(matrix)) } else { Err("degenerate primaries".into()) }
 }
 
 fn xyz_from_linear([white, red, green, blue]: Primaries) -> DMat3 {

@@ -1,4 +1,4 @@
-//! Files that are written whole, or left as they were.
+//! Atomic file writes: a file is written completely or left unchanged.
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
@@ -10,24 +10,24 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::error::Error;
 
-/// Writes a file beside its final place and moves it there, so that no reader sees half of it and a failed write leaves the old
-/// one, whose permissions it keeps. A link stays one, and what it points to is written. It is on the disk before it is moved: a
-/// process that is killed, or a machine without power, leaves the old file or the new one. What a killed process left beside it
-/// is removed.
+/// Writes a temporary file in the same folder and renames it to `path`. Readers never see a partial file, and a failed
+/// write leaves the old file. The new file keeps the old one's permissions. A symbolic link is followed and stays a
+/// link. The data is synced before the rename, so a killed process or a power failure leaves either the old or the new
+/// file. Temporary files that a killed process left in the folder are removed.
 ///
-/// A file that has several names, or lies in a folder where nothing can be made, is written where it is; what was in it is
-/// put back if that fails.
+/// A file with several hard links, or in a folder in which no file can be created, is overwritten in place. If that
+/// fails, the old contents are restored.
 ///
 /// # Errors
-/// [`Error::Io`] when it cannot be written.
+/// [`Error::Io`] if the file cannot be written.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     put(&followed(path), bytes).map_err(|error| Error::Io { path: path.into(), error })
 }
 
-/// Whether [`write_file`] could begin now: for those who have long work to do before. Leaves everything as it is.
+/// Checks that [`write_file`] could start now, for callers with long work before the write. Changes nothing.
 ///
 /// # Errors
-/// What the system says where it could not.
+/// The system's error, if the write could not start.
 pub fn check_file(path: &Path) -> io::Result<()> {
     let target = followed(path);
     match OpenOptions::new().write(true).open(&target) {
@@ -38,7 +38,8 @@ pub fn check_file(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Tells files apart, by whatever names: equal for two paths that lead to one file, or to one place where a file may be made.
+/// Identity of a file, independent of its path: equal for two paths to the same file, or to the same location where a
+/// file does not exist yet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FileIdentity(Identity);
 
@@ -50,7 +51,7 @@ enum Identity {
 }
 
 impl FileIdentity {
-    /// Looks at what is there now.
+    /// Determines the identity of the file that is at `path` now.
     pub fn of(path: &Path) -> Self {
         #[cfg(unix)]
         if let Ok(found) = fs::metadata(path) {
@@ -64,10 +65,10 @@ impl FileIdentity {
     }
 }
 
-/// As many links as Linux follows.
+/// Maximum number of symbolic links to follow; the limit of Linux.
 const MOST_LINKS: u32 = 40;
 
-/// Where links lead, also when nothing is there yet.
+/// Follows symbolic links. The target need not exist.
 fn followed(path: &Path) -> PathBuf {
     let mut path = path.to_path_buf();
     for _ in 0..MOST_LINKS {
@@ -95,7 +96,7 @@ fn put(path: &Path, bytes: &[u8]) -> io::Result<()> {
         if let Some(old) = old {
             fs::set_permissions(&partial, old.permissions())?;
         }
-        // Else a file system may move it before its bytes are there.
+        // Without a sync, a file system may persist the rename before the data.
         file.sync_all()?;
         fs::rename(&partial, path)
     };
@@ -110,23 +111,24 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// That a file was moved is on the disk, too, where the system can tell.
+/// Syncs the folder, so that the rename is persistent. Only on Unix.
 fn sync_folder(folder: &Path) {
     if cfg!(unix) {
-        // Some file systems have no such thing; the file is whole without.
+        // Errors are ignored: some file systems do not support it, and the file is complete without it.
         let _ = File::open(folder).and_then(|folder| folder.sync_all());
     }
 }
 
 const PARTIAL: (&str, &str) = (".haze-", ".partial");
 
-/// Removes what killed processes have left in a folder, once in the life of this one: who lives has its file locked.
+/// Removes temporary files that killed processes left in a folder, once per folder and process. Running processes hold
+/// a lock on their file.
 fn sweep(folder: &Path) {
     static SWEPT: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
     if !SWEPT.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.into()) {
         return;
     }
-    // What cannot be looked at stays, and harms nobody.
+    // Files that cannot be opened are left alone.
     for path in fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
         let is_partial =
             |name: &str| name.strip_prefix(PARTIAL.0).is_some_and(|rest| rest.strip_suffix(PARTIAL.1).is_some());
@@ -149,21 +151,21 @@ fn has_other_names(_: &Metadata) -> bool {
     false
 }
 
-/// A new file in the same folder, locked while it is open. Its name has nothing of the other's, which may be as long as names can
-/// be.
+/// Creates a temporary file in the same folder, locked while it is open. Its name does not contain the final name,
+/// which may already have the maximum length.
 fn partial_beside(path: &Path) -> io::Result<(PathBuf, File)> {
     static COUNT: AtomicU32 = AtomicU32::new(0);
     loop {
         let count = COUNT.fetch_add(1, Ordering::Relaxed);
         let partial = path.with_file_name(format!("{}{}-{count}{}", PARTIAL.0, std::process::id(), PARTIAL.1));
         let file = match OpenOptions::new().write(true).create_new(true).open(&partial) {
-            // Left by another process, long gone.
+            // Left by a process that no longer runs.
             Err(error) if error.kind() == ErrorKind::AlreadyExists => continue,
             made => made?,
         };
-        // Where there are no locks nothing is swept.
+        // If the file system has no locks, `sweep` removes nothing.
         let _ = file.lock();
-        // Another process may have swept it before it was locked.
+        // Another process may have removed it before it was locked.
         if partial.exists() {
             return Ok((partial, file));
         }
@@ -189,7 +191,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_are_told_apart_by_where_they_are() {
+    fn missing_files_are_identified_by_their_location() {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
         fs::create_dir(path("in")).unwrap();
@@ -201,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn checking_leaves_everything_as_it_is() {
+    fn checking_a_file_changes_nothing() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         check_file(&path).unwrap();
@@ -213,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn names_as_long_as_they_can_be_are_written_again_and_again() {
+    fn a_file_name_of_the_maximum_length_can_be_written_repeatedly() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(format!("{}.png", "n".repeat(251)));
         for text in ["first", "second"] {
@@ -224,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_killed_process_left_is_removed_and_what_another_writes_stays() {
+    fn stale_temporary_files_are_removed_and_locked_ones_stay() {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
         for name in [".haze-1-0.partial", ".haze-1-1.partial", ".haze-1.png", "haze-1-2.partial"] {
@@ -240,12 +242,12 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn links_modes_and_other_names_are_kept() {
+    fn symbolic_links_permissions_and_hard_links_are_preserved() {
         use std::os::unix::fs::{PermissionsExt, symlink};
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
         let read = |name: &str| fs::read_to_string(path(name)).unwrap();
-        // A link to a link to nothing yet: what it points to is made.
+        // A link to a link to a missing file: the missing file is created.
         fs::create_dir(path("in")).unwrap();
         symlink("in/b.png", path("a.png")).unwrap();
         symlink("../c.png", path("in/b.png")).unwrap();

@@ -1,4 +1,4 @@
-//! Pictures in memory, and threads over their rows; PNG in and out.
+//! Images in memory with parallel iteration over rows, and reading and writing of PNG files.
 
 mod chunks;
 mod colour_space;
@@ -16,7 +16,7 @@ use glam::{IVec2, UVec2, Vec3, Vec4};
 use crate::assets::threads::{on_all_processors, threads};
 use crate::formula::texture::Texture2d;
 
-/// A rectangle of texels, row by row from the top.
+/// A 2D image, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture<T> {
     /// Width and height.
@@ -26,12 +26,12 @@ pub struct Picture<T> {
 }
 
 impl<T: Copy + Send> Picture<T> {
-    /// A picture of one colour.
+    /// Creates an image filled with `texel`.
     pub fn new(size: UVec2, texel: T) -> Self {
         Self { size, texels: vec![texel; (size.x * size.y) as usize] }
     }
 
-    /// The texel at a place inside the picture; places outside are clamped to the border.
+    /// Returns the texel at a position. Positions outside are clamped to the border.
     pub fn load(&self, at: IVec2) -> T {
         let at = at.clamp(IVec2::ZERO, self.size.as_ivec2() - 1).as_uvec2();
         self.texels[(at.y * self.size.x + at.x) as usize]
@@ -40,7 +40,7 @@ impl<T: Copy + Send> Picture<T> {
     /// Calls `f(first_row, rows)` for bands of rows, on all processors.
     pub fn for_bands(&mut self, f: impl Fn(u32, &mut [T]) + Sync) {
         let width = self.size.x as usize;
-        // More bands than threads: smoke is rarely spread evenly.
+        // More bands than threads, since smoke is rarely distributed evenly.
         let rows = (self.size.y as usize).div_ceil(threads() * 4).max(1);
         on_all_processors(self.texels.chunks_mut(rows * width).enumerate(), |(index, band)| {
             f((index * rows) as u32, band);

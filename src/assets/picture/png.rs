@@ -1,4 +1,4 @@
-//! PNG in and out, with the limits that any file from outside must respect.
+//! Reads and writes PNG files, with size limits for files from users.
 
 use std::io::{Cursor, ErrorKind};
 use std::path::Path;
@@ -12,36 +12,37 @@ use crate::assets::file;
 use crate::assets::threads::on_all_processors;
 use crate::error::Error;
 
-/// Largest side of a picture that is read, pixels.
+/// Maximum side of an image, pixels.
 pub const MAX_SIDE: u32 = 4096;
-/// Most bytes of a PNG file, and most memory that its decoded pixels may take.
+/// Maximum size of a PNG file, and of its decoded pixels, bytes.
 pub const MAX_BYTES: u64 = 64 << 20;
 
-/// Three times as fast as the best there is, and 3 % larger.
+/// Three times as fast as the best compression, for files 3 % larger.
 const SMALL: CompressionType = CompressionType::Level(6);
 
 const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
-/// True for a file that begins as a PNG does.
+/// True if the data begins with the PNG signature.
 pub fn is_png(bytes: &[u8]) -> bool {
     bytes.starts_with(SIGNATURE)
 }
 
-/// Decodes a PNG held in memory. `path` is only named in errors.
+/// Decodes a PNG in memory. `path` is used only in errors.
 ///
 /// # Errors
-/// [`Error::Image`] for a broken file, one that is no PNG, or one beyond 4096 pixels a side or 64 MiB once decoded.
+/// [`Error::Image`] if the data is damaged, not a PNG, larger than 4096 pixels per side, or larger than 64 MiB when
+/// decoded.
 pub fn decode_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Error> {
     decode_with_profile(path, bytes).map(|(picture, _)| picture)
 }
 
-/// The same with its colour profile.
+/// Decodes a PNG and returns the image with its ICC profile.
 pub(super) fn decode_with_profile(path: &Path, bytes: &[u8]) -> Result<(DynamicImage, Option<Vec<u8>>), Error> {
     let refuse = |reason: String| Err(Error::Image { path: path.into(), reason });
     if !is_png(bytes) {
         return refuse("not a PNG file; export it as PNG".into());
     }
-    // A PNG begins with its header, and that with width and height.
+    // The first chunk is the header, which begins with width and height.
     let side = |at: usize| bytes.get(at..at + 4).and_then(|side| side.try_into().ok()).map(u32::from_be_bytes);
     let (Some(width), Some(height)) = (side(16), side(20)) else { return refuse(broken(None)) };
     if width.max(height) > MAX_SIDE {
@@ -56,7 +57,7 @@ pub(super) fn decode_with_profile(path: &Path, bytes: &[u8]) -> Result<(DynamicI
         Ok(decoder) => decoder,
         Err(error) => return refuse(broken(Some(&error))),
     };
-    // The decoder's own limit leaves out the picture that it decodes into.
+    // The decoder's own limit does not count the decoded image.
     let (decoded, most) = (decoder.total_bytes(), MAX_BYTES >> 20);
     if decoded > MAX_BYTES {
         let texel = decoded / (u64::from(width) * u64::from(height));
@@ -65,7 +66,7 @@ pub(super) fn decode_with_profile(path: &Path, bytes: &[u8]) -> Result<(DynamicI
             decoded >> 20
         ));
     }
-    // A profile that cannot be read is none.
+    // A profile that cannot be decoded is ignored.
     let profile = decoder.icc_profile().unwrap_or_default();
     match DynamicImage::from_decoder(decoder) {
         Ok(picture) => Ok((picture, profile)),
@@ -73,7 +74,7 @@ pub(super) fn decode_with_profile(path: &Path, bytes: &[u8]) -> Result<(DynamicI
     }
 }
 
-/// What is wrong with a PNG. The decoder's own words are for those who know its code.
+/// Returns a message about a damaged PNG. The decoder's own messages assume knowledge of its code.
 fn broken(error: Option<&ImageError>) -> String {
     let most = MAX_BYTES >> 20;
     match error {
@@ -87,25 +88,25 @@ fn broken(error: Option<&ImageError>) -> String {
 /// Reads and decodes a PNG file.
 ///
 /// # Errors
-/// [`Error::Io`] when it cannot be read or is larger than 64 MiB, else as [`decode_png`].
+/// [`Error::Io`] if the file cannot be read or is larger than 64 MiB, otherwise as [`decode_png`].
 pub fn read_png(path: &Path) -> Result<DynamicImage, Error> {
     decode_png(path, &file::read(path, "PNG file", MAX_BYTES)?)
 }
 
-/// How long to look for a smaller file.
+/// Compression effort.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Effort {
-    /// Fifteen times as fast, half as large again.
+    /// Fifteen times as fast as [`Effort::Small`], for files 1.5 times as large.
     #[default]
     Quick,
-    /// Small: for files that are kept and shipped.
+    /// Small files, for images that are kept or shipped.
     Small,
 }
 
 /// Writes a PNG as [`write_file`] does.
 ///
 /// # Errors
-/// [`Error::Io`] when it cannot be written.
+/// [`Error::Io`] if the file cannot be written.
 pub fn write_png(path: &Path, picture: &DynamicImage, effort: Effort) -> Result<(), Error> {
     let encoded = |compression, filter| -> Result<Vec<u8>, Error> {
         let mut bytes = Vec::new();
@@ -117,7 +118,7 @@ pub fn write_png(path: &Path, picture: &DynamicImage, effort: Effort) -> Result<
     let bytes = match effort {
         Effort::Quick => encoded(CompressionType::Fast, FilterType::Adaptive)?,
         Effort::Small => {
-            // Which is smaller is found by trying.
+            // Encodes with both filters and keeps the smaller file.
             let mut tries = [FilterType::Adaptive, FilterType::Paeth].map(|filter| (filter, Ok(Vec::new())));
             on_all_processors(tries.iter_mut(), |(filter, bytes)| *bytes = encoded(SMALL, *filter));
             let [adaptive, paeth] = tries.map(|(_, bytes)| bytes);
@@ -133,12 +134,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bad_pictures_are_one_error_that_names_the_file() {
+    fn damaged_pngs_are_refused_with_the_file_name() {
         let path = Path::new("ramps/broken.png");
         let message = |bytes: &[u8]| decode_png(path, bytes).unwrap_err().to_string();
         assert!(message(b"GIF89a").starts_with("ramps/broken.png: not a PNG"));
         assert!(message(b"\x89PNG\r\n\x1a\n garbage").starts_with("ramps/broken.png: "));
-        // A header that promises 100000 x 100000 pixels is refused before anything is allocated.
+        // A header with 100000 x 100000 pixels is refused before memory is allocated.
         let mut huge = Vec::new();
         DynamicImage::new_rgb8(1, 1).write_to(&mut Cursor::new(&mut huge), image::ImageFormat::Png).unwrap();
         huge[16..20].copy_from_slice(&100_000_u32.to_be_bytes());
@@ -147,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_that_is_cut_anywhere_is_refused() {
+    fn a_truncated_png_is_refused() {
         let mut whole = Vec::new();
         let picture = image::RgbImage::from_fn(16, 2, |x, y| image::Rgb([(x * 16) as u8, y as u8, (x * y) as u8]));
         picture.write_to(&mut Cursor::new(&mut whole), image::ImageFormat::Png).unwrap();
@@ -159,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn a_failed_write_leaves_nothing_behind() {
+    fn a_failed_write_leaves_no_temporary_files() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("missing").join("a.png");
         assert!(write_png(&path, &DynamicImage::new_rgb8(2, 2), Effort::Quick).is_err());

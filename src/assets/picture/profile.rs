@@ -1,8 +1,8 @@
-//! Colour profiles: whether one says sRGB. (ICC.1:2022)
+//! Checks whether an ICC profile is sRGB. (ICC.1:2022)
 
 use crate::formula::colour::srgb_from_linear;
 
-/// True for a profile of RGB or grey whose colours are those of sRGB to a step and a half of 255.
+/// True if an RGB or grey profile has the primaries and the transfer curve of sRGB, within 1.5 steps of 255.
 pub fn is_srgb(profile: &[u8]) -> bool {
     let curves_fit = |names: &[&[u8; 4]]| {
         names.iter().all(|name| {
@@ -17,7 +17,7 @@ pub fn is_srgb(profile: &[u8]) -> bool {
     };
     match profile.get(16..20) {
         Some(b"RGB ") => {
-            // Red, green and blue of sRGB seen in the light D50.
+            // XYZ of sRGB's red, green and blue, adapted to D50.
             let primaries = [
                 (b"rXYZ", [0.436, 0.222_5, 0.013_9]),
                 (b"gXYZ", [0.385_1, 0.716_9, 0.097_1]),
@@ -34,10 +34,10 @@ pub fn is_srgb(profile: &[u8]) -> bool {
     }
 }
 
-/// The data of a tag.
+/// Returns the data of a tag.
 fn tag<'a>(profile: &'a [u8], name: &[u8; 4]) -> Option<&'a [u8]> {
     let count = word(profile, 128)?;
-    // A profile has some tens; each entry has a name, a place and a length.
+    // Profiles have some tens of tags. Each entry has a name, an offset and a length.
     let mut entries = profile.get(132..)?.as_chunks::<12>().0.iter().take(count.min(1000));
     let entry = entries.find(|entry| entry.starts_with(name))?;
     let (place, length) = (word(entry, 4)?, word(entry, 8)?);
@@ -48,13 +48,13 @@ fn word(bytes: &[u8], at: usize) -> Option<usize> {
     bytes.get(at..at + 4)?.try_into().ok().map(|word| u32::from_be_bytes(word) as usize)
 }
 
-/// Numbers of 16 bits before and 16 after the point.
+/// Parses s15Fixed16 numbers: 16 bits before and 16 bits after the binary point.
 fn fixed<const N: usize>(bytes: &[u8]) -> Option<[f32; N]> {
     let words: [[u8; 4]; N] = bytes.get(..4 * N)?.as_chunks().0.try_into().ok()?;
     Some(words.map(|word| i32::from_be_bytes(word) as f32 / 65536.0))
 }
 
-/// Code 0..1 to light, by a curve that is a table, an exponent or a formula.
+/// Converts a code, 0..1, to light by a curve: a table, an exponent or a parametric formula.
 fn decode(curve: &[u8], code: f32) -> Option<f32> {
     let data = curve.get(12..)?;
     match (curve.get(..4)?, word(curve, 8)?) {
@@ -70,7 +70,7 @@ fn decode(curve: &[u8], code: f32) -> Option<f32> {
             Some(entry(low)? * (1.0 - part) + entry((low + 1).min(count - 1))? * part)
         }
         (b"para", 0) => fixed(data).map(|[exponent]| code.powf(exponent)),
-        // sRGB's own form: straight near black.
+        // The form of sRGB's curve: linear near black.
         (b"para", kind) if kind >> 16 == 3 => {
             fixed(data).map(|[exponent, a, b, c, d]| if code >= d { (a * code + b).powf(exponent) } else { c * code })
         }

@@ -1,4 +1,5 @@
-//! Ramps: the small textures that an artist paints the light with. `ramps/README.md` has axes, sizes and colour space.
+//! Ramps: small lookup textures for lighting that an artist can paint. `ramps/README.md` describes axes, sizes and
+//! colour space.
 
 mod role;
 
@@ -16,7 +17,7 @@ use crate::error::Error;
 use crate::formula::colour::linear_from_srgb;
 use crate::formula::texture::Texture2d;
 
-/// A decoded ramp: linear RGB, half floats as the GPU holds them. One row for a 1D ramp. A clone shares its texels.
+/// A decoded ramp: linear RGB in half floats, as on the GPU. A 1D ramp has one row. A clone shares its texels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ramp {
     size: UVec2,
@@ -24,7 +25,7 @@ pub struct Ramp {
 }
 
 impl Ramp {
-    /// Builds a ramp from linear colours, row by row, the row for 0 first.
+    /// Builds a ramp from linear colours, row by row, starting with row 0 of the second axis.
     ///
     /// # Panics
     /// Never: missing texels are black, surplus ones are dropped.
@@ -39,8 +40,8 @@ impl Ramp {
         Self { size, texels: texels.into() }
     }
 
-    /// Decodes an sRGB picture, 8 or 16 bits a channel; alpha is for who decodes it
-    /// ([`decode_colour_png`](crate::picture::decode_colour_png)). The bottom row is 0 on the second axis.
+    /// Converts an sRGB image of 8 or 16 bits per channel. Alpha is ignored;
+    /// [`decode_colour_png`](crate::picture::decode_colour_png) applies it. The bottom row is 0 on the second axis.
     pub fn from_picture(picture: &DynamicImage) -> Self {
         let pixels = picture.to_rgb16();
         let size = UVec2::new(pixels.width(), pixels.height());
@@ -49,7 +50,7 @@ impl Ramp {
         Self::from_linear(size, colours)
     }
 
-    /// Reads a PNG.
+    /// Loads a PNG.
     ///
     /// # Errors
     /// As [`read_colour_png`].
@@ -57,27 +58,27 @@ impl Ramp {
         Ok(Self::from_picture(&read_colour_png(path)?))
     }
 
-    /// Texels.
+    /// Returns the size, texels.
     pub fn size(&self) -> UVec2 {
         self.size
     }
 
-    /// Linear RGB of a texel; y counts from the row for 0.
+    /// Returns the linear RGB of a texel; y counts from row 0 of the second axis.
     pub fn texel(&self, at: UVec2) -> Vec3 {
         self.load(at).truncate()
     }
 
-    /// True if both are in the same memory.
+    /// True if both share the same memory.
     pub fn shares(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.texels, &other.texels)
     }
 
-    /// Bytes that the texels take.
+    /// Returns the size of the texels, bytes.
     pub fn memory(&self) -> u64 {
         size_of_val(&*self.texels) as u64
     }
 
-    /// The texels as they are uploaded: `Rgba16Float`, the row for 0 first.
+    /// Returns the texels for upload: `Rgba16Float`, row 0 of the second axis first.
     pub fn bytes(&self) -> Vec<u8> {
         self.texels.iter().flatten().flat_map(|channel| channel.to_le_bytes()).collect()
     }

@@ -1,4 +1,4 @@
-//! Where a sprite is not clear: what neither path need draw of its square.
+//! Bounds of a sprite's non-zero alpha, per frame and mip level. Both paths skip the clear parts of a sprite's square.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{UVec2, Vec4};
@@ -6,27 +6,29 @@ use glam::{UVec2, Vec4};
 use super::Sprite;
 use crate::formula::sprite::FlipbookFrames;
 
-/// Of a frame at a mip level, as bilinear lookups find it. `filled_texel()` in `shaders/lib/sprite_vertex.wgsl`.
+/// Alpha bounds of a frame at a mip level, including the footprint of bilinear filtering. Read by `filled_texel()` in
+/// `shaders/lib/sprite_vertex.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 struct FilledTexel {
-    /// Which of eight by eight cells there is an amount in: a bit for each, row by row from the top, the first in the lowest bit.
+    /// Bit mask of 8 by 8 cells: a bit is set if its cell has any amount. Row by row from the top, first cell in the
+    /// lowest bit.
     cells: u64,
-    /// How far from the middle there is any, as a share of half the side: left, down, right, up.
+    /// Extent of the amount from the middle, left, down, right and up: 255 is half a side.
     reach: [u8; 4],
     padding: u32,
 }
 
-/// Of all frames of a sprite, and all its mip levels.
+/// Alpha bounds of all frames and mip levels of a sprite.
 #[derive(Debug)]
 pub struct Filled {
     level_count: u32,
-    /// Frame by frame.
+    /// Entries frame by frame, each with all mip levels.
     texels: Vec<FilledTexel>,
 }
 
 impl Filled {
-    /// `after`: six-way maps, whose frames come after the sprite's.
+    /// Computes the bounds of `sprite`, followed by those of `after`: its six-way maps.
     pub fn new(sprite: &Sprite, after: Option<&Sprite>) -> Self {
         let frames = std::iter::once(sprite).chain(after);
         let frames = frames.flat_map(|sprite| (0..sprite.frame_count()).map(move |frame| (sprite, frame)));
@@ -35,7 +37,7 @@ impl Filled {
         Self { level_count: sprite.level_count(), texels: texels.collect() }
     }
 
-    /// Mip levels and frames.
+    /// Returns the number of mip levels (x) and frames (y).
     pub fn size(&self) -> UVec2 {
         UVec2::new(self.level_count, self.texels.len() as u32 / self.level_count)
     }
@@ -44,7 +46,8 @@ impl Filled {
         bytemuck::cast_slice(&self.texels)
     }
 
-    /// How far sprites of these frames reach from their middles, as a share of half a side: left, down, right, up.
+    /// Returns the extent of the amount from the middle in half sides: left, down, right, up. Covers both blended
+    /// frames.
     pub fn reach(&self, frames: FlipbookFrames, lod: f32) -> Vec4 {
         let level = (lod as u32).min(self.level_count - 1);
         let reach = |frame: i32| {
@@ -59,7 +62,7 @@ impl Filled {
 fn filled_texel(sprite: &Sprite, level: u32, frame: u32) -> FilledTexel {
     const CELLS: f32 = 8.0;
     let size = sprite.level_size(level);
-    // A texel is found up to half of one further on, and a little for the sampler's rounding.
+    // Bilinear filtering extends a texel by half a texel; 0.05 more allows for the sampler's rounding.
     let found = |texel: u32| [texel as f32 - 0.55, texel as f32 + 1.55].map(|place| place / size as f32);
     let cells = |texel: u32| found(texel).map(|place| (place * CELLS).clamp(0.0, CELLS - 1.0) as u64);
     let columns: Vec<u64> = (0..size)
@@ -105,21 +108,21 @@ mod tests {
     }
 
     #[test]
-    fn cells_are_filled_as_far_as_a_lookup_reaches() {
+    fn cells_include_the_footprint_of_bilinear_filtering() {
         let cells = |sprite: &Sprite, level, frame| filled_texel(sprite, level, frame).cells;
         let one = sprite(64, 2, (32 + 14, 21));
         assert_eq!(cells(&one, 0, 0), 0);
-        // Texels 13.5 to 15.5 across and 20.5 to 22.5 down, four to a cell.
+        // The footprint is texels 13.5 to 15.5 across and 20.5 to 22.5 down; a cell has four texels.
         assert_eq!(cells(&one, 0, 1), 1 << (8 * 5 + 3));
         let beside = sprite(32, 1, (12, 21));
         assert_eq!(cells(&beside, 0, 0), 0b1100 << (8 * 5));
-        // A cell is a texel at level 2, and a quarter of one, each way, at level 4.
+        // At level 2 a cell is one texel wide; at level 4 a quarter of a texel.
         assert_eq!(cells(&beside, 2, 0).count_ones(), 3 * 3);
         assert_eq!(cells(&beside, 4, 0).count_ones(), 7 * 7);
     }
 
     #[test]
-    fn nothing_is_found_beyond_a_sprites_reach() {
+    fn lookups_beyond_a_sprites_extent_are_clear() {
         let layout = SpriteLayout { columns: 4, rows: 2, y_down: false };
         let sprite = Sprite::load(Path::new("sprites/puff.png"), layout).unwrap();
         let filled = Filled::new(&sprite, None);
@@ -138,17 +141,18 @@ mod tests {
     }
 
     #[test]
-    fn sprites_reach_as_far_as_a_lookup_finds_an_amount() {
+    fn the_extent_includes_the_footprint_of_bilinear_filtering() {
         let filled = Filled::new(&sprite(128, 2, (64 + 50, 14)), None);
         let frames = |first, blend| FlipbookFrames { first, second: 1, blend };
         assert_eq!(filled.reach(frames(0, 0.0), 0.0), Vec4::ZERO);
-        // Texels 49.45 to 51.55 across and 13.45 to 15.55 down of 64, the middle at 32: right and up of it.
+        // The footprint is texels 49.45 to 51.55 across and 13.45 to 15.55 down of 64, so right of and above the middle
+        // at 32.
         let reach = Vec4::new(0.0, 0.0, 19.55 / 32.0, 18.55 / 32.0);
         for frames in [frames(1, 0.0), frames(0, 0.1)] {
             let found = filled.reach(frames, 0.0);
             assert!((found - reach).min_element() >= 0.0 && (found - reach).max_element() < 1.0 / 255.0, "{found}");
         }
-        // Of four texels each way the last one across, the first down.
+        // At this level a frame has four texels per side; the texel is the last one across and the first one down.
         assert_eq!(filled.reach(frames(1, 0.0), 4.0), Vec4::new(0.0, 0.0, 1.0, 1.0));
     }
 }

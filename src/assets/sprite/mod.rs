@@ -1,4 +1,4 @@
-//! Sprite pictures: flipbooks of normal maps with the amount in alpha.
+//! Sprites: flipbooks of normal maps with the amount in alpha.
 
 pub mod filled;
 
@@ -12,14 +12,14 @@ use crate::assets::picture::{Picture, read_png};
 use crate::error::Error;
 use crate::formula::texture::Texture2dArray;
 
-/// How a sprite's picture is laid out.
+/// Layout of frames in a sprite's image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SpriteLayout {
-    /// Frames beside each other.
+    /// Columns of frames.
     pub columns: u32,
-    /// Frames below each other; frames run left to right, then down.
+    /// Rows of frames. Frames run left to right, then down.
     pub rows: u32,
-    /// True for a map painted with green pointing down (DirectX style).
+    /// True if green points down (DirectX convention).
     pub y_down: bool,
 }
 
@@ -29,30 +29,30 @@ impl Default for SpriteLayout {
     }
 }
 
-/// A decoded flipbook with its mip levels. Texels are rgb = normal / 2 + 1/2 (x right, y up, z to the viewer) and
-/// a = amount, 8 bits each, not premultiplied. A clone shares its texels.
+/// A decoded flipbook with its mip levels. Texels: rgb = normal / 2 + 1/2 (x right, y up, z towards the viewer), a =
+/// amount, 8 bits per channel, not premultiplied. A clone shares its texels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sprite {
     size: u32,
     frame_count: u32,
-    /// Level by level; each level frame by frame, row by row, top row first.
+    /// Mip levels. Each level holds its frames in order, row by row from the top.
     levels: Vec<Arc<[[u8; 4]]>>,
 }
 
-/// Most frames of one flipbook: the layers that WebGL2 promises an array texture.
+/// Maximum number of frames: the number of array layers that WebGL2 guarantees.
 pub const MAX_FRAMES: u32 = 256;
 
 impl Sprite {
-    /// True if both are in the same memory.
+    /// True if both share the same memory.
     pub fn shares(&self, other: &Self) -> bool {
         self.levels.len() == other.levels.len() && self.levels.iter().zip(&other.levels).all(|(a, b)| Arc::ptr_eq(a, b))
     }
 
-    /// Cuts a picture into frames and builds their mip levels.
+    /// Cuts an image into frames and builds their mip levels.
     ///
     /// # Errors
-    /// [`Error::Image`] when the layout does not fit the picture, frames are not square, or a frame is not clear at
-    /// its border (it would show as a square).
+    /// [`Error::Image`] if the layout does not fit the image, frames are not square, or a frame is not clear at its
+    /// border (the sprite would be visible as a square).
     pub fn from_picture(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Result<Self, Error> {
         let error = |reason: String| Err(Error::Image { path: path.into(), reason });
         let (columns, rows) = (layout.columns, layout.rows);
@@ -90,7 +90,7 @@ impl Sprite {
         Ok(Self::with_levels(size, columns * rows, texels))
     }
 
-    /// Reads a PNG.
+    /// Loads a PNG.
     ///
     /// # Errors
     /// As [`read_png`] and [`Sprite::from_picture`].
@@ -118,39 +118,39 @@ impl Sprite {
         sprite
     }
 
-    /// Side of a frame in texels, at full size.
+    /// Returns the side of a frame in texels, at mip level 0.
     pub fn size(&self) -> u32 {
         self.size
     }
 
-    /// Number of frames.
+    /// Returns the number of frames.
     pub fn frame_count(&self) -> u32 {
         self.frame_count
     }
 
-    /// Number of mip levels, the full size included.
+    /// Returns the number of mip levels, including level 0.
     pub fn level_count(&self) -> u32 {
         self.levels.len() as u32
     }
 
-    /// Side of a frame in texels at a mip level.
+    /// Returns the side of a frame in texels at a mip level.
     pub fn level_size(&self, level: u32) -> u32 {
         (self.size >> level).max(1)
     }
 
-    /// One texel, 0..1 in each channel.
+    /// Returns one texel, 0..1 in each channel.
     pub fn texel(&self, level: u32, frame: u32, x: u32, y: u32) -> Vec4 {
         let size = self.level_size(level);
         let texel = self.levels[level as usize][((frame * size + y) * size + x) as usize];
         Vec4::from(texel.map(f32::from)) / 255.0
     }
 
-    /// Bytes that the texels take.
+    /// Returns the size of the texels, bytes.
     pub fn memory(&self) -> u64 {
         self.levels.iter().map(|level| size_of_val(&**level) as u64).sum()
     }
 
-    /// Row by row, top row first.
+    /// Returns the texels of a frame, row by row from the top.
     fn frame_texels(&self, level: u32, frame: u32) -> &[[u8; 4]] {
         let texels = self.level_size(level).pow(2) as usize;
         &self.levels[level as usize][frame as usize * texels..][..texels]
@@ -180,7 +180,7 @@ impl Texture2dArray for Sprite {
     }
 }
 
-/// Averages texels for the next mip level. Normals count by their amount, or clear texels would pull them about.
+/// Averages texels for the next mip level. Normals are weighted by amount, so that clear texels do not affect them.
 fn average(texels: [Vec4; 4]) -> [u8; 4] {
     let amount = texels.iter().map(|texel| texel.w).sum::<f32>() / 4.0;
     let weighted = |weight: fn(&Vec4) -> f32| texels.iter().map(|texel| texel.xyz() * weight(texel)).sum::<Vec3>();
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_are_cut_left_to_right_then_down() {
+    fn frames_run_left_to_right_then_down() {
         let mut sheet = picture(8, 8);
         sheet.put_pixel(5, 2, Rgba([10, 20, 30, 40]));
         let sprite = Sprite::from_picture(Path::new(""), &sheet, SpriteLayout { columns: 2, rows: 2, y_down: true });
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn mip_levels_weigh_normals_by_amount() {
+    fn mip_levels_weight_normals_by_amount() {
         let mut sheet = picture(4, 4);
         sheet.put_pixel(1, 1, Rgba([255, 0, 0, 200]));
         let sprite = Sprite::from_picture(Path::new(""), &sheet, SpriteLayout::default()).unwrap();
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn layouts_that_do_not_fit_and_square_sprites_are_refused() {
+    fn layouts_that_do_not_fit_and_opaque_borders_are_refused() {
         assert!(message(&picture(8, 8), SpriteLayout { columns: 3, rows: 1, y_down: false }).contains("3x1 square"));
         assert!(message(&picture(8, 8), SpriteLayout { columns: 0, rows: 1, y_down: false }).contains("1 to 256"));
         let mut square = picture(8, 8);

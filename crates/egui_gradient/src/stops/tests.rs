@@ -1,4 +1,4 @@
-#![allow(clippy::float_cmp, reason = "places that are written out, and halves of them")]
+#![allow(clippy::float_cmp, reason = "positions are literals or halves of them, so results are exact")]
 
 use proptest::prelude::*;
 
@@ -40,7 +40,7 @@ fn all() -> Selection {
 }
 
 #[test]
-fn a_stop_passes_others_only_beyond_them() {
+fn a_stop_changes_order_only_if_it_moves_past_another() {
     let mut list = stops(&[(0.0, 0, SMOOTH), (0.5, 1, SMOOTH), (0.5, 2, SMOOTH), (1.0, 3, SMOOTH)]);
     assert_eq!(moved(&mut list, 0, 0.5), 0);
     assert_eq!(greys(&list), [0, 1, 2, 3]);
@@ -54,7 +54,7 @@ fn a_stop_passes_others_only_beyond_them() {
 }
 
 #[test]
-fn a_stop_is_added_in_its_place_and_the_last_one_stays() {
+fn added_stops_are_inserted_in_order_and_the_last_stop_cannot_be_removed() {
     let mut list = stops(&[(0.2, 0, Curve::Ease), (0.2, 1, Curve::Constant), (0.8, 2, SMOOTH)]);
     assert_eq!(add(&mut list, 0.2, HexColour([9; 3])), 2);
     assert_eq!((greys(&list), list[2].curve), (vec![0, 1, 9, 2], Curve::Constant));
@@ -68,7 +68,7 @@ fn a_stop_is_added_in_its_place_and_the_last_one_stays() {
 }
 
 #[test]
-fn there_is_a_place_for_one_more_wherever_it_can_be() {
+fn a_new_stop_goes_halfway_to_a_neighbour() {
     let list = stops(&[(0.0, 0, SMOOTH), (0.5, 0, SMOOTH), (1.0, 0, SMOOTH)]);
     assert_eq!([0, 1, 2].map(|index| gap(&list, index)), [0.25, 0.75, 0.75]);
     assert_eq!(gap(&stops(&[(0.4, 0, SMOOTH)]), 0), 0.7);
@@ -76,7 +76,7 @@ fn there_is_a_place_for_one_more_wherever_it_can_be() {
 }
 
 #[test]
-fn arrows_go_by_thousandths_hundredths_and_to_equal_parts() {
+fn nudging_moves_by_thousandths_hundredths_or_equal_parts() {
     let close = |at: f32, expected: f32| assert!((at - expected).abs() < 1.0e-5, "{at} {expected}");
     close(nudged(0.25, 1.0, false, None), 0.251);
     close(nudged(0.25, -1.0, true, None), 0.24);
@@ -111,19 +111,19 @@ fn stops_are_distributed_between_the_first_and_the_last() {
 }
 
 #[test]
-fn what_is_selected_moves_together_and_keeps_its_distances() {
+fn selected_stops_move_together_and_keep_their_distances() {
     let mut list = stops(&[(0.0, 0, SMOOTH), (0.2, 1, SMOOTH), (0.2, 2, SMOOTH), (0.5, 3, SMOOTH), (1.0, 4, SMOOTH)]);
     let mut selection = Selection::between(3, 1);
     move_to(&mut list, &mut selection, 0.7);
     assert_eq!((greys(&list), selected(&selection), selection.lead()), (vec![0, 1, 2, 3, 4], vec![1, 2, 3], 1));
     assert_eq!([list[1].at, list[2].at], [0.7, 0.7], "those at one place stay together");
     assert!((list[3].at - 1.0).abs() < 1.0e-6);
-    // At the end they stop, as far apart as they were.
+    // At the end of the gradient they stop and keep their distances.
     move_to(&mut list, &mut selection, 5.0);
     assert!((list[1].at - 0.7).abs() < 1.0e-6 && list[3].at <= 1.0, "{:?}", places(&list));
     move_to(&mut list, &mut selection, -5.0);
     assert_eq!((greys(&list), list[2].at), (vec![0, 1, 2, 3, 4], 0.0));
-    // Apart from each other they pass what is between.
+    // Selected stops that are not adjacent can pass unselected ones between them.
     let mut list = stops(&[(0.1, 0, SMOOTH), (0.2, 1, SMOOTH), (0.3, 2, SMOOTH), (0.9, 3, SMOOTH)]);
     let mut selection = Selection::one(0);
     selection.toggle(2);
@@ -132,7 +132,7 @@ fn what_is_selected_moves_together_and_keeps_its_distances() {
 }
 
 #[test]
-fn what_is_selected_is_removed_copied_and_scaled() {
+fn selected_stops_are_removed_copied_and_scaled() {
     let from = stops(&[(0.0, 0, SMOOTH), (0.2, 1, SMOOTH), (0.4, 2, SMOOTH), (1.0, 3, SMOOTH)]);
     let mut selection = Selection::one(1);
     selection.toggle(3);
@@ -152,7 +152,7 @@ fn what_is_selected_is_removed_copied_and_scaled() {
 }
 
 #[test]
-fn a_part_is_distributed_turned_and_mirrored_and_the_rest_stays() {
+fn operations_on_a_part_leave_the_other_stops_unchanged() {
     let from = stops(&[(0.0, 0, SMOOTH), (0.2, 1, SMOOTH), (0.3, 2, SMOOTH), (0.6, 3, SMOOTH), (1.0, 4, SMOOTH)]);
     let part = Selection::between(1, 3);
     let check = |change: &dyn Fn(&mut Vec<RampStop>, &mut Selection), expected: &[(f32, u8)], which: &[usize]| {
@@ -173,7 +173,7 @@ fn a_part_is_distributed_turned_and_mirrored_and_the_rest_stays() {
 }
 
 #[test]
-fn hard_steps_stay_as_many_when_they_are_turned_round() {
+fn flipping_constant_steps_keeps_their_number() {
     let hard = Curve::Constant;
     let mut list = stops(&[(0.0, 1, hard), (0.45, 2, hard), (0.72, 3, hard)]);
     flip(&mut list, &mut all());
@@ -185,7 +185,7 @@ fn hard_steps_stay_as_many_when_they_are_turned_round() {
 
 proptest! {
     #[test]
-    fn turned_round_a_gradient_is_its_mirror(
+    fn a_flipped_gradient_is_the_mirror_image(
         list in prop::collection::vec((0u8..=20, any::<u8>(), 0usize..4), 1..8),
     ) {
         let mut list: Vec<_> = list
@@ -201,7 +201,7 @@ proptest! {
             RampRecipe { rows, ..RampRecipe::default() }.gradient().unwrap()
         };
         let (before, after) = (gradient(&row), gradient(&flipped));
-        // Between the places: at an edge the side counts.
+        // Samples between stop positions: at a hard edge the two sides differ.
         for step in 0..60 {
             let u = (step as f32 + 0.5) / 60.0;
             let apart = (before.sample(u, 0.0) - after.sample(1.0 - u, 0.0)).abs().max_element();
@@ -210,7 +210,7 @@ proptest! {
     }
 
     #[test]
-    fn mirrored_a_gradient_is_itself_and_its_mirror(
+    fn a_mirrored_gradient_is_the_original_and_its_mirror_image(
         list in prop::collection::vec((0u8..=20, any::<u8>(), 0usize..4), 1..8),
     ) {
         let list = list.into_iter().map(|(at, grey, curve)| (f32::from(at) / 20.0, grey, Curve::ALL[curve]));
@@ -235,7 +235,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_done_to_some_leaves_them_in_order_and_selected(
+    fn every_operation_keeps_stops_sorted_and_selected(
         list in prop::collection::vec((0u8..=10, 0usize..4), 1..9),
         selected in prop::collection::vec(0usize..9, 1..5),
         what in 0usize..7, at in -1.0f32..2.0,
@@ -246,7 +246,7 @@ proptest! {
         let mut selection = Selection::one(selected[0]);
         selected[1..].iter().for_each(|index| selection.toggle(*index));
         selection.keep_to(list.len());
-        // Marked by a colour, unless others are made of them.
+        // Selected stops are marked by a colour. Mirroring and removal change the number of marked stops.
         selection.iter().for_each(|index| list[index].colour = HexColour([9; 3]));
         match what {
             0 => move_to(&mut list, &mut selection, at),
@@ -267,7 +267,7 @@ proptest! {
     }
 
     #[test]
-    fn order_holds_whatever_is_moved(
+    fn moving_a_stop_keeps_the_order(
         list in prop::collection::vec(0.0f32..=1.0, 1..8), index in 0usize..8, at in -1.0f32..2.0,
     ) {
         let mut list: Vec<_> = list.into_iter().map(|at| RampStop::new(at, HexColour([0; 3]))).collect();

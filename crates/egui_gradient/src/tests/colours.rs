@@ -1,4 +1,4 @@
-//! Where the colour of a stop comes from.
+//! Tests of colour fields, pasted colours and the eyedropper.
 
 use super::*;
 
@@ -15,10 +15,10 @@ fn type_into(harness: &mut Harness<'_, Host>, name: &str, text: &str) {
 }
 
 #[test]
-fn hue_saturation_and_value_are_numbers() {
+fn hue_saturation_and_value_can_be_typed() {
     let mut harness = host(&[(0.0, 100), (1.0, 20)]);
     for (name, number, expected) in [
-        // A grey takes a hue, and shows it when it has a saturation.
+        // A grey remembers its hue and shows it once it has a saturation.
         ("hue", "210", [100, 100, 100]),
         ("saturation", "50", [50, 75, 100]),
         ("value", "100", [128, 191, 255]),
@@ -28,9 +28,9 @@ fn hue_saturation_and_value_are_numbers() {
         type_into(&mut harness, name, number);
         assert_eq!(colour(&harness, 0), expected, "{name} {number}");
     }
-    // A hue alone is no step.
+    // Changing only the hue of a grey is not a step.
     assert_eq!(steps(&harness), ["colour of a stop"; 4]);
-    // It is that stop's: another has its own.
+    // The remembered hue belongs to one stop only.
     harness.get_by_label("next stop").click();
     harness.run_steps(2);
     type_into(&mut harness, "saturation", "50");
@@ -38,7 +38,7 @@ fn hue_saturation_and_value_are_numbers() {
 }
 
 #[test]
-fn a_colour_is_pasted_on_the_stop_that_is_selected() {
+fn a_pasted_colour_is_applied_to_the_selected_stop() {
     let mut harness = host(&[(0.0, 100), (1.0, 20)]);
     harness.get_by_label("stop 2").focus();
     harness.run_steps(2);
@@ -48,7 +48,7 @@ fn a_colour_is_pasted_on_the_stop_that_is_selected() {
     assert_eq!((steps(&harness), harness.state().refused.len()), (vec!["colour of a stop"], 0));
 }
 
-/// By a click so quick that it is in one frame.
+/// Activates the eyedropper with press and release in one frame.
 fn begin(harness: &mut Harness<'_, Host>) {
     let pos = harness.get_by_label("Take a colour").rect().center();
     harness.hover_at(pos);
@@ -60,7 +60,7 @@ fn begin(harness: &mut Harness<'_, Host>) {
 }
 
 #[test]
-fn a_click_takes_a_colour_from_anywhere_and_touches_nothing_else() {
+fn the_eyedropper_picks_a_colour_and_blocks_other_widgets() {
     let mut harness = host(&[(0.0, 0), (1.0, 255)]);
     let at = on_strip(&harness, 0.7);
     let expected = {
@@ -75,7 +75,7 @@ fn a_click_takes_a_colour_from_anywhere_and_touches_nothing_else() {
     assert!(expected[0] > 100, "{expected:?}");
     assert_eq!(steps(&harness), ["colour of a stop"]);
     assert!(harness.state().editor.state.eyedropper.is_none());
-    // It is given up by Escape.
+    // Escape cancels the eyedropper.
     begin(&mut harness);
     key(&mut harness, Key::Escape, NONE);
     assert!(harness.state().editor.state.eyedropper.is_none());
@@ -84,11 +84,11 @@ fn a_click_takes_a_colour_from_anywhere_and_touches_nothing_else() {
 }
 
 #[test]
-fn a_stroke_takes_the_gradient_along_it() {
+fn a_stroke_picks_the_gradient_along_its_path() {
     let mut harness = host(&[(0.0, 0), (0.5, 250), (1.0, 40)]);
     begin(&mut harness);
     let (from, width) = (on_strip(&harness, 0.99), strip(&harness).width());
-    // From right to left over its own first half: turned round.
+    // The stroke runs over the strip from right to left, so the result is the reversed gradient.
     let wanted = {
         let row = harness.state().row.clone();
         let recipe = haze_author::ramp::bake::RampRecipe { rows: vec![row], ..Default::default() };
@@ -104,14 +104,14 @@ fn a_stroke_takes_the_gradient_along_it() {
     for step in 5..=95 {
         let at = step as f32 / 100.0;
         let (taken, wanted) = (code(taken.sample(at, 0.0).x), code(wanted.sample(0.99 - 0.98 * at, 0.0).x));
-        // Ten of the fit, and what the colour changes over half a part.
+        // Tolerance: 10 for the fit, and the change of colour over half a part of the stroke.
         assert!((taken - wanted).abs() < 20.0, "{at}: {taken} {wanted}");
     }
     assert_eq!(steps(&harness), ["gradient of a stroke"]);
 }
 
 #[test]
-fn the_eyedropper_magnifies_and_is_moved_by_keys() {
+fn the_eyedropper_has_a_magnifier_and_is_moved_by_keys() {
     let mut harness = host(&[(0.0, 0), (1.0, 255)]);
     begin(&mut harness);
     let at = on_strip(&harness, 0.5);
@@ -123,7 +123,7 @@ fn the_eyedropper_magnifies_and_is_moved_by_keys() {
     };
     assert!(said(&harness).ends_with("1×1"), "{}", said(&harness));
     let before = said(&harness);
-    // Along a gradient from black to white every ten pixels are lighter.
+    // On a gradient from black to white, ten pixels to the right is lighter.
     key(&mut harness, Key::ArrowRight, Modifiers::SHIFT);
     let lighter = said(&harness);
     assert!(lighter > before, "{before} {lighter}");

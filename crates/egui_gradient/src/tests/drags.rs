@@ -1,9 +1,9 @@
-//! Drags that snap, copy, or are given up.
+//! Tests of drags that snap, copy, or are cancelled.
 
 use super::*;
 
 #[test]
-fn places_snap_to_as_many_parts_as_are_asked_for() {
+fn positions_snap_to_the_chosen_number_of_parts() {
     let mut harness = host(&[(0.0, 0), (0.5, 20), (1.0, 30)]);
     let width = strip(&harness).width();
     let parts =
@@ -16,7 +16,7 @@ fn places_snap_to_as_many_parts_as_are_asked_for() {
     let from = handle(&harness, 1).center();
     drag(&mut harness, from, 0.14 * width, Modifiers::COMMAND);
     assert_eq!(places(&harness), [0.0, 0.625, 1.0]);
-    // Switched on it snaps by itself, and Ctrl lets go.
+    // With snapping switched on, positions snap without Ctrl, and Ctrl disables it.
     harness.get_by_label("Snap").click();
     harness.run_steps(2);
     let from = handle(&harness, 1).center();
@@ -33,7 +33,7 @@ fn places_snap_to_as_many_parts_as_are_asked_for() {
 }
 
 #[test]
-fn with_shift_a_stop_comes_to_the_place_of_another() {
+fn with_shift_a_stop_snaps_to_another_stop() {
     let mut harness = host(&[(0.0, 0), (0.3, 10), (0.6, 20), (1.0, 30)]);
     let (from, width) = (handle(&harness, 1).center(), strip(&harness).width());
     drag(&mut harness, from, 0.29 * width, Modifiers::SHIFT);
@@ -41,13 +41,13 @@ fn with_shift_a_stop_comes_to_the_place_of_another() {
         (harness.state().row.stops[1].at, greys(&harness)),
         (harness.state().row.stops[2].at, vec![0, 10, 20, 30])
     );
-    // Only where one is near.
+    // It snaps only to a stop nearby.
     let from = handle(&harness, 1).center();
     drag(&mut harness, from, -0.2 * width, Modifiers::SHIFT);
     assert!((places(&harness)[1] - 0.4).abs() < 0.005, "{:?}", places(&harness));
 }
 
-/// Presses at a place and moves; does not let go.
+/// Presses at a position and moves the pointer without releasing the button.
 fn hold(harness: &mut Harness<'_, Host>, from: Pos2, by: f32) {
     harness.hover_at(from);
     harness.step();
@@ -59,7 +59,7 @@ fn hold(harness: &mut Harness<'_, Host>, from: Pos2, by: f32) {
 }
 
 #[test]
-fn escape_puts_back_what_is_dragged_and_that_is_no_step() {
+fn escape_cancels_a_drag_without_an_undo_step() {
     let mut harness = host(&[(0.0, 0), (0.3, 10), (0.5, 20), (1.0, 30)]);
     let before = harness.state().row.clone();
     let width = strip(&harness).width();
@@ -75,14 +75,14 @@ fn escape_puts_back_what_is_dragged_and_that_is_no_step() {
         harness.run_steps(2);
         assert_eq!((&harness.state().row, steps(&harness).len()), (&before, 0));
     }
-    // The next one is as any other.
+    // The next drag works as usual.
     let from = handle(&harness, 1).center();
     drag(&mut harness, from, 0.1 * width, NONE);
     assert_eq!((places(&harness), steps(&harness)), (vec![0.0, 0.4, 0.5, 1.0], vec!["move a stop"]));
 }
 
 #[test]
-fn a_drag_with_alt_leaves_a_copy() {
+fn a_drag_with_alt_moves_a_copy() {
     let mut harness = host(&[(0.0, 0), (0.3, 10), (1.0, 30)]);
     let (from, width) = (handle(&harness, 1).center(), strip(&harness).width());
     drag(&mut harness, from, 0.2 * width, Modifiers::ALT);
@@ -91,7 +91,7 @@ fn a_drag_with_alt_leaves_a_copy() {
 }
 
 #[test]
-fn with_alt_on_the_way_a_drag_is_ten_times_as_fine_and_says_where_it_is() {
+fn alt_during_a_drag_slows_it_to_a_tenth_and_the_readout_shows_the_position() {
     let mut harness = host(&[(0.0, 0), (0.3, 10), (1.0, 30)]);
     let (from, width) = (handle(&harness, 1).center(), strip(&harness).width());
     hold(&mut harness, from, 0.2 * width);
@@ -102,7 +102,7 @@ fn with_alt_on_the_way_a_drag_is_ten_times_as_fine_and_says_where_it_is() {
     harness.run_steps(2);
     assert!((harness.state().row.stops[1].at - 0.51).abs() < 1.0e-4, "{:?}", places(&harness));
     assert!(harness.query_by_label("0.5100  #0a0a0a  fine").is_some());
-    // Let go of, it goes on as far as the pointer does.
+    // After Alt is released, the stop follows the pointer at full speed.
     harness.event(Event::ModifiersChanged(NONE));
     harness.hover_at(from + Vec2::new(0.4 * width, 0.0));
     harness.run_steps(2);
@@ -114,7 +114,7 @@ fn with_alt_on_the_way_a_drag_is_ten_times_as_fine_and_says_where_it_is() {
 }
 
 #[test]
-fn a_drag_ends_where_the_host_has_something_else() {
+fn a_drag_ends_if_the_host_replaces_the_stops() {
     let mut harness = host(&[(0.0, 0), (0.3, 10), (1.0, 30)]);
     let before = harness.state().row.clone();
     let (from, width) = (handle(&harness, 1).center(), strip(&harness).width());

@@ -1,4 +1,4 @@
-//! Several stops at once.
+//! Tests of selections of several stops.
 
 use super::*;
 
@@ -22,7 +22,7 @@ fn click_handle(harness: &mut Harness<'_, Host>, index: usize, modifiers: Modifi
 const FIVE: [(f32, u8); 5] = [(0.0, 0), (0.2, 10), (0.4, 20), (0.7, 30), (1.0, 40)];
 
 #[test]
-fn clicks_select_ranges_and_one_more() {
+fn clicks_select_ranges_and_toggle_stops() {
     let mut harness = host(&FIVE);
     for (index, modifiers, expected) in [
         (1, NONE, vec![1]),
@@ -39,7 +39,7 @@ fn clicks_select_ranges_and_one_more() {
 }
 
 #[test]
-fn a_band_selects_what_is_under_it() {
+fn a_band_selects_the_stops_under_it() {
     let mut harness = host(&FIVE);
     let (strip, width) = (strip(&harness), strip(&harness).width());
     let from = pos2(strip.left() + 0.1 * width, strip.bottom() + 3.0);
@@ -51,7 +51,7 @@ fn a_band_selects_what_is_under_it() {
 }
 
 #[test]
-fn they_are_dragged_together_and_that_is_one_step() {
+fn selected_stops_are_dragged_together_in_one_step() {
     let mut harness = host(&FIVE);
     click_handle(&mut harness, 1, NONE);
     click_handle(&mut harness, 2, SHIFT);
@@ -62,7 +62,7 @@ fn they_are_dragged_together_and_that_is_one_step() {
     let from = handle(&harness, 3).center();
     drag(&mut harness, from, 9.0 * width, NONE);
     assert_eq!(places(&harness), [0.0, 0.7, 0.8, 1.0, 1.0], "at the end they keep their distances");
-    // Alt leaves copies of both.
+    // A drag with Alt moves copies of both.
     let from = handle(&harness, 2).center();
     drag(&mut harness, from, -0.5 * width, Modifiers::ALT);
     assert_eq!(harness.state().row.stops.len(), 7);
@@ -70,7 +70,7 @@ fn they_are_dragged_together_and_that_is_one_step() {
 }
 
 #[test]
-fn keys_select_and_change_several() {
+fn keys_select_and_change_several_stops() {
     let mut harness = host(&FIVE);
     harness.get_by_label("stop 2").focus();
     harness.run_steps(3);
@@ -78,7 +78,7 @@ fn keys_select_and_change_several() {
     assert_eq!(selected(&harness), [1, 2]);
     key(&mut harness, Key::ArrowRight, SHIFT);
     assert_eq!(places(&harness), [0.0, 0.21, 0.41, 0.7, 1.0]);
-    // Elsewhere with Ctrl, and one more with Space.
+    // Ctrl moves only the focus; Space adds the focused stop.
     key(&mut harness, Key::ArrowDown, CTRL);
     key(&mut harness, Key::ArrowDown, CTRL);
     assert_eq!(selected(&harness), [1, 2]);
@@ -98,7 +98,7 @@ fn keys_select_and_change_several() {
 }
 
 #[test]
-fn buttons_and_fields_change_several() {
+fn buttons_and_fields_change_several_stops() {
     let mut harness = host(&FIVE);
     click_handle(&mut harness, 1, NONE);
     click_handle(&mut harness, 3, SHIFT);
@@ -125,7 +125,7 @@ fn buttons_and_fields_change_several() {
 }
 
 #[test]
-fn the_middle_button_removes() {
+fn the_middle_button_removes_a_stop() {
     let mut harness = host(&FIVE);
     let pos = handle(&harness, 1).center();
     harness.hover_at(pos);
@@ -148,12 +148,12 @@ fn type_place(harness: &mut Harness<'_, Host>, text: &str) {
 }
 
 #[test]
-fn numbers_are_typed_as_changes_too() {
+fn relative_changes_can_be_typed() {
     let mut harness = host(&FIVE);
     click_handle(&mut harness, 1, NONE);
     for (text, expected) in [("+0.05", 0.25), ("*2", 0.5), ("/4", 0.125), ("-0.025", 0.1), ("0.3", 0.3), ("x", 0.3)] {
         type_place(&mut harness, text);
-        // Past another it is another's index.
+        // The index of the lead changes if it passes another stop.
         assert_eq!(places(&harness)[harness.state().editor.state.selection.lead()], expected, "{text}");
     }
     assert_eq!(steps(&harness), ["move a stop"; 5], "each is done once");
@@ -165,7 +165,7 @@ fn numbers_are_typed_as_changes_too() {
 }
 
 #[test]
-fn hue_saturation_and_value_of_several_are_changed_each_by_its_own() {
+fn relative_colour_changes_apply_to_each_selected_stop() {
     let mut harness = host(&[(0.0, 200), (0.5, 100), (1.0, 40)]);
     click_handle(&mut harness, 0, NONE);
     click_handle(&mut harness, 1, SHIFT);

@@ -154,7 +154,7 @@ fn files_that_are_not_json_are_refused_with_their_kind() {
         said(b"{\n \"name\": \"caf\xe9\"}"),
         "haze: a.json:2:14: bytes that are no UTF-8 text; expected JSON as UTF-8 text"
     );
-    // A byte order mark is accepted: only the name is missing.
+    // A byte order mark is no mistake: what is missing is the name.
     assert_eq!(said(format!("\u{feff}{text}").as_bytes()), "haze: a.json:1:14: missing field `name`");
 }
 

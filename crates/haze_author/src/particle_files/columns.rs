@@ -1,4 +1,4 @@
-//! The columns of a file of particles, and what may stand in them.
+//! Columns of a particle file: roles by name, and the valid range of each.
 
 use glam::Vec3;
 
@@ -6,24 +6,24 @@ use super::frame::{CachedParticle, Given};
 use super::role::{ROLES, Role, role};
 use haze::error::one_line;
 
-/// Most columns of a file.
+/// Maximum number of columns in a file.
 pub const MOST_COLUMNS: usize = 1024;
 
-/// Largest number that is read: what is beyond is no scene.
+/// Largest magnitude that is accepted for positions, lengths and times.
 const LARGEST: f64 = 1.0e9;
 
-/// Largest whole number that every double up to it can hold.
+/// 2^53: a double represents every whole number up to this one.
 const LARGEST_ID: f64 = 9_007_199_254_740_992.0;
 
-/// How far a share may be beyond 0 and 1: simulations reach the end of a life a bit late.
+/// Tolerance beyond 0 and 1 for a fraction of the lifetime: simulations may overshoot the end of a life slightly.
 const SLACK: f64 = 0.001;
 
 /// The columns of a file.
 pub struct Columns {
     columns: Vec<Column>,
-    /// Age is in seconds, of a life that has a column too.
+    /// True if both age and life have a column: age / life is then the fraction of the lifetime.
     has_lives: bool,
-    /// A radius of its own, not half a width.
+    /// True if the file has a radius column; otherwise the radius is half the width.
     has_radius: bool,
     pub given: Given,
 }
@@ -31,16 +31,16 @@ pub struct Columns {
 struct Column {
     name: String,
     role: Option<Role>,
-    /// What stands for 1.
+    /// The stored value that means 1: 1 for floats, 255 for 8-bit amounts, 65535 for 16-bit amounts.
     one: f64,
 }
 
-/// The numbers of a row, by role.
+/// Values of a row, indexed by role.
 #[derive(Clone, Copy, Default)]
 pub struct Values([f64; ROLES]);
 
 impl Columns {
-    /// Columns of these names, in the order of the file. Fails with what is missing.
+    /// Assigns roles to columns by name, in the order of the file. The error names the missing column.
     pub fn of(names: &[&str]) -> Result<Self, String> {
         let ranks: Vec<_> = names.iter().map(|name| role(name)).collect();
         let chosen = |role: Role| {
@@ -59,7 +59,7 @@ impl Columns {
                 let names: Vec<_> = columns.columns.iter().map(|column| column.name.as_str()).collect();
                 let names = one_line(names.join(", "));
                 return Err(format!(
-                    "no column for the {axis} of positions among {names}; expected {axis}, P.{axis}, P[{axis}] or position_{axis}"
+                    "no column for the {axis} position among the columns \"{names}\"; expected {axis}, P.{axis}, P[{axis}] or position_{axis}"
                 ));
             }
         }
@@ -76,19 +76,19 @@ impl Columns {
         self.columns.len()
     }
 
-    /// Whether a column's numbers are wanted.
+    /// True if the column has a role and its values are read.
     pub fn is_read(&self, column: usize) -> bool {
         self.columns.get(column).is_some_and(|column| column.role.is_some())
     }
 
-    /// The amounts of a column are whole numbers up to this.
+    /// If the column holds the amount, sets the stored value that means 1.
     pub fn set_amount_one(&mut self, column: usize, one: f64) {
         if let Some(column) = self.columns.get_mut(column).filter(|column| column.role == Some(Role::Amount)) {
             column.one = one;
         }
     }
 
-    /// Reads a number from a text, as [`Columns::put`].
+    /// Parses a number and stores it as [`Columns::put`] does.
     pub fn put_text(&self, column: usize, text: &str, values: &mut Values) -> Result<(), String> {
         match text.trim().parse() {
             Ok(value) => self.put(column, value, values),
@@ -96,11 +96,12 @@ impl Columns {
         }
     }
 
-    /// Takes a number of a column that is read. Fails with what would be right.
+    /// Checks the range of a value and stores it under the column's role. Does nothing for a column without a role. The
+    /// error says what is expected.
     pub fn put(&self, column: usize, value: f64, values: &mut Values) -> Result<(), String> {
         let Some(Column { role: Some(role), one, .. }) = self.columns.get(column) else { return Ok(()) };
         let share = -SLACK..=1.0 + SLACK;
-        // Ranges hold no NaN.
+        // NaN fails every range check.
         let (is_good, expected) = match role {
             Role::X | Role::Y | Role::Z | Role::Rotation | Role::Amount => {
                 (value.abs() <= LARGEST, "a number up to 1e9")
@@ -108,12 +109,8 @@ impl Columns {
             Role::Radius | Role::Width => ((0.0..=LARGEST).contains(&value), "0 or more, up to 1e9"),
             Role::Age if self.has_lives => (value.abs() <= LARGEST, "a number up to 1e9"),
             Role::Life if self.has_lives => ((0.0..=LARGEST).contains(&value), "0 or more, up to 1e9"),
-            Role::Age => {
-                (share.contains(&value), "the share of its life that has passed, 0 to 1, or a column life beside it")
-            }
-            Role::Life => {
-                (share.contains(&value), "the share of it that has passed, 0 to 1, or a column age beside it")
-            }
+            Role::Age => (share.contains(&value), "a fraction of the lifetime, 0 to 1, or a life column as well"),
+            Role::Life => (share.contains(&value), "a fraction of the lifetime, 0 to 1, or an age column as well"),
             Role::Id => (value.abs() <= LARGEST_ID && value.fract() == 0.0, "a whole number"),
         };
         if !is_good {
@@ -123,12 +120,12 @@ impl Columns {
         Ok(())
     }
 
-    /// The particle of a row, from the numbers that were put.
+    /// Builds the particle of a row from its stored values.
     pub fn particle(&self, row: usize, values: &Values) -> CachedParticle {
         let of = |role: Role| values.0[role as usize];
         let age = match self.has_lives {
             true => of(Role::Age) / of(Role::Life).max(f64::MIN_POSITIVE),
-            // The one that there is; the other is 0.
+            // At most one of the two has a column; the other is 0.
             false => of(Role::Age) + of(Role::Life),
         };
         CachedParticle {
@@ -152,7 +149,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn columns_are_known_by_the_names_that_programs_give_them() {
+    fn columns_are_recognised_by_the_names_that_programs_use() {
         for names in [["x", "y", "z"], ["P.x", "P.y", "P.z"], ["P[x]", "P[y]", "P[z]"], ["P:x", "P:y", "P:z"]] {
             assert!(Columns::of(&names).is_ok(), "{names:?}");
         }
@@ -164,11 +161,11 @@ mod tests {
         assert!(given("rotation").rotation && given("age") == Given::default());
         let missing = Columns::of(&["x", "Z", "ny"]).map(|_| ()).unwrap_err();
         let expected = "expected y, P.y, P[y] or position_y";
-        assert_eq!(missing, format!("no column for the y of positions among x, Z, ny; {expected}"));
+        assert_eq!(missing, format!("no column for the y position among the columns \"x, Z, ny\"; {expected}"));
     }
 
     #[test]
-    fn the_first_of_several_names_is_read_and_a_width_is_halved() {
+    fn the_first_of_several_columns_for_a_role_is_read_and_a_width_is_halved() {
         let columns = Columns::of(&["x", "y", "z", "width", "alpha", "amount", "pscale", "age", "life"]).unwrap();
         let mut values = Values::default();
         for (column, value) in [1.0, 2.0, 3.0, 9.0, 0.9, 0.25, 0.5, 3.0, 4.0].into_iter().enumerate() {
@@ -186,14 +183,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_particle_is_refused_with_what_would_be_right() {
+    fn values_out_of_range_are_refused_with_the_expected_range() {
         let columns = Columns::of(&["x", "y", "z", "pscale", "age", "id"]).unwrap();
         let mut values = Values::default();
         let mut refusal = |column, value| columns.put(column, value, &mut values).unwrap_err();
         assert_eq!(refusal(0, f64::NAN), "x: NaN is not valid; expected a number up to 1e9");
         assert_eq!(refusal(2, 1e30), "z: 1000000000000000000000000000000 is not valid; expected a number up to 1e9");
         assert_eq!(refusal(3, -0.5), "pscale: -0.5 is not valid; expected 0 or more, up to 1e9");
-        assert!(refusal(4, 3.5).ends_with("0 to 1, or a column life beside it"));
+        assert!(refusal(4, 3.5).ends_with("0 to 1, or a life column as well"));
         assert_eq!(refusal(5, 1.5), "id: 1.5 is not valid; expected a whole number");
         assert_eq!(
             columns.put_text(0, "one", &mut Values::default()).unwrap_err(),

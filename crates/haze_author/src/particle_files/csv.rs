@@ -1,5 +1,6 @@
-//! Particles as text: a line of names, then one for each particle. Cells are apart by commas, semicolons or tabs, whichever the
-//! names have most of; they may be in quotes. Lines that begin with `#` or `//` are comments.
+//! Reads particles from CSV: a header line of column names, then one line per particle. The separator is the comma,
+//! semicolon or tab, whichever the header contains most often. Cells may be quoted. Lines that begin with `#` or `//`
+//! are comments.
 
 use std::borrow::Cow;
 
@@ -7,7 +8,7 @@ use super::columns::{Columns, MOST_COLUMNS, Values};
 use super::frame::CacheFrame;
 use super::mistake::Mistake;
 
-/// Reads a file of at most so many particles.
+/// Reads a file of at most `most` particles.
 pub fn read(content: &[u8], most: usize) -> Result<CacheFrame, Mistake> {
     let text = text(content)?;
     let mut lines = (1..).zip(text.trim_start_matches('\u{feff}').lines()).filter(|(_, line)| is_meant(line));
@@ -37,13 +38,13 @@ pub fn read(content: &[u8], most: usize) -> Result<CacheFrame, Mistake> {
             if columns.is_read(count) {
                 columns.put_text(count, &cell, &mut values).map_err(at)?;
             } else if count >= columns.len() && !cell.trim().is_empty() {
-                let reason = format!("more cells than the {} that have a name; expected one for each", columns.len());
+                let reason = format!("more cells than the {} named columns; expected one for each", columns.len());
                 return Err(at(reason));
             }
             count += 1;
         }
         if count < columns.len() {
-            let reason = format!("{count} cells; expected {}, one for each name", columns.len());
+            let reason = format!("{count} cells; expected {}, one for each column", columns.len());
             return Err(Mistake::after(line, text, reason));
         }
         particles.push(columns.particle(particles.len(), &values));
@@ -51,12 +52,12 @@ pub fn read(content: &[u8], most: usize) -> Result<CacheFrame, Mistake> {
     CacheFrame::new(particles, columns.given).map_err(Mistake::twice)
 }
 
-/// The text of a file.
+/// Decodes a file as UTF-8.
 pub fn text(content: &[u8]) -> Result<&str, Mistake> {
     std::str::from_utf8(content).map_err(|error| {
         let before = &content[..error.valid_up_to()];
         let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
-        Mistake::after(line, "", "bytes that are no text; expected UTF-8")
+        Mistake::after(line, "", "not UTF-8; expected UTF-8 text")
     })
 }
 
@@ -65,18 +66,18 @@ fn is_meant(line: &str) -> bool {
     !line.is_empty() && !line.starts_with('#') && !line.starts_with("//")
 }
 
-/// What stands between the names.
+/// Returns the separator: the candidate that occurs most often outside quotes in the header.
 fn separator(header: &str) -> char {
     let count =
         |separator: char| header.split('"').step_by(2).map(|part| part.matches(separator).count()).sum::<usize>();
-    // Of equals the last is taken.
+    // `max_by_key` returns the last maximum, so the comma wins a tie.
     [';', '\t', ','].into_iter().max_by_key(|separator| count(*separator)).unwrap_or(',')
 }
 
-/// The cells of a line, and where they begin, in bytes.
+/// Iterates over the cells of a line as (start in bytes, cell).
 struct Cells<'a> {
     line: &'a str,
-    /// Where the next begins.
+    /// Start of the next cell, bytes; `None` at the end.
     at: Option<usize>,
     separator: char,
 }
@@ -100,12 +101,12 @@ impl<'a> Iterator for Cells<'a> {
             }
             return Some((start, Ok(cell.into())));
         };
-        // A quote ends the cell, but two of them are one.
+        // A quote ends the cell; a doubled quote is an escaped quote.
         let mut quotes = quoted.match_indices('"').map(|(at, _)| at);
         let mut is_doubled = false;
         let end = loop {
             match quotes.next() {
-                None => return Some((start, Err("a quote that does not end; expected another on this line"))),
+                None => return Some((start, Err("unclosed quote; expected a closing quote on this line"))),
                 Some(at) if quoted[at + 1..].starts_with('"') => {
                     quotes.next();
                     is_doubled = true;
@@ -116,7 +117,7 @@ impl<'a> Iterator for Cells<'a> {
         let after = quoted[end + 1..].trim_start_matches(' ');
         if !after.is_empty() {
             if !after.starts_with(self.separator) {
-                return Some((start, Err("text after a quote; expected the end of the cell")));
+                return Some((start, Err("text after a closing quote; expected the end of the cell")));
             }
             self.at = Some(self.line.len() - after.len() + 1);
         }
@@ -152,20 +153,20 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_are_told_with_line_and_column() {
+    fn errors_name_line_and_column() {
         let at = |line, column, reason: &str| Err(Mistake::At { line, column, reason: reason.into() });
         assert_eq!(read("x,y,z\n1,2,3\n\n1,nan,3"), at(4, 3, "y: NaN is not valid; expected a number up to 1e9"));
-        assert_eq!(read("x,y,z\n1,2"), at(2, 4, "2 cells; expected 3, one for each name"));
+        assert_eq!(read("x,y,z\n1,2"), at(2, 4, "2 cells; expected 3, one for each column"));
         assert_eq!(read("ä,x,y,z\nü,1,,3"), at(2, 5, "y: \"\" is not valid; expected a number"));
-        assert_eq!(read("x,y,z\n1,2,3,4"), at(2, 7, "more cells than the 3 that have a name; expected one for each"));
-        assert_eq!(read("x,y,\"z\n1,2,3"), at(1, 5, "a quote that does not end; expected another on this line"));
-        assert_eq!(read("x,y,z\n1,\"2\"3,3"), at(2, 3, "text after a quote; expected the end of the cell"));
+        assert_eq!(read("x,y,z\n1,2,3,4"), at(2, 7, "more cells than the 3 named columns; expected one for each"));
+        assert_eq!(read("x,y,\"z\n1,2,3"), at(1, 5, "unclosed quote; expected a closing quote on this line"));
+        assert_eq!(read("x,y,z\n1,\"2\"3,3"), at(2, 3, "text after a closing quote; expected the end of the cell"));
         assert_eq!(
             read(&format!("x,y,z\n{}", "1,2,3\n".repeat(5))),
             at(6, 1, "more than 4 particles; expected at most that many in a frame")
         );
-        assert_eq!(super::read(b"x,y,z\n1,2,\xff", 4), at(2, 1, "bytes that are no text; expected UTF-8"));
-        let twice = "id 7 is there twice; expected ids of their own within a frame, or none";
+        assert_eq!(super::read(b"x,y,z\n1,2,\xff", 4), at(2, 1, "not UTF-8; expected UTF-8 text"));
+        let twice = "id 7 is used twice; expected unique ids within a frame, or no id column";
         assert_eq!(read("x,y,z,id\n1,2,3,7\n1,2,3,8\n1,2,3,7"), Err(Mistake::Whole(twice.into())));
         for (text, reason) in [("", "no line of column names"), ("# x,y,z", "no line of column names")] {
             assert!(matches!(read(text), Err(Mistake::Whole(said)) if said.starts_with(reason)), "{text}");

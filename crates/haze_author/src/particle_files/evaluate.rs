@@ -1,4 +1,4 @@
-//! The particles of a time, from the frames of files.
+//! Evaluates the particles at a time from the frames of files.
 
 use glam::{UVec3, Vec3};
 use haze::Particle;
@@ -8,7 +8,7 @@ use haze::preset::{CacheEnd, CacheSource, UpAxis};
 use super::{Around, Cache};
 
 impl Cache {
-    /// Writes the particles at `time`, seconds. Same input, same output.
+    /// Replaces `particles` with those at `time`, seconds. The same input gives the same output.
     pub fn evaluate(&self, source: &CacheSource, time: f32, particles: &mut Vec<Particle>) {
         particles.clear();
         let mut frame = (f64::from(time) - f64::from(source.start)) * f64::from(source.fps);
@@ -25,7 +25,7 @@ impl Cache {
             particles.push(Particle {
                 position: source.position + position * source.units,
                 radius: if given.radius { cached.radius * source.units } else { source.default_radius },
-                // Sprites that are all turned alike are seen to be one.
+                // Random rotations hide that all sprites have the same image.
                 rotation: if given.rotation { cached.rotation } else { unit(random.x) * std::f32::consts::TAU },
                 amount: there * if given.amount { cached.amount } else { source.default_amount },
                 frame: unit(random.y) * 256.0 + time * source.flipbook_rate,
@@ -37,8 +37,8 @@ impl Cache {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Limits;
     use super::*;
+    use super::super::Limits;
 
     fn cache(texts: &[&str]) -> Cache {
         let folder = tempfile::tempdir().unwrap();
@@ -55,7 +55,7 @@ mod tests {
     }
 
     #[test]
-    fn units_and_axes_are_the_shots() {
+    fn units_and_up_axis_of_the_settings_are_applied() {
         let cache = cache(&["x,y,z,pscale,amount,rotation,age\n1,2,3,4,0.5,6,0.25"]);
         let plain = CacheSource { flipbook_rate: 0.0, ..CacheSource::default() };
         let [y_up] = at(&plain, &cache, 0.0)[..] else { panic!("one particle") };
@@ -63,13 +63,13 @@ mod tests {
         assert_eq!((y_up.amount, y_up.rotation, y_up.age), (0.5, 6.0, 0.25));
         let moved = CacheSource { up: UpAxis::Z, units: 0.01, position: Vec3::new(0.0, 10.0, 0.0), ..plain };
         let [z_up] = at(&moved, &cache, 0.0)[..] else { panic!("one particle") };
-        // Blender's way forward, y, is away from the viewer.
+        // Blender's forward axis, y, points away from the viewer.
         assert!(z_up.position.distance(Vec3::new(0.01, 10.03, -0.02)) < 1e-6 && (z_up.radius - 0.04).abs() < 1e-7);
         assert_eq!(Particle { position: y_up.position, radius: y_up.radius, ..z_up }, y_up);
     }
 
     #[test]
-    fn frames_are_held_or_begin_again() {
+    fn last_frame_is_held_or_the_sequence_repeats() {
         let cache = cache(&["id,x,y,z\n1,0,0,0", "id,x,y,z\n1,1,0,0\n2,0,0,0", "id,x,y,z\n2,4,0,0"]);
         let mut source = CacheSource { fps: 2.0, start: 1.0, default_amount: 0.4, ..CacheSource::default() };
         let mut seen = |after, time| {
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_file_does_not_say_is_the_settings_and_stays_with_the_id() {
+    fn missing_columns_come_from_the_settings_and_stay_with_the_id() {
         let cache = cache(&["id,x,y,z\n7,0,0,0\n8,0,0,0", "id,x,y,z\n8,0,0,0\n7,0,0,0"]);
         let source = CacheSource { default_radius: 0.5, fps: 1.0, flipbook_rate: 0.0, ..CacheSource::default() };
         let (first, second) = (at(&source, &cache, 0.0), at(&source, &cache, 1.0));

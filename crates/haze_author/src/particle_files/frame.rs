@@ -1,11 +1,11 @@
-//! One frame of a simulation in memory.
+//! One frame of a particle simulation, and interpolation between two frames.
 
 use glam::Vec3;
 
-/// A particle as its file has it: axes and lengths are the file's.
+/// A particle with the axes and units of its file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CachedParticle {
-    /// Its own from frame to frame; its place in the file where there are no ids.
+    /// Identifies the particle across frames. The row in the file if the file has no ids.
     pub id: i64,
     /// In units of the file.
     pub position: Vec3,
@@ -13,27 +13,27 @@ pub struct CachedParticle {
     pub radius: f32,
     /// Radians.
     pub rotation: f32,
-    /// What the file says, 1 for an opaque one.
+    /// Amount: 0 is transparent, 1 opaque.
     pub amount: f32,
-    /// Share of its life that has passed, 0 to 1.
+    /// Fraction of the lifetime that has passed, 0 to 1.
     pub age: f32,
 }
 
-/// What a file gives of its particles besides their positions.
+/// Optional attributes that a file provides besides positions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[allow(clippy::struct_excessive_bools, reason = "each is one thing that is given or not")]
+#[allow(clippy::struct_excessive_bools, reason = "each is an independent attribute")]
 pub struct Given {
-    /// Who is who from frame to frame.
+    /// Ids that identify particles across frames.
     pub id: bool,
-    /// How large they are.
+    /// Radius, or a width that is halved.
     pub radius: bool,
-    /// How they are turned.
+    /// Rotation.
     pub rotation: bool,
-    /// How opaque they are.
+    /// Amount.
     pub amount: bool,
 }
 
-/// The particles of one frame, by id where they have any, and what of them the file gives.
+/// Particles of one frame, sorted by id if the file has ids, and the attributes that the file provides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CacheFrame {
     particles: Vec<CachedParticle>,
@@ -41,7 +41,7 @@ pub struct CacheFrame {
 }
 
 impl CacheFrame {
-    /// Fails with the first id that is there twice.
+    /// Sorts the particles by id. The error is the first duplicate id.
     pub(super) fn new(mut particles: Vec<CachedParticle>, given: Given) -> Result<Self, i64> {
         if given.id && !particles.is_sorted_by_key(|particle| particle.id) {
             particles.sort_unstable_by_key(|particle| particle.id);
@@ -52,24 +52,25 @@ impl CacheFrame {
         }
     }
 
-    /// Its particles.
+    /// Returns the particles.
     pub fn particles(&self) -> &[CachedParticle] {
         &self.particles
     }
 
-    /// What the file gives of each.
+    /// Returns the attributes that the file provides.
     pub fn given(&self) -> Given {
         self.given
     }
 
-    /// Bytes in memory.
+    /// Returns the size in memory, bytes.
     pub fn bytes(&self) -> u64 {
         size_of_val(self.particles.as_slice()) as u64
     }
 
-    /// Hands over every particle that lives between this frame and the next, and how much of it there is: one that is in both
-    /// is on its way, one that is born or dies in between stands still and grows or dwindles. Without ids in both, or where they
-    /// give different things, those of this frame.
+    /// Interpolates between this frame and the next at `share`, 0 to 1, and calls `each` with every particle and its
+    /// weight, 0 to 1. A particle in both frames is interpolated and has weight 1. A particle in one frame only keeps
+    /// its place; its weight fades out or in. If the frames have no ids or provide different attributes, the particles
+    /// are those of this frame.
     pub fn between(&self, next: Option<&Self>, share: f32, mut each: impl FnMut(&CachedParticle, f32)) {
         let next = next.filter(|next| share > 0.0 && self.given.id && next.given == self.given);
         let Some(next) = next else {
@@ -100,7 +101,7 @@ impl CacheFrame {
 impl CachedParticle {
     fn towards(&self, other: &Self, share: f32) -> Self {
         let mix = |from: f32, to: f32| from + (to - from) * share;
-        // The short way round: simulations may begin again at a full turn.
+        // Rotates by the smaller angle: a simulation may wrap rotations at a full turn.
         let turn = (other.rotation - self.rotation + std::f32::consts::PI).rem_euclid(std::f32::consts::TAU);
         Self {
             id: self.id,

@@ -1,42 +1,42 @@
-//! What is wrong with a file of particles.
+//! Parse errors of particle files.
 
 use std::path::Path;
 
 use haze::error::Error;
 
-/// What is wrong, and where.
+/// A parse error and its position.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Mistake {
-    /// In a text.
+    /// An error at a position in a text file.
     At {
         /// 1-based.
         line: usize,
         /// 1-based, characters.
         column: usize,
-        /// What is wrong and what would be right.
+        /// The problem and the expected value.
         reason: String,
     },
-    /// In the whole, or at a place that the reason tells.
+    /// An error of the whole file, or at a position that the reason names.
     Whole(String),
 }
 
 impl Mistake {
-    /// On a line, after `before` of it.
+    /// An error on a line, at the column that follows `before`.
     pub(super) fn after(line: usize, before: &str, reason: impl Into<String>) -> Self {
         Self::At { line, column: before.chars().count() + 1, reason: reason.into() }
     }
 
-    /// More particles than there may be.
+    /// The file has more than `most` particles.
     pub(super) fn crowded(line: usize, most: usize) -> Self {
         Self::after(line, "", format!("more than {most} particles; expected at most that many in a frame"))
     }
 
-    /// An id of two particles.
+    /// Two particles of a frame have the same id.
     pub(super) fn twice(id: i64) -> Self {
-        Self::Whole(format!("id {id} is there twice; expected ids of their own within a frame, or none"))
+        Self::Whole(format!("id {id} is used twice; expected unique ids within a frame, or no id column"))
     }
 
-    /// The error of a file.
+    /// Converts to the error of the file at `path`.
     pub fn of(self, path: &Path) -> Error {
         match self {
             Self::At { line, column, reason } => Error::Json { path: path.into(), line, column, reason },

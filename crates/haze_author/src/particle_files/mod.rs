@@ -1,7 +1,8 @@
-//! Particles that a simulation has left in files: CSV or PLY, one file or one a frame, as Blender and Houdini write them.
+//! Particle files of an external simulation: CSV or PLY, one file or one per frame, as exported by Blender and Houdini.
 //!
-//! All frames are read at once and kept, 40 bytes a particle: any time can be had in any order and at once, a window that is
-//! scrubbed waits for no disk, and a broken frame is found before the first picture. [`Limits`] says how much that may be.
+//! All frames are loaded at once and stay in memory, 40 bytes per particle. Any time can then be evaluated in any
+//! order, scrubbing does not wait for the disk, and a broken frame is reported before the first image is drawn.
+//! [`Limits`] bounds the memory.
 
 mod columns;
 mod csv;
@@ -23,39 +24,39 @@ pub use frame::{CacheFrame, CachedParticle, Given};
 pub use mistake::Mistake;
 pub use preset::{MAX_CACHE_BYTES, check_caches, emission, load_caches, particles};
 
-/// Largest file of a frame, bytes.
+/// Size limit of one file, bytes.
 pub const MAX_FILE_BYTES: u64 = 256 << 20;
 
-/// Most that is read.
+/// Limits of a load.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
-    /// Particles of one frame.
+    /// Maximum number of particles in one frame.
     pub particles: usize,
-    /// Bytes in memory, of all frames.
+    /// Maximum size of all frames in memory, bytes.
     pub bytes: u64,
 }
 
-/// The frames of a simulation. A clone is the same frames in the same memory.
+/// Frames of a simulation, sorted by frame number. A clone shares the memory.
 #[derive(Clone, Debug)]
 pub struct Cache(Arc<[(u32, CacheFrame)]>);
 
-/// What there is between two frames.
+/// The two frames around a time, and the position between them.
 #[derive(Clone, Copy, Debug)]
 pub struct Around<'a> {
     /// The frame at this time or before it.
     pub before: &'a CacheFrame,
-    /// The one that follows, if there is one.
+    /// The next frame, if there is one.
     pub after: Option<&'a CacheFrame>,
-    /// How much of the way to it has passed, 0 to 1.
+    /// Fraction of the interval to the next frame that has passed, 0 to 1.
     pub share: f32,
 }
 
 impl Cache {
-    /// Reads a file, or the files that the `#` of a path's name stand for: digits of the frame's number.
+    /// Loads one file, or a sequence if the file name contains `#` in place of the frame number's digits.
     ///
     /// # Errors
-    /// [`Error::Io`]; [`Error::Json`] with line and column for CSV, ASCII PLY and headers, and [`Error::Image`] for the rest, with
-    /// vertex and byte in binary PLY.
+    /// [`Error::Io`]; [`Error::Json`] with line and column for CSV, ASCII PLY and PLY headers; [`Error::Image`] for
+    /// everything else, with vertex and byte offset for binary PLY.
     pub fn load(path: &Path, limits: Limits) -> Result<Self, Error> {
         let (mut frames, mut bytes) = (Vec::new(), 0);
         for (number, file) in haze::preset::frame_files(path)? {
@@ -72,27 +73,28 @@ impl Cache {
         Ok(Self(frames.into()))
     }
 
-    /// The frames in their order, with their numbers.
+    /// Returns the frames in order, with their numbers.
     pub fn frames(&self) -> &[(u32, CacheFrame)] {
         &self.0
     }
 
-    /// Most particles of one frame.
+    /// Returns the largest number of particles in one frame.
     pub fn most(&self) -> usize {
         self.0.iter().map(|(_, frame)| frame.particles().len()).max().unwrap_or_default()
     }
 
-    /// Bytes in memory.
+    /// Returns the size in memory, bytes.
     pub fn bytes(&self) -> u64 {
         self.0.iter().map(|(_, frame)| frame.bytes()).sum()
     }
 
-    /// Frames from the first to the last, those between them that are missing too.
+    /// Returns the number of frames from the first to the last, including missing ones between them.
     pub fn length(&self) -> u32 {
         self.0.last().map_or(1, |(last, _)| last - self.first() + 1)
     }
 
-    /// What there is at a time, in frames from the first one on; the last stays. Nothing before the first.
+    /// Returns the frames around a time, in frames since the first. `None` before the first frame; after the last
+    /// frame, the last one with nothing after it.
     pub fn around(&self, frame: f64) -> Option<Around<'_>> {
         let number = frame + f64::from(self.first());
         let next = self.0.partition_point(|(at, _)| f64::from(*at) <= number);
@@ -104,12 +106,12 @@ impl Cache {
         Some(Around { before, after: Some(after), share })
     }
 
-    /// True if both are the very same frames.
+    /// True if both share the same memory.
     pub fn shares(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
 
-    /// The same of every system.
+    /// True if both lists share the same memory in every entry.
     pub fn all_shared(some: &[Option<Self>], others: &[Option<Self>]) -> bool {
         let shares = |(one, other): (&Option<Self>, &Option<Self>)| match (one, other) {
             (Some(one), Some(other)) => one.shares(other),
@@ -124,10 +126,11 @@ impl Cache {
     }
 }
 
-/// Reads one frame. The path's ending tells what it is: that and no more is looked at.
+/// Parses one frame. The format follows from the path's extension: PLY for `.ply`, otherwise CSV. The path is not
+/// opened.
 ///
 /// # Errors
-/// What is wrong with it, and where.
+/// A [`Mistake`] with the position, if the content is malformed.
 pub fn parse(path: &Path, content: &[u8], most: usize) -> Result<CacheFrame, Mistake> {
     match path.extension() {
         Some(ending) if ending.eq_ignore_ascii_case(OsStr::new("ply")) => ply::read(content, most),

@@ -1,4 +1,4 @@
-//! The particle files of one preset: each is read once, and all together are bounded.
+//! Loads the particle files of one preset: each is read once, and their total size is limited.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -9,23 +9,23 @@ use haze::error::{Error, FieldError};
 use haze::preset::{CacheSource, PictureFolders, Preset, PresetSystem, cache_file, in_system};
 use haze::{Emission, Particle};
 
-/// Most memory that the particle files of a preset take, bytes.
+/// Maximum memory of the particle files of a preset, bytes.
 pub const MAX_CACHE_BYTES: u64 = 1 << 30;
 
-/// Loads the particle files of every system that names some, each once: one of each system, `None` where an emitter makes the
-/// particles. They are looked for as pictures are; `path`, the preset's, is for errors alone.
+/// Loads the particle files of every system that names some, each once. The result has one entry for each system, `None` if
+/// an emitter makes its particles. The files are searched for like images; `path`, the preset's file, is only named in errors.
 ///
 /// # Errors
-/// As [`Cache::load`], naming the preset and the system too; [`Error::JsonField`] for a path that is none, and for more than
-/// [`MAX_PARTICLES`] or [`MAX_CACHE_BYTES`] in all systems.
+/// As [`Cache::load`], wrapped in [`Error::Picture`] with the preset and the system, also for more than
+/// [`MAX_CACHE_BYTES`]; [`Error::JsonField`] for an invalid path, and for more than [`MAX_PARTICLES`] in all systems.
 pub fn load_caches(preset: &Preset, path: &Path, folders: &PictureFolders) -> Result<Vec<Option<Cache>>, Error> {
     check_caches(preset, path, folders).map_err(|mut errors| errors.swap_remove(0))
 }
 
-/// The same, for all that is wrong.
+/// As [`load_caches`], but returns all errors.
 ///
 /// # Errors
-/// Those of every system: at least one.
+/// Errors of every system: at least one.
 pub fn check_caches(preset: &Preset, path: &Path, folders: &PictureFolders) -> Result<Vec<Option<Cache>>, Vec<Error>> {
     let mut known = HashMap::new();
     let (mut bytes, mut particles) = (0, 0.0);
@@ -61,8 +61,8 @@ pub fn check_caches(preset: &Preset, path: &Path, folders: &PictureFolders) -> R
     if errors.is_empty() { Ok(loaded) } else { Err(errors) }
 }
 
-/// Writes the particles of a system at `time`, seconds: those of `files` if the system names some and they are loaded, else those
-/// of its emitter.
+/// Replaces `particles` with those alive at `time`, seconds: those of `files` if the system names some and they are given; else
+/// those of its emitter.
 pub fn particles(system: &PresetSystem, files: Option<&Cache>, time: f32, particles: &mut Vec<Particle>) {
     match files.filter(|_| system.cache.is_used()) {
         Some(files) => {
@@ -74,7 +74,7 @@ pub fn particles(system: &PresetSystem, files: Option<&Cache>, time: f32, partic
     }
 }
 
-/// The emission of a system at `time`, seconds; `None` if its particles come from `files`.
+/// Unevaluated particles of the emitter; `None` if they come from `files`.
 pub fn emission(system: &PresetSystem, files: Option<&Cache>, time: f32) -> Option<Emission> {
     (!system.cache.is_used() || files.is_none()).then(|| system.emission(time))
 }
@@ -95,7 +95,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_system_is_told_what_is_wrong_with_its_files() {
+    fn errors_of_every_systems_files_are_reported() {
         let folder = tempfile::tempdir().unwrap();
         let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
         write("good.csv", "x,y,z\n1,2,3\n");
@@ -129,7 +129,7 @@ mod tests {
         assert!(broken.starts_with("my.json: systems[3].cache.path: "), "{broken}");
         assert!(broken.ends_with("smoke_02.csv:2:5: z: \"-\" is not valid; expected a number"), "{broken}");
         assert!(outside.starts_with("my.json: systems[4].cache.path: \"../good.csv\" is not valid; "), "{outside}");
-        // What an emitter may make counts too, but not that of a system which has files.
+        // Particles that an emitter may make count too, except for systems that use files.
         let mut crowded = preset(&["", "good.csv"]);
         for system in &mut crowded.systems {
             (system.emitter.rate, system.emitter.lifetime, system.emitter.lifetime_spread) = (10_000.0, 104.8576, 0.0);

@@ -1,6 +1,6 @@
-//! What columns are for, by the names that programs give them.
+//! Roles of columns, recognised by the names that other programs use.
 
-/// What a column is for.
+/// The particle attribute that a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     X,
@@ -16,11 +16,11 @@ pub enum Role {
     Id,
 }
 
-/// How many roles there are.
+/// Number of roles.
 pub const ROLES: usize = Role::Id as usize + 1;
 
-/// What columns are called in small letters, without points, brackets, colons, lines and blanks; of two for one role the name
-/// that comes first here is read.
+/// Column names in lower case, letters and digits only. If a file has two columns for a role, the name listed first is
+/// read.
 const NAMES: [(&str, Role); 12] = [
     ("radius", Role::Radius),
     ("pscale", Role::Radius),
@@ -36,10 +36,10 @@ const NAMES: [(&str, Role); 12] = [
     ("id", Role::Id),
 ];
 
-/// What stands before the x, y and z, or 0, 1 and 2, of a position.
+/// Prefixes of a position's axis (x, y, z or 0, 1, 2), in order of preference.
 const POSITION: [&str; 5] = ["", "p", "pos", "position", "location"];
 
-/// What a column of this name is for, and how soon it is taken among several.
+/// Returns the role of a column by its name, with its rank: of several columns for a role the lowest rank is read.
 pub fn role(name: &str) -> Option<(usize, Role)> {
     let name: String = name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect();
     if let Some(found) = NAMES.iter().position(|(known, _)| *known == name) {
@@ -64,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn other_columns_are_for_nothing() {
+    fn other_columns_have_no_role() {
         for name in ["nx", "0", "vx", "Cd[0]", "scale", "", "ä"] {
             assert_eq!(role(name), None, "{name}");
         }

@@ -1,4 +1,4 @@
-//! Whole files, sequences of them, and what there is between two frames.
+//! Tests of loading files and sequences, and of interpolation between frames.
 
 use super::*;
 
@@ -17,17 +17,17 @@ fn between(first: &str, second: &str, share: f32) -> Vec<(i64, f32, f32)> {
 }
 
 #[test]
-fn who_lives_in_both_frames_is_on_its_way_and_others_grow_or_dwindle() {
+fn particles_in_both_frames_are_interpolated_and_others_fade() {
     let (first, second) = ("id,x,y,z\n5,1,0,0\n2,0,0,0\n3,4,0,0", "id,x,y,z\n3,8,0,0\n9,7,0,0\n5,2,0,0\n");
     assert_eq!(between(first, second, 0.25), [(2, 0.0, 0.75), (3, 5.0, 1.0), (5, 1.25, 1.0), (9, 7.0, 0.25)]);
     assert_eq!(between(first, second, 0.0), [(2, 0.0, 1.0), (3, 4.0, 1.0), (5, 1.0, 1.0)]);
-    // Without ids on one side, the earlier frame.
+    // If one frame has no ids, the result is the earlier frame.
     assert_eq!(between("x,y,z\n1,0,0", second, 0.75), [(0, 1.0, 1.0)]);
     assert_eq!(between("id,x,y,z\n4,1,0,0", "x,y,z\n2,0,0", 0.75), [(4, 1.0, 1.0)]);
 }
 
 #[test]
-fn a_turn_goes_the_short_way() {
+fn rotation_is_interpolated_by_the_smaller_angle() {
     let mut turned = Vec::new();
     let [first, second] = ["6.2", "0.1"].map(|angle| frame(&format!("id,x,y,z,rotation,age\n0,0,0,0,{angle},0.5")));
     first.between(Some(&second), 0.5, |particle, _| turned.push(particle.rotation));
@@ -36,7 +36,7 @@ fn a_turn_goes_the_short_way() {
 }
 
 #[test]
-fn frames_stand_where_their_numbers_say() {
+fn frames_are_placed_in_time_by_their_numbers() {
     let folder = tempfile::tempdir().unwrap();
     for (number, count) in [(7, 1), (8, 2), (12, 3)] {
         let text = "x,y,z\n".to_owned() + &"0,0,0\n".repeat(count);
@@ -64,11 +64,11 @@ fn frames_stand_where_their_numbers_say() {
     );
     std::fs::write(folder.path().join("s_009.csv"), "x,y\n").unwrap();
     let error = Cache::load(&folder.path().join("s_###.csv"), LIMITS).unwrap_err().to_string();
-    assert!(error.contains("s_009.csv:1:1: no column for the z of positions"), "{error}");
+    assert!(error.contains("s_009.csv:1:1: no column for the z position"), "{error}");
 }
 
 #[test]
-fn a_csv_that_is_cut_is_refused_or_shorter() {
+fn a_truncated_csv_is_refused_or_has_fewer_particles() {
     let text = "# of two\r\nid;\"P[x]\";P[y];P[z];pscale\r\n1;2;3;4;5\r\n-7;1e3;.5;6.;0\r\n";
     for length in 0..text.len() {
         for byte in [None, Some(0xff), Some(b'"'), Some(b';'), Some(b'\n')] {

@@ -1,17 +1,17 @@
-//! What smoke is made of, to light.
+//! Participating media: optical properties of smoke.
 
 use glam::Vec3;
 
 use haze::settings::{FieldVisitor, Fields};
 
-/// What smoke is made of, to light.
+/// Optical properties of smoke.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Medium {
-    /// The share of light that is scattered where it meets the medium; the rest is lost. Linear RGB.
+    /// Single-scattering albedo, linear RGB: the fraction of light that is scattered; the rest is absorbed.
     pub albedo: Vec3,
-    /// Mean cosine of the angle that light is scattered by: 0 evenly, towards 1 onwards, below 0 back.
+    /// Anisotropy: the mean cosine of the scattering angle. 0 is isotropic, towards 1 forward, below 0 backward.
     pub g: f32,
-    /// Extinction where a volume has a density of 1, for each half side of it: how opaque it is.
+    /// Extinction per half side of the volume at a density of 1.
     pub density: f32,
 }
 
@@ -26,22 +26,22 @@ impl Fields for Medium {
 /// A medium with a name.
 #[derive(Clone, Copy, Debug)]
 pub struct NamedMedium {
-    /// As it is asked for.
+    /// Name for the command line.
     pub name: &'static str,
-    /// What it is, in a few words.
+    /// One-line description for users.
     pub description: &'static str,
-    /// How it scatters.
+    /// Optical properties.
     pub medium: Medium,
 }
 
-/// Media of every day: of the order of what is measured of them, and of a thickness that a puff has.
+/// Common media. Albedo and anisotropy are of the order of measured values; the density suits a puff.
 pub const MEDIA: &[NamedMedium] = &[
-    medium("steam", "white vapour, droplets that scatter nearly all light onwards", [0.99, 0.99, 0.995], 0.7, 6.0),
+    medium("steam", "white vapour, scatters nearly all light forwards", [0.99, 0.99, 0.995], 0.7, 6.0),
     medium("ash", "grey, coarse, scatters evenly", [0.72, 0.71, 0.70], 0.2, 8.0),
-    medium("soot", "black, swallows most of the light", [0.28, 0.25, 0.23], 0.3, 10.0),
+    medium("soot", "black, absorbs most of the light", [0.28, 0.25, 0.23], 0.3, 10.0),
     medium("dust", "sand and earth, brown", [0.95, 0.85, 0.70], 0.45, 6.0),
     medium("diesel", "thin, dark and bluish", [0.55, 0.58, 0.63], 0.5, 3.0),
-    medium("milk", "dense and white, light wanders in it", [0.998, 0.996, 0.985], 0.3, 12.0),
+    medium("milk", "dense and white, light scatters many times", [0.998, 0.996, 0.985], 0.3, 12.0),
 ];
 
 const fn medium(name: &'static str, description: &'static str, albedo: [f32; 3], g: f32, density: f32) -> NamedMedium {

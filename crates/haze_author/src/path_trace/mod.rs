@@ -1,9 +1,9 @@
-//! Light in smoke as it is: a small path tracer through a volume of densities, the measure that ramps are held against and
-//! fitted to. An authoring tool, never a part of a frame.
+//! Path tracer for a density volume. Its result is the ground truth that ramps and six-way maps are fitted to and
+//! compared with. An authoring tool, not used at run time.
 //!
-//! A volume is seen from the front, without perspective, as a sprite is. Every path is shared by all lights: at each of its
-//! vertices all of them shine on it. (Woodcock et al., "Techniques used in the GEM code", 1965: delta tracking; Henyey and
-//! Greenstein, "Diffuse radiation in the galaxy", 1941)
+//! The view is orthographic from the front, as for a sprite. All lights share each path: at every vertex the path
+//! gathers direct light of all of them. (Woodcock et al., "Techniques used in the GEM code", 1965: delta tracking;
+//! Henyey and Greenstein, "Diffuse radiation in the galaxy", 1941)
 
 mod medium;
 mod path;
@@ -21,28 +21,29 @@ use glam::{UVec2, Vec3};
 use haze::picture::Picture;
 use path::{Pixel, Tracer};
 
-/// How a volume is path-traced.
+/// Parameters of a path trace.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathTrace {
-    /// Pixels along a side of the picture.
+    /// Side of the image, pixels.
     pub size: u32,
-    /// Paths for each pixel. Noise falls with their square root.
+    /// Paths per pixel. Noise decreases with the square root.
     pub samples: u32,
     /// Different seeds give different noise.
     pub seed: u32,
 }
 
-/// What [`PathTrace::run`] finds.
+/// Result of [`PathTrace::run`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traced {
-    /// The share of what is behind that is hidden.
+    /// Coverage: the fraction of the background that is hidden, 0 to 1.
     pub coverage: Picture<f32>,
-    /// Light that comes out to the viewer, for each light: linear, times coverage. 1 is what white paper shows that faces the light.
+    /// Light towards the viewer, one image per light: linear RGB times coverage. 1 is the brightness of white paper
+    /// that faces the light.
     pub light: Vec<Picture<Vec3>>,
 }
 
 impl Traced {
-    /// Mean of the picture under a light.
+    /// Returns the mean of a light's image.
     pub fn mean(&self, light: usize) -> Vec3 {
         let texels = &self.light[light].texels;
         texels.iter().sum::<Vec3>() / texels.len() as f32
@@ -50,8 +51,12 @@ impl Traced {
 }
 
 impl PathTrace {
-    /// Traces a volume of a medium, with parallel light *from* each of `lights` (x right, y up, z to the viewer). `progress` is told
-    /// how many paths of each pixel are done; its error ends the work. The same on any number of processors.
+    /// Traces a volume of a medium under parallel light *from* each direction of `lights` (x right, y up, z towards the
+    /// viewer). `progress` is called with the number of finished paths per pixel; an error from it cancels the trace.
+    /// The result does not depend on the number of processors.
+    ///
+    /// # Errors
+    /// The error of `progress`.
     pub fn run<E>(
         &self,
         volume: &Volume,
@@ -61,7 +66,7 @@ impl PathTrace {
     ) -> Result<Traced, E> {
         let tracer = Tracer::new(volume, medium, lights);
         let count = lights.len();
-        // Of each pixel, beside each other: the lights, then the coverage.
+        // Each pixel has `count + 1` adjacent texels: one per light, then the coverage in x.
         let mut sums = Picture::new(UVec2::new(self.size * (count as u32 + 1), self.size), Vec3::ZERO);
         for sample in 0..self.samples {
             progress(sample)?;

@@ -1,4 +1,4 @@
-//! Paths of light, followed from the viewer.
+//! Light paths, traced from the viewer.
 
 use glam::{UVec2, UVec3, Vec2, Vec3};
 
@@ -9,9 +9,10 @@ use super::shadows::Shadows;
 use super::volume::{Volume, exit};
 use crate::exact::{decay, exp, ln};
 
-/// A path ends here at the latest: what is left of its light shows nothing.
+/// Maximum number of vertices. The light that remains on a path of this length is negligible.
 const MOST_VERTICES: u32 = 1024;
-/// From this vertex on paths are dropped by chance where little light is left on them; the others make up for it.
+/// Russian roulette starts at this vertex: paths with little light end randomly, and the weight of the others is
+/// increased.
 const SURE_VERTICES: u32 = 4;
 
 pub(super) struct Tracer<'a> {
@@ -19,22 +20,22 @@ pub(super) struct Tracer<'a> {
     medium: &'a Medium,
     lights: &'a [Vec3],
     shadows: Shadows,
-    /// Largest extinction that there is.
+    /// Maximum extinction in the volume, for delta tracking.
     majorant: f32,
 }
 
-/// What paths work with, one after the other.
+/// Buffers that are reused from path to path.
 pub(super) struct Scratch {
-    /// Extinction in front of the end of each step through a column.
+    /// Optical depth from the front of a column to the end of each step.
     column: Vec<f32>,
-    /// Densities towards each light.
+    /// Integrated density from a vertex towards each light.
     towards: Vec<f32>,
 }
 
-/// Where paths begin.
+/// The pixel at which paths begin.
 pub(super) struct Pixel {
     pub at: UVec2,
-    /// Pixels along a side of the picture.
+    /// Side of the image, pixels.
     pub size: u32,
     pub seed: u32,
 }
@@ -50,8 +51,9 @@ impl<'a> Tracer<'a> {
         Scratch { column: vec![0.0; steps], towards: vec![0.0; self.lights.len()] }
     }
 
-    /// Adds to each light what one path from somewhere in a pixel finds of it, given that its first vertex is in the smoke, times
-    /// how much of the pixel is; gives that. Where the vertex is goes by the stratum, the how-manieth of how many.
+    /// Traces one path from a random position in a pixel and adds its light to `sums`, one entry per light. The first
+    /// vertex is sampled inside the smoke, and the light is weighted by the coverage there, which is returned. `(index,
+    /// count)` is the stratum for the depth of the first vertex.
     pub fn add_path(&self, pixel: &Pixel, (index, count): (u32, u32), scratch: &mut Scratch, sums: &mut [Vec3]) -> f32 {
         let Scratch { column, towards } = scratch;
         let key = UVec3::new(pixel.at.x, pixel.at.y, pixel.seed.wrapping_mul(0x9e37_79b9).wrapping_add(index));
@@ -88,7 +90,7 @@ impl<'a> Tracer<'a> {
         covered
     }
 
-    /// Extinction added up from the front of a column, at the ends of equal steps; gives all of it.
+    /// Fills `column` with the optical depth from the front to the end of each of its equal steps. Returns the total.
     fn fill(&self, front: Vec2, column: &mut [f32]) -> f32 {
         let step = 2.0 / column.len() as f32;
         let mut sum = 0.0;
@@ -100,7 +102,8 @@ impl<'a> Tracer<'a> {
         sum
     }
 
-    /// Where a ray is scattered next, if it does not leave. (Woodcock et al., 1965)
+    /// Samples the next scattering position by delta tracking; `None` if the ray leaves the volume. (Woodcock et al.,
+    /// 1965)
     fn next(&self, p: Vec3, direction: Vec3, random: &mut Random) -> Option<Vec3> {
         let most = exit(p, direction);
         let mut way = 0.0;
@@ -117,7 +120,7 @@ impl<'a> Tracer<'a> {
     }
 }
 
-/// Where in a column so much extinction lies in front.
+/// Returns the z in a column at which the optical depth from the front equals `depth`.
 fn met_at(column: &[f32], depth: f32) -> f32 {
     let step = column.partition_point(|&end| end < depth).min(column.len() - 1);
     let before = if step == 0 { 0.0 } else { column[step - 1] };

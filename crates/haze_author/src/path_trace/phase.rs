@@ -1,4 +1,4 @@
-//! Where light goes that is scattered. (Henyey and Greenstein, 1941)
+//! Henyey-Greenstein phase function and its sampling. (Henyey and Greenstein, 1941)
 
 use std::f32::consts::PI;
 
@@ -7,12 +7,12 @@ use glam::Vec3;
 use super::random::Random;
 use haze::formula::six_way::henyey_greenstein;
 
-/// The share of scattered light that goes on at an angle of this cosine, for each steradian.
+/// Returns the phase function for the cosine of a scattering angle, per steradian.
 pub(super) fn phase(cos: f32, g: f32) -> f32 {
     henyey_greenstein(cos, g) * (1.0 - g * g) / (4.0 * PI)
 }
 
-/// A direction that light which came along `direction` goes on in, as often as the phase function says.
+/// Samples a scattered direction for light that travels along `direction`, with the phase function's probability.
 pub(super) fn scattered(direction: Vec3, g: f32, random: &mut Random) -> Vec3 {
     let share = random.unit();
     let cos = if g.abs() < 1.0e-3 {

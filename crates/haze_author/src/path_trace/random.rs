@@ -1,4 +1,4 @@
-//! Random numbers of a path: integers, so that every machine draws the same.
+//! Random numbers of a path, from an integer hash so that every machine draws the same.
 
 use glam::{UVec3, Vec2};
 
@@ -15,7 +15,7 @@ impl Random {
         Self { key: pcg3d(key), drawn: [0; 3], left: 0 }
     }
 
-    /// From 0 up to, but not, 1.
+    /// Returns a uniform number in [0, 1).
     pub fn unit(&mut self) -> f32 {
         if self.left == 0 {
             self.key.x = self.key.x.wrapping_add(1);
@@ -26,7 +26,7 @@ impl Random {
         unit(self.drawn[self.left])
     }
 
-    /// A direction in a plane.
+    /// Returns a uniform unit vector in the plane.
     pub fn on_circle(&mut self) -> Vec2 {
         loop {
             let p = Vec2::new(self.unit(), self.unit()) * 2.0 - 1.0;

@@ -1,11 +1,11 @@
-//! What stands between every voxel and every light.
+//! Precomputed shadows: integrated density between every voxel and every light.
 
 use glam::{UVec2, UVec3, Vec3};
 
 use super::volume::{Volume, corners, exit, position};
 use haze::assets::picture::Picture;
 
-/// Densities added up from each voxel towards each light. Those of a voxel stand beside each other.
+/// Integrated density from each voxel towards each light. The entries of a voxel are adjacent.
 pub(super) struct Shadows {
     size: UVec3,
     depths: Picture<f32>,
@@ -14,12 +14,12 @@ pub(super) struct Shadows {
 
 impl Shadows {
     pub fn new(volume: &Volume, lights: &[Vec3]) -> Self {
-        // As fine along each axis: what lies between would come out too dark.
+        // The grid is equally fine along each axis. A coarser axis would make positions between voxels too dark.
         let size = UVec3::splat(volume.size.max_element());
         let UVec3 { x: width, y: height, z: depth } = size;
         let count = lights.len();
         let mut depths = Picture::new(UVec2::new(width * count as u32, height * depth), 0.0);
-        // Half of the narrowest side of a voxel.
+        // Half of the narrowest side of a voxel: the volume is 2 wide.
         let step = 1.0 / volume.size.max_element() as f32;
         depths.for_bands(|first, band| {
             for (row, line) in (first..).zip(band.chunks_mut(width as usize * count)) {
@@ -38,7 +38,7 @@ impl Shadows {
         Self { size, depths, lights: count }
     }
 
-    /// Towards every light, from a place between voxels.
+    /// Writes the integrated density towards every light to `sums`, trilinearly interpolated at `p`.
     pub fn at(&self, p: Vec3, sums: &mut [f32]) {
         sums.fill(0.0);
         let corners = corners(self.size, p);

@@ -4,7 +4,7 @@ use super::phase::{phase, scattered};
 use super::random::Random;
 use super::*;
 
-/// A ball, soft at its surface.
+/// A ball with a soft surface.
 fn ball(size: u32) -> Volume {
     let mut volume = Volume { size: UVec3::splat(size), densities: Vec::new() };
     for index in 0..size.pow(3) {
@@ -21,7 +21,7 @@ fn trace(volume: &Volume, medium: Medium, lights: &[Vec3], samples: u32) -> Trac
 }
 
 #[test]
-fn a_phase_function_keeps_all_light_and_is_what_is_sampled() {
+fn the_phase_function_is_normalised_and_sampled_with_its_mean_cosine() {
     for g in [-0.5, 0.0, 0.5, 0.9] {
         let steps = 20_000;
         let cos = |step: u32| (step as f32 + 0.5) / steps as f32 * 2.0 - 1.0;
@@ -35,8 +35,8 @@ fn a_phase_function_keeps_all_light_and_is_what_is_sampled() {
 }
 
 #[test]
-fn thin_smoke_scatters_once() {
-    // So thin that light is scattered once: coverage times albedo times phase function.
+fn thin_smoke_matches_single_scattering() {
+    // Thin enough that light scatters once: coverage times albedo times phase function.
     let medium = Medium { albedo: Vec3::new(0.5, 0.25, 1.0), g: 0.4, density: 0.01 };
     let lights = [Vec3::Z, Vec3::X, Vec3::NEG_Z];
     let traced = trace(&ball(16), medium, &lights, 4);
@@ -48,8 +48,8 @@ fn thin_smoke_scatters_once() {
 }
 
 #[test]
-fn smoke_that_swallows_nothing_gives_back_all_light() {
-    // Light from all round, on smoke that only scatters, is the same with and without it.
+fn smoke_without_absorption_conserves_light() {
+    // White furnace: under uniform light, smoke without absorption is as bright as the surroundings.
     let mut lights = Vec::new();
     for z in [-0.9_f32, -0.7, -0.5, -0.3, -0.1, 0.1, 0.3, 0.5, 0.7, 0.9] {
         for turn in 0..10 {
@@ -60,14 +60,15 @@ fn smoke_that_swallows_nothing_gives_back_all_light() {
     let medium = Medium { albedo: Vec3::ONE, g: 0.0, density: 5.0 };
     let traced = trace(&ball(24), medium, &lights, 16);
     let coverage: f32 = traced.coverage.texels.iter().sum();
-    // Each stands for 4π / 100; irradiance π of each is radiance 1 from everywhere four times over.
+    // A uniform radiance of 1 equals 100 lights of irradiance 4π / 100. The traced lights have irradiance π each, so
+    // scale by 4 / 100.
     let light: f32 = traced.light.iter().flat_map(|picture| &picture.texels).map(|light| light.y).sum();
     let share = light * 4.0 / 100.0 / coverage;
     assert!((share - 1.0).abs() < 0.02, "{share}");
 }
 
 #[test]
-fn the_same_seed_is_the_same_picture_and_an_error_ends_it() {
+fn equal_seeds_give_equal_images_and_an_error_cancels_the_trace() {
     let medium = MEDIA[0].medium;
     let [first, again] = [2, 2].map(|samples| trace(&ball(12), medium, &[Vec3::Z, Vec3::X], samples));
     assert!(first == again);

@@ -1,36 +1,37 @@
-//! Densities of a cube, and what lies between its voxels.
+//! Density volume with trilinear interpolation.
 
 use glam::{UVec3, Vec3};
 
-/// Densities in the cube from -1 to 1: x right, y up, z to the viewer. The first voxel is at the left, on top and in front.
+/// Densities in the cube from -1 to 1: x right, y up, z towards the viewer. The first voxel is at the left, top and
+/// front.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Volume {
-    /// Voxels across, down and away from the viewer.
+    /// Number of voxels across, down and away from the viewer.
     pub size: UVec3,
-    /// `size` of them, across first, then down: 0 where there is nothing, about 1 inside.
+    /// One density per voxel, across first, then down, then away: 0 outside, about 1 inside.
     pub densities: Vec<f32>,
 }
 
-/// The eight voxels round a place, and how much each of them counts.
+/// The eight voxels around a position with their trilinear weights.
 pub(super) struct Corners {
     pub voxels: [usize; 8],
     pub weights: [f32; 8],
 }
 
 impl Volume {
-    /// The middle of a voxel.
+    /// Returns the centre of a voxel.
     pub fn position(&self, voxel: UVec3) -> Vec3 {
         position(self.size, voxel)
     }
 
-    /// The density at a place in the cube, between voxels a mix of them.
+    /// Returns the trilinearly interpolated density at a position in the cube.
     pub fn density(&self, p: Vec3) -> f32 {
         let Corners { voxels, weights } = corners(self.size, p);
         voxels.iter().zip(weights).map(|(&voxel, weight)| self.densities[voxel] * weight).sum()
     }
 
-    /// A grid as Mitsuba 3 reads it (`gridvolume`, version 3, 32 bits): from (0, 0, 0) to (1, 1, 1), x across, y up, z to the
-    /// viewer.
+    /// Encodes the volume for Mitsuba 3 (`gridvolume`, version 3, 32-bit floats): bounds (0, 0, 0) to (1, 1, 1), x
+    /// across, y up, z towards the viewer.
     pub fn to_mitsuba(&self) -> Vec<u8> {
         let mut bytes = b"VOL\x03".to_vec();
         bytes.extend(1_i32.to_le_bytes());
@@ -51,7 +52,7 @@ impl Volume {
     }
 }
 
-/// The middle of a voxel of a cube of so many.
+/// Returns the centre of a voxel in the cube from -1 to 1, for a grid of `size`.
 pub(crate) fn position(size: UVec3, voxel: UVec3) -> Vec3 {
     let p = (voxel.as_vec3() + 0.5) * (2.0 / size.as_vec3()) - 1.0;
     Vec3::new(p.x, -p.y, -p.z)
@@ -75,7 +76,7 @@ pub(super) fn corners(size: UVec3, p: Vec3) -> Corners {
     }
 }
 
-/// How far a ray from inside goes until it leaves the cube.
+/// Returns the distance at which a ray from inside leaves the cube.
 pub(super) fn exit(p: Vec3, direction: Vec3) -> f32 {
     let to = |axis: usize| {
         let speed = direction[axis];

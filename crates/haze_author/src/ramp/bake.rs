@@ -1,4 +1,4 @@
-//! Recipes of ramps, and the pictures that are baked from them.
+//! Recipes of ramps, and baking them to images.
 
 use std::path::Path;
 
@@ -15,38 +15,39 @@ use haze::assets::picture::{MAX_BYTES, MAX_SIDE, Picture};
 use haze::error::{Error, FieldError};
 use haze::settings::{FieldVisitor, Fields, validate};
 
-/// The version of the recipe format that this code writes. It reads 1 as well: rows of monotone curves in Oklab, 16 bits.
+/// Recipe format version that this code writes. Version 1 is read too: rows of monotone curves in Oklab, 16 bits per
+/// channel.
 pub const RECIPE_VERSION: u32 = 2;
 
-/// Largest recipe that is read, bytes: 100 rows of 1000 stops take 9 MB in the longest way to write them.
+/// Size limit of a recipe file, bytes. 100 rows of 1000 stops in the longest notation take 9 MB.
 const MAX_RECIPE: u64 = 16 << 20;
 
-/// How a ramp was made: the contents of a `*.ramp.json`.
+/// Recipe of a ramp: the contents of a `*.ramp.json`.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RampRecipe {
     /// Format version.
     pub version: u32,
-    /// Texels across.
+    /// Width, texels.
     pub width: u32,
-    /// Texels up: 1 for a ramp of one axis.
+    /// Height, texels. 1 for a ramp of one axis.
     pub height: u32,
-    /// Bits a channel: 16, or 8, which are dithered.
+    /// Bits per channel: 16, or 8 with dithering.
     #[serde(default = "most_bits", skip_serializing_if = "is_most_bits")]
     pub bits: u32,
-    /// The space that colours are blended in, along rows and from row to row; where that is through hues, rows are blended in
+    /// Colour space for blending along rows and between rows. With an HSV space, rows are blended with each other in
     /// Oklab.
     #[serde(default, skip_serializing_if = "Blend::is_default")]
     pub blend: Blend,
-    /// The place along the rows, as a formula of both axes, `u` and `v`: `u / (0.2 + v)`. What it gives is clamped to 0 to 1.
-    /// Empty is `u`.
+    /// Formula for the position along the rows in terms of both axes `u` and `v`, for example `u / (0.2 + v)`. The
+    /// result is clamped to 0 to 1. Empty means `u`.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub place: String,
-    /// A gradient along the second axis, whose light multiplies that of the rows. Empty is white.
+    /// Gradient along the second axis. Its linear colour is multiplied with that of the rows. Empty means white.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub times: Vec<RampStop>,
-    /// Gradients along the second axis, from 0 to 1. One row for a ramp of one axis.
+    /// Gradients, placed along the second axis from 0 to 1. One row for a ramp of one axis.
     pub rows: Vec<RampRow>,
 }
 
@@ -58,7 +59,7 @@ fn is_most_bits(bits: &u32) -> bool {
     *bits == most_bits()
 }
 
-/// A black strip.
+/// A black ramp of one axis.
 impl Default for RampRecipe {
     fn default() -> Self {
         let stops = vec![RampStop::new(0.0, HexColour([0; 3]))];
@@ -79,7 +80,7 @@ impl Fields for RampRecipe {
     fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
         visitor.integer("version", &mut self.version, 1..=RECIPE_VERSION, "");
         visitor.integer("width", &mut self.width, 2..=MAX_SIDE, "texels");
-        // What is baked must be readable again: three channels of 16 bits.
+        // The baked image (three channels of 16 bits) must stay within the size limit for reading.
         let most = MAX_BYTES as u32 / 6 / self.width.max(1);
         visitor.integer("height", &mut self.height, 1..=most.min(MAX_SIDE), "texels");
         visitor.integer("bits", &mut self.bits, 8..=16, "");
@@ -95,7 +96,7 @@ impl Fields for RampRecipe {
 }
 
 impl RampRecipe {
-    /// Reads a `*.ramp.json`, of at most 16 MiB.
+    /// Loads a `*.ramp.json` of at most 16 MiB.
     ///
     /// # Errors
     /// [`Error::Io`], [`Error::Json`] or [`Error::JsonField`].
@@ -103,7 +104,7 @@ impl RampRecipe {
         Self::parse(path, &json::read(path, MAX_RECIPE)?)
     }
 
-    /// The same of its text; `path` is only named in errors.
+    /// Parses the text of a recipe. `path` is used only in errors.
     ///
     /// # Errors
     /// [`Error::Json`] or [`Error::JsonField`].
@@ -113,16 +114,16 @@ impl RampRecipe {
         Ok(recipe)
     }
 
-    /// The JSON that [`RampRecipe::parse`] makes this recipe from, ending with a line break: a line for each stop, and nothing
-    /// that is at its default.
+    /// Returns the recipe as JSON that [`RampRecipe::parse`] reads, ending with a line break. Each stop takes one line;
+    /// fields at their default are omitted.
     pub fn to_text(&self) -> String {
-        // Numbers and texts: there is nothing that could fail.
+        // Numbers and strings only, so serialisation cannot fail.
         let pretty = serde_json::to_string_pretty(self).unwrap_or_default();
         let mut text = String::new();
         let mut lines = pretty.lines().peekable();
         while let Some(line) = lines.next() {
             text += line;
-            // What opens with a place and a colour is a stop.
+            // An object that begins with `at` and `colour` is a stop.
             let is_stop = line.trim_start() == "{" && {
                 let mut ahead = lines.clone();
                 ahead.next().is_some_and(|line| line.contains("\"at\""))
@@ -142,7 +143,7 @@ impl RampRecipe {
         text
     }
 
-    /// Checks ranges, the formula, and that no gradient is without stops.
+    /// Checks ranges, the formula, and that every gradient has stops.
     ///
     /// # Errors
     /// The first field that is not valid.
@@ -160,7 +161,7 @@ impl RampRecipe {
         rows.try_for_each(|(index, row)| not_empty(format!("rows[{index}].stops"), &row.stops))
     }
 
-    /// What version 1 did not have.
+    /// Returns the first used field that version 1 did not have.
     fn newest_field(&self) -> Option<&'static str> {
         let mut curves = self.rows.iter().flat_map(|row| row.stops.iter().map(|stop| stop.curve).chain([row.curve]));
         let has_curves = curves.any(|curve| curve != Curve::default());
@@ -178,7 +179,7 @@ impl RampRecipe {
         (!self.place.is_empty()).then(|| Formula::parse("place", &self.place)).transpose()
     }
 
-    /// Makes the recipe ready to be asked for many colours.
+    /// Prepares the recipe for sampling.
     ///
     /// # Errors
     /// As [`RampRecipe::validate`].
@@ -189,7 +190,7 @@ impl RampRecipe {
         Ok(Gradient { rows: Rows::new(self.blend, &self.rows), place: self.formula()?, times })
     }
 
-    /// Bakes the picture: sRGB, the row for 0 at the bottom.
+    /// Bakes the image: sRGB, row 0 of the second axis at the bottom.
     ///
     /// # Errors
     /// As [`RampRecipe::validate`].
@@ -205,7 +206,7 @@ impl RampRecipe {
     }
 }
 
-/// A recipe made ready: its stops sorted, their colours converted.
+/// A recipe prepared for sampling: stops sorted, colours converted to the blend space.
 #[derive(Clone, Debug)]
 pub struct Gradient {
     rows: Rows,
@@ -214,7 +215,7 @@ pub struct Gradient {
 }
 
 impl Gradient {
-    /// The colour at a place, 0 to 1 on both axes, linear RGB.
+    /// Returns the linear RGB colour at a position, 0 to 1 on both axes.
     pub fn sample(&self, u: f32, v: f32) -> Vec3 {
         let place = self.place.as_ref().map_or(u, |formula| formula.place(u, v));
         let light = self.rows.sample(place, v);
@@ -222,21 +223,21 @@ impl Gradient {
     }
 }
 
-/// The picture to write of sRGB texels.
+/// Converts sRGB texels to an image of 16 bits per channel.
 pub(super) fn image_of(picture: Picture<[u16; 3]>) -> DynamicImage {
-    // A texel for every pixel, so never empty.
+    // Never the default: there is one texel per pixel.
     ImageBuffer::from_raw(picture.size.x, picture.size.y, picture.texels.into_flattened())
         .map_or_else(DynamicImage::default, DynamicImage::ImageRgb16)
 }
 
-/// The same in 8 bits: rounded up as often as the rest of each texel says, so that slopes show no steps.
+/// Converts sRGB texels to an image of 8 bits per channel with ordered dithering, so that gradients show no bands.
 fn dithered(picture: &Picture<[u16; 3]>) -> DynamicImage {
     let dither = |(index, texel): (u32, &[u16; 3])| {
-        // Thresholds that are even along any line: multiples of the two powers of the plastic number, in parts of 2^32. (Roberts,
-        // "The unreasonable effectiveness of quasirandom sequences", 2018)
+        // R2 sequence: multiples of the inverse plastic number and of its square, in units of 2^-32. Thresholds are
+        // evenly distributed along any line. (Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018)
         let (x, y) = (index % picture.size.x, index / picture.size.x);
         let threshold = x.wrapping_mul(3_242_174_889).wrapping_add(y.wrapping_mul(2_447_445_414)) >> 16;
-        // Colours of 8 bits are whole here, and stay.
+        // Colours that are exact in 8 bits stay unchanged.
         texel.map(|channel| ((u32::from(channel) * 255 + threshold.min(65534)) / 65535) as u8)
     };
     let texels: Vec<_> = (0..).zip(&picture.texels).flat_map(dither).collect();

@@ -1,4 +1,4 @@
-//! What is wrong with a ramp's picture.
+//! Checks a ramp's image for visible defects.
 
 use glam::Vec3;
 use image::DynamicImage;
@@ -7,22 +7,22 @@ use crate::finding::Finding;
 use haze::formula::colour::{linear_from_srgb, luminance, srgb_from_linear};
 use haze::ramp::Role;
 
-/// Least jump that is a step or a seam, of 255: a twentieth of white.
+/// Minimum jump in luminance that counts as a step or a seam, of 255: a twentieth of white.
 const JUMP: f32 = 12.0;
-/// How much more than its neighbours it must be.
+/// Minimum ratio of a jump to the differences beside it.
 const RATIO: f32 = 3.0;
-/// Brightest that is black, of 255: what rounding leaves.
+/// Brightest 16-bit code that counts as black: 1 of 255, for rounding.
 const BLACK: u16 = 257;
 
-/// Looks for what would show, in an sRGB picture; where it is not known what the ramp is for, for less.
+/// Returns the defects of an sRGB image that would be visible. Without a role, only the checks that hold for every role
+/// run.
 ///
-/// - `banding`: a slope that goes by steps: 8 bits without dithering.
-/// - `step`: a jump of luminance along either axis, where it is no style: in specular, scatter and age ramps. Diffuse and
-///   coverage ramps may have steps; toon is made of them.
-/// - `seam`: first or last texels that are not of the gradient beside them: a frame, or what scaling a picture left.
+/// - `banding`: a gradient of visible steps: 8 bits without dithering.
+/// - `step`: a jump of luminance along either axis, except in diffuse and coverage ramps: toon shading needs steps.
+/// - `seam`: a first or last texel that does not continue the gradient, such as a frame or a scaling artefact.
 /// - `ends`: a specular ramp that is not black at amount 0 or at distance 1.
-/// - `round`: a specular ramp that is brightest away from distance 0: painted as a glow looks, not along its axes.
-/// - `turned`: a gradient from top to bottom.
+/// - `round`: a specular ramp whose brightest column is not distance 0, like a picture of a round glow.
+/// - `turned`: a gradient from top to bottom instead of left to right.
 pub fn check(picture: &DynamicImage, role: Option<Role>) -> Vec<Finding> {
     let pixels = picture.to_rgb16();
     let (width, height) = pixels.dimensions();
@@ -31,7 +31,7 @@ pub fn check(picture: &DynamicImage, role: Option<Role>) -> Vec<Finding> {
     if height > width && pixels.rows().all(|mut row| row.next().is_some_and(|first| row.all(|pixel| pixel == first))) {
         find(
             "turned",
-            format!("{width}x{height}, and all of a row is one colour; expected a gradient from left to right"),
+            format!("every row of {width}x{height} pixels has one colour; expected a gradient from left to right"),
         );
         return findings;
     }
@@ -45,7 +45,7 @@ pub fn check(picture: &DynamicImage, role: Option<Role>) -> Vec<Finding> {
     {
         find(
             "banding",
-            format!("a slope of steps at {at:.2} {axis}; expected 16 bits a channel, or 8 that are dithered"),
+            format!("visible steps at {at:.2} {axis}; expected 16 bits a channel, or 8 bits with dithering"),
         );
     }
     let jump = lines().find_map(|(axis, line)| Some((axis, step(&luminances(line))?)));
@@ -56,7 +56,7 @@ pub fn check(picture: &DynamicImage, role: Option<Role>) -> Vec<Finding> {
     if let Some((axis, end)) = lines().find_map(|(axis, line)| Some((axis, seam(&luminances(line))?))) {
         find(
             "seam",
-            format!("the {end} texel {axis} stands out from those beside it; expected the gradient to go on to it"),
+            format!("the {end} texel {axis} differs from its neighbours; expected the gradient to continue to the end"),
         );
     }
     if role == Some(Role::Specular) {
@@ -66,7 +66,7 @@ pub fn check(picture: &DynamicImage, role: Option<Role>) -> Vec<Finding> {
             (along_columns.last(), "distance 1, the last column", "the quads of lights show"),
         ] {
             if let Some(bright) = line.map(|line| brightest(line)).filter(|&bright| bright > BLACK) {
-                find("ends", format!("{} of 255 at {end}; expected black: else {why}", bright / 257));
+                find("ends", format!("brightness {} of 255 at {end}; expected black: otherwise {why}", bright / 257));
             }
         }
         let lightest = along_columns.first().map_or(0, |line| brightest(line));
@@ -76,8 +76,8 @@ pub fn check(picture: &DynamicImage, role: Option<Role>) -> Vec<Finding> {
             findings.push(Finding {
                 name: "round",
                 what: format!(
-                    "{lightest} of 255 at distance 0, the first column, and {most} farther on; expected it to be brightest at the \
-                     light: a ramp is no picture of a glow"
+                    "brightness {lightest} of 255 at distance 0, the first column, but {most} farther out; expected the first \
+                     column to be the brightest: the axes are distance and amount, not a picture of a glow"
                 ),
             });
         }
@@ -85,7 +85,7 @@ pub fn check(picture: &DynamicImage, role: Option<Role>) -> Vec<Finding> {
     findings
 }
 
-/// Code of the luminance, of 255.
+/// Returns the sRGB code of each texel's luminance, 0 to 255.
 fn luminances(line: &[[u16; 3]]) -> Vec<f32> {
     let linear = |channel: u16| linear_from_srgb(f32::from(channel) / 65535.0);
     line.iter().map(|texel| srgb_from_linear(luminance(Vec3::from(texel.map(linear)))) * 255.0).collect()
@@ -95,8 +95,8 @@ fn place(index: usize, count: usize) -> f32 {
     index as f32 / (count - 1).max(1) as f32
 }
 
-/// Where four steps of one channel follow each other in one direction, of one or two codes each, after flats of six texels or
-/// more. Dithering goes back and forth.
+/// Returns the position of banding, 0 to 1: four consecutive steps of a channel in one direction, of one or two codes
+/// each, after at least six equal texels each. Dithered gradients alternate in direction and do not match.
 fn stairs(line: &[[u16; 3]]) -> Option<f32> {
     (0..3).find_map(|channel| {
         let codes: Vec<i32> = line.iter().map(|texel| i32::from(texel[channel] / 257)).collect();
@@ -118,14 +118,14 @@ fn stairs(line: &[[u16; 3]]) -> Option<f32> {
     })
 }
 
-/// Where luminance jumps, seams left out.
+/// Returns the position of a jump in luminance, 0 to 1, ignoring the first and last texel.
 fn step(line: &[f32]) -> Option<f32> {
     let jumps: Vec<f32> = line.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
     let stands_out = |near: &&[f32]| near[1] >= JUMP && near[1] >= RATIO * near[0].max(near[2]);
     jumps.windows(3).position(|near| stands_out(&near)).map(|index| place(index + 1, line.len()))
 }
 
-/// Which end stands out.
+/// Returns the end whose texel differs from its neighbours.
 fn seam(line: &[f32]) -> Option<&'static str> {
     let &[a, b, c, ref rest @ ..] = line else { return None };
     let stands_out = |a: f32, b: f32, c: f32| (a - b).abs() >= JUMP && (a - b).abs() >= RATIO * (b - c).abs();
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_with_haze_is_good() {
+    fn built_in_ramps_and_templates_have_no_findings() {
         for ramp in builtin::RAMPS {
             let picture = decode_png(Path::new(ramp.name), ramp.bytes).unwrap();
             let role = Role::of_name(ramp.name);
@@ -176,7 +176,7 @@ mod tests {
 
     #[test]
     fn every_finding_is_found() {
-        // 40 codes over 256 texels, by steps, and dithered.
+        // 40 codes over 256 texels, without and with dithering.
         assert_eq!(names(&grey(256, 1, |x, _| 20 + x * 40 / 256), None), ["banding"]);
         assert_eq!(names(&grey(16, 256, |x, y| 20 + x * 8 + y * 40 / 256), None), ["banding"]);
         let stop = |at, grey| RampStop::new(at, HexColour([grey; 3]));
@@ -211,18 +211,18 @@ mod tests {
         assert_eq!(names(&round, Some(Role::Specular)), ["round"]);
         assert!(names(&round, None).is_empty());
         let what = &check(&glow.flipv(), Some(Role::Specular))[0].what;
-        assert!(what.contains("at amount 0, the bottom row; expected black: else lights glow"), "{what}");
+        assert!(what.contains("at amount 0, the bottom row; expected black: otherwise lights glow"), "{what}");
     }
 
     #[test]
-    fn pictures_of_few_texels_are_looked_at() {
+    fn images_of_few_texels_do_not_panic() {
         for (width, height) in [(1, 1), (2, 1), (1, 2), (3, 3), (4, 1), (5, 5), (6, 6)] {
             names(&grey(width, height, |x, y| (x * 97 + y * 61) % 256), Some(Role::Specular));
         }
     }
 
     #[test]
-    fn names_tell_what_a_ramp_is_for() {
+    fn the_role_follows_from_the_file_name() {
         assert_eq!(Role::of_name("specular_moon.png"), Some(Role::Specular));
         assert_eq!(Role::of_name("age.ramp.json"), Some(Role::Age));
         assert_eq!(Role::of_name("moon.png"), None);

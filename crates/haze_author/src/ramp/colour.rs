@@ -1,5 +1,5 @@
-//! Colours of gradients: how they are written, and the spaces they are blended in. No function of the platform's, so that every
-//! machine bakes the same bytes.
+//! Colours of gradients: hexadecimal notation, and conversion to and from the blend spaces. Uses only
+//! `exact.rs` for powers, so bakes are bit-identical on every machine.
 
 use glam::Vec3;
 
@@ -8,18 +8,18 @@ use haze::error::one_line;
 use haze::settings::choice;
 
 choice! {
-    /// The space that a gradient is blended in.
+    /// Colour space in which a gradient is blended.
     Blend {
-        /// Even to the eye, and colourful between complements.
+        /// Perceptually even; stays colourful between complementary colours.
         #[default]
         Oklab = "oklab",
-        /// As light adds up: bright colours reach far. What Blender's ramps do.
+        /// Linear light: bright colours dominate. Blender's ramps blend this way.
         Linear = "linear",
-        /// As code values: what most paint programs do.
+        /// sRGB code values. Most paint programs blend this way.
         Srgb = "srgb",
-        /// Through the hues, the short way round.
+        /// HSV, along the shorter arc of hues.
         HsvNear = "hsv_near",
-        /// Through the hues, the long way round; equal hues stay.
+        /// HSV, along the longer arc of hues. Equal hues stay.
         HsvFar = "hsv_far",
     }
 }
@@ -31,39 +31,39 @@ choice! {
 pub struct HexColour(pub [u8; 3]);
 
 impl HexColour {
-    /// Linear RGB, 0..1.
+    /// Returns linear RGB, 0..1.
     pub fn linear(self) -> Vec3 {
         self.srgb().map(linear_from_srgb)
     }
 
-    /// sRGB code, 0..1.
+    /// Returns the sRGB code, 0..1.
     pub fn srgb(self) -> Vec3 {
         Vec3::from(self.0.map(|channel| f32::from(channel) / 255.0))
     }
 
-    /// Hue in turns, saturation and value of the sRGB code, 0..1.
+    /// Returns hue in turns, saturation and value of the sRGB code, each 0..1.
     pub fn hsv(self) -> Vec3 {
         let hsv = hsv_from_rgb(self.srgb());
         hsv.with_x(hsv.x.rem_euclid(1.0))
     }
 
-    /// The nearest to a hue in turns, saturation and value.
+    /// Rounds a hue in turns, saturation and value to the nearest colour.
     pub fn from_hsv(hsv: Vec3) -> Self {
         Self::from_srgb(rgb_from_hsv(hsv))
     }
 
-    /// The nearest to sRGB code, 0..1; what is beyond is clamped.
+    /// Rounds an sRGB code, 0..1, to the nearest colour. Values outside are clamped.
     pub fn from_srgb(code: Vec3) -> Self {
         Self(code.to_array().map(|channel| (channel * 255.0).round() as u8))
     }
 }
 
 impl TryFrom<String> for HexColour {
-    /// What is wrong; the field is known to whoever asks.
+    /// Message without the field's name; the caller adds it.
     type Error = String;
 
     fn try_from(text: String) -> Result<Self, String> {
-        // `from_str_radix` takes a sign too.
+        // `from_str_radix` would also accept a sign.
         let is_hex = |digits: &&str| digits.len() == 6 && digits.bytes().all(|digit| digit.is_ascii_hexdigit());
         let digits = text.strip_prefix('#').filter(is_hex).and_then(|digits| u32::from_str_radix(digits, 16).ok());
         match digits.map(u32::to_be_bytes) {
@@ -86,17 +86,17 @@ impl Blend {
         *self == Self::default()
     }
 
-    /// True where the first number of a colour is a hue, in turns.
+    /// True if the first component is a hue, in turns.
     pub(super) fn has_hue(self) -> bool {
         matches!(self, Self::HsvNear | Self::HsvFar)
     }
 
-    /// A colour as numbers that can be blended.
+    /// Converts a colour to the blend space.
     pub(super) fn of(self, colour: HexColour) -> Vec3 {
         self.of_code(colour.srgb())
     }
 
-    /// The same of sRGB code, 0..1.
+    /// Converts an sRGB code, 0..1, to the blend space.
     pub(super) fn of_code(self, code: Vec3) -> Vec3 {
         match self {
             Self::Oklab => oklab_from_linear(code.map(linear_from_srgb)),
@@ -106,7 +106,7 @@ impl Blend {
         }
     }
 
-    /// Linear RGB, not below 0.
+    /// Converts from the blend space to linear RGB, at least 0.
     pub(super) fn linear(self, blended: Vec3) -> Vec3 {
         let linear = match self {
             Self::Oklab => linear_from_oklab(blended),
@@ -118,22 +118,22 @@ impl Blend {
     }
 }
 
-/// A linear colour as a texel of a ramp's picture.
+/// Encodes a linear colour as a texel of a ramp's image: sRGB, 16 bits per channel.
 pub(super) fn srgb16_from_linear(colour: Vec3) -> [u16; 3] {
     colour.to_array().map(|channel| (srgb_from_linear(channel.clamp(0.0, 1.0)) * 65535.0).round() as u16)
 }
 
-/// As [`haze::formula::colour::linear_from_srgb`], to the bit the same on every machine.
+/// Same as [`crate::formula::colour::linear_from_srgb`], but bit-identical on every machine.
 fn linear_from_srgb(encoded: f32) -> f32 {
     if encoded <= 0.04045 { encoded / 12.92 } else { power((encoded + 0.055) / 1.055, 2.4) }
 }
 
-/// As [`haze::formula::colour::srgb_from_linear`], to the bit the same on every machine.
+/// Same as [`crate::formula::colour::srgb_from_linear`], but bit-identical on every machine.
 pub(super) fn srgb_from_linear(linear: f32) -> f32 {
     if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * power(linear, 1.0 / 2.4) - 0.055 }
 }
 
-/// (Ottosson, "A perceptual color space for image processing", 2020)
+/// Converts linear RGB to Oklab. (Ottosson, "A perceptual color space for image processing", 2020)
 pub(super) fn oklab_from_linear(c: Vec3) -> Vec3 {
     let root = |x: f32| raise(x, 1.0 / 3.0) as f32;
     let l = root(0.412_221_46 * c.x + 0.536_332_55 * c.y + 0.051_445_995 * c.z);
@@ -158,7 +158,7 @@ fn linear_from_oklab(lab: Vec3) -> Vec3 {
     )
 }
 
-/// Hue in turns, saturation, value.
+/// Converts to hue in turns, saturation and value.
 fn hsv_from_rgb(c: Vec3) -> Vec3 {
     let (value, least) = (c.max_element(), c.min_element());
     let range = value - least;
@@ -183,7 +183,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_space_gives_back_what_it_took() {
+    fn every_blend_space_round_trips() {
         for blend in Blend::ALL.iter().copied() {
             for code in 0..4096_u32 {
                 let colour = HexColour([code % 16, code / 16 % 16, code / 256].map(|channel| (channel * 17) as u8));

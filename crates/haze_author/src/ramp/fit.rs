@@ -1,4 +1,4 @@
-//! Stops fitted to pictures.
+//! Fits the stops of a ramp recipe to an image.
 
 use std::ops::Range;
 
@@ -10,32 +10,31 @@ use super::gradient::Rows;
 use haze::error::FieldError;
 use haze::formula::colour::srgb_from_linear;
 
-/// How far a fit is off if nothing is said, steps of 255: one that dithering takes, and half a one that rounding a stop's colour
-/// takes.
+/// Default error bound, steps of 255: one for dithering, and a half for rounding of a stop's colour.
 pub const USUAL_ERROR: f32 = 1.5;
 
-/// Most stops of a fit: what takes more is no picture of gradients, and its recipe would be longer than those that are read.
+/// Maximum number of stops. An image that needs more is not a gradient, and its recipe would exceed the size limit.
 const MOST_STOPS: usize = 50_000;
 
-/// A recipe, and how far what it bakes is off.
+/// A fitted recipe and its error.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// Of the picture's size; one row for a picture whose rows are equal.
+    /// Recipe of the image's size; one row if all rows of the image are equal.
     pub recipe: RampRecipe,
-    /// Largest difference of a channel, steps of 255 of sRGB code.
+    /// Largest difference between the baked recipe and the image in any channel, steps of 255 of sRGB code.
     pub error: f32,
 }
 
-/// Fits stops to an sRGB picture, so that no channel is off by more than `most`, steps of 255 from 1 on. Hard edges are kept as
-/// such: by constant stops between flat parts, by two stops at one place between others.
+/// Fits stops to an sRGB image, so that no channel differs by more than `most`, 1 to 64 steps of 255. Hard edges are
+/// preserved: with constant stops between flat parts, otherwise with two stops at one position.
 ///
 /// # Errors
-/// [`FieldError`] for a `most` that cannot be kept, or a picture that takes more than 50 000 stops.
+/// [`FieldError`] if `most` is out of range, the image is empty, or it needs more than 50 000 stops.
 pub fn fit(picture: &DynamicImage, most: f32) -> Result<Fit, FieldError> {
     check_error(most)?;
     let pixels = picture.to_rgb16();
     if pixels.is_empty() {
-        return Err(FieldError::new("picture", "one without pixels", "some"));
+        return Err(FieldError::new("picture", "no pixels", "at least one pixel"));
     }
     let code = |channel: u16| f32::from(channel) / 257.0;
     let mut rows: Vec<Vec<Vec3>> =
@@ -44,13 +43,13 @@ pub fn fit(picture: &DynamicImage, most: f32) -> Result<Fit, FieldError> {
     for row in &mut rows {
         row.resize(width as usize, row.first().copied().unwrap_or_default());
     }
-    // Rows that dithering alone makes different are one.
+    // Rows that differ only by dithering count as equal.
     let is_strip = rows.iter().all(|row| apart(row, &rows[0]) <= 1.0);
     let mean = |x: usize| rows.iter().map(|row| row[x]).sum::<Vec3>() / rows.len() as f32;
     let strip: Vec<Vec<Vec3>> = is_strip.then(|| (0..width as usize).map(mean).collect()).into_iter().collect();
     let texels = if is_strip { &strip } else { &rows };
     let ways = [Blend::Oklab, Blend::Srgb, Blend::Linear].map(|blend| (blend, usual_curve(blend)));
-    // Some rows tell which way takes the fewest stops.
+    // About eight rows decide which blend space needs the fewest stops.
     let some = texels.iter().step_by(texels.len().div_ceil(8));
     let stops_of = |&(blend, curve): &(Blend, Curve)| -> usize {
         some.clone().map(|row| fit_stops(row, blend, curve, most).len()).sum()
@@ -70,30 +69,30 @@ pub fn fit(picture: &DynamicImage, most: f32) -> Result<Fit, FieldError> {
     Ok(Fit { recipe, error: rows.iter().zip(baked).map(|(a, b)| apart(a, b)).fold(0.0, f32::max) })
 }
 
-/// Fits stops to colours from 0 to 1 at even distances, two at least, steps of 255 of sRGB code, so that no channel is off by more
-/// than `most`.
+/// Fits stops to a row of at least two sRGB codes, 0 to 255, evenly spaced from 0 to 1, so that no channel differs by
+/// more than `most` steps of 255.
 
 pub fn fit_row(row: &[Vec3], blend: Blend, most: f32) -> Vec<RampStop> {
     fit_stops(row, blend, usual_curve(blend), most)
 }
 
-/// Straight lines where other programs have them, too.
+/// Returns the curve to fit with: linear in the spaces in which other programs blend linearly.
 fn usual_curve(blend: Blend) -> Curve {
     if matches!(blend, Blend::Srgb | Blend::Linear) { Curve::Linear } else { Curve::Monotone }
 }
 
-/// Refuses an error that stops of 8 bits a channel cannot keep, or that leaves nothing of a picture.
+/// Returns an error if the bound is below what stops of 8 bits per channel can meet, or too large to be useful.
 pub(super) fn check_error(most: f32) -> Result<(), FieldError> {
     let is_good = (1.0..=64.0).contains(&most);
     if is_good { Ok(()) } else { Err(FieldError::new("error", most, "1 to 64 steps of 255")) }
 }
 
-/// Largest difference of a channel.
+/// Returns the largest difference in any channel.
 fn apart(a: &[Vec3], b: &[Vec3]) -> f32 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs().max_element()).fold(0.0, f32::max)
 }
 
-/// A stop or row to be: which of the texels or rows of texels, and where.
+/// A candidate stop or row: the index of its texel (or row of texels) and its position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Key {
     index: usize,
@@ -101,12 +100,12 @@ struct Key {
     curve: Curve,
 }
 
-/// The recipe's rows; `texels` from the row for 0 on.
+/// Fits the recipe's rows. `texels` begin with row 0 of the second axis.
 fn fit_rows(texels: &[Vec<Vec3>], blend: Blend, curve: Curve, most: f32) -> Vec<RampRow> {
     if let [row] = texels {
         return vec![RampRow { stops: fit_stops(row, blend, curve, most), ..RampRow::default() }];
     }
-    // What is between rows needs some room as well.
+    // Each row gets three quarters of the error bound; the rest is for interpolation between rows.
     let mut fitted: Vec<Option<Vec<RampStop>>> = vec![None; texels.len()];
     let mut rows_of = |keys: &[Key]| -> Vec<RampRow> {
         let row = |&Key { index, at, curve: row_curve }: &Key| {
@@ -152,7 +151,7 @@ fn fit_stops(row: &[Vec3], blend: Blend, curve: Curve, most: f32) -> Vec<RampSto
     stops_of(&keys)
 }
 
-/// How far every texel of a range is off.
+/// Returns the error of every texel of a range.
 fn off(rows: &Rows, v: f32, row: &[Vec3], range: Range<usize>) -> Vec<f32> {
     let last = (row.len() - 1) as f32;
     let error = |index: usize| {
@@ -162,9 +161,9 @@ fn off(rows: &Rows, v: f32, row: &[Vec3], range: Range<usize>) -> Vec<f32> {
     range.map(error).collect()
 }
 
-/// Chooses keys of `count` texels, two at least: those that must be, then the worst between two that are until none is off by
-/// more than `most`, then none that can be done without. `apart` tells two texels apart, `errors` how far each of a range is off
-/// for some keys in a row.
+/// Chooses keys for `count` texels, at least two. Splits the texels at hard edges, adds the worst texel between keys
+/// until every error is at most `most`, then removes redundant keys. `apart` returns the difference of two texels;
+/// `errors` returns the error of each texel of a range for given keys.
 fn choose(
     count: usize,
     curve: Curve,
@@ -190,16 +189,17 @@ fn choose(
         }
         start = end;
     }
-    // A gradient of one colour, or the last part, goes on to nothing.
+    // The last key has no next one, so its curve does not matter; use the usual one instead of constant.
     if let Some(last) = chosen.last_mut() {
         last.curve = curve;
     }
     chosen
 }
 
-/// Whether there is a hard edge between a texel and the one before: a jump that stands out from the slopes beside it.
+/// True if there is a hard edge between a texel and the previous one: a jump much larger than the differences beside
+/// it.
 fn is_edge(index: usize, count: usize, apart: impl Fn(usize, usize) -> f32) -> bool {
-    // A twentieth of white: less is no edge to the eye, and may be noise.
+    // A twentieth of white, of 255. Smaller jumps are not visible as edges and may be noise.
     const LEAST: f32 = 12.0;
     let jump = apart(index - 1, index);
     let before = if index >= 2 { apart(index - 2, index - 1) } else { 0.0 };
@@ -207,7 +207,8 @@ fn is_edge(index: usize, count: usize, apart: impl Fn(usize, usize) -> f32) -> b
     jump >= LEAST && jump >= 3.0 * before.max(after)
 }
 
-/// Adds the worst texel between any two keys until all are good; in the end every texel is one.
+/// Adds the worst texel between every two keys until all errors are at most `most`. Terminates at the latest when every
+/// texel is a key.
 fn refine(
     keys: &mut Vec<Key>,
     range: Range<usize>,
@@ -237,7 +238,7 @@ fn refine(
     }
 }
 
-/// Takes away keys that are not missed.
+/// Removes keys without which all errors stay at most `most`.
 fn prune(
     keys: &mut Vec<Key>,
     range: Range<usize>,
@@ -246,7 +247,7 @@ fn prune(
 ) {
     let mut at = 1;
     while at + 1 < keys.len() {
-        // A key moves the curve up to two keys away, which is known from one more.
+        // Removing a key changes the curve up to two keys away; evaluating it there needs one more key on each side.
         let near = at.saturating_sub(3)..keys.len().min(at + 4);
         let others: Vec<_> = keys[near.clone()].iter().filter(|key| **key != keys[at]).copied().collect();
         let (from, to) = (keys[at.saturating_sub(2)].index, keys[(at + 2).min(keys.len() - 1)].index);

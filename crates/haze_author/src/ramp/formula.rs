@@ -1,30 +1,31 @@
-//! Formulas of a place on a ramp, as text: `smoothstep(0, 0.2 + v, u)`.
+//! Parses and evaluates formulas for the position on a ramp, such as `smoothstep(0, 0.2 + v, u)`.
 
 use crate::exact::{exp, power};
 use haze::error::{FieldError, one_line};
 
-/// Longest formula, bytes.
+/// Maximum length of a formula, bytes.
 const MOST: usize = 1000;
-/// Deepest nesting of brackets and signs.
+/// Maximum nesting depth of brackets and signs.
 const DEEPEST: u32 = 64;
 
-/// A formula of `u` and `v`, the two axes from 0 to 1: numbers, `+ - * / ^`, brackets, and the functions of [`FUNCTIONS`].
+/// A formula of the two axes `u` and `v`, 0 to 1, with numbers, `+ - * / ^`, brackets and the functions of
+/// [`FUNCTIONS`]. Stored in reverse Polish order.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Formula(Vec<Step>);
 
-/// What is done next to a stack of numbers.
+/// One operation on a stack of numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Step {
     Number(f32),
     U,
     V,
-    /// Takes as many numbers as the function has arguments.
+    /// Replaces the function's arguments on the stack by its value. Indexes [`FUNCTIONS`].
     Call(usize),
 }
 
 type Function = (&'static str, usize, fn(&[f32]) -> f32);
 
-/// Names, numbers of arguments, meanings. The first are what signs stand for, `~` that before a number.
+/// Name, argument count and implementation. The first entries are the operators; `~` is negation.
 const FUNCTIONS: &[Function] = &[
     ("+", 2, |x| x[0] + x[1]),
     ("-", 2, |x| x[0] - x[1]),
@@ -47,7 +48,7 @@ const FUNCTIONS: &[Function] = &[
 ];
 
 impl Formula {
-    /// Reads a formula.
+    /// Parses a formula. `field` is used only in errors.
     pub fn parse(field: &str, text: &str) -> Result<Self, FieldError> {
         let refuse = |expected: &str| FieldError::new(field, format!("{text:?}"), expected);
         if text.len() > MOST {
@@ -65,7 +66,7 @@ impl Formula {
         Ok(Self(reader.steps))
     }
 
-    /// Its value clamped to 0 to 1; 0 where it has none.
+    /// Evaluates the formula and clamps the value to 0 to 1. NaN becomes 0.
     pub fn place(&self, u: f32, v: f32) -> f32 {
         let mut stack = Vec::with_capacity(8);
         for step in &self.0 {
@@ -81,12 +82,12 @@ impl Formula {
             };
             stack.push(value);
         }
-        // NaN is less than nothing.
+        // The comparison is false for NaN.
         stack.pop().filter(|&place| place >= 0.0).unwrap_or(0.0).min(1.0)
     }
 }
 
-/// Recursive descent; the error is what was expected at the rest.
+/// Recursive descent parser. Its errors say what is expected at `rest`.
 struct Reader<'a> {
     rest: &'a str,
     steps: Vec<Step>,
@@ -98,7 +99,7 @@ impl Reader<'_> {
         self.chain(&["+", "-"], |reader| reader.chain(&["*", "/"], Self::signed))
     }
 
-    /// Parts joined by signs, from the left.
+    /// Parses operands joined by left-associative binary operators.
     fn chain(&mut self, signs: &[&str], part: impl Fn(&mut Self) -> Result<(), String>) -> Result<(), String> {
         part(self)?;
         while let Some(sign) = signs.iter().find(|sign| self.takes(sign)) {
@@ -108,11 +109,11 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// A sign binds less than a power, whose exponent may have one.
+    /// Parses an optional minus sign and a power. The sign binds weaker than `^`; the exponent may have a sign itself.
     fn signed(&mut self) -> Result<(), String> {
         self.depth += 1;
         if self.depth > DEEPEST {
-            return Err(format!("at most {DEEPEST} brackets and signs in each other"));
+            return Err(format!("at most {DEEPEST} nested brackets and signs"));
         }
         if self.takes("-") {
             self.signed()?;
@@ -181,7 +182,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn formulas_are_worked_out_as_written() {
+    fn formulas_are_evaluated_with_the_usual_precedence() {
         for (text, expected) in [
             ("u", 0.25),
             (" v ", 0.5),
@@ -212,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_formula_is_named_with_its_place() {
+    fn malformed_formulas_are_refused_with_their_position() {
         let error = |text: &str| Formula::parse("place", text).unwrap_err().to_string();
         assert_eq!(error("u v"), r#"place: "u v" is not valid; expected an operator, or the end before "v""#);
         assert!(error("u +").ends_with("with its arguments, at its end"), "{}", error("u +"));
@@ -222,7 +223,7 @@ mod tests {
         }
         for deep in ["(", "-", "2^", "abs("] {
             let error = error(&format!("{}u", deep.repeat(200)));
-            assert!(error.contains("at most 64 brackets and signs"), "{error}");
+            assert!(error.contains("at most 64 nested brackets and signs"), "{error}");
         }
         assert!(error(&"u+".repeat(600)).contains("at most 1000 characters"));
     }

@@ -1,4 +1,4 @@
-//! Gradients of GIMP, `*.ggr`. (GIMP, devel-docs/ggr.txt)
+//! Reads gradients of GIMP, `*.ggr`. (GIMP, devel-docs/ggr.txt)
 
 use std::f32::consts::PI;
 
@@ -9,26 +9,27 @@ use super::colour::srgb_from_linear;
 use super::fit::Fit;
 use super::text::{Mistake, numbers, opaque, strip};
 
-/// A piece of a gradient.
+/// One segment of a gradient. Positions are 0 to 1; colours are sRGB codes with alpha, 0 to 1.
 struct Segment {
     left: f32,
     middle: f32,
     right: f32,
     from: Vec4,
     to: Vec4,
-    /// 0 straight, 1 curved, 2 as a sine, 3 and 4 as a sphere, 5 a step.
+    /// Blending function: 0 linear, 1 curved, 2 sinusoidal, 3 and 4 spherical (increasing, decreasing), 5 step.
     blending: u32,
-    /// 0 as RGB, 1 and 2 through the hues, up and down.
+    /// Colouring: 0 RGB, 1 and 2 HSV with increasing and decreasing hue.
     colours: u32,
 }
 
-/// Straight segments and steps as they are, others by short straight pieces, a quarter of `most` off.
+/// Reads a gradient. Linear segments and steps are exact; other segments are divided into linear pieces with an error
+/// of at most a quarter of `most`.
 pub(super) fn read(text: &str, most: f32) -> Result<Fit, Mistake> {
     let segments = segments(text)?;
     let mut stops: Vec<RampStop> = Vec::new();
     let mut add = |at: f32, code: Vec3, curve: Curve| {
         let stop = RampStop { at, colour: HexColour::from_srgb(code), curve };
-        // Where a segment goes on as the one before ended.
+        // The segment begins where the previous one ended, with the same colour.
         if let Some(last) = stops.last_mut().filter(|last| (last.at, last.colour) == (stop.at, stop.colour)) {
             last.curve = curve;
         } else {
@@ -48,7 +49,7 @@ pub(super) fn read(text: &str, most: f32) -> Result<Fit, Mistake> {
     }
     let mut fitted = strip(Blend::Srgb, stops);
     if let Ok(gradient) = fitted.recipe.gradient() {
-        // Between the places where segments are wont to meet.
+        // Samples at odd multiples of 1/2048, to avoid the positions where segments usually meet.
         let off = (0..1024).map(|index| (index as f32 + 0.5) / 1024.0).filter_map(|at| {
             let segment = segments.iter().find(|segment| at <= segment.right)?;
             let made = gradient.sample(at, 0.0).map(srgb_from_linear);
@@ -92,7 +93,7 @@ fn segments(text: &str) -> Result<Vec<Segment>, Mistake> {
 }
 
 impl Segment {
-    /// sRGB code at a place in the segment.
+    /// Returns the sRGB code at a position in the segment.
     fn code(&self, at: f32) -> Vec3 {
         let share = |from: f32, to: f32| if to > from { ((at - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };
         let half = if at < self.middle {
@@ -122,14 +123,15 @@ impl Segment {
         opaque(Blend::HsvNear.linear(hsv).map(srgb_from_linear).extend(mixed.w))
     }
 
-    /// Adds the end of a part, and what it takes before it to be no more than `most` steps of 255 off a straight line.
+    /// Adds the end of a range, after dividing the range until each piece is within `most` steps of 255 of a straight
+    /// line.
     fn divide(&self, from: f32, to: f32, most: f32, add: &mut impl FnMut(f32)) {
         let is_straight = [0.25, 0.5, 0.75].into_iter().all(|part| {
             let straight = self.code(from).lerp(self.code(to), part);
             let off = self.code(from + (to - from) * part) - straight;
             off.abs().max_element() * 255.0 <= most
         });
-        // No ramp has more texels than this tells apart.
+        // The minimum length of 1e-4 is smaller than a texel of the widest ramp.
         if !is_straight && to - from > 1.0e-4 {
             let middle = f32::midpoint(from, to);
             self.divide(from, middle, most, add);

@@ -1,4 +1,4 @@
-//! Gradients: stops, and the curves between them.
+//! Gradients: stops and the interpolation between them.
 
 use glam::Vec3;
 
@@ -7,16 +7,16 @@ use haze::error::FieldError;
 use haze::settings::{FieldVisitor, Fields, choice};
 
 choice! {
-    /// How a gradient goes on from one stop to the next, or from one row to the next.
+    /// Interpolation from one stop to the next, or from one row to the next.
     Curve {
-        /// Smooth through its neighbours, never beyond them: no crease that light would show as a band.
+        /// Smooth cubic that never overshoots the stops. Its slope is continuous, so lighting shows no bands.
         #[default]
         Monotone = "monotone",
-        /// Straight.
+        /// Linear.
         Linear = "linear",
-        /// Flat at both ends.
+        /// Smoothstep: flat at both ends.
         Ease = "ease",
-        /// The stop's own colour up to the next one: a hard edge there.
+        /// The stop's colour up to the next stop, with a hard edge there.
         Constant = "constant",
     }
 }
@@ -32,13 +32,14 @@ impl Curve {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RampRow {
-    /// Place on the second axis, 0 to 1. Rows are sorted by it; of those at one place the first is the end of what is below.
+    /// Position on the second axis, 0 to 1. Rows are sorted by it. Of several rows at one position, the first ends the
+    /// range below and the last begins the range above.
     #[serde(default)]
     pub at: f32,
-    /// How the colours go on to the next row.
+    /// Interpolation to the next row.
     #[serde(default, skip_serializing_if = "Curve::is_default")]
     pub curve: Curve,
-    /// The gradient's colours, from 0 to 1, at least one.
+    /// Stops of the gradient, at least one.
     pub stops: Vec<RampStop>,
 }
 
@@ -47,18 +48,18 @@ pub struct RampRow {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RampStop {
-    /// Place on the first axis, 0 to 1. Stops are sorted by it, those at one place in the order of the list: the first is what
-    /// the gradient comes to from below, the last what it goes on from.
+    /// Position on the first axis, 0 to 1. Stops are sorted by it; stops at one position keep the order of the list.
+    /// The first of them ends the gradient below, the last begins the gradient above.
     pub at: f32,
     /// sRGB, `#rrggbb`.
     pub colour: HexColour,
-    /// How the gradient goes on to the next stop.
+    /// Interpolation to the next stop.
     #[serde(default, skip_serializing_if = "Curve::is_default")]
     pub curve: Curve,
 }
 
 impl RampStop {
-    /// A stop that goes on by the usual curve.
+    /// Creates a stop with the default curve.
     pub fn new(at: f32, colour: HexColour) -> Self {
         Self { at, colour, curve: Curve::default() }
     }
@@ -82,19 +83,19 @@ impl Fields for RampStop {
     }
 }
 
-/// Refuses a list without an entry.
+/// Returns an error for an empty list.
 pub fn not_empty<T>(field: impl Into<String>, list: &[T]) -> Result<(), FieldError> {
     if list.is_empty() { Err(FieldError::new(field, "[]", "at least one entry")) } else { Ok(()) }
 }
 
-/// Rows made ready to be asked for many texels: sorted, their colours as numbers of the space they are blended in.
+/// Rows prepared for sampling: sorted, with colours converted to the blend space.
 #[derive(Clone, Debug)]
 pub(super) struct Rows {
     blend: Blend,
     rows: Vec<(Point, Vec<Point>)>,
 }
 
-/// A value on a curve.
+/// A control point of a curve.
 #[derive(Clone, Copy, Debug, Default)]
 struct Point {
     at: f32,
@@ -103,7 +104,7 @@ struct Point {
 }
 
 impl Rows {
-    /// For places from 0 to 1.
+    /// Sorts and converts rows whose positions are 0 to 1.
     pub fn new(blend: Blend, rows: &[RampRow]) -> Self {
         let mut rows: Vec<_> =
             rows.iter().map(|row| (Point::new(row.at, row.curve), points(blend, &row.stops))).collect();
@@ -111,12 +112,12 @@ impl Rows {
         Self { blend, rows }
     }
 
-    /// Linear RGB, not below 0.
+    /// Returns linear RGB, at least 0.
     pub fn sample(&self, u: f32, v: f32) -> Vec3 {
-        // The curve between two rows looks at one row more on either side.
+        // The curve between two rows needs one more row on either side.
         let next = self.rows.partition_point(|(row, _)| row.at <= v);
         let near = &self.rows[next.saturating_sub(2)..self.rows.len().min(next + 2)];
-        // Hues of two rows may part anywhere, and with them the shorter way from one to the other.
+        // Hues of two rows may diverge along u, so the shorter arc between them could flip; blend rows in Oklab.
         let in_oklab = self.blend.has_hue() && self.rows.len() > 1;
         let mut points = [Point::default(); 4];
         for (point, (row, stops)) in points.iter_mut().zip(near) {
@@ -131,7 +132,7 @@ impl Rows {
 
 impl Point {
     fn new(at: f32, curve: Curve) -> Self {
-        // -0 and 0 are one place.
+        // Turns -0 into 0: `total_cmp` tells them apart.
         Self { at: at + 0.0, value: Vec3::ZERO, curve }
     }
 }
@@ -146,8 +147,8 @@ fn points(blend: Blend, stops: &[RampStop]) -> Vec<Point> {
     points
 }
 
-/// Turns hues so that each is reached from the one before, the short or the long way. Greys take the hue of the colour before,
-/// or of the first that has one; black its saturation too.
+/// Unwraps hues so that each is reached from the previous one along the shorter or longer arc. A grey takes the hue of
+/// the previous colour, or of the first colour with a hue; black takes its saturation too.
 fn unwind(points: &mut [Point], far: bool) {
     let has_hue = |point: &&Point| point.value.y > 0.0 && point.value.z > 0.0;
     let mut last = points.iter().find(has_hue).map_or(Vec3::ZERO, |point| point.value);
@@ -169,7 +170,7 @@ fn unwind(points: &mut [Point], far: bool) {
     }
 }
 
-/// The value at a place; constant outside.
+/// Returns the value at a position. Constant outside the points.
 fn value_at(points: &[Point], x: f32) -> Vec3 {
     let next = points.partition_point(|point| point.at <= x);
     let (Some(from), Some(to)) = (points.get(next.wrapping_sub(1)), points.get(next)) else {
@@ -195,13 +196,13 @@ fn value_at(points: &[Point], x: f32) -> Vec3 {
     }
 }
 
-/// Slope at a point of a cubic that never overshoots its points. (Fritsch and Carlson, "Monotone piecewise cubic
-/// interpolation", 1980, with the harmonic mean of the slopes)
+/// Returns the slope at a point of a monotone cubic: the harmonic mean of the secants. (Fritsch and Carlson, "Monotone
+/// piecewise cubic interpolation", 1980)
 fn tangent(points: &[Point], at: usize) -> Vec3 {
     let secant = |from: usize, to: usize| {
         let (from, to) = (points.get(from)?, points.get(to)?);
         let is_edge = from.curve == Curve::Constant || to.at <= from.at;
-        // Steeper than this no picture can show, and products of slopes stay far from overflow.
+        // Limits the slope: no image can show a steeper one, and products of slopes must not overflow.
         (!is_edge).then(|| (to.value - from.value) / (to.at - from.at).max(1.0e-6))
     };
     match (secant(at.wrapping_sub(1), at), secant(at, at + 1)) {
@@ -209,7 +210,7 @@ fn tangent(points: &[Point], at: usize) -> Vec3 {
             let harmonic = |a: f32, b: f32| if a * b > 0.0 { 2.0 * a * b / (a + b) } else { 0.0 };
             Vec3::new(harmonic(before.x, after.x), harmonic(before.y, after.y), harmonic(before.z, after.z))
         }
-        // Flat ends, of the ramp and at edges: it is held constant beyond them.
+        // Slope 0 at the ends of the ramp and at edges, since the value is constant beyond them.
         _ => Vec3::ZERO,
     }
 }

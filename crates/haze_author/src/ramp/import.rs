@@ -1,4 +1,4 @@
-//! Gradients of other programs: GIMP's, Godot's, and Blender's as text. `docs/ramps.md` has what is read.
+//! Imports gradients of other programs: GIMP, Godot, and Blender as text. `docs/ramps.md` lists what is supported.
 
 use std::path::Path;
 
@@ -13,15 +13,16 @@ use haze::assets::file;
 use haze::assets::picture::read_colour_png;
 use haze::error::{Error, FieldError};
 
-/// Largest text that is read, bytes.
+/// Size limit of a text file, bytes.
 const MAX_BYTES: u64 = 1 << 20;
 
-/// Makes a recipe of a file, by what its name ends in: `.png`, `.ggr` (GIMP), `.tres` (Godot) or `.txt` (Blender). `most` is how
-/// far a channel may be off, steps of 255 from 1 on. What is transparent gives as much less light.
+/// Converts a file to a recipe. The format follows from the extension: `.png`, `.ggr` (GIMP), `.tres` (Godot) or `.txt`
+/// (Blender). `most` is the maximum error of a channel, 1 to 64 steps of 255. Transparent colours are darkened by their
+/// alpha, in linear light.
 ///
 /// # Errors
-/// [`Error::Io`] and [`Error::Image`] for files that cannot be read, [`Error::Json`] for a line that is not understood,
-/// [`Error::Field`] for a `most` that cannot be kept.
+/// [`Error::Io`] and [`Error::Image`] for files that cannot be read, [`Error::Json`] for a malformed line,
+/// [`Error::Field`] for a `most` out of range or an unknown extension.
 pub fn import(path: &Path, most: f32) -> Result<Fit, Error> {
     check_error(most)?;
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
@@ -42,13 +43,14 @@ pub fn import(path: &Path, most: f32) -> Result<Fit, Error> {
     let refuse = |Mistake { line, reason }: Mistake| Error::Json { path: path.into(), line, column: 1, reason };
     let bytes = file::read(path, "gradient", MAX_BYTES)?;
     let text = std::str::from_utf8(&bytes)
-        .map_err(|_| refuse(Mistake { line: 1, reason: "bytes that are no UTF-8 text; expected a gradient".into() }))?;
+        .map_err(|_| refuse(Mistake { line: 1, reason: "not UTF-8; expected a gradient as UTF-8 text".into() }))?;
     let fitted = read(text, most).map_err(refuse)?;
     fitted.recipe.validate()?;
     Ok(fitted)
 }
 
-/// The first gradient of a resource: `offsets`, `colors`, `interpolation_mode`, `interpolation_color_space`.
+/// Reads the first gradient of a Godot resource: `offsets`, `colors`, `interpolation_mode`,
+/// `interpolation_color_space`.
 fn godot(text: &str) -> Result<Fit, Mistake> {
     let mistake = |line: usize, reason: &str| Mistake { line: line + 1, reason: reason.into() };
     let find = |name: &str| {
@@ -90,7 +92,8 @@ fn godot(text: &str) -> Result<Fit, Mistake> {
     Ok(strip(blend, offsets.iter().zip(colours.chunks_exact(4)).map(stop).collect()))
 }
 
-/// Lines of `position r g b [alpha]` in linear light, with any brackets and commas, and lines of `interpolation NAME`.
+/// Reads lines of `position r g b [alpha]` in linear light, with optional brackets and commas, and lines of
+/// `interpolation NAME`.
 fn blender(text: &str) -> Result<Fit, Mistake> {
     let mut curve = Curve::Linear;
     let mut stops = Vec::new();
@@ -159,12 +162,12 @@ mod tests {
         colors = PackedColorArray(0, 0, 0, 1, 1, 0.5, 0, 1, 2, 1, 1, 1)\ninterpolation_color_space = 2\n";
 
     #[test]
-    fn gradients_of_godot_are_read() {
+    fn godot_gradients_are_read() {
         let recipe = import_text("a.tres", GODOT).unwrap();
         assert_eq!(recipe.blend, Blend::Oklab);
         let stop = |at: f32, colour: &str| (at, colour.to_owned(), Curve::Constant);
         assert_eq!(stops(&recipe), [stop(0.0, "#000000"), stop(0.25, "#ff8000"), stop(1.0, "#ffffff")]);
-        // What is at its default is not written.
+        // Godot does not write fields that have their default value.
         let plain = import_text("a.tres", "[gd_resource type=\"Gradient\"]\n[resource]\n").unwrap();
         assert_eq!((plain.blend, stops(&plain).len()), (Blend::Srgb, 2));
         for (from, to, expected) in [
@@ -178,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_of_no_gradient_is_refused() {
+    fn an_image_without_a_gradient_is_refused() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("noise.png");
         let mut state = 1_u32;
@@ -193,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn stops_of_blender_are_read_as_light() {
+    fn blender_stops_are_read_as_linear_light() {
         let text = "# a ramp\ncolor_mode = 'RGB'\ninterpolation: EASE\n0.5 (0.2140, 0.0, 1.0, 1.0)\n0, 1, 1, 1, 0.5\n\n1.5 [0 0 0]";
         let recipe = import_text("a.txt", text).unwrap();
         assert_eq!(recipe.blend, Blend::Linear);
@@ -211,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn gradients_of_gimp_are_read() {
+    fn gimp_gradients_are_read() {
         let ggr = |segments: &[&str]| format!("GIMP Gradient\nName: A\n{}\n{}\n", segments.len(), segments.join("\n"));
         let linear = "0.0 0.2 0.5 0 0 0 1 1 1 1 1 0 0 0 0";
         let step = "0.5 0.75 1.0 1 0 0 1 0 0 1 1 5 0 0 0";
@@ -226,7 +229,7 @@ mod tests {
             stop(0.75, "#0000ff", Curve::Constant),
         ];
         assert_eq!(stops(&recipe), expected);
-        // Curves, arcs, hues and transparency are followed by short straight pieces.
+        // Curved, spherical, HSV and transparent segments are approximated by short linear pieces.
         for (blend, colour) in [(1, 0), (2, 0), (3, 0), (4, 0), (0, 1), (0, 2), (2, 2)] {
             let text = ggr(&[&format!("0 0.3 1 0.9 0.2 0.1 1 0.1 0.3 0.8 0.5 {blend} {colour} 0 0")]);
             let folder = tempfile::tempdir().unwrap();

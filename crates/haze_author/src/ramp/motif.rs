@@ -1,4 +1,4 @@
-//! Bakes a motif: a picture of a lit sphere, looked up by the normal's xy. (OTEE "Diffuse lighting", "motif lighting")
+//! Bakes a motif: an image of a lit sphere, looked up by the normal's xy. (OTEE "Diffuse lighting", "motif lighting")
 
 use std::path::Path;
 
@@ -14,22 +14,22 @@ use haze::formula::diffuse_bake::motif_normal;
 use haze::formula::saturate;
 use haze::settings::{FieldVisitor, Fields, validate};
 
-/// The version of the recipe format that this code writes and reads.
+/// Recipe format version that this code writes and reads.
 pub const RECIPE_VERSION: u32 = 1;
 
-/// Most lights of one motif: every texel adds them up.
+/// Maximum number of lights of a motif. Every texel sums all of them.
 const MAX_LIGHTS: usize = 256;
 
-/// How a motif was made: the contents of a `*.motif.json`.
+/// Recipe of a motif: the contents of a `*.motif.json`.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct MotifRecipe {
     /// Format version.
     pub version: u32,
-    /// Side of the picture.
+    /// Side of the image, pixels.
     pub size: u32,
-    /// sRGB, where no light reaches.
+    /// sRGB colour where no light reaches.
     pub ambient: HexColour,
     /// Lights on the sphere.
     pub lights: Vec<MotifLight>,
@@ -40,12 +40,12 @@ pub struct MotifRecipe {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct MotifLight {
-    /// Towards the light, view space: x right, y up, z to the viewer. Need not be unit length.
+    /// Direction towards the light in view space: x right, y up, z towards the viewer. Need not have unit length.
     #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
     pub direction: Vec3,
-    /// sRGB at the brightest point.
+    /// sRGB colour at the brightest point.
     pub colour: HexColour,
-    /// How far the light wraps round: 0 ends at the terminator, 1 reaches the far side.
+    /// Wrap of the light around the sphere: 0 ends at the terminator, 1 reaches the far side.
     pub wrap: f32,
 }
 
@@ -69,7 +69,7 @@ impl Fields for MotifLight {
 }
 
 impl MotifRecipe {
-    /// Reads a `*.motif.json`.
+    /// Loads a `*.motif.json`.
     ///
     /// # Errors
     /// [`Error::Io`], [`Error::Json`] or [`Error::JsonField`].
@@ -90,7 +90,7 @@ impl MotifRecipe {
         Ok(())
     }
 
-    /// Bakes the picture: sRGB, 16 bits a channel.
+    /// Bakes the image: sRGB, 16 bits per channel.
     ///
     /// # Errors
     /// The first field that is not valid.
@@ -117,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lights_are_counted() {
+    fn too_many_lights_are_refused() {
         let light = MotifLight { direction: Vec3::Z, colour: HexColour([9; 3]), wrap: 0.0 };
         let recipe = |lights| MotifRecipe {
             version: 1,

@@ -1,4 +1,5 @@
-//! How a puff of smoke answers light from every side: as it is, path-traced, and as ramps have it; and the ramps that come nearest.
+//! Brightness of a puff of smoke under light from every side: path-traced, and shaded with ramps or six-way maps. Also
+//! fits the ramps that come closest to the path-traced result.
 
 mod fit;
 mod puff;

@@ -1,33 +1,33 @@
-//! Ramps to begin with.
+//! Templates for new ramps.
 
 use super::bake::{Curve, HexColour, RampRecipe, RampRow, RampStop};
 use haze::ramp::Role;
 
-/// A place and an sRGB colour, `0xrrggbb`.
+/// A position, 0 to 1, and an sRGB colour, `0xrrggbb`.
 type Stop = (f32, u32);
 
-/// A ramp to begin with.
+/// A template for a new ramp.
 #[derive(Clone, Copy, Debug)]
 pub struct Template {
-    /// What it is called.
+    /// Name.
     pub name: &'static str,
-    /// What it looks like.
+    /// One-line description for users.
     pub about: &'static str,
-    /// What it is used for.
+    /// Role.
     pub role: Role,
     curve: Curve,
     stops: &'static [Stop],
-    /// How strong it is by amount, and the place along it; both empty for a ramp of one axis.
+    /// The recipe's `times` gradient and `place` formula; both empty for a ramp of one axis.
     times: &'static [Stop],
     place: &'static str,
 }
 
-/// Of one axis.
+/// Creates a template for a ramp of one axis.
 const fn strip(role: Role, name: &'static str, about: &'static str, curve: Curve, stops: &'static [Stop]) -> Template {
     Template { name, about, role, curve, stops, times: &[], place: "" }
 }
 
-/// Every template.
+/// All templates.
 pub const TEMPLATES: &[Template] = &[
     strip(
         Role::Diffuse,
@@ -164,12 +164,12 @@ pub const TEMPLATES: &[Template] = &[
 ];
 
 impl Template {
-    /// The template of a name.
+    /// Finds a template by name.
     pub fn find(name: &str) -> Option<&'static Self> {
         TEMPLATES.iter().find(|template| template.name == name)
     }
 
-    /// The recipe.
+    /// Returns the template's recipe.
     pub fn recipe(&self) -> RampRecipe {
         let stops = |stops: &[Stop], curve| {
             let stop = |&(at, colour): &Stop| {

@@ -1,4 +1,4 @@
-//! What the readers of other programs' gradients share.
+//! Shared code of the gradient importers.
 
 use glam::{Vec3, Vec4};
 
@@ -6,19 +6,19 @@ use super::bake::{Blend, RampRecipe, RampRow, RampStop};
 use super::colour::srgb_from_linear;
 use super::fit::Fit;
 
-/// What is wrong with a line, from 1 on, and what would be right.
+/// A parse error: the 1-based line, and what is wrong and expected.
 pub struct Mistake {
     pub line: usize,
     pub reason: String,
 }
 
-/// The recipe of a strip. Stops of other programs are as good as their rounding.
+/// Builds the recipe of a one-row ramp. Its error is that of rounding colours to 8 bits: half a step.
 pub fn strip(blend: Blend, stops: Vec<RampStop>) -> Fit {
     let rows = vec![RampRow { stops, ..RampRow::default() }];
     Fit { recipe: RampRecipe { blend, rows, ..RampRecipe::default() }, error: 0.5 }
 }
 
-/// Code over black: as much less light as is transparent.
+/// Composites an sRGB code over black, in linear light.
 pub fn opaque(code: Vec4) -> Vec3 {
     let code = code.clamp(Vec4::ZERO, Vec4::ONE);
     if code.w >= 1.0 {
@@ -27,7 +27,7 @@ pub fn opaque(code: Vec4) -> Vec3 {
     (Blend::Srgb.linear(code.truncate()) * code.w).map(srgb_from_linear)
 }
 
-/// Finite numbers with commas or white space between them.
+/// Parses finite numbers separated by commas or white space; `None` if one is malformed.
 pub fn numbers(text: &str) -> Option<Vec<f32>> {
     let words = text.split(|c: char| c == ',' || c.is_whitespace()).filter(|word| !word.is_empty());
     words.map(|word| word.parse().ok().filter(|number: &f32| number.is_finite())).collect()

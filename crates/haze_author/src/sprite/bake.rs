@@ -1,7 +1,7 @@
-//! Bakes a sprite flipbook: a cluster of metaballs, eroded by turbulent noise, seen from the front.
+//! Bakes a sprite flipbook: a cluster of metaballs, eroded by turbulent noise, viewed from the front.
 //!
-//! OTEE: "Grayscale heightmaps never get curvy enough … use metaballs, then add some procedural bump." So the baker has no
-//! height map at all: it marches through a density volume and collects the normals on the way.
+//! OTEE: "Grayscale heightmaps never get curvy enough … use metaballs, then add some procedural bump." The baker
+//! therefore uses no height map: it ray-marches a density volume and accumulates normals.
 
 mod cluster;
 mod cube;
@@ -29,20 +29,21 @@ pub use recipe::{RECIPE_VERSION, SpriteRecipe};
 use shrink::{shrink_detail, shrink_frame};
 use slices::Slices;
 
-/// What a recipe makes.
+/// Images baked from a recipe.
 #[derive(Clone, Debug)]
 pub struct BakedSprite {
-    /// The flipbook: rgb = normal / 2 + 1/2 (x right, y up, z to the viewer), a = amount.
+    /// Flipbook: rgb = normal / 2 + 1/2 (x right, y up, z towards the viewer), a = amount.
     pub picture: RgbaImage,
-    /// Depth and motion, see [`detail`](crate::sprite::detail).
+    /// Detail map (depth and motion), see [`detail`](crate::assets::sprite::detail).
     pub detail: RgbaImage,
 }
 
 impl SpriteRecipe {
-    /// Bakes the whole sheet and its details. `progress` is told how many frames are done; its error ends the work.
+    /// Bakes the flipbook and its detail map. `progress` is called with the number of finished frames; an error from it
+    /// cancels the bake.
     ///
     /// # Errors
-    /// The first number of the recipe that is out of range, or what `progress` says.
+    /// The first field of the recipe that is out of range, or the error of `progress`.
     pub fn bake<E: From<FieldError>>(&self, progress: impl Fn(u32) -> Result<(), E>) -> Result<BakedSprite, E> {
         validate(self, String::new)?;
         let bake = self.baker();
@@ -69,20 +70,21 @@ impl SpriteRecipe {
         })
     }
 
-    /// Bakes one moment of the loop; `frame` 0.5 is half way between the first two.
+    /// Bakes one moment of the loop. `frame` is a frame index and may be fractional: 0.5 is halfway between the first
+    /// two frames.
     pub fn bake_frame(&self, frame: f32) -> BakedFrame {
         let mut frame = self.baker()(frame);
         self.shrink(&mut frame);
         frame
     }
 
-    /// The densities that a moment of the loop is marched through.
+    /// Returns the density volume of one moment of the loop.
     pub fn volume(&self, frame: f32) -> Volume {
         let time = frame / self.frame_count() as f32;
         if self.version > 1 { Slices::new(self).volume(time) } else { cube::volume(self, time) }
     }
 
-    /// Bakes moments before they are made smaller, with what they share worked out once.
+    /// Returns a function that bakes a moment without shrinking. Data that all moments share is computed once.
     fn baker(&self) -> impl Fn(f32) -> BakedFrame + '_ {
         let count = self.frame_count() as f32;
         let slices = (self.version > 1).then(|| Slices::new(self));

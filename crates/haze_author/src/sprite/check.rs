@@ -1,4 +1,4 @@
-//! What is wrong with a sprite's picture.
+//! Checks a sprite's image for visible defects.
 
 use std::path::Path;
 
@@ -10,29 +10,30 @@ use crate::finding::Finding;
 use haze::error::Error;
 use haze::sprite::{Sprite, SpriteLayout};
 
-/// Amount from which on a texel is looked at.
+/// Minimum amount of a texel that is examined.
 const SEEN: f32 = 0.1;
-/// Least texels of a finding: what filters of paint programs leave at an edge is none.
+/// Minimum fraction of texels for a finding. Filters of paint programs may leave a few wrong texels at edges.
 const FEW: f32 = 0.02;
-/// Shortest that a normal is, and longest: eight bits and scaling leave less than that.
+/// Accepted length of a normal. Rounding to 8 bits and rescaling cause smaller deviations.
 const LENGTHS: [f32; 2] = [0.85, 1.1];
 
-/// Looks for what would show; the layout tells where frames are, its `y_down` which way green is meant to point.
+/// Returns the defects that would be visible. `layout` gives the frames and, by `y_down`, the intended direction of
+/// green.
 ///
-/// - `empty`: no amount anywhere.
-/// - `normals`: a picture of colours, or of heights.
-/// - `length`: normals that are not of unit length.
-/// - `y_down`: green that points the other way.
-/// - `border`: a frame that is not clear at its border.
-/// - `premultiplied`: normals that fade to black or grey with alpha.
-/// - `loop`: a last frame that is further from the first than neighbours are from each other.
+/// - `empty`: the amount is 0 everywhere.
+/// - `normals`: the image holds colours or heights, not normals.
+/// - `length`: normals do not have unit length.
+/// - `y_down`: green points in the other direction.
+/// - `border`: a frame is not clear at its border.
+/// - `premultiplied`: normals fade to black or grey with alpha.
+/// - `loop`: the last frame differs from the first more than neighbouring frames differ.
 ///
 /// # Errors
-/// As [`Sprite::from_picture`] for a layout that does not fit.
+/// As [`Sprite::from_picture`] if the layout does not fit.
 pub fn check(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Result<Vec<Finding>, Error> {
     let mut findings = Vec::new();
     let mut find = |name, what: String| findings.push(Finding { name, what });
-    // A border that is not clear is a finding here: what is behind it is looked at all the same.
+    // A border that is not clear is a finding, not an error: it is cleared so that the other checks can run.
     let mut picture = picture.clone();
     let border = clear_borders(&mut picture, layout);
     let sprite = Sprite::from_picture(path, &picture, layout)?;
@@ -58,35 +59,41 @@ pub fn check(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Result<V
         let off = lengths.iter().filter(|length| !(LENGTHS[0]..LENGTHS[1]).contains(length)).count();
         off as f32 / lengths.len().max(1) as f32
     };
-    // Only where there is little of it: premultiplied, or painted over grey.
+    // Normals that are wrong only at small amounts are premultiplied or painted over grey.
     let (faint, solid) = (lengths(SEEN, 0.6), lengths(0.9, 2.0));
     let fades = premultiplied(&sprite);
     if let Some(towards) = fades {
         find(
             "premultiplied",
-            format!("normals fade to {towards} with alpha; expected straight alpha, with whole normals up to the edge"),
+            format!("normals fade to {towards} with alpha; expected straight alpha, with unit normals up to the edge"),
         );
     } else if off(&[faint, solid].concat()) > FEW {
         let share = (off(&lengths(SEEN, 2.0)) * 100.0).round();
-        find("length", format!("{share} of 100 normals are not of unit length; expected all: normalise the map"));
+        find(
+            "length",
+            format!("{share} % of normals are not of unit length; expected unit normals: normalise the map"),
+        );
     }
     if let Some(found) = y_direction(&sprite).filter(|found| found.is_down && found.sureness >= SURE) {
         let sure = (found.sureness * 100.0).round();
-        // `from_picture` has turned what was said to point down.
+        // `from_picture` has already flipped green if the layout has `y_down`.
         let (is, option) = if layout.y_down { ("up", "no y_down") } else { ("down", "y_down") };
-        find("y_down", format!("green points {is}, {sure} of 100 sure; expected {option}"));
+        find("y_down", format!("green points {is}, {sure} % sure; expected {option}"));
     }
     if let Some((seam, mean)) = loop_seam(&sprite) {
         let times = seam / mean;
         find(
             "loop",
-            format!("the last frame is {times:.1} times as far from the first as neighbours are; expected a loop"),
+            format!(
+                "the last frame differs from the first {times:.1} times as much as neighbouring frames do; expected a loop"
+            ),
         );
     }
     Ok(findings)
 }
 
-/// Clears the borders of all frames; gives the frame with the largest alpha there, and that.
+/// Clears the borders of all frames. Returns the frame with the largest alpha on its border, and that alpha; `None` if
+/// all were clear.
 pub(super) fn clear_borders(picture: &mut RgbaImage, layout: SpriteLayout) -> Option<(u32, u8)> {
     let (columns, rows) = (layout.columns.max(1), layout.rows.max(1));
     let size = UVec2::new(picture.width() / columns, picture.height() / rows).max(UVec2::ONE);
@@ -111,15 +118,15 @@ fn texels(sprite: &Sprite) -> impl Iterator<Item = Vec4> + '_ {
     })
 }
 
-/// What is said of a sprite that is clear everywhere.
+/// Message for a sprite that is clear everywhere.
 pub const NOTHING: &str = "alpha is 0 everywhere; expected the amount in alpha";
 
-/// True if there is nothing to see of a sprite.
+/// True if the amount is 0 in every texel.
 pub fn is_clear(sprite: &Sprite) -> bool {
     texels(sprite).all(|texel| texel.w <= 0.0)
 }
 
-/// What a sprite shows, if not normals.
+/// Returns a description of the sprite's contents if they are not normals.
 pub fn not_normals(sprite: &Sprite) -> Option<&'static str> {
     let (mut count, mut sum, mut grey, mut away, mut unlike) = (0.0_f32, Vec3::ZERO, 0.0, 0.0, 0.0);
     for texel in texels(sprite).filter(|texel| texel.w >= 0.5) {
@@ -130,14 +137,14 @@ pub fn not_normals(sprite: &Sprite) -> Option<&'static str> {
         away += f32::from(colour.z < 0.45);
         unlike += f32::from((normal(texel).length() - 1.0).abs() > 0.4);
     }
-    // What fades with alpha is no colour for that.
+    // Premultiplied normals are a separate finding.
     if count <= 0.0 || premultiplied(sprite).is_some() {
         return None;
     }
     if grey > 0.9 * count {
-        return Some("shades of grey; expected normals: `haze sprite import` makes them of heights or of alpha");
+        return Some("shades of grey; expected normals: `haze sprite import` converts heights or alpha");
     }
-    // Normals of a whole are even about the viewer's direction, and no colour of a painting is.
+    // The mean normal of a whole sprite points at the viewer; colours of a painting have another mean.
     let mean = sum / count;
     let leans = mean.z < 0.15 || mean.truncate().length() > 0.35;
     let is_painted = away > 0.15 * count || unlike > 0.5 * count;
@@ -145,7 +152,8 @@ pub fn not_normals(sprite: &Sprite) -> Option<&'static str> {
         .then_some("colours, not normals; expected x in red, y in green and z, mostly above 1/2, in blue")
 }
 
-/// What normals fade to where there is little of it: black where they were multiplied with alpha, grey where painted over it.
+/// Returns the colour that normals fade to at small amounts: black if they were multiplied by alpha, grey if they were
+/// painted over grey. `None` for straight alpha.
 fn premultiplied(sprite: &Sprite) -> Option<&'static str> {
     let (mut count, mut straight, mut black, mut grey) = (0.0_f32, 0.0, 0.0, 0.0);
     for texel in texels(sprite).filter(|texel| (SEEN..0.7).contains(&texel.w)) {
@@ -155,7 +163,7 @@ fn premultiplied(sprite: &Sprite) -> Option<&'static str> {
         black += off(texel.xyz() / texel.w * 2.0 - 1.0);
         grey += off(normal(texel) / texel.w);
     }
-    // Taken back it is of unit length again.
+    // Undoing the multiplication restores unit length.
     let explains = |off: f32| count > 0.0 && straight > 0.15 * count && off < 0.5 * straight;
     match () {
         () if explains(black) && black <= grey => Some("black"),
@@ -164,7 +172,8 @@ fn premultiplied(sprite: &Sprite) -> Option<&'static str> {
     }
 }
 
-/// How far the last frame is from the first, and neighbours from each other, where that is much less.
+/// Returns the difference between the last and first frame and the mean difference of neighbouring frames, if the
+/// former is much larger.
 fn loop_seam(sprite: &Sprite) -> Option<(f32, f32)> {
     let count = sprite.frame_count();
     if count < 3 {
@@ -209,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_with_haze_is_good() {
+    fn built_in_sprites_have_no_findings() {
         for builtin in builtin::SPRITES {
             let sprite = builtin.sprite().unwrap();
             let found = y_direction(&sprite).unwrap();
@@ -241,14 +250,14 @@ mod tests {
         };
         assert_eq!(names(&changed(over_grey), LAYOUT), ["premultiplied"]);
         assert_eq!(names(&changed(|[_, g, _, a]| [g, g, g, a]), LAYOUT), ["normals"]);
-        // Fire, and a sky.
+        // Colours of fire and of a sky.
         assert_eq!(names(&changed(|[r, g, _, a]| [255.0, g * 0.6, r * 0.2, a]), LAYOUT), ["normals"]);
         assert_eq!(names(&changed(|[r, g, _, a]| [r * 0.5, g * 0.9, 255.0, a]), LAYOUT), ["normals"]);
         assert_eq!(names(&changed(|[r, g, b, _]| [r, g, b, 0.0]), LAYOUT), ["empty"]);
         let mut square = wisp();
         square.put_pixel(300, 0, Rgba([128, 128, 255, 9]));
         assert_eq!(names(&square, LAYOUT), ["border"]);
-        // It fades from frame to frame, and is all there again.
+        // The smoke fades over the loop and is complete again in the first frame.
         let mut fading = wisp();
         let size = fading.width() / 4;
         for frame in 0..8 {
@@ -263,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn sprites_of_few_texels_are_looked_at() {
+    fn sprites_of_few_texels_do_not_panic() {
         for size in [1, 2, 3, 4] {
             names(&RgbaImage::from_pixel(size, size, Rgba([128, 128, 255, 255])), SpriteLayout::default());
         }

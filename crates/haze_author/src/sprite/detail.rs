@@ -1,9 +1,9 @@
-//! What a sprite picture tells beside its normals: how far each texel stands out towards the viewer, for depth sprites,
-//! and where it moves until the next frame, for flipbooks without ghosts.
+//! Detail maps: depth of each texel, for depth sprites, and motion to the next frame, for flipbook blending without
+//! ghosting.
 //!
-//! A detail map is laid out as its sprite, at a quarter of its size: r = offset towards the viewer, g and b = motion to
-//! the right and down, a = amount. 128 is none; 1 and 255 are -1 and 1 half sides of the sprite (r), and
-//! [`MOTION_RANGE`] of its side (g, b).
+//! A detail map has the layout of its sprite at a quarter of its size: r = offset towards the viewer, g and b = motion
+//! right and down, a = amount. 128 encodes 0; 1 and 255 encode -1 and 1, in half sides of the sprite for r and in units
+//! of [`MOTION_RANGE`] sides for g and b.
 
 use glam::{IVec2, Mat2, UVec2, Vec2, Vec3};
 use image::Rgba;
@@ -13,22 +13,23 @@ use haze::assets::picture::Picture;
 use haze::formula::sprite::MOTION_RANGE;
 use haze::sprite::Sprite;
 
-/// Mip level of the sprite that is as large as its detail map: depth and motion are smooth.
+/// Mip level of the sprite with the size of the detail map. Depth and motion are smooth enough for a quarter of the
+/// size.
 const LEVEL: u32 = 2;
 
-/// Side of one frame of the detail map.
+/// Returns the side of one frame of the detail map, texels.
 pub(crate) fn detail_size(sprite_size: u32) -> u32 {
     (sprite_size >> LEVEL).max(1)
 }
 
-/// One frame of the detail map. `offset` is at the sprite's own size.
+/// Computes one frame of the detail map. `offset` has the size of the sprite.
 pub fn detail(sprite: &Sprite, frame: u32, offset: &Picture<f32>) -> Picture<Rgba<u8>> {
     let size = detail_size(sprite.size());
     let motion = motion(sprite, frame);
     let mut picture = Picture::new(UVec2::splat(size), Rgba([128, 128, 128, 0]));
     let scale = sprite.size() / size;
     picture.for_each(|at, texel| {
-        // Mean offset of the texels that it stands for, by their amount.
+        // Mean offset of the covered texels, weighted by amount.
         let (mut sum, mut weight) = (0.0, 0.0);
         for index in 0..scale * scale {
             let fine = at * scale + UVec2::new(index % scale, index / scale);
@@ -38,7 +39,7 @@ pub fn detail(sprite: &Sprite, frame: u32, offset: &Picture<f32>) -> Picture<Rgb
         }
         let signed = |value: f32| (128.0 + 127.0 * value.clamp(-1.0, 1.0)).round() as u8;
         let motion = motion.load(at.as_ivec2()) / MOTION_RANGE;
-        // Clear at the border, as sprites must be.
+        // The border must be clear, as in sprites.
         let border = at.min_element() == 0 || at.max_element() == size - 1;
         let amount = if border { 0.0 } else { sprite.texel(LEVEL, frame, at.x, at.y).w };
         let offset = if weight > 0.0 { sum / weight } else { 0.0 };
@@ -47,16 +48,16 @@ pub fn detail(sprite: &Sprite, frame: u32, offset: &Picture<f32>) -> Picture<Rgb
     picture
 }
 
-/// Where each texel moves from `frame` to the next, in sides of the sprite, y down: optical flow by least squares in a
-/// window, coarse to fine. (Lucas and Kanade, "An iterative image registration technique", 1981; in a pyramid as Bouguet,
-/// 2001)
+/// Computes each texel's motion from `frame` to the next, in sides of the sprite, y down. Optical flow by least squares
+/// in a window, from coarse to fine. (Lucas and Kanade, "An iterative image registration technique", 1981; pyramid
+/// after Bouguet, 2001)
 pub fn motion(sprite: &Sprite, frame: u32) -> Picture<Vec2> {
     let next = (frame + 1) % sprite.frame_count();
     let coarsest = (LEVEL + 2).min(sprite.level_count() - 1);
     let mut flow = Picture::new(UVec2::ONE, Vec2::ZERO);
     for level in (LEVEL.min(coarsest)..=coarsest).rev() {
         let (from, to) = (features(sprite, frame, level), features(sprite, next, level));
-        // In texels of this level; the coarser level's start.
+        // Starts from the coarser level's flow, converted to texels of this level.
         let size = from.size.x as f32;
         let mut finer = Picture::new(from.size, Vec2::ZERO);
         finer.for_each(|at, texel| {
@@ -72,12 +73,12 @@ pub fn motion(sprite: &Sprite, frame: u32) -> Picture<Vec2> {
 }
 
 const ITERATIONS: u32 = 6;
-/// Texels round a texel that must agree on its motion.
+/// Radius of the window whose texels share a motion, texels.
 const WINDOW: i32 = 4;
-/// Keeps texels still where nothing tells how they move.
+/// Regularisation: keeps texels still where the features do not determine their motion.
 const STIFFNESS: f32 = 0.02;
 
-/// What is recognised from frame to frame: the amount, and which way it faces.
+/// Returns the features that are matched between frames: amount, and normal xy times amount.
 fn features(sprite: &Sprite, frame: u32, level: u32) -> Picture<Vec3> {
     let mut picture = Picture::new(UVec2::splat(sprite.level_size(level)), Vec3::ZERO);
     picture.for_each(|at, feature| {
@@ -87,14 +88,14 @@ fn features(sprite: &Sprite, frame: u32, level: u32) -> Picture<Vec3> {
     picture
 }
 
-/// One step of least squares at every texel.
+/// Performs one least-squares step at every texel.
 fn refine(from: &Picture<Vec3>, to: &Picture<Vec3>, flow: &Picture<Vec2>) -> Picture<Vec2> {
-    // Each texel's share of the normal equations.
+    // Each texel's contribution to the normal equations.
     let mut local = Picture::new(from.size, (Mat2::ZERO, Vec2::ZERO));
     local.for_each(|at, (matrix, right)| {
         let at = at.as_ivec2();
         let moved = at.as_vec2() + flow.load(at);
-        // Slope along x and y of each feature, and what is left to explain.
+        // Gradients of the features along x and y, and the residual.
         let x = (bilinear(to, moved + Vec2::X) - bilinear(to, moved - Vec2::X)) * 0.5;
         let y = (bilinear(to, moved + Vec2::Y) - bilinear(to, moved - Vec2::Y)) * 0.5;
         let rest = from.load(at) - bilinear(to, moved);
@@ -108,7 +109,7 @@ fn refine(from: &Picture<Vec3>, to: &Picture<Vec3>, flow: &Picture<Vec2>) -> Pic
     refined.for_each(|at, motion| {
         let at = at.as_ivec2();
         let (mut matrix, mut right) = (Mat2::from_diagonal(Vec2::splat(STIFFNESS)), Vec2::ZERO);
-        // The window's own mean motion: neighbours move alike.
+        // Mean motion of the window, for smoothing.
         let (mut mean, mut total) = (Vec2::ZERO, 0.0);
         for &(offset, weight) in &window {
             let (of_texel, right_of_texel) = local.load(at + offset);
@@ -142,8 +143,8 @@ mod tests {
     use image::RgbaImage;
 
     #[test]
-    fn a_ball_that_moves_is_followed() {
-        // Two frames of 64: a ball, then the same 3 to the right and 2 up.
+    fn optical_flow_follows_a_moving_ball() {
+        // Two frames of 64 texels: a ball, then the same ball moved 3 texels right and 2 up.
         let sheet = RgbaImage::from_fn(128, 64, |x, y| {
             let middle = if x < 64 { Vec2::new(30.0, 33.0) } else { Vec2::new(64.0 + 33.0, 31.0) };
             let p = (Vec2::new(x as f32, y as f32) - middle) / 18.0;

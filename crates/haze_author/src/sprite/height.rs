@@ -1,4 +1,4 @@
-//! Normals of heights, and heights of a silhouette.
+//! Converts height maps to normals, and silhouettes to height maps.
 
 use glam::{IVec2, UVec2, Vec3};
 
@@ -10,21 +10,21 @@ pub fn grey(size: UVec2, value: impl Fn(UVec2) -> f32 + Sync) -> Picture<f32> {
     picture
 }
 
-/// The normal of heights, where a height of 1 is a half side times `strength`.
+/// Returns the unnormalised normal of a height map. A height of 1 equals a half side times `strength`.
 pub fn normal_of(height: &Picture<f32>, at: IVec2, strength: f32) -> Vec3 {
     let slope =
         |step: IVec2| (height.load(at - step) - height.load(at + step)) * height.size.x as f32 * 0.25 * strength;
     Vec3::new(slope(IVec2::X), -slope(IVec2::Y), 1.0)
 }
 
-/// Heights of a dome over the silhouette: blurred ever wider and added up, so that thin parts are low and the middle is high, and
-/// what the amount shows within stays.
+/// Builds a dome-like height map from a silhouette by summing blurs of doubling width. Thin parts are low, the middle
+/// is high, and structure inside the amount is kept.
 pub fn puffed(amount: &Picture<f32>) -> Picture<f32> {
     let mut height = Picture::new(amount.size, 0.0);
     let mut blurred = amount.clone();
     let mut reach = 1;
     while reach < amount.size.x as i32 / 4 {
-        // Thrice a box is nearly a bell.
+        // Three box blurs approximate a Gaussian.
         for _ in 0..3 {
             blurred = boxed(&boxed(&blurred, IVec2::X, reach), IVec2::Y, reach);
         }
@@ -33,7 +33,7 @@ pub fn puffed(amount: &Picture<f32>) -> Picture<f32> {
         reach *= 2;
     }
     let most = height.texels.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
-    // Round at its edge, as a ball is.
+    // The square root makes the edge round, as on a ball.
     height.texels.iter_mut().for_each(|height| *height = (*height / most).sqrt());
     height
 }

@@ -1,4 +1,4 @@
-//! Sprites from pictures of other kinds: normals painted elsewhere, heights, alpha alone, and six-way light maps.
+//! Imports sprites from other kinds of images: painted normals, heights, alpha only, and six-way light maps.
 
 use std::path::Path;
 
@@ -16,16 +16,17 @@ use haze::settings::choice;
 use haze::sprite::{Sprite, SpriteLayout};
 
 choice! {
-    /// What a picture holds that becomes a sprite.
+    /// Contents of an imported image.
     Source {
         /// rgb = normals, a = amount.
         #[default]
         Normals = "normals",
         /// Grey = height, a = amount.
         Height = "height",
-        /// a = amount, or grey where there is no alpha: puffed up.
+        /// a = amount, or grey if there is no alpha. Normals are those of a dome over the silhouette.
         Alpha = "alpha",
-        /// Two light maps as Unity's VFX Graph has them: right, top, back; left, bottom, front. Alpha of the first = amount.
+        /// Two light maps in the layout of Unity's VFX Graph: right, top, back; left, bottom, front. Alpha of the first
+        /// = amount.
         SixWayUnity = "six_way_unity",
         /// Two light maps: right, left, top; bottom, back, front. Alpha of the first = amount.
         SixWayRltBbf = "six_way_rlt_bbf",
@@ -33,7 +34,7 @@ choice! {
 }
 
 impl Source {
-    /// How light maps are packed, where it is those.
+    /// Returns the packing if the source is a pair of light maps.
     pub fn packing(self) -> Option<Packing> {
         match self {
             Self::SixWayUnity => Some(Packing::Unity),
@@ -42,36 +43,36 @@ impl Source {
         }
     }
 
-    /// True for those of two pictures.
+    /// True if the source consists of two images.
     pub fn has_two(self) -> bool {
         self.packing().is_some()
     }
 }
 
-/// What is made of pictures, and what was found out on the way.
+/// Result of an import, with observations about the source.
 #[derive(Clone, Debug)]
 pub struct Imported {
-    /// rgb = normal / 2 + 1/2 (x right, y up, z to the viewer), a = amount.
+    /// rgb = normal / 2 + 1/2 (x right, y up, z towards the viewer), a = amount.
     pub picture: RgbaImage,
-    /// The light maps, where there are some: see [`six_way`](super::six_way).
+    /// Six-way maps, if the source is a pair of light maps: see [`six_way`](super::six_way).
     pub six_way: Option<RgbaImage>,
-    /// Which way green pointed in painted normals; none for other sources.
+    /// Detected direction of green in painted normals; `None` for other sources.
     pub y_direction: Option<YDirection>,
-    /// What painted normals look like, if not like normals.
+    /// Description of the contents if the source should be normals but does not look like it.
     pub doubt: Option<&'static str>,
-    /// The frame with the most alpha on its border, which was made clear, and how much.
+    /// The frame with the largest alpha on its border, and that alpha. Borders were cleared.
     pub border: Option<(u32, u8)>,
 }
 
-/// Puts numbered frames of one size beside and below each other, as square as can be; gives the sheet and its columns and rows.
+/// Arranges frames of equal size on a sheet that is as square as possible. Returns the sheet and its columns and rows.
 ///
 /// # Errors
-/// [`Error::Image`] for a frame that is not as large as the first.
+/// [`Error::Image`] if a frame differs in size from the first.
 pub fn sheet_of(frames: &[(&Path, RgbaImage)]) -> Result<(RgbaImage, UVec2), Error> {
     let Some((_, first)) = frames.first() else { return Ok((RgbaImage::new(0, 0), UVec2::ZERO)) };
     let (width, height) = first.dimensions();
     let count = frames.len() as u32;
-    // Without a gap: a sheet has columns times rows frames.
+    // The sheet has no empty cells: columns times rows must equal the number of frames.
     let columns = (1..=count).filter(|&columns| count.is_multiple_of(columns) && columns * columns >= count).min();
     let columns = columns.unwrap_or(count);
     let mut sheet = RgbaImage::new(width * columns, height * (count / columns));
@@ -87,11 +88,12 @@ pub fn sheet_of(frames: &[(&Path, RgbaImage)]) -> Result<(RgbaImage, UVec2), Err
     Ok((sheet, UVec2::new(columns, count / columns)))
 }
 
-/// Makes a sprite of a sheet, and of a second one for sources that have two. `y_down` says which way green points in normals;
-/// without, it is guessed, and up where that is not sure. `strength` is how much heights and puffs stand out, 1 as a half sphere.
+/// Converts a sheet, or two for sources that need two, to a sprite. `y_down` gives the direction of green in painted
+/// normals; with `None` it is detected, and taken as up if uncertain. `strength` scales heights and domes: 1 is a
+/// hemisphere.
 ///
 /// # Errors
-/// [`Error::Image`] for sheets that do not fit the layout or each other.
+/// [`Error::Image`] if the sheets do not fit the layout or each other.
 pub fn import(
     path: &Path,
     sheets: &[RgbaImage],
@@ -108,7 +110,7 @@ pub fn import(
     }
     if let Some(second) = second.filter(|second| second.dimensions() != first.dimensions()) {
         let size = |sheet: &RgbaImage| format!("{}x{}", sheet.width(), sheet.height());
-        return refuse(format!("{} pixels of the second sheet; expected {} as the first", size(second), size(first)));
+        return refuse(format!("the second sheet has {} pixels; expected {} as the first", size(second), size(first)));
     }
     let mut picture = first.clone();
     let has_alpha = picture.pixels().any(|texel| texel.0[3] != 255);
@@ -118,7 +120,7 @@ pub fn import(
     let (columns, rows) = (layout.columns.max(1), layout.rows.max(1));
     let size = UVec2::new(picture.width() / columns, picture.height() / rows);
     let border = clear_borders(&mut picture, layout);
-    // It refuses what does not fit.
+    // Returns an error if the layout does not fit.
     let sprite = Sprite::from_picture(path, &picture, SpriteLayout { y_down: false, ..layout })?;
     let (mut found, mut doubt) = (None, None);
     match source {
@@ -165,7 +167,7 @@ fn value(texel: &Rgba<u8>) -> Vec4 {
     Vec4::from(texel.0.map(f32::from)) / 255.0
 }
 
-/// Of unit length, and never away from the viewer, so that overlapping sprites do not cancel.
+/// Encodes a normal of unit length. z is clamped to 0 or more, so that normals of overlapping sprites do not cancel.
 fn encode(normal: Vec3, alpha: u8) -> Rgba<u8> {
     let normal = normal.with_z(normal.z.max(0.0)).normalize_or(Vec3::Z);
     let [x, y, z] = normal.to_array().map(|axis| (saturate(axis * 0.5 + 0.5) * 255.0).round() as u8);
@@ -179,7 +181,7 @@ mod tests {
     use super::*;
     use crate::sprite::check::check;
 
-    /// Two half spheres beside each other; `texel` gives what is painted for a normal and an amount.
+    /// Draws two hemispheres side by side. `texel` maps a normal and an amount to channels.
     fn balls(texel: impl Fn(Vec3, f32) -> [f32; 4]) -> RgbaImage {
         RgbaImage::from_fn(128, 64, |x, y| {
             let p = (Vec2::new((x % 64) as f32, y as f32) - 31.5) / 28.0;
@@ -191,7 +193,7 @@ mod tests {
 
     const LAYOUT: SpriteLayout = SpriteLayout { columns: 2, rows: 1, y_down: false };
 
-    /// Imports, and gives how far normals are from those of the balls on average.
+    /// Imports sheets and returns the mean distance of the normals from those of the hemispheres.
     fn off(sheets: &[RgbaImage], source: Source, y_down: Option<bool>, strength: f32) -> f32 {
         let imported = import(Path::new("a.png"), sheets, source, LAYOUT, y_down, strength).unwrap();
         assert_eq!(check(Path::new("a.png"), &imported.picture, LAYOUT).unwrap(), [], "{source:?}");
@@ -206,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn painted_normals_are_turned_as_said_or_guessed() {
+    fn painted_normals_are_flipped_as_requested_or_detected() {
         let sheet = |y: f32| [balls(|n, amount| ((n * Vec3::new(1.0, y, 1.0)) * 0.5 + 0.5).extend(amount).to_array())];
         assert!(off(&sheet(1.0), Source::Normals, None, 1.0) < 0.01);
         assert!(off(&sheet(-1.0), Source::Normals, None, 1.0) < 0.01);
@@ -214,7 +216,7 @@ mod tests {
         let imported = import(Path::new(""), &sheet(-1.0), Source::Normals, LAYOUT, None, 1.0).unwrap();
         let found = imported.y_direction.unwrap();
         assert!(found.is_down && found.sureness > 0.9, "{found:?}");
-        // What is said counts.
+        // An explicit `y_down` overrides the detection.
         let kept = import(Path::new(""), &sheet(-1.0), Source::Normals, LAYOUT, Some(false), 1.0).unwrap();
         assert!(
             kept.picture
@@ -228,12 +230,12 @@ mod tests {
     fn heights_alpha_and_light_maps_become_normals() {
         let height = balls(|normal, amount| [normal.z, normal.z, normal.z, amount]);
         assert!(off(&[height], Source::Height, None, 28.0 / 32.0) < 0.05);
-        // A puff is no ball, but round as one: normals that all face the viewer are 0.75 off.
+        // A dome is not an exact hemisphere. For comparison, normals that all face the viewer have an error of 0.75.
         let alpha = balls(|_, amount| [1.0, 1.0, 1.0, amount]);
         assert!(off(&[alpha], Source::Alpha, None, 1.0) < 0.45);
         let grey = balls(|_, amount| [amount, amount, amount, 1.0]);
         assert!(off(&[grey], Source::Alpha, None, 1.0) < 0.45);
-        // Light of a surface from each side.
+        // Light on a surface from each side.
         let light = |axis: Vec3| move |normal: Vec3| 0.1 + 0.9 * normal.dot(axis).max(0.0);
         let sheet = |axes: [Vec3; 3]| {
             let [r, g, b] = axes.map(light);
@@ -245,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_refused() {
+    fn sheets_that_do_not_fit_are_refused() {
         let sheet = balls(|_, _| [0.5; 4]);
         let message = |sheets: &[RgbaImage], source| {
             import(Path::new("a.png"), sheets, source, LAYOUT, None, 1.0).unwrap_err().to_string()
@@ -262,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn numbered_frames_make_a_sheet_without_gaps() {
+    fn frames_are_arranged_on_a_sheet_without_empty_cells() {
         let frame = |grey: u8| (Path::new("a.png"), RgbaImage::from_pixel(4, 4, Rgba([grey; 4])));
         let frames: Vec<_> = (0..6).map(|index| frame(index * 10)).collect();
         let (sheet, layout) = sheet_of(&frames).unwrap();

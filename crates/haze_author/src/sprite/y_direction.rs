@@ -1,22 +1,22 @@
-//! Which way green points in a sprite's normals.
+//! Detects the direction of green in a sprite's normals.
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use haze::sprite::Sprite;
 
-/// Which way green points, as far as the picture tells.
+/// Detected direction of green.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct YDirection {
-    /// True where it points down.
+    /// True if green points down.
     pub is_down: bool,
-    /// How sure that is: 0 not at all, 1 fully. Below [`SURE`] it is a guess.
+    /// Confidence, 0 to 1. Below [`SURE`] the direction is a guess.
     pub sureness: f32,
 }
 
-/// From which on a direction is taken to be known.
+/// Minimum confidence for a direction to count as known.
 pub const SURE: f32 = 0.3;
-/// Which way green points: normals lean out of the silhouette, and heights that they are slopes of must fit together, which those of
-/// a turned green do not. None where nothing leans.
+/// Detects the direction of green by two cues: normals lean outwards at the silhouette, and a gradient field of heights
+/// has no curl, which holds only if green has the right sign. `None` if the sprite gives no cue.
 pub fn y_direction(sprite: &Sprite) -> Option<YDirection> {
     let (mut agrees, mut all) = (0.0_f32, 0.0_f32);
     let (mut along, mut total) = (0.0_f32, 0.0_f32);
@@ -27,12 +27,12 @@ pub fn y_direction(sprite: &Sprite) -> Option<YDirection> {
                 let at = |x: u32, y: u32| sprite.texel(0, frame, x, y);
                 let (texel, right, left) = (at(x, y), at(x + 1, y), at(x - 1, y));
                 let (above, below) = (at(x, y - 1), at(x, y + 1));
-                // Amount falls off outwards.
+                // The amount decreases outwards.
                 let fall = Vec2::new(left.w - right.w, below.w - above.w);
                 let lean = normal(texel).y * fall.y * texel.w;
                 agrees += lean;
                 all += lean.abs();
-                // dz/dx along y is dz/dy along x.
+                // Zero curl: the change of dz/dx along y equals the change of dz/dy along x.
                 let slope = |texel: Vec4| normal(texel).truncate() / normal(texel).z.max(0.25);
                 let weight = texel.w.min(right.w).min(left.w).min(above.w).min(below.w);
                 let (of_x, of_y) = (slope(above).x - slope(below).x, slope(right).y - slope(left).y);
@@ -47,7 +47,7 @@ pub fn y_direction(sprite: &Sprite) -> Option<YDirection> {
     (all > 1.0e-6).then_some(YDirection { is_down: sum < 0.0, sureness: sum.abs() })
 }
 
-/// What a texel's colour stands for.
+/// Decodes a texel's normal.
 pub(super) fn normal(texel: Vec4) -> Vec3 {
     texel.xyz() * 2.0 - 1.0
 }

@@ -8,11 +8,11 @@ use super::*;
 
 type Chunk = (&'static [u8; 4], Vec<u8>);
 
-/// A PNG with chunks between its header and its pixels.
+/// Encodes a PNG with extra chunks between its header and its pixels.
 fn png(picture: &DynamicImage, chunks: &[Chunk]) -> Vec<u8> {
     let mut bytes = Vec::new();
     picture.write_to(&mut Cursor::new(&mut bytes), ImageFormat::Png).unwrap();
-    // Signature and header.
+    // Signature and header have 33 bytes.
     let pixels = bytes.split_off(33);
     for (kind, data) in chunks {
         let checked = [&kind[..], data].concat();
@@ -29,7 +29,7 @@ fn crc(bytes: &[u8]) -> u32 {
         .fold(!0, |crc, &byte| (0..8).fold(crc ^ u32::from(byte), |crc, _| (crc >> 1) ^ (0xedb8_8320 * (crc & 1))))
 }
 
-/// A profile as a chunk has it: its name, and zlib data that is stored as it is.
+/// Builds an iCCP chunk: the profile's name, and the profile as an uncompressed zlib stream.
 fn iccp(profile: &[u8]) -> Chunk {
     let length = profile.len() as u16;
     let (a, b) = profile.iter().fold((1, 0), |(a, b), &byte| {
@@ -59,7 +59,7 @@ fn srgb() -> Chunk {
 
 const CODE: [u8; 3] = [180, 90, 40];
 
-/// What a texel of [`CODE`] is in sRGB.
+/// Decodes an image of colour [`CODE`] with the given chunks and returns its sRGB code.
 fn decoded(chunks: &[Chunk]) -> Result<[u8; 3], String> {
     let picture = DynamicImage::ImageRgb8(ImageBuffer::from_pixel(3, 1, image::Rgb(CODE)));
     let decoded = decode_colour_png(Path::new("a.png"), &png(&picture, chunks));
@@ -71,7 +71,7 @@ fn of_power(power: f32) -> [u8; 3] {
 }
 
 #[test]
-fn every_tag_is_honoured() {
+fn every_colour_tag_is_applied() {
     let refused =
         |found: &str| Err(format!("a.png: {found}; expected sRGB: convert the picture to sRGB when exporting it"));
     for chunks in [vec![], vec![srgb()], vec![cicp([1, 13, 0, 1])], vec![gama(0)], vec![chrm(SRGB)]] {
@@ -83,18 +83,18 @@ fn every_tag_is_honoured() {
     for chunks in [vec![gama(45_455)], vec![cicp([1, 4, 0, 1])], vec![gama(45_455), chrm(SRGB)]] {
         assert_eq!(decoded(&chunks), Ok(of_power(2.2)));
     }
-    // By the matrices that CSS Color 4 prints.
+    // Expected values follow from the matrices in CSS Color 4.
     for chunks in [vec![cicp([12, 13, 0, 1])], vec![chrm(DISPLAY_P3)]] {
         assert_eq!(decoded(&chunks), Ok([193, 83, 19]));
     }
     assert_eq!(decoded(&[cicp([9, 13, 0, 1])]), Ok([217, 69, 16]));
     for code in [[1, 16, 0, 1], [9, 18, 0, 1], [2, 13, 0, 1], [1, 13, 1, 1], [1, 13, 0, 0], [1, 1, 0, 1]] {
         let [a, b, c, d] = code;
-        assert_eq!(decoded(&[cicp(code)]), refused(&format!("colours of the code points {a}-{b}-{c}-{d}")));
+        assert_eq!(decoded(&[cicp(code)]), refused(&format!("colours of the cICP code points {a}-{b}-{c}-{d}")));
     }
     let warm = [[0.3457, 0.3585], SRGB[1], SRGB[2], SRGB[3]];
-    assert_eq!(decoded(&[chrm(warm)]), refused("colours whose white is 0.3457, 0.3585"));
-    assert_eq!(decoded(&[chrm([D65; 4])]), refused("primaries that span no colours"));
+    assert_eq!(decoded(&[chrm(warm)]), refused("colours with the white point 0.3457, 0.3585"));
+    assert_eq!(decoded(&[chrm([D65; 4])]), refused("degenerate primaries"));
     let curve = profiles::table(256);
     assert_eq!(decoded(&[iccp(&profiles::profile(profiles::SRGB, &curve))]), Ok(CODE));
     for profile in [&profiles::profile(profiles::P3, &curve)[..], b"", b"no profile"] {
@@ -103,7 +103,7 @@ fn every_tag_is_honoured() {
 }
 
 #[test]
-fn of_several_tags_the_first_by_the_specification_holds() {
+fn colour_tags_take_precedence_as_in_the_png_specification() {
     let wide = || iccp(&profiles::profile(profiles::P3, &profiles::table(256)));
     let all = [gama(100_000), chrm(DISPLAY_P3), srgb(), wide(), cicp([1, 4, 0, 1])];
     assert_eq!(decoded(&all), Ok(of_power(2.2)), "cICP");
@@ -111,16 +111,16 @@ fn of_several_tags_the_first_by_the_specification_holds() {
     assert_eq!(decoded(&all[..3]), Ok(CODE), "sRGB");
     assert_ne!(decoded(&all[..2]), Ok(of_power(1.0)), "cHRM beside gAMA");
     assert_eq!(decoded(&all[..1]), Ok(of_power(1.0)), "gAMA");
-    // Whatever their order, and the first of two of a kind.
+    // Precedence does not depend on the order in the file; of two equal chunks the first applies.
     assert_eq!(decoded(&[cicp([1, 4, 0, 1]), srgb(), gama(100_000)]), Ok(of_power(2.2)));
     assert_eq!(decoded(&[gama(45_455), gama(100_000)]), Ok(of_power(2.2)));
-    // Of the wrong length: not there.
+    // Chunks of the wrong length are ignored.
     assert_eq!(decoded(&[(b"cICP", vec![1, 4, 0])]), Ok(CODE));
     assert_eq!(decoded(&[(b"gAMA", vec![0; 5])]), Ok(CODE));
 }
 
 #[test]
-fn what_is_transparent_gives_less_light() {
+fn transparent_pixels_are_composited_over_black_in_linear_light() {
     let pixel = |alpha| Rgba([CODE[0], CODE[1], CODE[2], alpha]);
     let alphas = [255, 128, 0];
     let picture = DynamicImage::ImageRgba8(ImageBuffer::from_fn(3, 1, |x, _| pixel(alphas[x as usize])));
@@ -131,13 +131,13 @@ fn what_is_transparent_gives_less_light() {
             .map(|code| (srgb_from_linear(linear_from_srgb(f32::from(code) / 255.0) * share) * 255.0).round() as u8);
         assert_eq!(decoded.get_pixel(x as u32, 0).0, expected);
     }
-    // Opaque, with an alpha or without: as it is.
+    // An opaque image with an alpha channel stays unchanged.
     let picture = DynamicImage::ImageRgba8(ImageBuffer::from_pixel(3, 1, pixel(255)));
     assert_eq!(decode_colour_png(Path::new("a.png"), &png(&picture, &[])).unwrap(), picture);
 }
 
 #[test]
-fn every_kind_of_png_is_read_and_cut_anywhere_refused() {
+fn every_kind_of_png_is_read_and_refused_if_truncated() {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/corpus/png");
     let mut count = 0;
     for entry in std::fs::read_dir(root).unwrap() {
@@ -159,7 +159,7 @@ fn every_kind_of_png_is_read_and_cut_anywhere_refused() {
 }
 
 #[test]
-fn what_promises_too_much_is_refused_before_it_is_read() {
+fn oversized_files_are_refused_before_they_are_read() {
     let small = DynamicImage::new_rgb8(2, 2);
     let message = |bytes: &[u8]| decode_png(Path::new("a.png"), bytes).unwrap_err().to_string();
     let mut huge = png(&small, &[]);
@@ -186,7 +186,7 @@ fn what_promises_too_much_is_refused_before_it_is_read() {
             error("link.png")
         );
     }
-    // Sparse: a gibibyte that takes no room.
+    // A sparse file of 1 GiB.
     std::fs::File::create(folder.path().join("long.png")).unwrap().set_len(1 << 30).unwrap();
     assert!(error("long.png").contains("1073741824 bytes; expected a PNG file of at most 67108864 bytes"));
 }

@@ -1,7 +1,7 @@
 use super::*;
 use crate::formula::colour::linear_from_srgb;
 
-/// A profile of the primaries and the curve given.
+/// Builds a profile with the given primaries and curve.
 pub fn profile(primaries: [[f32; 3]; 3], curve: &[u8]) -> Vec<u8> {
     let xyz = |colour: [f32; 3]| {
         let numbers = colour.map(|x| ((x * 65536.0) as i32).to_be_bytes());
@@ -26,7 +26,7 @@ pub const SRGB: [[f32; 3]; 3] =
     [[0.436_07, 0.222_49, 0.013_92], [0.385_15, 0.716_87, 0.097_08], [0.143_07, 0.060_61, 0.7141]];
 pub const P3: [[f32; 3]; 3] = [[0.515_1, 0.241_2, -0.001_1], [0.292, 0.692_2, 0.041_9], [0.157_1, 0.066_6, 0.784_1]];
 
-/// A table of sRGB's curve.
+/// Builds a table of sRGB's curve.
 pub fn table(count: u32) -> Vec<u8> {
     let entry = |index: u32| (linear_from_srgb(index as f32 / (count - 1) as f32) * 65535.0).round() as u16;
     let head = [&b"curv\0\0\0\0"[..], &count.to_be_bytes()].concat();
@@ -34,7 +34,7 @@ pub fn table(count: u32) -> Vec<u8> {
 }
 
 #[test]
-fn only_what_looks_as_srgb_is_srgb() {
+fn only_profiles_equivalent_to_srgb_are_accepted() {
     let formula = [2.4_f32, 1.0 / 1.055, 0.055 / 1.055, 1.0 / 12.92, 0.04045];
     let numbers = formula.map(|x| ((x * 65536.0).round() as i32).to_be_bytes());
     let formula = [&b"para\0\0\0\0\0\x03\0\0"[..], numbers.as_flattened()].concat();
@@ -44,7 +44,7 @@ fn only_what_looks_as_srgb_is_srgb() {
     assert!(!is_srgb(&profile(P3, &formula)), "other primaries");
     assert!(!is_srgb(&profile(SRGB, exponent)), "2.2");
     assert!(!is_srgb(&profile(SRGB, linear)), "linear");
-    // Cut or changed anywhere, it is looked at without harm.
+    // A truncated or changed profile does not panic.
     let whole = profile(SRGB, &formula);
     for at in 0..whole.len() {
         assert!(!is_srgb(&whole[..at]));

@@ -73,5 +73,5 @@ fn particle_files_are_checked_shown_and_copied_with_their_preset() {
     write("smoke_####.csv");
     std::fs::write(path("smoke_0008.csv"), "x,y,z\n1,2\n").unwrap();
     let line = refusal(folder.path(), &["preset", "check", "my.json"]);
-    assert!(line.trim_end().ends_with("smoke_0008.csv:2:4: 2 cells; expected 3, one for each name"), "{line}");
+    assert!(line.trim_end().ends_with("smoke_0008.csv:2:4: 2 cells; expected 3, one for each column"), "{line}");
 }

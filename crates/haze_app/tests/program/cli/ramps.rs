@@ -110,9 +110,9 @@ fn ramp_check_reports_findings_and_exits_with_1() {
     assert_eq!(
         names,
         [
-            "specular_grey.png: ends: 90 of 255 at amount 0, the bottom row",
-            "specular_grey.png: ends: 90 of 255 at distance 1, the last column",
-            "a.png: banding: a slope of steps at 0.10 across",
+            "specular_grey.png: ends: brightness 90 of 255 at amount 0, the bottom row",
+            "specular_grey.png: ends: brightness 90 of 255 at distance 1, the last column",
+            "a.png: banding: visible steps at 0.10 across",
             "age.png: colour_space: transparent texels",
         ]
     );

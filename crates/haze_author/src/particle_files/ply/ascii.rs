@@ -1,4 +1,4 @@
-//! PLY files whose numbers are text: one thing a line.
+//! ASCII PLY files: one element per line.
 
 use super::header::{Element, Kind};
 use crate::particle_files::columns::{Columns, Values};
@@ -6,7 +6,7 @@ use crate::particle_files::csv::text;
 use crate::particle_files::frame::CachedParticle;
 use crate::particle_files::mistake::Mistake;
 
-/// Reads the vertices of what follows a header of `lines`.
+/// Reads the vertices of the body that follows a header of `lines` lines.
 pub fn read(
     body: &[u8],
     lines: usize,
@@ -38,7 +38,7 @@ pub fn read(
                 }
                 Kind::One(_) => {}
                 Kind::List { .. } => {
-                    let reason = "the length of a list is no whole number; expected one from 0 on";
+                    let reason = "the list length is not a whole number; expected 0 or more";
                     let items = word.parse().map_err(|_| Mistake::after(number, after(word), reason))?;
                     (0..items).try_for_each(|_: usize| words.next().map(|_| ()).ok_or_else(short))?;
                 }
@@ -55,10 +55,10 @@ pub fn read(
 
 fn ended(element: &Element, row: usize) -> Mistake {
     let Element { name, count, .. } = element;
-    Mistake::Whole(format!("ends after {row} of element {name}; expected {count}, as the header says"))
+    Mistake::Whole(format!("the file ends after {row} {name} elements; expected {count}, as the header says"))
 }
 
-/// A mistake so many lines further down.
+/// Moves an error's line down by `lines`.
 fn below(mistake: Mistake, lines: usize) -> Mistake {
     match mistake {
         Mistake::At { line, column, reason } => Mistake::At { line: line + lines, column, reason },

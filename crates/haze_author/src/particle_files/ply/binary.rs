@@ -1,11 +1,11 @@
-//! PLY files whose numbers are bytes.
+//! Binary PLY files of either byte order.
 
 use super::header::{Element, Kind, Scalar};
 use crate::particle_files::columns::{Columns, Values};
 use crate::particle_files::frame::CachedParticle;
 use crate::particle_files::mistake::Mistake;
 
-/// Reads the vertices of what follows a header of `start` bytes.
+/// Reads the vertices of the body that follows a header of `start` bytes.
 pub fn read(
     body: &[u8],
     start: usize,
@@ -22,7 +22,7 @@ pub fn read(
                 passed.ok_or_else(|| ended(element, row, start + reader.at))?;
             }
         } else {
-            // As long as the header's counts were found to fit into the file.
+            // Cannot overflow: `Header::parse` checked that the counts fit in the file.
             reader.at += element.count * element.least_bytes();
         }
     }
@@ -47,7 +47,7 @@ pub fn read(
 
 fn ended(element: &Element, row: usize, at: usize) -> Mistake {
     let Element { name, count, .. } = element;
-    Mistake::Whole(format!("ends within {name} {row} at byte {at}; expected {count} of them, as the header says"))
+    Mistake::Whole(format!("the file ends within {name} {row} at byte {at}; expected {count}, as the header says"))
 }
 
 struct Reader<'a> {
@@ -57,7 +57,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// The next bytes; none beyond the end.
+    /// Returns the next `N` bytes, or `None` at the end of the file.
     fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
         let bytes = *self.body.get(self.at..)?.first_chunk::<N>()?;
         self.at += N;
@@ -65,7 +65,7 @@ impl Reader<'_> {
     }
 
     fn scalar(&mut self, scalar: Scalar) -> Option<f64> {
-        /// The bytes as the type has them, in either order.
+        /// Reads a number of a type in the file's byte order.
         macro_rules! number {
             ($type:ty) => {{
                 let bytes = self.take()?;
@@ -84,7 +84,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Goes on behind a property. A list of less than nothing has no end, too.
+    /// Skips a property. Returns `None` if it reaches beyond the end of the file or a list has a negative length.
     fn pass(&mut self, kind: Kind) -> Option<()> {
         let bytes = match kind {
             Kind::One(scalar) => scalar.bytes(),

@@ -1,16 +1,16 @@
-//! What a PLY file says that is in it.
+//! Header of a PLY file.
 
 use crate::particle_files::columns::MOST_COLUMNS;
 use crate::particle_files::mistake::Mistake;
 use haze::error::one_line;
 
-/// Longest header, bytes.
+/// Size limit of the header, bytes.
 const MOST_BYTES: usize = 1 << 16;
 
 pub struct Header {
     pub format: Format,
     pub elements: Vec<Element>,
-    /// Of the header, bytes and lines.
+    /// Length of the header in bytes, and in lines below.
     pub length: usize,
     pub lines: usize,
 }
@@ -19,12 +19,12 @@ pub struct Header {
 pub enum Format {
     Ascii,
     Binary {
-        /// The first byte is the largest.
+        /// True for big-endian.
         is_big: bool,
     },
 }
 
-/// A list of things that are alike.
+/// An element declaration: a list of records with the same properties.
 pub struct Element {
     pub name: String,
     pub count: usize,
@@ -83,7 +83,7 @@ impl Scalar {
 }
 
 impl Element {
-    /// Fewest bytes of one in a binary file: its lists may be empty.
+    /// Returns the minimum size of one record in a binary file, bytes: lists may be empty.
     pub fn least_bytes(&self) -> usize {
         let bytes = |property: &Property| match property.kind {
             Kind::One(scalar) => scalar.bytes(),
@@ -98,7 +98,7 @@ impl Element {
 }
 
 impl Header {
-    /// Reads the header, and compares what it promises with the length of the file.
+    /// Parses the header and checks that the declared counts fit in the file.
     pub fn parse(content: &[u8]) -> Result<Self, Mistake> {
         let (mut format, mut elements) = (None, Vec::<Element>::new());
         let (mut length, mut properties) = (0, 0);
@@ -118,13 +118,13 @@ impl Header {
                 ["comment" | "obj_info", ..] | [] => {}
                 ["format", name, "1.0"] => format = Some(parse_format(name).map_err(refuse)?),
                 ["element", name, count] => {
-                    let refused = || refuse(format!("{:?} is no count; expected a whole number", one_line(count)));
+                    let refused = || refuse(format!("{:?} is not a count; expected a whole number", one_line(count)));
                     let count = count.parse().map_err(|_| refused())?;
                     elements.push(Element { name: one_line(name), count, properties: Vec::new() });
                 }
                 ["property", ref words @ ..] => {
                     let Some(element) = elements.last_mut() else {
-                        return Err(refuse("a property of nothing; expected an element before it".into()));
+                        return Err(refuse("property before any element; expected an element line first".into()));
                     };
                     properties += 1;
                     if properties > MOST_COLUMNS {
@@ -133,8 +133,9 @@ impl Header {
                     element.properties.push(parse_property(words).map_err(refuse)?);
                 }
                 ["end_header"] => {
-                    let format = format
-                        .ok_or_else(|| refuse("no format before; expected \"format ascii 1.0\", for example".into()))?;
+                    let format = format.ok_or_else(|| {
+                        refuse("no format line in the header; expected for example \"format ascii 1.0\"".into())
+                    })?;
                     let header = Self { format, elements, length, lines: number };
                     return header.check_counts(content.len() - length).map(|()| header);
                 }
@@ -147,22 +148,22 @@ impl Header {
         Err(Mistake::Whole("no end_header; expected a PLY file".into()))
     }
 
-    /// Refuses more than the rest of the file can hold, before anything is made for it.
+    /// Returns an error if the counts need more than the `left` bytes of the file, before memory is allocated for them.
     fn check_counts(&self, left: usize) -> Result<(), Mistake> {
         let mut needed = 0_usize;
         for element in &self.elements {
             let least = match self.format {
                 Format::Binary { .. } => element.least_bytes(),
-                // A digit and what parts it from the next.
+                // A digit and a separator.
                 Format::Ascii => 2 * element.properties.len(),
             };
             needed = needed.saturating_add(element.count.saturating_mul(least));
-            // The last of a text need not be parted from anything.
+            // The last number of a text file needs no separator.
             if needed > left.saturating_add(1) || needed > left && self.format != Format::Ascii {
                 let Element { name, count, .. } = element;
                 let reason = format!(
-                    "{count} of element {name} of at least {least} bytes each are more than the {left} bytes that follow the header; \
-                     expected the whole file"
+                    "{count} {name} elements of at least {least} bytes each do not fit in the {left} bytes after the header; \
+                     expected the complete file"
                 );
                 return Err(Mistake::Whole(reason));
             }
@@ -187,10 +188,10 @@ fn parse_property(words: &[&str]) -> Result<Property, String> {
     let (name, kind) = match *words {
         ["list", count, item, name] => (name, Kind::List { count: Scalar::of(count)?, item: Scalar::of(item)? }),
         [scalar, name] => (name, Kind::One(Scalar::of(scalar)?)),
-        _ => return Err("a property of other parts; expected \"property float x\", for example".into()),
+        _ => return Err("malformed property; expected for example \"property float x\"".into()),
     };
     if let Kind::List { count: Scalar::F32 | Scalar::F64, .. } = kind {
-        return Err(format!("list {:?} is counted by a float; expected a whole number's type", one_line(name)));
+        return Err(format!("the length of list {:?} has a float type; expected an integer type", one_line(name)));
     }
     Ok(Property { name: name.into(), kind })
 }

@@ -1,4 +1,5 @@
-//! Particles as the vertices of a PLY file, whatever else is in it. (Turk, *The PLY Polygon File Format*, 1994)
+//! Reads particles from the vertices of a PLY file and ignores other elements. (Turk, *The PLY Polygon File Format*,
+//! 1994)
 
 mod ascii;
 mod binary;
@@ -9,7 +10,7 @@ use super::frame::CacheFrame;
 use super::mistake::Mistake;
 use header::{Element, Format, Header, Kind, Scalar};
 
-/// Reads a file of at most so many particles.
+/// Reads a file of at most `most` particles.
 pub fn read(content: &[u8], most: usize) -> Result<CacheFrame, Mistake> {
     let header = Header::parse(content)?;
     let Some(at) = header.elements.iter().position(|element| element.name == "vertex") else {
@@ -36,7 +37,7 @@ pub fn read(content: &[u8], most: usize) -> Result<CacheFrame, Mistake> {
     CacheFrame::new(particles, given).map_err(Mistake::twice)
 }
 
-/// The columns that the properties of vertices are. Lists are none.
+/// Maps the vertices' properties to columns. List properties get an empty name and thus no role.
 fn columns(vertices: &Element) -> Result<Columns, String> {
     let name = |property: &'_ header::Property| match property.kind {
         Kind::One(_) => property.name.clone(),

@@ -1,4 +1,4 @@
-//! PLY files as programs write them, whole and mangled.
+//! Tests with PLY files as other programs write them, intact and damaged.
 
 use glam::Vec3;
 
@@ -11,7 +11,7 @@ fn read(content: &[u8]) -> Result<CacheFrame, Mistake> {
 const NAMES: &str = "property float x\nproperty double y\nproperty short z\nproperty uchar Alpha\nproperty int id\n\
                      property list uchar ushort near\nproperty float pscale\n";
 
-/// A file with a list before its vertices, one within them, and faces after them.
+/// Builds a file with a list element before the vertices, a list property in the vertices, and faces after them.
 fn binary(is_big: bool) -> Vec<u8> {
     let order = if is_big { "big" } else { "little" };
     let mut file = format!(
@@ -56,7 +56,7 @@ fn ascii() -> Vec<u8> {
 }
 
 #[test]
-fn the_three_formats_say_the_same_and_lists_are_passed_by() {
+fn the_three_formats_give_equal_particles_and_lists_are_skipped() {
     let frame = read(&ascii()).unwrap();
     let [first, second] = frame.particles() else { panic!("two particles") };
     assert_eq!((first.id, first.position), (-3, Vec3::new(-2.0, 0.25, -7.0)));
@@ -68,12 +68,12 @@ fn the_three_formats_say_the_same_and_lists_are_passed_by() {
 }
 
 #[test]
-fn a_file_that_is_cut_is_refused_or_has_all_its_particles() {
+fn a_truncated_file_is_refused_or_has_all_its_particles() {
     for file in [ascii(), binary(false), binary(true)] {
         let whole = read(&file).unwrap();
         for length in 0..file.len() {
             if let Ok(frame) = read(&file[..length]) {
-                // What follows the vertices may be lost.
+                // Elements after the vertices are not read, so they may be missing.
                 assert_eq!(frame.particles().len(), whole.particles().len(), "{length}");
             }
         }
@@ -81,7 +81,7 @@ fn a_file_that_is_cut_is_refused_or_has_all_its_particles() {
 }
 
 #[test]
-fn a_file_with_any_byte_another_neither_panics_nor_takes_more_than_it_may() {
+fn a_file_with_one_byte_changed_neither_panics_nor_exceeds_the_limit() {
     for file in [ascii(), binary(false), binary(true)] {
         for at in 0..file.len() {
             for byte in [0, b'-', b'9', b'\n', 0x7f, 0xff] {
@@ -96,7 +96,7 @@ fn a_file_with_any_byte_another_neither_panics_nor_takes_more_than_it_may() {
 }
 
 #[test]
-fn what_the_header_promises_is_compared_with_the_file() {
+fn counts_in_the_header_are_checked_against_the_file_length() {
     let said = |header: &str, body: &str| {
         let Err(Mistake::Whole(reason)) =
             super::read(format!("ply\n{header}end_header\n{body}").as_bytes(), usize::MAX)
@@ -110,24 +110,24 @@ fn what_the_header_promises_is_compared_with_the_file() {
         |count: usize| format!("element vertex {count}\nproperty float x\nproperty float y\nproperty float z\n");
     for format in ["binary_little_endian", "ascii"] {
         let reason = said(&format!("format {format} 1.0\n{}", vertex(most)), "1 2 3\n");
-        assert!(reason.starts_with(&format!("{most} of element vertex of at least ")), "{reason}");
+        assert!(reason.starts_with(&format!("{most} vertex elements of at least ")), "{reason}");
         let many = vertex(most).replace("vertex", "face") + &vertex(1);
-        assert!(said(&format!("format {format} 1.0\n{many}"), "1 2 3\n").contains("of element face"));
+        assert!(said(&format!("format {format} 1.0\n{many}"), "1 2 3\n").contains(" face elements of at least "));
     }
     assert_eq!(
         said(&format!("format ascii 1.0\n{}", vertex(2)), "1000 2000 3000\n"),
-        "ends after 1 of element vertex; expected 2, as the header says"
+        "the file ends after 1 vertex elements; expected 2, as the header says"
     );
     let lists = "format binary_big_endian 1.0\nelement face 2\nproperty list int double i\n".to_owned() + &vertex(0);
     assert_eq!(
         said(&lists, "\u{7f}aaaaaaaa"),
-        "ends within face 0 at byte 158; expected 2 of them, as the header says"
+        "the file ends within face 0 at byte 158; expected 2, as the header says"
     );
-    assert!(said(&lists, "aaaaaaa").contains("bytes that follow the header"));
+    assert!(said(&lists, "aaaaaaa").contains("bytes after the header"));
 }
 
 #[test]
-fn mistakes_are_told_with_their_place() {
+fn errors_name_their_position() {
     let said =
         |text: &str| read(text.as_bytes()).map_err(|mistake| mistake.of("a.ply".as_ref()).to_string()).unwrap_err();
     let file = |format: &str, body: &str| {
@@ -155,17 +155,17 @@ fn mistakes_are_told_with_their_place() {
             "ply\nformat utf8 1.0\n",
             "a.ply:2:1: format \"utf8\" is not known; expected ascii, binary_little_endian or binary_big_endian",
         ),
-        ("ply\nproperty float x\n", "a.ply:2:1: a property of nothing; expected an element before it"),
-        ("ply\nelement vertex -1\n", "a.ply:2:1: \"-1\" is no count; expected a whole number"),
+        ("ply\nproperty float x\n", "a.ply:2:1: property before any element; expected an element line first"),
+        ("ply\nelement vertex -1\n", "a.ply:2:1: \"-1\" is not a count; expected a whole number"),
         ("ply\nelement vertex 1\nproperty half x\n", "a.ply:3:1: type \"half\" is not known; expected one of char, "),
-        ("ply\nelement vertex 1\nproperty list float int x\n", "a.ply:3:1: list \"x\" is counted by a float"),
-        ("ply\nelement vertex 1\nproperty x\n", "a.ply:3:1: a property of other parts"),
-        ("ply\nend_header\n", "a.ply:2:1: no format before"),
+        ("ply\nelement vertex 1\nproperty list float int x\n", "a.ply:3:1: the length of list \"x\" has a float type"),
+        ("ply\nelement vertex 1\nproperty x\n", "a.ply:3:1: malformed property"),
+        ("ply\nend_header\n", "a.ply:2:1: no format line in the header"),
         ("ply\nshape round\n", "a.ply:2:1: \"shape round\" is not known; expected format, element,"),
         ("ply\nformat ascii 1.0\nend_header\n", "a.ply: no element vertex in the header"),
         (
             "ply\nformat ascii 1.0\nelement vertex 0\nend_header\n",
-            "a.ply: no column for the x of positions among ; expected x",
+            "a.ply: no column for the x position among the columns \"\"; expected x",
         ),
         (
             "ply\nformat ascii 1.0\nelement vertex 5\nproperty char x\nend_header\n1 2 3 4 5",

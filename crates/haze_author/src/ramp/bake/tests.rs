@@ -9,7 +9,7 @@ fn recipe(stops: &[(f32, &str)]) -> RampRecipe {
 }
 
 #[test]
-fn stops_come_out_as_they_went_in() {
+fn a_gradient_has_the_exact_colours_of_its_stops() {
     let recipe = recipe(&[(0.0, "#102030"), (0.3, "#ff8040"), (1.0, "#ffffff")]);
     for stop in &recipe.rows[0].stops {
         let colour = recipe.gradient().unwrap().sample(stop.at, 0.0);
@@ -34,7 +34,7 @@ fn the_curve_never_overshoots() {
 }
 
 #[test]
-fn stops_that_all_but_meet_are_an_edge() {
+fn stops_that_almost_coincide_form_an_edge() {
     for gap in [f32::from_bits(1), 1.0e-20, 1.0e-7] {
         let recipe = recipe(&[(0.0, "#000000"), (gap, "#404040"), (2.0 * gap, "#808080"), (1.0, "#ffffff")]);
         for u in [0.0, gap / 2.0, gap, 1.5 * gap, 2.0 * gap, 3.0 * gap, 0.5] {
@@ -46,7 +46,7 @@ fn stops_that_all_but_meet_are_an_edge() {
 }
 
 #[test]
-fn many_stops_and_rows_take_little_longer_than_few() {
+fn baking_time_does_not_grow_with_the_number_of_stops_and_rows() {
     let rows = |rows: u32, stops: u32| {
         let place = |index: u32, count: u32| index as f32 / count as f32;
         let stop = |index| RampStop::new(place(index, stops), HexColour([index as u8; 3]));
@@ -58,12 +58,12 @@ fn many_stops_and_rows_take_little_longer_than_few() {
     let started = std::time::Instant::now();
     rows(1, 100_000).bake().unwrap();
     rows(2_000, 20).bake().unwrap();
-    // Tenths of a second; texels times stops or times rows would be minutes.
+    // Takes tenths of a second. Time proportional to texels times stops or rows would be minutes.
     assert!(started.elapsed().as_secs() < 20, "{:?}", started.elapsed());
 }
 
 #[test]
-fn rows_far_off_do_not_matter() {
+fn rows_are_interpolated_like_stops_along_a_row() {
     let mut tall = recipe(&[(0.0, "#102030"), (1.0, "#ff8040")]);
     let stops = |colour: &str| vec![RampStop::new(0.0, colour.to_owned().try_into().unwrap())];
     let colours = ["#000000", "#404040", "#505050", "#606060", "#ffffff"];
@@ -73,7 +73,7 @@ fn rows_far_off_do_not_matter() {
         ..RampRow::default()
     };
     tall.rows = colours.iter().enumerate().map(row).collect();
-    // The same curve as along one row.
+    // The same colours as stops of one row.
     let long = recipe(&[0, 1, 2, 3, 4].map(|index| (index as f32 / 4.0, colours[index])));
     for step in 0..=64 {
         let at = step as f32 / 64.0;
@@ -82,7 +82,7 @@ fn rows_far_off_do_not_matter() {
 }
 
 #[test]
-fn what_is_baked_can_be_read_again() {
+fn the_largest_baked_image_can_be_read() {
     let mut large = recipe(&[(0.0, "#102030")]);
     (large.width, large.height) = (4096, 4096);
     let error = large.validate().unwrap_err().to_string();
@@ -95,14 +95,14 @@ fn what_is_baked_can_be_read_again() {
 }
 
 #[test]
-fn stops_are_sorted_stably_and_bad_ones_are_named() {
+fn stops_are_sorted_stably_and_invalid_ones_are_refused_by_name() {
     let colour = |recipe: &RampRecipe, u: f32| {
         HexColour::from_srgb(recipe.gradient().unwrap().sample(u, 0.0).map(srgb_from_linear)).0[0]
     };
     let mixed = recipe(&[(1.0, "#ffffff"), (0.5, "#404040"), (0.0, "#000000"), (0.5, "#555555"), (0.5, "#808080")]);
     let sorted = recipe(&[(0.0, "#000000"), (0.5, "#404040"), (0.5, "#555555"), (0.5, "#808080"), (1.0, "#ffffff")]);
     assert_eq!(mixed.bake().unwrap(), sorted.bake().unwrap());
-    // The first of those at one place is met from below, the last is what it goes on from.
+    // Of several stops at one position, the first ends the gradient below and the last begins the gradient above.
     assert_eq!((colour(&mixed, 0.499_999), colour(&mixed, 0.5)), (0x40, 0x80));
     assert_eq!(colour(&recipe(&[(0.3, "#123456")]), 0.9), 0x12);
 
@@ -120,7 +120,7 @@ fn stops_are_sorted_stably_and_bad_ones_are_named() {
 }
 
 #[test]
-fn rows_are_sorted_stably_too() {
+fn rows_are_sorted_stably() {
     let row = |at: f32, colour: [u8; 3]| RampRow {
         at,
         stops: vec![RampStop::new(0.0, HexColour(colour))],
@@ -133,7 +133,7 @@ fn rows_are_sorted_stably_too() {
 }
 
 #[test]
-fn every_curve_goes_its_way() {
+fn every_curve_has_its_shape() {
     let grey = |curve: Curve, u: f32| {
         let mut recipe = recipe(&[(0.0, "#000000"), (0.5, "#808080"), (1.0, "#ffffff")]);
         recipe.blend = Blend::Srgb;
@@ -144,11 +144,11 @@ fn every_curve_goes_its_way() {
         assert!((grey(curve, 0.125) - quarter).abs() < 0.01, "{}: {}", curve.name(), grey(curve, 0.125));
         assert!((grey(curve, 0.5) - 128.0).abs() < 0.01);
     }
-    // Flat at the end of the ramp, and no crease at the stop.
+    // The monotone curve is flat at the end of the ramp and has a continuous slope at a stop.
     assert!(grey(Curve::Monotone, 0.125) < 31.0);
     let slope = |u: f32| (grey(Curve::Monotone, u + 0.001) - grey(Curve::Monotone, u - 0.001)) / 0.002;
     assert!((slope(0.498) - slope(0.502)).abs() < 3.0, "{} {}", slope(0.498), slope(0.502));
-    // Beside an edge a curve is flat, as at the end of a ramp.
+    // The curve is flat beside an edge, as at the end of a ramp.
     let mut edge = recipe(&[(0.0, "#000000"), (0.5, "#808080"), (0.5, "#a0a0a0"), (1.0, "#ffffff")]);
     let flat = |recipe: &RampRecipe, u: f32| recipe.gradient().unwrap().sample(u, 0.0).x;
     assert!(flat(&edge, 0.49) > 0.99 * flat(&edge, 0.499_999) && flat(&edge, 0.51) < 1.01 * flat(&edge, 0.5));
@@ -158,7 +158,7 @@ fn every_curve_goes_its_way() {
 }
 
 #[test]
-fn every_space_takes_its_way() {
+fn every_blend_space_gives_its_midpoint() {
     let at = |blend: Blend, from: &str, to: &str, u: f32| {
         let mut recipe = RampRecipe { blend, ..recipe(&[(0.0, from), (1.0, to)]) };
         recipe.rows[0].stops[0].curve = Curve::Linear;
@@ -171,14 +171,14 @@ fn every_space_takes_its_way() {
     assert_eq!(middle(Blend::HsvNear, "#ff0000", "#0000ff"), [255, 0, 255]);
     assert_eq!(middle(Blend::HsvFar, "#ff0000", "#0000ff"), [0, 255, 0]);
     assert_eq!(at(Blend::HsvNear, "#ff00ff", "#ffff00", 0.5), [255, 0, 0]);
-    // Greys and black have no hue of their own.
+    // Greys and black have no hue.
     assert_eq!(middle(Blend::HsvNear, "#ffffff", "#0000ff"), [128, 128, 255]);
     assert_eq!(middle(Blend::HsvNear, "#0000ff", "#000000"), [0, 0, 128]);
     assert_eq!(middle(Blend::HsvFar, "#ff0000", "#800000"), [192, 0, 0]);
 }
 
 #[test]
-fn a_formula_and_a_second_gradient_make_two_axes() {
+fn the_place_formula_and_the_times_gradient_vary_along_both_axes() {
     let stop = |at, grey| RampStop { curve: Curve::Linear, ..RampStop::new(at, HexColour([grey; 3])) };
     let rows = vec![RampRow { stops: vec![stop(0.0, 0), stop(1.0, 255)], ..RampRow::default() }];
     let plain = RampRecipe { blend: Blend::Linear, height: 64, rows, ..RampRecipe::default() };
@@ -193,7 +193,7 @@ fn a_formula_and_a_second_gradient_make_two_axes() {
 }
 
 #[test]
-fn eight_bits_are_dithered_and_whole_colours_stay() {
+fn eight_bits_are_dithered_and_exact_colours_stay() {
     let slope = RampRecipe { bits: 8, width: 1024, ..recipe(&[(0.0, "#101010"), (1.0, "#141414")]) };
     let (fine, coarse) = (RampRecipe { bits: 16, ..slope.clone() }.bake().unwrap(), slope.bake().unwrap());
     assert_eq!((fine.color().bits_per_pixel(), coarse.color().bits_per_pixel()), (48, 24));
@@ -209,7 +209,7 @@ fn eight_bits_are_dithered_and_whole_colours_stay() {
     assert_eq!(RampRecipe { bits: 12, ..recipe(&[(0.0, "#000000")]) }.validate().unwrap_err().expected, "8 or 16");
 }
 
-/// A recipe with everything in it.
+/// A recipe that uses every field.
 fn rich() -> RampRecipe {
     let stops = |colours: [&str; 4]| {
         let at = [0.0, 0.25, 0.25, 0.8];
@@ -243,7 +243,7 @@ fn every_machine_bakes_the_same_bytes() {
 }
 
 #[test]
-fn recipes_are_written_as_they_are_read() {
+fn a_written_recipe_is_read_back_equal() {
     let recipe = RampRecipe { bits: 8, blend: Blend::HsvFar, ..rich() };
     let text = recipe.to_text();
     assert_eq!(RampRecipe::parse(Path::new("a.ramp.json"), &text).unwrap(), recipe);
@@ -267,7 +267,7 @@ fn recipes_are_written_as_they_are_read() {
 }
 
 #[test]
-fn older_recipes_are_read_and_newer_refused() {
+fn older_recipes_are_read_and_newer_ones_refused() {
     let parse = |text: &str| RampRecipe::parse(Path::new("a.ramp.json"), text).map_err(|error| error.to_string());
     let row = r##""rows": [{"stops": [{"at": 0, "colour": "#000000"CURVE}]}]"##;
     let recipe = |version: u32, more: &str, curve: &str| {

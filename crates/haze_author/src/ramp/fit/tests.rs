@@ -4,7 +4,7 @@ use haze::assets::picture::decode_png;
 use image::{ImageBuffer, Rgb};
 use std::path::Path;
 
-/// Fits, says what came out, and bakes again.
+/// Fits an image and bakes the result; returns the fit and its largest error.
 fn again(name: &str, picture: &DynamicImage) -> (Fit, f32) {
     let fitted = fit(picture, USUAL_ERROR).unwrap();
     let baked = fitted.recipe.bake().unwrap().into_rgb16();
@@ -21,7 +21,7 @@ fn again(name: &str, picture: &DynamicImage) -> (Fit, f32) {
 }
 
 #[test]
-fn every_ramp_that_comes_with_haze_survives_the_way_round() {
+fn every_built_in_ramp_is_reproduced_by_its_fit() {
     for ramp in builtin::RAMPS {
         let picture = decode_png(Path::new(ramp.name), ramp.bytes).unwrap();
         let (fitted, off) = again(ramp.name, &picture);
@@ -36,7 +36,7 @@ fn strip(colour: impl Fn(u32) -> [u16; 3]) -> DynamicImage {
 }
 
 #[test]
-fn hard_edges_are_found() {
+fn hard_edges_are_preserved() {
     let toon = strip(|x| [[9000, 8000, 12000], [30000, 21000, 22000], [60000, 55000, 50000]][(x / 90) as usize]);
     let (fitted, off) = again("toon", &toon);
     assert!(off <= 0.51, "{off}");
@@ -47,13 +47,13 @@ fn hard_edges_are_found() {
     );
     assert!((stops[1].at - 89.5 / 255.0).abs() < 1.0e-5 && (stops[2].at - 179.5 / 255.0).abs() < 1.0e-5);
 
-    // Slopes on both sides of an edge: two stops at one place.
+    // Slopes on both sides of an edge: two stops at one position.
     let slopes = strip(|x| [(x * 60 + if x < 100 { 0 } else { 30000 }) as u16; 3]);
     let (fitted, off) = again("slopes", &slopes);
     let stops = &fitted.recipe.rows[0].stops;
     assert!(off <= USUAL_ERROR && stops.windows(2).any(|pair| (pair[1].at - pair[0].at).abs() < 1.0e-9));
 
-    // A line of ink, a step without a flat part, noise, one colour.
+    // A dark line, alternating texels, noise, a single colour.
     let hash = |x: u32| (x.wrapping_mul(2_654_435_761) >> 16) as u16;
     let ink = strip(|x| if x == 77 { [0; 3] } else { [(x * 250) as u16, 30000, 65535] });
     let comb = strip(|x| [if x % 2 == 0 { 65535 } else { 0 }, 0, 0]);
@@ -63,7 +63,7 @@ fn hard_edges_are_found() {
     }
     let (flat, _) = again("flat", &strip(|_| [257 * 7; 3]));
     assert_eq!(flat.recipe.rows[0].stops, [RampStop::new(0.0, HexColour([7; 3]))]);
-    // The same from row to row.
+    // Hard edges between rows.
     let steps = DynamicImage::ImageRgb16(ImageBuffer::from_fn(64, 48, |x, y| {
         Rgb([if y < 20 { 60000 } else { 900 * x as u16 }, (x / 20 * 15000) as u16, 0])
     }));
@@ -72,7 +72,7 @@ fn hard_edges_are_found() {
 }
 
 #[test]
-fn strips_are_one_row_and_sizes_are_kept() {
+fn equal_rows_become_one_and_the_width_is_kept() {
     let slope = |x: u32| Rgb([(x * 3) as u8, 90, 200 - (x * 2) as u8]);
     let strip = |width, height| DynamicImage::ImageRgb8(ImageBuffer::from_fn(width, height, |x, _| slope(x)));
     let size = |picture: &DynamicImage| {
@@ -82,7 +82,7 @@ fn strips_are_one_row_and_sizes_are_kept() {
     assert_eq!(size(&strip(64, 16)), (64, 1, 1));
     assert_eq!(size(&strip(1, 1)), (2, 1, 1));
     assert_eq!(size(&strip(3, 1)), (3, 1, 1));
-    // Dithering makes no row of its own, and few stops.
+    // Rows that differ only by dithering become one.
     let dithered = RampRecipe { bits: 8, height: 8, ..fit(&strip(64, 1), 1.0).unwrap().recipe }.bake().unwrap();
     assert_eq!(size(&dithered), (64, 1, 1));
     assert_eq!(fit(&strip(64, 1), 0.5).unwrap_err().field, "error");

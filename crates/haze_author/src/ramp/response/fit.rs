@@ -1,4 +1,4 @@
-//! The ramps that come nearest to the truth.
+//! Fits diffuse ramps to the path-traced light of a puff.
 
 use glam::Vec3;
 
@@ -9,46 +9,46 @@ use crate::ramp::colour::srgb_from_linear;
 use haze::formula::colour::luminance;
 use haze::formula::lighting::backlight_weight;
 
-/// How many numbers a fit has to spend.
+/// Number of free parameters of a fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shape {
-    /// Stops of a row, at least 2.
+    /// Number of stops per row, at least 2.
     pub stops: u32,
-    /// Rows by amount; 1 for a ramp of one axis.
+    /// Number of rows along the amount axis; 1 for a ramp of one axis.
     pub rows: u32,
-    /// Whether light from behind has a ramp of its own.
+    /// True to fit a separate ramp for light from behind.
     pub backlight: bool,
 }
 
-/// As many as an artist can overlook.
+/// Few enough stops for an artist to edit.
 impl Default for Shape {
     fn default() -> Self {
         Self { stops: 9, rows: 5, backlight: true }
     }
 }
 
-/// Ramps that were fitted. Their brightest stop is white or nearly.
+/// Fitted ramps, normalised so that the largest channel of all stops is 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FittedRamps {
-    /// For light from the viewer's side, or from all sides.
+    /// Ramp for light from the viewer's side, or from all sides without a backlight ramp.
     pub diffuse: RampRecipe,
-    /// For light from behind.
+    /// Ramp for light from behind.
     pub backlight: Option<RampRecipe>,
-    /// What light is multiplied with, to be as bright as the medium is beside white paper: `diffuse.intensity`.
+    /// Factor that makes the smoke as bright as the medium relative to white paper: `diffuse.intensity`.
     pub exposure: f32,
 }
 
-/// How much the brightness of a light counts against all of its pixels.
+/// Weight of a light's mean brightness relative to its pixels.
 const BRIGHTNESS: f32 = 30.0;
-/// How much neighbouring stops hold on to each other, as a share of what the pixels ask of a stop: what no pixel looks up goes on as
-/// its neighbours do.
+/// Weight of the smoothness term (second difference of stops), relative to the mean diagonal of the normal equations.
+/// Stops that no pixel looks up then continue their neighbours.
 const STIFFNESS: f64 = 0.02;
-/// Steps of the solver. Twice as many move a stop in ten, by 1 of 255.
+/// Number of solver iterations. Doubling it changes one stop in ten, by 1 of 255.
 const STEPS: u32 = 400;
 
 impl Puff {
-    /// Least squares over everything that the renderer would look up, each light by its own brightness: a shadow's error counts as
-    /// that of a lit side.
+    /// Fits ramps by least squares over every lookup of the renderer. Each light is weighted by its inverse brightness,
+    /// so relative errors of dark and bright sides count alike.
     pub fn fit(&self, shape: Shape) -> FittedRamps {
         let Shape { stops, rows, backlight } = shape;
         let (stops, rows) = (stops.max(2) as usize, rows.max(1) as usize);
@@ -100,7 +100,7 @@ impl Puff {
     }
 }
 
-/// What was solved for, as it is looked up: straight in linear light from stop to stop, and from row to row.
+/// Converts solved values to a recipe that interpolates linearly in linear light, along rows and between rows.
 fn recipe(values: &[Vec3], stops: usize, exposure: f32) -> RampRecipe {
     let rows = values.len() / stops;
     let share = |index: usize, count: usize| if count > 1 { index as f32 / (count - 1) as f32 } else { 0.0 };

@@ -1,4 +1,4 @@
-//! A puff, as it is and as ramps have it.
+//! A path-traced puff, and its shading with ramps or six-way maps.
 
 use glam::{UVec2, Vec2, Vec3};
 
@@ -14,66 +14,68 @@ use haze::formula::ramp::sample_ramp_2d;
 use haze::formula::six_way::{six_way_from_texel, six_way_response};
 use haze::settings::RampFilter;
 
-/// Lights round a puff.
+/// Number of lights in the ring around a puff.
 pub const LIGHTS: u32 = 16;
 
-/// A puff under a ring of lights at its own height, the first at the viewer: what it shows of each, and what ramps go by.
+/// A path-traced puff under a horizontal ring of lights at its height, the first one at the viewer. Holds the traced
+/// light and the normals and coverage for ramp lookups.
 #[derive(Clone, Debug)]
 pub struct Puff {
     pub(super) lights: Vec<Vec3>,
-    /// Where there is smoke.
+    /// Texels with coverage above 0.
     pub(super) texels: Vec<Texel>,
     pub(super) traced: Traced,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Texel {
-    /// Of the picture.
+    /// Index in the image, row by row.
     pub index: usize,
     normal: Vec3,
     pub coverage: f32,
 }
 
-/// The ramps that diffuse light is looked up in.
+/// Ramps for the diffuse light lookup.
 #[derive(Clone, Copy, Debug)]
 pub struct DiffuseRamps<'a> {
     /// `diffuse_ramp` of a material.
     pub diffuse: &'a Ramp,
-    /// `backlight_ramp`, where light from behind has its own.
+    /// `backlight_ramp`, if light from behind has a separate ramp.
     pub backlight: Option<&'a Ramp>,
 }
 
-/// How bright smoke is shown under a ring of lights, beside what is true.
+/// Brightness of shaded smoke under the ring of lights, compared with the path-traced truth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Response {
-    /// What the light that is shown is multiplied with, to come as near as it can: `diffuse.intensity`.
+    /// Factor on the shaded light that minimises the error: `diffuse.intensity`.
     pub exposure: f32,
-    /// For each light.
+    /// One entry per light.
     pub lights: Vec<LightResponse>,
-    /// Mean over the lights of how far their brightness is off, as a share of what is true.
+    /// Mean relative error of brightness over the lights.
     pub error: f32,
-    /// Root mean square of all errors, pixel by pixel, as a share of the root mean square of what is true.
+    /// Root mean square error over all pixels and lights, relative to the root mean square of the truth.
     pub pixel_error: f32,
 }
 
 /// Brightness under one light: mean luminance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightResponse {
-    /// Path-traced.
+    /// Path-traced brightness.
     pub truth: f32,
-    /// As shown, exposed.
+    /// Shaded brightness, times exposure.
     pub shown: f32,
 }
 
 impl Puff {
-    /// Path-traces the first moment of a sprite whose densities are filled with a medium. `progress` as for [`PathTrace::run`].
+    /// Path-traces the first frame of a sprite recipe whose densities are filled with a medium. `progress` as in
+    /// [`PathTrace::run`].
     pub fn trace<E>(
         recipe: &SpriteRecipe,
         medium: &Medium,
         path_trace: &PathTrace,
         progress: impl Fn(u32) -> Result<(), E>,
     ) -> Result<Self, E> {
-        // As opaque as the medium, and not smoothed for files.
+        // Uses the medium's opacity; tolerance 0 disables the changes that only make files smaller.
         let recipe = SpriteRecipe { size: path_trace.size, extinction: medium.density, tolerance: 0, ..recipe.clone() };
         let lights: Vec<_> = (0..LIGHTS).map(light).collect();
         let traced = path_trace.run(&recipe.volume(0.0), medium, &lights, progress)?;
@@ -86,12 +88,12 @@ impl Puff {
         Ok(Self { lights, texels, traced })
     }
 
-    /// What was path-traced, light by light.
+    /// Returns the path-traced light.
     pub fn traced(&self) -> &Traced {
         &self.traced
     }
 
-    /// What ramps show of it under a light: linear, times coverage.
+    /// Shades the puff with ramps under a light: linear RGB times coverage.
     pub fn shown(&self, ramps: DiffuseRamps<'_>, light: usize) -> Picture<Vec3> {
         let mut picture = Picture::new(self.traced.coverage.size, Vec3::ZERO);
         for texel in &self.texels {
@@ -100,7 +102,8 @@ impl Puff {
         picture
     }
 
-    /// What six-way maps of it show under a light, as [`Puff::shown`]: those of one frame, of its own size.
+    /// Shades the puff with six-way maps under a light, as [`Puff::shown`]. The maps must be of one frame of the puff's
+    /// size.
     pub fn shown_six_way(&self, maps: &BakedSixWay, light: usize) -> Picture<Vec3> {
         let size = self.traced.coverage.size;
         let mut picture = Picture::new(size, Vec3::ZERO);
@@ -117,12 +120,12 @@ impl Puff {
         picture
     }
 
-    /// How far ramps are from the truth, at the exposure that is best for them.
+    /// Compares shading with ramps to the truth, at the best exposure.
     pub fn response(&self, ramps: DiffuseRamps<'_>) -> Response {
         self.response_of(|light| self.shown(ramps, light))
     }
 
-    /// How far pictures of it are from the truth, at the exposure that is best for them; one for each light.
+    /// Compares images, one per light, to the truth, at the best exposure.
     pub fn response_of(&self, shown: impl Fn(usize) -> Picture<Vec3>) -> Response {
         let shown: Vec<_> = (0..self.lights.len()).map(shown).collect();
         Response::new(&shown, &self.traced.light)
@@ -130,7 +133,8 @@ impl Puff {
 }
 
 impl Response {
-    /// Of pictures beside true ones, one for each light, at the exposure that is best for all of them: least squares of the shares.
+    /// Compares images to true ones, one per light. The exposure minimises the squared relative errors of brightness
+    /// over all lights.
     pub fn new(shown: &[Picture<Vec3>], truth: &[Picture<Vec3>]) -> Self {
         let mean = |picture: &Picture<Vec3>| luminance(picture.texels.iter().sum()) / picture.texels.len() as f32;
         let both = || shown.iter().zip(truth);
@@ -149,19 +153,19 @@ impl Response {
     }
 }
 
-/// Of a light round a puff, degrees: at 0 it is at the viewer, at 180 behind the smoke.
+/// Returns the angle of a light in the ring, degrees: 0 at the viewer, 180 behind the smoke.
 pub fn angle(light: usize) -> f32 {
     360.0 * light as f32 / LIGHTS as f32
 }
 
-/// The way to a light of the ring.
+/// Returns the direction to a light of the ring.
 fn light(index: u32) -> Vec3 {
     let turn = direction(index as f32 * std::f32::consts::TAU / LIGHTS as f32);
     Vec3::new(turn.y, 0.0, turn.x)
 }
 
 impl Texel {
-    /// Where a light is looked up.
+    /// Returns the ramp coordinate for a light.
     pub fn coordinate(&self, light: Vec3) -> Vec2 {
         Vec2::new(diffuse_coordinate(self.normal, light), self.coverage)
     }

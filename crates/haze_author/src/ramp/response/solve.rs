@@ -1,8 +1,9 @@
-//! Least squares over values at knots, none of them below 0.
+//! Non-negative linear least squares over values at knots.
 
 use glam::Vec3;
 
-/// The knots round a place from 0 to 1, and how much each counts. The second counts nothing where there is one.
+/// Returns the two knots around a position, 0 to 1, with their linear weights. With a single knot the second weight is
+/// 0.
 pub(super) fn knots(at: f32, count: usize) -> [(usize, f32); 2] {
     let at = at.clamp(0.0, 1.0) * (count - 1) as f32;
     let low = (at as usize).min(count.saturating_sub(2));
@@ -10,7 +11,7 @@ pub(super) fn knots(at: f32, count: usize) -> [(usize, f32); 2] {
     [(low, 1.0 - share), ((low + 1).min(count - 1), share)]
 }
 
-/// Normal equations, of three channels at once.
+/// Normal equations of three channels with a common matrix.
 pub(super) struct Equations {
     count: usize,
     matrix: Vec<f64>,
@@ -22,7 +23,7 @@ impl Equations {
         Self { count, matrix: vec![0.0; count * count], right: vec![[0.0; 3]; count] }
     }
 
-    /// Terms that should sum to a value: its place and its factor, each.
+    /// Adds a weighted equation: the sum of the terms (knot index, factor) should equal `value`.
     pub fn add(&mut self, terms: &[(usize, f32)], value: Vec3, weight: f32) {
         let weight = f64::from(weight);
         for &(i, a) in terms.iter().filter(|term| term.1 != 0.0) {
@@ -35,12 +36,12 @@ impl Equations {
         }
     }
 
-    /// How much the equations ask of a value, in the mean.
+    /// Returns the mean of the matrix's diagonal.
     pub fn mean_square(&self) -> f64 {
         (0..self.count).map(|i| self.matrix[i * self.count + i]).sum::<f64>() / self.count as f64
     }
 
-    /// The values, by steps of Gauss and Seidel that stay at 0 or above.
+    /// Solves by projected Gauss-Seidel iteration; values stay at or above 0.
     pub fn solve(&self, steps: u32) -> Vec<Vec3> {
         let mut values = vec![[0.0_f64; 3]; self.count];
         for _ in 0..steps {

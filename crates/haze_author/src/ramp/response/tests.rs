@@ -17,18 +17,18 @@ fn baked(recipe: &RampRecipe) -> Ramp {
     Ramp::from_picture(&recipe.bake().unwrap())
 }
 
-/// What a fit of a shape comes to, as it is baked.
+/// Fits ramps of a shape, bakes them and returns their response.
 fn fitted(puff: &Puff, shape: Shape) -> Response {
     let FittedRamps { diffuse, backlight, exposure } = puff.fit(shape);
     let (diffuse, backlight) = (baked(&diffuse), backlight.as_ref().map(baked));
     let response = puff.response(DiffuseRamps { diffuse: &diffuse, backlight: backlight.as_ref() });
-    // The fit weighs squares of all pixels, the best exposure shares of brightness alone.
+    // They differ slightly: the fit weighs squared errors of all pixels, the best exposure only relative brightness.
     assert!((response.exposure / exposure - 1.0).abs() < 0.06, "{} {exposure}", response.exposure);
     response
 }
 
 #[test]
-fn fitted_ramps_answer_every_medium() {
+fn fitted_ramps_match_every_medium() {
     for named in MEDIA {
         let puff = puff(&named.medium);
         let painted = builtin::find(builtin::RAMPS, "diffuse_soft").unwrap().ramp().unwrap();
@@ -38,7 +38,7 @@ fn fitted_ramps_answer_every_medium() {
         let both = fitted(&puff, Shape::default());
         let of = |response: &Response| (response.error, response.pixel_error);
         let told = format!("{}: {:?} {:?} {:?} {:?}", named.name, of(&painted), of(&one_row), of(&two_axes), of(&both));
-        // A tenth is what fitted ramps promise; of the pixels steam leaves the most, over half.
+        // The documented bound for fitted ramps is 0.1. Steam has the largest pixel error, over 0.5.
         assert!(both.error < 0.1 && both.pixel_error < 0.6, "{told}");
         assert!(both.error < one_row.error && both.pixel_error < two_axes.pixel_error, "{told}");
         assert!(two_axes.error < painted.error && one_row.error < painted.error, "{told}");
@@ -46,7 +46,7 @@ fn fitted_ramps_answer_every_medium() {
 }
 
 #[test]
-fn the_ramp_that_smoke_was_lit_with_is_found_again() {
+fn the_fit_recovers_the_ramp_that_smoke_was_lit_with() {
     let mut puff = puff(&MEDIA[1].medium);
     let rim = builtin::find(builtin::RAMPS, "diffuse_soft").unwrap().ramp().unwrap();
     for light in 0..LIGHTS as usize {
@@ -54,14 +54,14 @@ fn the_ramp_that_smoke_was_lit_with_is_found_again() {
     }
     let response = fitted(&puff, Shape { stops: 17, rows: 1, backlight: false });
     assert!(response.error < 0.01 && response.pixel_error < 0.03, "{response:?}");
-    // Twice as bright is the same ramp at half the exposure.
+    // A ramp of half the brightness needs twice the exposure.
     let half = Ramp::from_linear(rim.size(), (0..rim.size().x).map(|x| rim.texel(glam::UVec2::new(x, 0)) * 0.5));
     let response = puff.response(DiffuseRamps { diffuse: &half, backlight: None });
     assert!((response.exposure - 2.0).abs() < 0.01 && response.error < 1e-3, "{response:?}");
 }
 
 #[test]
-fn six_way_maps_are_nearer_to_the_truth_than_any_ramp() {
+fn six_way_maps_are_closer_to_the_truth_than_fitted_ramps() {
     for named in MEDIA {
         let puff = puff(&named.medium);
         let recipe = SpriteRecipe::of_builtin(builtin::find(builtin::SPRITES, "billow").unwrap()).unwrap();
@@ -72,7 +72,7 @@ fn six_way_maps_are_nearer_to_the_truth_than_any_ramp() {
         assert!(six_way.error < 0.06, "{}: {}", named.name, six_way.error);
         let ramps = fitted(&puff, Shape::default());
         assert!(six_way.pixel_error < ramps.pixel_error, "{}: {}", named.name, six_way.pixel_error);
-        // It is as bright as the settings that come with it say.
+        // The best exposure agrees with the intensity that the bake recommends.
         assert!((six_way.exposure / maps.intensity - 1.0).abs() < 0.1, "{} {}", six_way.exposure, maps.intensity);
     }
 }

@@ -1,4 +1,4 @@
-//! What a sprite is made of before noise eats it: balls, or what they are drawn out to.
+//! Metaballs of a sprite before erosion. A ball may be stretched to a line.
 
 use glam::{UVec3, Vec3};
 
@@ -10,12 +10,12 @@ use haze::assets::noise::{pcg3d, unit};
 pub(super) struct Ball {
     pub centre: Vec3,
     pub inverse_radius: f32,
-    /// Half of the line that it is drawn out along.
+    /// Half of the line segment that the ball is stretched along; zero for a ball.
     pub axis: Vec3,
 }
 
 impl Ball {
-    /// From the nearest place of its line.
+    /// Returns the offset of `p` from the nearest point of the ball's line.
     pub fn offset(&self, p: Vec3) -> Vec3 {
         let from = p - self.centre;
         let along = from.dot(self.axis) / self.axis.length_squared().max(f32::MIN_POSITIVE);
@@ -23,7 +23,7 @@ impl Ball {
     }
 }
 
-/// The balls at a moment, a share of the loop.
+/// Returns the balls at a time, as a fraction of the loop.
 pub(super) fn balls(recipe: &SpriteRecipe, time: f32) -> Vec<Ball> {
     let phase = direction(time * std::f32::consts::TAU);
     let ball = |index| {
@@ -35,7 +35,7 @@ pub(super) fn balls(recipe: &SpriteRecipe, time: f32) -> Vec<Ball> {
         let z = place.x * 2.0 - 1.0;
         let xy = direction(place.y * std::f32::consts::TAU) * (1.0 - z * z).sqrt();
         let distance = recipe.spread * place.z.sqrt();
-        // The further out, the smaller: a body with puffs on it.
+        // Outer balls are smaller: a large body with small puffs on it.
         let size = shape.x * (1.0 - 0.6 * place.z);
         let radius = recipe.ball_radius_min + (recipe.ball_radius_max - recipe.ball_radius_min) * size;
         let swing = direction(shape.y * std::f32::consts::TAU).rotate(phase) * recipe.drift;

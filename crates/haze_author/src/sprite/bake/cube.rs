@@ -1,4 +1,5 @@
-//! Version 1: every voxel of a cube is worked out anew for every frame. Kept to the bit, for recipes that were written for it.
+//! Recipe version 1: computes every voxel of a cube for every frame. Output stays bit-identical so that existing
+//! recipes bake as before.
 
 use glam::{IVec2, IVec3, UVec2, UVec3, Vec2, Vec3};
 use image::Rgba;
@@ -12,7 +13,7 @@ use haze::assets::noise::{curl_noise, fractal_noise};
 use haze::assets::picture::Picture;
 use haze::formula::saturate;
 
-/// One moment, a share of the loop.
+/// Bakes the frame at a time, as a fraction of the loop.
 pub(super) fn frame(recipe: &SpriteRecipe, time: f32) -> BakedFrame {
     let size = recipe.size;
     let volume = slices(recipe, time);
@@ -21,12 +22,12 @@ pub(super) fn frame(recipe: &SpriteRecipe, time: f32) -> BakedFrame {
     BakedFrame::new(size, marched.texels)
 }
 
-/// Its densities.
+/// Returns the density volume at a time, as a fraction of the loop.
 pub(super) fn volume(recipe: &SpriteRecipe, time: f32) -> Volume {
     Volume { size: UVec3::splat(recipe.size), densities: slices(recipe, time).texels }
 }
 
-/// Slices of the volume below each other, the nearest to the viewer first.
+/// Returns the volume's slices below each other, the slice nearest to the viewer first.
 fn slices(recipe: &SpriteRecipe, time: f32) -> Picture<f32> {
     let size = recipe.size;
     let cluster = Cluster::new(recipe, time);
@@ -39,7 +40,8 @@ fn slices(recipe: &SpriteRecipe, time: f32) -> Picture<f32> {
     volume
 }
 
-/// Front to back through one texel's column: the texel, and how far to the viewer what is seen of it lies.
+/// Marches one texel's column front to back. Returns the texel, and its visible offset towards the viewer in half
+/// sides.
 fn march(recipe: &SpriteRecipe, volume: &Picture<f32>, at: UVec2) -> (Rgba<u8>, f32) {
     let sides = UVec3::splat(recipe.size);
     let last = recipe.size as i32 - 1;
@@ -49,12 +51,12 @@ fn march(recipe: &SpriteRecipe, volume: &Picture<f32>, at: UVec2) -> (Rgba<u8>, 
     };
     let slope = |voxel: IVec3, reach: i32| {
         let along = |axis: IVec3| density(voxel - axis * reach) - density(voxel + axis * reach);
-        // Voxels count down and away from the viewer. Slopes that face away are turned side-on: every normal keeps a
-        // part towards the viewer, so that overlapping sprites never cancel.
+        // Voxel indices increase downwards and away from the viewer. z is clamped to 0 or more, so no normal faces away
+        // from the viewer: normals of overlapping sprites must not cancel.
         let slope = Vec3::new(along(IVec3::X), -along(IVec3::Y), -along(IVec3::Z));
         slope.with_z(slope.z.max(0.0)).normalize_or_zero()
     };
-    // A twelfth of the sprite: the balls show, the noise does not.
+    // Differences over a twelfth of the sprite: they show the balls but not the noise.
     let wide = (recipe.size as i32 / 24).max(1);
     let step = 2.0 / recipe.size as f32;
     let mut ray = Ray::new();
@@ -73,7 +75,7 @@ fn march(recipe: &SpriteRecipe, volume: &Picture<f32>, at: UVec2) -> (Rgba<u8>, 
     ray.texel(at, recipe.size, position(sides, at.extend(0)).truncate())
 }
 
-/// One moment of the cluster.
+/// The cluster at one moment.
 struct Cluster<'a> {
     recipe: &'a SpriteRecipe,
     balls: Vec<Ball>,
@@ -86,19 +88,19 @@ impl<'a> Cluster<'a> {
         Self { recipe, balls, phase: direction(time * std::f32::consts::TAU) }
     }
 
-    /// 0 outside, about 1 inside.
+    /// Returns the density: 0 outside, about 1 inside.
     fn density(&self, p: Vec3) -> f32 {
         let recipe = self.recipe;
         let window = saturate((0.97 - p.length()) * 6.0);
         if window <= 0.0 {
             return 0.0;
         }
-        // The balls are drawn out into curls before the noise eats them.
+        // Warps the balls into curls before erosion.
         let q = p * recipe.noise_frequency;
         let seed = recipe.seed.wrapping_mul(31);
         let coarse = curl_noise(q * 0.5, self.phase, seed.wrapping_add(11));
         let p = p + (coarse + curl_noise(q + coarse, self.phase, seed.wrapping_add(17)) * 0.4) * recipe.warp;
-        // Wyvill's soft object, (1 − d²/r²)³: value and slope are 0 at its reach. Overlapping balls merge.
+        // Wyvill's soft objects, (1 − d²/r²)³: value and slope are 0 at distance r. Overlapping balls merge.
         let reach = |ball: &Ball| (1.0 - ((p - ball.centre) * ball.inverse_radius).length_squared()).max(0.0);
         let field: f32 = self.balls.iter().map(reach).map(|inside| inside * inside * inside).sum();
         if field <= 0.0 {
@@ -106,7 +108,7 @@ impl<'a> Cluster<'a> {
         }
         let body = 1.0 - exp(-2.0 * field);
         let noise = fractal_noise(q, self.phase, seed, recipe.noise_octaves, 2.0, recipe.noise_gain).value;
-        // Noise eats from the outside in: less where the body is thick.
+        // Noise erodes less where the body is dense.
         let eaten = recipe.erosion * (0.4 + noise) * (1.0 - 0.7 * body);
         (body - eaten).max(0.0) * window * window * (3.0 - 2.0 * window)
     }

@@ -1,4 +1,4 @@
-//! The noise that eats a body of version 2, of every voxel: worked out once for all frames.
+//! Erosion noise of recipe version 2, precomputed per voxel for all frames.
 
 use std::ops::Range;
 
@@ -9,7 +9,7 @@ use super::voxels::{RUN, Voxels};
 use haze::assets::noise::NoiseCell;
 use haze::assets::picture::Picture;
 
-/// Noise in 16 bits: it stays within ±4.
+/// Scale of noise values stored in 16 bits; the range is ±4.
 const NOISE_SCALE: f32 = 8192.0;
 
 pub(super) struct Erosion {
@@ -17,7 +17,8 @@ pub(super) struct Erosion {
     octaves: Vec<Octave>,
 }
 
-/// Noise of every voxel: at the loop's start, and a quarter later.
+/// Noise of every voxel at the start of the loop and a quarter of the loop later. A moment's noise is their mix by
+/// cosine and sine.
 struct Octave {
     weight: f32,
     lumps: f32,
@@ -29,7 +30,8 @@ impl Erosion {
         let weight = |index: u32| (0..index).fold(1.0, |weight, _| weight * recipe.noise_gain);
         let octave = |index: u32| (weight(index), 2_u32.pow(index) as f32, index * 7919);
         let all: Vec<_> = (0..recipe.noise_octaves).map(octave).collect();
-        // Without creases they add up before they turn, and where they do not turn, also with them.
+        // Octaves are summed in advance if lumps are off (the sum is linear) or if the noise does not turn. Otherwise
+        // lumps must be applied to each octave after turning.
         let travels = recipe.travel > 0.0;
         let lumps = recipe.lumps;
         let octaves = if lumps > 0.0 && !travels {
@@ -46,7 +48,7 @@ impl Erosion {
         Self { voxels, octaves }
     }
 
-    /// Of a run of voxels.
+    /// Returns the noise of a run of voxels.
     pub fn along(&self, voxels: Range<usize>, phase: Vec2) -> [f32; RUN] {
         let mut sums = [0.0; RUN];
         for octave in &self.octaves {
@@ -58,7 +60,8 @@ impl Erosion {
         sums
     }
 
-    /// Noise between voxels, where it does not turn: all of it is in one octave.
+    /// Returns the interpolated noise at a position. Only valid if the noise does not turn (`travel` above 0): all
+    /// octaves are then summed in the first one.
     pub fn carried(&self, p: Vec3) -> f32 {
         let size = self.voxels.size;
         let sides = self.voxels.sides().as_vec3();
@@ -77,7 +80,7 @@ impl Erosion {
     }
 }
 
-/// The octaves added up.
+/// Sums octaves, each a (weight, frequency, salt), for every voxel.
 fn values(recipe: &SpriteRecipe, voxels: Voxels, octaves: &[(f32, f32, u32)], lumps: f32) -> Picture<[i16; 2]> {
     let size = voxels.size;
     let mut values = Picture::new(UVec2::new(size, size * voxels.depth), [0_i16; 2]);
@@ -88,7 +91,7 @@ fn values(recipe: &SpriteRecipe, voxels: Voxels, octaves: &[(f32, f32, u32)], lu
                 let mut cell = NoiseCell::new(seed.wrapping_add(salt));
                 for (x, value) in (0..).zip(&mut *line) {
                     let p = voxels.position(UVec3::new(x, row % size, row / size));
-                    // Nothing is seen further out, but what travels may come from there.
+                    // Voxels farther out are invisible, but `travel` may carry noise in from there.
                     if p.length_squared() > 1.0 + recipe.travel {
                         continue;
                     }
@@ -103,7 +106,7 @@ fn values(recipe: &SpriteRecipe, voxels: Voxels, octaves: &[(f32, f32, u32)], lu
     values
 }
 
-/// Round lumps with sharp creases between, in place of waves; about as much of either.
+/// Blends from waves (0) to round lumps with sharp creases (1); the mean stays about the same.
 fn shaped(noise: f32, lumps: f32) -> f32 {
     noise + (0.4 - 2.0 * noise.abs() - noise) * lumps
 }

@@ -1,4 +1,4 @@
-//! One moment of a sprite, and a texel of it as rays through smoke find it.
+//! One baked frame of a sprite, and the ray accumulator that produces its texels.
 
 use glam::{UVec2, Vec2, Vec3};
 use image::Rgba;
@@ -6,12 +6,12 @@ use image::Rgba;
 use haze::assets::picture::Picture;
 use haze::formula::saturate;
 
-/// One moment of a sprite.
+/// One baked frame of a sprite.
 #[derive(Clone, Debug)]
 pub struct BakedFrame {
     /// rgb = normal / 2 + 1/2, a = amount.
     pub picture: Picture<Rgba<u8>>,
-    /// How far towards the viewer what is seen lies, -1..1 half sides.
+    /// Offset of the visible surface towards the viewer, -1..1 half sides.
     pub offset: Picture<f32>,
 }
 
@@ -23,7 +23,7 @@ impl BakedFrame {
     }
 }
 
-/// What a ray has met, front to back.
+/// Accumulates normal, offset and transmittance along a ray, front to back.
 #[derive(Clone, Copy)]
 pub(super) struct Ray {
     pub transmittance: f32,
@@ -36,7 +36,7 @@ impl Ray {
         Self { transmittance: 1.0, normal: Vec3::ZERO, offset: 0.0 }
     }
 
-    /// True where what follows cannot be seen.
+    /// True if anything further along the ray is invisible.
     pub fn is_over(&self) -> bool {
         self.transmittance < 1.0 / 512.0
     }
@@ -47,11 +47,12 @@ impl Ray {
         self.transmittance *= 1.0 - amount;
     }
 
-    /// The texel, and how far to the viewer what is seen of it lies. `place` is the texel's own.
+    /// Returns the texel, and its visible offset towards the viewer in half sides. `place` is the texel's position,
+    /// -1..1.
     pub fn texel(&self, at: UVec2, size: u32, place: Vec2) -> (Rgba<u8>, f32) {
         let border = at.min_element() == 0 || at.max_element() == size - 1;
         let amount = if border { 0.0 } else { 1.0 - self.transmittance };
-        // Where there is nothing the normal leans outwards, for filters that reach across the edge.
+        // Clear texels get an outward normal, since texture filters blend them in at the edge.
         let outwards = place.extend(0.5);
         let encoded = self.normal.normalize_or(outwards.normalize()) * 0.5 + 0.5;
         let channel = |value: f32| (saturate(value) * 255.0).round() as u8;

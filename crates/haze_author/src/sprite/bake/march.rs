@@ -1,4 +1,4 @@
-//! Light through the voxels of version 2: what a frame shows of them.
+//! Ray marching of recipe version 2.
 
 use glam::{UVec2, UVec3, Vec3};
 use image::Rgba;
@@ -8,16 +8,16 @@ use super::recipe::SpriteRecipe;
 use crate::exact::decay;
 use crate::path_trace::Volume;
 
-/// Front to back through the columns of one row of texels.
+/// Marches the columns of one row of texels front to back.
 pub(super) fn march(recipe: &SpriteRecipe, volume: &Volume, y: u32, line: &mut [(Rgba<u8>, f32)]) {
     let (size, depth) = (volume.size.x as usize, volume.size.z as usize);
-    // One row of voxels; those outside are as the last inside.
+    // One row of voxels; indices are clamped to the volume.
     let row = |dy: isize, z: usize, dz: isize| {
         let y = (y as usize).saturating_add_signed(dy).min(size - 1);
         let start = (z.saturating_add_signed(dz).min(depth - 1) * size + y) * size;
         &volume.densities[start..start + size]
     };
-    // A voxel is four times as deep as wide.
+    // Depth of a voxel over its width: 4 from 32 pixels on.
     let ratio = size as f32 / depth as f32;
     let reach = [(size / 24).max(1), 1];
     let deep = reach.map(|reach| (reach as f32 / ratio).round().max(1.0));
@@ -26,7 +26,7 @@ pub(super) fn march(recipe: &SpriteRecipe, volume: &Volume, y: u32, line: &mut [
     for z in 0..depth {
         let place = volume.position(UVec3::new(0, y, z as u32)).z;
         let here = row(0, z, 0);
-        // Above, below, in front and behind: wide and fine.
+        // Rows above, below, in front and behind, for wide and fine differences.
         let around = [0, 1].map(|index| {
             let (reach, deep) = (reach[index] as isize, deep[index] as isize);
             [row(-reach, z, 0), row(reach, z, 0), row(0, z, -deep), row(0, z, deep)]
@@ -35,7 +35,7 @@ pub(super) fn march(recipe: &SpriteRecipe, volume: &Volume, y: u32, line: &mut [
             let [above, below, front, behind] = around[index].map(|row: &[f32]| row[x]);
             let along_x = here[x.saturating_sub(reach[index])] - here[(x + reach[index]).min(size - 1)];
             let along_z = (behind - front) * reach[index] as f32 / (deep[index] * ratio);
-            // As in version 1, none faces away.
+            // As in version 1, z is clamped so that no normal faces away from the viewer.
             Vec3::new(along_x, below - above, along_z.max(0.0)).normalize_or_zero()
         };
         for ((x, &density), ray) in here.iter().enumerate().zip(&mut rays) {

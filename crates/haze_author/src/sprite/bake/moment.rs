@@ -1,4 +1,4 @@
-//! One moment of a loop of version 2: where the balls are, and how all is carried and bent.
+//! State of recipe version 2 at one moment of the loop: ball positions, and displacement by flow and warp.
 
 use glam::{IVec2, UVec2, UVec3, Vec2, Vec3};
 
@@ -9,7 +9,7 @@ use crate::exact::direction;
 use haze::assets::noise::curl_noise;
 use haze::assets::picture::Picture;
 
-/// How far a place is carried along the flow, and by that and the warp together.
+/// Displacement of a position by the flow alone, and by flow and warp together.
 #[derive(Clone, Copy)]
 pub(super) struct Shift {
     pub flow: Vec3,
@@ -22,29 +22,29 @@ impl Shift {
     }
 }
 
-/// One column of voxels: its place, and between which nodes that is.
+/// One column of voxels: its x, and its position in the grid of shifts.
 #[derive(Clone, Copy)]
 pub(super) struct Column {
     pub x: f32,
     pub node: usize,
-    /// Of the way from that node to the next.
+    /// Fraction of the way from `node` to the next.
     pub share: f32,
 }
 
-/// One moment.
+/// State at one moment.
 pub(super) struct Moment {
     pub phase: Vec2,
     pub columns: Vec<Column>,
-    /// On a cube of `nodes` from −1 to 1, its slices below each other.
+    /// Shifts on a cubic grid of `nodes` per side from −1 to 1, slices below each other.
     shifts: Picture<Shift>,
-    /// The balls that reach each box of [`RUN`] texels a side.
+    /// Balls that reach each box of [`RUN`] voxels per side.
     pub near: Vec<Vec<Ball>>,
 }
 
 impl Moment {
     pub fn new(recipe: &SpriteRecipe, voxels: Voxels, time: f32) -> Self {
         let turning = direction(time * std::f32::consts::TAU);
-        // What travels does not turn in its place.
+        // With `travel`, the noise is carried along and does not turn in place.
         let phase = if recipe.travel > 0.0 { Vec2::X } else { turning };
         let nodes = ((recipe.noise_frequency * 8.0) as u32).clamp(16, 64);
         let mut shifts = Picture::new(UVec2::new(nodes, nodes * nodes), Shift { flow: Vec3::ZERO, all: Vec3::ZERO });
@@ -73,7 +73,7 @@ impl Moment {
         Self { phase, columns, near: near(voxels, &balls(recipe, time), margin), shifts }
     }
 
-    /// The shifts of one row: nodes along x.
+    /// Returns the shifts of one row, at the grid nodes along x.
     pub fn shifts_along(&self, p: Vec3) -> Vec<Shift> {
         let shifts = &self.shifts;
         let nodes = shifts.size.x as i32;

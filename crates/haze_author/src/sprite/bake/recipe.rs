@@ -1,4 +1,4 @@
-//! How a sprite was made: the contents of a `*.sprite.json`.
+//! Sprite recipes: the contents of a `*.sprite.json`.
 
 use std::path::Path;
 
@@ -9,69 +9,69 @@ use haze::builtin::{self, Builtin};
 use haze::error::Error;
 use haze::settings::{FieldVisitor, Fields, Headed, validate};
 
-/// The version of the recipe format that this code writes and reads.
+/// Newest recipe format version. This code reads version 1 too.
 pub const RECIPE_VERSION: u32 = 2;
 
-/// How a sprite was made: the contents of a `*.sprite.json`. Lengths are in halves of the sprite's side, so the sprite
-/// reaches from −1 to 1.
+/// Recipe of a sprite: the contents of a `*.sprite.json`. Lengths are in half sides: the sprite extends from −1 to 1.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SpriteRecipe {
-    /// Format version: 1 bakes as it always did, voxel by voxel; 2 is some fifty times as fast and can do more.
+    /// Format version: 1 is the original, slow baker; 2 is about fifty times as fast and has more options.
     pub version: u32,
-    /// Different seeds give different wisps of the same kind.
+    /// Random seed: different seeds give different sprites of the same kind.
     pub seed: u32,
-    /// Side of one frame.
+    /// Width and height of one frame.
     pub size: u32,
-    /// Frames beside each other on the sheet.
+    /// Columns of frames on the sheet.
     pub columns: u32,
-    /// Frames below each other on the sheet. The flipbook loops.
+    /// Rows of frames on the sheet. The flipbook loops.
     pub rows: u32,
-    /// Metaballs in the cluster.
+    /// Number of metaballs in the cluster.
     pub balls: u32,
-    /// How far from the middle their centres lie.
+    /// Maximum distance of a ball's centre from the middle.
     pub spread: f32,
-    /// Smallest reach of a ball's influence.
+    /// Smallest radius of a ball's influence.
     pub ball_radius_min: f32,
-    /// Largest reach of a ball's influence.
+    /// Largest radius of a ball's influence.
     pub ball_radius_max: f32,
-    /// How far the balls travel round their places in one loop.
+    /// Radius of the circle on which each ball moves in one loop.
     pub drift: f32,
-    /// Noise cells along the sprite's half side, for the coarsest octave.
+    /// Noise cells per half side in the coarsest octave.
     pub noise_frequency: f32,
-    /// Octaves of noise, each of twice the frequency and `noise_gain` times the weight.
+    /// Number of noise octaves, each of twice the frequency and `noise_gain` times the weight of the previous one.
     pub noise_octaves: u32,
-    /// Weight of an octave relative to the coarser one. Larger is rougher.
+    /// Weight of an octave relative to the coarser one. Larger values are rougher.
     pub noise_gain: f32,
-    /// How much the noise takes away: 0 leaves balls, 1 leaves shreds.
+    /// Strength of the erosion by noise: 0 leaves smooth balls, 1 leaves shreds.
     pub erosion: f32,
-    /// How far the balls are drawn out along a swirling flow: curls instead of lumps.
+    /// Distortion along a swirling flow: turns lumps into curls.
     pub warp: f32,
-    /// Extinction at full density. Larger is more opaque and has a harder edge.
+    /// Extinction at full density. Larger values are more opaque and have harder edges.
     pub extinction: f32,
-    /// Weight of the fine normals, a texel wide, against the broad ones, a twelfth of the sprite wide.
+    /// Weight of fine normals (one texel wide) relative to broad normals (a twelfth of the sprite wide).
     pub bump: f32,
-    /// Version 2: half length of the lines that balls are drawn out to. 0 leaves balls; thin ones become strands.
+    /// Version 2: half length of the lines that balls are stretched to. 0 keeps balls; small radii give strands.
     #[serde(default, skip_serializing_if = "is_unused")]
     pub length: f32,
-    /// Version 2: 0 draws them out in any direction, 1 upright: streaks.
+    /// Version 2: direction of the lines. 0 is random, 1 upright, for streaks.
     #[serde(default, skip_serializing_if = "is_unused")]
     pub upright: f32,
-    /// Version 2: how far the noise is round lumps with sharp creases between, a cauliflower, instead of waves.
+    /// Version 2: shape of the noise. 0 is waves, 1 round lumps with sharp creases, like cauliflower.
     #[serde(default, skip_serializing_if = "is_unused")]
     pub lumps: f32,
-    /// Version 2: how far all of it is carried along a swirling flow and back in one loop. Above 0 the noise is carried too and
-    /// does not turn in its place: frames that travel rather than boil. Up to about 0.2 motion can follow.
+    /// Version 2: distance that balls and noise are carried along a swirling flow and back in one loop. Above 0 the
+    /// noise no longer changes in place: the smoke travels rather than boils. `sprite.motion` can follow values up to
+    /// about 0.2.
     #[serde(default, skip_serializing_if = "is_unused")]
     pub travel: f32,
-    /// How far a texel may be moved to make the file smaller; a normal in thin smoke up to four times as far, depth and motion half
-    /// as far. 2 halves the file, and is not seen.
+    /// Maximum change of a texel to make the file smaller. Normals in thin smoke may change up to four times as much,
+    /// depth and motion half as much. 2 halves the file size without a visible difference.
     #[serde(default, skip_serializing_if = "is_unused")]
     pub tolerance: u32,
 }
 
-/// At what it is in older files.
+/// True if the value is the default, as in files without the field.
 fn is_unused<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
@@ -80,7 +80,8 @@ impl Fields for SpriteRecipe {
     fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
         visitor.integer("version", &mut self.version, 1..=RECIPE_VERSION, "");
         visitor.seed("seed", &mut self.seed);
-        // A frame is marched through a cube of its size; a sheet must be readable again.
+        // Bounded because version 1 bakes a cube of this side per frame; the baked sheet must stay within the size
+        // limit for reading.
         visitor.integer("size", &mut self.size, 8..=512, "pixels");
         let most = (MAX_SIDE / self.size.max(1)).min(16);
         visitor.integer("columns", &mut self.columns, 1..=most, "frames");
@@ -110,7 +111,7 @@ impl Fields for SpriteRecipe {
     }
 }
 
-/// What is set together.
+/// Fields in order of display; a name starts a new group.
 const HEADINGS: &[Headed] = &[
     ("seed", Some("shape")),
     ("balls", None),
@@ -137,7 +138,7 @@ const HEADINGS: &[Headed] = &[
 ];
 
 impl SpriteRecipe {
-    /// Reads a `*.sprite.json`.
+    /// Loads a `*.sprite.json`.
     ///
     /// # Errors
     /// [`Error::Io`], [`Error::Json`] or [`Error::JsonField`].
@@ -145,13 +146,13 @@ impl SpriteRecipe {
         json::load(path, RECIPE_VERSION, |recipe: &Self| validate(recipe, String::new))
     }
 
-    /// The JSON that [`SpriteRecipe::load`] reads, ending with a line break.
+    /// Returns the recipe as JSON that [`SpriteRecipe::load`] reads, ending with a line break.
     pub fn to_text(&self) -> String {
-        // Numbers: there is nothing that could fail.
+        // Numbers only, so serialisation cannot fail.
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
 
-    /// Frames on the sheet.
+    /// Returns the number of frames on the sheet.
     pub fn frame_count(&self) -> u32 {
         self.columns * self.rows
     }
@@ -164,7 +165,7 @@ impl SpriteRecipe {
         json::parse(&builtin::path(builtin.name), builtin.recipe)
     }
 
-    /// How the sheet is cut into frames.
+    /// Returns the layout of frames on the sheet.
     pub fn layout(&self) -> SpriteLayout {
         SpriteLayout { columns: self.columns, rows: self.rows, y_down: false }
     }

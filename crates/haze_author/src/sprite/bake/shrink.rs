@@ -1,15 +1,17 @@
-//! Texels moved to where a PNG expects them: much smaller files, and nothing to be seen of it.
+//! Near-lossless preprocessing for PNG: moves texels towards the PNG filter's prediction, for smaller files without a
+//! visible difference.
 
 use glam::{IVec2, UVec2};
 use image::Rgba;
 
 use haze::assets::picture::Picture;
 
-/// How many times the tolerance a normal may move where there is so little smoke that it hardly counts.
+/// Maximum movement of a normal in thin smoke, in multiples of the tolerance.
 const THIN: i32 = 4;
 
-/// Moves every channel of a frame by at most `tolerance` of 255. A normal counts by its amount and may move further where there is
-/// little; where there is nothing, and nothing beside it, it follows its neighbours.
+/// Moves every channel of a frame by at most `tolerance` of 255. Normals may move further where the amount is small, in
+/// inverse proportion to it, up to `THIN` times. Normals of clear texels without visible neighbours may take any
+/// value.
 pub fn shrink_frame(frame: &mut Picture<Rgba<u8>>, tolerance: u32) {
     let tolerance = tolerance as i32;
     let amounts = Picture { size: frame.size, texels: frame.texels.iter().map(|texel| texel.0[3]).collect() };
@@ -21,13 +23,14 @@ pub fn shrink_frame(frame: &mut Picture<Rgba<u8>>, tolerance: u32) {
     });
 }
 
-/// Moves every channel of a detail map's frame by at most `tolerance` of 255: motion counts where smoke goes to, as well.
+/// Moves every channel of a detail map's frame by at most `tolerance` of 255, also in clear texels: motion matters
+/// where the smoke moves to.
 pub fn shrink_detail(frame: &mut Picture<Rgba<u8>>, tolerance: u32) {
     shrink(frame, tolerance as i32, |_| tolerance as i32);
 }
 
-/// Near-lossless coding, as in JPEG-LS, with the predictor of PNG's Paeth filter: a channel that may, is as its neighbours
-/// predict it. Clear texels stay clear.
+/// Near-lossless coding as in JPEG-LS, with the predictor of PNG's Paeth filter: a channel takes the predicted value if
+/// that is within tolerance. Clear texels stay clear.
 fn shrink(frame: &mut Picture<Rgba<u8>>, of_amount: i32, of_colour: impl Fn(IVec2) -> i32) {
     for index in 0..frame.texels.len() as u32 {
         let at = UVec2::new(index % frame.size.x, index / frame.size.x).as_ivec2();
@@ -44,7 +47,7 @@ fn shrink(frame: &mut Picture<Rgba<u8>>, of_amount: i32, of_colour: impl Fn(IVec
     }
 }
 
-/// The nearest code that is a whole number of steps from the prediction, a step as wide as all that may pass for one code.
+/// Quantises the difference from the prediction in steps of `2 * tolerance + 1`, and returns the resulting code.
 fn quantized(code: i32, predicted: i32, tolerance: i32) -> u8 {
     let step = 2 * tolerance + 1;
     let off = code - predicted;
@@ -52,7 +55,7 @@ fn quantized(code: i32, predicted: i32, tolerance: i32) -> u8 {
     u8::try_from(predicted + steps * step).unwrap_or(code as u8)
 }
 
-/// Of left, up and corner the one nearest to left + up - corner. (PNG specification, filter 4)
+/// Returns whichever of left, up and corner is nearest to left + up - corner. (PNG specification, filter 4)
 fn paeth(left: i32, up: i32, corner: i32) -> i32 {
     let [from_left, from_up] = [(up - corner).abs(), (left - corner).abs()];
     let from_corner = (left + up - 2 * corner).abs();

@@ -1,5 +1,6 @@
-//! Version 2: a box of voxels a quarter as deep as wide. What all frames share is worked out once, and what varies slowly on a
-//! coarse grid; plain arithmetic, so that every machine bakes the same bytes.
+//! Recipe version 2: a box of voxels a quarter as deep as wide. Data that all frames share is computed once, and slowly
+//! varying data on a coarse grid. Uses only `exact.rs` and plain arithmetic, so bakes are bit-identical
+//! on every machine.
 
 use glam::{IVec2, UVec2, UVec3, Vec3};
 use image::Rgba;
@@ -18,7 +19,7 @@ use haze::formula::saturate;
 
 const CLEAR: Rgba<u8> = Rgba([128, 128, 255, 0]);
 
-/// What all frames of a sprite share.
+/// Data that all frames of a sprite share.
 pub(super) struct Slices<'a> {
     recipe: &'a SpriteRecipe,
     voxels: Voxels,
@@ -26,7 +27,7 @@ pub(super) struct Slices<'a> {
 }
 
 impl Ball {
-    /// Adds Wyvill's soft object, (1 − d²/r²)³: value and slope are 0 at its reach. Overlapping balls merge.
+    /// Adds Wyvill's soft object, (1 − d²/r²)³: value and slope are 0 at distance r. Overlapping balls merge.
     fn add_field(&self, [px, py, pz]: [&[f32; RUN]; 3], field: &mut [f32; RUN]) {
         let Self { centre, axis, inverse_radius } = *self;
         let inverse_axis = 1.0 / axis.length_squared().max(f32::MIN_POSITIVE);
@@ -50,7 +51,7 @@ impl<'a> Slices<'a> {
         Self { recipe, voxels, erosion: Erosion::new(recipe, voxels) }
     }
 
-    /// Slices below each other, the nearest to the viewer first.
+    /// Returns the density volume at a time, as a fraction of the loop. The slice nearest to the viewer comes first.
     pub fn volume(&self, time: f32) -> Volume {
         let size = self.recipe.size;
         let moment = Moment::new(self.recipe, self.voxels, time);
@@ -72,7 +73,7 @@ impl<'a> Slices<'a> {
                 march(self.recipe, &volume, y, line);
             }
         });
-        // Far from everything all texels are the same, which costs nothing in a file.
+        // Texels without visible neighbours all get the same value, which compresses well.
         let is_clear = |at: IVec2| marched.load(at).0.0[3] == 0;
         let is_far = |at: IVec2| is_clear(at) && (-1..=1).all(|y| (-1..=1).all(|x| is_clear(at + IVec2::new(x, y))));
         let mut texels = Picture::new(marched.size, (CLEAR, 0.0));
@@ -84,7 +85,7 @@ impl<'a> Slices<'a> {
         BakedFrame::new(size, texels.texels)
     }
 
-    /// The densities of one row of voxels: 0 outside, about 1 inside.
+    /// Computes the densities of one row of voxels: 0 outside, about 1 inside.
     fn fill(&self, moment: &Moment, y: u32, z: u32, line: &mut [f32]) {
         let recipe = self.recipe;
         let middle = self.voxels.position(UVec3::new(recipe.size / 2, y, z)).with_x(0.0);
@@ -132,7 +133,7 @@ impl<'a> Slices<'a> {
             };
             for (lane, density) in run.iter_mut().enumerate() {
                 let body = 1.0 - decay(2.0 * field[lane]);
-                // Noise eats from the outside in: less where the body is thick.
+                // Noise erodes less where the body is dense.
                 let eaten = recipe.erosion * (0.4 + noise[lane]) * (1.0 - 0.7 * body);
                 *density = (body - eaten).max(0.0) * window[lane] * window[lane] * (3.0 - 2.0 * window[lane]);
             }

@@ -15,8 +15,8 @@ fn bake(recipe: &SpriteRecipe) -> Result<BakedSprite, FieldError> {
 }
 
 #[test]
-fn every_seed_is_as_good_as_the_next() {
-    // The second times 31 is the last word there is.
+fn extreme_seeds_bake_without_overflow() {
+    // The second seed times 31 is u32::MAX, modulo 2^32.
     for seed in [0, 1_108_378_657, u32::MAX] {
         for version in [1, 2] {
             let frame = SpriteRecipe { seed, version, size: 8, ..puff() }.bake_frame(0.0);
@@ -26,7 +26,7 @@ fn every_seed_is_as_good_as_the_next() {
 }
 
 #[test]
-fn what_is_new_needs_the_new_version() {
+fn version_2_fields_need_version_2_and_change_the_image() {
     for change in [
         (|recipe| recipe.length = 0.5) as fn(&mut SpriteRecipe),
         |recipe| recipe.upright = 0.5,
@@ -36,7 +36,7 @@ fn what_is_new_needs_the_new_version() {
         let mut recipe = SpriteRecipe { size: 32, columns: 2, rows: 1, ..puff() };
         change(&mut recipe);
         assert!(bake(&recipe).is_err());
-        // Each is seen; `upright` where there are lines.
+        // Each field changes the image; `upright` only together with `length`.
         let plain = SpriteRecipe { version: 2, length: recipe.length.max(recipe.upright), ..puff() };
         let plain = SpriteRecipe { size: 32, columns: 2, rows: 1, ..plain };
         recipe = SpriteRecipe { version: 2, length: plain.length, ..recipe };
@@ -61,19 +61,19 @@ fn every_machine_bakes_the_same_bytes() {
 }
 
 #[test]
-fn both_versions_show_the_same() {
+fn both_versions_bake_similar_images() {
     let recipe = SpriteRecipe { size: 64, ..puff() };
     let [first, second] =
         [1, 2].map(|version| SpriteRecipe { version, ..recipe.clone() }.bake_frame(1.5).picture.texels);
     let texels = first.iter().zip(&second).filter(|(first, second)| first.0[3].max(second.0[3]) > 40);
     let off: Vec<[f32; 4]> = texels.map(|(a, b)| std::array::from_fn(|c| f32::from(a.0[c].abs_diff(b.0[c])))).collect();
     let mean: [f32; 4] = std::array::from_fn(|c| off.iter().map(|off| off[c]).sum::<f32>() / off.len() as f32);
-    // A voxel of the second is four times as deep; another seed is some 40 off.
+    // They differ because a voxel of version 2 is four times as deep. Another seed differs by about 40.
     assert!(off.len() > 1000 && mean.iter().all(|&mean| mean < 12.0), "{mean:?}");
 }
 
 #[test]
-fn progress_is_told_and_ends_the_work() {
+fn progress_is_reported_and_its_error_cancels_the_bake() {
     let told = std::cell::RefCell::new(Vec::new());
     let recipe = SpriteRecipe { version: 2, size: 8, columns: 3, rows: 1, ..puff() };
     let bake = |last| {
@@ -90,19 +90,19 @@ fn progress_is_told_and_ends_the_work() {
 }
 
 #[test]
-fn what_is_written_is_read_again() {
+fn a_written_recipe_is_read_back_equal() {
     let path = Path::new("a.sprite.json");
     for recipe in [puff(), SpriteRecipe { version: 2, travel: 0.25, ..puff() }] {
         let text = recipe.to_text();
         assert_eq!(json::parse::<SpriteRecipe>(path, &text).unwrap(), recipe);
-        // Programs that know no version 2 read what it is not needed for.
+        // Unused version 2 fields are not written, so older programs can read the file.
         assert_eq!(text.contains("\"travel\": 0.25"), recipe.version == 2);
         assert!(text.ends_with("}\n") && !text.contains("\"length\""), "{text}");
     }
 }
 
 #[test]
-fn every_field_stands_under_one_heading() {
+fn every_field_is_listed_once_under_the_headings() {
     let mut fields = Vec::new();
     walk(&mut puff(), &mut |path, _| fields.push(path_of(path)));
     let mut placed: Vec<_> = puff().headings().iter().map(|(field, _)| (*field).to_owned()).collect();

@@ -1,15 +1,15 @@
-//! The box of voxels that a frame of version 2 is marched through, a quarter as deep as wide.
+//! Voxel grid of recipe version 2, a quarter as deep as wide.
 
 use glam::{UVec3, Vec3};
 
 use crate::path_trace::position;
 
-/// Voxels that are worked out together.
+/// Number of voxels computed together.
 pub(super) const RUN: usize = 16;
 
 #[derive(Clone, Copy)]
 pub(super) struct Voxels {
-    /// Across, and up.
+    /// Voxels across and up.
     pub size: u32,
     pub depth: u32,
 }
@@ -23,12 +23,12 @@ impl Voxels {
         UVec3::new(self.size, self.size, self.depth)
     }
 
-    /// The place of a voxel: x right, y up, z to the viewer.
+    /// Returns the centre of a voxel: x right, y up, z towards the viewer.
     pub fn position(self, voxel: UVec3) -> Vec3 {
         position(self.sides(), voxel)
     }
 
-    /// Boxes along each axis.
+    /// Returns the number of boxes of [`RUN`] voxels along each axis.
     pub fn boxes(self) -> UVec3 {
         self.sides().map(|side| side.div_ceil(RUN as u32))
     }

@@ -1,4 +1,4 @@
-//! Six-way maps of a recipe's sprite, filled with a medium.
+//! Bakes six-way maps of a sprite recipe filled with a medium.
 
 use glam::{IVec2, UVec2, Vec3};
 use image::{Rgba, RgbaImage};
@@ -12,29 +12,29 @@ use crate::sprite::bake::shrink::shrink_frame;
 use haze::assets::picture::Picture;
 use haze::formula::six_way::SixWay;
 
-/// What a recipe makes with a medium.
+/// Baked six-way maps, with settings that go with them.
 #[derive(Clone, Debug)]
 pub struct BakedSixWay {
-    /// The sheet, as the module has it.
+    /// The sheet, in the layout described in the module's documentation.
     pub picture: RgbaImage,
-    /// What to set `diffuse.intensity` to, so that smoke is as bright as the medium is beside white paper.
+    /// Value for `diffuse.intensity` that makes the smoke as bright as the medium relative to white paper.
     pub intensity: f32,
-    /// `diffuse.six_way_colour`.
+    /// Value for `diffuse.six_way_colour`.
     pub colour: Vec3,
-    /// `diffuse.six_way_anisotropy`.
+    /// Value for `diffuse.six_way_anisotropy`.
     pub anisotropy: f32,
 }
 
-/// The share of texels that may be brighter than what is stored as white.
+/// Fraction of texels that may exceed the light stored as white.
 const BRIGHTER: f32 = 0.002;
 
 impl SpriteRecipe {
-    /// Path-traces every frame filled with a medium; amounts are those of the sprite itself. Light is traced at a half of the sprite's size
-    /// with so many paths for each pixel, and brought to its own along its normals. `progress` is told the frame and how many of its
-    /// paths are done; its error ends the work.
+    /// Path-traces every frame filled with a medium; amounts are those of the sprite. Light is traced at half the
+    /// sprite's size with `samples` paths per pixel, and upsampled along normals. `progress` is called with the frame
+    /// and the number of finished paths per pixel; an error from it cancels the bake.
     ///
     /// # Errors
-    /// What `progress` says.
+    /// The error of `progress`.
     pub fn bake_six_way<E>(
         &self,
         medium: &Medium,
@@ -79,7 +79,7 @@ impl SpriteRecipe {
     }
 }
 
-/// Light that is stored as white: of what is seen of all frames, all but a little is darker.
+/// Returns the light to store as white: all visible texels except the fraction [`BRIGHTER`] are darker.
 fn white(frames: &[(Picture<Rgba<u8>>, Picture<SixWay>)]) -> f32 {
     let seen = frames.iter().flat_map(|(shape, light)| shape.texels.iter().zip(&light.texels));
     let seen = seen.filter(|(texel, _)| texel.0[3] > 25);
@@ -89,13 +89,13 @@ fn white(frames: &[(Picture<Rgba<u8>>, Picture<SixWay>)]) -> f32 {
     light.get(index.min(light.len().saturating_sub(1))).copied().unwrap_or(1.0).max(1.0e-6)
 }
 
-/// Texels of the traced picture that light is taken from, round a texel of the sprite.
+/// Radius of the upsampling filter, in texels of the traced image.
 const REACH: i32 = 2;
-/// How far normals may differ to lie on one side of the smoke.
+/// Standard deviation of the filter's weight over the difference of normals.
 const SLOPE: f32 = 0.35;
 
-/// Brings light to the sprite's own size: a mean of the texels around, of those most whose normals are alike. It smooths the noise of the
-/// paths, and keeps the shape.
+/// Upsamples light to the sprite's size with a cross-bilateral filter on normals. It smooths the noise of the path
+/// tracer and preserves the shape.
 fn along_normals(traced: &TracedSixWay, shape: &Picture<Rgba<u8>>) -> Picture<SixWay> {
     let (fine, coarse) = (shape.size, traced.light.size);
     let normals = coarse_normals(shape, coarse);

@@ -1,8 +1,9 @@
-//! Six-way maps: a sprite under light from six sides.
+//! Six-way maps: light of a sprite lit from each of six sides.
 //!
-//! A sheet of them is laid out as its sprite, and as high again: above, light from the right, the top and the front in red, green and
-//! blue; below, from the left, the bottom and the back. What a texel holds is the square root of the light
-//! ([`six_way_from_texel`](haze::formula::six_way::six_way_from_texel)); alpha is the amount, in both halves.
+//! A sheet has the layout of its sprite and twice its height. The upper half holds light from the right, the top and
+//! the front in red, green and blue; the lower half from the left, the bottom and the back. A texel holds the square
+//! root of the light ([`six_way_from_texel`](crate::formula::six_way::six_way_from_texel)). Alpha is the amount in both
+//! halves.
 
 mod bake;
 mod packing;

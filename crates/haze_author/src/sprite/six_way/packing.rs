@@ -1,4 +1,5 @@
-//! Six-way light maps as other tools have them: two pictures of three sides each, of the light itself.
+//! Converts six-way light maps of other tools: two images of three sides each, with linear values instead of square
+//! roots.
 
 use std::path::Path;
 
@@ -10,18 +11,18 @@ use haze::formula::six_way::{SixWay, six_way_from_texel};
 use haze::settings::choice;
 
 choice! {
-    /// Which sides two light maps hold, in red, green and blue. Alpha of the first is the amount.
+    /// Assignment of sides to the red, green and blue of two light maps. Alpha of the first map is the amount.
     Packing {
-        /// As Unity's VFX Graph has it: right, top, back; left, bottom, front.
+        /// Unity's VFX Graph: right, top, back; left, bottom, front.
         #[default]
         Unity = "unity",
-        /// As many shaders for Unreal and Houdini have it: right, left, top; bottom, back, front.
+        /// Common for Unreal and Houdini: right, left, top; bottom, back, front.
         RltBbf = "rlt_bbf",
     }
 }
 
 impl Packing {
-    /// The sides that two texels hold.
+    /// Unpacks the six sides from two texels.
     pub fn six_way(self, first: Vec3, second: Vec3) -> SixWay {
         let (a, b) = (first, second);
         match self {
@@ -30,7 +31,7 @@ impl Packing {
         }
     }
 
-    /// The texels that hold them.
+    /// Packs the six sides into two texels.
     fn texels(self, SixWay { positive: p, negative: n }: SixWay) -> [Vec3; 2] {
         match self {
             Self::Unity => [Vec3::new(p.x, p.y, n.z), Vec3::new(n.x, n.y, p.z)],
@@ -39,7 +40,7 @@ impl Packing {
     }
 }
 
-/// A sheet of six-way maps of two light maps of one size.
+/// Builds a sheet of six-way maps from two light maps of equal size.
 pub fn pack(first: &RgbaImage, second: &RgbaImage, packing: Packing) -> RgbaImage {
     let (width, height) = first.dimensions();
     RgbaImage::from_fn(width, 2 * height, |x, y| {
@@ -49,10 +50,10 @@ pub fn pack(first: &RgbaImage, second: &RgbaImage, packing: Packing) -> RgbaImag
     })
 }
 
-/// Two light maps of a sheet. Alpha of both is the amount.
+/// Splits a sheet into two light maps. Alpha of both is the amount.
 ///
 /// # Errors
-/// [`Error::Image`] for a sheet of odd height.
+/// [`Error::Image`] if the sheet's height is odd or 0.
 pub fn unpack(path: &Path, sheet: &RgbaImage, packing: Packing) -> Result<[RgbaImage; 2], Error> {
     let (width, height) = (sheet.width(), sheet.height() / 2);
     if !sheet.height().is_multiple_of(2) || height == 0 {
@@ -71,7 +72,7 @@ pub fn unpack(path: &Path, sheet: &RgbaImage, packing: Packing) -> Result<[RgbaI
     }))
 }
 
-/// A texel of either half.
+/// Encodes a texel of either half.
 pub(super) fn texel(light: Vec3, alpha: u8) -> Rgba<u8> {
     let [r, g, b] = light.to_array().map(|light| (light.clamp(0.0, 1.0).sqrt() * 255.0).round() as u8);
     Rgba([r, g, b, alpha])
@@ -86,7 +87,7 @@ fn value(texel: &Rgba<u8>) -> Vec3 {
 mod tests {
     use super::*;
 
-    /// Every side another shade, as far as 8 bits of light itself tell.
+    /// A sheet with a different value per side, coarse enough for 8-bit linear values.
     fn sheet() -> RgbaImage {
         RgbaImage::from_fn(3, 4, |x, y| {
             let half = (y / 2) as f32;
@@ -95,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_packed_comes_back() {
+    fn unpacking_and_packing_round_trips() {
         for &packing in Packing::ALL {
             let sheet = sheet();
             let [first, second] = unpack(Path::new("smoke.png"), &sheet, packing).unwrap();
@@ -109,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn sides_are_where_other_tools_have_them() {
+    fn sides_are_in_the_channels_that_other_tools_use() {
         let (a, b) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(4.0, 5.0, 6.0));
         let unity = SixWay { positive: Vec3::new(1.0, 2.0, 6.0), negative: Vec3::new(4.0, 5.0, 3.0) };
         let rlt_bbf = SixWay { positive: Vec3::new(1.0, 3.0, 6.0), negative: Vec3::new(2.0, 4.0, 5.0) };

@@ -1,4 +1,4 @@
-//! What a puff shows under light from all sides, told by six pictures.
+//! Path-traces a puff under light from all sides and fits six images to the result.
 
 use glam::Vec3;
 
@@ -8,32 +8,32 @@ use haze::assets::picture::Picture;
 use haze::formula::colour::luminance;
 use haze::formula::six_way::{SixWay, six_way_shares};
 
-/// A puff of a medium, as six-way maps have it.
+/// Six-way light of a puff of a medium.
 #[derive(Clone, Debug)]
 pub struct TracedSixWay {
-    /// Luminance of what hides all behind it, over that of white paper that faces the light.
+    /// Luminance at full coverage, relative to white paper that faces the light.
     pub light: Picture<SixWay>,
-    /// The share of what is behind that is hidden.
+    /// Coverage: the fraction of the background that is hidden.
     pub coverage: Picture<f32>,
-    /// How the pictures are mixed and coloured.
+    /// Mix and colour of the six images.
     pub mix: SixWayMix,
 }
 
-/// How six pictures stand for light from everywhere.
+/// Fitted parameters that represent light from any direction by six images.
 #[derive(Clone, Debug)]
 pub struct SixWayMix {
-    /// Of the light, of luminance 1: `diffuse.six_way_colour`, but for its brightness.
+    /// Colour of the light, normalised to luminance 1: `diffuse.six_way_colour` up to a factor.
     pub colour: Vec3,
     /// `diffuse.six_way_anisotropy`.
     pub anisotropy: f32,
-    /// How much each of the traced lights counts for each side: right, top, front, left, bottom, back.
+    /// Weight of each traced light for each side: right, top, front, left, bottom, back.
     sides: [Vec<f64>; 6],
 }
 
 impl TracedSixWay {
-    /// Path-traces a volume of a medium under light from all sides, and takes the six pictures from which
-    /// [`six_way_response`](haze::formula::six_way::six_way_response) comes nearest to all of them. `mix`: as it was found for
-    /// another moment of the same, where that is to hold for both. `progress` as for [`PathTrace::run`].
+    /// Path-traces a volume of a medium under light from all sides. Fits the six images for which
+    /// [`six_way_response`](crate::formula::six_way::six_way_response) is closest to the result. `mix` is the mix of
+    /// another frame of the same sprite, if both must share it. `progress` as in [`PathTrace::run`].
     pub fn trace<E>(
         volume: &Volume,
         medium: &Medium,
@@ -66,13 +66,14 @@ impl SixWayMix {
         let fits = ANISOTROPIES.iter().map(|&anisotropy| Fit::new(lights, &brightness, anisotropy));
         let Fit { anisotropy, sides, .. } =
             fits.fold(plain, |best, fit| if fit.error < best.error { fit } else { best });
-        // Each light counts alike.
+        // Every light has the same weight, regardless of brightness.
         let colour: Vec3 = means.iter().zip(&brightness).map(|(&mean, &brightness)| mean / brightness as f32).sum();
         Self { colour: colour / luminance(colour).max(f32::MIN_POSITIVE), anisotropy, sides }
     }
 }
 
-/// The ways to the faces, edges and corners of a cube, and a ring round the back, where smoke that scatters onwards changes most.
+/// Returns directions to the faces, edges and corners of a cube, and to a ring around the back, where the response of
+/// forward-scattering smoke changes most.
 fn lights() -> Vec<Vec3> {
     let step = |index: i32| index as f32 - 1.0;
     let cube = (0..27).map(|index| Vec3::new(step(index % 3), step(index / 3 % 3), step(index / 9)));
@@ -84,23 +85,24 @@ fn lights() -> Vec<Vec3> {
     ways.map(|way| way / way.length_squared().sqrt()).collect()
 }
 
-/// Tangent of the ring's angle to the back: 22.5 degrees.
+/// Tangent of the angle between the ring and the back: 22.5 degrees.
 const RING: f32 = 0.414_213_57;
-/// Values of `diffuse.six_way_anisotropy` that are tried.
+/// Candidate values of `diffuse.six_way_anisotropy`.
 const ANISOTROPIES: [f32; 19] =
     [0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95];
 
-/// How six pictures are taken from those of all lights.
+/// Fit of the six images to those of all lights, for one anisotropy.
 struct Fit {
     anisotropy: f32,
-    /// How much each light counts for each side: right, top, front, left, bottom, back.
+    /// Weight of each light for each side: right, top, front, left, bottom, back.
     sides: [Vec<f64>; 6],
-    /// What is left of the lights' brightness: squares, each as a share of it.
+    /// Sum of squared relative errors of the lights' brightness.
     error: f64,
 }
 
 impl Fit {
-    /// Least squares, each light by its own brightness, so that a shadow's error counts as that of a lit side.
+    /// Fits by least squares. Each light is weighted by its inverse brightness, so relative errors of dark and bright
+    /// sides count alike.
     fn new(lights: &[Vec3], brightness: &[f64], anisotropy: f32) -> Self {
         let terms = |way: &Vec3| {
             let mut terms = [0.0; 6];
@@ -129,7 +131,8 @@ impl Fit {
     }
 }
 
-/// Gauss and Jordan; the matrix is positive definite, for every side has a light of its own.
+/// Solves by Gauss-Jordan elimination. The matrix is positive definite because each side has a light exactly from its
+/// direction.
 fn solve(mut rows: [[f64; 6]; 6], mut right: [Vec<f64>; 6]) -> [Vec<f64>; 6] {
     for i in 0..6 {
         let scale = 1.0 / rows[i][i];

@@ -100,7 +100,7 @@ fn what_is_pasted_is_checked_like_a_file() {
     let mut document = Document::open(Path::new("column")).unwrap();
     let text = document.to_text();
     for (from, to, said) in [
-        ("\"boost\": 1.5", "\"boost\": NaN", "pasted text:130:18: systems: no value; expected a number"),
+        ("\"boost\": 1.5", "\"boost\": NaN", "pasted text:130:18: systems: not a value; expected a number"),
         (
             "\"boost\": 1.5",
             "\"boost\": 99",
@@ -219,7 +219,7 @@ fn what_is_no_preset_is_refused_at_once() {
         ("huge.json", "10737418240 bytes; expected a JSON file of at most 1048576 bytes (1 MiB)"),
         ("folder.json", "a folder, not a file; expected a JSON file"),
         ("pipe.json", "a pipe, not a file; expected a JSON file"),
-        ("binary.json", "bytes that are no UTF-8 text; expected JSON as UTF-8 text"),
+        ("binary.json", "not UTF-8; expected JSON as UTF-8 text"),
         ("none.json", "No such file"),
     ];
     // Root reads everything.
