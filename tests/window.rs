@@ -93,7 +93,7 @@ fn a_device_that_is_lost_twice_is_given_up_and_the_work_is_kept() {
     let kept = Preset::load(folder.path().join("state/recovery-1.json")).unwrap();
     assert!((kept.camera.exposure - 2.5).abs() < 1e-6 && (kept.time - 3.0).abs() < 1e-6);
     // Nothing is kept of what nobody has changed.
-    assert!(line(command(&[]), 1).contains("nothing was unsaved"));
+    assert!(line(command(&[]), 1).contains("there was no unsaved work"));
     assert!(!folder.path().join("state/recovery-2.json").exists());
 }
 
