@@ -122,7 +122,7 @@ impl Hints {
 }
 
 /// User activity in a frame.
-#[allow(clippy::struct_excessive_bools, reason = "each is one thing that is done or not")]
+#[allow(clippy::struct_excessive_bools, reason = "independent flags")]
 pub struct Doing {
     /// A pointer button or the wheel is in use.
     pub presses: bool,

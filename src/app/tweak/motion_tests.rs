@@ -55,7 +55,7 @@ fn drag(harness: &mut Harness<'_, Window>, frames: usize) -> (f64, u32) {
 
 /// The result depends on the machine, which may be busy.
 #[test]
-#[ignore = "measures; run it alone"]
+#[ignore = "measurement; run it alone"]
 fn a_slider_is_dragged_at_15_frames_a_second() {
     for size in [vec2(640.0, 360.0), vec2(1280.0 - 330.0, 800.0 - 190.0)] {
         let mut harness = window_around(size);

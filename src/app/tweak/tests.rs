@@ -219,7 +219,7 @@ fn time_is_played_and_stepped() {
 /// Writes images of every tab in several sizes and both themes to the folder that HAZE_LOOK names, for visual
 /// inspection. HAZE_SIZE=WxH selects a single size.
 #[test]
-#[ignore = "for who wants to look"]
+#[ignore = "writes images for visual inspection"]
 fn write_images_of_every_tab() {
     let Some(folder) = std::env::var_os("HAZE_LOOK").map(std::path::PathBuf::from) else { return };
     let wanted = std::env::var("HAZE_SIZE").ok();

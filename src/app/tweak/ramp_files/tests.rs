@@ -392,7 +392,7 @@ fn a_stop_takes_a_colour_from_the_image() {
 
 /// `HAZE_LOOK=DIR` names the folder to write to.
 #[test]
-#[ignore = "pictures to be looked at"]
+#[ignore = "writes images for visual inspection"]
 fn write_images_of_the_gradient_editor() {
     let into = PathBuf::from(std::env::var_os("HAZE_LOOK").unwrap());
     let folder = Folder::new();

@@ -287,7 +287,7 @@ fn latencies(bench: &mut Bench, count: u32) -> (Vec<u128>, Vec<u128>) {
 }
 
 #[test]
-#[ignore = "measures; with the machine to itself"]
+#[ignore = "measurement; run it alone on an idle machine"]
 fn a_saved_ramp_is_on_screen_within_a_quarter_of_a_second() {
     let mut bench = Bench::new(SIZE);
     bench.session().show.has_strip = false;

@@ -469,7 +469,7 @@ fn a_write_error_is_reported() {
 
 /// `HAZE_LOOK=DIR` names the folder to write to.
 #[test]
-#[ignore = "pictures to be looked at"]
+#[ignore = "writes images for visual inspection"]
 fn write_images_of_the_sprite_tab() {
     let into = PathBuf::from(std::env::var_os("HAZE_LOOK").unwrap());
     let folder = Folder::new();

@@ -39,7 +39,7 @@ impl std::fmt::Display for Held {
 /// Bytes allocated according to the allocator, including those of the driver.
 fn live() -> u64 {
     #[cfg(target_env = "gnu")]
-    #[allow(unsafe_code, reason = "nothing safe asks glibc for it; it takes nothing, and may be called at any time")]
+    #[allow(unsafe_code, reason = "glibc has no safe wrapper; the call takes no arguments and is always allowed")]
     {
         // glibc: the fifth field counts bytes in mmapped chunks, the eighth those in all other chunks in use.
         #[repr(C)]
@@ -145,7 +145,7 @@ fn reload(bench: &mut Bench, count: u32) {
 /// higher peak, which would look like growth.
 fn give_back() {
     #[cfg(target_env = "gnu")]
-    #[allow(unsafe_code, reason = "nothing safe asks glibc for it; it takes no pointer, and may be called at any time")]
+    #[allow(unsafe_code, reason = "glibc has no safe wrapper; the call takes no pointer and is always allowed")]
     {
         unsafe extern "C" {
             fn malloc_trim(pad: usize) -> i32;
@@ -195,13 +195,13 @@ fn soak(reload: fn(&mut Bench, u32)) {
 }
 
 #[test]
-#[ignore = "takes minutes; alone in its process"]
+#[ignore = "takes minutes; needs a process of its own"]
 fn five_thousand_reloads_do_not_leak() {
     soak(reload);
 }
 
 #[test]
-#[ignore = "takes many minutes; alone in its process"]
+#[ignore = "takes many minutes; needs a process of its own"]
 fn five_thousand_shader_reloads_do_not_leak() {
     soak(reload_shaders);
 }
