@@ -1,4 +1,4 @@
-//! What can be done by key or by menu: one table for the keys, the menus and the list of both.
+//! Actions that a key or a menu item triggers. [`ACTIONS`] is the one table for key bindings, menus and the key list.
 
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 use glam::Vec3;
@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::compare::Against;
 use super::show::Overlay;
 
-/// Something that the window does when it is told to.
+/// Command to the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
     Presets,
@@ -28,29 +28,29 @@ pub enum Action {
     Strip,
     Inspect,
     NextStage,
-    /// Shows it beside the picture, or no longer.
+    /// Shows this comparison beside the image, or hides it if it is shown.
     Compare(&'static Against),
     Picture,
     Help,
     InView(InView),
 }
 
-/// What the viewport does.
+/// Command to the viewport.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InView {
     Frame,
     Home,
-    /// The selected light.
+    /// Deletes the selected light.
     Delete,
     Duplicate,
-    /// Puts it, or a new one, behind the smoke.
+    /// Puts the selected light, or a new one, behind the smoke.
     Behind,
     Overlay(Overlay),
     Turntable,
     Face(Side),
 }
 
-/// Where the camera stands.
+/// Side from which the camera looks at its target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     Front,
@@ -62,7 +62,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// From what it looks at to the camera.
+    /// Returns the unit direction from the camera's target to the camera.
     pub fn way(self) -> Vec3 {
         match self {
             Self::Front => Vec3::Z,
@@ -75,7 +75,7 @@ impl Side {
     }
 }
 
-/// An action, what it is called, and its keys.
+/// Action with its menu name and its shortcut.
 pub struct Entry {
     pub action: Action,
     pub name: &'static str,
@@ -88,7 +88,7 @@ const fn entry(action: Action, name: &'static str, modifiers: Modifiers, key: Ke
 
 const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
-/// Those with more modifiers come first: egui lets Shift pass where it is not asked for.
+/// Entries with more modifiers come first, because egui matches a shortcut without Shift also while Shift is held.
 pub const ACTIONS: &[Entry] = &[
     entry(Action::Presets, "New from a preset", Modifiers::COMMAND, Key::N),
     entry(Action::Open, "Open a preset", Modifiers::COMMAND, Key::O),
@@ -105,7 +105,7 @@ pub const ACTIONS: &[Entry] = &[
     entry(Action::Play, "Play or pause", Modifiers::NONE, Key::Space),
     entry(Action::StepBack, "A frame back", Modifiers::NONE, Key::Comma),
     entry(Action::StepOn, "A frame on", Modifiers::NONE, Key::Period),
-    entry(Action::Loop, "Go round in the range", Modifiers::NONE, Key::L),
+    entry(Action::Loop, "Loop the time range", Modifiers::NONE, Key::L),
     entry(Action::Strip, "Shade tree strip", Modifiers::NONE, Key::F4),
     entry(Action::Inspect, "Inspect the pixel under the pointer", Modifiers::NONE, Key::I),
     entry(Action::NextStage, "Next stage of the shading", Modifiers::NONE, Key::N),
@@ -134,12 +134,12 @@ pub const ACTIONS: &[Entry] = &[
     entry(Action::Help, "The same", Modifiers::NONE, Key::Questionmark),
 ];
 
-/// The keys of an action.
+/// Returns the first shortcut of an action.
 pub fn keys_of(action: Action) -> Option<KeyboardShortcut> {
     ACTIONS.iter().find(|entry| entry.action == action).map(|entry| entry.keys)
 }
 
-/// What else is done with pointer and keys.
+/// Pointer and keyboard gestures for the key list, each with its effect.
 pub const GESTURES: &[(&str, &str)] = &[
     ("Drag in the picture, or middle button", "Orbit"),
     ("Shift middle, Alt middle", "Pan"),

@@ -1,27 +1,28 @@
-//! Directions of light as angles.
+//! Conversion between light directions and azimuth/elevation angles.
 
 use glam::Vec3;
 
-/// Where light comes from, degrees.
+/// Direction that light comes from, in degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Angles {
-    /// About the vertical: 0 is from +z, 90 from +x.
+    /// Angle about the vertical axis: 0 is +z, 90 is +x.
     pub azimuth: f32,
-    /// Above the horizon.
+    /// Angle above the horizon.
     pub elevation: f32,
 }
 
-/// Highest and lowest: straight down has no azimuth, and a light that went there would forget its own.
+/// Largest elevation up or down, degrees. A vertical direction has no azimuth, so a light at ±90 would lose its
+/// azimuth.
 pub const STEEPEST: f32 = 89.9;
 
-/// Where light comes from that travels in a direction.
+/// Returns the angles that light comes from, given the direction it travels in.
 pub fn to_angles(direction: Vec3) -> Angles {
     let from = -direction.normalize_or(Vec3::NEG_Y);
     let level = from.x.hypot(from.z);
     Angles { azimuth: from.x.atan2(from.z).to_degrees(), elevation: from.y.atan2(level).to_degrees() }
 }
 
-/// The direction in which such light travels, of unit length.
+/// Returns the unit direction that light from these angles travels in. Clamps the elevation to ±[`STEEPEST`].
 pub fn from_angles(angles: Angles) -> Vec3 {
     let elevation = angles.elevation.clamp(-STEEPEST, STEEPEST).to_radians();
     let (sine, cosine) = angles.azimuth.to_radians().sin_cos();
@@ -33,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn angles_come_back_and_elevation_never_turns_azimuth() {
+    fn angles_round_trip_and_steep_elevation_keeps_the_azimuth() {
         for azimuth in [-170.0, -90.0, 0.0, 12.5, 90.0, 179.0] {
             for elevation in [-90.0, -60.0, 0.0, 45.0, 89.0, 90.0, 120.0] {
                 let back = to_angles(from_angles(Angles { azimuth, elevation }));

@@ -1,19 +1,20 @@
-//! The particle files of the systems, as they were last loaded well.
+//! Particle files of the systems, as last loaded without error.
 
 use haze::preset::Preset;
 use haze_author::particle_files::Cache;
 
-/// Particles, and the paths that they were loaded by; none of a system without files.
+/// Particles of each system with the path they were loaded from; `None` for a system without particle files.
 #[derive(Clone)]
 pub struct Caches(Vec<(String, Option<Cache>)>);
 
 impl Caches {
-    /// `loaded` has one of every system of the preset.
+    /// `loaded` has one entry for each system of the preset.
     pub fn new(preset: &Preset, loaded: Vec<Option<Cache>>) -> Self {
         Self(paths(preset).into_iter().zip(loaded).collect())
     }
 
-    /// What there is for the systems of a preset: where a system's own is not loaded yet, or cannot be, what stood in its place.
+    /// Returns the particles for each system of a preset. A system whose own files are not loaded yet, or cannot be
+    /// loaded, gets those that were loaded for its index before.
     pub fn of(&self, preset: &Preset) -> Vec<Option<Cache>> {
         let find = |(index, path): (usize, String)| {
             let own = self.0.iter().find(|(known, _)| *known == path);
@@ -23,7 +24,7 @@ impl Caches {
     }
 }
 
-/// The particle files that the systems of a preset name.
+/// Returns the particle-file path of each system; empty for a system without one.
 pub fn paths(preset: &Preset) -> Vec<String> {
     preset.systems.iter().map(|system| system.cache.path.clone()).collect()
 }

@@ -1,4 +1,4 @@
-//! A second picture beside the first: every saving shows its price.
+//! Comparison of the image with a second one, to show the image error that a saving costs.
 
 use haze::preset::{Camera, Preset};
 use haze::settings::Path;
@@ -6,35 +6,35 @@ use haze_demo::shot::Shot;
 
 use super::lights::ShownLights;
 
-/// What the picture is compared with.
+/// Variant that the image is compared with.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Against {
     /// The preset as it is on disk.
     Saved,
-    /// The preset as it once was.
+    /// A copy of the preset that the user kept earlier.
     Kept(Box<Preset>),
-    /// The same without a reduced target.
+    /// The same preset without a reduced accumulation target.
     FullResolution,
-    /// The same lit and blended sprite by sprite.
+    /// The same preset in forward mode: each sprite is lit and blended.
     Forward,
-    /// The same by the renderer that the specification is.
+    /// The same preset drawn by the CPU renderer, the reference.
     Reference,
 }
 
-/// One of the two.
+/// One of the two compared images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     First,
     Second,
 }
 
-/// How the two are shown.
+/// State of the comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compare {
     pub against: Option<Against>,
-    /// Share of the width from which on the second is shown.
+    /// Share of the width at which the second image begins, 0 to 1.
     pub split: f32,
-    /// Multiplies the difference of the two, which is shown instead; 0: they stand side by side.
+    /// Factor on the difference image, which replaces the two images; 0 shows the two side by side.
     pub difference: f32,
 }
 
@@ -44,12 +44,12 @@ impl Default for Compare {
     }
 }
 
-/// What one click shows beside the picture.
+/// Comparison that one click turns on.
 pub struct Offer {
     pub against: Against,
-    /// On a button.
+    /// Label of its button.
     pub short: &'static str,
-    /// On a line of its own.
+    /// Label of its menu line.
     pub name: &'static str,
     pub tooltip: &'static str,
 }
@@ -66,12 +66,12 @@ pub static OFFERS: [Offer; 4] = [
 ];
 
 impl Compare {
-    /// Shows this beside the picture, or no longer.
+    /// Turns this comparison on, or off if it is on.
     pub fn toggle(&mut self, against: &Against) {
         self.against = (self.against.as_ref() != Some(against)).then(|| against.clone());
     }
 
-    /// Which of the two is seen at a share of the width. Of their difference, the first.
+    /// Returns the image shown at a share `x` of the width. The difference view counts as the first image.
     pub fn side(&self, x: f32) -> Side {
         let is_second = self.against.is_some() && self.difference == 0.0 && x >= self.split;
         if is_second { Side::Second } else { Side::First }
@@ -89,7 +89,7 @@ impl Against {
         }
     }
 
-    /// The settings of the second, where it has any of its own.
+    /// Returns the preset of the second image if it has settings of its own.
     pub fn settings<'a>(&'a self, saved: &'a Preset) -> Option<&'a Preset> {
         match self {
             Self::Saved => Some(saved),
@@ -98,7 +98,7 @@ impl Against {
         }
     }
 
-    /// The second shot: seen as the first is, at the same time.
+    /// Returns the shot of the second image, with the camera, time and visible lights of the first.
     pub fn shot(&self, first: &Shot, saved: &Preset, lights: &ShownLights) -> Shot {
         let mut shot = first.clone();
         if let Some(settings) = self.settings(saved) {
@@ -117,7 +117,8 @@ impl Against {
     }
 }
 
-/// A preset from where another is seen, at its time, with the same lights muted and turned. How it is exposed is its own.
+/// Returns `preset` with the camera and time of `other`, and with the same lights muted and turned. The exposure stays
+/// that of `preset`.
 fn seen_as(preset: &Preset, other: &Preset, lights: &ShownLights) -> Preset {
     let camera = Camera { exposure: preset.camera.exposure, ..other.camera };
     Preset { camera, time: other.time, lights: lights.shown_of(&preset.lights), ..preset.clone() }
@@ -129,7 +130,7 @@ mod tests {
     use glam::UVec2;
 
     #[test]
-    fn the_second_differs_only_in_what_it_is_for() {
+    fn the_second_shot_differs_only_in_the_compared_setting() {
         let mut first = Shot::load("column", UVec2::new(64, 36)).unwrap();
         let saved = first.preset.clone();
         first.preset.camera.fov = 70.0;

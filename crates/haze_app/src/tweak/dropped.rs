@@ -1,4 +1,4 @@
-//! A picture that is dropped on the window: what it is, and what it becomes of the system that is shown.
+//! Images dropped on the window: detects the role of an image and assigns it to the shown system.
 
 use std::path::{Path, PathBuf};
 
@@ -14,26 +14,26 @@ use super::platform::{assets, files};
 use super::sprite::source::{detail_of, recipe_of};
 use crate::recipe::six_way_of;
 
-/// What a picture is to become.
+/// Detected role of a dropped image.
 pub struct Dropped {
-    /// Fields of a material and what they are set to; the first is what the picture is for.
+    /// Material fields and their new values. The first is the field of the image itself.
     fields: Vec<(&'static str, String)>,
-    /// What is doubtful about it there.
+    /// Doubt of the content check about this role.
     doubt: Option<String>,
 }
 
-/// What a picture is taken for that does not tell: the first that a check has no doubt about.
+/// Roles tried in this order if the file name does not tell the role. The first without a doubt wins.
 const TRIED: [&str; 3] = ["diffuse_ramp", "sprite", "specular_ramp"];
 
 impl Dropped {
-    /// Reads a picture in one of a preset's folders; `material` is that of the system it is for.
+    /// Reads an image that lies in one of the preset's folders. `material` is that of the target system.
     ///
     /// # Errors
-    /// Where it lies elsewhere, cannot be read, or is nothing of all this.
+    /// If the file lies elsewhere, cannot be read, or fits no role.
     pub fn read(path: &Path, folders: &PictureFolders, material: &MaterialNames) -> Result<Self, Error> {
         let refuse = |expected: String| FieldError::new("dropped file", path.display(), expected).into();
         let Some((folder, name)) = place_of(path, folders) else {
-            return Err(refuse("a picture in the preset's folder, or in one that is shared, or a preset".into()));
+            return Err(refuse("a picture in the preset's folder or a shared one, or a preset file".into()));
         };
         if let Some(field) = told_by_name(path) {
             let (fields, doubt) = checked(field, &folder, &name, material)?;
@@ -44,19 +44,19 @@ impl Dropped {
             match checked(field, &folder, &name, material) {
                 Ok((fields, None)) => return Ok(Self { fields, doubt: None }),
                 Ok((_, Some(doubt))) => wrong = wrong.or(Some(doubt)),
-                // What cannot be read at all is none of them.
+                // An unreadable image fits no role, so the first error is final.
                 Err(error) if field == TRIED[0] => return Err(error),
                 Err(_) => {}
             }
         }
         let (file, doubt) = (path.file_name().unwrap_or_default().display(), wrong.unwrap_or_default());
-        Err(refuse(format!("a ramp or a sprite, or a name that tells, such as diffuse_{file}; {doubt}")))
+        Err(refuse(format!("a ramp or a sprite, or a file name that tells the role, such as diffuse_{file}; {doubt}")))
     }
 
-    /// Gives it to a system, and says what it has become.
+    /// Assigns the image to a system and returns a message for the user.
     ///
     /// # Errors
-    /// Where the system is gone.
+    /// If the system no longer exists.
     pub fn apply(self, preset: &mut Preset, system: usize, size: UVec2) -> Result<String, Error> {
         let path = |field| format!("systems[{system}].material.{field}");
         for (field, value) in &self.fields {
@@ -73,7 +73,7 @@ impl Dropped {
     }
 }
 
-/// The folder of a preset's pictures that a file is in, and its name from there on.
+/// Returns the preset folder that contains a file, and the file's path relative to it.
 fn place_of(path: &Path, folders: &PictureFolders) -> Option<(PathBuf, String)> {
     let path = files::absolute(path);
     let folders = folders.places(Path::new(".")).map(|folder| files::absolute(&folder));
@@ -84,7 +84,8 @@ fn place_of(path: &Path, folders: &PictureFolders) -> Option<(PathBuf, String)> 
     places.next()
 }
 
-/// The field that the name of a picture is for, or the recipe beside it: `scatter_fog.png` is for soft scatter.
+/// Returns the material field that the file name, or a recipe beside the file, indicates: `scatter_fog.png` is for soft
+/// scatter.
 fn told_by_name(path: &Path) -> Option<&'static str> {
     let name = path.file_name()?.to_str()?;
     let beside = [(".detail.png", "detail"), (".six_way.png", "six_way")];
@@ -99,7 +100,7 @@ fn told_by_name(path: &Path) -> Option<&'static str> {
     picture_fields().into_iter().find(is_told)
 }
 
-/// What to set for a picture to be in a field, and what is doubtful about it there.
+/// Fields to set for an image in a role, and a doubt about that role.
 type Checked = (Vec<(&'static str, String)>, Option<String>);
 
 fn checked(field: &'static str, folder: &Path, name: &str, material: &MaterialNames) -> Result<Checked, Error> {
@@ -116,7 +117,7 @@ fn checked(field: &'static str, folder: &Path, name: &str, material: &MaterialNa
         fields.extend([("detail", beside(detail_of(name))), ("six_way", beside(six_way_of(name)))]);
         fields.extend(layout);
     } else if ["detail", "six_way"].contains(&field) {
-        // It belongs to the sprite that is there.
+        // The image must have the layout of the system's present sprite.
         let MaterialNames { sprite, columns, rows, y_down, .. } = material.clone();
         names = MaterialNames { sprite, columns, rows, y_down, ..names };
     }
@@ -127,13 +128,13 @@ fn checked(field: &'static str, folder: &Path, name: &str, material: &MaterialNa
     Ok((fields, doubts.into_iter().find(|(of, _)| *of == field).map(|(_, doubt)| doubt)))
 }
 
-/// How a sheet is laid out: as its recipe says, or else as the one that it takes the place of.
+/// Returns the layout of a sheet: from its recipe, or else from the sprite that it replaces.
 fn layout(sheet: &Path, material: &MaterialNames) -> SpriteLayout {
     let as_before = SpriteLayout { columns: material.columns, rows: material.rows, y_down: material.y_down };
     assets::sprite_recipe(&recipe_of(sheet)).map_or(as_before, |recipe| recipe.layout())
 }
 
-/// The fields of a material that name pictures.
+/// Returns the material fields that hold names of images.
 fn picture_fields() -> Vec<&'static str> {
     let mut fields = Vec::new();
     walk(&mut MaterialNames::default(), &mut |path, leaf| {
@@ -150,7 +151,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_picture_becomes_what_it_is() {
+    fn a_dropped_image_gets_the_role_of_its_name_or_content() {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
         let save = |name: &str, size: (u32, u32), colour: fn(u32, u32) -> [u8; 3]| {

@@ -1,4 +1,5 @@
-//! Pictures that are written, and sheets to look at: drawn elsewhere, as the command line draws them, while the work goes on.
+//! Export of images, sequences and sheets. A worker thread renders them as the command line does, while editing goes
+//! on.
 
 mod spread;
 
@@ -24,7 +25,7 @@ use crate::options::Backend;
 use crate::shade_tree;
 use spread::spread;
 
-/// What can be made of the preset.
+/// Kind of export.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Product {
     Picture,
@@ -32,22 +33,22 @@ pub enum Product {
     Flipbook,
     Gif,
     ShadeTree,
-    /// The smoke of nine seeds on one sheet.
+    /// Sheet of nine seeds.
     Seeds,
-    /// A field at several values on one sheet.
+    /// Sheet of one field at several values; holds the path of the field.
     Values(String),
 }
 
-/// How it is made.
+/// Parameters of an export.
 #[derive(Clone, Debug)]
 pub struct Order {
-    /// Pixels of a picture; of a whole sheet's full row and column.
+    /// Size of an image in pixels. For a sheet: the size of all its cells together.
     pub size: UVec2,
     pub first: u32,
     pub last: u32,
-    /// Frames in a second.
+    /// Frames per second.
     pub rate: f32,
-    /// Rows and columns of a flipbook.
+    /// Rows (`x`) and columns (`y`) of a flipbook.
     pub cells: UVec2,
 }
 
@@ -57,28 +58,28 @@ impl Default for Order {
     }
 }
 
-/// Most pixels along a side of a picture.
+/// Longest side of an image, pixels.
 pub const MOST_PIXELS: u32 = 8192;
 
-/// See the module.
+/// Export jobs, and the state of the export dialog.
 pub struct Exporting {
     worker: Worker<Done>,
     progress: Arc<Progress>,
     pub is_open: bool,
     pub product: Product,
     pub order: Order,
-    /// What the setting to vary is looked for by.
+    /// Search text for the field to vary.
     pub wanted: String,
-    /// A sheet that was made.
+    /// Finished sheet that is shown.
     pub sheet: Option<Sheet>,
 }
 
-/// A sheet to look at.
+/// Finished sheet.
 pub struct Sheet {
     pub picture: RgbImage,
-    /// Where it would be saved.
+    /// Path to save it under.
     path: PathBuf,
-    /// Once it was shown.
+    /// GPU texture, made when the sheet is first shown.
     pub texture: Option<egui::TextureHandle>,
 }
 
@@ -96,10 +97,10 @@ enum Done {
 }
 
 impl Exporting {
-    /// `wake` is called from another thread when there is something new to see.
+    /// `wake` is called from the worker thread when a result is ready.
     ///
     /// # Errors
-    /// [`Error::Io`] where the system has no thread left.
+    /// [`Error::Io`] if the system cannot start another thread.
     pub fn new(wake: impl Fn() + Send + 'static) -> Result<Self, Error> {
         let worker = Worker::new("haze export", wake);
         let worker = worker.map_err(|error| Error::Io { path: "a thread to export".into(), error })?;
@@ -114,25 +115,25 @@ impl Exporting {
         })
     }
 
-    /// How many of how many pictures are done, while something is being made.
+    /// Returns the number of finished images and of all images while an export runs.
     pub fn progress(&self) -> Option<(u32, u32)> {
         let read = |number: &AtomicU32| number.load(Ordering::Relaxed);
         self.worker.is_busy().then(|| (read(&self.progress.done), read(&self.progress.count)))
     }
 
-    /// Stops what is being made; files that are there are whole.
+    /// Stops the running export. Every file that is already there is complete.
     pub fn stop(&self) {
         self.progress.is_stopped.store(true, Ordering::Relaxed);
     }
 
-    /// Makes something of what is to be seen now.
+    /// Starts an export of the current view.
     pub fn begin(&mut self, product: Product, session: &mut Session) {
         if self.worker.is_busy() {
-            return session.messages.complain("export", "one thing at a time: something is being made");
+            return session.messages.complain("export", "an export is running; stop it or wait for it");
         }
         let mut size = self.order.size;
         if product == Product::Picture {
-            // As it is seen.
+            // A single image has the aspect ratio of the viewport.
             size.x = ((size.y as f32 * session.show.aspect).round() as u32).clamp(1, MOST_PIXELS);
         }
         let shot = session.shot(size);
@@ -152,39 +153,39 @@ impl Exporting {
         });
     }
 
-    /// Closes the sheet, or else the window for exports; true if there was one.
+    /// Closes the sheet, or else the export dialog. Returns true if one of them was open.
     pub fn dismiss(&mut self) -> bool {
         self.sheet.take().is_some() || std::mem::take(&mut self.is_open)
     }
 
-    /// Writes the sheet that is shown.
+    /// Writes the shown sheet to its file and closes it.
     pub fn save_sheet(&mut self) {
         if let Some(Sheet { picture, path, .. }) = self.sheet.take() {
             self.worker.submit(move |_| write(path, picture).unwrap_or_else(Done::Failed));
         }
     }
 
-    /// Once a frame: says what became of it.
+    /// Reports finished exports. Call once a frame.
     pub fn advance(&mut self, session: &mut Session) {
         while let Some(done) = self.worker.poll() {
             match done {
                 Some(Done::Written(path)) => session.messages.say("export", format!("written: {}", path.display())),
                 Some(Done::Sheet(picture, path)) => self.sheet = Some(Sheet { picture, path, texture: None }),
                 Some(Done::Failed(error)) => session.messages.complain("export", error),
-                None => session.messages.complain("export", "not made: the program has a mistake in it"),
+                None => session.messages.complain("export", "nothing exported: internal error on the export thread"),
             }
         }
     }
 }
 
-/// Where files go, and what their names begin with.
+/// Folder and name prefix of exported files.
 struct Place {
     folder: PathBuf,
     stem: String,
 }
 
 impl Place {
-    /// Beside the preset's file, by its name and time.
+    /// Uses the folder of the preset's file, and the preset's name and time.
     fn new(document: &Path, preset: &Preset) -> Self {
         let plain = |c: char| if c.is_alphanumeric() || c == '-' { c } else { '_' };
         let name: String = preset.name.chars().map(plain).take(60).collect();
@@ -192,7 +193,7 @@ impl Place {
         Self { folder, stem: format!("{name}_{:.2}s", preset.time) }
     }
 
-    /// A path that is free.
+    /// Returns a path that does not exist yet.
     fn free(&self, what: &str, end: &str) -> PathBuf {
         let what = if what.is_empty() { String::new() } else { format!("_{what}") };
         let name = |number| match number {
@@ -257,14 +258,14 @@ fn make(
         Product::Values(path) => {
             let cells = variations(shot, path);
             if cells.is_empty() {
-                return Err(FieldError::new("export", path, "a setting of numbers, of choices, or on and off").into());
+                return Err(FieldError::new("export", path, "a number, a choice, or an on/off setting").into());
             }
             sheet(path.rsplit('.').next().unwrap_or(path), cells)
         }
     }
 }
 
-/// The shot with this seed and the eight after it.
+/// Returns nine shots: with the present seed and the eight after it.
 fn seeds(shot: &Shot) -> Vec<(String, Shot)> {
     let with = |more: u32| {
         let mut shot = shot.clone();
@@ -277,7 +278,7 @@ fn seeds(shot: &Shot) -> Vec<(String, Shot)> {
     (0..9).map(with).collect()
 }
 
-/// The shot with a field at the values of its [`spread`]. Only those that are valid.
+/// Returns shots with a field at the values of its [`spread`], without those that are not valid.
 fn variations(shot: &Shot, path: &str) -> Vec<(String, Shot)> {
     let with = |text: String| {
         let mut shot = shot.clone();

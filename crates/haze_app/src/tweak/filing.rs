@@ -1,4 +1,4 @@
-//! Opening and saving, and what is asked before work is lost.
+//! Actions of the File menu, and the question that is asked before unsaved work is lost.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,57 +16,57 @@ use super::platform::dialog::{Answer, Dialogs, Purpose};
 use super::platform::worker::Worker;
 use super::session::Session;
 
-/// What the File menu does.
+/// State of the File menu's actions.
 pub struct Filing {
     worker: Worker<Done>,
     dialogs: Dialogs,
-    /// What the dialog that is open is for.
+    /// Purpose of the open dialog.
     purpose: Purpose,
-    /// What waits until someone says what becomes of unsaved work.
+    /// Action that waits for the user's decision about unsaved work.
     pub waiting: Option<Next>,
-    /// What follows when it is saved.
+    /// Action that follows a successful save.
     then: Option<Next>,
-    /// The path that is typed where the system has no dialogs.
+    /// Path that the user types, on systems without file dialogs.
     pub typed: Option<Typed>,
-    /// The window may close, whatever is not saved.
+    /// The window may close without a question about unsaved work.
     is_over: bool,
-    /// The window closes when the sprite that is being baked is written.
+    /// The window closes as soon as the sprite that is being baked is written.
     closes_after_baking: bool,
     title: String,
 }
 
-/// The end waits no longer for what is done elsewhere.
+/// Longest wait for the file thread at exit.
 const LONGEST: Duration = Duration::from_millis(500);
 
-/// What ends the work on a document.
+/// Action that ends the work on the document.
 pub enum Next {
-    /// Another takes its place.
+    /// Shows another document.
     Show(Box<Document>, Loaded),
     Close,
 }
 
-/// A path on its way.
+/// Path that is being typed.
 pub struct Typed {
     pub purpose: Purpose,
     pub text: String,
 }
 
-/// What was done elsewhere.
+/// Result from the file thread.
 enum Done {
     Opened(Box<Document>, Loaded),
-    /// A picture for a system.
+    /// Image for the system of this index.
     Dropped(usize, Dropped),
     Saved(Box<Saving>, Result<(), Error>),
-    /// Where things are.
+    /// The window layout was written.
     Remembered(Result<(), Error>),
     Failed(Error),
 }
 
 impl Filing {
-    /// `wake` is called from other threads when something is done.
+    /// `wake` is called from other threads when a result is ready.
     ///
     /// # Errors
-    /// [`Error::Io`] where the system has no thread left.
+    /// [`Error::Io`] if the system cannot start another thread.
     pub fn new(has_dialogs: bool, wake: impl Fn() + Send + Sync + 'static) -> Result<Self, Error> {
         let thread = |error| Error::Io { path: "a thread for files".into(), error };
         let wake = Arc::new(wake);
@@ -84,7 +84,7 @@ impl Filing {
         })
     }
 
-    /// Once a frame: what came of dialogs, what was read and written, what was dropped on the window, and whether it is to close.
+    /// Handles answers of dialogs, results of the file thread, dropped files and requests to close. Call once a frame.
     pub fn advance(&mut self, session: &mut Session, context: &egui::Context) {
         match self.dialogs.poll() {
             Some(Answer::Chosen(path)) => self.chosen(self.purpose, &path, session),
@@ -106,7 +106,7 @@ impl Filing {
                 Some(Done::Remembered(Err(error))) => session.messages.complain("remembered", error),
                 Some(Done::Failed(error)) => session.messages.complain("file", error),
                 None => {
-                    session.messages.complain("file", "no file is read or written: the program has a mistake in it");
+                    session.messages.complain("file", "file not read or written: internal error");
                 }
             }
         }
@@ -120,7 +120,7 @@ impl Filing {
             self.closes_after_baking = false;
             context.send_viewport_cmd(egui::ViewportCommand::Close);
         } else if is_asked_to_close && is_baking && !self.closes_after_baking {
-            // Asked again it is left as it was.
+            // A second request closes without waiting; the sprite file then stays as it was.
             context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.closes_after_baking = true;
             session.messages.say("file", "a sprite is being baked: the window closes when it is written");
@@ -140,7 +140,7 @@ impl Filing {
         }
     }
 
-    /// A file that was dropped on the window: a preset to open, or a picture for the system that is shown.
+    /// Handles a file dropped on the window: a preset to open, or an image for the shown system.
     fn take(&self, path: PathBuf, session: &Session) {
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
             let (folders, index) = (session.folders(), session.show.system);
@@ -155,12 +155,12 @@ impl Filing {
         }
     }
 
-    /// Has something written that is no preset.
+    /// Runs a write that does not concern the preset on the file thread.
     pub fn remember(&self, write: impl FnOnce() -> Result<(), Error> + Send + 'static) {
         self.worker.submit(move |_| Done::Remembered(write()));
     }
 
-    /// The end: what is being written is let be written, within reason.
+    /// Waits at exit for pending writes, but no longer than [`LONGEST`].
     pub fn finish(&self) {
         let begun = Instant::now();
         while self.worker.is_busy() && begun.elapsed() < LONGEST {
@@ -168,7 +168,7 @@ impl Filing {
         }
     }
 
-    /// Opens a file, or a built-in preset by name. What cannot be opened changes nothing.
+    /// Opens a file, or a built-in preset by name. Nothing changes if it cannot be opened.
     pub fn open(&self, path: PathBuf, session: &Session) {
         let assets = session.assets.clone();
         self.worker.submit(move |_| match load(&path, assets) {
@@ -188,7 +188,8 @@ impl Filing {
         }
     }
 
-    /// The answer to what becomes of unsaved work: it is saved, lost, or kept, and nothing else begun.
+    /// Handles the answer about unsaved work: `Some(true)` saves it first, `Some(false)` discards it, `None` cancels
+    /// the action.
     pub fn answer(&mut self, is_saved: Option<bool>, session: &mut Session) {
         let next = self.waiting.take();
         match (is_saved, next) {
@@ -201,15 +202,15 @@ impl Filing {
         }
     }
 
-    /// Asks which preset is to be opened.
+    /// Asks for a preset to open.
     pub fn ask_open(&mut self, session: &Session) {
         self.ask(Purpose::Open, session);
     }
 
-    /// Writes the file; where there is none, asks for one.
+    /// Saves the document, or asks for a path if it is a built-in preset.
     pub fn save(&mut self, session: &mut Session) {
         if session.document.is_being_saved() {
-            return session.messages.say("file", "it is being saved");
+            return session.messages.say("file", "a save is already running");
         }
         if session.document.is_built_in() {
             return self.save_as(session);
@@ -217,13 +218,13 @@ impl Filing {
         if session.document.on_disk() == OnDisk::Changed {
             session.is_changed_on_disk = true;
             self.then = None;
-            return session.messages.complain("file", "not saved: it has changed on disk; say which is wanted first");
+            return session.messages.complain("file", "not saved: the file has changed on disk; choose a version");
         }
         let begun = session.document.begin_saving();
         self.write(begun, session);
     }
 
-    /// Has it written elsewhere: pictures may be large, and disks slow.
+    /// Writes on the file thread, because images may be large and disks slow.
     fn write(&mut self, begun: Result<Saving, Error>, session: &mut Session) {
         match begun {
             Ok(saving) => {
@@ -239,7 +240,7 @@ impl Filing {
         }
     }
 
-    /// Asks for another file to write.
+    /// Asks for a path to save under.
     pub fn save_as(&mut self, session: &Session) {
         self.ask(Purpose::SaveAs, session);
     }
@@ -253,7 +254,7 @@ impl Filing {
                 session.is_changed_on_disk = false;
                 session.messages.withdraw("preset");
                 session.messages.say("file", format!("saved: {path}"));
-                // It may have been changed meanwhile.
+                // The document may have been changed during the save.
                 then.into_iter().for_each(|next| self.begin_or_ask(next, session));
             }
             Err(error) => session.messages.complain("file", error),
@@ -275,7 +276,7 @@ impl Filing {
         self.typed = Some(Typed { purpose, text });
     }
 
-    /// What was chosen or typed; nothing, if it was given up.
+    /// Handles the typed path; `None` cancels.
     pub fn finish_typing(&mut self, path: Option<&Path>, session: &mut Session) {
         match (self.typed.take(), path) {
             (Some(typed), Some(path)) => self.chosen(typed.purpose, path, session),
@@ -295,7 +296,8 @@ impl Filing {
     }
 }
 
-/// Where a preset would be saved: its file, or one of its name in the folder that the program was started in.
+/// Returns the path to suggest for a save: the document's file, or a file of the built-in preset's name in the working
+/// directory.
 fn suggested(session: &Session) -> PathBuf {
     let document = &session.document;
     if document.is_built_in() { document.path().with_extension("json") } else { document.path().into() }

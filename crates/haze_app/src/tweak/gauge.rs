@@ -1,4 +1,4 @@
-//! Tells how far the two pictures of a comparison are apart, without holding up a frame.
+//! PSNR of the two compared images, computed on a worker thread so that no frame waits for it.
 
 use eframe::egui;
 use haze_demo::apart::Apart;
@@ -10,12 +10,12 @@ use super::platform::worker::Worker;
 #[derive(Default)]
 pub struct Gauge {
     worker: Option<Worker<Option<Apart>>>,
-    /// Of the last two that stood still.
+    /// PSNR of the last pair of images that was read back.
     pub apart: Option<Apart>,
 }
 
 impl Gauge {
-    /// Takes what has come, and asks for what is missing; once a frame. `is_on`: two pictures are shown.
+    /// Takes finished results and requests missing ones. Call once a frame. `is_on`: two images are shown.
     pub fn update(&mut self, context: &egui::Context, easel: &Easel, wake: &Wake, is_on: bool) {
         easel.want_comparison(is_on);
         if !is_on {
@@ -23,7 +23,7 @@ impl Gauge {
             return;
         }
         if let Some(comparison) = easel.take_comparison() {
-            // Without a thread there are no figures.
+            // If no thread can be started, no figures are shown.
             let wake = wake.clone();
             let worker = self.worker.take().or_else(|| Worker::new("gauge", move || wake.call()).ok());
             if let Some(worker) = &worker {
@@ -38,7 +38,7 @@ impl Gauge {
         }
     }
 
-    /// In words.
+    /// Returns the figures as text for the user.
     pub fn text(&self) -> Option<String> {
         let decibels = |figure: f32| if figure.is_finite() { format!("{figure:.1} dB") } else { "the same".into() };
         let Apart { psnr, edge_psnr } = self.apart?;

@@ -1,4 +1,5 @@
-//! Whether the window's device still works. egui looks after neither: without a handler an error of wgpu's ends the program.
+//! State of the window's wgpu device: lost, or with an error. egui handles neither, and without a handler a wgpu error
+//! ends the program.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -7,19 +8,19 @@ use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, ScreenDescri
 use eframe::{egui, wgpu};
 use haze::Error;
 
-/// What is known of a device. A clone is the same.
+/// State of a device. Clones share it.
 #[derive(Clone, Default)]
 pub struct Health(Arc<Shared>);
 
 #[derive(Default)]
 struct Shared {
     is_lost: AtomicBool,
-    /// The first since it was last asked for.
+    /// First error since the last [`Health::take_error`].
     error: Mutex<Option<Error>>,
 }
 
 impl Health {
-    /// Watches a device; what happens to it is seen in the next frame of the context.
+    /// Registers callbacks on a device. Each event requests a repaint of the context.
     pub fn watch(device: &wgpu::Device, context: &egui::Context) -> Self {
         let health = Self::default();
         let (lost, frame) = (health.clone(), context.clone());
@@ -35,12 +36,12 @@ impl Health {
         health
     }
 
-    /// True once nothing may be asked of the device any more: wgpu and egui panic.
+    /// Returns true once the device is lost. wgpu and egui panic if they use it after that.
     pub fn is_lost(&self) -> bool {
         self.0.is_lost.load(Ordering::SeqCst)
     }
 
-    /// What went wrong since this was asked the last time.
+    /// Returns the first error since the last call.
     pub fn take_error(&self) -> Option<Error> {
         self.lock().take()
     }
@@ -50,7 +51,7 @@ impl Health {
     }
 }
 
-/// An error of wgpu's, on one line.
+/// Formats an error of wgpu as one line.
 fn described(error: &wgpu::Error) -> Error {
     Error::Device(match error {
         wgpu::Error::OutOfMemory { .. } => "out of memory; a smaller window takes less".into(),
@@ -58,7 +59,7 @@ fn described(error: &wgpu::Error) -> Error {
     })
 }
 
-/// Loses the device while this frame is painted, as a driver would. For tests.
+/// Destroys the device while this frame is painted, like a driver reset. For tests.
 pub fn lose_device(ui: &egui::Ui) {
     let callback = Callback::new_paint_callback(ui.ctx().content_rect(), Lose);
     ui.ctx().layer_painter(egui::LayerId::background()).add(callback);
@@ -76,7 +77,7 @@ impl CallbackTrait for Lose {
         _: &mut CallbackResources,
     ) -> Vec<wgpu::CommandBuffer> {
         device.destroy();
-        // Destroyed, but not lost before it is idle and this has been told.
+        // `destroy` alone does not report the loss: wgpu calls the handler when the idle device is polled.
         let _ = device.poll(wgpu::PollType::wait_indefinitely());
         Vec::new()
     }
@@ -90,7 +91,7 @@ mod tests {
     use haze_demo::headless::Headless;
 
     #[test]
-    fn an_error_that_nobody_caught_is_told_once_and_on_one_line() {
+    fn an_uncaught_error_is_reported_once_on_one_line() {
         let gpu = Headless::new().unwrap();
         let health = Health::watch(&gpu.device, &egui::Context::default());
         for _ in 0..3 {
@@ -107,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lost_device_is_known_and_wakes_the_window() {
+    fn a_lost_device_is_reported_and_repaints_the_window() {
         let gpu = Headless::new().unwrap();
         let context = egui::Context::default();
         let health = Health::watch(&gpu.device, &context);

@@ -1,10 +1,10 @@
-//! What is pointed at after the first start, one thing after the other, until it is done or dismissed.
+//! Hints after the first start, shown one at a time. A hint stays until its action is done or it is dismissed.
 
 use eframe::egui::Rect;
 use glam::Vec3;
 use haze::preset::{Preset, PresetSystem};
 
-/// Something worth knowing.
+/// One hint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hint {
     Orbit,
@@ -14,7 +14,8 @@ pub enum Hint {
     Keys,
 }
 
-/// All of them in their order, as they are remembered, and what they say; after the key where one does it.
+/// All hints in their order: the hint, its name in the layout file, and its text. If a key does the action, the text
+/// follows the name of the key.
 pub const HINTS: [(Hint, &str, &str); 5] = [
     (Hint::Orbit, "orbit", "Drag in the picture, or use the middle button or Alt, to go round the smoke."),
     (Hint::Light, "light", "Lights stand in the picture. Click on one, and drag it."),
@@ -23,7 +24,7 @@ pub const HINTS: [(Hint, &str, &str); 5] = [
     (Hint::Keys, "keys", "lists all keys and gestures."),
 ];
 
-/// What hints point at.
+/// Part of the window that a hint points at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     Picture,
@@ -43,12 +44,12 @@ impl Hint {
     }
 }
 
-/// The hints that are still to be shown.
+/// Hints that are still to be shown.
 #[derive(Clone, Debug)]
 pub struct Hints {
     open: Vec<Hint>,
     places: [Rect; 4],
-    /// The camera's place and the smoke, as they were last seen.
+    /// Camera position and systems of the previous frame, to detect changes.
     last: Option<(Vec3, Vec<PresetSystem>)>,
 }
 
@@ -59,35 +60,35 @@ impl Default for Hints {
 }
 
 impl Hints {
-    /// Shows all of them, from the first on.
+    /// Starts with all hints.
     pub fn begin(&mut self) {
         self.open = HINTS.map(|(hint, ..)| hint).into();
         self.last = None;
     }
 
-    /// Shows those that were left.
+    /// Continues with the hints of these names.
     pub fn go_on(&mut self, names: &[String]) {
         let left = HINTS.into_iter().filter(|(_, name, _)| names.iter().any(|left| left == name));
         self.open = left.map(|(hint, ..)| hint).collect();
     }
 
-    /// The names of those that are left.
+    /// Returns the names of the remaining hints.
     pub fn left(&self) -> Vec<String> {
         let left = HINTS.into_iter().filter(|(hint, ..)| self.open.contains(hint));
         left.map(|(_, name, _)| name.to_owned()).collect()
     }
 
-    /// The one that is shown, and where to.
+    /// Returns the current hint and the rectangle that it points at.
     pub fn shown(&self) -> Option<(Hint, Rect)> {
         self.open.first().map(|hint| (*hint, self.places[hint.place() as usize]))
     }
 
-    /// Takes note of where something is.
+    /// Records the rectangle of a part of the window.
     pub fn see(&mut self, place: Place, rect: Rect) {
         self.places[place as usize] = rect;
     }
 
-    /// Goes on to the next; false where none was shown.
+    /// Dismisses the current hint. Returns false if none was shown.
     pub fn dismiss(&mut self) -> bool {
         let is_shown = !self.open.is_empty();
         self.open.drain(..usize::from(is_shown));
@@ -98,7 +99,7 @@ impl Hints {
         self.open.clear();
     }
 
-    /// Takes those away whose thing was just done.
+    /// Removes the hints whose actions were just done.
     pub fn follow(&mut self, preset: &Preset, done: &Doing) {
         if self.open.is_empty() {
             return;
@@ -120,13 +121,13 @@ impl Hints {
     }
 }
 
-/// What is being done in a frame.
-#[allow(clippy::struct_excessive_bools, reason = "each is one thing that is done or not")]
+/// User activity in a frame.
+#[allow(clippy::struct_excessive_bools, reason = "independent flags")]
 pub struct Doing {
-    /// With a button of the pointer, or the wheel.
+    /// A pointer button or the wheel is in use.
     pub presses: bool,
     pub drags_light: bool,
-    /// The sliders that make a look are shown.
+    /// The sliders of the look tab are visible.
     pub sees_look: bool,
     pub finds: bool,
     pub sees_keys: bool,

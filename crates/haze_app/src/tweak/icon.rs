@@ -1,4 +1,4 @@
-//! Buttons with a drawn sign: the fonts that come with the window have none of these.
+//! Buttons with drawn icons, because the fonts of the window lack these symbols.
 
 use eframe::egui::{self, Color32, Id, Pos2, Rect, Response, Sense, Shape, Ui, Vec2, pos2};
 
@@ -12,14 +12,14 @@ pub enum Icon {
     Sheet,
 }
 
-/// A button; `name` is its tooltip, and what who cannot see it is told.
+/// Adds an icon button. `name` is its tooltip and its accessible name.
 pub fn button(ui: &mut Ui, icon: Icon, is_on: bool, name: &str) -> Response {
     let side = ui.spacing().interact_size.y;
     let (_, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::click());
     shown(ui, response, icon, is_on, name)
 }
 
-/// The same over what is there already.
+/// Adds an icon button in `rect`, over existing content.
 pub fn button_over(ui: &Ui, rect: Rect, id: Id, icon: Icon, name: &str) -> Response {
     shown(ui, ui.interact(rect, id, Sense::click()), icon, false, name)
 }

@@ -1,4 +1,4 @@
-//! What outlives the window: unsaved work, for after a crash, and where things were.
+//! Persists window layout and unsaved work.
 
 use std::path::{Path, PathBuf};
 
@@ -13,48 +13,48 @@ use super::platform::clock::{Duration, Instant};
 use super::platform::memory::{recall, remember};
 use super::session::Session;
 
-/// See the module.
+/// Writes the layout and the recovery files.
 pub struct Keeping {
     folder: PathBuf,
     recovery: Recovery,
-    /// What crashed tweakers have left; asked about one by one.
+    /// Unsaved work of crashed instances. The user is asked about one after the other.
     pub abandoned: Vec<Abandoned>,
-    /// Where things were when that was written last, and the time then.
+    /// Layout as it was last written, and when.
     written: Option<(Layout, Instant)>,
 }
 
-/// Where things are is written no oftener.
+/// Least time between two writes of the layout.
 const REMEMBER_EVERY: Duration = Duration::from_secs(1);
 
-/// Where things were. Points.
+/// Window layout. Sizes are in points.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Layout {
-    /// The window's inside.
+    /// Inner size of the window.
     pub window: Option<[f32; 2]>,
-    /// Width of the settings.
+    /// Width of the settings panel.
     pub settings: Option<f32>,
-    /// Height of the shade tree strip.
+    /// Height of the debug view strip.
     pub strip: Option<f32>,
     pub has_strip: Option<bool>,
     /// `dark`, `light` or `system`.
     pub theme: Option<String>,
-    /// Hints that are still to be shown.
+    /// Names of the hints that are still to be shown.
     pub hints: Option<Vec<String>>,
 }
 
-/// Themes by name.
+/// egui themes by their names in the layout file.
 const THEMES: [(&str, egui::ThemePreference); 3] = [
     ("system", egui::ThemePreference::System),
     ("dark", egui::ThemePreference::Dark),
     ("light", egui::ThemePreference::Light),
 ];
 
-/// The name that the layout is remembered under.
+/// Name that the layout is stored under.
 const LAYOUT: &str = "layout";
 
 impl Layout {
-    /// As it was remembered, but what cannot be; with what was wrong with the file.
+    /// Reads the layout without implausible values. The error tells why the file could not be read.
     pub fn recall(folder: &Path) -> (Self, Option<Error>) {
         let (found, error): (Self, _) = recall(folder, LAYOUT);
         let side = |side: Option<f32>, most: f32| side.filter(|side| (1.0..=most).contains(side));
@@ -66,12 +66,12 @@ impl Layout {
         THEMES.into_iter().find(|(name, _)| self.theme.as_deref() == Some(name)).map(|(_, theme)| theme)
     }
 
-    /// All but sizes.
+    /// Returns the fields other than sizes.
     fn chosen(&self) -> (Option<bool>, Option<&str>, Option<&[String]>) {
         (self.has_strip, self.theme.as_deref(), self.hints.as_deref())
     }
 
-    /// Takes note of what the window says about itself.
+    /// Records the present layout of the window.
     pub fn see(&mut self, context: &egui::Context, session: &Session) {
         let shown = context.options(|options| options.theme_preference);
         if self.theme() != Some(shown) {
@@ -88,14 +88,14 @@ impl Layout {
 }
 
 impl Keeping {
-    /// Keeps in a folder, and looks there for what others have left.
+    /// Stores files in `folder`, and searches it for unsaved work of crashed instances.
     pub fn new(folder: PathBuf, session: &mut Session) -> Self {
         let (abandoned, errors) = abandoned(&folder);
         errors.into_iter().for_each(|error| session.messages.complain("recovery", error));
         Self { recovery: Recovery::new(&folder), folder, abandoned, written: None }
     }
 
-    /// Once a frame: writes what is not saved, every few seconds.
+    /// Writes unsaved work every few seconds. Call once a frame.
     pub fn advance(&mut self, session: &mut Session, context: &egui::Context) {
         if let Err(error) = self.recovery.keep(&session.document, Instant::now()) {
             session.messages.complain("recovery", error);
@@ -105,13 +105,13 @@ impl Keeping {
         }
     }
 
-    /// Once a frame: has it written where things are, when that is not what was written last.
+    /// Writes the layout if it has changed. Call once a frame.
     pub fn remember(&mut self, layout: &Layout, filing: &Filing, context: &egui::Context) {
         let now = Instant::now();
         if let Some((written, at)) = &self.written {
             let left = REMEMBER_EVERY.saturating_sub(now.saturating_duration_since(*at));
             if left > Duration::ZERO || written == layout {
-                // Sizes are for the next frame: none is drawn because a window was resized.
+                // A new size is written in a later frame: a resize alone requests no repaint.
                 if written.chosen() != layout.chosen() {
                     context.request_repaint_after(left);
                 }
@@ -123,16 +123,16 @@ impl Keeping {
         filing.remember(move || remember(&folder, LAYOUT, &layout));
     }
 
-    /// Goes on with what was left, or throws it away.
+    /// Restores the unsaved work of a crashed instance, or discards it.
     pub fn answer(&mut self, is_wanted: bool, session: &mut Session) {
         let Some(one) = self.abandoned.pop() else { return };
         if is_wanted {
             let document = Document::recovered(one.preset.clone(), &one.source);
             let written = self.recovery.write(&document);
-            // Those of another file or other names are loaded as soon as this is seen.
+            // Hot reload loads the images of another file or other names as soon as it sees the document.
             let loaded = (session.pictures.of(&document.preset), session.caches.of(&document.preset));
             session.put(document, loaded);
-            // Else it is offered again at the next start.
+            // If it was not written, the old file stays and is offered again at the next start.
             if let Err(error) = written {
                 return session.messages.complain("recovery", error);
             }
@@ -140,15 +140,15 @@ impl Keeping {
         one.discard();
     }
 
-    /// Keeps what is not saved for the next start, now.
+    /// Writes unsaved work now, for the next start.
     pub fn write(&mut self, document: &Document) -> Result<(), Error> {
         self.recovery.write(document)
     }
 
-    /// The end: nothing is left but where things were.
+    /// Removes the recovery files and writes the layout. Call at exit.
     pub fn finish(self, layout: &Layout) {
         self.recovery.finish();
-        // The window is gone: there is no one to tell.
+        // The window is closed, so nothing can show the error.
         let _ = remember(&self.folder, LAYOUT, layout);
     }
 }
@@ -163,7 +163,7 @@ mod tests {
     use crate::tweak::window::Start;
 
     #[test]
-    fn where_things_are_is_written_when_it_changes_and_not_only_at_the_end() {
+    fn the_layout_is_written_when_it_changes_and_not_only_at_exit() {
         let folder = tempfile::tempdir().unwrap();
         let mut session = Session::open("column".as_ref(), None).unwrap();
         let keeping = Some(Keeping::new(folder.path().into(), &mut session));

@@ -1,4 +1,4 @@
-//! Which lights are selected, alone or silent: how they are looked at, no part of the preset.
+//! View state of lights: selection, mute, solo, turn. It is not part of the preset.
 
 use std::f32::consts::TAU;
 
@@ -6,36 +6,36 @@ use glam::{Quat, Vec3};
 use haze::frame::MAX_LIGHTS;
 use haze::{Light, LightKind};
 
-/// What is remembered of the lights of a preset, by their places.
+/// View state of a preset's lights, by their indices.
 #[derive(Clone, Debug, Default)]
 pub struct ShownLights {
     pub selected: Option<usize>,
-    /// The light that leads, for each system, once it is chosen.
+    /// Key light of each system, once it is chosen.
     keys: Vec<Option<usize>>,
-    /// All lights are sent round.
+    /// Set while all lights rotate about the smoke.
     pub turn: Option<Turn>,
     entries: Vec<Entry>,
 }
 
-/// The lights go round a vertical axis.
+/// Rotation of the lights about a vertical axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turn {
-    /// A point of the axis.
+    /// Point on the axis.
     pub middle: Vec3,
-    /// Radians from where the preset has them.
+    /// Angle from the positions in the preset, radians.
     pub angle: f32,
 }
 
-/// Seconds of a turn.
+/// Duration of one turn, seconds.
 const TURN: f32 = 5.0;
 
 impl Turn {
-    /// Goes on by the seconds that have passed.
+    /// Advances by the elapsed seconds.
     pub fn advance(&mut self, seconds: f32) {
         self.angle = (self.angle + seconds * TAU / TURN).rem_euclid(TAU);
     }
 
-    /// The light as it stands by now.
+    /// Returns a light rotated by the present angle.
     pub fn turned(&self, light: &Light) -> Light {
         let turn = Quat::from_rotation_y(self.angle);
         let position = self.middle + turn * (light.position - self.middle);
@@ -43,7 +43,7 @@ impl Turn {
     }
 }
 
-/// What a light is called wherever lights are listed, by its place among them.
+/// Returns the display name of a light, which contains its index plus one.
 pub fn name_of(index: usize, light: &Light) -> String {
     let number = index + 1;
     match light.kind {
@@ -52,7 +52,7 @@ pub fn name_of(index: usize, light: &Light) -> String {
     }
 }
 
-/// A light to be added, about as bright as others of its kind.
+/// Returns a new light. It has the intensity of the first light of the same kind, if there is one.
 pub fn fresh(kind: LightKind, lights: &[Light]) -> Light {
     let usual = if kind == LightKind::Directional { 1.0 } else { 10.0 };
     let alike = lights.iter().find(|light| light.kind == kind);
@@ -61,27 +61,27 @@ pub fn fresh(kind: LightKind, lights: &[Light]) -> Light {
 
 #[derive(Clone, Copy, Debug)]
 struct Entry {
-    /// As it was when it was last looked at: to know it again when others come and go.
+    /// The light as it was last seen, to recognise it when lights are added or removed.
     light: Light,
     marks: Marks,
 }
 
-/// What is marked of a light.
+/// Mute and solo flags of a light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Marks {
-    /// Left out of the picture.
+    /// The light is left out of the image.
     pub is_muted: bool,
-    /// If any light is, only those are in the picture.
+    /// If any light is solo, only solo lights are in the image.
     pub is_solo: bool,
 }
 
 impl ShownLights {
-    /// Keeps up with what happened to the lights, by undo or another preset.
+    /// Follows changes of the list of lights, by undo or by another preset.
     pub fn follow(&mut self, lights: &[Light]) {
         let entry = |&light| Entry { light, marks: Marks::default() };
         let (old, new) = (self.entries.len(), lights.len());
         if old != new {
-            // What is alike at both ends stays what it was.
+            // Lights that are equal at either end of the list keep their state.
             let pairs = self.entries.iter().zip(lights);
             let start = pairs.take_while(|(entry, light)| entry.light == **light).count();
             let pairs = self.entries[start..].iter().rev().zip(lights[start..].iter().rev());
@@ -98,13 +98,13 @@ impl ShownLights {
         }
     }
 
-    /// What is known by its place has another, or none.
+    /// Gives all stored indices their new values; `None` removes an index.
     fn renumber(&mut self, place: impl Fn(usize) -> Option<usize>) {
         self.selected = self.selected.and_then(&place);
         self.keys.iter_mut().for_each(|key| *key = key.and_then(&place));
     }
 
-    /// The light that leads a system: chosen once, and kept as long as it is there.
+    /// Returns the key light of a system. It is chosen once and kept as long as it exists.
     pub fn key(&mut self, system: usize, choose: impl FnOnce() -> Option<usize>) -> Option<usize> {
         self.keys.resize(self.keys.len().max(system + 1), None);
         let key = &mut self.keys[system];
@@ -112,33 +112,33 @@ impl ShownLights {
         *key
     }
 
-    /// The light that leads a system, once it is chosen.
+    /// Returns the key light of a system if it is already chosen.
     pub fn known_key(&self, system: usize) -> Option<usize> {
         self.keys.get(system).copied().flatten()
     }
 
-    /// Chooses leading lights anew: the preset is another.
+    /// Forgets the key lights, so that they are chosen anew for another preset.
     pub fn forget_keys(&mut self) {
         self.keys.clear();
     }
 
-    /// The marks of a light, to be changed.
+    /// Returns the flags of a light, for changing them.
     pub fn marks(&mut self, index: usize) -> Option<&mut Marks> {
         self.entries.get_mut(index).map(|entry| &mut entry.marks)
     }
 
-    /// Whether a light is in the picture.
+    /// Returns true if a light is in the image.
     pub fn is_shown(&self, index: usize) -> bool {
         let has_solo = self.has_solo();
         self.entries.get(index).is_none_or(|Entry { marks, .. }| if has_solo { marks.is_solo } else { !marks.is_muted })
     }
 
-    /// The lights that are in the picture, as they are there.
+    /// Returns the lights that are in the image, turned.
     pub fn shown(&self, lights: &[Light]) -> Vec<Light> {
         (0..).zip(lights).filter(|(index, _)| self.is_shown(*index)).map(|(_, light)| self.turned(light)).collect()
     }
 
-    /// The names of those that are in the picture, in their order there.
+    /// Returns the names of the lights that are in the image, in the same order.
     pub fn shown_names(&self, lights: &[Light]) -> Vec<String> {
         let mut of_these = self.clone();
         of_these.follow(lights);
@@ -146,11 +146,12 @@ impl ShownLights {
         shown.map(|(index, light)| name_of(index, light)).collect()
     }
 
-    /// The same of another preset's lights, which are known by their places, and by what is alike at both ends of the lists.
+    /// Returns the lights of another preset that are in its image. They are matched by index, and by equality at the
+    /// ends of the lists.
     pub fn shown_of(&self, others: &[Light]) -> Vec<Light> {
         let mut of_others = self.clone();
         of_others.follow(others);
-        // One that is alone and not there leaves none.
+        // If the solo light does not exist there, no light is in the image.
         if self.has_solo() && !of_others.has_solo() { Vec::new() } else { of_others.shown(others) }
     }
 
@@ -158,12 +159,12 @@ impl ShownLights {
         self.entries.iter().any(|entry| entry.marks.is_solo)
     }
 
-    /// A light where the turn has taken it.
+    /// Returns a light as the turn has moved it.
     pub fn turned(&self, light: &Light) -> Light {
         self.turn.map_or(*light, |turn| turn.turned(light))
     }
 
-    /// Adds a light at a place in the list, and selects it; not beyond what a frame may have.
+    /// Inserts a light and selects it, unless there are already [`MAX_LIGHTS`].
     pub fn insert(&mut self, lights: &mut Vec<Light>, index: usize, light: Light) {
         if lights.len() < MAX_LIGHTS {
             self.follow(lights);
@@ -174,14 +175,14 @@ impl ShownLights {
         }
     }
 
-    /// Adds a twin of a light after it, and selects it.
+    /// Inserts a copy of a light after it, and selects the copy.
     pub fn duplicate(&mut self, lights: &mut Vec<Light>, index: usize) {
         if let Some(&light) = lights.get(index) {
             self.insert(lights, index + 1, light);
         }
     }
 
-    /// Takes a light away; the next one is not selected in its place.
+    /// Removes a light. If it was selected, none is selected afterwards.
     pub fn remove(&mut self, lights: &mut Vec<Light>, index: usize) {
         if index < lights.len() {
             self.follow(lights);
@@ -205,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn marks_stay_with_their_lights() {
+    fn mute_and_solo_stay_with_their_lights() {
         let mut all = lights(&[1.0, 2.0, 3.0]);
         let mut shown = ShownLights::default();
         shown.follow(&all);
@@ -215,13 +216,13 @@ mod tests {
         assert_eq!((muted(&shown), shown.selected), (vec![0], Some(1)));
         shown.insert(&mut all, 0, Light::default());
         assert_eq!((muted(&shown), shown.selected), (vec![1], Some(0)));
-        // Undone elsewhere: the one that was added goes, then the first that was there comes back.
+        // An undo elsewhere: the added light disappears, then the former first light comes back.
         shown.follow(&lights(&[2.0, 3.0]));
         assert_eq!((muted(&shown), shown.selected), (vec![0], None));
         shown.selected = Some(0);
         shown.follow(&lights(&[1.0, 2.0, 3.0]));
         assert_eq!((muted(&shown), shown.selected), (vec![1], Some(1)));
-        // A twin is told from the one it was made of.
+        // A copy is distinguished from its original.
         let mut twins = lights(&[1.0, 2.0, 3.0]);
         shown.duplicate(&mut twins, 1);
         shown.remove(&mut twins, 1);
@@ -229,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn the_light_that_leads_stays_the_one_it_was() {
+    fn the_key_light_stays_the_same_light() {
         let mut all = lights(&[1.0, 2.0, 3.0]);
         let mut shown = ShownLights::default();
         shown.follow(&all);
@@ -243,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn names_tell_kind_and_place_of_what_is_in_the_picture() {
+    fn names_tell_kind_and_index_of_the_lights_in_the_image() {
         let mut all = lights(&[1.0, 2.0, 3.0]);
         (all[0].kind, all[2].kind) = (LightKind::Directional, LightKind::Spot);
         let mut shown = ShownLights::default();
@@ -254,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn one_alone_silences_the_others() {
+    fn a_solo_light_mutes_the_others() {
         let all = lights(&[1.0, 2.0, 3.0]);
         let mut shown = ShownLights::default();
         shown.follow(&all);
@@ -265,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn the_lights_of_another_preset_are_seen_in_the_same_way() {
+    fn mute_and_turn_apply_to_the_lights_of_another_preset() {
         let all = lights(&[1.0, 2.0, 3.0]);
         let mut shown = ShownLights::default();
         shown.follow(&all);
@@ -273,7 +274,7 @@ mod tests {
         shown.marks(1).unwrap().is_muted = true;
         let turned = |of: &[f32]| lights(of).iter().map(|light| shown.turned(light)).collect::<Vec<_>>();
         assert_eq!(shown.shown_of(&lights(&[5.0, 6.0, 7.0])), turned(&[5.0, 7.0]));
-        // Without the first, which was added since.
+        // The first light was added since, so it is missing here.
         assert_eq!(shown.shown_of(&lights(&[2.0, 3.0])), turned(&[3.0]));
         let mut alone = shown.clone();
         alone.marks(0).unwrap().is_solo = true;
@@ -283,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_keeps_height_and_distance_and_closes() {
+    fn a_full_turn_keeps_height_and_distance_and_ends_at_the_start() {
         let light =
             Light { position: Vec3::new(3.0, 2.0, 1.0), direction: Vec3::new(0.5, -1.0, 0.2), ..Light::default() };
         let mut turn = Turn { middle: Vec3::new(1.0, 4.0, 0.0), angle: 0.0 };
@@ -302,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn no_more_lights_than_a_frame_takes() {
+    fn no_more_lights_are_added_than_a_frame_takes() {
         let (mut all, mut shown) = (Vec::new(), ShownLights::default());
         for _ in 0..MAX_LIGHTS + 2 {
             shown.insert(&mut all, 0, Light::default());

@@ -1,15 +1,16 @@
-//! The few controls that make a look: what an artist calls them, and what they move.
+//! Controls of the look tab: their names for artists, and the settings that they change.
 
 use super::made::{Made, SOFTNESS, THICKNESS, WIND};
 use super::reach::Usual;
 
-/// A control of the first panel.
+/// Control of the look tab.
 pub struct Control {
     pub name: &'static str,
     pub of: Of,
 }
 
-/// What a control moves: a field by its path from there, as far as that makes sense, or what several of them make.
+/// Target of a control: a field by its relative path with the usual range of its slider, or a value made of several
+/// fields.
 #[derive(Clone, Copy)]
 pub enum Of {
     System(&'static str, Usual),
@@ -26,7 +27,7 @@ const fn made(made: &'static Made) -> Control {
     control(made.name, Of::Made(made))
 }
 
-/// All of them, in their order.
+/// All controls, in the order of the tab.
 pub const LOOK: &[Control] = &[
     made(&THICKNESS),
     control("size at birth", Of::System("emitter.radius_start", Some((0.0, 1.5)))),
@@ -43,7 +44,7 @@ pub const LOOK: &[Control] = &[
 ];
 
 impl Control {
-    /// What it moves of a system, or of the light that leads it, by its path in the preset.
+    /// Returns the path of the target in the preset. `key` is the index of the system's key light.
     pub fn path(&self, system: usize, key: Option<usize>) -> Option<String> {
         Some(match self.of {
             Of::System(path, _) => format!("systems[{system}].{path}"),

@@ -1,19 +1,19 @@
-//! What several settings make together: values that a look is made of, and that are no settings of their own.
+//! Values that are computed from one or several settings, such as thickness. They are no settings of their own.
 
 use std::ops::RangeInclusive;
 
 use glam::Vec3;
 use haze::preset::PresetSystem;
 
-/// A value of a system.
+/// Computed value of a system.
 pub struct Made {
     pub name: &'static str,
     pub tooltip: &'static str,
     pub unit: &'static str,
-    /// What it may be, and what is usual.
+    /// Valid range, and the usual range for the slider.
     pub range: RangeInclusive<f32>,
     pub usual: (f32, f32),
-    /// The settings that make it, from the system on.
+    /// Paths of the settings it is computed from, relative to the system.
     pub of: &'static [&'static str],
     pub get: fn(&PresetSystem) -> f32,
     pub set: fn(&mut PresetSystem, f32),
@@ -21,7 +21,7 @@ pub struct Made {
 
 pub const THICKNESS: Made = Made {
     name: "thickness",
-    tooltip: "How much one full-grown sprite covers: amount, opacity and boost together.",
+    tooltip: "Coverage of one full-grown sprite: amount x opacity x boost.",
     unit: "",
     range: 0.001..=16.0,
     usual: (0.001, 3.0),
@@ -32,7 +32,7 @@ pub const THICKNESS: Made = Made {
 
 pub const WIND: Made = Made {
     name: "wind",
-    tooltip: "How fast the air moves. Its direction is a setting of the emitter; from stillness it blows to the right.",
+    tooltip: "Speed of the air. The direction is a setting of the emitter; from 0 it blows along +x.",
     unit: "m/s",
     range: 0.0..=20.0,
     usual: (0.0, 4.0),
@@ -53,12 +53,12 @@ pub const SOFTNESS: Made = Made {
 };
 
 impl Made {
-    /// What it is called among the paths of settings.
+    /// Returns the path of the value, in the form of a setting's path.
     pub fn path(&self, system: usize) -> String {
         format!("systems[{system}].{}", self.name)
     }
 
-    /// The system and the value that such a path names.
+    /// Returns the index of the system and the value that a path names.
     pub fn find(path: &str) -> Option<(usize, Self)> {
         let (system, name) = path.strip_prefix("systems[")?.split_once("].")?;
         let made = [THICKNESS, WIND, SOFTNESS].into_iter().find(|made| made.name == name)?;
@@ -70,15 +70,15 @@ fn thickness(system: &PresetSystem) -> f32 {
     system.emitter.amount * system.settings.accumulate.opacity * system.settings.boost
 }
 
-/// Amount and boost take equal shares, as far as they go; opacity takes what they cannot.
+/// Sets the product. Amount and boost change by the same factor within their ranges; opacity takes the rest.
 fn set_thickness(system: &mut PresetSystem, thickness: f32) {
-    // The field, its most, and its share of what is to be gained.
+    // Field, its upper limit, and the exponent of its share in the remaining factor.
     let mut of = [
         (&mut system.emitter.amount, 1.0, 0.5),
         (&mut system.settings.boost, 16.0, 1.0),
         (&mut system.settings.accumulate.opacity, 1.0, 1.0),
     ];
-    // What is nothing cannot be multiplied.
+    // A factor of 0 cannot be scaled.
     of.iter_mut().for_each(|(value, ..)| **value = value.max(1.0e-3));
     for at in 0..of.len() {
         let product: f32 = of.iter().map(|(value, ..)| **value).product();
@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn thickness_is_what_it_is_set_to_as_far_as_it_goes() {
+    fn thickness_reaches_its_set_value_within_its_range() {
         let mut system = PresetSystem::default();
         for wanted in [0.001, 0.05, 0.3, 1.0, 4.0, 15.0, 0.2] {
             set_thickness(&mut system, wanted);
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn a_little_more_moves_amount_and_boost_alike() {
+    fn a_small_increase_scales_amount_and_boost_equally() {
         let mut system = PresetSystem::default();
         let before = system.clone();
         set_thickness(&mut system, 1.21 * thickness(&before));

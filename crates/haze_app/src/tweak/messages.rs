@@ -1,31 +1,31 @@
-//! What the window has to say: one line at a time, and each thing once.
+//! Messages at the bottom of the window: one line each, and no duplicates.
 
 use super::platform::clock::{Duration, Instant};
 
-/// A line at the bottom of the window.
+/// Message of one line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Message {
     pub text: String,
-    /// It holds until it is mended; else it goes by itself.
+    /// An error stays until its cause is gone. Other messages time out.
     pub is_error: bool,
-    /// What it is about: a message about the same thing takes its place, and can be taken back.
+    /// Subject. A new message replaces the one about the same subject, and [`Messages::withdraw`] removes it.
     about: &'static str,
     since: Instant,
 }
 
-/// The messages that still hold, the latest last.
+/// Current messages, the latest last.
 #[derive(Default)]
 pub struct Messages(Vec<Message>);
 
-/// How long what is no error is shown, and how long at least, whatever is done.
+/// Longest and shortest time for which a message that is no error is shown; user activity ends it in between.
 const SHOWN: Duration = Duration::from_secs(8);
 const READ: Duration = Duration::from_secs(1);
 
-/// Most characters of a message.
+/// Longest message, characters.
 const LONGEST: usize = 600;
 
-/// A text from outside on one line of at most so many characters: what is too much goes from its middle, for paths and reasons
-/// end with what matters.
+/// Returns a text as one line of at most `most` characters. The middle is cut out, because paths and reasons end with
+/// the important part.
 pub fn short(text: &str, most: usize) -> String {
     let mut line: Vec<_> = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     if line.len() > most {
@@ -35,7 +35,7 @@ pub fn short(text: &str, most: usize) -> String {
     line.into_iter().collect()
 }
 
-/// Most that are kept.
+/// Largest number of messages that are kept.
 const MOST: usize = 20;
 
 impl Messages {
@@ -47,12 +47,12 @@ impl Messages {
         self.push(&text.to_string(), true, about);
     }
 
-    /// What was wrong is mended.
+    /// Removes the message about a subject whose cause is gone.
     pub fn withdraw(&mut self, about: &'static str) {
         self.0.retain(|message| message.about != about);
     }
 
-    /// The latest was read.
+    /// Removes the latest message.
     pub fn put_away(&mut self) {
         self.0.pop();
     }
@@ -61,8 +61,8 @@ impl Messages {
         self.0.last()
     }
 
-    /// Once a frame: takes away what has been read. `acts`: something is done in the window. Gives the time after which there is
-    /// something to take away.
+    /// Removes messages that have timed out. Call once a frame. `acts`: the user is doing something. Returns the time
+    /// until the next message times out.
     pub fn advance(&mut self, now: Instant, acts: bool) -> Option<Duration> {
         let age = |message: &Message| now.saturating_duration_since(message.since);
         let most = if acts { READ } else { SHOWN };
@@ -72,7 +72,7 @@ impl Messages {
     }
 
     fn push(&mut self, text: &str, is_error: bool, about: &'static str) {
-        // Names may have anything in them.
+        // Names in the text may contain control characters and have any length.
         let message = Message { text: short(text, LONGEST), is_error, about, since: Instant::now() };
         let is_same = |other: &Message| (&other.text, other.is_error, other.about) == (&message.text, is_error, about);
         if is_error && self.0.iter().any(is_same) {
@@ -90,7 +90,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_said_is_one_line_and_not_endless() {
+    fn a_message_is_one_line_of_limited_length() {
         let mut messages = Messages::default();
         messages.say("file", format!("a\nb{}: it is full", "c".repeat(4000)));
         let text = messages.latest().unwrap().text.clone();
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn a_thing_is_said_once_and_taken_back() {
+    fn a_message_is_shown_once_and_can_be_withdrawn() {
         let mut messages = Messages::default();
         for _ in 0..3 {
             messages.complain("ramp", "broken");
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn what_informs_goes_by_itself_or_when_something_is_done_and_errors_stay() {
+    fn information_times_out_or_ends_with_activity_and_errors_stay() {
         let mut messages = Messages::default();
         messages.complain("ramp", "broken");
         messages.say("file", "saved");

@@ -1,4 +1,4 @@
-//! `haze tweak`: a window to light smoke in.
+//! `haze tweak`: interactive window for lighting smoke.
 
 mod action;
 mod angles;
@@ -74,19 +74,19 @@ pub struct Arguments {
     /// A built-in preset's name (see `haze preset list`), or the path of a JSON file.
     #[arg(default_value = "column")]
     preset: PathBuf,
-    /// Size of the window, points; as it was the last time if not given, or 1280x800, 1000x640 where the CPU draws.
+    /// Size of the window in points. Default: the last size, or 1280x800, or 1000x640 where the CPU draws.
     #[arg(long, value_name = "WxH", value_parser = parse_size, allow_hyphen_values = true)]
     size: Option<UVec2>,
     /// Sets a field of the preset, as in `haze render`. May be given more than once.
     #[arg(long, value_name = "FIELD=VALUE", value_parser = parse_assignment)]
     set: Vec<(String, String)>,
-    /// A folder like haze's own `shaders`, followed as it changes: its files take the place of those of the same names that the
-    /// program has in it. Started by `cargo run`, the program follows its checkout's.
+    /// Folder with shaders that replace the built-in ones of the same file names, reloaded when they change. A program
+    /// started by `cargo run` uses the `shaders` folder of its checkout.
     #[arg(long, value_name = "DIR")]
     shaders: Option<PathBuf>,
     #[command(flatten)]
     assets: AssetsArguments,
-    /// Write a picture of the window once it stands still, and close it.
+    /// Write an image of the window once it has settled, then close it.
     #[arg(long, value_name = "FILE.png")]
     screenshot: Option<PathBuf>,
 }
@@ -115,7 +115,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         Some(folder) => assets::shaders(folder).map(|_| ShaderFolder::Given(folder.clone()))?,
         None => ShaderFolder::of_checkout(),
     };
-    // A picture of the window is the same wherever it is taken.
+    // A screenshot must not depend on the stored layout, so that it is the same on every machine.
     let state = folders::state(|name| std::env::var_os(name)).filter(|_| arguments.screenshot.is_none());
     let (layout, error) = state.as_ref().map_or_else(Default::default, |folder| Layout::recall(folder));
     if let Some(error) = error {

@@ -1,4 +1,4 @@
-//! What a window costs while it is used, and while it is not.
+//! Cost of the window while it is used and while it is idle.
 
 use std::time::Instant;
 
@@ -10,7 +10,7 @@ use image::RgbaImage;
 use super::testing::{picture, window};
 use super::window::Window;
 
-/// A window whose picture has this size.
+/// Opens a window whose viewport has this size.
 fn window_around(size: Vec2) -> Harness<'static, Window> {
     let harness = window("column", Vec2::new(1000.0, 640.0), Theme::Dark);
     let room = Vec2::new(1000.0, 640.0) - harness.get_by_label("viewport").rect().size();
@@ -23,14 +23,15 @@ fn slider(harness: &Harness<'_, Window>, name: &str) -> Rect {
     rows.find(|node| node.accesskit_node().role() == Role::Slider).unwrap().rect()
 }
 
-/// Milliseconds that the CPUs have worked for this process, all threads together: what a busy machine does not change.
+/// Returns the CPU time of this process over all threads, milliseconds. Other load on the machine does not change it.
 fn worked() -> f64 {
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
     let fields = stat.rsplit_once(')').map_or("", |(_, fields)| fields).split_whitespace().skip(11).take(2);
     fields.map(|ticks| 10.0 * ticks.parse::<f64>().unwrap()).sum()
 }
 
-/// Drags a slider to and fro; frames a second, the first of them aside, and how coarse the picture became.
+/// Drags a slider back and forth. Returns the frames per second after ten frames of warm-up, and the largest divisor of
+/// the resolution.
 fn drag(harness: &mut Harness<'_, Window>, frames: usize) -> (f64, u32) {
     let rect = slider(harness, "thickness");
     let at = |frame: usize| Pos2::new(rect.left() + 8.0 + (frame * 7 % 90) as f32, rect.center().y);
@@ -52,9 +53,9 @@ fn drag(harness: &mut Harness<'_, Window>, frames: usize) -> (f64, u32) {
     (frames as f64 / seconds, coarsest)
 }
 
-/// Its figures are those of the machine, which may be busy.
+/// The result depends on the machine, which may be busy.
 #[test]
-#[ignore = "measures; run it alone"]
+#[ignore = "measurement; run it alone"]
 fn a_slider_is_dragged_at_15_frames_a_second() {
     for size in [vec2(640.0, 360.0), vec2(1280.0 - 330.0, 800.0 - 190.0)] {
         let mut harness = window_around(size);
@@ -66,7 +67,7 @@ fn a_slider_is_dragged_at_15_frames_a_second() {
 }
 
 #[test]
-fn nothing_is_drawn_or_asked_for_while_nothing_happens() {
+fn an_idle_window_draws_nothing_and_requests_no_repaint() {
     let mut harness = window("column", Vec2::new(700.0, 480.0), Theme::Dark);
     let drawn = |harness: &mut Harness<'_, Window>| {
         picture(harness);
@@ -76,7 +77,7 @@ fn nothing_is_drawn_or_asked_for_while_nothing_happens() {
     harness.run_steps(10);
     let before = drawn(&mut harness);
     assert!(!harness.ctx.has_requested_repaint());
-    // Nor while the pointer goes over panels, which light up.
+    // Widgets under a moving pointer are highlighted, but no smoke is drawn.
     let rect = slider(&harness, "exposure");
     for step in 0..6 {
         harness.hover_at(rect.left_top() + vec2(8.0 * step as f32, -6.0 * step as f32));
@@ -87,10 +88,10 @@ fn nothing_is_drawn_or_asked_for_while_nothing_happens() {
 }
 
 #[test]
-fn a_picture_that_was_coarse_is_whole_again_when_all_is_let_go() {
+fn the_full_resolution_returns_when_everything_is_released() {
     let mut harness = window("column", Vec2::new(700.0, 480.0), Theme::Dark);
     let whole = picture(&mut harness);
-    // Where there is nothing to be changed: in the status bar.
+    // The status bar, where a drag changes nothing.
     let at = Pos2::new(350.0, 476.0);
     harness.drag_at(at);
     harness.step();

@@ -1,4 +1,4 @@
-//! Opens the window; and again, with all that was done in it, when the graphics device is lost.
+//! Opens the window, and opens it again with the same session when the graphics device is lost.
 
 use eframe::{egui, egui_wgpu, wgpu};
 use haze::Error;
@@ -10,31 +10,31 @@ use super::release::split_at_release;
 use super::surface::paced;
 use super::window::{Start, Window};
 
-/// A device that is lost twice in this time is not tried a third time.
+/// Two device losses within this time end the program.
 const TOO_SOON: Duration = Duration::from_secs(10);
 
-/// Names the frames, counted over all windows, in which the device is lost: "5,9". For tests.
+/// Environment variable with the frames, counted over all windows, in which the device is destroyed: "5,9". For tests.
 const LOSE_DEVICE: &str = "HAZE_TEST_LOSE_DEVICE";
 
-/// What draws where there can be no window.
+/// Alternative that error messages name where no window can be opened.
 const INSTEAD: &str = "`haze render` draws to files without one";
 
-/// What outlives a window.
+/// State that is kept while one window closes and the next opens.
 struct Kept {
-    /// Not here while a window has it.
+    /// `None` while a window owns it.
     start: Option<Start>,
-    /// What egui remembers: the sizes of panels, what is folded.
+    /// Memory of egui: sizes of panels, collapsed sections.
     memory: Option<egui::Memory>,
-    /// Where the window is to be, and how large.
+    /// Position and size of the window.
     place: egui::ViewportBuilder,
     is_lost: bool,
-    /// Frames that were shown.
+    /// Number of frames that were shown.
     frames: u32,
-    /// Those in which the device is to be lost.
+    /// Frames in which the device is destroyed.
     lose_in: Vec<u32>,
 }
 
-/// Shows a session in a window until the window is closed. `size`: points; the adapter chooses if none.
+/// Shows a session in a window until the user closes it. `size` is in points; `None` leaves it to the adapter.
 pub fn open(start: Start, size: Option<egui::Vec2>) -> Result<(), Error> {
     check_display()?;
     let lose_in = std::env::var(LOSE_DEVICE).unwrap_or_default();
@@ -48,7 +48,7 @@ pub fn open(start: Start, size: Option<egui::Vec2>) -> Result<(), Error> {
         if !std::mem::take(&mut kept.is_lost) {
             return match last_loss {
                 Some(_) => {
-                    opened.map_err(|error| give_up(&mut kept, &format!("it was lost, and is not there again: {error}")))
+                    opened.map_err(|error| give_up(&mut kept, &format!("it was lost and cannot be reopened: {error}")))
                 }
                 None => opened,
             };
@@ -61,7 +61,7 @@ pub fn open(start: Start, size: Option<egui::Vec2>) -> Result<(), Error> {
     }
 }
 
-/// The usual size of a window, points, and that where the CPU draws it.
+/// Default size of a window in points, and the size where the CPU draws.
 const USUAL: egui::Vec2 = egui::Vec2::new(1280.0, 800.0);
 const SOFTWARE: egui::Vec2 = egui::Vec2::new(1000.0, 640.0);
 
@@ -90,12 +90,12 @@ fn open_once(kept: &mut Kept, is_sized: bool) -> Result<(), Error> {
     eframe::run_native("haze", options, app).map_err(no_window)
 }
 
-/// A window while its device works.
+/// App of eframe around the window, while the device works.
 struct Shown<'a> {
     window: Option<Window>,
     health: Health,
     kept: &'a mut Kept,
-    /// What happened after a button was let go, for the next frame.
+    /// Events after the release of a button, kept for the next frame.
     later: Vec<egui::Event>,
 }
 
@@ -118,7 +118,7 @@ impl eframe::App for Shown<'_> {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
-        // egui panics when it has something to upload to a device that is lost: a frame without anything in it has not.
+        // egui panics if it uploads to a lost device. An empty frame uploads nothing.
         if self.kept.is_lost {
             return;
         }
@@ -130,7 +130,7 @@ impl eframe::App for Shown<'_> {
     }
 
     fn on_exit(&mut self) {
-        // With a lost device it goes on.
+        // After a device loss the session continues in another window.
         if !self.kept.is_lost {
             self.window.iter_mut().for_each(eframe::App::on_exit);
         }
@@ -143,7 +143,7 @@ impl Drop for Shown<'_> {
     }
 }
 
-/// The same place, for another window.
+/// Returns a builder with the position and size of this window.
 fn place(window: &egui::ViewportInfo) -> egui::ViewportBuilder {
     let mut place = egui::ViewportBuilder::default()
         .with_maximized(window.maximized.unwrap_or_default())
@@ -153,30 +153,30 @@ fn place(window: &egui::ViewportInfo) -> egui::ViewportBuilder {
     place
 }
 
-/// Saves what was not saved, for the next start, and says why there is no window any more.
+/// Writes unsaved work to the recovery file, and returns the error that ends the program.
 fn give_up(kept: &mut Kept, reason: &str) -> Error {
     let start = kept.start.as_mut().filter(|start| start.session.document.is_dirty());
     let Some(Start { session, keeping, .. }) = start else {
-        return Error::Device(format!("{reason}; nothing was unsaved"));
+        return Error::Device(format!("{reason}; there was no unsaved work"));
     };
     let saved = match keeping {
         Some(keeping) => keeping.write(&session.document).map_err(|error| error.to_string()),
-        None => Err("no folder for it; expected HOME to be set".into()),
+        None => Err("there is no folder for it; set HOME".into()),
     };
     Error::Device(match saved {
-        Ok(()) => format!("{reason}; what was not saved is kept for the next start"),
-        Err(error) => format!("{reason}; what was not saved could not be kept: {error}"),
+        Ok(()) => format!("{reason}; unsaved work is kept for the next start"),
+        Err(error) => format!("{reason}; unsaved work could not be kept: {error}"),
     })
 }
 
-/// The fastest adapter, or the one that WGPU_ADAPTER_NAME and WGPU_BACKEND choose.
+/// Returns the setup for the fastest adapter, or for the one that WGPU_ADAPTER_NAME and WGPU_BACKEND name.
 fn setup() -> egui_wgpu::WgpuSetup {
     let mut setup = egui_wgpu::WgpuSetupCreateNew::without_display_handle();
     setup.device_descriptor = std::sync::Arc::new(device);
     setup.into()
 }
 
-/// The device of a window: measured where the adapter can do that.
+/// Returns the descriptor of a window's device, with timestamp queries if the adapter has them.
 pub fn device(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     let timing = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES;
     wgpu::DeviceDescriptor {
@@ -187,7 +187,7 @@ pub fn device(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     }
 }
 
-/// Says so where there is nothing to open a window on, better than a window library does.
+/// Returns an error if there is no display. Its text is clearer than that of the windowing library.
 fn check_display() -> Result<(), Error> {
     let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     if !cfg!(target_os = "linux") || ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].into_iter().any(is_set) {
@@ -197,7 +197,7 @@ fn check_display() -> Result<(), Error> {
     Err(Error::NoDevice(format!("{reason}; {INSTEAD}, and under `xvfb-run` a window opens on none")))
 }
 
-/// Why there is no window, and what to do instead.
+/// Converts an error of eframe to one that tells the reason and a remedy.
 fn no_window(error: eframe::Error) -> Error {
     match error {
         eframe::Error::AppCreation(error) => match error.downcast::<Error>() {

@@ -1,4 +1,4 @@
-//! What the picture costs, and the scale that holds a budget.
+//! GPU time of the image, and the accumulation scale that keeps it within a budget.
 
 use std::collections::VecDeque;
 
@@ -9,31 +9,31 @@ use haze_author::preset::Tooltips;
 
 use super::easel::{Easel, Figures};
 
-/// Pictures that are remembered.
+/// Number of images whose times are kept.
 pub const REMEMBERED: usize = 200;
 
-/// Frames that a result may take to come after a picture was drawn.
+/// Number of frames for which a result may still arrive after the image was drawn.
 const LATE: u32 = 8;
 
-/// What the panel of this name shows. Nothing is measured unless it is seen or holds a budget.
+/// Data of the performance tab. Nothing is measured unless the tab is visible or a budget is held.
 pub struct Performance {
-    /// What the smoke may cost.
+    /// Budget for the smoke.
     pub budget: Budget,
-    /// The budget is held: by the scale of what is shown, not of the preset.
+    /// The budget is enforced through the scale of the shown image. The preset does not change.
     pub is_held: bool,
     pub tooltips: Tooltips,
-    /// What a picture took, milliseconds by `names`; the oldest first.
+    /// Times of each image in milliseconds, indexed like `names`; the oldest first.
     pub pictures: VecDeque<Vec<f32>>,
-    /// Passes, in the order of the frame.
+    /// Names of the passes, in the order of the frame.
     pub names: Vec<&'static str>,
     pub figures: Figures,
     holder: Option<ScaleBudget>,
-    /// The result that came last, and the frames in which another may yet come.
+    /// Frame of the latest result; `waiting` counts down the frames in which another may arrive.
     seen: Option<u64>,
     waiting: u32,
 }
 
-/// What a picture is called that only the CPU's clock knows of.
+/// Name of the only entry where the GPU cannot be timed.
 pub const CPU_TIME: &str = "CPU time of the frame";
 
 impl Default for Performance {
@@ -53,8 +53,8 @@ impl Default for Performance {
 }
 
 impl Performance {
-    /// To be called once a frame, after the panels. `cpu_seconds`: what the CPU took for the frame before. True while another
-    /// frame is wanted.
+    /// Call once a frame, after the panels. `cpu_seconds`: CPU time of the previous frame. Returns true if another
+    /// frame is needed.
     pub fn follow(&mut self, easel: &Easel, is_seen: bool, cpu_seconds: Option<f32>, preset: &Preset) -> bool {
         let is_on = is_seen || self.is_held;
         easel.measure(is_on);
@@ -83,7 +83,7 @@ impl Performance {
         self.waiting > 0
     }
 
-    /// The scale that holds the budget, while one does.
+    /// Returns the scale that enforces the budget, if one is held.
     pub fn scale(&self) -> Option<u32> {
         self.holder.as_ref().map(ScaleBudget::scale)
     }
@@ -94,7 +94,7 @@ impl Performance {
         holder.budget = self.budget;
         let Some(ms) = times.map(FrameTimes::smoke_ms) else { return };
         let scale = holder.update(ms);
-        // A picture that stands still is drawn until it holds the budget, or nothing more can be done for that.
+        // A still image is drawn again until it is within the budget or the scale has reached its limit.
         if ms > self.budget.milliseconds && scale < self.budget.max_scale {
             easel.draw_again();
             self.waiting = LATE;
@@ -116,7 +116,7 @@ impl Performance {
         self.pictures.drain(..surplus);
     }
 
-    /// Milliseconds of a pass in the pictures that are remembered, in the mean.
+    /// Returns the mean time of a pass over the images that are kept, milliseconds.
     pub fn mean(&self, pass: usize) -> f32 {
         let sum: f32 = self.pictures.iter().filter_map(|picture| picture.get(pass)).sum();
         sum / self.pictures.len().max(1) as f32
@@ -128,7 +128,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pictures_are_remembered_by_pass_and_not_for_ever() {
+    fn times_are_kept_by_pass_and_their_number_is_limited() {
         let mut performance = Performance::default();
         performance.remember([("accumulate", 1.0)].into_iter());
         performance.remember([("depth_downsample", 2.0), ("accumulate", 3.0), ("accumulate", 1.0)].into_iter());

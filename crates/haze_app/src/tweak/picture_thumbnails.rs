@@ -1,4 +1,4 @@
-//! Small pictures of what a material can be made of: decoded once, beside the window.
+//! Thumbnails of the images that a material can use. A worker thread decodes each once.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -16,19 +16,19 @@ use image::imageops::{self, FilterType};
 use super::platform::files::{self, Stamp};
 use super::platform::worker::Worker;
 
-/// Pixels of a thumbnail.
+/// Size of a thumbnail, pixels.
 pub const SIZE: [usize; 2] = [72, 48];
 
-/// Most files of a folder that are offered.
+/// Largest number of files that a folder offers.
 const MOST: usize = 64;
 
-/// Seconds after which a folder is looked at again while its files are shown.
+/// Interval in which a folder is listed again while its files are shown, seconds.
 const FRESH: f64 = 1.0;
 
 type Key = (u8, String);
 type Decoded = (Key, Option<ColorImage>);
 
-/// See the module. Panels share it.
+/// Cache of thumbnails, shared by the panels.
 #[derive(Default)]
 pub struct PictureThumbnails(RefCell<Inner>);
 
@@ -36,23 +36,23 @@ pub struct PictureThumbnails(RefCell<Inner>);
 struct Inner {
     worker: Option<Worker<Decoded>>,
     pictures: HashMap<Key, Thumb>,
-    /// Where files are looked for; nowhere for a built-in preset that shares none.
+    /// Folders with files; empty for a built-in preset without a shared folder.
     folders: Vec<PathBuf>,
-    /// The PNG files there, and when they were looked for, seconds.
+    /// PNG files in the folders, and the time when they were listed, seconds.
     files: Vec<String>,
     listed: Option<f64>,
 }
 
-/// What is known of a picture.
+/// Thumbnail of one image.
 struct Thumb {
-    /// Of its file.
+    /// Stamp of the image file.
     stamp: Option<Stamp>,
-    /// Nothing while it is decoded, and where it cannot be.
+    /// `None` while it is decoded, and if it cannot be decoded.
     texture: Option<TextureHandle>,
 }
 
 impl PictureThumbnails {
-    /// Offers the pictures beside a preset, and then those of a folder that presets share.
+    /// Sets the folders to the preset's own, followed by the shared one.
     pub fn follow(&self, preset: &Path, assets: Option<&Path>) {
         let own = preset.extension().map(|_| preset.parent().unwrap_or(Path::new("")));
         let is_same = |inner: &Inner| inner.folders.iter().map(PathBuf::as_path).eq(own.into_iter().chain(assets));
@@ -63,7 +63,7 @@ impl PictureThumbnails {
         }
     }
 
-    /// Names of the pictures for a role: the files, then the built-in ones, of which there are many.
+    /// Returns names of images for a role: files first, then the many built-in ones.
     pub fn names(&self, context: &egui::Context, role: PictureRole) -> Vec<String> {
         let now = context.input(|input| input.time);
         let inner = &mut *self.0.borrow_mut();
@@ -72,7 +72,7 @@ impl PictureThumbnails {
             inner.files = inner.folders.iter().flat_map(|folder| pngs(folder)).collect();
             inner.files.sort();
             inner.files.dedup();
-            // Those that were written meanwhile are decoded again.
+            // Files that have changed since are decoded again.
             let Inner { folders, pictures, .. } = inner;
             let stamp = |name: &str| file(folders, name).and_then(|path| Stamp::of(&path));
             pictures.retain(|(_, name), thumb| thumb.stamp.is_none() || thumb.stamp == stamp(name));
@@ -81,7 +81,7 @@ impl PictureThumbnails {
         inner.files.iter().cloned().chain(builtins).collect()
     }
 
-    /// The thumbnail of a picture, once there is one.
+    /// Returns the thumbnail of an image, once it is decoded.
     pub fn texture(&self, context: &egui::Context, role: PictureRole, name: &str) -> Option<egui::TextureId> {
         let inner = &mut *self.0.borrow_mut();
         while let Some(Some((key, image))) = inner.worker.as_ref().and_then(Worker::poll) {
@@ -101,7 +101,7 @@ impl PictureThumbnails {
         inner.pictures.insert(key.clone(), Thumb { stamp, texture: None });
         if inner.worker.is_none() {
             let context = context.clone();
-            // Without a thread names alone are shown.
+            // Without a thread, only names are shown.
             inner.worker = Worker::new("thumbnails", move || context.request_repaint()).ok();
         }
         let worker = inner.worker.as_ref()?;
@@ -110,12 +110,12 @@ impl PictureThumbnails {
     }
 }
 
-/// Where a file lies: the first folder that has it.
+/// Returns the path in the first folder that has the file.
 fn file(folders: &[PathBuf], name: &str) -> Option<PathBuf> {
     folders.iter().map(|folder| folder.join(name)).find(|path| files::exists(path))
 }
 
-/// The PNG files in a folder.
+/// Returns the PNG files in a folder.
 fn pngs(folder: &Path) -> Vec<String> {
     let is_png = |path: &PathBuf| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
     let name = |path: PathBuf| Some(path.file_name()?.to_str()?.to_owned());
@@ -136,7 +136,7 @@ fn thumbnail(role: PictureRole, source: &Source) -> Result<ColorImage, Error> {
     }
 }
 
-/// The picture as a material has it, stretched.
+/// Decodes an image as for a material, and stretches it to the size of a thumbnail.
 fn decoded(role: PictureRole, path: &Path, bytes: &[u8]) -> Result<ColorImage, Error> {
     let [width, height] = SIZE.map(|side| side as u32);
     let decode = match role {
@@ -147,15 +147,15 @@ fn decoded(role: PictureRole, path: &Path, bytes: &[u8]) -> Result<ColorImage, E
     Ok(ColorImage::from_rgba_unmultiplied(SIZE, small.as_raw()))
 }
 
-/// A picture by a formula of the pixel.
+/// Builds a thumbnail from a function of the pixel.
 fn drawn(colour: impl Fn([usize; 2]) -> Color32) -> ColorImage {
     let pixels = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]));
     ColorImage::new(SIZE, pixels.map(colour).collect())
 }
 
-/// The first frame of a sprite, lit from the upper left.
+/// Returns the first frame of a sprite, lit from the upper left.
 fn puff(sprite: &Sprite) -> ColorImage {
-    // The smallest level that is no smaller than the thumbnail.
+    // The smallest mip level that is at least as high as the thumbnail.
     let is_large = |level: &u32| sprite.level_size(*level) as usize >= SIZE[1];
     let level = (0..sprite.level_count()).rev().find(is_large).unwrap_or(0);
     let (side, left) = (sprite.level_size(level) as usize, (SIZE[0] - SIZE[1]) / 2);
@@ -171,7 +171,7 @@ fn puff(sprite: &Sprite) -> ColorImage {
     })
 }
 
-/// The density of a slice of noise.
+/// Returns the density of one slice of a noise volume.
 fn slice(noise: &noise::NoiseVolume) -> ColorImage {
     let side = noise.size();
     drawn(|[x, y]| {
@@ -185,12 +185,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ramps_are_shown_in_the_colours_that_light_has() {
+    fn ramp_thumbnails_show_the_colours_of_the_light() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("clear.png");
         image::RgbaImage::from_pixel(4, 1, image::Rgba([255, 255, 255, 55])).save(&path).unwrap();
         let first = |role| thumbnail(role, &Source::File(path.clone())).unwrap().pixels[0];
-        // What is transparent gives as much less light: 55 / 255 is half of white's code.
+        // A transparent texel gives proportionally less light: alpha 55/255 halves the sRGB code of white.
         let grey = first(PictureRole::Ramp);
         assert!(grey.is_opaque() && grey.r().abs_diff(128) <= 1, "{grey:?}");
         assert_eq!(first(PictureRole::Motif), grey);

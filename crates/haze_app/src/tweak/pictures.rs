@@ -1,19 +1,20 @@
-//! The ramps and sprites of the systems, as they were last loaded well.
+//! Ramps and sprites of the systems, as last loaded without error.
 
 use haze::MaterialAssets;
 use haze::preset::{MaterialNames, Preset};
 
-/// Pictures, and the names that they were loaded by. A clone is the same pictures.
+/// Images, and the names they were loaded by. Clones share the images.
 #[derive(Clone)]
 pub struct Pictures(Vec<(MaterialNames, MaterialAssets)>);
 
 impl Pictures {
-    /// `loaded` has the pictures of every system of the preset.
+    /// `loaded` has the images of every system of the preset.
     pub fn new(preset: &Preset, loaded: Vec<MaterialAssets>) -> Self {
         Self(names(preset).into_iter().zip(loaded).collect())
     }
 
-    /// What there is for the systems of a preset: where a system's own is not loaded yet, or cannot be, what stood in its place.
+    /// Returns the images for each system of a preset. A system whose own images are not loaded yet, or cannot be
+    /// loaded, gets those that were loaded for its index before.
     pub fn of(&self, preset: &Preset) -> Vec<MaterialAssets> {
         let systems = preset.systems.iter().enumerate();
         let find = |(index, system): (usize, &haze::preset::PresetSystem)| {
@@ -23,14 +24,14 @@ impl Pictures {
         systems.filter_map(find).collect()
     }
 
-    /// Pictures read again: those that are as they were stay the same, so that nothing is uploaded for them.
+    /// Replaces reloaded images that have not changed by the present ones, so that nothing is uploaded for them.
     pub fn keep_same(&self, loaded: Vec<MaterialAssets>) -> Vec<MaterialAssets> {
         let same = |new: &MaterialAssets| self.0.iter().map(|(_, old)| old).find(|old| *old == new).cloned();
         loaded.into_iter().map(|new| same(&new).unwrap_or(new)).collect()
     }
 }
 
-/// The pictures that the systems of a preset name.
+/// Returns the names of images of each system.
 pub fn names(preset: &Preset) -> Vec<MaterialNames> {
     preset.systems.iter().map(|system| system.material.clone()).collect()
 }
@@ -42,7 +43,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_system_keeps_its_pictures_wherever_it_stands() {
+    fn a_system_keeps_its_images_at_any_index() {
         let load = |preset: &Preset| preset.load_materials(Path::new("")).unwrap();
         let mut preset = Preset::load("column").unwrap();
         let mut other = preset.systems[0].clone();
@@ -55,10 +56,10 @@ mod tests {
         preset.systems.reverse();
         let swapped = pictures.of(&preset);
         assert!(swapped[0].shares(&second) && swapped[1].shares(&first));
-        // Not loaded yet: what stood there.
+        // Not loaded yet, so the former images of this index are used.
         preset.systems[0].material.diffuse_ramp = "mine.png".into();
         assert!(pictures.of(&preset)[0].shares(&first));
-        // Read again, nothing of it is new.
+        // A reload of the same files gives the same images.
         let again = pictures.keep_same(load(&Preset::load("column").unwrap()));
         assert!(again[0].shares(&first));
     }

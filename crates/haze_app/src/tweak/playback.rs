@@ -1,39 +1,40 @@
-//! The time that is shown.
+//! Playback time.
 
 use std::ops::RangeInclusive;
 
-/// A clock that can be stopped, stepped and sent round. Seconds into the emission.
+/// Clock that can be paused, stepped and looped. Times are in seconds since the emission began.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Playback {
     pub time: f32,
     pub is_playing: bool,
-    /// Multiplies the clock; negative runs backwards.
+    /// Factor on the elapsed time; negative plays backwards.
     pub speed: f32,
-    /// Where it begins again, and where it ends.
+    /// Range of the loop, seconds.
     pub range: RangeInclusive<f32>,
     pub is_looping: bool,
 }
 
-/// A frame, when time is stepped.
+/// Duration of one step, seconds.
 pub const STEP: f32 = 1.0 / 30.0;
 
-/// Longest time that one frame of the window may take from the clock: after a pause the smoke goes on where it was.
+/// Longest time that one frame of the window may advance the clock, seconds. After a pause of the window, the smoke
+/// does not jump.
 const LONGEST: f32 = 0.1;
 
 impl Playback {
-    /// Stands still at a time.
+    /// Returns a clock that is paused at a time.
     pub fn at(time: f32) -> Self {
         Self { time, is_playing: false, speed: 1.0, range: 0.0..=(time + 6.0).max(10.0), is_looping: false }
     }
 
-    /// Goes on by the seconds that have passed.
+    /// Advances by the elapsed seconds, if it plays.
     pub fn advance(&mut self, seconds: f32) {
         if self.is_playing {
             self.move_by(seconds.clamp(0.0, LONGEST) * self.speed);
         }
     }
 
-    /// Stops, and goes on by so many frames.
+    /// Pauses the clock and moves it by a number of frames.
     pub fn step(&mut self, frames: f32) {
         self.is_playing = false;
         self.move_by(frames * STEP);
@@ -53,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn time_goes_round_either_way() {
+    fn a_loop_wraps_in_both_directions() {
         let mut clock = Playback { is_playing: true, is_looping: true, range: 2.0..=4.0, ..Playback::at(3.9) };
         clock.advance(0.1);
         clock.advance(0.1);
@@ -61,7 +62,7 @@ mod tests {
         clock.speed = -4.0;
         clock.advance(0.05);
         assert!((clock.time - 3.9).abs() < 1e-5, "{}", clock.time);
-        // A window that was away for a minute does not jump.
+        // A window that was hidden for a minute does not jump.
         clock.speed = 1.0;
         clock.advance(60.0);
         assert!((clock.time - 4.0).abs() < 1e-5, "{}", clock.time);
@@ -70,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_still_stays() {
+    fn a_paused_clock_does_not_move() {
         let mut clock = Playback::at(5.0);
         clock.advance(1.0);
         assert_eq!(clock, Playback::at(5.0));

@@ -1,4 +1,4 @@
-//! Small pictures of presets, drawn one after the other on a thread of their own.
+//! Thumbnails of presets, rendered one after the other on a worker thread.
 
 use std::path::{Path, PathBuf};
 
@@ -13,30 +13,30 @@ use super::platform::assets;
 use super::platform::files::{self, Stamp};
 use super::platform::worker::{Ticket, Worker};
 
-/// Pixels of a thumbnail.
+/// Size of a thumbnail, pixels.
 pub const SIZE: UVec2 = UVec2::new(160, 90);
 
-/// Most files of a folder that are looked at.
+/// Largest number of files that are listed.
 const MOST: usize = 200;
 
-/// The presets that there are to begin with.
+/// List of presets that the user can open.
 pub struct PresetThumbnails {
     worker: Worker<(PathBuf, Result<Drawn, Error>)>,
     pub entries: Vec<Entry>,
     tickets: Vec<Ticket>,
 }
 
-/// A preset of the list.
+/// Preset in the list.
 pub struct Entry {
-    /// A file, or the name of a built-in preset.
+    /// Path of a file, or name of a built-in preset.
     pub path: PathBuf,
-    /// As it was when it was drawn.
+    /// Stamp of the file when it was rendered.
     stamp: Option<Stamp>,
-    /// None until it is drawn.
+    /// `None` until it is rendered.
     pub shown: Option<Shown>,
 }
 
-/// What is known of a preset that was drawn.
+/// Rendered preset.
 pub struct Shown {
     pub name: String,
     pub description: String,
@@ -50,22 +50,23 @@ struct Drawn {
 }
 
 impl PresetThumbnails {
-    /// `wake` is called from another thread when there is a new picture.
+    /// `wake` is called from the worker thread when a thumbnail is ready.
     ///
     /// # Errors
-    /// [`Error::Io`] where the system has no thread left.
+    /// [`Error::Io`] if the system cannot start another thread.
     pub fn new(wake: impl Fn() + Send + 'static) -> Result<Self, Error> {
         let worker = Worker::new("haze thumbnails", wake);
         let worker = worker.map_err(|error| Error::Io { path: "a thread to draw thumbnails".into(), error })?;
         Ok(Self { worker, entries: Vec::new(), tickets: Vec::new() })
     }
 
-    /// Lists the built-in presets and the JSON files of a folder, whose pictures may lie in `assets`, too, and draws those that are new or changed.
+    /// Lists the built-in presets and the JSON files of a folder, and renders those that are new or changed. Their
+    /// images may also lie in `assets`.
     pub fn list(&mut self, folder: &Path, assets: Option<&Path>) {
         let built_in = builtin::PRESETS.iter().map(|preset| PathBuf::from(preset.name));
         let is_preset = |path: &PathBuf| {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
-            // Others are recipes: a.ramp.json.
+            // Other JSON files are recipes, such as a.ramp.json.
             name.ends_with(".json") && name.matches('.').count() == 1
         };
         let files = files::list(folder).into_iter().filter(is_preset).take(MOST);
@@ -86,7 +87,7 @@ impl PresetThumbnails {
         }
     }
 
-    /// Takes what was drawn since. What is no preset leaves the list.
+    /// Takes finished thumbnails. Files that are not presets leave the list.
     pub fn advance(&mut self, context: &egui::Context) {
         while let Some(done) = self.worker.poll() {
             let Some((path, drawn)) = done else { continue };
@@ -104,7 +105,7 @@ impl PresetThumbnails {
         }
     }
 
-    /// Draws no more.
+    /// Cancels the thumbnails that are not rendered yet.
     pub fn stop(&mut self) {
         self.tickets.drain(..).for_each(|ticket| ticket.cancel());
     }

@@ -1,4 +1,4 @@
-//! The ramps of a preset that have a recipe beside them: seen while they are changed, written when a step is done.
+//! Ramps of a preset that have recipes beside them: shown live during an edit, written when the step is complete.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -15,79 +15,79 @@ use super::document::document::Document;
 use super::platform::assets;
 use super::platform::files::{self, Effort, Stamp, read_colour_png, write_png};
 
-/// Those that panels have asked about, by the names that the preset has for them.
+/// Ramps that panels have asked about, by their names in the preset.
 #[derive(Default)]
 pub struct RampFiles {
-    /// The preset that they are of.
+    /// Path of the preset that they belong to.
     preset: PathBuf,
     known: BTreeMap<String, Known>,
-    /// An editor for each field, and the row that it shows.
+    /// Editor of each field, and the row of the ramp that it shows.
     editors: BTreeMap<&'static str, (GradientEditor, usize)>,
-    /// The ramp that is to have a copy beside the preset: a field of a system.
+    /// Ramp that is to be copied beside the preset: index of the system, and field.
     wanted: Option<(usize, &'static str)>,
-    /// The preset has no place yet for it.
+    /// The preset must first be saved to a file.
     pub wants_place: bool,
 }
 
-/// What a ramp is to who wants to change it.
+/// Origin of a ramp, which decides whether it can be edited.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
-    /// It comes with the program.
+    /// Embedded in the program.
     BuiltIn,
-    /// Its stops can be changed.
+    /// Made from a recipe, whose stops can be edited.
     Recipe(RampRecipe),
-    /// There is a picture that no recipe beside it makes: it was painted.
+    /// Painted: there is no recipe beside it that produces the image.
     Painted,
-    /// It cannot be read; why is said elsewhere.
+    /// Unreadable. The reason is reported elsewhere.
     Missing,
 }
 
 struct Known {
     picture: PathBuf,
-    /// The picture's file and the recipe's, as they were when they were read or written.
+    /// Stamps of the image and of the recipe when they were last read or written.
     stamps: [Option<Stamp>; 2],
     source: Source,
-    /// What the picture on disk is made by.
+    /// Recipe that the image on disk was baked from.
     written: Option<RampRecipe>,
-    /// What it is baked to now.
+    /// Recipe and ramp that are shown now.
     live: Option<(RampRecipe, Ramp)>,
-    /// Something was written: its files may be others.
+    /// A file was written, so the stamps must be compared.
     is_stale: bool,
 }
 
 impl RampFiles {
-    /// Something was written: files that are others are read again.
+    /// Marks all ramps, so that changed files are read again.
     pub fn look_again(&mut self) {
         self.known.values_mut().for_each(|known| known.is_stale = true);
     }
 
-    /// What a ramp is.
+    /// Returns the origin of a ramp.
     pub fn source(&mut self, name: &str, folders: &PictureFolders) -> &Source {
         let known = self.known.entry(name.into()).or_insert_with(|| Known::read(name, folders));
         &known.source
     }
 
-    /// The editor of a field, and its row.
+    /// Returns the editor of a field, and its row.
     pub fn editor(&mut self, field: &'static str) -> &mut (GradientEditor, usize) {
         self.editors.entry(field).or_default()
     }
 
-    /// A step is being made in one of the editors.
+    /// Returns true while an edit is in progress in one of the editors.
     pub fn is_editing(&self) -> bool {
         self.editors.values().any(|(editor, _)| editor.is_editing())
     }
 
-    /// What is pasted is for one of them.
+    /// Returns true if pasted text goes to one of the editors.
     pub fn takes_paste(&self) -> bool {
         self.editors.values().any(|(editor, _)| editor.takes_paste())
     }
 
-    /// A copy of a built-in ramp is wanted; where the preset is built in, that is saved first.
+    /// Requests a copy of a built-in ramp. A built-in preset must be saved first.
     pub fn want_own(&mut self, system: usize, field: &'static str, is_built_in: bool) {
         (self.wanted, self.wants_place) = (Some((system, field)), is_built_in);
     }
 
-    /// Writes the copy that is wanted, and names it in the preset, once that is a file.
+    /// Writes the requested copy and names it in the preset, as soon as the preset is a file.
     pub fn make_own(&mut self, document: &mut Document) -> Result<(), Error> {
         let Some((system, field)) = self.wanted.filter(|_| !document.is_built_in()) else { return Ok(()) };
         self.wanted = None;
@@ -99,18 +99,18 @@ impl RampFiles {
         Ok(())
     }
 
-    /// Puts stops fitted to its picture in the place of a recipe, and gives how many there are and how far they are off.
+    /// Fits a recipe to a painted ramp. Returns the number of stops and the largest error of the fit in 1/255.
     pub fn fit(&mut self, name: &str) -> Result<(usize, f32), Error> {
         let Some(known) = self.known.get_mut(name) else { return Ok((0, 0.0)) };
         let fitted = fit(&read_colour_png(&known.picture)?, USUAL_ERROR)?;
         let count = fitted.recipe.rows.iter().map(|row| row.stops.len()).sum();
-        // The picture stays as it was painted until a stop is changed.
+        // The image stays as it was painted until a stop is changed.
         known.written = Some(fitted.recipe.clone());
         known.source = Source::Recipe(fitted.recipe);
         Ok((count, fitted.error))
     }
 
-    /// Once a frame, after the panels: bakes what was changed, and writes it unless a control is held.
+    /// Bakes recipes that have changed, and writes them unless a control is held. Call once a frame, after the panels.
     pub fn advance(&mut self, document: &mut Document, folders: &PictureFolders, is_held: bool) -> Result<(), Error> {
         if self.preset != document.path() {
             self.known.clear();
@@ -120,7 +120,7 @@ impl RampFiles {
             if !is_held && (known.is_stale || known.is_to_be_written(document.recipes.ramps.get(name))) {
                 known.is_stale = false;
                 if known.stamps != stamps(&known.picture) {
-                    // Another program has the last word.
+                    // A change by another program takes precedence.
                     *known = Known::read(name, folders);
                     document.recipes.ramps.forget(name);
                 }
@@ -136,7 +136,7 @@ impl RampFiles {
                 known.live = Some((recipe.clone(), Ramp::from_picture(&picture)));
             }
             if !is_held && known.written.as_ref() != Some(recipe) {
-                // Said once where it cannot be written; the next step tries again.
+                // A write error is reported once; the next step tries again.
                 known.written = Some(recipe.clone());
                 let done = write(&known.picture, recipe, &picture);
                 known.stamps = stamps(&known.picture);
@@ -146,7 +146,7 @@ impl RampFiles {
         Ok(())
     }
 
-    /// Puts ramps as they are now in the place of those that were loaded.
+    /// Replaces loaded ramps by their edited versions.
     pub fn apply(&self, preset: &Preset, materials: &mut [MaterialAssets]) {
         for (system, assets) in preset.systems.iter().zip(materials) {
             let names = &system.material;
@@ -169,7 +169,7 @@ impl RampFiles {
 impl Known {
     fn read(name: &str, folders: &PictureFolders) -> Self {
         let picture = assets::place_of(name, folders);
-        // Before they are read: written in between, they are found to have changed.
+        // Stamps are taken before the files are read, so that a write in between counts as a change.
         let stamps = stamps(&picture);
         let source = if builtin::find(builtin::RAMPS, name).is_some() {
             Source::BuiltIn
@@ -184,7 +184,7 @@ impl Known {
         Self { picture, stamps, source, written, live: None, is_stale: false }
     }
 
-    /// Another recipe makes it than the one that was written last.
+    /// Returns true if the current recipe differs from the one that was last written.
     fn is_to_be_written(&self, changed: Option<&RampRecipe>) -> bool {
         let Source::Recipe(recipe) = &self.source else { return false };
         self.written.as_ref() != Some(changed.unwrap_or(recipe))
@@ -195,7 +195,7 @@ fn makes(recipe: &RampRecipe, ramp: &Ramp) -> bool {
     recipe.bake().is_ok_and(|picture| Ramp::from_picture(&picture) == *ramp)
 }
 
-/// `mine.ramp.json` of `mine.png`.
+/// Returns `mine.ramp.json` for `mine.png`.
 fn recipe_of(picture: &Path) -> PathBuf {
     picture.with_extension("ramp.json")
 }
@@ -204,13 +204,13 @@ fn stamps(picture: &Path) -> [Option<Stamp>; 2] {
     [picture, &recipe_of(picture)].map(Stamp::of)
 }
 
-/// The recipe first: of the two the picture can be made again.
+/// Writes the recipe first, because the image can be made again from it.
 fn write(picture: &Path, recipe: &RampRecipe, baked: &image::DynamicImage) -> Result<(), Error> {
     files::write(&recipe_of(picture), recipe.to_text().as_bytes())?;
     write_png(picture, baked, Effort::Small)
 }
 
-/// Writes a copy of a built-in ramp beside a preset, under a name that is free, and gives that.
+/// Writes a copy of a built-in ramp beside a preset under a free name, and returns the name.
 fn copy_of(name: &str, preset: &Path) -> Result<String, Error> {
     let folder = preset.parent().unwrap_or(Path::new(""));
     let Some(builtin) = builtin::find(builtin::RAMPS, name) else { return Ok(name.into()) };

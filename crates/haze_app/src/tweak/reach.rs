@@ -1,17 +1,17 @@
-//! How far sliders go.
+//! Ranges of sliders.
 
 use std::ops::RangeInclusive;
 
-/// Widest range that a linear slider can be aimed in, and how many times its low end the high end may be.
+/// Widest range that suits a linear slider, and the largest ratio of its high end to its low end.
 const WIDEST_LINEAR: f32 = 40.0;
 const MOST_LINEAR: f32 = 100.0;
-/// Where sliders of endless ranges end; more can be typed.
+/// End of the slider for a range without bounds. Larger values can be typed.
 const FAR: f32 = 1000.0;
 
-/// What is usual of a number, where that is less than what it may be: the slider goes from one to the other, straight.
+/// Usual range of a number, if it is narrower than the valid one. The slider covers it linearly.
 pub type Usual = Option<(f32, f32)>;
 
-/// What the slider of a number reaches, and whether that is too wide to be linear.
+/// Returns the range of a number's slider, and true if it is too wide to be linear.
 pub fn reach(range: &RangeInclusive<f32>, value: f32) -> (RangeInclusive<f32>, bool) {
     let (low, high) = (*range.start(), *range.end());
     let shown_high = if high > FAR { FAR.max(value.abs() * 2.0).min(high) } else { high };
@@ -20,7 +20,7 @@ pub fn reach(range: &RangeInclusive<f32>, value: f32) -> (RangeInclusive<f32>, b
     (shown_low..=shown_high, is_wide)
 }
 
-/// Whether the slider of a whole number is too wide to be linear.
+/// Returns true if the slider of an integer is too wide to be linear.
 pub fn is_wide(range: &RangeInclusive<u32>) -> bool {
     *range.end() as f32 > MOST_LINEAR * (*range.start()).max(1) as f32
 }

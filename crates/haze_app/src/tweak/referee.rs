@@ -1,4 +1,4 @@
-//! The picture as the CPU renderer has it: made in the background, once the picture stands still.
+//! Image by the CPU renderer, made on a worker thread as soon as the view stands still.
 
 use std::sync::Arc;
 
@@ -10,36 +10,36 @@ use haze_demo::shot::Shot;
 use super::platform::clock::{Duration, Instant};
 use super::platform::worker::{Ticket, Worker};
 
-/// How long a picture has to stand still.
+/// Time for which the view must not change before rendering begins.
 const STILL: Duration = Duration::from_millis(250);
 
-/// A picture, and how long it took to make.
+/// Image, and the time it took.
 type Work = Result<(Picture<Vec4>, Duration), Error>;
 
 #[derive(Default)]
 pub struct Referee {
     worker: Option<Worker<Work>>,
-    /// What was wanted last, and since when.
+    /// Last requested shot, and when it was first requested.
     wanted: Option<(Shot, Instant)>,
-    /// It is being made.
+    /// Set while the image is rendered.
     ticket: Option<Ticket>,
     made: Option<Arc<Picture<Vec4>>>,
-    /// How long it took to make.
+    /// Time that rendering took.
     pub took: Option<Duration>,
 }
 
-/// How far it is.
+/// State of the image.
 pub enum Verdict {
-    /// Another look is worth while then.
+    /// Nothing to do before this time has passed.
     Later(Duration),
-    /// `wake` will be called.
+    /// Rendering is in progress; `wake` will be called.
     Soon,
     Made(Arc<Picture<Vec4>>),
     Failed(Error),
 }
 
 impl Referee {
-    /// The picture of a shot. `wake` is called from another thread when it is made.
+    /// Returns the image of a shot, or its state. `wake` is called from the worker thread when the image is ready.
     pub fn judge(&mut self, shot: &Shot, wake: impl Fn() + Send + 'static) -> Verdict {
         let now = Instant::now();
         if !self.wanted.as_ref().is_some_and(|(wanted, _)| wanted.is_same(shot)) {

@@ -1,9 +1,10 @@
-//! What happens in a frame ends with the release of a button.
+//! Ends a frame's input with the release of a pointer button.
 
 use eframe::egui::Event;
 
-/// Keeps what happened after the first release of a button for later, and takes what was kept before. egui gives a control that was
-/// let go the place where the pointer is at the end of the frame: in one that takes long a slider would follow it there.
+/// Moves the events after the first release of a button to `later`, and prepends those that were moved before. egui
+/// gives a released control the pointer position at the end of the frame; during a long frame, a slider would follow
+/// the pointer there.
 pub fn split_at_release(later: &mut Vec<Event>, events: &mut Vec<Event>) {
     events.splice(..0, later.drain(..));
     let is_release = |event: &Event| matches!(event, Event::PointerButton { pressed: false, .. });
@@ -19,7 +20,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn where_the_pointer_goes_after_a_release_is_of_the_next_frame() {
+    fn events_after_a_release_go_to_the_next_frame() {
         let button = |pos: Pos2, pressed| Event::PointerButton {
             pos,
             button: PointerButton::Primary,

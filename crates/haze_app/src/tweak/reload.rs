@@ -1,8 +1,7 @@
-//! Hot reload: ramps, sprites, particle files, the preset and shaders are read again when they change on disk, whichever way
-//! they were saved.
+//! Hot reload of ramps, sprites, particle files, the preset and shaders, however the files are saved.
 //!
-//! Pictures are decoded and shaders compiled on a thread of their own; what is good takes the place of what was shown, and what is
-//! not is said until it is mended.
+//! A worker thread decodes images and compiles shaders. Valid results replace those that are shown; errors are reported
+//! until the files are fixed.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -26,49 +25,49 @@ use super::sprite::source::detail_of;
 use crate::inputs::picture_files;
 use crate::recipe::recipes_of;
 
-/// What follows the files of a session.
+/// Watches the files of a session.
 pub struct Reload {
     watcher: Watcher,
     worker: Worker<Loaded>,
-    /// What was asked for last.
+    /// Files that were last requested.
     asked: Asked,
-    /// Those that are on their way.
+    /// Loads in progress.
     pictures: Option<Ticket>,
     caches: Option<Ticket>,
     shaders: Option<Shaders>,
 }
 
-/// The preset's file, and the pictures and particle files that its systems name.
+/// Path of the preset, and the images and particle files that its systems name.
 type Asked = (PathBuf, Vec<MaterialNames>, Vec<String>);
 
-/// A folder of shaders that someone works on.
+/// Watched folder of shaders.
 struct Shaders {
     folder: PathBuf,
     files: Vec<PathBuf>,
     checking: Option<Ticket>,
 }
 
-/// What the worker has made.
+/// Result from the worker thread.
 enum Loaded {
     Pictures(Box<Preset>, Result<Vec<MaterialAssets>, Error>),
     Caches(Box<Preset>, Result<Vec<Option<Cache>>, Error>),
-    /// With the files that are to be watched.
+    /// With the files to watch.
     Shaders(Vec<PathBuf>, Result<(StageContext, Sources), Error>),
 }
 
-/// Which shaders are followed.
+/// Source of the shaders.
 #[derive(Clone, Debug)]
 pub enum ShaderFolder {
-    /// Those that the program has in it, nothing to follow.
+    /// The built-in shaders; nothing is watched.
     None,
-    /// A folder that takes their place from the beginning.
+    /// A folder whose files replace the built-in shaders from the start.
     Given(PathBuf),
-    /// The folder that the program's own were compiled from: the same until it changes.
+    /// The folder that the built-in shaders were compiled from. They are used until a file changes.
     Checkout(PathBuf),
 }
 
 impl ShaderFolder {
-    /// What is followed where none is given: the checkout's folder, when `cargo run` started the program.
+    /// Returns the default source: the folder of the checkout if `cargo run` started the program.
     pub fn of_checkout() -> Self {
         let checkout = env!("CARGO_MANIFEST_DIR");
         match std::env::var_os("CARGO_MANIFEST_DIR") {
@@ -79,10 +78,10 @@ impl ShaderFolder {
 }
 
 impl Reload {
-    /// Follows the files of a session. `wake` is called from other threads when something has changed.
+    /// Watches the files of a session. `wake` is called from other threads when something has changed.
     ///
     /// # Errors
-    /// [`Error::Io`] where the system has no thread left.
+    /// [`Error::Io`] if the system cannot start another thread.
     pub fn new(
         session: &Session,
         shaders: &ShaderFolder,
@@ -104,17 +103,17 @@ impl Reload {
             },
         };
         reload.watch(session);
-        // Those of another device, too.
+        // Edited shaders must also be compiled for a new device.
         if matches!(shaders, ShaderFolder::Given(_)) || session.shaders.is_some() {
             reload.check_shaders(session, easel);
         }
-        // What was written between the reading and the watching.
+        // Files may have been written after they were read and before they were watched.
         reload.load_pictures(session);
         reload.load_caches(session);
         Ok(reload)
     }
 
-    /// Once a frame: sees what has changed, and puts what was loaded in its place.
+    /// Handles changed files and finished loads. Call once a frame.
     pub fn advance(&mut self, session: &mut Session, easel: &Easel) {
         if let Some(note) = self.watcher.note() {
             session.messages.say("watch", note);
@@ -124,7 +123,7 @@ impl Reload {
             let has_caches = (&now.0, &now.2) != (&self.asked.0, &self.asked.2);
             self.asked = now;
             self.watch(session);
-            // What was written between the reading and the watching.
+            // Files may have been written after they were read and before they were watched.
             changed_on_disk(session);
             look_again(session);
             self.load_pictures(session);
@@ -151,7 +150,7 @@ impl Reload {
             self.load_pictures(session);
         }
         if has_caches {
-            // Another frame may follow.
+            // A sequence may have gained a frame, which must be watched too.
             self.watch(session);
             self.load_caches(session);
         }
@@ -167,13 +166,13 @@ impl Reload {
         let shaders = self.shaders.iter().flat_map(|shaders| shaders.files.iter().cloned());
         let folders = session.folders();
         let pictures = picture_files(&session.document.preset);
-        // A sprite's recipe makes its detail, whether the preset names that or not.
+        // The recipe of a sprite also makes its detail image, even if the preset does not name that.
         let beside = pictures.iter().flat_map(|picture| recipes_of(picture).chain([detail_of(picture)]));
         let beside = beside.flat_map(|file| folders.places(&file).collect::<Vec<_>>());
         self.watcher.set(session.document.files(&folders).into_iter().chain(beside).chain(shaders));
     }
 
-    /// Reads the pictures that the preset names; those of before stay where they cannot be had.
+    /// Loads the images that the preset names. The present ones stay if that fails.
     fn load_pictures(&mut self, session: &Session) {
         let preset = Box::new(session.document.preset.clone());
         let path = session.document.path().to_owned();
@@ -182,13 +181,13 @@ impl Reload {
             let loaded = assets::pictures(&preset, &path, &folders).map(|loaded| old.keep_same(loaded));
             Loaded::Pictures(preset, loaded)
         });
-        // Only the last are wanted.
+        // Only the latest load counts.
         if let Some(before) = self.pictures.replace(ticket) {
             before.cancel();
         }
     }
 
-    /// Reads the particle files that the preset names; as with pictures.
+    /// Loads the particle files that the preset names. The present ones stay if that fails.
     fn load_caches(&mut self, session: &Session) {
         let preset = Box::new(session.document.preset.clone());
         let (path, folders) = (session.document.path().to_owned(), session.folders());
@@ -201,7 +200,7 @@ impl Reload {
         }
     }
 
-    /// Compiles the shaders, and what the preset needs of them, elsewhere.
+    /// Compiles the shaders, and the pipelines that the preset needs, on the worker thread.
     pub fn check_shaders(&mut self, session: &Session, easel: &Easel) {
         let Some(shaders) = &mut self.shaders else { return };
         let (folder, context) = (shaders.folder.clone(), easel.context());
@@ -212,7 +211,7 @@ impl Reload {
             if let Err(Error::Io { path, .. } | Error::Shader { path, .. }) = &checked
                 && path.starts_with(&folder)
             {
-                // One that could not be read is to be watched like those that could.
+                // A file that could not be read is watched as well.
                 add(&mut files, path);
             }
             Loaded::Shaders(files, checked)
@@ -233,7 +232,7 @@ impl Reload {
                 session.messages.withdraw("caches");
             }
             Some(Loaded::Caches(_, Err(error))) => session.messages.complain("caches", error),
-            // It is read again when it is written.
+            // The bake writes it, and then it is read again.
             Some(Loaded::Pictures(_, Err(_))) if session.sprites.is_baking() => {}
             Some(Loaded::Pictures(_, Err(error))) => session.messages.complain("pictures", error),
             Some(Loaded::Shaders(files, checked)) => {
@@ -251,7 +250,7 @@ impl Reload {
                 }
             }
             None => {
-                session.messages.complain("reload", "a file cannot be read: the program has a mistake in it");
+                session.messages.complain("reload", "a changed file was not loaded: internal error");
             }
         }
     }
@@ -268,12 +267,13 @@ fn asked(session: &Session) -> Asked {
     (session.document.path().to_owned(), names(preset), paths(preset))
 }
 
-/// Where files would take the place of embedded ones.
+/// Returns the paths in the folder of files that would replace built-in shaders.
 fn embedded_names(folder: &Path) -> Vec<PathBuf> {
     shader::sources().iter().map(|(name, _)| folder.join(name)).collect()
 }
 
-/// A context with the folder's shaders that draws the shot. Adds the files that are imported to `files`.
+/// Returns a context with the folder's shaders after compiling the pipelines of the shot. Adds imported files to
+/// `files`.
 fn check(
     folder: &Path,
     context: &StageContext,
@@ -293,7 +293,7 @@ fn add(files: &mut Vec<PathBuf>, path: &Path) {
     }
 }
 
-/// Something was written that ramps or sprites are made from, or into.
+/// Marks ramps and sprites to be compared with their files.
 fn look_again(session: &mut Session) {
     session.ramps.look_again();
     session.sprites.look_again();
@@ -303,7 +303,7 @@ fn has_ending(file: &Path, ending: &str) -> bool {
     file.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending))
 }
 
-/// The preset's file is another: it is loaded if nothing of it is changed here, else someone has to say which is wanted.
+/// Handles a changed preset file. It is loaded if there are no unsaved changes; otherwise the user chooses a version.
 fn changed_on_disk(session: &mut Session) {
     match session.document.on_disk() {
         OnDisk::Same => {
@@ -312,7 +312,7 @@ fn changed_on_disk(session: &mut Session) {
         }
         OnDisk::Gone => {
             let name = session.document.path().display();
-            session.messages.complain("preset", format!("{name}: gone; Save writes it anew"));
+            session.messages.complain("preset", format!("{name}: the file is gone; Save writes it again"));
         }
         OnDisk::Changed if session.document.is_dirty() => session.is_changed_on_disk = true,
         OnDisk::Changed => session.revert(),

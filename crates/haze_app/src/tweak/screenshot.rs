@@ -1,4 +1,4 @@
-//! A picture of the window, on its way to a file.
+//! Screenshot of the window, written to a file.
 
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -10,18 +10,18 @@ use image::RgbImage;
 use super::platform::files::{Effort, write_png};
 use super::session::Session;
 
-/// Frames after which a window stands still.
+/// Number of frames after which the window has settled.
 const SETTLED: u32 = 6;
 
 #[derive(Default)]
 pub struct Screenshot {
-    /// Frames that have been shown.
+    /// Number of frames that were shown.
     frames: u32,
     taken: Arc<Mutex<Option<Arc<egui::ColorImage>>>>,
 }
 
 impl Screenshot {
-    /// Once a frame: takes the picture if one was asked for, and closes the window when it is written.
+    /// Takes the requested screenshot, and closes the window when it is written. Call once a frame.
     pub fn advance(&mut self, ui: &Ui, session: &mut Session) {
         let Some(path) = session.screenshot.clone() else { return };
         self.frames += 1;

@@ -1,4 +1,4 @@
-//! Any setting by its name, or by what its tooltip says.
+//! Search for settings by name or tooltip.
 
 use haze::preset::Preset;
 use haze::settings::{path_of, walk};
@@ -8,21 +8,21 @@ use super::lights::ShownLights;
 use super::look::{LOOK, Of};
 use super::show::Tab;
 
-/// Most that are listed.
+/// Largest number of results.
 const MOST: usize = 12;
 
-/// What is looked for, while it is.
+/// State of the search.
 #[derive(Default)]
 pub struct Search {
     pub is_open: bool,
     pub text: String,
-    /// Which of the settings that are listed.
+    /// Index of the selected result.
     pub chosen: usize,
-    /// The setting that was found last, and for how many frames it is still to be shown.
+    /// Path of the setting that was found last, and the number of frames for which it is still brought into view.
     pub found: Option<(String, u32)>,
 }
 
-/// Frames that it takes for folded parts to open and scroll.
+/// Number of frames that collapsed sections need to open and scroll.
 const FRAMES: u32 = 60;
 
 impl Search {
@@ -30,12 +30,12 @@ impl Search {
         *self = Self { is_open: true, ..Self::default() };
     }
 
-    /// Goes to a setting.
+    /// Brings a setting into view.
     pub fn go_to(&mut self, path: String) {
         *self = Self { found: Some((path, FRAMES)), ..Self::default() };
     }
 
-    /// To be called once a frame; true while a setting is to be brought into sight.
+    /// Returns true while a setting is to be brought into view. Call once a frame.
     pub fn advance(&mut self) -> bool {
         if let Some((_, frames)) = &mut self.found {
             *frames -= 1;
@@ -47,19 +47,20 @@ impl Search {
     }
 }
 
-/// A setting that was found.
+/// Result of a search.
 pub struct Found {
     pub path: String,
     pub name: String,
-    /// What it is part of.
+    /// Path of the group that it belongs to.
     pub place: String,
     pub tooltip: String,
-    /// Where it is shown.
+    /// Tab that shows it.
     pub tab: Tab,
 }
 
-/// Settings whose names hold all words of a text, those that begin with it first; then those whose tooltips do. Those that make a
-/// look are found by the names that they have there, too; `lights` knows which of them lead.
+/// Returns settings whose names contain all words of a text, those that begin with it first; then those whose paths or
+/// tooltips do. Controls of the look tab are also found by their names there; `lights` tells which lights are key
+/// lights.
 pub fn matches(preset: &Preset, tooltips: &Tooltips, lights: &ShownLights, text: &str) -> Vec<Found> {
     let words: Vec<_> = text.split_whitespace().map(str::to_lowercase).collect();
     let holds = |text: &str| words.iter().all(|word| text.to_lowercase().contains(word.as_str()));
@@ -72,7 +73,7 @@ pub fn matches(preset: &Preset, tooltips: &Tooltips, lights: &ShownLights, text:
                 Of::Made(made) => (true, made.tooltip.to_owned()),
                 _ => (false, path.clone()),
             };
-            // Under its own name it is found below.
+            // A control that is named like its field is found below.
             if is_made || !path.ends_with(&format!(".{}", control.name.replace(' ', "_"))) {
                 let place = if preset.systems.len() > 1 { format!("look of {}", system.name) } else { "look".into() };
                 let (name, rank) = (control.name.to_owned(), i32::from(!begins(control.name)));
@@ -83,7 +84,7 @@ pub fn matches(preset: &Preset, tooltips: &Tooltips, lights: &ShownLights, text:
     walk(&mut preset.clone(), &mut |steps, _| {
         let plain = steps.iter().map(|step| step.0).collect::<Vec<_>>().join(".");
         let path = path_of(steps);
-        // The preset's own name and words are on no tab.
+        // The preset's own name and description are on no tab.
         let Some((place, name)) = path.rsplit_once('.') else { return };
         let tooltip = tooltips.field(&plain).unwrap_or_default();
         let spelled = path.replace('_', " ");
@@ -103,10 +104,10 @@ pub fn matches(preset: &Preset, tooltips: &Tooltips, lights: &ShownLights, text:
     found.into_iter().map(|(_, found)| found).collect()
 }
 
-/// Groups of a system's settings that are with its smoke; the others are advanced.
+/// Groups of a system's settings on the Smoke tab. The others are on the Advanced tab.
 pub const ON_SMOKE: [&str; 4] = ["diffuse", "soft_scatter", "specular_scatter", "soft_fade"];
 
-/// The tab that a setting is on.
+/// Returns the tab of a setting.
 fn tab_of(path: &str) -> Tab {
     let is_in = |part: &&str| path.contains(&format!(".{part}."));
     if !path.starts_with("systems") {
@@ -130,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn settings_are_found_by_name_by_place_and_by_what_they_mean() {
+    fn settings_are_found_by_name_path_and_tooltip() {
         assert_eq!(first("boost"), "systems[0].settings.boost");
         assert_eq!(first("fade sc"), "systems[0].settings.soft_fade.fade_scale");
         assert_eq!(first("specular intensity"), "systems[0].settings.specular_scatter.intensity");
@@ -139,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn every_setting_can_be_gone_to() {
+    fn every_setting_can_be_brought_into_view() {
         let preset = Preset::load("column").unwrap();
         let tooltips = Tooltips::of::<Preset>();
         for (path, _) in values(&preset).into_iter().filter(|(path, _)| path.contains('.')) {

@@ -1,4 +1,4 @@
-//! What is edited and how it is looked at: all that is worth keeping when a device is lost.
+//! Editing session: the document, and the state of its view. It is kept when a device is lost.
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -36,7 +36,7 @@ use super::sprite::draw::Painted;
 use super::sprite::files::SpriteFiles;
 
 pub struct Session {
-    /// What is edited; panels change its preset directly.
+    /// Document; panels change its preset directly.
     pub document: Document,
     pub playback: Playback,
     pub show: Show,
@@ -49,41 +49,41 @@ pub struct Session {
     pub messages: Messages,
     pub performance: Performance,
     pub tooltips: Tooltips,
-    /// What the stages of the shading are.
+    /// Descriptions of the debug views.
     pub stages: Tooltips,
     pub thumbnails: PictureThumbnails,
-    /// The flipbook of the page of sprites.
+    /// Flipbook on the Sprite tab.
     pub flipbook: Option<Painted>,
-    /// For what is done on other threads for longer than one window lives.
+    /// Repaints the window from threads that run for longer than one window is open.
     pub wake: Wake,
-    /// A folder of pictures that presets share.
+    /// Folder of images that presets share.
     pub assets: Option<PathBuf>,
-    /// A picture of the window is wanted here; then it closes.
+    /// Path of a screenshot; the window closes once it is written.
     pub screenshot: Option<PathBuf>,
-    /// As last loaded well.
+    /// Images as last loaded without error.
     pub pictures: Pictures,
     pub caches: Caches,
-    /// Ramps whose stops are changed.
+    /// Ramps whose stops are edited.
     pub ramps: RampFiles,
-    /// Sprites whose recipes are changed.
+    /// Sprites whose recipes are edited.
     pub sprites: SpriteFiles,
-    /// An author's, as last compiled well; those that the program has in it if none.
+    /// Shaders of a watched folder, as last compiled without error; `None` means the built-in ones.
     pub shaders: Option<Sources>,
-    /// Another program has written the file while something was changed here: which of the two is wanted is not known.
+    /// Another program has written the file while there are unsaved changes. The user has to choose a version.
     pub is_changed_on_disk: bool,
     changed: Changed,
-    /// There while the second picture has settings of its own.
+    /// Set while the second image has settings of its own.
     second: Option<Second>,
 }
 
-/// Paths of the fields that differ from the preset on disk, and the two that they were found between.
+/// Paths of the fields that differ from the preset on disk, and the two presets that were compared.
 struct Changed {
     paths: HashSet<String>,
     saved: Preset,
     preset: Preset,
 }
 
-/// What the second picture has, by path, where it is another, and the two settings that this was found between.
+/// Values of the second image's settings that differ, by path, and the two presets that were compared.
 struct Second {
     apart: HashMap<String, Value>,
     settings: Preset,
@@ -91,7 +91,7 @@ struct Second {
 }
 
 impl Session {
-    /// Opens a built-in preset by name, or a file. Its pictures are looked for beside it and in `assets`.
+    /// Opens a built-in preset by name, or a file. Images are looked up beside it and in `assets`.
     pub fn open(source: &Path, assets: Option<PathBuf>) -> Result<Self, Error> {
         let document = Document::open(source)?;
         let preset = &document.preset;
@@ -127,18 +127,18 @@ impl Session {
         })
     }
 
-    /// Another window shows it from now on: what is of the last one's device is made anew.
+    /// Attaches the session to another window. GPU resources of the previous device are dropped.
     pub fn follow_window(&mut self, context: &egui::Context) {
         self.wake.follow(context);
         (self.thumbnails, self.flipbook) = (PictureThumbnails::default(), None);
     }
 
-    /// Where pictures are looked for.
+    /// Returns the folders where images are looked up.
     pub fn folders(&self) -> PictureFolders {
         PictureFolders::beside(self.document.path()).and_shared(self.assets.clone())
     }
 
-    /// What is to be seen now.
+    /// Returns the shot of the present view.
     pub fn shot(&self, size: UVec2) -> Shot {
         let mut preset = self.document.preset.clone();
         preset.time = self.playback.time;
@@ -147,7 +147,7 @@ impl Session {
         Shot { preset, size, shade_tree: self.show.stage, materials, caches }
     }
 
-    /// The pictures of every system.
+    /// Returns the images of every system, with edits.
     pub fn materials(&self) -> Vec<MaterialAssets> {
         let mut materials = self.pictures.of(&self.document.preset);
         self.ramps.apply(&self.document.preset, &mut materials);
@@ -155,12 +155,12 @@ impl Session {
         materials
     }
 
-    /// The particles of every system that has files of them.
+    /// Returns the particles of every system that has particle files.
     pub fn caches(&self) -> Vec<Option<Cache>> {
         self.caches.of(&self.document.preset)
     }
 
-    /// Bakes what was changed of ramps, and writes it unless a control is held.
+    /// Bakes edited ramps, and writes them unless a control is held.
     pub fn follow_ramps(&mut self, is_held: bool) {
         let folders = self.folders();
         let mut done = self.ramps.advance(&mut self.document, &folders, is_held);
@@ -172,7 +172,7 @@ impl Session {
         }
     }
 
-    /// Has baked what was changed of sprites, whole and written unless a control is held.
+    /// Requests bakes of edited sprites; they are full and written unless a control is held.
     fn follow_sprites(&mut self, is_held: bool) {
         let mut done = self.sprites.advance(&mut self.document, is_held);
         if !is_held && done.is_ok() {
@@ -183,28 +183,28 @@ impl Session {
         }
     }
 
-    /// The preset as it is on disk; as it is here where that is not known.
+    /// Returns the preset on disk, or the edited one if the file's content is not known.
     pub fn saved(&self) -> &Preset {
         self.document.saved().unwrap_or(&self.document.preset)
     }
 
-    /// Paths of the fields that differ from the preset on disk.
+    /// Returns the paths of the fields that differ from the preset on disk.
     pub fn changed(&self) -> &HashSet<String> {
         &self.changed.paths
     }
 
-    /// Sets a field, a group or a list back to what is on disk.
+    /// Resets a field, a group or a list to its value on disk.
     pub fn set_back(&mut self, path: &str) {
         let saved = self.saved().clone();
         copy_field(&saved, &mut self.document.preset, path);
     }
 
-    /// What the second picture of a comparison has, by path, where it is another; `None` without settings of its own.
+    /// Returns the values of the second image's settings that differ, by path; `None` if it has no settings of its own.
     pub fn second(&self) -> Option<&HashMap<String, Value>> {
         self.second.as_ref().map(|second| &second.apart)
     }
 
-    /// Gives a field, a group or a list what the second picture has.
+    /// Copies a field, a group or a list from the second image's settings.
     pub fn take(&mut self, path: &str) {
         if let Some(second) = self.compare.against.as_ref().and_then(|against| against.settings(self.saved())).cloned()
         {
@@ -212,7 +212,7 @@ impl Session {
         }
     }
 
-    /// Takes note of what the panels changed. `is_held`: a control is still being moved, or typed into.
+    /// Records changes that panels made. `is_held`: a control is still being dragged or typed into.
     pub fn track(&mut self, is_held: bool) {
         let is_held = is_held || self.show.tab == Tab::Ramps && self.ramps.is_editing();
         self.follow_ramps(is_held);
@@ -236,7 +236,7 @@ impl Session {
         }
     }
 
-    /// Says why what was typed cannot be, or takes that back when something else was.
+    /// Shows the reason if typed input is not valid, and withdraws it after a valid edit.
     pub fn refuse(&mut self, refused: Option<String>, is_edited: bool) {
         match refused {
             Some(refused) => self.messages.complain("typed", refused),
@@ -245,7 +245,7 @@ impl Session {
         }
     }
 
-    /// Does something with the selected light, if there is one.
+    /// Changes the selected light, if there is one.
     pub fn change_light(&mut self, change: impl FnOnce(&mut ShownLights, &mut Vec<Light>, usize)) {
         let lights = &mut self.document.preset.lights;
         if let Some(index) = self.show.lights.selected.filter(|&index| index < lights.len()) {
@@ -268,11 +268,11 @@ impl Session {
 
     pub fn redo(&mut self) {
         if let Some(name) = self.document.redo() {
-            self.messages.say("undo", format!("done again: {name}"));
+            self.messages.say("undo", format!("redone: {name}"));
         }
     }
 
-    /// Reads the file again; what was changed is one step back.
+    /// Reads the file again. Undo restores the changes that it replaces.
     pub fn revert(&mut self) {
         self.is_changed_on_disk = false;
         match self.document.revert() {
@@ -281,7 +281,7 @@ impl Session {
         }
     }
 
-    /// Goes on with another document, as at the beginning.
+    /// Replaces the document, and resets the state that depended on the old one.
     pub fn put(&mut self, document: Document, (materials, caches): Loaded) {
         self.pictures = Pictures::new(&document.preset, materials);
         self.caches = Caches::new(&document.preset, caches);
@@ -295,7 +295,7 @@ impl Session {
         self.document = document;
     }
 
-    /// Makes it the preset of a text.
+    /// Replaces the preset by one from a text.
     pub fn paste(&mut self, text: &str) {
         match self.document.paste(text) {
             Ok(()) => self.messages.say("file", "pasted a preset"),

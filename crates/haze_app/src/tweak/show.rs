@@ -1,4 +1,4 @@
-//! How the preset is looked at.
+//! View options of the preset.
 
 use glam::UVec2;
 use haze::settings::ShadeTree;
@@ -6,27 +6,27 @@ use haze::settings::ShadeTree;
 use super::lights::ShownLights;
 use super::sprite::look::SpriteLook;
 
-/// What is shown of the preset; no part of it.
+/// View options. They are not part of the preset.
 #[derive(Clone, Debug)]
 pub struct Show {
     pub stage: ShadeTree,
-    /// All stages are shown, small.
+    /// The strip of debug views is visible.
     pub has_strip: bool,
-    /// Pixels of the picture.
+    /// Size of the image in pixels.
     pub size: UVec2,
-    /// Width of the picture over its height.
+    /// Width of the image over its height.
     pub aspect: f32,
     /// The list of keys is open.
     pub help: bool,
     pub tab: Tab,
-    /// The system whose settings are shown.
+    /// Index of the system whose settings are shown.
     pub system: usize,
     pub lights: ShownLights,
     pub overlays: Overlays,
     pub sprite: SpriteLook,
 }
 
-/// A part of the settings.
+/// Tab of the settings panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Tab {
     Look,
@@ -55,19 +55,19 @@ impl Default for Show {
     }
 }
 
-/// What can be drawn over the picture.
+/// Overlay on the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Overlay {
-    /// The box of each system.
+    /// Bounding box of each system.
     Bounds,
-    /// The plane that light is flattened to.
+    /// Plane that is lit in place of the volume (flattened shading).
     LitPlane,
     Particles,
-    /// The texels of the accumulation target.
+    /// Texels of the accumulation target.
     Grid,
 }
 
-/// What is drawn over the picture.
+/// Set of visible overlays.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Overlays([bool; 4]);
 

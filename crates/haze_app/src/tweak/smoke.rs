@@ -1,4 +1,4 @@
-//! Where the smoke is at the time that is shown.
+//! Extent of the smoke at the shown time.
 
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
 use haze::frame::bounds_of;
@@ -8,18 +8,18 @@ use haze_author::particle_files::{self, Cache};
 
 use super::session::Session;
 
-/// The smoke of a preset; evaluated again when its systems or the time are others.
+/// Particles and bounds of a preset's systems, cached until the systems or the time change.
 #[derive(Default)]
 pub struct Smoke {
-    /// With the bits of the time.
+    /// Key of the cache: systems, particle files, and the bits of the time.
     of: Option<(Vec<PresetSystem>, Vec<Option<Cache>>, u32)>,
     pub systems: Vec<Vec<Particle>>,
-    /// Of each system, sprites included.
+    /// Bounds of each system, sprites included.
     pub bounds: Vec<Bounds>,
 }
 
 impl Smoke {
-    /// What a session shows.
+    /// Returns the smoke that a session shows.
     pub fn of(&mut self, session: &Session) -> &Self {
         self.at(&session.document.preset, session.caches(), session.playback.time)
     }
@@ -28,7 +28,7 @@ impl Smoke {
         let is_same = self.of.as_ref().is_some_and(|(systems, its, at)| {
             *at == time.to_bits() && *systems == preset.systems && Cache::all_shared(its, &caches)
         });
-        // What cannot be drawn might have too many particles; the last good ones stay.
+        // An invalid preset might have too many particles, so the last valid ones stay.
         if !is_same && preset.validate().is_ok() {
             self.systems.resize_with(preset.systems.len(), Vec::new);
             for ((system, cache), particles) in preset.systems.iter().zip(&caches).zip(&mut self.systems) {
@@ -41,7 +41,7 @@ impl Smoke {
         self
     }
 
-    /// The box round all of it; a puff where there is none.
+    /// Returns the box around all systems, or around a single puff if there are no particles.
     pub fn bounds(&self) -> Bounds {
         let mut all = Bounds::EMPTY;
         for bounds in self.bounds.iter().filter(|bounds| !bounds.is_empty()) {
@@ -54,7 +54,8 @@ impl Smoke {
         all
     }
 
-    /// The middle of what is in a picture of this size, by how much sprites cover; of all of it where none is in it.
+    /// Returns the centre of the smoke that is inside an image of this size, weighted by coverage. If there is none,
+    /// returns the centre of all smoke.
     pub fn seen(&self, camera: &Camera, size: UVec2) -> Vec3 {
         let view = camera.view(size);
         let clip_from_world = view.clip_from_view * view.view_from_world;
@@ -65,7 +66,7 @@ impl Smoke {
         middle(self.systems.iter().flatten().filter(is_seen)).unwrap_or_else(|| self.bounds().centre())
     }
 
-    /// The middle of what a line from the eye goes through, on that line; `way` is of unit length.
+    /// Returns the point on a ray where the smoke that it crosses has its centre. `way` has unit length.
     pub fn met(&self, eye: Vec3, way: Vec3) -> Option<Vec3> {
         let is_met = |particle: &&Particle| {
             let far = (particle.position - eye).dot(way);
@@ -76,7 +77,7 @@ impl Smoke {
     }
 }
 
-/// The middle of sprites, weighted by how much they cover; `None` where they cover nothing.
+/// Returns the mean position of particles weighted by coverage; `None` if they cover nothing.
 fn middle<'a>(particles: impl Iterator<Item = &'a Particle>) -> Option<Vec3> {
     let mut sum = Vec4::ZERO;
     for particle in particles {
@@ -85,10 +86,11 @@ fn middle<'a>(particles: impl Iterator<Item = &'a Particle>) -> Option<Vec3> {
     (sum.w > 0.0).then(|| sum.xyz() / sum.w)
 }
 
-/// Lowest place of a light that is put somewhere, metres: above the ground.
+/// Lowest height of a light that is placed automatically, metres above the ground.
 const LOWEST: f32 = 0.2;
 
-/// Puts a light behind a point of the smoke, as an eye sees it, a bit outside all boxes there; a spot or sun shines at it.
+/// Puts a light behind a point of the smoke as seen from `eye`, slightly outside all boxes there. A spot or sun points
+/// at it.
 pub fn put_behind(light: &mut Light, eye: Vec3, point: Vec3, boxes: &[Bounds]) {
     let away = (point - eye).normalize_or(Vec3::NEG_Z);
     if light.kind == LightKind::Directional {
@@ -97,7 +99,7 @@ pub fn put_behind(light: &mut Light, eye: Vec3, point: Vec3, boxes: &[Bounds]) {
     }
     light.position = beyond(boxes, point, away);
     if light.position.y < LOWEST {
-        // The way down ends in the ground: it goes on along that.
+        // The ray ends in the ground, so the light is placed along the horizontal direction.
         light.position = beyond(boxes, point, away.with_y(0.0).normalize_or(Vec3::NEG_Z)).with_y(LOWEST);
     }
     if light.kind == LightKind::Spot {
@@ -105,17 +107,17 @@ pub fn put_behind(light: &mut Light, eye: Vec3, point: Vec3, boxes: &[Bounds]) {
     }
 }
 
-/// From a point, a bit past the last of the boxes that lie on a way.
+/// Returns a point slightly beyond the last of the boxes that a ray crosses.
 fn beyond(boxes: &[Bounds], point: Vec3, way: Vec3) -> Vec3 {
     let left = boxes.iter().filter_map(|bounds| leaves(bounds, point, way)).fold(0.0, f32::max);
     point + way * (1.1 * left + 0.2)
 }
 
-/// Metres from a point on a way to where a box is left; `None` where it is not met.
+/// Returns the distance along a ray at which it leaves a box, metres; `None` if it misses the box.
 fn leaves(bounds: &Bounds, point: Vec3, way: Vec3) -> Option<f32> {
     let (mut from, mut to) = (0.0_f32, f32::INFINITY);
     for axis in 0..3 {
-        // A way along a side is never quite that.
+        // Avoids a division by 0 for a ray parallel to a side.
         let slope = if way[axis].abs() < 1.0e-6 { 1.0e-6 } else { way[axis] };
         let ends = [bounds.min[axis], bounds.max[axis]].map(|end| (end - point[axis]) / slope);
         (from, to) = (from.max(ends[0].min(ends[1])), to.min(ends[0].max(ends[1])));
@@ -130,7 +132,7 @@ mod tests {
     const BOX: Bounds = Bounds { min: Vec3::new(-1.0, 0.0, -2.0), max: Vec3::new(1.5, 5.0, 1.0) };
 
     #[test]
-    fn a_light_behind_a_point_is_hidden_by_it_and_outside_the_box() {
+    fn a_light_behind_a_point_is_occluded_and_outside_the_box() {
         let eye = Vec3::new(4.0, 1.0, 6.0);
         for &kind in LightKind::ALL {
             for point in [BOX.centre(), Vec3::new(0.9, 4.5, 0.8), Vec3::new(-0.8, 2.0, -1.0)] {
@@ -148,7 +150,7 @@ mod tests {
                 }
             }
         }
-        // Past another one that stands behind, and not past one beside.
+        // Beyond another box behind it, but not beyond one beside it.
         let mut light = Light::default();
         let moved = |by: Vec3| Bounds { min: BOX.min + by, max: BOX.max + by };
         let (eye, point) = (Vec3::new(0.0, 2.0, 9.0), Vec3::new(0.0, 2.0, 0.0));
@@ -160,12 +162,12 @@ mod tests {
     }
 
     #[test]
-    fn seen_from_above_a_light_behind_the_smoke_stays_above_the_ground() {
+    fn a_light_put_behind_smoke_seen_from_above_stays_above_the_ground() {
         for eye in [Vec3::new(4.0, 9.0, 6.0), Vec3::new(0.25, 20.0, -0.5), Vec3::new(0.3, 6.0, 0.0)] {
             let mut light = Light { kind: LightKind::Spot, ..Light::default() };
             put_behind(&mut light, eye, BOX.centre(), &[BOX]);
             assert!(light.position.y >= LOWEST, "{}", light.position);
-            // Outside the box, at the far side of it, and shining at its middle.
+            // Outside the box, on its far side, and pointing at its centre.
             assert!(light.position.x < BOX.min.x || light.position.z < BOX.min.z, "{}", light.position);
             let to_middle = (BOX.centre() - light.position).normalize();
             assert!(light.direction.distance(to_middle) < 1e-5, "{}", light.direction);
@@ -173,10 +175,10 @@ mod tests {
     }
 
     #[test]
-    fn what_is_seen_is_what_is_in_the_picture_and_what_is_met_what_a_line_goes_through() {
+    fn the_visible_centre_ignores_smoke_outside_the_image_and_a_ray_finds_only_smoke_on_it() {
         let at = |x, y, z| Particle { position: Vec3::new(x, y, z), radius: 0.5, ..Particle::default() };
         let near = [at(0.5, 2.0, 0.0), at(-0.5, 2.0, 0.0)];
-        // Over the upper edge, and behind the eye.
+        // Above the upper edge, and behind the camera.
         let far = [at(0.0, 40.0, 0.0), at(0.0, 2.0, 20.0)];
         let smoke =
             |systems: [&[Particle]; 2]| Smoke { systems: systems.map(<[_]>::to_vec).into(), ..Smoke::default() };

@@ -1,4 +1,4 @@
-//! The shade tree: every stage live and small, in the order in which they are made.
+//! Strip of debug views: all views live and small, in the order of the frame.
 
 use eframe::egui::{self, Sense, Ui, Vec2};
 use glam::UVec2;
@@ -9,13 +9,13 @@ use super::easel::Easel;
 use super::session::Session;
 use crate::shade_tree::STAGES;
 
-/// Height of a name.
+/// Height of a label, points.
 const NAME: f32 = 16.0;
-/// Least width of an arrow.
+/// Least width of an arrow, points.
 const ARROW: f32 = 14.0;
 
-/// Draws the stages beside each other; a click shows one in the viewport, another click the picture again. `aspect` is the
-/// viewport's width over its height.
+/// Draws the views side by side. A click shows a view in the viewport, a second click shows the final image again.
+/// `aspect` is the width of the viewport over its height.
 pub fn strip(ui: &mut Ui, session: &mut Session, easel: &Easel, aspect: f32) {
     let count = STAGES.len() as f32;
     let width = (ui.available_width() - (count - 1.0) * ARROW) / count;
@@ -47,7 +47,7 @@ pub fn strip(ui: &mut Ui, session: &mut Session, easel: &Easel, aspect: f32) {
             let name = egui::Rect::from_min_max(picture.left_bottom(), rect.max);
             let text = egui::WidgetText::from(egui::RichText::new(label).small());
             let wrap = Some(egui::TextWrapMode::Truncate);
-            // A long name takes of the room of the arrows.
+            // A long label extends into the space of the arrows.
             let text = text.into_galley(ui, wrap, name.width() + 0.9 * arrow_width, egui::TextStyle::Small);
             let at = egui::pos2(name.center().x - 0.5 * text.size().x, name.center().y - 0.5 * text.size().y);
             ui.painter().galley(at, text, visuals.text_color());
@@ -59,7 +59,7 @@ pub fn strip(ui: &mut Ui, session: &mut Session, easel: &Easel, aspect: f32) {
     });
 }
 
-/// What is made of the stage before.
+/// Draws the arrow from one view to the next.
 fn arrow(ui: &mut Ui, size: Vec2) {
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
     let (middle, reach) = (rect.center(), 3.5);
@@ -71,7 +71,7 @@ fn arrow(ui: &mut Ui, size: Vec2) {
     ui.painter().add(egui::Shape::line(points.to_vec(), egui::Stroke::new(1.5, ui.visuals().weak_text_color())));
 }
 
-/// The stage that is made after one; round and round.
+/// Returns the view after one, cyclically.
 pub fn after(stage: ShadeTree) -> ShadeTree {
     let at = STAGES.iter().position(|(one, _)| *one == stage).map_or(0, |at| at + 1);
     STAGES[at % STAGES.len()].0

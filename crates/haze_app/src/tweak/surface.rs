@@ -1,4 +1,4 @@
-//! What to do when there is nothing to draw into: the window was resized, is covered, or has no size.
+//! Reaction to a surface that cannot be drawn to, because the window was resized, is hidden, or has no size.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -7,12 +7,13 @@ use eframe::wgpu::CurrentSurfaceTexture;
 
 use super::platform::clock::{Duration, Instant, sleep};
 
-/// Least time from one answer to the next.
+/// Least time between two answers.
 const PACE: Duration = Duration::from_millis(16);
 
 type Answer = dyn Fn(&CurrentSurfaceTexture) -> SurfaceErrorAction + Send + Sync;
 
-/// As egui answers, which tries again at once; but one that stays so is not tried faster than a screen would show it.
+/// Returns the handler of egui, which retries at once, slowed down to the rate of a screen while the surface stays
+/// unavailable.
 pub fn paced() -> Arc<Answer> {
     let usual = WgpuConfiguration::default().on_surface_status;
     let last = Mutex::new(None);
@@ -22,7 +23,7 @@ pub fn paced() -> Arc<Answer> {
         sleep(passed.map_or(Duration::ZERO, |passed| PACE.saturating_sub(passed)));
         *last = Some(Instant::now());
         match status {
-            // A frame that was late is wanted still: this asks for another.
+            // The frame is still needed, so this requests another.
             CurrentSurfaceTexture::Timeout => SurfaceErrorAction::Reconfigure,
             status => usual(status),
         }
@@ -34,7 +35,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_surface_that_stays_lost_is_not_asked_for_all_the_time() {
+    fn retries_for_a_lost_surface_are_limited_in_rate() {
         let (answer, start) = (paced(), Instant::now());
         for _ in 0..5 {
             assert!(matches!(answer(&CurrentSurfaceTexture::Lost), SurfaceErrorAction::RecreateSurface));

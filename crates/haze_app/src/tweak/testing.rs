@@ -1,4 +1,4 @@
-//! A window for tests: driven by its accessible names, drawn by a real adapter.
+//! Window for tests: controlled through accessible names, drawn by a real adapter.
 
 use std::path::Path;
 
@@ -15,12 +15,12 @@ use super::reload::ShaderFolder;
 use super::session::Session;
 use super::window::{Start, Window};
 
-/// A window of a preset, as it stands when it has settled.
+/// Opens a window with a preset and waits until it has settled.
 pub fn window(preset: &str, size: Vec2, theme: egui::Theme) -> Harness<'static, Window> {
     window_with(preset, size, theme, ShaderFolder::None)
 }
 
-/// The same with a folder of shaders.
+/// Like [`window`], with a folder of shaders.
 pub fn window_with(preset: &str, size: Vec2, theme: egui::Theme, shaders: ShaderFolder) -> Harness<'static, Window> {
     open(start(preset, shaders), size, theme)
 }
@@ -30,7 +30,7 @@ fn start(preset: &str, shaders: ShaderFolder) -> Start {
     Start { session, shaders, keeping: None, layout: Layout::default(), has_dialogs: false }
 }
 
-/// The same, begun in any way.
+/// Like [`window`], with any start state.
 pub fn open(start: Start, size: Vec2, theme: egui::Theme) -> Harness<'static, Window> {
     settled(Harness::builder().with_size(size).with_theme(theme).wgpu(), start)
 }
@@ -42,7 +42,7 @@ fn settled(builder: HarnessBuilder<Window>, start: Start) -> Harness<'static, Wi
     harness
 }
 
-/// The same on a device as windows have it, which is measured where it can be.
+/// Like [`window`], on a device with timestamp queries if the adapter has them.
 pub fn measured(preset: &str, size: Vec2) -> Harness<'static, Window> {
     let mut setup = egui_kittest::wgpu::default_wgpu_setup();
     if let egui_wgpu::WgpuSetup::CreateNew(setup) = &mut setup {
@@ -57,7 +57,7 @@ pub fn row_menu(harness: &mut Harness<'_, Window>, name: &str) {
     click_at(harness, pos, egui::PointerButton::Secondary);
 }
 
-/// Where a row's name stands: at the left of its control.
+/// Returns the position of a row's name, to the left of its control.
 pub fn row_name(harness: &Harness<'_, Window>, name: &str) -> egui::Pos2 {
     let is_control = |node: &egui_kittest::Node<'_>| {
         [egui::Role::Slider, egui::Role::ComboBox, egui::Role::SpinButton].contains(&node.accesskit_node().role())
@@ -66,7 +66,7 @@ pub fn row_name(harness: &Harness<'_, Window>, name: &str) -> egui::Pos2 {
     control.left_center() - egui::vec2(115.0, 0.0)
 }
 
-/// As a pointer clicks.
+/// Sends a click of the pointer.
 pub fn click_at(harness: &mut Harness<'_, Window>, pos: egui::Pos2, button: egui::PointerButton) {
     harness.hover_at(pos);
     for pressed in [true, false] {
@@ -76,13 +76,13 @@ pub fn click_at(harness: &mut Harness<'_, Window>, pos: egui::Pos2, button: egui
     harness.run_steps(3);
 }
 
-/// What the window shows.
+/// Returns an image of the window.
 pub fn picture(harness: &mut Harness<'_, Window>) -> RgbaImage {
     harness.step();
     harness.render().unwrap()
 }
 
-/// Mean brightness of a part of a picture, 0 to 255.
+/// Returns the mean brightness of a part of an image, 0 to 255.
 pub fn brightness(picture: &RgbaImage, part: egui::Rect) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for y in part.top() as u32..part.bottom() as u32 {

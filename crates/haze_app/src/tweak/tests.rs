@@ -1,4 +1,4 @@
-//! The whole window: what is done to a control is seen in the picture.
+//! Tests of the whole window: actions on controls are checked in the image.
 
 use eframe::egui::{Key, Modifiers, Rect, Role, Theme, Vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -15,12 +15,12 @@ fn column() -> Harness<'static, Window> {
     window("column", SIZE, Theme::Dark)
 }
 
-/// Where the picture is.
+/// Returns the rectangle of the viewport.
 fn viewport(harness: &Harness<'_, Window>) -> Rect {
     harness.get_by_label("viewport").rect()
 }
 
-/// Brightness of the picture.
+/// Returns the brightness of the viewport.
 fn shown(harness: &mut Harness<'_, Window>) -> f64 {
     let part = viewport(harness);
     brightness(&picture(harness), part)
@@ -36,24 +36,24 @@ fn set(harness: &mut Harness<'_, Window>, name: &str, value: f64) {
     harness.run_steps(3);
 }
 
-/// Drivers round smoke a step this way or that.
+/// Compares the window with its snapshot. The threshold allows for different rounding by drivers.
 fn compare(theme: Theme, name: &str) {
     let mut harness = window("column", SIZE, theme);
     harness.snapshot_options(name, &SnapshotOptions::new().threshold(2.0).max_failed_pixels(2000));
 }
 
 #[test]
-fn the_window_looks_as_it_did_in_the_dark() {
+fn the_window_matches_its_dark_snapshot() {
     compare(Theme::Dark, "window_dark");
 }
 
 #[test]
-fn the_window_looks_as_it_did_in_the_light() {
+fn the_window_matches_its_light_snapshot() {
     compare(Theme::Light, "window_light");
 }
 
 #[test]
-fn controls_change_the_picture_the_way_they_say() {
+fn controls_change_the_image_as_their_names_say() {
     let mut harness = column();
     let before = shown(&mut harness);
     set(&mut harness, "exposure", 2.0);
@@ -71,7 +71,7 @@ fn click(harness: &mut Harness<'_, Window>, button: &str) {
     harness.run_steps(2);
 }
 
-/// The figure in the corner, once it is there and stands still.
+/// Returns the PSNR in the corner, once it is shown and no longer changes.
 fn decibels(harness: &mut Harness<'_, Window>) -> f32 {
     let mut last = None;
     for _ in 0..100 {
@@ -88,7 +88,7 @@ fn decibels(harness: &mut Harness<'_, Window>) -> f32 {
 }
 
 #[test]
-fn a_second_picture_shows_what_a_saving_costs() {
+fn a_comparison_shows_the_image_error_of_a_saving() {
     let mut harness = column();
     let alone = shown(&mut harness);
     click(&mut harness, "Full");
@@ -101,7 +101,7 @@ fn a_second_picture_shows_what_a_saving_costs() {
     assert!(saved > 0.2 && saved < 0.2 * alone, "{saved}");
     click(&mut harness, "Forward");
     assert!(shown(&mut harness) > 2.0 * saved);
-    // Made in the background: until then the picture stands alone.
+    // The image is rendered in the background; until then no second image is shown.
     click(&mut harness, "CPU");
     let mut judged = alone;
     for _ in 0..200 {
@@ -118,7 +118,7 @@ fn a_second_picture_shows_what_a_saving_costs() {
 }
 
 #[test]
-fn what_is_compared_can_be_taken_over() {
+fn values_of_the_compared_preset_can_be_copied() {
     let mut harness = column();
     let before = shown(&mut harness);
     set(&mut harness, "exposure", 3.0);
@@ -139,7 +139,7 @@ fn what_is_compared_can_be_taken_over() {
 }
 
 #[test]
-fn the_animation_of_sprites_is_frozen_beside_the_clock() {
+fn sprite_animation_can_be_frozen_next_to_the_clock() {
     let mut harness = column();
     let is_frozen = |harness: &Harness<'_, Window>| {
         harness.state().session.document.preset.systems.iter().all(|system| system.settings.sprite.freeze_animation)
@@ -152,7 +152,7 @@ fn the_animation_of_sprites_is_frozen_beside_the_clock() {
 }
 
 #[test]
-fn undo_says_what_it_takes_back() {
+fn undo_names_the_step() {
     let mut harness = column();
     set(&mut harness, "exposure", 2.0);
     let said = |harness: &Harness<'_, Window>| harness.query_all_by_label("exposure").count();
@@ -163,7 +163,7 @@ fn undo_says_what_it_takes_back() {
 }
 
 #[test]
-fn any_setting_is_found_and_gone_to() {
+fn any_setting_is_found_and_brought_into_view() {
     let mut harness = column();
     harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
     harness.run_steps(2);
@@ -176,7 +176,7 @@ fn any_setting_is_found_and_gone_to() {
 }
 
 #[test]
-fn a_stage_of_the_strip_is_seen_full() {
+fn a_click_on_the_strip_shows_that_view_in_the_viewport() {
     let mut harness = column();
     let before = shown(&mut harness);
     harness.get_by_label("Specular scatter").click();
@@ -216,11 +216,11 @@ fn time_is_played_and_stepped() {
     assert!((brightness(&picture(&mut harness), part) - brightness(&before, part)).abs() < 0.01);
 }
 
-/// Writes every tab in several sizes and both themes to the folder that HAZE_LOOK names, to be looked at; HAZE_SIZE=WxH for one
-/// size alone.
+/// Writes images of every tab in several sizes and both themes to the folder that HAZE_LOOK names, for visual
+/// inspection. HAZE_SIZE=WxH selects a single size.
 #[test]
-#[ignore = "for who wants to look"]
-fn pictures_of_every_tab() {
+#[ignore = "writes images for visual inspection"]
+fn write_images_of_every_tab() {
     let Some(folder) = std::env::var_os("HAZE_LOOK").map(std::path::PathBuf::from) else { return };
     let wanted = std::env::var("HAZE_SIZE").ok();
     let sizes = [(1280, 800), (2560, 1440), (640, 400)]
@@ -234,7 +234,7 @@ fn pictures_of_every_tab() {
         for (_, name, _) in super::panel::settings::TABS {
             harness.get_by_label(name).click();
             harness.run_steps(4);
-            // What is read and counted beside the window comes.
+            // Waits for results of worker threads.
             for _ in 0..5 {
                 std::thread::sleep(std::time::Duration::from_millis(20));
                 picture(&mut harness);

@@ -1,4 +1,4 @@
-//! The window: what is where, and the order in which a frame happens.
+//! Main window: its layout, and the order of work in a frame.
 
 use std::path::Path;
 
@@ -45,23 +45,23 @@ pub struct Window {
     screenshot: Screenshot,
 }
 
-/// What a window begins with.
+/// State that a window starts with.
 pub struct Start {
     pub session: Session,
     pub shaders: ShaderFolder,
-    /// Nothing outlives it without.
+    /// `None` persists nothing.
     pub keeping: Option<Keeping>,
     pub layout: Layout,
-    /// The system may have dialogs for files.
+    /// The system may have file dialogs.
     pub has_dialogs: bool,
 }
 
-/// What it means that the CPU draws.
-const SLOW: &str = "The CPU draws: coarsely while something moves. A smaller window is quicker.";
+/// Tooltip where the CPU draws.
+const SLOW: &str = "The CPU draws the picture, at a low resolution while something moves. A smaller window is faster.";
 
 impl Window {
     /// # Errors
-    /// [`Error::Io`] where the system has no thread left.
+    /// [`Error::Io`] if the system cannot start another thread.
     pub fn new(easel: Easel, start: Start) -> Result<Self, Error> {
         let Start { mut session, shaders, keeping, layout, has_dialogs } = start;
         session.follow_window(easel.egui());
@@ -94,7 +94,7 @@ impl Window {
         })
     }
 
-    /// What another window can go on with.
+    /// Returns the state that another window can continue with.
     pub fn into_start(self) -> Start {
         let Self { session, shaders, keeping, layout, has_dialogs, .. } = self;
         Start { session, shaders, keeping, layout, has_dialogs }
@@ -120,12 +120,12 @@ impl Window {
             if let Some(action) = panel::file::menu(ui, &mut self.session) {
                 self.act(action, ui.ctx());
             }
-            // A quarter of the row.
+            // A quarter of the row, at about 7 points a character.
             let letters = (0.25 * ui.available_width() / 7.0).clamp(12.0, 40.0) as usize;
             ui.strong(short(&self.session.document.title(), letters))
                 .on_hover_text(self.session.document.path().to_string_lossy());
             if self.session.document.is_dirty() {
-                ui.label("•").on_hover_text("Changed since it was saved");
+                ui.label("•").on_hover_text("Has unsaved changes");
             }
             ui.separator();
             let undo = self.session.document.history().undo_name().map(str::to_owned);
@@ -143,7 +143,7 @@ impl Window {
             let others: f32 = others.map(|name| width(ui, name) + ui.spacing().item_spacing.x).iter().sum();
             panel::compare::panel(ui, &mut self.session, ui.available_width() - others);
             let inspect = ui.selectable_label(self.session.inspect.is_on, "Inspect");
-            if inspect.on_hover_text("The numbers of the pixel under the pointer (I); a click keeps it").clicked() {
+            if inspect.on_hover_text("Values of the pixel under the pointer (I); a click keeps it").clicked() {
                 self.session.inspect.toggle();
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -152,7 +152,7 @@ impl Window {
                 if keys.clicked() {
                     self.act(Action::Help, ui.ctx());
                 }
-                let find = ui.button("Find").on_hover_text("Any setting, by its name or what it does");
+                let find = ui.button("Find").on_hover_text("Finds a setting by its name or description");
                 self.session.hints.see(Place::Find, find.rect);
                 if find.clicked() {
                     self.act(Action::Find, ui.ctx());
@@ -175,7 +175,7 @@ impl Window {
                     let text = egui::RichText::new(&message.text);
                     let text = if message.is_error { text.color(ui.visuals().error_fg_color) } else { text };
                     let label = ui.add(egui::Label::new(text).truncate().sense(egui::Sense::click()));
-                    is_read = label.on_hover_text("A click puts it away").clicked();
+                    is_read = label.on_hover_text("Click to dismiss").clicked();
                 }
             });
         };
@@ -185,27 +185,27 @@ impl Window {
         }
     }
 
-    /// Does what keys ask for, unless something is typed.
+    /// Runs the actions of pressed keys, unless text is being edited.
     fn keys(&mut self, ui: &Ui) {
         let is_asked = self.filing.waiting.is_some() || self.filing.typed.is_some();
         let is_modal = self.session.search.is_open || self.session.show.help || self.has_browser || is_asked;
-        // A menu that is open has the keys: Escape closes it.
+        // An open menu receives the keys, such as Escape to close it.
         let is_menu = egui::Popup::is_any_open(ui.ctx());
         if ui.ctx().text_edit_focused() || is_modal || is_menu || self.viewport.is_dragging() {
             return;
         }
-        // Stops are pasted where stops are.
+        // Gradient stops are pasted into the gradient editor.
         let is_for_stops = self.session.show.tab == Tab::Ramps && self.session.ramps.takes_paste();
         for text in ui.input(pasted).into_iter().filter(|_| !is_for_stops) {
             self.session.paste(&text);
         }
-        // What lies on top goes first.
+        // Escape closes the topmost item first.
         if ui.input(|input| input.key_pressed(egui::Key::Escape))
             && (self.exporting.dismiss() || self.session.hints.dismiss())
         {
             ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Escape));
         }
-        // Space and the like are for the control that has the keyboard.
+        // A focused control receives Space and other keys without modifiers.
         let is_free = ui.memory(egui::Memory::focused).is_none();
         for entry in ACTIONS.iter().filter(|entry| is_free || entry.keys.modifiers.any()) {
             if ui.input_mut(|input| input.consume_shortcut(&entry.keys)) {
@@ -251,7 +251,7 @@ impl Window {
     }
 }
 
-/// Texts that were pasted.
+/// Returns the texts that were pasted in this frame.
 fn pasted(input: &egui::InputState) -> Vec<String> {
     let texts = input.events.iter().map(|event| match event {
         egui::Event::Paste(text) => Some(text.clone()),
@@ -260,7 +260,7 @@ fn pasted(input: &egui::InputState) -> Vec<String> {
     texts.flatten().collect()
 }
 
-/// Light or dark. (egui's own buttons want signs that its fonts lack.)
+/// Theme menu. It is not egui's own button, because the fonts lack its symbols.
 fn theme(ui: &mut Ui) {
     let mut preference = ui.ctx().options(|options| options.theme_preference);
     ui.menu_button("Theme", |ui| {
@@ -300,7 +300,7 @@ impl eframe::App for Window {
             self.layout.strip = Some(shown.response.rect.height());
         }
         let width = self.layout.settings.unwrap_or((0.18 * ui.available_width()).clamp(370.0, 440.0));
-        // The picture is the largest thing, in a small window too.
+        // The image stays the largest part, even in a small window.
         let most = (0.45 * ui.available_width()).clamp(240.0, 560.0);
         let settings = egui::Panel::right("settings").default_size(width).size_range(240.0..=most);
         let shown = settings.show(ui, |ui| panel::settings::panel(ui, &mut self.session));

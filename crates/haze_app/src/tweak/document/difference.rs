@@ -1,4 +1,4 @@
-//! What differs between two presets: names for the steps of undo, marks, and copying across.
+//! Differences between two presets: names of undo steps, marks of changed fields, and copies of fields.
 
 use std::collections::HashMap;
 
@@ -7,8 +7,8 @@ use haze::settings::{Value, path_of, values, walk};
 
 use crate::tweak::lights::name_of;
 
-/// The paths of the fields that differ, `systems[0].settings.boost`. Where lists are not as long as each other the list is one
-/// field, `lights`.
+/// Returns the paths of the fields that differ, such as `systems[0].settings.boost`. A list whose length differs counts
+/// as one field, such as `lights`.
 pub fn changed_fields(before: &Preset, after: &Preset) -> Vec<String> {
     let pairs = lists(before).into_iter().zip(lists(after));
     let lists: Vec<_> = pairs.filter(|(before, after)| before != after).map(|((list, _), _)| list).collect();
@@ -19,17 +19,18 @@ pub fn changed_fields(before: &Preset, after: &Preset) -> Vec<String> {
     changed.chain(lists.iter().map(|&list| list.to_owned())).collect()
 }
 
-/// The lists of a preset, and how long they are.
+/// Returns the lists of a preset and their lengths.
 fn lists(preset: &Preset) -> [(&'static str, usize); 2] {
     [("lights", preset.lights.len()), ("systems", preset.systems.len())]
 }
 
-/// Whether a field is `above`, or in it.
+/// Returns true if a path is `above` or lies below it.
 fn is_below(path: &str, above: &str) -> bool {
     path.strip_prefix(above).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
-/// Gives `to` what `from` has at a path: a field, a group, an item of a list, or a whole list. What only one of them has is left.
+/// Copies the values at a path: a field, a group, an item of a list, or a whole list. Fields that only one preset has
+/// are skipped.
 pub fn copy_field(from: &Preset, to: &mut Preset, path: &str) {
     match path {
         "lights" => to.lights.clone_from(&from.lights),
@@ -46,10 +47,11 @@ pub fn copy_field(from: &Preset, to: &mut Preset, path: &str) {
     }
 }
 
-/// What changes when the camera is moved.
+/// Fields that a camera move changes.
 const MOVES: [&str; 2] = ["camera.position", "camera.target"];
 
-/// A name for a step between two presets: "boost of smoke", "colour of sun 2", "camera", "3 fields of smoke", "light added".
+/// Returns a name for the step between two presets: "boost of smoke", "colour of sun 2", "camera", "3 fields of smoke",
+/// "light added".
 pub fn step_name(before: &Preset, after: &Preset) -> String {
     let changed = changed_fields(before, after);
     let Some(first) = changed.first() else { return "change".into() };
@@ -71,7 +73,7 @@ pub fn step_name(before: &Preset, after: &Preset) -> String {
     }
 }
 
-/// The list and place that a field is in: `systems[1].name` gives `systems` and 1.
+/// Returns the list and the index that a field belongs to: `systems[1].name` gives `systems` and 1.
 fn owner_of(path: &str) -> Option<(&str, usize)> {
     let (list, rest) = path.split_once('[')?;
     let (index, _) = rest.split_once(']')?;
@@ -95,7 +97,7 @@ mod tests {
         change(&mut after);
         let name = step_name(&before, &after);
         let changed = changed_fields(&before, &after);
-        // Copied across one by one, they are the same.
+        // Copied one by one, all fields become equal.
         let mut copied = before.clone();
         changed.iter().for_each(|path| copy_field(&after, &mut copied, path));
         assert_eq!(changed_fields(&copied, &after), [""; 0]);
@@ -126,7 +128,7 @@ mod tests {
             "2 fields of sun 2",
         );
         expect(said(|preset| (preset.time, preset.camera.fov) = (0.0, 20.0)), "time camera.fov", "2 fields");
-        // A NaN is a change once, not for ever.
+        // A NaN counts as a change once, and not in every frame.
         let nan = |preset: &mut Preset| preset.systems[0].settings.boost = f32::NAN;
         let mut preset = Preset::load("column").unwrap();
         assert_eq!(
@@ -141,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn groups_and_items_are_copied_whole_and_nothing_else() {
+    fn copying_a_group_or_item_changes_nothing_else() {
         let from = Preset::load("backlit_fog").unwrap();
         let before = Preset::load("column").unwrap();
         let mut to = before.clone();
@@ -152,7 +154,7 @@ mod tests {
         copy_field(&from, &mut to, "lights[1]");
         assert_eq!(to.lights[1], from.lights[1]);
         to.lights[1] = before.lights[1];
-        // Only one has it, or nobody.
+        // Only one of the presets has it, or none.
         copy_field(&from, &mut to, "lights[3].colour");
         copy_field(&from, &mut to, "systems[0].settings.boos");
         assert_eq!(to, before);

@@ -1,4 +1,4 @@
-//! A preset while it is worked on.
+//! Preset that is being edited.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Weak};
@@ -13,32 +13,32 @@ use crate::inputs::pictures_of;
 use crate::tweak::platform::assets::caches_of;
 use crate::tweak::platform::files::{self, Stamp};
 
-/// A preset, where it came from, and how it got to be what it is.
+/// Preset with its file and its undo history.
 pub struct Document {
-    /// What panels change.
+    /// Edited preset; panels change it directly.
     pub preset: Preset,
-    /// What panels change of ramps; they are written as soon as a step is done.
+    /// Edited recipes. They are written as soon as a step is complete.
     pub recipes: Recipes,
     history: History<Work>,
-    /// What is being done to stops, for the name of that step.
+    /// Edit of gradient stops in progress, for the name of its step.
     gradient_step: Option<GradientStep>,
-    /// A file, or the name of a built-in preset.
+    /// Path of a file, or name of a built-in preset.
     path: PathBuf,
-    /// What is in the file, if it is known.
+    /// Content of the file, if it is known.
     saved: Option<Preset>,
-    /// The text of the file as it was read or written last.
+    /// Text of the file when it was last read or written.
     text: String,
-    /// The file when its text was that; none where it has to be read to know.
+    /// Stamp of the file with that text; `None` if the file must be read to compare.
     stamp: Option<Stamp>,
-    /// What is being written over it elsewhere, as long as it is.
+    /// Text that another thread is writing to the file, while it does so.
     writing: Weak<String>,
 }
 
-/// A document as it is to be saved: all that it takes to write it, on any thread.
+/// Snapshot of a document to be saved. Any thread can write it.
 pub struct Saving {
     preset: Preset,
     text: Arc<String>,
-    /// Where its pictures are, and where it goes.
+    /// Source file, which tells where the images are, and target file.
     from: PathBuf,
     path: PathBuf,
 }
@@ -48,7 +48,7 @@ impl Saving {
         &self.path
     }
 
-    /// Writes the file, and the pictures that the preset names where it goes into another folder.
+    /// Writes the file. If it goes to another folder, the images that the preset names are copied there.
     pub fn write(&self) -> Result<(), Error> {
         let folder = |path: &Path| path.parent().unwrap_or(Path::new("")).to_path_buf();
         copy_beside(&self.preset, &folder(&self.from), &folder(&self.path))?;
@@ -56,21 +56,21 @@ impl Saving {
     }
 }
 
-/// How the file is, compared with what was read from it or written to it last.
+/// State of the file, compared with the text that was last read or written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OnDisk {
-    /// It is the same.
+    /// It has the same text.
     Same,
     /// Another program has written it.
     Changed,
-    /// It is not there.
+    /// It does not exist.
     Gone,
 }
 
 impl Document {
     /// Opens a file, or a built-in preset by name.
     pub fn open(name_or_path: &Path) -> Result<Self, Error> {
-        // Before it is read: written in between, it is found to have changed.
+        // The stamp is taken before the file is read, so that a write in between counts as a change.
         let stamp = Stamp::of(name_or_path);
         let (preset, text) = files::read_preset(name_or_path)?;
         let recipes = Recipes::default();
@@ -79,7 +79,7 @@ impl Document {
         Ok(Self { saved, preset, recipes, history, gradient_step: None, path, text, stamp, writing: Weak::new() })
     }
 
-    /// What was being done to a preset when the program was ended. The file that it came from need not be there any more.
+    /// Returns the document for recovered work. Its original file need not exist any more.
     pub fn recovered(preset: Preset, name_or_path: &Path) -> Self {
         let mut document = Self::open(name_or_path).unwrap_or_else(|_| Self {
             recipes: Recipes::default(),
@@ -96,34 +96,34 @@ impl Document {
         document
     }
 
-    /// The file, or the name of the built-in preset: where pictures are looked for.
+    /// Returns the file, or the name of the built-in preset. Images are looked up relative to it.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The files that its picture is made from, of which some may be missing: what is to be watched.
+    /// Returns the files that the image depends on, for watching. Some may be missing.
     pub fn files(&self, folders: &PictureFolders) -> Vec<PathBuf> {
         let own = (!self.is_built_in()).then(|| self.path.clone());
         let pictures = pictures_of(folders, &self.preset);
         own.into_iter().chain(pictures).chain(caches_of(folders, &self.preset)).collect()
     }
 
-    /// Whether it has no file yet.
+    /// Returns true if the document is a built-in preset, without a file.
     pub fn is_built_in(&self) -> bool {
         self.path.to_str().and_then(|name| builtin::find(builtin::PRESETS, name)).is_some()
     }
 
-    /// The preset as it is in the file, if it is there: what marks and resets go by.
+    /// Returns the preset in the file, if it is known. Marks and resets refer to it.
     pub fn saved(&self) -> Option<&Preset> {
         self.saved.as_ref()
     }
 
-    /// Whether something would be lost without saving.
+    /// Returns true if there are unsaved changes.
     pub fn is_dirty(&self) -> bool {
         self.saved.as_ref() != Some(&self.preset)
     }
 
-    /// Begins to save it: [`Saving::write`] does the work, and [`Document::finish_saving`] has to be told of its end.
+    /// Begins to save. [`Saving::write`] does the work, and [`Document::finish_saving`] must follow.
     pub fn begin_saving(&mut self) -> Result<Saving, Error> {
         if self.is_built_in() {
             let expected = "another name: this preset is built in";
@@ -132,12 +132,12 @@ impl Document {
         self.begin_saving_as(&self.path.clone())
     }
 
-    /// What it is called: as its file, or as the built-in preset.
+    /// Returns the title: the name of the file or of the built-in preset.
     pub fn title(&self) -> String {
         self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// Begins to write another file, which is the document's once it is there.
+    /// Begins to save to another file, which becomes the document's file once it is written.
     pub fn begin_saving_as(&mut self, path: &Path) -> Result<Saving, Error> {
         if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
             return Err(FieldError::new("save as", path.display(), "a name that ends in .json").into());
@@ -148,21 +148,22 @@ impl Document {
         Ok(Saving { preset: self.preset.clone(), text, from: self.path.clone(), path: path.into() })
     }
 
-    /// Being written, it has not come to its end yet.
+    /// Returns true while a save is in progress.
     pub fn is_being_saved(&self) -> bool {
         self.writing.strong_count() > 0
     }
 
-    /// What was begun has come to its end; of another document, that is nothing to this one.
+    /// Ends a save. A save that belongs to another document is ignored.
     pub fn finish_saving(&mut self, saving: Saving, is_written: bool) {
         let Saving { preset, text, path, .. } = saving;
         if is_written && Weak::as_ptr(&self.writing) == Arc::as_ptr(&text) {
-            // The next look reads it: another program may have been quicker than a stamp could be taken.
+            // The stamp is left open, so that the next check reads the file: another program may have written it
+            // meanwhile.
             (self.text, self.stamp, self.saved, self.path) = (text.to_string(), None, Some(preset), path);
         }
     }
 
-    /// Reads the file again; what was changed is one step back.
+    /// Reads the file again, as a step that can be undone.
     pub fn revert(&mut self) -> Result<(), Error> {
         let Self { preset, text, stamp, .. } = Self::open(&self.path)?;
         (self.text, self.stamp, self.saved) = (text, stamp, Some(preset.clone()));
@@ -170,7 +171,7 @@ impl Document {
         Ok(())
     }
 
-    /// Whether another program has written the file. What is saved here does not count.
+    /// Compares the file with the text that was last read or written. A save by this process is no change.
     pub fn on_disk(&mut self) -> OnDisk {
         if self.is_built_in() {
             return OnDisk::Same;
@@ -188,17 +189,17 @@ impl Document {
         }
     }
 
-    /// Leaves the file as another program has written it, and goes on with what is here, which is not saved then.
+    /// Keeps the edited version without touching the file. The document then has unsaved changes.
     pub fn keep_mine(&mut self) {
         (self.stamp, self.saved) = (Stamp::of(&self.path), None);
     }
 
-    /// The preset as a text, to be pasted elsewhere.
+    /// Returns the preset as text for the clipboard.
     pub fn to_text(&self) -> String {
         self.preset.to_text("")
     }
 
-    /// Makes it the preset of a text, in one step; what is no preset changes nothing.
+    /// Replaces the preset by that of a text, as one step. An invalid text changes nothing.
     pub fn paste(&mut self, text: &str) -> Result<(), Error> {
         self.put(Preset::parse(Path::new("pasted text"), text)?, "paste");
         Ok(())
@@ -210,9 +211,9 @@ impl Document {
         self.history.track(&self.work(), false, |_, _| name.into());
     }
 
-    /// Sees what panels have changed; once a frame, as [`History::track`].
+    /// Records changes that panels made, like [`History::track`]. Call once a frame.
     pub fn track(&mut self, is_held: bool) {
-        // Nothing is copied while nothing changes.
+        // Nothing is cloned while nothing changes.
         let (preset, recipes) = self.history.settled();
         if *preset == self.preset && *recipes == self.recipes {
             self.history.rest();
@@ -224,7 +225,7 @@ impl Document {
         }
     }
 
-    /// Says what is being done to the stops of a ramp.
+    /// Names the edit of gradient stops that is in progress.
     pub fn name_gradient_step(&mut self, ramp: &str, step: &'static str) {
         self.gradient_step = Some((ramp.into(), step));
     }
@@ -233,7 +234,7 @@ impl Document {
         (self.preset.clone(), self.recipes.clone())
     }
 
-    /// Takes back a step, and gives its name.
+    /// Undoes a step and returns its name.
     pub fn undo(&mut self) -> Option<&str> {
         let mut work = self.work();
         let name = self.history.undo(&mut work);
@@ -241,7 +242,7 @@ impl Document {
         name
     }
 
-    /// Does the last step that was undone again, and gives its name.
+    /// Redoes the step that was last undone and returns its name.
     pub fn redo(&mut self) -> Option<&str> {
         let mut work = self.work();
         let name = self.history.redo(&mut work);
@@ -249,7 +250,7 @@ impl Document {
         name
     }
 
-    /// For the names of what there is to undo and redo.
+    /// Returns the history, for the names of its steps.
     pub fn history(&self) -> &History<Work> {
         &self.history
     }

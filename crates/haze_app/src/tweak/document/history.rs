@@ -2,18 +2,19 @@
 
 use std::collections::VecDeque;
 
-/// Most steps that can be undone.
+/// Largest number of steps that can be undone.
 pub const MOST_STEPS: usize = 500;
 
-/// The steps that led to a value, and those that were undone. A step is the whole value: a preset is a few kilobytes.
+/// Steps that led to a value, and steps that were undone. Each step stores the whole value: a preset has a few
+/// kilobytes.
 pub struct History<T> {
-    /// The value after the last step.
+    /// Value after the last step.
     settled: T,
-    /// Before each step, oldest first.
+    /// Value before each step, the oldest first.
     past: VecDeque<Step<T>>,
-    /// After each undone step, the last undone one last.
+    /// Value after each undone step; the last undone step is last.
     future: Vec<Step<T>>,
-    /// The name of the step that is being made, while a control is held.
+    /// Name of the step in progress, while a control is held.
     open: Option<String>,
 }
 
@@ -27,20 +28,21 @@ impl<T: Clone + PartialEq> History<T> {
         Self { settled: value, past: VecDeque::new(), future: Vec::new(), open: None }
     }
 
-    /// The value after the last step.
+    /// Returns the value after the last step.
     pub fn settled(&self) -> &T {
         &self.settled
     }
 
-    /// As [`History::track`] with the value after the last step.
+    /// Like [`History::track`] with an unchanged value.
     pub fn rest(&mut self) {
         self.open = None;
     }
 
-    /// To be called once a frame, after the panels. While `is_held` (a pointer is down on a control, a text field has the
-    /// keyboard) changes gather in one step, which is named and closed by the first frame after.
+    /// Records changes of a value. Call once a frame, after the panels. While `is_held` (a pointer is down on a
+    /// control, or a text field has the keyboard focus), changes are merged into one step, which the first frame
+    /// afterwards names and closes.
     ///
-    /// A value that does not equal itself, as one with a NaN in it, is no step.
+    /// A value that does not equal itself, because it contains a NaN, is no step.
     pub fn track(&mut self, current: &T, is_held: bool, name: impl FnOnce(&T, &T) -> String) {
         if !self.is_changed(current) {
             self.rest();
@@ -51,7 +53,7 @@ impl<T: Clone + PartialEq> History<T> {
         }
     }
 
-    /// Takes back the last step, or the one that is being made, and gives its name.
+    /// Undoes the last step, or the one in progress, and returns its name.
     pub fn undo(&mut self, current: &mut T) -> Option<&str> {
         if self.is_changed(current) {
             let name = self.open.take().unwrap_or_else(|| "change".into());
@@ -64,7 +66,8 @@ impl<T: Clone + PartialEq> History<T> {
         self.redo_name()
     }
 
-    /// Does the last undone step again, and gives its name. What has been changed since is a step and leaves nothing to redo.
+    /// Redoes the last undone step and returns its name. A change made since then is a step of its own, and leaves
+    /// nothing to redo.
     pub fn redo(&mut self, current: &mut T) -> Option<&str> {
         if self.is_changed(current) {
             return None;
@@ -76,12 +79,12 @@ impl<T: Clone + PartialEq> History<T> {
         self.undo_name()
     }
 
-    /// What [`History::undo`] would take back.
+    /// Returns the name of the step that [`History::undo`] would undo.
     pub fn undo_name(&self) -> Option<&str> {
         self.open.as_deref().or_else(|| self.past.back().map(|step| step.name.as_str()))
     }
 
-    /// What [`History::redo`] would do again.
+    /// Returns the name of the step that [`History::redo`] would redo.
     pub fn redo_name(&self) -> Option<&str> {
         self.future.last().filter(|_| self.open.is_none()).map(|step| step.name.as_str())
     }
@@ -121,7 +124,7 @@ mod tests {
         }
         history.track(&3, false, name);
         assert_eq!(history.undo_name(), Some("0 to 3"));
-        // Moved and put back is none.
+        // A change that is reverted before the release is no step.
         history.track(&4, true, name);
         history.track(&3, true, name);
         history.track(&3, false, name);
@@ -132,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn undo_in_the_middle_of_a_drag_takes_the_drag_back() {
+    fn undo_during_a_drag_reverts_the_drag() {
         let (mut history, mut value) = (History::new(0), 1);
         history.track(&value, true, name);
         assert_eq!(history.undo(&mut value), Some("0 to 1"));
@@ -140,7 +143,7 @@ mod tests {
         history.track(&value, true, name);
         assert_eq!(history.redo(&mut value), Some("0 to 1"));
         assert_eq!(value, 1);
-        // Before a frame has seen the change, too.
+        // The same before a frame has seen the change.
         value = 2;
         assert_eq!(history.redo(&mut value), None);
         assert_eq!(history.undo(&mut value), Some("change"));
@@ -148,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn a_nan_is_no_step_and_undo_takes_it_away() {
+    fn a_nan_is_no_step_and_undo_removes_it() {
         let mut history = History::new(0.0);
         history.track(&1.0, false, name);
         for _ in 0..3 {
@@ -160,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn memory_is_bounded() {
+    fn the_number_of_steps_is_limited() {
         let mut history = History::new(0);
         (1..=3000u32).for_each(|value| history.track(&value, false, name));
         let (mut value, mut steps) = (3000, 0);
@@ -171,7 +174,7 @@ mod tests {
     }
 
     proptest! {
-        /// Against the plain model: a list of values and a place in it.
+        /// Compares with a simple model: a list of values and a position in it.
         #[test]
         fn steps_are_undone_and_redone_in_order(does in prop::collection::vec((0u8..5, 0u8..4), 1..60)) {
             let mut history = History::new(0);

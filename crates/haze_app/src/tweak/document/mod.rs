@@ -1,4 +1,4 @@
-//! What is edited: a preset with its file, its steps, and what is kept for after a crash.
+//! Edited preset: its file, its undo history, and its recovery after a crash.
 
 pub mod difference;
 #[allow(clippy::module_inception, reason = "one file per part of a document, and one for the whole")]

@@ -1,4 +1,4 @@
-//! The pictures, with their recipes, and particle files that go with a preset into another folder.
+//! Copies the images, recipes and particle files of a preset when it is saved to another folder.
 
 use std::path::Path;
 
@@ -10,8 +10,9 @@ use crate::recipe::recipes_of;
 use crate::tweak::platform::assets::caches_of;
 use crate::tweak::platform::files;
 
-/// Copies the files that a preset names from its folder into another, to where the preset looks for them there. Nothing is
-/// replaced: before anything is written, another file in the place of one is refused. A file that is missing stays so.
+/// Copies the files that a preset names from one folder to another, under the same relative paths. Missing files are
+/// skipped. No file is replaced: if a different file is in the way, the function returns an error before it writes
+/// anything.
 pub fn copy_beside(preset: &Preset, from: &Path, to: &Path) -> Result<(), Error> {
     let pictures = picture_files(preset);
     let recipes: Vec<_> = pictures.iter().flat_map(|picture| recipes_of(picture)).collect();
@@ -28,8 +29,7 @@ pub fn copy_beside(preset: &Preset, from: &Path, to: &Path) -> Result<(), Error>
         if !files::exists(&target) {
             copies.push((source, target));
         } else if read(&target)? != bytes {
-            let reason =
-                format!("not the file that goes with the preset, {}; expected a folder without it", source.display());
+            let reason = format!("differs from {}; expected a folder without a file of this name", source.display());
             return Err(Error::Image { path: target, reason });
         }
     }

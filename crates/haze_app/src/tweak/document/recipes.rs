@@ -1,4 +1,4 @@
-//! The recipes of pictures that were changed here, beside the preset.
+//! Recipes of images beside the preset that were edited in this session.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -9,14 +9,14 @@ use haze_author::sprite::bake::SpriteRecipe;
 
 use super::difference::step_name;
 
-/// Those of every kind. A clone is cheap.
+/// Edited recipes of every kind. Cheap to clone.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recipes {
     pub ramps: Of<RampRecipe>,
     pub sprites: Of<SpriteRecipe>,
 }
 
-/// By the names that the preset has for their pictures.
+/// Recipes by the names that the preset has for their images.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Of<T>(BTreeMap<String, Arc<T>>);
 
@@ -35,27 +35,27 @@ impl<T: PartialEq> Of<T> {
         self.0.insert(name.into(), Arc::new(recipe));
     }
 
-    /// Its picture is another's work now, or as it was read.
+    /// Removes a recipe: its image was changed elsewhere, or is as it was read.
     pub fn forget(&mut self, name: &str) {
         self.0.remove(name);
     }
 
-    /// The first that is not as it was.
+    /// Returns the first name whose recipe has changed.
     fn changed<'a>(&'a self, before: &'a Self) -> Option<&'a str> {
         let mut names = self.0.keys().chain(before.0.keys());
         names.find(|name| before.get(name) != self.get(name)).map(String::as_str)
     }
 }
 
-/// What steps are made of: the preset, and the recipes.
+/// Value of an undo step: the preset and the recipes.
 pub type Work = (Preset, Recipes);
 
-/// A change of a ramp's stops, as the editor of gradients calls it, and the ramp that it is made to.
+/// Ramp, and the gradient editor's name for the change of its stops.
 pub type GradientStep = (String, &'static str);
 
-/// What a step is called; one of stops by what the editor says, if that is what has changed.
+/// Returns the name of a step. If it changed stops, the name is that of the gradient editor.
 pub fn name_of(before: &Work, after: &Work, step: Option<&GradientStep>) -> String {
-    // The preset's columns and rows follow those of the recipe.
+    // A changed recipe also changes the preset's columns and rows, so recipes are tested first.
     if let Some(name) = after.1.sprites.changed(&before.1.sprites) {
         return format!("recipe of {name}");
     }

@@ -1,8 +1,8 @@
-//! What was being done when the program was ended without a chance to ask.
+//! Recovery of unsaved work after a crash.
 //!
-//! Every running tweaker has a pair of files in the state folder: `recovery-N.json`, the preset, while it is not saved; and
-//! `recovery-N.lock`, with the path that it came from, which it holds as long as it lives. A pair that nobody holds is of one that
-//! has crashed.
+//! Every running tweaker has a pair of files in the state folder: `recovery-N.json`, the preset, while it is not saved;
+//! and `recovery-N.lock` with the path of the preset, which the process keeps locked while it runs. An unlocked pair
+//! belongs to a process that has crashed.
 
 use std::path::{Path, PathBuf};
 
@@ -14,27 +14,27 @@ use crate::tweak::platform::clock::{Duration, Instant};
 use crate::tweak::platform::files;
 use crate::tweak::platform::lock::Lock;
 
-/// Between two times that the file is written: this much work is lost at most.
+/// Interval of writing the file: at most this much work is lost.
 pub const WRITE_EVERY: Duration = Duration::from_secs(3);
 
-/// The files of this process. Dropped without [`Recovery::finish`], as in a panic, they stay.
+/// Recovery files of this process. If it is dropped without [`Recovery::finish`], as in a panic, the files stay.
 pub struct Recovery {
     folder: PathBuf,
     lock: Option<Lock>,
-    /// What is in the files.
+    /// Content of the files.
     written: Option<(Preset, PathBuf)>,
     last: Option<Instant>,
     is_broken: bool,
 }
 
 impl Recovery {
-    /// Makes nothing yet.
+    /// Creates no file yet.
     pub fn new(folder: &Path) -> Self {
         Self { folder: folder.into(), lock: None, written: None, last: None, is_broken: false }
     }
 
-    /// To be called often: writes the file, not more often than every [`WRITE_EVERY`], while the document is not saved, and removes
-    /// it once it is. That it cannot be written is said once.
+    /// Writes the file while the document is not saved, at most once in [`WRITE_EVERY`], and removes it once the
+    /// document is saved. Call often. A write error is returned once.
     pub fn keep(&mut self, document: &Document, now: Instant) -> Result<(), Error> {
         if !document.is_dirty() {
             self.forget();
@@ -49,8 +49,8 @@ impl Recovery {
         if was_broken { Ok(()) } else { done }
     }
 
-    /// Writes the file now, if it does not hold the document already. A preset that could not be opened again is not written: the
-    /// file keeps the last one that could.
+    /// Writes the file now, unless it already has this preset. An invalid preset is not written, because it could not
+    /// be opened again; the file keeps the last valid one.
     pub fn write(&mut self, document: &Document) -> Result<(), Error> {
         let is_written = self.written.as_ref().is_some_and(|(preset, _)| *preset == document.preset);
         if is_written || document.preset.validate().is_err() {
@@ -65,7 +65,7 @@ impl Recovery {
             }
         };
         if self.written.as_ref().is_none_or(|(_, written)| *written != path) {
-            // A path that is no text cannot be said in one: it is recovered without.
+            // A path that is not Unicode cannot be written as text; the work is then recovered without it.
             let written = lock.write(path.to_str().unwrap_or_default());
             written.map_err(|error| Error::Io { path: lock.path().into(), error })?;
         }
@@ -74,7 +74,7 @@ impl Recovery {
         Ok(())
     }
 
-    /// Whether there is something that [`Recovery::keep`] will write, once it is time to.
+    /// Returns true if [`Recovery::keep`] will write something when the interval is over.
     pub fn is_behind(&self, document: &Document) -> bool {
         let is_written = self.written.as_ref().is_some_and(|(preset, _)| *preset == document.preset);
         document.is_dirty() && !is_written && !self.is_broken && document.preset.validate().is_ok()
@@ -88,7 +88,7 @@ impl Recovery {
         }
     }
 
-    /// Leaves nothing, when the program ends as it should.
+    /// Removes the files. Call when the program ends normally.
     pub fn finish(mut self) {
         self.forget();
         if let Some(lock) = self.lock {
@@ -101,38 +101,39 @@ fn preset_beside(lock: &Path) -> PathBuf {
     lock.with_extension("json")
 }
 
-/// A name that no tweaker uses.
+/// Takes a lock file that no process uses.
 fn free_lock(folder: &Path) -> Result<Lock, Error> {
-    /// Many more than anybody runs.
+    /// Far more than the number of tweakers that run at the same time.
     const MOST: u32 = 1000;
     let path = |number| folder.join(format!("recovery-{number}.lock"));
     let is_free = |path: &PathBuf| !files::exists(&preset_beside(path));
     let free = (1..MOST).map(path).filter(is_free).find_map(|path| Lock::take(&path));
     free.ok_or_else(|| {
-        let error = std::io::Error::other("no file can be held here; expected a folder that can be written");
+        let error = std::io::Error::other("cannot lock a file here; expected a writable folder");
         Error::Io { path: path(1), error }
     })
 }
 
-/// The work of a tweaker that has crashed. It is held, so that no other tweaker offers it too; dropped, it is offered again at the
-/// next start.
+/// Unsaved work of a crashed process. It stays locked, so that no other tweaker offers it too. If it is dropped, it is
+/// offered again at the next start.
 pub struct Abandoned {
     lock: Lock,
-    /// What was being done.
+    /// Unsaved preset.
     pub preset: Preset,
-    /// The file or built-in preset that it came from.
+    /// File or built-in preset that it came from.
     pub source: PathBuf,
 }
 
 impl Abandoned {
-    /// Removes it: it has been taken over, or nobody wants it.
+    /// Removes its files: it was restored, or the user does not want it.
     pub fn discard(self) {
         files::remove(&preset_beside(self.lock.path()));
         self.lock.remove();
     }
 }
 
-/// What crashed tweakers have left in the folder; with what is wrong with files that cannot be read, which are left alone.
+/// Returns the unsaved work of crashed processes in the folder, and the errors of files that cannot be read. Those
+/// files stay.
 pub fn abandoned(folder: &Path) -> (Vec<Abandoned>, Vec<Error>) {
     let (mut found, mut errors) = (Vec::new(), Vec::new());
     let is_lock = |path: &PathBuf| {
@@ -143,7 +144,7 @@ pub fn abandoned(folder: &Path) -> (Vec<Abandoned>, Vec<Error>) {
         let Some(mut lock) = Lock::take(&path) else { continue };
         let preset = preset_beside(&path);
         if !files::exists(&preset) {
-            // It crashed with everything saved.
+            // The process crashed without unsaved work.
             lock.remove();
             continue;
         }
@@ -164,7 +165,7 @@ mod tests {
     use super::*;
     use crate::tweak::platform::lock::eventually;
 
-    /// What is offered once the locks are given back.
+    /// Returns the work that is offered after the locks are released.
     fn offered(folder: &Path) -> Vec<Abandoned> {
         eventually(|| Some(abandoned(folder).0).filter(|offered| !offered.is_empty()))
     }
@@ -180,24 +181,24 @@ mod tests {
     }
 
     #[test]
-    fn what_a_crash_leaves_is_offered_once() {
+    fn work_left_by_a_crash_is_offered_once() {
         let folder = tempfile::tempdir().unwrap();
         let (state, now) = (folder.path().join("state"), Instant::now());
         let mut document = changed(1.0);
         let mut recovery = Recovery::new(&state);
         recovery.keep(&document, now).unwrap();
-        // While it lives, and another works beside it, nothing is offered.
+        // While the process runs, with another one beside it, nothing is offered.
         let mut beside = Recovery::new(&state);
         beside.keep(&changed(3.0), now).unwrap();
         assert_eq!(abandoned(&state).0.len(), 0);
-        // Not more often than every few seconds.
+        // It is not written more often than every few seconds.
         document.preset.camera.exposure = 2.0;
         recovery.keep(&document, now + WRITE_EVERY / 2).unwrap();
         let found = |name: &str| Preset::load(state.join(name)).unwrap().camera.exposure;
         assert_eq!((found("recovery-1.json"), found("recovery-2.json")), (1.0, 3.0));
         recovery.keep(&document, now + WRITE_EVERY).unwrap();
         assert_eq!((found("recovery-1.json"), found("recovery-2.json")), (2.0, 3.0));
-        // The end of a process gives its locks back, as this does.
+        // Dropping releases the lock, like the end of the process.
         drop(recovery);
         let mut offered = offered(&state);
         assert_eq!(offered.len(), 1);
@@ -213,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn saved_work_leaves_nothing() {
+    fn saved_work_leaves_no_files() {
         let folder = tempfile::tempdir().unwrap();
         let (state, now) = (folder.path(), Instant::now());
         let mut document = changed(1.0);
@@ -222,7 +223,7 @@ mod tests {
         document.undo();
         recovery.keep(&document, now).unwrap();
         assert_eq!(names(state), ["recovery-1.lock"]);
-        // To and fro is not written more often than anything else.
+        // Undo and redo do not cause more frequent writes.
         document.redo();
         recovery.keep(&document, now).unwrap();
         assert_eq!(names(state), ["recovery-1.lock"]);
@@ -238,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_good_state_is_kept_with_its_file() {
+    fn the_last_valid_preset_is_kept_with_its_path() {
         let folder = tempfile::tempdir().unwrap();
         let (state, file) = (folder.path().join("state"), folder.path().join("shot.json"));
         let mut document = changed(1.0);
@@ -255,18 +256,18 @@ mod tests {
         let recovered = Document::recovered(one.preset.clone(), &one.source);
         assert!(recovered.is_dirty() && recovered.saved().is_none() && recovered.path() == file);
         drop(one);
-        // Broken by other hands: said, and left.
+        // A file that was corrupted from outside is reported and not touched.
         fs::write(state.join("recovery-1.json"), "{").unwrap();
         let (offered, errors) = eventually(|| Some(abandoned(&state)).filter(|(_, errors)| !errors.is_empty()));
         assert!(offered.is_empty() && errors.len() == 1 && state.join("recovery-1.json").exists());
-        // Its name is not taken.
+        // Its number is not used again.
         let mut recovery = Recovery::new(&state);
         recovery.write(&changed(3.0)).unwrap();
         assert_eq!(fs::read_to_string(state.join("recovery-1.json")).unwrap(), "{");
     }
 
     #[test]
-    fn a_folder_that_cannot_be_written_is_said_once() {
+    fn an_unwritable_folder_is_reported_once() {
         let folder = tempfile::tempdir().unwrap();
         let blocked = folder.path().join("state");
         fs::write(&blocked, "a file").unwrap();

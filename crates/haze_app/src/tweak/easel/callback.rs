@@ -1,4 +1,4 @@
-//! How egui calls for the pictures: each part of the window that shows one.
+//! Paint callbacks of egui for the parts of the window that show an image.
 
 use eframe::egui::epaint::ViewportInPixels;
 use eframe::egui_wgpu::{self, CallbackResources, CallbackTrait, ScreenDescriptor};
@@ -10,12 +10,12 @@ use super::drawing::Exhibit;
 use super::easel::Easel;
 
 impl Easel {
-    /// Shows the picture in a part of the window.
+    /// Shows the viewport's image in a part of the window.
     pub fn show(&self, ui: &egui::Ui, rect: egui::Rect, exhibit: Exhibit) {
         self.add(ui, rect, What::Exhibit(Box::new(exhibit)));
     }
 
-    /// Shows a stage of a shot as small as the part of the window; all stages of one shot are drawn at once.
+    /// Shows a debug view of a shot in a part of the window. All views of one shot are drawn at once.
     pub fn show_stage(&self, ui: &egui::Ui, rect: egui::Rect, shot: Shot) {
         self.add(ui, rect, What::Stage(Box::new(shot)));
     }
@@ -26,7 +26,7 @@ impl Easel {
     }
 }
 
-/// One part of the window on its way through egui.
+/// Paint callback of one part of the window.
 struct Callback {
     easel: Easel,
     rect: egui::Rect,
@@ -61,7 +61,7 @@ impl CallbackTrait for Callback {
         if drawing.motion.wants_next() {
             self.easel.egui().request_repaint();
         }
-        // What is drawn over the picture is as it was in the last one.
+        // Overlays use the texels of the previous image, so another frame must follow if they have changed.
         if let What::Exhibit(exhibit) = &self.what
             && drawing.note_texels(exhibit.shot.preset.systems.len())
         {

@@ -1,4 +1,4 @@
-//! A picture of a shot, kept until it is to show another.
+//! Rendered image of a shot, kept until another shot is requested.
 
 use eframe::egui::epaint::ViewportInPixels;
 use eframe::wgpu;
@@ -10,7 +10,7 @@ use haze_demo::develop::{Developing, Shown};
 use haze_demo::shot::Shot;
 use haze_demo::stage::{Stage, StageContext};
 
-/// Where egui draws, and with what.
+/// Encoder, device and rectangle that egui gives for drawing.
 pub struct Target<'a> {
     pub device: &'a wgpu::Device,
     pub queue: &'a wgpu::Queue,
@@ -28,12 +28,12 @@ impl Target<'_> {
     }
 }
 
-/// A stage, and what it shows.
+/// Off-screen renderer with the last shot that it drew.
 pub struct Canvas {
     pub stage: Stage,
-    /// What was drawn last.
+    /// Shot that was drawn last.
     pub shot: Option<Shot>,
-    /// Why that could not be: what was drawn before is shown.
+    /// Error of the last attempt to draw; the image before is then shown.
     pub error: Option<String>,
     pub developing: [Option<Developing>; ShadeTree::ALL.len()],
 }
@@ -43,24 +43,24 @@ impl Canvas {
         Ok(Self { stage: Stage::new(context, false)?, shot: None, error: None, developing: Default::default() })
     }
 
-    /// True if this shot was drawn last.
+    /// Returns true if this shot was drawn last.
     pub fn shows(&self, shot: &Shot) -> bool {
         self.shot.as_ref().is_some_and(|drawn| drawn.is_same(shot))
     }
 
-    /// Draws a shot if it is another than the last; tells whether pictures may be others now.
+    /// Draws a shot unless it was drawn last. Returns true if the textures may have been replaced.
     pub fn record(&mut self, target: &mut Target<'_>, shot: &Shot, stages: &[ShadeTree]) -> bool {
         if self.shows(shot) {
             return false;
         }
-        // Once, even if it cannot be drawn.
+        // A shot that fails is tried only once.
         let last = self.shot.replace(shot.clone());
         let done = self.stage.record(target.encoder, shot, stages);
         self.error = done.err().map(|error| error.to_string());
         last.is_none_or(|last| (last.size, last.shade_tree) != (shot.size, shot.shade_tree))
     }
 
-    /// What was recorded last was never drawn.
+    /// Call if the commands that were recorded last were never submitted.
     pub fn forget(&mut self) {
         self.shot = None;
         self.stage.forget();
@@ -71,12 +71,12 @@ impl Canvas {
     }
 }
 
-/// The same shot with so many times fewer pixels each way.
+/// Returns the shot with its size divided in each direction.
 pub fn reduced(shot: &Shot, divisor: u32) -> Shot {
     Shot { size: (shot.size / divisor).max(UVec2::ONE), ..shot.clone() }
 }
 
-/// Sets the scale of every system that can have another than 1.
+/// Sets the scale of every system that may have one other than 1.
 pub fn set_scale(preset: &mut Preset, scale: u32) {
     for system in &mut preset.systems {
         if system.settings.accumulate.depth_source != DepthSource::Host {

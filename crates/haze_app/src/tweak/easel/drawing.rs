@@ -1,4 +1,4 @@
-//! What is drawn, and when it is drawn again.
+//! Images of the window, and when each is drawn again.
 
 use eframe::wgpu;
 use glam::{IVec2, UVec2, Vec2};
@@ -16,88 +16,89 @@ use super::other::{Made, Other};
 use crate::tweak::compare::Side;
 use crate::tweak::platform::clock::{Duration, Instant};
 
-/// What the viewport shows.
+/// Content of the viewport.
 #[derive(Clone)]
 pub struct Exhibit {
     pub shot: Shot,
     pub other: Option<Other>,
-    /// Share of the width from which on the other is shown.
+    /// Share of the width at which the second image begins, 0 to 1.
     pub split: f32,
-    /// Multiplies the difference of the two; 0: they stand side by side.
+    /// Factor on the difference of the two images; 0 shows the two side by side.
     pub difference: f32,
 }
 
-/// The texels that a system was accumulated in, and where it was lit: see [`haze::TargetViews`].
+/// Texels that a system was accumulated in, and the depth at which it was lit. See [`haze::TargetViews`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Texels {
     pub origin: IVec2,
     pub size: UVec2,
     pub scale: u32,
     pub lit_depth: f32,
-    /// Pixels of the picture.
+    /// Size of the image in pixels.
     pub picture: UVec2,
 }
 
-/// What drawing the picture took.
+/// Cost of drawing the image.
 #[derive(Clone, Debug, Default)]
 pub struct Figures {
-    /// Times that it was drawn.
+    /// Number of times that it was drawn.
     pub pictures: u64,
-    /// GPU time of the last picture that it is known of.
+    /// GPU times of the last image for which they are known.
     pub times: Option<FrameTimes>,
-    /// GPU time can be known here.
+    /// The device can measure GPU time.
     pub is_timed: bool,
     pub counts: FrameCounts,
     pub overdraw: Overdraw,
-    /// Which paths were taken, where the preset leaves it open.
+    /// Paths that were chosen where the preset leaves it open.
     pub choices: Vec<PathChoice>,
     pub memory: StageMemory,
-    /// What the strip and a second picture hold, bytes.
+    /// Memory of the strip and the second image, bytes.
     pub beside: u64,
-    /// Times that the second picture was drawn, and what the smoke of the two took, milliseconds, where that is known.
+    /// Number of times that the second image was drawn, and the smoke time of both images in milliseconds, where it is
+    /// known.
     pub seconds: u64,
     pub sides: [Option<f32>; 2],
 }
 
-/// All that is drawn, and what it takes.
+/// State of all images, behind a lock.
 pub struct Drawing {
     pub context: StageContext,
     pub developer: Developer,
-    /// The picture, and what it is compared with: drawn here, or made elsewhere.
+    /// The image, and the second one: drawn here, or uploaded.
     pub main: Canvas,
     other: Option<Canvas>,
     made: Option<Made>,
-    /// The two, bound together.
+    /// Bindings of the two images.
     pub pair: Option<Developing>,
-    /// All stages, small.
+    /// All debug views, small.
     pub strip: Canvas,
     strip_drawn: Option<Instant>,
     pub motion: Motion,
-    /// Of every system of the picture.
+    /// Texels of every system of the image.
     pub texels: Vec<Option<Texels>>,
-    /// Something was recorded that has not been painted yet.
+    /// Commands were recorded that have not been painted yet.
     pub is_unpainted: bool,
-    /// Texels of a picture are wanted back, and are under way; what they were last taken of.
+    /// Readback of texels: the image that is requested, the readback in progress, and the image last read.
     pub wants_capture: Option<Side>,
     pub capture: Option<(Side, Shot, Capture)>,
     pub captured: Option<(Side, Shot)>,
-    /// The two pictures are wanted back to be compared, are under way, and were, as they are.
+    /// Readback of both images for the PSNR: requested, in progress, and done for the present images.
     wants_comparison: bool,
     pub comparison: Option<Comparison>,
     is_compared: bool,
-    /// What multiplies the light of the two.
+    /// Exposure factors of the two images.
     exposures: Vec2,
-    /// Times that the picture was drawn, and the second.
+    /// Number of times that the image and the second one were drawn.
     pictures: u64,
     seconds: u64,
-    /// There while pictures are measured: the first, and the second while it is drawn here.
+    /// Set while images are measured: the first, and the second if it is drawn here.
     timing: Option<Timing>,
     timing_of_second: Option<Timing>,
-    /// Pixels a texel of the accumulation targets that are shown, in place of the preset's.
+    /// Overrides the preset's accumulation scale, pixels per texel.
     pub scale: Option<u32>,
 }
 
-/// How often the strip is drawn while something moves.
+/// Interval of drawing the strip while something moves.
 const STRIP_EVERY: Duration = Duration::from_millis(400);
 
 impl Drawing {
@@ -138,7 +139,7 @@ impl Drawing {
         Ok(())
     }
 
-    /// What was recorded last was never submitted.
+    /// Call if the commands that were recorded last were never submitted.
     pub fn forget(&mut self) {
         let canvases = [Some(&mut self.main), self.other.as_mut(), Some(&mut self.strip)];
         canvases.into_iter().flatten().for_each(Canvas::forget);
@@ -157,9 +158,9 @@ impl Drawing {
             return;
         }
         self.timing = is_on.then(|| self.context.timing()).flatten();
-        // Of the same device.
+        // Cannot fail: both are of the same device.
         let _ = self.main.stage.set_timing(self.timing.as_ref());
-        // Made again, and measured.
+        // It is created again, with measurement.
         self.other = None;
         if is_on {
             self.main.shot = None;
@@ -193,7 +194,7 @@ impl Drawing {
         self.comparison.is_some() || self.wants_comparison && !self.is_compared && self.second_is_there()
     }
 
-    /// Takes note of the texels of all systems; true if they are others.
+    /// Records the texels of all systems. Returns true if they have changed.
     pub fn note_texels(&mut self, systems: usize) -> bool {
         let renderer = self.main.stage.renderer();
         let picture = self.main.shot.as_ref().map_or(UVec2::ONE, |shot| shot.size);
@@ -250,13 +251,13 @@ impl Drawing {
         }
     }
 
-    /// Copies the texels that are wanted, unless they were. They are those of this frame.
+    /// Copies the requested texels of this frame, unless they were already copied.
     fn copy(&mut self, encoder: &mut wgpu::CommandEncoder, first: &Shot, other: Option<&Other>) {
         let Some(side) = self.wants_capture.filter(|_| self.capture.is_none()) else { return };
         let (shot, canvas) = match (side, other, &self.other) {
             (Side::First, ..) => (first, &self.main),
             (Side::Second, Some(Other::Shot(shot)), Some(canvas)) => (&**shot, canvas),
-            // Made elsewhere: it has none.
+            // An uploaded image has no texels.
             (Side::Second, ..) => return,
         };
         let is_copied = |(of, copied): &(Side, Shot)| {
@@ -268,7 +269,7 @@ impl Drawing {
         }
     }
 
-    /// Draws what the picture is compared with, or hangs it up; true if it is another than before.
+    /// Draws or uploads the second image. Returns true if its texture may have been replaced.
     fn record_second(&mut self, target: &mut Target<'_>, other: Option<&Other>) -> bool {
         let (drawn, made) = match other {
             Some(Other::Shot(shot)) => (Some(&**shot), None),
@@ -279,11 +280,11 @@ impl Drawing {
         match drawn {
             Some(shot) => {
                 if self.other.is_none() {
-                    // As the others, which could be made.
+                    // Like the other canvases, which could be created.
                     self.other = Canvas::new(&self.context).ok();
                     self.timing_of_second = self.timing.as_ref().and_then(|_| self.context.timing());
                     let timing = self.timing_of_second.as_ref();
-                    // Of the same device.
+                    // Cannot fail: both are of the same device.
                     self.other.iter_mut().for_each(|canvas| drop(canvas.stage.set_timing(timing)));
                 }
                 if let Some(canvas) = self.other.as_mut().filter(|canvas| !canvas.shows(shot)) {
@@ -303,7 +304,7 @@ impl Drawing {
         is_new || is_hung
     }
 
-    /// The picture, and what it is compared with: itself if there is none.
+    /// Returns the image and the second one; the image twice if there is no second.
     fn hung(&self, shot: &Shot, other: Option<&Other>) -> Option<[wgpu::Texture; 2]> {
         let first = self.main.picture(shot.shade_tree)?;
         let drawn = match other {
@@ -314,14 +315,14 @@ impl Drawing {
         Some([first.clone(), second.unwrap_or(first).clone()])
     }
 
-    /// There are two pictures.
+    /// Returns true if there is a second image.
     fn second_is_there(&self) -> bool {
         self.other.is_some() || self.made.is_some()
     }
 
     pub fn record_stage(&mut self, target: &mut Target<'_>, shot: &Shot) {
         let stage = shot.shade_tree;
-        // Drawn by the first of them.
+        // The first view that is requested draws all.
         let all = Shot { shade_tree: ShadeTree::Final, ..shot.clone() };
         let may_wait = self.motion.is_moving() && self.strip_drawn.is_some_and(|drawn| drawn.elapsed() < STRIP_EVERY);
         if !may_wait && !self.strip.shows(&all) {

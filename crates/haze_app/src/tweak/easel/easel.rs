@@ -1,4 +1,4 @@
-//! What draws the pictures of the window.
+//! Renderer of the window's images.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -14,27 +14,27 @@ use super::drawing::{Drawing, Figures, Texels};
 use crate::tweak::compare::Side;
 use crate::tweak::health::Health;
 
-/// Draws for one window. A clone is the same.
+/// Draws the images of one window. Clones share the state.
 #[derive(Clone)]
 pub struct Easel {
     drawing: Arc<Mutex<Drawing>>,
     adapter: Arc<wgpu::AdapterInfo>,
     health: Health,
     egui: egui::Context,
-    /// GPU time can be known.
+    /// The device can measure GPU time.
     is_timed: bool,
 }
 
 impl Easel {
     /// # Errors
-    /// Where there is no device, or it cannot draw what the demo draws.
+    /// If there is no device, or it lacks what the demo renderer needs.
     pub fn new(window: &eframe::CreationContext<'_>) -> Result<Self, Error> {
         let none = || Error::NoDevice("the window has no graphics device".into());
         let render = window.wgpu_render_state.as_ref().ok_or_else(none)?;
         let health = Health::watch(&render.device, &window.egui_ctx);
         let context = StageContext::new(&render.adapter, &render.device, &render.queue);
         if render.adapter.get_info().device_type != wgpu::DeviceType::Cpu {
-            // A fifth of a second; where a CPU draws it is longer, and what those take is much alike.
+            // Takes about 0.2 s on a GPU. A CPU adapter takes longer, and its paths cost about the same.
             context.measure_paths(|encoder| {
                 render.queue.submit([encoder.finish()]);
                 let waited = render.device.poll(wgpu::PollType::wait_indefinitely());
@@ -48,24 +48,24 @@ impl Easel {
         Ok(Self { drawing, adapter, health, egui, is_timed })
     }
 
-    /// Makes the window draw itself again, from any thread.
+    /// Returns a function that requests a repaint from any thread.
     pub fn wake(&self) -> impl Fn() + Send + Sync + 'static {
         let egui = self.egui.clone();
         move || egui.request_repaint()
     }
 
-    /// What the window is drawn with.
+    /// Returns the egui context of the window.
     pub fn egui(&self) -> &egui::Context {
         &self.egui
     }
 
-    /// What draws, on one line.
+    /// Returns the name of the adapter as one line.
     pub fn adapter(&self) -> String {
         let software = if self.is_software() { ", software" } else { "" };
         format!("{} ({}{software})", self.adapter.name, self.adapter.backend)
     }
 
-    /// True if the CPU draws.
+    /// Returns true if the adapter is the CPU.
     pub fn is_software(&self) -> bool {
         self.adapter.device_type == wgpu::DeviceType::Cpu
     }
@@ -74,28 +74,28 @@ impl Easel {
         &self.health
     }
 
-    /// To be called at the beginning of a frame. While something moves the picture is drawn as coarsely as it takes to be quick.
+    /// Call at the beginning of a frame. While something moves, the image is drawn at an adaptive resolution.
     pub fn begin_frame(&self, is_moving: bool) {
         let mut drawing = self.lock();
-        // egui drops what was recorded where there is nothing to draw into.
+        // egui drops recorded commands if there is no surface to draw to.
         if std::mem::take(&mut drawing.is_unpainted) {
             drawing.forget();
         }
         drawing.motion.begin_frame(is_moving);
     }
 
-    /// As if a frame had taken long.
+    /// Simulates a long frame.
     #[cfg(test)]
     pub fn be_slow(&self) {
         self.lock().motion.pace.update(1.0);
     }
 
-    /// Pixels of the window that one of the picture stands for, each way.
+    /// Returns the number of window pixels per image pixel, in each direction.
     pub fn divisor(&self) -> u32 {
         self.lock().motion.pace.divisor()
     }
 
-    /// What stages are made of: for other shaders to be checked with.
+    /// Returns the shared GPU context, for checking other shaders.
     pub fn context(&self) -> StageContext {
         self.lock().context.clone()
     }
@@ -103,84 +103,84 @@ impl Easel {
     /// Draws everything with another context of the same device from now on.
     ///
     /// # Errors
-    /// As [`Easel::new`]; all is as it was then.
+    /// As [`Easel::new`]. On an error, nothing changes.
     pub fn set_context(&self, context: StageContext) -> Result<(), Error> {
         self.lock().set_context(context)
     }
 
-    /// What is wrong with what is to be seen.
+    /// Returns the error of the image that should be shown.
     pub fn error(&self) -> Option<String> {
         self.lock().error()
     }
 
-    /// Measures the picture from now on, or not any more.
+    /// Turns the measurement of GPU time on or off.
     pub fn measure(&self, is_on: bool) {
         if self.is_timed {
             self.lock().measure(is_on);
         }
     }
 
-    /// Draws the picture again, though it is the same.
+    /// Draws the image again although its shot is the same.
     pub fn draw_again(&self) {
         self.lock().main.shot = None;
     }
 
-    /// Shows the smoke through targets of this scale, or of the preset's.
+    /// Overrides the accumulation scale; `None` uses that of the preset.
     pub fn show_scale(&self, scale: Option<u32>) {
         self.lock().scale = scale;
     }
 
-    /// What drawing the picture took.
+    /// Returns the cost of drawing the image.
     pub fn figures(&self) -> Figures {
         self.lock().figures(self.is_timed)
     }
 
-    /// Of every system, how it was in the last picture; `None` where it was out of sight or drawn forward.
+    /// Returns the texels of each system in the last image; `None` if it was out of view or drawn forward.
     pub fn texels(&self) -> Vec<Option<Texels>> {
         self.lock().texels.clone()
     }
 
-    /// Whether texels can be brought back at all.
+    /// Returns true if the backend can read texels back.
     pub fn can_capture(&self) -> bool {
         self.lock().context.can_capture()
     }
 
-    /// Of which picture texels are to be brought back when it is another.
+    /// Requests the texels of one of the images whenever it has changed.
     pub fn want_capture(&self, wants: Option<Side>) {
         self.lock().wants_capture = wants;
     }
 
-    /// Texels of a picture that have arrived.
+    /// Returns texels that have arrived.
     pub fn take_capture(&self) -> Option<(Side, Shot, Capture)> {
         self.lock().capture.take_if(|(.., capture)| capture.has_arrived())
     }
 
-    /// Texels are under way.
+    /// Returns true while texels are being read back.
     pub fn is_capturing(&self) -> bool {
         self.lock().capture.is_some()
     }
 
-    /// The next copy is taken, even of a picture that was copied.
+    /// Forces the next copy, even of an image that was already copied.
     pub fn forget_capture(&self) {
         self.lock().captured = None;
     }
 
-    /// Whether the two pictures are to be brought back when they stand still.
+    /// Requests a readback of the two images whenever they stand still.
     pub fn want_comparison(&self, wants: bool) {
         self.lock().want_comparison(wants);
     }
 
-    /// Two pictures that have arrived.
+    /// Returns two images that have arrived.
     pub fn take_comparison(&self) -> Option<Comparison> {
         self.lock().comparison.take_if(|comparison| comparison.has_arrived())
     }
 
-    /// Two pictures are under way, or will be.
+    /// Returns true while two images are being read back, or will be.
     pub fn is_comparing(&self) -> bool {
         self.lock().is_comparing()
     }
 
-    /// The drawing itself, for as long as it is held.
+    /// Locks the state.
     pub(super) fn lock(&self) -> MutexGuard<'_, Drawing> {
         self.drawing.lock().unwrap_or_else(PoisonError::into_inner)
     }

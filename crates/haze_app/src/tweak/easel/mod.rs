@@ -1,4 +1,4 @@
-//! What the pictures of the window are drawn on, as egui calls for them.
+//! Renders the images of the window inside egui's paint callbacks.
 
 mod callback;
 pub mod canvas;

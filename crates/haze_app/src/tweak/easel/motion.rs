@@ -1,20 +1,20 @@
-//! What is known of frames in which something moves.
+//! Frame times while something moves.
 
 use super::pace::Pace;
 use crate::tweak::platform::clock::Instant;
 
-/// Tells the pace how long frames take in which something moves and the picture is drawn.
+/// Reports frame times to [`Pace`], for frames in which something moves and the image is drawn.
 #[derive(Default)]
 pub struct Motion {
     pub pace: Pace,
     is_moving: bool,
-    /// When the last frame began, and whether it drew the picture.
+    /// Start of the last frame, and whether the image was drawn in it.
     last: Option<Instant>,
     drew: bool,
 }
 
 impl Motion {
-    /// To be called at the beginning of a frame.
+    /// Call at the beginning of a frame.
     pub fn begin_frame(&mut self, is_moving: bool) {
         let last = self.last.replace(Instant::now());
         let drew = std::mem::take(&mut self.drew);
@@ -26,7 +26,7 @@ impl Motion {
         self.is_moving = is_moving;
     }
 
-    /// To be called when the picture is drawn.
+    /// Call when the image is drawn.
     pub fn draw(&mut self) {
         self.drew = true;
     }
@@ -35,7 +35,7 @@ impl Motion {
         self.is_moving
     }
 
-    /// The time to the next frame will tell what this one takes.
+    /// Returns true if another frame is needed to know the duration of this one.
     pub fn wants_next(&self) -> bool {
         self.drew && self.is_moving
     }

@@ -1,4 +1,4 @@
-//! What a picture is compared with: another shot, or a picture that was made elsewhere.
+//! Second image of a comparison: another shot, or an image that was rendered elsewhere.
 
 use std::sync::Arc;
 
@@ -10,22 +10,22 @@ use haze_demo::shot::Shot;
 
 use super::canvas::{Target, reduced};
 
-/// What a picture is compared with.
+/// Second image of a comparison.
 #[derive(Clone)]
 pub enum Other {
     Shot(Box<Shot>),
-    /// Made elsewhere, and its exposure.
+    /// Image rendered elsewhere, and its exposure factor.
     Picture(Arc<Picture<Vec4>>, f32),
 }
 
-/// A picture that was made elsewhere, on the GPU.
+/// Texture of an image that was rendered elsewhere.
 pub struct Made {
     picture: Arc<Picture<Vec4>>,
     pub texture: wgpu::Texture,
 }
 
 impl Other {
-    /// As the picture is while something moves.
+    /// Returns it at the reduced resolution that is used while something moves.
     pub fn reduced(&self, divisor: u32) -> Self {
         match self {
             Self::Shot(shot) => Self::Shot(Box::new(reduced(shot, divisor))),
@@ -42,7 +42,7 @@ impl Other {
 }
 
 impl Made {
-    /// Puts a picture that was made elsewhere on the GPU, or takes it down; tells whether it is another than before.
+    /// Uploads an image, or drops the texture if there is none. Returns true if the texture was replaced.
     pub fn hang(made: &mut Option<Self>, target: &Target<'_>, picture: Option<&Arc<Picture<Vec4>>>) -> bool {
         let is_up = match (&*made, picture) {
             (Some(made), Some(picture)) => Arc::ptr_eq(&made.picture, picture),
@@ -56,7 +56,7 @@ impl Made {
     }
 }
 
-/// A picture of linear HDR as a texture of half floats.
+/// Uploads a linear HDR image as half floats.
 fn upload(target: &Target<'_>, picture: &Picture<Vec4>) -> wgpu::Texture {
     let size = wgpu::Extent3d { width: picture.size.x, height: picture.size.y, depth_or_array_layers: 1 };
     let texture = target.device.create_texture(&wgpu::TextureDescriptor {

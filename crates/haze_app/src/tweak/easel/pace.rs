@@ -1,22 +1,23 @@
-//! How coarsely the picture is drawn while something in it moves, so that hands are followed.
+//! Adaptive resolution: the image is drawn at a lower resolution while something moves, so that controls respond
+//! quickly.
 
-/// Longest that a frame should take, seconds: with room to the 15 a second that a hand can live with.
+/// Longest frame, seconds. Leaves a margin to 15 frames per second, the least for direct manipulation.
 const LONGEST: f32 = 1.0 / 22.0;
 
-/// Part of that which the next finer picture must be expected to stay below.
+/// The next finer image is tried if its estimated time is below this part of [`LONGEST`].
 const ROOM: f32 = 0.7;
 
-/// Most pixels of the window that one of the picture stands for, each way.
+/// Largest divisor: window pixels per image pixel, in each direction.
 const COARSEST: u32 = 4;
 
-/// Frames that are seen before a finer picture is tried, doubled each time that one does not last.
+/// Number of fast frames before a finer image is tried. It doubles each time that the resolution is lowered.
 const PATIENCE: u32 = 12;
 
-/// Picks by how many the sides of the picture are divided. Plain data: it knows neither a clock nor a device.
+/// Chooses the divisor of the image's sides. Plain data without a clock or a device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pace {
     divisor: u32,
-    /// Frames that a finer picture could have been drawn in, one after the other.
+    /// Consecutive frames in which a finer image would have been fast enough.
     easy: u32,
     patience: u32,
 }
@@ -32,16 +33,17 @@ impl Pace {
         self.divisor
     }
 
-    /// Everything stands still: the whole picture is drawn again.
+    /// Restores the full resolution; nothing moves.
     pub fn rest(&mut self) {
         *self = Self::default();
     }
 
-    /// Takes how long a frame took while something moved, seconds.
+    /// Takes the duration of a frame while something moved, seconds.
     pub fn update(&mut self, seconds: f32) {
         if seconds > LONGEST {
             if self.divisor < COARSEST {
-                // What is far too slow gets there in one step: the cost falls with the square.
+                // A very slow frame reaches the right divisor in one step, because the cost falls with the square of
+                // the divisor.
                 let wanted = (self.divisor as f32 * (seconds / LONGEST).sqrt()).ceil() as u32;
                 self.divisor = wanted.clamp(self.divisor + 1, COARSEST);
                 self.patience = self.patience.saturating_mul(2);
@@ -62,7 +64,8 @@ impl Pace {
 mod tests {
     use super::*;
 
-    /// Frames of a load that has a fixed part and one that falls with the square; the divisor after each.
+    /// Simulates frames whose load has a fixed part and a part that falls with the square of the divisor. Returns the
+    /// divisor after each.
     fn run(pace: &mut Pace, fixed: f32, whole: f32, frames: usize) -> Vec<u32> {
         let mut frame = || {
             pace.update(fixed + whole / (pace.divisor() * pace.divisor()) as f32);
@@ -72,12 +75,12 @@ mod tests {
     }
 
     #[test]
-    fn what_is_fast_enough_stays_whole() {
+    fn a_fast_load_keeps_the_full_resolution() {
         assert!(run(&mut Pace::default(), 0.005, 0.03, 500).iter().all(|divisor| *divisor == 1));
     }
 
     #[test]
-    fn what_is_too_slow_is_coarse_at_once_and_does_not_pump() {
+    fn a_slow_load_is_reduced_at_once_without_oscillation() {
         for whole in [0.06, 0.1, 0.2, 0.5] {
             let mut pace = Pace::default();
             let divisors = run(&mut pace, 0.008, whole, 2000);
@@ -90,14 +93,14 @@ mod tests {
     }
 
     #[test]
-    fn a_hitch_is_forgotten_and_rest_restores_the_picture() {
+    fn resolution_recovers_after_one_slow_frame_and_at_rest() {
         let mut pace = Pace::default();
         pace.update(0.4);
         assert_eq!(pace.divisor(), COARSEST.min(3));
         assert_eq!(run(&mut pace, 0.002, 0.01, 200).last(), Some(&1));
         pace.update(10.0);
         assert_eq!(pace.divisor(), COARSEST);
-        // Too slow even so: no further.
+        // Still too slow at the largest divisor: it does not grow further.
         pace.update(10.0);
         assert_eq!(pace.divisor(), COARSEST);
         pace.rest();
@@ -105,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn a_load_that_comes_and_goes_is_tried_less_and_less_often() {
+    fn an_intermittent_load_is_retried_less_and_less_often() {
         let mut pace = Pace::default();
         let changes = |divisors: Vec<u32>| divisors.windows(2).filter(|pair| pair[0] != pair[1]).count();
         let mut count = 0;

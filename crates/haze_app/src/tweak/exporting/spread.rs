@@ -1,4 +1,4 @@
-//! The values of a field that are worth seeing beside each other.
+//! Values of a field for a sheet of variations.
 
 use std::ops::RangeInclusive;
 
@@ -9,11 +9,12 @@ use haze::settings::{Choice, FieldVisitor, Fields, path_of};
 use crate::tweak::made::Made;
 use crate::tweak::reach::{is_wide, reach};
 
-/// A name on the way to a field, and a place where it is in a list.
+/// Name on the path to a field, with an index if it is in a list.
 type Step = (&'static str, Option<usize>);
 
-/// Five values of a number: all that its slider reaches, or from a quarter to four times what it is where that is too wide; all
-/// choices; on and off. Nothing of other fields. As texts.
+/// Returns values of a field as texts. For a number, five values over the range of its slider, or from a quarter to
+/// four times its value if that range is too wide. For a choice, all choices; for a flag, both states. Empty for other
+/// fields.
 pub fn spread(preset: &Preset, path: &str) -> Vec<String> {
     if let Some((_, made)) = Made::find(path) {
         let (low, high) = made.usual;
@@ -47,11 +48,11 @@ impl Spread<'_> {
     }
 }
 
-/// Where the five are, from end to end.
+/// Positions of the five values in the range, 0 to 1.
 const PLACES: [f32; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 fn five(value: f32, low: f32, high: f32, is_wide: bool) -> [f32; 5] {
-    /// Of what is 0.
+    /// Values for a field that is 0.
     const STEPS: [f32; 5] = [0.0, 0.25, 0.5, 1.0, 2.0];
     if !is_wide {
         return PLACES.map(|place| low + place * (high - low));
@@ -65,7 +66,7 @@ fn five(value: f32, low: f32, high: f32, is_wide: bool) -> [f32; 5] {
     PLACES.map(|place| (least * (most / least).powf(place)).copysign(value))
 }
 
-/// Four digits that count.
+/// Formats a number with four significant digits.
 fn text(number: f32) -> String {
     format!("{number:.3e}").parse::<f32>().unwrap_or(number).to_string()
 }

@@ -1,4 +1,4 @@
-//! What is made, from the window.
+//! Tests of exports from the window.
 
 use std::fs;
 use std::time::{Duration, Instant};
@@ -42,7 +42,7 @@ impl Bench {
         self.window.state().session.messages.latest().map(|message| message.text.clone()).unwrap_or_default()
     }
 
-    /// Makes something, and gives the new names beside the preset.
+    /// Runs an export and returns the names of new files beside the preset.
     fn make(&mut self, product: Product) -> Vec<String> {
         self.window.state_mut().exporting.product = product;
         self.window.state_mut().exporting.is_open = true;
@@ -64,7 +64,7 @@ impl Bench {
 }
 
 #[test]
-fn the_picture_is_saved_beside_the_preset_and_nothing_is_replaced() {
+fn an_image_is_saved_beside_the_preset_without_replacing_files() {
     let mut bench = bench();
     for _ in 0..2 {
         bench.window.key_press(Key::F12);
@@ -82,7 +82,7 @@ fn the_picture_is_saved_beside_the_preset_and_nothing_is_replaced() {
 }
 
 #[test]
-fn frames_are_written_in_every_form() {
+fn frames_are_written_as_sequence_flipbook_and_gif() {
     let mut bench = bench();
     let names = bench.make(Product::Sequence);
     let folder = bench.folder.path().join(&names[0]);
@@ -96,7 +96,7 @@ fn frames_are_written_in_every_form() {
 }
 
 #[test]
-fn what_takes_its_time_is_seen_and_stopped_and_another_sheet_takes_the_place_of_one() {
+fn a_long_export_shows_progress_and_stops_and_a_new_sheet_replaces_the_old() {
     let mut bench = bench();
     let seeds = |bench: &mut Bench, size: UVec2| {
         bench.window.state_mut().exporting.order.size = size;
@@ -116,7 +116,7 @@ fn what_takes_its_time_is_seen_and_stopped_and_another_sheet_takes_the_place_of_
     let mut shown = |exposure: f32| {
         bench.window.state_mut().session.document.preset.camera.exposure = exposure;
         seeds(&mut bench, UVec2::new(192, 108));
-        // The one before is open meanwhile.
+        // The previous sheet is open meanwhile.
         bench.until(|window| window.exporting.progress().is_none());
         bench.window.run_steps(3);
         let part = bench.window.get_by_label("sheet").rect();
@@ -127,7 +127,7 @@ fn what_takes_its_time_is_seen_and_stopped_and_another_sheet_takes_the_place_of_
 }
 
 #[test]
-fn sheets_are_shown_and_saved_when_they_are_liked() {
+fn sheets_are_shown_and_saved_on_request() {
     let mut bench = bench();
     bench.window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::E);
     bench.window.run_steps(2);
@@ -150,7 +150,7 @@ fn sheets_are_shown_and_saved_when_they_are_liked() {
 }
 
 #[test]
-fn what_is_stopped_says_that_it_is_partial() {
+fn a_stopped_export_is_reported_as_partial() {
     let mut bench = bench();
     bench.window.state_mut().exporting.order.last = 9999;
     bench.window.state_mut().exporting.is_open = true;
@@ -166,7 +166,7 @@ fn what_is_stopped_says_that_it_is_partial() {
 }
 
 #[test]
-fn a_row_makes_the_sheet_of_its_values_that_the_export_makes() {
+fn the_row_menu_makes_the_same_sheet_as_the_export_dialog() {
     let mut bench = bench();
     let path = "camera.exposure";
     bench.make(Product::Values(path.into()));
@@ -180,7 +180,7 @@ fn a_row_makes_the_sheet_of_its_values_that_the_export_makes() {
     bench.until(|window| window.exporting.sheet.is_some());
     let Sheet { picture: sheet, .. } = bench.window.state_mut().exporting.sheet.take().unwrap();
     assert!(sheet == made, "another sheet");
-    // Rows of several settings, too.
+    // The same for a row that several settings make.
     testing::row_menu(&mut bench.window, "thickness");
     bench.window.get_by_label("Five values on a sheet").click();
     bench.window.run_steps(2);
@@ -190,7 +190,7 @@ fn a_row_makes_the_sheet_of_its_values_that_the_export_makes() {
 }
 
 #[test]
-fn a_click_beside_a_name_makes_a_sheet() {
+fn the_button_beside_a_name_makes_a_sheet() {
     let mut bench = bench();
     bench.window.state_mut().session.hints.begin();
     let mut made = |tab: &str, name: &str, button: &str| {
@@ -204,7 +204,7 @@ fn a_click_beside_a_name_makes_a_sheet() {
         testing::click_at(&mut bench.window, place, PointerButton::Primary);
         bench.until(|window| window.exporting.sheet.is_some());
         let path = bench.window.state().exporting.sheet.as_ref().unwrap().path.clone();
-        // Escape closes it, and leaves what lies below.
+        // Escape closes the sheet and nothing below it.
         let hints = bench.window.state().session.hints.left();
         bench.window.key_press(Key::Escape);
         bench.window.run_steps(2);
@@ -218,7 +218,7 @@ fn a_click_beside_a_name_makes_a_sheet() {
 }
 
 #[test]
-fn a_field_varies_over_its_slider_or_round_its_value_and_stays_valid() {
+fn values_of_a_field_cover_its_slider_or_surround_its_value_and_are_valid() {
     let shot = Shot::load("column", UVec2::new(64, 36)).unwrap();
     let labels = |path: &str| variations(&shot, path).into_iter().map(|(label, _)| label).collect::<Vec<_>>();
     assert_eq!(labels("systems[0].settings.boost").len(), 5);

@@ -1,4 +1,4 @@
-//! The File menu, as someone uses it.
+//! Tests of the File menu through the window.
 
 use std::fs;
 use std::time::{Duration, Instant};
@@ -23,7 +23,7 @@ struct Bench {
     window: Harness<'static, Window>,
 }
 
-/// A window of a preset that is saved in a folder of its own.
+/// Opens a preset that is saved in a folder of its own.
 fn bench() -> Bench {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("my.json");
@@ -74,7 +74,7 @@ impl Bench {
         self.window.run_steps(3);
     }
 
-    /// Types into the box for paths.
+    /// Types into the text field for paths.
     fn type_path(&mut self, path: &Path) {
         self.window.state_mut().filing.typed.as_mut().unwrap().text = path.display().to_string();
         self.window.run_steps(2);
@@ -108,7 +108,7 @@ fn exposure(path: &Path) -> i32 {
 }
 
 #[test]
-fn a_change_is_saved_by_menu_and_key_and_under_another_name() {
+fn changes_are_saved_by_menu_by_key_and_under_another_name() {
     let mut bench = bench();
     bench.change(1.5);
     assert!(bench.window.query_by_label("•").is_some());
@@ -131,7 +131,7 @@ fn a_change_is_saved_by_menu_and_key_and_under_another_name() {
     assert!(bench.window.query_by_label("other").is_some() && bench.window.query_by_label("my").is_none());
     assert_eq!((exposure(&other), exposure(&bench.path("my.json"))), (50, 150));
     assert_eq!(bench.session().document.path(), other);
-    // A name that is no preset's.
+    // A name that is not valid for a preset.
     bench.press(COMMAND_SHIFT, Key::S);
     let picture = bench.path("a.png");
     bench.type_path(&picture);
@@ -140,7 +140,7 @@ fn a_change_is_saved_by_menu_and_key_and_under_another_name() {
 }
 
 #[test]
-fn unsaved_work_is_asked_about_before_another_preset_is_opened() {
+fn opening_another_preset_asks_about_unsaved_work() {
     let mut bench = bench();
     bench.change(1.5);
     let other = bench.path("other.json");
@@ -152,7 +152,7 @@ fn unsaved_work_is_asked_about_before_another_preset_is_opened() {
         bench.window.run_steps(2);
     };
     open(&mut bench);
-    bench.click("Go on here");
+    bench.click("Cancel");
     assert_eq!(
         (bench.session().document.path().to_owned(), exposure(&bench.path("my.json"))),
         (bench.path("my.json"), 55)
@@ -165,7 +165,7 @@ fn unsaved_work_is_asked_about_before_another_preset_is_opened() {
 }
 
 #[test]
-fn a_slow_disk_does_not_hold_up_the_window() {
+fn a_slow_disk_does_not_block_the_window() {
     let mut bench = bench();
     bench.change(1.5);
     let (go_on, wait) = std::sync::mpsc::channel::<()>();
@@ -174,16 +174,16 @@ fn a_slow_disk_does_not_hold_up_the_window() {
         Done::Failed(FieldError::new("disk", "slow", "a quicker one").into())
     });
     bench.press(Modifiers::COMMAND, Key::S);
-    // The work goes on, another time is not needed, and the end waits for it.
+    // Editing continues, a second save is not started, and closing waits for the first.
     bench.change(0.5);
     bench.press(Modifiers::COMMAND, Key::S);
-    assert_eq!(bench.said(), "it is being saved");
+    assert_eq!(bench.said(), "a save is already running");
     bench.close();
     assert!(bench.window.state().filing.waiting.is_none() && exposure(&bench.path("my.json")) == 55);
     go_on.send(()).unwrap();
     bench.until(|bench| !bench.session().document.is_being_saved());
     assert_eq!(exposure(&bench.path("my.json")), 150);
-    // What was changed meanwhile is not saved yet: it is asked about.
+    // Changes made during the save are unsaved, so the window asks about them.
     bench.until(|bench| bench.window.state().filing.waiting.is_some());
     assert_eq!((bench.session().document.preset.camera.exposure * 100.0) as i32, 50);
     assert!(!bench.session().is_changed_on_disk && bench.session().document.is_dirty());
@@ -194,7 +194,7 @@ fn a_slow_disk_does_not_hold_up_the_window() {
 }
 
 #[test]
-fn what_cannot_be_opened_is_said_once_and_nothing_is_lost() {
+fn an_unreadable_file_is_reported_once_and_the_document_stays() {
     let mut bench = bench();
     bench.change(1.5);
     let big = bench.path("big.json");
@@ -214,7 +214,7 @@ fn what_cannot_be_opened_is_said_once_and_nothing_is_lost() {
     }
     assert_eq!((bench.session().document.preset.camera.exposure * 100.0) as i32, 150);
     assert_eq!(bench.session().document.path().file_name().unwrap(), "my.json");
-    // A click puts away what was read.
+    // A click removes the message.
     let said = bench.said();
     bench.window.run_steps(2);
     bench.click(&said);
@@ -222,7 +222,7 @@ fn what_cannot_be_opened_is_said_once_and_nothing_is_lost() {
 }
 
 #[test]
-fn names_of_any_length_with_anything_in_them_leave_the_window_as_it_is() {
+fn long_and_unusual_names_do_not_change_the_layout() {
     let mut bench = bench();
     let find = |bench: &Bench| bench.window.get_by_label("Find").rect();
     let before = find(&bench);
@@ -237,7 +237,7 @@ fn names_of_any_length_with_anything_in_them_leave_the_window_as_it_is() {
     bench.type_path(&path);
     bench.until(|bench| bench.said().starts_with("saved: "));
     assert!(bench.said().ends_with("a b.json") && path.exists());
-    // Longer than a name can be.
+    // Longer than a file name can be.
     bench.press(COMMAND_SHIFT, Key::S);
     bench.type_path(&path.with_file_name(format!("{}.json", "n".repeat(4000))));
     bench.until(|bench| bench.said().contains("too long"));
@@ -246,7 +246,7 @@ fn names_of_any_length_with_anything_in_them_leave_the_window_as_it_is() {
 }
 
 #[test]
-fn what_cannot_be_written_is_said_and_nothing_is_lost() {
+fn a_failed_save_is_reported_and_the_work_stays_unsaved() {
     let mut bench = bench();
     bench.change(1.5);
     let full = bench.path("full");
@@ -280,7 +280,7 @@ fn what_cannot_be_written_is_said_and_nothing_is_lost() {
 }
 
 #[test]
-fn a_dropped_preset_is_opened_and_a_dropped_ramp_lights() {
+fn a_dropped_preset_is_opened_and_a_dropped_ramp_is_used() {
     let mut bench = bench();
     let ramp = bench.path("mine.png");
     let grey = image::RgbImage::from_pixel(64, 1, image::Rgb([20; 3]));
@@ -303,7 +303,7 @@ fn a_dropped_preset_is_opened_and_a_dropped_ramp_lights() {
 }
 
 #[test]
-fn a_preset_goes_by_the_clipboard_and_nonsense_does_not() {
+fn a_preset_can_be_copied_and_pasted_and_an_invalid_text_is_refused() {
     let mut bench = bench();
     let mut preset = Preset::load("fence").unwrap();
     preset.camera.exposure = 0.5;
@@ -333,7 +333,7 @@ fn a_preset_goes_by_the_clipboard_and_nonsense_does_not() {
 }
 
 #[test]
-fn a_window_with_unsaved_work_asks_before_it_closes() {
+fn closing_a_window_asks_about_unsaved_work() {
     let mut bench = bench();
     bench.close();
     assert!(bench.window.state().filing.waiting.is_none());
@@ -343,14 +343,14 @@ fn a_window_with_unsaved_work_asks_before_it_closes() {
         let commands = bench.window.output().viewport_output.values().flat_map(|output| &output.commands);
         commands.cloned().collect::<Vec<_>>()
     };
-    bench.click("Lose them");
+    bench.click("Discard");
     bench.window.step();
     assert!(cancels(&bench).contains(&egui::ViewportCommand::Close));
     assert_eq!(exposure(&bench.path("my.json")), 55);
 }
 
 #[test]
-fn the_list_of_presets_shows_those_built_in_and_those_of_the_folder() {
+fn the_preset_list_shows_built_in_presets_and_those_of_the_folder() {
     let mut bench = bench();
     fs::write(bench.path("no_preset.json"), "{}").unwrap();
     bench.press(Modifiers::COMMAND, Key::N);
@@ -364,12 +364,12 @@ fn the_list_of_presets_shows_those_built_in_and_those_of_the_folder() {
 }
 
 #[test]
-fn work_that_a_crash_left_is_offered_and_a_clean_end_leaves_nothing() {
+fn work_left_by_a_crash_is_offered_and_a_normal_exit_leaves_none() {
     let mut bench = bench();
     let state = bench.path("state");
     bench.change(1.5);
     assert!(state.join("recovery-1.json").exists());
-    // A panic or a kill: nothing is finished.
+    // As after a panic or a kill: nothing is cleaned up.
     bench.window = window(&bench.path("my.json"), Some(bench.path("else")));
     bench.window = window(&bench.path("my.json"), Some(state.clone()));
     bench.click("Recover");

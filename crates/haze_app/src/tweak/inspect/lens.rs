@@ -1,4 +1,4 @@
-//! Brings texels back and has them read, without holding up a frame.
+//! Reads texels back and analyses them on a worker thread, so that no frame waits for them.
 
 use std::sync::Arc;
 
@@ -17,27 +17,27 @@ use crate::tweak::platform::worker::Worker;
 use crate::tweak::session::Session;
 use crate::tweak::show::Tab;
 
-/// Least seconds between two copies of a picture that changes.
+/// Least time between two copies of a changing image, seconds.
 const INTERVAL: f64 = 0.2;
 
-/// See the module.
+/// Readback and analysis for the inspector and the ramps tab.
 pub struct Lens {
     worker: Worker<Result<Answer, Error>>,
     seen: Option<Arc<Seen>>,
-    /// The pixel that was asked about last, and whether the answer is still to come.
+    /// Pixel that was last requested, and whether its answer is pending.
     asked: Option<UVec2>,
     is_asking: bool,
-    /// When the last copy arrived, seconds.
+    /// Time when the last copy arrived, seconds.
     arrived: f64,
 }
 
-/// A picture, and its texels.
+/// Image with its texels.
 struct Seen {
     side: Side,
     witness: Witness,
 }
 
-/// What the worker found.
+/// Result from the worker thread.
 enum Answer {
     Seen(Arc<Seen>),
     Told(Told),
@@ -51,7 +51,7 @@ impl Lens {
         Ok(Self { worker, seen: None, asked: None, is_asking: false, arrived: f64::NEG_INFINITY })
     }
 
-    /// Takes what has come, and asks for what is missing.
+    /// Takes finished results and requests missing ones. Call once a frame.
     pub fn update(&mut self, ui: &Ui, session: &mut Session, easel: &Easel) {
         let has_ramps = session.show.tab == Tab::Ramps;
         if !session.inspect.is_on && !has_ramps {
@@ -62,7 +62,7 @@ impl Lens {
             return;
         }
         if !easel.can_capture() {
-            let what = "this graphics backend copies no depth back, and there are no numbers of pixels without";
+            let what = "the inspector does not work on this graphics backend: it cannot read depth back";
             session.messages.complain("inspector", what);
             session.inspect.is_on = false;
             return;
@@ -97,7 +97,7 @@ impl Lens {
     fn take(&mut self, answer: Answer, inspect: &mut Inspect, has_ramps: bool) {
         match answer {
             Answer::Seen(seen) => {
-                // Ramps are those of the first picture.
+                // The ramps tab shows the first image.
                 if has_ramps && seen.side == Side::First {
                     let seen = seen.clone();
                     self.worker.submit(move |_| Ok(Answer::Survey(Survey::of(&seen.witness)?)));
@@ -109,7 +109,7 @@ impl Lens {
         }
     }
 
-    /// Has the pixel read that is pointed at, unless it was.
+    /// Requests the values of the pixel under the pointer, unless they are already known.
     fn ask(&mut self, inspect: &Inspect, side: Side) {
         let Some((seen, place)) = self.seen.as_ref().filter(|seen| seen.side == side).zip(inspect.place()) else {
             return;
@@ -117,7 +117,7 @@ impl Lens {
         let size = seen.witness.shot().size;
         let at = |share: f32, side: u32| ((share * side as f32) as u32).min(side - 1);
         let pixel = UVec2::new(at(place.x, size.x), at(place.y, size.y));
-        // The next question waits for the answer: a pointer that never rests would get none.
+        // A request waits for the previous answer; otherwise a moving pointer would never get one.
         if self.is_asking || self.asked == Some(pixel) {
             return;
         }
@@ -133,6 +133,6 @@ impl Lens {
 }
 
 fn read(side: Side, shot: Shot, capture: &Capture) -> Result<Seen, Error> {
-    let none = || Error::Device("the texels of the picture did not come back".into());
+    let none = || Error::Device("the texels of the image could not be read back".into());
     Ok(Seen { side, witness: capture.read().ok_or_else(none)?.of(shot) })
 }

@@ -1,10 +1,10 @@
-//! Smoke that looks up a place on a ramp, lit in the picture.
+//! Highlights the smoke that samples a place on a ramp.
 
 use eframe::egui::{self, Color32, Rect, Ui, Vec2};
 
 use super::Inspect;
 
-/// Paints it over the picture of the viewport.
+/// Paints the highlight over the image in the viewport.
 pub fn paint(ui: &Ui, viewport: Rect, inspect: &Inspect, system: usize) {
     let Some((survey, spot)) = inspect.survey.as_ref().zip(inspect.spot) else { return };
     let size = Vec2::new(survey.size.x as f32, survey.size.y as f32);

@@ -1,4 +1,4 @@
-//! What became of a pixel, and what the whole picture looks up: told from texels that came back from the GPU.
+//! Values of a pixel, and ramp coordinates of the whole image, computed from texels read back from the GPU.
 
 pub mod lens;
 pub mod lit;
@@ -17,36 +17,36 @@ use haze_reference::Probe;
 use super::compare::Side;
 use survey::{Spot, Survey};
 
-/// What is asked, and what is known.
+/// State of the inspector.
 #[derive(Default)]
 pub struct Inspect {
-    /// Numbers are shown of the pixel under the pointer.
+    /// The values of the pixel under the pointer are shown.
     pub is_on: bool,
-    /// The pointer over the picture, in shares of its sides.
+    /// Pointer position over the image, in shares of its sides.
     pub pointer: Option<Vec2>,
-    /// A place that is kept.
+    /// Pinned position.
     pub pinned: Option<Vec2>,
-    /// What is told.
+    /// Values of the pixel.
     pub told: Option<Told>,
-    /// What the whole picture looks up.
+    /// Ramp coordinates of the whole image.
     pub survey: Option<Arc<Survey>>,
-    /// A place on a ramp: what looks it up is lit in the picture.
+    /// Place on a ramp. Smoke that samples it is highlighted in the image.
     pub spot: Option<Spot>,
 }
 
-/// What became of a pixel.
+/// Values of a pixel.
 pub struct Told {
     pub pixel: UVec2,
-    /// The picture that it is of, and the names of the systems there.
+    /// Image that the pixel belongs to, and the names of its systems.
     pub side: Side,
     pub names: Vec<String>,
     pub probe: Probe,
-    /// Multiplies the light before it is shown.
+    /// Factor on the light before tonemapping.
     pub exposure: f32,
 }
 
 impl Inspect {
-    /// Follows the pointer over the viewport; a click keeps a place, or lets it go.
+    /// Follows the pointer over the viewport. A click pins the position, or releases it.
     pub fn point(&mut self, viewport: &Response) {
         self.pointer = viewport.hover_pos().map(|at| (at - viewport.rect.min) / viewport.rect.size());
         if self.is_on && viewport.clicked() {
@@ -54,7 +54,7 @@ impl Inspect {
         }
     }
 
-    /// The place that is asked about.
+    /// Returns the position to inspect.
     pub fn place(&self) -> Option<Vec2> {
         self.pinned.filter(|_| self.is_on).or(self.pointer)
     }
@@ -65,7 +65,7 @@ impl Inspect {
     }
 }
 
-/// Light as it is shown, sRGB code.
+/// Returns tonemapped light as an sRGB code.
 fn code(light: Vec3, exposure: f32) -> [u8; 3] {
     developed(light, exposure).to_array().map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round() as u8)
 }

@@ -1,4 +1,4 @@
-//! The numbers of a pixel, in a corner of the viewport.
+//! Values of a pixel, in a corner of the viewport.
 
 use eframe::egui::{self, Color32, Rect, RichText, Sense, Stroke, Ui, Vec2};
 use glam::{Vec3, Vec4, Vec4Swizzles};
@@ -8,13 +8,13 @@ use super::{Told, code};
 use crate::tweak::compare::{Against, Side};
 use crate::tweak::session::Session;
 
-/// How far from the corner.
+/// Distance from the corner, points.
 const MARGIN: f32 = 8.0;
 
-/// On a smaller picture the numbers are small, points.
+/// A smaller viewport uses small text, points.
 const LARGE: Vec2 = Vec2::new(480.0, 400.0);
 
-/// Draws them while the inspector is on, on the side where the pointer is not.
+/// Draws the values while the inspector is on, on the side away from the pointer.
 pub fn panel(ui: &Ui, viewport: Rect, session: &Session) {
     let (inspect, compare) = (&session.inspect, &session.compare);
     let Some(place) = inspect.place().filter(|_| inspect.is_on) else { return };
@@ -42,13 +42,13 @@ pub fn panel(ui: &Ui, viewport: Rect, session: &Session) {
             }
             match told {
                 Some(told) => numbers(ui, told, session, is_small),
-                None => drop(ui.weak("Made by the CPU: no texels are kept to tell from")),
+                None => drop(ui.weak("Drawn by the CPU renderer: no texels to inspect")),
             }
         });
     });
 }
 
-/// Marks the pixel.
+/// Marks the pixel with a cross.
 fn cross(ui: &Ui, at: egui::Pos2, is_pinned: bool) {
     let reach = if is_pinned { 9.0 } else { 6.0 };
     for (width, colour) in [(3.0, Color32::from_black_alpha(150)), (1.0, Color32::WHITE)] {
@@ -71,7 +71,7 @@ fn numbers(ui: &mut Ui, told: &Told, session: &Session, is_small: bool) {
     let preset = session.compare.against.as_ref().filter(|_| *side == Side::Second);
     let preset = preset.and_then(|against| against.settings(session.saved())).unwrap_or(&session.document.preset);
     let lights = session.show.lights.shown_names(&preset.lights);
-    // The nearest first.
+    // The nearest system comes first.
     for system in probe.systems.iter().rev() {
         ui.separator();
         ui.label(RichText::new(names.get(system.system).map_or("smoke", String::as_str)).strong());
@@ -84,7 +84,7 @@ fn numbers(ui: &mut Ui, told: &Told, session: &Session, is_small: bool) {
     match probe.colour {
         Some(colour) => picture(ui, colour, *exposure),
         None => {
-            ui.weak("Forward smoke is lit sprite by sprite:\nnothing is kept to tell from");
+            ui.weak("Forward smoke is lit sprite by sprite:\nno texels to inspect");
         }
     }
 }
@@ -122,7 +122,7 @@ fn of_system(ui: &mut Ui, probe: &SystemProbe, lights: &[String], is_small: bool
 }
 
 fn of_light(ui: &mut Ui, light: &LightProbe, names: &[String], is_small: bool) {
-    // Their sums have numbers in any case.
+    // Their sums are shown as numbers in any case.
     let colour = if is_small { hue } else { colour };
     ui.label(names.get(light.light).map_or("light", String::as_str));
     ui.label(format!("{:.2}", light.cosine));
@@ -138,12 +138,12 @@ fn of_light(ui: &mut Ui, light: &LightProbe, names: &[String], is_small: bool) {
     ui.end_row();
 }
 
-/// Between columns, and between rows.
+/// Returns the spacing of columns and rows.
 fn gaps(ui: &Ui) -> Vec2 {
     ui.spacing().item_spacing + Vec2::new(2.0, -1.0)
 }
 
-/// What the picture shows, before the film curve and after.
+/// Shows the image value before and after tonemapping.
 fn picture(ui: &mut Ui, light: Vec4, exposure: f32) {
     egui::Grid::new("picture").num_columns(2).spacing(gaps(ui)).show(ui, |ui| {
         ui.label("picture, linear");
@@ -164,7 +164,7 @@ fn hue(ui: &mut Ui, light: Vec3) {
     swatch(ui, egui::Rgba::from_rgb(r, g, b).into());
 }
 
-/// Linear light, and its hue.
+/// Shows linear light as a swatch and as numbers.
 fn colour(ui: &mut Ui, light: Vec3) {
     ui.horizontal(|ui| {
         hue(ui, light);
@@ -177,12 +177,12 @@ fn swatch(ui: &mut Ui, colour: Color32) {
     ui.painter().rect(rect, 2.0, colour, ui.visuals().widgets.noninteractive.bg_stroke, egui::StrokeKind::Inside);
 }
 
-/// A ball, and where on it the normal is.
+/// Draws a ball with the normal on it.
 fn ball(ui: &mut Ui, normal: Vec3) {
     let (rect, _) = ui.allocate_exact_size(Vec2::splat(34.0), Sense::hover());
     let (middle, radius) = (rect.center(), 15.0);
     let painter = ui.painter();
-    // From dark at the edge to light at the middle.
+    // Dark at the edge, bright at the centre.
     for step in 0..6_u8 {
         let share = 1.0 - f32::from(step) / 6.0;
         painter.circle_filled(middle, radius * share, Color32::from_gray(50 + 18 * step));

@@ -1,43 +1,43 @@
-//! What a picture looks up in its ramps, at a bounded number of its pixels.
+//! Ramp coordinates that an image samples, at a limited number of pixels.
 
 use glam::{UVec2, Vec2};
 use haze::Error;
 use haze_demo::capture::Witness;
 use haze_reference::SystemProbe;
 
-/// Most pixels that are looked at.
+/// Largest number of pixels that are sampled.
 const MOST: u32 = 10_000;
 
-/// Bins of a histogram; of the specular ramp's, along each side.
+/// Number of bins of a histogram; `SIDE` is that along each side of the specular ramp's.
 pub const BINS: usize = 64;
 pub const SIDE: usize = 32;
 
-/// How far from a place on a ramp is still there.
+/// Distance within which a sample counts as at a place on a ramp.
 pub const NEAR: f32 = 0.02;
 
-/// A place on a ramp of a system.
+/// Place on a ramp of a system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Spot {
-    /// By normal and light.
+    /// Coordinate from the cosine N·L between normal and light.
     Diffuse(f32),
-    /// By amount.
+    /// Accumulated amount.
     SoftScatter(f32),
-    /// By distance² and amount.
+    /// Squared distance, and amount.
     Specular(Vec2),
-    /// By amount times boost.
+    /// Amount times boost.
     Coverage(f32),
 }
 
-/// Smoke at the pixels that were looked at.
+/// Smoke at the sampled pixels.
 pub struct Survey {
-    /// Of the picture.
+    /// Size of the image in pixels.
     pub size: UVec2,
-    /// Pixels from one that was looked at to the next.
+    /// Distance between sampled pixels, in pixels.
     pub step: u32,
     samples: Vec<(UVec2, SystemProbe)>,
 }
 
-/// How often every part of a ramp is looked up, weighted by coverage; the most is 1.
+/// Frequency of each part of a ramp, weighted by coverage and scaled to a maximum of 1.
 pub struct Histogram {
     pub light: usize,
     pub bins: Vec<f32>,
@@ -45,7 +45,7 @@ pub struct Histogram {
 
 impl Survey {
     /// # Errors
-    /// Where the texels are of another shot.
+    /// If the texels belong to another shot.
     pub fn of(witness: &Witness) -> Result<Self, Error> {
         let size = witness.shot().size;
         let step = (size.element_product() as f32 / MOST as f32).sqrt().ceil().max(1.0) as u32;
@@ -63,7 +63,7 @@ impl Survey {
         self.samples.iter().filter(move |(_, probe)| probe.system == system)
     }
 
-    /// What the lights of a system look up in the diffuse ramp.
+    /// Returns histograms of the diffuse ramp, one for each light.
     pub fn by_light(&self, system: usize) -> Vec<Histogram> {
         let mut histograms: Vec<Histogram> = Vec::new();
         for (_, probe) in self.of_system(system) {
@@ -81,17 +81,17 @@ impl Survey {
         histograms
     }
 
-    /// What a system looks up in the soft scatter ramp: its amounts.
+    /// Returns the histogram of the soft scatter ramp, over the amount.
     pub fn by_amount(&self, system: usize) -> Vec<f32> {
         self.count(system, |probe| (probe.amount, probe.coverage))
     }
 
-    /// What it looks up in the coverage ramp. Every pixel counts as much: also where the ramp hides nothing.
+    /// Returns the histogram of the coverage ramp. Every pixel has the same weight, even where the ramp hides nothing.
     pub fn by_coverage(&self, system: usize) -> Vec<f32> {
         self.count(system, |probe| (probe.coverage_coordinate, 1.0))
     }
 
-    /// A histogram of a coordinate by a weight.
+    /// Returns a weighted histogram of a coordinate.
     fn count(&self, system: usize, of: impl Fn(&SystemProbe) -> (f32, f32)) -> Vec<f32> {
         let mut bins = vec![0.0; BINS];
         for (coordinate, weight) in self.of_system(system).map(|(_, probe)| of(probe)) {
@@ -102,7 +102,7 @@ impl Survey {
         bins
     }
 
-    /// What it looks up in the specular ramp, row by row of amounts from 0 up.
+    /// Returns the histogram of the specular ramp, by rows of rising amount.
     pub fn by_glow(&self, system: usize) -> Vec<f32> {
         let mut bins = vec![0.0; SIDE * SIDE];
         for (_, probe) in self.of_system(system) {
@@ -115,7 +115,7 @@ impl Survey {
         bins
     }
 
-    /// The pixels that look up a place on a ramp.
+    /// Returns the sampled pixels whose smoke samples a place on a ramp.
     pub fn at(&self, system: usize, spot: Spot) -> Vec<UVec2> {
         let is_near = |a: f32, b: f32| (a - b).abs() <= NEAR;
         let looks_up = |probe: &SystemProbe| match spot {
@@ -132,8 +132,7 @@ impl Survey {
     }
 }
 
-/// How often every part of the specular ramp is looked up along each axis, whatever it is on the other: by distance², and by
-/// amount.
+/// Returns histograms of the specular ramp along each axis, summed over the other: by squared distance, and by amount.
 pub fn along(glow: &[f32]) -> [Vec<f32>; 2] {
     let mut sums = [vec![0.0; SIDE], vec![0.0; SIDE]];
     for (index, count) in glow.iter().enumerate() {
@@ -162,9 +161,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_looked_up_along_an_axis_is_counted_whatever_the_other() {
+    fn a_histogram_along_one_axis_sums_over_the_other() {
         let mut glow = vec![0.0; SIDE * SIDE];
-        // Distance² 3 at the amounts 1 and 5, and 8 at 5.
+        // Column 3 (squared distance) at the amounts 1 and 5, and column 8 at 5.
         for (x, y, count) in [(3, 1, 0.5), (3, 5, 0.25), (8, 5, 1.0)] {
             glow[y * SIDE + x] = count;
         }

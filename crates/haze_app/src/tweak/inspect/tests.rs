@@ -10,15 +10,15 @@ use crate::tweak::window::Window;
 
 const SIZE: Vec2 = Vec2::new(1000.0, 640.0);
 
-/// A place in the smoke of `column`.
+/// Returns a position in the smoke of `column`.
 fn smoke(harness: &Harness<'_, Window>) -> Pos2 {
     harness.get_by_label("viewport").rect().center()
 }
 
-/// Steps until something is there: texels come back and are read beside the window.
+/// Steps until a condition holds: texels are read back and analysed on a worker thread.
 fn wait_for(harness: &mut Harness<'_, Window>, is_there: impl Fn(&Harness<'_, Window>) -> bool) {
     for _ in 0..300 {
-        // Only what is drawn comes back.
+        // Only an image that is drawn is read back.
         picture(harness);
         if is_there(harness) {
             return;
@@ -33,7 +33,7 @@ fn shows(harness: &Harness<'_, Window>, text: &str) -> bool {
 }
 
 #[test]
-fn the_pixel_under_the_pointer_is_told_and_a_click_keeps_it() {
+fn values_of_the_pixel_under_the_pointer_are_shown_and_a_click_pins_it() {
     let mut harness = window("column", SIZE, Theme::Dark);
     harness.key_press(Key::I);
     let place = smoke(&harness);
@@ -54,7 +54,7 @@ fn the_pixel_under_the_pointer_is_told_and_a_click_keeps_it() {
 }
 
 #[test]
-fn of_two_pictures_the_one_under_the_pointer_is_told() {
+fn the_inspector_reads_the_compared_image_under_the_pointer() {
     let mut harness = window("column", SIZE, Theme::Dark);
     harness.key_press(Key::I);
     let mut show = |against: Against, x: f32, text: &str| {
@@ -67,14 +67,14 @@ fn of_two_pictures_the_one_under_the_pointer_is_told() {
     assert_eq!(show(Against::FullResolution, -20.0, "coverage"), [true, false]);
     assert_eq!(show(Against::FullResolution, 20.0, "second: full resolution"), [true, true]);
     assert_eq!(show(Against::Forward, 20.0, "lit sprite by sprite"), [false, true]);
-    assert_eq!(show(Against::Reference, 20.0, "Made by the CPU"), [false, false]);
+    assert_eq!(show(Against::Reference, 20.0, "Drawn by the CPU"), [false, false]);
     assert_eq!(show(Against::Reference, -20.0, "coverage"), [true, false]);
 }
 
 #[test]
-fn all_numbers_are_on_the_picture_of_the_smallest_window() {
+fn all_values_fit_on_the_image_of_the_smallest_window() {
     let mut harness = window("column", Vec2::new(640.0, 400.0), Theme::Dark);
-    // A page without colours in numbers.
+    // A tab that shows no colours as numbers.
     harness.get_by_label("Cost").click();
     harness.key_press(Key::I);
     let viewport = harness.get_by_label("viewport").rect();
@@ -101,13 +101,13 @@ fn all_numbers_are_on_the_picture_of_the_smallest_window() {
 }
 
 #[test]
-fn pointing_at_a_ramp_lights_the_smoke_that_looks_there() {
+fn pointing_at_a_ramp_highlights_the_smoke_that_samples_it() {
     let mut harness = window("column", SIZE, Theme::Dark);
     harness.get_by_label("Ramps").click();
     wait_for(&mut harness, |harness| shows(harness, "lamp 1 (point)"));
     let viewport = harness.get_by_label("viewport").rect();
     let before = brightness(&picture(&mut harness), viewport);
-    // The middle of the diffuse ramp: most of what is lit looks there.
+    // The middle of the diffuse ramp, which most of the lit smoke samples.
     let ramp = harness.get_by_label("diffuse ramp").rect();
     harness.hover_at(egui::pos2(ramp.center().x, ramp.center().y));
     harness.run_steps(3);
@@ -119,9 +119,9 @@ fn pointing_at_a_ramp_lights_the_smoke_that_looks_there() {
 }
 
 #[test]
-fn what_is_lit_lies_under_the_tools_that_stand_on_the_picture() {
+fn the_highlight_is_painted_below_the_toolbar() {
     let mut harness = window("column", SIZE, Theme::Dark);
-    // Smoke all over the picture.
+    // Fills the image with smoke.
     let camera = &mut harness.state_mut().session.document.preset.camera;
     camera.position = camera.target.lerp(camera.position, 0.2);
     harness.get_by_label("Ramps").click();
@@ -145,12 +145,12 @@ fn what_is_lit_lies_under_the_tools_that_stand_on_the_picture() {
 }
 
 #[test]
-fn a_picture_that_stands_still_is_not_drawn_again() {
+fn a_still_image_is_not_drawn_again() {
     let mut harness = window("column", SIZE, Theme::Dark);
     harness.key_press(Key::I);
     harness.get_by_label("Ramps").click();
     wait_for(&mut harness, |harness| shows(harness, "lamp 1 (point)"));
-    // No more than the copy that is under way, what is read of it, and the end of its interval.
+    // At most the pending copy, its analysis, and the end of its interval.
     for _ in 0..5 {
         picture(&mut harness);
         std::thread::sleep(Duration::from_millis(300));

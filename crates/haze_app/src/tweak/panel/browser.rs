@@ -1,4 +1,4 @@
-//! The presets that there are, to begin with one.
+//! List of presets to start from.
 
 use std::path::{Path, PathBuf};
 
@@ -6,14 +6,15 @@ use eframe::egui::{self, Sense, Ui, Vec2};
 
 use crate::tweak::preset_thumbnails::{Entry, PresetThumbnails, SIZE};
 
-/// Round a picture.
+/// Margin around an image, points.
 const MARGIN: f32 = 4.0;
-/// Height of a name.
+/// Height of a name, points.
 const NAME: f32 = 20.0;
-/// A picture with its name.
+/// Size of an image with its name.
 const CELL: Vec2 = Vec2::new(SIZE.x as f32 + 2.0 * MARGIN, SIZE.y as f32 + NAME + MARGIN);
 
-/// Draws the list over the window; gives the preset that was chosen, or nothing when it is to be closed.
+/// Draws the list over the window. Returns `Some(Some(path))` if a preset was chosen, and `Some(None)` if the list is
+/// to be closed.
 pub fn panel(ui: &Ui, thumbnails: &mut PresetThumbnails) -> Option<Option<PathBuf>> {
     thumbnails.advance(ui.ctx());
     let mut chosen = None;
@@ -36,7 +37,7 @@ pub fn panel(ui: &Ui, thumbnails: &mut PresetThumbnails) -> Option<Option<PathBu
     (chosen.is_some() || response.should_close()).then_some(chosen)
 }
 
-/// A picture with its name; whether it was chosen.
+/// Draws an image with its name. Returns true if it was chosen.
 fn cell(ui: &mut Ui, entry: &Entry) -> bool {
     let (rect, response) = ui.allocate_exact_size(CELL, Sense::click());
     let name = entry.shown.as_ref().map_or_else(|| file_name(&entry.path), |shown| shown.name.clone());

@@ -1,4 +1,4 @@
-//! What the picture is compared with, and how.
+//! Choice of the second image, and controls of the comparison.
 
 use eframe::egui::{self, Button, Ui};
 
@@ -6,16 +6,16 @@ use crate::tweak::action::{Action, keys_of};
 use crate::tweak::compare::{Against, OFFERS, Offer};
 use crate::tweak::session::Session;
 
-/// Space between buttons of one choice.
+/// Gap between buttons of one choice, points.
 const GAP: f32 = 2.0;
 
-/// Buttons for all of it where there is room for them, points; where there is less some of it is in the menu only.
+/// Draws buttons if they fit into `room`, points. With less room, some of them are in the menu only.
 pub fn panel(ui: &mut Ui, session: &mut Session, room: f32) {
     let row: f32 = OFFERS.iter().map(|offer| width(ui, offer.short) + GAP).sum();
     let row = row + width(ui, "Compare") + ui.spacing().item_spacing.x;
     let beside = ["Difference", "x 256.0", "Use", "Swap"].map(|name| width(ui, name) + ui.spacing().item_spacing.x);
     let beside: f32 = beside.iter().sum();
-    // They stay where they are when something is compared.
+    // The layout does not depend on whether a comparison is on, so that buttons do not move.
     let has_row = row + beside <= room;
     let has_tools = has_row || width(ui, "full resolution") + beside <= room;
     let against = session.compare.against.as_ref();
@@ -51,7 +51,7 @@ fn keys(ui: &Ui, against: &'static Against) -> String {
     keys_of(Action::Compare(against)).map_or(String::new(), |keys| ui.ctx().format_shortcut(&keys))
 }
 
-/// All that the picture can be compared with.
+/// Draws the menu of all comparisons.
 fn menu(ui: &mut Ui, session: &mut Session) {
     let kept = Against::Kept(Box::new(session.document.preset.clone()));
     let compare = &mut session.compare;
@@ -65,37 +65,37 @@ fn menu(ui: &mut Ui, session: &mut Session) {
         }
     };
     entry(ui, None, "Nothing", "One picture", String::new());
-    let tooltip = "Keeps these settings, and shows beside them what is changed from here on";
+    let tooltip = "Keeps the present settings as the second picture; later changes show in the first";
     entry(ui, Some(kept), "As it is now", tooltip, String::new());
     for Offer { against, name, tooltip, .. } in &OFFERS {
         entry(ui, Some(against.clone()), name, tooltip, keys(ui, against));
     }
 }
 
-/// How the two are shown, and what is taken from the second.
+/// Draws the controls of a comparison, and the buttons that copy from the second image.
 fn tools(ui: &mut Ui, session: &mut Session) {
     let compare = &mut session.compare;
     let mut is_difference = compare.difference > 0.0;
     let difference = ui.toggle_value(&mut is_difference, "Difference");
-    if difference.on_hover_text("How far the two are apart, made brighter").changed() {
+    if difference.on_hover_text("Difference of the two pictures, multiplied by a factor").changed() {
         compare.difference = if is_difference { 8.0 } else { 0.0 };
     }
     if is_difference {
         let times = egui::DragValue::new(&mut compare.difference).range(1.0..=256.0).speed(0.2).prefix("x ");
-        ui.add(times).on_hover_text("How much brighter");
+        ui.add(times).on_hover_text("Factor of the difference");
     }
     let Some(against) = compare.against.clone() else { return };
     let Some(second) = against.settings(session.saved()).cloned() else { return };
-    if ui.button("Use").on_hover_text("Takes the second over; Undo brings this one back").clicked() {
+    if ui.button("Use").on_hover_text("Replaces the preset by the second; Undo restores it").clicked() {
         session.document.preset = second.clone();
     }
-    if ui.button("Swap").on_hover_text("Edits the second, beside these settings").clicked() {
+    if ui.button("Swap").on_hover_text("Swaps the two: the second is edited, beside the present settings").clicked() {
         session.compare.against =
             Some(Against::Kept(Box::new(std::mem::replace(&mut session.document.preset, second))));
     }
 }
 
-/// How wide a button is.
+/// Returns the width of a button, points.
 pub fn width(ui: &Ui, name: &str) -> f32 {
     let font = egui::TextStyle::Button.resolve(ui.style());
     let text = ui.painter().layout_no_wrap(name.into(), font, egui::Color32::WHITE);
@@ -111,7 +111,7 @@ mod tests {
     use crate::tweak::testing::window;
 
     #[test]
-    fn no_button_of_the_top_lies_over_another_whatever_is_compared() {
+    fn no_buttons_at_the_top_overlap_in_any_comparison() {
         for width in [640.0, 800.0, 1000.0, 1280.0] {
             let mut harness = window("column", Vec2::new(width, 500.0), Theme::Dark);
             for (key, offer) in [Key::F5, Key::F6, Key::F7, Key::F8].into_iter().zip(&OFFERS) {

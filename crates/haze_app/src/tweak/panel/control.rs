@@ -1,4 +1,4 @@
-//! Controls of rows: a slider with its number, a colour, one of a few.
+//! Controls of a row: slider with number, colour, choice.
 
 use std::fmt::Display;
 use std::ops::RangeInclusive;
@@ -11,13 +11,14 @@ use super::row::spaced;
 use super::value::{parse, shown, suffix};
 use crate::tweak::reach::{Usual, is_wide, reach};
 
-/// Least width of what is typed.
+/// Least width of the number field, points.
 const VALUE: f32 = 84.0;
 
-/// What cannot be typed is told once.
+/// Reason why typed text was refused.
 pub type Refused = Option<String>;
 
-/// A slider for a number, and the number, which can be typed; `refused` is told what was typed in vain. True if it was changed.
+/// Draws a slider and a number field. `refused` is set if typed text is not valid. Returns true if the value was
+/// changed.
 pub fn number(
     ui: &mut Ui,
     name: &Response,
@@ -45,7 +46,7 @@ pub fn number(
     is_changed
 }
 
-/// A slider for a whole number, as [`number`].
+/// Draws a slider and a number field for an integer, like [`number`].
 pub fn integer(
     ui: &mut Ui,
     name: &Response,
@@ -66,25 +67,25 @@ pub fn integer(
     is_changed
 }
 
-/// A slider with its number beside it.
+/// Slider with a number field.
 struct Control<'a> {
     name: &'a Response,
     unit: &'a str,
-    /// What the slider reaches.
+    /// Range of the slider.
     shown: RangeInclusive<f64>,
-    /// What may be typed.
+    /// Valid range; also applies to typed numbers.
     range: RangeInclusive<f64>,
     is_logarithmic: bool,
-    /// The smallest that a logarithmic slider tells from 0.
+    /// Smallest value that a logarithmic slider distinguishes from 0.
     smallest: f64,
     decimals: usize,
 }
 
 impl Control<'_> {
-    /// True if the value was changed.
+    /// Returns true if the value was changed.
     fn show(&self, ui: &mut Ui, value: &mut f64, refused: &mut Refused) -> bool {
         let height = ui.spacing().interact_size.y;
-        // More than there is room for would widen the panel, frame by frame.
+        // A wider row would widen the panel in every frame.
         let font = egui::TextStyle::Button.resolve(ui.style());
         let text = shown(*value) + &suffix(self.unit);
         let text = ui.painter().layout_no_wrap(text, font, egui::Color32::WHITE).size().x;
@@ -123,13 +124,13 @@ impl Control<'_> {
     }
 }
 
-/// What is said of a text that is no number of a range.
+/// Returns the message for text that is no number in the range.
 fn refusal(text: &str, low: impl Display, high: impl Display, unit: &str) -> String {
     let space = if unit.is_empty() { "" } else { " " };
     format!("{text:?} is not valid; expected {low} to {high}{space}{unit}")
 }
 
-/// Three numbers beside each other; `refused` is told what was typed in vain.
+/// Draws three number fields side by side. `refused` is set if typed text is not valid.
 pub fn vector(
     ui: &mut Ui,
     value: &mut Vec3,
@@ -172,14 +173,15 @@ pub fn vector(
     }
 }
 
-/// Linear RGB and its numbers.
+/// Draws a linear RGB colour as a swatch and as numbers.
 pub fn colour(ui: &mut Ui, value: &mut Vec3, name: &Response) {
     swatch(ui, value).labelled_by(name.id);
     let [r, g, b] = value.to_array();
     ui.add(egui::Label::new(egui::RichText::new(format!("{r:.3} {g:.3} {b:.3}")).weak()).truncate());
 }
 
-/// Linear RGB, which may be brighter than 1: the button shows its hue.
+/// Draws a swatch of a linear RGB colour. The colour may exceed 1; the swatch is then normalised to its largest
+/// channel.
 pub fn swatch(ui: &mut Ui, value: &mut Vec3) -> Response {
     let peak = value.max_element().max(1.0);
     let mut shown = (*value / peak).to_array();
@@ -190,7 +192,8 @@ pub fn swatch(ui: &mut Ui, value: &mut Vec3) -> Response {
     button
 }
 
-/// The path of a file: taken when it is whole, not letter by letter; Escape leaves it as it was.
+/// Draws the field of a file path. The path is used when the field loses focus, not after each letter; Escape discards
+/// it.
 pub fn path(ui: &mut Ui, value: &mut String, salt: &str) -> Response {
     let id = ui.make_persistent_id(salt);
     let mut typed = ui.data(|data| data.get_temp(id)).unwrap_or_else(|| value.clone());
@@ -207,7 +210,7 @@ pub fn path(ui: &mut Ui, value: &mut String, salt: &str) -> Response {
     response
 }
 
-/// One of a few; `tooltip` tells what each means.
+/// Draws a choice. `tooltip` returns the description of a choice.
 pub fn choice<'t>(
     ui: &mut Ui,
     value: &mut dyn Choice,
@@ -239,7 +242,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_path_is_taken_when_it_is_whole() {
+    fn a_path_is_used_when_its_field_loses_focus() {
         let row = |ui: &mut Ui, value: &mut String| {
             let name = ui.label("path");
             path(ui, value, "row").labelled_by(name.id);
@@ -261,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_typed_in_vain_into_three_numbers_is_said_and_changes_nothing() {
+    fn invalid_text_in_a_vector_field_is_reported_and_changes_nothing() {
         let row = |ui: &mut Ui, (value, refused): &mut (Vec3, Refused)| {
             let name = ui.label("wind");
             vector(ui, value, &(-10.0..=10.0), "m/s", &name, refused);

@@ -1,15 +1,15 @@
-//! The soft fade as a curve: what is left of a sprite before and behind a surface.
+//! Plot of the soft fade over the distance to a surface.
 
 use eframe::egui::{self, Align2, Sense, Ui, Vec2, pos2};
 use haze::formula::soft_fade::soft_fade;
 use haze::settings::SoftFade;
 
 const HEIGHT: f32 = 84.0;
-/// Room for the words below.
+/// Height of the labels below the plot, points.
 const WORDS: f32 = 16.0;
 const POINTS: usize = 160;
 
-/// Draws the curve over the distance from behind the surface to where the sprite is whole.
+/// Draws the plot, from behind the surface to where the sprite is fully visible.
 pub fn panel(ui: &mut Ui, fade: &SoftFade) {
     let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), HEIGHT), Sense::hover());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "fade curve"));
@@ -22,7 +22,7 @@ pub fn panel(ui: &mut Ui, fade: &SoftFade) {
     let (faint, ink) = (visuals.weak_text_color(), visuals.text_color());
     let painter = ui.painter_at(rect);
     painter.rect_filled(plot, 2.0, visuals.extreme_bg_color);
-    // The scene begins at 0.
+    // The region behind the surface.
     painter.rect_filled(plot.with_max_x(x(0.0)), 0.0, visuals.faint_bg_color);
     painter.vline(x(0.0), plot.y_range(), egui::Stroke::new(1.0, faint));
     painter.vline(x(reach), plot.y_range(), egui::Stroke::new(1.0, faint.gamma_multiply(0.5)));
@@ -37,5 +37,5 @@ pub fn panel(ui: &mut Ui, fade: &SoftFade) {
     };
     word(x(0.0), Align2::CENTER_BOTTOM, "surface".into());
     word(x(reach), Align2::CENTER_BOTTOM, format!("{reach:.2} m"));
-    response.on_hover_text("What is left of a sprite by its distance in front of the surface");
+    response.on_hover_text("Share of a sprite that remains, over its distance in front of the surface");
 }

@@ -1,4 +1,4 @@
-//! What is to be written, how far it is, and a sheet that was made.
+//! Export dialog, with progress, and the sheet that was made.
 
 use eframe::egui::{self, Ui};
 
@@ -7,27 +7,27 @@ use crate::tweak::platform::clock::Duration;
 use crate::tweak::search::matches;
 use crate::tweak::session::Session;
 
-/// Below the menus and the tools on the picture.
+/// Position below the menus and the toolbar of the viewport, points.
 const CORNER: [f32; 2] = [24.0, 76.0];
 
-/// Draws the window for exports and the sheet while they are open.
+/// Draws the export dialog and the sheet while they are open.
 pub fn panel(ui: &Ui, exporting: &mut Exporting, session: &mut Session) {
     exporting.advance(session);
     let progress = exporting.progress();
     if progress.is_some() {
-        // What is far is seen to move, and no oftener than it does.
+        // Progress needs frames, but no more than it changes.
         ui.ctx().request_repaint_after(Duration::from_millis(200));
     }
     let mut is_open = exporting.is_open;
     let window = egui::Window::new("Export").default_pos(CORNER).collapsible(false).resizable(false);
-    // What takes its time is seen, and can be stopped, whoever asked for it.
+    // A long export is always shown and can be stopped, even if it was started from elsewhere.
     let is_long = progress.is_some_and(|(_, count)| count > 1);
     let window = if is_long && !is_open { window } else { window.open(&mut is_open) };
     window.show(ui.ctx(), |ui| match progress {
         Some((done, count)) => {
             let share = done as f32 / count.max(1) as f32;
             ui.add(egui::ProgressBar::new(share).text(format!("{done} of {count}")));
-            if ui.button("Stop").on_hover_text("Files that are there are whole").clicked() {
+            if ui.button("Stop").on_hover_text("Files that are already written are complete").clicked() {
                 exporting.stop();
             }
         }
@@ -75,7 +75,7 @@ fn order(ui: &mut Ui, exporting: &mut Exporting, session: &mut Session) {
             row("Rows, columns", [(&mut order.cells.x, 1..=64), (&mut order.cells.y, 1..=64)]);
         }
         if is_moving {
-            let label = ui.label("Frames a second").id;
+            let label = ui.label("Frames per second").id;
             ui.add(egui::DragValue::new(&mut order.rate).range(1.0..=50.0)).labelled_by(label);
             ui.end_row();
         }

@@ -1,4 +1,4 @@
-//! A settings struct as rows: every field that the table has, with its range, unit and doc comment.
+//! Rows for a settings struct: each field of its table with range, unit and doc comment.
 
 use std::collections::{HashMap, HashSet};
 use std::ops::RangeInclusive;
@@ -15,43 +15,44 @@ use super::value::shown_value;
 use crate::tweak::picture_thumbnails::PictureThumbnails;
 use crate::tweak::reach::Usual;
 
-/// A step on the way to a field: its name, and its place where it is one of a list.
+/// Step on the path to a field: its name, and its index if it is in a list.
 pub type Step = (&'static str, Option<usize>);
 
-/// What rows are drawn with, and what they ask for.
+/// Data that rows read, and requests that they return.
 pub struct Desk<'a> {
     pub tooltips: &'a Tooltips,
-    /// What pictures look like.
+    /// Thumbnails of images.
     pub thumbnails: &'a PictureThumbnails,
-    /// Paths of what differs from the preset on disk.
+    /// Paths of the fields that differ from the preset on disk.
     pub changed: &'a HashSet<String>,
-    /// What the second picture of a comparison has, by path, where it is another; `None` without settings of its own.
+    /// Values of the second image's settings that differ, by path; `None` if it has no settings of its own.
     pub second: Option<&'a HashMap<String, Value>>,
-    /// The fields are the preset's: sheets of their values can be made.
+    /// The fields belong to the preset, so sheets of their values can be made.
     pub has_sheets: bool,
-    /// Why a field does nothing, by path.
+    /// Returns the reason why the field of a path has no effect.
     pub inert: &'a dyn Fn(&str) -> Option<&'static str>,
-    /// What is asked for, and of which fields.
+    /// Requests, with the paths of their fields.
     pub asked: Vec<(Asked, String)>,
-    /// Why what was typed cannot be.
+    /// Reason why typed text was refused.
     pub refused: Option<String>,
-    /// A field that is to be brought into sight.
+    /// Path of the field that is brought into view.
     pub sought: Option<&'a str>,
 }
 
 impl Desk<'_> {
-    /// What a row says of a field that the second picture has, too.
+    /// Returns the second image's value of a field as text, if it differs; the outer `None` means that it has no
+    /// settings of its own.
     pub fn second(&self, path: &str, unit: &str) -> Option<Option<String>> {
         Some(self.second?.get(path).map(|value| shown_value(value, unit)))
     }
 }
 
-/// What a sheet is called of a number's values, and of all there are.
+/// Labels of the button that makes a sheet, for a number, a seed, and all values of a choice or flag.
 pub const FIVE: Option<&str> = Some("Five values on a sheet");
 const SEEDS: Option<&str> = Some("Nine seeds on a sheet");
 const ALL: Option<&str> = Some("All values on a sheet");
 
-/// Draws the fields of a struct that `path` leads to; groups fold, and what is under a heading. The first heading is open.
+/// Draws the fields of the struct at `path`. Groups and headings are collapsible; the first heading is open.
 pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fields) {
     let table = fields.headings();
     if table.is_empty() {
@@ -74,7 +75,7 @@ pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fi
     }
 }
 
-/// Draws those fields of a struct whose names are wanted.
+/// Draws the fields of a struct whose names are wanted.
 pub fn show_where(
     ui: &mut Ui,
     desk: &mut Desk<'_>,
@@ -85,7 +86,7 @@ pub fn show_where(
     fields.visit(&mut Rows { ui, desk, path: path.to_vec(), is_wanted, only: None });
 }
 
-/// What folds away fields: open while one is sought that it holds, with the marks of those that it does.
+/// Returns a collapsible header. It opens if the sought field is inside, and shows the marks of the fields inside.
 pub fn header(desk: &Desk<'_>, title: &str, holds: &dyn Fn(&str) -> bool) -> egui::CollapsingHeader {
     let mark = if desk.changed.iter().any(|changed| holds(changed)) { " •" } else { "" };
     let is_apart = desk.second.is_some_and(|second| second.keys().any(|apart| holds(apart)));
@@ -93,22 +94,22 @@ pub fn header(desk: &Desk<'_>, title: &str, holds: &dyn Fn(&str) -> bool) -> egu
     egui::CollapsingHeader::new(format!("{title}{mark}{apart}")).open(desk.sought.is_some_and(holds).then_some(true))
 }
 
-/// Whether a field is at a path, or below it.
+/// Returns true if a field is at a path or below it.
 pub fn is_at(field: &str, path: &str) -> bool {
     field.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
-/// One field of a struct: what it is called in place of its own name, its path from there, and how far its slider goes.
+/// One field of a struct: title that replaces its name, relative path, and usual range of its slider.
 pub type Named<'a> = (&'a str, &'a str, Usual);
 
-/// Draws one field of a struct that `path` leads to.
+/// Draws one field of the struct at `path`.
 pub fn show_named(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fields, named: Named<'_>) {
     let (title, wanted, usual) = named;
     let only = Some(Only { title, wanted, usual, depth: path.len() });
     fields.visit(&mut Rows { ui, desk, path: path.to_vec(), is_wanted: &|_| true, only });
 }
 
-/// Brings the row that begins at a place into sight, and marks it: it is the one that was looked for.
+/// Brings the row that begins at a position into view and marks it, because it was searched for.
 pub fn show_sought(ui: &Ui, begin: egui::Pos2) {
     let rect = egui::Rect::from_min_max(begin, ui.cursor().min + egui::vec2(ui.available_width(), 0.0));
     ui.scroll_to_rect(rect, Some(egui::Align::Center));
@@ -119,17 +120,17 @@ struct Rows<'a, 'd, 'u> {
     ui: &'u mut Ui,
     desk: &'a mut Desk<'d>,
     path: Vec<Step>,
-    /// Whether a field of this name is drawn.
+    /// Returns true if the field of this name is drawn.
     is_wanted: &'a dyn Fn(&str) -> bool,
-    /// All fields if `None`.
+    /// Draws a single field; `None` draws all.
     only: Option<Only<'a>>,
 }
 
-/// One field among many.
+/// Selection of a single field.
 #[derive(Clone, Copy)]
 struct Only<'a> {
     title: &'a str,
-    /// Its path from a struct that so many steps lead to.
+    /// Path relative to the struct that `depth` steps lead to.
     wanted: &'a str,
     usual: Usual,
     depth: usize,
@@ -158,7 +159,7 @@ impl Rows<'_, '_, '_> {
         let title = self.only.map_or(name, |only| only.title);
         let mut tooltip = desk.tooltips.field(&plain).unwrap_or_default().to_owned();
         if title != spaced(name) && self.only.is_some() {
-            // What it is called in files.
+            // The path that the field has in files.
             tooltip += &format!("\n\n{path}");
         }
         let row = Row {

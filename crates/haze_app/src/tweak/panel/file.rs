@@ -1,4 +1,4 @@
-//! The File menu, and what it asks.
+//! File menu and its questions.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::tweak::platform::dialog::Purpose;
 use crate::tweak::platform::files;
 use crate::tweak::session::Session;
 
-/// The menu; gives what was chosen from it.
+/// Draws the menu. Returns the chosen action.
 pub fn menu(ui: &mut Ui, session: &mut Session) -> Option<Action> {
     let mut chosen = None;
     ui.menu_button("File", |ui| {
@@ -30,7 +30,7 @@ pub fn menu(ui: &mut Ui, session: &mut Session) -> Option<Action> {
         entry(ui, Action::SaveAs);
         let can_revert = session.document.is_dirty() && session.document.saved().is_some();
         let revert = ui.add_enabled(can_revert, egui::Button::new("Revert"));
-        if revert.on_hover_text("Reads the file again; what is changed here is one Undo away").clicked() {
+        if revert.on_hover_text("Reads the file again; Undo restores your changes").clicked() {
             session.revert();
             ui.close();
         }
@@ -49,7 +49,7 @@ pub fn menu(ui: &mut Ui, session: &mut Session) -> Option<Action> {
     chosen
 }
 
-/// Asks what becomes of unsaved work, or for a path, while there is need to.
+/// Asks about unsaved work, or for a path, while that is needed.
 pub fn questions(ui: &Ui, filing: &mut Filing, session: &mut Session) {
     if filing.waiting.is_some() {
         unsaved(ui, filing, session);
@@ -65,7 +65,7 @@ fn unsaved(ui: &Ui, filing: &mut Filing, session: &mut Session) {
         ui.heading(format!("Save the changes of {}?", short(&session.document.preset.name, 60)));
         ui.add_space(8.0);
         ui.horizontal(|ui| {
-            for (text, value) in [("Save", Some(true)), ("Lose them", Some(false)), ("Go on here", None)] {
+            for (text, value) in [("Save", Some(true)), ("Discard", Some(false)), ("Cancel", None)] {
                 if ui.button(text).clicked() {
                     answer = Some(value);
                 }
@@ -89,7 +89,7 @@ fn type_path(ui: &Ui, filing: &mut Filing, session: &mut Session) {
             Purpose::SaveAs => ("Save as", "Save"),
         };
         ui.heading(title);
-        ui.weak("This system has no dialogs for files: type the path.");
+        ui.weak("This system has no file dialog: type the path.");
         let edit =
             egui::TextEdit::singleline(&mut typed.text).hint_text("Path of a JSON file").desired_width(f32::INFINITY);
         let edit = ui.add(edit);
@@ -98,7 +98,7 @@ fn type_path(ui: &Ui, filing: &mut Filing, session: &mut Session) {
         if typed.purpose == Purpose::SaveAs {
             ui.weak(format!("in {}", short(&folder_of(&typed.text), 80)));
         }
-        // What is there is not replaced by a key that was meant for something else.
+        // Enter alone does not replace an existing file.
         let is_entered = button != "Replace" && ui.input(|input| input.key_pressed(Key::Enter));
         is_done = ui.add_enabled(!typed.text.is_empty(), egui::Button::new(button)).clicked() || is_entered;
     });
@@ -111,7 +111,7 @@ fn type_path(ui: &Ui, filing: &mut Filing, session: &mut Session) {
     }
 }
 
-/// The folder that a file of this path would be in.
+/// Returns the folder of a file path.
 fn folder_of(path: &str) -> String {
     let path = files::absolute(Path::new(path));
     path.parent().unwrap_or(&path).display().to_string()

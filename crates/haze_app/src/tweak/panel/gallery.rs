@@ -1,4 +1,4 @@
-//! A picture, chosen by what it looks like.
+//! Field that names an image, chosen by thumbnail.
 
 use eframe::egui::{self, Rect, Response, Sense, Stroke, Ui, Vec2};
 use haze::ramp::Role;
@@ -6,14 +6,14 @@ use haze::settings::PictureRole;
 
 use crate::tweak::picture_thumbnails::{PictureThumbnails, SIZE};
 
-/// Points of a thumbnail, and of the name below.
+/// Size of a thumbnail and height of its name, points.
 const PICTURE: Vec2 = Vec2::new(SIZE[0] as f32, SIZE[1] as f32);
 const NAME: f32 = 16.0;
 /// Thumbnails in a row.
 const COLUMNS: f32 = 3.0;
 
-/// A field that names a picture: opened, it shows those that there are; ramps of the field's role first, and others after them.
-/// `path` is the field's.
+/// Draws a field that names an image. Its menu shows thumbnails: first the ramps for the role of the field, then the
+/// others. `path` is that of the field.
 pub fn gallery(
     ui: &mut Ui,
     thumbnails: &PictureThumbnails,
@@ -41,7 +41,7 @@ pub fn gallery(
                 });
             };
             let wanted = path.rsplit('.').next().and_then(Role::of_field);
-            // A file that tells no role may be for any.
+            // A file whose name tells no role fits every field.
             let fits =
                 |name: &String| Role::of_name(name).is_none_or(|role| wanted.is_none_or(|wanted| role == wanted));
             let (fitting, others): (Vec<_>, Vec<_>) = thumbnails.names(ui.ctx(), role).into_iter().partition(fits);
@@ -58,7 +58,7 @@ pub fn gallery(
         .response
 }
 
-/// A thumbnail with its name.
+/// Draws a thumbnail with its name.
 fn cell(ui: &mut Ui, thumbnails: &PictureThumbnails, role: PictureRole, name: &str, is_chosen: bool) -> Response {
     let (rect, response) = ui.allocate_exact_size(PICTURE + Vec2::new(8.0, NAME + 4.0), Sense::click());
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_chosen, name));
@@ -94,7 +94,7 @@ mod tests {
     use crate::tweak::testing::{picture, window};
     use crate::tweak::window::Window;
 
-    /// A window that shows the pictures of its smoke, in a folder of its own.
+    /// Opens a window that shows the images of its smoke, in a temporary folder.
     fn opened(folder: &std::path::Path) -> Harness<'static, Window> {
         let preset = haze::preset::Preset::load("column").unwrap();
         let path = folder.join("own.json");
@@ -118,13 +118,13 @@ mod tests {
     }
 
     #[test]
-    fn pictures_are_chosen_by_what_they_look_like() {
+    fn an_image_is_chosen_by_its_thumbnail() {
         let folder = tempfile::tempdir().unwrap();
         let mut harness = opened(folder.path());
         open(&mut harness);
         let before = picture(&mut harness);
         let cell = harness.get_by_label("red.png").rect();
-        // What is broken has a name and no picture; what is decoded shows.
+        // A broken file has a name and no thumbnail; decoded images appear.
         for _ in 0..100 {
             harness.step();
             std::thread::sleep(std::time::Duration::from_millis(10));
@@ -137,7 +137,7 @@ mod tests {
         harness.get_by_label("red.png").click();
         harness.run_steps(3);
         assert!(harness.query_by_label("broken.png").is_none(), "it closes");
-        // Read in the background.
+        // Waits for the background load.
         for _ in 0..30 {
             harness.step();
             std::thread::sleep(std::time::Duration::from_millis(20));
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn ramps_of_the_fields_role_come_first_and_the_others_after_a_line() {
+    fn ramps_for_the_role_of_the_field_come_first_and_others_below_a_separator() {
         let folder = tempfile::tempdir().unwrap();
         let mut harness = opened(folder.path());
         open(&mut harness);
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ramp_is_chosen_on_the_tab_of_ramps_too() {
+    fn a_ramp_can_also_be_chosen_on_the_ramps_tab() {
         let mut harness = window("column", Vec2::new(1000.0, 900.0), Theme::Dark);
         harness.get_by_label("Ramps").click();
         harness.run_steps(3);
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn they_are_chosen_by_keys_alone() {
+    fn images_can_be_chosen_by_keyboard() {
         let folder = tempfile::tempdir().unwrap();
         let mut harness = opened(folder.path());
         open(&mut harness);

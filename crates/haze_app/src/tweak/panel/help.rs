@@ -1,11 +1,11 @@
-//! The list of keys and gestures.
+//! List of keys and gestures.
 
 use eframe::egui::{self, RichText, Ui, Vec2};
 
 use crate::tweak::action::{ACTIONS, GESTURES};
 use crate::tweak::session::Session;
 
-/// What is left free of the window beside the list, and above and below.
+/// Margins between the list and the edges of the window, points.
 const ROOM: Vec2 = Vec2::new(100.0, 130.0);
 
 /// Draws the list over the window while it is open.
@@ -16,7 +16,7 @@ pub fn panel(ui: &Ui, session: &mut Session) {
     let response = egui::Modal::new(egui::Id::unique("help")).show(ui.ctx(), |ui| {
         ui.horizontal(|ui| {
             ui.heading("Keys and gestures");
-            if ui.button("Show the hints again").on_hover_text("Those of the first start").clicked() {
+            if ui.button("Show the hints again").on_hover_text("The hints of the first start").clicked() {
                 session.hints.begin();
                 session.show.help = false;
             }
@@ -25,7 +25,7 @@ pub fn panel(ui: &Ui, session: &mut Session) {
         let room = ui.ctx().content_rect().size() - ROOM;
         egui::ScrollArea::vertical().max_height(room.y).min_scrolled_height(room.y).show(ui, |ui| {
             let gap = 24.0;
-            // In a small window what is long takes several lines.
+            // In a small window, long lines wrap.
             let columns = [0.4, 0.6].map(|share| share * (room.x - gap));
             egui::Grid::new("keys").num_columns(2).spacing([gap, 4.0]).striped(true).show(ui, |ui| {
                 let keys = ACTIONS.iter().map(|entry| (ui.ctx().format_shortcut(&entry.keys), entry.name));
@@ -57,7 +57,7 @@ mod tests {
     use crate::tweak::testing::window;
 
     #[test]
-    fn the_list_keeps_away_from_the_edges_of_windows_of_all_sizes() {
+    fn the_list_keeps_its_margins_in_windows_of_any_size() {
         for size in [Vec2::new(640.0, 400.0), Vec2::new(1280.0, 800.0)] {
             let mut harness = window("column", size, Theme::Dark);
             harness.key_press(Key::F1);

@@ -1,4 +1,4 @@
-//! The hint that is shown, beside what it points at.
+//! Current hint, next to the part of the window that it points at.
 
 use eframe::egui::{self, Align2, Pos2, Rect, Ui, Vec2, vec2};
 
@@ -7,12 +7,13 @@ use crate::tweak::hints::{Doing, HINTS, Hint, Place};
 use crate::tweak::session::Session;
 use crate::tweak::show::Tab;
 
-/// Width of what it says, points.
+/// Width of the text, points.
 const WIDTH: f32 = 190.0;
-/// From what it points at, and the size of what points.
+/// Distance to the part that it points at, and size of the arrow, points.
 const AWAY: f32 = 10.0;
 
-/// Draws it, out of the picture's middle, until its thing is done. `presses`: the pointer does something; `drags_light`: that.
+/// Draws the hint, away from the middle of the image. `presses`: a pointer button or the wheel is in use.
+/// `drags_light`: a light is being dragged.
 pub fn panel(ui: &Ui, session: &mut Session, presses: bool, drags_light: bool) {
     let sees_look = session.show.tab == Tab::Look;
     let (finds, sees_keys) = (session.search.is_open, session.show.help);
@@ -50,7 +51,7 @@ pub fn panel(ui: &Ui, session: &mut Session, presses: bool, drags_light: bool) {
     }
 }
 
-/// What it says, with the key that does it.
+/// Returns the text of a hint, with the key for its action.
 fn with_key(ui: &Ui, hint: Hint, text: &str) -> String {
     let action = match hint {
         Hint::Find => Action::Find,
@@ -62,7 +63,7 @@ fn with_key(ui: &Ui, hint: Hint, text: &str) -> String {
     format!("{sign}{} {text}", keys.unwrap_or_default())
 }
 
-/// Where the arrow ends: outside of the card, towards what is pointed at.
+/// Returns the tip of the arrow: outside the hint, towards its target.
 fn tip(card: Rect, at: Rect, way: Vec2) -> Pos2 {
     if way == Vec2::RIGHT {
         return egui::pos2(card.right() + AWAY - 1.0, card.center().y);
@@ -90,7 +91,7 @@ mod tests {
     use crate::tweak::testing;
     use crate::tweak::window::{Start, Window};
 
-    /// A window whose state is kept in a folder.
+    /// Opens a window that persists its state in a folder.
     fn start(folder: &std::path::Path, size: Vec2, theme: Theme) -> Harness<'static, Window> {
         let mut session = Session::open("column".as_ref(), None).unwrap();
         let keeping = Some(Keeping::new(folder.into(), &mut session));
@@ -107,11 +108,11 @@ mod tests {
     }
 
     #[test]
-    fn each_goes_when_its_thing_is_done() {
+    fn each_hint_ends_when_its_action_is_done() {
         let folder = tempfile::tempdir().unwrap();
         let mut harness = start(folder.path(), vec2(1000.0, 640.0), Theme::Dark);
         assert_eq!(shown(&harness), Some(Hint::Orbit));
-        // Those to come go, too.
+        // Later hints end too if their actions are done.
         harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
         harness.run_steps(2);
         harness.key_press(Key::Escape);
@@ -125,7 +126,7 @@ mod tests {
         harness.drop_at(from + vec2(60.0, 0.0));
         harness.run_steps(2);
         assert_eq!(shown(&harness), Some(Hint::Light));
-        // By the keyboard alone.
+        // By keyboard alone.
         harness.key_press(Key::Escape);
         harness.run_steps(3);
         assert_eq!(shown(&harness), Some(Hint::Look));
@@ -144,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_is_remembered_and_a_window_without_memory_has_none() {
+    fn remaining_hints_are_persisted_and_a_window_without_a_state_folder_has_none() {
         let folder = tempfile::tempdir().unwrap();
         let mut harness = start(folder.path(), vec2(1000.0, 640.0), Theme::Light);
         harness.get_by_label("Got it").click();
@@ -163,9 +164,9 @@ mod tests {
         assert_eq!(shown(&testing::window("column", vec2(1000.0, 640.0), Theme::Light)), None);
     }
 
-    /// With `HAZE_LOOK` a folder, as pictures too.
+    /// Also writes images to the folder that `HAZE_LOOK` names.
     #[test]
-    fn none_covers_the_middle_of_the_picture_or_leaves_the_window() {
+    fn no_hint_covers_the_middle_of_the_image_or_leaves_the_window() {
         let look = std::env::var_os("HAZE_LOOK").map(std::path::PathBuf::from);
         for (size, theme) in [(vec2(1280.0, 800.0), Theme::Dark), (vec2(800.0, 600.0), Theme::Light)] {
             let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! The lights: a list of all, and the settings of the selected one.
+//! List of lights, and the settings of the selected light.
 
 use eframe::egui::{self, Ui};
 use glam::UVec2;
@@ -13,7 +13,8 @@ use crate::tweak::angles::{Angles, STEEPEST, from_angles, to_angles};
 use crate::tweak::lights::{ShownLights, fresh, name_of};
 use crate::tweak::smoke::{Smoke, put_behind};
 
-/// Draws the list and what is selected of it. `seen` is the smoke that is shown, and the size of the picture.
+/// Draws the list and the settings of the selected light. `seen` gives the smoke that is shown, and the size of the
+/// image.
 pub fn panel(
     ui: &mut Ui,
     desk: &mut Desk<'_>,
@@ -22,7 +23,7 @@ pub fn panel(
     seen: (&dyn Fn() -> Smoke, UVec2),
 ) {
     shown.follow(&preset.lights);
-    // A setting that was looked for is the selected light's.
+    // If a setting of a light was searched for, that light is selected.
     let sought = desk.sought.and_then(|path| path.strip_prefix("lights[")?.split_once(']')?.0.parse().ok());
     shown.selected = sought.or(shown.selected).filter(|&index| index < preset.lights.len());
     for (index, light) in preset.lights.iter_mut().enumerate() {
@@ -31,7 +32,7 @@ pub fn panel(
     ui.horizontal(|ui| tools(ui, preset, shown, seen));
     let selected = shown.selected.and_then(|index| Some((index, preset.lights.get_mut(index)?)));
     let Some((index, light)) = selected else {
-        ui.weak(if preset.lights.is_empty() { "The preset has no lights." } else { "Select a light to set it." });
+        ui.weak(if preset.lights.is_empty() { "The preset has no lights." } else { "Select a light to edit it." });
         return;
     };
     ui.separator();
@@ -41,13 +42,13 @@ pub fn panel(
     fields::show(ui, desk, &[("lights", Some(index))], light);
 }
 
-/// A light in the list.
+/// Draws a light of the list.
 fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut ShownLights) {
     let name = name_of(index, light);
     let is_selected = shown.selected == Some(index);
     let button = egui::Button::selectable(is_selected, &name);
     let height = ui.spacing().interact_size.y;
-    // What is left beside the rest of the row.
+    // The width that the rest of the row leaves.
     let width = (ui.available_width() - 200.0).clamp(40.0, 104.0);
     let button = ui.add_sized([width, height], button.truncate()).on_hover_text(&name);
     if button.clicked() {
@@ -61,7 +62,7 @@ fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut ShownLights) 
     if let Some(marks) = shown.marks(index) {
         let mut toggle = |sign: &str, is_on: &mut bool, what: &str| {
             let button = ui.add(egui::Button::selectable(*is_on, sign).min_size(egui::vec2(22.0, height)));
-            let button = button.on_hover_text(format!("{what}. Not a part of the preset."));
+            let button = button.on_hover_text(format!("{what}. Not saved in the preset."));
             if button.accessible_name(format!("{what}, {name}")).clicked() {
                 *is_on = !*is_on;
             }
@@ -71,7 +72,7 @@ fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut ShownLights) 
     }
 }
 
-/// What is done with the list and the selected light.
+/// Draws the buttons for the list and the selected light.
 fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut ShownLights, (smoke, size): (&dyn Fn() -> Smoke, UVec2)) {
     ui.add_enabled_ui(preset.lights.len() < MAX_LIGHTS, |ui| {
         ui.menu_button("Add", |ui| {
@@ -93,7 +94,7 @@ fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut ShownLights, (smoke, size
     if ui.button("Delete").clicked() {
         shown.remove(&mut preset.lights, index);
     }
-    let behind = ui.button("Behind the smoke").on_hover_text("Puts the light behind the smoke, as it is seen now");
+    let behind = ui.button("Behind the smoke").on_hover_text("Puts the light behind the smoke, as seen by the camera");
     if behind.clicked() {
         let smoke = smoke();
         let (eye, point) = (preset.camera.position, smoke.seen(&preset.camera, size));
@@ -103,7 +104,7 @@ fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut ShownLights, (smoke, size
     }
 }
 
-/// A light above the smoke and to the side of the viewer.
+/// Returns the light placed above the smoke, to the side of the camera.
 fn beside(mut light: Light, camera: &Camera, bounds: &Bounds) -> Light {
     let reach = 0.5 * (bounds.max - bounds.min);
     let right = (camera.target - camera.position).cross(glam::Vec3::Y).normalize_or(glam::Vec3::X);
@@ -112,7 +113,7 @@ fn beside(mut light: Light, camera: &Camera, bounds: &Bounds) -> Light {
     light
 }
 
-/// Where the light comes from, as angles.
+/// Draws the direction of a light as angles.
 fn angles(ui: &mut Ui, desk: &mut Desk<'_>, index: usize, light: &mut Light) {
     let before = to_angles(light.direction);
     let mut edited = before;
@@ -127,8 +128,8 @@ fn angles(ui: &mut Ui, desk: &mut Desk<'_>, index: usize, light: &mut Light) {
         });
         desk.asked.extend(asked.map(|asked| (asked, path.clone())));
     };
-    angle("azimuth", &mut edited.azimuth, 180.0, "Which side the light comes from: 0 is from +z, 90 from +x.");
-    angle("elevation", &mut edited.elevation, 90.0, "How high above the horizon the light comes from; 0 is level.");
+    angle("azimuth", &mut edited.azimuth, 180.0, "Side that the light comes from: 0 is +z, 90 is +x.");
+    angle("elevation", &mut edited.elevation, 90.0, "Angle of the light above the horizon; 0 is level.");
     if edited != before {
         let elevation = edited.elevation.clamp(-STEEPEST, STEEPEST);
         light.direction = from_angles(Angles { elevation, ..edited });

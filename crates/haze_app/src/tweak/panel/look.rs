@@ -1,4 +1,4 @@
-//! The first panel: the few controls that make a look.
+//! Look tab: the few controls that determine a look.
 
 use eframe::egui::Ui;
 use haze::preset::{Preset, PresetSystem};
@@ -37,10 +37,10 @@ pub fn panel(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, shown: &mut 
     }
 }
 
-/// What the key light is.
-const KEY: &str = "The light that was brightest where the smoke is born when the preset was opened";
+/// Tooltip: definition of the key light.
+const KEY: &str = "The light that was brightest at the emitter when the preset was opened";
 
-/// A row for what several settings make together.
+/// Draws the row of a value that several settings make.
 fn made_row(ui: &mut Ui, desk: &mut Desk<'_>, system: &mut PresetSystem, index: usize, made: &Made) {
     let paths: Vec<_> = made.of.iter().map(|path| format!("systems[{index}].{path}")).collect();
     let is_changed = paths.iter().any(|path| desk.changed.contains(path));
@@ -68,7 +68,7 @@ fn made_row(ui: &mut Ui, desk: &mut Desk<'_>, system: &mut PresetSystem, index: 
     }
 }
 
-/// The light that is brightest where the smoke is born.
+/// Returns the light that is brightest at the emitter.
 fn key_light(preset: &Preset, system: usize) -> Option<usize> {
     let at = preset.systems.get(system)?.emitter.position;
     let brightness = |light: &Light| {
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn the_key_light_stays_the_same_when_it_is_dragged_below_another_and_says_which_it_is() {
+    fn the_key_light_stays_the_same_when_it_becomes_darker_than_another_and_is_named() {
         let mut harness = window("column", Vec2::new(1000.0, 640.0), Theme::Dark);
         let before = intensities(&harness);
         set_key(&mut harness, 50.0);
@@ -117,7 +117,7 @@ mod tests {
         let mut expected = before;
         expected[key] = 1.0;
         assert_eq!(intensities(&harness), expected);
-        // Without it another leads.
+        // After it is removed, another light is the key light.
         harness.state_mut().session.document.preset.lights.remove(key);
         harness.run_steps(3);
         assert!(harness.query_by_label(&name).is_none(), "{name}");
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn sliders_are_called_as_artists_do_and_are_found_by_either_name() {
+    fn sliders_have_names_for_artists_and_are_found_by_either_name() {
         let mut harness = window("column", Vec2::new(1000.0, 900.0), Theme::Dark);
         let has = |harness: &Harness<'_, Window>, name| harness.query_all_by_label(name).next().is_some();
         for control in LOOK {
@@ -154,7 +154,7 @@ mod tests {
             find(&mut harness, text);
             assert_eq!(harness.state().session.show.tab, tab, "{text}");
         }
-        // Undo and files call it by the name that it has there, and the tooltip tells.
+        // Undo and files use the field's own name, and the tooltip shows it.
         let sliders = harness.get_all_by_label("rise");
         let slider = sliders.into_iter().find(|node| node.accesskit_node().role() == Role::Slider).unwrap().rect();
         harness.hover_at(slider.left_center() - Vec2::new(115.0, 0.0));

@@ -1,4 +1,4 @@
-//! The panels: what can be set, in rows made from the table of settings.
+//! Panels of the window: settings as rows made from the table of fields, menus and dialogs.
 
 pub mod browser;
 pub mod compare;

@@ -1,4 +1,4 @@
-//! What the picture costs: GPU time by pass, what is drawn, memory by name; and a budget for it.
+//! Cost tab: GPU time by pass, what is drawn, memory by use, and a budget.
 
 use std::collections::HashSet;
 
@@ -14,7 +14,7 @@ use crate::tweak::session::Session;
 /// Height of the plot, points.
 const PLOT: f32 = 120.0;
 
-/// Colours that can be told from each other on light and dark, by whoever sees colours how.
+/// Colours that are distinguishable on light and dark backgrounds, also with colour blindness.
 const COLOURS: [Color32; 7] = [
     Color32::from_rgb(230, 159, 0),
     Color32::from_rgb(86, 180, 233),
@@ -38,12 +38,12 @@ fn section(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui)) {
     egui::CollapsingHeader::new(title).default_open(true).show(ui, add);
 }
 
-/// Every pass, and all of them over the last pictures, one on top of the other.
+/// Draws the time of each pass, and the stacked times of the last images.
 fn times(ui: &mut Ui, performance: &Performance) {
     if performance.figures.is_timed {
         ui.label("GPU time of the smoke, by pass");
     } else {
-        ui.label("CPU time of frames: this device does not tell GPU time");
+        ui.label("CPU time of frames: this device cannot measure GPU time");
     }
     plot(ui, performance);
     egui::Grid::new("passes").num_columns(3).min_col_width(0.0).striped(true).show(ui, |ui| {
@@ -55,13 +55,13 @@ fn times(ui: &mut Ui, performance: &Performance) {
             ui.end_row();
         }
         ui.label("");
-        ui.strong("together");
-        // A sum of nothing is a negative zero.
+        ui.strong("total");
+        // The sum of an empty iterator is -0.
         let sum = (0..performance.names.len()).map(|index| performance.mean(index)).sum::<f32>().max(0.0);
         ui.monospace(format!("{sum:6.3} ms"));
         ui.end_row();
     });
-    ui.weak(format!("In the mean of the last {} pictures", performance.pictures.len()));
+    ui.weak(format!("Mean of the last {} pictures", performance.pictures.len()));
 }
 
 fn plot(ui: &mut Ui, performance: &Performance) {
@@ -97,12 +97,12 @@ fn plot(ui: &mut Ui, performance: &Performance) {
 
 fn budget(ui: &mut Ui, session: &mut Session) {
     let performance = &mut session.performance;
-    let hint = "Chooses the scale of what is shown so that the smoke takes no more; the preset stays as it is";
+    let hint = "Lowers the resolution of the shown smoke until it is within the budget; the preset does not change";
     ui.add_enabled_ui(performance.figures.is_timed, |ui| {
         let text = format!("Hold {} ms", performance.budget.milliseconds);
         ui.checkbox(&mut performance.is_held, text)
             .on_hover_text(hint)
-            .on_disabled_hover_text("This device does not tell GPU time");
+            .on_disabled_hover_text("This device cannot measure GPU time");
     });
     let mut desk = Desk {
         tooltips: &performance.tooltips,
@@ -126,7 +126,7 @@ fn budget(ui: &mut Ui, session: &mut Session) {
     ui.horizontal_wrapped(|ui| {
         ui.label(format!("Shown at scale {scale}; the preset has {of_preset}."));
         let keep = egui::Button::new("Keep this scale");
-        if ui.add_enabled(scale != of_preset, keep).on_hover_text("Makes it the preset's, of every system").clicked() {
+        if ui.add_enabled(scale != of_preset, keep).on_hover_text("Copies this scale to every system").clicked() {
             set_scale(preset, scale);
         }
     });
@@ -138,18 +138,18 @@ fn drawn(ui: &mut Ui, performance: &Performance) {
         ui,
         "drawn",
         &[
-            ("systems in sight", counts.systems.to_string(), "Systems that reach the picture"),
-            ("sprites", grouped(counts.sprites), "Sprites of all of them"),
+            ("systems in sight", counts.systems.to_string(), "Systems in view"),
+            ("sprites", grouped(counts.sprites), "Sprites of these systems"),
             (
                 "fragments",
                 grouped(overdraw.fragments.round() as u64),
-                "Areas of all sprites, in texels: each is shaded, but for what the scene hides",
+                "Area of all sprites in texels; each texel is shaded unless the scene hides it",
             ),
-            ("mean overdraw", format!("{:.2}", overdraw.mean()), "Sprites over each other, in the mean over their box"),
+            ("mean overdraw", format!("{:.2}", overdraw.mean()), "Sprites on top of each other, mean over their box"),
             ("texels", grouped(counts.texels), "Texels of the accumulation targets in use: each is lit once"),
         ],
     );
-    // A system each; presets with the same path everywhere say nothing.
+    // Empty for a system whose path is not `auto`.
     for choice in &performance.figures.choices {
         ui.label(format!("Path auto: {choice}"));
     }
@@ -164,13 +164,13 @@ fn memory(ui: &mut Ui, performance: &Performance) {
             ("targets", size(memory.smoke.targets), "Accumulation targets, reduced depths and baked light"),
             ("buffers", size(memory.smoke.buffers), "Particles and uniforms"),
             (
-                "of them path tiled",
+                "of these, tiled path",
                 size(memory.smoke.tiled.total()),
                 "Of the buffers: particles in the view, sorted keys, lists",
             ),
             ("materials", size(memory.materials), "Ramps and sprites"),
             ("scene", size(memory.scene), "The scene's own targets, and the picture"),
-            ("strip and second picture", size(beside), "What the stages below and the picture beside hold, together"),
+            ("strip and second picture", size(beside), "Memory of the strip below and of the second picture"),
         ],
     );
 }
@@ -185,7 +185,7 @@ fn rows(ui: &mut Ui, salt: &str, rows: &[(&str, String, &str)]) {
     });
 }
 
-/// Bytes as they are read.
+/// Formats a number of bytes.
 fn size(bytes: u64) -> String {
     format!("{:8.2} MiB", bytes as f64 / 1024.0 / 1024.0)
 }
@@ -199,7 +199,7 @@ mod tests {
     use crate::tweak::testing::{measured, picture, window};
     use crate::tweak::window::Window;
 
-    /// Opens the panel and waits until nothing is to be measured any more.
+    /// Opens the tab and waits until nothing more is measured.
     fn settle(harness: &mut Harness<'_, Window>) {
         for _ in 0..600 {
             picture(harness);
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn every_pass_is_shown_by_its_name_and_only_while_the_panel_is_open() {
+    fn every_pass_is_listed_by_name_only_while_the_tab_is_open() {
         let mut harness = measured("column", vec2(1000.0, 700.0));
         picture(&mut harness);
         assert!(harness.state_mut().session_mut().performance.pictures.is_empty());
@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn a_budget_that_is_small_coarsens_what_is_shown_and_not_the_preset() {
+    fn a_small_budget_lowers_the_shown_resolution_and_not_the_preset() {
         let mut harness = measured("column", vec2(640.0, 760.0));
         let before = harness.state_mut().session_mut().document.preset.clone();
         let session = harness.state_mut().session_mut();
@@ -262,14 +262,14 @@ mod tests {
         harness.get_by_label("Keep this scale").click();
         settle(&mut harness);
         assert_eq!(harness.state_mut().session_mut().document.preset.systems[0].settings.accumulate.scale, 8);
-        // Given up, what is shown is the preset again.
+        // Without the budget, the preset's scale is shown again.
         harness.get_by_label("Hold 0.05 ms").click();
         settle(&mut harness);
         assert_eq!(scale(&mut harness), None);
     }
 
     #[test]
-    fn without_gpu_time_the_panel_says_that_it_shows_the_cpus() {
+    fn without_gpu_timestamps_the_tab_states_that_it_shows_cpu_time() {
         let mut harness = window("column", vec2(1000.0, 700.0), egui::Theme::Dark);
         harness.get_by_label("Cost").click();
         settle(&mut harness);

@@ -1,4 +1,4 @@
-//! The ramps in use, and what this picture looks up in them.
+//! Ramps tab: the ramps in use, and the parts of them that this image samples.
 
 use eframe::egui::{self, Color32, Mesh, Rect, Response, Sense, Stroke, Ui, Vec2};
 use egui_gradient;
@@ -17,11 +17,11 @@ use crate::tweak::inspect::Told;
 use crate::tweak::inspect::survey::{self, Histogram, SIDE, Spot};
 use crate::tweak::session::Session;
 
-/// Heights of a ramp's strip and of a histogram.
+/// Heights of a ramp and of a histogram, points.
 const STRIP: f32 = 20.0;
 const HISTOGRAM: f32 = 56.0;
 
-/// One colour for each light, round and round; told apart by those who see fewer, too.
+/// Colours of the lights, reused cyclically; distinguishable also with colour blindness.
 const LIGHTS: [Color32; 6] = [
     Color32::from_rgb(230, 159, 0),
     Color32::from_rgb(86, 180, 233),
@@ -31,10 +31,10 @@ const LIGHTS: [Color32; 6] = [
     Color32::from_rgb(120, 120, 240),
 ];
 
-/// Over the specular ramp, where all lights look.
+/// Colour over the specular ramp of the places that are sampled.
 const LOOKED_UP: Color32 = Color32::from_rgb(120, 200, 240);
 
-/// Draws them; gives the place that is pointed at.
+/// Draws the tab. Returns the place on a ramp under the pointer.
 pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
     let system = &session.document.preset.systems.get(index)?.clone();
     let material = &session.materials().into_iter().nth(index)?;
@@ -51,13 +51,13 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
         without_effect(&session.document.preset, &path, session.show.size)
     };
     let mut spot = None;
-    ui.weak("Point at a ramp: the smoke that looks there is lit. Point at smoke: its place is marked.");
+    ui.weak("Point at a ramp to highlight the smoke that samples it. Point at smoke to mark its place.");
     if is_forward {
-        ui.weak("Forward smoke is lit sprite by sprite: nothing is kept to count.");
+        ui.weak("Forward smoke is lit sprite by sprite: no texels to count.");
     }
     for (field, title, name) in [
         ("diffuse_ramp", "Diffuse, by normal and light", &system.material.diffuse_ramp),
-        ("backlight_ramp", "The same, light from behind", &system.material.backlight_ramp),
+        ("backlight_ramp", "Diffuse, lit from behind", &system.material.backlight_ramp),
         ("soft_scatter_ramp", "Soft scatter, by amount", &system.material.soft_scatter_ramp),
         ("specular_ramp", "Specular, by distance² and amount", &system.material.specular_ramp),
         ("coverage_ramp", "Coverage, by amount times boost", &system.material.coverage_ramp),
@@ -103,7 +103,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
             _ => (&material.age_ramp, Vec::new(), Vec::new()),
         };
         if bins.is_empty() && field != "age_ramp" && !is_forward {
-            // Its place is kept: what is below must not move under the pointer when it comes.
+            // Reserves the space of the histogram, so that nothing moves under the pointer when it arrives.
             bins.push((ink, Vec::new()));
         }
         let across = (bins, marks);
@@ -127,11 +127,11 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
     spot
 }
 
-/// What is looked up in the specular ramp along each axis.
+/// Returns histograms and marks of the specular ramp along each axis.
 fn looked_up(density: Option<&[f32]>, probe: Option<&SystemProbe>, ink: Color32) -> [LookedUp; 2] {
     let glows = probe.iter().flat_map(|probe| &probe.lights).filter_map(|light| Some((light.light, light.glow?)));
     let marks: Vec<_> = glows.map(|(light, glow)| (of_light(light), glow.coordinate)).collect();
-    // Without them their place is kept, too.
+    // Empty histograms reserve the space.
     let [across, up] = survey::along(density.unwrap_or_default());
     [
         (vec![(ink, across)], marks.iter().map(|(colour, at)| (at.x, *colour)).collect()),
@@ -139,7 +139,7 @@ fn looked_up(density: Option<&[f32]>, probe: Option<&SystemProbe>, ink: Color32)
     ]
 }
 
-/// The title of a ramp, and which it is: another can be chosen.
+/// Draws the title of a ramp and the choice of its image.
 fn choose(ui: &mut Ui, session: &mut Session, title: &str, path: &str, name: &str) {
     let label = ui.strong(title);
     let mut chosen = name.to_owned();
@@ -155,14 +155,14 @@ fn of_light(index: usize) -> Color32 {
     LIGHTS[index % LIGHTS.len()]
 }
 
-/// Space for a picture with a name; where it is pointed at, in shares of its sides.
+/// Allocates space for an image with a name. Returns the pointer position in it, in shares of its sides.
 fn space(ui: &mut Ui, size: Vec2, name: &str) -> (Rect, Option<Vec2>) {
     let (rect, response): (Rect, Response) = ui.allocate_exact_size(size, Sense::hover());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
     (rect, response.hover_pos().map(|at| (at - rect.min) / rect.size()))
 }
 
-/// A ramp from left to right, with marks on it; the coordinate that is pointed at.
+/// Draws a ramp from left to right with marks. Returns the coordinate under the pointer.
 fn strip(ui: &mut Ui, name: &str, ramp: &Ramp, filter: RampFilter, marks: &[(f32, Color32)]) -> Option<f32> {
     let (rect, at) = space(ui, Vec2::new(ui.available_width(), STRIP), name);
     picture(ui, rect, UVec2::new(128, 1), |at| sample_ramp(ramp, filter, at.x));
@@ -175,7 +175,7 @@ fn strip(ui: &mut Ui, name: &str, ramp: &Ramp, filter: RampFilter, marks: &[(f32
     at.map(|at| at.x)
 }
 
-/// A linear picture by a formula of shares of its sides, cell by cell.
+/// Draws a linear image from a function of the position, in shares of its sides, cell by cell.
 fn picture(ui: &Ui, rect: Rect, cells: UVec2, colour: impl Fn(glam::Vec2) -> glam::Vec3) {
     let mut mesh = Mesh::default();
     let side = rect.size() / Vec2::new(cells.x as f32, cells.y as f32);
@@ -190,7 +190,7 @@ fn picture(ui: &Ui, rect: Rect, cells: UVec2, colour: impl Fn(glam::Vec2) -> gla
     ui.painter().add(mesh);
 }
 
-/// Histograms over each other.
+/// Draws histograms on top of each other.
 fn histogram(ui: &mut Ui, field: &str, histograms: &[Bins]) {
     if histograms.is_empty() {
         return;
@@ -201,7 +201,7 @@ fn histogram(ui: &mut Ui, field: &str, histograms: &[Bins]) {
     histograms.iter().for_each(|(colour, bins)| egui_gradient::histogram(ui, rect, bins, *colour));
 }
 
-/// Whose histogram is which.
+/// Draws the names of lights in the colours of their histograms.
 fn legend(ui: &mut Ui, histograms: &[Histogram], names: &[String]) {
     ui.horizontal_wrapped(|ui| {
         for histogram in histograms {
@@ -214,7 +214,7 @@ fn legend(ui: &mut Ui, histograms: &[Histogram], names: &[String]) {
     });
 }
 
-/// The specular ramp, amounts upwards, and over it what is looked up.
+/// Draws the specular ramp with rising amounts upwards, and the sampled places over it.
 fn plane(
     ui: &mut Ui,
     name: &str,

@@ -1,46 +1,46 @@
-//! One row of a panel: a mark, a name, a control.
+//! One row of a panel: mark, name, control.
 
 use eframe::egui::{self, Response, Ui};
 
 use crate::tweak::icon::{self, Icon};
 
-/// Width of the names, and the most that they may have of a row.
+/// Width of the names, points, and their largest share of a row.
 const NAME: f32 = 118.0;
 const SHARE: f32 = 0.36;
-/// Width of the mark before them.
+/// Width of the mark before a name, points.
 const MARK: f32 = 12.0;
 
-/// What a row says and does beside its control.
+/// Texts and marks of a row.
 pub struct Row<'a> {
     pub name: &'a str,
     pub tooltip: &'a str,
-    /// It differs from the preset on disk.
+    /// The value differs from the preset on disk.
     pub is_changed: bool,
-    /// What the second picture has here, where it is another; `None` where it has no settings of its own.
+    /// Second image's value as text, if it differs; the outer `None` means that it has no settings of its own.
     pub second: Option<Option<&'a str>>,
-    /// What a sheet of its values is called, where one can be made.
+    /// Label of the button that makes a sheet of values, if one can be made.
     pub sheet: Option<&'a str>,
-    /// Why it does nothing here.
+    /// Reason why the setting has no effect.
     pub inert: Option<&'a str>,
 }
 
-/// What is asked for on a row, beside its control.
+/// Request made on a row, beside its control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asked {
     SetBack,
-    /// What the second picture has.
+    /// Copy the second image's value.
     Take,
-    /// Of its values.
+    /// Make a sheet of its values.
     Sheet,
 }
 
 impl Row<'_> {
-    /// Draws the row, and tells what is asked for. `control` is handed the response of the name, for who cannot see it.
+    /// Draws the row and returns a request. `control` receives the response of the name, as its accessible label.
     pub fn show(&self, ui: &mut Ui, control: impl FnOnce(&mut Ui, &Response)) -> Option<Asked> {
         let mut asked = None;
         ui.horizontal(|ui| {
             let (width, height) = (name_width(ui), ui.spacing().interact_size.y);
-            let tooltip = "Differs from the preset. Click to set it back.";
+            let tooltip = "Differs from the saved preset. Click to set it back.";
             if mark(ui, self.is_changed.then_some(("•", tooltip)), || format!("set back {}", self.name)) {
                 asked = Some(Asked::SetBack);
             }
@@ -104,7 +104,8 @@ impl Row<'_> {
     }
 }
 
-/// A place for a mark and what it means, and the mark if there is one; true if it was clicked. `name` tells who cannot see it.
+/// Draws a mark if there is one, or the empty space for it. Returns true if it was clicked. `name` is the accessible
+/// name.
 fn mark(ui: &mut Ui, sign: Option<(&str, &str)>, name: impl Fn() -> String) -> bool {
     let size = egui::vec2(MARK, ui.spacing().interact_size.y);
     let layout = egui::Layout::left_to_right(egui::Align::Center);
@@ -123,7 +124,7 @@ fn name_width(ui: &Ui) -> f32 {
     NAME.min(SHARE * ui.available_width())
 }
 
-/// A word below a control, about it; `marks`: how many stand before names.
+/// Draws a note below a control. `marks`: number of marks that rows have before their names.
 pub fn note(ui: &mut Ui, marks: f32, text: &str) -> Response {
     ui.horizontal(|ui| {
         ui.add_space(marks * MARK + name_width(ui) + (marks + 1.0) * ui.spacing().item_spacing.x);
@@ -132,7 +133,7 @@ pub fn note(ui: &mut Ui, marks: f32, text: &str) -> Response {
     .inner
 }
 
-/// A name as it is read.
+/// Returns a name with spaces in place of underscores.
 pub fn spaced(name: &str) -> String {
     name.replace('_', " ")
 }

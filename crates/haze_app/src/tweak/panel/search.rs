@@ -1,4 +1,4 @@
-//! A box over the window that finds any setting.
+//! Search box over the window that finds any setting.
 
 use eframe::egui::{self, Key, Ui};
 
@@ -39,7 +39,7 @@ pub fn panel(ui: &Ui, session: &mut Session) {
             }
         }
         if found.is_empty() {
-            ui.weak("No setting is called so, or says so.");
+            ui.weak("No setting has this name or description.");
         }
     });
     if let Some((tab, path)) = gone_to {

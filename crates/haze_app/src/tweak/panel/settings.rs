@@ -1,4 +1,4 @@
-//! What can be set, at the right of the window: the look first, then the parts of the preset.
+//! Settings panel at the right of the window: the look first, then the parts of the preset.
 
 use eframe::egui::{self, Ui};
 use haze::preset::Preset;
@@ -14,20 +14,20 @@ use crate::tweak::session::Session;
 use crate::tweak::show::Tab;
 use crate::tweak::smoke::Smoke;
 
-/// The tabs, their names, and what is on them.
+/// Tabs with their names and tooltips.
 pub const TABS: [(Tab, &str, &str); 7] = [
-    (Tab::Look, "Look", "The few controls that make a look"),
+    (Tab::Look, "Look", "The few controls that determine a look"),
     (Tab::Light, "Light", "Lights, the sky, the camera"),
-    (Tab::Smoke, "Smoke", "Where smoke comes from, and how it takes light"),
-    (Tab::Ramps, "Ramps", "What smoke is lit from, and which part of it this picture looks up"),
-    (Tab::Sprite, "Sprite", "The flipbook under a light that moves, and the recipe that makes it"),
-    (Tab::Advanced, "Advanced", "How smoke reaches the picture: techniques, targets, formats"),
-    (Tab::Performance, "Cost", "What the picture costs, and a budget for it"),
+    (Tab::Smoke, "Smoke", "Emitter, material and lighting of the smoke"),
+    (Tab::Ramps, "Ramps", "Ramps that light the smoke, and the parts of them that this picture samples"),
+    (Tab::Sprite, "Sprite", "The sprite's flipbook under a moving light, and its recipe"),
+    (Tab::Advanced, "Advanced", "How the smoke is drawn: techniques, targets, formats"),
+    (Tab::Performance, "Cost", "GPU time and memory of the picture, and a budget"),
 ];
 
-/// Gives the path of a field of whose values a sheet is to be made.
+/// Draws the panel. Returns the path of a field if a sheet of its values is requested.
 pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
-    // Close together, so that all of them fit beside each other in a narrow panel, too.
+    // Small gaps, so that all tabs also fit into a narrow panel.
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
         ui.spacing_mut().button_padding.x = 5.0;
@@ -59,7 +59,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
         let area = egui::ScrollArea::vertical().id_salt(session.show.tab).auto_shrink(false);
         let system = session.show.system;
         let shown = area.show(ui, |ui| {
-            // The last stop's handle is beside the scroll bar, not under it.
+            // Keeps the handle of the last stop beside the scroll bar.
             ui.set_max_width(ui.available_width() - ui.spacing().scroll.bar_width);
             ramps::panel(ui, session, system)
         });
@@ -87,7 +87,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
         refused: None,
         sought: session.search.found.as_ref().map(|(path, _)| path.as_str()),
     };
-    // Panels change a copy: the desk reads the session meanwhile.
+    // Panels change a copy, because the desk borrows the session.
     let mut edited = session.document.preset.clone();
     let preset = &mut edited;
     let system = session.show.system;
@@ -118,12 +118,12 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
     sheet
 }
 
-/// The system that a setting belongs to: 1 of `systems[1].settings.boost`.
+/// Returns the index of the system that a setting belongs to: 1 for `systems[1].settings.boost`.
 fn system_of(path: &str) -> Option<usize> {
     path.strip_prefix("systems[")?.split_once(']')?.0.parse().ok()
 }
 
-/// A part of the preset that folds; true while it is open.
+/// Draws a collapsible part of the preset. Returns true if it is open.
 fn section(
     ui: &mut Ui,
     desk: &mut Desk<'_>,
@@ -158,7 +158,7 @@ fn smoke(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, index: usize) {
     }
 }
 
-/// Settings that only programmers have a use for.
+/// Groups of settings that only programmers need.
 const FOR_PROGRAMMERS: [&str; 3] = ["path", "blend_mode", "accumulate"];
 
 fn advanced(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, index: usize) {
@@ -186,13 +186,13 @@ mod tests {
     }
 
     #[test]
-    fn a_control_without_effect_is_grey_and_says_why() {
+    fn a_control_without_effect_is_disabled_and_shows_the_reason() {
         let mut harness = window("column", Vec2::new(1000.0, 640.0), Theme::Dark);
         harness.get_by_label("Advanced").click();
         harness.run_steps(3);
         let is_grey = |name| control(&harness, name).accesskit_node().is_disabled();
         assert!(is_grey("blend mode") && !is_grey("technique"));
-        // Its name stands at its left.
+        // The name is to the left of the control.
         let place = control(&harness, "blend mode").rect().left_center();
         harness.hover_at(place - Vec2::new(80.0, 0.0));
         harness.run_steps(8);
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_for_programmers_comes_last_and_nothing_stands_on_two_tabs() {
+    fn programmer_settings_come_last_and_no_setting_is_on_two_tabs() {
         let mut harness = window("column", Vec2::new(1280.0, 800.0), Theme::Dark);
         harness.get_by_label("Advanced").click();
         harness.run_steps(3);
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn the_smoke_folds_under_headings_and_what_is_sought_unfolds() {
+    fn smoke_settings_are_collapsible_and_a_search_expands_them() {
         let size = Vec2::new(1280.0, 800.0);
         let mut harness = window("column", size, Theme::Dark);
         harness.get_by_label("Smoke").click();
@@ -227,7 +227,7 @@ mod tests {
         let sliders = harness.query_all_by_role(Role::Slider).filter(|node| node.rect().left() > 800.0).count();
         assert!(sliders < 10, "{sliders} sliders in one run");
         assert!(harness.query_by_label("turbulence speed").is_none());
-        // A change that is folded away is marked.
+        // A changed field in a collapsed part is marked.
         harness.state_mut().session.document.preset.systems[0].emitter.turbulence_speed = 0.4;
         harness.state_mut().session.search.go_to("systems[0].material.specular_ramp".into());
         harness.run_steps(8);
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn the_picture_is_the_largest_thing_in_the_smallest_window() {
+    fn the_image_is_the_largest_part_of_the_smallest_window() {
         let size = Vec2::new(640.0, 400.0);
         let mut harness = window("column", size, Theme::Dark);
         let mut width = None;
@@ -249,10 +249,10 @@ mod tests {
             harness.get_by_label(name).click();
             harness.run_steps(4);
             let picture = harness.get_by_label("viewport").rect();
-            // The strip has all of the width.
+            // The strip takes the full width.
             let others = [size.x - picture.width(), size.y - picture.bottom()];
             assert!(picture.width() > others[0] && picture.height() > others[1], "{name}: {picture}");
-            // Nothing on the tab is too wide for it.
+            // Nothing on the tab is wider than the panel.
             let width = *width.get_or_insert(picture.width());
             assert!((width - picture.width()).abs() < 0.5, "{name}: {width} {picture}");
             for (_, name, _) in super::TABS {
@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_second_picture_has_is_marked_and_can_be_taken_field_by_field() {
+    fn values_of_the_second_image_are_marked_and_can_be_copied_field_by_field() {
         let mut harness = window("column", Vec2::new(1000.0, 640.0), Theme::Dark);
         let saved = harness.state().session.document.preset.clone();
         let is_marked = |harness: &Harness<'_, Window>, name| harness.query_by_label(name).is_some();
@@ -291,7 +291,7 @@ mod tests {
         assert_ne!(now(&harness).systems, saved.systems);
         assert!(!is_marked(&harness, exposure) && is_marked(&harness, buoyancy));
         assert_eq!(undo_name(&harness).as_deref(), Some("exposure"));
-        // The menu says what it would be.
+        // The menu shows the value that would be copied.
         row_menu(&mut harness, "rise");
         let value = shown_value(&Value::Number(saved.systems[0].emitter.buoyancy), "m/s²");
         harness.get_by_label(&format!("Take {value} of the second picture")).click();

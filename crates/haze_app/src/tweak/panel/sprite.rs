@@ -1,4 +1,4 @@
-//! The sprite of a system: how it is lit, what would show of it, and what it is made from.
+//! Sprite tab: the sprite of a system as it is lit, findings of its check, and its recipe.
 
 mod flipbook;
 mod recipe;
@@ -8,10 +8,10 @@ use eframe::egui::{self, Ui};
 use crate::tweak::messages::short;
 use crate::tweak::session::Session;
 
-/// A page that is no higher, points, scrolls as a whole: beside the picture there is no room for a recipe.
+/// Height up to which the tab scrolls as a whole, points; below it, there is no room for a recipe under the image.
 const SMALL: f32 = 360.0;
 
-/// Draws the page of the selected system's sprite.
+/// Draws the tab for the sprite of the selected system.
 pub fn panel(ui: &mut Ui, session: &mut Session) {
     let index = session.show.system;
     let material = session.materials().into_iter().nth(index);
@@ -37,7 +37,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
         });
         return;
     }
-    // The picture stays where it is while sliders far below are moved.
+    // The image does not scroll, so that it stays visible while sliders far below are moved.
     top(ui, session);
     area.show(ui, |ui| recipe::panel(ui, session, &names));
 }

@@ -1,4 +1,4 @@
-//! The stops of a ramp that has a recipe, and how one without gets some.
+//! Stops of a ramp that has a recipe, and ways to get a recipe for one that has none.
 
 use eframe::egui::{self, Color32, Ui};
 use egui_gradient::Surroundings;
@@ -8,28 +8,29 @@ use super::control;
 use crate::tweak::ramp_files::Source;
 use crate::tweak::session::Session;
 
-/// What is said of all that is changed here.
+/// Tooltip about saving.
 const WRITTEN: &str =
-    "Seen at once; the recipe and its PNG are written when a step is done, and again when it is undone";
+    "Shown at once. The recipe and its PNG are written when a step is complete, and again when it is undone";
 
-/// A ramp of the preset.
+/// Ramp of the preset.
 #[derive(Clone, Copy)]
 pub struct Named<'a> {
     pub system: usize,
     pub field: &'static str,
-    /// What the preset has for it.
+    /// Name that the preset has for it.
     pub name: &'a str,
 }
 
-/// A histogram in its colour, and marks on the ramp.
+/// Histogram and its colour; coordinate and colour of a mark.
 pub type Bins = (Color32, Vec<f32>);
 pub type Mark = (f32, Color32);
 
-/// What a picture looks up along an axis of a ramp: how often, and where a pixel does.
+/// Histograms of the coordinates that the image samples along an axis of a ramp, and marks of single pixels.
 pub type LookedUp = (Vec<Bins>, Vec<Mark>);
 
-/// Draws its editor, and gives the place that is pointed at; nothing for a ramp without stops. What is looked up is shown along
-/// the axis of the gradient that is edited: rows go across, and what multiplies them up.
+/// Draws the editor of a ramp, and returns the coordinate under the pointer; the outer `None` means that the ramp has
+/// no stops. Histograms are shown for the axis of the edited gradient: rows run across, the gradient that multiplies
+/// them runs upwards.
 pub fn editor(
     ui: &mut Ui,
     session: &mut Session,
@@ -60,10 +61,10 @@ pub fn editor(
         is_changed = true;
     }
     if is_changed {
-        // What is new in the window is new in the format.
+        // New features of the editor need the latest version of the format.
         recipe.version = RECIPE_VERSION;
         let ramps = &mut session.document.recipes.ramps;
-        // Put back to what was read there is no change, and no step.
+        // A recipe that equals the one on disk is no change, and no step.
         if recipe == (RampRecipe { version: RECIPE_VERSION, ..read }) {
             ramps.forget(ramp.name);
         } else {
@@ -78,7 +79,7 @@ pub fn editor(
     Some(edited.pointed_at)
 }
 
-/// The space that colours are blended in; true if it is another.
+/// Draws the choice of the colour space for blending. Returns true if it was changed.
 fn blend(ui: &mut Ui, blend: &mut Blend, field: &str) -> bool {
     let before = *blend;
     let label = ui.label("blended in");
@@ -86,13 +87,14 @@ fn blend(ui: &mut Ui, blend: &mut Blend, field: &str) -> bool {
     *blend != before
 }
 
-/// The gradient that is edited: a row, or what multiplies them.
+/// Returns the edited gradient: a row, or the gradient that multiplies the rows.
 fn shown(recipe: &RampRecipe, index: usize) -> Option<RampRow> {
     let times = || RampRow { stops: recipe.times.clone(), ..RampRow::default() };
     recipe.rows.get(index).cloned().or_else(|| (!recipe.times.is_empty()).then(times))
 }
 
-/// Which gradient of a ramp with two axes; rows are added, moved and removed. True if the recipe is another.
+/// Draws the choice of a gradient for a ramp with two axes, with controls to add, move and remove rows. Returns true if
+/// the recipe was changed.
 fn choose(ui: &mut Ui, recipe: &mut RampRecipe, index: &mut usize) -> bool {
     let has_times = !recipe.times.is_empty();
     *index = (*index).min(recipe.rows.len() - usize::from(!has_times && !recipe.rows.is_empty()));
@@ -106,14 +108,14 @@ fn choose(ui: &mut Ui, recipe: &mut RampRecipe, index: &mut usize) -> bool {
             ui.selectable_value(index, place, format!("{:.2}", of.at)).on_hover_text("On the second axis");
         }
         if has_times {
-            let about = "A gradient up the second axis, whose light multiplies that of the rows";
+            let about = "A gradient along the second axis that multiplies the rows";
             ui.selectable_value(index, recipe.rows.len(), "times").on_hover_text(about);
         }
     });
     let Some(chosen) = recipe.rows.get_mut(*index) else { return false };
     let (mut is_added, mut is_removed) = (false, false);
     ui.horizontal(|ui| {
-        let label = ui.label("its place");
+        let label = ui.label("position");
         let field = egui::DragValue::new(&mut chosen.at).range(0.0..=1.0).speed(0.002).update_while_editing(false);
         ui.add(field).labelled_by(label.id).on_hover_text("On the second axis, 0 to 1");
         is_added = ui.button("Add a row").on_hover_text("A copy of this one, half way to the next").clicked();
@@ -131,19 +133,19 @@ fn choose(ui: &mut Ui, recipe: &mut RampRecipe, index: &mut usize) -> bool {
     recipe.rows != before
 }
 
-/// Says where stops are written, or offers some.
+/// Draws where stops are saved, or a button to get stops.
 pub fn offer(ui: &mut Ui, session: &mut Session, ramp: Named<'_>) {
     let folders = session.folders();
     match session.ramps.source(ramp.name, &folders) {
         Source::BuiltIn => {
-            let about = "Writes a copy of this ramp and its recipe beside the preset, to be changed here; a preset that is \
+            let about = "Writes a copy of this ramp and its recipe beside the preset, to be edited here; a preset that is \
                          built in is saved first";
             if button(ui, "Make my own", ramp, about) {
                 session.ramps.want_own(ramp.system, ramp.field, session.document.is_built_in());
             }
         }
         Source::Painted => {
-            let about = "No recipe beside it makes this picture. Finds stops that do; the picture stays as it is until one is changed";
+            let about = "No recipe beside it makes this picture. Finds stops that do; the picture does not change until a stop is edited";
             if button(ui, "Fit stops to the picture", ramp, about) {
                 match session.ramps.fit(ramp.name) {
                     Ok((count, error)) => {

@@ -1,9 +1,9 @@
-//! Values as they are read and typed.
+//! Values as text for display and input.
 
 use glam::Vec3;
 use haze::settings::Value;
 
-/// A number as it is read: four digits that count, no zeros after them.
+/// Formats a number with four significant digits, without trailing zeros.
 pub fn shown(value: f64) -> String {
     let digits = if value == 0.0 { 0 } else { (3 - value.abs().log10().floor() as i32).clamp(0, 4) as usize };
     let text = format!("{value:.digits$}");
@@ -11,14 +11,14 @@ pub fn shown(value: f64) -> String {
     if text == "-0" { "0".into() } else { text.into() }
 }
 
-/// A large whole number as it is read: its digits by threes.
+/// Formats a large integer with its digits in groups of three.
 pub fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let groups = digits.as_bytes().rchunks(3).rev().map(String::from_utf8_lossy);
     groups.collect::<Vec<_>>().join("\u{2009}")
 }
 
-/// The value of a field as it is read, with its unit.
+/// Formats the value of a field with its unit.
 pub fn shown_value(value: &Value, unit: &str) -> String {
     let list = |vector: &Vec3| vector.to_array().map(|axis| shown(f64::from(axis))).join(", ");
     match value {
@@ -41,7 +41,7 @@ pub fn suffix(unit: &str) -> String {
     }
 }
 
-/// A number as it is typed, with its unit or without; never infinite, never NaN.
+/// Parses a typed number, with or without its unit. Infinite values and NaN are refused.
 pub fn parse(text: &str, unit: &str) -> Option<f64> {
     let text = text.trim();
     let text = text.strip_suffix(unit).or(text.strip_suffix(suffix(unit).trim())).unwrap_or(text).trim();
@@ -53,14 +53,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn large_numbers_are_read_by_threes() {
+    fn large_numbers_are_grouped_by_three_digits() {
         for (number, text) in [(0, "0"), (999, "999"), (1000, "1 000"), (3_714_705, "3 714 705")] {
             assert_eq!(grouped(number).replace('\u{2009}', " "), text);
         }
     }
 
     #[test]
-    fn numbers_are_shown_without_noise() {
+    fn numbers_are_shown_without_needless_digits() {
         for (value, text) in [
             (0.0, "0"),
             (34.0, "34"),
@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn values_are_read_with_their_units() {
+    fn values_are_shown_with_their_units() {
         for (value, unit, text) in [
             (Value::Number(0.25), "m", "0.25 m"),
             (Value::Number(35.0), "degrees", "35°"),
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_typed_with_their_unit_or_without() {
+    fn numbers_can_be_typed_with_or_without_a_unit() {
         assert_eq!(parse(" 2.5 m/s ", "m/s"), Some(2.5));
         assert_eq!(parse("1e-3", ""), Some(0.001));
         assert_eq!((parse("0.2 side/2", "half sides"), parse("0.2 half sides", "half sides")), (Some(0.2), Some(0.2)));

@@ -1,4 +1,4 @@
-//! Time.
+//! Clock and sleep.
 
 pub use std::thread::sleep;
 pub use std::time::{Duration, Instant};

@@ -1,4 +1,4 @@
-//! The system's dialogs for files, which wait on a thread of their own.
+//! File dialogs of the system, which wait on a thread of their own.
 
 use std::ffi::OsString;
 use std::io;
@@ -8,35 +8,37 @@ use std::sync::{Mutex, PoisonError};
 use super::clock::{Duration, Instant};
 use super::worker::Worker;
 
-/// What a file is asked for.
+/// Purpose of a file dialog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     Open,
     SaveAs,
 }
 
-/// What came of it.
+/// Result of a file dialog.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Answer {
     Chosen(PathBuf),
     Cancelled,
-    /// The system has no dialogs after all.
+    /// The system turned out to have no dialogs.
     NoDialogs,
 }
 
-/// Dialogs that ask for a file, one at a time.
+/// File dialogs, one at a time.
 pub struct Dialogs {
     worker: Worker<Answer>,
     has_dialogs: bool,
 }
 
-/// No one says no as soon after a dialog was asked for, or another way to have one was tried.
+/// A dialog that ends without a choice within this time was not closed by the user, so the system has no dialogs. The
+/// time counts from the request, or from the last failure that rfd logged.
 const TOO_SOON: Duration = Duration::from_millis(300);
 
-/// When it was last told that a dialog could not be had: where one way fails another is tried, and only the log is told.
+/// Time of the last failure that rfd logged. If one way to open a dialog fails, rfd tries another and reports it to the
+/// log only.
 static FAILED: Mutex<Option<Instant>> = Mutex::new(None);
 
-/// Takes note of what is told to the log; true if it is about dialogs, which the window speaks of itself.
+/// Records log messages of rfd. Returns true for these; the window reports them itself.
 pub fn is_failure(target: &str) -> bool {
     let is_ours = target.starts_with("rfd::");
     if is_ours {
@@ -45,7 +47,7 @@ pub fn is_failure(target: &str) -> bool {
     is_ours
 }
 
-/// What it means that no file was chosen.
+/// Returns the reason why no file was chosen.
 fn without_choice(begun: Instant, failed: Option<Instant>, now: Instant) -> Answer {
     let since = failed.map_or(begun, |failed| failed.max(begun));
     if now.saturating_duration_since(since) < TOO_SOON { Answer::NoDialogs } else { Answer::Cancelled }
@@ -57,8 +59,8 @@ impl Dialogs {
         Ok(Self { worker: Worker::new("haze dialogs", wake)?, has_dialogs })
     }
 
-    /// Whether the system is likely to have dialogs: on Linux a program asks for them over the session's bus, or has zenity show
-    /// one. `variable` is [`std::env::var_os`], but for tests.
+    /// Returns true if the system probably has dialogs. On Linux a program requests them over the session bus, or runs
+    /// zenity. `variable` is [`std::env::var_os`], except in tests.
     pub fn are_likely(variable: impl Fn(&str) -> Option<OsString>) -> bool {
         let is_set = |name| variable(name).is_some_and(|value| !value.is_empty());
         let has_bus = || variable("XDG_RUNTIME_DIR").is_some_and(|folder| Path::new(&folder).join("bus").exists());
@@ -67,7 +69,7 @@ impl Dialogs {
         !cfg!(target_os = "linux") || is_set("DBUS_SESSION_BUS_ADDRESS") || has_bus() || has_zenity()
     }
 
-    /// Asks for a file like this one; false where the system has no dialogs.
+    /// Opens a dialog that starts at a path. Returns false if the system has no dialogs.
     pub fn ask(&self, purpose: Purpose, near: &Path) -> bool {
         if !self.has_dialogs || self.worker.is_busy() {
             return self.has_dialogs;
@@ -76,7 +78,7 @@ impl Dialogs {
         let folder = std::path::absolute(near).ok().and_then(|path| path.parent().map(Path::to_owned));
         let dialog = folder.into_iter().fold(dialog, rfd::AsyncFileDialog::set_directory);
         let name = near.file_name().unwrap_or_default().to_string_lossy();
-        // Some systems want dialogs to be begun by the thread of the window.
+        // Some systems require that the window's thread creates the dialog.
         let chosen: std::pin::Pin<Box<dyn Future<Output = _> + Send>> = match purpose {
             Purpose::Open => Box::pin(dialog.pick_file()),
             Purpose::SaveAs => Box::pin(dialog.set_file_name(name).save_file()),
@@ -89,7 +91,7 @@ impl Dialogs {
         true
     }
 
-    /// The answer, once.
+    /// Returns the answer, once.
     pub fn poll(&mut self) -> Option<Answer> {
         let answer = self.worker.poll()?.unwrap_or(Answer::NoDialogs);
         self.has_dialogs &= answer != Answer::NoDialogs;
@@ -102,27 +104,27 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_way_to_have_a_dialog_that_fails_late_is_no_answer_of_anyones() {
+    fn a_late_failure_to_open_a_dialog_does_not_count_as_cancelled() {
         let begun = Instant::now();
         let after = |seconds: f32| begun + Duration::from_secs_f32(seconds);
         for (failed, now, expected) in [
             (None, 0.1, Answer::NoDialogs),
             (None, 5.0, Answer::Cancelled),
-            // The bus took its time to say no, and there is no zenity.
+            // The bus refused late, and there is no zenity.
             (Some(25.0), 25.01, Answer::NoDialogs),
-            // There is, and someone has closed it.
+            // There is zenity, and the user closed the dialog.
             (Some(25.0), 31.0, Answer::Cancelled),
         ] {
             assert_eq!(without_choice(begun, failed.map(after), after(now)), expected, "{failed:?} {now}");
         }
-        // Of another dialog.
+        // A failure of an earlier dialog.
         assert_eq!(without_choice(after(30.0), Some(after(25.0)), after(40.0)), Answer::Cancelled);
         assert!(is_failure("rfd::backend::xdg_desktop_portal::portal") && !is_failure("wgpu_core"));
     }
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn dialogs_come_over_the_bus_or_from_zenity() {
+    fn dialogs_are_likely_with_a_session_bus_or_zenity() {
         let folder = tempfile::tempdir().unwrap();
         let likely = |variables: &[(&str, &Path)]| {
             let find = |name: &str| variables.iter().find(|(variable, _)| *variable == name);

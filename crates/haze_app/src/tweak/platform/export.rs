@@ -1,3 +1,3 @@
-//! Pictures as the command line draws and writes them.
+//! Renders and writes images as the command line does.
 
 pub use crate::export::{Frames, Watch, check_flipbook, columns, flipbook, gif, sequence, sheet};

@@ -1,15 +1,15 @@
-//! Where the program keeps what it remembers.
+//! Folder for state that is kept between runs.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// Names a folder for what is remembered, in place of the usual one.
+/// Environment variable that overrides the folder.
 pub const VARIABLE: &str = "HAZE_STATE";
 
-/// The folder for what is remembered between runs; it need not be there yet. `None` on a machine without a home. `variable` is
-/// [`std::env::var_os`], but for tests.
+/// Returns the folder for state that is kept between runs. It may not exist yet. `None` on a machine without a home
+/// folder. `variable` is [`std::env::var_os`], except in tests.
 pub fn state(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
-    // The rule of XDG: a path that is not absolute is none.
+    // XDG requires that relative paths are ignored.
     let folder = |name: &str| variable(name).map(PathBuf::from).filter(|folder| folder.is_absolute());
     let usual = || {
         if cfg!(windows) {
@@ -31,7 +31,7 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn the_usual_folder_and_those_that_are_named() {
+    fn the_default_state_folder_and_its_overrides() {
         let by = |variables: &[(&str, &str)]| {
             let find = |name: &str| variables.iter().find(|(variable, _)| *variable == name);
             state(|name| find(name).map(|(_, value)| (*value).into()))

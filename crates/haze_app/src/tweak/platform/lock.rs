@@ -1,22 +1,24 @@
-//! Files that say that a process lives: the system gives a lock back when its process ends, however it ends.
+//! Lock files that show that a process is running. The system releases the lock when the process ends, even after a
+//! crash.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read as _, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 
-/// A file that this process holds. Another can tell, and read nothing from it.
+/// File that this process has locked. Other processes can see the lock, and on some systems cannot read the file.
 pub struct Lock {
     path: PathBuf,
     file: File,
 }
 
 impl Lock {
-    /// Holds a file, made if it is not there; none if another holds it, or where files cannot be held.
+    /// Locks a file, and creates it if necessary. Returns `None` if another process holds the lock, or files cannot be
+    /// locked.
     pub fn take(path: &Path) -> Option<Self> {
         let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).ok()?;
         file.try_lock().ok()?;
         let lock = Self { path: path.into(), file };
-        // Whoever held it may have removed it meanwhile.
+        // The previous owner may have removed the file meanwhile.
         lock.is_in_place().then_some(lock)
     }
 
@@ -36,9 +38,9 @@ impl Lock {
         true
     }
 
-    /// What was written into it, by this process or the one before.
+    /// Returns the text in the file, written by this process or by the previous owner.
     pub fn read(&mut self) -> io::Result<String> {
-        /// More than any path is long.
+        /// Longer than any path.
         const MOST: u64 = 1 << 16;
         let mut text = String::new();
         self.file.rewind()?;
@@ -46,21 +48,21 @@ impl Lock {
         Ok(text)
     }
 
-    /// Writes something for whoever holds it next.
+    /// Replaces the text in the file, for the next owner.
     pub fn write(&mut self, text: &str) -> io::Result<()> {
         self.file.set_len(0)?;
         self.file.rewind()?;
         self.file.write_all(text.as_bytes())
     }
 
-    /// Gives it back and leaves nothing.
+    /// Removes the file and releases the lock.
     pub fn remove(self) {
         let _ = fs::remove_file(&self.path);
     }
 }
 
-/// Asks until there is an answer. For a moment, a process that another test begins has a copy of every handle, and holds what they
-/// hold.
+/// Retries until there is an answer. A process that another test starts briefly has copies of all file handles, and
+/// with them the locks.
 #[cfg(test)]
 pub fn eventually<T>(ask: impl Fn() -> Option<T>) -> T {
     let start = std::time::Instant::now();
@@ -82,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_process_that_is_killed_gives_its_lock_back() {
+    fn a_killed_process_releases_its_lock() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("lock");
         let script = "exec 9>lock; flock 9; echo held; exec sleep 60";

@@ -1,4 +1,4 @@
-//! What is remembered between runs: where windows and panels were. Each thing is a JSON file in the folder for that.
+//! Values stored between runs, such as the window layout. Each is a JSON file in the state folder.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ fn path_of(folder: &Path, name: &str) -> PathBuf {
     folder.join(name).with_extension("json")
 }
 
-/// What was remembered under a name, or the default; with what was wrong with the file if there was one.
+/// Returns the value stored under a name, or the default; with the error if the file is not valid.
 pub fn recall<T: DeserializeOwned + Default>(folder: &Path, name: &str) -> (T, Option<Error>) {
     let path = path_of(folder, name);
     match files::read_text(&path).and_then(|text| json::parse(&path, &text)) {
@@ -24,7 +24,7 @@ pub fn recall<T: DeserializeOwned + Default>(folder: &Path, name: &str) -> (T, O
     }
 }
 
-/// Remembers a value under a name.
+/// Stores a value under a name.
 pub fn remember<T: Serialize>(folder: &Path, name: &str, value: &T) -> Result<(), Error> {
     let path = path_of(folder, name);
     files::make_folder(folder)?;
@@ -46,7 +46,7 @@ mod tests {
     }
 
     #[test]
-    fn a_layout_comes_back_and_a_broken_one_is_said_once_and_forgotten() {
+    fn a_stored_layout_is_restored_and_a_broken_one_is_reported_and_replaced() {
         let folder = tempfile::tempdir().unwrap();
         let state = folder.path().join("not/yet");
         let found = || recall::<Layout>(&state, "layout");

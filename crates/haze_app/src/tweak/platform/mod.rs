@@ -1,4 +1,4 @@
-//! Everything that touches disk, clock or threads: the rest of the tweaker runs wherever this can be had.
+//! All access to disk, clock and threads. The rest of the tweaker has no dependency on the operating system.
 
 pub mod assets;
 pub mod clock;

@@ -1,16 +1,15 @@
-//! What other threads call when there is something new to see.
+//! Repaint requests from other threads.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui;
 
-/// Makes the window draw itself again: the one that there is when it is called, which is another after a device was lost. A clone
-/// is the same.
+/// Requests a repaint of the current window. After a device loss that is another window. Clones share the state.
 #[derive(Clone, Default)]
 pub struct Wake(Arc<Mutex<Option<egui::Context>>>);
 
 impl Wake {
-    /// There is another window.
+    /// Sets the current window.
     pub fn follow(&self, context: &egui::Context) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(context.clone());
     }
@@ -26,7 +25,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_window_that_there_is_is_woken() {
+    fn the_current_window_is_repainted() {
         let still = || {
             let context = egui::Context::default();
             (0..3).for_each(|_| context.run_ui(egui::RawInput::default(), |_| {}).textures_delta.clear());

@@ -1,4 +1,4 @@
-//! One thread for work that a frame has no time for.
+//! Worker thread for work that is too long for a frame.
 
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -6,28 +6,28 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::{io, thread};
 
-/// Does jobs one after the other, on a thread of its own. Dropped, it cancels them all.
+/// Runs jobs in order on a thread of its own. Dropping it cancels all jobs.
 pub struct Worker<T> {
     shared: Arc<Shared<T>>,
 }
 
-/// Tells a job whether anybody still waits for it. Clones are one.
+/// Cancellation flag of a job. Clones share the flag.
 #[derive(Clone, Debug, Default)]
 pub struct Ticket(Arc<AtomicBool>);
 
 impl Ticket {
-    /// The job is not begun any more, stops where it looks, and what it made is thrown away.
+    /// Cancels the job: it is not started, or stops at its next check, and its result is dropped.
     pub fn cancel(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
 
-    /// For long jobs to look at.
+    /// Returns true if the job is cancelled. Long jobs should check it.
     pub fn is_cancelled(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 }
 
-/// What became of a job: its result, or nothing where it panicked.
+/// Job and its result; `None` if it panicked.
 type Done<T> = (Ticket, Option<T>);
 
 type Job<T> = Box<dyn FnOnce(&Ticket) -> T + Send>;
@@ -51,7 +51,7 @@ impl<T> Shared<T> {
 }
 
 impl<T: Send + 'static> Worker<T> {
-    /// Begins the thread. `wake` is called from it whenever a job is done.
+    /// Starts the thread. `wake` is called from it after each job.
     pub fn new(name: &str, wake: impl Fn() + Send + 'static) -> io::Result<Self> {
         let state = State { queue: VecDeque::new(), running: None, done: VecDeque::new(), is_over: false };
         let shared = Arc::new(Shared { state: Mutex::new(state), has_changed: Condvar::new() });
@@ -66,7 +66,7 @@ impl<T: Send + 'static> Worker<T> {
         Ok(Self { shared })
     }
 
-    /// Puts a job behind the others.
+    /// Appends a job to the queue.
     pub fn submit(&self, job: impl FnOnce(&Ticket) -> T + Send + 'static) -> Ticket {
         let ticket = Ticket::default();
         self.shared.lock().queue.push_back((ticket.clone(), Box::new(job)));
@@ -74,7 +74,7 @@ impl<T: Send + 'static> Worker<T> {
         ticket
     }
 
-    /// The result of a job that is done, oldest first; nothing in it if the job panicked.
+    /// Returns the oldest result that has not been taken yet; the inner `None` means that the job panicked.
     pub fn poll(&self) -> Option<Option<T>> {
         let mut state = self.shared.lock();
         while let Some((ticket, result)) = state.done.pop_front() {
@@ -85,7 +85,7 @@ impl<T: Send + 'static> Worker<T> {
         None
     }
 
-    /// Whether something is being done, or waits for it.
+    /// Returns true while a job runs or waits.
     pub fn is_busy(&self) -> bool {
         let state = self.shared.lock();
         state.running.iter().chain(state.queue.iter().map(|(ticket, _)| ticket)).any(|ticket| !ticket.is_cancelled())
@@ -93,7 +93,7 @@ impl<T: Send + 'static> Worker<T> {
 }
 
 impl<T> Shared<T> {
-    /// Waits for a job; none when it is over.
+    /// Waits for a job; `None` when the worker was dropped.
     fn next(&self) -> Option<(Ticket, Job<T>)> {
         let mut state = self.lock();
         while !state.is_over {
@@ -119,7 +119,7 @@ impl<T> Shared<T> {
 }
 
 impl<T> Drop for Worker<T> {
-    /// Does not wait: a job that does not look at its ticket would hold up the end of the program.
+    /// Does not wait for the thread: a job that does not check its ticket would delay the end of the program.
     fn drop(&mut self) {
         let mut state = self.shared.lock();
         state.is_over = true;
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn jobs_are_done_in_order_and_a_panic_ends_only_its_own() {
+    fn jobs_run_in_order_and_a_panic_ends_only_its_own_job() {
         let (worker, woken) = worker();
         for number in 0..4 {
             worker.submit(move |_| if number == 1 { panic!("a job that panics, on purpose") } else { number });
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_cancelled_stops_and_gives_nothing() {
+    fn a_cancelled_job_stops_without_a_result() {
         let (worker, woken) = worker();
         let (begin, begun) = mpsc::channel();
         let running = worker.submit(move |ticket| {
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn dropping_it_ends_the_thread() {
+    fn dropping_the_worker_ends_its_thread() {
         let (over, is_over) = mpsc::channel::<()>();
         let worker = Worker::new("test", || {}).unwrap();
         worker.submit(move |ticket| {

@@ -1,4 +1,4 @@
-//! Stops changed in the window: seen at once, written with each step, given up to who paints.
+//! Edits of stops in the window: shown at once, written with each step, superseded by changes from outside.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -18,7 +18,7 @@ use crate::tweak::document::document::Document;
 use crate::tweak::testing::{brightness, picture, window};
 use crate::tweak::window::Window;
 
-/// A folder with a preset whose diffuse ramp is `mine.png`, made by a recipe beside it.
+/// Folder with a preset whose diffuse ramp is `mine.png`, made from a recipe beside it.
 struct Folder(tempfile::TempDir);
 
 impl Folder {
@@ -45,7 +45,7 @@ impl Folder {
         RampRecipe::load(&self.path("mine.ramp.json")).unwrap()
     }
 
-    /// The picture is what the recipe makes.
+    /// Returns true if the image equals the one that the recipe makes.
     fn is_baked(&self) -> bool {
         Ramp::load(&self.path("mine.png")).unwrap() == Ramp::from_picture(&self.recipe().bake().unwrap())
     }
@@ -66,7 +66,7 @@ fn strip(harness: &Harness<'_, Window>) -> Rect {
     harness.get_by_label("gradient: add a stop").rect()
 }
 
-/// Reads the folder again in the background.
+/// Waits for the background reload.
 fn wait(harness: &mut Harness<'_, Window>) {
     for _ in 0..40 {
         harness.step();
@@ -85,7 +85,7 @@ fn press(harness: &mut Harness<'_, Window>, key: Key, modifiers: Modifiers) {
 }
 
 #[test]
-fn a_drag_is_seen_at_once_and_written_in_the_end() {
+fn a_drag_is_shown_at_once_and_written_at_its_end() {
     let folder = Folder::new();
     let mut harness = folder.open();
     let before = (folder.recipe(), shown(&mut harness));
@@ -103,7 +103,7 @@ fn a_drag_is_seen_at_once_and_written_in_the_end() {
     let after = folder.recipe();
     assert!(after.rows[0].stops.iter().any(|stop| (stop.at - 0.2).abs() < 0.01), "{after:?}");
     assert!(folder.is_baked());
-    // One step, by its name, and back on disk too.
+    // It is one named step, and undo also writes the file.
     let undo_name =
         |harness: &Harness<'_, Window>| harness.state().session.document.history().undo_name().map(str::to_owned);
     assert_eq!(undo_name(&harness).as_deref(), Some("move a stop: mine.png"));
@@ -119,7 +119,7 @@ fn a_drag_is_seen_at_once_and_written_in_the_end() {
 }
 
 #[test]
-fn a_drag_that_is_given_up_is_no_step() {
+fn a_cancelled_drag_is_no_step() {
     let folder = Folder::new();
     let mut harness = folder.open();
     let before = (folder.recipe(), shown(&mut harness));
@@ -133,7 +133,7 @@ fn a_drag_that_is_given_up_is_no_step() {
     press(&mut harness, Key::Escape, Modifiers::NONE);
     harness.drop_at(from);
     wait(&mut harness);
-    // Escape is for the drag alone.
+    // Escape ends the drag only.
     assert_eq!(harness.state().session.show.stage, ShadeTree::Diffuse);
     harness.state_mut().session.show.stage = ShadeTree::Final;
     assert_eq!((folder.recipe(), harness.state().session.document.history().undo_name()), (before.0, None));
@@ -141,7 +141,7 @@ fn a_drag_that_is_given_up_is_no_step() {
 }
 
 #[test]
-fn what_is_painted_outside_wins_and_stops_are_fitted_to_it() {
+fn an_image_painted_outside_takes_precedence_and_stops_can_be_fitted_to_it() {
     let folder = Folder::new();
     let mut harness = folder.open();
     harness.get_by_label("Flip").click();
@@ -169,7 +169,7 @@ fn what_is_painted_outside_wins_and_stops_are_fitted_to_it() {
 }
 
 #[test]
-fn files_are_looked_at_when_something_was_written_and_before_they_are_written_over() {
+fn files_are_compared_after_a_write_and_before_they_are_overwritten() {
     let folder = Folder::new();
     let folders = PictureFolders::beside(&folder.preset());
     let mut document = Document::open(&folder.preset()).unwrap();
@@ -184,7 +184,7 @@ fn files_are_looked_at_when_something_was_written_and_before_they_are_written_ov
     assert!(is_recipe(&mut ramps, &mut document, false), "nobody has said that there is something to look at");
     ramps.look_again();
     assert!(is_recipe(&mut ramps, &mut document, true) && !is_recipe(&mut ramps, &mut document, false));
-    // A step that ends before it was said.
+    // The step ends before the change on disk was reported.
     let folder = Folder::new();
     let folders = PictureFolders::beside(&folder.preset());
     let mut document = Document::open(&folder.preset()).unwrap();
@@ -199,7 +199,7 @@ fn files_are_looked_at_when_something_was_written_and_before_they_are_written_ov
 }
 
 #[test]
-fn a_built_in_ramp_becomes_ones_own_beside_the_preset() {
+fn a_built_in_ramp_is_copied_beside_the_preset() {
     let folder = Folder::new();
     let mut preset = Preset::load("column").unwrap();
     let name = preset.systems[0].material.diffuse_ramp.clone();
@@ -218,7 +218,7 @@ fn a_built_in_ramp_becomes_ones_own_beside_the_preset() {
 }
 
 #[test]
-fn a_built_in_preset_asks_for_a_place_first() {
+fn a_built_in_preset_must_be_saved_before_a_ramp_is_copied() {
     let mut harness = ramps_of("column");
     let name = harness.state().session.document.preset.systems[0].material.diffuse_ramp.clone();
     harness.get_by_label(&format!("Make my own: {name}")).click();
@@ -235,7 +235,7 @@ fn a_built_in_preset_asks_for_a_place_first() {
 }
 
 #[test]
-fn rows_of_a_plane_are_picked() {
+fn rows_of_a_two_axis_ramp_can_be_selected() {
     let folder = Folder::new();
     let mut preset = Preset::load("backlit_fog").unwrap();
     preset.systems[0].material.specular_ramp = "mine.png".into();
@@ -260,7 +260,7 @@ fn rows_of_a_plane_are_picked() {
 }
 
 #[test]
-fn rows_and_what_multiplies_them_are_made_in_the_window() {
+fn rows_and_their_multiplier_are_edited_in_the_window() {
     let folder = Folder::new();
     let mut preset = Preset::load("backlit_fog").unwrap();
     preset.systems[0].material.specular_ramp = "mine.png".into();
@@ -277,7 +277,7 @@ fn rows_and_what_multiplies_them_are_made_in_the_window() {
     click(&mut harness, "Add a row");
     let [first, second] = &folder.recipe().rows[..] else { panic!("two rows") };
     assert!((first.at, second.at) == (0.0, 0.5) && first.stops == second.stops);
-    // The new one is what is edited.
+    // The new row is the edited one.
     click(&mut harness, "Flip");
     assert_eq!(folder.recipe().rows[0], recipe.rows[0]);
     assert_ne!(folder.recipe().rows[1].stops, recipe.rows[0].stops);
@@ -295,7 +295,7 @@ fn rows_and_what_multiplies_them_are_made_in_the_window() {
 }
 
 #[test]
-fn a_recipe_of_the_first_version_takes_what_is_new() {
+fn a_version_1_recipe_accepts_new_features() {
     let folder = Folder::new();
     let recipe = RampRecipe { version: 1, ..Template::find("neutral").unwrap().recipe() };
     std::fs::write(folder.path("mine.ramp.json"), recipe.to_text()).unwrap();
@@ -322,7 +322,7 @@ fn a_recipe_of_the_first_version_takes_what_is_new() {
 }
 
 #[test]
-fn stops_are_pasted_where_the_keyboard_is_and_presets_elsewhere() {
+fn stops_are_pasted_into_a_focused_editor_and_presets_elsewhere() {
     let folder = Folder::new();
     let mut harness = folder.open();
     harness.get_by_label("stop 1").focus();
@@ -341,13 +341,13 @@ fn stops_are_pasted_where_the_keyboard_is_and_presets_elsewhere() {
 }
 
 #[test]
-fn what_cannot_be_written_is_said() {
+fn a_write_error_is_reported() {
     let folder = Folder::new();
     let mut harness = folder.open();
     std::fs::remove_file(folder.path("mine.ramp.json")).unwrap();
     std::fs::create_dir(folder.path("mine.ramp.json")).unwrap();
     wait(&mut harness);
-    // The folder in its place is another's work: there is no recipe any more.
+    // A folder has replaced the recipe's file, so the ramp has no recipe any more.
     assert!(harness.query_by_label("Fit stops to the picture: mine.png").is_some());
     harness.get_by_label("Fit stops to the picture: mine.png").click();
     harness.run_steps(3);
@@ -360,7 +360,7 @@ fn what_cannot_be_written_is_said() {
 }
 
 #[test]
-fn a_stop_takes_a_colour_from_the_picture() {
+fn a_stop_takes_a_colour_from_the_image() {
     let folder = Folder::new();
     let mut harness = folder.open();
     let pixel = harness.get_by_label("viewport").rect().center();
@@ -379,7 +379,7 @@ fn a_stop_takes_a_colour_from_the_picture() {
     assert_ne!(taken, Template::find("neutral").unwrap().recipe().rows[0].stops[0].colour.0);
     assert!(folder.is_baked());
     assert_eq!(harness.state().session.document.history().undo_name(), Some("colour of a stop: mine.png"));
-    // The picture itself was not clicked on; Escape is for the eyedropper alone.
+    // The eyedropper takes the click and Escape; the viewport does not react.
     assert_eq!(harness.state().session.document.preset.camera, camera);
     harness.state_mut().session.show.stage = ShadeTree::Normals;
     harness.get_by_label("Take a colour").click();
@@ -390,10 +390,10 @@ fn a_stop_takes_a_colour_from_the_picture() {
     assert_ne!(folder.recipe().rows[0].stops[0].colour.0, taken);
 }
 
-/// `HAZE_LOOK=DIR` says where to.
+/// `HAZE_LOOK=DIR` names the folder to write to.
 #[test]
-#[ignore = "pictures to be looked at"]
-fn pictures_of_the_editor() {
+#[ignore = "writes images for visual inspection"]
+fn write_images_of_the_gradient_editor() {
     let into = PathBuf::from(std::env::var_os("HAZE_LOOK").unwrap());
     let folder = Folder::new();
     let mut harness = folder.open();

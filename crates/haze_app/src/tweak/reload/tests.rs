@@ -1,4 +1,4 @@
-//! Files are saved beside a window: what it shows, and what it says.
+//! Files that change on disk while a window shows them: image and messages.
 
 use std::fs;
 use std::path::PathBuf;
@@ -20,7 +20,7 @@ mod soak;
 
 const COLOUR: &str = include_str!("../../../../../shaders/lib/colour.wgsl");
 
-/// A preset with a ramp of its own in a folder of its own, and a window that shows it.
+/// Preset with a ramp of its own in a temporary folder, and a window that shows it.
 struct Bench {
     folder: TempDir,
     window: Harness<'static, Window>,
@@ -51,12 +51,12 @@ impl Bench {
         &mut self.window.state_mut().session
     }
 
-    /// What is wrong.
+    /// Returns the present error message.
     fn said(&mut self) -> Option<String> {
         self.session().messages.latest().filter(|message| message.is_error).map(|message| message.text.clone())
     }
 
-    /// Frames until something is so.
+    /// Runs frames until a condition holds.
     fn until(&mut self, is_so: impl Fn(&mut Self) -> bool) {
         let start = Instant::now();
         loop {
@@ -69,13 +69,13 @@ impl Bench {
         }
     }
 
-    /// Frames until nothing is being loaded.
+    /// Runs frames until no load is in progress.
     fn rest(&mut self) {
         self.until(|bench| !bench.window.state().reload.worker.is_busy());
         self.window.step();
     }
 
-    /// Brightness of the picture.
+    /// Returns the brightness of the viewport.
     fn shown(&mut self) -> f64 {
         let part = self.window.get_by_label("viewport").rect();
         brightness(&picture(&mut self.window), part)
@@ -87,10 +87,10 @@ impl Bench {
     }
 }
 
-/// What is said, and how it comes about at a path.
+/// Expected message, and the action on a path that causes it.
 type Way<'a> = (&'a str, &'a dyn Fn(&Path));
 
-/// A ramp of one grey.
+/// Writes a ramp of a single grey.
 fn write_ramp(folder: &Path, grey: u8) {
     let picture = RgbImage::from_pixel(64, 1, Rgb([grey; 3]));
     haze::picture::write_png(&folder.join("mine.png"), &picture.into(), haze::picture::Effort::Quick).unwrap();
@@ -99,7 +99,7 @@ fn write_ramp(folder: &Path, grey: u8) {
 const SIZE: Vec2 = Vec2::new(640.0, 400.0);
 
 #[test]
-fn a_ramp_is_seen_as_it_is_saved_and_a_broken_one_is_said_until_it_is_mended() {
+fn a_saved_ramp_is_shown_and_a_broken_one_is_reported_until_it_is_fixed() {
     let mut bench = Bench::new(SIZE);
     let before = bench.shown();
     let bright = bench.pictures();
@@ -115,7 +115,7 @@ fn a_ramp_is_seen_as_it_is_saved_and_a_broken_one_is_said_until_it_is_mended() {
         "{said}"
     );
     assert!((bench.shown() - dark).abs() < 0.5, "the last good one stays");
-    // Whatever takes its place.
+    // The file is replaced in different ways.
     let good = {
         write_ramp(&bench.path("shaders"), 90);
         fs::read(bench.path("shaders/mine.png")).unwrap()
@@ -144,7 +144,7 @@ fn a_ramp_is_seen_as_it_is_saved_and_a_broken_one_is_said_until_it_is_mended() {
 }
 
 #[test]
-fn a_ramp_that_presets_share_is_followed_too() {
+fn a_shared_ramp_is_reloaded() {
     let mut bench = Bench::new(SIZE);
     let (team, own) = (bench.path("team"), bench.pictures());
     fs::create_dir(&team).unwrap();
@@ -161,7 +161,7 @@ fn a_ramp_that_presets_share_is_followed_too() {
 }
 
 #[test]
-fn another_presets_file_is_loaded_unless_work_would_be_lost() {
+fn a_changed_preset_file_is_loaded_unless_there_are_unsaved_changes() {
     let mut bench = Bench::new(SIZE);
     let path = bench.path("my.json");
     let write = |exposure: f32| {
@@ -182,7 +182,7 @@ fn another_presets_file_is_loaded_unless_work_would_be_lost() {
     let saved = bench.session().document.preset.to_text("");
     fs::write(&path, saved).unwrap();
     bench.until(|bench| bench.said().is_none());
-    // Changed on both sides.
+    // Changed both in the file and in the window.
     bench.session().document.preset.camera.exposure = -1.0;
     write(0.5);
     bench.until(|bench| bench.session().is_changed_on_disk);
@@ -203,7 +203,7 @@ fn another_presets_file_is_loaded_unless_work_would_be_lost() {
 }
 
 #[test]
-fn a_shader_is_seen_as_it_is_saved_and_a_mistake_is_said_with_its_place() {
+fn a_saved_shader_is_used_and_an_error_is_reported_with_its_line() {
     let mut bench = Bench::new(SIZE);
     let before = bench.shown();
     let write = |bench: &Bench, text: &str| fs::write(bench.path("shaders/lib/colour.wgsl"), text).unwrap();
@@ -219,7 +219,7 @@ fn a_shader_is_seen_as_it_is_saved_and_a_mistake_is_said_with_its_place() {
     bench.rest();
     let dark = bench.shown();
     assert!(dark < before - 3.0, "{before} {dark}");
-    // One that takes the place of an embedded one only now.
+    // A file that replaces a built-in shader only from now on.
     let blending = shader::source("lib/blending.wgsl").unwrap();
     fs::write(bench.path("shaders/lib/blending.wgsl"), blending.to_owned() + "\nfn (").unwrap();
     bench.until(|bench| bench.said().is_some_and(|said| said.contains("lib/blending.wgsl:")));
@@ -228,7 +228,7 @@ fn a_shader_is_seen_as_it_is_saved_and_a_mistake_is_said_with_its_place() {
 }
 
 #[test]
-fn an_import_that_is_missing_or_no_text_is_followed_until_it_is_mended() {
+fn a_missing_or_binary_import_is_watched_until_it_is_fixed() {
     let mut bench = Bench::new(SIZE);
     let path = bench.path("shaders/lib/mine.wgsl");
     fs::write(bench.path("shaders/lib/colour.wgsl"), format!("#import \"lib/mine.wgsl\"\n{COLOUR}")).unwrap();
@@ -245,7 +245,7 @@ fn an_import_that_is_missing_or_no_text_is_followed_until_it_is_mended() {
 }
 
 #[test]
-fn pictures_are_exported_as_the_shaders_of_the_folder_draw_them() {
+fn exports_use_the_shaders_of_the_watched_folder() {
     let mut bench = Bench::new(SIZE);
     let export = |bench: &mut Bench| {
         let window = bench.window.state_mut();
@@ -266,7 +266,8 @@ fn pictures_are_exported_as_the_shaders_of_the_folder_draw_them() {
     assert!(after * 10 < before * 9, "{before} {after}");
 }
 
-/// From a save until the frame has the picture, and until its pixel can be read, milliseconds, of so many saves; sorted.
+/// Returns the times from a save until the frame has the image, and until its pixels can be read, in milliseconds over
+/// `count` saves; sorted.
 fn latencies(bench: &mut Bench, count: u32) -> (Vec<u128>, Vec<u128>) {
     let (mut loaded, mut seen): (Vec<_>, Vec<_>) = (0..count)
         .map(|index| {
@@ -286,8 +287,8 @@ fn latencies(bench: &mut Bench, count: u32) -> (Vec<u128>, Vec<u128>) {
 }
 
 #[test]
-#[ignore = "measures; with the machine to itself"]
-fn a_ramp_is_on_the_screen_a_quarter_of_a_second_after_it_is_saved() {
+#[ignore = "measurement; run it alone on an idle machine"]
+fn a_saved_ramp_is_on_screen_within_a_quarter_of_a_second() {
     let mut bench = Bench::new(SIZE);
     bench.session().show.has_strip = false;
     let (loaded, seen) = latencies(&mut bench, 50);
@@ -298,7 +299,7 @@ fn a_ramp_is_on_the_screen_a_quarter_of_a_second_after_it_is_saved() {
 }
 
 #[test]
-fn particles_from_files_are_followed_and_the_last_good_ones_stay() {
+fn particle_files_are_reloaded_and_the_last_valid_ones_stay() {
     let mut bench = Bench::new(SIZE);
     let folder = bench.folder.path().to_owned();
     let write = |frame: u32, text: &str| fs::write(folder.join(format!("smoke_{frame:04}.csv")), text).unwrap();
@@ -314,7 +315,7 @@ fn particles_from_files_are_followed_and_the_last_good_ones_stay() {
     assert!((bench.shown() - without).abs() > 0.5, "one small sprite in place of a column");
     write(1, "x,y,z\n0,1,0\n0,2,0\n");
     bench.until(|bench| count(bench) == 2);
-    // While it is simulated, one frame follows the other.
+    // A simulation appends one frame after the other.
     for frame in 2..5 {
         write(frame, "x,y,z\n0,1,0\n");
         bench.until(|bench| count(bench) == frame as usize + 1);
@@ -329,7 +330,7 @@ fn particles_from_files_are_followed_and_the_last_good_ones_stay() {
     assert_eq!(count(&mut bench), 5);
     write(2, "x,y,z\n");
     bench.until(|bench| bench.said().is_none() && count(bench) == 4);
-    // A name without files keeps what was there.
+    // A name without files keeps the present particles.
     set(&mut bench, "smok_####.csv");
     bench.until(|bench| bench.said().is_some_and(|said| said.contains("nearest name is \"smoke_0001.csv\"")));
     assert_eq!(count(&mut bench), 4);

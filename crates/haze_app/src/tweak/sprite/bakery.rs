@@ -1,4 +1,4 @@
-//! Sprites baked elsewhere: coarse ones while a control is moved, whole ones when it is let go.
+//! Background bakes of sprites: at a low resolution while a control is held, in full when it is released.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -11,14 +11,14 @@ use haze_author::sprite::bake::{BakedSprite, SpriteRecipe};
 use super::source::{Looked, Stamps, findings, look, stamps, write};
 use crate::tweak::platform::worker::Worker;
 
-/// Two threads, so that what is coarse does not wait for a frame of what is whole.
+/// Two threads, so that a coarse bake does not wait for a full one.
 pub struct Bakery {
     coarse: Worker<Done>,
     whole: Worker<Done>,
     next: u64,
 }
 
-/// A job, by its number, and what came of it.
+/// Finished job with its number.
 pub struct Done {
     pub job: u64,
     pub what: What,
@@ -26,29 +26,29 @@ pub struct Done {
 
 pub enum What {
     Looked(Looked),
-    /// Of a recipe, small.
+    /// Bake of a recipe at a low resolution.
     Coarse(Result<Baked, Error>),
     Whole(Box<Whole>),
-    /// Another is wanted, or the files are another's now: nothing was written.
+    /// The order was cancelled, or another program has changed the files: nothing was written.
     GivenUp,
 }
 
-/// What a recipe was baked to.
+/// Recipe and the images baked from it.
 pub struct Baked {
     pub recipe: SpriteRecipe,
     pub sprite: Sprite,
     pub detail: Sprite,
 }
 
-/// What a recipe was baked to and written.
+/// Result of a full bake that was written.
 pub struct Whole {
     pub baked: Option<Baked>,
     pub stamps: Stamps,
-    /// What a check of it says, or why it is not written.
+    /// Findings of its check, or the error of writing.
     pub written: Result<Vec<String>, Error>,
 }
 
-/// A whole sprite on its way.
+/// Full bake in progress.
 pub struct Order {
     pub job: u64,
     pub recipe: SpriteRecipe,
@@ -57,41 +57,43 @@ pub struct Order {
 }
 
 impl Order {
-    /// Another is wanted.
+    /// Cancels the bake, because another is wanted.
     pub fn stop(&self) {
         self.is_stopped.store(true, Ordering::Relaxed);
     }
 
-    /// Frames that are baked.
+    /// Returns the number of baked frames.
     pub fn frames(&self) -> u32 {
         self.frames.load(Ordering::Relaxed)
     }
 }
 
-/// Side and frames each way of a coarse sprite: some milliseconds. Version 1 marches through a cube.
+/// Frame size in texels, and number of columns and rows, of a coarse bake, which takes some milliseconds. Version 1
+/// marches rays through a cube and needs a smaller size.
 const COARSE: [u32; 2] = [64, 2];
 const COARSE_FIRST: [u32; 2] = [32, 2];
 
 impl Bakery {
-    /// `wake` is called from other threads when something is done. None where the system has no thread left.
+    /// `wake` is called from other threads when a job is done. Returns `None` if the system cannot start another
+    /// thread.
     pub fn new(wake: impl Fn() + Clone + Send + 'static) -> Option<Self> {
         let coarse = Worker::new("haze coarse sprite", wake.clone()).ok()?;
         Some(Self { coarse, whole: Worker::new("haze sprite", wake).ok()?, next: 0 })
     }
 
-    /// What is done, oldest first; nothing in it if the program has a mistake.
+    /// Returns the oldest finished job; the inner `None` means that a job panicked.
     pub fn poll(&self) -> Option<Option<Done>> {
         self.coarse.poll().or_else(|| self.whole.poll())
     }
 
-    /// Has a sprite and its recipe read.
+    /// Reads a sprite and its recipe. Returns the number of the job.
     pub fn look(&mut self, name: &str, picture: PathBuf, layout: SpriteLayout) -> u64 {
         let (job, name) = (self.number(), name.to_owned());
         self.whole.submit(move |_| Done { job, what: What::Looked(look(&name, &picture, layout)) });
         job
     }
 
-    /// Has a recipe baked small.
+    /// Bakes a recipe at a low resolution. Returns the number of the job.
     pub fn coarse(&mut self, recipe: SpriteRecipe) -> u64 {
         let job = self.number();
         self.coarse.submit(move |_| {
@@ -105,7 +107,7 @@ impl Bakery {
         job
     }
 
-    /// Has a recipe baked whole and written over files that are as they were.
+    /// Bakes a recipe in full and writes it, if the files still have the stamps `before`.
     pub fn whole(&mut self, recipe: SpriteRecipe, picture: PathBuf, before: Stamps) -> Order {
         let job = self.number();
         let (is_stopped, frames) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU32::new(0)));

@@ -1,4 +1,4 @@
-//! A sprite as it would be lit alone, on the CPU, by the formulas that the renderers have.
+//! Preview of a single lit sprite, drawn on the CPU with the formulas of the renderers.
 
 use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureId, TextureOptions};
 use glam::{UVec2, Vec2, Vec3, Vec3Swizzles as _, Vec4Swizzles as _};
@@ -13,21 +13,21 @@ use haze::settings::{NormalDecode, NormalEncoding, RampFilter};
 
 use super::look::Shown;
 
-/// What a picture of a sprite depends on, beside its material.
+/// Parameters of the preview, apart from the material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     pub shown: Shown,
     pub frame: f32,
-    /// Unit vector.
+    /// Unit vector to the light.
     pub to_light: Vec3,
     pub filter: RampFilter,
-    /// Share of the sprite's motion that is followed between frames.
+    /// Factor on the sprite's motion vectors between frames.
     pub motion: f32,
-    /// Pixels.
+    /// Side of the image in pixels.
     pub side: u32,
 }
 
-/// What was drawn last, and from what.
+/// Texture of the last preview, and its parameters.
 pub struct Painted {
     view: View,
     material: MaterialAssets,
@@ -35,7 +35,7 @@ pub struct Painted {
 }
 
 impl Painted {
-    /// The picture, drawn again only where it is another.
+    /// Returns the preview's texture, redrawn only if its parameters have changed.
     pub fn show(
         painted: &mut Option<Self>,
         context: &egui::Context,
@@ -58,10 +58,10 @@ impl Painted {
     }
 }
 
-/// Linear light behind the smoke: dark enough for bright rims, bright enough for dark smoke.
+/// Linear light of the background: dark enough for bright rims, bright enough for dark smoke.
 const BEHIND: Vec3 = Vec3::splat(0.03);
 
-/// Draws it.
+/// Draws the preview.
 pub fn draw(material: &MaterialAssets, view: &View) -> ColorImage {
     let mut picture = Picture::new(UVec2::splat(view.side), Color32::BLACK);
     picture.for_each(|at, pixel| {
@@ -72,7 +72,7 @@ pub fn draw(material: &MaterialAssets, view: &View) -> ColorImage {
     ColorImage::new([view.side as usize; 2], picture.texels)
 }
 
-/// The sRGB code of a place on the sprite.
+/// Returns the sRGB value, 0 to 1, of a position on the sprite.
 fn code(material: &MaterialAssets, view: &View, uv: Vec2) -> Vec3 {
     let sprite = &material.sprite;
     let frames = flipbook_frames(view.frame, sprite.frame_count() as f32);
@@ -111,7 +111,7 @@ mod tests {
         View { shown, frame: 0.0, to_light, filter: RampFilter::default(), motion, side: 64 }
     }
 
-    /// Mean brightness of the left, right, upper and lower half.
+    /// Returns the mean brightness of the left, right, upper and lower half.
     fn halves(picture: &ColorImage) -> [f32; 4] {
         let mean = |is_in: &dyn Fn(usize, usize) -> bool| {
             let at = |index: usize| (index % 64, index / 64);
@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn the_side_that_faces_the_light_is_the_brighter_one() {
+    fn the_side_that_faces_the_light_is_brighter() {
         let material = material();
         let lit = |to_light| halves(&draw(&material, &view(Shown::Lit, to_light)));
         let [left, right, ..] = lit(Vec3::NEG_X);
@@ -134,16 +134,16 @@ mod tests {
     }
 
     #[test]
-    fn what_is_shown_is_what_the_sheet_has() {
+    fn each_view_shows_its_channel_of_the_sheet() {
         let material = material();
         let middle = |shown| draw(&material, &view(shown, Vec3::Z)).pixels[32 * 64 + 32];
         let corner = |shown| draw(&material, &view(shown, Vec3::Z)).pixels[0];
         let [normal, amount] = [Shown::Normals, Shown::Amount].map(middle);
         assert!(normal.b() > 200 && amount.g() > 150, "{normal:?} {amount:?}");
         assert_eq!(corner(Shown::Amount), Color32::BLACK);
-        // It stands out in its middle.
+        // The depth is largest in the middle.
         assert!(middle(Shown::Depth).r() > 150, "{:?}", middle(Shown::Depth));
-        // Without a detail map nothing is known of it.
+        // Without a detail map the depth is unknown.
         let plain = MaterialAssets { detail: None, ..material.clone() };
         assert_eq!(draw(&plain, &view(Shown::Motion, Vec3::Z)).pixels[2000], Color32::from_rgb(128, 128, 128));
         let moved = View { frame: 0.5, ..view(Shown::Amount, Vec3::Z) };

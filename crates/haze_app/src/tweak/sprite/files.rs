@@ -1,4 +1,4 @@
-//! The sprites of a preset that the page has shown: what they are made from, baked while that is changed, written when it is done.
+//! Sprites of a preset that the Sprite tab has shown: baked during an edit, written when the step is complete.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -13,47 +13,48 @@ use super::source::{Looked, Source, Stamps, copy, detail_of, recipe_of, recipe_o
 use crate::tweak::document::document::Document;
 use crate::tweak::platform::assets::place_of;
 
-/// By the names that the preset has for them.
+/// Sprites by their names in the preset.
 #[derive(Default)]
 pub struct SpriteFiles {
-    /// The preset that they are of.
+    /// Path of the preset that they belong to.
     preset: PathBuf,
     known: BTreeMap<String, Known>,
     bakery: Option<Bakery>,
-    /// The built-in sprite that a system is to have a copy of.
+    /// Built-in sprite that is to be copied, and the index of the system it is for.
     wanted: Option<(usize, String)>,
-    /// The preset has no place yet for it.
+    /// The preset must first be saved to a file.
     pub wants_place: bool,
 }
 
-/// What is known of a sprite.
+/// Sprite with its recipe and its bakes.
 pub struct Known {
     picture: PathBuf,
-    /// As the preset has it.
+    /// Layout that the preset has for it.
     layout: SpriteLayout,
     pub source: Source,
     stamps: Stamps,
-    /// What a check says, line by line.
+    /// Findings of its check, one per line.
     pub findings: Vec<String>,
-    /// What is wrong with the recipe's file: the last good one is kept.
+    /// Error in the recipe's file. The last valid recipe is kept.
     pub broken: Option<String>,
-    /// What the files on disk are made by.
+    /// Recipe that the files on disk were baked from.
     written: Option<SpriteRecipe>,
-    /// What is shown in place of them.
+    /// Sprite that is shown in place of the files.
     live: Option<Baked>,
     live_is_whole: bool,
-    /// The last coarse one, if it is on its way.
+    /// Number of the latest coarse bake, while it is in progress.
     coarse: Option<u64>,
-    /// A whole one that is wanted.
+    /// Full bake in progress.
     pub whole: Option<Order>,
-    /// All that is on its way, wanted or not.
+    /// Numbers of all jobs in progress, wanted or not.
     jobs: Vec<u64>,
-    /// Something was written: its files may be others.
+    /// A file was written, so the stamps must be compared.
     is_stale: bool,
 }
 
 impl SpriteFiles {
-    /// What a sprite is; nothing before it was asked about, or where there are no threads. `wake` is called from other threads.
+    /// Returns a sprite. Requests it if it is not known yet; `None` if no thread can be started. `wake` is called from
+    /// other threads.
     pub fn ask(
         &mut self,
         names: &MaterialNames,
@@ -70,7 +71,7 @@ impl SpriteFiles {
             known.look(&names.sprite, bakery);
             known
         });
-        // A recipe has a layout of its own.
+        // A recipe determines its own layout.
         if known.layout != layout && known.jobs.is_empty() && !matches!(known.source, Source::Recipe(_)) {
             known.layout = layout;
             known.look(&names.sprite, bakery);
@@ -78,12 +79,12 @@ impl SpriteFiles {
         Some(known)
     }
 
-    /// A copy of a built-in sprite is wanted for a system; where the preset is built in, that is saved first.
+    /// Requests a copy of a built-in sprite for a system. A built-in preset must be saved first.
     pub fn want_own(&mut self, system: usize, name: &str, is_built_in: bool) {
         (self.wanted, self.wants_place) = (Some((system, name.to_owned())), is_built_in);
     }
 
-    /// Writes the copy that is wanted, and names it in the preset, once that is a file.
+    /// Writes the requested copy and names it in the preset, as soon as the preset is a file.
     pub fn make_own(&mut self, document: &mut Document) -> Result<(), Error> {
         let Some((system, name)) = self.wanted.take_if(|_| !document.is_built_in()) else { return Ok(()) };
         let (recipe, file) = (recipe_of_built_in(&name)?, copy(&name, document.path())?);
@@ -93,7 +94,7 @@ impl SpriteFiles {
             system.material.sprite.clone_from(&file);
             lay_out(&mut system.material, &recipe);
         }
-        // What was copied is known.
+        // The content of the copy is known, so it is not read again.
         let mut known = Known::new(picture, recipe.layout(), Source::Recipe(recipe.clone()));
         known.written = Some(recipe);
         if let Some(origin) = self.known.get(&name) {
@@ -103,7 +104,8 @@ impl SpriteFiles {
         Ok(())
     }
 
-    /// Once a frame, after the panels: has baked what was changed, whole and written unless a control is held.
+    /// Requests bakes of changed recipes; they are full and written unless a control is held. Call once a frame, after
+    /// the panels.
     pub fn advance(&mut self, document: &mut Document, is_held: bool) -> Result<(), Error> {
         if self.preset != document.path() {
             self.known.clear();
@@ -112,7 +114,7 @@ impl SpriteFiles {
         let Some(bakery) = &mut self.bakery else { return Ok(()) };
         let mut said = Ok(());
         while let Some(done) = bakery.poll() {
-            // A job that panicked has been said to standard error, and is never done.
+            // The panic of a job was printed to standard error; the job never finishes.
             let Some(Done { job, what }) = done else { continue };
             let Some((name, known)) = self.known.iter_mut().find(|(_, known)| known.jobs.contains(&job)) else {
                 continue;
@@ -126,12 +128,13 @@ impl SpriteFiles {
         said
     }
 
-    /// Puts sprites as they are now in the place of those that were loaded.
+    /// Replaces loaded sprites by their edited versions.
     pub fn apply(&self, preset: &Preset, materials: &mut [MaterialAssets]) {
         for (system, assets) in preset.systems.iter().zip(materials) {
             let live = self.known.get(&system.material.sprite).and_then(|known| known.live.as_ref());
             let Some(live) = live else { continue };
-            // Of the sprite as it was: coarse ones and those of other frames have none.
+            // Six-way maps belong to the sprite as it was. Coarse sprites, and sprites with another number of frames,
+            // have none.
             let frames = live.sprite.frame_count();
             let fits = |maps: &Sprite| (maps.size(), maps.frame_count()) == (live.sprite.size(), 2 * frames);
             if system.settings.is_six_way() && !assets.six_way.as_ref().is_some_and(fits) {
@@ -139,7 +142,7 @@ impl SpriteFiles {
             }
             assets.six_way = assets.six_way.take().filter(fits);
             assets.sprite = live.sprite.clone();
-            // Another's must have as many frames.
+            // A detail image of another sprite must have the same number of frames.
             let is_own = Path::new(&system.material.detail) == detail_of(Path::new(&system.material.sprite));
             if let Some(detail) = &mut assets.detail
                 && (is_own || detail.frame_count() != live.sprite.frame_count())
@@ -149,23 +152,23 @@ impl SpriteFiles {
         }
     }
 
-    /// Something was written: files that are others are read again.
+    /// Marks all sprites, so that changed files are read again.
     pub fn look_again(&mut self) {
         self.known.values_mut().for_each(|known| known.is_stale = true);
     }
 
-    /// Another document takes the place of theirs. What is on its way is written all the same.
+    /// Forgets all sprites, because the document is replaced. Bakes in progress are still written.
     pub fn forget(&mut self) {
         (self.known, self.wanted) = (BTreeMap::new(), None);
     }
 
-    /// Files are not yet what the preset says of them.
+    /// Returns true while files do not yet match the recipes.
     pub fn is_baking(&self) -> bool {
         self.known.values().any(|known| known.whole.is_some() || known.coarse.is_some())
     }
 }
 
-/// Changes the recipe of a sprite, and what systems say of its sheet.
+/// Changes the recipe of a sprite, and the layout that systems have for its sheet.
 pub fn set_recipe(document: &mut Document, name: &str, recipe: SpriteRecipe) {
     let systems = document.preset.systems.iter_mut().filter(|system| system.material.sprite == name);
     systems.for_each(|system| lay_out(&mut system.material, &recipe));
@@ -196,12 +199,12 @@ impl Known {
         }
     }
 
-    /// Where its recipe is, or would be.
+    /// Returns the path of its recipe, whether it exists or not.
     pub fn recipe_file(&self) -> PathBuf {
         recipe_of(&self.picture)
     }
 
-    /// Makes the recipe beside it its own again: it is baked and written.
+    /// Uses the recipe beside the image again: it is baked and written.
     pub fn adopt(&mut self) {
         if let Source::Apart(recipe) = &self.source {
             self.source = Source::Recipe(recipe.clone());
@@ -218,12 +221,12 @@ impl Known {
             What::Looked(Looked { source, stamps, findings, broken }) => {
                 (self.stamps, self.broken) = (stamps, broken);
                 if self.broken.is_some() && matches!(self.source, Source::Recipe(_)) {
-                    // The last good one is kept.
+                    // The last valid recipe is kept.
                     return Ok(());
                 }
                 self.written = if let Source::Recipe(recipe) = &source { Some(recipe.clone()) } else { None };
                 (self.source, self.findings, self.live) = (source, findings, None);
-                // Another program has the last word.
+                // A change by another program takes precedence.
                 document.recipes.sprites.forget(name);
             }
             What::Coarse(baked) => {
@@ -237,7 +240,7 @@ impl Known {
             What::Whole(whole) => {
                 let Whole { baked, stamps, written } = *whole;
                 let order = self.whole.take_if(|order| order.job == job);
-                // Also where it could not be: the next change tries again.
+                // Also set after a write error; the next change tries again.
                 self.written = baked.as_ref().map(|baked| baked.recipe.clone()).or(order.map(|order| order.recipe));
                 self.stamps = stamps;
                 (self.live, self.live_is_whole) = (baked, true);
@@ -245,7 +248,7 @@ impl Known {
             }
             What::GivenUp => {
                 self.whole = self.whole.take().filter(|order| order.job != job);
-                // It may be that files are others: before it is baked once more that is seen.
+                // The files may have been changed by another program, which is checked before the next bake.
                 self.is_stale = true;
             }
         }
@@ -277,7 +280,7 @@ impl Known {
             self.coarse = Some(job);
             self.jobs.push(job);
         }
-        // A file that someone is mending is not written over.
+        // A file with an error that the user is about to fix is not overwritten.
         if !is_held && self.whole.is_none() && self.broken.is_none() {
             let order = bakery.whole(wanted.clone(), self.picture.clone(), self.stamps);
             self.jobs.push(order.job);

@@ -1,10 +1,10 @@
-//! How a sprite is looked at.
+//! View options of the sprite preview.
 
 use haze::sprite::Sprite;
 
 use crate::tweak::angles::Angles;
 
-/// What of a sprite is shown.
+/// Channel of a sprite that is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shown {
     Lit,
@@ -14,27 +14,27 @@ pub enum Shown {
     Motion,
 }
 
-/// All there is to show, its names, and what it is.
+/// All channels with their names and tooltips.
 pub const SHOWN: [(Shown, &str, &str); 5] = [
     (Shown::Lit, "Lit", "Through the diffuse ramp of the system"),
     (Shown::Normals, "Normals", "As they are on the sheet: x in red, y up in green, z to the viewer in blue"),
     (Shown::Amount, "Amount", "White hides all"),
     (Shown::Depth, "Depth", "How far it stands out: white towards the viewer, grey in the middle"),
-    (Shown::Motion, "Motion", "Where it goes until the next frame: to the right in red, down in green, grey stays"),
+    (Shown::Motion, "Motion", "Motion to the next frame: to the right in red, down in green; grey does not move"),
 ];
 
-/// The flipbook and its light; no part of the preset.
+/// Flipbook and its light. Not part of the preset.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpriteLook {
     pub shown: Shown,
-    /// Fractional: between two frames is a share of both.
+    /// Frame; a fraction blends two frames.
     pub frame: f32,
     pub is_playing: bool,
-    /// Frames a second.
+    /// Frames per second.
     pub rate: f32,
-    /// Where light comes from.
+    /// Direction that the light comes from.
     pub light: Angles,
-    /// The light goes round.
+    /// The light rotates.
     pub is_turning: bool,
 }
 
@@ -45,21 +45,21 @@ impl Default for SpriteLook {
     }
 }
 
-/// Seconds of a turn of the light.
+/// Duration of one turn of the light, seconds.
 const TURN: f32 = 5.0;
-/// Longest time that one frame of the window may take from the clock.
+/// Longest time that one frame of the window may advance, seconds.
 const LONGEST: f32 = 0.1;
 
 impl SpriteLook {
-    /// Something moves by itself.
+    /// Returns true if the flipbook plays or the light rotates.
     pub fn is_moving(&self) -> bool {
         self.is_playing || self.is_turning
     }
 
-    /// Goes on by the seconds that have passed.
+    /// Advances by the elapsed seconds.
     pub fn advance(&mut self, sprite: &Sprite, seconds: f32) {
         let seconds = seconds.clamp(0.0, LONGEST);
-        // Else it stays, also while a coarse sprite has fewer.
+        // A paused frame number stays, even while a coarse sprite has fewer frames.
         if self.is_playing {
             self.frame = (self.frame + seconds * self.rate).rem_euclid(sprite.frame_count() as f32);
         }
@@ -68,7 +68,7 @@ impl SpriteLook {
         }
     }
 
-    /// Sends the light round to an azimuth, degrees.
+    /// Sets the azimuth of the light, wrapped to -180 to 180 degrees.
     pub fn turn_to(&mut self, azimuth: f32) {
         self.light.azimuth = (azimuth + 180.0).rem_euclid(360.0) - 180.0;
     }

@@ -1,4 +1,4 @@
-//! The sprite that is looked at: how it is lit, and its recipe while it is changed.
+//! Sprite of the selected system: its preview, and its recipe while it is edited.
 
 pub mod bakery;
 pub mod draw;

@@ -1,4 +1,4 @@
-//! What a sprite is made from: read, checked, written and copied.
+//! Origin of a sprite: reads, checks, writes and copies its files.
 
 use std::path::{Path, PathBuf};
 
@@ -14,42 +14,42 @@ use image::RgbaImage;
 use crate::tweak::platform::assets::sprite_recipe;
 use crate::tweak::platform::files::{self, Effort, Stamp, read_png, write_png};
 
-/// What a sprite is to who wants to change it.
+/// Origin of a sprite, which decides whether it can be edited.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
     /// Not known yet.
     Reading,
-    /// It comes with the program.
+    /// Embedded in the program.
     BuiltIn(SpriteRecipe),
-    /// It can be changed.
+    /// Made from a recipe, which can be edited.
     Recipe(SpriteRecipe),
-    /// The recipe beside it makes another picture: one of the two was changed elsewhere.
+    /// The recipe beside it makes another image: another program has changed one of the two.
     Apart(SpriteRecipe),
-    /// No recipe lies beside it.
+    /// There is no recipe beside it.
     Painted,
-    /// It cannot be read.
+    /// Unreadable.
     Missing,
 }
 
-/// The picture's file, its detail's and the recipe's, as they were.
+/// Stamps of the image, its detail image and the recipe.
 pub type Stamps = [Option<Stamp>; 3];
 
-/// What was found of a sprite.
+/// Sprite as read from its files.
 pub struct Looked {
     pub source: Source,
     pub stamps: Stamps,
-    /// What a check of the picture says, line by line.
+    /// Findings of the check of the image, one per line.
     pub findings: Vec<String>,
-    /// What is wrong with the recipe's file.
+    /// Error in the recipe's file.
     pub broken: Option<String>,
 }
 
-/// `mine.sprite.json` of `mine.png`.
+/// Returns `mine.sprite.json` for `mine.png`.
 pub fn recipe_of(picture: &Path) -> PathBuf {
     picture.with_extension("sprite.json")
 }
 
-/// `mine.detail.png` of `mine.png`.
+/// Returns `mine.detail.png` for `mine.png`.
 pub fn detail_of(picture: &Path) -> PathBuf {
     picture.with_extension("detail.png")
 }
@@ -58,9 +58,9 @@ pub fn stamps(picture: &Path) -> Stamps {
     [picture, &detail_of(picture), &recipe_of(picture)].map(Stamp::of)
 }
 
-/// Reads a sprite and its recipe. `layout` is how the preset has it.
+/// Reads a sprite and its recipe. `layout` is the one in the preset.
 pub fn look(name: &str, picture: &Path, layout: SpriteLayout) -> Looked {
-    // Before they are read: written in between, they are found to have changed.
+    // Stamps are taken before the files are read, so that a write in between counts as a change.
     let stamps = stamps(picture);
     let (source, findings, broken) = match builtin::find(builtin::SPRITES, name) {
         Some(found) => built_in(found).unwrap_or_else(|error| (Source::Missing, vec![error.to_string()], None)),
@@ -95,13 +95,13 @@ fn file(picture: &Path, layout: SpriteLayout) -> Found {
     (source, findings(picture, &sheet, layout), broken)
 }
 
-/// Whether a recipe makes a sheet.
+/// Returns true if a recipe makes a sheet.
 fn makes(recipe: &SpriteRecipe, sheet: &RgbaImage) -> bool {
     if sheet.dimensions() != (recipe.size * recipe.columns, recipe.size * recipe.rows) {
         return false;
     }
     if recipe.version < 2 {
-        // Of a minute's work the first frame tells enough.
+        // Version 1 takes about a minute to bake, so only the first frame is compared.
         let frame = recipe.bake_frame(0.0).picture;
         let size = frame.size.x as usize;
         return frame.texels.chunks(size).zip(sheet.rows()).all(|(ours, theirs)| ours.iter().eq(theirs.take(size)));
@@ -109,7 +109,7 @@ fn makes(recipe: &SpriteRecipe, sheet: &RgbaImage) -> bool {
     recipe.bake(|_| Ok::<_, FieldError>(())).is_ok_and(|baked| baked.picture == *sheet)
 }
 
-/// What a check says of a sheet.
+/// Returns the findings of a check of a sheet.
 pub fn findings(path: &Path, sheet: &RgbaImage, layout: SpriteLayout) -> Vec<String> {
     match check(path, sheet, layout) {
         Ok(findings) => findings.into_iter().map(|finding| format!("{}: {}", finding.name, finding.what)).collect(),
@@ -117,19 +117,19 @@ pub fn findings(path: &Path, sheet: &RgbaImage, layout: SpriteLayout) -> Vec<Str
     }
 }
 
-/// The recipe first: of the three the pictures can be made again.
+/// Writes the recipe first, because the images can be made again from it.
 pub fn write(picture: &Path, recipe: &SpriteRecipe, baked: BakedSprite) -> Result<(), Error> {
     files::write(&recipe_of(picture), recipe.to_text().as_bytes())?;
     write_png(&detail_of(picture), &baked.detail.into(), Effort::Small)?;
     write_png(picture, &baked.picture.into(), Effort::Small)
 }
 
-/// The recipe of a built-in sprite.
+/// Returns the recipe of a built-in sprite.
 pub fn recipe_of_built_in(name: &str) -> Result<SpriteRecipe, Error> {
     json::parse(&builtin::path(name), builtin::find(builtin::SPRITES, name).map_or("", |builtin| builtin.recipe))
 }
 
-/// Writes a copy of a built-in sprite beside a preset, under a name that is free, and gives that.
+/// Writes a copy of a built-in sprite beside a preset under a free name, and returns the name.
 pub fn copy(name: &str, preset: &Path) -> Result<String, Error> {
     let folder = preset.parent().unwrap_or(Path::new(""));
     let file = files::own_name(name, |file| {

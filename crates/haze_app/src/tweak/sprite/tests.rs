@@ -1,4 +1,4 @@
-//! A sprite on its page: changed, seen, written and undone; given up to who works on it elsewhere.
+//! Edits of a sprite on its tab: shown, written and undone, superseded by changes from outside.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -20,7 +20,7 @@ use crate::tweak::window::Window;
 
 const LONG: Duration = Duration::from_secs(30);
 
-/// A folder with a preset whose sprite is `mine.png`, made by a recipe beside it.
+/// Folder with a preset whose sprite is `mine.png`, made from a recipe beside it.
 struct Folder(tempfile::TempDir);
 
 fn small() -> SpriteRecipe {
@@ -62,7 +62,7 @@ impl Folder {
         Sprite::load(&self.path("mine.png"), self.recipe().layout()).ok()
     }
 
-    /// The picture is what the recipe makes.
+    /// Returns true if the image equals the one that the recipe makes.
     fn is_baked(&self) -> bool {
         let (recipe, sprite) = (self.recipe(), self.sprite());
         sprite == Sprite::from_picture("".as_ref(), &baked(&recipe).picture, recipe.layout()).ok()
@@ -73,17 +73,17 @@ impl Folder {
     }
 }
 
-/// The page, standing still.
+/// Opens the tab and waits until it has settled.
 fn page_of(preset: &str) -> Harness<'static, Window> {
     let mut harness = window(preset, Vec2::new(1280.0, 1400.0), Theme::Dark);
     harness.state_mut().session.show.sprite.is_playing = false;
     harness.get_by_label("Sprite").click();
-    until(&mut harness, |harness| harness.query_by_label("It is being read.").is_none());
+    until(&mut harness, |harness| harness.query_by_label("Reading the sprite.").is_none());
     unfold(&mut harness);
     harness
 }
 
-/// Opens the parts of the recipe that are folded.
+/// Expands the collapsed parts of the recipe.
 fn unfold(harness: &mut Harness<'_, Window>) {
     for heading in ["wisps", "motion", "surface", "sheet"] {
         if let Some(heading) = harness.query_by_label(heading) {
@@ -114,7 +114,7 @@ fn set(harness: &mut Harness<'_, Window>, name: &str, value: f64) {
     harness.run_steps(3);
 }
 
-/// What the system is drawn with.
+/// Returns the sprite that the system is drawn with.
 fn used(harness: &Harness<'_, Window>) -> Sprite {
     harness.state().session.materials()[0].sprite.clone()
 }
@@ -133,7 +133,7 @@ fn has_error(harness: &Harness<'_, Window>) -> bool {
 }
 
 #[test]
-fn a_slider_is_seen_coarsely_then_whole_and_is_written_and_undone() {
+fn a_slider_shows_a_coarse_bake_then_the_full_one_which_is_written_and_undone() {
     let folder = Folder::new();
     let mut harness = folder.open();
     let (before, sprite) = (folder.recipe(), used(&harness));
@@ -157,7 +157,7 @@ fn a_slider_is_seen_coarsely_then_whole_and_is_written_and_undone() {
     assert!(after.erosion > before.erosion && SpriteRecipe { erosion: before.erosion, ..after.clone() } == before);
     assert!(folder.is_baked());
     assert_eq!(Some(used(&harness)), folder.sprite());
-    // One step, by its name; back on disk too.
+    // It is one named step, and undo also writes the files.
     assert_eq!(undo_name(&harness).as_deref(), Some("recipe of mine.png"));
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     until(&mut harness, |harness| used(harness) == sprite);
@@ -170,7 +170,7 @@ fn a_slider_is_seen_coarsely_then_whole_and_is_written_and_undone() {
 }
 
 #[test]
-fn another_layout_is_the_presets_too_in_one_step() {
+fn a_new_layout_changes_recipe_and_preset_in_one_step() {
     let folder = Folder::new();
     let mut harness = folder.open();
     let before = harness.state().session.document.preset.clone();
@@ -178,7 +178,7 @@ fn another_layout_is_the_presets_too_in_one_step() {
     until(&mut harness, |_| folder.sprite().is_some_and(|sprite| sprite.frame_count() == 4));
     let material = &harness.state().session.document.preset.systems[0].material;
     assert_eq!((material.columns, material.rows), (2, 2));
-    // What is read again is the same, and nothing is wrong with it.
+    // The files that are read again match, without an error.
     until(&mut harness, |harness| harness.state().session.pictures.of(&before)[0].sprite.frame_count() == 4);
     assert!(!has_error(&harness));
     assert_eq!(undo_name(&harness).as_deref(), Some("recipe of mine.png"));
@@ -189,7 +189,7 @@ fn another_layout_is_the_presets_too_in_one_step() {
 }
 
 #[test]
-fn numbers_that_depend_on_others_follow_them() {
+fn dependent_numbers_are_clamped_to_their_new_ranges() {
     let folder = Folder::new();
     let mut harness = folder.open();
     set(&mut harness, "ball radius min", 0.8);
@@ -203,7 +203,7 @@ fn numbers_that_depend_on_others_follow_them() {
 }
 
 #[test]
-fn a_broken_recipe_keeps_the_last_good_one_and_says_where() {
+fn a_broken_recipe_is_reported_with_its_line_and_the_last_valid_one_stays() {
     let folder = Folder::new();
     let mut harness = folder.open();
     let (good, sprite) = (std::fs::read_to_string(folder.path("mine.sprite.json")).unwrap(), used(&harness));
@@ -216,14 +216,14 @@ fn a_broken_recipe_keeps_the_last_good_one_and_says_where() {
     std::fs::write(folder.path("mine.sprite.json"), &good).unwrap();
     until(&mut harness, |harness| !is_said(harness));
     assert!(!slider(&harness, "erosion").accesskit_node().is_disabled());
-    // Out of its range it is as broken.
+    // A value out of range is an error too.
     std::fs::write(folder.path("mine.sprite.json"), good.replace("\"seed\"", "\"length\": 7.5, \"seed\"")).unwrap();
     until(&mut harness, is_said);
     assert!(harness.query_by_label_contains("length: 7.5 is not valid; expected 0 to 1").is_some());
 }
 
 #[test]
-fn what_is_changed_elsewhere_is_left_until_it_is_asked_for() {
+fn files_changed_by_another_program_are_not_overwritten_until_requested() {
     let folder = Folder::new();
     let mut harness = folder.open();
     set(&mut harness, "bump", 3.0);
@@ -233,7 +233,7 @@ fn what_is_changed_elsewhere_is_left_until_it_is_asked_for() {
     until(&mut harness, |harness| harness.query_by_label("Bake the recipe").is_some());
     until(&mut harness, |harness| Some(used(harness)) == folder.sprite());
     assert!(harness.query_by_label("erosion").is_none() && (folder.recipe().bump - 3.0).abs() < 1e-6);
-    // A recipe that is written by hand is another, too.
+    // A recipe that is written by hand is another recipe as well.
     std::fs::write(folder.path("mine.sprite.json"), other.to_text()).unwrap();
     until(&mut harness, |harness| harness.query_by_label("Bake the recipe").is_none());
     std::fs::write(folder.path("mine.sprite.json"), small().to_text()).unwrap();
@@ -244,7 +244,7 @@ fn what_is_changed_elsewhere_is_left_until_it_is_asked_for() {
 }
 
 #[test]
-fn a_built_in_sprite_becomes_ones_own_beside_the_preset() {
+fn a_built_in_sprite_is_copied_beside_the_preset() {
     let folder = Folder::new();
     folder.write_preset(&Preset::load("column").unwrap());
     let mut harness = folder.open();
@@ -266,7 +266,7 @@ fn a_built_in_sprite_becomes_ones_own_beside_the_preset() {
 }
 
 #[test]
-fn a_sprite_without_a_recipe_says_so_and_what_a_check_finds() {
+fn a_sprite_without_a_recipe_shows_that_and_the_findings_of_its_check() {
     let folder = Folder::new();
     std::fs::remove_file(folder.path("mine.sprite.json")).unwrap();
     let colours = image::RgbaImage::from_fn(192, 96, |x, y| {
@@ -289,7 +289,7 @@ fn a_sprite_without_a_recipe_says_so_and_what_a_check_finds() {
 }
 
 #[test]
-fn the_light_goes_where_it_is_sent() {
+fn the_light_follows_its_controls_and_a_drag() {
     let folder = Folder::new();
     let mut harness = folder.open();
     let mut halves = |azimuth| {
@@ -303,7 +303,7 @@ fn the_light_goes_where_it_is_sent() {
     assert!(left > right + 5.0, "{left} {right}");
     let [left, right] = halves(90.0);
     assert!(right > left + 5.0, "{left} {right}");
-    // Dragged to the left and up it follows.
+    // A drag to the left and up moves it along.
     let middle = harness.get_by_label("flipbook").rect().center();
     let to = middle - Vec2::new(100.0, 50.0);
     harness.drag_at(middle);
@@ -316,11 +316,11 @@ fn the_light_goes_where_it_is_sent() {
 }
 
 #[test]
-fn the_recipe_is_within_reach_in_the_smallest_window() {
+fn the_recipe_can_be_scrolled_to_in_the_smallest_window() {
     let mut harness = window("column", Vec2::new(640.0, 400.0), Theme::Dark);
     harness.state_mut().session.show.sprite.is_playing = false;
     harness.get_by_label("Sprite").click();
-    until(&mut harness, |harness| harness.query_by_label("It is being read.").is_none());
+    until(&mut harness, |harness| harness.query_by_label("Reading the sprite.").is_none());
     slider(&harness, "upright").scroll_to_me();
     harness.run_steps(8);
     let (row, page) = (slider(&harness, "upright").rect(), harness.get_by_label("viewport").rect());
@@ -328,7 +328,7 @@ fn the_recipe_is_within_reach_in_the_smallest_window() {
 }
 
 #[test]
-fn another_window_shows_the_flipbook_and_goes_on_with_what_is_baked() {
+fn a_new_window_shows_the_flipbook_and_continues_the_bake() {
     let folder = Folder::new();
     let mut harness = folder.open();
     let before = shown(&mut harness, "flipbook");
@@ -345,7 +345,7 @@ fn another_window_shows_the_flipbook_and_goes_on_with_what_is_baked() {
 }
 
 #[test]
-fn the_page_is_as_wide_as_the_others() {
+fn the_sprite_tab_is_as_wide_as_the_others() {
     let folder = Folder::new();
     let mut harness = folder.open();
     let width = |harness: &Harness<'_, Window>| harness.state().layout().settings.unwrap();
@@ -357,7 +357,7 @@ fn the_page_is_as_wide_as_the_others() {
 }
 
 #[test]
-fn it_turns_by_itself_only_while_it_is_seen_and_played() {
+fn the_flipbook_repaints_only_while_it_is_visible_and_playing() {
     let folder = Folder::new();
     let mut harness = folder.open();
     let is_still = |harness: &mut Harness<'_, Window>| {
@@ -383,7 +383,7 @@ fn it_turns_by_itself_only_while_it_is_seen_and_played() {
 }
 
 #[test]
-fn what_is_not_wanted_any_more_is_given_up_and_not_written() {
+fn an_outdated_bake_is_cancelled_and_not_written() {
     let folder = Folder::new();
     let picture = folder.path("mine.png");
     let before = stamps(&picture);
@@ -403,7 +403,7 @@ fn what_is_not_wanted_any_more_is_given_up_and_not_written() {
     };
     let done = wait(&bakery);
     assert!(done.job == order.job && matches!(done.what, What::GivenUp) && order.frames() < 100);
-    // Nor is another's work written over.
+    // Files that another program has changed are not overwritten either.
     std::fs::write(folder.path("mine.sprite.json"), "{}").unwrap();
     bakery.whole(small(), picture.clone(), before);
     assert!(matches!(wait(&bakery).what, What::GivenUp));
@@ -412,7 +412,7 @@ fn what_is_not_wanted_any_more_is_given_up_and_not_written() {
 }
 
 #[test]
-fn a_window_that_is_closed_while_it_bakes_writes_first() {
+fn closing_the_window_waits_for_the_bake_to_be_written() {
     let folder = Folder::new();
     let mut harness = folder.open();
     set(&mut harness, "columns", 8.0);
@@ -437,7 +437,7 @@ fn a_window_that_is_closed_while_it_bakes_writes_first() {
 }
 
 #[test]
-fn a_built_in_preset_asks_for_a_place_first() {
+fn a_built_in_preset_must_be_saved_before_a_sprite_is_copied() {
     let mut harness = page_of("column");
     harness.get_by_label("Make my own").click();
     harness.run_steps(4);
@@ -449,7 +449,7 @@ fn a_built_in_preset_asks_for_a_place_first() {
 }
 
 #[test]
-fn what_cannot_be_written_is_said() {
+fn a_write_error_is_reported() {
     let folder = Folder::new();
     std::fs::remove_file(folder.path("mine.detail.png")).unwrap();
     std::fs::create_dir(folder.path("mine.detail.png")).unwrap();
@@ -467,15 +467,15 @@ fn what_cannot_be_written_is_said() {
     until(&mut harness, |_| folder.is_baked() && folder.path("mine.detail.png").is_file());
 }
 
-/// `HAZE_LOOK=DIR` says where to.
+/// `HAZE_LOOK=DIR` names the folder to write to.
 #[test]
-#[ignore = "pictures to be looked at"]
-fn pictures_of_the_page() {
+#[ignore = "writes images for visual inspection"]
+fn write_images_of_the_sprite_tab() {
     let into = PathBuf::from(std::env::var_os("HAZE_LOOK").unwrap());
     let folder = Folder::new();
     let mut harness = window(folder.path("own.json").to_str().unwrap(), Vec2::new(1280.0, 800.0), Theme::Dark);
     harness.get_by_label("Sprite").click();
-    until(&mut harness, |harness| harness.query_by_label("It is being read.").is_none());
+    until(&mut harness, |harness| harness.query_by_label("Reading the sprite.").is_none());
     for theme in [Theme::Dark, Theme::Light] {
         harness.ctx.set_theme(theme);
         harness.run_steps(3);

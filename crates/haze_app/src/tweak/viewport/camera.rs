@@ -1,25 +1,25 @@
-//! What can be done to a camera.
+//! Camera moves: orbit, look, pan, dolly, fly, frame.
 
 use glam::{Quat, Vec2, Vec3};
 use haze::Bounds;
 use haze::preset::Camera;
 
-/// Closest that the camera comes to what it looks at, metres.
+/// Least distance between the camera and its target, metres.
 const NEAREST: f32 = 0.05;
-/// Share of straight up or down that it is turned to.
+/// Largest absolute y of a unit view direction; 1 is straight up or down.
 const STEEPEST: f32 = 0.9995;
 
-/// Round what it looks at; radians to the side and up.
+/// Orbits about the target; angles in radians to the side and up.
 pub fn orbit(camera: &mut Camera, angle: Vec2) {
     camera.position = camera.target + turned(camera.position - camera.target, angle);
 }
 
-/// Round where it stands.
+/// Turns the view about the camera's position; angles in radians.
 pub fn look(camera: &mut Camera, angle: Vec2) {
     camera.target = camera.position + turned(camera.target - camera.position, angle);
 }
 
-/// A vector turned about the vertical by x, and up or down by y, never over the top.
+/// Returns a vector rotated about the vertical by x, and up or down by y, but never past the vertical.
 fn turned(v: Vec3, angle: Vec2) -> Vec3 {
     let level = Quat::from_rotation_y(-angle.x) * v;
     let side = level.cross(Vec3::Y).normalize_or(Vec3::X);
@@ -28,7 +28,7 @@ fn turned(v: Vec3, angle: Vec2) -> Vec3 {
     if steepness(steep) < steepness(level).max(STEEPEST) { steep } else { level }
 }
 
-/// Sideways by shares of the picture's height, so that what it looks at stays under the pointer.
+/// Moves camera and target by shares of the image height, so that the target stays under the pointer.
 pub fn pan(camera: &mut Camera, share: Vec2) {
     let away = camera.target - camera.position;
     let (right, up) = sides(away.normalize_or(Vec3::NEG_Z));
@@ -36,7 +36,7 @@ pub fn pan(camera: &mut Camera, share: Vec2) {
     shift(camera, (up * share.y - right * share.x) * reach);
 }
 
-/// Nearer to a point, or away from it; it stays where it is in the picture.
+/// Scales the distances of camera and target to a point by a factor. The point stays at its place in the image.
 pub fn dolly(camera: &mut Camera, point: Vec3, factor: f32) {
     let distance = camera.position.distance(camera.target).max(1.0e-6);
     let factor = factor.clamp(NEAREST / distance, (0.5 * camera.far).max(NEAREST) / distance);
@@ -44,20 +44,20 @@ pub fn dolly(camera: &mut Camera, point: Vec3, factor: f32) {
     camera.target = point + (camera.target - point) * factor;
 }
 
-/// Metres to the right, up and ahead.
+/// Moves camera and target to the right, up and ahead, metres.
 pub fn fly(camera: &mut Camera, way: Vec3) {
     let ahead = (camera.target - camera.position).normalize_or(Vec3::NEG_Z);
     let (right, _) = sides(ahead);
     shift(camera, right * way.x + Vec3::Y * way.y + ahead * way.z);
 }
 
-/// Shows a box whole in a picture so many times as wide as high, from where it is seen now.
+/// Frames a box in an image of an aspect ratio, without turning the camera.
 pub fn frame(camera: &mut Camera, bounds: &Bounds, aspect: f32) {
     let tangent = (0.5 * camera.fov.to_radians()).tan();
     let (centre, half) = (bounds.centre(), 0.5 * (bounds.max - bounds.min));
     let ahead = (camera.target - camera.position).normalize_or(Vec3::NEG_Z);
     let (right, up) = sides(ahead);
-    // How far away each corner has to be from the eye to be seen, and how far from there to the middle.
+    // Distance from the box's centre to the camera at which a corner is just in view.
     let distance = |corner: Vec3| {
         let side = corner.dot(right).abs() / (tangent * aspect.max(0.01));
         side.max(corner.dot(up).abs() / tangent).max(camera.near) - corner.dot(ahead)
@@ -69,12 +69,12 @@ pub fn frame(camera: &mut Camera, bounds: &Bounds, aspect: f32) {
     camera.target = centre;
 }
 
-/// Looks at the same from another side.
+/// Looks at the same target from another direction, at the same distance.
 pub fn face(camera: &mut Camera, from: Vec3) {
     camera.position = camera.target + from * camera.position.distance(camera.target);
 }
 
-/// Right and up of who looks along a unit vector, as [`Camera::view`] has them.
+/// Returns the right and up vectors of a view direction, as in [`Camera::view`].
 pub fn sides(ahead: Vec3) -> (Vec3, Vec3) {
     let right = ahead.cross(Vec3::Y).normalize_or(Vec3::X);
     (right, right.cross(ahead).normalize_or(Vec3::Y))
@@ -90,7 +90,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_orbit_keeps_its_distance_and_never_turns_over() {
+    fn an_orbit_keeps_its_distance_and_never_passes_the_vertical() {
         let mut camera = Camera::default();
         let distance = camera.position.distance(camera.target);
         for _ in 0..200 {
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn from_straight_above_there_is_a_way_down() {
+    fn a_camera_straight_above_can_orbit_down() {
         let mut camera = Camera::default();
         face(&mut camera, Vec3::Y);
         let distance = camera.position.distance(camera.target);
@@ -112,10 +112,10 @@ mod tests {
     }
 
     #[test]
-    fn a_pan_moves_both_and_a_dolly_keeps_its_point_in_the_picture() {
+    fn a_pan_moves_camera_and_target_and_a_dolly_keeps_its_point_in_place() {
         let (mut camera, before) = (Camera::default(), Camera::default());
         pan(&mut camera, Vec2::new(0.25, 0.0));
-        // The picture goes right with the pointer: the camera left.
+        // The image follows the pointer to the right, so the camera moves left.
         assert!(camera.position.x < before.position.x && camera.target.x < before.target.x);
         assert_eq!(camera.position - camera.target, before.position - before.target);
         let point = camera.target + Vec3::new(0.4, 0.3, 0.0);

@@ -1,4 +1,4 @@
-//! What the picture is compared with, beside it.
+//! Second image of a comparison: the divider and the labels.
 
 use eframe::egui::{self, Sense, Ui};
 use haze_demo::develop::exposure;
@@ -10,7 +10,7 @@ use crate::tweak::messages::short;
 use crate::tweak::referee::Verdict;
 use crate::tweak::session::Session;
 
-/// What the picture is compared with, if it is there yet.
+/// Returns the second image, once it is available.
 pub fn other(ui: &Ui, session: &mut Session, shot: &Shot) -> Option<Other> {
     let against = session.compare.against.clone()?;
     if against != Against::Reference {
@@ -29,10 +29,10 @@ pub fn other(ui: &Ui, session: &mut Session, shot: &Shot) -> Option<Other> {
     None
 }
 
-/// Share of the width that a key moves the divider.
+/// Share of the width by which an arrow key moves the divider.
 const STEP: f32 = 0.02;
 
-/// What stands between two pictures, and can be moved: dragged, or by the arrows of the keyboard.
+/// Draws the divider between two images and moves it by drag or arrow keys.
 pub fn divider(ui: &Ui, rect: egui::Rect, split: &mut f32) {
     let x = rect.left() + *split * rect.width();
     let grip = egui::Rect::from_x_y_ranges(x - 5.0..=x + 5.0, rect.y_range());
@@ -66,7 +66,7 @@ pub fn divider(ui: &Ui, rect: egui::Rect, split: &mut f32) {
     );
 }
 
-/// Which picture is which, with what it takes, in the lower corners; over the second, how far the two are apart.
+/// Draws labels in the lower corners that name each image and its cost, and the PSNR above that of the second.
 pub fn labels(ui: &Ui, rect: egui::Rect, session: &Session) {
     let Some(against) = &session.compare.against else { return };
     let edited = if session.document.is_dirty() { ", edited" } else { "" };
@@ -76,19 +76,19 @@ pub fn labels(ui: &Ui, rect: egui::Rect, session: &Session) {
     let took = took.map(|took| format!("   {:.0} ms of the CPU", 1.0e3 * took.as_secs_f32()));
     let of_second = if *against == Against::Reference { took } else { of_second };
     let second = format!("B  {}", against.name());
-    let what = "GPU time of its smoke, where the device tells it";
+    let what = "GPU time of its smoke, if the device can measure it";
     plate(ui, rect, egui::Align2::LEFT_BOTTOM, &(first + &of_first.unwrap_or_default())).on_hover_text(what);
     let place = plate(ui, rect, egui::Align2::RIGHT_BOTTOM, &(second + &of_second.unwrap_or_default()));
     let above = rect.with_max_y(place.rect.top());
     place.on_hover_text(what);
     if let Some(text) = session.gauge.text() {
         plate(ui, above, egui::Align2::RIGHT_BOTTOM, &text).on_hover_text(
-            "Peak signal-to-noise ratio of the two as they are shown; over all, and where the scene's depth jumps",
+            "Peak signal-to-noise ratio of the two as shown: over all pixels, and at edges of the scene's depth",
         );
     }
 }
 
-/// A text on a dark ground in a corner of a part of the picture.
+/// Draws text on a dark background in a corner of a part of the image.
 fn plate(ui: &Ui, rect: egui::Rect, corner: egui::Align2, text: &str) -> egui::Response {
     let font = egui::TextStyle::Body.resolve(ui.style());
     let galley = ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::WHITE);
@@ -110,7 +110,7 @@ mod tests {
     use crate::tweak::testing::{measured, picture, window};
 
     #[test]
-    fn the_divider_is_moved_by_keys_too() {
+    fn the_divider_can_be_moved_by_keys() {
         let mut harness = window("column", Vec2::new(640.0, 400.0), egui::Theme::Dark);
         harness.key_press(egui::Key::F6);
         harness.run_steps(2);
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn both_pictures_say_what_they_are_and_what_they_take() {
+    fn both_images_show_their_names_and_their_cost() {
         let mut harness = measured("column", Vec2::new(1000.0, 640.0));
         harness.state_mut().session.document.preset.camera.exposure = 1.0;
         let mut label = |against: Against, sign: &str, unit: &str| {
@@ -142,7 +142,7 @@ mod tests {
         let ms = |label: &str| label.split_whitespace().rev().nth(1).unwrap().parse::<f32>().unwrap();
         let first = label(Against::FullResolution, "A  ", " ms");
         assert!(first.starts_with("A  column, edited   ") && ms(&first) > 0.0, "{first}");
-        // Other programs may hold up either.
+        // Other programs may slow down either.
         let is_dearer = (0..5).any(|_| {
             let whole = label(Against::FullResolution, "B  full resolution   ", " ms");
             label(Against::Forward, "B  forward   ", " ms");

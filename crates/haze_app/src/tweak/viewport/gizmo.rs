@@ -1,4 +1,4 @@
-//! The lights over the picture: marks for all, handles for the selected one, and what the pointer does to them.
+//! Gizmos of lights: marks for all lights, handles of the selected one, and pointer interaction.
 
 use eframe::egui::{Color32, CursorIcon, Key, Pos2, Response, Ui};
 use glam::Vec3;
@@ -11,22 +11,22 @@ use super::lens::Lens;
 use super::mark::{self, place};
 use crate::tweak::session::Session;
 
-/// What is grabbed or pointed at.
+/// Dragged and hovered handle.
 #[derive(Default)]
 pub struct Gizmo {
     grab: Option<Grab>,
     hovered: Option<Handle>,
-    /// The button that grabbed is still down.
+    /// The button that started the drag is still down.
     is_busy: bool,
 }
 
-/// Corners of a circle.
+/// Number of corners of a circle.
 const CORNERS: u32 = 72;
-/// A circle that is farther across is not seen as one.
+/// A circle with a larger radius is not drawn, points.
 const LARGEST: f32 = 1.0e4;
 
 impl Gizmo {
-    /// Selects and drags lights; true while the pointer is at it.
+    /// Selects and drags lights. Returns true while the pointer is used for that.
     pub fn interact(&mut self, ui: &Ui, response: &Response, lens: &Lens, session: &mut Session) -> bool {
         let (pointer, pressed, down, held) = ui.input(|input| {
             let pointer = &input.pointer;
@@ -72,7 +72,7 @@ impl Gizmo {
         pointer: Option<Pos2>,
         held: eframe::egui::Modifiers,
     ) {
-        // Undone or set by other means: it is no longer this drag's.
+        // The light was changed by undo or by other means, so the drag ends.
         let Some(grab) = self.grab.as_mut().filter(|grab| grab.index == index && grab.left == *light) else {
             self.grab = None;
             return;
@@ -95,7 +95,7 @@ impl Gizmo {
         let lights = &session.show.lights;
         for (index, light) in session.document.preset.lights.iter().enumerate() {
             let is_selected = lights.selected == Some(index);
-            // What goes round cannot be grabbed.
+            // A rotating light cannot be dragged.
             if is_selected && lights.turn.is_none() {
                 self.draw_selected(ink, light, lens);
             }
@@ -170,7 +170,7 @@ fn hue_of(light: &Light) -> Color32 {
     mark::hue(light.colour)
 }
 
-/// From the dome to what the camera looks at.
+/// Draws a sun: a line from its place on the dome to the camera's target.
 fn draw_sun(ink: &Ink<'_>, light: &Light, lens: &Lens) {
     let (centre, radius) = lens.dome;
     circle(ink, lens, centre, lens.right * radius, lens.up * radius, 1.0, PLAIN.gamma_multiply(0.3));
@@ -187,7 +187,7 @@ fn draw_sun(ink: &Ink<'_>, light: &Light, lens: &Lens) {
     }
 }
 
-/// Straight down to the ground, where a cross is.
+/// Draws a line straight down to the ground, with a cross there.
 fn draw_depth(ink: &Ink<'_>, at: Vec3, lens: &Lens) {
     let foot = at.with_y(0.0);
     let colour = AXES[1].gamma_multiply(0.8);
@@ -202,7 +202,7 @@ fn draw_depth(ink: &Ink<'_>, at: Vec3, lens: &Lens) {
     }
 }
 
-/// A circle in the world: two radii that stand on each other.
+/// Draws a circle in the world, given two perpendicular radii.
 fn circle(ink: &Ink<'_>, lens: &Lens, centre: Vec3, u: Vec3, v: Vec3, width: f32, colour: Color32) {
     if !u.is_finite() || u.length() > LARGEST * lens.metres_per_point(centre) {
         return;
@@ -215,7 +215,7 @@ fn circle(ink: &Ink<'_>, lens: &Lens, centre: Vec3, u: Vec3, v: Vec3, width: f32
     if let Some(corners) = corners {
         return ink.line(&corners, width, colour);
     }
-    // Cut by the near plane.
+    // The near plane cuts the circle, so each segment is clipped.
     for index in 0..CORNERS {
         if let Some(ends) = lens.segment(corner(index), corner(index + 1)) {
             ink.line(&ends, width, colour);

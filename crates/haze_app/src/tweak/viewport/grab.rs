@@ -1,4 +1,4 @@
-//! A handle that is being dragged.
+//! Drag of a handle.
 
 use eframe::egui::{Modifiers, Pos2, Vec2};
 use glam::Vec3;
@@ -9,25 +9,25 @@ use super::lens::Lens;
 use super::mark::place;
 use crate::tweak::angles::{Angles, from_angles, to_angles};
 
-/// Steps that Ctrl snaps to.
+/// Steps of snapping with Ctrl, in metres and in degrees.
 const METRES: f32 = 0.1;
 const DEGREES: f32 = 5.0;
-/// Share of the pointer's way with Shift.
+/// Factor on the pointer's movement while Shift is held.
 const SLOW: f32 = 0.1;
 
-/// A handle that is being dragged.
+/// Drag of a handle.
 pub struct Grab {
     pub index: usize,
     pub handle: Handle,
-    /// As it was.
+    /// Light before the drag.
     pub before: Light,
-    /// As it was left: if it is another now, someone else has changed it.
+    /// Light after the last frame of the drag. If the preset has another value, the light was changed by other means.
     pub left: Light,
-    /// From where to where, slow ways being shorter than the pointer's.
+    /// Start and end of the movement that counts, which Shift makes slower than the pointer's.
     start: Pos2,
     at: Pos2,
     pointer: Pos2,
-    /// Of a sun: it is on the dome's near side. Over its rim it goes to the other.
+    /// For a direction: its handle is on the near side of the sphere. Crossing the rim switches sides.
     is_before: bool,
     is_outside: bool,
 }
@@ -49,7 +49,7 @@ impl Grab {
         }
     }
 
-    /// The light where the pointer has taken it.
+    /// Returns the light for a position of the pointer.
     pub fn drag(&mut self, lens: &Lens, pointer: Pos2, held: Modifiers) -> Light {
         self.at += (pointer - self.pointer) * if held.shift { SLOW } else { 1.0 };
         self.pointer = pointer;
@@ -101,20 +101,20 @@ impl Grab {
         self.left
     }
 
-    /// Metres in the plane through the light.
+    /// Returns the movement in the plane through the light, metres.
     fn moved(&self, lens: &Lens, normal: Vec3) -> Option<Vec3> {
         let met = |at| lens.ray(at).on_plane(self.before.position, normal);
         Some(met(self.at)? - met(self.start)?)
     }
 
-    /// Degrees away from the middle of the cone.
+    /// Returns the change of the angle from the cone's axis, degrees.
     fn turned(&self, lens: &Lens) -> f32 {
         let cone = Cone::new(&self.before, lens);
         let from_to = cone.angle(lens, self.start).zip(cone.angle(lens, self.at));
         from_to.map_or(0.0, |(from, to)| to - from)
     }
 
-    /// The way that it shines when its handle is where the pointer is.
+    /// Returns the direction of the light for the present position of its handle.
     fn aim(&mut self, lens: &Lens) -> Vec3 {
         let (centre, radius) = sphere(&self.before, lens);
         let is_sun = self.before.kind == LightKind::Directional;
@@ -132,7 +132,7 @@ impl Grab {
     }
 }
 
-/// What the handle of a light's direction moves on.
+/// Returns centre and radius of the sphere on which the direction's handle moves.
 fn sphere(light: &Light, lens: &Lens) -> (Vec3, f32) {
     match light.kind {
         LightKind::Directional => lens.dome,

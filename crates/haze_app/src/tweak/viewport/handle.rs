@@ -1,4 +1,4 @@
-//! What a selected light can be grabbed by. What is drawn is what can be grabbed.
+//! Handles of the selected light. The same shapes are drawn and hit-tested.
 
 use eframe::egui::{Pos2, Vec2, vec2};
 use glam::Vec3;
@@ -7,23 +7,23 @@ use haze::{Light, LightKind};
 use super::lens::Lens;
 use super::mark::place;
 
-/// What a handle moves.
+/// Property that a handle changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Handle {
-    /// Along x, y or z.
+    /// Position along the axis of this index.
     Axis(usize),
-    /// In the plane that x, y or z stands on.
+    /// Position in the plane perpendicular to the axis of this index.
     Plane(usize),
-    /// In the plane that faces the viewer.
+    /// Position in the plane that faces the camera.
     Centre,
     Radius,
     InnerAngle,
     OuterAngle,
-    /// The way that it shines.
+    /// Direction of the light.
     Aim,
 }
 
-/// Where a handle is in the window.
+/// Shape of a handle in the window.
 #[derive(Clone, Copy, Debug)]
 pub enum Shape {
     Arrow([Pos2; 2]),
@@ -32,22 +32,23 @@ pub enum Shape {
     Knob(Pos2),
 }
 
-/// Lengths, in points.
+/// Lengths in points: start and end of an axis arrow, sides of a plane handle, half the side of the centre square.
 const AXIS: [f32; 2] = [14.0, 80.0];
 const PLANE: [f32; 2] = [24.0, 40.0];
 pub const SQUARE: f32 = 9.0;
-/// Closest to the middle that the radius can be grabbed.
+/// Least distance of the radius handle from the centre, points.
 const RADIUS: f32 = 26.0;
-/// Of a spot's cone.
+/// Length of a spot's cone, points.
 const CONE: f32 = 150.0;
-/// Farthest from a handle that it can be grabbed.
+/// Largest distance from a handle at which the pointer hits it, points.
 const GRAB: f32 = 7.0;
-/// Shortest that an axis may be seen, and slimmest that a plane, as shares of their lengths.
+/// Least length of an axis, and least width of a plane, as seen from the camera, relative to their full size. Thinner
+/// handles are hidden.
 const SLIM: f32 = 0.2;
 
 pub const UNITS: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
 
-/// Every handle of a light, the one that is drawn last and grabbed first last.
+/// Returns the handles of a light. Later ones are drawn on top and hit first.
 pub fn handles(light: &Light, lens: &Lens) -> Vec<(Handle, Shape)> {
     let mut all = Vec::new();
     let Some(middle) = lens.project(place(light, lens)) else { return all };
@@ -86,10 +87,10 @@ pub fn handles(light: &Light, lens: &Lens) -> Vec<(Handle, Shape)> {
     all
 }
 
-/// Where on its ring the radius is grabbed: where no axis points from most sides.
+/// Direction of the radius handle on its ring, where it rarely overlaps an axis.
 const RADIUS_WAY: Vec2 = vec2(-std::f32::consts::FRAC_1_SQRT_2, std::f32::consts::FRAC_1_SQRT_2);
 
-/// The handle under the pointer.
+/// Returns the handle under the pointer.
 pub fn hovered(handles: &[(Handle, Shape)], at: Pos2) -> Option<Handle> {
     handles.iter().rev().find(|(_, shape)| shape.is_under(at)).map(|(handle, _)| *handle)
 }
@@ -115,13 +116,13 @@ impl Shape {
     }
 }
 
-/// A spot's cone as it is drawn: of one size in the window, whatever its range.
+/// Cone of a spot as it is drawn: of constant size in the window, independent of its range.
 pub struct Cone {
     at: Vec3,
     pub way: Vec3,
-    /// Across it, as the viewer sees it.
+    /// Unit vector perpendicular to the axis, across the view direction.
     pub side: Vec3,
-    /// Metres.
+    /// Length of the cone, metres.
     pub length: f32,
 }
 
@@ -133,17 +134,17 @@ impl Cone {
         Self { at: light.position, way, side, length: CONE * lens.metres_per_point(light.position) }
     }
 
-    /// The end of it, at an angle from its middle towards a side.
+    /// Returns a point on the cone's end, at an angle from its axis towards a side.
     pub fn rim(&self, degrees: f32, side: Vec3) -> Vec3 {
         let (sine, cosine) = degrees.to_radians().sin_cos();
         self.at + (self.way * cosine + side * sine) * self.length
     }
 
-    /// Degrees between its middle and what is seen at a place in the window.
+    /// Returns the angle between the axis and the point under a position in the window, degrees.
     pub fn angle(&self, lens: &Lens, at: Pos2) -> Option<f32> {
         let ray = lens.ray(at);
         let normal = self.way.cross(self.side);
-        // Seen along its middle, the plane through its sides is a line; the one across its end is not.
+        // Seen along the axis, the plane through the sides is edge-on, so the plane across the end is used.
         let is_edge_on = normal.dot(ray.direction).abs() < 0.3;
         let (point, normal) = if is_edge_on { (self.at + self.way * self.length, self.way) } else { (self.at, normal) };
         let offset = ray.on_plane(point, normal)? - self.at;

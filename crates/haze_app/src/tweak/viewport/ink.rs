@@ -1,4 +1,4 @@
-//! Lines and marks over the picture, with a dark rim: legible on bright and dark.
+//! Lines and marks over the image, with a dark outline so that they are legible on bright and dark.
 
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2};
 
@@ -9,7 +9,7 @@ pub const SELECTED: Color32 = Color32::from_rgb(255, 166, 48);
 pub const HOVERED: Color32 = Color32::from_rgb(255, 232, 110);
 const RIM: Color32 = Color32::from_black_alpha(150);
 
-/// Draws over the picture.
+/// Painter of outlined shapes.
 pub struct Ink<'a>(pub &'a Painter);
 
 impl Ink<'_> {
@@ -20,7 +20,7 @@ impl Ink<'_> {
     }
 
     pub fn dashes(&self, ends: [Pos2; 2], colour: Color32) {
-        // A line to the far end of the world is cut off: it would be a million dashes.
+        // A line to the far end of the scene is skipped, because it would have a million dashes.
         if ends[0].distance(ends[1]) < 1.0e4 {
             self.0.extend(Shape::dashed_line(&ends, Stroke::new(3.0, RIM.gamma_multiply(opacity(colour))), 4.0, 4.0));
             self.0.extend(Shape::dashed_line(&ends, Stroke::new(1.0, colour), 4.0, 4.0));

@@ -1,4 +1,4 @@
-//! From the world to the window and back, as the preset's camera sees it.
+//! Projection between world and window for the preset's camera.
 
 use eframe::egui::{Pos2, Rect, Vec2, vec2};
 use glam::Vec3;
@@ -7,7 +7,7 @@ use haze::preset::Camera;
 use super::camera::sides;
 use super::ray::Ray;
 
-/// A camera, and where its picture is in the window.
+/// Camera, and the rectangle of its image in the window.
 #[derive(Clone, Copy, Debug)]
 pub struct Lens {
     pub rect: Rect,
@@ -16,13 +16,15 @@ pub struct Lens {
     pub up: Vec3,
     pub ahead: Vec3,
     near: f32,
-    /// Tangents of half the fields of view, to the side and up.
+    /// Tangents of half the field of view, horizontal and vertical.
     reach: Vec2,
-    /// Middle and radius of the dome that suns are shown on: round what the camera looks at, of one size in the picture.
+    /// Centre and radius of the sphere on which suns are shown: around the camera's target, of constant size in the
+    /// image.
     pub dome: (Vec3, f32),
 }
 
-/// Radius of the dome as a share of half the picture's height, and of the distance: the eye is never in it.
+/// Radius of the dome relative to half the image's height at the target. Below 1, so that the camera is never inside
+/// it.
 const DOME: f32 = 0.7;
 
 impl Lens {
@@ -35,12 +37,12 @@ impl Lens {
         Self { rect, eye: camera.position, right, up, ahead, near: camera.near, reach, dome }
     }
 
-    /// Metres in front of the eye.
+    /// Returns the distance in front of the camera along its axis, metres.
     pub fn depth(&self, point: Vec3) -> f32 {
         (point - self.eye).dot(self.ahead)
     }
 
-    /// Where a point is seen; `None` before the near plane.
+    /// Returns the window position of a point; `None` in front of the near plane.
     pub fn project(&self, point: Vec3) -> Option<Pos2> {
         let depth = self.depth(point);
         (depth >= self.near).then(|| {
@@ -50,9 +52,9 @@ impl Lens {
         })
     }
 
-    /// A line between two points, as far as it is behind the near plane.
+    /// Returns the window positions of a line's ends, clipped at the near plane.
     pub fn segment(&self, from: Vec3, to: Vec3) -> Option<[Pos2; 2]> {
-        // A hair behind, so that rounding does not lose the end.
+        // Slightly behind the near plane, so that rounding does not drop the end.
         let near = self.near * 1.001;
         let depths = [self.depth(from), self.depth(to)];
         let cut = |point: Vec3, depth: f32| {
@@ -64,19 +66,19 @@ impl Lens {
         Some([self.project(cut(from, depths[0]))?, self.project(cut(to, depths[1]))?])
     }
 
-    /// What a place in the window looks at.
+    /// Returns the ray through a position in the window.
     pub fn ray(&self, at: Pos2) -> Ray {
         let share = (at - self.rect.center()) / (0.5 * self.rect.size());
         let direction = self.ahead + self.right * (share.x * self.reach.x) - self.up * (share.y * self.reach.y);
         Ray { origin: self.eye, direction: direction.normalize_or(self.ahead) }
     }
 
-    /// Where a place in the window is, on the plane through a point that faces the viewer.
+    /// Returns the point under a position in the window, on the plane through `point` that faces the camera.
     pub fn facing(&self, at: Pos2, point: Vec3) -> Vec3 {
         self.ray(at).on_plane(point, self.ahead).unwrap_or(point)
     }
 
-    /// Metres that are as large as one point of the window, as far away as `at`.
+    /// Returns the metres that one point of the window covers at the depth of `at`.
     pub fn metres_per_point(&self, at: Vec3) -> f32 {
         2.0 * self.depth(at).max(self.near) * self.reach.y / self.rect.height().max(1.0)
     }
@@ -98,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_is_seen_where_the_picture_shows_it_and_is_found_again() {
+    fn a_projected_point_matches_the_image_and_can_be_unprojected() {
         let rect = Rect::from_min_size(pos2(37.0, 81.0), vec2(640.0, 360.0));
         for camera in cameras() {
             let lens = Lens::new(&camera, rect);
@@ -115,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_end_at_the_near_plane() {
+    fn lines_are_clipped_at_the_near_plane() {
         let lens = Lens::new(&Camera::default(), Rect::from_min_size(Pos2::ZERO, vec2(200.0, 100.0)));
         let (behind, ahead) = (lens.eye - lens.ahead + lens.right, lens.eye + lens.ahead * 4.0);
         assert_eq!((lens.project(behind), lens.segment(behind, behind - lens.ahead)), (None, None));

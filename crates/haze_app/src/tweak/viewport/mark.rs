@@ -1,4 +1,4 @@
-//! Lights in the picture: where each one stands, a mark for it, and which one is pointed at.
+//! Marks of lights in the image: position, drawing, picking.
 
 use eframe::egui::{Color32, Pos2, Stroke, Vec2};
 use glam::Vec3;
@@ -7,10 +7,11 @@ use haze::{Light, LightKind};
 use super::ink::{Ink, PLAIN, SELECTED};
 use super::lens::Lens;
 
-/// Farthest from a mark that it can be picked, points.
+/// Largest distance from a mark at which the pointer picks it, points.
 const PICK: f32 = 10.0;
 
-/// Where a light is shown: a sun, which is nowhere, on a dome round what the camera looks at.
+/// Returns the place where a light is shown. A sun has no position, so it is shown on the dome around the camera's
+/// target.
 pub fn place(light: &Light, lens: &Lens) -> Vec3 {
     if light.kind != LightKind::Directional {
         return light.position;
@@ -18,14 +19,14 @@ pub fn place(light: &Light, lens: &Lens) -> Vec3 {
     lens.dome.0 - light.direction.normalize_or(Vec3::NEG_Y) * lens.dome.1
 }
 
-/// The light whose mark is nearest to a place in the window.
+/// Returns the light whose mark is nearest to a position in the window.
 pub fn pick(lights: &[Light], lens: &Lens, at: Pos2) -> Option<usize> {
     let distance = |light: &Light| lens.project(place(light, lens)).map(|mark| mark.distance(at));
     let near = (0..).zip(lights).filter_map(|(index, light)| Some((index, distance(light)?)));
     near.filter(|(_, distance)| *distance <= PICK).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(index, _)| index)
 }
 
-/// Marks a light by its kind, in its colour.
+/// Draws a light's mark by its kind, in its colour.
 pub fn draw(ink: &Ink<'_>, light: &Light, lens: &Lens, is_selected: bool, is_shown: bool) {
     let Some(at) = lens.project(place(light, lens)) else { return };
     let opacity = if is_shown { 1.0 } else { 0.4 };
@@ -55,7 +56,7 @@ pub fn draw(ink: &Ink<'_>, light: &Light, lens: &Lens, is_selected: bool, is_sho
     ink.0.circle(at, 4.5, fill, Stroke::new(1.5, Color32::from_black_alpha(170).gamma_multiply(opacity)));
 }
 
-/// A linear colour at its brightest.
+/// Returns a linear colour, scaled to full brightness.
 pub fn hue(colour: Vec3) -> Color32 {
     let [r, g, b] = (colour / colour.max_element().max(1.0e-6)).to_array();
     egui_colour([r, g, b])

@@ -1,4 +1,4 @@
-//! What a right click on the picture offers.
+//! Context menu of the image.
 
 use eframe::egui::{Pos2, Response, Ui};
 use glam::Vec3;
@@ -10,13 +10,13 @@ use crate::tweak::lights::fresh;
 use crate::tweak::session::Session;
 use crate::tweak::smoke::Smoke;
 
-/// The menu, and where it was asked for.
+/// Context menu, and the position where it was opened.
 #[derive(Default)]
 pub struct Menu {
     pub at: Option<Pos2>,
 }
 
-/// What is added by the menu.
+/// Entries that add a light.
 const ADDED: [(LightKind, &str); 3] = [
     (LightKind::Point, "Add point light here"),
     (LightKind::Spot, "Add spot light here"),
@@ -24,7 +24,7 @@ const ADDED: [(LightKind, &str); 3] = [
 ];
 
 impl Menu {
-    /// Draws the menu while it is open; gives what is left to do.
+    /// Draws the menu while it is open. Returns an action that the caller has to do.
     pub fn show(
         &mut self,
         response: &Response,
@@ -60,7 +60,8 @@ fn entries(ui: &mut Ui, at: Pos2, lens: &Lens, session: &mut Session, smoke: &mu
     asked
 }
 
-/// A light on the plane through the middle of the smoke that faces the viewer, under the pointer; a sun from there on its dome.
+/// Returns a light under the pointer, on the plane through the smoke's centre that faces the camera. A sun shines from
+/// that place on the dome.
 fn here(mut light: Light, at: Pos2, lens: &Lens, middle: Vec3) -> Light {
     let (centre, radius) = lens.dome;
     light.position = lens.facing(at, middle);

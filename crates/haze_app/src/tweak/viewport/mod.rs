@@ -1,4 +1,4 @@
-//! The picture, and what is done to it with pointer and keys.
+//! Viewport: the image, and its control by pointer and keys.
 
 mod camera;
 mod compare;
@@ -34,7 +34,7 @@ use puff::TruePuff;
 use ray::Ray;
 use steer::Steering;
 
-/// What goes on in the viewport.
+/// State of the viewport.
 #[derive(Default)]
 pub struct Viewport {
     steering: Steering,
@@ -44,7 +44,7 @@ pub struct Viewport {
     puff: TruePuff,
 }
 
-/// Metres round a light that are shown when it is looked at.
+/// Radius around a light that is framed, metres.
 const CLOSE: f32 = 0.75;
 
 impl Viewport {
@@ -62,7 +62,7 @@ impl Viewport {
         self.begin_gesture(ui, session);
         session.show.lights.follow(&session.document.preset.lights);
         let lens = Lens::new(&session.document.preset.camera, rect);
-        // While a pixel is inspected, a click is for it.
+        // While the inspector is on, a click pins a pixel.
         let is_taken = !session.inspect.is_on && self.gizmo.interact(ui, &response, &lens, session);
         if !is_taken {
             self.steer(ui, &response, &lens, session);
@@ -81,7 +81,7 @@ impl Viewport {
         if compare.against.is_some() && compare.difference == 0.0 {
             divider(ui, rect, &mut compare.split);
         }
-        // Over the picture, and under all that stands on it.
+        // Above the image, and below everything else that is drawn on it.
         lit::paint(ui, rect, &session.inspect, session.show.system);
         let lens = Lens::new(&session.document.preset.camera, rect);
         let painter = ui.painter_at(rect);
@@ -100,7 +100,7 @@ impl Viewport {
     }
 
     fn menu(&mut self, response: &Response, lens: &Lens, session: &mut Session) {
-        // A flight that did not look round is no click.
+        // A flight that did not turn the view is no click.
         let is_click = !self.steering.has_flown;
         if is_click && let Some(action) = self.menu.show(response, lens, session, &mut self.smoke) {
             match self.menu.at.filter(|_| action == InView::Behind) {
@@ -110,12 +110,12 @@ impl Viewport {
         }
     }
 
-    /// Something is moved without a button being held.
+    /// Returns true while a change is in progress without a pressed button.
     pub fn is_held(&self, ui: &Ui) -> bool {
         self.steering.is_wheeling(ui)
     }
 
-    /// What is pressed now is no part of what the wheel did just before.
+    /// A press ends the gesture of the wheel before it.
     fn begin_gesture(&mut self, ui: &Ui, session: &mut Session) {
         if self.steering.is_wheeling(ui) && ui.input(|input| input.pointer.any_pressed()) {
             self.steering.forget_wheel();
@@ -129,12 +129,12 @@ impl Viewport {
         }
     }
 
-    /// A handle of a light is being dragged; keys are for it.
+    /// Returns true while a handle of a light is dragged, which then receives the keys.
     pub fn is_dragging(&self) -> bool {
         self.gizmo.is_dragging()
     }
 
-    /// Does what a key or a menu asks for.
+    /// Runs the action of a key or a menu.
     pub fn act(&mut self, action: InView, session: &mut Session) {
         let saved = session.saved().camera;
         let camera = &mut session.document.preset.camera;
@@ -154,7 +154,7 @@ impl Viewport {
         }
     }
 
-    /// Puts the selected light, or a new one, behind the smoke that is pointed at, or else behind what is in the picture.
+    /// Puts the selected light, or a new one, behind the smoke on the ray, or else behind the smoke in the image.
     fn put_behind(&mut self, session: &mut Session, at: Option<Ray>) {
         let smoke = self.smoke.of(session);
         let preset = &mut session.document.preset;
@@ -170,7 +170,7 @@ impl Viewport {
         session.add_light(light);
     }
 
-    /// Shows the selected light, or all of the smoke.
+    /// Frames the selected light, or all smoke.
     fn frame(&mut self, session: &mut Session) {
         let mut bounds = self.smoke.of(session).bounds();
         let preset = &mut session.document.preset;

@@ -1,4 +1,4 @@
-//! What is drawn over the picture to show how it is made.
+//! Overlays on the image that show how it is made.
 
 use eframe::egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
 use glam::{UVec2, Vec3};
@@ -10,12 +10,12 @@ use crate::tweak::easel::Texels;
 use crate::tweak::show::{Overlay, Show};
 use crate::tweak::smoke::Smoke;
 
-/// Most particles of all systems that are drawn.
+/// Largest number of particles that are drawn, over all systems.
 const MOST: usize = 4096;
-/// Closest that lines of the grid stand, points.
+/// Least distance between lines of the grid, points.
 const CLOSEST: f32 = 4.0;
 
-/// Colours of systems, over and over.
+/// Colours of systems, reused cyclically.
 const SYSTEMS: [Color32; 4] = [
     Color32::from_rgb(255, 196, 84),
     Color32::from_rgb(110, 214, 255),
@@ -23,7 +23,7 @@ const SYSTEMS: [Color32; 4] = [
     Color32::from_rgb(255, 140, 214),
 ];
 
-/// Draws what is on. `texels` are of each system in the last picture.
+/// Draws the visible overlays. `texels` are those of each system in the last image.
 pub fn draw(ink: &Ink<'_>, lens: &Lens, show: &Show, smoke: &Smoke, texels: &[Option<Texels>]) {
     let systems = smoke.systems.len().max(1);
     for (index, (particles, bounds)) in smoke.systems.iter().zip(&smoke.bounds).enumerate() {
@@ -48,7 +48,7 @@ pub fn draw(ink: &Ink<'_>, lens: &Lens, show: &Show, smoke: &Smoke, texels: &[Op
     }
 }
 
-/// The twelve edges of a box.
+/// Returns the twelve edges of a box.
 fn edges(bounds: &Bounds) -> impl Iterator<Item = [Vec3; 2]> {
     let (min, max) = (bounds.min, bounds.max);
     let corner = move |index: usize| {
@@ -58,7 +58,8 @@ fn edges(bounds: &Bounds) -> impl Iterator<Item = [Vec3; 2]> {
     starts.filter(|(index, bit)| index & bit == 0).map(move |(index, bit)| [corner(index), corner(index | bit)])
 }
 
-/// Where the plane that faces the viewer at a depth cuts a box, in order round the middle.
+/// Returns the corners of the section of a box with the plane at a depth that faces the camera, in order around their
+/// centre.
 fn section(bounds: &Bounds, lens: &Lens, depth: f32) -> Vec<Pos2> {
     let cut = |[from, to]: [Vec3; 2]| {
         let (a, b) = (lens.depth(from) - depth, lens.depth(to) - depth);
@@ -80,7 +81,7 @@ fn plane(ink: &Ink<'_>, lens: &Lens, bounds: &Bounds, depth: f32, colour: Color3
     label(ink.0, lens.rect, lowest + vec2(4.0, -18.0), &format!("lit at {depth:.2} m"));
 }
 
-/// A mark for every so many particles.
+/// Draws particles, at most `most` of them.
 fn points(painter: &Painter, lens: &Lens, particles: &[Particle], most: usize) {
     let mut mesh = Mesh::default();
     let step = particles.len().div_ceil(most.max(1)).max(1);
@@ -93,12 +94,12 @@ fn points(painter: &Painter, lens: &Lens, particles: &[Particle], most: usize) {
     painter.add(mesh);
 }
 
-/// Warm when young, cold when old.
+/// Returns a warm colour for a young particle and a cold one for an old one.
 fn age(age: f32) -> Color32 {
     Color32::from_rgb(255, 214, 92).lerp_to_gamma(Color32::from_rgb(92, 130, 255), age.clamp(0.0, 1.0))
 }
 
-/// The texels of a target; where they are too small to be told apart, every so many.
+/// Draws the texels of a target. If they are too small, only every n-th line is drawn.
 fn grid(painter: &Painter, rect: Rect, texels: &Texels, colour: Color32) {
     let pixel = rect.width() / texels.picture.x.max(1) as f32;
     let texel = pixel * texels.scale as f32;
@@ -120,7 +121,7 @@ fn grid(painter: &Painter, rect: Rect, texels: &Texels, colour: Color32) {
     label(painter, rect, shown.left_bottom() + vec2(4.0, -18.0), &text);
 }
 
-/// Words on a dark ground, kept within the picture.
+/// Draws text on a dark background, kept inside the image.
 fn label(painter: &Painter, rect: Rect, at: Pos2, text: &str) {
     let text = painter.layout_no_wrap(text.to_owned(), FontId::proportional(12.0), Color32::WHITE);
     let room = rect.shrink(4.0);
@@ -136,7 +137,7 @@ mod tests {
     use haze::preset::Camera;
 
     #[test]
-    fn a_box_has_twelve_edges_and_is_cut_where_the_plane_is() {
+    fn a_box_has_twelve_edges_and_its_section_lies_on_the_plane() {
         let bounds = Bounds { min: Vec3::new(-1.0, 0.5, -1.0), max: Vec3::new(1.0, 2.5, 1.0) };
         let all: Vec<_> = edges(&bounds).collect();
         assert_eq!(all.len(), 12);

@@ -1,4 +1,4 @@
-//! While lights go round: a path-traced puff of a medium beside what the smoke's own ramps make of it, and how far they are apart.
+//! Path-traced puff of a medium beside the same puff lit by the system's ramps, with the error, while lights rotate.
 
 use std::f32::consts::TAU;
 
@@ -17,15 +17,15 @@ use crate::tweak::lights::Turn;
 use crate::tweak::platform::worker::{Ticket, Worker};
 use crate::tweak::session::Session;
 
-/// Finely enough to be judged, and soon done: some seconds of two cores.
+/// Fine enough to judge; takes some seconds on two cores.
 const PATH_TRACE: PathTrace = PathTrace { size: 48, samples: 64, seed: 1 };
-/// Points along a side of a puff.
+/// Side of a puff in the window, points.
 const SIDE: f32 = 112.0;
 
-/// What is true, and what is compared with it.
+/// Path-traced reference, and the comparison with it.
 pub struct TruePuff {
     worker: Option<Worker<Result<Traced, Stopped>>>,
-    /// Of [`MEDIA`].
+    /// Index into [`MEDIA`].
     medium: usize,
     asked: Option<(Wanted, Ticket)>,
     traced: Option<(Wanted, Traced)>,
@@ -33,10 +33,10 @@ pub struct TruePuff {
     failed: Option<String>,
 }
 
-/// Why nothing was traced: nobody waits for it any more, where there is no error.
+/// Reason why nothing was traced: an error, or `None` if the job was cancelled.
 type Stopped = Option<Error>;
 
-/// What has to be path-traced: a medium, by its place, and six-way maps of it, too.
+/// Path tracing job: index of the medium, and true if six-way maps are needed too.
 type Wanted = (usize, bool);
 
 struct Traced {
@@ -48,12 +48,12 @@ struct Traced {
 struct Compared {
     of: (Wanted, bool),
     material: MaterialAssets,
-    /// A light beside the other; the truth above.
+    /// Image with one column per light: the reference above, the ramps' result below.
     sheet: TextureHandle,
     response: Response,
 }
 
-/// Of ash, the most usual.
+/// Starts with ash, the most common medium.
 impl Default for TruePuff {
     fn default() -> Self {
         let medium = MEDIA.iter().position(|named| named.name == "ash").unwrap_or_default();
@@ -62,7 +62,7 @@ impl Default for TruePuff {
 }
 
 impl TruePuff {
-    /// Shows both puffs in the lower left corner of the picture, as long as lights go round.
+    /// Shows both puffs in the lower left corner of the image while lights rotate.
     pub fn show(&mut self, ui: &mut Ui, rect: Rect, session: &Session) {
         let Some(turn) = session.show.lights.turn else { return };
         let preset = &session.document.preset;
@@ -95,7 +95,7 @@ impl TruePuff {
         });
     }
 
-    /// Has what is wanted path-traced, and compared.
+    /// Requests path tracing and compares the result.
     fn follow(&mut self, session: &Session, settings: &Settings, material: &MaterialAssets, context: &egui::Context) {
         let wanted = (self.medium, settings.is_six_way());
         if self.asked.as_ref().is_none_or(|(asked, _)| *asked != wanted) {
@@ -108,7 +108,7 @@ impl TruePuff {
         match self.worker.as_ref().and_then(Worker::poll) {
             Some(Some(Ok(traced))) => self.traced = Some((wanted, traced)),
             Some(Some(Err(error))) => self.failed = error.map(|error| error.to_string()),
-            Some(None) => self.failed = Some("the path tracer ended".into()),
+            Some(None) => self.failed = Some("the path tracer stopped: internal error".into()),
             None => {}
         }
         let of = (wanted, settings.diffuse.backlight == Backlight::Ramp);
@@ -170,7 +170,7 @@ impl Traced {
 }
 
 impl Compared {
-    /// Both puffs under a light at an angle, a mix of those of the lights beside it.
+    /// Draws both puffs under a light at an angle, blended from the two nearest lights.
     fn show(&self, ui: &mut Ui, angle: f32) {
         let count = LIGHTS as usize;
         let place = angle / 360.0 * LIGHTS as f32;
@@ -196,13 +196,13 @@ impl Compared {
         ui.label(format!("light at {angle:>3.0}°: {:+.0} %", 100.0 * now));
         let Response { error, pixel_error, .. } = self.response;
         ui.label(format!("all round: {:.1} %, pixels {:.0} %", 100.0 * error, 100.0 * pixel_error)).on_hover_text(
-            "How far brightness is off, mean of 16 lights, and all pixels, root mean square; at the exposure that is best for it. \
-             `haze ramp fit` makes the ramps that come nearest.",
+            "Error of the brightness, mean of 16 lights, and of all pixels, root mean square, at the best exposure. \
+             `haze ramp fit` makes the ramps with the least error.",
         );
     }
 }
 
-/// Where a light's puff is on the sheet. Half a texel is left out, so that none shows of its neighbours.
+/// Returns the texture coordinates of a light's puff on the sheet. A margin of half a texel excludes its neighbours.
 fn part(light: usize, row: usize) -> Rect {
     let (size, side) = (UVec2::new(LIGHTS, 2).as_vec2(), PATH_TRACE.size as f32);
     let at = |x: f32, y: f32| pos2((light as f32 + x) / size.x, (row as f32 + y) / size.y);
@@ -210,7 +210,7 @@ fn part(light: usize, row: usize) -> Rect {
     Rect::from_min_max(at(margin, margin), at(1.0 - margin, 1.0 - margin))
 }
 
-/// Degrees from the viewer's side on round to the right, where a light is that goes round.
+/// Returns the angle of a rotating light about the vertical, from the camera's side to the right, degrees.
 fn angle(turn: &Turn, light: &Light, eye: Vec3) -> f32 {
     let light = turn.turned(light);
     let to_light = match light.kind {

@@ -1,19 +1,20 @@
-//! What lies under the pointer: a line from the eye, and where it meets axes, planes and spheres.
+//! Ray from the camera, and its intersections with axes, planes and spheres.
 
 use glam::Vec3;
 
-/// A line from the eye. `direction` is of unit length.
+/// Ray from the camera. `direction` has unit length.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray {
     pub origin: Vec3,
     pub direction: Vec3,
 }
 
-/// Sine of the angle below which a line and an axis, or a line and a plane, count as parallel.
+/// Sine of the angle below which a ray counts as parallel to an axis or a plane.
 const PARALLEL: f32 = 0.02;
 
 impl Ray {
-    /// Metres along an axis of unit length, from `origin`, to where it comes closest; `None` where it runs beside the ray.
+    /// Returns the distance along an axis of unit length, from `origin`, to the point that is closest to the ray,
+    /// metres; `None` if they are parallel.
     pub fn along_axis(&self, origin: Vec3, axis: Vec3) -> Option<f32> {
         let between = origin - self.origin;
         let cosine = axis.dot(self.direction);
@@ -22,20 +23,22 @@ impl Ray {
             .then(|| (cosine * self.direction.dot(between) - axis.dot(between)) / squared_sine)
     }
 
-    /// Where it meets a plane through `point`; `None` where that is behind the eye, or runs beside the ray.
+    /// Returns the intersection with a plane through `point`; `None` if it is behind the camera, or the plane is
+    /// parallel.
     pub fn on_plane(&self, point: Vec3, normal: Vec3) -> Option<Vec3> {
         let slope = normal.dot(self.direction);
         let metres = normal.dot(point - self.origin) / slope;
         (slope.abs() > PARALLEL && metres > 0.0).then(|| self.origin + self.direction * metres)
     }
 
-    /// Whether it passes by a sphere.
+    /// Returns true if the ray misses a sphere.
     pub fn passes(&self, centre: Vec3, radius: f32) -> bool {
         let closest = self.origin + self.direction * (centre - self.origin).dot(self.direction);
         closest.distance_squared(centre) > radius * radius
     }
 
-    /// Where it meets a sphere, before or behind the sphere's middle; a ray that passes by meets the rim that is closest to it.
+    /// Returns the intersection with a sphere, on its near or far side. A ray that misses gives the closest point of
+    /// the rim.
     pub fn on_sphere(&self, centre: Vec3, radius: f32, is_before: bool) -> Vec3 {
         let middle = (centre - self.origin).dot(self.direction);
         let closest = self.origin + self.direction * middle;
@@ -56,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ray_through_a_point_of_an_axis_finds_it() {
+    fn a_ray_through_a_point_on_an_axis_finds_that_point() {
         let origin = vec3(0.5, -1.0, 0.25);
         for axis in [Vec3::X, Vec3::Y, Vec3::Z, vec3(1.0, -2.0, 0.5).normalize()] {
             for metres in [-3.0, 0.0, 0.7, 12.0] {
@@ -68,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ray_through_a_point_of_a_plane_finds_it_unless_it_is_behind() {
+    fn a_ray_meets_a_plane_unless_it_is_behind_the_camera() {
         let (point, normal) = (vec3(0.0, 1.0, 0.0), vec3(0.3, 1.0, -0.4).normalize());
         let met = point + normal.cross(vec3(0.2, 0.0, 1.0)) * 1.7;
         assert!(towards(met).on_plane(point, normal).unwrap().distance(met) < 1e-4);
@@ -78,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn either_side_of_a_sphere_is_met_and_its_rim_from_beside() {
+    fn a_ray_meets_either_side_of_a_sphere_and_a_miss_gives_its_rim() {
         let (centre, radius) = (vec3(1.0, 1.0, 0.0), 2.0);
         let ray = towards(centre + vec3(0.5, 0.2, 0.0));
         let (front, back) = (ray.on_sphere(centre, radius, true), ray.on_sphere(centre, radius, false));

@@ -1,5 +1,5 @@
-//! The camera by pointer and wheel, as Maya and Blender have it: Alt and a button, or the middle button with Shift or Ctrl; the
-//! right button and WASD fly.
+//! Camera control by pointer and wheel, as in Maya and Blender: Alt and a button, or the middle button with Shift or
+//! Ctrl. The right button with WASD flies.
 
 use eframe::egui::{Key, Modifiers, PointerButton, Response, Ui};
 use glam::Vec3;
@@ -8,30 +8,30 @@ use haze::preset::Camera;
 use super::camera::{dolly, fly, look, orbit, pan};
 use super::lens::Lens;
 
-/// Radians of orbit for a drag over the height of the picture.
+/// Orbit angle of a drag over the height of the image, radians.
 const ORBIT: f32 = 3.5;
-/// Radians of looking round for the same.
+/// Look angle of the same drag, radians.
 const LOOK: f32 = 1.6;
-/// Times nearer for a drag over the height of the picture, or for so many points of the wheel.
+/// Dolly factor of a drag over the height of the image, or of `WHEEL` points of the wheel.
 const DOLLY: f32 = 4.0;
 const WHEEL: f32 = 600.0;
-/// Times as fast with Shift, and for so many points of the wheel.
+/// Speed factor with Shift, and of `WHEEL` points of the wheel.
 const FASTER: f32 = 4.0;
-/// Speeds of flight, m/s.
+/// Range of flight speeds, m/s.
 const SPEEDS: std::ops::RangeInclusive<f32> = 0.05..=200.0;
-/// Seconds after which a turn of the wheel is a gesture of its own.
+/// Pause after which the wheel begins a new gesture, seconds.
 const PAUSE: f64 = 0.5;
-/// Farthest from the origin, metres: what a preset may hold.
+/// Largest coordinate that a preset may have, metres.
 const FARTHEST: f32 = 1.0e5;
 
-/// What the pointer is doing to the camera.
+/// Camera gesture in progress.
 pub struct Steering {
     gesture: Option<Gesture>,
-    /// Of flight, m/s.
+    /// Flight speed, m/s.
     pub speed: f32,
-    /// When the wheel was last turned, seconds.
+    /// Time when the wheel was last turned, seconds.
     wheeled: f64,
-    /// The right button is or was held for flight, not for a menu.
+    /// The right button was used for a flight, so it opens no menu.
     pub has_flown: bool,
 }
 
@@ -50,7 +50,7 @@ impl Default for Steering {
 }
 
 impl Steering {
-    /// Moves the camera by what the pointer does over the picture; true if the speed of flight was changed.
+    /// Moves the camera as the pointer over the image asks for. Returns true if the flight speed was changed.
     pub fn steer(&mut self, ui: &Ui, response: &Response, lens: &Lens, camera: &mut Camera) -> bool {
         let before = *camera;
         self.drag(ui, response, camera);
@@ -63,12 +63,12 @@ impl Steering {
         is_faster
     }
 
-    /// The wheel has no button that is held: its steps within a moment are one gesture.
+    /// Returns true during a wheel gesture. The wheel has no button, so its steps within a short time are one gesture.
     pub fn is_wheeling(&self, ui: &Ui) -> bool {
         ui.input(|input| input.time) < self.wheeled + PAUSE
     }
 
-    /// A new gesture begins, whatever the wheel did.
+    /// Ends the gesture of the wheel.
     pub fn forget_wheel(&mut self) {
         self.wheeled = f64::NEG_INFINITY;
     }
@@ -124,7 +124,7 @@ impl Steering {
         } else {
             dolly(camera, lens.facing(at, camera.target), DOLLY.powf(-turned / WHEEL));
             self.wheeled = time;
-            // The step of undo is closed when nothing more comes.
+            // A later frame closes the undo step if the wheel has stopped.
             ui.ctx().request_repaint_after_secs(PAUSE as f32 + 0.01);
         }
         is_flying

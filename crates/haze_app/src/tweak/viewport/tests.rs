@@ -18,7 +18,7 @@ use crate::tweak::window::Window;
 
 const SIZE: [f32; 2] = [1100.0, 700.0];
 
-/// A window with one light of its own, selected, one metre before the smoke.
+/// Opens a window with one selected light, one metre in front of the smoke.
 fn lit(light: Light) -> Harness<'static, Window> {
     let mut harness = window("column", SIZE.into(), Theme::Dark);
     let session = &mut harness.state_mut().session;
@@ -30,12 +30,12 @@ fn lit(light: Light) -> Harness<'static, Window> {
     harness
 }
 
-/// Where the picture is in the window.
+/// Returns the rectangle of the viewport.
 fn viewport(harness: &Harness<'_, Window>) -> Rect {
     harness.get_by_label("viewport").rect()
 }
 
-/// Presses a button of the pointer, moves by way of some places and lets go.
+/// Presses a pointer button, moves along positions and releases it.
 fn drag(harness: &mut Harness<'_, Window>, button: PointerButton, places: &[Pos2]) {
     let press = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE };
     harness.hover_at(places[0]);
@@ -63,7 +63,7 @@ fn undo_name(harness: &Harness<'_, Window>) -> Option<String> {
     harness.state().session.document.history().undo_name().map(str::to_owned)
 }
 
-/// Where a handle of the first light can be grabbed.
+/// Returns a position where a handle of the first light can be hit.
 fn handle(harness: &Harness<'_, Window>, handle: Handle) -> Pos2 {
     let shapes = handles(&light(harness), &lens(harness));
     match shapes.into_iter().find(|shape| shape.0 == handle).unwrap().1 {
@@ -74,7 +74,7 @@ fn handle(harness: &Harness<'_, Window>, handle: Handle) -> Pos2 {
 }
 
 #[test]
-fn a_muted_light_is_out_of_the_picture_and_stays_in_the_preset() {
+fn a_muted_light_is_not_in_the_image_but_stays_in_the_preset() {
     let mut harness = lit(Light { intensity: 200.0, ..Light::default() });
     harness.state_mut().session.show.tab = Tab::Light;
     let part = viewport(&harness);
@@ -82,7 +82,7 @@ fn a_muted_light_is_out_of_the_picture_and_stays_in_the_preset() {
     let click = |harness: &mut Harness<'_, Window>, label| {
         harness.get_by_label(label).click();
         harness.run();
-        // Tooltips reach over the picture.
+        // Tooltips would overlap the image.
         harness.remove_cursor();
         harness.run();
     };
@@ -95,7 +95,7 @@ fn a_muted_light_is_out_of_the_picture_and_stays_in_the_preset() {
 }
 
 #[test]
-fn lights_are_added_duplicated_and_deleted_from_the_panel_and_by_key() {
+fn lights_are_added_duplicated_and_deleted_by_panel_and_by_key() {
     let mut harness = lit(Light::default());
     harness.state_mut().session.show.tab = Tab::Light;
     harness.run();
@@ -124,7 +124,7 @@ fn lights_are_added_duplicated_and_deleted_from_the_panel_and_by_key() {
     let bounds = Smoke::default().of(session).bounds();
     let is_behind = lens(&harness).depth(behind.position) > lens(&harness).depth(bounds.centre());
     assert!(is_behind && selected(&harness) == Some(1));
-    // Set by angles, a direction keeps its azimuth at any elevation.
+    // A direction that is set by angles keeps its azimuth at any elevation.
     behind.direction = Vec3::NEG_Z;
     harness.state_mut().session.document.preset.lights[1] = behind;
     harness.run();
@@ -141,7 +141,7 @@ fn lights_are_added_duplicated_and_deleted_from_the_panel_and_by_key() {
 }
 
 #[test]
-fn a_right_click_adds_a_light_there_and_another_behind_the_smoke() {
+fn a_right_click_adds_a_light_there_or_behind_the_smoke() {
     let mut harness = lit(Light::default());
     let at = viewport(&harness).center() + vec2(-160.0, -40.0);
     drag(&mut harness, PointerButton::Secondary, &[at]);
@@ -160,7 +160,7 @@ fn a_right_click_adds_a_light_there_and_another_behind_the_smoke() {
 }
 
 #[test]
-fn a_light_is_put_behind_the_smoke_that_is_clicked_on_or_in_the_picture() {
+fn a_light_is_put_behind_the_clicked_smoke_or_the_smoke_in_the_image() {
     let mut harness = lit(Light::default());
     let session = &harness.state().session;
     let mut smoke = Smoke::default();
@@ -179,7 +179,7 @@ fn a_light_is_put_behind_the_smoke_that_is_clicked_on_or_in_the_picture() {
         lens.project(place).unwrap()
     };
     assert!(is_behind(&harness).distance(at) < 1.0, "not under the pointer");
-    // So close that the middle of all smoke is out of the picture.
+    // So close that the centre of all smoke is outside the image.
     let camera = &mut harness.state_mut().session.document.preset.camera;
     (camera.position, camera.target) = (top + Vec3::new(0.0, -0.1, 1.2), top);
     harness.run();
@@ -198,7 +198,7 @@ fn overlays_are_drawn_while_they_are_on() {
             harness.get_by_label(name).click();
             harness.remove_cursor();
             harness.run();
-            // What is drawn is known from the picture before.
+            // Overlays use data of the previous image.
             picture(&mut harness);
             picture(&mut harness)
         };
@@ -215,7 +215,7 @@ fn overlays_are_drawn_while_they_are_on() {
 }
 
 #[test]
-fn the_scene_is_chosen_and_its_props_are_put_away() {
+fn the_scene_can_be_chosen_and_its_props_hidden() {
     let mut harness = lit(Light { intensity: 30.0, ..Light::default() });
     let environment = |harness: &Harness<'_, Window>| harness.state().session.document.preset.environment;
     harness.get_by_label("Scene").click();

@@ -1,4 +1,4 @@
-//! A small row over the picture: what is drawn on it, and the scene round the smoke.
+//! Toolbar on the image: overlays, turntable, scene.
 
 use std::ops::RangeInclusive;
 
@@ -13,16 +13,16 @@ use crate::tweak::panel::row::spaced;
 use crate::tweak::session::Session;
 use crate::tweak::show::Overlay;
 
-/// What can be switched, and what it is called.
+/// Switches with their names and tooltips.
 const SWITCHES: [(InView, &str, &str); 5] = [
     (InView::Overlay(Overlay::Bounds), "Bounds", "The box round each system"),
-    (InView::Overlay(Overlay::LitPlane), "Lit plane", "The plane that light is flattened to, where it cuts the box"),
-    (InView::Overlay(Overlay::Particles), "Particles", "Middles of the sprites, young ones warm, old ones cold"),
+    (InView::Overlay(Overlay::LitPlane), "Lit plane", "The plane on which the smoke is lit, where it cuts the box"),
+    (InView::Overlay(Overlay::Particles), "Particles", "Centres of the sprites: warm when young, cold when old"),
     (InView::Overlay(Overlay::Grid), "Grid", "The texels that the smoke is accumulated in"),
-    (InView::Turntable, "Turntable", "Sends all lights round the smoke; the preset stays as it is"),
+    (InView::Turntable, "Turntable", "Rotates all lights about the smoke; the preset does not change"),
 ];
 
-/// Draws the row into the upper left corner of the picture; gives what was switched.
+/// Draws the toolbar into the upper left corner of the image. Returns the action of a clicked switch.
 pub fn toolbar(ui: &mut Ui, rect: Rect, session: &mut Session) -> Option<InView> {
     let mut asked = None;
     let builder = egui::UiBuilder::new().max_rect(rect.shrink(6.0)).layout(egui::Layout::top_down(egui::Align::Min));
@@ -39,7 +39,7 @@ pub fn toolbar(ui: &mut Ui, rect: Rect, session: &mut Session) -> Option<InView>
                         asked = Some(action);
                     }
                 }
-                // Several may be switched at once.
+                // The menu stays open, so that several switches can be changed.
                 let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
                 MenuButton::new("Scene").config(config).ui(ui, |ui| {
                     let tooltips = &session.tooltips;
@@ -58,7 +58,7 @@ fn is_on(session: &Session, action: InView) -> bool {
     }
 }
 
-/// What of a struct can be switched: choices and flags.
+/// Draws the choices and flags of a struct as switches.
 struct Switches<'a> {
     ui: &'a mut Ui,
     tooltips: &'a Tooltips,

@@ -7,7 +7,7 @@ use haze::settings::set_field;
 use super::*;
 
 impl Document {
-    /// Saves it here and now.
+    /// Saves on this thread.
     pub fn save(&mut self) -> Result<(), Error> {
         let saving = self.begin_saving()?;
         self.write(saving)
@@ -32,7 +32,7 @@ fn shot(folder: &Path) -> PathBuf {
 }
 
 #[test]
-fn a_change_is_saved_as_one_line() {
+fn a_change_modifies_one_line_of_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let mut document = Document::open(Path::new("column")).unwrap();
     assert!(document.is_built_in() && !document.is_dirty() && document.files(&PictureFolders::default()).is_empty());
@@ -54,12 +54,12 @@ fn a_change_is_saved_as_one_line() {
     let changed: Vec<_> = text.lines().zip(shipped.lines()).filter(|(now, before)| now != before).collect();
     assert_eq!(changed, [("        \"boost\": 2.25,", "        \"boost\": 1.5,")]);
     assert_eq!(Document::open(&path).unwrap().preset, document.preset);
-    // Nothing else lies beside it.
+    // There is no other file in the folder.
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }
 
 #[test]
-fn what_cannot_be_saved_is_refused_and_the_file_stays() {
+fn an_invalid_preset_is_not_saved_and_the_file_stays() {
     let folder = tempfile::tempdir().unwrap();
     let path = shot(folder.path());
     let before = fs::read(&path).unwrap();
@@ -74,7 +74,7 @@ fn what_cannot_be_saved_is_refused_and_the_file_stays() {
 }
 
 #[test]
-fn undo_reaches_over_saving_reverting_and_pasting() {
+fn undo_works_across_save_revert_and_paste() {
     let folder = tempfile::tempdir().unwrap();
     let mut document = Document::open(&shot(folder.path())).unwrap();
     let first = document.preset.clone();
@@ -82,7 +82,7 @@ fn undo_reaches_over_saving_reverting_and_pasting() {
     document.track(false);
     document.save().unwrap();
     document.preset.lights.remove(0);
-    // Not seen by a frame yet: a step of its own all the same.
+    // No frame has seen this change yet; it is a step of its own nevertheless.
     document.revert().unwrap();
     assert_eq!((document.preset.lights.len(), document.is_dirty()), (3, false));
     document.paste(&Preset::load("fence").unwrap().to_text("")).unwrap();
@@ -96,7 +96,7 @@ fn undo_reaches_over_saving_reverting_and_pasting() {
 }
 
 #[test]
-fn what_is_pasted_is_checked_like_a_file() {
+fn a_pasted_preset_is_validated_like_a_file() {
     let mut document = Document::open(Path::new("column")).unwrap();
     let text = document.to_text();
     for (from, to, said) in [
@@ -121,7 +121,7 @@ fn what_is_pasted_is_checked_like_a_file() {
 }
 
 #[test]
-fn only_what_others_write_is_a_change_on_disk() {
+fn only_writes_by_other_programs_count_as_changes_on_disk() {
     let folder = tempfile::tempdir().unwrap();
     let path = shot(folder.path());
     let mut document = Document::open(&path).unwrap();
@@ -129,10 +129,10 @@ fn only_what_others_write_is_a_change_on_disk() {
     document.preset.camera.exposure = 1.0;
     document.save().unwrap();
     assert_eq!((document.on_disk(), document.on_disk()), (OnDisk::Same, OnDisk::Same));
-    // Touched, and written anew with the same text: no change.
+    // Rewritten with the same text: no change.
     fs::write(&path, fs::read(&path).unwrap()).unwrap();
     assert_eq!(document.on_disk(), OnDisk::Same);
-    // Of the same length, with the old time.
+    // Same length and same modification time.
     let before = fs::metadata(&path).unwrap().modified().unwrap();
     fs::write(&path, fs::read_to_string(&path).unwrap().replace("\"exposure\": 1.0", "\"exposure\": 2.0")).unwrap();
     fs::File::options().write(true).open(&path).unwrap().set_modified(before).unwrap();
@@ -150,7 +150,7 @@ fn only_what_others_write_is_a_change_on_disk() {
 }
 
 #[test]
-fn pictures_come_along_into_another_folder() {
+fn images_are_copied_to_another_folder_on_save() {
     let folder = tempfile::tempdir().unwrap();
     let (old, new) = (folder.path().join("old"), folder.path().join("new"));
     fs::create_dir_all(old.join("ramps")).unwrap();
@@ -169,11 +169,11 @@ fn pictures_come_along_into_another_folder() {
     assert_eq!(recipe, fs::read("ramps/diffuse_soft.ramp.json").unwrap());
     assert_eq!(fs::read(new.join("ramps/own.png")).unwrap(), fs::read("ramps/diffuse_soft.png").unwrap());
     assert!(!new.join("missing.png").exists());
-    // Once more, over the same.
+    // Saved again over identical files.
     let mut document = Document::open(&shot(&old)).unwrap();
     document.preset.systems[0].material.diffuse_ramp = "ramps/own.png".into();
     document.save_as(&new.join("shot.json")).unwrap();
-    // Another by that name is somebody's.
+    // A different file of that name is not replaced.
     let mut document = Document::open(&shot(&old)).unwrap();
     document.preset.systems[0].material.diffuse_ramp = "ramps/own.png".into();
     fs::write(new.join("ramps/own.ramp.json"), "other").unwrap();
@@ -188,7 +188,7 @@ fn pictures_come_along_into_another_folder() {
 
 #[cfg(unix)]
 #[test]
-fn links_stay_links_and_modes_stay() {
+fn saving_keeps_symbolic_links_and_file_modes() {
     use std::os::unix::fs::{PermissionsExt, symlink};
     let folder = tempfile::tempdir().unwrap();
     let path = shot(folder.path());
@@ -205,7 +205,7 @@ fn links_stay_links_and_modes_stay() {
 
 #[cfg(unix)]
 #[test]
-fn what_is_no_preset_is_refused_at_once() {
+fn a_file_that_is_no_preset_is_refused_at_once() {
     use std::os::unix::fs::PermissionsExt;
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
@@ -222,7 +222,7 @@ fn what_is_no_preset_is_refused_at_once() {
         ("binary.json", "not UTF-8; expected JSON as UTF-8 text"),
         ("none.json", "No such file"),
     ];
-    // Root reads everything.
+    // Root can read every file.
     if fs::File::open(path("shot.json")).is_err() {
         refused.push(("shot.json", "Permission denied"));
     }

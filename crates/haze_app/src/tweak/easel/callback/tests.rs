@@ -1,4 +1,4 @@
-//! What is drawn again, and what is not.
+//! Tests of what is drawn again, and what is not.
 
 use std::cell::RefCell;
 use std::path::Path;
@@ -17,7 +17,7 @@ use crate::tweak::session::Session;
 use crate::tweak::testing::{brightness, picture};
 use crate::tweak::window::{Start, Window};
 
-/// A window, and what egui draws it with.
+/// Opens a window, and returns the render state of its egui.
 fn window() -> (Harness<'static, Window>, RenderState) {
     let session = Session::open(Path::new("column"), None).unwrap();
     let (shaders, layout) = (ShaderFolder::None, Layout::default());
@@ -40,7 +40,7 @@ fn shown(harness: &mut Harness<'static, Window>) -> f64 {
 }
 
 #[test]
-fn a_frame_that_egui_drops_is_drawn_by_the_next() {
+fn a_frame_dropped_by_egui_is_drawn_in_the_next() {
     let (mut harness, state) = window();
     let before = shown(&mut harness);
     let session = harness.state_mut().session_mut();
@@ -62,7 +62,7 @@ fn a_frame_that_egui_drops_is_drawn_by_the_next() {
 }
 
 #[test]
-fn exposure_is_developed_and_nothing_is_drawn_for_it() {
+fn a_new_exposure_only_repeats_the_tonemapping() {
     let (mut harness, _) = window();
     let before = shown(&mut harness);
     let drawn = harness.state().easel().figures().pictures;

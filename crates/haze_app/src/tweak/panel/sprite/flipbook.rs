@@ -1,4 +1,4 @@
-//! The flipbook, turning under a light.
+//! Flipbook of the sprite under a light.
 
 use eframe::egui::{self, Color32, Pos2, Rect, Sense, Stroke, Ui, Vec2, pos2};
 use haze::{MaterialAssets, Settings};
@@ -8,16 +8,16 @@ use crate::tweak::icon::{self, Icon};
 use crate::tweak::sprite::draw::{Painted, View};
 use crate::tweak::sprite::look::{SHOWN, Shown, SpriteLook};
 
-/// Largest side of the picture, points, and its most pixels: the CPU draws.
+/// Largest side of the image in points and in pixels. The image is small, because the CPU draws it.
 const SIDE: f32 = 300.0;
 const MOST: f32 = 256.0;
-/// Least side, and most share of the page: the recipe is to be seen, too.
+/// Least side in points, and largest share of the tab's height, which leaves room for the recipe.
 const LEAST: f32 = 96.0;
 const SHARE: f32 = 0.42;
-/// Degrees that the light goes for each point of a drag.
+/// Rotation of the light, degrees per point of a drag.
 const DRAG: f32 = 0.6;
 
-/// Draws it with its controls.
+/// Draws the flipbook with its controls.
 pub fn panel(
     ui: &mut Ui,
     (look, painted): (&mut SpriteLook, &mut Option<Painted>),
@@ -35,7 +35,7 @@ pub fn panel(
             }
         }
     });
-    // What scrolls is endless: what is seen of it counts.
+    // In a scroll area the available height is unlimited, so the visible part counts.
     let height = ui.available_height().min(ui.clip_rect().height());
     let side = ui.available_width().min(SIDE).min((SHARE * height).max(LEAST));
     ui.vertical_centered(|ui| picture(ui, (look, painted), side, material, settings));
@@ -57,7 +57,7 @@ fn picture(
 ) {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "flipbook"));
-    // The way that a finger came is none of its drag.
+    // The movement before the drag began does not count.
     if response.dragged() && !response.drag_started() {
         let drag = response.drag_delta() * DRAG;
         look.turn_to(look.light.azimuth + drag.x);
@@ -76,13 +76,13 @@ fn picture(
     let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
     ui.painter().image(texture, rect, whole, Color32::WHITE);
     if look.shown == Shown::Lit {
-        // Where the light stands; hollow behind the sprite.
+        // Marks the direction of the light; hollow if it is behind the sprite.
         let reach = 0.5 * side - 6.0;
         let at = rect.center() + Vec2::new(to_light.x, -to_light.y) * reach;
         let fill = if to_light.z < 0.0 { Color32::TRANSPARENT } else { Color32::WHITE };
         ui.painter().circle(at, 4.0, fill, Stroke::new(1.5, Color32::from_gray(160)));
     }
-    response.on_hover_text("Drag: the light goes round it");
+    response.on_hover_text("Drag to move the light around it");
 }
 
 fn time(ui: &mut Ui, look: &mut SpriteLook, count: u32) {
@@ -98,7 +98,7 @@ fn time(ui: &mut Ui, look: &mut SpriteLook, count: u32) {
         ui.spacing_mut().slider_width = ui.available_width();
         let slider = egui::Slider::new(&mut look.frame, 0.0..=count as f32).show_value(false);
         let slider = slider.clamping(egui::SliderClamping::Never);
-        let slider = ui.add(slider).labelled_by(name.id).on_hover_text("Between two frames is a share of both");
+        let slider = ui.add(slider).labelled_by(name.id).on_hover_text("Between two frames, both are blended");
         if slider.changed() {
             look.is_playing = false;
         }
@@ -114,6 +114,6 @@ fn light(ui: &mut Ui, look: &mut SpriteLook) {
         ui.add(angle(azimuth, 180.0)).on_hover_text("Azimuth: 0 is before the sprite, 90 at its right");
         ui.label("and up");
         ui.add(angle(elevation, STEEPEST)).on_hover_text("Height: 0 is level with the sprite, 90 above it");
-        ui.checkbox(&mut look.is_turning, "turn").on_hover_text("Sends the light round, once in 5 seconds");
+        ui.checkbox(&mut look.is_turning, "turn").on_hover_text("Rotates the light, once in 5 seconds");
     });
 }

@@ -1,4 +1,4 @@
-//! The recipe of a sprite as rows, and how a sprite without gets one.
+//! Recipe of a sprite as rows, and ways to get one for a sprite that has none.
 
 use std::collections::HashSet;
 use std::ops::RangeInclusive;
@@ -21,14 +21,14 @@ use crate::tweak::sprite::source::Source;
 
 static TOOLTIPS: LazyLock<Tooltips> = LazyLock::new(Tooltips::of::<SpriteRecipe>);
 
-/// What is said of all that is changed here.
-const WRITTEN: &str = "Seen at once, coarsely; baked whole when it is let go. Then the recipe and its PNGs are written, and again when \
-                       it is undone";
+/// Tooltip about saving.
+const WRITTEN: &str = "Shown at once at a low resolution, and baked in full when the control is released. Then the recipe and its PNGs are \
+                       written, and again when the step is undone";
 
-/// Most characters of what is said.
+/// Longest finding or error that is shown, characters.
 const LONGEST: usize = 400;
 
-/// Draws what there is of the selected system's sprite.
+/// Draws the recipe of the selected system's sprite, or the ways to get one.
 pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialNames) {
     let (folders, wake) = (session.folders(), session.wake.clone());
     let Some(known) = session.sprites.ask(names, &folders, move || wake.call()) else { return };
@@ -45,7 +45,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialNames) {
     let name = &names.sprite;
     match source {
         Source::Reading => {
-            ui.weak("It is being read.");
+            ui.weak("Reading the sprite.");
         }
         Source::BuiltIn(recipe) => {
             let about = "Writes a copy of this sprite and its recipe beside the preset, to be changed here; a preset that is \
@@ -53,7 +53,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialNames) {
             if ui.button("Make my own").on_hover_text(about).clicked() {
                 session.sprites.want_own(session.show.system, name, session.document.is_built_in());
             }
-            rows(ui, session, name, &recipe, Some("make your own first"));
+            rows(ui, session, name, &recipe, Some("a built-in recipe cannot be changed; make your own first"));
         }
         Source::Recipe(recipe) => {
             let recipe = session.document.recipes.sprites.get(name).unwrap_or(&recipe).clone();
@@ -61,18 +61,18 @@ pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialNames) {
                 Some((done, count)) => {
                     let text = format!("Baking frame {} of {count}", (done + 1).min(count));
                     ui.add(ProgressBar::new(done as f32 / count as f32).text(text));
-                    // Frames are told to no one.
+                    // The bake does not request frames, so the progress bar does.
                     ui.ctx().request_repaint_after(Duration::from_millis(100));
                 }
                 None => {
                     ui.weak("Saved with each step").on_hover_text(WRITTEN);
                 }
             }
-            rows(ui, session, name, &recipe, is_broken.then_some("mend its file first"));
+            rows(ui, session, name, &recipe, is_broken.then_some("the file of the recipe has an error; fix it first"));
         }
         Source::Apart(_) => {
-            ui.label(format!("{file} makes another picture: one of the two was changed elsewhere."));
-            let about = "Puts what the recipe makes in the place of the picture";
+            ui.label(format!("{file} makes another picture: another program has changed one of the two."));
+            let about = "Replaces the picture by the one that the recipe makes";
             if ui.button("Bake the recipe").on_hover_text(about).clicked() {
                 known.adopt();
             }
@@ -80,7 +80,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialNames) {
         }
         Source::Painted => {
             if !is_broken {
-                ui.label(format!("There is no recipe: {file} is not beside it."));
+                ui.label(format!("There is no recipe: {file} does not exist beside the picture."));
             }
             templates(ui, session);
         }
@@ -88,7 +88,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialNames) {
     }
 }
 
-/// Copies of built-in sprites to begin with.
+/// Menu of built-in sprites to copy.
 fn templates(ui: &mut Ui, session: &mut Session) {
     let menu = ui.menu_button("New from template", |ui| {
         for template in builtin::SPRITES {
@@ -102,11 +102,11 @@ fn templates(ui: &mut Ui, session: &mut Session) {
         .on_hover_text("Writes a copy of a built-in sprite and its recipe beside the preset, in place of this one");
 }
 
-/// The fields of a recipe, by its own table. `locked`: why none can be changed.
+/// Draws the fields of a recipe by its table. `locked`: the reason why none can be changed.
 fn rows(ui: &mut Ui, session: &mut Session, name: &str, recipe: &SpriteRecipe, locked: Option<&'static str>) {
     let (mut edited, mut within) = (recipe.clone(), Within::default());
     edited.visit(&mut within);
-    let inert = |path: &str| locked.or(within.zero.contains(path).then_some("version 1 cannot do it"));
+    let inert = |path: &str| locked.or(within.zero.contains(path).then_some("recipe version 1 does not support it"));
     let (unchanged, asked) = (HashSet::new(), Vec::new());
     let mut desk = Desk {
         tooltips: &TOOLTIPS,
@@ -120,7 +120,7 @@ fn rows(ui: &mut Ui, session: &mut Session, name: &str, recipe: &SpriteRecipe, l
         sought: None,
     };
     if locked.is_none() && edited.version < 2 {
-        let about = "Bakes some fifty times as fast, and can do more; what it shows changes a little";
+        let about = "Bakes about fifty times as fast and has more settings; the picture changes a little";
         ui.horizontal(|ui| {
             ui.weak("Version 1 is slow to bake.");
             if ui.button("Convert to version 2").on_hover_text(about).clicked() {
@@ -130,7 +130,7 @@ fn rows(ui: &mut Ui, session: &mut Session, name: &str, recipe: &SpriteRecipe, l
     }
     fields::show(ui, &mut desk, &[], &mut edited);
     let refused = desk.refused;
-    // Ranges may depend on what was changed.
+    // Ranges may depend on the values that were changed.
     edited.visit(&mut Within::default());
     if edited != *recipe {
         set_recipe(&mut session.document, name, edited);
@@ -141,7 +141,7 @@ fn rows(ui: &mut Ui, session: &mut Session, name: &str, recipe: &SpriteRecipe, l
     }
 }
 
-/// Brings numbers into their ranges, and notes those that can be 0 only.
+/// Clamps numbers to their ranges, and records those whose range is 0 only.
 #[derive(Default)]
 struct Within {
     zero: HashSet<&'static str>,

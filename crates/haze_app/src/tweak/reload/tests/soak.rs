@@ -1,4 +1,4 @@
-//! Files that are saved good and bad, by the thousand: nothing may grow.
+//! Thousands of valid and broken file versions: memory and open files must not grow.
 
 use std::fs;
 use std::path::Path;
@@ -9,14 +9,14 @@ use super::{Bench, COLOUR, SIZE, write_ramp};
 use crate::tweak::document::history::MOST_STEPS;
 use crate::tweak::testing::picture;
 
-/// What the process holds.
+/// Resources of the process.
 #[derive(Clone, Copy)]
 struct Held {
     /// Open files.
     files: u64,
-    /// Bytes of memory that are there.
+    /// Resident memory, bytes.
     resident: u64,
-    /// Bytes that someone has asked for and not given back.
+    /// Bytes that are allocated and not freed.
     live: u64,
 }
 
@@ -36,12 +36,12 @@ impl std::fmt::Display for Held {
     }
 }
 
-/// As the allocator counts it, of Rust, the driver and all else.
+/// Bytes allocated according to the allocator, including those of the driver.
 fn live() -> u64 {
     #[cfg(target_env = "gnu")]
-    #[allow(unsafe_code, reason = "nothing safe asks glibc for it; it takes nothing, and may be called at any time")]
+    #[allow(unsafe_code, reason = "glibc has no safe wrapper; the call takes no arguments and is always allowed")]
     {
-        // glibc's: the fifth is what is in mmapped chunks, the eighth what is in all others.
+        // glibc: the fifth field counts bytes in mmapped chunks, the eighth those in all other chunks in use.
         #[repr(C)]
         struct Mallinfo2([usize; 10]);
         unsafe extern "C" {
@@ -54,7 +54,7 @@ fn live() -> u64 {
     0
 }
 
-/// Good and bad shaders by turns, with an import of their own.
+/// Saves valid and broken shaders alternately, with an import of their own.
 fn reload_shaders(bench: &mut Bench, count: u32) {
     let path = bench.path("shaders/lib/colour.wgsl");
     for index in 0..count {
@@ -81,7 +81,7 @@ fn reload_shaders(bench: &mut Bench, count: u32) {
     bench.rest();
 }
 
-/// A sprite of one frame, as dense as this.
+/// Writes a sprite of one frame with this alpha.
 fn write_sheet(folder: &Path, alpha: u8) {
     let inside = |x, y| (1..31).contains(&x) && (1..31).contains(&y);
     let texel = |x, y| image::Rgba([128, 128, 255, if inside(x, y) { alpha } else { 0 }]);
@@ -89,7 +89,7 @@ fn write_sheet(folder: &Path, alpha: u8) {
     haze::picture::write_png(&folder.join("sheet.png"), &picture.into(), haze::picture::Effort::Quick).unwrap();
 }
 
-/// Bad and good files of every kind by turns.
+/// Saves broken and valid files of every kind alternately.
 fn reload(bench: &mut Bench, count: u32) {
     let folder = bench.folder.path().to_owned();
     let (path, shader) = (bench.path("my.json"), bench.path("shaders/lib/colour.wgsl"));
@@ -103,7 +103,7 @@ fn reload(bench: &mut Bench, count: u32) {
     for index in 0..count {
         let pictures = bench.pictures();
         let is_good = index % 2 == 1;
-        // A shader takes as long as all others together.
+        // A shader takes as long as all the others together.
         let kind = index / 2 % 5;
         match (kind, is_good) {
             (0 | 4, true) => write_ramp(&folder, (index % 251) as u8),
@@ -141,11 +141,11 @@ fn reload(bench: &mut Bench, count: u32) {
     bench.rest();
 }
 
-/// Has the allocator give back what is free. It keeps some 300 MiB, what compiling shaders took at its peak, and more after every
-/// higher one: that would be taken for growth.
+/// Makes the allocator return free memory. It keeps about 300 MiB, the peak of compiling shaders, and more after every
+/// higher peak, which would look like growth.
 fn give_back() {
     #[cfg(target_env = "gnu")]
-    #[allow(unsafe_code, reason = "nothing safe asks glibc for it; it takes no pointer, and may be called at any time")]
+    #[allow(unsafe_code, reason = "glibc has no safe wrapper; the call takes no pointer and is always allowed")]
     {
         unsafe extern "C" {
             fn malloc_trim(pad: usize) -> i32;
@@ -154,7 +154,7 @@ fn give_back() {
     }
 }
 
-/// What is held at rest: the device lets go of what it has no use for any more as pictures are drawn.
+/// Returns the resources at rest. The device frees unused resources while images are drawn.
 fn held_at_rest(bench: &mut Bench) -> Held {
     let looks: Vec<_> = std::iter::repeat_with(|| {
         picture(&mut bench.window);
@@ -167,11 +167,11 @@ fn held_at_rest(bench: &mut Bench) -> Held {
     Held { files: least(|held| held.files), resident: least(|held| held.resident), live: least(|held| held.live) }
 }
 
-/// HAZE_RELOADS: how many in place of 5,000; a shader takes most of a second on two cores.
+/// HAZE_RELOADS sets the number in place of 5,000. A shader takes most of a second on two cores.
 fn soak(reload: fn(&mut Bench, u32)) {
     let count = std::env::var("HAZE_RELOADS").ok().and_then(|count| count.parse().ok()).unwrap_or(5000);
     let mut bench = Bench::new(SIZE);
-    // A preset that is read from disk is a step that can be undone. As many as are ever kept, so that there are no more of them after.
+    // Each preset read from disk is an undo step, so the history is filled first and does not grow afterwards.
     let exposure = bench.session().document.preset.camera.exposure;
     for step in 0..=MOST_STEPS {
         let document = &mut bench.session().document;
@@ -188,26 +188,26 @@ fn soak(reload: fn(&mut Bench, u32)) {
         eprintln!("{} reloads: {after}", part * count / 5);
     }
     assert!(after.files <= before.files, "{before}; then {after}");
-    // 64 bytes a reload: tables of hashes that become larger once in a while, in wgpu and its allocator.
+    // 64 bytes a reload allow for hash tables in wgpu and its allocator that grow now and then.
     assert!(after.live < before.live + 64 * u64::from(count).max(4096), "{before}; then {after}");
-    // What is free between what is in use is no one's, and the allocator cannot give it back.
+    // The allocator cannot return fragments between blocks in use.
     assert!(after.resident < before.resident + (16 << 20), "{before}; then {after}");
 }
 
 #[test]
-#[ignore = "takes minutes; alone in its process"]
-fn five_thousand_good_and_bad_reloads() {
+#[ignore = "takes minutes; needs a process of its own"]
+fn five_thousand_reloads_do_not_leak() {
     soak(reload);
 }
 
 #[test]
-#[ignore = "takes many minutes; alone in its process"]
-fn five_thousand_good_and_bad_shaders() {
+#[ignore = "takes many minutes; needs a process of its own"]
+fn five_thousand_shader_reloads_do_not_leak() {
     soak(reload_shaders);
 }
 
 #[test]
-fn good_and_bad_reloads_by_turns() {
+fn alternating_valid_and_broken_files_are_handled() {
     reload(&mut Bench::new(SIZE), 20);
     reload_shaders(&mut Bench::new(SIZE), 8);
 }

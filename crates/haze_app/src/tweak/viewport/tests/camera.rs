@@ -1,4 +1,4 @@
-//! How the camera is steered.
+//! Tests of camera control.
 
 use eframe::egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, TouchPhase, vec2};
 use egui_kittest::kittest::Queryable as _;
@@ -9,7 +9,7 @@ use super::{camera, lens, light, lit, undo_name, viewport};
 use crate::tweak::smoke::Smoke;
 
 #[test]
-fn f_shows_all_of_the_smoke_or_the_light_and_home_leads_back() {
+fn f_frames_the_smoke_or_the_light_and_home_restores_the_camera() {
     let mut harness = lit(Light::default());
     let saved = camera(&harness);
     harness.key_press(Key::F);
@@ -39,7 +39,7 @@ fn f_shows_all_of_the_smoke_or_the_light_and_home_leads_back() {
 }
 
 #[test]
-fn keys_do_nothing_while_something_is_typed() {
+fn keys_do_nothing_while_text_is_typed() {
     let mut harness = lit(Light::default());
     let before = camera(&harness);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
@@ -51,7 +51,7 @@ fn keys_do_nothing_while_something_is_typed() {
 }
 
 #[test]
-fn turns_of_the_wheel_are_one_step_and_go_towards_the_pointer() {
+fn wheel_steps_are_one_undo_step_and_zoom_towards_the_pointer() {
     let mut harness = lit(Light::default());
     let before = camera(&harness);
     let at = viewport(&harness).center() + vec2(150.0, -60.0);
@@ -81,7 +81,7 @@ fn turns_of_the_wheel_are_one_step_and_go_towards_the_pointer() {
 }
 
 #[test]
-fn the_right_button_flies() {
+fn the_right_button_with_wasd_flies() {
     let mut harness = lit(Light::default());
     let before = camera(&harness);
     let at = viewport(&harness).center();

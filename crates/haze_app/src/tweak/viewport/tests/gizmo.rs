@@ -1,4 +1,4 @@
-//! How lights are grabbed and dragged.
+//! Tests of picking and dragging lights.
 
 use eframe::egui::{Event, Key, Modifiers, PointerButton, vec2};
 use egui_kittest::Harness;
@@ -10,7 +10,7 @@ use super::{camera, drag, handle, lens, light, lit, undo_name};
 use crate::tweak::window::Window;
 
 #[test]
-fn a_dragged_axis_moves_the_light_along_it_with_the_pointer_in_one_step() {
+fn an_axis_drag_moves_the_light_along_the_axis_in_one_step() {
     for axis in 0..2 {
         let mut harness = lit(Light::default());
         let (before, seen) = (light(&harness).position, lens(&harness));
@@ -29,7 +29,7 @@ fn a_dragged_axis_moves_the_light_along_it_with_the_pointer_in_one_step() {
 }
 
 #[test]
-fn the_middle_follows_the_pointer_exactly_and_escape_puts_it_back() {
+fn a_centre_drag_follows_the_pointer_and_escape_cancels_it() {
     let mut harness = lit(Light::default());
     let before = light(&harness).position;
     let from = handle(&harness, Handle::Centre);
@@ -38,7 +38,7 @@ fn the_middle_follows_the_pointer_exactly_and_escape_puts_it_back() {
     let after = light(&harness).position;
     assert!(lens(&harness).project(after).unwrap().distance(to) < 1.0);
     assert!((lens(&harness).depth(after) - lens(&harness).depth(before)).abs() < 1e-3);
-    // Pressed, moved, then Escape: as it was, and no step.
+    // Pressed, moved, then Escape: the light is as before, and there is no step.
     let press = |pos, pressed| {
         let modifiers = Modifiers::NONE;
         Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers }
@@ -59,7 +59,7 @@ fn the_middle_follows_the_pointer_exactly_and_escape_puts_it_back() {
 }
 
 #[test]
-fn ctrl_snaps_to_a_tenth_of_a_metre_and_shift_is_slow() {
+fn ctrl_snaps_to_a_tenth_of_a_metre_and_shift_slows_the_drag() {
     let mut harness = lit(Light::default());
     let (from, before) = (handle(&harness, Handle::Centre), light(&harness).position);
     harness.event(Event::ModifiersChanged(Modifiers::COMMAND));
@@ -77,7 +77,7 @@ fn ctrl_snaps_to_a_tenth_of_a_metre_and_shift_is_slow() {
 }
 
 #[test]
-fn radius_cone_and_direction_are_dragged() {
+fn radius_cone_and_direction_can_be_dragged() {
     let mut harness = lit(Light { kind: LightKind::Spot, direction: Vec3::new(0.3, -1.0, 0.0), ..Light::default() });
     let before = light(&harness);
     let mut pull = |what, by| {
@@ -90,7 +90,7 @@ fn radius_cone_and_direction_are_dragged() {
     let way = pull(Handle::Aim, vec2(40.0, -20.0));
     assert!(way.direction.x > before.direction.normalize().x + 0.1, "{}", way.direction);
     assert_eq!((way.outer_angle, way.position), (before.outer_angle, before.position));
-    // Under the middle of its cone the one handle is left of it, the other right.
+    // Seen from below the cone's centre, one handle is to the left and the other to the right.
     let at = |harness: &Harness<'_, Window>, what| handle(harness, what);
     let (middle, rim) = (at(&harness, Handle::Aim), at(&harness, Handle::OuterAngle));
     drag(&mut harness, PointerButton::Primary, &[rim, rim + (rim - middle) * 0.3]);
@@ -104,7 +104,7 @@ fn radius_cone_and_direction_are_dragged() {
 }
 
 #[test]
-fn a_sun_is_turned_on_its_dome() {
+fn a_sun_is_moved_on_its_dome() {
     let mut harness =
         lit(Light { kind: LightKind::Directional, direction: Vec3::new(0.5, -1.0, -1.0), ..Light::default() });
     let from = handle(&harness, Handle::Aim);
@@ -116,7 +116,7 @@ fn a_sun_is_turned_on_its_dome() {
 }
 
 #[test]
-fn a_click_selects_a_light_and_a_click_beside_none() {
+fn a_click_selects_a_light_and_a_click_elsewhere_deselects() {
     let mut harness = lit(Light::default());
     let at = lens(&harness).project(light(&harness).position).unwrap();
     harness.state_mut().session.show.lights.selected = None;
@@ -124,7 +124,7 @@ fn a_click_selects_a_light_and_a_click_beside_none() {
     let selected = |harness: &Harness<'_, Window>| harness.state().session.show.lights.selected;
     drag(&mut harness, PointerButton::Primary, &[at + vec2(6.0, 4.0)]);
     assert_eq!(selected(&harness), Some(0));
-    // A drag beside it turns the camera and leaves it selected.
+    // A drag elsewhere turns the camera and keeps the selection.
     let beside = at + vec2(-200.0, 140.0);
     let before = camera(&harness);
     drag(&mut harness, PointerButton::Primary, &[beside, beside + vec2(10.0, 0.0), beside + vec2(60.0, 0.0)]);

@@ -1,4 +1,4 @@
-//! Lights that go round the smoke.
+//! Tests of lights that rotate about the smoke.
 
 use eframe::egui::Key;
 use egui_kittest::Harness;
@@ -10,7 +10,7 @@ use crate::tweak::testing::picture;
 use crate::tweak::window::Window;
 
 #[test]
-fn the_turntable_takes_lights_round_and_leaves_the_preset_alone() {
+fn the_turntable_rotates_lights_and_does_not_change_the_preset() {
     let mut harness = lit(Light { intensity: 30.0, ..Light::default() });
     let before = harness.state().session.document.preset.clone();
     let shown = |harness: &Harness<'_, Window>| harness.state().session.shot(glam::UVec2::splat(8)).preset.lights[0];
@@ -23,10 +23,11 @@ fn the_turntable_takes_lights_round_and_leaves_the_preset_alone() {
 }
 
 #[test]
-fn a_true_puff_is_lit_beside_the_ramps_of_the_smoke_while_lights_go_round() {
+fn a_path_traced_puff_is_compared_with_the_ramps_while_lights_rotate() {
     let mut harness = lit(Light { intensity: 30.0, ..Light::default() });
     harness.key_press(Key::T);
-    // The figures below the puffs, once they are others than `before`: what is chosen is loaded and compared in the background.
+    // Returns the figures below the puffs once they differ from `before`; the medium is traced and compared in the
+    // background.
     let figures = |harness: &mut Harness<'_, Window>, before: &str| {
         let begun = std::time::Instant::now();
         loop {
@@ -48,7 +49,7 @@ fn a_true_puff_is_lit_beside_the_ramps_of_the_smoke_while_lights_go_round() {
     if let Some(folder) = std::env::var_os("HAZE_LOOK") {
         picture(&mut harness).save(std::path::Path::new(&folder).join("puff.png")).unwrap();
     }
-    // The ramps that were fitted to it.
+    // The ramps that were fitted to this medium.
     let material = &mut harness.state_mut().session.document.preset.systems[0].material;
     material.diffuse_ramp = "diffuse_traced_ash".into();
     let of_other = figures(&mut harness, &of_painted);
