@@ -123,7 +123,7 @@ mod tests {
         let pattern = path("s##.csv");
         assert!(!is_there(&pattern) && places(&pattern) == [path("s01.csv")]);
         let error = frame_files(&pattern).unwrap_err().to_string();
-        assert!(error.ends_with("s##.csv: no such files; expected some with digits in the place of #"), "{error}");
+        assert!(error.ends_with("s##.csv: no such files; expected names with digits in place of #"), "{error}");
         for name in ["s100.csv", "s09.csv", "s10.csv", "s1.csv", "other.csv"] {
             std::fs::write(path(name), "").unwrap();
         }

@@ -91,8 +91,8 @@ fn a_device_lost_twice_ends_the_program_and_keeps_unsaved_work() {
     assert!(text.contains("lost twice within 10 seconds") && text.contains("kept for the next start"), "{text}");
     let kept = Preset::load(folder.path().join("state/recovery-1.json")).unwrap();
     assert!((kept.camera.exposure - 2.5).abs() < 1e-6 && (kept.time - 3.0).abs() < 1e-6);
-    // Nothing is kept of what nobody has changed.
-    assert!(line(command(&[]), 1).contains("nothing was unsaved"));
+    // Unchanged work is not kept.
+    assert!(line(command(&[]), 1).contains("there was no unsaved work"));
     assert!(!folder.path().join("state/recovery-2.json").exists());
 }
 

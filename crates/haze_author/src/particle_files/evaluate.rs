@@ -37,8 +37,8 @@ impl Cache {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use super::super::Limits;
+    use super::*;
 
     fn cache(texts: &[&str]) -> Cache {
         let folder = tempfile::tempdir().unwrap();

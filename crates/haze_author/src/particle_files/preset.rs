@@ -81,8 +81,7 @@ pub fn emission(system: &PresetSystem, files: Option<&Cache>, time: f32) -> Opti
 
 fn load(name: &str, folders: &PictureFolders, bytes: u64) -> Result<Cache, Error> {
     let Some(file) = cache_file(name) else {
-        let expected =
-            "a CSV or PLY file inside the preset's folder; one run of # in its name for the digits of frames";
+        let expected = "a CSV or PLY file inside the preset's folder; one run of # in its name for a frame's digits";
         return Err(FieldError::new("cache.path", format!("{name:?}"), expected).into());
     };
     let limits = Limits { particles: MAX_PARTICLES as usize, bytes };

@@ -8,9 +8,9 @@ use super::role::doubts;
 use crate::particle_files::check_caches;
 use haze::error::Error;
 
-    /// Loads the images and particle files of every system. Returns all errors, and warnings about loaded images that
-    /// do not seem to fit their role, each with its field. Files are searched for in `folders`; `path`, the preset's
-    /// file, is only named in errors.
+/// Loads the images and particle files of every system. Returns all errors, and warnings about loaded images that
+/// do not seem to fit their role, each with its field. Files are searched for in `folders`; `path`, the preset's
+/// file, is only named in errors.
 pub fn check_files(preset: &Preset, path: &Path, folders: &PictureFolders) -> (Vec<Error>, Vec<String>) {
     let mut pictures = Pictures::new(folders.clone());
     let (mut wrong, mut doubtful) = (Vec::new(), Vec::new());

@@ -289,7 +289,7 @@ fn older_recipes_are_read_and_newer_ones_refused() {
 }
 
 #[test]
-fn the_document_has_every_name_and_its_recipe_is_one() {
+fn the_ramps_document_lists_every_name_and_its_example_parses() {
     let document = include_str!("../../../../../docs/ramps.md");
     let recipe = document.split("```json").nth(1).unwrap().split("```").next().unwrap();
     let recipe = RampRecipe::parse(Path::new("ramps.md"), recipe).unwrap();

@@ -77,7 +77,7 @@ mod tests {
     use haze::assets::json;
 
     #[test]
-    fn no_texel_moves_further_than_it_may() {
+    fn no_texel_moves_further_than_the_tolerance() {
         let recipe = include_str!("../../../../../tests/corpus/sprite/good_first");
         let recipe: SpriteRecipe = json::parse(Path::new("puff.sprite.json"), recipe).unwrap();
         let recipe = SpriteRecipe { version: 2, size: 64, ..recipe };
