@@ -1,4 +1,4 @@
-//! The committed pictures are what the committed recipes make.
+//! Checks that committed images match their committed recipes, and that generated pages match the program.
 
 use std::path::{Path, PathBuf};
 
@@ -21,30 +21,38 @@ fn file(folder: &str, name: &str) -> PathBuf {
 }
 
 #[test]
-fn ramps_are_what_their_recipes_make() {
+fn committed_ramps_and_motifs_match_their_recipes() {
     for ramp in builtin::RAMPS {
         let committed = read_png(&file("ramps", &format!("{}.png", ramp.name))).unwrap().to_rgb16();
         let recipe = RampRecipe::load(&file("ramps", &format!("{}.ramp.json", ramp.name))).unwrap();
-        // Plain arithmetic: the same everywhere, to the bit.
-        assert!(committed == recipe.bake().unwrap().to_rgb16(), "{}: bake it again", ramp.name);
+        // The bake is plain arithmetic and bit-exact on every platform.
+        assert!(
+            committed == recipe.bake().unwrap().to_rgb16(),
+            "{}.png differs from its recipe; bake it again",
+            ramp.name
+        );
     }
     for motif in builtin::MOTIFS {
         let committed = read_png(&file("ramps", &format!("{}.png", motif.name))).unwrap().to_rgb16();
         let recipe = MotifRecipe::load(&file("ramps", &format!("{}.motif.json", motif.name))).unwrap();
-        assert!(committed == recipe.bake().unwrap().to_rgb16(), "{}: bake it again", motif.name);
+        assert!(
+            committed == recipe.bake().unwrap().to_rgb16(),
+            "{}.png differs from its recipe; bake it again",
+            motif.name
+        );
     }
 }
 
 #[test]
-fn ramps_that_templates_give_their_names_to_are_the_templates() {
+fn builtin_ramps_named_after_a_template_equal_it() {
     let mut found = 0;
     for template in TEMPLATES {
-        // "neutral" is a diffuse one already.
+        // Template names are unique, and a diffuse template is already called "neutral".
         let name = if template.name == "neutral_glow" { "neutral" } else { template.name };
         let name = format!("{}_{name}", template.role.name());
         if builtin::find(builtin::RAMPS, &name).is_some() {
             let recipe = RampRecipe::load(&file("ramps", &format!("{name}.ramp.json"))).unwrap();
-            assert_eq!(recipe, template.recipe(), "{name}");
+            assert_eq!(recipe, template.recipe(), "{name}.ramp.json differs from the template");
             found += 1;
         }
     }
@@ -52,7 +60,7 @@ fn ramps_that_templates_give_their_names_to_are_the_templates() {
 }
 
 #[test]
-fn coverage_through_the_soft_ramp_is_linear_coverage() {
+fn soft_coverage_ramp_equals_linear_coverage() {
     let ramp = RampRecipe::load(&file("ramps", "coverage_soft.ramp.json")).unwrap();
     let pixels = ramp.bake().unwrap().to_rgb16();
     assert!(pixels.enumerate_pixels().all(|(x, _, pixel)| pixel.0 == [257 * x as u16; 3]));
@@ -64,65 +72,69 @@ fn coverage_through_the_soft_ramp_is_linear_coverage() {
         develop(&shot.render_on_cpu().unwrap(), &shot)
     };
     let (linear, ramp) = (picture(CoverageMode::Linear), picture(CoverageMode::Ramp));
-    // Texels are half floats: the last step of 8 bits may fall to either side.
+    // Ramp texels are half floats, so an 8-bit value may round to the neighbouring step.
     assert!(linear.iter().zip(ramp.iter()).all(|(a, b)| a.abs_diff(*b) <= 1));
 }
 
 #[test]
-fn sprites_are_what_their_recipes_make() {
+fn committed_sprites_match_their_recipes() {
     for sprite in builtin::SPRITES {
         let committed = read_png(&file("sprites", &format!("{}.png", sprite.name))).unwrap().to_rgba8();
         let recipe = SpriteRecipe::load(&file("sprites", &format!("{}.sprite.json", sprite.name))).unwrap();
-        // One frame that is not the first.
+        // Checks one frame, other than the first.
         let frame = 3;
         let frame_of = |sheet: &RgbaImage, size: u32| {
             let origin = (frame % recipe.columns * size, frame / recipe.columns * size);
             imageops::crop_imm(sheet, origin.0, origin.1, size, size).to_image()
         };
         let baked = recipe.bake_frame(frame as f32);
-        // The same everywhere, to the bit.
+        // The bake is bit-exact on every platform.
         let texels: Vec<_> = frame_of(&committed, recipe.size).pixels().copied().collect();
-        assert!(texels == baked.picture.texels, "{}: bake it again", sprite.name);
+        assert!(texels == baked.picture.texels, "{}.png differs from its recipe; bake it again", sprite.name);
 
-        // Motion is found in the committed frames, so that it is compared with the same input.
+        // Motion is estimated from the committed frames, so that both sides have the same input.
         let decoded = sprite.sprite().unwrap();
         let detail = detail(&decoded, frame, &baked.offset);
         let committed = read_png(&file("sprites", &format!("{}.detail.png", sprite.name))).unwrap().to_rgba8();
         let committed = frame_of(&committed, detail.size.x);
-        // A file is made smaller by that much.
+        // The baker moves channels of the detail map by up to this much to shrink the file.
         let most = recipe.tolerance / 2;
         let is_near =
             |(a, b): (&Rgba<u8>, &Rgba<u8>)| a.0.iter().zip(b.0).all(|(a, b)| u32::from(a.abs_diff(b)) <= most);
-        assert!(committed.pixels().zip(&detail.texels).all(is_near), "{}.detail: bake it again", sprite.name);
+        assert!(
+            committed.pixels().zip(&detail.texels).all(is_near),
+            "{}.detail.png differs from its recipe; bake it again",
+            sprite.name
+        );
     }
 }
 
 #[test]
-fn all_sprites_together_are_less_than_a_megabyte() {
+fn builtin_sprites_take_less_than_a_megabyte() {
     let files = std::fs::read_dir(file("sprites", "")).unwrap().map(|entry| entry.unwrap());
     let pictures = files.filter(|file| file.path().extension().is_some_and(|ending| ending == "png"));
     let bytes: u64 = pictures.map(|picture| picture.metadata().unwrap().len()).sum();
-    assert!((500_000..1_000_000).contains(&bytes), "{bytes}");
+    assert!((500_000..1_000_000).contains(&bytes), "all sprites take {bytes} bytes");
 }
 
 #[test]
-fn noise_is_what_its_recipe_makes() {
+fn committed_noise_volumes_match_their_recipes() {
     for noise in builtin::NOISES {
         let committed = read_png(&file("sprites", &format!("{}.png", noise.name))).unwrap().to_rgba8();
         let recipe = NoiseRecipe::load(&file("sprites", &format!("{}.noise.json", noise.name))).unwrap();
-        // Hashes and plain arithmetic: the same everywhere, to the bit.
-        assert_eq!(committed, recipe.bake().unwrap(), "{}: bake it again", noise.name);
+        // Hashes and plain arithmetic are bit-exact on every platform.
+        assert_eq!(committed, recipe.bake().unwrap(), "{}.png differs from its recipe; bake it again", noise.name);
     }
 }
 
 #[test]
-fn the_committed_page_of_settings_is_the_programs() {
+fn committed_settings_page_matches_the_program() {
     let committed = std::fs::read_to_string(file("docs", "settings.md")).unwrap();
     assert!(committed == haze_author::preset::settings_page(), "run `haze preset settings > docs/settings.md`");
 }
 
 #[test]
-fn the_committed_schema_is_the_programs() {
+fn committed_preset_schema_matches_the_program() {
     let committed = std::fs::read_to_string(file("presets", "preset.schema.json")).unwrap();
     assert!(
         committed.trim_end() == haze_author::preset::schema(),

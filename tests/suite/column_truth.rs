@@ -1,5 +1,5 @@
-//! A column of many puffs beside a path trace of all their densities together: what ramps and six-way maps are off by in a scene, and
-//! how much of it is that puffs shade each other.
+//! Compares a column of many puffs, lit by ramps or by six-way maps, with a path trace of their summed densities, and
+//! measures how much of the error comes from puffs that do not shadow each other.
 
 use std::convert::Infallible;
 use std::f32::consts::TAU;
@@ -20,10 +20,10 @@ use haze_author::sprite::six_way::six_way_layout;
 use haze_reference;
 
 const LIGHTS: usize = 8;
-/// Moments of the flipbook that the puffs are.
+/// Flipbook frames in use; each puff shows one of them.
 const FRAMES: u32 = 2;
 
-/// Puffs in a cube of 2 metres, and what it is traced with.
+/// Puffs in a cube with sides of 2 m, and the parameters to path-trace them.
 struct Column {
     particles: Vec<Particle>,
     recipe: SpriteRecipe,
@@ -31,8 +31,8 @@ struct Column {
     path_trace: PathTrace,
 }
 
-/// One picture for each light: linear, times coverage.
-type Pictures = Vec<Picture<Vec3>>;
+/// One image per light: linear radiance, premultiplied by coverage.
+type LightImages = Vec<Picture<Vec3>>;
 
 impl Column {
     fn new(medium: Medium, size: u32, samples: u32) -> Self {
@@ -64,8 +64,8 @@ impl Column {
         SpriteRecipe { size: self.recipe.size / 2, ..self.recipe.clone() }.volume(frame as f32)
     }
 
-    /// All puffs' densities together.
-    fn truth(&self) -> Pictures {
+    /// Path trace of the summed densities of all puffs.
+    fn truth(&self) -> LightImages {
         let puffs: Vec<_> = (0..FRAMES).map(|frame| self.puff(frame)).collect();
         let side = self.path_trace.size;
         let mut all = Volume { size: UVec3::splat(side), densities: vec![0.0; side.pow(3) as usize] };
@@ -75,7 +75,7 @@ impl Column {
             let density = |puff: &Particle| {
                 let local = (place - puff.position) / puff.radius;
                 let is_inside = local.abs().max_element() < 1.0;
-                // A smaller puff of the same looks is denser.
+                // Divided by the radius, so that the optical depth through a puff does not depend on its size.
                 if is_inside { puffs[puff.frame as usize].density(local) / puff.radius } else { 0.0 }
             };
             all.densities[index as usize] = self.particles.iter().map(density).sum();
@@ -83,8 +83,9 @@ impl Column {
         self.trace(&all, &self.path_trace).light
     }
 
-    /// Every puff path-traced alone, one over the other: all but what they do to each other's light.
-    fn alone(&self) -> Pictures {
+    /// Every puff path-traced separately, composited back to front. Correct, except that puffs neither shadow nor light
+    /// each other.
+    fn puffs_alone(&self) -> LightImages {
         let path_trace = PathTrace { size: self.recipe.size / 2, ..self.path_trace };
         let puffs: Vec<_> = (0..FRAMES).map(|frame| self.trace(&self.puff(frame), &path_trace)).collect();
         let mut sorted: Vec<_> = self.particles.iter().collect();
@@ -109,8 +110,8 @@ impl Column {
         (0..LIGHTS).map(of_light).collect()
     }
 
-    /// As the renderer draws it.
-    fn drawn(&self, settings: &Settings, material: &MaterialAssets) -> Pictures {
+    /// The column drawn by the CPU renderer.
+    fn drawn(&self, settings: &Settings, material: &MaterialAssets) -> LightImages {
         let size = UVec2::splat(self.path_trace.size);
         let view = Mat4::from_translation(vec3(0.0, 0.0, -3.0));
         let view = View::new(view, orthographic(-1.0, 1.0, -1.0, 1.0, 0.1, 10.0), size);
@@ -132,7 +133,8 @@ impl Column {
         lights().into_iter().map(of_light).collect()
     }
 
-    fn drawn_by(&self, medium: &str) -> [Pictures; 2] {
+    /// The column drawn with the ramps fitted to a medium, and with six-way maps of that medium.
+    fn drawn_with_ramps_and_six_way(&self, medium: &str) -> [LightImages; 2] {
         let mut settings = Settings { boost: 1.0, technique: Technique::Hard, ..Settings::default() };
         settings.accumulate.scale = 1;
         settings.diffuse.backlight = Backlight::Ramp;
@@ -158,22 +160,24 @@ impl Column {
     }
 }
 
-/// All round at the height of the column, the first at the viewer.
+/// Directions to the lights: a horizontal ring, the first towards the viewer.
 fn lights() -> Vec<Vec3> {
     let turns = (0..LIGHTS).map(|index| index as f32 * TAU / LIGHTS as f32);
     turns.map(|turn| vec3(turn.sin(), 0.0, turn.cos())).collect()
 }
 
-/// Brightness by light, as shares of that of the first.
-fn angles(lights: &[LightResponse]) -> Vec<f32> {
+/// Brightness under each light relative to the first, rounded to 0.01.
+fn relative_brightness(lights: &[LightResponse]) -> Vec<f32> {
     lights.iter().map(|light| (light.shown / lights[0].shown * 100.0).round() / 100.0).collect()
 }
 
-fn tell(medium: &str, size: u32, samples: u32) -> [Response; 4] {
+/// Prints how far ramps, six-way maps and puffs alone are from the path trace, and six-way maps from puffs alone;
+/// returns the four responses in that order.
+fn compare_medium(medium: &str, size: u32, samples: u32) -> [Response; 4] {
     let named = MEDIA.iter().find(|named| named.name == medium).unwrap();
     let column = Column::new(named.medium, size, samples);
-    let (truth, alone) = (column.truth(), column.alone());
-    let [ramps, six_way] = column.drawn_by(medium);
+    let (truth, alone) = (column.truth(), column.puffs_alone());
+    let [ramps, six_way] = column.drawn_with_ramps_and_six_way(medium);
     if let Some(folder) = std::env::var_os("HAZE_LOOK") {
         save(Path::new(&folder), medium, &[&truth, &alone, &ramps, &six_way]);
     }
@@ -182,7 +186,7 @@ fn tell(medium: &str, size: u32, samples: u32) -> [Response; 4] {
         ("ramps", &ramps, &truth),
         ("six-way", &six_way, &truth),
         ("puffs alone", &alone, &truth),
-        ("six-way beside puffs alone", &six_way, &alone),
+        ("six-way against puffs alone", &six_way, &alone),
     ];
     let [_, responses @ ..] = all.map(|(what, shown, truth)| {
         let response = Response::new(shown, truth);
@@ -191,15 +195,16 @@ fn tell(medium: &str, size: u32, samples: u32) -> [Response; 4] {
             "{medium}: {what} {:.1} %, pixels {:.0} %, by angle {:?}",
             100.0 * error,
             100.0 * pixel_error,
-            angles(lights)
+            relative_brightness(lights)
         );
         response
     });
     responses
 }
 
-/// Rows: truth, puffs alone, ramps, six-way; each as bright as the truth.
-fn save(folder: &Path, medium: &str, rows: &[&Pictures]) {
+/// Writes a comparison image. Rows: truth, puffs alone, ramps, six-way; each exposed to match the truth. One column
+/// per light.
+fn save(folder: &Path, medium: &str, rows: &[&LightImages]) {
     let side = rows[0][0].size.x;
     let white =
         1.3 * rows[0].iter().flat_map(|picture| &picture.texels).fold(0.0, |most: f32, texel| most.max(texel.x));
@@ -217,17 +222,27 @@ fn save(folder: &Path, medium: &str, rows: &[&Pictures]) {
 }
 
 #[test]
-fn most_of_what_is_wrong_in_a_column_is_that_puffs_do_not_shade_each_other() {
-    let [_, six_way, alone, beside_alone] = tell("ash", 48, 12);
-    assert!(six_way.error > beside_alone.error, "{} {}", six_way.error, beside_alone.error);
-    assert!(alone.pixel_error > 0.5 * six_way.pixel_error, "{} {}", alone.pixel_error, six_way.pixel_error);
+fn most_six_way_error_in_a_column_is_missing_shadowing_between_puffs() {
+    let [_, six_way, alone, against_alone] = compare_medium("ash", 48, 12);
+    assert!(
+        six_way.error > against_alone.error,
+        "six-way {}, against puffs alone {}",
+        six_way.error,
+        against_alone.error
+    );
+    assert!(
+        alone.pixel_error > 0.5 * six_way.pixel_error,
+        "puffs alone {}, six-way {}",
+        alone.pixel_error,
+        six_way.pixel_error
+    );
 }
 
-/// What docs/light.md has.
+/// Prints the table of columns in docs/light.md. With `HAZE_LOOK=folder` it also writes a comparison image per medium.
 #[test]
 #[ignore = "takes some minutes"]
-fn columns_of_all_media() {
+fn prints_column_errors_for_every_medium() {
     for named in MEDIA {
-        tell(named.name, 64, 48);
+        compare_medium(named.name, 64, 48);
     }
 }

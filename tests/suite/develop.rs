@@ -1,4 +1,4 @@
-//! What a window shows is what the program writes.
+//! Compares the tonemap on the GPU, for windows, with the tonemap on the CPU, for files.
 
 use glam::{UVec2, Vec2, Vec4};
 use haze::settings::ShadeTree;
@@ -13,7 +13,8 @@ use crate::host::as_floats;
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
-/// The first shot developed on the GPU beside the second, in the middle of a larger target; its code.
+/// Tonemaps two rendered shots on the GPU into a rectangle inside a larger target; returns the rectangle's pixels,
+/// sRGB-encoded.
 fn on_screen(a: (&Stage, &Shot), b: (&Stage, &Shot), shown: Shown) -> Vec<Vec4> {
     let device = &gpu().device;
     let format = wgpu::TextureFormat::Rgba8Unorm;
@@ -58,7 +59,7 @@ fn shot(preset: &str, shade_tree: ShadeTree) -> (Stage, Shot) {
 }
 
 #[test]
-fn a_window_shows_what_the_program_writes() {
+fn window_shows_the_same_pixels_as_a_written_file() {
     for stage in [ShadeTree::Final, ShadeTree::Normals] {
         let (stage, shot) = shot("column", stage);
         let written = develop(&stage.read(gpu(), &shot).unwrap(), &shot);
@@ -67,17 +68,17 @@ fn a_window_shows_what_the_program_writes() {
         for (written, shown) in written.pixels().zip(shown) {
             for (written, shown) in written.0.into_iter().zip(shown.to_array()) {
                 let apart = (f32::from(written) - shown * 255.0).abs();
-                assert!(apart < 1.5, "{written} {}", shown * 255.0);
+                assert!(apart < 1.5, "file {written}, window {}", shown * 255.0);
                 off += u32::from(apart > 0.5);
             }
         }
-        // Where the driver's power function falls to the other side of a half.
-        assert!(off < SIZE.element_product() / 100, "{off}");
+        // The driver's power function may round to the other side of a half.
+        assert!(off < SIZE.element_product() / 100, "{off} channels differ");
     }
 }
 
 #[test]
-fn two_pictures_side_by_side_and_how_they_differ() {
+fn split_and_difference_views_combine_both_images() {
     let (a, b) = (shot("column", ShadeTree::Final), shot("column", ShadeTree::Amount));
     let alone = |of: &(Stage, Shot)| on_screen((&of.0, &of.1), (&of.0, &of.1), Shown::default());
     let (left, right) = (alone(&a), alone(&b));
@@ -89,14 +90,14 @@ fn two_pictures_side_by_side_and_how_they_differ() {
     }
     let differing = both(Shown { difference: 2.0, ..Shown::default() });
     for ((texel, a), b) in differing.iter().zip(&left).zip(&right) {
-        // Two roundings of dithered code, doubled.
+        // Two dithered 8-bit roundings, doubled by `difference`.
         let expected = ((*a - *b).abs() * 2.0).min(Vec4::ONE);
-        assert!((*texel - expected).truncate().abs().max_element() < 6.5 / 255.0, "{texel} {expected}");
+        assert!((*texel - expected).truncate().abs().max_element() < 6.5 / 255.0, "{texel}, expected {expected}");
     }
 }
 
 #[test]
-fn stages_of_a_context_upload_a_picture_once() {
+fn renderers_of_one_context_share_uploaded_images() {
     let context = StageContext::new(&gpu().adapter, &gpu().device, &gpu().queue);
     let shot = Shot::load("column", SIZE).unwrap();
     let drawn = || {
@@ -106,11 +107,11 @@ fn stages_of_a_context_upload_a_picture_once() {
         });
         (stage, created)
     };
-    // Compiles all there is.
+    // The first draw compiles all pipelines.
     let (first, _) = drawn();
     let (second, beside) = drawn();
     drop((first, second));
-    // None is left that has them.
+    // No renderer that holds the uploads is left, so they are made again.
     let (_, alone) = drawn();
-    assert!(beside < alone, "{beside} {alone}");
+    assert!(beside < alone, "created {beside} objects beside another renderer, {alone} alone");
 }

@@ -1,6 +1,6 @@
-//! Pictures of every preset as they were when someone last looked at them and was content.
+//! Golden images: both renderers must stay within a tolerance of images that were reviewed by eye.
 //!
-//! `HAZE_BLESS=1 cargo test goldens` writes them anew; look at each before committing it.
+//! `HAZE_BLESS=1 cargo test goldens` writes them again; look at each before you commit it.
 
 use std::path::{Path, PathBuf};
 
@@ -17,18 +17,18 @@ use crate::presets::{drawn, shot};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
-/// Largest golden, bytes.
+/// Largest size of a golden file, bytes.
 const LARGEST: u64 = 64 << 10;
 
-/// Root of the mean square difference, in steps of 8 bits. The CPU renderer and llvmpipe with its 8-bit filter weights
-/// are 0.25 to 0.60 apart on the presets; a diffuse ramp shifted by a 32nd of its length is 1.9.
+/// Accepted RMS difference, in steps of 8 bits. On the presets, the CPU renderer and llvmpipe, which has 8-bit filter
+/// weights, differ by 0.25 to 0.60. A diffuse ramp shifted by 1/32 of its length differs by 1.9.
 const TOLERANCE: f64 = 0.9;
 
 fn golden(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/goldens").join(format!("{name}.png"))
 }
 
-/// The bare picture, clamped to 1 and encoded: no film curve to hide behind.
+/// Clamps to 0..1 and encodes as sRGB. There is no tonemap, because it would compress differences.
 fn encode(picture: &Picture<Vec4>) -> RgbImage {
     let mut encoded = RgbImage::new(picture.size.x, picture.size.y);
     for (texel, pixel) in picture.texels.iter().zip(encoded.pixels_mut()) {
@@ -38,6 +38,7 @@ fn encode(picture: &Picture<Vec4>) -> RgbImage {
     encoded
 }
 
+/// RMS difference over all channels, in steps of 8 bits.
 fn difference(a: &RgbImage, b: &RgbImage) -> f64 {
     assert_eq!(a.dimensions(), b.dimensions());
     let squares = a.iter().zip(b.iter()).map(|(&a, &b)| (f64::from(a) - f64::from(b)).powi(2));
@@ -45,8 +46,9 @@ fn difference(a: &RgbImage, b: &RgbImage) -> f64 {
 }
 
 #[test]
-fn techniques_look_as_they_did() {
-    // Not depth_sprite_hard: its cut follows the filter's 8-bit weights, a pixel here or there.
+fn techniques_match_their_golden_images() {
+    // depth_sprite_hard is left out: its hard edge depends on the texture filter's 8-bit weights, so single pixels
+    // differ.
     for technique in [Technique::DepthSpriteSoft, Technique::SphericalBillboard, Technique::VolumetricSoft] {
         let mut shot = shot("crates", SIZE);
         shot.preset.systems[0].settings.technique = technique;
@@ -61,7 +63,8 @@ fn compare(name: &str, shot: &Shot) {
         write_png(&path, &DynamicImage::ImageRgb8(on_gpu), Effort::Small).unwrap();
         return;
     }
-    let golden = read_png(&path).unwrap_or_else(|error| panic!("no golden: {error}")).to_rgb8();
+    let golden =
+        read_png(&path).unwrap_or_else(|error| panic!("no golden image; HAZE_BLESS=1 writes it: {error}")).to_rgb8();
     assert!(std::fs::metadata(&path).unwrap().len() <= LARGEST, "{name} is larger than {LARGEST} bytes");
     let on_cpu = encode(&shot.render_on_cpu().unwrap());
     for (renderer, picture) in [("GPU", &on_gpu), ("CPU", &on_cpu)] {
@@ -70,27 +73,27 @@ fn compare(name: &str, shot: &Shot) {
         if difference > TOLERANCE {
             let found = path.with_extension("found.png");
             write_png(&found, &DynamicImage::ImageRgb8(picture.clone()), Effort::Small).unwrap();
-            panic!("{name} on the {renderer} is {difference:.2} off; see {}", found.display());
+            panic!("{name} on the {renderer} is {difference:.2} of 255 off; see {}", found.display());
         }
     }
 }
 
 #[test]
-fn presets_look_as_they_did() {
+fn presets_match_their_golden_images() {
     for preset in builtin::PRESETS {
         compare(preset.name, &shot(preset.name, SIZE));
     }
 }
 
 #[test]
-fn normals_look_as_they_did() {
+fn normals_match_their_golden_image() {
     let mut shot = shot("column", SIZE);
     shot.shade_tree = ShadeTree::Normals;
     compare("column_normals", &shot);
 }
 
 #[test]
-fn a_ramp_shifted_by_a_32nd_is_seen() {
+fn ramp_shifted_by_a_32nd_exceeds_the_tolerance() {
     let shot = shot("column", SIZE);
     let mut mutant = shot.clone();
     for material in &mut mutant.materials {

@@ -1,4 +1,4 @@
-//! What light depends on, and what it must not.
+//! Dependence of lighting on other particles, light range and intensity, the world's origin and the up vector.
 
 use glam::{UVec2, Vec3, Vec4, vec3};
 use haze::picture::Picture;
@@ -16,44 +16,49 @@ fn largest_difference(a: &Picture<Vec4>, b: &Picture<Vec4>) -> f32 {
 }
 
 #[test]
-fn what_cannot_be_seen_lights_nothing_anew() {
-    let alone = Stage::new(SIZE);
+fn invisible_particles_do_not_change_the_image() {
+    let original = Stage::new(SIZE);
     let dead = Particle { position: vec3(-1000.0, -1000.0, -1000.0), ..Particle::default() };
     for unseen in
         [Particle { radius: 0.0, ..dead }, Particle { amount: 0.0, ..dead }, Particle { amount: -1.0, ..dead }]
     {
-        let mut beside = alone.clone();
-        beside.particles.push(unseen);
-        assert_eq!(largest_difference(&alone.on_cpu(), &beside.on_cpu()), 0.0, "{unseen:?}");
+        let mut with_particle = original.clone();
+        with_particle.particles.push(unseen);
+        assert_eq!(largest_difference(&original.on_cpu(), &with_particle.on_cpu()), 0.0, "{unseen:?}");
     }
 }
 
 #[test]
-fn an_ember_far_behind_lights_nothing_anew() {
-    let alone = Stage::new(SIZE);
-    let mut beside = alone.clone();
+fn tiny_particle_far_behind_barely_changes_the_image() {
+    let original = Stage::new(SIZE);
+    let mut with_particle = original.clone();
     let ember = Particle { position: vec3(1.9, 0.5, -12.0), radius: 0.02, amount: 0.01, ..Particle::default() };
-    beside.particles.push(ember);
-    let difference = largest_difference(&alone.on_cpu(), &beside.on_cpu());
-    assert!(difference < 0.004, "{difference}");
+    with_particle.particles.push(ember);
+    let difference = largest_difference(&original.on_cpu(), &with_particle.on_cpu());
+    assert!(difference < 0.004, "the image changes by {difference}");
 }
 
 #[test]
-fn a_sprite_that_is_born_comes_slowly() {
-    let alone = Stage::new(SIZE);
+fn new_sprite_changes_the_image_in_proportion_to_its_amount() {
+    let original = Stage::new(SIZE);
     let step = |amount| {
-        let mut beside = alone.clone();
-        // In front of all others, and twice their size.
-        beside.particles.push(Particle { position: vec3(0.0, 0.0, -3.0), radius: 1.0, amount, ..Particle::default() });
-        largest_difference(&alone.on_cpu(), &beside.on_cpu())
+        let mut with_particle = original.clone();
+        // In front of all other sprites, and larger than any of them.
+        with_particle.particles.push(Particle {
+            position: vec3(0.0, 0.0, -3.0),
+            radius: 1.0,
+            amount,
+            ..Particle::default()
+        });
+        largest_difference(&original.on_cpu(), &with_particle.on_cpu())
     };
-    // A new sprite changes what is seen as its own amount does.
-    assert!(step(0.001) < 0.004, "{}", step(0.001));
-    assert!(step(0.1) > 0.02, "{}", step(0.1));
+    // The image changes about as much as the new sprite's amount.
+    assert!(step(0.001) < 0.004, "amount 0.001 changes the image by {}", step(0.001));
+    assert!(step(0.1) > 0.02, "amount 0.1 changes the image by {}", step(0.1));
 }
 
 #[test]
-fn a_depth_that_is_no_number_is_refused_by_name() {
+fn nan_depth_is_an_error_that_names_the_field() {
     let stage = Stage::new(SIZE);
     let system = System { depth: Some(f32::NAN), ..System::new(&stage.particles, &stage.settings, &stage.material) };
     let depth = stage.ndc_depth();
@@ -63,7 +68,7 @@ fn a_depth_that_is_no_number_is_refused_by_name() {
 }
 
 #[test]
-fn a_glow_fades_out_at_the_range_of_its_light() {
+fn glow_changes_continuously_with_the_lights_range() {
     let glow = |range: f32| {
         let mut stage = Stage::new(SIZE);
         stage.shade_tree = ShadeTree::SpecularScatter;
@@ -73,17 +78,17 @@ fn a_glow_fades_out_at_the_range_of_its_light() {
         Picture { size: SIZE, texels: picture.texels.iter().map(|texel| *texel - BACKDROP).collect() }
     };
     let brightest = largest_difference(&glow(f32::INFINITY), &glow(0.01));
-    assert!(brightest > 0.1, "{brightest}");
-    // 5 cm a step.
+    assert!(brightest > 0.1, "the glow adds at most {brightest}");
+    // The range grows by 5 cm per step.
     for step in 0..120 {
         let range = 0.1 + 0.05 * step as f32;
         let change = largest_difference(&glow(range), &glow(range + 0.05));
-        assert!(change < 0.1 * brightest, "{range}: {change} of {brightest}");
+        assert!(change < 0.1 * brightest, "range {range} m: the glow changes by {change} of {brightest}");
     }
 }
 
-/// Share of the pixels whose brightest channel differs by more than a hundredth of itself.
-fn share_apart(a: &Picture<Vec4>, b: &Picture<Vec4>) -> f32 {
+/// Share of pixels in which a channel differs by more than 1 % of the pixel's brightest channel.
+fn differing_share(a: &Picture<Vec4>, b: &Picture<Vec4>) -> f32 {
     let apart = |(a, b): (&Vec4, &Vec4)| {
         let (a, b) = (a.truncate(), b.truncate());
         (a - b).abs().max_element() > 0.01 * a.max(b).max_element().max(0.05)
@@ -92,7 +97,7 @@ fn share_apart(a: &Picture<Vec4>, b: &Picture<Vec4>) -> f32 {
 }
 
 #[test]
-fn lights_of_every_strength_agree() {
+fn gpu_and_cpu_agree_for_lights_of_every_intensity() {
     let sun = Light { kind: LightKind::Directional, direction: vec3(-1.0, -1.0, -0.5), ..Light::default() };
     let lamp = Light { position: vec3(0.5, 0.3, -8.5), range: f32::INFINITY, radius: 0.0, ..Light::default() };
     for &mode in DiffuseMode::ALL {
@@ -102,22 +107,22 @@ fn lights_of_every_strength_agree() {
                 stage.lights = vec![Light { intensity, ..sun }, Light { intensity, ..lamp }];
                 (stage.settings.diffuse.mode, stage.settings.path) = (mode, path);
                 let (on_gpu, on_cpu) = (stage.on_gpu(gpu()).picture, stage.on_cpu());
-                assert!(on_gpu.texels.iter().all(|texel| texel.is_finite()), "{} {intensity}", mode.name());
-                let apart = share_apart(&on_gpu, &on_cpu);
-                println!("{} {} {intensity:e}: {apart:.4}", mode.name(), path.name());
-                assert!(apart < 0.01, "{} {} {intensity:e}: {apart}", mode.name(), path.name());
+                assert!(on_gpu.texels.iter().all(|texel| texel.is_finite()), "{} {intensity}: not finite", mode.name());
+                let apart = differing_share(&on_gpu, &on_cpu);
+                println!("{} {} {intensity:e}: {apart:.4} of the pixels differ", mode.name(), path.name());
+                assert!(apart < 0.01, "{} {} {intensity:e}: {apart} of the pixels differ", mode.name(), path.name());
             }
         }
     }
 }
 
-/// Smoke with noise in it, and the camera, moved away from the world's origin.
+/// Volumetric smoke, lights and camera, all translated by `by`, metres.
 fn moved(by: Vec3) -> Stage {
     let mut stage = Stage::new(SIZE);
     stage.settings.technique = Technique::VolumetricSoft;
     (stage.settings.volumetric.noise_size, stage.settings.volumetric.noise_octaves) = (1.5, 3);
     for particle in &mut stage.particles {
-        // Places that f32 has there, too.
+        // Multiples of 1/128 m stay exact in f32 after the translation.
         particle.position = (particle.position * 128.0).round() / 128.0 + by;
     }
     for light in &mut stage.lights {
@@ -128,27 +133,27 @@ fn moved(by: Vec3) -> Stage {
 }
 
 #[test]
-fn noise_is_as_fine_far_from_the_origin() {
-    // Whole tiles, 49 km.
+fn noise_keeps_its_precision_far_from_the_origin() {
+    // Whole multiples of the 1.5 m noise tile, so the image must be the same; 49 km.
     let by = vec3(49_152.0, -24_576.0, 49_152.0);
     let (here, there) = (moved(Vec3::ZERO), moved(by));
     let (on_cpu, on_gpu) = (psnr(&here.on_cpu(), &there.on_cpu()), psnr(&here.on_cpu(), &there.on_gpu(gpu()).picture));
     println!("49 km away: {on_cpu:.1} dB, on the GPU {on_gpu:.1} dB");
-    assert!(on_cpu > 90.0 && on_gpu > AGREEMENT, "{on_cpu} {on_gpu}");
+    assert!(on_cpu > 90.0 && on_gpu > AGREEMENT, "CPU {on_cpu} dB, GPU {on_gpu} dB");
 }
 
 #[test]
-fn noise_rises_along_up() {
-    let risen = |up: Vec3, time: f32| {
+fn noise_scrolls_along_the_up_vector() {
+    let scrolled = |up: Vec3, time: f32| {
         let mut stage = moved(Vec3::ZERO);
         (stage.up, stage.time, stage.settings.volumetric.scroll_speed) = (up, time, 0.25);
         stage.on_cpu()
     };
-    let still = risen(Vec3::Y, 0.0);
-    assert!(psnr(&risen(Vec3::Y, 1.0), &risen(Vec3::Z, 1.0)) < 60.0);
-    // A tile of 1.5 m, at 0.25 m a second.
+    let still = scrolled(Vec3::Y, 0.0);
+    assert!(psnr(&scrolled(Vec3::Y, 1.0), &scrolled(Vec3::Z, 1.0)) < 60.0);
+    // A noise tile of 1.5 m that scrolls by 0.25 m/s repeats every 6 s.
     for up in [Vec3::Y, Vec3::Z * 7.0, Vec3::NEG_X] {
-        assert!(psnr(&still, &risen(up, 6.0)) > 80.0, "{up}");
-        assert!(psnr(&still, &risen(up, 3.0)) < 60.0, "{up}");
+        assert!(psnr(&still, &scrolled(up, 6.0)) > 80.0, "up {up}: differs after 6 s");
+        assert!(psnr(&still, &scrolled(up, 3.0)) < 60.0, "up {up}: the same after 3 s");
     }
 }

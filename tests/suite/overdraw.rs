@@ -1,4 +1,4 @@
-//! How many fragments sprites make, worked out on the CPU, against those that the GPU counts.
+//! Compares the CPU's estimate of sprite fragments ([`Overdraw`]) with fragments counted by the GPU.
 
 use glam::camera::rh::proj::directx;
 use glam::{Mat4, UVec2, Vec4, vec3};
@@ -14,7 +14,7 @@ use crate::stage::{BACKDROP, DepthKind, Stage};
 
 const SIZE: UVec2 = UVec2::new(320, 180);
 
-/// Sprites in front of all of the scene, none of whose fragments is discarded, and as many texels as pixels.
+/// Sprites at scale 1 in front of the whole scene and without near fade, so that no fragment is discarded.
 fn stage() -> Stage {
     let mut stage = Stage::new(SIZE);
     stage.settings.accumulate.scale = 1;
@@ -32,18 +32,21 @@ fn overdraw(stage: &Stage) -> Overdraw {
     stage.on_gpu(gpu()).renderer.overdraw()
 }
 
-/// Layers at every pixel of a picture of the stage of that name.
+/// Decodes the number of layers of every covered pixel from an image of the overdraw debug view.
 fn layers(picture: &Picture<Vec4>) -> Vec<u32> {
     let colours: Vec<_> = (0..=60).map(|layers| overdraw_colour(layers as f32)).collect();
     let layers = |texel: &Vec4| {
         let off = |colour: &glam::Vec3| (texel.truncate() - colour).abs().max_element();
-        // Half floats; one layer more is another colour by 0.02 at least.
-        colours.iter().position(|colour| off(colour) < 0.005).unwrap_or_else(|| panic!("{texel}")) as u32
+        // Tolerance for half floats; the colours of two layer counts differ by at least 0.02.
+        colours
+            .iter()
+            .position(|colour| off(colour) < 0.005)
+            .unwrap_or_else(|| panic!("{texel} is the colour of no layer count")) as u32
     };
     picture.texels.iter().filter(|texel| **texel != BACKDROP).map(layers).collect()
 }
 
-/// Cameras and sprites of every kind.
+/// Stages with different projections and positions of sprites.
 fn cases() -> Vec<(&'static str, Stage)> {
     let off_centre = directx::frustum(-0.05, 0.15, -0.1, 0.06, 0.1, 80.0);
     let orthographic = directx::orthographic(-1.6, 1.2, -0.9, 0.7, 0.1, 80.0);
@@ -52,7 +55,7 @@ fn cases() -> Vec<(&'static str, Stage)> {
     depth_sprites.settings.technique = Technique::DepthSpriteSoft;
     vec![
         ("in sight", stage()),
-        ("round the eye", moved(stage(), 2.6)),
+        ("around the camera", moved(stage(), 2.6)),
         ("slabs through the near plane", depth_sprites),
         ("off centre", seen(off_centre)),
         ("orthographic", seen(orthographic)),
@@ -60,54 +63,61 @@ fn cases() -> Vec<(&'static str, Stage)> {
 }
 
 #[test]
-fn fragments_are_as_many_as_the_stage_of_that_name_counts() {
+fn estimated_fragments_match_the_overdraw_view() {
     for (name, stage) in cases() {
         let drawn = stage.on_gpu(gpu());
         let found = drawn.renderer.overdraw();
         let counted: u32 = layers(&drawn.picture).iter().sum();
         println!("{name}: {found:?}, counted {counted}, {:.2} layers", found.mean());
-        // How many centres of pixels lie in a square differs from its area by some square root of its outline: of 60 squares with
-        // outlines of 400 pixels, by 150 of 100 000 altogether.
+        // The number of pixel centres in a square differs from its area by about the square root of its outline in
+        // pixels. For 60 squares with outlines of 400 pixels that is about 150 of 100 000 fragments in total.
         assert!((found.fragments / f64::from(counted) - 1.0).abs() < 0.003, "{name}: {found:?}, counted {counted}");
     }
 }
 
 #[test]
-fn layers_are_in_the_mean_over_the_pixels_of_the_box() {
+fn mean_overdraw_is_taken_over_the_pixels_of_the_bounding_box() {
     let stage = stage();
     let drawn = stage.on_gpu(gpu());
     let found = drawn.renderer.overdraw();
     let in_box = layers(&drawn.picture);
-    // Seen straight on, the box is a rectangle; its edges may be anywhere in their pixels.
+    // Seen head-on, the bounding box is a rectangle; its edges may lie anywhere within their pixels.
     let outline = 2 * (SIZE.x + SIZE.y);
-    assert!((found.texels - in_box.len() as f64).abs() <= f64::from(outline), "{found:?}, drawn {}", in_box.len());
+    assert!(
+        (found.texels - in_box.len() as f64).abs() <= f64::from(outline),
+        "{found:?}, drawn pixels {}",
+        in_box.len()
+    );
     assert_eq!(found.mean(), found.fragments / found.texels);
     assert_eq!(Overdraw::default().mean(), 0.0);
 }
 
 #[test]
-fn layers_do_not_depend_on_the_resolution_and_are_counted_as_often_as_they_are_drawn() {
+fn overdraw_is_independent_of_scale_and_counts_repeated_draws() {
     let of = |change: &dyn Fn(&mut Stage)| {
         let mut stage = stage();
-        // Whole squares: the coarser a mip level, the further a sprite reaches at it.
+        // The debug sprite fills its square at every mip level. Other sprites extend further at coarser levels.
         stage.settings.sprite.debug_sprite = true;
         change(&mut stage);
         overdraw(&stage)
     };
     let whole = of(&|_| {});
     let coarse = of(&|stage| stage.settings.accumulate.scale = 4);
-    // Areas are exact; sides of the box are rounded up to whole texels.
-    assert!((16.0 * coarse.fragments / whole.fragments - 1.0).abs() < 1.0e-3, "{coarse:?} {whole:?}");
-    assert!((coarse.mean() / whole.mean() - 1.0).abs() < 0.05, "{coarse:?} {whole:?}");
+    // Sprite areas are exact; the box's sides are rounded up to whole texels.
+    assert!((16.0 * coarse.fragments / whole.fragments - 1.0).abs() < 1.0e-3, "scale 4 {coarse:?}, scale 1 {whole:?}");
+    assert!((coarse.mean() / whole.mean() - 1.0).abs() < 0.05, "scale 4 {coarse:?}, scale 1 {whole:?}");
     let forward = of(&|stage| (stage.settings.path, stage.shade_tree) = (Path::Forward, ShadeTree::Final));
-    // Without the texels of the border that a target has.
-    assert!((forward.fragments / whole.fragments - 1.0).abs() < 0.01 && forward.texels == whole.texels, "{forward:?}");
-    // A linear target as well: OpenGL reads no depth buffer that it tests.
+    // The forward path has no accumulation target, and so none of its border texels.
+    assert!(
+        (forward.fragments / whole.fragments - 1.0).abs() < 0.01 && forward.texels == whole.texels,
+        "forward {forward:?}"
+    );
+    // Passes the linear target too: OpenGL cannot sample a depth buffer that the same pass tests.
     let host_depth =
         of(&|stage| (stage.settings.accumulate.depth_source, stage.depth) = (DepthSource::Host, DepthKind::Both));
     assert!((host_depth.fragments / whole.fragments - 1.0).abs() < 0.01 && host_depth.texels == whole.texels);
     assert_eq!(of(&|stage| stage.settings.sprite.debug_loop = 3).fragments, 3.0 * whole.fragments);
-    // Nothing of what is not drawn, out of sight or not known.
+    // Sprites without amount, out of view, or in a buffer that the CPU cannot read add nothing.
     let hide = |particle: &mut Particle| particle.amount = 0.0;
     assert_eq!(of(&|stage| stage.particles.iter_mut().for_each(hide)), Overdraw::default());
     assert_eq!(of(&|stage| stage.particles.iter_mut().for_each(|p| p.position.z = 9.0)), Overdraw::default());
@@ -120,17 +130,17 @@ fn layers_do_not_depend_on_the_resolution_and_are_counted_as_often_as_they_are_d
     assert_eq!(host.renderer.overdraw(), Overdraw::default());
 }
 
-/// A device that counts; `None` where the adapter cannot.
+/// Device with pipeline statistics queries; `None` if the adapter lacks them.
 fn counting_gpu() -> Option<Headless> {
     let gpu = Headless::with(wgpu::Limits::default(), wgpu::Features::PIPELINE_STATISTICS_QUERY).unwrap();
     let counts = gpu.device.features().contains(wgpu::Features::PIPELINE_STATISTICS_QUERY);
     if !counts {
-        println!("{} counts no fragments", gpu.description());
+        println!("skipped: {} has no pipeline statistics queries", gpu.description());
     }
     counts.then_some(gpu)
 }
 
-/// Runs of the fragment shader while forward sprites are drawn.
+/// Fragment shader invocations while the host's pass draws forward sprites, and the CPU's estimate for that frame.
 fn shaded(gpu: &Headless, stage: &Stage) -> (u64, Overdraw) {
     let mut host = Host::new(gpu, stage).unwrap();
     let buffer = |usage| {
@@ -165,23 +175,23 @@ fn shaded(gpu: &Headless, stage: &Stage) -> (u64, Overdraw) {
     (bytemuck::pod_read_unaligned(&bytes), host.renderer.overdraw())
 }
 
-/// Sides of the stage's sprites, pixels.
+/// Side lengths of the sprites on screen, pixels.
 fn sides(stage: &Stage) -> Vec<f64> {
     let pixels_per_metre = |depth: f32| 0.5 * SIZE.y as f32 * stage.view.clip_from_view.y_axis.y / depth;
     let side = |particle: &Particle| 2.0 * particle.radius * pixels_per_metre(-particle.position.z);
     stage.particles.iter().map(|particle| f64::from(side(particle))).collect()
 }
 
-/// A GPU shades blocks of pixels, of which it counts all or those that are covered: blocks of 4 by 4 on llvmpipe, for each of the
-/// two triangles of a square. As ends are anywhere in their blocks, a triangle of legs s lies in blocks of s²/2 + 2s(b-1) + (b-1)²
-/// pixels in the mean.
+/// A GPU shades blocks of b by b pixels for each of the two triangles of a square (b = 4 on llvmpipe), and its query
+/// counts either all pixels of a block or only the covered ones. With edges at random positions in their blocks, a
+/// right triangle with legs of s pixels touches blocks of s²/2 + 2s(b-1) + (b-1)² pixels on average.
 #[test]
-fn fragments_are_as_many_as_the_gpu_shades() {
+fn estimated_fragments_match_the_gpus_shader_invocations() {
     let Some(gpu) = counting_gpu() else { return };
     let mut stage = moved(stage(), -6.0);
     (stage.settings.path, stage.shade_tree, stage.attach_depth) = (Path::Forward, ShadeTree::Final, false);
     stage.particles.iter_mut().for_each(|particle| particle.rotation = 0.0);
-    // Whole squares.
+    // The debug sprite fills its whole square.
     stage.settings.sprite.debug_sprite = true;
     let sides = sides(&stage);
     let (shaded, found) = shaded(&gpu, &stage);
@@ -189,11 +199,11 @@ fn fragments_are_as_many_as_the_gpu_shades() {
         let of_two = |own: f64| own * own + 4.0 * own * (side - 1.0) + 2.0 * (side - 1.0).powi(2);
         sides.iter().map(|own| of_two(*own)).sum::<f64>()
     };
-    // Areas by f32.
-    assert!((found.fragments / blocks(1.0) - 1.0).abs() < 1.0e-4, "{found:?} {}", blocks(1.0));
+    // The areas have f32 rounding.
+    assert!((found.fragments / blocks(1.0) - 1.0).abs() < 1.0e-4, "{found:?}, area of the squares {}", blocks(1.0));
     let off = [1.0, 2.0, 4.0].map(|side| (shaded as f64 / blocks(side) - 1.0).abs());
-    println!("{found:?}, shaded {shaded}, off by {off:?} of blocks of 1, 2, 4");
-    // A block more or less along a side is a 1/6 of a square, and a 1/50 of the sum of 60. Were they counted twice, or half of them,
-    // it would be far more.
-    assert!(off.iter().any(|off| *off < 0.02), "{found:?}, shaded {shaded}, off by {off:?}");
+    println!("{found:?}, shaded {shaded}, relative errors for blocks of 1, 2, 4: {off:?}");
+    // One block more or less along a side changes a square by 1/6, and the sum over 60 squares by 1/50. Counting twice
+    // or by half would be off by far more.
+    assert!(off.iter().any(|off| *off < 0.02), "{found:?}, shaded {shaded}, relative errors {off:?}");
 }

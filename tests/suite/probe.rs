@@ -1,4 +1,4 @@
-//! What is told of a pixel is what was drawn there.
+//! Checks that the pixel probe reports the values that the GPU drew.
 
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
 use haze::builtin;
@@ -14,7 +14,8 @@ use crate::common::{gpu, has_tiles};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
-/// A shot on the GPU: what came back, and pictures of its stages. `None` on OpenGL, which copies no depth back.
+/// Draws a shot on the GPU; returns the captured targets and an image of every debug view in `stages`. `None` on
+/// OpenGL, which cannot copy depth to a buffer.
 fn drawn(shot: &Shot, stages: &[ShadeTree]) -> Option<(Captured, Vec<Picture<Vec4>>)> {
     let gpu = gpu();
     let context = StageContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
@@ -28,7 +29,7 @@ fn drawn(shot: &Shot, stages: &[ShadeTree]) -> Option<(Captured, Vec<Picture<Vec
         assert_eq!(gpu.adapter.get_info().backend, wgpu::Backend::Gl);
         return None;
     };
-    // Another test's poll may be the one that brings it.
+    // The poll of another test's thread may be the one that completes the read-back.
     while !capture.has_arrived() {
         std::thread::yield_now();
     }
@@ -36,54 +37,57 @@ fn drawn(shot: &Shot, stages: &[ShadeTree]) -> Option<(Captured, Vec<Picture<Vec
     Some((capture.read().unwrap(), stages.iter().map(read).collect()))
 }
 
-/// Every third pixel each way.
+/// Every third pixel in x and in y.
 fn pixels() -> Vec<UVec2> {
     (0..SIZE.y).step_by(3).flat_map(|y| (0..SIZE.x).step_by(3).map(move |x| UVec2::new(x, y))).collect()
 }
 
-/// Steps of a half float that the blend unit may round by: one for each system, and one for the device's arithmetic.
+/// Accepted difference, in steps of a half float: the blend unit rounds once per system, and one step is for the
+/// device's arithmetic.
 const STEPS: f32 = 4.0;
 
-/// In steps of a half float.
+/// Largest difference of a channel, in steps of a half float.
 fn difference(a: Vec3, b: Vec3) -> f32 {
     let step = a.abs().max(b.abs()).max(Vec3::splat(1.0 / 16.0)) / 1024.0;
     ((a - b).abs() / step).max_element()
 }
 
-/// Share of pixels that may be off: edges of the box and of boxes in the scene fall to one side or the other by 1/256 pixel.
+/// Share of pixels that may differ by more. At edges of the bounding box and of boxes in the scene, the rasterizer's
+/// precision of 1/256 pixel decides what a pixel shows.
 const EDGES: f32 = 0.005;
 
-fn assert_alike(what: &str, told: impl Fn(&Probe) -> Option<Vec3>, probes: &[Probe], drawn: &Picture<Vec4>) {
+/// Asserts that `probed` of each probe equals the image at that pixel; skips probes for which it returns `None`.
+fn assert_matches_image(what: &str, probed: impl Fn(&Probe) -> Option<Vec3>, probes: &[Probe], drawn: &Picture<Vec4>) {
     let (mut seen, mut wrong, mut most) = (0, 0, 0.0_f32);
     for (probe, at) in probes.iter().zip(pixels()) {
-        let Some(told) = told(probe) else { continue };
-        let difference = difference(told, drawn.load(at.as_ivec2()).xyz());
+        let Some(probed) = probed(probe) else { continue };
+        let difference = difference(probed, drawn.load(at.as_ivec2()).xyz());
         (seen, most) = (seen + 1, most.max(difference));
         wrong += u32::from(difference > STEPS);
     }
-    println!("{what}: {wrong} of {seen} pixels, at most {most:.1} steps");
-    assert!(seen > 20, "{what}: {seen}");
-    assert!(wrong as f32 <= EDGES * seen as f32, "{what}: {wrong} of {seen} pixels, {most} steps");
+    println!("{what}: {wrong} of {seen} pixels differ, by up to {most:.1} steps");
+    assert!(seen > 20, "{what}: only {seen} pixels with smoke");
+    assert!(wrong as f32 <= EDGES * seen as f32, "{what}: {wrong} of {seen} pixels differ, by up to {most} steps");
 }
 
 #[test]
-fn the_colour_that_is_told_is_the_picture() {
+fn probed_colour_matches_the_image() {
     for preset in builtin::PRESETS {
         let shot = Shot::load(preset.name, SIZE).unwrap();
         let Some((captured, pictures)) = drawn(&shot, &[ShadeTree::Final]) else { return };
         let probes = captured.of(shot.clone()).probe(&pixels()).unwrap();
         if shot.preset.systems.iter().any(|system| system.settings.is_forward()) {
-            assert!(probes.iter().all(|probe| probe.colour.is_none()), "{}", preset.name);
+            assert!(probes.iter().all(|probe| probe.colour.is_none()), "{}: a colour of a forward system", preset.name);
             continue;
         }
-        assert_alike(preset.name, |probe| probe.colour.map(|colour| colour.xyz()), &probes, &pictures[0]);
+        assert_matches_image(preset.name, |probe| probe.colour.map(|colour| colour.xyz()), &probes, &pictures[0]);
     }
 }
 
 #[test]
-fn every_stage_is_told_as_it_is_shown() {
-    type Told = fn(&SystemProbe) -> Vec3;
-    let stages: [(ShadeTree, Told); 6] = [
+fn probed_values_match_every_debug_view() {
+    type Probed = fn(&SystemProbe) -> Vec3;
+    let stages: [(ShadeTree, Probed); 6] = [
         (ShadeTree::Amount, |probe| Vec3::splat(probe.amount)),
         (ShadeTree::Normals, |probe| (probe.normal * 0.5 + 0.5) * probe.coverage),
         (ShadeTree::Diffuse, |probe| probe.diffuse * probe.coverage),
@@ -111,21 +115,21 @@ fn every_stage_is_told_as_it_is_shown() {
         change(settings);
         let Some((captured, pictures)) = drawn(&shot, &stages.map(|(stage, _)| stage)) else { return };
         let probes = captured.of(shot.clone()).probe(&pixels()).unwrap();
-        for ((stage, told), picture) in stages.iter().zip(&pictures) {
+        for ((stage, probed), picture) in stages.iter().zip(&pictures) {
             let what = format!("{} {}, {index}", path.name(), stage.name());
-            assert_alike(&what, |probe| probe.systems.first().map(told), &probes, picture);
+            assert_matches_image(&what, |probe| probe.systems.first().map(probed), &probes, picture);
         }
         if shot.preset.systems[0].settings.diffuse.mode == DiffuseMode::Ramp {
             for system in probes.iter().flat_map(|probe| &probe.systems) {
                 let sum: Vec3 = system.lights.iter().map(|light| light.diffuse).sum();
-                assert!(difference(sum, system.diffuse) < 1.0, "{sum} {}", system.diffuse);
+                assert!(difference(sum, system.diffuse) < 1.0, "sum over lights {sum}, diffuse {}", system.diffuse);
             }
         }
     }
 }
 
 #[test]
-fn texels_of_another_shot_are_refused() {
+fn captured_texels_of_another_shot_are_an_error() {
     let shot = Shot::load("column", SIZE).unwrap();
     let Some((captured, _)) = drawn(&shot, &[ShadeTree::Final]) else { return };
     let mut other = shot.clone();

@@ -1,4 +1,4 @@
-//! Light by six-way maps: both renderers, everywhere it can be; and where it cannot.
+//! Six-way lighting: agreement of the renderers wherever it is supported, and errors where it is not.
 
 use glam::{UVec2, Vec3, Vec4, vec3};
 use haze::picture::Picture;
@@ -30,8 +30,8 @@ fn agreement(name: &str, stage: &Stage) {
 
 type Change = fn(&mut Settings);
 
-/// Ways to accumulate, and to light what is accumulated.
-const WAYS: &[(&str, Change)] = &[
+/// Ways to accumulate sprites and to light the result.
+const MODES: &[(&str, Change)] = &[
     ("sorted", |_| {}),
     ("weighted", |s| s.accumulate.order = Order::Weighted),
     ("weighted and biased", |s| {
@@ -42,19 +42,19 @@ const WAYS: &[(&str, Change)] = &[
     ("host depth", |s| (s.accumulate.depth_source, s.accumulate.scale) = (DepthSource::Host, 1)),
     ("anisotropy", |s| s.diffuse.six_way_anisotropy = 0.7),
     ("colour", |s| s.diffuse.six_way_colour = vec3(0.2, 0.5, 1.0)),
-    // What bakes light by normal has nothing to do here.
+    // Modes that bake light by normal have no effect here.
     ("cubemap", |s| s.diffuse.mode = DiffuseMode::Cubemap),
 ];
 
 fn changed(change: Change) -> Stage {
     let mut stage = stage();
     change(&mut stage.settings);
-    // OpenGL cannot test the depth buffer and read it.
+    // OpenGL cannot sample a depth buffer that the same pass tests.
     stage.depth = crate::stage::DepthKind::Both;
     stage
 }
 
-/// Under a technique, of several frames.
+/// The stage with a technique and sprites of several frames.
 fn flipbook(technique: Technique) -> Stage {
     let mut stage = changed(|_| {});
     stage.settings.technique = technique;
@@ -65,8 +65,8 @@ fn flipbook(technique: Technique) -> Stage {
 }
 
 #[test]
-fn both_renderers_agree_however_sprites_are_accumulated() {
-    for (name, change) in WAYS {
+fn gpu_and_cpu_agree_in_every_accumulation_mode() {
+    for (name, change) in MODES {
         agreement(name, &changed(*change));
     }
     agreement("forward", &changed(|s| s.path = Path::Forward));
@@ -88,23 +88,24 @@ fn both_renderers_agree_however_sprites_are_accumulated() {
 }
 
 #[test]
-fn tiles_are_lit_as_well() {
+fn tiled_path_agrees_on_six_way_lighting() {
     if !has_tiles() {
         return;
     }
-    for (name, change) in WAYS {
+    for (name, change) in MODES {
         tiled::agreement(name, &changed(*change));
     }
     for &technique in Technique::ALL {
         tiled::agreement(technique.name(), &flipbook(technique));
     }
-    // Where there is something, the maps say, not the sprite.
+    // The alpha of the six-way maps decides where there is smoke, not the sprite's.
     let mut elsewhere = changed(|_| {});
     let dot =
         image::RgbaImage::from_fn(64, 64, |x, y| image::Rgba([128, 128, 255, if (x, y) == (9, 9) { 255 } else { 0 }]));
     elsewhere.material.sprite = Sprite::from_picture("dot".as_ref(), &dot, SpriteLayout::default()).unwrap();
     tiled::agreement("the sprite is clear", &elsewhere);
-    // Half of the light is rounded to 8 bits, once: raster rounds all of it, layer by layer, and is no measure. One step of 255 is 48 dB.
+    // The tiled path rounds one of the two light textures to 8 bits, once. Raster rounds both after every layer, so it
+    // is no reference. One step of 255 is 48 dB.
     let mut bytes = changed(|s| {
         (s.path, s.accumulate.encoding) = (Path::Tiled, NormalEncoding::Biased);
         s.accumulate.format = AccumulationFormat::Rgba8Unorm;
@@ -112,30 +113,30 @@ fn tiles_are_lit_as_well() {
     let eight = bytes.on_gpu(gpu()).picture;
     bytes.settings.accumulate.format = AccumulationFormat::Rgba16Float;
     let apart = psnr(&eight, &bytes.on_gpu(gpu()).picture);
-    println!("8 bits: {apart:.1} dB of 16");
-    assert!((40.0..80.0).contains(&apart), "{apart}");
+    println!("8 bits against 16 bits: {apart:.1} dB");
+    assert!((40.0..80.0).contains(&apart), "8 bits against 16 bits: {apart} dB");
 }
 
 #[test]
-fn smoke_hides_as_much_whatever_lights_it() {
+fn six_way_lighting_does_not_change_alpha() {
     let alpha = |picture: &Picture<Vec4>| picture.texels.iter().map(|texel| texel.w).collect::<Vec<_>>();
     let six_way = stage();
     let mut normals = six_way.clone();
     normals.settings.lighting = Lighting::Normals;
     let pictures = [&six_way, &normals].map(|stage| stage.on_gpu(gpu()).picture);
     let apart = alpha(&pictures[0]).iter().zip(alpha(&pictures[1])).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-    assert!(apart < 1.0 / 255.0, "{apart}");
-    assert!(psnr(&pictures[0], &pictures[1]) < 40.0, "the same light");
+    assert!(apart < 1.0 / 255.0, "alpha differs by {apart}");
+    assert!(psnr(&pictures[0], &pictures[1]) < 40.0, "six-way lighting has no effect");
 }
 
-/// Mean light of smoke of one sprite under one sun, whose light comes *from* a side.
+/// Summed light that one sprite, rotated by `rotation` radians, shows under a directional light that comes from `side`.
 fn light_from(side: Vec3, rotation: f32) -> f32 {
     let mut stage = stage();
     stage.particles.truncate(1);
     (stage.particles[0].position, stage.particles[0].rotation) = (vec3(0.0, 0.0, -6.0), rotation);
     stage.lights = vec![Light { kind: LightKind::Directional, direction: -side, intensity: 1.0, ..Light::default() }];
     (stage.settings.soft_scatter.intensity, stage.settings.specular_scatter.intensity) = (0.0, 0.0);
-    // Symmetric, so that it covers the same wherever it is turned; what it is lit by is not.
+    // The alpha is symmetric, so that rotation does not change coverage; the light maps are not.
     let ball = Sprite::from_picture(
         "ball".as_ref(),
         &image::RgbaImage::from_fn(64, 64, |x, y| {
@@ -148,29 +149,35 @@ fn light_from(side: Vec3, rotation: f32) -> f32 {
     (stage.material.six_way, stage.material.sprite) = (Some(six_way_of(&ball)), ball);
     let empty = Stage { particles: Vec::new(), ..stage.clone() };
     let sum = |stage: &Stage| stage.on_gpu(gpu()).picture.texels.iter().map(|texel| texel.x).sum::<f32>();
-    // What hides the backdrop is the same under every light.
+    // Subtracted: the backdrop as far as the smoke hides it, which does not depend on lights.
     let dark = Stage { lights: Vec::new(), ..stage.clone() };
     assert!(sum(&empty) > 0.0);
     sum(&stage) - sum(&dark)
 }
 
 #[test]
-fn light_turns_with_a_sprite_and_comes_from_its_side() {
+fn six_way_light_follows_the_sprites_rotation() {
     let quarter = std::f32::consts::FRAC_PI_2;
     let from = |side, rotation| light_from(side, rotation);
     let [right, top, left, bottom] = [Vec3::X, Vec3::Y, Vec3::NEG_X, Vec3::NEG_Y].map(|side| from(side, 0.0));
     let all = [right, top, left, bottom];
     let apart = |a: f32, b: f32| (a - b).abs();
-    assert!((0..4).all(|i| (0..i).all(|j| apart(all[i], all[j]) > 0.5)), "{all:?}");
-    // A quarter turn to the left brings what was on the right to the top.
+    assert!(
+        (0..4).all(|i| (0..i).all(|j| apart(all[i], all[j]) > 0.5)),
+        "light from right, top, left, bottom: {all:?}"
+    );
+    // A quarter turn counter-clockwise moves the sprite's right side to the top.
     for (turns, expected) in [(1.0, [bottom, right, top, left]), (2.0, [left, bottom, right, top])] {
         let turned = [Vec3::X, Vec3::Y, Vec3::NEG_X, Vec3::NEG_Y].map(|side| from(side, turns * quarter));
-        assert!(turned.iter().zip(expected).all(|(&a, b)| apart(a, b) < 0.01), "{turns}: {turned:?} for {expected:?}");
+        assert!(
+            turned.iter().zip(expected).all(|(&a, b)| apart(a, b) < 0.01),
+            "{turns} quarter turns: {turned:?}, expected {expected:?}"
+        );
     }
 }
 
 #[test]
-fn a_device_that_blends_one_target_keeps_to_normals() {
+fn device_that_blends_only_one_target_falls_back_to_normals() {
     let limits = wgpu::Limits { max_color_attachment_bytes_per_sample: 8, ..wgpu::Limits::default() };
     let gpu = Headless::with(limits, wgpu::Features::empty()).unwrap();
     let six_way = stage();
@@ -180,7 +187,7 @@ fn a_device_that_blends_one_target_keeps_to_normals() {
 }
 
 #[test]
-fn what_cannot_be_lit_so_is_refused_by_name() {
+fn missing_or_mismatched_maps_are_errors_that_name_the_field() {
     let refused = |change: fn(&mut Stage)| {
         let mut stage = stage();
         change(&mut stage);

@@ -1,4 +1,5 @@
-//! Minutes of frames in which nothing may grow. `scripts/soak` runs them, one after the other: they measure the whole process.
+//! Leak tests that run for minutes. `scripts/soak` runs them one at a time, because they measure the memory of the
+//! whole process.
 
 use std::time::{Duration, Instant};
 
@@ -13,11 +14,12 @@ use crate::stage::Stage;
 
 const SIZE: UVec2 = UVec2::splat(256);
 
-/// More of the process' memory than this may not come to stay, bytes: pages that the allocator and the driver keep.
-const LEAK: u64 = 5 << 20;
+/// Accepted growth of the process's resident memory, bytes: the allocator and the driver keep some pages.
+const ACCEPTED_GROWTH: u64 = 5 << 20;
 
-/// Objects that are alive on the device, and their memory. Not textures: wgpu 30 counts them down on Vulkan, but not up.
-fn alive() -> Vec<isize> {
+/// Numbers of live objects on the device, and their memory. Without textures: on Vulkan, wgpu 30 decrements their
+/// counter but never increments it.
+fn live_objects() -> Vec<isize> {
     let hal = gpu().device.get_internal_counters().hal;
     let kinds = [
         &hal.buffers,
@@ -32,45 +34,46 @@ fn alive() -> Vec<isize> {
     kinds.map(|counter| counter.read()).to_vec()
 }
 
-/// What the process holds of the machine's memory, bytes; 0 where the system does not say.
-fn resident() -> u64 {
+/// Resident memory of the process, bytes; 0 where the system has no `/proc/self/status`.
+fn resident_bytes() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
     let kilobytes = line.and_then(|line| line.trim().trim_end_matches(" kB").parse::<u64>().ok());
     kilobytes.unwrap_or(0) * 1024
 }
 
-/// Longer than a renderer keeps what it does not need, frames.
-const LONG: usize = 130;
+/// Frames after which a renderer has released all memory that it does not need.
+const SETTLING_FRAMES: usize = 130;
 
-/// Runs `step` a hundredth as often to warm up, and then `count` times: afterwards, at rest, there is no more than before.
+/// Runs `step` `count / 100` times to warm up, then `count` times. Asserts that the device has as many objects as
+/// before, and that resident memory has grown by at most [`ACCEPTED_GROWTH`].
 fn soak(count: u32, step: impl FnMut(u32)) {
-    soak_within(LEAK, count, step);
+    soak_within(ACCEPTED_GROWTH, count, step);
 }
 
-/// The same with so many bytes to come to stay.
+/// [`soak`] with another limit on the growth of resident memory, bytes.
 fn soak_within(leak: u64, count: u32, mut step: impl FnMut(u32)) {
-    (0..count / 100).chain([0; LONG]).for_each(&mut step);
-    let (alive_before, resident_before) = (alive(), resident());
-    let mut told = Instant::now();
+    (0..count / 100).chain([0; SETTLING_FRAMES]).for_each(&mut step);
+    let (objects_before, bytes_before) = (live_objects(), resident_bytes());
+    let mut reported = Instant::now();
     for index in 0..count {
         step(index);
-        if told.elapsed() > Duration::from_secs(10) {
-            told = Instant::now();
-            eprintln!("{index} of {count}: {} KiB", resident() / 1024);
+        if reported.elapsed() > Duration::from_secs(10) {
+            reported = Instant::now();
+            eprintln!("{index} of {count}: {} KiB", resident_bytes() / 1024);
         }
     }
-    [0; LONG].into_iter().for_each(&mut step);
+    [0; SETTLING_FRAMES].into_iter().for_each(&mut step);
     gpu().check().unwrap();
-    assert_eq!(alive(), alive_before);
-    let grown = resident().saturating_sub(resident_before);
-    eprintln!("{count}: {} KiB more", grown / 1024);
-    assert!(grown <= leak, "{grown} bytes more");
+    assert_eq!(live_objects(), objects_before);
+    let grown = resident_bytes().saturating_sub(bytes_before);
+    eprintln!("{count} steps: resident memory grew by {} KiB", grown / 1024);
+    assert!(grown <= leak, "resident memory grew by {grown} bytes; the limit is {leak}");
 }
 
 #[test]
 #[ignore = "takes minutes"]
-fn fifty_thousand_frames() {
+fn fifty_thousand_frames_leak_nothing() {
     let mut stage = Stage::new(SIZE);
     let mut host = Host::new(gpu(), &stage).unwrap();
     soak(50_000, |frame| {
@@ -84,7 +87,7 @@ fn fifty_thousand_frames() {
 
 #[test]
 #[ignore = "takes minutes"]
-fn two_thousand_resizes() {
+fn two_thousand_resizes_leak_nothing() {
     let context = Host::new(gpu(), &Stage::new(SIZE)).unwrap().renderer.context().clone();
     let mut renderer = None;
     soak(2_000, |step| {
@@ -95,18 +98,18 @@ fn two_thousand_resizes() {
         }
         host.draw(gpu(), &stage).unwrap();
         renderer = Some(host.renderer);
-        // What was dropped is freed when the device is next looked after.
+        // wgpu frees dropped objects when the device is polled.
         gpu().device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
     });
 }
 
 #[test]
 #[ignore = "takes minutes"]
-fn systems_that_come_and_go() {
+fn systems_that_come_and_go_leak_nothing() {
     let mut systems = Systems::new(gpu(), SIZE);
     let (particles, settings) = (systems.stage.particles.clone(), systems.stage.settings);
     soak(20_000, |frame| {
-        // One to four at a time, each there for as long as a puff lasts, and never seen again.
+        // One to four systems at a time. Each key lasts for 150 frames and is never used again.
         let births = (0..4).map(|lane| u64::from((frame + 37 * lane) / 150 * 4 + lane));
         let present: Vec<_> = births.map(|key| (key, &particles[..15 + (key % 4) as usize * 15], settings)).collect();
         systems.frame(gpu(), &present[..1 + (frame / 400 % 4) as usize]).unwrap();
@@ -115,7 +118,7 @@ fn systems_that_come_and_go() {
 
 #[test]
 #[ignore = "takes minutes"]
-fn two_hundred_reloads_of_shaders() {
+fn two_hundred_shader_reloads_leak_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let good = shader::source("transfer.wgsl").unwrap();
     let texts = [
@@ -134,9 +137,9 @@ fn two_hundred_reloads_of_shaders() {
         if let Ok(context) = context {
             Host::on(gpu(), &stage, Some(&context)).unwrap().draw(gpu(), &stage).unwrap();
         }
-        // What was dropped is freed when the device is next looked after.
+        // wgpu frees dropped objects when the device is polled.
         gpu().device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
     };
-    // llvmpipe's compiler takes some 6 MiB for good, once, sooner or later: 700 reloads took no more.
-    soak_within(4 * LEAK, 200, reload);
+    // llvmpipe's compiler grows once by about 6 MiB, at an unpredictable step; 700 reloads grew no further.
+    soak_within(4 * ACCEPTED_GROWTH, 200, reload);
 }

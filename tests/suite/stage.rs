@@ -1,4 +1,5 @@
-//! A small shot in memory: a camera, a wall and a post as scene depth, some sprites. host.rs draws it on the GPU.
+//! A small test scene in memory: camera, lights, sprites, and a wall and a post as scene depth. `host.rs` draws it on
+//! the GPU.
 
 use std::sync::LazyLock;
 
@@ -18,11 +19,11 @@ use haze_reference;
 use crate::common::gpu;
 use crate::host::HostKind;
 
-/// Everything a frame needs, in memory.
+/// All inputs of a frame, in memory.
 #[derive(Clone)]
 pub struct Stage {
     pub view: View,
-    /// Which way the viewer looks along z of view space: -1 or 1.
+    /// Viewing direction along z of view space: -1 or 1.
     pub ahead: f32,
     pub lights: Vec<Light>,
     pub particles: Vec<Particle>,
@@ -31,23 +32,23 @@ pub struct Stage {
     pub material: MaterialAssets,
     pub time: f32,
     pub up: Vec3,
-    /// The stage that is drawn.
+    /// Debug view that is drawn.
     pub shade_tree: ShadeTree,
-    /// What the GPU is told may be shown; the stage that is drawn if `None`.
+    /// Debug views that the renderer prepares; only the one that is drawn if `None`.
     pub stages: Option<&'static [ShadeTree]>,
-    /// Which kind of scene depth is handed over.
+    /// Kind of scene depth that the renderer gets.
     pub depth: DepthKind,
-    /// The wall goes on to the right.
+    /// The wall covers the whole image, without the post.
     pub wall_everywhere: bool,
-    /// The linear target says that nothing is there.
+    /// The linear depth target is empty: sky everywhere.
     pub empty_linear: bool,
-    /// Attach the depth buffer to the pass that the smoke is drawn in.
+    /// Attaches the depth buffer to the host's pass that draws the smoke.
     pub attach_depth: bool,
-    /// The pass and targets of the GPU's host.
+    /// Formats and layout of the host's pass and targets on the GPU.
     pub host: HostKind,
 }
 
-/// What a host hands over as the scene's depth.
+/// Kinds of scene depth that a host can pass to the renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthKind {
     Buffer,
@@ -55,19 +56,19 @@ pub enum DepthKind {
     Both,
 }
 
-/// The scene behind the smoke: a colour that is nowhere near a lit sprite's, with values that f16 holds exactly, and not
-/// opaque, so that the smoke's own alpha shows.
+/// Scene colour behind the smoke: far from the colour of any lit sprite, exact in f16, and translucent, so that the
+/// smoke's own alpha shows.
 pub const BACKDROP: Vec4 = Vec4::new(0.125, 0.25, 0.5, 0.25);
 
 pub fn perspective(size: UVec2) -> Mat4 {
     rh::proj::directx::perspective(0.8, size.x as f32 / size.y as f32, 0.1, 80.0)
 }
 
-/// A soft ball beside the middle of the sprite.
+/// A soft ball off the sprite's centre. `y_down` is the convention that the sprite declares for its normals.
 pub fn ball_sprite(y_down: bool) -> Sprite {
     let picture = image::RgbaImage::from_fn(64, 64, |x, y| {
         let p = (Vec2::new(x as f32, 63.0 - y as f32) + 0.5) / 32.0 - 1.0;
-        // Off the middle and leaning, so that a sprite turned or flipped is another.
+        // Off-centre and tilted, so that a rotated or flipped sprite looks different.
         let p = p - Vec2::new(0.1, 0.05);
         let inside = (1.0 - p.length_squared() * 1.4).max(0.0);
         let normal = (p * 1.5 + Vec2::new(0.2, -0.1)).extend(inside.sqrt().max(0.05)).normalize() * 0.5 + 0.5;
@@ -78,7 +79,7 @@ pub fn ball_sprite(y_down: bool) -> Sprite {
         .unwrap()
 }
 
-/// Stands out in the middle, moves to the upper right.
+/// Detail map that bulges in the middle and moves to the upper right.
 fn ball_detail() -> Sprite {
     let picture = image::RgbaImage::from_fn(32, 32, |x, y| {
         let p = (Vec2::new(x as f32, 31.0 - y as f32) + 0.5) / 16.0 - 1.0;
@@ -88,7 +89,7 @@ fn ball_detail() -> Sprite {
     Sprite::from_picture(std::path::Path::new("ball.detail"), &picture, SpriteLayout::default()).unwrap()
 }
 
-/// Six-way maps of a sprite that is lit where its normals face, a little from behind, and more from the left.
+/// Six-way maps of a sprite: lit along its normals, a little from behind, and more strongly from the left.
 pub fn six_way_of(sprite: &Sprite) -> Sprite {
     let (size, frames) = (sprite.size(), sprite.frame_count());
     let picture = image::RgbaImage::from_fn(size, 2 * frames * size, |x, y| {
@@ -107,7 +108,7 @@ fn recipe_noise() -> NoiseVolume {
     NoiseVolume::from_picture(std::path::Path::new("noise"), &recipe.bake().unwrap()).unwrap()
 }
 
-/// Made once: most tests begin with it.
+/// Material of the test cloud. Baked once, because most tests use it.
 pub fn material() -> MaterialAssets {
     static MATERIAL: LazyLock<MaterialAssets> = LazyLock::new(baked_material);
     MATERIAL.clone()
@@ -134,7 +135,7 @@ fn baked_material() -> MaterialAssets {
 }
 
 impl Stage {
-    /// A cloud of 60 sprites round (0, 0, -6), lit from the left and from behind.
+    /// A cloud of 60 sprites around (0, 0, -6), lit from the left and from behind.
     pub fn new(size: UVec2) -> Self {
         let particle = |i: u32| {
             let (a, b) = (pcg3d(UVec3::new(i, 0, 5)), pcg3d(UVec3::new(i, 1, 5)));
@@ -161,7 +162,7 @@ impl Stage {
             ],
             particles: (0..60).map(particle).collect(),
             bounds: None,
-            // Whatever the device is better at.
+            // Fixed, because the choice of `auto` depends on the device.
             settings: Settings { path: Path::Raster, boost: 1.5, ..Settings::default() },
             material: material(),
             time: 1.0,
@@ -171,13 +172,14 @@ impl Stage {
             depth: DepthKind::Buffer,
             wall_everywhere: false,
             empty_linear: false,
-            // OpenGL cannot test and sample one depth buffer in one pass.
+            // OpenGL cannot sample a depth buffer that the same pass tests.
             attach_depth: haze::read_only_depth_is_supported(&gpu().device),
             host: HostKind::default(),
         }
     }
 
-    /// View depth of the scene: a post of 0.3 m at 5 m, a wall at 6.2 m on the left half, that the cloud reaches into, nothing on the right.
+    /// View depth of the scene at a pixel, metres: a narrow post at 5 m, and on the left half a wall at 6.2 m that the
+    /// cloud reaches into. `None` elsewhere.
     fn view_depth(&self, at: UVec2) -> Option<f32> {
         if self.wall_everywhere {
             return Some(6.2);
@@ -187,12 +189,12 @@ impl Stage {
         if post { Some(5.0) } else { (uv.x < 0.5).then_some(6.2) }
     }
 
-    /// What the depth buffer holds of a surface at a view depth.
+    /// Depth-buffer value of a surface at a view depth in metres.
     fn ndc_of(&self, view_depth: f32) -> f32 {
         self.view.clip_from_view.project_point3(vec3(0.0, 0.0, self.ahead * view_depth)).z
     }
 
-    /// What the depth buffer holds.
+    /// Contents of the depth buffer.
     pub fn ndc_depth(&self) -> Picture<f32> {
         let reversed = self.ndc_of(1.0) > self.ndc_of(2.0);
         let mut picture = Picture::new(self.view.size, if reversed { 0.0 } else { 1.0 });
@@ -204,7 +206,7 @@ impl Stage {
         picture
     }
 
-    /// What the linear target holds.
+    /// Contents of the linear depth target: view depth, metres.
     pub fn linear_depth(&self) -> Picture<f32> {
         let mut linear = Picture::new(self.view.size, 0.0);
         let seen = |at| self.view_depth(at).filter(|_| !self.empty_linear);

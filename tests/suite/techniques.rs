@@ -1,4 +1,5 @@
-//! How sprites meet the scene, technique by technique: both renderers agree, and each holds what it promises.
+//! Intersection of sprites with the scene under every technique: agreement of the renderers, and the documented
+//! behaviour of each.
 
 use std::sync::LazyLock;
 
@@ -16,11 +17,11 @@ use crate::stage::{BACKDROP, DepthKind, Stage, six_way_of};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
-/// The cloud, with all that a technique may read.
+/// The test cloud with every input that a technique may read.
 pub fn stage(technique: Technique) -> Stage {
     let mut stage = Stage::new(SIZE);
     stage.depth = DepthKind::Both;
-    // With a linear target beside it, a depth buffer can be attached on every backend.
+    // Because a linear target is passed too, the depth buffer can be attached on every backend.
     stage.attach_depth = true;
     stage.settings.technique = technique;
     stage.settings.volumetric.noise_size = 1.5;
@@ -30,7 +31,7 @@ pub fn stage(technique: Technique) -> Stage {
     stage
 }
 
-/// One sprite straight ahead, and nothing else.
+/// A single sprite straight ahead at `view_depth` metres.
 fn one_sprite(technique: Technique, view_depth: f32) -> Stage {
     let mut stage = stage(technique);
     stage.particles =
@@ -50,7 +51,7 @@ fn agreement(name: &str, stage: &Stage) {
 }
 
 #[test]
-fn every_technique_agrees_on_every_path() {
+fn gpu_and_cpu_agree_on_every_technique_and_path() {
     for &technique in Technique::ALL {
         for path in [Path::Raster, Path::Forward] {
             let mut stage = stage(technique);
@@ -70,7 +71,7 @@ fn every_technique_agrees_on_every_path() {
         let mut stage = self::stage(technique);
         stage.view.clip_from_view = directx::orthographic(-4.0, 4.0, -2.25, 2.25, 0.1, 80.0);
         agreement(&format!("{} orthographic", technique.name()), &stage);
-        // Off centre, turned and elsewhere in the world: noise and sphere bounds depend on it.
+        // Off-centre projection, and a rotated and translated camera: noise and sphere bounds depend on them.
         let mut stage = self::stage(technique);
         stage.view.clip_from_view = directx::frustum(-0.06, 0.03, -0.02, 0.03, 0.1, 80.0);
         let turn = Mat4::from_rotation_y(0.4) * Mat4::from_translation(vec3(1.0, -2.0, 3.0));
@@ -82,14 +83,14 @@ fn every_technique_agrees_on_every_path() {
 }
 
 #[test]
-fn the_last_texel_is_covered_at_every_size() {
-    // Where the picture is no multiple of the scale, the last texel reaches out of it.
+fn border_texels_are_covered_at_every_size() {
+    // If the image size is no multiple of the scale, the last texel extends beyond the image.
     for technique in [Technique::Soft, Technique::SphericalBillboard, Technique::VolumetricSoft] {
         for (size, scale) in [(UVec2::new(161, 91), 2), (UVec2::new(161, 91), 4), (UVec2::new(169, 97), 8)] {
             let mut stage = stage(technique);
             let sized = Stage::new(size);
             (stage.view, stage.settings.accumulate.scale) = (sized.view, scale);
-            // Sprites over the right and lower border.
+            // Moves sprites across the right and lower borders.
             stage.particles.iter_mut().for_each(|p| p.position += vec3(3.0, -1.5, 0.0));
             agreement(&format!("{} {size} scale {scale}", technique.name()), &stage);
         }
@@ -97,7 +98,7 @@ fn the_last_texel_is_covered_at_every_size() {
 }
 
 #[test]
-fn switching_the_depth_that_is_read_keeps_the_targets() {
+fn switching_the_depth_input_keeps_the_targets() {
     let mut stage = stage(Technique::Soft);
     let mut host = Host::new(gpu(), &stage).unwrap();
     host.draw(gpu(), &stage).unwrap();
@@ -108,7 +109,7 @@ fn switching_the_depth_that_is_read_keeps_the_targets() {
 }
 
 #[test]
-fn every_sprite_setting_agrees() {
+fn gpu_and_cpu_agree_on_every_sprite_setting() {
     type Change = fn(&mut Stage);
     let changes: &[(&str, Change)] = &[
         ("size", |s| s.settings.sprite.size = 1.7),
@@ -130,15 +131,16 @@ fn every_sprite_setting_agrees() {
             let plain = stage.on_cpu();
             change(&mut stage);
             agreement(&format!("{} {name}", technique.name()), &stage);
-            // And it is not a setting without effect.
-            assert_ne!(plain, stage.on_cpu(), "{name} does nothing");
+            // The setting must have an effect on the image.
+            assert_ne!(plain, stage.on_cpu(), "{name} has no effect");
         }
     }
 }
 
 #[test]
-fn what_blends_no_frames_looks_none_up_twice() {
-    // A pipeline for each animation of a flipbook; a single frame has nothing to blend, whatever the animation.
+fn only_flipbooks_compile_a_pipeline_per_animation() {
+    // Every animation of a flipbook has its own pipeline. A single frame has nothing to blend, so all animations share
+    // one.
     for path in [Path::Raster, Path::Forward] {
         for (has_frames, expected) in [(false, 0), (true, SpriteAnimation::ALL.len() - 1)] {
             let mut stage = stage(Technique::Soft);
@@ -154,7 +156,7 @@ fn what_blends_no_frames_looks_none_up_twice() {
                 host.renderer.context().pipeline_count()
             });
             let first = counts.next().unwrap();
-            assert_eq!(counts.last().unwrap() - first, expected, "{} {has_frames}", path.name());
+            assert_eq!(counts.last().unwrap() - first, expected, "{}, flipbook {has_frames}", path.name());
         }
     }
 }
@@ -173,21 +175,21 @@ pub fn flipbook() -> (Sprite, Option<Sprite>, Option<Sprite>) {
     (sprite, Some(detail), Some(six_way))
 }
 
-/// A puff whose balls travel: what only boils in its place has no motion to follow.
+/// A puff whose balls travel. Smoke that only boils in place has no motion to estimate.
 fn recipe() -> SpriteRecipe {
     let text = include_str!("../../sprites/puff.sprite.json");
     let puff: SpriteRecipe = serde_json::from_str(text).unwrap();
     SpriteRecipe { size: 64, drift: 0.2, ball_radius_max: 0.4, erosion: 0.5, ..puff }
 }
 
-/// Squared errors of normals and amount half way between frames, against the frame that belongs there: blended, carried along the
-/// motion, and against it.
+/// Squared errors of normals and amount halfway between frames, against a frame baked for that time. In order: blended,
+/// with motion, and with reversed motion.
 fn errors_between_frames(recipe: &SpriteRecipe) -> [f32; 3] {
     let baked = recipe.bake(|_| Ok::<_, haze::FieldError>(())).unwrap();
     let decode = |picture: &_, layout| Sprite::from_picture("flipbook".as_ref(), picture, layout).unwrap();
     let (sprite, detail) = (decode(&baked.picture, recipe.layout()), decode(&baked.detail, recipe.layout()));
     let size = recipe.size;
-    // What accumulates.
+    // Premultiplied normal and amount, as they are accumulated.
     let counted = |texel: Vec4| (texel.xyz() * texel.w).extend(texel.w);
     let mut errors = [0.0; 3];
     for frame in [0.5, 3.5, 6.5] {
@@ -210,26 +212,26 @@ fn errors_between_frames(recipe: &SpriteRecipe) -> [f32; 3] {
 }
 
 #[test]
-fn motion_brings_frames_between_frames_closer_to_what_they_should_be() {
-    let told = |name: &str, recipe: &SpriteRecipe| {
+fn motion_reduces_the_error_between_flipbook_frames() {
+    let print_errors = |name: &str, recipe: &SpriteRecipe| {
         let errors = errors_between_frames(recipe);
         println!(
-            "{name}: squared error blended {:.1}, moved {:.1}, the other way {:.1}",
+            "{name}: squared error blended {:.1}, with motion {:.1}, reversed {:.1}",
             errors[0], errors[1], errors[2]
         );
         errors
     };
-    // A quarter less was found. The mutant: motion with the wrong sign.
-    let [blended, moved, reversed] = told("balls that travel", &recipe());
-    assert!(moved < 0.8 * blended && blended < reversed, "{blended} {moved} {reversed}");
-    // All of it travels, none boils: more than half less.
+    // Measured: a quarter less than blending. Motion with the wrong sign is the mutant.
+    let [blended, moved, reversed] = print_errors("travelling balls", &recipe());
+    assert!(moved < 0.8 * blended && blended < reversed, "blended {blended}, with motion {moved}, reversed {reversed}");
+    // All of the puff travels and nothing boils: less than half the error.
     let carried = SpriteRecipe { version: 2, size: 128, columns: 4, rows: 4, drift: 0.0, travel: 0.2, ..recipe() };
-    let [blended, moved, reversed] = told("all travels", &carried);
-    assert!(moved < 0.5 * blended && blended < reversed, "{blended} {moved} {reversed}");
+    let [blended, moved, reversed] = print_errors("travelling puff", &carried);
+    assert!(moved < 0.5 * blended && blended < reversed, "blended {blended}, with motion {moved}, reversed {reversed}");
 }
 
 #[test]
-fn frozen_noise_stands_still() {
+fn freezing_the_animation_stops_the_noise() {
     let at = |time: f32, freeze_animation: bool| {
         let mut stage = stage(Technique::VolumetricSoft);
         (stage.time, stage.settings.sprite.freeze_animation) = (time, freeze_animation);
@@ -237,7 +239,7 @@ fn frozen_noise_stands_still() {
     };
     assert_eq!(at(0.0, true), at(7.3, true));
     assert!(psnr(&at(0.0, false), &at(7.3, false)) < AGREEMENT);
-    // A whole tile further on, it is the same again.
+    // After a scroll by one whole tile the image is the same.
     let mut stage = stage(Technique::VolumetricSoft);
     stage.settings.volumetric.scroll_speed = 0.25;
     let seconds_per_tile = stage.settings.volumetric.noise_size / 0.25;
@@ -246,16 +248,16 @@ fn frozen_noise_stands_still() {
     assert!(psnr(&first, &stage.on_gpu(gpu()).picture) > 60.0);
 }
 
-// what they promise
+// Documented behaviour of each technique.
 
-/// One sprite before, in or behind a wall at 6.2 m.
+/// A single sprite at `view_depth` metres, with a wall at 6.2 m as the scene.
 fn wall(technique: Technique, view_depth: f32) -> Stage {
     let mut stage = one_sprite(technique, view_depth);
     stage.wall_everywhere = true;
     stage
 }
 
-/// Amount in the middle of the picture, 0..1.
+/// Amount in the middle of the image, 0..1.
 fn amount(stage: &Stage) -> f32 {
     let mut host = Host::sharing(gpu(), stage).unwrap();
     host.draw(gpu(), stage).unwrap();
@@ -265,12 +267,12 @@ fn amount(stage: &Stage) -> f32 {
 fn amount_in(host: &Host) -> f32 {
     let picture = host.picture(gpu()).unwrap();
     let middle = picture.load((SIZE / 2).as_ivec2());
-    // The stage "amount" is drawn as grey over the backdrop wherever there is any.
+    // The debug view of the amount is grey, and is drawn over the backdrop wherever the amount is above 0.
     if middle == BACKDROP { 0.0 } else { middle.x }
 }
 
 #[test]
-fn nothing_shows_behind_a_surface_but_under_always() {
+fn only_the_curve_always_shows_smoke_behind_a_surface() {
     for &technique in Technique::ALL {
         for &curve in FadeCurve::ALL {
             let mut previous = f32::INFINITY;
@@ -284,7 +286,7 @@ fn nothing_shows_behind_a_surface_but_under_always() {
                 let amount = amount_in(&host);
                 let name = format!("{} {} at {depth:.2} m: {amount}", technique.name(), curve.name());
                 let shows_through = curve == FadeCurve::Always && technique.is_soft();
-                // How far the sprite itself reaches in front of its middle.
+                // Distance by which the sprite extends in front of its centre, metres.
                 let reach = if technique.is_sphere() || technique.is_depth_sprite() || technique == Technique::Density {
                     0.7
                 } else {
@@ -292,12 +294,12 @@ fn nothing_shows_behind_a_surface_but_under_always() {
                 };
                 let through = if shows_through { 1.0 / 2.5 } else { 0.0 };
                 if depth > 6.2 + reach + through + 0.01 {
-                    assert!(amount <= 0.0, "{name}");
+                    assert!(amount <= 0.0, "{name}, expected none");
                 }
                 if shows_through && depth < 6.2 + through - 0.03 {
-                    assert!(amount > 0.0, "{name}");
+                    assert!(amount > 0.0, "{name}, expected some");
                 }
-                // Volumes are of noise: what is seen of them need not fall evenly.
+                // Volumetric techniques contain noise, so their amount need not fall monotonically.
                 if !technique.is_volumetric() {
                     assert!(amount <= previous + 2e-3, "{name} after {previous}");
                 }
@@ -307,13 +309,13 @@ fn nothing_shows_behind_a_surface_but_under_always() {
     }
 }
 
-/// The largest change of any pixel from frame to frame while a camera moves through a sprite in steps of 19 mm.
+/// Largest change of any pixel from frame to frame while a camera moves through a sprite in steps of 19 mm.
 fn largest_step(technique: Technique) -> f32 {
     let mut previous = None;
     let mut largest = 0.0_f32;
     let mut host = Host::sharing(gpu(), &one_sprite(technique, 0.9)).unwrap();
     for step in 0..=88 {
-        // From 0.9 m in front of the middle to 0.7 m behind it; the near plane is at 0.1 m, the radius 0.7 m.
+        // From 0.9 m in front of the sprite's centre to 0.75 m behind it. Near plane at 0.1 m, radius 0.7 m.
         let stage = one_sprite(technique, 0.9 - 1.2 * step as f32 / 64.0);
         host.draw(gpu(), &stage).unwrap();
         let picture = host.picture(gpu()).unwrap();
@@ -327,11 +329,12 @@ fn largest_step(technique: Technique) -> f32 {
     largest
 }
 
-/// A step is 19 mm of the camera's way; density times amount is 2.4 per metre. So the end of the way through the middle moves
-/// the amount by at most 1 - exp(-2.4 · 0.019) = 4.5 %.
+/// Limit for spheres. The camera moves by 19 mm per step, and density times amount is 2.4 per metre, so the amount
+/// along the central ray changes by at most 1 - exp(-2.4 · 0.019) = 4.5 %.
 const LARGEST_STEP: f32 = 0.045;
 
-/// The same for squares, which also grow: close to the near plane by a fifth in a step. One that vanishes whole takes 0.8.
+/// Limit for squares, which also grow on screen: by a fifth per step close to the near plane. A square that vanishes at
+/// once changes by 0.8.
 const SLAB_STEP: f32 = 0.2;
 
 #[test]
@@ -339,29 +342,29 @@ fn spherical_billboards_do_not_pop_at_the_near_plane() {
     let sphere = largest_step(Technique::SphericalBillboard);
     let square = largest_step(Technique::Soft);
     println!("largest change in a step: sphere {sphere:.3}, square {square:.3}");
-    assert!(sphere < LARGEST_STEP, "{sphere}");
-    // The mutant: a square is there, and then it is not.
-    assert!(square > 10.0 * LARGEST_STEP, "{square}");
+    assert!(sphere < LARGEST_STEP, "largest change in a step: {sphere}");
+    // The mutant: a flat square disappears in one step.
+    assert!(square > 10.0 * LARGEST_STEP, "largest change in a step of the mutant: {square}");
 }
 
 #[test]
-fn slabs_end_with_their_far_side() {
+fn slabs_vanish_when_their_far_side_passes_the_near_plane() {
     for technique in [Technique::Density, Technique::DepthSpriteHard, Technique::DepthSpriteSoft] {
         let step = largest_step(technique);
         println!("largest change in a step: {} {step:.3}", technique.name());
-        assert!(step < SLAB_STEP, "{}: {step}", technique.name());
+        assert!(step < SLAB_STEP, "largest change in a step: {} {step}", technique.name());
         for depth in [-0.55, -0.3, 0.0, 0.05, 0.1, 0.4, 0.69, 0.75] {
             agreement(&format!("{} at {depth} m", technique.name()), &one_sprite(technique, depth));
         }
-        assert!(amount(&one_sprite(technique, -0.3)) > 0.0, "{}", technique.name());
-        assert!(amount(&one_sprite(technique, -0.65)) <= 0.0, "{}", technique.name());
+        assert!(amount(&one_sprite(technique, -0.3)) > 0.0, "{}: nothing at -0.3 m", technique.name());
+        assert!(amount(&one_sprite(technique, -0.65)) <= 0.0, "{}: smoke at -0.65 m", technique.name());
     }
 }
 
 #[test]
-fn volumes_end_at_the_scene_and_begin_at_the_near_plane() {
+fn volumes_are_clipped_by_the_scene_and_the_near_plane() {
     for technique in [Technique::VolumetricHard, Technique::VolumetricSoft, Technique::SphericalBillboard] {
-        // Half of the sphere is behind the wall: about half of the way through it is left.
+        // Optical depth through the middle of a sphere at `depth`. With its centre on the wall, about half is left.
         let through = |depth: f32| {
             let mut stage = wall(technique, depth);
             stage.settings.soft_fade.fade_scale = 1000.0;
@@ -369,25 +372,29 @@ fn volumes_end_at_the_scene_and_begin_at_the_near_plane() {
             -(1.0 - amount(&stage)).ln()
         };
         let (whole, half) = (through(5.4), through(6.2));
-        println!("{}: {whole:.3} whole, {half:.3} half", technique.name());
-        // Half of the way, a quarter either side, for the noise is not even; uncut it would be all of it.
-        assert!((0.25..0.75).contains(&(half / whole)), "{}: {half} of {whole}", technique.name());
-        // The camera in the middle of the sphere: what is ahead of the near plane is left, and both renderers agree.
+        println!("{}: optical depth {whole:.3} whole, {half:.3} half", technique.name());
+        // Half, within a quarter either way because the noise is uneven. Without clipping it would be the whole.
+        assert!((0.25..0.75).contains(&(half / whole)), "{}: optical depth {half} of {whole}", technique.name());
+        // With the camera at the sphere's centre, the part beyond the near plane is left, and both renderers agree.
         let inside = one_sprite(technique, 0.0);
         let ahead = -(1.0 - amount(&inside)).ln();
-        println!("{}: {ahead:.3} from inside", technique.name());
-        assert!((0.15..0.75).contains(&(ahead / whole)), "{}: {ahead} of {whole}", technique.name());
+        println!("{}: optical depth {ahead:.3} from inside", technique.name());
+        assert!(
+            (0.15..0.75).contains(&(ahead / whole)),
+            "{}: optical depth {ahead} of {whole} from inside",
+            technique.name()
+        );
         for depth in [-0.55, -0.3, 0.0, 0.05, 0.1, 0.4, 0.69, 0.75] {
             agreement(&format!("{} at {depth} m", technique.name()), &one_sprite(technique, depth));
         }
-        // Gone once its far side has passed the near plane.
+        // Nothing is left once the far side has passed the near plane.
         assert!(amount(&one_sprite(technique, -0.65)) <= 0.0);
     }
 }
 
 #[test]
-fn depth_sprites_meet_the_scene_where_their_texels_are() {
-    // The detail map stands out in the middle by 0.8 radii, 0.55 m.
+fn depth_sprites_intersect_the_scene_at_the_depth_of_their_texels() {
+    // In the middle, the detail map moves texels towards the viewer by 0.8 radii, 0.55 m.
     let seen = |technique, depth: f32| amount(&wall(technique, depth)) > 0.0;
     assert!(seen(Technique::Hard, 6.1) && !seen(Technique::Hard, 6.3));
     assert!(seen(Technique::DepthSpriteHard, 6.3) && seen(Technique::DepthSpriteHard, 6.6));
@@ -410,10 +417,10 @@ fn nothing_is_drawn_beyond_the_far_plane() {
     }
 }
 
-// bad input
+// Invalid input.
 
 #[test]
-fn degenerate_input_is_finite_or_refused_by_name() {
+fn degenerate_input_stays_finite_or_is_an_error_that_names_the_field() {
     let refused = |change: fn(&mut Stage)| {
         let mut stage = stage(Technique::Soft);
         change(&mut stage);
@@ -443,7 +450,7 @@ fn degenerate_input_is_finite_or_refused_by_name() {
     let motion = lacking(|s| (s.settings.technique, s.settings.sprite.motion) = (Technique::Soft, 0.5));
     assert!(motion.starts_with("systems[0].settings.sprite.motion: 0.5"), "{motion}");
 
-    // At scale 1 the host's depth needs a target as large as the picture.
+    // At scale 1 the host's depth needs a target as large as the image.
     let error = refused(|s| {
         (s.settings.accumulate.depth_source, s.settings.accumulate.scale) = (DepthSource::Host, 1);
         s.settings.accumulate.max_side = 100;
@@ -475,22 +482,35 @@ fn degenerate_input_is_finite_or_refused_by_name() {
         for change in shrink {
             change(&mut stage);
             let drawn = stage.on_gpu(gpu());
-            assert!(drawn.picture.texels.iter().all(|texel| texel.is_finite()), "{}", technique.name());
+            assert!(
+                drawn.picture.texels.iter().all(|texel| texel.is_finite()),
+                "{}: GPU image not finite",
+                technique.name()
+            );
             let targets = drawn.renderer.targets(0).unwrap();
-            assert_eq!(non_finite_texels(gpu(), &targets.accumulation[0], targets.size), 0, "{}", technique.name());
-            assert!(stage.on_cpu().texels.iter().all(|texel| texel.is_finite()), "{}", technique.name());
+            assert_eq!(
+                non_finite_texels(gpu(), &targets.accumulation[0], targets.size),
+                0,
+                "{}: target not finite",
+                technique.name()
+            );
+            assert!(
+                stage.on_cpu().texels.iter().all(|texel| texel.is_finite()),
+                "{}: CPU image not finite",
+                technique.name()
+            );
         }
     }
 }
 
 #[test]
-fn the_linear_target_must_be_there_to_be_read() {
+fn soft_linear_requires_and_reads_the_linear_target() {
     let mut stage = stage(Technique::SoftLinear);
     stage.depth = DepthKind::Buffer;
     stage.attach_depth = haze::read_only_depth_is_supported(&gpu().device);
     let error = stage.try_on_gpu(gpu()).map(|_| ()).unwrap_err().to_string();
     assert!(error.starts_with("systems[0].settings.technique: \"soft_linear\"") && error.contains("Both"), "{error}");
-    // It is the linear target that is read: one that says "nothing there" shows what the depth buffer hides.
+    // With an empty linear target, a technique that reads it shows smoke that the depth buffer hides.
     let mut stage = wall(Technique::Soft, 6.4);
     stage.empty_linear = true;
     let buffer_is_read = haze::read_only_depth_is_supported(&gpu().device);

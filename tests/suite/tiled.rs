@@ -1,4 +1,5 @@
-//! The path `tiled`: the picture of `raster` and of the reference, whatever the settings, and however workgroups walk.
+//! Compares the path `tiled` with `raster` and with the CPU renderer, for every setting and for both traversals of the
+//! sprite lists: cooperative and per invocation.
 
 mod auto;
 mod emission;
@@ -22,10 +23,10 @@ use crate::host::{Host, as_floats};
 use crate::stage::Stage;
 use crate::techniques;
 
-/// Of the picture of `raster`, dB: they differ by what the blend unit rounds, layer by layer.
+/// Least agreement with `raster`, dB. The paths differ because the blend unit rounds every layer.
 const TO_RASTER: f32 = 55.0;
 
-/// Of the reference's, which rounds as the blend unit does.
+/// Least agreement with the CPU renderer, which rounds as the blend unit does, dB.
 const TO_REFERENCE: f32 = AGREEMENT;
 
 fn stage(technique: Technique) -> Stage {
@@ -34,37 +35,43 @@ fn stage(technique: Technique) -> Stage {
     stage
 }
 
-fn walking(in_step: bool) -> Context {
+fn context_with_traversal(in_step: bool) -> Context {
     let context = Context::new(&gpu().device, &gpu().queue, None);
     context.walk_in_step(in_step);
     context
 }
 
-/// The walk alone has the sampler's own filter.
+/// Renders with one path and one traversal. Exact filtering would force the cooperative traversal, so the other one
+/// uses the sampler's filter.
 fn drawn(stage: &Stage, path: Path, in_step: bool) -> Picture<Vec4> {
     let mut stage = stage.clone();
     (stage.settings.path, stage.host.exact_filtering) = (path, in_step);
-    static CONTEXTS: [LazyLock<Context>; 2] = [LazyLock::new(|| walking(false)), LazyLock::new(|| walking(true))];
+    static CONTEXTS: [LazyLock<Context>; 2] =
+        [LazyLock::new(|| context_with_traversal(false)), LazyLock::new(|| context_with_traversal(true))];
     let mut host = Host::on(gpu(), &stage, Some(&CONTEXTS[usize::from(in_step)])).unwrap();
     host.draw(gpu(), &stage).unwrap();
     gpu().check().unwrap();
     host.picture(gpu()).unwrap()
 }
 
+/// Asserts that both traversals agree with `raster`, and the cooperative one also with the CPU renderer.
 pub fn agreement(name: &str, stage: &Stage) {
     let steps = stage.settings.sprite.debug_sprite;
     for in_step in [true, false] {
         let [tiled, raster] = [Path::Tiled, Path::Raster].map(|path| drawn(stage, path, in_step));
         let (to_raster, to_reference) = (psnr(&tiled, &raster), psnr(&tiled, &stage.on_cpu()));
-        println!("{name}, in step {in_step}: {to_raster:.1} dB of raster, {to_reference:.1} dB of the reference");
-        assert!(to_raster >= if steps { STEP_AGREEMENT } else { TO_RASTER }, "{name}: {to_raster:.1} dB of raster");
+        println!("{name}, cooperative {in_step}: raster {to_raster:.1} dB, CPU renderer {to_reference:.1} dB");
+        assert!(
+            to_raster >= if steps { STEP_AGREEMENT } else { TO_RASTER },
+            "{name}: {to_raster:.1} dB against raster"
+        );
         let least = if steps { STEP_AGREEMENT } else { TO_REFERENCE };
-        assert!(!in_step || to_reference >= least, "{name}: {to_reference:.1} dB of the reference");
+        assert!(!in_step || to_reference >= least, "{name}: {to_reference:.1} dB against the CPU renderer");
     }
 }
 
 #[test]
-fn every_technique_is_the_same_on_tiles() {
+fn tiled_path_agrees_on_every_technique() {
     if !has_tiles() {
         return;
     }
@@ -85,7 +92,7 @@ fn every_technique_is_the_same_on_tiles() {
 }
 
 #[test]
-fn every_way_to_accumulate_is_the_same_on_tiles() {
+fn tiled_path_agrees_in_every_accumulation_mode() {
     if !has_tiles() {
         return;
     }
@@ -97,15 +104,15 @@ fn every_way_to_accumulate_is_the_same_on_tiles() {
             s.settings.accumulate.order = Order::Weighted;
             s.settings.accumulate.encoding = NormalEncoding::Biased;
         }),
-        ("light of the target", |s| s.settings.accumulate.lighting_resolution = LightingResolution::Target),
+        ("lit at the target's resolution", |s| s.settings.accumulate.lighting_resolution = LightingResolution::Target),
         ("scale 3", |s| s.settings.accumulate.scale = 3),
         ("drawn three times", |s| {
             s.settings.sprite.debug_loop = 3;
             s.settings.accumulate.opacity = 0.2;
         }),
-        ("checks", |s| s.settings.sprite.debug_sprite = true),
+        ("debug sprite", |s| s.settings.sprite.debug_sprite = true),
         ("motion", |s| s.settings.sprite.motion = 1.0),
-        // Most of the sprites over the borders, some round the eye.
+        // Most sprites cross the borders of the image, and some surround the camera.
         ("near", |s| s.particles.iter_mut().for_each(|p| p.position.z += 5.5)),
     ];
     for (name, change) in changes {
@@ -116,11 +123,11 @@ fn every_way_to_accumulate_is_the_same_on_tiles() {
 }
 
 #[test]
-fn eight_bits_are_rounded_once() {
+fn tiled_path_rounds_eight_bit_targets_only_once() {
     if !has_tiles() {
         return;
     }
-    // Where each layer is rounded the sum stalls, which the path `tiled` does not know.
+    // Raster rounds after every layer, so the sum stalls. The path `tiled` sums in f32 and rounds once.
     let mut stage = stage(Technique::Soft);
     let accumulate = &mut stage.settings.accumulate;
     (accumulate.format, accumulate.encoding) = (AccumulationFormat::Rgba8Unorm, NormalEncoding::Biased);
@@ -130,15 +137,15 @@ fn eight_bits_are_rounded_once() {
     let exact = exact.on_cpu();
     let [tiled, raster] = [Path::Tiled, Path::Raster].map(|path| psnr(&drawn(&stage, path, true), &exact));
     println!("8 bits: tiled {tiled:.1} dB, raster {raster:.1} dB");
-    assert!(tiled >= 50.0 && tiled > raster, "{tiled} {raster}");
+    assert!(tiled >= 50.0 && tiled > raster, "tiled {tiled} dB, raster {raster} dB");
 }
 
 #[test]
-fn what_cannot_be_seen_is_left_out() {
+fn skipping_hidden_layers_barely_changes_the_image() {
     if !has_tiles() {
         return;
     }
-    // A stack of layers, opaque after some twenty.
+    // A stack of layers that is opaque after about twenty.
     let mut stage = stage(Technique::Soft);
     let layer = |index: u32| Particle {
         position: vec3(0.0, 0.0, -4.0 - 0.01 * index as f32),
@@ -154,14 +161,14 @@ fn what_cannot_be_seen_is_left_out() {
         stage.settings.accumulate.layers = Layers::Visible;
         let visible = drawn(&stage, Path::Tiled, in_step);
         let apart = psnr(&visible, &all);
-        println!("visible: {apart:.1} dB of all");
-        // A thousandth of the light, at the most.
-        assert!((55.0..150.0).contains(&apart), "{apart}");
+        println!("visible layers against all: {apart:.1} dB");
+        // The layers that are skipped add at most a thousandth of the light.
+        assert!((55.0..150.0).contains(&apart), "visible layers against all: {apart} dB");
     }
 }
 
 #[test]
-fn every_preset_is_the_same_on_tiles() {
+fn tiled_path_agrees_on_every_preset() {
     if !has_tiles() {
         return;
     }
@@ -190,12 +197,12 @@ fn every_preset_is_the_same_on_tiles() {
 }
 
 #[test]
-fn a_run_gives_the_same_bits_and_needs_no_order() {
+fn tiled_path_is_deterministic_and_sorts_buffers() {
     if !has_tiles() {
         return;
     }
     let mut stage = stage(Technique::Soft);
-    // More than a block of the sort, many at one depth, some hidden.
+    // More particles than a block of the sort holds, many at the same depth, some hidden.
     let all = |index: u32| {
         let mut particle = stage.particles[index as usize % 60];
         particle.position.x += 0.001 * (index / 60) as f32;
@@ -218,7 +225,7 @@ fn a_run_gives_the_same_bits_and_needs_no_order() {
         };
         let first = picture(&mut host);
         assert!(picture(&mut host) == first);
-        // From a buffer they are sorted by the GPU, whoever walks.
+        // The GPU sorts particles from a buffer, with either traversal.
         let mut buffered = |particles: &[Particle], offset: u64| {
             let mut bytes = vec![0x7f; offset as usize];
             bytes.extend_from_slice(bytemuck::cast_slice(particles));
@@ -228,12 +235,12 @@ fn a_run_gives_the_same_bits_and_needs_no_order() {
             host.draw_particles(gpu(), &stage, particles).unwrap();
             host.picture(gpu()).unwrap()
         };
-        // Those at one depth stay as they are.
+        // The sort is stable: particles at the same depth keep their order.
         let mut sorted = all.clone();
         sorted.sort_by(|a, b| a.position.z.total_cmp(&b.position.z));
         let sorted = buffered(&sorted, 0);
         for offset in [0, 16, 272] {
-            assert!(buffered(&all, offset) == sorted, "{offset}");
+            assert!(buffered(&all, offset) == sorted, "differs at offset {offset}");
         }
     }
     gpu().check().unwrap();
@@ -251,7 +258,7 @@ fn storage_buffer(bytes: &[u8]) -> wgpu::Buffer {
 }
 
 #[test]
-fn what_cannot_be_tiled_is_refused() {
+fn devices_and_buffers_without_tiles_are_errors_on_the_tiled_path() {
     let mut stage = stage(Technique::Soft);
     stage.settings.path = Path::Tiled;
     let refused = |result: Result<(), Error>| match result {
@@ -291,7 +298,7 @@ fn two_hundred_faint_layers_add_up() {
         return;
     }
     const LAYERS: usize = 256;
-    // Full of amount but for the border.
+    // Opaque except for the border, which must be clear.
     let mut sheet = image::RgbaImage::from_pixel(64, 64, image::Rgba([128, 128, 255, 255]));
     for i in 0..64 {
         for (x, y) in [(i, 0), (i, 63), (0, i), (63, i)] {
@@ -319,7 +326,7 @@ fn two_hundred_faint_layers_add_up() {
         let texels = as_floats(gpu(), targets.accumulation[0].texture());
         let (width, size) = (texels.width(), targets.size);
         let texels = gpu().read_rgba16float(&texels).unwrap();
-        // The middle of the picture.
+        // The middle of the image.
         let (mut squares, mut count) = (0.0, 0);
         for y in size.y / 4..size.y * 3 / 4 {
             for x in size.x / 4..size.x * 3 / 4 {
@@ -335,8 +342,8 @@ fn two_hundred_faint_layers_add_up() {
     let raster = decibels(Path::Raster, half, NormalEncoding::Signed);
     let raster_byte = decibels(Path::Raster, byte, NormalEncoding::Biased);
     println!("tiled {tiled:.1} dB, 8 bits {tiled_byte:.1}; raster {raster:.1}, 8 bits {raster_byte:.1}");
-    assert!(tiled >= 60.0, "{tiled}");
-    // A step of 8 bits is 48 dB, its rounding 59.
-    assert!(tiled_byte >= 50.0, "{tiled_byte}");
-    assert!(raster_byte < 30.0, "blending in 8 bits sticks: {raster_byte}");
+    assert!(tiled >= 60.0, "tiled {tiled} dB");
+    // A step of 8 bits is 48 dB; the rounding error of 8 bits is 59 dB.
+    assert!(tiled_byte >= 50.0, "tiled, 8 bits: {tiled_byte} dB");
+    assert!(raster_byte < 30.0, "expected 8-bit blending to stall below 30 dB: {raster_byte}");
 }

@@ -1,4 +1,4 @@
-//! GPU time by pass, on a device that has timestamps.
+//! GPU time per pass, on a device with timestamp queries.
 
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
@@ -17,18 +17,18 @@ const SIZE: UVec2 = UVec2::new(160, 90);
 
 const FEATURES: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
 
-/// A device that measures; `None` where the adapter cannot.
+/// Shared device with timestamp queries; `None` if the adapter lacks them.
 fn timed_gpu() -> Option<&'static Headless> {
     static GPU: OnceLock<Headless> = OnceLock::new();
     let gpu = GPU.get_or_init(|| Headless::with(wgpu::Limits::default(), FEATURES).unwrap());
     let measures = gpu.device.features().contains(FEATURES);
     if !measures {
-        println!("{} has no timestamps within passes", gpu.description());
+        println!("skipped: {} has no timestamp queries inside passes", gpu.description());
     }
     measures.then_some(gpu)
 }
 
-/// A host that measures.
+/// Host that measures its renderer and its own pass.
 fn timed_host(gpu: &Headless, stage: &Stage) -> (Host, Timing) {
     let timing = Timing::new(&gpu.device, &gpu.queue).unwrap();
     assert_eq!(timing.latest(), None);
@@ -38,8 +38,8 @@ fn timed_host(gpu: &Headless, stage: &Stage) -> (Host, Timing) {
     (host, timing)
 }
 
-/// The first result after `seen`. It has come when the submission is done, but for another thread whose poll may be the one that
-/// brings it.
+/// Waits for the first result of a frame after `seen`. Usually it is there once the submission is done, but the poll of
+/// another test's thread may deliver it later.
 fn result_after(timing: &Timing, seen: Option<u64>) -> FrameTimes {
     let start = Instant::now();
     while start.elapsed() < Duration::from_secs(10) {
@@ -48,7 +48,7 @@ fn result_after(timing: &Timing, seen: Option<u64>) -> FrameTimes {
         }
         std::thread::yield_now();
     }
-    panic!("no result came");
+    panic!("no timing result within 10 s");
 }
 
 fn drawn(gpu: &Headless, host: &mut Host, timing: &Timing, stage: &Stage) -> FrameTimes {
@@ -61,7 +61,7 @@ fn names(times: &FrameTimes) -> Vec<&str> {
     times.passes.iter().map(|pass| pass.name).collect()
 }
 
-/// Every pass of the deferred path.
+/// Stage with settings that use every pass of the deferred path.
 fn stage() -> Stage {
     let mut stage = Stage::new(SIZE);
     stage.settings.diffuse.mode = DiffuseMode::Cubemap;
@@ -71,7 +71,7 @@ fn stage() -> Stage {
 const DEFERRED: [&str; 6] = ["depth_downsample", "diffuse_bake", "accumulate", "host", "transfer", "specular_scatter"];
 
 #[test]
-fn every_pass_is_named_and_takes_time() {
+fn every_pass_is_reported_by_name_with_a_positive_time() {
     let Some(gpu) = timed_gpu() else { return };
     let mut stage = stage();
     let (mut host, timing) = timed_host(gpu, &stage);
@@ -83,7 +83,8 @@ fn every_pass_is_named_and_takes_time() {
         assert!(times.passes.iter().all(|pass| pass.ms > 0.0), "{times:?}");
         frame = Some(times.frame);
         let ms = |name: &str| times.passes.iter().find(|pass| pass.name == name).unwrap().ms;
-        // Intervals within an interval, and one after the other in the whole; f32 sums of six.
+        // Passes inside the host's pass take no longer than it, and all together no longer than the whole. The sums are
+        // f32.
         let within = ms("transfer") + ms("specular_scatter");
         assert!(within <= ms("host") * 1.0001, "{times:?}");
         assert!(times.smoke_ms() - within + ms("host") <= times.whole_ms * 1.0001, "{times:?}");
@@ -102,7 +103,7 @@ fn every_pass_is_named_and_takes_time() {
 }
 
 #[test]
-fn what_auto_takes_stands_beside_the_times() {
+fn results_report_the_path_that_auto_took() {
     let Some(gpu) = timed_gpu() else { return };
     let mut stage = stage();
     let (mut host, timing) = timed_host(gpu, &stage);
@@ -125,7 +126,7 @@ fn a_renderer_without_timing_is_not_measured() {
     assert_eq!(names(&drawn(gpu, &mut host, &timing, &stage)).len(), 6);
     host.renderer.set_timing(None).unwrap();
     assert_eq!(names(&drawn(gpu, &mut host, &timing, &stage)), ["host"]);
-    // A frame with nothing in it is a result, too: the smoke costs nothing now.
+    // An empty frame gives a result too, with a cost of 0.
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let seen = timing.latest().map(|times| times.frame);
     timing.resolve(&mut encoder);
@@ -135,7 +136,7 @@ fn a_renderer_without_timing_is_not_measured() {
 }
 
 #[test]
-fn systems_add_up() {
+fn pass_times_add_up_over_systems() {
     let Some(gpu) = timed_gpu() else { return };
     let stage = stage();
     let (mut host, timing) = timed_host(gpu, &stage);
@@ -168,7 +169,7 @@ fn systems_add_up() {
     measure(&[&light, &heavy]);
     let (alone, counts) = measure(&[&light]);
     assert_eq!((counts.systems, counts.sprites), (1, 60));
-    // Whichever comes last: 64 times the sprites on 4 times the texels are more than 3 times the work on any machine.
+    // In either order. 64 times the sprites on 4 times the texels take more than 3 times as long on any machine.
     for both in [[&light, &heavy], [&heavy, &light]] {
         let (ms, of_both) = measure(&both);
         assert!(ms > 3.0 * alone, "{ms} ms, alone {alone} ms");
@@ -178,17 +179,17 @@ fn systems_add_up() {
 }
 
 #[test]
-fn a_device_without_timestamps_measures_nothing() {
+fn device_without_timestamps_has_no_timing() {
     let plain = gpu();
     assert!(!plain.device.features().contains(wgpu::Features::TIMESTAMP_QUERY));
     assert!(Timing::new(&plain.device, &plain.queue).is_none());
 }
 
 #[test]
-fn another_devices_timing_is_refused() {
+fn timing_of_another_device_is_an_error() {
     let Some(gpu) = timed_gpu() else { return };
     if gpu.adapter.get_info().backend == wgpu::Backend::Gl {
-        return; // as what_belongs_to_another_device_is_refused
+        return; // Devices of one adapter share its OpenGL context: dropping one breaks the other.
     }
     let descriptor = wgpu::DeviceDescriptor { required_features: FEATURES, ..Default::default() };
     let (device, queue) = pollster::block_on(gpu.adapter.request_device(&descriptor)).unwrap();
@@ -197,12 +198,12 @@ fn another_devices_timing_is_refused() {
     let refused = host.renderer.set_timing(Some(&of_another));
     let Err(Error::Field(error)) = refused else { panic!("{refused:?}") };
     assert_eq!(error.field, "timing");
-    // The one before stays.
+    // The previous timing stays in use.
     assert_eq!(names(&drawn(gpu, &mut host, &timing, &stage())), DEFERRED);
 }
 
 #[test]
-fn without_timestamps_inside_passes_the_host_measures_its_own() {
+fn without_timestamps_inside_passes_only_whole_passes_are_measured() {
     let gpu = Headless::with(wgpu::Limits::default(), wgpu::Features::TIMESTAMP_QUERY).unwrap();
     if !gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
         return;
@@ -213,12 +214,12 @@ fn without_timestamps_inside_passes_the_host_measures_its_own() {
 }
 
 #[test]
-fn dropped_encoders_leave_no_trace() {
+fn dropped_encoders_do_not_disturb_later_results() {
     let Some(gpu) = timed_gpu() else { return };
     let stage = stage();
     let (mut host, timing) = timed_host(gpu, &stage);
     let first = drawn(gpu, &mut host, &timing, &stage);
-    // More often than there are buffers and queries.
+    // More rounds than there are read-back buffers and queries.
     for round in 0..200 {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         host.prepare(gpu, &mut encoder, &stage, Particles::Slice(&stage.particles)).unwrap();
@@ -237,7 +238,7 @@ fn dropped_encoders_leave_no_trace() {
 }
 
 #[test]
-fn queries_asked_for_before_a_frame_starts_over_do_no_harm() {
+fn host_pass_queries_from_before_a_second_prepare_are_harmless() {
     let Some(gpu) = timed_gpu() else { return };
     let mut stage = stage();
     stage.attach_depth = false;
@@ -260,14 +261,14 @@ fn queries_asked_for_before_a_frame_starts_over_do_no_harm() {
         ..Default::default()
     }));
     timing.resolve(&mut encoder);
-    // One query written twice in a pass would be an error of wgpu.
+    // wgpu rejects a pass that writes one query twice.
     gpu.submit(encoder).unwrap();
     let times = result_after(&timing, None);
     assert_eq!((names(&times).len(), times.discarded), (5, 0), "{times:?}");
 }
 
 #[test]
-fn only_the_frame_that_is_resolved_counts() {
+fn only_resolved_frames_are_measured() {
     let Some(gpu) = timed_gpu() else { return };
     let mut stage = stage();
     let (mut host, timing) = timed_host(gpu, &stage);
@@ -281,7 +282,7 @@ fn only_the_frame_that_is_resolved_counts() {
 }
 
 #[test]
-fn labels_that_are_not_used_or_do_not_fit_are_counted() {
+fn unused_and_excess_host_labels_count_as_discarded() {
     let Some(gpu) = timed_gpu() else { return };
     let stage = stage();
     let (mut host, timing) = timed_host(gpu, &stage);
@@ -293,19 +294,19 @@ fn labels_that_are_not_used_or_do_not_fit_are_counted() {
         times.discarded
     };
     assert_eq!(discarded(0), 0);
-    // This query holds what the host's pass wrote in the frame before.
+    // The query of the unused label still holds what the host's pass wrote in the previous frame.
     assert_eq!(discarded(1), 1);
-    // Thirty-two of nothing; eight and the host's pass do not fit.
+    // 32 labels are never written; 8 more and the host's own pass do not fit.
     assert_eq!(discarded(40), 32 + 8 + 1);
     assert_eq!(discarded(0), 0);
 }
 
 #[test]
-fn frames_in_flight_beyond_the_buffers_are_left_out() {
+fn frames_beyond_the_read_back_buffers_are_not_measured() {
     if timed_gpu().is_none() {
         return;
     }
-    // A device of its own: no other thread's poll may bring results later.
+    // A separate device, so that no other thread's poll delivers results later.
     let gpu = &Headless::with(wgpu::Limits::default(), FEATURES).unwrap();
     let stage = stage();
     let (mut host, timing) = timed_host(gpu, &stage);
@@ -325,7 +326,7 @@ fn frames_in_flight_beyond_the_buffers_are_left_out() {
 }
 
 #[test]
-fn steady_frames_create_nothing() {
+fn steady_frames_with_timing_create_no_resources() {
     let Some(gpu) = timed_gpu() else { return };
     let stage = stage();
     let (mut host, timing) = timed_host(gpu, &stage);
@@ -336,7 +337,7 @@ fn steady_frames_create_nothing() {
     }
 }
 
-/// The median of what these passes take together, milliseconds, of stages that are drawn in turn.
+/// Median GPU time of the sum of `passes` for every stage, milliseconds. The stages are drawn in turn.
 fn medians(gpu: &Headless, stages: &[Stage], passes: &[&str]) -> Vec<f32> {
     let mut hosts: Vec<_> = stages.iter().map(|stage| timed_host(gpu, stage)).collect();
     let mut all = vec![Vec::new(); stages.len()];
@@ -344,8 +345,8 @@ fn medians(gpu: &Headless, stages: &[Stage], passes: &[&str]) -> Vec<f32> {
         for ((stage, (host, timing)), times) in stages.iter().zip(&mut hosts).zip(&mut all) {
             let drawn = drawn(gpu, host, timing, stage);
             let ms: f32 = drawn.passes.iter().filter(|pass| passes.contains(&pass.name)).map(|pass| pass.ms).sum();
-            assert!(ms > 0.0, "{passes:?}");
-            // The first ones warm up.
+            assert!(ms > 0.0, "no time for {passes:?}");
+            // The first four rounds warm up.
             if turn >= 4 {
                 times.push(ms);
             }
@@ -355,10 +356,10 @@ fn medians(gpu: &Headless, stages: &[Stage], passes: &[&str]) -> Vec<f32> {
     all.iter().map(|times| times[times.len() / 2]).collect()
 }
 
-/// What docs/six_way.md and docs/light.md have.
+/// Prints the figures of docs/six_way.md and docs/light.md.
 #[test]
-#[ignore = "for who wants to know"]
-fn what_light_costs() {
+#[ignore = "prints figures for the docs"]
+fn prints_cost_of_six_way_lighting_and_ramps() {
     let Some(gpu) = timed_gpu() else { return };
     let mut stage = Stage::new(UVec2::new(1280, 720));
     stage.particles.iter_mut().for_each(|particle| particle.radius = 1.6);
@@ -391,7 +392,7 @@ fn what_light_costs() {
             );
         }
     }
-    // A ramp of one row, one of many, and another for light from behind.
+    // A ramp with one row, one with several rows, and a second ramp for light from behind.
     let mut two_axes = stage.clone();
     two_axes.material.diffuse_ramp = stage.material.backlight_ramp.clone();
     let backlit = other(|settings| settings.diffuse.backlight = Backlight::Ramp);

@@ -1,4 +1,4 @@
-//! Reduced targets against full ones, where the scene's depth changes.
+//! Compares upsampled targets with full-resolution ones, at depth edges of the scene and over the whole image.
 
 use glam::{IVec2, UVec2, Vec4, vec3};
 use haze::builtin;
@@ -12,7 +12,7 @@ use crate::presets::drawn;
 
 const SIZE: UVec2 = UVec2::new(640, 360);
 
-/// Renders with every system at a scale.
+/// Renders with a scale and an upsampling mode for every system.
 fn render(shot: &Shot, scale: u32, upsample: Upsample) -> Picture<Vec4> {
     let mut shot = shot.clone();
     for system in &mut shot.preset.systems {
@@ -21,7 +21,7 @@ fn render(shot: &Shot, scale: u32, upsample: Upsample) -> Picture<Vec4> {
     drawn(&shot, true)
 }
 
-/// Pixels with another depth within `reach` of them.
+/// Marks pixels whose depth differs from a pixel within `reach` pixels of them.
 fn edges(shot: &Shot, reach: i32) -> Vec<bool> {
     let depth = render(&Shot { shade_tree: ShadeTree::ReducedDepth, ..shot.clone() }, 1, Upsample::Bilinear);
     let is_edge = |i: u32| {
@@ -34,23 +34,23 @@ fn edges(shot: &Shot, reach: i32) -> Vec<bool> {
     (0..SIZE.element_product()).map(is_edge).collect()
 }
 
-/// PSNR of the pixels at edges, decibels, and what the worst of them is off, of sRGB's 0..1.
+/// PSNR of the pixels at edges, dB, and the largest error of a channel among them, sRGB 0..1.
 fn error_at_edges(reduced: &Picture<Vec4>, full: &Picture<Vec4>, edges: &[bool]) -> (f32, f32) {
     let at_edges = |picture: &Picture<Vec4>| {
         let texels: Vec<Vec4> = picture.texels.iter().zip(edges).filter(|(_, edge)| **edge).map(|(t, _)| *t).collect();
         Picture { size: UVec2::new(texels.len() as u32, 1), texels }
     };
     let (reduced, full) = (at_edges(reduced), at_edges(full));
-    assert!(full.texels.len() > 5000, "{}", full.texels.len());
+    assert!(full.texels.len() > 5000, "only {} pixels at edges", full.texels.len());
     let encoded = |x: f32| srgb_from_linear(x.clamp(0.0, 1.0));
     let off = |(a, b): (&Vec4, &Vec4)| (0..3).map(|i| (encoded(a[i]) - encoded(b[i])).abs()).fold(0.0, f32::max);
     let worst = reduced.texels.iter().zip(&full.texels).map(off).fold(0.0, f32::max);
     (psnr(&reduced, &full), worst)
 }
 
-/// Prints a row of the table in docs/upsampling.md for every way and scale; gives the worst pixel of guided and of
-/// joint bilateral upsampling at scale 2.
-fn row(name: &str, shot: &Shot) -> (f32, f32) {
+/// Prints the figures of the tables in docs/upsampling.md for every mode and scale. Returns the worst pixel error of
+/// guided and of joint bilateral upsampling at scale 2.
+fn print_rows(name: &str, shot: &Shot) -> (f32, f32) {
     let full = render(shot, 1, Upsample::Bilinear);
     let mut worst_of = Vec::new();
     for scale in [2, 4] {
@@ -69,8 +69,8 @@ fn row(name: &str, shot: &Shot) -> (f32, f32) {
     (worst_of[Upsample::Guided as usize], worst_of[Upsample::JointBilateral as usize])
 }
 
-/// The same with every system lit at a resolution, too.
-fn lit(shot: &Shot, scale: u32, lighting_resolution: LightingResolution) -> Picture<Vec4> {
+/// Renders with guided upsampling and every system lit at `lighting_resolution`.
+fn render_lit(shot: &Shot, scale: u32, lighting_resolution: LightingResolution) -> Picture<Vec4> {
     let mut shot = shot.clone();
     for system in &mut shot.preset.systems {
         system.settings.accumulate.lighting_resolution = lighting_resolution;
@@ -79,13 +79,14 @@ fn lit(shot: &Shot, scale: u32, lighting_resolution: LightingResolution) -> Pict
 }
 
 #[test]
-fn light_at_the_targets_resolution_looks_the_same() {
+fn lighting_at_target_resolution_stays_close_to_full_resolution() {
     for preset in builtin::PRESETS {
         let shot = Shot::load(preset.name, SIZE).unwrap();
-        assert!(lit(&shot, 1, LightingResolution::Target) == lit(&shot, 1, LightingResolution::Full));
-        // What the target's scale loses by itself is 48 to 75 dB; `explosion` is the worst here, 66 and 59 dB.
+        assert!(render_lit(&shot, 1, LightingResolution::Target) == render_lit(&shot, 1, LightingResolution::Full));
+        // The reduced target alone is at 48 to 75 dB. `explosion` is the worst preset here, at 66 and 59 dB.
         for (scale, least) in [(2, 63.0), (4, 56.0)] {
-            let [full, target] = [LightingResolution::Full, LightingResolution::Target].map(|r| lit(&shot, scale, r));
+            let [full, target] =
+                [LightingResolution::Full, LightingResolution::Target].map(|r| render_lit(&shot, scale, r));
             let (edge_psnr, worst) = error_at_edges(&target, &full, &edges(&shot, scale as i32));
             let all = psnr(&target, &full);
             println!("{} lit at scale {scale}: {all:.1} dB, at edges {edge_psnr:.1} dB, worst {worst:.2}", preset.name);
@@ -95,19 +96,19 @@ fn light_at_the_targets_resolution_looks_the_same() {
 }
 
 #[test]
-fn no_teeth_show_at_half_scale() {
+fn guided_upsampling_at_half_scale_has_no_jagged_edges() {
     for preset in builtin::PRESETS {
-        let (guided, _) = row(preset.name, &Shot::load(preset.name, SIZE).unwrap());
-        assert!(guided <= 0.2, "{}: {guided}", preset.name);
+        let (guided, _) = print_rows(preset.name, &Shot::load(preset.name, SIZE).unwrap());
+        assert!(guided <= 0.2, "{}: worst pixel at edges {guided}", preset.name);
     }
 }
 
 #[test]
-fn the_top_of_a_box_seen_from_its_side_has_no_comb() {
+fn guided_upsampling_has_no_stripes_on_a_grazing_surface() {
     let mut shot = Shot::load("column", SIZE).unwrap();
-    // The brazier's top is a few degrees below the eye.
+    // The camera sees the brazier's top from a few degrees above it.
     let camera = &mut shot.preset.camera;
     (camera.position, camera.target, camera.fov) = (vec3(0.3, 0.9, 4.5), vec3(0.0, 0.7, 0.0), 25.0);
-    let (guided, joint) = row("grazing", &shot);
-    assert!(guided <= 0.2 && joint > 2.0 * guided, "{guided}, joint bilateral {joint}");
+    let (guided, joint) = print_rows("grazing", &shot);
+    assert!(guided <= 0.2 && joint > 2.0 * guided, "worst pixel at edges: guided {guided}, joint bilateral {joint}");
 }

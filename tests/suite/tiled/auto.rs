@@ -1,4 +1,4 @@
-//! Which path `auto` takes, why, and how seldom it changes.
+//! The path `auto`: its choice by cost, the reason that it reports, its hysteresis, and the measurement of costs.
 
 use glam::vec3;
 use haze::settings::*;
@@ -10,7 +10,7 @@ use crate::creations;
 use crate::host::Host;
 
 #[test]
-fn auto_takes_what_is_cheaper_and_says_why() {
+fn auto_takes_the_cheaper_path_and_reports_the_reason() {
     if !has_tiles() {
         return;
     }
@@ -18,9 +18,10 @@ fn auto_takes_what_is_cheaper_and_says_why() {
     stage.settings.path = Path::Auto;
     let mut host = Host::new(gpu(), &stage).unwrap();
     let class = host.renderer.context().path_model();
-    let dear = |costs: PathCosts| PathCosts { fragment: 1.0e3, ..costs };
-    // The first frame takes what is cheaper at once.
-    let models = [(dear(class.raster), class.tiled, Path::Tiled), (class.raster, dear(class.tiled), Path::Raster)];
+    let expensive = |costs: PathCosts| PathCosts { fragment: 1.0e3, ..costs };
+    // The first frame takes the cheaper path at once.
+    let models =
+        [(expensive(class.raster), class.tiled, Path::Tiled), (class.raster, expensive(class.tiled), Path::Raster)];
     for (raster, tiled, path) in models {
         let mut host = Host::new(gpu(), &stage).unwrap();
         let model = PathModel { raster, tiled, source: PathModelSource::Host, ..class };
@@ -33,15 +34,15 @@ fn auto_takes_what_is_cheaper_and_says_why() {
             panic!("{choice}")
         };
         assert_eq!((raster_ms < tiled_ms, source), (path == Path::Raster, PathModelSource::Host));
-        // As the renderer counts them, but for the part of the target that the box does not cover.
+        // Equal to the renderer's overdraw, except for the part of the target that the bounding box does not cover.
         let counted = host.renderer.overdraw().mean() as f32;
-        assert!((0.5..1.1).contains(&(layers / counted)), "{layers} {counted}");
+        assert!((0.5..1.1).contains(&(layers / counted)), "{layers} layers, counted {counted}");
         assert!(choice.to_string().contains("overdraw"), "{choice}");
         assert_eq!(host.renderer.memory_use().tiled.total() > 0, path == Path::Tiled);
     }
-    // A buffer that compute shaders cannot read is drawn all the same.
+    // A buffer that compute shaders cannot read is drawn by raster.
     stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
-    host.renderer.context().set_path_model(PathModel { raster: dear(class.raster), ..class }).unwrap();
+    host.renderer.context().set_path_model(PathModel { raster: expensive(class.raster), ..class }).unwrap();
     host.draw_buffer(gpu(), &stage, &stage.particles).unwrap();
     let choice = host.renderer.path_choice(0).unwrap();
     assert_eq!((choice.path, choice.reason), (Path::Raster, PathReason::BufferOfVertices));
@@ -51,7 +52,7 @@ fn auto_takes_what_is_cheaper_and_says_why() {
         .unwrap();
     let choice = host.renderer.path_choice(0).unwrap();
     assert!(choice.path == Path::Tiled && choice.to_string().contains("unknown, assumed 16"), "{choice}");
-    // No choice, no reason.
+    // If the settings name a path, `auto` makes no choice.
     stage.settings.path = Path::Raster;
     host.draw(gpu(), &stage).unwrap();
     assert_eq!(host.renderer.path_choice(0), None);
@@ -64,7 +65,7 @@ fn auto_takes_what_is_cheaper_and_says_why() {
 }
 
 #[test]
-fn auto_changes_seldom_and_then_creates_a_few_things_once() {
+fn auto_switches_only_after_a_lasting_advantage() {
     if !has_tiles() {
         return;
     }
@@ -81,7 +82,7 @@ fn auto_changes_seldom_and_then_creates_a_few_things_once() {
     set(&host, 1.0, 100.0);
     host.draw(gpu(), &stage).unwrap();
     assert_eq!(path(&host), Path::Raster);
-    // What seems better every other frame never is.
+    // A path that is cheaper only in every other frame is never taken.
     let created = creations::count(|| {
         for frame in 0..80 {
             set(&host, [1.0, 100.0][frame % 2], [100.0, 1.0][frame % 2]);
@@ -101,7 +102,7 @@ fn auto_changes_seldom_and_then_creates_a_few_things_once() {
 }
 
 #[test]
-fn a_probe_measures_both_paths() {
+fn measured_costs_of_both_paths_are_plausible() {
     if !has_tiles() {
         return;
     }
@@ -111,7 +112,7 @@ fn a_probe_measures_both_paths() {
     let before = context.path_model();
     let model = context.measure_paths(&gpu().device, &gpu().queue, |encoder| gpu().submit(encoder)).unwrap();
     assert_eq!((model, model.source), (context.path_model(), PathModelSource::Probe));
-    // Whatever the machine, no millisecond a fragment, and no two thousand a picosecond.
+    // On any machine, a fragment takes between 0.1 ps and 1 ms. Costs are in nanoseconds.
     for costs in [model.raster, model.tiled] {
         assert!((1.0e-4..1.0e6).contains(&costs.fragment), "{costs:?}");
     }

@@ -1,4 +1,4 @@
-//! Emitters that are evaluated where they are drawn.
+//! Emitters that the GPU evaluates.
 
 use glam::{UVec2, Vec3, vec3};
 use haze::emitter::{Emitter, EmitterShape};
@@ -10,7 +10,7 @@ use crate::common::{gpu, has_tiles, psnr};
 use crate::host::Host;
 use crate::stage::Stage;
 
-/// An emitter before the stage's camera.
+/// An emitter in front of the test camera.
 fn emitter() -> Emitter {
     Emitter {
         rate: 60.0,
@@ -24,7 +24,7 @@ fn emitter() -> Emitter {
 }
 
 #[test]
-fn an_emitter_is_evaluated_where_it_is_drawn() {
+fn emitter_on_the_gpu_matches_its_particles_as_a_slice() {
     if !has_tiles() {
         return;
     }
@@ -34,7 +34,7 @@ fn an_emitter_is_evaluated_where_it_is_drawn() {
             let emission = emitter.at(time);
             let mut stage = stage(Technique::Soft);
             emission.evaluate(&mut stage.particles);
-            // Those of the slice, so that both are lit at one place.
+            // The same bounding box for both, so that both are lit on the same plane.
             stage.bounds = Some(emission.bounds(stage.settings.reach()));
             stage.settings.accumulate.order = Order::Sorted;
             let mut host = Host::new(gpu(), &stage).unwrap();
@@ -45,26 +45,30 @@ fn an_emitter_is_evaluated_where_it_is_drawn() {
                 host.picture(gpu()).unwrap()
             };
             let tiled = drawn(Path::Tiled, Particles::Emission(&emission));
-            assert!(drawn(Path::Tiled, Particles::Emission(&emission)) == tiled, "not the same again");
+            assert!(drawn(Path::Tiled, Particles::Emission(&emission)) == tiled, "a second draw differs");
             let raster = drawn(Path::Raster, Particles::Emission(&emission));
             let slice = drawn(Path::Tiled, Particles::Slice(&particles));
             let (to_raster, to_slice) = (psnr(&tiled, &raster), psnr(&tiled, &slice));
-            println!("{shape:?} at {time}: {to_raster:.1} dB of raster, {to_slice:.1} dB of the slice");
-            assert!(to_raster >= TO_RASTER && to_slice >= 70.0, "{to_raster} {to_slice}");
+            println!("{shape:?} at {time} s: {to_raster:.1} dB against raster, {to_slice:.1} dB against the slice");
+            assert!(to_raster >= TO_RASTER && to_slice >= 70.0, "raster {to_raster} dB, slice {to_slice} dB");
         }
     }
     gpu().check().unwrap();
 }
 
 #[test]
-fn a_million_particles_never_are_on_the_cpu_and_fit_into_200_megabytes() {
+fn a_million_gpu_particles_fit_into_200_megabytes() {
     if !has_tiles() {
         return;
     }
     let emitter = Emitter { rate: 100_000.0, lifetime: 8.7, lifetime_spread: 0.2, radius_end: 0.02, ..emitter() };
     emitter.validate(String::new).unwrap();
     let emission = emitter.at(60.0);
-    assert!((1_000_000..=haze::emitter::MAX_PARTICLES + 2).contains(&emission.count()), "{}", emission.count());
+    assert!(
+        (1_000_000..=haze::emitter::MAX_PARTICLES + 2).contains(&emission.count()),
+        "{} particles",
+        emission.count()
+    );
     let mut stage = stage(Technique::Soft);
     (stage.settings.path, stage.settings.accumulate.scale) = (Path::Tiled, 2);
     stage.view = Stage::new(UVec2::new(1920, 1080)).view;
@@ -78,7 +82,7 @@ fn a_million_particles_never_are_on_the_cpu_and_fit_into_200_megabytes() {
     assert_eq!((memory.tiled.total(), sorted), (emitted + sprites + keys + counts + lists, 0));
     assert!(memory.buffers >= memory.tiled.total() && memory.targets > 960 * 540 * 8);
     assert!(memory.targets + memory.buffers <= 200_000_000, "{memory:?}");
-    // Nothing of it was sorted or uploaded.
+    // The CPU neither sorts nor uploads particles.
     assert!(memory.buffers - memory.tiled.total() < 1 << 16, "{memory:?}");
     gpu().check().unwrap();
 }

@@ -1,4 +1,4 @@
-//! Lists of sprites: what finds no room, what is too long to count, and what steady frames create.
+//! Sprite lists of the path `tiled`: overflow, sizes beyond 32 bits, sprites out of view, and steady frames.
 
 use glam::{UVec2, vec3};
 use haze::formula::uniforms::TilesUniform;
@@ -12,11 +12,12 @@ use crate::host::Host;
 use crate::stage::Stage;
 
 #[test]
-fn lists_that_find_no_room_are_drawn_all_the_same() {
+fn bins_draw_all_sprites_while_their_lists_overflow() {
     if !has_tiles() {
         return;
     }
-    // Every sprite in every bin. Of a slice that is known; of a buffer less is assumed, and at first the lists hold a part.
+    // Every sprite touches every bin. The renderer computes that for a slice, but assumes less for a buffer, so at
+    // first lists overflow.
     let mut stage = stage(Technique::Soft);
     let size = UVec2::new(960, 540);
     (stage.view, stage.settings.accumulate.scale) = (Stage::new(size).view, 1);
@@ -46,11 +47,11 @@ fn lists_that_find_no_room_are_drawn_all_the_same() {
         let (raster, _) = picture(Path::Raster);
         let (first, held) = picture(Path::Tiled);
         let (second, held_then) = picture(Path::Tiled);
-        assert!(held_then > held, "the lists have not grown from {held} bytes");
+        assert!(held_then > held, "the list buffer has not grown from {held} bytes");
         assert!(first == second);
-        // The blend unit has rounded a hundred layers.
+        // The blend unit rounds each of the 140 layers.
         let apart = psnr(&first, &raster);
-        assert!(apart >= 50.0, "{apart}");
+        assert!(apart >= 50.0, "{apart} dB against raster");
         let mut known = Host::new(gpu(), &stage).unwrap();
         known.renderer.context().walk_in_step(in_step);
         known.draw(gpu(), &stage).unwrap();
@@ -62,7 +63,7 @@ fn lists_that_find_no_room_are_drawn_all_the_same() {
 }
 
 #[test]
-fn steady_frames_on_tiles_create_nothing() {
+fn steady_frames_of_the_tiled_path_create_no_resources() {
     if !has_tiles() {
         return;
     }
@@ -74,7 +75,7 @@ fn steady_frames_on_tiles_create_nothing() {
         host.draw(gpu(), &stage).unwrap();
         let created = creations::count(|| {
             for frame in 0..5 {
-                // Fewer sprites, elsewhere.
+                // Fewer sprites, at other positions.
                 stage.particles.truncate(60 - frame);
                 stage.particles.iter_mut().for_each(|particle| particle.position.x += 0.001);
                 host.draw(gpu(), &stage).unwrap();
@@ -82,7 +83,7 @@ fn steady_frames_on_tiles_create_nothing() {
         });
         assert_eq!(created, 0);
     }
-    // What is not tiled any more gives its buffers back.
+    // A system that is no longer tiled releases its buffers.
     let held = host.renderer.memory_use().buffers;
     stage.settings.path = Path::Raster;
     for _ in 0..130 {
@@ -92,14 +93,14 @@ fn steady_frames_on_tiles_create_nothing() {
 }
 
 #[test]
-fn of_many_those_in_sight_are_listed() {
+fn sprites_out_of_view_do_not_change_the_image() {
     if !has_tiles() {
         return;
     }
     let mut stage = stage(Technique::Soft);
     stage.settings.path = Path::Tiled;
     stage.bounds = Some(Bounds { min: vec3(-3.0, -2.0, -7.0), max: vec3(3.0, 2.0, -3.0) });
-    // More than one dispatch lists.
+    // More than 2^15 sprites, so that several dispatches build the lists.
     let small = |index: u32| Particle {
         position: vec3(
             (index % 200) as f32 * 0.02 - 2.0,
@@ -125,7 +126,7 @@ fn of_many_those_in_sight_are_listed() {
 }
 
 #[test]
-fn lists_of_more_than_32_bits_can_count_do_not_wrap() {
+fn list_sizes_beyond_32_bits_do_not_wrap() {
     if !has_tiles() {
         return;
     }
@@ -143,7 +144,8 @@ fn lists_of_more_than_32_bits_can_count_do_not_wrap() {
         compilation_options: wgpu::PipelineCompilationOptions::default(),
         cache: None,
     });
-    // The first two come to 2^32 words and more; the others to 74, with those that tell where each sprite is seen.
+    // Each bin also needs 32 words for its sprites' visibility. The first two lists take more than 2^32 words in total,
+    // the others 74.
     let lengths = [3_000_000_000_u32, 1_294_967_292, 4, 6];
     let tiles = TilesUniform { count: 9, columns: 2, rows: 2, runs: 1, capacity: 40, ..TilesUniform::default() };
     let buffer = |bytes: &[u8], usage| {
@@ -172,14 +174,14 @@ fn lists_of_more_than_32_bits_can_count_do_not_wrap() {
     }
     gpu.submit(encoder).unwrap();
     let words = |buffer| bytemuck::pod_collect_to_vec::<u8, u32>(&gpu.read_buffer(buffer).unwrap());
-    // Those that are longer than their share of 32 bits are left out.
+    // A list that exceeds its share of the 32-bit counter is not allocated.
     assert_eq!(words(&tally)[1], 74);
     let bins = words(&bins);
     assert_eq!((bins[0], bins[2]), (u32::MAX, u32::MAX));
     assert!(bins[4] != u32::MAX || bins[6] != u32::MAX, "neither fits: {bins:?}");
     for (bin, length) in bins.chunks(2).zip(lengths) {
         match bin[0] {
-            u32::MAX => assert_eq!(bin[1], 9, "it reads all sprites"),
+            u32::MAX => assert_eq!(bin[1], 9, "a bin without a list must read all sprites"),
             first => assert!(bin[1] == length && first + length + 32 <= 40, "{bins:?}"),
         }
     }
