@@ -1,4 +1,4 @@
-//! What the tests share: the device.
+//! Shared test helpers: the GPU device, PSNR of images, and compute runs of WGSL functions.
 
 use std::sync::{LazyLock, OnceLock};
 
@@ -12,7 +12,8 @@ use haze_demo::headless::Headless;
 
 use crate::stage::BACKDROP;
 
-/// The one device of this process. A machine without an adapter fails, with the line that installs one.
+/// Returns the device that all tests of this process share. Panics on a machine without an adapter; the message
+/// contains the command that installs one.
 pub fn gpu() -> &'static Headless {
     static GPU: OnceLock<Headless> = OnceLock::new();
     GPU.get_or_init(|| match Headless::new() {
@@ -24,38 +25,41 @@ pub fn gpu() -> &'static Headless {
     })
 }
 
-/// What renderers may share whose pictures alone matter: no pipeline of theirs is compiled twice. `None` on another device.
+/// Returns a context for tests that only compare images, so that no pipeline is compiled twice. `None` if `gpu` is not
+/// the shared device.
 pub fn shared_context(gpu: &Headless) -> Option<&'static Context> {
     static CONTEXT: LazyLock<Context> = LazyLock::new(|| Context::new(&self::gpu().device, &self::gpu().queue, None));
     std::ptr::eq(gpu, self::gpu()).then_some(&CONTEXT)
 }
 
-/// True where there is a path `tiled`: not on OpenGL. It says so where there is none.
+/// Returns true if the path `tiled` is available (not on OpenGL); otherwise prints that the test is skipped.
 pub fn has_tiles() -> bool {
     let has_tiles = gpu().adapter.get_info().backend != wgpu::Backend::Gl;
     if !has_tiles {
-        eprintln!("left out: no path tiled on OpenGL");
+        eprintln!("skipped: the path tiled is not available on OpenGL");
     }
     has_tiles
 }
 
-/// Least agreement of two correct renderers, dB. They differ by f16 rounding, by the order of f32 operations, and at edges by
-/// 1/256 pixel: 57 to 84 dB on llvmpipe, Vulkan and OpenGL alike. The mistakes in properties.rs are 12 to 36.
+/// Lowest PSNR of two correct renderers, dB. They differ by f16 rounding, by the order of f32 operations, and by edges
+/// that are snapped to 1/256 pixel: 57 to 84 dB on llvmpipe, with Vulkan and OpenGL. The mistakes in
+/// properties/mutants.rs give 12 to 36.
 pub const AGREEMENT: f32 = 54.0;
 
-/// The same where a picture has steps, which fall to one side of a pixel or the other: sprites with the debug checkerboard on
-/// them, 45 dB on an NVIDIA H200, 68 on llvmpipe; ramps looked up by their nearest texel, 50 dB on llvmpipe by four pixels in
-/// five thousand.
+/// Lowest PSNR of images with hard steps, which may fall on either side of a pixel, dB. Sprites with the debug
+/// checkerboard give 45 dB on an NVIDIA H200 and 68 dB on llvmpipe. Ramps sampled at the nearest texel give 50 dB on
+/// llvmpipe, because of four pixels in five thousand.
 pub const STEP_AGREEMENT: f32 = 44.0;
 
-/// How alike two pictures of smoke on the stage's backdrop are: [`psnr_over`].
+/// Returns the PSNR of two images of smoke over the stage's backdrop, dB; see [`psnr_over`].
 pub fn psnr(a: &Picture<Vec4>, b: &Picture<Vec4>) -> f32 {
     let behind = Picture::new(a.size, BACKDROP);
     psnr_over([a, b], [&behind, &behind])
 }
 
-/// Peak signal-to-noise ratio of two pictures of smoke, decibels, where either differs from what is behind it by a step of 8
-/// bits: elsewhere there is nothing to be wrong. Linear HDR colour clamped to 0..4, peak 4; alpha, peak 1.
+/// Returns the peak signal-to-noise ratio of two images of smoke, dB. Only pixels that differ from their background by
+/// more than 1/255 in either image are counted; the others contain no smoke. Linear HDR colour is clamped to 0..4 and
+/// has peak 4; alpha has peak 1.
 pub fn psnr_over(pictures: [&Picture<Vec4>; 2], behind: [&Picture<Vec4>; 2]) -> f32 {
     let [a, b] = pictures.map(|picture| &picture.texels);
     let [behind_a, behind_b] = behind.map(|picture| &picture.texels);
@@ -74,8 +78,8 @@ pub fn psnr_over(pictures: [&Picture<Vec4>; 2], behind: [&Picture<Vec4>; 2]) -> 
     (-10.0 * mean.max(1.0e-12).log10()) as f32
 }
 
-/// Runs a compute shader over cases of `width` numbers each, with a ramp, a sprite, a noise and a sampler bound beside
-/// them.
+/// Runs a compute shader on cases of `width` numbers each and returns as many results per case. A ramp, a sprite, a
+/// noise volume and a sampler are bound too.
 pub fn compute(
     gpu: &Headless,
     source: &str,
@@ -241,14 +245,14 @@ fn upload(
     texture.create_view(&wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() })
 }
 
-/// Counts texels of the first `size` of a texture with a NaN or infinity in them.
+/// Counts the texels that contain a NaN or an infinity, within the first `size` texels of a texture.
 pub fn non_finite_texels(gpu: &Headless, view: &wgpu::TextureView, size: UVec2) -> u32 {
     const SOURCE: &str = "
         @group(0) @binding(0) var texels: texture_2d<f32>;
         @group(0) @binding(1) var<storage, read_write> count: atomic<u32>;
         @compute @workgroup_size(8, 8)
         fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-            // By their bits: comparisons with NaN may be optimised away. Texels out of range load as zero or a border.
+            // Tests bits: a compiler may remove comparisons with NaN. Texels out of range load as zero or a border.
             let bits = bitcast<vec4u>(textureLoad(texels, id.xy, 0)) & vec4u(0x7f800000u);
             if any(bits == vec4u(0x7f800000u)) { atomicAdd(&count, 1u); }
         }";

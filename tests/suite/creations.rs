@@ -1,10 +1,11 @@
-//! Counts what is created on a device, dropped or not. wgpu has counters of what is alive only, but logs every creation by name.
+//! Counts the resources that are created on a device, including those that are dropped at once. wgpu's own counters
+//! cover live resources only, but wgpu logs every creation by function name.
 
 use std::cell::Cell;
 use std::sync::Once;
 
 thread_local! {
-    /// Creations on this thread, while they are counted: other tests run beside this one.
+    /// Creations on this thread while counting is active. Per thread, because other tests run in parallel.
     static CREATED: Cell<Option<usize>> = const { Cell::new(None) };
 }
 
@@ -24,13 +25,14 @@ impl log::Log for Counter {
     fn flush(&self) {}
 }
 
-/// "Device::create_buffer -> …", "Texture::create_view(…) -> …". Encoders are the host's, one a frame.
+/// Returns true if a log message reports a creation: "Device::create_buffer -> …", "Texture::create_view(…) -> …".
+/// Command encoders do not count: the host creates one per frame.
 fn is_creation(message: &str) -> bool {
     let call = message.split(['(', ' ']).next().unwrap_or_default();
     call.contains("::create_") && !call.ends_with("create_command_encoder")
 }
 
-/// Creations by this thread in `run`.
+/// Returns the number of resources that this thread creates in `run`.
 pub fn count(run: impl FnOnce()) -> usize {
     static LOGGER: Once = Once::new();
     LOGGER.call_once(|| log::set_logger(&Counter).unwrap());

@@ -1,4 +1,5 @@
-//! What is told to have no effect has none, on either renderer; what is not told so has one somewhere.
+//! Checks `Preset::without_effect`: a field that it reports changes no image on either renderer, and every other field
+//! changes one in some case.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path as File;
@@ -20,15 +21,15 @@ use crate::stage::Stage;
 
 const SIZE: UVec2 = UVec2::new(48, 27);
 
-/// A preset of one system and one light, and the pictures of its system.
+/// Preset of one system and one light, with the textures and particle files of the system.
 #[derive(Clone)]
-struct Situation {
+struct PresetCase {
     preset: Preset,
     material: MaterialAssets,
     caches: Vec<Option<Cache>>,
 }
 
-impl Situation {
+impl PresetCase {
     fn new(folder: &File, change: fn(&mut PresetSystem, &mut Light)) -> Self {
         let mut system = PresetSystem::default();
         let (emitter, settings) = (&mut system.emitter, &mut system.settings);
@@ -57,8 +58,9 @@ impl Situation {
         stage
     }
 
-    /// This with one field another, the field's path, and whether it has more values; `None` past the last field. Nothing in it
-    /// where the value does not go with the rest.
+    /// Returns a copy in which field number `skip` has its alternative number `value`, the path of the field, and true
+    /// if the field has further alternatives. The copy is `None` if the value is invalid together with the other
+    /// fields. Returns `None` past the last field.
     #[allow(clippy::type_complexity, reason = "used once")]
     fn moved(&self, folder: &File, skip: usize, value: usize) -> Option<(Option<Self>, String, bool)> {
         let mut other = self.clone();
@@ -89,8 +91,8 @@ impl Situation {
     }
 }
 
-/// Between them they bring every reason about.
-const SITUATIONS: &[fn(&mut PresetSystem, &mut Light)] = &[
+/// Changes to the preset of a case. Together the cases produce every reason of `without_effect`.
+const CASES: &[fn(&mut PresetSystem, &mut Light)] = &[
     |_, _| {},
     |s, _| s.settings.accumulate.encoding = NormalEncoding::Biased,
     |s, _| s.settings.path = Path::Forward,
@@ -138,60 +140,62 @@ const SITUATIONS: &[fn(&mut PresetSystem, &mut Light)] = &[
         (s.settings.lighting, s.settings.path) = (Lighting::SixWay, Path::Forward);
         s.settings.specular_scatter.intensity = 0.0;
     },
-    // Between two frames, after the end.
+    // Particle files, at a time between two frames and past the end.
     |s, _| {
         (s.cache.path, s.cache.position) = (PARTICLES.into(), vec3(0.0, -0.5, -6.0));
         (s.cache.fps, s.cache.after) = (3.0, CacheEnd::Loop);
-        // Large enough that a level of the detail map is read which has motion left.
+        // Large enough that the sampled mip level of the detail map still contains motion.
         s.settings.sprite.size = 4.0;
     },
 ];
 
-/// One a frame, without radius and amount.
+/// Particle files, one per frame, without columns for radius and amount.
 const PARTICLES: &str = "particles_##.csv";
 
-/// Fields whose other values make no other picture where they can be compared, and why.
+/// Fields whose alternatives give the same image wherever both can be drawn, with the reason.
 const SAME: [&str; 4] = [
-    // At scale 1 the reduced depth is the host's.
+    // At scale 1 the reduced depth equals the host's.
     "systems[0].settings.accumulate.depth_source",
-    // What is left out cannot be seen.
+    // The layers that are skipped are invisible.
     "systems[0].settings.accumulate.layers",
-    // Frames are square: neither can be moved without the other.
+    // Flipbook frames are square, so neither can change without the other.
     "systems[0].material.columns",
     "systems[0].material.rows",
 ];
 
-/// Fields that do nothing in some situation without being told so: it depends on more than settings, or on how far they are moved.
+/// Fields that have no effect in some case although `without_effect` does not report them: the effect depends on more
+/// than settings, or on the size of the change.
 const NOT_ALWAYS: [&str; 17] = [
-    // What is left out cannot be seen.
+    // The layers that are skipped are invisible.
     "systems[0].settings.accumulate.layers",
-    // Nothing to see of the light: it is hidden, or lights nothing.
+    // The light is hidden, or lights nothing.
     "lights[0].kind",
     "lights[0].radius",
     "lights[0].specular_scatter",
     "systems[0].material.specular_ramp",
     "systems[0].settings.specular_scatter.intensity",
     "systems[0].settings.specular_scatter.size",
-    // No diffuse light: nothing reads normals or six-way maps, which an artist moves all the same.
+    // Without diffuse light nothing reads normals or six-way maps; an artist may change these settings all the same.
     "systems[0].settings.lighting",
     "systems[0].settings.accumulate.decode",
     "systems[0].settings.accumulate.encoding",
-    // The most texels are so few that they set the scale, and one depth hides the post from the smoke or not.
+    // A small max_side determines the scale; in so few texels the reduced depth may or may not contain the post.
     "systems[0].settings.accumulate.depth_downsample",
     "systems[0].settings.accumulate.max_side",
     "systems[0].settings.accumulate.scale",
-    // Another value is the same: `auto` is `raster`, `soft_linear` reads the same depth, and so does `host`.
+    // Some alternatives give the same image: `auto` chooses `raster`, and `soft_linear` and `host` read the same depth.
     "systems[0].settings.path",
     "systems[0].settings.technique",
     "systems[0].settings.accumulate.depth_source",
-    // Less than the reach of the fade.
+    // Epsilon is smaller than the fade distance.
     "systems[0].settings.soft_fade.epsilon",
 ];
 
-/// Pipelines of other constants may be compiled otherwise: two steps of a half float at 1.
+/// Tolerance for pipelines with other constants, which may be compiled differently: two steps of a half float at 1.
 const ROUNDING: f32 = 2.0 / 1024.0;
 
-fn pictures(folder: &File) {
+/// Writes the images and particle files that the cases load.
+fn write_input_files(folder: &File) {
     for (name, lean) in [("own.png", 40), (OTHER_DETAIL, 90)] {
         let picture = image::RgbaImage::from_fn(32, 32, |x, y| {
             let inside = 255 - (2 * (x.abs_diff(16).pow(2) + y.abs_diff(12).pow(2))).min(255) as u8;
@@ -218,63 +222,69 @@ fn pictures(folder: &File) {
 }
 
 #[test]
-fn what_has_no_effect_has_none_and_what_is_not_told_so_has_one() {
+fn without_effect_reports_exactly_the_fields_that_change_no_image() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    pictures(folder);
+    write_input_files(folder);
     let context = Context::new(&gpu().device, &gpu().queue, None);
-    let (mut reasons, mut felt, mut all) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
+    let (mut reasons, mut with_effect, mut all) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
     let mut compared = BTreeSet::new();
     let mut wrong = BTreeSet::new();
-    let mut untold = BTreeMap::<String, Vec<usize>>::new();
-    for (index, change) in SITUATIONS.iter().enumerate() {
-        let situation = Situation::new(folder, *change);
-        if situation.preset.systems[0].settings.path == Path::Tiled && !has_tiles() {
+    let mut unreported = BTreeMap::<String, Vec<usize>>::new();
+    for (index, change) in CASES.iter().enumerate() {
+        let preset_case = PresetCase::new(folder, *change);
+        if preset_case.preset.systems[0].settings.path == Path::Tiled && !has_tiles() {
             continue;
         }
-        let plain = situation.stage().on_cpu();
+        let plain = preset_case.stage().on_cpu();
         let mut on_gpu = None;
         let (mut skip, mut value) = (0, 0);
-        while let Some((moved, path, has_more)) = situation.moved(folder, skip, value) {
+        while let Some((moved, path, has_more)) = preset_case.moved(folder, skip, value) {
             (skip, value) = if has_more { (skip, value + 1) } else { (skip + 1, 0) };
             all.insert(path.clone());
-            let reason = without_effect(&situation.preset, &path, SIZE);
-            // Not every value goes with every other.
+            let reason = without_effect(&preset_case.preset, &path, SIZE);
+            // Some values are invalid together with others.
             reasons.extend(reason);
             let on_cpu = moved.as_ref().and_then(|moved| moved.stage().try_on_cpu().ok());
             let Some((moved, on_cpu)) = moved.zip(on_cpu) else { continue };
             let is_moved = on_cpu != plain;
             let Some(reason) = reason else {
                 if is_moved {
-                    felt.insert(path);
+                    with_effect.insert(path);
                 } else {
-                    untold.entry(path).or_default().push(index);
+                    unreported.entry(path).or_default().push(index);
                 }
                 continue;
             };
             if is_moved {
-                wrong.insert(format!("{path} has an effect in situation {index}: {reason}"));
+                wrong.insert(format!("{path} has an effect in case {index}; without_effect says: {reason}"));
             } else if compared.insert((reason, path.clone())) {
-                let plain = on_gpu.get_or_insert_with(|| situation.on_gpu(&context));
+                let plain = on_gpu.get_or_insert_with(|| preset_case.on_gpu(&context));
                 let moved = moved.on_gpu(&context);
                 let differences = plain.texels.iter().zip(&moved.texels).map(|(a, b)| (a - b).abs().max_element());
                 let most = differences.fold(0.0, f32::max);
                 if most > ROUNDING {
-                    wrong.insert(format!("{path} moves the GPU's picture by {most} in situation {index}: {reason}"));
+                    wrong.insert(format!(
+                        "{path} changes the GPU's image by {most} in case {index}; without_effect says: {reason}"
+                    ));
                 }
             }
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
-    let unfelt: Vec<_> = all.iter().filter(|path| !felt.contains(*path) && !SAME.contains(&path.as_str())).collect();
-    assert!(unfelt.is_empty(), "nowhere any effect: {unfelt:?}");
-    assert!(untold.keys().all(|path| NOT_ALWAYS.contains(&path.as_str())), "{untold:?}");
-    // All but the one that is about the demo scene.
+    let never_with_effect: Vec<_> =
+        all.iter().filter(|path| !with_effect.contains(*path) && !SAME.contains(&path.as_str())).collect();
+    assert!(never_with_effect.is_empty(), "fields without any effect: {never_with_effect:?}");
+    assert!(
+        unreported.keys().all(|path| NOT_ALWAYS.contains(&path.as_str())),
+        "no effect in these cases: {unreported:?}"
+    );
+    // All reasons except the one about the demo scene.
     assert_eq!(reasons.len(), 44, "{reasons:#?}");
 }
 
 #[test]
-fn the_yards_props_are_nowhere_else() {
+fn lamp_and_brazier_have_an_effect_only_in_the_yard_scene() {
     use haze::preset::SceneName;
     use haze_demo::shot::Shot;
 

@@ -1,5 +1,5 @@
-//! Every setting, moved: both renderers follow alike, and no setting does nothing. The walk finds the settings, so that a new
-//! one is tested before anyone has thought of it.
+//! Changes every setting in turn: each must change the image, and both renderers must agree on the new image. A field
+//! visitor finds the settings, so that a new one is tested automatically.
 
 use std::ops::RangeInclusive;
 
@@ -13,29 +13,31 @@ use crate::stage::{DepthKind, Stage};
 
 const SIZE: UVec2 = UVec2::new(96, 54);
 
-/// What a detail map is moved to, beside the sprite's file.
+/// File of an alternative detail map.
 pub const OTHER_DETAIL: &str = "other.png";
-/// The same for six-way maps.
+/// File of alternative six-way maps.
 pub const OTHER_SIX_WAY: &str = "other.six_way.png";
-/// The same for a noise, of which one is built in.
+/// File of an alternative noise; only one noise is built in.
 pub const OTHER_NOISE: &str = "noise.png";
 
-/// Moves the one field that is asked for to the one value that is asked for, and tells of it.
+/// Field visitor that sets one field to one of its alternatives and records the path of the field.
 #[derive(Default)]
 pub struct Mover {
-    /// Fields to pass by.
+    /// Number of fields to skip before the one to change.
     pub skip: usize,
-    /// Which of a field's other values.
+    /// Number of the alternative, for fields that have several.
     pub value: usize,
+    /// Names of the groups that enclose the visited field.
     pub path: Vec<&'static str>,
+    /// Path of the changed field, followed by the new value of a choice. `None` if no field was changed.
     pub moved: Option<String>,
-    /// The field has more values than this.
+    /// True if the field has further alternatives.
     pub has_more: bool,
 }
 
 impl Mover {
-    /// Whether this field is the one; counts it.
-    fn is_here(&mut self, name: &str) -> bool {
+    /// Returns true and records the path if this is the field to change; otherwise counts the field.
+    fn is_selected(&mut self, name: &str) -> bool {
         if self.moved.is_some() {
             return false;
         }
@@ -50,30 +52,30 @@ impl Mover {
 
 impl FieldVisitor for Mover {
     fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, _: &'static str) {
-        if self.is_here(name) {
+        if self.is_selected(name) {
             let larger = *value * 1.7 + 0.15;
             *value = if range.contains(&larger) { larger } else { *value * 0.55 };
         }
     }
     fn integer(&mut self, name: &'static str, value: &mut u32, range: RangeInclusive<u32>, _: &'static str) {
-        if self.is_here(name) {
-            // A largest side is felt below the picture's.
+        if self.is_selected(name) {
+            // A limit on the longer side has an effect only below the size of the image.
             let near = if *range.end() > 1000 && *value > 100 { *range.start() } else { *value + 1 };
             *value = if range.contains(&near) { near } else { *value - 1 };
         }
     }
     fn vector(&mut self, name: &'static str, value: &mut Vec3, _: RangeInclusive<f32>, _: &'static str) {
-        if self.is_here(name) {
+        if self.is_selected(name) {
             *value = *value * 0.5 + Vec3::new(0.3, 0.2, 0.1);
         }
     }
     fn flag(&mut self, name: &'static str, value: &mut bool) {
-        if self.is_here(name) {
+        if self.is_selected(name) {
             *value = !*value;
         }
     }
     fn choice(&mut self, name: &'static str, value: &mut dyn Choice) {
-        if self.is_here(name) {
+        if self.is_selected(name) {
             let others: Vec<_> = (0..value.names().len()).filter(|&index| index != value.index()).collect();
             self.has_more = self.value + 1 < others.len();
             value.set_index(others[self.value]);
@@ -83,7 +85,7 @@ impl FieldVisitor for Mover {
         }
     }
     fn picture(&mut self, name: &'static str, value: &mut String, role: PictureRole) {
-        if self.is_here(name) {
+        if self.is_selected(name) {
             let builtins = match role {
                 PictureRole::Sprite => builtin::SPRITES,
                 PictureRole::Ramp => builtin::RAMPS,
@@ -101,7 +103,7 @@ impl FieldVisitor for Mover {
         }
     }
     fn seed(&mut self, name: &'static str, value: &mut u32) {
-        if self.is_here(name) {
+        if self.is_selected(name) {
             *value += 1;
         }
     }
@@ -113,7 +115,8 @@ impl FieldVisitor for Mover {
     fn item(&mut self, _: &'static str, _: usize, _: &mut dyn Fields) {}
 }
 
-/// Where a setting may be felt: most in soft smoke, some under one technique or path only.
+/// Returns stages in which settings may have an effect: most of them in soft smoke, some only with one technique or
+/// path.
 fn stages() -> Vec<Stage> {
     let flipbook = crate::techniques::flipbook();
     let stage = |technique: Technique, path: Path, change: fn(&mut Settings)| {
@@ -122,7 +125,7 @@ fn stages() -> Vec<Stage> {
         (stage.settings.technique, stage.settings.path) = (technique, path);
         (stage.settings.volumetric.noise_size, stage.settings.specular_scatter.size) = (1.5, 20.0);
         stage.settings.boost = 1.0;
-        // Of every age and frame.
+        // Particles of every age and flipbook frame.
         for (index, particle) in (0..).zip(&mut stage.particles) {
             (particle.age, particle.frame) = (index as f32 / 59.0, index as f32 * 0.37);
         }
@@ -150,28 +153,28 @@ fn stages() -> Vec<Stage> {
     ]
 }
 
-/// Values that make no other picture where they can be compared, and why.
+/// Values that give the same image wherever both can be drawn, with the reason.
 const SAME: [&str; 5] = [
-    // One of the two that are compared elsewhere.
+    // Chooses one of two paths, which are compared elsewhere.
     "path auto",
-    // The same picture by other means; tiled.rs compares them.
+    // The same image, computed differently; tiled.rs compares the two.
     "path tiled",
-    // What is left out there cannot be seen.
+    // The layers that are skipped otherwise are invisible.
     "accumulate.layers all",
     // The same depth, read from another texture.
     "technique soft_linear",
-    // At scale 1 the reduced depth is the host's.
+    // At scale 1 the reduced depth equals the host's.
     "accumulate.depth_source host",
 ];
 
 #[test]
-fn every_setting_moves_both_renderers_alike() {
+fn every_setting_changes_the_image_and_both_renderers_agree() {
     let stages = stages();
     let plain: Vec<Picture<Vec4>> = stages.iter().map(Stage::on_cpu).collect();
     let (mut skip, mut value, mut seen) = (0, 0, 0);
     loop {
         let mut name = None;
-        let (mut has_more, mut felt) = (false, false);
+        let (mut has_more, mut has_effect) = (false, false);
         for (index, plain) in plain.iter().enumerate() {
             let mut stage = stages[index].clone();
             let mut mover = Mover { skip, value, ..Mover::default() };
@@ -179,7 +182,7 @@ fn every_setting_moves_both_renderers_alike() {
             has_more = mover.has_more;
             name = mover.moved.clone();
             let Some(name) = &mover.moved else { break };
-            // Not every value goes with every other.
+            // Some values are invalid together with others.
             if stage.settings.validate(String::new).is_err() {
                 continue;
             }
@@ -187,12 +190,12 @@ fn every_setting_moves_both_renderers_alike() {
             if on_cpu == *plain && !SAME.contains(&name.as_str()) {
                 continue;
             }
-            felt = true;
+            has_effect = true;
             let on_gpu = match stage.try_on_gpu(gpu()) {
                 Ok(drawn) => drawn.picture,
-                // A backend without it says so.
+                // The error says that the backend does not support it.
                 Err(error) => {
-                    eprintln!("left out: {name}: {error}");
+                    eprintln!("skipped: {name}: {error}");
                     break;
                 }
             };
@@ -204,7 +207,7 @@ fn every_setting_moves_both_renderers_alike() {
             break;
         }
         let Some(name) = name else { break };
-        assert!(felt, "{name} does nothing");
+        assert!(has_effect, "{name} changes no image");
         seen += 1;
         (skip, value) = if has_more { (skip, value + 1) } else { (skip + 1, 0) };
     }

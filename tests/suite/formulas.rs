@@ -1,5 +1,6 @@
-//! Every WGSL function of `shaders/lib` against the reference function of the same name, and against mutants of itself:
-//! a wrong shader must fail, or the test says nothing. A file for each of the shaders'.
+//! Compares every WGSL function of `shaders/lib` with the Rust function of the same name. Each WGSL function is also
+//! compared after deliberate mistakes (mutants), which must fail: otherwise the comparison proves nothing. Each shader
+//! file has a module of the same name here.
 
 mod blending;
 mod colour;
@@ -27,24 +28,24 @@ use haze::shader;
 use self::inputs::{test_noise, test_ramp, test_sprite};
 use crate::common::gpu;
 
-/// Most numbers that one case takes or gives.
+/// Largest number of inputs or results of a case.
 const WIDTH: usize = 32;
 
-/// One function of `shaders/lib`, as both sides compute it.
+/// One function of `shaders/lib`, with the code that evaluates it in WGSL and in Rust.
 struct Formula {
-    /// The WGSL function; the reference has the same name.
+    /// Name of the WGSL function and of its Rust counterpart.
     name: &'static str,
-    /// The file that defines it.
+    /// Shader file that defines it.
     file: &'static str,
     /// WGSL statements that read inputs `x(i)` and write results with `y(i, value)`.
     wgsl: &'static str,
-    /// The same with the reference.
+    /// The same computation with the Rust function.
     reference: fn(&[f32]) -> Vec<f32>,
-    /// Inputs of every case.
+    /// Inputs of each case.
     cases: Vec<Vec<f32>>,
-    /// Largest difference, relative to 1 or to the result if that is larger.
+    /// Largest allowed difference, relative to max(1, |expected|).
     tolerance: f32,
-    /// (text in the file, what a mistake would make of it): each must fail.
+    /// Deliberate mistakes, as (text in the composed shader, replacement). Each must fail the comparison.
     mutants: &'static [(&'static str, &'static str)],
 }
 
@@ -73,7 +74,7 @@ fn formulas() -> Vec<Formula> {
     all.into_iter().flatten().collect()
 }
 
-/// Runs the formula on the GPU, from `source` of its file.
+/// Runs the formula on the GPU. `mutate` is a (text, replacement) pair that is applied to the composed shader first.
 fn run(formula: &Formula, mutate: Option<(&str, &str)>) -> Vec<Vec<f32>> {
     let mut library = format!("#import \"{}\"\n", formula.file);
     if !["lib/sprite.wgsl", "lib/ramp.wgsl", "lib/noise_volume.wgsl"].contains(&formula.file) {
@@ -81,10 +82,11 @@ fn run(formula: &Formula, mutate: Option<(&str, &str)>) -> Vec<Vec<f32>> {
     }
     let mut source = shader::compose(&library).unwrap();
     if let Some((from, to)) = mutate {
-        assert!(source.contains(from), "{}: there is no {from:?} to mutate", formula.name);
+        assert!(source.contains(from), "{}: the shader does not contain {from:?}, the text of a mutant", formula.name);
         source = source.replace(from, to);
     }
-    // One case per workgroup: llvmpipe 22 takes a textureLoad's level for a whole SIMD group from its first invocation.
+    // One case per workgroup, because llvmpipe 22 uses the level of the first invocation for every textureLoad of a
+    // SIMD group.
     source.push_str(&format!(
         "@group(0) @binding(0) var<storage, read> inputs: array<f32>;
          @group(0) @binding(1) var<storage, read_write> results: array<f32>;
@@ -109,12 +111,12 @@ fn run(formula: &Formula, mutate: Option<(&str, &str)>) -> Vec<Vec<f32>> {
     results
 }
 
-/// Largest difference from the reference, relative to 1 or the result.
+/// Returns the largest difference from the Rust function, relative to max(1, |expected|).
 fn error(formula: &Formula, results: &[Vec<f32>]) -> f32 {
     let mut worst = 0.0_f32;
     for (case, result) in formula.cases.iter().zip(results) {
         for (expected, found) in (formula.reference)(case).into_iter().zip(result) {
-            assert!(expected.is_finite(), "{} of {case:?} is {expected}", formula.name);
+            assert!(expected.is_finite(), "{}: the Rust function returns {expected} for {case:?}", formula.name);
             let difference = (expected - found).abs() / expected.abs().max(1.0);
             worst = worst.max(if difference.is_nan() { f32::INFINITY } else { difference });
         }
@@ -123,18 +125,18 @@ fn error(formula: &Formula, results: &[Vec<f32>]) -> f32 {
 }
 
 #[test]
-fn every_formula_agrees_with_the_reference() {
+fn every_wgsl_formula_matches_its_rust_function() {
     for formula in formulas() {
         let worst = error(&formula, &run(&formula, None));
         println!("{}: {worst:e}", formula.name);
-        assert!(worst <= formula.tolerance, "{}: off by {worst:e}", formula.name);
+        assert!(worst <= formula.tolerance, "{}: WGSL and Rust differ by {worst:e}", formula.name);
     }
 }
 
 #[test]
-fn every_mutant_fails() {
+fn every_mutated_wgsl_formula_fails_the_comparison() {
     for formula in formulas() {
-        assert!(!formula.mutants.is_empty(), "{} has no mutant", formula.name);
+        assert!(!formula.mutants.is_empty(), "{} has no mutants", formula.name);
         for &mutant in formula.mutants {
             let worst = error(&formula, &run(&formula, Some(mutant)));
             assert!(worst > 10.0 * formula.tolerance, "{}: the mutant {mutant:?} passes ({worst:e})", formula.name);
@@ -142,7 +144,8 @@ fn every_mutant_fails() {
     }
 }
 
-/// Functions that the formulas above run through, or that read the passes' own bindings; whole frames hold the latter.
+/// Functions without a [`Formula`]: either a tested formula calls them, or they read the bindings of a pass and are
+/// covered by tests of whole frames.
 const INDIRECT: &[&str] = &[
     "load_sprite_bilinear",
     "sample_sprite_frame",
@@ -180,7 +183,7 @@ const INDIRECT: &[&str] = &[
     "sprite_texel",
     "sphere_fragment",
     "volumetric_fragment",
-    // Whole pictures of tests/suite/tiled.rs.
+    // Covered by the whole frames of tests/suite/tiled.rs.
     "inclusive_sum",
     "packed_rect",
     "rects_meet",
@@ -230,12 +233,12 @@ const INDIRECT: &[&str] = &[
 ];
 
 #[test]
-fn no_function_is_left_out() {
+fn every_wgsl_function_has_a_formula_or_is_listed_as_indirect() {
     let formulas = formulas();
     for (file, text) in shader::sources() {
         let mut before = "";
         for line in text.lines() {
-            // A pass's entry points.
+            // Attributes (@vertex, @fragment, @compute) stand on the line before an entry point.
             let is_entry_point = before.starts_with('@');
             before = line;
             let Some(name) = line.strip_prefix("fn ").and_then(|rest| rest.split('(').next()) else { continue };
@@ -243,11 +246,14 @@ fn no_function_is_left_out() {
                 continue;
             }
             let tested = formulas.iter().any(|formula| formula.name == name && formula.file == *file);
-            assert!(tested || INDIRECT.contains(&name), "{file}: {name} has no test against the reference");
+            assert!(tested || INDIRECT.contains(&name), "{file}: {name} has no Formula and is not in INDIRECT");
         }
     }
     for name in INDIRECT {
         let is_there = |text: &str| text.contains(&format!("\nfn {name}("));
-        assert!(shader::sources().iter().any(|(_, text)| is_there(text)), "{name} is no more");
+        assert!(
+            shader::sources().iter().any(|(_, text)| is_there(text)),
+            "INDIRECT lists {name}, but no shader file defines it"
+        );
     }
 }

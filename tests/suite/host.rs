@@ -1,4 +1,4 @@
-//! A host on the GPU, of any kind: its targets and its pass, and a stage drawn in it.
+//! A configurable test host on the GPU: it owns the render targets and the pass in which a [`Stage`] is drawn.
 
 use glam::{UVec2, Vec4};
 use haze::formula::colour::gamma_target_colour;
@@ -10,18 +10,18 @@ use haze_demo::headless::Headless;
 use crate::common::shared_context;
 use crate::stage::{BACKDROP, DepthKind, Stage};
 
-/// What a host's pass and targets are like.
+/// Formats and sample count of a host's pass and targets.
 #[derive(Clone, Debug)]
 pub struct HostKind {
     pub color_format: wgpu::TextureFormat,
-    /// Further colour attachments of the pass.
+    /// Formats of the additional colour attachments of the pass.
     pub further: Vec<wgpu::TextureFormat>,
     pub depth_format: wgpu::TextureFormat,
-    /// Of the pass; the depth that is handed over is resolved.
+    /// Sample count of the pass. The depth buffer passed to haze always has one sample.
     pub samples: u32,
     pub gamma_target: bool,
     pub exact_filtering: bool,
-    /// Size of the targets, where the view is a part of them.
+    /// Size of the targets, pixels, if the view covers only a part of them. `None` for the size of the view.
     pub target_size: Option<UVec2>,
 }
 
@@ -39,25 +39,26 @@ impl Default for HostKind {
     }
 }
 
-/// The host's side, kept from frame to frame.
+/// State of the host that persists between frames.
 pub struct Host {
     pub renderer: Renderer,
     pub material: haze::Material,
     size: UVec2,
-    /// Single-sampled; what is shown.
+    /// Single-sampled colour target, which tests read back.
     pub colour: wgpu::Texture,
-    /// First what the smoke is drawn on, then the further attachments.
+    /// The colour attachment that the smoke is drawn on, then the additional attachments.
     attachments: Vec<wgpu::TextureView>,
     resolved: Option<wgpu::TextureView>,
-    /// What is handed over.
+    /// Single-sampled depth buffer passed to haze.
     pub depth: wgpu::TextureView,
+    /// Linear view depth passed to haze, metres.
     pub linear: wgpu::TextureView,
     attached_depth: wgpu::TextureView,
-    /// Measures the host's pass, and is resolved at the end of a frame.
+    /// Measures the host's pass; resolved at the end of each frame.
     pub timing: Option<Timing>,
 }
 
-/// What a run leaves.
+/// Image of one frame, and the renderer that drew it.
 pub struct Drawn {
     pub picture: Picture<Vec4>,
     pub renderer: Renderer,
@@ -80,12 +81,13 @@ impl Host {
         Self::on(gpu, stage, None)
     }
 
-    /// On the context that tests share, for pictures alone: what is created or compiled says nothing there.
+    /// Creates a host on the context that tests share. Only for comparing images: on a shared context, counts of
+    /// created resources and compiled pipelines mean nothing.
     pub fn sharing(gpu: &Headless, stage: &Stage) -> Result<Self, Error> {
         Self::on(gpu, stage, shared_context(gpu))
     }
 
-    /// With a renderer on a context of others.
+    /// Creates a host whose renderer uses `context`, or its own context if `None`.
     pub fn on(gpu: &Headless, stage: &Stage, context: Option<&Context>) -> Result<Self, Error> {
         let kind = &stage.host;
         let further: Vec<_> = kind.further.iter().copied().map(Some).collect();
@@ -114,8 +116,8 @@ impl Host {
         let depth = depth_buffer(gpu, stage, size, 1);
         let attached_depth =
             if kind.samples > 1 { depth_buffer(gpu, stage, size, kind.samples) } else { depth.clone() };
-        let linear = upload(gpu, &placed(&stage.linear_depth(), stage.view.origin, size));
-        // A depth and stencil buffer is read through a view of its depth alone.
+        let linear = upload(gpu, &pad_to_target(&stage.linear_depth(), stage.view.origin, size));
+        // A depth-stencil buffer is sampled through a view of its depth aspect only.
         let depth_aspect = wgpu::TextureViewDescriptor {
             aspect: if kind.depth_format.has_stencil_aspect() {
                 wgpu::TextureAspect::DepthOnly
@@ -138,7 +140,7 @@ impl Host {
         })
     }
 
-    /// One frame: the backdrop, then the smoke.
+    /// Draws one frame: clears to the backdrop, then draws the smoke.
     pub fn draw(&mut self, gpu: &Headless, stage: &Stage) -> Result<(), Error> {
         self.draw_particles(gpu, stage, Particles::Slice(&stage.particles))
     }
@@ -153,13 +155,13 @@ impl Host {
         gpu.submit(encoder)
     }
 
-    /// Draws from a buffer, in the order that it has.
+    /// Draws particles from a GPU buffer in their given order, without sorting.
     pub fn draw_buffer(&mut self, gpu: &Headless, stage: &Stage, particles: &[Particle]) -> Result<(), Error> {
         let (buffer, count) = (particle_buffer(gpu, particles), particles.len() as u32);
         self.draw_particles(gpu, stage, Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: true })
     }
 
-    /// The first half of a frame.
+    /// Records `prepare`, the first half of a frame.
     pub fn prepare(
         &mut self,
         gpu: &Headless,
@@ -178,7 +180,7 @@ impl Host {
         self.renderer.prepare(&gpu.device, &gpu.queue, encoder, &frame)
     }
 
-    /// The second half.
+    /// Records the host's pass, the second half of a frame.
     pub fn render(&self, encoder: &mut wgpu::CommandEncoder, stage: &Stage) {
         let clear = if stage.host.gamma_target {
             gamma_target_colour(BACKDROP.truncate()).extend(BACKDROP.w)
@@ -216,19 +218,19 @@ impl Host {
         self.renderer.render_stage(&mut pass, stage.shade_tree);
     }
 
-    /// The pixels of the targets, as light: code is decoded.
+    /// Reads back the colour target as floats. sRGB formats are decoded to linear light.
     pub fn picture(&self, gpu: &Headless) -> Result<Picture<Vec4>, Error> {
         Ok(Picture { size: self.size, texels: gpu.read_rgba16float(&as_floats(gpu, &self.colour))? })
     }
 
-    /// A further attachment.
+    /// Reads back additional attachment number `index`.
     pub fn further(&self, gpu: &Headless, index: usize) -> Picture<Vec4> {
         let texels = gpu.read_rgba16float(&as_floats(gpu, self.attachments[index + 1].texture())).unwrap();
         Picture { size: self.size, texels }
     }
 }
 
-/// A host's own particles on the GPU.
+/// Uploads particles to a vertex buffer, as a host with its own simulation does.
 fn particle_buffer(gpu: &Headless, particles: &[Particle]) -> wgpu::Buffer {
     let bytes: &[u8] = bytemuck::cast_slice(particles);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -267,8 +269,9 @@ fn target(gpu: &Headless, size: UVec2, format: wgpu::TextureFormat, sample_count
     })
 }
 
-/// A view's values in targets that it is a part of: the rest is as near as can be, so that a value from there shows.
-fn placed(values: &Picture<f32>, origin: UVec2, size: UVec2) -> Picture<f32> {
+/// Places a view's depth values at `origin` in a target of `size`. The rest of the target is 0, the nearest depth, so
+/// that a value read from outside the view shows in the image.
+fn pad_to_target(values: &Picture<f32>, origin: UVec2, size: UVec2) -> Picture<f32> {
     let mut whole = Picture::new(size, 0.0);
     whole.for_each(|at, texel| {
         let inside = at.cmpge(origin).all() && at.cmplt(origin + values.size).all();
@@ -294,9 +297,9 @@ fn upload(gpu: &Headless, values: &Picture<f32>) -> wgpu::Texture {
     gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, bytemuck::cast_slice(&values.texels))
 }
 
-/// The stage's scene in a depth buffer.
+/// Creates a depth buffer that contains the stage's scene.
 fn depth_buffer(gpu: &Headless, stage: &Stage, size: UVec2, samples: u32) -> wgpu::Texture {
-    let values = upload(gpu, &placed(&stage.ndc_depth(), stage.view.origin, size));
+    let values = upload(gpu, &pad_to_target(&stage.ndc_depth(), stage.view.origin, size));
     let depth = target(gpu, size, stage.host.depth_format, samples);
     let fragment = "@fragment fn fragment(@builtin(position) p: vec4f) -> @builtin(frag_depth) f32 {
         return textureLoad(values, vec2i(p.xy), 0).r;
@@ -305,7 +308,7 @@ fn depth_buffer(gpu: &Headless, stage: &Stage, size: UVec2, samples: u32) -> wgp
     depth
 }
 
-/// Any texture as `Rgba16Float`.
+/// Converts any colour texture to `Rgba16Float`.
 pub fn as_floats(gpu: &Headless, texture: &wgpu::Texture) -> wgpu::Texture {
     if texture.format() == wgpu::TextureFormat::Rgba16Float && texture.usage().contains(wgpu::TextureUsages::COPY_SRC) {
         return texture.clone();
@@ -319,7 +322,7 @@ pub fn as_floats(gpu: &Headless, texture: &wgpu::Texture) -> wgpu::Texture {
     floats
 }
 
-/// Draws a fragment shader that reads `values` over all of a target.
+/// Draws a fragment shader, which reads `values`, over the whole target `into`.
 fn fill(gpu: &Headless, values: &wgpu::Texture, into: &wgpu::Texture, fragment: &str) {
     let source = format!(
         "@group(0) @binding(0) var values: texture_2d<f32>;

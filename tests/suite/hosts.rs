@@ -1,4 +1,4 @@
-//! Hosts of every kind: several views, either hand, viewports, formats, samples, and what they may not hand over.
+//! Host configurations: several views, handedness, viewports, formats, sample counts, and rejected input.
 
 pub mod kept;
 mod passes;
@@ -17,7 +17,8 @@ use crate::stage::Stage;
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
-/// A device with the optional formats of this adapter, which the others are made without.
+/// Returns a device with optional texture formats and a pipeline cache, as far as the adapter has them. The device of
+/// other tests has none of these features.
 fn featured() -> &'static Headless {
     static GPU: OnceLock<Headless> = OnceLock::new();
     GPU.get_or_init(|| {
@@ -36,10 +37,11 @@ fn encoder(gpu: &Headless) -> wgpu::CommandEncoder {
     gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
 }
 
+/// Returns the field that an error names. Panics if there is no error, or another kind of error.
 fn field<T>(result: Result<T, Error>) -> String {
     match result {
         Err(Error::Field(error)) => error.field,
         Err(error) => panic!("{error}"),
-        Ok(_) => panic!("taken"),
+        Ok(_) => panic!("accepted; expected an error that names a field"),
     }
 }

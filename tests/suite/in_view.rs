@@ -1,5 +1,5 @@
-//! What both renderers are handed by one and the same code, held against laws that are worked out here: the light of spherical
-//! harmonics, cones, ranges, the order of sprites, and what is in sight.
+//! Tests of the view setup that both renderers share. Results are compared with laws that are derived here: spherical
+//! harmonics, spot cones, light ranges, the order of sprites, and visibility.
 
 use glam::camera::rh::proj::directx;
 use glam::{IVec2, Mat4, UVec2, Vec2, Vec3, Vec3Swizzles, Vec4, vec3, vec4};
@@ -15,12 +15,12 @@ use crate::stage::{BACKDROP, Stage};
 
 const SIZE: UVec2 = UVec2::new(96, 54);
 
-/// A camera that is neither at the origin nor straight.
+/// View matrix of a camera that is away from the origin and rotated about two axes.
 fn camera() -> Mat4 {
     Mat4::from_rotation_x(0.3) * Mat4::from_rotation_y(-0.8) * Mat4::from_translation(vec3(1.0, -2.0, 3.0))
 }
 
-/// A sprite of one normal that covers its square, but for the border.
+/// Sprite with one normal and alpha 1 everywhere, except for a transparent border of one texel.
 fn flat_sprite() -> Sprite {
     let picture = image::RgbaImage::from_fn(64, 64, |x, y| {
         let inside = (1..63).contains(&x) && (1..63).contains(&y);
@@ -29,15 +29,16 @@ fn flat_sprite() -> Sprite {
     Sprite::from_picture("flat".as_ref(), &picture, SpriteLayout::default()).unwrap()
 }
 
-/// View depth of the sheet: in front of everything in the scene.
+/// View depth of the sheet, metres. The sheet is in front of everything in the scene.
 const SHEET: f32 = 4.0;
-/// Half its side, metres.
+/// Half the side of the sheet, metres.
 const HALF: f32 = 1.5;
 
-/// A flat, opaque sheet that faces the camera. Its ramp is white: a pixel shows how much light reaches it, and nothing else.
+/// Stage with a flat, opaque sheet that faces the camera. The diffuse ramp is white, so a pixel shows only the amount
+/// of light that reaches it.
 fn sheet(lights_in_view: &[Light]) -> Stage {
     let mut stage = Stage::new(SIZE);
-    // Axes change places, so that the box is as thin in the world.
+    // The view matrix permutes the axes, so that the box is as thin in world space as in view space.
     stage.view.view_from_world = Mat4::from_cols(Vec4::Y, Vec4::Z, Vec4::X, vec4(1.0, -2.0, 3.0, 1.0));
     let world_from_view = stage.view.view_from_world.inverse();
     let [a, b] = [vec3(-HALF, -HALF, -SHEET - 0.05), vec3(HALF, HALF, -SHEET + 0.05)]
@@ -58,7 +59,7 @@ fn sheet(lights_in_view: &[Light]) -> Stage {
     stage
 }
 
-/// The point of view space at a view depth behind the middle of a pixel, by the inverse of the projection.
+/// Returns the view-space point at `view_depth` behind the centre of pixel `at`, by inverting the projection.
 fn point_behind(stage: &Stage, at: UVec2, view_depth: f32) -> Vec3 {
     let uv = (at.as_vec2() + 0.5) / stage.view.size.as_vec2();
     let ndc = Vec2::new(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0);
@@ -67,8 +68,9 @@ fn point_behind(stage: &Stage, at: UVec2, view_depth: f32) -> Vec3 {
     a.lerp(b, (-view_depth - a.z) / (b.z - a.z))
 }
 
-/// Light on every pixel of the sheet, by both renderers; not where its border may be.
-fn lit(stage: &Stage, mut check: impl FnMut(Vec3, f32)) {
+/// Calls `check` with the view-space point and the light of every pixel of the sheet, for both renderers. Pixels close
+/// to the border of the sheet are left out.
+fn check_sheet(stage: &Stage, mut check: impl FnMut(Vec3, f32)) {
     for picture in [stage.on_cpu(), stage.on_gpu(gpu()).picture] {
         for (index, texel) in (0..).zip(&picture.texels) {
             let point = point_behind(stage, UVec2::new(index % SIZE.x, index / SIZE.x), SHEET);
@@ -79,10 +81,10 @@ fn lit(stage: &Stage, mut check: impl FnMut(Vec3, f32)) {
     }
 }
 
-// lights
+// Lights
 
 #[test]
-fn a_cone_is_whole_at_its_inner_angle_and_nothing_at_its_outer() {
+fn spot_light_falls_from_full_at_the_inner_angle_to_zero_at_the_outer_angle() {
     let spot = Light {
         kind: LightKind::Spot,
         position: vec3(0.7, 0.4, -1.5),
@@ -95,18 +97,18 @@ fn a_cone_is_whole_at_its_inner_angle_and_nothing_at_its_outer() {
     };
     let point = sheet(&[Light { kind: LightKind::Point, ..spot }]);
     let mut whole = Vec::new();
-    lit(&point, |_, light| whole.push(light));
+    check_sheet(&point, |_, light| whole.push(light));
     let (inner, outer) = (12.0_f32.to_radians().cos(), 24.0_f32.to_radians().cos());
     let (mut index, mut seen) = (0, [0; 3]);
-    lit(&sheet(&[spot]), |point, light| {
+    check_sheet(&sheet(&[spot]), |point, light| {
         let cos = (point - spot.position).normalize().dot(spot.direction.normalize());
         let share = light / whole[index];
-        // By the cosine, squared: a quarter is left half of the way.
+        // Quadratic in the cosine: halfway between the angles' cosines, a quarter of the light is left.
         let law = ((cos - outer) / (inner - outer)).clamp(0.0, 1.0).powi(2);
-        // Both pictures are of f16: two roundings of 2^-11.
+        // Both images are f16: two roundings of 2^-11.
         assert!(
             (share - law).abs() < 1.5e-3,
-            "{share} of the light at {point}, {} degrees off",
+            "{share} of the light at {point}, {} degrees off the axis",
             cos.acos().to_degrees()
         );
         index += 1;
@@ -116,8 +118,9 @@ fn a_cone_is_whole_at_its_inner_angle_and_nothing_at_its_outer() {
 }
 
 #[test]
-fn a_light_ends_at_its_range() {
-    // A metre from an edge of the sheet, from a corner, from its faces, and on it.
+fn point_light_is_zero_beyond_its_range() {
+    // (edge or corner of the sheet, offset of the light from there): about 1 m from edges, a corner and both faces, and
+    // on the sheet.
     let places = [
         (Vec3::X, Vec3::X),
         (Vec3::NEG_X, Vec3::NEG_X),
@@ -133,25 +136,26 @@ fn a_light_ends_at_its_range() {
         for range in [0.95, 1.3] {
             let light = Light { position, range, intensity: 1.0e4, radius: 1.0, ..Light::default() };
             let mut is_lit = false;
-            lit(&sheet(&[light]), |point, light| {
+            check_sheet(&sheet(&[light]), |point, light| {
                 let distance = point.distance(position);
-                // Too little is left of it in the last 2 % of its range.
+                // In the last 2 % of the range, the light may be too weak to be stored.
                 assert!(distance < range || light <= 0.0, "{light} at {distance} m from {position}, beyond {range} m");
                 assert!(distance > 0.98 * range || light > 0.0, "dark at {distance} m from {position}");
                 is_lit |= light > 0.0;
             });
-            assert_eq!(is_lit, range > off.length(), "{range} m from {position}");
+            assert_eq!(is_lit, range > off.length(), "a light at {position} with a range of {range} m");
         }
     }
 }
 
-/// Largest difference of any channel.
+/// Returns the largest difference of any channel.
 fn largest_difference(a: &Picture<Vec4>, b: &Picture<Vec4>) -> f32 {
     a.texels.iter().zip(&b.texels).map(|(a, b)| (a - b).abs().max_element()).fold(0.0, f32::max)
 }
 
-/// The cloud in the light of one lamp through a ramp that is a parabola of the cosine: harmonics to L2 hold it exactly.
-fn harmonic(light: Light, mode: DiffuseMode) -> Stage {
+/// Stage with a cloud lit by one light. The ramp is quadratic in the cosine, so L2 spherical harmonics represent it
+/// exactly.
+fn lit_by_quadratic_ramp(light: Light, mode: DiffuseMode) -> Stage {
     let mut stage = Stage::new(SIZE);
     stage.lights = vec![light];
     let parabola = |cos: f32| vec3(0.5 + 0.5 * cos, 0.2 + 0.5 * cos + 0.4 * cos * cos, 1.0 - cos * cos);
@@ -159,34 +163,35 @@ fn harmonic(light: Light, mode: DiffuseMode) -> Stage {
     stage.material.diffuse_ramp = Ramp::from_linear(UVec2::new(256, 1), ramp);
     stage.settings.diffuse.mode = mode;
     stage.shade_tree = ShadeTree::Diffuse;
-    // A box that is not the smoke's: light does not go by its middle.
+    // Bounds other than the smoke's own: lighting must not use their centre.
     stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
     stage
 }
 
 #[test]
-fn spherical_harmonics_turn_with_the_light() {
+fn spherical_harmonics_match_a_quadratic_ramp_for_every_light_direction() {
     let directions =
         [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z, vec3(1.0, 2.0, -3.0), vec3(-3.0, 1.0, 0.5)];
     for direction in directions {
         let light = |direction| Light { kind: LightKind::Directional, direction, ..Light::default() };
-        let ramp = harmonic(light(direction), DiffuseMode::Ramp).on_cpu();
-        let harmonics = harmonic(light(direction), DiffuseMode::SphericalHarmonics);
-        // Texels of the ramp are f16: half of 2^-10 between 1 and 2. On the GPU so are normals and the picture.
+        let ramp = lit_by_quadratic_ramp(light(direction), DiffuseMode::Ramp).on_cpu();
+        let harmonics = lit_by_quadratic_ramp(light(direction), DiffuseMode::SphericalHarmonics);
+        // Texels of the ramp are f16: an error of half of 2^-10 between 1 and 2. On the GPU, normals and the image are
+        // f16 too.
         let (cpu, gpu) = (harmonics.on_cpu(), harmonics.on_gpu(gpu()).picture);
         let found = [&cpu, &gpu].map(|picture| largest_difference(picture, &ramp));
         println!("{direction}: {found:?}");
         assert!(found[0] < 5e-4 && found[1] < 4e-3, "{direction}: {found:?}");
-        // The mutant: light from the other side.
-        let turned = harmonic(light(-direction), DiffuseMode::SphericalHarmonics).on_cpu();
+        // Mutant: light from the opposite side.
+        let turned = lit_by_quadratic_ramp(light(-direction), DiffuseMode::SphericalHarmonics).on_cpu();
         assert!(largest_difference(&turned, &ramp) > 0.1, "{direction}");
     }
 }
 
 #[test]
-fn spherical_harmonics_take_a_lamp_from_the_middle_of_the_smoke() {
+fn spherical_harmonics_treat_a_point_light_as_seen_from_the_centroid_of_the_smoke() {
     let lamp = Light { position: vec3(-3.0, 2.0, -4.5), intensity: 20.0, range: 9.0, ..Light::default() };
-    let particles = harmonic(lamp, DiffuseMode::Ramp).particles;
+    let particles = lit_by_quadratic_ramp(lamp, DiffuseMode::Ramp).particles;
     let weight = |particle: &Particle| particle.amount * particle.radius * particle.radius;
     let sum: Vec3 = particles.iter().map(|particle| particle.position * weight(particle)).sum();
     let way = sum / particles.iter().map(weight).sum::<f32>() - lamp.position;
@@ -198,15 +203,15 @@ fn spherical_harmonics_take_a_lamp_from_the_middle_of_the_smoke() {
         intensity: 20.0 * window * window / (square + lamp.radius * lamp.radius),
         ..Light::default()
     };
-    let [lamp, sun] = [lamp, sun].map(|light| harmonic(light, DiffuseMode::SphericalHarmonics).on_cpu());
+    let [lamp, sun] = [lamp, sun].map(|light| lit_by_quadratic_ramp(light, DiffuseMode::SphericalHarmonics).on_cpu());
     let found = largest_difference(&lamp, &sun);
     assert!(found < 1e-5, "{found}");
 }
 
-// order
+// Draw order
 
 #[test]
-fn sprites_are_drawn_in_the_order_of_a_plain_sort() {
+fn sprites_are_drawn_in_the_order_of_a_plain_depth_sort() {
     let mut stage = Stage::new(SIZE);
     let world_from_view = camera().inverse();
     stage.view.view_from_world = camera();
@@ -215,7 +220,7 @@ fn sprites_are_drawn_in_the_order_of_a_plain_sort() {
         particle.amount = 0.9;
     }
     stage.shade_tree = ShadeTree::Normals;
-    // Upsampling goes by the sprites where they are known.
+    // Scale 1 disables upsampling, which uses the sprites' depths only if the CPU has the particles.
     stage.settings.accumulate.scale = 1;
     let mut bounds = Bounds::EMPTY;
     stage.particles.iter().for_each(|particle| bounds.include(particle.position, 2.0));
@@ -223,7 +228,7 @@ fn sprites_are_drawn_in_the_order_of_a_plain_sort() {
     let mut host = Host::sharing(gpu(), &stage).unwrap();
     host.draw(gpu(), &stage).unwrap();
     let sorted_by_renderer = host.picture(gpu()).unwrap();
-    // From a buffer, which is drawn in the order that it has.
+    // Particles in a buffer are drawn in their given order.
     let depth = |particle: &Particle| -(stage.view.view_from_world * particle.position.extend(1.0)).z;
     let mut sorted = stage.particles.clone();
     sorted.sort_by(|a, b| depth(b).total_cmp(&depth(a)));
@@ -232,23 +237,24 @@ fn sprites_are_drawn_in_the_order_of_a_plain_sort() {
         host.draw_buffer(gpu(), &stage, particles).unwrap();
         host.picture(gpu()).unwrap()
     };
-    assert!(in_order(&sorted) == sorted_by_renderer, "not back to front");
+    assert!(in_order(&sorted) == sorted_by_renderer, "the renderer did not sort back to front");
     sorted.reverse();
     assert!(in_order(&sorted) != sorted_by_renderer);
-    // The CPU's order does not come from the list either.
+    // The CPU renderer does not depend on the order of the list either.
     let on_cpu = stage.on_cpu();
     stage.particles.reverse();
     assert!(stage.on_cpu() == on_cpu);
 }
 
-// what is in sight
+// Visibility
 
-/// Turn of the sprite that is moved in and out of sight, radians.
+/// Rotation of the sprite that is moved in and out of view, radians.
 const TURN: f32 = 0.6;
 
-/// Draws one sprite at a place in view space; true if some pixel shows it. A pixel well inside it must show it, one outside must
-/// not, by both renderers, when its depth is between the near and the far plane.
-fn shows(stage: &mut Stage, host: &mut Host, (near, far): (f32, f32), centre: Vec3, radius: f32) -> bool {
+/// Draws one sprite at `centre` (view space) with both renderers. Returns true if some pixel shows it. Asserts that
+/// pixels outside the sprite do not show it, and that pixels well inside show it exactly if its depth is between `near`
+/// and `far`.
+fn draws_sprite(stage: &mut Stage, host: &mut Host, (near, far): (f32, f32), centre: Vec3, radius: f32) -> bool {
     let position = stage.view.view_from_world.inverse().transform_point3(centre);
     stage.particles = vec![Particle { position, radius, rotation: TURN, ..Particle::default() }];
     host.draw(gpu(), stage).unwrap();
@@ -258,7 +264,7 @@ fn shows(stage: &mut Stage, host: &mut Host, (near, far): (f32, f32), centre: Ve
             let at = UVec2::new(index % SIZE.x, index / SIZE.x);
             let offset = (point_behind(stage, at, -centre.z) - centre).xy();
             let local = Vec2::from_angle(-TURN).rotate(offset).abs().max_element() / radius;
-            // A texel's border, and a pixel for the filter.
+            // The margins allow for the border texel and for a pixel of filtering.
             let (inside, outside) = (local < 0.8, local > 1.2);
             let in_depth = (near..far).contains(&-centre.z);
             let shown = *texel != BACKDROP;
@@ -270,8 +276,8 @@ fn shows(stage: &mut Stage, host: &mut Host, (near, far): (f32, f32), centre: Ve
     any
 }
 
-/// Smoke that is sharp, and seen wherever there is any.
-fn visible() -> Stage {
+/// Stage with sharp-edged smoke that is visible wherever it is present.
+fn sharp_smoke_stage() -> Stage {
     let mut stage = Stage::new(SIZE);
     stage.material.sprite = flat_sprite();
     (stage.settings.soft_fade.near_fade_end, stage.settings.soft_fade.fade_scale) = (0.0, 1000.0);
@@ -281,7 +287,7 @@ fn visible() -> Stage {
 }
 
 #[test]
-fn a_system_is_drawn_exactly_when_it_is_between_all_six_planes() {
+fn system_is_drawn_exactly_when_it_is_inside_the_view_frustum() {
     let (near, far) = (0.5, 9.0);
     let projections = [
         directx::perspective(0.8, 16.0 / 9.0, near, far),
@@ -289,29 +295,29 @@ fn a_system_is_drawn_exactly_when_it_is_between_all_six_planes() {
         directx::orthographic(-4.0, 3.0, -2.0, 2.5, near, far),
     ];
     for clip_from_view in projections {
-        let mut stage = visible();
+        let mut stage = sharp_smoke_stage();
         (stage.view.clip_from_view, stage.view.view_from_world) = (clip_from_view, camera());
         let mut host = Host::sharing(gpu(), &stage).unwrap();
-        // The sides, in front of everything in the scene: the middles of the picture's edges are where they are crossed.
+        // Side planes: the sprite crosses each at the middle of an image edge, in front of everything in the scene.
         let pixels = SIZE.as_ivec2();
         let edges = [IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
         for (edge, depth) in edges.into_iter().flat_map(|edge| [0.8, 3.0].map(|depth| (edge, depth))) {
             let at = ((edge + 1) * pixels / 2).clamp(IVec2::ZERO, pixels - 1).as_uvec2();
             let crossing = point_behind(&stage, at, depth);
-            // Down in the picture is down in view space.
+            // Image y points down, view-space y points up.
             let outwards = edge.as_vec2() * Vec2::new(1.0, -1.0);
             let seen = (-5..=10).map(|step| {
                 let centre = crossing + (outwards * (0.1 * step as f32)).extend(0.0);
-                shows(&mut stage, &mut host, (near, far), centre, 0.5)
+                draws_sprite(&mut stage, &mut host, (near, far), centre, 0.5)
             });
             let seen: Vec<bool> = seen.collect();
             assert!(seen[0] && !seen[seen.len() - 1], "{edge}");
         }
-        // Near and far, to the right of the wall and the post.
+        // Near and far planes, to the right of the wall and the post.
         for (plane, depths) in [(near, [0.47, 0.53]), (far, [8.95, 9.05])] {
             let seen = depths.map(|depth| {
                 let centre = point_behind(&stage, UVec2::new(SIZE.x * 5 / 6, SIZE.y / 2), depth);
-                shows(&mut stage, &mut host, (near, far), centre, 0.5)
+                draws_sprite(&mut stage, &mut host, (near, far), centre, 0.5)
             });
             assert_eq!(seen, depths.map(|depth| (near..far).contains(&depth)), "the plane at {plane} m");
         }
@@ -319,11 +325,11 @@ fn a_system_is_drawn_exactly_when_it_is_between_all_six_planes() {
 }
 
 #[test]
-fn a_flat_box_covers_what_is_in_it_wherever_the_near_plane_is() {
-    // A floor, a ceiling and two walls, from behind the camera or from close in front of it.
+fn flat_bounds_that_cross_the_near_plane_show_all_of_their_smoke() {
+    // A floor, a ceiling and two walls, which begin behind the camera or close in front of it.
     for side in [Vec2::X, Vec2::NEG_X, Vec2::Y, Vec2::NEG_Y] {
         for begin in [2.0, -0.6] {
-            let mut stage = visible();
+            let mut stage = sharp_smoke_stage();
             let planes = (0.5, 20.0);
             stage.view.clip_from_view = directx::perspective(0.8, 16.0 / 9.0, planes.0, planes.1);
             let middle = side * 0.3;
@@ -331,7 +337,10 @@ fn a_flat_box_covers_what_is_in_it_wherever_the_near_plane_is() {
             stage.bounds = Some(Bounds { min: (middle - half).extend(-8.0), max: (middle + half).extend(begin) });
             let mut host = Host::sharing(gpu(), &stage).unwrap();
             for depth in [0.75, 1.0, 1.5, 2.5] {
-                assert!(shows(&mut stage, &mut host, planes, middle.extend(-depth), 0.035), "{side} at {depth} m");
+                assert!(
+                    draws_sprite(&mut stage, &mut host, planes, middle.extend(-depth), 0.035),
+                    "{side} at {depth} m"
+                );
             }
         }
     }

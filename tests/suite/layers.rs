@@ -1,41 +1,42 @@
-//! Every import looks down: no files, and no folders, import each other in a circle.
+//! Checks the layers of the source tree: no circular imports between files or folders, no wgpu in modules without a
+//! device, and system access of the tweaker only in `platform`. Also checks that documents name existing files.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Who imports whom.
-type Arrows = BTreeMap<String, BTreeSet<String>>;
+/// Names of modules, each with the modules that it imports.
+type ImportGraph = BTreeMap<String, BTreeSet<String>>;
 
-/// The code of a file without comments, text in quotes and test modules.
+/// Returns the code of a file without comments, quoted text and test modules.
 fn code(text: &str) -> String {
-    // Tests stand at the end of a file; other things that only they use may stand anywhere.
+    // The test module is the last item of a file; other test-only items may be anywhere.
     let text = text.split("\nmod tests {").next().unwrap_or_default();
     let lines = text.lines().map(|line| line.split("//").next().unwrap_or_default());
     lines.map(|line| line.split('"').step_by(2).collect::<String>()).collect::<Vec<_>>().join(" ")
 }
 
-/// Every path that begins with `crate::`, `super::` or `self::`, groups in braces spelled out.
+/// Returns every path that begins with `crate::`, `super::` or `self::`. Groups in braces are expanded.
 fn paths(code: &str) -> Vec<String> {
     let mut found = Vec::new();
     for root in ["crate::", "super::", "self::"] {
         for (start, _) in code.match_indices(root) {
             let before = code[..start].chars().next_back();
             if !before.is_some_and(|c| c.is_alphanumeric() || c == '_' || c == ':') {
-                spell_out("", &code[start..], &mut found);
+                expand_path("", &code[start..], &mut found);
             }
         }
     }
     found
 }
 
-/// Reads one path, and gives back what follows it.
-fn spell_out<'a>(prefix: &str, text: &'a str, found: &mut Vec<String>) -> &'a str {
+/// Parses one path, adds it to `found` with groups in braces expanded, and returns the text that follows it.
+fn expand_path<'a>(prefix: &str, text: &'a str, found: &mut Vec<String>) -> &'a str {
     let text = text.trim_start();
     if let Some(mut group) = text.strip_prefix('{') {
         loop {
-            group = spell_out(prefix, group, found).trim_start();
+            group = expand_path(prefix, group, found).trim_start();
             match group.chars().next() {
                 Some(',') => group = &group[1..],
                 Some('}') => return &group[1..],
@@ -48,7 +49,7 @@ fn spell_out<'a>(prefix: &str, text: &'a str, found: &mut Vec<String>) -> &'a st
     let path = format!("{prefix}{name}");
     match rest.strip_prefix("::") {
         Some(rest) if rest.starts_with(|c: char| c.is_alphabetic() || c == '_' || c == '{') => {
-            spell_out(&format!("{path}::"), rest, found)
+            expand_path(&format!("{path}::"), rest, found)
         }
         _ => {
             found.push(path);
@@ -57,7 +58,7 @@ fn spell_out<'a>(prefix: &str, text: &'a str, found: &mut Vec<String>) -> &'a st
     }
 }
 
-/// `src/a/b.rs` and `src/a/b/mod.rs` are the module `a::b`; the library's and the program's root are "".
+/// Returns the module of a file: `a::b` for `src/a/b.rs` and `src/a/b/mod.rs`, "" for the roots of library and program.
 fn module(file: &Path) -> String {
     let path = file.with_extension("");
     let mut parts: Vec<_> = path.iter().map(|part| part.to_str().unwrap().to_owned()).collect();
@@ -67,16 +68,16 @@ fn module(file: &Path) -> String {
     parts.join("::")
 }
 
-/// The arrows between the files of a tree, by module.
-fn arrows(files: &[(PathBuf, String)]) -> Arrows {
+/// Returns the imports between the files of a source tree, by module.
+fn import_graph(files: &[(PathBuf, String)]) -> ImportGraph {
     let modules: BTreeSet<_> = files.iter().map(|(file, _)| module(file)).collect();
-    let mut arrows = Arrows::new();
+    let mut import_graph = ImportGraph::new();
     for (file, text) in files {
         let from = module(file);
         let parent = |path: &str| path.rsplit_once("::").map_or(String::new(), |(parent, _)| parent.to_owned());
         let text = code(text);
         let mut named = paths(&text);
-        // `use child::…` in a mod.rs, or a bare `child::…`, names a module below it.
+        // `use child::…` in a mod.rs, or `child::…` in its code, names a child module.
         let below = |module: &&String| !module.is_empty() && parent(module) == from && **module != from;
         for child in modules.iter().filter(below) {
             let name = child.rsplit("::").next().unwrap();
@@ -99,21 +100,26 @@ fn arrows(files: &[(PathBuf, String)]) -> Arrows {
                 path = path.strip_prefix("self").unwrap_or(path).trim_start_matches("::");
             }
             let mut to = if base.is_empty() { path.to_owned() } else { format!("{base}::{path}") };
-            // The longest beginning that is a module; the rest is an item in it.
+            // Shortens the path to the longest prefix that is a module; the rest is an item in that module.
             while !to.is_empty() && !modules.contains(&to) {
                 to = parent(&to);
             }
             if to != from && !to.is_empty() {
-                arrows.entry(from.clone()).or_default().insert(to);
+                import_graph.entry(from.clone()).or_default().insert(to);
             }
         }
     }
-    arrows
+    import_graph
 }
 
-/// One circle, if there is any.
-fn circle(arrows: &Arrows) -> Option<Vec<String>> {
-    fn visit(at: &str, arrows: &Arrows, path: &mut Vec<String>, done: &mut BTreeSet<String>) -> Option<Vec<String>> {
+/// Returns the modules of one circular import, or `None` if there is none.
+fn find_cycle(import_graph: &ImportGraph) -> Option<Vec<String>> {
+    fn visit(
+        at: &str,
+        import_graph: &ImportGraph,
+        path: &mut Vec<String>,
+        done: &mut BTreeSet<String>,
+    ) -> Option<Vec<String>> {
         if let Some(start) = path.iter().position(|step| step == at) {
             return Some([&path[start..], &[at.to_owned()]].concat());
         }
@@ -121,20 +127,21 @@ fn circle(arrows: &Arrows) -> Option<Vec<String>> {
             return None;
         }
         path.push(at.to_owned());
-        let found = arrows.get(at).into_iter().flatten().find_map(|to| visit(to, arrows, path, done));
+        let found = import_graph.get(at).into_iter().flatten().find_map(|to| visit(to, import_graph, path, done));
         path.pop();
         found
     }
     let mut done = BTreeSet::new();
-    arrows.keys().find_map(|from| visit(from, arrows, &mut Vec::new(), &mut done))
+    import_graph.keys().find_map(|from| visit(from, import_graph, &mut Vec::new(), &mut done))
 }
 
-/// The same between the folders and files of `src/`.
-fn between_folders(arrows: &Arrows) -> Arrows {
+/// Returns the imports between the top-level folders and files of `src/`.
+fn between_folders(import_graph: &ImportGraph) -> ImportGraph {
     let folder = |module: &str| module.split("::").next().unwrap_or_default().to_owned();
-    let mut folders = Arrows::new();
-    for (from, to) in arrows.iter().flat_map(|(from, to)| to.iter().map(move |to| (folder(from), folder(to)))) {
-        // The program stands on the library by its name, `haze::`; the library's root only lists.
+    let mut folders = ImportGraph::new();
+    for (from, to) in import_graph.iter().flat_map(|(from, to)| to.iter().map(move |to| (folder(from), folder(to)))) {
+        // The root is left out: the program imports the library as `haze::`, and the library's root only declares
+        // modules.
         if from != to && !from.is_empty() {
             folders.entry(from).or_default().insert(to);
         }
@@ -159,16 +166,16 @@ fn sources() -> Vec<(PathBuf, String)> {
 }
 
 #[test]
-fn every_import_looks_down() {
-    let arrows = arrows(&sources());
-    assert!(arrows.len() > 50, "imports are not found");
-    assert_eq!(circle(&arrows), None, "files import each other in a circle");
-    assert_eq!(circle(&between_folders(&arrows)), None, "folders import each other in a circle");
+fn files_and_folders_have_no_circular_imports() {
+    let import_graph = import_graph(&sources());
+    assert!(import_graph.len() > 50, "too few imports are found");
+    assert_eq!(find_cycle(&import_graph), None, "circular imports between files");
+    assert_eq!(find_cycle(&between_folders(&import_graph)), None, "circular imports between folders");
 }
 
 #[test]
-fn the_two_renderers_do_not_know_each_other() {
-    for (from, to) in arrows(&sources()) {
+fn gpu_and_cpu_renderer_do_not_import_each_other() {
+    for (from, to) in import_graph(&sources()) {
         for (one, other) in [("renderer", "reference"), ("reference", "renderer")] {
             let crosses = |to: &&String| to.starts_with(other);
             assert_eq!(to.iter().find(crosses).filter(|_| from.starts_with(one)), None, "{from}");
@@ -177,17 +184,17 @@ fn the_two_renderers_do_not_know_each_other() {
 }
 
 #[test]
-fn nothing_on_the_ground_knows_a_device() {
+fn modules_without_a_device_do_not_use_wgpu() {
     for (file, text) in sources() {
-        let ground = ["settings", "assets", "formula", "in_view", "reference", "preset", "emitter.rs"];
-        if ground.iter().any(|part| file.starts_with(part)) {
+        let device_free = ["settings", "assets", "formula", "in_view", "reference", "preset", "emitter.rs"];
+        if device_free.iter().any(|part| file.starts_with(part)) {
             assert!(!code(&text).contains("wgpu"), "{}", file.display());
         }
     }
 }
 
-/// What touches disk, clock or threads: in the program's own words, or by what the library and the command line have for it.
-const OF_THE_SYSTEM: &[&str] = &[
+/// Code that accesses disk, clock or threads, directly or through functions of the library and the command line.
+const SYSTEM_ACCESS: &[&str] = &[
     "std::fs",
     "std::thread",
     "std::time",
@@ -221,50 +228,50 @@ const OF_THE_SYSTEM: &[&str] = &[
     "crate::app::inputs::caches_of",
 ];
 
-/// Which of these words a file says, imports spelled out.
-fn of_the_system(text: &str) -> Option<&'static str> {
+/// Returns the first entry of [`SYSTEM_ACCESS`] that a file contains, in its code or among its expanded imports.
+fn system_access(text: &str) -> Option<&'static str> {
     let code = code(text);
-    let mut said = vec![code.clone()];
+    let mut searched = vec![code.clone()];
     for root in ["crate::", "std::", "haze::"] {
         for (start, _) in code.match_indices(root) {
-            spell_out("", &code[start..], &mut said);
+            expand_path("", &code[start..], &mut searched);
         }
     }
-    OF_THE_SYSTEM.iter().find(|word| said.iter().any(|said| says(said, word))).copied()
+    SYSTEM_ACCESS.iter().find(|word| searched.iter().any(|searched| contains_name(searched, word))).copied()
 }
 
-/// A word that begins there: `puffs::` is no `fs::`.
-fn says(text: &str, word: &str) -> bool {
+/// Returns true if `text` contains `word` at the beginning of a name: `puffs::` does not contain `fs::`.
+fn contains_name(text: &str, word: &str) -> bool {
     let is_name = |letter: char| letter.is_alphanumeric() || letter == '_';
     text.match_indices(word).any(|(start, _)| !word.starts_with(is_name) || !text[..start].ends_with(is_name))
 }
 
 #[test]
-fn the_window_touches_disk_clock_and_threads_in_one_place() {
+fn tweaker_accesses_disk_clock_and_threads_only_in_platform() {
     let (mut count, mut behind) = (0, 0);
     for (file, text) in sources() {
         let is_test = file.iter().any(|part| part.to_string_lossy().contains("test"));
         if !file.starts_with("app/tweak") || is_test {
             continue;
         }
-        let found = of_the_system(&text);
+        let found = system_access(&text);
         if file.starts_with("app/tweak/platform") {
             behind += usize::from(found.is_some());
         } else {
-            assert_eq!(found, None, "{}: belongs behind `platform`", file.display());
+            assert_eq!(found, None, "{}: system access belongs in `platform`", file.display());
             count += 1;
         }
     }
     assert!(count > 80 && behind > 5, "{count} {behind}");
-    assert_eq!(of_the_system("use std::{env, fs};"), Some("std::fs"));
-    assert_eq!(of_the_system("use haze::picture::{Picture, write_png};"), Some("haze::picture::write_"));
-    assert_eq!(of_the_system("let sprite = Sprite::load(path); // std::fs"), Some("::load("));
-    assert_eq!(of_the_system("use crate::app::puffs::pairs;"), None);
-    assert_eq!(of_the_system("use super::platform::clock::Instant;\nflag.load(Ordering::Relaxed);"), None);
+    assert_eq!(system_access("use std::{env, fs};"), Some("std::fs"));
+    assert_eq!(system_access("use haze::picture::{Picture, write_png};"), Some("haze::picture::write_"));
+    assert_eq!(system_access("let sprite = Sprite::load(path); // std::fs"), Some("::load("));
+    assert_eq!(system_access("use crate::app::puffs::pairs;"), None);
+    assert_eq!(system_access("use super::platform::clock::Instant;\nflag.load(Ordering::Relaxed);"), None);
 }
 
 #[test]
-fn documents_name_files_that_are_there() {
+fn paths_named_in_documents_exist() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut documents: Vec<_> =
         ["ARCHITECTURE.md", "README.md", "shaders/README.md", "ramps/README.md"].map(PathBuf::from).into();
@@ -279,7 +286,7 @@ fn documents_name_files_that_are_there() {
             let is_path =
                 ["src/", "shaders/", "tests/", "docs/", "examples/"].iter().any(|start| word.starts_with(start));
             if is_path && !word.contains('*') && !word.contains("foo.") {
-                assert!(root.join(word.trim_end_matches(['.', ';'])).exists(), "{document} names {word}");
+                assert!(root.join(word.trim_end_matches(['.', ';'])).exists(), "{document}: there is no file {word}");
                 named += 1;
             }
         }
@@ -288,7 +295,7 @@ fn documents_name_files_that_are_there() {
 }
 
 #[test]
-fn circles_are_seen() {
+fn circular_imports_are_detected() {
     let file = |name: &str, text: &str| (PathBuf::from(name), text.to_owned());
     let three = |last: &str| {
         let files = [
@@ -300,14 +307,14 @@ fn circles_are_seen() {
             file("b.rs", last),
             file("c.rs", "use super::a::One;"),
         ];
-        let arrows = arrows(&files);
-        (circle(&arrows).is_some(), circle(&between_folders(&arrows)).is_some())
+        let import_graph = import_graph(&files);
+        (find_cycle(&import_graph).is_some(), find_cycle(&between_folders(&import_graph)).is_some())
     };
     assert_eq!(three("/// [`crate::c`]\nuse std::fmt;"), (false, false));
     assert_eq!(three("fn f() { crate::a::one::g() }"), (true, true));
     assert_eq!(three("use crate::{d, c::Three};"), (true, true));
-    // Folders may be in a circle where no files are.
+    // Folders may import each other circularly although no files do.
     let files = [file("a/x.rs", "use crate::b::Y;"), file("b.rs", "use crate::a::z;"), file("a/z.rs", "")];
-    assert_eq!(circle(&arrows(&files)), None);
-    assert!(circle(&between_folders(&arrows(&files))).is_some());
+    assert_eq!(find_cycle(&import_graph(&files)), None);
+    assert!(find_cycle(&between_folders(&import_graph(&files))).is_some());
 }

@@ -1,8 +1,8 @@
-//! The library against a real adapter. One binary, so that all tests share one device.
+//! Tests of the library on a real GPU adapter. They form one binary so that all of them share one device.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
-#![allow(clippy::redundant_closure_for_method_calls, reason = "not every type of wgpu can be named")]
-#![allow(clippy::float_cmp, reason = "what must be equal to the bit is compared so")]
+#![allow(clippy::redundant_closure_for_method_calls, reason = "some wgpu types cannot be named in a path")]
+#![allow(clippy::float_cmp, reason = "bit-identical results are compared exactly")]
 
 mod anchors;
 mod assets;

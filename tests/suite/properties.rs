@@ -1,4 +1,4 @@
-//! What must hold whatever the picture: order, emptiness, odd sizes, depth conventions, memory, steady frames.
+//! Properties that hold for every image: draw order, empty frames, odd sizes, depth conventions, memory, steady frames.
 
 mod depth;
 mod finite;

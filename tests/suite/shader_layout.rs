@@ -1,4 +1,4 @@
-//! Holds what Rust and WGSL both spell out: struct layouts, constants, and the numbers of the setting enums.
+//! Compares definitions that exist in both Rust and WGSL: struct layouts, constants, and the numbers of setting enums.
 
 use haze::formula::uniforms::{EmitterUniform, LightUniform, SystemUniform, TilesUniform, UniformField, ViewUniform};
 use haze::{Particle, formula, frame, settings, shader};
@@ -19,13 +19,13 @@ fn composed(file: &str) -> naga::Module {
 }
 
 #[test]
-fn every_file_composes_and_validates_without_any_capability() {
+fn every_shader_file_validates_without_optional_capabilities() {
     for (file, text) in shader::sources() {
         parse(file, &shader::compose(text).unwrap());
     }
 }
 
-/// Translates one stage of a pass as it would be for WebGL2: GLSL ES 3.00.
+/// Translates one shader stage of a pass to GLSL ES 3.00, the language of WebGL2.
 fn glsl_es_300(module: &naga::Module, shader_stage: naga::ShaderStage, entry_point: &str) -> Result<String, String> {
     use naga::back::glsl;
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
@@ -44,48 +44,48 @@ fn glsl_es_300(module: &naga::Module, shader_stage: naga::ShaderStage, entry_poi
 }
 
 #[test]
-fn every_pass_is_within_webgl2() {
+fn every_render_pass_translates_to_webgl2() {
     for (file, _) in shader::sources().iter().filter(|(file, _)| !file.starts_with("lib/")) {
         let module = composed(file);
-        // The path `tiled` is for other devices.
+        // Compute passes belong to the path `tiled`, which WebGL2 does not have.
         if module.entry_points.iter().all(|entry| entry.stage == naga::ShaderStage::Compute) {
             continue;
         }
         for (stage, entry_point) in [(naga::ShaderStage::Vertex, "vertex"), (naga::ShaderStage::Fragment, "fragment")] {
             let text =
                 glsl_es_300(&module, stage, entry_point).unwrap_or_else(|e| panic!("{file}, {entry_point}: {e}"));
-            assert!(!text.contains("sampler2DShadow"), "{file} reads depth in a way that WebGL2 cannot");
+            assert!(!text.contains("sampler2DShadow"), "{file}: sampler2DShadow: WebGL2 cannot read depth through it");
         }
     }
-    // The mutant: a storage buffer, which WebGL2 has none of.
+    // Mutant: a storage buffer, which WebGL2 does not support.
     let storage = "@group(0) @binding(0) var<storage, read> a: array<f32>;
         @vertex fn vertex() -> @builtin(position) vec4f { return vec4f(a[0]); }";
     assert!(glsl_es_300(&parse("storage", storage), naga::ShaderStage::Vertex, "vertex").is_err());
 }
 
-/// (name, offset) of every member, and the size, of a WGSL struct.
+/// Returns (name, offset) of every member of a WGSL struct, and the size of the struct, in bytes.
 fn wgsl_struct(module: &naga::Module, name: &str) -> (Vec<(String, u32)>, u32) {
     let (_, ty) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).unwrap();
-    let naga::TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is no struct") };
+    let naga::TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is not a struct") };
     (members.iter().map(|member| (member.name.clone().unwrap(), member.offset)).collect(), *span)
 }
 
-/// The fields of a Rust struct and its size against its WGSL twin.
+/// Asserts that fields and size of a Rust struct match the WGSL struct.
 fn assert_layout(module: &naga::Module, wgsl: &str, fields: &[UniformField], size: usize) {
     let (members, span) = wgsl_struct(module, wgsl);
     let rust: Vec<_> = fields.iter().map(|&(name, offset, _)| (name.to_owned(), offset as u32)).collect();
-    // WGSL may spell padding out as scalars of other names; the rest must be there, in order.
+    // WGSL may name padding differently; all other fields must be present and in the same order.
     let named = |list: &[(String, u32)]| -> Vec<(String, u32)> {
         list.iter().filter(|(name, _)| !name.starts_with("padding")).cloned().collect()
     };
     assert_eq!(named(&members), named(&rust), "{wgsl}");
     assert_eq!(span as usize, size, "{wgsl}");
-    // No hole between the fields: every byte that is uploaded belongs to one.
+    // The fields leave no gaps: every uploaded byte belongs to a field.
     assert_eq!(fields.iter().map(|(_, _, size)| size).sum::<usize>(), size, "{wgsl}");
 }
 
 #[test]
-fn structs_agree() {
+fn wgsl_structs_match_rust() {
     let module = composed("lib/bindings.wgsl");
     assert_layout(&module, "View", ViewUniform::FIELDS, size_of::<ViewUniform>());
     assert_layout(&module, "Light", LightUniform::FIELDS, size_of::<LightUniform>());
@@ -95,7 +95,7 @@ fn structs_agree() {
 }
 
 #[test]
-fn the_particle_is_two_vertex_attributes() {
+fn particle_matches_two_vec4f_vertex_attributes() {
     let offsets = [
         ("position", std::mem::offset_of!(Particle, position)),
         ("radius", std::mem::offset_of!(Particle, radius)),
@@ -106,11 +106,11 @@ fn the_particle_is_two_vertex_attributes() {
     ];
     assert_eq!(offsets.map(|(_, offset)| offset), [0, 12, 16, 20, 24, 28]);
     assert_eq!(size_of::<Particle>(), 32);
-    // Each attribute is four numbers, named after the fields that lie in them.
+    // Each attribute is a vec4f, named after the fields that it contains.
     for file in ["accumulate.wgsl", "forward.wgsl"] {
         let module = composed(file);
         let (_, ty) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some("Particle")).unwrap();
-        let naga::TypeInner::Struct { members, .. } = &ty.inner else { panic!("{file}: Particle is no struct") };
+        let naga::TypeInner::Struct { members, .. } = &ty.inner else { panic!("{file}: Particle is not a struct") };
         assert_eq!(members.len(), 2, "{file}");
         for (index, member) in members.iter().enumerate() {
             let bytes = 16 * index..16 * (index + 1);
@@ -128,7 +128,7 @@ fn the_particle_is_two_vertex_attributes() {
     }
 }
 
-/// The value of a module constant.
+/// Returns the value of a module constant.
 fn constant(module: &naga::Module, name: &str) -> f64 {
     let (_, constant) = module
         .constants
@@ -143,7 +143,7 @@ fn constant(module: &naga::Module, name: &str) -> f64 {
 }
 
 #[test]
-fn constants_agree() {
+fn wgsl_constants_match_rust() {
     let transfer = composed("transfer.wgsl");
     assert_eq!(constant(&transfer, "MAX_LIGHTS"), frame::MAX_LIGHTS as f64);
     assert_eq!(constant(&transfer, "SKY_VIEW_DEPTH"), f64::from(formula::depth::SKY_VIEW_DEPTH));
@@ -167,7 +167,7 @@ macro_rules! assert_choices {
 }
 
 #[test]
-fn setting_enums_agree() {
+fn wgsl_constants_of_setting_enums_match_rust() {
     let transfer = composed("transfer.wgsl");
     assert_choices!(transfer, "UPSAMPLE", settings::Upsample);
     assert_choices!(transfer, "NORMAL_ENCODING", settings::NormalEncoding);

@@ -1,4 +1,4 @@
-//! Shaders from a folder: what an author writes is what is drawn, and a mistake is named where it was made.
+//! Shaders loaded from a folder: edits change the image, and errors report file, line and column.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ use crate::stage::{Stage, six_way_of};
 
 const SIZE: UVec2 = UVec2::new(96, 64);
 
-/// An author's folder.
+/// Temporary folder with the files of a shader author.
 struct Folder(TempDir);
 
 impl Folder {
@@ -31,7 +31,7 @@ impl Folder {
         self
     }
 
-    /// One of haze's files, with a change.
+    /// Writes one of haze's shader files, with the first `from` replaced by `to`.
     fn edit(&self, file: &str, from: &str, to: &str) -> &Self {
         let text = shader::source(file).unwrap();
         assert!(text.contains(from), "{file} has no {from:?}");
@@ -47,7 +47,7 @@ impl Folder {
         draw(Some(&self.context().unwrap()))
     }
 
-    /// What is said of it, with files by their names in it.
+    /// Returns the error message of the folder, with file names relative to the folder.
     fn refusal(&self) -> String {
         let error = self.context().unwrap_err();
         gpu().check().unwrap();
@@ -55,7 +55,7 @@ impl Folder {
     }
 }
 
-/// A cloud of puffs, each at another moment between two frames.
+/// Stage with a cloud of puff sprites, each at a different time between two flipbook frames.
 fn puffs(size: UVec2) -> Stage {
     let mut stage = Stage::new(size);
     let layout = SpriteLayout { columns: 4, rows: 2, y_down: false };
@@ -66,7 +66,7 @@ fn puffs(size: UVec2) -> Stage {
 }
 
 #[test]
-fn what_is_trimmed_off_a_sprite_is_clear() {
+fn trimming_transparent_borders_of_sprites_does_not_change_the_image() {
     let folder = Folder::new();
     let whole = folder.edit("lib/sprite_vertex.wgsl", "if DEBUG_SPRITE || MOTION {", "if true {").context().unwrap();
     type Change = fn(&mut Settings);
@@ -76,7 +76,7 @@ fn what_is_trimmed_off_a_sprite_is_clear() {
         ("one frame", |settings| settings.sprite.animation = SpriteAnimation::Nearest),
         ("forward", |settings| settings.path = SmokePath::Forward),
     ];
-    // Of small ones coarse mip levels are drawn.
+    // At the small size, coarse mip levels are sampled.
     let sizes = [1, 8].map(|times| SIZE * times);
     for (size, (name, change)) in sizes.into_iter().flat_map(|size| changes.map(|change| (size, change))) {
         let mut stage = puffs(size);
@@ -86,7 +86,8 @@ fn what_is_trimmed_off_a_sprite_is_clear() {
             host.draw(gpu(), &stage).unwrap();
             host.picture(gpu()).unwrap()
         };
-        // Places between the corners are rounded otherwise; GPUs move corners to 256ths of a texel first, each corner otherwise.
+        // Positions interpolated between other corners round differently. GPUs also snap each corner to 1/256 texel
+        // first.
         let quality = psnr(&drawn(None), &drawn(Some(&whole)));
         println!("{name} at {size}: {quality:.1} dB");
         let is_cpu = gpu().adapter.get_info().device_type == wgpu::DeviceType::Cpu;
@@ -101,7 +102,7 @@ fn draw(context: Option<&Context>) -> Picture<Vec4> {
     host.picture(gpu()).unwrap()
 }
 
-/// Line and column, 1-based, of the first `what` in one of haze's files.
+/// Returns `file:line:column` (1-based) of the first `what` in one of haze's shader files.
 fn place(file: &str, what: &str) -> String {
     let before = shader::source(file).unwrap().split(what).next().unwrap();
     let line = before.matches('\n').count() + 1;
@@ -109,41 +110,41 @@ fn place(file: &str, what: &str) -> String {
 }
 
 #[test]
-fn a_broken_file_names_itself_and_the_place() {
+fn shader_errors_report_file_line_and_column() {
     let refused = |from: &str, to: &str| Folder::new().edit("lib/colour.wgsl", from, to).refusal();
     let says = |from: &str, to: &str, what: &str, reason: &str| {
         assert_eq!(refused(from, to), format!("{}: {reason}", place("lib/colour.wgsl", what)), "{to}");
     };
     let shown = "saturate(light)";
     says(shown, "saturat(light)", shown, "no definition in scope for identifier: `saturat`");
-    // What is invalid as a whole is named by the part that makes it so.
+    // An error in the validation of a function is reported at the expression that causes it.
     let sum = "Function 'gamma_target_colour' is invalid: Operation Add can't work with vec3<f32> and vec2<f32>";
     says(shown, "saturate(light) + vec2f(f32(1u ^ 2u))", shown, sum);
     let returned =
         "Function 'srgb_from_linear' is invalid: The `return` expression does not match the declared return type";
     says("return linear * 12.92", "return vec3f(linear * 12.92)", "linear * 12.92", returned);
-    // Columns are characters, not bytes; nor do tabs shift them.
+    // Columns count characters, not bytes; a tab is one character.
     let behind = refused("    let shown", "\t/* ü→ü */ let shown: vec2f");
     let place_of_shown = place("lib/colour.wgsl", shown);
     let line = place_of_shown.strip_suffix(":17").unwrap();
     assert!(behind.starts_with(&format!("{line}:16: ")), "{behind}");
     let behind = refused("saturate(light)", "/* ü→ü */ saturat(light)");
     assert!(behind.starts_with(&format!("{line}:27: ")), "{behind}");
-    // The compiler would miss it in the file that comes next.
+    // The compiler would report this missing brace in the file that is composed after this one.
     says("    return min(light, vec3f(BRIGHTEST));\n}", "", "{\n    return min(light, vec", "`{` is never closed");
-    let unended = refused("// Light as the host", "/* Light");
-    assert_eq!(unended, format!("{}: unterminated block comment", place("lib/colour.wgsl", "// Light as the host")));
-    // A file that is embedded may be the one that does not fit any more.
+    let unended = refused("fn target_colour", "/* fn target_colour");
+    assert_eq!(unended, format!("{}: unterminated block comment", place("lib/colour.wgsl", "fn target_colour")));
+    // The error may be in an embedded file that no longer matches the edited one.
     let renamed = refused("fn overdraw_colour", "fn overdrawn_colour");
     let called = place("transfer.wgsl", "overdraw_colour");
     assert!(renamed.starts_with(&format!("builtin:/{called}: no definition in scope")), "{renamed}");
 }
 
 #[test]
-fn what_only_a_pipeline_shows_is_found_too() {
+fn errors_that_only_pipeline_creation_detects_are_reported() {
     let is_cpu = gpu().adapter.get_info().device_type == wgpu::DeviceType::Cpu;
     for pass in shader::sources().iter().map(|(file, _)| *file).filter(|file| !file.starts_with("lib/")) {
-        // One that every device of its kind needs.
+        // An entry point that every device of this kind compiles.
         let entry_point = match pass {
             "emit.wgsl" => "emit",
             "sort.wgsl" => "count_digits",
@@ -152,7 +153,7 @@ fn what_only_a_pipeline_shows_is_found_too() {
             "tile_gather.wgsl" => "gather",
             "tile_bin.wgsl" if is_cpu => "allocate_alone",
             "tile_bin.wgsl" => "list_few",
-            // Only where invocations walk alone.
+            // Compiled only where each invocation traverses the lists on its own.
             "tile_refine.wgsl" if !is_cpu => continue,
             "tile_refine.wgsl" => "refine",
             "tile_accumulate.wgsl" if is_cpu => "alone",
@@ -175,9 +176,9 @@ fn what_only_a_pipeline_shows_is_found_too() {
 }
 
 #[test]
-fn what_other_settings_show_is_told_when_they_are_warmed_up() {
+fn warm_up_reports_errors_that_only_other_settings_compile() {
     let folder = Folder::new();
-    // Good in the final picture, where the stage is 0.
+    // Valid for the final image, where SHADE_TREE is 0.
     folder.edit("transfer.wgsl", "if amount <= 0.0 {", "if amount <= f32(1u / (SHADE_TREE - 1u)) {");
     let mut stage = Stage::new(SIZE);
     let host = Host::on(gpu(), &stage, Some(&folder.context().unwrap())).unwrap();
@@ -197,14 +198,14 @@ fn what_other_settings_show_is_told_when_they_are_warmed_up() {
 }
 
 #[test]
-fn imports_that_lead_nowhere_are_named() {
+fn missing_and_circular_imports_are_reported_at_the_import_line() {
     let imports = |import: &str| {
         let folder = Folder::new();
-        folder.edit("lib/colour.wgsl", "// Half of", &format!("#import \"{import}\"\n// Half of"));
+        folder.edit("lib/colour.wgsl", "const BRIGHTEST", &format!("#import \"{import}\"\nconst BRIGHTEST"));
         folder
             .write("lib/round.wgsl", "#import \"lib/about.wgsl\"\n")
             .write("lib/about.wgsl", "\n#import \"lib/round.wgsl\"");
-        (folder.refusal(), place("lib/colour.wgsl", "// Half of").replace(":1", ":9"))
+        (folder.refusal(), place("lib/colour.wgsl", "const BRIGHTEST").replace(":1", ":9"))
     };
     let (unknown, place) = imports("lib/nothing.wgsl");
     assert_eq!(unknown, format!("{place}: there is no shader file \"lib/nothing.wgsl\" to import"));
@@ -220,13 +221,13 @@ fn imports_that_lead_nowhere_are_named() {
 }
 
 #[test]
-fn a_change_is_seen_and_taken_back() {
+fn editing_an_imported_file_changes_the_image_and_undoing_restores_it() {
     let plain = draw(None);
     let folder = Folder::new();
     folder.edit("lib/colour.wgsl", "return bounded_light(light);", "return bounded_light(light * TINT);");
     assert!(folder.refusal().contains("`TINT`"));
-    // In a file of its own, which others import.
-    folder.edit("lib/blending.wgsl", "// Output", "#import \"mine/tint.wgsl\"\n// Output");
+    // TINT is defined in a separate file, which the others import.
+    folder.edit("lib/blending.wgsl", "//", "#import \"mine/tint.wgsl\"\n//");
     folder.edit("lib/normal.wgsl", "//", "#import \"mine/tint.wgsl\"\n//");
     let text = std::fs::read_to_string(folder.0.path().join("lib/colour.wgsl")).unwrap();
     folder.write("lib/colour.wgsl", format!("#import \"mine/tint.wgsl\"\n{text}"));
@@ -240,7 +241,7 @@ fn a_change_is_seen_and_taken_back() {
 }
 
 #[test]
-fn files_may_end_their_lines_and_begin_as_they_like() {
+fn byte_order_marks_and_crlf_line_endings_are_accepted() {
     let plain = draw(None);
     let folder = Folder::new();
     for (file, text) in shader::sources() {
@@ -254,7 +255,7 @@ fn files_may_end_their_lines_and_begin_as_they_like() {
 }
 
 #[test]
-fn what_is_no_folder_of_shaders_is_refused() {
+fn folders_without_readable_shaders_are_rejected_with_a_reason() {
     let expected = "expected accumulate.wgsl, depth_downsample.wgsl, depth_sort.wgsl, diffuse_bake.wgsl, emit.wgsl, \
                     forward.wgsl, light_target.wgsl, sort.wgsl, specular_scatter.wgsl, tile_accumulate.wgsl, tile_bin.wgsl, \
                     tile_gather.wgsl, tile_project.wgsl, tile_refine.wgsl, transfer.wgsl or a file of lib/ in it";
@@ -273,7 +274,7 @@ fn what_is_no_folder_of_shaders_is_refused() {
     );
     folder.write("lib/ramp.wgsl", vec![b' '; (1 << 20) + 1]);
     assert_eq!(folder.refusal(), "lib/ramp.wgsl: 1048577 bytes; expected a WGSL file of at most 1048576 bytes (1 MiB)");
-    // A chain of imports is followed only so far.
+    // The number of imported files is limited.
     folder.edit("lib/ramp.wgsl", "//", "#import \"0.wgsl\"\n//");
     for link in 0..300 {
         folder.write(&format!("{link}.wgsl"), format!("#import \"{}.wgsl\"\n", link + 1));

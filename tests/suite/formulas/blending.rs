@@ -1,4 +1,4 @@
-//! `shaders/lib/blending.wgsl`.
+//! Formula tests of `shaders/lib/blending.wgsl`.
 
 use haze::formula::blending;
 use haze::settings::BlendMode;
@@ -16,7 +16,7 @@ pub fn formulas() -> Vec<Formula> {
         cases: with_choices(count(BlendMode::ALL), &[(0.0, 2.0), (0.0, 2.0), (0.0, 2.0), (0.0, 1.0)]),
         tolerance: ARITHMETIC,
         mutants: &[
-            // Not premultiplied.
+            // The first mutant is not premultiplied.
             ("vec4f(light, 1.0) * coverage", "vec4f(light, coverage)"),
             ("light * coverage, 0.0", "light * coverage, coverage"),
             ("min(light, vec3f(1.0))", "light"),

@@ -1,4 +1,4 @@
-//! `shaders/lib/colour.wgsl`.
+//! Formula tests of `shaders/lib/colour.wgsl`.
 
 use haze::formula::colour;
 

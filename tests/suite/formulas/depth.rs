@@ -1,4 +1,4 @@
-//! `shaders/lib/depth.wgsl`.
+//! Formula tests of `shaders/lib/depth.wgsl`.
 
 use glam::{IVec2, vec4};
 use haze::formula::depth;
@@ -15,7 +15,7 @@ pub fn formulas() -> Vec<Formula> {
             wgsl: "y(0, view_depth_from_ndc_depth(x(0), vec4f(x(1), x(2), x(3), x(4))));",
             reference: |x| vec![depth::view_depth_from_ndc_depth(x[0], v4(&x[1..]))],
             cases: {
-                // Standard, reversed, infinite reversed and orthographic, over the whole buffer.
+                // Standard, reversed, infinite reversed and orthographic projections, over the whole depth range.
                 let conventions = [
                     vec4(0.1, 0.0, 1.0, -0.999),
                     vec4(0.1, 0.0, 0.001, 0.999),

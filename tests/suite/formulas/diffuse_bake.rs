@@ -1,4 +1,4 @@
-//! `shaders/lib/diffuse_bake.wgsl`.
+//! Formula tests of `shaders/lib/diffuse_bake.wgsl`.
 
 use glam::vec4;
 use haze::formula::diffuse_bake;
@@ -60,7 +60,7 @@ pub fn formulas() -> Vec<Formula> {
             },
             cases: with_choices(3, &[(-1.2, 1.2); 2]),
             tolerance: 1e-5,
-            // The last puts the border between texels, where faces of the cube would show a seam.
+            // The last mutant puts the border between texels, which would show seams between cube faces.
             mutants: &[
                 ("low, layer, 0)", "low, 0, 0)"),
                 ("position * 0.5 + 0.5", "vec2f(position.x, -position.y) * 0.5 + 0.5"),

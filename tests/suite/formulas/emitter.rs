@@ -1,4 +1,4 @@
-//! `shaders/lib/emitter.wgsl`.
+//! Formula tests of `shaders/lib/emitter.wgsl`.
 
 use glam::{Vec3, vec2, vec3};
 use haze::emitter::EmitterShape;
@@ -8,7 +8,7 @@ use haze::formula::uniforms::EmitterUniform;
 use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, count, random, v3, with_choices};
 
-/// An emitter of the shape `x(0)`, eight seconds after its first birth.
+/// Returns an emitter of shape number `x[0]`, eight seconds after its first birth.
 fn test_emitter(x: &[f32]) -> EmitterUniform {
     EmitterUniform {
         first: u32::MAX - 100,
@@ -78,12 +78,12 @@ pub fn formulas() -> Vec<Formula> {
             file: "lib/emitter.wgsl",
             wgsl: "let v = drag_integrals(x(0), x(1)); y(0, v.x); y(1, v.y);",
             reference: |x| emitter::drag_integrals(x[0], x[1]).to_array().to_vec(),
-            // No drag, some, much; both sides of where the series ends.
+            // Zero, small and large drag, on both sides of the switch from the series to the closed form.
             cases: [(0.0, 0.0), (0.0, 2.0), (0.01, 8.0)]
                 .into_iter()
                 .flat_map(|drag| random(100, &[drag, (0.0, 8.0)]))
                 .collect(),
-            // An exponential less 1, over a drag as small as 0.06 twice.
+            // 1 - exp(-x) cancels, and is divided twice by a drag as small as 0.06.
             tolerance: TRANSCENDENTAL,
             mutants: &[
                 ("x / 2.0 * (1.0 - x / 3.0", "x / 2.0 * (1.0 - x / 4.0"),
@@ -132,9 +132,10 @@ pub fn formulas() -> Vec<Formula> {
                 let emitted = emitter::emitted_particle(&test_emitter(x), x[1] as u32);
                 [emitted.position_radius, emitted.rotation_amount_frame_age].map(|v| v.to_array()).concat()
             },
-            // Of 40 births a second the last 8 seconds: some are dead.
+            // 40 births per second over the last 8 seconds: some particles are dead.
             cases: with_choices(count(EmitterShape::ALL), &[(0.0, 330.0)]),
-            // The driver's sines and roots, carried on by swirls that change by 10 over a turbulence_scale.
+            // Errors of the driver's sin and sqrt are amplified by the curl noise, which changes by 10 over one
+            // turbulence_scale.
             tolerance: TRANSCENDENTAL,
             mutants: &[
                 ("(f32(number) + life.y) / emitter.rate", "f32(number) / emitter.rate"),

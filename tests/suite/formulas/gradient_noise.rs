@@ -1,4 +1,4 @@
-//! `shaders/lib/gradient_noise.wgsl`.
+//! Formula tests of `shaders/lib/gradient_noise.wgsl`.
 
 use haze::formula::gradient_noise;
 
@@ -34,7 +34,7 @@ pub fn formulas() -> Vec<Formula> {
                 [&[noise.value][..], &noise.gradient.to_array()].concat()
             },
             cases: random(200, &[(-9.0, 9.0), (-9.0, 9.0), (-9.0, 9.0), (-1.0, 1.0), (-1.0, 1.0)]),
-            // Sums of eight corners.
+            // Sums over eight lattice corners.
             tolerance: 4.0 * ARITHMETIC,
             mutants: &[
                 ("f * 6.0 - 15.0", "f * 6.0 - 14.0"),

@@ -1,4 +1,4 @@
-//! `shaders/lib/hash.wgsl`.
+//! Formula tests of `shaders/lib/hash.wgsl`.
 
 use glam::UVec3;
 use haze::noise::{pcg3d, unit};

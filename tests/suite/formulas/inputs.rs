@@ -1,4 +1,4 @@
-//! What formulas are tested with: numbers, and small pictures of them.
+//! Inputs of the formula tests: pseudo-random numbers, and small textures filled with them.
 
 use std::sync::OnceLock;
 
@@ -9,19 +9,20 @@ use haze::ramp::Ramp;
 use haze::sprite::{Sprite, SpriteLayout};
 use haze_author::noise::NoiseRecipe;
 
-/// f32 arithmetic in another order, with fused or separate multiply-add: a few units in the last place.
+/// Tolerance for f32 arithmetic in another order, with fused or separate multiply-add: a few units in the last place.
 pub const ARITHMETIC: f32 = 2e-6;
-/// As above, through the driver's `pow`, `exp2`, `log2`, `sin` or `inverseSqrt`, which Vulkan lets be that imprecise.
+/// Tolerance for results of the driver's `pow`, `exp2`, `log2`, `sin` or `inverseSqrt`, which Vulkan allows to be this
+/// imprecise.
 pub const TRANSCENDENTAL: f32 = 2e-4;
 
-/// `count` cases of numbers in the given ranges, the same every time.
+/// Returns `count` cases of pseudo-random numbers in the given ranges. Every call returns the same numbers.
 pub fn random(count: u32, ranges: &[(f32, f32)]) -> Vec<Vec<f32>> {
     let number = |case: u32, index: usize| unit(pcg3d(UVec3::new(case, index as u32, 77)).x);
     let pick = |case| (0..).zip(ranges).map(|(i, &(low, high))| low + (high - low) * number(case, i)).collect();
     (0..count).map(pick).collect()
 }
 
-/// A case for every step of every choice with some random numbers after it.
+/// Returns 40 cases for each of `choices` choices: the number of the choice, then random numbers in the given ranges.
 pub fn with_choices(choices: u32, ranges: &[(f32, f32)]) -> Vec<Vec<f32>> {
     let prefix = |(index, mut case): (u32, Vec<f32>)| {
         case.insert(0, (index % choices) as f32);
@@ -30,11 +31,12 @@ pub fn with_choices(choices: u32, ranges: &[(f32, f32)]) -> Vec<Vec<f32>> {
     (0..).zip(random(40 * choices, ranges)).map(prefix).collect()
 }
 
-/// How many choices a setting has: a new one is tested without being named here.
+/// Returns the number of choices of a setting, so that a new choice is tested automatically.
 pub fn count<T>(choices: &[T]) -> u32 {
     choices.len() as u32
 }
 
+/// Normalises the vector that begins at number `at` of each case.
 pub fn unit_vectors(cases: Vec<Vec<f32>>, at: usize) -> Vec<Vec<f32>> {
     let normalise = |mut case: Vec<f32>| {
         let n = vec3(case[at], case[at + 1], case[at + 2]).normalize_or(Vec3::X);
@@ -56,7 +58,7 @@ pub fn v4(x: &[f32]) -> Vec4 {
     Vec4::from_slice(x)
 }
 
-/// A ramp and a flipbook with a different number in every texel.
+/// Returns a ramp of 8x4 texels with different pseudo-random colours.
 pub fn test_ramp() -> Ramp {
     let colour = |i: u32| {
         let hash = pcg3d(UVec3::new(i, 1, 2));
@@ -65,6 +67,7 @@ pub fn test_ramp() -> Ramp {
     Ramp::from_linear(UVec2::new(8, 4), (0..32).map(colour))
 }
 
+/// Returns a flipbook of three 8x8 frames with different pseudo-random texels and a transparent border.
 pub fn test_sprite() -> Sprite {
     let mut sheet = image::RgbaImage::new(24, 8);
     for (x, y, pixel) in sheet.enumerate_pixels_mut() {
@@ -77,7 +80,7 @@ pub fn test_sprite() -> Sprite {
     Sprite::from_picture(std::path::Path::new("test"), &sheet, layout).unwrap()
 }
 
-/// One frame of a sprite.
+/// One frame of a sprite at mip level 0.
 pub struct Frame(pub Sprite, pub u32);
 
 impl Texture2d for Frame {

@@ -1,4 +1,4 @@
-//! `shaders/lib/lighting.wgsl`.
+//! Formula tests of `shaders/lib/lighting.wgsl`.
 
 use glam::Vec3;
 use haze::formula::lighting;
@@ -31,7 +31,7 @@ pub fn formulas() -> Vec<Formula> {
             reference: |x| vec![lighting::distance_attenuation(x[0], x[1], x[2])],
             cases: {
                 let mut cases = random(100, &[(0.0, 30.0), (0.1, 1.0), (0.1, 1.0)]);
-                // A point without a body, close by; one without a range.
+                // Lights of radius 0 within 15 mm, and lights of unlimited range.
                 cases.extend(random(20, &[(0.0, 2.0e-4), (0.0, 0.1), (0.0, 0.0)]));
                 cases.extend(random(20, &[(0.0, 900.0), (0.0, 0.0), (0.1, 1.0)]));
                 cases
@@ -122,7 +122,7 @@ pub fn formulas() -> Vec<Formula> {
             reference: |x| vec![lighting::soft_scatter_weight(x[0], x[1], x[2])],
             cases: {
                 let mut cases = random(100, &[(0.0, 1.0), (0.0, 0.5), (0.05, 1.0)]);
-                // A step, where the smoothstep would divide by zero.
+                // A scatter_smooth of 0 is a step; the smoothstep would divide by zero.
                 cases.extend([vec![0.3, 0.5, 0.0], vec![0.7, 0.5, 0.0]]);
                 cases
             },

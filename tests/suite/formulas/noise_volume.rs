@@ -1,4 +1,4 @@
-//! `shaders/lib/noise_volume.wgsl`.
+//! Formula tests of `shaders/lib/noise_volume.wgsl`.
 
 use haze::formula::noise_volume;
 
@@ -14,7 +14,7 @@ pub fn formulas() -> Vec<Formula> {
                    y(0, v.x); y(1, v.y); y(2, v.z); y(3, v.w);",
             reference: |x| noise_volume::sample_noise_volume(test_noise(), v3(x)).to_array().to_vec(),
             cases: random(200, &[(-2.0, 2.0); 3]),
-            // `fract` keeps 1e-7 of a coordinate; times 8 texels and the steepest slope between two of them, 2.
+            // `fract` has an error of 1e-7; times 8 texels, times the steepest slope between two texels, 2.
             tolerance: 2e-5,
             mutants: &[
                 ("((texel % size) + size) % size", "clamp(texel, vec3i(0), size - 1)"),
@@ -33,7 +33,7 @@ pub fn formulas() -> Vec<Formula> {
                 noise_volume::sample_noise_octaves(test_noise(), v3(&x[1..]), octaves).to_array().to_vec()
             },
             cases: with_choices(4, &[(-1.0, 1.0); 3]),
-            // A coordinate's last bit, 27 times over.
+            // The rounding error of a coordinate is multiplied by 27 in the fourth octave.
             tolerance: 2e-4,
             mutants: &[("place *= 3.0", "place *= 2.0"), ("weight *= 0.5", "weight *= 1.0"), ("sum / total", "sum")],
         },
@@ -43,7 +43,7 @@ pub fn formulas() -> Vec<Formula> {
             wgsl: "let v = noise_coordinate(vec3f(x(0), x(1), x(2)), x(3), vec3f(x(4), x(5), x(6))); y(0, v.x); y(1, v.y); y(2, v.z);",
             reference: |x| noise_volume::noise_coordinate(v3(x), x[3], v3(&x[4..])).to_array().to_vec(),
             cases: random(50, &[(-9.0, 9.0), (-9.0, 9.0), (-9.0, 9.0), (0.5, 4.0), (0.0, 2.0), (0.0, 2.0), (0.0, 2.0)]),
-            // Coordinates up to 20.
+            // Coordinates are as large as 20.
             tolerance: ARITHMETIC * 10.0,
             mutants: &[("from_eye + noise_offset", "from_eye - noise_offset"), ("/ noise_size", "* noise_size")],
         },

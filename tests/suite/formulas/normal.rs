@@ -1,4 +1,4 @@
-//! `shaders/lib/normal.wgsl`.
+//! Formula tests of `shaders/lib/normal.wgsl`.
 
 use haze::formula::normal;
 use haze::settings::{NormalDecode, NormalEncoding};
@@ -22,7 +22,7 @@ pub fn formulas() -> Vec<Formula> {
                 &[(-1.0, 1.0), (-1.0, 1.0), (-1.0, 1.0), (0.0, 1.0), (0.0, 1.0)],
             ),
             tolerance: ARITHMETIC,
-            // Not premultiplied: OTEE's first, wrong blend.
+            // The first two mutants do not premultiply, like OTEE's first, wrong blend.
             mutants: &[
                 ("(normal * 0.5 + 0.5) * (amount * weight)", "normal * 0.5 + 0.5"),
                 ("vec4f(normal * (amount * weight), amount)", "vec4f(normal, amount)"),
@@ -41,7 +41,7 @@ pub fn formulas() -> Vec<Formula> {
             cases: {
                 let choices = count(NormalEncoding::ALL) * count(NormalDecode::ALL);
                 let mut cases = with_choices(choices, &[(-1.0, 1.0), (-1.0, 1.0), (-1.0, 1.0), (0.0, 1.0)]);
-                // Empty texels face the viewer.
+                // Normals of empty texels face the viewer.
                 cases.extend((0..4).map(|choice| vec![choice as f32, 0.0, 0.0, 0.0, 0.0]));
                 cases
             },

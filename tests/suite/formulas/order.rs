@@ -1,4 +1,4 @@
-//! `shaders/lib/order.wgsl`.
+//! Formula tests of `shaders/lib/order.wgsl`.
 
 use haze::formula::order;
 
@@ -16,7 +16,7 @@ pub fn formulas() -> Vec<Formula> {
                 let knots = std::array::from_fn(|i| v4(&x[3 + 4 * i..]));
                 vec![order::optical_depth_in_front(&knots, x[0], x[1], x[2])]
             },
-            // Depths before the first knot, at the last and beyond it.
+            // Depths before the first knot, between knots, and beyond the last.
             cases: random(200, &[[(-2.0, 14.0), (3.0, 4.0), (5.0, 8.0)].as_slice(), &[(0.0, 9.0); 16]].concat()),
             tolerance: ARITHMETIC * 10.0,
             mutants: &[("through * 0.5 + 0.25", "through"), ("place - f32(low)", "0.0"), ("low + 1u", "low")],

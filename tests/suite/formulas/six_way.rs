@@ -1,4 +1,4 @@
-//! `shaders/lib/six_way.wgsl`.
+//! Formula tests of `shaders/lib/six_way.wgsl`.
 
 use glam::Vec2;
 use haze::formula::six_way;
@@ -6,11 +6,11 @@ use haze::formula::six_way;
 use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, random, unit_vectors, v3};
 
-/// What is shown under light from six sides, a way to a light, and an anisotropy.
+/// Ranges of the inputs: brightness under light from each of six sides, direction to the light, anisotropy.
 const SIX_WAY_AND_LIGHT: [(f32, f32); 10] = {
-    const SHOWN: (f32, f32) = (0.0, 1.0);
+    const BRIGHTNESS: (f32, f32) = (0.0, 1.0);
     const AXIS: (f32, f32) = (-1.0, 1.0);
-    [SHOWN, SHOWN, SHOWN, SHOWN, SHOWN, SHOWN, AXIS, AXIS, AXIS, (0.1, 0.95)]
+    [BRIGHTNESS, BRIGHTNESS, BRIGHTNESS, BRIGHTNESS, BRIGHTNESS, BRIGHTNESS, AXIS, AXIS, AXIS, (0.1, 0.95)]
 };
 
 pub fn formulas() -> Vec<Formula> {
@@ -88,7 +88,7 @@ pub fn formulas() -> Vec<Formula> {
             reference: |x| six_way::normal_from_six_way(v3(x), v3(&x[3..])).to_array().to_vec(),
             cases: {
                 let mut cases = random(50, &[(0.0, 1.0); 6]);
-                // Lit alike from all sides.
+                // Equal brightness from all sides gives no direction.
                 cases.push(vec![0.5; 6]);
                 cases
             },

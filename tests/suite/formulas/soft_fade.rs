@@ -1,4 +1,4 @@
-//! `shaders/lib/soft_fade.wgsl`.
+//! Formula tests of `shaders/lib/soft_fade.wgsl`.
 
 use haze::formula::soft_fade;
 use haze::settings::FadeCurve;
@@ -33,7 +33,7 @@ pub fn formulas() -> Vec<Formula> {
             reference: |x| vec![soft_fade::fade_contrast(x[0], x[1])],
             cases: random(200, &[(0.0, 1.0), (0.1, 16.0)]),
             tolerance: TRANSCENDENTAL,
-            // The second: one half of the curve not reflected, as when NV's saturate is left out.
+            // The second mutant does not reflect the upper half of the curve, as happens without NV's saturate.
             mutants: &[("0.5 * pow(2.0 * x, contrast_power)", "pow(2.0 * x, contrast_power)"), ("(1.0 - x)", "(x)")],
         },
         Formula {
@@ -43,7 +43,7 @@ pub fn formulas() -> Vec<Formula> {
             reference: |x| vec![soft_fade::fade_exponential(x[0], x[1])],
             cases: random(200, &[(0.0, 1.0), (0.1, 16.0)]),
             tolerance: TRANSCENDENTAL,
-            // The first is how the formula reads when its exponent is lost in print.
+            // The first mutant is the formula as it reads when the exponent is lost in print.
             mutants: &[
                 ("exp2(-2.0 * pow(2.0 * x, contrast_power))", "pow(0.25 * 2.0 * x, contrast_power)"),
                 ("2.0 * x", "x"),
@@ -65,7 +65,7 @@ pub fn formulas() -> Vec<Formula> {
             reference: |x| vec![soft_fade::soft_fade(FadeCurve::ALL[x[0] as usize], x[1], x[2], x[3], x[4])],
             cases: with_choices(count(FadeCurve::ALL), &[(-0.5, 2.0), (0.2, 4.0), (0.5, 4.0), (0.0, 0.2)]),
             tolerance: TRANSCENDENTAL,
-            // Unsigned differences let sprites fade back in behind the surface.
+            // The first mutant uses an unsigned distance, which lets sprites fade in again behind the surface.
             mutants: &[
                 (
                     "if curve != FADE_CURVE_ALWAYS && distance < max(epsilon, 0.0) {\n        return 0.0;\n    }\n    \

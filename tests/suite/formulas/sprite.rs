@@ -1,4 +1,4 @@
-//! `shaders/lib/sprite.wgsl`.
+//! Formula tests of `shaders/lib/sprite.wgsl`.
 
 use glam::{Vec2, Vec4};
 use haze::formula::sprite;

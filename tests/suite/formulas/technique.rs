@@ -1,4 +1,4 @@
-//! `shaders/lib/technique.wgsl`.
+//! Formula tests of `shaders/lib/technique.wgsl`.
 
 use glam::vec3;
 use haze::formula::technique;
@@ -36,7 +36,7 @@ pub fn formulas() -> Vec<Formula> {
                 let found = technique::ray_sphere(origin, v3(x), v3(&x[3..]), x[6], x[7], x[7] + x[8]);
                 vec![found.enter, found.leave, found.axis.x, found.axis.y, found.axis.z]
             },
-            // Missed, hit, and cut at either end.
+            // Rays that miss, rays that hit, and rays whose chord is cut at either end.
             cases: unit_vectors(
                 random(
                     300,
@@ -54,7 +54,8 @@ pub fn formulas() -> Vec<Formula> {
                 ),
                 0,
             ),
-            // The root of a difference of squares near the rim: 1e-7 under it is 3e-4.
+            // Near the rim, the half chord is the root of a small difference of squares: an error of 1e-7 under the
+            // root becomes 3e-4.
             tolerance: 5e-4,
             mutants: &[
                 ("max(middle - half_chord, near)", "middle - half_chord"),
@@ -143,11 +144,11 @@ pub fn formulas() -> Vec<Formula> {
             reference: |x| technique::sphere_axis_bounds(v2(x), x[2], x[3]).to_array().to_vec(),
             cases: {
                 let mut cases = random(300, &[(-3.0, 3.0), (0.3, 6.0), (0.05, 2.0), (0.1, 0.3)]);
-                // Only spheres that reach in front of the near plane are drawn.
+                // Spheres entirely nearer than the near plane are not drawn.
                 cases.retain(|x| x[1] + x[2] > x[3]);
                 cases
             },
-            // Tangents that touch close to the near plane are far out and steep.
+            // Tangents that touch close to the near plane are steep and meet it far from the centre of the sphere.
             tolerance: 2e-3,
             mutants: &[
                 ("vec2f(centre.x - cut, centre.x + cut)", "vec2f(centre.x, centre.x)"),

@@ -1,4 +1,4 @@
-//! `shaders/lib/tonemap.wgsl`.
+//! Formula tests of `shaders/lib/tonemap.wgsl`.
 
 use glam::UVec2;
 use haze::formula::tonemap;

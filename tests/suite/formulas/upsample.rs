@@ -1,4 +1,4 @@
-//! `shaders/lib/upsample.wgsl`.
+//! Formula tests of `shaders/lib/upsample.wgsl`.
 
 use glam::Vec4;
 use haze::formula::upsample;
@@ -7,7 +7,7 @@ use haze::settings::Upsample;
 use super::Formula;
 use super::inputs::{ARITHMETIC, TRANSCENDENTAL, count, random, v2, v3, v4, with_choices};
 
-/// Four texels of place and value, of weights 1 to 4.
+/// Fits four texels, each a position and a value, with weights 1 to 4.
 fn fit(x: &[f32]) -> upsample::GuidedFit {
     x[..20].chunks(5).zip([1.0, 2.0, 3.0, 4.0]).fold(upsample::GuidedFit::default(), |fit, (x, weight)| {
         upsample::with_texel(&fit, v3(x), weight, Vec4::splat(x[3]))
@@ -40,7 +40,7 @@ pub fn formulas() -> Vec<Formula> {
                     count(Upsample::ALL),
                     &[(0.0, 1.0), (0.0, 1.0), (4.0, 6.0), (4.0, 6.0), (4.0, 6.0), (4.0, 6.0), (4.0, 6.0)],
                 );
-                // Smooth floors, and a pixel whose surface no texel has seen.
+                // Smooth surfaces, and pixels whose surface is in none of the texels.
                 cases.extend(with_choices(
                     count(Upsample::ALL),
                     &[(0.0, 1.0), (0.0, 1.0), (4.9, 5.1), (4.9, 5.1), (4.9, 5.1), (4.9, 5.1), (4.9, 5.1)],
@@ -107,7 +107,7 @@ pub fn formulas() -> Vec<Formula> {
             wgsl: WGSL_FITTED,
             reference: |x| vec![upsample::fitted_value(&fit(x), 0.5).x],
             cases: random(200, &[(-1.5, 1.5); 20]),
-            // Through the inverse of a matrix, of sums in another order.
+            // The fit inverts a matrix whose sums are added in another order.
             tolerance: TRANSCENDENTAL,
             mutants: &[
                 ("held * held", "held"),

@@ -1,4 +1,4 @@
-//! `shaders/lib/view.wgsl`.
+//! Formula tests of `shaders/lib/view.wgsl`.
 
 use haze::formula::view;
 

@@ -1,4 +1,4 @@
-//! Particles in the host's buffers, systems by their keys, and what is kept of both.
+//! Particles in host buffers, systems identified by keys, and the GPU resources that are kept for them.
 
 use glam::{Mat4, UVec2, Vec3, vec3};
 use haze::settings::*;
@@ -11,7 +11,7 @@ use crate::host::Host;
 use crate::stage::{BACKDROP, Stage};
 
 #[test]
-fn a_buffer_may_begin_anywhere() {
+fn offset_of_particles_in_a_host_buffer_does_not_change_the_image() {
     let mut stage = Stage::new(SIZE);
     stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
     let mut host = Host::new(gpu(), &stage).unwrap();
@@ -37,7 +37,7 @@ fn a_buffer_may_begin_anywhere() {
 }
 
 #[test]
-fn offsets_that_do_not_fit_are_refused() {
+fn invalid_offsets_in_a_host_buffer_are_rejected() {
     let mut stage = Stage::new(SIZE);
     stage.bounds = Some(Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE });
     let mut host = Host::new(gpu(), &stage).unwrap();
@@ -55,7 +55,7 @@ fn offsets_that_do_not_fit_are_refused() {
     assert_eq!(refused(u64::MAX - 3, 2), "systems[0].particles");
 }
 
-/// Frames of several systems, without a picture.
+/// Prepares frames of several systems, without drawing an image.
 pub struct Systems {
     host: Host,
     pub stage: Stage,
@@ -86,18 +86,18 @@ impl Systems {
     }
 }
 
-/// Longer than a renderer keeps what it does not need.
+/// Number of frames after which a renderer has released resources that it no longer needs.
 const LONG: u32 = 125;
 
 #[test]
-fn a_system_is_known_by_its_key() {
+fn systems_in_another_order_keep_their_targets_by_key() {
     let mut systems = Systems::new(gpu(), SIZE);
     let settings = Settings::default();
     let wide = systems.stage.particles.clone();
     let small = [Particle { position: vec3(0.0, 0.0, -6.0), radius: 0.2, ..Particle::default() }];
     systems.frame(gpu(), &[(7, &wide, settings), (9, &small, settings)]).unwrap();
     let targets = [systems.accumulation(7), systems.accumulation(9)];
-    // Another order, and one of them gone for a while: each keeps its own.
+    // Each system keeps its targets when the order changes and when a system is absent for a frame.
     systems.frame(gpu(), &[(9, &small, settings), (7, &wide, settings)]).unwrap();
     systems.frame(gpu(), &[(9, &small, settings)]).unwrap();
     assert!(systems.host.renderer.targets(7).is_none());
@@ -108,11 +108,11 @@ fn a_system_is_known_by_its_key() {
 }
 
 #[test]
-fn what_is_no_longer_needed_is_given_back() {
+fn unused_targets_and_buffers_are_released_after_some_frames() {
     let mut systems = Systems::new(gpu(), UVec2::new(1280, 720));
     let settings = Settings::default();
     let few = systems.stage.particles[..2].to_vec();
-    // One over the whole view, and many that are uploaded but out of it.
+    // One particle covers the whole view; the others are uploaded but outside the view.
     let mut near = vec![Particle { position: vec3(0.0, 0.0, 9.0), radius: 0.1, ..Particle::default() }; 20_000];
     near[0] = Particle { position: vec3(0.0, 0.0, -1.0), radius: 4.0, amount: 0.1, ..Particle::default() };
     systems.frame(gpu(), &[(1, &few, settings)]).unwrap();
@@ -120,14 +120,14 @@ fn what_is_no_longer_needed_is_given_back() {
     systems.frame(gpu(), &[(1, &near, settings)]).unwrap();
     let spike = systems.host.renderer.memory_use();
     assert!(spike.targets > 4 * small.targets && spike.buffers > 100_000, "{small:?} {spike:?}");
-    // Not at once: the next spike may be near.
+    // Memory is not released at once, because another spike may follow soon.
     systems.frame(gpu(), &[(1, &few, settings)]).unwrap();
     assert_eq!(systems.host.renderer.memory_use(), spike);
     for _ in 0..LONG {
         systems.frame(gpu(), &[(1, &few, settings)]).unwrap();
     }
     assert_eq!(systems.host.renderer.memory_use(), small);
-    // A system behind the viewer keeps no targets, one that is gone keeps nothing.
+    // A system behind the viewer keeps no targets; a system that is removed keeps nothing.
     let behind: Vec<_> = few.iter().map(|p| Particle { position: -p.position, ..*p }).collect();
     for _ in 0..LONG {
         systems.frame(gpu(), &[(1, &behind, settings)]).unwrap();
@@ -141,7 +141,7 @@ fn what_is_no_longer_needed_is_given_back() {
 }
 
 #[test]
-fn baked_light_outlives_a_resize() {
+fn baked_light_textures_are_kept_when_the_view_is_resized() {
     let mut stage = Stage::new(SIZE);
     stage.settings.diffuse.mode = DiffuseMode::Cubemap;
     let mut host = Host::new(gpu(), &stage).unwrap();
@@ -162,8 +162,8 @@ fn baked_light_outlives_a_resize() {
 }
 
 #[test]
-fn a_depth_buffer_that_the_host_replaces_is_let_go() {
-    // A device of its own, whose memory can be counted.
+fn depth_buffer_replaced_by_the_host_is_released() {
+    // A separate device, so that its allocated memory can be counted.
     let gpu = Headless::new().unwrap();
     let allocated = || {
         gpu.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
@@ -180,7 +180,7 @@ fn a_depth_buffer_that_the_host_replaces_is_let_go() {
         host.draw(&gpu, &stage).unwrap();
         let before = allocated();
         for _ in 0..3 {
-            // The renderer goes to a new host, with new textures; the old ones go.
+            // The renderer is moved to a new host with new textures; the old textures are dropped.
             let mut next = Host::new(&gpu, &stage).unwrap();
             std::mem::swap(&mut next.renderer, &mut host.renderer);
             std::mem::swap(&mut next.material, &mut host.material);
@@ -192,7 +192,7 @@ fn a_depth_buffer_that_the_host_replaces_is_let_go() {
 }
 
 #[test]
-fn a_view_of_the_whole_target_needs_no_origin() {
+fn new_view_begins_at_the_origin_of_the_target() {
     let view = View::new(Mat4::IDENTITY, Mat4::IDENTITY, SIZE);
     assert_eq!(view.origin, UVec2::ZERO);
 }

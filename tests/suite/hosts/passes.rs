@@ -1,4 +1,4 @@
-//! Passes of every kind, what they show, and what they cannot be.
+//! Host passes with every supported format and sample count, and the passes and resources that are rejected.
 
 use glam::{UVec2, Vec4};
 use haze::formula::colour::gamma_target_colour;
@@ -12,7 +12,7 @@ use crate::host::{Host, HostKind};
 use crate::stage::{BACKDROP, DepthKind, Stage};
 
 #[test]
-fn one_prepare_shows_every_stage() {
+fn one_prepare_serves_every_debug_view() {
     for path in [Path::Raster, Path::Forward] {
         let mut all = Stage::new(SIZE);
         (all.settings.path, all.stages) = (path, Some(ShadeTree::ALL));
@@ -21,25 +21,25 @@ fn one_prepare_shows_every_stage() {
         host.prepare(gpu(), &mut encoder, &all, slice(&all)).unwrap();
         gpu().submit(encoder).unwrap();
         for &stage in ShadeTree::ALL {
-            let alone = Stage { shade_tree: stage, stages: None, ..Stage::new(SIZE) };
-            let alone = Stage { settings: all.settings, ..alone };
+            let separate = Stage { shade_tree: stage, stages: None, ..Stage::new(SIZE) };
+            let separate = Stage { settings: all.settings, ..separate };
             all.shade_tree = stage;
             let mut encoder = self::encoder(gpu());
             host.render(&mut encoder, &all);
             gpu().submit(encoder).unwrap();
-            assert!(host.picture(gpu()).unwrap() == alone.on_gpu(gpu()).picture, "{path:?} {stage:?}");
+            assert!(host.picture(gpu()).unwrap() == separate.on_gpu(gpu()).picture, "{path:?} {stage:?}");
         }
     }
-    // A stage that was not to be shown draws nothing.
+    // A debug view that `prepare` was not told about draws nothing.
     let stage = Stage { stages: Some(&[ShadeTree::Final]), shade_tree: ShadeTree::Overdraw, ..Stage::new(SIZE) };
     assert!(stage.on_gpu(gpu()).picture.texels.iter().all(|texel| *texel == BACKDROP));
 }
 
 #[test]
-fn passes_of_every_kind_show_the_same_smoke() {
+fn every_target_format_and_sample_count_shows_the_same_smoke() {
     use wgpu::TextureFormat as Format;
     let host = HostKind::default;
-    // The least agreement with the reference: floats of 11 and 10 bits round more than what is compared.
+    // (name, lowest PSNR against the reference, host). Rg11b10Ufloat rounds more coarsely than the other formats.
     let kinds = [
         ("four samples", AGREEMENT, HostKind { samples: 4, ..host() }),
         ("four samples, sRGB", AGREEMENT, HostKind { samples: 4, color_format: Format::Rgba8UnormSrgb, ..host() }),
@@ -65,9 +65,9 @@ fn passes_of_every_kind_show_the_same_smoke() {
             stage.host = kind.clone();
             let mut host = match Host::new(featured(), &stage) {
                 Ok(host) => host,
-                // An adapter without the format says so by name.
+                // The error names a format that the adapter does not support.
                 Err(Error::Field(error)) => {
-                    eprintln!("left out: {name}: {error}");
+                    eprintln!("skipped: {name}: {error}");
                     continue;
                 }
                 Err(error) => panic!("{error}"),
@@ -87,23 +87,23 @@ fn passes_of_every_kind_show_the_same_smoke() {
             assert!(psnr >= least, "{name}, {}: {psnr:.1} dB", path.name());
             for (index, format) in kind.further.iter().enumerate() {
                 let untouched = host.further(featured(), index).texels.iter().all(|texel| {
-                    // The host cleared them to the backdrop.
+                    // The host cleared the attachment to the backdrop.
                     (texel.x - BACKDROP.x).abs() < 1.0 / 255.0
                 });
-                assert!(untouched, "{format:?} was drawn to");
+                assert!(untouched, "the smoke was drawn to the additional attachment {format:?}");
             }
         }
     }
 }
 
 #[test]
-fn a_target_of_code_is_written_in_code() {
+fn gamma_target_receives_srgb_encoded_colour() {
     use LightingResolution::{Full, Target};
     for (path, lighting_resolution) in [(Path::Raster, Full), (Path::Raster, Target), (Path::Forward, Full)] {
         let mut stage = Stage::new(SIZE);
         (stage.settings.path, stage.settings.accumulate.lighting_resolution) = (path, lighting_resolution);
         stage.settings.specular_scatter.intensity = 0.0;
-        // Smoke that hides all there is: what is left is the light's code.
+        // Opaque smoke hides the backdrop, so the target contains only encoded light.
         stage.settings.boost = 16.0;
         stage.particles.iter_mut().for_each(|p| p.amount = 1.0);
         stage.lights.iter_mut().for_each(|light| light.intensity *= 0.1);
@@ -116,7 +116,8 @@ fn a_target_of_code_is_written_in_code() {
             let light = light.load(at.as_ivec2());
             *texel = gamma_target_colour(light.truncate()).extend(light.w);
         });
-        // At the rim smoke is blended: code there is no code of a blend. The middle is opaque.
+        // Only the opaque middle is compared. At the rim, blending happens on encoded values, which the reference does
+        // not do.
         let middle = |picture: &Picture<Vec4>| {
             let mut part = Picture::new(UVec2::new(40, 20), Vec4::ZERO);
             part.for_each(|at, texel| *texel = picture.load((at + UVec2::new(60, 35)).as_ivec2()));
@@ -124,7 +125,7 @@ fn a_target_of_code_is_written_in_code() {
         };
         let right = psnr(&middle(&code), &middle(&expected));
         assert!(right >= AGREEMENT, "{}: {right:.1} dB", path.name());
-        // The mutant: light written as it is.
+        // Mutant: linear light written without encoding.
         stage.host.gamma_target = false;
         let dark = psnr(&middle(&stage.on_gpu(gpu()).picture), &middle(&expected));
         assert!(dark < 35.0, "{}: {dark:.1} dB", path.name());
@@ -132,7 +133,7 @@ fn a_target_of_code_is_written_in_code() {
 }
 
 #[test]
-fn a_pass_that_the_device_cannot_have_is_refused_by_name() {
+fn unsupported_pass_descriptors_are_rejected_with_the_name_of_the_field() {
     use wgpu::TextureFormat as Format;
     let new = |descriptor: &Descriptor<'_>| Renderer::new(&gpu().device, &gpu().queue, descriptor);
     let refused = |descriptor: Descriptor<'_>| field(new(&descriptor));
@@ -155,15 +156,16 @@ fn a_pass_that_the_device_cannot_have_is_refused_by_name() {
     assert_eq!(refused(srgb), "gamma_target");
     let error = new(&Descriptor { color_format: Format::Rgba8Uint, ..plain }).unwrap_err().to_string();
     assert!(error.contains("Rgba8Uint") && error.contains("Rgba16Float") && !error.contains('\n'), "{error}");
-    // The host's error handler has heard nothing of it.
+    // The host's error handler received no error.
     gpu().check().unwrap();
 }
 
 #[test]
-fn what_belongs_to_another_device_is_refused() {
+fn resources_of_another_device_are_rejected() {
     let stage = Stage::new(SIZE);
     let here = gpu();
-    // Devices of one adapter share its OpenGL context: what goes with one of them is gone for the other.
+    // On OpenGL, devices of one adapter share a context: resources that are dropped with one device are lost for the
+    // other.
     if here.adapter.get_info().backend == wgpu::Backend::Gl {
         return;
     }
@@ -180,7 +182,7 @@ fn what_belongs_to_another_device_is_refused() {
     let material = context.create_material(&device, &queue, &stage.material).unwrap();
     let own = std::mem::replace(&mut host.material, material);
     assert_eq!(field(host.draw(here, &stage)), "systems[0].material");
-    // Nor of another instance, whose devices wgpu itself may take for these.
+    // The same for another wgpu instance; wgpu itself may confuse devices of different instances.
     host.material = Host::new(featured(), &stage).unwrap().material;
     assert_eq!(field(host.draw(here, &stage)), "systems[0].material");
     host.material = own;
@@ -203,7 +205,7 @@ fn what_belongs_to_another_device_is_refused() {
 }
 
 #[test]
-fn depth_that_cannot_be_read_is_refused() {
+fn unreadable_scene_depth_is_rejected() {
     let mut stage = Stage::new(SIZE);
     stage.host.depth_format = wgpu::TextureFormat::Depth24PlusStencil8;
     (stage.depth, stage.attach_depth) = (DepthKind::Buffer, false);
@@ -234,14 +236,14 @@ fn depth_that_cannot_be_read_is_refused() {
     for (name, view) in cases {
         let own = std::mem::replace(&mut host.depth, view);
         assert_eq!(field(host.draw(gpu(), &stage)), "scene_depth", "{name}");
-        // Nothing of the last frame is drawn in its place.
+        // The previous frame is not drawn in its place.
         let mut encoder = encoder(gpu());
         host.render(&mut encoder, &stage);
         gpu().submit(encoder).unwrap();
         assert!(host.picture(gpu()).unwrap().texels.iter().all(|&texel| texel == BACKDROP), "{name}");
         host.depth = own;
     }
-    // One layer of an array is as good as a texture of its own.
+    // A view of one layer of an array texture is accepted.
     let array = texture(3, 1, usage);
     host.depth = array.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(wgpu::TextureViewDimension::D2),

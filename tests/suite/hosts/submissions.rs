@@ -8,17 +8,17 @@ use crate::host::Host;
 use crate::stage::Stage;
 
 #[test]
-fn two_views_in_one_submission_are_as_two_frames() {
+fn two_views_in_one_submission_match_two_separate_frames() {
     let (left, mut right) = (Stage::new(SIZE), Stage::new(SIZE));
     right.view.view_from_world = Mat4::from_translation(vec3(-0.6, 0.2, 0.5));
     right.lights[0].intensity = 5.0;
-    let alone = [left.on_gpu(gpu()).picture, right.on_gpu(gpu()).picture];
-    assert!(psnr(&alone[0], &alone[1]) < 30.0, "the views are too much alike to tell");
+    let expected = [left.on_gpu(gpu()).picture, right.on_gpu(gpu()).picture];
+    assert!(psnr(&expected[0], &expected[1]) < 30.0, "the two views are too similar for this test");
 
     let mut one = Host::new(gpu(), &left).unwrap();
     let context = one.renderer.context().clone();
     let mut other = Host::on(gpu(), &right, Some(&context)).unwrap();
-    // Materials are the device's, not the view's.
+    // Materials belong to the device, not to a view.
     other.material = one.material.clone();
     for _ in 0..2 {
         let mut encoder = encoder(gpu());
@@ -27,9 +27,9 @@ fn two_views_in_one_submission_are_as_two_frames() {
         one.render(&mut encoder, &left);
         other.render(&mut encoder, &right);
         gpu().submit(encoder).unwrap();
-        assert!(one.picture(gpu()).unwrap() == alone[0] && other.picture(gpu()).unwrap() == alone[1]);
+        assert!(one.picture(gpu()).unwrap() == expected[0] && other.picture(gpu()).unwrap() == expected[1]);
     }
-    // The second view compiled nothing that the first had not.
+    // Another view on the same context compiles no further pipelines.
     let mut third = Host::on(gpu(), &left, Some(&context)).unwrap();
     let compiled = context.pipeline_count();
     third.draw(gpu(), &left).unwrap();
@@ -37,7 +37,7 @@ fn two_views_in_one_submission_are_as_two_frames() {
 }
 
 #[test]
-fn a_second_prepare_before_the_first_is_submitted_is_refused() {
+fn second_prepare_before_the_first_is_submitted_is_rejected() {
     let stage = Stage::new(SIZE);
     let picture = stage.on_gpu(gpu()).picture;
     let mut host = Host::new(gpu(), &stage).unwrap();
@@ -45,21 +45,21 @@ fn a_second_prepare_before_the_first_is_submitted_is_refused() {
         let mut encoder = encoder(gpu());
         field(host.prepare(gpu(), &mut encoder, &stage, slice(&stage)))
     };
-    // Neither in the same encoder nor in another.
+    // Rejected both in the same encoder and in another one.
     let mut first = encoder(gpu());
     host.prepare(gpu(), &mut first, &stage, slice(&stage)).unwrap();
     assert_eq!(field(host.prepare(gpu(), &mut first, &stage, slice(&stage))), "prepare");
     assert_eq!(refused(&mut host), "prepare");
-    // An encoder that is dropped is forgotten.
+    // Accepted after the first encoder is dropped.
     drop(first);
     let mut second = encoder(gpu());
     host.prepare(gpu(), &mut second, &stage, slice(&stage)).unwrap();
-    // Passes in an encoder of their own count as well, also after the first is gone.
+    // A pass in a separate encoder must be submitted too, even if the encoder of `prepare` already was.
     let mut passes = encoder(gpu());
     host.render(&mut passes, &stage);
     gpu().submit(second).unwrap();
     assert_eq!(refused(&mut host), "prepare");
-    // What is submitted is not waited for.
+    // Submission is enough; the GPU need not have finished.
     gpu().queue.submit([passes.finish()]);
     let mut third = encoder(gpu());
     host.prepare(gpu(), &mut third, &stage, slice(&stage)).unwrap();

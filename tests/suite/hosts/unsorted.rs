@@ -1,4 +1,4 @@
-//! A host's particles in any order, which the GPU sorts for the paths that blend.
+//! Unsorted particles in a host buffer. The GPU sorts them for the paths that use hardware blending.
 
 use glam::vec3;
 use haze::settings::*;
@@ -13,7 +13,7 @@ use crate::stage::Stage;
 
 const BOUNDS: Bounds = Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) };
 
-/// With bytes before the first.
+/// Creates a particle buffer with `offset` filler bytes before the first particle.
 fn buffer(gpu: &Headless, particles: &[Particle], offset: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
     let mut bytes = vec![0x7f; offset as usize];
     bytes.extend_from_slice(bytemuck::cast_slice(particles));
@@ -29,7 +29,7 @@ fn buffer(gpu: &Headless, particles: &[Particle], offset: u64, usage: wgpu::Buff
 
 const READ: wgpu::BufferUsages = wgpu::BufferUsages::VERTEX.union(wgpu::BufferUsages::STORAGE);
 
-/// Many of the stage's, several at one depth, some hidden.
+/// Returns `count` particles made from the stage's: several at the same depth, every seventh with amount 0.
 fn many(stage: &Stage, count: usize) -> Vec<Particle> {
     let one = |index: usize| {
         let mut particle = stage.particles[index % stage.particles.len()];
@@ -41,7 +41,7 @@ fn many(stage: &Stage, count: usize) -> Vec<Particle> {
 }
 
 #[test]
-fn particles_in_any_order_are_sorted_where_they_lie() {
+fn unsorted_host_buffer_draws_the_same_image_as_a_sorted_one() {
     if !has_tiles() {
         return;
     }
@@ -51,7 +51,7 @@ fn particles_in_any_order_are_sorted_where_they_lie() {
         stage.settings.path = path;
         let mut host = Host::new(gpu(), &stage).unwrap();
         host.renderer.context().walk_in_step(in_step);
-        // One block of the sort, several that count for themselves, and more.
+        // One sort block; several blocks that each count all keys (up to 8192 keys on GPUs); more keys than that.
         for (count, offset) in [(200, 0), (3000, 16), (9000, 272)] {
             let particles = many(&stage, count);
             let mut drawn = |particles: &[Particle], is_sorted| {
@@ -60,9 +60,9 @@ fn particles_in_any_order_are_sorted_where_they_lie() {
                 host.draw_particles(gpu(), &stage, particles).unwrap();
                 host.picture(gpu()).unwrap()
             };
-            let (sorted, as_they_lie) = (drawn(&particles, false), drawn(&particles, true));
-            assert!(as_they_lie != sorted, "{count}, {path:?}, {in_step}: the order makes no difference");
-            // The camera looks along z. Those at one depth stay as they are.
+            let (sorted, unsorted) = (drawn(&particles, false), drawn(&particles, true));
+            assert!(unsorted != sorted, "{count}, {path:?}, {in_step}: the order does not change the image");
+            // The camera looks along z. The sort is stable at equal depths.
             let mut back_to_front = particles;
             back_to_front.sort_by(|a, b| a.position.z.total_cmp(&b.position.z));
             assert!(drawn(&back_to_front, true) == sorted, "{count}, {path:?}, {in_step}");
@@ -72,7 +72,7 @@ fn particles_in_any_order_are_sorted_where_they_lie() {
 }
 
 #[test]
-fn steady_frames_of_unsorted_particles_create_nothing() {
+fn steady_frames_of_unsorted_particles_create_no_gpu_resources() {
     if !has_tiles() {
         return;
     }
@@ -88,7 +88,7 @@ fn steady_frames_of_unsorted_particles_create_nothing() {
     assert_eq!(creations::count(|| (490..495).for_each(&mut draw)), 0);
     let held = host.renderer.memory_use().tiled;
     assert!(held.sorted >= 500 * 32 && held.keys >= 500 * 16 && held.lists == 0, "{held:?}");
-    // What is not sorted any more gives its buffers back.
+    // The sort buffers of a system that no longer needs sorting are released.
     for _ in 0..130 {
         host.draw(gpu(), &stage).unwrap();
     }
@@ -96,7 +96,7 @@ fn steady_frames_of_unsorted_particles_create_nothing() {
 }
 
 #[test]
-fn what_cannot_be_sorted_is_refused() {
+fn host_buffers_that_cannot_be_sorted_are_rejected() {
     let mut stage = Stage::new(SIZE);
     stage.bounds = Some(BOUNDS);
     let refused = |gpu: &Headless, stage: &Stage, usage, offset| {
@@ -112,7 +112,7 @@ fn what_cannot_be_sorted_is_refused() {
         assert_eq!(field(refused(gpu(), &stage, vertices, 0)), "systems[0].particles");
         assert_eq!(field(refused(gpu(), &stage, READ, 4)), "systems[0].particles.offset");
     }
-    // Where nothing depends on the order, any will do.
+    // Weighted order needs no sorting, so such buffers are accepted.
     stage.settings.accumulate.order = Order::Weighted;
     for gpu in [&webgl2, gpu()] {
         refused(gpu, &stage, vertices, 4).unwrap();

@@ -1,4 +1,4 @@
-//! Views of either hand, of any up, turned over, and of a part of the target.
+//! Left- and right-handed views, any up axis, mirrored projections, and views of a part of the target.
 
 use glam::camera::{lh, rh};
 use glam::{Mat4, UVec2, Vec3, Vec4, vec3};
@@ -10,7 +10,7 @@ use super::{SIZE, field};
 use crate::common::{AGREEMENT, gpu, psnr};
 use crate::stage::{BACKDROP, DepthKind, Stage};
 
-/// The stage in another world: every point moved by `turn`, which may mirror.
+/// Transforms the world of a stage by `turn`, which may mirror it. In view space nothing changes.
 fn in_world(mut stage: Stage, turn: Mat4) -> Stage {
     stage.view.view_from_world *= turn.inverse();
     stage.particles.iter_mut().for_each(|p| p.position = turn.transform_point3(p.position));
@@ -22,7 +22,7 @@ fn in_world(mut stage: Stage, turn: Mat4) -> Stage {
 }
 
 #[test]
-fn every_hand_and_every_up_gives_the_same_picture() {
+fn handedness_and_up_axis_do_not_change_the_image() {
     let flip = |x, y, z| Mat4::from_scale(vec3(x, y, z));
     let z_view = |mut stage: Stage| {
         stage.view.view_from_world = flip(1.0, 1.0, -1.0) * stage.view.view_from_world;
@@ -58,10 +58,10 @@ fn every_hand_and_every_up_gives_the_same_picture() {
                 let seen = stage.on_gpu(gpu()).picture;
                 let reference = psnr(&seen, &stage.on_cpu());
                 assert!(reference >= AGREEMENT, "{name}: {reference:.1} dB from the reference");
-                // The noise of volumes fills the world: turned, it is another.
+                // Volume noise is fixed in world space, so a transformed world has other noise.
                 let same_noise = !technique.is_volumetric() || name.starts_with("+z");
                 let same = psnr(&seen, &picture);
-                // Another order of f32 operations, seen through f16.
+                // Another order of f32 operations, rounded to f16.
                 assert!(!same_noise || same >= 85.0, "{name}: {same:.1} dB");
             }
         }
@@ -69,7 +69,7 @@ fn every_hand_and_every_up_gives_the_same_picture() {
 }
 
 #[test]
-fn projections_that_turn_the_picture_over_and_views_that_begin_behind_the_viewer_agree() {
+fn mirrored_projections_and_near_planes_behind_the_viewer_match_the_reference() {
     let orthographic = |near| rh::proj::directx::orthographic(-4.0, 4.0, -2.25, 2.25, near, 80.0);
     let perspective = Stage::new(SIZE).view.clip_from_view;
     let cases = [
@@ -89,7 +89,7 @@ fn projections_that_turn_the_picture_over_and_views_that_begin_behind_the_viewer
                 let mut stage = Stage::new(SIZE);
                 (stage.view.clip_from_view, stage.view.view_from_world) = (clip_from_view, view_from_world);
                 (stage.depth, stage.settings.technique, stage.settings.path) = (depth, technique, path);
-                // Fades by the distance from the near plane have no part in this.
+                // Disables the near fade, which depends on the distance from the viewer.
                 stage.settings.soft_fade.near_fade_end = 0.0;
                 stage.ahead = if name.ends_with("+z") { 1.0 } else { -1.0 };
                 let picture = stage.on_gpu(gpu()).picture;
@@ -99,13 +99,13 @@ fn projections_that_turn_the_picture_over_and_views_that_begin_behind_the_viewer
             }
         }
     }
-    // Where an orthographic viewer stands changes nothing.
+    // Moving an orthographic viewer along its view direction does not change the image.
     let seen_from = |near: f32, distance: f32| {
         let mut stage = Stage::new(SIZE);
         stage.settings.soft_fade.near_fade_end = 0.0;
         stage.view.clip_from_view = rh::proj::directx::orthographic(-4.0, 4.0, -2.25, 2.25, near, near + 80.0);
         stage.view.view_from_world = Mat4::from_translation(vec3(0.0, 0.0, distance));
-        // The scene is given by its distance from the viewer: an empty one is the same from everywhere.
+        // Linear scene depth is measured from the viewer; only an empty scene is the same from both positions.
         (stage.depth, stage.empty_linear) = (DepthKind::Linear, true);
         stage.attach_depth = false;
         stage.on_gpu(gpu()).picture
@@ -115,7 +115,7 @@ fn projections_that_turn_the_picture_over_and_views_that_begin_behind_the_viewer
 }
 
 #[test]
-fn a_view_may_be_a_part_of_larger_targets() {
+fn view_of_a_part_of_a_larger_target_draws_only_that_part() {
     let origin = UVec2::new(70, 31);
     type Change = fn(&mut Stage);
     let changes: &[(&str, Change)] = &[
@@ -136,22 +136,22 @@ fn a_view_may_be_a_part_of_larger_targets() {
     for (name, change) in changes {
         let mut stage = Stage::new(SIZE);
         (stage.depth, stage.attach_depth) = (DepthKind::Both, true);
-        // Out of the view on every side.
+        // Spreads the smoke beyond every edge of the view.
         stage.particles.iter_mut().for_each(|p| p.position *= vec3(1.6, 1.6, 1.0));
         change(&mut stage);
-        let alone = stage.on_gpu(gpu()).picture;
+        let separate = stage.on_gpu(gpu()).picture;
         stage.host.target_size = Some(UVec2::new(260, 150));
         stage.view.origin = origin;
         let part = stage.on_gpu(gpu()).picture;
         let mut cropped = Picture::new(SIZE, Vec4::ZERO);
         cropped.for_each(|at, texel| *texel = part.load((at + origin).as_ivec2()));
-        // Corners of sprites round to another 1/256 pixel at another place of a target.
-        let same = psnr(&cropped, &alone);
+        // At another position in the target, sprite corners are snapped to other 1/256 pixels.
+        let same = psnr(&cropped, &separate);
         assert!(same >= 95.0, "{name}: {same:.1} dB");
         let outside = (0..260 * 150_u32).map(|i| UVec2::new(i % 260, i / 260));
         let mut outside = outside.filter(|at| at.cmplt(origin).any() || at.cmpge(origin + SIZE).any());
-        assert!(outside.all(|at| part.load(at.as_ivec2()) == BACKDROP), "{name}: smoke beside the view");
-        // The reference draws the view's own pixels.
+        assert!(outside.all(|at| part.load(at.as_ivec2()) == BACKDROP), "{name}: smoke outside the view");
+        // The reference draws only the pixels of the view.
         assert!(psnr(&cropped, &stage.on_cpu()) >= AGREEMENT, "{name}");
     }
     let mut stage = Stage::new(SIZE);

@@ -1,4 +1,4 @@
-//! What is compiled ahead, beside the frame, or comes out of a cache.
+//! Pipelines that are compiled ahead of time, on another thread, or loaded from a pipeline cache.
 
 use glam::Vec3;
 use haze::formula::hash::{pcg3d, unit};
@@ -20,14 +20,14 @@ fn warm_up<'a>(stage: &'a Stage, settings: &'a [Settings]) -> WarmUp<'a> {
 }
 
 #[test]
-fn the_first_frame_after_a_warm_up_compiles_nothing() {
+fn first_frame_after_a_warm_up_compiles_no_pipeline() {
     for &technique in Technique::ALL {
         for path in [Path::Raster, Path::Forward] {
             let mut stage = Stage::new(SIZE);
             (stage.depth, stage.attach_depth) = (DepthKind::Both, true);
             (stage.settings.technique, stage.settings.path) = (technique, path);
             stage.settings.diffuse.mode = DiffuseMode::Cubemap;
-            // One frame or several: sprites are not known to a warm-up.
+            // A warm-up does not know whether sprites have one frame or several, so both cases are tested.
             if path == Path::Raster {
                 (stage.material.sprite, stage.material.detail, stage.material.six_way) = crate::techniques::flipbook();
             }
@@ -38,7 +38,7 @@ fn the_first_frame_after_a_warm_up_compiles_nothing() {
             let warm = host.renderer.context().pipeline_count();
             assert!(warm > 0);
             host.draw(gpu(), &stage).unwrap();
-            // With the camera inside the box, too.
+            // The same with the camera inside the bounds.
             stage.bounds = Some(Bounds { min: Vec3::splat(-20.0), max: Vec3::splat(20.0) });
             host.draw(gpu(), &stage).unwrap();
             assert_eq!(host.renderer.context().pipeline_count(), warm, "{} {}", technique.name(), path.name());
@@ -47,7 +47,7 @@ fn the_first_frame_after_a_warm_up_compiles_nothing() {
 }
 
 #[test]
-fn a_warm_up_runs_beside_the_frame() {
+fn warm_up_can_run_on_another_thread() {
     let mut stage = Stage::new(SIZE);
     let mut host = Host::new(gpu(), &stage).unwrap();
     host.draw(gpu(), &stage).unwrap();
@@ -71,8 +71,8 @@ fn a_warm_up_runs_beside_the_frame() {
 }
 
 #[test]
-#[allow(unsafe_code, reason = "wgpu takes cache data from anywhere, and cannot check it; this is its own")]
-fn pipelines_go_into_the_hosts_cache_and_come_out_of_it() {
+#[allow(unsafe_code, reason = "wgpu cannot validate cache data; this data comes from wgpu itself")]
+fn pipelines_are_stored_in_and_loaded_from_the_hosts_pipeline_cache() {
     let gpu = featured();
     if !gpu.device.features().contains(wgpu::Features::PIPELINE_CACHE) {
         return;
@@ -91,15 +91,15 @@ fn pipelines_go_into_the_hosts_cache_and_come_out_of_it() {
     let (empty, filled, picture) = draw(None);
     let (loaded, _, again) = draw(Some(&filled));
     assert!(loaded == filled.len() && again == picture, "{loaded} bytes of {}", filled.len());
-    // Mesa's software driver keeps nothing but a header.
+    // Mesa's software driver stores only a header.
     let keeps = !gpu.adapter.get_info().name.contains("llvmpipe");
     assert!(!keeps || filled.len() > empty, "{} bytes after {empty}", filled.len());
 }
 
-/// What docs/bench.md has: the first `prepare` after a warm-up, and steady ones of ten thousand particles.
+/// Measures the CPU time of the first `prepare` after a warm-up, and of steady ones with ten thousand particles.
 #[test]
-#[ignore = "for who wants to know"]
-fn what_a_prepare_costs() {
+#[ignore = "a measurement, to be run by hand"]
+fn measure_cpu_time_of_prepare() {
     for path in Path::ALL.iter().filter(|&&path| path != Path::Tiled || crate::common::has_tiles()) {
         let mut stage = Stage::new(glam::UVec2::new(1280, 720));
         stage.settings.path = *path;
@@ -127,6 +127,11 @@ fn what_a_prepare_costs() {
         stage.particles = (0..10_000).map(spread).collect();
         let mut steady: Vec<f64> = (0..40).map(|_| prepare(&mut host, &stage)).collect();
         steady.sort_by(f64::total_cmp);
-        println!("{}: first {first:.2} ms, of 10000 {:.3} ms, fastest {:.3}", path.name(), steady[20], steady[0]);
+        println!(
+            "{}: first {first:.2} ms; 10,000 particles: median {:.3} ms, fastest {:.3} ms",
+            path.name(),
+            steady[20],
+            steady[0]
+        );
     }
 }

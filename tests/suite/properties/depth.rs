@@ -1,4 +1,4 @@
-//! Every depth convention, and the camera in the smoke.
+//! Depth conventions, and cameras inside the bounds of the smoke.
 
 use glam::camera::rh::proj::directx;
 use glam::{Mat4, Vec3, Vec4, vec3, vec4};
@@ -15,7 +15,7 @@ fn reversed(projection: Mat4) -> Mat4 {
 }
 
 #[test]
-fn every_depth_convention_gives_the_same_picture() {
+fn every_depth_convention_gives_the_same_image() {
     let (fov, aspect) = (0.8, SIZE.x as f32 / SIZE.y as f32);
     let perspective = directx::perspective(fov, aspect, 0.1, 80.0);
     let orthographic = directx::orthographic(-4.0, 4.0, -2.25, 2.25, 0.1, 80.0);
@@ -39,7 +39,7 @@ fn every_depth_convention_gives_the_same_picture() {
                 let reference = psnr(&picture, &stage.on_cpu());
                 assert!(reference >= AGREEMENT, "{clip_from_view}: {reference:.1} dB from the reference");
                 let standard = standard.get_or_insert_with(|| picture.clone());
-                // Depth buffers of different conventions round differently: 90 dB were found.
+                // Depth buffers of different conventions round differently; 90 dB were measured.
                 let psnr = psnr(&picture, standard);
                 assert!(psnr >= 85.0, "{clip_from_view}, {depth:?}: {psnr:.1} dB from standard");
             }
@@ -48,7 +48,7 @@ fn every_depth_convention_gives_the_same_picture() {
 }
 
 #[test]
-fn a_pass_without_depth_gives_the_same_picture() {
+fn pass_without_a_depth_attachment_gives_the_same_image() {
     let mut stage = Stage::new(SIZE);
     let tested = stage.on_gpu(gpu()).picture;
     stage.attach_depth = false;
@@ -57,13 +57,13 @@ fn a_pass_without_depth_gives_the_same_picture() {
         let picture = stage.on_gpu(gpu()).picture;
         let reference = psnr(&picture, &stage.on_cpu());
         assert!(reference >= AGREEMENT, "{path:?}: {reference:.1} dB");
-        // The box is not tested then, and the fade alone hides what is behind the scene.
+        // Without a depth attachment the box is not depth-tested; only the soft fade hides smoke behind the scene.
         assert!(path == Path::Forward || psnr(&picture, &tested) >= 85.0);
     }
 }
 
 #[test]
-fn the_limits_of_webgl2_are_enough() {
+fn webgl2_limits_are_enough_for_the_raster_and_forward_paths() {
     let webgl2 =
         haze_demo::headless::Headless::with(wgpu::Limits::downlevel_webgl2_defaults(), wgpu::Features::empty())
             .unwrap();
@@ -79,8 +79,8 @@ fn the_limits_of_webgl2_are_enough() {
 }
 
 #[test]
-fn the_near_plane_cuts_no_hole() {
-    // From in front of the box, through its front face, to the middle of it.
+fn near_plane_cuts_no_hole_when_the_camera_enters_the_bounds() {
+    // The camera moves from in front of the box through its front face and past its middle.
     for step in 0..=20 {
         let mut stage = Stage::new(SIZE);
         let forward = 3.0 + 0.2 * step as f32;
@@ -89,12 +89,12 @@ fn the_near_plane_cuts_no_hole() {
         stage.shade_tree = ShadeTree::ReducedDepth;
         stage.view.clip_from_view = directx::perspective(0.8, 16.0 / 9.0, 0.5, 80.0);
         let picture = stage.on_gpu(gpu()).picture;
-        // From here on the box fills the view, and this stage paints every pixel of it.
+        // From here on the box fills the view, and this debug view draws every pixel of the box.
         if forward >= 3.5 {
             assert!(picture.texels.iter().all(|&texel| texel != BACKDROP), "{forward}: a hole");
         }
         stage.shade_tree = ShadeTree::Final;
-        // Until the camera has passed the smoke.
+        // Only until the camera has passed the smoke.
         if forward < 6.3 {
             let psnr = psnr(&stage.on_gpu(gpu()).picture, &stage.on_cpu());
             assert!(psnr >= AGREEMENT, "{forward}: {psnr:.1} dB");
@@ -103,7 +103,7 @@ fn the_near_plane_cuts_no_hole() {
 }
 
 #[test]
-fn a_box_beyond_the_far_plane_shows_no_hole() {
+fn bounds_beyond_the_far_plane_cut_no_hole() {
     let mut stage = Stage::new(SIZE);
     stage.view.clip_from_view = directx::perspective(0.8, 16.0 / 9.0, 0.5, 20.0);
     stage.bounds = Some(Bounds { min: Vec3::splat(-50.0), max: Vec3::splat(50.0) });

@@ -1,4 +1,4 @@
-//! Nothing that is not finite, whatever is handed over.
+//! Targets and images stay finite for every input.
 
 use glam::{UVec2, Vec3, vec3};
 use haze::settings::Path;
@@ -10,7 +10,7 @@ use crate::host::Host;
 use crate::stage::{BACKDROP, Stage};
 
 #[test]
-fn no_preset_leaves_a_nan_in_any_target() {
+fn no_builtin_preset_writes_nan_or_infinity_to_a_target() {
     for preset in haze::builtin::PRESETS {
         let preset = haze::preset::Preset::load(preset.name).unwrap();
         for system in &preset.systems {
@@ -37,7 +37,7 @@ fn assert_all_finite(stage: &Stage, drawn: &crate::host::Drawn, name: &str) {
 }
 
 #[test]
-fn garbage_in_a_hosts_buffer_is_not_drawn() {
+fn particles_with_non_finite_or_huge_values_in_a_host_buffer_are_not_drawn() {
     let mut stage = Stage::new(SIZE);
     stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
     let mut host = Host::new(gpu(), &stage).unwrap();
@@ -61,7 +61,7 @@ fn garbage_in_a_hosts_buffer_is_not_drawn() {
 }
 
 #[test]
-fn degenerate_sprites_leave_no_nan_in_any_target() {
+fn degenerate_sprites_write_no_nan_or_infinity_to_a_target() {
     let mut stage = Stage::new(SIZE);
     let somewhere = vec3(0.0, 0.0, -6.0);
     stage.particles.extend([

@@ -1,4 +1,4 @@
-//! What targets take, and that steady frames create nothing.
+//! Memory of the targets, and steady frames that create no GPU resources.
 
 use glam::{UVec2, Vec3, vec3};
 use haze::settings::{DiffuseMode, LightingResolution};
@@ -13,18 +13,18 @@ use crate::stage::Stage;
 #[test]
 fn a_system_at_1080p_half_scale_takes_at_most_8_mb() {
     let mut stage = Stage::new(UVec2::new(1920, 1080));
-    // The whole screen: the worst case.
+    // The worst case: the bounds cover the whole screen.
     stage.bounds = Some(Bounds { min: Vec3::splat(-20.0), max: Vec3::splat(20.0) });
     let drawn = stage.on_gpu(gpu());
     let whole = drawn.renderer.memory_use().targets;
     println!("{:.2} MB", whole as f64 / 1e6);
     assert!(whole <= 8_000_000, "{whole} bytes");
     assert_eq!(drawn.renderer.targets(0).unwrap().size, UVec2::new(960, 540));
-    // Light takes four half floats a texel, where that is its resolution.
+    // Lighting at target resolution adds four half floats per texel.
     stage.settings.accumulate.lighting_resolution = LightingResolution::Target;
     assert_eq!(stage.on_gpu(gpu()).renderer.memory_use().targets, whole + 960 * 540 * 8);
     stage.settings.accumulate.lighting_resolution = LightingResolution::Full;
-    // And no more than the box's rectangle needs.
+    // Targets cover only the screen rectangle of the bounds.
     stage.bounds = Some(Bounds { min: vec3(-0.5, -0.5, -6.5), max: vec3(0.5, 0.5, -5.5) });
     let drawn = stage.on_gpu(gpu());
     let size = drawn.renderer.targets(0).unwrap().size;
@@ -33,7 +33,7 @@ fn a_system_at_1080p_half_scale_takes_at_most_8_mb() {
 }
 
 #[test]
-fn steady_frames_create_nothing() {
+fn steady_frames_create_no_gpu_resources() {
     let mut stage = Stage::new(SIZE);
     let mut host = Host::new(gpu(), &stage).unwrap();
     for (mode, lighting_resolution) in [
@@ -43,7 +43,7 @@ fn steady_frames_create_nothing() {
     ] {
         stage.settings.diffuse.mode = mode;
         stage.settings.accumulate.lighting_resolution = lighting_resolution;
-        // The first frame does, and the count sees it.
+        // The first frame creates resources, and the counter counts them.
         assert!(creations::count(|| host.draw(gpu(), &stage).unwrap()) > 0);
         let renderer_of = |host: &Host| {
             let targets = host.renderer.targets(0).unwrap();
@@ -57,18 +57,18 @@ fn steady_frames_create_nothing() {
             }
             stage.lights[0].intensity = 20.0 + frame as f32;
             let created = creations::count(|| host.draw(gpu(), &stage).unwrap());
-            assert_eq!(created, 0, "{mode:?}, frame {frame}: something is created every frame");
+            assert_eq!(created, 0, "{mode:?}, frame {frame}: a steady frame creates GPU resources");
         }
         assert_eq!(before, renderer_of(&host));
     }
-    // The mutant: what is dropped at once counts too.
+    // Mutant: a resource that is dropped at once is counted too.
     let view = host.depth.texture();
     assert_eq!(creations::count(|| drop(view.create_view(&wgpu::TextureViewDescriptor::default()))), 1);
 }
 
 #[test]
 fn the_library_never_submits() {
-    // headless.rs and the demo are hosts; the rest is the library.
+    // headless.rs, the demo and the program are hosts; everything else is the library.
     let mut folders = vec![std::path::PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/src"))];
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder).unwrap() {

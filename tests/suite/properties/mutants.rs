@@ -1,4 +1,5 @@
-//! What a mistake in a pass would do to the whole frame, done to the reference.
+//! Sensitivity of the PSNR limits: the effects of typical mistakes in a pass, applied to the reference, must fall below
+//! them.
 
 use glam::{Mat4, UVec2, Vec4, vec3};
 use haze::Bounds;
@@ -11,7 +12,7 @@ use crate::host::Host;
 use crate::stage::{BACKDROP, Stage};
 
 #[test]
-fn mistakes_in_a_pass_are_seen() {
+fn psnr_limit_detects_typical_mistakes_in_a_pass() {
     type Mistake = fn(&mut Stage);
     let stage = || {
         let mut stage = Stage::new(SIZE);
@@ -52,7 +53,7 @@ fn mistakes_in_a_pass_are_seen() {
 }
 
 #[test]
-fn a_twentieth_in_a_few_pixels_is_seen() {
+fn psnr_limit_detects_an_error_of_0_05_in_one_channel_of_a_small_cloud() {
     let mut smoke = Picture::new(SIZE, BACKDROP);
     smoke.texels[..SIZE.element_product() as usize / 100].fill(Vec4::splat(0.7));
     for channel in Vec4::AXES {
@@ -65,8 +66,8 @@ fn a_twentieth_in_a_few_pixels_is_seen() {
 }
 
 #[test]
-fn order_matters_to_normals() {
-    // Sorting is the GPU renderer's own; a frame drawn front to back must not pass for one drawn back to front.
+fn psnr_limit_detects_normals_blended_front_to_back() {
+    // The reference sorts; a frame that the GPU blends front to back must not match it.
     let mut stage = Stage::new(SIZE);
     stage.shade_tree = ShadeTree::Normals;
     stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });

@@ -1,4 +1,4 @@
-//! What depends on the order of sprites, and what does not.
+//! Results that depend on the draw order of sprites, and results that do not.
 
 use glam::{UVec2, Vec4, vec3};
 use haze::frame::bounds_of;
@@ -14,7 +14,7 @@ use crate::stage::{BACKDROP, Stage};
 
 proptest! {
     #[test]
-    fn amount_is_one_minus_the_product_of_what_each_layer_lets_through(
+    fn amount_is_one_minus_the_product_of_layer_transmittances(
         amounts in proptest::collection::vec(0.0_f32..1.0, 1..40),
         seed in 0_usize..1000,
     ) {
@@ -29,20 +29,20 @@ proptest! {
         // 40 roundings of 6e-8.
         prop_assert!((blend(&amounts) - product).abs() < 3e-6);
         prop_assert!((blend(&shuffled) - product).abs() < 3e-6);
-        // The mutant: SRC_ALPHA, ONE_MINUS_SRC_ALPHA, OTEE's first blend, loses amount.
+        // Mutant: OTEE's first blend state (SRC_ALPHA, ONE_MINUS_SRC_ALPHA) loses amount.
         let classic = amounts.iter().fold(0.0, |target, a| a * a + target * (1.0 - a));
         prop_assert!(amounts.iter().all(|a| !(0.01..0.99).contains(a)) || product - classic > 1e-5);
     }
 }
 
 #[test]
-fn amount_on_the_gpu_does_not_depend_on_order() {
+fn amount_on_the_gpu_does_not_depend_on_draw_order() {
     let mut stage = Stage::new(SIZE);
     stage.shade_tree = ShadeTree::Amount;
     stage.settings.accumulate.scale = 1;
     stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
     let mut host = Host::new(gpu(), &stage).unwrap();
-    // From a buffer, where the host is responsible for the order.
+    // Particles in a buffer are drawn in the host's order.
     let mut draw = |particles: &[Particle]| {
         host.draw_buffer(gpu(), &stage, particles).unwrap();
         host.picture(gpu()).unwrap()
@@ -51,17 +51,17 @@ fn amount_on_the_gpu_does_not_depend_on_order() {
     let reversed: Vec<_> = stage.particles.iter().rev().copied().collect();
     let backwards = draw(&reversed);
     let difference = forwards.texels.iter().zip(&backwards.texels).map(|(a, b)| (a.x - b.x).abs());
-    // 60 layers, each rounded to f16: 60 halves of 2^-11 at worst, a third of that seen.
+    // 60 layers, each rounded to f16: at worst 60 times half of 2^-11; a third of that was measured.
     assert!(difference.fold(0.0, f32::max) < 60.0 * 0.5 / 2048.0);
     assert!(forwards.texels.iter().any(|texel| texel.x > 0.9));
 }
 
 #[test]
-fn weighted_normals_need_no_order() {
+fn weighted_order_draws_the_same_image_from_reversed_particles() {
     let mut stage = Stage::new(SIZE);
     stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
     let reversed: Vec<_> = stage.particles.iter().rev().copied().collect();
-    let mut apart = |order| {
+    let mut psnr_after_reversal = |order| {
         stage.settings.accumulate.order = order;
         let mut host = Host::new(gpu(), &stage).unwrap();
         let mut draw = |particles: &[Particle]| {
@@ -70,14 +70,14 @@ fn weighted_normals_need_no_order() {
         };
         psnr(&draw(&stage.particles), &draw(&reversed))
     };
-    let (weighted, sorted) = (apart(Order::Weighted), apart(Order::Sorted));
-    println!("turned round: weighted {weighted:.1} dB, sorted {sorted:.1} dB");
-    // Sums of f16 round in another order.
+    let (weighted, sorted) = (psnr_after_reversal(Order::Weighted), psnr_after_reversal(Order::Sorted));
+    println!("reversed order: weighted {weighted:.1} dB, sorted {sorted:.1} dB");
+    // f16 sums in another order round differently.
     assert!(weighted > AGREEMENT && sorted < AGREEMENT, "{weighted} {sorted}");
 }
 
 #[test]
-fn more_than_all_counts_as_all() {
+fn particle_amounts_above_1_are_drawn_as_1() {
     let mut stage = Stage::new(SIZE);
     let mut host = Host::new(gpu(), &stage).unwrap();
     let mut draw = |amount: f32| {
@@ -98,8 +98,8 @@ fn more_than_all_counts_as_all() {
 }
 
 #[test]
-fn eight_bits_lose_thin_smoke_and_sixteen_do_not() {
-    // DESIGN's trap, seen on the GPU: 400 layers of amount 0.02 should reach 1 - 0.98^400 = 0.9997.
+fn rgba8_target_loses_thin_smoke_and_rgba16float_does_not() {
+    // 8-bit rounding stops thin layers from adding up: 400 layers of amount 0.02 should give 1 - 0.98^400 = 0.9997.
     let stack = |format, encoding| {
         let mut stage = Stage::new(UVec2::splat(32));
         let sprite = Particle { position: vec3(0.0, 0.0, -4.0), radius: 3.0, amount: 0.02, ..Particle::default() };
@@ -112,7 +112,7 @@ fn eight_bits_lose_thin_smoke_and_sixteen_do_not() {
     assert!(stack(AccumulationFormat::Rgba16Float, NormalEncoding::Signed) > 0.97);
     let eight = stack(AccumulationFormat::Rgba8Unorm, NormalEncoding::Biased);
     assert!((0.8..0.95).contains(&eight), "{eight}");
-    // And the reference rounds as the GPU does.
+    // The reference rounds as the GPU does.
     let layer = |target, _| quantise(AccumulationFormat::Rgba8Unorm, premultiplied_over(Vec4::splat(0.02), target));
     assert!((0.8..0.95).contains(&(0..400).fold(Vec4::ZERO, layer).w));
 }

@@ -1,4 +1,4 @@
-//! What callers get wrong.
+//! Frames that are rejected.
 
 use glam::{Mat4, Vec3};
 use haze::{Bounds, Error, Particles, wgpu};
@@ -9,8 +9,8 @@ use crate::host::Host;
 use crate::stage::{BACKDROP, Stage};
 
 #[test]
-fn bad_frames_are_refused_by_name_and_draw_nothing() {
-    // After a good frame, so that there is something that could be drawn.
+fn invalid_frames_are_rejected_with_the_name_of_the_field_and_draw_nothing() {
+    // Draws a valid frame first, so that leftovers of it show if a rejected frame draws anything.
     let refusal = |host: &mut Host, stage: &Stage, particles: Particles<'_>| {
         host.draw(gpu(), &Stage::new(SIZE)).unwrap();
         assert!(host.picture(gpu()).unwrap().texels.iter().any(|&texel| texel != BACKDROP));
@@ -20,7 +20,7 @@ fn bad_frames_are_refused_by_name_and_draw_nothing() {
         gpu().submit(encoder).unwrap();
         assert!(
             host.picture(gpu()).unwrap().texels.iter().all(|&texel| texel == BACKDROP),
-            "{error}: something is drawn"
+            "{error}: the rejected frame draws something"
         );
         error
     };
@@ -46,7 +46,7 @@ fn bad_frames_are_refused_by_name_and_draw_nothing() {
         error,
         "view.size: 161x91 from (0, 0) is not valid; expected the size of the scene depth, 160x90, or a part of it"
     );
-    // Particles on the GPU need a box.
+    // Particles in a GPU buffer need explicit bounds.
     stage.view.size = SIZE;
     let buffer = gpu().device.create_buffer(&wgpu::BufferDescriptor {
         label: None,

@@ -1,4 +1,4 @@
-//! Pictures of any size, without smoke, of many systems and lights.
+//! Frames of any size, without smoke, and with many lights.
 
 use glam::camera::rh::proj::directx;
 use glam::{UVec2, Vec3, vec3};
@@ -22,7 +22,7 @@ fn no_smoke_leaves_the_scene_untouched() {
     assert!(!untouched(&stage));
     let particles = std::mem::take(&mut stage.particles);
     assert!(untouched(&stage));
-    // Sprites that cannot be drawn count as none.
+    // Sprites that cannot be drawn are ignored.
     stage.particles = vec![
         Particle { position: Vec3::NAN, ..Particle::default() },
         Particle { radius: 0.0, position: vec3(0.0, 0.0, -6.0), ..Particle::default() },
@@ -32,7 +32,7 @@ fn no_smoke_leaves_the_scene_untouched() {
         Particle { position: vec3(0.0, 0.0, 6.0), ..Particle::default() },
     ];
     assert!(untouched(&stage));
-    // A real one behind the camera and out of sight.
+    // A valid cloud, but behind the camera.
     stage.particles =
         particles.iter().map(|p| Particle { position: p.position + vec3(0.0, 0.0, 20.0), ..*p }).collect();
     assert!(untouched(&stage));
@@ -45,7 +45,7 @@ fn no_smoke_leaves_the_scene_untouched() {
 }
 
 #[test]
-fn odd_sizes_and_every_scale_work() {
+fn odd_sizes_and_every_scale_match_the_reference() {
     for size in [UVec2::ONE, UVec2::new(1, 97), UVec2::new(641, 359), UVec2::new(3, 2)] {
         for scale in 1..=16 {
             let mut stage = Stage::new(size);
@@ -53,8 +53,8 @@ fn odd_sizes_and_every_scale_work() {
             let drawn = stage.on_gpu(gpu());
             gpu().check().unwrap();
             assert!(drawn.picture.texels.iter().all(|texel| texel.is_finite()), "{size} scale {scale}");
-            // Hardware places corners on a grid of 1/256 pixel. Where a whole sprite is less than a pixel, that moves it
-            // by a part of its own size, and the pictures of the two renderers are no longer of the same sprite.
+            // Hardware snaps corners to a grid of 1/256 pixel. That moves a sprite smaller than a pixel by a
+            // considerable part of its size, so the two renderers no longer draw the same sprite.
             if size.min_element() > 64 {
                 let psnr = psnr(&drawn.picture, &stage.on_cpu());
                 assert!(psnr >= AGREEMENT, "{size} scale {scale}: {psnr:.1} dB");
@@ -64,7 +64,7 @@ fn odd_sizes_and_every_scale_work() {
 }
 
 #[test]
-fn a_host_may_resize_and_change_everything_from_frame_to_frame() {
+fn size_and_settings_may_change_every_frame() {
     let mut stage = Stage::new(SIZE);
     let mut host = Host::new(gpu(), &stage).unwrap();
     for step in 0..24_u32 {
@@ -78,20 +78,21 @@ fn a_host_may_resize_and_change_everything_from_frame_to_frame() {
         accumulate.depth_source = if tested { DepthSource::Host } else { DepthSource::Reduced };
         stage.settings.diffuse.mode = DiffuseMode::ALL[step as usize % DiffuseMode::ALL.len()];
         stage.settings.path = if step % 11 == 10 { Path::Forward } else { Path::Auto };
-        // The renderer stays, the host's textures are new.
+        // The renderer is kept; the host's textures are new.
         let mut resized = Host::on(gpu(), &stage, Some(host.renderer.context())).unwrap();
         std::mem::swap(&mut resized.renderer, &mut host.renderer);
         std::mem::swap(&mut resized, &mut host);
         host.draw(gpu(), &stage).unwrap();
         gpu().check().unwrap();
         let psnr = psnr(&host.picture(gpu()).unwrap(), &stage.on_cpu());
-        // The edge of a sprite takes or leaves a whole texel, which may be 36 of few pixels: 53 dB.
+        // A whole texel at a sprite's edge may differ, which is 36 pixels at scale 6 in a small image: 53 dB were
+        // measured.
         assert!(psnr >= 50.0, "step {step}: {psnr:.1} dB");
     }
 }
 
 #[test]
-fn the_clamp_limits_the_target() {
+fn max_side_limits_the_size_of_the_target() {
     let mut stage = Stage::new(UVec2::new(641, 359));
     stage.settings.accumulate.scale = 1;
     stage.settings.accumulate.max_side = 100;
@@ -103,9 +104,9 @@ fn the_clamp_limits_the_target() {
 }
 
 #[test]
-fn the_plane_that_is_lit_is_told_as_the_host_measures_depth() {
+fn reported_lit_depth_is_measured_from_the_hosts_viewer() {
     let aspect = SIZE.x as f32 / SIZE.y as f32;
-    // This one's near plane is behind the viewer: inside, it steps back.
+    // Its near plane is behind the viewer, so haze internally moves the viewer back.
     let orthographic = directx::orthographic(-4.0, 4.0, -2.25, 2.25, -5.0, 80.0);
     for projection in [directx::perspective(0.8, aspect, 0.1, 80.0), orthographic] {
         let mut stage = Stage::new(SIZE);
@@ -117,7 +118,7 @@ fn the_plane_that_is_lit_is_told_as_the_host_measures_depth() {
 }
 
 #[test]
-fn many_lights_agree_and_too_many_are_refused() {
+fn largest_light_count_matches_the_reference_and_one_more_light_is_rejected() {
     let mut stage = Stage::new(SIZE);
     let light = |i: usize| Light {
         position: vec3((i % 16) as f32 - 8.0, (i / 16) as f32 - 4.0, -4.0),
@@ -129,6 +130,6 @@ fn many_lights_agree_and_too_many_are_refused() {
     stage.lights = (0..haze::frame::MAX_LIGHTS).map(light).collect();
     assert!(psnr(&stage.on_gpu(gpu()).picture, &stage.on_cpu()) >= AGREEMENT);
     stage.lights.push(light(0));
-    let Err(error) = stage.try_on_gpu(gpu()) else { panic!("129 lights passed") };
+    let Err(error) = stage.try_on_gpu(gpu()) else { panic!("129 lights were accepted") };
     assert_eq!(error.to_string(), "lights: 129 lights is not valid; expected at most 128");
 }
