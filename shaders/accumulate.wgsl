@@ -44,7 +44,7 @@ fn vertex(particle: Particle, @builtin(vertex_index) index: u32) -> SpriteVertex
 struct Accumulated {
     @location(0) normal_and_amount: vec4f,
     // Used if biased normals are weighted, and if SIX_WAY.
-    @location(1) beside: vec4f,
+    @location(1) extra_attachment: vec4f,
 }
 
 @fragment

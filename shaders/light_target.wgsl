@@ -23,13 +23,13 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     if amount <= 0.0 {
         return vec4f(0.0);
     }
-    var besides = vec4f(0.0);
+    var extra = vec4f(0.0);
     if WEIGHT_SUM || SIX_WAY {
-        besides = textureLoad(beside, vec2i(texel), 0);
+        extra = textureLoad(extra_attachment, vec2i(texel), 0);
     }
-    let surface = surface_from_accumulation(accumulated, besides);
+    let surface = surface_from_accumulation(accumulated, extra);
     // The centre of the texel represents all of its pixels.
     let pixel = (texel + system.target_origin + 0.5) * system.scale;
-    let light = diffuse(surface, amount, lit_position(pixel)) + soft_scatter(amount);
+    let light = diffuse(surface, amount, shading_position(pixel)) + soft_scatter(amount);
     return vec4f(bounded_light(light), 1.0) * amount;
 }

@@ -35,7 +35,7 @@ const ROUNDS: u32 = 4u;
 var<workgroup> digit_counts: array<atomic<u32>, DIGITS>;
 var<workgroup> counts_before: array<atomic<u32>, DIGITS>;
 // One bit for every invocation whose key has the digit, 32 per word.
-var<workgroup> holders: array<atomic<u32>, 2048>;
+var<workgroup> digit_bits: array<atomic<u32>, 2048>;
 var<workgroup> next_places: array<u32, DIGITS>;
 
 fn digit_of(key: u32) -> u32 {
@@ -115,7 +115,7 @@ fn scatter(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) b
     let bit = local % 32u;
     for (var round = 0u; round < rounds(); round++) {
         for (var i = local; i < 2048u; i += DIGITS) {
-            atomicStore(&holders[i], 0u);
+            atomicStore(&digit_bits[i], 0u);
         }
         workgroupBarrier();
         let at = (block.x * rounds() + round) * DIGITS + local;
@@ -125,14 +125,14 @@ fn scatter(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) b
         if is_inside {
             key = keys[at];
             digit = digit_of(key);
-            atomicOr(&holders[word * DIGITS + digit], 1u << bit);
+            atomicOr(&digit_bits[word * DIGITS + digit], 1u << bit);
         }
         workgroupBarrier();
         // Invocations whose key has the digit: those before this one, and all.
         var rank = 0u;
         var all = 0u;
         for (var i = 0u; i < 8u; i++) {
-            let held = atomicLoad(&holders[i * DIGITS + digit]);
+            let held = atomicLoad(&digit_bits[i * DIGITS + digit]);
             let in_front = select(select(0u, 0xffffffffu, i < word), (1u << bit) - 1u, i == word);
             rank += countOneBits(held & in_front);
             all += countOneBits(held);

@@ -78,7 +78,7 @@ fn fragment(in: QuadVertex) -> @location(0) vec4f {
     if amount <= 0.0 {
         discard;
     }
-    let to_light = in.position_inverse_range.xyz - lit_position(pixel);
+    let to_light = in.position_inverse_range.xyz - shading_position(pixel);
     let window = range_window(dot(to_light, to_light), in.position_inverse_range.w);
     // x is distance², y is the amount.
     let glow = sample_ramp_2d(specular_ramp, linear_sampler, vec2f(distance_squared, amount));

@@ -53,18 +53,18 @@ struct Texel {
     transmittance: f32,
 }
 
-fn begun_texel(place: vec2u) -> Texel {
+fn init_texel(place: vec2u) -> Texel {
     var texel: Texel;
     texel.place = vec2f(place) + 0.5;
     texel.ray = ray_through_texel(texel.place);
     texel.transmittance = 1.0;
     texel.scene = tested_view_depth(textureLoad(tested_depth, vec2i(place), 0).r);
-    texel.end = texel.scene + system.fade_through + tiles.hidden_after;
+    texel.end = texel.scene + system.show_through_distance + tiles.occlusion_margin;
     return texel;
 }
 
 // Returns the texel with one more sprite, behind all accumulated ones. `uv`: position in the sprite's square.
-fn with_sprite(texel: Texel, sprite: TileSprite, uv: vec2f, is_touched: bool) -> Texel {
+fn accumulate_sprite(texel: Texel, sprite: TileSprite, uv: vec2f, is_touched: bool) -> Texel {
     let in = fragment_of(sprite, texel.place, texel.ray, uv);
     let fragment = technique_fragment(in, frames_of(sprite), texel.scene);
     let amount = select(0.0, fragment.amount, is_touched && !fragment.hidden);
@@ -88,7 +88,7 @@ fn is_done(texel: Texel) -> bool {
 }
 
 // True also if the scene hides all further sprites. `front`: view depth before which no further sprite begins.
-fn is_done_before(texel: Texel, front: f32) -> bool {
+fn is_opaque_or_occluded(texel: Texel, front: f32) -> bool {
     return is_done(texel) || front > texel.end;
 }
 
@@ -132,7 +132,7 @@ var<workgroup> front: f32;
 var<workgroup> farthest: atomic<u32>;
 
 @compute @workgroup_size(8, 8)
-fn in_step(
+fn cooperative(
     @builtin(local_invocation_id) local_place: vec3u,
     @builtin(workgroup_id) workgroup: vec3u,
     @builtin(local_invocation_index) local: u32,
@@ -141,21 +141,21 @@ fn in_step(
     let low = workgroup.xy * TILE;
     let place = low + local_place.xy * vec2u(1u, 2u);
     let below = place + vec2u(0u, 1u);
-    var a = begun_texel(min(place, size - 1u));
-    var b = begun_texel(min(below, size - 1u));
+    var a = init_texel(min(place, size - 1u));
+    var b = init_texel(min(below, size - 1u));
     atomicMax(&farthest, bitcast<u32>(max(max(a.scene, b.scene), 0.0)));
     let bin = low / tiles.bin_side;
     let list = bins[bin.y * tiles.columns + bin.x];
     let entries = list.y * tiles.loops;
     let middle = vec2f(low) + 0.5 * vec2f(TILE);
     workgroupBarrier();
-    let end = bitcast<f32>(atomicLoad(&farthest)) + system.fade_through;
+    let end = bitcast<f32>(atomicLoad(&farthest)) + system.show_through_distance;
     for (var first = 0u; first < entries; first += BATCH) {
         if local == 0u {
             atomicStore(&touching[0], 0u);
             atomicStore(&touching[1], 0u);
         }
-        if !(is_done_before(a, front) && is_done_before(b, front)) {
+        if !(is_opaque_or_occluded(a, front) && is_opaque_or_occluded(b, front)) {
             atomicStore(&open, 1u);
         }
         if workgroupUniformLoad(&open) == 0u {
@@ -201,8 +201,8 @@ fn in_step(
             let touches_a = touches(sprite, in_a);
             let touches_b = touches(sprite, in_b);
             if touches_a || touches_b {
-                a = with_sprite(a, sprite, in_a, touches_a);
-                b = with_sprite(b, sprite, in_b, touches_b);
+                a = accumulate_sprite(a, sprite, in_a, touches_a);
+                b = accumulate_sprite(b, sprite, in_b, touches_b);
             }
         }
     }
@@ -229,22 +229,22 @@ const STRIDE: u32 = 8u;
 var<workgroup> done_columns: array<atomic<u32>, 8>;
 
 @compute @workgroup_size(8, 8)
-fn alone(@builtin(global_invocation_id) invocation: vec3u, @builtin(local_invocation_id) local_place: vec3u) {
-    let low = invocation.xy * vec2u(1u, TILE_ALONE.y);
+fn per_invocation(@builtin(global_invocation_id) invocation: vec3u, @builtin(local_invocation_id) local_place: vec3u) {
+    let low = invocation.xy * vec2u(1u, PER_INVOCATION_TILE.y);
     let size = vec2u(system.target_size);
     if any(low >= size) {
         return;
     }
     let last = size - 1u;
-    var a = begun_texel(low);
-    var b = begun_texel(min(low + vec2u(0u, 1u), last));
-    var c = begun_texel(min(low + vec2u(0u, 2u), last));
-    var d = begun_texel(min(low + vec2u(0u, 3u), last));
-    let columns = min(size.x - low.x / TILE_ALONE.x * TILE_ALONE.x, TILE_ALONE.x);
+    var a = init_texel(low);
+    var b = init_texel(min(low + vec2u(0u, 1u), last));
+    var c = init_texel(min(low + vec2u(0u, 2u), last));
+    var d = init_texel(min(low + vec2u(0u, 3u), last));
+    let columns = min(size.x - low.x / PER_INVOCATION_TILE.x * PER_INVOCATION_TILE.x, PER_INVOCATION_TILE.x);
     let bin = low / tiles.bin_side;
     let list = bins[bin.y * tiles.columns + bin.x];
     let part = low % tiles.bin_side / (tiles.bin_side / PARTS);
-    let length = words_of(list.y);
+    let length = refine_words(list.y);
     let end = length * tiles.loops;
     var is_column_done = false;
     var bits = 0u;
@@ -255,7 +255,7 @@ fn alone(@builtin(global_invocation_id) invocation: vec3u, @builtin(local_invoca
         while bits == 0u && next < end {
             batch = next % length;
             bits = bits_of(list, batch, part.y * PARTS.x + part.x);
-            next += BATCH_ALONE;
+            next += BITS_PER_WORD;
         }
         if bits == 0u {
             break;
@@ -268,15 +268,15 @@ fn alone(@builtin(global_invocation_id) invocation: vec3u, @builtin(local_invoca
             let in_b = in_a + sprite.uv_from_texels.yw;
             let in_c = in_b + sprite.uv_from_texels.yw;
             let in_d = in_c + sprite.uv_from_texels.yw;
-            a = with_sprite(a, sprite, in_a, !is_done(a) && covers(in_a));
-            b = with_sprite(b, sprite, in_b, !is_done(b) && covers(in_b));
-            c = with_sprite(c, sprite, in_c, !is_done(c) && covers(in_c));
-            d = with_sprite(d, sprite, in_d, !is_done(d) && covers(in_d));
+            a = accumulate_sprite(a, sprite, in_a, !is_done(a) && covers(in_a));
+            b = accumulate_sprite(b, sprite, in_b, !is_done(b) && covers(in_b));
+            c = accumulate_sprite(c, sprite, in_c, !is_done(c) && covers(in_c));
+            d = accumulate_sprite(d, sprite, in_d, !is_done(d) && covers(in_d));
             last_front = sprite_front(sprite.centre_radius);
         }
         if STOPS || is_flat() {
-            let above = is_done_before(a, last_front) && is_done_before(b, last_front);
-            if !is_column_done && above && is_done_before(c, last_front) && is_done_before(d, last_front) {
+            let above = is_opaque_or_occluded(a, last_front) && is_opaque_or_occluded(b, last_front);
+            if !is_column_done && above && is_opaque_or_occluded(c, last_front) && is_opaque_or_occluded(d, last_front) {
                 is_column_done = true;
                 atomicAdd(&done_columns[local_place.y], 1u);
             }
@@ -293,7 +293,7 @@ fn alone(@builtin(global_invocation_id) invocation: vec3u, @builtin(local_invoca
 
 // Returns the sprites of a batch that may be visible in a part of their bin, one bit each.
 fn bits_of(list: vec2u, batch: u32, part: u32) -> u32 {
-    let all = bits_below(min(list.y - batch, BATCH_ALONE));
+    let all = bits_below(min(list.y - batch, BITS_PER_WORD));
     if list.x == EVERYTHING {
         return all;
     }

@@ -16,7 +16,7 @@
 @group(0) @binding(4) var<storage, read_write> lists: array<u32>;
 // Start of each bin's list, and its length.
 @group(0) @binding(5) var<storage, read_write> bins: array<vec2u>;
-@group(0) @binding(6) var<storage, read_write> tally: Tally;
+@group(0) @binding(6) var<storage, read_write> tally: TileCounters;
 
 fn low_of_bin(bin: u32) -> vec2u {
     return vec2u(bin % tiles.columns, bin / tiles.columns) * tiles.bin_side;
@@ -55,7 +55,7 @@ fn bin_list(length: u32, more: u32) -> vec2u {
 @compute @workgroup_size(256)
 fn allocate(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bin: vec3u) {
     // Runs that count_sprites has counted.
-    let runs = runs_of(tally.shown);
+    let runs = run_count(tally.shown);
     var length = 0u;
     for (var first = 0u; first < runs; first += SCAN_SIZE) {
         let at = bin.x * tiles.runs + first + local;
@@ -82,7 +82,7 @@ var<workgroup> begin: u32;
 
 // For few sprites: counts them and fills the list in one dispatch. One workgroup per bin.
 @compute @workgroup_size(256)
-fn list_few(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bin: vec3u) {
+fn build_lists_in_one_dispatch(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bin: vec3u) {
     let low = low_of_bin(bin.x);
     let shown = tally.shown;
     for (var at = local; at < shown; at += SCAN_SIZE) {
@@ -117,7 +117,7 @@ fn list_few(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) 
 
 // For per-invocation traversal: one invocation per bin. Allocates room for the bits of tile_refine too.
 @compute @workgroup_size(64)
-fn allocate_alone(@builtin(global_invocation_id) invocation: vec3u) {
+fn allocate_per_invocation(@builtin(global_invocation_id) invocation: vec3u) {
     let bin = invocation.x;
     if bin >= tiles.columns * tiles.rows {
         return;
@@ -128,7 +128,7 @@ fn allocate_alone(@builtin(global_invocation_id) invocation: vec3u) {
         counts[bin * tiles.runs + run] = length;
         length += count;
     }
-    bins[bin] = bin_list(length, words_of(length));
+    bins[bin] = bin_list(length, refine_words(length));
 }
 
 // Bins that a rectangle touches: from `first` to before `last`.
@@ -146,7 +146,7 @@ fn touched_bins(rect: vec2u) -> TouchedBins {
 // Same result as count_sprites and fill, for per-invocation traversal: one invocation per run, which visits each sprite
 // once and only the bins that it touches.
 @compute @workgroup_size(8)
-fn count_alone(@builtin(global_invocation_id) invocation: vec3u) {
+fn count_per_run(@builtin(global_invocation_id) invocation: vec3u) {
     let run = invocation.x;
     if run >= tiles.runs {
         return;
@@ -166,7 +166,7 @@ fn count_alone(@builtin(global_invocation_id) invocation: vec3u) {
 }
 
 @compute @workgroup_size(8)
-fn fill_alone(@builtin(global_invocation_id) invocation: vec3u) {
+fn fill_per_run(@builtin(global_invocation_id) invocation: vec3u) {
     let run = invocation.x;
     if run >= tiles.runs {
         return;

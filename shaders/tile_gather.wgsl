@@ -11,7 +11,7 @@
 @group(0) @binding(2) var<storage, read> numbers: array<u32>;
 @group(0) @binding(3) var<storage, read> rects: array<vec2u>;
 @group(0) @binding(4) var<storage, read_write> sorted_rects: array<vec2u>;
-@group(0) @binding(5) var<storage, read_write> tally: Tally;
+@group(0) @binding(5) var<storage, read_write> tally: TileCounters;
 // Dispatch size: bins, 64 per workgroup; runs; 1.
 @group(0) @binding(6) var<storage, read_write> workgroups: array<u32, 3>;
 
@@ -37,7 +37,7 @@ fn gather(@builtin(global_invocation_id) invocation: vec3u) {
         let shown = select(0u, at + 1u, is_shown(at));
         tally.shown = shown;
         workgroups[0] = (tiles.columns * tiles.rows + 63u) / 64u;
-        workgroups[1] = runs_of(shown);
+        workgroups[1] = run_count(shown);
         workgroups[2] = 1u;
     }
 }

@@ -30,13 +30,13 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
     }
     let at = tiles.first + 2u * number;
     let particle = Particle(particles[at], particles[at + 1u]);
-    let placed = placed_sprite(particle, 1.0 / system.scale);
+    let placed = project_sprite(particle, 1.0 / system.scale);
     let centre = placed.centre_radius.xyz;
     let radius = placed.centre_radius.w;
     var sprite: TileSprite;
     sprite.centre_radius = placed.centre_radius;
     let lod = placed.amount_lod_frame_age.y;
-    let frames = shown_frames(SPRITE_ANIMATION, placed.amount_lod_frame_age.z, system.frame_count);
+    let frames = animation_frames(SPRITE_ANIMATION, placed.amount_lod_frame_age.z, system.frame_count);
     sprite.amount = placed.amount_lod_frame_age.x;
     sprite.frames_lod = packed_frames(frames, lod);
     sprite.blend = frames.blend;
@@ -60,7 +60,7 @@ fn project(@builtin(global_invocation_id) invocation: vec3u) {
         sprite.uv_from_texels = vec4f(metres * vec2f(cosine, sine), metres * vec2f(sine, -cosine)) * (0.5 / radius);
         sprite.centre_radius = vec4f(middle, centre.z, radius);
         // Filled part of the square: its centre, and half its sides.
-        let reach = sprite_reach(frames, lod);
+        let reach = trimmed_extent(frames, lod);
         let texels = radius / metres;
         let place = 0.5 * (reach.zw - reach.xy);
         let half_size = 0.5 * (reach.xy + reach.zw);

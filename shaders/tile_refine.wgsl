@@ -17,15 +17,15 @@
 @group(3) @binding(5) var<storage, read_write> lists: array<u32>;
 
 // Farthest view depth at which each part of the bin shows anything.
-var<workgroup> ends: array<f32, BATCH_ALONE>;
+var<workgroup> ends: array<f32, BITS_PER_WORD>;
 // Bits of the nearest of them. It is positive, so that its bits order as an integer.
 var<workgroup> nearest_end: atomic<u32>;
 // For each sprite of a batch, one bit for every part in which it may be visible.
-var<workgroup> marks: array<u32, BATCH_ALONE>;
+var<workgroup> marks: array<u32, BITS_PER_WORD>;
 // Approximate optical depth of all sprites so far at the centre of the bin, in 1/256.
 var<workgroup> depth: atomic<u32>;
 // Number of parts whose remaining words are known.
-var<workgroup> settled_parts: atomic<u32>;
+var<workgroup> finished_parts: atomic<u32>;
 
 // True: the traversal stops where the smoke is opaque.
 override STOPS: bool = true;
@@ -35,18 +35,18 @@ override STOPS: bool = true;
 const OPAQUE_DEPTH: u32 = 28u;
 
 // Returns the farthest view depth at which these texels show anything.
-fn shown_depth(low: vec2u, high: vec2u) -> f32 {
+fn farthest_visible_depth(low: vec2u, high: vec2u) -> f32 {
     var farthest = 0.0;
     for (var y = low.y; y < high.y; y++) {
         for (var x = low.x; x < high.x; x++) {
             farthest = max(farthest, tested_view_depth(textureLoad(tested_depth, vec2u(x, y), 0).r));
         }
     }
-    return farthest + system.fade_through;
+    return farthest + system.show_through_distance;
 }
 
 // Returns the parts of a bin in which a sprite may be visible, one bit each.
-fn marks_of(number: u32, low: vec2u, part: vec2u) -> u32 {
+fn visible_parts(number: u32, low: vec2u, part: vec2u) -> u32 {
     let sprite = sprites[number];
     let rect = rects[number];
     let front = sprite_front(sprite.centre_radius);
@@ -56,7 +56,7 @@ fn marks_of(number: u32, low: vec2u, part: vec2u) -> u32 {
     let across = sprite.uv_from_texels.xz * f32(part.x);
     let down = sprite.uv_from_texels.yw * f32(part.y);
     var marks = 0u;
-    for (var bit = 0u; bit < BATCH_ALONE; bit++) {
+    for (var bit = 0u; bit < BITS_PER_WORD; bit++) {
         let at = vec2u(bit % PARTS.x, bit / PARTS.x);
         var is_there = false;
         if is_sphere() {
@@ -68,14 +68,14 @@ fn marks_of(number: u32, low: vec2u, part: vec2u) -> u32 {
     }
     // Few sprites are behind part of the scene. llvmpipe reads workgroup memory slowly and executes both sides of a
     // branch, but it can skip a loop: the test therefore selects the loop's start.
-    for (var bit = select(0u, BATCH_ALONE, front <= bitcast<f32>(atomicLoad(&nearest_end))); bit < BATCH_ALONE; bit++) {
+    for (var bit = select(0u, BITS_PER_WORD, front <= bitcast<f32>(atomicLoad(&nearest_end))); bit < BITS_PER_WORD; bit++) {
         marks &= ~select(0u, 1u << bit, front > ends[bit]);
     }
     return marks;
 }
 
 // Returns the approximate amount of a sprite at a texel: puffs are thick in the centre and thin out.
-fn puff_amount(number: u32, texel: vec2f) -> f32 {
+fn approximate_amount(number: u32, texel: vec2f) -> f32 {
     let sprite = sprites[number];
     let place = 2.0 * uv_in_square(sprite, texel) - 1.0;
     let thickness = max(1.0 - dot(place, place), 0.0);
@@ -90,7 +90,7 @@ fn refine(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bi
     let low = vec2u(bin.x % tiles.columns, bin.x / tiles.columns) * tiles.bin_side;
     let part = tiles.bin_side / PARTS;
     let first = low + vec2u(local % PARTS.x, local / PARTS.x) * part;
-    let end = shown_depth(first, min(first + part, vec2u(system.target_size)));
+    let end = farthest_visible_depth(first, min(first + part, vec2u(system.target_size)));
     ends[local] = end;
     atomicStore(&nearest_end, bitcast<u32>(end));
     workgroupBarrier();
@@ -98,23 +98,23 @@ fn refine(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bi
     workgroupBarrier();
     var is_settled = any(first >= vec2u(system.target_size));
     if is_settled {
-        atomicAdd(&settled_parts, 1u);
+        atomicAdd(&finished_parts, 1u);
     }
     // Value of all remaining words.
     var rest = 0u;
     var batch = 0u;
-    for (; batch < count; batch += BATCH_ALONE) {
+    for (; batch < count; batch += BITS_PER_WORD) {
         let at = batch + local;
         var mark = 0u;
         if at < count {
             let number = lists[list.x + at];
-            mark = marks_of(number, low, part);
-            atomicAdd(&depth, u32(i32(256.0 * puff_amount(number, vec2f(low) + 0.5 * f32(tiles.bin_side)))));
+            mark = visible_parts(number, low, part);
+            atomicAdd(&depth, u32(i32(256.0 * approximate_amount(number, vec2f(low) + 0.5 * f32(tiles.bin_side)))));
         }
         marks[local] = mark;
         workgroupBarrier();
         var word = 0u;
-        for (var bit = 0u; bit < BATCH_ALONE; bit++) {
+        for (var bit = 0u; bit < BITS_PER_WORD; bit++) {
             word |= ((marks[bit] >> local) & 1u) << bit;
         }
         lists[list.x + count + at] = word;
@@ -122,18 +122,18 @@ fn refine(@builtin(local_invocation_index) local: u32, @builtin(workgroup_id) bi
             // The few texels that are not opaque yet then visit all further sprites.
             let is_opaque = STOPS && !is_sphere() && atomicLoad(&depth) >= 256u * OPAQUE_DEPTH;
             // The scene hides this sprite and all further ones.
-            let is_hidden = sprite_front(sprites[lists[list.x + batch]].centre_radius) > end + tiles.hidden_after;
+            let is_hidden = sprite_front(sprites[lists[list.x + batch]].centre_radius) > end + tiles.occlusion_margin;
             is_settled = is_opaque || is_hidden;
             if is_settled {
                 rest = select(0u, 0xffffffffu, is_opaque);
-                atomicAdd(&settled_parts, 1u);
+                atomicAdd(&finished_parts, 1u);
             }
         }
-        if workgroupUniformLoad(&settled_parts) == BATCH_ALONE {
+        if workgroupUniformLoad(&finished_parts) == BITS_PER_WORD {
             break;
         }
     }
-    for (batch += BATCH_ALONE; batch < count; batch += BATCH_ALONE) {
+    for (batch += BITS_PER_WORD; batch < count; batch += BITS_PER_WORD) {
         lists[list.x + count + batch + local] = rest;
     }
 }

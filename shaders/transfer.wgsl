@@ -26,7 +26,7 @@ const SHADE_TREE_NORMALS: u32 = 5u;
 const SHADE_TREE_AMOUNT: u32 = 6u;
 const SHADE_TREE_OVERDRAW: u32 = 7u;
 const SHADE_TREE_REDUCED_DEPTH: u32 = 8u;
-override SHADE_TREE: u32 = SHADE_TREE_FINAL;
+override DEBUG_VIEW: u32 = SHADE_TREE_FINAL;
 
 // The twelve triangles of a box, counter-clockwise seen from outside. Bit 0 of a corner is x, bit 1 is y, bit 2 is z.
 const BOX_CORNERS = array<u32, 36>(
@@ -55,7 +55,7 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 @fragment
 fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = position.xy - view.origin;
-    if SHADE_TREE == SHADE_TREE_REDUCED_DEPTH {
+    if DEBUG_VIEW == SHADE_TREE_REDUCED_DEPTH {
         var depth = 0.0;
         if HOST_DEPTH {
             depth = scene_view_depth(pixel);
@@ -68,10 +68,10 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     }
     let accumulated = sample_target(accumulation, pixel);
     let amount = accumulated.a;
-    if SHADE_TREE == SHADE_TREE_OVERDRAW {
+    if DEBUG_VIEW == SHADE_TREE_OVERDRAW {
         return vec4f(overdraw_colour(amount * 255.0), 1.0);
     }
-    if SHADE_TREE == SHADE_TREE_AMOUNT {
+    if DEBUG_VIEW == SHADE_TREE_AMOUNT {
         return vec4f(vec3f(amount), 1.0);
     }
     if amount <= 0.0 {
@@ -82,20 +82,20 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         // Light of the texels, weighted by their amounts. Amounts below a millionth are invisible, and must not divide.
         return vec4f(target_colour(accumulated.rgb / max(amount, 1.0e-6)), 1.0) * covered;
     }
-    var besides = vec4f(0.0);
+    var extra = vec4f(0.0);
     if WEIGHT_SUM || SIX_WAY {
-        besides = sample_target(beside, pixel);
+        extra = sample_target(extra_attachment, pixel);
     }
-    let surface = surface_from_accumulation(accumulated, besides);
-    if SHADE_TREE == SHADE_TREE_NORMALS {
+    let surface = surface_from_accumulation(accumulated, extra);
+    if DEBUG_VIEW == SHADE_TREE_NORMALS {
         return vec4f(surface.normal * 0.5 + 0.5, 1.0) * covered;
     }
 
     var light = vec3f(0.0);
-    if SHADE_TREE != SHADE_TREE_SOFT_SCATTER {
-        light += diffuse(surface, amount, lit_position(pixel));
+    if DEBUG_VIEW != SHADE_TREE_SOFT_SCATTER {
+        light += diffuse(surface, amount, shading_position(pixel));
     }
-    if SHADE_TREE != SHADE_TREE_DIFFUSE {
+    if DEBUG_VIEW != SHADE_TREE_DIFFUSE {
         light += soft_scatter(amount);
     }
     return vec4f(target_colour(light), 1.0) * covered;

@@ -8,7 +8,7 @@ use glam::{Quat, Vec2, Vec3};
 
 use crate::error::FieldError;
 use crate::formula::uniforms::EmitterUniform;
-use crate::frame::{Emission, Particle};
+use crate::frame::{EmitterSnapshot, Particle};
 use crate::settings::{choice, settings, validate};
 
 /// Maximum number of particles of one emitter, and of all emitters of a preset together.
@@ -111,7 +111,7 @@ impl Emitter {
         if self.up.normalize_or_zero() == Vec3::ZERO {
             return Err(FieldError::new(format!("{}.up", path()), self.up, "a direction that is not zero"));
         }
-        let most = self.most_alive();
+        let most = self.max_alive();
         if most > f64::from(MAX_PARTICLES) {
             let expected = format!("at most {MAX_PARTICLES} particles alive at once, not {most:.0}");
             return Err(FieldError::new(format!("{}.rate", path()), self.rate, expected));
@@ -120,7 +120,7 @@ impl Emitter {
     }
 
     /// Maximum number of particles that live at once.
-    pub fn most_alive(&self) -> f64 {
+    pub fn max_alive(&self) -> f64 {
         let longest = f64::from(self.lifetime * (1.0 + self.lifetime_spread));
         f64::from(self.rate) * if self.duration > 0.0 { longest.min(f64::from(self.duration)) } else { longest }
     }
@@ -130,8 +130,8 @@ impl Emitter {
         self.at(time).evaluate(particles);
     }
 
-    /// Particles alive at `time`, seconds, not evaluated, for [`Particles::Emission`](crate::Particles::Emission).
-    pub fn at(&self, time: f32) -> Emission {
+    /// Particles alive at `time`, seconds, not evaluated, for [`Particles::Emitter`](crate::Particles::Emission).
+    pub fn at(&self, time: f32) -> EmitterSnapshot {
         let (first, last) = self.births(time);
         let up = self.up.normalize_or(Vec3::Y);
         let disc = Quat::from_rotation_arc(Vec3::Y, up);
@@ -167,9 +167,9 @@ impl Emitter {
             fade_out: self.fade_out,
             frame_rate: self.frame_rate,
         };
-        let step = (self.most_alive() / SAMPLE).ceil().max(1.0) as u32;
+        let step = (self.max_alive() / SAMPLE).ceil().max(1.0) as u32;
         let first_sample = (-first).rem_euclid(i64::from(step)) as u32;
-        Emission { uniform, step, first_sample }
+        EmitterSnapshot { uniform, step, first_sample }
     }
 
     /// Range of birth indices that may be alive at `time`. Birth i happens at i / rate.
@@ -193,7 +193,7 @@ impl Emitter {
 mod tests {
     use super::*;
     use crate::formula::emitter::{drag_integrals, eased};
-    use crate::frame::bounds_of;
+    use crate::frame::particle_bounds;
 
     fn at(emitter: &Emitter, time: f32) -> Vec<Particle> {
         let mut particles = Vec::new();
@@ -297,7 +297,8 @@ mod tests {
         for emitter in emitters() {
             for time in [0.0, 0.05, 1.0, 3.0, 50.0] {
                 let reach = std::f32::consts::SQRT_2;
-                let (measured, promised) = (bounds_of(&at(&emitter, time), reach), emitter.at(time).bounds(reach));
+                let (measured, promised) =
+                    (particle_bounds(&at(&emitter, time), reach), emitter.at(time).bounds(reach));
                 if at(&emitter, time).is_empty() {
                     continue;
                 }

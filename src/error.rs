@@ -70,7 +70,7 @@ pub enum Error {
 
     /// An image or a particle file that a preset names could not be used.
     #[error("{named_by}: {error}")]
-    Picture {
+    Asset {
         /// Field that names it, preceded by the preset's file and the system if they are known:
         /// `my.json: systems[0].material.sprite`.
         named_by: String,

@@ -65,20 +65,22 @@ pub mod emitter;
 pub mod error;
 pub mod formula;
 pub mod frame;
-#[doc(hidden)]
-pub mod in_view;
 pub mod preset;
 mod renderer;
 pub mod settings;
+#[doc(hidden)]
+pub mod view_setup;
 
 pub use assets::material::MaterialAssets;
 #[doc(inline)]
-pub use assets::{builtin, noise, picture, ramp, sprite};
+pub use assets::{builtin, image, noise, ramp, sprite};
 pub use error::{Error, FieldError};
-pub use frame::{Bounds, Emission, Frame, Light, LightKind, Material, Particle, Particles, SceneDepth, System, View};
+pub use frame::{
+    Bounds, EmitterSnapshot, Frame, Light, LightKind, Material, Particle, Particles, SceneDepth, System, View,
+};
 pub use renderer::{
-    Context, Descriptor, FrameCounts, FrameTimes, MemoryUse, Overdraw, PassTime, PathChoice, PathCosts, PathLoad,
-    PathModel, PathModelSource, PathReason, Renderer, SceneDepthKind, TargetViews, TiledMemory, Timing, WarmUp,
+    Context, Descriptor, FrameCounts, FrameTimes, MemoryUse, Overdraw, PassTime, PathChoice, PathCosts, PathModel,
+    PathModelSource, PathReason, PathWorkload, Renderer, SceneDepthKind, TargetViews, TiledMemory, Timing, WarmUp,
     read_only_depth_is_supported, shader,
 };
 pub use settings::{ScaleBudget, Settings};

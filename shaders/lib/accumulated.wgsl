@@ -42,8 +42,8 @@ fn sample_target(target_texture: texture_2d<f32>, pixel: vec2f) -> vec4f {
         depths.y = textureLoad(reduced_depth, b, 0).r;
         depths.z = textureLoad(reduced_depth, c, 0).r;
         depths.w = textureLoad(reduced_depth, d, 0).r;
-        depths = min(depths * system.depth_limit, vec4f(system.guide_limit));
-        depth = min(scene_view_depth(pixel), system.guide_limit);
+        depths = min(depths * system.depth_limit, vec4f(system.smoke_depth_limit));
+        depth = min(scene_view_depth(pixel), system.smoke_depth_limit);
     }
     let weights = upsample_weights(UPSAMPLE, fraction, depths, depth);
     let value = textureLoad(target_texture, a, 0) * weights.x
@@ -55,16 +55,16 @@ fn sample_target(target_texture: texture_2d<f32>, pixel: vec2f) -> vec4f {
     }
     // Smooth pixels skip the loop with a count of 0.
     let fade = 1.0 / system.fade_scale;
-    let count = select(16, 0, is_smooth(depths, depth, fade));
+    let count = select(16, 0, bilinear_suffices(depths, depth, fade));
     var fit: GuidedFit;
     fit.nearest = SKY_VIEW_DEPTH;
     fit.farthest = -SKY_VIEW_DEPTH;
     for (var i = 0; i < count; i++) {
         let offset = vec2i(i % 4, i / 4) - 1;
         let at = clamped_texel(base + offset);
-        let texel_depth = min(textureLoad(reduced_depth, at, 0).r * system.depth_limit, system.guide_limit);
+        let texel_depth = min(textureLoad(reduced_depth, at, 0).r * system.depth_limit, system.smoke_depth_limit);
         let place = vec3f(vec2f(offset) - fraction, texel_depth - depth);
-        fit = with_texel(fit, place, guided_weight(place, depth), textureLoad(target_texture, at, 0));
+        fit = add_texel(fit, place, guided_weight(place, depth), textureLoad(target_texture, at, 0));
     }
     if count == 0 {
         return value;
@@ -74,7 +74,7 @@ fn sample_target(target_texture: texture_2d<f32>, pixel: vec2f) -> vec4f {
 
 // Point of the smoke that is lit at a pixel, view space. It is on the pixel's ray, flattened to one plane; otherwise
 // the faces of the box would show.
-fn lit_position(pixel: vec2f) -> vec3f {
+fn shading_position(pixel: vec2f) -> vec3f {
     let ray = ndc_from_pixel(pixel, view.size) * view.ray_scale + view.ray_offset;
     return view_position(ray, -system.centre.z, view.orthographic);
 }

@@ -30,8 +30,8 @@ const MAX_LIGHTS: u32 = 128u;
 @group(2) @binding(8) var noise: texture_3d<f32>;
 @group(2) @binding(9) var repeat_sampler: sampler;
 @group(2) @binding(10) var coverage_ramp: texture_2d<f32>;
-// x is the mip level, y the frame; see filled_texel().
-@group(2) @binding(11) var sprite_filled: texture_2d<u32>;
+// x is the mip level, y the frame; see alpha_bounds_texel().
+@group(2) @binding(11) var sprite_alpha_bounds: texture_2d<u32>;
 @group(2) @binding(12) var backlight_ramp: texture_2d<f32>;
 
 // Depth of the host at a pixel of the view.

@@ -9,7 +9,7 @@
 @group(3) @binding(2) var baked_diffuse: texture_2d_array<f32>;
 // Second target. If WEIGHT_SUM: the sum of the normals' weights in r. If SIX_WAY: light from left, bottom and back, and
 // the sum of weights.
-@group(3) @binding(3) var beside: texture_2d<f32>;
+@group(3) @binding(3) var extra_attachment: texture_2d<f32>;
 
 const DIFFUSE_MODE_RAMP: u32 = 0u;
 const DIFFUSE_MODE_CUBEMAP: u32 = 1u;
@@ -34,18 +34,18 @@ struct Surface {
 }
 
 // Decodes a texel of the target, and of the second target if there is one.
-fn surface_from_accumulation(accumulated: vec4f, beside: vec4f) -> Surface {
+fn surface_from_accumulation(accumulated: vec4f, extra_attachment: vec4f) -> Surface {
     var surface: Surface;
     if SIX_WAY {
         // The fit of an upsampler may fall below 0, which means no light.
-        let scale = 1.0 / max(beside.a, 1.0e-6);
-        surface.six_way = SixWay(max(accumulated.rgb, vec3f(0.0)) * scale, max(beside.rgb, vec3f(0.0)) * scale);
+        let scale = 1.0 / max(extra_attachment.a, 1.0e-6);
+        surface.six_way = SixWay(max(accumulated.rgb, vec3f(0.0)) * scale, max(extra_attachment.rgb, vec3f(0.0)) * scale);
         surface.normal = normal_from_six_way(surface.six_way.positive, surface.six_way.negative);
         return surface;
     }
     var weights = accumulated.a;
     if WEIGHT_SUM {
-        weights = beside.r;
+        weights = extra_attachment.r;
     }
     surface.normal = normal_from_accumulation(NORMAL_ENCODING, NORMAL_DECODE, accumulated.rgb, weights);
     return surface;

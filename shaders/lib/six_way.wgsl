@@ -18,7 +18,7 @@ fn henyey_greenstein(cosine: f32, anisotropy: f32) -> f32 {
 // from the front or back: smoke that scatters forward glows in line with a light and much less beside it. The rest goes
 // to x and y, by the squares of the direction. (After McTaggart, "Half-Life 2 / Valve Source shading", GDC 2004: the
 // ambient cube)
-fn six_way_shares(to_light: vec3f, anisotropy: f32) -> vec3f {
+fn six_way_axis_weights(to_light: vec3f, anisotropy: f32) -> vec3f {
     // At an anisotropy of 0 the phase function is constant, and `along` would be 0 / 0.
     let g = max(anisotropy, 0.02);
     let beside = henyey_greenstein(0.0, g);
@@ -30,7 +30,7 @@ fn six_way_shares(to_light: vec3f, anisotropy: f32) -> vec3f {
 
 // Response to a light. `positive` is for light from +x, +y and +z, `negative` for light from the opposite sides.
 fn six_way_response(positive: vec3f, negative: vec3f, to_light: vec3f, anisotropy: f32) -> f32 {
-    return dot(six_way_shares(to_light, anisotropy), select(negative, positive, to_light > vec3f(0.0)));
+    return dot(six_way_axis_weights(to_light, anisotropy), select(negative, positive, to_light > vec3f(0.0)));
 }
 
 struct SixWay {

@@ -41,13 +41,13 @@ fn flipbook_frames(frame: f32, frame_count: f32) -> FlipbookFrames {
 }
 
 // The same frames of a flipbook that starts `layers` layers later.
-fn frames_after(frames: FlipbookFrames, layers: i32) -> FlipbookFrames {
+fn offset_frames(frames: FlipbookFrames, layers: i32) -> FlipbookFrames {
     return FlipbookFrames(frames.first + layers, frames.second + layers, frames.blend);
 }
 
 // Frames as an animation shows them. If an animation does not blend, the weight is a constant and the compiler removes
 // the second lookup. A branch would not do: llvmpipe takes both sides.
-fn shown_frames(animation: u32, frame: f32, frame_count: f32) -> FlipbookFrames {
+fn animation_frames(animation: u32, frame: f32, frame_count: f32) -> FlipbookFrames {
     var frames = flipbook_frames(frame, frame_count);
     if animation == SPRITE_ANIMATION_STILL || animation == SPRITE_ANIMATION_NEAREST {
         frames.blend = 0.0;

@@ -40,7 +40,7 @@ fn host_view_depth(texel: f32) -> f32 {
 
 // Frames that a rasterized fragment shows.
 fn fragment_frames(in: SpriteVertex) -> FlipbookFrames {
-    return shown_frames(SPRITE_ANIMATION, in.amount_lod_frame_age.z, system.frame_count);
+    return animation_frames(SPRITE_ANIMATION, in.amount_lod_frame_age.z, system.frame_count);
 }
 
 fn technique_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> SpriteFragment {
@@ -60,7 +60,7 @@ fn technique_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> S
         motion = texel.yz * system.motion;
         if is_depth_sprite {
             texel_depth = depth_sprite_depth(view_depth, texel.x, radius);
-            amount *= slab_share(view_depth, radius, view.near);
+            amount *= visible_slab_fraction(view_depth, radius, view.near);
         }
     }
 
@@ -96,8 +96,8 @@ fn sprite_texel(in: SpriteVertex, uv: vec2f, frames: FlipbookFrames, motion: vec
     let lod = in.amount_lod_frame_age.y;
     if SIX_WAY {
         let count = i32(system.frame_count);
-        let positive = sample_flipbook(sprite, linear_sampler, uv, frames_after(frames, count), motion, lod);
-        let negative = sample_flipbook(sprite, linear_sampler, uv, frames_after(frames, 2 * count), motion, lod);
+        let positive = sample_flipbook(sprite, linear_sampler, uv, offset_frames(frames, count), motion, lod);
+        let negative = sample_flipbook(sprite, linear_sampler, uv, offset_frames(frames, 2 * count), motion, lod);
         let light = SixWay(six_way_from_texel(positive.rgb), six_way_from_texel(negative.rgb));
         let turned = rotate_six_way(light.positive, light.negative, in.rotation);
         return SpriteFragment(vec3f(0.0, 0.0, 1.0), turned, positive.a, false);
@@ -116,7 +116,7 @@ fn sphere_fragment(in: SpriteVertex, frames: FlipbookFrames, scene: f32) -> Spri
     let origin = vec3f(in.view_position.xy * view.orthographic, 0.0);
     let along = normalize(vec3f(in.view_position.xy * (1.0 - view.orthographic), -1.0));
     let per_depth = -1.0 / along.z;
-    let end = (scene + system.fade_through) * per_depth;
+    let end = (scene + system.show_through_distance) * per_depth;
     let interval = ray_sphere(origin, along, centre, radius, view.near * per_depth, end);
     let stretch = interval.leave - interval.enter;
     if stretch <= 0.0 || dot(interval.axis, interval.axis) >= radius * radius {

@@ -81,7 +81,7 @@ fn sphere_corner(centre_radius: vec4f, corner: vec2f, texels_per_pixel: f32) -> 
 }
 
 // Particle in view space, with the values that all fragments of its sprite share, as in SpriteVertex.
-struct PlacedSprite {
+struct ProjectedSprite {
     hidden: bool,
     centre_radius: vec4f,
     amount_lod_frame_age: vec4f,
@@ -89,7 +89,7 @@ struct PlacedSprite {
 }
 
 // Projects a particle. `texels_per_pixel` is the target's resolution.
-fn placed_sprite(particle: Particle, texels_per_pixel: f32) -> PlacedSprite {
+fn project_sprite(particle: Particle, texels_per_pixel: f32) -> ProjectedSprite {
     let centre = (view.view_from_world * vec4f(particle.position_radius.xyz, 1.0)).xyz;
     var radius = particle.position_radius.w * system.size;
     if TECHNIQUE == TECHNIQUE_SPHERICAL_BILLBOARD {
@@ -115,7 +115,7 @@ fn placed_sprite(particle: Particle, texels_per_pixel: f32) -> PlacedSprite {
     let diameter = 2.0 * radius * pixels * texels_per_pixel;
     let lod = sprite_lod(system.sprite_size, diameter);
     let shown_frame = sprite_frame(SPRITE_ANIMATION, frame, age, system.frame_count);
-    return PlacedSprite(
+    return ProjectedSprite(
         !shown,
         vec4f(centre, radius),
         vec4f(amount, lod, shown_frame, age),
@@ -123,23 +123,23 @@ fn placed_sprite(particle: Particle, texels_per_pixel: f32) -> PlacedSprite {
     );
 }
 
-const ALL_FILLED: vec4u = vec4u(0xffffffffu);
+const FULL_ALPHA_BOUNDS: vec4u = vec4u(0xffffffffu);
 
-// Part of a frame that is not clear, at a sprite's mip level: a bit for each cell in xy, the extent in z. FilledTexel in
+// Part of a frame that is not clear, at a sprite's mip level: a bit for each cell in xy, the extent in z. AlphaBoundsTexel in
 // src/assets/sprite/filled.rs.
-fn filled_texel(frame: i32, lod: f32) -> vec4u {
+fn alpha_bounds_texel(frame: i32, lod: f32) -> vec4u {
     if DEBUG_SPRITE || MOTION {
-        return ALL_FILLED;
+        return FULL_ALPHA_BOUNDS;
     }
-    let level = min(i32(lod), i32(textureDimensions(sprite_filled).x) - 1);
-    return textureLoad(sprite_filled, vec2i(level, frame + select(0, i32(system.frame_count), SIX_WAY)), 0);
+    let level = min(i32(lod), i32(textureDimensions(sprite_alpha_bounds).x) - 1);
+    return textureLoad(sprite_alpha_bounds, vec2i(level, frame + select(0, i32(system.frame_count), SIX_WAY)), 0);
 }
 
 // Extent of a sprite with these frames from its centre to the left, bottom, right and top, as shares of half its side.
-fn sprite_reach(frames: FlipbookFrames, lod: f32) -> vec4f {
-    let reach = unpack4x8unorm(filled_texel(frames.first, lod).z);
+fn trimmed_extent(frames: FlipbookFrames, lod: f32) -> vec4f {
+    let reach = unpack4x8unorm(alpha_bounds_texel(frames.first, lod).z);
     if frames.blend > 0.0 {
-        return max(reach, unpack4x8unorm(filled_texel(frames.second, lod).z));
+        return max(reach, unpack4x8unorm(alpha_bounds_texel(frames.second, lod).z));
     }
     return reach;
 }
@@ -152,7 +152,7 @@ fn sprite_vertex(
     texels_per_pixel: f32,
 ) -> SpriteVertex {
     var out: SpriteVertex;
-    let sprite = placed_sprite(particle, texels_per_pixel);
+    let sprite = project_sprite(particle, texels_per_pixel);
     // Hidden sprites collapse outside the clip volume.
     if sprite.hidden {
         out.position = vec4f(2.0, 2.0, 2.0, 1.0);
@@ -170,8 +170,8 @@ fn sprite_vertex(
         clip = vec4f(ndc, 0.0, 1.0);
         out.view_position = view_position(ndc * view.ray_scale + view.ray_offset, 1.0, view.orthographic);
     } else {
-        let frames = shown_frames(SPRITE_ANIMATION, out.amount_lod_frame_age.z, system.frame_count);
-        let place = trimmed_corner(corner, sprite_reach(frames, out.amount_lod_frame_age.y));
+        let frames = animation_frames(SPRITE_ANIMATION, out.amount_lod_frame_age.z, system.frame_count);
+        let place = trimmed_corner(corner, trimmed_extent(frames, out.amount_lod_frame_age.y));
         let turned = vec2f(
             place.x * out.rotation.x - place.y * out.rotation.y,
             place.x * out.rotation.y + place.y * out.rotation.x,

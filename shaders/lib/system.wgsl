@@ -55,12 +55,12 @@ struct System {
     // Position of the eye minus the rise of the noise, metres, modulo one tile.
     noise_offset: vec3f,
     // Metres behind the scene at which sprites still show, under the curve `always`.
-    fade_through: f32,
+    show_through_distance: f32,
     // Linear RGB of smoke that is lit by six-way maps.
     six_way_colour: vec3f,
     six_way_anisotropy: f32,
     // Like depth_limit, but from the visible smoke: it does not jump with the box.
-    guide_limit: f32,
+    smoke_depth_limit: f32,
     padding0: f32,
     padding1: f32,
     padding2: f32,

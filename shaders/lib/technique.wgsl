@@ -53,7 +53,7 @@ fn density_thickness(view_depth: f32, radius: f32, near: f32, scene: f32) -> f32
 }
 
 // Share of that slab that lies beyond the near plane.
-fn slab_share(view_depth: f32, radius: f32, near: f32) -> f32 {
+fn visible_slab_fraction(view_depth: f32, radius: f32, near: f32) -> f32 {
     return saturate((view_depth + radius - near) / max(2.0 * radius, 1.0e-6));
 }
 

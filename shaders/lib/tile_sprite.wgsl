@@ -44,9 +44,9 @@ fn lod_of(sprite: TileSprite) -> f32 {
 
 // Returns the filled cells of a sprite's frames at its mip level.
 fn filled_cells(frames: FlipbookFrames, lod: f32) -> vec2u {
-    let cells = filled_texel(frames.first, lod).xy;
+    let cells = alpha_bounds_texel(frames.first, lod).xy;
     if frames.blend > 0.0 {
-        return cells | filled_texel(frames.second, lod).xy;
+        return cells | alpha_bounds_texel(frames.second, lod).xy;
     }
     return cells;
 }

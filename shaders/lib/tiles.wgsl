@@ -20,7 +20,7 @@ struct Tiles {
     // Distance behind a hidden sprite at which all later sprites of a list are hidden too, metres: 0 if lists are
     // ordered by view depth, else larger than any depth. (Not a bool: lavapipe of Mesa 22.3 crashes if a branch in a
     // loop depends on a bool in a uniform.)
-    hidden_after: f32,
+    occlusion_margin: f32,
     padding0: u32,
     padding1: u32,
 }
@@ -32,28 +32,28 @@ const EVERYTHING: u32 = 0xffffffffu;
 
 // Texels of a tile in per-invocation traversal: one row of lanes, each with one column. ALONE in
 // src/renderer/pass/tile_refine.rs.
-const TILE_ALONE: vec2u = vec2u(8u, 4u);
+const PER_INVOCATION_TILE: vec2u = vec2u(8u, 4u);
 // Parts of a bin. With the usual bin side of 32 texels, a part is a tile.
 const PARTS: vec2u = vec2u(4u, 8u);
 // Sprites of a list that share one word per part, one bit each. Equal to the number of parts. BATCH in
 // src/renderer/pass/tile_refine.rs.
-const BATCH_ALONE: u32 = 32u;
+const BITS_PER_WORD: u32 = 32u;
 
 // Returns the number of words that tile_refine needs for a list of this length.
-fn words_of(length: u32) -> u32 {
-    return (length + BATCH_ALONE - 1u) / BATCH_ALONE * BATCH_ALONE;
+fn refine_words(length: u32) -> u32 {
+    return (length + BITS_PER_WORD - 1u) / BITS_PER_WORD * BITS_PER_WORD;
 }
 
 // Sprites per run. RUN in src/renderer/pass/tile_bin.rs.
 const RUN: u32 = 64u;
 
 // Returns the number of runs of `count` sprites.
-fn runs_of(count: u32) -> u32 {
+fn run_count(count: u32) -> u32 {
     return (count + RUN - 1u) / RUN;
 }
 
 // Counts of a frame.
-struct Tally {
+struct TileCounters {
     // Number of visible sprites: the first of the sorted ones.
     shown: u32,
     // Words that the lists need, without those that are too long to be counted in 32 bits.

@@ -4,7 +4,7 @@
 #import "lib/hash.wgsl"
 
 // ACES tonemap curve. (Hill, "BakingLab", 2016: a fit of the reference and output transforms)
-fn film(colour: vec3f) -> vec3f {
+fn aces_fitted(colour: vec3f) -> vec3f {
     let input = mat3x3f(0.59719, 0.076, 0.0284, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777);
     let output = mat3x3f(1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605, 1.07602);
     let v = input * max(colour, vec3f(0.0));
@@ -13,8 +13,8 @@ fn film(colour: vec3f) -> vec3f {
 }
 
 // sRGB code of tonemapped light. `exposure` multiplies the light first.
-fn developed(colour: vec3f, exposure: f32) -> vec3f {
-    return gamma_target_colour(film(colour * exposure));
+fn tonemapped(colour: vec3f, exposure: f32) -> vec3f {
+    return gamma_target_colour(aces_fitted(colour * exposure));
 }
 
 // Dither to add before rounding to 8 bits, so that slow gradients do not band: triangular noise, within half a step

@@ -7,17 +7,17 @@ const UPSAMPLE_BILINEAR: u32 = 3u;
 
 // Depths that differ by less than this share of the pixel's depth count as one surface: a floor at a grazing angle
 // stays smooth, a fence one metre in front of a wall stays separate.
-const SAME_SURFACE: f32 = 0.1;
+const SURFACE_DEPTH_TOLERANCE: f32 = 0.1;
 
 // Depths that differ by less than this share of a soft fade's length show about the same amount of smoke.
-const SAME_SMOKE: f32 = 0.4;
+const SMOKE_DEPTH_TOLERANCE: f32 = 0.4;
 
 // True if smoke hardly depends on depth here, so that bilinear weights suffice. `fade` is the length of a soft fade,
 // metres.
-fn is_smooth(depths: vec4f, depth: f32, fade: f32) -> bool {
+fn bilinear_suffices(depths: vec4f, depth: f32, fade: f32) -> bool {
     let low = min(min(min(depths.x, depths.y), min(depths.z, depths.w)), depth);
     let high = max(max(max(depths.x, depths.y), max(depths.z, depths.w)), depth);
-    return high - low < SAME_SMOKE * fade;
+    return high - low < SMOKE_DEPTH_TOLERANCE * fade;
 }
 
 // Weights of the texels (0,0) (1,0) (0,1) (1,1). `fraction` is the pixel's position between them, `depths` are their
@@ -26,7 +26,7 @@ fn is_smooth(depths: vec4f, depth: f32, fade: f32) -> bool {
 //   "Fast rendering of opacity-mapped particles using DirectX 11 tessellation and mixed resolutions", 2011)
 // - joint_bilateral: bilinear times a Gaussian of the depth difference. (Kopf et al., "Joint bilateral upsampling",
 //   2007)
-// - guided: bilinear, for pixels where is_smooth() holds; the others use a GuidedFit.
+// - guided: bilinear, for pixels where bilinear_suffices() holds; the others use a GuidedFit.
 fn upsample_weights(mode: u32, fraction: vec2f, depths: vec4f, depth: f32) -> vec4f {
     let g = 1.0 - fraction;
     let bilinear = vec4f(g.x * g.y, fraction.x * g.y, g.x * fraction.y, fraction.x * fraction.y);
@@ -35,15 +35,15 @@ fn upsample_weights(mode: u32, fraction: vec2f, depths: vec4f, depth: f32) -> ve
     }
     let difference = abs(depths - depth);
     if mode == UPSAMPLE_JOINT_BILATERAL {
-        // A depth difference of SAME_SURFACE is two sigma.
-        let sigmas = difference * (2.0 / (SAME_SURFACE * max(depth, 1.0e-6)));
+        // A depth difference of SURFACE_DEPTH_TOLERANCE is two sigma.
+        let sigmas = difference * (2.0 / (SURFACE_DEPTH_TOLERANCE * max(depth, 1.0e-6)));
         let weights = bilinear * exp(-0.5 * sigmas * sigmas);
         let total = weights.x + weights.y + weights.z + weights.w;
         // If no texel is near the pixel's surface, the closest one is used below.
         if total > 1.0e-3 {
             return weights / total;
         }
-    } else if all(difference <= vec4f(SAME_SURFACE * depth)) {
+    } else if all(difference <= vec4f(SURFACE_DEPTH_TOLERANCE * depth)) {
         return bilinear;
     }
     let closest = min(min(difference.x, difference.y), min(difference.z, difference.w));
@@ -75,15 +75,15 @@ struct GuidedFit {
     farthest: f32,
 }
 
-// Weight of a texel. It falls to zero two texels away, and with depth as a Gaussian of which SAME_SURFACE is two sigma.
+// Weight of a texel. It falls to zero two texels away, and with depth as a Gaussian of which SURFACE_DEPTH_TOLERANCE is two sigma.
 fn guided_weight(place: vec3f, depth: f32) -> f32 {
     let tent = max(1.0 - abs(place.xy) * 0.5, vec2f(0.0));
-    let sigmas = place.z * (2.0 / (SAME_SURFACE * max(depth, 1.0e-6)));
+    let sigmas = place.z * (2.0 / (SURFACE_DEPTH_TOLERANCE * max(depth, 1.0e-6)));
     // Never zero by depth, because a pixel may be on a surface that no texel has seen.
     return tent.x * tent.x * tent.y * tent.y * (exp(-0.5 * sigmas * sigmas) + 1.0e-4);
 }
 
-fn with_texel(fit: GuidedFit, place: vec3f, weight: f32, value: vec4f) -> GuidedFit {
+fn add_texel(fit: GuidedFit, place: vec3f, weight: f32, value: vec4f) -> GuidedFit {
     let w = place * weight;
     return GuidedFit(
         fit.total + weight,

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use super::image::{decode_colour_png, decode_png};
 use super::json;
 use super::noise::NoiseVolume;
-use super::picture::{decode_colour_png, decode_png};
 use super::ramp::Ramp;
 use super::sprite::{Sprite, SpriteLayout};
 use crate::error::Error;
-use crate::settings::PictureRole;
+use crate::settings::ImageRole;
 
 /// A built-in file: its name and contents.
 #[derive(Clone, Copy, Debug)]
@@ -112,13 +112,13 @@ pub const PRESETS: &[Builtin] =
     presets!(["column", "backlit_fog", "corridor", "explosion", "fence", "inside", "crates", "dust_storm"]);
 
 /// Returns the built-in images for a role; empty for details and six-way maps.
-pub fn of_role(role: PictureRole) -> &'static [Builtin] {
+pub fn of_role(role: ImageRole) -> &'static [Builtin] {
     match role {
-        PictureRole::Sprite => SPRITES,
-        PictureRole::Ramp => RAMPS,
-        PictureRole::Motif => MOTIFS,
-        PictureRole::Noise => NOISES,
-        PictureRole::Detail | PictureRole::SixWay => &[],
+        ImageRole::Sprite => SPRITES,
+        ImageRole::Ramp => RAMPS,
+        ImageRole::Motif => MOTIFS,
+        ImageRole::Noise => NOISES,
+        ImageRole::Detail | ImageRole::SixWay => &[],
     }
 }
 
@@ -138,13 +138,13 @@ impl Builtin {
     /// # Errors
     /// As [`decode_colour_png`].
     pub fn ramp(&self) -> Result<Ramp, Error> {
-        Ok(Ramp::from_picture(&decode_colour_png(&path(self.name), self.bytes)?))
+        Ok(Ramp::from_image(&decode_colour_png(&path(self.name), self.bytes)?))
     }
 
     /// Decodes a sprite with the layout of its recipe.
     ///
     /// # Errors
-    /// As [`decode_png`] and [`Sprite::from_picture`].
+    /// As [`decode_png`] and [`Sprite::from_image`].
     pub fn sprite(&self) -> Result<Sprite, Error> {
         self.decode(self.sprite_layout()?)
     }
@@ -171,15 +171,15 @@ impl Builtin {
 
     fn decode(&self, layout: SpriteLayout) -> Result<Sprite, Error> {
         let path = path(self.name);
-        Sprite::from_picture(&path, &decode_png(&path, self.bytes)?.to_rgba8(), layout)
+        Sprite::from_image(&path, &decode_png(&path, self.bytes)?.to_rgba8(), layout)
     }
 
     /// Decodes a noise volume.
     ///
     /// # Errors
-    /// As [`decode_png`] and [`NoiseVolume::from_picture`].
+    /// As [`decode_png`] and [`NoiseVolume::from_image`].
     pub fn noise(&self) -> Result<NoiseVolume, Error> {
         let path = path(self.name);
-        NoiseVolume::from_picture(&path, &decode_png(&path, self.bytes)?.to_rgba8())
+        NoiseVolume::from_image(&path, &decode_png(&path, self.bytes)?.to_rgba8())
     }
 }

@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 use super::noise::NoiseVolume;
 use super::ramp::Ramp;
 use super::sprite::Sprite;
-use super::sprite::filled::Filled;
+use super::sprite::alpha_bounds::AlphaBounds;
 use crate::error::FieldError;
 use crate::formula::diffuse_bake::zonal_coefficients;
 use crate::formula::ramp::sample_ramp_2d;
@@ -79,7 +79,7 @@ impl MaterialAssets {
         };
         MaterialInfo {
             sprite_size: self.sprite.size() as f32,
-            filled: Arc::new(Filled::new(&self.sprite, self.six_way.as_ref())),
+            alpha_bounds: Arc::new(AlphaBounds::new(&self.sprite, self.six_way.as_ref())),
             frame_count: self.sprite.frame_count() as f32,
             detail: self.detail.as_ref().map(|detail| DetailInfo {
                 frame_count: detail.frame_count(),
@@ -98,7 +98,7 @@ pub struct MaterialInfo {
     /// Side of one frame of the sprite, texels.
     pub sprite_size: f32,
     /// Frames of the sprite, followed by those of the six-way maps.
-    pub filled: Arc<Filled>,
+    pub alpha_bounds: Arc<AlphaBounds>,
     /// Frames of the sprite.
     pub frame_count: f32,
     /// The detail map, if there is one.

@@ -3,10 +3,10 @@
 
 pub mod builtin;
 pub mod file;
+pub mod image;
 pub mod json;
 pub mod material;
 pub mod noise;
-pub mod picture;
 pub mod ramp;
 pub mod sprite;
 #[doc(hidden)]

@@ -9,7 +9,7 @@ pub fn threads() -> usize {
 }
 
 /// Calls `f` once for every item, in parallel. Items start in order.
-pub fn on_all_processors<T>(items: impl Iterator<Item = T> + Send, f: impl Fn(T) + Sync) {
+pub fn parallel_for_each<T>(items: impl Iterator<Item = T> + Send, f: impl Fn(T) + Sync) {
     let items = Mutex::new(items);
     let next = || items.lock().unwrap_or_else(PoisonError::into_inner).next();
     let work = || {

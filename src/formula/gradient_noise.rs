@@ -68,13 +68,13 @@ fn lattice_gradients(at: IVec3, seed: u32) -> [Vec3; 2] {
 
 /// Gradient noise along a line. The hashes of the current lattice cell are cached, because neighbouring points share
 /// it.
-pub struct NoiseCell {
+pub struct CachedGradientNoise {
     seed: u32,
     cell: IVec3,
     corners: [[Vec3; 2]; 8],
 }
 
-impl NoiseCell {
+impl CachedGradientNoise {
     /// Creates the noise of a seed.
     pub fn new(seed: u32) -> Self {
         let cell = IVec3::ZERO;
@@ -167,7 +167,7 @@ mod tests {
 
     #[test]
     fn noise_cell_matches_gradient_noise() {
-        let mut cell = NoiseCell::new(3);
+        let mut cell = CachedGradientNoise::new(3);
         let phase = Vec2::from_angle(0.7);
         for p in points() {
             let [start, later] = cell.turning(p);

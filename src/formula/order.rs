@@ -8,7 +8,7 @@ use super::saturate;
 pub const FRONT_KNOTS: usize = 16;
 
 /// Relative position of a view depth among the knots, 0..=1: `smoke_near` is at 0.25, `smoke_far` at 0.75.
-pub fn place_among_knots(view_depth: f32, smoke_near: f32, smoke_far: f32) -> f32 {
+pub fn knot_coordinate(view_depth: f32, smoke_near: f32, smoke_far: f32) -> f32 {
     let through = (view_depth - smoke_near) / (smoke_far - smoke_near).max(1.0e-4);
     saturate(through * 0.5 + 0.25)
 }
@@ -16,7 +16,7 @@ pub fn place_among_knots(view_depth: f32, smoke_near: f32, smoke_far: f32) -> f3
 /// Optical depth of the smoke in front of a view depth, interpolated between the knots.
 pub fn optical_depth_in_front(knots: &[Vec4; 4], view_depth: f32, smoke_near: f32, smoke_far: f32) -> f32 {
     let knots: &[f32] = bytemuck::cast_slice(knots);
-    let place = place_among_knots(view_depth, smoke_near, smoke_far) * (FRONT_KNOTS - 1) as f32;
+    let place = knot_coordinate(view_depth, smoke_near, smoke_far) * (FRONT_KNOTS - 1) as f32;
     let low = (place as usize).min(FRONT_KNOTS - 2);
     knots[low] + (knots[low + 1] - knots[low]) * (place - low as f32)
 }

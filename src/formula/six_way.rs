@@ -32,7 +32,7 @@ pub fn henyey_greenstein(cosine: f32, anisotropy: f32) -> f32 {
 /// from the front or back: smoke that scatters forward glows in line with a light and much less beside it. The rest
 /// goes to x and y, by the squares of the direction. (After McTaggart, "Half-Life 2 / Valve Source shading", GDC 2004:
 /// the ambient cube)
-pub fn six_way_shares(to_light: Vec3, anisotropy: f32) -> Vec3 {
+pub fn six_way_axis_weights(to_light: Vec3, anisotropy: f32) -> Vec3 {
     // At an anisotropy of 0 the phase function is constant, and `along` would be 0 / 0.
     let g = anisotropy.max(0.02);
     let end = if to_light.z < 0.0 { 1.0 } else { -1.0 };
@@ -45,7 +45,7 @@ pub fn six_way_shares(to_light: Vec3, anisotropy: f32) -> Vec3 {
 
 /// Response to a light. `positive` is for light from +x, +y and +z, `negative` for light from the opposite sides.
 pub fn six_way_response(positive: Vec3, negative: Vec3, to_light: Vec3, anisotropy: f32) -> f32 {
-    six_way_shares(to_light, anisotropy).dot(Vec3::select(to_light.cmpgt(Vec3::ZERO), positive, negative))
+    six_way_axis_weights(to_light, anisotropy).dot(Vec3::select(to_light.cmpgt(Vec3::ZERO), positive, negative))
 }
 
 /// Rotates the response of a sprite with the sprite. `rotation` is (cos, sin), counter-clockwise. Each side becomes the

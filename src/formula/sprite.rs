@@ -45,12 +45,12 @@ pub fn flipbook_frames(frame: f32, frame_count: f32) -> FlipbookFrames {
 }
 
 /// The same frames of a flipbook that starts `layers` layers later.
-pub fn frames_after(frames: FlipbookFrames, layers: i32) -> FlipbookFrames {
+pub fn offset_frames(frames: FlipbookFrames, layers: i32) -> FlipbookFrames {
     FlipbookFrames { first: frames.first + layers, second: frames.second + layers, ..frames }
 }
 
 /// Frames as an animation shows them; `still` and `nearest` do not blend.
-pub fn shown_frames(animation: SpriteAnimation, frame: f32, frame_count: f32) -> FlipbookFrames {
+pub fn animation_frames(animation: SpriteAnimation, frame: f32, frame_count: f32) -> FlipbookFrames {
     let frames = flipbook_frames(frame, frame_count);
     match animation {
         SpriteAnimation::Flipbook | SpriteAnimation::Volume => frames,

@@ -49,7 +49,7 @@ pub fn density_thickness(view_depth: f32, radius: f32, near: f32, scene: f32) ->
 }
 
 /// Share of that slab that lies beyond the near plane.
-pub fn slab_share(view_depth: f32, radius: f32, near: f32) -> f32 {
+pub fn visible_slab_fraction(view_depth: f32, radius: f32, near: f32) -> f32 {
     saturate((view_depth + radius - near) / (2.0 * radius).max(1.0e-6))
 }
 

@@ -8,7 +8,7 @@ use super::hash::{pcg3d, unit};
 
 /// ACES tonemap curve, linear HDR to linear 0..1. (Hill, "BakingLab", 2016: a fit of the reference and output
 /// transforms)
-pub fn film(colour: Vec3) -> Vec3 {
+pub fn aces_fitted(colour: Vec3) -> Vec3 {
     const INPUT: Mat3 = Mat3::from_cols(
         vec3(0.597_19, 0.076, 0.028_4),
         vec3(0.354_58, 0.908_34, 0.133_83),
@@ -25,8 +25,8 @@ pub fn film(colour: Vec3) -> Vec3 {
 }
 
 /// sRGB code of tonemapped light. `exposure` multiplies the light first.
-pub fn developed(colour: Vec3, exposure: f32) -> Vec3 {
-    film(colour * exposure).map(srgb_from_linear)
+pub fn tonemapped(colour: Vec3, exposure: f32) -> Vec3 {
+    aces_fitted(colour * exposure).map(srgb_from_linear)
 }
 
 /// Dither to add before rounding to 8 bits, so that slow gradients do not band: triangular noise, within half a step
@@ -42,9 +42,9 @@ mod tests {
 
     #[test]
     fn tonemap_curve_keeps_black_and_white_and_is_monotonic() {
-        assert!(film(Vec3::ZERO).max_element() < 1e-3);
-        assert!(film(Vec3::splat(100.0)).min_element() > 0.99);
-        let greys: Vec<_> = (0..200).map(|step| film(Vec3::splat(0.02 * step as f32)).x).collect();
+        assert!(aces_fitted(Vec3::ZERO).max_element() < 1e-3);
+        assert!(aces_fitted(Vec3::splat(100.0)).min_element() > 0.99);
+        let greys: Vec<_> = (0..200).map(|step| aces_fitted(Vec3::splat(0.02 * step as f32)).x).collect();
         assert!(greys.is_sorted());
     }
 }

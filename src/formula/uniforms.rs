@@ -102,10 +102,10 @@ uniform! {
         noise_octaves: u32,
         depth_weight: f32,
         noise_offset: Vec3,
-        fade_through: f32,
+        show_through_distance: f32,
         six_way_colour: Vec3,
         six_way_anisotropy: f32,
-        guide_limit: f32,
+        smoke_depth_limit: f32,
         padding: [f32; 3],
         front_knots: [Vec4; 4],
         spherical_harmonics: [Vec4; 9],
@@ -124,7 +124,7 @@ uniform! {
         rows: u32,
         runs: u32,
         capacity: u32,
-        hidden_after: f32,
+        occlusion_margin: f32,
         padding: [u32; 2],
     }
 }

@@ -5,15 +5,15 @@ use glam::{Vec2, Vec3, Vec3Swizzles, Vec4, vec3};
 use crate::settings::Upsample;
 
 /// Depths that differ by less than this share of the pixel's depth count as one surface.
-pub const SAME_SURFACE: f32 = 0.1;
+pub const SURFACE_DEPTH_TOLERANCE: f32 = 0.1;
 
 /// Depths that differ by less than this share of a soft fade's length show about the same amount of smoke.
-pub const SAME_SMOKE: f32 = 0.4;
+pub const SMOKE_DEPTH_TOLERANCE: f32 = 0.4;
 
 /// True if smoke hardly depends on depth here, so that bilinear weights suffice. `fade` is the length of a soft fade,
 /// metres.
-pub fn is_smooth(depths: Vec4, depth: f32, fade: f32) -> bool {
-    depths.max_element().max(depth) - depths.min_element().min(depth) < SAME_SMOKE * fade
+pub fn bilinear_suffices(depths: Vec4, depth: f32, fade: f32) -> bool {
+    depths.max_element().max(depth) - depths.min_element().min(depth) < SMOKE_DEPTH_TOLERANCE * fade
 }
 
 /// Weights of the texels (0,0) (1,0) (0,1) (1,1) around a pixel at `fraction` between them. `depths` are the texels'
@@ -22,7 +22,7 @@ pub fn is_smooth(depths: Vec4, depth: f32, fade: f32) -> bool {
 /// - nearest_depth: bilinear if all four are on the pixel's surface, else the closest texel alone. (Jansen and Bavoil,
 ///   2011)
 /// - joint_bilateral: bilinear times a Gaussian of the depth difference. (Kopf et al., 2007)
-/// - guided: bilinear, for pixels where [`is_smooth`] holds; the others use a [`GuidedFit`].
+/// - guided: bilinear, for pixels where [`bilinear_suffices`] holds; the others use a [`GuidedFit`].
 pub fn upsample_weights(mode: Upsample, fraction: Vec2, depths: Vec4, depth: f32) -> Vec4 {
     let g = 1.0 - fraction;
     let bilinear = Vec4::new(g.x * g.y, fraction.x * g.y, g.x * fraction.y, fraction.x * fraction.y);
@@ -30,7 +30,7 @@ pub fn upsample_weights(mode: Upsample, fraction: Vec2, depths: Vec4, depth: f32
     match mode {
         Upsample::Bilinear | Upsample::Guided => return bilinear,
         Upsample::JointBilateral => {
-            let sigmas = difference * (2.0 / (SAME_SURFACE * depth.max(1.0e-6)));
+            let sigmas = difference * (2.0 / (SURFACE_DEPTH_TOLERANCE * depth.max(1.0e-6)));
             let weights = bilinear * Vec4::from(sigmas.to_array().map(|s| (-0.5 * s * s).exp()));
             let total = weights.element_sum();
             if total > 1.0e-3 {
@@ -38,7 +38,7 @@ pub fn upsample_weights(mode: Upsample, fraction: Vec2, depths: Vec4, depth: f32
             }
         }
         Upsample::NearestDepth => {
-            if difference.max_element() <= SAME_SURFACE * depth {
+            if difference.max_element() <= SURFACE_DEPTH_TOLERANCE * depth {
                 return bilinear;
             }
         }
@@ -98,16 +98,16 @@ impl Default for GuidedFit {
     }
 }
 
-/// Weight of a texel. It falls to zero two texels away, and with depth as a Gaussian of which [`SAME_SURFACE`] is two
+/// Weight of a texel. It falls to zero two texels away, and with depth as a Gaussian of which [`SURFACE_DEPTH_TOLERANCE`] is two
 /// sigma.
 pub fn guided_weight(place: Vec3, depth: f32) -> f32 {
     let tent = (1.0 - place.xy().abs() * 0.5).max(Vec2::ZERO);
-    let sigmas = place.z * (2.0 / (SAME_SURFACE * depth.max(1.0e-6)));
+    let sigmas = place.z * (2.0 / (SURFACE_DEPTH_TOLERANCE * depth.max(1.0e-6)));
     tent.x * tent.x * tent.y * tent.y * ((-0.5 * sigmas * sigmas).exp() + 1.0e-4)
 }
 
 /// Returns the fit with one more texel.
-pub fn with_texel(fit: &GuidedFit, place: Vec3, weight: f32, value: Vec4) -> GuidedFit {
+pub fn add_texel(fit: &GuidedFit, place: Vec3, weight: f32, value: Vec4) -> GuidedFit {
     let w = place * weight;
     GuidedFit {
         total: fit.total + weight,

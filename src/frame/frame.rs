@@ -3,12 +3,12 @@
 use glam::Vec3;
 
 use super::bounds::Bounds;
-use super::emission::Emission;
+use super::emitter_snapshot::EmitterSnapshot;
 use super::light::Light;
 use super::material::Material;
 use super::particle::Particle;
 use super::view::View;
-use crate::settings::{Order, Settings, ShadeTree};
+use crate::settings::{DebugView, Order, Settings};
 
 /// Input of [`Renderer::prepare`](crate::Renderer::prepare) for one frame.
 #[derive(Clone, Copy, Debug)]
@@ -25,15 +25,15 @@ pub struct Frame<'a> {
     pub time: f32,
     /// Up direction of the world, along which the noise rises; need not be unit length.
     pub up: Vec3,
-    /// Debug views that may be shown of this frame; [`ShadeTree::Final`] for a normal image. All of them share one
-    /// accumulation, except [`ShadeTree::Overdraw`], which needs a pass of its own.
-    pub stages: &'a [ShadeTree],
+    /// Debug views that may be shown of this frame; [`DebugView::Final`] for a normal image. All of them share one
+    /// accumulation, except [`DebugView::Overdraw`], which needs a pass of its own.
+    pub stages: &'a [DebugView],
 }
 
 impl<'a> Frame<'a> {
     /// Frame without lights and systems; y is up.
     pub const fn new(view: View, scene_depth: SceneDepth<'a>) -> Self {
-        let stages = &[ShadeTree::Final];
+        let stages = &[DebugView::Final];
         Self { view, scene_depth, lights: &[], systems: &[], time: 0.0, up: Vec3::Y, stages }
     }
 }
@@ -85,7 +85,7 @@ pub struct System<'a> {
     /// World-space box that contains every sprite with its corners: [`Settings::reach`] radii around each particle. It
     /// decides which pixels are lit, which lights reach the smoke, and whether the system is visible. Sprites outside
     /// the box may be cut off; a box that is too large costs time. `None` measures a slice with
-    /// [`bounds_of`](crate::frame::bounds_of).
+    /// [`particle_bounds`](crate::frame::particle_bounds).
     pub bounds: Option<Bounds>,
     /// View depth, metres, of the plane on which light is evaluated, and by which systems are drawn far to near. It
     /// should move without jumps. The mean depth of the sprites, weighted by amount and area, is best; `None` uses it
@@ -125,10 +125,10 @@ pub enum Particles<'a> {
         is_sorted: bool,
     },
     /// Particles of an emitter at one time. The path `tiled` evaluates them on the GPU, with differences from
-    /// [`Emission::evaluate`] by the device's rounding of sines, roots and powers: some micrometres per metre and
-    /// second. Other paths evaluate them on the CPU. If `System::bounds` is `None`, the box is [`Emission::bounds`].
+    /// [`EmitterSnapshot::evaluate`] by the device's rounding of sines, roots and powers: some micrometres per metre and
+    /// second. Other paths evaluate them on the CPU. If `System::bounds` is `None`, the box is [`EmitterSnapshot::bounds`].
     /// The mean depth is taken from a sample of about a thousand.
-    Emission(&'a Emission),
+    Emitter(&'a EmitterSnapshot),
 }
 
 impl Particles<'_> {
@@ -137,7 +137,7 @@ impl Particles<'_> {
         match *self {
             Self::Slice(particles) => particles.len() as u32,
             Self::Buffer { count, .. } => count,
-            Self::Emission(emission) => emission.count(),
+            Self::Emitter(emission) => emission.count(),
         }
     }
 

@@ -1,7 +1,7 @@
 //! Input of a frame from the host: camera, scene depth, lights and particle systems.
 
 mod bounds;
-mod emission;
+mod emitter_snapshot;
 #[allow(clippy::module_inception, reason = "one file per part of the input, and one of them is the frame")]
 mod frame;
 mod light;
@@ -12,9 +12,9 @@ pub mod validate;
 mod view;
 
 pub use bounds::Bounds;
-pub use emission::Emission;
+pub use emitter_snapshot::EmitterSnapshot;
 pub use frame::{Frame, Particles, SceneDepth, System};
 pub use light::{Light, LightKind, MAX_LIGHTS};
 pub use material::Material;
-pub use particle::{LARGEST, Particle, bounds_of};
+pub use particle::{LARGEST, Particle, particle_bounds};
 pub use view::View;

@@ -53,7 +53,7 @@ impl Particle {
 
 /// Box that contains the sprites of all visible particles. `reach` is the distance of a sprite's corners from its
 /// centre, in radii; see [`Settings::reach`](crate::Settings::reach).
-pub fn bounds_of(particles: &[Particle], reach: f32) -> Bounds {
+pub fn particle_bounds(particles: &[Particle], reach: f32) -> Bounds {
     let mut bounds = Bounds::EMPTY;
     for particle in particles.iter().filter(|particle| particle.is_visible()) {
         bounds.include(particle.position, particle.radius * reach);

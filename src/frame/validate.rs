@@ -21,7 +21,7 @@ pub fn validate_settings(index: usize, settings: &Settings, picture: UVec2) -> R
 }
 
 /// Validates box and depth that a host gives for system `index`.
-pub fn validate_place(index: usize, bounds: Option<&Bounds>, depth: Option<f32>) -> Result<(), FieldError> {
+pub fn validate_bounds_and_depth(index: usize, bounds: Option<&Bounds>, depth: Option<f32>) -> Result<(), FieldError> {
     if let Some(bounds) = bounds {
         bounds.validate(|| format!("systems[{index}].bounds"))?;
     }

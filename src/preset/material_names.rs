@@ -2,13 +2,13 @@
 
 use std::path::{Component, Path};
 
-use super::folders::{ALIKE, PictureFolders};
-use super::pictures::Pictures;
+use super::asset_folders::{AssetFolders, MIN_SIMILARITY};
+use super::image_cache::ImageCache;
 use crate::assets::builtin::{self, Builtin};
 use crate::assets::material::MaterialAssets;
 use crate::assets::sprite::{Sprite, SpriteLayout, six_way_layout};
 use crate::error::{Error, FieldError};
-use crate::settings::{PictureRole, settings};
+use crate::settings::{ImageRole, settings};
 
 settings! {
     /// Images of a system: names of built-in ones, or PNG files beside the preset.
@@ -16,13 +16,13 @@ settings! {
     pub struct MaterialNames {
         "sprite":
         /// Flipbook of normal maps: shape and outline of every puff.
-        sprite: String = "puff".into(), picture(PictureRole::Sprite);
+        sprite: String = "puff".into(), picture(ImageRole::Sprite);
         /// Depth and motion of a sprite file, with the same layout; empty for none. Built-in sprites have their own.
-        detail: String = String::new(), picture(PictureRole::Detail);
+        detail: String = String::new(), picture(ImageRole::Detail);
         /// The sprite under light from six sides, with the same layout but twice as high: right, top and front above;
         /// left, bottom and back below. A file, for built-in sprites too; empty for none. `haze sprite bake --six-way`
         /// makes it.
-        six_way: String = String::new(), picture(PictureRole::SixWay);
+        six_way: String = String::new(), picture(ImageRole::SixWay);
         /// Number of frames side by side in a sprite file. Built-in sprites have their own.
         columns: u32 = 1, integer(1..=256, "frames");
         /// Number of frames one below the other in a sprite file.
@@ -33,21 +33,21 @@ settings! {
         "ramps and noise":
         /// Light by dot(n, l) and, if it has rows, by amount times boost: the colours of shade, terminator and lit
         /// side.
-        diffuse_ramp: String = "diffuse_soft".into(), picture(PictureRole::Ramp);
+        diffuse_ramp: String = "diffuse_soft".into(), picture(ImageRole::Ramp);
         /// The same for light from behind: a glowing rim, a dark middle.
-        backlight_ramp: String = "backlight_traced_ash".into(), picture(PictureRole::Ramp);
+        backlight_ramp: String = "backlight_traced_ash".into(), picture(ImageRole::Ramp);
         /// Light by amount: the colours of thin and thick smoke, independent of the lights.
-        soft_scatter_ramp: String = "scatter_mist".into(), picture(PictureRole::Ramp);
+        soft_scatter_ramp: String = "scatter_mist".into(), picture(ImageRole::Ramp);
         /// Glow by distance² and amount: the look of a light that shines through smoke.
-        specular_ramp: String = "specular_halo".into(), picture(PictureRole::Ramp);
+        specular_ramp: String = "specular_halo".into(), picture(ImageRole::Ramp);
         /// Painted lit sphere: light by paint alone.
-        motif: String = "motif_studio".into(), picture(PictureRole::Motif);
+        motif: String = "motif_studio".into(), picture(ImageRole::Motif);
         /// Colour by age: from flame to ash.
-        age_ramp: String = "age_smoke".into(), picture(PictureRole::Ramp);
+        age_ramp: String = "age_smoke".into(), picture(ImageRole::Ramp);
         /// Coverage by amount: soft, wispy or sharp silhouettes.
-        coverage_ramp: String = "coverage_soft".into(), picture(PictureRole::Ramp);
+        coverage_ramp: String = "coverage_soft".into(), picture(ImageRole::Ramp);
         /// Tiling 3D noise: a built-in one, or a PNG of slices one below the other.
-        noise: String = "fbm".into(), picture(PictureRole::Noise);
+        noise: String = "fbm".into(), picture(ImageRole::Noise);
     }
 }
 
@@ -55,16 +55,16 @@ impl MaterialNames {
     /// Loads all images. `folder` is the preset's; files are searched for there only.
     ///
     /// # Errors
-    /// [`Error::Picture`] with the field and the file, or [`Error::Field`] for a name that is neither built in nor a
-    /// file inside the folder, and for more than [`MAX_PICTURE_BYTES`](super::MAX_PICTURE_BYTES).
+    /// [`Error::Asset`] with the field and the file, or [`Error::Field`] for a name that is neither built in nor a
+    /// file inside the folder, and for more than [`MAX_IMAGE_BYTES`](super::MAX_IMAGE_BYTES).
     pub fn load(&self, folder: &Path) -> Result<MaterialAssets, Error> {
-        let loaded = self.load_from(&mut Pictures::new(PictureFolders::at(folder)));
+        let loaded = self.load_from(&mut ImageCache::new(AssetFolders::at(folder)));
         loaded.map_err(|mut errors| errors.swap_remove(0).1)
     }
 
     /// As [`MaterialNames::load`], with the images that other systems have loaded already. The errors are those of all
     /// fields in order, at least one, each with its field. Images that belong to the sprite report under `sprite`.
-    pub fn load_from(&self, pictures: &mut Pictures) -> Result<MaterialAssets, Vec<(&'static str, Error)>> {
+    pub fn load_from(&self, pictures: &mut ImageCache) -> Result<MaterialAssets, Vec<(&'static str, Error)>> {
         let mut errors = Vec::new();
         let sprite = kept("sprite", self.load_sprite(pictures), &mut errors);
         let mut ramp = |field, name: &str, list| {
@@ -90,7 +90,7 @@ impl MaterialNames {
         let noise = kept("noise", noise, &mut errors);
         match (sprite, ramps, noise) {
             (
-                Some(SpritePictures { sprite, detail, six_way }),
+                Some(SpriteImages { sprite, detail, six_way }),
                 (Some(a), Some(b), Some(c), Some(d), Some(e), Some(f), Some(g)),
                 Some(noise),
             ) => Ok(MaterialAssets {
@@ -111,7 +111,7 @@ impl MaterialNames {
     }
 
     /// Copy with default images for some fields, named as in the errors of [`MaterialNames::load_from`].
-    pub fn with_usual(&self, fields: &[&str]) -> Self {
+    pub fn with_defaults_for(&self, fields: &[&str]) -> Self {
         let usual = Self::default();
         let mut names = self.clone();
         for field in fields {
@@ -135,7 +135,7 @@ impl MaterialNames {
         names
     }
 
-    fn load_sprite(&self, pictures: &mut Pictures) -> Result<SpritePictures, Error> {
+    fn load_sprite(&self, pictures: &mut ImageCache) -> Result<SpriteImages, Error> {
         let ((sprite, detail), layout) = match builtin::find(builtin::SPRITES, &self.sprite) {
             Some(builtin) => (self.load_builtin(builtin)?, builtin.sprite_layout()?),
             None => {
@@ -146,7 +146,7 @@ impl MaterialNames {
             }
         };
         let six_way = beside(pictures, "six_way", &self.six_way, six_way_layout(layout))?;
-        Ok(SpritePictures { sprite, detail, six_way })
+        Ok(SpriteImages { sprite, detail, six_way })
     }
 
     fn load_builtin(&self, sprite: &Builtin) -> Result<(Sprite, Option<Sprite>), Error> {
@@ -169,7 +169,7 @@ impl MaterialNames {
 
 /// Loads an image that accompanies a sprite, if one is named.
 fn beside(
-    pictures: &mut Pictures,
+    pictures: &mut ImageCache,
     field: &'static str,
     name: &str,
     layout: SpriteLayout,
@@ -181,7 +181,7 @@ fn beside(
 }
 
 /// Sprite with its accompanying images.
-struct SpritePictures {
+struct SpriteImages {
     sprite: Sprite,
     detail: Option<Sprite>,
     six_way: Option<Sprite>,
@@ -189,7 +189,7 @@ struct SpritePictures {
 
 /// File that the name of an image stands for, relative to the preset's folder. `None` for built-in images and for files
 /// outside.
-pub fn picture_file(name: &str) -> Option<&Path> {
+pub fn image_file_path(name: &str) -> Option<&Path> {
     let path = Path::new(name);
     let is_png = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
     let stays = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
@@ -198,7 +198,7 @@ pub fn picture_file(name: &str) -> Option<&Path> {
 
 /// File that a name stands for, relative to the preset's folder.
 fn inside<'a>(field: &str, name: &'a str, list: &[Builtin]) -> Result<&'a Path, Error> {
-    if let Some(path) = picture_file(name) {
+    if let Some(path) = image_file_path(name) {
         return Ok(path);
     }
     let mut expected = "a PNG inside the preset's folder".to_owned();
@@ -206,7 +206,7 @@ fn inside<'a>(field: &str, name: &'a str, list: &[Builtin]) -> Result<&'a Path, 
         let names: Vec<_> = list.iter().map(|builtin| builtin.name).collect();
         let small = name.to_ascii_lowercase();
         let alike = names.iter().map(|other| (strsim::jaro_winkler(&small, other), other));
-        let nearest = alike.filter(|(alike, _)| *alike >= ALIKE).max_by(|a, b| a.0.total_cmp(&b.0));
+        let nearest = alike.filter(|(alike, _)| *alike >= MIN_SIMILARITY).max_by(|a, b| a.0.total_cmp(&b.0));
         let nearest = nearest.map(|(_, name)| format!("; the nearest name is {name:?}")).unwrap_or_default();
         expected = format!("one of {}, or {expected}{nearest}", names.join(", "));
     }
@@ -237,9 +237,9 @@ mod tests {
             fn vector(&mut self, _: &'static str, _: &mut Vec3, _: RangeInclusive<f32>, _: &'static str) {}
             fn group(&mut self, _: &'static str, _: &mut dyn Fields) {}
             fn item(&mut self, _: &'static str, _: usize, _: &mut dyn Fields) {}
-            fn picture(&mut self, name: &'static str, value: &mut String, role: PictureRole) {
+            fn picture(&mut self, name: &'static str, value: &mut String, role: ImageRole) {
                 let wanted = Role::of_field(name);
-                assert_eq!(wanted.is_some(), role == PictureRole::Ramp, "{name}");
+                assert_eq!(wanted.is_some(), role == ImageRole::Ramp, "{name}");
                 assert!(wanted.is_none() || wanted == Role::of_name(value), "{name} {value}");
                 self.0.extend(wanted);
             }

@@ -1,23 +1,23 @@
 //! Presets: a camera, lights and particle systems in a JSON file.
 
-mod cache;
+mod asset_folders;
 mod camera;
 mod environment;
-mod folders;
+mod image_cache;
 mod material_names;
-mod pictures;
+mod particle_source;
 #[allow(clippy::module_inception, reason = "one file per part of a preset, and one for the whole")]
 mod preset;
 mod sequence;
 mod text;
 
-pub use cache::{CacheEnd, CacheSource, UpAxis, cache_file};
+pub use asset_folders::AssetFolders;
 pub use camera::Camera;
 pub use environment::{Environment, SceneName};
-pub use folders::PictureFolders;
-pub use material_names::{MaterialNames, picture_file};
-pub use pictures::{MAX_PICTURE_BYTES, Pictures};
+pub use image_cache::{ImageCache, MAX_IMAGE_BYTES};
+pub use material_names::{MaterialNames, image_file_path};
+pub use particle_source::{EndBehaviour, ParticleFiles, UpAxis, particle_file_path};
 #[doc(hidden)]
-pub use preset::in_system;
+pub use preset::with_system_context;
 pub use preset::{DESIGN_HEIGHT, MAX_SYSTEMS, PRESET_VERSION, Preset, PresetSystem};
 pub use sequence::{Sequence, frame_files, is_there, places};

@@ -2,18 +2,18 @@
 
 use std::path::Path;
 
-use super::cache::CacheSource;
+use super::asset_folders::AssetFolders;
 use super::camera::Camera;
 use super::environment::Environment;
-use super::folders::PictureFolders;
+use super::image_cache::ImageCache;
 use super::material_names::MaterialNames;
-use super::pictures::Pictures;
+use super::particle_source::ParticleFiles;
 use crate::assets::material::MaterialAssets;
 use crate::assets::{builtin, json};
 use crate::emitter::{Emitter, MAX_PARTICLES};
 use crate::error::{Error, FieldError, name};
 use crate::frame::validate::validate_lights;
-use crate::frame::{Emission, Light};
+use crate::frame::{EmitterSnapshot, Light};
 use crate::settings::{FieldVisitor, Fields, Settings, validate};
 
 /// Version of the preset format that this code reads and writes.
@@ -67,7 +67,7 @@ pub struct PresetSystem {
     pub emitter: Emitter,
     /// Particle files, which replace the emitter.
     #[serde(default)]
-    pub cache: CacheSource,
+    pub cache: ParticleFiles,
     /// Images of the system.
     #[serde(default)]
     pub material: MaterialNames,
@@ -97,7 +97,7 @@ impl Default for PresetSystem {
         Self {
             name: "smoke".into(),
             emitter: Emitter::default(),
-            cache: CacheSource::default(),
+            cache: ParticleFiles::default(),
             material: MaterialNames::default(),
             settings: Settings::default(),
         }
@@ -175,18 +175,18 @@ impl Preset {
     /// # Errors
     /// As [`MaterialNames::load`], with the preset and the system.
     pub fn load_materials(&self, path: &Path) -> Result<Vec<MaterialAssets>, Error> {
-        self.load_materials_from(path, &PictureFolders::beside(path))
+        self.load_materials_from(path, &AssetFolders::beside(path))
     }
 
     /// As [`Preset::load_materials`], from other folders. `path`, the preset's file, is only named in errors.
     ///
     /// # Errors
     /// As [`Preset::load_materials`].
-    pub fn load_materials_from(&self, path: &Path, folders: &PictureFolders) -> Result<Vec<MaterialAssets>, Error> {
-        let mut pictures = Pictures::new(folders.clone());
+    pub fn load_materials_from(&self, path: &Path, folders: &AssetFolders) -> Result<Vec<MaterialAssets>, Error> {
+        let mut pictures = ImageCache::new(folders.clone());
         let load = |(index, system): (usize, &PresetSystem)| {
             let loaded = system.material.load_from(&mut pictures);
-            loaded.map_err(|mut errors| in_system(path, index, errors.swap_remove(0).1))
+            loaded.map_err(|mut errors| with_system_context(path, index, errors.swap_remove(0).1))
         };
         self.systems.iter().enumerate().map(load).collect()
     }
@@ -209,7 +209,7 @@ impl Preset {
         for (index, system) in self.systems.iter().enumerate() {
             system.emitter.validate(|| format!("systems[{index}].emitter"))?;
             if !system.cache.is_used() {
-                most += system.emitter.most_alive();
+                most += system.emitter.max_alive();
             }
             if most > f64::from(MAX_PARTICLES) {
                 let field = format!("systems[{index}].emitter.rate");
@@ -223,14 +223,14 @@ impl Preset {
 }
 
 /// Adds the preset's file and the system to an error of the system's files.
-pub fn in_system(path: &Path, index: usize, error: Error) -> Error {
+pub fn with_system_context(path: &Path, index: usize, error: Error) -> Error {
     match error {
         Error::Field(mut error) => {
             error.field = format!("systems[{index}].{}", error.field);
             Error::JsonField { path: path.into(), error }
         }
-        Error::Picture { named_by, error } => {
-            Error::Picture { named_by: format!("{}: systems[{index}].{named_by}", name(path)), error }
+        Error::Asset { named_by, error } => {
+            Error::Asset { named_by: format!("{}: systems[{index}].{named_by}", name(path)), error }
         }
         other => other,
     }
@@ -238,7 +238,7 @@ pub fn in_system(path: &Path, index: usize, error: Error) -> Error {
 
 impl PresetSystem {
     /// Unevaluated particles of the emitter at `time`, seconds.
-    pub fn emission(&self, time: f32) -> Emission {
+    pub fn emission(&self, time: f32) -> EmitterSnapshot {
         let frame_rate = if self.settings.sprite.freeze_animation { 0.0 } else { self.emitter.frame_rate };
         Emitter { frame_rate, ..self.emitter }.at(time)
     }

@@ -9,7 +9,7 @@ use crate::error::Error;
 const MOST_NAMES: usize = 100_000;
 
 /// Maximum number of frames.
-const MOST_FRAMES: usize = 10_000;
+const MAX_FRAMES: usize = 10_000;
 
 /// File name pattern like `smoke_####.ply`: frame numbers are zero-padded to the number of `#` and may have more
 /// digits.
@@ -65,8 +65,8 @@ pub fn frame_files(path: &Path) -> Result<Vec<(u32, PathBuf)>, Error> {
         let reason = "no such files; expected names with digits in place of #";
         return Err(io(IoError::new(ErrorKind::NotFound, reason)));
     }
-    if frames.len() > MOST_FRAMES {
-        let reason = format!("{} files; expected at most {MOST_FRAMES} frames", frames.len());
+    if frames.len() > MAX_FRAMES {
+        let reason = format!("{} files; expected at most {MAX_FRAMES} frames", frames.len());
         return Err(io(IoError::new(ErrorKind::InvalidData, reason)));
     }
     Ok(frames)
@@ -89,7 +89,7 @@ pub fn places(path: &Path) -> Vec<PathBuf> {
     let Some(sequence) = Sequence::of(path) else { return vec![path.into()] };
     let frames = sequence.frames().unwrap_or_default();
     let next = frames.last().map_or(1, |(last, _)| last.saturating_add(1));
-    frames.into_iter().take(MOST_FRAMES).map(|(_, file)| file).chain([sequence.file(next)]).collect()
+    frames.into_iter().take(MAX_FRAMES).map(|(_, file)| file).chain([sequence.file(next)]).collect()
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use serde::{Serialize, Serializer};
 
 use super::preset::{Preset, PresetSystem};
 use crate::frame::Light;
-use crate::settings::{Step, Value, walk};
+use crate::settings::{Step, Value, for_each_field};
 
 /// Fields that are always written, because they say what the file is.
 const ALWAYS: &[&str] = &["version", "name", "kind"];
@@ -22,14 +22,14 @@ impl Preset {
         let lists = (vec![Light::default()], vec![PresetSystem::default()]);
         let mut usual = Self { lights: lists.0, systems: lists.1, ..Self::default() };
         let mut defaults = HashMap::new();
-        walk(&mut usual, &mut |path, leaf| {
+        for_each_field(&mut usual, &mut |path, leaf| {
             defaults.insert(plain(path), leaf.value());
         });
         let mut root = Vec::new();
-        walk(&mut self.clone(), &mut |path, leaf| {
+        for_each_field(&mut self.clone(), &mut |path, leaf| {
             let value = leaf.value();
             let is_always = path.last().is_some_and(|(name, _)| ALWAYS.contains(name));
-            if is_always || stands_in(&old, path) || defaults.get(&plain(path)) != Some(&value) {
+            if is_always || is_present_in(&old, path) || defaults.get(&plain(path)) != Some(&value) {
                 insert(&mut root, path, finite(value));
             }
         });
@@ -43,7 +43,7 @@ fn plain(path: &[Step<'static>]) -> Vec<&'static str> {
     path.iter().map(|step| step.0).collect()
 }
 
-fn stands_in(old: &serde_json::Value, path: &[Step<'static>]) -> bool {
+fn is_present_in(old: &serde_json::Value, path: &[Step<'static>]) -> bool {
     let mut at = Some(old);
     for (name, index) in path {
         at = at.and_then(|old| old.get(name));
@@ -131,10 +131,10 @@ mod tests {
         usual.lights.push(Light::default());
         usual.systems.push(PresetSystem::default());
         let mut count = 0;
-        walk(&mut usual.clone(), &mut |_, _| count += 1);
+        for_each_field(&mut usual.clone(), &mut |_, _| count += 1);
         for moved in 0..count {
             let (mut preset, mut at) = (usual.clone(), 0);
-            walk(&mut preset, &mut |path, leaf| {
+            for_each_field(&mut preset, &mut |path, leaf| {
                 if at == moved && path[0].0 != "version" {
                     match leaf {
                         Leaf::Number(value) => *value = 0.1234567,

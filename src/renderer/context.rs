@@ -9,7 +9,7 @@ use super::gpu::capabilities::{read_only_depth_is_supported, six_way_is_supporte
 use super::layouts::Layouts;
 use super::material::{SharedTextures, create_material};
 use super::passes::Passes;
-use super::plan::one_of_each;
+use super::plan::plans_covering_every_pass;
 use super::shader::{Sources, checked_shader, embedded_shader};
 use super::tiled::Tiled;
 use crate::assets::material::MaterialAssets;
@@ -41,9 +41,9 @@ pub(crate) struct Shared {
 }
 
 impl Shared {
-    /// Returns the traversal of the path `tiled`, as in [`Situation::tiles`](super::plan::Situation::tiles).
+    /// Returns the traversal of the path `tiled`, as in [`PipelineInputs::tiles`](super::plan::Situation::tiles).
     pub fn tiles(&self) -> Option<bool> {
-        self.passes.tiled.as_ref().map(Tiled::in_step)
+        self.passes.tiled.as_ref().map(Tiled::cooperative)
     }
 
     pub fn path_model(&self) -> PathModel {
@@ -80,7 +80,7 @@ impl Context {
         let passes = Passes::new(device, &layouts, pipeline_cache, |name| checked_shader(device, name, sources))?;
         let context = Self::assemble(device, queue, layouts, passes);
         let shared = context.shared();
-        one_of_each(shared.read_only_depth, shared.tiles())
+        plans_covering_every_pass(shared.read_only_depth, shared.tiles())
             .iter()
             .try_for_each(|plan| shared.passes.compile(device, plan))?;
         Ok(context)
@@ -150,8 +150,8 @@ impl Context {
     /// default on GPUs), false for per invocation (default on CPUs). For tests and measurements of the variant that is
     /// not the device's default. Both give the same image.
     #[doc(hidden)]
-    pub fn walk_in_step(&self, in_step: bool) {
-        self.0.passes.tiled.iter().for_each(|tiled| tiled.set_in_step(in_step));
+    pub fn set_cooperative_traversal(&self, cooperative: bool) {
+        self.0.passes.tiled.iter().for_each(|tiled| tiled.set_cooperative(cooperative));
     }
 
     pub(crate) fn shared(&self) -> &Shared {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::auto::PathLoad;
+use super::auto::PathWorkload;
 use super::frame_bindings::DepthBindings;
 use super::gpu::Gpu;
 use super::gpu::record::begin_compute;
@@ -22,20 +22,20 @@ use super::passes::Passes;
 use super::plan::{DeferredPlan, ForwardPlan};
 use super::system_targets::ReadyTargets;
 use super::tiled::{TiledInputs, TiledPasses, TiledSystem};
-use crate::in_view::SystemInView;
-use crate::settings::ShadeTree;
+use crate::settings::DebugView;
+use crate::view_setup::SystemSetup;
 
 /// Pass that produces a system's particles on the GPU, if their buffer cannot be drawn as is.
 #[derive(Debug)]
 #[allow(clippy::large_enum_variant, reason = "as Draw")]
-pub(crate) enum ParticlesPass {
+pub(crate) enum ParticlePass {
     /// Evaluates an emitter.
     Emit(Emit),
     /// Sorts a host's particles back to front.
     DepthSort(DepthSort, Groups),
 }
 
-impl ParticlesPass {
+impl ParticlePass {
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
         match self {
             Self::Emit(emit) => emit.record(&mut begin_compute(encoder, "emit", timing)),
@@ -91,7 +91,7 @@ impl AccumulatePasses {
 }
 
 /// Resources from which a system's passes are built.
-pub(crate) struct Assembly<'a> {
+pub(crate) struct PassBuilder<'a> {
     pub gpu: Gpu<'a>,
     pub passes: &'a Passes,
     pub groups: Groups,
@@ -99,12 +99,12 @@ pub(crate) struct Assembly<'a> {
 }
 
 /// State of the path `tiled` that a system keeps between frames, and its workload.
-pub(crate) struct TiledPlace<'a> {
+pub(crate) struct TiledContext<'a> {
     pub system: &'a mut TiledSystem,
-    pub load: Option<&'a PathLoad>,
+    pub load: Option<&'a PathWorkload>,
 }
 
-impl Assembly<'_> {
+impl PassBuilder<'_> {
     pub fn forward(self, plan: &ForwardPlan) -> Draw {
         let pipeline = self.passes.forward(self.gpu.device, plan.key);
         Draw::Forward(Forward { pipeline, groups: self.groups, sprites: self.sprites })
@@ -115,16 +115,16 @@ impl Assembly<'_> {
     pub fn deferred(
         self,
         plan: &DeferredPlan<'_>,
-        tiles: TiledPlace<'_>,
+        tiles: TiledContext<'_>,
         targets: ReadyTargets<'_>,
-        in_view: &SystemInView,
+        setup: &SystemSetup,
         depth: &DepthBindings,
         host_depth: Option<&wgpu::TextureView>,
     ) -> Draw {
         let Self { gpu, passes, groups, sprites } = self;
         let device = gpu.device;
         let ReadyTargets { accumulation, baked_diffuse, inputs } = targets;
-        let size = in_view.rect.size;
+        let size = setup.rect.size;
         let downsample = |key: Option<DepthDownsampleKey>, target: &Option<wgpu::TextureView>| {
             Some(Downsample {
                 pipeline: passes.depth_downsample(device, key?),
@@ -148,11 +148,11 @@ impl Assembly<'_> {
             inputs: inputs.accumulate.as_ref().unwrap_or(&depth.accumulate_inputs).clone(),
             sprites: sprites.clone(),
         };
-        let mut pipelines = [const { None }; ShadeTree::ALL.len()];
+        let mut pipelines = [const { None }; DebugView::ALL.len()];
         for key in plan.transfers() {
-            pipelines[key.shade_tree as usize] = Some(passes.transfer(device, key));
+            pipelines[key.debug_view as usize] = Some(passes.transfer(device, key));
         }
-        let lights = in_view.uniform.light_count;
+        let lights = setup.uniform.light_count;
         Draw::Deferred(Deferred {
             depth_downsample: downsample(plan.depth_downsample, &accumulation.reduced_depth),
             depth_copy: downsample(plan.depth_copy, &accumulation.depth_copy),
@@ -167,7 +167,7 @@ impl Assembly<'_> {
                         sprites: &sprites,
                         size,
                         format: keys.accumulate.format,
-                        beside: keys.accumulate.beside,
+                        extra_attachment: keys.accumulate.extra_attachment,
                         attachments: &accumulation.attachments,
                         depth: accumulation.reduced_depth.as_ref().unwrap_or(&depth.depth),
                         load: tiles.load,

@@ -1,13 +1,13 @@
 //! Bind group 0 of every pass: view uniforms and scene depth.
 
 use super::gpu::Gpu;
-use super::gpu::checked::checked;
+use super::gpu::error_scopes::checked;
 use super::gpu::record::uniform_buffer;
 use super::layouts::{Layouts, bind_textures};
 use crate::error::FieldError;
 use crate::formula::uniforms::ViewUniform;
 use crate::frame::SceneDepth;
-use crate::in_view::ViewGeometry;
+use crate::view_setup::ViewGeometry;
 
 /// View uniforms, bound with each kind of scene depth.
 #[derive(Debug)]

@@ -1,11 +1,11 @@
 //! Instance buffer of a system whose particles are in CPU memory.
 
 use super::gpu::Gpu;
-use super::gpu::spare::Spare;
+use super::gpu::idle_counter::IdleCounter;
 use super::pass::sprites::Sprites;
 use crate::frame::{Particle, Particles};
-use crate::in_view::{SortScratch, ViewGeometry, in_order};
 use crate::settings::{Order, Settings};
+use crate::view_setup::{SortScratch, ViewGeometry, in_order};
 
 /// Processor that sorts particles for compute shaders. If the CPU also draws (software adapters), sorting on the CPU
 /// directly is faster.
@@ -18,7 +18,7 @@ pub(crate) enum SortedBy {
 #[derive(Debug, Default)]
 pub(crate) struct Instances {
     buffer: Option<wgpu::Buffer>,
-    spare: Spare,
+    spare: IdleCounter,
     sort: SortScratch,
     sorted: Vec<Particle>,
     /// Particles of an emitter, evaluated on the CPU.
@@ -45,7 +45,7 @@ impl Instances {
                 return (count > 0).then_some(sprites);
             }
             Particles::Slice(particles) => particles,
-            Particles::Emission(emission) => {
+            Particles::Emitter(emission) => {
                 emission.evaluate(&mut self.evaluated);
                 &self.evaluated
             }
@@ -54,7 +54,7 @@ impl Instances {
         in_order(view, particles, is_sorted, &mut self.sort, &mut self.sorted);
         let needed = size_of_val(self.sorted.as_slice()) as u64;
         let held = self.bytes();
-        let gives_back = self.spare.outlasts(needed.next_power_of_two() * 4 <= held);
+        let gives_back = self.spare.tick(needed.next_power_of_two() * 4 <= held);
         let mut usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST;
         usage.set(wgpu::BufferUsages::STORAGE, tiled.is_some());
         let fits = self.buffer.as_ref().is_some_and(|buffer| buffer.usage().contains(usage) && needed <= held);

@@ -8,7 +8,7 @@ use crate::assets::material::MaterialAssets;
 use crate::assets::noise::NoiseVolume;
 use crate::assets::ramp::Ramp;
 use crate::assets::sprite::Sprite;
-use crate::assets::sprite::filled::Filled;
+use crate::assets::sprite::alpha_bounds::AlphaBounds;
 use crate::error::FieldError;
 use crate::frame::Material;
 
@@ -61,7 +61,7 @@ pub(crate) fn create_material(
     let mut bytes = 0;
     let sprite = upload_sprite(gpu, "haze sprite", &assets.sprite, assets.six_way.as_ref(), &mut bytes);
     let info = assets.info();
-    let filled = upload_filled(gpu, &info.filled, &mut bytes);
+    let alpha_bounds = upload_filled(gpu, &info.alpha_bounds, &mut bytes);
     let detail = assets.detail.as_ref().map(|detail| upload_sprite(gpu, "haze detail", detail, None, &mut bytes));
     let noise = upload_noise(gpu, &assets.noise, &mut bytes);
     let mut ramp = |label, ramp| upload_ramp(gpu, label, ramp, &mut bytes);
@@ -90,7 +90,7 @@ pub(crate) fn create_material(
             texture(8, &noise),
             sampler(9, &shared.repeat),
             texture(10, &coverage_ramp),
-            texture(11, &filled),
+            texture(11, &alpha_bounds),
             texture(12, &backlight_ramp),
         ],
     });
@@ -218,8 +218,8 @@ fn upload_sprite(
 }
 
 /// Uploads the alpha bounds of a sprite: one texel per mip level and frame.
-fn upload_filled(gpu: &Gpu<'_>, filled: &Filled, bytes: &mut u64) -> wgpu::TextureView {
-    let size = extent(filled.size(), 1);
+fn upload_filled(gpu: &Gpu<'_>, alpha_bounds: &AlphaBounds, bytes: &mut u64) -> wgpu::TextureView {
+    let size = extent(alpha_bounds.size(), 1);
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("haze sprite filled"),
         size,
@@ -230,7 +230,7 @@ fn upload_filled(gpu: &Gpu<'_>, filled: &Filled, bytes: &mut u64) -> wgpu::Textu
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
-    let data = filled.bytes();
+    let data = alpha_bounds.bytes();
     *bytes += data.len() as u64;
     gpu.queue.write_texture(texture.as_image_copy(), data, layout(16 * size.width, size.height), size);
     texture.create_view(&wgpu::TextureViewDescriptor::default())

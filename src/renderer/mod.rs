@@ -16,7 +16,7 @@ mod passes;
 mod path_probe;
 mod plan;
 pub mod shader;
-mod slot;
+mod system_state;
 mod system_targets;
 mod targets;
 mod tiled;
@@ -26,10 +26,10 @@ mod warm_up;
 use crate::assets::material::MaterialAssets;
 use crate::error::{Error, FieldError};
 use crate::frame::{Frame, Material};
-use crate::in_view::ViewGeometry;
-use crate::settings::{Settings, ShadeTree};
+use crate::settings::{DebugView, Settings};
+use crate::view_setup::ViewGeometry;
 
-pub use auto::{PathChoice, PathCosts, PathLoad, PathModel, PathModelSource, PathReason};
+pub use auto::{PathChoice, PathCosts, PathModel, PathModelSource, PathReason, PathWorkload};
 pub use context::Context;
 pub use counts::{FrameCounts, Overdraw};
 pub use descriptor::Descriptor;
@@ -45,10 +45,10 @@ use draw::Draw;
 use frame_bindings::FrameBindings;
 use gpu::Gpu;
 use gpu::host_pass::HostPass;
-use gpu::record::set_part;
+use gpu::record::set_viewport_and_scissor;
 use gpu::submission::Submission;
-use plan::{Situation, plan};
-use slot::{FrameContext, Slot};
+use plan::{PipelineInputs, plan};
+use system_state::{FrameContext, SystemState};
 use validate::{host_size, validate};
 
 /// Draws particle systems into a host's frame.
@@ -66,7 +66,7 @@ pub struct Renderer {
     /// Frame number of `timing` at the last `prepare`.
     timed_frame: Option<u64>,
     bindings: FrameBindings,
-    slots: Vec<Slot>,
+    states: Vec<SystemState>,
     /// Visible systems, farthest first.
     order: Vec<Seen>,
     /// View of the last successful `prepare`.
@@ -76,7 +76,7 @@ pub struct Renderer {
 /// A visible system.
 #[derive(Clone, Copy, Debug)]
 struct Seen {
-    slot: usize,
+    state: usize,
     /// View depth of the smoke's centre, metres.
     distance: f32,
 }
@@ -100,7 +100,7 @@ impl Renderer {
             timing: None,
             timed_frame: None,
             bindings: FrameBindings::new(device),
-            slots: Vec::new(),
+            states: Vec::new(),
             order: Vec::new(),
             view: None,
             context,
@@ -134,7 +134,7 @@ impl Renderer {
     /// pipeline the device rejects, because of a shader of [`Context::with_shaders`] or a driver error.
     pub fn warm_up(&self, expected: &WarmUp<'_>) -> Result<(), Error> {
         let view = ViewGeometry::new(&expected.view)?;
-        let situation = self.situation(&view, expected.scene_depth, expected.stages);
+        let inputs = self.inputs(&view, expected.scene_depth, expected.stages);
         let shared = self.context.shared();
         for (index, settings) in expected.settings.iter().enumerate() {
             settings.validate(|| format!("settings[{index}]"))?;
@@ -144,7 +144,7 @@ impl Renderer {
                 for &path in settings.path.candidates() {
                     for back_faces in [false, true] {
                         let settings = Settings { path, ..settings };
-                        shared.passes.compile(&shared.device, &plan(&situation, &settings, back_faces))?;
+                        shared.passes.compile(&shared.device, &plan(&inputs, &settings, back_faces))?;
                     }
                 }
             }
@@ -176,29 +176,29 @@ impl Renderer {
         let shared = context.shared();
         let view = ViewGeometry::new(&frame.view)?;
         validate(shared, &self.host, frame)?;
-        let situation = self.situation(&view, frame.scene_depth.kind(), frame.stages);
+        let inputs = self.inputs(&view, frame.scene_depth.kind(), frame.stages);
         // Bind group 0 of every system: view and scene depth.
         self.bindings.write(&gpu, &shared.layouts, &view, &frame.scene_depth)?;
-        self.keep_slots(frame);
+        self.sync_system_states(frame);
         self.submission.follow(encoder);
         let timing = self.timing.as_ref();
         self.timed_frame = timing.map(|timing| timing.enter(self.timed_frame));
 
         let host_size = host_size(&frame.scene_depth);
         let bindings = &self.bindings;
-        let context = FrameContext { gpu, shared, frame, view: &view, host_size, situation: &situation, bindings };
+        let context = FrameContext { gpu, shared, frame, view: &view, host_size, inputs: &inputs, bindings };
         for system in frame.systems {
-            let Some(index) = self.slots.iter().position(|slot| slot.key == system.key) else { continue };
-            let slot = &mut self.slots[index];
+            let Some(index) = self.states.iter().position(|state| state.key == system.key) else { continue };
+            let state = &mut self.states[index];
             // Computes the placement in the view; uploads lights, settings and sorted particles.
-            slot.write(&context, system);
-            if let (Some(timing), Some(choice)) = (timing, slot.choice()) {
+            state.write(&context, system);
+            if let (Some(timing), Some(choice)) = (timing, state.choice()) {
                 timing.add_choice(system.key, choice);
             }
-            let Some(draw) = slot.draw() else { continue };
-            self.order.push(Seen { slot: index, distance: slot.distance() });
+            let Some(draw) = state.draw() else { continue };
+            self.order.push(Seen { state: index, distance: state.distance() });
             // Evaluates an emitter's particles, or sorts a host's particles back to front.
-            slot.particles_pass().iter().for_each(|pass| pass.record(encoder, timing));
+            state.particles_pass().iter().for_each(|pass| pass.record(encoder, timing));
             let Draw::Deferred(draw) = draw else { continue };
             // Downsamples the scene depth; writes a second copy if the backend cannot test what it samples.
             draw.depth_downsample.iter().chain(&draw.depth_copy).for_each(|pass| pass.record(encoder, timing));
@@ -221,18 +221,18 @@ impl Renderer {
     /// vertex buffer 0, and sets viewport and scissor rectangle to the view. Leaves stencil reference and blend
     /// constant unchanged.
     pub fn render(&self, pass: &mut wgpu::RenderPass<'_>) {
-        self.render_stage(pass, ShadeTree::Final);
+        self.render_stage(pass, DebugView::Final);
     }
 
     /// Records one stage of the shading instead of the final image. Draws nothing unless `stage` is one of the frame's
     /// [`stages`](Frame::stages). After one `prepare`, any number of stages can be drawn.
-    pub fn render_stage(&self, pass: &mut wgpu::RenderPass<'_>, stage: ShadeTree) {
+    pub fn render_stage(&self, pass: &mut wgpu::RenderPass<'_>, stage: DebugView) {
         let Some(view) = self.view.as_ref().filter(|_| !self.order.is_empty()) else { return };
-        self.submission.follow_pass(pass);
+        self.submission.track_pass(pass);
         let timing = self.timing.as_ref();
-        set_part(pass, view.origin, view.size);
+        set_viewport_and_scissor(pass, view.origin, view.size);
         for seen in &self.order {
-            match self.slots[seen.slot].draw() {
+            match self.states[seen.state].draw() {
                 // Path `forward`: lights every sprite fragment.
                 Some(Draw::Forward(forward)) if stage.is_picture() => {
                     Timing::inside(timing, "forward", pass, |pass| forward.record(pass));
@@ -253,32 +253,32 @@ impl Renderer {
     /// Returns the targets of the system with this key, as the last [`prepare`](Self::prepare) fills them, for tools
     /// and for a host's own passes. `None` if the system is out of sight or drawn forward.
     pub fn targets(&self, key: u64) -> Option<TargetViews<'_>> {
-        self.slots.iter().find(|slot| slot.key == key)?.target_views()
+        self.states.iter().find(|state| state.key == key)?.target_views()
     }
 
     /// Returns the GPU memory that this renderer holds, in bytes.
     pub fn memory_use(&self) -> MemoryUse {
         let own = MemoryUse { buffers: self.bindings.bytes(), ..MemoryUse::default() };
-        self.slots.iter().map(Slot::memory_use).chain([own]).sum()
+        self.states.iter().map(SystemState::memory_use).chain([own]).sum()
     }
 
     /// Counts the systems, sprites and texels that [`render`](Self::render) draws after the last
     /// [`prepare`](Self::prepare).
     pub fn counts(&self) -> FrameCounts {
-        self.order.iter().map(|seen| self.slots[seen.slot].counts()).sum()
+        self.order.iter().map(|seen| self.states[seen.state].counts()).sum()
     }
 
     /// Returns the path that `auto` chose in the last [`prepare`](Self::prepare) for the system with this key, with the
     /// reason. `None` if the system is out of sight or its path setting is not `auto`.
     pub fn path_choice(&self, key: u64) -> Option<PathChoice> {
-        self.slots.iter().find(|slot| slot.key == key)?.choice()
+        self.states.iter().find(|state| state.key == key)?.choice()
     }
 
     /// Computes the overdraw of the sprites of the last [`prepare`](Self::prepare). Every call iterates over all
     /// sprites on the CPU: about 0.5 ms for 10,000 sprites.
     pub fn overdraw(&self) -> Overdraw {
         let Some(view) = self.view.map(|view| view.uniform(false)) else { return Overdraw::default() };
-        self.order.iter().map(|seen| self.slots[seen.slot].overdraw(&view)).sum()
+        self.order.iter().map(|seen| self.states[seen.state].overdraw(&view)).sum()
     }
 
     /// Measures the GPU time of this renderer's passes from the next [`prepare`](Self::prepare) on. `None`, the initial
@@ -296,13 +296,13 @@ impl Renderer {
         Ok(())
     }
 
-    fn situation<'a>(
+    fn inputs<'a>(
         &self,
         view: &ViewGeometry,
         scene_depth: SceneDepthKind,
-        stages: &'a [ShadeTree],
-    ) -> Situation<'a> {
-        Situation {
+        stages: &'a [DebugView],
+    ) -> PipelineInputs<'a> {
+        PipelineInputs {
             host: self.host,
             exact_filtering: self.exact_filtering,
             read_only_depth: self.context.shared().read_only_depth,
@@ -328,15 +328,15 @@ impl Renderer {
 
     /// Keeps one state per system of the frame, found by its key. Drops states whose system has been absent for more
     /// than 120 frames.
-    fn keep_slots(&mut self, frame: &Frame<'_>) {
-        let is_missing = |slot: &Slot| !frame.systems.iter().any(|system| system.key == slot.key);
-        self.slots.retain_mut(|slot| {
-            let is_missing = is_missing(slot);
-            !slot.is_abandoned(is_missing)
+    fn sync_system_states(&mut self, frame: &Frame<'_>) {
+        let is_missing = |state: &SystemState| !frame.systems.iter().any(|system| system.key == state.key);
+        self.states.retain_mut(|state| {
+            let is_missing = is_missing(state);
+            !state.tick_absence(is_missing)
         });
         for system in frame.systems {
-            if !self.slots.iter().any(|slot| slot.key == system.key) {
-                self.slots.push(Slot::new(system.key, self.context.shared()));
+            if !self.states.iter().any(|state| state.key == system.key) {
+                self.states.push(SystemState::new(system.key, self.context.shared()));
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Shaders of all passes, and their pipelines.
 
 use super::gpu::capabilities::tiles_are_supported;
-use super::gpu::pipeline::{Shader, Variants};
+use super::gpu::pipeline::{PipelineVariants, Shader};
 use super::layouts::Layouts;
 use super::pass::accumulate::{self, AccumulateKey};
 use super::pass::depth_downsample::{self, DepthDownsampleKey};
@@ -17,13 +17,13 @@ use crate::error::Error;
 /// Shaders and pipelines of all passes, independent of size and view.
 #[derive(Debug)]
 pub(crate) struct Passes {
-    depth_downsample: Variants<DepthDownsampleKey>,
-    diffuse_bake: Variants<DiffuseBakeKey>,
-    accumulate: Variants<AccumulateKey>,
-    light_target: Variants<LightingKey>,
-    transfer: Variants<TransferKey>,
-    specular_scatter: Variants<SpecularScatterKey>,
-    forward: Variants<ForwardKey>,
+    depth_downsample: PipelineVariants<DepthDownsampleKey>,
+    diffuse_bake: PipelineVariants<DiffuseBakeKey>,
+    accumulate: PipelineVariants<AccumulateKey>,
+    light_target: PipelineVariants<LightingKey>,
+    transfer: PipelineVariants<TransferKey>,
+    specular_scatter: PipelineVariants<SpecularScatterKey>,
+    forward: PipelineVariants<ForwardKey>,
     /// `None` if the device does not support the path `tiled`.
     pub tiled: Option<Tiled>,
 }
@@ -44,7 +44,7 @@ impl Passes {
         macro_rules! variants {
             ($pass:ident, $groups:expr) => {{
                 let name = stringify!($pass);
-                Variants::new(device, name, shader(name)?, $pass::describe, $groups, cache)
+                PipelineVariants::new(device, name, shader(name)?, $pass::describe, $groups, cache)
             }};
         }
         Ok(Self {

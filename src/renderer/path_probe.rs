@@ -7,22 +7,22 @@ use glam::camera::rh::proj::directx::perspective;
 use glam::{Mat4, UVec2, Vec3};
 
 use super::Renderer;
-use super::auto::{PathCosts, PathLoad, PathModel};
+use super::auto::{PathCosts, PathModel, PathWorkload};
 use super::context::Context;
 use super::descriptor::Descriptor;
 use super::gpu::record::{begin_pass, written_depth};
 use crate::error::Error;
 use crate::frame::{Frame, Material, Particle, Particles, SceneDepth, System, View};
 use crate::preset::MaterialNames;
-use crate::settings::{Layers, Path, Settings};
+use crate::settings::{Layers, RenderPath, Settings};
 
 /// Test scene: `SPRITES` sprites, one behind the other, each covering an image of `SIZE` pixels.
 const SIZE: UVec2 = UVec2::splat(256);
 const SPRITES: u32 = 16;
-/// Minimum time of a measured frame. It is also at least `MORE_THAN_ONCE` times the time of a frame that draws all
+/// Minimum time of a measured frame. It is also at least `MIN_TIME_FACTOR` times the time of a frame that draws all
 /// sprites once. Jitter of clock and queue is small against it.
 const LONG_ENOUGH: Duration = Duration::from_millis(4);
-const MORE_THAN_ONCE: u32 = 2;
+const MIN_TIME_FACTOR: u32 = 2;
 /// Maximum number of times that a frame draws all sprites.
 const MOST_LOOPS: u32 = 4096;
 /// Frames measured per path and loop count. The shortest counts, because disturbances only lengthen a frame; many short
@@ -57,7 +57,7 @@ impl Context {
         let times = |costs: PathCosts, seconds: f64| {
             // Expected time of one pass over all sprites, without the costs per frame.
             let expected = costs.milliseconds(&load, 1.0)
-                - costs.milliseconds(&PathLoad { fragments: 0.0, sprites: 0.0, ..load }, 1.0);
+                - costs.milliseconds(&PathWorkload { fragments: 0.0, sprites: 0.0, ..load }, 1.0);
             (1.0e3 * seconds) as f32 / expected
         };
         let model = class.probed([times(class.raster, seconds[0]), times(class.tiled, seconds[1])]);
@@ -66,7 +66,7 @@ impl Context {
     }
 }
 
-const PATHS: [Path; 2] = [Path::Raster, Path::Tiled];
+const PATHS: [RenderPath; 2] = [RenderPath::Raster, RenderPath::Tiled];
 
 /// Renderer and test scene of the measurement.
 struct Bench<'a> {
@@ -113,8 +113,8 @@ impl<'a> Bench<'a> {
     }
 
     /// Returns the workload of the last frame, which drew all sprites once.
-    fn load(&self) -> PathLoad {
-        PathLoad {
+    fn load(&self) -> PathWorkload {
+        PathWorkload {
             technique: Settings::default().technique,
             sprites: f64::from(SPRITES),
             fragments: self.renderer.overdraw().fragments,
@@ -134,7 +134,7 @@ impl<'a> Bench<'a> {
         for (path, loops) in PATHS.into_iter().zip(&mut loops) {
             // The first frame compiles pipelines and is not measured.
             self.frame(path, 1, submit)?;
-            let enough = LONG_ENOUGH.max(MORE_THAN_ONCE * self.frame(path, 1, submit)?);
+            let enough = LONG_ENOUGH.max(MIN_TIME_FACTOR * self.frame(path, 1, submit)?);
             while *loops < MOST_LOOPS && self.shortest(path, *loops, submit)? < enough {
                 *loops *= 2;
             }
@@ -157,7 +157,7 @@ impl<'a> Bench<'a> {
     /// Returns the time of the shortest of a few frames: a single delayed frame could pass for a long one.
     fn shortest(
         &mut self,
-        path: Path,
+        path: RenderPath,
         loops: u32,
         submit: &mut impl FnMut(wgpu::CommandEncoder) -> Result<(), Error>,
     ) -> Result<Duration, Error> {
@@ -171,7 +171,7 @@ impl<'a> Bench<'a> {
     /// Draws all sprites `loops` times. Returns the time from submission to completion.
     fn frame(
         &mut self,
-        path: Path,
+        path: RenderPath,
         loops: u32,
         submit: &mut impl FnMut(wgpu::CommandEncoder) -> Result<(), Error>,
     ) -> Result<Duration, Error> {

@@ -13,12 +13,12 @@ use super::pass::sprites::SpriteKey;
 use super::pass::tile_accumulate::TileAccumulateKey;
 use super::pass::tile_project::TileProjectKey;
 use super::pass::transfer::TransferKey;
-use super::targets::Beside;
+use super::targets::ExtraAttachment;
 use super::tiled::TiledKeys;
 use crate::formula::diffuse_bake::baked_size_and_layers;
 use crate::frame::SceneDepth;
 use crate::settings::{
-    DepthSource, DiffuseMode, Layers, LightingResolution, Order, Path, Settings, ShadeTree, Technique,
+    DebugView, DepthSource, DiffuseMode, Layers, LightingResolution, Order, RenderPath, Settings, Technique,
 };
 
 /// Kind of scene depth that a host supplies, and the format of the depth buffer.
@@ -45,7 +45,7 @@ impl SceneDepth<'_> {
 
 /// Inputs that all systems of a frame share.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Situation<'a> {
+pub(crate) struct PipelineInputs<'a> {
     pub host: HostPass,
     pub exact_filtering: bool,
     /// True if one pass can test and sample the same depth buffer.
@@ -60,7 +60,7 @@ pub(crate) struct Situation<'a> {
     /// Size of the view, pixels.
     pub size: UVec2,
     /// Stages that may be shown.
-    pub stages: &'a [ShadeTree],
+    pub stages: &'a [DebugView],
 }
 
 /// Passes and pipeline keys of one system.
@@ -97,38 +97,38 @@ pub(crate) struct DeferredPlan<'a> {
     pub light_target: Option<LightingKey>,
     /// Key of the stage `Final`; `transfers` derives the keys of all stages from it.
     pub transfer: TransferKey,
-    pub stages: &'a [ShadeTree],
+    pub stages: &'a [DebugView],
     pub specular_scatter: Option<SpecularScatterKey>,
 }
 
 /// Plans the passes of a system. `back_faces`: true if the near plane cuts its bounding box, or its sprites show
 /// through the scene.
-pub(crate) fn plan<'a>(situation: &Situation<'a>, settings: &Settings, back_faces: bool) -> Plan<'a> {
-    let reads_linear = reads_linear(situation.scene_depth, situation.read_only_depth, settings);
+pub(crate) fn plan<'a>(inputs: &PipelineInputs<'a>, settings: &Settings, back_faces: bool) -> Plan<'a> {
+    let reads_linear = reads_linear(inputs.scene_depth, inputs.read_only_depth, settings);
     if !settings.is_forward() {
-        return Plan::Deferred(deferred(situation, settings, back_faces, reads_linear));
+        return Plan::Deferred(deferred(inputs, settings, back_faces, reads_linear));
     }
-    if !situation.stages.iter().any(|stage| stage.is_picture()) {
+    if !inputs.stages.iter().any(|stage| stage.is_picture()) {
         return Plan::Nothing;
     }
     let key = ForwardKey {
-        host: situation.host,
+        host: inputs.host,
         blend_mode: settings.blend_mode,
-        sprite: SpriteKey::new(settings, reads_linear, situation.exact_filtering),
+        sprite: SpriteKey::new(settings, reads_linear, inputs.exact_filtering),
         age_colour: settings.sprite.age_colour > 0.0,
-        shows_through: settings.fade_through() > 0.0,
+        shows_through: settings.show_through_distance() > 0.0,
         soft_scatter_mode: settings.soft_scatter.mode,
         backlight: settings.diffuse.backlight,
         ramp_filter: settings.ramp_filter,
-        reversed: situation.reversed,
+        reversed: inputs.reversed,
     };
     Plan::Forward(ForwardPlan { reads_linear, key })
 }
 
 /// Returns plans that together use every pass, for a minimal host pass.
-pub(crate) fn one_of_each(read_only_depth: bool, tiles: Option<bool>) -> [Plan<'static>; 4] {
+pub(crate) fn plans_covering_every_pass(read_only_depth: bool, tiles: Option<bool>) -> [Plan<'static>; 4] {
     let depth_format = wgpu::TextureFormat::Depth32Float;
-    let situation = Situation {
+    let inputs = PipelineInputs {
         host: HostPass { depth_format: Some(depth_format), ..HostPass::plain(wgpu::TextureFormat::Rgba8Unorm) },
         exact_filtering: false,
         read_only_depth,
@@ -137,34 +137,34 @@ pub(crate) fn one_of_each(read_only_depth: bool, tiles: Option<bool>) -> [Plan<'
         reversed: false,
         mirrored: false,
         size: UVec2::ONE,
-        stages: &[ShadeTree::Final],
+        stages: &[DebugView::Final],
     };
     let mut deferred = Settings::default();
     deferred.diffuse.mode = DiffuseMode::Cubemap;
     let mut lit = deferred;
     lit.accumulate.lighting_resolution = LightingResolution::Target;
-    let forward = Settings { path: Path::Forward, ..Settings::default() };
-    let tiled = Settings { path: Path::Tiled, ..Settings::default() };
-    [deferred, lit, forward, tiled].map(|settings| plan(&situation, &settings, false))
+    let forward = Settings { path: RenderPath::Forward, ..Settings::default() };
+    let tiled = Settings { path: RenderPath::Tiled, ..Settings::default() };
+    [deferred, lit, forward, tiled].map(|settings| plan(&inputs, &settings, false))
 }
 
 fn deferred<'a>(
-    situation: &Situation<'a>,
+    inputs: &PipelineInputs<'a>,
     settings: &Settings,
     back_faces: bool,
     reads_linear: bool,
 ) -> DeferredPlan<'a> {
-    let (accumulate, stages) = (&settings.accumulate, situation.stages);
-    let (host, ramp_filter, exact_filtering) = (situation.host, settings.ramp_filter, situation.exact_filtering);
+    let (accumulate, stages) = (&settings.accumulate, inputs.stages);
+    let (host, ramp_filter, exact_filtering) = (inputs.host, settings.ramp_filter, inputs.exact_filtering);
     let host_depth = accumulate.depth_source == DepthSource::Host;
-    let depth_test = depth_test(situation, settings);
+    let depth_test = depth_test(inputs, settings);
     let downsample = |copy| DepthDownsampleKey { mode: accumulate.depth_downsample, copy };
     let bakes = !settings.is_six_way() && baked_size_and_layers(settings.diffuse.mode).is_some();
-    let lights_target = stages.iter().any(|stage| stage.is_picture()) && accumulate.lights_target(situation.size);
+    let lights_target = stages.iter().any(|stage| stage.is_picture()) && accumulate.lights_target(inputs.size);
     let lighting = LightingKey {
         encoding: accumulate.encoding,
         decode: accumulate.decode,
-        beside: Beside::of(settings),
+        extra_attachment: ExtraAttachment::of(settings),
         diffuse_mode: settings.diffuse.mode,
         soft_scatter_mode: settings.soft_scatter.mode,
         backlight: settings.diffuse.backlight,
@@ -176,7 +176,7 @@ fn deferred<'a>(
         format: accumulate.format,
         encoding: accumulate.encoding,
         order: accumulate.order,
-        beside: Beside::of(settings),
+        extra_attachment: ExtraAttachment::of(settings),
         sprite: SpriteKey::new(settings, reads_linear, exact_filtering),
         host_depth,
         depth_test,
@@ -193,11 +193,11 @@ fn deferred<'a>(
             exact_filtering,
         }),
         accumulate: accumulate_key,
-        tiled: situation
+        tiled: inputs
             .tiles
-            .filter(|_| settings.path == Path::Tiled)
-            .map(|in_step| tiled_keys(&accumulate_key, accumulate.layers, in_step, exact_filtering)),
-        overdraw: stages.contains(&ShadeTree::Overdraw).then_some(AccumulateKey { overdraw: true, ..accumulate_key }),
+            .filter(|_| settings.path == RenderPath::Tiled)
+            .map(|cooperative| tiled_keys(&accumulate_key, accumulate.layers, cooperative, exact_filtering)),
+        overdraw: stages.contains(&DebugView::Overdraw).then_some(AccumulateKey { overdraw: true, ..accumulate_key }),
         light_target: lights_target.then_some(lighting),
         transfer: TransferKey {
             host,
@@ -205,12 +205,12 @@ fn deferred<'a>(
             lit: false,
             upsample: accumulate.upsample,
             host_depth,
-            shade_tree: ShadeTree::Final,
+            debug_view: DebugView::Final,
             // Without a depth attachment, the hardware cannot hide the box behind the scene, so front faces have no
             // advantage; back faces are never clipped by the near plane.
             back_faces: back_faces || host.depth_format.is_none(),
-            reversed: situation.reversed,
-            mirrored: situation.mirrored,
+            reversed: inputs.reversed,
+            mirrored: inputs.mirrored,
             coverage: settings.coverage,
         },
         stages,
@@ -223,8 +223,8 @@ fn deferred<'a>(
     }
 }
 
-fn tiled_keys(key: &AccumulateKey, layers: Layers, in_step: bool, exact_filtering: bool) -> TiledKeys {
-    let &AccumulateKey { format, encoding, order, beside, sprite, host_depth, .. } = key;
+fn tiled_keys(key: &AccumulateKey, layers: Layers, cooperative: bool, exact_filtering: bool) -> TiledKeys {
+    let &AccumulateKey { format, encoding, order, extra_attachment, sprite, host_depth, .. } = key;
     let weighted = order == Order::Weighted;
     TiledKeys {
         project: TileProjectKey { sprite, weighted },
@@ -233,26 +233,26 @@ fn tiled_keys(key: &AccumulateKey, layers: Layers, in_step: bool, exact_filterin
             format,
             encoding,
             weighted,
-            beside,
+            extra_attachment,
             host_depth,
             // With weighted normals every sprite counts, even behind opaque smoke.
             stops: layers == Layers::Visible && !weighted,
             // Per-invocation traversal loads sprite texels in its own way, which is not the reference's filter.
-            in_step: in_step || exact_filtering,
+            cooperative: cooperative || exact_filtering,
         },
     }
 }
 
 /// Selects the depth test that rejects hidden sprites before shading.
-fn depth_test(situation: &Situation, settings: &Settings) -> DepthTest {
-    if settings.fade_through() > 0.0 {
+fn depth_test(inputs: &PipelineInputs, settings: &Settings) -> DepthTest {
+    if settings.show_through_distance() > 0.0 {
         return DepthTest::InShader;
     }
     if settings.accumulate.depth_source == DepthSource::Reduced {
-        return if situation.read_only_depth { DepthTest::Reduced } else { DepthTest::Copy };
+        return if inputs.read_only_depth { DepthTest::Reduced } else { DepthTest::Copy };
     }
-    match situation.scene_depth {
-        SceneDepthKind::Buffer(format) | SceneDepthKind::Both(format) => DepthTest::Host(format, situation.reversed),
+    match inputs.scene_depth {
+        SceneDepthKind::Buffer(format) | SceneDepthKind::Both(format) => DepthTest::Host(format, inputs.reversed),
         // `validate` refuses this case.
         SceneDepthKind::Linear => DepthTest::InShader,
     }
@@ -271,10 +271,10 @@ pub(crate) fn reads_linear(scene_depth: SceneDepthKind, read_only_depth: bool, s
 impl DeferredPlan<'_> {
     /// Returns the transfer keys of all stages that draw the bounding box.
     pub fn transfers(&self) -> impl Iterator<Item = TransferKey> {
-        let drawn = self.stages.iter().filter(|stage| **stage != ShadeTree::SpecularScatter);
+        let drawn = self.stages.iter().filter(|stage| **stage != DebugView::SpecularScatter);
         // Stages that show a part of the light compute it in transfer, not in light_target.
-        let is_lit = |stage: ShadeTree| self.light_target.is_some() && stage.is_picture();
-        drawn.map(move |&shade_tree| TransferKey { shade_tree, lit: is_lit(shade_tree), ..self.transfer })
+        let is_lit = |stage: DebugView| self.light_target.is_some() && stage.is_picture();
+        drawn.map(move |&debug_view| TransferKey { debug_view, lit: is_lit(debug_view), ..self.transfer })
     }
 }
 
@@ -292,11 +292,11 @@ impl Plan<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::{DiffuseMode, FadeCurve, Path};
+    use crate::settings::{DiffuseMode, FadeCurve, RenderPath};
     use wgpu::TextureFormat::{Depth24Plus, Depth32Float, Rgba16Float};
 
-    fn situation() -> Situation<'static> {
-        Situation {
+    fn inputs() -> PipelineInputs<'static> {
+        PipelineInputs {
             host: HostPass { depth_format: Some(Depth32Float), ..HostPass::plain(Rgba16Float) },
             exact_filtering: false,
             read_only_depth: true,
@@ -305,12 +305,12 @@ mod tests {
             reversed: false,
             mirrored: false,
             size: UVec2::new(1280, 720),
-            stages: &[ShadeTree::Final],
+            stages: &[DebugView::Final],
         }
     }
 
-    fn deferred<'a>(situation: &Situation<'a>, settings: &Settings) -> DeferredPlan<'a> {
-        match plan(situation, settings, false) {
+    fn deferred<'a>(inputs: &PipelineInputs<'a>, settings: &Settings) -> DeferredPlan<'a> {
+        match plan(inputs, settings, false) {
             Plan::Deferred(plan) => plan,
             other => panic!("{other:?}"),
         }
@@ -325,14 +325,14 @@ mod tests {
         for row in rows {
             let cells: Vec<_> = row.trim_matches('|').split('|').map(str::trim).collect();
             let [depth, technique, source, backend, read, compared, tested] = cells[..] else { panic!("{row}") };
-            let situation = Situation {
+            let inputs = PipelineInputs {
                 scene_depth: match depth {
                     "Buffer" => SceneDepthKind::Buffer(Depth24Plus),
                     "Linear" => SceneDepthKind::Linear,
                     _ => SceneDepthKind::Both(Depth24Plus),
                 },
                 read_only_depth: backend != "OpenGL",
-                ..situation()
+                ..inputs()
             };
             // "soft" in the table stands for all other techniques.
             let techniques =
@@ -340,7 +340,7 @@ mod tests {
             for &technique in techniques {
                 let mut settings = Settings { technique, ..Settings::default() };
                 settings.accumulate.depth_source = source.parse().unwrap();
-                let plan = deferred(&situation, &settings);
+                let plan = deferred(&inputs, &settings);
                 assert_eq!(plan.reads_linear, read == "linear", "{row}");
                 assert_eq!(plan.accumulate.host_depth, compared == "host's", "{row}");
                 assert_eq!(plan.depth_downsample.is_some(), compared == "reduced", "{row}");
@@ -352,7 +352,7 @@ mod tests {
                 assert_eq!(plan.accumulate.depth_test, test, "{row}");
                 assert_eq!(plan.depth_copy.is_some(), tested == "copy", "{row}");
                 settings.soft_fade.curve = FadeCurve::Always;
-                let always = deferred(&situation, &settings).accumulate.depth_test;
+                let always = deferred(&inputs, &settings).accumulate.depth_test;
                 assert_eq!(always, if technique.is_soft() { DepthTest::InShader } else { test }, "{row}");
                 seen += 1;
             }
@@ -362,23 +362,23 @@ mod tests {
 
     #[test]
     fn each_stage_plans_only_the_passes_that_it_shows() {
-        for &shade_tree in ShadeTree::ALL {
+        for &debug_view in DebugView::ALL {
             let mut settings = Settings::default();
-            let situation = Situation { stages: &[shade_tree], ..situation() };
-            let shown = deferred(&situation, &settings);
-            let glows = matches!(shade_tree, ShadeTree::Final | ShadeTree::SpecularScatter);
-            assert_eq!(shown.specular_scatter.is_some(), glows, "{shade_tree:?}");
-            let stages: Vec<_> = shown.transfers().map(|key| key.shade_tree).collect();
-            let is_drawn = shade_tree != ShadeTree::SpecularScatter;
-            assert_eq!(stages, if is_drawn { vec![shade_tree] } else { vec![] });
-            assert_eq!(shown.overdraw.is_some(), shade_tree == ShadeTree::Overdraw);
+            let inputs = PipelineInputs { stages: &[debug_view], ..inputs() };
+            let shown = deferred(&inputs, &settings);
+            let glows = matches!(debug_view, DebugView::Final | DebugView::SpecularScatter);
+            assert_eq!(shown.specular_scatter.is_some(), glows, "{debug_view:?}");
+            let stages: Vec<_> = shown.transfers().map(|key| key.debug_view).collect();
+            let is_drawn = debug_view != DebugView::SpecularScatter;
+            assert_eq!(stages, if is_drawn { vec![debug_view] } else { vec![] });
+            assert_eq!(shown.overdraw.is_some(), debug_view == DebugView::Overdraw);
             assert!(!shown.accumulate.overdraw);
             settings.specular_scatter.intensity = 0.0;
-            assert_eq!(deferred(&situation, &settings).specular_scatter, None);
+            assert_eq!(deferred(&inputs, &settings).specular_scatter, None);
             // Forward sprites are lit as they are drawn: there are no intermediate stages to show.
-            settings.path = Path::Forward;
-            let is_picture = matches!(shade_tree, ShadeTree::Final | ShadeTree::Combined);
-            assert_eq!(plan(&situation, &settings, false) != Plan::Nothing, is_picture, "{shade_tree:?}");
+            settings.path = RenderPath::Forward;
+            let is_picture = matches!(debug_view, DebugView::Final | DebugView::Combined);
+            assert_eq!(plan(&inputs, &settings, false) != Plan::Nothing, is_picture, "{debug_view:?}");
         }
     }
 
@@ -388,37 +388,37 @@ mod tests {
             let mut settings = Settings::default();
             settings.diffuse.mode = mode;
             let bakes = matches!(mode, DiffuseMode::Cubemap | DiffuseMode::Motif);
-            assert_eq!(deferred(&situation(), &settings).diffuse_bake.is_some(), bakes, "{mode:?}");
+            assert_eq!(deferred(&inputs(), &settings).diffuse_bake.is_some(), bakes, "{mode:?}");
         }
     }
 
     #[test]
     fn light_target_is_planned_only_for_final_images_at_reduced_resolution() {
         let mut settings = Settings::default();
-        assert_eq!(deferred(&situation(), &settings).light_target, None);
+        assert_eq!(deferred(&inputs(), &settings).light_target, None);
         settings.accumulate.lighting_resolution = LightingResolution::Target;
-        for &shade_tree in ShadeTree::ALL {
-            let situation = Situation { stages: &[shade_tree], ..situation() };
-            let shown = deferred(&situation, &settings);
-            let is_picture = matches!(shade_tree, ShadeTree::Final | ShadeTree::Combined);
-            assert_eq!(shown.light_target.is_some(), is_picture, "{shade_tree:?}");
-            assert_eq!(shown.transfers().any(|key| key.lit), is_picture, "{shade_tree:?}");
+        for &debug_view in DebugView::ALL {
+            let inputs = PipelineInputs { stages: &[debug_view], ..inputs() };
+            let shown = deferred(&inputs, &settings);
+            let is_picture = matches!(debug_view, DebugView::Final | DebugView::Combined);
+            assert_eq!(shown.light_target.is_some(), is_picture, "{debug_view:?}");
+            assert_eq!(shown.transfers().any(|key| key.lit), is_picture, "{debug_view:?}");
         }
-        let all = Situation { stages: ShadeTree::ALL, ..situation() };
+        let all = PipelineInputs { stages: DebugView::ALL, ..inputs() };
         let lit: Vec<_> =
-            deferred(&all, &settings).transfers().filter(|key| key.lit).map(|key| key.shade_tree).collect();
-        assert_eq!(lit, [ShadeTree::Final, ShadeTree::Combined]);
+            deferred(&all, &settings).transfers().filter(|key| key.lit).map(|key| key.debug_view).collect();
+        assert_eq!(lit, [DebugView::Final, DebugView::Combined]);
         settings.accumulate.scale = 1;
-        assert_eq!(deferred(&situation(), &settings).light_target, None);
+        assert_eq!(deferred(&inputs(), &settings).light_target, None);
         settings.accumulate.max_side = 1279;
-        assert!(deferred(&situation(), &settings).light_target.is_some());
+        assert!(deferred(&inputs(), &settings).light_target.is_some());
     }
 
     #[test]
     fn one_of_each_covers_every_pass() {
         for read_only_depth in [true, false] {
             let [Plan::Deferred(deferred), Plan::Deferred(lit), Plan::Forward(_), Plan::Deferred(tiled)] =
-                one_of_each(read_only_depth, Some(true))
+                plans_covering_every_pass(read_only_depth, Some(true))
             else {
                 panic!()
             };
@@ -431,17 +431,17 @@ mod tests {
 
     #[test]
     fn transfer_key_follows_mirroring_reversed_depth_and_missing_depth_attachment() {
-        let transfer = |situation: &Situation, back_faces| match plan(situation, &Settings::default(), back_faces) {
+        let transfer = |inputs: &PipelineInputs, back_faces| match plan(inputs, &Settings::default(), back_faces) {
             Plan::Deferred(plan) => plan.transfer,
             other => panic!("{other:?}"),
         };
-        let plain = transfer(&situation(), false);
+        let plain = transfer(&inputs(), false);
         assert!(!plain.back_faces && !plain.mirrored && !plain.reversed);
-        assert!(transfer(&situation(), true).back_faces);
-        assert!(transfer(&Situation { mirrored: true, ..situation() }, false).mirrored);
-        assert!(transfer(&Situation { reversed: true, ..situation() }, false).reversed);
+        assert!(transfer(&inputs(), true).back_faces);
+        assert!(transfer(&PipelineInputs { mirrored: true, ..inputs() }, false).mirrored);
+        assert!(transfer(&PipelineInputs { reversed: true, ..inputs() }, false).reversed);
         // Without a depth attachment, back faces are drawn.
-        let untested = Situation { host: HostPass::plain(Rgba16Float), ..situation() };
+        let untested = PipelineInputs { host: HostPass::plain(Rgba16Float), ..inputs() };
         assert!(transfer(&untested, false).back_faces);
     }
 }

@@ -5,7 +5,7 @@ use glam::UVec2;
 use super::context::Shared;
 use super::layouts::bind_textures;
 use super::plan::DeferredPlan;
-use super::targets::{AccumulationKey, AccumulationTarget, BakedDiffuse, Beside};
+use super::targets::{AccumulationKey, AccumulationTarget, BakedDiffuse, ExtraAttachment};
 use crate::settings::Settings;
 
 /// Textures of one system, and their bind groups, which are recreated with the textures.
@@ -50,7 +50,7 @@ impl SystemTargets {
         let device = &shared.device;
         let key = AccumulationKey {
             format: settings.accumulate.format,
-            beside: Beside::of(settings),
+            extra_attachment: ExtraAttachment::of(settings),
             depth_source: settings.accumulate.depth_source,
             overdraw: plan.overdraw.is_some(),
             lit: plan.light_target.is_some(),
@@ -70,8 +70,8 @@ impl SystemTargets {
             // must be filled.
             let transfer = |amount| {
                 let depth = depth.unwrap_or(amount);
-                let beside = accumulation.attachments.get(1).unwrap_or(amount);
-                let inputs = [amount, depth, &baked_diffuse.array, beside];
+                let extra_attachment = accumulation.attachments.get(1).unwrap_or(amount);
+                let inputs = [amount, depth, &baked_diffuse.array, extra_attachment];
                 bind_textures(device, "haze transfer inputs", transfer, inputs)
             };
             TargetInputs {

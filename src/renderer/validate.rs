@@ -6,11 +6,11 @@ use super::auto::PathReason;
 use super::context::Shared;
 use super::gpu::host_pass::HostPass;
 use super::plan::reads_linear;
-use super::tiled::{PARTICLE_STEP, SPRITE};
+use super::tiled::{PARTICLE_ALIGNMENT, TILE_SPRITE_BYTES};
 use crate::error::FieldError;
-use crate::frame::validate::{validate_lights, validate_place, validate_settings, validate_time_and_up};
+use crate::frame::validate::{validate_bounds_and_depth, validate_lights, validate_settings, validate_time_and_up};
 use crate::frame::{Frame, Particle, Particles, SceneDepth, System, View};
-use crate::settings::{DepthSource, Path, Technique};
+use crate::settings::{DepthSource, RenderPath, Technique};
 
 /// Validates everything except the view's matrices.
 ///
@@ -87,12 +87,12 @@ fn validate_depth_texture(
 
 fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &System<'_>) -> Result<(), FieldError> {
     validate_settings(index, system.settings, frame.view.size)?;
-    if system.settings.path == Path::Tiled && shared.tiles().is_none() {
+    if system.settings.path == RenderPath::Tiled && shared.tiles().is_none() {
         let expected =
             "\"raster\", or a device with compute shaders and WebGPU's default limits; OpenGL is not supported";
         return Err(FieldError::new(format!("systems[{index}].settings.path"), "\"tiled\"", expected));
     }
-    validate_place(index, system.bounds.as_ref(), system.depth)?;
+    validate_bounds_and_depth(index, system.bounds.as_ref(), system.depth)?;
     let field = |name: &str| format!("systems[{index}].{name}");
     validate_particles(shared, system, &field)?;
     if system.material.context != shared.number {
@@ -120,25 +120,25 @@ fn validate_system(shared: &Shared, index: usize, frame: &Frame<'_>, system: &Sy
 }
 
 /// Returns the reason why the path `auto` cannot choose `tiled` for a system; `None` if it can.
-pub(crate) fn tiles_refuse(shared: &Shared, system: &System<'_>) -> Option<PathReason> {
-    let Some(tiled) = &shared.passes.tiled else { return Some(PathReason::NoTiles) };
+pub(crate) fn tiled_unavailable_reason(shared: &Shared, system: &System<'_>) -> Option<PathReason> {
+    let Some(tiled) = &shared.passes.tiled else { return Some(PathReason::TiledUnsupported) };
     let (count, is_readable) = match system.particles {
         Particles::Slice(particles) => (particles.len() as u64, true),
         Particles::Buffer { buffer, offset, count, .. } => {
             let is_storage = buffer.usage().contains(wgpu::BufferUsages::STORAGE);
-            (u64::from(count), is_storage && offset.is_multiple_of(PARTICLE_STEP))
+            (u64::from(count), is_storage && offset.is_multiple_of(PARTICLE_ALIGNMENT))
         }
-        Particles::Emission(emission) => (u64::from(emission.count()), true),
+        Particles::Emitter(emission) => (u64::from(emission.count()), true),
     };
     if !is_readable {
-        return Some(PathReason::BufferOfVertices);
+        return Some(PathReason::BufferNotReadable);
     }
-    (count > tiled.limits.max_storage_buffer_binding_size / SPRITE).then_some(PathReason::TooMany)
+    (count > tiled.limits.max_storage_buffer_binding_size / TILE_SPRITE_BYTES).then_some(PathReason::TooManyParticles)
 }
 
 fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str) -> String) -> Result<(), FieldError> {
     let size = size_of::<Particle>() as u64;
-    let is_tiled = system.settings.path == Path::Tiled;
+    let is_tiled = system.settings.path == RenderPath::Tiled;
     let needs_sorting = system.particles.need_sorting(system.settings);
     if needs_sorting && shared.passes.tiled.is_none() {
         let expected = "true, the order \"weighted\", or a slice: sorting a buffer needs compute shaders and \
@@ -148,13 +148,13 @@ fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str
     let limits = shared.device.limits();
     let mut most = limits.max_buffer_size / size;
     if is_tiled {
-        most = most.min(limits.max_storage_buffer_binding_size / SPRITE);
+        most = most.min(limits.max_storage_buffer_binding_size / TILE_SPRITE_BYTES);
     } else if needs_sorting {
         most = most.min(limits.max_storage_buffer_binding_size / size);
     }
     match system.particles {
         Particles::Slice(particles) => validate_count(particles.len() as u64, most, field)?,
-        Particles::Emission(emission) => {
+        Particles::Emitter(emission) => {
             validate_count(u64::from(emission.count()), most, field)?;
             let bounds = emission.bounds(system.settings.reach());
             let is_finite = bounds.min.is_finite() && bounds.max.is_finite();
@@ -170,7 +170,7 @@ fn validate_particles(shared: &Shared, system: &System<'_>, field: &impl Fn(&str
                 return Err(FieldError::new(field("bounds"), "None", expected));
             }
             let is_read = is_tiled || needs_sorting;
-            let alignment = if is_read { PARTICLE_STEP } else { wgpu::VERTEX_ALIGNMENT };
+            let alignment = if is_read { PARTICLE_ALIGNMENT } else { wgpu::VERTEX_ALIGNMENT };
             if !offset.is_multiple_of(alignment) {
                 let expected = format!("a multiple of {alignment}");
                 return Err(FieldError::new(field("particles.offset"), offset, expected));

@@ -2,7 +2,7 @@
 
 use super::plan::SceneDepthKind;
 use crate::frame::View;
-use crate::settings::{Settings, ShadeTree};
+use crate::settings::{DebugView, Settings};
 
 /// Properties of future frames that select pipelines. See [`Renderer::warm_up`](crate::Renderer::warm_up).
 #[derive(Clone, Copy, Debug)]
@@ -15,5 +15,5 @@ pub struct WarmUp<'a> {
     /// Settings of the future systems.
     pub settings: &'a [Settings],
     /// Stages that will be shown.
-    pub stages: &'a [ShadeTree],
+    pub stages: &'a [DebugView],
 }

@@ -19,17 +19,17 @@ pub trait Fields {
 
     /// Every field in the order of the struct, with the heading above it if there is one, for user interfaces. Empty
     /// for a struct without a table.
-    fn headings(&self) -> &'static [Headed] {
+    fn headings(&self) -> &'static [FieldHeading] {
         &[]
     }
 }
 
 /// Name of a field, and the heading above it if a group of fields starts there.
-pub type Headed = (&'static str, Option<&'static str>);
+pub type FieldHeading = (&'static str, Option<&'static str>);
 
 /// Use of an image that a field names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PictureRole {
+pub enum ImageRole {
     /// Flipbook of normal maps.
     Sprite,
     /// Depth and motion of a flipbook.
@@ -73,7 +73,7 @@ pub trait FieldVisitor {
     fn text(&mut self, _name: &'static str, _value: &mut String) {}
 
     /// Name of an image: a built-in one, or a file.
-    fn picture(&mut self, _name: &'static str, _value: &mut String, _role: PictureRole) {}
+    fn picture(&mut self, _name: &'static str, _value: &mut String, _role: ImageRole) {}
 
     /// Name of a particle file, or of one file per frame; empty for none.
     fn particles(&mut self, _name: &'static str, _value: &mut String) {}

@@ -14,7 +14,7 @@ mod set;
 mod soft_fade;
 pub(crate) mod table;
 mod technique;
-mod walk;
+mod traversal;
 
 pub use accumulate::{
     Accumulate, AccumulationFormat, DepthDownsample, DepthSource, Layers, LightingResolution, NormalDecode,
@@ -24,7 +24,7 @@ pub use budget::{Budget, ScaleBudget};
 pub use choice::Choice;
 #[doc(hidden)]
 pub use choice::choice;
-pub use fields::{FieldVisitor, Fields, Headed, PictureRole, validate};
+pub use fields::{FieldHeading, FieldVisitor, Fields, ImageRole, validate};
 pub use lighting::{
     Backlight, CoverageMode, Diffuse, DiffuseMode, Lighting, RampFilter, SoftScatter, SoftScatterMode, SpecularScatter,
 };
@@ -32,11 +32,11 @@ pub use set::set_field;
 pub use soft_fade::{FadeCurve, SoftFade};
 pub(crate) use table::settings;
 pub use technique::{Density, SphericalBillboard, SpriteAnimation, SpriteSettings, Technique, Volumetric};
-pub use walk::{Leaf, Step, Value, path_of, values, walk};
+pub use traversal::{Leaf, Step, Value, field_path, for_each_field, values};
 
 choice! {
     /// Rendering path of a system.
-    Path {
+    RenderPath {
         /// The faster of `raster` and `tiled`, estimated from the number of layers and their cost on the device.
         #[default]
         Auto = "auto",
@@ -51,7 +51,7 @@ choice! {
     }
 }
 
-impl Path {
+impl RenderPath {
     /// Paths that this setting may select.
     pub fn candidates(self) -> &'static [Self] {
         match self {
@@ -78,7 +78,7 @@ choice! {
 
 choice! {
     /// Debug view: the stage of the shading that is shown. OTEE's "Shade tree".
-    ShadeTree {
+    DebugView {
         /// Lit smoke over the scene.
         #[default]
         Final = "final",
@@ -101,7 +101,7 @@ choice! {
     }
 }
 
-impl ShadeTree {
+impl DebugView {
     /// True for stages that show data instead of light, which are neither exposed nor tonemapped.
     pub fn is_data(self) -> bool {
         matches!(self, Self::Normals | Self::Amount | Self::Overdraw | Self::ReducedDepth)
@@ -123,7 +123,7 @@ settings! {
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Settings {
         /// Rendering path: its cost, and with `forward`, its lighting too.
-        path: Path = Path::Auto, choice;
+        path: RenderPath = RenderPath::Auto, choice;
         /// Blend mode of forward sprites. Deferred paths have a blend of their own.
         blend_mode: BlendMode = BlendMode::Alpha, choice;
         /// Technique by which sprites meet the scene: hard cut, soft fade, or volume.
@@ -160,7 +160,7 @@ settings! {
 impl Settings {
     /// True if the system is lit and blended per fragment.
     pub fn is_forward(&self) -> bool {
-        self.path == Path::Forward
+        self.path == RenderPath::Forward
     }
 
     /// True if sprites are lit by six-way maps.
@@ -174,7 +174,7 @@ impl Settings {
     }
 
     /// Distance behind the scene at which sprites still show, metres: 0, except under the curve `always`.
-    pub fn fade_through(&self) -> f32 {
+    pub fn show_through_distance(&self) -> f32 {
         let shows_through = self.soft_fade.curve == FadeCurve::Always && self.technique.is_soft();
         if shows_through { 1.0 / self.soft_fade.fade_scale } else { 0.0 }
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::fields::Fields;
-use super::walk::{Leaf, Step, walk};
+use super::traversal::{Leaf, Step, for_each_field};
 use crate::error::FieldError;
 
 /// Sets the fields that `path` names to `value`. Returns their name without list indices.
@@ -19,13 +19,13 @@ pub fn set_field<T: Fields + Clone>(settings: &mut T, path: &str, value: &str) -
     // Works on a copy, so that an error leaves nothing half changed.
     let mut changed = settings.clone();
     let mut names = Names::default();
-    walk(&mut changed, &mut |path, _| {
+    for_each_field(&mut changed, &mut |path, _| {
         let of_kind = if is_wanted(path, &wanted) { &mut names.wanted } else { &mut names.others };
         of_kind.insert(plain(path));
     });
     let name = names.the_one(path, &wanted)?;
     let mut error = None;
-    walk(&mut changed, &mut |path, leaf| {
+    for_each_field(&mut changed, &mut |path, leaf| {
         if is_wanted(path, &wanted) && plain(path) == name {
             error = error.take().or(assign(leaf, value).err());
         }

@@ -25,7 +25,7 @@ macro_rules! settings {
                 $($crate::settings::table::visit!(self, visitor, $field, $kind $($($argument)*)?);)+
             }
 
-            fn headings(&self) -> &'static [$crate::settings::fields::Headed] {
+            fn headings(&self) -> &'static [$crate::settings::fields::FieldHeading] {
                 &[$((stringify!($field), $crate::settings::table::heading!($($heading)?))),+]
             }
         }

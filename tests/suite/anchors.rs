@@ -24,7 +24,7 @@ fn is(found: f32, expected: f32) {
 }
 
 #[track_caller]
-fn is_vector(found: Vec3, expected: Vec3) {
+fn assert_close_vector(found: Vec3, expected: Vec3) {
     assert!(found.distance(expected) <= 3.0 * ROUNDING, "{found} is not {expected}");
 }
 
@@ -45,7 +45,7 @@ fn amounts_add_like_opacities() {
     is(four.w, 0.9375);
     // "RGB is still blended": the last layer counts half, the one below it a quarter.
     let two = accumulate(NormalEncoding::Signed, &[(Vec3::X, 0.5), (Vec3::Y, 0.5)]);
-    is_vector(two.xyz(), vec3(0.25, 0.5, 0.0));
+    assert_close_vector(two.xyz(), vec3(0.25, 0.5, 0.0));
     is(two.w, 0.75);
 }
 
@@ -56,14 +56,14 @@ fn normals_survive_accumulation_and_decoding() {
         let accumulated = accumulate(NormalEncoding::Biased, layers);
         normal_from_accumulation(NormalEncoding::Biased, decode, accumulated.xyz(), accumulated.w)
     };
-    is_vector(decode(NormalDecode::Exact, &[(normal, 0.125)]), normal);
-    is_vector(decode(NormalDecode::Exact, &[(normal, 0.5); 4]), normal);
+    assert_close_vector(decode(NormalDecode::Exact, &[(normal, 0.125)]), normal);
+    assert_close_vector(decode(NormalDecode::Exact, &[(normal, 0.5); 4]), normal);
     // The talk's literal decode is right for opaque smoke, and reversed for half of it: (0.789 · 0.5) · 2 - 1 is
     // negative.
-    is_vector(decode(NormalDecode::Literal, &[(normal, 1.0)]), normal);
-    is_vector(decode(NormalDecode::Literal, &[(normal, 0.5)]), -normal);
+    assert_close_vector(decode(NormalDecode::Literal, &[(normal, 1.0)]), normal);
+    assert_close_vector(decode(NormalDecode::Literal, &[(normal, 0.5)]), -normal);
     // A quarter turn counter-clockwise turns a normal that leans right into one that leans up.
-    is_vector(rotate_normal(vec3(0.6, 0.0, 0.8), Vec2::Y), vec3(0.0, 0.6, 0.8));
+    assert_close_vector(rotate_normal(vec3(0.6, 0.0, 0.8), Vec2::Y), vec3(0.0, 0.6, 0.8));
 }
 
 #[test]
@@ -198,11 +198,11 @@ fn ray_sphere_gives_entry_exit_and_distance() {
         vec3(found.enter, found.leave, found.axis.length())
     };
     let deep = vec3(0.0, 0.0, -5.0);
-    is_vector(ahead(deep, 0.0, 100.0), vec3(4.0, 6.0, 0.0));
+    assert_close_vector(ahead(deep, 0.0, 100.0), vec3(4.0, 6.0, 0.0));
     // At 0.6 from the axis, the chord is 2 · 0.8.
-    is_vector(ahead(deep + vec3(0.6, 0.0, 0.0), 0.0, 100.0), vec3(4.2, 5.8, 0.6));
+    assert_close_vector(ahead(deep + vec3(0.6, 0.0, 0.0), 0.0, 100.0), vec3(4.2, 5.8, 0.6));
     // The exit is clamped to the scene's depth ("the rear exit point"), the entry to the near plane.
-    is_vector(ahead(deep, 4.5, 5.5), vec3(4.5, 5.5, 0.0));
+    assert_close_vector(ahead(deep, 4.5, 5.5), vec3(4.5, 5.5, 0.0));
     // A texel that stands out by half a radius is nearer by half a radius.
     is(depth_sprite_depth(5.0, 0.5, 2.0), 4.0);
 }
@@ -233,9 +233,9 @@ fn cube_coordinate_inverts_cube_direction() {
 
 #[test]
 fn motif_position_inverts_motif_normal() {
-    is_vector(motif_normal(Vec2::ZERO), Vec3::Z);
-    is_vector(motif_normal(vec2(0.6, 0.0)), vec3(0.6, 0.0, 0.8));
-    is_vector(motif_normal(vec2(3.0, 4.0)), vec3(0.6, 0.8, 0.0));
+    assert_close_vector(motif_normal(Vec2::ZERO), Vec3::Z);
+    assert_close_vector(motif_normal(vec2(0.6, 0.0)), vec3(0.6, 0.0, 0.8));
+    assert_close_vector(motif_normal(vec2(3.0, 4.0)), vec3(0.6, 0.8, 0.0));
     assert_eq!(motif_position(vec3(0.6, 0.0, 0.8)), vec2(0.6, 0.0));
 }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use glam::UVec2;
 use haze::builtin;
-use haze::picture::read_png;
+use haze::image::read_png;
 use haze::settings::CoverageMode;
 use haze_author::noise::NoiseRecipe;
 use haze_author::ramp::bake::RampRecipe;
@@ -12,8 +12,8 @@ use haze_author::ramp::motif::MotifRecipe;
 use haze_author::ramp::template::TEMPLATES;
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_author::sprite::detail::detail;
-use haze_demo::develop::develop;
 use haze_demo::shot::Shot;
+use haze_demo::tonemap_pass::tonemap;
 use image::{Rgba, RgbaImage, imageops};
 
 fn file(folder: &str, name: &str) -> PathBuf {
@@ -69,7 +69,7 @@ fn soft_coverage_ramp_equals_linear_coverage() {
         shot.preset.systems[0].settings.coverage = coverage;
         shot.preset.systems[0].material.coverage_ramp = "coverage_soft".into();
         let shot = Shot::new(shot.preset, Path::new("column"), shot.size).unwrap();
-        develop(&shot.render_on_cpu().unwrap(), &shot)
+        tonemap(&shot.render_on_cpu().unwrap(), &shot)
     };
     let (linear, ramp) = (picture(CoverageMode::Linear), picture(CoverageMode::Ramp));
     // Ramp texels are half floats, so an 8-bit value may round to the neighbouring step.

@@ -8,8 +8,8 @@ use std::path::Path;
 use glam::camera::rh::proj::directx::orthographic;
 use glam::{Mat4, UVec2, UVec3, Vec2, Vec3, Vec4, Vec4Swizzles, vec3};
 use haze::builtin;
+use haze::image::Image;
 use haze::noise::{pcg3d, unit};
-use haze::picture::Picture;
 use haze::settings::{Backlight, Lighting, Settings, Technique};
 use haze::sprite::Sprite;
 use haze::{Light, LightKind, MaterialAssets, Particle, View};
@@ -32,7 +32,7 @@ struct Column {
 }
 
 /// One image per light: linear radiance, premultiplied by coverage.
-type LightImages = Vec<Picture<Vec3>>;
+type LightImages = Vec<Image<Vec3>>;
 
 impl Column {
     fn new(medium: Medium, size: u32, samples: u32) -> Self {
@@ -91,7 +91,7 @@ impl Column {
         let mut sorted: Vec<_> = self.particles.iter().collect();
         sorted.sort_by(|a, b| a.position.z.total_cmp(&b.position.z));
         let of_light = |light: usize| {
-            let mut picture = Picture::new(UVec2::splat(self.path_trace.size), Vec3::ZERO);
+            let mut picture = Image::new(UVec2::splat(self.path_trace.size), Vec3::ZERO);
             let scale = 2.0 / self.path_trace.size as f32;
             picture.for_each(|at, texel| {
                 let place = ((at.as_vec2() + 0.5) * scale - 1.0) * Vec2::new(1.0, -1.0);
@@ -117,18 +117,18 @@ impl Column {
         let view = View::new(view, orthographic(-1.0, 1.0, -1.0, 1.0, 0.1, 10.0), size);
         let of_light = |to_light: Vec3| {
             let light = Light { kind: LightKind::Directional, direction: -to_light, ..Light::default() };
-            let mut picture = Picture::new(size, Vec4::ZERO);
+            let mut picture = Image::new(size, Vec4::ZERO);
             let frame = haze_reference::Frame {
                 view,
-                scene_depth: &Picture::new(size, 1.0),
+                scene_depth: &Image::new(size, 1.0),
                 lights: &[light],
                 systems: &[haze_reference::System::new(&self.particles, settings, material)],
                 time: 0.0,
                 up: Vec3::Y,
-                shade_tree: haze::settings::ShadeTree::Final,
+                debug_view: haze::settings::DebugView::Final,
             };
             haze_reference::render(&frame, &mut picture).unwrap();
-            Picture { size, texels: picture.texels.iter().map(|texel| texel.xyz()).collect() }
+            Image { size, texels: picture.texels.iter().map(|texel| texel.xyz()).collect() }
         };
         lights().into_iter().map(of_light).collect()
     }
@@ -144,14 +144,14 @@ impl Column {
         let sheet = self.recipe.bake(|_| Ok::<_, haze::Error>(())).unwrap().picture;
         let Ok(maps) = self.recipe.bake_six_way(&self.medium, self.path_trace.samples, |_, _| Ok::<_, Infallible>(()));
         let layout = self.recipe.layout();
-        let sprite = |picture, layout| Sprite::from_picture(Path::new("billow"), picture, layout).unwrap();
+        let sprite = |picture, layout| Sprite::from_image(Path::new("billow"), picture, layout).unwrap();
         let material = MaterialAssets {
             sprite: sprite(&sheet, layout),
             detail: None,
             six_way: Some(sprite(&maps.picture, six_way_layout(layout))),
             diffuse_ramp: ramp("diffuse"),
             backlight_ramp: ramp("backlight"),
-            ..crate::stage::material()
+            ..crate::test_scene::material()
         };
         let mut six_way = Settings { lighting: Lighting::SixWay, ..settings };
         six_way.diffuse.six_way_anisotropy = maps.anisotropy;

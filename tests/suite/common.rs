@@ -3,14 +3,14 @@
 use std::sync::{LazyLock, OnceLock};
 
 use glam::{UVec2, UVec3, Vec4};
+use haze::image::Image;
 use haze::noise::NoiseVolume;
-use haze::picture::Picture;
 use haze::ramp::Ramp;
 use haze::sprite::Sprite;
 use haze::{Context, wgpu};
 use haze_demo::headless::Headless;
 
-use crate::stage::BACKDROP;
+use crate::test_scene::BACKDROP;
 
 /// Returns the device that all tests of this process share. Panics on a machine without an adapter; the message
 /// contains the command that installs one.
@@ -49,18 +49,18 @@ pub const AGREEMENT: f32 = 54.0;
 /// Lowest PSNR of images with hard steps, which may fall on either side of a pixel, dB. Sprites with the debug
 /// checkerboard give 45 dB on an NVIDIA H200 and 68 dB on llvmpipe. Ramps sampled at the nearest texel give 50 dB on
 /// llvmpipe, because of four pixels in five thousand.
-pub const STEP_AGREEMENT: f32 = 44.0;
+pub const MIN_PSNR_WITH_STEPS: f32 = 44.0;
 
 /// Returns the PSNR of two images of smoke over the stage's backdrop, dB; see [`psnr_over`].
-pub fn psnr(a: &Picture<Vec4>, b: &Picture<Vec4>) -> f32 {
-    let behind = Picture::new(a.size, BACKDROP);
+pub fn psnr(a: &Image<Vec4>, b: &Image<Vec4>) -> f32 {
+    let behind = Image::new(a.size, BACKDROP);
     psnr_over([a, b], [&behind, &behind])
 }
 
 /// Returns the peak signal-to-noise ratio of two images of smoke, dB. Only pixels that differ from their background by
 /// more than 1/255 in either image are counted; the others contain no smoke. Linear HDR colour is clamped to 0..4 and
 /// has peak 4; alpha has peak 1.
-pub fn psnr_over(pictures: [&Picture<Vec4>; 2], behind: [&Picture<Vec4>; 2]) -> f32 {
+pub fn psnr_over(pictures: [&Image<Vec4>; 2], behind: [&Image<Vec4>; 2]) -> f32 {
     let [a, b] = pictures.map(|picture| &picture.texels);
     let [behind_a, behind_b] = behind.map(|picture| &picture.texels);
     assert!(a.len() == b.len() && a.len() == behind_a.len() && a.len() == behind_b.len());

@@ -8,9 +8,9 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use haze::image::read_png;
 use haze::noise::NoiseVolume;
-use haze::picture::read_png;
-use haze::preset::{PictureFolders, Preset};
+use haze::preset::{AssetFolders, Preset};
 use haze::ramp::Ramp;
 use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Error, emitter};
@@ -28,7 +28,7 @@ fn read(kind: &str, path: &Path) -> Result<(), Error> {
         "preset" => {
             let preset = Preset::load(path.to_str().unwrap())?;
             preset.load_materials(path)?;
-            let caches = particle_files::load_caches(&preset, path, &PictureFolders::beside(path))?;
+            let caches = particle_files::load_particle_files(&preset, path, &AssetFolders::beside(path))?;
             let mut particles = Vec::new();
             let mut alive = 0;
             for (system, cache) in preset.systems.iter().zip(&caches) {
@@ -66,12 +66,12 @@ fn read(kind: &str, path: &Path) -> Result<(), Error> {
             let picture = read_png(path)?;
             assert!(picture.as_bytes().len() <= 64 << 20, "{} bytes", picture.as_bytes().len());
             assert!(picture.width().max(picture.height()) <= 4096);
-            Ramp::from_picture(&picture);
+            Ramp::from_image(&picture);
             // An image that is not a sprite or noise is refused with one line too.
             let picture = picture.to_rgba8();
             for refused in [
-                Sprite::from_picture(path, &picture, SpriteLayout::default()).err(),
-                NoiseVolume::from_picture(path, &picture).err(),
+                Sprite::from_image(path, &picture, SpriteLayout::default()).err(),
+                NoiseVolume::from_image(path, &picture).err(),
             ] {
                 refused.iter().for_each(|error| check_line(path, error));
             }
@@ -135,7 +135,7 @@ enum Mutation {
     Insert(Index, &'static [u8]),
 }
 
-const STUMBLING: &[&[u8]] = &[
+const HOSTILE_BYTES: &[&[u8]] = &[
     b"-1",
     b"0",
     b"1e39",
@@ -173,7 +173,7 @@ fn mutations(corpus: &[Sample]) -> impl Strategy<Value = Vec<Mutation>> + use<> 
         1 => any::<Index>().prop_map(Mutation::Truncate),
         2 => (any::<Index>(), part).prop_map(|(at, part)| Mutation::Splice(at, part)),
         1 => (any::<Index>(), 1_usize..64).prop_map(|(at, length)| Mutation::Repeat(at, length)),
-        4 => (any::<Index>(), select(STUMBLING)).prop_map(|(at, bytes)| Mutation::Insert(at, bytes)),
+        4 => (any::<Index>(), select(HOSTILE_BYTES)).prop_map(|(at, bytes)| Mutation::Insert(at, bytes)),
     ];
     proptest::collection::vec(mutation, 1..6)
 }

@@ -5,19 +5,19 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path as File;
 
 use glam::{UVec2, Vec3, Vec4, vec3};
-use haze::picture::Picture;
-use haze::preset::{CacheEnd, PictureFolders, Preset, PresetSystem};
+use haze::image::Image;
+use haze::preset::{AssetFolders, EndBehaviour, Preset, PresetSystem};
 use haze::settings::*;
 use haze::{Context, Light, LightKind, MaterialAssets};
 use haze_author::noise::NoiseRecipe;
 use haze_author::particle_files;
-use haze_author::particle_files::Cache;
+use haze_author::particle_files::ParticleFrames;
 use haze_author::preset::without_effect;
 
 use crate::common::{gpu, has_tiles};
-use crate::every_setting::{Mover, OTHER_DETAIL, OTHER_NOISE, OTHER_SIX_WAY};
+use crate::every_setting::{OTHER_DETAIL, OTHER_NOISE, OTHER_SIX_WAY, SettingMutator};
 use crate::host::Host;
-use crate::stage::Stage;
+use crate::test_scene::TestScene;
 
 const SIZE: UVec2 = UVec2::new(48, 27);
 
@@ -26,7 +26,7 @@ const SIZE: UVec2 = UVec2::new(48, 27);
 struct PresetCase {
     preset: Preset,
     material: MaterialAssets,
-    caches: Vec<Option<Cache>>,
+    caches: Vec<Option<ParticleFrames>>,
 }
 
 impl PresetCase {
@@ -44,12 +44,12 @@ impl PresetCase {
         let material = system.material.load(folder).unwrap();
         let preset = Preset { time: 6.3, lights: vec![light], systems: vec![system], ..Preset::default() };
         preset.validate().unwrap();
-        let caches = particle_files::load_caches(&preset, folder, &PictureFolders::at(folder)).unwrap();
+        let caches = particle_files::load_particle_files(&preset, folder, &AssetFolders::at(folder)).unwrap();
         Self { preset, material, caches }
     }
 
-    fn stage(&self) -> Stage {
-        let mut stage = Stage::new(SIZE);
+    fn stage(&self) -> TestScene {
+        let mut stage = TestScene::new(SIZE);
         let system = &self.preset.systems[0];
         particle_files::particles(system, self.caches[0].as_ref(), self.preset.time, &mut stage.particles);
         stage.lights.clone_from(&self.preset.lights);
@@ -64,7 +64,7 @@ impl PresetCase {
     #[allow(clippy::type_complexity, reason = "used once")]
     fn moved(&self, folder: &File, skip: usize, value: usize) -> Option<(Option<Self>, String, bool)> {
         let mut other = self.clone();
-        let mut mover = Mover { skip, value, ..Mover::default() };
+        let mut mover = SettingMutator { skip, value, ..SettingMutator::default() };
         other.preset.systems[0].visit(&mut mover);
         let mut path = "systems[0].";
         if mover.moved.is_none() {
@@ -83,7 +83,7 @@ impl PresetCase {
         Some((fits.then_some(other), path, mover.has_more))
     }
 
-    fn on_gpu(&self, context: &Context) -> Picture<Vec4> {
+    fn on_gpu(&self, context: &Context) -> Image<Vec4> {
         let stage = self.stage();
         let mut host = Host::on(gpu(), &stage, Some(context)).unwrap();
         host.draw(gpu(), &stage).unwrap();
@@ -95,9 +95,9 @@ impl PresetCase {
 const CASES: &[fn(&mut PresetSystem, &mut Light)] = &[
     |_, _| {},
     |s, _| s.settings.accumulate.encoding = NormalEncoding::Biased,
-    |s, _| s.settings.path = Path::Forward,
-    |s, _| (s.settings.path, s.settings.accumulate.opacity) = (Path::Tiled, 1.0),
-    |s, _| (s.settings.path, s.settings.sprite.age_colour) = (Path::Forward, 0.5),
+    |s, _| s.settings.path = RenderPath::Forward,
+    |s, _| (s.settings.path, s.settings.accumulate.opacity) = (RenderPath::Tiled, 1.0),
+    |s, _| (s.settings.path, s.settings.sprite.age_colour) = (RenderPath::Forward, 0.5),
     |s, l| (s.settings.accumulate.order, l.kind) = (Order::Weighted, LightKind::Directional),
     |s, l| {
         (s.settings.accumulate.scale, s.settings.soft_fade.curve, l.kind) = (1, FadeCurve::Contrast, LightKind::Spot);
@@ -119,7 +119,7 @@ const CASES: &[fn(&mut PresetSystem, &mut Light)] = &[
     |s, _| (s.settings.sprite.animation, s.settings.sprite.motion) = (SpriteAnimation::Still, 0.5),
     |s, _| (s.settings.sprite.animation, s.settings.sprite.motion) = (SpriteAnimation::Volume, 0.5),
     |s, l| (s.settings.diffuse.mode, s.emitter.frame_rate, l.intensity) = (DiffuseMode::PaintedMotif, 0.0, 0.0),
-    |s, _| (s.settings.diffuse.mode, s.settings.path) = (DiffuseMode::PaintedMotif, Path::Forward),
+    |s, _| (s.settings.diffuse.mode, s.settings.path) = (DiffuseMode::PaintedMotif, RenderPath::Forward),
     |s, _| (s.settings.soft_scatter.mode, s.settings.diffuse.intensity) = (SoftScatterMode::Ramp, 0.0),
     |s, _| (s.settings.soft_scatter.intensity, s.settings.specular_scatter.intensity) = (0.0, 0.0),
     |s, _| (s.settings.coverage, s.settings.ramp_filter) = (CoverageMode::Ramp, RampFilter::Nearest),
@@ -137,13 +137,13 @@ const CASES: &[fn(&mut PresetSystem, &mut Light)] = &[
     },
     |s, _| {
         (s.material.sprite, s.material.six_way) = ("own.png".into(), "six_way.png".into());
-        (s.settings.lighting, s.settings.path) = (Lighting::SixWay, Path::Forward);
+        (s.settings.lighting, s.settings.path) = (Lighting::SixWay, RenderPath::Forward);
         s.settings.specular_scatter.intensity = 0.0;
     },
     // Particle files, at a time between two frames and past the end.
     |s, _| {
         (s.cache.path, s.cache.position) = (PARTICLES.into(), vec3(0.0, -0.5, -6.0));
-        (s.cache.fps, s.cache.after) = (3.0, CacheEnd::Loop);
+        (s.cache.fps, s.cache.after) = (3.0, EndBehaviour::Loop);
         // Large enough that the sampled mip level of the detail map still contains motion.
         s.settings.sprite.size = 4.0;
     },
@@ -233,7 +233,7 @@ fn without_effect_reports_exactly_the_fields_that_change_no_image() {
     let mut unreported = BTreeMap::<String, Vec<usize>>::new();
     for (index, change) in CASES.iter().enumerate() {
         let preset_case = PresetCase::new(folder, *change);
-        if preset_case.preset.systems[0].settings.path == Path::Tiled && !has_tiles() {
+        if preset_case.preset.systems[0].settings.path == RenderPath::Tiled && !has_tiles() {
             continue;
         }
         let plain = preset_case.stage().on_cpu();

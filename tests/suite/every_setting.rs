@@ -5,11 +5,11 @@ use std::ops::RangeInclusive;
 
 use glam::{UVec2, Vec3, Vec4};
 use haze::builtin;
-use haze::picture::Picture;
+use haze::image::Image;
 use haze::settings::*;
 
-use crate::common::{AGREEMENT, STEP_AGREEMENT, gpu, psnr};
-use crate::stage::{DepthKind, Stage};
+use crate::common::{AGREEMENT, MIN_PSNR_WITH_STEPS, gpu, psnr};
+use crate::test_scene::{DepthKind, TestScene};
 
 const SIZE: UVec2 = UVec2::new(96, 54);
 
@@ -22,20 +22,20 @@ pub const OTHER_NOISE: &str = "noise.png";
 
 /// Field visitor that sets one field to one of its alternatives and records the path of the field.
 #[derive(Default)]
-pub struct Mover {
+pub struct SettingMutator {
     /// Number of fields to skip before the one to change.
     pub skip: usize,
     /// Number of the alternative, for fields that have several.
     pub value: usize,
     /// Names of the groups that enclose the visited field.
     pub path: Vec<&'static str>,
-    /// Path of the changed field, followed by the new value of a choice. `None` if no field was changed.
+    /// RenderPath of the changed field, followed by the new value of a choice. `None` if no field was changed.
     pub moved: Option<String>,
     /// True if the field has further alternatives.
     pub has_more: bool,
 }
 
-impl Mover {
+impl SettingMutator {
     /// Returns true and records the path if this is the field to change; otherwise counts the field.
     fn is_selected(&mut self, name: &str) -> bool {
         if self.moved.is_some() {
@@ -50,7 +50,7 @@ impl Mover {
     }
 }
 
-impl FieldVisitor for Mover {
+impl FieldVisitor for SettingMutator {
     fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, _: &'static str) {
         if self.is_selected(name) {
             let larger = *value * 1.7 + 0.15;
@@ -84,18 +84,18 @@ impl FieldVisitor for Mover {
             }
         }
     }
-    fn picture(&mut self, name: &'static str, value: &mut String, role: PictureRole) {
+    fn picture(&mut self, name: &'static str, value: &mut String, role: ImageRole) {
         if self.is_selected(name) {
             let builtins = match role {
-                PictureRole::Sprite => builtin::SPRITES,
-                PictureRole::Ramp => builtin::RAMPS,
-                PictureRole::Motif => builtin::MOTIFS,
-                PictureRole::Noise => builtin::NOISES,
-                PictureRole::Detail | PictureRole::SixWay => &[],
+                ImageRole::Sprite => builtin::SPRITES,
+                ImageRole::Ramp => builtin::RAMPS,
+                ImageRole::Motif => builtin::MOTIFS,
+                ImageRole::Noise => builtin::NOISES,
+                ImageRole::Detail | ImageRole::SixWay => &[],
             };
             let file = match role {
-                PictureRole::Noise => OTHER_NOISE,
-                PictureRole::SixWay => OTHER_SIX_WAY,
+                ImageRole::Noise => OTHER_NOISE,
+                ImageRole::SixWay => OTHER_SIX_WAY,
                 _ => OTHER_DETAIL,
             };
             let other = builtins.iter().find(|builtin| builtin.name != value);
@@ -117,10 +117,10 @@ impl FieldVisitor for Mover {
 
 /// Returns stages in which settings may have an effect: most of them in soft smoke, some only with one technique or
 /// path.
-fn stages() -> Vec<Stage> {
+fn stages() -> Vec<TestScene> {
     let flipbook = crate::techniques::flipbook();
-    let stage = |technique: Technique, path: Path, change: fn(&mut Settings)| {
-        let mut stage = Stage::new(SIZE);
+    let stage = |technique: Technique, path: RenderPath, change: fn(&mut Settings)| {
+        let mut stage = TestScene::new(SIZE);
         (stage.depth, stage.attach_depth) = (DepthKind::Both, true);
         (stage.settings.technique, stage.settings.path) = (technique, path);
         (stage.settings.volumetric.noise_size, stage.settings.specular_scatter.size) = (1.5, 20.0);
@@ -141,15 +141,15 @@ fn stages() -> Vec<Stage> {
     let weighted: fn(&mut Settings) = |s| s.accumulate.order = Order::Weighted;
     let six_way: fn(&mut Settings) = |s| s.lighting = Lighting::SixWay;
     vec![
-        stage(Technique::Soft, Path::Raster, nothing),
-        stage(Technique::Soft, Path::Raster, weighted),
-        stage(Technique::Soft, Path::Forward, nothing),
-        stage(Technique::Soft, Path::Raster, contrast),
-        stage(Technique::Soft, Path::Raster, tested),
-        stage(Technique::Soft, Path::Raster, six_way),
-        stage(Technique::SphericalBillboard, Path::Raster, nothing),
-        stage(Technique::Density, Path::Raster, nothing),
-        stage(Technique::VolumetricSoft, Path::Raster, nothing),
+        stage(Technique::Soft, RenderPath::Raster, nothing),
+        stage(Technique::Soft, RenderPath::Raster, weighted),
+        stage(Technique::Soft, RenderPath::Forward, nothing),
+        stage(Technique::Soft, RenderPath::Raster, contrast),
+        stage(Technique::Soft, RenderPath::Raster, tested),
+        stage(Technique::Soft, RenderPath::Raster, six_way),
+        stage(Technique::SphericalBillboard, RenderPath::Raster, nothing),
+        stage(Technique::Density, RenderPath::Raster, nothing),
+        stage(Technique::VolumetricSoft, RenderPath::Raster, nothing),
     ]
 }
 
@@ -170,14 +170,14 @@ const SAME: [&str; 5] = [
 #[test]
 fn every_setting_changes_the_image_and_both_renderers_agree() {
     let stages = stages();
-    let plain: Vec<Picture<Vec4>> = stages.iter().map(Stage::on_cpu).collect();
+    let plain: Vec<Image<Vec4>> = stages.iter().map(TestScene::on_cpu).collect();
     let (mut skip, mut value, mut seen) = (0, 0, 0);
     loop {
         let mut name = None;
         let (mut has_more, mut has_effect) = (false, false);
         for (index, plain) in plain.iter().enumerate() {
             let mut stage = stages[index].clone();
-            let mut mover = Mover { skip, value, ..Mover::default() };
+            let mut mover = SettingMutator { skip, value, ..SettingMutator::default() };
             stage.settings.visit(&mut mover);
             has_more = mover.has_more;
             name = mover.moved.clone();
@@ -202,7 +202,7 @@ fn every_setting_changes_the_image_and_both_renderers_agree() {
             let psnr = psnr(&on_gpu, &on_cpu);
             println!("{name}: {psnr:.1} dB, {}", stages[index].settings.technique.name());
             let has_steps = ["sprite.debug_sprite", "ramp_filter nearest"].contains(&name.as_str());
-            let least = if has_steps { STEP_AGREEMENT } else { AGREEMENT };
+            let least = if has_steps { MIN_PSNR_WITH_STEPS } else { AGREEMENT };
             assert!(psnr >= least, "{name}: {psnr:.1} dB");
             break;
         }

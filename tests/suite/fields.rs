@@ -7,7 +7,7 @@ use std::ops::RangeInclusive;
 
 use haze::glam::Vec3;
 use haze::preset::{Preset, PresetSystem};
-use haze::settings::{Choice, FieldVisitor, Fields, PictureRole};
+use haze::settings::{Choice, FieldVisitor, Fields, ImageRole};
 use haze::{Light, Settings};
 use haze_author::noise::NoiseRecipe;
 use haze_author::ramp::bake::RampRecipe;
@@ -67,7 +67,7 @@ impl FieldVisitor for Met {
     fn text(&mut self, name: &'static str, _: &mut String) {
         self.field(name);
     }
-    fn picture(&mut self, name: &'static str, _: &mut String, _: PictureRole) {
+    fn picture(&mut self, name: &'static str, _: &mut String, _: ImageRole) {
         self.field(name);
     }
     fn particles(&mut self, name: &'static str, _: &mut String) {

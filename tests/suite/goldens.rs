@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use glam::{UVec2, Vec4};
 use haze::builtin;
 use haze::formula::colour::srgb_from_linear;
-use haze::picture::Picture;
-use haze::picture::{Effort, read_png, write_png};
-use haze::settings::{ShadeTree, Technique};
+use haze::image::Image;
+use haze::image::{CompressionEffort, read_png, write_png};
+use haze::settings::{DebugView, Technique};
 use haze_demo::shot::Shot;
 use image::{DynamicImage, Rgb, RgbImage};
 
@@ -29,7 +29,7 @@ fn golden(name: &str) -> PathBuf {
 }
 
 /// Clamps to 0..1 and encodes as sRGB. There is no tonemap, because it would compress differences.
-fn encode(picture: &Picture<Vec4>) -> RgbImage {
+fn encode(picture: &Image<Vec4>) -> RgbImage {
     let mut encoded = RgbImage::new(picture.size.x, picture.size.y);
     for (texel, pixel) in picture.texels.iter().zip(encoded.pixels_mut()) {
         let channel = |linear: f32| (srgb_from_linear(linear.clamp(0.0, 1.0)) * 255.0).round() as u8;
@@ -60,7 +60,7 @@ fn compare(name: &str, shot: &Shot) {
     let path = golden(name);
     let on_gpu = encode(&drawn(shot, false));
     if std::env::var_os("HAZE_BLESS").is_some() {
-        write_png(&path, &DynamicImage::ImageRgb8(on_gpu), Effort::Small).unwrap();
+        write_png(&path, &DynamicImage::ImageRgb8(on_gpu), CompressionEffort::Small).unwrap();
         return;
     }
     let golden =
@@ -72,7 +72,7 @@ fn compare(name: &str, shot: &Shot) {
         println!("{name} on the {renderer}: {difference:.2}");
         if difference > TOLERANCE {
             let found = path.with_extension("found.png");
-            write_png(&found, &DynamicImage::ImageRgb8(picture.clone()), Effort::Small).unwrap();
+            write_png(&found, &DynamicImage::ImageRgb8(picture.clone()), CompressionEffort::Small).unwrap();
             panic!("{name} on the {renderer} is {difference:.2} of 255 off; see {}", found.display());
         }
     }
@@ -88,7 +88,7 @@ fn presets_match_their_golden_images() {
 #[test]
 fn normals_match_their_golden_image() {
     let mut shot = shot("column", SIZE);
-    shot.shade_tree = ShadeTree::Normals;
+    shot.debug_view = DebugView::Normals;
     compare("column_normals", &shot);
 }
 

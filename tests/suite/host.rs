@@ -1,14 +1,14 @@
-//! A configurable test host on the GPU: it owns the render targets and the pass in which a [`Stage`] is drawn.
+//! A configurable test host on the GPU: it owns the render targets and the pass in which a [`TestScene`] is drawn.
 
 use glam::{UVec2, Vec4};
 use haze::formula::colour::gamma_target_colour;
-use haze::picture::Picture;
+use haze::image::Image;
 use haze::wgpu::util::DeviceExt;
 use haze::{Context, Descriptor, Error, Frame, Particle, Particles, Renderer, SceneDepth, System, Timing, wgpu};
 use haze_demo::headless::Headless;
 
 use crate::common::shared_context;
-use crate::stage::{BACKDROP, DepthKind, Stage};
+use crate::test_scene::{BACKDROP, DepthKind, TestScene};
 
 /// Formats and sample count of a host's pass and targets.
 #[derive(Clone, Debug)]
@@ -59,36 +59,36 @@ pub struct Host {
 }
 
 /// Image of one frame, and the renderer that drew it.
-pub struct Drawn {
-    pub picture: Picture<Vec4>,
+pub struct RenderedFrame {
+    pub picture: Image<Vec4>,
     pub renderer: Renderer,
 }
 
-impl Stage {
-    pub fn on_gpu(&self, gpu: &Headless) -> Drawn {
+impl TestScene {
+    pub fn on_gpu(&self, gpu: &Headless) -> RenderedFrame {
         self.try_on_gpu(gpu).unwrap()
     }
 
-    pub fn try_on_gpu(&self, gpu: &Headless) -> Result<Drawn, Error> {
+    pub fn try_on_gpu(&self, gpu: &Headless) -> Result<RenderedFrame, Error> {
         let mut host = Host::sharing(gpu, self)?;
         host.draw(gpu, self)?;
-        Ok(Drawn { picture: host.picture(gpu)?, renderer: host.renderer })
+        Ok(RenderedFrame { picture: host.picture(gpu)?, renderer: host.renderer })
     }
 }
 
 impl Host {
-    pub fn new(gpu: &Headless, stage: &Stage) -> Result<Self, Error> {
+    pub fn new(gpu: &Headless, stage: &TestScene) -> Result<Self, Error> {
         Self::on(gpu, stage, None)
     }
 
     /// Creates a host on the context that tests share. Only for comparing images: on a shared context, counts of
     /// created resources and compiled pipelines mean nothing.
-    pub fn sharing(gpu: &Headless, stage: &Stage) -> Result<Self, Error> {
+    pub fn sharing(gpu: &Headless, stage: &TestScene) -> Result<Self, Error> {
         Self::on(gpu, stage, shared_context(gpu))
     }
 
     /// Creates a host whose renderer uses `context`, or its own context if `None`.
-    pub fn on(gpu: &Headless, stage: &Stage, context: Option<&Context>) -> Result<Self, Error> {
+    pub fn on(gpu: &Headless, stage: &TestScene, context: Option<&Context>) -> Result<Self, Error> {
         let kind = &stage.host;
         let further: Vec<_> = kind.further.iter().copied().map(Some).collect();
         let descriptor = Descriptor {
@@ -141,11 +141,11 @@ impl Host {
     }
 
     /// Draws one frame: clears to the backdrop, then draws the smoke.
-    pub fn draw(&mut self, gpu: &Headless, stage: &Stage) -> Result<(), Error> {
+    pub fn draw(&mut self, gpu: &Headless, stage: &TestScene) -> Result<(), Error> {
         self.draw_particles(gpu, stage, Particles::Slice(&stage.particles))
     }
 
-    pub fn draw_particles(&mut self, gpu: &Headless, stage: &Stage, particles: Particles<'_>) -> Result<(), Error> {
+    pub fn draw_particles(&mut self, gpu: &Headless, stage: &TestScene, particles: Particles<'_>) -> Result<(), Error> {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         self.prepare(gpu, &mut encoder, stage, particles)?;
         self.render(&mut encoder, stage);
@@ -156,7 +156,7 @@ impl Host {
     }
 
     /// Draws particles from a GPU buffer in their given order, without sorting.
-    pub fn draw_buffer(&mut self, gpu: &Headless, stage: &Stage, particles: &[Particle]) -> Result<(), Error> {
+    pub fn draw_buffer(&mut self, gpu: &Headless, stage: &TestScene, particles: &[Particle]) -> Result<(), Error> {
         let (buffer, count) = (particle_buffer(gpu, particles), particles.len() as u32);
         self.draw_particles(gpu, stage, Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: true })
     }
@@ -166,7 +166,7 @@ impl Host {
         &mut self,
         gpu: &Headless,
         encoder: &mut wgpu::CommandEncoder,
-        stage: &Stage,
+        stage: &TestScene,
         particles: Particles<'_>,
     ) -> Result<(), Error> {
         let system = System { bounds: stage.bounds, ..System::new(particles, &stage.settings, &self.material) };
@@ -174,14 +174,14 @@ impl Host {
             lights: &stage.lights,
             systems: &[system],
             time: stage.time,
-            stages: stage.stages.unwrap_or(std::slice::from_ref(&stage.shade_tree)),
+            stages: stage.stages.unwrap_or(std::slice::from_ref(&stage.debug_view)),
             ..Frame::new(stage.view, scene_depth(stage.depth, &self.depth, &self.linear))
         };
         self.renderer.prepare(&gpu.device, &gpu.queue, encoder, &frame)
     }
 
     /// Records the host's pass, the second half of a frame.
-    pub fn render(&self, encoder: &mut wgpu::CommandEncoder, stage: &Stage) {
+    pub fn render(&self, encoder: &mut wgpu::CommandEncoder, stage: &TestScene) {
         let clear = if stage.host.gamma_target {
             gamma_target_colour(BACKDROP.truncate()).extend(BACKDROP.w)
         } else {
@@ -215,18 +215,18 @@ impl Host {
             timestamp_writes: self.timing.as_ref().and_then(|timing| timing.host_pass("host")),
             ..Default::default()
         });
-        self.renderer.render_stage(&mut pass, stage.shade_tree);
+        self.renderer.render_stage(&mut pass, stage.debug_view);
     }
 
     /// Reads back the colour target as floats. sRGB formats are decoded to linear light.
-    pub fn picture(&self, gpu: &Headless) -> Result<Picture<Vec4>, Error> {
-        Ok(Picture { size: self.size, texels: gpu.read_rgba16float(&as_floats(gpu, &self.colour))? })
+    pub fn picture(&self, gpu: &Headless) -> Result<Image<Vec4>, Error> {
+        Ok(Image { size: self.size, texels: gpu.read_rgba16float(&convert_to_rgba16float(gpu, &self.colour))? })
     }
 
     /// Reads back additional attachment number `index`.
-    pub fn further(&self, gpu: &Headless, index: usize) -> Picture<Vec4> {
-        let texels = gpu.read_rgba16float(&as_floats(gpu, self.attachments[index + 1].texture())).unwrap();
-        Picture { size: self.size, texels }
+    pub fn further(&self, gpu: &Headless, index: usize) -> Image<Vec4> {
+        let texels = gpu.read_rgba16float(&convert_to_rgba16float(gpu, self.attachments[index + 1].texture())).unwrap();
+        Image { size: self.size, texels }
     }
 }
 
@@ -271,8 +271,8 @@ fn target(gpu: &Headless, size: UVec2, format: wgpu::TextureFormat, sample_count
 
 /// Places a view's depth values at `origin` in a target of `size`. The rest of the target is 0, the nearest depth, so
 /// that a value read from outside the view shows in the image.
-fn pad_to_target(values: &Picture<f32>, origin: UVec2, size: UVec2) -> Picture<f32> {
-    let mut whole = Picture::new(size, 0.0);
+fn pad_to_target(values: &Image<f32>, origin: UVec2, size: UVec2) -> Image<f32> {
+    let mut whole = Image::new(size, 0.0);
     whole.for_each(|at, texel| {
         let inside = at.cmpge(origin).all() && at.cmplt(origin + values.size).all();
         if inside {
@@ -282,7 +282,7 @@ fn pad_to_target(values: &Picture<f32>, origin: UVec2, size: UVec2) -> Picture<f
     whole
 }
 
-fn upload(gpu: &Headless, values: &Picture<f32>) -> wgpu::Texture {
+fn upload(gpu: &Headless, values: &Image<f32>) -> wgpu::Texture {
     let descriptor = wgpu::TextureDescriptor {
         label: Some("host depth values"),
         size: wgpu::Extent3d { width: values.size.x, height: values.size.y, depth_or_array_layers: 1 },
@@ -298,7 +298,7 @@ fn upload(gpu: &Headless, values: &Picture<f32>) -> wgpu::Texture {
 }
 
 /// Creates a depth buffer that contains the stage's scene.
-fn depth_buffer(gpu: &Headless, stage: &Stage, size: UVec2, samples: u32) -> wgpu::Texture {
+fn depth_buffer(gpu: &Headless, stage: &TestScene, size: UVec2, samples: u32) -> wgpu::Texture {
     let values = upload(gpu, &pad_to_target(&stage.ndc_depth(), stage.view.origin, size));
     let depth = target(gpu, size, stage.host.depth_format, samples);
     let fragment = "@fragment fn fragment(@builtin(position) p: vec4f) -> @builtin(frag_depth) f32 {
@@ -309,7 +309,7 @@ fn depth_buffer(gpu: &Headless, stage: &Stage, size: UVec2, samples: u32) -> wgp
 }
 
 /// Converts any colour texture to `Rgba16Float`.
-pub fn as_floats(gpu: &Headless, texture: &wgpu::Texture) -> wgpu::Texture {
+pub fn convert_to_rgba16float(gpu: &Headless, texture: &wgpu::Texture) -> wgpu::Texture {
     if texture.format() == wgpu::TextureFormat::Rgba16Float && texture.usage().contains(wgpu::TextureUsages::COPY_SRC) {
         return texture.clone();
     }

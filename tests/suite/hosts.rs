@@ -13,7 +13,7 @@ use glam::UVec2;
 use haze::{Error, Particles, wgpu};
 use haze_demo::headless::Headless;
 
-use crate::stage::Stage;
+use crate::test_scene::TestScene;
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
@@ -29,7 +29,7 @@ fn featured() -> &'static Headless {
     })
 }
 
-fn slice(stage: &Stage) -> Particles<'_> {
+fn slice(stage: &TestScene) -> Particles<'_> {
     Particles::Slice(&stage.particles)
 }
 

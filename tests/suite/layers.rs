@@ -186,7 +186,7 @@ fn gpu_and_cpu_renderer_do_not_import_each_other() {
 #[test]
 fn modules_without_a_device_do_not_use_wgpu() {
     for (file, text) in sources() {
-        let device_free = ["settings", "assets", "formula", "in_view", "reference", "preset", "emitter.rs"];
+        let device_free = ["settings", "assets", "formula", "view_setup", "reference", "preset", "emitter.rs"];
         if device_free.iter().any(|part| file.starts_with(part)) {
             assert!(!code(&text).contains("wgpu"), "{}", file.display());
         }
@@ -211,21 +211,21 @@ const SYSTEM_ACCESS: &[&str] = &[
     "rfd::",
     "pollster::",
     "haze::assets::file",
-    "haze::picture::read_",
-    "haze::picture::write_",
-    "haze::picture::FileIdentity",
+    "haze::image::read_",
+    "haze::image::write_",
+    "haze::image::FileIdentity",
     "json::read(",
     "Preset::read(",
     "::load(",
     ".load(folder",
     "preset.load_materials",
-    "preset.load_caches",
+    "preset.load_particle_files",
     "check_files",
     "from_folder",
     "folders.find(",
     "crate::app::export",
     "crate::app::watch",
-    "crate::app::inputs::caches_of",
+    "crate::app::inputs::particle_file_paths",
 ];
 
 /// Returns the first entry of [`SYSTEM_ACCESS`] that a file contains, in its code or among its expanded imports.
@@ -264,7 +264,7 @@ fn tweaker_accesses_disk_clock_and_threads_only_in_platform() {
     }
     assert!(count > 80 && behind > 5, "{count} {behind}");
     assert_eq!(system_access("use std::{env, fs};"), Some("std::fs"));
-    assert_eq!(system_access("use haze::picture::{Picture, write_png};"), Some("haze::picture::write_"));
+    assert_eq!(system_access("use haze::image::{Picture, write_png};"), Some("haze::image::write_"));
     assert_eq!(system_access("let sprite = Sprite::load(path); // std::fs"), Some("::load("));
     assert_eq!(system_access("use crate::app::puffs::pairs;"), None);
     assert_eq!(system_access("use super::platform::clock::Instant;\nflag.load(Ordering::Relaxed);"), None);

@@ -1,23 +1,23 @@
 //! Dependence of lighting on other particles, light range and intensity, the world's origin and the up vector.
 
 use glam::{UVec2, Vec3, Vec4, vec3};
-use haze::picture::Picture;
-use haze::settings::{DiffuseMode, Path, ShadeTree, Technique};
+use haze::image::Image;
+use haze::settings::{DebugView, DiffuseMode, RenderPath, Technique};
 use haze::{Light, LightKind, Particle};
 use haze_reference::{Frame, System};
 
 use crate::common::{AGREEMENT, gpu, psnr};
-use crate::stage::{BACKDROP, Stage};
+use crate::test_scene::{BACKDROP, TestScene};
 
 const SIZE: UVec2 = UVec2::new(96, 64);
 
-fn largest_difference(a: &Picture<Vec4>, b: &Picture<Vec4>) -> f32 {
+fn largest_difference(a: &Image<Vec4>, b: &Image<Vec4>) -> f32 {
     a.texels.iter().zip(&b.texels).map(|(a, b)| (*a - *b).abs().max_element()).fold(0.0, f32::max)
 }
 
 #[test]
 fn invisible_particles_do_not_change_the_image() {
-    let original = Stage::new(SIZE);
+    let original = TestScene::new(SIZE);
     let dead = Particle { position: vec3(-1000.0, -1000.0, -1000.0), ..Particle::default() };
     for unseen in
         [Particle { radius: 0.0, ..dead }, Particle { amount: 0.0, ..dead }, Particle { amount: -1.0, ..dead }]
@@ -30,7 +30,7 @@ fn invisible_particles_do_not_change_the_image() {
 
 #[test]
 fn tiny_particle_far_behind_barely_changes_the_image() {
-    let original = Stage::new(SIZE);
+    let original = TestScene::new(SIZE);
     let mut with_particle = original.clone();
     let ember = Particle { position: vec3(1.9, 0.5, -12.0), radius: 0.02, amount: 0.01, ..Particle::default() };
     with_particle.particles.push(ember);
@@ -40,7 +40,7 @@ fn tiny_particle_far_behind_barely_changes_the_image() {
 
 #[test]
 fn new_sprite_changes_the_image_in_proportion_to_its_amount() {
-    let original = Stage::new(SIZE);
+    let original = TestScene::new(SIZE);
     let step = |amount| {
         let mut with_particle = original.clone();
         // In front of all other sprites, and larger than any of them.
@@ -59,23 +59,23 @@ fn new_sprite_changes_the_image_in_proportion_to_its_amount() {
 
 #[test]
 fn nan_depth_is_an_error_that_names_the_field() {
-    let stage = Stage::new(SIZE);
+    let stage = TestScene::new(SIZE);
     let system = System { depth: Some(f32::NAN), ..System::new(&stage.particles, &stage.settings, &stage.material) };
     let depth = stage.ndc_depth();
     let frame = Frame { systems: &[system], ..Frame::new(stage.view, &depth) };
-    let error = haze_reference::render(&frame, &mut Picture::new(SIZE, Vec4::ZERO)).unwrap_err();
+    let error = haze_reference::render(&frame, &mut Image::new(SIZE, Vec4::ZERO)).unwrap_err();
     assert_eq!(error.to_string(), "systems[0].depth: NaN is not valid; expected a finite number of metres, or None");
 }
 
 #[test]
 fn glow_changes_continuously_with_the_lights_range() {
     let glow = |range: f32| {
-        let mut stage = Stage::new(SIZE);
-        stage.shade_tree = ShadeTree::SpecularScatter;
+        let mut stage = TestScene::new(SIZE);
+        stage.debug_view = DebugView::SpecularScatter;
         stage.lights.remove(0);
         stage.lights[0].range = range;
         let picture = stage.on_cpu();
-        Picture { size: SIZE, texels: picture.texels.iter().map(|texel| *texel - BACKDROP).collect() }
+        Image { size: SIZE, texels: picture.texels.iter().map(|texel| *texel - BACKDROP).collect() }
     };
     let brightest = largest_difference(&glow(f32::INFINITY), &glow(0.01));
     assert!(brightest > 0.1, "the glow adds at most {brightest}");
@@ -88,7 +88,7 @@ fn glow_changes_continuously_with_the_lights_range() {
 }
 
 /// Share of pixels in which a channel differs by more than 1 % of the pixel's brightest channel.
-fn differing_share(a: &Picture<Vec4>, b: &Picture<Vec4>) -> f32 {
+fn differing_share(a: &Image<Vec4>, b: &Image<Vec4>) -> f32 {
     let apart = |(a, b): (&Vec4, &Vec4)| {
         let (a, b) = (a.truncate(), b.truncate());
         (a - b).abs().max_element() > 0.01 * a.max(b).max_element().max(0.05)
@@ -101,9 +101,9 @@ fn gpu_and_cpu_agree_for_lights_of_every_intensity() {
     let sun = Light { kind: LightKind::Directional, direction: vec3(-1.0, -1.0, -0.5), ..Light::default() };
     let lamp = Light { position: vec3(0.5, 0.3, -8.5), range: f32::INFINITY, radius: 0.0, ..Light::default() };
     for &mode in DiffuseMode::ALL {
-        for path in [Path::Raster, Path::Forward] {
+        for path in [RenderPath::Raster, RenderPath::Forward] {
             for intensity in [1.0, 1.0e3, 1.2e5, 1.0e9] {
-                let mut stage = Stage::new(SIZE);
+                let mut stage = TestScene::new(SIZE);
                 stage.lights = vec![Light { intensity, ..sun }, Light { intensity, ..lamp }];
                 (stage.settings.diffuse.mode, stage.settings.path) = (mode, path);
                 let (on_gpu, on_cpu) = (stage.on_gpu(gpu()).picture, stage.on_cpu());
@@ -117,8 +117,8 @@ fn gpu_and_cpu_agree_for_lights_of_every_intensity() {
 }
 
 /// Volumetric smoke, lights and camera, all translated by `by`, metres.
-fn moved(by: Vec3) -> Stage {
-    let mut stage = Stage::new(SIZE);
+fn moved(by: Vec3) -> TestScene {
+    let mut stage = TestScene::new(SIZE);
     stage.settings.technique = Technique::VolumetricSoft;
     (stage.settings.volumetric.noise_size, stage.settings.volumetric.noise_octaves) = (1.5, 3);
     for particle in &mut stage.particles {

@@ -3,37 +3,37 @@
 use glam::camera::rh::proj::directx;
 use glam::{Mat4, UVec2, Vec4, vec3};
 use haze::formula::colour::overdraw_colour;
-use haze::picture::Picture;
-use haze::settings::{DepthSource, Path, ShadeTree, Technique};
+use haze::image::Image;
+use haze::settings::{DebugView, DepthSource, RenderPath, Technique};
 use haze::{Overdraw, Particle, Particles, View, wgpu};
 use haze_demo::headless::Headless;
 
 use crate::common::gpu;
 use crate::host::Host;
-use crate::stage::{BACKDROP, DepthKind, Stage};
+use crate::test_scene::{BACKDROP, DepthKind, TestScene};
 
 const SIZE: UVec2 = UVec2::new(320, 180);
 
 /// Sprites at scale 1 in front of the whole scene and without near fade, so that no fragment is discarded.
-fn stage() -> Stage {
-    let mut stage = Stage::new(SIZE);
+fn stage() -> TestScene {
+    let mut stage = TestScene::new(SIZE);
     stage.settings.accumulate.scale = 1;
     (stage.settings.soft_fade.near_fade_start, stage.settings.soft_fade.near_fade_end) = (0.0, 0.0);
-    stage.shade_tree = ShadeTree::Overdraw;
+    stage.debug_view = DebugView::Overdraw;
     moved(stage, 2.5)
 }
 
-fn moved(mut stage: Stage, metres: f32) -> Stage {
+fn moved(mut stage: TestScene, metres: f32) -> TestScene {
     stage.particles.iter_mut().for_each(|particle| particle.position.z += metres);
     stage
 }
 
-fn overdraw(stage: &Stage) -> Overdraw {
+fn overdraw(stage: &TestScene) -> Overdraw {
     stage.on_gpu(gpu()).renderer.overdraw()
 }
 
 /// Decodes the number of layers of every covered pixel from an image of the overdraw debug view.
-fn layers(picture: &Picture<Vec4>) -> Vec<u32> {
+fn layers(picture: &Image<Vec4>) -> Vec<u32> {
     let colours: Vec<_> = (0..=60).map(|layers| overdraw_colour(layers as f32)).collect();
     let layers = |texel: &Vec4| {
         let off = |colour: &glam::Vec3| (texel.truncate() - colour).abs().max_element();
@@ -47,10 +47,10 @@ fn layers(picture: &Picture<Vec4>) -> Vec<u32> {
 }
 
 /// Stages with different projections and positions of sprites.
-fn cases() -> Vec<(&'static str, Stage)> {
+fn cases() -> Vec<(&'static str, TestScene)> {
     let off_centre = directx::frustum(-0.05, 0.15, -0.1, 0.06, 0.1, 80.0);
     let orthographic = directx::orthographic(-1.6, 1.2, -0.9, 0.7, 0.1, 80.0);
-    let seen = |clip_from_view| Stage { view: View::new(Mat4::IDENTITY, clip_from_view, SIZE), ..stage() };
+    let seen = |clip_from_view| TestScene { view: View::new(Mat4::IDENTITY, clip_from_view, SIZE), ..stage() };
     let mut depth_sprites = moved(stage(), 2.6);
     depth_sprites.settings.technique = Technique::DepthSpriteSoft;
     vec![
@@ -94,7 +94,7 @@ fn mean_overdraw_is_taken_over_the_pixels_of_the_bounding_box() {
 
 #[test]
 fn overdraw_is_independent_of_scale_and_counts_repeated_draws() {
-    let of = |change: &dyn Fn(&mut Stage)| {
+    let of = |change: &dyn Fn(&mut TestScene)| {
         let mut stage = stage();
         // The debug sprite fills its square at every mip level. Other sprites extend further at coarser levels.
         stage.settings.sprite.debug_sprite = true;
@@ -106,7 +106,7 @@ fn overdraw_is_independent_of_scale_and_counts_repeated_draws() {
     // Sprite areas are exact; the box's sides are rounded up to whole texels.
     assert!((16.0 * coarse.fragments / whole.fragments - 1.0).abs() < 1.0e-3, "scale 4 {coarse:?}, scale 1 {whole:?}");
     assert!((coarse.mean() / whole.mean() - 1.0).abs() < 0.05, "scale 4 {coarse:?}, scale 1 {whole:?}");
-    let forward = of(&|stage| (stage.settings.path, stage.shade_tree) = (Path::Forward, ShadeTree::Final));
+    let forward = of(&|stage| (stage.settings.path, stage.debug_view) = (RenderPath::Forward, DebugView::Final));
     // The forward path has no accumulation target, and so none of its border texels.
     assert!(
         (forward.fragments / whole.fragments - 1.0).abs() < 0.01 && forward.texels == whole.texels,
@@ -141,7 +141,7 @@ fn counting_gpu() -> Option<Headless> {
 }
 
 /// Fragment shader invocations while the host's pass draws forward sprites, and the CPU's estimate for that frame.
-fn shaded(gpu: &Headless, stage: &Stage) -> (u64, Overdraw) {
+fn shaded(gpu: &Headless, stage: &TestScene) -> (u64, Overdraw) {
     let mut host = Host::new(gpu, stage).unwrap();
     let buffer = |usage| {
         gpu.device.create_buffer(&wgpu::BufferDescriptor { label: None, size: 8, usage, mapped_at_creation: false })
@@ -176,7 +176,7 @@ fn shaded(gpu: &Headless, stage: &Stage) -> (u64, Overdraw) {
 }
 
 /// Side lengths of the sprites on screen, pixels.
-fn sides(stage: &Stage) -> Vec<f64> {
+fn sides(stage: &TestScene) -> Vec<f64> {
     let pixels_per_metre = |depth: f32| 0.5 * SIZE.y as f32 * stage.view.clip_from_view.y_axis.y / depth;
     let side = |particle: &Particle| 2.0 * particle.radius * pixels_per_metre(-particle.position.z);
     stage.particles.iter().map(|particle| f64::from(side(particle))).collect()
@@ -189,7 +189,7 @@ fn sides(stage: &Stage) -> Vec<f64> {
 fn estimated_fragments_match_the_gpus_shader_invocations() {
     let Some(gpu) = counting_gpu() else { return };
     let mut stage = moved(stage(), -6.0);
-    (stage.settings.path, stage.shade_tree, stage.attach_depth) = (Path::Forward, ShadeTree::Final, false);
+    (stage.settings.path, stage.debug_view, stage.attach_depth) = (RenderPath::Forward, DebugView::Final, false);
     stage.particles.iter_mut().for_each(|particle| particle.rotation = 0.0);
     // The debug sprite fills its whole square.
     stage.settings.sprite.debug_sprite = true;

@@ -4,7 +4,7 @@
 
 use std::time::{Duration, Instant};
 
-use haze::preset::{PictureFolders, Preset, PresetSystem};
+use haze::preset::{AssetFolders, Preset, PresetSystem};
 use haze_author::particle_files;
 
 /// Returns a binary PLY file of moving particles, with columns that are not read.
@@ -34,7 +34,8 @@ fn a_hundred_frames_of_ten_thousand_particles_load_in_a_second_and_evaluate_in_a
     system.cache.path = "s#.ply".into();
     let preset = Preset { systems: vec![system], ..Preset::default() };
     let start = Instant::now();
-    let caches = particle_files::load_caches(&preset, "my.json".as_ref(), &PictureFolders::at(folder.path())).unwrap();
+    let caches =
+        particle_files::load_particle_files(&preset, "my.json".as_ref(), &AssetFolders::at(folder.path())).unwrap();
     let read = start.elapsed();
     let (mut particles, mut seen) = (Vec::new(), Duration::MAX);
     for _ in 0..10 {

@@ -5,11 +5,11 @@ use std::sync::LazyLock;
 
 use glam::{UVec2, Vec4};
 use haze::builtin;
-use haze::picture::Picture;
-use haze::preset::{CacheEnd, Preset, SceneName, UpAxis};
+use haze::image::Image;
+use haze::preset::{EndBehaviour, Preset, SceneName, UpAxis};
 use haze::settings::*;
+use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
-use haze_demo::stage::{Stage, StageContext};
 
 use crate::common::{AGREEMENT, gpu, psnr_over};
 
@@ -19,7 +19,7 @@ pub fn shot(name: &str, size: UVec2) -> Shot {
     let mut shot = Shot::load(name, size).unwrap();
     for system in &mut shot.preset.systems {
         let path = &mut system.settings.path;
-        *path = if *path == Path::Auto { Path::Raster } else { *path };
+        *path = if *path == RenderPath::Auto { RenderPath::Raster } else { *path };
     }
     shot
 }
@@ -33,21 +33,21 @@ fn behind(shot: &Shot) -> Shot {
 }
 
 /// Renders a shot on the GPU. `exact_filtering` as in [`Descriptor`](haze::Descriptor).
-pub fn drawn(shot: &Shot, exact_filtering: bool) -> Picture<Vec4> {
+pub fn drawn(shot: &Shot, exact_filtering: bool) -> Image<Vec4> {
     // One context for all images, so that no pipeline is compiled twice.
-    static CONTEXT: LazyLock<StageContext> =
-        LazyLock::new(|| StageContext::new(&gpu().adapter, &gpu().device, &gpu().queue));
-    let mut stage = Stage::new(&CONTEXT, exact_filtering).unwrap();
+    static CONTEXT: LazyLock<OffscreenContext> =
+        LazyLock::new(|| OffscreenContext::new(&gpu().adapter, &gpu().device, &gpu().queue));
+    let mut stage = OffscreenRenderer::new(&CONTEXT, exact_filtering).unwrap();
     stage.draw(gpu(), shot).unwrap();
     stage.read(gpu(), shot).unwrap()
 }
 
-fn on_gpu(shot: &Shot) -> Picture<Vec4> {
+fn on_gpu(shot: &Shot) -> Image<Vec4> {
     drawn(shot, true)
 }
 
 /// PSNR between the renderers where there is smoke, dB, and the GPU's image.
-fn agreement(shot: &Shot) -> (f32, Picture<Vec4>) {
+fn agreement(shot: &Shot) -> (f32, Image<Vec4>) {
     let renderers = |shot: &Shot| [on_gpu(shot), shot.render_on_cpu().unwrap()];
     let (pictures, behind) = (renderers(shot), renderers(&behind(shot)));
     gpu().check().unwrap();
@@ -96,7 +96,7 @@ fn gpu_and_cpu_agree_on_particles_from_files() {
     let mut preset = Preset::load("column").unwrap();
     let cache = &mut preset.systems[0].cache;
     (cache.path, cache.up, cache.units) = ("smoke_####.ply".into(), UpAxis::Z, 0.01);
-    cache.after = CacheEnd::Loop;
+    cache.after = EndBehaviour::Loop;
     let mut shot = Shot::new(preset, &folder.path().join("my.json"), UVec2::new(320, 180)).unwrap();
     let (psnr, seen) = agreement(&shot);
     println!("{psnr:.1} dB");
@@ -108,7 +108,7 @@ fn gpu_and_cpu_agree_on_particles_from_files() {
 
 /// Largest change from one frame to the next, relative to the median of the 15 changes around it.
 fn worst_step(mut shot: Shot, frames: u32) -> f32 {
-    shot.shade_tree = ShadeTree::Combined;
+    shot.debug_view = DebugView::Combined;
     let start = shot.preset.time;
     let mut frame = |i: u32| {
         shot.preset.time = start + i as f32 / 60.0;
@@ -153,7 +153,7 @@ fn gpu_and_cpu_agree_on_every_scene() {
         // The scene alone, over black.
         let alone = behind(&shot);
         let (on_gpu, on_cpu) = (on_gpu(&alone), alone.render_on_cpu().unwrap());
-        let black = Picture::new(shot.size, Vec4::ZERO);
+        let black = Image::new(shot.size, Vec4::ZERO);
         let alone = psnr_over([&on_gpu, &on_cpu], [&black, &black]);
         println!("{scene}: {psnr:.1} dB, without smoke {alone:.1} dB");
         assert!(psnr >= AGREEMENT && alone >= AGREEMENT, "{scene}: {psnr:.1} dB, without smoke {alone:.1} dB");
@@ -247,19 +247,19 @@ fn gpu_and_cpu_agree_on_every_pipeline_setting() {
     };
     add("lit target", "rgba8", lit(&rgba8));
     for &mode in BlendMode::ALL {
-        add("forward", mode.name(), with(|s| (s.path, s.blend_mode) = (Path::Forward, mode)));
+        add("forward", mode.name(), with(|s| (s.path, s.blend_mode) = (RenderPath::Forward, mode)));
     }
-    for stage in [ShadeTree::Final, ShadeTree::ReducedDepth] {
+    for stage in [DebugView::Final, DebugView::ReducedDepth] {
         if !haze::read_only_depth_is_supported(&gpu().device) {
             break;
         }
         let mut shot = with(|s| (s.accumulate.depth_source, s.accumulate.scale) = (DepthSource::Host, 1));
-        shot.shade_tree = stage;
+        shot.debug_view = stage;
         add("depth_source host", stage.name(), shot);
     }
-    for &stage in ShadeTree::ALL {
+    for &stage in DebugView::ALL {
         let mut shot = with(|_| {});
-        shot.shade_tree = stage;
+        shot.debug_view = stage;
         add("shade tree", stage.name(), shot);
     }
     for (name, shot) in &shots {
@@ -316,7 +316,7 @@ fn image_height_does_not_change_the_look() {
     // Pixel sizes in presets refer to an image height of 720; another height must not change the look.
     let (small, large) = (shot("column", UVec2::new(160, 90)), shot("column", UVec2::new(320, 180)));
     let reduced = |shot: &Shot| {
-        let (large, mut reduced) = (on_gpu(shot), Picture::new(shot.size / 2, Vec4::ZERO));
+        let (large, mut reduced) = (on_gpu(shot), Image::new(shot.size / 2, Vec4::ZERO));
         reduced.for_each(|at, texel| {
             let at = at.as_ivec2() * 2;
             let corner = |x, y| large.load(at + glam::IVec2::new(x, y));

@@ -2,12 +2,12 @@
 
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
 use haze::builtin;
-use haze::picture::Picture;
+use haze::image::Image;
 use haze::settings::*;
 use haze::wgpu;
 use haze_demo::capture::Captured;
+use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
-use haze_demo::stage::{Stage, StageContext};
 use haze_reference::{Probe, SystemProbe};
 
 use crate::common::{gpu, has_tiles};
@@ -16,10 +16,10 @@ const SIZE: UVec2 = UVec2::new(160, 90);
 
 /// Draws a shot on the GPU; returns the captured targets and an image of every debug view in `stages`. `None` on
 /// OpenGL, which cannot copy depth to a buffer.
-fn drawn(shot: &Shot, stages: &[ShadeTree]) -> Option<(Captured, Vec<Picture<Vec4>>)> {
+fn drawn(shot: &Shot, stages: &[DebugView]) -> Option<(Captured, Vec<Image<Vec4>>)> {
     let gpu = gpu();
-    let context = StageContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
-    let mut stage = Stage::new(&context, true).unwrap();
+    let context = OffscreenContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
+    let mut stage = OffscreenRenderer::new(&context, true).unwrap();
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     stage.record(&mut encoder, shot, stages).unwrap();
     let capture = stage.capture(&mut encoder);
@@ -33,7 +33,7 @@ fn drawn(shot: &Shot, stages: &[ShadeTree]) -> Option<(Captured, Vec<Picture<Vec
     while !capture.has_arrived() {
         std::thread::yield_now();
     }
-    let read = |&shade_tree| stage.read(gpu, &Shot { shade_tree, ..shot.clone() }).unwrap();
+    let read = |&debug_view| stage.read(gpu, &Shot { debug_view, ..shot.clone() }).unwrap();
     Some((capture.read().unwrap(), stages.iter().map(read).collect()))
 }
 
@@ -57,7 +57,7 @@ fn difference(a: Vec3, b: Vec3) -> f32 {
 const EDGES: f32 = 0.005;
 
 /// Asserts that `probed` of each probe equals the image at that pixel; skips probes for which it returns `None`.
-fn assert_matches_image(what: &str, probed: impl Fn(&Probe) -> Option<Vec3>, probes: &[Probe], drawn: &Picture<Vec4>) {
+fn assert_matches_image(what: &str, probed: impl Fn(&Probe) -> Option<Vec3>, probes: &[Probe], drawn: &Image<Vec4>) {
     let (mut seen, mut wrong, mut most) = (0, 0, 0.0_f32);
     for (probe, at) in probes.iter().zip(pixels()) {
         let Some(probed) = probed(probe) else { continue };
@@ -74,7 +74,7 @@ fn assert_matches_image(what: &str, probed: impl Fn(&Probe) -> Option<Vec3>, pro
 fn probed_colour_matches_the_image() {
     for preset in builtin::PRESETS {
         let shot = Shot::load(preset.name, SIZE).unwrap();
-        let Some((captured, pictures)) = drawn(&shot, &[ShadeTree::Final]) else { return };
+        let Some((captured, pictures)) = drawn(&shot, &[DebugView::Final]) else { return };
         let probes = captured.of(shot.clone()).probe(&pixels()).unwrap();
         if shot.preset.systems.iter().any(|system| system.settings.is_forward()) {
             assert!(probes.iter().all(|probe| probe.colour.is_none()), "{}: a colour of a forward system", preset.name);
@@ -87,13 +87,13 @@ fn probed_colour_matches_the_image() {
 #[test]
 fn probed_values_match_every_debug_view() {
     type Probed = fn(&SystemProbe) -> Vec3;
-    let stages: [(ShadeTree, Probed); 6] = [
-        (ShadeTree::Amount, |probe| Vec3::splat(probe.amount)),
-        (ShadeTree::Normals, |probe| (probe.normal * 0.5 + 0.5) * probe.coverage),
-        (ShadeTree::Diffuse, |probe| probe.diffuse * probe.coverage),
-        (ShadeTree::SoftScatter, |probe| probe.soft_scatter * probe.coverage),
-        (ShadeTree::Combined, |probe| probe.light() * probe.coverage),
-        (ShadeTree::SpecularScatter, SystemProbe::specular),
+    let stages: [(DebugView, Probed); 6] = [
+        (DebugView::Amount, |probe| Vec3::splat(probe.amount)),
+        (DebugView::Normals, |probe| (probe.normal * 0.5 + 0.5) * probe.coverage),
+        (DebugView::Diffuse, |probe| probe.diffuse * probe.coverage),
+        (DebugView::SoftScatter, |probe| probe.soft_scatter * probe.coverage),
+        (DebugView::Combined, |probe| probe.light() * probe.coverage),
+        (DebugView::SpecularScatter, SystemProbe::specular),
     ];
     let changes: [fn(&mut Settings); 6] = [
         |_| {},
@@ -107,7 +107,7 @@ fn probed_values_match_every_debug_view() {
             (s.diffuse.mode, s.soft_scatter.mode) = (DiffuseMode::Motif, SoftScatterMode::Ramp);
         },
     ];
-    let paths = if has_tiles() { &[Path::Raster, Path::Tiled][..] } else { &[Path::Raster] };
+    let paths = if has_tiles() { &[RenderPath::Raster, RenderPath::Tiled][..] } else { &[RenderPath::Raster] };
     for (&path, (index, change)) in paths.iter().flat_map(|path| changes.iter().enumerate().map(move |of| (path, of))) {
         let mut shot = Shot::load("column", SIZE).unwrap();
         let settings = &mut shot.preset.systems[0].settings;
@@ -131,7 +131,7 @@ fn probed_values_match_every_debug_view() {
 #[test]
 fn captured_texels_of_another_shot_are_an_error() {
     let shot = Shot::load("column", SIZE).unwrap();
-    let Some((captured, _)) = drawn(&shot, &[ShadeTree::Final]) else { return };
+    let Some((captured, _)) = drawn(&shot, &[DebugView::Final]) else { return };
     let mut other = shot.clone();
     other.preset.systems[0].settings.accumulate.scale = 3;
     let error = captured.clone().of(other).probe(&[UVec2::ONE]).unwrap_err().to_string();

@@ -151,9 +151,9 @@ fn wgsl_constants_match_rust() {
     assert_eq!(constant(&accumulate, "FRONT_KNOTS"), formula::order::FRONT_KNOTS as f64);
     assert_eq!(constant(&accumulate, "LARGEST"), f64::from(frame::LARGEST));
     assert_eq!(constant(&accumulate, "MOTION_RANGE"), f64::from(formula::sprite::MOTION_RANGE));
-    assert_eq!(constant(&transfer, "SAME_SURFACE"), f64::from(formula::upsample::SAME_SURFACE));
+    assert_eq!(constant(&transfer, "SURFACE_DEPTH_TOLERANCE"), f64::from(formula::upsample::SURFACE_DEPTH_TOLERANCE));
     assert_eq!(constant(&transfer, "BRIGHTEST"), f64::from(formula::colour::BRIGHTEST));
-    assert_eq!(constant(&transfer, "SAME_SMOKE"), f64::from(formula::upsample::SAME_SMOKE));
+    assert_eq!(constant(&transfer, "SMOKE_DEPTH_TOLERANCE"), f64::from(formula::upsample::SMOKE_DEPTH_TOLERANCE));
     assert_eq!(constant(&transfer, "VISIBILITY_TAPS"), f64::from(formula::lighting::VISIBILITY_TAPS));
 }
 
@@ -177,7 +177,7 @@ fn wgsl_constants_of_setting_enums_match_rust() {
     assert_choices!(transfer, "BACKLIGHT", settings::Backlight);
     assert_choices!(transfer, "COVERAGE_MODE", settings::CoverageMode);
     assert_choices!(transfer, "RAMP_FILTER", settings::RampFilter);
-    assert_choices!(transfer, "SHADE_TREE", settings::ShadeTree);
+    assert_choices!(transfer, "DEBUG_VIEW", settings::DebugView);
     let accumulate = composed("accumulate.wgsl");
     assert_choices!(accumulate, "FADE_CURVE", settings::FadeCurve);
     assert_choices!(accumulate, "TECHNIQUE", settings::Technique);

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use glam::{UVec2, Vec4};
-use haze::picture::Picture;
-use haze::settings::{Lighting, Path as SmokePath, Settings, ShadeTree, SpriteAnimation};
+use haze::image::Image;
+use haze::settings::{DebugView, Lighting, RenderPath, Settings, SpriteAnimation};
 use haze::shader::{self, Sources};
 use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Context, Error, SceneDepthKind, WarmUp, wgpu};
@@ -12,7 +12,7 @@ use tempfile::TempDir;
 
 use crate::common::{gpu, has_tiles, psnr};
 use crate::host::Host;
-use crate::stage::{Stage, six_way_of};
+use crate::test_scene::{TestScene, six_way_of};
 
 const SIZE: UVec2 = UVec2::new(96, 64);
 
@@ -43,7 +43,7 @@ impl Folder {
         Context::with_shaders(&gpu.device, &gpu.queue, None, &Sources::from_folder(self.0.path())?)
     }
 
-    fn picture(&self) -> Picture<Vec4> {
+    fn picture(&self) -> Image<Vec4> {
         draw(Some(&self.context().unwrap()))
     }
 
@@ -56,8 +56,8 @@ impl Folder {
 }
 
 /// Stage with a cloud of puff sprites, each at a different time between two flipbook frames.
-fn puffs(size: UVec2) -> Stage {
-    let mut stage = Stage::new(size);
+fn puffs(size: UVec2) -> TestScene {
+    let mut stage = TestScene::new(size);
     let layout = SpriteLayout { columns: 4, rows: 2, y_down: false };
     stage.material.sprite = Sprite::load(Path::new("sprites/puff.png"), layout).unwrap();
     (stage.material.six_way, stage.material.detail) = (Some(six_way_of(&stage.material.sprite)), None);
@@ -74,7 +74,7 @@ fn trimming_transparent_borders_of_sprites_does_not_change_the_image() {
         ("soft", |_| ()),
         ("six-way", |settings| settings.lighting = Lighting::SixWay),
         ("one frame", |settings| settings.sprite.animation = SpriteAnimation::Nearest),
-        ("forward", |settings| settings.path = SmokePath::Forward),
+        ("forward", |settings| settings.path = RenderPath::Forward),
     ];
     // At the small size, coarse mip levels are sampled.
     let sizes = [1, 8].map(|times| SIZE * times);
@@ -95,8 +95,8 @@ fn trimming_transparent_borders_of_sprites_does_not_change_the_image() {
     }
 }
 
-fn draw(context: Option<&Context>) -> Picture<Vec4> {
-    let stage = Stage::new(SIZE);
+fn draw(context: Option<&Context>) -> Image<Vec4> {
+    let stage = TestScene::new(SIZE);
     let mut host = Host::on(gpu(), &stage, context).unwrap();
     host.draw(gpu(), &stage).unwrap();
     host.picture(gpu()).unwrap()
@@ -151,13 +151,13 @@ fn errors_that_only_pipeline_creation_detects_are_reported() {
             "depth_sort.wgsl" => "depth_keys",
             "tile_project.wgsl" => "project",
             "tile_gather.wgsl" => "gather",
-            "tile_bin.wgsl" if is_cpu => "allocate_alone",
-            "tile_bin.wgsl" => "list_few",
+            "tile_bin.wgsl" if is_cpu => "allocate_per_invocation",
+            "tile_bin.wgsl" => "build_lists_in_one_dispatch",
             // Compiled only where each invocation traverses the lists on its own.
             "tile_refine.wgsl" if !is_cpu => continue,
             "tile_refine.wgsl" => "refine",
-            "tile_accumulate.wgsl" if is_cpu => "alone",
-            "tile_accumulate.wgsl" => "in_step",
+            "tile_accumulate.wgsl" if is_cpu => "per_invocation",
+            "tile_accumulate.wgsl" => "cooperative",
             _ => "fragment",
         };
         if entry_point != "fragment" && !has_tiles() {
@@ -171,23 +171,23 @@ fn errors_that_only_pipeline_creation_detects_are_reported() {
     assert!(gone.starts_with("transfer.wgsl:1:1: ") && gone.contains("'BACK_FACES' not found"), "{gone}");
     let input = refused("lib/sprite_vertex.wgsl", "@location(0)", "@location(9)");
     assert!(input.contains("accumulate.wgsl:1:1: Input is not provided"), "{input}");
-    let divided = refused("transfer.wgsl", "if amount <= 0.0 {", "if amount <= f32(1u / SHADE_TREE) {");
+    let divided = refused("transfer.wgsl", "if amount <= 0.0 {", "if amount <= f32(1u / DEBUG_VIEW) {");
     assert!(divided.ends_with("fragment shader: Division by zero"), "{divided}");
 }
 
 #[test]
 fn warm_up_reports_errors_that_only_other_settings_compile() {
     let folder = Folder::new();
-    // Valid for the final image, where SHADE_TREE is 0.
-    folder.edit("transfer.wgsl", "if amount <= 0.0 {", "if amount <= f32(1u / (SHADE_TREE - 1u)) {");
-    let mut stage = Stage::new(SIZE);
+    // Valid for the final image, where DEBUG_VIEW is 0.
+    folder.edit("transfer.wgsl", "if amount <= 0.0 {", "if amount <= f32(1u / (DEBUG_VIEW - 1u)) {");
+    let mut stage = TestScene::new(SIZE);
     let host = Host::on(gpu(), &stage, Some(&folder.context().unwrap())).unwrap();
     let settings = [std::mem::take(&mut stage.settings)];
     let scene_depth = SceneDepthKind::Buffer(wgpu::TextureFormat::Depth32Float);
-    let expected = WarmUp { view: stage.view, scene_depth, settings: &settings, stages: &[ShadeTree::Final] };
+    let expected = WarmUp { view: stage.view, scene_depth, settings: &settings, stages: &[DebugView::Final] };
     host.renderer.warm_up(&expected).unwrap();
     let compiled = host.renderer.context().pipeline_count();
-    let combined = WarmUp { stages: &[ShadeTree::Combined], ..expected };
+    let combined = WarmUp { stages: &[DebugView::Combined], ..expected };
     let error = host.renderer.warm_up(&combined).unwrap_err().to_string();
     assert!(
         error.ends_with("transfer.wgsl:1:1: Pipeline constant error in fragment shader: Division by zero"),

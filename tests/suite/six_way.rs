@@ -1,19 +1,19 @@
 //! Six-way lighting: agreement of the renderers wherever it is supported, and errors where it is not.
 
 use glam::{UVec2, Vec3, Vec4, vec3};
-use haze::picture::Picture;
+use haze::image::Image;
 use haze::settings::*;
 use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Light, LightKind, wgpu};
 use haze_demo::headless::Headless;
 
 use crate::common::{AGREEMENT, gpu, has_tiles, psnr};
-use crate::stage::{Stage, six_way_of};
+use crate::test_scene::{TestScene, six_way_of};
 use crate::tiled;
 
-fn stage() -> Stage {
-    let mut stage = Stage::new(UVec2::new(160, 90));
-    (stage.settings.lighting, stage.settings.path) = (Lighting::SixWay, Path::Raster);
+fn stage() -> TestScene {
+    let mut stage = TestScene::new(UVec2::new(160, 90));
+    (stage.settings.lighting, stage.settings.path) = (Lighting::SixWay, RenderPath::Raster);
     stage.settings.boost = 1.0;
     for (index, particle) in (0..).zip(&mut stage.particles) {
         particle.rotation = index as f32 * 0.7;
@@ -21,7 +21,7 @@ fn stage() -> Stage {
     stage
 }
 
-fn agreement(name: &str, stage: &Stage) {
+fn agreement(name: &str, stage: &TestScene) {
     let (on_gpu, on_cpu) = (stage.on_gpu(gpu()).picture, stage.on_cpu());
     let psnr = psnr(&on_gpu, &on_cpu);
     println!("{name}: {psnr:.1} dB");
@@ -46,16 +46,16 @@ const MODES: &[(&str, Change)] = &[
     ("cubemap", |s| s.diffuse.mode = DiffuseMode::Cubemap),
 ];
 
-fn changed(change: Change) -> Stage {
+fn changed(change: Change) -> TestScene {
     let mut stage = stage();
     change(&mut stage.settings);
     // OpenGL cannot sample a depth buffer that the same pass tests.
-    stage.depth = crate::stage::DepthKind::Both;
+    stage.depth = crate::test_scene::DepthKind::Both;
     stage
 }
 
 /// The stage with a technique and sprites of several frames.
-fn flipbook(technique: Technique) -> Stage {
+fn flipbook(technique: Technique) -> TestScene {
     let mut stage = changed(|_| {});
     stage.settings.technique = technique;
     stage.settings.volumetric.noise_size = 1.5;
@@ -69,7 +69,7 @@ fn gpu_and_cpu_agree_in_every_accumulation_mode() {
     for (name, change) in MODES {
         agreement(name, &changed(*change));
     }
-    agreement("forward", &changed(|s| s.path = Path::Forward));
+    agreement("forward", &changed(|s| s.path = RenderPath::Forward));
     agreement(
         "8 bits",
         &changed(|s| {
@@ -79,11 +79,11 @@ fn gpu_and_cpu_agree_in_every_accumulation_mode() {
     for &technique in Technique::ALL {
         let mut stage = flipbook(technique);
         agreement(technique.name(), &stage);
-        stage.settings.path = Path::Forward;
+        stage.settings.path = RenderPath::Forward;
         agreement(&format!("{} forward", technique.name()), &stage);
     }
     let mut stage = stage();
-    stage.shade_tree = ShadeTree::Normals;
+    stage.debug_view = DebugView::Normals;
     agreement("normals", &stage);
 }
 
@@ -102,12 +102,12 @@ fn tiled_path_agrees_on_six_way_lighting() {
     let mut elsewhere = changed(|_| {});
     let dot =
         image::RgbaImage::from_fn(64, 64, |x, y| image::Rgba([128, 128, 255, if (x, y) == (9, 9) { 255 } else { 0 }]));
-    elsewhere.material.sprite = Sprite::from_picture("dot".as_ref(), &dot, SpriteLayout::default()).unwrap();
+    elsewhere.material.sprite = Sprite::from_image("dot".as_ref(), &dot, SpriteLayout::default()).unwrap();
     tiled::agreement("the sprite is clear", &elsewhere);
     // The tiled path rounds one of the two light textures to 8 bits, once. Raster rounds both after every layer, so it
     // is no reference. One step of 255 is 48 dB.
     let mut bytes = changed(|s| {
-        (s.path, s.accumulate.encoding) = (Path::Tiled, NormalEncoding::Biased);
+        (s.path, s.accumulate.encoding) = (RenderPath::Tiled, NormalEncoding::Biased);
         s.accumulate.format = AccumulationFormat::Rgba8Unorm;
     });
     let eight = bytes.on_gpu(gpu()).picture;
@@ -119,7 +119,7 @@ fn tiled_path_agrees_on_six_way_lighting() {
 
 #[test]
 fn six_way_lighting_does_not_change_alpha() {
-    let alpha = |picture: &Picture<Vec4>| picture.texels.iter().map(|texel| texel.w).collect::<Vec<_>>();
+    let alpha = |picture: &Image<Vec4>| picture.texels.iter().map(|texel| texel.w).collect::<Vec<_>>();
     let six_way = stage();
     let mut normals = six_way.clone();
     normals.settings.lighting = Lighting::Normals;
@@ -137,7 +137,7 @@ fn light_from(side: Vec3, rotation: f32) -> f32 {
     stage.lights = vec![Light { kind: LightKind::Directional, direction: -side, intensity: 1.0, ..Light::default() }];
     (stage.settings.soft_scatter.intensity, stage.settings.specular_scatter.intensity) = (0.0, 0.0);
     // The alpha is symmetric, so that rotation does not change coverage; the light maps are not.
-    let ball = Sprite::from_picture(
+    let ball = Sprite::from_image(
         "ball".as_ref(),
         &image::RgbaImage::from_fn(64, 64, |x, y| {
             let inside = 1.0 - (glam::vec2(x as f32, y as f32) - 31.5).length() / 30.0;
@@ -147,10 +147,10 @@ fn light_from(side: Vec3, rotation: f32) -> f32 {
     )
     .unwrap();
     (stage.material.six_way, stage.material.sprite) = (Some(six_way_of(&ball)), ball);
-    let empty = Stage { particles: Vec::new(), ..stage.clone() };
-    let sum = |stage: &Stage| stage.on_gpu(gpu()).picture.texels.iter().map(|texel| texel.x).sum::<f32>();
+    let empty = TestScene { particles: Vec::new(), ..stage.clone() };
+    let sum = |stage: &TestScene| stage.on_gpu(gpu()).picture.texels.iter().map(|texel| texel.x).sum::<f32>();
     // Subtracted: the backdrop as far as the smoke hides it, which does not depend on lights.
-    let dark = Stage { lights: Vec::new(), ..stage.clone() };
+    let dark = TestScene { lights: Vec::new(), ..stage.clone() };
     assert!(sum(&empty) > 0.0);
     sum(&stage) - sum(&dark)
 }
@@ -188,7 +188,7 @@ fn device_that_blends_only_one_target_falls_back_to_normals() {
 
 #[test]
 fn missing_or_mismatched_maps_are_errors_that_name_the_field() {
-    let refused = |change: fn(&mut Stage)| {
+    let refused = |change: fn(&mut TestScene)| {
         let mut stage = stage();
         change(&mut stage);
         stage.try_on_gpu(gpu()).map(|_| ()).unwrap_err().to_string()

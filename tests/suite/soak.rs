@@ -10,7 +10,7 @@ use haze::{Context, wgpu};
 use crate::common::gpu;
 use crate::host::Host;
 use crate::hosts::kept::Systems;
-use crate::stage::Stage;
+use crate::test_scene::TestScene;
 
 const SIZE: UVec2 = UVec2::splat(256);
 
@@ -74,7 +74,7 @@ fn soak_within(leak: u64, count: u32, mut step: impl FnMut(u32)) {
 #[test]
 #[ignore = "takes minutes"]
 fn fifty_thousand_frames_leak_nothing() {
-    let mut stage = Stage::new(SIZE);
+    let mut stage = TestScene::new(SIZE);
     let mut host = Host::new(gpu(), &stage).unwrap();
     soak(50_000, |frame| {
         for particle in &mut stage.particles {
@@ -88,10 +88,10 @@ fn fifty_thousand_frames_leak_nothing() {
 #[test]
 #[ignore = "takes minutes"]
 fn two_thousand_resizes_leak_nothing() {
-    let context = Host::new(gpu(), &Stage::new(SIZE)).unwrap().renderer.context().clone();
+    let context = Host::new(gpu(), &TestScene::new(SIZE)).unwrap().renderer.context().clone();
     let mut renderer = None;
     soak(2_000, |step| {
-        let stage = Stage::new(UVec2::new(64 + 41 * (step % 5), 64 + 29 * (step % 4)));
+        let stage = TestScene::new(UVec2::new(64 + 41 * (step % 5), 64 + 29 * (step % 4)));
         let mut host = Host::on(gpu(), &stage, Some(&context)).unwrap();
         if let Some(kept) = renderer.take() {
             host.renderer = kept;
@@ -127,7 +127,7 @@ fn two_hundred_shader_reloads_leak_nothing() {
         good.replace("fn fragment(", "fn fragments("),
         good.replace("#import \"lib/colour.wgsl\"", "#import \"lib/color.wgsl\""),
     ];
-    let stage = Stage::new(SIZE);
+    let stage = TestScene::new(SIZE);
     let reload = |step: u32| {
         let text = step as usize % texts.len();
         std::fs::write(folder.path().join("transfer.wgsl"), &texts[text]).unwrap();

@@ -11,15 +11,15 @@ use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Bounds, Error, Particle};
 use haze_author::sprite::bake::SpriteRecipe;
 
-use crate::common::{AGREEMENT, STEP_AGREEMENT, gpu, non_finite_texels, psnr};
+use crate::common::{AGREEMENT, MIN_PSNR_WITH_STEPS, gpu, non_finite_texels, psnr};
 use crate::host::Host;
-use crate::stage::{BACKDROP, DepthKind, Stage, six_way_of};
+use crate::test_scene::{BACKDROP, DepthKind, TestScene, six_way_of};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
 /// The test cloud with every input that a technique may read.
-pub fn stage(technique: Technique) -> Stage {
-    let mut stage = Stage::new(SIZE);
+pub fn stage(technique: Technique) -> TestScene {
+    let mut stage = TestScene::new(SIZE);
     stage.depth = DepthKind::Both;
     // Because a linear target is passed too, the depth buffer can be attached on every backend.
     stage.attach_depth = true;
@@ -32,32 +32,32 @@ pub fn stage(technique: Technique) -> Stage {
 }
 
 /// A single sprite straight ahead at `view_depth` metres.
-fn one_sprite(technique: Technique, view_depth: f32) -> Stage {
+fn one_sprite(technique: Technique, view_depth: f32) -> TestScene {
     let mut stage = stage(technique);
     stage.particles =
         vec![Particle { position: vec3(0.0, 0.0, -view_depth), amount: 0.8, radius: 0.7, ..Particle::default() }];
     stage.bounds = Some(Bounds { min: vec3(-3.0, -3.0, -12.0), max: vec3(3.0, 3.0, 3.0) });
     stage.settings.soft_fade.near_fade_end = 0.0;
     stage.settings.accumulate.scale = 1;
-    stage.shade_tree = ShadeTree::Amount;
+    stage.debug_view = DebugView::Amount;
     stage
 }
 
-fn agreement(name: &str, stage: &Stage) {
+fn agreement(name: &str, stage: &TestScene) {
     let psnr = psnr(&stage.on_gpu(gpu()).picture, &stage.on_cpu());
     println!("{name}: {psnr:.1} dB");
-    let least = if stage.settings.sprite.debug_sprite { STEP_AGREEMENT } else { AGREEMENT };
+    let least = if stage.settings.sprite.debug_sprite { MIN_PSNR_WITH_STEPS } else { AGREEMENT };
     assert!(psnr >= least, "{name}: {psnr:.1} dB");
 }
 
 #[test]
 fn gpu_and_cpu_agree_on_every_technique_and_path() {
     for &technique in Technique::ALL {
-        for path in [Path::Raster, Path::Forward] {
+        for path in [RenderPath::Raster, RenderPath::Forward] {
             let mut stage = stage(technique);
             stage.settings.path = path;
             agreement(&format!("{} {}", technique.name(), path.name()), &stage);
-            if path == Path::Raster {
+            if path == RenderPath::Raster {
                 let mut weighted = stage.clone();
                 weighted.settings.accumulate.order = Order::Weighted;
                 agreement(&format!("{} weighted", technique.name()), &weighted);
@@ -88,7 +88,7 @@ fn border_texels_are_covered_at_every_size() {
     for technique in [Technique::Soft, Technique::SphericalBillboard, Technique::VolumetricSoft] {
         for (size, scale) in [(UVec2::new(161, 91), 2), (UVec2::new(161, 91), 4), (UVec2::new(169, 97), 8)] {
             let mut stage = stage(technique);
-            let sized = Stage::new(size);
+            let sized = TestScene::new(size);
             (stage.view, stage.settings.accumulate.scale) = (sized.view, scale);
             // Moves sprites across the right and lower borders.
             stage.particles.iter_mut().for_each(|p| p.position += vec3(3.0, -1.5, 0.0));
@@ -110,7 +110,7 @@ fn switching_the_depth_input_keeps_the_targets() {
 
 #[test]
 fn gpu_and_cpu_agree_on_every_sprite_setting() {
-    type Change = fn(&mut Stage);
+    type Change = fn(&mut TestScene);
     let changes: &[(&str, Change)] = &[
         ("size", |s| s.settings.sprite.size = 1.7),
         ("volume", |s| s.settings.sprite.animation = SpriteAnimation::Volume),
@@ -119,7 +119,7 @@ fn gpu_and_cpu_agree_on_every_sprite_setting() {
         ("motion", |s| s.settings.sprite.motion = 1.0),
         ("debug sprite", |s| s.settings.sprite.debug_sprite = true),
         ("debug loop", |s| s.settings.sprite.debug_loop = 3),
-        ("age colour", |s| (s.settings.path, s.settings.sprite.age_colour) = (Path::Forward, 0.8)),
+        ("age colour", |s| (s.settings.path, s.settings.sprite.age_colour) = (RenderPath::Forward, 0.8)),
     ];
     for (name, change) in changes {
         for technique in [Technique::Soft, Technique::SphericalBillboard] {
@@ -141,7 +141,7 @@ fn gpu_and_cpu_agree_on_every_sprite_setting() {
 fn only_flipbooks_compile_a_pipeline_per_animation() {
     // Every animation of a flipbook has its own pipeline. A single frame has nothing to blend, so all animations share
     // one.
-    for path in [Path::Raster, Path::Forward] {
+    for path in [RenderPath::Raster, RenderPath::Forward] {
         for (has_frames, expected) in [(false, 0), (true, SpriteAnimation::ALL.len() - 1)] {
             let mut stage = stage(Technique::Soft);
             stage.settings.path = path;
@@ -166,7 +166,7 @@ pub fn flipbook() -> (Sprite, Option<Sprite>, Option<Sprite>) {
     static FLIPBOOK: LazyLock<[Sprite; 3]> = LazyLock::new(|| {
         let recipe = recipe();
         let baked = recipe.bake(|_| Ok::<_, haze::FieldError>(())).unwrap();
-        let decode = |picture| Sprite::from_picture("flipbook".as_ref(), picture, recipe.layout()).unwrap();
+        let decode = |picture| Sprite::from_image("flipbook".as_ref(), picture, recipe.layout()).unwrap();
         let sprite = decode(&baked.picture);
         let six_way = six_way_of(&sprite);
         [sprite, decode(&baked.detail), six_way]
@@ -186,7 +186,7 @@ fn recipe() -> SpriteRecipe {
 /// with motion, and with reversed motion.
 fn errors_between_frames(recipe: &SpriteRecipe) -> [f32; 3] {
     let baked = recipe.bake(|_| Ok::<_, haze::FieldError>(())).unwrap();
-    let decode = |picture: &_, layout| Sprite::from_picture("flipbook".as_ref(), picture, layout).unwrap();
+    let decode = |picture: &_, layout| Sprite::from_image("flipbook".as_ref(), picture, layout).unwrap();
     let (sprite, detail) = (decode(&baked.picture, recipe.layout()), decode(&baked.detail, recipe.layout()));
     let size = recipe.size;
     // Premultiplied normal and amount, as they are accumulated.
@@ -251,14 +251,14 @@ fn freezing_the_animation_stops_the_noise() {
 // Documented behaviour of each technique.
 
 /// A single sprite at `view_depth` metres, with a wall at 6.2 m as the scene.
-fn wall(technique: Technique, view_depth: f32) -> Stage {
+fn wall(technique: Technique, view_depth: f32) -> TestScene {
     let mut stage = one_sprite(technique, view_depth);
     stage.wall_everywhere = true;
     stage
 }
 
 /// Amount in the middle of the image, 0..1.
-fn amount(stage: &Stage) -> f32 {
+fn amount(stage: &TestScene) -> f32 {
     let mut host = Host::sharing(gpu(), stage).unwrap();
     host.draw(gpu(), stage).unwrap();
     amount_in(&host)
@@ -331,20 +331,20 @@ fn largest_step(technique: Technique) -> f32 {
 
 /// Limit for spheres. The camera moves by 19 mm per step, and density times amount is 2.4 per metre, so the amount
 /// along the central ray changes by at most 1 - exp(-2.4 · 0.019) = 4.5 %.
-const LARGEST_STEP: f32 = 0.045;
+const MAX_SPHERE_STEP: f32 = 0.045;
 
 /// Limit for squares, which also grow on screen: by a fifth per step close to the near plane. A square that vanishes at
 /// once changes by 0.8.
-const SLAB_STEP: f32 = 0.2;
+const MAX_SLAB_STEP: f32 = 0.2;
 
 #[test]
 fn spherical_billboards_do_not_pop_at_the_near_plane() {
     let sphere = largest_step(Technique::SphericalBillboard);
     let square = largest_step(Technique::Soft);
     println!("largest change in a step: sphere {sphere:.3}, square {square:.3}");
-    assert!(sphere < LARGEST_STEP, "largest change in a step: {sphere}");
+    assert!(sphere < MAX_SPHERE_STEP, "largest change in a step: {sphere}");
     // The mutant: a flat square disappears in one step.
-    assert!(square > 10.0 * LARGEST_STEP, "largest change in a step of the mutant: {square}");
+    assert!(square > 10.0 * MAX_SPHERE_STEP, "largest change in a step of the mutant: {square}");
 }
 
 #[test]
@@ -352,7 +352,7 @@ fn slabs_vanish_when_their_far_side_passes_the_near_plane() {
     for technique in [Technique::Density, Technique::DepthSpriteHard, Technique::DepthSpriteSoft] {
         let step = largest_step(technique);
         println!("largest change in a step: {} {step:.3}", technique.name());
-        assert!(step < SLAB_STEP, "largest change in a step: {} {step}", technique.name());
+        assert!(step < MAX_SLAB_STEP, "largest change in a step: {} {step}", technique.name());
         for depth in [-0.55, -0.3, 0.0, 0.05, 0.1, 0.4, 0.69, 0.75] {
             agreement(&format!("{} at {depth} m", technique.name()), &one_sprite(technique, depth));
         }
@@ -405,11 +405,11 @@ fn depth_sprites_intersect_the_scene_at_the_depth_of_their_texels() {
 #[test]
 fn nothing_is_drawn_beyond_the_far_plane() {
     for &technique in Technique::ALL {
-        for path in [Path::Raster, Path::Forward] {
+        for path in [RenderPath::Raster, RenderPath::Forward] {
             let drawn = |depth: f32| {
                 let mut stage = one_sprite(technique, depth);
                 stage.view.clip_from_view = directx::perspective(0.8, 16.0 / 9.0, 0.1, 6.0);
-                (stage.settings.path, stage.shade_tree) = (path, ShadeTree::Final);
+                (stage.settings.path, stage.debug_view) = (path, DebugView::Final);
                 stage.on_gpu(gpu()).picture.texels.iter().any(|&texel| texel != BACKDROP)
             };
             assert!(drawn(4.5) && !drawn(7.0), "{} {}", technique.name(), path.name());
@@ -421,7 +421,7 @@ fn nothing_is_drawn_beyond_the_far_plane() {
 
 #[test]
 fn degenerate_input_stays_finite_or_is_an_error_that_names_the_field() {
-    let refused = |change: fn(&mut Stage)| {
+    let refused = |change: fn(&mut TestScene)| {
         let mut stage = stage(Technique::Soft);
         change(&mut stage);
         match stage.try_on_gpu(gpu()) {
@@ -440,7 +440,7 @@ fn degenerate_input_stays_finite_or_is_an_error_that_names_the_field() {
     assert_eq!(field(|s| s.settings.volumetric.noise_size = 0.0), "volumetric.noise_size");
     assert_eq!(field(|s| s.settings.spherical_billboard.density = f32::NAN), "spherical_billboard.density");
     assert_eq!(field(|s| s.time = f32::INFINITY), "time");
-    let lacking = |change: fn(&mut Stage)| {
+    let lacking = |change: fn(&mut TestScene)| {
         let mut stage = stage(Technique::DepthSpriteHard);
         stage.material.detail = None;
         change(&mut stage);
@@ -459,7 +459,7 @@ fn degenerate_input_stays_finite_or_is_an_error_that_names_the_field() {
     let mut two_frames = stage(Technique::Soft);
     let sheet = image::RgbaImage::new(16, 8);
     let layout = SpriteLayout { columns: 2, rows: 1, y_down: false };
-    two_frames.material.detail = Some(Sprite::from_picture("two".as_ref(), &sheet, layout).unwrap());
+    two_frames.material.detail = Some(Sprite::from_image("two".as_ref(), &sheet, layout).unwrap());
     let error = two_frames.try_on_gpu(gpu()).map(|_| ()).unwrap_err().to_string();
     assert_eq!(error, "systems[0].material.detail: 2 frames is not valid; expected as many as the sprite has, 1");
 
@@ -477,7 +477,7 @@ fn degenerate_input_stays_finite_or_is_an_error_that_names_the_field() {
             Particle { position: vec3(0.0, 0.0, -0.1), radius: 0.01, ..Particle::default() },
             Particle { position: vec3(1.0, 0.0, -5.0), age: 1e30, ..Particle::default() },
         ];
-        let shrink: [fn(&mut Stage); 3] =
+        let shrink: [fn(&mut TestScene); 3] =
             [|_| {}, |s| s.settings.sprite.size = 0.0, |s| s.settings.spherical_billboard.radius = 0.0];
         for change in shrink {
             change(&mut stage);

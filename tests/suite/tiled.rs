@@ -11,62 +11,62 @@ use glam::UVec2;
 use glam::camera::rh::proj::directx;
 use glam::{Vec3, Vec4, vec3};
 use haze::builtin;
-use haze::picture::Picture;
+use haze::image::Image;
 use haze::settings::*;
 use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Bounds, Context, Error, Particle, Particles, wgpu};
 use haze_demo::headless::Headless;
 use haze_demo::shot::Shot;
 
-use crate::common::{AGREEMENT, STEP_AGREEMENT, gpu, has_tiles, psnr};
-use crate::host::{Host, as_floats};
-use crate::stage::Stage;
+use crate::common::{AGREEMENT, MIN_PSNR_WITH_STEPS, gpu, has_tiles, psnr};
+use crate::host::{Host, convert_to_rgba16float};
 use crate::techniques;
+use crate::test_scene::TestScene;
 
 /// Least agreement with `raster`, dB. The paths differ because the blend unit rounds every layer.
-const TO_RASTER: f32 = 55.0;
+const MIN_PSNR_TO_RASTER: f32 = 55.0;
 
 /// Least agreement with the CPU renderer, which rounds as the blend unit does, dB.
-const TO_REFERENCE: f32 = AGREEMENT;
+const MIN_PSNR_TO_CPU: f32 = AGREEMENT;
 
-fn stage(technique: Technique) -> Stage {
+fn stage(technique: Technique) -> TestScene {
     let mut stage = techniques::stage(technique);
     stage.settings.accumulate.layers = Layers::All;
     stage
 }
 
-fn context_with_traversal(in_step: bool) -> Context {
+fn context_with_traversal(cooperative: bool) -> Context {
     let context = Context::new(&gpu().device, &gpu().queue, None);
-    context.walk_in_step(in_step);
+    context.set_cooperative_traversal(cooperative);
     context
 }
 
 /// Renders with one path and one traversal. Exact filtering would force the cooperative traversal, so the other one
 /// uses the sampler's filter.
-fn drawn(stage: &Stage, path: Path, in_step: bool) -> Picture<Vec4> {
+fn drawn(stage: &TestScene, path: RenderPath, cooperative: bool) -> Image<Vec4> {
     let mut stage = stage.clone();
-    (stage.settings.path, stage.host.exact_filtering) = (path, in_step);
+    (stage.settings.path, stage.host.exact_filtering) = (path, cooperative);
     static CONTEXTS: [LazyLock<Context>; 2] =
         [LazyLock::new(|| context_with_traversal(false)), LazyLock::new(|| context_with_traversal(true))];
-    let mut host = Host::on(gpu(), &stage, Some(&CONTEXTS[usize::from(in_step)])).unwrap();
+    let mut host = Host::on(gpu(), &stage, Some(&CONTEXTS[usize::from(cooperative)])).unwrap();
     host.draw(gpu(), &stage).unwrap();
     gpu().check().unwrap();
     host.picture(gpu()).unwrap()
 }
 
 /// Asserts that both traversals agree with `raster`, and the cooperative one also with the CPU renderer.
-pub fn agreement(name: &str, stage: &Stage) {
+pub fn agreement(name: &str, stage: &TestScene) {
     let steps = stage.settings.sprite.debug_sprite;
-    for in_step in [true, false] {
-        let [tiled, raster] = [Path::Tiled, Path::Raster].map(|path| drawn(stage, path, in_step));
+    for cooperative in [true, false] {
+        let [tiled, raster] = [RenderPath::Tiled, RenderPath::Raster].map(|path| drawn(stage, path, cooperative));
         let (to_raster, to_reference) = (psnr(&tiled, &raster), psnr(&tiled, &stage.on_cpu()));
-        println!("{name}, cooperative {in_step}: raster {to_raster:.1} dB, CPU renderer {to_reference:.1} dB");
+        println!("{name}, cooperative {cooperative}: raster {to_raster:.1} dB, CPU renderer {to_reference:.1} dB");
         assert!(
-            to_raster >= if steps { STEP_AGREEMENT } else { TO_RASTER },
+            to_raster >= if steps { MIN_PSNR_WITH_STEPS } else { MIN_PSNR_TO_RASTER },
             "{name}: {to_raster:.1} dB against raster"
         );
-        let least = if steps { STEP_AGREEMENT } else { TO_REFERENCE };
-        assert!(!in_step || to_reference >= least, "{name}: {to_reference:.1} dB against the CPU renderer");
+        let least = if steps { MIN_PSNR_WITH_STEPS } else { MIN_PSNR_TO_CPU };
+        assert!(!cooperative || to_reference >= least, "{name}: {to_reference:.1} dB against the CPU renderer");
     }
 }
 
@@ -96,7 +96,7 @@ fn tiled_path_agrees_in_every_accumulation_mode() {
     if !has_tiles() {
         return;
     }
-    type Change = fn(&mut Stage);
+    type Change = fn(&mut TestScene);
     let changes: [(&str, Change); 9] = [
         ("weighted", |s| s.settings.accumulate.order = Order::Weighted),
         ("biased", |s| s.settings.accumulate.encoding = NormalEncoding::Biased),
@@ -131,11 +131,11 @@ fn tiled_path_rounds_eight_bit_targets_only_once() {
     let mut stage = stage(Technique::Soft);
     let accumulate = &mut stage.settings.accumulate;
     (accumulate.format, accumulate.encoding) = (AccumulationFormat::Rgba8Unorm, NormalEncoding::Biased);
-    stage.shade_tree = ShadeTree::Amount;
+    stage.debug_view = DebugView::Amount;
     let mut exact = stage.clone();
     exact.settings.accumulate.format = AccumulationFormat::Rgba16Float;
     let exact = exact.on_cpu();
-    let [tiled, raster] = [Path::Tiled, Path::Raster].map(|path| psnr(&drawn(&stage, path, true), &exact));
+    let [tiled, raster] = [RenderPath::Tiled, RenderPath::Raster].map(|path| psnr(&drawn(&stage, path, true), &exact));
     println!("8 bits: tiled {tiled:.1} dB, raster {raster:.1} dB");
     assert!(tiled >= 50.0 && tiled > raster, "tiled {tiled} dB, raster {raster} dB");
 }
@@ -155,11 +155,11 @@ fn skipping_hidden_layers_barely_changes_the_image() {
         ..Particle::default()
     };
     stage.particles = (0..400).map(layer).collect();
-    for in_step in [true, false] {
+    for cooperative in [true, false] {
         stage.settings.accumulate.layers = Layers::All;
-        let all = drawn(&stage, Path::Tiled, in_step);
+        let all = drawn(&stage, RenderPath::Tiled, cooperative);
         stage.settings.accumulate.layers = Layers::Visible;
-        let visible = drawn(&stage, Path::Tiled, in_step);
+        let visible = drawn(&stage, RenderPath::Tiled, cooperative);
         let apart = psnr(&visible, &all);
         println!("visible layers against all: {apart:.1} dB");
         // The layers that are skipped add at most a thousandth of the light.
@@ -185,13 +185,13 @@ fn tiled_path_agrees_on_every_preset() {
         let mut behind = shot.clone();
         behind.preset.systems.clear();
         behind.materials.clear();
-        let behind = renderer(&behind, Path::Raster, Layers::All);
-        let raster = renderer(&shot, Path::Raster, Layers::All);
+        let behind = renderer(&behind, RenderPath::Raster, Layers::All);
+        let raster = renderer(&shot, RenderPath::Raster, Layers::All);
         for &layers in Layers::ALL {
-            let tiled = renderer(&shot, Path::Tiled, layers);
+            let tiled = renderer(&shot, RenderPath::Tiled, layers);
             let apart = crate::common::psnr_over([&tiled, &raster], [&behind, &behind]);
             println!("{}, {} layers: {apart:.1} dB", preset.name, layers.name());
-            assert!(apart >= TO_RASTER, "{}: {apart:.1} dB", preset.name);
+            assert!(apart >= MIN_PSNR_TO_RASTER, "{}: {apart:.1} dB", preset.name);
         }
     }
 }
@@ -215,10 +215,10 @@ fn tiled_path_is_deterministic_and_sorts_buffers() {
     let all: Vec<_> = (0..3000_u32).map(all).collect();
     stage.particles.clone_from(&all);
     stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
-    (stage.settings.path, stage.host.exact_filtering) = (Path::Tiled, false);
+    (stage.settings.path, stage.host.exact_filtering) = (RenderPath::Tiled, false);
     let mut host = Host::new(gpu(), &stage).unwrap();
-    for in_step in [true, false] {
-        host.renderer.context().walk_in_step(in_step);
+    for cooperative in [true, false] {
+        host.renderer.context().set_cooperative_traversal(cooperative);
         let picture = |host: &mut Host| {
             host.draw(gpu(), &stage).unwrap();
             host.picture(gpu()).unwrap()
@@ -260,7 +260,7 @@ fn storage_buffer(bytes: &[u8]) -> wgpu::Buffer {
 #[test]
 fn devices_and_buffers_without_tiles_are_errors_on_the_tiled_path() {
     let mut stage = stage(Technique::Soft);
-    stage.settings.path = Path::Tiled;
+    stage.settings.path = RenderPath::Tiled;
     let refused = |result: Result<(), Error>| match result {
         Err(Error::Field(error)) => error.to_string(),
         other => panic!("{other:?}"),
@@ -269,12 +269,12 @@ fn devices_and_buffers_without_tiles_are_errors_on_the_tiled_path() {
     let mut host = Host::new(&webgl2, &stage).unwrap();
     let message = refused(host.draw(&webgl2, &stage));
     assert!(message.contains("systems[0].settings.path") && message.contains("raster"), "{message}");
-    stage.settings.path = Path::Auto;
+    stage.settings.path = RenderPath::Auto;
     host.draw(&webgl2, &stage).unwrap();
     if !has_tiles() {
         return;
     }
-    stage.settings.path = Path::Tiled;
+    stage.settings.path = RenderPath::Tiled;
     stage.bounds = Some(Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE });
     let mut host = Host::new(gpu(), &stage).unwrap();
     let buffer = storage_buffer(&[0; 128]);
@@ -306,7 +306,7 @@ fn two_hundred_faint_layers_add_up() {
         }
     }
     let mut stage = stage(Technique::Hard);
-    let sprite = Sprite::from_picture(std::path::Path::new("full"), &sheet, SpriteLayout::default()).unwrap();
+    let sprite = Sprite::from_image(std::path::Path::new("full"), &sheet, SpriteLayout::default()).unwrap();
     stage.material.sprite = sprite;
     stage.settings.accumulate.scale = 1;
     let particle = Particle { position: vec3(0.0, 0.0, -3.0), radius: 4.0, amount: 0.02, ..Particle::default() };
@@ -323,7 +323,7 @@ fn two_hundred_faint_layers_add_up() {
         let mut host = Host::new(gpu(), &stage).unwrap();
         host.draw(gpu(), &stage).unwrap();
         let targets = host.renderer.targets(0).unwrap();
-        let texels = as_floats(gpu(), targets.accumulation[0].texture());
+        let texels = convert_to_rgba16float(gpu(), targets.accumulation[0].texture());
         let (width, size) = (texels.width(), targets.size);
         let texels = gpu().read_rgba16float(&texels).unwrap();
         // The middle of the image.
@@ -337,10 +337,10 @@ fn two_hundred_faint_layers_add_up() {
         -10.0 * (squares / f64::from(count)).max(1.0e-12).log10()
     };
     let (half, byte) = (AccumulationFormat::Rgba16Float, AccumulationFormat::Rgba8Unorm);
-    let tiled = decibels(Path::Tiled, half, NormalEncoding::Signed);
-    let tiled_byte = decibels(Path::Tiled, byte, NormalEncoding::Biased);
-    let raster = decibels(Path::Raster, half, NormalEncoding::Signed);
-    let raster_byte = decibels(Path::Raster, byte, NormalEncoding::Biased);
+    let tiled = decibels(RenderPath::Tiled, half, NormalEncoding::Signed);
+    let tiled_byte = decibels(RenderPath::Tiled, byte, NormalEncoding::Biased);
+    let raster = decibels(RenderPath::Raster, half, NormalEncoding::Signed);
+    let raster_byte = decibels(RenderPath::Raster, byte, NormalEncoding::Biased);
     println!("tiled {tiled:.1} dB, 8 bits {tiled_byte:.1}; raster {raster:.1}, 8 bits {raster_byte:.1}");
     assert!(tiled >= 60.0, "tiled {tiled} dB");
     // A step of 8 bits is 48 dB; the rounding error of 8 bits is 59 dB.

@@ -4,14 +4,14 @@ use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
-use haze::settings::{Backlight, DiffuseMode, Lighting, LightingResolution, Path};
+use haze::settings::{Backlight, DiffuseMode, Lighting, LightingResolution, RenderPath};
 use haze::{Error, Frame, FrameTimes, Particles, SceneDepth, Settings, System, Timing, wgpu};
 use haze_demo::headless::Headless;
 
 use crate::common::{gpu, has_tiles};
 use crate::creations;
 use crate::host::Host;
-use crate::stage::Stage;
+use crate::test_scene::TestScene;
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
@@ -29,7 +29,7 @@ fn timed_gpu() -> Option<&'static Headless> {
 }
 
 /// Host that measures its renderer and its own pass.
-fn timed_host(gpu: &Headless, stage: &Stage) -> (Host, Timing) {
+fn timed_host(gpu: &Headless, stage: &TestScene) -> (Host, Timing) {
     let timing = Timing::new(&gpu.device, &gpu.queue).unwrap();
     assert_eq!(timing.latest(), None);
     let mut host = Host::new(gpu, stage).unwrap();
@@ -51,7 +51,7 @@ fn result_after(timing: &Timing, seen: Option<u64>) -> FrameTimes {
     panic!("no timing result within 10 s");
 }
 
-fn drawn(gpu: &Headless, host: &mut Host, timing: &Timing, stage: &Stage) -> FrameTimes {
+fn drawn(gpu: &Headless, host: &mut Host, timing: &Timing, stage: &TestScene) -> FrameTimes {
     let seen = timing.latest().map(|times| times.frame);
     host.draw(gpu, stage).unwrap();
     result_after(timing, seen)
@@ -62,13 +62,14 @@ fn names(times: &FrameTimes) -> Vec<&str> {
 }
 
 /// Stage with settings that use every pass of the deferred path.
-fn stage() -> Stage {
-    let mut stage = Stage::new(SIZE);
+fn stage() -> TestScene {
+    let mut stage = TestScene::new(SIZE);
     stage.settings.diffuse.mode = DiffuseMode::Cubemap;
     stage
 }
 
-const DEFERRED: [&str; 6] = ["depth_downsample", "diffuse_bake", "accumulate", "host", "transfer", "specular_scatter"];
+const DEFERRED_PASSES: [&str; 6] =
+    ["depth_downsample", "diffuse_bake", "accumulate", "host", "transfer", "specular_scatter"];
 
 #[test]
 fn every_pass_is_reported_by_name_with_a_positive_time() {
@@ -78,7 +79,7 @@ fn every_pass_is_reported_by_name_with_a_positive_time() {
     let mut frame = None;
     for _ in 0..5 {
         let times = drawn(gpu, &mut host, &timing, &stage);
-        assert_eq!(names(&times), DEFERRED);
+        assert_eq!(names(&times), DEFERRED_PASSES);
         assert!(Some(times.frame) > frame && times.discarded == 0, "{times:?}");
         assert!(times.passes.iter().all(|pass| pass.ms > 0.0), "{times:?}");
         frame = Some(times.frame);
@@ -88,7 +89,7 @@ fn every_pass_is_reported_by_name_with_a_positive_time() {
         let within = ms("transfer") + ms("specular_scatter");
         assert!(within <= ms("host") * 1.0001, "{times:?}");
         assert!(times.smoke_ms() - within + ms("host") <= times.whole_ms * 1.0001, "{times:?}");
-        let own: f32 = DEFERRED.iter().filter(|name| **name != "host").map(|name| ms(name)).sum();
+        let own: f32 = DEFERRED_PASSES.iter().filter(|name| **name != "host").map(|name| ms(name)).sum();
         assert!((times.smoke_ms() - own).abs() < 1.0e-5 * own, "{times:?}");
         assert!(times.passes.iter().all(|pass| pass.of_host == (pass.name == "host")));
     }
@@ -96,7 +97,7 @@ fn every_pass_is_reported_by_name_with_a_positive_time() {
     let lit =
         ["depth_downsample", "diffuse_bake", "accumulate", "light_target", "host", "transfer", "specular_scatter"];
     assert_eq!(names(&drawn(gpu, &mut host, &timing, &stage)), lit);
-    stage.settings.path = Path::Forward;
+    stage.settings.path = RenderPath::Forward;
     assert_eq!(names(&drawn(gpu, &mut host, &timing, &stage)), ["host", "forward"]);
     stage.particles.clear();
     assert_eq!(names(&drawn(gpu, &mut host, &timing, &stage)), ["host"]);
@@ -108,12 +109,12 @@ fn results_report_the_path_that_auto_took() {
     let mut stage = stage();
     let (mut host, timing) = timed_host(gpu, &stage);
     assert_eq!(drawn(gpu, &mut host, &timing, &stage).choices, []);
-    stage.settings.path = Path::Auto;
+    stage.settings.path = RenderPath::Auto;
     for _ in 0..3 {
         let times = drawn(gpu, &mut host, &timing, &stage);
         let choice = host.renderer.path_choice(0).unwrap();
         assert_eq!(times.choices, [(0, choice)]);
-        let pass = if choice.path == Path::Tiled { "tile_accumulate" } else { "accumulate" };
+        let pass = if choice.path == RenderPath::Tiled { "tile_accumulate" } else { "accumulate" };
         assert!(names(&times).contains(&pass), "{times:?}");
     }
 }
@@ -199,7 +200,7 @@ fn timing_of_another_device_is_an_error() {
     let Err(Error::Field(error)) = refused else { panic!("{refused:?}") };
     assert_eq!(error.field, "timing");
     // The previous timing stays in use.
-    assert_eq!(names(&drawn(gpu, &mut host, &timing, &stage())), DEFERRED);
+    assert_eq!(names(&drawn(gpu, &mut host, &timing, &stage())), DEFERRED_PASSES);
 }
 
 #[test]
@@ -210,7 +211,7 @@ fn without_timestamps_inside_passes_only_whole_passes_are_measured() {
     }
     let (mut host, timing) = timed_host(&gpu, &stage());
     let times = drawn(&gpu, &mut host, &timing, &stage());
-    assert_eq!((names(&times), times.discarded), (DEFERRED[..4].to_vec(), 0));
+    assert_eq!((names(&times), times.discarded), (DEFERRED_PASSES[..4].to_vec(), 0));
 }
 
 #[test]
@@ -233,7 +234,7 @@ fn dropped_encoders_do_not_disturb_later_results() {
     assert_eq!(timing.latest(), Some(first));
     for _ in 0..2 {
         let times = drawn(gpu, &mut host, &timing, &stage);
-        assert_eq!((names(&times), times.discarded), (DEFERRED.to_vec(), 0));
+        assert_eq!((names(&times), times.discarded), (DEFERRED_PASSES.to_vec(), 0));
     }
 }
 
@@ -273,12 +274,12 @@ fn only_resolved_frames_are_measured() {
     let mut stage = stage();
     let (mut host, timing) = timed_host(gpu, &stage);
     host.timing = None;
-    stage.settings.path = Path::Forward;
+    stage.settings.path = RenderPath::Forward;
     host.draw(gpu, &stage).unwrap();
-    stage.settings.path = Path::Auto;
+    stage.settings.path = RenderPath::Auto;
     host.timing = Some(timing.clone());
     let times = drawn(gpu, &mut host, &timing, &stage);
-    assert_eq!((names(&times), times.discarded), (DEFERRED.to_vec(), 0));
+    assert_eq!((names(&times), times.discarded), (DEFERRED_PASSES.to_vec(), 0));
 }
 
 #[test]
@@ -322,7 +323,7 @@ fn frames_beyond_the_read_back_buffers_are_not_measured() {
         gpu.submit(encoder).unwrap();
     }
     let times = drawn(gpu, &mut host, &timing, &stage);
-    assert_eq!((names(&times), times.frame, times.discarded), (DEFERRED.to_vec(), 5, 0));
+    assert_eq!((names(&times), times.frame, times.discarded), (DEFERRED_PASSES.to_vec(), 5, 0));
 }
 
 #[test]
@@ -338,7 +339,7 @@ fn steady_frames_with_timing_create_no_resources() {
 }
 
 /// Median GPU time of the sum of `passes` for every stage, milliseconds. The stages are drawn in turn.
-fn medians(gpu: &Headless, stages: &[Stage], passes: &[&str]) -> Vec<f32> {
+fn medians(gpu: &Headless, stages: &[TestScene], passes: &[&str]) -> Vec<f32> {
     let mut hosts: Vec<_> = stages.iter().map(|stage| timed_host(gpu, stage)).collect();
     let mut all = vec![Vec::new(); stages.len()];
     for turn in 0..24 {
@@ -361,17 +362,18 @@ fn medians(gpu: &Headless, stages: &[Stage], passes: &[&str]) -> Vec<f32> {
 #[ignore = "prints figures for the docs"]
 fn prints_cost_of_six_way_lighting_and_ramps() {
     let Some(gpu) = timed_gpu() else { return };
-    let mut stage = Stage::new(UVec2::new(1280, 720));
+    let mut stage = TestScene::new(UVec2::new(1280, 720));
     stage.particles.iter_mut().for_each(|particle| particle.radius = 1.6);
     let other = |change: fn(&mut Settings)| {
         let mut other = stage.clone();
         change(&mut other.settings);
         other
     };
-    let raster: [(Path, &[&str]); 2] = [(Path::Raster, &["accumulate"]), (Path::Raster, &["transfer"])];
-    let tiled: [(Path, &[&str]); 2] = [
-        (Path::Tiled, &["tile_project", "sort", "tile_bin", "tile_refine", "tile_accumulate"]),
-        (Path::Tiled, &["tile_accumulate"]),
+    let raster: [(RenderPath, &[&str]); 2] =
+        [(RenderPath::Raster, &["accumulate"]), (RenderPath::Raster, &["transfer"])];
+    let tiled: [(RenderPath, &[&str]); 2] = [
+        (RenderPath::Tiled, &["tile_project", "sort", "tile_bin", "tile_refine", "tile_accumulate"]),
+        (RenderPath::Tiled, &["tile_accumulate"]),
     ];
     let tiled = if has_tiles() { &tiled[..] } else { &[] };
     for scale in [1, 2] {

@@ -3,8 +3,8 @@
 use glam::{IVec2, UVec2, Vec4, vec3};
 use haze::builtin;
 use haze::formula::colour::srgb_from_linear;
-use haze::picture::Picture;
-use haze::settings::{LightingResolution, ShadeTree, Upsample};
+use haze::image::Image;
+use haze::settings::{DebugView, LightingResolution, Upsample};
 use haze_demo::shot::Shot;
 
 use crate::common::psnr;
@@ -13,7 +13,7 @@ use crate::presets::drawn;
 const SIZE: UVec2 = UVec2::new(640, 360);
 
 /// Renders with a scale and an upsampling mode for every system.
-fn render(shot: &Shot, scale: u32, upsample: Upsample) -> Picture<Vec4> {
+fn render(shot: &Shot, scale: u32, upsample: Upsample) -> Image<Vec4> {
     let mut shot = shot.clone();
     for system in &mut shot.preset.systems {
         (system.settings.accumulate.scale, system.settings.accumulate.upsample) = (scale, upsample);
@@ -23,7 +23,7 @@ fn render(shot: &Shot, scale: u32, upsample: Upsample) -> Picture<Vec4> {
 
 /// Marks pixels whose depth differs from a pixel within `reach` pixels of them.
 fn edges(shot: &Shot, reach: i32) -> Vec<bool> {
-    let depth = render(&Shot { shade_tree: ShadeTree::ReducedDepth, ..shot.clone() }, 1, Upsample::Bilinear);
+    let depth = render(&Shot { debug_view: DebugView::ReducedDepth, ..shot.clone() }, 1, Upsample::Bilinear);
     let is_edge = |i: u32| {
         let at = IVec2::new((i % SIZE.x) as i32, (i / SIZE.x) as i32);
         let around = (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| IVec2::new(x, y)));
@@ -35,10 +35,10 @@ fn edges(shot: &Shot, reach: i32) -> Vec<bool> {
 }
 
 /// PSNR of the pixels at edges, dB, and the largest error of a channel among them, sRGB 0..1.
-fn error_at_edges(reduced: &Picture<Vec4>, full: &Picture<Vec4>, edges: &[bool]) -> (f32, f32) {
-    let at_edges = |picture: &Picture<Vec4>| {
+fn error_at_edges(reduced: &Image<Vec4>, full: &Image<Vec4>, edges: &[bool]) -> (f32, f32) {
+    let at_edges = |picture: &Image<Vec4>| {
         let texels: Vec<Vec4> = picture.texels.iter().zip(edges).filter(|(_, edge)| **edge).map(|(t, _)| *t).collect();
-        Picture { size: UVec2::new(texels.len() as u32, 1), texels }
+        Image { size: UVec2::new(texels.len() as u32, 1), texels }
     };
     let (reduced, full) = (at_edges(reduced), at_edges(full));
     assert!(full.texels.len() > 5000, "only {} pixels at edges", full.texels.len());
@@ -70,7 +70,7 @@ fn print_rows(name: &str, shot: &Shot) -> (f32, f32) {
 }
 
 /// Renders with guided upsampling and every system lit at `lighting_resolution`.
-fn render_lit(shot: &Shot, scale: u32, lighting_resolution: LightingResolution) -> Picture<Vec4> {
+fn render_lit(shot: &Shot, scale: u32, lighting_resolution: LightingResolution) -> Image<Vec4> {
     let mut shot = shot.clone();
     for system in &mut shot.preset.systems {
         system.settings.accumulate.lighting_resolution = lighting_resolution;

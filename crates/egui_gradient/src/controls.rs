@@ -41,7 +41,7 @@ pub fn show(ui: &mut Ui, frame: &mut Frame<'_>, at: f32) {
     });
     ui.horizontal(|ui| colour_and_curve(ui, frame, &lead));
     ui.horizontal(|ui| {
-        hue_and_so_on(ui, frame, &lead);
+        hsv_fields(ui, frame, &lead);
         eyedropper(ui, frame);
     });
     ui.horizontal_wrapped(|ui| {
@@ -101,7 +101,7 @@ fn colour_and_curve(ui: &mut Ui, frame: &mut Frame<'_>, lead: &RampStop) {
 }
 
 /// Draws fields for hue, saturation and value of the colour.
-fn hue_and_so_on(ui: &mut Ui, frame: &mut Frame<'_>, lead: &RampStop) {
+fn hsv_fields(ui: &mut Ui, frame: &mut Frame<'_>, lead: &RampStop) {
     let known = frame.editor.hsv.filter(|(known, _)| *known == lead.colour);
     let shown = known.map_or_else(|| lead.colour.hsv(), |(_, hsv)| hsv);
     for (channel, (name, letter, most, unit)) in
@@ -214,8 +214,9 @@ fn all(ui: &mut Ui, frame: &mut Frame<'_>, at: f32) {
     }
     let about = "Give the range after each stop the same width: for constant curves";
     if button(ui, is_many, "Steps", about) {
-        frame
-            .edit_selected(["even steps", "even steps in a part"], |all, selection| stops::step_evenly(all, selection));
+        frame.edit_selected(["even steps", "even steps in a part"], |all, selection| {
+            stops::distribute_steps(all, selection)
+        });
     }
     if button(ui, true, "Copy", "Copy all stops as recipe text (Ctrl+C on a stop)") {
         frame.copy(ui, at);

@@ -27,8 +27,8 @@ pub struct Eyedropper {
     /// Picked positions since the button was pressed.
     stroke: Vec<Pos2>,
     /// True if a key began the stroke.
-    is_by_key: bool,
-    is_let_go: bool,
+    is_keyboard_stroke: bool,
+    is_released: bool,
 }
 
 /// Picked sRGB colours, 0 to 255: one, those along a stroke, or none.
@@ -53,7 +53,7 @@ impl Eyedropper {
         let stroke = if self.stroke.is_empty() { &here[..] } else { &self.stroke };
         let colours = self.shown.get().map(|shown| colours(shown, stroke, ui.pixels_per_point(), *across));
         match colours {
-            Some(colours) if self.is_let_go => Taken::Done(colours),
+            Some(colours) if self.is_released => Taken::Done(colours),
             colours => Taken::Pointed(colours.unwrap_or_default()),
         }
     }
@@ -117,14 +117,14 @@ impl Eyedropper {
             self.at = pointer;
         }
         if is_pressed {
-            (self.stroke, self.is_by_key) = (vec![self.at], false);
-        } else if is_down || self.is_by_key {
-            self.draw_on();
+            (self.stroke, self.is_keyboard_stroke) = (vec![self.at], false);
+        } else if is_down || self.is_keyboard_stroke {
+            self.extend_stroke();
         }
-        self.is_let_go |= !is_down && !self.is_by_key && !self.stroke.is_empty();
+        self.is_released |= !is_down && !self.is_keyboard_stroke && !self.stroke.is_empty();
     }
 
-    fn draw_on(&mut self) {
+    fn extend_stroke(&mut self) {
         if self.stroke.last().is_some_and(|last| *last != self.at) {
             self.stroke.push(self.at);
         }
@@ -158,14 +158,14 @@ impl Eyedropper {
                 Key::ArrowUp => Vec2::UP,
                 Key::ArrowDown => Vec2::DOWN,
                 Key::Space if !is_repeat && self.stroke.is_empty() => {
-                    (self.stroke, self.is_by_key) = (vec![self.at], true);
+                    (self.stroke, self.is_keyboard_stroke) = (vec![self.at], true);
                     continue;
                 }
                 Key::Enter | Key::Space if !is_repeat => {
                     if self.stroke.is_empty() {
                         self.stroke.push(self.at);
                     }
-                    (self.is_by_key, self.is_let_go) = (false, true);
+                    (self.is_keyboard_stroke, self.is_released) = (false, true);
                     continue;
                 }
                 key => {
@@ -175,8 +175,8 @@ impl Eyedropper {
             };
             let window = ui.ctx().viewport_rect();
             self.at = window.clamp(self.at + step * pixel * if modifiers.shift { 10.0 } else { 1.0 });
-            if self.is_by_key {
-                self.draw_on();
+            if self.is_keyboard_stroke {
+                self.extend_stroke();
             }
         }
     }

@@ -54,7 +54,7 @@ pub struct Drag {
     /// ends.
     pub now: Vec<RampStop>,
     /// True if Alt makes the drag fine. If Alt began the drag with a copy, only after Alt was released once.
-    pub is_alt_free: bool,
+    pub alt_slows: bool,
 }
 
 /// Snapping of positions to equal parts. Ctrl inverts `is_on`.

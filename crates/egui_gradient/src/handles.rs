@@ -21,7 +21,7 @@ pub fn show(ui: &Ui, frame: &mut Frame<'_>, strip: Rect, lane: Rect) {
     all(ui, frame, strip, lane);
     drag(ui, frame, strip);
     // Stops selected in this frame may have been removed in it.
-    frame.editor.selection.keep_to(frame.stops.len());
+    frame.editor.selection.clamp_to(frame.stops.len());
     if frame.wants_keyboard {
         // Must come last: drawing the handles after a click elsewhere removes their focus.
         let index = frame.editor.cursor.unwrap_or(frame.editor.selection.lead());
@@ -144,7 +144,7 @@ fn point(ui: &Ui, frame: &mut Frame<'_>, (response, index): (&Response, usize), 
         if !frame.editor.selection.contains(index) {
             frame.editor.selection = Selection::one(index);
         }
-        frame.editor.selection.lead_with(index);
+        frame.editor.selection.set_lead(index);
         if modifiers.alt {
             frame.edit_selected(["copy a stop", "copy stops"], stops::copy);
             frame.wants_keyboard = true;
@@ -166,10 +166,10 @@ fn point(ui: &Ui, frame: &mut Frame<'_>, (response, index): (&Response, usize), 
 }
 
 /// Begins a drag of the selected stops, with the lead at `place` and the pointer at `x`.
-pub fn begin(frame: &mut Frame<'_>, x: f32, place: f32, before: Selected, is_alt_free: bool) {
+pub fn begin(frame: &mut Frame<'_>, x: f32, place: f32, before: Selected, alt_slows: bool) {
     let from = (frame.stops.clone(), frame.editor.selection.clone());
     let now = frame.stops.clone();
-    frame.editor.dragged = Some(Drag { x, place, from, before, now, is_alt_free });
+    frame.editor.dragged = Some(Drag { x, place, from, before, now, alt_slows });
 }
 
 fn remove(frame: &mut Frame<'_>) {
@@ -247,8 +247,8 @@ fn drag(ui: &Ui, frame: &mut Frame<'_>, strip: Rect) {
         ui.input(|input| (input.pointer.latest_pos(), input.pointer.primary_down(), input.modifiers));
     let Some(pointer) = pointer.filter(|_| is_down) else { return };
     ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
-    drag.is_alt_free |= !modifiers.alt;
-    let is_fine = modifiers.alt && drag.is_alt_free;
+    drag.alt_slows |= !modifiers.alt;
+    let is_fine = modifiers.alt && drag.alt_slows;
     drag.place += (pointer.x - drag.x) / strip.width() * if is_fine { FINE } else { 1.0 };
     drag.x = pointer.x;
     let (from, selection) = &drag.from;

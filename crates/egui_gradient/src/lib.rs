@@ -14,7 +14,7 @@
 //! preview of the gradient. The host must serve egui's screenshot requests, as eframe does.
 //! `examples/gradient_editor.rs` shows an editor in a window.
 //!
-//! The host implements undo: [`Edited::committed`] names each completed step. A whole drag is one step.
+//! The host implements undo: [`GradientResponse::committed`] names each completed step. A whole drag is one step.
 
 mod controls;
 mod eyedropper;
@@ -41,7 +41,7 @@ use haze_author::ramp::bake::RampRow;
 
 /// Changes to a gradient in one frame.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Edited {
+pub struct GradientResponse {
     /// True if the gradient changed in this frame.
     pub is_changed: bool,
     /// Name of the undo step in progress, or of the step completed in this frame.
@@ -64,14 +64,14 @@ pub struct GradientEditor {
 impl GradientEditor {
     /// Shows the editor of a row, at the available width, and edits its stops. The row's own position and curve stay
     /// unchanged.
-    pub fn show(&mut self, ui: &mut Ui, row: &mut RampRow, surroundings: &Surroundings<'_>) -> Edited {
+    pub fn show(&mut self, ui: &mut Ui, row: &mut RampRow, surroundings: &Surroundings<'_>) -> GradientResponse {
         if !row.stops.is_sorted_by(|a, b| a.at <= b.at) {
             stops::sort(&mut row.stops);
         }
         let before = row.clone();
-        self.state.selection.keep_to(row.stops.len());
+        self.state.selection.clamp_to(row.stops.len());
         self.state.cursor = self.state.cursor.filter(|cursor| *cursor < row.stops.len());
-        let mut edited = Edited::default();
+        let mut edited = GradientResponse::default();
         let (mut done, mut is_held) = (None, false);
         ui.push_id("gradient", |ui| {
             let at = before.at;
@@ -87,7 +87,7 @@ impl GradientEditor {
             // Before the controls, so that the click that activates the eyedropper picks no colour.
             controls::take(ui, &mut frame, surroundings.blend);
             controls::show(ui, &mut frame, at);
-            is_held = is_held_by(ui, frame.editor.has_keyboard);
+            is_held = is_interacting(ui, frame.editor.has_keyboard);
             (edited.refused, done) = (frame.refused, frame.done);
         });
         edited.is_changed = *row != before;
@@ -113,7 +113,7 @@ impl GradientEditor {
 }
 
 /// True while a pointer button or arrow key is down, or a text field is being edited.
-fn is_held_by(ui: &Ui, has_keyboard: bool) -> bool {
+fn is_interacting(ui: &Ui, has_keyboard: bool) -> bool {
     let keys = [egui::Key::ArrowLeft, egui::Key::ArrowRight];
     let is_down = |input: &egui::InputState| {
         input.pointer.any_down() || has_keyboard && keys.iter().any(|key| input.key_down(*key))

@@ -60,7 +60,7 @@ impl Selection {
     }
 
     /// Makes another selected stop the lead.
-    pub fn lead_with(&mut self, index: usize) {
+    pub fn set_lead(&mut self, index: usize) {
         if self.contains(index) {
             (self.lead, self.anchor) = (index, index);
         }
@@ -86,7 +86,7 @@ impl Selection {
     }
 
     /// Limits the indices to `count` stops.
-    pub fn keep_to(&mut self, count: usize) {
+    pub fn clamp_to(&mut self, count: usize) {
         if self.all.last().is_some_and(|last| *last >= count) || self.anchor >= count {
             *self = self.map(|index| index.min(count.saturating_sub(1)));
         }
@@ -126,11 +126,11 @@ mod tests {
     #[test]
     fn indices_are_limited_to_the_number_of_stops() {
         let mut selection = Selection::between(2, 6);
-        selection.keep_to(7);
+        selection.clamp_to(7);
         assert_eq!(selection, Selection::between(2, 6));
-        selection.keep_to(4);
+        selection.clamp_to(4);
         assert_eq!((all(&selection), selection.lead()), (vec![2, 3], 3));
-        selection.keep_to(0);
+        selection.clamp_to(0);
         assert_eq!(selection, Selection::one(0));
     }
 }

@@ -123,7 +123,7 @@ fn part(stops: &[RampStop], selection: &Selection) -> (Range<usize>, f32, f32) {
 }
 
 /// Replaces the stops of a part, and selects the new ones if several stops were selected.
-fn put_part(stops: &mut Vec<RampStop>, selection: &mut Selection, range: Range<usize>, others: Vec<RampStop>) {
+fn replace_part(stops: &mut Vec<RampStop>, selection: &mut Selection, range: Range<usize>, others: Vec<RampStop>) {
     let end = (range.start + others.len()).saturating_sub(1);
     if selection.is_many() {
         *selection = Selection::between(range.start, end);
@@ -136,7 +136,7 @@ pub fn flip(stops: &mut Vec<RampStop>, selection: &mut Selection) {
     sort_selected(stops, selection);
     let (range, from, to) = part(stops, selection);
     let turned = turned(&stops[range.clone()], from + to, from, to);
-    put_part(stops, selection, range, turned);
+    replace_part(stops, selection, range, turned);
 }
 
 /// Compresses a part into its first half and appends its mirror image.
@@ -154,7 +154,7 @@ pub fn mirror(stops: &mut Vec<RampStop>, selection: &mut Selection) {
         mirrored.pop();
     }
     mirrored.extend(back);
-    put_part(stops, selection, range, mirrored);
+    replace_part(stops, selection, range, mirrored);
 }
 
 /// Returns the stops in reverse, each at `sum` minus its position, clamped to `from`..`to`. Each curve stays with its
@@ -207,7 +207,7 @@ pub fn distribute(stops: &mut [RampStop], selection: &mut Selection) {
 
 /// Spaces stops so that the segments after them have equal width, for constant curves. All stops from 0 to 1, or the
 /// selected ones from the first to the stop after the last.
-pub fn step_evenly(stops: &mut [RampStop], selection: &mut Selection) {
+pub fn distribute_steps(stops: &mut [RampStop], selection: &mut Selection) {
     let indices = distributed(stops, selection);
     let from = if selection.is_many() { ends(stops, indices.iter().copied()).0 } else { 0.0 };
     let behind = indices.last().and_then(|last| stops.get(last + 1));

@@ -140,7 +140,7 @@ fn exit_code(error: &Error) -> u8 {
         | Error::JsonField { .. }
         | Error::Shader { .. }
         | Error::NoDevice(_) => 2,
-        Error::Picture { error, .. } => exit_code(error),
+        Error::Asset { error, .. } => exit_code(error),
         // A file that is missing or may not be read is bad input; a full disk is not.
         Error::Io { error, .. } => match error.kind() {
             std::io::ErrorKind::NotFound

@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use haze::Error;
 use haze_demo::headless::Headless;
+use haze_demo::offscreen_renderer::OffscreenRenderer;
 use haze_demo::shot::Shot;
-use haze_demo::stage::Stage;
 
 use super::options::Backend;
 
@@ -61,14 +61,14 @@ const MOST_LOOPS: u32 = 8192;
 
 /// Measures the time of a shot's smoke.
 pub enum Timer<'a> {
-    Gpu(Box<Stage>, &'a Headless),
+    Gpu(Box<OffscreenRenderer>, &'a Headless),
     Cpu,
 }
 
 impl<'a> Timer<'a> {
     pub fn new(backend: &'a Backend) -> Result<Self, Error> {
         Ok(match backend {
-            Backend::Gpu(gpu) => Self::Gpu(Box::new(Stage::new(&gpu.context, false)?), &gpu.headless),
+            Backend::Gpu(gpu) => Self::Gpu(Box::new(OffscreenRenderer::new(&gpu.context, false)?), &gpu.headless),
             Backend::Cpu => Self::Cpu,
         })
     }

@@ -6,10 +6,10 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use glam::UVec2;
-use haze::picture::{Effort, write_file, write_png};
+use haze::image::{CompressionEffort, write_file, write_png};
 use haze::{Error, FieldError};
-use haze_demo::develop::develop;
 use haze_demo::shot::Shot;
+use haze_demo::tonemap_pass::tonemap;
 use image::codecs::gif::{GifEncoder, Repeat};
 use image::{Delay, DynamicImage, Frame, RgbImage, imageops};
 
@@ -46,12 +46,12 @@ impl Watch<'_> {
     /// Renders an image; `None` if the work is to stop.
     fn render(&self, done: u32, count: u32, backend: &Backend, shot: &Shot) -> Result<Option<RgbImage>, Error> {
         let picture = match self {
-            Self::Terminal if interrupt::is_asked() => return Ok(None),
+            Self::Terminal if interrupt::is_requested() => return Ok(None),
             Self::Terminal => watched(format!("haze: image {} of {count}", done + 1), || backend.render(shot))?,
             Self::Caller(go_on) if !go_on(done, count) => return Ok(None),
             Self::Caller(_) => backend.render(shot)?,
         };
-        Ok(Some(develop(&picture, shot)))
+        Ok(Some(tonemap(&picture, shot)))
     }
 }
 
@@ -95,7 +95,7 @@ pub fn sequence(
     shot: &Shot,
     frames: &Frames,
     names: &FrameNames,
-    effort: Effort,
+    effort: CompressionEffort,
     watch: &Watch<'_>,
 ) -> Result<(), Error> {
     let write = |frame, picture: RgbImage| write_png(&names.of(frame), &picture.into(), effort);

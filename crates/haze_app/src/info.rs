@@ -1,8 +1,8 @@
 //! `haze info`: prints what this machine renders with.
 
 use glam::UVec2;
-use haze::settings::{Path, Technique};
-use haze::{Context, Error, PathChoice, PathLoad, PathReason};
+use haze::settings::{RenderPath, Technique};
+use haze::{Context, Error, PathChoice, PathReason, PathWorkload};
 use haze_demo::headless::Headless;
 
 use super::output::say;
@@ -29,10 +29,10 @@ fn choices(gpu: &Headless) -> Result<Vec<PathChoice>, Error> {
     let context = Context::new(&gpu.device, &gpu.queue, None);
     let model = context.measure_paths(&gpu.device, &gpu.queue, |encoder| gpu.submit(encoder))?;
     if !context.has_tiles() {
-        return Ok(vec![PathChoice { path: Path::Raster, reason: PathReason::NoTiles }]);
+        return Ok(vec![PathChoice { path: RenderPath::Raster, reason: PathReason::TiledUnsupported }]);
     }
     let size = UVec2::new(1280, 720);
-    let load = |layers: f64| PathLoad {
+    let load = |layers: f64| PathWorkload {
         technique: Technique::Soft,
         sprites: 16.0 * layers,
         fragments: layers * size.as_dvec2().element_product(),

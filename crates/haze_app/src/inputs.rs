@@ -4,11 +4,11 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
-use haze::preset::{PictureFolders, Preset, cache_file, picture_file};
-use haze::settings::{FieldVisitor, Fields, PictureRole};
+use haze::preset::{AssetFolders, Preset, image_file_path, particle_file_path};
+use haze::settings::{FieldVisitor, Fields, ImageRole};
 
 /// Returns every path where an image that a preset names may lie.
-pub fn pictures_of(folders: &PictureFolders, preset: &Preset) -> Vec<PathBuf> {
+pub fn image_paths(folders: &AssetFolders, preset: &Preset) -> Vec<PathBuf> {
     picture_files(preset).iter().flat_map(|file| folders.places(file)).collect()
 }
 
@@ -16,12 +16,12 @@ pub fn pictures_of(folders: &PictureFolders, preset: &Preset) -> Vec<PathBuf> {
 pub fn picture_files(preset: &Preset) -> Vec<PathBuf> {
     let mut names = Names(Vec::new());
     preset.clone().visit(&mut names);
-    names.0.iter().filter_map(|name| picture_file(name)).map(Path::to_path_buf).collect()
+    names.0.iter().filter_map(|name| image_file_path(name)).map(Path::to_path_buf).collect()
 }
 
 /// Returns every particle file that a preset names, and the next file of each sequence, which may be written later.
-pub fn caches_of(folders: &PictureFolders, preset: &Preset) -> Vec<PathBuf> {
-    let files = preset.systems.iter().filter_map(|system| cache_file(&system.cache.path));
+pub fn particle_file_paths(folders: &AssetFolders, preset: &Preset) -> Vec<PathBuf> {
+    let files = preset.systems.iter().filter_map(|system| particle_file_path(&system.cache.path));
     files.flat_map(|file| folders.places(file)).flat_map(|place| haze::preset::places(&place)).collect()
 }
 
@@ -31,7 +31,7 @@ impl FieldVisitor for Names {
     fn number(&mut self, _: &'static str, _: &mut f32, _: RangeInclusive<f32>, _: &'static str) {}
     fn integer(&mut self, _: &'static str, _: &mut u32, _: RangeInclusive<u32>, _: &'static str) {}
     fn vector(&mut self, _: &'static str, _: &mut Vec3, _: RangeInclusive<f32>, _: &'static str) {}
-    fn picture(&mut self, _: &'static str, name: &mut String, _: PictureRole) {
+    fn picture(&mut self, _: &'static str, name: &mut String, _: ImageRole) {
         self.0.push(name.clone());
     }
     fn group(&mut self, _: &'static str, fields: &mut dyn Fields) {

@@ -3,11 +3,11 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-static IS_ASKED: AtomicBool = AtomicBool::new(false);
+static IS_REQUESTED: AtomicBool = AtomicBool::new(false);
 
 /// Returns true if Ctrl-C was pressed since [`catch`].
-pub fn is_asked() -> bool {
-    IS_ASKED.load(Ordering::Relaxed)
+pub fn is_requested() -> bool {
+    IS_REQUESTED.load(Ordering::Relaxed)
 }
 
 /// From now on the first Ctrl-C only sets a flag.
@@ -20,7 +20,7 @@ pub fn catch() {
         fn signal(number: i32, handler: usize) -> usize;
     }
     extern "C" fn note(number: i32) {
-        IS_ASKED.store(true, Ordering::Relaxed);
+        IS_REQUESTED.store(true, Ordering::Relaxed);
         // SAFETY: `signal` is async-signal-safe.
         unsafe { signal(number, DEFAULT) };
     }

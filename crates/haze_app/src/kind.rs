@@ -16,36 +16,40 @@ struct Kind {
     what: &'static str,
     /// Command that reads this kind.
     command: &'static str,
-    is_it: fn(&Path) -> bool,
+    can_load: fn(&Path) -> bool,
 }
 
-const PRESET: Kind =
-    Kind { name: "preset", what: "a preset", command: "haze preset check", is_it: |path| Preset::load(path).is_ok() };
+const PRESET: Kind = Kind {
+    name: "preset",
+    what: "a preset",
+    command: "haze preset check",
+    can_load: |path| Preset::load(path).is_ok(),
+};
 
 const RECIPES: [Kind; 4] = [
     Kind {
         name: "ramp",
         what: "a ramp recipe",
         command: "haze ramp check",
-        is_it: |path| RampRecipe::load(path).is_ok(),
+        can_load: |path| RampRecipe::load(path).is_ok(),
     },
     Kind {
         name: "motif",
         what: "a motif recipe",
         command: "haze ramp bake",
-        is_it: |path| MotifRecipe::load(path).is_ok(),
+        can_load: |path| MotifRecipe::load(path).is_ok(),
     },
     Kind {
         name: "sprite",
         what: "a sprite recipe",
         command: "haze sprite bake",
-        is_it: |path| SpriteRecipe::load(path).is_ok(),
+        can_load: |path| SpriteRecipe::load(path).is_ok(),
     },
     Kind {
         name: "noise",
         what: "a noise recipe",
         command: "haze sprite bake",
-        is_it: |path| NoiseRecipe::load(path).is_ok(),
+        can_load: |path| NoiseRecipe::load(path).is_ok(),
     },
 ];
 
@@ -63,7 +67,7 @@ pub fn explain(error: Error, path: &Path, own: &str, expected: &str) -> Error {
     };
     let kinds = || std::iter::once(&PRESET).chain(&RECIPES);
     let by_name = kinds().find(named).filter(|_| path.is_file());
-    let kind = by_name.or_else(|| kinds().find(|kind| (kind.is_it)(path)));
+    let kind = by_name.or_else(|| kinds().find(|kind| (kind.can_load)(path)));
     match kind.filter(|kind| kind.name != own) {
         Some(Kind { what, command, .. }) => {
             let expected = format!("{expected}, but it is {what}: use `{command}`");

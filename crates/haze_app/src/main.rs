@@ -35,7 +35,7 @@ mod watch;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    without_a_session();
+    silence_wayland_without_session();
     command_line::run(std::env::args_os())
 }
 
@@ -43,7 +43,7 @@ fn main() -> ExitCode {
 /// the device of the display. If the variable is missing, as without a login session, libwayland prints an error; if
 /// the folder is missing, it does not.
 #[allow(unsafe_code, reason = "there is no other way to set a variable for a library in this process")]
-fn without_a_session() {
+fn silence_wayland_without_session() {
     const VARIABLE: &str = "XDG_RUNTIME_DIR";
     let is_set = std::env::var_os(VARIABLE).is_some_and(|folder| std::path::Path::new(&folder).is_absolute());
     if cfg!(target_os = "linux") && !is_set {

@@ -12,7 +12,7 @@ use haze_author::path_trace::{MEDIA, Medium, PathTrace};
 use haze_author::sprite::bake::SpriteRecipe;
 
 use super::output::has_extension;
-use super::progress::watched_as;
+use super::progress::with_changing_progress;
 
 #[derive(Args)]
 pub struct MediumArguments {
@@ -126,7 +126,7 @@ impl PathTraceArguments {
     pub fn watched<T>(&self, what: &str, work: impl FnOnce(&dyn Fn(u32) -> Result<(), Error>) -> T) -> T {
         let done = AtomicU32::new(0);
         let line = || format!("haze: tracing {what}, path {} of {}", done.load(Ordering::Relaxed) + 1, self.samples);
-        watched_as(line, || {
+        with_changing_progress(line, || {
             work(&|sample| {
                 done.store(sample, Ordering::Relaxed);
                 Ok(())
@@ -150,6 +150,6 @@ pub fn sprite_recipe(name: &Path) -> Result<SpriteRecipe, Error> {
 }
 
 /// The sprite that is traced if none is named.
-pub fn usual_sprite() -> PathBuf {
+pub fn default_sprite() -> PathBuf {
     "billow".into()
 }

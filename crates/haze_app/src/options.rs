@@ -7,18 +7,18 @@ use std::str::FromStr;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use glam::{UVec2, Vec4};
-use haze::picture::Picture;
-use haze::picture::{Effort, write_png};
-use haze::preset::{PictureFolders, Preset};
-use haze::settings::{Choice, Path, Technique, set_field};
+use haze::image::Image;
+use haze::image::{CompressionEffort, write_png};
+use haze::preset::{AssetFolders, Preset};
+use haze::settings::{Choice, RenderPath, Technique, set_field};
 use haze::shader::Sources;
 use haze::{Error, FieldError};
 use haze_demo::headless::Headless;
+use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
-use haze_demo::stage::{Stage, StageContext};
 use image::RgbImage;
 
-use super::inputs::pictures_of;
+use super::inputs::image_paths;
 use super::memory::check_memory;
 use super::output::{Files, complain, say};
 
@@ -29,8 +29,8 @@ pub struct RunArguments {
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size, allow_hyphen_values = true)]
     pub size: UVec2,
     /// Rendering path of the smoke. Default: the preset's.
-    #[arg(long, value_parser = choices::<Path>())]
-    pub path: Option<Path>,
+    #[arg(long, value_parser = choices::<RenderPath>())]
+    pub path: Option<RenderPath>,
     /// Renderer.
     #[arg(long, value_enum, default_value = "auto")]
     backend: BackendName,
@@ -99,8 +99,8 @@ impl AssetsArguments {
     ///
     /// # Errors
     /// As [`AssetsArguments::folder`].
-    pub fn folders(&self, preset: &std::path::Path) -> Result<PictureFolders, Error> {
-        Ok(PictureFolders::beside(preset).and_shared(self.folder()?))
+    pub fn folders(&self, preset: &std::path::Path) -> Result<AssetFolders, Error> {
+        Ok(AssetFolders::beside(preset).with_shared(self.folder()?))
     }
 }
 
@@ -124,8 +124,8 @@ pub enum Backend {
 /// A device, and the renderer on it, which is kept for all images.
 pub struct Gpu {
     pub headless: Headless,
-    pub context: StageContext,
-    stage: RefCell<Stage>,
+    pub context: OffscreenContext,
+    stage: RefCell<OffscreenRenderer>,
 }
 
 impl ShotArguments {
@@ -150,7 +150,7 @@ impl ShotArguments {
             set_field(&mut preset, field, value).map_err(|error| in_option("--set", error))?;
         }
         let shot = self.shot(preset)?;
-        let pictures = pictures_of(&self.assets.folders(&self.preset)?, &shot.preset);
+        let pictures = image_paths(&self.assets.folders(&self.preset)?, &shot.preset);
         let mut files = Files::read(pictures.iter().map(PathBuf::as_path).chain([self.preset.as_path()]));
         outputs.iter().try_for_each(|(option, path)| files.write(option, path, kind))?;
         Ok(shot)
@@ -163,8 +163,8 @@ impl ShotArguments {
     }
 
     /// Effort to compress PNGs.
-    pub fn effort(&self) -> Effort {
-        if self.small { Effort::Small } else { Effort::Quick }
+    pub fn effort(&self) -> CompressionEffort {
+        if self.small { CompressionEffort::Small } else { CompressionEffort::Quick }
     }
 
     /// Writes the image, and prints a line that says so.
@@ -218,16 +218,16 @@ impl Backend {
     }
 
     fn on(gpu: Headless, sources: Option<&Sources>) -> Result<Self, Error> {
-        let mut context = StageContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
+        let mut context = OffscreenContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
         if let Some(sources) = sources {
             context = context.with_shaders(sources)?;
         }
-        let stage = RefCell::new(Stage::new(&context, false)?);
+        let stage = RefCell::new(OffscreenRenderer::new(&context, false)?);
         Ok(Self::Gpu(Box::new(Gpu { headless: gpu, context, stage })))
     }
 
     /// Renders an image in linear HDR.
-    pub fn render(&self, shot: &Shot) -> Result<Picture<Vec4>, Error> {
+    pub fn render(&self, shot: &Shot) -> Result<Image<Vec4>, Error> {
         match self {
             Self::Gpu(gpu) => {
                 let mut stage = gpu.stage.borrow_mut();

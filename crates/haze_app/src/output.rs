@@ -4,7 +4,7 @@ use std::fmt::{Arguments, Display};
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
-use haze::picture::{FileIdentity, check_file};
+use haze::image::{FileIdentity, check_file};
 use haze::{Error, FieldError};
 
 /// `println!` of one line that returns an error instead of panicking.

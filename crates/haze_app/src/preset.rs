@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use glam::UVec2;
-use haze::picture::write_file;
+use haze::image::write_file;
 use haze::preset::{Preset, PresetSystem};
 use haze::settings::{Value, values};
 use haze::{Error, FieldError, Light, builtin};

@@ -6,16 +6,16 @@ use std::time::{Duration, Instant};
 
 /// Does the work, and shows `what` and the elapsed time. Work of less than a second shows nothing.
 pub fn watched<T>(what: String, work: impl FnOnce() -> T) -> T {
-    watched_as(|| what.clone(), work)
+    with_changing_progress(|| what.clone(), work)
 }
 
 /// The same, with a description that changes during the work.
-pub fn watched_as<T>(what: impl Fn() -> String + Send, work: impl FnOnce() -> T) -> T {
+pub fn with_changing_progress<T>(what: impl Fn() -> String + Send, work: impl FnOnce() -> T) -> T {
     let stderr = std::io::stderr();
-    if stderr.is_terminal() { watched_on(stderr, what, Duration::from_secs(1), work) } else { work() }
+    if stderr.is_terminal() { with_progress_on(stderr, what, Duration::from_secs(1), work) } else { work() }
 }
 
-fn watched_on<T>(
+fn with_progress_on<T>(
     mut out: impl Write + Send,
     what: impl Fn() -> String + Send,
     every: Duration,
@@ -47,7 +47,7 @@ mod tests {
 
     fn shown(every: Duration, work: Duration) -> String {
         let mut terminal = Vec::new();
-        watched_on(&mut terminal, || "baking puff".into(), every, || std::thread::sleep(work));
+        with_progress_on(&mut terminal, || "baking puff".into(), every, || std::thread::sleep(work));
         String::from_utf8(terminal).unwrap()
     }
 
@@ -63,6 +63,6 @@ mod tests {
         // A writer that is full.
         let full: &mut [u8] = &mut [];
         let work = || std::thread::sleep(Duration::from_millis(50));
-        watched_on(full, || "baking".into(), Duration::from_millis(1), work);
+        with_progress_on(full, || "baking".into(), Duration::from_millis(1), work);
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::{UVec2, Vec3};
 use haze::formula::colour::srgb_from_linear;
-use haze::picture::Picture;
+use haze::image::Image;
 use haze_author::ramp::response::{LIGHTS, Puff, angle};
 use image::imageops::{FilterType, resize};
 use image::{Rgb, RgbImage};
@@ -18,8 +18,8 @@ const SIDE: u32 = 160;
 const SHOWN: usize = LIGHTS as usize / 2 + 1;
 
 /// Composites a puff over the background. Light as bright as `white` becomes white.
-fn before_ground(light: &Picture<Vec3>, coverage: &Picture<f32>, white: f32) -> RgbImage {
-    let Picture { size, texels } = light;
+fn over_background(light: &Image<Vec3>, coverage: &Image<f32>, white: f32) -> RgbImage {
+    let Image { size, texels } = light;
     RgbImage::from_fn(size.x, size.y, |x, y| {
         let index = (y * size.x + x) as usize;
         let seen = texels[index] / white + BEHIND * (1.0 - coverage.texels[index]);
@@ -47,7 +47,7 @@ pub fn traced(puff: &Puff) -> RgbImage {
     let mut sheet = Sheet::new(UVec2::splat(SIDE), SHOWN as u32, SHOWN as u32);
     let white = white(puff);
     for light in 0..SHOWN {
-        let picture = before_ground(&puff.traced().light[light], &puff.traced().coverage, white);
+        let picture = over_background(&puff.traced().light[light], &puff.traced().coverage, white);
         sheet.place(light as u32, &degrees(light), &enlarged(&picture));
     }
     sheet.picture
@@ -59,7 +59,7 @@ fn enlarged(picture: &RgbImage) -> RgbImage {
 
 /// Images that are compared with the path-traced puff: one for each light, and the factor they are multiplied by.
 pub struct Shown<'a> {
-    pub light: &'a dyn Fn(usize) -> Picture<Vec3>,
+    pub light: &'a dyn Fn(usize) -> Image<Vec3>,
     pub exposure: f32,
 }
 
@@ -86,8 +86,8 @@ fn pair(puff: &Puff, shown: &Shown<'_>, white: f32, light: usize) -> [RgbImage; 
     let coverage = &puff.traced().coverage;
     let ours = (shown.light)(light);
     [
-        before_ground(&puff.traced().light[light], coverage, white),
-        before_ground(&ours, coverage, white / shown.exposure),
+        over_background(&puff.traced().light[light], coverage, white),
+        over_background(&ours, coverage, white / shown.exposure),
     ]
 }
 

@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use haze::picture::{Effort, write_png};
+use haze::image::{CompressionEffort, write_png};
 use haze::{Error, FieldError};
 use haze_author::noise::NoiseRecipe;
 use haze_author::ramp::bake::RampRecipe;
@@ -14,7 +14,7 @@ use image::DynamicImage;
 
 use super::kind::recipes;
 use super::output::{Files, say};
-use super::progress::{watched, watched_as};
+use super::progress::{watched, with_changing_progress};
 
 /// Kinds of recipes that a command takes.
 pub struct Kinds {
@@ -58,7 +58,7 @@ impl Kinds {
 }
 
 /// Returns the possible recipes of an image: `fire.ramp.json`, and so on, for `fire.png`.
-pub fn recipes_of(picture: &Path) -> impl Iterator<Item = PathBuf> {
+pub fn recipe_paths(picture: &Path) -> impl Iterator<Item = PathBuf> {
     recipes().map(|kind| picture.with_extension(format!("{kind}.json")))
 }
 
@@ -138,9 +138,12 @@ impl<'a> Job<'a> {
             1 => format!("haze: baking {path}"),
             _ => format!("haze: baking {path}, frame {} of {count}", done.load(Ordering::Relaxed) + 1),
         };
-        let pictures = watched_as(what, || self.recipe.bake(|frames| done.store(frames, Ordering::Relaxed)))?;
+        let pictures =
+            with_changing_progress(what, || self.recipe.bake(|frames| done.store(frames, Ordering::Relaxed)))?;
         for (picture, output) in pictures.iter().zip(&self.outputs) {
-            watched(format!("haze: writing {}", output.display()), || write_png(output, picture, Effort::Small))?;
+            watched(format!("haze: writing {}", output.display()), || {
+                write_png(output, picture, CompressionEffort::Small)
+            })?;
             say!("{}: {}x{}", output.display(), picture.width(), picture.height())?;
         }
         Ok(())
@@ -153,7 +156,7 @@ mod tests {
 
     #[test]
     fn every_recipe_kind_is_baked_by_one_command() {
-        for recipe in recipes_of(Path::new("a/fire.png")) {
+        for recipe in recipe_paths(Path::new("a/fire.png")) {
             let is_known = [&RAMPS, &SPRITES].map(|kinds| kinds.find(&recipe).is_ok());
             assert!(is_known.contains(&true), "{}", recipe.display());
         }

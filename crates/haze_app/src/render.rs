@@ -4,10 +4,10 @@ use std::ops::RangeInclusive;
 
 use clap::Args;
 use glam::UVec2;
-use haze::settings::ShadeTree;
+use haze::settings::DebugView;
 use haze::{Error, FieldError};
-use haze_demo::develop::develop;
 use haze_demo::shot::Shot;
+use haze_demo::tonemap_pass::tonemap;
 
 use super::export::{self, Frames, Watch};
 use super::frames::{FrameNames, parse_frames, parse_rate, parse_sheet};
@@ -19,8 +19,8 @@ pub struct Arguments {
     #[command(flatten)]
     shot: ShotArguments,
     /// Stage of the shading to show.
-    #[arg(long, default_value = "final", value_parser = choices::<ShadeTree>())]
-    view: ShadeTree,
+    #[arg(long, default_value = "final", value_parser = choices::<DebugView>())]
+    view: DebugView,
     /// Render frames A to B, both included: to one PNG per frame, with the frame number in its name as in `f_%04d.png`,
     /// or to one animated GIF, `f.gif`. Frame 0 is at the preset's time, or at --time.
     #[arg(long, value_name = "A..B", value_parser = parse_frames)]
@@ -44,10 +44,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         (Some(frames), None) => sequence(arguments, frames),
         (Some(frames), Some(cells)) => flipbook(arguments, frames, cells),
         (None, _) => {
-            let shot = Shot { shade_tree: arguments.view, ..arguments.shot.load(&[])? };
+            let shot = Shot { debug_view: arguments.view, ..arguments.shot.load(&[])? };
             let backend = arguments.shot.run.backend()?;
             let picture = backend.render(&shot)?;
-            arguments.shot.write(develop(&picture, &shot), &shot, &backend)
+            arguments.shot.write(tonemap(&picture, &shot), &shot, &backend)
         }
     }
 }
@@ -55,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
 fn sequence(arguments: &Arguments, frames: &Frames) -> Result<(), Error> {
     let names = FrameNames::parse(&arguments.shot.output)?;
     let outputs: Vec<_> = frames.range.clone().map(|frame| ("--output", names.of(frame))).collect();
-    let shot = Shot { shade_tree: arguments.view, ..arguments.shot.load_for(&outputs, "png")? };
+    let shot = Shot { debug_view: arguments.view, ..arguments.shot.load_for(&outputs, "png")? };
     let backend = arguments.shot.run.backend()?;
     export::sequence(&backend, &shot, frames, &names, arguments.shot.effort(), &Watch::terminal())?;
     let (first, last) = (names.of(*frames.range.start()), names.of(*frames.range.end()));
@@ -63,7 +63,7 @@ fn sequence(arguments: &Arguments, frames: &Frames) -> Result<(), Error> {
 }
 
 fn flipbook(arguments: &Arguments, frames: &Frames, cells: UVec2) -> Result<(), Error> {
-    let shot = Shot { shade_tree: arguments.view, ..arguments.shot.load(&[])? };
+    let shot = Shot { debug_view: arguments.view, ..arguments.shot.load(&[])? };
     export::check_flipbook(shot.size, frames, cells)?;
     let backend = arguments.shot.run.backend()?;
     let sheet = export::flipbook(&backend, &shot, frames, cells, &arguments.shot.output, &Watch::terminal())?;
@@ -77,7 +77,7 @@ fn gif(arguments: &Arguments, frames: &Frames) -> Result<(), Error> {
     }
     let path = &arguments.shot.output;
     let outputs = [("--output", path.clone())];
-    let shot = Shot { shade_tree: arguments.view, ..arguments.shot.load_for(&outputs, "gif")? };
+    let shot = Shot { debug_view: arguments.view, ..arguments.shot.load_for(&outputs, "gif")? };
     let backend = arguments.shot.run.backend()?;
     export::gif(&backend, &shot, frames, path, &Watch::terminal())?;
     say!("{}: {} on {}", path.display(), shot.preset.name, backend.description())

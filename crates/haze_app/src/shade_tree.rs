@@ -2,7 +2,7 @@
 
 use clap::Args;
 use haze::Error;
-use haze::settings::ShadeTree;
+use haze::settings::DebugView;
 use haze_demo::shot::Shot;
 
 use super::export::{Watch, sheet};
@@ -16,16 +16,16 @@ pub struct Arguments {
 }
 
 /// Stages in the order of the frame, three per row.
-pub const STAGES: [(ShadeTree, &str); ShadeTree::ALL.len()] = [
-    (ShadeTree::ReducedDepth, "Reduced depth"),
-    (ShadeTree::Normals, "Accumulated normals"),
-    (ShadeTree::Amount, "Accumulated amount"),
-    (ShadeTree::Overdraw, "Overdraw"),
-    (ShadeTree::Diffuse, "Diffuse"),
-    (ShadeTree::SoftScatter, "Soft scatter and ambient"),
-    (ShadeTree::SpecularScatter, "Specular scatter"),
-    (ShadeTree::Combined, "Combined lighting"),
-    (ShadeTree::Final, "Final"),
+pub const STAGES: [(DebugView, &str); DebugView::ALL.len()] = [
+    (DebugView::ReducedDepth, "Reduced depth"),
+    (DebugView::Normals, "Accumulated normals"),
+    (DebugView::Amount, "Accumulated amount"),
+    (DebugView::Overdraw, "Overdraw"),
+    (DebugView::Diffuse, "Diffuse"),
+    (DebugView::SoftScatter, "Soft scatter and ambient"),
+    (DebugView::SpecularScatter, "Specular scatter"),
+    (DebugView::Combined, "Combined lighting"),
+    (DebugView::Final, "Final"),
 ];
 
 pub const COLUMNS: u32 = 3;
@@ -41,5 +41,5 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
 
 /// Returns one shot per stage, with its label.
 pub fn stages(shot: &Shot) -> Vec<(String, Shot)> {
-    STAGES.map(|(stage, label)| (label.into(), Shot { shade_tree: stage, ..shot.clone() })).into()
+    STAGES.map(|(stage, label)| (label.into(), Shot { debug_view: stage, ..shot.clone() })).into()
 }

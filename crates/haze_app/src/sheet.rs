@@ -46,7 +46,7 @@ impl Sheet {
     }
 
     /// Adds text below the cells, wrapped to the width of the sheet.
-    pub fn add_foot(&mut self, text: &str) {
+    pub fn add_footer(&mut self, text: &str) {
         let (width, height) = self.picture.dimensions();
         let left = MARGIN as f32 + 2.0;
         let lines = wrap(TEXT, width as f32 - 2.0 * left, text);
@@ -71,7 +71,7 @@ mod tests {
         let ink = |side: u32| {
             let mut sheet = Sheet::new(UVec2::new(side, 10), 2, 2);
             let above = sheet.picture.height();
-            sheet.add_foot(text);
+            sheet.add_footer(text);
             let margin = sheet.picture.width() - MARGIN;
             let inked: Vec<_> =
                 sheet.picture.enumerate_pixels().filter(|(_, y, p)| *y >= above && **p != PAPER).collect();

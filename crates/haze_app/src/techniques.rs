@@ -6,11 +6,11 @@ use std::path::PathBuf;
 use clap::Args;
 use glam::UVec2;
 use haze::formula::soft_fade::soft_fade;
-use haze::picture::write_png;
+use haze::image::write_png;
 use haze::settings::{FadeCurve, Technique};
 use haze::{Error, FieldError};
-use haze_demo::develop::develop;
 use haze_demo::shot::Shot;
+use haze_demo::tonemap_pass::tonemap;
 use image::{Rgb, RgbImage, imageops};
 
 use super::cost::{Cost, Timer, interleaved, median_of};
@@ -62,7 +62,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let rounds = if matches!(backend, Backend::Cpu) { ROUNDS_ON_CPU } else { ROUNDS };
     let costs = measure(&backend, &shot, &cells, rounds)?;
 
-    let zoom = Zoom::where_they_differ(&cells[0].picture, &cells[1].picture);
+    let zoom = Zoom::at_largest_difference(&cells[0].picture, &cells[1].picture);
     let mut sheet = Sheet::new(shot.size, COLUMNS, cells.len() as u32);
     for (index, cell) in (0..).zip(&cells) {
         let mut label = cell.name.to_owned();
@@ -79,7 +79,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         Some(_) => format!("ms: all sprites once, {}", median_of(rounds)),
         None => "no smoke is visible, so costs are left out".into(),
     };
-    sheet.add_foot(&format!("{measured}; {}x{}, {}", shot.size.x, shot.size.y, backend.description()));
+    sheet.add_footer(&format!("{measured}; {}x{}, {}", shot.size.x, shot.size.y, backend.description()));
     if let Some(curves) = &arguments.curves {
         write_png(curves, &fade_curves().into(), arguments.shot.effort())?;
     }
@@ -118,7 +118,7 @@ fn render_cells(backend: &Backend, shot: &Shot) -> Result<Vec<Cell>, Error> {
             }
         }
         match backend.render(&shot) {
-            Ok(picture) => cells.push(Cell { picture: develop(&picture, &shot), name: variant.name, shot }),
+            Ok(picture) => cells.push(Cell { picture: tonemap(&picture, &shot), name: variant.name, shot }),
             // The sprite has no detail map, or the adapter cannot render to R32Float.
             Err(Error::Field(error)) if error.field.ends_with("settings.technique") => {
                 complain(format_args!("left out: {error}"));
@@ -133,7 +133,7 @@ fn render_cells(backend: &Backend, shot: &Shot) -> Result<Vec<Cell>, Error> {
 fn measure(backend: &Backend, shot: &Shot, cells: &[Cell], rounds: u32) -> Result<Option<Vec<Cost>>, Error> {
     let mut bare = shot.clone();
     bare.preset.systems.clear();
-    let bare = develop(&backend.render(&bare)?, &bare);
+    let bare = tonemap(&backend.render(&bare)?, &bare);
     if cells.iter().all(|cell| cell.picture == bare) {
         complain("no smoke is visible: costs are left out");
         return Ok(None);
@@ -174,7 +174,7 @@ const ENLARGED: u32 = 3;
 
 impl Zoom {
     /// Finds the square in which the edges of the two images differ most.
-    fn where_they_differ(a: &RgbImage, b: &RgbImage) -> Self {
+    fn at_largest_difference(a: &RgbImage, b: &RgbImage) -> Self {
         let size = UVec2::from(a.dimensions());
         let side = (size.y / 7).max(1).min(size.x);
         let green = |x, y| i64::from(a.get_pixel(x, y).0[1]) - i64::from(b.get_pixel(x, y).0[1]);

@@ -46,6 +46,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     }
     let backend = arguments.shot.run.backend()?;
     let mut sheet = sheet(&backend, &cells, columns, &arguments.shot.output, &Watch::terminal())?;
-    sheet.add_foot(&format!("{name}; {}, {}x{}, {}", base.preset.name, size.x, size.y, backend.description()));
+    sheet.add_footer(&format!("{name}; {}, {}x{}, {}", base.preset.name, size.x, size.y, backend.description()));
     arguments.shot.write(sheet.picture, &base, &backend)
 }

@@ -102,7 +102,7 @@ mod tests {
     #[test]
     fn the_gradient_points_towards_lower_density() {
         let baked = recipe().bake().unwrap();
-        let volume = NoiseVolume::from_picture(Path::new("test"), &baked).unwrap();
+        let volume = NoiseVolume::from_image(Path::new("test"), &baked).unwrap();
         let mut agreeing = 0;
         for index in 0..16 * 16 * 16_u32 {
             let at = UVec3::new(index % 16, index / 16 % 16, index / 256);

@@ -2,10 +2,10 @@
 
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
 
-use super::arriving::Arriving;
 use super::shot::Shot;
+use super::texture_readback::TextureReadback;
 use haze::TargetViews;
-use haze::assets::picture::Picture;
+use haze::assets::image::Image;
 use haze::error::Error;
 use haze::frame::Particle;
 use haze::settings::Settings;
@@ -14,7 +14,7 @@ use haze_reference::{Probe, Texels, probe};
 /// Pending readback of a frame's targets.
 #[derive(Clone, Debug)]
 pub struct Capture {
-    arriving: Arriving,
+    arriving: TextureReadback,
     /// Targets of every system; `None` for systems that are out of view or use the forward path.
     systems: Vec<Option<Target>>,
 }
@@ -24,7 +24,7 @@ pub struct Capture {
 struct Target {
     size: UVec2,
     depth_limit: f32,
-    has_beside: bool,
+    has_extra_attachment: bool,
     has_depth: bool,
     /// Number of cube faces of baked light.
     faces: usize,
@@ -34,9 +34,9 @@ struct Target {
 #[derive(Clone, Debug)]
 pub struct Captured {
     /// Depth buffer of the scene, 0..1.
-    pub scene_depth: Picture<f32>,
+    pub scene_depth: Image<f32>,
     /// Scene colour without smoke, linear HDR.
-    pub behind: Picture<Vec4>,
+    pub behind: Image<Vec4>,
     /// Targets of the systems; `None` for systems that are out of view or use the forward path.
     pub systems: Vec<Option<Texels>>,
 }
@@ -58,11 +58,11 @@ impl Capture {
         let target = |views: &TargetViews<'_>| Target {
             size: views.size,
             depth_limit: views.depth_limit,
-            has_beside: views.accumulation.len() > 1,
+            has_extra_attachment: views.accumulation.len() > 1,
             has_depth: views.reduced_depth.is_some(),
             faces: views.baked_diffuse.len(),
         };
-        let arriving = Arriving::record(device, encoder, &textures);
+        let arriving = TextureReadback::record(device, encoder, &textures);
         Self { arriving, systems: systems.iter().map(|views| views.as_ref().map(target)).collect() }
     }
 
@@ -82,7 +82,7 @@ impl Capture {
         let mut system = |target: &Target| {
             let mut colours = || Some(parts.next()?.colours(&bytes, 0, target.size));
             let accumulation = colours()?;
-            let beside = if target.has_beside { Some(colours()?) } else { None };
+            let extra_attachment = if target.has_extra_attachment { Some(colours()?) } else { None };
             let reduced_depth = if target.has_depth {
                 let mut depth = parts.next()?.depths(&bytes, target.size);
                 depth.texels.iter_mut().for_each(|depth| *depth *= target.depth_limit);
@@ -95,33 +95,33 @@ impl Capture {
                 let part = parts.next()?;
                 baked = (0..target.faces as u32).map(|face| rgb(&part.colours(&bytes, face, part.size()))).collect();
             }
-            Some(Texels { accumulation, beside, reduced_depth, baked })
+            Some(Texels { accumulation, extra_attachment, reduced_depth, baked })
         };
         let systems = self.systems.iter().map(|target| target.as_ref().and_then(&mut system)).collect();
         Some(Captured { scene_depth, behind, systems })
     }
 }
 
-fn rgb(picture: &Picture<Vec4>) -> Picture<Vec3> {
-    Picture { size: picture.size, texels: picture.texels.iter().map(|texel| texel.xyz()).collect() }
+fn rgb(picture: &Image<Vec4>) -> Image<Vec3> {
+    Image { size: picture.size, texels: picture.texels.iter().map(|texel| texel.xyz()).collect() }
 }
 
 impl Captured {
     /// Combines the targets with the captured shot. Evaluates the shot's particles once for all pixels.
-    pub fn of(self, shot: Shot) -> Witness {
-        Witness { captured: self, systems: shot.systems(), shot }
+    pub fn of(self, shot: Shot) -> ProbeInputs {
+        ProbeInputs { captured: self, systems: shot.systems(), shot }
     }
 }
 
 /// Captured targets with the shot's particles: the inputs of the pixel probe.
 #[derive(Clone, Debug)]
-pub struct Witness {
+pub struct ProbeInputs {
     captured: Captured,
     shot: Shot,
     systems: Vec<(Vec<Particle>, Settings)>,
 }
 
-impl Witness {
+impl ProbeInputs {
     /// Returns the captured shot.
     pub fn shot(&self) -> &Shot {
         &self.shot

@@ -13,7 +13,7 @@ use haze::error::{Error, FieldError};
 const READ_BACK_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// Hint for machines without an adapter.
-const INSTALL_LINE: &str = "no graphics adapter was found; on Debian and Ubuntu \
+const NO_ADAPTER_HINT: &str = "no graphics adapter was found; on Debian and Ubuntu \
     `apt-get install mesa-vulkan-drivers` installs a software one";
 
 /// Returns the fastest adapter, or the one that `WGPU_ADAPTER_NAME` and `WGPU_BACKEND` select.
@@ -65,7 +65,7 @@ fn find_adapter() -> Result<wgpu::Adapter, Error> {
         let expected = format!("a part of a name: {}", others.join(" or "));
         return Err(FieldError::new("WGPU_ADAPTER_NAME", format!("{name:?}"), expected).into());
     }
-    let mut reason = INSTALL_LINE.to_owned();
+    let mut reason = NO_ADAPTER_HINT.to_owned();
     if !backends.is_empty() {
         reason += &format!("; WGPU_BACKEND allows only {backends:?} of {}", list());
     }

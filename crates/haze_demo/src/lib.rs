@@ -1,18 +1,18 @@
 //! Demo scene for the smoke: boxes with procedural materials, lit by the preset's lights. A GPU and a CPU renderer draw
 //! the same image.
 
-pub mod apart;
-mod arriving;
 mod boxes;
 pub mod capture;
-mod cpu;
-pub mod develop;
+mod cpu_render;
 pub mod headless;
+pub mod image_metrics;
 mod layout;
 mod occluders;
-mod render;
+pub mod offscreen_renderer;
+mod ray_caster;
 mod scene;
 mod scene_renderer;
 mod shading;
 pub mod shot;
-pub mod stage;
+mod texture_readback;
+pub mod tonemap_pass;

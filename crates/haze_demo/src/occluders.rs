@@ -8,7 +8,7 @@ use glam::{UVec2, UVec3, Vec3};
 use super::boxes::{
     AMBIENT_REACH, MAX_BOXES, SUN_DISTANCE, SUN_SPREAD, SceneBox, Surface, WIDEST_PIXEL, box_distance, box_interval,
 };
-use haze::assets::picture::Picture;
+use haze::assets::image::Image;
 use haze::formula::uniforms::LightUniform;
 
 /// Number of cells along x, y and z. `OCCLUDER_CELLS` in scene.wgsl.
@@ -30,13 +30,13 @@ const _: () = assert!(MAX_BOXES <= 32 * ALL.len());
 pub(crate) struct Occluders {
     /// Layout of the texture in scene.wgsl: column = x + z * [`CELLS`].x, row = list * [`CELLS`].y + y. List 0 is the
     /// sky.
-    pub masks: Picture<Boxes>,
+    pub masks: Image<Boxes>,
 }
 
 impl Occluders {
     pub fn new(boxes: &[SceneBox], lights: &[LightUniform]) -> Self {
         let size = UVec2::new(CELLS.x * CELLS.z, CELLS.y * (1 + lights.len() as u32));
-        let mut masks = Picture::new(size, ALL);
+        let mut masks = Image::new(size, ALL);
         masks.for_each(|at, mask| {
             let cell = UVec3::new(at.x % CELLS.x, at.y % CELLS.y, at.x / CELLS.x);
             let centre = ORIGIN + (cell.as_vec3() + 0.5) * CELL;
@@ -49,8 +49,8 @@ impl Occluders {
             *mask = [0; 4];
             for (index, b) in boxes.iter().enumerate() {
                 let matters = match light {
-                    Some(light) => can_shade(b, light, centre, half),
-                    None => can_darken(b, centre, half),
+                    Some(light) => can_shadow(b, light, centre, half),
+                    None => can_occlude_sky(b, centre, half),
                 };
                 mask[index / 32] |= u32::from(matters) << (index % 32);
             }
@@ -83,7 +83,7 @@ pub(crate) fn indices(mask: Boxes, count: usize) -> impl Iterator<Item = usize> 
 }
 
 /// True if the box can block or, by its penumbra, dim a light at some point of the cell.
-fn can_shade(b: &SceneBox, light: &LightUniform, centre: Vec3, half: Vec3) -> bool {
+fn can_shadow(b: &SceneBox, light: &LightUniform, centre: Vec3, half: Vec3) -> bool {
     if b.surface == Surface::Glow as u32 {
         return false;
     }
@@ -103,7 +103,7 @@ fn can_shade(b: &SceneBox, light: &LightUniform, centre: Vec3, half: Vec3) -> bo
 }
 
 /// True if the box can be close enough to a point of the cell to occlude the sky.
-fn can_darken(b: &SceneBox, centre: Vec3, half: Vec3) -> bool {
+fn can_occlude_sky(b: &SceneBox, centre: Vec3, half: Vec3) -> bool {
     box_distance(b, b.to_local(centre - b.centre)) <= 2.0 * AMBIENT_REACH + half.length()
 }
 
@@ -119,7 +119,7 @@ mod tests {
         for name in ["column", "corridor", "explosion"] {
             let preset = Preset::load(name).unwrap();
             let scene = Scene::new(&preset.environment, &preset.lights);
-            let everything = Scene { occluders: Occluders { masks: Picture::new(UVec2::ONE, ALL) }, ..scene.clone() };
+            let everything = Scene { occluders: Occluders { masks: Image::new(UVec2::ONE, ALL) }, ..scene.clone() };
             let (mut points, mut asked) = (0, 0);
             for index in 0..4000_u32 {
                 let random = |salt| {

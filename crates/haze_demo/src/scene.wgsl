@@ -297,7 +297,7 @@ fn linear_fragment(in: BoxVertex) -> @location(0) vec4f {
 }
 
 @vertex
-fn picture_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+fn fullscreen_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }
 

@@ -16,7 +16,7 @@ pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth3
 
 pub(crate) const LINEAR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
-/// Pipelines of the scene, shared by all [`Stage`](super::stage::Stage)s of a device.
+/// Pipelines of the scene, shared by all [`OffscreenRenderer`](super::stage::Stage)s of a device.
 #[derive(Debug)]
 pub(crate) struct SceneRenderer {
     device: wgpu::Device,
@@ -126,7 +126,7 @@ impl SceneRenderer {
             paint: pipeline("box_vertex", Some(("paint_fragment", COLOUR_FORMAT)), &scene_group, true),
             depth: pipeline("box_vertex", linear, &scene_group, true),
             light: pipeline(
-                "picture_vertex",
+                "fullscreen_vertex",
                 Some(("light_fragment", COLOUR_FORMAT)),
                 &[Some(&scene_layout), Some(&paint_layout)],
                 false,

@@ -7,10 +7,10 @@ use glam::UVec2;
 use super::scene::Scene;
 use haze::assets::material::MaterialAssets;
 use haze::error::Error;
-use haze::frame::{Emission, Particle};
-use haze::preset::{PictureFolders, Preset, PresetSystem};
-use haze::settings::{Settings, ShadeTree};
-use haze_author::particle_files::{self, Cache, load_caches};
+use haze::frame::{EmitterSnapshot, Particle};
+use haze::preset::{AssetFolders, Preset, PresetSystem};
+use haze::settings::{DebugView, Settings};
+use haze_author::particle_files::{self, ParticleFrames, load_particle_files};
 
 /// An emitter with more births than this is evaluated on the GPU.
 const MANY: u32 = 1 << 14;
@@ -18,7 +18,7 @@ const MANY: u32 = 1 << 14;
 /// Source of a system's particles.
 pub(super) enum Source {
     Particles(Vec<Particle>),
-    Emission(Emission),
+    EmitterSnapshot(EmitterSnapshot),
 }
 
 /// A preset with its images and particle files loaded.
@@ -29,18 +29,18 @@ pub struct Shot {
     /// Image size, pixels.
     pub size: UVec2,
     /// The debug view that is shown.
-    pub shade_tree: ShadeTree,
+    pub debug_view: DebugView,
     /// Images, one entry per system.
     pub materials: Vec<MaterialAssets>,
     /// Particle files, one entry per system. `None` if the system uses its emitter.
-    pub caches: Vec<Option<Cache>>,
+    pub caches: Vec<Option<ParticleFrames>>,
 }
 
 impl Shot {
     /// Loads a preset, built in or from a file, with its images and particle files.
     ///
     /// # Errors
-    /// As [`Preset::load`], [`Preset::load_materials`] and [`Preset::load_caches`].
+    /// As [`Preset::load`], [`Preset::load_materials`] and [`Preset::load_particle_files`].
     pub fn load(name_or_path: impl AsRef<Path>, size: UVec2) -> Result<Self, Error> {
         let path = name_or_path.as_ref();
         Self::new(Preset::load(path)?, path, size)
@@ -49,23 +49,23 @@ impl Shot {
     /// Loads the files that a preset names, relative to the folder of `path`.
     ///
     /// # Errors
-    /// As [`Preset::load_materials`] and [`Preset::load_caches`].
+    /// As [`Preset::load_materials`] and [`Preset::load_particle_files`].
     pub fn new(preset: Preset, path: &Path, size: UVec2) -> Result<Self, Error> {
-        Self::from_folders(preset, path, &PictureFolders::beside(path), size)
+        Self::from_folders(preset, path, &AssetFolders::beside(path), size)
     }
 
     /// Loads the files that a preset names from the given folders.
     ///
     /// # Errors
     /// As [`Shot::new`].
-    pub fn from_folders(preset: Preset, path: &Path, folders: &PictureFolders, size: UVec2) -> Result<Self, Error> {
+    pub fn from_folders(preset: Preset, path: &Path, folders: &AssetFolders, size: UVec2) -> Result<Self, Error> {
         let materials = preset.load_materials_from(path, folders)?;
         for (index, (system, material)) in preset.systems.iter().zip(&materials).enumerate() {
             let fits = material.info().validate(index, &system.settings);
             fits.map_err(|error| Error::JsonField { path: path.into(), error })?;
         }
-        let caches = load_caches(&preset, path, folders)?;
-        Ok(Self { preset, size, shade_tree: ShadeTree::Final, materials, caches })
+        let caches = load_particle_files(&preset, path, folders)?;
+        Ok(Self { preset, size, debug_view: DebugView::Final, materials, caches })
     }
 
     /// True if both give the same image before tonemapping; exposure is ignored. Cheap: images and particles from files
@@ -78,16 +78,16 @@ impl Shot {
             preset == self.preset
         };
         let is_exposed_alike = self.preset.camera.exposure.to_bits() == other.preset.camera.exposure.to_bits();
-        (self.size, self.shade_tree) == (other.size, other.shade_tree)
+        (self.size, self.debug_view) == (other.size, other.debug_view)
             && (self.preset == other.preset || !is_exposed_alike && is_same_but_exposed())
             && self.materials.len() == other.materials.len()
             && self.materials.iter().zip(&other.materials).all(shares)
-            && Cache::all_shared(&self.caches, &other.caches)
+            && ParticleFrames::share_all_memory(&self.caches, &other.caches)
     }
 
     /// True if the scene is visible. Debug views other than the final image are shown on black.
     pub(super) fn shows_scene(&self) -> bool {
-        self.shade_tree == ShadeTree::Final
+        self.debug_view == DebugView::Final
     }
 
     pub(super) fn scene(&self) -> Scene {
@@ -107,7 +107,7 @@ impl Shot {
     /// evaluated here but on the GPU.
     pub(super) fn sources(&self) -> Vec<(Source, Settings)> {
         self.each_system(|system, cache| match particle_files::emission(system, cache, self.preset.time) {
-            Some(emission) if emission.count() > MANY => Source::Emission(emission),
+            Some(emission) if emission.count() > MANY => Source::EmitterSnapshot(emission),
             _ => {
                 let mut particles = Vec::new();
                 particle_files::particles(system, cache, self.preset.time, &mut particles);
@@ -116,7 +116,7 @@ impl Shot {
         })
     }
 
-    fn each_system<T>(&self, source: impl Fn(&PresetSystem, Option<&Cache>) -> T) -> Vec<(T, Settings)> {
+    fn each_system<T>(&self, source: impl Fn(&PresetSystem, Option<&ParticleFrames>) -> T) -> Vec<(T, Settings)> {
         let system = |(index, system): (usize, &PresetSystem)| {
             let cache = self.caches.get(index).and_then(Option::as_ref);
             (source(system, cache), system.settings_for(self.size.y))

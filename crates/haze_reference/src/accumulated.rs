@@ -3,25 +3,25 @@
 use glam::{IVec2, Vec2, Vec3, Vec4};
 
 use super::draw::Draw;
-use haze::assets::picture::Picture;
-use haze::formula::upsample::{GuidedFit, fitted_value, guided_weight, is_smooth, upsample_weights, with_texel};
+use haze::assets::image::Image;
+use haze::formula::upsample::{GuidedFit, add_texel, bilinear_suffices, fitted_value, guided_weight, upsample_weights};
 use haze::settings::Upsample;
 
 /// Finished target of a system.
 pub struct Accumulated<'a> {
     pub draw: &'a Draw<'a>,
-    pub baked: &'a [Picture<Vec3>],
-    pub reduced_depth: &'a Picture<f32>,
-    pub accumulation: &'a Picture<Vec4>,
+    pub baked: &'a [Image<Vec3>],
+    pub reduced_depth: &'a Image<f32>,
+    pub accumulation: &'a Image<Vec4>,
     /// Second target: the sum of the normals' weights, or the other half of six-way light.
-    pub beside: Option<&'a Picture<Vec4>>,
+    pub extra_attachment: Option<&'a Image<Vec4>>,
     /// Output of light_target. `None` if texels are lit as they are read.
-    pub lit: Option<Picture<Vec4>>,
+    pub lit: Option<Image<Vec4>>,
 }
 
 impl Accumulated<'_> {
     /// Samples a texture of the accumulation target. `sample_target()` in accumulated.wgsl.
-    pub fn sample_target(&self, target: &Picture<Vec4>, pixel: Vec2) -> Vec4 {
+    pub fn sample_target(&self, target: &Image<Vec4>, pixel: Vec2) -> Vec4 {
         self.sample_texels(|at| target.load(at), pixel)
     }
 
@@ -46,16 +46,16 @@ impl Accumulated<'_> {
         let corner = texel - 0.5;
         let (base, fraction) = (corner.floor().as_ivec2(), corner - corner.floor());
         let taps = [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE].map(|offset| base + offset);
-        let guide = |tap| self.reduced_depth.load(tap).min(system.guide_limit);
+        let guide = |tap| self.reduced_depth.load(tap).min(system.smoke_depth_limit);
         let (depths, depth) = match upsample {
             Upsample::Bilinear => (Vec4::ZERO, 0.0),
             _ => {
-                let depth = self.draw.scene_view_depth(pixel.as_ivec2()).min(system.guide_limit);
+                let depth = self.draw.scene_view_depth(pixel.as_ivec2()).min(system.smoke_depth_limit);
                 (Vec4::from(taps.map(guide)), depth)
             }
         };
         let fade = 1.0 / system.fade_scale;
-        if upsample != Upsample::Guided || is_smooth(depths, depth, fade) {
+        if upsample != Upsample::Guided || bilinear_suffices(depths, depth, fade) {
             let weights = upsample_weights(upsample, fraction, depths, depth);
             return taps.iter().zip(weights.to_array()).map(|(&tap, weight)| texel_at(tap) * weight).sum();
         }
@@ -63,7 +63,7 @@ impl Accumulated<'_> {
             let offset = IVec2::new(i % 4, i / 4) - 1;
             let at = base + offset;
             let place = (offset.as_vec2() - fraction).extend(guide(at) - depth);
-            with_texel(&fit, place, guided_weight(place, depth), texel_at(at))
+            add_texel(&fit, place, guided_weight(place, depth), texel_at(at))
         });
         fitted_value(&fit, fade)
     }

@@ -3,31 +3,31 @@
 use glam::{IVec2, Mat4, UVec2, Vec2, Vec3, Vec4Swizzles};
 
 use super::frame::{Frame, System};
+use haze::assets::image::Image;
 use haze::assets::material::{MaterialAssets, MaterialInfo};
-use haze::assets::picture::Picture;
 use haze::error::FieldError;
 use haze::formula::depth::view_depth_from_ndc_depth;
 use haze::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use haze::formula::view::{ndc_from_pixel, pixel_from_ndc, view_position};
-use haze::frame::validate::{validate_lights, validate_place, validate_settings, validate_time_and_up};
-use haze::frame::{Bounds, Particle, View, bounds_of};
-use haze::in_view::{
-    Pictures, SortScratch, SystemInView, SystemInWorld, ViewGeometry, in_order, lights_in_view, system_in_view,
+use haze::frame::validate::{validate_bounds_and_depth, validate_lights, validate_settings, validate_time_and_up};
+use haze::frame::{Bounds, Particle, View, particle_bounds};
+use haze::settings::{DebugView, Order, Settings};
+use haze::view_setup::{
+    SortScratch, SpriteTrim, SystemInput, SystemSetup, ViewGeometry, in_order, light_uniforms, system_setup,
 };
-use haze::settings::{Order, Settings, ShadeTree};
 
 /// Visible system, with the input of its passes.
 pub struct Draw<'a> {
     pub view: ViewUniform,
     pub world_from_view: Mat4,
     pub system: SystemUniform,
-    pub in_view: SystemInView,
+    pub setup: SystemSetup,
     pub bounds: Bounds,
     pub lights: Vec<LightUniform>,
     /// In drawing order.
     pub particles: Vec<Particle>,
-    pub pictures: Pictures,
-    pub scene_depth: &'a Picture<f32>,
+    pub pictures: SpriteTrim,
+    pub scene_depth: &'a Image<f32>,
     pub settings: &'a Settings,
     pub material: &'a MaterialAssets,
 }
@@ -36,11 +36,11 @@ impl<'a> Draw<'a> {
     /// Returns `None` if the system is not visible.
     pub fn new(view: &ViewGeometry, frame: &Frame<'a>, system: &System<'a>, material: &MaterialInfo) -> Option<Self> {
         let settings = system.settings;
-        let bounds = system.bounds.unwrap_or_else(|| bounds_of(system.particles, settings.reach()));
+        let bounds = system.bounds.unwrap_or_else(|| particle_bounds(system.particles, settings.reach()));
         let mut lights = Vec::new();
-        lights_in_view(view, frame.lights, &bounds, &mut lights);
-        let in_world = SystemInWorld {
-            stand_for: 1,
+        light_uniforms(view, frame.lights, &bounds, &mut lights);
+        let in_world = SystemInput {
+            particles_per_sample: 1,
             bounds: &bounds,
             depth: system.depth,
             particles: system.particles,
@@ -50,7 +50,7 @@ impl<'a> Draw<'a> {
             up: frame.up.normalize_or(Vec3::Y),
             time: frame.time,
         };
-        let in_view = system_in_view(view, frame.view.size, &in_world)?;
+        let setup = system_setup(view, frame.view.size, &in_world)?;
         let mut particles = Vec::new();
         in_order(
             view,
@@ -62,12 +62,12 @@ impl<'a> Draw<'a> {
         Some(Self {
             view: view.uniform(false),
             world_from_view: view.view_from_world.inverse(),
-            system: in_view.uniform,
-            in_view,
+            system: setup.uniform,
+            setup,
             bounds,
             lights,
             particles,
-            pictures: Pictures::new(settings, material),
+            pictures: SpriteTrim::new(settings, material),
             scene_depth: frame.scene_depth,
             settings,
             material: system.material,
@@ -75,8 +75,8 @@ impl<'a> Draw<'a> {
     }
 
     /// True if this debug view shows the light of the target's texels.
-    pub fn lights_target(&self, shade_tree: ShadeTree) -> bool {
-        shade_tree.is_picture() && self.settings.accumulate.lights_target(self.view.size.as_uvec2())
+    pub fn lights_target(&self, debug_view: DebugView) -> bool {
+        debug_view.is_picture() && self.settings.accumulate.lights_target(self.view.size.as_uvec2())
     }
 
     pub fn scene_view_depth(&self, pixel: IVec2) -> f32 {
@@ -110,11 +110,11 @@ pub fn visible<'a>(frame: &Frame<'a>, picture: UVec2) -> Result<Vec<(usize, Draw
     let mut draws = Vec::new();
     for (index, system) in frame.systems.iter().enumerate() {
         validate_settings(index, system.settings, frame.view.size)?;
-        validate_place(index, system.bounds.as_ref(), system.depth)?;
+        validate_bounds_and_depth(index, system.bounds.as_ref(), system.depth)?;
         let info = system.material.info();
         info.validate(index, system.settings)?;
         draws.extend(Draw::new(&view, frame, system, &info).map(|draw| (index, draw)));
     }
-    draws.sort_by(|(_, a), (_, b)| b.in_view.distance.total_cmp(&a.in_view.distance));
+    draws.sort_by(|(_, a), (_, b)| b.setup.distance.total_cmp(&a.setup.distance));
     Ok(draws)
 }

@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 
+use haze::assets::image::Image;
 use haze::assets::material::MaterialAssets;
-use haze::assets::picture::Picture;
 use haze::frame::{Bounds, Light, Particle, View};
-use haze::settings::{Settings, ShadeTree};
+use haze::settings::{DebugView, Settings};
 
 /// One frame, like [`crate::Frame`], in memory.
 #[derive(Clone, Copy, Debug)]
@@ -13,7 +13,7 @@ pub struct Frame<'a> {
     /// The camera.
     pub view: View,
     /// Values of a depth buffer written with the view's projection, 0..1.
-    pub scene_depth: &'a Picture<f32>,
+    pub scene_depth: &'a Image<f32>,
     /// At most [`MAX_LIGHTS`](crate::frame::MAX_LIGHTS) lights.
     pub lights: &'a [Light],
     /// Particle systems, drawn far to near.
@@ -23,13 +23,13 @@ pub struct Frame<'a> {
     /// Up direction of the world; need not be unit length.
     pub up: Vec3,
     /// Debug view to show.
-    pub shade_tree: ShadeTree,
+    pub debug_view: DebugView,
 }
 
 impl<'a> Frame<'a> {
     /// Frame without lights and systems; y is up.
-    pub const fn new(view: View, scene_depth: &'a Picture<f32>) -> Self {
-        Self { view, scene_depth, lights: &[], systems: &[], time: 0.0, up: Vec3::Y, shade_tree: ShadeTree::Final }
+    pub const fn new(view: View, scene_depth: &'a Image<f32>) -> Self {
+        Self { view, scene_depth, lights: &[], systems: &[], time: 0.0, up: Vec3::Y, debug_view: DebugView::Final }
     }
 }
 

@@ -11,9 +11,9 @@ mod sprite;
 
 use glam::Vec4;
 
-use haze::assets::picture::Picture;
+use haze::assets::image::Image;
 use haze::error::FieldError;
-use haze::settings::ShadeTree;
+use haze::settings::DebugView;
 
 use accumulated::Accumulated;
 use draw::visible;
@@ -24,28 +24,29 @@ pub use probe::{GlowProbe, LightProbe, Probe, SystemProbe, Texels, probe};
 ///
 /// # Errors
 /// The first view, light or setting that is invalid; `picture` is untouched then.
-pub fn render(frame: &Frame<'_>, picture: &mut Picture<Vec4>) -> Result<(), FieldError> {
+pub fn render(frame: &Frame<'_>, picture: &mut Image<Vec4>) -> Result<(), FieldError> {
     let draws = visible(frame, picture.size)?;
     for (_, draw) in &draws {
         if draw.settings.is_forward() {
-            if frame.shade_tree.is_picture() {
+            if frame.debug_view.is_picture() {
                 draw.forward(picture);
             }
             continue;
         }
         let reduced_depth = draw.depth_downsample();
-        let accumulation = draw.accumulate(&reduced_depth, frame.shade_tree == ShadeTree::Overdraw);
-        let beside = draw.beside(&reduced_depth);
+        let accumulation = draw.accumulate(&reduced_depth, frame.debug_view == DebugView::Overdraw);
+        let extra_attachment = draw.extra_attachment(&reduced_depth);
         let baked = draw.diffuse_bake();
-        let (reduced_depth, accumulation, beside) = (&reduced_depth, &accumulation, beside.as_ref());
-        let mut smoke = Accumulated { draw, baked: &baked, reduced_depth, accumulation, beside, lit: None };
-        if draw.lights_target(frame.shade_tree) {
+        let (reduced_depth, accumulation, extra_attachment) =
+            (&reduced_depth, &accumulation, extra_attachment.as_ref());
+        let mut smoke = Accumulated { draw, baked: &baked, reduced_depth, accumulation, extra_attachment, lit: None };
+        if draw.lights_target(frame.debug_view) {
             smoke.lit = Some(smoke.light_target());
         }
-        if frame.shade_tree != ShadeTree::SpecularScatter {
-            smoke.transfer(frame.shade_tree, picture);
+        if frame.debug_view != DebugView::SpecularScatter {
+            smoke.transfer(frame.debug_view, picture);
         }
-        if frame.shade_tree.glows() {
+        if frame.debug_view.glows() {
             smoke.specular_scatter(picture);
         }
     }

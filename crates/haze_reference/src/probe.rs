@@ -6,25 +6,25 @@ use super::accumulated::Accumulated;
 use super::blend_unit::premultiplied_over;
 use super::draw::{Draw, visible};
 use super::frame::Frame;
-use haze::assets::picture::Picture;
+use haze::assets::image::Image;
 use haze::error::FieldError;
 use haze::formula::lighting::{coverage, diffuse_coordinate, sample_light, soft_scatter_weight};
 use haze::formula::six_way::SixWay;
-use haze::in_view::{ViewGeometry, lights_in_view};
-use haze::settings::{ShadeTree, SoftScatterMode};
+use haze::settings::{DebugView, SoftScatterMode};
+use haze::view_setup::{ViewGeometry, light_uniforms};
 
 /// Textures that a system was accumulated into, as read back from [`TargetViews`](crate::TargetViews), cropped to the
 /// part in use.
 #[derive(Clone, Debug)]
 pub struct Texels {
     /// Normal and amount, as the target encodes them.
-    pub accumulation: Picture<Vec4>,
+    pub accumulation: Image<Vec4>,
     /// Second target: in x the sum of the normals' weights, or the other half of six-way light.
-    pub beside: Option<Picture<Vec4>>,
+    pub extra_attachment: Option<Image<Vec4>>,
     /// Linear view depth, metres; `None` if sprites are compared with the scene's own.
-    pub reduced_depth: Option<Picture<f32>>,
+    pub reduced_depth: Option<Image<f32>>,
     /// Light by normal: the faces of a cubemap, one motif, or empty.
-    pub baked: Vec<Picture<Vec3>>,
+    pub baked: Vec<Image<Vec3>>,
 }
 
 /// Values at a pixel.
@@ -98,7 +98,7 @@ pub struct GlowProbe {
 pub fn probe(
     frame: &Frame<'_>,
     texels: &[Option<Texels>],
-    behind: &Picture<Vec4>,
+    behind: &Image<Vec4>,
     pixels: &[UVec2],
 ) -> Result<Vec<Probe>, FieldError> {
     let draws = visible(frame, behind.size)?;
@@ -135,20 +135,27 @@ impl<'a> Smoke<'a> {
         frame: &Frame<'_>,
         draw: &'a Draw<'a>,
         texels: &'a Texels,
-        reduced_depth: &'a Picture<f32>,
+        reduced_depth: &'a Image<f32>,
     ) -> Result<Self, FieldError> {
-        let Texels { accumulation, beside, baked, .. } = texels;
-        let size = draw.in_view.rect.size;
-        let sizes = [Some(accumulation.size), beside.as_ref().map(|t| t.size), Some(reduced_depth.size)];
+        let Texels { accumulation, extra_attachment, baked, .. } = texels;
+        let size = draw.setup.rect.size;
+        let sizes = [Some(accumulation.size), extra_attachment.as_ref().map(|t| t.size), Some(reduced_depth.size)];
         if let Some(other) = sizes.into_iter().flatten().find(|other| *other != size) {
             let value = format!("{}x{}", other.x, other.y);
             return Err(FieldError::new("texels", value, format!("{}x{}, the size of the system", size.x, size.y)));
         }
-        let accumulated = Accumulated { draw, baked, reduced_depth, accumulation, beside: beside.as_ref(), lit: None };
+        let accumulated = Accumulated {
+            draw,
+            baked,
+            reduced_depth,
+            accumulation,
+            extra_attachment: extra_attachment.as_ref(),
+            lit: None,
+        };
         let view = ViewGeometry::new(&haze::View { origin: UVec2::ZERO, ..frame.view })?;
         let mut reached = Vec::new();
         let lights = frame.lights.iter().enumerate().filter(|(_, light)| {
-            lights_in_view(&view, std::slice::from_ref(light), &draw.bounds, &mut reached);
+            light_uniforms(&view, std::slice::from_ref(light), &draw.bounds, &mut reached);
             !reached.is_empty()
         });
         let lights = lights.map(|(index, _)| index).collect();
@@ -161,14 +168,14 @@ impl<'a> Smoke<'a> {
         let draw = smoke.draw;
         let pixel = at.as_vec2() + 0.5;
         let blended = smoke
-            .box_is_drawn(at.as_ivec2(), pixel)
-            .then(|| smoke.transfer_fragment(ShadeTree::Final, pixel))
+            .covers_pixel(at.as_ivec2(), pixel)
+            .then(|| smoke.transfer_fragment(DebugView::Final, pixel))
             .flatten();
         if let Some(blended) = blended {
             *colour = premultiplied_over(blended, *colour);
         }
         let glows: Vec<_> =
-            draw.lights.iter().map(|light| smoke.glow(light).and_then(|g| smoke.glow_at(&g, pixel))).collect();
+            draw.lights.iter().map(|light| smoke.glow(light).and_then(|g| smoke.sample_glow(&g, pixel))).collect();
         *colour += glows.iter().flatten().map(|(_, glow)| *glow).sum::<Vec3>().extend(0.0);
         let (amount, surface) = smoke.amount_and_surface(pixel);
         if amount <= 0.0 {

@@ -9,16 +9,16 @@ use haze::formula::order::{optical_depth_in_front, order_weight};
 use haze::formula::six_way::{SixWay, rotate_six_way, six_way_from_texel};
 use haze::formula::soft_fade::soft_fade;
 use haze::formula::sprite::{
-    FlipbookFrames, checkerboard, frames_after, sample_detail, sample_flipbook, sample_sprite, sprite_uv,
+    FlipbookFrames, checkerboard, offset_frames, sample_detail, sample_flipbook, sample_sprite, sprite_uv,
     trimmed_corner, unrotate,
 };
 use haze::formula::technique::{
-    RayInterval, density_amount, density_thickness, depth_sprite_depth, hard_fade, ray_sphere, slab_share,
-    spherical_billboard_amount, volumetric_density, volumetric_falloff, volumetric_normal,
+    RayInterval, density_amount, density_thickness, depth_sprite_depth, hard_fade, ray_sphere,
+    spherical_billboard_amount, visible_slab_fraction, volumetric_density, volumetric_falloff, volumetric_normal,
 };
 use haze::frame::Particle;
-use haze::in_view::{Grid, Placing, SpriteInView};
 use haze::settings::{Order, Technique};
+use haze::view_setup::{Grid, ProjectedSprite, SpriteProjector};
 
 /// Sprite in view space.
 pub struct SpriteSetup {
@@ -83,14 +83,14 @@ impl Draw<'_> {
 
     /// `sprite_vertex()`; `None` if the sprite is hidden.
     pub fn sprite_setup(&self, particle: &Particle, texels_per_pixel: f32) -> Option<SpriteSetup> {
-        let (technique, placing) = (self.settings.technique, self.placing());
-        let sprite = placing.sprite(particle, texels_per_pixel)?;
-        let SpriteInView { centre, radius, amount, frames, lod } = sprite;
+        let (technique, projector) = (self.settings.technique, self.projector());
+        let sprite = projector.sprite(particle, texels_per_pixel)?;
+        let ProjectedSprite { centre, radius, amount, frames, lod } = sprite;
         let view_depth = -centre.z;
         let (min, max) = if technique.is_sphere() {
-            placing.sphere_rectangle(&sprite, texels_per_pixel)
+            projector.sphere_rectangle(&sprite, texels_per_pixel)
         } else {
-            self.square_rectangle(placing.on_screen(centre), radius)
+            self.square_rectangle(projector.on_screen(centre), radius)
         };
         Some(SpriteSetup {
             centre,
@@ -100,7 +100,7 @@ impl Draw<'_> {
             amount,
             lod,
             frames,
-            reach: placing.reach(&sprite),
+            reach: projector.reach(&sprite),
             age: particle.age,
             weight: self.order_weight(view_depth),
             min,
@@ -120,8 +120,13 @@ impl Draw<'_> {
         }
     }
 
-    fn placing(&self) -> Placing<'_> {
-        Placing { view: &self.view, system: &self.system, technique: self.settings.technique, pictures: &self.pictures }
+    fn projector(&self) -> SpriteProjector<'_> {
+        SpriteProjector {
+            view: &self.view,
+            system: &self.system,
+            technique: self.settings.technique,
+            pictures: &self.pictures,
+        }
     }
 
     fn square_rectangle(&self, centre: Vec3, radius: f32) -> (Vec2, Vec2) {
@@ -137,7 +142,7 @@ impl Draw<'_> {
         if technique.is_sphere() {
             return self.sphere_fragment(sprite, pixel, scene);
         }
-        let drawn = self.placing().on_screen(sprite.centre);
+        let drawn = self.projector().on_screen(sprite.centre);
         let offset = self.view_position(pixel, -drawn.z) - drawn;
         let local = unrotate(offset.xy(), sprite.rotation) / sprite.radius;
         let (low, high) = (trimmed_corner(Vec2::NEG_ONE, sprite.reach), trimmed_corner(Vec2::ONE, sprite.reach));
@@ -167,7 +172,10 @@ impl Draw<'_> {
         let amount = match technique {
             Technique::Density => density_amount(system.density * texel.amount * sprite.amount, thickness),
             _ if technique.is_depth_sprite() => {
-                texel.amount * sprite.amount * fade * slab_share(sprite.view_depth, sprite.radius, self.view.near)
+                texel.amount
+                    * sprite.amount
+                    * fade
+                    * visible_slab_fraction(sprite.view_depth, sprite.radius, self.view.near)
             }
             _ => texel.amount * sprite.amount * fade,
         };
@@ -195,7 +203,7 @@ impl Draw<'_> {
     fn sprite_texel(&self, sprite: &SpriteSetup, uv: Vec2, motion: Vec2) -> SpriteFragment {
         let SpriteSetup { frames, lod, rotation, .. } = *sprite;
         if let Some(maps) = self.material.six_way.as_ref().filter(|_| self.settings.is_six_way()) {
-            let negative = frames_after(frames, self.system.frame_count as i32);
+            let negative = offset_frames(frames, self.system.frame_count as i32);
             let [positive, negative] = [frames, negative].map(|frames| sample_flipbook(maps, uv, frames, motion, lod));
             let [of_positive, of_negative] = [positive, negative].map(|texel| six_way_from_texel(texel.xyz()));
             let six_way = rotate_six_way(of_positive, of_negative, rotation);
@@ -215,7 +223,7 @@ impl Draw<'_> {
         let (origin, along) =
             if self.view.orthographic > 0.5 { (ray.with_z(0.0), Vec3::NEG_Z) } else { (Vec3::ZERO, ray.normalize()) };
         let per_depth = -1.0 / along.z;
-        let end = (scene + system.fade_through) * per_depth;
+        let end = (scene + system.show_through_distance) * per_depth;
         let interval = ray_sphere(origin, along, sprite.centre, sprite.radius, self.view.near * per_depth, end);
         let stretch = interval.leave - interval.enter;
         if stretch <= 0.0 || interval.axis.length_squared() >= sprite.radius * sprite.radius {

@@ -1,13 +1,13 @@
 //! JSON files with a `version` field. Newer versions are refused; errors name line, column and field.
 
-mod words;
+mod serde_messages;
 
 use std::path::Path;
 
 use serde::de::DeserializeOwned;
 
 use super::file;
-use super::picture::is_png;
+use super::image::is_png;
 use crate::error::{Error, FieldError};
 
 /// Size limit of most JSON files, bytes. A preset has a few thousand.
@@ -33,7 +33,7 @@ pub fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, Error> {
         let field = field.strip_suffix(unknown.map_or("", |(name, _)| name)).unwrap_or(&field).trim_end_matches('.');
         let (line, column) = (error.line().max(1), error.column().max(1));
         let rest = text.split('\n').nth(line - 1).and_then(|text| text.get(column - 1..));
-        let reason = words::plain(message, field, rest.unwrap_or_default());
+        let reason = serde_messages::plain(message, field, rest.unwrap_or_default());
         Error::Json { path: path.into(), line, column, reason }
     })
 }
@@ -149,7 +149,7 @@ mod tests {
             on: bool,
             names: Vec<String>,
             place: glam::Vec3,
-            path: crate::settings::Path,
+            path: crate::settings::RenderPath,
             parts: Vec<Sample>,
         }
         let said = |text: &str| parse::<Whole>(Path::new("a.json"), text).unwrap_err().to_string();

@@ -2,6 +2,8 @@
 
 mod volume;
 
-pub use crate::formula::gradient_noise::{Noise, NoiseCell, curl_noise, fractal_noise, gradient_noise, tiling_noise};
+pub use crate::formula::gradient_noise::{
+    CachedGradientNoise, Noise, curl_noise, fractal_noise, gradient_noise, tiling_noise,
+};
 pub use crate::formula::hash::{pcg3d, unit};
 pub use volume::{MAX_SIZE, NoiseVolume};

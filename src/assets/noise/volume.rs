@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{UVec3, Vec4};
 use image::RgbaImage;
 
-use crate::assets::picture::read_png;
+use crate::assets::image::read_png;
 use crate::error::Error;
 use crate::formula::texture::Texture3d;
 
@@ -33,7 +33,7 @@ impl NoiseVolume {
     ///
     /// # Errors
     /// [`Error::Image`] if the image is not `size` by `size`², with `size` 1 to [`MAX_SIZE`].
-    pub fn from_picture(path: &Path, picture: &RgbaImage) -> Result<Self, Error> {
+    pub fn from_image(path: &Path, picture: &RgbaImage) -> Result<Self, Error> {
         let (size, height) = picture.dimensions();
         if size == 0 || size > MAX_SIZE || height != size * size {
             let reason = format!(
@@ -48,9 +48,9 @@ impl NoiseVolume {
     /// Loads a PNG.
     ///
     /// # Errors
-    /// As [`read_png`] and [`NoiseVolume::from_picture`].
+    /// As [`read_png`] and [`NoiseVolume::from_image`].
     pub fn load(path: &Path) -> Result<Self, Error> {
-        Self::from_picture(path, &read_png(path)?.to_rgba8())
+        Self::from_image(path, &read_png(path)?.to_rgba8())
     }
 
     /// Returns the number of voxels along each side.
@@ -92,7 +92,7 @@ mod tests {
     fn images_that_are_not_a_cube_are_refused() {
         let refused = |width, height| {
             let picture = RgbaImage::new(width, height);
-            NoiseVolume::from_picture(Path::new("fbm.png"), &picture).unwrap_err().to_string()
+            NoiseVolume::from_image(Path::new("fbm.png"), &picture).unwrap_err().to_string()
         };
         assert!(refused(32, 32).contains("expected slices below each other"));
         assert!(refused(0, 0).contains("fbm.png"));

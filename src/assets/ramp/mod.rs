@@ -12,7 +12,7 @@ use glam::{UVec2, Vec3, Vec4};
 use half::f16;
 use image::DynamicImage;
 
-use crate::assets::picture::read_colour_png;
+use crate::assets::image::read_colour_png;
 use crate::error::Error;
 use crate::formula::colour::linear_from_srgb;
 use crate::formula::texture::Texture2d;
@@ -41,8 +41,8 @@ impl Ramp {
     }
 
     /// Converts an sRGB image of 8 or 16 bits per channel. Alpha is ignored;
-    /// [`decode_colour_png`](crate::picture::decode_colour_png) applies it. The bottom row is 0 on the second axis.
-    pub fn from_picture(picture: &DynamicImage) -> Self {
+    /// [`decode_colour_png`](crate::image::decode_colour_png) applies it. The bottom row is 0 on the second axis.
+    pub fn from_image(picture: &DynamicImage) -> Self {
         let pixels = picture.to_rgb16();
         let size = UVec2::new(pixels.width(), pixels.height());
         let linear = |channel: u16| linear_from_srgb(f32::from(channel) / 65535.0);
@@ -55,7 +55,7 @@ impl Ramp {
     /// # Errors
     /// As [`read_colour_png`].
     pub fn load(path: &Path) -> Result<Self, Error> {
-        Ok(Self::from_picture(&read_colour_png(path)?))
+        Ok(Self::from_image(&read_colour_png(path)?))
     }
 
     /// Returns the size, texels.

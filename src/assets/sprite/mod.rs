@@ -1,6 +1,6 @@
 //! Sprites: flipbooks of normal maps with the amount in alpha.
 
-pub mod filled;
+pub mod alpha_bounds;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use std::sync::Arc;
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
 use image::RgbaImage;
 
-use crate::assets::picture::{Picture, read_png};
+use crate::assets::image::{Image, read_png};
 use crate::error::Error;
 use crate::formula::texture::Texture2dArray;
 
@@ -53,7 +53,7 @@ impl Sprite {
     /// # Errors
     /// [`Error::Image`] if the layout does not fit the image, frames are not square, or a frame is not clear at its
     /// border (the sprite would be visible as a square).
-    pub fn from_picture(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Result<Self, Error> {
+    pub fn from_image(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Result<Self, Error> {
         let error = |reason: String| Err(Error::Image { path: path.into(), reason });
         let (columns, rows) = (layout.columns, layout.rows);
         let (width, height) = picture.dimensions();
@@ -93,9 +93,9 @@ impl Sprite {
     /// Loads a PNG.
     ///
     /// # Errors
-    /// As [`read_png`] and [`Sprite::from_picture`].
+    /// As [`read_png`] and [`Sprite::from_image`].
     pub fn load(path: &Path, layout: SpriteLayout) -> Result<Self, Error> {
-        Self::from_picture(path, &read_png(path)?.to_rgba8(), layout)
+        Self::from_image(path, &read_png(path)?.to_rgba8(), layout)
     }
 
     /// Builds the mip levels of frames below each other, `size` texels a side each.
@@ -105,7 +105,7 @@ impl Sprite {
             let coarse = sprite.level_size(level);
             let fine = sprite.level_size(level - 1);
             // Frames below each other.
-            let mut texels = Picture::new(UVec2::new(coarse, coarse * frame_count), [0; 4]);
+            let mut texels = Image::new(UVec2::new(coarse, coarse * frame_count), [0; 4]);
             texels.for_each(|at, texel| {
                 let near = |dx: u32, dy: u32| {
                     let (x, y) = ((2 * at.x + dx).min(fine - 1), (2 * (at.y % coarse) + dy).min(fine - 1));
@@ -198,14 +198,14 @@ mod tests {
     }
 
     fn message(picture: &RgbaImage, layout: SpriteLayout) -> String {
-        Sprite::from_picture(Path::new("wisp.png"), picture, layout).unwrap_err().to_string()
+        Sprite::from_image(Path::new("wisp.png"), picture, layout).unwrap_err().to_string()
     }
 
     #[test]
     fn frames_run_left_to_right_then_down() {
         let mut sheet = picture(8, 8);
         sheet.put_pixel(5, 2, Rgba([10, 20, 30, 40]));
-        let sprite = Sprite::from_picture(Path::new(""), &sheet, SpriteLayout { columns: 2, rows: 2, y_down: true });
+        let sprite = Sprite::from_image(Path::new(""), &sheet, SpriteLayout { columns: 2, rows: 2, y_down: true });
         let sprite = sprite.unwrap();
         assert_eq!((sprite.size(), sprite.frame_count(), sprite.level_count()), (4, 4, 3));
         let texel = sprite.texel(0, 1, 1, 2) * 255.0;
@@ -216,7 +216,7 @@ mod tests {
     fn mip_levels_weight_normals_by_amount() {
         let mut sheet = picture(4, 4);
         sheet.put_pixel(1, 1, Rgba([255, 0, 0, 200]));
-        let sprite = Sprite::from_picture(Path::new(""), &sheet, SpriteLayout::default()).unwrap();
+        let sprite = Sprite::from_image(Path::new(""), &sheet, SpriteLayout::default()).unwrap();
         assert_eq!(sprite.texel(1, 0, 0, 0) * 255.0, Vec4::new(255.0, 0.0, 0.0, 50.0));
         assert_eq!(sprite.texel(1, 0, 1, 1) * 255.0, Vec4::new(128.0, 200.0, 255.0, 0.0));
     }

@@ -2,20 +2,20 @@
 
 use std::fmt;
 
-use super::load::PathLoad;
+use super::load::PathWorkload;
 use super::model::{PathModel, PathModelSource};
-use crate::settings::Path;
+use crate::settings::RenderPath;
 
 /// Frames for which the other path must look better before a switch: 0.5 s at 60 frames per second.
 const PATIENCE: u32 = 30;
 /// The other path looks better if its expected time is below this fraction of the current path's.
-const GAIN: f32 = 0.95;
+const SWITCH_RATIO: f32 = 0.95;
 
-/// Path that `auto` chose for a system, with the reason. `Display` formats it as one sentence.
+/// RenderPath that `auto` chose for a system, with the reason. `Display` formats it as one sentence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathChoice {
-    /// [`Path::Raster`] or [`Path::Tiled`].
-    pub path: Path,
+    /// [`RenderPath::Raster`] or [`RenderPath::Tiled`].
+    pub path: RenderPath,
     /// Reason for the choice.
     pub reason: PathReason,
 }
@@ -35,21 +35,21 @@ pub enum PathReason {
         source: PathModelSource,
     },
     /// The device does not support the path `tiled`.
-    NoTiles,
+    TiledUnsupported,
     /// Compute shaders cannot read the host's buffer: it lacks `STORAGE` usage, or its offset is not a multiple of 16
     /// bytes.
-    BufferOfVertices,
+    BufferNotReadable,
     /// There are more particles than one storage buffer binding of this device can hold.
-    TooMany,
+    TooManyParticles,
 }
 
 impl PathChoice {
     /// Returns the path with the lower expected time for a load, regardless of earlier choices.
-    pub fn new(model: &PathModel, load: &PathLoad) -> Self {
+    pub fn new(model: &PathModel, load: &PathWorkload) -> Self {
         let [raster_ms, tiled_ms] = model.milliseconds(load);
         let layers = (!load.is_assumed).then(|| load.layers() as f32);
         Self {
-            path: if tiled_ms < raster_ms { Path::Tiled } else { Path::Raster },
+            path: if tiled_ms < raster_ms { RenderPath::Tiled } else { RenderPath::Raster },
             reason: PathReason::Expected { raster_ms, tiled_ms, layers, source: model.source },
         }
     }
@@ -61,7 +61,7 @@ impl fmt::Display for PathChoice {
         match self.reason {
             PathReason::Expected { raster_ms, tiled_ms, layers, source } => {
                 let (own, other, name) = match self.path {
-                    Path::Tiled => (tiled_ms, raster_ms, "raster"),
+                    RenderPath::Tiled => (tiled_ms, raster_ms, "raster"),
                     _ => (raster_ms, tiled_ms, "tiled"),
                 };
                 write!(f, "about {} ms against {name}'s {} (overdraw ", digits(own), digits(other))?;
@@ -71,11 +71,11 @@ impl fmt::Display for PathChoice {
                 }
                 write!(f, ", {})", source.name())
             }
-            PathReason::NoTiles => f.write_str("this device does not support the path tiled"),
-            PathReason::BufferOfVertices => f.write_str(
+            PathReason::TiledUnsupported => f.write_str("this device does not support the path tiled"),
+            PathReason::BufferNotReadable => f.write_str(
                 "compute shaders cannot read the particle buffer; expected STORAGE usage, an offset divisible by 16",
             ),
-            PathReason::TooMany => f.write_str("more particles than a shader can read on this device"),
+            PathReason::TooManyParticles => f.write_str("more particles than a shader can read on this device"),
         }
     }
 }
@@ -90,17 +90,17 @@ fn digits(ms: f32) -> String {
 /// every few frames.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Chooser {
-    taken: Option<Path>,
+    taken: Option<RenderPath>,
     /// Consecutive frames for which the other path has looked better.
     other: u32,
 }
 
 impl Chooser {
-    pub fn choose(&mut self, model: &PathModel, load: &PathLoad) -> PathChoice {
+    pub fn choose(&mut self, model: &PathModel, load: &PathWorkload) -> PathChoice {
         let best = PathChoice::new(model, load);
         let taken = *self.taken.get_or_insert(best.path);
         let PathReason::Expected { raster_ms, tiled_ms, .. } = best.reason else { return best };
-        let is_worth_it = raster_ms.min(tiled_ms) < GAIN * raster_ms.max(tiled_ms);
+        let is_worth_it = raster_ms.min(tiled_ms) < SWITCH_RATIO * raster_ms.max(tiled_ms);
         self.other = if best.path != taken && is_worth_it { self.other + 1 } else { 0 };
         if self.other > PATIENCE {
             *self = Self { taken: Some(best.path), other: 0 };
@@ -116,8 +116,8 @@ mod tests {
     use super::*;
     use crate::settings::Technique;
 
-    fn load(layers: f64) -> PathLoad {
-        PathLoad {
+    fn load(layers: f64) -> PathWorkload {
+        PathWorkload {
             technique: Technique::Soft,
             sprites: 100.0,
             fragments: layers * 1.0e6,
@@ -132,9 +132,9 @@ mod tests {
     fn display_formats_a_choice_as_one_sentence() {
         let reason =
             PathReason::Expected { raster_ms: 9.8, tiled_ms: 3.12, layers: Some(64.2), source: PathModelSource::Probe };
-        let choice = PathChoice { path: Path::Tiled, reason };
+        let choice = PathChoice { path: RenderPath::Tiled, reason };
         assert_eq!(choice.to_string(), "tiled: about 3.1 ms against raster's 9.8 (overdraw 64, probe)");
-        let choice = PathChoice { path: Path::Raster, reason: PathReason::NoTiles };
+        let choice = PathChoice { path: RenderPath::Raster, reason: PathReason::TiledUnsupported };
         assert_eq!(choice.to_string(), "raster: this device does not support the path tiled");
         assert_eq!([0.0123, 0.234, 2.345, 234.5].map(digits), ["0.012", "0.23", "2.3", "234"]);
     }
@@ -144,15 +144,15 @@ mod tests {
         let model = PathModel::of_class(wgpu::DeviceType::Cpu);
         let [few, many] = [load(2.0), load(2000.0)];
         let mut chooser = Chooser::default();
-        assert_eq!(chooser.choose(&model, &few).path, Path::Raster);
+        assert_eq!(chooser.choose(&model, &few).path, RenderPath::Raster);
         // A short advantage does not cause a switch.
         for _ in 0..10 {
-            assert!((0..PATIENCE).all(|_| chooser.choose(&model, &many).path == Path::Raster));
-            assert_eq!(chooser.choose(&model, &few).path, Path::Raster);
+            assert!((0..PATIENCE).all(|_| chooser.choose(&model, &many).path == RenderPath::Raster));
+            assert_eq!(chooser.choose(&model, &few).path, RenderPath::Raster);
         }
-        assert!((0..PATIENCE).all(|_| chooser.choose(&model, &many).path == Path::Raster));
-        assert_eq!(chooser.choose(&model, &many).path, Path::Tiled);
-        assert_eq!(Chooser::default().choose(&model, &many).path, Path::Tiled);
+        assert!((0..PATIENCE).all(|_| chooser.choose(&model, &many).path == RenderPath::Raster));
+        assert_eq!(chooser.choose(&model, &many).path, RenderPath::Tiled);
+        assert_eq!(Chooser::default().choose(&model, &many).path, RenderPath::Tiled);
     }
 
     #[test]
@@ -160,9 +160,9 @@ mod tests {
         let mut model = PathModel::of_class(wgpu::DeviceType::Cpu);
         let mut chooser = Chooser::default();
         model.tiled = model.raster.times(2.0);
-        let load = PathLoad { optical_depth: 0.0, ..load(10.0) };
-        assert_eq!(chooser.choose(&model, &load).path, Path::Raster);
+        let load = PathWorkload { optical_depth: 0.0, ..load(10.0) };
+        assert_eq!(chooser.choose(&model, &load).path, RenderPath::Raster);
         model.tiled = model.raster.times(0.97);
-        assert!((0..4 * PATIENCE).all(|_| chooser.choose(&model, &load).path == Path::Raster));
+        assert!((0..4 * PATIENCE).all(|_| chooser.choose(&model, &load).path == RenderPath::Raster));
     }
 }

@@ -3,8 +3,8 @@
 use glam::UVec2;
 
 use crate::frame::Particle;
-use crate::in_view::{Grid, Placing, optical_depth};
 use crate::settings::{Layers, Order, Settings, Technique};
+use crate::view_setup::{Grid, SpriteProjector, optical_depth};
 
 /// Maximum number of sprites sampled; the estimate takes about ten microseconds.
 const SAMPLE: usize = 256;
@@ -14,7 +14,7 @@ const ASSUMED_DEPTH: f64 = 0.05;
 
 /// Accumulation workload of a system.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PathLoad {
+pub struct PathWorkload {
     /// Technique of the sprites.
     pub technique: Technique,
     /// Number of sprites, times `debug_loop`.
@@ -34,12 +34,12 @@ pub struct PathLoad {
 /// Estimates the workload of `sprites` sprites on a target. `known`: particles that stand for all, and the number of
 /// sprites that each represents.
 pub(crate) fn load(
-    placing: &Placing<'_>,
+    projector: &SpriteProjector<'_>,
     grid: &Grid,
     sprites: u32,
     known: Option<(&[Particle], u32)>,
     settings: &Settings,
-) -> PathLoad {
+) -> PathWorkload {
     let texels = grid.size.as_dvec2().element_product();
     let loops = f64::from(settings.sprite.debug_loop);
     let (fragments, depth) = match known {
@@ -47,7 +47,7 @@ pub(crate) fn load(
         Some((particles, each)) => {
             let step = particles.len().div_ceil(SAMPLE).max(1);
             let sample = particles.iter().step_by(step).filter(|particle: &&Particle| particle.is_visible());
-            let (areas, depths) = placing.covered(grid, sample).fold((0.0, 0.0), |(areas, depths), sprite| {
+            let (areas, depths) = projector.covered(grid, sample).fold((0.0, 0.0), |(areas, depths), sprite| {
                 // `optical_depth` is the mean over the whole square; only the share that is not trimmed is covered.
                 let depth = f64::from(optical_depth(sprite.particle, settings)) / sprite.share.max(1.0e-6);
                 (areas + sprite.texels, depths + sprite.texels * depth)
@@ -56,7 +56,7 @@ pub(crate) fn load(
         }
     };
     let stops = settings.accumulate.layers == Layers::Visible && settings.order() == Order::Sorted;
-    PathLoad {
+    PathWorkload {
         technique: settings.technique,
         sprites: f64::from(sprites) * loops,
         fragments: fragments * loops,

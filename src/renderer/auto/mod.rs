@@ -5,7 +5,7 @@ mod load;
 mod model;
 
 pub use choice::{PathChoice, PathReason};
-pub use load::PathLoad;
+pub use load::PathWorkload;
 pub use model::{PathCosts, PathModel, PathModelSource};
 
 pub(crate) use choice::Chooser;

@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 
-use super::load::PathLoad;
+use super::load::PathWorkload;
 use crate::error::FieldError;
 use crate::settings::Technique;
 
@@ -15,11 +15,11 @@ const SQUARE: u32 = 64;
 const OPAQUE_DEPTH: f64 = 2.0 * 10.0 * std::f64::consts::LN_2;
 /// Fraction of the traversals that never stop: those at the borders of the smoke. With this value and `OPAQUE_DEPTH`,
 /// the model is within 5 % of an H200 for large sprites.
-const CLEAR_SHARE: f64 = 0.5;
+const NEVER_OPAQUE_SHARE: f64 = 0.5;
 /// Tolerance of a probe on a CPU: if the measured ratio of the two paths differs from the class's by less than this
 /// factor, it is ignored; otherwise only the excess counts. Reason: other load on the machine slows the traversal 1.5
 /// times more than `raster`, for seconds.
-const CPU_DOUBT: f32 = 1.6;
+const CPU_PROBE_TOLERANCE: f32 = 1.6;
 
 /// Cost model by which the path `auto` chooses. Set it with
 /// [`Context::set_path_model`](crate::Context::set_path_model).
@@ -146,16 +146,16 @@ impl PathModel {
     /// the class was measured. The scene hides part of the sprites in the class's measurement, which saves more time in
     /// `raster`, and none in the probe. The probe's few sprites stay in caches, so that a traversal waits less for
     /// each.
-    fn probe_finds(&self) -> [f32; 2] {
+    fn probe_bias(&self) -> [f32; 2] {
         if self.source == PathModelSource::Cpu { [1.24, 0.74] } else { [1.75, 0.35] }
     }
 
     /// Scales this class's model to a device. `times`: the probe's time divided by this model's expectation, for
     /// `raster` and `tiled`.
     pub(crate) fn probed(self, times: [f32; 2]) -> Self {
-        let finds = self.probe_finds();
+        let finds = self.probe_bias();
         let [raster, tiled] = [times[0] / finds[0], times[1] / finds[1]];
-        let doubt = if self.source == PathModelSource::Cpu { CPU_DOUBT } else { 1.0 };
+        let doubt = if self.source == PathModelSource::Cpu { CPU_PROBE_TOLERANCE } else { 1.0 };
         let apart = tiled / raster;
         let (both, apart) = ((raster * tiled).sqrt(), (apart / apart.clamp(doubt.recip(), doubt)).sqrt());
         Self {
@@ -199,8 +199,8 @@ impl PathModel {
     }
 
     /// Returns the expected milliseconds of `raster` and of `tiled`.
-    pub fn milliseconds(&self, load: &PathLoad) -> [f32; 2] {
-        let share = load.seen_share();
+    pub fn milliseconds(&self, load: &PathWorkload) -> [f32; 2] {
+        let share = load.visited_share();
         [(&self.raster, load.busiest(self.cores)), (&self.tiled, share)]
             .map(|(costs, share)| costs.milliseconds(load, share))
     }
@@ -209,7 +209,7 @@ impl PathModel {
 impl PathCosts {
     /// Returns the expected milliseconds. `share`: fraction of the sprites' texels that are shaded; above 1 if the pass
     /// waits for the busiest core.
-    pub(crate) fn milliseconds(&self, load: &PathLoad, share: f64) -> f32 {
+    pub(crate) fn milliseconds(&self, load: &PathWorkload, share: f64) -> f32 {
         let of_fragment = match load.technique {
             Technique::SphericalBillboard => f64::from(self.sphere),
             technique if technique.is_volumetric() => f64::from(self.march) * load.lookups,
@@ -239,7 +239,7 @@ impl PathCosts {
     }
 }
 
-impl PathLoad {
+impl PathWorkload {
     /// Returns the mean overdraw, layers per texel.
     pub fn layers(&self) -> f64 {
         self.fragments / self.texels().max(1.0)
@@ -281,9 +281,9 @@ impl PathLoad {
 
     /// Returns the mean fraction of the sprites that a traversal visits before it stops. Assumes that overdraw is
     /// distributed exponentially over the texels: most layers lie in few places.
-    fn seen_share(&self) -> f64 {
+    fn visited_share(&self) -> f64 {
         let layers_seen = OPAQUE_DEPTH / self.optical_depth.max(1.0e-6);
-        1.0 - (1.0 - CLEAR_SHARE) * (-layers_seen / self.layers().max(1.0e-6)).exp()
+        1.0 - (1.0 - NEVER_OPAQUE_SHARE) * (-layers_seen / self.layers().max(1.0e-6)).exp()
     }
 }
 
@@ -291,9 +291,9 @@ impl PathLoad {
 mod tests {
     use super::*;
 
-    fn load(layers: f64) -> PathLoad {
+    fn load(layers: f64) -> PathWorkload {
         let size = UVec2::new(1280, 720);
-        PathLoad {
+        PathWorkload {
             technique: Technique::Soft,
             sprites: 1000.0,
             fragments: layers * size.as_dvec2().element_product(),
@@ -312,23 +312,24 @@ mod tests {
         let [deep_raster, deep_tiled] = model.milliseconds(&load(4000.0));
         assert!(deep_raster > 500.0 * raster && deep_tiled < 500.0 * tiled, "{deep_raster} {deep_tiled}");
         // A traversal that does not stop visits all layers.
-        let [_, all] = model.milliseconds(&PathLoad { optical_depth: 0.0, ..load(4000.0) });
+        let [_, all] = model.milliseconds(&PathWorkload { optical_depth: 0.0, ..load(4000.0) });
         assert!(all > 1.7 * deep_tiled);
     }
 
     #[test]
     fn small_deviations_of_a_cpu_probe_are_ignored() {
-        let apart = |class: PathModel, walk: f32| {
-            let [raster, tiled] = class.probe_finds();
-            let probed = class.probed([3.0 * raster, 3.0 * walk * tiled]);
+        let apart = |class: PathModel, for_each_field: f32| {
+            let [raster, tiled] = class.probe_bias();
+            let probed = class.probed([3.0 * raster, 3.0 * for_each_field * tiled]);
             let [raster, tiled] = [probed.raster.march / class.raster.march, probed.tiled.march / class.tiled.march];
-            assert!((raster * tiled / (9.0 * walk) - 1.0).abs() < 1.0e-4, "{raster} {tiled}");
+            assert!((raster * tiled / (9.0 * for_each_field) - 1.0).abs() < 1.0e-4, "{raster} {tiled}");
             tiled / raster
         };
         let alike = |a: f32, b: f32| (a / b - 1.0).abs() < 1.0e-4;
         assert!(alike(apart(PathModel::CPU, 1.5), 1.0) && alike(apart(PathModel::CPU, 0.7), 1.0));
         assert!(
-            alike(apart(PathModel::CPU, 2.0 * CPU_DOUBT), 2.0) && alike(apart(PathModel::CPU, 0.5 / CPU_DOUBT), 0.5)
+            alike(apart(PathModel::CPU, 2.0 * CPU_PROBE_TOLERANCE), 2.0)
+                && alike(apart(PathModel::CPU, 0.5 / CPU_PROBE_TOLERANCE), 0.5)
         );
         assert!(alike(apart(PathModel::GPU, 1.5), 1.5), "a GPU's probe counts as measured");
     }
@@ -339,7 +340,7 @@ mod tests {
         let raster = |width, height| {
             let size = UVec2::new(width, height);
             let fragments = 100.0 * size.as_dvec2().element_product();
-            let [raster, _] = model.milliseconds(&PathLoad { size, fragments, sprites: 0.0, ..load(1.0) });
+            let [raster, _] = model.milliseconds(&PathWorkload { size, fragments, sprites: 0.0, ..load(1.0) });
             f64::from(raster - 1.0e-6 * model.raster.frame) / size.as_dvec2().element_product()
         };
         let alike = |a: f64, b: f64| (a / b - 1.0).abs() < 0.05;
@@ -355,7 +356,7 @@ mod tests {
         for (size, layers, walks) in [(small, 0.2, false), (size, 16.0, true), (size, 64.0, true), (size, 1024.0, true)]
         {
             let fragments = layers * size.as_dvec2().element_product();
-            let [raster, tiled] = model.milliseconds(&PathLoad { size, fragments, ..load(layers) });
+            let [raster, tiled] = model.milliseconds(&PathWorkload { size, fragments, ..load(layers) });
             assert_eq!(tiled < raster, walks, "{layers}: {tiled} {raster}");
         }
     }

@@ -1,6 +1,6 @@
 //! Formats of the host's render pass, which pipelines that draw into it must match.
 
-use super::checked::checked;
+use super::error_scopes::checked;
 use super::pipeline::read_only_depth;
 use crate::error::FieldError;
 

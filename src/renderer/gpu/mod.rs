@@ -1,12 +1,12 @@
 //! wgpu helpers that all passes share. Nothing here is specific to smoke.
 
 pub(crate) mod capabilities;
-pub(crate) mod checked;
+pub(crate) mod error_scopes;
 pub(crate) mod frame_times;
 pub(crate) mod host_pass;
+pub(crate) mod idle_counter;
 pub(crate) mod pipeline;
 pub(crate) mod record;
-pub(crate) mod spare;
 pub(crate) mod submission;
 pub(crate) mod timing;
 

@@ -5,7 +5,7 @@ use std::hash::Hash;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use super::checked::checked;
+use super::error_scopes::checked;
 use crate::error::{Error, one_line};
 
 /// Shader of a pass.
@@ -18,7 +18,7 @@ pub(crate) struct Shader {
 
 /// Shader of a pass, and its pipelines by key. A pipeline is compiled on first use, from any thread.
 #[derive(Debug)]
-pub(crate) struct Variants<K, P: Parts = PipelineParts> {
+pub(crate) struct PipelineVariants<K, P: Parts = RenderPipelineDescription> {
     common: Common,
     describe: fn(K) -> P,
     pipelines: Mutex<HashMap<K, P::Pipeline>>,
@@ -43,7 +43,7 @@ pub(crate) trait Parts {
 
 /// The parts of a render pipeline that differ from variant to variant.
 #[derive(Debug)]
-pub(crate) struct PipelineParts {
+pub(crate) struct RenderPipelineDescription {
     pub buffers: &'static [Option<wgpu::VertexBufferLayout<'static>>],
     pub primitive: wgpu::PrimitiveState,
     pub depth_stencil: Option<wgpu::DepthStencilState>,
@@ -54,12 +54,12 @@ pub(crate) struct PipelineParts {
 
 /// The parts of a compute pipeline that differ from variant to variant.
 #[derive(Debug)]
-pub(crate) struct ComputeParts {
+pub(crate) struct ComputePipelineDescription {
     pub entry_point: &'static str,
     pub constants: Vec<Constant>,
 }
 
-impl<K: Copy + Eq + Hash, P: Parts> Variants<K, P> {
+impl<K: Copy + Eq + Hash, P: Parts> PipelineVariants<K, P> {
     /// `name`: name of the pass, used as label.
     pub fn new(
         device: &wgpu::Device,
@@ -119,7 +119,7 @@ impl<K: Copy + Eq + Hash, P: Parts> Variants<K, P> {
     }
 }
 
-impl Parts for PipelineParts {
+impl Parts for RenderPipelineDescription {
     type Pipeline = wgpu::RenderPipeline;
 
     fn create(&self, device: &wgpu::Device, common: &Common) -> wgpu::RenderPipeline {
@@ -148,7 +148,7 @@ impl Parts for PipelineParts {
     }
 }
 
-impl Parts for ComputeParts {
+impl Parts for ComputePipelineDescription {
     type Pipeline = wgpu::ComputePipeline;
 
     fn create(&self, device: &wgpu::Device, common: &Common) -> wgpu::ComputePipeline {
@@ -183,7 +183,7 @@ pub(crate) use variant;
 pub(crate) const PREMULTIPLIED_OVER: wgpu::BlendState = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
 
 /// ONE, ONE on colour; alpha is not changed.
-pub(crate) const ADDITIVE: wgpu::BlendState = wgpu::BlendState { color: ADD, alpha: KEEP };
+pub(crate) const ADDITIVE: wgpu::BlendState = wgpu::BlendState { color: ADD, alpha: KEEP_DESTINATION };
 
 /// ONE, ONE on colour; ONE, ONE_MINUS_SRC_ALPHA on alpha.
 pub(crate) const WEIGHTED_SUM: wgpu::BlendState = wgpu::BlendState { color: ADD, alpha: wgpu::BlendComponent::OVER };
@@ -198,7 +198,7 @@ pub(crate) const MULTIPLY: wgpu::BlendState = wgpu::BlendState {
         dst_factor: wgpu::BlendFactor::Zero,
         operation: wgpu::BlendOperation::Add,
     },
-    alpha: KEEP,
+    alpha: KEEP_DESTINATION,
 };
 
 const ADD: wgpu::BlendComponent = wgpu::BlendComponent {
@@ -207,7 +207,7 @@ const ADD: wgpu::BlendComponent = wgpu::BlendComponent {
     operation: wgpu::BlendOperation::Add,
 };
 
-const KEEP: wgpu::BlendComponent = wgpu::BlendComponent {
+const KEEP_DESTINATION: wgpu::BlendComponent = wgpu::BlendComponent {
     src_factor: wgpu::BlendFactor::Zero,
     dst_factor: wgpu::BlendFactor::One,
     operation: wgpu::BlendOperation::Add,

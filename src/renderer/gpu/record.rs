@@ -52,7 +52,7 @@ pub(crate) fn begin_compute<'a>(
 }
 
 /// Restricts a pass to a rectangle of its targets.
-pub(crate) fn set_part(pass: &mut wgpu::RenderPass<'_>, origin: glam::UVec2, size: glam::UVec2) {
+pub(crate) fn set_viewport_and_scissor(pass: &mut wgpu::RenderPass<'_>, origin: glam::UVec2, size: glam::UVec2) {
     pass.set_viewport(origin.x as f32, origin.y as f32, size.x as f32, size.y as f32, 0.0, 1.0);
     pass.set_scissor_rect(origin.x, origin.y, size.x, size.y);
 }

@@ -37,7 +37,7 @@ impl Submission {
     }
 
     /// Tracks the encoder of a pass.
-    pub fn follow_pass(&self, pass: &wgpu::RenderPass<'_>) {
+    pub fn track_pass(&self, pass: &wgpu::RenderPass<'_>) {
         let recorded = self.recorded.clone();
         pass.map_buffer_on_submit(&self.probe, wgpu::MapMode::Read, .., move |_| drop(recorded));
     }

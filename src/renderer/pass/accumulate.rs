@@ -13,12 +13,12 @@ use super::Groups;
 use super::sprites::{PARTICLE_LAYOUT, SpriteKey, Sprites};
 use crate::renderer::gpu::host_pass::MAX_ATTACHMENTS;
 use crate::renderer::gpu::pipeline::{
-    COUNT, PREMULTIPLIED_OVER, PipelineParts, STRIP, WEIGHTED_SUM, color_target, in_front, read_only_depth, switch,
-    variant,
+    COUNT, PREMULTIPLIED_OVER, RenderPipelineDescription, STRIP, WEIGHTED_SUM, color_target, in_front, read_only_depth,
+    switch, variant,
 };
-use crate::renderer::gpu::record::{begin_pass, color_attachment, set_part, tested_depth};
+use crate::renderer::gpu::record::{begin_pass, color_attachment, set_viewport_and_scissor, tested_depth};
 use crate::renderer::gpu::timing::Timing;
-use crate::renderer::targets::{Beside, DEPTH_COPY_FORMAT, REDUCED_DEPTH_FORMAT, accumulation_layout};
+use crate::renderer::targets::{DEPTH_COPY_FORMAT, ExtraAttachment, REDUCED_DEPTH_FORMAT, accumulation_layout};
 use crate::settings::{AccumulationFormat, NormalEncoding, Order};
 
 /// Key of an accumulation pipeline.
@@ -27,7 +27,7 @@ pub(crate) struct AccumulateKey {
     pub format: AccumulationFormat,
     pub encoding: NormalEncoding,
     pub order: Order,
-    pub beside: Beside,
+    pub extra_attachment: ExtraAttachment,
     pub sprite: SpriteKey,
     /// True if sprites are compared with the host's own depth instead of the reduced depth.
     pub host_depth: bool,
@@ -50,7 +50,7 @@ pub(crate) enum DepthTest {
 }
 
 /// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: AccumulateKey) -> PipelineParts {
+pub(crate) fn describe(key: AccumulateKey) -> RenderPipelineDescription {
     // Blend states of the first and the second texture.
     let blends = match (key.overdraw, key.order) {
         (true, _) => [COUNT; 2],
@@ -58,8 +58,8 @@ pub(crate) fn describe(key: AccumulateKey) -> PipelineParts {
         // Weights add up; the second texture's alpha has nothing else.
         (false, Order::Weighted) => [WEIGHTED_SUM, COUNT],
     };
-    let beside = if key.overdraw { Beside::Nothing } else { key.beside };
-    PipelineParts {
+    let extra_attachment = if key.overdraw { ExtraAttachment::Nothing } else { key.extra_attachment };
+    RenderPipelineDescription {
         buffers: const { &[Some(PARTICLE_LAYOUT)] },
         primitive: STRIP,
         depth_stencil: match key.depth_test {
@@ -69,7 +69,7 @@ pub(crate) fn describe(key: AccumulateKey) -> PipelineParts {
             DepthTest::Host(format, reversed) => Some(read_only_depth(format, in_front(reversed))),
         },
         sample_count: 1,
-        targets: accumulation_layout(key.format, beside, false)
+        targets: accumulation_layout(key.format, extra_attachment, false)
             .iter()
             .zip(blends)
             .map(|(attachment, blend)| color_target(attachment.format, Some(blend)))
@@ -106,7 +106,7 @@ impl Accumulate {
         let attachments = &attachments[..self.targets.len()];
         let mut pass =
             begin_pass(encoder, "accumulate", attachments, self.tested_depth.as_ref().map(tested_depth), timing);
-        set_part(&mut pass, UVec2::ZERO, self.size);
+        set_viewport_and_scissor(&mut pass, UVec2::ZERO, self.size);
         pass.set_pipeline(&self.pipeline);
         self.groups.bind(&mut pass);
         pass.set_bind_group(3, &self.inputs, &[]);

@@ -8,8 +8,8 @@
 
 use glam::UVec2;
 
-use crate::renderer::gpu::pipeline::{PipelineParts, read_only_depth, switch, variant};
-use crate::renderer::gpu::record::{begin_pass, set_part, written_depth};
+use crate::renderer::gpu::pipeline::{RenderPipelineDescription, read_only_depth, switch, variant};
+use crate::renderer::gpu::record::{begin_pass, set_viewport_and_scissor, written_depth};
 use crate::renderer::gpu::timing::Timing;
 use crate::renderer::targets::{DEPTH_COPY_FORMAT, REDUCED_DEPTH_FORMAT};
 use crate::settings::DepthDownsample;
@@ -23,9 +23,9 @@ pub(crate) struct DepthDownsampleKey {
 }
 
 /// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: DepthDownsampleKey) -> PipelineParts {
+pub(crate) fn describe(key: DepthDownsampleKey) -> RenderPipelineDescription {
     let format = if key.copy { DEPTH_COPY_FORMAT } else { REDUCED_DEPTH_FORMAT };
-    PipelineParts {
+    RenderPipelineDescription {
         buffers: &[],
         primitive: wgpu::PrimitiveState::default(),
         depth_stencil: Some(wgpu::DepthStencilState {
@@ -52,7 +52,7 @@ pub(crate) struct Downsample {
 impl Downsample {
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
         let mut pass = begin_pass(encoder, "depth_downsample", &[], Some(written_depth(&self.target)), timing);
-        set_part(&mut pass, UVec2::ZERO, self.size);
+        set_viewport_and_scissor(&mut pass, UVec2::ZERO, self.size);
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.frame, &[]);
         pass.set_bind_group(1, &self.system, &[]);

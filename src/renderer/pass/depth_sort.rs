@@ -5,7 +5,7 @@
 
 use super::Groups;
 use super::sort::Sort;
-use crate::renderer::gpu::pipeline::ComputeParts;
+use crate::renderer::gpu::pipeline::ComputePipelineDescription;
 
 /// Key of a pipeline: the step before the sort, and the step after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -15,12 +15,12 @@ pub(crate) enum DepthSortKey {
 }
 
 /// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: DepthSortKey) -> ComputeParts {
+pub(crate) fn describe(key: DepthSortKey) -> ComputePipelineDescription {
     let entry_point = match key {
         DepthSortKey::DepthKeys => "depth_keys",
         DepthSortKey::GatherParticles => "gather_particles",
     };
-    ComputeParts { entry_point, constants: Vec::new() }
+    ComputePipelineDescription { entry_point, constants: Vec::new() }
 }
 
 /// The pass for one system.

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use super::Groups;
 use crate::formula::diffuse_bake::baked_size_and_layers;
-use crate::renderer::gpu::pipeline::{PipelineParts, color_target, switch, variant};
+use crate::renderer::gpu::pipeline::{RenderPipelineDescription, color_target, switch, variant};
 use crate::renderer::gpu::record::{begin_pass, color_attachment};
 use crate::renderer::gpu::timing::Timing;
 use crate::renderer::targets::BAKED_DIFFUSE_FORMAT;
@@ -26,9 +26,9 @@ pub(crate) struct DiffuseBakeKey {
 }
 
 /// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: DiffuseBakeKey) -> PipelineParts {
+pub(crate) fn describe(key: DiffuseBakeKey) -> RenderPipelineDescription {
     let (side, _) = baked_size_and_layers(key.mode).unwrap_or((1, 1));
-    PipelineParts {
+    RenderPipelineDescription {
         buffers: &[],
         primitive: wgpu::PrimitiveState::default(),
         depth_stencil: None,

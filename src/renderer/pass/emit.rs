@@ -3,11 +3,11 @@
 //! Reads: the emitter at a time.
 //! Writes: particles.
 
-use crate::renderer::gpu::pipeline::ComputeParts;
+use crate::renderer::gpu::pipeline::ComputePipelineDescription;
 
 /// Returns the parts of the only pipeline.
-pub(crate) fn describe((): ()) -> ComputeParts {
-    ComputeParts { entry_point: "emit", constants: Vec::new() }
+pub(crate) fn describe((): ()) -> ComputePipelineDescription {
+    ComputePipelineDescription { entry_point: "emit", constants: Vec::new() }
 }
 
 /// The pass for one system.

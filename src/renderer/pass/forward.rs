@@ -9,7 +9,8 @@ use super::Groups;
 use super::sprites::{PARTICLE_LAYOUT, SpriteKey, Sprites};
 use crate::renderer::gpu::host_pass::HostPass;
 use crate::renderer::gpu::pipeline::{
-    ADDITIVE, MULTIPLY, PREMULTIPLIED_OVER, PipelineParts, STRIP, in_front, read_only_depth, switch, variant,
+    ADDITIVE, MULTIPLY, PREMULTIPLIED_OVER, RenderPipelineDescription, STRIP, in_front, read_only_depth, switch,
+    variant,
 };
 use crate::settings::{Backlight, BlendMode, RampFilter, SoftScatterMode};
 
@@ -29,14 +30,14 @@ pub(crate) struct ForwardKey {
 }
 
 /// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: ForwardKey) -> PipelineParts {
+pub(crate) fn describe(key: ForwardKey) -> RenderPipelineDescription {
     let blend = match key.blend_mode {
         BlendMode::Alpha => PREMULTIPLIED_OVER,
         BlendMode::Additive => ADDITIVE,
         BlendMode::Multiply => MULTIPLY,
     };
     let compare = if key.shows_through { wgpu::CompareFunction::Always } else { in_front(key.reversed) };
-    PipelineParts {
+    RenderPipelineDescription {
         buffers: const { &[Some(PARTICLE_LAYOUT)] },
         primitive: STRIP,
         depth_stencil: key.host.depth_format.map(|format| read_only_depth(format, compare)),

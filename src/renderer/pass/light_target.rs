@@ -9,10 +9,10 @@
 use glam::UVec2;
 
 use super::Groups;
-use crate::renderer::gpu::pipeline::{Constant, PipelineParts, color_target, switch, variant};
-use crate::renderer::gpu::record::{begin_pass, color_attachment, set_part};
+use crate::renderer::gpu::pipeline::{Constant, RenderPipelineDescription, color_target, switch, variant};
+use crate::renderer::gpu::record::{begin_pass, color_attachment, set_viewport_and_scissor};
 use crate::renderer::gpu::timing::Timing;
-use crate::renderer::targets::{Beside, LIT_FORMAT};
+use crate::renderer::targets::{ExtraAttachment, LIT_FORMAT};
 use crate::settings::{Backlight, DiffuseMode, NormalDecode, NormalEncoding, RampFilter, SoftScatterMode};
 
 /// Lighting options that select a pipeline, here and in transfer.
@@ -20,7 +20,7 @@ use crate::settings::{Backlight, DiffuseMode, NormalDecode, NormalEncoding, Ramp
 pub(crate) struct LightingKey {
     pub encoding: NormalEncoding,
     pub decode: NormalDecode,
-    pub beside: Beside,
+    pub extra_attachment: ExtraAttachment,
     pub diffuse_mode: DiffuseMode,
     pub soft_scatter_mode: SoftScatterMode,
     pub backlight: Backlight,
@@ -36,8 +36,8 @@ impl LightingKey {
             variant!("SOFT_SCATTER_MODE", self.soft_scatter_mode),
             variant!("NORMAL_ENCODING", self.encoding),
             variant!("NORMAL_DECODE", self.decode),
-            switch("WEIGHT_SUM", self.beside == Beside::Weights),
-            switch("SIX_WAY", self.beside == Beside::SixWay),
+            switch("WEIGHT_SUM", self.extra_attachment == ExtraAttachment::Weights),
+            switch("SIX_WAY", self.extra_attachment == ExtraAttachment::SixWay),
             variant!("BACKLIGHT", self.backlight),
             variant!("RAMP_FILTER", self.ramp_filter),
             switch("EXACT_FILTERING", self.exact_filtering),
@@ -47,8 +47,8 @@ impl LightingKey {
 }
 
 /// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: LightingKey) -> PipelineParts {
-    PipelineParts {
+pub(crate) fn describe(key: LightingKey) -> RenderPipelineDescription {
+    RenderPipelineDescription {
         buffers: &[],
         primitive: wgpu::PrimitiveState::default(),
         depth_stencil: None,
@@ -73,7 +73,7 @@ pub(crate) struct LightTarget {
 impl LightTarget {
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timing: Option<&Timing>) {
         let mut pass = begin_pass(encoder, "light_target", &[color_attachment(&self.target)], None, timing);
-        set_part(&mut pass, UVec2::ZERO, self.size);
+        set_viewport_and_scissor(&mut pass, UVec2::ZERO, self.size);
         pass.set_pipeline(&self.pipeline);
         self.groups.bind(&mut pass);
         pass.set_bind_group(3, &self.inputs, &[]);

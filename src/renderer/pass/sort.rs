@@ -4,20 +4,20 @@
 //! first pair.
 //! Source: Merrill and Grimshaw, "High performance and scalable radix sorting", 2011.
 
-use crate::renderer::gpu::pipeline::{ComputeParts, switch};
+use crate::renderer::gpu::pipeline::{ComputePipelineDescription, switch};
 
 /// Keys per workgroup: `ROUNDS` in `shaders/sort.wgsl` times its invocations.
 pub(crate) const BLOCK: u32 = 1024;
 /// Number of values of a digit.
 pub(crate) const DIGITS: u32 = 256;
 /// Number of digits of a key.
-const TURNS: u32 = 4;
+const DIGITS_PER_KEY: u32 = 4;
 /// Up to this many keys, every workgroup on a GPU counts the digits of all keys itself, which takes less time than
 /// dispatches that wait for each other.
 const FEW: u32 = 8192;
 /// Up to this many keys, every workgroup on a CPU sums up the counts of all blocks itself, because barriers within a
 /// workgroup are slow on CPUs.
-const OF_FEW_BLOCKS: u32 = 128 * BLOCK;
+const MAX_KEYS_WITHOUT_SCAN: u32 = 128 * BLOCK;
 
 /// Key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -43,27 +43,27 @@ enum Step {
 }
 
 /// Maximum number of pipelines of one sort.
-pub(crate) const STEPS: usize = 3 * TURNS as usize;
+pub(crate) const STEPS: usize = 3 * DIGITS_PER_KEY as usize;
 
-/// Returns the keys of the pipelines that sort `count` keys, in order. `in_step`: true for cooperative workgroups, as
+/// Returns the keys of the pipelines that sort `count` keys, in order. `cooperative`: true for cooperative workgroups, as
 /// on GPUs.
-pub(crate) fn keys(in_step: bool, count: u32) -> impl Iterator<Item = SortKey> {
-    let (number, each_turn): (_, &[Step]) = match (in_step, count) {
+pub(crate) fn keys(cooperative: bool, count: u32) -> impl Iterator<Item = SortKey> {
+    let (number, each_turn): (_, &[Step]) = match (cooperative, count) {
         (true, 0..=FEW) => (Number::Few, &[Step::Scatter]),
-        (false, 0..=OF_FEW_BLOCKS) => (Number::OfFewBlocks, &[Step::CountDigits, Step::Scatter]),
+        (false, 0..=MAX_KEYS_WITHOUT_SCAN) => (Number::OfFewBlocks, &[Step::CountDigits, Step::Scatter]),
         _ => (Number::Many, &[Step::CountDigits, Step::SumCounts, Step::Scatter]),
     };
-    (0..TURNS).flat_map(move |turn| each_turn.iter().map(move |&step| SortKey { step, turn, number }))
+    (0..DIGITS_PER_KEY).flat_map(move |turn| each_turn.iter().map(move |&step| SortKey { step, turn, number }))
 }
 
 /// Returns the keys of all pipelines that sort any number of keys.
-pub(crate) fn all_keys(in_step: bool) -> impl Iterator<Item = SortKey> {
-    [0, u32::MAX].into_iter().flat_map(move |count| keys(in_step, count))
+pub(crate) fn all_keys(cooperative: bool) -> impl Iterator<Item = SortKey> {
+    [0, u32::MAX].into_iter().flat_map(move |count| keys(cooperative, count))
 }
 
 /// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: SortKey) -> ComputeParts {
-    ComputeParts {
+pub(crate) fn describe(key: SortKey) -> ComputePipelineDescription {
+    ComputePipelineDescription {
         entry_point: match key.step {
             Step::CountDigits => "count_digits",
             Step::SumCounts => "sum_counts",
@@ -83,7 +83,7 @@ pub(crate) struct Sort {
     /// Pipelines in the order of [`keys`].
     pub pipelines: [Option<(SortKey, wgpu::ComputePipeline)>; STEPS],
     /// Bind groups: from the first pair of buffers to the second, and back.
-    pub there_and_back: [wgpu::BindGroup; 2],
+    pub ping_pong: [wgpu::BindGroup; 2],
     pub keys: u32,
 }
 
@@ -95,7 +95,7 @@ impl Sort {
                 SortKey { number: Number::Few, .. } => self.keys.div_ceil(DIGITS),
                 _ => self.keys.div_ceil(BLOCK),
             };
-            pass.set_bind_group(0, &self.there_and_back[key.turn as usize % 2], &[]);
+            pass.set_bind_group(0, &self.ping_pong[key.turn as usize % 2], &[]);
             pass.set_pipeline(pipeline);
             pass.dispatch_workgroups(workgroups, 1, 1);
         }

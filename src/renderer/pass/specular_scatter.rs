@@ -7,7 +7,7 @@
 
 use super::Groups;
 use crate::renderer::gpu::host_pass::HostPass;
-use crate::renderer::gpu::pipeline::{ADDITIVE, PipelineParts, STRIP, read_only_depth, switch, variant};
+use crate::renderer::gpu::pipeline::{ADDITIVE, RenderPipelineDescription, STRIP, read_only_depth, switch, variant};
 use crate::settings::{RampFilter, Upsample};
 
 /// Key of a specular scatter pipeline.
@@ -20,9 +20,9 @@ pub(crate) struct SpecularScatterKey {
 }
 
 /// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: SpecularScatterKey) -> PipelineParts {
+pub(crate) fn describe(key: SpecularScatterKey) -> RenderPipelineDescription {
     let always = |format| read_only_depth(format, wgpu::CompareFunction::Always);
-    PipelineParts {
+    RenderPipelineDescription {
         buffers: &[],
         primitive: STRIP,
         depth_stencil: key.host.depth_format.map(always),

@@ -9,13 +9,14 @@ use glam::UVec2;
 use super::Groups;
 use super::sprites::SpriteKey;
 use super::tile_refine;
-use crate::renderer::gpu::pipeline::{ComputeParts, switch, variant};
-use crate::renderer::targets::Beside;
+use crate::renderer::gpu::pipeline::{ComputePipelineDescription, switch, variant};
+use crate::renderer::targets::ExtraAttachment;
 use crate::settings::{AccumulationFormat, NormalEncoding};
 
-/// Texels per workgroup of the entry points `in_step` and `alone` in `shaders/tile_accumulate.wgsl`.
-const IN_STEP: UVec2 = UVec2::new(8, 16);
-const ALONE: UVec2 = UVec2::new(tile_refine::ALONE.x, 8 * tile_refine::ALONE.y);
+/// Texels per workgroup of the entry points `cooperative` and `alone` in `shaders/tile_accumulate.wgsl`.
+const COOPERATIVE_TILE: UVec2 = UVec2::new(8, 16);
+const PER_INVOCATION_TILE: UVec2 =
+    UVec2::new(tile_refine::PER_INVOCATION_TILE.x, 8 * tile_refine::PER_INVOCATION_TILE.y);
 
 /// Key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -24,27 +25,27 @@ pub(crate) struct TileAccumulateKey {
     pub format: AccumulationFormat,
     pub encoding: NormalEncoding,
     pub weighted: bool,
-    pub beside: Beside,
+    pub extra_attachment: ExtraAttachment,
     /// True if sprites are compared with the host's own depth instead of the reduced depth.
     pub host_depth: bool,
     /// True if the traversal stops where a texel is opaque.
     pub stops: bool,
     /// True for cooperative traversal, false for per-invocation traversal.
-    pub in_step: bool,
+    pub cooperative: bool,
 }
 
 /// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: TileAccumulateKey) -> ComputeParts {
-    ComputeParts {
-        entry_point: if key.in_step { "in_step" } else { "alone" },
+pub(crate) fn describe(key: TileAccumulateKey) -> ComputePipelineDescription {
+    ComputePipelineDescription {
+        entry_point: if key.cooperative { "cooperative" } else { "per_invocation" },
         constants: key.sprite.constants([
             variant!("NORMAL_ENCODING", key.encoding),
             switch("HOST_DEPTH", key.host_depth),
             switch("WEIGHTED", key.weighted),
             switch("BYTE_TARGET", key.format == AccumulationFormat::Rgba8Unorm),
-            switch("SUMS_WEIGHTS", key.beside == Beside::Weights),
+            switch("SUMS_WEIGHTS", key.extra_attachment == ExtraAttachment::Weights),
             switch("STOPS", key.stops),
-            switch("LOADS_SPRITE", !key.in_step),
+            switch("LOADS_SPRITE", !key.cooperative),
         ]),
     }
 }
@@ -57,7 +58,7 @@ pub(crate) struct TileAccumulate {
     pub inputs: wgpu::BindGroup,
     /// Size of the part in use, texels.
     pub size: UVec2,
-    pub in_step: bool,
+    pub cooperative: bool,
 }
 
 impl TileAccumulate {
@@ -65,7 +66,7 @@ impl TileAccumulate {
         pass.set_pipeline(&self.pipeline);
         groups.bind_to_compute(pass);
         pass.set_bind_group(3, &self.inputs, &[]);
-        let side = if self.in_step { IN_STEP } else { ALONE };
+        let side = if self.cooperative { COOPERATIVE_TILE } else { PER_INVOCATION_TILE };
         pass.dispatch_workgroups(self.size.x.div_ceil(side.x), self.size.y.div_ceil(side.y), 1);
     }
 }

@@ -3,7 +3,7 @@
 //! Reads: sorted sprite indices and rectangles.
 //! Writes: sprite lists, and the start of each.
 
-use crate::renderer::gpu::pipeline::ComputeParts;
+use crate::renderer::gpu::pipeline::ComputePipelineDescription;
 
 /// Sprites that one invocation assigns to bins: `RUN` in `shaders/lib/tiles.wgsl`.
 pub(crate) const RUN: u32 = 64;
@@ -30,10 +30,10 @@ enum Step {
 /// Maximum number of pipelines in one frame.
 pub(crate) const STEPS: usize = 3;
 
-/// Returns the keys of a frame's pipelines, in order. `in_step`: true for cooperative workgroups. `few`: true for at
+/// Returns the keys of a frame's pipelines, in order. `cooperative`: true for cooperative workgroups. `few`: true for at
 /// most [`FEW`] sprites.
-pub(crate) fn keys(in_step: bool, few: bool) -> impl Iterator<Item = TileBinKey> {
-    let steps: &[Step] = match (in_step, few) {
+pub(crate) fn keys(cooperative: bool, few: bool) -> impl Iterator<Item = TileBinKey> {
+    let steps: &[Step] = match (cooperative, few) {
         (true, true) => &[Step::ListFew],
         (true, false) => &[Step::CountSprites, Step::Allocate, Step::Fill],
         (false, _) => &[Step::CountAlone, Step::AllocateAlone, Step::FillAlone],
@@ -42,16 +42,16 @@ pub(crate) fn keys(in_step: bool, few: bool) -> impl Iterator<Item = TileBinKey>
 }
 
 /// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: TileBinKey) -> ComputeParts {
-    ComputeParts {
+pub(crate) fn describe(key: TileBinKey) -> ComputePipelineDescription {
+    ComputePipelineDescription {
         entry_point: match key.step {
             Step::CountSprites => "count_sprites",
-            Step::ListFew => "list_few",
+            Step::ListFew => "build_lists_in_one_dispatch",
             Step::Allocate => "allocate",
-            Step::AllocateAlone => "allocate_alone",
+            Step::AllocateAlone => "allocate_per_invocation",
             Step::Fill => "fill",
-            Step::CountAlone => "count_alone",
-            Step::FillAlone => "fill_alone",
+            Step::CountAlone => "count_per_run",
+            Step::FillAlone => "fill_per_run",
         },
         constants: Vec::new(),
     }

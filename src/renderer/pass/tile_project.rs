@@ -5,7 +5,7 @@
 
 use super::Groups;
 use super::sprites::SpriteKey;
-use crate::renderer::gpu::pipeline::{ComputeParts, switch};
+use crate::renderer::gpu::pipeline::{ComputePipelineDescription, switch};
 
 /// Key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -15,9 +15,9 @@ pub(crate) struct TileProjectKey {
 }
 
 /// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: TileProjectKey) -> ComputeParts {
+pub(crate) fn describe(key: TileProjectKey) -> ComputePipelineDescription {
     let constants = key.sprite.constants([switch("WEIGHTED", key.weighted)]);
-    ComputeParts { entry_point: "project", constants }
+    ComputePipelineDescription { entry_point: "project", constants }
 }
 
 /// The pass for one system.

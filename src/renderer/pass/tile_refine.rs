@@ -7,11 +7,11 @@ use glam::UVec2;
 
 use super::Groups;
 use super::sprites::SpriteKey;
-use crate::renderer::gpu::pipeline::{ComputeParts, switch};
+use crate::renderer::gpu::pipeline::{ComputePipelineDescription, switch};
 
-/// Texels of a tile: `TILE_ALONE` in `shaders/lib/tiles.wgsl`.
-pub(crate) const ALONE: UVec2 = UVec2::new(8, 4);
-/// Sprites of a list whose bits share one word: `BATCH_ALONE` in `shaders/lib/tiles.wgsl`.
+/// Texels of a tile: `PER_INVOCATION_TILE` in `shaders/lib/tiles.wgsl`.
+pub(crate) const PER_INVOCATION_TILE: UVec2 = UVec2::new(8, 4);
+/// Sprites of a list whose bits share one word: `BITS_PER_WORD` in `shaders/lib/tiles.wgsl`.
 pub(crate) const BATCH: u32 = 32;
 
 /// Key of a pipeline.
@@ -25,9 +25,9 @@ pub(crate) struct TileRefineKey {
 }
 
 /// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: TileRefineKey) -> ComputeParts {
+pub(crate) fn describe(key: TileRefineKey) -> ComputePipelineDescription {
     let constants = key.sprite.constants([switch("HOST_DEPTH", key.host_depth), switch("STOPS", key.stops)]);
-    ComputeParts { entry_point: "refine", constants }
+    ComputePipelineDescription { entry_point: "refine", constants }
 }
 
 /// The pass for one system.

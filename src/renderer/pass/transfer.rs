@@ -9,8 +9,10 @@
 use super::Groups;
 use super::light_target::LightingKey;
 use crate::renderer::gpu::host_pass::HostPass;
-use crate::renderer::gpu::pipeline::{PREMULTIPLIED_OVER, PipelineParts, in_front, read_only_depth, switch, variant};
-use crate::settings::{CoverageMode, ShadeTree, Upsample};
+use crate::renderer::gpu::pipeline::{
+    PREMULTIPLIED_OVER, RenderPipelineDescription, in_front, read_only_depth, switch, variant,
+};
+use crate::settings::{CoverageMode, DebugView, Upsample};
 
 /// Vertices of the box: twelve triangles.
 const BOX_VERTICES: u32 = 36;
@@ -24,7 +26,7 @@ pub(crate) struct TransferKey {
     pub lit: bool,
     pub upsample: Upsample,
     pub host_depth: bool,
-    pub shade_tree: ShadeTree,
+    pub debug_view: DebugView,
     /// True to draw the back faces, untested: the near plane cuts the box, or there is no depth attachment.
     pub back_faces: bool,
     pub reversed: bool,
@@ -34,13 +36,13 @@ pub(crate) struct TransferKey {
 }
 
 /// Returns the pipeline's parts for a key.
-pub(crate) fn describe(key: TransferKey) -> PipelineParts {
+pub(crate) fn describe(key: TransferKey) -> RenderPipelineDescription {
     let (cull, compare) = if key.back_faces {
         (wgpu::Face::Front, wgpu::CompareFunction::Always)
     } else {
         (wgpu::Face::Back, in_front(key.reversed))
     };
-    PipelineParts {
+    RenderPipelineDescription {
         buffers: &[],
         primitive: wgpu::PrimitiveState {
             front_face: if key.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
@@ -53,7 +55,7 @@ pub(crate) fn describe(key: TransferKey) -> PipelineParts {
         constants: key.lighting.constants([
             switch("LIT", key.lit),
             variant!("UPSAMPLE", key.upsample),
-            variant!("SHADE_TREE", key.shade_tree),
+            variant!("DEBUG_VIEW", key.debug_view),
             switch("HOST_DEPTH", key.host_depth),
             switch("BACK_FACES", key.back_faces),
             switch("GAMMA_TARGET", key.host.gamma_target),
@@ -66,7 +68,7 @@ pub(crate) fn describe(key: TransferKey) -> PipelineParts {
 #[derive(Debug)]
 pub(crate) struct Transfer {
     /// Pipelines by stage; `None` for stages that are not shown.
-    pub pipelines: [Option<wgpu::RenderPipeline>; ShadeTree::ALL.len()],
+    pub pipelines: [Option<wgpu::RenderPipeline>; DebugView::ALL.len()],
     pub groups: Groups,
     /// Group 3: the targets.
     pub inputs: wgpu::BindGroup,
@@ -78,10 +80,10 @@ pub(crate) struct Transfer {
 
 impl Transfer {
     /// Draws the box for a stage. Draws nothing for a stage that was not planned.
-    pub fn record(&self, pass: &mut wgpu::RenderPass<'_>, stage: ShadeTree) {
+    pub fn record(&self, pass: &mut wgpu::RenderPass<'_>, stage: DebugView) {
         let Some(pipeline) = &self.pipelines[stage as usize] else { return };
         let inputs = match stage {
-            ShadeTree::Overdraw => self.overdraw_inputs.as_ref(),
+            DebugView::Overdraw => self.overdraw_inputs.as_ref(),
             stage if stage.is_picture() => self.lit_inputs.as_ref().or(Some(&self.inputs)),
             _ => Some(&self.inputs),
         };

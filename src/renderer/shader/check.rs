@@ -3,10 +3,10 @@
 use std::convert::Infallible;
 
 use super::compose::Composed;
+use super::naga_messages::{plain, pointed_at};
 use super::sources::Sources;
-use super::words::{plain, pointed_at};
 use crate::error::Error;
-use crate::renderer::gpu::checked::{answer, checked};
+use crate::renderer::gpu::error_scopes::{answer, checked};
 use crate::renderer::gpu::pipeline::Shader;
 
 /// Creates the embedded shader of a pass.
@@ -27,7 +27,7 @@ pub(crate) fn checked_shader(device: &wgpu::Device, name: &'static str, sources:
     let created = checked(device, || module.insert(create(device, name, &composed)).clone());
     match created {
         Ok(module) => Ok(Shader { module, path: composed.path }),
-        Err(reason) => Err(sources.unclosed().unwrap_or_else(|| {
+        Err(reason) => Err(sources.find_unclosed_bracket().unwrap_or_else(|| {
             let info = module.and_then(|module| answer(module.get_compilation_info()));
             match info.and_then(|info| info.messages.into_iter().next()) {
                 Some(wgpu::CompilationMessage { message, location: Some(place), .. }) => {

@@ -6,8 +6,8 @@
 mod check;
 mod compose;
 mod embedded;
+mod naga_messages;
 mod sources;
-mod words;
 
 pub use embedded::{source, sources};
 pub use sources::Sources;

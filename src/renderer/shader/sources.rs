@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
 use super::embedded::SOURCES;
-use super::words::unclosed;
+use super::naga_messages::find_unclosed_bracket;
 use crate::assets::{builtin, file};
 use crate::error::{Error, one_line};
 
@@ -104,9 +104,9 @@ impl Sources {
     }
 
     /// Returns an error for the first custom file that leaves a bracket open.
-    pub(super) fn unclosed(&self) -> Option<Error> {
+    pub(super) fn find_unclosed_bracket(&self) -> Option<Error> {
         let own = self.files.iter().filter(|file| !file.is_embedded);
-        own.filter_map(|file| Some((file, unclosed(&file.text)?)))
+        own.filter_map(|file| Some((file, find_unclosed_bracket(&file.text)?)))
             .map(|(file, (line, column, bracket))| file.mistake(line, column, format!("`{bracket}` is never closed")))
             .next()
     }

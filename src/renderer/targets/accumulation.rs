@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::UVec2;
 
 use super::textures::Textures;
-use crate::renderer::gpu::spare::Spare;
+use crate::renderer::gpu::idle_counter::IdleCounter;
 use crate::settings::{AccumulationFormat, DepthSource, Settings};
 
 /// Description of one texture of the accumulation target. Every texture is cleared to zero.
@@ -17,7 +17,7 @@ pub(crate) struct AccumulationAttachment {
 
 /// Content of the target's second texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Beside {
+pub(crate) enum ExtraAttachment {
     Nothing,
     /// Sum of the normals' weights.
     Weights,
@@ -26,7 +26,7 @@ pub(crate) enum Beside {
     SixWay,
 }
 
-impl Beside {
+impl ExtraAttachment {
     pub fn of(settings: &Settings) -> Self {
         match (settings.is_six_way(), settings.accumulate.sums_weights()) {
             (true, _) => Self::SixWay,
@@ -39,19 +39,23 @@ impl Beside {
 /// Returns the textures of the accumulation target. `tiled`: true if compute shaders write it.
 pub(crate) fn accumulation_layout(
     format: AccumulationFormat,
-    beside: Beside,
+    extra_attachment: ExtraAttachment,
     tiled: bool,
 ) -> Vec<AccumulationAttachment> {
     let format = texture_format(format);
     let [weights, six_way] =
         if tiled { [TILED_WEIGHTS_FORMAT, TILED_SIX_WAY_FORMAT] } else { [wgpu::TextureFormat::R16Float, format] };
     let first = AccumulationAttachment { label: "haze accumulation: normal + amount", format };
-    let beside = match beside {
-        Beside::Nothing => None,
-        Beside::Weights => Some(AccumulationAttachment { label: "haze accumulation: weights", format: weights }),
-        Beside::SixWay => Some(AccumulationAttachment { label: "haze accumulation: six-way", format: six_way }),
+    let extra_attachment = match extra_attachment {
+        ExtraAttachment::Nothing => None,
+        ExtraAttachment::Weights => {
+            Some(AccumulationAttachment { label: "haze accumulation: weights", format: weights })
+        }
+        ExtraAttachment::SixWay => {
+            Some(AccumulationAttachment { label: "haze accumulation: six-way", format: six_way })
+        }
     };
-    std::iter::once(first).chain(beside).collect()
+    std::iter::once(first).chain(extra_attachment).collect()
 }
 
 /// Differs from raster's `R16Float`: WebGPU guarantees neither storage writes to `R16Float` nor blending into
@@ -90,7 +94,7 @@ pub(crate) const LIT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Fl
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct AccumulationKey {
     pub format: AccumulationFormat,
-    pub beside: Beside,
+    pub extra_attachment: ExtraAttachment,
     pub depth_source: DepthSource,
     /// True if layers are counted as well.
     pub overdraw: bool,
@@ -107,7 +111,7 @@ pub(crate) struct AccumulationKey {
 pub(crate) struct AccumulationTarget {
     key: AccumulationKey,
     size: UVec2,
-    spare: Spare,
+    spare: IdleCounter,
     pub attachments: Arc<[wgpu::TextureView]>,
     /// Counted layers, in the format of the first attachment.
     pub overdraw: Option<Arc<[wgpu::TextureView]>>,
@@ -150,20 +154,20 @@ impl AccumulationTarget {
             return self.size == size;
         }
         let is_to_spare = self.size.element_product() > 4 * padded(size).element_product();
-        let outlasts = self.spare.outlasts(is_to_spare);
-        size.cmple(self.size).all() && !outlasts
+        let tick = self.spare.tick(is_to_spare);
+        size.cmple(self.size).all() && !tick
     }
 
     fn new(device: &wgpu::Device, key: AccumulationKey, size: UVec2) -> Self {
         let mut textures = Textures { device, bytes: 0, storage: false };
-        let mut create = |beside, tiled| -> Arc<[_]> {
+        let mut create = |extra_attachment, tiled| -> Arc<[_]> {
             textures.storage = tiled;
-            let layout = accumulation_layout(key.format, beside, tiled).into_iter();
+            let layout = accumulation_layout(key.format, extra_attachment, tiled).into_iter();
             layout.map(|attachment| textures.create_whole(attachment.label, attachment.format, size)).collect()
         };
-        let attachments = create(key.beside, key.tiled);
+        let attachments = create(key.extra_attachment, key.tiled);
         // Layers are always counted by hardware blending.
-        let overdraw = key.overdraw.then(|| create(Beside::Nothing, false));
+        let overdraw = key.overdraw.then(|| create(ExtraAttachment::Nothing, false));
         textures.storage = false;
         let lit = key.lit.then(|| textures.create_whole("haze lit smoke", LIT_FORMAT, size));
         let is_reduced = key.depth_source == DepthSource::Reduced;
@@ -171,7 +175,7 @@ impl AccumulationTarget {
         let depth_copy =
             (is_reduced && key.depth_copy).then(|| textures.create_whole("haze depth copy", DEPTH_COPY_FORMAT, size));
         let bytes = textures.bytes;
-        Self { key, size, spare: Spare::default(), attachments, overdraw, lit, reduced_depth, depth_copy, bytes }
+        Self { key, size, spare: IdleCounter::default(), attachments, overdraw, lit, reduced_depth, depth_copy, bytes }
     }
 }
 

@@ -6,7 +6,7 @@ mod textures;
 mod views;
 
 pub(crate) use accumulation::{
-    AccumulationKey, AccumulationTarget, Beside, DEPTH_COPY_FORMAT, LIT_FORMAT, REDUCED_DEPTH_FORMAT,
+    AccumulationKey, AccumulationTarget, DEPTH_COPY_FORMAT, ExtraAttachment, LIT_FORMAT, REDUCED_DEPTH_FORMAT,
     accumulation_layout, tiled_formats,
 };
 pub(crate) use baked_diffuse::{BAKED_DIFFUSE_FORMAT, BakedDiffuse};

@@ -4,25 +4,25 @@ use std::sync::Arc;
 
 use super::shared::Tiled;
 use super::sort_buffers::SortBuffers;
-use super::storage::{WORD, bind, storage, workgroups};
+use super::storage::{WORD_BYTES, bind, storage, workgroups};
 use crate::formula::uniforms::TilesUniform;
 use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::record::uniform_buffer;
 use crate::renderer::memory::TiledMemory;
 use crate::renderer::pass::sprites::Sprites;
-use crate::renderer::targets::Beside;
+use crate::renderer::targets::ExtraAttachment;
 use crate::settings::AccumulationFormat;
 
 /// Bytes of a sprite: `TileSprite` in `shaders/lib/tile_sprite.wgsl`.
-pub(crate) const SPRITE: u64 = 64;
+pub(crate) const TILE_SPRITE_BYTES: u64 = 64;
 /// Bytes of a packed rectangle.
-const RECT: u64 = 8;
+const RECT_BYTES: u64 = 8;
 /// Unit of `TilesUniform::first`, bytes.
-pub(crate) const PARTICLE_STEP: u64 = 16;
+pub(crate) const PARTICLE_ALIGNMENT: u64 = 16;
 
 /// Buffers of the tiled passes, and their bind groups.
 #[derive(Debug)]
-pub(super) struct Held {
+pub(super) struct TileBuffers {
     pub capacity: Capacity,
     pub uniform: wgpu::Buffer,
     pub tally: wgpu::Buffer,
@@ -50,7 +50,7 @@ pub(super) struct Part {
     buffer: wgpu::Buffer,
     offset: u64,
     size: u64,
-    /// Start of the first particle in the range, in units of `PARTICLE_STEP`.
+    /// Start of the first particle in the range, in units of `PARTICLE_ALIGNMENT`.
     pub first: u32,
 }
 
@@ -67,7 +67,7 @@ pub(super) struct Capacity {
 impl Capacity {
     /// Rounds up to leave room for growth. `most`: words of the largest buffer. Lists that do not fit into it are
     /// dropped; their bins read all sprites instead.
-    pub fn with_room(self, most: u32) -> Self {
+    pub fn rounded_up(self, most: u32) -> Self {
         Self {
             particles: self.particles.next_power_of_two(),
             bins: self.bins.next_power_of_two(),
@@ -81,29 +81,29 @@ impl Capacity {
     }
 
     pub fn holds(&self, needed: &Self) -> bool {
-        self.all().iter().zip(needed.all()).all(|(held, needed)| *held >= needed)
+        self.all().iter().zip(needed.all()).all(|(buffers, needed)| *buffers >= needed)
     }
 
-    pub fn is_wasted_on(&self, needed: &Self) -> bool {
-        self.all().iter().zip(needed.all()).any(|(held, needed)| held / 4 >= needed)
+    pub fn is_oversized_for(&self, needed: &Self) -> bool {
+        self.all().iter().zip(needed.all()).any(|(buffers, needed)| buffers / 4 >= needed)
     }
 }
 
-impl Held {
+impl TileBuffers {
     pub fn new(device: &wgpu::Device, tiled: &Tiled, capacity: Capacity) -> Self {
         let storage = |name, count, bytes| storage(device, name, count, bytes);
         let Capacity { particles, bins, runs, entries } = capacity;
         let uniform = uniform_buffer(device, "haze tiles", size_of::<TilesUniform>() as u64);
-        let tally = storage("haze tally", 2, WORD);
-        let rects = storage("haze sprite rectangles", particles, RECT);
+        let tally = storage("haze tally", 2, WORD_BYTES);
+        let rects = storage("haze sprite rectangles", particles, RECT_BYTES);
         let sort = SortBuffers::new(device, tiled, &uniform, particles);
-        let sorted_rects = storage("haze sorted rectangles", particles, RECT);
-        let bin_counts = storage("haze bin counts", runs, WORD);
-        let lists = storage("haze bin lists", entries, WORD);
-        let bins = storage("haze bins", bins, RECT);
+        let sorted_rects = storage("haze sorted rectangles", particles, RECT_BYTES);
+        let bin_counts = storage("haze bin counts", runs, WORD_BYTES);
+        let lists = storage("haze bin lists", entries, WORD_BYTES);
+        let bins = storage("haze bins", bins, RECT_BYTES);
         let read_back = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("haze tally"),
-            size: 2 * WORD,
+            size: 2 * WORD_BYTES,
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
@@ -114,7 +114,7 @@ impl Held {
         let bin = bind(device, &tiled.layouts.bin, bin.map(wgpu::Buffer::as_entire_binding));
         Self {
             capacity,
-            sprites: storage("haze tile sprites", particles, SPRITE),
+            sprites: storage("haze tile sprites", particles, TILE_SPRITE_BYTES),
             read_back: Arc::new(read_back),
             gather,
             bin,
@@ -178,18 +178,18 @@ impl Held {
         &mut self,
         gpu: &Gpu<'_>,
         tiled: &Tiled,
-        (format, beside): (AccumulationFormat, Beside),
+        (format, extra_attachment): (AccumulationFormat, ExtraAttachment),
         attachments: &[wgpu::TextureView],
         depth: &wgpu::TextureView,
     ) -> wgpu::BindGroup {
-        let [float, byte, weights, six_way] = &tiled.unwritten;
+        let [float, byte, weights, six_way] = &tiled.placeholders;
         let (float, byte) = match format {
             AccumulationFormat::Rgba16Float => (attachments.first().unwrap_or(float), byte),
             AccumulationFormat::Rgba8Unorm => (float, attachments.first().unwrap_or(byte)),
         };
-        let second = |of| attachments.get(1).filter(|_| beside == of);
-        let weights = second(Beside::Weights).unwrap_or(weights);
-        let six_way = second(Beside::SixWay).unwrap_or(six_way);
+        let second = |of| attachments.get(1).filter(|_| extra_attachment == of);
+        let weights = second(ExtraAttachment::Weights).unwrap_or(weights);
+        let six_way = second(ExtraAttachment::SixWay).unwrap_or(six_way);
         let views = [depth, float, byte, weights, six_way];
         match &self.accumulate {
             Some((bound, group)) if bound.iter().eq(views) => group.clone(),
@@ -215,7 +215,7 @@ impl Part {
             offset,
             // Binds the rest of the buffer, so that a change of the particle count needs no new bind group.
             size: (sprites.buffer.size() - offset).min(limits.max_storage_buffer_binding_size) & !3,
-            first: (before / PARTICLE_STEP) as u32,
+            first: (before / PARTICLE_ALIGNMENT) as u32,
         }
     }
 

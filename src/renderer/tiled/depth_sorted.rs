@@ -7,8 +7,8 @@ use super::storage::bind;
 use crate::formula::uniforms::TilesUniform;
 use crate::frame::Particle;
 use crate::renderer::gpu::Gpu;
+use crate::renderer::gpu::idle_counter::IdleCounter;
 use crate::renderer::gpu::record::uniform_buffer;
-use crate::renderer::gpu::spare::Spare;
 use crate::renderer::memory::TiledMemory;
 use crate::renderer::pass::depth_sort::{DepthSort, DepthSortKey};
 use crate::renderer::pass::sort::{BLOCK, Sort};
@@ -16,13 +16,13 @@ use crate::renderer::pass::sprites::Sprites;
 
 /// Buffers for the sorted particles of one system, kept between frames.
 #[derive(Debug, Default)]
-pub(crate) struct DepthSorted {
-    held: Option<Held>,
-    spare: Spare,
+pub(crate) struct SortedParticles {
+    buffers: Option<DepthSortBuffers>,
+    spare: IdleCounter,
 }
 
 #[derive(Debug)]
-struct Held {
+struct DepthSortBuffers {
     most: u32,
     uniform: wgpu::Buffer,
     sort: SortBuffers,
@@ -31,31 +31,32 @@ struct Held {
     inputs: Option<(Part, wgpu::BindGroup)>,
 }
 
-impl DepthSorted {
+impl SortedParticles {
     /// Prepares the buffers and the pass that sorts `sprites` into them. Returns the sorted sprites and the pass.
     pub fn write(&mut self, gpu: &Gpu<'_>, tiled: &Tiled, sprites: &Sprites) -> (Sprites, DepthSort) {
         let count = sprites.count;
-        let held = self.held.as_ref().map_or(0, |held| held.most);
-        let gives_back = self.spare.outlasts(count.next_power_of_two() <= held / 4);
-        if count > held || gives_back {
-            self.held = None;
+        let buffers = self.buffers.as_ref().map_or(0, |buffers| buffers.most);
+        let gives_back = self.spare.tick(count.next_power_of_two() <= buffers / 4);
+        if count > buffers || gives_back {
+            self.buffers = None;
         }
-        let held = self.held.get_or_insert_with(|| Held::new(gpu.device, tiled, count.next_power_of_two()));
+        let buffers =
+            self.buffers.get_or_insert_with(|| DepthSortBuffers::new(gpu.device, tiled, count.next_power_of_two()));
         let part = Part::new(&tiled.limits, sprites);
         let uniform =
             TilesUniform { count, first: part.first, blocks: count.div_ceil(BLOCK), ..TilesUniform::default() };
-        gpu.queue.write_buffer(&held.uniform, 0, bytemuck::bytes_of(&uniform));
-        let buffer = held.particles.clone();
+        gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&uniform));
+        let buffer = buffers.particles.clone();
         let sorted = Sprites { buffer, offset: 0, is_sorted: true, by_view_depth: true, ..*sprites };
         let sort = DepthSort {
             depth_keys: tiled.depth_sort(gpu.device, DepthSortKey::DepthKeys),
             sort: Sort {
                 pipelines: tiled.sort(gpu.device, count),
-                there_and_back: held.sort.there_and_back.clone(),
+                ping_pong: buffers.sort.ping_pong.clone(),
                 keys: count,
             },
             gather_particles: tiled.depth_sort(gpu.device, DepthSortKey::GatherParticles),
-            inputs: held.bind(gpu.device, tiled, part),
+            inputs: buffers.bind(gpu.device, tiled, part),
             particles: count,
         };
         (sorted, sort)
@@ -63,14 +64,19 @@ impl DepthSorted {
 
     /// Returns the bytes of GPU memory held.
     pub fn memory(&self) -> TiledMemory {
-        self.held.as_ref().map_or(TiledMemory::default(), |held| {
-            let [keys, counts] = held.sort.bytes();
-            TiledMemory { sorted: held.particles.size() + held.uniform.size(), keys, counts, ..TiledMemory::default() }
+        self.buffers.as_ref().map_or(TiledMemory::default(), |buffers| {
+            let [keys, counts] = buffers.sort.bytes();
+            TiledMemory {
+                sorted: buffers.particles.size() + buffers.uniform.size(),
+                keys,
+                counts,
+                ..TiledMemory::default()
+            }
         })
     }
 }
 
-impl Held {
+impl DepthSortBuffers {
     fn new(device: &wgpu::Device, tiled: &Tiled, most: u32) -> Self {
         let uniform = uniform_buffer(device, "haze depth_sort", size_of::<TilesUniform>() as u64);
         let particles = device.create_buffer(&wgpu::BufferDescriptor {

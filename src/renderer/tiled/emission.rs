@@ -3,22 +3,22 @@
 use super::shared::Tiled;
 use super::storage::bind;
 use crate::formula::uniforms::EmitterUniform;
-use crate::frame::{Emission, Particle};
+use crate::frame::{EmitterSnapshot, Particle};
 use crate::renderer::gpu::Gpu;
+use crate::renderer::gpu::idle_counter::IdleCounter;
 use crate::renderer::gpu::record::uniform_buffer;
-use crate::renderer::gpu::spare::Spare;
 use crate::renderer::pass::emit::Emit;
 use crate::renderer::pass::sprites::Sprites;
 
 /// Buffer for the particles of one system, kept between frames.
 #[derive(Debug, Default)]
 pub(crate) struct Emitted {
-    held: Option<Held>,
-    spare: Spare,
+    buffers: Option<EmissionBuffers>,
+    spare: IdleCounter,
 }
 
 #[derive(Debug)]
-struct Held {
+struct EmissionBuffers {
     uniform: wgpu::Buffer,
     particles: wgpu::Buffer,
     inputs: wgpu::BindGroup,
@@ -26,31 +26,37 @@ struct Held {
 
 impl Emitted {
     /// Prepares the buffer and the pass that fills it. Returns `None` if there is nothing to draw.
-    pub fn write(&mut self, gpu: &Gpu<'_>, tiled: &Tiled, emission: &Emission, loops: u32) -> Option<(Sprites, Emit)> {
+    pub fn write(
+        &mut self,
+        gpu: &Gpu<'_>,
+        tiled: &Tiled,
+        emission: &EmitterSnapshot,
+        loops: u32,
+    ) -> Option<(Sprites, Emit)> {
         let count = emission.count();
         let needed = u64::from(count.next_power_of_two()) * size_of::<Particle>() as u64;
-        let held = self.held.as_ref().map_or(0, |held| held.particles.size());
-        let gives_back = self.spare.outlasts(needed * 4 <= held);
-        if needed > held || gives_back || count == 0 {
-            self.held = None;
+        let buffers = self.buffers.as_ref().map_or(0, |buffers| buffers.particles.size());
+        let gives_back = self.spare.tick(needed * 4 <= buffers);
+        if needed > buffers || gives_back || count == 0 {
+            self.buffers = None;
         }
         if count == 0 {
             return None;
         }
-        let held = self.held.get_or_insert_with(|| Held::new(gpu.device, tiled, needed));
-        gpu.queue.write_buffer(&held.uniform, 0, bytemuck::bytes_of(&emission.uniform));
-        let buffer = held.particles.clone();
+        let buffers = self.buffers.get_or_insert_with(|| EmissionBuffers::new(gpu.device, tiled, needed));
+        gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&emission.uniform));
+        let buffer = buffers.particles.clone();
         let sprites = Sprites { buffer, offset: 0, count, loops, is_sorted: false, by_view_depth: false };
-        Some((sprites, Emit { pipeline: tiled.emit(gpu.device), inputs: held.inputs.clone(), births: count }))
+        Some((sprites, Emit { pipeline: tiled.emit(gpu.device), inputs: buffers.inputs.clone(), births: count }))
     }
 
     /// Returns the bytes of GPU memory held.
     pub fn bytes(&self) -> u64 {
-        self.held.as_ref().map_or(0, |held| held.particles.size() + held.uniform.size())
+        self.buffers.as_ref().map_or(0, |buffers| buffers.particles.size() + buffers.uniform.size())
     }
 }
 
-impl Held {
+impl EmissionBuffers {
     fn new(device: &wgpu::Device, tiled: &Tiled, size: u64) -> Self {
         let uniform = uniform_buffer(device, "haze emitter", size_of::<EmitterUniform>() as u64);
         let particles = device.create_buffer(&wgpu::BufferDescriptor {

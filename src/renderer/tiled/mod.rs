@@ -9,8 +9,8 @@ mod sort_buffers;
 mod storage;
 mod system;
 
-pub(crate) use buffers::{PARTICLE_STEP, SPRITE};
-pub(crate) use depth_sorted::DepthSorted;
+pub(crate) use buffers::{PARTICLE_ALIGNMENT, TILE_SPRITE_BYTES};
+pub(crate) use depth_sorted::SortedParticles;
 pub(crate) use emission::Emitted;
 pub(crate) use passes::TiledPasses;
 pub(crate) use shared::{Tiled, TiledKeys};

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use super::storage::WORD;
+use super::storage::WORD_BYTES;
 use crate::renderer::gpu::record::begin_compute;
 use crate::renderer::gpu::timing::Timing;
 use crate::renderer::pass::Groups;
@@ -52,13 +52,13 @@ impl TiledPasses {
         if Arc::strong_count(&self.read_back) > 2 {
             return;
         }
-        encoder.copy_buffer_to_buffer(&self.tally, 0, &self.read_back, 0, 2 * WORD);
+        encoder.copy_buffer_to_buffer(&self.tally, 0, &self.read_back, 0, 2 * WORD_BYTES);
         let (read_back, entries) = (self.read_back.clone(), self.entries.clone());
         encoder.map_buffer_on_submit(&self.read_back, wgpu::MapMode::Read, .., move |mapped| {
             if mapped.is_ok() {
                 if let Ok(view) = read_back.get_mapped_range(..) {
                     entries.store(
-                        bytemuck::pod_read_unaligned(&view[WORD as usize..][..WORD as usize]),
+                        bytemuck::pod_read_unaligned(&view[WORD_BYTES as usize..][..WORD_BYTES as usize]),
                         Ordering::Relaxed,
                     );
                 }

@@ -6,7 +6,7 @@ use glam::UVec2;
 
 use crate::error::Error;
 use crate::formula::uniforms::{EmitterUniform, TilesUniform};
-use crate::renderer::gpu::pipeline::{ComputeParts, Shader, Variants};
+use crate::renderer::gpu::pipeline::{ComputePipelineDescription, PipelineVariants, Shader};
 use crate::renderer::layouts::Layouts;
 use crate::renderer::pass::depth_sort::{self, DepthSortKey};
 use crate::renderer::pass::emit;
@@ -23,19 +23,19 @@ use crate::renderer::targets::{storage_target, tiled_formats};
 pub(crate) struct Tiled {
     pub layouts: TiledLayouts,
     /// True for cooperative traversal, false for per-invocation traversal; false at first on CPUs only.
-    in_step: AtomicBool,
+    cooperative: AtomicBool,
     /// Queried once, because every query copies all limits.
     pub limits: wgpu::Limits,
     /// Placeholder of one texel for each target format, bound in place of targets that a system does not have.
-    pub unwritten: [wgpu::TextureView; 4],
-    emit: Variants<(), ComputeParts>,
-    depth_sort: Variants<DepthSortKey, ComputeParts>,
-    project: Variants<TileProjectKey, ComputeParts>,
-    sort: Variants<SortKey, ComputeParts>,
-    gather: Variants<TileGatherKey, ComputeParts>,
-    bin: Variants<TileBinKey, ComputeParts>,
-    refine: Variants<TileRefineKey, ComputeParts>,
-    accumulate: Variants<TileAccumulateKey, ComputeParts>,
+    pub placeholders: [wgpu::TextureView; 4],
+    emit: PipelineVariants<(), ComputePipelineDescription>,
+    depth_sort: PipelineVariants<DepthSortKey, ComputePipelineDescription>,
+    project: PipelineVariants<TileProjectKey, ComputePipelineDescription>,
+    sort: PipelineVariants<SortKey, ComputePipelineDescription>,
+    gather: PipelineVariants<TileGatherKey, ComputePipelineDescription>,
+    bin: PipelineVariants<TileBinKey, ComputePipelineDescription>,
+    refine: PipelineVariants<TileRefineKey, ComputePipelineDescription>,
+    accumulate: PipelineVariants<TileAccumulateKey, ComputePipelineDescription>,
 }
 
 /// Bind group layouts of the tiled passes.
@@ -62,8 +62,8 @@ impl TiledKeys {
     /// Returns the key of tile_refine. `None` for cooperative traversal, in which each workgroup filters its bin's list
     /// itself.
     fn refine(&self) -> Option<TileRefineKey> {
-        let TileAccumulateKey { sprite, host_depth, in_step, stops, .. } = self.accumulate;
-        (!in_step).then_some(TileRefineKey { sprite, host_depth, stops })
+        let TileAccumulateKey { sprite, host_depth, cooperative, stops, .. } = self.accumulate;
+        (!cooperative).then_some(TileRefineKey { sprite, host_depth, stops })
     }
 }
 
@@ -95,13 +95,13 @@ impl Tiled {
         macro_rules! variants {
             ($pass:ident, $groups:expr) => {{
                 let name = stringify!($pass);
-                Variants::new(device, name, shader(name)?, $pass::describe, $groups, cache)
+                PipelineVariants::new(device, name, shader(name)?, $pass::describe, $groups, cache)
             }};
         }
         Ok(Self {
-            in_step: AtomicBool::new(device.adapter_info().device_type != wgpu::DeviceType::Cpu),
+            cooperative: AtomicBool::new(device.adapter_info().device_type != wgpu::DeviceType::Cpu),
             limits: device.limits(),
-            unwritten: tiled_formats().map(|format| storage_target(device, "haze unwritten", format, UVec2::ONE)),
+            placeholders: tiled_formats().map(|format| storage_target(device, "haze unwritten", format, UVec2::ONE)),
             emit: variants!(emit, &[Some(&own.emit)]),
             depth_sort: variants!(depth_sort, &with(&own.depth_sort)),
             project: variants!(tile_project, &with(&own.project)),
@@ -115,12 +115,12 @@ impl Tiled {
     }
 
     /// Returns true for cooperative traversal, false for per-invocation traversal.
-    pub fn in_step(&self) -> bool {
-        self.in_step.load(Ordering::Relaxed)
+    pub fn cooperative(&self) -> bool {
+        self.cooperative.load(Ordering::Relaxed)
     }
 
-    pub fn set_in_step(&self, in_step: bool) {
-        self.in_step.store(in_step, Ordering::Relaxed);
+    pub fn set_cooperative(&self, cooperative: bool) {
+        self.cooperative.store(cooperative, Ordering::Relaxed);
     }
 
     /// Returns the number of pipelines compiled so far.
@@ -142,7 +142,7 @@ impl Tiled {
         self.compile_sort(device)?;
         for either in [true, false] {
             self.gather.check(device, TileGatherKey { sorted: either })?;
-            tile_bin::keys(keys.accumulate.in_step, either).try_for_each(|key| self.bin.check(device, key))?;
+            tile_bin::keys(keys.accumulate.cooperative, either).try_for_each(|key| self.bin.check(device, key))?;
         }
         keys.refine().into_iter().try_for_each(|key| self.refine.check(device, key))?;
         self.accumulate.check(device, keys.accumulate)
@@ -156,7 +156,7 @@ impl Tiled {
     }
 
     fn compile_sort(&self, device: &wgpu::Device) -> Result<(), Error> {
-        sort::all_keys(self.in_step()).try_for_each(|key| self.sort.check(device, key))
+        sort::all_keys(self.cooperative()).try_for_each(|key| self.sort.check(device, key))
     }
 
     /// Returns the pipeline that evaluates emitters.
@@ -170,14 +170,14 @@ impl Tiled {
 
     /// Returns the pipelines that sort `count` keys.
     pub fn sort(&self, device: &wgpu::Device, count: u32) -> SortPipelines {
-        let mut keys = sort::keys(self.in_step(), count).map(|key| (key, self.sort.get(device, key)));
+        let mut keys = sort::keys(self.cooperative(), count).map(|key| (key, self.sort.get(device, key)));
         std::array::from_fn(|_| keys.next())
     }
 
     /// Returns the pipelines of a system with `count` sprites. `sorts`: true if the sprites are unsorted and their
     /// order matters.
     pub fn pipelines(&self, device: &wgpu::Device, keys: TiledKeys, sorts: bool, count: u32) -> TiledPipelines {
-        let bin_keys = tile_bin::keys(keys.accumulate.in_step, count <= tile_bin::FEW);
+        let bin_keys = tile_bin::keys(keys.accumulate.cooperative, count <= tile_bin::FEW);
         let mut bin = bin_keys.map(|key| (key, self.bin.get(device, key)));
         TiledPipelines {
             project: self.project.get(device, keys.project),

@@ -1,7 +1,7 @@
 //! Buffers of a sort.
 
 use super::shared::Tiled;
-use super::storage::{WORD, bind, storage};
+use super::storage::{WORD_BYTES, bind, storage};
 use crate::renderer::pass::sort::{BLOCK, DIGITS};
 
 /// Keys, the particle indices that belong to them, and digit counts.
@@ -12,22 +12,22 @@ pub(super) struct SortBuffers {
     numbers: [wgpu::Buffer; 2],
     digit_counts: wgpu::Buffer,
     digit_totals: wgpu::Buffer,
-    pub there_and_back: [wgpu::BindGroup; 2],
+    pub ping_pong: [wgpu::BindGroup; 2],
 }
 
 impl SortBuffers {
     /// Creates buffers for `most` keys. `uniform` is bound with them.
     pub fn new(device: &wgpu::Device, tiled: &Tiled, uniform: &wgpu::Buffer, most: u32) -> Self {
-        let words = |name, count| storage(device, name, count, WORD);
+        let words = |name, count| storage(device, name, count, WORD_BYTES);
         let keys = ["haze sort keys", "haze sort keys, sorted"].map(|name| words(name, most));
         let numbers = ["haze sort numbers", "haze sort numbers, sorted"].map(|name| words(name, most));
         let digit_counts = words("haze digit counts", most.div_ceil(BLOCK) * DIGITS);
         let digit_totals = words("haze digit totals", DIGITS);
-        let there_and_back = [(0, 1), (1, 0)].map(|(from, to)| {
+        let ping_pong = [(0, 1), (1, 0)].map(|(from, to)| {
             let buffers = [uniform, &keys[from], &numbers[from], &keys[to], &numbers[to], &digit_counts, &digit_totals];
             bind(device, &tiled.layouts.sort, buffers.map(wgpu::Buffer::as_entire_binding))
         });
-        Self { keys, numbers, digit_counts, digit_totals, there_and_back }
+        Self { keys, numbers, digit_counts, digit_totals, ping_pong }
     }
 
     pub fn keys(&self) -> &wgpu::Buffer {

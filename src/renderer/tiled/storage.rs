@@ -1,7 +1,7 @@
 //! Creation of buffers and bind groups.
 
 /// Bytes of a key, index or count.
-pub(super) const WORD: u64 = 4;
+pub(super) const WORD_BYTES: u64 = 4;
 
 /// Creates a storage buffer of `count` elements of `bytes` bytes each.
 pub(super) fn storage(device: &wgpu::Device, name: &str, count: u32, bytes: u64) -> wgpu::Buffer {
@@ -17,7 +17,7 @@ pub(super) fn storage(device: &wgpu::Device, name: &str, count: u32, bytes: u64)
 pub(super) fn workgroups(device: &wgpu::Device, name: &str) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(name),
-        size: 3 * WORD,
+        size: 3 * WORD_BYTES,
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT,
         mapped_at_creation: false,
     })

@@ -5,14 +5,14 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use glam::UVec2;
 
-use super::buffers::{Capacity, Held, Part};
+use super::buffers::{Capacity, Part, TileBuffers};
 use super::passes::TiledPasses;
 use super::shared::{Tiled, TiledKeys};
-use super::storage::WORD;
+use super::storage::WORD_BYTES;
 use crate::formula::uniforms::TilesUniform;
-use crate::renderer::auto::PathLoad;
+use crate::renderer::auto::PathWorkload;
 use crate::renderer::gpu::Gpu;
-use crate::renderer::gpu::spare::Spare;
+use crate::renderer::gpu::idle_counter::IdleCounter;
 use crate::renderer::memory::TiledMemory;
 use crate::renderer::pass::Groups;
 use crate::renderer::pass::sort::{BLOCK, Sort};
@@ -22,33 +22,33 @@ use crate::renderer::pass::tile_bin::{RUN, TileBin};
 use crate::renderer::pass::tile_gather::TileGather;
 use crate::renderer::pass::tile_project::TileProject;
 use crate::renderer::pass::tile_refine::{BATCH, TileRefine};
-use crate::renderer::targets::Beside;
+use crate::renderer::targets::ExtraAttachment;
 use crate::settings::AccumulationFormat;
 
 /// Minimum number of entries of all lists together.
-const LEAST_ENTRIES: u32 = 1 << 16;
+const MIN_ENTRIES: u32 = 1 << 16;
 /// Safety factor on the estimated number of entries, used until a frame has been counted: sprites differ in size.
-const TO_BE_SAFE: f64 = 1.5;
+const ENTRY_SAFETY_FACTOR: f64 = 1.5;
 
 /// Side of a bin, texels: for per-invocation traversal, tuned by how much of a bin's list each tile shows; for
 /// cooperative traversal, tuned by how much of the list touches a workgroup's tile; and for more than `MANY` particles,
 /// where counting for small bins would cost more than it saves.
-const BIN_ALONE: u32 = 32;
-const BIN_IN_STEP: u32 = 32;
-const BIN_OF_MANY: u32 = 64;
+const BIN_SIDE_PER_INVOCATION: u32 = 32;
+const BIN_SIDE_COOPERATIVE: u32 = 32;
+const BIN_SIDE_LARGE: u32 = 64;
 const MANY: u32 = 1 << 16;
 
 /// Larger than any view depth, metres. Twice this value is still finite in f32.
-const FARTHER_THAN_ALL: f32 = 1.0e38;
+const BEYOND_ANY_DEPTH: f32 = 1.0e38;
 
 /// Maximum number of workgroups per dimension of a dispatch, on every device.
-const MOST_WORKGROUPS: u32 = 65535;
+const MAX_WORKGROUPS: u32 = 65535;
 
 /// Buffers of one system, kept between frames.
 #[derive(Debug, Default)]
 pub(crate) struct TiledSystem {
-    held: Option<Held>,
-    spare: Spare,
+    buffers: Option<TileBuffers>,
+    spare: IdleCounter,
     /// List entries that a frame some frames ago needed.
     entries: Arc<AtomicU32>,
 }
@@ -59,11 +59,11 @@ pub(crate) struct TiledInputs<'a> {
     /// Size of the part in use, texels.
     pub size: UVec2,
     pub format: AccumulationFormat,
-    pub beside: Beside,
+    pub extra_attachment: ExtraAttachment,
     pub attachments: &'a [wgpu::TextureView],
     /// Depth that sprites are compared with.
     pub depth: &'a wgpu::TextureView,
-    pub load: Option<&'a PathLoad>,
+    pub load: Option<&'a PathWorkload>,
 }
 
 impl TiledSystem {
@@ -76,17 +76,17 @@ impl TiledSystem {
         groups: &Groups,
         inputs: &TiledInputs<'_>,
     ) -> TiledPasses {
-        let TiledInputs { sprites, size, format, beside, attachments, depth, load } = *inputs;
-        let most = most_words(&tiled.limits);
-        let in_step = keys.accumulate.in_step;
+        let TiledInputs { sprites, size, format, extra_attachment, attachments, depth, load } = *inputs;
+        let most = max_storage_words(&tiled.limits);
+        let cooperative = keys.accumulate.cooperative;
         let runs = sprites.count.div_ceil(RUN);
-        let mut bin_side = match (in_step, sprites.count > MANY) {
-            (false, _) => BIN_ALONE,
-            (true, false) => BIN_IN_STEP,
-            (true, true) => BIN_OF_MANY,
+        let mut bin_side = match (cooperative, sprites.count > MANY) {
+            (false, _) => BIN_SIDE_PER_INVOCATION,
+            (true, false) => BIN_SIDE_COOPERATIVE,
+            (true, true) => BIN_SIDE_LARGE,
         };
         let bins_of = |side| bins_along(size, side).element_product();
-        while runs.saturating_mul(bins_of(bin_side)) > most || bins_of(bin_side) > MOST_WORKGROUPS {
+        while runs.saturating_mul(bins_of(bin_side)) > most || bins_of(bin_side) > MAX_WORKGROUPS {
             bin_side *= 2;
         }
         let UVec2 { x: columns, y: rows } = bins_along(size, bin_side);
@@ -95,13 +95,13 @@ impl TiledSystem {
         // If the lists do not fit, the image is still correct, but bins without a list iterate over all sprites, which
         // is slow.
         let touched = load.map_or(0.0, |load| load.touched(f64::from(bin_side), f64::from(bin_side)));
-        let expected = (TO_BE_SAFE * touched * f64::from(sprites.count)) as u32;
+        let expected = (ENTRY_SAFETY_FACTOR * touched * f64::from(sprites.count)) as u32;
         // tile_refine needs as many words again, in whole batches per bin.
-        let expected = if in_step { expected } else { 2 * expected + BATCH * bins };
-        let entries = wanted.max(expected).max(LEAST_ENTRIES);
+        let expected = if cooperative { expected } else { 2 * expected + BATCH * bins };
+        let entries = wanted.max(expected).max(MIN_ENTRIES);
         let needed = Capacity { particles: sprites.count, bins, runs: bins * runs, entries };
-        let held = self.fit(gpu, tiled, needed.with_room(most));
-        let capacity = held.capacity.entries;
+        let buffers = self.fit(gpu, tiled, needed.rounded_up(most));
+        let capacity = buffers.capacity.entries;
         let particles = Part::new(&tiled.limits, sprites);
         let sorts = !keys.project.weighted && !sprites.is_sorted;
         let in_order = keys.project.sprite.is_flat() && (sorts || sprites.by_view_depth) && sprites.loops == 1;
@@ -115,60 +115,60 @@ impl TiledSystem {
             rows,
             runs,
             capacity,
-            hidden_after: if in_order { 0.0 } else { FARTHER_THAN_ALL },
+            occlusion_margin: if in_order { 0.0 } else { BEYOND_ANY_DEPTH },
             padding: [0; 2],
         };
-        gpu.queue.write_buffer(&held.uniform, 0, bytemuck::bytes_of(&uniform));
+        gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&uniform));
         let pipelines = tiled.pipelines(gpu.device, keys, sorts, sprites.count);
-        let project = held.bind_project(gpu, tiled, particles);
+        let project = buffers.bind_project(gpu, tiled, particles);
         let refine = pipelines.refine.map(|pipeline| {
-            let inputs = held.bind_refine(gpu, tiled, depth);
+            let inputs = buffers.bind_refine(gpu, tiled, depth);
             TileRefine { pipeline, inputs, bins }
         });
-        let accumulate = held.bind_accumulate(gpu, tiled, (format, beside), attachments, depth);
+        let accumulate = buffers.bind_accumulate(gpu, tiled, (format, extra_attachment), attachments, depth);
         TiledPasses {
             groups: groups.clone(),
             project: TileProject { pipeline: pipelines.project, inputs: project, particles: sprites.count },
             sort: pipelines.sort.map(|pipelines| Sort {
                 pipelines,
-                there_and_back: held.sort.there_and_back.clone(),
+                ping_pong: buffers.sort.ping_pong.clone(),
                 keys: sprites.count,
             }),
-            gather: TileGather { pipeline: pipelines.gather, inputs: held.gather.clone(), particles: sprites.count },
+            gather: TileGather { pipeline: pipelines.gather, inputs: buffers.gather.clone(), particles: sprites.count },
             bin: TileBin {
                 pipelines: pipelines.bin,
-                inputs: held.bin.clone(),
-                workgroups: held.workgroups.clone(),
+                inputs: buffers.bin.clone(),
+                workgroups: buffers.workgroups.clone(),
                 bins,
                 runs,
             },
             refine,
-            accumulate: TileAccumulate { pipeline: pipelines.accumulate, inputs: accumulate, size, in_step },
-            tally: held.tally.clone(),
-            read_back: held.read_back.clone(),
+            accumulate: TileAccumulate { pipeline: pipelines.accumulate, inputs: accumulate, size, cooperative },
+            tally: buffers.tally.clone(),
+            read_back: buffers.read_back.clone(),
             entries: self.entries.clone(),
         }
     }
 
     /// Returns the bytes of GPU memory held.
     pub fn memory(&self) -> TiledMemory {
-        self.held.as_ref().map_or(TiledMemory::default(), Held::memory)
+        self.buffers.as_ref().map_or(TiledMemory::default(), TileBuffers::memory)
     }
 
-    fn fit(&mut self, gpu: &Gpu<'_>, tiled: &Tiled, needed: Capacity) -> &mut Held {
-        let is_to_spare = self.held.as_ref().is_some_and(|held| held.capacity.is_wasted_on(&needed));
-        let gives_back = self.spare.outlasts(is_to_spare);
-        if gives_back || !self.held.as_ref().is_some_and(|held| held.capacity.holds(&needed)) {
+    fn fit(&mut self, gpu: &Gpu<'_>, tiled: &Tiled, needed: Capacity) -> &mut TileBuffers {
+        let is_to_spare = self.buffers.as_ref().is_some_and(|buffers| buffers.capacity.is_oversized_for(&needed));
+        let gives_back = self.spare.tick(is_to_spare);
+        if gives_back || !self.buffers.as_ref().is_some_and(|buffers| buffers.capacity.holds(&needed)) {
             // Drops the old buffers before it creates new ones.
-            self.held = None;
+            self.buffers = None;
         }
-        self.held.get_or_insert_with(|| Held::new(gpu.device, tiled, needed))
+        self.buffers.get_or_insert_with(|| TileBuffers::new(gpu.device, tiled, needed))
     }
 }
 
 /// Returns the number of words in the largest buffer that a shader can read.
-fn most_words(limits: &wgpu::Limits) -> u32 {
-    (limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) / WORD).try_into().unwrap_or(u32::MAX)
+fn max_storage_words(limits: &wgpu::Limits) -> u32 {
+    (limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) / WORD_BYTES).try_into().unwrap_or(u32::MAX)
 }
 
 /// Returns the number of bins along the sides of a target.

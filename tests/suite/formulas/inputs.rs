@@ -77,7 +77,7 @@ pub fn test_sprite() -> Sprite {
         *pixel = image::Rgba([hash.y as u8, hash.z as u8, (hash.y >> 8) as u8, alpha]);
     }
     let layout = SpriteLayout { columns: 3, rows: 1, y_down: false };
-    Sprite::from_picture(std::path::Path::new("test"), &sheet, layout).unwrap()
+    Sprite::from_image(std::path::Path::new("test"), &sheet, layout).unwrap()
 }
 
 /// One frame of a sprite at mip level 0.
@@ -96,6 +96,6 @@ pub fn test_noise() -> &'static NoiseVolume {
     static NOISE: OnceLock<NoiseVolume> = OnceLock::new();
     NOISE.get_or_init(|| {
         let recipe = NoiseRecipe { version: 1, seed: 5, size: 8, cells: 2, octaves: 2, gain: 0.5 };
-        NoiseVolume::from_picture(std::path::Path::new("noise"), &recipe.bake().unwrap()).unwrap()
+        NoiseVolume::from_image(std::path::Path::new("noise"), &recipe.bake().unwrap()).unwrap()
     })
 }

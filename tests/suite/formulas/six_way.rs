@@ -43,10 +43,10 @@ pub fn formulas() -> Vec<Formula> {
             mutants: &[("- 2.0 * anisotropy", "+ 2.0 * anisotropy"), ("inverseSqrt(base) / base", "1.0 / base")],
         },
         Formula {
-            name: "six_way_shares",
+            name: "six_way_axis_weights",
             file: "lib/six_way.wgsl",
-            wgsl: "let v = six_way_shares(vec3f(x(0), x(1), x(2)), x(3)); y(0, v.x); y(1, v.y); y(2, v.z);",
-            reference: |x| six_way::six_way_shares(v3(x), x[3]).to_array().to_vec(),
+            wgsl: "let v = six_way_axis_weights(vec3f(x(0), x(1), x(2)), x(3)); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| six_way::six_way_axis_weights(v3(x), x[3]).to_array().to_vec(),
             cases: {
                 let mut cases = unit_vectors(random(100, &SIX_WAY_AND_LIGHT[6..]), 0);
                 cases.extend([0.2, 0.9].map(|anisotropy| vec![0.0, 0.0, -1.0, anisotropy]));

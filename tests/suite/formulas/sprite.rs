@@ -35,11 +35,11 @@ pub fn formulas() -> Vec<Formula> {
             mutants: &[("first + 1.5 > frame_count", "false"), ("floor(frame / frame_count)", "0.0")],
         },
         Formula {
-            name: "shown_frames",
+            name: "animation_frames",
             file: "lib/sprite.wgsl",
-            wgsl: "let f = shown_frames(u32(x(0)), x(1), 4.0); y(0, f32(f.first)); y(1, f32(f.second)); y(2, f.blend);",
+            wgsl: "let f = animation_frames(u32(x(0)), x(1), 4.0); y(0, f32(f.first)); y(1, f32(f.second)); y(2, f.blend);",
             reference: |x| {
-                let frames = sprite::shown_frames(SpriteAnimation::ALL[x[0] as usize], x[1], 4.0);
+                let frames = sprite::animation_frames(SpriteAnimation::ALL[x[0] as usize], x[1], 4.0);
                 vec![frames.first as f32, frames.second as f32, frames.blend]
             },
             cases: with_choices(count(SpriteAnimation::ALL), &[(0.0, 9.0)]),
@@ -71,12 +71,12 @@ pub fn formulas() -> Vec<Formula> {
             ],
         },
         Formula {
-            name: "frames_after",
+            name: "offset_frames",
             file: "lib/sprite.wgsl",
-            wgsl: "let f = frames_after(flipbook_frames(x(0), 5.0), i32(x(1))); \
+            wgsl: "let f = offset_frames(flipbook_frames(x(0), 5.0), i32(x(1))); \
                    y(0, f32(f.first)); y(1, f32(f.second)); y(2, f.blend);",
             reference: |x| {
-                let frames = sprite::frames_after(sprite::flipbook_frames(x[0], 5.0), x[1] as i32);
+                let frames = sprite::offset_frames(sprite::flipbook_frames(x[0], 5.0), x[1] as i32);
                 vec![frames.first as f32, frames.second as f32, frames.blend]
             },
             cases: random(50, &[(0.0, 9.0), (0.0, 12.0)]),

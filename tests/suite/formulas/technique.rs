@@ -89,10 +89,10 @@ pub fn formulas() -> Vec<Formula> {
             ],
         },
         Formula {
-            name: "slab_share",
+            name: "visible_slab_fraction",
             file: "lib/technique.wgsl",
-            wgsl: "y(0, slab_share(x(0), x(1), x(2)));",
-            reference: |x| vec![technique::slab_share(x[0], x[1], x[2])],
+            wgsl: "y(0, visible_slab_fraction(x(0), x(1), x(2)));",
+            reference: |x| vec![technique::visible_slab_fraction(x[0], x[1], x[2])],
             cases: random(100, &[(-2.0, 3.0), (0.1, 2.0), (0.05, 0.5)]),
             tolerance: ARITHMETIC * 10.0,
             mutants: &[

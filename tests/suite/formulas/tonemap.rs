@@ -9,22 +9,25 @@ use super::inputs::{ARITHMETIC, TRANSCENDENTAL, random, v3};
 pub fn formulas() -> Vec<Formula> {
     vec![
         Formula {
-            name: "film",
+            name: "aces_fitted",
             file: "lib/tonemap.wgsl",
-            wgsl: "let v = film(vec3f(x(0), x(1), x(2))); y(0, v.x); y(1, v.y); y(2, v.z);",
-            reference: |x| tonemap::film(v3(x)).to_array().to_vec(),
+            wgsl: "let v = aces_fitted(vec3f(x(0), x(1), x(2))); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| tonemap::aces_fitted(v3(x)).to_array().to_vec(),
             cases: [random(60, &[(-0.1, 1.0); 3]), random(30, &[(0.0, 50.0); 3])].concat(),
             tolerance: 10.0 * ARITHMETIC,
             mutants: &[("0.35458", "0.45458"), ("output * fitted", "fitted * output"), ("0.432951", "0.532951")],
         },
         Formula {
-            name: "developed",
+            name: "tonemapped",
             file: "lib/tonemap.wgsl",
-            wgsl: "let v = developed(vec3f(x(0), x(1), x(2)), x(3)); y(0, v.x); y(1, v.y); y(2, v.z);",
-            reference: |x| tonemap::developed(v3(x), x[3]).to_array().to_vec(),
+            wgsl: "let v = tonemapped(vec3f(x(0), x(1), x(2)), x(3)); y(0, v.x); y(1, v.y); y(2, v.z);",
+            reference: |x| tonemap::tonemapped(v3(x), x[3]).to_array().to_vec(),
             cases: random(60, &[(0.0, 2.0), (0.0, 2.0), (0.0, 2.0), (0.1, 4.0)]),
             tolerance: TRANSCENDENTAL,
-            mutants: &[("film(colour * exposure)", "film(colour)"), ("gamma_target_colour(film", "(film")],
+            mutants: &[
+                ("aces_fitted(colour * exposure)", "aces_fitted(colour)"),
+                ("gamma_target_colour(film", "(film"),
+            ],
         },
         Formula {
             name: "dither",

@@ -10,18 +10,18 @@ use super::inputs::{ARITHMETIC, TRANSCENDENTAL, count, random, v2, v3, v4, with_
 /// Fits four texels, each a position and a value, with weights 1 to 4.
 fn fit(x: &[f32]) -> upsample::GuidedFit {
     x[..20].chunks(5).zip([1.0, 2.0, 3.0, 4.0]).fold(upsample::GuidedFit::default(), |fit, (x, weight)| {
-        upsample::with_texel(&fit, v3(x), weight, Vec4::splat(x[3]))
+        upsample::add_texel(&fit, v3(x), weight, Vec4::splat(x[3]))
     })
 }
 
 const WGSL_FIT: &str = "var f: GuidedFit; f.nearest = 1.0e6; f.farthest = -1.0e6; for (var i = 0u; i < 4u; i++) { let o = 5u * i; \
-     f = with_texel(f, vec3f(x(o), x(o + 1u), x(o + 2u)), f32(i + 1u), vec4f(x(o + 3u))); } \
+     f = add_texel(f, vec3f(x(o), x(o + 1u), x(o + 2u)), f32(i + 1u), vec4f(x(o + 3u))); } \
      y(0, f.total); y(1, f.nearest); y(2, f.farthest); for (var i = 0u; i < 3u; i++) { y(3u + i, f.place[i]); \
      y(6u + i, f.squares[i]); y(9u + i, f.products[i]); } y(12, f.value.x); y(13, f.x_value.x); y(14, f.y_value.x); \
      y(15, f.z_value.x); y(16, f.low.x); y(17, f.high.x);";
 
 const WGSL_FITTED: &str = "var f: GuidedFit; f.nearest = 1.0e6; f.farthest = -1.0e6; for (var i = 0u; i < 4u; i++) { \
-     let o = 5u * i; f = with_texel(f, vec3f(x(o), x(o + 1u), x(o + 2u)), f32(i + 1u), vec4f(x(o + 3u))); } \
+     let o = 5u * i; f = add_texel(f, vec3f(x(o), x(o + 1u), x(o + 2u)), f32(i + 1u), vec4f(x(o + 3u))); } \
      y(0, fitted_value(f, 0.5).x);";
 
 pub fn formulas() -> Vec<Formula> {
@@ -53,21 +53,21 @@ pub fn formulas() -> Vec<Formula> {
             },
             tolerance: TRANSCENDENTAL,
             mutants: &[
-                ("vec4f(SAME_SURFACE * depth)", "vec4f(SAME_SURFACE)"),
+                ("vec4f(SURFACE_DEPTH_TOLERANCE * depth)", "vec4f(SURFACE_DEPTH_TOLERANCE)"),
                 ("fraction.x * g.y, g.x * fraction.y", "g.x * fraction.y, fraction.x * g.y"),
                 ("if difference.y == closest", "if difference.z == closest"),
                 ("-0.5 * sigmas * sigmas", "-sigmas * sigmas"),
             ],
         },
         Formula {
-            name: "is_smooth",
+            name: "bilinear_suffices",
             file: "lib/upsample.wgsl",
-            wgsl: "y(0, f32(is_smooth(vec4f(x(0), x(1), x(2), x(3)), x(4), x(5))));",
-            reference: |x| vec![f32::from(upsample::is_smooth(v4(x), x[4], x[5]))],
+            wgsl: "y(0, f32(bilinear_suffices(vec4f(x(0), x(1), x(2), x(3)), x(4), x(5))));",
+            reference: |x| vec![f32::from(upsample::bilinear_suffices(v4(x), x[4], x[5]))],
             cases: random(200, &[(4.0, 5.0), (4.0, 5.0), (4.0, 5.0), (4.0, 5.0), (4.0, 5.0), (0.0, 4.0)]),
             tolerance: 0.0,
             mutants: &[
-                ("SAME_SMOKE * fade", "fade"),
+                ("SMOKE_DEPTH_TOLERANCE * fade", "fade"),
                 ("min(depths.z, depths.w)), depth)", "min(depths.z, depths.w)), 9.0)"),
                 ("max(depths.x, depths.y)", "depths.y"),
             ],
@@ -79,10 +79,13 @@ pub fn formulas() -> Vec<Formula> {
             reference: |x| vec![upsample::guided_weight(v3(x), x[3])],
             cases: random(100, &[(-2.2, 2.2), (-2.2, 2.2), (-0.5, 0.5), (3.0, 6.0)]),
             tolerance: TRANSCENDENTAL,
-            mutants: &[("abs(place.xy) * 0.5", "abs(place.xy)"), ("(2.0 / (SAME_SURFACE", "(1.0 / (SAME_SURFACE")],
+            mutants: &[
+                ("abs(place.xy) * 0.5", "abs(place.xy)"),
+                ("(2.0 / (SURFACE_DEPTH_TOLERANCE", "(1.0 / (SURFACE_DEPTH_TOLERANCE"),
+            ],
         },
         Formula {
-            name: "with_texel",
+            name: "add_texel",
             file: "lib/upsample.wgsl",
             wgsl: WGSL_FIT,
             reference: |x| {

@@ -8,11 +8,11 @@ use haze_demo::headless::Headless;
 use super::{SIZE, encoder, field};
 use crate::common::gpu;
 use crate::host::Host;
-use crate::stage::{BACKDROP, Stage};
+use crate::test_scene::{BACKDROP, TestScene};
 
 #[test]
 fn offset_of_particles_in_a_host_buffer_does_not_change_the_image() {
-    let mut stage = Stage::new(SIZE);
+    let mut stage = TestScene::new(SIZE);
     stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
     let mut host = Host::new(gpu(), &stage).unwrap();
     let mut draw = |offset: u64| {
@@ -38,7 +38,7 @@ fn offset_of_particles_in_a_host_buffer_does_not_change_the_image() {
 
 #[test]
 fn invalid_offsets_in_a_host_buffer_are_rejected() {
-    let mut stage = Stage::new(SIZE);
+    let mut stage = TestScene::new(SIZE);
     stage.bounds = Some(Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE });
     let mut host = Host::new(gpu(), &stage).unwrap();
     let buffer = gpu().device.create_buffer(&wgpu::BufferDescriptor {
@@ -58,12 +58,12 @@ fn invalid_offsets_in_a_host_buffer_are_rejected() {
 /// Prepares frames of several systems, without drawing an image.
 pub struct Systems {
     host: Host,
-    pub stage: Stage,
+    pub stage: TestScene,
 }
 
 impl Systems {
     pub fn new(gpu: &Headless, size: UVec2) -> Self {
-        let stage = Stage::new(size);
+        let stage = TestScene::new(size);
         Self { host: Host::new(gpu, &stage).unwrap(), stage }
     }
 
@@ -142,7 +142,7 @@ fn unused_targets_and_buffers_are_released_after_some_frames() {
 
 #[test]
 fn baked_light_textures_are_kept_when_the_view_is_resized() {
-    let mut stage = Stage::new(SIZE);
+    let mut stage = TestScene::new(SIZE);
     stage.settings.diffuse.mode = DiffuseMode::Cubemap;
     let mut host = Host::new(gpu(), &stage).unwrap();
     host.draw(gpu(), &stage).unwrap();
@@ -152,7 +152,7 @@ fn baked_light_textures_are_kept_when_the_view_is_resized() {
     };
     let (small, baked) = views(&host);
     assert_eq!(baked.len(), 6);
-    stage.view = Stage::new(SIZE * 4).view;
+    stage.view = TestScene::new(SIZE * 4).view;
     let mut larger = Host::new(gpu(), &stage).unwrap();
     std::mem::swap(&mut larger.renderer, &mut host.renderer);
     std::mem::swap(&mut larger.material, &mut host.material);
@@ -174,7 +174,7 @@ fn depth_buffer_replaced_by_the_host_is_released() {
         if source == DepthSource::Host && !read_only {
             continue;
         }
-        let mut stage = Stage::new(SIZE);
+        let mut stage = TestScene::new(SIZE);
         (stage.settings.accumulate.depth_source, stage.settings.accumulate.scale) = (source, 1);
         let mut host = Host::new(&gpu, &stage).unwrap();
         host.draw(&gpu, &stage).unwrap();

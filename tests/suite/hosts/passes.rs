@@ -2,28 +2,28 @@
 
 use glam::{UVec2, Vec4};
 use haze::formula::colour::gamma_target_colour;
-use haze::picture::Picture;
+use haze::image::Image;
 use haze::settings::*;
 use haze::{Context, Descriptor, Error, Frame, Renderer, SceneDepth, wgpu};
 
 use super::{SIZE, encoder, featured, field, slice};
 use crate::common::{AGREEMENT, gpu, psnr};
 use crate::host::{Host, HostKind};
-use crate::stage::{BACKDROP, DepthKind, Stage};
+use crate::test_scene::{BACKDROP, DepthKind, TestScene};
 
 #[test]
 fn one_prepare_serves_every_debug_view() {
-    for path in [Path::Raster, Path::Forward] {
-        let mut all = Stage::new(SIZE);
-        (all.settings.path, all.stages) = (path, Some(ShadeTree::ALL));
+    for path in [RenderPath::Raster, RenderPath::Forward] {
+        let mut all = TestScene::new(SIZE);
+        (all.settings.path, all.stages) = (path, Some(DebugView::ALL));
         let mut host = Host::new(gpu(), &all).unwrap();
         let mut encoder = encoder(gpu());
         host.prepare(gpu(), &mut encoder, &all, slice(&all)).unwrap();
         gpu().submit(encoder).unwrap();
-        for &stage in ShadeTree::ALL {
-            let separate = Stage { shade_tree: stage, stages: None, ..Stage::new(SIZE) };
-            let separate = Stage { settings: all.settings, ..separate };
-            all.shade_tree = stage;
+        for &stage in DebugView::ALL {
+            let separate = TestScene { debug_view: stage, stages: None, ..TestScene::new(SIZE) };
+            let separate = TestScene { settings: all.settings, ..separate };
+            all.debug_view = stage;
             let mut encoder = self::encoder(gpu());
             host.render(&mut encoder, &all);
             gpu().submit(encoder).unwrap();
@@ -31,7 +31,8 @@ fn one_prepare_serves_every_debug_view() {
         }
     }
     // A debug view that `prepare` was not told about draws nothing.
-    let stage = Stage { stages: Some(&[ShadeTree::Final]), shade_tree: ShadeTree::Overdraw, ..Stage::new(SIZE) };
+    let stage =
+        TestScene { stages: Some(&[DebugView::Final]), debug_view: DebugView::Overdraw, ..TestScene::new(SIZE) };
     assert!(stage.on_gpu(gpu()).picture.texels.iter().all(|texel| *texel == BACKDROP));
 }
 
@@ -58,8 +59,10 @@ fn every_target_format_and_sample_count_shows_the_same_smoke() {
         ("velocity", AGREEMENT, HostKind { further: vec![Format::Rg16Float, Format::R8Unorm], ..host() }),
     ];
     for (name, least, kind) in kinds {
-        for (path, attach_depth) in [(Path::Raster, true), (Path::Forward, true), (Path::Raster, false)] {
-            let mut stage = Stage::new(SIZE);
+        for (path, attach_depth) in
+            [(RenderPath::Raster, true), (RenderPath::Forward, true), (RenderPath::Raster, false)]
+        {
+            let mut stage = TestScene::new(SIZE);
             (stage.depth, stage.attach_depth) = (DepthKind::Both, attach_depth);
             stage.settings.path = path;
             stage.host = kind.clone();
@@ -99,8 +102,10 @@ fn every_target_format_and_sample_count_shows_the_same_smoke() {
 #[test]
 fn gamma_target_receives_srgb_encoded_colour() {
     use LightingResolution::{Full, Target};
-    for (path, lighting_resolution) in [(Path::Raster, Full), (Path::Raster, Target), (Path::Forward, Full)] {
-        let mut stage = Stage::new(SIZE);
+    for (path, lighting_resolution) in
+        [(RenderPath::Raster, Full), (RenderPath::Raster, Target), (RenderPath::Forward, Full)]
+    {
+        let mut stage = TestScene::new(SIZE);
         (stage.settings.path, stage.settings.accumulate.lighting_resolution) = (path, lighting_resolution);
         stage.settings.specular_scatter.intensity = 0.0;
         // Opaque smoke hides the backdrop, so the target contains only encoded light.
@@ -118,8 +123,8 @@ fn gamma_target_receives_srgb_encoded_colour() {
         });
         // Only the opaque middle is compared. At the rim, blending happens on encoded values, which the reference does
         // not do.
-        let middle = |picture: &Picture<Vec4>| {
-            let mut part = Picture::new(UVec2::new(40, 20), Vec4::ZERO);
+        let middle = |picture: &Image<Vec4>| {
+            let mut part = Image::new(UVec2::new(40, 20), Vec4::ZERO);
             part.for_each(|at, texel| *texel = picture.load((at + UVec2::new(60, 35)).as_ivec2()));
             part
         };
@@ -162,7 +167,7 @@ fn unsupported_pass_descriptors_are_rejected_with_the_name_of_the_field() {
 
 #[test]
 fn resources_of_another_device_are_rejected() {
-    let stage = Stage::new(SIZE);
+    let stage = TestScene::new(SIZE);
     let here = gpu();
     // On OpenGL, devices of one adapter share a context: resources that are dropped with one device are lost for the
     // other.
@@ -206,7 +211,7 @@ fn resources_of_another_device_are_rejected() {
 
 #[test]
 fn unreadable_scene_depth_is_rejected() {
-    let mut stage = Stage::new(SIZE);
+    let mut stage = TestScene::new(SIZE);
     stage.host.depth_format = wgpu::TextureFormat::Depth24PlusStencil8;
     (stage.depth, stage.attach_depth) = (DepthKind::Buffer, false);
     let mut host = Host::new(gpu(), &stage).unwrap();

@@ -5,11 +5,11 @@ use glam::{Mat4, vec3};
 use super::{SIZE, encoder, field, slice};
 use crate::common::{gpu, psnr};
 use crate::host::Host;
-use crate::stage::Stage;
+use crate::test_scene::TestScene;
 
 #[test]
 fn two_views_in_one_submission_match_two_separate_frames() {
-    let (left, mut right) = (Stage::new(SIZE), Stage::new(SIZE));
+    let (left, mut right) = (TestScene::new(SIZE), TestScene::new(SIZE));
     right.view.view_from_world = Mat4::from_translation(vec3(-0.6, 0.2, 0.5));
     right.lights[0].intensity = 5.0;
     let expected = [left.on_gpu(gpu()).picture, right.on_gpu(gpu()).picture];
@@ -38,7 +38,7 @@ fn two_views_in_one_submission_match_two_separate_frames() {
 
 #[test]
 fn second_prepare_before_the_first_is_submitted_is_rejected() {
-    let stage = Stage::new(SIZE);
+    let stage = TestScene::new(SIZE);
     let picture = stage.on_gpu(gpu()).picture;
     let mut host = Host::new(gpu(), &stage).unwrap();
     let refused = |host: &mut Host| {

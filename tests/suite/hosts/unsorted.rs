@@ -9,7 +9,7 @@ use super::{SIZE, field};
 use crate::common::{gpu, has_tiles};
 use crate::creations;
 use crate::host::Host;
-use crate::stage::Stage;
+use crate::test_scene::TestScene;
 
 const BOUNDS: Bounds = Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) };
 
@@ -30,7 +30,7 @@ fn buffer(gpu: &Headless, particles: &[Particle], offset: u64, usage: wgpu::Buff
 const READ: wgpu::BufferUsages = wgpu::BufferUsages::VERTEX.union(wgpu::BufferUsages::STORAGE);
 
 /// Returns `count` particles made from the stage's: several at the same depth, every seventh with amount 0.
-fn many(stage: &Stage, count: usize) -> Vec<Particle> {
+fn many(stage: &TestScene, count: usize) -> Vec<Particle> {
     let one = |index: usize| {
         let mut particle = stage.particles[index % stage.particles.len()];
         particle.position.x += 1.0e-4 * index as f32;
@@ -45,12 +45,12 @@ fn unsorted_host_buffer_draws_the_same_image_as_a_sorted_one() {
     if !has_tiles() {
         return;
     }
-    let mut stage = Stage::new(SIZE);
+    let mut stage = TestScene::new(SIZE);
     stage.bounds = Some(BOUNDS);
-    for (path, in_step) in [(Path::Raster, true), (Path::Raster, false), (Path::Forward, true)] {
+    for (path, cooperative) in [(RenderPath::Raster, true), (RenderPath::Raster, false), (RenderPath::Forward, true)] {
         stage.settings.path = path;
         let mut host = Host::new(gpu(), &stage).unwrap();
-        host.renderer.context().walk_in_step(in_step);
+        host.renderer.context().set_cooperative_traversal(cooperative);
         // One sort block; several blocks that each count all keys (up to 8192 keys on GPUs); more keys than that.
         for (count, offset) in [(200, 0), (3000, 16), (9000, 272)] {
             let particles = many(&stage, count);
@@ -61,11 +61,11 @@ fn unsorted_host_buffer_draws_the_same_image_as_a_sorted_one() {
                 host.picture(gpu()).unwrap()
             };
             let (sorted, unsorted) = (drawn(&particles, false), drawn(&particles, true));
-            assert!(unsorted != sorted, "{count}, {path:?}, {in_step}: the order does not change the image");
+            assert!(unsorted != sorted, "{count}, {path:?}, {cooperative}: the order does not change the image");
             // The camera looks along z. The sort is stable at equal depths.
             let mut back_to_front = particles;
             back_to_front.sort_by(|a, b| a.position.z.total_cmp(&b.position.z));
-            assert!(drawn(&back_to_front, true) == sorted, "{count}, {path:?}, {in_step}");
+            assert!(drawn(&back_to_front, true) == sorted, "{count}, {path:?}, {cooperative}");
         }
     }
     gpu().check().unwrap();
@@ -76,7 +76,7 @@ fn steady_frames_of_unsorted_particles_create_no_gpu_resources() {
     if !has_tiles() {
         return;
     }
-    let mut stage = Stage::new(SIZE);
+    let mut stage = TestScene::new(SIZE);
     stage.bounds = Some(BOUNDS);
     let mut host = Host::new(gpu(), &stage).unwrap();
     let buffer = buffer(gpu(), &many(&stage, 500), 0, READ);
@@ -97,9 +97,9 @@ fn steady_frames_of_unsorted_particles_create_no_gpu_resources() {
 
 #[test]
 fn host_buffers_that_cannot_be_sorted_are_rejected() {
-    let mut stage = Stage::new(SIZE);
+    let mut stage = TestScene::new(SIZE);
     stage.bounds = Some(BOUNDS);
-    let refused = |gpu: &Headless, stage: &Stage, usage, offset| {
+    let refused = |gpu: &Headless, stage: &TestScene, usage, offset| {
         let buffer = buffer(gpu, &stage.particles, offset, usage);
         let count = stage.particles.len() as u32;
         let particles = Particles::Buffer { buffer: &buffer, offset, count, is_sorted: false };

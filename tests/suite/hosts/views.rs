@@ -3,15 +3,15 @@
 use glam::camera::{lh, rh};
 use glam::{Mat4, UVec2, Vec3, Vec4, vec3};
 use haze::Bounds;
-use haze::picture::Picture;
+use haze::image::Image;
 use haze::settings::*;
 
 use super::{SIZE, field};
 use crate::common::{AGREEMENT, gpu, psnr};
-use crate::stage::{BACKDROP, DepthKind, Stage};
+use crate::test_scene::{BACKDROP, DepthKind, TestScene};
 
 /// Transforms the world of a stage by `turn`, which may mirror it. In view space nothing changes.
-fn in_world(mut stage: Stage, turn: Mat4) -> Stage {
+fn in_world(mut stage: TestScene, turn: Mat4) -> TestScene {
     stage.view.view_from_world *= turn.inverse();
     stage.particles.iter_mut().for_each(|p| p.position = turn.transform_point3(p.position));
     for light in &mut stage.lights {
@@ -24,14 +24,14 @@ fn in_world(mut stage: Stage, turn: Mat4) -> Stage {
 #[test]
 fn handedness_and_up_axis_do_not_change_the_image() {
     let flip = |x, y, z| Mat4::from_scale(vec3(x, y, z));
-    let z_view = |mut stage: Stage| {
+    let z_view = |mut stage: TestScene| {
         stage.view.view_from_world = flip(1.0, 1.0, -1.0) * stage.view.view_from_world;
         stage.view.clip_from_view *= flip(1.0, 1.0, -1.0);
         stage.ahead = 1.0;
         stage
     };
     let z_up = Mat4::from_rotation_x(std::f32::consts::FRAC_PI_2);
-    type Change<'a> = &'a dyn Fn(Stage) -> Stage;
+    type Change<'a> = &'a dyn Fn(TestScene) -> TestScene;
     let hosts: [(&str, Change); 5] = [
         ("a left-handed world", &|stage| in_world(stage, flip(1.0, 1.0, -1.0))),
         ("a left-handed world that looks along +z", &|stage| z_view(in_world(stage, flip(1.0, 1.0, -1.0)))),
@@ -42,9 +42,10 @@ fn handedness_and_up_axis_do_not_change_the_image() {
     for technique in
         [Technique::Soft, Technique::DepthSpriteSoft, Technique::SphericalBillboard, Technique::VolumetricSoft]
     {
-        for (path, near_box) in [(Path::Raster, false), (Path::Raster, true), (Path::Forward, false)] {
+        for (path, near_box) in [(RenderPath::Raster, false), (RenderPath::Raster, true), (RenderPath::Forward, false)]
+        {
             let stage = || {
-                let mut stage = Stage::new(SIZE);
+                let mut stage = TestScene::new(SIZE);
                 (stage.settings.technique, stage.settings.path) = (technique, path);
                 if near_box {
                     stage.bounds = Some(Bounds { min: Vec3::splat(-20.0), max: Vec3::splat(20.0) });
@@ -71,7 +72,7 @@ fn handedness_and_up_axis_do_not_change_the_image() {
 #[test]
 fn mirrored_projections_and_near_planes_behind_the_viewer_match_the_reference() {
     let orthographic = |near| rh::proj::directx::orthographic(-4.0, 4.0, -2.25, 2.25, near, 80.0);
-    let perspective = Stage::new(SIZE).view.clip_from_view;
+    let perspective = TestScene::new(SIZE).view.clip_from_view;
     let cases = [
         ("upside down", Mat4::from_scale(vec3(1.0, -1.0, 1.0)) * perspective, Mat4::IDENTITY),
         ("left to right", Mat4::from_scale(vec3(-1.0, 1.0, 1.0)) * perspective, Mat4::IDENTITY),
@@ -85,8 +86,8 @@ fn mirrored_projections_and_near_planes_behind_the_viewer_match_the_reference() 
     ];
     for (name, clip_from_view, view_from_world) in cases {
         for (depth, technique) in [(DepthKind::Buffer, Technique::Soft), (DepthKind::Linear, Technique::SoftLinear)] {
-            for path in [Path::Raster, Path::Forward] {
-                let mut stage = Stage::new(SIZE);
+            for path in [RenderPath::Raster, RenderPath::Forward] {
+                let mut stage = TestScene::new(SIZE);
                 (stage.view.clip_from_view, stage.view.view_from_world) = (clip_from_view, view_from_world);
                 (stage.depth, stage.settings.technique, stage.settings.path) = (depth, technique, path);
                 // Disables the near fade, which depends on the distance from the viewer.
@@ -101,7 +102,7 @@ fn mirrored_projections_and_near_planes_behind_the_viewer_match_the_reference() 
     }
     // Moving an orthographic viewer along its view direction does not change the image.
     let seen_from = |near: f32, distance: f32| {
-        let mut stage = Stage::new(SIZE);
+        let mut stage = TestScene::new(SIZE);
         stage.settings.soft_fade.near_fade_end = 0.0;
         stage.view.clip_from_view = rh::proj::directx::orthographic(-4.0, 4.0, -2.25, 2.25, near, near + 80.0);
         stage.view.view_from_world = Mat4::from_translation(vec3(0.0, 0.0, distance));
@@ -117,7 +118,7 @@ fn mirrored_projections_and_near_planes_behind_the_viewer_match_the_reference() 
 #[test]
 fn view_of_a_part_of_a_larger_target_draws_only_that_part() {
     let origin = UVec2::new(70, 31);
-    type Change = fn(&mut Stage);
+    type Change = fn(&mut TestScene);
     let changes: &[(&str, Change)] = &[
         ("half scale", |_| {}),
         ("scale 3", |s| s.settings.accumulate.scale = 3),
@@ -125,16 +126,16 @@ fn view_of_a_part_of_a_larger_target_draws_only_that_part() {
         ("host depth", |s| {
             (s.settings.accumulate.scale, s.settings.accumulate.depth_source) = (1, DepthSource::Host);
         }),
-        ("forward", |s| s.settings.path = Path::Forward),
+        ("forward", |s| s.settings.path = RenderPath::Forward),
         ("forward sphere", |s| {
-            (s.settings.path, s.settings.technique) = (Path::Forward, Technique::SphericalBillboard);
+            (s.settings.path, s.settings.technique) = (RenderPath::Forward, Technique::SphericalBillboard);
         }),
-        ("reduced depth", |s| s.shade_tree = ShadeTree::ReducedDepth),
-        ("specular", |s| s.shade_tree = ShadeTree::SpecularScatter),
+        ("reduced depth", |s| s.debug_view = DebugView::ReducedDepth),
+        ("specular", |s| s.debug_view = DebugView::SpecularScatter),
         ("linear", |s| s.settings.technique = Technique::SoftLinear),
     ];
     for (name, change) in changes {
-        let mut stage = Stage::new(SIZE);
+        let mut stage = TestScene::new(SIZE);
         (stage.depth, stage.attach_depth) = (DepthKind::Both, true);
         // Spreads the smoke beyond every edge of the view.
         stage.particles.iter_mut().for_each(|p| p.position *= vec3(1.6, 1.6, 1.0));
@@ -143,7 +144,7 @@ fn view_of_a_part_of_a_larger_target_draws_only_that_part() {
         stage.host.target_size = Some(UVec2::new(260, 150));
         stage.view.origin = origin;
         let part = stage.on_gpu(gpu()).picture;
-        let mut cropped = Picture::new(SIZE, Vec4::ZERO);
+        let mut cropped = Image::new(SIZE, Vec4::ZERO);
         cropped.for_each(|at, texel| *texel = part.load((at + origin).as_ivec2()));
         // At another position in the target, sprite corners are snapped to other 1/256 pixels.
         let same = psnr(&cropped, &separate);
@@ -154,7 +155,7 @@ fn view_of_a_part_of_a_larger_target_draws_only_that_part() {
         // The reference draws only the pixels of the view.
         assert!(psnr(&cropped, &stage.on_cpu()) >= AGREEMENT, "{name}");
     }
-    let mut stage = Stage::new(SIZE);
+    let mut stage = TestScene::new(SIZE);
     stage.host.target_size = Some(UVec2::new(200, 100));
     stage.view.origin = UVec2::new(41, 0);
     assert_eq!(field(stage.try_on_gpu(gpu())), "view.size");

@@ -8,27 +8,27 @@ use haze::{Bounds, Context, Descriptor, Renderer, SceneDepthKind, Settings, Warm
 use super::{SIZE, featured, field};
 use crate::common::gpu;
 use crate::host::Host;
-use crate::stage::{DepthKind, Stage};
+use crate::test_scene::{DepthKind, TestScene};
 
-fn warm_up<'a>(stage: &'a Stage, settings: &'a [Settings]) -> WarmUp<'a> {
+fn warm_up<'a>(stage: &'a TestScene, settings: &'a [Settings]) -> WarmUp<'a> {
     let scene_depth = match stage.depth {
         DepthKind::Buffer => SceneDepthKind::Buffer(stage.host.depth_format),
         DepthKind::Linear => SceneDepthKind::Linear,
         DepthKind::Both => SceneDepthKind::Both(stage.host.depth_format),
     };
-    WarmUp { view: stage.view, scene_depth, settings, stages: std::slice::from_ref(&stage.shade_tree) }
+    WarmUp { view: stage.view, scene_depth, settings, stages: std::slice::from_ref(&stage.debug_view) }
 }
 
 #[test]
 fn first_frame_after_a_warm_up_compiles_no_pipeline() {
     for &technique in Technique::ALL {
-        for path in [Path::Raster, Path::Forward] {
-            let mut stage = Stage::new(SIZE);
+        for path in [RenderPath::Raster, RenderPath::Forward] {
+            let mut stage = TestScene::new(SIZE);
             (stage.depth, stage.attach_depth) = (DepthKind::Both, true);
             (stage.settings.technique, stage.settings.path) = (technique, path);
             stage.settings.diffuse.mode = DiffuseMode::Cubemap;
             // A warm-up does not know whether sprites have one frame or several, so both cases are tested.
-            if path == Path::Raster {
+            if path == RenderPath::Raster {
                 (stage.material.sprite, stage.material.detail, stage.material.six_way) = crate::techniques::flipbook();
             }
             stage.settings.accumulate.lighting_resolution = LightingResolution::Target;
@@ -48,7 +48,7 @@ fn first_frame_after_a_warm_up_compiles_no_pipeline() {
 
 #[test]
 fn warm_up_can_run_on_another_thread() {
-    let mut stage = Stage::new(SIZE);
+    let mut stage = TestScene::new(SIZE);
     let mut host = Host::new(gpu(), &stage).unwrap();
     host.draw(gpu(), &stage).unwrap();
     let context = host.renderer.context().clone();
@@ -82,7 +82,7 @@ fn pipelines_are_stored_in_and_loaded_from_the_hosts_pipeline_cache() {
         let cache = unsafe { gpu.device.create_pipeline_cache(&descriptor) };
         let empty = cache.get_data().map_or(0, |data| data.len());
         let context = Context::new(&gpu.device, &gpu.queue, Some(&cache));
-        let stage = Stage::new(SIZE);
+        let stage = TestScene::new(SIZE);
         let mut host = Host::on(gpu, &stage, Some(&context)).unwrap();
         host.draw(gpu, &stage).unwrap();
         gpu.check().unwrap();
@@ -100,10 +100,10 @@ fn pipelines_are_stored_in_and_loaded_from_the_hosts_pipeline_cache() {
 #[test]
 #[ignore = "a measurement, to be run by hand"]
 fn measure_cpu_time_of_prepare() {
-    for path in Path::ALL.iter().filter(|&&path| path != Path::Tiled || crate::common::has_tiles()) {
-        let mut stage = Stage::new(glam::UVec2::new(1280, 720));
+    for path in RenderPath::ALL.iter().filter(|&&path| path != RenderPath::Tiled || crate::common::has_tiles()) {
+        let mut stage = TestScene::new(glam::UVec2::new(1280, 720));
         stage.settings.path = *path;
-        let prepare = |host: &mut Host, stage: &Stage| {
+        let prepare = |host: &mut Host, stage: &TestScene| {
             let mut encoder = gpu().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             let started = std::time::Instant::now();
             host.prepare(gpu(), &mut encoder, stage, haze::Particles::Slice(&stage.particles)).unwrap();

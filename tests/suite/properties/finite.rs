@@ -1,13 +1,13 @@
 //! Targets and images stay finite for every input.
 
 use glam::{UVec2, Vec3, vec3};
-use haze::settings::Path;
+use haze::settings::RenderPath;
 use haze::{Bounds, Particle};
 
 use super::SIZE;
 use crate::common::{gpu, non_finite_texels};
 use crate::host::Host;
-use crate::stage::{BACKDROP, Stage};
+use crate::test_scene::{BACKDROP, TestScene};
 
 #[test]
 fn no_builtin_preset_writes_nan_or_infinity_to_a_target() {
@@ -15,11 +15,11 @@ fn no_builtin_preset_writes_nan_or_infinity_to_a_target() {
         let preset = haze::preset::Preset::load(preset.name).unwrap();
         for system in &preset.systems {
             let size = UVec2::new(320, 180);
-            let mut stage = Stage::new(size);
+            let mut stage = TestScene::new(size);
             stage.view = preset.camera.view(size);
             stage.lights.clone_from(&preset.lights);
             stage.settings = system.settings_for(size.y);
-            stage.settings.path = Path::Raster;
+            stage.settings.path = RenderPath::Raster;
             stage.material = system.material.load(std::path::Path::new("")).unwrap();
             system.emitter.evaluate(preset.time, &mut stage.particles);
             assert_all_finite(&stage, &stage.on_gpu(gpu()), &preset.name);
@@ -27,7 +27,7 @@ fn no_builtin_preset_writes_nan_or_infinity_to_a_target() {
     }
 }
 
-fn assert_all_finite(stage: &Stage, drawn: &crate::host::Drawn, name: &str) {
+fn assert_all_finite(stage: &TestScene, drawn: &crate::host::RenderedFrame, name: &str) {
     assert!(drawn.picture.texels.iter().all(|texel| texel.is_finite()), "{name}");
     let targets = drawn.renderer.targets(0).unwrap();
     assert!(targets.size.cmple(stage.view.size).all());
@@ -38,7 +38,7 @@ fn assert_all_finite(stage: &Stage, drawn: &crate::host::Drawn, name: &str) {
 
 #[test]
 fn particles_with_non_finite_or_huge_values_in_a_host_buffer_are_not_drawn() {
-    let mut stage = Stage::new(SIZE);
+    let mut stage = TestScene::new(SIZE);
     stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
     let mut host = Host::new(gpu(), &stage).unwrap();
     let good = Particle { position: vec3(0.0, 0.0, -6.0), amount: 0.5, ..Particle::default() };
@@ -62,7 +62,7 @@ fn particles_with_non_finite_or_huge_values_in_a_host_buffer_are_not_drawn() {
 
 #[test]
 fn degenerate_sprites_write_no_nan_or_infinity_to_a_target() {
-    let mut stage = Stage::new(SIZE);
+    let mut stage = TestScene::new(SIZE);
     let somewhere = vec3(0.0, 0.0, -6.0);
     stage.particles.extend([
         Particle { position: Vec3::ZERO, radius: 1.0, ..Particle::default() },

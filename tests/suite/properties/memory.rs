@@ -8,11 +8,11 @@ use super::SIZE;
 use crate::common::gpu;
 use crate::creations;
 use crate::host::Host;
-use crate::stage::Stage;
+use crate::test_scene::TestScene;
 
 #[test]
 fn a_system_at_1080p_half_scale_takes_at_most_8_mb() {
-    let mut stage = Stage::new(UVec2::new(1920, 1080));
+    let mut stage = TestScene::new(UVec2::new(1920, 1080));
     // The worst case: the bounds cover the whole screen.
     stage.bounds = Some(Bounds { min: Vec3::splat(-20.0), max: Vec3::splat(20.0) });
     let drawn = stage.on_gpu(gpu());
@@ -34,7 +34,7 @@ fn a_system_at_1080p_half_scale_takes_at_most_8_mb() {
 
 #[test]
 fn steady_frames_create_no_gpu_resources() {
-    let mut stage = Stage::new(SIZE);
+    let mut stage = TestScene::new(SIZE);
     let mut host = Host::new(gpu(), &stage).unwrap();
     for (mode, lighting_resolution) in [
         (DiffuseMode::Ramp, LightingResolution::Full),

@@ -3,19 +3,19 @@
 
 use glam::{Mat4, UVec2, Vec4, vec3};
 use haze::Bounds;
-use haze::picture::Picture;
-use haze::settings::ShadeTree;
+use haze::image::Image;
+use haze::settings::DebugView;
 
 use super::SIZE;
 use crate::common::{AGREEMENT, gpu, psnr};
 use crate::host::Host;
-use crate::stage::{BACKDROP, Stage};
+use crate::test_scene::{BACKDROP, TestScene};
 
 #[test]
 fn psnr_limit_detects_typical_mistakes_in_a_pass() {
-    type Mistake = fn(&mut Stage);
+    type Mistake = fn(&mut TestScene);
     let stage = || {
-        let mut stage = Stage::new(SIZE);
+        let mut stage = TestScene::new(SIZE);
         stage.settings.specular_scatter.size = 60.0;
         stage
     };
@@ -27,7 +27,7 @@ fn psnr_limit_detects_typical_mistakes_in_a_pass() {
     };
     assert!(agreement(|_| {}) >= 60.0);
     let mutants: &[(&str, Mistake)] = &[
-        ("flipped normal y", |s| s.material.sprite = crate::stage::ball_sprite(true)),
+        ("flipped normal y", |s| s.material.sprite = crate::test_scene::ball_sprite(true)),
         ("swapped ramp axes", |s| {
             let ramp = s.material.specular_ramp.clone();
             let texels = (0..128).map(|i| ramp.texel(UVec2::new(i / 8, i % 8)));
@@ -54,7 +54,7 @@ fn psnr_limit_detects_typical_mistakes_in_a_pass() {
 
 #[test]
 fn psnr_limit_detects_an_error_of_0_05_in_one_channel_of_a_small_cloud() {
-    let mut smoke = Picture::new(SIZE, BACKDROP);
+    let mut smoke = Image::new(SIZE, BACKDROP);
     smoke.texels[..SIZE.element_product() as usize / 100].fill(Vec4::splat(0.7));
     for channel in Vec4::AXES {
         let mut off = smoke.clone();
@@ -68,8 +68,8 @@ fn psnr_limit_detects_an_error_of_0_05_in_one_channel_of_a_small_cloud() {
 #[test]
 fn psnr_limit_detects_normals_blended_front_to_back() {
     // The reference sorts; a frame that the GPU blends front to back must not match it.
-    let mut stage = Stage::new(SIZE);
-    stage.shade_tree = ShadeTree::Normals;
+    let mut stage = TestScene::new(SIZE);
+    stage.debug_view = DebugView::Normals;
     stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
     stage.particles.iter_mut().for_each(|particle| particle.amount = 0.9);
     let sorted = stage.on_cpu();

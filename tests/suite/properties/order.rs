@@ -1,8 +1,8 @@
 //! Results that depend on the draw order of sprites, and results that do not.
 
 use glam::{UVec2, Vec4, vec3};
-use haze::frame::bounds_of;
-use haze::settings::{AccumulationFormat, Order, ShadeTree};
+use haze::frame::particle_bounds;
+use haze::settings::{AccumulationFormat, DebugView, Order};
 use haze::{Bounds, Particle};
 use haze_reference::blend_unit::{premultiplied_over, quantise};
 use proptest::prelude::*;
@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use super::SIZE;
 use crate::common::{AGREEMENT, gpu, psnr};
 use crate::host::Host;
-use crate::stage::{BACKDROP, Stage};
+use crate::test_scene::{BACKDROP, TestScene};
 
 proptest! {
     #[test]
@@ -37,8 +37,8 @@ proptest! {
 
 #[test]
 fn amount_on_the_gpu_does_not_depend_on_draw_order() {
-    let mut stage = Stage::new(SIZE);
-    stage.shade_tree = ShadeTree::Amount;
+    let mut stage = TestScene::new(SIZE);
+    stage.debug_view = DebugView::Amount;
     stage.settings.accumulate.scale = 1;
     stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
     let mut host = Host::new(gpu(), &stage).unwrap();
@@ -58,7 +58,7 @@ fn amount_on_the_gpu_does_not_depend_on_draw_order() {
 
 #[test]
 fn weighted_order_draws_the_same_image_from_reversed_particles() {
-    let mut stage = Stage::new(SIZE);
+    let mut stage = TestScene::new(SIZE);
     stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
     let reversed: Vec<_> = stage.particles.iter().rev().copied().collect();
     let mut psnr_after_reversal = |order| {
@@ -78,11 +78,11 @@ fn weighted_order_draws_the_same_image_from_reversed_particles() {
 
 #[test]
 fn particle_amounts_above_1_are_drawn_as_1() {
-    let mut stage = Stage::new(SIZE);
+    let mut stage = TestScene::new(SIZE);
     let mut host = Host::new(gpu(), &stage).unwrap();
     let mut draw = |amount: f32| {
         stage.particles = vec![Particle { position: vec3(0.0, 0.0, -5.0), amount, ..Particle::default() }];
-        stage.bounds = Some(bounds_of(&stage.particles, stage.settings.reach()));
+        stage.bounds = Some(particle_bounds(&stage.particles, stage.settings.reach()));
         host.draw(gpu(), &stage).unwrap();
         let slice = host.picture(gpu()).unwrap();
         host.draw_buffer(gpu(), &stage, &stage.particles).unwrap();
@@ -101,11 +101,11 @@ fn particle_amounts_above_1_are_drawn_as_1() {
 fn rgba8_target_loses_thin_smoke_and_rgba16float_does_not() {
     // 8-bit rounding stops thin layers from adding up: 400 layers of amount 0.02 should give 1 - 0.98^400 = 0.9997.
     let stack = |format, encoding| {
-        let mut stage = Stage::new(UVec2::splat(32));
+        let mut stage = TestScene::new(UVec2::splat(32));
         let sprite = Particle { position: vec3(0.0, 0.0, -4.0), radius: 3.0, amount: 0.02, ..Particle::default() };
         stage.particles = vec![sprite; 400];
         (stage.settings.accumulate.format, stage.settings.accumulate.encoding) = (format, encoding);
-        stage.shade_tree = ShadeTree::Amount;
+        stage.debug_view = DebugView::Amount;
         stage.on_gpu(gpu()).picture.load(glam::IVec2::new(8, 16)).x
     };
     use haze::settings::NormalEncoding;

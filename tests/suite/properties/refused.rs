@@ -6,13 +6,13 @@ use haze::{Bounds, Error, Particles, wgpu};
 use super::SIZE;
 use crate::common::gpu;
 use crate::host::Host;
-use crate::stage::{BACKDROP, Stage};
+use crate::test_scene::{BACKDROP, TestScene};
 
 #[test]
 fn invalid_frames_are_rejected_with_the_name_of_the_field_and_draw_nothing() {
     // Draws a valid frame first, so that leftovers of it show if a rejected frame draws anything.
-    let refusal = |host: &mut Host, stage: &Stage, particles: Particles<'_>| {
-        host.draw(gpu(), &Stage::new(SIZE)).unwrap();
+    let refusal = |host: &mut Host, stage: &TestScene, particles: Particles<'_>| {
+        host.draw(gpu(), &TestScene::new(SIZE)).unwrap();
         assert!(host.picture(gpu()).unwrap().texels.iter().any(|&texel| texel != BACKDROP));
         let mut encoder = gpu().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let error = host.prepare(gpu(), &mut encoder, stage, particles).unwrap_err();
@@ -24,9 +24,9 @@ fn invalid_frames_are_rejected_with_the_name_of_the_field_and_draw_nothing() {
         );
         error
     };
-    let mut host = Host::new(gpu(), &Stage::new(SIZE)).unwrap();
-    let mut field = |change: fn(&mut Stage)| {
-        let mut stage = Stage::new(SIZE);
+    let mut host = Host::new(gpu(), &TestScene::new(SIZE)).unwrap();
+    let mut field = |change: fn(&mut TestScene)| {
+        let mut stage = TestScene::new(SIZE);
         change(&mut stage);
         match refusal(&mut host, &stage, Particles::Slice(&stage.particles)) {
             Error::Field(error) => error.field,
@@ -39,7 +39,7 @@ fn invalid_frames_are_rejected_with_the_name_of_the_field_and_draw_nothing() {
     assert_eq!(field(|s| s.bounds = Some(Bounds { min: Vec3::ZERO, max: Vec3::INFINITY })), "systems[0].bounds");
     assert_eq!(field(|s| s.view.view_from_world = Mat4::ZERO), "view.view_from_world");
 
-    let mut stage = Stage::new(SIZE);
+    let mut stage = TestScene::new(SIZE);
     stage.view.size += 1;
     let error = refusal(&mut host, &stage, Particles::Slice(&stage.particles)).to_string();
     assert_eq!(

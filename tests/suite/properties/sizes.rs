@@ -3,22 +3,22 @@
 use glam::camera::rh::proj::directx;
 use glam::{UVec2, Vec3, vec3};
 use haze::read_only_depth_is_supported;
-use haze::settings::{DepthSource, DiffuseMode, Path, Upsample};
+use haze::settings::{DepthSource, DiffuseMode, RenderPath, Upsample};
 use haze::{Light, Particle};
 
 use super::SIZE;
 use crate::common::{AGREEMENT, gpu, psnr};
 use crate::host::Host;
-use crate::stage::{BACKDROP, Stage};
+use crate::test_scene::{BACKDROP, TestScene};
 
 #[test]
 fn no_smoke_leaves_the_scene_untouched() {
-    let untouched = |stage: &Stage| {
+    let untouched = |stage: &TestScene| {
         let drawn = stage.on_gpu(gpu());
         drawn.picture.texels.iter().all(|&texel| texel == BACKDROP)
             && stage.on_cpu().texels.iter().all(|&t| t == BACKDROP)
     };
-    let mut stage = Stage::new(SIZE);
+    let mut stage = TestScene::new(SIZE);
     assert!(!untouched(&stage));
     let particles = std::mem::take(&mut stage.particles);
     assert!(untouched(&stage));
@@ -36,7 +36,7 @@ fn no_smoke_leaves_the_scene_untouched() {
     stage.particles =
         particles.iter().map(|p| Particle { position: p.position + vec3(0.0, 0.0, 20.0), ..*p }).collect();
     assert!(untouched(&stage));
-    for path in [Path::Raster, Path::Forward] {
+    for path in [RenderPath::Raster, RenderPath::Forward] {
         stage.settings.path = path;
         stage.settings.accumulate.opacity = 0.0;
         stage.particles.clone_from(&particles);
@@ -48,7 +48,7 @@ fn no_smoke_leaves_the_scene_untouched() {
 fn odd_sizes_and_every_scale_match_the_reference() {
     for size in [UVec2::ONE, UVec2::new(1, 97), UVec2::new(641, 359), UVec2::new(3, 2)] {
         for scale in 1..=16 {
-            let mut stage = Stage::new(size);
+            let mut stage = TestScene::new(size);
             stage.settings.accumulate.scale = scale;
             let drawn = stage.on_gpu(gpu());
             gpu().check().unwrap();
@@ -65,11 +65,11 @@ fn odd_sizes_and_every_scale_match_the_reference() {
 
 #[test]
 fn size_and_settings_may_change_every_frame() {
-    let mut stage = Stage::new(SIZE);
+    let mut stage = TestScene::new(SIZE);
     let mut host = Host::new(gpu(), &stage).unwrap();
     for step in 0..24_u32 {
         let size = UVec2::new(64 + 37 * (step % 5), 48 + 29 * (step % 7));
-        let next = Stage::new(size);
+        let next = TestScene::new(size);
         (stage.view, stage.particles) = (next.view, next.particles);
         let accumulate = &mut stage.settings.accumulate;
         accumulate.scale = 1 + step % 6;
@@ -77,7 +77,7 @@ fn size_and_settings_may_change_every_frame() {
         let tested = accumulate.scale == 1 && read_only_depth_is_supported(&gpu().device);
         accumulate.depth_source = if tested { DepthSource::Host } else { DepthSource::Reduced };
         stage.settings.diffuse.mode = DiffuseMode::ALL[step as usize % DiffuseMode::ALL.len()];
-        stage.settings.path = if step % 11 == 10 { Path::Forward } else { Path::Auto };
+        stage.settings.path = if step % 11 == 10 { RenderPath::Forward } else { RenderPath::Auto };
         // The renderer is kept; the host's textures are new.
         let mut resized = Host::on(gpu(), &stage, Some(host.renderer.context())).unwrap();
         std::mem::swap(&mut resized.renderer, &mut host.renderer);
@@ -93,7 +93,7 @@ fn size_and_settings_may_change_every_frame() {
 
 #[test]
 fn max_side_limits_the_size_of_the_target() {
-    let mut stage = Stage::new(UVec2::new(641, 359));
+    let mut stage = TestScene::new(UVec2::new(641, 359));
     stage.settings.accumulate.scale = 1;
     stage.settings.accumulate.max_side = 100;
     let drawn = stage.on_gpu(gpu());
@@ -109,7 +109,7 @@ fn reported_lit_depth_is_measured_from_the_hosts_viewer() {
     // Its near plane is behind the viewer, so haze internally moves the viewer back.
     let orthographic = directx::orthographic(-4.0, 4.0, -2.25, 2.25, -5.0, 80.0);
     for projection in [directx::perspective(0.8, aspect, 0.1, 80.0), orthographic] {
-        let mut stage = Stage::new(SIZE);
+        let mut stage = TestScene::new(SIZE);
         stage.view.clip_from_view = projection;
         stage.particles = vec![Particle { position: vec3(0.0, 0.0, -6.0), ..Particle::default() }];
         let lit = stage.on_gpu(gpu()).renderer.targets(0).unwrap().lit_depth;
@@ -119,7 +119,7 @@ fn reported_lit_depth_is_measured_from_the_hosts_viewer() {
 
 #[test]
 fn largest_light_count_matches_the_reference_and_one_more_light_is_rejected() {
-    let mut stage = Stage::new(SIZE);
+    let mut stage = TestScene::new(SIZE);
     let light = |i: usize| Light {
         position: vec3((i % 16) as f32 - 8.0, (i / 16) as f32 - 4.0, -4.0),
         colour: vec3((i % 3) as f32, (i % 5) as f32, (i % 7) as f32) * 0.1,

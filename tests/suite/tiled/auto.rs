@@ -15,13 +15,15 @@ fn auto_takes_the_cheaper_path_and_reports_the_reason() {
         return;
     }
     let mut stage = stage(Technique::Soft);
-    stage.settings.path = Path::Auto;
+    stage.settings.path = RenderPath::Auto;
     let mut host = Host::new(gpu(), &stage).unwrap();
     let class = host.renderer.context().path_model();
     let expensive = |costs: PathCosts| PathCosts { fragment: 1.0e3, ..costs };
     // The first frame takes the cheaper path at once.
-    let models =
-        [(expensive(class.raster), class.tiled, Path::Tiled), (class.raster, expensive(class.tiled), Path::Raster)];
+    let models = [
+        (expensive(class.raster), class.tiled, RenderPath::Tiled),
+        (class.raster, expensive(class.tiled), RenderPath::Raster),
+    ];
     for (raster, tiled, path) in models {
         let mut host = Host::new(gpu(), &stage).unwrap();
         let model = PathModel { raster, tiled, source: PathModelSource::Host, ..class };
@@ -33,27 +35,27 @@ fn auto_takes_the_cheaper_path_and_reports_the_reason() {
         let PathReason::Expected { raster_ms, tiled_ms, layers: Some(layers), source } = choice.reason else {
             panic!("{choice}")
         };
-        assert_eq!((raster_ms < tiled_ms, source), (path == Path::Raster, PathModelSource::Host));
+        assert_eq!((raster_ms < tiled_ms, source), (path == RenderPath::Raster, PathModelSource::Host));
         // Equal to the renderer's overdraw, except for the part of the target that the bounding box does not cover.
         let counted = host.renderer.overdraw().mean() as f32;
         assert!((0.5..1.1).contains(&(layers / counted)), "{layers} layers, counted {counted}");
         assert!(choice.to_string().contains("overdraw"), "{choice}");
-        assert_eq!(host.renderer.memory_use().tiled.total() > 0, path == Path::Tiled);
+        assert_eq!(host.renderer.memory_use().tiled.total() > 0, path == RenderPath::Tiled);
     }
     // A buffer that compute shaders cannot read is drawn by raster.
     stage.bounds = Some(Bounds { min: vec3(-4.0, -3.0, -9.0), max: vec3(4.0, 3.0, -3.0) });
     host.renderer.context().set_path_model(PathModel { raster: expensive(class.raster), ..class }).unwrap();
     host.draw_buffer(gpu(), &stage, &stage.particles).unwrap();
     let choice = host.renderer.path_choice(0).unwrap();
-    assert_eq!((choice.path, choice.reason), (Path::Raster, PathReason::BufferOfVertices));
+    assert_eq!((choice.path, choice.reason), (RenderPath::Raster, PathReason::BufferNotReadable));
     let bytes: Vec<u8> = bytemuck::cast_slice(&stage.particles).to_vec();
     let (buffer, count) = (storage_buffer(&bytes), stage.particles.len() as u32);
     host.draw_particles(gpu(), &stage, Particles::Buffer { buffer: &buffer, offset: 0, count, is_sorted: false })
         .unwrap();
     let choice = host.renderer.path_choice(0).unwrap();
-    assert!(choice.path == Path::Tiled && choice.to_string().contains("unknown, assumed 16"), "{choice}");
+    assert!(choice.path == RenderPath::Tiled && choice.to_string().contains("unknown, assumed 16"), "{choice}");
     // If the settings name a path, `auto` makes no choice.
-    stage.settings.path = Path::Raster;
+    stage.settings.path = RenderPath::Raster;
     host.draw(gpu(), &stage).unwrap();
     assert_eq!(host.renderer.path_choice(0), None);
     let model = PathModel { raster: PathCosts { entry: -1.0, ..class.raster }, ..class };
@@ -70,7 +72,7 @@ fn auto_switches_only_after_a_lasting_advantage() {
         return;
     }
     let mut stage = stage(Technique::Soft);
-    stage.settings.path = Path::Auto;
+    stage.settings.path = RenderPath::Auto;
     let mut host = Host::new(gpu(), &stage).unwrap();
     let model = host.renderer.context().path_model();
     let set = |host: &Host, raster: f32, tiled: f32| {
@@ -81,20 +83,20 @@ fn auto_switches_only_after_a_lasting_advantage() {
     let path = |host: &Host| host.renderer.path_choice(0).unwrap().path;
     set(&host, 1.0, 100.0);
     host.draw(gpu(), &stage).unwrap();
-    assert_eq!(path(&host), Path::Raster);
+    assert_eq!(path(&host), RenderPath::Raster);
     // A path that is cheaper only in every other frame is never taken.
     let created = creations::count(|| {
         for frame in 0..80 {
             set(&host, [1.0, 100.0][frame % 2], [100.0, 1.0][frame % 2]);
             host.draw(gpu(), &stage).unwrap();
-            assert_eq!(path(&host), Path::Raster);
+            assert_eq!(path(&host), RenderPath::Raster);
         }
     });
     assert_eq!(created, 0);
     set(&host, 100.0, 1.0);
     let frames = (0..200).take_while(|_| {
         host.draw(gpu(), &stage).unwrap();
-        path(&host) == Path::Raster
+        path(&host) == RenderPath::Raster
     });
     assert!((20..60).contains(&frames.count()));
     let created = creations::count(|| (0..5).for_each(|_| host.draw(gpu(), &stage).unwrap()));

@@ -5,10 +5,10 @@ use haze::emitter::{Emitter, EmitterShape};
 use haze::settings::*;
 use haze::{Particles, TiledMemory, wgpu};
 
-use super::{TO_RASTER, stage};
+use super::{MIN_PSNR_TO_RASTER, stage};
 use crate::common::{gpu, has_tiles, psnr};
 use crate::host::Host;
-use crate::stage::Stage;
+use crate::test_scene::TestScene;
 
 /// An emitter in front of the test camera.
 fn emitter() -> Emitter {
@@ -44,13 +44,13 @@ fn emitter_on_the_gpu_matches_its_particles_as_a_slice() {
                 host.draw_particles(gpu(), &stage, particles).unwrap();
                 host.picture(gpu()).unwrap()
             };
-            let tiled = drawn(Path::Tiled, Particles::Emission(&emission));
-            assert!(drawn(Path::Tiled, Particles::Emission(&emission)) == tiled, "a second draw differs");
-            let raster = drawn(Path::Raster, Particles::Emission(&emission));
-            let slice = drawn(Path::Tiled, Particles::Slice(&particles));
+            let tiled = drawn(RenderPath::Tiled, Particles::Emitter(&emission));
+            assert!(drawn(RenderPath::Tiled, Particles::Emitter(&emission)) == tiled, "a second draw differs");
+            let raster = drawn(RenderPath::Raster, Particles::Emitter(&emission));
+            let slice = drawn(RenderPath::Tiled, Particles::Slice(&particles));
             let (to_raster, to_slice) = (psnr(&tiled, &raster), psnr(&tiled, &slice));
             println!("{shape:?} at {time} s: {to_raster:.1} dB against raster, {to_slice:.1} dB against the slice");
-            assert!(to_raster >= TO_RASTER && to_slice >= 70.0, "raster {to_raster} dB, slice {to_slice} dB");
+            assert!(to_raster >= MIN_PSNR_TO_RASTER && to_slice >= 70.0, "raster {to_raster} dB, slice {to_slice} dB");
         }
     }
     gpu().check().unwrap();
@@ -70,11 +70,11 @@ fn a_million_gpu_particles_fit_into_200_megabytes() {
         emission.count()
     );
     let mut stage = stage(Technique::Soft);
-    (stage.settings.path, stage.settings.accumulate.scale) = (Path::Tiled, 2);
-    stage.view = Stage::new(UVec2::new(1920, 1080)).view;
+    (stage.settings.path, stage.settings.accumulate.scale) = (RenderPath::Tiled, 2);
+    stage.view = TestScene::new(UVec2::new(1920, 1080)).view;
     let mut host = Host::new(gpu(), &stage).unwrap();
     let mut encoder = gpu().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    host.prepare(gpu(), &mut encoder, &stage, Particles::Emission(&emission)).unwrap();
+    host.prepare(gpu(), &mut encoder, &stage, Particles::Emitter(&emission)).unwrap();
     let memory = host.renderer.memory_use();
     println!("{memory:?}");
     let TiledMemory { emitted, sorted, sprites, keys, counts, lists } = memory.tiled;

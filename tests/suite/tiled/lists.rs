@@ -9,7 +9,7 @@ use super::{stage, storage_buffer};
 use crate::common::{gpu, has_tiles, psnr};
 use crate::creations;
 use crate::host::Host;
-use crate::stage::Stage;
+use crate::test_scene::TestScene;
 
 #[test]
 fn bins_draw_all_sprites_while_their_lists_overflow() {
@@ -20,7 +20,7 @@ fn bins_draw_all_sprites_while_their_lists_overflow() {
     // first lists overflow.
     let mut stage = stage(Technique::Soft);
     let size = UVec2::new(960, 540);
-    (stage.view, stage.settings.accumulate.scale) = (Stage::new(size).view, 1);
+    (stage.view, stage.settings.accumulate.scale) = (TestScene::new(size).view, 1);
     let wide = |index: u32| Particle {
         position: vec3(0.0, 0.0, -6.0 - 0.001 * index as f32),
         radius: 12.0,
@@ -30,10 +30,10 @@ fn bins_draw_all_sprites_while_their_lists_overflow() {
     stage.particles = (0..140).rev().map(wide).collect();
     stage.bounds = Some(Bounds { min: vec3(-12.0, -12.0, -6.2), max: vec3(12.0, 12.0, -5.9) });
     let (buffer, count) = (storage_buffer(bytemuck::cast_slice(&stage.particles)), stage.particles.len() as u32);
-    for in_step in [true, false] {
-        stage.host.exact_filtering = in_step;
+    for cooperative in [true, false] {
+        stage.host.exact_filtering = cooperative;
         let mut host = Host::new(gpu(), &stage).unwrap();
-        host.renderer.context().walk_in_step(in_step);
+        host.renderer.context().set_cooperative_traversal(cooperative);
         let mut picture = |path| {
             stage.settings.path = path;
             host.draw_particles(
@@ -44,16 +44,16 @@ fn bins_draw_all_sprites_while_their_lists_overflow() {
             .unwrap();
             (host.picture(gpu()).unwrap(), host.renderer.memory_use().tiled.lists)
         };
-        let (raster, _) = picture(Path::Raster);
-        let (first, held) = picture(Path::Tiled);
-        let (second, held_then) = picture(Path::Tiled);
+        let (raster, _) = picture(RenderPath::Raster);
+        let (first, held) = picture(RenderPath::Tiled);
+        let (second, held_then) = picture(RenderPath::Tiled);
         assert!(held_then > held, "the list buffer has not grown from {held} bytes");
         assert!(first == second);
         // The blend unit rounds each of the 140 layers.
         let apart = psnr(&first, &raster);
         assert!(apart >= 50.0, "{apart} dB against raster");
         let mut known = Host::new(gpu(), &stage).unwrap();
-        known.renderer.context().walk_in_step(in_step);
+        known.renderer.context().set_cooperative_traversal(cooperative);
         known.draw(gpu(), &stage).unwrap();
         let lists = known.renderer.memory_use().tiled.lists;
         known.draw(gpu(), &stage).unwrap();
@@ -68,10 +68,10 @@ fn steady_frames_of_the_tiled_path_create_no_resources() {
         return;
     }
     let mut stage = stage(Technique::Soft);
-    stage.settings.path = Path::Tiled;
+    stage.settings.path = RenderPath::Tiled;
     let mut host = Host::new(gpu(), &stage).unwrap();
-    for in_step in [true, false] {
-        host.renderer.context().walk_in_step(in_step);
+    for cooperative in [true, false] {
+        host.renderer.context().set_cooperative_traversal(cooperative);
         host.draw(gpu(), &stage).unwrap();
         let created = creations::count(|| {
             for frame in 0..5 {
@@ -85,7 +85,7 @@ fn steady_frames_of_the_tiled_path_create_no_resources() {
     }
     // A system that is no longer tiled releases its buffers.
     let held = host.renderer.memory_use().buffers;
-    stage.settings.path = Path::Raster;
+    stage.settings.path = RenderPath::Raster;
     for _ in 0..130 {
         host.draw(gpu(), &stage).unwrap();
     }
@@ -98,7 +98,7 @@ fn sprites_out_of_view_do_not_change_the_image() {
         return;
     }
     let mut stage = stage(Technique::Soft);
-    stage.settings.path = Path::Tiled;
+    stage.settings.path = RenderPath::Tiled;
     stage.bounds = Some(Bounds { min: vec3(-3.0, -2.0, -7.0), max: vec3(3.0, 2.0, -3.0) });
     // More than 2^15 sprites, so that several dispatches build the lists.
     let small = |index: u32| Particle {
@@ -116,7 +116,7 @@ fn sprites_out_of_view_do_not_change_the_image() {
     let hidden: Vec<_> = shown.iter().map(behind).collect();
     let both = shown.iter().zip(&hidden).flat_map(|(shown, hidden)| [*shown, *hidden]).collect();
     let mut host = Host::new(gpu(), &stage).unwrap();
-    host.renderer.context().walk_in_step(true);
+    host.renderer.context().set_cooperative_traversal(true);
     let [shown, both, hidden, none] = [shown, both, hidden, Vec::new()].map(|particles| {
         stage.particles = particles;
         host.draw(gpu(), &stage).unwrap();
@@ -140,7 +140,7 @@ fn list_sizes_beyond_32_bits_do_not_wrap() {
         label: None,
         layout: None,
         module: &module,
-        entry_point: Some("allocate_alone"),
+        entry_point: Some("allocate_per_invocation"),
         compilation_options: wgpu::PipelineCompilationOptions::default(),
         cache: None,
     });

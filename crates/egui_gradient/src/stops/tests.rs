@@ -166,7 +166,7 @@ fn operations_on_a_part_leave_the_other_stops_unchanged() {
     };
     check(&|list, of| distribute(list, of), &[(0.0, 0), (0.2, 1), (0.4, 2), (0.6, 3), (1.0, 4)], &[1, 2, 3]);
     let steps = [(0.0, 0), (0.2, 1), (0.2 + 0.8 / 3.0, 2), (0.2 + 1.6 / 3.0, 3), (1.0, 4)];
-    check(&|list, of| step_evenly(list, of), &steps, &[1, 2, 3]);
+    check(&|list, of| distribute_steps(list, of), &steps, &[1, 2, 3]);
     check(&flip, &[(0.0, 0), (0.2, 3), (0.5, 2), (0.6, 1), (1.0, 4)], &[1, 2, 3]);
     let mirrored = [(0.0, 0), (0.2, 1), (0.25, 2), (0.4, 3), (0.55, 2), (0.6, 1), (1.0, 4)];
     check(&mirror, &mirrored, &[1, 2, 3, 4, 5]);
@@ -245,14 +245,14 @@ proptest! {
         sort(&mut list);
         let mut selection = Selection::one(selected[0]);
         selected[1..].iter().for_each(|index| selection.toggle(*index));
-        selection.keep_to(list.len());
+        selection.clamp_to(list.len());
         // Selected stops are marked by a colour. Mirroring and removal change the number of marked stops.
         selection.iter().for_each(|index| list[index].colour = HexColour([9; 3]));
         match what {
             0 => move_to(&mut list, &mut selection, at),
             1 => scale(&mut list, &mut selection, at),
             2 => distribute(&mut list, &mut selection),
-            3 => step_evenly(&mut list, &mut selection),
+            3 => distribute_steps(&mut list, &mut selection),
             4 => flip(&mut list, &mut selection),
             5 => mirror(&mut list, &mut selection),
             _ => remove(&mut list, &mut selection),

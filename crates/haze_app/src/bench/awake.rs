@@ -15,11 +15,11 @@ use super::limits::work::{Bench, Work};
 /// Time for which the GPU is kept busy before the first measurement.
 const FIRST: Duration = Duration::from_secs(2);
 /// Least duration of one piece of filler work, milliseconds. A measurement waits for one or two pieces at most.
-const PIECE_MS: f64 = 1.0;
-const MOST_LAYERS: u32 = 1 << 16;
+const FILLER_MS: f64 = 1.0;
+const MAX_LAYERS: u32 = 1 << 16;
 
 /// Keeps the GPU busy from a second thread. Does nothing on a CPU adapter or on OpenGL.
-pub struct Awake<'a> {
+pub struct ClockKeepalive<'a> {
     busy: Option<(Bench<'a>, Work)>,
     /// Locked before `running`, so that [`Self::quiet`] waits only for the piece in flight.
     next: Mutex<()>,
@@ -33,7 +33,7 @@ pub struct Quiet<'a> {
     _running: MutexGuard<'a, ()>,
 }
 
-impl<'a> Awake<'a> {
+impl<'a> ClockKeepalive<'a> {
     /// # Errors
     /// If the device failed.
     pub fn new(gpu: &'a Headless) -> Result<Self, Error> {
@@ -84,14 +84,14 @@ fn lock(mutex: &Mutex<()>) -> MutexGuard<'_, ()> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Finds a number of layers that keeps this GPU busy for at least [`PIECE_MS`].
+/// Finds a number of layers that keeps this GPU busy for at least [`FILLER_MS`].
 fn piece(gpu: &Headless) -> Result<(Bench<'_>, Work), Error> {
     let bench = Bench::new(gpu, UVec2::splat(512));
     let mut layers = 64;
     loop {
         let work = bench.draw(Some("constant"), AccumulationFormat::Rgba16Float, layers);
         let ms = bench.frame(&work)?.unwrap_or_default();
-        if ms >= PIECE_MS || layers >= MOST_LAYERS {
+        if ms >= FILLER_MS || layers >= MAX_LAYERS {
             return Ok((bench, work));
         }
         layers *= 2;

@@ -9,7 +9,7 @@ use haze::settings::AccumulationFormat;
 use haze::{Error, wgpu};
 use haze_demo::headless::Headless;
 
-use super::awake::Awake;
+use super::awake::ClockKeepalive;
 use super::report::{Clock, Milliseconds, Row};
 use super::suites::Suite;
 use crate::interrupt;
@@ -36,14 +36,14 @@ struct Bare {
 }
 
 /// Measures all cases in turn, round by round; the first round is a warm-up.
-pub fn measure(gpu: &Headless, awake: &Awake<'_>, size: UVec2, quick: bool) -> Result<Limits, Error> {
+pub fn measure(gpu: &Headless, awake: &ClockKeepalive<'_>, size: UVec2, quick: bool) -> Result<Limits, Error> {
     let (layers, rounds) = if quick { (16, 5) } else { (32, 15) };
     let bench = Bench::new(gpu, size);
     let bare = all(&bench, layers);
     gpu.check()?;
     let (mut times, mut discarded) = (vec![Vec::new(); bare.len()], 0);
     for round in 0..=rounds {
-        if interrupt::is_asked() {
+        if interrupt::is_requested() {
             break;
         }
         for (bare, times) in bare.iter().zip(&mut times) {

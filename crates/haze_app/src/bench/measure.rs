@@ -4,15 +4,15 @@ use std::collections::{BTreeMap, HashMap};
 use std::time::{Duration, Instant};
 
 use haze::preset::PresetSystem;
-use haze::settings::{AccumulationFormat, Path as SmokePath, ShadeTree};
+use haze::settings::{AccumulationFormat, DebugView, RenderPath};
 use haze::{Error, Timing, wgpu};
-use haze_author::particle_files::{self, Cache};
+use haze_author::particle_files::{self, ParticleFrames};
 use haze_demo::headless::Headless;
+use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
-use haze_demo::stage::{Stage, StageContext};
 use image::RgbImage;
 
-use super::awake::Awake;
+use super::awake::ClockKeepalive;
 use super::limits::work::bytes;
 use super::quality::{Quality, Reference, is_right};
 use super::report::{Clock, LeftOut, Milliseconds, Row};
@@ -26,14 +26,14 @@ const SLOW_MS: f64 = 300.0;
 /// Consecutive frames without a valid time after which a case is given up.
 const MOST_TRIES: u32 = 8;
 /// Most rounds of a group; more rounds add no information.
-const MOST_ROUNDS: usize = 200;
-const LEAST_ROUNDS: usize = 3;
+const MAX_ROUNDS: usize = 200;
+const MIN_ROUNDS: usize = 3;
 
 /// Measures groups and collects the results.
 pub struct Bench<'a> {
     gpu: &'a Headless,
-    awake: &'a Awake<'a>,
-    context: StageContext,
+    awake: &'a ClockKeepalive<'a>,
+    context: OffscreenContext,
     timing: Option<Timing>,
     /// Floor of the time per fragment, milliseconds, by format.
     pub limits: HashMap<AccumulationFormat, f64>,
@@ -55,15 +55,15 @@ struct Taken {
 /// State of a case that is being measured.
 struct Running<'a> {
     case: &'a Case,
-    stage: Stage,
+    stage: OffscreenRenderer,
     quality: Quality,
     times: Vec<f64>,
     passes: BTreeMap<&'static str, Vec<f64>>,
 }
 
 impl<'a> Bench<'a> {
-    pub fn new(gpu: &'a Headless, awake: &'a Awake<'a>, longest: Duration) -> Self {
-        let context = StageContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
+    pub fn new(gpu: &'a Headless, awake: &'a ClockKeepalive<'a>, longest: Duration) -> Self {
+        let context = OffscreenContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
         // Without this feature the passes that light the smoke have no timestamps.
         let is_whole = gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
         Self {
@@ -104,7 +104,7 @@ impl<'a> Bench<'a> {
         let reference = self.reference(group)?;
         let (mut running, mut pictures) = (Vec::new(), Vec::new());
         for case in &group.cases {
-            if interrupt::is_asked() {
+            if interrupt::is_requested() {
                 return Ok(false);
             }
             match self.begin(case, &reference)? {
@@ -112,21 +112,21 @@ impl<'a> Bench<'a> {
                     running.push(case);
                     pictures.push(picture);
                 }
-                Err(reason) => self.leave_out(group.suite, &case.name, reason),
+                Err(reason) => self.skip_case(group.suite, &case.name, reason),
             }
         }
         running.iter_mut().zip(reference.flips(&pictures)).for_each(|(case, flip)| case.quality.flip = Some(flip));
         drop((reference, pictures));
         let mut is_whole = true;
-        for round in 0..WARM_UP + MOST_ROUNDS {
-            is_whole = !interrupt::is_asked();
+        for round in 0..WARM_UP + MAX_ROUNDS {
+            is_whole = !interrupt::is_requested();
             let is_late = started.elapsed() > budget;
-            if !is_whole || (is_late && round >= WARM_UP + LEAST_ROUNDS) {
+            if !is_whole || (is_late && round >= WARM_UP + MIN_ROUNDS) {
                 break;
             }
             for case in &mut running {
                 // Past the budget, only cases with too few times go on.
-                if is_late && case.times.len() >= LEAST_ROUNDS {
+                if is_late && case.times.len() >= MIN_ROUNDS {
                     continue;
                 }
                 let taken = self.frame(&mut case.stage, &case.case.shot)?;
@@ -146,13 +146,13 @@ impl<'a> Bench<'a> {
     }
 
     fn reference(&self, group: &Group) -> Result<Reference, Error> {
-        let mut stage = Stage::new(&self.context, false)?;
+        let mut stage = OffscreenRenderer::new(&self.context, false)?;
         stage.warm_up(&group.reference)?;
         stage.draw(self.gpu, &group.reference)?;
         Reference::read(self.gpu, &stage, &group.reference)
     }
 
-    fn leave_out(&mut self, suite: Suite, case: &str, reason: String) {
+    fn skip_case(&mut self, suite: Suite, case: &str, reason: String) {
         self.left_out.push(LeftOut { suite: suite.name(), case: case.into(), reason });
     }
 
@@ -176,7 +176,7 @@ impl<'a> Bench<'a> {
             Err(Error::Field(error)) => return Ok(Err(error.to_string())),
             Err(error) => return Err(error),
         }
-        let mut stage = Stage::new(&self.context, false)?;
+        let mut stage = OffscreenRenderer::new(&self.context, false)?;
         stage.warm_up(&case.shot)?;
         stage.set_timing(self.timing.as_ref())?;
         match self.frame(&mut stage, &case.shot)? {
@@ -192,7 +192,7 @@ impl<'a> Bench<'a> {
     }
 
     /// Draws a frame; `None` if the GPU returned no valid timestamps in [`MOST_TRIES`] frames.
-    fn frame(&mut self, stage: &mut Stage, shot: &Shot) -> Result<Option<Taken>, Error> {
+    fn frame(&mut self, stage: &mut OffscreenRenderer, shot: &Shot) -> Result<Option<Taken>, Error> {
         let Some(timing) = &self.timing else {
             let _quiet = self.awake.quiet();
             let ms = stage.draw(self.gpu, shot)?.as_secs_f64() * 1000.0;
@@ -201,7 +201,7 @@ impl<'a> Bench<'a> {
         for _ in 0..MOST_TRIES {
             let before = timing.latest().map(|times| times.frame);
             let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            stage.record(&mut encoder, shot, &[ShadeTree::Final])?;
+            stage.record(&mut encoder, shot, &[DebugView::Final])?;
             timing.resolve(&mut encoder);
             let quiet = self.awake.quiet();
             self.gpu.submit(encoder)?;
@@ -222,14 +222,14 @@ impl<'a> Bench<'a> {
         let shot = &running.case.shot;
         let system = shot.preset.systems.first()?;
         let settings = system.settings_for(shot.size.y);
-        let is_forward = settings.path == SmokePath::Forward;
+        let is_forward = settings.path == RenderPath::Forward;
         // Forward smoke is blended directly into the scene colour.
         let format = if is_forward { AccumulationFormat::Rgba16Float } else { settings.accumulate.format };
         let overdraw = running.stage.renderer().overdraw();
         let fragments = overdraw.fragments;
         let limit = self.limits.get(&format).map(|ms| ms * fragments).filter(|&ms| ms > 0.0);
         let mut particles = Vec::new();
-        let alive = |(system, cache): (&PresetSystem, &Option<Cache>)| {
+        let alive = |(system, cache): (&PresetSystem, &Option<ParticleFrames>)| {
             particle_files::particles(system, cache.as_ref(), shot.preset.time, &mut particles);
             particles.len() as u32
         };
@@ -239,9 +239,9 @@ impl<'a> Bench<'a> {
             format: Some(format.name().into()),
             path: Some(settings.path.name().into()),
             mode: match settings.path {
-                SmokePath::Forward => None,
-                SmokePath::Tiled => Some(settings.accumulate.layers.name().into()),
-                SmokePath::Auto => running.stage.renderer().path_choice(0).map(|choice| choice.path.name().into()),
+                RenderPath::Forward => None,
+                RenderPath::Tiled => Some(settings.accumulate.layers.name().into()),
+                RenderPath::Auto => running.stage.renderer().path_choice(0).map(|choice| choice.path.name().into()),
                 _ => Some(settings.diffuse.mode.name().into()),
             },
             technique: Some(settings.technique.name().into()),

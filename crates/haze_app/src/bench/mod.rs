@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use haze::Error;
-use haze::picture::write_file;
+use haze::image::write_file;
 
 use super::output::{Failures, Files, write_text};
 

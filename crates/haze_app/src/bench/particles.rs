@@ -34,7 +34,7 @@ pub fn rows(gpu: &Headless, group: &Group) -> Result<Vec<Row>, Error> {
     let mut times = [Vec::new(), Vec::new(), Vec::new()];
     let mut particles = Vec::new();
     for round in 0..=ROUNDS {
-        if interrupt::is_asked() {
+        if interrupt::is_requested() {
             break;
         }
         let started = Instant::now();

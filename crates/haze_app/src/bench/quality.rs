@@ -2,12 +2,12 @@
 
 use glam::{UVec2, Vec2, Vec4};
 use haze::Error;
-use haze::picture::Picture;
-use haze_demo::apart::Apart;
-use haze_demo::develop::{develop, exposure};
+use haze::image::Image;
 use haze_demo::headless::Headless;
+use haze_demo::image_metrics::PsnrReport;
+use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
-use haze_demo::stage::{Stage, StageContext};
+use haze_demo::tonemap_pass::{exposure, tonemap};
 use image::RgbImage;
 
 use crate::flip::flips;
@@ -22,34 +22,39 @@ pub struct Quality {
 
 /// Full-resolution image that the images of a group are compared with.
 pub struct Reference {
-    picture: Picture<Vec4>,
+    picture: Image<Vec4>,
     exposure: f32,
     developed: RgbImage,
     /// View depth of the scene, metres, if the device can read it back.
-    depth: Option<Picture<f32>>,
+    depth: Option<Image<f32>>,
 }
 
 impl Reference {
     /// Reads back what a stage has drawn.
-    pub fn read(gpu: &Headless, stage: &Stage, shot: &Shot) -> Result<Self, Error> {
+    pub fn read(gpu: &Headless, stage: &OffscreenRenderer, shot: &Shot) -> Result<Self, Error> {
         let picture = stage.read(gpu, shot)?;
         let depth = match stage.linear_depth() {
-            Some(depth) => Some(Picture { size: picture.size, texels: gpu.read_r32float(depth)? }),
+            Some(depth) => Some(Image { size: picture.size, texels: gpu.read_r32float(depth)? }),
             None => None,
         };
-        Ok(Self { exposure: exposure(shot), developed: develop(&picture, shot), picture, depth })
+        Ok(Self { exposure: exposure(shot), developed: tonemap(&picture, shot), picture, depth })
     }
 
     /// Compares another stage's image with this one, except for FLIP, which is slow. Also returns the tonemapped image
     /// for [`Self::flips`].
-    pub fn compare(&self, gpu: &Headless, stage: &Stage, shot: &Shot) -> Result<(Quality, RgbImage), Error> {
+    pub fn compare(
+        &self,
+        gpu: &Headless,
+        stage: &OffscreenRenderer,
+        shot: &Shot,
+    ) -> Result<(Quality, RgbImage), Error> {
         let picture = stage.read(gpu, shot)?;
         let exposures = Vec2::new(exposure(shot), self.exposure);
-        let apart = Apart::of(&picture, &self.picture, exposures, self.depth.as_ref());
+        let apart = PsnrReport::of(&picture, &self.picture, exposures, self.depth.as_ref());
         let finite = |db: f32| db.is_finite().then_some(f64::from(db));
         let quality =
             Quality { psnr_db: finite(apart.psnr), flip: None, edge_psnr_db: apart.edge_psnr.and_then(finite) };
-        Ok((quality, develop(&picture, shot)))
+        Ok((quality, tonemap(&picture, shot)))
     }
 
     /// Returns the FLIP of tonemapped images against this one.
@@ -67,16 +72,16 @@ const MOST: f32 = 64.0;
 const AGREEMENT: f32 = 40.0;
 
 /// Checks the GPU's image of a shot against the reference renderer. The inner `Err` says what is wrong with it.
-pub fn is_right(gpu: &Headless, context: &StageContext, shot: &Shot) -> Result<Result<(), String>, Error> {
+pub fn is_right(gpu: &Headless, context: &OffscreenContext, shot: &Shot) -> Result<Result<(), String>, Error> {
     let mut shot = Shot { size: SMALL, ..shot.clone() };
     for system in &mut shot.preset.systems {
-        let fewer = (MOST / system.emitter.most_alive() as f32).min(1.0);
+        let fewer = (MOST / system.emitter.max_alive() as f32).min(1.0);
         system.emitter.rate *= fewer;
         system.settings.sprite.debug_loop = 1;
         // The fewer sprites cover the same area.
         system.settings.sprite.size /= fewer.sqrt();
     }
-    let mut stage = Stage::new(context, false)?;
+    let mut stage = OffscreenRenderer::new(context, false)?;
     stage.warm_up(&shot)?;
     stage.draw(gpu, &shot)?;
     let drawn = stage.read(gpu, &shot)?;
@@ -84,7 +89,7 @@ pub fn is_right(gpu: &Headless, context: &StageContext, shot: &Shot) -> Result<R
         return Ok(Err("its image has pixels that are NaN or infinite".into()));
     }
     let exposure = Vec2::splat(exposure(&shot));
-    let apart = Apart::of(&drawn, &shot.render_on_cpu()?, exposure, None).psnr;
+    let apart = PsnrReport::of(&drawn, &shot.render_on_cpu()?, exposure, None).psnr;
     let reason =
         || format!("its image has {apart:.0} dB PSNR against the CPU renderer; expected at least {AGREEMENT} dB");
     Ok(if apart < AGREEMENT { Err(reason()) } else { Ok(()) })

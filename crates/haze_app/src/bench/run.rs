@@ -5,12 +5,12 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use glam::UVec2;
-use haze::picture::write_file;
+use haze::image::write_file;
 use haze::{Error, wgpu};
 use haze_demo::headless::Headless;
 
 use super::adapter::adapter;
-use super::awake::Awake;
+use super::awake::ClockKeepalive;
 use super::limits;
 use super::measure::Bench;
 use super::particles;
@@ -71,7 +71,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     let features = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES;
     let gpu = Headless::with(wgpu::Limits::default(), features)?;
     interrupt::catch();
-    let awake = Awake::new(&gpu)?;
+    let awake = ClockKeepalive::new(&gpu)?;
     let (report, failure) = awake.during(|| measure(arguments, &gpu, &awake));
     super::table::write(&report)?;
     arguments.write(&report)?;
@@ -79,7 +79,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
 }
 
 /// Returns everything that was measured, and the error that ended the run early, if there was one.
-fn measure(arguments: &Arguments, gpu: &Headless, awake: &Awake<'_>) -> (Report, Option<Error>) {
+fn measure(arguments: &Arguments, gpu: &Headless, awake: &ClockKeepalive<'_>) -> (Report, Option<Error>) {
     let mut report = Report {
         version: VERSION,
         adapter: adapter(gpu),
@@ -118,7 +118,13 @@ impl Arguments {
     }
 
     /// Measures all requested suites. Returns false if Ctrl-C stopped the run.
-    fn all(&self, gpu: &Headless, awake: &Awake<'_>, bench: &mut Bench<'_>, size: UVec2) -> Result<bool, Error> {
+    fn all(
+        &self,
+        gpu: &Headless,
+        awake: &ClockKeepalive<'_>,
+        bench: &mut Bench<'_>,
+        size: UVec2,
+    ) -> Result<bool, Error> {
         // All other rows are compared with the limits.
         let limits = watched("haze: measuring the limits of this adapter".into(), || {
             limits::measure(gpu, awake, size, self.quick)
@@ -159,7 +165,7 @@ impl Arguments {
                 bench.rows.extend(rows);
             }
         }
-        Ok(!interrupt::is_asked())
+        Ok(!interrupt::is_requested())
     }
 
     fn write(&self, report: &Report) -> Result<(), Error> {

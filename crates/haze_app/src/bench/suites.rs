@@ -6,8 +6,8 @@ use clap::ValueEnum;
 use glam::{UVec2, Vec3};
 use haze::preset::Preset;
 use haze::settings::{
-    AccumulationFormat, DepthDownsample, FadeCurve, Layers, LightingResolution, NormalEncoding, Order,
-    Path as SmokePath, Settings, Technique, Upsample,
+    AccumulationFormat, DepthDownsample, FadeCurve, Layers, LightingResolution, NormalEncoding, Order, RenderPath,
+    Settings, Technique, Upsample,
 };
 use haze::sprite::Sprite;
 use haze::{Error, Light, builtin};
@@ -64,21 +64,21 @@ pub struct Case {
 }
 
 /// Returns all paths but `auto`. A path that is added to the settings is included.
-fn paths() -> impl Iterator<Item = SmokePath> {
-    SmokePath::ALL.iter().copied().filter(|&path| path != SmokePath::Auto)
+fn paths() -> impl Iterator<Item = RenderPath> {
+    RenderPath::ALL.iter().copied().filter(|&path| path != RenderPath::Auto)
 }
 
 /// Returns the same paths, each with every choice of layers that it supports.
-fn paths_and_layers() -> impl Iterator<Item = (SmokePath, Layers)> {
+fn paths_and_layers() -> impl Iterator<Item = (RenderPath, Layers)> {
     paths().flat_map(|path| {
-        let layers = if path == SmokePath::Tiled { Layers::ALL } else { &Layers::ALL[..1] };
+        let layers = if path == RenderPath::Tiled { Layers::ALL } else { &Layers::ALL[..1] };
         layers.iter().map(move |&layers| (path, layers))
     })
 }
 
 /// Name of a path in rows.
-fn name_of((path, layers): (SmokePath, Layers)) -> String {
-    if path == SmokePath::Tiled { format!("{} {}", path.name(), layers.name()) } else { path.name().into() }
+fn name_of((path, layers): (RenderPath, Layers)) -> String {
+    if path == RenderPath::Tiled { format!("{} {}", path.name(), layers.name()) } else { path.name().into() }
 }
 
 const SCALES: [u32; 6] = [1, 2, 3, 4, 6, 8];
@@ -135,7 +135,7 @@ pub fn mean_alpha(sprite: &Sprite) -> f32 {
 }
 
 /// Changes the amount of the sprites so that their mean alpha is `alpha`.
-fn of_alpha(mut shot: Shot, alpha: f32) -> Shot {
+fn with_alpha(mut shot: Shot, alpha: f32) -> Shot {
     for (system, material) in shot.preset.systems.iter_mut().zip(&shot.materials) {
         system.emitter.amount = alpha / mean_alpha(&material.sprite);
     }
@@ -148,18 +148,18 @@ fn changed(shot: &Shot, change: impl Fn(&mut Settings)) -> Shot {
     shot
 }
 
-fn at_scale(path: SmokePath, scale: u32) -> impl Fn(&mut Settings) {
+fn at_scale(path: RenderPath, scale: u32) -> impl Fn(&mut Settings) {
     move |settings| (settings.path, settings.accumulate.scale) = (path, scale)
 }
 
 /// The reference of a group: deferred, at full resolution.
 fn full(shot: &Shot) -> Shot {
-    changed(shot, at_scale(SmokePath::Raster, 1))
+    changed(shot, at_scale(RenderPath::Raster, 1))
 }
 
 /// Scales to measure on a path; forward has only full resolution.
-fn scales(path: SmokePath, scales: &[u32]) -> &[u32] {
-    if path == SmokePath::Forward { &[1] } else { scales }
+fn scales(path: RenderPath, scales: &[u32]) -> &[u32] {
+    if path == RenderPath::Forward { &[1] } else { scales }
 }
 
 fn scale(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
@@ -170,7 +170,7 @@ fn scale(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
         let shot = layers(size, count, 0.1)?;
         let mut cases = Vec::new();
         for path in paths() {
-            for &format in if path == SmokePath::Forward { &formats[..1] } else { formats } {
+            for &format in if path == RenderPath::Forward { &formats[..1] } else { formats } {
                 for &scale in scales(path, &SCALES) {
                     let name = format!("{} {} 1/{scale} {count} sprites", path.name(), format.name());
                     let shot = changed(&shot, |settings| {
@@ -199,7 +199,7 @@ fn overdraw(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
     let depths: &[u32] = if quick { &[4, 32, 256] } else { &[4, 16, 64, 256, 1024] };
     let alphas: &[f32] = if quick { &[0.1] } else { &[0.02, 0.1, 0.3] };
     let group = |shot: Shot, sprites: String, work: f64| {
-        let case = |way: (SmokePath, Layers)| Case {
+        let case = |way: (RenderPath, Layers)| Case {
             name: format!("{} {sprites}", name_of(way)),
             shot: changed(&shot, |settings| {
                 at_scale(way.0, 1)(settings);
@@ -212,7 +212,7 @@ fn overdraw(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
     let large = depths.iter().flat_map(|&deep| alphas.iter().map(move |&alpha| (deep, alpha)));
     let mut groups = Vec::new();
     for (deep, alpha) in large {
-        let shot = of_alpha(layers(size, sprites_of(deep), alpha)?, alpha);
+        let shot = with_alpha(layers(size, sprites_of(deep), alpha)?, alpha);
         groups.push(group(shot, format!("{deep} layers of {alpha}"), f64::from(deep)));
     }
     // Many small sprites, where the cost per sprite matters too.
@@ -231,7 +231,7 @@ fn overdraw(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
         ]
     };
     for &(count, deep, alpha, reach) in crowds {
-        let shot = of_alpha(crowd(size, count, deep, reach)?, alpha);
+        let shot = with_alpha(crowd(size, count, deep, reach)?, alpha);
         let beyond = if reach.pictures > 1.0 { ", on beyond the picture" } else { "" };
         groups.push(group(shot, format!("{count} small sprites, {deep} deep, of {alpha}{beyond}"), f64::from(deep)));
     }
@@ -331,7 +331,7 @@ fn upsample(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
             for &upsample in Upsample::ALL {
                 let name = format!("1/{scale} {} {}", downsample.name(), upsample.name());
                 let shot = changed(&shot, |settings| {
-                    at_scale(SmokePath::Raster, scale)(settings);
+                    at_scale(RenderPath::Raster, scale)(settings);
                     (settings.accumulate.depth_downsample, settings.accumulate.upsample) = (downsample, upsample);
                 });
                 cases.push(Case { name, shot, work: ("upsample".into(), 1.0) });
@@ -399,7 +399,7 @@ fn auto(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
         ];
         for (sprites, shot) in &shots {
             for (&technique, scale) in techniques.iter().flat_map(|technique| [(technique, 1), (technique, 3)]) {
-                let case = |path: SmokePath| {
+                let case = |path: RenderPath| {
                     let what = format!("{sprites} {} 1/{scale} {}x{}", technique.name(), size.x, size.y);
                     let shot = changed(shot, |settings| {
                         at_scale(path, scale)(settings);
@@ -407,7 +407,7 @@ fn auto(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
                     });
                     Case { name: format!("{} {what}", path.name()), shot, work: (what, 1.0) }
                 };
-                let cases = [SmokePath::Raster, SmokePath::Tiled, SmokePath::Auto].map(case).into();
+                let cases = [RenderPath::Raster, RenderPath::Tiled, RenderPath::Auto].map(case).into();
                 groups.push(Group { suite: Suite::Auto, cases, reference: full(shot) });
             }
         }

@@ -5,17 +5,17 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use haze::Error;
-use haze::picture::colour_notes;
+use haze::image::colour_conversion_notes;
 use haze::ramp::{Ramp, Role};
 use haze_author::finding::Finding;
 use haze_author::ramp::check::check;
 use haze_author::ramp::response::{DiffuseRamps, Puff};
 
-use super::fit::tell_ramps;
+use super::fit::print_ramp_error;
 use super::{picture_of, refuse_gradient};
 use crate::findings::tell;
 use crate::kind::explain;
-use crate::medium::{PathTraceArguments, named, names, sprite_recipe, usual_sprite};
+use crate::medium::{PathTraceArguments, default_sprite, named, names, sprite_recipe};
 use crate::options::choices;
 use crate::output::{Failures, has_extension};
 
@@ -37,25 +37,25 @@ pub struct Arguments {
 
 pub fn run(Arguments { ramps, role, truth, backlight }: &Arguments) -> Result<(), Failures> {
     if let Some(medium) = truth {
-        tell_truth(ramps, medium, backlight.as_deref())?;
+        print_truth_error(ramps, medium, backlight.as_deref())?;
     }
     tell(ramps, |path| findings(path, *role))
 }
 
 /// Prints how far ramps are from path-traced smoke.
-fn tell_truth(ramps: &[PathBuf], medium: &str, backlight: Option<&Path>) -> Result<(), Error> {
-    let load = |path: &Path| Ok::<_, Error>(Ramp::from_picture(&picture_of(path)?.0));
+fn print_truth_error(ramps: &[PathBuf], medium: &str, backlight: Option<&Path>) -> Result<(), Error> {
+    let load = |path: &Path| Ok::<_, Error>(Ramp::from_image(&picture_of(path)?.0));
     let (ramps, backlight) = (
         ramps.iter().map(|path| Ok((path, load(path)?))).collect::<Result<Vec<_>, Error>>()?,
         backlight.map(load).transpose()?,
     );
-    let (recipe, quality) = (sprite_recipe(&usual_sprite())?, PathTraceArguments::default());
+    let (recipe, quality) = (sprite_recipe(&default_sprite())?, PathTraceArguments::default());
     let path_trace = quality.path_trace();
     let puff = quality.watched(medium, |progress| Puff::trace(&recipe, &named(medium), &path_trace, progress))?;
     for (path, diffuse) in &ramps {
         let ramps = DiffuseRamps { diffuse, backlight: backlight.as_ref() };
         let name = format!("{} against {medium}", path.display());
-        tell_ramps(&name, &puff, ramps)?;
+        print_ramp_error(&name, &puff, ramps)?;
     }
     Ok(())
 }
@@ -66,7 +66,7 @@ fn findings(path: &Path, role: Option<Role>) -> Result<Vec<Finding>, Error> {
     refuse_gradient(path)?;
     let mut findings = Vec::new();
     if !has_extension(path, "json") {
-        let notes = colour_notes(path)?;
+        let notes = colour_conversion_notes(path)?;
         findings.extend(notes.into_iter().map(|what| Finding { name: "colour_space", what }));
     }
     match picture_of(path) {

@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use haze::picture::{Effort, write_png};
+use haze::image::{CompressionEffort, write_png};
 use haze::ramp::Ramp;
 use haze::{Error, builtin};
 use haze_author::ramp::bake::RampRecipe;
 use haze_author::ramp::response::{DiffuseRamps, FittedRamps, Puff, Response, Shape, angle};
 
 use super::{check_output, write_recipe};
-use crate::medium::{MediumArguments, PathTraceArguments, sprite_recipe, usual_sprite};
+use crate::medium::{MediumArguments, PathTraceArguments, default_sprite, sprite_recipe};
 use crate::output::{Files, say};
 use crate::puffs::{Shown, compared, flip};
 use crate::recipe::picture;
@@ -20,7 +20,7 @@ pub struct Arguments {
     #[command(flatten)]
     medium: MediumArguments,
     /// Sprite that shapes the puff: a `*.sprite.json` file, or the name of a built-in sprite.
-    #[arg(long, default_value_os_t = usual_sprite())]
+    #[arg(long, default_value_os_t = default_sprite())]
     sprite: PathBuf,
     #[command(flatten)]
     quality: PathTraceArguments,
@@ -59,8 +59,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let write = |path: &PathBuf, recipe: &RampRecipe| {
         let baked = recipe.bake()?;
         write_recipe(path, recipe)?;
-        write_png(&picture(path), &baked, Effort::Small)?;
-        Ok::<_, Error>(Ramp::from_picture(&baked))
+        write_png(&picture(path), &baked, CompressionEffort::Small)?;
+        Ok::<_, Error>(Ramp::from_image(&baked))
     };
     let diffuse = write(output, diffuse)?;
     let against = backlight.as_ref().zip(against.as_ref()).map(|(path, recipe)| write(path, recipe)).transpose()?;
@@ -68,14 +68,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let after = puff.response(ramps);
     if let Some(sheet) = sheet {
         let shown = Shown { light: &|light| puff.shown(ramps, light), exposure: after.exposure };
-        write_png(sheet, &compared(&puff, "ramps", &shown).into(), Effort::Small)?;
+        write_png(sheet, &compared(&puff, "ramps", &shown).into(), CompressionEffort::Small)?;
     }
     if let Some(usual) = builtin::find(builtin::RAMPS, "diffuse_soft") {
         let usual = usual.ramp()?;
         let ramps = DiffuseRamps { diffuse: &usual, backlight: None };
-        tell_ramps("diffuse_soft", &puff, ramps)?;
+        print_ramp_error("diffuse_soft", &puff, ramps)?;
     }
-    tell_ramps("fitted", &puff, ramps)?;
+    print_ramp_error("fitted", &puff, ramps)?;
     say!(
         "{}: diffuse.intensity {exposure:.2} matches the brightness of {} relative to a white wall",
         output.display(),
@@ -84,14 +84,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
 }
 
 /// Prints how far ramps are from path-traced smoke, in total and light by light.
-pub fn tell_ramps(name: &str, puff: &Puff, ramps: DiffuseRamps<'_>) -> Result<(), Error> {
+pub fn print_ramp_error(name: &str, puff: &Puff, ramps: DiffuseRamps<'_>) -> Result<(), Error> {
     let response = puff.response(ramps);
     let shown = Shown { light: &|light| puff.shown(ramps, light), exposure: response.exposure };
-    tell_response(name, puff, &shown, &response)
+    print_response_error(name, puff, &shown, &response)
 }
 
 /// Prints how far compared images are from path-traced smoke, in total and light by light.
-pub fn tell_response(name: &str, puff: &Puff, shown: &Shown<'_>, response: &Response) -> Result<(), Error> {
+pub fn print_response_error(name: &str, puff: &Puff, shown: &Shown<'_>, response: &Response) -> Result<(), Error> {
     let percent = |share: f32| 100.0 * share;
     say!(
         "{name}: brightness {:.1} % off on average, pixels {:.0} % off, FLIP {:.3}, at intensity {:.2}",

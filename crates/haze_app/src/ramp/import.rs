@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use haze::Error;
-use haze_author::ramp::fit::USUAL_ERROR;
+use haze_author::ramp::fit::DEFAULT_MAX_ERROR;
 use haze_author::ramp::import::import;
 
 use super::{check_output, write_recipe};
@@ -19,7 +19,7 @@ pub struct Arguments {
     #[arg(short, long, value_name = "NAME.ramp.json")]
     output: PathBuf,
     /// Greatest error of a channel, in steps of 1/255, at least 1. A larger error gives fewer stops.
-    #[arg(long, value_name = "STEPS", default_value_t = USUAL_ERROR, allow_hyphen_values = true)]
+    #[arg(long, value_name = "STEPS", default_value_t = DEFAULT_MAX_ERROR, allow_hyphen_values = true)]
     error: f32,
 }
 

@@ -11,7 +11,7 @@ pub mod watch;
 
 use std::path::Path;
 
-use haze::picture::{read_colour_png, write_file};
+use haze::image::{read_colour_png, write_file};
 use haze::{Error, FieldError};
 use haze_author::ramp::bake::RampRecipe;
 use image::DynamicImage;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use glam::UVec2;
-use haze::picture::{Effort, write_png};
+use haze::image::{CompressionEffort, write_png};
 use haze::ramp::{Ramp, Role};
 use haze::{Error, FieldError};
 use haze_author::ramp::template::{TEMPLATES, Template};
@@ -68,7 +68,7 @@ fn write_blank(output: &Path, role: Role) -> Result<(), Error> {
     let size = UVec2::new(512, if has_two_axes { 256 } else { 64 });
     // The first template of the role is the background.
     let Some(template) = TEMPLATES.iter().find(|template| template.role == role) else { return Ok(()) };
-    let mut picture = strip(&Ramp::from_picture(&template.recipe().bake()?), size);
+    let mut picture = strip(&Ramp::from_image(&template.recipe().bake()?), size);
     let mut write = |x: f32, y: f32, text: &str| {
         // White text with a black shadow is legible on any background.
         draw_text(&mut picture, x + 1.0, y + 1.0, TEXT, Rgb([0; 3]), text);
@@ -83,6 +83,6 @@ fn write_blank(output: &Path, role: Role) -> Result<(), Error> {
         let bottom = if role == Role::Specular { "bottom: no smoke: black" } else { "bottom: thin smoke" };
         write(180.0, size.y as f32 - TEXT - 6.0, bottom);
     }
-    write_png(output, &picture.into(), Effort::Small)?;
+    write_png(output, &picture.into(), CompressionEffort::Small)?;
     say!("{}: a {} ramp to paint over, {}x{}", output.display(), role.name(), size.x, size.y)
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use glam::UVec2;
 use haze::ramp::{Ramp, Role};
-use haze::settings::{Backlight, CoverageMode, DiffuseMode, Path as SmokePath, SoftScatterMode};
+use haze::settings::{Backlight, CoverageMode, DiffuseMode, RenderPath, SoftScatterMode};
 use haze::{Error, FieldError, MaterialAssets, builtin};
 use haze_demo::shot::Shot;
 
@@ -79,7 +79,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failures> {
         let inset = if has_two_axes { size / INSET } else { UVec2::new(size.x, size.y / STRIP) };
         sheet.inset(index, &strip(ramp, inset));
     }
-    sheet.add_foot(&format!("{}, {}x{}, {}", base.preset.name, size.x, size.y, backend.description()));
+    sheet.add_footer(&format!("{}, {}x{}, {}", base.preset.name, size.x, size.y, backend.description()));
     arguments.shot.write(sheet.picture, &base, &backend)?;
     // Ramps that were left out have been reported.
     if left_out.errors().is_empty() { Ok(()) } else { Err(Failures::default()) }
@@ -131,7 +131,7 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>, Error> {
 impl Cell {
     fn ramp(&self) -> Result<Ramp, Error> {
         match &self.source {
-            Source::File(path) => Ok(Ramp::from_picture(&picture_of(path)?.0)),
+            Source::File(path) => Ok(Ramp::from_image(&picture_of(path)?.0)),
             Source::Builtin(builtin) => builtin.ramp(),
         }
     }
@@ -172,7 +172,7 @@ fn paint(shot: &mut Shot, role: Role, ramp: &Ramp) {
             }
             // Only forward smoke uses the age ramp.
             Role::Age => {
-                settings.path = SmokePath::Forward;
+                settings.path = RenderPath::Forward;
                 settings.sprite.age_colour = 1.0;
                 age_ramp
             }

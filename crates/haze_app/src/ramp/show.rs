@@ -8,7 +8,7 @@ use clap::Args;
 use glam::{UVec2, Vec3};
 use haze::Error;
 use haze::formula::colour::{linear_from_srgb, luminance, srgb_from_linear};
-use haze::picture::{Effort, write_png};
+use haze::image::{CompressionEffort, write_png};
 use haze::ramp::Ramp;
 use haze_author::ramp::bake::RampRecipe;
 use image::{Rgb, RgbImage, imageops};
@@ -43,10 +43,10 @@ pub fn run(Arguments { ramp: path, output }: &Arguments) -> Result<(), Error> {
         Files::read([path]).write("--output", output, "png")?;
     }
     let (picture, recipe) = picture_of(path)?;
-    let ramp = Ramp::from_picture(&picture);
+    let ramp = Ramp::from_image(&picture);
     let size = ramp.size();
     if let Some(output) = output {
-        write_png(output, &drawn(&ramp).into(), Effort::Quick)?;
+        write_png(output, &drawn(&ramp).into(), CompressionEffort::Quick)?;
         return say!("{}: {}, {}x{}", output.display(), path.display(), size.x, size.y);
     }
     let is_plain = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());

@@ -40,8 +40,8 @@ pub fn run(Arguments { recipes }: &Arguments) -> Result<(), Failures> {
     let watcher = Watcher::new(wake).map_err(|error| failed(Path::new("cannot start the watcher thread"), error))?;
     interrupt::catch();
     let mut known = BTreeSet::new();
-    while !interrupt::is_asked() {
-        watcher.set_unread(files(recipes));
+    while !interrupt::is_requested() {
+        watcher.watch_unread(files(recipes));
         let _ = woken.recv_timeout(LOOK_EVERY);
         watcher.note().iter().for_each(complain);
         for path in watcher.poll() {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use haze::Error;
-use haze::picture::read_png;
+use haze::image::read_png;
 use haze::sprite::SpriteLayout;
 use haze_author::finding::Finding;
 use haze_author::sprite::bake::SpriteRecipe;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use haze::Error;
-use haze::picture::{Effort, read_png, write_png};
+use haze::image::{CompressionEffort, read_png, write_png};
 use haze_author::sprite::six_way::{Packing, unpack};
 
 use crate::options::choices;
@@ -27,7 +27,7 @@ pub fn run(Arguments { maps, packing, output }: &Arguments) -> Result<(), Error>
     output.iter().try_for_each(|path| files.write("--output", path, "png"))?;
     let sheets = unpack(maps, &read_png(maps)?.to_rgba8(), *packing)?;
     for (path, sheet) in output.iter().zip(sheets) {
-        write_png(path, &sheet.into(), Effort::Small)?;
+        write_png(path, &sheet.into(), CompressionEffort::Small)?;
         say!("{}", path.display())?;
     }
     Ok(())

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::UVec2;
-use haze::picture::{Effort, read_png, write_png};
+use haze::image::{CompressionEffort, read_png, write_png};
 use haze::sprite::SpriteLayout;
 use haze::{Error, FieldError};
-use haze_author::sprite::import::{Imported, Source, import, sheet_of};
+use haze_author::sprite::import::{ImportedSprite, Source, arrange_sheet, import};
 use haze_author::sprite::y_direction::SURE;
 
 use crate::options::choices;
@@ -49,7 +49,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let Arguments { files, output, source, columns, rows, y_down, strength } = arguments;
     let mut read = Files::read(files);
     read.write("--output", output, "png")?;
-    if source.has_two() {
+    if source.needs_two_images() {
         read.write("--output", &six_way_of(output), "png")?;
     }
     let refuse = |option: &str, value: String, expected: &str| Err(FieldError::new(option, value, expected).into());
@@ -60,7 +60,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
             "--from normals: other sources have no green direction",
         );
     }
-    if files.len() > 1 && !source.has_two() && (*columns, *rows) != (1, 1) {
+    if files.len() > 1 && !source.needs_two_images() && (*columns, *rows) != (1, 1) {
         let expected = "1x1: each of several files is one frame";
         return refuse("--columns and --rows", format!("{columns}x{rows} for {} files", files.len()), expected);
     }
@@ -68,20 +68,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let pictures = files.iter().map(|&path| Ok((path, read_png(path)?.to_rgba8())));
     let pictures = pictures.collect::<Result<Vec<_>, Error>>()?;
     let path = files.first().copied().unwrap_or(Path::new(""));
-    let (sheets, grid) = if pictures.len() > 1 && !source.has_two() {
-        let (sheet, grid) = sheet_of(&pictures)?;
+    let (sheets, grid) = if pictures.len() > 1 && !source.needs_two_images() {
+        let (sheet, grid) = arrange_sheet(&pictures)?;
         (vec![sheet], grid)
     } else {
         (pictures.into_iter().map(|(_, picture)| picture).collect(), UVec2::new(*columns, *rows))
     };
     let layout = SpriteLayout { columns: grid.x, rows: grid.y, y_down: false };
-    let Imported { picture, six_way, y_direction, doubt, border } =
+    let ImportedSprite { picture, six_way, y_direction, doubt, border } =
         import(path, &sheets, *source, layout, *y_down, *strength)?;
-    write_png(output, &picture.into(), Effort::Small)?;
+    write_png(output, &picture.into(), CompressionEffort::Small)?;
     say!("{}: {}x{} frames", output.display(), grid.x, grid.y)?;
     if let Some(maps) = six_way {
         let path = six_way_of(output);
-        write_png(&path, &maps.into(), Effort::Small)?;
+        write_png(&path, &maps.into(), CompressionEffort::Small)?;
         say!("{}: the light maps, for lighting six_way", path.display())?;
     }
     if let Some((frame, alpha)) = border {

@@ -5,20 +5,20 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use haze::Error;
 use haze::formula::colour::luminance;
-use haze::picture::{Effort, write_file, write_png};
+use haze::image::{CompressionEffort, write_file, write_png};
 use haze_author::path_trace::PathTrace;
 use haze_author::ramp::response::{LIGHTS, Puff, angle};
 use haze_author::sprite::bake::SpriteRecipe;
 
-use crate::medium::{MediumArguments, PathTraceArguments, sprite_recipe, usual_sprite};
+use crate::medium::{MediumArguments, PathTraceArguments, default_sprite, sprite_recipe};
 use crate::output::{Files, say};
 use crate::puffs::{Shown, compared, traced};
-use crate::ramp::fit::tell_response;
+use crate::ramp::fit::print_response_error;
 
 #[derive(Args)]
 pub struct Arguments {
     /// A `*.sprite.json` file, or the name of a built-in sprite.
-    #[arg(default_value_os_t = usual_sprite())]
+    #[arg(default_value_os_t = default_sprite())]
     sprite: PathBuf,
     #[command(flatten)]
     medium: MediumArguments,
@@ -49,9 +49,9 @@ pub fn run(Arguments { sprite, medium, quality, output, volume, six_way }: &Argu
         write_file(path, &recipe.volume(0.0).to_mitsuba())?;
     }
     if *six_way {
-        return beside_six_way(&puff, &recipe, medium, quality, output);
+        return compare_six_way(&puff, &recipe, medium, quality, output);
     }
-    write_png(output, &traced(&puff).into(), Effort::Small)?;
+    write_png(output, &traced(&puff).into(), CompressionEffort::Small)?;
     say!(
         "{}: {} under {LIGHTS} lights; brightness by angle in degrees, 1 is a white wall:",
         output.display(),
@@ -63,7 +63,7 @@ pub fn run(Arguments { sprite, medium, quality, output, volume, six_way }: &Argu
     Ok(())
 }
 
-fn beside_six_way(
+fn compare_six_way(
     puff: &Puff,
     recipe: &SpriteRecipe,
     medium: &MediumArguments,
@@ -75,8 +75,13 @@ fn beside_six_way(
     let what = format!("six-way {}", medium.name());
     let maps = quality.watched(&what, |progress| recipe.bake_six_way(&of, samples, |_, path| progress(path)))?;
     let light = |light| puff.shown_six_way(&maps, light);
-    let response = puff.response_of(light);
+    let response = puff.compare_images(light);
     let shown = Shown { light: &light, exposure: response.exposure };
-    write_png(output, &compared(puff, "six-way", &shown).into(), Effort::Small)?;
-    tell_response(&format!("{}: six-way maps against {}", output.display(), medium.name()), puff, &shown, &response)
+    write_png(output, &compared(puff, "six-way", &shown).into(), CompressionEffort::Small)?;
+    print_response_error(
+        &format!("{}: six-way maps against {}", output.display(), medium.name()),
+        puff,
+        &shown,
+        &response,
+    )
 }

@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use clap::Args;
-use haze::picture::{Effort, write_png};
+use haze::image::{CompressionEffort, write_png};
 use haze::{Error, FieldError, builtin};
 use haze_author::sprite::six_way::BakedSixWay;
 
 use crate::medium::{MediumNumbers, names, sprite_recipe};
 use crate::output::{Files, say};
-use crate::progress::watched_as;
+use crate::progress::with_changing_progress;
 use crate::recipe::{picture, six_way_of};
 
 #[derive(Args)]
@@ -68,7 +68,7 @@ impl Arguments {
             let (frames, samples) = (recipe.frame_count(), self.samples);
             format!("haze: tracing {}, frame {frame} of {frames}, path {sample} of {samples}", path.display())
         };
-        let baked = watched_as(what, || {
+        let baked = with_changing_progress(what, || {
             recipe.bake_six_way(&medium, self.samples, |frame, sample| {
                 done.iter().zip([frame, sample]).for_each(|(count, now)| count.store(now, Ordering::Relaxed));
                 Ok::<_, Error>(())
@@ -77,7 +77,7 @@ impl Arguments {
         let BakedSixWay { picture: maps, intensity, colour, anisotropy } = baked;
         let output = six_way_of(&picture(path));
         say!("{}: {}x{}", output.display(), maps.width(), maps.height())?;
-        write_png(&output, &maps.into(), Effort::Small)?;
+        write_png(&output, &maps.into(), CompressionEffort::Small)?;
         say!(
             "  to look like {}: lighting six_way, diffuse.intensity {intensity:.2}, six_way_anisotropy {anisotropy:.2}, \
              six_way_colour {:.3},{:.3},{:.3}",

@@ -30,7 +30,7 @@ pub enum Action {
     NextStage,
     /// Shows this comparison beside the image, or hides it if it is shown.
     Compare(&'static Against),
-    Picture,
+    Image,
     Help,
     InView(InView),
 }
@@ -113,7 +113,7 @@ pub const ACTIONS: &[Entry] = &[
     entry(Action::Compare(&Against::FullResolution), "Compare with full resolution", Modifiers::NONE, Key::F6),
     entry(Action::Compare(&Against::Forward), "Compare with forward", Modifiers::NONE, Key::F7),
     entry(Action::Compare(&Against::Reference), "Compare with the CPU reference", Modifiers::NONE, Key::F8),
-    entry(Action::Picture, "Back to the picture", Modifiers::NONE, Key::Escape),
+    entry(Action::Image, "Back to the picture", Modifiers::NONE, Key::Escape),
     entry(Action::InView(InView::Frame), "Show the selected light, or all of the smoke", Modifiers::NONE, Key::F),
     entry(Action::InView(InView::Home), "Back to the saved camera", Modifiers::NONE, Key::Home),
     entry(Action::InView(InView::Delete), "Delete the selected light", Modifiers::NONE, Key::Delete),

@@ -1,10 +1,10 @@
 //! Comparison of the image with a second one, to show the image error that a saving costs.
 
 use haze::preset::{Camera, Preset};
-use haze::settings::Path;
+use haze::settings::RenderPath;
 use haze_demo::shot::Shot;
 
-use super::lights::ShownLights;
+use super::lights::LightView;
 
 /// Variant that the image is compared with.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +25,7 @@ pub enum Against {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     First,
-    Second,
+    SecondDiff,
 }
 
 /// State of the comparison.
@@ -45,7 +45,7 @@ impl Default for Compare {
 }
 
 /// Comparison that one click turns on.
-pub struct Offer {
+pub struct CompareOption {
     pub against: Against,
     /// Label of its button.
     pub short: &'static str,
@@ -54,11 +54,11 @@ pub struct Offer {
     pub tooltip: &'static str,
 }
 
-const fn offer(against: Against, short: &'static str, name: &'static str, tooltip: &'static str) -> Offer {
-    Offer { against, short, name, tooltip }
+const fn offer(against: Against, short: &'static str, name: &'static str, tooltip: &'static str) -> CompareOption {
+    CompareOption { against, short, name, tooltip }
 }
 
-pub static OFFERS: [Offer; 4] = [
+pub static COMPARE_OPTIONS: [CompareOption; 4] = [
     offer(Against::Saved, "Saved", "As saved", "The preset as it is on disk"),
     offer(Against::FullResolution, "Full", "Full resolution", "The same smoke without a reduced target"),
     offer(Against::Forward, "Forward", "Forward", "The same smoke lit and blended sprite by sprite, the classic way"),
@@ -74,7 +74,7 @@ impl Compare {
     /// Returns the image shown at a share `x` of the width. The difference view counts as the first image.
     pub fn side(&self, x: f32) -> Side {
         let is_second = self.against.is_some() && self.difference == 0.0 && x >= self.split;
-        if is_second { Side::Second } else { Side::First }
+        if is_second { Side::SecondDiff } else { Side::First }
     }
 }
 
@@ -99,10 +99,10 @@ impl Against {
     }
 
     /// Returns the shot of the second image, with the camera, time and visible lights of the first.
-    pub fn shot(&self, first: &Shot, saved: &Preset, lights: &ShownLights) -> Shot {
+    pub fn shot(&self, first: &Shot, saved: &Preset, lights: &LightView) -> Shot {
         let mut shot = first.clone();
         if let Some(settings) = self.settings(saved) {
-            shot.preset = seen_as(settings, &first.preset, lights);
+            shot.preset = with_view_of(settings, &first.preset, lights);
         }
         let systems = shot.preset.systems.iter_mut();
         match self {
@@ -110,7 +110,7 @@ impl Against {
                 let accumulate = &mut system.settings.accumulate;
                 (accumulate.scale, accumulate.max_side) = (1, 16384);
             }),
-            Self::Forward => systems.for_each(|system| system.settings.path = Path::Forward),
+            Self::Forward => systems.for_each(|system| system.settings.path = RenderPath::Forward),
             Self::Saved | Self::Kept(_) | Self::Reference => {}
         }
         shot
@@ -119,9 +119,9 @@ impl Against {
 
 /// Returns `preset` with the camera and time of `other`, and with the same lights muted and turned. The exposure stays
 /// that of `preset`.
-fn seen_as(preset: &Preset, other: &Preset, lights: &ShownLights) -> Preset {
+fn with_view_of(preset: &Preset, other: &Preset, lights: &LightView) -> Preset {
     let camera = Camera { exposure: preset.camera.exposure, ..other.camera };
-    Preset { camera, time: other.time, lights: lights.shown_of(&preset.lights), ..preset.clone() }
+    Preset { camera, time: other.time, lights: lights.shown_of_preset(&preset.lights), ..preset.clone() }
 }
 
 #[cfg(test)]
@@ -136,7 +136,7 @@ mod tests {
         first.preset.camera.fov = 70.0;
         first.preset.time = 3.0;
         first.preset.systems[0].settings.boost = 1.0;
-        let mut lights = ShownLights::default();
+        let mut lights = LightView::default();
         lights.follow(&first.preset.lights);
         lights.marks(0).unwrap().is_muted = true;
         first.preset.lights = lights.shown(&first.preset.lights);

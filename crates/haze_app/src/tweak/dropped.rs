@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use glam::UVec2;
-use haze::preset::{MaterialNames, PictureFolders, Preset};
+use haze::preset::{AssetFolders, MaterialNames, Preset};
 use haze::ramp::Role;
-use haze::settings::{Leaf, set_field, walk};
+use haze::settings::{Leaf, for_each_field, set_field};
 use haze::sprite::SpriteLayout;
 use haze::{Error, FieldError};
 use haze_author::preset::{doubts, without_effect};
@@ -23,29 +23,29 @@ pub struct Dropped {
 }
 
 /// Roles tried in this order if the file name does not tell the role. The first without a doubt wins.
-const TRIED: [&str; 3] = ["diffuse_ramp", "sprite", "specular_ramp"];
+const ROLES_TO_TRY: [&str; 3] = ["diffuse_ramp", "sprite", "specular_ramp"];
 
 impl Dropped {
     /// Reads an image that lies in one of the preset's folders. `material` is that of the target system.
     ///
     /// # Errors
     /// If the file lies elsewhere, cannot be read, or fits no role.
-    pub fn read(path: &Path, folders: &PictureFolders, material: &MaterialNames) -> Result<Self, Error> {
+    pub fn read(path: &Path, folders: &AssetFolders, material: &MaterialNames) -> Result<Self, Error> {
         let refuse = |expected: String| FieldError::new("dropped file", path.display(), expected).into();
         let Some((folder, name)) = place_of(path, folders) else {
             return Err(refuse("a picture in the preset's folder or a shared one, or a preset file".into()));
         };
-        if let Some(field) = told_by_name(path) {
+        if let Some(field) = field_of_name(path) {
             let (fields, doubt) = checked(field, &folder, &name, material)?;
             return Ok(Self { fields, doubt });
         }
         let mut wrong = None;
-        for field in TRIED {
+        for field in ROLES_TO_TRY {
             match checked(field, &folder, &name, material) {
                 Ok((fields, None)) => return Ok(Self { fields, doubt: None }),
                 Ok((_, Some(doubt))) => wrong = wrong.or(Some(doubt)),
                 // An unreadable image fits no role, so the first error is final.
-                Err(error) if field == TRIED[0] => return Err(error),
+                Err(error) if field == ROLES_TO_TRY[0] => return Err(error),
                 Err(_) => {}
             }
         }
@@ -74,7 +74,7 @@ impl Dropped {
 }
 
 /// Returns the preset folder that contains a file, and the file's path relative to it.
-fn place_of(path: &Path, folders: &PictureFolders) -> Option<(PathBuf, String)> {
+fn place_of(path: &Path, folders: &AssetFolders) -> Option<(PathBuf, String)> {
     let path = files::absolute(path);
     let folders = folders.places(Path::new(".")).map(|folder| files::absolute(&folder));
     let mut places = folders.filter_map(|folder| {
@@ -86,7 +86,7 @@ fn place_of(path: &Path, folders: &PictureFolders) -> Option<(PathBuf, String)> 
 
 /// Returns the material field that the file name, or a recipe beside the file, indicates: `scatter_fog.png` is for soft
 /// scatter.
-fn told_by_name(path: &Path) -> Option<&'static str> {
+fn field_of_name(path: &Path) -> Option<&'static str> {
     let name = path.file_name()?.to_str()?;
     let beside = [(".detail.png", "detail"), (".six_way.png", "six_way")];
     if let Some((_, field)) = beside.into_iter().find(|(ending, _)| name.ends_with(ending)) {
@@ -137,7 +137,7 @@ fn layout(sheet: &Path, material: &MaterialNames) -> SpriteLayout {
 /// Returns the material fields that hold names of images.
 fn picture_fields() -> Vec<&'static str> {
     let mut fields = Vec::new();
-    walk(&mut MaterialNames::default(), &mut |path, leaf| {
+    for_each_field(&mut MaterialNames::default(), &mut |path, leaf| {
         let name = path.last().filter(|_| matches!(leaf, Leaf::Text(_)));
         fields.extend(name.map(|(name, _)| *name));
     });
@@ -173,7 +173,7 @@ mod tests {
         image::RgbaImage::from_pixel(32, 64, image::Rgba([90, 120, 60, 0])).save(path("puff.six_way.png")).unwrap();
         save("opaque.png", (32, 32), |x, y| [112 + x as u8, 112 + y as u8, 240]);
         std::fs::write(path("broken.png"), "no picture").unwrap();
-        let folders = PictureFolders::at(folder.path());
+        let folders = AssetFolders::at(folder.path());
         let mut preset = Preset::load("column").unwrap();
         let mut drop = |name: &str| {
             let dropped = Dropped::read(&path(name), &folders, &preset.systems[0].material)?;

@@ -17,7 +17,7 @@ use image::RgbImage;
 
 use super::made::Made;
 use super::platform::export::{self, Frames, Watch};
-use super::platform::files::{self, Effort, write_png};
+use super::platform::files::{self, CompressionEffort, write_png};
 use super::platform::worker::Worker;
 use super::session::Session;
 use crate::frames::FrameNames;
@@ -27,12 +27,12 @@ use spread::spread;
 
 /// Kind of export.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Product {
-    Picture,
+pub enum ExportKind {
+    Image,
     Sequence,
     Flipbook,
     Gif,
-    ShadeTree,
+    DebugView,
     /// Sheet of nine seeds.
     Seeds,
     /// Sheet of one field at several values; holds the path of the field.
@@ -62,11 +62,11 @@ impl Default for Order {
 pub const MOST_PIXELS: u32 = 8192;
 
 /// Export jobs, and the state of the export dialog.
-pub struct Exporting {
+pub struct ExportJob {
     worker: Worker<Done>,
     progress: Arc<Progress>,
     pub is_open: bool,
-    pub product: Product,
+    pub product: ExportKind,
     pub order: Order,
     /// Search text for the field to vary.
     pub wanted: String,
@@ -96,7 +96,7 @@ enum Done {
     Failed(Error),
 }
 
-impl Exporting {
+impl ExportJob {
     /// `wake` is called from the worker thread when a result is ready.
     ///
     /// # Errors
@@ -108,7 +108,7 @@ impl Exporting {
             worker,
             progress: Arc::default(),
             is_open: false,
-            product: Product::Sequence,
+            product: ExportKind::Sequence,
             order: Order::default(),
             wanted: String::new(),
             sheet: None,
@@ -127,12 +127,12 @@ impl Exporting {
     }
 
     /// Starts an export of the current view.
-    pub fn begin(&mut self, product: Product, session: &mut Session) {
+    pub fn begin(&mut self, product: ExportKind, session: &mut Session) {
         if self.worker.is_busy() {
             return session.messages.complain("export", "an export is running; stop it or wait for it");
         }
         let mut size = self.order.size;
-        if product == Product::Picture {
+        if product == ExportKind::Image {
             // A single image has the aspect ratio of the viewport.
             size.x = ((size.y as f32 * session.show.aspect).round() as u32).clamp(1, MOST_PIXELS);
         }
@@ -207,13 +207,13 @@ impl Place {
 }
 
 fn write(path: PathBuf, picture: RgbImage) -> Result<Done, Error> {
-    write_png(&path, &picture.into(), Effort::Quick)?;
+    write_png(&path, &picture.into(), CompressionEffort::Quick)?;
     Ok(Done::Written(path))
 }
 
 fn make(
     backend: &Backend,
-    product: &Product,
+    product: &ExportKind,
     shot: &Shot,
     order: &Order,
     place: &Place,
@@ -227,35 +227,35 @@ fn make(
         let small = |(label, shot): (String, Shot)| (label, Shot { size, ..shot });
         let cells: Vec<_> = cells.into_iter().map(small).collect();
         let mut sheet = export::sheet(backend, &cells, columns, &path, watch)?;
-        sheet.add_foot(&format!("{name}; {}, {}", shot.preset.name, backend.description()));
+        sheet.add_footer(&format!("{name}; {}, {}", shot.preset.name, backend.description()));
         Ok(Done::Sheet(sheet.picture, path))
     };
     match product {
-        Product::Picture => {
+        ExportKind::Image => {
             let path = place.free("", ".png");
             let one = Frames { range: 0..=0, rate: 1.0 };
             write(path.clone(), export::flipbook(backend, shot, &one, UVec2::ONE, &path, watch)?)
         }
-        Product::Sequence => {
+        ExportKind::Sequence => {
             let folder = place.free("frames", "");
             files::make_folder(&folder)?;
             let names = FrameNames::parse(&folder.join("%04d.png"))?;
-            export::sequence(backend, shot, &frames, &names, Effort::Quick, watch)?;
+            export::sequence(backend, shot, &frames, &names, CompressionEffort::Quick, watch)?;
             Ok(Done::Written(folder))
         }
-        Product::Flipbook => {
+        ExportKind::Flipbook => {
             export::check_flipbook(shot.size, &frames, order.cells)?;
             let path = place.free("flipbook", ".png");
             write(path.clone(), export::flipbook(backend, shot, &frames, order.cells, &path, watch)?)
         }
-        Product::Gif => {
+        ExportKind::Gif => {
             let path = place.free("", ".gif");
             export::gif(backend, shot, &frames, &path, watch)?;
             Ok(Done::Written(path))
         }
-        Product::ShadeTree => sheet("shade_tree", shade_tree::stages(shot)),
-        Product::Seeds => sheet("seeds", seeds(shot)),
-        Product::Values(path) => {
+        ExportKind::DebugView => sheet("shade_tree", shade_tree::stages(shot)),
+        ExportKind::Seeds => sheet("seeds", seeds(shot)),
+        ExportKind::Values(path) => {
             let cells = variations(shot, path);
             if cells.is_empty() {
                 return Err(FieldError::new("export", path, "a number, a choice, or an on/off setting").into());

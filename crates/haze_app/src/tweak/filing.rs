@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use eframe::egui;
 use haze::Error;
-use haze::preset::PictureFolders;
+use haze::preset::AssetFolders;
 
 use super::document::document::{Document, OnDisk, Saving};
 use super::dropped::Dropped;
@@ -17,15 +17,15 @@ use super::platform::worker::Worker;
 use super::session::Session;
 
 /// State of the File menu's actions.
-pub struct Filing {
+pub struct FileActions {
     worker: Worker<Done>,
     dialogs: Dialogs,
     /// Purpose of the open dialog.
     purpose: Purpose,
     /// Action that waits for the user's decision about unsaved work.
-    pub waiting: Option<Next>,
+    pub waiting: Option<AfterUnsaved>,
     /// Action that follows a successful save.
-    then: Option<Next>,
+    then: Option<AfterUnsaved>,
     /// Path that the user types, on systems without file dialogs.
     pub typed: Option<Typed>,
     /// The window may close without a question about unsaved work.
@@ -39,7 +39,7 @@ pub struct Filing {
 const LONGEST: Duration = Duration::from_millis(500);
 
 /// Action that ends the work on the document.
-pub enum Next {
+pub enum AfterUnsaved {
     /// Shows another document.
     Show(Box<Document>, Loaded),
     Close,
@@ -62,7 +62,7 @@ enum Done {
     Failed(Error),
 }
 
-impl Filing {
+impl FileActions {
     /// `wake` is called from other threads when a result is ready.
     ///
     /// # Errors
@@ -94,7 +94,9 @@ impl Filing {
         }
         while let Some(done) = self.worker.poll() {
             match done {
-                Some(Done::Opened(document, loaded)) => self.begin_or_ask(Next::Show(document, loaded), session),
+                Some(Done::Opened(document, loaded)) => {
+                    self.begin_or_ask(AfterUnsaved::Show(document, loaded), session)
+                }
                 Some(Done::Saved(saving, done)) => self.saved(*saving, done, session),
                 Some(Done::Dropped(system, dropped)) => {
                     match dropped.apply(&mut session.document.preset, system, session.show.size) {
@@ -130,7 +132,7 @@ impl Filing {
         {
             context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             let when = if session.document.is_being_saved() { &mut self.then } else { &mut self.waiting };
-            *when = Some(Next::Close);
+            *when = Some(AfterUnsaved::Close);
         }
         let mark = if session.document.is_dirty() { "* " } else { "" };
         let title = format!("{mark}{} - haze", short(&session.document.title(), 80));
@@ -177,14 +179,14 @@ impl Filing {
         });
     }
 
-    fn begin_or_ask(&mut self, next: Next, session: &mut Session) {
+    fn begin_or_ask(&mut self, next: AfterUnsaved, session: &mut Session) {
         if session.document.is_dirty() { self.waiting = Some(next) } else { self.begin(next, session) }
     }
 
-    fn begin(&mut self, next: Next, session: &mut Session) {
+    fn begin(&mut self, next: AfterUnsaved, session: &mut Session) {
         match next {
-            Next::Show(document, loaded) => session.put(*document, loaded),
-            Next::Close => self.is_over = true,
+            AfterUnsaved::Show(document, loaded) => session.put(*document, loaded),
+            AfterUnsaved::Close => self.is_over = true,
         }
     }
 
@@ -305,7 +307,7 @@ fn suggested(session: &Session) -> PathBuf {
 
 fn load(path: &Path, assets: Option<PathBuf>) -> Result<(Document, Loaded), Error> {
     let document = Document::open(path)?;
-    let folders = PictureFolders::beside(path).and_shared(assets);
+    let folders = AssetFolders::beside(path).with_shared(assets);
     let loaded = assets::all(&document.preset, path, &folders)?;
     Ok((document, loaded))
 }

@@ -1,22 +1,22 @@
 //! PSNR of the two compared images, computed on a worker thread so that no frame waits for it.
 
 use eframe::egui;
-use haze_demo::apart::Apart;
+use haze_demo::image_metrics::PsnrReport;
 
 use super::easel::Easel;
-use super::platform::wake::Wake;
+use super::platform::wake::RepaintHandle;
 use super::platform::worker::Worker;
 
 #[derive(Default)]
-pub struct Gauge {
-    worker: Option<Worker<Option<Apart>>>,
+pub struct PsnrJob {
+    worker: Option<Worker<Option<PsnrReport>>>,
     /// PSNR of the last pair of images that was read back.
-    pub apart: Option<Apart>,
+    pub apart: Option<PsnrReport>,
 }
 
-impl Gauge {
+impl PsnrJob {
     /// Takes finished results and requests missing ones. Call once a frame. `is_on`: two images are shown.
-    pub fn update(&mut self, context: &egui::Context, easel: &Easel, wake: &Wake, is_on: bool) {
+    pub fn update(&mut self, context: &egui::Context, easel: &Easel, wake: &RepaintHandle, is_on: bool) {
         easel.want_comparison(is_on);
         if !is_on {
             self.apart = None;
@@ -41,7 +41,7 @@ impl Gauge {
     /// Returns the figures as text for the user.
     pub fn text(&self) -> Option<String> {
         let decibels = |figure: f32| if figure.is_finite() { format!("{figure:.1} dB") } else { "the same".into() };
-        let Apart { psnr, edge_psnr } = self.apart?;
+        let PsnrReport { psnr, edge_psnr } = self.apart?;
         let edges = edge_psnr.map(|figure| format!("   edges {}", decibels(figure))).unwrap_or_default();
         Some(format!("PSNR {}{edges}", decibels(psnr)))
     }

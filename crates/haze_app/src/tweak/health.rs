@@ -10,16 +10,16 @@ use haze::Error;
 
 /// State of a device. Clones share it.
 #[derive(Clone, Default)]
-pub struct Health(Arc<Shared>);
+pub struct DeviceHealth(Arc<Shared>);
 
 #[derive(Default)]
 struct Shared {
     is_lost: AtomicBool,
-    /// First error since the last [`Health::take_error`].
+    /// First error since the last [`DeviceHealth::take_error`].
     error: Mutex<Option<Error>>,
 }
 
-impl Health {
+impl DeviceHealth {
     /// Registers callbacks on a device. Each event requests a repaint of the context.
     pub fn watch(device: &wgpu::Device, context: &egui::Context) -> Self {
         let health = Self::default();
@@ -61,13 +61,13 @@ fn described(error: &wgpu::Error) -> Error {
 
 /// Destroys the device while this frame is painted, like a driver reset. For tests.
 pub fn lose_device(ui: &egui::Ui) {
-    let callback = Callback::new_paint_callback(ui.ctx().content_rect(), Lose);
+    let callback = Callback::new_paint_callback(ui.ctx().content_rect(), DestroyDevice);
     ui.ctx().layer_painter(egui::LayerId::background()).add(callback);
 }
 
-struct Lose;
+struct DestroyDevice;
 
-impl CallbackTrait for Lose {
+impl CallbackTrait for DestroyDevice {
     fn prepare(
         &self,
         device: &wgpu::Device,
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn an_uncaught_error_is_reported_once_on_one_line() {
         let gpu = Headless::new().unwrap();
-        let health = Health::watch(&gpu.device, &egui::Context::default());
+        let health = DeviceHealth::watch(&gpu.device, &egui::Context::default());
         for _ in 0..3 {
             let _ = gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: None,
@@ -111,7 +111,7 @@ mod tests {
     fn a_lost_device_is_reported_and_repaints_the_window() {
         let gpu = Headless::new().unwrap();
         let context = egui::Context::default();
-        let health = Health::watch(&gpu.device, &context);
+        let health = DeviceHealth::watch(&gpu.device, &context);
         for _ in 0..3 {
             context.run_ui(egui::RawInput::default(), |_| {}).textures_delta.clear();
         }

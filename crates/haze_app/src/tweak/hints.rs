@@ -27,7 +27,7 @@ pub const HINTS: [(Hint, &str, &str); 5] = [
 /// Part of the window that a hint points at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    Picture,
+    Image,
     Settings,
     Find,
     Keys,
@@ -36,7 +36,7 @@ pub enum Place {
 impl Hint {
     pub fn place(self) -> Place {
         match self {
-            Self::Orbit | Self::Light => Place::Picture,
+            Self::Orbit | Self::Light => Place::Image,
             Self::Look => Place::Settings,
             Self::Find => Place::Find,
             Self::Keys => Place::Keys,
@@ -46,20 +46,20 @@ impl Hint {
 
 /// Hints that are still to be shown.
 #[derive(Clone, Debug)]
-pub struct Hints {
+pub struct FirstRunHints {
     open: Vec<Hint>,
     places: [Rect; 4],
     /// Camera position and systems of the previous frame, to detect changes.
     last: Option<(Vec3, Vec<PresetSystem>)>,
 }
 
-impl Default for Hints {
+impl Default for FirstRunHints {
     fn default() -> Self {
         Self { open: Vec::new(), places: [Rect::NOTHING; 4], last: None }
     }
 }
 
-impl Hints {
+impl FirstRunHints {
     /// Starts with all hints.
     pub fn begin(&mut self) {
         self.open = HINTS.map(|(hint, ..)| hint).into();
@@ -100,7 +100,7 @@ impl Hints {
     }
 
     /// Removes the hints whose actions were just done.
-    pub fn follow(&mut self, preset: &Preset, done: &Doing) {
+    pub fn follow(&mut self, preset: &Preset, done: &UserActivity) {
         if self.open.is_empty() {
             return;
         }
@@ -123,7 +123,7 @@ impl Hints {
 
 /// User activity in a frame.
 #[allow(clippy::struct_excessive_bools, reason = "independent flags")]
-pub struct Doing {
+pub struct UserActivity {
     /// A pointer button or the wheel is in use.
     pub presses: bool,
     pub drags_light: bool,

@@ -7,24 +7,24 @@ use haze::Error;
 use serde::{Deserialize, Serialize};
 
 use super::document::document::Document;
-use super::document::recovery::{Abandoned, Recovery, WRITE_EVERY, abandoned};
-use super::filing::Filing;
+use super::document::recovery::{CrashedWork, RECOVERY_WRITE_INTERVAL, Recovery, abandoned};
+use super::filing::FileActions;
 use super::platform::clock::{Duration, Instant};
 use super::platform::memory::{recall, remember};
 use super::session::Session;
 
 /// Writes the layout and the recovery files.
-pub struct Keeping {
+pub struct Persistence {
     folder: PathBuf,
     recovery: Recovery,
     /// Unsaved work of crashed instances. The user is asked about one after the other.
-    pub abandoned: Vec<Abandoned>,
+    pub abandoned: Vec<CrashedWork>,
     /// Layout as it was last written, and when.
     written: Option<(Layout, Instant)>,
 }
 
 /// Least time between two writes of the layout.
-const REMEMBER_EVERY: Duration = Duration::from_secs(1);
+const LAYOUT_WRITE_INTERVAL: Duration = Duration::from_secs(1);
 
 /// Window layout. Sizes are in points.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -87,7 +87,7 @@ impl Layout {
     }
 }
 
-impl Keeping {
+impl Persistence {
     /// Stores files in `folder`, and searches it for unsaved work of crashed instances.
     pub fn new(folder: PathBuf, session: &mut Session) -> Self {
         let (abandoned, errors) = abandoned(&folder);
@@ -101,15 +101,15 @@ impl Keeping {
             session.messages.complain("recovery", error);
         }
         if self.recovery.is_behind(&session.document) {
-            context.request_repaint_after(WRITE_EVERY);
+            context.request_repaint_after(RECOVERY_WRITE_INTERVAL);
         }
     }
 
     /// Writes the layout if it has changed. Call once a frame.
-    pub fn remember(&mut self, layout: &Layout, filing: &Filing, context: &egui::Context) {
+    pub fn remember(&mut self, layout: &Layout, filing: &FileActions, context: &egui::Context) {
         let now = Instant::now();
         if let Some((written, at)) = &self.written {
-            let left = REMEMBER_EVERY.saturating_sub(now.saturating_duration_since(*at));
+            let left = LAYOUT_WRITE_INTERVAL.saturating_sub(now.saturating_duration_since(*at));
             if left > Duration::ZERO || written == layout {
                 // A new size is written in a later frame: a resize alone requests no repaint.
                 if written.chosen() != layout.chosen() {
@@ -166,7 +166,7 @@ mod tests {
     fn the_layout_is_written_when_it_changes_and_not_only_at_exit() {
         let folder = tempfile::tempdir().unwrap();
         let mut session = Session::open("column".as_ref(), None).unwrap();
-        let keeping = Some(Keeping::new(folder.path().into(), &mut session));
+        let keeping = Some(Persistence::new(folder.path().into(), &mut session));
         let start =
             Start { session, shaders: ShaderFolder::None, keeping, layout: Layout::default(), has_dialogs: false };
         let mut harness = testing::open(start, egui::Vec2::new(1000.0, 640.0), egui::Theme::Dark);
@@ -189,6 +189,6 @@ mod tests {
         });
         harness.ctx.set_theme(egui::Theme::Light);
         let second = until(&mut harness, |layout| layout.theme.as_deref() == Some("light"));
-        assert!(second - first >= REMEMBER_EVERY);
+        assert!(second - first >= LAYOUT_WRITE_INTERVAL);
     }
 }

@@ -8,7 +8,7 @@ use haze::{Light, LightKind};
 
 /// View state of a preset's lights, by their indices.
 #[derive(Clone, Debug, Default)]
-pub struct ShownLights {
+pub struct LightView {
     pub selected: Option<usize>,
     /// Key light of each system, once it is chosen.
     keys: Vec<Option<usize>>,
@@ -63,22 +63,22 @@ pub fn fresh(kind: LightKind, lights: &[Light]) -> Light {
 struct Entry {
     /// The light as it was last seen, to recognise it when lights are added or removed.
     light: Light,
-    marks: Marks,
+    marks: MuteSolo,
 }
 
 /// Mute and solo flags of a light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Marks {
+pub struct MuteSolo {
     /// The light is left out of the image.
     pub is_muted: bool,
     /// If any light is solo, only solo lights are in the image.
     pub is_solo: bool,
 }
 
-impl ShownLights {
+impl LightView {
     /// Follows changes of the list of lights, by undo or by another preset.
     pub fn follow(&mut self, lights: &[Light]) {
-        let entry = |&light| Entry { light, marks: Marks::default() };
+        let entry = |&light| Entry { light, marks: MuteSolo::default() };
         let (old, new) = (self.entries.len(), lights.len());
         if old != new {
             // Lights that are equal at either end of the list keep their state.
@@ -113,7 +113,7 @@ impl ShownLights {
     }
 
     /// Returns the key light of a system if it is already chosen.
-    pub fn known_key(&self, system: usize) -> Option<usize> {
+    pub fn chosen_key_light(&self, system: usize) -> Option<usize> {
         self.keys.get(system).copied().flatten()
     }
 
@@ -123,7 +123,7 @@ impl ShownLights {
     }
 
     /// Returns the flags of a light, for changing them.
-    pub fn marks(&mut self, index: usize) -> Option<&mut Marks> {
+    pub fn marks(&mut self, index: usize) -> Option<&mut MuteSolo> {
         self.entries.get_mut(index).map(|entry| &mut entry.marks)
     }
 
@@ -148,7 +148,7 @@ impl ShownLights {
 
     /// Returns the lights of another preset that are in its image. They are matched by index, and by equality at the
     /// ends of the lists.
-    pub fn shown_of(&self, others: &[Light]) -> Vec<Light> {
+    pub fn shown_of_preset(&self, others: &[Light]) -> Vec<Light> {
         let mut of_others = self.clone();
         of_others.follow(others);
         // If the solo light does not exist there, no light is in the image.
@@ -170,7 +170,7 @@ impl ShownLights {
             self.follow(lights);
             lights.insert(index, light);
             self.renumber(|place| Some(place + usize::from(place >= index)));
-            self.entries.insert(index, Entry { light, marks: Marks::default() });
+            self.entries.insert(index, Entry { light, marks: MuteSolo::default() });
             self.selected = Some(index);
         }
     }
@@ -201,14 +201,14 @@ mod tests {
         intensities.iter().map(|&intensity| Light { intensity, ..Light::default() }).collect()
     }
 
-    fn muted(shown: &ShownLights) -> Vec<usize> {
+    fn muted(shown: &LightView) -> Vec<usize> {
         (0..shown.entries.len()).filter(|&index| shown.entries[index].marks.is_muted).collect()
     }
 
     #[test]
     fn mute_and_solo_stay_with_their_lights() {
         let mut all = lights(&[1.0, 2.0, 3.0]);
-        let mut shown = ShownLights::default();
+        let mut shown = LightView::default();
         shown.follow(&all);
         shown.marks(1).unwrap().is_muted = true;
         shown.selected = Some(2);
@@ -232,7 +232,7 @@ mod tests {
     #[test]
     fn the_key_light_stays_the_same_light() {
         let mut all = lights(&[1.0, 2.0, 3.0]);
-        let mut shown = ShownLights::default();
+        let mut shown = LightView::default();
         shown.follow(&all);
         assert_eq!((shown.key(0, || Some(1)), shown.key(1, || Some(2))), (Some(1), Some(2)));
         shown.insert(&mut all, 0, Light::default());
@@ -247,7 +247,7 @@ mod tests {
     fn names_tell_kind_and_index_of_the_lights_in_the_image() {
         let mut all = lights(&[1.0, 2.0, 3.0]);
         (all[0].kind, all[2].kind) = (LightKind::Directional, LightKind::Spot);
-        let mut shown = ShownLights::default();
+        let mut shown = LightView::default();
         shown.follow(&all);
         assert_eq!(shown.shown_names(&all), ["sun 1", "lamp 2 (point)", "lamp 3 (spot)"]);
         shown.marks(0).unwrap().is_muted = true;
@@ -257,7 +257,7 @@ mod tests {
     #[test]
     fn a_solo_light_mutes_the_others() {
         let all = lights(&[1.0, 2.0, 3.0]);
-        let mut shown = ShownLights::default();
+        let mut shown = LightView::default();
         shown.follow(&all);
         shown.marks(0).unwrap().is_muted = true;
         assert_eq!(shown.shown(&all), all[1..]);
@@ -268,18 +268,18 @@ mod tests {
     #[test]
     fn mute_and_turn_apply_to_the_lights_of_another_preset() {
         let all = lights(&[1.0, 2.0, 3.0]);
-        let mut shown = ShownLights::default();
+        let mut shown = LightView::default();
         shown.follow(&all);
         shown.turn = Some(Turn { middle: Vec3::ZERO, angle: 1.0 });
         shown.marks(1).unwrap().is_muted = true;
         let turned = |of: &[f32]| lights(of).iter().map(|light| shown.turned(light)).collect::<Vec<_>>();
-        assert_eq!(shown.shown_of(&lights(&[5.0, 6.0, 7.0])), turned(&[5.0, 7.0]));
+        assert_eq!(shown.shown_of_preset(&lights(&[5.0, 6.0, 7.0])), turned(&[5.0, 7.0]));
         // The first light was added since, so it is missing here.
-        assert_eq!(shown.shown_of(&lights(&[2.0, 3.0])), turned(&[3.0]));
+        assert_eq!(shown.shown_of_preset(&lights(&[2.0, 3.0])), turned(&[3.0]));
         let mut alone = shown.clone();
         alone.marks(0).unwrap().is_solo = true;
-        assert_eq!(alone.shown_of(&lights(&[5.0, 6.0, 7.0])), turned(&[5.0]));
-        assert_eq!(alone.shown_of(&lights(&[2.0, 3.0])), []);
+        assert_eq!(alone.shown_of_preset(&lights(&[5.0, 6.0, 7.0])), turned(&[5.0]));
+        assert_eq!(alone.shown_of_preset(&lights(&[2.0, 3.0])), []);
         assert_eq!(alone.shown(&all), turned(&[1.0]), "nothing is changed by looking");
     }
 
@@ -304,7 +304,7 @@ mod tests {
 
     #[test]
     fn no_more_lights_are_added_than_a_frame_takes() {
-        let (mut all, mut shown) = (Vec::new(), ShownLights::default());
+        let (mut all, mut shown) = (Vec::new(), LightView::default());
         for _ in 0..MAX_LIGHTS + 2 {
             shown.insert(&mut all, 0, Light::default());
         }

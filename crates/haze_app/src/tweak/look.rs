@@ -1,7 +1,7 @@
 //! Controls of the look tab: their names for artists, and the settings that they change.
 
 use super::made::{Made, SOFTNESS, THICKNESS, WIND};
-use super::reach::Usual;
+use super::reach::UsualRange;
 
 /// Control of the look tab.
 pub struct Control {
@@ -13,9 +13,9 @@ pub struct Control {
 /// fields.
 #[derive(Clone, Copy)]
 pub enum Of {
-    System(&'static str, Usual),
-    KeyLight(&'static str, Usual),
-    Camera(&'static str, Usual),
+    System(&'static str, UsualRange),
+    KeyLight(&'static str, UsualRange),
+    Camera(&'static str, UsualRange),
     Made(&'static Made),
 }
 

@@ -53,7 +53,7 @@ impl Messages {
     }
 
     /// Removes the latest message.
-    pub fn put_away(&mut self) {
+    pub fn dismiss_latest(&mut self) {
         self.0.pop();
     }
 

@@ -61,7 +61,7 @@ use haze::Error;
 use haze::settings::set_field;
 
 use super::options::{AssetsArguments, in_option, parse_assignment, parse_size};
-use keeping::{Keeping, Layout};
+use keeping::{Layout, Persistence};
 use open::open;
 use platform::dialog::Dialogs;
 use platform::{assets, folders};
@@ -122,7 +122,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         session.messages.complain("layout", error);
     }
     let size = arguments.size.map(|size| size.as_vec2().to_array()).or(layout.window);
-    let keeping = state.map(|folder| Keeping::new(folder, &mut session));
+    let keeping = state.map(|folder| Persistence::new(folder, &mut session));
     let start =
         Start { session, shaders, keeping, layout, has_dialogs: Dialogs::are_likely(|name| std::env::var_os(name)) };
     open(start, size.map(egui::Vec2::from))

@@ -95,7 +95,7 @@ fn the_full_resolution_returns_when_everything_is_released() {
     let at = Pos2::new(350.0, 476.0);
     harness.drag_at(at);
     harness.step();
-    harness.state().easel().be_slow();
+    harness.state().easel().simulate_slow_frame();
     let coarse = picture(&mut harness);
     assert!(harness.state().easel().divisor() > 1);
     harness.drop_at(at);

@@ -4,9 +4,9 @@ use eframe::{egui, egui_wgpu, wgpu};
 use haze::Error;
 
 use super::easel::Easel;
-use super::health::{Health, lose_device};
+use super::health::{DeviceHealth, lose_device};
 use super::platform::clock::{Duration, Instant};
-use super::release::split_at_release;
+use super::release::split_events_at_release;
 use super::surface::paced;
 use super::window::{Start, Window};
 
@@ -93,7 +93,7 @@ fn open_once(kept: &mut Kept, is_sized: bool) -> Result<(), Error> {
 /// App of eframe around the window, while the device works.
 struct Shown<'a> {
     window: Option<Window>,
-    health: Health,
+    health: DeviceHealth,
     kept: &'a mut Kept,
     /// Events after the release of a button, kept for the next frame.
     later: Vec<egui::Event>,
@@ -101,7 +101,7 @@ struct Shown<'a> {
 
 impl eframe::App for Shown<'_> {
     fn raw_input_hook(&mut self, context: &egui::Context, input: &mut egui::RawInput) {
-        split_at_release(&mut self.later, &mut input.events);
+        split_events_at_release(&mut self.later, &mut input.events);
         if !self.later.is_empty() {
             context.request_repaint();
         }

@@ -7,7 +7,7 @@ use haze::settings::Budget;
 use haze::{FrameTimes, ScaleBudget};
 use haze_author::preset::Tooltips;
 
-use super::easel::{Easel, Figures};
+use super::easel::{Easel, RenderStats};
 
 /// Number of images whose times are kept.
 pub const REMEMBERED: usize = 200;
@@ -26,7 +26,7 @@ pub struct Performance {
     pub pictures: VecDeque<Vec<f32>>,
     /// Names of the passes, in the order of the frame.
     pub names: Vec<&'static str>,
-    pub figures: Figures,
+    pub figures: RenderStats,
     holder: Option<ScaleBudget>,
     /// Frame of the latest result; `waiting` counts down the frames in which another may arrive.
     seen: Option<u64>,
@@ -44,7 +44,7 @@ impl Default for Performance {
             tooltips: Tooltips::of::<Budget>(),
             pictures: VecDeque::new(),
             names: Vec::new(),
-            figures: Figures::default(),
+            figures: RenderStats::default(),
             holder: None,
             seen: None,
             waiting: 0,

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureOptions};
 use glam::{UVec3, Vec3, Vec4Swizzles};
 use haze::builtin::{self, Builtin};
-use haze::picture::{decode_colour_png, decode_png};
-use haze::settings::PictureRole;
+use haze::image::{decode_colour_png, decode_png};
+use haze::settings::ImageRole;
 use haze::sprite::Sprite;
 use haze::{Error, noise};
 use image::imageops::{self, FilterType};
@@ -64,7 +64,7 @@ impl PictureThumbnails {
     }
 
     /// Returns names of images for a role: files first, then the many built-in ones.
-    pub fn names(&self, context: &egui::Context, role: PictureRole) -> Vec<String> {
+    pub fn names(&self, context: &egui::Context, role: ImageRole) -> Vec<String> {
         let now = context.input(|input| input.time);
         let inner = &mut *self.0.borrow_mut();
         if inner.listed.is_none_or(|listed| now - listed > FRESH) {
@@ -82,7 +82,7 @@ impl PictureThumbnails {
     }
 
     /// Returns the thumbnail of an image, once it is decoded.
-    pub fn texture(&self, context: &egui::Context, role: PictureRole, name: &str) -> Option<egui::TextureId> {
+    pub fn texture(&self, context: &egui::Context, role: ImageRole, name: &str) -> Option<egui::TextureId> {
         let inner = &mut *self.0.borrow_mut();
         while let Some(Some((key, image))) = inner.worker.as_ref().and_then(Worker::poll) {
             if let Some((thumb, image)) = inner.pictures.get_mut(&key).zip(image) {
@@ -127,21 +127,21 @@ enum Source {
     File(PathBuf),
 }
 
-fn thumbnail(role: PictureRole, source: &Source) -> Result<ColorImage, Error> {
+fn thumbnail(role: ImageRole, source: &Source) -> Result<ColorImage, Error> {
     match (role, source) {
-        (PictureRole::Sprite, Source::Builtin(builtin)) => Ok(puff(&builtin.sprite()?)),
-        (PictureRole::Noise, Source::Builtin(builtin)) => Ok(slice(&builtin.noise()?)),
+        (ImageRole::Sprite, Source::Builtin(builtin)) => Ok(puff(&builtin.sprite()?)),
+        (ImageRole::Noise, Source::Builtin(builtin)) => Ok(slice(&builtin.noise()?)),
         (_, Source::Builtin(builtin)) => decoded(role, &builtin::path(builtin.name), builtin.bytes),
         (_, Source::File(path)) => decoded(role, path, &files::read_picture(path)?),
     }
 }
 
 /// Decodes an image as for a material, and stretches it to the size of a thumbnail.
-fn decoded(role: PictureRole, path: &Path, bytes: &[u8]) -> Result<ColorImage, Error> {
+fn decoded(role: ImageRole, path: &Path, bytes: &[u8]) -> Result<ColorImage, Error> {
     let [width, height] = SIZE.map(|side| side as u32);
     let decode = match role {
-        PictureRole::Ramp | PictureRole::Motif => decode_colour_png,
-        PictureRole::Sprite | PictureRole::Detail | PictureRole::SixWay | PictureRole::Noise => decode_png,
+        ImageRole::Ramp | ImageRole::Motif => decode_colour_png,
+        ImageRole::Sprite | ImageRole::Detail | ImageRole::SixWay | ImageRole::Noise => decode_png,
     };
     let small = imageops::resize(&decode(path, bytes)?.to_rgba8(), width, height, FilterType::Triangle);
     Ok(ColorImage::from_rgba_unmultiplied(SIZE, small.as_raw()))
@@ -191,9 +191,9 @@ mod tests {
         image::RgbaImage::from_pixel(4, 1, image::Rgba([255, 255, 255, 55])).save(&path).unwrap();
         let first = |role| thumbnail(role, &Source::File(path.clone())).unwrap().pixels[0];
         // A transparent texel gives proportionally less light: alpha 55/255 halves the sRGB code of white.
-        let grey = first(PictureRole::Ramp);
+        let grey = first(ImageRole::Ramp);
         assert!(grey.is_opaque() && grey.r().abs_diff(128) <= 1, "{grey:?}");
-        assert_eq!(first(PictureRole::Motif), grey);
-        assert_eq!(first(PictureRole::Noise), Color32::from_rgba_unmultiplied(255, 255, 255, 55));
+        assert_eq!(first(ImageRole::Motif), grey);
+        assert_eq!(first(ImageRole::Noise), Color32::from_rgba_unmultiplied(255, 255, 255, 55));
     }
 }

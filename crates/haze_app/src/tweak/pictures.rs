@@ -25,7 +25,7 @@ impl Pictures {
     }
 
     /// Replaces reloaded images that have not changed by the present ones, so that nothing is uploaded for them.
-    pub fn keep_same(&self, loaded: Vec<MaterialAssets>) -> Vec<MaterialAssets> {
+    pub fn reuse_equal(&self, loaded: Vec<MaterialAssets>) -> Vec<MaterialAssets> {
         let same = |new: &MaterialAssets| self.0.iter().map(|(_, old)| old).find(|old| *old == new).cloned();
         loaded.into_iter().map(|new| same(&new).unwrap_or(new)).collect()
     }
@@ -60,7 +60,7 @@ mod tests {
         preset.systems[0].material.diffuse_ramp = "mine.png".into();
         assert!(pictures.of(&preset)[0].shares(&first));
         // A reload of the same files gives the same images.
-        let again = pictures.keep_same(load(&Preset::load("column").unwrap()));
+        let again = pictures.reuse_equal(load(&Preset::load("column").unwrap()));
         assert!(again[0].shares(&first));
     }
 }

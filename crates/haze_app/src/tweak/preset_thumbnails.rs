@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui;
 use glam::UVec2;
-use haze::preset::PictureFolders;
+use haze::preset::AssetFolders;
 use haze::{Error, builtin};
-use haze_demo::develop::develop;
+use haze_demo::tonemap_pass::tonemap;
 use image::RgbImage;
 
 use super::platform::assets;
@@ -112,8 +112,8 @@ impl PresetThumbnails {
 }
 
 fn draw(path: &Path, assets: Option<PathBuf>) -> Result<Drawn, Error> {
-    let folders = PictureFolders::beside(path).and_shared(assets);
+    let folders = AssetFolders::beside(path).with_shared(assets);
     let shot = assets::shot(path, &folders, SIZE)?;
-    let picture = develop(&shot.render_on_cpu()?, &shot);
+    let picture = tonemap(&shot.render_on_cpu()?, &shot);
     Ok(Drawn { picture, name: shot.preset.name, description: shot.preset.description })
 }

@@ -4,20 +4,20 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use egui_gradient::GradientEditor;
-use haze::preset::{PictureFolders, Preset};
+use haze::preset::{AssetFolders, Preset};
 use haze::ramp::Ramp;
 use haze::settings::{Value, set_field, values};
 use haze::{Error, MaterialAssets, builtin};
 use haze_author::ramp::bake::RampRecipe;
-use haze_author::ramp::fit::{USUAL_ERROR, fit};
+use haze_author::ramp::fit::{DEFAULT_MAX_ERROR, fit};
 
 use super::document::document::Document;
 use super::platform::assets;
-use super::platform::files::{self, Effort, Stamp, read_colour_png, write_png};
+use super::platform::files::{self, CompressionEffort, Stamp, read_colour_png, write_png};
 
 /// Ramps that panels have asked about, by their names in the preset.
 #[derive(Default)]
-pub struct RampFiles {
+pub struct RampEdits {
     /// Path of the preset that they belong to.
     preset: PathBuf,
     known: BTreeMap<String, Known>,
@@ -55,14 +55,14 @@ struct Known {
     is_stale: bool,
 }
 
-impl RampFiles {
+impl RampEdits {
     /// Marks all ramps, so that changed files are read again.
     pub fn look_again(&mut self) {
         self.known.values_mut().for_each(|known| known.is_stale = true);
     }
 
     /// Returns the origin of a ramp.
-    pub fn source(&mut self, name: &str, folders: &PictureFolders) -> &Source {
+    pub fn source(&mut self, name: &str, folders: &AssetFolders) -> &Source {
         let known = self.known.entry(name.into()).or_insert_with(|| Known::read(name, folders));
         &known.source
     }
@@ -102,7 +102,7 @@ impl RampFiles {
     /// Fits a recipe to a painted ramp. Returns the number of stops and the largest error of the fit in 1/255.
     pub fn fit(&mut self, name: &str) -> Result<(usize, f32), Error> {
         let Some(known) = self.known.get_mut(name) else { return Ok((0, 0.0)) };
-        let fitted = fit(&read_colour_png(&known.picture)?, USUAL_ERROR)?;
+        let fitted = fit(&read_colour_png(&known.picture)?, DEFAULT_MAX_ERROR)?;
         let count = fitted.recipe.rows.iter().map(|row| row.stops.len()).sum();
         // The image stays as it was painted until a stop is changed.
         known.written = Some(fitted.recipe.clone());
@@ -111,7 +111,7 @@ impl RampFiles {
     }
 
     /// Bakes recipes that have changed, and writes them unless a control is held. Call once a frame, after the panels.
-    pub fn advance(&mut self, document: &mut Document, folders: &PictureFolders, is_held: bool) -> Result<(), Error> {
+    pub fn advance(&mut self, document: &mut Document, folders: &AssetFolders, is_held: bool) -> Result<(), Error> {
         if self.preset != document.path() {
             self.known.clear();
             self.preset = document.path().into();
@@ -133,7 +133,7 @@ impl RampFiles {
             }
             let picture = recipe.bake()?;
             if !has_live {
-                known.live = Some((recipe.clone(), Ramp::from_picture(&picture)));
+                known.live = Some((recipe.clone(), Ramp::from_image(&picture)));
             }
             if !is_held && known.written.as_ref() != Some(recipe) {
                 // A write error is reported once; the next step tries again.
@@ -167,7 +167,7 @@ impl RampFiles {
 }
 
 impl Known {
-    fn read(name: &str, folders: &PictureFolders) -> Self {
+    fn read(name: &str, folders: &AssetFolders) -> Self {
         let picture = assets::place_of(name, folders);
         // Stamps are taken before the files are read, so that a write in between counts as a change.
         let stamps = stamps(&picture);
@@ -192,7 +192,7 @@ impl Known {
 }
 
 fn makes(recipe: &RampRecipe, ramp: &Ramp) -> bool {
-    recipe.bake().is_ok_and(|picture| Ramp::from_picture(&picture) == *ramp)
+    recipe.bake().is_ok_and(|picture| Ramp::from_image(&picture) == *ramp)
 }
 
 /// Returns `mine.ramp.json` for `mine.png`.
@@ -207,7 +207,7 @@ fn stamps(picture: &Path) -> [Option<Stamp>; 2] {
 /// Writes the recipe first, because the image can be made again from it.
 fn write(picture: &Path, recipe: &RampRecipe, baked: &image::DynamicImage) -> Result<(), Error> {
     files::write(&recipe_of(picture), recipe.to_text().as_bytes())?;
-    write_png(picture, baked, Effort::Small)
+    write_png(picture, baked, CompressionEffort::Small)
 }
 
 /// Writes a copy of a built-in ramp beside a preset under a free name, and returns the name.
@@ -215,7 +215,7 @@ fn copy_of(name: &str, preset: &Path) -> Result<String, Error> {
     let folder = preset.parent().unwrap_or(Path::new(""));
     let Some(builtin) = builtin::find(builtin::RAMPS, name) else { return Ok(name.into()) };
     let recipe = RampRecipe::parse(&builtin::path(name), builtin.recipe)?;
-    let file = files::own_name(name, |file| {
+    let file = files::free_copy_name(name, |file| {
         let picture = folder.join(file);
         !files::exists(&picture) && !files::exists(&recipe_of(&picture))
     });

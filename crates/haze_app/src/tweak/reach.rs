@@ -9,7 +9,7 @@ const MOST_LINEAR: f32 = 100.0;
 const FAR: f32 = 1000.0;
 
 /// Usual range of a number, if it is narrower than the valid one. The slider covers it linearly.
-pub type Usual = Option<(f32, f32)>;
+pub type UsualRange = Option<(f32, f32)>;
 
 /// Returns the range of a number's slider, and true if it is too wide to be linear.
 pub fn reach(range: &RangeInclusive<f32>, value: f32) -> (RangeInclusive<f32>, bool) {

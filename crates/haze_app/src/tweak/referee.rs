@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec4;
 use haze::Error;
-use haze::picture::Picture;
+use haze::image::Image;
 use haze_demo::shot::Shot;
 
 use super::platform::clock::{Duration, Instant};
@@ -14,33 +14,33 @@ use super::platform::worker::{Ticket, Worker};
 const STILL: Duration = Duration::from_millis(250);
 
 /// Image, and the time it took.
-type Work = Result<(Picture<Vec4>, Duration), Error>;
+type Work = Result<(Image<Vec4>, Duration), Error>;
 
 #[derive(Default)]
-pub struct Referee {
+pub struct CpuRenderJob {
     worker: Option<Worker<Work>>,
     /// Last requested shot, and when it was first requested.
     wanted: Option<(Shot, Instant)>,
     /// Set while the image is rendered.
     ticket: Option<Ticket>,
-    made: Option<Arc<Picture<Vec4>>>,
+    made: Option<Arc<Image<Vec4>>>,
     /// Time that rendering took.
     pub took: Option<Duration>,
 }
 
 /// State of the image.
-pub enum Verdict {
+pub enum CpuRenderState {
     /// Nothing to do before this time has passed.
     Later(Duration),
     /// Rendering is in progress; `wake` will be called.
     Soon,
-    Made(Arc<Picture<Vec4>>),
+    Made(Arc<Image<Vec4>>),
     Failed(Error),
 }
 
-impl Referee {
+impl CpuRenderJob {
     /// Returns the image of a shot, or its state. `wake` is called from the worker thread when the image is ready.
-    pub fn judge(&mut self, shot: &Shot, wake: impl Fn() + Send + 'static) -> Verdict {
+    pub fn judge(&mut self, shot: &Shot, wake: impl Fn() + Send + 'static) -> CpuRenderState {
         let now = Instant::now();
         if !self.wanted.as_ref().is_some_and(|(wanted, _)| wanted.is_same(shot)) {
             self.wanted = Some((shot.clone(), now));
@@ -50,19 +50,19 @@ impl Referee {
             }
         }
         if let Some(made) = &self.made {
-            return Verdict::Made(made.clone());
+            return CpuRenderState::Made(made.clone());
         }
         if self.ticket.is_none() {
             let since = self.wanted.as_ref().map_or(now, |(_, since)| *since);
             let left = STILL.saturating_sub(now.duration_since(since));
             if left > Duration::ZERO {
-                return Verdict::Later(left);
+                return CpuRenderState::Later(left);
             }
             let worker = match &self.worker {
                 Some(worker) => worker,
                 None => match Worker::new("reference", wake) {
                     Ok(worker) => self.worker.insert(worker),
-                    Err(error) => return Verdict::Failed(Error::Io { path: "a thread".into(), error }),
+                    Err(error) => return CpuRenderState::Failed(Error::Io { path: "a thread".into(), error }),
                 },
             };
             let shot = shot.clone();
@@ -72,14 +72,14 @@ impl Referee {
             }));
         }
         match self.worker.as_ref().and_then(Worker::poll) {
-            None => Verdict::Soon,
+            None => CpuRenderState::Soon,
             Some(Some(Ok((picture, took)))) => {
                 let made = Arc::new(picture);
                 (self.made, self.took) = (Some(made.clone()), Some(took));
-                Verdict::Made(made)
+                CpuRenderState::Made(made)
             }
-            Some(Some(Err(error))) => Verdict::Failed(error),
-            Some(None) => Verdict::Failed(Error::Device("the CPU renderer ended".into())),
+            Some(Some(Err(error))) => CpuRenderState::Failed(error),
+            Some(None) => CpuRenderState::Failed(Error::Device("the CPU renderer ended".into())),
         }
     }
 }

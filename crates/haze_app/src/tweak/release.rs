@@ -5,7 +5,7 @@ use eframe::egui::Event;
 /// Moves the events after the first release of a button to `later`, and prepends those that were moved before. egui
 /// gives a released control the pointer position at the end of the frame; during a long frame, a slider would follow
 /// the pointer there.
-pub fn split_at_release(later: &mut Vec<Event>, events: &mut Vec<Event>) {
+pub fn split_events_at_release(later: &mut Vec<Event>, events: &mut Vec<Event>) {
     events.splice(..0, later.drain(..));
     let is_release = |event: &Event| matches!(event, Event::PointerButton { pressed: false, .. });
     if let Some(at) = events.iter().position(is_release) {
@@ -36,13 +36,13 @@ mod tests {
             button(off, true),
         ];
         let (all, mut later) = (events.clone(), Vec::new());
-        split_at_release(&mut later, &mut events);
+        split_events_at_release(&mut later, &mut events);
         assert_eq!((&events[..], &later[..]), (&all[..3], &all[3..]));
         let mut events = vec![button(off, false), Event::PointerMoved(on)];
-        split_at_release(&mut later, &mut events);
+        split_events_at_release(&mut later, &mut events);
         assert_eq!((events.len(), later.len()), (3, 1));
         let mut events = Vec::new();
-        split_at_release(&mut later, &mut events);
+        split_events_at_release(&mut later, &mut events);
         assert_eq!((events, later.len()), (vec![Event::PointerMoved(on)], 0));
     }
 }

@@ -9,9 +9,9 @@ use std::sync::Arc;
 use haze::preset::{MaterialNames, Preset};
 use haze::shader::{self, Sources};
 use haze::{Error, MaterialAssets};
-use haze_author::particle_files::Cache;
+use haze_author::particle_files::ParticleFrames;
+use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
-use haze_demo::stage::{Stage, StageContext};
 
 use super::caches::{Caches, paths};
 use super::document::document::OnDisk;
@@ -23,10 +23,10 @@ use super::platform::worker::{Ticket, Worker};
 use super::session::Session;
 use super::sprite::source::detail_of;
 use crate::inputs::picture_files;
-use crate::recipe::recipes_of;
+use crate::recipe::recipe_paths;
 
 /// Watches the files of a session.
-pub struct Reload {
+pub struct HotReload {
     watcher: Watcher,
     worker: Worker<Loaded>,
     /// Files that were last requested.
@@ -50,9 +50,9 @@ struct Shaders {
 /// Result from the worker thread.
 enum Loaded {
     Pictures(Box<Preset>, Result<Vec<MaterialAssets>, Error>),
-    Caches(Box<Preset>, Result<Vec<Option<Cache>>, Error>),
+    Caches(Box<Preset>, Result<Vec<Option<ParticleFrames>>, Error>),
     /// With the files to watch.
-    Shaders(Vec<PathBuf>, Result<(StageContext, Sources), Error>),
+    Shaders(Vec<PathBuf>, Result<(OffscreenContext, Sources), Error>),
 }
 
 /// Source of the shaders.
@@ -77,7 +77,7 @@ impl ShaderFolder {
     }
 }
 
-impl Reload {
+impl HotReload {
     /// Watches the files of a session. `wake` is called from other threads when something has changed.
     ///
     /// # Errors
@@ -109,7 +109,7 @@ impl Reload {
         }
         // Files may have been written after they were read and before they were watched.
         reload.load_pictures(session);
-        reload.load_caches(session);
+        reload.load_particle_files(session);
         Ok(reload)
     }
 
@@ -128,7 +128,7 @@ impl Reload {
             look_again(session);
             self.load_pictures(session);
             if has_caches {
-                self.load_caches(session);
+                self.load_particle_files(session);
             }
         }
         let (mut has_pictures, mut has_caches, mut has_shaders) = (false, false, false);
@@ -152,7 +152,7 @@ impl Reload {
         if has_caches {
             // A sequence may have gained a frame, which must be watched too.
             self.watch(session);
-            self.load_caches(session);
+            self.load_particle_files(session);
         }
         if has_shaders {
             self.check_shaders(session, easel);
@@ -167,7 +167,7 @@ impl Reload {
         let folders = session.folders();
         let pictures = picture_files(&session.document.preset);
         // The recipe of a sprite also makes its detail image, even if the preset does not name that.
-        let beside = pictures.iter().flat_map(|picture| recipes_of(picture).chain([detail_of(picture)]));
+        let beside = pictures.iter().flat_map(|picture| recipe_paths(picture).chain([detail_of(picture)]));
         let beside = beside.flat_map(|file| folders.places(&file).collect::<Vec<_>>());
         self.watcher.set(session.document.files(&folders).into_iter().chain(beside).chain(shaders));
     }
@@ -178,7 +178,7 @@ impl Reload {
         let path = session.document.path().to_owned();
         let (old, folders) = (session.pictures.clone(), session.folders());
         let ticket = self.worker.submit(move |_| {
-            let loaded = assets::pictures(&preset, &path, &folders).map(|loaded| old.keep_same(loaded));
+            let loaded = assets::pictures(&preset, &path, &folders).map(|loaded| old.reuse_equal(loaded));
             Loaded::Pictures(preset, loaded)
         });
         // Only the latest load counts.
@@ -188,7 +188,7 @@ impl Reload {
     }
 
     /// Loads the particle files that the preset names. The present ones stay if that fails.
-    fn load_caches(&mut self, session: &Session) {
+    fn load_particle_files(&mut self, session: &Session) {
         let preset = Box::new(session.document.preset.clone());
         let (path, folders) = (session.document.path().to_owned(), session.folders());
         let ticket = self.worker.submit(move |_| {
@@ -276,14 +276,14 @@ fn embedded_names(folder: &Path) -> Vec<PathBuf> {
 /// `files`.
 fn check(
     folder: &Path,
-    context: &StageContext,
+    context: &OffscreenContext,
     shot: &Shot,
     files: &mut Vec<PathBuf>,
-) -> Result<(StageContext, Sources), Error> {
+) -> Result<(OffscreenContext, Sources), Error> {
     let sources = assets::shaders(folder)?;
     sources.paths().for_each(|path| add(files, path));
     let context = context.with_shaders(&sources)?;
-    Stage::new(&context, false)?.warm_up(shot)?;
+    OffscreenRenderer::new(&context, false)?.warm_up(shot)?;
     Ok((context, sources))
 }
 

@@ -7,7 +7,7 @@ use eframe::egui::{self, Ui};
 use haze::Error;
 use image::RgbImage;
 
-use super::platform::files::{Effort, write_png};
+use super::platform::files::{CompressionEffort, write_png};
 use super::session::Session;
 
 /// Number of frames after which the window has settled.
@@ -46,5 +46,5 @@ fn write(path: &Path, picture: &egui::ColorImage) -> Result<(), Error> {
     let [width, height] = picture.size.map(|side| side as u32);
     let bytes = picture.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()]).collect();
     let picture = RgbImage::from_raw(width, height, bytes).unwrap_or_default();
-    write_png(path, &picture.into(), Effort::Small)
+    write_png(path, &picture.into(), CompressionEffort::Small)
 }

@@ -1,10 +1,10 @@
 //! Search for settings by name or tooltip.
 
 use haze::preset::Preset;
-use haze::settings::{path_of, walk};
+use haze::settings::{field_path, for_each_field};
 use haze_author::preset::Tooltips;
 
-use super::lights::ShownLights;
+use super::lights::LightView;
 use super::look::{LOOK, Of};
 use super::show::Tab;
 
@@ -13,7 +13,7 @@ const MOST: usize = 12;
 
 /// State of the search.
 #[derive(Default)]
-pub struct Search {
+pub struct SettingSearch {
     pub is_open: bool,
     pub text: String,
     /// Index of the selected result.
@@ -25,7 +25,7 @@ pub struct Search {
 /// Number of frames that collapsed sections need to open and scroll.
 const FRAMES: u32 = 60;
 
-impl Search {
+impl SettingSearch {
     pub fn open(&mut self) {
         *self = Self { is_open: true, ..Self::default() };
     }
@@ -61,14 +61,14 @@ pub struct Found {
 /// Returns settings whose names contain all words of a text, those that begin with it first; then those whose paths or
 /// tooltips do. Controls of the look tab are also found by their names there; `lights` tells which lights are key
 /// lights.
-pub fn matches(preset: &Preset, tooltips: &Tooltips, lights: &ShownLights, text: &str) -> Vec<Found> {
+pub fn matches(preset: &Preset, tooltips: &Tooltips, lights: &LightView, text: &str) -> Vec<Found> {
     let words: Vec<_> = text.split_whitespace().map(str::to_lowercase).collect();
     let holds = |text: &str| words.iter().all(|word| text.to_lowercase().contains(word.as_str()));
     let begins = |name: &str| name.starts_with(&text.trim().to_lowercase());
     let mut found = Vec::new();
     for (index, system) in preset.systems.iter().enumerate() {
         for control in LOOK.iter().filter(|control| holds(control.name)) {
-            let Some(path) = control.path(index, lights.known_key(index)) else { continue };
+            let Some(path) = control.path(index, lights.chosen_key_light(index)) else { continue };
             let (is_made, tooltip) = match control.of {
                 Of::Made(made) => (true, made.tooltip.to_owned()),
                 _ => (false, path.clone()),
@@ -81,9 +81,9 @@ pub fn matches(preset: &Preset, tooltips: &Tooltips, lights: &ShownLights, text:
             }
         }
     }
-    walk(&mut preset.clone(), &mut |steps, _| {
+    for_each_field(&mut preset.clone(), &mut |steps, _| {
         let plain = steps.iter().map(|step| step.0).collect::<Vec<_>>().join(".");
-        let path = path_of(steps);
+        let path = field_path(steps);
         // The preset's own name and description are on no tab.
         let Some((place, name)) = path.rsplit_once('.') else { return };
         let tooltip = tooltips.field(&plain).unwrap_or_default();
@@ -105,14 +105,14 @@ pub fn matches(preset: &Preset, tooltips: &Tooltips, lights: &ShownLights, text:
 }
 
 /// Groups of a system's settings on the Smoke tab. The others are on the Advanced tab.
-pub const ON_SMOKE: [&str; 4] = ["diffuse", "soft_scatter", "specular_scatter", "soft_fade"];
+pub const SMOKE_TAB_GROUPS: [&str; 4] = ["diffuse", "soft_scatter", "specular_scatter", "soft_fade"];
 
 /// Returns the tab of a setting.
 fn tab_of(path: &str) -> Tab {
     let is_in = |part: &&str| path.contains(&format!(".{part}."));
     if !path.starts_with("systems") {
         Tab::Light
-    } else if ["emitter", "cache", "material"].iter().chain(&ON_SMOKE).any(is_in) {
+    } else if ["emitter", "cache", "material"].iter().chain(&SMOKE_TAB_GROUPS).any(is_in) {
         Tab::Smoke
     } else {
         Tab::Advanced
@@ -126,7 +126,7 @@ mod tests {
 
     fn first(text: &str) -> String {
         let preset = Preset::load("column").unwrap();
-        let found = matches(&preset, &Tooltips::of::<Preset>(), &ShownLights::default(), text);
+        let found = matches(&preset, &Tooltips::of::<Preset>(), &LightView::default(), text);
         found.first().map(|found| found.path.clone()).unwrap_or_default()
     }
 
@@ -144,7 +144,7 @@ mod tests {
         let preset = Preset::load("column").unwrap();
         let tooltips = Tooltips::of::<Preset>();
         for (path, _) in values(&preset).into_iter().filter(|(path, _)| path.contains('.')) {
-            let found = matches(&preset, &tooltips, &ShownLights::default(), &path.replace('_', " "));
+            let found = matches(&preset, &tooltips, &LightView::default(), &path.replace('_', " "));
             assert!(found.iter().any(|found| found.path == path), "{path}");
         }
     }

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui;
 use glam::UVec2;
-use haze::preset::{PictureFolders, Preset};
-use haze::settings::{ShadeTree, Value, values};
+use haze::preset::{AssetFolders, Preset};
+use haze::settings::{DebugView, Value, values};
 use haze::shader::Sources;
 use haze::{Error, Light, MaterialAssets};
-use haze_author::particle_files::Cache;
+use haze_author::particle_files::ParticleFrames;
 use haze_author::preset::Tooltips;
 use haze_demo::shot::Shot;
 
@@ -17,23 +17,23 @@ use super::caches::Caches;
 use super::compare::Compare;
 use super::document::difference::{changed_fields, copy_field};
 use super::document::document::Document;
-use super::gauge::Gauge;
-use super::hints::Hints;
+use super::gauge::PsnrJob;
+use super::hints::FirstRunHints;
 use super::inspect::Inspect;
-use super::lights::ShownLights;
+use super::lights::LightView;
 use super::messages::Messages;
 use super::performance::Performance;
 use super::picture_thumbnails::PictureThumbnails;
 use super::pictures::Pictures;
 use super::platform::assets::{self, Loaded};
-use super::platform::wake::Wake;
+use super::platform::wake::RepaintHandle;
 use super::playback::Playback;
-use super::ramp_files::RampFiles;
-use super::referee::Referee;
-use super::search::Search;
+use super::ramp_files::RampEdits;
+use super::referee::CpuRenderJob;
+use super::search::SettingSearch;
 use super::show::{Show, Tab};
 use super::sprite::draw::Painted;
-use super::sprite::files::SpriteFiles;
+use super::sprite::files::SpriteEdits;
 
 pub struct Session {
     /// Document; panels change its preset directly.
@@ -41,11 +41,11 @@ pub struct Session {
     pub playback: Playback,
     pub show: Show,
     pub compare: Compare,
-    pub gauge: Gauge,
-    pub referee: Referee,
+    pub gauge: PsnrJob,
+    pub referee: CpuRenderJob,
     pub inspect: Inspect,
-    pub search: Search,
-    pub hints: Hints,
+    pub search: SettingSearch,
+    pub hints: FirstRunHints,
     pub messages: Messages,
     pub performance: Performance,
     pub tooltips: Tooltips,
@@ -55,7 +55,7 @@ pub struct Session {
     /// Flipbook on the Sprite tab.
     pub flipbook: Option<Painted>,
     /// Repaints the window from threads that run for longer than one window is open.
-    pub wake: Wake,
+    pub wake: RepaintHandle,
     /// Folder of images that presets share.
     pub assets: Option<PathBuf>,
     /// Path of a screenshot; the window closes once it is written.
@@ -64,16 +64,16 @@ pub struct Session {
     pub pictures: Pictures,
     pub caches: Caches,
     /// Ramps whose stops are edited.
-    pub ramps: RampFiles,
+    pub ramps: RampEdits,
     /// Sprites whose recipes are edited.
-    pub sprites: SpriteFiles,
+    pub sprites: SpriteEdits,
     /// Shaders of a watched folder, as last compiled without error; `None` means the built-in ones.
     pub shaders: Option<Sources>,
     /// Another program has written the file while there are unsaved changes. The user has to choose a version.
     pub is_changed_on_disk: bool,
     changed: Changed,
     /// Set while the second image has settings of its own.
-    second: Option<Second>,
+    second: Option<SecondDiff>,
 }
 
 /// Paths of the fields that differ from the preset on disk, and the two presets that were compared.
@@ -84,7 +84,7 @@ struct Changed {
 }
 
 /// Values of the second image's settings that differ, by path, and the two presets that were compared.
-struct Second {
+struct SecondDiff {
     apart: HashMap<String, Value>,
     settings: Preset,
     preset: Preset,
@@ -95,30 +95,30 @@ impl Session {
     pub fn open(source: &Path, assets: Option<PathBuf>) -> Result<Self, Error> {
         let document = Document::open(source)?;
         let preset = &document.preset;
-        let folders = PictureFolders::beside(source).and_shared(assets.clone());
+        let folders = AssetFolders::beside(source).with_shared(assets.clone());
         let (materials, caches) = assets::all(preset, source, &folders)?;
         Ok(Self {
             assets,
             playback: Playback::at(preset.time),
             show: Show::default(),
             compare: Compare::default(),
-            gauge: Gauge::default(),
-            referee: Referee::default(),
+            gauge: PsnrJob::default(),
+            referee: CpuRenderJob::default(),
             inspect: Inspect::default(),
-            search: Search::default(),
-            hints: Hints::default(),
+            search: SettingSearch::default(),
+            hints: FirstRunHints::default(),
             messages: Messages::default(),
             performance: Performance::default(),
             tooltips: Tooltips::of::<Preset>(),
-            stages: Tooltips::of::<ShadeTree>(),
+            stages: Tooltips::of::<DebugView>(),
             thumbnails: PictureThumbnails::default(),
             flipbook: None,
-            wake: Wake::default(),
+            wake: RepaintHandle::default(),
             screenshot: None,
             pictures: Pictures::new(preset, materials),
             caches: Caches::new(preset, caches),
-            ramps: RampFiles::default(),
-            sprites: SpriteFiles::default(),
+            ramps: RampEdits::default(),
+            sprites: SpriteEdits::default(),
             shaders: None,
             is_changed_on_disk: false,
             changed: Changed { paths: HashSet::new(), saved: preset.clone(), preset: preset.clone() },
@@ -128,14 +128,14 @@ impl Session {
     }
 
     /// Attaches the session to another window. GPU resources of the previous device are dropped.
-    pub fn follow_window(&mut self, context: &egui::Context) {
+    pub fn attach_window(&mut self, context: &egui::Context) {
         self.wake.follow(context);
         (self.thumbnails, self.flipbook) = (PictureThumbnails::default(), None);
     }
 
     /// Returns the folders where images are looked up.
-    pub fn folders(&self) -> PictureFolders {
-        PictureFolders::beside(self.document.path()).and_shared(self.assets.clone())
+    pub fn folders(&self) -> AssetFolders {
+        AssetFolders::beside(self.document.path()).with_shared(self.assets.clone())
     }
 
     /// Returns the shot of the present view.
@@ -144,7 +144,7 @@ impl Session {
         preset.time = self.playback.time;
         preset.lights = self.show.lights.shown(&preset.lights);
         let (materials, caches) = (self.materials(), self.caches());
-        Shot { preset, size, shade_tree: self.show.stage, materials, caches }
+        Shot { preset, size, debug_view: self.show.stage, materials, caches }
     }
 
     /// Returns the images of every system, with edits.
@@ -156,7 +156,7 @@ impl Session {
     }
 
     /// Returns the particles of every system that has particle files.
-    pub fn caches(&self) -> Vec<Option<Cache>> {
+    pub fn caches(&self) -> Vec<Option<ParticleFrames>> {
         self.caches.of(&self.document.preset)
     }
 
@@ -194,7 +194,7 @@ impl Session {
     }
 
     /// Resets a field, a group or a list to its value on disk.
-    pub fn set_back(&mut self, path: &str) {
+    pub fn reset_field(&mut self, path: &str) {
         let saved = self.saved().clone();
         copy_field(&saved, &mut self.document.preset, path);
     }
@@ -232,7 +232,7 @@ impl Session {
         if self.second.as_ref().is_none_or(|known| (&known.settings, &known.preset) != (settings, preset)) {
             let paths: HashSet<_> = changed_fields(settings, preset).into_iter().collect();
             let apart = values(settings).into_iter().filter(|(path, _)| paths.contains(path)).collect();
-            self.second = Some(Second { apart, settings: settings.clone(), preset: preset.clone() });
+            self.second = Some(SecondDiff { apart, settings: settings.clone(), preset: preset.clone() });
         }
     }
 
@@ -246,7 +246,7 @@ impl Session {
     }
 
     /// Changes the selected light, if there is one.
-    pub fn change_light(&mut self, change: impl FnOnce(&mut ShownLights, &mut Vec<Light>, usize)) {
+    pub fn change_light(&mut self, change: impl FnOnce(&mut LightView, &mut Vec<Light>, usize)) {
         let lights = &mut self.document.preset.lights;
         if let Some(index) = self.show.lights.selected.filter(|&index| index < lights.len()) {
             change(&mut self.show.lights, lights, index);
@@ -287,7 +287,7 @@ impl Session {
         self.caches = Caches::new(&document.preset, caches);
         self.playback = Playback::at(document.preset.time);
         (self.compare, self.show.system, self.is_changed_on_disk) = (Compare::default(), 0, false);
-        self.ramps = RampFiles::default();
+        self.ramps = RampEdits::default();
         self.sprites.forget();
         self.show.lights.forget_keys();
         let stale = ["preset", "ramp", "sprite", "pictures", "caches", "file"];

@@ -1,15 +1,15 @@
 //! View options of the preset.
 
 use glam::UVec2;
-use haze::settings::ShadeTree;
+use haze::settings::DebugView;
 
-use super::lights::ShownLights;
-use super::sprite::look::SpriteLook;
+use super::lights::LightView;
+use super::sprite::look::SpriteView;
 
 /// View options. They are not part of the preset.
 #[derive(Clone, Debug)]
 pub struct Show {
-    pub stage: ShadeTree,
+    pub stage: DebugView,
     /// The strip of debug views is visible.
     pub has_strip: bool,
     /// Size of the image in pixels.
@@ -21,9 +21,9 @@ pub struct Show {
     pub tab: Tab,
     /// Index of the system whose settings are shown.
     pub system: usize,
-    pub lights: ShownLights,
+    pub lights: LightView,
     pub overlays: Overlays,
-    pub sprite: SpriteLook,
+    pub sprite: SpriteView,
 }
 
 /// Tab of the settings panel.
@@ -42,15 +42,15 @@ impl Default for Show {
     fn default() -> Self {
         Self {
             size: UVec2::new(1280, 720),
-            stage: ShadeTree::Final,
+            stage: DebugView::Final,
             has_strip: true,
             aspect: 16.0 / 9.0,
             help: false,
             tab: Tab::Look,
             system: 0,
-            lights: ShownLights::default(),
+            lights: LightView::default(),
             overlays: Overlays::default(),
-            sprite: SpriteLook::default(),
+            sprite: SpriteView::default(),
         }
     }
 }

@@ -1,10 +1,10 @@
 //! Extent of the smoke at the shown time.
 
 use glam::{UVec2, Vec3, Vec4, Vec4Swizzles};
-use haze::frame::bounds_of;
+use haze::frame::particle_bounds;
 use haze::preset::{Camera, Preset, PresetSystem};
 use haze::{Bounds, Light, LightKind, Particle};
-use haze_author::particle_files::{self, Cache};
+use haze_author::particle_files::{self, ParticleFrames};
 
 use super::session::Session;
 
@@ -12,7 +12,7 @@ use super::session::Session;
 #[derive(Default)]
 pub struct Smoke {
     /// Key of the cache: systems, particle files, and the bits of the time.
-    of: Option<(Vec<PresetSystem>, Vec<Option<Cache>>, u32)>,
+    of: Option<(Vec<PresetSystem>, Vec<Option<ParticleFrames>>, u32)>,
     pub systems: Vec<Vec<Particle>>,
     /// Bounds of each system, sprites included.
     pub bounds: Vec<Bounds>,
@@ -24,9 +24,9 @@ impl Smoke {
         self.at(&session.document.preset, session.caches(), session.playback.time)
     }
 
-    fn at(&mut self, preset: &Preset, caches: Vec<Option<Cache>>, time: f32) -> &Self {
+    fn at(&mut self, preset: &Preset, caches: Vec<Option<ParticleFrames>>, time: f32) -> &Self {
         let is_same = self.of.as_ref().is_some_and(|(systems, its, at)| {
-            *at == time.to_bits() && *systems == preset.systems && Cache::all_shared(its, &caches)
+            *at == time.to_bits() && *systems == preset.systems && ParticleFrames::share_all_memory(its, &caches)
         });
         // An invalid preset might have too many particles, so the last valid ones stay.
         if !is_same && preset.validate().is_ok() {
@@ -36,7 +36,7 @@ impl Smoke {
             }
             self.of = Some((preset.systems.clone(), caches, time.to_bits()));
             let all = preset.systems.iter().zip(&self.systems);
-            self.bounds = all.map(|(system, particles)| bounds_of(particles, system.settings.reach())).collect();
+            self.bounds = all.map(|(system, particles)| particle_bounds(particles, system.settings.reach())).collect();
         }
         self
     }

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Sense, Ui, Vec2};
 use glam::UVec2;
-use haze::settings::ShadeTree;
+use haze::settings::DebugView;
 use haze_demo::shot::Shot;
 
 use super::easel::Easel;
@@ -36,7 +36,7 @@ pub fn strip(ui: &mut Ui, session: &mut Session, easel: &Easel, aspect: f32) {
             }
             let (rect, response) = ui.allocate_exact_size(size + Vec2::new(0.0, NAME), Sense::click());
             let picture = egui::Rect::from_min_size(rect.min, size);
-            easel.show_stage(ui, picture, Shot { shade_tree: stage, ..shot.clone() });
+            easel.show_stage(ui, picture, Shot { debug_view: stage, ..shot.clone() });
             let is_shown = session.show.stage == stage;
             response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_shown, label));
             let visuals = ui.style().interact_selectable(&response, is_shown);
@@ -53,7 +53,7 @@ pub fn strip(ui: &mut Ui, session: &mut Session, easel: &Easel, aspect: f32) {
             ui.painter().galley(at, text, visuals.text_color());
             let tooltip = session.stages.choice("", stage.name()).unwrap_or(label);
             if response.on_hover_text(tooltip).clicked() {
-                session.show.stage = if is_shown { ShadeTree::Final } else { stage };
+                session.show.stage = if is_shown { DebugView::Final } else { stage };
             }
         }
     });
@@ -72,7 +72,7 @@ fn arrow(ui: &mut Ui, size: Vec2) {
 }
 
 /// Returns the view after one, cyclically.
-pub fn after(stage: ShadeTree) -> ShadeTree {
+pub fn after(stage: DebugView) -> DebugView {
     let at = STAGES.iter().position(|(one, _)| *one == stage).map_or(0, |at| at + 1);
     STAGES[at % STAGES.len()].0
 }

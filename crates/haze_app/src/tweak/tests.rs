@@ -4,7 +4,7 @@ use eframe::egui::{Key, Modifiers, Rect, Role, Theme, Vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, SnapshotOptions};
 
-use haze::settings::ShadeTree;
+use haze::settings::DebugView;
 
 use super::testing::{brightness, picture, window};
 use super::window::Window;
@@ -198,7 +198,7 @@ fn escape_closes_a_menu_and_nothing_else() {
     harness.key_press(Key::Escape);
     harness.run_steps(3);
     assert!(harness.query_by_label("As it is now").is_none());
-    assert_eq!(harness.state_mut().session_mut().show.stage, ShadeTree::SpecularScatter);
+    assert_eq!(harness.state_mut().session_mut().show.stage, DebugView::SpecularScatter);
 }
 
 #[test]

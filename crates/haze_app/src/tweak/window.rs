@@ -4,22 +4,22 @@ use std::path::Path;
 
 use eframe::egui::{self, Ui};
 use haze::Error;
-use haze::settings::ShadeTree;
+use haze::settings::DebugView;
 
 use super::action::{ACTIONS, Action};
 use super::easel::Easel;
-use super::exporting::{Exporting, Product};
-use super::filing::Filing;
+use super::exporting::{ExportJob, ExportKind};
+use super::filing::FileActions;
 use super::hints::Place;
 use super::inspect::lens::Lens;
 use super::inspect::panel as inspector;
-use super::keeping::{Keeping, Layout};
+use super::keeping::{Layout, Persistence};
 use super::messages::short;
 use super::panel;
 use super::panel::compare::width;
 use super::platform::clock::Instant;
 use super::preset_thumbnails::PresetThumbnails;
-use super::reload::{Reload, ShaderFolder};
+use super::reload::{HotReload, ShaderFolder};
 use super::screenshot::Screenshot;
 use super::session::Session;
 use super::show::Tab;
@@ -29,14 +29,14 @@ use super::viewport::Viewport;
 pub struct Window {
     pub session: Session,
     easel: Easel,
-    pub reload: Reload,
+    pub reload: HotReload,
     viewport: Viewport,
-    pub filing: Filing,
+    pub filing: FileActions,
     pub thumbnails: PresetThumbnails,
-    pub exporting: Exporting,
+    pub exporting: ExportJob,
     /// The list of presets is open.
     has_browser: bool,
-    pub keeping: Option<Keeping>,
+    pub keeping: Option<Persistence>,
     layout: Layout,
     shaders: ShaderFolder,
     has_dialogs: bool,
@@ -50,7 +50,7 @@ pub struct Start {
     pub session: Session,
     pub shaders: ShaderFolder,
     /// `None` persists nothing.
-    pub keeping: Option<Keeping>,
+    pub keeping: Option<Persistence>,
     pub layout: Layout,
     /// The system may have file dialogs.
     pub has_dialogs: bool,
@@ -64,7 +64,7 @@ impl Window {
     /// [`Error::Io`] if the system cannot start another thread.
     pub fn new(easel: Easel, start: Start) -> Result<Self, Error> {
         let Start { mut session, shaders, keeping, layout, has_dialogs } = start;
-        session.follow_window(easel.egui());
+        session.attach_window(easel.egui());
         session.show.has_strip = layout.has_strip.unwrap_or(session.show.has_strip);
         match &layout.hints {
             Some(left) => session.hints.go_on(left),
@@ -75,10 +75,10 @@ impl Window {
             easel.egui().set_theme(theme);
         }
         Ok(Self {
-            reload: Reload::new(&session, &shaders, &easel, easel.wake())?,
-            filing: Filing::new(has_dialogs, easel.wake())?,
+            reload: HotReload::new(&session, &shaders, &easel, easel.wake())?,
+            filing: FileActions::new(has_dialogs, easel.wake())?,
             thumbnails: PresetThumbnails::new(easel.wake())?,
-            exporting: Exporting::new(easel.wake())?,
+            exporting: ExportJob::new(easel.wake())?,
             viewport: Viewport::default(),
             has_browser: false,
             keeping,
@@ -181,14 +181,14 @@ impl Window {
         };
         ui.horizontal(|ui| ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), line));
         if is_read {
-            self.session.messages.put_away();
+            self.session.messages.dismiss_latest();
         }
     }
 
     /// Runs the actions of pressed keys, unless text is being edited.
     fn keys(&mut self, ui: &Ui) {
-        let is_asked = self.filing.waiting.is_some() || self.filing.typed.is_some();
-        let is_modal = self.session.search.is_open || self.session.show.help || self.has_browser || is_asked;
+        let is_requested = self.filing.waiting.is_some() || self.filing.typed.is_some();
+        let is_modal = self.session.search.is_open || self.session.show.help || self.has_browser || is_requested;
         // An open menu receives the keys, such as Escape to close it.
         let is_menu = egui::Popup::is_any_open(ui.ctx());
         if ui.ctx().text_edit_focused() || is_modal || is_menu || self.viewport.is_dragging() {
@@ -229,8 +229,8 @@ impl Window {
                 context.copy_text(session.document.to_text());
                 session.messages.say("file", "copied: the preset as text");
             }
-            Action::Screenshot => self.exporting.begin(Product::Picture, session),
-            Action::Seeds => self.exporting.begin(Product::Seeds, session),
+            Action::Screenshot => self.exporting.begin(ExportKind::Image, session),
+            Action::Seeds => self.exporting.begin(ExportKind::Seeds, session),
             Action::Export => self.exporting.is_open = !self.exporting.is_open,
             Action::Paste => context.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
             Action::Undo => session.undo(),
@@ -244,7 +244,7 @@ impl Window {
             Action::Inspect => session.inspect.toggle(),
             Action::Compare(against) => session.compare.toggle(against),
             Action::NextStage => session.show.stage = after(session.show.stage),
-            Action::Picture => session.show.stage = ShadeTree::Final,
+            Action::Image => session.show.stage = DebugView::Final,
             Action::Help => session.show.help = !session.show.help,
             Action::InView(action) => self.viewport.act(action, session),
         }
@@ -313,12 +313,12 @@ impl eframe::App for Window {
         }
         if let Some(path) = shown.inner {
             let is_seed = path.ends_with(".emitter.seed");
-            let product = if is_seed { Product::Seeds } else { Product::Values(path) };
+            let product = if is_seed { ExportKind::Seeds } else { ExportKind::Values(path) };
             self.exporting.begin(product, &mut self.session);
         }
         egui::CentralPanel::no_frame().show(ui, |ui| {
             let rect = ui.max_rect();
-            self.session.hints.see(Place::Picture, rect);
+            self.session.hints.see(Place::Image, rect);
             self.viewport.show(ui, &mut self.session, &self.easel);
             inspector::panel(ui, rect, &self.session);
         });

@@ -27,7 +27,7 @@ use state::Shared;
 const LOOK_EVERY: Duration = Duration::from_millis(500);
 
 /// Delay that gathers events of one moment into one check.
-const GATHER: Duration = Duration::from_millis(5);
+const DEBOUNCE: Duration = Duration::from_millis(5);
 
 /// A set of files, and a thread that sleeps until one of them may have changed.
 pub struct Watcher {
@@ -54,7 +54,7 @@ impl Watcher {
     }
 
     /// The same for files that have not been read yet: files that are new to the watcher are reported once as they are.
-    pub fn set_unread(&self, files: impl IntoIterator<Item = PathBuf>) {
+    pub fn watch_unread(&self, files: impl IntoIterator<Item = PathBuf>) {
         self.watch(files, false);
     }
 
@@ -111,7 +111,7 @@ fn run(shared: &Arc<Shared>, wake: impl Fn(), make: Make) {
                 give_up(error);
             }
         }
-        thread::sleep(GATHER);
+        thread::sleep(DEBOUNCE);
         let (is_new, again) = shared.look();
         next = again;
         if is_new {

@@ -53,8 +53,8 @@ impl Folders {
             std::mem::take(&mut self.watched).into_iter().for_each(|folder| drop(self.notifier.unwatch(&folder)));
         }
         /// Most passes over the paths. What moves during a pass sends an event itself, once its folder is watched.
-        const MOST_LOOKS: u32 = 3;
-        for _ in 0..MOST_LOOKS {
+        const MAX_PASSES: u32 = 3;
+        for _ in 0..MAX_PASSES {
             let routes: Vec<_> = files.iter().map(|file| places(file)).collect();
             let all: HashSet<_> = routes.iter().flatten().cloned().collect();
             let ends: HashSet<_> = routes.iter().filter_map(|route| route.last()?.parent()).collect();

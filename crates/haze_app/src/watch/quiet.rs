@@ -8,7 +8,7 @@ use super::stamp::Stamp;
 pub const QUIET: Duration = Duration::from_millis(50);
 
 /// The same for a file that is empty or gone, which a program may be about to write anew.
-pub const QUIET_IF_HOLLOW: Duration = Duration::from_millis(200);
+pub const SETTLE_TIME_IF_EMPTY: Duration = Duration::from_millis(200);
 
 /// A file as it was last reported, and as it was last seen.
 pub struct Seen {
@@ -42,7 +42,7 @@ impl Seen {
             return Todo::Nothing;
         }
         let is_hollow = stamp.is_none_or(|stamp| stamp.length == 0);
-        let whole = self.since + if is_hollow { QUIET_IF_HOLLOW } else { QUIET };
+        let whole = self.since + if is_hollow { SETTLE_TIME_IF_EMPTY } else { QUIET };
         if at < whole {
             return Todo::LookAgain(whole);
         }

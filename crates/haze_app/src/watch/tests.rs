@@ -68,7 +68,7 @@ impl Watched {
         assert!(contents.len() == 1 || !is_quick, "{what}: {contents:?}");
     }
 
-    fn told_after(&self, file: &Path, folder: &Path, script: &str) {
+    fn reported_after(&self, file: &Path, folder: &Path, script: &str) {
         self.told(file, script, || shell(folder, script));
     }
 }
@@ -102,7 +102,7 @@ fn every_way_of_saving_is_reported() {
         "rm a.json",
         "echo 14 > a.json",
     ] {
-        watched.told_after(&path, folder.path(), script);
+        watched.reported_after(&path, folder.path(), script);
     }
     // Writing other files and reading cause no report.
     shell(folder.path(), "echo 1 > other; cat a.json > /dev/null; ls > /dev/null");
@@ -162,13 +162,13 @@ fn changed_folders_and_links_on_the_way_are_followed() {
         ("rm -r in; mkdir -p in/deep; echo 5 > in/deep/b.json", &deep),
         ("echo 6 > in/deep/b.json", &deep),
     ] {
-        watched.told_after(file, root, script);
+        watched.reported_after(file, root, script);
     }
     // Places that files no longer use are not watched.
     shell(root, "echo 7 > old/deep/b.json; echo 7 > mounted/..2/a.json");
     assert!(watched.is_still());
     watched.watcher.set([mounted.clone()]);
-    watched.told_after(&mounted, root, "echo 8 > in/deep/b.json; echo 8 > c");
+    watched.reported_after(&mounted, root, "echo 8 > in/deep/b.json; echo 8 > c");
 }
 
 #[test]
@@ -282,7 +282,7 @@ fn without_file_events_files_are_polled_and_one_message_says_so() {
     let note = watched.watcher.note().unwrap();
     assert!(note.starts_with("files are checked for changes only twice a second: ") && !note.contains('\n'), "{note}");
     for _ in 0..3 {
-        watched.told_after(&path, folder.path(), "echo 1 >> a.json");
+        watched.reported_after(&path, folder.path(), "echo 1 >> a.json");
     }
     assert_eq!(watched.watcher.note(), None);
 }

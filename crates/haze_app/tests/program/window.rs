@@ -56,7 +56,7 @@ fn picture(display: &Display, variables: &[(&str, &str)], arguments: &[&str]) ->
     let output = haze(folder.path(), &display.name, variables, &all).output().unwrap();
     let taken = start.elapsed();
     assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
-    (haze::picture::read_png(&folder.path().join("a.png")).unwrap().into_rgb8(), taken)
+    (haze::image::read_png(&folder.path().join("a.png")).unwrap().into_rgb8(), taken)
 }
 
 fn brightness(picture: &RgbImage) -> f64 {

@@ -2,21 +2,21 @@
 
 use glam::Vec3;
 
-use super::frame::{CachedParticle, Given};
-use super::role::{ROLES, Role, role};
+use super::frame::{FileParticle, Given};
+use super::role::{ROLE_COUNT, Role, role};
 use haze::error::one_line;
 
 /// Maximum number of columns in a file.
-pub const MOST_COLUMNS: usize = 1024;
+pub const MAX_COLUMNS: usize = 1024;
 
 /// Largest magnitude that is accepted for positions, lengths and times.
 const LARGEST: f64 = 1.0e9;
 
 /// 2^53: a double represents every whole number up to this one.
-const LARGEST_ID: f64 = 9_007_199_254_740_992.0;
+const MAX_ID: f64 = 9_007_199_254_740_992.0;
 
 /// Tolerance beyond 0 and 1 for a fraction of the lifetime: simulations may overshoot the end of a life slightly.
-const SLACK: f64 = 0.001;
+const LIFETIME_TOLERANCE: f64 = 0.001;
 
 /// The columns of a file.
 pub struct Columns {
@@ -37,7 +37,7 @@ struct Column {
 
 /// Values of a row, indexed by role.
 #[derive(Clone, Copy, Default)]
-pub struct Values([f64; ROLES]);
+pub struct Values([f64; ROLE_COUNT]);
 
 impl Columns {
     /// Assigns roles to columns by name, in the order of the file. The error names the missing column.
@@ -82,14 +82,14 @@ impl Columns {
     }
 
     /// If the column holds the amount, sets the stored value that means 1.
-    pub fn set_amount_one(&mut self, column: usize, one: f64) {
+    pub fn set_amount_unit_value(&mut self, column: usize, one: f64) {
         if let Some(column) = self.columns.get_mut(column).filter(|column| column.role == Some(Role::Amount)) {
             column.one = one;
         }
     }
 
     /// Parses a number and stores it as [`Columns::put`] does.
-    pub fn put_text(&self, column: usize, text: &str, values: &mut Values) -> Result<(), String> {
+    pub fn parse_and_set(&self, column: usize, text: &str, values: &mut Values) -> Result<(), String> {
         match text.trim().parse() {
             Ok(value) => self.put(column, value, values),
             Err(_) => Err(self.refuse(column, format!("{:?}", one_line(text)), "a number")),
@@ -100,7 +100,7 @@ impl Columns {
     /// error says what is expected.
     pub fn put(&self, column: usize, value: f64, values: &mut Values) -> Result<(), String> {
         let Some(Column { role: Some(role), one, .. }) = self.columns.get(column) else { return Ok(()) };
-        let share = -SLACK..=1.0 + SLACK;
+        let share = -LIFETIME_TOLERANCE..=1.0 + LIFETIME_TOLERANCE;
         // NaN fails every range check.
         let (is_good, expected) = match role {
             Role::X | Role::Y | Role::Z | Role::Rotation | Role::Amount => {
@@ -111,7 +111,7 @@ impl Columns {
             Role::Life if self.has_lives => ((0.0..=LARGEST).contains(&value), "0 or more, up to 1e9"),
             Role::Age => (share.contains(&value), "a fraction of the lifetime, 0 to 1, or a life column as well"),
             Role::Life => (share.contains(&value), "a fraction of the lifetime, 0 to 1, or an age column as well"),
-            Role::Id => (value.abs() <= LARGEST_ID && value.fract() == 0.0, "a whole number"),
+            Role::Id => (value.abs() <= MAX_ID && value.fract() == 0.0, "a whole number"),
         };
         if !is_good {
             return Err(self.refuse(column, value, expected));
@@ -121,14 +121,14 @@ impl Columns {
     }
 
     /// Builds the particle of a row from its stored values.
-    pub fn particle(&self, row: usize, values: &Values) -> CachedParticle {
+    pub fn particle(&self, row: usize, values: &Values) -> FileParticle {
         let of = |role: Role| values.0[role as usize];
         let age = match self.has_lives {
             true => of(Role::Age) / of(Role::Life).max(f64::MIN_POSITIVE),
             // At most one of the two has a column; the other is 0.
             false => of(Role::Age) + of(Role::Life),
         };
-        CachedParticle {
+        FileParticle {
             id: if self.given.id { of(Role::Id) as i64 } else { row as i64 },
             position: Vec3::new(of(Role::X) as f32, of(Role::Y) as f32, of(Role::Z) as f32),
             radius: if self.has_radius { of(Role::Radius) } else { 0.5 * of(Role::Width) } as f32,
@@ -193,7 +193,7 @@ mod tests {
         assert!(refusal(4, 3.5).ends_with("0 to 1, or a life column as well"));
         assert_eq!(refusal(5, 1.5), "id: 1.5 is not valid; expected a whole number");
         assert_eq!(
-            columns.put_text(0, "one", &mut Values::default()).unwrap_err(),
+            columns.parse_and_set(0, "one", &mut Values::default()).unwrap_err(),
             "x: \"one\" is not valid; expected a number"
         );
     }

@@ -4,14 +4,14 @@
 
 use std::borrow::Cow;
 
-use super::columns::{Columns, MOST_COLUMNS, Values};
-use super::frame::CacheFrame;
+use super::columns::{Columns, MAX_COLUMNS, Values};
+use super::frame::ParticleFrame;
 use super::mistake::Mistake;
 
 /// Reads a file of at most `most` particles.
-pub fn read(content: &[u8], most: usize) -> Result<CacheFrame, Mistake> {
+pub fn read(content: &[u8], most: usize) -> Result<ParticleFrame, Mistake> {
     let text = text(content)?;
-    let mut lines = (1..).zip(text.trim_start_matches('\u{feff}').lines()).filter(|(_, line)| is_meant(line));
+    let mut lines = (1..).zip(text.trim_start_matches('\u{feff}').lines()).filter(|(_, line)| is_data_line(line));
     let names = "a line of column names, such as x,y,z,pscale,id";
     let Some((line, header)) = lines.next() else {
         return Err(Mistake::Whole(format!("no line of column names; expected {names}")));
@@ -19,8 +19,8 @@ pub fn read(content: &[u8], most: usize) -> Result<CacheFrame, Mistake> {
     let separator = separator(header);
     let mut cells = Vec::new();
     for (start, cell) in Cells::new(header, separator) {
-        if cells.len() == MOST_COLUMNS {
-            return Err(Mistake::after(line, "", format!("more than {MOST_COLUMNS} columns; expected {names}")));
+        if cells.len() == MAX_COLUMNS {
+            return Err(Mistake::after(line, "", format!("more than {MAX_COLUMNS} columns; expected {names}")));
         }
         cells.push(cell.map_err(|reason| Mistake::after(line, &header[..start], reason))?);
     }
@@ -36,7 +36,7 @@ pub fn read(content: &[u8], most: usize) -> Result<CacheFrame, Mistake> {
             let at = |reason| Mistake::after(line, &text[..start], reason);
             let cell = cell.map_err(|reason| at(reason.into()))?;
             if columns.is_read(count) {
-                columns.put_text(count, &cell, &mut values).map_err(at)?;
+                columns.parse_and_set(count, &cell, &mut values).map_err(at)?;
             } else if count >= columns.len() && !cell.trim().is_empty() {
                 let reason = format!("more cells than the {} named columns; expected one for each", columns.len());
                 return Err(at(reason));
@@ -49,7 +49,7 @@ pub fn read(content: &[u8], most: usize) -> Result<CacheFrame, Mistake> {
         }
         particles.push(columns.particle(particles.len(), &values));
     }
-    CacheFrame::new(particles, columns.given).map_err(Mistake::twice)
+    ParticleFrame::new(particles, columns.given).map_err(Mistake::twice)
 }
 
 /// Decodes a file as UTF-8.
@@ -61,7 +61,7 @@ pub fn text(content: &[u8]) -> Result<&str, Mistake> {
     })
 }
 
-fn is_meant(line: &str) -> bool {
+fn is_data_line(line: &str) -> bool {
     let line = line.trim_start();
     !line.is_empty() && !line.starts_with('#') && !line.starts_with("//")
 }
@@ -132,7 +132,7 @@ mod tests {
 
     use super::*;
 
-    fn read(text: &str) -> Result<CacheFrame, Mistake> {
+    fn read(text: &str) -> Result<ParticleFrame, Mistake> {
         super::read(text.as_bytes(), 4)
     }
 

@@ -3,19 +3,19 @@
 use glam::{UVec3, Vec3};
 use haze::Particle;
 use haze::noise::{pcg3d, unit};
-use haze::preset::{CacheEnd, CacheSource, UpAxis};
+use haze::preset::{EndBehaviour, ParticleFiles, UpAxis};
 
-use super::{Around, Cache};
+use super::{FramePair, ParticleFrames};
 
-impl Cache {
+impl ParticleFrames {
     /// Replaces `particles` with those at `time`, seconds. The same input gives the same output.
-    pub fn evaluate(&self, source: &CacheSource, time: f32, particles: &mut Vec<Particle>) {
+    pub fn evaluate(&self, source: &ParticleFiles, time: f32, particles: &mut Vec<Particle>) {
         particles.clear();
         let mut frame = (f64::from(time) - f64::from(source.start)) * f64::from(source.fps);
-        if source.after == CacheEnd::Loop {
+        if source.after == EndBehaviour::Loop {
             frame = frame.rem_euclid(f64::from(self.length()));
         }
-        let Some(Around { before, after, share }) = self.around(frame) else { return };
+        let Some(FramePair { before, after, share }) = self.around(frame) else { return };
         let given = before.given();
         before.between(after, share, |cached, there| {
             let id = cached.id as u64;
@@ -40,15 +40,15 @@ mod tests {
     use super::super::Limits;
     use super::*;
 
-    fn cache(texts: &[&str]) -> Cache {
+    fn cache(texts: &[&str]) -> ParticleFrames {
         let folder = tempfile::tempdir().unwrap();
         for (number, text) in texts.iter().enumerate() {
             std::fs::write(folder.path().join(format!("{number}.csv")), text).unwrap();
         }
-        Cache::load(&folder.path().join("#.csv"), Limits { particles: 9, bytes: 1 << 20 }).unwrap()
+        ParticleFrames::load(&folder.path().join("#.csv"), Limits { particles: 9, bytes: 1 << 20 }).unwrap()
     }
 
-    fn at(source: &CacheSource, cache: &Cache, time: f32) -> Vec<Particle> {
+    fn at(source: &ParticleFiles, cache: &ParticleFrames, time: f32) -> Vec<Particle> {
         let mut particles = Vec::new();
         cache.evaluate(source, time, &mut particles);
         particles
@@ -57,11 +57,11 @@ mod tests {
     #[test]
     fn units_and_up_axis_of_the_settings_are_applied() {
         let cache = cache(&["x,y,z,pscale,amount,rotation,age\n1,2,3,4,0.5,6,0.25"]);
-        let plain = CacheSource { flipbook_rate: 0.0, ..CacheSource::default() };
+        let plain = ParticleFiles { flipbook_rate: 0.0, ..ParticleFiles::default() };
         let [y_up] = at(&plain, &cache, 0.0)[..] else { panic!("one particle") };
         assert_eq!((y_up.position, y_up.radius), (Vec3::new(1.0, 2.0, 3.0), 4.0));
         assert_eq!((y_up.amount, y_up.rotation, y_up.age), (0.5, 6.0, 0.25));
-        let moved = CacheSource { up: UpAxis::Z, units: 0.01, position: Vec3::new(0.0, 10.0, 0.0), ..plain };
+        let moved = ParticleFiles { up: UpAxis::Z, units: 0.01, position: Vec3::new(0.0, 10.0, 0.0), ..plain };
         let [z_up] = at(&moved, &cache, 0.0)[..] else { panic!("one particle") };
         // Blender's forward axis, y, points away from the viewer.
         assert!(z_up.position.distance(Vec3::new(0.01, 10.03, -0.02)) < 1e-6 && (z_up.radius - 0.04).abs() < 1e-7);
@@ -71,26 +71,26 @@ mod tests {
     #[test]
     fn last_frame_is_held_or_the_sequence_repeats() {
         let cache = cache(&["id,x,y,z\n1,0,0,0", "id,x,y,z\n1,1,0,0\n2,0,0,0", "id,x,y,z\n2,4,0,0"]);
-        let mut source = CacheSource { fps: 2.0, start: 1.0, default_amount: 0.4, ..CacheSource::default() };
+        let mut source = ParticleFiles { fps: 2.0, start: 1.0, default_amount: 0.4, ..ParticleFiles::default() };
         let mut seen = |after, time| {
             source.after = after;
             at(&source, &cache, time).iter().map(|particle| (particle.position.x, particle.amount)).collect::<Vec<_>>()
         };
-        assert_eq!(seen(CacheEnd::Hold, 0.9), []);
-        assert_eq!(seen(CacheEnd::Hold, 1.0), [(0.0, 0.4)]);
-        assert_eq!(seen(CacheEnd::Hold, 1.25), [(0.5, 0.4), (0.0, 0.2)]);
-        assert_eq!(seen(CacheEnd::Hold, 1.75), [(1.0, 0.2), (2.0, 0.4)]);
-        assert_eq!(seen(CacheEnd::Hold, 50.0), [(4.0, 0.4)]);
-        assert_eq!(seen(CacheEnd::Loop, 2.25), [(4.0, 0.4)]);
+        assert_eq!(seen(EndBehaviour::Hold, 0.9), []);
+        assert_eq!(seen(EndBehaviour::Hold, 1.0), [(0.0, 0.4)]);
+        assert_eq!(seen(EndBehaviour::Hold, 1.25), [(0.5, 0.4), (0.0, 0.2)]);
+        assert_eq!(seen(EndBehaviour::Hold, 1.75), [(1.0, 0.2), (2.0, 0.4)]);
+        assert_eq!(seen(EndBehaviour::Hold, 50.0), [(4.0, 0.4)]);
+        assert_eq!(seen(EndBehaviour::Loop, 2.25), [(4.0, 0.4)]);
         for turn in [-3.0, 0.0, 3.0] {
-            assert_eq!(seen(CacheEnd::Loop, 2.75 + turn), [(0.5, 0.4), (0.0, 0.2)]);
+            assert_eq!(seen(EndBehaviour::Loop, 2.75 + turn), [(0.5, 0.4), (0.0, 0.2)]);
         }
     }
 
     #[test]
     fn missing_columns_come_from_the_settings_and_stay_with_the_id() {
         let cache = cache(&["id,x,y,z\n7,0,0,0\n8,0,0,0", "id,x,y,z\n8,0,0,0\n7,0,0,0"]);
-        let source = CacheSource { default_radius: 0.5, fps: 1.0, flipbook_rate: 0.0, ..CacheSource::default() };
+        let source = ParticleFiles { default_radius: 0.5, fps: 1.0, flipbook_rate: 0.0, ..ParticleFiles::default() };
         let (first, second) = (at(&source, &cache, 0.0), at(&source, &cache, 1.0));
         assert_eq!(first, second);
         assert_eq!((first[0].radius, first[0].amount), (0.5, 0.3));

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 /// A particle with the axes and units of its file.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CachedParticle {
+pub struct FileParticle {
     /// Identifies the particle across frames. The row in the file if the file has no ids.
     pub id: i64,
     /// In units of the file.
@@ -35,14 +35,14 @@ pub struct Given {
 
 /// Particles of one frame, sorted by id if the file has ids, and the attributes that the file provides.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CacheFrame {
-    particles: Vec<CachedParticle>,
+pub struct ParticleFrame {
+    particles: Vec<FileParticle>,
     given: Given,
 }
 
-impl CacheFrame {
+impl ParticleFrame {
     /// Sorts the particles by id. The error is the first duplicate id.
-    pub(super) fn new(mut particles: Vec<CachedParticle>, given: Given) -> Result<Self, i64> {
+    pub(super) fn new(mut particles: Vec<FileParticle>, given: Given) -> Result<Self, i64> {
         if given.id && !particles.is_sorted_by_key(|particle| particle.id) {
             particles.sort_unstable_by_key(|particle| particle.id);
         }
@@ -53,7 +53,7 @@ impl CacheFrame {
     }
 
     /// Returns the particles.
-    pub fn particles(&self) -> &[CachedParticle] {
+    pub fn particles(&self) -> &[FileParticle] {
         &self.particles
     }
 
@@ -71,7 +71,7 @@ impl CacheFrame {
     /// weight, 0 to 1. A particle in both frames is interpolated and has weight 1. A particle in one frame only keeps
     /// its place; its weight fades out or in. If the frames have no ids or provide different attributes, the particles
     /// are those of this frame.
-    pub fn between(&self, next: Option<&Self>, share: f32, mut each: impl FnMut(&CachedParticle, f32)) {
+    pub fn between(&self, next: Option<&Self>, share: f32, mut each: impl FnMut(&FileParticle, f32)) {
         let next = next.filter(|next| share > 0.0 && self.given.id && next.given == self.given);
         let Some(next) = next else {
             return self.particles.iter().for_each(|particle| each(particle, 1.0));
@@ -98,7 +98,7 @@ impl CacheFrame {
     }
 }
 
-impl CachedParticle {
+impl FileParticle {
     fn towards(&self, other: &Self, share: f32) -> Self {
         let mix = |from: f32, to: f32| from + (to - from) * share;
         // Rotates by the smaller angle: a simulation may wrap rotations at a full turn.

@@ -20,9 +20,9 @@ use std::sync::Arc;
 use haze::assets::file;
 use haze::error::Error;
 
-pub use frame::{CacheFrame, CachedParticle, Given};
+pub use frame::{FileParticle, Given, ParticleFrame};
 pub use mistake::Mistake;
-pub use preset::{MAX_CACHE_BYTES, check_caches, emission, load_caches, particles};
+pub use preset::{MAX_PARTICLE_FILE_BYTES, check_particle_files, emission, load_particle_files, particles};
 
 /// Size limit of one file, bytes.
 pub const MAX_FILE_BYTES: u64 = 256 << 20;
@@ -38,20 +38,20 @@ pub struct Limits {
 
 /// Frames of a simulation, sorted by frame number. A clone shares the memory.
 #[derive(Clone, Debug)]
-pub struct Cache(Arc<[(u32, CacheFrame)]>);
+pub struct ParticleFrames(Arc<[(u32, ParticleFrame)]>);
 
 /// The two frames around a time, and the position between them.
 #[derive(Clone, Copy, Debug)]
-pub struct Around<'a> {
+pub struct FramePair<'a> {
     /// The frame at this time or before it.
-    pub before: &'a CacheFrame,
+    pub before: &'a ParticleFrame,
     /// The next frame, if there is one.
-    pub after: Option<&'a CacheFrame>,
+    pub after: Option<&'a ParticleFrame>,
     /// Fraction of the interval to the next frame that has passed, 0 to 1.
     pub share: f32,
 }
 
-impl Cache {
+impl ParticleFrames {
     /// Loads one file, or a sequence if the file name contains `#` in place of the frame number's digits.
     ///
     /// # Errors
@@ -74,7 +74,7 @@ impl Cache {
     }
 
     /// Returns the frames in order, with their numbers.
-    pub fn frames(&self) -> &[(u32, CacheFrame)] {
+    pub fn frames(&self) -> &[(u32, ParticleFrame)] {
         &self.0
     }
 
@@ -95,15 +95,15 @@ impl Cache {
 
     /// Returns the frames around a time, in frames since the first. `None` before the first frame; after the last
     /// frame, the last one with nothing after it.
-    pub fn around(&self, frame: f64) -> Option<Around<'_>> {
+    pub fn around(&self, frame: f64) -> Option<FramePair<'_>> {
         let number = frame + f64::from(self.first());
         let next = self.0.partition_point(|(at, _)| f64::from(*at) <= number);
         let (start, before) = self.0.get(next.checked_sub(1)?)?;
         let Some((end, after)) = self.0.get(next) else {
-            return Some(Around { before, after: None, share: 0.0 });
+            return Some(FramePair { before, after: None, share: 0.0 });
         };
         let share = ((number - f64::from(*start)) / f64::from(end - start)) as f32;
-        Some(Around { before, after: Some(after), share })
+        Some(FramePair { before, after: Some(after), share })
     }
 
     /// True if both share the same memory.
@@ -112,7 +112,7 @@ impl Cache {
     }
 
     /// True if both lists share the same memory in every entry.
-    pub fn all_shared(some: &[Option<Self>], others: &[Option<Self>]) -> bool {
+    pub fn share_all_memory(some: &[Option<Self>], others: &[Option<Self>]) -> bool {
         let shares = |(one, other): (&Option<Self>, &Option<Self>)| match (one, other) {
             (Some(one), Some(other)) => one.shares(other),
             (None, None) => true,
@@ -131,7 +131,7 @@ impl Cache {
 ///
 /// # Errors
 /// A [`Mistake`] with the position, if the content is malformed.
-pub fn parse(path: &Path, content: &[u8], most: usize) -> Result<CacheFrame, Mistake> {
+pub fn parse(path: &Path, content: &[u8], most: usize) -> Result<ParticleFrame, Mistake> {
     match path.extension() {
         Some(ending) if ending.eq_ignore_ascii_case(OsStr::new("ply")) => ply::read(content, most),
         _ => csv::read(content, most),

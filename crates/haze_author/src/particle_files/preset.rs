@@ -3,43 +3,51 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::{Cache, Limits};
+use super::{Limits, ParticleFrames};
 use haze::emitter::MAX_PARTICLES;
 use haze::error::{Error, FieldError};
-use haze::preset::{CacheSource, PictureFolders, Preset, PresetSystem, cache_file, in_system};
-use haze::{Emission, Particle};
+use haze::preset::{AssetFolders, ParticleFiles, Preset, PresetSystem, particle_file_path, with_system_context};
+use haze::{EmitterSnapshot, Particle};
 
 /// Maximum memory of the particle files of a preset, bytes.
-pub const MAX_CACHE_BYTES: u64 = 1 << 30;
+pub const MAX_PARTICLE_FILE_BYTES: u64 = 1 << 30;
 
 /// Loads the particle files of every system that names some, each once. The result has one entry for each system, `None` if
 /// an emitter makes its particles. The files are searched for like images; `path`, the preset's file, is only named in errors.
 ///
 /// # Errors
-/// As [`Cache::load`], wrapped in [`Error::Picture`] with the preset and the system, also for more than
-/// [`MAX_CACHE_BYTES`]; [`Error::JsonField`] for an invalid path, and for more than [`MAX_PARTICLES`] in all systems.
-pub fn load_caches(preset: &Preset, path: &Path, folders: &PictureFolders) -> Result<Vec<Option<Cache>>, Error> {
-    check_caches(preset, path, folders).map_err(|mut errors| errors.swap_remove(0))
+/// As [`ParticleFrames::load`], wrapped in [`Error::Asset`] with the preset and the system, also for more than
+/// [`MAX_PARTICLE_FILE_BYTES`]; [`Error::JsonField`] for an invalid path, and for more than [`MAX_PARTICLES`] in all systems.
+pub fn load_particle_files(
+    preset: &Preset,
+    path: &Path,
+    folders: &AssetFolders,
+) -> Result<Vec<Option<ParticleFrames>>, Error> {
+    check_particle_files(preset, path, folders).map_err(|mut errors| errors.swap_remove(0))
 }
 
-/// As [`load_caches`], but returns all errors.
+/// As [`load_particle_files`], but returns all errors.
 ///
 /// # Errors
 /// Errors of every system: at least one.
-pub fn check_caches(preset: &Preset, path: &Path, folders: &PictureFolders) -> Result<Vec<Option<Cache>>, Vec<Error>> {
+pub fn check_particle_files(
+    preset: &Preset,
+    path: &Path,
+    folders: &AssetFolders,
+) -> Result<Vec<Option<ParticleFrames>>, Vec<Error>> {
     let mut known = HashMap::new();
     let (mut bytes, mut particles) = (0, 0.0);
     let (mut loaded, mut errors) = (Vec::new(), Vec::new());
     for (index, system) in preset.systems.iter().enumerate() {
         if !system.cache.is_used() {
-            particles += system.emitter.most_alive();
+            particles += system.emitter.max_alive();
             loaded.push(None);
             continue;
         }
         let name = &system.cache.path;
         let cache = match known.get(name) {
-            Some(cache) => Ok(Cache::clone(cache)),
-            None => load(name, folders, MAX_CACHE_BYTES - bytes).inspect(|cache| {
+            Some(cache) => Ok(ParticleFrames::clone(cache)),
+            None => load(name, folders, MAX_PARTICLE_FILE_BYTES - bytes).inspect(|cache| {
                 bytes += cache.bytes();
                 known.insert(name, cache.clone());
             }),
@@ -55,7 +63,7 @@ pub fn check_caches(preset: &Preset, path: &Path, folders: &PictureFolders) -> R
         });
         match counted {
             Ok(cache) => loaded.push(Some(cache)),
-            Err(error) => errors.push(in_system(path, index, error)),
+            Err(error) => errors.push(with_system_context(path, index, error)),
         }
     }
     if errors.is_empty() { Ok(loaded) } else { Err(errors) }
@@ -63,30 +71,30 @@ pub fn check_caches(preset: &Preset, path: &Path, folders: &PictureFolders) -> R
 
 /// Replaces `particles` with those alive at `time`, seconds: those of `files` if the system names some and they are given; else
 /// those of its emitter.
-pub fn particles(system: &PresetSystem, files: Option<&Cache>, time: f32, particles: &mut Vec<Particle>) {
+pub fn particles(system: &PresetSystem, files: Option<&ParticleFrames>, time: f32, particles: &mut Vec<Particle>) {
     match files.filter(|_| system.cache.is_used()) {
         Some(files) => {
             let is_frozen = system.settings.sprite.freeze_animation;
             let flipbook_rate = if is_frozen { 0.0 } else { system.cache.flipbook_rate };
-            files.evaluate(&CacheSource { flipbook_rate, ..system.cache.clone() }, time, particles);
+            files.evaluate(&ParticleFiles { flipbook_rate, ..system.cache.clone() }, time, particles);
         }
         None => system.emission(time).evaluate(particles),
     }
 }
 
 /// Unevaluated particles of the emitter; `None` if they come from `files`.
-pub fn emission(system: &PresetSystem, files: Option<&Cache>, time: f32) -> Option<Emission> {
+pub fn emission(system: &PresetSystem, files: Option<&ParticleFrames>, time: f32) -> Option<EmitterSnapshot> {
     (!system.cache.is_used() || files.is_none()).then(|| system.emission(time))
 }
 
-fn load(name: &str, folders: &PictureFolders, bytes: u64) -> Result<Cache, Error> {
-    let Some(file) = cache_file(name) else {
+fn load(name: &str, folders: &AssetFolders, bytes: u64) -> Result<ParticleFrames, Error> {
+    let Some(file) = particle_file_path(name) else {
         let expected = "a CSV or PLY file inside the preset's folder; one run of # in its name for a frame's digits";
         return Err(FieldError::new("cache.path", format!("{name:?}"), expected).into());
     };
     let limits = Limits { particles: MAX_PARTICLES as usize, bytes };
-    let cache = folders.find(file).and_then(|file| Cache::load(&file, limits));
-    cache.map_err(|error| Error::Picture { named_by: "cache.path".into(), error: Box::new(error) })
+    let cache = folders.find(file).and_then(|file| ParticleFrames::load(&file, limits));
+    cache.map_err(|error| Error::Asset { named_by: "cache.path".into(), error: Box::new(error) })
 }
 
 #[cfg(test)]
@@ -109,8 +117,8 @@ mod tests {
             }
             preset
         };
-        let folders = PictureFolders::at(folder.path());
-        let check = |paths: &[&str]| check_caches(&preset(paths), Path::new("my.json"), &folders);
+        let folders = AssetFolders::at(folder.path());
+        let check = |paths: &[&str]| check_particle_files(&preset(paths), Path::new("my.json"), &folders);
         let loaded = check(&["good.csv", "", "good.csv"]).unwrap();
         let [Some(first), None, Some(second)] = &loaded[..] else { panic!("two files") };
         assert!(first.shares(second));
@@ -134,7 +142,7 @@ mod tests {
             (system.emitter.rate, system.emitter.lifetime, system.emitter.lifetime_spread) = (10_000.0, 104.8576, 0.0);
         }
         crowded.validate().unwrap();
-        let said = load_caches(&crowded, Path::new("my.json"), &folders).unwrap_err().to_string();
+        let said = load_particle_files(&crowded, Path::new("my.json"), &folders).unwrap_err().to_string();
         assert!(
             said.ends_with("expected at most 1048576 particles alive at once in all systems, not 1048577"),
             "{said}"

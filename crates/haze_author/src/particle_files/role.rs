@@ -17,7 +17,7 @@ pub enum Role {
 }
 
 /// Number of roles.
-pub const ROLES: usize = Role::Id as usize + 1;
+pub const ROLE_COUNT: usize = Role::Id as usize + 1;
 
 /// Column names in lower case, letters and digits only. If a file has two columns for a role, the name listed first is
 /// read.

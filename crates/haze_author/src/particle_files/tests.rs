@@ -4,7 +4,7 @@ use super::*;
 
 const LIMITS: Limits = Limits { particles: 1 << 20, bytes: 1 << 30 };
 
-fn frame(text: &str) -> CacheFrame {
+fn frame(text: &str) -> ParticleFrame {
     parse(Path::new("a.csv"), text.as_bytes(), 100).unwrap()
 }
 
@@ -42,7 +42,7 @@ fn frames_are_placed_in_time_by_their_numbers() {
         let text = "x,y,z\n".to_owned() + &"0,0,0\n".repeat(count);
         std::fs::write(folder.path().join(format!("s_{number:03}.csv")), text).unwrap();
     }
-    let cache = Cache::load(&folder.path().join("s_###.csv"), LIMITS).unwrap();
+    let cache = ParticleFrames::load(&folder.path().join("s_###.csv"), LIMITS).unwrap();
     assert_eq!((cache.length(), cache.most(), cache.bytes()), (6, 3, 6 * 40));
     let at =
         |frame| cache.around(frame).map(|found| (found.before.particles().len(), found.after.is_some(), found.share));
@@ -52,8 +52,9 @@ fn frames_are_placed_in_time_by_their_numbers() {
     assert_eq!(at(5.0), Some((3, false, 0.0)));
     assert_eq!(at(1e9), Some((3, false, 0.0)));
     assert!(cache.shares(&cache.clone()));
-    let few =
-        |particles, bytes| Cache::load(&folder.path().join("s_###.csv"), Limits { particles, bytes }).unwrap_err();
+    let few = |particles, bytes| {
+        ParticleFrames::load(&folder.path().join("s_###.csv"), Limits { particles, bytes }).unwrap_err()
+    };
     assert!(
         few(2, 1 << 30)
             .to_string()
@@ -63,7 +64,7 @@ fn frames_are_placed_in_time_by_their_numbers() {
         few(9, 100).to_string().ends_with("s_008.csv: 1 MiB of particles up to this frame; expected at most 1 MiB")
     );
     std::fs::write(folder.path().join("s_009.csv"), "x,y\n").unwrap();
-    let error = Cache::load(&folder.path().join("s_###.csv"), LIMITS).unwrap_err().to_string();
+    let error = ParticleFrames::load(&folder.path().join("s_###.csv"), LIMITS).unwrap_err().to_string();
     assert!(error.contains("s_009.csv:1:1: no column for the z position"), "{error}");
 }
 

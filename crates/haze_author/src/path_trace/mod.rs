@@ -18,7 +18,7 @@ pub(crate) use volume::position;
 
 use glam::{UVec2, Vec3};
 
-use haze::picture::Picture;
+use haze::image::Image;
 use path::{Pixel, Tracer};
 
 /// Parameters of a path trace.
@@ -36,10 +36,10 @@ pub struct PathTrace {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traced {
     /// Coverage: the fraction of the background that is hidden, 0 to 1.
-    pub coverage: Picture<f32>,
+    pub coverage: Image<f32>,
     /// Light towards the viewer, one image per light: linear RGB times coverage. 1 is the brightness of white paper
     /// that faces the light.
-    pub light: Vec<Picture<Vec3>>,
+    pub light: Vec<Image<Vec3>>,
 }
 
 impl Traced {
@@ -67,7 +67,7 @@ impl PathTrace {
         let tracer = Tracer::new(volume, medium, lights);
         let count = lights.len();
         // Each pixel has `count + 1` adjacent texels: one per light, then the coverage in x.
-        let mut sums = Picture::new(UVec2::new(self.size * (count as u32 + 1), self.size), Vec3::ZERO);
+        let mut sums = Image::new(UVec2::new(self.size * (count as u32 + 1), self.size), Vec3::ZERO);
         for sample in 0..self.samples {
             progress(sample)?;
             sums.for_bands(|first, band| {
@@ -83,11 +83,10 @@ impl PathTrace {
         let share = 1.0 / self.samples.max(1) as f32;
         let of = |index: usize, scale: f32| {
             let texels = sums.texels.iter().skip(index).step_by(count + 1).map(|&sum| sum * scale);
-            Picture { size: UVec2::splat(self.size), texels: texels.collect() }
+            Image { size: UVec2::splat(self.size), texels: texels.collect() }
         };
         let coverage = of(count, share);
-        let coverage =
-            Picture { size: coverage.size, texels: coverage.texels.iter().map(|sum: &Vec3| sum.x).collect() };
+        let coverage = Image { size: coverage.size, texels: coverage.texels.iter().map(|sum: &Vec3| sum.x).collect() };
         let light = (0..count).map(|light| of(light, std::f32::consts::PI * share)).collect();
         Ok(Traced { light, coverage })
     }

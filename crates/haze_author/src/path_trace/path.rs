@@ -5,21 +5,21 @@ use glam::{UVec2, UVec3, Vec2, Vec3};
 use super::medium::Medium;
 use super::phase::{phase, scattered};
 use super::random::Random;
-use super::shadows::Shadows;
+use super::shadows::ShadowVolume;
 use super::volume::{Volume, exit};
 use crate::exact::{decay, exp, ln};
 
 /// Maximum number of vertices. The light that remains on a path of this length is negligible.
-const MOST_VERTICES: u32 = 1024;
+const MAX_VERTICES: u32 = 1024;
 /// Russian roulette starts at this vertex: paths with little light end randomly, and the weight of the others is
 /// increased.
-const SURE_VERTICES: u32 = 4;
+const ROULETTE_START: u32 = 4;
 
 pub(super) struct Tracer<'a> {
     volume: &'a Volume,
     medium: &'a Medium,
     lights: &'a [Vec3],
-    shadows: Shadows,
+    shadows: ShadowVolume,
     /// Maximum extinction in the volume, for delta tracking.
     majorant: f32,
 }
@@ -42,7 +42,7 @@ pub(super) struct Pixel {
 
 impl<'a> Tracer<'a> {
     pub fn new(volume: &'a Volume, medium: &'a Medium, lights: &'a [Vec3]) -> Self {
-        let shadows = Shadows::new(volume, lights);
+        let shadows = ShadowVolume::new(volume, lights);
         Self { volume, medium, lights, shadows, majorant: volume.largest() * medium.density }
     }
 
@@ -66,16 +66,16 @@ impl<'a> Tracer<'a> {
         }
         let covered = 1.0 - exp(-whole);
         let met = (index as f32 + random.unit()) / count as f32;
-        let mut p = front.extend(met_at(column, -ln((1.0 - met * covered).max(f32::MIN_POSITIVE))));
+        let mut p = front.extend(z_at_optical_depth(column, -ln((1.0 - met * covered).max(f32::MIN_POSITIVE))));
         let mut direction = Vec3::NEG_Z;
         let mut light = self.medium.albedo * covered;
-        for vertex in 1..MOST_VERTICES {
+        for vertex in 1..MAX_VERTICES {
             self.shadows.at(p, towards);
             for ((sum, &to_light), depth) in sums.iter_mut().zip(self.lights).zip(&*towards) {
                 let phase = phase(direction.dot(to_light), self.medium.g);
                 *sum += light * (phase * decay(depth * self.medium.density));
             }
-            if vertex >= SURE_VERTICES {
+            if vertex >= ROULETTE_START {
                 let stays = (light.max_element() / covered).min(1.0);
                 if random.unit() >= stays {
                     break;
@@ -121,7 +121,7 @@ impl<'a> Tracer<'a> {
 }
 
 /// Returns the z in a column at which the optical depth from the front equals `depth`.
-fn met_at(column: &[f32], depth: f32) -> f32 {
+fn z_at_optical_depth(column: &[f32], depth: f32) -> f32 {
     let step = column.partition_point(|&end| end < depth).min(column.len() - 1);
     let before = if step == 0 { 0.0 } else { column[step - 1] };
     let within = (depth - before) / (column[step] - before).max(f32::MIN_POSITIVE);

@@ -3,22 +3,22 @@
 use glam::{UVec2, UVec3, Vec3};
 
 use super::volume::{Volume, corners, exit, position};
-use haze::assets::picture::Picture;
+use haze::assets::image::Image;
 
 /// Integrated density from each voxel towards each light. The entries of a voxel are adjacent.
-pub(super) struct Shadows {
+pub(super) struct ShadowVolume {
     size: UVec3,
-    depths: Picture<f32>,
+    depths: Image<f32>,
     lights: usize,
 }
 
-impl Shadows {
+impl ShadowVolume {
     pub fn new(volume: &Volume, lights: &[Vec3]) -> Self {
         // The grid is equally fine along each axis. A coarser axis would make positions between voxels too dark.
         let size = UVec3::splat(volume.size.max_element());
         let UVec3 { x: width, y: height, z: depth } = size;
         let count = lights.len();
-        let mut depths = Picture::new(UVec2::new(width * count as u32, height * depth), 0.0);
+        let mut depths = Image::new(UVec2::new(width * count as u32, height * depth), 0.0);
         // Half of the narrowest side of a voxel: the volume is 2 wide.
         let step = 1.0 / volume.size.max_element() as f32;
         depths.for_bands(|first, band| {

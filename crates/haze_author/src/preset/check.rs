@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
-use haze::preset::{MaterialNames, PictureFolders, Pictures, Preset, in_system};
+use haze::preset::{AssetFolders, ImageCache, MaterialNames, Preset, with_system_context};
 
 use super::role::doubts;
-use crate::particle_files::check_caches;
+use crate::particle_files::check_particle_files;
 use haze::error::Error;
 
 /// Loads the images and particle files of every system. Returns all errors, and warnings about loaded images that
 /// do not seem to fit their role, each with its field. Files are searched for in `folders`; `path`, the preset's
 /// file, is only named in errors.
-pub fn check_files(preset: &Preset, path: &Path, folders: &PictureFolders) -> (Vec<Error>, Vec<String>) {
-    let mut pictures = Pictures::new(folders.clone());
+pub fn check_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec<Error>, Vec<String>) {
+    let mut pictures = ImageCache::new(folders.clone());
     let (mut wrong, mut doubtful) = (Vec::new(), Vec::new());
     for (index, system) in preset.systems.iter().enumerate() {
         let found = match system.material.load_from(&mut pictures) {
@@ -23,21 +23,21 @@ pub fn check_files(preset: &Preset, path: &Path, folders: &PictureFolders) -> (V
             }
             Err(errors) => {
                 let fields: Vec<_> = errors.iter().map(|(field, _)| *field).collect();
-                wrong.extend(errors.into_iter().map(|(_, error)| in_system(path, index, error)));
-                doubts_of_others(&system.material, &fields, folders)
+                wrong.extend(errors.into_iter().map(|(_, error)| with_system_context(path, index, error)));
+                role_warnings_except(&system.material, &fields, folders)
             }
         };
         let told = |(field, doubt)| format!("systems[{index}].material.{field}: {doubt}");
         doubtful.extend(found.into_iter().map(told));
     }
-    wrong.extend(check_caches(preset, path, folders).err().into_iter().flatten());
+    wrong.extend(check_particle_files(preset, path, folders).err().into_iter().flatten());
     (wrong, doubtful)
 }
 
 /// Warnings about the images of all fields but some.
-fn doubts_of_others(names: &MaterialNames, fields: &[&str], folders: &PictureFolders) -> Vec<(&'static str, String)> {
-    let others = names.with_usual(fields);
-    let loaded = others.load_from(&mut Pictures::new(folders.clone()));
+fn role_warnings_except(names: &MaterialNames, fields: &[&str], folders: &AssetFolders) -> Vec<(&'static str, String)> {
+    let others = names.with_defaults_for(fields);
+    let loaded = others.load_from(&mut ImageCache::new(folders.clone()));
     loaded.map(|material| doubts(&others, &material)).unwrap_or_default()
 }
 
@@ -66,7 +66,7 @@ mod tests {
         name(2, |system| system.material.sprite = "clear.png".into());
         name(3, |system| system.cache.path = "gone.csv".into());
         image::RgbaImage::new(16, 16).save(folder.path().join("clear.png")).unwrap();
-        let (wrong, doubts) = check_files(&preset, Path::new("my.json"), &PictureFolders::at(folder.path()));
+        let (wrong, doubts) = check_files(&preset, Path::new("my.json"), &AssetFolders::at(folder.path()));
         let wrong: Vec<_> = wrong.iter().map(ToString::to_string).collect();
         for (said, begins) in wrong.iter().zip([
             "my.json: systems[0].material.sprite: ",

@@ -9,9 +9,9 @@ use glam::UVec2;
 use haze::frame::{Light, LightKind};
 use haze::preset::{Environment, Preset, SceneName};
 use row::{Row, find, row};
-use system::OF_SYSTEMS;
+use system::SYSTEM_RULES;
 
-const OF_LIGHTS: &[Row<Light>] = &[
+const LIGHT_RULES: &[Row<Light>] = &[
     row(
         "the light's intensity is 0",
         |light, _| light.intensity <= 0.0,
@@ -36,23 +36,23 @@ const OF_LIGHTS: &[Row<Light>] = &[
     row("only with kind spot", |light, _| light.kind != LightKind::Spot, &["inner_angle", "outer_angle"]),
 ];
 
-const OF_ENVIRONMENTS: &[Row<Environment>] =
+const ENVIRONMENT_RULES: &[Row<Environment>] =
     &[row("only in the yard", |environment, _| environment.scene != SceneName::Yard, &["lamp", "brazier"])];
 
 /// Returns the reason why a field has no effect with the other values as they are; `None` if it has an effect. `path` is
-/// formatted as by [`path_of`](haze::settings::path_of); `size` is the picture's, in pixels.
+/// formatted as by [`field_path`](haze::settings::field_path); `size` is the picture's, in pixels.
 pub fn without_effect(preset: &Preset, path: &str, size: UVec2) -> Option<&'static str> {
     let item = |list: &str| {
         let (index, field) = path.strip_prefix(list)?.strip_prefix('[')?.split_once("].")?;
         Some((index.parse::<usize>().ok()?, field))
     };
     if let Some((index, field)) = item("systems") {
-        return find(OF_SYSTEMS, preset.systems.get(index)?, field, size);
+        return find(SYSTEM_RULES, preset.systems.get(index)?, field, size);
     }
     if let Some((index, field)) = item("lights") {
-        return find(OF_LIGHTS, preset.lights.get(index)?, field, size);
+        return find(LIGHT_RULES, preset.lights.get(index)?, field, size);
     }
-    find(OF_ENVIRONMENTS, &preset.environment, path.strip_prefix("environment.")?, size)
+    find(ENVIRONMENT_RULES, &preset.environment, path.strip_prefix("environment.")?, size)
 }
 
 /// Conditions under which a field has an effect, for a dotted path without list indices.
@@ -62,9 +62,9 @@ pub(super) fn conditions(path: &str) -> impl Iterator<Item = &'static str> {
         rows.iter().filter(|row| row.names(field)).map(|row| row.reason).collect()
     }
     let all = [
-        of(OF_SYSTEMS, path.strip_prefix("systems.")),
-        of(OF_LIGHTS, path.strip_prefix("lights.")),
-        of(OF_ENVIRONMENTS, path.strip_prefix("environment.")),
+        of(SYSTEM_RULES, path.strip_prefix("systems.")),
+        of(LIGHT_RULES, path.strip_prefix("lights.")),
+        of(ENVIRONMENT_RULES, path.strip_prefix("environment.")),
     ];
     let is_condition =
         |reason: &&str| reason.starts_with("only ") || reason.starts_with("not ") || reason.contains(" only");
@@ -82,10 +82,10 @@ mod tests {
         let preset =
             Preset { lights: vec![Light::default()], systems: vec![PresetSystem::default()], ..Preset::default() };
         let paths: Vec<_> = values(&preset).into_iter().map(|(path, _)| path).collect();
-        let systems = OF_SYSTEMS.iter().flat_map(|row| row.fields).map(|field| format!("systems[0].{field}"));
-        let lights = OF_LIGHTS.iter().flat_map(|row| row.fields).map(|field| format!("lights[0].{field}"));
+        let systems = SYSTEM_RULES.iter().flat_map(|row| row.fields).map(|field| format!("systems[0].{field}"));
+        let lights = LIGHT_RULES.iter().flat_map(|row| row.fields).map(|field| format!("lights[0].{field}"));
         let environments =
-            OF_ENVIRONMENTS.iter().flat_map(|row| row.fields).map(|field| format!("environment.{field}"));
+            ENVIRONMENT_RULES.iter().flat_map(|row| row.fields).map(|field| format!("environment.{field}"));
         for field in systems.chain(lights).chain(environments) {
             let group = format!("{field}.");
             assert!(paths.iter().any(|path| *path == field || path.starts_with(&group)), "{field}");
@@ -100,7 +100,7 @@ mod tests {
         assert_eq!(reason("systems[0].settings.boost"), None);
         assert_eq!(reason("systems[1].settings.blend_mode"), None);
         assert_eq!(reason("camera.fov"), None);
-        let mut reasons: Vec<_> = OF_SYSTEMS.iter().map(|row| row.reason).collect();
+        let mut reasons: Vec<_> = SYSTEM_RULES.iter().map(|row| row.reason).collect();
         reasons.sort_unstable();
         assert!(reasons.windows(2).all(|pair| pair[0] != pair[1]));
     }

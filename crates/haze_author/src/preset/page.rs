@@ -12,7 +12,7 @@ use super::tooltips::Tooltips;
 use haze::assets::builtin;
 use haze::frame::Light;
 use haze::preset::{Preset, PresetSystem};
-use haze::settings::{Choice, FieldVisitor, Fields, PictureRole, Value, values};
+use haze::settings::{Choice, FieldVisitor, Fields, ImageRole, Value, values};
 
 const HEAD: &str = "\
 # Settings
@@ -128,8 +128,8 @@ impl FieldVisitor for Rows<'_> {
         self.row(name, "any text");
     }
 
-    fn picture(&mut self, name: &'static str, _: &mut String, role: PictureRole) {
-        if role == PictureRole::Ramp {
+    fn picture(&mut self, name: &'static str, _: &mut String, role: ImageRole) {
+        if role == ImageRole::Ramp {
             return self.row(name, "[a built-in ramp](../ramps/README.md), or a PNG's path");
         }
         let names: Vec<_> = builtin::of_role(role).iter().map(|built_in| format!("`{}`", built_in.name)).collect();

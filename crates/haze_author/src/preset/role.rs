@@ -2,7 +2,7 @@
 
 use glam::{UVec2, Vec2, Vec3Swizzles as _};
 
-use crate::sprite::check::{NOTHING, is_clear, not_normals};
+use crate::sprite::check::{NOTHING, describe_non_normals, is_clear};
 use haze::assets::material::MaterialAssets;
 use haze::assets::ramp::Ramp;
 use haze::preset::MaterialNames;
@@ -19,58 +19,58 @@ pub fn doubts(names: &MaterialNames, loaded: &MaterialAssets) -> Vec<(&'static s
     ];
     let of_ramps = ramps.iter().map(|(field, name, ramp)| (*field, *name, of_ramp(ramp)));
     let others = [
-        ("diffuse_ramp", &names.diffuse_ramp, of_diffuse_ramp(&loaded.diffuse_ramp)),
-        ("backlight_ramp", &names.backlight_ramp, of_diffuse_ramp(&loaded.backlight_ramp)),
-        ("specular_ramp", &names.specular_ramp, of_specular_ramp(&loaded.specular_ramp)),
-        ("motif", &names.motif, of_motif(&loaded.motif)),
+        ("diffuse_ramp", &names.diffuse_ramp, check_diffuse_ramp(&loaded.diffuse_ramp)),
+        ("backlight_ramp", &names.backlight_ramp, check_diffuse_ramp(&loaded.backlight_ramp)),
+        ("specular_ramp", &names.specular_ramp, check_specular_ramp(&loaded.specular_ramp)),
+        ("motif", &names.motif, check_motif(&loaded.motif)),
     ];
-    let of_sprite = if is_clear(&loaded.sprite) { Some(NOTHING) } else { not_normals(&loaded.sprite) };
+    let of_sprite = if is_clear(&loaded.sprite) { Some(NOTHING) } else { describe_non_normals(&loaded.sprite) };
     let sprite = [("sprite", &names.sprite, of_sprite.map(String::from))];
     let doubts = sprite.into_iter().chain(of_ramps).chain(others);
     doubts.filter_map(|(field, name, doubt)| Some((field, format!("{name}: {}", doubt?)))).collect()
 }
 
 /// Checks a ramp whose rows are looked up by amount.
-fn of_diffuse_ramp(ramp: &Ramp) -> Option<String> {
+fn check_diffuse_ramp(ramp: &Ramp) -> Option<String> {
     let size = ramp.size();
     let is_black = |x: u32| (0..size.y).all(|y| ramp.texel(UVec2::new(x, y)).max_element() < SAME);
     let is_specular = size.y > 1 && is_black(size.x - 1) && !(0..size.x).all(is_black);
     let specular =
         || "black where it faces the light, as a specular ramp is; expected dot(n, l) across, amount up".into();
-    of_rows(ramp).or_else(|| is_specular.then(specular))
+    check_rows(ramp).or_else(|| is_specular.then(specular))
 }
 
 /// Checks a ramp of which one row is looked up.
 fn of_ramp(ramp: &Ramp) -> Option<String> {
     let rows = ramp.size().y;
     let differ = || format!("its {rows} rows differ, and only the bottom one is looked up; expected a ramp of one row");
-    of_rows(ramp).or_else(|| (!rows_are_equal(ramp)).then(differ))
+    check_rows(ramp).or_else(|| (!rows_are_equal(ramp)).then(differ))
 }
 
 fn rows_are_equal(ramp: &Ramp) -> bool {
-    is_everywhere(ramp, |x, _| UVec2::new(x, 0))
+    all_texels_equal(ramp, |x, _| UVec2::new(x, 0))
 }
 
 /// True if every texel equals the one at `as_at` of its position.
-fn is_everywhere(ramp: &Ramp, as_at: impl Fn(u32, u32) -> UVec2) -> bool {
+fn all_texels_equal(ramp: &Ramp, as_at: impl Fn(u32, u32) -> UVec2) -> bool {
     let size = ramp.size();
     let mut texels = (0..size.y).flat_map(|y| (0..size.x).map(move |x| (x, y)));
     texels.all(|(x, y)| ramp.texel(UVec2::new(x, y)).abs_diff_eq(ramp.texel(as_at(x, y)), SAME))
 }
 
 /// Checks a ramp with different rows for the signs of another kind of image.
-fn of_rows(ramp: &Ramp) -> Option<String> {
+fn check_rows(ramp: &Ramp) -> Option<String> {
     if rows_are_equal(ramp) {
         return None;
     }
     if shows_normals(ramp) {
         return Some("looks like the normals of a sprite; expected a ramp from left to right".into());
     }
-    is_everywhere(ramp, |_, y| UVec2::new(0, y))
+    all_texels_equal(ramp, |_, y| UVec2::new(0, y))
         .then(|| "painted from top to bottom; expected a ramp from left to right".into())
 }
 
-fn of_specular_ramp(ramp: &Ramp) -> Option<String> {
+fn check_specular_ramp(ramp: &Ramp) -> Option<String> {
     if shows_normals(ramp) {
         return Some("looks like the normals of a sprite; expected distance² across and amount up".into());
     }
@@ -79,11 +79,11 @@ fn of_specular_ramp(ramp: &Ramp) -> Option<String> {
         return Some("its one row is the same for every amount; expected distance² across and amount up".into());
     }
     // A single colour is not a mistake.
-    (!rows_are_equal(ramp) && is_everywhere(ramp, |_, y| UVec2::new(0, y)))
+    (!rows_are_equal(ramp) && all_texels_equal(ramp, |_, y| UVec2::new(0, y)))
         .then(|| "the same at every distance; expected distance² across and amount up".into())
 }
 
-fn of_motif(motif: &Ramp) -> Option<String> {
+fn check_motif(motif: &Ramp) -> Option<String> {
     let size = motif.size();
     (size.x != size.y)
         .then(|| format!("{}x{} pixels; expected a square with a lit sphere that fills it", size.x, size.y))

@@ -48,7 +48,7 @@ mod tests {
     use super::*;
     use glam::Vec3;
     use haze::preset::{Preset, PresetSystem};
-    use haze::settings::{Choice, FieldVisitor, Fields, PictureRole};
+    use haze::settings::{Choice, FieldVisitor, Fields, ImageRole};
     use std::ops::RangeInclusive;
 
     /// Visits a preset as a user interface would, and asks for every tooltip.
@@ -97,7 +97,7 @@ mod tests {
         fn text(&mut self, name: &'static str, _: &mut String) {
             self.row(name);
         }
-        fn picture(&mut self, name: &'static str, _: &mut String, _: PictureRole) {
+        fn picture(&mut self, name: &'static str, _: &mut String, _: ImageRole) {
             self.row(name);
         }
         fn particles(&mut self, name: &'static str, _: &mut String) {
@@ -131,7 +131,7 @@ mod tests {
         );
         assert_eq!(tooltips.field("systems.settings.boots"), None);
         assert_eq!(tooltips.choice("lights.kind", "laser"), None);
-        let stages = Tooltips::of::<haze::settings::ShadeTree>();
+        let stages = Tooltips::of::<haze::settings::DebugView>();
         assert_eq!(stages.choice("", "amount"), Some("Accumulated amount, as grey."));
     }
 }

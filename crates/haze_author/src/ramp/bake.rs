@@ -10,8 +10,8 @@ pub use super::colour::{Blend, HexColour};
 use super::formula::Formula;
 pub use super::gradient::{Curve, RampRow, RampStop};
 use super::gradient::{Rows, not_empty};
+use haze::assets::image::{Image, MAX_BYTES, MAX_SIDE};
 use haze::assets::json;
-use haze::assets::picture::{MAX_BYTES, MAX_SIDE, Picture};
 use haze::error::{Error, FieldError};
 use haze::settings::{FieldVisitor, Fields, validate};
 
@@ -34,7 +34,7 @@ pub struct RampRecipe {
     /// Height, texels. 1 for a ramp of one axis.
     pub height: u32,
     /// Bits per channel: 16, or 8 with dithering.
-    #[serde(default = "most_bits", skip_serializing_if = "is_most_bits")]
+    #[serde(default = "default_bits", skip_serializing_if = "is_default_bits")]
     pub bits: u32,
     /// Colour space for blending along rows and between rows. With an HSV space, rows are blended with each other in
     /// Oklab.
@@ -51,12 +51,12 @@ pub struct RampRecipe {
     pub rows: Vec<RampRow>,
 }
 
-fn most_bits() -> u32 {
+fn default_bits() -> u32 {
     16
 }
 
-fn is_most_bits(bits: &u32) -> bool {
-    *bits == most_bits()
+fn is_default_bits(bits: &u32) -> bool {
+    *bits == default_bits()
 }
 
 /// A black ramp of one axis.
@@ -67,7 +67,7 @@ impl Default for RampRecipe {
             version: RECIPE_VERSION,
             width: 256,
             height: 1,
-            bits: most_bits(),
+            bits: default_bits(),
             blend: Blend::default(),
             place: String::new(),
             times: Vec::new(),
@@ -152,7 +152,7 @@ impl RampRecipe {
         if ![8, 16].contains(&self.bits) {
             return Err(FieldError::new("bits", self.bits, "8 or 16"));
         }
-        if let Some(field) = self.newest_field().filter(|_| self.version < 2) {
+        if let Some(field) = self.first_version_2_field().filter(|_| self.version < 2) {
             return Err(FieldError::new("version", self.version, format!("2, for the field `{field}`")));
         }
         self.formula()?;
@@ -162,11 +162,11 @@ impl RampRecipe {
     }
 
     /// Returns the first used field that version 1 did not have.
-    fn newest_field(&self) -> Option<&'static str> {
+    fn first_version_2_field(&self) -> Option<&'static str> {
         let mut curves = self.rows.iter().flat_map(|row| row.stops.iter().map(|stop| stop.curve).chain([row.curve]));
         let has_curves = curves.any(|curve| curve != Curve::default());
         let used = [
-            ("bits", !is_most_bits(&self.bits)),
+            ("bits", !is_default_bits(&self.bits)),
             ("blend", !self.blend.is_default()),
             ("place", !self.place.is_empty()),
             ("times", !self.times.is_empty()),
@@ -198,7 +198,7 @@ impl RampRecipe {
         let gradient = self.gradient()?;
         let size = UVec2::new(self.width, self.height);
         let last = (size - 1).max(UVec2::ONE).as_vec2();
-        let mut picture = Picture::new(size, [0; 3]);
+        let mut picture = Image::new(size, [0; 3]);
         picture.for_each(|at, texel| {
             *texel = srgb16_from_linear(gradient.sample(at.x as f32 / last.x, (size.y - 1 - at.y) as f32 / last.y));
         });
@@ -224,14 +224,14 @@ impl Gradient {
 }
 
 /// Converts sRGB texels to an image of 16 bits per channel.
-pub(super) fn image_of(picture: Picture<[u16; 3]>) -> DynamicImage {
+pub(super) fn image_of(picture: Image<[u16; 3]>) -> DynamicImage {
     // Never the default: there is one texel per pixel.
     ImageBuffer::from_raw(picture.size.x, picture.size.y, picture.texels.into_flattened())
         .map_or_else(DynamicImage::default, DynamicImage::ImageRgb16)
 }
 
 /// Converts sRGB texels to an image of 8 bits per channel with ordered dithering, so that gradients show no bands.
-fn dithered(picture: &Picture<[u16; 3]>) -> DynamicImage {
+fn dithered(picture: &Image<[u16; 3]>) -> DynamicImage {
     let dither = |(index, texel): (u32, &[u16; 3])| {
         // R2 sequence: multiples of the inverse plastic number and of its square, in units of 2^-32. Thresholds are
         // evenly distributed along any line. (Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018)

@@ -143,7 +143,7 @@ mod tests {
     use super::super::template::TEMPLATES;
     use super::*;
     use haze::assets::builtin;
-    use haze::assets::picture::decode_png;
+    use haze::assets::image::decode_png;
     use image::{ImageBuffer, Rgb};
     use std::collections::BTreeSet;
     use std::path::Path;

@@ -11,10 +11,10 @@ use haze::error::FieldError;
 use haze::formula::colour::srgb_from_linear;
 
 /// Default error bound, steps of 255: one for dithering, and a half for rounding of a stop's colour.
-pub const USUAL_ERROR: f32 = 1.5;
+pub const DEFAULT_MAX_ERROR: f32 = 1.5;
 
 /// Maximum number of stops. An image that needs more is not a gradient, and its recipe would exceed the size limit.
-const MOST_STOPS: usize = 50_000;
+const MAX_STOPS: usize = 50_000;
 
 /// A fitted recipe and its error.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,7 +31,7 @@ pub struct Fit {
 /// # Errors
 /// [`FieldError`] if `most` is out of range, the image is empty, or it needs more than 50 000 stops.
 pub fn fit(picture: &DynamicImage, most: f32) -> Result<Fit, FieldError> {
-    check_error(most)?;
+    validate_max_error(most)?;
     let pixels = picture.to_rgb16();
     if pixels.is_empty() {
         return Err(FieldError::new("picture", "no pixels", "at least one pixel"));
@@ -48,7 +48,7 @@ pub fn fit(picture: &DynamicImage, most: f32) -> Result<Fit, FieldError> {
     let mean = |x: usize| rows.iter().map(|row| row[x]).sum::<Vec3>() / rows.len() as f32;
     let strip: Vec<Vec<Vec3>> = is_strip.then(|| (0..width as usize).map(mean).collect()).into_iter().collect();
     let texels = if is_strip { &strip } else { &rows };
-    let ways = [Blend::Oklab, Blend::Srgb, Blend::Linear].map(|blend| (blend, usual_curve(blend)));
+    let ways = [Blend::Oklab, Blend::Srgb, Blend::Linear].map(|blend| (blend, curve_for(blend)));
     // About eight rows decide which blend space needs the fewest stops.
     let some = texels.iter().step_by(texels.len().div_ceil(8));
     let stops_of = |&(blend, curve): &(Blend, Curve)| -> usize {
@@ -59,8 +59,8 @@ pub fn fit(picture: &DynamicImage, most: f32) -> Result<Fit, FieldError> {
     let recipe =
         RampRecipe { width, height, blend, rows: fit_rows(texels, blend, curve, most), ..RampRecipe::default() };
     let count = recipe.rows.iter().map(|row| row.stops.len()).sum::<usize>();
-    if count > MOST_STOPS {
-        let expected = format!("at most {MOST_STOPS}: a picture of gradients, or a larger error");
+    if count > MAX_STOPS {
+        let expected = format!("at most {MAX_STOPS}: a picture of gradients, or a larger error");
         return Err(FieldError::new("stops", count, expected));
     }
     let baked = recipe.bake()?.into_rgb16();
@@ -73,16 +73,16 @@ pub fn fit(picture: &DynamicImage, most: f32) -> Result<Fit, FieldError> {
 /// more than `most` steps of 255.
 
 pub fn fit_row(row: &[Vec3], blend: Blend, most: f32) -> Vec<RampStop> {
-    fit_stops(row, blend, usual_curve(blend), most)
+    fit_stops(row, blend, curve_for(blend), most)
 }
 
 /// Returns the curve to fit with: linear in the spaces in which other programs blend linearly.
-fn usual_curve(blend: Blend) -> Curve {
+fn curve_for(blend: Blend) -> Curve {
     if matches!(blend, Blend::Srgb | Blend::Linear) { Curve::Linear } else { Curve::Monotone }
 }
 
 /// Returns an error if the bound is below what stops of 8 bits per channel can meet, or too large to be useful.
-pub(super) fn check_error(most: f32) -> Result<(), FieldError> {
+pub(super) fn validate_max_error(most: f32) -> Result<(), FieldError> {
     let is_good = (1.0..=64.0).contains(&most);
     if is_good { Ok(()) } else { Err(FieldError::new("error", most, "1 to 64 steps of 255")) }
 }

@@ -6,7 +6,7 @@ use haze::error::{FieldError, one_line};
 /// Maximum length of a formula, bytes.
 const MOST: usize = 1000;
 /// Maximum nesting depth of brackets and signs.
-const DEEPEST: u32 = 64;
+const MAX_DEPTH: u32 = 64;
 
 /// A formula of the two axes `u` and `v`, 0 to 1, with numbers, `+ - * / ^`, brackets and the functions of
 /// [`FUNCTIONS`]. Stored in reverse Polish order.
@@ -112,8 +112,8 @@ impl Reader<'_> {
     /// Parses an optional minus sign and a power. The sign binds weaker than `^`; the exponent may have a sign itself.
     fn signed(&mut self) -> Result<(), String> {
         self.depth += 1;
-        if self.depth > DEEPEST {
-            return Err(format!("at most {DEEPEST} nested brackets and signs"));
+        if self.depth > MAX_DEPTH {
+            return Err(format!("at most {MAX_DEPTH} nested brackets and signs"));
         }
         if self.takes("-") {
             self.signed()?;

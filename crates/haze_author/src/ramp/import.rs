@@ -6,11 +6,11 @@ use glam::Vec4;
 
 use super::bake::{Blend, Curve, HexColour, RampStop};
 use super::colour::srgb_from_linear;
-use super::fit::{Fit, check_error, fit};
+use super::fit::{Fit, fit, validate_max_error};
 use super::ggr;
 use super::text::{Mistake, numbers, opaque, strip};
 use haze::assets::file;
-use haze::assets::picture::read_colour_png;
+use haze::assets::image::read_colour_png;
 use haze::error::{Error, FieldError};
 
 /// Size limit of a text file, bytes.
@@ -24,7 +24,7 @@ const MAX_BYTES: u64 = 1 << 20;
 /// [`Error::Io`] and [`Error::Image`] for files that cannot be read, [`Error::Json`] for a malformed line,
 /// [`Error::Field`] for a `most` out of range or an unknown extension.
 pub fn import(path: &Path, most: f32) -> Result<Fit, Error> {
-    check_error(most)?;
+    validate_max_error(most)?;
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
     let read: fn(&str, f32) -> Result<Fit, Mistake> = match ending.as_str() {
         "png" => {

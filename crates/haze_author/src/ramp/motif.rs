@@ -7,8 +7,8 @@ use image::DynamicImage;
 
 use super::bake::image_of;
 use super::colour::{HexColour, srgb16_from_linear};
+use haze::assets::image::Image;
 use haze::assets::json;
-use haze::assets::picture::Picture;
 use haze::error::{Error, FieldError};
 use haze::formula::diffuse_bake::motif_normal;
 use haze::formula::saturate;
@@ -99,7 +99,7 @@ impl MotifRecipe {
         let last = (self.size - 1) as f32;
         let light = |light: &MotifLight| (light.direction.normalize_or(Vec3::Z), light.colour.linear(), light.wrap);
         let lights: Vec<_> = self.lights.iter().map(light).collect();
-        let mut picture = Picture::new(UVec2::splat(self.size), [0; 3]);
+        let mut picture = Image::new(UVec2::splat(self.size), [0; 3]);
         picture.for_each(|at, texel| {
             let normal = motif_normal(Vec2::new(at.x as f32 / last * 2.0 - 1.0, 1.0 - at.y as f32 / last * 2.0));
             let lit = lights.iter().map(|&(direction, colour, wrap)| {

@@ -19,14 +19,14 @@ use image::{Rgba, RgbaImage};
 
 use super::detail::{detail, detail_size};
 use crate::path_trace::Volume;
-use haze::assets::threads::on_all_processors;
+use haze::assets::threads::parallel_for_each;
 use haze::error::FieldError;
 use haze::settings::validate;
 use haze::sprite::Sprite;
 
 pub use frame::BakedFrame;
 pub use recipe::{RECIPE_VERSION, SpriteRecipe};
-use shrink::{shrink_detail, shrink_frame};
+use shrink::{quantise_detail, quantise_frame};
 use slices::Slices;
 
 /// Images baked from a recipe.
@@ -49,13 +49,13 @@ impl SpriteRecipe {
         let bake = self.baker();
         let frame = |frame| progress(frame).map(|()| bake(frame as f32));
         let mut frames = (0..self.frame_count()).map(frame).collect::<Result<Vec<_>, E>>()?;
-        on_all_processors(frames.iter_mut(), |frame| self.shrink(frame));
+        parallel_for_each(frames.iter_mut(), |frame| self.shrink(frame));
         let pictures = frames.iter().flat_map(|frame| frame.picture.texels.iter().map(|texel| texel.0));
         let sprite = Sprite::with_levels(self.size, self.frame_count(), pictures.collect());
         let mut details: Vec<_> =
             (0..).zip(&frames).map(|(frame, baked)| detail(&sprite, frame, &baked.offset)).collect();
         if self.tolerance > 0 {
-            details.iter_mut().for_each(|detail| shrink_detail(detail, self.tolerance / 2));
+            details.iter_mut().for_each(|detail| quantise_detail(detail, self.tolerance / 2));
         }
         Ok(BakedSprite {
             picture: self.sheet(self.size, |frame, at| frames[frame].picture.load(at)),
@@ -96,7 +96,7 @@ impl SpriteRecipe {
 
     fn shrink(&self, frame: &mut BakedFrame) {
         if self.tolerance > 0 {
-            shrink_frame(&mut frame.picture, self.tolerance);
+            quantise_frame(&mut frame.picture, self.tolerance);
         }
     }
 }

@@ -29,14 +29,14 @@ const LENGTHS: [f32; 2] = [0.85, 1.1];
 /// - `loop`: the last frame differs from the first more than neighbouring frames differ.
 ///
 /// # Errors
-/// As [`Sprite::from_picture`] if the layout does not fit.
+/// As [`Sprite::from_image`] if the layout does not fit.
 pub fn check(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Result<Vec<Finding>, Error> {
     let mut findings = Vec::new();
     let mut find = |name, what: String| findings.push(Finding { name, what });
     // A border that is not clear is a finding, not an error: it is cleared so that the other checks can run.
     let mut picture = picture.clone();
     let border = clear_borders(&mut picture, layout);
-    let sprite = Sprite::from_picture(path, &picture, layout)?;
+    let sprite = Sprite::from_image(path, &picture, layout)?;
     if let Some((frame, alpha)) = border {
         find(
             "border",
@@ -47,7 +47,7 @@ pub fn check(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Result<V
         find("empty", NOTHING.into());
         return Ok(findings);
     }
-    if let Some(what) = not_normals(&sprite) {
+    if let Some(what) = describe_non_normals(&sprite) {
         find("normals", what.into());
         return Ok(findings);
     }
@@ -76,7 +76,7 @@ pub fn check(path: &Path, picture: &RgbaImage, layout: SpriteLayout) -> Result<V
     }
     if let Some(found) = y_direction(&sprite).filter(|found| found.is_down && found.sureness >= SURE) {
         let sure = (found.sureness * 100.0).round();
-        // `from_picture` has already flipped green if the layout has `y_down`.
+        // `from_image` has already flipped green if the layout has `y_down`.
         let (is, option) = if layout.y_down { ("up", "no y_down") } else { ("down", "y_down") };
         find("y_down", format!("green points {is}, {sure} % sure; expected {option}"));
     }
@@ -127,7 +127,7 @@ pub fn is_clear(sprite: &Sprite) -> bool {
 }
 
 /// Returns a description of the sprite's contents if they are not normals.
-pub fn not_normals(sprite: &Sprite) -> Option<&'static str> {
+pub fn describe_non_normals(sprite: &Sprite) -> Option<&'static str> {
     let (mut count, mut sum, mut grey, mut away, mut unlike) = (0.0_f32, Vec3::ZERO, 0.0, 0.0, 0.0);
     for texel in texels(sprite).filter(|texel| texel.w >= 0.5) {
         count += 1.0;
@@ -194,7 +194,7 @@ fn loop_seam(sprite: &Sprite) -> Option<(f32, f32)> {
 mod tests {
     use super::*;
     use haze::assets::builtin;
-    use haze::assets::picture::decode_png;
+    use haze::assets::image::decode_png;
     use image::Rgba;
 
     const LAYOUT: SpriteLayout = SpriteLayout { columns: 4, rows: 2, y_down: false };

@@ -9,7 +9,7 @@ use glam::{IVec2, Mat2, UVec2, Vec2, Vec3};
 use image::Rgba;
 
 use crate::exact::exp;
-use haze::assets::picture::Picture;
+use haze::assets::image::Image;
 use haze::formula::sprite::MOTION_RANGE;
 use haze::sprite::Sprite;
 
@@ -23,10 +23,10 @@ pub(crate) fn detail_size(sprite_size: u32) -> u32 {
 }
 
 /// Computes one frame of the detail map. `offset` has the size of the sprite.
-pub fn detail(sprite: &Sprite, frame: u32, offset: &Picture<f32>) -> Picture<Rgba<u8>> {
+pub fn detail(sprite: &Sprite, frame: u32, offset: &Image<f32>) -> Image<Rgba<u8>> {
     let size = detail_size(sprite.size());
     let motion = motion(sprite, frame);
-    let mut picture = Picture::new(UVec2::splat(size), Rgba([128, 128, 128, 0]));
+    let mut picture = Image::new(UVec2::splat(size), Rgba([128, 128, 128, 0]));
     let scale = sprite.size() / size;
     picture.for_each(|at, texel| {
         // Mean offset of the covered texels, weighted by amount.
@@ -51,15 +51,15 @@ pub fn detail(sprite: &Sprite, frame: u32, offset: &Picture<f32>) -> Picture<Rgb
 /// Computes each texel's motion from `frame` to the next, in sides of the sprite, y down. Optical flow by least squares
 /// in a window, from coarse to fine. (Lucas and Kanade, "An iterative image registration technique", 1981; pyramid
 /// after Bouguet, 2001)
-pub fn motion(sprite: &Sprite, frame: u32) -> Picture<Vec2> {
+pub fn motion(sprite: &Sprite, frame: u32) -> Image<Vec2> {
     let next = (frame + 1) % sprite.frame_count();
     let coarsest = (LEVEL + 2).min(sprite.level_count() - 1);
-    let mut flow = Picture::new(UVec2::ONE, Vec2::ZERO);
+    let mut flow = Image::new(UVec2::ONE, Vec2::ZERO);
     for level in (LEVEL.min(coarsest)..=coarsest).rev() {
         let (from, to) = (features(sprite, frame, level), features(sprite, next, level));
         // Starts from the coarser level's flow, converted to texels of this level.
         let size = from.size.x as f32;
-        let mut finer = Picture::new(from.size, Vec2::ZERO);
+        let mut finer = Image::new(from.size, Vec2::ZERO);
         finer.for_each(|at, texel| {
             *texel = bilinear(&flow, (at.as_vec2() + 0.5) * flow.size.as_vec2() / size - 0.5) * size;
         });
@@ -79,8 +79,8 @@ const WINDOW: i32 = 4;
 const STIFFNESS: f32 = 0.02;
 
 /// Returns the features that are matched between frames: amount, and normal xy times amount.
-fn features(sprite: &Sprite, frame: u32, level: u32) -> Picture<Vec3> {
-    let mut picture = Picture::new(UVec2::splat(sprite.level_size(level)), Vec3::ZERO);
+fn features(sprite: &Sprite, frame: u32, level: u32) -> Image<Vec3> {
+    let mut picture = Image::new(UVec2::splat(sprite.level_size(level)), Vec3::ZERO);
     picture.for_each(|at, feature| {
         let texel = sprite.texel(level, frame, at.x, at.y);
         *feature = Vec3::new(1.0, texel.x * 2.0 - 1.0, texel.y * 2.0 - 1.0) * texel.w;
@@ -89,9 +89,9 @@ fn features(sprite: &Sprite, frame: u32, level: u32) -> Picture<Vec3> {
 }
 
 /// Performs one least-squares step at every texel.
-fn refine(from: &Picture<Vec3>, to: &Picture<Vec3>, flow: &Picture<Vec2>) -> Picture<Vec2> {
+fn refine(from: &Image<Vec3>, to: &Image<Vec3>, flow: &Image<Vec2>) -> Image<Vec2> {
     // Each texel's contribution to the normal equations.
-    let mut local = Picture::new(from.size, (Mat2::ZERO, Vec2::ZERO));
+    let mut local = Image::new(from.size, (Mat2::ZERO, Vec2::ZERO));
     local.for_each(|at, (matrix, right)| {
         let at = at.as_ivec2();
         let moved = at.as_vec2() + flow.load(at);
@@ -105,7 +105,7 @@ fn refine(from: &Picture<Vec3>, to: &Picture<Vec3>, flow: &Picture<Vec2>) -> Pic
     let offsets = (-WINDOW..=WINDOW).flat_map(|dy| (-WINDOW..=WINDOW).map(move |dx| IVec2::new(dx, dy)));
     let weight = |offset: IVec2| exp(-offset.as_vec2().length_squared() / (WINDOW * WINDOW) as f32 * 2.0);
     let window: Vec<_> = offsets.map(|offset| (offset, weight(offset))).collect();
-    let mut refined = Picture::new(from.size, Vec2::ZERO);
+    let mut refined = Image::new(from.size, Vec2::ZERO);
     refined.for_each(|at, motion| {
         let at = at.as_ivec2();
         let (mut matrix, mut right) = (Mat2::from_diagonal(Vec2::splat(STIFFNESS)), Vec2::ZERO);
@@ -124,7 +124,7 @@ fn refine(from: &Picture<Vec3>, to: &Picture<Vec3>, flow: &Picture<Vec2>) -> Pic
     refined
 }
 
-fn bilinear<T>(picture: &Picture<T>, at: Vec2) -> T
+fn bilinear<T>(picture: &Image<T>, at: Vec2) -> T
 where
     T: Copy + Send + std::ops::Add<Output = T> + std::ops::Sub<Output = T> + std::ops::Mul<f32, Output = T>,
 {
@@ -153,7 +153,7 @@ mod tests {
             Rgba([channel(p.x * 0.5 + 0.5), channel(0.5 - p.y * 0.5), 255, channel(inside)])
         });
         let layout = SpriteLayout { columns: 2, rows: 1, y_down: false };
-        let sprite = Sprite::from_picture(std::path::Path::new("ball"), &sheet, layout).unwrap();
+        let sprite = Sprite::from_image(std::path::Path::new("ball"), &sheet, layout).unwrap();
         let found = motion(&sprite, 0).load(IVec2::new(7, 8)) * 64.0;
         assert!(found.distance(Vec2::new(3.0, -2.0)) < 0.4, "{found}");
     }

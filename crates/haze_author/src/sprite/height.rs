@@ -2,16 +2,16 @@
 
 use glam::{IVec2, UVec2, Vec3};
 
-use haze::assets::picture::Picture;
+use haze::assets::image::Image;
 
-pub fn grey(size: UVec2, value: impl Fn(UVec2) -> f32 + Sync) -> Picture<f32> {
-    let mut picture = Picture::new(size, 0.0);
+pub fn grey(size: UVec2, value: impl Fn(UVec2) -> f32 + Sync) -> Image<f32> {
+    let mut picture = Image::new(size, 0.0);
     picture.for_each(|at, grey| *grey = value(at));
     picture
 }
 
 /// Returns the unnormalised normal of a height map. A height of 1 equals a half side times `strength`.
-pub fn normal_of(height: &Picture<f32>, at: IVec2, strength: f32) -> Vec3 {
+pub fn normal_of(height: &Image<f32>, at: IVec2, strength: f32) -> Vec3 {
     let slope =
         |step: IVec2| (height.load(at - step) - height.load(at + step)) * height.size.x as f32 * 0.25 * strength;
     Vec3::new(slope(IVec2::X), -slope(IVec2::Y), 1.0)
@@ -19,8 +19,8 @@ pub fn normal_of(height: &Picture<f32>, at: IVec2, strength: f32) -> Vec3 {
 
 /// Builds a dome-like height map from a silhouette by summing blurs of doubling width. Thin parts are low, the middle
 /// is high, and structure inside the amount is kept.
-pub fn puffed(amount: &Picture<f32>) -> Picture<f32> {
-    let mut height = Picture::new(amount.size, 0.0);
+pub fn puffed(amount: &Image<f32>) -> Image<f32> {
+    let mut height = Image::new(amount.size, 0.0);
     let mut blurred = amount.clone();
     let mut reach = 1;
     while reach < amount.size.x as i32 / 4 {
@@ -38,7 +38,7 @@ pub fn puffed(amount: &Picture<f32>) -> Picture<f32> {
     height
 }
 
-fn boxed(picture: &Picture<f32>, step: IVec2, reach: i32) -> Picture<f32> {
+fn boxed(picture: &Image<f32>, step: IVec2, reach: i32) -> Image<f32> {
     grey(picture.size, |at| {
         let sum: f32 = (-reach..=reach).map(|offset| picture.load(at.as_ivec2() + step * offset)).sum();
         sum / (2 * reach + 1) as f32

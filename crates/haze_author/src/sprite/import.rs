@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::{UVec2, Vec3, Vec4};
 use image::{Rgba, RgbaImage, imageops};
 
-use super::check::{clear_borders, not_normals};
+use super::check::{clear_borders, describe_non_normals};
 use super::height::{grey, normal_of, puffed};
 use super::six_way::{Packing, pack};
 use super::y_direction::{SURE, YDirection, y_direction};
@@ -44,14 +44,14 @@ impl Source {
     }
 
     /// True if the source consists of two images.
-    pub fn has_two(self) -> bool {
+    pub fn needs_two_images(self) -> bool {
         self.packing().is_some()
     }
 }
 
 /// Result of an import, with observations about the source.
 #[derive(Clone, Debug)]
-pub struct Imported {
+pub struct ImportedSprite {
     /// rgb = normal / 2 + 1/2 (x right, y up, z towards the viewer), a = amount.
     pub picture: RgbaImage,
     /// Six-way maps, if the source is a pair of light maps: see [`six_way`](super::six_way).
@@ -68,7 +68,7 @@ pub struct Imported {
 ///
 /// # Errors
 /// [`Error::Image`] if a frame differs in size from the first.
-pub fn sheet_of(frames: &[(&Path, RgbaImage)]) -> Result<(RgbaImage, UVec2), Error> {
+pub fn arrange_sheet(frames: &[(&Path, RgbaImage)]) -> Result<(RgbaImage, UVec2), Error> {
     let Some((_, first)) = frames.first() else { return Ok((RgbaImage::new(0, 0), UVec2::ZERO)) };
     let (width, height) = first.dimensions();
     let count = frames.len() as u32;
@@ -101,12 +101,12 @@ pub fn import(
     layout: SpriteLayout,
     y_down: Option<bool>,
     strength: f32,
-) -> Result<Imported, Error> {
+) -> Result<ImportedSprite, Error> {
     let refuse = |reason: String| Err(Error::Image { path: path.into(), reason });
     let [first, rest @ ..] = sheets else { return refuse("no picture; expected one".into()) };
     let second = rest.first();
-    if rest.len() != usize::from(source.has_two()) {
-        return refuse(format!("{} sheets; expected {}", sheets.len(), 1 + u32::from(source.has_two())));
+    if rest.len() != usize::from(source.needs_two_images()) {
+        return refuse(format!("{} sheets; expected {}", sheets.len(), 1 + u32::from(source.needs_two_images())));
     }
     if let Some(second) = second.filter(|second| second.dimensions() != first.dimensions()) {
         let size = |sheet: &RgbaImage| format!("{}x{}", sheet.width(), sheet.height());
@@ -121,11 +121,11 @@ pub fn import(
     let size = UVec2::new(picture.width() / columns, picture.height() / rows);
     let border = clear_borders(&mut picture, layout);
     // Returns an error if the layout does not fit.
-    let sprite = Sprite::from_picture(path, &picture, SpriteLayout { y_down: false, ..layout })?;
+    let sprite = Sprite::from_image(path, &picture, SpriteLayout { y_down: false, ..layout })?;
     let (mut found, mut doubt) = (None, None);
     match source {
         Source::Normals => {
-            doubt = not_normals(&sprite);
+            doubt = describe_non_normals(&sprite);
             found = y_direction(&sprite);
             let guess = found.is_some_and(|found| found.is_down && found.sureness >= SURE);
             let turns = y_down.unwrap_or(guess);
@@ -160,7 +160,7 @@ pub fn import(
             *texel = encode((positive - negative) * strength, texel.0[3]);
         }
     }
-    Ok(Imported { picture, six_way, y_direction: found, doubt, border })
+    Ok(ImportedSprite { picture, six_way, y_direction: found, doubt, border })
 }
 
 fn value(texel: &Rgba<u8>) -> Vec4 {
@@ -267,10 +267,10 @@ mod tests {
     fn frames_are_arranged_on_a_sheet_without_empty_cells() {
         let frame = |grey: u8| (Path::new("a.png"), RgbaImage::from_pixel(4, 4, Rgba([grey; 4])));
         let frames: Vec<_> = (0..6).map(|index| frame(index * 10)).collect();
-        let (sheet, layout) = sheet_of(&frames).unwrap();
+        let (sheet, layout) = arrange_sheet(&frames).unwrap();
         assert_eq!((sheet.dimensions(), layout), ((12, 8), UVec2::new(3, 2)));
         assert_eq!(sheet.get_pixel(5, 5).0[0], 40);
         let odd = [frame(1), (Path::new("b.png"), RgbaImage::new(5, 4))];
-        assert!(sheet_of(&odd).unwrap_err().to_string().starts_with("b.png: 5x4 pixels; expected 4x4"));
+        assert!(arrange_sheet(&odd).unwrap_err().to_string().starts_with("b.png: 5x4 pixels; expected 4x4"));
     }
 }

@@ -5,13 +5,13 @@ use glam::Vec4;
 use crate::blend_unit::{premultiplied_over, quantise, weighted_sum};
 use crate::draw::Draw;
 use crate::sprite::SpriteFragment;
-use haze::assets::picture::Picture;
+use haze::assets::image::Image;
 use haze::formula::normal::accumulation_from_normal;
-use haze::in_view::Grid;
 use haze::settings::{AccumulationFormat, Order};
+use haze::view_setup::Grid;
 
 impl Draw<'_> {
-    pub fn accumulate(&self, reduced_depth: &Picture<f32>, overdraw: bool) -> Picture<Vec4> {
+    pub fn accumulate(&self, reduced_depth: &Image<f32>, overdraw: bool) -> Image<Vec4> {
         let accumulate = &self.settings.accumulate;
         self.blend(reduced_depth, |fragment, weight, texel| {
             let SpriteFragment { normal, six_way, amount } = fragment;
@@ -34,7 +34,7 @@ impl Draw<'_> {
 
     /// Second target: the sum of the normals' weights in x; or, for six-way maps, light from left, bottom and back, and
     /// the sum of weights.
-    pub fn beside(&self, reduced_depth: &Picture<f32>) -> Option<Picture<Vec4>> {
+    pub fn extra_attachment(&self, reduced_depth: &Image<f32>) -> Option<Image<Vec4>> {
         let accumulate = &self.settings.accumulate;
         if self.settings.is_six_way() {
             let light = |fragment: SpriteFragment, weight: f32, texel: Vec4| {
@@ -55,16 +55,12 @@ impl Draw<'_> {
     }
 
     /// Blends `f(fragment, weight, texel)` of every fragment into a target.
-    fn blend(
-        &self,
-        reduced_depth: &Picture<f32>,
-        f: impl Fn(SpriteFragment, f32, Vec4) -> Vec4 + Sync,
-    ) -> Picture<Vec4> {
-        let mut target = Picture::new(self.in_view.rect.size, Vec4::ZERO);
-        let origin = self.in_view.rect.origin.as_vec2();
+    fn blend(&self, reduced_depth: &Image<f32>, f: impl Fn(SpriteFragment, f32, Vec4) -> Vec4 + Sync) -> Image<Vec4> {
+        let mut target = Image::new(self.setup.rect.size, Vec4::ZERO);
+        let origin = self.setup.rect.origin.as_vec2();
         let scene = |at| reduced_depth.load(at);
         target.for_bands(|first_row, band| {
-            let grid = Grid { origin, scale: self.system.scale, size: self.in_view.rect.size };
+            let grid = Grid { origin, scale: self.system.scale, size: self.setup.rect.size };
             self.for_fragments(&grid, first_row, band, scene, |_, sprite, fragment, texel: &mut Vec4| {
                 *texel = f(fragment, sprite.weight, *texel);
             });

@@ -3,18 +3,18 @@
 use glam::IVec2;
 
 use crate::draw::Draw;
-use haze::assets::picture::Picture;
+use haze::assets::image::Image;
 use haze::formula::depth::{SKY_VIEW_DEPTH, depth_downsample_keeps_farthest};
 use haze::settings::{DepthDownsample, DepthSource};
 
 impl Draw<'_> {
-    pub fn depth_downsample(&self) -> Picture<f32> {
-        let mut reduced = Picture::new(self.in_view.rect.size, 0.0);
+    pub fn depth_downsample(&self) -> Image<f32> {
+        let mut reduced = Image::new(self.setup.rect.size, 0.0);
         let mode = self.settings.accumulate.depth_downsample;
         let scale = self.system.scale as i32;
         let limit = |depth: f32| depth.min(self.system.depth_limit);
         reduced.for_each(|at, texel| {
-            let at = at.as_ivec2() + self.in_view.rect.origin;
+            let at = at.as_ivec2() + self.setup.rect.origin;
             let first = at * scale;
             let last = self.scene_depth.size.as_ivec2() - 1;
             *texel = if self.settings.accumulate.depth_source == DepthSource::Host {

@@ -4,7 +4,7 @@ use glam::{UVec2, Vec2, Vec3};
 use half::f16;
 
 use crate::draw::Draw;
-use haze::assets::picture::Picture;
+use haze::assets::image::Image;
 use haze::assets::ramp::Ramp;
 use haze::formula::colour::bounded_light;
 use haze::formula::diffuse_bake::{baked_size_and_layers, cube_direction, motif_normal};
@@ -63,11 +63,11 @@ impl Draw<'_> {
     }
 
     /// Faces of the cubemap, or the motif; the first row is at −1.
-    pub fn diffuse_bake(&self) -> Vec<Picture<Vec3>> {
+    pub fn diffuse_bake(&self) -> Vec<Image<Vec3>> {
         let mode = self.settings.diffuse.mode;
         let Some((side, layers)) = baked_size_and_layers(mode) else { return Vec::new() };
         let face = |face: i32| {
-            let mut baked = Picture::new(UVec2::splat(side), Vec3::ZERO);
+            let mut baked = Image::new(UVec2::splat(side), Vec3::ZERO);
             baked.for_each(|at, texel| {
                 let place = at.as_vec2() / (side - 1) as f32 * 2.0 - 1.0;
                 let normal = match mode {

@@ -4,14 +4,14 @@ use glam::{IVec2, Vec4};
 
 use crate::accumulated::Accumulated;
 use crate::blend_unit::quantise;
-use haze::assets::picture::Picture;
+use haze::assets::image::Image;
 use haze::formula::colour::bounded_light;
 use haze::settings::AccumulationFormat;
 
 impl Accumulated<'_> {
     /// Lit target: light times amount, and amount.
-    pub fn light_target(&self) -> Picture<Vec4> {
-        let mut lit = Picture::new(self.accumulation.size, Vec4::ZERO);
+    pub fn light_target(&self) -> Image<Vec4> {
+        let mut lit = Image::new(self.accumulation.size, Vec4::ZERO);
         lit.for_each(|at, texel| *texel = self.lit_texel(at.as_ivec2()));
         lit
     }
@@ -25,7 +25,10 @@ impl Accumulated<'_> {
         if amount <= 0.0 {
             return Vec4::ZERO;
         }
-        let surface = self.surface(accumulated, self.beside.map_or(Vec4::ZERO, |beside| beside.load(at)));
+        let surface = self.surface(
+            accumulated,
+            self.extra_attachment.map_or(Vec4::ZERO, |extra_attachment| extra_attachment.load(at)),
+        );
         let pixel = (at.as_vec2() + system.target_origin + 0.5) * system.scale;
         let position = draw.view_position(pixel, -system.centre.z);
         let light = bounded_light(self.diffuse(&surface, amount, position) + draw.soft_scatter(amount));

@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use crate::accumulated::Accumulated;
-use haze::assets::picture::Picture;
+use haze::assets::image::Image;
 use haze::formula::colour::bounded_light;
 use haze::formula::depth::SKY_VIEW_DEPTH;
 use haze::formula::lighting::{VISIBILITY_TAPS, range_window, specular_scatter_fade, visibility_tap};
@@ -21,10 +21,10 @@ pub struct Glow<'a> {
 }
 
 impl Accumulated<'_> {
-    pub fn specular_scatter(&self, picture: &mut Picture<Vec4>) {
+    pub fn specular_scatter(&self, picture: &mut Image<Vec4>) {
         for glow in self.draw.lights.iter().filter_map(|light| self.glow(light)) {
             picture.for_each(|at, texel| {
-                if let Some((_, specular)) = self.glow_at(&glow, at.as_vec2() + 0.5) {
+                if let Some((_, specular)) = self.sample_glow(&glow, at.as_vec2() + 0.5) {
                     *texel += specular.extend(0.0);
                 }
             });
@@ -56,7 +56,7 @@ impl Accumulated<'_> {
 
     /// Lookup coordinate of the specular ramp at a pixel, and the light found there; `None` outside the quad and where
     /// there is no smoke.
-    pub fn glow_at(&self, glow: &Glow<'_>, pixel: Vec2) -> Option<(Vec2, Vec3)> {
+    pub fn sample_glow(&self, glow: &Glow<'_>, pixel: Vec2) -> Option<(Vec2, Vec3)> {
         let draw = self.draw;
         let uv = (pixel - glow.centre) / draw.system.specular_scatter_size;
         let distance_squared = uv.length_squared();

@@ -4,7 +4,7 @@ use glam::{IVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use crate::accumulated::Accumulated;
 use crate::blend_unit::premultiplied_over;
-use haze::assets::picture::Picture;
+use haze::assets::image::Image;
 use haze::formula::colour::{bounded_light, overdraw_colour};
 use haze::formula::diffuse_bake::{cube_coordinate, motif_position, sample_baked, spherical_harmonics};
 use haze::formula::lighting::{coverage, painted_coverage};
@@ -13,7 +13,7 @@ use haze::formula::ramp::sample_ramp_2d;
 use haze::formula::saturate;
 use haze::formula::six_way::{SixWay, normal_from_six_way};
 use haze::formula::uniforms::LightUniform;
-use haze::settings::{CoverageMode, DiffuseMode, ShadeTree};
+use haze::settings::{CoverageMode, DebugView, DiffuseMode};
 
 /// Surface that light falls on.
 pub struct Surface {
@@ -45,11 +45,11 @@ impl Accumulated<'_> {
         light * draw.system.diffuse_intensity
     }
 
-    pub fn transfer(&self, shade_tree: ShadeTree, picture: &mut Picture<Vec4>) {
+    pub fn transfer(&self, debug_view: DebugView, picture: &mut Image<Vec4>) {
         picture.for_each(|at, texel| {
             let pixel = at.as_vec2() + 0.5;
-            if self.box_is_drawn(at.as_ivec2(), pixel)
-                && let Some(source) = self.transfer_fragment(shade_tree, pixel)
+            if self.covers_pixel(at.as_ivec2(), pixel)
+                && let Some(source) = self.transfer_fragment(debug_view, pixel)
             {
                 *texel = premultiplied_over(source, *texel);
             }
@@ -57,7 +57,7 @@ impl Accumulated<'_> {
     }
 
     /// True if the face of the box that the transfer draws covers the pixel and passes the depth test.
-    pub fn box_is_drawn(&self, at: IVec2, pixel: Vec2) -> bool {
+    pub fn covers_pixel(&self, at: IVec2, pixel: Vec2) -> bool {
         let draw = self.draw;
         // The ray is parametrised by view depth: from the eye, or straight ahead.
         let (start, end) = (draw.view_position(pixel, 0.0), draw.view_position(pixel, 1.0));
@@ -67,26 +67,26 @@ impl Accumulated<'_> {
         let t1 = (draw.system.bounds_max - origin) / direction;
         let enter = t0.min(t1).max_element();
         let exit = t0.max(t1).min_element();
-        if draw.in_view.back_faces {
+        if draw.setup.back_faces {
             enter <= exit && exit > 0.0
         } else {
             enter <= exit && enter <= draw.scene_view_depth(at)
         }
     }
 
-    pub fn transfer_fragment(&self, shade_tree: ShadeTree, pixel: Vec2) -> Option<Vec4> {
+    pub fn transfer_fragment(&self, debug_view: DebugView, pixel: Vec2) -> Option<Vec4> {
         let system = &self.draw.system;
-        if shade_tree == ShadeTree::ReducedDepth {
+        if debug_view == DebugView::ReducedDepth {
             let depth = self.reduced_depth.load((pixel / system.scale - system.target_origin).as_ivec2());
             let grey = 1.0 - saturate((depth - system.bounds_near) / (system.depth_limit - system.bounds_near));
             return Some(Vec3::splat(grey).extend(1.0));
         }
-        let is_lit = self.draw.lights_target(shade_tree);
+        let is_lit = self.draw.lights_target(debug_view);
         let accumulated = if is_lit { self.sample_lit(pixel) } else { self.sample_target(self.accumulation, pixel) };
         let amount = accumulated.w;
-        match shade_tree {
-            ShadeTree::Overdraw => return Some(overdraw_colour(amount * 255.0).extend(1.0)),
-            ShadeTree::Amount => return Some(Vec3::splat(amount).extend(1.0)),
+        match debug_view {
+            DebugView::Overdraw => return Some(overdraw_colour(amount * 255.0).extend(1.0)),
+            DebugView::Amount => return Some(Vec3::splat(amount).extend(1.0)),
             _ => {}
         }
         if amount <= 0.0 {
@@ -97,14 +97,14 @@ impl Accumulated<'_> {
             return Some(bounded_light(accumulated.xyz() / amount.max(1.0e-6)).extend(1.0) * covered);
         }
         let surface = self.surface_at(accumulated, pixel);
-        if shade_tree == ShadeTree::Normals {
+        if debug_view == DebugView::Normals {
             return Some((surface.normal * 0.5 + 0.5).extend(1.0) * covered);
         }
         let mut light = Vec3::ZERO;
-        if shade_tree != ShadeTree::SoftScatter {
+        if debug_view != DebugView::SoftScatter {
             light += self.diffuse(&surface, amount, self.draw.view_position(pixel, -system.centre.z));
         }
-        if shade_tree != ShadeTree::Diffuse {
+        if debug_view != DebugView::Diffuse {
             light += self.draw.soft_scatter(amount);
         }
         Some(bounded_light(light).extend(1.0) * covered)
@@ -121,18 +121,21 @@ impl Accumulated<'_> {
     }
 
     fn surface_at(&self, accumulated: Vec4, pixel: Vec2) -> Surface {
-        self.surface(accumulated, self.beside.map_or(Vec4::ZERO, |beside| self.sample_target(beside, pixel)))
+        self.surface(
+            accumulated,
+            self.extra_attachment.map_or(Vec4::ZERO, |extra_attachment| self.sample_target(extra_attachment, pixel)),
+        )
     }
 
     /// `surface_from_accumulation()` in lit_smoke.wgsl.
-    pub fn surface(&self, accumulated: Vec4, beside: Vec4) -> Surface {
+    pub fn surface(&self, accumulated: Vec4, extra_attachment: Vec4) -> Surface {
         let accumulate = &self.draw.settings.accumulate;
         if self.draw.settings.is_six_way() {
-            let scale = 1.0 / beside.w.max(1.0e-6);
-            let [positive, negative] = [accumulated, beside].map(|light| light.xyz().max(Vec3::ZERO) * scale);
+            let scale = 1.0 / extra_attachment.w.max(1.0e-6);
+            let [positive, negative] = [accumulated, extra_attachment].map(|light| light.xyz().max(Vec3::ZERO) * scale);
             return Surface { normal: normal_from_six_way(positive, negative), six_way: SixWay { positive, negative } };
         }
-        let weights = if accumulate.sums_weights() { beside.x } else { accumulated.w };
+        let weights = if accumulate.sums_weights() { extra_attachment.x } else { accumulated.w };
         let normal = normal_from_accumulation(accumulate.encoding, accumulate.decode, accumulated.xyz(), weights);
         Surface { normal, six_way: SixWay::default() }
     }

@@ -5,7 +5,7 @@ mod chart;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use haze::settings::{Layers, Path as SmokePath};
+use haze::settings::{Layers, RenderPath};
 
 use self::chart::{Axis, COLOURS, Chart, Series, escaped, number};
 use super::report::{Report, Row};
@@ -81,7 +81,7 @@ fn by_overdraw(report: &Report) -> String {
     let usual = alphas.min_by(|a, b| (a - 0.1).abs().total_cmp(&(b - 0.1).abs()));
     let name = |row: &Row| {
         let (path, alpha) = (row.path.as_ref()?, row.alpha.filter(|_| is_large(row))?);
-        match row.mode.as_deref().filter(|_| path == SmokePath::Tiled.name()) {
+        match row.mode.as_deref().filter(|_| path == RenderPath::Tiled.name()) {
             Some(mode) if mode == Layers::Visible.name() => Some(format!("{path}, {mode} layers, alpha {alpha}")),
             mode => (row.alpha == usual).then(|| mode.map_or(path.clone(), |mode| format!("{path}, {mode} layers"))),
         }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use haze::preset::Preset;
-use haze::settings::{Value, path_of, values, walk};
+use haze::settings::{Value, field_path, for_each_field, values};
 
 use crate::tweak::lights::name_of;
 
@@ -38,8 +38,8 @@ pub fn copy_field(from: &Preset, to: &mut Preset, path: &str) {
         _ => {
             let values = values(from).into_iter().filter(|(field, _)| is_below(field, path));
             let values: HashMap<String, Value> = values.collect();
-            walk(to, &mut |path, leaf| {
-                if let Some(value) = values.get(&path_of(path)) {
+            for_each_field(to, &mut |path, leaf| {
+                if let Some(value) = values.get(&field_path(path)) {
                     leaf.set(value);
                 }
             });

@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Weak};
 
-use haze::preset::{PictureFolders, Preset};
+use haze::preset::{AssetFolders, Preset};
 use haze::{Error, FieldError, builtin};
 
 use super::history::History;
 use super::pictures::copy_beside;
 use super::recipes::{GradientStep, Recipes, Work, name_of};
-use crate::inputs::pictures_of;
-use crate::tweak::platform::assets::caches_of;
+use crate::inputs::image_paths;
+use crate::tweak::platform::assets::particle_file_paths;
 use crate::tweak::platform::files::{self, Stamp};
 
 /// Preset with its file and its undo history.
@@ -102,10 +102,10 @@ impl Document {
     }
 
     /// Returns the files that the image depends on, for watching. Some may be missing.
-    pub fn files(&self, folders: &PictureFolders) -> Vec<PathBuf> {
+    pub fn files(&self, folders: &AssetFolders) -> Vec<PathBuf> {
         let own = (!self.is_built_in()).then(|| self.path.clone());
-        let pictures = pictures_of(folders, &self.preset);
-        own.into_iter().chain(pictures).chain(caches_of(folders, &self.preset)).collect()
+        let pictures = image_paths(folders, &self.preset);
+        own.into_iter().chain(pictures).chain(particle_file_paths(folders, &self.preset)).collect()
     }
 
     /// Returns true if the document is a built-in preset, without a file.

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use haze::Error;
-use haze::preset::{PictureFolders, Preset};
+use haze::preset::{AssetFolders, Preset};
 
 use crate::inputs::picture_files;
-use crate::recipe::recipes_of;
-use crate::tweak::platform::assets::caches_of;
+use crate::recipe::recipe_paths;
+use crate::tweak::platform::assets::particle_file_paths;
 use crate::tweak::platform::files;
 
 /// Copies the files that a preset names from one folder to another, under the same relative paths. Missing files are
@@ -15,9 +15,9 @@ use crate::tweak::platform::files;
 /// anything.
 pub fn copy_beside(preset: &Preset, from: &Path, to: &Path) -> Result<(), Error> {
     let pictures = picture_files(preset);
-    let recipes: Vec<_> = pictures.iter().flat_map(|picture| recipes_of(picture)).collect();
+    let recipes: Vec<_> = pictures.iter().flat_map(|picture| recipe_paths(picture)).collect();
     let beside = pictures.into_iter().chain(recipes).map(|file| from.join(file));
-    let sources = beside.chain(caches_of(&PictureFolders::at(from), preset));
+    let sources = beside.chain(particle_file_paths(&AssetFolders::at(from), preset));
     let mut copies = Vec::new();
     for source in sources.filter(|source| files::exists(source)) {
         let Ok(file) = source.strip_prefix(from) else { continue };

@@ -15,7 +15,7 @@ use crate::tweak::platform::files;
 use crate::tweak::platform::lock::Lock;
 
 /// Interval of writing the file: at most this much work is lost.
-pub const WRITE_EVERY: Duration = Duration::from_secs(3);
+pub const RECOVERY_WRITE_INTERVAL: Duration = Duration::from_secs(3);
 
 /// Recovery files of this process. If it is dropped without [`Recovery::finish`], as in a panic, the files stay.
 pub struct Recovery {
@@ -33,14 +33,14 @@ impl Recovery {
         Self { folder: folder.into(), lock: None, written: None, last: None, is_broken: false }
     }
 
-    /// Writes the file while the document is not saved, at most once in [`WRITE_EVERY`], and removes it once the
+    /// Writes the file while the document is not saved, at most once in [`RECOVERY_WRITE_INTERVAL`], and removes it once the
     /// document is saved. Call often. A write error is returned once.
     pub fn keep(&mut self, document: &Document, now: Instant) -> Result<(), Error> {
         if !document.is_dirty() {
             self.forget();
             return Ok(());
         }
-        if self.last.is_some_and(|last| now.saturating_duration_since(last) < WRITE_EVERY) {
+        if self.last.is_some_and(|last| now.saturating_duration_since(last) < RECOVERY_WRITE_INTERVAL) {
             return Ok(());
         }
         self.last = Some(now);
@@ -116,7 +116,7 @@ fn free_lock(folder: &Path) -> Result<Lock, Error> {
 
 /// Unsaved work of a crashed process. It stays locked, so that no other tweaker offers it too. If it is dropped, it is
 /// offered again at the next start.
-pub struct Abandoned {
+pub struct CrashedWork {
     lock: Lock,
     /// Unsaved preset.
     pub preset: Preset,
@@ -124,7 +124,7 @@ pub struct Abandoned {
     pub source: PathBuf,
 }
 
-impl Abandoned {
+impl CrashedWork {
     /// Removes its files: it was restored, or the user does not want it.
     pub fn discard(self) {
         files::remove(&preset_beside(self.lock.path()));
@@ -134,7 +134,7 @@ impl Abandoned {
 
 /// Returns the unsaved work of crashed processes in the folder, and the errors of files that cannot be read. Those
 /// files stay.
-pub fn abandoned(folder: &Path) -> (Vec<Abandoned>, Vec<Error>) {
+pub fn abandoned(folder: &Path) -> (Vec<CrashedWork>, Vec<Error>) {
     let (mut found, mut errors) = (Vec::new(), Vec::new());
     let is_lock = |path: &PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -151,7 +151,7 @@ pub fn abandoned(folder: &Path) -> (Vec<Abandoned>, Vec<Error>) {
         let source = lock.read().unwrap_or_default();
         let source = if source.is_empty() { "recovered.json".into() } else { PathBuf::from(source) };
         match files::read_preset(&preset) {
-            Ok((preset, _)) => found.push(Abandoned { lock, preset, source }),
+            Ok((preset, _)) => found.push(CrashedWork { lock, preset, source }),
             Err(error) => errors.push(error),
         }
     }
@@ -166,7 +166,7 @@ mod tests {
     use crate::tweak::platform::lock::eventually;
 
     /// Returns the work that is offered after the locks are released.
-    fn offered(folder: &Path) -> Vec<Abandoned> {
+    fn offered(folder: &Path) -> Vec<CrashedWork> {
         eventually(|| Some(abandoned(folder).0).filter(|offered| !offered.is_empty()))
     }
 
@@ -193,10 +193,10 @@ mod tests {
         assert_eq!(abandoned(&state).0.len(), 0);
         // It is not written more often than every few seconds.
         document.preset.camera.exposure = 2.0;
-        recovery.keep(&document, now + WRITE_EVERY / 2).unwrap();
+        recovery.keep(&document, now + RECOVERY_WRITE_INTERVAL / 2).unwrap();
         let found = |name: &str| Preset::load(state.join(name)).unwrap().camera.exposure;
         assert_eq!((found("recovery-1.json"), found("recovery-2.json")), (1.0, 3.0));
-        recovery.keep(&document, now + WRITE_EVERY).unwrap();
+        recovery.keep(&document, now + RECOVERY_WRITE_INTERVAL).unwrap();
         assert_eq!((found("recovery-1.json"), found("recovery-2.json")), (2.0, 3.0));
         // Dropping releases the lock, like the end of the process.
         drop(recovery);
@@ -227,10 +227,10 @@ mod tests {
         document.redo();
         recovery.keep(&document, now).unwrap();
         assert_eq!(names(state), ["recovery-1.lock"]);
-        recovery.keep(&document, now + WRITE_EVERY).unwrap();
+        recovery.keep(&document, now + RECOVERY_WRITE_INTERVAL).unwrap();
         assert_eq!(names(state), ["recovery-1.json", "recovery-1.lock"]);
         document.undo();
-        recovery.keep(&document, now + WRITE_EVERY).unwrap();
+        recovery.keep(&document, now + RECOVERY_WRITE_INTERVAL).unwrap();
         drop(recovery);
         eventually(|| {
             assert_eq!(abandoned(state).0.len(), 0);
@@ -273,9 +273,9 @@ mod tests {
         fs::write(&blocked, "a file").unwrap();
         let (mut recovery, now) = (Recovery::new(&blocked), Instant::now());
         assert!(recovery.keep(&changed(1.0), now).is_err());
-        assert!(recovery.keep(&changed(1.0), now + WRITE_EVERY).is_ok());
+        assert!(recovery.keep(&changed(1.0), now + RECOVERY_WRITE_INTERVAL).is_ok());
         fs::remove_file(&blocked).unwrap();
-        recovery.keep(&changed(1.0), now + 2 * WRITE_EVERY).unwrap();
+        recovery.keep(&changed(1.0), now + 2 * RECOVERY_WRITE_INTERVAL).unwrap();
         assert_eq!(names(&blocked).len(), 2);
     }
 }

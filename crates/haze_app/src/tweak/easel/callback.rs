@@ -17,7 +17,7 @@ impl Easel {
 
     /// Shows a debug view of a shot in a part of the window. All views of one shot are drawn at once.
     pub fn show_stage(&self, ui: &egui::Ui, rect: egui::Rect, shot: Shot) {
-        self.add(ui, rect, What::Stage(Box::new(shot)));
+        self.add(ui, rect, What::OffscreenRenderer(Box::new(shot)));
     }
 
     fn add(&self, ui: &egui::Ui, rect: egui::Rect, what: What) {
@@ -35,7 +35,7 @@ struct Callback {
 
 enum What {
     Exhibit(Box<Exhibit>),
-    Stage(Box<Shot>),
+    OffscreenRenderer(Box<Shot>),
 }
 
 impl CallbackTrait for Callback {
@@ -55,15 +55,15 @@ impl CallbackTrait for Callback {
         let mut drawing = self.easel.lock();
         drawing.is_unpainted = true;
         match &self.what {
-            What::Exhibit(exhibit) => drawing.record_exhibit(&mut target, exhibit),
-            What::Stage(shot) => drawing.record_stage(&mut target, shot),
+            What::Exhibit(exhibit) => drawing.record_viewport(&mut target, exhibit),
+            What::OffscreenRenderer(shot) => drawing.record_debug_view(&mut target, shot),
         }
         if drawing.motion.wants_next() {
             self.easel.egui().request_repaint();
         }
         // Overlays use the texels of the previous image, so another frame must follow if they have changed.
         if let What::Exhibit(exhibit) = &self.what
-            && drawing.note_texels(exhibit.shot.preset.systems.len())
+            && drawing.update_target_texels(exhibit.shot.preset.systems.len())
         {
             self.easel.egui().request_repaint();
         }
@@ -77,12 +77,12 @@ impl CallbackTrait for Callback {
         }
         let mut drawing = self.easel.lock();
         drawing.is_unpainted = false;
-        let developing = match &self.what {
+        let tonemap_bindings = match &self.what {
             What::Exhibit(_) => drawing.pair.as_ref(),
-            What::Stage(shot) => drawing.strip.developing[shot.shade_tree as usize].as_ref(),
+            What::OffscreenRenderer(shot) => drawing.strip.tonemap_bindings[shot.debug_view as usize].as_ref(),
         };
-        if let Some(developing) = developing {
-            drawing.developer.record(pass, developing);
+        if let Some(tonemap_bindings) = tonemap_bindings {
+            drawing.tonemap_pass.record(pass, tonemap_bindings);
         }
     }
 }

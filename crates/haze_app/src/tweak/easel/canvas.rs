@@ -5,10 +5,10 @@ use eframe::wgpu;
 use glam::{UVec2, Vec2};
 use haze::Error;
 use haze::preset::Preset;
-use haze::settings::{DepthSource, ShadeTree};
-use haze_demo::develop::{Developing, Shown};
+use haze::settings::{DebugView, DepthSource};
+use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
-use haze_demo::stage::{Stage, StageContext};
+use haze_demo::tonemap_pass::{TonemapBindGroup, TonemapUniform};
 
 /// Encoder, device and rectangle that egui gives for drawing.
 pub struct Target<'a> {
@@ -19,28 +19,33 @@ pub struct Target<'a> {
 }
 
 impl Target<'_> {
-    pub fn shown(&self) -> Shown {
-        Shown {
+    pub fn shown(&self) -> TonemapUniform {
+        TonemapUniform {
             origin: Vec2::new(self.place.left_px as f32, self.place.top_px as f32),
             size: Vec2::new(self.place.width_px as f32, self.place.height_px as f32),
-            ..Shown::default()
+            ..TonemapUniform::default()
         }
     }
 }
 
 /// Off-screen renderer with the last shot that it drew.
-pub struct Canvas {
-    pub stage: Stage,
+pub struct CachedRender {
+    pub stage: OffscreenRenderer,
     /// Shot that was drawn last.
     pub shot: Option<Shot>,
     /// Error of the last attempt to draw; the image before is then shown.
     pub error: Option<String>,
-    pub developing: [Option<Developing>; ShadeTree::ALL.len()],
+    pub tonemap_bindings: [Option<TonemapBindGroup>; DebugView::ALL.len()],
 }
 
-impl Canvas {
-    pub fn new(context: &StageContext) -> Result<Self, Error> {
-        Ok(Self { stage: Stage::new(context, false)?, shot: None, error: None, developing: Default::default() })
+impl CachedRender {
+    pub fn new(context: &OffscreenContext) -> Result<Self, Error> {
+        Ok(Self {
+            stage: OffscreenRenderer::new(context, false)?,
+            shot: None,
+            error: None,
+            tonemap_bindings: Default::default(),
+        })
     }
 
     /// Returns true if this shot was drawn last.
@@ -49,7 +54,7 @@ impl Canvas {
     }
 
     /// Draws a shot unless it was drawn last. Returns true if the textures may have been replaced.
-    pub fn record(&mut self, target: &mut Target<'_>, shot: &Shot, stages: &[ShadeTree]) -> bool {
+    pub fn record(&mut self, target: &mut Target<'_>, shot: &Shot, stages: &[DebugView]) -> bool {
         if self.shows(shot) {
             return false;
         }
@@ -57,7 +62,7 @@ impl Canvas {
         let last = self.shot.replace(shot.clone());
         let done = self.stage.record(target.encoder, shot, stages);
         self.error = done.err().map(|error| error.to_string());
-        last.is_none_or(|last| (last.size, last.shade_tree) != (shot.size, shot.shade_tree))
+        last.is_none_or(|last| (last.size, last.debug_view) != (shot.size, shot.debug_view))
     }
 
     /// Call if the commands that were recorded last were never submitted.
@@ -66,7 +71,7 @@ impl Canvas {
         self.stage.forget();
     }
 
-    pub fn picture(&self, stage: ShadeTree) -> Option<&wgpu::Texture> {
+    pub fn picture(&self, stage: DebugView) -> Option<&wgpu::Texture> {
         self.stage.picture(stage)
     }
 }

@@ -2,15 +2,15 @@
 
 use eframe::wgpu;
 use glam::{IVec2, UVec2, Vec2};
-use haze::settings::ShadeTree;
+use haze::settings::DebugView;
 use haze::{Error, FrameCounts, FrameTimes, Overdraw, PathChoice, Timing};
-use haze_demo::apart::Comparison;
 use haze_demo::capture::Capture;
-use haze_demo::develop::{Developer, Developing, Shown, exposure};
+use haze_demo::image_metrics::Comparison;
+use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenMemory};
 use haze_demo::shot::Shot;
-use haze_demo::stage::{StageContext, StageMemory};
+use haze_demo::tonemap_pass::{TonemapBindGroup, TonemapPass, TonemapUniform, exposure};
 
-use super::canvas::{Canvas, Target, reduced, set_scale};
+use super::canvas::{CachedRender, Target, reduced, set_scale};
 use super::motion::Motion;
 use super::other::{Made, Other};
 use crate::tweak::compare::Side;
@@ -40,7 +40,7 @@ pub struct Texels {
 
 /// Cost of drawing the image.
 #[derive(Clone, Debug, Default)]
-pub struct Figures {
+pub struct RenderStats {
     /// Number of times that it was drawn.
     pub pictures: u64,
     /// GPU times of the last image for which they are known.
@@ -51,7 +51,7 @@ pub struct Figures {
     pub overdraw: Overdraw,
     /// Paths that were chosen where the preset leaves it open.
     pub choices: Vec<PathChoice>,
-    pub memory: StageMemory,
+    pub memory: OffscreenMemory,
     /// Memory of the strip and the second image, bytes.
     pub beside: u64,
     /// Number of times that the second image was drawn, and the smoke time of both images in milliseconds, where it is
@@ -61,17 +61,17 @@ pub struct Figures {
 }
 
 /// State of all images, behind a lock.
-pub struct Drawing {
-    pub context: StageContext,
-    pub developer: Developer,
+pub struct RendererState {
+    pub context: OffscreenContext,
+    pub tonemap_pass: TonemapPass,
     /// The image, and the second one: drawn here, or uploaded.
-    pub main: Canvas,
-    other: Option<Canvas>,
+    pub main: CachedRender,
+    other: Option<CachedRender>,
     made: Option<Made>,
     /// Bindings of the two images.
-    pub pair: Option<Developing>,
+    pub pair: Option<TonemapBindGroup>,
     /// All debug views, small.
-    pub strip: Canvas,
+    pub strip: CachedRender,
     strip_drawn: Option<Instant>,
     pub motion: Motion,
     /// Texels of every system of the image.
@@ -101,12 +101,12 @@ pub struct Drawing {
 /// Interval of drawing the strip while something moves.
 const STRIP_EVERY: Duration = Duration::from_millis(400);
 
-impl Drawing {
-    pub fn new(context: StageContext, developer: Developer) -> Result<Self, Error> {
-        let (main, strip) = (Canvas::new(&context)?, Canvas::new(&context)?);
+impl RendererState {
+    pub fn new(context: OffscreenContext, tonemap_pass: TonemapPass) -> Result<Self, Error> {
+        let (main, strip) = (CachedRender::new(&context)?, CachedRender::new(&context)?);
         Ok(Self {
             context,
-            developer,
+            tonemap_pass,
             main,
             other: None,
             made: None,
@@ -131,8 +131,8 @@ impl Drawing {
         })
     }
 
-    pub fn set_context(&mut self, context: StageContext) -> Result<(), Error> {
-        let (main, strip) = (Canvas::new(&context)?, Canvas::new(&context)?);
+    pub fn set_context(&mut self, context: OffscreenContext) -> Result<(), Error> {
+        let (main, strip) = (CachedRender::new(&context)?, CachedRender::new(&context)?);
         (self.main, self.strip, self.other, self.pair, self.captured) = (main, strip, None, None, None);
         self.context = context;
         self.main.stage.set_timing(self.timing.as_ref())?;
@@ -142,7 +142,7 @@ impl Drawing {
     /// Call if the commands that were recorded last were never submitted.
     pub fn forget(&mut self) {
         let canvases = [Some(&mut self.main), self.other.as_mut(), Some(&mut self.strip)];
-        canvases.into_iter().flatten().for_each(Canvas::forget);
+        canvases.into_iter().flatten().for_each(CachedRender::forget);
         (self.capture, self.captured, self.comparison, self.is_compared) = (None, None, None, false);
     }
 
@@ -167,11 +167,11 @@ impl Drawing {
         }
     }
 
-    pub fn figures(&self, is_timed: bool) -> Figures {
+    pub fn figures(&self, is_timed: bool) -> RenderStats {
         let beside = [Some(&self.strip), self.other.as_ref()].into_iter().flatten();
         let times = self.timing.as_ref().and_then(Timing::latest);
         let of_second = self.timing_of_second.as_ref().and_then(Timing::latest);
-        Figures {
+        RenderStats {
             seconds: self.seconds,
             sides: [&times, &of_second].map(|times| times.as_ref().map(FrameTimes::smoke_ms)),
             pictures: self.pictures,
@@ -195,7 +195,7 @@ impl Drawing {
     }
 
     /// Records the texels of all systems. Returns true if they have changed.
-    pub fn note_texels(&mut self, systems: usize) -> bool {
+    pub fn update_target_texels(&mut self, systems: usize) -> bool {
         let renderer = self.main.stage.renderer();
         let picture = self.main.shot.as_ref().map_or(UVec2::ONE, |shot| shot.size);
         let of = |key| {
@@ -212,7 +212,7 @@ impl Drawing {
         before != self.texels
     }
 
-    pub fn record_exhibit(&mut self, target: &mut Target<'_>, exhibit: &Exhibit) {
+    pub fn record_viewport(&mut self, target: &mut Target<'_>, exhibit: &Exhibit) {
         let Exhibit { shot, other, split, difference } = exhibit;
         let divisor = self.motion.pace.divisor();
         let (mut shot, other) = (reduced(shot, divisor), &other.as_ref().map(|other| other.reduced(divisor)));
@@ -220,26 +220,26 @@ impl Drawing {
         let shot = &shot;
         let mut is_new = false;
         if !self.main.shows(shot) {
-            is_new = self.main.record(target, shot, &[shot.shade_tree]);
+            is_new = self.main.record(target, shot, &[shot.debug_view]);
             self.timing.iter().for_each(|timing| timing.resolve(target.encoder));
             self.motion.draw();
             self.pictures += 1;
             self.is_compared = false;
         }
-        is_new |= self.record_second(target, other.as_ref());
+        is_new |= self.record_comparison(target, other.as_ref());
         self.copy(target.encoder, shot, other.as_ref());
         let Some([first, second]) = self.hung(shot, other.as_ref()) else { return };
         if is_new || self.pair.is_none() {
-            self.pair = Some(self.developer.bind(target.device, &first, &second));
+            self.pair = Some(self.tonemap_pass.bind(target.device, &first, &second));
         }
         let width = target.place.width_px as f32;
-        let shown = Shown {
+        let shown = TonemapUniform {
             exposure: Vec2::new(exposure(shot), other.as_ref().map_or(exposure(shot), Other::exposure)),
             split: if other.is_some() { split * width } else { width },
             difference: if other.is_some() { *difference } else { 0.0 },
             ..target.shown()
         };
-        self.pair.iter().for_each(|pair| self.developer.prepare(target.queue, pair, &shown));
+        self.pair.iter().for_each(|pair| self.tonemap_pass.prepare(target.queue, pair, &shown));
         self.is_compared &= shown.exposure == self.exposures;
         self.exposures = shown.exposure;
         let stands_still = !self.motion.is_moving() && self.comparison.is_none() && !self.is_compared;
@@ -256,9 +256,9 @@ impl Drawing {
         let Some(side) = self.wants_capture.filter(|_| self.capture.is_none()) else { return };
         let (shot, canvas) = match (side, other, &self.other) {
             (Side::First, ..) => (first, &self.main),
-            (Side::Second, Some(Other::Shot(shot)), Some(canvas)) => (&**shot, canvas),
+            (Side::SecondDiff, Some(Other::Shot(shot)), Some(canvas)) => (&**shot, canvas),
             // An uploaded image has no texels.
-            (Side::Second, ..) => return,
+            (Side::SecondDiff, ..) => return,
         };
         let is_copied = |(of, copied): &(Side, Shot)| {
             *of == side && copied.is_same(shot) && exposure(copied).to_bits() == exposure(shot).to_bits()
@@ -270,10 +270,10 @@ impl Drawing {
     }
 
     /// Draws or uploads the second image. Returns true if its texture may have been replaced.
-    fn record_second(&mut self, target: &mut Target<'_>, other: Option<&Other>) -> bool {
+    fn record_comparison(&mut self, target: &mut Target<'_>, other: Option<&Other>) -> bool {
         let (drawn, made) = match other {
             Some(Other::Shot(shot)) => (Some(&**shot), None),
-            Some(Other::Picture(picture, _)) => (None, Some(picture)),
+            Some(Other::Image(picture, _)) => (None, Some(picture)),
             None => (None, None),
         };
         let mut is_new = false;
@@ -281,14 +281,14 @@ impl Drawing {
             Some(shot) => {
                 if self.other.is_none() {
                     // Like the other canvases, which could be created.
-                    self.other = Canvas::new(&self.context).ok();
+                    self.other = CachedRender::new(&self.context).ok();
                     self.timing_of_second = self.timing.as_ref().and_then(|_| self.context.timing());
                     let timing = self.timing_of_second.as_ref();
                     // Cannot fail: both are of the same device.
                     self.other.iter_mut().for_each(|canvas| drop(canvas.stage.set_timing(timing)));
                 }
                 if let Some(canvas) = self.other.as_mut().filter(|canvas| !canvas.shows(shot)) {
-                    is_new = canvas.record(target, shot, &[shot.shade_tree]);
+                    is_new = canvas.record(target, shot, &[shot.debug_view]);
                     self.timing_of_second.iter().for_each(|timing| timing.resolve(target.encoder));
                     self.seconds += 1;
                     self.is_compared = false;
@@ -306,9 +306,9 @@ impl Drawing {
 
     /// Returns the image and the second one; the image twice if there is no second.
     fn hung(&self, shot: &Shot, other: Option<&Other>) -> Option<[wgpu::Texture; 2]> {
-        let first = self.main.picture(shot.shade_tree)?;
+        let first = self.main.picture(shot.debug_view)?;
         let drawn = match other {
-            Some(Other::Shot(shot)) => self.other.as_ref().and_then(|canvas| canvas.picture(shot.shade_tree)),
+            Some(Other::Shot(shot)) => self.other.as_ref().and_then(|canvas| canvas.picture(shot.debug_view)),
             _ => None,
         };
         let second = drawn.or(self.made.as_ref().map(|made| &made.texture));
@@ -320,21 +320,21 @@ impl Drawing {
         self.other.is_some() || self.made.is_some()
     }
 
-    pub fn record_stage(&mut self, target: &mut Target<'_>, shot: &Shot) {
-        let stage = shot.shade_tree;
+    pub fn record_debug_view(&mut self, target: &mut Target<'_>, shot: &Shot) {
+        let stage = shot.debug_view;
         // The first view that is requested draws all.
-        let all = Shot { shade_tree: ShadeTree::Final, ..shot.clone() };
+        let all = Shot { debug_view: DebugView::Final, ..shot.clone() };
         let may_wait = self.motion.is_moving() && self.strip_drawn.is_some_and(|drawn| drawn.elapsed() < STRIP_EVERY);
         if !may_wait && !self.strip.shows(&all) {
             self.strip_drawn = Some(Instant::now());
-            if self.strip.record(target, &all, ShadeTree::ALL) {
-                self.strip.developing = Default::default();
+            if self.strip.record(target, &all, DebugView::ALL) {
+                self.strip.tonemap_bindings = Default::default();
             }
         }
         let Some(picture) = self.strip.stage.picture(stage) else { return };
-        let developing = self.strip.developing[stage as usize]
-            .get_or_insert_with(|| self.developer.bind(target.device, picture, picture));
-        let shown = Shown { exposure: Vec2::splat(exposure(shot)), ..target.shown() };
-        self.developer.prepare(target.queue, developing, &shown);
+        let tonemap_bindings = self.strip.tonemap_bindings[stage as usize]
+            .get_or_insert_with(|| self.tonemap_pass.bind(target.device, picture, picture));
+        let shown = TonemapUniform { exposure: Vec2::splat(exposure(shot)), ..target.shown() };
+        self.tonemap_pass.prepare(target.queue, tonemap_bindings, &shown);
     }
 }

@@ -4,22 +4,22 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use eframe::{egui, wgpu};
 use haze::Error;
-use haze_demo::apart::Comparison;
 use haze_demo::capture::Capture;
-use haze_demo::develop::Developer;
+use haze_demo::image_metrics::Comparison;
+use haze_demo::offscreen_renderer::OffscreenContext;
 use haze_demo::shot::Shot;
-use haze_demo::stage::StageContext;
+use haze_demo::tonemap_pass::TonemapPass;
 
-use super::drawing::{Drawing, Figures, Texels};
+use super::drawing::{RenderStats, RendererState, Texels};
 use crate::tweak::compare::Side;
-use crate::tweak::health::Health;
+use crate::tweak::health::DeviceHealth;
 
 /// Draws the images of one window. Clones share the state.
 #[derive(Clone)]
 pub struct Easel {
-    drawing: Arc<Mutex<Drawing>>,
+    drawing: Arc<Mutex<RendererState>>,
     adapter: Arc<wgpu::AdapterInfo>,
-    health: Health,
+    health: DeviceHealth,
     egui: egui::Context,
     /// The device can measure GPU time.
     is_timed: bool,
@@ -31,8 +31,8 @@ impl Easel {
     pub fn new(window: &eframe::CreationContext<'_>) -> Result<Self, Error> {
         let none = || Error::NoDevice("the window has no graphics device".into());
         let render = window.wgpu_render_state.as_ref().ok_or_else(none)?;
-        let health = Health::watch(&render.device, &window.egui_ctx);
-        let context = StageContext::new(&render.adapter, &render.device, &render.queue);
+        let health = DeviceHealth::watch(&render.device, &window.egui_ctx);
+        let context = OffscreenContext::new(&render.adapter, &render.device, &render.queue);
         if render.adapter.get_info().device_type != wgpu::DeviceType::Cpu {
             // Takes about 0.2 s on a GPU. A CPU adapter takes longer, and its paths cost about the same.
             context.measure_paths(|encoder| {
@@ -41,8 +41,8 @@ impl Easel {
                 waited.map(|_| ()).map_err(|error| Error::Device(error.to_string()))
             })?;
         }
-        let developer = Developer::new(&render.device, render.target_format);
-        let drawing = Arc::new(Mutex::new(Drawing::new(context, developer)?));
+        let tonemap_pass = TonemapPass::new(&render.device, render.target_format);
+        let drawing = Arc::new(Mutex::new(RendererState::new(context, tonemap_pass)?));
         let (adapter, egui) = (Arc::new(render.adapter.get_info()), window.egui_ctx.clone());
         let is_timed = render.device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
         Ok(Self { drawing, adapter, health, egui, is_timed })
@@ -70,7 +70,7 @@ impl Easel {
         self.adapter.device_type == wgpu::DeviceType::Cpu
     }
 
-    pub fn health(&self) -> &Health {
+    pub fn health(&self) -> &DeviceHealth {
         &self.health
     }
 
@@ -86,7 +86,7 @@ impl Easel {
 
     /// Simulates a long frame.
     #[cfg(test)]
-    pub fn be_slow(&self) {
+    pub fn simulate_slow_frame(&self) {
         self.lock().motion.pace.update(1.0);
     }
 
@@ -96,7 +96,7 @@ impl Easel {
     }
 
     /// Returns the shared GPU context, for checking other shaders.
-    pub fn context(&self) -> StageContext {
+    pub fn context(&self) -> OffscreenContext {
         self.lock().context.clone()
     }
 
@@ -104,7 +104,7 @@ impl Easel {
     ///
     /// # Errors
     /// As [`Easel::new`]. On an error, nothing changes.
-    pub fn set_context(&self, context: StageContext) -> Result<(), Error> {
+    pub fn set_context(&self, context: OffscreenContext) -> Result<(), Error> {
         self.lock().set_context(context)
     }
 
@@ -131,7 +131,7 @@ impl Easel {
     }
 
     /// Returns the cost of drawing the image.
-    pub fn figures(&self) -> Figures {
+    pub fn figures(&self) -> RenderStats {
         self.lock().figures(self.is_timed)
     }
 
@@ -181,7 +181,7 @@ impl Easel {
     }
 
     /// Locks the state.
-    pub(super) fn lock(&self) -> MutexGuard<'_, Drawing> {
+    pub(super) fn lock(&self) -> MutexGuard<'_, RendererState> {
         self.drawing.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -9,5 +9,5 @@ mod motion;
 pub mod other;
 mod pace;
 
-pub use drawing::{Exhibit, Figures, Texels};
+pub use drawing::{Exhibit, RenderStats, Texels};
 pub use easel::Easel;

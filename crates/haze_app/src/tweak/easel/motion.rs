@@ -1,12 +1,12 @@
 //! Frame times while something moves.
 
-use super::pace::Pace;
+use super::pace::AdaptiveResolution;
 use crate::tweak::platform::clock::Instant;
 
-/// Reports frame times to [`Pace`], for frames in which something moves and the image is drawn.
+/// Reports frame times to [`AdaptiveResolution`], for frames in which something moves and the image is drawn.
 #[derive(Default)]
 pub struct Motion {
-    pub pace: Pace,
+    pub pace: AdaptiveResolution,
     is_moving: bool,
     /// Start of the last frame, and whether the image was drawn in it.
     last: Option<Instant>,

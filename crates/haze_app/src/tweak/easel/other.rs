@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use eframe::wgpu;
 use glam::Vec4;
-use haze::picture::Picture;
-use haze_demo::develop::exposure;
+use haze::image::Image;
 use haze_demo::shot::Shot;
+use haze_demo::tonemap_pass::exposure;
 
 use super::canvas::{Target, reduced};
 
@@ -15,12 +15,12 @@ use super::canvas::{Target, reduced};
 pub enum Other {
     Shot(Box<Shot>),
     /// Image rendered elsewhere, and its exposure factor.
-    Picture(Arc<Picture<Vec4>>, f32),
+    Image(Arc<Image<Vec4>>, f32),
 }
 
 /// Texture of an image that was rendered elsewhere.
 pub struct Made {
-    picture: Arc<Picture<Vec4>>,
+    picture: Arc<Image<Vec4>>,
     pub texture: wgpu::Texture,
 }
 
@@ -29,21 +29,21 @@ impl Other {
     pub fn reduced(&self, divisor: u32) -> Self {
         match self {
             Self::Shot(shot) => Self::Shot(Box::new(reduced(shot, divisor))),
-            Self::Picture(picture, exposure) => Self::Picture(picture.clone(), *exposure),
+            Self::Image(picture, exposure) => Self::Image(picture.clone(), *exposure),
         }
     }
 
     pub fn exposure(&self) -> f32 {
         match self {
             Self::Shot(shot) => exposure(shot),
-            Self::Picture(_, exposure) => *exposure,
+            Self::Image(_, exposure) => *exposure,
         }
     }
 }
 
 impl Made {
     /// Uploads an image, or drops the texture if there is none. Returns true if the texture was replaced.
-    pub fn hang(made: &mut Option<Self>, target: &Target<'_>, picture: Option<&Arc<Picture<Vec4>>>) -> bool {
+    pub fn hang(made: &mut Option<Self>, target: &Target<'_>, picture: Option<&Arc<Image<Vec4>>>) -> bool {
         let is_up = match (&*made, picture) {
             (Some(made), Some(picture)) => Arc::ptr_eq(&made.picture, picture),
             (None, None) => true,
@@ -57,7 +57,7 @@ impl Made {
 }
 
 /// Uploads a linear HDR image as half floats.
-fn upload(target: &Target<'_>, picture: &Picture<Vec4>) -> wgpu::Texture {
+fn upload(target: &Target<'_>, picture: &Image<Vec4>) -> wgpu::Texture {
     let size = wgpu::Extent3d { width: picture.size.x, height: picture.size.y, depth_or_array_layers: 1 };
     let texture = target.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("made picture"),

@@ -15,20 +15,20 @@ const PATIENCE: u32 = 12;
 
 /// Chooses the divisor of the image's sides. Plain data without a clock or a device.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pace {
+pub struct AdaptiveResolution {
     divisor: u32,
     /// Consecutive frames in which a finer image would have been fast enough.
     easy: u32,
     patience: u32,
 }
 
-impl Default for Pace {
+impl Default for AdaptiveResolution {
     fn default() -> Self {
         Self { divisor: 1, easy: 0, patience: PATIENCE }
     }
 }
 
-impl Pace {
+impl AdaptiveResolution {
     pub fn divisor(&self) -> u32 {
         self.divisor
     }
@@ -66,7 +66,7 @@ mod tests {
 
     /// Simulates frames whose load has a fixed part and a part that falls with the square of the divisor. Returns the
     /// divisor after each.
-    fn run(pace: &mut Pace, fixed: f32, whole: f32, frames: usize) -> Vec<u32> {
+    fn run(pace: &mut AdaptiveResolution, fixed: f32, whole: f32, frames: usize) -> Vec<u32> {
         let mut frame = || {
             pace.update(fixed + whole / (pace.divisor() * pace.divisor()) as f32);
             pace.divisor()
@@ -76,13 +76,13 @@ mod tests {
 
     #[test]
     fn a_fast_load_keeps_the_full_resolution() {
-        assert!(run(&mut Pace::default(), 0.005, 0.03, 500).iter().all(|divisor| *divisor == 1));
+        assert!(run(&mut AdaptiveResolution::default(), 0.005, 0.03, 500).iter().all(|divisor| *divisor == 1));
     }
 
     #[test]
     fn a_slow_load_is_reduced_at_once_without_oscillation() {
         for whole in [0.06, 0.1, 0.2, 0.5] {
-            let mut pace = Pace::default();
+            let mut pace = AdaptiveResolution::default();
             let divisors = run(&mut pace, 0.008, whole, 2000);
             let found = divisors[2];
             let seconds = 0.008 + whole / (found * found) as f32;
@@ -94,7 +94,7 @@ mod tests {
 
     #[test]
     fn resolution_recovers_after_one_slow_frame_and_at_rest() {
-        let mut pace = Pace::default();
+        let mut pace = AdaptiveResolution::default();
         pace.update(0.4);
         assert_eq!(pace.divisor(), COARSEST.min(3));
         assert_eq!(run(&mut pace, 0.002, 0.01, 200).last(), Some(&1));
@@ -104,12 +104,12 @@ mod tests {
         pace.update(10.0);
         assert_eq!(pace.divisor(), COARSEST);
         pace.rest();
-        assert_eq!(pace, Pace::default());
+        assert_eq!(pace, AdaptiveResolution::default());
     }
 
     #[test]
     fn an_intermittent_load_is_retried_less_and_less_often() {
-        let mut pace = Pace::default();
+        let mut pace = AdaptiveResolution::default();
         let changes = |divisors: Vec<u32>| divisors.windows(2).filter(|pair| pair[0] != pair[1]).count();
         let mut count = 0;
         for _ in 0..40 {

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use glam::Vec3;
 use haze::preset::Preset;
-use haze::settings::{Choice, FieldVisitor, Fields, path_of};
+use haze::settings::{Choice, FieldVisitor, Fields, field_path};
 
 use crate::tweak::made::Made;
 use crate::tweak::reach::{is_wide, reach};
@@ -20,21 +20,21 @@ pub fn spread(preset: &Preset, path: &str) -> Vec<String> {
         let (low, high) = made.usual;
         return five(low, low, high, false).map(text).into();
     }
-    let mut spread = Spread { wanted: path, path: Vec::new(), texts: Vec::new() };
+    let mut spread = ValueSpread { wanted: path, path: Vec::new(), texts: Vec::new() };
     preset.clone().visit(&mut spread);
     spread.texts
 }
 
-struct Spread<'a> {
+struct ValueSpread<'a> {
     wanted: &'a str,
     path: Vec<Step>,
     texts: Vec<String>,
 }
 
-impl Spread<'_> {
+impl ValueSpread<'_> {
     fn offer(&mut self, name: &'static str, texts: impl IntoIterator<Item = String>) {
         self.path.push((name, None));
-        if path_of(&self.path) == self.wanted {
+        if field_path(&self.path) == self.wanted {
             self.texts = texts.into_iter().collect();
             self.texts.dedup();
         }
@@ -71,7 +71,7 @@ fn text(number: f32) -> String {
     format!("{number:.3e}").parse::<f32>().unwrap_or(number).to_string()
 }
 
-impl FieldVisitor for Spread<'_> {
+impl FieldVisitor for ValueSpread<'_> {
     fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, _: &'static str) {
         let (shown, is_wide) = reach(&range, *value);
         let (low, high) = if is_wide { range.into_inner() } else { shown.into_inner() };

@@ -43,7 +43,7 @@ impl Bench {
     }
 
     /// Runs an export and returns the names of new files beside the preset.
-    fn make(&mut self, product: Product) -> Vec<String> {
+    fn make(&mut self, product: ExportKind) -> Vec<String> {
         self.window.state_mut().exporting.product = product;
         self.window.state_mut().exporting.is_open = true;
         self.window.run_steps(2);
@@ -76,7 +76,7 @@ fn an_image_is_saved_beside_the_preset_without_replacing_files() {
     let names = bench.names();
     assert_eq!(names.len(), 2, "{names:?}");
     assert!(names.iter().all(|name| name.ends_with("s.png") || name.ends_with("s_2.png")), "{names:?}");
-    let picture = haze::picture::read_png(&bench.folder.path().join(&names[0])).unwrap();
+    let picture = haze::image::read_png(&bench.folder.path().join(&names[0])).unwrap();
     let seen = 36.0 * bench.window.state().session.show.aspect;
     assert_eq!((picture.width(), picture.height()), (seen.round() as u32, 36));
 }
@@ -84,14 +84,14 @@ fn an_image_is_saved_beside_the_preset_without_replacing_files() {
 #[test]
 fn frames_are_written_as_sequence_flipbook_and_gif() {
     let mut bench = bench();
-    let names = bench.make(Product::Sequence);
+    let names = bench.make(ExportKind::Sequence);
     let folder = bench.folder.path().join(&names[0]);
     assert_eq!(fs::read_dir(folder).unwrap().count(), 4);
-    let names = bench.make(Product::Gif);
+    let names = bench.make(ExportKind::Gif);
     assert!(names.iter().any(|name| name.ends_with(".gif")), "{names:?}");
-    let names = bench.make(Product::Flipbook);
+    let names = bench.make(ExportKind::Flipbook);
     let name = names.iter().find(|name| name.contains("flipbook")).unwrap();
-    let picture = haze::picture::read_png(&bench.folder.path().join(name)).unwrap();
+    let picture = haze::image::read_png(&bench.folder.path().join(name)).unwrap();
     assert_eq!((picture.width(), picture.height()), (8 * 64, 4 * 36));
 }
 
@@ -140,7 +140,7 @@ fn sheets_are_shown_and_saved_on_request() {
     bench.window.run_steps(2);
     assert!(bench.names()[0].contains("seeds"), "{:?}", bench.names());
     for (product, count) in
-        [(Product::ShadeTree, 9), (Product::Values("systems[0].settings.accumulate.scale".into()), 1)]
+        [(ExportKind::DebugView, 9), (ExportKind::Values("systems[0].settings.accumulate.scale".into()), 1)]
     {
         bench.make(product);
         bench.until(|window| window.exporting.sheet.is_some());
@@ -169,7 +169,7 @@ fn a_stopped_export_is_reported_as_partial() {
 fn the_row_menu_makes_the_same_sheet_as_the_export_dialog() {
     let mut bench = bench();
     let path = "camera.exposure";
-    bench.make(Product::Values(path.into()));
+    bench.make(ExportKind::Values(path.into()));
     bench.until(|window| window.exporting.sheet.is_some());
     let Sheet { picture: made, .. } = bench.window.state_mut().exporting.sheet.take().unwrap();
     bench.window.state_mut().exporting.is_open = false;

@@ -11,7 +11,7 @@ use haze::preset::Preset;
 use tempfile::TempDir;
 
 use super::*;
-use crate::tweak::keeping::{Keeping, Layout};
+use crate::tweak::keeping::{Layout, Persistence};
 use crate::tweak::reload::ShaderFolder;
 use crate::tweak::testing;
 use crate::tweak::window::{Start, Window};
@@ -33,7 +33,7 @@ fn bench() -> Bench {
 
 fn window(path: &Path, state: Option<PathBuf>) -> Harness<'static, Window> {
     let mut session = Session::open(path, None).unwrap();
-    let keeping = state.map(|folder| Keeping::new(folder, &mut session));
+    let keeping = state.map(|folder| Persistence::new(folder, &mut session));
     let start = Start { session, shaders: ShaderFolder::None, keeping, layout: Layout::default(), has_dialogs: false };
     testing::open(start, Vec2::new(800.0, 500.0), Theme::Dark)
 }
@@ -284,7 +284,7 @@ fn a_dropped_preset_is_opened_and_a_dropped_ramp_is_used() {
     let mut bench = bench();
     let ramp = bench.path("mine.png");
     let grey = image::RgbImage::from_pixel(64, 1, image::Rgb([20; 3]));
-    haze::picture::write_png(&ramp, &grey.into(), haze::picture::Effort::Quick).unwrap();
+    haze::image::write_png(&ramp, &grey.into(), haze::image::CompressionEffort::Quick).unwrap();
     bench.drop_file(&ramp);
     bench.until(|bench| bench.session().document.preset.systems[0].material.diffuse_ramp == "mine.png");
     assert_eq!(bench.said(), "mine.png is the diffuse ramp of smoke now");

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use eframe::egui::{self, Ui};
 use glam::UVec2;
 use haze::Error;
-use haze_demo::capture::{Capture, Witness};
+use haze_demo::capture::{Capture, ProbeInputs};
 use haze_demo::shot::Shot;
 
-use super::survey::Survey;
+use super::survey::RampSurvey;
 use super::{Inspect, Told};
 use crate::tweak::compare::Side;
 use crate::tweak::easel::Easel;
@@ -34,14 +34,14 @@ pub struct Lens {
 /// Image with its texels.
 struct Seen {
     side: Side,
-    witness: Witness,
+    witness: ProbeInputs,
 }
 
 /// Result from the worker thread.
 enum Answer {
     Seen(Arc<Seen>),
     Told(Told),
-    Survey(Survey),
+    RampSurvey(RampSurvey),
 }
 
 impl Lens {
@@ -81,7 +81,7 @@ impl Lens {
             ui.ctx().request_repaint_after(Duration::from_secs_f64(waits.min(INTERVAL)));
         }
         while let Some(answer) = self.worker.poll() {
-            self.is_asking &= matches!(answer, Some(Ok(Answer::Seen(_) | Answer::Survey(_))));
+            self.is_asking &= matches!(answer, Some(Ok(Answer::Seen(_) | Answer::RampSurvey(_))));
             match answer {
                 Some(Ok(answer)) => {
                     session.messages.withdraw("inspector");
@@ -100,12 +100,12 @@ impl Lens {
                 // The ramps tab shows the first image.
                 if has_ramps && seen.side == Side::First {
                     let seen = seen.clone();
-                    self.worker.submit(move |_| Ok(Answer::Survey(Survey::of(&seen.witness)?)));
+                    self.worker.submit(move |_| Ok(Answer::RampSurvey(RampSurvey::of(&seen.witness)?)));
                 }
                 (self.seen, self.asked) = (Some(seen), None);
             }
             Answer::Told(told) => inspect.told = Some(told),
-            Answer::Survey(survey) => inspect.survey = Some(Arc::new(survey)),
+            Answer::RampSurvey(survey) => inspect.survey = Some(Arc::new(survey)),
         }
     }
 

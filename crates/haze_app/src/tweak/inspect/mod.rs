@@ -11,11 +11,11 @@ use std::sync::Arc;
 
 use eframe::egui::{Response, Vec2};
 use glam::{UVec2, Vec3};
-use haze::formula::tonemap::developed;
+use haze::formula::tonemap::tonemapped;
 use haze_reference::Probe;
 
 use super::compare::Side;
-use survey::{Spot, Survey};
+use survey::{RampSurvey, Spot};
 
 /// State of the inspector.
 #[derive(Default)]
@@ -29,7 +29,7 @@ pub struct Inspect {
     /// Values of the pixel.
     pub told: Option<Told>,
     /// Ramp coordinates of the whole image.
-    pub survey: Option<Arc<Survey>>,
+    pub survey: Option<Arc<RampSurvey>>,
     /// Place on a ramp. Smoke that samples it is highlighted in the image.
     pub spot: Option<Spot>,
 }
@@ -67,5 +67,5 @@ impl Inspect {
 
 /// Returns tonemapped light as an sRGB code.
 fn code(light: Vec3, exposure: f32) -> [u8; 3] {
-    developed(light, exposure).to_array().map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round() as u8)
+    tonemapped(light, exposure).to_array().map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round() as u8)
 }

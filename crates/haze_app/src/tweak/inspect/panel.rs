@@ -19,7 +19,7 @@ pub fn panel(ui: &Ui, viewport: Rect, session: &Session) {
     let (inspect, compare) = (&session.inspect, &session.compare);
     let Some(place) = inspect.place().filter(|_| inspect.is_on) else { return };
     let side = compare.side(place.x);
-    let is_made = side == Side::Second && compare.against == Some(Against::Reference);
+    let is_made = side == Side::SecondDiff && compare.against == Some(Against::Reference);
     let told = inspect.told.as_ref().filter(|told| told.side == side && !is_made);
     if told.is_none() && !is_made {
         return;
@@ -64,11 +64,11 @@ fn numbers(ui: &mut Ui, told: &Told, session: &Session, is_small: bool) {
     ui.horizontal(|ui| {
         ui.strong(format!("Pixel {}, {}", pixel.x, pixel.y));
         ui.weak(keep);
-        if let Some(against) = session.compare.against.as_ref().filter(|_| *side == Side::Second) {
+        if let Some(against) = session.compare.against.as_ref().filter(|_| *side == Side::SecondDiff) {
             ui.weak(format!("second: {}", against.name()));
         }
     });
-    let preset = session.compare.against.as_ref().filter(|_| *side == Side::Second);
+    let preset = session.compare.against.as_ref().filter(|_| *side == Side::SecondDiff);
     let preset = preset.and_then(|against| against.settings(session.saved())).unwrap_or(&session.document.preset);
     let lights = session.show.lights.shown_names(&preset.lights);
     // The nearest system comes first.

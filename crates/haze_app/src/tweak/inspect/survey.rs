@@ -2,7 +2,7 @@
 
 use glam::{UVec2, Vec2};
 use haze::Error;
-use haze_demo::capture::Witness;
+use haze_demo::capture::ProbeInputs;
 use haze_reference::SystemProbe;
 
 /// Largest number of pixels that are sampled.
@@ -29,7 +29,7 @@ pub enum Spot {
 }
 
 /// Smoke at the sampled pixels.
-pub struct Survey {
+pub struct RampSurvey {
     /// Size of the image in pixels.
     pub size: UVec2,
     /// Distance between sampled pixels, in pixels.
@@ -43,10 +43,10 @@ pub struct Histogram {
     pub bins: Vec<f32>,
 }
 
-impl Survey {
+impl RampSurvey {
     /// # Errors
     /// If the texels belong to another shot.
-    pub fn of(witness: &Witness) -> Result<Self, Error> {
+    pub fn of(witness: &ProbeInputs) -> Result<Self, Error> {
         let size = witness.shot().size;
         let step = (size.element_product() as f32 / MOST as f32).sqrt().ceil().max(1.0) as u32;
         let column = |y| (step / 2..size.x).step_by(step as usize).map(move |x| UVec2::new(x, y));

@@ -3,7 +3,7 @@
 use eframe::egui::{self, Button, Ui};
 
 use crate::tweak::action::{Action, keys_of};
-use crate::tweak::compare::{Against, OFFERS, Offer};
+use crate::tweak::compare::{Against, COMPARE_OPTIONS, CompareOption};
 use crate::tweak::session::Session;
 
 /// Gap between buttons of one choice, points.
@@ -11,7 +11,7 @@ const GAP: f32 = 2.0;
 
 /// Draws buttons if they fit into `room`, points. With less room, some of them are in the menu only.
 pub fn panel(ui: &mut Ui, session: &mut Session, room: f32) {
-    let row: f32 = OFFERS.iter().map(|offer| width(ui, offer.short) + GAP).sum();
+    let row: f32 = COMPARE_OPTIONS.iter().map(|offer| width(ui, offer.short) + GAP).sum();
     let row = row + width(ui, "Compare") + ui.spacing().item_spacing.x;
     let beside = ["Difference", "x 256.0", "Use", "Swap"].map(|name| width(ui, name) + ui.spacing().item_spacing.x);
     let beside: f32 = beside.iter().sum();
@@ -19,7 +19,8 @@ pub fn panel(ui: &mut Ui, session: &mut Session, room: f32) {
     let has_row = row + beside <= room;
     let has_tools = has_row || width(ui, "full resolution") + beside <= room;
     let against = session.compare.against.as_ref();
-    let is_in_row = has_row && against.is_some_and(|against| OFFERS.iter().any(|offer| offer.against == *against));
+    let is_in_row =
+        has_row && against.is_some_and(|against| COMPARE_OPTIONS.iter().any(|offer| offer.against == *against));
     let name = against.filter(|_| !is_in_row).map_or("Compare", Against::name);
     ui.menu_button(name, |ui| {
         menu(ui, session);
@@ -33,7 +34,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, room: f32) {
     if has_row {
         ui.scope(|ui| {
             ui.spacing_mut().item_spacing.x = GAP;
-            for Offer { against, short, tooltip, .. } in &OFFERS {
+            for CompareOption { against, short, tooltip, .. } in &COMPARE_OPTIONS {
                 let button = ui.selectable_label(session.compare.against.as_ref() == Some(against), *short);
                 let button = button.on_hover_text(format!("{tooltip} ({})", keys(ui, against)));
                 if button.clicked() {
@@ -67,7 +68,7 @@ fn menu(ui: &mut Ui, session: &mut Session) {
     entry(ui, None, "Nothing", "One picture", String::new());
     let tooltip = "Keeps the present settings as the second picture; later changes show in the first";
     entry(ui, Some(kept), "As it is now", tooltip, String::new());
-    for Offer { against, name, tooltip, .. } in &OFFERS {
+    for CompareOption { against, name, tooltip, .. } in &COMPARE_OPTIONS {
         entry(ui, Some(against.clone()), name, tooltip, keys(ui, against));
     }
 }
@@ -114,7 +115,7 @@ mod tests {
     fn no_buttons_at_the_top_overlap_in_any_comparison() {
         for width in [640.0, 800.0, 1000.0, 1280.0] {
             let mut harness = window("column", Vec2::new(width, 500.0), Theme::Dark);
-            for (key, offer) in [Key::F5, Key::F6, Key::F7, Key::F8].into_iter().zip(&OFFERS) {
+            for (key, offer) in [Key::F5, Key::F6, Key::F7, Key::F8].into_iter().zip(&COMPARE_OPTIONS) {
                 harness.key_press(key);
                 harness.run_steps(3);
                 assert_eq!(harness.state().session.compare.against.as_ref(), Some(&offer.against));

@@ -9,7 +9,7 @@ use haze::settings::Choice;
 
 use super::row::spaced;
 use super::value::{parse, shown, suffix};
-use crate::tweak::reach::{Usual, is_wide, reach};
+use crate::tweak::reach::{UsualRange, is_wide, reach};
 
 /// Least width of the number field, points.
 const VALUE: f32 = 84.0;
@@ -23,7 +23,7 @@ pub fn number(
     ui: &mut Ui,
     name: &Response,
     value: &mut f32,
-    (range, usual): (&RangeInclusive<f32>, Usual),
+    (range, usual): (&RangeInclusive<f32>, UsualRange),
     unit: &str,
     refused: &mut Refused,
 ) -> bool {

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Ui};
 
-use crate::tweak::exporting::{Exporting, MOST_PIXELS, Product, Sheet};
+use crate::tweak::exporting::{ExportJob, ExportKind, MOST_PIXELS, Sheet};
 use crate::tweak::platform::clock::Duration;
 use crate::tweak::search::matches;
 use crate::tweak::session::Session;
@@ -11,7 +11,7 @@ use crate::tweak::session::Session;
 const CORNER: [f32; 2] = [24.0, 76.0];
 
 /// Draws the export dialog and the sheet while they are open.
-pub fn panel(ui: &Ui, exporting: &mut Exporting, session: &mut Session) {
+pub fn panel(ui: &Ui, exporting: &mut ExportJob, session: &mut Session) {
     exporting.advance(session);
     let progress = exporting.progress();
     if progress.is_some() {
@@ -37,18 +37,18 @@ pub fn panel(ui: &Ui, exporting: &mut Exporting, session: &mut Session) {
     sheet(ui, exporting);
 }
 
-fn order(ui: &mut Ui, exporting: &mut Exporting, session: &mut Session) {
+fn order(ui: &mut Ui, exporting: &mut ExportJob, session: &mut Session) {
     let values = match &exporting.product {
-        Product::Values(path) => path.clone(),
+        ExportKind::Values(path) => path.clone(),
         _ => String::new(),
     };
     let products = [
-        ("Sequence", Product::Sequence),
-        ("Flipbook", Product::Flipbook),
-        ("GIF", Product::Gif),
-        ("Shade tree", Product::ShadeTree),
-        ("Nine seeds", Product::Seeds),
-        ("Values of a setting", Product::Values(values)),
+        ("Sequence", ExportKind::Sequence),
+        ("Flipbook", ExportKind::Flipbook),
+        ("GIF", ExportKind::Gif),
+        ("Shade tree", ExportKind::DebugView),
+        ("Nine seeds", ExportKind::Seeds),
+        ("Values of a setting", ExportKind::Values(values)),
     ];
     ui.horizontal_wrapped(|ui| {
         for (name, product) in products {
@@ -56,7 +56,7 @@ fn order(ui: &mut Ui, exporting: &mut Exporting, session: &mut Session) {
         }
     });
     let (product, order) = (&mut exporting.product, &mut exporting.order);
-    let is_moving = matches!(product, Product::Sequence | Product::Flipbook | Product::Gif);
+    let is_moving = matches!(product, ExportKind::Sequence | ExportKind::Flipbook | ExportKind::Gif);
     egui::Grid::new("order").num_columns(2).show(ui, |ui| {
         let mut row = |name: &str, numbers: [(&mut u32, std::ops::RangeInclusive<u32>); 2]| {
             let label = ui.label(name).id;
@@ -71,7 +71,7 @@ fn order(ui: &mut Ui, exporting: &mut Exporting, session: &mut Session) {
         if is_moving {
             row("Frames", [(&mut order.first, 0..=99_999), (&mut order.last, 0..=99_999)]);
         }
-        if *product == Product::Flipbook {
+        if *product == ExportKind::Flipbook {
             row("Rows, columns", [(&mut order.cells.x, 1..=64), (&mut order.cells.y, 1..=64)]);
         }
         if is_moving {
@@ -80,7 +80,7 @@ fn order(ui: &mut Ui, exporting: &mut Exporting, session: &mut Session) {
             ui.end_row();
         }
     });
-    if let Product::Values(path) = product {
+    if let ExportKind::Values(path) = product {
         let edit = egui::TextEdit::singleline(&mut exporting.wanted).hint_text("Find a setting");
         ui.add(edit).widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "setting to vary"));
         let found = matches(&session.document.preset, &session.tooltips, &session.show.lights, &exporting.wanted);
@@ -91,14 +91,14 @@ fn order(ui: &mut Ui, exporting: &mut Exporting, session: &mut Session) {
             }
         }
     }
-    let is_ready = *product != Product::Values(String::new());
+    let is_ready = *product != ExportKind::Values(String::new());
     if ui.add_enabled(is_ready, egui::Button::new("Make")).clicked() {
         let product = product.clone();
         exporting.begin(product, session);
     }
 }
 
-fn sheet(ui: &Ui, exporting: &mut Exporting) {
+fn sheet(ui: &Ui, exporting: &mut ExportJob) {
     let Some(Sheet { picture, texture, .. }) = &mut exporting.sheet else { return };
     // Uploaded once.
     let texture = texture.get_or_insert_with(|| {

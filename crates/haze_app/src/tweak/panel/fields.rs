@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use eframe::egui::{self, Ui};
 use glam::Vec3;
-use haze::settings::{Choice, FieldVisitor, Fields, PictureRole, Value, path_of};
+use haze::settings::{Choice, FieldVisitor, Fields, ImageRole, Value, field_path};
 use haze_author::preset::Tooltips;
 
 use super::control;
@@ -13,13 +13,13 @@ use super::gallery::gallery;
 use super::row::{Asked, Row, spaced};
 use super::value::shown_value;
 use crate::tweak::picture_thumbnails::PictureThumbnails;
-use crate::tweak::reach::Usual;
+use crate::tweak::reach::UsualRange;
 
 /// Step on the path to a field: its name, and its index if it is in a list.
 pub type Step = (&'static str, Option<usize>);
 
 /// Data that rows read, and requests that they return.
-pub struct Desk<'a> {
+pub struct RowContext<'a> {
     pub tooltips: &'a Tooltips,
     /// Thumbnails of images.
     pub thumbnails: &'a PictureThumbnails,
@@ -39,7 +39,7 @@ pub struct Desk<'a> {
     pub sought: Option<&'a str>,
 }
 
-impl Desk<'_> {
+impl RowContext<'_> {
     /// Returns the second image's value of a field as text, if it differs; the outer `None` means that it has no
     /// settings of its own.
     pub fn second(&self, path: &str, unit: &str) -> Option<Option<String>> {
@@ -53,13 +53,13 @@ const SEEDS: Option<&str> = Some("Nine seeds on a sheet");
 const ALL: Option<&str> = Some("All values on a sheet");
 
 /// Draws the fields of the struct at `path`. Groups and headings are collapsible; the first heading is open.
-pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fields) {
+pub fn show(ui: &mut Ui, desk: &mut RowContext<'_>, path: &[Step], fields: &mut dyn Fields) {
     let table = fields.headings();
     if table.is_empty() {
         show_where(ui, desk, path, fields, &|_| true);
     }
     for part in table.chunk_by(|_, (_, heading)| heading.is_none()) {
-        let mut rows = |ui: &mut Ui, desk: &mut Desk<'_>| {
+        let mut rows = |ui: &mut Ui, desk: &mut RowContext<'_>| {
             show_where(ui, desk, path, fields, &|name| part.iter().any(|(field, _)| *field == name));
         };
         let Some(&(first, Some(heading))) = part.first() else {
@@ -67,7 +67,7 @@ pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fi
             continue;
         };
         let holds = |field: &str| {
-            let below = field.strip_prefix(&path_of(path)).and_then(|rest| rest.strip_prefix('.'));
+            let below = field.strip_prefix(&field_path(path)).and_then(|rest| rest.strip_prefix('.'));
             part.iter().any(|(name, _)| below.is_some_and(|below| is_at(below, name)))
         };
         let header = header(desk, heading, &holds).id_salt((path, heading)).default_open(first == table[0].0);
@@ -78,7 +78,7 @@ pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fi
 /// Draws the fields of a struct whose names are wanted.
 pub fn show_where(
     ui: &mut Ui,
-    desk: &mut Desk<'_>,
+    desk: &mut RowContext<'_>,
     path: &[Step],
     fields: &mut dyn Fields,
     is_wanted: &dyn Fn(&str) -> bool,
@@ -87,7 +87,7 @@ pub fn show_where(
 }
 
 /// Returns a collapsible header. It opens if the sought field is inside, and shows the marks of the fields inside.
-pub fn header(desk: &Desk<'_>, title: &str, holds: &dyn Fn(&str) -> bool) -> egui::CollapsingHeader {
+pub fn header(desk: &RowContext<'_>, title: &str, holds: &dyn Fn(&str) -> bool) -> egui::CollapsingHeader {
     let mark = if desk.changed.iter().any(|changed| holds(changed)) { " •" } else { "" };
     let is_apart = desk.second.is_some_and(|second| second.keys().any(|apart| holds(apart)));
     let apart = if is_apart { " ≠" } else { "" };
@@ -100,17 +100,17 @@ pub fn is_at(field: &str, path: &str) -> bool {
 }
 
 /// One field of a struct: title that replaces its name, relative path, and usual range of its slider.
-pub type Named<'a> = (&'a str, &'a str, Usual);
+pub type Named<'a> = (&'a str, &'a str, UsualRange);
 
 /// Draws one field of the struct at `path`.
-pub fn show_named(ui: &mut Ui, desk: &mut Desk<'_>, path: &[Step], fields: &mut dyn Fields, named: Named<'_>) {
+pub fn show_named(ui: &mut Ui, desk: &mut RowContext<'_>, path: &[Step], fields: &mut dyn Fields, named: Named<'_>) {
     let (title, wanted, usual) = named;
     let only = Some(Only { title, wanted, usual, depth: path.len() });
     fields.visit(&mut Rows { ui, desk, path: path.to_vec(), is_wanted: &|_| true, only });
 }
 
 /// Brings the row that begins at a position into view and marks it, because it was searched for.
-pub fn show_sought(ui: &Ui, begin: egui::Pos2) {
+pub fn scroll_to_and_mark(ui: &Ui, begin: egui::Pos2) {
     let rect = egui::Rect::from_min_max(begin, ui.cursor().min + egui::vec2(ui.available_width(), 0.0));
     ui.scroll_to_rect(rect, Some(egui::Align::Center));
     ui.painter().rect_stroke(rect, 2.0, ui.visuals().selection.stroke, egui::StrokeKind::Outside);
@@ -118,7 +118,7 @@ pub fn show_sought(ui: &Ui, begin: egui::Pos2) {
 
 struct Rows<'a, 'd, 'u> {
     ui: &'u mut Ui,
-    desk: &'a mut Desk<'d>,
+    desk: &'a mut RowContext<'d>,
     path: Vec<Step>,
     /// Returns true if the field of this name is drawn.
     is_wanted: &'a dyn Fn(&str) -> bool,
@@ -132,7 +132,7 @@ struct Only<'a> {
     title: &'a str,
     /// Path relative to the struct that `depth` steps lead to.
     wanted: &'a str,
-    usual: Usual,
+    usual: UsualRange,
     depth: usize,
 }
 
@@ -147,9 +147,9 @@ impl Rows<'_, '_, '_> {
             return;
         }
         self.path.push((name, None));
-        let path = path_of(&self.path);
+        let path = field_path(&self.path);
         let plain = self.path.iter().map(|step| step.0).collect::<Vec<_>>().join(".");
-        let below = self.only.map(|only| path_of(&self.path[only.depth..]));
+        let below = self.only.map(|only| field_path(&self.path[only.depth..]));
         self.path.pop();
         if self.only.zip(below).is_some_and(|(only, path)| path != only.wanted) {
             return;
@@ -181,7 +181,7 @@ impl Rows<'_, '_, '_> {
             *what = format!("{path}: {what}");
         }
         if desk.sought == Some(path.as_str()) {
-            show_sought(self.ui, before);
+            scroll_to_and_mark(self.ui, before);
         }
     }
 
@@ -194,7 +194,7 @@ impl Rows<'_, '_, '_> {
             let path = self.path.clone();
             fields.visit(&mut Rows { ui: self.ui, desk: self.desk, path, is_wanted: &|_| true, only: self.only });
         } else {
-            let path = path_of(&self.path);
+            let path = field_path(&self.path);
             let header = header(self.desk, &spaced(title), &|field| is_at(field, &path)).id_salt(&path);
             header.show(self.ui, |ui| show(ui, self.desk, &self.path, fields));
         }
@@ -245,7 +245,7 @@ impl FieldVisitor for Rows<'_, '_, '_> {
         });
     }
 
-    fn picture(&mut self, name: &'static str, value: &mut String, role: PictureRole) {
+    fn picture(&mut self, name: &'static str, value: &mut String, role: ImageRole) {
         let thumbnails = self.desk.thumbnails;
         self.row(name, ("", None), |ui, label, _, path, _| {
             gallery(ui, thumbnails, role, value, path).labelled_by(label.id);

@@ -5,7 +5,7 @@ use std::path::Path;
 use eframe::egui::{self, Key, Ui};
 
 use crate::tweak::action::{ACTIONS, Action};
-use crate::tweak::filing::Filing;
+use crate::tweak::filing::FileActions;
 use crate::tweak::messages::short;
 use crate::tweak::platform::dialog::Purpose;
 use crate::tweak::platform::files;
@@ -50,7 +50,7 @@ pub fn menu(ui: &mut Ui, session: &mut Session) -> Option<Action> {
 }
 
 /// Asks about unsaved work, or for a path, while that is needed.
-pub fn questions(ui: &Ui, filing: &mut Filing, session: &mut Session) {
+pub fn questions(ui: &Ui, filing: &mut FileActions, session: &mut Session) {
     if filing.waiting.is_some() {
         unsaved(ui, filing, session);
     }
@@ -59,7 +59,7 @@ pub fn questions(ui: &Ui, filing: &mut Filing, session: &mut Session) {
     }
 }
 
-fn unsaved(ui: &Ui, filing: &mut Filing, session: &mut Session) {
+fn unsaved(ui: &Ui, filing: &mut FileActions, session: &mut Session) {
     let mut answer = None;
     let response = egui::Modal::new(egui::Id::unique("unsaved")).show(ui.ctx(), |ui| {
         ui.heading(format!("Save the changes of {}?", short(&session.document.preset.name, 60)));
@@ -78,7 +78,7 @@ fn unsaved(ui: &Ui, filing: &mut Filing, session: &mut Session) {
     }
 }
 
-fn type_path(ui: &Ui, filing: &mut Filing, session: &mut Session) {
+fn type_path(ui: &Ui, filing: &mut FileActions, session: &mut Session) {
     let Some(typed) = &mut filing.typed else { return };
     let mut is_done = false;
     let response = egui::Modal::new(egui::Id::unique("path")).show(ui.ctx(), |ui| {

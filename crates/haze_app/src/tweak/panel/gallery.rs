@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Rect, Response, Sense, Stroke, Ui, Vec2};
 use haze::ramp::Role;
-use haze::settings::PictureRole;
+use haze::settings::ImageRole;
 
 use crate::tweak::picture_thumbnails::{PictureThumbnails, SIZE};
 
@@ -17,7 +17,7 @@ const COLUMNS: f32 = 3.0;
 pub fn gallery(
     ui: &mut Ui,
     thumbnails: &PictureThumbnails,
-    role: PictureRole,
+    role: ImageRole,
     value: &mut String,
     path: &str,
 ) -> Response {
@@ -51,7 +51,7 @@ pub fn gallery(
                 ui.weak("others");
                 cells(ui, others);
             }
-            if matches!(role, PictureRole::Detail | PictureRole::SixWay) && ui.button("none").clicked() {
+            if matches!(role, ImageRole::Detail | ImageRole::SixWay) && ui.button("none").clicked() {
                 value.clear();
             }
         })
@@ -59,7 +59,7 @@ pub fn gallery(
 }
 
 /// Draws a thumbnail with its name.
-fn cell(ui: &mut Ui, thumbnails: &PictureThumbnails, role: PictureRole, name: &str, is_chosen: bool) -> Response {
+fn cell(ui: &mut Ui, thumbnails: &PictureThumbnails, role: ImageRole, name: &str, is_chosen: bool) -> Response {
     let (rect, response) = ui.allocate_exact_size(PICTURE + Vec2::new(8.0, NAME + 4.0), Sense::click());
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_chosen, name));
     let visuals = ui.style().interact_selectable(&response, is_chosen);

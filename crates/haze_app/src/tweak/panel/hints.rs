@@ -3,7 +3,7 @@
 use eframe::egui::{self, Align2, Pos2, Rect, Ui, Vec2, vec2};
 
 use crate::tweak::action::{Action, keys_of};
-use crate::tweak::hints::{Doing, HINTS, Hint, Place};
+use crate::tweak::hints::{HINTS, Hint, Place, UserActivity};
 use crate::tweak::session::Session;
 use crate::tweak::show::Tab;
 
@@ -17,11 +17,11 @@ const AWAY: f32 = 10.0;
 pub fn panel(ui: &Ui, session: &mut Session, presses: bool, drags_light: bool) {
     let sees_look = session.show.tab == Tab::Look;
     let (finds, sees_keys) = (session.search.is_open, session.show.help);
-    session.hints.follow(&session.document.preset, &Doing { presses, drags_light, sees_look, finds, sees_keys });
+    session.hints.follow(&session.document.preset, &UserActivity { presses, drags_light, sees_look, finds, sees_keys });
     let Some((hint, at)) = session.hints.shown().filter(|(_, at)| at.is_positive()) else { return };
     let Some((_, _, text)) = HINTS.into_iter().find(|(of, ..)| *of == hint) else { return };
     let (corner, pivot, way) = match hint.place() {
-        Place::Picture => (at.left_bottom() + vec2(AWAY, -AWAY), Align2::LEFT_BOTTOM, Vec2::UP),
+        Place::Image => (at.left_bottom() + vec2(AWAY, -AWAY), Align2::LEFT_BOTTOM, Vec2::UP),
         Place::Settings => (at.left_top() + vec2(-AWAY, 64.0), Align2::RIGHT_TOP, Vec2::RIGHT),
         Place::Find | Place::Keys => (at.right_bottom() + vec2(0.0, AWAY), Align2::RIGHT_TOP, Vec2::UP),
     };
@@ -86,7 +86,7 @@ mod tests {
     use egui_kittest::kittest::Queryable as _;
 
     use super::*;
-    use crate::tweak::keeping::{Keeping, Layout};
+    use crate::tweak::keeping::{Layout, Persistence};
     use crate::tweak::reload::ShaderFolder;
     use crate::tweak::testing;
     use crate::tweak::window::{Start, Window};
@@ -94,7 +94,7 @@ mod tests {
     /// Opens a window that persists its state in a folder.
     fn start(folder: &std::path::Path, size: Vec2, theme: Theme) -> Harness<'static, Window> {
         let mut session = Session::open("column".as_ref(), None).unwrap();
-        let keeping = Some(Keeping::new(folder.into(), &mut session));
+        let keeping = Some(Persistence::new(folder.into(), &mut session));
         let (layout, _) = Layout::recall(folder);
         let start = Start { session, shaders: ShaderFolder::None, keeping, layout, has_dialogs: false };
         testing::open(start, size, theme)

@@ -7,19 +7,19 @@ use haze::preset::{Camera, Preset};
 use haze::{Bounds, Light, LightKind};
 
 use super::control;
-use super::fields::{self, Desk};
+use super::fields::{self, RowContext};
 use super::row::Row;
 use crate::tweak::angles::{Angles, STEEPEST, from_angles, to_angles};
-use crate::tweak::lights::{ShownLights, fresh, name_of};
+use crate::tweak::lights::{LightView, fresh, name_of};
 use crate::tweak::smoke::{Smoke, put_behind};
 
 /// Draws the list and the settings of the selected light. `seen` gives the smoke that is shown, and the size of the
 /// image.
 pub fn panel(
     ui: &mut Ui,
-    desk: &mut Desk<'_>,
+    desk: &mut RowContext<'_>,
     preset: &mut Preset,
-    shown: &mut ShownLights,
+    shown: &mut LightView,
     seen: (&dyn Fn() -> Smoke, UVec2),
 ) {
     shown.follow(&preset.lights);
@@ -43,7 +43,7 @@ pub fn panel(
 }
 
 /// Draws a light of the list.
-fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut ShownLights) {
+fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut LightView) {
     let name = name_of(index, light);
     let is_selected = shown.selected == Some(index);
     let button = egui::Button::selectable(is_selected, &name);
@@ -73,7 +73,7 @@ fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut ShownLights) 
 }
 
 /// Draws the buttons for the list and the selected light.
-fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut ShownLights, (smoke, size): (&dyn Fn() -> Smoke, UVec2)) {
+fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut LightView, (smoke, size): (&dyn Fn() -> Smoke, UVec2)) {
     ui.add_enabled_ui(preset.lights.len() < MAX_LIGHTS, |ui| {
         ui.menu_button("Add", |ui| {
             for &kind in LightKind::ALL {
@@ -114,7 +114,7 @@ fn beside(mut light: Light, camera: &Camera, bounds: &Bounds) -> Light {
 }
 
 /// Draws the direction of a light as angles.
-fn angles(ui: &mut Ui, desk: &mut Desk<'_>, index: usize, light: &mut Light) {
+fn angles(ui: &mut Ui, desk: &mut RowContext<'_>, index: usize, light: &mut Light) {
     let before = to_angles(light.direction);
     let mut edited = before;
     let path = format!("lights[{index}].direction");

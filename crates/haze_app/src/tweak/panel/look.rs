@@ -5,14 +5,14 @@ use haze::preset::{Preset, PresetSystem};
 use haze::{Light, LightKind};
 
 use super::control;
-use super::fields::{self, Desk, FIVE, show_named};
+use super::fields::{self, FIVE, RowContext, show_named};
 use super::row::{self, Asked, Row};
-use crate::tweak::lights::{ShownLights, name_of};
+use crate::tweak::lights::{LightView, name_of};
 use crate::tweak::look::{LOOK, Of};
 use crate::tweak::made::Made;
 
 /// Draws the look of one system of the preset.
-pub fn panel(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, shown: &mut ShownLights, index: usize) {
+pub fn panel(ui: &mut Ui, desk: &mut RowContext<'_>, preset: &mut Preset, shown: &mut LightView, index: usize) {
     shown.follow(&preset.lights);
     let key = shown.key(index, || key_light(preset, index));
     let Preset { systems, lights, camera, .. } = preset;
@@ -41,7 +41,7 @@ pub fn panel(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, shown: &mut 
 const KEY: &str = "The light that was brightest at the emitter when the preset was opened";
 
 /// Draws the row of a value that several settings make.
-fn made_row(ui: &mut Ui, desk: &mut Desk<'_>, system: &mut PresetSystem, index: usize, made: &Made) {
+fn made_row(ui: &mut Ui, desk: &mut RowContext<'_>, system: &mut PresetSystem, index: usize, made: &Made) {
     let paths: Vec<_> = made.of.iter().map(|path| format!("systems[{index}].{path}")).collect();
     let is_changed = paths.iter().any(|path| desk.changed.contains(path));
     let apart = paths.iter().any(|path| desk.second.is_some_and(|second| second.contains_key(path)));
@@ -59,7 +59,7 @@ fn made_row(ui: &mut Ui, desk: &mut Desk<'_>, system: &mut PresetSystem, index: 
         }
     });
     if desk.sought == Some(made.path(index).as_str()) {
-        fields::show_sought(ui, before);
+        fields::scroll_to_and_mark(ui, before);
     }
     match asked {
         Some(Asked::Sheet) => desk.asked.push((Asked::Sheet, made.path(index))),

@@ -2,12 +2,12 @@
 
 use eframe::egui::{self, Ui};
 
-use crate::tweak::keeping::Keeping;
+use crate::tweak::keeping::Persistence;
 use crate::tweak::messages::short;
 use crate::tweak::session::Session;
 
 /// Draws the bar while there is a question.
-pub fn panel(ui: &mut Ui, session: &mut Session, keeping: Option<&mut Keeping>) {
+pub fn panel(ui: &mut Ui, session: &mut Session, keeping: Option<&mut Persistence>) {
     if let Some(keeping) = keeping {
         recovery(ui, session, keeping);
     }
@@ -29,7 +29,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, keeping: Option<&mut Keeping>) 
     });
 }
 
-fn recovery(ui: &mut Ui, session: &mut Session, keeping: &mut Keeping) {
+fn recovery(ui: &mut Ui, session: &mut Session, keeping: &mut Persistence) {
     let Some(one) = keeping.abandoned.last() else { return };
     let (source, name) = (short(&one.source.display().to_string(), 60), short(&one.preset.name, 30));
     let text = format!("The program ended with unsaved work on {source}: {name}.");

@@ -4,9 +4,9 @@ use std::collections::HashSet;
 
 use eframe::egui::{self, Color32, Rect, Sense, Ui, pos2, vec2};
 
-use super::fields::{self, Desk};
+use super::fields::{self, RowContext};
 use super::value::grouped;
-use crate::tweak::easel::Figures;
+use crate::tweak::easel::RenderStats;
 use crate::tweak::easel::canvas::set_scale;
 use crate::tweak::performance::{Performance, REMEMBERED};
 use crate::tweak::session::Session;
@@ -104,7 +104,7 @@ fn budget(ui: &mut Ui, session: &mut Session) {
             .on_hover_text(hint)
             .on_disabled_hover_text("This device cannot measure GPU time");
     });
-    let mut desk = Desk {
+    let mut desk = RowContext {
         tooltips: &performance.tooltips,
         thumbnails: &session.thumbnails,
         changed: &HashSet::new(),
@@ -133,7 +133,7 @@ fn budget(ui: &mut Ui, session: &mut Session) {
 }
 
 fn drawn(ui: &mut Ui, performance: &Performance) {
-    let Figures { counts, overdraw, .. } = &performance.figures;
+    let RenderStats { counts, overdraw, .. } = &performance.figures;
     rows(
         ui,
         "drawn",

@@ -5,13 +5,13 @@ use egui_gradient;
 use glam::UVec2;
 use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
 use haze::ramp::Ramp;
-use haze::settings::{PictureRole, RampFilter, set_field};
+use haze::settings::{ImageRole, RampFilter, set_field};
 use haze_author::preset::without_effect;
 use haze_reference::SystemProbe;
 
 use super::gallery::gallery;
 use super::row::spaced;
-use super::stops::{self, Bins, LookedUp, Mark, Named};
+use super::stops::{self, AxisSamples, Bins, Mark, Named};
 use crate::tweak::compare::Side;
 use crate::tweak::inspect::Told;
 use crate::tweak::inspect::survey::{self, Histogram, SIDE, Spot};
@@ -107,7 +107,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
             bins.push((ink, Vec::new()));
         }
         let across = (bins, marks);
-        let edited = stops::editor(ui, session, ramp, &across, &LookedUp::default());
+        let edited = stops::editor(ui, session, ramp, &across, &AxisSamples::default());
         let at = edited.unwrap_or_else(|| {
             let at = strip(ui, &spoken, picture, filter, &across.1);
             histogram(ui, field, &across.0);
@@ -128,7 +128,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
 }
 
 /// Returns histograms and marks of the specular ramp along each axis.
-fn looked_up(density: Option<&[f32]>, probe: Option<&SystemProbe>, ink: Color32) -> [LookedUp; 2] {
+fn looked_up(density: Option<&[f32]>, probe: Option<&SystemProbe>, ink: Color32) -> [AxisSamples; 2] {
     let glows = probe.iter().flat_map(|probe| &probe.lights).filter_map(|light| Some((light.light, light.glow?)));
     let marks: Vec<_> = glows.map(|(light, glow)| (of_light(light), glow.coordinate)).collect();
     // Empty histograms reserve the space.
@@ -143,7 +143,7 @@ fn looked_up(density: Option<&[f32]>, probe: Option<&SystemProbe>, ink: Color32)
 fn choose(ui: &mut Ui, session: &mut Session, title: &str, path: &str, name: &str) {
     let label = ui.strong(title);
     let mut chosen = name.to_owned();
-    gallery(ui, &session.thumbnails, PictureRole::Ramp, &mut chosen, path).labelled_by(label.id);
+    gallery(ui, &session.thumbnails, ImageRole::Ramp, &mut chosen, path).labelled_by(label.id);
     if chosen != name
         && let Err(error) = set_field(&mut session.document.preset, path, &chosen)
     {

@@ -2,14 +2,14 @@
 
 use eframe::egui::{self, Ui};
 use haze::preset::Preset;
-use haze::settings::{Fields, path_of};
+use haze::settings::{Fields, field_path};
 use haze_author::preset::without_effect;
 
-use super::fields::{self, Desk, Step, is_at};
+use super::fields::{self, RowContext, Step, is_at};
 use super::row::Asked;
 use super::{curve, lights, look, ramps, sprite};
 use crate::tweak::messages::short;
-use crate::tweak::search::ON_SMOKE;
+use crate::tweak::search::SMOKE_TAB_GROUPS;
 use crate::tweak::session::Session;
 use crate::tweak::show::Tab;
 use crate::tweak::smoke::Smoke;
@@ -76,7 +76,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
         smoke.of(session);
         smoke
     };
-    let mut desk = Desk {
+    let mut desk = RowContext {
         tooltips: &session.tooltips,
         thumbnails: &session.thumbnails,
         changed: session.changed(),
@@ -102,7 +102,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
         Tab::Advanced => advanced(ui, &mut desk, preset, system),
         Tab::Ramps | Tab::Sprite | Tab::Performance => {}
     });
-    let Desk { asked, refused, .. } = desk;
+    let RowContext { asked, refused, .. } = desk;
     let is_edited = session.document.preset != edited;
     session.document.preset = edited;
     session.show.lights = shown;
@@ -110,7 +110,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
     let mut sheet = None;
     for (asked, path) in asked {
         match asked {
-            Asked::SetBack => session.set_back(&path),
+            Asked::SetBack => session.reset_field(&path),
             Asked::Take => session.take(&path),
             Asked::Sheet => sheet = Some(path),
         }
@@ -126,23 +126,23 @@ fn system_of(path: &str) -> Option<usize> {
 /// Draws a collapsible part of the preset. Returns true if it is open.
 fn section(
     ui: &mut Ui,
-    desk: &mut Desk<'_>,
+    desk: &mut RowContext<'_>,
     title: &str,
     path: &[Step],
     is_open: bool,
     fields: &mut dyn Fields,
 ) -> bool {
-    let whole = path_of(path);
+    let whole = field_path(path);
     let header = fields::header(desk, title, &|field| is_at(field, &whole)).id_salt(path).default_open(is_open);
     header.show(ui, |ui| fields::show(ui, desk, path, fields)).fully_open()
 }
 
-fn surroundings(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset) {
+fn surroundings(ui: &mut Ui, desk: &mut RowContext<'_>, preset: &mut Preset) {
     section(ui, desk, "Sky and scene", &[("environment", None)], true, &mut preset.environment);
     section(ui, desk, "Camera", &[("camera", None)], true, &mut preset.camera);
 }
 
-fn smoke(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, index: usize) {
+fn smoke(ui: &mut Ui, desk: &mut RowContext<'_>, preset: &mut Preset, index: usize) {
     let Some(system) = preset.systems.get_mut(index) else { return };
     let at = ("systems", Some(index));
     section(ui, desk, "Emitter", &[at, ("emitter", None)], true, &mut system.emitter);
@@ -161,11 +161,13 @@ fn smoke(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, index: usize) {
 /// Groups of settings that only programmers need.
 const FOR_PROGRAMMERS: [&str; 3] = ["path", "blend_mode", "accumulate"];
 
-fn advanced(ui: &mut Ui, desk: &mut Desk<'_>, preset: &mut Preset, index: usize) {
+fn advanced(ui: &mut Ui, desk: &mut RowContext<'_>, preset: &mut Preset, index: usize) {
     let Some(system) = preset.systems.get_mut(index) else { return };
     let at = [("systems", Some(index)), ("settings", None)];
     let is_last = |name: &str| FOR_PROGRAMMERS.contains(&name);
-    fields::show_where(ui, desk, &at, &mut system.settings, &|name| !is_last(name) && !ON_SMOKE.contains(&name));
+    fields::show_where(ui, desk, &at, &mut system.settings, &|name| {
+        !is_last(name) && !SMOKE_TAB_GROUPS.contains(&name)
+    });
     fields::show_where(ui, desk, &at, &mut system.settings, &is_last);
 }
 
@@ -207,7 +209,7 @@ mod tests {
         let place = |name: &str| harness.get_all_by_label(name).next().unwrap().rect().top();
         let before = ["technique", "boost", "sprite", "volumetric"].map(place).into_iter().fold(0.0, f32::max);
         assert!(["path", "blend mode", "accumulate"].into_iter().all(|name| place(name) > before));
-        for name in super::ON_SMOKE {
+        for name in super::SMOKE_TAB_GROUPS {
             assert!(harness.query_by_label(&name.replace('_', " ")).is_none(), "{name}");
         }
     }

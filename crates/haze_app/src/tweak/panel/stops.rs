@@ -26,7 +26,7 @@ pub type Bins = (Color32, Vec<f32>);
 pub type Mark = (f32, Color32);
 
 /// Histograms of the coordinates that the image samples along an axis of a ramp, and marks of single pixels.
-pub type LookedUp = (Vec<Bins>, Vec<Mark>);
+pub type AxisSamples = (Vec<Bins>, Vec<Mark>);
 
 /// Draws the editor of a ramp, and returns the coordinate under the pointer; the outer `None` means that the ramp has
 /// no stops. Histograms are shown for the axis of the edited gradient: rows run across, the gradient that multiplies
@@ -35,8 +35,8 @@ pub fn editor(
     ui: &mut Ui,
     session: &mut Session,
     ramp: Named<'_>,
-    across: &LookedUp,
-    up: &LookedUp,
+    across: &AxisSamples,
+    up: &AxisSamples,
 ) -> Option<Option<f32>> {
     let folders = session.folders();
     let Source::Recipe(read) = session.ramps.source(ramp.name, &folders).clone() else { return None };

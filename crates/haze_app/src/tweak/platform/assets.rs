@@ -3,33 +3,33 @@
 use std::path::{Path, PathBuf};
 
 use glam::UVec2;
-use haze::preset::{MaterialNames, PictureFolders, Preset, picture_file};
+use haze::preset::{AssetFolders, MaterialNames, Preset, image_file_path};
 use haze::ramp::Ramp;
 use haze::shader::Sources;
 use haze::{Error, MaterialAssets};
-use haze_author::particle_files::{Cache, load_caches};
+use haze_author::particle_files::{ParticleFrames, load_particle_files};
 use haze_author::ramp::bake::RampRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_demo::shot::Shot;
 
-pub use crate::inputs::caches_of;
+pub use crate::inputs::particle_file_paths;
 
 /// Images and particles of each system of a preset.
-pub type Loaded = (Vec<MaterialAssets>, Vec<Option<Cache>>);
+pub type Loaded = (Vec<MaterialAssets>, Vec<Option<ParticleFrames>>);
 
 /// Loads all files that the preset at a path names.
-pub fn all(preset: &Preset, path: &Path, folders: &PictureFolders) -> Result<Loaded, Error> {
+pub fn all(preset: &Preset, path: &Path, folders: &AssetFolders) -> Result<Loaded, Error> {
     Ok((pictures(preset, path, folders)?, particles(preset, path, folders)?))
 }
 
 /// Loads the images of every system.
-pub fn pictures(preset: &Preset, path: &Path, folders: &PictureFolders) -> Result<Vec<MaterialAssets>, Error> {
+pub fn pictures(preset: &Preset, path: &Path, folders: &AssetFolders) -> Result<Vec<MaterialAssets>, Error> {
     preset.load_materials_from(path, folders)
 }
 
 /// Loads the particles of every system that has particle files.
-pub fn particles(preset: &Preset, path: &Path, folders: &PictureFolders) -> Result<Vec<Option<Cache>>, Error> {
-    load_caches(preset, path, folders)
+pub fn particles(preset: &Preset, path: &Path, folders: &AssetFolders) -> Result<Vec<Option<ParticleFrames>>, Error> {
+    load_particle_files(preset, path, folders)
 }
 
 /// Loads the images of one material.
@@ -38,9 +38,9 @@ pub fn material(names: &MaterialNames, folder: &Path) -> Result<MaterialAssets, 
 }
 
 /// Returns the path of an image, or the path where it is expected; empty if it is built in.
-pub fn place_of(name: &str, folders: &PictureFolders) -> PathBuf {
+pub fn place_of(name: &str, folders: &AssetFolders) -> PathBuf {
     let place = |file| folders.find(file).ok().or_else(|| folders.places(file).next());
-    picture_file(name).and_then(place).unwrap_or_default()
+    image_file_path(name).and_then(place).unwrap_or_default()
 }
 
 pub fn ramp(path: &Path) -> Result<Ramp, Error> {
@@ -56,7 +56,7 @@ pub fn sprite_recipe(path: &Path) -> Result<SpriteRecipe, Error> {
 }
 
 /// Loads a preset, built-in or from a file, with all that it names.
-pub fn shot(path: &Path, folders: &PictureFolders, size: UVec2) -> Result<Shot, Error> {
+pub fn shot(path: &Path, folders: &AssetFolders, size: UVec2) -> Result<Shot, Error> {
     Shot::from_folders(Preset::load(path)?, path, folders, size)
 }
 

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 use haze::Error;
 use haze::assets::{file, json};
-use haze::picture::{FileIdentity, MAX_BYTES, write_file};
+use haze::image::{FileIdentity, MAX_BYTES, write_file};
 use haze::preset::Preset;
 use haze_author::particle_files;
 
 pub use crate::watch::{Stamp, Watcher};
-pub use haze::picture::{Effort, read_colour_png, read_png, write_png};
+pub use haze::image::{CompressionEffort, read_colour_png, read_png, write_png};
 
 /// Reads a preset, and the text that it was read from.
 pub fn read_preset(name_or_path: &Path) -> Result<(Preset, String), Error> {
@@ -76,7 +76,7 @@ pub fn is_same(one: &Path, other: &Path) -> bool {
 
 /// Returns a free name for a copy of a built-in image: `NAME_mine.png`, or else the first free one of `NAME_mine_2.png`
 /// and so on.
-pub fn own_name(name: &str, is_free: impl Fn(&str) -> bool) -> String {
+pub fn free_copy_name(name: &str, is_free: impl Fn(&str) -> bool) -> String {
     let names = (1..).map(|number: u32| match number {
         1 => format!("{name}_mine.png"),
         number => format!("{name}_mine_{number}.png"),

@@ -10,13 +10,13 @@ use serde::de::DeserializeOwned;
 
 use super::files;
 
-fn path_of(folder: &Path, name: &str) -> PathBuf {
+fn field_path(folder: &Path, name: &str) -> PathBuf {
     folder.join(name).with_extension("json")
 }
 
 /// Returns the value stored under a name, or the default; with the error if the file is not valid.
 pub fn recall<T: DeserializeOwned + Default>(folder: &Path, name: &str) -> (T, Option<Error>) {
-    let path = path_of(folder, name);
+    let path = field_path(folder, name);
     match files::read_text(&path).and_then(|text| json::parse(&path, &text)) {
         Ok(value) => (value, None),
         Err(Error::Io { error, .. }) if error.kind() == ErrorKind::NotFound => (T::default(), None),
@@ -26,7 +26,7 @@ pub fn recall<T: DeserializeOwned + Default>(folder: &Path, name: &str) -> (T, O
 
 /// Stores a value under a name.
 pub fn remember<T: Serialize>(folder: &Path, name: &str, value: &T) -> Result<(), Error> {
-    let path = path_of(folder, name);
+    let path = field_path(folder, name);
     files::make_folder(folder)?;
     match serde_json::to_string_pretty(value) {
         Ok(text) => files::write(&path, (text + "\n").as_bytes()),

@@ -6,9 +6,9 @@ use eframe::egui;
 
 /// Requests a repaint of the current window. After a device loss that is another window. Clones share the state.
 #[derive(Clone, Default)]
-pub struct Wake(Arc<Mutex<Option<egui::Context>>>);
+pub struct RepaintHandle(Arc<Mutex<Option<egui::Context>>>);
 
-impl Wake {
+impl RepaintHandle {
     /// Sets the current window.
     pub fn follow(&self, context: &egui::Context) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(context.clone());
@@ -31,7 +31,7 @@ mod tests {
             (0..3).for_each(|_| context.run_ui(egui::RawInput::default(), |_| {}).textures_delta.clear());
             context
         };
-        let (wake, [first, second]) = (Wake::default(), [still(), still()]);
+        let (wake, [first, second]) = (RepaintHandle::default(), [still(), still()]);
         wake.follow(&first);
         let its = wake.clone();
         wake.follow(&second);

@@ -6,14 +6,14 @@ use std::time::Duration;
 use eframe::egui::{Event, Key, Modifiers, Rect, Role, Theme, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use haze::picture::{Effort, read_colour_png, write_png};
-use haze::preset::{PictureFolders, Preset};
+use haze::image::{CompressionEffort, read_colour_png, write_png};
+use haze::preset::{AssetFolders, Preset};
 use haze::ramp::Ramp;
-use haze::settings::ShadeTree;
+use haze::settings::DebugView;
 use haze_author::ramp::bake::{Blend, Curve, RampRecipe};
 use haze_author::ramp::template::Template;
 
-use super::{RampFiles, Source};
+use super::{RampEdits, Source};
 use crate::tweak::document::document::Document;
 use crate::tweak::testing::{brightness, picture, window};
 use crate::tweak::window::Window;
@@ -29,7 +29,7 @@ impl Folder {
         std::fs::write(folder.preset(), serde_json::to_string(&preset).unwrap()).unwrap();
         let recipe = Template::find("neutral").unwrap().recipe();
         std::fs::write(folder.path("mine.ramp.json"), recipe.to_text()).unwrap();
-        write_png(&folder.path("mine.png"), &recipe.bake().unwrap(), Effort::Quick).unwrap();
+        write_png(&folder.path("mine.png"), &recipe.bake().unwrap(), CompressionEffort::Quick).unwrap();
         folder
     }
 
@@ -47,7 +47,7 @@ impl Folder {
 
     /// Returns true if the image equals the one that the recipe makes.
     fn is_baked(&self) -> bool {
-        Ramp::load(&self.path("mine.png")).unwrap() == Ramp::from_picture(&self.recipe().bake().unwrap())
+        Ramp::load(&self.path("mine.png")).unwrap() == Ramp::from_image(&self.recipe().bake().unwrap())
     }
 
     fn open(&self) -> Harness<'static, Window> {
@@ -124,7 +124,7 @@ fn a_cancelled_drag_is_no_step() {
     let mut harness = folder.open();
     let before = (folder.recipe(), shown(&mut harness));
     let (from, width) = (harness.get_by_label("stop 3").rect().center(), strip(&harness).width());
-    harness.state_mut().session.show.stage = ShadeTree::Diffuse;
+    harness.state_mut().session.show.stage = DebugView::Diffuse;
     harness.drag_at(from);
     for part in 1..=4 {
         harness.hover_at(from - Vec2::new(0.2 * width * part as f32, 0.0));
@@ -134,8 +134,8 @@ fn a_cancelled_drag_is_no_step() {
     harness.drop_at(from);
     wait(&mut harness);
     // Escape ends the drag only.
-    assert_eq!(harness.state().session.show.stage, ShadeTree::Diffuse);
-    harness.state_mut().session.show.stage = ShadeTree::Final;
+    assert_eq!(harness.state().session.show.stage, DebugView::Diffuse);
+    harness.state_mut().session.show.stage = DebugView::Final;
     assert_eq!((folder.recipe(), harness.state().session.document.history().undo_name()), (before.0, None));
     assert!((shown(&mut harness) - before.1).abs() < 0.5);
 }
@@ -148,14 +148,14 @@ fn an_image_painted_outside_takes_precedence_and_stops_can_be_fitted_to_it() {
     harness.run_steps(4);
     let flipped = folder.recipe();
     let painted = Template::find("hard_toon").unwrap().recipe().bake().unwrap();
-    write_png(&folder.path("mine.png"), &painted, Effort::Quick).unwrap();
+    write_png(&folder.path("mine.png"), &painted, CompressionEffort::Quick).unwrap();
     wait(&mut harness);
     let name = "Fit stops to the picture: mine.png";
     assert!(harness.query_by_label(name).is_some() && harness.query_by_label("stop 1").is_none());
     assert_eq!(folder.recipe(), flipped, "nothing is written over it");
     assert_eq!(read_colour_png(&folder.path("mine.png")).unwrap(), painted);
     let seen = harness.state().session.materials()[0].diffuse_ramp.clone();
-    assert_eq!(seen, Ramp::from_picture(&painted));
+    assert_eq!(seen, Ramp::from_image(&painted));
     harness.get_by_label(name).click();
     harness.run_steps(4);
     assert!(harness.query_by_label("stop 3").is_some());
@@ -171,29 +171,29 @@ fn an_image_painted_outside_takes_precedence_and_stops_can_be_fitted_to_it() {
 #[test]
 fn files_are_compared_after_a_write_and_before_they_are_overwritten() {
     let folder = Folder::new();
-    let folders = PictureFolders::beside(&folder.preset());
+    let folders = AssetFolders::beside(&folder.preset());
     let mut document = Document::open(&folder.preset()).unwrap();
-    let mut ramps = RampFiles::default();
+    let mut ramps = RampEdits::default();
     let painted = Template::find("hard_toon").unwrap().recipe().bake().unwrap();
-    let is_recipe = |ramps: &mut RampFiles, document: &mut Document, is_held: bool| {
+    let is_recipe = |ramps: &mut RampEdits, document: &mut Document, is_held: bool| {
         ramps.advance(document, &folders, is_held).unwrap();
         matches!(ramps.source("mine.png", &folders), Source::Recipe(_))
     };
     assert!(is_recipe(&mut ramps, &mut document, false));
-    write_png(&folder.path("mine.png"), &painted, Effort::Quick).unwrap();
+    write_png(&folder.path("mine.png"), &painted, CompressionEffort::Quick).unwrap();
     assert!(is_recipe(&mut ramps, &mut document, false), "nobody has said that there is something to look at");
     ramps.look_again();
     assert!(is_recipe(&mut ramps, &mut document, true) && !is_recipe(&mut ramps, &mut document, false));
     // The step ends before the change on disk was reported.
     let folder = Folder::new();
-    let folders = PictureFolders::beside(&folder.preset());
+    let folders = AssetFolders::beside(&folder.preset());
     let mut document = Document::open(&folder.preset()).unwrap();
-    let mut ramps = RampFiles::default();
+    let mut ramps = RampEdits::default();
     ramps.advance(&mut document, &folders, false).unwrap();
     assert!(matches!(ramps.source("mine.png", &folders), Source::Recipe(_)));
     document.recipes.ramps.set("mine.png", Template::find("moon").unwrap().recipe());
     ramps.advance(&mut document, &folders, true).unwrap();
-    write_png(&folder.path("mine.png"), &painted, Effort::Quick).unwrap();
+    write_png(&folder.path("mine.png"), &painted, CompressionEffort::Quick).unwrap();
     ramps.advance(&mut document, &folders, false).unwrap();
     assert_eq!(read_colour_png(&folder.path("mine.png")).unwrap(), painted);
 }
@@ -212,7 +212,7 @@ fn a_built_in_ramp_is_copied_beside_the_preset() {
     assert_eq!(harness.state().session.document.preset.systems[0].material.diffuse_ramp, file);
     let own = RampRecipe::load(&folder.path(&file).with_extension("ramp.json")).unwrap();
     let loaded = Ramp::load(&folder.path(&file)).unwrap();
-    assert_eq!(loaded, Ramp::from_picture(&own.bake().unwrap()));
+    assert_eq!(loaded, Ramp::from_image(&own.bake().unwrap()));
     assert_eq!(loaded, harness.state().session.materials()[0].diffuse_ramp, "it looks as it did");
     assert!(harness.query_by_label("stop 1").is_some());
 }
@@ -247,7 +247,7 @@ fn rows_of_a_two_axis_ramp_can_be_selected() {
     };
     let recipe = RampRecipe { width: 32, height: 16, rows: vec![row(0.0), row(1.0)], ..RampRecipe::default() };
     std::fs::write(folder.path("mine.ramp.json"), recipe.to_text()).unwrap();
-    write_png(&folder.path("mine.png"), &recipe.bake().unwrap(), Effort::Quick).unwrap();
+    write_png(&folder.path("mine.png"), &recipe.bake().unwrap(), CompressionEffort::Quick).unwrap();
     let mut harness = folder.open();
     harness.get_by_label("1.00").click_accesskit();
     harness.run_steps(3);
@@ -268,7 +268,7 @@ fn rows_and_their_multiplier_are_edited_in_the_window() {
     let recipe = Template::find("neutral_glow").unwrap().recipe();
     assert!(recipe.rows.len() == 1 && !recipe.times.is_empty());
     std::fs::write(folder.path("mine.ramp.json"), recipe.to_text()).unwrap();
-    write_png(&folder.path("mine.png"), &recipe.bake().unwrap(), Effort::Quick).unwrap();
+    write_png(&folder.path("mine.png"), &recipe.bake().unwrap(), CompressionEffort::Quick).unwrap();
     let mut harness = folder.open();
     let click = |harness: &mut Harness<'static, Window>, name: &str| {
         harness.get_by_label(name).click_accesskit();
@@ -299,7 +299,7 @@ fn a_version_1_recipe_accepts_new_features() {
     let folder = Folder::new();
     let recipe = RampRecipe { version: 1, ..Template::find("neutral").unwrap().recipe() };
     std::fs::write(folder.path("mine.ramp.json"), recipe.to_text()).unwrap();
-    write_png(&folder.path("mine.png"), &recipe.bake().unwrap(), Effort::Quick).unwrap();
+    write_png(&folder.path("mine.png"), &recipe.bake().unwrap(), CompressionEffort::Quick).unwrap();
     let mut harness = folder.open();
     let choose = |harness: &mut Harness<'static, Window>, control: &str, entry: &str| {
         let control = harness.get_all_by_label(control).find(|node| node.accesskit_node().role() == Role::ComboBox);
@@ -381,11 +381,11 @@ fn a_stop_takes_a_colour_from_the_image() {
     assert_eq!(harness.state().session.document.history().undo_name(), Some("colour of a stop: mine.png"));
     // The eyedropper takes the click and Escape; the viewport does not react.
     assert_eq!(harness.state().session.document.preset.camera, camera);
-    harness.state_mut().session.show.stage = ShadeTree::Normals;
+    harness.state_mut().session.show.stage = DebugView::Normals;
     harness.get_by_label("Take a colour").click();
     harness.run_steps(2);
     press(&mut harness, Key::Escape, Modifiers::NONE);
-    assert_eq!(harness.state().session.show.stage, ShadeTree::Normals);
+    assert_eq!(harness.state().session.show.stage, DebugView::Normals);
     press(&mut harness, Key::Z, Modifiers::COMMAND);
     assert_ne!(folder.recipe().rows[0].stops[0].colour.0, taken);
 }

@@ -11,7 +11,7 @@ use image::{Rgb, RgbImage};
 use tempfile::TempDir;
 
 use super::*;
-use crate::tweak::exporting::Product;
+use crate::tweak::exporting::ExportKind;
 use crate::tweak::testing::{brightness, picture, window_with};
 use crate::tweak::window::Window;
 
@@ -93,7 +93,7 @@ type Way<'a> = (&'a str, &'a dyn Fn(&Path));
 /// Writes a ramp of a single grey.
 fn write_ramp(folder: &Path, grey: u8) {
     let picture = RgbImage::from_pixel(64, 1, Rgb([grey; 3]));
-    haze::picture::write_png(&folder.join("mine.png"), &picture.into(), haze::picture::Effort::Quick).unwrap();
+    haze::image::write_png(&folder.join("mine.png"), &picture.into(), haze::image::CompressionEffort::Quick).unwrap();
 }
 
 const SIZE: Vec2 = Vec2::new(640.0, 400.0);
@@ -250,11 +250,11 @@ fn exports_use_the_shaders_of_the_watched_folder() {
     let export = |bench: &mut Bench| {
         let window = bench.window.state_mut();
         window.exporting.order.size = glam::UVec2::new(96, 54);
-        window.exporting.begin(Product::Picture, &mut window.session);
+        window.exporting.begin(ExportKind::Image, &mut window.session);
         bench.until(|bench| bench.window.state().exporting.progress().is_none());
         bench.window.run_steps(2);
         let said = bench.session().messages.latest().unwrap().text.clone();
-        let picture = haze::picture::read_png(Path::new(said.strip_prefix("written: ").unwrap())).unwrap();
+        let picture = haze::image::read_png(Path::new(said.strip_prefix("written: ").unwrap())).unwrap();
         picture.into_rgb8().as_raw().iter().map(|byte| u32::from(*byte)).sum::<u32>()
     };
     let before = export(&mut bench);

@@ -12,7 +12,7 @@ use super::source::{Looked, Stamps, findings, look, stamps, write};
 use crate::tweak::platform::worker::Worker;
 
 /// Two threads, so that a coarse bake does not wait for a full one.
-pub struct Bakery {
+pub struct SpriteBakeJob {
     coarse: Worker<Done>,
     whole: Worker<Done>,
     next: u64,
@@ -73,7 +73,7 @@ impl Order {
 const COARSE: [u32; 2] = [64, 2];
 const COARSE_FIRST: [u32; 2] = [32, 2];
 
-impl Bakery {
+impl SpriteBakeJob {
     /// `wake` is called from other threads when a job is done. Returns `None` if the system cannot start another
     /// thread.
     pub fn new(wake: impl Fn() + Clone + Send + 'static) -> Option<Self> {
@@ -139,7 +139,7 @@ impl Bakery {
 }
 
 fn decoded(recipe: SpriteRecipe, layout: SpriteLayout, baked: &BakedSprite) -> Result<Baked, Error> {
-    let sprite = |sheet| Sprite::from_picture("sprite".as_ref(), sheet, layout);
+    let sprite = |sheet| Sprite::from_image("sprite".as_ref(), sheet, layout);
     Ok(Baked { sprite: sprite(&baked.picture)?, detail: sprite(&baked.detail)?, recipe })
 }
 

@@ -8,7 +8,7 @@ use haze::formula::lighting::diffuse_coordinate;
 use haze::formula::normal::normal_from_accumulation;
 use haze::formula::ramp::sample_ramp;
 use haze::formula::sprite::{MOTION_RANGE, flipbook_frames, sample_detail, sample_sprite, sprite_lod};
-use haze::picture::Picture;
+use haze::image::Image;
 use haze::settings::{NormalDecode, NormalEncoding, RampFilter};
 
 use super::look::Shown;
@@ -63,7 +63,7 @@ const BEHIND: Vec3 = Vec3::splat(0.03);
 
 /// Draws the preview.
 pub fn draw(material: &MaterialAssets, view: &View) -> ColorImage {
-    let mut picture = Picture::new(UVec2::splat(view.side), Color32::BLACK);
+    let mut picture = Image::new(UVec2::splat(view.side), Color32::BLACK);
     picture.for_each(|at, pixel| {
         let uv = (at.as_vec2() + 0.5) / view.side as f32;
         let [r, g, b] = code(material, view, uv).to_array().map(|code| (code * 255.0).round() as u8);

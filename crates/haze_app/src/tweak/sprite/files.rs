@@ -3,23 +3,23 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use haze::preset::{MaterialNames, PictureFolders, Preset};
+use haze::preset::{AssetFolders, MaterialNames, Preset};
 use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Error, MaterialAssets};
 use haze_author::sprite::bake::SpriteRecipe;
 
-use super::bakery::{Baked, Bakery, Done, Order, What, Whole};
+use super::bakery::{Baked, Done, Order, SpriteBakeJob, What, Whole};
 use super::source::{Looked, Source, Stamps, copy, detail_of, recipe_of, recipe_of_built_in, stamps};
 use crate::tweak::document::document::Document;
 use crate::tweak::platform::assets::place_of;
 
 /// Sprites by their names in the preset.
 #[derive(Default)]
-pub struct SpriteFiles {
+pub struct SpriteEdits {
     /// Path of the preset that they belong to.
     preset: PathBuf,
     known: BTreeMap<String, Known>,
-    bakery: Option<Bakery>,
+    bakery: Option<SpriteBakeJob>,
     /// Built-in sprite that is to be copied, and the index of the system it is for.
     wanted: Option<(usize, String)>,
     /// The preset must first be saved to a file.
@@ -52,17 +52,17 @@ pub struct Known {
     is_stale: bool,
 }
 
-impl SpriteFiles {
+impl SpriteEdits {
     /// Returns a sprite. Requests it if it is not known yet; `None` if no thread can be started. `wake` is called from
     /// other threads.
     pub fn ask(
         &mut self,
         names: &MaterialNames,
-        folders: &PictureFolders,
+        folders: &AssetFolders,
         wake: impl Fn() + Clone + Send + 'static,
     ) -> Option<&mut Known> {
         if self.bakery.is_none() {
-            self.bakery = Bakery::new(wake);
+            self.bakery = SpriteBakeJob::new(wake);
         }
         let bakery = self.bakery.as_mut()?;
         let layout = SpriteLayout { columns: names.columns, rows: names.rows, y_down: names.y_down };
@@ -212,7 +212,7 @@ impl Known {
         }
     }
 
-    fn look(&mut self, name: &str, bakery: &mut Bakery) {
+    fn look(&mut self, name: &str, bakery: &mut SpriteBakeJob) {
         self.jobs.push(bakery.look(name, self.picture.clone(), self.layout));
     }
 
@@ -255,7 +255,7 @@ impl Known {
         Ok(())
     }
 
-    fn follow(&mut self, name: &str, document: &Document, bakery: &mut Bakery, is_held: bool) {
+    fn follow(&mut self, name: &str, document: &Document, bakery: &mut SpriteBakeJob, is_held: bool) {
         if !is_held
             && self.jobs.is_empty()
             && std::mem::take(&mut self.is_stale)

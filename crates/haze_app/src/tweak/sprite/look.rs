@@ -25,7 +25,7 @@ pub const SHOWN: [(Shown, &str, &str); 5] = [
 
 /// Flipbook and its light. Not part of the preset.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SpriteLook {
+pub struct SpriteView {
     pub shown: Shown,
     /// Frame; a fraction blends two frames.
     pub frame: f32,
@@ -38,7 +38,7 @@ pub struct SpriteLook {
     pub is_turning: bool,
 }
 
-impl Default for SpriteLook {
+impl Default for SpriteView {
     fn default() -> Self {
         let light = Angles { azimuth: -40.0, elevation: 35.0 };
         Self { shown: Shown::Lit, frame: 0.0, is_playing: true, rate: 12.0, light, is_turning: false }
@@ -50,7 +50,7 @@ const TURN: f32 = 5.0;
 /// Longest time that one frame of the window may advance, seconds.
 const LONGEST: f32 = 0.1;
 
-impl SpriteLook {
+impl SpriteView {
     /// Returns true if the flipbook plays or the light rotates.
     pub fn is_moving(&self) -> bool {
         self.is_playing || self.is_turning

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use haze::assets::json;
 use haze::builtin::{self, Builtin};
-use haze::picture::decode_png;
+use haze::image::decode_png;
 use haze::sprite::SpriteLayout;
 use haze::{Error, FieldError};
 use haze_author::sprite::bake::{BakedSprite, SpriteRecipe};
@@ -12,7 +12,7 @@ use haze_author::sprite::check::check;
 use image::RgbaImage;
 
 use crate::tweak::platform::assets::sprite_recipe;
-use crate::tweak::platform::files::{self, Effort, Stamp, read_png, write_png};
+use crate::tweak::platform::files::{self, CompressionEffort, Stamp, read_png, write_png};
 
 /// Origin of a sprite, which decides whether it can be edited.
 #[derive(Clone, Debug, PartialEq)]
@@ -120,8 +120,8 @@ pub fn findings(path: &Path, sheet: &RgbaImage, layout: SpriteLayout) -> Vec<Str
 /// Writes the recipe first, because the images can be made again from it.
 pub fn write(picture: &Path, recipe: &SpriteRecipe, baked: BakedSprite) -> Result<(), Error> {
     files::write(&recipe_of(picture), recipe.to_text().as_bytes())?;
-    write_png(&detail_of(picture), &baked.detail.into(), Effort::Small)?;
-    write_png(picture, &baked.picture.into(), Effort::Small)
+    write_png(&detail_of(picture), &baked.detail.into(), CompressionEffort::Small)?;
+    write_png(picture, &baked.picture.into(), CompressionEffort::Small)
 }
 
 /// Returns the recipe of a built-in sprite.
@@ -132,7 +132,7 @@ pub fn recipe_of_built_in(name: &str) -> Result<SpriteRecipe, Error> {
 /// Writes a copy of a built-in sprite beside a preset under a free name, and returns the name.
 pub fn copy(name: &str, preset: &Path) -> Result<String, Error> {
     let folder = preset.parent().unwrap_or(Path::new(""));
-    let file = files::own_name(name, |file| {
+    let file = files::free_copy_name(name, |file| {
         let picture = folder.join(file);
         stamps(&picture) == [None; 3]
     });

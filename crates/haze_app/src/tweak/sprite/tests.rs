@@ -7,12 +7,12 @@ use eframe::egui::{Key, Modifiers, Rect, Role, Theme, Vec2, ViewportCommand, Vie
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, Node};
 use haze::FieldError;
-use haze::picture::{Effort, write_png};
+use haze::image::{CompressionEffort, write_png};
 use haze::preset::Preset;
 use haze::sprite::Sprite;
 use haze_author::sprite::bake::{BakedSprite, SpriteRecipe};
 
-use super::bakery::{Bakery, What};
+use super::bakery::{SpriteBakeJob, What};
 use super::source::{recipe_of_built_in, stamps};
 use crate::tweak::angles::Angles;
 use crate::tweak::testing::{self, brightness, picture, window};
@@ -41,8 +41,8 @@ impl Folder {
         folder.write_preset(&preset);
         std::fs::write(folder.path("mine.sprite.json"), small().to_text()).unwrap();
         let BakedSprite { picture, detail } = baked(&small());
-        write_png(&folder.path("mine.png"), &picture.into(), Effort::Quick).unwrap();
-        write_png(&folder.path("mine.detail.png"), &detail.into(), Effort::Quick).unwrap();
+        write_png(&folder.path("mine.png"), &picture.into(), CompressionEffort::Quick).unwrap();
+        write_png(&folder.path("mine.detail.png"), &detail.into(), CompressionEffort::Quick).unwrap();
         folder
     }
 
@@ -65,7 +65,7 @@ impl Folder {
     /// Returns true if the image equals the one that the recipe makes.
     fn is_baked(&self) -> bool {
         let (recipe, sprite) = (self.recipe(), self.sprite());
-        sprite == Sprite::from_picture("".as_ref(), &baked(&recipe).picture, recipe.layout()).ok()
+        sprite == Sprite::from_image("".as_ref(), &baked(&recipe).picture, recipe.layout()).ok()
     }
 
     fn open(&self) -> Harness<'static, Window> {
@@ -229,7 +229,7 @@ fn files_changed_by_another_program_are_not_overwritten_until_requested() {
     set(&mut harness, "bump", 3.0);
     until(&mut harness, |harness| !harness.state().session.sprites.is_baking());
     let other = SpriteRecipe { seed: 77, ..small() };
-    write_png(&folder.path("mine.png"), &baked(&other).picture.into(), Effort::Quick).unwrap();
+    write_png(&folder.path("mine.png"), &baked(&other).picture.into(), CompressionEffort::Quick).unwrap();
     until(&mut harness, |harness| harness.query_by_label("Bake the recipe").is_some());
     until(&mut harness, |harness| Some(used(harness)) == folder.sprite());
     assert!(harness.query_by_label("erosion").is_none() && (folder.recipe().bump - 3.0).abs() < 1e-6);
@@ -273,7 +273,7 @@ fn a_sprite_without_a_recipe_shows_that_and_the_findings_of_its_check() {
         let is_border = x % 96 % 95 == 0 || y % 95 == 0;
         image::Rgba([200, 120, 20, if is_border { 0 } else { 255 }])
     });
-    write_png(&folder.path("mine.png"), &colours.into(), Effort::Quick).unwrap();
+    write_png(&folder.path("mine.png"), &colours.into(), CompressionEffort::Quick).unwrap();
     let mut harness = folder.open();
     assert!(harness.query_by_label_contains("There is no recipe: mine.sprite.json").is_some());
     assert!(harness.query_by_label_contains("normals: colours, not normals").is_some());
@@ -387,7 +387,7 @@ fn an_outdated_bake_is_cancelled_and_not_written() {
     let folder = Folder::new();
     let picture = folder.path("mine.png");
     let before = stamps(&picture);
-    let mut bakery = Bakery::new(|| ()).unwrap();
+    let mut bakery = SpriteBakeJob::new(|| ()).unwrap();
     let long = SpriteRecipe { size: 128, columns: 16, rows: 16, ..small() };
     let order = bakery.whole(long, picture.clone(), before);
     let start = Instant::now();
@@ -395,7 +395,7 @@ fn an_outdated_bake_is_cancelled_and_not_written() {
         assert!(start.elapsed() < LONG);
     }
     order.stop();
-    let wait = |bakery: &Bakery| loop {
+    let wait = |bakery: &SpriteBakeJob| loop {
         assert!(start.elapsed() < LONG);
         if let Some(done) = bakery.poll() {
             return done.unwrap();

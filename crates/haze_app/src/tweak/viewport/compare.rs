@@ -1,13 +1,13 @@
 //! Second image of a comparison: the divider and the labels.
 
 use eframe::egui::{self, Sense, Ui};
-use haze_demo::develop::exposure;
 use haze_demo::shot::Shot;
+use haze_demo::tonemap_pass::exposure;
 
 use crate::tweak::compare::Against;
 use crate::tweak::easel::other::Other;
 use crate::tweak::messages::short;
-use crate::tweak::referee::Verdict;
+use crate::tweak::referee::CpuRenderState;
 use crate::tweak::session::Session;
 
 /// Returns the second image, once it is available.
@@ -18,13 +18,13 @@ pub fn other(ui: &Ui, session: &mut Session, shot: &Shot) -> Option<Other> {
     }
     let wake = session.wake.clone();
     match session.referee.judge(shot, move || wake.call()) {
-        Verdict::Made(picture) => {
+        CpuRenderState::Made(picture) => {
             session.messages.withdraw("reference");
-            return Some(Other::Picture(picture, exposure(shot)));
+            return Some(Other::Image(picture, exposure(shot)));
         }
-        Verdict::Later(wait) => ui.ctx().request_repaint_after(wait),
-        Verdict::Failed(error) => session.messages.complain("reference", error),
-        Verdict::Soon => {}
+        CpuRenderState::Later(wait) => ui.ctx().request_repaint_after(wait),
+        CpuRenderState::Failed(error) => session.messages.complain("reference", error),
+        CpuRenderState::Soon => {}
     }
     None
 }

@@ -4,7 +4,7 @@ use eframe::egui::{Color32, CursorIcon, Key, Pos2, Response, Ui};
 use glam::Vec3;
 use haze::{Light, LightKind};
 
-use super::grab::Grab;
+use super::grab::HandleDrag;
 use super::handle::{Cone, Handle, SQUARE, Shape, handles, hovered};
 use super::ink::{AXES, HOVERED, Ink, PLAIN, SELECTED};
 use super::lens::Lens;
@@ -13,8 +13,8 @@ use crate::tweak::session::Session;
 
 /// Dragged and hovered handle.
 #[derive(Default)]
-pub struct Gizmo {
-    grab: Option<Grab>,
+pub struct LightGizmo {
+    grab: Option<HandleDrag>,
     hovered: Option<Handle>,
     /// The button that started the drag is still down.
     is_busy: bool,
@@ -25,7 +25,7 @@ const CORNERS: u32 = 72;
 /// A circle with a larger radius is not drawn, points.
 const LARGEST: f32 = 1.0e4;
 
-impl Gizmo {
+impl LightGizmo {
     /// Selects and drags lights. Returns true while the pointer is used for that.
     pub fn interact(&mut self, ui: &Ui, response: &Response, lens: &Lens, session: &mut Session) -> bool {
         let (pointer, pressed, down, held) = ui.input(|input| {
@@ -44,7 +44,7 @@ impl Gizmo {
             if let (Some(handle), Some(at), true) =
                 (under, at, pressed && response.is_pointer_button_down_on() && !held.alt)
             {
-                self.grab = Some(Grab::new(index, handle, *light, lens, at));
+                self.grab = Some(HandleDrag::new(index, handle, *light, lens, at));
                 self.is_busy = true;
             }
             self.drag(ui, index, light, lens, pointer.filter(|_| down), held);

@@ -16,7 +16,7 @@ const DEGREES: f32 = 5.0;
 const SLOW: f32 = 0.1;
 
 /// Drag of a handle.
-pub struct Grab {
+pub struct HandleDrag {
     pub index: usize,
     pub handle: Handle,
     /// Light before the drag.
@@ -32,7 +32,7 @@ pub struct Grab {
     is_outside: bool,
 }
 
-impl Grab {
+impl HandleDrag {
     pub fn new(index: usize, handle: Handle, light: Light, lens: &Lens, pointer: Pos2) -> Self {
         let (centre, _) = sphere(&light, lens);
         let aimed = if light.kind == LightKind::Directional { -light.direction } else { light.direction };

@@ -22,26 +22,26 @@ use haze::{Bounds, LightKind};
 use super::action::InView;
 use super::easel::{Easel, Exhibit};
 use super::inspect::lit;
-use super::lights::{ShownLights, Turn, fresh};
+use super::lights::{LightView, Turn, fresh};
 use super::session::Session;
 use super::smoke::{Smoke, put_behind};
 use compare::{divider, other};
-use gizmo::Gizmo;
+use gizmo::LightGizmo;
 use ink::Ink;
 use lens::Lens;
 use menu::Menu;
-use puff::TruePuff;
+use puff::PathTracedPuff;
 use ray::Ray;
-use steer::Steering;
+use steer::CameraInput;
 
 /// State of the viewport.
 #[derive(Default)]
 pub struct Viewport {
-    steering: Steering,
+    steering: CameraInput,
     smoke: Smoke,
-    gizmo: Gizmo,
+    gizmo: LightGizmo,
     menu: Menu,
-    puff: TruePuff,
+    puff: PathTracedPuff,
 }
 
 /// Radius around a light that is framed, metres.
@@ -141,8 +141,8 @@ impl Viewport {
         match action {
             InView::Frame => self.frame(session),
             InView::Home => *camera = saved,
-            InView::Delete => session.change_light(ShownLights::remove),
-            InView::Duplicate => session.change_light(ShownLights::duplicate),
+            InView::Delete => session.change_light(LightView::remove),
+            InView::Duplicate => session.change_light(LightView::duplicate),
             InView::Behind => self.put_behind(session, None),
             InView::Overlay(overlay) => session.show.overlays.toggle(overlay),
             InView::Turntable => {

@@ -11,7 +11,7 @@ use haze_author::ramp::response::{DiffuseRamps, LIGHTS, Puff, Response};
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_author::sprite::six_way::BakedSixWay;
 
-use crate::medium::{sprite_recipe, usual_sprite};
+use crate::medium::{default_sprite, sprite_recipe};
 use crate::puffs::{Shown, pairs};
 use crate::tweak::lights::Turn;
 use crate::tweak::platform::worker::{Ticket, Worker};
@@ -23,7 +23,7 @@ const PATH_TRACE: PathTrace = PathTrace { size: 48, samples: 64, seed: 1 };
 const SIDE: f32 = 112.0;
 
 /// Path-traced reference, and the comparison with it.
-pub struct TruePuff {
+pub struct PathTracedPuff {
     worker: Option<Worker<Result<Traced, Stopped>>>,
     /// Index into [`MEDIA`].
     medium: usize,
@@ -54,21 +54,21 @@ struct Compared {
 }
 
 /// Starts with ash, the most common medium.
-impl Default for TruePuff {
+impl Default for PathTracedPuff {
     fn default() -> Self {
         let medium = MEDIA.iter().position(|named| named.name == "ash").unwrap_or_default();
         Self { worker: None, medium, asked: None, traced: None, compared: None, failed: None }
     }
 }
 
-impl TruePuff {
+impl PathTracedPuff {
     /// Shows both puffs in the lower left corner of the image while lights rotate.
     pub fn show(&mut self, ui: &mut Ui, rect: Rect, session: &Session) {
         let Some(turn) = session.show.lights.turn else { return };
         let preset = &session.document.preset;
         let (index, materials) = (session.show.system, session.pictures.of(preset));
         let Some((system, material)) = preset.systems.get(index).zip(materials.get(index)) else { return };
-        let leading = session.show.lights.selected.or(session.show.lights.known_key(index)).unwrap_or(0);
+        let leading = session.show.lights.selected.or(session.show.lights.chosen_key_light(index)).unwrap_or(0);
         let Some(light) = preset.lights.get(leading).or(preset.lights.first()) else { return };
         let corner = rect.left_bottom() + vec2(6.0, -6.0);
         let area = egui::Area::new(ui.scope_id().with("puff")).pivot(Align2::LEFT_BOTTOM).fixed_pos(corner);
@@ -142,7 +142,7 @@ impl TruePuff {
 impl Traced {
     fn of(medium: &Medium, is_six_way: bool, ticket: &Ticket) -> Result<Self, Stopped> {
         let progress = |_| if ticket.is_cancelled() { Err(None) } else { Ok(()) };
-        let recipe = sprite_recipe(&usual_sprite())?;
+        let recipe = sprite_recipe(&default_sprite())?;
         let puff = Puff::trace(&recipe, medium, &PATH_TRACE, progress)?;
         let recipe = SpriteRecipe { size: PATH_TRACE.size, columns: 1, rows: 1, tolerance: 0, ..recipe };
         let bake = || recipe.bake_six_way(medium, PATH_TRACE.samples, |_, path| progress(path));
@@ -156,7 +156,7 @@ impl Traced {
             Some(maps) => self.puff.shown_six_way(maps, light),
             None => self.puff.shown(ramps, light),
         };
-        let response = self.puff.response_of(light);
+        let response = self.puff.compare_images(light);
         let pairs = pairs(&self.puff, &Shown { light: &light, exposure: response.exposure });
         let side = PATH_TRACE.size;
         let sheet = image::RgbImage::from_fn(side * LIGHTS, 2 * side, |x, y| {

@@ -25,7 +25,7 @@ const PAUSE: f64 = 0.5;
 const FARTHEST: f32 = 1.0e5;
 
 /// Camera gesture in progress.
-pub struct Steering {
+pub struct CameraInput {
     gesture: Option<Gesture>,
     /// Flight speed, m/s.
     pub speed: f32,
@@ -43,13 +43,13 @@ enum Gesture {
     Fly,
 }
 
-impl Default for Steering {
+impl Default for CameraInput {
     fn default() -> Self {
         Self { gesture: None, speed: 2.0, wheeled: f64::NEG_INFINITY, has_flown: false }
     }
 }
 
-impl Steering {
+impl CameraInput {
     /// Moves the camera as the pointer over the image asks for. Returns true if the flight speed was changed.
     pub fn steer(&mut self, ui: &Ui, response: &Response, lens: &Lens, camera: &mut Camera) -> bool {
         let before = *camera;

@@ -77,7 +77,7 @@ fn an_imported_image_bakes_back_within_the_stated_error() {
         let stated: f32 = line.rsplit("at most ").next().unwrap().split('/').next().unwrap().parse().unwrap();
         assert!(line.starts_with("mine.ramp.json: ") && stated <= error, "{line}");
         said(folder.path(), &["ramp", "bake", "mine.ramp.json"]);
-        let read = |path: &Path| haze::picture::read_png(path).unwrap().into_rgb16();
+        let read = |path: &Path| haze::image::read_png(path).unwrap().into_rgb16();
         let (before, after) = (read(source.as_ref()), read(&folder.path().join("mine.png")));
         let off = before.iter().zip(after.iter()).map(|(a, b)| a.abs_diff(*b)).max().unwrap();
         assert!((f32::from(off) / 257.0 - stated).abs() < 0.06, "{line}: {off}");
@@ -136,7 +136,7 @@ fn a_ramp_is_shown_as_text_and_as_an_image() {
     assert!(!text.contains('\u{1b}') && text.contains('█'), "{text}");
     assert!(text.starts_with("toon.ramp.json: 256x1\n") && text.ends_with("0.720  #f6efe2  constant\n"), "{text}");
     said(folder.path(), &["ramp", "show", "toon.ramp.json", "-o", "toon.png"]);
-    let picture = haze::picture::read_png(&folder.path().join("toon.png")).unwrap().into_rgb8();
+    let picture = haze::image::read_png(&folder.path().join("toon.png")).unwrap().into_rgb8();
     assert_eq!(picture.get_pixel(100, 40).0, [0x2b, 0x2a, 0x3a]);
     assert_eq!(picture.get_pixel(540, 40).0, [0xf6, 0xef, 0xe2]);
     let line = refusal(folder.path(), &["ramp", "show", "toon.png", "-o", "toon.png"]);
@@ -183,7 +183,7 @@ fn ramp_sheet_renders_a_shot_with_every_ramp_of_a_folder() {
     let sheet = |arguments: &[&str]| {
         let fixed = ["ramp", "sheet", "fence", "--backend", "cpu", "-o", "sheet.png"];
         said(folder.path(), &[&fixed[..], arguments].concat());
-        haze::picture::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8()
+        haze::image::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8()
     };
     // The image above the strip of the ramp.
     let above = |picture: &image::RgbImage, x, y| image::imageops::crop_imm(picture, x, y, 48, 25).to_image();
@@ -191,7 +191,7 @@ fn ramp_sheet_renders_a_shot_with_every_ramp_of_a_folder() {
         let fixed = ["render", "fence", "--backend", "cpu", "--size", "48x27", "--assets", "ramps", "-o", "one.png"];
         let sets: Vec<_> = sets.iter().flat_map(|set| ["--set", set]).collect();
         said(folder.path(), &[&fixed[..], &sets].concat());
-        above(&haze::picture::read_png(&folder.path().join("one.png")).unwrap().to_rgb8(), 0, 0)
+        above(&haze::image::read_png(&folder.path().join("one.png")).unwrap().to_rgb8(), 0, 0)
     };
     let cell = |sheet: &image::RgbImage, x: u32| above(sheet, 12 + x * 60, 40);
     // Two images per row, sorted by name.
@@ -216,7 +216,7 @@ fn ramp_sheet_renders_a_shot_with_every_ramp_of_a_folder() {
     let output = haze(folder.path(), &[&arguments[..], &["--size", "96x54", "-o", "sheet.png"]].concat());
     assert_eq!((output.status.code(), stderr(&output).lines().count()), (Some(1), 1), "{}", stderr(&output));
     assert!(stderr(&output).contains("diffuse_broken.png: not a PNG"), "{}", stderr(&output));
-    let left = haze::picture::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8();
+    let left = haze::image::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8();
     assert!(cell(&left, 0) == cell(&diffuse, 0) && cell(&left, 1) == cell(&diffuse, 1));
 
     let line = |arguments: &[&str]| refusal(folder.path(), &[&["ramp", "sheet", "fence"], arguments].concat());
@@ -242,7 +242,7 @@ fn a_blank_of_every_role_has_labelled_axes() {
         let size = if matches!(role, Role::Specular | Role::Backlight) { "512x256" } else { "512x64" };
         assert_eq!(line, format!("{name}: a {} ramp to paint over, {size}\n", role.name()));
         // Text at both ends: without it, a ramp changes little from one line to the next.
-        let picture = haze::picture::read_png(&folder.path().join(&name)).unwrap().to_luma8();
+        let picture = haze::image::read_png(&folder.path().join(&name)).unwrap().to_luma8();
         let middle = picture.height() / 2;
         for end in [0..150, 362..512] {
             let is_edge = |x: &u32, y| picture[(*x, y)].0[0].abs_diff(picture[(*x, y + 1)].0[0]) > 60;
@@ -275,7 +275,7 @@ fn ramps_are_fitted_to_path_traced_smoke() {
     assert_eq!(told.lines().filter(|line| line.contains('°')).count(), 32, "{told}");
     for name in ["lit", "against"] {
         let picture = folder.path().join(name).with_extension("png");
-        assert_eq!(haze::picture::read_png(&picture).unwrap().to_rgb16().dimensions(), (128, 64));
+        assert_eq!(haze::image::read_png(&picture).unwrap().to_rgb16().dimensions(), (128, 64));
         assert!(
             haze_author::ramp::bake::RampRecipe::load(&picture.with_extension("ramp.json")).unwrap().rows.len() == 5
         );
@@ -300,7 +300,7 @@ fn sprite_light_path_traces_a_sprite() {
     let light = ["sprite", "light", "ball", "--medium", "milk", "--size", "16", "--samples", "4", "-o", "a.png"];
     let told = said(folder.path(), &[&light[..], &["--volume", "ball.vol"]].concat());
     assert_eq!(told.lines().count(), 17, "{told}");
-    assert_eq!(haze::picture::read_png(&folder.path().join("a.png")).unwrap().height(), 212);
+    assert_eq!(haze::image::read_png(&folder.path().join("a.png")).unwrap().height(), 212);
     let grid = fs::read(folder.path().join("ball.vol")).unwrap();
     assert!(grid.starts_with(b"VOL\x03\x01\0\0\0\x10\0\0\0\x10\0\0\0"), "{:?}", &grid[..24]);
 }

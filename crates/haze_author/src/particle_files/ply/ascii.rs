@@ -3,7 +3,7 @@
 use super::header::{Element, Kind};
 use crate::particle_files::columns::{Columns, Values};
 use crate::particle_files::csv::text;
-use crate::particle_files::frame::CachedParticle;
+use crate::particle_files::frame::FileParticle;
 use crate::particle_files::mistake::Mistake;
 
 /// Reads the vertices of the body that follows a header of `lines` lines.
@@ -13,7 +13,7 @@ pub fn read(
     before: &[Element],
     vertices: &Element,
     columns: &Columns,
-) -> Result<Vec<CachedParticle>, Mistake> {
+) -> Result<Vec<FileParticle>, Mistake> {
     let text = text(body).map_err(|mistake| below(mistake, lines))?;
     let mut lines = (lines + 1..).zip(text.lines()).filter(|(_, line)| !line.trim_ascii().is_empty());
     for element in before.iter().filter(|element| !element.properties.is_empty()) {
@@ -33,7 +33,7 @@ pub fn read(
             let word = words.next().ok_or_else(short)?;
             match property.kind {
                 Kind::One(_) if columns.is_read(column) => {
-                    let put = columns.put_text(column, word, &mut values);
+                    let put = columns.parse_and_set(column, word, &mut values);
                     put.map_err(|reason| Mistake::after(number, after(word), reason))?;
                 }
                 Kind::One(_) => {}

@@ -2,19 +2,19 @@
 
 use super::header::{Element, Kind, Scalar};
 use crate::particle_files::columns::{Columns, Values};
-use crate::particle_files::frame::CachedParticle;
+use crate::particle_files::frame::FileParticle;
 use crate::particle_files::mistake::Mistake;
 
 /// Reads the vertices of the body that follows a header of `start` bytes.
 pub fn read(
     body: &[u8],
     start: usize,
-    is_big: bool,
+    is_big_endian: bool,
     before: &[Element],
     vertices: &Element,
     columns: &Columns,
-) -> Result<Vec<CachedParticle>, Mistake> {
-    let mut reader = Reader { body, at: 0, is_big };
+) -> Result<Vec<FileParticle>, Mistake> {
+    let mut reader = Reader { body, at: 0, is_big_endian };
     for element in before {
         if element.has_lists() {
             for row in 0..element.count {
@@ -23,7 +23,7 @@ pub fn read(
             }
         } else {
             // Cannot overflow: `Header::parse` checked that the counts fit in the file.
-            reader.at += element.count * element.least_bytes();
+            reader.at += element.count * element.min_bytes();
         }
     }
     let mut particles = Vec::with_capacity(vertices.count);
@@ -53,7 +53,7 @@ fn ended(element: &Element, row: usize, at: usize) -> Mistake {
 struct Reader<'a> {
     body: &'a [u8],
     at: usize,
-    is_big: bool,
+    is_big_endian: bool,
 }
 
 impl Reader<'_> {
@@ -69,7 +69,7 @@ impl Reader<'_> {
         macro_rules! number {
             ($type:ty) => {{
                 let bytes = self.take()?;
-                (if self.is_big { <$type>::from_be_bytes(bytes) } else { <$type>::from_le_bytes(bytes) }).into()
+                (if self.is_big_endian { <$type>::from_be_bytes(bytes) } else { <$type>::from_le_bytes(bytes) }).into()
             }};
         }
         Some(match scalar {

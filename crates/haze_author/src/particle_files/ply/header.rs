@@ -1,11 +1,11 @@
 //! Header of a PLY file.
 
-use crate::particle_files::columns::MOST_COLUMNS;
+use crate::particle_files::columns::MAX_COLUMNS;
 use crate::particle_files::mistake::Mistake;
 use haze::error::one_line;
 
 /// Size limit of the header, bytes.
-const MOST_BYTES: usize = 1 << 16;
+const MAX_HEADER_BYTES: usize = 1 << 16;
 
 pub struct Header {
     pub format: Format,
@@ -20,7 +20,7 @@ pub enum Format {
     Ascii,
     Binary {
         /// True for big-endian.
-        is_big: bool,
+        is_big_endian: bool,
     },
 }
 
@@ -84,7 +84,7 @@ impl Scalar {
 
 impl Element {
     /// Returns the minimum size of one record in a binary file, bytes: lists may be empty.
-    pub fn least_bytes(&self) -> usize {
+    pub fn min_bytes(&self) -> usize {
         let bytes = |property: &Property| match property.kind {
             Kind::One(scalar) => scalar.bytes(),
             Kind::List { count, .. } => count.bytes(),
@@ -103,9 +103,9 @@ impl Header {
         let (mut format, mut elements) = (None, Vec::<Element>::new());
         let (mut length, mut properties) = (0, 0);
         for number in 1.. {
-            let rest = &content[length..content.len().min(MOST_BYTES)];
+            let rest = &content[length..content.len().min(MAX_HEADER_BYTES)];
             let Some(end) = rest.iter().position(|byte| *byte == b'\n') else {
-                let reason = format!("no end_header in the first {MOST_BYTES} bytes; expected a PLY file");
+                let reason = format!("no end_header in the first {MAX_HEADER_BYTES} bytes; expected a PLY file");
                 return Err(Mistake::Whole(reason));
             };
             length += end + 1;
@@ -127,8 +127,8 @@ impl Header {
                         return Err(refuse("property before any element; expected an element line first".into()));
                     };
                     properties += 1;
-                    if properties > MOST_COLUMNS {
-                        return Err(refuse(format!("more than {MOST_COLUMNS} properties; expected no more")));
+                    if properties > MAX_COLUMNS {
+                        return Err(refuse(format!("more than {MAX_COLUMNS} properties; expected no more")));
                     }
                     element.properties.push(parse_property(words).map_err(refuse)?);
                 }
@@ -153,7 +153,7 @@ impl Header {
         let mut needed = 0_usize;
         for element in &self.elements {
             let least = match self.format {
-                Format::Binary { .. } => element.least_bytes(),
+                Format::Binary { .. } => element.min_bytes(),
                 // A digit and a separator.
                 Format::Ascii => 2 * element.properties.len(),
             };
@@ -175,8 +175,8 @@ impl Header {
 fn parse_format(name: &str) -> Result<Format, String> {
     match name {
         "ascii" => Ok(Format::Ascii),
-        "binary_little_endian" => Ok(Format::Binary { is_big: false }),
-        "binary_big_endian" => Ok(Format::Binary { is_big: true }),
+        "binary_little_endian" => Ok(Format::Binary { is_big_endian: false }),
+        "binary_big_endian" => Ok(Format::Binary { is_big_endian: true }),
         _ => {
             let expected = "ascii, binary_little_endian or binary_big_endian";
             Err(format!("format {:?} is not known; expected {expected}", one_line(name)))

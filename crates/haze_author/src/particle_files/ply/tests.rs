@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::*;
 
-fn read(content: &[u8]) -> Result<CacheFrame, Mistake> {
+fn read(content: &[u8]) -> Result<ParticleFrame, Mistake> {
     super::read(content, 4)
 }
 
@@ -12,8 +12,8 @@ const NAMES: &str = "property float x\nproperty double y\nproperty short z\nprop
                      property list uchar ushort near\nproperty float pscale\n";
 
 /// Builds a file with a list element before the vertices, a list property in the vertices, and faces after them.
-fn binary(is_big: bool) -> Vec<u8> {
-    let order = if is_big { "big" } else { "little" };
+fn binary(is_big_endian: bool) -> Vec<u8> {
+    let order = if is_big_endian { "big" } else { "little" };
     let mut file = format!(
         "ply\r\nformat binary_{order}_endian 1.0\r\ncomment made by h\u{fc}nd\r\nelement strip 2\r\n\
          property list int char i\r\nelement vertex 2\r\n{}element face 1\r\nproperty list uchar int vertex_indices\r\n\
@@ -23,7 +23,7 @@ fn binary(is_big: bool) -> Vec<u8> {
     .into_bytes();
     let mut put = |bytes: &[u8]| {
         let mut bytes = bytes.to_vec();
-        if is_big {
+        if is_big_endian {
             bytes.reverse();
         }
         file.extend(bytes);

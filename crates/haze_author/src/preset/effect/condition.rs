@@ -16,7 +16,7 @@ pub fn is_hard(system: &PresetSystem, _: UVec2) -> bool {
 }
 
 /// True if the upsampling compares depths. It then uses the length of the fade, whether sprites fade or not.
-pub fn weighs_depth(system: &PresetSystem, size: UVec2) -> bool {
+pub fn upsampling_reads_depth(system: &PresetSystem, size: UVec2) -> bool {
     let accumulate = &system.settings.accumulate;
     let is_reduced = !system.settings.is_forward() && accumulate.effective_scale(size) > 1;
     is_reduced && accumulate.upsample != Upsample::Bilinear
@@ -26,12 +26,12 @@ pub fn shows_through(system: &PresetSystem) -> bool {
     system.settings.soft_fade.curve == FadeCurve::Always
 }
 
-pub fn has_no_power(system: &PresetSystem, _: UVec2) -> bool {
+pub fn curve_ignores_power(system: &PresetSystem, _: UVec2) -> bool {
     !matches!(system.settings.soft_fade.curve, FadeCurve::Contrast | FadeCurve::Exponential)
 }
 
 /// True if the checkerboard replaces everything of a sprite. Depth sprites still read depth from it.
-pub fn is_checked(system: &PresetSystem, _: UVec2) -> bool {
+pub fn shows_checkerboard_only(system: &PresetSystem, _: UVec2) -> bool {
     let is_read = technique(system).is_volumetric() || technique(system).is_depth_sprite();
     system.settings.sprite.debug_sprite && !is_read
 }
@@ -76,6 +76,6 @@ pub fn looks_up_no_ramp(system: &PresetSystem, _: UVec2) -> bool {
     !(by_normal || by_amount || others)
 }
 
-pub fn needs_no_up(system: &PresetSystem, _: UVec2) -> bool {
+pub fn ignores_up(system: &PresetSystem, _: UVec2) -> bool {
     system.emitter.buoyancy == 0.0 && system.emitter.shape != EmitterShape::Disc
 }

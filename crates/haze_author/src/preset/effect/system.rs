@@ -3,16 +3,16 @@
 use glam::Vec3;
 
 use super::condition::{
-    has_no_power, has_one_frame, is_checked, is_hard, is_painted, looks_up_no_ramp, needs_no_up, plays_no_flipbook,
-    reads_no_detail, shows_through, stands_still, technique, weighs_depth,
+    curve_ignores_power, has_one_frame, ignores_up, is_hard, is_painted, looks_up_no_ramp, plays_no_flipbook,
+    reads_no_detail, shows_checkerboard_only, shows_through, stands_still, technique, upsampling_reads_depth,
 };
 use super::row::{Row, row};
 use haze::assets::builtin;
 use haze::preset::PresetSystem;
-use haze::settings::{Backlight, CoverageMode, Order, Path, SoftScatterMode, SpriteAnimation, Technique};
+use haze::settings::{Backlight, CoverageMode, Order, RenderPath, SoftScatterMode, SpriteAnimation, Technique};
 
 /// The first row that holds gives the reason.
-pub const OF_SYSTEMS: &[Row<PresetSystem>] = &[
+pub const SYSTEM_RULES: &[Row<PresetSystem>] = &[
     row("the particles come from files", |s, _| s.cache.is_used(), &["emitter"]),
     row(
         "only with particle files",
@@ -102,11 +102,15 @@ pub const OF_SYSTEMS: &[Row<PresetSystem>] = &[
     ),
     row(
         "at full resolution only with a technique that fades",
-        |s, size| is_hard(s, size) && !weighs_depth(s, size),
+        |s, size| is_hard(s, size) && !upsampling_reads_depth(s, size),
         &["settings.soft_fade.fade_scale", "settings.soft_fade.epsilon"],
     ),
-    row("only with curve contrast or exponential", has_no_power, &["settings.soft_fade.contrast_power"]),
-    row("not with curve always", |s, size| shows_through(s) && !weighs_depth(s, size), &["settings.soft_fade.epsilon"]),
+    row("only with curve contrast or exponential", curve_ignores_power, &["settings.soft_fade.contrast_power"]),
+    row(
+        "not with curve always",
+        |s, size| shows_through(s) && !upsampling_reads_depth(s, size),
+        &["settings.soft_fade.epsilon"],
+    ),
     row(
         "only with order weighted",
         |s, _| s.settings.accumulate.order != Order::Weighted,
@@ -114,7 +118,10 @@ pub const OF_SYSTEMS: &[Row<PresetSystem>] = &[
     ),
     row(
         "only on the paths tiled and auto, with order sorted",
-        |s, _| !matches!(s.settings.path, Path::Tiled | Path::Auto) || s.settings.accumulate.order != Order::Sorted,
+        |s, _| {
+            !matches!(s.settings.path, RenderPath::Tiled | RenderPath::Auto)
+                || s.settings.accumulate.order != Order::Sorted
+        },
         &["settings.accumulate.layers"],
     ),
     row(
@@ -159,7 +166,7 @@ pub const OF_SYSTEMS: &[Row<PresetSystem>] = &[
     ),
     row(
         "sprite.debug_sprite shows one checkerboard for all frames",
-        is_checked,
+        shows_checkerboard_only,
         &[
             "settings.sprite.animation",
             "settings.sprite.freeze_animation",
@@ -259,5 +266,5 @@ pub const OF_SYSTEMS: &[Row<PresetSystem>] = &[
         &["emitter.turbulence_scale", "emitter.turbulence_speed"],
     ),
     row("only where the extent is not 0", |s, _| s.emitter.extent == Vec3::ZERO, &["emitter.shape", "emitter.burst"]),
-    row("only with buoyancy, or with shape disc", needs_no_up, &["emitter.up"]),
+    row("only with buoyancy, or with shape disc", ignores_up, &["emitter.up"]),
 ];

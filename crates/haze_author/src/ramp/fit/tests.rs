@@ -1,12 +1,12 @@
 use super::*;
 use haze::assets::builtin;
-use haze::assets::picture::decode_png;
+use haze::assets::image::decode_png;
 use image::{ImageBuffer, Rgb};
 use std::path::Path;
 
 /// Fits an image and bakes the result; returns the fit and its largest error.
 fn again(name: &str, picture: &DynamicImage) -> (Fit, f32) {
-    let fitted = fit(picture, USUAL_ERROR).unwrap();
+    let fitted = fit(picture, DEFAULT_MAX_ERROR).unwrap();
     let baked = fitted.recipe.bake().unwrap().into_rgb16();
     let picture = picture.to_rgb16();
     let off = (0..picture.height()).flat_map(|y| (0..picture.width()).map(move |x| (x, y))).map(|(x, y)| {
@@ -51,7 +51,7 @@ fn hard_edges_are_preserved() {
     let slopes = strip(|x| [(x * 60 + if x < 100 { 0 } else { 30000 }) as u16; 3]);
     let (fitted, off) = again("slopes", &slopes);
     let stops = &fitted.recipe.rows[0].stops;
-    assert!(off <= USUAL_ERROR && stops.windows(2).any(|pair| (pair[1].at - pair[0].at).abs() < 1.0e-9));
+    assert!(off <= DEFAULT_MAX_ERROR && stops.windows(2).any(|pair| (pair[1].at - pair[0].at).abs() < 1.0e-9));
 
     // A dark line, alternating texels, noise, a single colour.
     let hash = |x: u32| (x.wrapping_mul(2_654_435_761) >> 16) as u16;
@@ -68,7 +68,7 @@ fn hard_edges_are_preserved() {
         Rgb([if y < 20 { 60000 } else { 900 * x as u16 }, (x / 20 * 15000) as u16, 0])
     }));
     let (fitted, off) = again("steps", &steps);
-    assert!(off <= USUAL_ERROR && fitted.recipe.rows.len() == 2, "{off}");
+    assert!(off <= DEFAULT_MAX_ERROR && fitted.recipe.rows.len() == 2, "{off}");
 }
 
 #[test]
@@ -76,7 +76,7 @@ fn equal_rows_become_one_and_the_width_is_kept() {
     let slope = |x: u32| Rgb([(x * 3) as u8, 90, 200 - (x * 2) as u8]);
     let strip = |width, height| DynamicImage::ImageRgb8(ImageBuffer::from_fn(width, height, |x, _| slope(x)));
     let size = |picture: &DynamicImage| {
-        let recipe = fit(picture, USUAL_ERROR).unwrap().recipe;
+        let recipe = fit(picture, DEFAULT_MAX_ERROR).unwrap().recipe;
         (recipe.width, recipe.height, recipe.rows.len())
     };
     assert_eq!(size(&strip(64, 16)), (64, 1, 1));

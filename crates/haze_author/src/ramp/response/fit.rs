@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::puff::{Puff, Texel};
-use super::solve::{Equations, knots};
+use super::solve::{NormalEquations, knots};
 use crate::ramp::bake::{Blend, Curve, HexColour, RampRecipe, RampRow, RampStop};
 use crate::ramp::colour::srgb_from_linear;
 use haze::formula::colour::luminance;
@@ -67,7 +67,7 @@ impl Puff {
             }
             terms
         };
-        let mut equations = Equations::new(ramps * rows * stops);
+        let mut equations = NormalEquations::new(ramps * rows * stops);
         let count = self.texels.len().max(1) as f32;
         for (&light, truth) in self.lights.iter().zip(&self.traced.light) {
             let whole: Vec3 = truth.texels.iter().sum();

@@ -6,7 +6,7 @@ use crate::exact::direction;
 use crate::path_trace::{Medium, PathTrace, Traced};
 use crate::sprite::bake::SpriteRecipe;
 use crate::sprite::six_way::BakedSixWay;
-use haze::assets::picture::Picture;
+use haze::assets::image::Image;
 use haze::assets::ramp::Ramp;
 use haze::formula::colour::luminance;
 use haze::formula::lighting::{backlight_weight, diffuse_coordinate};
@@ -94,8 +94,8 @@ impl Puff {
     }
 
     /// Shades the puff with ramps under a light: linear RGB times coverage.
-    pub fn shown(&self, ramps: DiffuseRamps<'_>, light: usize) -> Picture<Vec3> {
-        let mut picture = Picture::new(self.traced.coverage.size, Vec3::ZERO);
+    pub fn shown(&self, ramps: DiffuseRamps<'_>, light: usize) -> Image<Vec3> {
+        let mut picture = Image::new(self.traced.coverage.size, Vec3::ZERO);
         for texel in &self.texels {
             picture.texels[texel.index] = ramps.look_up(texel, self.lights[light]) * texel.coverage;
         }
@@ -104,9 +104,9 @@ impl Puff {
 
     /// Shades the puff with six-way maps under a light, as [`Puff::shown`]. The maps must be of one frame of the puff's
     /// size.
-    pub fn shown_six_way(&self, maps: &BakedSixWay, light: usize) -> Picture<Vec3> {
+    pub fn shown_six_way(&self, maps: &BakedSixWay, light: usize) -> Image<Vec3> {
         let size = self.traced.coverage.size;
-        let mut picture = Picture::new(size, Vec3::ZERO);
+        let mut picture = Image::new(size, Vec3::ZERO);
         for texel in &self.texels {
             let at = UVec2::new(texel.index as u32 % size.x, texel.index as u32 / size.x);
             let half = |y| {
@@ -122,11 +122,11 @@ impl Puff {
 
     /// Compares shading with ramps to the truth, at the best exposure.
     pub fn response(&self, ramps: DiffuseRamps<'_>) -> Response {
-        self.response_of(|light| self.shown(ramps, light))
+        self.compare_images(|light| self.shown(ramps, light))
     }
 
     /// Compares images, one per light, to the truth, at the best exposure.
-    pub fn response_of(&self, shown: impl Fn(usize) -> Picture<Vec3>) -> Response {
+    pub fn compare_images(&self, shown: impl Fn(usize) -> Image<Vec3>) -> Response {
         let shown: Vec<_> = (0..self.lights.len()).map(shown).collect();
         Response::new(&shown, &self.traced.light)
     }
@@ -135,8 +135,8 @@ impl Puff {
 impl Response {
     /// Compares images to true ones, one per light. The exposure minimises the squared relative errors of brightness
     /// over all lights.
-    pub fn new(shown: &[Picture<Vec3>], truth: &[Picture<Vec3>]) -> Self {
-        let mean = |picture: &Picture<Vec3>| luminance(picture.texels.iter().sum()) / picture.texels.len() as f32;
+    pub fn new(shown: &[Image<Vec3>], truth: &[Image<Vec3>]) -> Self {
+        let mean = |picture: &Image<Vec3>| luminance(picture.texels.iter().sum()) / picture.texels.len() as f32;
         let both = || shown.iter().zip(truth);
         let lights: Vec<_> =
             both().map(|(shown, truth)| LightResponse { truth: mean(truth), shown: mean(shown) }).collect();

@@ -12,13 +12,13 @@ pub(super) fn knots(at: f32, count: usize) -> [(usize, f32); 2] {
 }
 
 /// Normal equations of three channels with a common matrix.
-pub(super) struct Equations {
+pub(super) struct NormalEquations {
     count: usize,
     matrix: Vec<f64>,
     right: Vec<[f64; 3]>,
 }
 
-impl Equations {
+impl NormalEquations {
     pub fn new(count: usize) -> Self {
         Self { count, matrix: vec![0.0; count * count], right: vec![[0.0; 3]; count] }
     }

@@ -14,7 +14,7 @@ fn puff(medium: &Medium) -> Puff {
 }
 
 fn baked(recipe: &RampRecipe) -> Ramp {
-    Ramp::from_picture(&recipe.bake().unwrap())
+    Ramp::from_image(&recipe.bake().unwrap())
 }
 
 /// Fits ramps of a shape, bakes them and returns their response.
@@ -67,7 +67,7 @@ fn six_way_maps_are_closer_to_the_truth_than_fitted_ramps() {
         let recipe = SpriteRecipe::of_builtin(builtin::find(builtin::SPRITES, "billow").unwrap()).unwrap();
         let recipe = SpriteRecipe { size: PATH_TRACE.size, columns: 1, rows: 1, tolerance: 0, ..recipe };
         let maps = recipe.bake_six_way(&named.medium, 48, |_, _| Ok::<_, ()>(())).unwrap();
-        let six_way = puff.response_of(|light| puff.shown_six_way(&maps, light));
+        let six_way = puff.compare_images(|light| puff.shown_six_way(&maps, light));
         println!("{}: {:.3}, pixels {:.3}", named.name, six_way.error, six_way.pixel_error);
         assert!(six_way.error < 0.06, "{}: {}", named.name, six_way.error);
         let ramps = fitted(&puff, Shape::default());

@@ -9,15 +9,15 @@ use super::frame::{BakedFrame, Ray};
 use super::recipe::SpriteRecipe;
 use crate::exact::{direction, exp};
 use crate::path_trace::{Volume, position};
+use haze::assets::image::Image;
 use haze::assets::noise::{curl_noise, fractal_noise};
-use haze::assets::picture::Picture;
 use haze::formula::saturate;
 
 /// Bakes the frame at a time, as a fraction of the loop.
 pub(super) fn frame(recipe: &SpriteRecipe, time: f32) -> BakedFrame {
     let size = recipe.size;
     let volume = slices(recipe, time);
-    let mut marched = Picture::new(UVec2::splat(size), (Rgba([128, 128, 255, 0]), 0.0));
+    let mut marched = Image::new(UVec2::splat(size), (Rgba([128, 128, 255, 0]), 0.0));
     marched.for_each(|at, texel| *texel = march(recipe, &volume, at));
     BakedFrame::new(size, marched.texels)
 }
@@ -28,11 +28,11 @@ pub(super) fn volume(recipe: &SpriteRecipe, time: f32) -> Volume {
 }
 
 /// Returns the volume's slices below each other, the slice nearest to the viewer first.
-fn slices(recipe: &SpriteRecipe, time: f32) -> Picture<f32> {
+fn slices(recipe: &SpriteRecipe, time: f32) -> Image<f32> {
     let size = recipe.size;
     let cluster = Cluster::new(recipe, time);
     let sides = UVec3::splat(size);
-    let mut volume = Picture::new(UVec2::new(size, size * size), 0.0);
+    let mut volume = Image::new(UVec2::new(size, size * size), 0.0);
     volume.for_each(|at, density| {
         let texel = UVec3::new(at.x, at.y % size, at.y / size);
         *density = cluster.density(position(sides, texel));
@@ -42,7 +42,7 @@ fn slices(recipe: &SpriteRecipe, time: f32) -> Picture<f32> {
 
 /// Marches one texel's column front to back. Returns the texel, and its visible offset towards the viewer in half
 /// sides.
-fn march(recipe: &SpriteRecipe, volume: &Picture<f32>, at: UVec2) -> (Rgba<u8>, f32) {
+fn march(recipe: &SpriteRecipe, volume: &Image<f32>, at: UVec2) -> (Rgba<u8>, f32) {
     let sides = UVec3::splat(recipe.size);
     let last = recipe.size as i32 - 1;
     let density = |voxel: IVec3| {

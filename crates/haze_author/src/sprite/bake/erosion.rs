@@ -6,8 +6,8 @@ use glam::{UVec2, UVec3, Vec2, Vec3};
 
 use super::recipe::SpriteRecipe;
 use super::voxels::{RUN, Voxels};
-use haze::assets::noise::NoiseCell;
-use haze::assets::picture::Picture;
+use haze::assets::image::Image;
+use haze::assets::noise::CachedGradientNoise;
 
 /// Scale of noise values stored in 16 bits; the range is ±4.
 const NOISE_SCALE: f32 = 8192.0;
@@ -22,7 +22,7 @@ pub(super) struct Erosion {
 struct Octave {
     weight: f32,
     lumps: f32,
-    values: Picture<[i16; 2]>,
+    values: Image<[i16; 2]>,
 }
 
 impl Erosion {
@@ -81,14 +81,14 @@ impl Erosion {
 }
 
 /// Sums octaves, each a (weight, frequency, salt), for every voxel.
-fn values(recipe: &SpriteRecipe, voxels: Voxels, octaves: &[(f32, f32, u32)], lumps: f32) -> Picture<[i16; 2]> {
+fn values(recipe: &SpriteRecipe, voxels: Voxels, octaves: &[(f32, f32, u32)], lumps: f32) -> Image<[i16; 2]> {
     let size = voxels.size;
-    let mut values = Picture::new(UVec2::new(size, size * voxels.depth), [0_i16; 2]);
+    let mut values = Image::new(UVec2::new(size, size * voxels.depth), [0_i16; 2]);
     let seed = recipe.seed.wrapping_mul(31);
     values.for_bands(|first, band| {
         for (row, line) in (first..).zip(band.chunks_mut(size as usize)) {
             for &(weight, frequency, salt) in octaves {
-                let mut cell = NoiseCell::new(seed.wrapping_add(salt));
+                let mut cell = CachedGradientNoise::new(seed.wrapping_add(salt));
                 for (x, value) in (0..).zip(&mut *line) {
                     let p = voxels.position(UVec3::new(x, row % size, row / size));
                     // Voxels farther out are invisible, but `travel` may carry noise in from there.

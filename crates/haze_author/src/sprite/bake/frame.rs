@@ -3,23 +3,23 @@
 use glam::{UVec2, Vec2, Vec3};
 use image::Rgba;
 
-use haze::assets::picture::Picture;
+use haze::assets::image::Image;
 use haze::formula::saturate;
 
 /// One baked frame of a sprite.
 #[derive(Clone, Debug)]
 pub struct BakedFrame {
     /// rgb = normal / 2 + 1/2, a = amount.
-    pub picture: Picture<Rgba<u8>>,
+    pub picture: Image<Rgba<u8>>,
     /// Offset of the visible surface towards the viewer, -1..1 half sides.
-    pub offset: Picture<f32>,
+    pub offset: Image<f32>,
 }
 
 impl BakedFrame {
     pub(super) fn new(size: u32, texels: impl IntoIterator<Item = (Rgba<u8>, f32)>) -> Self {
         let (picture, offset) = texels.into_iter().unzip();
         let size = UVec2::splat(size);
-        Self { picture: Picture { size, texels: picture }, offset: Picture { size, texels: offset } }
+        Self { picture: Image { size, texels: picture }, offset: Image { size, texels: offset } }
     }
 }
 

@@ -6,8 +6,8 @@ use super::cluster::{Ball, balls};
 use super::recipe::SpriteRecipe;
 use super::voxels::{RUN, Voxels};
 use crate::exact::direction;
+use haze::assets::image::Image;
 use haze::assets::noise::curl_noise;
-use haze::assets::picture::Picture;
 
 /// Displacement of a position by the flow alone, and by flow and warp together.
 #[derive(Clone, Copy)]
@@ -32,22 +32,22 @@ pub(super) struct Column {
 }
 
 /// State at one moment.
-pub(super) struct Moment {
+pub(super) struct LoopState {
     pub phase: Vec2,
     pub columns: Vec<Column>,
     /// Shifts on a cubic grid of `nodes` per side from −1 to 1, slices below each other.
-    shifts: Picture<Shift>,
+    shifts: Image<Shift>,
     /// Balls that reach each box of [`RUN`] voxels per side.
     pub near: Vec<Vec<Ball>>,
 }
 
-impl Moment {
+impl LoopState {
     pub fn new(recipe: &SpriteRecipe, voxels: Voxels, time: f32) -> Self {
         let turning = direction(time * std::f32::consts::TAU);
         // With `travel`, the noise is carried along and does not turn in place.
         let phase = if recipe.travel > 0.0 { Vec2::X } else { turning };
         let nodes = ((recipe.noise_frequency * 8.0) as u32).clamp(16, 64);
-        let mut shifts = Picture::new(UVec2::new(nodes, nodes * nodes), Shift { flow: Vec3::ZERO, all: Vec3::ZERO });
+        let mut shifts = Image::new(UVec2::new(nodes, nodes * nodes), Shift { flow: Vec3::ZERO, all: Vec3::ZERO });
         let seed = recipe.seed.wrapping_mul(31);
         shifts.for_each(|at, shift| {
             let node = UVec3::new(at.x, at.y % nodes, at.y / nodes).as_vec3();

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
+use haze::assets::image::MAX_SIDE;
 use haze::assets::json;
-use haze::assets::picture::MAX_SIDE;
 use haze::assets::sprite::SpriteLayout;
 use haze::builtin::{self, Builtin};
 use haze::error::Error;
-use haze::settings::{FieldVisitor, Fields, Headed, validate};
+use haze::settings::{FieldHeading, FieldVisitor, Fields, validate};
 
 /// Newest recipe format version. This code reads version 1 too.
 pub const RECIPE_VERSION: u32 = 2;
@@ -106,13 +106,13 @@ impl Fields for SpriteRecipe {
         visitor.integer("tolerance", &mut self.tolerance, 0..=8, "of 255");
     }
 
-    fn headings(&self) -> &'static [Headed] {
+    fn headings(&self) -> &'static [FieldHeading] {
         HEADINGS
     }
 }
 
 /// Fields in order of display; a name starts a new group.
-const HEADINGS: &[Headed] = &[
+const HEADINGS: &[FieldHeading] = &[
     ("seed", Some("shape")),
     ("balls", None),
     ("spread", None),

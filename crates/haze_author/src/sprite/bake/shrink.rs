@@ -4,7 +4,7 @@
 use glam::{IVec2, UVec2};
 use image::Rgba;
 
-use haze::assets::picture::Picture;
+use haze::assets::image::Image;
 
 /// Maximum movement of a normal in thin smoke, in multiples of the tolerance.
 const THIN: i32 = 4;
@@ -12,9 +12,9 @@ const THIN: i32 = 4;
 /// Moves every channel of a frame by at most `tolerance` of 255. Normals may move further where the amount is small, in
 /// inverse proportion to it, up to `THIN` times. Normals of clear texels without visible neighbours may take any
 /// value.
-pub fn shrink_frame(frame: &mut Picture<Rgba<u8>>, tolerance: u32) {
+pub fn quantise_frame(frame: &mut Image<Rgba<u8>>, tolerance: u32) {
     let tolerance = tolerance as i32;
-    let amounts = Picture { size: frame.size, texels: frame.texels.iter().map(|texel| texel.0[3]).collect() };
+    let amounts = Image { size: frame.size, texels: frame.texels.iter().map(|texel| texel.0[3]).collect() };
     let is_alone = |at: IVec2| (-1..=1).all(|y| (-1..=1).all(|x| amounts.load(at + IVec2::new(x, y)) == 0));
     shrink(frame, tolerance, |at| match i32::from(amounts.load(at)) {
         0 if is_alone(at) => 255,
@@ -25,13 +25,13 @@ pub fn shrink_frame(frame: &mut Picture<Rgba<u8>>, tolerance: u32) {
 
 /// Moves every channel of a detail map's frame by at most `tolerance` of 255, also in clear texels: motion matters
 /// where the smoke moves to.
-pub fn shrink_detail(frame: &mut Picture<Rgba<u8>>, tolerance: u32) {
+pub fn quantise_detail(frame: &mut Image<Rgba<u8>>, tolerance: u32) {
     shrink(frame, tolerance as i32, |_| tolerance as i32);
 }
 
 /// Near-lossless coding as in JPEG-LS, with the predictor of PNG's Paeth filter: a channel takes the predicted value if
 /// that is within tolerance. Clear texels stay clear.
-fn shrink(frame: &mut Picture<Rgba<u8>>, of_amount: i32, of_colour: impl Fn(IVec2) -> i32) {
+fn shrink(frame: &mut Image<Rgba<u8>>, of_amount: i32, of_colour: impl Fn(IVec2) -> i32) {
     for index in 0..frame.texels.len() as u32 {
         let at = UVec2::new(index % frame.size.x, index / frame.size.x).as_ivec2();
         let texel = frame.load(at).0;
@@ -94,9 +94,9 @@ mod tests {
         }
         assert!(moved > 0);
         let mut same = baked.clone();
-        shrink_frame(&mut same, 0);
+        quantise_frame(&mut same, 0);
         assert!(baked.texels.iter().zip(&same.texels).all(|(from, to)| from.0[3] == 0 || from == to));
-        shrink_detail(&mut same, 1);
+        quantise_detail(&mut same, 1);
         let off = |(from, to): (&Rgba<u8>, &Rgba<u8>)| from.0.iter().zip(to.0).all(|(a, b)| a.abs_diff(b) <= 1);
         assert!(
             shrunk.texels != same.texels

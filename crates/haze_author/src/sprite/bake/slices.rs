@@ -9,12 +9,12 @@ use super::cluster::Ball;
 use super::erosion::Erosion;
 use super::frame::BakedFrame;
 use super::march::march;
-use super::moment::{Column, Moment};
+use super::moment::{Column, LoopState};
 use super::recipe::SpriteRecipe;
 use super::voxels::{RUN, Voxels};
 use crate::exact::decay;
 use crate::path_trace::Volume;
-use haze::assets::picture::Picture;
+use haze::assets::image::Image;
 use haze::formula::saturate;
 
 const CLEAR: Rgba<u8> = Rgba([128, 128, 255, 0]);
@@ -54,8 +54,8 @@ impl<'a> Slices<'a> {
     /// Returns the density volume at a time, as a fraction of the loop. The slice nearest to the viewer comes first.
     pub fn volume(&self, time: f32) -> Volume {
         let size = self.recipe.size;
-        let moment = Moment::new(self.recipe, self.voxels, time);
-        let mut volume = Picture::new(UVec2::new(size, size * self.voxels.depth), 0.0);
+        let moment = LoopState::new(self.recipe, self.voxels, time);
+        let mut volume = Image::new(UVec2::new(size, size * self.voxels.depth), 0.0);
         volume.for_bands(|first, band| {
             for (row, line) in (first..).zip(band.chunks_mut(size as usize)) {
                 self.fill(&moment, row % size, row / size, line);
@@ -67,7 +67,7 @@ impl<'a> Slices<'a> {
     pub fn frame(&self, time: f32) -> BakedFrame {
         let size = self.recipe.size;
         let volume = self.volume(time);
-        let mut marched = Picture::new(UVec2::splat(size), (CLEAR, 0.0));
+        let mut marched = Image::new(UVec2::splat(size), (CLEAR, 0.0));
         marched.for_bands(|first, band| {
             for (y, line) in (first..).zip(band.chunks_mut(size as usize)) {
                 march(self.recipe, &volume, y, line);
@@ -76,7 +76,7 @@ impl<'a> Slices<'a> {
         // Texels without visible neighbours all get the same value, which compresses well.
         let is_clear = |at: IVec2| marched.load(at).0.0[3] == 0;
         let is_far = |at: IVec2| is_clear(at) && (-1..=1).all(|y| (-1..=1).all(|x| is_clear(at + IVec2::new(x, y))));
-        let mut texels = Picture::new(marched.size, (CLEAR, 0.0));
+        let mut texels = Image::new(marched.size, (CLEAR, 0.0));
         texels.for_each(|at, texel| {
             if !is_far(at.as_ivec2()) {
                 *texel = marched.load(at.as_ivec2());
@@ -86,7 +86,7 @@ impl<'a> Slices<'a> {
     }
 
     /// Computes the densities of one row of voxels: 0 outside, about 1 inside.
-    fn fill(&self, moment: &Moment, y: u32, z: u32, line: &mut [f32]) {
+    fn fill(&self, moment: &LoopState, y: u32, z: u32, line: &mut [f32]) {
         let recipe = self.recipe;
         let middle = self.voxels.position(UVec3::new(recipe.size / 2, y, z)).with_x(0.0);
         if middle.length_squared() > 1.0 {

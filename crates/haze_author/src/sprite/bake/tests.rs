@@ -3,7 +3,7 @@ use std::path::Path;
 use super::*;
 use crate::exact::tests::hash;
 use haze::assets::json;
-use haze::settings::{Fields as _, path_of, walk};
+use haze::settings::{Fields as _, field_path, for_each_field};
 
 fn puff() -> SpriteRecipe {
     let recipe = include_str!("../../../../../tests/corpus/sprite/good_first");
@@ -104,7 +104,7 @@ fn a_written_recipe_is_read_back_equal() {
 #[test]
 fn every_field_is_listed_once_under_the_headings() {
     let mut fields = Vec::new();
-    walk(&mut puff(), &mut |path, _| fields.push(path_of(path)));
+    for_each_field(&mut puff(), &mut |path, _| fields.push(field_path(path)));
     let mut placed: Vec<_> = puff().headings().iter().map(|(field, _)| (*field).to_owned()).collect();
     fields.sort();
     placed.sort();

@@ -8,8 +8,8 @@ use super::trace::{SixWayMix, TracedSixWay};
 use crate::exact::exp;
 use crate::path_trace::{Medium, PathTrace};
 use crate::sprite::bake::SpriteRecipe;
-use crate::sprite::bake::shrink::shrink_frame;
-use haze::assets::picture::Picture;
+use crate::sprite::bake::shrink::quantise_frame;
+use haze::assets::image::Image;
 use haze::formula::six_way::SixWay;
 
 /// Baked six-way maps, with settings that go with them.
@@ -26,7 +26,7 @@ pub struct BakedSixWay {
 }
 
 /// Fraction of texels that may exceed the light stored as white.
-const BRIGHTER: f32 = 0.002;
+const CLIPPED_FRACTION: f32 = 0.002;
 
 impl SpriteRecipe {
     /// Path-traces every frame filled with a medium; amounts are those of the sprite. Light is traced at half the
@@ -49,20 +49,20 @@ impl SpriteRecipe {
             let volume = filled.volume(frame as f32);
             let traced = TracedSixWay::trace(&volume, medium, &path_trace, mix.as_ref(), |path| progress(frame, path))?;
             let shape = self.bake_frame(frame as f32).picture;
-            let light = along_normals(&traced, &shape);
+            let light = upsample_along_normals(&traced, &shape);
             mix.get_or_insert(traced.mix);
             frames.push((shape, light));
         }
         let white = white(&frames);
         let halves = frames.iter().flat_map(|(shape, light)| {
             [false, true].map(|below| {
-                let mut half = Picture::new(shape.size, Rgba([0; 4]));
+                let mut half = Image::new(shape.size, Rgba([0; 4]));
                 half.for_each(|at, pixel| {
                     let SixWay { positive, negative } = light.load(at.as_ivec2());
                     let alpha = shape.load(at.as_ivec2()).0[3];
                     *pixel = texel(if below { negative } else { positive } / white, alpha);
                 });
-                shrink_frame(&mut half, self.tolerance);
+                quantise_frame(&mut half, self.tolerance);
                 half
             })
         });
@@ -79,13 +79,13 @@ impl SpriteRecipe {
     }
 }
 
-/// Returns the light to store as white: all visible texels except the fraction [`BRIGHTER`] are darker.
-fn white(frames: &[(Picture<Rgba<u8>>, Picture<SixWay>)]) -> f32 {
+/// Returns the light to store as white: all visible texels except the fraction [`CLIPPED_FRACTION`] are darker.
+fn white(frames: &[(Image<Rgba<u8>>, Image<SixWay>)]) -> f32 {
     let seen = frames.iter().flat_map(|(shape, light)| shape.texels.iter().zip(&light.texels));
     let seen = seen.filter(|(texel, _)| texel.0[3] > 25);
     let mut light: Vec<f32> = seen.map(|(_, light)| light.positive.max(light.negative).max_element()).collect();
     light.sort_by(f32::total_cmp);
-    let index = (light.len() as f32 * (1.0 - BRIGHTER)) as usize;
+    let index = (light.len() as f32 * (1.0 - CLIPPED_FRACTION)) as usize;
     light.get(index.min(light.len().saturating_sub(1))).copied().unwrap_or(1.0).max(1.0e-6)
 }
 
@@ -96,10 +96,10 @@ const SLOPE: f32 = 0.35;
 
 /// Upsamples light to the sprite's size with a cross-bilateral filter on normals. It smooths the noise of the path
 /// tracer and preserves the shape.
-fn along_normals(traced: &TracedSixWay, shape: &Picture<Rgba<u8>>) -> Picture<SixWay> {
+fn upsample_along_normals(traced: &TracedSixWay, shape: &Image<Rgba<u8>>) -> Image<SixWay> {
     let (fine, coarse) = (shape.size, traced.light.size);
     let normals = coarse_normals(shape, coarse);
-    let mut light = Picture::new(fine, SixWay::default());
+    let mut light = Image::new(fine, SixWay::default());
     light.for_each(|at, texel| {
         let place = (at.as_vec2() + 0.5) * coarse.as_vec2() / fine.as_vec2() - 0.5;
         let middle = place.round().as_ivec2();
@@ -121,8 +121,8 @@ fn along_normals(traced: &TracedSixWay, shape: &Picture<Rgba<u8>>) -> Picture<Si
     light
 }
 
-fn coarse_normals(shape: &Picture<Rgba<u8>>, size: UVec2) -> Picture<Vec3> {
-    let mut normals = Picture::new(size, Vec3::Z);
+fn coarse_normals(shape: &Image<Rgba<u8>>, size: UVec2) -> Image<Vec3> {
+    let mut normals = Image::new(size, Vec3::Z);
     let scale = shape.size.as_vec2() / size.as_vec2();
     normals.for_each(|at, normal| {
         let [low, high] = [at, at + 1].map(|corner| (corner.as_vec2() * scale).as_ivec2());

@@ -4,17 +4,17 @@ use glam::Vec3;
 
 use crate::exact::direction;
 use crate::path_trace::{Medium, PathTrace, Traced, Volume};
-use haze::assets::picture::Picture;
+use haze::assets::image::Image;
 use haze::formula::colour::luminance;
-use haze::formula::six_way::{SixWay, six_way_shares};
+use haze::formula::six_way::{SixWay, six_way_axis_weights};
 
 /// Six-way light of a puff of a medium.
 #[derive(Clone, Debug)]
 pub struct TracedSixWay {
     /// Luminance at full coverage, relative to white paper that faces the light.
-    pub light: Picture<SixWay>,
+    pub light: Image<SixWay>,
     /// Coverage: the fraction of the background that is hidden.
-    pub coverage: Picture<f32>,
+    pub coverage: Image<f32>,
     /// Mix and colour of the six images.
     pub mix: SixWayMix,
 }
@@ -44,7 +44,7 @@ impl TracedSixWay {
         let lights = lights();
         let traced = path_trace.run(volume, medium, &lights, progress)?;
         let mix = mix.cloned().unwrap_or_else(|| SixWayMix::new(&lights, &traced));
-        let mut light = Picture::new(traced.coverage.size, SixWay::default());
+        let mut light = Image::new(traced.coverage.size, SixWay::default());
         light.for_each(|at, texel| {
             let index = (at.y * traced.coverage.size.x + at.x) as usize;
             let coverage = traced.coverage.texels[index].max(1.0e-3);
@@ -106,7 +106,7 @@ impl Fit {
     fn new(lights: &[Vec3], brightness: &[f64], anisotropy: f32) -> Self {
         let terms = |way: &Vec3| {
             let mut terms = [0.0; 6];
-            for (axis, share) in six_way_shares(*way, anisotropy).to_array().into_iter().enumerate() {
+            for (axis, share) in six_way_axis_weights(*way, anisotropy).to_array().into_iter().enumerate() {
                 terms[axis + 3 * usize::from(way[axis] <= 0.0)] = f64::from(share);
             }
             terms

@@ -35,7 +35,7 @@ fn shot(folder: &Path) -> PathBuf {
 fn a_change_modifies_one_line_of_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let mut document = Document::open(Path::new("column")).unwrap();
-    assert!(document.is_built_in() && !document.is_dirty() && document.files(&PictureFolders::default()).is_empty());
+    assert!(document.is_built_in() && !document.is_dirty() && document.files(&AssetFolders::default()).is_empty());
     let refused = document.save().unwrap_err().to_string();
     assert_eq!(refused, "save: column is not valid; expected another name: this preset is built in");
     let refused = document.save_as(&folder.path().join("shot")).unwrap_err().to_string();
@@ -159,7 +159,7 @@ fn images_are_copied_to_another_folder_on_save() {
     document.preset.systems[0].material.diffuse_ramp = "ramps/own.png".into();
     document.preset.systems[0].material.motif = "missing.png".into();
     assert_eq!(
-        document.files(&PictureFolders::at(&old)),
+        document.files(&AssetFolders::at(&old)),
         ["shot.json", "ramps/own.png", "missing.png"].map(|name| old.join(name))
     );
     fs::copy("ramps/diffuse_soft.png", old.join("ramps/own.png")).unwrap();

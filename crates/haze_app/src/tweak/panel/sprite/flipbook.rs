@@ -6,7 +6,7 @@ use haze::{MaterialAssets, Settings};
 use crate::tweak::angles::{Angles, STEEPEST, from_angles};
 use crate::tweak::icon::{self, Icon};
 use crate::tweak::sprite::draw::{Painted, View};
-use crate::tweak::sprite::look::{SHOWN, Shown, SpriteLook};
+use crate::tweak::sprite::look::{SHOWN, Shown, SpriteView};
 
 /// Largest side of the image in points and in pixels. The image is small, because the CPU draws it.
 const SIDE: f32 = 300.0;
@@ -20,7 +20,7 @@ const DRAG: f32 = 0.6;
 /// Draws the flipbook with its controls.
 pub fn panel(
     ui: &mut Ui,
-    (look, painted): (&mut SpriteLook, &mut Option<Painted>),
+    (look, painted): (&mut SpriteView, &mut Option<Painted>),
     material: &MaterialAssets,
     settings: &Settings,
 ) {
@@ -50,7 +50,7 @@ pub fn panel(
 
 fn picture(
     ui: &mut Ui,
-    (look, painted): (&mut SpriteLook, &mut Option<Painted>),
+    (look, painted): (&mut SpriteView, &mut Option<Painted>),
     side: f32,
     material: &MaterialAssets,
     settings: &Settings,
@@ -85,7 +85,7 @@ fn picture(
     response.on_hover_text("Drag to move the light around it");
 }
 
-fn time(ui: &mut Ui, look: &mut SpriteLook, count: u32) {
+fn time(ui: &mut Ui, look: &mut SpriteView, count: u32) {
     ui.horizontal(|ui| {
         let (sign, name) =
             if look.is_playing { (Icon::Pause, "Pause the flipbook") } else { (Icon::Play, "Play the flipbook") };
@@ -105,7 +105,7 @@ fn time(ui: &mut Ui, look: &mut SpriteLook, count: u32) {
     });
 }
 
-fn light(ui: &mut Ui, look: &mut SpriteLook) {
+fn light(ui: &mut Ui, look: &mut SpriteView) {
     ui.horizontal(|ui| {
         let angle =
             |value, most: f32| egui::DragValue::new(value).range(-most..=most).speed(1.0).max_decimals(1).suffix("°");

@@ -13,7 +13,7 @@ use haze_author::preset::Tooltips;
 use haze_author::sprite::bake::SpriteRecipe;
 
 use crate::tweak::messages::short;
-use crate::tweak::panel::fields::{self, Desk};
+use crate::tweak::panel::fields::{self, RowContext};
 use crate::tweak::platform::clock::Duration;
 use crate::tweak::session::Session;
 use crate::tweak::sprite::files::set_recipe;
@@ -104,11 +104,11 @@ fn templates(ui: &mut Ui, session: &mut Session) {
 
 /// Draws the fields of a recipe by its table. `locked`: the reason why none can be changed.
 fn rows(ui: &mut Ui, session: &mut Session, name: &str, recipe: &SpriteRecipe, locked: Option<&'static str>) {
-    let (mut edited, mut within) = (recipe.clone(), Within::default());
+    let (mut edited, mut within) = (recipe.clone(), RangeClamp::default());
     edited.visit(&mut within);
     let inert = |path: &str| locked.or(within.zero.contains(path).then_some("recipe version 1 does not support it"));
     let (unchanged, asked) = (HashSet::new(), Vec::new());
-    let mut desk = Desk {
+    let mut desk = RowContext {
         tooltips: &TOOLTIPS,
         thumbnails: &session.thumbnails,
         changed: &unchanged,
@@ -131,7 +131,7 @@ fn rows(ui: &mut Ui, session: &mut Session, name: &str, recipe: &SpriteRecipe, l
     fields::show(ui, &mut desk, &[], &mut edited);
     let refused = desk.refused;
     // Ranges may depend on the values that were changed.
-    edited.visit(&mut Within::default());
+    edited.visit(&mut RangeClamp::default());
     if edited != *recipe {
         set_recipe(&mut session.document, name, edited);
         session.messages.withdraw("sprite");
@@ -143,11 +143,11 @@ fn rows(ui: &mut Ui, session: &mut Session, name: &str, recipe: &SpriteRecipe, l
 
 /// Clamps numbers to their ranges, and records those whose range is 0 only.
 #[derive(Default)]
-struct Within {
+struct RangeClamp {
     zero: HashSet<&'static str>,
 }
 
-impl Within {
+impl RangeClamp {
     fn see<T: PartialOrd + Copy + Default>(&mut self, name: &'static str, value: &mut T, range: &RangeInclusive<T>) {
         if *range.end() <= T::default() {
             self.zero.insert(name);
@@ -161,7 +161,7 @@ impl Within {
     }
 }
 
-impl FieldVisitor for Within {
+impl FieldVisitor for RangeClamp {
     fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, _: &'static str) {
         self.see(name, value, &range);
     }

@@ -1,0 +1,178 @@
+//! CPU ray caster for the demo scene: renders the same colour and depth as the GPU.
+
+use glam::{Mat4, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
+
+use super::boxes::{SceneBox, Surface, box_interval};
+use super::occluders::{Boxes, indices};
+use super::scene::Scene;
+use super::shading::albedo;
+use haze::assets::image::Image;
+use haze::frame::View;
+
+/// Renders linear colour with four samples per pixel, and depth 0..1 at pixel centres.
+pub(crate) fn render(scene: &Scene, view: &View) -> (Image<Vec4>, Image<f32>) {
+    let caster = RayCaster {
+        scene,
+        size: view.size.as_vec2(),
+        clip_from_world: view.clip_from_view * view.view_from_world,
+        world_from_clip: (view.clip_from_view * view.view_from_world).inverse(),
+        eye: view.view_from_world.inverse().transform_point3(Vec3::ZERO),
+        tiles: boxes_by_tile(&scene.boxes, &(view.clip_from_view * view.view_from_world), view.size),
+    };
+    let mut colour = Image::new(view.size, Vec4::ZERO);
+    colour.for_each(|at, texel| *texel = caster.colour(at).extend(1.0));
+    let mut depth = Image::new(view.size, 1.0);
+    depth.for_each(|at, texel| *texel = caster.depth(at));
+    (colour, depth)
+}
+
+struct RayCaster<'a> {
+    scene: &'a Scene,
+    size: Vec2,
+    clip_from_world: Mat4,
+    world_from_clip: Mat4,
+    eye: Vec3,
+    /// Boxes that may be visible in each tile of the image.
+    tiles: Image<Boxes>,
+}
+
+/// Side of a tile, pixels.
+const TILE: u32 = 16;
+
+fn boxes_by_tile(boxes: &[SceneBox], clip_from_world: &Mat4, size: UVec2) -> Image<Boxes> {
+    let tiles = UVec2::new(size.x.div_ceil(TILE), size.y.div_ceil(TILE));
+    let mut seen = Image::new(tiles, [0; 4]);
+    for (index, b) in boxes.iter().enumerate() {
+        let corners = (0..8).map(|corner| {
+            let side = |bit: u32| if corner & bit == 0 { -1.0 } else { 1.0 };
+            let world = b.centre + b.to_world(Vec3::new(side(1), side(2), side(4)) * b.half_size);
+            let clip = *clip_from_world * world.extend(1.0);
+            let ndc = clip.xy() / clip.w;
+            // A corner at or behind the eye has no projection: the box may cover any pixel.
+            let is_ahead = clip.w > 1.0e-3;
+            is_ahead.then(|| Vec2::new(ndc.x * 0.5 + 0.5, 0.5 - ndc.y * 0.5) * size.as_vec2())
+        });
+        let corners: Option<Vec<_>> = corners.collect();
+        let (min, max) = corners.map_or((Vec2::NEG_INFINITY, Vec2::INFINITY), |corners| {
+            corners.iter().fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(min, max), &p| (min.min(p), max.max(p)))
+        });
+        // One more pixel on every side, for rounding.
+        let first = ((min - 1.0) / TILE as f32).clamp(Vec2::ZERO, tiles.as_vec2()).as_uvec2();
+        let last = ((max + 1.0) / TILE as f32).ceil().clamp(Vec2::ZERO, tiles.as_vec2()).as_uvec2();
+        for y in first.y..last.y {
+            for x in first.x..last.x {
+                seen.texels[(y * tiles.x + x) as usize][index / 32] |= 1 << (index % 32);
+            }
+        }
+    }
+    seen
+}
+
+/// Intersection of a ray with the scene.
+struct Hit<'a> {
+    surface: &'a SceneBox,
+    world: Vec3,
+    local: Vec3,
+    local_normal: Vec3,
+}
+
+impl Hit<'_> {
+    fn is_on_same_face(&self, other: &Self) -> bool {
+        std::ptr::eq(self.surface, other.surface) && self.local_normal == other.local_normal
+    }
+}
+
+impl RayCaster<'_> {
+    /// Returns the offset from the eye to a pixel's point on the near plane (0) or the far plane (1).
+    fn on_plane(&self, pixel: Vec2, ndc_depth: f32) -> Vec3 {
+        let uv = pixel / self.size;
+        let place = self.world_from_clip * Vec4::new(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0, ndc_depth, 1.0);
+        place.xyz() / place.w - self.eye
+    }
+
+    fn direction(&self, pixel: Vec2) -> Vec3 {
+        self.on_plane(pixel, 1.0).normalize()
+    }
+
+    /// Returns the first hit between the near and the far plane, for a position in the image in pixels.
+    fn hit(&self, pixel: Vec2) -> Option<Hit<'_>> {
+        let at = pixel.as_uvec2();
+        let (near, far) = (self.on_plane(pixel, 0.0), self.on_plane(pixel, 1.0));
+        let (direction, seen) = (far.normalize(), near.length()..=far.length());
+        let mut nearest = f32::INFINITY;
+        let mut hit = None;
+        let boxes = &self.scene.boxes;
+        for b in indices(self.tiles.load((at / TILE).as_ivec2()), boxes.len()).map(|index| &boxes[index]) {
+            let (origin, local) = (b.to_local(self.eye - b.centre), b.to_local(direction));
+            let (enter, leave) = box_interval(b, origin, local);
+            if enter >= leave {
+                continue;
+            }
+            // If the near plane cuts a box open, its far side is visible.
+            let distance = [enter, leave].into_iter().find(|distance| seen.contains(distance));
+            if let Some(distance) = distance.filter(|distance| *distance < nearest) {
+                nearest = distance;
+                hit = Some((b, origin + local * distance));
+            }
+        }
+        let (surface, local) = hit?;
+        // Finds the face on which the point lies.
+        let depth = (local.abs() - surface.half_size).to_array();
+        let axis = if depth[0] >= depth[1] && depth[0] >= depth[2] {
+            Vec3::X
+        } else if depth[1] >= depth[2] {
+            Vec3::Y
+        } else {
+            Vec3::Z
+        };
+        let local_normal = axis * local.dot(axis).signum();
+        Some(Hit { surface, world: self.eye + direction * nearest, local, local_normal })
+    }
+
+    /// Averages four samples, weighted so that a single bright sample does not dominate an edge. Light is evaluated per
+    /// sample if they lie on different faces, otherwise once at the pixel's centre.
+    fn colour(&self, at: UVec2) -> Vec3 {
+        const OFFSETS: [Vec2; 4] =
+            [Vec2::new(0.25, 0.25), Vec2::new(0.75, 0.25), Vec2::new(0.25, 0.75), Vec2::new(0.75, 0.75)];
+        let directions = OFFSETS.map(|offset| self.direction(at.as_vec2() + offset));
+        let hits = OFFSETS.map(|offset| self.hit(at.as_vec2() + offset));
+        let is_one = hits[1..].iter().all(|hit| match (hit, &hits[0]) {
+            (Some(hit), Some(first)) => hit.is_on_same_face(first),
+            (None, None) => true,
+            _ => false,
+        });
+        let centre = self.direction(at.as_vec2() + 0.5);
+        let pixel_angle = (self.direction(at.as_vec2() + Vec2::new(0.5, 1.5)) - centre).length();
+        let middle = is_one.then(|| self.light(&hits[0], centre, pixel_angle));
+        let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
+        for (hit, direction) in hits.iter().zip(directions) {
+            let reflectance =
+                hit.as_ref().map_or(Vec3::ONE, |hit| albedo(hit.surface, hit.local, hit.local_normal, hit.world));
+            let colour = reflectance * middle.unwrap_or_else(|| self.light(hit, direction, pixel_angle));
+            let weight = 1.0 / (1.0 + colour.max_element());
+            sum += colour * weight;
+            weights += weight;
+        }
+        sum / weights
+    }
+
+    /// Returns the light at the point where the ray meets the plane of the face that was hit; the sky's radiance
+    /// without a hit.
+    fn light(&self, hit: &Option<Hit<'_>>, direction: Vec3, pixel_angle: f32) -> Vec3 {
+        let Some(Hit { surface: b, local_normal: normal, .. }) = hit else { return self.scene.sky(direction) };
+        if b.surface == Surface::Glow as u32 {
+            return Vec3::ONE;
+        }
+        let origin = b.to_local(self.eye - b.centre);
+        let distance = (normal.abs().dot(b.half_size) - normal.dot(origin)) / normal.dot(b.to_local(direction));
+        let normal = b.to_world(*normal);
+        let pixel = pixel_angle * distance / (-direction.dot(normal)).max(1.0e-3);
+        self.scene.irradiance(self.eye + direction * distance, normal, pixel)
+    }
+
+    fn depth(&self, at: UVec2) -> f32 {
+        let Some(hit) = self.hit(at.as_vec2() + 0.5) else { return 1.0 };
+        let clip = self.clip_from_world * hit.world.extend(1.0);
+        (clip.z / clip.w).clamp(0.0, 1.0)
+    }
+}

@@ -1,0 +1,166 @@
+//! Tonemapping from linear HDR to sRGB: on the CPU for files, on the GPU for windows. Only the demo program tonemaps;
+//! the library never changes a host's colours.
+
+use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
+use image::RgbImage;
+
+use super::shot::Shot;
+use haze::assets::image::Image;
+use haze::formula::tonemap::{dither, tonemapped};
+use haze::shader;
+
+/// Converts a rendered shot to 8-bit sRGB with dithering: exposure and the ACES curve for colours, unchanged values for
+/// data.
+pub fn tonemap(picture: &Image<Vec4>, shot: &Shot) -> RgbImage {
+    let exposure = exposure(shot);
+    let mut rounded = Image::new(picture.size, [0_u8; 3]);
+    rounded.for_each(|at, out| {
+        let colour = picture.load(at.as_ivec2()).xyz();
+        *out = quantise(if exposure == 0.0 { colour } else { tonemapped(colour, exposure) }, at);
+    });
+    // Never the default: there is one texel per pixel.
+    RgbImage::from_raw(picture.size.x, picture.size.y, rounded.texels.into_flattened()).unwrap_or_default()
+}
+
+/// Returns the exposure factor of a shot; 0 if its debug view shows data.
+pub fn exposure(shot: &Shot) -> f32 {
+    if shot.debug_view.is_data() { 0.0 } else { shot.preset.camera.exposure.exp2() }
+}
+
+/// Dithers and rounds to 8 bits.
+fn quantise(encoded: Vec3, at: UVec2) -> [u8; 3] {
+    // With the added 0.5 the cast rounds; it also clamps.
+    ((encoded + dither(at)) * 255.0 + 0.5).to_array().map(|channel| channel as u8)
+}
+
+/// Pass that tonemaps images to targets of one format, as [`tonemap`] does on the CPU.
+#[derive(Debug)]
+pub struct TonemapPass {
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::RenderPipeline,
+    sampler: wgpu::Sampler,
+}
+
+/// Uniforms of the pass. `Develop` in tonemap_pass.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct TonemapUniform {
+    /// Upper left corner in the target, pixels.
+    pub origin: Vec2,
+    /// Size in the target, pixels. Images are stretched to it.
+    pub size: Vec2,
+    /// [`exposure`] of the first and the second image.
+    pub exposure: Vec2,
+    /// Distance from the left, pixels, from which on the second image is shown.
+    pub split: f32,
+    /// Factor on the difference of the two images in sRGB code. 0 shows the images instead.
+    pub difference: f32,
+}
+
+/// Bind group of two images.
+#[derive(Debug)]
+pub struct TonemapBindGroup {
+    buffer: wgpu::Buffer,
+    group: wgpu::BindGroup,
+}
+
+impl TonemapPass {
+    /// Creates the pass. `format` must store sRGB codes without conversion, so it must not end in `Srgb`.
+    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
+        // Cannot fail: the source is embedded, and tests compose it.
+        let source = shader::compose(include_str!("tonemap_pass.wgsl")).unwrap_or_default();
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("develop"),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
+        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty,
+            count: None,
+        };
+        let texture = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let uniform = wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        };
+        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("develop"),
+            entries: &[entry(0, uniform), entry(1, texture), entry(2, texture), entry(3, sampler)],
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("develop"),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("develop"),
+            layout: Some(&pipeline_layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vertex"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("fragment"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &[Some(format.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("develop"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        Self { layout, pipeline, sampler }
+    }
+
+    /// Binds two images; pass a single image twice.
+    pub fn bind(&self, device: &wgpu::Device, first: &wgpu::Texture, second: &wgpu::Texture) -> TonemapBindGroup {
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("develop"),
+            size: size_of::<TonemapUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let [first, second] =
+            [first, second].map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("develop"),
+            layout: &self.layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&first) },
+                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(&second) },
+                wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::Sampler(&self.sampler) },
+            ],
+        });
+        TonemapBindGroup { buffer, group }
+    }
+
+    /// Writes the uniforms for the next submission.
+    pub fn prepare(&self, queue: &wgpu::Queue, tonemap_bindings: &TonemapBindGroup, shown: &TonemapUniform) {
+        queue.write_buffer(&tonemap_bindings.buffer, 0, bytemuck::bytes_of(shown));
+    }
+
+    /// Draws within the current viewport and scissor rectangle.
+    pub fn record(&self, pass: &mut wgpu::RenderPass<'_>, tonemap_bindings: &TonemapBindGroup) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &tonemap_bindings.group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}

@@ -1,0 +1,192 @@
+//! Decodes PNGs of colours and converts them to sRGB by the file's colour tags.
+
+use std::path::Path;
+
+use glam::{DMat3, DVec2, DVec3, Vec3};
+use image::{DynamicImage, ImageBuffer, Rgba};
+
+use super::chunks::{ColourTags, colour_tags};
+use super::png::{MAX_BYTES, decode_with_profile, is_png};
+use super::profile::is_srgb;
+use crate::assets::file;
+use crate::error::{Error, name};
+use crate::formula::colour::{linear_from_srgb, srgb_from_linear};
+
+/// Decodes a PNG of colours, such as a ramp or a motif. The result is sRGB and opaque.
+///
+/// Of several tags the first of cICP, iCCP, sRGB, gAMA with cHRM applies (PNG 3, 4.3); without tags the image is sRGB.
+/// cICP may have the primaries of sRGB, Display P3 or BT.2020 and the transfer function sRGB, linear, 2.2 or 2.8. cHRM
+/// may have any primaries with white point D65. An ICC profile must be sRGB. Colours outside sRGB are clamped.
+/// Transparent pixels are composited over black in linear light.
+///
+/// # Errors
+/// As [`decode_png`](super::decode_png), and [`Error::Image`] for an unsupported colour space.
+pub fn decode_colour_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Error> {
+    let tags = colour_tags(bytes).unwrap_or_default();
+    let space = |profile: Option<&[u8]>| {
+        tags.space(profile).map_err(|found| {
+            let reason = format!("{found}; expected sRGB: convert the picture to sRGB when exporting it");
+            Error::Image { path: path.into(), reason }
+        })
+    };
+    // The decoder reports some code points as a damaged file, so they are checked first.
+    if is_png(bytes) && tags.cicp.is_some() {
+        space(None)?;
+    }
+    let (picture, profile) = decode_with_profile(path, bytes)?;
+    let space = space(profile.as_deref())?;
+    Ok(space.to_srgb(picture))
+}
+
+/// Reads and decodes a PNG file of colours.
+///
+/// # Errors
+/// [`Error::Io`] if the file cannot be read or is larger than 64 MiB, otherwise as [`decode_colour_png`].
+pub fn read_colour_png(path: &Path) -> Result<DynamicImage, Error> {
+    decode_colour_png(path, &file::read(path, "PNG file", MAX_BYTES)?)
+}
+
+/// Returns notes about the conversions that [`decode_colour_png`] applies to a file, or why it refuses the file. Empty
+/// for an opaque sRGB image.
+///
+/// # Errors
+/// As [`read_colour_png`], except that an unsupported colour space is a note.
+pub fn colour_conversion_notes(path: &Path) -> Result<Vec<String>, Error> {
+    let bytes = file::read(path, "PNG file", MAX_BYTES)?;
+    let (picture, profile) = decode_with_profile(path, &bytes)?;
+    let mut notes = Vec::new();
+    match colour_tags(&bytes).unwrap_or_default().space(profile.as_deref()) {
+        Err(found) => notes.push(format!("{found}; expected sRGB: it is refused")),
+        Ok(space) => {
+            if let Transfer::Power(power) = space.transfer {
+                notes.push(format!("gamma {power:.2}; expected sRGB: it is converted"));
+            }
+            if space.srgb_from_linear.is_some() {
+                notes.push("primaries of another colour space; expected sRGB: colours outside sRGB are clamped".into());
+            }
+        }
+    }
+    if !is_opaque(&picture) {
+        notes.push("transparent texels; expected opaque ones: they are composited over black".into());
+    }
+    Ok(notes)
+}
+
+fn is_opaque(picture: &DynamicImage) -> bool {
+    !picture.color().has_alpha() || picture.to_rgba16().pixels().all(|pixel| pixel.0[3] == u16::MAX)
+}
+
+/// Conversion from an image's code values to linear light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Space {
+    transfer: Transfer,
+    /// Matrix from the image's primaries to linear sRGB; `None` for sRGB primaries.
+    srgb_from_linear: Option<DMat3>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Transfer {
+    Srgb,
+    /// Light = code ^ power.
+    Power(f32),
+}
+
+/// xy chromaticities of white, red, green and blue.
+type Primaries = [[f64; 2]; 4];
+
+const D65: [f64; 2] = [0.3127, 0.329];
+const SRGB: Primaries = [D65, [0.64, 0.33], [0.3, 0.6], [0.15, 0.06]];
+const DISPLAY_P3: Primaries = [D65, [0.68, 0.32], [0.265, 0.69], [0.15, 0.06]];
+const BT2020: Primaries = [D65, [0.708, 0.292], [0.17, 0.797], [0.131, 0.046]];
+
+impl ColourTags {
+    /// Returns the colour space of the tags. The error describes an unsupported one.
+    fn space(&self, profile: Option<&[u8]>) -> Result<Space, String> {
+        let srgb = Space { transfer: Transfer::Srgb, srgb_from_linear: None };
+        if let Some(code @ [primaries, transfer, matrix, full]) = self.cicp {
+            let [a, b, c, d] = code;
+            let found = || format!("colours of the cICP code points {a}-{b}-{c}-{d}");
+            let primaries = match primaries {
+                1 => SRGB,
+                9 => BT2020,
+                12 => DISPLAY_P3,
+                _ => return Err(found()),
+            };
+            let transfer = match transfer {
+                4 => Transfer::Power(2.2),
+                5 => Transfer::Power(2.8),
+                8 => Transfer::Power(1.0),
+                13 => Transfer::Srgb,
+                _ => return Err(found()),
+            };
+            if (matrix, full) != (0, 1) {
+                return Err(found());
+            }
+            return Ok(Space { transfer, srgb_from_linear: from_primaries(primaries)? });
+        }
+        if let Some(profile_name) = &self.profile {
+            let found = || format!("the colour profile \"{}\"", name(Path::new(profile_name)));
+            return if profile.is_some_and(is_srgb) { Ok(srgb) } else { Err(found()) };
+        }
+        if self.srgb {
+            return Ok(srgb);
+        }
+        // An exponent of 0 is invalid and ignored.
+        let power = |&gamma: &u32| (gamma > 0).then(|| Transfer::Power(100_000.0 / gamma as f32));
+        let transfer = self.gamma.as_ref().and_then(power).unwrap_or(Transfer::Srgb);
+        let primaries = self.primaries.map(|primaries| primaries.map(|place| place.map(|x| f64::from(x) / 100_000.0)));
+        Ok(Space { transfer, srgb_from_linear: from_primaries(primaries.unwrap_or(SRGB))? })
+    }
+}
+
+/// Returns the matrix from linear light of these primaries to linear sRGB; `None` for sRGB primaries.
+fn from_primaries(primaries: Primaries) -> Result<Option<DMat3>, String> {
+    let far = |(a, b): (&[f64; 2], &[f64; 2])| (DVec2::from(*a) - DVec2::from(*b)).abs().max_element() > 0.002;
+    if far((&primaries[0], &D65)) {
+        return Err(format!("colours with the white point {}, {}", primaries[0][0], primaries[0][1]));
+    }
+    if !primaries.iter().zip(&SRGB).any(far) {
+        return Ok(None);
+    }
+    let matrix = xyz_from_linear(SRGB).inverse() * xyz_from_linear(primaries);
+    if matrix.is_finite() { Ok(Some(matrix)) } else { Err("degenerate primaries".into()) }
+}
+
+fn xyz_from_linear([white, red, green, blue]: Primaries) -> DMat3 {
+    let xyz = |[x, y]: [f64; 2]| DVec3::new(x / y, 1.0, (1.0 - x - y) / y);
+    let columns = DMat3::from_cols(xyz(red), xyz(green), xyz(blue));
+    columns * DMat3::from_diagonal(columns.inverse() * xyz(white))
+}
+
+impl Space {
+    fn to_srgb(self, picture: DynamicImage) -> DynamicImage {
+        let is_srgb = self.transfer == Transfer::Srgb && self.srgb_from_linear.is_none();
+        if is_srgb && is_opaque(&picture) {
+            return picture;
+        }
+        let light = |code: u16| {
+            let code = f32::from(code) / 65535.0;
+            match self.transfer {
+                Transfer::Srgb => linear_from_srgb(code),
+                Transfer::Power(power) => code.powf(power),
+            }
+        };
+        let lights: Vec<_> = (0..=u16::MAX).map(light).collect();
+        let picture = picture.into_rgba16();
+        let texel = |pixel: &Rgba<u16>| {
+            let [r, g, b, a] = pixel.0;
+            let mut light = Vec3::from([r, g, b].map(|code| lights[usize::from(code)]));
+            if let Some(matrix) = self.srgb_from_linear {
+                light = (matrix * light.as_dvec3()).as_vec3();
+            }
+            let light = light.clamp(Vec3::ZERO, Vec3::ONE) * (f32::from(a) / 65535.0);
+            light.to_array().map(|light| (srgb_from_linear(light) * 65535.0).round() as u16)
+        };
+        let texels = picture.pixels().flat_map(texel).collect();
+        ImageBuffer::from_raw(picture.width(), picture.height(), texels)
+            .map_or_else(DynamicImage::default, DynamicImage::ImageRgb16)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,69 @@
+//! Images in memory with parallel iteration over rows, and reading and writing of PNG files.
+
+mod chunks;
+mod colour_space;
+mod file;
+mod png;
+mod profile;
+
+pub use colour_space::{colour_conversion_notes, decode_colour_png, read_colour_png};
+pub use file::{FileIdentity, check_file, write_file};
+pub use png::is_png;
+pub use png::{CompressionEffort, MAX_BYTES, MAX_SIDE, decode_png, read_png, write_png};
+
+use glam::{IVec2, UVec2, Vec3, Vec4};
+
+use crate::assets::threads::{parallel_for_each, threads};
+use crate::formula::texture::Texture2d;
+
+/// A 2D image, row by row from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image<T> {
+    /// Width and height.
+    pub size: UVec2,
+    /// `size.x * size.y` texels.
+    pub texels: Vec<T>,
+}
+
+impl<T: Copy + Send> Image<T> {
+    /// Creates an image filled with `texel`.
+    pub fn new(size: UVec2, texel: T) -> Self {
+        Self { size, texels: vec![texel; (size.x * size.y) as usize] }
+    }
+
+    /// Returns the texel at a position. Positions outside are clamped to the border.
+    pub fn load(&self, at: IVec2) -> T {
+        let at = at.clamp(IVec2::ZERO, self.size.as_ivec2() - 1).as_uvec2();
+        self.texels[(at.y * self.size.x + at.x) as usize]
+    }
+
+    /// Calls `f(first_row, rows)` for bands of rows, on all processors.
+    pub fn for_bands(&mut self, f: impl Fn(u32, &mut [T]) + Sync) {
+        let width = self.size.x as usize;
+        // More bands than threads, since smoke is rarely distributed evenly.
+        let rows = (self.size.y as usize).div_ceil(threads() * 4).max(1);
+        parallel_for_each(self.texels.chunks_mut(rows * width).enumerate(), |(index, band)| {
+            f((index * rows) as u32, band);
+        });
+    }
+
+    /// Calls `f(position, texel)` for every texel, on all processors.
+    pub fn for_each(&mut self, f: impl Fn(UVec2, &mut T) + Sync) {
+        let width = self.size.x;
+        self.for_bands(|first_row, band| {
+            for (index, texel) in (0u32..).zip(band.iter_mut()) {
+                f(UVec2::new(index % width, first_row + index / width), texel);
+            }
+        });
+    }
+}
+
+impl Texture2d for Image<Vec3> {
+    fn dimensions(&self) -> UVec2 {
+        self.size
+    }
+
+    fn load(&self, at: UVec2) -> Vec4 {
+        self.texels[(at.y * self.size.x + at.x) as usize].extend(1.0)
+    }
+}

@@ -1,0 +1,170 @@
+//! Reads and writes PNG files, with size limits for files from users.
+
+use std::io::{Cursor, ErrorKind};
+use std::path::Path;
+
+use image::codecs::png::{CompressionType, FilterType, PngDecoder, PngEncoder};
+use image::{DynamicImage, ImageDecoder as _, ImageError, Limits};
+
+use super::chunks::colour_tags;
+use super::file::write_file;
+use crate::assets::file;
+use crate::assets::threads::parallel_for_each;
+use crate::error::Error;
+
+/// Maximum side of an image, pixels.
+pub const MAX_SIDE: u32 = 4096;
+/// Maximum size of a PNG file, and of its decoded pixels, bytes.
+pub const MAX_BYTES: u64 = 64 << 20;
+
+/// Three times as fast as the best compression, for files 3 % larger.
+const SMALL: CompressionType = CompressionType::Level(6);
+
+const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
+
+/// True if the data begins with the PNG signature.
+pub fn is_png(bytes: &[u8]) -> bool {
+    bytes.starts_with(SIGNATURE)
+}
+
+/// Decodes a PNG in memory. `path` is used only in errors.
+///
+/// # Errors
+/// [`Error::Image`] if the data is damaged, not a PNG, larger than 4096 pixels per side, or larger than 64 MiB when
+/// decoded.
+pub fn decode_png(path: &Path, bytes: &[u8]) -> Result<DynamicImage, Error> {
+    decode_with_profile(path, bytes).map(|(picture, _)| picture)
+}
+
+/// Decodes a PNG and returns the image with its ICC profile.
+pub(super) fn decode_with_profile(path: &Path, bytes: &[u8]) -> Result<(DynamicImage, Option<Vec<u8>>), Error> {
+    let refuse = |reason: String| Err(Error::Image { path: path.into(), reason });
+    if !is_png(bytes) {
+        return refuse("not a PNG file; export it as PNG".into());
+    }
+    // The first chunk is the header, which begins with width and height.
+    let side = |at: usize| bytes.get(at..at + 4).and_then(|side| side.try_into().ok()).map(u32::from_be_bytes);
+    let (Some(width), Some(height)) = (side(16), side(20)) else { return refuse(broken(None)) };
+    if width.max(height) > MAX_SIDE {
+        return refuse(format!("{width}x{height} pixels; expected at most {MAX_SIDE}x{MAX_SIDE}"));
+    }
+    if colour_tags(bytes).is_none() {
+        return refuse(broken(None));
+    }
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(MAX_BYTES);
+    let mut decoder = match PngDecoder::with_limits(Cursor::new(bytes), limits) {
+        Ok(decoder) => decoder,
+        Err(error) => return refuse(broken(Some(&error))),
+    };
+    // The decoder's own limit does not count the decoded image.
+    let (decoded, most) = (decoder.total_bytes(), MAX_BYTES >> 20);
+    if decoded > MAX_BYTES {
+        let texel = decoded / (u64::from(width) * u64::from(height));
+        return refuse(format!(
+            "{} MiB in memory, {width}x{height} pixels of {texel} bytes; expected at most {most} MiB",
+            decoded >> 20
+        ));
+    }
+    // A profile that cannot be decoded is ignored.
+    let profile = decoder.icc_profile().unwrap_or_default();
+    match DynamicImage::from_decoder(decoder) {
+        Ok(picture) => Ok((picture, profile)),
+        Err(error) => refuse(broken(Some(&error))),
+    }
+}
+
+/// Returns a message about a damaged PNG. The decoder's own messages assume knowledge of its code.
+fn broken(error: Option<&ImageError>) -> String {
+    let most = MAX_BYTES >> 20;
+    match error {
+        None => "the file ends too early; expected a whole PNG".into(),
+        Some(ImageError::IoError(error)) if error.kind() == ErrorKind::UnexpectedEof => broken(None),
+        Some(ImageError::Limits(_)) => format!("it takes more than {most} MiB to decode; expected a smaller PNG"),
+        Some(_) => "a damaged PNG; expected one that other programs can open: export it again".into(),
+    }
+}
+
+/// Reads and decodes a PNG file.
+///
+/// # Errors
+/// [`Error::Io`] if the file cannot be read or is larger than 64 MiB, otherwise as [`decode_png`].
+pub fn read_png(path: &Path) -> Result<DynamicImage, Error> {
+    decode_png(path, &file::read(path, "PNG file", MAX_BYTES)?)
+}
+
+/// Compression effort.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CompressionEffort {
+    /// Fifteen times as fast as [`CompressionEffort::Small`], for files 1.5 times as large.
+    #[default]
+    Quick,
+    /// Small files, for images that are kept or shipped.
+    Small,
+}
+
+/// Writes a PNG as [`write_file`] does.
+///
+/// # Errors
+/// [`Error::Io`] if the file cannot be written.
+pub fn write_png(path: &Path, picture: &DynamicImage, effort: CompressionEffort) -> Result<(), Error> {
+    let encoded = |compression, filter| -> Result<Vec<u8>, Error> {
+        let mut bytes = Vec::new();
+        let encoder = PngEncoder::new_with_quality(&mut bytes, compression, filter);
+        let io = |error| Error::Io { path: path.into(), error: std::io::Error::other::<ImageError>(error) };
+        picture.write_with_encoder(encoder).map_err(io)?;
+        Ok(bytes)
+    };
+    let bytes = match effort {
+        CompressionEffort::Quick => encoded(CompressionType::Fast, FilterType::Adaptive)?,
+        CompressionEffort::Small => {
+            // Encodes with both filters and keeps the smaller file.
+            let mut tries = [FilterType::Adaptive, FilterType::Paeth].map(|filter| (filter, Ok(Vec::new())));
+            parallel_for_each(tries.iter_mut(), |(filter, bytes)| *bytes = encoded(SMALL, *filter));
+            let [adaptive, paeth] = tries.map(|(_, bytes)| bytes);
+            let (adaptive, paeth) = (adaptive?, paeth?);
+            if paeth.len() < adaptive.len() { paeth } else { adaptive }
+        }
+    };
+    write_file(path, &bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn damaged_pngs_are_refused_with_the_file_name() {
+        let path = Path::new("ramps/broken.png");
+        let message = |bytes: &[u8]| decode_png(path, bytes).unwrap_err().to_string();
+        assert!(message(b"GIF89a").starts_with("ramps/broken.png: not a PNG"));
+        assert!(message(b"\x89PNG\r\n\x1a\n garbage").starts_with("ramps/broken.png: "));
+        // A header with 100000 x 100000 pixels is refused before memory is allocated.
+        let mut huge = Vec::new();
+        DynamicImage::new_rgb8(1, 1).write_to(&mut Cursor::new(&mut huge), image::ImageFormat::Png).unwrap();
+        huge[16..20].copy_from_slice(&100_000_u32.to_be_bytes());
+        huge[20..24].copy_from_slice(&100_000_u32.to_be_bytes());
+        assert!(message(&huge).contains("4096x4096"), "{}", message(&huge));
+    }
+
+    #[test]
+    fn a_truncated_png_is_refused() {
+        let mut whole = Vec::new();
+        let picture = image::RgbImage::from_fn(16, 2, |x, y| image::Rgb([(x * 16) as u8, y as u8, (x * y) as u8]));
+        picture.write_to(&mut Cursor::new(&mut whole), image::ImageFormat::Png).unwrap();
+        for end in 0..whole.len() {
+            let error = decode_png(Path::new("a.png"), &whole[..end]).unwrap_err().to_string();
+            assert!(error.starts_with("a.png: ") && error.lines().count() == 1, "{end}: {error}");
+        }
+        assert!(decode_png(Path::new("a.png"), &whole).is_ok());
+    }
+
+    #[test]
+    fn a_failed_write_leaves_no_temporary_files() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("missing").join("a.png");
+        assert!(write_png(&path, &DynamicImage::new_rgb8(2, 2), CompressionEffort::Quick).is_err());
+        write_png(&folder.path().join("a.png"), &DynamicImage::new_rgb8(2, 2), CompressionEffort::Small).unwrap();
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+}

@@ -1,0 +1,119 @@
+//! Images of one preset: each is decoded once, and their total size is limited.
+
+use std::collections::HashMap;
+use std::hash::Hash;
+use std::path::{Path, PathBuf};
+
+use super::asset_folders::AssetFolders;
+use crate::assets::noise::NoiseVolume;
+use crate::assets::ramp::Ramp;
+use crate::assets::sprite::{Sprite, SpriteLayout};
+use crate::error::{Error, FieldError};
+
+/// Maximum memory of the images of a preset, bytes. An image counts for every field that names it, because renderers
+/// upload it for each.
+pub const MAX_IMAGE_BYTES: u64 = 1 << 30;
+
+/// Images loaded so far, by file.
+pub struct ImageCache {
+    folders: AssetFolders,
+    ramps: HashMap<PathBuf, Ramp>,
+    sprites: HashMap<(PathBuf, SpriteLayout), Sprite>,
+    noises: HashMap<PathBuf, NoiseVolume>,
+    bytes: u64,
+}
+
+impl ImageCache {
+    /// Nothing loaded yet; files are looked for in `folders`.
+    pub fn new(folders: AssetFolders) -> Self {
+        let (ramps, sprites, noises) = Default::default();
+        Self { folders, ramps, sprites, noises, bytes: 0 }
+    }
+
+    /// Loads the ramp of this file, for a field of the material.
+    pub fn ramp(&mut self, field: &str, file: &Path) -> Result<Ramp, Error> {
+        self.count(field, 0)?;
+        let folders = &self.folders;
+        let ramp = once(&mut self.ramps, file.into(), |file: &PathBuf| Ramp::load(&folders.find(file)?));
+        let ramp = ramp.map_err(|error| named_by(field, error))?;
+        self.count(field, ramp.memory())?;
+        Ok(ramp)
+    }
+
+    /// Loads the sprite of this file.
+    pub fn sprite(&mut self, field: &str, file: &Path, layout: SpriteLayout) -> Result<Sprite, Error> {
+        self.count(field, 0)?;
+        let folders = &self.folders;
+        let load = |(file, layout): &(PathBuf, SpriteLayout)| Sprite::load(&folders.find(file)?, *layout);
+        let sprite = once(&mut self.sprites, (file.into(), layout), load).map_err(|error| named_by(field, error))?;
+        self.count(field, sprite.memory())?;
+        Ok(sprite)
+    }
+
+    /// Loads the noise of this file.
+    pub fn noise(&mut self, field: &str, file: &Path) -> Result<NoiseVolume, Error> {
+        self.count(field, 0)?;
+        let folders = &self.folders;
+        let noise = once(&mut self.noises, file.into(), |file: &PathBuf| NoiseVolume::load(&folders.find(file)?));
+        let noise = noise.map_err(|error| named_by(field, error))?;
+        self.count(field, noise.memory())?;
+        Ok(noise)
+    }
+
+    /// Counts bytes. Fails above the limit, after which nothing is decoded.
+    fn count(&mut self, field: &str, bytes: u64) -> Result<(), FieldError> {
+        self.bytes += bytes;
+        if self.bytes <= MAX_IMAGE_BYTES {
+            return Ok(());
+        }
+        let [found, most] = [self.bytes, MAX_IMAGE_BYTES].map(|bytes| bytes >> 20);
+        let expected =
+            format!("at most {most} MiB for all pictures of the preset, each counted as often as it is named");
+        Err(FieldError::new(format!("material.{field}"), format!("{found} MiB of pictures"), expected))
+    }
+}
+
+fn once<K: Hash + Eq, T: Clone>(
+    loaded: &mut HashMap<K, T>,
+    key: K,
+    load: impl FnOnce(&K) -> Result<T, Error>,
+) -> Result<T, Error> {
+    if let Some(picture) = loaded.get(&key) {
+        return Ok(picture.clone());
+    }
+    let picture = load(&key)?;
+    loaded.insert(key, picture.clone());
+    Ok(picture)
+}
+
+/// Adds the field of the preset that names it to the error of an image.
+fn named_by(field: &str, error: Error) -> Error {
+    Error::Asset { named_by: format!("material.{field}"), error: Box::new(error) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_read_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = Path::new("own.png");
+        let path = folder.path().join(file);
+        let layout = SpriteLayout::default();
+        image::RgbaImage::new(1, 1).save(&path).unwrap();
+        let mut pictures = ImageCache::new(AssetFolders::at(folder.path()));
+        let ramp = pictures.ramp("motif", file).unwrap();
+        let noise = pictures.noise("noise", file).unwrap();
+        let sprite = pictures.sprite("sprite", file, layout).unwrap();
+        std::fs::remove_file(&path).unwrap();
+        assert_eq!(pictures.ramp("age_ramp", file).unwrap(), ramp);
+        assert_eq!(pictures.noise("noise", file).unwrap(), noise);
+        assert_eq!(pictures.sprite("detail", file, layout).unwrap(), sprite);
+        // The ramp has four half floats a texel, the noise and the sprite four bytes.
+        assert_eq!(pictures.bytes, 2 * (8 + 4 + 4));
+        let other = SpriteLayout { y_down: true, ..layout };
+        let error = pictures.sprite("sprite", file, other).unwrap_err().to_string();
+        assert!(error.starts_with("material.sprite: ") && error.contains("own.png: No such file"), "{error}");
+    }
+}

@@ -1,0 +1,144 @@
+//! Extent of a system's smoke in the view: the plane that light is flattened to, and the range of depths in which
+//! lights gradually move behind the smoke.
+//!
+//! The bounding box is not suitable: it jumps with every birth and death, and one stray sprite moves it. Here every
+//! sprite is weighted by its visible amount and area, so faint or small sprites have little effect, and sprites that
+//! fade in or out move the result slowly.
+
+use glam::{DVec3, Vec3};
+
+use super::bounds::ProjectedBounds;
+use super::view::ViewGeometry;
+use crate::frame::{Bounds, Particle};
+
+/// Extent of the smoke, view space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SmokeExtent {
+    /// Light is flattened to the plane through this point that faces the viewer; light by normal is baked for this
+    /// point.
+    pub centre: Vec3,
+    /// View depths between which most of the smoke lies, metres.
+    pub near: f32,
+    pub far: f32,
+    /// View depth behind which there is no smoke, metres. A nearly transparent sprite contributes less, so that its
+    /// death causes no jump.
+    pub farthest: f32,
+}
+
+/// Amount below which a sprite counts as nearly transparent.
+const NEARLY_TRANSPARENT: f32 = 0.05;
+
+impl SmokeExtent {
+    /// Measures the particles in memory, or uses the bounding box if there are none. `depth`: view depth of the centre
+    /// that the host chose, metres.
+    pub fn new(
+        view: &ViewGeometry,
+        particles: &[Particle],
+        size: f32,
+        bounds: &Bounds,
+        setup: &ProjectedBounds,
+        depth: Option<f32>,
+    ) -> Self {
+        let measured = Self::of_particles(view, particles, size);
+        let mut middle = measured.unwrap_or_else(|| Self::of_bounds(view, bounds, setup));
+        if let Some(depth) = depth {
+            middle.centre.z = -(depth + view.depth_offset).max(view.depth.near);
+        }
+        middle
+    }
+
+    /// Measures particles, weighted by amount and area. `size` multiplies radii. Returns `None` if no particle is in
+    /// front of the viewer.
+    fn of_particles(view: &ViewGeometry, particles: &[Particle], size: f32) -> Option<Self> {
+        // f64, because the squares of up to a million sprites are summed.
+        let (mut weights, mut sum, mut squares) = (0.0_f64, DVec3::ZERO, 0.0_f64);
+        for particle in particles.iter().filter(|particle| particle.is_visible()) {
+            let position = view.view_position(particle.position).as_dvec3();
+            let radius = f64::from(particle.radius * size);
+            // The weight of a sprite fades out while it passes the near plane.
+            let in_front = ((-position.z - f64::from(view.depth.near)) / radius).clamp(0.0, 1.0);
+            let weight = f64::from(particle.shown_amount()) * in_front * radius * radius;
+            weights += weight;
+            sum += position * weight;
+            // A sprite represents a puff as thick as it is wide.
+            squares += (position.z * position.z + radius * radius / 3.0) * weight;
+        }
+        // False for NaN, which comes from sprites of size 0.
+        (weights > 0.0).then(|| {
+            let centre = sum / weights;
+            // The variance of a slab is its squared half thickness divided by 3.
+            let half = (3.0 * (squares / weights - centre.z * centre.z)).max(0.0).sqrt();
+            let (near, far) = ((-centre.z - half) as f32, (-centre.z + half) as f32);
+            let behind = |particle: &Particle| {
+                let back = -view.view_position(particle.position).z + particle.radius * size;
+                (back + centre.z as f32) * (particle.shown_amount() / NEARLY_TRANSPARENT).min(1.0)
+            };
+            let visible = particles.iter().filter(|particle| particle.is_visible());
+            let farthest = visible.map(behind).fold(0.0, f32::max) - centre.z as f32;
+            Self { centre: centre.as_vec3(), near, far, farthest }
+        })
+    }
+
+    /// Returns the centre of the part of the box that is in front of the viewer.
+    fn of_bounds(view: &ViewGeometry, bounds: &Bounds, setup: &ProjectedBounds) -> Self {
+        let depth = 0.5 * (setup.near.max(view.depth.near) + setup.far);
+        let centre = view.view_position(bounds.centre()).with_z(-depth);
+        Self { centre, near: setup.near, far: setup.far, farthest: setup.far }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::camera::rh::proj::directx::perspective;
+    use glam::{Mat4, UVec2, vec3};
+
+    use super::*;
+    use crate::frame::{View, particle_bounds};
+    use crate::view_setup::bounds::bounds_in_view;
+
+    fn middle(particles: &[Particle], depth: Option<f32>) -> SmokeExtent {
+        let view = View::new(Mat4::IDENTITY, perspective(0.8, 1.0, 0.1, 80.0), UVec2::splat(64));
+        let view = ViewGeometry::new(&view).unwrap();
+        let bounds = particle_bounds(particles, 1.5);
+        SmokeExtent::new(&view, particles, 1.0, &bounds, &bounds_in_view(&bounds, &view).unwrap(), depth)
+    }
+
+    fn puff(depth: f32, radius: f32, amount: f32) -> Particle {
+        Particle { position: vec3(0.0, 0.0, -depth), radius, amount, ..Particle::default() }
+    }
+
+    #[test]
+    fn sprites_are_weighted_by_amount_and_area() {
+        let near_and_far = |amount, radius| -middle(&[puff(4.0, 1.0, 1.0), puff(8.0, radius, amount)], None).centre.z;
+        assert!((near_and_far(1.0, 1.0) - 6.0).abs() < 1e-4);
+        assert!((near_and_far(0.5, 1.0) - (4.0 + 8.0 * 0.5) / 1.5).abs() < 1e-4);
+        assert!((near_and_far(1.0, 2.0) - (4.0 + 8.0 * 4.0) / 5.0).abs() < 1e-4);
+        // Amounts above 1 count as 1.
+        assert!((near_and_far(1.0, 1.0) - near_and_far(7.0, 1.0)).abs() < 1e-6);
+    }
+
+    #[test]
+    fn single_puff_extends_one_radius_to_the_front_and_to_the_back() {
+        let middle = middle(&[puff(5.0, 1.0, 1.0)], None);
+        assert!((middle.near - 4.0).abs() < 1e-3 && (middle.far - 6.0).abs() < 1e-3, "{middle:?}");
+    }
+
+    #[test]
+    fn sprite_that_passes_the_near_plane_moves_the_centre_slowly() {
+        let at = |depth| -middle(&[puff(6.0, 1.0, 1.0), puff(depth, 1.0, 1.0)], None).centre.z;
+        let steps = (0..=400).map(|i| at(2.0 - 0.01 * i as f32));
+        let largest = steps.clone().zip(steps.skip(1)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        // The sprite moves by 0.01 m per step. If it lost its weight at once, the centre would jump by 3 m.
+        assert!(largest < 0.06, "{largest}");
+        assert!((at(-2.0) - 6.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn host_can_set_the_depth_of_the_centre() {
+        let puffs = [puff(5.0, 1.0, 1.0)];
+        let chosen = middle(&puffs, Some(9.0));
+        assert!((chosen.centre.z + 9.0).abs() < 1e-5, "{chosen:?}");
+        // A depth behind the viewer is clamped to the near plane.
+        assert!((middle(&puffs, Some(-3.0)).centre.z + 0.1).abs() < 1e-5);
+    }
+}

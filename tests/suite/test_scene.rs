@@ -1,0 +1,238 @@
+//! A small test scene in memory: camera, lights, sprites, and a wall and a post as scene depth. `host.rs` draws it on
+//! the GPU.
+
+use std::sync::LazyLock;
+
+use glam::camera::rh;
+use glam::{Mat4, UVec2, UVec3, Vec2, Vec3, Vec4, vec3};
+use haze::image::Image;
+use haze::noise::NoiseVolume;
+use haze::noise::{pcg3d, unit};
+use haze::ramp::Ramp;
+use haze::settings::{DebugView, RenderPath, Settings};
+use haze::sprite::{Sprite, SpriteLayout};
+use haze::{Bounds, FieldError, Light, MaterialAssets, Particle, View};
+use haze_author::noise::NoiseRecipe;
+use haze_author::sprite::six_way::six_way_layout;
+use haze_reference;
+
+use crate::common::gpu;
+use crate::host::HostKind;
+
+/// All inputs of a frame, in memory.
+#[derive(Clone)]
+pub struct TestScene {
+    pub view: View,
+    /// Viewing direction along z of view space: -1 or 1.
+    pub ahead: f32,
+    pub lights: Vec<Light>,
+    pub particles: Vec<Particle>,
+    pub bounds: Option<Bounds>,
+    pub settings: Settings,
+    pub material: MaterialAssets,
+    pub time: f32,
+    pub up: Vec3,
+    /// Debug view that is drawn.
+    pub debug_view: DebugView,
+    /// Debug views that the renderer prepares; only the one that is drawn if `None`.
+    pub stages: Option<&'static [DebugView]>,
+    /// Kind of scene depth that the renderer gets.
+    pub depth: DepthKind,
+    /// The wall covers the whole image, without the post.
+    pub wall_everywhere: bool,
+    /// The linear depth target is empty: sky everywhere.
+    pub empty_linear: bool,
+    /// Attaches the depth buffer to the host's pass that draws the smoke.
+    pub attach_depth: bool,
+    /// Formats and layout of the host's pass and targets on the GPU.
+    pub host: HostKind,
+}
+
+/// Kinds of scene depth that a host can pass to the renderer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DepthKind {
+    Buffer,
+    Linear,
+    Both,
+}
+
+/// Scene colour behind the smoke: far from the colour of any lit sprite, exact in f16, and translucent, so that the
+/// smoke's own alpha shows.
+pub const BACKDROP: Vec4 = Vec4::new(0.125, 0.25, 0.5, 0.25);
+
+pub fn perspective(size: UVec2) -> Mat4 {
+    rh::proj::directx::perspective(0.8, size.x as f32 / size.y as f32, 0.1, 80.0)
+}
+
+/// A soft ball off the sprite's centre. `y_down` is the convention that the sprite declares for its normals.
+pub fn ball_sprite(y_down: bool) -> Sprite {
+    let picture = image::RgbaImage::from_fn(64, 64, |x, y| {
+        let p = (Vec2::new(x as f32, 63.0 - y as f32) + 0.5) / 32.0 - 1.0;
+        // Off-centre and tilted, so that a rotated or flipped sprite looks different.
+        let p = p - Vec2::new(0.1, 0.05);
+        let inside = (1.0 - p.length_squared() * 1.4).max(0.0);
+        let normal = (p * 1.5 + Vec2::new(0.2, -0.1)).extend(inside.sqrt().max(0.05)).normalize() * 0.5 + 0.5;
+        let channel = |value: f32| (value * 255.0).round() as u8;
+        image::Rgba([channel(normal.x), channel(normal.y), channel(normal.z), channel(inside.sqrt())])
+    });
+    Sprite::from_image(std::path::Path::new("ball"), &picture, SpriteLayout { y_down, ..SpriteLayout::default() })
+        .unwrap()
+}
+
+/// Detail map that bulges in the middle and moves to the upper right.
+fn ball_detail() -> Sprite {
+    let picture = image::RgbaImage::from_fn(32, 32, |x, y| {
+        let p = (Vec2::new(x as f32, 31.0 - y as f32) + 0.5) / 16.0 - 1.0;
+        let inside = (1.0 - 1.2 * p.length_squared()).max(0.0);
+        image::Rgba([(128.0 + 100.0 * inside) as u8, 168, 88, (inside * 255.0) as u8])
+    });
+    Sprite::from_image(std::path::Path::new("ball.detail"), &picture, SpriteLayout::default()).unwrap()
+}
+
+/// Six-way maps of a sprite: lit along its normals, a little from behind, and more strongly from the left.
+pub fn six_way_of(sprite: &Sprite) -> Sprite {
+    let (size, frames) = (sprite.size(), sprite.frame_count());
+    let picture = image::RgbaImage::from_fn(size, 2 * frames * size, |x, y| {
+        let texel = sprite.texel(0, y / size % frames, x, y % size);
+        let normal = texel.truncate() * 2.0 - 1.0;
+        let light = if y / size < frames { normal } else { normal * vec3(-1.3, -0.8, -1.0) + vec3(0.0, 0.0, 0.3) };
+        let code = (light * 0.5 + 0.1).clamp(Vec3::ZERO, Vec3::ONE).map(f32::sqrt);
+        image::Rgba(code.extend(texel.w).to_array().map(|channel| (channel * 255.0).round() as u8))
+    });
+    let layout = six_way_layout(SpriteLayout { rows: frames, ..SpriteLayout::default() });
+    Sprite::from_image(std::path::Path::new("six_way"), &picture, layout).unwrap()
+}
+
+fn recipe_noise() -> NoiseVolume {
+    let recipe = NoiseRecipe { version: 1, seed: 3, size: 16, cells: 2, octaves: 3, gain: 0.5 };
+    NoiseVolume::from_image(std::path::Path::new("noise"), &recipe.bake().unwrap()).unwrap()
+}
+
+/// Material of the test cloud. Baked once, because most tests use it.
+pub fn material() -> MaterialAssets {
+    static MATERIAL: LazyLock<MaterialAssets> = LazyLock::new(baked_material);
+    MATERIAL.clone()
+}
+
+fn baked_material() -> MaterialAssets {
+    let line =
+        |from: Vec3, to: Vec3| Ramp::from_linear(UVec2::new(16, 1), (0..16).map(|i| from.lerp(to, i as f32 / 15.0)));
+    let glow = |i: u32| Vec3::splat((1.0 - (i % 16) as f32 / 15.0) * (i / 16) as f32 / 7.0);
+    let rim = |i: u32| vec3(0.8, 0.5, 0.3) * (1.2 - (i % 16) as f32 / 15.0) * (1.0 - (i / 16) as f32 / 4.0);
+    MaterialAssets {
+        sprite: ball_sprite(false),
+        detail: Some(ball_detail()),
+        six_way: Some(six_way_of(&ball_sprite(false))),
+        noise: recipe_noise(),
+        diffuse_ramp: line(Vec3::splat(0.05), Vec3::ONE),
+        backlight_ramp: Ramp::from_linear(UVec2::new(16, 4), (0..64).map(rim)),
+        soft_scatter_ramp: line(Vec3::splat(0.3), Vec3::ZERO),
+        specular_ramp: Ramp::from_linear(UVec2::new(16, 8), (0..128).map(glow)),
+        motif: line(Vec3::ZERO, Vec3::ONE),
+        coverage_ramp: Ramp::from_linear(UVec2::new(16, 1), (0..16).map(|i| Vec3::splat((i as f32 / 15.0).powi(3)))),
+        age_ramp: line(vec3(1.0, 0.2, 0.1), vec3(0.2, 0.4, 1.0)),
+    }
+}
+
+impl TestScene {
+    /// A cloud of 60 sprites around (0, 0, -6), lit from the left and from behind.
+    pub fn new(size: UVec2) -> Self {
+        let particle = |i: u32| {
+            let (a, b) = (pcg3d(UVec3::new(i, 0, 5)), pcg3d(UVec3::new(i, 1, 5)));
+            Particle {
+                position: (vec3(unit(a.x), unit(a.y), unit(a.z)) - 0.5) * vec3(4.0, 2.4, 2.0) + vec3(0.0, 0.0, -6.0),
+                radius: 0.3 + 0.6 * unit(b.x),
+                rotation: unit(b.y) * 6.0,
+                amount: 0.1 + 0.4 * unit(b.z),
+                frame: 0.0,
+                age: 0.5,
+            }
+        };
+        Self {
+            view: View::new(Mat4::IDENTITY, perspective(size), size),
+            ahead: -1.0,
+            lights: vec![
+                Light {
+                    position: vec3(-4.0, 2.0, -4.0),
+                    colour: vec3(1.0, 0.6, 0.3),
+                    intensity: 20.0,
+                    ..Light::default()
+                },
+                Light { position: vec3(0.5, 0.3, -8.5), intensity: 3.0, ..Light::default() },
+            ],
+            particles: (0..60).map(particle).collect(),
+            bounds: None,
+            // Fixed, because the choice of `auto` depends on the device.
+            settings: Settings { path: RenderPath::Raster, boost: 1.5, ..Settings::default() },
+            material: material(),
+            time: 1.0,
+            up: Vec3::Y,
+            debug_view: DebugView::Final,
+            stages: None,
+            depth: DepthKind::Buffer,
+            wall_everywhere: false,
+            empty_linear: false,
+            // OpenGL cannot sample a depth buffer that the same pass tests.
+            attach_depth: haze::read_only_depth_is_supported(&gpu().device),
+            host: HostKind::default(),
+        }
+    }
+
+    /// View depth of the scene at a pixel, metres: a narrow post at 5 m, and on the left half a wall at 6.2 m that the
+    /// cloud reaches into. `None` elsewhere.
+    fn view_depth(&self, at: UVec2) -> Option<f32> {
+        if self.wall_everywhere {
+            return Some(6.2);
+        }
+        let uv = (at.as_vec2() + 0.5) / self.view.size.as_vec2();
+        let post = (uv.x - 0.6).abs() < 0.03;
+        if post { Some(5.0) } else { (uv.x < 0.5).then_some(6.2) }
+    }
+
+    /// Depth-buffer value of a surface at a view depth in metres.
+    fn ndc_of(&self, view_depth: f32) -> f32 {
+        self.view.clip_from_view.project_point3(vec3(0.0, 0.0, self.ahead * view_depth)).z
+    }
+
+    /// Contents of the depth buffer.
+    pub fn ndc_depth(&self) -> Image<f32> {
+        let reversed = self.ndc_of(1.0) > self.ndc_of(2.0);
+        let mut picture = Image::new(self.view.size, if reversed { 0.0 } else { 1.0 });
+        picture.for_each(|at, texel| {
+            if let Some(depth) = self.view_depth(at) {
+                *texel = self.ndc_of(depth);
+            }
+        });
+        picture
+    }
+
+    /// Contents of the linear depth target: view depth, metres.
+    pub fn linear_depth(&self) -> Image<f32> {
+        let mut linear = Image::new(self.view.size, 0.0);
+        let seen = |at| self.view_depth(at).filter(|_| !self.empty_linear);
+        linear.for_each(|at, texel| *texel = seen(at).unwrap_or(haze::formula::depth::SKY_VIEW_DEPTH));
+        linear
+    }
+
+    pub fn on_cpu(&self) -> Image<Vec4> {
+        self.try_on_cpu().unwrap()
+    }
+
+    pub fn try_on_cpu(&self) -> Result<Image<Vec4>, FieldError> {
+        let mut picture = Image::new(self.view.size, BACKDROP);
+        let frame = haze_reference::Frame {
+            view: self.view,
+            scene_depth: &self.ndc_depth(),
+            lights: &self.lights,
+            systems: &[haze_reference::System {
+                bounds: self.bounds,
+                ..haze_reference::System::new(&self.particles, &self.settings, &self.material)
+            }],
+            time: self.time,
+            up: self.up,
+            debug_view: self.debug_view,
+        };
+        haze_reference::render(&frame, &mut picture)?;
+        Ok(picture)
+    }
+}

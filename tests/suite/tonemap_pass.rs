@@ -1,0 +1,117 @@
+//! Compares the tonemap on the GPU, for windows, with the tonemap on the CPU, for files.
+
+use glam::{UVec2, Vec2, Vec4};
+use haze::settings::DebugView;
+use haze::wgpu;
+use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
+use haze_demo::shot::Shot;
+use haze_demo::tonemap_pass::{TonemapPass, TonemapUniform, exposure, tonemap};
+
+use crate::common::gpu;
+use crate::creations;
+use crate::host::convert_to_rgba16float;
+
+const SIZE: UVec2 = UVec2::new(160, 90);
+
+/// Tonemaps two rendered shots on the GPU into a rectangle inside a larger target; returns the rectangle's pixels,
+/// sRGB-encoded.
+fn on_screen(a: (&OffscreenRenderer, &Shot), b: (&OffscreenRenderer, &Shot), shown: TonemapUniform) -> Vec<Vec4> {
+    let device = &gpu().device;
+    let format = wgpu::TextureFormat::Rgba8Unorm;
+    let tonemap_pass = TonemapPass::new(device, format);
+    let picture = |(stage, shot): (&OffscreenRenderer, &Shot)| stage.picture(shot.debug_view).unwrap().clone();
+    let tonemap_bindings = tonemap_pass.bind(device, &picture(a), &picture(b));
+    let place = UVec2::new(13, 7);
+    let screen = gpu().target("screen", SIZE + 2 * place, format);
+    let (origin, size) = (place.as_vec2(), SIZE.as_vec2());
+    let exposure = Vec2::new(exposure(a.1), exposure(b.1));
+    tonemap_pass.prepare(&gpu().queue, &tonemap_bindings, &TonemapUniform { origin, size, exposure, ..shown });
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("screen"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &screen.create_view(&wgpu::TextureViewDescriptor::default()),
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::RED), store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
+        pass.set_viewport(origin.x, origin.y, size.x, size.y, 0.0, 1.0);
+        pass.set_scissor_rect(place.x, place.y, SIZE.x, SIZE.y);
+        tonemap_pass.record(&mut pass, &tonemap_bindings);
+    }
+    gpu().submit(encoder).unwrap();
+    let whole = gpu().read_rgba16float(&convert_to_rgba16float(gpu(), &screen)).unwrap();
+    let width = screen.width();
+    let inside = (0..SIZE.y).flat_map(|y| (0..SIZE.x).map(move |x| ((y + place.y) * width + x + place.x) as usize));
+    inside.map(|index| whole[index]).collect()
+}
+
+fn shot(preset: &str, debug_view: DebugView) -> (OffscreenRenderer, Shot) {
+    let context = OffscreenContext::new(&gpu().adapter, &gpu().device, &gpu().queue);
+    let mut stage = OffscreenRenderer::new(&context, true).unwrap();
+    let mut shot = Shot { debug_view, ..Shot::load(preset, SIZE).unwrap() };
+    shot.preset.camera.exposure = 0.7;
+    stage.draw(gpu(), &shot).unwrap();
+    (stage, shot)
+}
+
+#[test]
+fn window_shows_the_same_pixels_as_a_written_file() {
+    for stage in [DebugView::Final, DebugView::Normals] {
+        let (stage, shot) = shot("column", stage);
+        let written = tonemap(&stage.read(gpu(), &shot).unwrap(), &shot);
+        let shown = on_screen((&stage, &shot), (&stage, &shot), TonemapUniform::default());
+        let mut off = 0;
+        for (written, shown) in written.pixels().zip(shown) {
+            for (written, shown) in written.0.into_iter().zip(shown.to_array()) {
+                let apart = (f32::from(written) - shown * 255.0).abs();
+                assert!(apart < 1.5, "file {written}, window {}", shown * 255.0);
+                off += u32::from(apart > 0.5);
+            }
+        }
+        // The driver's power function may round to the other side of a half.
+        assert!(off < SIZE.element_product() / 100, "{off} channels differ");
+    }
+}
+
+#[test]
+fn split_and_difference_views_combine_both_images() {
+    let (a, b) = (shot("column", DebugView::Final), shot("column", DebugView::Amount));
+    let alone = |of: &(OffscreenRenderer, Shot)| on_screen((&of.0, &of.1), (&of.0, &of.1), TonemapUniform::default());
+    let (left, right) = (alone(&a), alone(&b));
+    let both = |shown| on_screen((&a.0, &a.1), (&b.0, &b.1), shown);
+    let split = both(TonemapUniform { split: 60.0, ..TonemapUniform::default() });
+    for (index, texel) in split.iter().enumerate() {
+        let is_left = index as u32 % SIZE.x < 60;
+        assert_eq!(*texel, if is_left { left[index] } else { right[index] });
+    }
+    let differing = both(TonemapUniform { difference: 2.0, ..TonemapUniform::default() });
+    for ((texel, a), b) in differing.iter().zip(&left).zip(&right) {
+        // Two dithered 8-bit roundings, doubled by `difference`.
+        let expected = ((*a - *b).abs() * 2.0).min(Vec4::ONE);
+        assert!((*texel - expected).truncate().abs().max_element() < 6.5 / 255.0, "{texel}, expected {expected}");
+    }
+}
+
+#[test]
+fn renderers_of_one_context_share_uploaded_images() {
+    let context = OffscreenContext::new(&gpu().adapter, &gpu().device, &gpu().queue);
+    let shot = Shot::load("column", SIZE).unwrap();
+    let drawn = || {
+        let mut stage = OffscreenRenderer::new(&context, true).unwrap();
+        let created = creations::count(|| {
+            stage.draw(gpu(), &shot).unwrap();
+        });
+        (stage, created)
+    };
+    // The first draw compiles all pipelines.
+    let (first, _) = drawn();
+    let (second, beside) = drawn();
+    drop((first, second));
+    // No renderer that holds the uploads is left, so they are made again.
+    let (_, alone) = drawn();
+    assert!(beside < alone, "created {beside} objects beside another renderer, {alone} alone");
+}
