@@ -32,13 +32,28 @@ pub fn shared_context(gpu: &Headless) -> Option<&'static Context> {
     std::ptr::eq(gpu, self::gpu()).then_some(&CONTEXT)
 }
 
-/// Returns true if the path `tiled` is available (not on OpenGL); otherwise prints that the test is skipped.
-pub fn has_tiles() -> bool {
-    let has_tiles = gpu().adapter.get_info().backend != wgpu::Backend::Gl;
-    if !has_tiles {
-        eprintln!("skipped: the path tiled is not available on OpenGL");
+/// Returns `is_available`, and prints that the test is skipped if it is false. Panics instead if the variable `HAZE_REQUIRE`
+/// lists the capability: on a machine that is known to have it, a skipped test is a failure. The list is separated by commas;
+/// `scripts/test` sets it.
+pub fn can_test(capability: &str, is_available: bool) -> bool {
+    let required = std::env::var("HAZE_REQUIRE").unwrap_or_default();
+    let is_required = required.split(',').any(|name| name.trim() == capability);
+    assert!(is_available || !is_required, "{} lacks {capability}, which HAZE_REQUIRE lists", gpu().description());
+    if !is_available {
+        eprintln!("skipped: {} lacks {capability}", gpu().description());
     }
-    has_tiles
+    is_available
+}
+
+/// Returns true if the path `tiled` is available: it needs compute shaders, which the library does not use on OpenGL.
+pub fn has_tiles() -> bool {
+    can_test("compute", gpu().adapter.get_info().backend != wgpu::Backend::Gl)
+}
+
+/// Returns true if the adapter's devices are independent. On OpenGL they share one context: resources that are dropped with
+/// one device are lost for the others.
+pub fn has_independent_devices() -> bool {
+    can_test("devices", gpu().adapter.get_info().backend != wgpu::Backend::Gl)
 }
 
 /// Lowest PSNR of two correct renderers, dB. They differ by f16 rounding, by the order of f32 operations, and by edges

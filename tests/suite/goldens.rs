@@ -15,14 +15,14 @@ use image::{DynamicImage, Rgb, RgbImage};
 
 use crate::presets::{drawn, shot};
 
-const SIZE: UVec2 = UVec2::new(160, 90);
+pub const SIZE: UVec2 = UVec2::new(160, 90);
 
 /// Largest size of a golden file, bytes.
 const LARGEST: u64 = 64 << 10;
 
 /// Accepted RMS difference, in steps of 8 bits. On the presets, the CPU renderer and llvmpipe, which has 8-bit filter
 /// weights, differ by 0.25 to 0.60. A diffuse ramp shifted by 1/32 of its length differs by 1.9.
-const TOLERANCE: f64 = 0.9;
+pub const TOLERANCE: f64 = 0.9;
 
 fn golden(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/goldens").join(format!("{name}.png"))
@@ -43,6 +43,11 @@ fn difference(a: &RgbImage, b: &RgbImage) -> f64 {
     assert_eq!(a.dimensions(), b.dimensions());
     let squares = a.iter().zip(b.iter()).map(|(&a, &b)| (f64::from(a) - f64::from(b)).powi(2));
     (squares.sum::<f64>() / a.len() as f64).sqrt()
+}
+
+/// RMS difference of an image to the golden image of that name, in steps of 8 bits.
+pub fn difference_to_golden(name: &str, image: &Image<Vec4>) -> f64 {
+    difference(&encode(image), &read_png(&golden(name)).unwrap().to_rgb8())
 }
 
 #[test]

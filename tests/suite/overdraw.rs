@@ -8,7 +8,7 @@ use haze::settings::{DebugView, DepthSource, RenderPath, Technique};
 use haze::{Overdraw, Particle, Particles, View, wgpu};
 use haze_demo::headless::Headless;
 
-use crate::common::gpu;
+use crate::common::{can_test, gpu};
 use crate::host::Host;
 use crate::test_scene::{BACKDROP, DepthKind, TestScene};
 
@@ -133,11 +133,7 @@ fn overdraw_is_independent_of_scale_and_counts_repeated_draws() {
 /// Device with pipeline statistics queries; `None` if the adapter lacks them.
 fn counting_gpu() -> Option<Headless> {
     let gpu = Headless::with(wgpu::Limits::default(), wgpu::Features::PIPELINE_STATISTICS_QUERY).unwrap();
-    let counts = gpu.device.features().contains(wgpu::Features::PIPELINE_STATISTICS_QUERY);
-    if !counts {
-        println!("skipped: {} has no pipeline statistics queries", gpu.description());
-    }
-    counts.then_some(gpu)
+    can_test("statistics", gpu.device.features().contains(wgpu::Features::PIPELINE_STATISTICS_QUERY)).then_some(gpu)
 }
 
 /// Fragment shader invocations while the host's pass draws forward sprites, and the CPU's estimate for that frame.

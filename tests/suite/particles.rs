@@ -1,8 +1,6 @@
-//! Time to load large particle files.
+//! Particle files of a large simulation.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-
-use std::time::{Duration, Instant};
 
 use haze::preset::{AssetFolders, Preset, PresetSystem};
 use haze_author::particle_files;
@@ -22,10 +20,8 @@ fn binary(frame: u32, count: u32) -> Vec<u8> {
     file
 }
 
-/// A release build on an idle machine takes at most a second and a millisecond. Tests are optimized too, but share the
-/// machine with others, so the limits are four times that.
 #[test]
-fn a_hundred_frames_of_ten_thousand_particles_load_in_a_second_and_evaluate_in_a_millisecond() {
+fn a_hundred_frames_of_ten_thousand_particles_are_kept_in_memory_and_interpolated() {
     let folder = tempfile::tempdir().unwrap();
     for number in 0..100 {
         std::fs::write(folder.path().join(format!("s{number}.ply")), binary(number, 10_000)).unwrap();
@@ -33,18 +29,15 @@ fn a_hundred_frames_of_ten_thousand_particles_load_in_a_second_and_evaluate_in_a
     let mut system = PresetSystem::default();
     system.cache.path = "s#.ply".into();
     let preset = Preset { systems: vec![system], ..Preset::default() };
-    let start = Instant::now();
-    let caches =
+    let files =
         particle_files::load_particle_files(&preset, "my.json".as_ref(), &AssetFolders::at(folder.path())).unwrap();
-    let read = start.elapsed();
-    let (mut particles, mut seen) = (Vec::new(), Duration::MAX);
-    for _ in 0..10 {
-        let start = Instant::now();
-        // A time between two frames.
-        particle_files::particles(&preset.systems[0], caches[0].as_ref(), 41.5 / 24.0, &mut particles);
-        seen = seen.min(start.elapsed());
-        assert_eq!(particles.len(), 10_000);
-    }
-    println!("read in {read:?}, seen in {seen:?}");
-    assert!(read < Duration::from_secs(4) && seen < Duration::from_millis(4), "{read:?} {seen:?}");
+    let frames = files[0].as_ref().unwrap();
+    assert_eq!((frames.frames().len(), frames.most()), (100, 10_000));
+    // At most 40 bytes a particle, as the module's documentation states.
+    assert!(frames.bytes() <= 100 * 10_000 * 40, "{} bytes", frames.bytes());
+    let mut particles = Vec::new();
+    // A time between two frames: x is the number of the frame.
+    particle_files::particles(&preset.systems[0], Some(frames), 41.5 / 24.0, &mut particles);
+    assert_eq!(particles.len(), 10_000);
+    assert!((particles[7].position.x - 41.57).abs() < 1.0e-3, "{}", particles[7].position);
 }

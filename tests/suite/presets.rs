@@ -25,7 +25,7 @@ pub fn shot(name: &str, size: UVec2) -> Shot {
 }
 
 /// The same shot without smoke.
-fn behind(shot: &Shot) -> Shot {
+pub fn behind(shot: &Shot) -> Shot {
     let mut behind = shot.clone();
     behind.preset.systems.clear();
     behind.materials.clear();

@@ -8,7 +8,7 @@ use haze::settings::{Backlight, DiffuseMode, Lighting, LightingResolution, Rende
 use haze::{Error, Frame, FrameTimes, Particles, SceneDepth, Settings, System, Timing, wgpu};
 use haze_demo::headless::Headless;
 
-use crate::common::{gpu, has_tiles};
+use crate::common::{can_test, gpu, has_independent_devices, has_tiles};
 use crate::creations;
 use crate::host::Host;
 use crate::test_scene::TestScene;
@@ -21,11 +21,7 @@ const FEATURES: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Fea
 fn timed_gpu() -> Option<&'static Headless> {
     static GPU: OnceLock<Headless> = OnceLock::new();
     let gpu = GPU.get_or_init(|| Headless::with(wgpu::Limits::default(), FEATURES).unwrap());
-    let measures = gpu.device.features().contains(FEATURES);
-    if !measures {
-        println!("skipped: {} has no timestamp queries inside passes", gpu.description());
-    }
-    measures.then_some(gpu)
+    can_test("timestamps", gpu.device.features().contains(FEATURES)).then_some(gpu)
 }
 
 /// Host that measures its renderer and its own pass.
@@ -189,8 +185,8 @@ fn device_without_timestamps_has_no_timing() {
 #[test]
 fn timing_of_another_device_is_an_error() {
     let Some(gpu) = timed_gpu() else { return };
-    if gpu.adapter.get_info().backend == wgpu::Backend::Gl {
-        return; // Devices of one adapter share its OpenGL context: dropping one breaks the other.
+    if !has_independent_devices() {
+        return;
     }
     let descriptor = wgpu::DeviceDescriptor { required_features: FEATURES, ..Default::default() };
     let (device, queue) = pollster::block_on(gpu.adapter.request_device(&descriptor)).unwrap();
@@ -206,7 +202,7 @@ fn timing_of_another_device_is_an_error() {
 #[test]
 fn without_timestamps_inside_passes_only_whole_passes_are_measured() {
     let gpu = Headless::with(wgpu::Limits::default(), wgpu::Features::TIMESTAMP_QUERY).unwrap();
-    if !gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
+    if !can_test("timestamps", gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY)) {
         return;
     }
     let (mut host, timing) = timed_host(&gpu, &stage());

@@ -7,7 +7,7 @@ use haze::settings::*;
 use haze::{Context, Descriptor, Error, Frame, Renderer, SceneDepth, wgpu};
 
 use super::{SIZE, encoder, featured, field, slice};
-use crate::common::{AGREEMENT, gpu, psnr};
+use crate::common::{AGREEMENT, gpu, has_independent_devices, psnr};
 use crate::host::{Host, HostKind};
 use crate::test_scene::{BACKDROP, DepthKind, TestScene};
 
@@ -169,9 +169,7 @@ fn unsupported_pass_descriptors_are_rejected_with_the_name_of_the_field() {
 fn resources_of_another_device_are_rejected() {
     let stage = TestScene::new(SIZE);
     let here = gpu();
-    // On OpenGL, devices of one adapter share a context: resources that are dropped with one device are lost for the
-    // other.
-    if here.adapter.get_info().backend == wgpu::Backend::Gl {
+    if !has_independent_devices() {
         return;
     }
     let (device, queue) = pollster::block_on(here.adapter.request_device(&wgpu::DeviceDescriptor::default())).unwrap();

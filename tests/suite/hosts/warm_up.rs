@@ -6,7 +6,7 @@ use haze::settings::*;
 use haze::{Bounds, Context, Descriptor, Renderer, SceneDepthKind, Settings, WarmUp, wgpu};
 
 use super::{SIZE, featured, field};
-use crate::common::gpu;
+use crate::common::{can_test, gpu};
 use crate::host::Host;
 use crate::test_scene::{DepthKind, TestScene};
 
@@ -74,7 +74,7 @@ fn warm_up_can_run_on_another_thread() {
 #[allow(unsafe_code, reason = "wgpu cannot validate cache data; this data comes from wgpu itself")]
 fn pipelines_are_stored_in_and_loaded_from_the_hosts_pipeline_cache() {
     let gpu = featured();
-    if !gpu.device.features().contains(wgpu::Features::PIPELINE_CACHE) {
+    if !can_test("pipeline_cache", gpu.device.features().contains(wgpu::Features::PIPELINE_CACHE)) {
         return;
     }
     let draw = |data: Option<&[u8]>| {

@@ -57,6 +57,6 @@ mod tests {
         std::fs::write(state.join("layout.json"), "{\"width\": wide}").unwrap();
         let (found, error) = found();
         let error = error.unwrap().to_string();
-        assert!(found == Layout::default() && error.contains("layout.json:1:11: width: no value"), "{error}");
+        assert!(found == Layout::default() && error.contains("layout.json:1:11: width: not a value"), "{error}");
     }
 }

@@ -42,7 +42,7 @@ fn a_change_modifies_one_line_of_the_file() {
     assert!(refused.ends_with("shot is not valid; expected a name that ends in .json"), "{refused}");
     let path = folder.path().join("shot.json");
     document.save_as(&path).unwrap();
-    let shipped = fs::read_to_string("presets/column.json").unwrap();
+    let shipped = fs::read_to_string("../../presets/column.json").unwrap();
     assert_eq!((document.path(), fs::read_to_string(&path).unwrap()), (&*path, shipped.clone()));
     assert!(!document.is_built_in());
 
@@ -162,12 +162,12 @@ fn images_are_copied_to_another_folder_on_save() {
         document.files(&AssetFolders::at(&old)),
         ["shot.json", "ramps/own.png", "missing.png"].map(|name| old.join(name))
     );
-    fs::copy("ramps/diffuse_soft.png", old.join("ramps/own.png")).unwrap();
-    fs::copy("ramps/diffuse_soft.ramp.json", old.join("ramps/own.ramp.json")).unwrap();
+    fs::copy("../../ramps/diffuse_soft.png", old.join("ramps/own.png")).unwrap();
+    fs::copy("../../ramps/diffuse_soft.ramp.json", old.join("ramps/own.ramp.json")).unwrap();
     document.save_as(&new.join("shot.json")).unwrap();
     let recipe = fs::read(new.join("ramps/own.ramp.json")).unwrap();
-    assert_eq!(recipe, fs::read("ramps/diffuse_soft.ramp.json").unwrap());
-    assert_eq!(fs::read(new.join("ramps/own.png")).unwrap(), fs::read("ramps/diffuse_soft.png").unwrap());
+    assert_eq!(recipe, fs::read("../../ramps/diffuse_soft.ramp.json").unwrap());
+    assert_eq!(fs::read(new.join("ramps/own.png")).unwrap(), fs::read("../../ramps/diffuse_soft.png").unwrap());
     assert!(!new.join("missing.png").exists());
     // Saved again over identical files.
     let mut document = Document::open(&shot(&old)).unwrap();

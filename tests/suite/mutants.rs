@@ -1,0 +1,85 @@
+//! Mutation tests of the frame oracles: a mistake in a shader must fail the golden images and the agreement of the two
+//! renderers. The mutated shaders are loaded at run time, through [`Sources`].
+
+use glam::Vec4;
+use haze::builtin;
+use haze::image::Image;
+use haze::shader::{self, Sources};
+use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
+use haze_demo::shot::Shot;
+
+use crate::common::{AGREEMENT, gpu, psnr_over};
+use crate::goldens;
+use crate::presets::{behind, shot};
+
+/// Name, shader file, text in it, and its replacement.
+type Mutant = (&'static str, &'static str, &'static str, &'static str);
+
+const MUTANTS: &[Mutant] = &[
+    (
+        // Gives the image of a blend state with the factor SrcAlpha for colour.
+        "wrong blend factor",
+        "accumulate.wgsl",
+        "return Accumulated(accumulated, ",
+        "return Accumulated(vec4f(accumulated.rgb * accumulated.a, accumulated.a), ",
+    ),
+    // Reversed winding gives the image of the other cull mode.
+    ("wrong face culled", "transfer.wgsl", "corners[index]", "corners[35u - index]"),
+    (
+        "missing premultiply",
+        "lib/normal.wgsl",
+        "return vec4f(normal * (amount * weight), amount);",
+        "return vec4f(normal, amount);",
+    ),
+    ("flipped normal y", "lib/normal.wgsl", "normal.x * rotation.y + normal.y", "-normal.x * rotation.y - normal.y"),
+    (
+        "swapped ramp axes",
+        "specular_scatter.wgsl",
+        "vec2f(distance_squared, amount)",
+        "vec2f(amount, distance_squared)",
+    ),
+];
+
+/// A context with one shader replaced.
+fn context((name, file, from, to): &Mutant) -> OffscreenContext {
+    let text = shader::source(file).unwrap();
+    assert!(text.contains(from), "{name}: {file} has no {from:?}");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(file);
+    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+    std::fs::write(path, text.replacen(from, to, 1)).unwrap();
+    let gpu = gpu();
+    let context = OffscreenContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
+    context.with_shaders(&Sources::from_folder(folder.path()).unwrap()).unwrap()
+}
+
+fn drawn(context: &OffscreenContext, shot: &Shot, exact_filtering: bool) -> Image<Vec4> {
+    let mut renderer = OffscreenRenderer::new(context, exact_filtering).unwrap();
+    renderer.draw(gpu(), shot).unwrap();
+    renderer.read(gpu(), shot).unwrap()
+}
+
+#[test]
+fn mistakes_in_shaders_fail_golden_images_and_agreement() {
+    let shots: Vec<_> = builtin::PRESETS.iter().map(|preset| shot(preset.name, goldens::SIZE)).collect();
+    let on_cpu: Vec<_> = shots.iter().map(|shot| shot.render_on_cpu().unwrap()).collect();
+    let without_smoke: Vec<_> = shots.iter().map(|shot| behind(shot).render_on_cpu().unwrap()).collect();
+    for mutant in MUTANTS {
+        let context = context(mutant);
+        let (mut worst_golden, mut worst_psnr) = (0.0_f64, f32::INFINITY);
+        for (index, shot) in shots.iter().enumerate() {
+            let golden = goldens::difference_to_golden(builtin::PRESETS[index].name, &drawn(&context, shot, false));
+            worst_golden = worst_golden.max(golden);
+            let on_gpu = drawn(&context, shot, true);
+            let behind = &without_smoke[index];
+            worst_psnr = worst_psnr.min(psnr_over([&on_gpu, &on_cpu[index]], [behind, behind]));
+            if worst_golden > goldens::TOLERANCE && worst_psnr < AGREEMENT {
+                break;
+            }
+        }
+        gpu().check().unwrap();
+        println!("{}: {worst_golden:.2} steps from the golden image, {worst_psnr:.1} dB from the CPU", mutant.0);
+        assert!(worst_golden > goldens::TOLERANCE, "{} passes the golden images: {worst_golden:.2}", mutant.0);
+        assert!(worst_psnr < AGREEMENT, "{} passes the agreement of the renderers: {worst_psnr:.1} dB", mutant.0);
+    }
+}
