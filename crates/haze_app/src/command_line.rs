@@ -12,8 +12,9 @@ use clap::error::{ContextValue, ErrorKind};
 use clap::{CommandFactory as _, Parser, Subcommand};
 use haze::{Error, builtin};
 
-use crate::output::{self, Failures, complain, one_line, write_text};
-use crate::{bake, bench, info, preset, render, shade_tree, techniques, tweak, vary};
+use crate::commands::{info, preset, ramp, render, shade_tree, sheet, sprite, techniques};
+use crate::output::{self, Failures, one_line, print_error, write_text};
+use crate::{bench, tweak};
 
 /// Lit, soft smoke for wgpu: accumulated at low resolution, lit once per pixel from ramps that artists paint.
 #[derive(Parser)]
@@ -32,7 +33,7 @@ enum Command {
     /// Render every stage of the shading on one labelled sheet.
     ShadeTree(shade_tree::Arguments),
     /// Render a preset with several values of one field, on one labelled sheet.
-    Sheet(vary::Arguments),
+    Sheet(sheet::Arguments),
     /// Render a preset with every soft-particle technique and its cost, on one labelled sheet.
     Techniques(techniques::Arguments),
     /// Measure the cost of smoke on this machine.
@@ -40,9 +41,9 @@ enum Command {
     /// List, check, show, create and describe presets.
     Preset(preset::Arguments),
     /// Create, bake, import, fit, watch, show and check ramps.
-    Ramp(bake::RampArguments),
+    Ramp(ramp::RampArguments),
     /// Bake, import, export, light and check sprites.
-    Sprite(bake::SpriteArguments),
+    Sprite(sprite::SpriteArguments),
     /// Print what this machine renders with: GPU, driver and CPU, and the choices of path auto.
     Info,
 }
@@ -69,7 +70,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             return ExitCode::from(2);
         }
         Err(error) => {
-            complain(usage_line(error));
+            print_error(usage_line(error));
             return ExitCode::from(2);
         }
     };
@@ -78,12 +79,12 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Tweak(arguments) => one(tweak::run(&arguments)),
         Command::Render(arguments) => one(render::run(&arguments)),
         Command::ShadeTree(arguments) => one(shade_tree::run(&arguments)),
-        Command::Sheet(arguments) => one(vary::run(&arguments)),
+        Command::Sheet(arguments) => one(sheet::run(&arguments)),
         Command::Techniques(arguments) => one(techniques::run(&arguments)),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Preset(arguments) => preset::run(&arguments),
-        Command::Ramp(arguments) => bake::run_ramp(&arguments),
-        Command::Sprite(arguments) => bake::run_sprite(&arguments),
+        Command::Ramp(arguments) => ramp::run(&arguments),
+        Command::Sprite(arguments) => sprite::run(&arguments),
         Command::Info => one(info::run()),
     })
 }
@@ -105,7 +106,7 @@ fn with_subcommand(mut arguments: Vec<OsString>) -> Vec<OsString> {
 
 fn report(done: Result<(), Failures>) -> ExitCode {
     let Err(failures) = done else { return ExitCode::SUCCESS };
-    failures.errors().iter().for_each(complain);
+    failures.errors().iter().for_each(print_error);
     // Without any error, the failure has been reported already.
     ExitCode::from(failures.errors().iter().map(exit_code).max().unwrap_or(1))
 }

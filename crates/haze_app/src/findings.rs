@@ -5,20 +5,20 @@ use std::path::{Path, PathBuf};
 use haze::Error;
 use haze_author::finding::Finding;
 
-use super::output::{Failures, say};
+use super::output::{Failures, print_line};
 
 /// Checks and reports every file, even if others fail. Findings make it fail without an error, because they are
 /// reported already.
-pub fn tell(files: &[PathBuf], find: impl Fn(&Path) -> Result<Vec<Finding>, Error>) -> Result<(), Failures> {
+pub fn report_findings(files: &[PathBuf], find: impl Fn(&Path) -> Result<Vec<Finding>, Error>) -> Result<(), Failures> {
     let (checked, failures) = Failures::of_each(files, |path| Ok((path, find(path)?)));
     let mut is_good = true;
     for (path, findings) in checked {
         if findings.is_empty() {
-            say!("{}: good", path.display())?;
+            print_line!("{}: good", path.display())?;
         }
         for Finding { name, what } in findings {
             is_good = false;
-            say!("{}: {name}: {what}", path.display())?;
+            print_line!("{}: {name}: {what}", path.display())?;
         }
     }
     failures.into_result()?;

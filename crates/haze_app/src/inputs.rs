@@ -9,12 +9,12 @@ use haze::settings::{FieldVisitor, Fields, ImageRole};
 
 /// Returns every path where an image that a preset names may lie.
 pub fn image_paths(folders: &AssetFolders, preset: &Preset) -> Vec<PathBuf> {
-    picture_files(preset).iter().flat_map(|file| folders.places(file)).collect()
+    relative_image_paths(preset).iter().flat_map(|file| folders.places(file)).collect()
 }
 
 /// Returns the same files, relative to the preset's folder.
-pub fn picture_files(preset: &Preset) -> Vec<PathBuf> {
-    let mut names = Names(Vec::new());
+pub fn relative_image_paths(preset: &Preset) -> Vec<PathBuf> {
+    let mut names = ImageNames(Vec::new());
     preset.clone().visit(&mut names);
     names.0.iter().filter_map(|name| image_file_path(name)).map(Path::to_path_buf).collect()
 }
@@ -25,9 +25,9 @@ pub fn particle_file_paths(folders: &AssetFolders, preset: &Preset) -> Vec<PathB
     files.flat_map(|file| folders.places(file)).flat_map(|place| haze::preset::places(&place)).collect()
 }
 
-struct Names(Vec<String>);
+struct ImageNames(Vec<String>);
 
-impl FieldVisitor for Names {
+impl FieldVisitor for ImageNames {
     fn number(&mut self, _: &'static str, _: &mut f32, _: RangeInclusive<f32>, _: &'static str) {}
     fn integer(&mut self, _: &'static str, _: &mut u32, _: RangeInclusive<u32>, _: &'static str) {}
     fn vector(&mut self, _: &'static str, _: &mut Vec3, _: RangeInclusive<f32>, _: &'static str) {}

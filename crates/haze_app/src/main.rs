@@ -1,36 +1,29 @@
 //! Entry point of the `haze` program.
 
-mod bake;
+mod bake_job;
 mod bench;
 mod command_line;
-mod cost;
-mod export;
+mod commands;
+mod contact_sheet;
+mod file_kind;
+mod file_watcher;
 mod findings;
 mod flip;
-mod frames;
-mod info;
+mod frame_range;
+mod frame_timer;
+mod image_export;
 mod inputs;
 mod interrupt;
-mod kind;
-mod label;
-mod medium;
-mod memory;
+mod medium_options;
+mod memory_check;
 mod options;
 mod output;
 mod plot;
-mod preset;
 mod progress;
-mod puffs;
-mod ramp;
-mod recipe;
-mod render;
-mod shade_tree;
-mod sheet;
-mod sprite;
-mod techniques;
+mod puff_error;
+mod puff_sheet;
+mod text_drawing;
 mod tweak;
-mod vary;
-mod watch;
 
 use std::process::ExitCode;
 

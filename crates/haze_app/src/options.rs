@@ -19,8 +19,8 @@ use haze_demo::shot::Shot;
 use image::RgbImage;
 
 use super::inputs::image_paths;
-use super::memory::check_memory;
-use super::output::{Files, complain, say};
+use super::memory_check::check_memory;
+use super::output::{FileChecks, print_error, print_line};
 
 /// Options of rendering that do not depend on the shot.
 #[derive(Args)]
@@ -125,7 +125,7 @@ pub enum Backend {
 pub struct Gpu {
     pub headless: Headless,
     pub context: OffscreenContext,
-    stage: RefCell<OffscreenRenderer>,
+    renderer: RefCell<OffscreenRenderer>,
 }
 
 impl ShotArguments {
@@ -147,12 +147,12 @@ impl ShotArguments {
         }
         preset.time = self.time.unwrap_or(preset.time);
         for (field, value) in &self.set {
-            set_field(&mut preset, field, value).map_err(|error| in_option("--set", error))?;
+            set_field(&mut preset, field, value).map_err(|error| with_option("--set", error))?;
         }
         let shot = self.shot(preset)?;
         let pictures = image_paths(&self.assets.folders(&self.preset)?, &shot.preset);
-        let mut files = Files::read(pictures.iter().map(PathBuf::as_path).chain([self.preset.as_path()]));
-        outputs.iter().try_for_each(|(option, path)| files.write(option, path, kind))?;
+        let mut files = FileChecks::for_inputs(pictures.iter().map(PathBuf::as_path).chain([self.preset.as_path()]));
+        outputs.iter().try_for_each(|(option, path)| files.check_output(option, path, kind))?;
         Ok(shot)
     }
 
@@ -170,7 +170,7 @@ impl ShotArguments {
     /// Writes the image, and prints a line that says so.
     pub fn write(&self, picture: RgbImage, shot: &Shot, backend: &Backend) -> Result<(), Error> {
         write_png(&self.output, &picture.into(), self.effort())?;
-        say!("{}: {} on {}", self.output.display(), shot.preset.name, backend.description())
+        print_line!("{}: {} on {}", self.output.display(), shot.preset.name, backend.description())
     }
 }
 
@@ -199,7 +199,7 @@ impl RunArguments {
                 Backend::on(gpu, sources.as_ref())
             }
             Err(Error::NoDevice(reason)) if self.backend == BackendName::Auto && sources.is_none() => {
-                complain(format_args!("rendering on the CPU: {reason}"));
+                print_error(format_args!("rendering on the CPU: {reason}"));
                 Ok(Backend::Cpu)
             }
             Err(error) => Err(error),
@@ -222,18 +222,18 @@ impl Backend {
         if let Some(sources) = sources {
             context = context.with_shaders(sources)?;
         }
-        let stage = RefCell::new(OffscreenRenderer::new(&context, false)?);
-        Ok(Self::Gpu(Box::new(Gpu { headless: gpu, context, stage })))
+        let renderer = RefCell::new(OffscreenRenderer::new(&context, false)?);
+        Ok(Self::Gpu(Box::new(Gpu { headless: gpu, context, renderer })))
     }
 
     /// Renders an image in linear HDR.
     pub fn render(&self, shot: &Shot) -> Result<Image<Vec4>, Error> {
         match self {
             Self::Gpu(gpu) => {
-                let mut stage = gpu.stage.borrow_mut();
-                stage.warm_up(shot)?;
-                stage.draw(&gpu.headless, shot)?;
-                stage.read(&gpu.headless, shot)
+                let mut renderer = gpu.renderer.borrow_mut();
+                renderer.warm_up(shot)?;
+                renderer.draw(&gpu.headless, shot)?;
+                renderer.read(&gpu.headless, shot)
             }
             Self::Cpu => shot.render_on_cpu(),
         }
@@ -249,17 +249,18 @@ impl Backend {
 }
 
 /// Adds the option to the field that an error names.
-pub fn in_option(option: &str, mut error: FieldError) -> FieldError {
+pub fn with_option(option: &str, mut error: FieldError) -> FieldError {
     error.field = format!("{option} {}", error.field);
     error
 }
 
-const LARGEST: u32 = 8192;
+const MAX_SIDE: u32 = 8192;
 
 pub fn parse_size(text: &str) -> Result<UVec2, String> {
-    let expected = || format!("{text:?} is not a size; expected WxH, each 1 to {LARGEST} pixels, for example 1280x720");
+    let expected =
+        || format!("{text:?} is not a size; expected WxH, each 1 to {MAX_SIDE} pixels, for example 1280x720");
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(expected)?;
-    let side = |digits: &str| digits.parse::<u32>().ok().filter(|side| (1..=LARGEST).contains(side));
+    let side = |digits: &str| digits.parse::<u32>().ok().filter(|side| (1..=MAX_SIDE).contains(side));
     Ok(UVec2::new(side(width).ok_or_else(expected)?, side(height).ok_or_else(expected)?))
 }
 

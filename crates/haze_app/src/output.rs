@@ -8,10 +8,10 @@ use haze::image::{FileIdentity, check_file};
 use haze::{Error, FieldError};
 
 /// `println!` of one line that returns an error instead of panicking.
-macro_rules! say {
+macro_rules! print_line {
     ($($argument:tt)*) => { $crate::output::write_line(format_args!($($argument)*)) };
 }
-pub(crate) use say;
+pub(crate) use print_line;
 
 pub fn write_line(line: Arguments<'_>) -> Result<(), Error> {
     write_text(one_line(line))
@@ -28,7 +28,7 @@ pub fn write_text(text: impl Display) -> Result<(), Error> {
 }
 
 /// Writes one line to standard error; a failure is ignored, because it cannot be reported.
-pub fn complain(line: impl Display) {
+pub fn print_error(line: impl Display) {
     let _ = writeln!(std::io::stderr().lock(), "haze: {}", one_line(line));
 }
 
@@ -78,7 +78,7 @@ impl Failures {
 }
 
 /// Files that a command reads and writes.
-pub struct Files {
+pub struct FileChecks {
     inputs: Vec<FileIdentity>,
     outputs: Vec<FileIdentity>,
 }
@@ -87,19 +87,19 @@ pub fn has_extension(path: &Path, expected: &str) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(expected))
 }
 
-impl Files {
+impl FileChecks {
     /// Starts with the files that a command reads; it refuses to write them.
-    pub fn read<P: AsRef<Path>>(inputs: impl IntoIterator<Item = P>) -> Self {
+    pub fn for_inputs<P: AsRef<Path>>(inputs: impl IntoIterator<Item = P>) -> Self {
         let inputs = inputs.into_iter().map(|path| FileIdentity::of(path.as_ref())).collect();
         Self { inputs, outputs: Vec::new() }
     }
 
-    /// Refuses a file that cannot be written, before any work is done and any file is replaced. `kind` is the required
-    /// extension.
-    pub fn write(&mut self, option: &str, path: &Path, kind: &str) -> Result<(), Error> {
+    /// Refuses a file that cannot be written, before any work is done and any file is replaced. Its name must end in
+    /// `extension`.
+    pub fn check_output(&mut self, option: &str, path: &Path, extension: &str) -> Result<(), Error> {
         let refuse = |expected: &str| Err(FieldError::new(option, path.display(), expected).into());
-        if !has_extension(path, kind) {
-            return refuse(&format!("a name that ends in .{kind}"));
+        if !has_extension(path, extension) {
+            return refuse(&format!("a name that ends in .{extension}"));
         }
         if !path.parent().is_none_or(|folder| folder.as_os_str().is_empty() || folder.is_dir()) {
             return refuse("a file in a folder that exists");

@@ -3,8 +3,8 @@
 use glam::{UVec2, Vec2};
 use image::{Rgb, RgbImage};
 
-use super::label::draw_text;
-use super::sheet::{INK, PAPER};
+use super::contact_sheet::{BACKGROUND, TEXT_COLOUR};
+use super::text_drawing::draw_text;
 
 const GRID: Rgb<u8> = Rgb([58, 60, 66]);
 /// Margins beside the curves, pixels; the right one holds their names.
@@ -24,22 +24,22 @@ pub struct Curve {
 
 /// Plots functions over `from..to`; values are 0..1. `axis` labels the x axis.
 pub fn plot(size: UVec2, (from, to): (f32, f32), axis: &str, curves: &[Curve]) -> RgbImage {
-    let mut picture = RgbImage::from_pixel(size.x, size.y, PAPER);
+    let mut picture = RgbImage::from_pixel(size.x, size.y, BACKGROUND);
     let area = size.as_vec2() - Vec2::new(LEFT + RIGHT, TOP + BOTTOM);
     let place = |x: f32, y: f32| Vec2::new(LEFT, TOP) + Vec2::new((x - from) / (to - from), 1.0 - y) * area;
     for tenth in (0..=10).step_by(5) {
         let y = tenth as f32 / 10.0;
         line(&mut picture, GRID, &[place(from, y), place(to, y)]);
-        draw_text(&mut picture, 8.0, place(from, y).y - 9.0, 16.0, INK, &format!("{y:.1}"));
+        draw_text(&mut picture, 8.0, place(from, y).y - 9.0, 16.0, TEXT_COLOUR, &format!("{y:.1}"));
     }
     let mut x = from;
     while x <= to + 1.0e-3 {
         line(&mut picture, GRID, &[place(x, 0.0), place(x, 1.0)]);
         let at = place(x, 0.0) + Vec2::new(-12.0, 4.0);
-        draw_text(&mut picture, at.x, at.y, 16.0, INK, &format!("{x:.1}"));
+        draw_text(&mut picture, at.x, at.y, 16.0, TEXT_COLOUR, &format!("{x:.1}"));
         x += 0.5;
     }
-    draw_text(&mut picture, LEFT, size.y as f32 - 22.0, 16.0, INK, axis);
+    draw_text(&mut picture, LEFT, size.y as f32 - 22.0, 16.0, TEXT_COLOUR, axis);
     for (index, curve) in curves.iter().enumerate() {
         let points: Vec<_> = (0..=400).map(|i| from + (to - from) * i as f32 / 400.0).collect();
         let points: Vec<_> = points.into_iter().map(|x| place(x, (curve.function)(x))).collect();

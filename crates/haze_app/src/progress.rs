@@ -5,7 +5,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
 /// Does the work, and shows `what` and the elapsed time. Work of less than a second shows nothing.
-pub fn watched<T>(what: String, work: impl FnOnce() -> T) -> T {
+pub fn with_progress<T>(what: String, work: impl FnOnce() -> T) -> T {
     with_changing_progress(|| what.clone(), work)
 }
 

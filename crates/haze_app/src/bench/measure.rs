@@ -12,27 +12,28 @@ use haze_demo::offscreen_renderer::{OffscreenContext, OffscreenRenderer};
 use haze_demo::shot::Shot;
 use image::RgbImage;
 
-use super::awake::ClockKeepalive;
+use super::clock_keepalive::ClockKeepalive;
 use super::limits::work::bytes;
-use super::quality::{Quality, Reference, is_right};
+use super::quality::{Quality, Reference, check_image};
 use super::report::{Clock, LeftOut, Milliseconds, Row};
-use super::suites::{Case, Group, Suite, mean_alpha};
+use super::sprite_shots::mean_alpha;
+use super::suites::{Case, Group, Suite};
 use crate::interrupt;
 
 /// Least number of warm-up rounds, which are not counted.
-const WARM_UP: usize = 2;
+const WARM_UP_ROUNDS: usize = 2;
 /// Frames slower than this, milliseconds, count in the warm-up rounds too: the first look at a case has warmed it up.
 const SLOW_MS: f64 = 300.0;
 /// Consecutive frames without a valid time after which a case is given up.
-const MOST_TRIES: u32 = 8;
+const MAX_TRIES: u32 = 8;
 /// Most rounds of a group; more rounds add no information.
 const MAX_ROUNDS: usize = 200;
 const MIN_ROUNDS: usize = 3;
 
 /// Measures groups and collects the results.
-pub struct Bench<'a> {
+pub struct CaseBench<'a> {
     gpu: &'a Headless,
-    awake: &'a ClockKeepalive<'a>,
+    keepalive: &'a ClockKeepalive<'a>,
     context: OffscreenContext,
     timing: Option<Timing>,
     /// Floor of the time per fragment, milliseconds, by format.
@@ -47,29 +48,29 @@ pub struct Bench<'a> {
 }
 
 /// Milliseconds of a frame's smoke, and of each of its passes.
-struct Taken {
+struct FrameTimes {
     ms: f64,
     passes: Vec<(&'static str, f64)>,
 }
 
 /// State of a case that is being measured.
-struct Running<'a> {
+struct RunningCase<'a> {
     case: &'a Case,
-    stage: OffscreenRenderer,
+    offscreen: OffscreenRenderer,
     quality: Quality,
     times: Vec<f64>,
     passes: BTreeMap<&'static str, Vec<f64>>,
 }
 
-impl<'a> Bench<'a> {
-    pub fn new(gpu: &'a Headless, awake: &'a ClockKeepalive<'a>, longest: Duration) -> Self {
+impl<'a> CaseBench<'a> {
+    pub fn new(gpu: &'a Headless, keepalive: &'a ClockKeepalive<'a>, longest: Duration) -> Self {
         let context = OffscreenContext::new(&gpu.adapter, &gpu.device, &gpu.queue);
         // Without this feature the passes that light the smoke have no timestamps.
         let is_whole = gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
         Self {
             timing: context.timing().filter(|_| is_whole),
             gpu,
-            awake,
+            keepalive,
             context,
             limits: HashMap::new(),
             longest,
@@ -86,7 +87,7 @@ impl<'a> Bench<'a> {
     /// If the device failed.
     pub fn measure_paths(&self) -> Result<(), Error> {
         // The model comes from wall time, which would include the wait for filler work.
-        let _quiet = self.awake.quiet();
+        let _pause = self.keepalive.pause();
         self.context.measure_paths(|encoder| self.gpu.submit(encoder)).map(|_| ())
     }
 
@@ -107,7 +108,7 @@ impl<'a> Bench<'a> {
             if interrupt::is_requested() {
                 return Ok(false);
             }
-            match self.begin(case, &reference)? {
+            match self.start_case(case, &reference)? {
                 Ok((case, picture)) => {
                     running.push(case);
                     pictures.push(picture);
@@ -118,10 +119,10 @@ impl<'a> Bench<'a> {
         running.iter_mut().zip(reference.flips(&pictures)).for_each(|(case, flip)| case.quality.flip = Some(flip));
         drop((reference, pictures));
         let mut is_whole = true;
-        for round in 0..WARM_UP + MAX_ROUNDS {
+        for round in 0..WARM_UP_ROUNDS + MAX_ROUNDS {
             is_whole = !interrupt::is_requested();
             let is_late = started.elapsed() > budget;
-            if !is_whole || (is_late && round >= WARM_UP + MIN_ROUNDS) {
+            if !is_whole || (is_late && round >= WARM_UP_ROUNDS + MIN_ROUNDS) {
                 break;
             }
             for case in &mut running {
@@ -129,9 +130,9 @@ impl<'a> Bench<'a> {
                 if is_late && case.times.len() >= MIN_ROUNDS {
                     continue;
                 }
-                let taken = self.frame(&mut case.stage, &case.case.shot)?;
-                let Some(Taken { ms, passes }) = taken else { continue };
-                if round >= WARM_UP || ms > SLOW_MS {
+                let taken = self.frame(&mut case.offscreen, &case.case.shot)?;
+                let Some(FrameTimes { ms, passes }) = taken else { continue };
+                if round >= WARM_UP_ROUNDS || ms > SLOW_MS {
                     case.times.push(ms);
                     passes.iter().for_each(|(name, ms)| case.passes.entry(name).or_default().push(*ms));
                 }
@@ -146,10 +147,10 @@ impl<'a> Bench<'a> {
     }
 
     fn reference(&self, group: &Group) -> Result<Reference, Error> {
-        let mut stage = OffscreenRenderer::new(&self.context, false)?;
-        stage.warm_up(&group.reference)?;
-        stage.draw(self.gpu, &group.reference)?;
-        Reference::read(self.gpu, &stage, &group.reference)
+        let mut offscreen = OffscreenRenderer::new(&self.context, false)?;
+        offscreen.warm_up(&group.reference)?;
+        offscreen.draw(self.gpu, &group.reference)?;
+        Reference::read(self.gpu, &offscreen, &group.reference)
     }
 
     fn skip_case(&mut self, suite: Suite, case: &str, reason: String) {
@@ -157,11 +158,11 @@ impl<'a> Bench<'a> {
     }
 
     /// Checks the image of a case before it is measured. The inner `Err` is the reason why the case is left out.
-    fn begin<'c>(
+    fn start_case<'c>(
         &mut self,
         case: &'c Case,
         reference: &Reference,
-    ) -> Result<Result<(Running<'c>, RgbImage), String>, Error> {
+    ) -> Result<Result<(RunningCase<'c>, RgbImage), String>, Error> {
         let longest = self.longest.as_secs_f64() * 1000.0;
         let seconds = |ms: f64| {
             format!("a frame would take about {:.1} s, more than the limit of {:.1} s", ms / 1000.0, longest / 1000.0)
@@ -169,55 +170,55 @@ impl<'a> Bench<'a> {
         if let Some(ms) = self.costs.get(&case.work.0).map(|cost| cost * case.work.1).filter(|&ms| ms > longest) {
             return Ok(Err(seconds(ms)));
         }
-        match is_right(self.gpu, &self.context, &case.shot) {
+        match check_image(self.gpu, &self.context, &case.shot) {
             Ok(Ok(())) => {}
             Ok(Err(reason)) => return Ok(Err(reason)),
             // This device does not support the case.
             Err(Error::Field(error)) => return Ok(Err(error.to_string())),
             Err(error) => return Err(error),
         }
-        let mut stage = OffscreenRenderer::new(&self.context, false)?;
-        stage.warm_up(&case.shot)?;
-        stage.set_timing(self.timing.as_ref())?;
-        match self.frame(&mut stage, &case.shot)? {
+        let mut offscreen = OffscreenRenderer::new(&self.context, false)?;
+        offscreen.warm_up(&case.shot)?;
+        offscreen.set_timing(self.timing.as_ref())?;
+        match self.frame(&mut offscreen, &case.shot)? {
             None => return Ok(Err("the GPU returned no valid timestamps for it".into())),
-            Some(Taken { ms, .. }) if ms > longest => {
+            Some(FrameTimes { ms, .. }) if ms > longest => {
                 self.costs.insert(case.work.0.clone(), ms / case.work.1);
                 return Ok(Err(seconds(ms)));
             }
             Some(_) => {}
         }
-        let (quality, picture) = reference.compare(self.gpu, &stage, &case.shot)?;
-        Ok(Ok((Running { case, stage, quality, times: Vec::new(), passes: BTreeMap::new() }, picture)))
+        let (quality, picture) = reference.compare(self.gpu, &offscreen, &case.shot)?;
+        Ok(Ok((RunningCase { case, offscreen, quality, times: Vec::new(), passes: BTreeMap::new() }, picture)))
     }
 
-    /// Draws a frame; `None` if the GPU returned no valid timestamps in [`MOST_TRIES`] frames.
-    fn frame(&mut self, stage: &mut OffscreenRenderer, shot: &Shot) -> Result<Option<Taken>, Error> {
+    /// Draws a frame; `None` if the GPU returned no valid timestamps in [`MAX_TRIES`] frames.
+    fn frame(&mut self, offscreen: &mut OffscreenRenderer, shot: &Shot) -> Result<Option<FrameTimes>, Error> {
         let Some(timing) = &self.timing else {
-            let _quiet = self.awake.quiet();
-            let ms = stage.draw(self.gpu, shot)?.as_secs_f64() * 1000.0;
-            return Ok(Some(Taken { ms, passes: Vec::new() }));
+            let _pause = self.keepalive.pause();
+            let ms = offscreen.draw(self.gpu, shot)?.as_secs_f64() * 1000.0;
+            return Ok(Some(FrameTimes { ms, passes: Vec::new() }));
         };
-        for _ in 0..MOST_TRIES {
+        for _ in 0..MAX_TRIES {
             let before = timing.latest().map(|times| times.frame);
             let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            stage.record(&mut encoder, shot, &[DebugView::Final])?;
+            offscreen.record(&mut encoder, shot, &[DebugView::Final])?;
             timing.resolve(&mut encoder);
-            let quiet = self.awake.quiet();
+            let pause = self.keepalive.pause();
             self.gpu.submit(encoder)?;
-            drop(quiet);
+            drop(pause);
             let Some(times) = timing.latest().filter(|times| before != Some(times.frame)) else { continue };
             self.discarded += u64::from(times.discarded);
             if times.discarded == 0 {
                 let passes = times.passes.iter().map(|pass| (pass.name, f64::from(pass.ms))).collect();
-                return Ok(Some(Taken { ms: f64::from(times.smoke_ms()), passes }));
+                return Ok(Some(FrameTimes { ms: f64::from(times.smoke_ms()), passes }));
             }
         }
         Ok(None)
     }
 
     /// Builds the row of a case; `None` if nothing was measured.
-    fn row(&self, suite: Suite, mut running: Running<'_>) -> Option<Row> {
+    fn row(&self, suite: Suite, mut running: RunningCase<'_>) -> Option<Row> {
         let gpu_ms = Milliseconds::of(&mut running.times)?;
         let shot = &running.case.shot;
         let system = shot.preset.systems.first()?;
@@ -225,7 +226,7 @@ impl<'a> Bench<'a> {
         let is_forward = settings.path == RenderPath::Forward;
         // Forward smoke is blended directly into the scene colour.
         let format = if is_forward { AccumulationFormat::Rgba16Float } else { settings.accumulate.format };
-        let overdraw = running.stage.renderer().overdraw();
+        let overdraw = running.offscreen.renderer().overdraw();
         let fragments = overdraw.fragments;
         let limit = self.limits.get(&format).map(|ms| ms * fragments).filter(|&ms| ms > 0.0);
         let mut particles = Vec::new();
@@ -241,7 +242,7 @@ impl<'a> Bench<'a> {
             mode: match settings.path {
                 RenderPath::Forward => None,
                 RenderPath::Tiled => Some(settings.accumulate.layers.name().into()),
-                RenderPath::Auto => running.stage.renderer().path_choice(0).map(|choice| choice.path.name().into()),
+                RenderPath::Auto => running.offscreen.renderer().path_choice(0).map(|choice| choice.path.name().into()),
                 _ => Some(settings.diffuse.mode.name().into()),
             },
             technique: Some(settings.technique.name().into()),

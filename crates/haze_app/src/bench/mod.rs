@@ -1,21 +1,22 @@
 //! `haze bench`: measures the cost of smoke on this machine, and the image quality that each saving costs.
 
 mod adapter;
-mod awake;
-mod compare;
-mod csv;
-mod json;
+mod clock_keepalive;
+mod compare_runs;
 mod limits;
 mod measure;
 mod page;
-mod particles;
+mod particle_cpu_time;
 mod quality;
+mod recommendation;
 mod report;
+mod report_csv;
+mod report_json;
 mod run;
 mod soft_particles;
+mod sprite_shots;
 mod suites;
-mod table;
-mod verdict;
+mod terminal_table;
 
 use std::path::{Path, PathBuf};
 
@@ -23,7 +24,7 @@ use clap::{Args, Subcommand};
 use haze::Error;
 use haze::image::write_file;
 
-use super::output::{Failures, Files, write_text};
+use super::output::{Failures, FileChecks, write_text};
 
 #[derive(Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
@@ -40,7 +41,7 @@ enum Command {
     #[command(alias = "soft_particles")]
     SoftParticles(soft_particles::Arguments),
     /// Compare two runs row by row; exits with 1 if the second is slower.
-    Compare(compare::Arguments),
+    Compare(compare_runs::Arguments),
     /// Make the HTML page of an earlier run, or of a run on another machine.
     Page {
         /// JSON report, as `--json` writes it.
@@ -56,14 +57,14 @@ enum Command {
 pub fn run(arguments: &Arguments) -> Result<(), Failures> {
     match &arguments.command {
         Some(Command::SoftParticles(arguments)) => Ok(soft_particles::run(arguments)?),
-        Some(Command::Compare(arguments)) => compare::run(arguments),
+        Some(Command::Compare(arguments)) => compare_runs::run(arguments),
         Some(Command::Page { report, output }) => Ok(make_page(report, output)?),
-        Some(Command::Schema) => Ok(write_text(json::schema())?),
+        Some(Command::Schema) => Ok(write_text(report_json::schema())?),
         None => run::run(&arguments.run),
     }
 }
 
 fn make_page(report: &Path, output: &Path) -> Result<(), Error> {
-    Files::read([report]).write("--output", output, "html")?;
-    write_file(output, page::page(&json::read(report)?).as_bytes())
+    FileChecks::for_inputs([report]).check_output("--output", output, "html")?;
+    write_file(output, page::page(&report_json::read(report)?).as_bytes())
 }

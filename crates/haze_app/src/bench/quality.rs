@@ -24,31 +24,31 @@ pub struct Quality {
 pub struct Reference {
     picture: Image<Vec4>,
     exposure: f32,
-    developed: RgbImage,
+    tonemapped: RgbImage,
     /// View depth of the scene, metres, if the device can read it back.
     depth: Option<Image<f32>>,
 }
 
 impl Reference {
-    /// Reads back what a stage has drawn.
-    pub fn read(gpu: &Headless, stage: &OffscreenRenderer, shot: &Shot) -> Result<Self, Error> {
-        let picture = stage.read(gpu, shot)?;
-        let depth = match stage.linear_depth() {
+    /// Reads back the image that a renderer has drawn.
+    pub fn read(gpu: &Headless, renderer: &OffscreenRenderer, shot: &Shot) -> Result<Self, Error> {
+        let picture = renderer.read(gpu, shot)?;
+        let depth = match renderer.linear_depth() {
             Some(depth) => Some(Image { size: picture.size, texels: gpu.read_r32float(depth)? }),
             None => None,
         };
-        Ok(Self { exposure: exposure(shot), developed: tonemap(&picture, shot), picture, depth })
+        Ok(Self { exposure: exposure(shot), tonemapped: tonemap(&picture, shot), picture, depth })
     }
 
-    /// Compares another stage's image with this one, except for FLIP, which is slow. Also returns the tonemapped image
+    /// Compares another image with this one, except for FLIP, which is slow. Also returns the tonemapped image
     /// for [`Self::flips`].
     pub fn compare(
         &self,
         gpu: &Headless,
-        stage: &OffscreenRenderer,
+        renderer: &OffscreenRenderer,
         shot: &Shot,
     ) -> Result<(Quality, RgbImage), Error> {
-        let picture = stage.read(gpu, shot)?;
+        let picture = renderer.read(gpu, shot)?;
         let exposures = Vec2::new(exposure(shot), self.exposure);
         let apart = PsnrReport::of(&picture, &self.picture, exposures, self.depth.as_ref());
         let finite = |db: f32| db.is_finite().then_some(f64::from(db));
@@ -59,38 +59,39 @@ impl Reference {
 
     /// Returns the FLIP of tonemapped images against this one.
     pub fn flips(&self, pictures: &[RgbImage]) -> Vec<f64> {
-        let pairs: Vec<_> = pictures.iter().map(|picture| [&self.developed, picture]).collect();
+        let pairs: Vec<_> = pictures.iter().map(|picture| [&self.tonemapped, picture]).collect();
         flips(&pairs)
     }
 }
 
 /// Image size at which the GPU is compared with the reference renderer.
-const SMALL: UVec2 = UVec2::new(96, 54);
+const CHECK_SIZE: UVec2 = UVec2::new(96, 54);
 /// Most sprites in that comparison; emitters with more are thinned out.
-const MOST: f32 = 64.0;
+const MAX_SPRITES: f32 = 64.0;
 /// PSNR, dB, below which the two renderers disagree.
-const AGREEMENT: f32 = 40.0;
+const MIN_AGREEMENT_DB: f32 = 40.0;
 
 /// Checks the GPU's image of a shot against the reference renderer. The inner `Err` says what is wrong with it.
-pub fn is_right(gpu: &Headless, context: &OffscreenContext, shot: &Shot) -> Result<Result<(), String>, Error> {
-    let mut shot = Shot { size: SMALL, ..shot.clone() };
+pub fn check_image(gpu: &Headless, context: &OffscreenContext, shot: &Shot) -> Result<Result<(), String>, Error> {
+    let mut shot = Shot { size: CHECK_SIZE, ..shot.clone() };
     for system in &mut shot.preset.systems {
-        let fewer = (MOST / system.emitter.max_alive() as f32).min(1.0);
+        let fewer = (MAX_SPRITES / system.emitter.max_alive() as f32).min(1.0);
         system.emitter.rate *= fewer;
         system.settings.sprite.debug_loop = 1;
         // The fewer sprites cover the same area.
         system.settings.sprite.size /= fewer.sqrt();
     }
-    let mut stage = OffscreenRenderer::new(context, false)?;
-    stage.warm_up(&shot)?;
-    stage.draw(gpu, &shot)?;
-    let drawn = stage.read(gpu, &shot)?;
+    let mut renderer = OffscreenRenderer::new(context, false)?;
+    renderer.warm_up(&shot)?;
+    renderer.draw(gpu, &shot)?;
+    let drawn = renderer.read(gpu, &shot)?;
     if drawn.texels.iter().any(|texel| !texel.is_finite()) {
         return Ok(Err("its image has pixels that are NaN or infinite".into()));
     }
     let exposure = Vec2::splat(exposure(&shot));
     let apart = PsnrReport::of(&drawn, &shot.render_on_cpu()?, exposure, None).psnr;
-    let reason =
-        || format!("its image has {apart:.0} dB PSNR against the CPU renderer; expected at least {AGREEMENT} dB");
-    Ok(if apart < AGREEMENT { Err(reason()) } else { Ok(()) })
+    let reason = || {
+        format!("its image has {apart:.0} dB PSNR against the CPU renderer; expected at least {MIN_AGREEMENT_DB} dB")
+    };
+    Ok(if apart < MIN_AGREEMENT_DB { Err(reason()) } else { Ok(()) })
 }

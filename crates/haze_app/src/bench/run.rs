@@ -10,16 +10,16 @@ use haze::{Error, wgpu};
 use haze_demo::headless::Headless;
 
 use super::adapter::adapter;
-use super::awake::ClockKeepalive;
+use super::clock_keepalive::ClockKeepalive;
 use super::limits;
-use super::measure::Bench;
-use super::particles;
+use super::measure::CaseBench;
+use super::particle_cpu_time;
 use super::report::{Report, VERSION};
 use super::suites::{Group, Suite, groups};
 use crate::interrupt;
 use crate::options::parse_size;
-use crate::output::{Failures, Files};
-use crate::progress::watched;
+use crate::output::{Failures, FileChecks};
+use crate::progress::with_progress;
 
 #[derive(Args)]
 #[group(id = "run")]
@@ -64,22 +64,22 @@ const SHOTS: [Suite; 8] = [
 ];
 
 pub fn run(arguments: &Arguments) -> Result<(), Failures> {
-    let mut files = Files::read::<PathBuf>([]);
+    let mut files = FileChecks::for_inputs::<PathBuf>([]);
     for (option, path, kind) in arguments.outputs() {
-        files.write(option, path, kind)?;
+        files.check_output(option, path, kind)?;
     }
     let features = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES;
     let gpu = Headless::with(wgpu::Limits::default(), features)?;
     interrupt::catch();
-    let awake = ClockKeepalive::new(&gpu)?;
-    let (report, failure) = awake.during(|| measure(arguments, &gpu, &awake));
-    super::table::write(&report)?;
+    let keepalive = ClockKeepalive::new(&gpu)?;
+    let (report, failure) = keepalive.during(|| measure(arguments, &gpu, &keepalive));
+    super::terminal_table::write(&report)?;
     arguments.write(&report)?;
     failure.map_or(Ok(()), |error| Err(error.into()))
 }
 
 /// Returns everything that was measured, and the error that ended the run early, if there was one.
-fn measure(arguments: &Arguments, gpu: &Headless, awake: &ClockKeepalive<'_>) -> (Report, Option<Error>) {
+fn measure(arguments: &Arguments, gpu: &Headless, keepalive: &ClockKeepalive<'_>) -> (Report, Option<Error>) {
     let mut report = Report {
         version: VERSION,
         adapter: adapter(gpu),
@@ -91,8 +91,8 @@ fn measure(arguments: &Arguments, gpu: &Headless, awake: &ClockKeepalive<'_>) ->
     let size =
         arguments.size.unwrap_or(if report.adapter.software { UVec2::new(640, 360) } else { UVec2::new(1280, 720) });
     let longest = Duration::from_millis(if arguments.quick { 1500 } else { 2000 });
-    let mut bench = Bench::new(gpu, awake, longest);
-    let result = bench.measure_paths().and_then(|()| arguments.all(gpu, awake, &mut bench, size));
+    let mut bench = CaseBench::new(gpu, keepalive, longest);
+    let result = bench.measure_paths().and_then(|()| arguments.all(gpu, keepalive, &mut bench, size));
     (report.discarded, report.rows, report.left_out) = (bench.discarded, bench.rows, bench.left_out);
     report.complete = matches!(result, Ok(true));
     let failure = match result {
@@ -121,13 +121,13 @@ impl Arguments {
     fn all(
         &self,
         gpu: &Headless,
-        awake: &ClockKeepalive<'_>,
-        bench: &mut Bench<'_>,
+        keepalive: &ClockKeepalive<'_>,
+        bench: &mut CaseBench<'_>,
         size: UVec2,
     ) -> Result<bool, Error> {
         // All other rows are compared with the limits.
-        let limits = watched("haze: measuring the limits of this adapter".into(), || {
-            limits::measure(gpu, awake, size, self.quick)
+        let limits = with_progress("haze: measuring the limits of this adapter".into(), || {
+            limits::measure(gpu, keepalive, size, self.quick)
         })?;
         (bench.limits, bench.discarded) = (limits.floor, limits.discarded);
         if matches!(self.suite, Suite::All | Suite::Limits) {
@@ -155,13 +155,13 @@ impl Arguments {
                 groups.len(),
                 left.as_secs()
             );
-            if !watched(what, || bench.group(group, budget))? {
+            if !with_progress(what, || bench.group(group, budget))? {
                 return Ok(false);
             }
             if group.suite == Suite::Particles {
                 // The CPU is measured without filler work on the GPU.
-                let _quiet = awake.quiet();
-                let rows = particles::rows(gpu, group)?;
+                let _pause = keepalive.pause();
+                let rows = particle_cpu_time::rows(gpu, group)?;
                 bench.rows.extend(rows);
             }
         }
@@ -171,8 +171,8 @@ impl Arguments {
     fn write(&self, report: &Report) -> Result<(), Error> {
         for (option, path, _) in self.outputs() {
             let text = match option {
-                "--json" => super::json::json(report),
-                "--csv" => super::csv::csv(report),
+                "--json" => super::report_json::json(report),
+                "--csv" => super::report_csv::csv(report),
                 _ => super::page::page(report),
             };
             write_file(path, text.as_bytes())?;

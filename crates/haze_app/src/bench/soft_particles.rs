@@ -11,9 +11,9 @@ use haze::read_only_depth_is_supported;
 use haze::settings::{DepthSource, Technique};
 use haze_demo::shot::Shot;
 
-use crate::cost::{Timer, interleaved, median_of};
+use crate::frame_timer::{FrameTimer, measure_interleaved, median_of};
 use crate::options::{Backend, RunArguments};
-use crate::output::{complain, say};
+use crate::output::{print_error, print_line};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -38,7 +38,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let preset = Preset::parse(path, include_str!("soft_particles.json"))?;
     let shot = Shot::new(preset, path, arguments.run.size)?;
     let backend = arguments.run.backend()?;
-    let mut timer = Timer::new(&backend)?;
+    let mut timer = FrameTimer::new(&backend)?;
     let reads_attached = match &backend {
         Backend::Gpu(gpu) => read_only_depth_is_supported(&gpu.headless.device),
         Backend::Cpu => true,
@@ -47,7 +47,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     for source in [DepthSource::Reduced, DepthSource::Host] {
         for (technique, paper) in TECHNIQUES {
             if source == DepthSource::Host && technique == Technique::Soft && !reads_attached {
-                complain("left out: host soft; this backend cannot sample the depth buffer that it tests against");
+                print_error("left out: host soft; this backend cannot sample the depth buffer that it tests against");
                 continue;
             }
             let mut shot = shot.clone();
@@ -60,10 +60,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
             variants.push(Variant { technique, source, paper, shot });
         }
     }
-    let costs = interleaved(arguments.rounds, variants.len(), |variant| timer.frame(&variants[variant].shot))?;
+    let costs =
+        measure_interleaved(arguments.rounds, variants.len(), |variant| timer.frame_seconds(&variants[variant].shot))?;
 
     let size = arguments.run.size;
-    say!(
+    print_line!(
         "two sprites of size 3.2, drawn {} times, {}x{}, on {}; {}",
         arguments.loops,
         size.x,
@@ -71,13 +72,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         backend.description(),
         median_of(arguments.rounds)
     )?;
-    say!("depth    technique      fps here   spread   / hard   fps NV 2007   / hard")?;
+    print_line!("depth    technique      fps here   spread   / hard   fps NV 2007   / hard")?;
     let mut hard = 1.0;
     for (variant, cost) in variants.iter().zip(&costs) {
         if variant.technique == Technique::Hard {
             hard = cost.median();
         }
-        say!(
+        print_line!(
             "{:<8} {:<12} {:>10.3} {:>8} {:>8.2} {:>13.1} {:>8.2}",
             variant.source.name(),
             variant.technique.name(),

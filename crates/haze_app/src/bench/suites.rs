@@ -1,17 +1,15 @@
 //! Suites of the benchmark: groups of shots that are measured in turn and compared with each other.
 
-use std::path::Path;
-
 use clap::ValueEnum;
 use glam::{UVec2, Vec3};
-use haze::preset::Preset;
 use haze::settings::{
     AccumulationFormat, DepthDownsample, FadeCurve, Layers, LightingResolution, NormalEncoding, Order, RenderPath,
     Settings, Technique, Upsample,
 };
-use haze::sprite::Sprite;
 use haze::{Error, Light, builtin};
 use haze_demo::shot::Shot;
+
+use super::sprite_shots::{BEYOND_IMAGE, CrowdExtent, WITHIN_IMAGE, layers, small_sprites, sprite_count, with_alpha};
 
 /// A suite of measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -77,7 +75,7 @@ fn paths_and_layers() -> impl Iterator<Item = (RenderPath, Layers)> {
 }
 
 /// Name of a path in rows.
-fn name_of((path, layers): (RenderPath, Layers)) -> String {
+fn path_name((path, layers): (RenderPath, Layers)) -> String {
     if path == RenderPath::Tiled { format!("{} {}", path.name(), layers.name()) } else { path.name().into() }
 }
 
@@ -98,50 +96,6 @@ pub fn groups(suite: Suite, size: UVec2, quick: bool) -> Result<Vec<Group>, Erro
     }
 }
 
-/// A shot of `count` sprites as large as the image, each of this amount, among crates.
-fn layers(size: UVec2, count: u32, amount: f32) -> Result<Shot, Error> {
-    let path = Path::new("layers.json");
-    let mut preset = Preset::parse(path, include_str!("soft_particles.json"))?;
-    for system in &mut preset.systems {
-        (system.emitter.rate, system.emitter.amount) = (count as f32, amount);
-        system.emitter.spin = 1.0;
-    }
-    Shot::new(preset, path, size)
-}
-
-/// Number of those sprites that makes so many layers.
-fn sprites_of(layers: u32) -> u32 {
-    // Each covers 0.418 of the smoke's box: transparent parts of its square are not drawn.
-    (layers as f32 / 0.418).round() as u32
-}
-
-/// Mean alpha of what is drawn of a sprite whose amount is 1: of the bounding rectangles of its frames' non-zero
-/// texels.
-pub fn mean_alpha(sprite: &Sprite) -> f32 {
-    let (size, mut sum, mut texels) = (sprite.size(), 0.0, 0.0);
-    for frame in 0..sprite.frame_count() {
-        let (mut low, mut high, mut of_frame) = (UVec2::MAX, UVec2::ZERO, 0.0);
-        for (x, y) in (0..size).flat_map(|y| (0..size).map(move |x| (x, y))) {
-            let alpha = sprite.texel(0, frame, x, y).w;
-            if alpha > 0.0 {
-                (low, high) = (low.min(UVec2::new(x, y)), high.max(UVec2::new(x, y) + 1));
-                of_frame += alpha;
-            }
-        }
-        sum += of_frame;
-        texels += high.saturating_sub(low).as_vec2().element_product();
-    }
-    if texels > 0.0 { sum / texels } else { 0.0 }
-}
-
-/// Changes the amount of the sprites so that their mean alpha is `alpha`.
-fn with_alpha(mut shot: Shot, alpha: f32) -> Shot {
-    for (system, material) in shot.preset.systems.iter_mut().zip(&shot.materials) {
-        system.emitter.amount = alpha / mean_alpha(&material.sprite);
-    }
-    shot
-}
-
 fn changed(shot: &Shot, change: impl Fn(&mut Settings)) -> Shot {
     let mut shot = shot.clone();
     shot.preset.systems.iter_mut().for_each(|system| change(&mut system.settings));
@@ -153,7 +107,7 @@ fn at_scale(path: RenderPath, scale: u32) -> impl Fn(&mut Settings) {
 }
 
 /// The reference of a group: deferred, at full resolution.
-fn full(shot: &Shot) -> Shot {
+fn full_resolution(shot: &Shot) -> Shot {
     changed(shot, at_scale(RenderPath::Raster, 1))
 }
 
@@ -182,7 +136,7 @@ fn scale(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
                 }
             }
         }
-        Ok(Group { suite: Suite::Scale, cases, reference: full(&shot) })
+        Ok(Group { suite: Suite::Scale, cases, reference: full_resolution(&shot) })
     };
     counts.iter().map(group).collect()
 }
@@ -200,73 +154,52 @@ fn overdraw(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
     let alphas: &[f32] = if quick { &[0.1] } else { &[0.02, 0.1, 0.3] };
     let group = |shot: Shot, sprites: String, work: f64| {
         let case = |way: (RenderPath, Layers)| Case {
-            name: format!("{} {sprites}", name_of(way)),
+            name: format!("{} {sprites}", path_name(way)),
             shot: changed(&shot, |settings| {
                 at_scale(way.0, 1)(settings);
                 settings.accumulate.layers = way.1;
             }),
-            work: (format!("overdraw {}", name_of(way)), work),
+            work: (format!("overdraw {}", path_name(way)), work),
         };
-        Group { suite: Suite::Overdraw, cases: paths_and_layers().map(case).collect(), reference: full(&shot) }
+        Group {
+            suite: Suite::Overdraw,
+            cases: paths_and_layers().map(case).collect(),
+            reference: full_resolution(&shot),
+        }
     };
     let large = depths.iter().flat_map(|&deep| alphas.iter().map(move |&alpha| (deep, alpha)));
     let mut groups = Vec::new();
     for (deep, alpha) in large {
-        let shot = with_alpha(layers(size, sprites_of(deep), alpha)?, alpha);
+        let shot = with_alpha(layers(size, sprite_count(deep), alpha)?, alpha);
         groups.push(group(shot, format!("{deep} layers of {alpha}"), f64::from(deep)));
     }
     // Many small sprites, where the cost per sprite matters too.
-    let crowds: &[(u32, f32, f32, Reach)] = if quick {
-        &[(4096, 156.0, 0.1, FILLS)]
+    let crowds: &[(u32, f32, f32, CrowdExtent)] = if quick {
+        &[(4096, 156.0, 0.1, WITHIN_IMAGE)]
     } else {
         &[
-            (1024, 14.0, 0.1, FILLS),
-            (4096, 64.0, 0.1, FILLS),
-            (4096, 64.0, 0.1, GOES_ON),
-            (4096, 156.0, 0.1, FILLS),
-            (4096, 156.0, 0.3, FILLS),
-            (16384, 627.0, 0.1, FILLS),
-            (32768, 1024.0, 0.1, FILLS),
-            (32768, 1024.0, 0.1, GOES_ON),
+            (1024, 14.0, 0.1, WITHIN_IMAGE),
+            (4096, 64.0, 0.1, WITHIN_IMAGE),
+            (4096, 64.0, 0.1, BEYOND_IMAGE),
+            (4096, 156.0, 0.1, WITHIN_IMAGE),
+            (4096, 156.0, 0.3, WITHIN_IMAGE),
+            (16384, 627.0, 0.1, WITHIN_IMAGE),
+            (32768, 1024.0, 0.1, WITHIN_IMAGE),
+            (32768, 1024.0, 0.1, BEYOND_IMAGE),
         ]
     };
-    for &(count, deep, alpha, reach) in crowds {
-        let shot = with_alpha(crowd(size, count, deep, reach)?, alpha);
-        let beyond = if reach.pictures > 1.0 { ", on beyond the picture" } else { "" };
+    for &(count, deep, alpha, extent) in crowds {
+        let shot = with_alpha(small_sprites(size, count, deep, extent)?, alpha);
+        let beyond = if extent.images > 1.0 { ", on beyond the picture" } else { "" };
         groups.push(group(shot, format!("{count} small sprites, {deep} deep, of {alpha}{beyond}"), f64::from(deep)));
     }
     Ok(groups)
 }
 
-/// Extent of a crowd of sprites.
-#[derive(Clone, Copy)]
-struct Reach {
-    /// Extent relative to the image.
-    pictures: f32,
-    /// Mean share of the image that a sprite of `layers` covers, without the parts outside the image.
-    covers: f32,
-}
-
-/// Ends at the edges of the image, where it is thin.
-const FILLS: Reach = Reach { pictures: 1.0, covers: 0.437 };
-/// Extends beyond the image, and is as deep at its edges as elsewhere.
-const GOES_ON: Reach = Reach { pictures: 1.6, covers: 0.265 };
-
-/// A shot of `count` small sprites all over the image, about `deep` layers deep.
-fn crowd(size: UVec2, count: u32, deep: f32, reach: Reach) -> Result<Shot, Error> {
-    let mut shot = layers(size, count, 0.1)?;
-    for system in &mut shot.preset.systems {
-        let extent = Vec3::new(2.0 * reach.pictures, 1.1 * reach.pictures, 0.8);
-        (system.emitter.duration, system.emitter.extent) = (1.0, extent);
-        system.settings.sprite.size *= (deep / (reach.covers * count as f32)).sqrt();
-    }
-    Ok(shot)
-}
-
 fn lights(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
     let counts: &[u32] = if quick { &[1, 8, 64] } else { &[1, 2, 4, 8, 16, 32, 64] };
     let group = |&count: &u32| {
-        let mut shot = layers(size, sprites_of(if quick { 10 } else { 64 }), 0.1)?;
+        let mut shot = layers(size, sprite_count(if quick { 10 } else { 64 }), 0.1)?;
         let lamp = |index: u32| {
             let angle = index as f32 * 2.4;
             let place =
@@ -291,13 +224,13 @@ fn lights(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
                 }
             }
         }
-        Ok(Group { suite: Suite::Lights, cases, reference: full(&shot) })
+        Ok(Group { suite: Suite::Lights, cases, reference: full_resolution(&shot) })
     };
     counts.iter().map(group).collect()
 }
 
 fn soft(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
-    let shot = full(&layers(size, if quick { 4 } else { 16 }, 0.1)?);
+    let shot = full_resolution(&layers(size, if quick { 4 } else { 16 }, 0.1)?);
     let mut cases = Vec::new();
     let mut case = |technique: Technique, curve: FadeCurve| {
         let shot = changed(&shot, |settings| (settings.technique, settings.soft_fade.curve) = (technique, curve));
@@ -307,13 +240,13 @@ fn soft(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
     Technique::ALL.iter().for_each(|&technique| case(technique, FadeCurve::default()));
     let others = FadeCurve::ALL.iter().filter(|&&curve| curve != FadeCurve::default());
     others.for_each(|&curve| case(Technique::Soft, curve));
-    Ok(vec![Group { suite: Suite::Soft, cases, reference: shot }, experiment(size, quick)?])
+    Ok(vec![Group { suite: Suite::Soft, cases, reference: shot }, nv_experiment(size, quick)?])
 }
 
 /// NV's experiment: two big sprites drawn many times, with each of the three depth tests.
-fn experiment(size: UVec2, quick: bool) -> Result<Group, Error> {
+fn nv_experiment(size: UVec2, quick: bool) -> Result<Group, Error> {
     let loops = if quick { 20 } else { 200 };
-    let shot = changed(&full(&layers(size, 2, 0.5)?), |settings| settings.sprite.debug_loop = loops);
+    let shot = changed(&full_resolution(&layers(size, 2, 0.5)?), |settings| settings.sprite.debug_loop = loops);
     let case = |technique: Technique| Case {
         name: format!("{} two sprites {loops} times", technique.name()),
         shot: changed(&shot, |settings| settings.technique = technique),
@@ -337,7 +270,7 @@ fn upsample(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
                 cases.push(Case { name, shot, work: ("upsample".into(), 1.0) });
             }
         }
-        Group { suite: Suite::Upsample, cases, reference: full(&shot) }
+        Group { suite: Suite::Upsample, cases, reference: full_resolution(&shot) }
     };
     Ok(if quick { &[4][..] } else { &[2, 4] }.iter().map(group).collect())
 }
@@ -353,7 +286,7 @@ fn presets(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
                 cases.push(Case { name, shot: changed(&shot, at_scale(path, scale)), work: ("presets".into(), 1.0) });
             }
         }
-        Ok(Group { suite: Suite::Presets, cases, reference: full(&shot) })
+        Ok(Group { suite: Suite::Presets, cases, reference: full_resolution(&shot) })
     };
     builtin::PRESETS.iter().map(|preset| group(preset.name)).collect()
 }
@@ -376,7 +309,7 @@ fn particles(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
             let work = (format!("particles {}", path.name()), f64::from(count));
             cases.push(Case { name, shot: changed(&shot, at_scale(path, 2)), work });
         }
-        Ok(Group { suite: Suite::Particles, cases, reference: full(&shot) })
+        Ok(Group { suite: Suite::Particles, cases, reference: full_resolution(&shot) })
     };
     counts.iter().map(group).collect()
 }
@@ -394,8 +327,8 @@ fn auto(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
             ("4 sprites", layers(size, 4, 0.1)?),
             ("64 sprites", layers(size, 64, 0.1)?),
             ("256 thick sprites", layers(size, 256, 0.3)?),
-            ("1024 small sprites", crowd(size, 1024, 9.3, FILLS)?),
-            ("4096 small sprites", crowd(size, 4096, 103.0, FILLS)?),
+            ("1024 small sprites", small_sprites(size, 1024, 9.3, WITHIN_IMAGE)?),
+            ("4096 small sprites", small_sprites(size, 4096, 103.0, WITHIN_IMAGE)?),
         ];
         for (sprites, shot) in &shots {
             for (&technique, scale) in techniques.iter().flat_map(|technique| [(technique, 1), (technique, 3)]) {
@@ -408,7 +341,7 @@ fn auto(size: UVec2, quick: bool) -> Result<Vec<Group>, Error> {
                     Case { name: format!("{} {what}", path.name()), shot, work: (what, 1.0) }
                 };
                 let cases = [RenderPath::Raster, RenderPath::Tiled, RenderPath::Auto].map(case).into();
-                groups.push(Group { suite: Suite::Auto, cases, reference: full(shot) });
+                groups.push(Group { suite: Suite::Auto, cases, reference: full_resolution(shot) });
             }
         }
     }

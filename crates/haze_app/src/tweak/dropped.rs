@@ -12,7 +12,7 @@ use haze_author::preset::{doubts, without_effect};
 
 use super::platform::{assets, files};
 use super::sprite::source::{detail_of, recipe_of};
-use crate::recipe::six_way_of;
+use crate::bake_job::six_way_path;
 
 /// Detected role of a dropped image.
 pub struct Dropped {
@@ -114,7 +114,7 @@ fn checked(field: &'static str, folder: &Path, name: &str, material: &MaterialNa
             path.to_str().filter(|_| is_there).unwrap_or_default().to_owned()
         };
         let layout = [("columns", columns.to_string()), ("rows", rows.to_string()), ("y_down", y_down.to_string())];
-        fields.extend([("detail", beside(detail_of(name))), ("six_way", beside(six_way_of(name)))]);
+        fields.extend([("detail", beside(detail_of(name))), ("six_way", beside(six_way_path(name)))]);
         fields.extend(layout);
     } else if ["detail", "six_way"].contains(&field) {
         // The image must have the layout of the system's present sprite.

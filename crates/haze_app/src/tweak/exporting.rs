@@ -16,13 +16,13 @@ use haze_demo::shot::Shot;
 use image::RgbImage;
 
 use super::made::Made;
-use super::platform::export::{self, Frames, Watch};
+use super::platform::export::{self, ExportProgress, Frames};
 use super::platform::files::{self, CompressionEffort, write_png};
 use super::platform::worker::Worker;
 use super::session::Session;
-use crate::frames::FrameNames;
+use crate::commands::shade_tree;
+use crate::frame_range::FrameNames;
 use crate::options::Backend;
-use crate::shade_tree;
 use spread::spread;
 
 /// Kind of export.
@@ -148,7 +148,7 @@ impl ExportJob {
                 !progress.is_stopped.load(Ordering::Relaxed) && !ticket.is_cancelled()
             };
             let made = Backend::open(shaders.as_ref())
-                .and_then(|backend| make(&backend, &product, &shot, &order, &place, &Watch::Caller(&go_on)));
+                .and_then(|backend| make(&backend, &product, &shot, &order, &place, &ExportProgress::Callback(&go_on)));
             made.unwrap_or_else(Done::Failed)
         });
     }
@@ -217,16 +217,16 @@ fn make(
     shot: &Shot,
     order: &Order,
     place: &Place,
-    watch: &Watch<'_>,
+    watch: &ExportProgress<'_>,
 ) -> Result<Done, Error> {
     let frames = Frames { range: order.first..=order.last.max(order.first), rate: order.rate };
     let sheet = |name: &str, cells: Vec<(String, Shot)>| {
         let path = place.free(name, ".png");
-        let columns = export::columns(cells.len());
+        let columns = export::column_count(cells.len());
         let size = (shot.size / columns).max(UVec2::ONE);
         let small = |(label, shot): (String, Shot)| (label, Shot { size, ..shot });
         let cells: Vec<_> = cells.into_iter().map(small).collect();
-        let mut sheet = export::sheet(backend, &cells, columns, &path, watch)?;
+        let mut sheet = export::render_sheet(backend, &cells, columns, &path, watch)?;
         sheet.add_footer(&format!("{name}; {}, {}", shot.preset.name, backend.description()));
         Ok(Done::Sheet(sheet.picture, path))
     };
@@ -234,23 +234,23 @@ fn make(
         ExportKind::Image => {
             let path = place.free("", ".png");
             let one = Frames { range: 0..=0, rate: 1.0 };
-            write(path.clone(), export::flipbook(backend, shot, &one, UVec2::ONE, &path, watch)?)
+            write(path.clone(), export::render_flipbook(backend, shot, &one, UVec2::ONE, &path, watch)?)
         }
         ExportKind::Sequence => {
             let folder = place.free("frames", "");
             files::make_folder(&folder)?;
             let names = FrameNames::parse(&folder.join("%04d.png"))?;
-            export::sequence(backend, shot, &frames, &names, CompressionEffort::Quick, watch)?;
+            export::write_sequence(backend, shot, &frames, &names, CompressionEffort::Quick, watch)?;
             Ok(Done::Written(folder))
         }
         ExportKind::Flipbook => {
             export::check_flipbook(shot.size, &frames, order.cells)?;
             let path = place.free("flipbook", ".png");
-            write(path.clone(), export::flipbook(backend, shot, &frames, order.cells, &path, watch)?)
+            write(path.clone(), export::render_flipbook(backend, shot, &frames, order.cells, &path, watch)?)
         }
         ExportKind::Gif => {
             let path = place.free("", ".gif");
-            export::gif(backend, shot, &frames, &path, watch)?;
+            export::write_gif(backend, shot, &frames, &path, watch)?;
             Ok(Done::Written(path))
         }
         ExportKind::DebugView => sheet("shade_tree", shade_tree::stages(shot)),

@@ -60,7 +60,7 @@ use glam::UVec2;
 use haze::Error;
 use haze::settings::set_field;
 
-use super::options::{AssetsArguments, in_option, parse_assignment, parse_size};
+use super::options::{AssetsArguments, parse_assignment, parse_size, with_option};
 use keeping::{Layout, Persistence};
 use open::open;
 use platform::dialog::Dialogs;
@@ -107,7 +107,7 @@ impl Default for Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let mut session = Session::open(&arguments.preset, arguments.assets.folder()?)?;
     for (field, value) in &arguments.set {
-        set_field(&mut session.document.preset, field, value).map_err(|error| in_option("--set", error))?;
+        set_field(&mut session.document.preset, field, value).map_err(|error| with_option("--set", error))?;
     }
     session.document.preset.validate()?;
     session.screenshot = arguments.screenshot.clone();

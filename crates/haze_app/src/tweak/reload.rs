@@ -22,8 +22,8 @@ use super::platform::files::Watcher;
 use super::platform::worker::{Ticket, Worker};
 use super::session::Session;
 use super::sprite::source::detail_of;
-use crate::inputs::picture_files;
-use crate::recipe::recipe_paths;
+use crate::bake_job::recipe_paths;
+use crate::inputs::relative_image_paths;
 
 /// Watches the files of a session.
 pub struct HotReload {
@@ -115,7 +115,7 @@ impl HotReload {
 
     /// Handles changed files and finished loads. Call once a frame.
     pub fn advance(&mut self, session: &mut Session, easel: &Easel) {
-        if let Some(note) = self.watcher.note() {
+        if let Some(note) = self.watcher.take_message() {
             session.messages.say("watch", note);
         }
         let now = asked(session);
@@ -165,7 +165,7 @@ impl HotReload {
     fn watch(&self, session: &Session) {
         let shaders = self.shaders.iter().flat_map(|shaders| shaders.files.iter().cloned());
         let folders = session.folders();
-        let pictures = picture_files(&session.document.preset);
+        let pictures = relative_image_paths(&session.document.preset);
         // The recipe of a sprite also makes its detail image, even if the preset does not name that.
         let beside = pictures.iter().flat_map(|picture| recipe_paths(picture).chain([detail_of(picture)]));
         let beside = beside.flat_map(|file| folders.places(&file).collect::<Vec<_>>());

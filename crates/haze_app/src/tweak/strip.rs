@@ -7,7 +7,7 @@ use haze_demo::shot::Shot;
 
 use super::easel::Easel;
 use super::session::Session;
-use crate::shade_tree::STAGES;
+use crate::commands::shade_tree::STAGES;
 
 /// Height of a label, points.
 const NAME: f32 = 16.0;

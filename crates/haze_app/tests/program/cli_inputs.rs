@@ -16,7 +16,7 @@ fn folder() -> TempDir {
 }
 
 /// Timeout. Nothing here takes a second; waiting for a pipe would never end.
-const PATIENCE: Duration = Duration::from_secs(60);
+const TIMEOUT: Duration = Duration::from_secs(60);
 
 /// Runs a command that must be refused with exit code 2, and returns its one line on stderr.
 fn refusal(folder: &Path, arguments: &[&str]) -> String {
@@ -30,7 +30,7 @@ fn refusal(folder: &Path, arguments: &[&str]) -> String {
         .unwrap();
     let started = Instant::now();
     while child.try_wait().unwrap().is_none() {
-        if started.elapsed() > PATIENCE {
+        if started.elapsed() > TIMEOUT {
             child.kill().unwrap();
             panic!("{arguments:?} does not end");
         }

@@ -16,7 +16,7 @@ use tempfile::TempDir;
 use x11::{Display, Key};
 
 /// Allows one window at a time, because some tests measure time.
-fn alone() -> MutexGuard<'static, ()> {
+fn window_lock() -> MutexGuard<'static, ()> {
     static ONE: Mutex<()> = Mutex::new(());
     ONE.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -65,7 +65,7 @@ fn brightness(picture: &RgbImage) -> f64 {
 
 #[test]
 fn screenshots_follow_settings_and_a_lost_device_changes_nothing() {
-    let _alone = alone();
+    let _lock = window_lock();
     let display = Display::start();
     let (plain, _) = picture(&display, &[], &[]);
     let (bright, taken) = picture(&display, &[], &BRIGHT);
@@ -82,7 +82,7 @@ fn screenshots_follow_settings_and_a_lost_device_changes_nothing() {
 
 #[test]
 fn a_device_lost_twice_ends_the_program_and_keeps_unsaved_work() {
-    let _alone = alone();
+    let _lock = window_lock();
     let (display, folder) = (Display::start(), folder());
     let command = |arguments: &[&str]| {
         haze(folder.path(), &display.name, &[("HAZE_TEST_LOSE_DEVICE", "3,6")], &[&["tweak"], arguments].concat())
@@ -98,7 +98,7 @@ fn a_device_lost_twice_ends_the_program_and_keeps_unsaved_work() {
 
 #[test]
 fn without_a_display_or_an_adapter_one_line_says_what_to_do() {
-    let _alone = alone();
+    let _lock = window_lock();
     let (display, folder) = (Display::start(), folder());
     let text = line(haze(folder.path(), "", &[], &["tweak"]), 2);
     assert!(text.contains("DISPLAY") && text.contains("`haze render`"), "{text}");
@@ -113,7 +113,7 @@ fn without_a_display_or_an_adapter_one_line_says_what_to_do() {
 }
 
 /// Waits for a program, which must end soon and successfully.
-fn ends(mut child: Child) {
+fn wait_for_success(mut child: Child) {
     let start = Instant::now();
     while child.try_wait().unwrap().is_none() && start.elapsed() < Duration::from_secs(20) {
         std::thread::sleep(Duration::from_millis(20));
@@ -124,7 +124,7 @@ fn ends(mut child: Child) {
 }
 
 /// Waits until a condition holds.
-fn until(what: &str, mut is_so: impl FnMut() -> bool) {
+fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
     let start = Instant::now();
     while !is_so() {
         assert!(start.elapsed() < Duration::from_secs(60), "never: {what}");
@@ -134,7 +134,7 @@ fn until(what: &str, mut is_so: impl FnMut() -> bool) {
 
 #[test]
 fn unsaved_work_of_a_killed_window_is_offered_by_the_next_one() {
-    let _alone = alone();
+    let _lock = window_lock();
     let (display, folder) = (Display::start(), folder());
     let (first, second) = (folder.path().join("state/recovery-1.json"), folder.path().join("state/recovery-2.json"));
     let start = || haze(folder.path(), &display.name, &[], &["tweak", "--size", "700x420"]).spawn().unwrap();
@@ -143,7 +143,7 @@ fn unsaved_work_of_a_killed_window_is_offered_by_the_next_one() {
     let window = client.window();
     client.focus(window);
     // Moves the camera until the work is kept, and then once more.
-    until("work is kept", || {
+    wait_until("work is kept", || {
         client.key(&[], Key::Three);
         first.exists()
     });
@@ -157,25 +157,25 @@ fn unsaved_work_of_a_killed_window_is_offered_by_the_next_one() {
     let window = client.window();
     // Searches the bar below the menus for its first button, from the left.
     let mut places = (150..650).step_by(15).cycle();
-    until("the work is offered", || {
+    wait_until("the work is offered", || {
         client.click(places.next().unwrap(), 45);
         !first.exists()
     });
     assert!(Preset::load(&second).unwrap() == kept);
     client.focus(window);
-    until("it is undone", || {
+    wait_until("it is undone", || {
         client.key(&[Key::Control], Key::Z);
         !second.exists()
     });
     client.close(window);
-    ends(child);
+    wait_for_success(child);
     let left: Vec<_> =
         std::fs::read_dir(folder.path().join("state")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(left, ["layout.json"]);
 }
 
 /// CPU time of a program, in clock ticks of a hundredth of a second.
-fn ticks(child: &Child) -> u64 {
+fn cpu_ticks(child: &Child) -> u64 {
     let stat = std::fs::read_to_string(format!("/proc/{}/stat", child.id())).unwrap();
     let fields: Vec<_> = stat.rsplit_once(')').unwrap().1.split_whitespace().collect();
     fields[11..13].iter().map(|field| field.parse::<u64>().unwrap()).sum()
@@ -187,7 +187,7 @@ fn wait() {
 
 #[test]
 fn a_window_of_any_size_runs_idles_and_closes() {
-    let _alone = alone();
+    let _lock = window_lock();
     let (display, folder) = (Display::start(), folder());
     let mut child = haze(folder.path(), &display.name, &[], &["tweak", "--size", "700x420"]).spawn().unwrap();
     let mut client = display.connect();
@@ -200,18 +200,18 @@ fn a_window_of_any_size_runs_idles_and_closes() {
     }
     client.unmap(window);
     wait();
-    let before = ticks(&child);
+    let before = cpu_ticks(&child);
     wait();
-    assert!(ticks(&child) - before < 10, "a hidden window uses CPU time");
+    assert!(cpu_ticks(&child) - before < 10, "a hidden window uses CPU time");
     client.map(window);
     wait();
     // After a while without events, the work that follows a change is done.
     let rests = (0..20).any(|_| {
-        let before = ticks(&child);
+        let before = cpu_ticks(&child);
         wait();
-        ticks(&child) - before <= 1
+        cpu_ticks(&child) - before <= 1
     });
     assert!(rests, "an idle window uses CPU time");
     client.close(window);
-    ends(child);
+    wait_for_success(child);
 }

@@ -1,7 +1,7 @@
 // Measures the best an adapter can do: fragments that fetch texels, blend, and do nothing else.
 
 @group(0) @binding(0) var source: texture_2d<f32>;
-@group(0) @binding(1) var smoothly: sampler;
+@group(0) @binding(1) var linear_sampler: sampler;
 @group(0) @binding(2) var written: texture_storage_2d<rgba16float, write>;
 
 struct Varyings {
@@ -24,13 +24,13 @@ fn constant() -> @location(0) vec4f {
 
 @fragment
 fn one_fetch(in: Varyings) -> @location(0) vec4f {
-    let texel = textureSample(source, smoothly, in.uv);
+    let texel = textureSample(source, linear_sampler, in.uv);
     return vec4f(texel.rgb, 1.0) * (texel.a * 0.1);
 }
 
 @fragment
 fn two_fetches(in: Varyings) -> @location(0) vec4f {
-    let texel = mix(textureSample(source, smoothly, in.uv), textureSample(source, smoothly, in.uv * 0.9 + 0.05), 0.5);
+    let texel = mix(textureSample(source, linear_sampler, in.uv), textureSample(source, linear_sampler, in.uv * 0.9 + 0.05), 0.5);
     return vec4f(texel.rgb, 1.0) * (texel.a * 0.1);
 }
 
@@ -64,7 +64,7 @@ fn blend_in_registers(@builtin(global_invocation_id) at: vec3u) {
     let uv = (vec2f(at.xy) + 0.5) / vec2f(size);
     var sum = vec4f(0.0);
     for (var layer = 0u; layer < layers; layer++) {
-        let texel = textureSampleLevel(source, smoothly, uv + f32(layer) * 0.001, 0.0);
+        let texel = textureSampleLevel(source, linear_sampler, uv + f32(layer) * 0.001, 0.0);
         let colour = vec4f(texel.rgb, 1.0) * (texel.a * 0.1);
         sum = colour + sum * (1.0 - colour.a);
     }

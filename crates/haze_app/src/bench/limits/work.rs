@@ -27,7 +27,7 @@ pub enum Work {
     },
 }
 
-pub struct Bench<'a> {
+pub struct LimitBench<'a> {
     pub gpu: &'a Headless,
     /// A query set of two timestamps and the buffer that they are resolved to; `None` without timestamp queries.
     queries: Option<(wgpu::QuerySet, wgpu::Buffer)>,
@@ -38,7 +38,7 @@ pub struct Bench<'a> {
     pub size: UVec2,
 }
 
-impl<'a> Bench<'a> {
+impl<'a> LimitBench<'a> {
     pub fn new(gpu: &'a Headless, size: UVec2) -> Self {
         let device = &gpu.device;
         let target =
@@ -155,7 +155,7 @@ impl<'a> Bench<'a> {
     }
 }
 
-impl Bench<'_> {
+impl LimitBench<'_> {
     /// Returns true if GPU timestamps measure this work; other work is measured by wall time.
     pub fn is_timed(&self, work: &Work) -> bool {
         let tells = match work {

@@ -8,9 +8,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use haze::settings::{Layers, RenderPath};
 
 use self::chart::{Axis, COLOURS, Chart, Series, escaped, number};
+use super::recommendation::{break_even, recommendation};
 use super::report::{Report, Row};
 use super::suites::Suite;
-use super::verdict::{break_even, sentence};
 
 const STYLE: &str = include_str!("page.css");
 
@@ -19,24 +19,25 @@ pub fn page(report: &Report) -> String {
     let adapter = &report.adapter;
     let software = if adapter.software { " <b>software</b>" } else { "" };
     let partial = if report.complete { "" } else { "<p class=\"partial\">Partial: the run ended early.</p>" };
-    let said = sentence(report).map(|text| format!("<p class=\"verdict\">{}</p>", escaped(&text))).unwrap_or_default();
+    let recommendation =
+        recommendation(report).map(|text| format!("<p class=\"verdict\">{}</p>", escaped(&text))).unwrap_or_default();
     format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
          <title>haze bench: {name}</title><style>{STYLE}</style></head><body><main>\n\
-         <h1>Cost of smoke</h1><p>{name}{software} · {}, {} · wgpu {} · haze {}</p>{partial}{said}\n\
+         <h1>Cost of smoke</h1><p>{name}{software} · {}, {} · wgpu {} · haze {}</p>{partial}{recommendation}\n\
          <div class=\"charts\">{}{}{}{}</div>\n{}{}{}</main></body></html>\n",
         adapter.backend,
         escaped(&adapter.driver),
         adapter.wgpu,
         escaped(&adapter.haze),
-        by_scale(report),
-        by_overdraw(report),
-        by_error(report),
-        by_pass(report),
+        cost_by_scale(report),
+        cost_by_overdraw(report),
+        cost_by_error(report),
+        cost_by_pass(report),
         break_even_table(report),
         rows_table(report),
-        left_out(report),
+        skipped_list(report),
         name = escaped(&adapter.name),
     )
 }
@@ -57,7 +58,7 @@ fn note(row: &Row) -> String {
     format!("{}: {} ms", row.case, number(row.gpu_ms.median))
 }
 
-fn by_scale(report: &Report) -> String {
+fn cost_by_scale(report: &Report) -> String {
     let name = |row: &Row| Some(format!("{} {}, {} sprites", row.path.as_ref()?, row.format.as_ref()?, row.particles?));
     let series = lines(report, Suite::Scale, name).into_iter().map(|(name, rows)| {
         // Forward has no scale: it renders at full resolution.
@@ -74,7 +75,7 @@ fn by_scale(report: &Report) -> String {
     .figure()
 }
 
-fn by_overdraw(report: &Report) -> String {
+fn cost_by_overdraw(report: &Report) -> String {
     // Only sprites as large as the image. Where alpha does not change the cost, only the alpha nearest to 0.1.
     let is_large = |row: &Row| row.layers.zip(row.particles).is_some_and(|(deep, all)| deep > 0.25 * f64::from(all));
     let alphas = report.rows.iter().filter(|row| row.is_of(Suite::Overdraw)).filter_map(|row| row.alpha);
@@ -99,7 +100,7 @@ fn by_overdraw(report: &Report) -> String {
     .figure()
 }
 
-fn by_error(report: &Report) -> String {
+fn cost_by_error(report: &Report) -> String {
     let with_error = |row: &&Row| {
         [Suite::Scale, Suite::Upsample, Suite::Presets].iter().any(|suite| row.is_of(*suite)) && row.flip.is_some()
     };
@@ -138,7 +139,7 @@ fn by_error(report: &Report) -> String {
 }
 
 /// Draws the passes of the rows of suite `scale` with the most sprites, as bars.
-fn by_pass(report: &Report) -> String {
+fn cost_by_pass(report: &Report) -> String {
     let deepest = report.rows.iter().filter(|row| row.is_of(Suite::Scale)).filter_map(|row| row.particles).max();
     let is_shown = |row: &&Row| row.is_of(Suite::Scale) && row.particles == deepest && !row.passes.is_empty();
     let rows: Vec<&Row> = report.rows.iter().filter(is_shown).collect();
@@ -176,7 +177,7 @@ fn break_even_table(report: &Report) -> String {
     if ways.is_empty() {
         return String::new();
     }
-    let row = |way: &super::verdict::BreakEven| {
+    let row = |way: &super::recommendation::BreakEven| {
         let from = way.from_layers.map_or("never".into(), |layers| format!("from {} layers", number(layers)));
         let cells = [
             way.path.clone(),
@@ -223,7 +224,7 @@ fn rows_table(report: &Report) -> String {
     )
 }
 
-fn left_out(report: &Report) -> String {
+fn skipped_list(report: &Report) -> String {
     let line = |left: &super::report::LeftOut| {
         format!("<li>{}: {}: {}</li>", escaped(&left.suite), escaped(&left.case), escaped(&left.reason))
     };

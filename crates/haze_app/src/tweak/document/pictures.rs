@@ -5,8 +5,8 @@ use std::path::Path;
 use haze::Error;
 use haze::preset::{AssetFolders, Preset};
 
-use crate::inputs::picture_files;
-use crate::recipe::recipe_paths;
+use crate::bake_job::recipe_paths;
+use crate::inputs::relative_image_paths;
 use crate::tweak::platform::assets::particle_file_paths;
 use crate::tweak::platform::files;
 
@@ -14,7 +14,7 @@ use crate::tweak::platform::files;
 /// skipped. No file is replaced: if a different file is in the way, the function returns an error before it writes
 /// anything.
 pub fn copy_beside(preset: &Preset, from: &Path, to: &Path) -> Result<(), Error> {
-    let pictures = picture_files(preset);
+    let pictures = relative_image_paths(preset);
     let recipes: Vec<_> = pictures.iter().flat_map(|picture| recipe_paths(picture)).collect();
     let beside = pictures.into_iter().chain(recipes).map(|file| from.join(file));
     let sources = beside.chain(particle_file_paths(&AssetFolders::at(from), preset));

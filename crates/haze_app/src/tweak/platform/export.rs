@@ -1,3 +1,5 @@
 //! Renders and writes images as the command line does.
 
-pub use crate::export::{Frames, Watch, check_flipbook, columns, flipbook, gif, sequence, sheet};
+pub use crate::image_export::{
+    ExportProgress, Frames, check_flipbook, column_count, render_flipbook, render_sheet, write_gif, write_sequence,
+};

@@ -9,7 +9,7 @@ use haze::image::{FileIdentity, MAX_BYTES, write_file};
 use haze::preset::Preset;
 use haze_author::particle_files;
 
-pub use crate::watch::{Stamp, Watcher};
+pub use crate::file_watcher::{Stamp, Watcher};
 pub use haze::image::{CompressionEffort, read_colour_png, read_png, write_png};
 
 /// Reads a preset, and the text that it was read from.

@@ -11,8 +11,8 @@ use haze_author::ramp::response::{DiffuseRamps, LIGHTS, Puff, Response};
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_author::sprite::six_way::BakedSixWay;
 
-use crate::medium::{default_sprite, sprite_recipe};
-use crate::puffs::{Shown, pairs};
+use crate::medium_options::{default_sprite, sprite_recipe};
+use crate::puff_sheet::{ComparedImages, image_pairs};
 use crate::tweak::lights::Turn;
 use crate::tweak::platform::worker::{Ticket, Worker};
 use crate::tweak::session::Session;
@@ -157,7 +157,7 @@ impl Traced {
             None => self.puff.shown(ramps, light),
         };
         let response = self.puff.compare_images(light);
-        let pairs = pairs(&self.puff, &Shown { light: &light, exposure: response.exposure });
+        let pairs = image_pairs(&self.puff, &ComparedImages { light: &light, exposure: response.exposure });
         let side = PATH_TRACE.size;
         let sheet = image::RgbImage::from_fn(side * LIGHTS, 2 * side, |x, y| {
             let pair = &pairs[(x / side) as usize];

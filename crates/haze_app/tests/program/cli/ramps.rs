@@ -40,7 +40,7 @@ fn a_ramp_of_very_many_stops_bakes_quickly() {
 }
 
 /// Runs a command that must succeed, and returns its standard output.
-fn said(folder: &Path, arguments: &[&str]) -> String {
+fn stdout_of(folder: &Path, arguments: &[&str]) -> String {
     let output = haze(folder, arguments);
     assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
     String::from_utf8(output.stdout).unwrap()
@@ -52,11 +52,11 @@ fn every_template_can_be_written_and_baked_and_passes_the_check() {
     for template in TEMPLATES {
         let name = format!("{}_{}", template.role.name(), template.name);
         let recipe = format!("{name}.ramp.json");
-        let line = said(folder.path(), &["ramp", "new", "--template", template.name, "-o", &recipe]);
+        let line = stdout_of(folder.path(), &["ramp", "new", "--template", template.name, "-o", &recipe]);
         assert!(line.starts_with(&format!("{recipe}: {}", template.about)), "{line}");
-        said(folder.path(), &["ramp", "bake", &recipe]);
+        stdout_of(folder.path(), &["ramp", "bake", &recipe]);
         let picture = format!("{name}.png");
-        let checked = said(folder.path(), &["ramp", "check", &recipe, &picture]);
+        let checked = stdout_of(folder.path(), &["ramp", "check", &recipe, &picture]);
         assert_eq!(checked, format!("{recipe}: good\n{picture}: good\n"));
     }
     // Existing files are not replaced.
@@ -73,17 +73,17 @@ fn an_imported_image_bakes_back_within_the_stated_error() {
     let folder = folder();
     for (name, error) in [("specular_halo", 2.0), ("diffuse_dusk", 2.0)] {
         let source = format!("{}/../../ramps/{name}.png", env!("CARGO_MANIFEST_DIR"));
-        let line = said(folder.path(), &["ramp", "import", &source, "-o", "mine.ramp.json", "--error", "2"]);
+        let line = stdout_of(folder.path(), &["ramp", "import", &source, "-o", "mine.ramp.json", "--error", "2"]);
         let stated: f32 = line.rsplit("at most ").next().unwrap().split('/').next().unwrap().parse().unwrap();
         assert!(line.starts_with("mine.ramp.json: ") && stated <= error, "{line}");
-        said(folder.path(), &["ramp", "bake", "mine.ramp.json"]);
+        stdout_of(folder.path(), &["ramp", "bake", "mine.ramp.json"]);
         let read = |path: &Path| haze::image::read_png(path).unwrap().into_rgb16();
         let (before, after) = (read(source.as_ref()), read(&folder.path().join("mine.png")));
         let off = before.iter().zip(after.iter()).map(|(a, b)| a.abs_diff(*b)).max().unwrap();
         assert!((f32::from(off) / 257.0 - stated).abs() < 0.06, "{line}: {off}");
     }
     fs::write(folder.path().join("a.txt"), "0 (0 0 0)\n1 (1 1 1)\n").unwrap();
-    let line = said(folder.path(), &["ramp", "import", "a.txt", "-o", "a.ramp.json"]);
+    let line = stdout_of(folder.path(), &["ramp", "import", "a.txt", "-o", "a.ramp.json"]);
     assert_eq!(line, "a.ramp.json: 2 stops, at most 0.5/255 off\n");
     let line = refusal(folder.path(), &["ramp", "import", "a.txt", "-o", "a.txt"]);
     assert!(line.contains("expected a name that ends in .ramp.json"), "{line}");
@@ -92,7 +92,7 @@ fn an_imported_image_bakes_back_within_the_stated_error() {
     assert_eq!(line, "haze: a.png: not a PNG file; export it as PNG\n");
     let line = refusal(folder.path(), &["ramp", "import", "a.txt", "-o", "a.ramp.json", "--error=-1"]);
     assert_eq!(line, "haze: error: -1 is not valid; expected 1 to 64 steps of 255\n");
-    assert_eq!(said(folder.path(), &["ramp", "bake", "a.ramp.json"]), "a.png: 256x1\n");
+    assert_eq!(stdout_of(folder.path(), &["ramp", "bake", "a.ramp.json"]), "a.png: 256x1\n");
 }
 
 #[test]
@@ -130,12 +130,12 @@ fn ramp_check_reports_findings_and_exits_with_1() {
 #[test]
 fn a_ramp_is_shown_as_text_and_as_an_image() {
     let folder = folder();
-    said(folder.path(), &["ramp", "new", "--template", "hard_toon", "-o", "toon.ramp.json"]);
-    let text = said(folder.path(), &["ramp", "show", "toon.ramp.json"]);
+    stdout_of(folder.path(), &["ramp", "new", "--template", "hard_toon", "-o", "toon.ramp.json"]);
+    let text = stdout_of(folder.path(), &["ramp", "show", "toon.ramp.json"]);
     // Standard output is not a terminal: no colours, but the curve and the stops.
     assert!(!text.contains('\u{1b}') && text.contains('█'), "{text}");
     assert!(text.starts_with("toon.ramp.json: 256x1\n") && text.ends_with("0.720  #f6efe2  constant\n"), "{text}");
-    said(folder.path(), &["ramp", "show", "toon.ramp.json", "-o", "toon.png"]);
+    stdout_of(folder.path(), &["ramp", "show", "toon.ramp.json", "-o", "toon.png"]);
     let picture = haze::image::read_png(&folder.path().join("toon.png")).unwrap().into_rgb8();
     assert_eq!(picture.get_pixel(100, 40).0, [0x2b, 0x2a, 0x3a]);
     assert_eq!(picture.get_pixel(540, 40).0, [0xf6, 0xef, 0xe2]);
@@ -145,7 +145,7 @@ fn a_ramp_is_shown_as_text_and_as_an_image() {
 
 /// Runs a command on a terminal and returns its output.
 #[cfg(target_os = "linux")]
-fn said_to_a_terminal(folder: &Path, arguments: &str, no_color: &str) -> String {
+fn terminal_output_of(folder: &Path, arguments: &str, no_color: &str) -> String {
     let command = format!("{} {arguments}", env!("CARGO_BIN_EXE_haze"));
     let script = Command::new("script")
         .args(["-qec", &command, "/dev/null"])
@@ -159,10 +159,10 @@ fn said_to_a_terminal(folder: &Path, arguments: &str, no_color: &str) -> String 
 #[test]
 fn a_terminal_shows_colours_unless_no_color_is_set() {
     let folder = folder();
-    said(folder.path(), &["ramp", "new", "--template", "hard_toon", "-o", "toon.ramp.json"]);
-    let coloured = said_to_a_terminal(folder.path(), "ramp show toon.ramp.json", "");
+    stdout_of(folder.path(), &["ramp", "new", "--template", "hard_toon", "-o", "toon.ramp.json"]);
+    let coloured = terminal_output_of(folder.path(), "ramp show toon.ramp.json", "");
     assert!(coloured.contains("\u{1b}[38;2;43;42;58;48;2;43;42;58m"), "{coloured:?}");
-    let plain = said_to_a_terminal(folder.path(), "ramp show toon.ramp.json", "1");
+    let plain = terminal_output_of(folder.path(), "ramp show toon.ramp.json", "1");
     assert!(!plain.contains('\u{1b}') && plain.contains("#f6efe2"), "{plain:?}");
 }
 
@@ -170,19 +170,19 @@ fn a_terminal_shows_colours_unless_no_color_is_set() {
 fn ramp_sheet_renders_a_shot_with_every_ramp_of_a_folder() {
     let folder = folder();
     let new = |template: &str, name: &str| {
-        said(folder.path(), &["ramp", "new", "--template", template, "-o", &format!("ramps/{name}.ramp.json")]);
+        stdout_of(folder.path(), &["ramp", "new", "--template", template, "-o", &format!("ramps/{name}.ramp.json")]);
     };
     fs::create_dir(folder.path().join("ramps")).unwrap();
     new("soot", "diffuse_soot");
     new("sunset_backlight", "mine");
     new("wide_glow", "specular_wide");
     // This recipe has a PNG already, which is what is loaded.
-    said(folder.path(), &["ramp", "bake", "ramps/mine.ramp.json"]);
+    stdout_of(folder.path(), &["ramp", "bake", "ramps/mine.ramp.json"]);
     fs::write(folder.path().join("ramps/mine.ramp.json"), "{").unwrap();
     fs::write(folder.path().join("ramps/notes.txt"), "").unwrap();
     let sheet = |arguments: &[&str]| {
         let fixed = ["ramp", "sheet", "fence", "--backend", "cpu", "-o", "sheet.png"];
-        said(folder.path(), &[&fixed[..], arguments].concat());
+        stdout_of(folder.path(), &[&fixed[..], arguments].concat());
         haze::image::read_png(&folder.path().join("sheet.png")).unwrap().to_rgb8()
     };
     // The image above the strip of the ramp.
@@ -190,13 +190,13 @@ fn ramp_sheet_renders_a_shot_with_every_ramp_of_a_folder() {
     let render = |sets: &[&str]| {
         let fixed = ["render", "fence", "--backend", "cpu", "--size", "48x27", "--assets", "ramps", "-o", "one.png"];
         let sets: Vec<_> = sets.iter().flat_map(|set| ["--set", set]).collect();
-        said(folder.path(), &[&fixed[..], &sets].concat());
+        stdout_of(folder.path(), &[&fixed[..], &sets].concat());
         above(&haze::image::read_png(&folder.path().join("one.png")).unwrap().to_rgb8(), 0, 0)
     };
     let cell = |sheet: &image::RgbImage, x: u32| above(sheet, 12 + x * 60, 40);
     // Two images per row, sorted by name.
     let diffuse = sheet(&["--ramps", "ramps", "--role", "diffuse", "--size", "96x54"]);
-    said(folder.path(), &["ramp", "bake", "ramps/diffuse_soot.ramp.json"]);
+    stdout_of(folder.path(), &["ramp", "bake", "ramps/diffuse_soot.ramp.json"]);
     assert!(cell(&diffuse, 0) == render(&["diffuse_ramp=diffuse_soot.png"]));
     assert!(cell(&diffuse, 1) == render(&["diffuse_ramp=mine.png"]));
     // The strip of the ramp below: 2 of 27 lines.
@@ -238,7 +238,7 @@ fn a_blank_of_every_role_has_labelled_axes() {
     let folder = folder();
     for role in Role::ALL {
         let name = format!("{}_mine.png", role.name());
-        let line = said(folder.path(), &["ramp", "new", "--blank", role.name(), "-o", &name]);
+        let line = stdout_of(folder.path(), &["ramp", "new", "--blank", role.name(), "-o", &name]);
         let size = if matches!(role, Role::Specular | Role::Backlight) { "512x256" } else { "512x64" };
         assert_eq!(line, format!("{name}: a {} ramp to paint over, {size}\n", role.name()));
         // Text at both ends: without it, a ramp changes little from one line to the next.
@@ -265,7 +265,7 @@ fn ramps_are_fitted_to_path_traced_smoke() {
     let puff = ["--size", "16", "--samples", "8"];
     let fit = ["ramp", "fit", "-o", "lit.ramp.json"];
     let both = ["--medium", "dust", "--backlight", "against.ramp.json", "--sheet", "sheet.png"];
-    let told = said(folder.path(), &[&fit[..], &puff, &both].concat());
+    let told = stdout_of(folder.path(), &[&fit[..], &puff, &both].concat());
     // First the default ramp, then the fitted one.
     let error = |name: &str| -> f32 {
         let line = told.lines().find(|line| line.starts_with(name)).unwrap();
@@ -298,7 +298,7 @@ fn ramps_are_fitted_to_path_traced_smoke() {
 fn sprite_light_path_traces_a_sprite() {
     let folder = folder();
     let light = ["sprite", "light", "ball", "--medium", "milk", "--size", "16", "--samples", "4", "-o", "a.png"];
-    let told = said(folder.path(), &[&light[..], &["--volume", "ball.vol"]].concat());
+    let told = stdout_of(folder.path(), &[&light[..], &["--volume", "ball.vol"]].concat());
     assert_eq!(told.lines().count(), 17, "{told}");
     assert_eq!(haze::image::read_png(&folder.path().join("a.png")).unwrap().height(), 212);
     let grid = fs::read(folder.path().join("ball.vol")).unwrap();
@@ -324,10 +324,10 @@ fn a_file_of_another_kind_is_refused_with_the_right_command() {
         ("sprite", "a.json", "a preset: use `haze preset check`"),
         ("sprite", "broken.sprite.json", "a sprite recipe: use `haze sprite bake`"),
     ] {
-        let said = refusal(folder.path(), &[command, "check", file]);
+        let stdout_of = refusal(folder.path(), &[command, "check", file]);
         assert!(
-            said.contains(&format!("{file} is not valid; expected ")) && said.contains(is),
-            "{command} {file}: {said}"
+            stdout_of.contains(&format!("{file} is not valid; expected ")) && stdout_of.contains(is),
+            "{command} {file}: {stdout_of}"
         );
     }
     // A broken file of the right kind and a missing file keep their own errors.

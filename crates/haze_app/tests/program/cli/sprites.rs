@@ -1,7 +1,10 @@
 //! `haze sprite`: the authoring commands.
 
 use std::fs;
+use std::path::Path;
 use std::time::{Duration, Instant};
+
+use tempfile::TempDir;
 
 use super::{folder, haze, refusal, stderr};
 
@@ -109,19 +112,28 @@ fn images_of_other_kinds_are_imported_as_sprites() {
     assert!(text.contains("expected a file that is not also an input"), "{text}");
 }
 
-#[test]
-fn six_way_maps_are_baked_exported_and_imported_again() {
+/// Runs a command that must succeed, and returns its standard output.
+fn stdout_of(folder: &Path, arguments: &[&str]) -> String {
+    let output = haze(folder, arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Returns a folder with the sprite `mine` and its six-way maps, and the output of the bake.
+fn folder_with_six_way_maps() -> (TempDir, String) {
     let folder = folder();
-    let said = |arguments: &[&str]| {
-        let output = haze(folder.path(), arguments);
-        assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
-        String::from_utf8(output.stdout).unwrap()
-    };
     let recipe =
         include_str!("../../../../../tests/corpus/sprite/good_first").replace("\"version\": 1", "\"version\": 2");
     let size = recipe.lines().find(|line| line.contains("\"size\"")).unwrap();
     fs::write(folder.path().join("mine.sprite.json"), recipe.replace(size, "\"size\": 16,")).unwrap();
-    let text = said(&["sprite", "bake", "mine.sprite.json", "--six-way", "steam", "--samples", "4"]);
+    let bake = ["sprite", "bake", "mine.sprite.json", "--six-way", "steam", "--samples", "4"];
+    let text = stdout_of(folder.path(), &bake);
+    (folder, text)
+}
+
+#[test]
+fn six_way_maps_are_baked_and_rendered() {
+    let (folder, text) = folder_with_six_way_maps();
     assert!(
         text.starts_with("mine.png: 64x32\nmine.detail.png: 16x8\nmine.six_way.png: 64x64\n  to look like steam: "),
         "{text}"
@@ -133,26 +145,33 @@ fn six_way_maps_are_baked_exported_and_imported_again() {
             "material": {"sprite": "mine.png", "six_way": "mine.six_way.png", "columns": 4, "rows": 2}}]}"#,
     )
     .unwrap();
-    said(&["preset", "check", "own.json"]);
-    said(&["render", "own.json", "--size", "64x36", "--backend", "cpu", "-o", "lit.png"]);
-    // Export and import give the same light, within one of its steps.
+    stdout_of(folder.path(), &["preset", "check", "own.json"]);
+    stdout_of(folder.path(), &["render", "own.json", "--size", "64x36", "--backend", "cpu", "-o", "lit.png"]);
+}
+
+#[test]
+fn exported_six_way_maps_are_imported_with_the_same_light() {
+    let (folder, _) = folder_with_six_way_maps();
     for packing in ["unity", "rlt_bbf"] {
-        said(&["sprite", "export", "mine.six_way.png", "--to", packing, "-o", "a.png", "b.png"]);
+        stdout_of(folder.path(), &["sprite", "export", "mine.six_way.png", "--to", packing, "-o", "a.png", "b.png"]);
         let from = format!("six_way_{packing}");
-        let text = said(&[
-            "sprite",
-            "import",
-            "a.png",
-            "b.png",
-            "--from",
-            &from,
-            "-o",
-            "again.png",
-            "--columns",
-            "4",
-            "--rows",
-            "2",
-        ]);
+        let text = stdout_of(
+            folder.path(),
+            &[
+                "sprite",
+                "import",
+                "a.png",
+                "b.png",
+                "--from",
+                &from,
+                "-o",
+                "again.png",
+                "--columns",
+                "4",
+                "--rows",
+                "2",
+            ],
+        );
         assert!(text.contains("again.six_way.png: the light maps, for lighting six_way"), "{text}");
         let [first, again] = ["mine", "again"]
             .map(|name| image::open(folder.path().join(format!("{name}.six_way.png"))).unwrap().to_rgba8());
@@ -162,8 +181,14 @@ fn six_way_maps_are_baked_exported_and_imported_again() {
         };
         let seen = first.pixels().zip(again.pixels()).filter(|(texel, _)| texel.0[3] > 0);
         let most = seen.map(|(a, b)| apart(a, b)).fold(0.0, f32::max);
+        // The same light, within one of its steps.
         assert!(most < 1.5 / 255.0, "{packing}: {most}");
     }
+}
+
+#[test]
+fn six_way_options_and_files_that_do_not_fit_are_refused() {
+    let (folder, _) = folder_with_six_way_maps();
     for (arguments, expected) in [
         (
             &["bake", "mine.sprite.json", "--albedo", "0.5"][..],

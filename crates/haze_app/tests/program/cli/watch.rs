@@ -12,9 +12,9 @@ use std::time::Duration;
 use super::{MOTIF, folder, haze, refusal};
 
 /// Timeout, long enough for a busy machine.
-const LATE: Duration = Duration::from_secs(20);
+const TIMEOUT: Duration = Duration::from_secs(20);
 /// Time after which no further line is expected.
-const STILL: Duration = Duration::from_millis(700);
+const QUIET_TIME: Duration = Duration::from_millis(700);
 
 /// A running `haze ramp watch`, and the lines that it prints.
 struct Watching {
@@ -41,13 +41,13 @@ impl Watching {
 
     /// Waits for one line, and checks that no other follows.
     fn says(&self, line: &str, what: &str) {
-        let said = self.lines.recv_timeout(LATE).unwrap_or_default();
+        let said = self.lines.recv_timeout(TIMEOUT).unwrap_or_default();
         assert!(said.starts_with(line), "{what}: {said}");
         self.is_still(what);
     }
 
     fn is_still(&self, what: &str) {
-        let more = self.lines.recv_timeout(STILL).ok();
+        let more = self.lines.recv_timeout(QUIET_TIME).ok();
         assert_eq!(more, None, "{what}");
     }
 }
@@ -77,7 +77,7 @@ fn every_way_of_saving_bakes_once() {
     save("a.ramp.json", 1);
     save("b.ramp.json", 1);
     let watching = Watching::new(folder.path(), &["a.ramp.json", "./b.ramp.json"]);
-    let mut first = [(); 2].map(|()| watching.lines.recv_timeout(LATE).unwrap());
+    let mut first = [(); 2].map(|()| watching.lines.recv_timeout(TIMEOUT).unwrap());
     first.sort();
     assert_eq!(first, ["./b.png: 2x1", "a.png: 2x1"]);
     let ways: [(&str, &dyn Fn()); 4] = [

@@ -80,7 +80,7 @@ impl Client {
         let root = word(&setup, 32 + vendor + 8 * usize::from(setup[21]));
         let mut client = Self { stream, root, xtest: 0 };
         let name = *b"XTEST\0\0\0";
-        let answer = client.ask(&request(98, 0, &[5, word(&name, 0), word(&name, 4)]));
+        let answer = client.request_reply(&request(98, 0, &[5, word(&name, 0), word(&name, 4)]));
         assert_eq!(answer[8], 1, "the display has no XTEST");
         client.xtest = answer[9];
         client
@@ -91,7 +91,7 @@ impl Client {
     }
 
     /// Sends a request and returns its reply.
-    fn ask(&mut self, request: &[u8]) -> Vec<u8> {
+    fn request_reply(&mut self, request: &[u8]) -> Vec<u8> {
         self.send(request);
         loop {
             let mut answer = vec![0; 32];
@@ -116,17 +116,17 @@ impl Client {
         let mut request = request(16, 0, &words);
         // The length of the name without padding.
         request[4] = padded.trim_end_matches('\0').len() as u8;
-        word(&self.ask(&request), 8)
+        word(&self.request_reply(&request), 8)
     }
 
     /// Waits for a visible window and returns it.
     pub fn window(&mut self) -> u32 {
         let start = Instant::now();
         while start.elapsed() < Duration::from_secs(60) {
-            let tree = self.ask(&request(15, 0, &[self.root]));
+            let tree = self.request_reply(&request(15, 0, &[self.root]));
             let count = usize::from(u16::from_le_bytes([tree[16], tree[17]]));
             let children: Vec<_> = (0..count).map(|index| word(&tree, 32 + 4 * index)).collect();
-            let is_seen = |window: &u32| self.ask(&request(3, 0, &[*window]))[26] == 2;
+            let is_seen = |window: &u32| self.request_reply(&request(3, 0, &[*window]))[26] == 2;
             if let Some(window) = children.into_iter().find(is_seen) {
                 return window;
             }

@@ -1,0 +1,172 @@
+//! Recipes, and the images that are baked from them.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use haze::image::{CompressionEffort, write_png};
+use haze::{Error, FieldError};
+use haze_author::noise::NoiseRecipe;
+use haze_author::ramp::bake::RampRecipe;
+use haze_author::ramp::motif::MotifRecipe;
+use haze_author::sprite::bake::SpriteRecipe;
+use image::DynamicImage;
+
+use super::file_kind::recipe_kinds;
+use super::output::{Failures, FileChecks, print_line};
+use super::progress::{with_changing_progress, with_progress};
+
+/// Kinds of recipes that a command takes.
+pub struct RecipeKinds {
+    /// Valid file names, for messages.
+    expected: &'static str,
+    /// Loader by kind, which is `ramp` for `fire.ramp.json`.
+    load: fn(&str) -> Option<Load>,
+}
+
+type Load = fn(&Path) -> Result<Recipe, Error>;
+
+pub const RAMPS: RecipeKinds = RecipeKinds {
+    expected: "a *.ramp.json or *.motif.json file",
+    load: |kind| match kind {
+        "ramp" => Some(|path| RampRecipe::load(path).map(Recipe::Ramp)),
+        "motif" => Some(|path| MotifRecipe::load(path).map(Recipe::Motif)),
+        _ => None,
+    },
+};
+
+pub const SPRITES: RecipeKinds = RecipeKinds {
+    expected: "a *.sprite.json or *.noise.json file",
+    load: |kind| match kind {
+        "sprite" => Some(|path| SpriteRecipe::load(path).map(Recipe::Sprite)),
+        "noise" => Some(|path| NoiseRecipe::load(path).map(Recipe::Noise)),
+        _ => None,
+    },
+};
+
+impl RecipeKinds {
+    /// Returns the loader for a file name.
+    ///
+    /// # Errors
+    /// If the name is of none of these kinds.
+    pub fn find(&self, path: &Path) -> Result<Load, Error> {
+        let is_json = path.extension().is_some_and(|extension| extension == "json");
+        let kind = recipe_stem(path).extension().filter(|_| is_json).and_then(OsStr::to_str);
+        let refuse = || FieldError::new("recipe", path.display(), self.expected).into();
+        kind.and_then(self.load).ok_or_else(refuse)
+    }
+}
+
+/// Returns the possible recipes of an image: `fire.ramp.json`, and so on, for `fire.png`.
+pub fn recipe_paths(picture: &Path) -> impl Iterator<Item = PathBuf> {
+    recipe_kinds().map(|kind| picture.with_extension(format!("{kind}.json")))
+}
+
+/// Name without `.json`: `fire.ramp` for `fire.ramp.json`.
+fn recipe_stem(path: &Path) -> &Path {
+    Path::new(path.file_stem().unwrap_or_default())
+}
+
+/// Returns the path of the image of a ramp or motif recipe.
+pub fn image_path(path: &Path) -> PathBuf {
+    path.with_file_name(recipe_stem(path).with_extension("png"))
+}
+
+/// Returns the path of a sprite's six-way maps: `smoke.six_way.png` for `smoke.png`.
+pub fn six_way_path(picture: &Path) -> PathBuf {
+    picture.with_extension("six_way.png")
+}
+
+pub enum Recipe {
+    Ramp(RampRecipe),
+    Motif(MotifRecipe),
+    Sprite(SpriteRecipe),
+    Noise(NoiseRecipe),
+}
+
+impl Recipe {
+    /// Extensions of the images, in place of the recipe's `KIND.json`.
+    fn extensions(&self) -> &'static [&'static str] {
+        match self {
+            Self::Sprite(_) => &["png", "detail.png"],
+            _ => &["png"],
+        }
+    }
+
+    /// Number of frames that are baked one by one.
+    fn frame_count(&self) -> u32 {
+        if let Self::Sprite(recipe) = self { recipe.frame_count() } else { 1 }
+    }
+
+    /// Bakes one image per extension. `progress` gets the number of finished frames.
+    fn bake(&self, progress: impl Fn(u32)) -> Result<Vec<DynamicImage>, FieldError> {
+        Ok(match self {
+            Self::Ramp(recipe) => vec![recipe.bake()?],
+            Self::Motif(recipe) => vec![recipe.bake()?],
+            Self::Noise(recipe) => vec![recipe.bake()?.into()],
+            Self::Sprite(recipe) => {
+                let baked = recipe.bake(|frames| {
+                    progress(frames);
+                    Ok::<_, FieldError>(())
+                })?;
+                vec![baked.picture.into(), baked.detail.into()]
+            }
+        })
+    }
+}
+
+/// A valid recipe, with the files that its images go to.
+pub struct BakeJob<'a> {
+    path: &'a Path,
+    recipe: Recipe,
+    outputs: Vec<PathBuf>,
+}
+
+impl<'a> BakeJob<'a> {
+    pub fn load(path: &'a Path, kinds: &RecipeKinds, files: &mut FileChecks) -> Result<Self, Error> {
+        let recipe = kinds.find(path)?(path)?;
+        let output = |extension| path.with_file_name(recipe_stem(path).with_extension(extension));
+        let outputs: Vec<_> = recipe.extensions().iter().map(output).collect();
+        outputs.iter().try_for_each(|output| files.check_output("output", output, "png"))?;
+        Ok(Self { path, recipe, outputs })
+    }
+
+    /// Writes the images, and prints a line for each.
+    pub fn bake(&self) -> Result<(), Error> {
+        let (path, done, count) = (self.path.display(), AtomicU32::new(0), self.recipe.frame_count());
+        let what = || match count {
+            1 => format!("haze: baking {path}"),
+            _ => format!("haze: baking {path}, frame {} of {count}", done.load(Ordering::Relaxed) + 1),
+        };
+        let pictures =
+            with_changing_progress(what, || self.recipe.bake(|frames| done.store(frames, Ordering::Relaxed)))?;
+        for (picture, output) in pictures.iter().zip(&self.outputs) {
+            with_progress(format!("haze: writing {}", output.display()), || {
+                write_png(output, picture, CompressionEffort::Small)
+            })?;
+            print_line!("{}: {}x{}", output.display(), picture.width(), picture.height())?;
+        }
+        Ok(())
+    }
+}
+
+/// Bakes all recipes if every one of them is valid.
+pub fn bake_all(recipes: &[PathBuf], kinds: &RecipeKinds) -> Result<(), Failures> {
+    let mut files = FileChecks::for_inputs(recipes);
+    let (jobs, failures) = Failures::of_each(recipes, |path| BakeJob::load(path, kinds, &mut files));
+    failures.into_result()?;
+    jobs.iter().try_for_each(BakeJob::bake).map_err(Failures::from)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_recipe_kind_is_baked_by_one_command() {
+        for recipe in recipe_paths(Path::new("a/fire.png")) {
+            let is_known = [&RAMPS, &SPRITES].map(|kinds| kinds.find(&recipe).is_ok());
+            assert!(is_known.contains(&true), "{}", recipe.display());
+        }
+    }
+}

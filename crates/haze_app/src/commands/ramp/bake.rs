@@ -1,0 +1,19 @@
+//! `haze ramp bake`: bakes ramp and motif recipes to PNGs.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::bake_job::{RAMPS, bake_all};
+use crate::output::Failures;
+
+#[derive(Args)]
+pub struct Arguments {
+    /// `*.ramp.json` and `*.motif.json` files.
+    #[arg(required = true)]
+    recipes: Vec<PathBuf>,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failures> {
+    bake_all(&arguments.recipes, &RAMPS)
+}

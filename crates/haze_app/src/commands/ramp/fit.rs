@@ -1,0 +1,85 @@
+//! `haze ramp fit`: fits ramps to path-traced smoke.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use haze::image::{CompressionEffort, write_png};
+use haze::ramp::Ramp;
+use haze::{Error, builtin};
+use haze_author::ramp::bake::RampRecipe;
+use haze_author::ramp::response::{DiffuseRamps, FittedRamps, Puff, Shape};
+
+use super::{check_recipe_output, write_recipe};
+use crate::bake_job::image_path;
+use crate::medium_options::{MediumArguments, PathTraceArguments, default_sprite, sprite_recipe};
+use crate::output::{FileChecks, print_line};
+use crate::puff_error::print_ramp_error;
+use crate::puff_sheet::{ComparedImages, comparison_sheet};
+
+#[derive(Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    medium: MediumArguments,
+    /// Sprite that shapes the puff: a `*.sprite.json` file, or the name of a built-in sprite.
+    #[arg(long, default_value_os_t = default_sprite())]
+    sprite: PathBuf,
+    #[command(flatten)]
+    quality: PathTraceArguments,
+    /// Stops per row.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(2..=64), default_value_t = Shape::default().stops)]
+    stops: u32,
+    /// Rows along the amount axis; 1 for a ramp of one axis.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=16), default_value_t = Shape::default().rows)]
+    rows: u32,
+    /// Recipe to write, with its PNG beside it: the ramp for light from all sides, or with --backlight only from the
+    /// viewer's side.
+    #[arg(short, long, value_name = "NAME.ramp.json")]
+    output: PathBuf,
+    /// Recipe to write of the ramp for light from behind, `backlight_ramp`.
+    #[arg(long, value_name = "NAME.ramp.json")]
+    backlight: Option<PathBuf>,
+    /// Image to write of the puff: path-traced, with the ramps, and the difference.
+    #[arg(long, value_name = "FILE.png")]
+    sheet: Option<PathBuf>,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Error> {
+    let Arguments { medium, sprite, quality, stops, rows, output, backlight, sheet } = arguments;
+    let mut files = FileChecks::for_inputs([sprite]);
+    for recipe in [Some(output), backlight.as_ref()].into_iter().flatten() {
+        check_recipe_output(&mut files, recipe)?;
+        files.check_output("--output", &image_path(recipe), "png")?;
+    }
+    if let Some(sheet) = sheet {
+        files.check_output("--sheet", sheet, "png")?;
+    }
+    let (recipe, of, path_trace) = (sprite_recipe(sprite)?, medium.medium()?, quality.path_trace());
+    let puff = quality.with_progress(medium.name(), |progress| Puff::trace(&recipe, &of, &path_trace, progress))?;
+    let fitted = puff.fit(Shape { stops: *stops, rows: *rows, backlight: backlight.is_some() });
+    let FittedRamps { diffuse, backlight: against, exposure } = &fitted;
+    let write = |path: &PathBuf, recipe: &RampRecipe| {
+        let baked = recipe.bake()?;
+        write_recipe(path, recipe)?;
+        write_png(&image_path(path), &baked, CompressionEffort::Small)?;
+        Ok::<_, Error>(Ramp::from_image(&baked))
+    };
+    let diffuse = write(output, diffuse)?;
+    let against = backlight.as_ref().zip(against.as_ref()).map(|(path, recipe)| write(path, recipe)).transpose()?;
+    let ramps = DiffuseRamps { diffuse: &diffuse, backlight: against.as_ref() };
+    let after = puff.response(ramps);
+    if let Some(sheet) = sheet {
+        let shown = ComparedImages { light: &|light| puff.shown(ramps, light), exposure: after.exposure };
+        write_png(sheet, &comparison_sheet(&puff, "ramps", &shown).into(), CompressionEffort::Small)?;
+    }
+    if let Some(usual) = builtin::find(builtin::RAMPS, "diffuse_soft") {
+        let usual = usual.ramp()?;
+        let ramps = DiffuseRamps { diffuse: &usual, backlight: None };
+        print_ramp_error("diffuse_soft", &puff, ramps)?;
+    }
+    print_ramp_error("fitted", &puff, ramps)?;
+    print_line!(
+        "{}: diffuse.intensity {exposure:.2} matches the brightness of {} relative to a white wall",
+        output.display(),
+        medium.name()
+    )
+}

@@ -1,0 +1,34 @@
+//! `haze ramp import`: converts a PNG, or another program's gradient, to a recipe.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use haze::Error;
+use haze_author::ramp::fit::DEFAULT_MAX_ERROR;
+use haze_author::ramp::import::import;
+
+use super::{check_recipe_output, write_recipe};
+use crate::output::{FileChecks, print_line};
+use crate::progress::with_progress;
+
+#[derive(Args)]
+pub struct Arguments {
+    /// A PNG, or a gradient of GIMP (.ggr), Godot (.tres) or Blender (.txt, as text).
+    file: PathBuf,
+    /// Recipe to write.
+    #[arg(short, long, value_name = "NAME.ramp.json")]
+    output: PathBuf,
+    /// Greatest error of a channel, in steps of 1/255, at least 1. A larger error gives fewer stops.
+    #[arg(long, value_name = "STEPS", default_value_t = DEFAULT_MAX_ERROR, allow_hyphen_values = true)]
+    error: f32,
+}
+
+pub fn run(Arguments { file, output, error }: &Arguments) -> Result<(), Error> {
+    check_recipe_output(&mut FileChecks::for_inputs([file]), output)?;
+    let fitted = with_progress(format!("haze: fitting {}", file.display()), || import(file, *error))?;
+    write_recipe(output, &fitted.recipe)?;
+    let rows = fitted.recipe.rows.len();
+    let stops: usize = fitted.recipe.rows.iter().map(|row| row.stops.len()).sum();
+    let rows = if rows > 1 { format!(" in {rows} rows") } else { String::new() };
+    print_line!("{}: {stops} stops{rows}, at most {:.1}/255 off", output.display(), fitted.error)
+}

@@ -1,0 +1,45 @@
+//! `haze shade-tree`: renders every stage of the shading on one sheet, as OTEE's slide "Shade tree" does.
+
+use clap::Args;
+use haze::Error;
+use haze::settings::DebugView;
+use haze_demo::shot::Shot;
+
+use crate::image_export::{ExportProgress, render_sheet};
+use crate::options::ShotArguments;
+
+#[derive(Args)]
+#[command(mut_arg("size", |size| size.help("Size of all images together in pixels, without margins; each image is a third as wide and as high")))]
+pub struct Arguments {
+    #[command(flatten)]
+    shot: ShotArguments,
+}
+
+/// Stages in the order of the frame, three per row.
+pub const STAGES: [(DebugView, &str); DebugView::ALL.len()] = [
+    (DebugView::ReducedDepth, "Reduced depth"),
+    (DebugView::Normals, "Accumulated normals"),
+    (DebugView::Amount, "Accumulated amount"),
+    (DebugView::Overdraw, "Overdraw"),
+    (DebugView::Diffuse, "Diffuse"),
+    (DebugView::SoftScatter, "Soft scatter and ambient"),
+    (DebugView::SpecularScatter, "Specular scatter"),
+    (DebugView::Combined, "Combined lighting"),
+    (DebugView::Final, "Final"),
+];
+
+pub const COLUMNS: u32 = 3;
+
+pub fn run(arguments: &Arguments) -> Result<(), Error> {
+    let mut shot = arguments.shot.load(&[])?;
+    // The sheet then costs about as much as one image.
+    shot.size = (arguments.shot.run.size / COLUMNS).max(glam::UVec2::ONE);
+    let backend = arguments.shot.run.backend()?;
+    let sheet = render_sheet(&backend, &stages(&shot), COLUMNS, &arguments.shot.output, &ExportProgress::terminal())?;
+    arguments.shot.write(sheet.picture, &shot, &backend)
+}
+
+/// Returns one shot per stage, with its label.
+pub fn stages(shot: &Shot) -> Vec<(String, Shot)> {
+    STAGES.map(|(stage, label)| (label.into(), Shot { debug_view: stage, ..shot.clone() })).into()
+}

@@ -1,0 +1,51 @@
+//! `haze sheet`: renders one shot with several values of a field, side by side.
+
+use clap::Args;
+use glam::UVec2;
+use haze::settings::set_field;
+use haze::{Error, FieldError};
+
+use crate::image_export::{ExportProgress, MAX_SHEET_CELLS, column_count, render_sheet};
+use crate::options::{ShotArguments, parse_assignment, with_option};
+
+#[derive(Args)]
+#[command(mut_arg("size", |size| size.help("Size of all images together in pixels, without margins; each image is this size divided by the number of columns")))]
+pub struct Arguments {
+    #[command(flatten)]
+    shot: ShotArguments,
+    /// Field, named by its path or the end of it, and its values: `accumulate.scale=1,2,4`. Values of three numbers are
+    /// separated by semicolons: `lights[0].colour=1,0,0;0,1,0`.
+    #[arg(long, value_name = "FIELD=A,B,C", value_parser = parse_variation)]
+    vary: (String, Vec<String>),
+}
+
+fn parse_variation(text: &str) -> Result<(String, Vec<String>), String> {
+    let (field, values) = parse_assignment(text)?;
+    let separator = if values.contains(';') { ';' } else { ',' };
+    let values: Vec<_> = values.split(separator).map(|value| value.trim().to_owned()).collect();
+    if values.len() > MAX_SHEET_CELLS {
+        return Err(format!("{} values are too many; expected at most {MAX_SHEET_CELLS}", values.len()));
+    }
+    Ok((field, values))
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Error> {
+    let (field, values) = &arguments.vary;
+    let base = arguments.shot.load(&[])?;
+    let columns = column_count(values.len());
+    let size = (arguments.shot.run.size / columns).max(UVec2::ONE);
+    let mut name = String::new();
+    let mut cells = Vec::new();
+    for value in values {
+        let mut preset = base.preset.clone();
+        let set = set_field(&mut preset, field, value).map_err(|error: FieldError| with_option("--vary", error));
+        name = set?;
+        let mut shot = arguments.shot.shot(preset)?;
+        shot.size = size;
+        cells.push((value.clone(), shot));
+    }
+    let backend = arguments.shot.run.backend()?;
+    let mut sheet = render_sheet(&backend, &cells, columns, &arguments.shot.output, &ExportProgress::terminal())?;
+    sheet.add_footer(&format!("{name}; {}, {}x{}, {}", base.preset.name, size.x, size.y, backend.description()));
+    arguments.shot.write(sheet.picture, &base, &backend)
+}

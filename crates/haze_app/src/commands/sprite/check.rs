@@ -1,0 +1,48 @@
+//! `haze sprite check`: reports visible flaws of sprites.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use haze::Error;
+use haze::image::read_png;
+use haze::sprite::SpriteLayout;
+use haze_author::finding::Finding;
+use haze_author::sprite::bake::SpriteRecipe;
+use haze_author::sprite::check::check;
+
+use crate::file_kind::explain_wrong_kind;
+use crate::findings::report_findings;
+use crate::output::Failures;
+
+#[derive(Args)]
+pub struct Arguments {
+    /// PNGs to check.
+    #[arg(required = true)]
+    sprites: Vec<PathBuf>,
+    /// Frames per row of the sheet. Default: from the recipe beside the PNG, else 1.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=256))]
+    columns: Option<u32>,
+    /// Rows of frames. Default: from the recipe beside the PNG, else 1.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=256))]
+    rows: Option<u32>,
+    /// Normals point down in green: the preset loads the sprites with `"y_down": true`.
+    #[arg(long)]
+    y_down: bool,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failures> {
+    report_findings(&arguments.sprites, |path| findings(path, arguments))
+}
+
+fn findings(path: &Path, Arguments { columns, rows, y_down, .. }: &Arguments) -> Result<Vec<Finding>, Error> {
+    let picture = read_png(path).map_err(|error| explain_wrong_kind(error, path, "image", "a PNG"))?.to_rgba8();
+    let recipe = path.with_extension("sprite.json");
+    let beside = if (columns, rows) == (&None, &None) && recipe.is_file() {
+        SpriteRecipe::load(&recipe)?.layout()
+    } else {
+        SpriteLayout::default()
+    };
+    let layout =
+        SpriteLayout { columns: columns.unwrap_or(beside.columns), rows: rows.unwrap_or(beside.rows), y_down: *y_down };
+    check(path, &picture, layout)
+}

@@ -1,0 +1,123 @@
+//! `haze sprite import`: makes a sprite from an image of another kind.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use glam::UVec2;
+use haze::image::{CompressionEffort, read_png, write_png};
+use haze::sprite::SpriteLayout;
+use haze::{Error, FieldError};
+use haze_author::sprite::import::{ImportedSprite, Source, arrange_sheet, import};
+use haze_author::sprite::y_direction::SURE;
+
+use crate::bake_job::six_way_path;
+use crate::options::choices;
+use crate::output::{FileChecks, print_line};
+
+#[derive(Args)]
+pub struct Arguments {
+    /// PNGs: one sheet, one file per frame in their order, or the two sheets of six-way light maps. Files whose names
+    /// differ only by a number are sorted by it.
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+    /// PNG to write.
+    #[arg(short, long, value_name = "FILE.png")]
+    output: PathBuf,
+    /// Contents of the files.
+    #[arg(long = "from", value_name = "SOURCE", value_parser = choices::<Source>(), default_value = "normals")]
+    source: Source,
+    /// Frames per row of the sheet.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=256))]
+    columns: u32,
+    /// Rows of frames of the sheet.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=256))]
+    rows: u32,
+    /// Green of the normals points down, true or false. Default: guessed from the image.
+    #[arg(long, num_args = 0..=1, default_missing_value = "true", value_name = "IS_DOWN")]
+    y_down: Option<bool>,
+    /// Strength of the relief of normals made from heights, alpha or light maps.
+    #[arg(long, default_value_t = 1.0, value_parser = strength)]
+    strength: f32,
+}
+
+fn strength(text: &str) -> Result<f32, String> {
+    let value = text.parse::<f32>().ok().filter(|value| (0.01..=100.0).contains(value));
+    value.ok_or_else(|| "expected a number from 0.01 to 100".into())
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Error> {
+    let Arguments { files, output, source, columns, rows, y_down, strength } = arguments;
+    let mut read = FileChecks::for_inputs(files);
+    read.check_output("--output", output, "png")?;
+    if source.needs_two_images() {
+        read.check_output("--output", &six_way_path(output), "png")?;
+    }
+    let refuse = |option: &str, value: String, expected: &str| Err(FieldError::new(option, value, expected).into());
+    if y_down.is_some() && *source != Source::Normals {
+        return refuse(
+            "--y-down",
+            format!("--from {}", source.name()),
+            "--from normals: other sources have no green direction",
+        );
+    }
+    if files.len() > 1 && !source.needs_two_images() && (*columns, *rows) != (1, 1) {
+        let expected = "1x1: each of several files is one frame";
+        return refuse("--columns and --rows", format!("{columns}x{rows} for {} files", files.len()), expected);
+    }
+    let files = by_number(files);
+    let pictures = files.iter().map(|&path| Ok((path, read_png(path)?.to_rgba8())));
+    let pictures = pictures.collect::<Result<Vec<_>, Error>>()?;
+    let path = files.first().copied().unwrap_or(Path::new(""));
+    let (sheets, grid) = if pictures.len() > 1 && !source.needs_two_images() {
+        let (sheet, grid) = arrange_sheet(&pictures)?;
+        (vec![sheet], grid)
+    } else {
+        (pictures.into_iter().map(|(_, picture)| picture).collect(), UVec2::new(*columns, *rows))
+    };
+    let layout = SpriteLayout { columns: grid.x, rows: grid.y, y_down: false };
+    let ImportedSprite { picture, six_way, y_direction, doubt, border } =
+        import(path, &sheets, *source, layout, *y_down, *strength)?;
+    write_png(output, &picture.into(), CompressionEffort::Small)?;
+    print_line!("{}: {}x{} frames", output.display(), grid.x, grid.y)?;
+    if let Some(maps) = six_way {
+        let path = six_way_path(output);
+        write_png(&path, &maps.into(), CompressionEffort::Small)?;
+        print_line!("{}: the light maps, for lighting six_way", path.display())?;
+    }
+    if let Some((frame, alpha)) = border {
+        print_line!("  border: alpha up to {alpha} in frame {frame} was cleared; leave more room around the smoke")?;
+    }
+    if let Some(doubt) = doubt {
+        print_line!("  {doubt}; set --from to the contents of the image")?;
+    }
+    let direction = |is_down| if is_down { "down and was flipped" } else { "up" };
+    match (y_down, y_direction) {
+        (Some(is_down), _) => print_line!("  green points {}, as --y-down says", direction(*is_down)),
+        (None, Some(found)) if found.sureness >= SURE => {
+            let sure = (found.sureness * 100.0).round();
+            print_line!(
+                "  green points {}: a guess, {sure} % sure; set --y-down if it is wrong",
+                direction(found.is_down)
+            )
+        }
+        (None, Some(_)) => {
+            print_line!("  green is assumed to point up, because the image does not tell; set --y-down if it is wrong")
+        }
+        (None, None) => Ok(()),
+    }
+}
+
+/// Sorts frames by number if their names differ by nothing else: shells put `smoke_10.png` before `smoke_9.png`.
+fn by_number(files: &[PathBuf]) -> Vec<&Path> {
+    let split = |path: &Path| {
+        let stem = path.file_stem()?.to_str()?;
+        let name = stem.trim_end_matches(|c: char| c.is_ascii_digit());
+        Some((path.with_file_name(name), stem[name.len()..].parse::<u64>().ok()?))
+    };
+    let name = |path| split(path).map(|(name, _)| name);
+    let mut frames: Vec<_> = files.iter().map(PathBuf::as_path).collect();
+    if frames.iter().all(|frame| name(frame).is_some() && name(frame) == name(frames[0])) {
+        frames.sort_by_key(|frame| split(frame).map(|(_, number)| number));
+    }
+    frames
+}

@@ -1,0 +1,208 @@
+//! Renders many images of a shot: a sequence, a flipbook, a GIF, a labelled sheet. Used by the command line and the
+//! tweaker.
+
+use std::io::{Error as IoError, ErrorKind};
+use std::ops::RangeInclusive;
+use std::path::Path;
+
+use glam::UVec2;
+use haze::image::{CompressionEffort, write_file, write_png};
+use haze::{Error, FieldError};
+use haze_demo::shot::Shot;
+use haze_demo::tonemap_pass::tonemap;
+use image::codecs::gif::{GifEncoder, Repeat};
+use image::{Delay, DynamicImage, Frame, RgbImage, imageops};
+
+use super::contact_sheet::ContactSheet;
+use super::frame_range::FrameNames;
+use super::interrupt;
+use super::memory_check::check_memory;
+use super::options::Backend;
+use super::progress::with_progress;
+
+/// Range of frames. Frame 0 is at the preset's time.
+pub struct Frames {
+    pub range: RangeInclusive<u32>,
+    /// Frames per second.
+    pub rate: f32,
+}
+
+/// Receiver of the progress, which can stop the work.
+pub enum ExportProgress<'a> {
+    /// A terminal, where Ctrl-C stops the work.
+    Terminal,
+    /// A callback that gets the numbers of finished and of all images before each image; it returns false to stop the
+    /// work.
+    Callback(&'a dyn Fn(u32, u32) -> bool),
+}
+
+impl ExportProgress<'_> {
+    /// Catches Ctrl-C from now on; it then stops the work after the current image.
+    pub fn terminal() -> Self {
+        interrupt::catch();
+        Self::Terminal
+    }
+
+    /// Renders an image; `None` if the work is to stop.
+    fn render(&self, done: u32, count: u32, backend: &Backend, shot: &Shot) -> Result<Option<RgbImage>, Error> {
+        let picture = match self {
+            Self::Terminal if interrupt::is_requested() => return Ok(None),
+            Self::Terminal => with_progress(format!("haze: image {} of {count}", done + 1), || backend.render(shot))?,
+            Self::Callback(go_on) if !go_on(done, count) => return Ok(None),
+            Self::Callback(_) => backend.render(shot)?,
+        };
+        Ok(Some(tonemap(&picture, shot)))
+    }
+}
+
+impl Frames {
+    fn count(&self) -> u32 {
+        self.range.end() - self.range.start() + 1
+    }
+
+    /// Renders every frame and passes it to `take` with its number. `stopped` makes the error of a run that was stopped
+    /// after so many frames.
+    fn render(
+        &self,
+        backend: &Backend,
+        shot: &Shot,
+        progress: &ExportProgress<'_>,
+        mut take: impl FnMut(u32, RgbImage) -> Result<(), Error>,
+        stopped: impl Fn(u32) -> Error,
+    ) -> Result<(), Error> {
+        for (done, frame) in (0..).zip(self.range.clone()) {
+            let mut shot = shot.clone();
+            shot.preset.time += frame as f32 / self.rate;
+            let picture = progress.render(done, self.count(), backend, &shot)?.ok_or_else(|| stopped(done))?;
+            take(frame, picture)?;
+        }
+        Ok(())
+    }
+}
+
+fn stopped(path: &Path, what: String) -> Error {
+    Error::Io { path: path.into(), error: IoError::new(ErrorKind::Interrupted, format!("stopped: {what}")) }
+}
+
+/// Error of a single output file, which is not written if the work is stopped.
+fn stopped_before_writing(path: &Path, done: u32, count: u32) -> Error {
+    stopped(path, format!("not written; {done} of {count} images were rendered"))
+}
+
+/// Writes every frame to its own file. If it is stopped, the files written so far stay.
+pub fn write_sequence(
+    backend: &Backend,
+    shot: &Shot,
+    frames: &Frames,
+    names: &FrameNames,
+    effort: CompressionEffort,
+    progress: &ExportProgress<'_>,
+) -> Result<(), Error> {
+    let write = |frame, picture: RgbImage| write_png(&names.of(frame), &picture.into(), effort);
+    let first = *frames.range.start();
+    frames.render(backend, shot, progress, write, |done| {
+        stopped(
+            &names.of(first + done),
+            format!("not written; this sequence is partial, {done} of {} frames are written", frames.count()),
+        )
+    })
+}
+
+/// Most pixels along a side of a flipbook.
+const MAX_FLIPBOOK_SIDE: u32 = 32_768;
+
+/// Refuses a flipbook that has too few cells for its frames, or that is too large for an image or for the memory.
+pub fn check_flipbook(size: UVec2, frames: &Frames, cells: UVec2) -> Result<(), Error> {
+    let (rows, columns) = (cells.x, cells.y);
+    let count = frames.count();
+    if count > cells.element_product() {
+        let expected = format!("at least {count} cells, one for each frame");
+        return Err(FieldError::new("--sheet", format!("{rows}x{columns}"), expected).into());
+    }
+    let size = size * UVec2::new(columns, rows);
+    if size.max_element() > MAX_FLIPBOOK_SIDE {
+        let expected = format!("at most {MAX_FLIPBOOK_SIDE} pixels along a side, not {}x{}", size.x, size.y);
+        return Err(FieldError::new("--sheet", format!("{rows}x{columns}"), expected).into());
+    }
+    check_memory("--sheet", size)
+}
+
+/// Renders all frames onto one sheet of `cells.x` rows and `cells.y` columns. `path` is the output file, for errors.
+pub fn render_flipbook(
+    backend: &Backend,
+    shot: &Shot,
+    frames: &Frames,
+    cells: UVec2,
+    path: &Path,
+    progress: &ExportProgress<'_>,
+) -> Result<RgbImage, Error> {
+    let columns = cells.y;
+    let size = shot.size * UVec2::new(columns, cells.x);
+    let mut sheet = RgbImage::new(size.x, size.y);
+    let mut index = 0;
+    let place = |_, picture| {
+        let corner = UVec2::new(index % columns, index / columns) * shot.size;
+        imageops::replace(&mut sheet, &picture, i64::from(corner.x), i64::from(corner.y));
+        index += 1;
+        Ok(())
+    };
+    frames.render(backend, shot, progress, place, |done| stopped_before_writing(path, done, frames.count()))?;
+    Ok(sheet)
+}
+
+/// Highest frame rate of a GIF. GIF delays are whole hundredths of a second, and viewers lengthen delays below two
+/// hundredths.
+pub const MAX_GIF_RATE: f32 = 50.0;
+
+/// Writes all frames into one animated GIF that loops for ever.
+pub fn write_gif(
+    backend: &Backend,
+    shot: &Shot,
+    frames: &Frames,
+    path: &Path,
+    progress: &ExportProgress<'_>,
+) -> Result<(), Error> {
+    let failed = |error| Error::Image { path: path.into(), reason: format!("{error}") };
+    let mut bytes = Vec::new();
+    let mut encoder = GifEncoder::new_with_speed(&mut bytes, 10);
+    encoder.set_repeat(Repeat::Infinite).map_err(failed)?;
+    let mut index = 0;
+    // Delays are differences of rounded end times, so that rounding does not change the total duration.
+    let end = |index: u32| (index as f32 * 100.0 / frames.rate).round() as u32;
+    let encode = |_, picture: RgbImage| {
+        let delay = Delay::from_numer_denom_ms(10 * (end(index + 1) - end(index)), 1);
+        index += 1;
+        let picture = DynamicImage::from(picture).into_rgba8();
+        encoder.encode_frame(Frame::from_parts(picture, 0, 0, delay)).map_err(failed)
+    };
+    frames.render(backend, shot, progress, encode, |done| stopped_before_writing(path, done, frames.count()))?;
+    drop(encoder);
+    write_file(path, &bytes)
+}
+
+/// Most images on a labelled sheet.
+pub const MAX_SHEET_CELLS: usize = 64;
+
+/// Renders shots with their labels onto one sheet. All shots have one size; `path` is the output file, for errors.
+pub fn render_sheet(
+    backend: &Backend,
+    cells: &[(String, Shot)],
+    columns: u32,
+    path: &Path,
+    progress: &ExportProgress<'_>,
+) -> Result<ContactSheet, Error> {
+    let count = cells.len() as u32;
+    let size = cells.first().map_or(UVec2::ONE, |(_, shot)| shot.size);
+    let mut sheet = ContactSheet::new(size, columns, count);
+    for (index, (label, shot)) in (0..).zip(cells) {
+        let picture =
+            progress.render(index, count, backend, shot)?.ok_or_else(|| stopped_before_writing(path, index, count))?;
+        sheet.place(index, label, &picture);
+    }
+    Ok(sheet)
+}
+
+/// Number of columns of a sheet that is about square.
+pub fn column_count(count: usize) -> u32 {
+    (1..).find(|side| side * side >= count as u32).unwrap_or(1)
+}

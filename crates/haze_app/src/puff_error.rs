@@ -1,0 +1,36 @@
+//! Prints the errors of ramps and six-way maps against path-traced smoke.
+
+use haze::Error;
+use haze_author::ramp::response::{DiffuseRamps, Puff, Response, angle};
+
+use super::output::print_line;
+use super::puff_sheet::{ComparedImages, mean_flip};
+
+/// Prints how far ramps are from path-traced smoke, in total and light by light.
+pub fn print_ramp_error(name: &str, puff: &Puff, ramps: DiffuseRamps<'_>) -> Result<(), Error> {
+    let response = puff.response(ramps);
+    let shown = ComparedImages { light: &|light| puff.shown(ramps, light), exposure: response.exposure };
+    print_response_error(name, puff, &shown, &response)
+}
+
+/// Prints how far compared images are from path-traced smoke, in total and light by light.
+pub fn print_response_error(
+    name: &str,
+    puff: &Puff,
+    shown: &ComparedImages<'_>,
+    response: &Response,
+) -> Result<(), Error> {
+    let percent = |share: f32| 100.0 * share;
+    print_line!(
+        "{name}: brightness {:.1} % off on average, pixels {:.0} % off, FLIP {:.3}, at intensity {:.2}",
+        percent(response.error),
+        percent(response.pixel_error),
+        mean_flip(puff, shown),
+        response.exposure,
+    )?;
+    for (index, light) in response.lights.iter().enumerate() {
+        let off = percent(light.shown / light.truth.max(f32::MIN_POSITIVE) - 1.0);
+        print_line!("{:7.1}°  traced {:.4}  shown {:.4}  {off:+.0} %", angle(index), light.truth, light.shown)?;
+    }
+    Ok(())
+}
