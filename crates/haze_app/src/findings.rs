@@ -16,9 +16,9 @@ pub fn tell(files: &[PathBuf], find: impl Fn(&Path) -> Result<Vec<Finding>, Erro
         if findings.is_empty() {
             say!("{}: good", path.display())?;
         }
-        for Finding { name, what } in findings {
+        for Finding { name, description } in findings {
             is_good = false;
-            say!("{}: {name}: {what}", path.display())?;
+            say!("{}: {name}: {description}", path.display())?;
         }
     }
     failures.into_result()?;

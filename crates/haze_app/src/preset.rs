@@ -8,7 +8,7 @@ use haze::image::write_file;
 use haze::preset::{Preset, PresetSystem};
 use haze::settings::{Value, values};
 use haze::{Error, FieldError, Light, builtin};
-use haze_author::preset::{check_files, without_effect};
+use haze_author::preset::{check_files, no_effect_reason};
 
 use super::kind::explain;
 use super::options::AssetsArguments;
@@ -119,7 +119,7 @@ fn settings(preset: &Preset) -> Vec<Setting> {
     };
     let pairs = values(preset).into_iter().zip(values(&plain));
     let setting = |((path, value), (_, default)): ((String, Value), (String, Value))| {
-        let idle = without_effect(&preset, &path, SIZE);
+        let idle = no_effect_reason(&preset, &path, SIZE);
         Setting { path, value, default, idle }
     };
     pairs.map(setting).collect()

@@ -8,7 +8,7 @@ use haze::Error;
 use haze::image::colour_conversion_notes;
 use haze::ramp::{Ramp, Role};
 use haze_author::finding::Finding;
-use haze_author::ramp::check::check;
+use haze_author::ramp::lint::lint_ramp;
 use haze_author::ramp::response::{DiffuseRamps, Puff};
 
 use super::fit::print_ramp_error;
@@ -67,10 +67,10 @@ fn findings(path: &Path, role: Option<Role>) -> Result<Vec<Finding>, Error> {
     let mut findings = Vec::new();
     if !has_extension(path, "json") {
         let notes = colour_conversion_notes(path)?;
-        findings.extend(notes.into_iter().map(|what| Finding { name: "colour_space", what }));
+        findings.extend(notes.into_iter().map(|description| Finding { name: "colour_space", description }));
     }
     match picture_of(path) {
-        Ok((picture, _)) => findings.extend(check(&picture, role)),
+        Ok((picture, _)) => findings.extend(lint_ramp(&picture, role)),
         // A colour space that is refused has been noted already.
         Err(Error::Image { .. }) if !findings.is_empty() => {}
         Err(error) => return Err(explain(error, path, "ramp", "a PNG or a *.ramp.json file")),

@@ -6,8 +6,8 @@ use clap::Args;
 use haze::image::{CompressionEffort, write_png};
 use haze::ramp::Ramp;
 use haze::{Error, builtin};
-use haze_author::ramp::bake::RampRecipe;
-use haze_author::ramp::response::{DiffuseRamps, FittedRamps, Puff, Response, Shape, angle};
+use haze_author::ramp::RampRecipe;
+use haze_author::ramp::response::{DiffuseRamps, FitShape, FittedRamps, Puff, Response, light_angle};
 
 use super::{check_output, write_recipe};
 use crate::medium::{MediumArguments, PathTraceArguments, default_sprite, sprite_recipe};
@@ -25,10 +25,10 @@ pub struct Arguments {
     #[command(flatten)]
     quality: PathTraceArguments,
     /// Stops per row.
-    #[arg(long, value_parser = clap::value_parser!(u32).range(2..=64), default_value_t = Shape::default().stops)]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(2..=64), default_value_t = FitShape::default().stops)]
     stops: u32,
     /// Rows along the amount axis; 1 for a ramp of one axis.
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=16), default_value_t = Shape::default().rows)]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=16), default_value_t = FitShape::default().rows)]
     rows: u32,
     /// Recipe to write, with its PNG beside it: the ramp for light from all sides, or with --backlight only from the
     /// viewer's side.
@@ -54,7 +54,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     }
     let (recipe, of, path_trace) = (sprite_recipe(sprite)?, medium.medium()?, quality.path_trace());
     let puff = quality.watched(medium.name(), |progress| Puff::trace(&recipe, &of, &path_trace, progress))?;
-    let fitted = puff.fit(Shape { stops: *stops, rows: *rows, backlight: backlight.is_some() });
+    let fitted = puff.fit(FitShape { stops: *stops, rows: *rows, backlight: backlight.is_some() });
     let FittedRamps { diffuse, backlight: against, exposure } = &fitted;
     let write = |path: &PathBuf, recipe: &RampRecipe| {
         let baked = recipe.bake()?;
@@ -102,7 +102,7 @@ pub fn print_response_error(name: &str, puff: &Puff, shown: &Shown<'_>, response
     )?;
     for (index, light) in response.lights.iter().enumerate() {
         let off = percent(light.shown / light.truth.max(f32::MIN_POSITIVE) - 1.0);
-        say!("{:7.1}°  traced {:.4}  shown {:.4}  {off:+.0} %", angle(index), light.truth, light.shown)?;
+        say!("{:7.1}°  traced {:.4}  shown {:.4}  {off:+.0} %", light_angle(index), light.truth, light.shown)?;
     }
     Ok(())
 }

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use haze::Error;
-use haze_author::ramp::fit::DEFAULT_MAX_ERROR;
-use haze_author::ramp::import::import;
+use haze_author::ramp::fit_stops::DEFAULT_MAX_ERROR;
+use haze_author::ramp::import_gradient::import_gradient;
 
 use super::{check_output, write_recipe};
 use crate::output::{Files, say};
@@ -25,7 +25,7 @@ pub struct Arguments {
 
 pub fn run(Arguments { file, output, error }: &Arguments) -> Result<(), Error> {
     check_output(&mut Files::read([file]), output)?;
-    let fitted = watched(format!("haze: fitting {}", file.display()), || import(file, *error))?;
+    let fitted = watched(format!("haze: fitting {}", file.display()), || import_gradient(file, *error))?;
     write_recipe(output, &fitted.recipe)?;
     let rows = fitted.recipe.rows.len();
     let stops: usize = fitted.recipe.rows.iter().map(|row| row.stops.len()).sum();

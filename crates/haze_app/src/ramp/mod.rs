@@ -13,7 +13,7 @@ use std::path::Path;
 
 use haze::image::{read_colour_png, write_file};
 use haze::{Error, FieldError};
-use haze_author::ramp::bake::RampRecipe;
+use haze_author::ramp::RampRecipe;
 use image::DynamicImage;
 
 use super::output::{Files, has_extension};

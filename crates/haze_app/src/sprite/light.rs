@@ -7,7 +7,7 @@ use haze::Error;
 use haze::formula::colour::luminance;
 use haze::image::{CompressionEffort, write_file, write_png};
 use haze_author::path_trace::PathTrace;
-use haze_author::ramp::response::{LIGHTS, Puff, angle};
+use haze_author::ramp::response::{LIGHTS, Puff, light_angle};
 use haze_author::sprite::bake::SpriteRecipe;
 
 use crate::medium::{MediumArguments, PathTraceArguments, default_sprite, sprite_recipe};
@@ -58,7 +58,7 @@ pub fn run(Arguments { sprite, medium, quality, output, volume, six_way }: &Argu
         medium.name()
     )?;
     for light in 0..LIGHTS as usize {
-        say!("{:6.1} {:.6}", angle(light), luminance(puff.traced().mean(light)))?;
+        say!("{:6.1} {:.6}", light_angle(light), luminance(puff.traced().mean(light)))?;
     }
     Ok(())
 }

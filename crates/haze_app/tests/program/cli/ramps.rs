@@ -53,7 +53,7 @@ fn every_template_can_be_written_and_baked_and_passes_the_check() {
         let name = format!("{}_{}", template.role.name(), template.name);
         let recipe = format!("{name}.ramp.json");
         let line = said(folder.path(), &["ramp", "new", "--template", template.name, "-o", &recipe]);
-        assert!(line.starts_with(&format!("{recipe}: {}", template.about)), "{line}");
+        assert!(line.starts_with(&format!("{recipe}: {}", template.description)), "{line}");
         said(folder.path(), &["ramp", "bake", &recipe]);
         let picture = format!("{name}.png");
         let checked = said(folder.path(), &["ramp", "check", &recipe, &picture]);
@@ -276,9 +276,7 @@ fn ramps_are_fitted_to_path_traced_smoke() {
     for name in ["lit", "against"] {
         let picture = folder.path().join(name).with_extension("png");
         assert_eq!(haze::image::read_png(&picture).unwrap().to_rgb16().dimensions(), (128, 64));
-        assert!(
-            haze_author::ramp::bake::RampRecipe::load(&picture.with_extension("ramp.json")).unwrap().rows.len() == 5
-        );
+        assert!(haze_author::ramp::RampRecipe::load(&picture.with_extension("ramp.json")).unwrap().rows.len() == 5);
     }
     assert!(folder.path().join("sheet.png").is_file());
     let render = ["render", "--size", "32x18", "--backend", "cpu", "-o", "a.png", "--set", "diffuse.backlight=ramp"];
