@@ -9,7 +9,7 @@ use glam::UVec2;
 use haze::emitter::Emitter;
 use haze::settings::Order;
 use haze::{Descriptor, Frame, Light, Particles, Renderer, SceneDepth, Settings, System, wgpu};
-use haze_author::ramp::bake::RampRecipe;
+use haze_author::ramp::RampRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_demo::headless::Headless;
 use haze_demo::shot::Shot;

@@ -6,12 +6,12 @@ use glam::UVec2;
 use haze::builtin;
 use haze::image::read_png;
 use haze::settings::CoverageMode;
-use haze_author::noise::NoiseRecipe;
-use haze_author::ramp::bake::RampRecipe;
+use haze_author::noise_recipe::NoiseRecipe;
+use haze_author::ramp::RampRecipe;
 use haze_author::ramp::motif::MotifRecipe;
 use haze_author::ramp::template::TEMPLATES;
 use haze_author::sprite::bake::SpriteRecipe;
-use haze_author::sprite::detail::detail;
+use haze_author::sprite::detail::bake_detail_frame;
 use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::tonemap;
 use image::{Rgba, RgbaImage, imageops};
@@ -94,7 +94,7 @@ fn committed_sprites_match_their_recipes() {
 
         // Motion is estimated from the committed frames, so that both sides have the same input.
         let decoded = sprite.sprite().unwrap();
-        let detail = detail(&decoded, frame, &baked.offset);
+        let detail = bake_detail_frame(&decoded, frame, &baked.offset);
         let committed = read_png(&file("sprites", &format!("{}.detail.png", sprite.name))).unwrap().to_rgba8();
         let committed = frame_of(&committed, detail.size.x);
         // The baker moves channels of the detail map by up to this much to shrink the file.

@@ -13,7 +13,7 @@ use haze::noise::{pcg3d, unit};
 use haze::settings::{Backlight, Lighting, Settings, Technique};
 use haze::sprite::Sprite;
 use haze::{Light, LightKind, MaterialAssets, Particle, View};
-use haze_author::path_trace::{MEDIA, Medium, PathTrace, Traced, Volume};
+use haze_author::path_trace::{DensityVolume, MEDIA, Medium, PathTrace, PathTraceResult};
 use haze_author::ramp::response::{LightResponse, Response};
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_author::sprite::six_way::six_way_layout;
@@ -55,12 +55,12 @@ impl Column {
         Self { particles, recipe, medium, path_trace: PathTrace { size, samples, seed: 1 } }
     }
 
-    fn trace(&self, volume: &Volume, path_trace: &PathTrace) -> Traced {
+    fn trace(&self, volume: &DensityVolume, path_trace: &PathTrace) -> PathTraceResult {
         let Ok(traced) = path_trace.run(volume, &self.medium, &lights(), |_| Ok::<_, Infallible>(()));
         traced
     }
 
-    fn puff(&self, frame: u32) -> Volume {
+    fn puff(&self, frame: u32) -> DensityVolume {
         SpriteRecipe { size: self.recipe.size / 2, ..self.recipe.clone() }.volume(frame as f32)
     }
 
@@ -68,10 +68,10 @@ impl Column {
     fn truth(&self) -> LightImages {
         let puffs: Vec<_> = (0..FRAMES).map(|frame| self.puff(frame)).collect();
         let side = self.path_trace.size;
-        let mut all = Volume { size: UVec3::splat(side), densities: vec![0.0; side.pow(3) as usize] };
+        let mut all = DensityVolume { size: UVec3::splat(side), densities: vec![0.0; side.pow(3) as usize] };
         for index in 0..all.densities.len() as u32 {
             let voxel = UVec3::new(index % side, index / side % side, index / (side * side));
-            let place = all.position(voxel);
+            let place = all.voxel_centre(voxel);
             let density = |puff: &Particle| {
                 let local = (place - puff.position) / puff.radius;
                 let is_inside = local.abs().max_element() < 1.0;

@@ -14,9 +14,9 @@ use haze::preset::{AssetFolders, Preset};
 use haze::ramp::Ramp;
 use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Error, emitter};
-use haze_author::noise::NoiseRecipe;
+use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::particle_files;
-use haze_author::ramp::bake::RampRecipe;
+use haze_author::ramp::RampRecipe;
 use haze_author::ramp::motif::MotifRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
 use proptest::prelude::*;
@@ -79,7 +79,7 @@ fn read(kind: &str, path: &Path) -> Result<(), Error> {
         "csv" | "ply" => {
             let content = std::fs::read(path).unwrap();
             let frame = particle_files::parse(Path::new(&format!("a.{kind}")), &content, 1000);
-            let frame = frame.map_err(|mistake| mistake.of(path))?;
+            let frame = frame.map_err(|error| error.into_error(path))?;
             assert!(frame.particles().len() <= 1000, "{} particles", frame.particles().len());
             assert!(frame.particles().iter().all(|particle| particle.position.is_finite() && particle.radius >= 0.0));
         }

@@ -1,4 +1,4 @@
-//! Checks `Preset::without_effect`: a field that it reports changes no image on either renderer, and every other field
+//! Checks `Preset::no_effect_reason`: a field that it reports changes no image on either renderer, and every other field
 //! changes one in some case.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,10 +9,10 @@ use haze::image::Image;
 use haze::preset::{AssetFolders, EndBehaviour, Preset, PresetSystem};
 use haze::settings::*;
 use haze::{Context, Light, LightKind, MaterialAssets};
-use haze_author::noise::NoiseRecipe;
+use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::particle_files;
 use haze_author::particle_files::ParticleFrames;
-use haze_author::preset::without_effect;
+use haze_author::preset::no_effect_reason;
 
 use crate::common::{gpu, has_tiles};
 use crate::every_setting::{OTHER_DETAIL, OTHER_NOISE, OTHER_SIX_WAY, SettingMutator};
@@ -91,7 +91,7 @@ impl PresetCase {
     }
 }
 
-/// Changes to the preset of a case. Together the cases produce every reason of `without_effect`.
+/// Changes to the preset of a case. Together the cases produce every reason of `no_effect_reason`.
 const CASES: &[fn(&mut PresetSystem, &mut Light)] = &[
     |_, _| {},
     |s, _| s.settings.accumulate.encoding = NormalEncoding::Biased,
@@ -163,7 +163,7 @@ const SAME: [&str; 4] = [
     "systems[0].material.rows",
 ];
 
-/// Fields that have no effect in some case although `without_effect` does not report them: the effect depends on more
+/// Fields that have no effect in some case although `no_effect_reason` does not report them: the effect depends on more
 /// than settings, or on the size of the change.
 const NOT_ALWAYS: [&str; 17] = [
     // The layers that are skipped are invisible.
@@ -222,7 +222,7 @@ fn write_input_files(folder: &File) {
 }
 
 #[test]
-fn without_effect_reports_exactly_the_fields_that_change_no_image() {
+fn settings_without_effect_are_exactly_those_that_change_no_image() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     write_input_files(folder);
@@ -242,7 +242,7 @@ fn without_effect_reports_exactly_the_fields_that_change_no_image() {
         while let Some((moved, path, has_more)) = preset_case.moved(folder, skip, value) {
             (skip, value) = if has_more { (skip, value + 1) } else { (skip + 1, 0) };
             all.insert(path.clone());
-            let reason = without_effect(&preset_case.preset, &path, SIZE);
+            let reason = no_effect_reason(&preset_case.preset, &path, SIZE);
             // Some values are invalid together with others.
             reasons.extend(reason);
             let on_cpu = moved.as_ref().and_then(|moved| moved.stage().try_on_cpu().ok());
@@ -257,7 +257,7 @@ fn without_effect_reports_exactly_the_fields_that_change_no_image() {
                 continue;
             };
             if is_moved {
-                wrong.insert(format!("{path} has an effect in case {index}; without_effect says: {reason}"));
+                wrong.insert(format!("{path} has an effect in case {index}; no_effect_reason says: {reason}"));
             } else if compared.insert((reason, path.clone())) {
                 let plain = on_gpu.get_or_insert_with(|| preset_case.on_gpu(&context));
                 let moved = moved.on_gpu(&context);
@@ -265,7 +265,7 @@ fn without_effect_reports_exactly_the_fields_that_change_no_image() {
                 let most = differences.fold(0.0, f32::max);
                 if most > ROUNDING {
                     wrong.insert(format!(
-                        "{path} changes the GPU's image by {most} in case {index}; without_effect says: {reason}"
+                        "{path} changes the GPU's image by {most} in case {index}; no_effect_reason says: {reason}"
                     ));
                 }
             }
@@ -298,7 +298,7 @@ fn lamp_and_brazier_have_an_effect_only_in_the_yard_scene() {
         for field in ["environment.lamp", "environment.brazier"] {
             let mut other = shot.clone();
             set_field(&mut other.preset, field, "false").unwrap();
-            let is_told = without_effect(&shot.preset, field, SIZE).is_some();
+            let is_told = no_effect_reason(&shot.preset, field, SIZE).is_some();
             assert_eq!(is_told, scene != SceneName::Yard, "{field}");
             let moved = pictures(&other);
             assert_eq!(is_told, moved.0 == plain.0, "{field} {}", scene.name());

@@ -12,7 +12,7 @@ use haze::ramp::Ramp;
 use haze::settings::{DebugView, RenderPath, Settings};
 use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Bounds, FieldError, Light, MaterialAssets, Particle, View};
-use haze_author::noise::NoiseRecipe;
+use haze_author::noise_recipe::NoiseRecipe;
 use haze_author::sprite::six_way::six_way_layout;
 use haze_reference;
 

@@ -4,8 +4,8 @@
 use std::path::PathBuf;
 
 use eframe::egui;
-use egui_gradient::{GradientEditor, Surroundings};
-use haze_author::ramp::bake::RampRecipe;
+use egui_gradient::{DisplayOptions, GradientEditor};
+use haze_author::ramp::RampRecipe;
 use haze_author::ramp::template::TEMPLATES;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -41,8 +41,8 @@ impl eframe::App for App {
                 step(ui, "Undo", egui::Modifiers::COMMAND, &mut self.past, &mut self.future, &mut self.recipe);
             });
             let before = self.recipe.clone();
-            let surroundings = Surroundings { blend: self.recipe.blend, ..Surroundings::default() };
-            let edited = self.editor.show(ui, &mut self.recipe.rows[0], &surroundings);
+            let options = DisplayOptions { blend: self.recipe.blend, ..DisplayOptions::default() };
+            let edited = self.editor.show(ui, &mut self.recipe.rows[0], &options);
             if edited.is_changed {
                 self.before.get_or_insert(before);
                 self.refused.clear();

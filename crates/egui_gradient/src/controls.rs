@@ -3,54 +3,54 @@
 use egui::{self, Ui};
 use glam::Vec3;
 
-use super::eyedropper::{Eyedropper, Taken};
-use super::frame::{Frame, MOVE, RECOLOUR, REMOVE};
-use super::number::{self, Typed};
+use super::edit_context::{EditContext, MOVE, RECOLOUR, REMOVE};
+use super::eyedropper::{Eyedropper, EyedropperResult};
+use super::number::{self, NumberInput};
 use super::paint::colour32;
 use super::selection::Selection;
-use super::{stops, strip, text};
-use haze_author::ramp::bake::{Blend, Curve, HexColour, RampStop};
-use haze_author::ramp::fit::fit_row;
+use super::{clipboard, gradient_strip, stop_operations};
+use haze_author::ramp::fit_stops::fit_row;
 use haze_author::ramp::template::TEMPLATES;
+use haze_author::ramp::{Blend, Curve, HexColour, RampStop};
 
 /// Hover texts of the curves, in the order of [`Curve::ALL`].
 const CURVES: [&str; 4] = ["smooth, without overshoot", "linear", "flat at both ends", "a hard edge at the next stop"];
 
 /// Draws the controls. `at` is the position of the row, for copied text.
-pub fn show(ui: &mut Ui, frame: &mut Frame<'_>, at: f32) {
-    let Some(lead) = frame.lead().cloned() else { return };
+pub fn show(ui: &mut Ui, context: &mut EditContext<'_>, at: f32) {
+    let Some(lead) = context.lead().cloned() else { return };
     ui.horizontal(|ui| {
-        let last = frame.stops.len() - 1;
-        let selected = frame.editor.selection.lead();
+        let last = context.stops.len() - 1;
+        let selected = context.editor.selection.lead();
         let step = |ui: &mut Ui, is_enabled, text, name: &str| {
             let response = ui.add_enabled(is_enabled, egui::Button::new(text));
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, is_enabled, name));
             response.on_hover_text(name).clicked()
         };
         if step(ui, selected > 0, "<", "previous stop") {
-            frame.editor.selection = Selection::one(selected - 1);
+            context.editor.selection = Selection::one(selected - 1);
         }
         if step(ui, selected < last, ">", "next stop") {
-            frame.editor.selection = Selection::one(selected + 1);
+            context.editor.selection = Selection::one(selected + 1);
         }
-        match frame.editor.selection.count() {
+        match context.editor.selection.count() {
             1 => ui.label(format!("Stop {} of {}", selected + 1, last + 1)),
             count => ui.label(format!("{count} of {} stops", last + 1)),
         };
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| place(ui, frame, &lead));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| position_field(ui, context, &lead));
     });
-    ui.horizontal(|ui| colour_and_curve(ui, frame, &lead));
+    ui.horizontal(|ui| colour_and_curve(ui, context, &lead));
     ui.horizontal(|ui| {
-        hsv_fields(ui, frame, &lead);
-        eyedropper(ui, frame);
+        hsv_fields(ui, context, &lead);
+        eyedropper_button(ui, context);
     });
     ui.horizontal_wrapped(|ui| {
-        all(ui, frame, at);
-        snap(ui, frame);
+        stop_buttons(ui, context, at);
+        snap_controls(ui, context);
     });
 }
 
-fn place(ui: &mut Ui, frame: &mut Frame<'_>, lead: &RampStop) {
+fn position_field(ui: &mut Ui, context: &mut EditContext<'_>, lead: &RampStop) {
     let (response, typed) = number::field(ui, lead.at, |ui, field| {
         let field = field.range(0.0..=1.0).speed(0.001).max_decimals(4);
         ui.add_sized([64.0, ui.spacing().interact_size.y], field)
@@ -61,31 +61,33 @@ fn place(ui: &mut Ui, frame: &mut Frame<'_>, lead: &RampStop) {
         .on_hover_text("0 to 1: drag, or click and type. +0.1, -0.1, *2 and /2 change the current number");
     match typed {
         None => {}
-        Some(Typed::Times(times)) => frame.edit_selected(MOVE, |all, selection| stops::scale(all, selection, times)),
+        Some(NumberInput::Multiply(times)) => {
+            context.edit_selected(MOVE, |all, selection| stop_operations::scale(all, selection, times))
+        }
         Some(typed) => {
-            let at = typed.of(lead.at);
-            frame.edit_selected(MOVE, |all, selection| stops::move_to(all, selection, at));
+            let at = typed.apply_to(lead.at);
+            context.edit_selected(MOVE, |all, selection| stop_operations::move_to(all, selection, at));
         }
     }
 }
 
-fn colour_and_curve(ui: &mut Ui, frame: &mut Frame<'_>, lead: &RampStop) {
+fn colour_and_curve(ui: &mut Ui, context: &mut EditContext<'_>, lead: &RampStop) {
     let (mut colour, mut curve) = (lead.colour, lead.curve);
     let label = ui.label("colour");
     if ui.color_edit_button_srgb(&mut colour.0).labelled_by(label.id).changed() {
-        frame.recolour(colour);
+        context.recolour(colour);
     }
-    let mut text = frame.editor.typed.take().unwrap_or_else(|| colour.into());
+    let mut text = context.editor.typed.take().unwrap_or_else(|| colour.into());
     let field = ui.add(egui::TextEdit::singleline(&mut text).desired_width(66.0)).labelled_by(label.id);
     let field = field.on_hover_text("sRGB, #rrggbb");
     if field.lost_focus() {
-        match text::colour(&text) {
+        match clipboard::colour(&text) {
             Ok(typed) if typed == colour => {}
-            Ok(typed) => frame.recolour(typed),
-            Err(reason) => frame.refused = Some(reason),
+            Ok(typed) => context.recolour(typed),
+            Err(reason) => context.refused = Some(reason),
         }
     } else if field.has_focus() {
-        frame.editor.typed = Some(text);
+        context.editor.typed = Some(text);
     }
     let label = ui.label("then");
     let combo = egui::ComboBox::from_id_salt("curve").selected_text(curve.name()).width(ui.available_width() - 8.0);
@@ -96,13 +98,13 @@ fn colour_and_curve(ui: &mut Ui, frame: &mut Frame<'_>, lead: &RampStop) {
     });
     combo.response.labelled_by(label.id).on_hover_text("Interpolation to the next stop");
     if curve != lead.curve {
-        frame.edit_each(["curve of a stop", "curve of stops"], |stop| stop.curve = curve);
+        context.edit_each(["curve of a stop", "curve of stops"], |stop| stop.curve = curve);
     }
 }
 
 /// Draws fields for hue, saturation and value of the colour.
-fn hsv_fields(ui: &mut Ui, frame: &mut Frame<'_>, lead: &RampStop) {
-    let known = frame.editor.hsv.filter(|(known, _)| *known == lead.colour);
+fn hsv_fields(ui: &mut Ui, context: &mut EditContext<'_>, lead: &RampStop) {
+    let known = context.editor.hsv.filter(|(known, _)| *known == lead.colour);
     let shown = known.map_or_else(|| lead.colour.hsv(), |(_, hsv)| hsv);
     for (channel, (name, letter, most, unit)) in
         [("hue", "H ", 360.0, "°"), ("saturation", "S ", 100.0, "%"), ("value", "V ", 100.0, "%")]
@@ -123,15 +125,15 @@ fn hsv_fields(ui: &mut Ui, frame: &mut Frame<'_>, lead: &RampStop) {
         if let Some(typed) = typed {
             let changed = |hsv: Vec3| {
                 let mut hsv = hsv;
-                hsv[channel] = (typed.of(hsv[channel] * most) / most).clamp(0.0, 1.0);
+                hsv[channel] = (typed.apply_to(hsv[channel] * most) / most).clamp(0.0, 1.0);
                 hsv
             };
             let of_lead = changed(shown);
-            frame.edit_each(RECOLOUR, |stop| {
+            context.edit_each(RECOLOUR, |stop| {
                 let hsv = if stop.colour == lead.colour { of_lead } else { changed(stop.colour.hsv()) };
                 stop.colour = HexColour::from_hsv(hsv);
             });
-            frame.editor.hsv = Some((HexColour::from_hsv(of_lead), of_lead));
+            context.editor.hsv = Some((HexColour::from_hsv(of_lead), of_lead));
         }
     }
 }
@@ -140,31 +142,33 @@ fn hsv_fields(ui: &mut Ui, frame: &mut Frame<'_>, lead: &RampStop) {
 const ERROR: f32 = 10.0;
 
 /// Updates the active eyedropper and applies its result as one undo step.
-pub fn take(ui: &Ui, frame: &mut Frame<'_>, blend: Blend) {
-    let Some(mut eyedropper) = frame.editor.eyedropper.take() else { return };
-    match eyedropper.take(ui, &mut frame.editor.across) {
-        Taken::Pointed(colours) => {
-            if let Some(Ok(gradient)) = preview(frame, &colours, blend).map(|stops| strip::gradient(&stops, blend)) {
-                let colour = |at: f32| colour32(strip::colour_at(&gradient, at));
-                eyedropper.magnifier(ui, frame.editor.across, &colours, colour);
+pub fn update_eyedropper(ui: &Ui, context: &mut EditContext<'_>, blend: Blend) {
+    let Some(mut eyedropper) = context.editor.eyedropper.take() else { return };
+    match eyedropper.update(ui, &mut context.editor.sample_size) {
+        EyedropperResult::Pointed(colours) => {
+            if let Some(Ok(gradient)) =
+                preview(context, &colours, blend).map(|stops| gradient_strip::gradient(&stops, blend))
+            {
+                let colour = |at: f32| colour32(gradient_strip::colour_at(&gradient, at));
+                eyedropper.magnifier(ui, context.editor.sample_size, &colours, colour);
             }
-            frame.editor.eyedropper = Some(eyedropper);
+            context.editor.eyedropper = Some(eyedropper);
         }
-        Taken::Done(colours) => match colours.as_slice() {
+        EyedropperResult::Done(colours) => match colours.as_slice() {
             [] => {}
-            [colour] => frame.recolour(HexColour::from_srgb(*colour / 255.0)),
-            row => frame.replace("gradient of a stroke", fit_row(row, blend, ERROR)),
+            [colour] => context.recolour(HexColour::from_srgb(*colour / 255.0)),
+            row => context.replace("gradient of a stroke", fit_row(row, blend, ERROR)),
         },
     }
 }
 
 /// Returns the stops that the eyedropper's current colours would give.
-fn preview(frame: &Frame<'_>, colours: &[Vec3], blend: Blend) -> Option<Vec<RampStop>> {
+fn preview(context: &EditContext<'_>, colours: &[Vec3], blend: Blend) -> Option<Vec<RampStop>> {
     match colours {
         [] => None,
         [colour] => {
-            let mut stops = frame.stops.clone();
-            let selected = frame.editor.selection.iter();
+            let mut stops = context.stops.clone();
+            let selected = context.editor.selection.iter();
             selected.for_each(|index| stops[index].colour = HexColour::from_srgb(*colour / 255.0));
             Some(stops)
         }
@@ -172,65 +176,67 @@ fn preview(frame: &Frame<'_>, colours: &[Vec3], blend: Blend) -> Option<Vec<Ramp
     }
 }
 
-fn eyedropper(ui: &mut Ui, frame: &mut Frame<'_>) {
+fn eyedropper_button(ui: &mut Ui, context: &mut EditContext<'_>) {
     let about = "Click anywhere in the window to give its colour to the selected stops, or draw a stroke to take the gradient \
                  along it. Wheel, or 1, 3 and 5: pixels across that are averaged. Keys: arrows move, with Shift ten times as far; \
                  Enter takes the colour, Space begins a stroke. Escape cancels";
-    let is_on = frame.editor.eyedropper.is_some();
+    let is_on = context.editor.eyedropper.is_some();
     if ui.selectable_label(is_on, "Take a colour").on_hover_text(about).clicked() {
-        frame.editor.eyedropper = Some(Eyedropper::default());
+        context.editor.eyedropper = Some(Eyedropper::default());
     }
 }
 
-fn snap(ui: &mut Ui, frame: &mut Frame<'_>) {
-    let snap = &mut frame.editor.snap;
+fn snap_controls(ui: &mut Ui, context: &mut EditContext<'_>) {
+    let snap = &mut context.editor.snap;
     ui.checkbox(&mut snap.is_on, "Snap").on_hover_text("Snap positions without Ctrl; Ctrl then turns it off");
     let field = egui::DragValue::new(&mut snap.parts).range(2..=100).speed(0.1).suffix(" parts");
     let response = ui.add(field.update_while_editing(false));
     response.on_hover_text("Number of equal parts that positions snap to");
 }
 
-fn all(ui: &mut Ui, frame: &mut Frame<'_>, at: f32) {
-    let is_many = frame.stops.len() > 1;
-    let is_part = frame.editor.selection.is_many();
+fn stop_buttons(ui: &mut Ui, context: &mut EditContext<'_>, at: f32) {
+    let is_many = context.stops.len() > 1;
+    let is_part = context.editor.selection.is_many();
     let of = |all: &str, part: &str| if is_part { part.to_owned() } else { all.to_owned() };
     let button = |ui: &mut Ui, is_enabled: bool, name: &str, about: &str| {
         ui.add_enabled(is_enabled, egui::Button::new(name)).on_hover_text(about).clicked()
     };
     if button(ui, is_many, "Remove", "Remove the selected stops (Delete)") {
-        frame.edit_selected(REMOVE, stops::remove);
+        context.edit_selected(REMOVE, stop_operations::remove);
     }
     let about = of("Reverse the gradient", "Reverse the part from the first to the last selected stop");
     if button(ui, true, "Flip", &about) {
-        frame.edit_selected(["flip", "flip a part"], stops::flip);
+        context.edit_selected(["flip", "flip a part"], stop_operations::flip);
     }
     let about = of("Compress into the first half and mirror into the second", "Mirror the selected part");
     if button(ui, is_many, "Mirror", &about) {
-        frame.edit_selected(["mirror", "mirror a part"], stops::mirror);
+        context.edit_selected(["mirror", "mirror a part"], stop_operations::mirror);
     }
     let about = of("Space all stops evenly", "Space the selected stops evenly");
     if button(ui, is_many, "Distribute", &about) {
-        frame.edit_selected(["distribute", "distribute a part"], |all, selection| stops::distribute(all, selection));
+        context.edit_selected(["distribute", "distribute a part"], |all, selection| {
+            stop_operations::distribute(all, selection)
+        });
     }
     let about = "Give the range after each stop the same width: for constant curves";
     if button(ui, is_many, "Steps", about) {
-        frame.edit_selected(["even steps", "even steps in a part"], |all, selection| {
-            stops::distribute_steps(all, selection)
+        context.edit_selected(["even steps", "even steps in a part"], |all, selection| {
+            stop_operations::distribute_steps(all, selection)
         });
     }
     if button(ui, true, "Copy", "Copy all stops as recipe text (Ctrl+C on a stop)") {
-        frame.copy(ui, at);
+        context.copy(ui, at);
     }
     if button(ui, true, "Paste", "Replace the stops by copied ones (Ctrl+V on a stop)") {
-        frame.editor.awaits_paste = true;
+        context.editor.awaits_paste = true;
         ui.ctx().send_viewport_cmd(egui::ViewportCommand::RequestPaste);
     }
     ui.menu_button("Templates", |ui| {
         egui::ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
             for template in TEMPLATES {
-                if ui.button(template.name.replace('_', " ")).on_hover_text(template.about).clicked() {
+                if ui.button(template.name.replace('_', " ")).on_hover_text(template.description).clicked() {
                     let stops = template.recipe().rows.swap_remove(0).stops;
-                    frame.replace("template", stops);
+                    context.replace("template", stops);
                     ui.close();
                 }
             }

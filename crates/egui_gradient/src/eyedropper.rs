@@ -10,15 +10,15 @@ use egui::{
 use glam::Vec3;
 
 use super::paint;
-use super::sampled::{Across, colours, pixel, place};
-use haze_author::ramp::bake::HexColour;
+use super::screenshot_sampling::{SampleSize, pixel_at, pixel_colour, sample_colours};
+use haze_author::ramp::HexColour;
 
 /// State of an active eyedropper: waits for a screenshot of the window, then for a click or a stroke by pointer or
 /// keys.
 #[derive(Clone, Debug, Default)]
 pub struct Eyedropper {
     /// Screenshot of the window from when the eyedropper was activated.
-    shown: Arc<OnceLock<Arc<ColorImage>>>,
+    screenshot: Arc<OnceLock<Arc<ColorImage>>>,
     /// Frames since activation.
     frames: u32,
     /// Last pointer position, and the picked position, which keys move too; points.
@@ -32,7 +32,7 @@ pub struct Eyedropper {
 }
 
 /// Picked sRGB colours, 0 to 255: one, those along a stroke, or none.
-pub enum Taken {
+pub enum EyedropperResult {
     /// Colours at the current position; the eyedropper stays active.
     Pointed(Vec<Vec3>),
     /// Final colours. Empty if Escape cancelled the eyedropper.
@@ -41,25 +41,28 @@ pub enum Taken {
 
 impl Eyedropper {
     /// Handles pointer and keys for one frame.
-    pub fn take(&mut self, ui: &Ui, across: &mut Across) -> Taken {
+    pub fn update(&mut self, ui: &Ui, sample_size: &mut SampleSize) -> EyedropperResult {
         if ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) {
-            return Taken::Done(Vec::new());
+            return EyedropperResult::Done(Vec::new());
         }
-        self.ask(ui);
-        self.cover(ui);
-        self.follow(ui);
-        self.keys(ui, across);
+        self.request_screenshot(ui);
+        self.cover_window(ui);
+        self.follow_pointer(ui);
+        self.keys(ui, sample_size);
         let here = [self.at];
         let stroke = if self.stroke.is_empty() { &here[..] } else { &self.stroke };
-        let colours = self.shown.get().map(|shown| colours(shown, stroke, ui.pixels_per_point(), *across));
+        let colours = self
+            .screenshot
+            .get()
+            .map(|screenshot| sample_colours(screenshot, stroke, ui.pixels_per_point(), *sample_size));
         match colours {
-            Some(colours) if self.is_released => Taken::Done(colours),
-            colours => Taken::Pointed(colours.unwrap_or_default()),
+            Some(colours) if self.is_released => EyedropperResult::Done(colours),
+            colours => EyedropperResult::Pointed(colours.unwrap_or_default()),
         }
     }
 
     /// Requests a screenshot, once no widget is drawn as hovered any more.
-    fn ask(&mut self, ui: &Ui) {
+    fn request_screenshot(&mut self, ui: &Ui) {
         /// The cover is added in frame 1, widgets lose their hover in frame 2 and are drawn without it in frame 3.
         const COVERED: u32 = 3;
         self.frames = self.frames.saturating_add(1);
@@ -73,16 +76,16 @@ impl Eyedropper {
         if self.frames != COVERED {
             return;
         }
-        let (shown, context) = (Arc::clone(&self.shown), ui.ctx().clone());
+        let (screenshot, context) = (Arc::clone(&self.screenshot), ui.ctx().clone());
         ui.ctx().request_screenshot(move |image| {
             // Fails only if it is set already.
-            let _ = shown.set(image);
+            let _ = screenshot.set(image);
             context.request_repaint();
         });
     }
 
     /// Covers the whole window, so that no other widget gets clicks, and draws the screenshot and the stroke.
-    fn cover(&self, ui: &Ui) {
+    fn cover_window(&self, ui: &Ui) {
         let window = ui.ctx().viewport_rect();
         let id: Id = ui.scope_id().with("eyedropper");
         let cover = Area::new(id).order(Order::Foreground).fixed_pos(window.min).constrain(false);
@@ -93,11 +96,12 @@ impl Eyedropper {
         response.request_focus();
         let filter = EventFilter { tab: true, horizontal_arrows: true, vertical_arrows: true, escape: true };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
-        let Some(shown) = self.shown.get() else { return };
+        let Some(screenshot) = self.screenshot.get() else { return };
         let painter = ui.ctx().layer_painter(response.layer_id);
-        let [width, height] = shown.size;
+        let [width, height] = screenshot.size;
         if width.max(height) <= ui.input(|input| input.max_texture_side) {
-            let picture = ui.ctx().load_texture_cached("eyedropper", id, Arc::clone(shown), TextureOptions::NEAREST);
+            let picture =
+                ui.ctx().load_texture_cached("eyedropper", id, Arc::clone(screenshot), TextureOptions::NEAREST);
             let size = vec2(width as f32, height as f32) / ui.pixels_per_point();
             let all = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
             painter.image(picture.id(), Rect::from_min_size(Pos2::ZERO, size), all, Color32::WHITE);
@@ -108,7 +112,7 @@ impl Eyedropper {
     }
 
     /// Updates position and stroke by the pointer.
-    fn follow(&mut self, ui: &Ui) {
+    fn follow_pointer(&mut self, ui: &Ui) {
         let (pointer, is_pressed, is_down) = ui
             .input(|input| (input.pointer.latest_pos(), input.pointer.primary_pressed(), input.pointer.primary_down()));
         let has_moved = pointer.is_some() && pointer != self.pointer;
@@ -132,7 +136,7 @@ impl Eyedropper {
 
     /// Handles keys and wheel. Arrows move by pixels, Shift ten times as far. Enter picks, Space begins a stroke.
     /// Digits and the wheel set the sample size.
-    fn keys(&mut self, ui: &Ui, across: &mut Across) {
+    fn keys(&mut self, ui: &Ui, sample_size: &mut SampleSize) {
         let mut pressed = Vec::new();
         ui.input_mut(|input| {
             // Prevents scrolling of widgets below.
@@ -143,7 +147,7 @@ impl Eyedropper {
                         pressed.push((*key, *repeat, *modifiers));
                     }
                     egui::Event::MouseWheel { delta, .. } if delta.y != 0.0 => {
-                        *across = across.stepped(if delta.y > 0.0 { 1 } else { -1 });
+                        *sample_size = sample_size.stepped(if delta.y > 0.0 { 1 } else { -1 });
                     }
                     _ => return true,
                 }
@@ -169,7 +173,10 @@ impl Eyedropper {
                     continue;
                 }
                 key => {
-                    *across = Across::ALL.iter().find(|(_, of)| *of == key).map_or(*across, |(across, _)| *across);
+                    *sample_size = SampleSize::ALL
+                        .iter()
+                        .find(|(_, of)| *of == key)
+                        .map_or(*sample_size, |(sample_size, _)| *sample_size);
                     continue;
                 }
             };
@@ -183,18 +190,18 @@ impl Eyedropper {
 
     /// Draws a magnifier: pixels around the position, the colour that would be picked, and below the resulting
     /// gradient, where `gradient` returns the colour at a position.
-    pub fn magnifier(&self, ui: &Ui, across: Across, colours: &[Vec3], gradient: impl Fn(f32) -> Color32) {
+    pub fn magnifier(&self, ui: &Ui, sample_size: SampleSize, colours: &[Vec3], gradient: impl Fn(f32) -> Color32) {
         /// Number of magnified pixels across, and the size of each in points.
         const SEEN: i32 = 11;
         const CELL: f32 = 8.0;
-        let (Some(shown), Some(colour)) = (self.shown.get(), colours.last()) else { return };
+        let (Some(screenshot), Some(colour)) = (self.screenshot.get(), colours.last()) else { return };
         // Placed on the side with more room.
         let (x, y) = (self.at.x > ui.ctx().viewport_rect().center().x, self.at.y > ui.ctx().viewport_rect().center().y);
         let side = |is_far: bool| if is_far { egui::Align::Max } else { egui::Align::Min };
         let away = |is_far: bool| if is_far { -20.0 } else { 20.0 };
         let area = Area::new(ui.scope_id().with("magnifier")).order(Order::Tooltip).interactable(false);
         let area = area.pivot(egui::Align2([side(x), side(y)])).fixed_pos(self.at + vec2(away(x), away(y)));
-        let centre = place(shown, self.at, ui.pixels_per_point());
+        let centre = pixel_at(screenshot, self.at, ui.pixels_per_point());
         area.show(ui.ctx(), |ui| {
             egui::Frame::popup(ui.style()).inner_margin(4.0).show(ui, |ui| {
                 let (_, seen) = ui.allocate_space(Vec2::splat(SEEN as f32 * CELL));
@@ -202,11 +209,11 @@ impl Eyedropper {
                 let cell =
                     |x: i32, y: i32| Rect::from_min_size(seen.min + vec2(x as f32, y as f32) * CELL, Vec2::splat(CELL));
                 for (x, y) in (0..SEEN).flat_map(|y| (0..SEEN).map(move |x| (x, y))) {
-                    let pixel = pixel(shown, [centre[0] + x - SEEN / 2, centre[1] + y - SEEN / 2]);
+                    let pixel = pixel_colour(screenshot, [centre[0] + x - SEEN / 2, centre[1] + y - SEEN / 2]);
                     mesh.add_colored_rect(cell(x, y), colour32(pixel));
                 }
                 ui.painter().add(mesh);
-                let (first, last) = (SEEN / 2 - across.reach(), SEEN / 2 + across.reach());
+                let (first, last) = (SEEN / 2 - sample_size.reach(), SEEN / 2 + sample_size.reach());
                 let taken = cell(first, first).union(cell(last, last));
                 for (grown, ink) in [(1.0, Color32::BLACK), (0.0, Color32::WHITE)] {
                     ui.painter().rect_stroke(
@@ -221,7 +228,7 @@ impl Eyedropper {
                 let (_, strip) = ui.allocate_space(vec2(seen.width(), 12.0));
                 paint::gradient(ui, strip, gradient);
                 let hex = String::from(HexColour::from_srgb(*colour / 255.0));
-                ui.label(format!("{hex}  {0}×{0}", across as i32));
+                ui.label(format!("{hex}  {0}×{0}", sample_size as i32));
             });
         });
     }

@@ -3,10 +3,10 @@
 use egui::{self, CursorIcon, EventFilter, Id, Key, Modifiers, PointerButton, Rect, Response, Sense, Ui};
 use egui::{pos2, vec2};
 
-use super::frame::{Drag, Frame, MOVE, REMOVE, Selected};
+use super::edit_context::{Drag, EditContext, MOVE, REMOVE, Selected};
 use super::paint::{colour32, handle, readout};
 use super::selection::Selection;
-use super::{fan, stops};
+use super::{handle_layout, stop_operations};
 
 /// Size of a handle, points.
 const HANDLE: egui::Vec2 = vec2(12.0, 16.0);
@@ -16,46 +16,46 @@ pub const GAP: f32 = 15.0;
 const FINE: f32 = 0.1;
 
 /// Draws the handles in their lane and handles their input.
-pub fn show(ui: &Ui, frame: &mut Frame<'_>, strip: Rect, lane: Rect) {
-    ground(ui, frame, lane);
-    all(ui, frame, strip, lane);
-    drag(ui, frame, strip);
+pub fn show(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, lane: Rect) {
+    lane_input(ui, context, lane);
+    show_handles(ui, context, strip, lane);
+    update_drag(ui, context, strip);
     // Stops selected in this frame may have been removed in it.
-    frame.editor.selection.clamp_to(frame.stops.len());
-    if frame.wants_keyboard {
+    context.editor.selection.clamp_to(context.stops.len());
+    if context.requests_focus {
         // Must come last: drawing the handles after a click elsewhere removes their focus.
-        let index = frame.editor.cursor.unwrap_or(frame.editor.selection.lead());
+        let index = context.editor.cursor.unwrap_or(context.editor.selection.lead());
         ui.memory_mut(|memory| memory.request_focus(handle_id(ui, index)));
     }
 }
 
 /// Handles input on the lane outside the handles. A click selects the nearest stop, also one without a handle; a drag
 /// selects the stops under the band.
-fn ground(ui: &Ui, frame: &mut Frame<'_>, lane: Rect) {
+fn lane_input(ui: &Ui, context: &mut EditContext<'_>, lane: Rect) {
     let response = ui.interact(lane, ui.scope_id().with("lane"), Sense::click_and_drag());
     let (origin, modifiers) = ui.input(|input| (input.pointer.press_origin(), input.modifiers));
     if let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked()) {
-        let at = share(lane, at.x);
-        let apart = |index: &usize| (frame.stops[*index].at - at).abs();
-        let nearest = (0..frame.stops.len()).min_by(|a, b| apart(a).total_cmp(&apart(b)));
-        frame.select(nearest.unwrap_or(0), modifiers);
-        frame.wants_keyboard = true;
+        let at = strip_position(lane, at.x);
+        let apart = |index: &usize| (context.stops[*index].at - at).abs();
+        let nearest = (0..context.stops.len()).min_by(|a, b| apart(a).total_cmp(&apart(b)));
+        context.select(nearest.unwrap_or(0), modifiers);
+        context.requests_focus = true;
     }
     if response.drag_started() {
-        frame.editor.band = origin.map(|origin| share(lane, origin.x));
+        context.editor.band = origin.map(|origin| strip_position(lane, origin.x));
     }
-    let Some(from) = frame.editor.band else { return };
+    let Some(from) = context.editor.band else { return };
     let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) else {
-        frame.editor.band = None;
-        frame.wants_keyboard = true;
+        context.editor.band = None;
+        context.requests_focus = true;
         return;
     };
-    let to = share(lane, pointer.x);
-    let first = frame.stops.partition_point(|stop| stop.at < from.min(to));
-    let behind = frame.stops.partition_point(|stop| stop.at <= from.max(to));
+    let to = strip_position(lane, pointer.x);
+    let first = context.stops.partition_point(|stop| stop.at < from.min(to));
+    let behind = context.stops.partition_point(|stop| stop.at <= from.max(to));
     if let Some(last) = behind.checked_sub(1).filter(|last| *last >= first) {
-        frame.editor.cursor = None;
-        frame.editor.selection =
+        context.editor.cursor = None;
+        context.editor.selection =
             if from < to { Selection::between(first, last) } else { Selection::between(last, first) };
     }
     let x = |share: f32| lane.left() + share.clamp(0.0, 1.0) * lane.width();
@@ -68,19 +68,19 @@ fn handle_id(ui: &Ui, index: usize) -> Id {
 }
 
 /// Converts x to a position on the strip: 0 to 1 inside it.
-pub fn share(strip: Rect, x: f32) -> f32 {
+pub fn strip_position(strip: Rect, x: f32) -> f32 {
     (x - strip.left()) / strip.width()
 }
 
 /// Draws and handles all handles that fit.
-fn all(ui: &Ui, frame: &mut Frame<'_>, strip: Rect, lane: Rect) {
+fn show_handles(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, lane: Rect) {
     let room = (lane.width() / GAP) as usize + 1;
-    let middle = frame.editor.cursor.unwrap_or(frame.editor.selection.lead());
-    let shown = fan::shown(frame.stops.len(), middle, room);
-    let wanted: Vec<_> = frame.stops[shown.clone()].iter().map(|stop| stop.at * lane.width()).collect();
-    let places = fan::fan_out(&wanted, lane.width(), GAP);
+    let middle = context.editor.cursor.unwrap_or(context.editor.selection.lead());
+    let shown = handle_layout::visible_handles(context.stops.len(), middle, room);
+    let wanted: Vec<_> = context.stops[shown.clone()].iter().map(|stop| stop.at * lane.width()).collect();
+    let places = handle_layout::spread(&wanted, lane.width(), GAP);
     // State before any edit in this frame.
-    let before = (frame.stops.clone(), frame.editor.selection.clone());
+    let before = (context.stops.clone(), context.editor.selection.clone());
     let mut focused = None;
     let mut drawn = Vec::new();
     for ((index, place), wanted) in shown.zip(places).zip(wanted) {
@@ -90,12 +90,12 @@ fn all(ui: &Ui, frame: &mut Frame<'_>, strip: Rect, lane: Rect) {
         let response = ui.interact(rect.expand2(vec2(1.0, 2.0)), handle_id(ui, index), Sense::click_and_drag());
         let name = format!("stop {}", index + 1);
         response.widget_info(|| egui::WidgetInfo::slider(true, f64::from(stop.at), &name));
-        point(ui, frame, (&response, index), &before);
+        handle_pointer(ui, context, (&response, index), &before);
         if response.has_focus() {
             focused = Some(index);
         }
         drawn.push((index, rect, lane.left() + wanted, colour32(stop.colour), response.hovered()));
-        if frame.editor.dragged.is_none() && response.hovered() {
+        if context.editor.dragged.is_none() && response.hovered() {
             ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
             let text = format!(
                 "{name}: {} at {:.4}. Drag: Ctrl snaps to equal parts, Shift to other stops; Alt at the start moves a copy, \
@@ -114,133 +114,133 @@ fn all(ui: &Ui, frame: &mut Frame<'_>, strip: Rect, lane: Rect) {
         let states = (selection.contains(index), is_hovered, focused == Some(index));
         handle(ui, rect, pos2(x, strip.bottom()), colour, states);
     }
-    frame.editor.has_keyboard = focused.is_some();
+    context.editor.has_keyboard = focused.is_some();
     if let Some(index) = focused {
         // Then Escape cancels the drag or reduces the selection instead of removing the focus.
-        let escape = frame.editor.dragged.is_some() || frame.editor.selection.is_many();
+        let escape = context.editor.dragged.is_some() || context.editor.selection.is_many();
         let filter = EventFilter { horizontal_arrows: true, vertical_arrows: true, escape, ..EventFilter::default() };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(handle_id(ui, index), filter));
-        let cursor = frame.editor.cursor;
-        keys(ui, frame);
-        if frame.editor.selection != before.1 || frame.editor.cursor != cursor {
-            frame.wants_keyboard = true;
+        let cursor = context.editor.cursor;
+        handle_keys(ui, context);
+        if context.editor.selection != before.1 || context.editor.cursor != cursor {
+            context.requests_focus = true;
         }
     }
 }
 
 /// Handles pointer input on a handle, and focus changes.
-fn point(ui: &Ui, frame: &mut Frame<'_>, (response, index): (&Response, usize), before: &Selected) {
+fn handle_pointer(ui: &Ui, context: &mut EditContext<'_>, (response, index): (&Response, usize), before: &Selected) {
     let (origin, modifiers, is_space) =
         ui.input(|input| (input.pointer.press_origin(), input.modifiers, input.key_pressed(Key::Space)));
     if response.middle_clicked() {
-        if !frame.editor.selection.contains(index) {
-            frame.editor.selection = Selection::one(index);
+        if !context.editor.selection.contains(index) {
+            context.editor.selection = Selection::one(index);
         }
-        remove(frame);
-        frame.wants_keyboard = true;
+        remove(context);
+        context.requests_focus = true;
     } else if response.drag_started_by(PointerButton::Primary) {
         response.request_focus();
         // All selected stops are dragged together.
-        if !frame.editor.selection.contains(index) {
-            frame.editor.selection = Selection::one(index);
+        if !context.editor.selection.contains(index) {
+            context.editor.selection = Selection::one(index);
         }
-        frame.editor.selection.set_lead(index);
+        context.editor.selection.set_lead(index);
         if modifiers.alt {
-            frame.edit_selected(["copy a stop", "copy stops"], stops::copy);
-            frame.wants_keyboard = true;
+            context.edit_selected(["copy a stop", "copy stops"], stop_operations::copy);
+            context.requests_focus = true;
         }
         if let Some(origin) = origin {
             let place = before.0[index].at;
-            begin(frame, origin.x, place, before.clone(), !modifiers.alt);
+            begin_drag(context, origin.x, place, before.clone(), !modifiers.alt);
         }
     } else if response.clicked() {
         response.request_focus();
         let modifiers = if is_space { Modifiers::COMMAND } else { modifiers };
-        frame.select(index, modifiers);
-    } else if response.gained_focus() && frame.editor.dragged.is_none() && frame.editor.cursor != Some(index) {
+        context.select(index, modifiers);
+    } else if response.gained_focus() && context.editor.dragged.is_none() && context.editor.cursor != Some(index) {
         // Focus by Tab selects the stop. Focus by a click or another key has already set the selection.
-        if !frame.editor.selection.contains(index) || frame.editor.selection.lead() != index {
-            frame.select(index, Modifiers::NONE);
+        if !context.editor.selection.contains(index) || context.editor.selection.lead() != index {
+            context.select(index, Modifiers::NONE);
         }
     }
 }
 
 /// Begins a drag of the selected stops, with the lead at `place` and the pointer at `x`.
-pub fn begin(frame: &mut Frame<'_>, x: f32, place: f32, before: Selected, alt_slows: bool) {
-    let from = (frame.stops.clone(), frame.editor.selection.clone());
-    let now = frame.stops.clone();
-    frame.editor.dragged = Some(Drag { x, place, from, before, now, alt_slows });
+pub fn begin_drag(context: &mut EditContext<'_>, x: f32, place: f32, before: Selected, alt_slows: bool) {
+    let from = (context.stops.clone(), context.editor.selection.clone());
+    let now = context.stops.clone();
+    context.editor.dragged = Some(Drag { x, place, from, before, now, alt_slows });
 }
 
-fn remove(frame: &mut Frame<'_>) {
-    frame.edit_selected(REMOVE, stops::remove);
+fn remove(context: &mut EditContext<'_>) {
+    context.edit_selected(REMOVE, stop_operations::remove);
 }
 
 /// Keys that the focused stop handles, with any modifiers.
-const OURS: [Key; 8] =
+const HANDLED_KEYS: [Key; 8] =
     [Key::ArrowLeft, Key::ArrowRight, Key::ArrowUp, Key::ArrowDown, Key::Home, Key::End, Key::Delete, Key::Backspace];
 
 /// Handles keys while a stop has keyboard focus.
-fn keys(ui: &Ui, frame: &mut Frame<'_>) {
-    let is_escape_ours = frame.editor.dragged.is_none() && frame.editor.selection.is_many();
+fn handle_keys(ui: &Ui, context: &mut EditContext<'_>) {
+    let handles_escape = context.editor.dragged.is_none() && context.editor.selection.is_many();
     let mut pressed = Vec::new();
     ui.input_mut(|input| {
         input.events.retain(|event| {
             let egui::Event::Key { key, pressed: true, modifiers, .. } = event else { return true };
-            let is_ours = match key {
+            let is_handled = match key {
                 Key::A => modifiers.command,
-                Key::Escape => is_escape_ours,
-                key => OURS.contains(key),
+                Key::Escape => handles_escape,
+                key => HANDLED_KEYS.contains(key),
             };
-            if is_ours {
+            if is_handled {
                 pressed.push((*key, *modifiers));
             }
-            !is_ours
+            !is_handled
         });
     });
     for (key, modifiers) in pressed {
-        let last = frame.stops.len().saturating_sub(1);
-        let here = frame.editor.cursor.unwrap_or(frame.editor.selection.lead());
+        let last = context.stops.len().saturating_sub(1);
+        let here = context.editor.cursor.unwrap_or(context.editor.selection.lead());
         match key {
-            Key::ArrowLeft => nudge(frame, -1.0, modifiers),
-            Key::ArrowRight => nudge(frame, 1.0, modifiers),
-            Key::ArrowUp => go(frame, here.saturating_sub(1), modifiers),
-            Key::ArrowDown => go(frame, (here + 1).min(last), modifiers),
-            Key::Home => go(frame, 0, modifiers),
-            Key::End => go(frame, last, modifiers),
-            Key::A => (frame.editor.selection, frame.editor.cursor) = (Selection::between(0, last), None),
-            Key::Escape => frame.select(frame.editor.selection.lead(), Modifiers::NONE),
-            _ => remove(frame),
+            Key::ArrowLeft => nudge(context, -1.0, modifiers),
+            Key::ArrowRight => nudge(context, 1.0, modifiers),
+            Key::ArrowUp => move_focus(context, here.saturating_sub(1), modifiers),
+            Key::ArrowDown => move_focus(context, (here + 1).min(last), modifiers),
+            Key::Home => move_focus(context, 0, modifiers),
+            Key::End => move_focus(context, last, modifiers),
+            Key::A => (context.editor.selection, context.editor.cursor) = (Selection::between(0, last), None),
+            Key::Escape => context.select(context.editor.selection.lead(), Modifiers::NONE),
+            _ => remove(context),
         }
     }
 }
 
-fn nudge(frame: &mut Frame<'_>, steps: f32, modifiers: Modifiers) {
-    let Some(at) = frame.lead().map(|lead| lead.at) else { return };
-    let at = stops::nudged(at, steps, modifiers.shift, frame.editor.snap.with(modifiers));
-    frame.edit_selected(MOVE, |all, selection| stops::move_to(all, selection, at));
+fn nudge(context: &mut EditContext<'_>, steps: f32, modifiers: Modifiers) {
+    let Some(at) = context.lead().map(|lead| lead.at) else { return };
+    let at = stop_operations::nudge_position(at, steps, modifiers.shift, context.editor.snap.with(modifiers));
+    context.edit_selected(MOVE, |all, selection| stop_operations::move_to(all, selection, at));
 }
 
 /// Moves keyboard focus to a stop and selects it; with Shift extends the range to it; with Ctrl leaves the selection
 /// unchanged until Space is pressed.
-fn go(frame: &mut Frame<'_>, index: usize, modifiers: Modifiers) {
+fn move_focus(context: &mut EditContext<'_>, index: usize, modifiers: Modifiers) {
     if modifiers.command {
-        frame.editor.cursor = Some(index);
+        context.editor.cursor = Some(index);
     } else {
-        frame.select(index, modifiers);
+        context.select(index, modifiers);
     }
 }
 
 /// Updates the drag by the pointer. Uses no response of a handle, since the stops' indices may change during the drag.
-fn drag(ui: &Ui, frame: &mut Frame<'_>, strip: Rect) {
-    let Some(mut drag) = frame.editor.dragged.take_if(|drag| drag.now == *frame.stops) else {
-        frame.editor.dragged = None;
+fn update_drag(ui: &Ui, context: &mut EditContext<'_>, strip: Rect) {
+    let Some(mut drag) = context.editor.dragged.take_if(|drag| drag.now == *context.stops) else {
+        context.editor.dragged = None;
         return;
     };
     if ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape) || input.pointer.secondary_pressed()) {
-        frame.editor.dragged = Some(drag);
-        frame.give_up();
-        frame.wants_keyboard = true;
+        context.editor.dragged = Some(drag);
+        context.cancel_drag();
+        context.requests_focus = true;
         return;
     }
     let (pointer, is_down, modifiers) =
@@ -252,16 +252,16 @@ fn drag(ui: &Ui, frame: &mut Frame<'_>, strip: Rect) {
     drag.place += (pointer.x - drag.x) / strip.width() * if is_fine { FINE } else { 1.0 };
     drag.x = pointer.x;
     let (from, selection) = &drag.from;
-    let at = stops::snapped(drag.place, frame.editor.snap.with(modifiers));
-    let at = if modifiers.shift { stops::beside(from, selection, at) } else { at };
-    let led = frame.editor.selection.lead();
-    frame.edit_selected(MOVE, |all, moved| {
+    let at = stop_operations::snap_to_parts(drag.place, context.editor.snap.with(modifiers));
+    let at = if modifiers.shift { stop_operations::snap_to_stop(from, selection, at) } else { at };
+    let led = context.editor.selection.lead();
+    context.edit_selected(MOVE, |all, moved| {
         (*all, *moved) = drag.from.clone();
-        stops::move_to(all, moved, at);
+        stop_operations::move_to(all, moved, at);
     });
-    frame.wants_keyboard |= frame.editor.selection.lead() != led;
-    drag.now.clone_from(frame.stops);
-    if let (Some(lead), Some(was)) = (frame.lead(), drag.from.0.get(drag.from.1.lead())) {
+    context.requests_focus |= context.editor.selection.lead() != led;
+    drag.now.clone_from(context.stops);
+    if let (Some(lead), Some(was)) = (context.lead(), drag.from.0.get(drag.from.1.lead())) {
         let mut text = format!("{:.4}  {}", lead.at, String::from(lead.colour));
         match drag.from.1.count() {
             1 => {}
@@ -272,5 +272,5 @@ fn drag(ui: &Ui, frame: &mut Frame<'_>, strip: Rect) {
         }
         readout(ui, strip.left() + lead.at * strip.width(), strip, colour32(lead.colour), text);
     }
-    frame.editor.dragged = Some(drag);
+    context.editor.dragged = Some(drag);
 }

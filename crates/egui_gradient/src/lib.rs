@@ -16,28 +16,28 @@
 //!
 //! The host implements undo: [`GradientResponse::committed`] names each completed step. A whole drag is one step.
 
+mod clipboard;
 mod controls;
+mod edit_context;
 mod eyedropper;
-mod fan;
-mod frame;
+mod gradient_strip;
+mod handle_layout;
 mod handles;
 mod number;
 mod paint;
-mod sampled;
+mod screenshot_sampling;
 mod selection;
-mod stops;
-mod strip;
+mod stop_operations;
 #[cfg(test)]
 mod tests;
-mod text;
 
 use egui::{self, Ui};
 
-pub use frame::Surroundings;
+pub use edit_context::DisplayOptions;
 pub use paint::histogram;
 
-use frame::{Frame, State};
-use haze_author::ramp::bake::RampRow;
+use edit_context::{EditContext, EditorState};
+use haze_author::ramp::RampRow;
 
 /// Changes to a gradient in one frame.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -58,15 +58,15 @@ pub struct GradientResponse {
 /// Editor of one gradient. Keep it across frames.
 #[derive(Clone, Debug, Default)]
 pub struct GradientEditor {
-    state: State,
+    state: EditorState,
 }
 
 impl GradientEditor {
     /// Shows the editor of a row, at the available width, and edits its stops. The row's own position and curve stay
     /// unchanged.
-    pub fn show(&mut self, ui: &mut Ui, row: &mut RampRow, surroundings: &Surroundings<'_>) -> GradientResponse {
+    pub fn show(&mut self, ui: &mut Ui, row: &mut RampRow, options: &DisplayOptions<'_>) -> GradientResponse {
         if !row.stops.is_sorted_by(|a, b| a.at <= b.at) {
-            stops::sort(&mut row.stops);
+            stop_operations::sort(&mut row.stops);
         }
         let before = row.clone();
         self.state.selection.clamp_to(row.stops.len());
@@ -75,20 +75,20 @@ impl GradientEditor {
         let (mut done, mut is_held) = (None, false);
         ui.push_id("gradient", |ui| {
             let at = before.at;
-            let mut frame = Frame {
+            let mut context = EditContext {
                 editor: &mut self.state,
                 stops: &mut row.stops,
                 done: None,
                 refused: None,
-                wants_keyboard: false,
+                requests_focus: false,
             };
-            edited.pointed_at = strip::show(ui, &mut frame, surroundings);
-            frame.clipboard(ui, at);
+            edited.pointed_at = gradient_strip::show(ui, &mut context, options);
+            context.clipboard(ui, at);
             // Before the controls, so that the click that activates the eyedropper picks no colour.
-            controls::take(ui, &mut frame, surroundings.blend);
-            controls::show(ui, &mut frame, at);
-            is_held = is_interacting(ui, frame.editor.has_keyboard);
-            (edited.refused, done) = (frame.refused, frame.done);
+            controls::update_eyedropper(ui, &mut context, options.blend);
+            controls::show(ui, &mut context, at);
+            is_held = is_interacting(ui, context.editor.has_keyboard);
+            (edited.refused, done) = (context.refused, context.done);
         });
         edited.is_changed = *row != before;
         if edited.is_changed {

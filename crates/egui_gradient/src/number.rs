@@ -6,34 +6,34 @@ use egui::{DragValue, Response, Ui};
 
 /// Input to a field of non-negative numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Typed {
+pub enum NumberInput {
     /// A number.
-    To(f32),
+    Set(f32),
     /// `+0.1`, `-0.1`: an amount to add.
-    By(f32),
+    Add(f32),
     /// `*2`, `/2`: a factor.
-    Times(f32),
+    Multiply(f32),
 }
 
-impl Typed {
+impl NumberInput {
     fn parse(text: &str) -> Option<Self> {
         let text: String = text.chars().filter(|c| !c.is_whitespace()).collect();
         let number = |text: &str| text.parse().ok().filter(|number: &f32| number.is_finite());
         let mut rest = text.chars();
         match rest.next()? {
-            '+' => number(rest.as_str()).map(Self::By),
-            '-' | '−' => number(rest.as_str()).map(|number| Self::By(-number)),
-            '*' | '×' => number(rest.as_str()).map(Self::Times),
-            '/' => number(rest.as_str()).filter(|number| *number != 0.0).map(|number| Self::Times(1.0 / number)),
-            _ => number(&text).map(Self::To),
+            '+' => number(rest.as_str()).map(Self::Add),
+            '-' | '−' => number(rest.as_str()).map(|number| Self::Add(-number)),
+            '*' | '×' => number(rest.as_str()).map(Self::Multiply),
+            '/' => number(rest.as_str()).filter(|number| *number != 0.0).map(|number| Self::Multiply(1.0 / number)),
+            _ => number(&text).map(Self::Set),
         }
     }
 
-    pub fn of(self, number: f32) -> f32 {
+    pub fn apply_to(self, number: f32) -> f32 {
         match self {
-            Self::To(to) => to,
-            Self::By(by) => number + by,
-            Self::Times(times) => number * times,
+            Self::Set(to) => to,
+            Self::Add(by) => number + by,
+            Self::Multiply(times) => number * times,
         }
     }
 }
@@ -44,11 +44,11 @@ pub fn field(
     ui: &mut Ui,
     number: f32,
     style: impl for<'a> FnOnce(&mut Ui, DragValue<'a>) -> Response,
-) -> (Response, Option<Typed>) {
+) -> (Response, Option<NumberInput>) {
     let (typed, way) = (Cell::new(false), Cell::new(None));
     let mut shown = number;
-    let parse = |text: &str| match Typed::parse(text)? {
-        Typed::To(to) => {
+    let parse = |text: &str| match NumberInput::parse(text)? {
+        NumberInput::Set(to) => {
             typed.set(true);
             Some(f64::from(to))
         }
@@ -61,7 +61,7 @@ pub fn field(
     };
     let response = style(ui, DragValue::new(&mut shown).custom_parser(parse).update_while_editing(false));
     // A typed number is used as clamped to the range. A drag is a relative change, so that other selected stops follow.
-    let changed = || if typed.get() { Typed::To(shown) } else { Typed::By(shown - number) };
+    let changed = || if typed.get() { NumberInput::Set(shown) } else { NumberInput::Add(shown - number) };
     let done = way.get().or_else(|| response.changed().then(changed));
     (response, done)
 }
@@ -73,18 +73,18 @@ mod tests {
     #[test]
     fn typed_text_is_a_number_or_a_relative_change() {
         for (text, expected) in [
-            ("0.25", Typed::To(0.25)),
-            (" .5 ", Typed::To(0.5)),
-            ("+0.25", Typed::By(0.25)),
-            ("-0.25", Typed::By(-0.25)),
-            ("− 0.25", Typed::By(-0.25)),
-            ("*2", Typed::Times(2.0)),
-            ("/ 4", Typed::Times(0.25)),
+            ("0.25", NumberInput::Set(0.25)),
+            (" .5 ", NumberInput::Set(0.5)),
+            ("+0.25", NumberInput::Add(0.25)),
+            ("-0.25", NumberInput::Add(-0.25)),
+            ("− 0.25", NumberInput::Add(-0.25)),
+            ("*2", NumberInput::Multiply(2.0)),
+            ("/ 4", NumberInput::Multiply(0.25)),
         ] {
-            assert_eq!(Typed::parse(text), Some(expected), "{text}");
+            assert_eq!(NumberInput::parse(text), Some(expected), "{text}");
         }
         for text in ["", "+", "*", "/0", "a", "*nan", "1 + 1", "+inf"] {
-            assert_eq!(Typed::parse(text), None, "{text}");
+            assert_eq!(NumberInput::parse(text), None, "{text}");
         }
     }
 }

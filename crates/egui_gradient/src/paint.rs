@@ -2,7 +2,7 @@
 
 use egui::{Align2, Area, Color32, Frame, Label, Mesh, Order, Pos2, Rect, Shape, Stroke, StrokeKind, Ui, pos2, vec2};
 
-use haze_author::ramp::bake::{HexColour, RampStop};
+use haze_author::ramp::{HexColour, RampStop};
 
 pub fn colour32(HexColour([r, g, b]): HexColour) -> Color32 {
     Color32::from_rgb(r, g, b)

@@ -2,112 +2,20 @@
 
 #![allow(clippy::float_cmp, reason = "positions are rounded")]
 
-use egui::{Color32, Event, Key, Modifiers, PointerButton, Pos2, Rect, Role, Theme, Ui, Vec2, pos2};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, Role, Theme, Vec2, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
+mod clipboard;
 mod colours;
 mod drags;
+mod harness;
 mod several;
 
 use super::*;
-use haze_author::ramp::bake::{Curve, HexColour, RampStop};
+use harness::*;
 use haze_author::ramp::template::{TEMPLATES, Template};
-
-/// An editor, and the results that its host has received.
-#[derive(Default)]
-struct Host {
-    editor: GradientEditor,
-    row: RampRow,
-    steps: Vec<&'static str>,
-    changes: usize,
-    refused: Vec<String>,
-}
-
-fn host(stops: &[(f32, u8)]) -> Harness<'static, Host> {
-    let stop = |&(at, grey): &(f32, u8)| RampStop::new(at, HexColour([grey; 3]));
-    let row = RampRow { at: 0.5, stops: stops.iter().map(stop).collect(), ..RampRow::default() };
-    let show = |ui: &mut Ui, host: &mut Host| {
-        let bins = [0.0, 1.0, 0.25];
-        let histograms: &[(Color32, &[f32])] = &[(Color32::GRAY, &bins)];
-        let surroundings = Surroundings { histograms, ..Surroundings::default() };
-        let edited = host.editor.show(ui, &mut host.row, &surroundings);
-        host.changes += usize::from(edited.is_changed);
-        host.steps.extend(edited.committed);
-        host.refused.extend(edited.refused);
-    };
-    let mut harness = Harness::builder()
-        .with_size(Vec2::new(330.0, 260.0))
-        .with_theme(Theme::Dark)
-        .with_render_cursor(false)
-        .build_ui_state(show, Host { row, ..Host::default() });
-    harness.run_steps(3);
-    harness
-}
-
-fn places(harness: &Harness<'_, Host>) -> Vec<f32> {
-    harness.state().row.stops.iter().map(|stop| (stop.at * 1000.0).round() / 1000.0).collect()
-}
-
-fn greys(harness: &Harness<'_, Host>) -> Vec<u8> {
-    harness.state().row.stops.iter().map(|stop| stop.colour.0[0]).collect()
-}
-
-fn steps(harness: &Harness<'_, Host>) -> Vec<&'static str> {
-    harness.state().steps.clone()
-}
-
-fn strip(harness: &Harness<'_, Host>) -> Rect {
-    harness.get_by_label("gradient: add a stop").rect()
-}
-
-/// Returns the screen position of a position on the strip, 0 to 1.
-fn on_strip(harness: &Harness<'_, Host>, at: f32) -> Pos2 {
-    let strip = strip(harness);
-    pos2(strip.left() + at * strip.width(), strip.top() + 8.0)
-}
-
-fn handle(harness: &Harness<'_, Host>, index: usize) -> Rect {
-    harness.get_by_label(&format!("stop {}", index + 1)).rect()
-}
-
-fn button(harness: &mut Harness<'_, Host>, pos: Pos2, pressed: bool, modifiers: Modifiers) {
-    harness.event(Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers });
-    harness.step();
-}
-
-fn drag(harness: &mut Harness<'_, Host>, from: Pos2, by: f32, modifiers: Modifiers) {
-    harness.hover_at(from);
-    // Modifiers are held during the whole drag.
-    harness.event(Event::ModifiersChanged(modifiers));
-    harness.step();
-    button(harness, from, true, modifiers);
-    for part in 1..=4 {
-        harness.hover_at(from + Vec2::new(by * part as f32 / 4.0, 0.0));
-        harness.step();
-    }
-    button(harness, from + Vec2::new(by, 0.0), false, modifiers);
-    harness.event(Event::ModifiersChanged(NONE));
-    harness.run_steps(2);
-}
-
-fn click(harness: &mut Harness<'_, Host>, pos: Pos2, modifiers: Modifiers) {
-    harness.hover_at(pos);
-    harness.event(Event::ModifiersChanged(modifiers));
-    harness.step();
-    for pressed in [true, false] {
-        button(harness, pos, pressed, modifiers);
-    }
-    harness.event(Event::ModifiersChanged(NONE));
-    harness.run_steps(2);
-}
-
-fn key(harness: &mut Harness<'_, Host>, key: Key, modifiers: Modifiers) {
-    harness.key_press_modifiers(modifiers, key);
-    harness.run_steps(3);
-}
-
-const NONE: Modifiers = Modifiers::NONE;
+use haze_author::ramp::{Curve, HexColour};
 
 #[test]
 fn a_click_adds_a_stop_with_the_colour_at_that_position() {
@@ -115,7 +23,7 @@ fn a_click_adds_a_stop_with_the_colour_at_that_position() {
     let at = on_strip(&harness, 0.25);
     let expected = {
         let rows = vec![harness.state().row.clone()];
-        let recipe = haze_author::ramp::bake::RampRecipe { rows, ..Default::default() };
+        let recipe = haze_author::ramp::RampRecipe { rows, ..Default::default() };
         let light = recipe.gradient().unwrap().sample(0.25, 0.0).x;
         (haze::formula::colour::srgb_from_linear(light) * 255.0).round() as u8
     };
@@ -278,48 +186,6 @@ fn each_button_is_one_undo_step() {
     assert_eq!(harness.state().row.stops.len(), 2);
     assert_eq!(steps(&harness), ["flip", "distribute", "even steps", "template", "remove a stop"]);
     assert_eq!(harness.state().row.at, 0.5, "the row stays where it is");
-}
-
-#[test]
-fn stops_are_copied_and_pasted_as_text() {
-    let mut harness = host(&[(0.0, 0), (0.2, 10), (1.0, 20)]);
-    let copied = |harness: &Harness<'_, Host>| {
-        let commands = &harness.output().platform_output.commands;
-        commands.iter().find_map(|command| match command {
-            egui::OutputCommand::CopyText(text) => Some(text.clone()),
-            _ => None,
-        })
-    };
-    harness.get_by_label("stop 1").focus();
-    harness.run_steps(2);
-    harness.event(Event::Copy);
-    harness.step();
-    let text = copied(&harness).unwrap();
-    let before = harness.state().row.clone();
-    key(&mut harness, Key::Delete, NONE);
-    harness.event(Event::Paste(text));
-    harness.run_steps(3);
-    assert_eq!(harness.state().row, before);
-    assert_eq!(steps(&harness), ["remove a stop", "paste stops"]);
-    harness.event(Event::Paste("no row".into()));
-    harness.run_steps(3);
-    assert_eq!(harness.state().row, before);
-    assert!(
-        harness.state().refused[0].starts_with("nothing is pasted: pasted text:1:"),
-        "{:?}",
-        harness.state().refused
-    );
-    // A paste while another widget has focus is ignored, unless it was requested by the button.
-    harness.get_by_label("Distribute").focus();
-    harness.run_steps(2);
-    harness.event(Event::Paste("no row".into()));
-    harness.run_steps(2);
-    assert_eq!(harness.state().refused.len(), 1);
-    harness.get_by_label("Paste").click();
-    harness.run_steps(2);
-    harness.event(Event::Paste("no row".into()));
-    harness.run_steps(2);
-    assert_eq!(harness.state().refused.len(), 2);
 }
 
 #[test]

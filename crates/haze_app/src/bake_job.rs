@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use haze::image::{CompressionEffort, write_png};
 use haze::{Error, FieldError};
-use haze_author::noise::NoiseRecipe;
-use haze_author::ramp::bake::RampRecipe;
+use haze_author::noise_recipe::NoiseRecipe;
+use haze_author::ramp::RampRecipe;
 use haze_author::ramp::motif::MotifRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
 use image::DynamicImage;

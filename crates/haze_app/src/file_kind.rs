@@ -5,8 +5,8 @@ use std::path::Path;
 
 use haze::preset::Preset;
 use haze::{Error, FieldError};
-use haze_author::noise::NoiseRecipe;
-use haze_author::ramp::bake::RampRecipe;
+use haze_author::noise_recipe::NoiseRecipe;
+use haze_author::ramp::RampRecipe;
 use haze_author::ramp::motif::MotifRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
 

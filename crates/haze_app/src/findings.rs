@@ -16,7 +16,7 @@ pub fn report_findings(files: &[PathBuf], find: impl Fn(&Path) -> Result<Vec<Fin
         if findings.is_empty() {
             print_line!("{}: good", path.display())?;
         }
-        for Finding { name, what } in findings {
+        for Finding { name, description } in findings {
             is_good = false;
             print_line!("{}: {name}: {what}", path.display())?;
         }

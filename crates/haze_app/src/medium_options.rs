@@ -71,7 +71,7 @@ impl MediumNumbers {
                 return Err(FieldError::new("--albedo", given, "one number, or three: red, green and blue"));
             }
         };
-        medium.g = self.g.unwrap_or(medium.g);
+        medium.anisotropy = self.g.unwrap_or(medium.anisotropy);
         medium.density = self.density.unwrap_or(medium.density);
         let of_option = |error: FieldError| FieldError { field: format!("--{}", error.field), ..error };
         validate(&medium, String::new).map_err(of_option)?;

@@ -3,7 +3,7 @@
 use glam::{UVec2, Vec3};
 use haze::formula::colour::srgb_from_linear;
 use haze::image::Image;
-use haze_author::ramp::response::{LIGHTS, Puff, angle};
+use haze_author::ramp::response::{LIGHTS, Puff, light_angle};
 use image::imageops::{FilterType, resize};
 use image::{Rgb, RgbImage};
 
@@ -39,7 +39,7 @@ fn white_level(puff: &Puff) -> f32 {
 }
 
 fn degrees(light: usize) -> String {
-    format!("{}°", angle(light))
+    format!("{}°", light_angle(light))
 }
 
 /// Sheet of the path-traced puff, light by light.

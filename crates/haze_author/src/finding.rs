@@ -6,5 +6,5 @@ pub struct Finding {
     /// Kind of defect, as listed in the check's documentation.
     pub name: &'static str,
     /// Description: what is wrong, where, and what is expected.
-    pub what: String,
+    pub description: String,
 }

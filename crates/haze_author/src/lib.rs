@@ -2,9 +2,9 @@
 //!
 //! The library `haze` links none of this: it loads the PNG files and presets that this crate writes.
 
-pub mod exact;
+pub mod deterministic_math;
 pub mod finding;
-pub mod noise;
+pub mod noise_recipe;
 pub mod particle_files;
 pub mod path_trace;
 pub mod preset;

@@ -7,7 +7,7 @@ use haze::formula::texture::Texture2d;
 use haze::noise::{NoiseVolume, pcg3d, unit};
 use haze::ramp::Ramp;
 use haze::sprite::{Sprite, SpriteLayout};
-use haze_author::noise::NoiseRecipe;
+use haze_author::noise_recipe::NoiseRecipe;
 
 /// Tolerance for f32 arithmetic in another order, with fused or separate multiply-add: a few units in the last place.
 pub const ARITHMETIC: f32 = 2e-6;

@@ -91,14 +91,14 @@ fn a_stroke_picks_the_gradient_along_its_path() {
     // The stroke runs over the strip from right to left, so the result is the reversed gradient.
     let wanted = {
         let row = harness.state().row.clone();
-        let recipe = haze_author::ramp::bake::RampRecipe { rows: vec![row], ..Default::default() };
+        let recipe = haze_author::ramp::RampRecipe { rows: vec![row], ..Default::default() };
         recipe.gradient().unwrap()
     };
     drag(&mut harness, from, -0.98 * width, NONE);
     harness.run_steps(3);
     let row = harness.state().row.clone();
     assert!((3..20).contains(&row.stops.len()), "{row:?}");
-    let recipe = haze_author::ramp::bake::RampRecipe { rows: vec![row], ..Default::default() };
+    let recipe = haze_author::ramp::RampRecipe { rows: vec![row], ..Default::default() };
     let taken = recipe.gradient().unwrap();
     let code = |light: f32| haze::formula::colour::srgb_from_linear(light) * 255.0;
     for step in 5..=95 {

@@ -8,7 +8,7 @@ use haze::image::write_file;
 use haze::preset::{Preset, PresetSystem};
 use haze::settings::{Value, values};
 use haze::{Error, FieldError, Light, builtin};
-use haze_author::preset::{check_files, without_effect};
+use haze_author::preset::{check_files, no_effect_reason};
 
 use crate::file_kind::explain_wrong_kind;
 use crate::options::AssetsArguments;

@@ -8,7 +8,7 @@ use haze::ramp::Role;
 use haze::settings::{Leaf, for_each_field, set_field};
 use haze::sprite::SpriteLayout;
 use haze::{Error, FieldError};
-use haze_author::preset::{doubts, without_effect};
+use haze_author::preset::{no_effect_reason, role_warnings};
 
 use super::platform::{assets, files};
 use super::sprite::source::{detail_of, recipe_of};
@@ -64,7 +64,7 @@ impl Dropped {
         }
         let of = preset.systems.get(system).map_or("", |system| &system.name);
         let said = self.fields.first().map(|(field, name)| {
-            let idle = without_effect(&preset, &path(field), size);
+            let idle = no_effect_reason(&preset, &path(field), size);
             let idle = idle.map(|reason| format!("; without effect here: {reason}")).unwrap_or_default();
             format!("{name} is the {} of {of} now{idle}", field.replace('_', " "))
         });
@@ -124,8 +124,8 @@ fn checked(field: &'static str, folder: &Path, name: &str, material: &MaterialNa
     for (field, value) in &fields {
         set_field(&mut names, field, value)?;
     }
-    let doubts = doubts(&names, &assets::material(&names, folder)?);
-    Ok((fields, doubts.into_iter().find(|(of, _)| *of == field).map(|(_, doubt)| doubt)))
+    let warnings = role_warnings(&names, &assets::material(&names, folder)?);
+    Ok((fields, warnings.into_iter().find(|(of, _)| *of == field).map(|(_, doubt)| doubt)))
 }
 
 /// Returns the layout of a sheet: from its recipe, or else from the sprite that it replaces.

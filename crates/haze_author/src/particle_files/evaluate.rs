@@ -13,23 +13,23 @@ impl ParticleFrames {
         particles.clear();
         let mut frame = (f64::from(time) - f64::from(source.start)) * f64::from(source.fps);
         if source.after == EndBehaviour::Loop {
-            frame = frame.rem_euclid(f64::from(self.length()));
+            frame = frame.rem_euclid(f64::from(self.frame_count()));
         }
-        let Some(FramePair { before, after, share }) = self.around(frame) else { return };
-        let given = before.given();
-        before.between(after, share, |cached, there| {
-            let id = cached.id as u64;
+        let Some(FramePair { before, after, share }) = self.frames_around(frame) else { return };
+        let provided = before.provided();
+        before.interpolate(after, share, |particle, weight| {
+            let id = particle.id as u64;
             let random = pcg3d(UVec3::new(id as u32, (id >> 32) as u32, 0));
-            let [x, y, z] = cached.position.to_array();
-            let position = if source.up == UpAxis::Z { Vec3::new(x, z, -y) } else { cached.position };
+            let [x, y, z] = particle.position.to_array();
+            let position = if source.up == UpAxis::Z { Vec3::new(x, z, -y) } else { particle.position };
             particles.push(Particle {
                 position: source.position + position * source.units,
-                radius: if given.radius { cached.radius * source.units } else { source.default_radius },
+                radius: if provided.radius { particle.radius * source.units } else { source.default_radius },
                 // Random rotations hide that all sprites have the same image.
-                rotation: if given.rotation { cached.rotation } else { unit(random.x) * std::f32::consts::TAU },
-                amount: there * if given.amount { cached.amount } else { source.default_amount },
+                rotation: if provided.rotation { particle.rotation } else { unit(random.x) * std::f32::consts::TAU },
+                amount: weight * if provided.amount { particle.amount } else { source.default_amount },
                 frame: unit(random.y) * 256.0 + time * source.flipbook_rate,
-                age: cached.age,
+                age: particle.age,
             });
         });
     }
@@ -40,7 +40,7 @@ mod tests {
     use super::super::Limits;
     use super::*;
 
-    fn cache(texts: &[&str]) -> ParticleFrames {
+    fn frames(texts: &[&str]) -> ParticleFrames {
         let folder = tempfile::tempdir().unwrap();
         for (number, text) in texts.iter().enumerate() {
             std::fs::write(folder.path().join(format!("{number}.csv")), text).unwrap();
@@ -48,21 +48,21 @@ mod tests {
         ParticleFrames::load(&folder.path().join("#.csv"), Limits { particles: 9, bytes: 1 << 20 }).unwrap()
     }
 
-    fn at(source: &ParticleFiles, cache: &ParticleFrames, time: f32) -> Vec<Particle> {
+    fn at(source: &ParticleFiles, frames: &ParticleFrames, time: f32) -> Vec<Particle> {
         let mut particles = Vec::new();
-        cache.evaluate(source, time, &mut particles);
+        frames.evaluate(source, time, &mut particles);
         particles
     }
 
     #[test]
     fn units_and_up_axis_of_the_settings_are_applied() {
-        let cache = cache(&["x,y,z,pscale,amount,rotation,age\n1,2,3,4,0.5,6,0.25"]);
+        let frames = frames(&["x,y,z,pscale,amount,rotation,age\n1,2,3,4,0.5,6,0.25"]);
         let plain = ParticleFiles { flipbook_rate: 0.0, ..ParticleFiles::default() };
-        let [y_up] = at(&plain, &cache, 0.0)[..] else { panic!("one particle") };
+        let [y_up] = at(&plain, &frames, 0.0)[..] else { panic!("one particle") };
         assert_eq!((y_up.position, y_up.radius), (Vec3::new(1.0, 2.0, 3.0), 4.0));
         assert_eq!((y_up.amount, y_up.rotation, y_up.age), (0.5, 6.0, 0.25));
         let moved = ParticleFiles { up: UpAxis::Z, units: 0.01, position: Vec3::new(0.0, 10.0, 0.0), ..plain };
-        let [z_up] = at(&moved, &cache, 0.0)[..] else { panic!("one particle") };
+        let [z_up] = at(&moved, &frames, 0.0)[..] else { panic!("one particle") };
         // Blender's forward axis, y, points away from the viewer.
         assert!(z_up.position.distance(Vec3::new(0.01, 10.03, -0.02)) < 1e-6 && (z_up.radius - 0.04).abs() < 1e-7);
         assert_eq!(Particle { position: y_up.position, radius: y_up.radius, ..z_up }, y_up);
@@ -70,11 +70,11 @@ mod tests {
 
     #[test]
     fn last_frame_is_held_or_the_sequence_repeats() {
-        let cache = cache(&["id,x,y,z\n1,0,0,0", "id,x,y,z\n1,1,0,0\n2,0,0,0", "id,x,y,z\n2,4,0,0"]);
+        let frames = frames(&["id,x,y,z\n1,0,0,0", "id,x,y,z\n1,1,0,0\n2,0,0,0", "id,x,y,z\n2,4,0,0"]);
         let mut source = ParticleFiles { fps: 2.0, start: 1.0, default_amount: 0.4, ..ParticleFiles::default() };
         let mut seen = |after, time| {
             source.after = after;
-            at(&source, &cache, time).iter().map(|particle| (particle.position.x, particle.amount)).collect::<Vec<_>>()
+            at(&source, &frames, time).iter().map(|particle| (particle.position.x, particle.amount)).collect::<Vec<_>>()
         };
         assert_eq!(seen(EndBehaviour::Hold, 0.9), []);
         assert_eq!(seen(EndBehaviour::Hold, 1.0), [(0.0, 0.4)]);
@@ -89,9 +89,9 @@ mod tests {
 
     #[test]
     fn missing_columns_come_from_the_settings_and_stay_with_the_id() {
-        let cache = cache(&["id,x,y,z\n7,0,0,0\n8,0,0,0", "id,x,y,z\n8,0,0,0\n7,0,0,0"]);
+        let frames = frames(&["id,x,y,z\n7,0,0,0\n8,0,0,0", "id,x,y,z\n8,0,0,0\n7,0,0,0"]);
         let source = ParticleFiles { default_radius: 0.5, fps: 1.0, flipbook_rate: 0.0, ..ParticleFiles::default() };
-        let (first, second) = (at(&source, &cache, 0.0), at(&source, &cache, 1.0));
+        let (first, second) = (at(&source, &frames, 0.0), at(&source, &frames, 1.0));
         assert_eq!(first, second);
         assert_eq!((first[0].radius, first[0].amount), (0.5, 0.3));
         let apart = [first[0].rotation - first[1].rotation, first[0].frame - first[1].frame];

@@ -4,14 +4,14 @@
 //! order, scrubbing does not wait for the disk, and a broken frame is reported before the first image is drawn.
 //! [`Limits`] bounds the memory.
 
+mod column_role;
 mod columns;
-mod csv;
+mod csv_reader;
 mod evaluate;
-mod frame;
-mod mistake;
+mod parse_error;
+mod particle_frame;
 mod ply;
-mod preset;
-mod role;
+mod preset_files;
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -20,9 +20,9 @@ use std::sync::Arc;
 use haze::assets::file;
 use haze::error::Error;
 
-pub use frame::{FileParticle, Given, ParticleFrame};
-pub use mistake::Mistake;
-pub use preset::{MAX_PARTICLE_FILE_BYTES, check_particle_files, emission, load_particle_files, particles};
+pub use parse_error::ParseError;
+pub use particle_frame::{FileParticle, ParticleFrame, ProvidedAttributes};
+pub use preset_files::{MAX_PARTICLE_FILE_BYTES, check_particle_files, emission, load_particle_files, particles};
 
 /// Size limit of one file, bytes.
 pub const MAX_FILE_BYTES: u64 = 256 << 20;
@@ -61,11 +61,11 @@ impl ParticleFrames {
         let (mut frames, mut bytes) = (Vec::new(), 0);
         for (number, file) in haze::preset::frame_files(path)? {
             let content = file::read(&file, "CSV or PLY file", MAX_FILE_BYTES)?;
-            let frame = parse(&file, &content, limits.particles).map_err(|mistake| mistake.of(&file))?;
+            let frame = parse(&file, &content, limits.particles).map_err(|error| error.into_error(&file))?;
             bytes += frame.bytes();
             if bytes > limits.bytes {
-                let [found, most] = [bytes, limits.bytes].map(|bytes| bytes.div_ceil(1 << 20));
-                let reason = format!("{found} MiB of particles up to this frame; expected at most {most} MiB");
+                let [found, limit] = [bytes, limits.bytes].map(|bytes| bytes.div_ceil(1 << 20));
+                let reason = format!("{found} MiB of particles up to this frame; expected at most {limit} MiB");
                 return Err(Error::Image { path: file, reason });
             }
             frames.push((number, frame));
@@ -79,7 +79,7 @@ impl ParticleFrames {
     }
 
     /// Returns the largest number of particles in one frame.
-    pub fn most(&self) -> usize {
+    pub fn max_particles(&self) -> usize {
         self.0.iter().map(|(_, frame)| frame.particles().len()).max().unwrap_or_default()
     }
 
@@ -89,13 +89,13 @@ impl ParticleFrames {
     }
 
     /// Returns the number of frames from the first to the last, including missing ones between them.
-    pub fn length(&self) -> u32 {
+    pub fn frame_count(&self) -> u32 {
         self.0.last().map_or(1, |(last, _)| last - self.first() + 1)
     }
 
     /// Returns the frames around a time, in frames since the first. `None` before the first frame; after the last
     /// frame, the last one with nothing after it.
-    pub fn around(&self, frame: f64) -> Option<FramePair<'_>> {
+    pub fn frames_around(&self, frame: f64) -> Option<FramePair<'_>> {
         let number = frame + f64::from(self.first());
         let next = self.0.partition_point(|(at, _)| f64::from(*at) <= number);
         let (start, before) = self.0.get(next.checked_sub(1)?)?;
@@ -107,18 +107,18 @@ impl ParticleFrames {
     }
 
     /// True if both share the same memory.
-    pub fn shares(&self, other: &Self) -> bool {
+    pub fn shares_memory(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
 
     /// True if both lists share the same memory in every entry.
     pub fn share_all_memory(some: &[Option<Self>], others: &[Option<Self>]) -> bool {
-        let shares = |(one, other): (&Option<Self>, &Option<Self>)| match (one, other) {
-            (Some(one), Some(other)) => one.shares(other),
+        let shares_memory = |(one, other): (&Option<Self>, &Option<Self>)| match (one, other) {
+            (Some(one), Some(other)) => one.shares_memory(other),
             (None, None) => true,
             _ => false,
         };
-        some.len() == others.len() && some.iter().zip(others).all(shares)
+        some.len() == others.len() && some.iter().zip(others).all(shares_memory)
     }
 
     fn first(&self) -> u32 {
@@ -130,11 +130,11 @@ impl ParticleFrames {
 /// opened.
 ///
 /// # Errors
-/// A [`Mistake`] with the position, if the content is malformed.
-pub fn parse(path: &Path, content: &[u8], most: usize) -> Result<ParticleFrame, Mistake> {
+/// A [`ParseError`] with the position, if the content is malformed.
+pub fn parse(path: &Path, content: &[u8], max_particles: usize) -> Result<ParticleFrame, ParseError> {
     match path.extension() {
-        Some(ending) if ending.eq_ignore_ascii_case(OsStr::new("ply")) => ply::read(content, most),
-        _ => csv::read(content, most),
+        Some(ending) if ending.eq_ignore_ascii_case(OsStr::new("ply")) => ply::read(content, max_particles),
+        _ => csv_reader::read(content, max_particles),
     }
 }
 

@@ -8,10 +8,10 @@ fn frame(text: &str) -> ParticleFrame {
     parse(Path::new("a.csv"), text.as_bytes(), 100).unwrap()
 }
 
-fn between(first: &str, second: &str, share: f32) -> Vec<(i64, f32, f32)> {
+fn interpolate(first: &str, second: &str, share: f32) -> Vec<(i64, f32, f32)> {
     let mut found = Vec::new();
-    frame(first).between(Some(&frame(second)), share, |particle, there| {
-        found.push((particle.id, particle.position.x, there));
+    frame(first).interpolate(Some(&frame(second)), share, |particle, weight| {
+        found.push((particle.id, particle.position.x, weight));
     });
     found
 }
@@ -19,18 +19,18 @@ fn between(first: &str, second: &str, share: f32) -> Vec<(i64, f32, f32)> {
 #[test]
 fn particles_in_both_frames_are_interpolated_and_others_fade() {
     let (first, second) = ("id,x,y,z\n5,1,0,0\n2,0,0,0\n3,4,0,0", "id,x,y,z\n3,8,0,0\n9,7,0,0\n5,2,0,0\n");
-    assert_eq!(between(first, second, 0.25), [(2, 0.0, 0.75), (3, 5.0, 1.0), (5, 1.25, 1.0), (9, 7.0, 0.25)]);
-    assert_eq!(between(first, second, 0.0), [(2, 0.0, 1.0), (3, 4.0, 1.0), (5, 1.0, 1.0)]);
+    assert_eq!(interpolate(first, second, 0.25), [(2, 0.0, 0.75), (3, 5.0, 1.0), (5, 1.25, 1.0), (9, 7.0, 0.25)]);
+    assert_eq!(interpolate(first, second, 0.0), [(2, 0.0, 1.0), (3, 4.0, 1.0), (5, 1.0, 1.0)]);
     // If one frame has no ids, the result is the earlier frame.
-    assert_eq!(between("x,y,z\n1,0,0", second, 0.75), [(0, 1.0, 1.0)]);
-    assert_eq!(between("id,x,y,z\n4,1,0,0", "x,y,z\n2,0,0", 0.75), [(4, 1.0, 1.0)]);
+    assert_eq!(interpolate("x,y,z\n1,0,0", second, 0.75), [(0, 1.0, 1.0)]);
+    assert_eq!(interpolate("id,x,y,z\n4,1,0,0", "x,y,z\n2,0,0", 0.75), [(4, 1.0, 1.0)]);
 }
 
 #[test]
 fn rotation_is_interpolated_by_the_smaller_angle() {
     let mut turned = Vec::new();
     let [first, second] = ["6.2", "0.1"].map(|angle| frame(&format!("id,x,y,z,rotation,age\n0,0,0,0,{angle},0.5")));
-    first.between(Some(&second), 0.5, |particle, _| turned.push(particle.rotation));
+    first.interpolate(Some(&second), 0.5, |particle, _| turned.push(particle.rotation));
     let wanted = 6.2 + 0.5 * (0.1 + std::f32::consts::TAU - 6.2);
     assert!((turned[0] - wanted).abs() < 1e-5, "{turned:?}");
 }
@@ -42,16 +42,17 @@ fn frames_are_placed_in_time_by_their_numbers() {
         let text = "x,y,z\n".to_owned() + &"0,0,0\n".repeat(count);
         std::fs::write(folder.path().join(format!("s_{number:03}.csv")), text).unwrap();
     }
-    let cache = ParticleFrames::load(&folder.path().join("s_###.csv"), LIMITS).unwrap();
-    assert_eq!((cache.length(), cache.most(), cache.bytes()), (6, 3, 6 * 40));
-    let at =
-        |frame| cache.around(frame).map(|found| (found.before.particles().len(), found.after.is_some(), found.share));
+    let frames = ParticleFrames::load(&folder.path().join("s_###.csv"), LIMITS).unwrap();
+    assert_eq!((frames.frame_count(), frames.max_particles(), frames.bytes()), (6, 3, 6 * 40));
+    let at = |frame| {
+        frames.frames_around(frame).map(|found| (found.before.particles().len(), found.after.is_some(), found.share))
+    };
     assert_eq!(at(-0.1), None);
     assert_eq!(at(0.0), Some((1, true, 0.0)));
     assert_eq!(at(2.0), Some((2, true, 0.25)));
     assert_eq!(at(5.0), Some((3, false, 0.0)));
     assert_eq!(at(1e9), Some((3, false, 0.0)));
-    assert!(cache.shares(&cache.clone()));
+    assert!(frames.shares_memory(&frames.clone()));
     let few = |particles, bytes| {
         ParticleFrames::load(&folder.path().join("s_###.csv"), Limits { particles, bytes }).unwrap_err()
     };

@@ -10,7 +10,7 @@ pub struct Medium {
     /// Single-scattering albedo, linear RGB: the fraction of light that is scattered; the rest is absorbed.
     pub albedo: Vec3,
     /// Anisotropy: the mean cosine of the scattering angle. 0 is isotropic, towards 1 forward, below 0 backward.
-    pub g: f32,
+    pub anisotropy: f32,
     /// Extinction per half side of the volume at a density of 1.
     pub density: f32,
 }
@@ -18,7 +18,7 @@ pub struct Medium {
 impl Fields for Medium {
     fn visit(&mut self, visitor: &mut dyn FieldVisitor) {
         visitor.colour("albedo", &mut self.albedo, 0.0..=1.0);
-        visitor.number("g", &mut self.g, -0.95..=0.95, "");
+        visitor.number("g", &mut self.anisotropy, -0.95..=0.95, "");
         visitor.number("density", &mut self.density, 0.1..=100.0, "per half side");
     }
 }
@@ -44,6 +44,12 @@ pub const MEDIA: &[NamedMedium] = &[
     medium("milk", "dense and white, light scatters many times", [0.998, 0.996, 0.985], 0.3, 12.0),
 ];
 
-const fn medium(name: &'static str, description: &'static str, albedo: [f32; 3], g: f32, density: f32) -> NamedMedium {
-    NamedMedium { name, description, medium: Medium { albedo: Vec3::from_array(albedo), g, density } }
+const fn medium(
+    name: &'static str,
+    description: &'static str,
+    albedo: [f32; 3],
+    anisotropy: f32,
+    density: f32,
+) -> NamedMedium {
+    NamedMedium { name, description, medium: Medium { albedo: Vec3::from_array(albedo), anisotropy, density } }
 }

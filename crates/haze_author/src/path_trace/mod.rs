@@ -5,16 +5,16 @@
 //! gathers direct light of all of them. (Woodcock et al., "Techniques used in the GEM code", 1965: delta tracking;
 //! Henyey and Greenstein, "Diffuse radiation in the galaxy", 1941)
 
+mod density_volume;
 mod medium;
 mod path;
 mod phase;
 mod random;
 mod shadows;
-mod volume;
 
+pub use density_volume::DensityVolume;
+pub(crate) use density_volume::voxel_centre;
 pub use medium::{MEDIA, Medium, NamedMedium};
-pub use volume::Volume;
-pub(crate) use volume::position;
 
 use glam::{UVec2, Vec3};
 
@@ -34,7 +34,7 @@ pub struct PathTrace {
 
 /// Result of [`PathTrace::run`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Traced {
+pub struct PathTraceResult {
     /// Coverage: the fraction of the background that is hidden, 0 to 1.
     pub coverage: Image<f32>,
     /// Light towards the viewer, one image per light: linear RGB times coverage. 1 is the brightness of white paper
@@ -42,7 +42,7 @@ pub struct Traced {
     pub light: Vec<Image<Vec3>>,
 }
 
-impl Traced {
+impl PathTraceResult {
     /// Returns the mean of a light's image.
     pub fn mean(&self, light: usize) -> Vec3 {
         let texels = &self.light[light].texels;
@@ -59,11 +59,11 @@ impl PathTrace {
     /// The error of `progress`.
     pub fn run<E>(
         &self,
-        volume: &Volume,
+        volume: &DensityVolume,
         medium: &Medium,
         lights: &[Vec3],
         progress: impl Fn(u32) -> Result<(), E>,
-    ) -> Result<Traced, E> {
+    ) -> Result<PathTraceResult, E> {
         let tracer = Tracer::new(volume, medium, lights);
         let count = lights.len();
         // Each pixel has `count + 1` adjacent texels: one per light, then the coverage in x.
@@ -88,7 +88,7 @@ impl PathTrace {
         let coverage = of(count, share);
         let coverage = Image { size: coverage.size, texels: coverage.texels.iter().map(|sum: &Vec3| sum.x).collect() };
         let light = (0..count).map(|light| of(light, std::f32::consts::PI * share)).collect();
-        Ok(Traced { light, coverage })
+        Ok(PathTraceResult { light, coverage })
     }
 }
 

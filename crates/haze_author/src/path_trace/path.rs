@@ -2,12 +2,12 @@
 
 use glam::{UVec2, UVec3, Vec2, Vec3};
 
+use super::density_volume::{DensityVolume, exit_distance};
 use super::medium::Medium;
-use super::phase::{phase, scattered};
+use super::phase::{phase_function, sample_scattered_direction};
 use super::random::Random;
 use super::shadows::ShadowVolume;
-use super::volume::{Volume, exit};
-use crate::exact::{decay, exp, ln};
+use crate::deterministic_math::{exp, fast_exp_neg, ln};
 
 /// Maximum number of vertices. The light that remains on a path of this length is negligible.
 const MAX_VERTICES: u32 = 1024;
@@ -16,7 +16,7 @@ const MAX_VERTICES: u32 = 1024;
 const ROULETTE_START: u32 = 4;
 
 pub(super) struct Tracer<'a> {
-    volume: &'a Volume,
+    volume: &'a DensityVolume,
     medium: &'a Medium,
     lights: &'a [Vec3],
     shadows: ShadowVolume,
@@ -41,9 +41,9 @@ pub(super) struct Pixel {
 }
 
 impl<'a> Tracer<'a> {
-    pub fn new(volume: &'a Volume, medium: &'a Medium, lights: &'a [Vec3]) -> Self {
+    pub fn new(volume: &'a DensityVolume, medium: &'a Medium, lights: &'a [Vec3]) -> Self {
         let shadows = ShadowVolume::new(volume, lights);
-        Self { volume, medium, lights, shadows, majorant: volume.largest() * medium.density }
+        Self { volume, medium, lights, shadows, majorant: volume.max_density() * medium.density }
     }
 
     pub fn scratch(&self) -> Scratch {
@@ -60,38 +60,38 @@ impl<'a> Tracer<'a> {
         let mut random = Random::new(key);
         let place = pixel.at.as_vec2() + Vec2::new(random.unit(), random.unit());
         let front = (place * (2.0 / pixel.size as f32) - 1.0) * Vec2::new(1.0, -1.0);
-        let whole = self.fill(front, column);
-        if whole <= 0.0 {
+        let total_depth = self.integrate_column(front, column);
+        if total_depth <= 0.0 {
             return 0.0;
         }
-        let covered = 1.0 - exp(-whole);
-        let met = (index as f32 + random.unit()) / count as f32;
-        let mut p = front.extend(z_at_optical_depth(column, -ln((1.0 - met * covered).max(f32::MIN_POSITIVE))));
+        let coverage = 1.0 - exp(-total_depth);
+        let quantile = (index as f32 + random.unit()) / count as f32;
+        let mut p = front.extend(z_at_optical_depth(column, -ln((1.0 - quantile * coverage).max(f32::MIN_POSITIVE))));
         let mut direction = Vec3::NEG_Z;
-        let mut light = self.medium.albedo * covered;
+        let mut light = self.medium.albedo * coverage;
         for vertex in 1..MAX_VERTICES {
             self.shadows.at(p, towards);
             for ((sum, &to_light), depth) in sums.iter_mut().zip(self.lights).zip(&*towards) {
-                let phase = phase(direction.dot(to_light), self.medium.g);
-                *sum += light * (phase * decay(depth * self.medium.density));
+                let phase = phase_function(direction.dot(to_light), self.medium.anisotropy);
+                *sum += light * (phase * fast_exp_neg(depth * self.medium.density));
             }
             if vertex >= ROULETTE_START {
-                let stays = (light.max_element() / covered).min(1.0);
+                let stays = (light.max_element() / coverage).min(1.0);
                 if random.unit() >= stays {
                     break;
                 }
                 light /= stays;
             }
-            direction = scattered(direction, self.medium.g, &mut random);
-            let Some(next) = self.next(p, direction, &mut random) else { break };
+            direction = sample_scattered_direction(direction, self.medium.anisotropy, &mut random);
+            let Some(next) = self.sample_next_vertex(p, direction, &mut random) else { break };
             p = next;
             light *= self.medium.albedo;
         }
-        covered
+        coverage
     }
 
     /// Fills `column` with the optical depth from the front to the end of each of its equal steps. Returns the total.
-    fn fill(&self, front: Vec2, column: &mut [f32]) -> f32 {
+    fn integrate_column(&self, front: Vec2, column: &mut [f32]) -> f32 {
         let step = 2.0 / column.len() as f32;
         let mut sum = 0.0;
         for (index, depth) in column.iter_mut().enumerate() {
@@ -104,15 +104,15 @@ impl<'a> Tracer<'a> {
 
     /// Samples the next scattering position by delta tracking; `None` if the ray leaves the volume. (Woodcock et al.,
     /// 1965)
-    fn next(&self, p: Vec3, direction: Vec3, random: &mut Random) -> Option<Vec3> {
-        let most = exit(p, direction);
-        let mut way = 0.0;
+    fn sample_next_vertex(&self, p: Vec3, direction: Vec3, random: &mut Random) -> Option<Vec3> {
+        let most = exit_distance(p, direction);
+        let mut distance = 0.0;
         loop {
-            way -= ln(1.0 - random.unit()) / self.majorant;
-            if way >= most {
+            distance -= ln(1.0 - random.unit()) / self.majorant;
+            if distance >= most {
                 return None;
             }
-            let place = p + direction * way;
+            let place = p + direction * distance;
             if random.unit() * self.majorant < self.volume.density(place) * self.medium.density {
                 return Some(place);
             }

@@ -8,12 +8,12 @@ use super::random::Random;
 use haze::formula::six_way::henyey_greenstein;
 
 /// Returns the phase function for the cosine of a scattering angle, per steradian.
-pub(super) fn phase(cos: f32, g: f32) -> f32 {
+pub(super) fn phase_function(cos: f32, g: f32) -> f32 {
     henyey_greenstein(cos, g) * (1.0 - g * g) / (4.0 * PI)
 }
 
 /// Samples a scattered direction for light that travels along `direction`, with the phase function's probability.
-pub(super) fn scattered(direction: Vec3, g: f32, random: &mut Random) -> Vec3 {
+pub(super) fn sample_scattered_direction(direction: Vec3, g: f32, random: &mut Random) -> Vec3 {
     let share = random.unit();
     let cos = if g.abs() < 1.0e-3 {
         1.0 - 2.0 * share

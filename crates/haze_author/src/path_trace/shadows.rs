@@ -2,7 +2,7 @@
 
 use glam::{UVec2, UVec3, Vec3};
 
-use super::volume::{Volume, corners, exit, position};
+use super::density_volume::{DensityVolume, exit_distance, trilinear_corners, voxel_centre};
 use haze::assets::image::Image;
 
 /// Integrated density from each voxel towards each light. The entries of a voxel are adjacent.
@@ -13,7 +13,7 @@ pub(super) struct ShadowVolume {
 }
 
 impl ShadowVolume {
-    pub fn new(volume: &Volume, lights: &[Vec3]) -> Self {
+    pub fn new(volume: &DensityVolume, lights: &[Vec3]) -> Self {
         // The grid is equally fine along each axis. A coarser axis would make positions between voxels too dark.
         let size = UVec3::splat(volume.size.max_element());
         let UVec3 { x: width, y: height, z: depth } = size;
@@ -24,11 +24,11 @@ impl ShadowVolume {
         depths.for_bands(|first, band| {
             for (row, line) in (first..).zip(band.chunks_mut(width as usize * count)) {
                 for (x, depths) in (0..width).zip(line.chunks_mut(count)) {
-                    let from = position(size, UVec3::new(x, row % height, row / height));
+                    let from = voxel_centre(size, UVec3::new(x, row % height, row / height));
                     for (depth, &light) in depths.iter_mut().zip(lights) {
-                        let way = exit(from, light);
-                        let steps = (way / step).ceil().max(1.0);
-                        let step = way / steps;
+                        let distance = exit_distance(from, light);
+                        let steps = (distance / step).ceil().max(1.0);
+                        let step = distance / steps;
                         let place = |index: u32| from + light * ((index as f32 + 0.5) * step);
                         *depth = (0..steps as u32).map(|index| volume.density(place(index))).sum::<f32>() * step;
                     }
@@ -41,7 +41,7 @@ impl ShadowVolume {
     /// Writes the integrated density towards every light to `sums`, trilinearly interpolated at `p`.
     pub fn at(&self, p: Vec3, sums: &mut [f32]) {
         sums.fill(0.0);
-        let corners = corners(self.size, p);
+        let corners = trilinear_corners(self.size, p);
         for (&voxel, weight) in corners.voxels.iter().zip(corners.weights) {
             let of_voxel = &self.depths.texels[voxel * self.lights..][..self.lights];
             for (sum, depth) in sums.iter_mut().zip(of_voxel) {

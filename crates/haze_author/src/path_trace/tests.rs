@@ -1,21 +1,21 @@
 use glam::UVec3;
 
-use super::phase::{phase, scattered};
+use super::phase::{phase_function, sample_scattered_direction};
 use super::random::Random;
 use super::*;
 
 /// A ball with a soft surface.
-fn ball(size: u32) -> Volume {
-    let mut volume = Volume { size: UVec3::splat(size), densities: Vec::new() };
+fn ball(size: u32) -> DensityVolume {
+    let mut volume = DensityVolume { size: UVec3::splat(size), densities: Vec::new() };
     for index in 0..size.pow(3) {
         let voxel = UVec3::new(index % size, index / size % size, index / (size * size));
-        let r = volume.position(voxel).length();
+        let r = volume.voxel_centre(voxel).length();
         volume.densities.push(((1.0 - r / 0.95) / 0.4).clamp(0.0, 1.0));
     }
     volume
 }
 
-fn trace(volume: &Volume, medium: Medium, lights: &[Vec3], samples: u32) -> Traced {
+fn trace(volume: &DensityVolume, medium: Medium, lights: &[Vec3], samples: u32) -> PathTraceResult {
     let trace = PathTrace { size: 24, samples, seed: 1 };
     trace.run(volume, &medium, lights, |_| Ok::<_, ()>(())).unwrap()
 }
@@ -26,10 +26,11 @@ fn the_phase_function_is_normalised_and_sampled_with_its_mean_cosine() {
         let steps = 20_000;
         let cos = |step: u32| (step as f32 + 0.5) / steps as f32 * 2.0 - 1.0;
         let ring = 4.0 * std::f32::consts::PI / steps as f32;
-        let whole: f32 = (0..steps).map(|step| phase(cos(step), g) * ring).sum();
+        let whole: f32 = (0..steps).map(|step| phase_function(cos(step), g) * ring).sum();
         let mut random = Random::new(UVec3::new(1, 2, 3));
         let along = Vec3::new(0.6, 0.0, 0.8);
-        let mean = (0..20_000).map(|_| scattered(along, g, &mut random).dot(along)).sum::<f32>() / 20_000.0;
+        let mean =
+            (0..20_000).map(|_| sample_scattered_direction(along, g, &mut random).dot(along)).sum::<f32>() / 20_000.0;
         assert!((whole - 1.0).abs() < 1e-3 && (mean - g).abs() < 0.02, "{g}: {whole}, {mean}");
     }
 }
@@ -37,12 +38,12 @@ fn the_phase_function_is_normalised_and_sampled_with_its_mean_cosine() {
 #[test]
 fn thin_smoke_matches_single_scattering() {
     // Thin enough that light scatters once: coverage times albedo times phase function.
-    let medium = Medium { albedo: Vec3::new(0.5, 0.25, 1.0), g: 0.4, density: 0.01 };
+    let medium = Medium { albedo: Vec3::new(0.5, 0.25, 1.0), anisotropy: 0.4, density: 0.01 };
     let lights = [Vec3::Z, Vec3::X, Vec3::NEG_Z];
     let traced = trace(&ball(16), medium, &lights, 4);
     let coverage = traced.coverage.texels.iter().sum::<f32>() / 576.0;
     for (index, light) in lights.iter().enumerate() {
-        let expected = medium.albedo * (coverage * phase(-light.z, 0.4) * std::f32::consts::PI);
+        let expected = medium.albedo * (coverage * phase_function(-light.z, 0.4) * std::f32::consts::PI);
         assert!(((traced.mean(index) - expected) / expected).abs().max_element() < 0.02, "{light}");
     }
 }
@@ -57,7 +58,7 @@ fn smoke_without_absorption_conserves_light() {
             lights.push(around.extend(z));
         }
     }
-    let medium = Medium { albedo: Vec3::ONE, g: 0.0, density: 5.0 };
+    let medium = Medium { albedo: Vec3::ONE, anisotropy: 0.0, density: 5.0 };
     let traced = trace(&ball(24), medium, &lights, 16);
     let coverage: f32 = traced.coverage.texels.iter().sum();
     // A uniform radiance of 1 equals 100 lights of irradiance 4π / 100. The traced lights have irradiance π each, so

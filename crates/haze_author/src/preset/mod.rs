@@ -1,15 +1,15 @@
 //! Presets: checks of the files that they name, settings without effect, the schema and the page of all settings.
 
-mod check;
-mod effect;
-mod page;
-mod role;
+mod file_check;
+mod no_effect;
+mod role_check;
 mod schema;
+mod settings_page;
 mod tooltips;
 
-pub use check::check_files;
-pub use effect::without_effect;
-pub use page::settings_page;
-pub use role::doubts;
+pub use file_check::check_files;
+pub use no_effect::no_effect_reason;
+pub use role_check::role_warnings;
 pub use schema::schema;
+pub use settings_page::settings_page;
 pub use tooltips::Tooltips;

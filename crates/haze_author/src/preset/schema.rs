@@ -12,15 +12,15 @@ use haze::settings::{FieldVisitor, Fields};
 /// Returns the JSON schema of preset files.
 pub fn schema() -> String {
     let mut schema = schemars::schema_for!(Preset).to_value();
-    let mut preset = widest();
-    preset.visit(&mut Ranges { schema: &mut schema, definition: String::new() });
-    tidy(&mut schema);
+    let mut preset = preset_with_widest_ranges();
+    preset.visit(&mut RangeWriter { schema: &mut schema, definition: String::new() });
+    write_floats_as_f32(&mut schema);
     serde_json::to_string_pretty(&schema).unwrap_or_default()
 }
 
 /// Preset with one of each part, whose ranges are listed. If a range starts at another field's value, that value makes
 /// it the widest.
-pub(super) fn widest() -> Preset {
+pub(super) fn preset_with_widest_ranges() -> Preset {
     Preset {
         camera: Camera { near: 0.001, ..Camera::default() },
         lights: vec![Light { inner_angle: 0.0, ..Light::default() }],
@@ -30,23 +30,23 @@ pub(super) fn widest() -> Preset {
 }
 
 /// Writes defaults as f32, not as the nearest f64.
-fn tidy(value: &mut Value) {
+fn write_floats_as_f32(value: &mut Value) {
     match value {
-        Value::Array(items) => items.iter_mut().for_each(tidy),
-        Value::Object(entries) => entries.values_mut().for_each(tidy),
+        Value::Array(items) => items.iter_mut().for_each(write_floats_as_f32),
+        Value::Object(entries) => entries.values_mut().for_each(write_floats_as_f32),
         Value::Number(number) if number.is_f64() => *value = decimal(number.as_f64().unwrap_or_default() as f32),
         _ => {}
     }
 }
 
 /// Writes the range of every visited number into the definition of its struct.
-struct Ranges<'a> {
+struct RangeWriter<'a> {
     schema: &'a mut Value,
     /// JSON pointer to the struct being visited; "" is the preset itself.
     definition: String,
 }
 
-impl Ranges<'_> {
+impl RangeWriter<'_> {
     fn property(&mut self, name: &str) -> Option<&mut Value> {
         self.schema.pointer_mut(&format!("{}/properties/{name}", self.definition))
     }
@@ -55,7 +55,7 @@ impl Ranges<'_> {
     fn enter(&mut self, name: &str, fields: &mut dyn Fields) {
         let reference = self.property(name).and_then(|property| property["$ref"].as_str());
         if let Some(definition) = reference.and_then(|path| path.strip_prefix('#')).map(str::to_owned) {
-            fields.visit(&mut Ranges { schema: self.schema, definition });
+            fields.visit(&mut RangeWriter { schema: self.schema, definition });
         }
     }
 
@@ -75,7 +75,7 @@ fn decimal(number: f32) -> Value {
     number.to_string().parse::<f64>().map_or(Value::Null, |number| json!(number))
 }
 
-impl FieldVisitor for Ranges<'_> {
+impl FieldVisitor for RangeWriter<'_> {
     fn number(&mut self, name: &'static str, _: &mut f32, range: RangeInclusive<f32>, _: &'static str) {
         self.limit(name, "", decimal(*range.start()), decimal(*range.end()));
     }

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-/// Doc comments of a settings struct, by the dotted paths of [`FieldVisitor`](crate::settings::FieldVisitor), such as
+/// Doc comments of a settings struct, by the dotted paths of [`FieldVisitor`](haze::settings::FieldVisitor), such as
 /// `soft_fade.fade_scale`. Fields in lists have no index: `lights.range`.
 #[derive(Clone, Debug)]
 pub struct Tooltips {

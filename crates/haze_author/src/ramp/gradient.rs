@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::colour::{Blend, HexColour, oklab_from_linear};
+use super::blend_space::{Blend, HexColour, oklab_from_linear};
 use haze::error::FieldError;
 use haze::settings::{FieldVisitor, Fields, choice};
 
@@ -84,30 +84,30 @@ impl Fields for RampStop {
 }
 
 /// Returns an error for an empty list.
-pub fn not_empty<T>(field: impl Into<String>, list: &[T]) -> Result<(), FieldError> {
+pub fn check_not_empty<T>(field: impl Into<String>, list: &[T]) -> Result<(), FieldError> {
     if list.is_empty() { Err(FieldError::new(field, "[]", "at least one entry")) } else { Ok(()) }
 }
 
 /// Rows prepared for sampling: sorted, with colours converted to the blend space.
 #[derive(Clone, Debug)]
-pub(super) struct Rows {
+pub(super) struct PreparedRows {
     blend: Blend,
-    rows: Vec<(Point, Vec<Point>)>,
+    rows: Vec<(ControlPoint, Vec<ControlPoint>)>,
 }
 
 /// A control point of a curve.
 #[derive(Clone, Copy, Debug, Default)]
-struct Point {
+struct ControlPoint {
     at: f32,
     value: Vec3,
     curve: Curve,
 }
 
-impl Rows {
+impl PreparedRows {
     /// Sorts and converts rows whose positions are 0 to 1.
     pub fn new(blend: Blend, rows: &[RampRow]) -> Self {
         let mut rows: Vec<_> =
-            rows.iter().map(|row| (Point::new(row.at, row.curve), points(blend, &row.stops))).collect();
+            rows.iter().map(|row| (ControlPoint::new(row.at, row.curve), points(blend, &row.stops))).collect();
         rows.sort_by(|(a, _), (b, _)| a.at.total_cmp(&b.at));
         Self { blend, rows }
     }
@@ -119,40 +119,41 @@ impl Rows {
         let near = &self.rows[next.saturating_sub(2)..self.rows.len().min(next + 2)];
         // Hues of two rows may diverge along u, so the shorter arc between them could flip; blend rows in Oklab.
         let in_oklab = self.blend.has_hue() && self.rows.len() > 1;
-        let mut points = [Point::default(); 4];
+        let mut points = [ControlPoint::default(); 4];
         for (point, (row, stops)) in points.iter_mut().zip(near) {
             let value = value_at(stops, u);
             let value = if in_oklab { oklab_from_linear(self.blend.linear(value)) } else { value };
-            *point = Point { value, ..*row };
+            *point = ControlPoint { value, ..*row };
         }
         let blend = if in_oklab { Blend::Oklab } else { self.blend };
         blend.linear(value_at(&points[..near.len()], v))
     }
 }
 
-impl Point {
+impl ControlPoint {
     fn new(at: f32, curve: Curve) -> Self {
         // Turns -0 into 0: `total_cmp` tells them apart.
         Self { at: at + 0.0, value: Vec3::ZERO, curve }
     }
 }
 
-fn points(blend: Blend, stops: &[RampStop]) -> Vec<Point> {
-    let point = |stop: &RampStop| Point { value: blend.of(stop.colour), ..Point::new(stop.at, stop.curve) };
+fn points(blend: Blend, stops: &[RampStop]) -> Vec<ControlPoint> {
+    let point =
+        |stop: &RampStop| ControlPoint { value: blend.of(stop.colour), ..ControlPoint::new(stop.at, stop.curve) };
     let mut points: Vec<_> = stops.iter().map(point).collect();
     points.sort_by(|a, b| a.at.total_cmp(&b.at));
     if blend.has_hue() {
-        unwind(&mut points, blend == Blend::HsvFar);
+        unwrap_hues(&mut points, blend == Blend::HsvFar);
     }
     points
 }
 
 /// Unwraps hues so that each is reached from the previous one along the shorter or longer arc. A grey takes the hue of
 /// the previous colour, or of the first colour with a hue; black takes its saturation too.
-fn unwind(points: &mut [Point], far: bool) {
-    let has_hue = |point: &&Point| point.value.y > 0.0 && point.value.z > 0.0;
+fn unwrap_hues(points: &mut [ControlPoint], far: bool) {
+    let has_hue = |point: &&ControlPoint| point.value.y > 0.0 && point.value.z > 0.0;
     let mut last = points.iter().find(has_hue).map_or(Vec3::ZERO, |point| point.value);
-    for Point { value, .. } in points {
+    for ControlPoint { value, .. } in points {
         if value.z <= 0.0 {
             (value.x, value.y) = (last.x, last.y);
         } else if value.y <= 0.0 {
@@ -171,7 +172,7 @@ fn unwind(points: &mut [Point], far: bool) {
 }
 
 /// Returns the value at a position. Constant outside the points.
-fn value_at(points: &[Point], x: f32) -> Vec3 {
+fn value_at(points: &[ControlPoint], x: f32) -> Vec3 {
     let next = points.partition_point(|point| point.at <= x);
     let (Some(from), Some(to)) = (points.get(next.wrapping_sub(1)), points.get(next)) else {
         let end = if next == 0 { points.first() } else { points.last() };
@@ -198,7 +199,7 @@ fn value_at(points: &[Point], x: f32) -> Vec3 {
 
 /// Returns the slope at a point of a monotone cubic: the harmonic mean of the secants. (Fritsch and Carlson, "Monotone
 /// piecewise cubic interpolation", 1980)
-fn tangent(points: &[Point], at: usize) -> Vec3 {
+fn tangent(points: &[ControlPoint], at: usize) -> Vec3 {
     let secant = |from: usize, to: usize| {
         let (from, to) = (points.get(from)?, points.get(to)?);
         let is_edge = from.curve == Curve::Constant || to.at <= from.at;

@@ -1,14 +1,16 @@
 //! Ramps: bakes from gradients and formulas, fits to measured light, import of other programs' gradients, checks.
 
-pub mod bake;
-pub mod check;
-mod colour;
-pub mod fit;
-mod formula;
-mod ggr;
+mod blend_space;
+pub mod fit_stops;
+mod gimp;
 pub mod gradient;
-pub mod import;
+mod gradient_text;
+pub mod import_gradient;
+pub mod lint;
 pub mod motif;
+mod place_formula;
+mod ramp_recipe;
 pub mod response;
 pub mod template;
-mod text;
+
+pub use ramp_recipe::{Blend, Curve, Gradient, HexColour, RECIPE_VERSION, RampRecipe, RampRow, RampStop};

@@ -5,8 +5,8 @@ use std::path::Path;
 use glam::{UVec2, Vec2, Vec3};
 use image::DynamicImage;
 
-use super::bake::image_of;
-use super::colour::{HexColour, srgb16_from_linear};
+use super::blend_space::{HexColour, srgb16_from_linear};
+use super::ramp_recipe::image_of;
 use haze::assets::image::Image;
 use haze::assets::json;
 use haze::error::{Error, FieldError};

@@ -1,12 +1,12 @@
 //! Brightness of a puff of smoke under light from every side: path-traced, and shaded with ramps or six-way maps. Also
 //! fits the ramps that come closest to the path-traced result.
 
-mod fit;
-mod puff;
-mod solve;
+mod fit_ramps;
+mod normal_equations;
+mod traced_puff;
 
-pub use fit::{FittedRamps, Shape};
-pub use puff::{DiffuseRamps, LIGHTS, LightResponse, Puff, Response, angle};
+pub use fit_ramps::{FitShape, FittedRamps};
+pub use traced_puff::{DiffuseRamps, LIGHTS, LightResponse, Puff, Response, light_angle};
 
 #[cfg(test)]
 mod tests;

@@ -8,7 +8,7 @@
 use glam::{IVec2, Mat2, UVec2, Vec2, Vec3};
 use image::Rgba;
 
-use crate::exact::exp;
+use crate::deterministic_math::exp;
 use haze::assets::image::Image;
 use haze::formula::sprite::MOTION_RANGE;
 use haze::sprite::Sprite;
@@ -23,9 +23,9 @@ pub(crate) fn detail_size(sprite_size: u32) -> u32 {
 }
 
 /// Computes one frame of the detail map. `offset` has the size of the sprite.
-pub fn detail(sprite: &Sprite, frame: u32, offset: &Image<f32>) -> Image<Rgba<u8>> {
+pub fn bake_detail_frame(sprite: &Sprite, frame: u32, offset: &Image<f32>) -> Image<Rgba<u8>> {
     let size = detail_size(sprite.size());
-    let motion = motion(sprite, frame);
+    let motion = optical_flow(sprite, frame);
     let mut picture = Image::new(UVec2::splat(size), Rgba([128, 128, 128, 0]));
     let scale = sprite.size() / size;
     picture.for_each(|at, texel| {
@@ -51,7 +51,7 @@ pub fn detail(sprite: &Sprite, frame: u32, offset: &Image<f32>) -> Image<Rgba<u8
 /// Computes each texel's motion from `frame` to the next, in sides of the sprite, y down. Optical flow by least squares
 /// in a window, from coarse to fine. (Lucas and Kanade, "An iterative image registration technique", 1981; pyramid
 /// after Bouguet, 2001)
-pub fn motion(sprite: &Sprite, frame: u32) -> Image<Vec2> {
+pub fn optical_flow(sprite: &Sprite, frame: u32) -> Image<Vec2> {
     let next = (frame + 1) % sprite.frame_count();
     let coarsest = (LEVEL + 2).min(sprite.level_count() - 1);
     let mut flow = Image::new(UVec2::ONE, Vec2::ZERO);
@@ -154,7 +154,7 @@ mod tests {
         });
         let layout = SpriteLayout { columns: 2, rows: 1, y_down: false };
         let sprite = Sprite::from_image(std::path::Path::new("ball"), &sheet, layout).unwrap();
-        let found = motion(&sprite, 0).load(IVec2::new(7, 8)) * 64.0;
+        let found = optical_flow(&sprite, 0).load(IVec2::new(7, 8)) * 64.0;
         assert!(found.distance(Vec2::new(3.0, -2.0)) < 0.4, "{found}");
     }
 }

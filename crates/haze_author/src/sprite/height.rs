@@ -4,7 +4,7 @@ use glam::{IVec2, UVec2, Vec3};
 
 use haze::assets::image::Image;
 
-pub fn grey(size: UVec2, value: impl Fn(UVec2) -> f32 + Sync) -> Image<f32> {
+pub fn map_pixels(size: UVec2, value: impl Fn(UVec2) -> f32 + Sync) -> Image<f32> {
     let mut picture = Image::new(size, 0.0);
     picture.for_each(|at, grey| *grey = value(at));
     picture
@@ -19,14 +19,14 @@ pub fn normal_of(height: &Image<f32>, at: IVec2, strength: f32) -> Vec3 {
 
 /// Builds a dome-like height map from a silhouette by summing blurs of doubling width. Thin parts are low, the middle
 /// is high, and structure inside the amount is kept.
-pub fn puffed(amount: &Image<f32>) -> Image<f32> {
+pub fn dome_heights(amount: &Image<f32>) -> Image<f32> {
     let mut height = Image::new(amount.size, 0.0);
     let mut blurred = amount.clone();
     let mut reach = 1;
     while reach < amount.size.x as i32 / 4 {
         // Three box blurs approximate a Gaussian.
         for _ in 0..3 {
-            blurred = boxed(&boxed(&blurred, IVec2::X, reach), IVec2::Y, reach);
+            blurred = box_blur(&box_blur(&blurred, IVec2::X, reach), IVec2::Y, reach);
         }
         let weight = reach as f32 / amount.size.x as f32;
         height.for_each(|at, height| *height += blurred.load(at.as_ivec2()) * weight);
@@ -38,8 +38,8 @@ pub fn puffed(amount: &Image<f32>) -> Image<f32> {
     height
 }
 
-fn boxed(picture: &Image<f32>, step: IVec2, reach: i32) -> Image<f32> {
-    grey(picture.size, |at| {
+fn box_blur(picture: &Image<f32>, step: IVec2, reach: i32) -> Image<f32> {
+    map_pixels(picture.size, |at| {
         let sum: f32 = (-reach..=reach).map(|offset| picture.load(at.as_ivec2() + step * offset)).sum();
         sum / (2 * reach + 1) as f32
     })

@@ -1,9 +1,9 @@
 //! Sprites: bakes from metaballs, detail maps, six-way light maps, import and checks.
 
 pub mod bake;
-pub mod check;
 pub mod detail;
 mod height;
-pub mod import;
+pub mod import_sprite;
+pub mod lint;
 pub mod six_way;
 pub mod y_direction;

@@ -9,12 +9,12 @@ use haze::sprite::Sprite;
 pub struct YDirection {
     /// True if green points down.
     pub is_down: bool,
-    /// Confidence, 0 to 1. Below [`SURE`] the direction is a guess.
-    pub sureness: f32,
+    /// Confidence, 0 to 1. Below [`MIN_CONFIDENCE`] the direction is a guess.
+    pub confidence: f32,
 }
 
 /// Minimum confidence for a direction to count as known.
-pub const SURE: f32 = 0.3;
+pub const MIN_CONFIDENCE: f32 = 0.3;
 /// Detects the direction of green by two cues: normals lean outwards at the silhouette, and a gradient field of heights
 /// has no curl, which holds only if green has the right sign. `None` if the sprite gives no cue.
 pub fn y_direction(sprite: &Sprite) -> Option<YDirection> {
@@ -44,7 +44,7 @@ pub fn y_direction(sprite: &Sprite) -> Option<YDirection> {
     let share = |sum: f32, all: f32| if all > 1.0e-6 { sum / all } else { 0.0 };
     let (edges, curls) = (share(agrees, all), share(along, total));
     let sum = (edges + curls).clamp(-1.0, 1.0);
-    (all > 1.0e-6).then_some(YDirection { is_down: sum < 0.0, sureness: sum.abs() })
+    (all > 1.0e-6).then_some(YDirection { is_down: sum < 0.0, confidence: sum.abs() })
 }
 
 /// Decodes a texel's normal.

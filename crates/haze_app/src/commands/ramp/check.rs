@@ -8,7 +8,7 @@ use haze::Error;
 use haze::image::colour_conversion_notes;
 use haze::ramp::{Ramp, Role};
 use haze_author::finding::Finding;
-use haze_author::ramp::check::check;
+use haze_author::ramp::lint::lint_ramp;
 use haze_author::ramp::response::{DiffuseRamps, Puff};
 
 use super::{load_ramp_image, refuse_gradient};
@@ -68,7 +68,7 @@ fn findings(path: &Path, role: Option<Role>) -> Result<Vec<Finding>, Error> {
     let mut findings = Vec::new();
     if !has_extension(path, "json") {
         let notes = colour_conversion_notes(path)?;
-        findings.extend(notes.into_iter().map(|what| Finding { name: "colour_space", what }));
+        findings.extend(notes.into_iter().map(|description| Finding { name: "colour_space", description }));
     }
     match load_ramp_image(path) {
         Ok((picture, _)) => findings.extend(check(&picture, role)),

@@ -6,7 +6,7 @@ use clap::Args;
 use haze::image::{CompressionEffort, write_png};
 use haze::ramp::Ramp;
 use haze::{Error, builtin};
-use haze_author::ramp::bake::RampRecipe;
+use haze_author::ramp::RampRecipe;
 use haze_author::ramp::response::{DiffuseRamps, FittedRamps, Puff, Shape};
 
 use super::{check_recipe_output, write_recipe};
@@ -26,10 +26,10 @@ pub struct Arguments {
     #[command(flatten)]
     quality: PathTraceArguments,
     /// Stops per row.
-    #[arg(long, value_parser = clap::value_parser!(u32).range(2..=64), default_value_t = Shape::default().stops)]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(2..=64), default_value_t = FitShape::default().stops)]
     stops: u32,
     /// Rows along the amount axis; 1 for a ramp of one axis.
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=16), default_value_t = Shape::default().rows)]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=16), default_value_t = FitShape::default().rows)]
     rows: u32,
     /// Recipe to write, with its PNG beside it: the ramp for light from all sides, or with --backlight only from the
     /// viewer's side.

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use haze::Error;
-use haze_author::ramp::fit::DEFAULT_MAX_ERROR;
-use haze_author::ramp::import::import;
+use haze_author::ramp::fit_stops::DEFAULT_MAX_ERROR;
+use haze_author::ramp::import_gradient::import_gradient;
 
 use super::{check_recipe_output, write_recipe};
 use crate::output::{FileChecks, print_line};

@@ -15,7 +15,7 @@ use std::path::Path;
 use clap::{Args, Subcommand};
 use haze::image::{read_colour_png, write_file};
 use haze::{Error, FieldError};
-use haze_author::ramp::bake::RampRecipe;
+use haze_author::ramp::RampRecipe;
 use image::DynamicImage;
 
 use crate::output::{Failures, FileChecks, has_extension};

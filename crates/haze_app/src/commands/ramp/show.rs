@@ -10,7 +10,7 @@ use haze::Error;
 use haze::formula::colour::{linear_from_srgb, luminance, srgb_from_linear};
 use haze::image::{CompressionEffort, write_png};
 use haze::ramp::Ramp;
-use haze_author::ramp::bake::RampRecipe;
+use haze_author::ramp::RampRecipe;
 use image::{Rgb, RgbImage, imageops};
 
 use super::load_ramp_image;

@@ -8,7 +8,7 @@ use haze::image::read_png;
 use haze::sprite::SpriteLayout;
 use haze_author::finding::Finding;
 use haze_author::sprite::bake::SpriteRecipe;
-use haze_author::sprite::check::check;
+use haze_author::sprite::lint::lint_sprite;
 
 use crate::file_kind::explain_wrong_kind;
 use crate::findings::report_findings;
@@ -44,5 +44,5 @@ fn findings(path: &Path, Arguments { columns, rows, y_down, .. }: &Arguments) ->
     };
     let layout =
         SpriteLayout { columns: columns.unwrap_or(beside.columns), rows: rows.unwrap_or(beside.rows), y_down: *y_down };
-    check(path, &picture, layout)
+    lint_sprite(path, &picture, layout)
 }

@@ -7,8 +7,8 @@ use glam::UVec2;
 use haze::image::{CompressionEffort, read_png, write_png};
 use haze::sprite::SpriteLayout;
 use haze::{Error, FieldError};
-use haze_author::sprite::import::{ImportedSprite, Source, arrange_sheet, import};
-use haze_author::sprite::y_direction::SURE;
+use haze_author::sprite::import_sprite::{ImportSource, ImportedSprite, arrange_sheet, import_sprite};
+use haze_author::sprite::y_direction::MIN_CONFIDENCE;
 
 use crate::bake_job::six_way_path;
 use crate::options::choices;
@@ -24,8 +24,8 @@ pub struct Arguments {
     #[arg(short, long, value_name = "FILE.png")]
     output: PathBuf,
     /// Contents of the files.
-    #[arg(long = "from", value_name = "SOURCE", value_parser = choices::<Source>(), default_value = "normals")]
-    source: Source,
+    #[arg(long = "from", value_name = "SOURCE", value_parser = choices::<ImportSource>(), default_value = "normals")]
+    source: ImportSource,
     /// Frames per row of the sheet.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=256))]
     columns: u32,
@@ -53,7 +53,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         read.check_output("--output", &six_way_path(output), "png")?;
     }
     let refuse = |option: &str, value: String, expected: &str| Err(FieldError::new(option, value, expected).into());
-    if y_down.is_some() && *source != Source::Normals {
+    if y_down.is_some() && *source != ImportSource::Normals {
         return refuse(
             "--y-down",
             format!("--from {}", source.name()),
@@ -75,8 +75,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
         (pictures.into_iter().map(|(_, picture)| picture).collect(), UVec2::new(*columns, *rows))
     };
     let layout = SpriteLayout { columns: grid.x, rows: grid.y, y_down: false };
-    let ImportedSprite { picture, six_way, y_direction, doubt, border } =
-        import(path, &sheets, *source, layout, *y_down, *strength)?;
+    let ImportedSprite { picture, six_way, y_direction, not_normals, border } =
+        import_sprite(path, &sheets, *source, layout, *y_down, *strength)?;
     write_png(output, &picture.into(), CompressionEffort::Small)?;
     print_line!("{}: {}x{} frames", output.display(), grid.x, grid.y)?;
     if let Some(maps) = six_way {

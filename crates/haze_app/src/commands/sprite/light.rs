@@ -7,7 +7,7 @@ use haze::Error;
 use haze::formula::colour::luminance;
 use haze::image::{CompressionEffort, write_file, write_png};
 use haze_author::path_trace::PathTrace;
-use haze_author::ramp::response::{LIGHTS, Puff, angle};
+use haze_author::ramp::response::{LIGHTS, Puff, light_angle};
 use haze_author::sprite::bake::SpriteRecipe;
 
 use crate::medium_options::{MediumArguments, PathTraceArguments, default_sprite, sprite_recipe};

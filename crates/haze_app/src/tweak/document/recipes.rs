@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use haze::preset::Preset;
-use haze_author::ramp::bake::RampRecipe;
+use haze_author::ramp::RampRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
 
 use super::difference::step_name;

@@ -6,7 +6,7 @@ use glam::UVec2;
 use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
 use haze::ramp::Ramp;
 use haze::settings::{ImageRole, RampFilter, set_field};
-use haze_author::preset::without_effect;
+use haze_author::preset::no_effect_reason;
 use haze_reference::SystemProbe;
 
 use super::gallery::gallery;
@@ -48,7 +48,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
     let survey = survey.as_deref();
     let inert = |session: &Session, field: &str| {
         let path = format!("systems[{index}].material.{field}");
-        without_effect(&session.document.preset, &path, session.show.size)
+        no_effect_reason(&session.document.preset, &path, session.show.size)
     };
     let mut spot = None;
     ui.weak("Point at a ramp to highlight the smoke that samples it. Point at smoke to mark its place.");

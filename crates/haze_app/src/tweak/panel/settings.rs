@@ -3,7 +3,7 @@
 use eframe::egui::{self, Ui};
 use haze::preset::Preset;
 use haze::settings::{Fields, field_path};
-use haze_author::preset::without_effect;
+use haze_author::preset::no_effect_reason;
 
 use super::fields::{self, RowContext, Step, is_at};
 use super::row::Asked;
@@ -80,7 +80,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
         tooltips: &session.tooltips,
         thumbnails: &session.thumbnails,
         changed: session.changed(),
-        inert: &|path| without_effect(&session.document.preset, path, session.show.size),
+        inert: &|path| no_effect_reason(&session.document.preset, path, session.show.size),
         second: session.second(),
         has_sheets: true,
         asked: Vec::new(),

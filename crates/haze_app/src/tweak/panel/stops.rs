@@ -1,8 +1,8 @@
 //! Stops of a ramp that has a recipe, and ways to get a recipe for one that has none.
 
 use eframe::egui::{self, Color32, Ui};
-use egui_gradient::Surroundings;
-use haze_author::ramp::bake::{Blend, RECIPE_VERSION, RampRecipe, RampRow};
+use egui_gradient::DisplayOptions;
+use haze_author::ramp::{Blend, RECIPE_VERSION, RampRecipe, RampRow};
 
 use super::control;
 use crate::tweak::ramp_files::Source;
@@ -45,9 +45,9 @@ pub fn editor(
     let mut is_changed = choose(ui, &mut recipe, index);
     let (bins, marks) = if *index < recipe.rows.len() { across } else { up };
     let histograms: Vec<_> = bins.iter().map(|(colour, bins)| (*colour, bins.as_slice())).collect();
-    let surroundings = Surroundings { blend: recipe.blend, histograms: &histograms, marks };
+    let options = DisplayOptions { blend: recipe.blend, histograms: &histograms, marks };
     let mut shown = shown(&recipe, *index)?;
-    let edited = ui.push_id(ramp.field, |ui| editor.show(ui, &mut shown, &surroundings)).inner;
+    let edited = ui.push_id(ramp.field, |ui| editor.show(ui, &mut shown, &options)).inner;
     let index = *index;
     is_changed |= ui.horizontal(|ui| blend(ui, &mut recipe.blend, ramp.field)).inner;
     if let Some(step) = edited.step {

@@ -8,7 +8,7 @@ use haze::ramp::Ramp;
 use haze::shader::Sources;
 use haze::{Error, MaterialAssets};
 use haze_author::particle_files::{ParticleFrames, load_particle_files};
-use haze_author::ramp::bake::RampRecipe;
+use haze_author::ramp::RampRecipe;
 use haze_author::sprite::bake::SpriteRecipe;
 use haze_demo::shot::Shot;
 

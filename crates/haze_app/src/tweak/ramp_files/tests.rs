@@ -10,8 +10,8 @@ use haze::image::{CompressionEffort, read_colour_png, write_png};
 use haze::preset::{AssetFolders, Preset};
 use haze::ramp::Ramp;
 use haze::settings::DebugView;
-use haze_author::ramp::bake::{Blend, Curve, RampRecipe};
 use haze_author::ramp::template::Template;
+use haze_author::ramp::{Blend, Curve, RampRecipe};
 
 use super::{RampEdits, Source};
 use crate::tweak::document::document::Document;

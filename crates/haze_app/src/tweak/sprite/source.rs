@@ -8,7 +8,7 @@ use haze::image::decode_png;
 use haze::sprite::SpriteLayout;
 use haze::{Error, FieldError};
 use haze_author::sprite::bake::{BakedSprite, SpriteRecipe};
-use haze_author::sprite::check::check;
+use haze_author::sprite::lint::lint_sprite;
 use image::RgbaImage;
 
 use crate::tweak::platform::assets::sprite_recipe;
@@ -111,8 +111,10 @@ fn makes(recipe: &SpriteRecipe, sheet: &RgbaImage) -> bool {
 
 /// Returns the findings of a check of a sheet.
 pub fn findings(path: &Path, sheet: &RgbaImage, layout: SpriteLayout) -> Vec<String> {
-    match check(path, sheet, layout) {
-        Ok(findings) => findings.into_iter().map(|finding| format!("{}: {}", finding.name, finding.what)).collect(),
+    match lint_sprite(path, sheet, layout) {
+        Ok(findings) => {
+            findings.into_iter().map(|finding| format!("{}: {}", finding.name, finding.description)).collect()
+        }
         Err(error) => vec![error.to_string()],
     }
 }

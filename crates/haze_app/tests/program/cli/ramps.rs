@@ -276,9 +276,7 @@ fn ramps_are_fitted_to_path_traced_smoke() {
     for name in ["lit", "against"] {
         let picture = folder.path().join(name).with_extension("png");
         assert_eq!(haze::image::read_png(&picture).unwrap().to_rgb16().dimensions(), (128, 64));
-        assert!(
-            haze_author::ramp::bake::RampRecipe::load(&picture.with_extension("ramp.json")).unwrap().rows.len() == 5
-        );
+        assert!(haze_author::ramp::RampRecipe::load(&picture.with_extension("ramp.json")).unwrap().rows.len() == 5);
     }
     assert!(folder.path().join("sheet.png").is_file());
     let render = ["render", "--size", "32x18", "--backend", "cpu", "-o", "a.png", "--set", "diffuse.backlight=ramp"];

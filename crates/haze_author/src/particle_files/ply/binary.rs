@@ -1,9 +1,9 @@
 //! Binary PLY files of either byte order.
 
-use super::header::{Element, Kind, Scalar};
-use crate::particle_files::columns::{Columns, Values};
-use crate::particle_files::frame::FileParticle;
-use crate::particle_files::mistake::Mistake;
+use super::header::{Element, PropertyKind, ScalarType};
+use crate::particle_files::columns::{ColumnMap, RowValues};
+use crate::particle_files::parse_error::ParseError;
+use crate::particle_files::particle_frame::FileParticle;
 
 /// Reads the vertices of the body that follows a header of `start` bytes.
 pub fn read(
@@ -12,14 +12,14 @@ pub fn read(
     is_big_endian: bool,
     before: &[Element],
     vertices: &Element,
-    columns: &Columns,
-) -> Result<Vec<FileParticle>, Mistake> {
+    columns: &ColumnMap,
+) -> Result<Vec<FileParticle>, ParseError> {
     let mut reader = Reader { body, at: 0, is_big_endian };
     for element in before {
         if element.has_lists() {
             for row in 0..element.count {
-                let passed = element.properties.iter().try_for_each(|property| reader.pass(property.kind));
-                passed.ok_or_else(|| ended(element, row, start + reader.at))?;
+                let skipped = element.properties.iter().try_for_each(|property| reader.skip(property.kind));
+                skipped.ok_or_else(|| truncated(element, row, start + reader.at))?;
             }
         } else {
             // Cannot overflow: `Header::parse` checked that the counts fit in the file.
@@ -28,16 +28,16 @@ pub fn read(
     }
     let mut particles = Vec::with_capacity(vertices.count);
     for row in 0..vertices.count {
-        let mut values = Values::default();
+        let mut values = RowValues::default();
         for (column, property) in vertices.properties.iter().enumerate() {
             let at = start + reader.at;
             match property.kind {
-                Kind::One(scalar) if columns.is_read(column) => {
-                    let value = reader.scalar(scalar).ok_or_else(|| ended(vertices, row, at))?;
-                    let put = columns.put(column, value, &mut values);
-                    put.map_err(|reason| Mistake::Whole(format!("vertex {row} at byte {at}: {reason}")))?;
+                PropertyKind::Scalar(scalar) if columns.is_read(column) => {
+                    let value = reader.scalar(scalar).ok_or_else(|| truncated(vertices, row, at))?;
+                    let result = columns.set(column, value, &mut values);
+                    result.map_err(|reason| ParseError::WholeFile(format!("vertex {row} at byte {at}: {reason}")))?;
                 }
-                kind => reader.pass(kind).ok_or_else(|| ended(vertices, row, at))?,
+                kind => reader.skip(kind).ok_or_else(|| truncated(vertices, row, at))?,
             }
         }
         particles.push(columns.particle(row, &values));
@@ -45,9 +45,11 @@ pub fn read(
     Ok(particles)
 }
 
-fn ended(element: &Element, row: usize, at: usize) -> Mistake {
+fn truncated(element: &Element, row: usize, at: usize) -> ParseError {
     let Element { name, count, .. } = element;
-    Mistake::Whole(format!("the file ends within {name} {row} at byte {at}; expected {count}, as the header says"))
+    ParseError::WholeFile(format!(
+        "the file ends within {name} {row} at byte {at}; expected {count}, as the header says"
+    ))
 }
 
 struct Reader<'a> {
@@ -64,7 +66,7 @@ impl Reader<'_> {
         Some(bytes)
     }
 
-    fn scalar(&mut self, scalar: Scalar) -> Option<f64> {
+    fn scalar(&mut self, scalar: ScalarType) -> Option<f64> {
         /// Reads a number of a type in the file's byte order.
         macro_rules! number {
             ($type:ty) => {{
@@ -73,22 +75,22 @@ impl Reader<'_> {
             }};
         }
         Some(match scalar {
-            Scalar::I8 => number!(i8),
-            Scalar::U8 => number!(u8),
-            Scalar::I16 => number!(i16),
-            Scalar::U16 => number!(u16),
-            Scalar::I32 => number!(i32),
-            Scalar::U32 => number!(u32),
-            Scalar::F32 => number!(f32),
-            Scalar::F64 => number!(f64),
+            ScalarType::I8 => number!(i8),
+            ScalarType::U8 => number!(u8),
+            ScalarType::I16 => number!(i16),
+            ScalarType::U16 => number!(u16),
+            ScalarType::I32 => number!(i32),
+            ScalarType::U32 => number!(u32),
+            ScalarType::F32 => number!(f32),
+            ScalarType::F64 => number!(f64),
         })
     }
 
     /// Skips a property. Returns `None` if it reaches beyond the end of the file or a list has a negative length.
-    fn pass(&mut self, kind: Kind) -> Option<()> {
+    fn skip(&mut self, kind: PropertyKind) -> Option<()> {
         let bytes = match kind {
-            Kind::One(scalar) => scalar.bytes(),
-            Kind::List { count, item } => {
+            PropertyKind::Scalar(scalar) => scalar.bytes(),
+            PropertyKind::List { count, item } => {
                 let count = self.scalar(count).filter(|count| *count >= 0.0)?;
                 (count as usize).checked_mul(item.bytes())?
             }

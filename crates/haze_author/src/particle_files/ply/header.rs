@@ -1,7 +1,7 @@
 //! Header of a PLY file.
 
 use crate::particle_files::columns::MAX_COLUMNS;
-use crate::particle_files::mistake::Mistake;
+use crate::particle_files::parse_error::ParseError;
 use haze::error::one_line;
 
 /// Size limit of the header, bytes.
@@ -33,17 +33,17 @@ pub struct Element {
 
 pub struct Property {
     pub name: String,
-    pub kind: Kind,
+    pub kind: PropertyKind,
 }
 
 #[derive(Clone, Copy)]
-pub enum Kind {
-    One(Scalar),
-    List { count: Scalar, item: Scalar },
+pub enum PropertyKind {
+    Scalar(ScalarType),
+    List { count: ScalarType, item: ScalarType },
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scalar {
+pub enum ScalarType {
     I8,
     U8,
     I16,
@@ -54,7 +54,7 @@ pub enum Scalar {
     F64,
 }
 
-impl Scalar {
+impl ScalarType {
     fn of(name: &str) -> Result<Self, String> {
         Ok(match name {
             "char" | "int8" => Self::I8,
@@ -86,31 +86,31 @@ impl Element {
     /// Returns the minimum size of one record in a binary file, bytes: lists may be empty.
     pub fn min_bytes(&self) -> usize {
         let bytes = |property: &Property| match property.kind {
-            Kind::One(scalar) => scalar.bytes(),
-            Kind::List { count, .. } => count.bytes(),
+            PropertyKind::Scalar(scalar) => scalar.bytes(),
+            PropertyKind::List { count, .. } => count.bytes(),
         };
         self.properties.iter().map(bytes).sum()
     }
 
     pub fn has_lists(&self) -> bool {
-        self.properties.iter().any(|property| matches!(property.kind, Kind::List { .. }))
+        self.properties.iter().any(|property| matches!(property.kind, PropertyKind::List { .. }))
     }
 }
 
 impl Header {
     /// Parses the header and checks that the declared counts fit in the file.
-    pub fn parse(content: &[u8]) -> Result<Self, Mistake> {
+    pub fn parse(content: &[u8]) -> Result<Self, ParseError> {
         let (mut format, mut elements) = (None, Vec::<Element>::new());
         let (mut length, mut properties) = (0, 0);
         for number in 1.. {
             let rest = &content[length..content.len().min(MAX_HEADER_BYTES)];
             let Some(end) = rest.iter().position(|byte| *byte == b'\n') else {
                 let reason = format!("no end_header in the first {MAX_HEADER_BYTES} bytes; expected a PLY file");
-                return Err(Mistake::Whole(reason));
+                return Err(ParseError::WholeFile(reason));
             };
             length += end + 1;
             let line = String::from_utf8_lossy(&rest[..end]);
-            let refuse = |reason: String| Mistake::after(number, "", reason);
+            let refuse = |reason: String| ParseError::after_text(number, "", reason);
             let words: Vec<_> = line.split_ascii_whitespace().collect();
             match words[..] {
                 ["ply"] if number == 1 => {}
@@ -145,11 +145,11 @@ impl Header {
                 }
             }
         }
-        Err(Mistake::Whole("no end_header; expected a PLY file".into()))
+        Err(ParseError::WholeFile("no end_header; expected a PLY file".into()))
     }
 
     /// Returns an error if the counts need more than the `left` bytes of the file, before memory is allocated for them.
-    fn check_counts(&self, left: usize) -> Result<(), Mistake> {
+    fn check_counts(&self, left: usize) -> Result<(), ParseError> {
         let mut needed = 0_usize;
         for element in &self.elements {
             let least = match self.format {
@@ -165,7 +165,7 @@ impl Header {
                     "{count} {name} elements of at least {least} bytes each do not fit in the {left} bytes after the header; \
                      expected the complete file"
                 );
-                return Err(Mistake::Whole(reason));
+                return Err(ParseError::WholeFile(reason));
             }
         }
         Ok(())
@@ -186,11 +186,13 @@ fn parse_format(name: &str) -> Result<Format, String> {
 
 fn parse_property(words: &[&str]) -> Result<Property, String> {
     let (name, kind) = match *words {
-        ["list", count, item, name] => (name, Kind::List { count: Scalar::of(count)?, item: Scalar::of(item)? }),
-        [scalar, name] => (name, Kind::One(Scalar::of(scalar)?)),
+        ["list", count, item, name] => {
+            (name, PropertyKind::List { count: ScalarType::of(count)?, item: ScalarType::of(item)? })
+        }
+        [scalar, name] => (name, PropertyKind::Scalar(ScalarType::of(scalar)?)),
         _ => return Err("malformed property; expected for example \"property float x\"".into()),
     };
-    if let Kind::List { count: Scalar::F32 | Scalar::F64, .. } = kind {
+    if let PropertyKind::List { count: ScalarType::F32 | ScalarType::F64, .. } = kind {
         return Err(format!("the length of list {:?} has a float type; expected an integer type", one_line(name)));
     }
     Ok(Property { name: name.into(), kind })

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::*;
 
-fn read(content: &[u8]) -> Result<ParticleFrame, Mistake> {
+fn read(content: &[u8]) -> Result<ParticleFrame, ParseError> {
     super::read(content, 4)
 }
 
@@ -62,7 +62,7 @@ fn the_three_formats_give_equal_particles_and_lists_are_skipped() {
     assert_eq!((first.id, first.position), (-3, Vec3::new(-2.0, 0.25, -7.0)));
     assert_eq!((first.amount, second.amount), (0.2, 1.0));
     assert_eq!((first.radius, second.radius), (0.75, 0.75));
-    assert!(frame.given().id && frame.given().amount && !frame.given().rotation);
+    assert!(frame.provided().id && frame.provided().amount && !frame.provided().rotation);
     assert_eq!(read(&binary(false)).unwrap(), frame);
     assert_eq!(read(&binary(true)).unwrap(), frame);
 }
@@ -98,20 +98,20 @@ fn a_file_with_one_byte_changed_neither_panics_nor_exceeds_the_limit() {
 #[test]
 fn counts_in_the_header_are_checked_against_the_file_length() {
     let said = |header: &str, body: &str| {
-        let Err(Mistake::Whole(reason)) =
+        let Err(ParseError::WholeFile(reason)) =
             super::read(format!("ply\n{header}end_header\n{body}").as_bytes(), usize::MAX)
         else {
             panic!("{header}")
         };
         reason
     };
-    let most = usize::MAX;
+    let max_particles = usize::MAX;
     let vertex =
         |count: usize| format!("element vertex {count}\nproperty float x\nproperty float y\nproperty float z\n");
     for format in ["binary_little_endian", "ascii"] {
-        let reason = said(&format!("format {format} 1.0\n{}", vertex(most)), "1 2 3\n");
-        assert!(reason.starts_with(&format!("{most} vertex elements of at least ")), "{reason}");
-        let many = vertex(most).replace("vertex", "face") + &vertex(1);
+        let reason = said(&format!("format {format} 1.0\n{}", vertex(max_particles)), "1 2 3\n");
+        assert!(reason.starts_with(&format!("{max_particles} vertex elements of at least ")), "{reason}");
+        let many = vertex(max_particles).replace("vertex", "face") + &vertex(1);
         assert!(said(&format!("format {format} 1.0\n{many}"), "1 2 3\n").contains(" face elements of at least "));
     }
     assert_eq!(
@@ -129,7 +129,7 @@ fn counts_in_the_header_are_checked_against_the_file_length() {
 #[test]
 fn errors_name_their_position() {
     let said =
-        |text: &str| read(text.as_bytes()).map_err(|mistake| mistake.of("a.ply".as_ref()).to_string()).unwrap_err();
+        |text: &str| read(text.as_bytes()).map_err(|error| error.into_error("a.ply".as_ref()).to_string()).unwrap_err();
     let file = |format: &str, body: &str| {
         format!(
             "ply\nformat {format} 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nproperty float radius\nend_header\n{body}"
@@ -143,7 +143,7 @@ fn errors_name_their_position() {
     let mut bytes = file("binary_little_endian", "").into_bytes();
     let start = bytes.len();
     [1.0_f32, 2.0, 3.0, 4.0, 1.0, f32::NAN, 3.0, 4.0].iter().for_each(|value| bytes.extend(value.to_le_bytes()));
-    let error = read(&bytes).map_err(|mistake| mistake.of("a.ply".as_ref()).to_string()).unwrap_err();
+    let error = read(&bytes).map_err(|error| error.into_error("a.ply".as_ref()).to_string()).unwrap_err();
     assert_eq!(
         error,
         format!("a.ply: vertex 1 at byte {}: y: NaN is not valid; expected a number up to 1e9", start + 20)

@@ -1,7 +1,7 @@
 use super::*;
 use crate::path_trace::MEDIA;
 use crate::path_trace::{Medium, PathTrace};
-use crate::ramp::bake::RampRecipe;
+use crate::ramp::ramp_recipe::RampRecipe;
 use crate::sprite::bake::SpriteRecipe;
 use haze::assets::builtin;
 use haze::assets::ramp::Ramp;
@@ -18,7 +18,7 @@ fn baked(recipe: &RampRecipe) -> Ramp {
 }
 
 /// Fits ramps of a shape, bakes them and returns their response.
-fn fitted(puff: &Puff, shape: Shape) -> Response {
+fn fitted(puff: &Puff, shape: FitShape) -> Response {
     let FittedRamps { diffuse, backlight, exposure } = puff.fit(shape);
     let (diffuse, backlight) = (baked(&diffuse), backlight.as_ref().map(baked));
     let response = puff.response(DiffuseRamps { diffuse: &diffuse, backlight: backlight.as_ref() });
@@ -33,9 +33,9 @@ fn fitted_ramps_match_every_medium() {
         let puff = puff(&named.medium);
         let painted = builtin::find(builtin::RAMPS, "diffuse_soft").unwrap().ramp().unwrap();
         let painted = puff.response(DiffuseRamps { diffuse: &painted, backlight: None });
-        let one_row = fitted(&puff, Shape { rows: 1, backlight: false, ..Shape::default() });
-        let two_axes = fitted(&puff, Shape { backlight: false, ..Shape::default() });
-        let both = fitted(&puff, Shape::default());
+        let one_row = fitted(&puff, FitShape { rows: 1, backlight: false, ..FitShape::default() });
+        let two_axes = fitted(&puff, FitShape { backlight: false, ..FitShape::default() });
+        let both = fitted(&puff, FitShape::default());
         let of = |response: &Response| (response.error, response.pixel_error);
         let told = format!("{}: {:?} {:?} {:?} {:?}", named.name, of(&painted), of(&one_row), of(&two_axes), of(&both));
         // The documented bound for fitted ramps is 0.1. Steam has the largest pixel error, over 0.5.
@@ -52,7 +52,7 @@ fn the_fit_recovers_the_ramp_that_smoke_was_lit_with() {
     for light in 0..LIGHTS as usize {
         puff.traced.light[light] = puff.shown(DiffuseRamps { diffuse: &rim, backlight: None }, light);
     }
-    let response = fitted(&puff, Shape { stops: 17, rows: 1, backlight: false });
+    let response = fitted(&puff, FitShape { stops: 17, rows: 1, backlight: false });
     assert!(response.error < 0.01 && response.pixel_error < 0.03, "{response:?}");
     // A ramp of half the brightness needs twice the exposure.
     let half = Ramp::from_linear(rim.size(), (0..rim.size().x).map(|x| rim.texel(glam::UVec2::new(x, 0)) * 0.5));
@@ -70,7 +70,7 @@ fn six_way_maps_are_closer_to_the_truth_than_fitted_ramps() {
         let six_way = puff.compare_images(|light| puff.shown_six_way(&maps, light));
         println!("{}: {:.3}, pixels {:.3}", named.name, six_way.error, six_way.pixel_error);
         assert!(six_way.error < 0.06, "{}: {}", named.name, six_way.error);
-        let ramps = fitted(&puff, Shape::default());
+        let ramps = fitted(&puff, FitShape::default());
         assert!(six_way.pixel_error < ramps.pixel_error, "{}: {}", named.name, six_way.pixel_error);
         // The best exposure agrees with the intensity that the bake recommends.
         assert!((six_way.exposure / maps.intensity - 1.0).abs() < 0.1, "{} {}", six_way.exposure, maps.intensity);

@@ -2,19 +2,19 @@
 
 use glam::{UVec3, Vec3};
 
-use super::recipe::SpriteRecipe;
-use crate::exact::direction;
+use super::sprite_recipe::SpriteRecipe;
+use crate::deterministic_math::cos_sin;
 use haze::assets::noise::{pcg3d, unit};
 
 #[derive(Clone, Copy)]
-pub(super) struct Ball {
+pub(super) struct Metaball {
     pub centre: Vec3,
     pub inverse_radius: f32,
     /// Half of the line segment that the ball is stretched along; zero for a ball.
     pub axis: Vec3,
 }
 
-impl Ball {
+impl Metaball {
     /// Returns the offset of `p` from the nearest point of the ball's line.
     pub fn offset(&self, p: Vec3) -> Vec3 {
         let from = p - self.centre;
@@ -24,8 +24,8 @@ impl Ball {
 }
 
 /// Returns the balls at a time, as a fraction of the loop.
-pub(super) fn balls(recipe: &SpriteRecipe, time: f32) -> Vec<Ball> {
-    let phase = direction(time * std::f32::consts::TAU);
+pub(super) fn balls(recipe: &SpriteRecipe, time: f32) -> Vec<Metaball> {
+    let phase = cos_sin(time * std::f32::consts::TAU);
     let ball = |index| {
         let random = |salt: u32| {
             let hash = pcg3d(UVec3::new(index, salt, recipe.seed));
@@ -33,16 +33,16 @@ pub(super) fn balls(recipe: &SpriteRecipe, time: f32) -> Vec<Ball> {
         };
         let (place, shape) = (random(1), random(2));
         let z = place.x * 2.0 - 1.0;
-        let xy = direction(place.y * std::f32::consts::TAU) * (1.0 - z * z).sqrt();
+        let xy = cos_sin(place.y * std::f32::consts::TAU) * (1.0 - z * z).sqrt();
         let distance = recipe.spread * place.z.sqrt();
         // Outer balls are smaller: a large body with small puffs on it.
         let size = shape.x * (1.0 - 0.6 * place.z);
         let radius = recipe.ball_radius_min + (recipe.ball_radius_max - recipe.ball_radius_min) * size;
-        let swing = direction(shape.y * std::f32::consts::TAU).rotate(phase) * recipe.drift;
+        let swing = cos_sin(shape.y * std::f32::consts::TAU).rotate(phase) * recipe.drift;
         let any = (random(3) - 0.5).normalize_or(Vec3::Y);
         let upright = Vec3::Y * if any.y < 0.0 { -1.0 } else { 1.0 };
         let axis = any.lerp(upright, recipe.upright).normalize_or(Vec3::Y) * recipe.length;
-        Ball { centre: xy.extend(z) * distance + swing.extend(0.0), inverse_radius: 1.0 / radius, axis }
+        Metaball { centre: xy.extend(z) * distance + swing.extend(0.0), inverse_radius: 1.0 / radius, axis }
     };
     (0..recipe.balls).map(ball).collect()
 }

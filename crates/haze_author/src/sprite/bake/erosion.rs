@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use glam::{UVec2, UVec3, Vec2, Vec3};
 
-use super::recipe::SpriteRecipe;
-use super::voxels::{RUN, Voxels};
+use super::sprite_recipe::SpriteRecipe;
+use super::voxel_grid::{LANES, VoxelGrid};
 use haze::assets::image::Image;
 use haze::assets::noise::CachedGradientNoise;
 
@@ -13,7 +13,7 @@ use haze::assets::noise::CachedGradientNoise;
 const NOISE_SCALE: f32 = 8192.0;
 
 pub(super) struct Erosion {
-    voxels: Voxels,
+    voxels: VoxelGrid,
     octaves: Vec<Octave>,
 }
 
@@ -26,7 +26,7 @@ struct Octave {
 }
 
 impl Erosion {
-    pub fn new(recipe: &SpriteRecipe, voxels: Voxels) -> Self {
+    pub fn new(recipe: &SpriteRecipe, voxels: VoxelGrid) -> Self {
         let weight = |index: u32| (0..index).fold(1.0, |weight, _| weight * recipe.noise_gain);
         let octave = |index: u32| (weight(index), 2_u32.pow(index) as f32, index * 7919);
         let all: Vec<_> = (0..recipe.noise_octaves).map(octave).collect();
@@ -38,23 +38,23 @@ impl Erosion {
             let alone = |&(weight, frequency, salt): &(f32, f32, u32)| Octave {
                 weight,
                 lumps,
-                values: values(recipe, voxels, &[(1.0, frequency, salt)], 0.0),
+                values: bake_octaves(recipe, voxels, &[(1.0, frequency, salt)], 0.0),
             };
             all.iter().map(alone).collect()
         } else {
             let inside = if travels { lumps } else { 0.0 };
-            vec![Octave { weight: 1.0, lumps: 0.0, values: values(recipe, voxels, &all, inside) }]
+            vec![Octave { weight: 1.0, lumps: 0.0, values: bake_octaves(recipe, voxels, &all, inside) }]
         };
         Self { voxels, octaves }
     }
 
     /// Returns the noise of a run of voxels.
-    pub fn along(&self, voxels: Range<usize>, phase: Vec2) -> [f32; RUN] {
-        let mut sums = [0.0; RUN];
+    pub fn sample_run(&self, voxels: Range<usize>, phase: Vec2) -> [f32; LANES] {
+        let mut sums = [0.0; LANES];
         for octave in &self.octaves {
             for (sum, &[start, later]) in sums.iter_mut().zip(&octave.values.texels[voxels.clone()]) {
                 let noise = (f32::from(start) * phase.x + f32::from(later) * phase.y) * (1.0 / NOISE_SCALE);
-                *sum += shaped(noise, octave.lumps) * octave.weight;
+                *sum += apply_lumps(noise, octave.lumps) * octave.weight;
             }
         }
         sums
@@ -62,7 +62,7 @@ impl Erosion {
 
     /// Returns the interpolated noise at a position. Only valid if the noise does not turn (`travel` above 0): all
     /// octaves are then summed in the first one.
-    pub fn carried(&self, p: Vec3) -> f32 {
+    pub fn sample_at(&self, p: Vec3) -> f32 {
         let size = self.voxels.size;
         let sides = self.voxels.sides().as_vec3();
         let at = ((p * Vec3::new(1.0, -1.0, -1.0) + 1.0) * 0.5 * sides - 0.5).clamp(Vec3::ZERO, sides - 1.0);
@@ -81,7 +81,7 @@ impl Erosion {
 }
 
 /// Sums octaves, each a (weight, frequency, salt), for every voxel.
-fn values(recipe: &SpriteRecipe, voxels: Voxels, octaves: &[(f32, f32, u32)], lumps: f32) -> Image<[i16; 2]> {
+fn bake_octaves(recipe: &SpriteRecipe, voxels: VoxelGrid, octaves: &[(f32, f32, u32)], lumps: f32) -> Image<[i16; 2]> {
     let size = voxels.size;
     let mut values = Image::new(UVec2::new(size, size * voxels.depth), [0_i16; 2]);
     let seed = recipe.seed.wrapping_mul(31);
@@ -90,14 +90,14 @@ fn values(recipe: &SpriteRecipe, voxels: Voxels, octaves: &[(f32, f32, u32)], lu
             for &(weight, frequency, salt) in octaves {
                 let mut cell = CachedGradientNoise::new(seed.wrapping_add(salt));
                 for (x, value) in (0..).zip(&mut *line) {
-                    let p = voxels.position(UVec3::new(x, row % size, row / size));
+                    let p = voxels.voxel_centre(UVec3::new(x, row % size, row / size));
                     // Voxels farther out are invisible, but `travel` may carry noise in from there.
                     if p.length_squared() > 1.0 + recipe.travel {
                         continue;
                     }
                     let noise = cell.turning(p * recipe.noise_frequency * frequency);
                     for (sum, noise) in value.iter_mut().zip(noise) {
-                        *sum = sum.saturating_add((shaped(noise, lumps) * weight * NOISE_SCALE) as i16);
+                        *sum = sum.saturating_add((apply_lumps(noise, lumps) * weight * NOISE_SCALE) as i16);
                     }
                 }
             }
@@ -107,6 +107,6 @@ fn values(recipe: &SpriteRecipe, voxels: Voxels, octaves: &[(f32, f32, u32)], lu
 }
 
 /// Blends from waves (0) to round lumps with sharp creases (1); the mean stays about the same.
-fn shaped(noise: f32, lumps: f32) -> f32 {
+fn apply_lumps(noise: f32, lumps: f32) -> f32 {
     noise + (0.4 - 2.0 * noise.abs() - noise) * lumps
 }

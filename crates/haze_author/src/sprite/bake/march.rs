@@ -3,13 +3,13 @@
 use glam::{UVec2, UVec3, Vec3};
 use image::Rgba;
 
-use super::frame::Ray;
-use super::recipe::SpriteRecipe;
-use crate::exact::decay;
-use crate::path_trace::Volume;
+use super::baked_frame::RayAccumulator;
+use super::sprite_recipe::SpriteRecipe;
+use crate::deterministic_math::fast_exp_neg;
+use crate::path_trace::DensityVolume;
 
 /// Marches the columns of one row of texels front to back.
-pub(super) fn march(recipe: &SpriteRecipe, volume: &Volume, y: u32, line: &mut [(Rgba<u8>, f32)]) {
+pub(super) fn march(recipe: &SpriteRecipe, volume: &DensityVolume, y: u32, line: &mut [(Rgba<u8>, f32)]) {
     let (size, depth) = (volume.size.x as usize, volume.size.z as usize);
     // One row of voxels; indices are clamped to the volume.
     let row = |dy: isize, z: usize, dz: isize| {
@@ -22,9 +22,9 @@ pub(super) fn march(recipe: &SpriteRecipe, volume: &Volume, y: u32, line: &mut [
     let reach = [(size / 24).max(1), 1];
     let deep = reach.map(|reach| (reach as f32 / ratio).round().max(1.0));
     let step = 2.0 / depth as f32;
-    let mut rays = vec![Ray::new(); size];
+    let mut rays = vec![RayAccumulator::new(); size];
     for z in 0..depth {
-        let place = volume.position(UVec3::new(0, y, z as u32)).z;
+        let place = volume.voxel_centre(UVec3::new(0, y, z as u32)).z;
         let here = row(0, z, 0);
         // Rows above, below, in front and behind, for wide and fine differences.
         let around = [0, 1].map(|index| {
@@ -39,15 +39,15 @@ pub(super) fn march(recipe: &SpriteRecipe, volume: &Volume, y: u32, line: &mut [
             Vec3::new(along_x, below - above, along_z.max(0.0)).normalize_or_zero()
         };
         for ((x, &density), ray) in here.iter().enumerate().zip(&mut rays) {
-            if density <= 0.0 || ray.is_over() {
+            if density <= 0.0 || ray.is_opaque() {
                 continue;
             }
-            let amount = 1.0 - decay(density * recipe.extinction * step);
-            ray.meet(amount, slope(x, 0) + slope(x, 1) * recipe.bump, place);
+            let amount = 1.0 - fast_exp_neg(density * recipe.extinction * step);
+            ray.accumulate(amount, slope(x, 0) + slope(x, 1) * recipe.bump, place);
         }
     }
     for ((x, texel), ray) in (0..).zip(line).zip(rays) {
-        let place = volume.position(UVec3::new(x, y, 0)).truncate();
+        let place = volume.voxel_centre(UVec3::new(x, y, 0)).truncate();
         *texel = ray.texel(UVec2::new(x, y), recipe.size, place);
     }
 }

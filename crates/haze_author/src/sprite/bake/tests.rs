@@ -1,7 +1,7 @@
 use std::path::Path;
 
 use super::*;
-use crate::exact::tests::hash;
+use crate::deterministic_math::tests::hash;
 use haze::assets::json;
 use haze::settings::{Fields as _, field_path, for_each_field};
 

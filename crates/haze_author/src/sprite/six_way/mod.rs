@@ -2,14 +2,14 @@
 //!
 //! A sheet has the layout of its sprite and twice its height. The upper half holds light from the right, the top and
 //! the front in red, green and blue; the lower half from the left, the bottom and the back. A texel holds the square
-//! root of the light ([`six_way_from_texel`](crate::formula::six_way::six_way_from_texel)). Alpha is the amount in both
+//! root of the light ([`six_way_from_texel`](haze::formula::six_way::six_way_from_texel)). Alpha is the amount in both
 //! halves.
 
-mod bake;
+mod bake_maps;
 mod packing;
 mod trace;
 
-pub use bake::BakedSixWay;
+pub use bake_maps::BakedSixWay;
 pub use haze::sprite::six_way_layout;
 pub use packing::{Packing, pack, unpack};
 pub use trace::{SixWayMix, TracedSixWay};

@@ -45,8 +45,8 @@ pub fn pack(first: &RgbaImage, second: &RgbaImage, packing: Packing) -> RgbaImag
     let (width, height) = first.dimensions();
     RgbaImage::from_fn(width, 2 * height, |x, y| {
         let [a, b] = [first, second].map(|map| map.get_pixel(x, y % height));
-        let light = packing.six_way(value(a), value(b));
-        texel(if y < height { light.positive } else { light.negative }, a.0[3])
+        let light = packing.six_way(decode_texel(a), decode_texel(b));
+        encode_texel(if y < height { light.positive } else { light.negative }, a.0[3])
     })
 }
 
@@ -64,7 +64,7 @@ pub fn unpack(path: &Path, sheet: &RgbaImage, packing: Packing) -> Result<[RgbaI
     Ok([0, 1].map(|map| {
         RgbaImage::from_fn(width, height, |x, y| {
             let [positive, negative] = [y, y + height].map(|y| sheet.get_pixel(x, y));
-            let [p, n] = [positive, negative].map(|texel| six_way_from_texel(value(texel)));
+            let [p, n] = [positive, negative].map(|texel| six_way_from_texel(decode_texel(texel)));
             let light = packing.texels(SixWay { positive: p, negative: n })[map];
             let [r, g, b] = light.to_array().map(|light| (light * 255.0).round() as u8);
             Rgba([r, g, b, positive.0[3]])
@@ -73,12 +73,12 @@ pub fn unpack(path: &Path, sheet: &RgbaImage, packing: Packing) -> Result<[RgbaI
 }
 
 /// Encodes a texel of either half.
-pub(super) fn texel(light: Vec3, alpha: u8) -> Rgba<u8> {
+pub(super) fn encode_texel(light: Vec3, alpha: u8) -> Rgba<u8> {
     let [r, g, b] = light.to_array().map(|light| (light.clamp(0.0, 1.0).sqrt() * 255.0).round() as u8);
     Rgba([r, g, b, alpha])
 }
 
-fn value(texel: &Rgba<u8>) -> Vec3 {
+fn decode_texel(texel: &Rgba<u8>) -> Vec3 {
     let [r, g, b, _] = texel.0.map(|channel| f32::from(channel) / 255.0);
     Vec3::new(r, g, b)
 }
@@ -91,7 +91,7 @@ mod tests {
     fn sheet() -> RgbaImage {
         RgbaImage::from_fn(3, 4, |x, y| {
             let half = (y / 2) as f32;
-            texel(Vec3::new(0.9, 0.5, 0.2) - 0.1 * half - 0.01 * x as f32, 40 * (y % 2) as u8)
+            encode_texel(Vec3::new(0.9, 0.5, 0.2) - 0.1 * half - 0.01 * x as f32, 40 * (y % 2) as u8)
         })
     }
 

@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-use crate::exact::direction;
-use crate::path_trace::{Medium, PathTrace, Traced, Volume};
+use crate::deterministic_math::cos_sin;
+use crate::path_trace::{DensityVolume, Medium, PathTrace, PathTraceResult};
 use haze::assets::image::Image;
 use haze::formula::colour::luminance;
 use haze::formula::six_way::{SixWay, six_way_axis_weights};
@@ -32,10 +32,10 @@ pub struct SixWayMix {
 
 impl TracedSixWay {
     /// Path-traces a volume of a medium under light from all sides. Fits the six images for which
-    /// [`six_way_response`](crate::formula::six_way::six_way_response) is closest to the result. `mix` is the mix of
+    /// [`six_way_response`](haze::formula::six_way::six_way_response) is closest to the result. `mix` is the mix of
     /// another frame of the same sprite, if both must share it. `progress` as in [`PathTrace::run`].
     pub fn trace<E>(
-        volume: &Volume,
+        volume: &DensityVolume,
         medium: &Medium,
         path_trace: &PathTrace,
         mix: Option<&SixWayMix>,
@@ -59,12 +59,12 @@ impl TracedSixWay {
 }
 
 impl SixWayMix {
-    fn new(lights: &[Vec3], traced: &Traced) -> Self {
+    fn new(lights: &[Vec3], traced: &PathTraceResult) -> Self {
         let means: Vec<_> = (0..lights.len()).map(|light| traced.mean(light)).collect();
         let brightness: Vec<f64> = means.iter().map(|&mean| luminance(mean).max(1.0e-9).into()).collect();
-        let plain = Fit::new(lights, &brightness, 0.0);
-        let fits = ANISOTROPIES.iter().map(|&anisotropy| Fit::new(lights, &brightness, anisotropy));
-        let Fit { anisotropy, sides, .. } =
+        let plain = SixWayFit::new(lights, &brightness, 0.0);
+        let fits = ANISOTROPIES.iter().map(|&anisotropy| SixWayFit::new(lights, &brightness, anisotropy));
+        let SixWayFit { anisotropy, sides, .. } =
             fits.fold(plain, |best, fit| if fit.error < best.error { fit } else { best });
         // Every light has the same weight, regardless of brightness.
         let colour: Vec3 = means.iter().zip(&brightness).map(|(&mean, &brightness)| mean / brightness as f32).sum();
@@ -78,7 +78,7 @@ fn lights() -> Vec<Vec3> {
     let step = |index: i32| index as f32 - 1.0;
     let cube = (0..27).map(|index| Vec3::new(step(index % 3), step(index / 3 % 3), step(index / 9)));
     let ring = (0..8).map(|index| {
-        let way = direction(index as f32 * std::f32::consts::TAU / 8.0);
+        let way = cos_sin(index as f32 * std::f32::consts::TAU / 8.0);
         Vec3::new(way.x * RING, way.y * RING, -1.0)
     });
     let ways = cube.filter(|way| *way != Vec3::ZERO).chain(ring);
@@ -92,7 +92,7 @@ const ANISOTROPIES: [f32; 19] =
     [0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95];
 
 /// Fit of the six images to those of all lights, for one anisotropy.
-struct Fit {
+struct SixWayFit {
     anisotropy: f32,
     /// Weight of each light for each side: right, top, front, left, bottom, back.
     sides: [Vec<f64>; 6],
@@ -100,7 +100,7 @@ struct Fit {
     error: f64,
 }
 
-impl Fit {
+impl SixWayFit {
     /// Fits by least squares. Each light is weighted by its inverse brightness, so relative errors of dark and bright
     /// sides count alike.
     fn new(lights: &[Vec3], brightness: &[f64], anisotropy: f32) -> Self {

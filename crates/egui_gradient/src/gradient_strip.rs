@@ -1,0 +1,106 @@
+//! The strip: the gradient, its handles and the histogram of lookups below it.
+
+use egui::{self, Color32, CursorIcon, Rect, Sense, Stroke, StrokeKind, Ui, vec2};
+
+use super::edit_context::{DisplayOptions, EditContext};
+use super::handles::{self, GAP, strip_position};
+use super::paint::{borders, colour32, gradient as paint_gradient, histogram, readout, ticks};
+use super::selection::Selection;
+use super::stop_operations;
+use haze::error::FieldError;
+use haze::formula::colour::srgb_from_linear;
+use haze_author::ramp::{Blend, Gradient, HexColour, RampRecipe, RampRow, RampStop};
+
+/// Heights of the strip, of the lane for handles below it, and of histograms, points.
+const STRIP: f32 = 30.0;
+const LANE: f32 = 26.0;
+const HISTOGRAM: f32 = 44.0;
+
+/// Draws strip, handles and histograms. Returns the position under the pointer.
+pub fn show(ui: &mut Ui, context: &mut EditContext<'_>, options: &DisplayOptions<'_>) -> Option<f32> {
+    let has_histogram = !options.histograms.is_empty();
+    let height = STRIP + LANE + if has_histogram { HISTOGRAM } else { 0.0 };
+    let (_, all) = ui.allocate_space(vec2(ui.available_width().max(4.0 * GAP), height));
+    // Margin for the handles of stops at both ends.
+    let all = all.shrink2(vec2(GAP * 0.5, 0.0));
+    let (strip, rest) = all.split_top_bottom_at_y(all.top() + STRIP);
+    let (lane, below) = rest.split_top_bottom_at_y(rest.top() + LANE);
+    let gradient = match gradient(context.stops, options.blend) {
+        Ok(gradient) => gradient,
+        Err(error) => {
+            ui.put(all, egui::Label::new(format!("Not a gradient: {error}")));
+            return None;
+        }
+    };
+    let pointed_at = strip_input(ui, context, strip, &gradient);
+    ticks(ui, context.stops, strip);
+    for &(place, colour) in options.marks {
+        for (width, colour) in [(4.0, Color32::BLACK), (2.0, colour)] {
+            ui.painter().vline(strip.left() + place * strip.width(), strip.y_range(), Stroke::new(width, colour));
+        }
+    }
+    handles::show(ui, context, strip, lane);
+    if has_histogram {
+        ui.painter().rect_filled(below, 0.0, ui.visuals().extreme_bg_color);
+        options.histograms.iter().for_each(|(colour, bins)| histogram(ui, below, bins, *colour));
+    }
+    pointed_at
+}
+
+/// Builds the gradient of the stops.
+pub fn gradient(stops: &[RampStop], blend: Blend) -> Result<Gradient, FieldError> {
+    let rows = vec![RampRow { stops: stops.to_vec(), ..RampRow::default() }];
+    RampRecipe { blend, rows, ..RampRecipe::default() }.gradient()
+}
+
+/// Returns the sRGB colour at a position.
+pub fn colour_at(gradient: &Gradient, at: f32) -> HexColour {
+    HexColour::from_srgb(gradient.sample(at, 0.0).map(|light| srgb_from_linear(light.min(1.0))))
+}
+
+/// Draws the gradient. A click on it, or the start of a drag, adds a stop. Returns the hovered position.
+fn strip_input(ui: &Ui, context: &mut EditContext<'_>, strip: Rect, gradient: &Gradient) -> Option<f32> {
+    let response = ui.interact(strip, ui.scope_id().with("strip"), Sense::click_and_drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "gradient: add a stop"));
+    paint_gradient(ui, strip, |at| colour32(colour_at(gradient, at)));
+    let parts = context.editor.snap.now(ui).filter(|_| response.hovered() || context.editor.dragged.is_some());
+    borders(ui, strip, parts);
+    let visuals = ui.style().interact(&response);
+    let stroke =
+        if response.has_focus() { ui.visuals().selection.stroke } else { Stroke::new(1.0, visuals.fg_stroke.color) };
+    ui.painter().rect_stroke(strip, 0.0, stroke, StrokeKind::Outside);
+    let place = |x: f32| strip_position(strip, x).clamp(0.0, 1.0);
+    let snap = context.editor.snap;
+    let origin = ui.input(|input| input.pointer.press_origin());
+    let added = if response.drag_started() {
+        origin.map(|origin| place(origin.x))
+    } else if response.clicked() {
+        // A click by keyboard has no position.
+        let by_pointer = response.interact_pointer_pos().map(|at| place(at.x));
+        Some(
+            by_pointer
+                .unwrap_or_else(|| stop_operations::insertion_position(context.stops, context.editor.selection.lead())),
+        )
+    } else {
+        None
+    };
+    if let Some(place) = added {
+        let at = stop_operations::snap_to_parts(place, snap.now(ui));
+        let colour = colour_at(gradient, at);
+        let before = (context.stops.clone(), context.editor.selection.clone());
+        context.edit("add a stop", |stops, selection| {
+            *selection = Selection::one(stop_operations::add(stops, at, colour))
+        });
+        if let Some(origin) = origin.filter(|_| response.drag_started()) {
+            handles::begin_drag(context, origin.x, place, before, true);
+        }
+        context.requests_focus = true;
+    }
+    let hovered = response.hover_pos().filter(|_| context.editor.dragged.is_none())?;
+    ui.set_cursor_icon(CursorIcon::Crosshair);
+    response.on_hover_text_at_pointer("Click or drag to add a stop with this colour. Ctrl snaps");
+    let at = place(hovered.x);
+    let colour = colour_at(gradient, at);
+    readout(ui, hovered.x, strip, colour32(colour), format!("{at:.4}  {}", String::from(colour)));
+    Some(at)
+}

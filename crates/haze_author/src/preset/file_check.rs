@@ -1,0 +1,91 @@
+//! Checks all files that a preset names, and reports every error and warning.
+
+use std::path::Path;
+
+use haze::preset::{AssetFolders, ImageCache, MaterialNames, Preset, with_system_context};
+
+use super::role_check::role_warnings;
+use crate::particle_files::check_particle_files;
+use haze::error::Error;
+
+/// Loads the images and particle files of every system. Returns all errors, and warnings about loaded images that
+/// do not seem to fit their role, each with its field. Files are searched for in `folders`; `path`, the preset's
+/// file, is only named in errors.
+pub fn check_files(preset: &Preset, path: &Path, folders: &AssetFolders) -> (Vec<Error>, Vec<String>) {
+    let mut pictures = ImageCache::new(folders.clone());
+    let (mut errors, mut warnings) = (Vec::new(), Vec::new());
+    for (index, system) in preset.systems.iter().enumerate() {
+        let found = match system.material.load_from(&mut pictures) {
+            Ok(material) => {
+                let fits = material.info().validate(index, &system.settings);
+                errors.extend(fits.err().map(|error| Error::JsonField { path: path.into(), error }));
+                role_warnings(&system.material, &material)
+            }
+            Err(of_material) => {
+                let fields: Vec<_> = of_material.iter().map(|(field, _)| *field).collect();
+                errors.extend(of_material.into_iter().map(|(_, error)| with_system_context(path, index, error)));
+                role_warnings_except(&system.material, &fields, folders)
+            }
+        };
+        let told = |(field, warning)| format!("systems[{index}].material.{field}: {warning}");
+        warnings.extend(found.into_iter().map(told));
+    }
+    errors.extend(check_particle_files(preset, path, folders).err().into_iter().flatten());
+    (errors, warnings)
+}
+
+/// Warnings about the images of all fields but some.
+fn role_warnings_except(names: &MaterialNames, fields: &[&str], folders: &AssetFolders) -> Vec<(&'static str, String)> {
+    let others = names.with_defaults_for(fields);
+    let loaded = others.load_from(&mut ImageCache::new(folders.clone()));
+    loaded.map(|material| role_warnings(&others, &material)).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use image::{Rgb, RgbImage};
+
+    use super::*;
+    use haze::preset::PresetSystem;
+    use haze::settings::Technique;
+
+    #[test]
+    fn an_error_hides_no_other_error_or_warning() {
+        let folder = tempfile::tempdir().unwrap();
+        RgbImage::from_fn(4, 64, |_, y| Rgb([4 * y as u8; 3])).save(folder.path().join("down.png")).unwrap();
+        RgbImage::from_pixel(16, 16, Rgb([0; 3])).save(folder.path().join("flat.png")).unwrap();
+        let mut preset = Preset { systems: vec![PresetSystem::default(); 4], ..Preset::default() };
+        let mut name = |index: usize, change: fn(&mut PresetSystem)| change(&mut preset.systems[index]);
+        name(0, |system| (system.material.sprite, system.material.columns) = ("gone.png".into(), 3));
+        name(0, |system| system.material.diffuse_ramp = "down.png".into());
+        name(1, |system| system.material.noise = "flat.png".into());
+        name(1, |system| system.material.motif = "none".into());
+        name(1, |system| system.material.age_ramp = "down.png".into());
+        name(2, |system| system.material.coverage_ramp = "down.png".into());
+        name(2, |system| system.settings.technique = Technique::DepthSpriteSoft);
+        name(2, |system| system.material.sprite = "clear.png".into());
+        name(3, |system| system.cache.path = "gone.csv".into());
+        image::RgbaImage::new(16, 16).save(folder.path().join("clear.png")).unwrap();
+        let (errors, warnings) = check_files(&preset, Path::new("my.json"), &AssetFolders::at(folder.path()));
+        let errors: Vec<_> = errors.iter().map(ToString::to_string).collect();
+        for (said, begins) in errors.iter().zip([
+            "my.json: systems[0].material.sprite: ",
+            "my.json: systems[1].material.motif: \"none\" is not valid",
+            "my.json: systems[1].material.noise: ",
+            "my.json: systems[2].settings.technique: ",
+            "my.json: systems[3].cache.path: ",
+        ]) {
+            assert!(said.starts_with(begins), "{begins}: {errors:?}");
+        }
+        assert_eq!(errors.len(), 5, "{errors:?}");
+        for (said, begins) in warnings.iter().zip([
+            "systems[0].material.diffuse_ramp: down.png: painted from top to bottom",
+            "systems[1].material.age_ramp: down.png: painted from top to bottom",
+            "systems[2].material.sprite: clear.png: alpha is 0 everywhere",
+            "systems[2].material.coverage_ramp: down.png: painted from top to bottom",
+        ]) {
+            assert!(said.starts_with(begins), "{begins}: {warnings:?}");
+        }
+        assert_eq!(warnings.len(), 4, "{warnings:?}");
+    }
+}

@@ -1,0 +1,107 @@
+//! Reasons why settings have no effect in their context.
+
+mod condition;
+mod rule;
+mod system_rules;
+
+use glam::UVec2;
+
+use haze::frame::{Light, LightKind};
+use haze::preset::{Environment, Preset, SceneName};
+use rule::{NoEffectRule, find_reason, rule};
+use system_rules::SYSTEM_RULES;
+
+const LIGHT_RULES: &[NoEffectRule<Light>] = &[
+    rule(
+        "the light's intensity is 0",
+        |light, _| light.intensity <= 0.0,
+        &[
+            "kind",
+            "position",
+            "direction",
+            "colour",
+            "range",
+            "radius",
+            "inner_angle",
+            "outer_angle",
+            "specular_scatter",
+        ],
+    ),
+    rule(
+        "a directional light shines from infinitely far",
+        |light, _| light.kind == LightKind::Directional,
+        &["position", "range"],
+    ),
+    rule("a point light shines in all directions", |light, _| light.kind == LightKind::Point, &["direction"]),
+    rule("only with kind spot", |light, _| light.kind != LightKind::Spot, &["inner_angle", "outer_angle"]),
+];
+
+const ENVIRONMENT_RULES: &[NoEffectRule<Environment>] =
+    &[rule("only in the yard", |environment, _| environment.scene != SceneName::Yard, &["lamp", "brazier"])];
+
+/// Returns the reason why a field has no effect with the other values as they are; `None` if it has an effect. `path` is
+/// formatted as by [`field_path`](haze::settings::field_path); `size` is the picture's, in pixels.
+pub fn no_effect_reason(preset: &Preset, path: &str, size: UVec2) -> Option<&'static str> {
+    let item = |list: &str| {
+        let (index, field) = path.strip_prefix(list)?.strip_prefix('[')?.split_once("].")?;
+        Some((index.parse::<usize>().ok()?, field))
+    };
+    if let Some((index, field)) = item("systems") {
+        return find_reason(SYSTEM_RULES, preset.systems.get(index)?, field, size);
+    }
+    if let Some((index, field)) = item("lights") {
+        return find_reason(LIGHT_RULES, preset.lights.get(index)?, field, size);
+    }
+    find_reason(ENVIRONMENT_RULES, &preset.environment, path.strip_prefix("environment.")?, size)
+}
+
+/// Conditions under which a field has an effect, for a dotted path without list indices.
+pub(super) fn effect_conditions(path: &str) -> impl Iterator<Item = &'static str> {
+    fn of<T>(rules: &'static [NoEffectRule<T>], field: Option<&str>) -> Vec<&'static str> {
+        let Some(field) = field else { return Vec::new() };
+        rules.iter().filter(|rule| rule.applies_to(field)).map(|rule| rule.reason).collect()
+    }
+    let all = [
+        of(SYSTEM_RULES, path.strip_prefix("systems.")),
+        of(LIGHT_RULES, path.strip_prefix("lights.")),
+        of(ENVIRONMENT_RULES, path.strip_prefix("environment.")),
+    ];
+    let is_condition =
+        |reason: &&str| reason.starts_with("only ") || reason.starts_with("not ") || reason.contains(" only");
+    all.into_iter().flatten().filter(is_condition)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haze::preset::PresetSystem;
+    use haze::settings::values;
+
+    #[test]
+    fn every_row_names_existing_fields() {
+        let preset =
+            Preset { lights: vec![Light::default()], systems: vec![PresetSystem::default()], ..Preset::default() };
+        let paths: Vec<_> = values(&preset).into_iter().map(|(path, _)| path).collect();
+        let systems = SYSTEM_RULES.iter().flat_map(|rule| rule.fields).map(|field| format!("systems[0].{field}"));
+        let lights = LIGHT_RULES.iter().flat_map(|rule| rule.fields).map(|field| format!("lights[0].{field}"));
+        let environments =
+            ENVIRONMENT_RULES.iter().flat_map(|rule| rule.fields).map(|field| format!("environment.{field}"));
+        for field in systems.chain(lights).chain(environments) {
+            let group = format!("{field}.");
+            assert!(paths.iter().any(|path| *path == field || path.starts_with(&group)), "{field}");
+        }
+    }
+
+    #[test]
+    fn reasons_are_unique_and_apply_to_their_fields_only() {
+        let preset = Preset { systems: vec![PresetSystem::default()], ..Preset::default() };
+        let reason = |path: &str| no_effect_reason(&preset, path, UVec2::new(640, 360));
+        assert_eq!(reason("systems[0].settings.blend_mode"), Some("forward only"));
+        assert_eq!(reason("systems[0].settings.boost"), None);
+        assert_eq!(reason("systems[1].settings.blend_mode"), None);
+        assert_eq!(reason("camera.fov"), None);
+        let mut reasons: Vec<_> = SYSTEM_RULES.iter().map(|rule| rule.reason).collect();
+        reasons.sort_unstable();
+        assert!(reasons.windows(2).all(|pair| pair[0] != pair[1]));
+    }
+}

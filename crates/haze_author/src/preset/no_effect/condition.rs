@@ -1,0 +1,81 @@
+//! Longer conditions under which settings of a system have no effect.
+
+use glam::UVec2;
+
+use haze::assets::builtin;
+use haze::emitter::EmitterShape;
+use haze::preset::PresetSystem;
+use haze::settings::{CoverageMode, DiffuseMode, FadeCurve, SoftScatterMode, SpriteAnimation, Technique, Upsample};
+
+pub fn technique(system: &PresetSystem) -> Technique {
+    system.settings.technique
+}
+
+pub fn is_hard(system: &PresetSystem, _: UVec2) -> bool {
+    !technique(system).is_soft()
+}
+
+/// True if the upsampling compares depths. It then uses the length of the fade, whether sprites fade or not.
+pub fn upsampling_reads_depth(system: &PresetSystem, size: UVec2) -> bool {
+    let accumulate = &system.settings.accumulate;
+    let is_reduced = !system.settings.is_forward() && accumulate.effective_scale(size) > 1;
+    is_reduced && accumulate.upsample != Upsample::Bilinear
+}
+
+pub fn shows_through(system: &PresetSystem) -> bool {
+    system.settings.soft_fade.curve == FadeCurve::Always
+}
+
+pub fn curve_ignores_power(system: &PresetSystem, _: UVec2) -> bool {
+    !matches!(system.settings.soft_fade.curve, FadeCurve::Contrast | FadeCurve::Exponential)
+}
+
+/// True if the checkerboard replaces everything of a sprite. Depth sprites still read depth from it.
+pub fn shows_checkerboard_only(system: &PresetSystem, _: UVec2) -> bool {
+    let is_read = technique(system).is_volumetric() || technique(system).is_depth_sprite();
+    system.settings.sprite.debug_sprite && !is_read
+}
+
+pub fn reads_no_detail(system: &PresetSystem, _: UVec2) -> bool {
+    !technique(system).is_depth_sprite() && system.settings.sprite.motion <= 0.0
+}
+
+pub fn has_one_frame(system: &PresetSystem, _: UVec2) -> bool {
+    let material = &system.material;
+    let is_file = builtin::find(builtin::SPRITES, &material.sprite).is_none();
+    let is_one = is_file && (material.columns, material.rows) == (1, 1);
+    // A single frame still moves towards itself.
+    is_one && system.settings.sprite.motion <= 0.0 && !technique(system).is_volumetric()
+}
+
+pub fn plays_no_flipbook(system: &PresetSystem, _: UVec2) -> bool {
+    !technique(system).is_volumetric()
+        && matches!(system.settings.sprite.animation, SpriteAnimation::Still | SpriteAnimation::Volume)
+}
+
+pub fn has_no_animation(system: &PresetSystem, _: UVec2) -> bool {
+    let scroll_speed = system.settings.volumetric.scroll_speed;
+    if technique(system).is_volumetric() { scroll_speed == 0.0 } else { system.frame_rate() <= 0.0 }
+}
+
+pub fn uses_painted_motif(system: &PresetSystem) -> bool {
+    system.settings.diffuse.mode == DiffuseMode::PaintedMotif
+}
+
+pub fn looks_up_no_ramp(system: &PresetSystem, _: UVec2) -> bool {
+    let settings = &system.settings;
+    let (is_forward, is_lit) = (settings.is_forward(), settings.diffuse.intensity > 0.0);
+    let by_normal =
+        is_lit && !settings.is_six_way() && (is_forward || settings.diffuse.mode != DiffuseMode::SphericalHarmonics);
+    let by_amount = settings.soft_scatter.intensity > 0.0 && settings.soft_scatter.mode == SoftScatterMode::Ramp;
+    let others = if is_forward {
+        settings.sprite.age_colour > 0.0
+    } else {
+        settings.coverage == CoverageMode::Ramp || settings.specular_scatter.intensity > 0.0
+    };
+    !(by_normal || by_amount || others)
+}
+
+pub fn ignores_up(system: &PresetSystem, _: UVec2) -> bool {
+    system.emitter.buoyancy == 0.0 && system.emitter.shape != EmitterShape::Disc
+}

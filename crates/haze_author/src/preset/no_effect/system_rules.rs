@@ -1,0 +1,270 @@
+//! Settings of a system that have no effect in their context: one row for each reason.
+
+use glam::Vec3;
+
+use super::condition::{
+    curve_ignores_power, has_no_animation, has_one_frame, ignores_up, is_hard, looks_up_no_ramp, plays_no_flipbook,
+    reads_no_detail, shows_checkerboard_only, shows_through, technique, upsampling_reads_depth, uses_painted_motif,
+};
+use super::rule::{NoEffectRule, rule};
+use haze::assets::builtin;
+use haze::preset::PresetSystem;
+use haze::settings::{Backlight, CoverageMode, Order, RenderPath, SoftScatterMode, SpriteAnimation, Technique};
+
+/// The first row that holds gives the reason.
+pub const SYSTEM_RULES: &[NoEffectRule<PresetSystem>] = &[
+    rule("the particles come from files", |s, _| s.cache.is_used(), &["emitter"]),
+    rule(
+        "only with particle files",
+        |s, _| !s.cache.is_used(),
+        &[
+            "cache.units",
+            "cache.up",
+            "cache.position",
+            "cache.fps",
+            "cache.start",
+            "cache.after",
+            "cache.default_radius",
+            "cache.default_amount",
+            "cache.flipbook_rate",
+        ],
+    ),
+    rule(
+        "forward only",
+        |s, _| !s.settings.is_forward(),
+        &["settings.blend_mode", "settings.sprite.age_colour", "material.age_ramp"],
+    ),
+    rule(
+        "deferred only",
+        |s, _| s.settings.is_forward(),
+        &[
+            "settings.accumulate.format",
+            "settings.accumulate.encoding",
+            "settings.accumulate.decode",
+            "settings.accumulate.order",
+            "settings.accumulate.depth_weight",
+            "settings.accumulate.layers",
+            "settings.accumulate.scale",
+            "settings.accumulate.max_side",
+            "settings.accumulate.depth_source",
+            "settings.accumulate.depth_downsample",
+            "settings.accumulate.upsample",
+            "settings.accumulate.lighting_resolution",
+            "settings.coverage",
+            "settings.diffuse.mode",
+            "settings.specular_scatter",
+            "material.coverage_ramp",
+            "material.specular_ramp",
+            "material.motif",
+        ],
+    ),
+    rule(
+        "only with technique spherical_billboard",
+        |s, _| technique(s) != Technique::SphericalBillboard,
+        &["settings.spherical_billboard"],
+    ),
+    rule("only with technique density", |s, _| technique(s) != Technique::Density, &["settings.density"]),
+    rule(
+        "only with technique volumetric_hard or volumetric_soft",
+        |s, _| !technique(s).is_volumetric(),
+        &["settings.volumetric", "material.noise"],
+    ),
+    rule(
+        "volumetric techniques show noise in place of the sprite",
+        |s, _| technique(s).is_volumetric(),
+        &[
+            "settings.sprite.animation",
+            "settings.sprite.motion",
+            "settings.sprite.debug_sprite",
+            "settings.lighting",
+            "settings.diffuse.six_way_colour",
+            "settings.diffuse.six_way_anisotropy",
+            "material.sprite",
+            "material.detail",
+            "material.six_way",
+            "material.columns",
+            "material.rows",
+            "material.y_down",
+            "emitter.spin",
+            "emitter.frame_rate",
+            "cache.flipbook_rate",
+        ],
+    ),
+    rule(
+        "a built-in sprite has its own",
+        |s, _| builtin::find(builtin::SPRITES, &s.material.sprite).is_some(),
+        &["material.detail", "material.columns", "material.rows", "material.y_down"],
+    ),
+    rule(
+        "only with a technique that fades: soft, soft_linear, depth_sprite_soft, volumetric_soft",
+        is_hard,
+        &["settings.soft_fade.curve", "settings.soft_fade.contrast_power"],
+    ),
+    rule(
+        "at full resolution only with a technique that fades",
+        |s, size| is_hard(s, size) && !upsampling_reads_depth(s, size),
+        &["settings.soft_fade.fade_scale", "settings.soft_fade.epsilon"],
+    ),
+    rule("only with curve contrast or exponential", curve_ignores_power, &["settings.soft_fade.contrast_power"]),
+    rule(
+        "not with curve always",
+        |s, size| shows_through(s) && !upsampling_reads_depth(s, size),
+        &["settings.soft_fade.epsilon"],
+    ),
+    rule(
+        "only with order weighted",
+        |s, _| s.settings.accumulate.order != Order::Weighted,
+        &["settings.accumulate.depth_weight"],
+    ),
+    rule(
+        "only on the paths tiled and auto, with order sorted",
+        |s, _| {
+            !matches!(s.settings.path, RenderPath::Tiled | RenderPath::Auto)
+                || s.settings.accumulate.order != Order::Sorted
+        },
+        &["settings.accumulate.layers"],
+    ),
+    rule(
+        "only at a scale above 1",
+        |s, size| s.settings.accumulate.effective_scale(size) == 1,
+        &[
+            "settings.accumulate.depth_downsample",
+            "settings.accumulate.upsample",
+            "settings.accumulate.lighting_resolution",
+        ],
+    ),
+    rule(
+        "sprite.debug_sprite shows a checkerboard instead",
+        |s, _| s.settings.sprite.debug_sprite,
+        &[
+            "settings.sprite.motion",
+            "settings.lighting",
+            "settings.diffuse.six_way_colour",
+            "settings.diffuse.six_way_anisotropy",
+            "material.six_way",
+        ],
+    ),
+    rule(
+        "only with lighting normals",
+        |s, _| s.settings.is_six_way(),
+        &[
+            "settings.accumulate.encoding",
+            "settings.accumulate.decode",
+            "settings.accumulate.layers",
+            "settings.diffuse.mode",
+            "settings.diffuse.backlight",
+            "material.y_down",
+            "material.diffuse_ramp",
+            "material.backlight_ramp",
+            "material.motif",
+        ],
+    ),
+    rule(
+        "only with lighting six_way",
+        |s, _| !s.settings.is_six_way(),
+        &["settings.diffuse.six_way_colour", "settings.diffuse.six_way_anisotropy", "material.six_way"],
+    ),
+    rule(
+        "sprite.debug_sprite shows one checkerboard for all frames",
+        shows_checkerboard_only,
+        &[
+            "settings.sprite.animation",
+            "settings.sprite.freeze_animation",
+            "emitter.frame_rate",
+            "cache.flipbook_rate",
+            "material.sprite",
+            "material.detail",
+            "material.columns",
+            "material.rows",
+            "material.y_down",
+        ],
+    ),
+    rule("only with a depth_sprite technique, or sprite.motion above 0", reads_no_detail, &["material.detail"]),
+    rule(
+        "the sprite has one frame",
+        has_one_frame,
+        &["settings.sprite.animation", "settings.sprite.freeze_animation", "emitter.frame_rate", "cache.flipbook_rate"],
+    ),
+    rule(
+        "only with an animation that blends: flipbook, volume",
+        |s, _| matches!(s.settings.sprite.animation, SpriteAnimation::Still | SpriteAnimation::Nearest),
+        &["settings.sprite.motion"],
+    ),
+    rule(
+        "only with animation flipbook or nearest",
+        plays_no_flipbook,
+        &["settings.sprite.freeze_animation", "emitter.frame_rate", "cache.flipbook_rate"],
+    ),
+    rule(
+        "sprite.freeze_animation holds it",
+        |s, _| s.settings.sprite.freeze_animation,
+        &["settings.volumetric.scroll_speed", "emitter.frame_rate", "cache.flipbook_rate"],
+    ),
+    rule("nothing moves: frame_rate and scroll_speed are 0", has_no_animation, &["settings.sprite.freeze_animation"]),
+    rule("only at an age_colour above 0", |s, _| s.settings.sprite.age_colour <= 0.0, &["material.age_ramp"]),
+    rule(
+        "only at an intensity of diffuse light above 0",
+        |s, _| s.settings.diffuse.intensity <= 0.0,
+        &[
+            "settings.diffuse.mode",
+            "settings.diffuse.backlight",
+            "settings.diffuse.six_way_colour",
+            "settings.diffuse.six_way_anisotropy",
+            "material.diffuse_ramp",
+            "material.backlight_ramp",
+            "material.motif",
+        ],
+    ),
+    rule(
+        "diffuse.mode painted_motif takes its light from the motif",
+        |s, _| uses_painted_motif(s) && !s.settings.is_forward(),
+        &["settings.diffuse.backlight", "material.diffuse_ramp", "material.backlight_ramp"],
+    ),
+    rule("only with diffuse.mode painted_motif", |s, _| !uses_painted_motif(s), &["material.motif"]),
+    rule(
+        "only at an intensity of soft scatter above 0",
+        |s, _| s.settings.soft_scatter.intensity <= 0.0,
+        &[
+            "settings.soft_scatter.mode",
+            "settings.soft_scatter.scatter_amount",
+            "settings.soft_scatter.scatter_smooth",
+            "settings.soft_scatter.scatter_colour",
+            "settings.soft_scatter.ambient_colour",
+            "material.soft_scatter_ramp",
+        ],
+    ),
+    rule(
+        "only with soft_scatter.mode smoothstep",
+        |s, _| s.settings.soft_scatter.mode != SoftScatterMode::Smoothstep,
+        &[
+            "settings.soft_scatter.scatter_amount",
+            "settings.soft_scatter.scatter_smooth",
+            "settings.soft_scatter.scatter_colour",
+            "settings.soft_scatter.ambient_colour",
+        ],
+    ),
+    rule(
+        "only with soft_scatter.mode ramp",
+        |s, _| s.settings.soft_scatter.mode != SoftScatterMode::Ramp,
+        &["material.soft_scatter_ramp"],
+    ),
+    rule("only with coverage ramp", |s, _| s.settings.coverage != CoverageMode::Ramp, &["material.coverage_ramp"]),
+    rule(
+        "only with diffuse.backlight ramp",
+        |s, _| s.settings.diffuse.backlight != Backlight::Ramp,
+        &["material.backlight_ramp"],
+    ),
+    rule("no ramp is looked up", looks_up_no_ramp, &["settings.ramp_filter"]),
+    rule(
+        "only at an intensity of specular scatter above 0",
+        |s, _| s.settings.specular_scatter.intensity <= 0.0,
+        &["settings.specular_scatter.size", "material.specular_ramp"],
+    ),
+    rule(
+        "only at a turbulence above 0",
+        |s, _| s.emitter.turbulence <= 0.0,
+        &["emitter.turbulence_scale", "emitter.turbulence_speed"],
+    ),
+    rule("only where the extent is not 0", |s, _| s.emitter.extent == Vec3::ZERO, &["emitter.shape", "emitter.burst"]),
+    rule("only with buoyancy, or with shape disc", ignores_up, &["emitter.up"]),
+];

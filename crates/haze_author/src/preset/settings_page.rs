@@ -1,0 +1,173 @@
+//! Generates `docs/settings.md`, one page with every setting, from the rows and doc comments of the settings.
+
+use std::collections::HashMap;
+use std::fmt::{Display, Write as _};
+use std::ops::RangeInclusive;
+
+use glam::Vec3;
+
+use super::no_effect::effect_conditions;
+use super::schema::preset_with_widest_ranges;
+use super::tooltips::Tooltips;
+use haze::assets::builtin;
+use haze::frame::Light;
+use haze::preset::{Preset, PresetSystem};
+use haze::settings::{Choice, FieldVisitor, Fields, ImageRole, Value, values};
+
+const HEAD: &str = "\
+# Settings
+
+`haze preset settings > docs/settings.md` generates this page from the tables in the code that the sliders of the window use too.
+[Another page](looks.md) says which settings to move for which look. A field that is left out of a preset has its default. Fields of
+lights are those of each entry of `lights`, fields of systems those of each entry of `systems`. A setting with a *When* has no effect
+otherwise: `haze preset check` reports such settings of your preset, and the window greys them out.
+";
+
+/// Returns the page as Markdown.
+pub fn settings_page() -> String {
+    let mut preset = preset_with_widest_ranges();
+    let plain = Preset { lights: vec![Light::default()], systems: vec![PresetSystem::default()], ..Preset::default() };
+    let defaults = values(&plain).into_iter().map(|(path, value)| (path.replace("[0]", ""), value)).collect();
+    let mut page = Page { tooltips: Tooltips::of::<Preset>(), defaults, path: Vec::new(), sections: Vec::new() };
+    page.section("preset", "Contents of a preset file.".into(), &mut preset);
+    let mut text = HEAD.to_owned();
+    for Section { title, description, rows } in page.sections.iter().filter(|section| !section.rows.is_empty()) {
+        let head = "| field | what it does | range | default |\n|---|---|---|---|";
+        let _ = write!(text, "\n## {title}\n\n{description}\n\n{head}\n{rows}");
+    }
+    text
+}
+
+/// Section of the page: a struct with its fields.
+struct Section {
+    title: String,
+    description: String,
+    rows: String,
+}
+
+struct Page {
+    tooltips: Tooltips,
+    /// Defaults by path without list indices.
+    defaults: HashMap<String, Value>,
+    path: Vec<&'static str>,
+    sections: Vec<Section>,
+}
+
+impl Page {
+    /// Adds a section for the fields of a struct, followed by the sections of its nested structs.
+    fn section(&mut self, title: &str, description: String, fields: &mut dyn Fields) {
+        self.sections.push(Section { title: title.to_owned(), description, rows: String::new() });
+        fields.visit(&mut SectionWriter { section: self.sections.len() - 1, page: self });
+    }
+}
+
+/// Writes the rows of one section.
+struct SectionWriter<'a> {
+    page: &'a mut Page,
+    section: usize,
+}
+
+impl SectionWriter<'_> {
+    fn path(&self, name: &'static str) -> String {
+        [&self.page.path[..], &[name]].concat().join(".")
+    }
+
+    fn row(&mut self, name: &'static str, range: impl Display) {
+        let path = self.path(name);
+        let mut description =
+            self.page.tooltips.field(&path).unwrap_or_default().replace('\n', " ").replace('|', "\\|");
+        let when: Vec<_> = effect_conditions(&path).collect();
+        if !when.is_empty() {
+            let _ = write!(description, " *When: {}.*", when.join("; "));
+        }
+        let default = self.page.defaults.get(&path).map(shown).unwrap_or_default();
+        let rows = &mut self.page.sections[self.section].rows;
+        let _ = writeln!(rows, "| `{name}` | {description} | {range} | {default} |");
+    }
+
+    fn nested(&mut self, name: &'static str, fields: &mut dyn Fields) {
+        let path = self.path(name);
+        let description = self.page.tooltips.field(&path).unwrap_or_default().replace('\n', " ");
+        self.page.path.push(name);
+        self.page.section(&path, description, fields);
+        self.page.path.pop();
+    }
+}
+
+impl FieldVisitor for SectionWriter<'_> {
+    fn number(&mut self, name: &'static str, _: &mut f32, range: RangeInclusive<f32>, unit: &'static str) {
+        self.row(name, span(&range, unit));
+    }
+
+    fn integer(&mut self, name: &'static str, _: &mut u32, range: RangeInclusive<u32>, unit: &'static str) {
+        self.row(name, span(&range, unit));
+    }
+
+    fn vector(&mut self, name: &'static str, _: &mut Vec3, range: RangeInclusive<f32>, unit: &'static str) {
+        self.row(name, format_args!("three numbers, {}", span(&range, unit)));
+    }
+
+    fn colour(&mut self, name: &'static str, _: &mut Vec3, range: RangeInclusive<f32>) {
+        self.row(name, format_args!("linear RGB, {}", span(&range, "")));
+    }
+
+    fn flag(&mut self, name: &'static str, _: &mut bool) {
+        self.row(name, "`true`, `false`");
+    }
+
+    fn choice(&mut self, name: &'static str, value: &mut dyn Choice) {
+        let path = self.path(name);
+        let description = |choice: &&'static str| {
+            let description = self.page.tooltips.choice(&path, choice).unwrap_or_default();
+            format!("`{choice}`: {}", description.replace('\n', " ").replace('|', "\\|"))
+        };
+        let choices: Vec<_> = value.names().iter().map(description).collect();
+        self.row(name, choices.join("<br>"));
+    }
+
+    fn text(&mut self, name: &'static str, _: &mut String) {
+        self.row(name, "any text");
+    }
+
+    fn picture(&mut self, name: &'static str, _: &mut String, role: ImageRole) {
+        if role == ImageRole::Ramp {
+            return self.row(name, "[a built-in ramp](../ramps/README.md), or a PNG's path");
+        }
+        let names: Vec<_> = builtin::of_role(role).iter().map(|built_in| format!("`{}`", built_in.name)).collect();
+        let or = if names.is_empty() { "" } else { ", or " };
+        self.row(name, names.join(", ") + or + "a PNG's path");
+    }
+
+    fn particles(&mut self, name: &'static str, _: &mut String) {
+        self.row(name, "the path of a [CSV or PLY](particles.md)");
+    }
+
+    fn seed(&mut self, name: &'static str, _: &mut u32) {
+        self.row(name, "any whole number");
+    }
+
+    fn group(&mut self, name: &'static str, fields: &mut dyn Fields) {
+        self.nested(name, fields);
+    }
+
+    fn item(&mut self, name: &'static str, _: usize, fields: &mut dyn Fields) {
+        self.nested(name, fields);
+    }
+}
+
+fn span<T: Display + PartialEq>(range: &RangeInclusive<T>, unit: &str) -> String {
+    let space = if unit.is_empty() { "" } else { " " };
+    format!("{} to {}{space}{unit}", range.start(), range.end())
+}
+
+fn shown(value: &Value) -> String {
+    match value {
+        Value::Number(number) => number.to_string(),
+        Value::Whole(number) => number.to_string(),
+        Value::Vector(vector) => vector.to_array().map(|axis| axis.to_string()).join(", "),
+        Value::Flag(flag) => format!("`{flag}`"),
+        Value::Choice(name) => format!("`{name}`"),
+        Value::Text(text) if text.is_empty() => "none".into(),
+        Value::Text(text) => format!("`{text}`"),
+    }
+}

@@ -1,0 +1,262 @@
+//! Fits the stops of a ramp recipe to an image.
+
+use std::ops::Range;
+
+use glam::Vec3;
+use image::DynamicImage;
+
+use super::gradient::PreparedRows;
+use super::ramp_recipe::{Blend, Curve, HexColour, RampRecipe, RampRow, RampStop};
+use haze::error::FieldError;
+use haze::formula::colour::srgb_from_linear;
+
+/// Default error bound, steps of 255: one for dithering, and a half for rounding of a stop's colour.
+pub const DEFAULT_MAX_ERROR: f32 = 1.5;
+
+/// Maximum number of stops. An image that needs more is not a gradient, and its recipe would exceed the size limit.
+const MAX_STOPS: usize = 50_000;
+
+/// A fitted recipe and its error.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RampFit {
+    /// Recipe of the image's size; one row if all rows of the image are equal.
+    pub recipe: RampRecipe,
+    /// Largest difference between the baked recipe and the image in any channel, steps of 255 of sRGB code.
+    pub error: f32,
+}
+
+/// Fits stops to an sRGB image, so that no channel differs by more than `max_error`, 1 to 64 steps of 255. Hard edges
+/// are preserved: with constant stops between flat parts, otherwise with two stops at one position.
+///
+/// # Errors
+/// [`FieldError`] if `max_error` is out of range, the image is empty, or it needs more than 50 000 stops.
+pub fn fit_image(picture: &DynamicImage, max_error: f32) -> Result<RampFit, FieldError> {
+    validate_max_error(max_error)?;
+    let pixels = picture.to_rgb16();
+    if pixels.is_empty() {
+        return Err(FieldError::new("picture", "no pixels", "at least one pixel"));
+    }
+    let code = |channel: u16| f32::from(channel) / 257.0;
+    let mut rows: Vec<Vec<Vec3>> =
+        pixels.rows().rev().map(|row| row.map(|pixel| Vec3::from(pixel.0.map(code))).collect()).collect();
+    let (width, height) = (pixels.width().max(2), pixels.height());
+    for row in &mut rows {
+        row.resize(width as usize, row.first().copied().unwrap_or_default());
+    }
+    // Rows that differ only by dithering count as equal.
+    let is_strip = rows.iter().all(|row| max_difference(row, &rows[0]) <= 1.0);
+    let mean = |x: usize| rows.iter().map(|row| row[x]).sum::<Vec3>() / rows.len() as f32;
+    let strip: Vec<Vec<Vec3>> = is_strip.then(|| (0..width as usize).map(mean).collect()).into_iter().collect();
+    let texels = if is_strip { &strip } else { &rows };
+    let spaces = [Blend::Oklab, Blend::Srgb, Blend::Linear].map(|blend| (blend, curve_for(blend)));
+    // About eight rows decide which blend space needs the fewest stops.
+    let some = texels.iter().step_by(texels.len().div_ceil(8));
+    let stops_of = |&(blend, curve): &(Blend, Curve)| -> usize {
+        some.clone().map(|row| fit_stops(row, blend, curve, max_error).len()).sum()
+    };
+    let (blend, curve) = spaces.into_iter().min_by_key(stops_of).unwrap_or_default();
+    let height = if is_strip { 1 } else { height };
+    let recipe =
+        RampRecipe { width, height, blend, rows: fit_rows(texels, blend, curve, max_error), ..RampRecipe::default() };
+    let count = recipe.rows.iter().map(|row| row.stops.len()).sum::<usize>();
+    if count > MAX_STOPS {
+        let expected = format!("at most {MAX_STOPS}: a picture of gradients, or a larger error");
+        return Err(FieldError::new("stops", count, expected));
+    }
+    let baked = recipe.bake()?.into_rgb16();
+    let baked: Vec<Vec3> = baked.pixels().map(|pixel| Vec3::from(pixel.0.map(code))).collect();
+    let baked = baked.chunks(width as usize).rev().cycle();
+    Ok(RampFit { recipe, error: rows.iter().zip(baked).map(|(a, b)| max_difference(a, b)).fold(0.0, f32::max) })
+}
+
+/// Fits stops to a row of at least two sRGB codes, 0 to 255, evenly spaced from 0 to 1, so that no channel differs by
+/// more than `max_error` steps of 255.
+pub fn fit_row(row: &[Vec3], blend: Blend, max_error: f32) -> Vec<RampStop> {
+    fit_stops(row, blend, curve_for(blend), max_error)
+}
+
+/// Returns the curve to fit with: linear in the spaces in which other programs blend linearly.
+fn curve_for(blend: Blend) -> Curve {
+    if matches!(blend, Blend::Srgb | Blend::Linear) { Curve::Linear } else { Curve::Monotone }
+}
+
+/// Returns an error if the bound is below what stops of 8 bits per channel can meet, or too large to be useful.
+pub(super) fn validate_max_error(max_error: f32) -> Result<(), FieldError> {
+    let is_good = (1.0..=64.0).contains(&max_error);
+    if is_good { Ok(()) } else { Err(FieldError::new("error", max_error, "1 to 64 steps of 255")) }
+}
+
+/// Returns the largest difference in any channel.
+fn max_difference(a: &[Vec3], b: &[Vec3]) -> f32 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs().max_element()).fold(0.0, f32::max)
+}
+
+/// A candidate stop or row: the index of its texel (or row of texels) and its position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Key {
+    index: usize,
+    at: f32,
+    curve: Curve,
+}
+
+/// Fits the recipe's rows. `texels` begin with row 0 of the second axis.
+fn fit_rows(texels: &[Vec<Vec3>], blend: Blend, curve: Curve, max_error: f32) -> Vec<RampRow> {
+    if let [row] = texels {
+        return vec![RampRow { stops: fit_stops(row, blend, curve, max_error), ..RampRow::default() }];
+    }
+    // Each row gets three quarters of the error bound; the rest is for interpolation between rows.
+    let mut fitted: Vec<Option<Vec<RampStop>>> = vec![None; texels.len()];
+    let mut rows_of = |keys: &[Key]| -> Vec<RampRow> {
+        let row = |&Key { index, at, curve: row_curve }: &Key| {
+            let stops = fitted[index].get_or_insert_with(|| fit_stops(&texels[index], blend, curve, max_error * 0.75));
+            RampRow { at, curve: row_curve, stops: stops.clone() }
+        };
+        keys.iter().map(row).collect()
+    };
+    let keys = choose_keys(
+        texels.len(),
+        curve,
+        max_error,
+        |a, b| max_difference(&texels[a], &texels[b]),
+        |keys, range| {
+            let (rows, last) = (PreparedRows::new(blend, &rows_of(keys)), (texels.len() - 1) as f32);
+            range
+                .map(|index| {
+                    texel_errors(&rows, index as f32 / last, &texels[index], 0..texels[index].len())
+                        .into_iter()
+                        .fold(0.0, f32::max)
+                })
+                .collect()
+        },
+    );
+    rows_of(&keys)
+}
+
+fn fit_stops(row: &[Vec3], blend: Blend, curve: Curve, max_error: f32) -> Vec<RampStop> {
+    let stops_of = |keys: &[Key]| -> Vec<RampStop> {
+        let colour = |index: usize| HexColour::from_srgb(row[index] / 255.0);
+        keys.iter().map(|key| RampStop { at: key.at, colour: colour(key.index), curve: key.curve }).collect()
+    };
+    let keys = choose_keys(
+        row.len(),
+        curve,
+        max_error,
+        |a, b| (row[a] - row[b]).abs().max_element(),
+        |keys, range| {
+            let rows = PreparedRows::new(blend, &[RampRow { stops: stops_of(keys), ..RampRow::default() }]);
+            texel_errors(&rows, 0.0, row, range)
+        },
+    );
+    stops_of(&keys)
+}
+
+/// Returns the error of every texel of a range.
+fn texel_errors(rows: &PreparedRows, v: f32, row: &[Vec3], range: Range<usize>) -> Vec<f32> {
+    let last = (row.len() - 1) as f32;
+    let error = |index: usize| {
+        let light = rows.sample(index as f32 / last, v).min(Vec3::ONE);
+        (light.map(srgb_from_linear) * 255.0 - row[index]).abs().max_element()
+    };
+    range.map(error).collect()
+}
+
+/// Chooses keys for `count` texels, at least two. Splits the texels at hard edges, adds the worst texel between keys
+/// until every error is at most `max_error`, then removes redundant keys. `difference` returns the difference of two
+/// texels; `errors` returns the error of each texel of a range for given keys.
+fn choose_keys(
+    count: usize,
+    curve: Curve,
+    max_error: f32,
+    difference: impl Fn(usize, usize) -> f32,
+    mut errors: impl FnMut(&[Key], Range<usize>) -> Vec<f32>,
+) -> Vec<Key> {
+    let place = |index: f32| (index / (count - 1) as f32 * 1.0e6).round() / 1.0e6;
+    let mut chosen = Vec::new();
+    let mut start = 0;
+    for end in (1..=count).filter(|&end| end == count || is_edge(end, count, &difference)) {
+        let middle = usize::midpoint(start, end);
+        let at = if start == 0 { 0.0 } else { place(start as f32 - 0.5) };
+        if (start..end).all(|index| difference(index, middle) <= max_error - 0.5) {
+            chosen.push(Key { index: middle, at, curve: Curve::Constant });
+        } else {
+            let until = if end == count { 1.0 } else { place(end as f32 - 0.5) };
+            let key = |index: usize| Key { index, at: place(index as f32), curve };
+            let mut keys = vec![Key { index: start, at, curve }, Key { index: end - 1, at: until, curve }];
+            refine(&mut keys, start..end, max_error, key, &mut errors);
+            prune(&mut keys, start..end, max_error, &mut errors);
+            chosen.extend(keys);
+        }
+        start = end;
+    }
+    // The last key has no next one, so its curve does not matter; use the usual one instead of constant.
+    if let Some(last) = chosen.last_mut() {
+        last.curve = curve;
+    }
+    chosen
+}
+
+/// True if there is a hard edge between a texel and the previous one: a jump much larger than the differences beside
+/// it.
+fn is_edge(index: usize, count: usize, difference: impl Fn(usize, usize) -> f32) -> bool {
+    // A twentieth of white, of 255. Smaller jumps are not visible as edges and may be noise.
+    const MIN_JUMP: f32 = 12.0;
+    let jump = difference(index - 1, index);
+    let before = if index >= 2 { difference(index - 2, index - 1) } else { 0.0 };
+    let after = if index + 1 < count { difference(index, index + 1) } else { 0.0 };
+    jump >= MIN_JUMP && jump >= 3.0 * before.max(after)
+}
+
+/// Adds the worst texel between every two keys until all errors are at most `max_error`. Terminates at the latest when
+/// every texel is a key.
+fn refine(
+    keys: &mut Vec<Key>,
+    range: Range<usize>,
+    max_error: f32,
+    key: impl Fn(usize) -> Key,
+    errors: &mut impl FnMut(&[Key], Range<usize>) -> Vec<f32>,
+) {
+    loop {
+        let mut worst = vec![None; keys.len() - 1];
+        let mut pair = 0;
+        for (index, error) in range.clone().zip(errors(keys, range.clone())) {
+            let key = key(index);
+            while pair + 1 < worst.len() && keys[pair + 1].at < key.at {
+                pair += 1;
+            }
+            let is_worse = worst[pair].is_none_or(|(largest, _)| error > largest);
+            if error > max_error && is_worse && !keys[pair..pair + 2].contains(&key) {
+                worst[pair] = Some((error, key));
+            }
+        }
+        let more: Vec<_> = worst.into_iter().flatten().map(|(_, key)| key).collect();
+        if more.is_empty() {
+            return;
+        }
+        keys.extend(more);
+        keys.sort_by(|a, b| a.at.total_cmp(&b.at));
+    }
+}
+
+/// Removes keys without which all errors stay at most `max_error`.
+fn prune(
+    keys: &mut Vec<Key>,
+    range: Range<usize>,
+    max_error: f32,
+    errors: &mut impl FnMut(&[Key], Range<usize>) -> Vec<f32>,
+) {
+    let mut at = 1;
+    while at + 1 < keys.len() {
+        // Removing a key changes the curve up to two keys away; evaluating it there needs one more key on each side.
+        let near = at.saturating_sub(3)..keys.len().min(at + 4);
+        let others: Vec<_> = keys[near.clone()].iter().filter(|key| **key != keys[at]).copied().collect();
+        let (from, to) = (keys[at.saturating_sub(2)].index, keys[(at + 2).min(keys.len() - 1)].index);
+        if errors(&others, from.max(range.start)..(to + 1).min(range.end)).iter().all(|&error| error <= max_error) {
+            keys.remove(at);
+        } else {
+            at += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

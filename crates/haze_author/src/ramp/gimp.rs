@@ -1,0 +1,143 @@
+//! Reads gradients of GIMP, `*.ggr`. (GIMP, devel-docs/ggr.txt)
+
+use std::f32::consts::PI;
+
+use glam::{Vec3, Vec4};
+
+use super::blend_space::srgb_from_linear;
+use super::fit_stops::RampFit;
+use super::gradient_text::{GradientParseError, composite_over_black, one_row_fit, parse_numbers};
+use super::ramp_recipe::{Blend, Curve, HexColour, RampStop};
+
+/// One segment of a gradient. Positions are 0 to 1; colours are sRGB codes with alpha, 0 to 1.
+struct Segment {
+    left: f32,
+    middle: f32,
+    right: f32,
+    from: Vec4,
+    to: Vec4,
+    /// Blending function: 0 linear, 1 curved, 2 sinusoidal, 3 and 4 spherical (increasing, decreasing), 5 step.
+    blending: u32,
+    /// Colouring: 0 RGB, 1 and 2 HSV with increasing and decreasing hue.
+    colours: u32,
+}
+
+/// Reads a gradient. Linear segments and steps are exact; other segments are divided into linear pieces with an error
+/// of at most a quarter of `max_error`.
+pub(super) fn read(text: &str, max_error: f32) -> Result<RampFit, GradientParseError> {
+    let segments = segments(text)?;
+    let mut stops: Vec<RampStop> = Vec::new();
+    let mut add = |at: f32, code: Vec3, curve: Curve| {
+        let stop = RampStop { at, colour: HexColour::from_srgb(code), curve };
+        // The segment begins where the previous one ended, with the same colour.
+        if let Some(last) = stops.last_mut().filter(|last| (last.at, last.colour) == (stop.at, stop.colour)) {
+            last.curve = curve;
+        } else {
+            stops.push(stop);
+        }
+    };
+    for segment in &segments {
+        if segment.blending == 5 {
+            add(segment.left, composite_over_black(segment.from), Curve::Constant);
+            add(segment.middle, composite_over_black(segment.to), Curve::Constant);
+            continue;
+        }
+        let mut add = |at| add(at, segment.code(at), Curve::Linear);
+        add(segment.left);
+        segment.subdivide(segment.left, segment.middle, max_error / 4.0, &mut add);
+        segment.subdivide(segment.middle, segment.right, max_error / 4.0, &mut add);
+    }
+    let mut fitted = one_row_fit(Blend::Srgb, stops);
+    if let Ok(gradient) = fitted.recipe.gradient() {
+        // Samples at odd multiples of 1/2048, to avoid the positions where segments usually meet.
+        let off = (0..1024).map(|index| (index as f32 + 0.5) / 1024.0).filter_map(|at| {
+            let segment = segments.iter().find(|segment| at <= segment.right)?;
+            let made = gradient.sample(at, 0.0).map(srgb_from_linear);
+            Some((made - segment.code(at)).abs().max_element() * 255.0)
+        });
+        fitted.error = off.fold(fitted.error, f32::max);
+    }
+    Ok(fitted)
+}
+
+fn segments(text: &str) -> Result<Vec<Segment>, GradientParseError> {
+    let error = |line: usize, reason: &str| GradientParseError { line, reason: reason.into() };
+    let mut lines = text.lines().zip(1..).peekable();
+    if lines.next().is_none_or(|(line, _)| line.trim() != "GIMP Gradient") {
+        return Err(error(1, "expected \"GIMP Gradient\""));
+    }
+    lines.next_if(|(line, _)| line.starts_with("Name:"));
+    let count =
+        lines.next().and_then(|(line, at)| Some((line.trim().parse::<usize>().ok().filter(|&count| count > 0)?, at)));
+    let Some((count, counted)) = count else { return Err(error(3, "expected the number of segments")) };
+    let mut segments = Vec::new();
+    for (line, at) in lines.take(count) {
+        let [left, middle, right, r0, g0, b0, a0, r1, g1, b1, a1, blending, colours] =
+            *parse_numbers(line).as_deref().and_then(<[f32]>::first_chunk).ok_or_else(|| {
+                error(at, "expected 13 numbers: left, middle, right, two colours of four, blending, colours")
+            })?;
+        let in_order = 0.0 <= left && left <= middle && middle <= right && right <= 1.0;
+        let known = (0.0..6.0).contains(&blending) && (0.0..3.0).contains(&colours);
+        if !in_order || !known {
+            let expected =
+                if in_order { "blending 0 to 5 and colours 0 to 2" } else { "left, middle and right in order, 0 to 1" };
+            return Err(error(at, &format!("expected {expected}")));
+        }
+        let (from, to) = (Vec4::new(r0, g0, b0, a0), Vec4::new(r1, g1, b1, a1));
+        segments.push(Segment { left, middle, right, from, to, blending: blending as u32, colours: colours as u32 });
+    }
+    if segments.len() < count {
+        return Err(error(counted, &format!("{} segments follow; expected {count}", segments.len())));
+    }
+    Ok(segments)
+}
+
+impl Segment {
+    /// Returns the sRGB code at a position in the segment.
+    fn code(&self, at: f32) -> Vec3 {
+        let share = |from: f32, to: f32| if to > from { ((at - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };
+        let half = if at < self.middle {
+            share(self.left, self.middle) / 2.0
+        } else {
+            0.5 + share(self.middle, self.right) / 2.0
+        };
+        let part = match self.blending {
+            1 => {
+                let middle =
+                    ((self.middle - self.left) / (self.right - self.left).max(1.0e-9)).clamp(1.0e-6, 1.0 - 1.0e-6);
+                share(self.left, self.right).powf(0.5_f32.ln() / middle.ln())
+            }
+            2 => (1.0 - (PI * half).cos()) / 2.0,
+            3 => (1.0 - (half - 1.0) * (half - 1.0)).max(0.0).sqrt(),
+            4 => 1.0 - (1.0 - half * half).max(0.0).sqrt(),
+            5 => f32::from(u8::from(at >= self.middle)),
+            _ => half,
+        };
+        let mixed = self.from.lerp(self.to, part);
+        if self.colours == 0 {
+            return composite_over_black(mixed);
+        }
+        let (from, to) = (Blend::HsvNear.of_code(self.from.truncate()), Blend::HsvNear.of_code(self.to.truncate()));
+        let turn = (to.x - from.x).rem_euclid(1.0) - if self.colours == 2 { 1.0 } else { 0.0 };
+        let hsv = Vec3::new(from.x + turn * part, from.y + (to.y - from.y) * part, from.z + (to.z - from.z) * part);
+        composite_over_black(Blend::HsvNear.linear(hsv).map(srgb_from_linear).extend(mixed.w))
+    }
+
+    /// Adds the end of a range, after dividing the range until each piece is within `max_error` steps of 255 of a
+    /// straight line.
+    fn subdivide(&self, from: f32, to: f32, max_error: f32, add: &mut impl FnMut(f32)) {
+        let is_straight = [0.25, 0.5, 0.75].into_iter().all(|part| {
+            let straight = self.code(from).lerp(self.code(to), part);
+            let off = self.code(from + (to - from) * part) - straight;
+            off.abs().max_element() * 255.0 <= max_error
+        });
+        // The minimum length of 1e-4 is smaller than a texel of the widest ramp.
+        if !is_straight && to - from > 1.0e-4 {
+            let middle = f32::midpoint(from, to);
+            self.subdivide(from, middle, max_error, add);
+            self.subdivide(middle, to, max_error, add);
+        } else {
+            add(to);
+        }
+    }
+}

@@ -1,0 +1,264 @@
+//! Imports gradients of other programs: GIMP, Godot, and Blender as text. `docs/ramps.md` lists what is supported.
+
+use std::path::Path;
+
+use glam::Vec4;
+
+use super::blend_space::srgb_from_linear;
+use super::fit_stops::{RampFit, fit_image, validate_max_error};
+use super::gimp;
+use super::gradient_text::{GradientParseError, composite_over_black, one_row_fit, parse_numbers};
+use super::ramp_recipe::{Blend, Curve, HexColour, RampStop};
+use haze::assets::file;
+use haze::assets::image::read_colour_png;
+use haze::error::{Error, FieldError};
+
+/// Size limit of a text file, bytes.
+const MAX_BYTES: u64 = 1 << 20;
+
+/// Converts a file to a recipe. The format follows from the extension: `.png`, `.ggr` (GIMP), `.tres` (Godot) or `.txt`
+/// (Blender). `max_error` is the maximum error of a channel, 1 to 64 steps of 255. Transparent colours are darkened by
+/// their alpha, in linear light.
+///
+/// # Errors
+/// [`Error::Io`] and [`Error::Image`] for files that cannot be read, [`Error::Json`] for a malformed line,
+/// [`Error::Field`] for a `max_error` out of range or an unknown extension.
+pub fn import_gradient(path: &Path, max_error: f32) -> Result<RampFit, Error> {
+    validate_max_error(max_error)?;
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
+    let read: fn(&str, f32) -> Result<RampFit, GradientParseError> = match ending.as_str() {
+        "png" => {
+            let refuse = |error: FieldError| Error::Image { path: path.into(), reason: error.to_string() };
+            return fit_image(&read_colour_png(path)?, max_error).map_err(refuse);
+        }
+        "ggr" => gimp::read,
+        "tres" => |text, _| godot(text),
+        "txt" => |text, _| blender(text),
+        _ => {
+            return Err(
+                FieldError::new("file", path.display(), "one whose name ends in .png, .ggr, .tres or .txt").into()
+            );
+        }
+    };
+    let refuse = |GradientParseError { line, reason }: GradientParseError| Error::Json {
+        path: path.into(),
+        line,
+        column: 1,
+        reason,
+    };
+    let bytes = file::read(path, "gradient", MAX_BYTES)?;
+    let text = std::str::from_utf8(&bytes).map_err(|_| {
+        refuse(GradientParseError { line: 1, reason: "not UTF-8; expected a gradient as UTF-8 text".into() })
+    })?;
+    let fitted = read(text, max_error).map_err(refuse)?;
+    fitted.recipe.validate()?;
+    Ok(fitted)
+}
+
+/// Reads the first gradient of a Godot resource: `offsets`, `colors`, `interpolation_mode`,
+/// `interpolation_color_space`.
+fn godot(text: &str) -> Result<RampFit, GradientParseError> {
+    let error = |line: usize, reason: &str| GradientParseError { line: line + 1, reason: reason.into() };
+    let find = |name: &str| {
+        let mut lines = text.lines().enumerate();
+        lines.find_map(|(line, text)| {
+            let (key, value) = text.split_once('=')?;
+            (key.trim() == name).then(|| (line, value.trim()))
+        })
+    };
+    if !text.contains("Gradient") {
+        return Err(error(0, "no gradient; expected a Gradient saved by Godot as text"));
+    }
+    let list = |name: &str, default: &[f32]| match find(name) {
+        None => Ok((0, default.to_vec())),
+        Some((line, value)) => {
+            let inside = value.split_once('(').and_then(|(_, rest)| rest.strip_suffix(')'));
+            let numbers = inside.and_then(parse_numbers);
+            numbers.map(|numbers| (line, numbers)).ok_or_else(|| error(line, "expected a packed list of numbers"))
+        }
+    };
+    let choice = |name: &str, max: usize| {
+        let (line, value) = find(name).unwrap_or((0, "0"));
+        let value = value.parse().ok().filter(|value: &usize| *value <= max);
+        value.ok_or_else(|| GradientParseError { line: line + 1, reason: format!("{name}: expected 0 to {max}") })
+    };
+    let (_, offsets) = list("offsets", &[0.0, 1.0])?;
+    let (line, colours) = list("colors", &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0])?;
+    if offsets.is_empty() || colours.len() != 4 * offsets.len() {
+        let reason = format!("{} numbers; expected four for each of {} offsets", colours.len(), offsets.len());
+        return Err(error(line, &reason));
+    }
+    let curve = [Curve::Linear, Curve::Constant, Curve::Monotone][choice("interpolation_mode", 2)?];
+    let blend = [Blend::Srgb, Blend::Linear, Blend::Oklab][choice("interpolation_color_space", 2)?];
+    let stop = |(at, colour): (&f32, &[f32])| RampStop {
+        at: at.clamp(0.0, 1.0),
+        colour: HexColour::from_srgb(composite_over_black(Vec4::from_slice(colour))),
+        curve,
+    };
+    Ok(one_row_fit(blend, offsets.iter().zip(colours.chunks_exact(4)).map(stop).collect()))
+}
+
+/// Reads lines of `position r g b [alpha]` in linear light, with optional brackets and commas, and lines of
+/// `interpolation NAME`.
+fn blender(text: &str) -> Result<RampFit, GradientParseError> {
+    let mut curve = Curve::Linear;
+    let mut stops = Vec::new();
+    for (line, text) in text.lines().enumerate() {
+        let refuse = |reason: &str| GradientParseError { line: line + 1, reason: reason.into() };
+        let text = text.split('#').next().unwrap_or_default();
+        let words: Vec<_> = text
+            .split(|c: char| c.is_whitespace() || "=:,()[]<>'\"".contains(c))
+            .filter(|word| !word.is_empty())
+            .collect();
+        match words[..] {
+            [] | ["color_mode", "RGB"] => {}
+            ["interpolation", name] => {
+                curve = match name {
+                    "CONSTANT" => Curve::Constant,
+                    "LINEAR" => Curve::Linear,
+                    "EASE" => Curve::Ease,
+                    "CARDINAL" | "B_SPLINE" => Curve::Monotone,
+                    _ => return Err(refuse("expected CONSTANT, LINEAR, EASE, CARDINAL or B_SPLINE")),
+                }
+            }
+            ["color_mode", ..] => {
+                return Err(refuse("expected the colour mode RGB: set it in Blender, or import a picture of the ramp"));
+            }
+            _ => {
+                let (at, light) = match parse_numbers(&words.join(",")).as_deref() {
+                    Some(&[at, r, g, b]) => (at, Vec4::new(r, g, b, 1.0)),
+                    Some(&[at, r, g, b, a]) => (at, Vec4::new(r, g, b, a)),
+                    _ => return Err(refuse("expected a position and a colour: 0.5 (0.8, 0.4, 0.1, 1.0)")),
+                };
+                let light = light.clamp(Vec4::ZERO, Vec4::ONE);
+                let code = (light.truncate() * light.w).map(srgb_from_linear);
+                stops.push(RampStop::new(at.clamp(0.0, 1.0), HexColour::from_srgb(code)));
+            }
+        }
+    }
+    for stop in &mut stops {
+        stop.curve = curve;
+    }
+    if stops.is_empty() {
+        let reason = "no stops; expected lines of a position and a colour: 0.5 (0.8, 0.4, 0.1, 1.0)";
+        return Err(GradientParseError { line: 1, reason: reason.into() });
+    }
+    Ok(one_row_fit(Blend::Linear, stops))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::ramp_recipe::RampRecipe;
+    use super::*;
+
+    fn import_text(name: &str, text: &str) -> Result<RampRecipe, String> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        let shown = |error: Error| error.to_string().replace(&format!("{}/", folder.path().display()), "");
+        import_gradient(&path, 1.5).map(|fitted| fitted.recipe).map_err(shown)
+    }
+
+    fn stops(recipe: &RampRecipe) -> Vec<(f32, String, Curve)> {
+        recipe.rows[0].stops.iter().map(|stop| (stop.at, stop.colour.into(), stop.curve)).collect()
+    }
+
+    const GODOT: &str = "[gd_resource type=\"Gradient\" format=3]\n\n[resource]\ninterpolation_mode = 1\n\
+        offsets = PackedFloat32Array(0, 0.25, 1)\n\
+        colors = PackedColorArray(0, 0, 0, 1, 1, 0.5, 0, 1, 2, 1, 1, 1)\ninterpolation_color_space = 2\n";
+
+    #[test]
+    fn godot_gradients_are_read() {
+        let recipe = import_text("a.tres", GODOT).unwrap();
+        assert_eq!(recipe.blend, Blend::Oklab);
+        let stop = |at: f32, colour: &str| (at, colour.to_owned(), Curve::Constant);
+        assert_eq!(stops(&recipe), [stop(0.0, "#000000"), stop(0.25, "#ff8000"), stop(1.0, "#ffffff")]);
+        // Godot does not write fields that have their default value.
+        let plain = import_text("a.tres", "[gd_resource type=\"Gradient\"]\n[resource]\n").unwrap();
+        assert_eq!((plain.blend, stops(&plain).len()), (Blend::Srgb, 2));
+        for (from, to, expected) in [
+            ("0.25, 1)", "0.25)", "a.tres:6:1: 12 numbers; expected four for each of 2 offsets"),
+            ("0.25, 1)", "NaN, 1)", "a.tres:5:1: expected a packed list of numbers"),
+            ("mode = 1", "mode = 7", "a.tres:4:1: interpolation_mode: expected 0 to 2"),
+            ("Gradient", "Curve", "a.tres:1:1: no gradient; expected a Gradient saved by Godot as text"),
+        ] {
+            assert_eq!(import_text("a.tres", &GODOT.replace(from, to)).unwrap_err(), expected);
+        }
+    }
+
+    #[test]
+    fn an_image_without_a_gradient_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("noise.png");
+        let mut state = 1_u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 24) as u8
+        };
+        let noise = image::RgbImage::from_fn(256, 256, |_, _| image::Rgb([random(), random(), random()]));
+        noise.save(&path).unwrap();
+        let error = import_gradient(&path, 1.0).unwrap_err().to_string();
+        assert!(error.contains("noise.png: stops: 6") && error.contains("expected at most 50000"), "{error}");
+    }
+
+    #[test]
+    fn blender_stops_are_read_as_linear_light() {
+        let text = "# a ramp\ncolor_mode = 'RGB'\ninterpolation: EASE\n0.5 (0.2140, 0.0, 1.0, 1.0)\n0, 1, 1, 1, 0.5\n\n1.5 [0 0 0]";
+        let recipe = import_text("a.txt", text).unwrap();
+        assert_eq!(recipe.blend, Blend::Linear);
+        let stop = |at: f32, colour: &str| (at, colour.to_owned(), Curve::Ease);
+        assert_eq!(stops(&recipe), [stop(0.5, "#7f00ff"), stop(0.0, "#bcbcbc"), stop(1.0, "#000000")]);
+        for (text, expected) in [
+            ("0.5 1 1", "a.txt:1:1: expected a position and a colour: 0.5 (0.8, 0.4, 0.1, 1.0)"),
+            ("\ninterpolation X", "a.txt:2:1: expected CONSTANT, LINEAR, EASE, CARDINAL or B_SPLINE"),
+            ("# nothing", "a.txt:1:1: no stops; expected lines of a position and a colour: 0.5 (0.8, 0.4, 0.1, 1.0)"),
+        ] {
+            assert_eq!(import_text("a.txt", text).unwrap_err(), expected);
+        }
+        assert!(import_text("a.txt", "color_mode HSV").unwrap_err().contains("expected the colour mode RGB"));
+        assert!(import_text("a.gradient", "").unwrap_err().contains("expected one whose name ends in .png, .ggr"));
+    }
+
+    #[test]
+    fn gimp_gradients_are_read() {
+        let ggr = |segments: &[&str]| format!("GIMP Gradient\nName: A\n{}\n{}\n", segments.len(), segments.join("\n"));
+        let linear = "0.0 0.2 0.5 0 0 0 1 1 1 1 1 0 0 0 0";
+        let step = "0.5 0.75 1.0 1 0 0 1 0 0 1 1 5 0 0 0";
+        let recipe = import_text("a.ggr", &ggr(&[linear, step])).unwrap();
+        assert_eq!(recipe.blend, Blend::Srgb);
+        let stop = |at: f32, colour: &str, curve| (at, colour.to_owned(), curve);
+        let expected = [
+            stop(0.0, "#000000", Curve::Linear),
+            stop(0.2, "#808080", Curve::Linear),
+            stop(0.5, "#ffffff", Curve::Linear),
+            stop(0.5, "#ff0000", Curve::Constant),
+            stop(0.75, "#0000ff", Curve::Constant),
+        ];
+        assert_eq!(stops(&recipe), expected);
+        // Curved, spherical, HSV and transparent segments are approximated by short linear pieces.
+        for (blend, colour) in [(1, 0), (2, 0), (3, 0), (4, 0), (0, 1), (0, 2), (2, 2)] {
+            let text = ggr(&[&format!("0 0.3 1 0.9 0.2 0.1 1 0.1 0.3 0.8 0.5 {blend} {colour} 0 0")]);
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("a.ggr");
+            std::fs::write(&path, text).unwrap();
+            let fitted = import_gradient(&path, 1.5).unwrap();
+            let count = fitted.recipe.rows[0].stops.len();
+            assert!(fitted.error <= 1.5 && count > 4 && count < 80, "{blend} {colour}: {count}, {}", fitted.error);
+        }
+        for (text, expected) in [
+            ("GIMP Palette\n", "a.ggr:1:1: expected \"GIMP Gradient\""),
+            (
+                "GIMP Gradient\nName: A\n1\n0 0 1\n",
+                "a.ggr:4:1: expected 13 numbers: left, middle, right, two colours of four, blending, colours",
+            ),
+            ("GIMP Gradient\nName: A\n2\n", "a.ggr:3:1: 0 segments follow; expected 2"),
+            ("GIMP Gradient\nName: A\n", "a.ggr:3:1: expected the number of segments"),
+        ] {
+            assert_eq!(import_text("a.ggr", text).unwrap_err(), expected);
+        }
+        let turned = "0.5 0.2 0.0 0 0 0 1 1 1 1 1 0 0";
+        assert!(
+            import_text("a.ggr", &ggr(&[turned])).unwrap_err().contains("expected left, middle and right in order")
+        );
+    }
+}
