@@ -18,7 +18,7 @@ pub fn report_findings(files: &[PathBuf], find: impl Fn(&Path) -> Result<Vec<Fin
         }
         for Finding { name, description } in findings {
             is_good = false;
-            print_line!("{}: {name}: {what}", path.display())?;
+            print_line!("{}: {name}: {description}", path.display())?;
         }
     }
     failures.into_result()?;

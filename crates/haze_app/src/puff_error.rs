@@ -1,7 +1,7 @@
 //! Prints the errors of ramps and six-way maps against path-traced smoke.
 
 use haze::Error;
-use haze_author::ramp::response::{DiffuseRamps, Puff, Response, angle};
+use haze_author::ramp::response::{DiffuseRamps, Puff, Response, light_angle};
 
 use super::output::print_line;
 use super::puff_sheet::{ComparedImages, mean_flip};
@@ -30,7 +30,7 @@ pub fn print_response_error(
     )?;
     for (index, light) in response.lights.iter().enumerate() {
         let off = percent(light.shown / light.truth.max(f32::MIN_POSITIVE) - 1.0);
-        print_line!("{:7.1}°  traced {:.4}  shown {:.4}  {off:+.0} %", angle(index), light.truth, light.shown)?;
+        print_line!("{:7.1}°  traced {:.4}  shown {:.4}  {off:+.0} %", light_angle(index), light.truth, light.shown)?;
     }
     Ok(())
 }

@@ -120,7 +120,7 @@ fn settings(preset: &Preset) -> Vec<Setting> {
     };
     let pairs = values(preset).into_iter().zip(values(&plain));
     let setting = |((path, value), (_, default)): ((String, Value), (String, Value))| {
-        let no_effect_reason = without_effect(&preset, &path, SIZE);
+        let no_effect_reason = no_effect_reason(&preset, &path, SIZE);
         Setting { path, value, default, no_effect_reason }
     };
     pairs.map(setting).collect()

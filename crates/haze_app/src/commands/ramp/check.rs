@@ -71,7 +71,7 @@ fn findings(path: &Path, role: Option<Role>) -> Result<Vec<Finding>, Error> {
         findings.extend(notes.into_iter().map(|description| Finding { name: "colour_space", description }));
     }
     match load_ramp_image(path) {
-        Ok((picture, _)) => findings.extend(check(&picture, role)),
+        Ok((picture, _)) => findings.extend(lint_ramp(&picture, role)),
         // A colour space that is refused has been noted already.
         Err(Error::Image { .. }) if !findings.is_empty() => {}
         Err(error) => return Err(explain_wrong_kind(error, path, "ramp", "a PNG or a *.ramp.json file")),

@@ -7,7 +7,7 @@ use haze::image::{CompressionEffort, write_png};
 use haze::ramp::Ramp;
 use haze::{Error, builtin};
 use haze_author::ramp::RampRecipe;
-use haze_author::ramp::response::{DiffuseRamps, FittedRamps, Puff, Shape};
+use haze_author::ramp::response::{DiffuseRamps, FitShape, FittedRamps, Puff};
 
 use super::{check_recipe_output, write_recipe};
 use crate::bake_job::image_path;
@@ -55,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     }
     let (recipe, of, path_trace) = (sprite_recipe(sprite)?, medium.medium()?, quality.path_trace());
     let puff = quality.with_progress(medium.name(), |progress| Puff::trace(&recipe, &of, &path_trace, progress))?;
-    let fitted = puff.fit(Shape { stops: *stops, rows: *rows, backlight: backlight.is_some() });
+    let fitted = puff.fit(FitShape { stops: *stops, rows: *rows, backlight: backlight.is_some() });
     let FittedRamps { diffuse, backlight: against, exposure } = &fitted;
     let write = |path: &PathBuf, recipe: &RampRecipe| {
         let baked = recipe.bake()?;

@@ -25,7 +25,7 @@ pub struct Arguments {
 
 pub fn run(Arguments { file, output, error }: &Arguments) -> Result<(), Error> {
     check_recipe_output(&mut FileChecks::for_inputs([file]), output)?;
-    let fitted = with_progress(format!("haze: fitting {}", file.display()), || import(file, *error))?;
+    let fitted = with_progress(format!("haze: fitting {}", file.display()), || import_gradient(file, *error))?;
     write_recipe(output, &fitted.recipe)?;
     let rows = fitted.recipe.rows.len();
     let stops: usize = fitted.recipe.rows.iter().map(|row| row.stops.len()).sum();

@@ -31,7 +31,7 @@ pub struct Arguments {
 }
 
 fn template_names() -> PossibleValuesParser {
-    let about = |template: &Template| format!("{}: {}", template.role.name(), template.about);
+    let about = |template: &Template| format!("{}: {}", template.role.name(), template.description);
     TEMPLATES.iter().map(|template| PossibleValue::new(template.name).help(about(template))).collect::<Vec<_>>().into()
 }
 
@@ -50,7 +50,7 @@ pub fn run(Arguments { template, blank, output }: &Arguments) -> Result<(), Erro
     }
     let Some(template) = Template::find(template) else { return Ok(()) };
     write_recipe(output, &template.recipe())?;
-    print_line!("{}: {}, for {} ramps", output.display(), template.about, template.role.name())
+    print_line!("{}: {}, for {} ramps", output.display(), template.description, template.role.name())
 }
 
 /// Height of the text on a blank, pixels.

@@ -87,14 +87,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     if let Some((frame, alpha)) = border {
         print_line!("  border: alpha up to {alpha} in frame {frame} was cleared; leave more room around the smoke")?;
     }
-    if let Some(doubt) = doubt {
+    if let Some(doubt) = not_normals {
         print_line!("  {doubt}; set --from to the contents of the image")?;
     }
     let direction = |is_down| if is_down { "down and was flipped" } else { "up" };
     match (y_down, y_direction) {
         (Some(is_down), _) => print_line!("  green points {}, as --y-down says", direction(*is_down)),
-        (None, Some(found)) if found.sureness >= SURE => {
-            let sure = (found.sureness * 100.0).round();
+        (None, Some(found)) if found.confidence >= MIN_CONFIDENCE => {
+            let sure = (found.confidence * 100.0).round();
             print_line!(
                 "  green points {}: a guess, {sure} % sure; set --y-down if it is wrong",
                 direction(found.is_down)

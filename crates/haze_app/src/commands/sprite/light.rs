@@ -58,7 +58,7 @@ pub fn run(Arguments { sprite, medium, quality, output, volume, six_way }: &Argu
         medium.name()
     )?;
     for light in 0..LIGHTS as usize {
-        print_line!("{:6.1} {:.6}", angle(light), luminance(puff.traced().mean(light)))?;
+        print_line!("{:6.1} {:.6}", light_angle(light), luminance(puff.traced().mean(light)))?;
     }
     Ok(())
 }

@@ -53,7 +53,7 @@ fn every_template_can_be_written_and_baked_and_passes_the_check() {
         let name = format!("{}_{}", template.role.name(), template.name);
         let recipe = format!("{name}.ramp.json");
         let line = stdout_of(folder.path(), &["ramp", "new", "--template", template.name, "-o", &recipe]);
-        assert!(line.starts_with(&format!("{recipe}: {}", template.about)), "{line}");
+        assert!(line.starts_with(&format!("{recipe}: {}", template.description)), "{line}");
         stdout_of(folder.path(), &["ramp", "bake", &recipe]);
         let picture = format!("{name}.png");
         let checked = stdout_of(folder.path(), &["ramp", "check", &recipe, &picture]);
