@@ -9,10 +9,10 @@ use std::path::{Path, PathBuf};
 use haze::Error;
 use haze::preset::Preset;
 
-use super::document::Document;
+use super::Document;
 use crate::tweak::platform::clock::{Duration, Instant};
-use crate::tweak::platform::files;
-use crate::tweak::platform::lock::Lock;
+use crate::tweak::platform::file_io;
+use crate::tweak::platform::lock_file::Lock;
 
 /// Interval of writing the file: at most this much work is lost.
 pub const RECOVERY_WRITE_INTERVAL: Duration = Duration::from_secs(3);
@@ -56,11 +56,11 @@ impl Recovery {
         if is_written || document.preset.validate().is_err() {
             return Ok(());
         }
-        let path = if document.is_built_in() { document.path().into() } else { files::absolute(document.path()) };
+        let path = if document.is_built_in() { document.path().into() } else { file_io::absolute(document.path()) };
         let lock = match &mut self.lock {
             Some(lock) => lock,
             none => {
-                files::make_folder(&self.folder)?;
+                file_io::make_folder(&self.folder)?;
                 none.insert(free_lock(&self.folder)?)
             }
         };
@@ -69,7 +69,7 @@ impl Recovery {
             let written = lock.write(path.to_str().unwrap_or_default());
             written.map_err(|error| Error::Io { path: lock.path().into(), error })?;
         }
-        files::write(&preset_beside(lock.path()), document.preset.to_text("").as_bytes())?;
+        file_io::write(&preset_beside(lock.path()), document.preset.to_text("").as_bytes())?;
         self.written = Some((document.preset.clone(), path));
         Ok(())
     }
@@ -84,7 +84,7 @@ impl Recovery {
         if self.written.take().is_some()
             && let Some(lock) = &self.lock
         {
-            files::remove(&preset_beside(lock.path()));
+            file_io::remove(&preset_beside(lock.path()));
         }
     }
 
@@ -106,7 +106,7 @@ fn free_lock(folder: &Path) -> Result<Lock, Error> {
     /// Far more than the number of tweakers that run at the same time.
     const MOST: u32 = 1000;
     let path = |number| folder.join(format!("recovery-{number}.lock"));
-    let is_free = |path: &PathBuf| !files::exists(&preset_beside(path));
+    let is_free = |path: &PathBuf| !file_io::exists(&preset_beside(path));
     let free = (1..MOST).map(path).filter(is_free).find_map(|path| Lock::take(&path));
     free.ok_or_else(|| {
         let error = std::io::Error::other("cannot lock a file here; expected a writable folder");
@@ -127,7 +127,7 @@ pub struct CrashedWork {
 impl CrashedWork {
     /// Removes its files: it was restored, or the user does not want it.
     pub fn discard(self) {
-        files::remove(&preset_beside(self.lock.path()));
+        file_io::remove(&preset_beside(self.lock.path()));
         self.lock.remove();
     }
 }
@@ -140,17 +140,17 @@ pub fn abandoned(folder: &Path) -> (Vec<CrashedWork>, Vec<Error>) {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         name.starts_with("recovery-") && name.ends_with(".lock")
     };
-    for path in files::list(folder).into_iter().filter(is_lock) {
+    for path in file_io::list(folder).into_iter().filter(is_lock) {
         let Some(mut lock) = Lock::take(&path) else { continue };
         let preset = preset_beside(&path);
-        if !files::exists(&preset) {
+        if !file_io::exists(&preset) {
             // The process crashed without unsaved work.
             lock.remove();
             continue;
         }
         let source = lock.read().unwrap_or_default();
         let source = if source.is_empty() { "recovered.json".into() } else { PathBuf::from(source) };
-        match files::read_preset(&preset) {
+        match file_io::read_preset(&preset) {
             Ok((preset, _)) => found.push(CrashedWork { lock, preset, source }),
             Err(error) => errors.push(error),
         }
@@ -163,7 +163,7 @@ mod tests {
     use std::fs;
 
     use super::*;
-    use crate::tweak::platform::lock::eventually;
+    use crate::tweak::platform::lock_file::eventually;
 
     /// Returns the work that is offered after the locks are released.
     fn offered(folder: &Path) -> Vec<CrashedWork> {
@@ -177,7 +177,7 @@ mod tests {
     }
 
     fn names(folder: &Path) -> Vec<String> {
-        files::list(folder).iter().map(|path| path.file_name().unwrap().to_str().unwrap().to_owned()).collect()
+        file_io::list(folder).iter().map(|path| path.file_name().unwrap().to_str().unwrap().to_owned()).collect()
     }
 
     #[test]

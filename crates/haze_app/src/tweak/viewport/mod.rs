@@ -1,38 +1,41 @@
 //! Viewport: the image, and its control by pointer and keys.
 
-mod camera;
-mod compare;
-mod gizmo;
-mod grab;
-mod handle;
-mod ink;
-mod lens;
-mod mark;
-mod menu;
+mod camera_input;
+mod camera_moves;
+mod context_menu;
+mod handle_drag;
+mod light_gizmo;
+mod light_handle;
+mod light_marker;
+mod outlined_painter;
 mod overlay;
-mod puff;
+mod path_traced_puff;
+pub mod pixel_readout;
+pub mod probe_job;
+mod ramp_highlight;
 mod ray;
-mod steer;
+mod screen_projection;
+mod split_view;
 mod toolbar;
 
 use eframe::egui::{self, Response, Sense, Ui};
 use glam::UVec2;
 use haze::{Bounds, LightKind};
 
-use super::action::InView;
-use super::easel::{Easel, Exhibit};
-use super::inspect::lit;
-use super::lights::{LightView, Turn, fresh};
-use super::session::Session;
-use super::smoke::{Smoke, put_behind};
-use compare::{divider, other};
-use gizmo::LightGizmo;
-use ink::Ink;
-use lens::Lens;
-use menu::Menu;
-use puff::PathTracedPuff;
+use crate::tweak::document::light_defaults::fresh;
+use crate::tweak::session::Session;
+use crate::tweak::session::action::InView;
+use crate::tweak::session::light_view::{LightView, Turn};
+use crate::tweak::session::smoke_geometry::{Smoke, put_behind};
+use crate::tweak::viewport_renderer::{Easel, Exhibit};
+use camera_input::CameraInput;
+use context_menu::Menu;
+use light_gizmo::LightGizmo;
+use outlined_painter::Ink;
+use path_traced_puff::PathTracedPuff;
 use ray::Ray;
-use steer::CameraInput;
+use screen_projection::Lens;
+use split_view::{divider, other};
 
 /// State of the viewport.
 #[derive(Default)]
@@ -82,7 +85,7 @@ impl Viewport {
             divider(ui, rect, &mut compare.split);
         }
         // Above the image, and below everything else that is drawn on it.
-        lit::paint(ui, rect, &session.inspect, session.show.system);
+        ramp_highlight::paint(ui, rect, &session.inspect, session.show.system);
         let lens = Lens::new(&session.document.preset.camera, rect);
         let painter = ui.painter_at(rect);
         let ink = Ink(&painter);
@@ -91,7 +94,7 @@ impl Viewport {
             overlay::draw(&ink, &lens, &session.show, smoke, &easel.texels());
         }
         self.gizmo.draw(&ink, &lens, session);
-        compare::labels(ui, rect, session);
+        split_view::labels(ui, rect, session);
         self.puff.show(ui, rect, session);
         if let Some(action) = toolbar::toolbar(ui, rect, session) {
             self.act(action, session);
@@ -150,7 +153,7 @@ impl Viewport {
                 let turn = &mut session.show.lights.turn;
                 *turn = if turn.is_some() { None } else { Some(Turn { middle, angle: 0.0 }) };
             }
-            InView::Face(side) => camera::face(camera, side.way()),
+            InView::Face(side) => camera_moves::face(camera, side.way()),
         }
     }
 
@@ -180,7 +183,7 @@ impl Viewport {
             bounds = Bounds::EMPTY;
             bounds.include(light.position, light.radius.max(CLOSE));
         }
-        camera::frame(&mut preset.camera, &bounds, session.show.aspect);
+        camera_moves::frame(&mut preset.camera, &bounds, session.show.aspect);
     }
 }
 

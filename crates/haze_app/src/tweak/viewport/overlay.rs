@@ -4,11 +4,11 @@ use eframe::egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, St
 use glam::{UVec2, Vec3};
 use haze::{Bounds, Particle};
 
-use super::ink::Ink;
-use super::lens::Lens;
-use crate::tweak::easel::Texels;
-use crate::tweak::show::{Overlay, Show};
-use crate::tweak::smoke::Smoke;
+use super::outlined_painter::Ink;
+use super::screen_projection::Lens;
+use crate::tweak::session::smoke_geometry::Smoke;
+use crate::tweak::session::view_options::{Overlay, Show};
+use crate::tweak::viewport_renderer::Texels;
 
 /// Largest number of particles that are drawn, over all systems.
 const MOST: usize = 4096;

@@ -1,5 +1,6 @@
-mod camera;
-mod gizmo;
+mod camera_input;
+mod light_gizmo;
+mod pixel_readout;
 mod turntable;
 
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Theme, vec2};
@@ -9,12 +10,12 @@ use glam::Vec3;
 use haze::preset::Camera;
 use haze::{Light, LightKind};
 
-use super::handle::{Handle, Shape, handles};
-use super::lens::Lens;
-use crate::tweak::show::Tab;
-use crate::tweak::smoke::Smoke;
-use crate::tweak::testing::{brightness, picture, window};
+use super::light_handle::{Handle, Shape, handles};
+use super::screen_projection::Lens;
+use crate::tweak::session::smoke_geometry::Smoke;
+use crate::tweak::session::view_options::Tab;
 use crate::tweak::window::Window;
+use crate::tweak::window::testing::{brightness, picture, window};
 
 const SIZE: [f32; 2] = [1100.0, 700.0];
 

@@ -8,10 +8,10 @@ use glam::Vec3;
 use haze::settings::{Choice, FieldVisitor, Fields};
 use haze_author::preset::Tooltips;
 
-use crate::tweak::action::{Action, InView, keys_of};
-use crate::tweak::panel::row::spaced;
+use crate::tweak::panels::rows::spaced;
 use crate::tweak::session::Session;
-use crate::tweak::show::Overlay;
+use crate::tweak::session::action::{Action, InView, keys_of};
+use crate::tweak::session::view_options::Overlay;
 
 /// Switches with their names and tooltips.
 const SWITCHES: [(InView, &str, &str); 5] = [

@@ -1,0 +1,242 @@
+//! Ramps tab: the ramps in use, and the parts of them that this image samples.
+
+use eframe::egui::{self, Color32, Mesh, Rect, Response, Sense, Stroke, Ui, Vec2};
+use glam::UVec2;
+use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
+use haze::ramp::Ramp;
+use haze::settings::{ImageRole, RampFilter, set_field};
+use haze_author::preset::without_effect;
+use haze_reference::SystemProbe;
+
+use super::ramp_stops::{self, AxisSamples, Bins, Mark, Named};
+use super::rows::picture_gallery::gallery;
+use super::rows::spaced;
+use crate::tweak::session::inspection::Told;
+use crate::tweak::session::ramp_survey::{Histogram, SIDE, Spot};
+use crate::tweak::session::{Session, ramp_survey};
+use crate::tweak::viewport_renderer::compared_side::ComparedSide;
+
+/// Heights of a ramp and of a histogram, points.
+const STRIP: f32 = 20.0;
+const HISTOGRAM: f32 = 56.0;
+
+/// Colours of the lights, reused cyclically; distinguishable also with colour blindness.
+const LIGHTS: [Color32; 6] = [
+    Color32::from_rgb(230, 159, 0),
+    Color32::from_rgb(86, 180, 233),
+    Color32::from_rgb(0, 158, 115),
+    Color32::from_rgb(204, 121, 167),
+    Color32::from_rgb(213, 94, 0),
+    Color32::from_rgb(120, 120, 240),
+];
+
+/// Colour over the specular ramp of the places that are sampled.
+const LOOKED_UP: Color32 = Color32::from_rgb(120, 200, 240);
+
+/// Draws the tab. Returns the place on a ramp under the pointer.
+pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
+    let system = &session.document.preset.systems.get(index)?.clone();
+    let material = &session.materials().into_iter().nth(index)?;
+    let is_first = |told: &&Told| told.side == ComparedSide::First && session.inspect.place().is_some();
+    let told = session.inspect.told.as_ref().filter(is_first);
+    let probe = told.and_then(|told| told.probe.systems.iter().find(|probe| probe.system == index)).cloned();
+    let probe = probe.as_ref();
+    let filter = system.settings.ramp_filter;
+    let is_forward = system.settings.is_forward();
+    let survey = session.inspect.survey.clone().filter(|_| !is_forward);
+    let survey = survey.as_deref();
+    let inert = |session: &Session, field: &str| {
+        let path = format!("systems[{index}].material.{field}");
+        without_effect(&session.document.preset, &path, session.show.size)
+    };
+    let mut spot = None;
+    ui.weak("Point at a ramp to highlight the smoke that samples it. Point at smoke to mark its place.");
+    if is_forward {
+        ui.weak("Forward smoke is lit sprite by sprite: no texels to count.");
+    }
+    for (field, title, name) in [
+        ("diffuse_ramp", "Diffuse, by normal and light", &system.material.diffuse_ramp),
+        ("backlight_ramp", "Diffuse, lit from behind", &system.material.backlight_ramp),
+        ("soft_scatter_ramp", "Soft scatter, by amount", &system.material.soft_scatter_ramp),
+        ("specular_ramp", "Specular, by distance² and amount", &system.material.specular_ramp),
+        ("coverage_ramp", "Coverage, by amount times boost", &system.material.coverage_ramp),
+        ("age_ramp", "Age, from birth to death", &system.material.age_ramp),
+    ] {
+        ui.add_space(6.0);
+        choose(ui, session, title, &format!("systems[{index}].material.{field}"), name);
+        if let Some(reason) = inert(session, field) {
+            ui.weak(format!("Not used: {reason}"));
+            continue;
+        }
+        let mut lights = Vec::new();
+        let ramp = Named { system: index, field, name };
+        ramp_stops::offer(ui, session, ramp);
+        let spoken = spaced(field);
+        let one = |at: Option<f32>| at.map(|at| (at, Color32::WHITE)).into_iter().collect();
+        let ink = ui.visuals().text_color();
+        let (picture, marks, mut bins): (_, Vec<Mark>, Vec<Bins>) = match field {
+            "diffuse_ramp" | "backlight_ramp" => {
+                let looking = probe.iter().flat_map(|probe| &probe.lights);
+                let marks = looking.map(|light| (light.coordinate, of_light(light.light))).collect();
+                lights = survey.map_or_else(Vec::new, |survey| survey.by_light(index));
+                let bins = lights.iter().map(|histogram| (of_light(histogram.light), histogram.bins.clone()));
+                let ramp = if field == "diffuse_ramp" { &material.diffuse_ramp } else { &material.backlight_ramp };
+                (ramp, marks, bins.collect())
+            }
+            "soft_scatter_ramp" => {
+                let bins = survey.map(|survey| (ink, survey.by_amount(index)));
+                (&material.soft_scatter_ramp, one(probe.map(|probe| probe.amount)), bins.into_iter().collect())
+            }
+            "coverage_ramp" => {
+                let bins = survey.map(|survey| (ink, survey.by_coverage(index)));
+                let at = probe.map(|probe| probe.coverage_coordinate);
+                (&material.coverage_ramp, one(at), bins.into_iter().collect())
+            }
+            "specular_ramp" => {
+                let density = survey.map(|survey| survey.by_glow(index));
+                spot = spot.or(plane(ui, &spoken, (&material.specular_ramp, filter), density.as_deref(), probe));
+                let [across, up] = looked_up(density.as_deref(), probe, ink);
+                ramp_stops::editor(ui, session, ramp, &across, &up);
+                continue;
+            }
+            _ => (&material.age_ramp, Vec::new(), Vec::new()),
+        };
+        if bins.is_empty() && field != "age_ramp" && !is_forward {
+            // Reserves the space of the histogram, so that nothing moves under the pointer when it arrives.
+            bins.push((ink, Vec::new()));
+        }
+        let across = (bins, marks);
+        let edited = ramp_stops::editor(ui, session, ramp, &across, &AxisSamples::default());
+        let at = edited.unwrap_or_else(|| {
+            let at = strip(ui, &spoken, picture, filter, &across.1);
+            histogram(ui, field, &across.0);
+            at
+        });
+        if field == "diffuse_ramp" && survey.is_some() {
+            legend(ui, &lights, &session.show.lights.shown_names(&session.document.preset.lights));
+        }
+        spot = spot.or(at.and_then(|at| match field {
+            "diffuse_ramp" | "backlight_ramp" => Some(Spot::Diffuse(at)),
+            "soft_scatter_ramp" => Some(Spot::SoftScatter(at)),
+            "coverage_ramp" => Some(Spot::Coverage(at)),
+            _ => None,
+        }));
+    }
+    session.follow_ramps(true);
+    spot
+}
+
+/// Returns histograms and marks of the specular ramp along each axis.
+fn looked_up(density: Option<&[f32]>, probe: Option<&SystemProbe>, ink: Color32) -> [AxisSamples; 2] {
+    let glows = probe.iter().flat_map(|probe| &probe.lights).filter_map(|light| Some((light.light, light.glow?)));
+    let marks: Vec<_> = glows.map(|(light, glow)| (of_light(light), glow.coordinate)).collect();
+    // Empty histograms reserve the space.
+    let [across, up] = ramp_survey::along(density.unwrap_or_default());
+    [
+        (vec![(ink, across)], marks.iter().map(|(colour, at)| (at.x, *colour)).collect()),
+        (vec![(ink, up)], marks.iter().map(|(colour, at)| (at.y, *colour)).collect()),
+    ]
+}
+
+/// Draws the title of a ramp and the choice of its image.
+fn choose(ui: &mut Ui, session: &mut Session, title: &str, path: &str, name: &str) {
+    let label = ui.strong(title);
+    let mut chosen = name.to_owned();
+    gallery(ui, &session.thumbnails, ImageRole::Ramp, &mut chosen, path).labelled_by(label.id);
+    if chosen != name
+        && let Err(error) = set_field(&mut session.document.preset, path, &chosen)
+    {
+        session.messages.complain("ramp", error);
+    }
+}
+
+fn of_light(index: usize) -> Color32 {
+    LIGHTS[index % LIGHTS.len()]
+}
+
+/// Allocates space for an image with a name. Returns the pointer position in it, in shares of its sides.
+fn space(ui: &mut Ui, size: Vec2, name: &str) -> (Rect, Option<Vec2>) {
+    let (rect, response): (Rect, Response) = ui.allocate_exact_size(size, Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
+    (rect, response.hover_pos().map(|at| (at - rect.min) / rect.size()))
+}
+
+/// Draws a ramp from left to right with marks. Returns the coordinate under the pointer.
+fn strip(ui: &mut Ui, name: &str, ramp: &Ramp, filter: RampFilter, marks: &[(f32, Color32)]) -> Option<f32> {
+    let (rect, at) = space(ui, Vec2::new(ui.available_width(), STRIP), name);
+    picture(ui, rect, UVec2::new(128, 1), |at| sample_ramp(ramp, filter, at.x));
+    for &(coordinate, colour) in marks {
+        let x = rect.left() + coordinate * rect.width();
+        for (width, colour) in [(4.0, Color32::BLACK), (2.0, colour)] {
+            ui.painter().vline(x, rect.y_range(), Stroke::new(width, colour));
+        }
+    }
+    at.map(|at| at.x)
+}
+
+/// Draws a linear image from a function of the position, in shares of its sides, cell by cell.
+fn picture(ui: &Ui, rect: Rect, cells: UVec2, colour: impl Fn(glam::Vec2) -> glam::Vec3) {
+    let mut mesh = Mesh::default();
+    let side = rect.size() / Vec2::new(cells.x as f32, cells.y as f32);
+    for y in 0..cells.y {
+        for x in 0..cells.x {
+            let at = glam::Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / cells.as_vec2();
+            let [r, g, b] = colour(at).to_array();
+            let corner = rect.min + Vec2::new(x as f32, y as f32) * side;
+            mesh.add_colored_rect(Rect::from_min_size(corner, side), egui::Rgba::from_rgb(r, g, b).into());
+        }
+    }
+    ui.painter().add(mesh);
+}
+
+/// Draws histograms on top of each other.
+fn histogram(ui: &mut Ui, field: &str, histograms: &[Bins]) {
+    if histograms.is_empty() {
+        return;
+    }
+    let name = if field == "diffuse_ramp" { "histogram of N·L" } else { "histogram of amounts" };
+    let (rect, _) = space(ui, Vec2::new(ui.available_width(), HISTOGRAM), name);
+    ui.painter().rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
+    histograms.iter().for_each(|(colour, bins)| egui_gradient::histogram(ui, rect, bins, *colour));
+}
+
+/// Draws the names of lights in the colours of their histograms.
+fn legend(ui: &mut Ui, histograms: &[Histogram], names: &[String]) {
+    ui.horizontal_wrapped(|ui| {
+        for histogram in histograms {
+            let name = names.get(histogram.light).map_or("light", String::as_str);
+            ui.colored_label(of_light(histogram.light), name);
+        }
+        if histograms.is_empty() {
+            ui.weak("No light reaches smoke in the picture");
+        }
+    });
+}
+
+/// Draws the specular ramp with rising amounts upwards, and the sampled places over it.
+fn plane(
+    ui: &mut Ui,
+    name: &str,
+    (ramp, filter): (&Ramp, RampFilter),
+    density: Option<&[f32]>,
+    probe: Option<&SystemProbe>,
+) -> Option<Spot> {
+    let side = ui.available_width().min(220.0);
+    let (rect, at) = space(ui, Vec2::new(side, 0.6 * side), name);
+    picture(ui, rect, UVec2::splat(48), |at| sample_ramp_2d(ramp, filter, glam::Vec2::new(at.x, 1.0 - at.y)));
+    let mut mesh = Mesh::default();
+    let cell = rect.size() / SIDE as f32;
+    for (index, density) in density.unwrap_or_default().iter().enumerate().filter(|(_, density)| **density > 0.0) {
+        let (x, y) = ((index % SIDE) as f32, (SIDE - 1 - index / SIDE) as f32);
+        let square = Rect::from_min_size(rect.min + Vec2::new(x, y) * cell, cell);
+        mesh.add_colored_rect(square, LOOKED_UP.gamma_multiply(0.7 * density.sqrt()));
+    }
+    ui.painter().add(mesh);
+    for glow in probe.iter().flat_map(|probe| &probe.lights).filter_map(|light| Some((light.light, light.glow?))) {
+        let (light, at) = (glow.0, glow.1.coordinate);
+        let place = rect.min + Vec2::new(at.x, 1.0 - at.y) * rect.size();
+        ui.painter().circle(place, 4.0, of_light(light), Stroke::new(1.5, Color32::BLACK));
+    }
+    ui.weak("across: distance² from the light; up: amount");
+    at.map(|at| Spot::Specular(glam::Vec2::new(at.x, 1.0 - at.y)))
+}

@@ -1,0 +1,76 @@
+//! Context menu of the image.
+
+use eframe::egui::{Pos2, Response, Ui};
+use glam::Vec3;
+use haze::{Light, LightKind};
+
+use super::screen_projection::Lens;
+use crate::tweak::document::light_defaults::fresh;
+use crate::tweak::session::Session;
+use crate::tweak::session::action::InView;
+use crate::tweak::session::smoke_geometry::Smoke;
+
+/// Context menu, and the position where it was opened.
+#[derive(Default)]
+pub struct Menu {
+    pub at: Option<Pos2>,
+}
+
+/// Entries that add a light.
+const ADDED: [(LightKind, &str); 3] = [
+    (LightKind::Point, "Add point light here"),
+    (LightKind::Spot, "Add spot light here"),
+    (LightKind::Directional, "Add sun from here"),
+];
+
+impl Menu {
+    /// Draws the menu while it is open. Returns an action that the caller has to do.
+    pub fn show(
+        &mut self,
+        response: &Response,
+        lens: &Lens,
+        session: &mut Session,
+        smoke: &mut Smoke,
+    ) -> Option<InView> {
+        if response.secondary_clicked() {
+            self.at = response.interact_pointer_pos();
+        }
+        let at = self.at?;
+        let mut asked = None;
+        response.context_menu(|ui| asked = entries(ui, at, lens, session, smoke));
+        asked
+    }
+}
+
+fn entries(ui: &mut Ui, at: Pos2, lens: &Lens, session: &mut Session, smoke: &mut Smoke) -> Option<InView> {
+    for (kind, name) in ADDED {
+        if ui.button(name).clicked() {
+            let middle = smoke.of(session).bounds().centre();
+            let light = here(fresh(kind, &session.document.preset.lights), at, lens, middle);
+            session.add_light(light);
+        }
+    }
+    ui.separator();
+    let mut asked = None;
+    for (action, name) in [(InView::Behind, "Behind the smoke"), (InView::Frame, "Frame")] {
+        if ui.button(name).clicked() {
+            asked = Some(action);
+        }
+    }
+    asked
+}
+
+/// Returns a light under the pointer, on the plane through the smoke's centre that faces the camera. A sun shines from
+/// that place on the dome.
+fn here(mut light: Light, at: Pos2, lens: &Lens, middle: Vec3) -> Light {
+    let (centre, radius) = lens.dome;
+    light.position = lens.facing(at, middle);
+    let to_middle = middle - light.position;
+    light.direction = match light.kind {
+        LightKind::Directional => centre - lens.ray(at).on_sphere(centre, radius, true),
+        _ if to_middle.length() > 0.1 => to_middle,
+        _ => lens.ahead,
+    };
+    light.direction = light.direction.normalize_or(Vec3::NEG_Y);
+    light
+}
