@@ -13,7 +13,7 @@ use haze_author::preset::{check_files, without_effect};
 use super::kind::explain;
 use super::options::AssetsArguments;
 use super::output::{Failures, has_extension, say, write_text};
-use super::tweak::copy_beside;
+use super::tweak::copy_assets;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -157,7 +157,7 @@ fn new(file: &Path, from: &Path) -> Result<(), Error> {
         preset.name = name.to_string_lossy().into_owned();
     }
     let folder = |path: &Path| path.parent().unwrap_or(Path::new("")).to_path_buf();
-    copy_beside(&preset, &folder(from), &folder(&path))?;
+    copy_assets(&preset, &folder(from), &folder(&path))?;
     write_file(&path, preset.to_text("").as_bytes())?;
     say!("{}: a copy of {}; open it with `haze {0}`", path.display(), from.display())
 }

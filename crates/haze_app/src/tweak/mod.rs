@@ -18,11 +18,11 @@ use haze::Error;
 use haze::settings::set_field;
 
 use super::options::{AssetsArguments, in_option, parse_assignment, parse_size};
-pub use document::copied_assets::copy_beside;
+pub use document::copied_assets::copy_assets;
 use files::hot_reload::ShaderFolder;
 use files::persistence::{Layout, Persistence};
 use platform::file_dialog::Dialogs;
-pub use platform::file_dialog::is_failure as is_of_dialogs;
+pub use platform::file_dialog::is_dialog_target as is_of_dialogs;
 use platform::{asset_loading, state_folder};
 use session::Session;
 use window::Start;
@@ -76,13 +76,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     };
     // A screenshot must not depend on the stored layout, so that it is the same on every machine.
     let state = state_folder::state(|name| std::env::var_os(name)).filter(|_| arguments.screenshot.is_none());
-    let (layout, error) = state.as_ref().map_or_else(Default::default, |folder| Layout::recall(folder));
+    let (layout, error) = state.as_ref().map_or_else(Default::default, |folder| Layout::read(folder));
     if let Some(error) = error {
-        session.messages.complain("layout", error);
+        session.messages.error("layout", error);
     }
     let size = arguments.size.map(|size| size.as_vec2().to_array()).or(layout.window);
-    let keeping = state.map(|folder| Persistence::new(folder, &mut session));
-    let start =
-        Start { session, shaders, keeping, layout, has_dialogs: Dialogs::are_likely(|name| std::env::var_os(name)) };
+    let persistence = state.map(|folder| Persistence::new(folder, &mut session));
+    let start = Start {
+        session,
+        shaders,
+        persistence,
+        layout,
+        has_dialogs: Dialogs::are_likely(|name| std::env::var_os(name)),
+    };
     open(start, size.map(egui::Vec2::from))
 }

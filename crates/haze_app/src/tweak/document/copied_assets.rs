@@ -13,7 +13,7 @@ use crate::tweak::platform::file_io;
 /// Copies the files that a preset names from one folder to another, under the same relative paths. Missing files are
 /// skipped. No file is replaced: if a different file is in the way, the function returns an error before it writes
 /// anything.
-pub fn copy_beside(preset: &Preset, from: &Path, to: &Path) -> Result<(), Error> {
+pub fn copy_assets(preset: &Preset, from: &Path, to: &Path) -> Result<(), Error> {
     let pictures = picture_files(preset);
     let recipes: Vec<_> = pictures.iter().flat_map(|picture| recipe_paths(picture)).collect();
     let beside = pictures.into_iter().chain(recipes).map(|file| from.join(file));

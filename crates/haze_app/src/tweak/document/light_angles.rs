@@ -13,7 +13,7 @@ pub struct Angles {
 
 /// Largest elevation up or down, degrees. A vertical direction has no azimuth, so a light at ±90 would lose its
 /// azimuth.
-pub const STEEPEST: f32 = 89.9;
+pub const MAX_ELEVATION: f32 = 89.9;
 
 /// Returns the angles that light comes from, given the direction it travels in.
 pub fn to_angles(direction: Vec3) -> Angles {
@@ -22,9 +22,9 @@ pub fn to_angles(direction: Vec3) -> Angles {
     Angles { azimuth: from.x.atan2(from.z).to_degrees(), elevation: from.y.atan2(level).to_degrees() }
 }
 
-/// Returns the unit direction that light from these angles travels in. Clamps the elevation to ±[`STEEPEST`].
+/// Returns the unit direction that light from these angles travels in. Clamps the elevation to ±[`MAX_ELEVATION`].
 pub fn from_angles(angles: Angles) -> Vec3 {
-    let elevation = angles.elevation.clamp(-STEEPEST, STEEPEST).to_radians();
+    let elevation = angles.elevation.clamp(-MAX_ELEVATION, MAX_ELEVATION).to_radians();
     let (sine, cosine) = angles.azimuth.to_radians().sin_cos();
     -Vec3::new(sine * elevation.cos(), elevation.sin(), cosine * elevation.cos())
 }
@@ -39,7 +39,10 @@ mod tests {
             for elevation in [-90.0, -60.0, 0.0, 45.0, 89.0, 90.0, 120.0] {
                 let back = to_angles(from_angles(Angles { azimuth, elevation }));
                 assert!((back.azimuth - azimuth).abs() < 0.05, "{azimuth} {elevation}: {back:?}");
-                assert!((back.elevation - elevation.clamp(-STEEPEST, STEEPEST)).abs() < 0.05, "{elevation}: {back:?}");
+                assert!(
+                    (back.elevation - elevation.clamp(-MAX_ELEVATION, MAX_ELEVATION)).abs() < 0.05,
+                    "{elevation}: {back:?}"
+                );
             }
         }
         assert!(from_angles(Angles { azimuth: 90.0, elevation: 0.0 }).distance(Vec3::NEG_X) < 1e-6);

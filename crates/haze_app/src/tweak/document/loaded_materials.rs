@@ -5,9 +5,9 @@ use haze::preset::{MaterialNames, Preset};
 
 /// Images, and the names they were loaded by. Clones share the images.
 #[derive(Clone)]
-pub struct Pictures(Vec<(MaterialNames, MaterialAssets)>);
+pub struct LoadedMaterials(Vec<(MaterialNames, MaterialAssets)>);
 
-impl Pictures {
+impl LoadedMaterials {
     /// `loaded` has the images of every system of the preset.
     pub fn new(preset: &Preset, loaded: Vec<MaterialAssets>) -> Self {
         Self(names(preset).into_iter().zip(loaded).collect())
@@ -49,18 +49,18 @@ mod tests {
         let mut other = preset.systems[0].clone();
         other.material.diffuse_ramp = "diffuse_ember".into();
         preset.systems.push(other);
-        let pictures = Pictures::new(&preset, load(&preset));
-        let [first, second] = &pictures.of(&preset)[..] else { panic!("two systems") };
+        let loaded_materials = LoadedMaterials::new(&preset, load(&preset));
+        let [first, second] = &loaded_materials.of(&preset)[..] else { panic!("two systems") };
         assert!(!first.shares(second));
         let (first, second) = (first.clone(), second.clone());
         preset.systems.reverse();
-        let swapped = pictures.of(&preset);
+        let swapped = loaded_materials.of(&preset);
         assert!(swapped[0].shares(&second) && swapped[1].shares(&first));
         // Not loaded yet, so the former images of this index are used.
         preset.systems[0].material.diffuse_ramp = "mine.png".into();
-        assert!(pictures.of(&preset)[0].shares(&first));
+        assert!(loaded_materials.of(&preset)[0].shares(&first));
         // A reload of the same files gives the same images.
-        let again = pictures.reuse_equal(load(&Preset::load("column").unwrap()));
+        let again = loaded_materials.reuse_equal(load(&Preset::load("column").unwrap()));
         assert!(again[0].shares(&first));
     }
 }

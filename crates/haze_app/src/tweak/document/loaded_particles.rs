@@ -5,9 +5,9 @@ use haze_author::particle_files::ParticleFrames;
 
 /// Particles of each system with the path they were loaded from; `None` for a system without particle files.
 #[derive(Clone)]
-pub struct Caches(Vec<(String, Option<ParticleFrames>)>);
+pub struct LoadedParticles(Vec<(String, Option<ParticleFrames>)>);
 
-impl Caches {
+impl LoadedParticles {
     /// `loaded` has one entry for each system of the preset.
     pub fn new(preset: &Preset, loaded: Vec<Option<ParticleFrames>>) -> Self {
         Self(paths(preset).into_iter().zip(loaded).collect())

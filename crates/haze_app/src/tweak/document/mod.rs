@@ -21,9 +21,9 @@ use haze::{Error, FieldError, builtin};
 use crate::inputs::image_paths;
 use crate::tweak::platform::asset_loading::particle_file_paths;
 use crate::tweak::platform::file_io::{self, Stamp};
-use copied_assets::copy_beside;
+use copied_assets::copy_assets;
 use history::History;
-use recipe_steps::{GradientStep, Recipes, Work, name_of};
+use recipe_steps::{GradientStep, Recipes, Work, step_name_of_work};
 
 /// Preset with its file and its undo history.
 pub struct Document {
@@ -63,7 +63,7 @@ impl Saving {
     /// Writes the file. If it goes to another folder, the images that the preset names are copied there.
     pub fn write(&self) -> Result<(), Error> {
         let folder = |path: &Path| path.parent().unwrap_or(Path::new("")).to_path_buf();
-        copy_beside(&self.preset, &folder(&self.from), &folder(&self.path))?;
+        copy_assets(&self.preset, &folder(&self.from), &folder(&self.path))?;
         file_io::write(&self.path, self.text.as_bytes())
     }
 }
@@ -233,7 +233,7 @@ impl Document {
         } else {
             let step = self.gradient_step.as_ref();
             let work = (self.preset.clone(), self.recipes.clone());
-            self.history.track(&work, is_held, |before, after| name_of(before, after, step));
+            self.history.track(&work, is_held, |before, after| step_name_of_work(before, after, step));
         }
     }
 

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use haze::preset::Preset;
 use haze::settings::{Value, field_path, for_each_field, values};
 
-use super::light_defaults::name_of;
+use super::light_defaults::light_name;
 
 /// Returns the paths of the fields that differ, such as `systems[0].settings.boost`. A list whose length differs counts
 /// as one field, such as `lights`.
@@ -58,7 +58,7 @@ pub fn step_name(before: &Preset, after: &Preset) -> String {
     let owner = owner_of(first);
     let of = owner.map(|(list, index)| match (list, after.systems.get(index), after.lights.get(index)) {
         ("systems", Some(system), _) if !system.name.is_empty() => format!(" of {}", system.name),
-        ("lights", _, Some(light)) => format!(" of {}", name_of(index, light)),
+        ("lights", _, Some(light)) => format!(" of {}", light_name(index, light)),
         _ => format!(" of {} {}", singular(list), index + 1),
     });
     let of = of.unwrap_or_default();

@@ -20,18 +20,18 @@ use crate::tweak::platform::{asset_loading, file_io};
 pub struct RampEdits {
     /// Path of the preset that they belong to.
     preset: PathBuf,
-    known: BTreeMap<String, Known>,
+    known: BTreeMap<String, EditedRamp>,
     /// Editor of each field, and the row of the ramp that it shows.
     editors: BTreeMap<&'static str, (GradientEditor, usize)>,
     /// Ramp that is to be copied beside the preset: index of the system, and field.
     wanted: Option<(usize, &'static str)>,
     /// The preset must first be saved to a file.
-    pub wants_place: bool,
+    pub needs_saved_preset: bool,
 }
 
 /// Origin of a ramp, which decides whether it can be edited.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Source {
+pub enum RampOrigin {
     /// Embedded in the program.
     BuiltIn,
     /// Made from a recipe, whose stops can be edited.
@@ -42,11 +42,11 @@ pub enum Source {
     Missing,
 }
 
-struct Known {
+struct EditedRamp {
     picture: PathBuf,
     /// Stamps of the image and of the recipe when they were last read or written.
     stamps: [Option<Stamp>; 2],
-    source: Source,
+    source: RampOrigin,
     /// Recipe that the image on disk was baked from.
     written: Option<RampRecipe>,
     /// Recipe and ramp that are shown now.
@@ -57,13 +57,13 @@ struct Known {
 
 impl RampEdits {
     /// Marks all ramps, so that changed files are read again.
-    pub fn look_again(&mut self) {
+    pub fn mark_stale(&mut self) {
         self.known.values_mut().for_each(|known| known.is_stale = true);
     }
 
     /// Returns the origin of a ramp.
-    pub fn source(&mut self, name: &str, folders: &AssetFolders) -> &Source {
-        let known = self.known.entry(name.into()).or_insert_with(|| Known::read(name, folders));
+    pub fn source(&mut self, name: &str, folders: &AssetFolders) -> &RampOrigin {
+        let known = self.known.entry(name.into()).or_insert_with(|| EditedRamp::read(name, folders));
         &known.source
     }
 
@@ -83,12 +83,12 @@ impl RampEdits {
     }
 
     /// Requests a copy of a built-in ramp. A built-in preset must be saved first.
-    pub fn want_own(&mut self, system: usize, field: &'static str, is_built_in: bool) {
-        (self.wanted, self.wants_place) = (Some((system, field)), is_built_in);
+    pub fn request_copy(&mut self, system: usize, field: &'static str, is_built_in: bool) {
+        (self.wanted, self.needs_saved_preset) = (Some((system, field)), is_built_in);
     }
 
     /// Writes the requested copy and names it in the preset, as soon as the preset is a file.
-    pub fn make_own(&mut self, document: &mut Document) -> Result<(), Error> {
+    pub fn write_requested_copy(&mut self, document: &mut Document) -> Result<(), Error> {
         let Some((system, field)) = self.wanted.filter(|_| !document.is_built_in()) else { return Ok(()) };
         self.wanted = None;
         let field = format!("systems[{system}].material.{field}");
@@ -106,7 +106,7 @@ impl RampEdits {
         let count = fitted.recipe.rows.iter().map(|row| row.stops.len()).sum();
         // The image stays as it was painted until a stop is changed.
         known.written = Some(fitted.recipe.clone());
-        known.source = Source::Recipe(fitted.recipe);
+        known.source = RampOrigin::Recipe(fitted.recipe);
         Ok((count, fitted.error))
     }
 
@@ -121,11 +121,11 @@ impl RampEdits {
                 known.is_stale = false;
                 if known.stamps != stamps(&known.picture) {
                     // A change by another program takes precedence.
-                    *known = Known::read(name, folders);
+                    *known = EditedRamp::read(name, folders);
                     document.recipes.ramps.forget(name);
                 }
             }
-            let Source::Recipe(recipe) = &known.source else { continue };
+            let RampOrigin::Recipe(recipe) = &known.source else { continue };
             let recipe = document.recipes.ramps.get(name).unwrap_or(recipe);
             let has_live = known.live.as_ref().is_some_and(|(live, _)| live == recipe);
             if known.written.as_ref() == Some(recipe) && (known.live.is_none() || has_live) {
@@ -166,27 +166,27 @@ impl RampEdits {
     }
 }
 
-impl Known {
+impl EditedRamp {
     fn read(name: &str, folders: &AssetFolders) -> Self {
         let picture = asset_loading::place_of(name, folders);
         // Stamps are taken before the files are read, so that a write in between counts as a change.
         let stamps = stamps(&picture);
         let source = if builtin::find(builtin::RAMPS, name).is_some() {
-            Source::BuiltIn
+            RampOrigin::BuiltIn
         } else {
             match (asset_loading::ramp(&picture), asset_loading::ramp_recipe(&recipe_of(&picture))) {
-                (Err(_), _) => Source::Missing,
-                (Ok(ramp), Ok(recipe)) if makes(&recipe, &ramp) => Source::Recipe(recipe),
-                _ => Source::Painted,
+                (Err(_), _) => RampOrigin::Missing,
+                (Ok(ramp), Ok(recipe)) if makes(&recipe, &ramp) => RampOrigin::Recipe(recipe),
+                _ => RampOrigin::Painted,
             }
         };
-        let written = if let Source::Recipe(recipe) = &source { Some(recipe.clone()) } else { None };
+        let written = if let RampOrigin::Recipe(recipe) = &source { Some(recipe.clone()) } else { None };
         Self { picture, stamps, source, written, live: None, is_stale: false }
     }
 
     /// Returns true if the current recipe differs from the one that was last written.
     fn is_to_be_written(&self, changed: Option<&RampRecipe>) -> bool {
-        let Source::Recipe(recipe) = &self.source else { return false };
+        let RampOrigin::Recipe(recipe) = &self.source else { return false };
         self.written.as_ref() != Some(changed.unwrap_or(recipe))
     }
 }

@@ -12,21 +12,21 @@ use super::preset_diff::step_name;
 /// Edited recipes of every kind. Cheap to clone.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recipes {
-    pub ramps: Of<RampRecipe>,
-    pub sprites: Of<SpriteRecipe>,
+    pub ramps: RecipeMap<RampRecipe>,
+    pub sprites: RecipeMap<SpriteRecipe>,
 }
 
 /// Recipes by the names that the preset has for their images.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Of<T>(BTreeMap<String, Arc<T>>);
+pub struct RecipeMap<T>(BTreeMap<String, Arc<T>>);
 
-impl<T> Default for Of<T> {
+impl<T> Default for RecipeMap<T> {
     fn default() -> Self {
         Self(BTreeMap::new())
     }
 }
 
-impl<T: PartialEq> Of<T> {
+impl<T: PartialEq> RecipeMap<T> {
     pub fn get(&self, name: &str) -> Option<&T> {
         self.0.get(name).map(|recipe| &**recipe)
     }
@@ -54,7 +54,7 @@ pub type Work = (Preset, Recipes);
 pub type GradientStep = (String, &'static str);
 
 /// Returns the name of a step. If it changed stops, the name is that of the gradient editor.
-pub fn name_of(before: &Work, after: &Work, step: Option<&GradientStep>) -> String {
+pub fn step_name_of_work(before: &Work, after: &Work, step: Option<&GradientStep>) -> String {
     // A changed recipe also changes the preset's columns and rows, so recipes are tested first.
     if let Some(name) = after.1.sprites.changed(&before.1.sprites) {
         return format!("recipe of {name}");

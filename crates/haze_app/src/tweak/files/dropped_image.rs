@@ -15,7 +15,7 @@ use crate::tweak::document::sprite_edits::sprite_source::{detail_of, recipe_of};
 use crate::tweak::platform::{asset_loading, file_io};
 
 /// Detected role of a dropped image.
-pub struct Dropped {
+pub struct DroppedImage {
     /// Material fields and their new values. The first is the field of the image itself.
     fields: Vec<(&'static str, String)>,
     /// Doubt of the content check about this role.
@@ -25,7 +25,7 @@ pub struct Dropped {
 /// Roles tried in this order if the file name does not tell the role. The first without a doubt wins.
 const ROLES_TO_TRY: [&str; 3] = ["diffuse_ramp", "sprite", "specular_ramp"];
 
-impl Dropped {
+impl DroppedImage {
     /// Reads an image that lies in one of the preset's folders. `material` is that of the target system.
     ///
     /// # Errors
@@ -176,7 +176,7 @@ mod tests {
         let folders = AssetFolders::at(folder.path());
         let mut preset = Preset::load("column").unwrap();
         let mut drop = |name: &str| {
-            let dropped = Dropped::read(&path(name), &folders, &preset.systems[0].material)?;
+            let dropped = DroppedImage::read(&path(name), &folders, &preset.systems[0].material)?;
             dropped.apply(&mut preset, 0, UVec2::new(640, 360)).map(|said| (said, preset.systems[0].material.clone()))
         };
         type Field = fn(&MaterialNames) -> &String;
@@ -206,7 +206,7 @@ mod tests {
         let error = drop("opaque.png").err().unwrap().to_string();
         assert!(error.contains("looks like the normals of a sprite"), "{error}");
         assert!(drop("broken.png").err().unwrap().to_string().contains("not a PNG"));
-        let elsewhere = Dropped::read(Path::new("/elsewhere/a.png"), &folders, &MaterialNames::default());
+        let elsewhere = DroppedImage::read(Path::new("/elsewhere/a.png"), &folders, &MaterialNames::default());
         assert!(elsewhere.err().unwrap().to_string().contains("a picture in the preset's folder"));
     }
 }

@@ -13,7 +13,7 @@ use haze::{Error, FieldError};
 use haze_demo::shot::Shot;
 use image::RgbImage;
 
-use super::value_spread::spread;
+use super::value_spread::spread_values;
 use crate::frames::FrameNames;
 use crate::options::Backend;
 use crate::shade_tree;
@@ -22,7 +22,7 @@ use crate::tweak::platform::render_job::{Frames, Watch};
 use crate::tweak::platform::worker::Worker;
 use crate::tweak::platform::{file_io, render_job};
 use crate::tweak::session::Session;
-use crate::tweak::session::macro_param::Made;
+use crate::tweak::session::macro_param::MacroParam;
 
 /// Kind of export.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -40,7 +40,7 @@ pub enum ExportKind {
 
 /// Parameters of an export.
 #[derive(Clone, Debug)]
-pub struct Order {
+pub struct ExportOptions {
     /// Size of an image in pixels. For a sheet: the size of all its cells together.
     pub size: UVec2,
     pub first: u32,
@@ -51,7 +51,7 @@ pub struct Order {
     pub cells: UVec2,
 }
 
-impl Default for Order {
+impl Default for ExportOptions {
     fn default() -> Self {
         Self { size: UVec2::new(1280, 720), first: 0, last: 31, rate: 25.0, cells: UVec2::new(4, 8) }
     }
@@ -62,11 +62,11 @@ pub const MOST_PIXELS: u32 = 8192;
 
 /// Export jobs, and the state of the export dialog.
 pub struct ExportJob {
-    worker: Worker<Done>,
+    worker: Worker<ExportResult>,
     progress: Arc<Progress>,
     pub is_open: bool,
     pub product: ExportKind,
-    pub order: Order,
+    pub options: ExportOptions,
     /// Search text for the field to vary.
     pub wanted: String,
     /// Finished sheet that is shown.
@@ -89,7 +89,7 @@ struct Progress {
     is_stopped: AtomicBool,
 }
 
-enum Done {
+enum ExportResult {
     Written(PathBuf),
     Sheet(RgbImage, PathBuf),
     Failed(Error),
@@ -108,7 +108,7 @@ impl ExportJob {
             progress: Arc::default(),
             is_open: false,
             product: ExportKind::Sequence,
-            order: Order::default(),
+            options: ExportOptions::default(),
             wanted: String::new(),
             sheet: None,
         })
@@ -128,18 +128,18 @@ impl ExportJob {
     /// Starts an export of the current view.
     pub fn begin(&mut self, product: ExportKind, session: &mut Session) {
         if self.worker.is_busy() {
-            return session.messages.complain("export", "an export is running; stop it or wait for it");
+            return session.messages.error("export", "an export is running; stop it or wait for it");
         }
-        let mut size = self.order.size;
+        let mut size = self.options.size;
         if product == ExportKind::Image {
             // A single image has the aspect ratio of the viewport.
-            size.x = ((size.y as f32 * session.show.aspect).round() as u32).clamp(1, MOST_PIXELS);
+            size.x = ((size.y as f32 * session.view.aspect).round() as u32).clamp(1, MOST_PIXELS);
         }
         let shot = session.shot(size);
-        let place = Place::new(session.document.path(), &shot.preset);
+        let place = ExportPath::new(session.document.path(), &shot.preset);
         let progress = Arc::<Progress>::default();
         self.progress = Arc::clone(&progress);
-        let (order, shaders) = (self.order.clone(), session.shaders.clone());
+        let (options, shaders) = (self.options.clone(), session.shaders.clone());
         self.worker.submit(move |ticket| {
             let go_on = |done, count| {
                 progress.done.store(done, Ordering::Relaxed);
@@ -147,8 +147,8 @@ impl ExportJob {
                 !progress.is_stopped.load(Ordering::Relaxed) && !ticket.is_cancelled()
             };
             let made = Backend::open(shaders.as_ref())
-                .and_then(|backend| make(&backend, &product, &shot, &order, &place, &Watch::Caller(&go_on)));
-            made.unwrap_or_else(Done::Failed)
+                .and_then(|backend| make(&backend, &product, &shot, &options, &place, &Watch::Caller(&go_on)));
+            made.unwrap_or_else(ExportResult::Failed)
         });
     }
 
@@ -160,7 +160,7 @@ impl ExportJob {
     /// Writes the shown sheet to its file and closes it.
     pub fn save_sheet(&mut self) {
         if let Some(Sheet { picture, path, .. }) = self.sheet.take() {
-            self.worker.submit(move |_| write(path, picture).unwrap_or_else(Done::Failed));
+            self.worker.submit(move |_| write(path, picture).unwrap_or_else(ExportResult::Failed));
         }
     }
 
@@ -168,22 +168,24 @@ impl ExportJob {
     pub fn advance(&mut self, session: &mut Session) {
         while let Some(done) = self.worker.poll() {
             match done {
-                Some(Done::Written(path)) => session.messages.say("export", format!("written: {}", path.display())),
-                Some(Done::Sheet(picture, path)) => self.sheet = Some(Sheet { picture, path, texture: None }),
-                Some(Done::Failed(error)) => session.messages.complain("export", error),
-                None => session.messages.complain("export", "nothing exported: internal error on the export thread"),
+                Some(ExportResult::Written(path)) => {
+                    session.messages.info("export", format!("written: {}", path.display()))
+                }
+                Some(ExportResult::Sheet(picture, path)) => self.sheet = Some(Sheet { picture, path, texture: None }),
+                Some(ExportResult::Failed(error)) => session.messages.error("export", error),
+                None => session.messages.error("export", "nothing exported: internal error on the export thread"),
             }
         }
     }
 }
 
 /// Folder and name prefix of exported files.
-struct Place {
+struct ExportPath {
     folder: PathBuf,
     stem: String,
 }
 
-impl Place {
+impl ExportPath {
     /// Uses the folder of the preset's file, and the preset's name and time.
     fn new(document: &Path, preset: &Preset) -> Self {
         let plain = |c: char| if c.is_alphanumeric() || c == '-' { c } else { '_' };
@@ -205,20 +207,20 @@ impl Place {
     }
 }
 
-fn write(path: PathBuf, picture: RgbImage) -> Result<Done, Error> {
+fn write(path: PathBuf, picture: RgbImage) -> Result<ExportResult, Error> {
     write_png(&path, &picture.into(), CompressionEffort::Quick)?;
-    Ok(Done::Written(path))
+    Ok(ExportResult::Written(path))
 }
 
 fn make(
     backend: &Backend,
     product: &ExportKind,
     shot: &Shot,
-    order: &Order,
-    place: &Place,
+    options: &ExportOptions,
+    place: &ExportPath,
     watch: &Watch<'_>,
-) -> Result<Done, Error> {
-    let frames = Frames { range: order.first..=order.last.max(order.first), rate: order.rate };
+) -> Result<ExportResult, Error> {
+    let frames = Frames { range: options.first..=options.last.max(options.first), rate: options.rate };
     let sheet = |name: &str, cells: Vec<(String, Shot)>| {
         let path = place.free(name, ".png");
         let columns = render_job::columns(cells.len());
@@ -227,7 +229,7 @@ fn make(
         let cells: Vec<_> = cells.into_iter().map(small).collect();
         let mut sheet = render_job::sheet(backend, &cells, columns, &path, watch)?;
         sheet.add_footer(&format!("{name}; {}, {}", shot.preset.name, backend.description()));
-        Ok(Done::Sheet(sheet.picture, path))
+        Ok(ExportResult::Sheet(sheet.picture, path))
     };
     match product {
         ExportKind::Image => {
@@ -240,17 +242,17 @@ fn make(
             file_io::make_folder(&folder)?;
             let names = FrameNames::parse(&folder.join("%04d.png"))?;
             render_job::sequence(backend, shot, &frames, &names, CompressionEffort::Quick, watch)?;
-            Ok(Done::Written(folder))
+            Ok(ExportResult::Written(folder))
         }
         ExportKind::Flipbook => {
-            render_job::check_flipbook(shot.size, &frames, order.cells)?;
+            render_job::check_flipbook(shot.size, &frames, options.cells)?;
             let path = place.free("flipbook", ".png");
-            write(path.clone(), render_job::flipbook(backend, shot, &frames, order.cells, &path, watch)?)
+            write(path.clone(), render_job::flipbook(backend, shot, &frames, options.cells, &path, watch)?)
         }
         ExportKind::Gif => {
             let path = place.free("", ".gif");
             render_job::gif(backend, shot, &frames, &path, watch)?;
-            Ok(Done::Written(path))
+            Ok(ExportResult::Written(path))
         }
         ExportKind::DebugView => sheet("shade_tree", shade_tree::stages(shot)),
         ExportKind::Seeds => sheet("seeds", seeds(shot)),
@@ -281,14 +283,14 @@ fn seeds(shot: &Shot) -> Vec<(String, Shot)> {
 fn variations(shot: &Shot, path: &str) -> Vec<(String, Shot)> {
     let with = |text: String| {
         let mut shot = shot.clone();
-        match Made::find(path) {
+        match MacroParam::find(path) {
             Some((system, made)) => (made.set)(shot.preset.systems.get_mut(system)?, text.parse().ok()?),
             None => drop(set_field(&mut shot.preset, path, &text).ok()?),
         }
         shot.preset.validate().ok()?;
         Some((text, shot))
     };
-    spread(&shot.preset, path).into_iter().filter_map(with).collect()
+    spread_values(&shot.preset, path).into_iter().filter_map(with).collect()
 }
 
 #[cfg(test)]

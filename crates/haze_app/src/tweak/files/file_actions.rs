@@ -7,18 +7,18 @@ use eframe::egui;
 use haze::Error;
 use haze::preset::AssetFolders;
 
-use super::dropped_image::Dropped;
+use super::dropped_image::DroppedImage;
 use crate::tweak::document::{Document, OnDisk, Saving};
-use crate::tweak::platform::asset_loading::{self, Loaded};
+use crate::tweak::platform::asset_loading::{self, LoadedAssets};
 use crate::tweak::platform::clock::{Duration, Instant, sleep};
 use crate::tweak::platform::file_dialog::{Answer, Dialogs, Purpose};
 use crate::tweak::platform::worker::Worker;
 use crate::tweak::session::Session;
-use crate::tweak::session::messages::short;
+use crate::tweak::session::messages::truncate_middle;
 
 /// State of the File menu's actions.
 pub struct FileActions {
-    worker: Worker<Done>,
+    worker: Worker<FileResult>,
     dialogs: Dialogs,
     /// Purpose of the open dialog.
     purpose: Purpose,
@@ -27,38 +27,38 @@ pub struct FileActions {
     /// Action that follows a successful save.
     then: Option<AfterUnsaved>,
     /// Path that the user types, on systems without file dialogs.
-    pub typed: Option<Typed>,
+    pub typed: Option<TypedPath>,
     /// The window may close without a question about unsaved work.
-    is_over: bool,
+    may_close: bool,
     /// The window closes as soon as the sprite that is being baked is written.
     closes_after_baking: bool,
     title: String,
 }
 
 /// Longest wait for the file thread at exit.
-const LONGEST: Duration = Duration::from_millis(500);
+const MAX_SAVE_WAIT: Duration = Duration::from_millis(500);
 
 /// Action that ends the work on the document.
 pub enum AfterUnsaved {
     /// Shows another document.
-    Show(Box<Document>, Loaded),
+    Show(Box<Document>, LoadedAssets),
     Close,
 }
 
 /// Path that is being typed.
-pub struct Typed {
+pub struct TypedPath {
     pub purpose: Purpose,
     pub text: String,
 }
 
 /// Result from the file thread.
-enum Done {
-    Opened(Box<Document>, Loaded),
+enum FileResult {
+    Opened(Box<Document>, LoadedAssets),
     /// Image for the system of this index.
-    Dropped(usize, Dropped),
+    Dropped(usize, DroppedImage),
     Saved(Box<Saving>, Result<(), Error>),
     /// The window layout was written.
-    Remembered(Result<(), Error>),
+    LayoutWritten(Result<(), Error>),
     Failed(Error),
 }
 
@@ -78,7 +78,7 @@ impl FileActions {
             waiting: None,
             then: None,
             typed: None,
-            is_over: false,
+            may_close: false,
             closes_after_baking: false,
             title: String::new(),
         })
@@ -94,21 +94,21 @@ impl FileActions {
         }
         while let Some(done) = self.worker.poll() {
             match done {
-                Some(Done::Opened(document, loaded)) => {
+                Some(FileResult::Opened(document, loaded)) => {
                     self.begin_or_ask(AfterUnsaved::Show(document, loaded), session)
                 }
-                Some(Done::Saved(saving, done)) => self.saved(*saving, done, session),
-                Some(Done::Dropped(system, dropped)) => {
-                    match dropped.apply(&mut session.document.preset, system, session.show.size) {
-                        Ok(said) => session.messages.say("file", said),
-                        Err(error) => session.messages.complain("file", error),
+                Some(FileResult::Saved(saving, done)) => self.saved(*saving, done, session),
+                Some(FileResult::Dropped(system, dropped)) => {
+                    match dropped.apply(&mut session.document.preset, system, session.view.size) {
+                        Ok(said) => session.messages.info("file", said),
+                        Err(error) => session.messages.error("file", error),
                     }
                 }
-                Some(Done::Remembered(Ok(()))) => session.messages.withdraw("remembered"),
-                Some(Done::Remembered(Err(error))) => session.messages.complain("remembered", error),
-                Some(Done::Failed(error)) => session.messages.complain("file", error),
+                Some(FileResult::LayoutWritten(Ok(()))) => session.messages.clear("remembered"),
+                Some(FileResult::LayoutWritten(Err(error))) => session.messages.error("remembered", error),
+                Some(FileResult::Failed(error)) => session.messages.error("file", error),
                 None => {
-                    session.messages.complain("file", "file not read or written: internal error");
+                    session.messages.error("file", "file not read or written: internal error");
                 }
             }
         }
@@ -118,14 +118,14 @@ impl FileActions {
         }
         let is_baking = session.sprites.is_baking();
         let is_asked_to_close = context.input(|input| input.viewport().close_requested());
-        if self.is_over || self.closes_after_baking && !is_baking {
+        if self.may_close || self.closes_after_baking && !is_baking {
             self.closes_after_baking = false;
             context.send_viewport_cmd(egui::ViewportCommand::Close);
         } else if is_asked_to_close && is_baking && !self.closes_after_baking {
             // A second request closes without waiting; the sprite file then stays as it was.
             context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.closes_after_baking = true;
-            session.messages.say("file", "a sprite is being baked: the window closes when it is written");
+            session.messages.info("file", "a sprite is being baked: the window closes when it is written");
         } else if is_asked_to_close
             && (session.document.is_dirty() || session.document.is_being_saved())
             && session.screenshot.is_none()
@@ -135,7 +135,7 @@ impl FileActions {
             *when = Some(AfterUnsaved::Close);
         }
         let mark = if session.document.is_dirty() { "* " } else { "" };
-        let title = format!("{mark}{} - haze", short(&session.document.title(), 80));
+        let title = format!("{mark}{} - haze", truncate_middle(&session.document.title(), 80));
         if title != self.title {
             context.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.title = title;
@@ -145,12 +145,12 @@ impl FileActions {
     /// Handles a file dropped on the window: a preset to open, or an image for the shown system.
     fn take(&self, path: PathBuf, session: &Session) {
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-            let (folders, index) = (session.folders(), session.show.system);
+            let (folders, index) = (session.folders(), session.view.system);
             let system = session.document.preset.systems.get(index);
             let material = system.map(|system| system.material.clone()).unwrap_or_default();
-            self.worker.submit(move |_| match Dropped::read(&path, &folders, &material) {
-                Ok(dropped) => Done::Dropped(index, dropped),
-                Err(error) => Done::Failed(error),
+            self.worker.submit(move |_| match DroppedImage::read(&path, &folders, &material) {
+                Ok(dropped) => FileResult::Dropped(index, dropped),
+                Err(error) => FileResult::Failed(error),
             });
         } else {
             self.open(path, session);
@@ -158,14 +158,14 @@ impl FileActions {
     }
 
     /// Runs a write that does not concern the preset on the file thread.
-    pub fn remember(&self, write: impl FnOnce() -> Result<(), Error> + Send + 'static) {
-        self.worker.submit(move |_| Done::Remembered(write()));
+    pub fn write_in_background(&self, write: impl FnOnce() -> Result<(), Error> + Send + 'static) {
+        self.worker.submit(move |_| FileResult::LayoutWritten(write()));
     }
 
-    /// Waits at exit for pending writes, but no longer than [`LONGEST`].
+    /// Waits at exit for pending writes, but no longer than [`MAX_SAVE_WAIT`].
     pub fn finish(&self) {
         let begun = Instant::now();
-        while self.worker.is_busy() && begun.elapsed() < LONGEST {
+        while self.worker.is_busy() && begun.elapsed() < MAX_SAVE_WAIT {
             sleep(Duration::from_millis(5));
         }
     }
@@ -174,8 +174,8 @@ impl FileActions {
     pub fn open(&self, path: PathBuf, session: &Session) {
         let assets = session.assets.clone();
         self.worker.submit(move |_| match load(&path, assets) {
-            Ok((document, loaded)) => Done::Opened(Box::new(document), loaded),
-            Err(error) => Done::Failed(error),
+            Ok((document, loaded)) => FileResult::Opened(Box::new(document), loaded),
+            Err(error) => FileResult::Failed(error),
         });
     }
 
@@ -185,8 +185,8 @@ impl FileActions {
 
     fn begin(&mut self, next: AfterUnsaved, session: &mut Session) {
         match next {
-            AfterUnsaved::Show(document, loaded) => session.put(*document, loaded),
-            AfterUnsaved::Close => self.is_over = true,
+            AfterUnsaved::Show(document, loaded) => session.replace_document(*document, loaded),
+            AfterUnsaved::Close => self.may_close = true,
         }
     }
 
@@ -212,7 +212,7 @@ impl FileActions {
     /// Saves the document, or asks for a path if it is a built-in preset.
     pub fn save(&mut self, session: &mut Session) {
         if session.document.is_being_saved() {
-            return session.messages.say("file", "a save is already running");
+            return session.messages.info("file", "a save is already running");
         }
         if session.document.is_built_in() {
             return self.save_as(session);
@@ -220,7 +220,7 @@ impl FileActions {
         if session.document.on_disk() == OnDisk::Changed {
             session.is_changed_on_disk = true;
             self.then = None;
-            return session.messages.complain("file", "not saved: the file has changed on disk; choose a version");
+            return session.messages.error("file", "not saved: the file has changed on disk; choose a version");
         }
         let begun = session.document.begin_saving();
         self.write(begun, session);
@@ -232,12 +232,12 @@ impl FileActions {
             Ok(saving) => {
                 self.worker.submit(move |_| {
                     let done = saving.write();
-                    Done::Saved(Box::new(saving), done)
+                    FileResult::Saved(Box::new(saving), done)
                 });
             }
             Err(error) => {
                 self.then = None;
-                session.messages.complain("file", error);
+                session.messages.error("file", error);
             }
         }
     }
@@ -254,12 +254,12 @@ impl FileActions {
         match done {
             Ok(()) => {
                 session.is_changed_on_disk = false;
-                session.messages.withdraw("preset");
-                session.messages.say("file", format!("saved: {path}"));
+                session.messages.clear("preset");
+                session.messages.info("file", format!("saved: {path}"));
                 // The document may have been changed during the save.
                 then.into_iter().for_each(|next| self.begin_or_ask(next, session));
             }
-            Err(error) => session.messages.complain("file", error),
+            Err(error) => session.messages.error("file", error),
         }
     }
 
@@ -275,7 +275,7 @@ impl FileActions {
             Purpose::Open => String::new(),
             Purpose::SaveAs => suggested(session).display().to_string(),
         };
-        self.typed = Some(Typed { purpose, text });
+        self.typed = Some(TypedPath { purpose, text });
     }
 
     /// Handles the typed path; `None` cancels.
@@ -305,7 +305,7 @@ fn suggested(session: &Session) -> PathBuf {
     if document.is_built_in() { document.path().with_extension("json") } else { document.path().into() }
 }
 
-fn load(path: &Path, assets: Option<PathBuf>) -> Result<(Document, Loaded), Error> {
+fn load(path: &Path, assets: Option<PathBuf>) -> Result<(Document, LoadedAssets), Error> {
     let document = Document::open(path)?;
     let folders = AssetFolders::beside(path).with_shared(assets);
     let loaded = asset_loading::all(&document.preset, path, &folders)?;

@@ -16,24 +16,24 @@ use haze_demo::shot::Shot;
 use crate::inputs::picture_files;
 use crate::recipe::recipe_paths;
 use crate::tweak::document::OnDisk;
-use crate::tweak::document::loaded_materials::{Pictures, names};
-use crate::tweak::document::loaded_particles::{Caches, paths};
+use crate::tweak::document::loaded_materials::{LoadedMaterials, names};
+use crate::tweak::document::loaded_particles::{LoadedParticles, paths};
 use crate::tweak::document::sprite_edits::sprite_source::detail_of;
 use crate::tweak::platform::asset_loading;
 use crate::tweak::platform::file_io::Watcher;
 use crate::tweak::platform::worker::{Ticket, Worker};
 use crate::tweak::session::Session;
-use crate::tweak::viewport_renderer::Easel;
+use crate::tweak::viewport_renderer::ViewportRenderer;
 
 /// Watches the files of a session.
 pub struct HotReload {
     watcher: Watcher,
-    worker: Worker<Loaded>,
+    worker: Worker<ReloadResult>,
     /// Files that were last requested.
-    asked: Asked,
+    requested_files: Asked,
     /// Loads in progress.
     pictures: Option<Ticket>,
-    caches: Option<Ticket>,
+    particle_files: Option<Ticket>,
     shaders: Option<Shaders>,
 }
 
@@ -48,9 +48,9 @@ struct Shaders {
 }
 
 /// Result from the worker thread.
-enum Loaded {
+enum ReloadResult {
     Pictures(Box<Preset>, Result<Vec<MaterialAssets>, Error>),
-    Caches(Box<Preset>, Result<Vec<Option<ParticleFrames>>, Error>),
+    ParticleFiles(Box<Preset>, Result<Vec<Option<ParticleFrames>>, Error>),
     /// With the files to watch.
     Shaders(Vec<PathBuf>, Result<(OffscreenContext, Sources), Error>),
 }
@@ -85,53 +85,53 @@ impl HotReload {
     pub fn new(
         session: &Session,
         shaders: &ShaderFolder,
-        easel: &Easel,
+        renderer: &ViewportRenderer,
         wake: impl Fn() + Send + Sync + 'static,
     ) -> Result<Self, Error> {
         let thread = |error| Error::Io { path: "a thread to follow files".into(), error };
         let wake = Arc::new(wake);
         let its = Arc::clone(&wake);
-        let mut reload = Self {
+        let mut hot_reload = Self {
             watcher: Watcher::new(move || its()).map_err(thread)?,
             worker: Worker::new("haze reload", move || wake()).map_err(thread)?,
-            asked: asked(session),
+            requested_files: requested_files(session),
             pictures: None,
-            caches: None,
+            particle_files: None,
             shaders: match shaders {
                 ShaderFolder::None => None,
                 ShaderFolder::Given(folder) | ShaderFolder::Checkout(folder) => Some(Shaders::new(folder)),
             },
         };
-        reload.watch(session);
+        hot_reload.watch(session);
         // Edited shaders must also be compiled for a new device.
         if matches!(shaders, ShaderFolder::Given(_)) || session.shaders.is_some() {
-            reload.check_shaders(session, easel);
+            hot_reload.check_shaders(session, renderer);
         }
         // Files may have been written after they were read and before they were watched.
-        reload.load_pictures(session);
-        reload.load_particle_files(session);
-        Ok(reload)
+        hot_reload.load_pictures(session);
+        hot_reload.load_particle_files(session);
+        Ok(hot_reload)
     }
 
     /// Handles changed files and finished loads. Call once a frame.
-    pub fn advance(&mut self, session: &mut Session, easel: &Easel) {
+    pub fn advance(&mut self, session: &mut Session, renderer: &ViewportRenderer) {
         if let Some(note) = self.watcher.note() {
-            session.messages.say("watch", note);
+            session.messages.info("watch", note);
         }
-        let now = asked(session);
-        if now != self.asked {
-            let has_caches = (&now.0, &now.2) != (&self.asked.0, &self.asked.2);
-            self.asked = now;
+        let now = requested_files(session);
+        if now != self.requested_files {
+            let has_particle_files = (&now.0, &now.2) != (&self.requested_files.0, &self.requested_files.2);
+            self.requested_files = now;
             self.watch(session);
             // Files may have been written after they were read and before they were watched.
             changed_on_disk(session);
-            look_again(session);
+            mark_edits_stale(session);
             self.load_pictures(session);
-            if has_caches {
+            if has_particle_files {
                 self.load_particle_files(session);
             }
         }
-        let (mut has_pictures, mut has_caches, mut has_shaders) = (false, false, false);
+        let (mut has_pictures, mut has_particle_files, mut has_shaders) = (false, false, false);
         for file in self.watcher.poll() {
             if self.shaders.as_ref().is_some_and(|shaders| shaders.files.contains(&file)) {
                 has_shaders = true;
@@ -139,26 +139,26 @@ impl HotReload {
                 changed_on_disk(session);
             } else if has_ending(&file, "png") {
                 has_pictures = true;
-                look_again(session);
+                mark_edits_stale(session);
             } else if has_ending(&file, "json") {
-                look_again(session);
+                mark_edits_stale(session);
             } else {
-                has_caches = true;
+                has_particle_files = true;
             }
         }
         if has_pictures {
             self.load_pictures(session);
         }
-        if has_caches {
+        if has_particle_files {
             // A sequence may have gained a frame, which must be watched too.
             self.watch(session);
             self.load_particle_files(session);
         }
         if has_shaders {
-            self.check_shaders(session, easel);
+            self.check_shaders(session, renderer);
         }
         while let Some(loaded) = self.worker.poll() {
-            self.put(loaded, session, easel);
+            self.put(loaded, session, renderer);
         }
     }
 
@@ -176,10 +176,10 @@ impl HotReload {
     fn load_pictures(&mut self, session: &Session) {
         let preset = Box::new(session.document.preset.clone());
         let path = session.document.path().to_owned();
-        let (old, folders) = (session.pictures.clone(), session.folders());
+        let (old, folders) = (session.loaded_materials.clone(), session.folders());
         let ticket = self.worker.submit(move |_| {
             let loaded = asset_loading::pictures(&preset, &path, &folders).map(|loaded| old.reuse_equal(loaded));
-            Loaded::Pictures(preset, loaded)
+            ReloadResult::Pictures(preset, loaded)
         });
         // Only the latest load counts.
         if let Some(before) = self.pictures.replace(ticket) {
@@ -193,17 +193,17 @@ impl HotReload {
         let (path, folders) = (session.document.path().to_owned(), session.folders());
         let ticket = self.worker.submit(move |_| {
             let loaded = asset_loading::particles(&preset, &path, &folders);
-            Loaded::Caches(preset, loaded)
+            ReloadResult::ParticleFiles(preset, loaded)
         });
-        if let Some(before) = self.caches.replace(ticket) {
+        if let Some(before) = self.particle_files.replace(ticket) {
             before.cancel();
         }
     }
 
     /// Compiles the shaders, and the pipelines that the preset needs, on the worker thread.
-    pub fn check_shaders(&mut self, session: &Session, easel: &Easel) {
+    pub fn check_shaders(&mut self, session: &Session, renderer: &ViewportRenderer) {
         let Some(shaders) = &mut self.shaders else { return };
-        let (folder, context) = (shaders.folder.clone(), easel.context());
+        let (folder, context) = (shaders.folder.clone(), renderer.context());
         let shot = session.shot(glam::UVec2::new(64, 36));
         let ticket = self.worker.submit(move |_| {
             let mut files = embedded_names(&folder);
@@ -214,43 +214,43 @@ impl HotReload {
                 // A file that could not be read is watched as well.
                 add(&mut files, path);
             }
-            Loaded::Shaders(files, checked)
+            ReloadResult::Shaders(files, checked)
         });
         if let Some(before) = shaders.checking.replace(ticket) {
             before.cancel();
         }
     }
 
-    fn put(&mut self, loaded: Option<Loaded>, session: &mut Session, easel: &Easel) {
+    fn put(&mut self, loaded: Option<ReloadResult>, session: &mut Session, renderer: &ViewportRenderer) {
         match loaded {
-            Some(Loaded::Pictures(preset, Ok(loaded))) => {
-                session.pictures = Pictures::new(&preset, loaded);
-                session.messages.withdraw("pictures");
+            Some(ReloadResult::Pictures(preset, Ok(loaded))) => {
+                session.loaded_materials = LoadedMaterials::new(&preset, loaded);
+                session.messages.clear("pictures");
             }
-            Some(Loaded::Caches(preset, Ok(loaded))) => {
-                session.caches = Caches::new(&preset, loaded);
-                session.messages.withdraw("caches");
+            Some(ReloadResult::ParticleFiles(preset, Ok(loaded))) => {
+                session.particle_files = LoadedParticles::new(&preset, loaded);
+                session.messages.clear("caches");
             }
-            Some(Loaded::Caches(_, Err(error))) => session.messages.complain("caches", error),
+            Some(ReloadResult::ParticleFiles(_, Err(error))) => session.messages.error("caches", error),
             // The bake writes it, and then it is read again.
-            Some(Loaded::Pictures(_, Err(_))) if session.sprites.is_baking() => {}
-            Some(Loaded::Pictures(_, Err(error))) => session.messages.complain("pictures", error),
-            Some(Loaded::Shaders(files, checked)) => {
+            Some(ReloadResult::Pictures(_, Err(_))) if session.sprites.is_baking() => {}
+            Some(ReloadResult::Pictures(_, Err(error))) => session.messages.error("pictures", error),
+            Some(ReloadResult::Shaders(files, checked)) => {
                 if let Some(shaders) = &mut self.shaders {
                     shaders.files = files;
                 }
                 self.watch(session);
-                let put = checked.and_then(|(context, sources)| easel.set_context(context).map(|()| sources));
+                let put = checked.and_then(|(context, sources)| renderer.replace_context(context).map(|()| sources));
                 match put {
                     Ok(sources) => {
                         session.shaders = Some(sources);
-                        session.messages.withdraw("shaders");
+                        session.messages.clear("shaders");
                     }
-                    Err(error) => session.messages.complain("shaders", error),
+                    Err(error) => session.messages.error("shaders", error),
                 }
             }
             None => {
-                session.messages.complain("reload", "a changed file was not loaded: internal error");
+                session.messages.error("reload", "a changed file was not loaded: internal error");
             }
         }
     }
@@ -262,7 +262,7 @@ impl Shaders {
     }
 }
 
-fn asked(session: &Session) -> Asked {
+fn requested_files(session: &Session) -> Asked {
     let preset = &session.document.preset;
     (session.document.path().to_owned(), names(preset), paths(preset))
 }
@@ -294,9 +294,9 @@ fn add(files: &mut Vec<PathBuf>, path: &Path) {
 }
 
 /// Marks ramps and sprites to be compared with their files.
-fn look_again(session: &mut Session) {
-    session.ramps.look_again();
-    session.sprites.look_again();
+fn mark_edits_stale(session: &mut Session) {
+    session.ramps.mark_stale();
+    session.sprites.mark_stale();
 }
 
 fn has_ending(file: &Path, ending: &str) -> bool {
@@ -308,11 +308,11 @@ fn changed_on_disk(session: &mut Session) {
     match session.document.on_disk() {
         OnDisk::Same => {
             session.is_changed_on_disk = false;
-            session.messages.withdraw("preset");
+            session.messages.clear("preset");
         }
         OnDisk::Gone => {
             let name = session.document.path().display();
-            session.messages.complain("preset", format!("{name}: the file is gone; Save writes it again"));
+            session.messages.error("preset", format!("{name}: the file is gone; Save writes it again"));
         }
         OnDisk::Changed if session.document.is_dirty() => session.is_changed_on_disk = true,
         OnDisk::Changed => session.revert(),

@@ -17,27 +17,27 @@ use crate::tweak::platform::{asset_loading, file_io};
 pub const SIZE: UVec2 = UVec2::new(160, 90);
 
 /// Largest number of files that are listed.
-const MOST: usize = 200;
+const MAX_PRESETS: usize = 200;
 
 /// List of presets that the user can open.
 pub struct PresetThumbnails {
     worker: Worker<(PathBuf, Result<Drawn, Error>)>,
-    pub entries: Vec<Entry>,
+    pub entries: Vec<PresetEntry>,
     tickets: Vec<Ticket>,
 }
 
 /// Preset in the list.
-pub struct Entry {
+pub struct PresetEntry {
     /// Path of a file, or name of a built-in preset.
     pub path: PathBuf,
     /// Stamp of the file when it was rendered.
     stamp: Option<Stamp>,
     /// `None` until it is rendered.
-    pub shown: Option<Shown>,
+    pub shown: Option<PresetThumbnail>,
 }
 
 /// Rendered preset.
-pub struct Shown {
+pub struct PresetThumbnail {
     pub name: String,
     pub description: String,
     pub picture: egui::TextureHandle,
@@ -69,7 +69,7 @@ impl PresetThumbnails {
             // Other JSON files are recipes, such as a.ramp.json.
             name.ends_with(".json") && name.matches('.').count() == 1
         };
-        let files = file_io::list(folder).into_iter().filter(is_preset).take(MOST);
+        let files = file_io::list(folder).into_iter().filter(is_preset).take(MAX_PRESETS);
         let mut known = std::mem::take(&mut self.entries);
         self.tickets.drain(..).for_each(|ticket| ticket.cancel());
         for path in built_in.chain(files) {
@@ -80,7 +80,7 @@ impl PresetThumbnails {
                 self.entries.push(known.swap_remove(same));
                 continue;
             }
-            self.entries.push(Entry { path: path.clone(), stamp, shown: None });
+            self.entries.push(PresetEntry { path: path.clone(), stamp, shown: None });
             let assets = assets.map(Path::to_owned);
             let job = move |_: &Ticket| (path.clone(), draw(&path, assets));
             self.tickets.push(self.worker.submit(job));
@@ -95,7 +95,7 @@ impl PresetThumbnails {
                 Ok(drawn) => {
                     let picture = egui::ColorImage::from_rgb([SIZE.x as usize, SIZE.y as usize], &drawn.picture);
                     let picture = context.load_texture(drawn.name.clone(), picture, egui::TextureOptions::LINEAR);
-                    let shown = Shown { name: drawn.name, description: drawn.description, picture };
+                    let shown = PresetThumbnail { name: drawn.name, description: drawn.description, picture };
                     if let Some(entry) = self.entries.iter_mut().find(|entry| entry.path == path) {
                         entry.shown = Some(shown);
                     }

@@ -6,8 +6,8 @@ use glam::Vec3;
 use haze::preset::Preset;
 use haze::settings::{Choice, FieldVisitor, Fields, field_path};
 
-use crate::tweak::session::macro_param::Made;
-use crate::tweak::session::slider_range::{is_wide, reach};
+use crate::tweak::session::macro_param::MacroParam;
+use crate::tweak::session::slider_range::{needs_log_slider, slider_range};
 
 /// Name on the path to a field, with an index if it is in a list.
 type Step = (&'static str, Option<usize>);
@@ -15,14 +15,14 @@ type Step = (&'static str, Option<usize>);
 /// Returns values of a field as texts. For a number, five values over the range of its slider, or from a quarter to
 /// four times its value if that range is too wide. For a choice, all choices; for a flag, both states. Empty for other
 /// fields.
-pub fn spread(preset: &Preset, path: &str) -> Vec<String> {
-    if let Some((_, made)) = Made::find(path) {
+pub fn spread_values(preset: &Preset, path: &str) -> Vec<String> {
+    if let Some((_, made)) = MacroParam::find(path) {
         let (low, high) = made.usual;
-        return five(low, low, high, false).map(text).into();
+        return five_values(low, low, high, false).map(text).into();
     }
-    let mut spread = ValueSpread { wanted: path, path: Vec::new(), texts: Vec::new() };
-    preset.clone().visit(&mut spread);
-    spread.texts
+    let mut visitor = ValueSpread { wanted: path, path: Vec::new(), texts: Vec::new() };
+    preset.clone().visit(&mut visitor);
+    visitor.texts
 }
 
 struct ValueSpread<'a> {
@@ -51,10 +51,10 @@ impl ValueSpread<'_> {
 /// Positions of the five values in the range, 0 to 1.
 const PLACES: [f32; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
-fn five(value: f32, low: f32, high: f32, is_wide: bool) -> [f32; 5] {
+fn five_values(value: f32, low: f32, high: f32, needs_log_slider: bool) -> [f32; 5] {
     /// Values for a field that is 0.
     const STEPS: [f32; 5] = [0.0, 0.25, 0.5, 1.0, 2.0];
-    if !is_wide {
+    if !needs_log_slider {
         return PLACES.map(|place| low + place * (high - low));
     }
     let size = value.abs();
@@ -73,14 +73,17 @@ fn text(number: f32) -> String {
 
 impl FieldVisitor for ValueSpread<'_> {
     fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, _: &'static str) {
-        let (shown, is_wide) = reach(&range, *value);
-        let (low, high) = if is_wide { range.into_inner() } else { shown.into_inner() };
-        self.offer(name, five(*value, low, high, is_wide).map(text));
+        let (shown, needs_log_slider) = slider_range(&range, *value);
+        let (low, high) = if needs_log_slider { range.into_inner() } else { shown.into_inner() };
+        self.offer(name, five_values(*value, low, high, needs_log_slider).map(text));
     }
 
     fn integer(&mut self, name: &'static str, value: &mut u32, range: RangeInclusive<u32>, _: &'static str) {
         let (low, high) = (*range.start() as f32, *range.end() as f32);
-        self.offer(name, five(*value as f32, low, high, is_wide(&range)).map(|number| number.round().to_string()));
+        self.offer(
+            name,
+            five_values(*value as f32, low, high, needs_log_slider(&range)).map(|number| number.round().to_string()),
+        );
     }
 
     fn vector(&mut self, _: &'static str, _: &mut Vec3, _: RangeInclusive<f32>, _: &'static str) {}

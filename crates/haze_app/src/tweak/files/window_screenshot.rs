@@ -28,7 +28,7 @@ impl Screenshot {
         let taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner).take();
         if let Some(picture) = taken {
             if let Err(error) = write(&path, &picture) {
-                session.messages.complain("screenshot", error);
+                session.messages.error("screenshot", error);
             }
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
         } else if self.frames == SETTLED {

@@ -4,7 +4,7 @@ use eframe::egui::{self, Button, Ui};
 
 use crate::tweak::session::Session;
 use crate::tweak::session::action::{Action, keys_of};
-use crate::tweak::session::comparison::{Against, COMPARE_OPTIONS, CompareOption};
+use crate::tweak::session::comparison::{COMPARE_OPTIONS, CompareOption, CompareWith};
 
 /// Gap between buttons of one choice, points.
 const GAP: f32 = 2.0;
@@ -21,7 +21,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, room: f32) {
     let against = session.compare.against.as_ref();
     let is_in_row =
         has_row && against.is_some_and(|against| COMPARE_OPTIONS.iter().any(|offer| offer.against == *against));
-    let name = against.filter(|_| !is_in_row).map_or("Compare", Against::name);
+    let name = against.filter(|_| !is_in_row).map_or("Compare", CompareWith::name);
     ui.menu_button(name, |ui| {
         menu(ui, session);
         if !has_tools && session.compare.against.is_some() {
@@ -48,16 +48,16 @@ pub fn panel(ui: &mut Ui, session: &mut Session, room: f32) {
     }
 }
 
-fn keys(ui: &Ui, against: &'static Against) -> String {
+fn keys(ui: &Ui, against: &'static CompareWith) -> String {
     keys_of(Action::Compare(against)).map_or(String::new(), |keys| ui.ctx().format_shortcut(&keys))
 }
 
 /// Draws the menu of all comparisons.
 fn menu(ui: &mut Ui, session: &mut Session) {
-    let kept = Against::Kept(Box::new(session.document.preset.clone()));
+    let kept = CompareWith::Kept(Box::new(session.document.preset.clone()));
     let compare = &mut session.compare;
-    let mut entry = |ui: &mut Ui, against: Option<Against>, name: &str, tooltip: &str, keys: String| {
-        let kind = |against: &Option<Against>| against.as_ref().map(std::mem::discriminant);
+    let mut entry = |ui: &mut Ui, against: Option<CompareWith>, name: &str, tooltip: &str, keys: String| {
+        let kind = |against: &Option<CompareWith>| against.as_ref().map(std::mem::discriminant);
         let button = Button::selectable(kind(&compare.against) == kind(&against), name);
         let button = if keys.is_empty() { button } else { button.shortcut_text(keys) };
         if ui.add(button).on_hover_text(tooltip).clicked() {
@@ -92,7 +92,7 @@ fn tools(ui: &mut Ui, session: &mut Session) {
     }
     if ui.button("Swap").on_hover_text("Swaps the two: the second is edited, beside the present settings").clicked() {
         session.compare.against =
-            Some(Against::Kept(Box::new(std::mem::replace(&mut session.document.preset, second))));
+            Some(CompareWith::Kept(Box::new(std::mem::replace(&mut session.document.preset, second))));
     }
 }
 

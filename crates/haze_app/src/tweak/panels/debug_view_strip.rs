@@ -7,7 +7,7 @@ use haze_demo::shot::Shot;
 
 use crate::shade_tree::STAGES;
 use crate::tweak::session::Session;
-use crate::tweak::viewport_renderer::Easel;
+use crate::tweak::viewport_renderer::ViewportRenderer;
 
 /// Height of a label, points.
 const NAME: f32 = 16.0;
@@ -16,7 +16,7 @@ const ARROW: f32 = 14.0;
 
 /// Draws the views side by side. A click shows a view in the viewport, a second click shows the final image again.
 /// `aspect` is the width of the viewport over its height.
-pub fn strip(ui: &mut Ui, session: &mut Session, easel: &Easel, aspect: f32) {
+pub fn debug_view_strip(ui: &mut Ui, session: &mut Session, renderer: &ViewportRenderer, aspect: f32) {
     let count = STAGES.len() as f32;
     let width = (ui.available_width() - (count - 1.0) * ARROW) / count;
     let height = (ui.available_height() - NAME).min(width / aspect);
@@ -30,14 +30,14 @@ pub fn strip(ui: &mut Ui, session: &mut Session, easel: &Easel, aspect: f32) {
     ui.spacing_mut().item_spacing = Vec2::ZERO;
     let arrow_width = (ui.available_width() - count * size.x) / (count - 1.0);
     ui.horizontal_top(|ui| {
-        for (index, (stage, label)) in STAGES.into_iter().enumerate() {
+        for (index, (view, label)) in STAGES.into_iter().enumerate() {
             if index > 0 {
                 arrow(ui, Vec2::new(arrow_width, size.y));
             }
             let (rect, response) = ui.allocate_exact_size(size + Vec2::new(0.0, NAME), Sense::click());
             let picture = egui::Rect::from_min_size(rect.min, size);
-            easel.show_stage(ui, picture, Shot { debug_view: stage, ..shot.clone() });
-            let is_shown = session.show.stage == stage;
+            renderer.show_debug_view(ui, picture, Shot { debug_view: view, ..shot.clone() });
+            let is_shown = session.view.debug_view == view;
             response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_shown, label));
             let visuals = ui.style().interact_selectable(&response, is_shown);
             if is_shown || response.hovered() || response.has_focus() {
@@ -51,9 +51,9 @@ pub fn strip(ui: &mut Ui, session: &mut Session, easel: &Easel, aspect: f32) {
             let text = text.into_galley(ui, wrap, name.width() + 0.9 * arrow_width, egui::TextStyle::Small);
             let at = egui::pos2(name.center().x - 0.5 * text.size().x, name.center().y - 0.5 * text.size().y);
             ui.painter().galley(at, text, visuals.text_color());
-            let tooltip = session.stages.choice("", stage.name()).unwrap_or(label);
+            let tooltip = session.debug_view_tooltips.choice("", view.name()).unwrap_or(label);
             if response.on_hover_text(tooltip).clicked() {
-                session.show.stage = if is_shown { DebugView::Final } else { stage };
+                session.view.debug_view = if is_shown { DebugView::Final } else { view };
             }
         }
     });
@@ -72,7 +72,7 @@ fn arrow(ui: &mut Ui, size: Vec2) {
 }
 
 /// Returns the view after one, cyclically.
-pub fn after(stage: DebugView) -> DebugView {
-    let at = STAGES.iter().position(|(one, _)| *one == stage).map_or(0, |at| at + 1);
+pub fn next_debug_view(view: DebugView) -> DebugView {
+    let at = STAGES.iter().position(|(one, _)| *one == view).map_or(0, |at| at + 1);
     STAGES[at % STAGES.len()].0
 }

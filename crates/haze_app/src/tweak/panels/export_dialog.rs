@@ -11,14 +11,14 @@ use crate::tweak::session::setting_search::matches;
 const CORNER: [f32; 2] = [24.0, 76.0];
 
 /// Draws the export dialog and the sheet while they are open.
-pub fn panel(ui: &Ui, exporting: &mut ExportJob, session: &mut Session) {
-    exporting.advance(session);
-    let progress = exporting.progress();
+pub fn panel(ui: &Ui, export_job: &mut ExportJob, session: &mut Session) {
+    export_job.advance(session);
+    let progress = export_job.progress();
     if progress.is_some() {
         // Progress needs frames, but no more than it changes.
         ui.ctx().request_repaint_after(Duration::from_millis(200));
     }
-    let mut is_open = exporting.is_open;
+    let mut is_open = export_job.is_open;
     let window = egui::Window::new("Export").default_pos(CORNER).collapsible(false).resizable(false);
     // A long export is always shown and can be stopped, even if it was started from elsewhere.
     let is_long = progress.is_some_and(|(_, count)| count > 1);
@@ -28,17 +28,17 @@ pub fn panel(ui: &Ui, exporting: &mut ExportJob, session: &mut Session) {
             let share = done as f32 / count.max(1) as f32;
             ui.add(egui::ProgressBar::new(share).text(format!("{done} of {count}")));
             if ui.button("Stop").on_hover_text("Files that are already written are complete").clicked() {
-                exporting.stop();
+                export_job.stop();
             }
         }
-        None => order(ui, exporting, session),
+        None => order(ui, export_job, session),
     });
-    exporting.is_open = is_open;
-    sheet(ui, exporting);
+    export_job.is_open = is_open;
+    sheet(ui, export_job);
 }
 
-fn order(ui: &mut Ui, exporting: &mut ExportJob, session: &mut Session) {
-    let values = match &exporting.product {
+fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
+    let values = match &export_job.product {
         ExportKind::Values(path) => path.clone(),
         _ => String::new(),
     };
@@ -52,10 +52,10 @@ fn order(ui: &mut Ui, exporting: &mut ExportJob, session: &mut Session) {
     ];
     ui.horizontal_wrapped(|ui| {
         for (name, product) in products {
-            ui.selectable_value(&mut exporting.product, product, name);
+            ui.selectable_value(&mut export_job.product, product, name);
         }
     });
-    let (product, order) = (&mut exporting.product, &mut exporting.order);
+    let (product, options) = (&mut export_job.product, &mut export_job.options);
     let is_moving = matches!(product, ExportKind::Sequence | ExportKind::Flipbook | ExportKind::Gif);
     egui::Grid::new("order").num_columns(2).show(ui, |ui| {
         let mut row = |name: &str, numbers: [(&mut u32, std::ops::RangeInclusive<u32>); 2]| {
@@ -67,23 +67,23 @@ fn order(ui: &mut Ui, exporting: &mut ExportJob, session: &mut Session) {
             });
             ui.end_row();
         };
-        row("Size", [(&mut order.size.x, 16..=MOST_PIXELS), (&mut order.size.y, 16..=MOST_PIXELS)]);
+        row("Size", [(&mut options.size.x, 16..=MOST_PIXELS), (&mut options.size.y, 16..=MOST_PIXELS)]);
         if is_moving {
-            row("Frames", [(&mut order.first, 0..=99_999), (&mut order.last, 0..=99_999)]);
+            row("Frames", [(&mut options.first, 0..=99_999), (&mut options.last, 0..=99_999)]);
         }
         if *product == ExportKind::Flipbook {
-            row("Rows, columns", [(&mut order.cells.x, 1..=64), (&mut order.cells.y, 1..=64)]);
+            row("Rows, columns", [(&mut options.cells.x, 1..=64), (&mut options.cells.y, 1..=64)]);
         }
         if is_moving {
             let label = ui.label("Frames per second").id;
-            ui.add(egui::DragValue::new(&mut order.rate).range(1.0..=50.0)).labelled_by(label);
+            ui.add(egui::DragValue::new(&mut options.rate).range(1.0..=50.0)).labelled_by(label);
             ui.end_row();
         }
     });
     if let ExportKind::Values(path) = product {
-        let edit = egui::TextEdit::singleline(&mut exporting.wanted).hint_text("Find a setting");
+        let edit = egui::TextEdit::singleline(&mut export_job.wanted).hint_text("Find a setting");
         ui.add(edit).widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "setting to vary"));
-        let found = matches(&session.document.preset, &session.tooltips, &session.show.lights, &exporting.wanted);
+        let found = matches(&session.document.preset, &session.tooltips, &session.view.lights, &export_job.wanted);
         for found in found.into_iter().take(6) {
             let is_chosen = found.path == *path;
             if ui.selectable_label(is_chosen, &found.path).on_hover_text(&found.tooltip).clicked() {
@@ -94,12 +94,12 @@ fn order(ui: &mut Ui, exporting: &mut ExportJob, session: &mut Session) {
     let is_ready = *product != ExportKind::Values(String::new());
     if ui.add_enabled(is_ready, egui::Button::new("Make")).clicked() {
         let product = product.clone();
-        exporting.begin(product, session);
+        export_job.begin(product, session);
     }
 }
 
-fn sheet(ui: &Ui, exporting: &mut ExportJob) {
-    let Some(Sheet { picture, texture, .. }) = &mut exporting.sheet else { return };
+fn sheet(ui: &Ui, export_job: &mut ExportJob) {
+    let Some(Sheet { picture, texture, .. }) = &mut export_job.sheet else { return };
     // Uploaded once.
     let texture = texture.get_or_insert_with(|| {
         let size = [picture.width() as usize, picture.height() as usize];
@@ -114,9 +114,9 @@ fn sheet(ui: &Ui, exporting: &mut ExportJob) {
         ui.add(egui::Image::new(&*texture).max_size(room).alt_text("sheet"));
     });
     if is_saved {
-        exporting.save_sheet();
+        export_job.save_sheet();
     }
     if is_saved || !is_open {
-        exporting.sheet = None;
+        export_job.sheet = None;
     }
 }

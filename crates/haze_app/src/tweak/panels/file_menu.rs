@@ -9,7 +9,7 @@ use crate::tweak::platform::file_dialog::Purpose;
 use crate::tweak::platform::file_io;
 use crate::tweak::session::Session;
 use crate::tweak::session::action::{ACTIONS, Action};
-use crate::tweak::session::messages::short;
+use crate::tweak::session::messages::truncate_middle;
 
 /// Draws the menu. Returns the chosen action.
 pub fn menu(ui: &mut Ui, session: &mut Session) -> Option<Action> {
@@ -50,19 +50,19 @@ pub fn menu(ui: &mut Ui, session: &mut Session) -> Option<Action> {
 }
 
 /// Asks about unsaved work, or for a path, while that is needed.
-pub fn questions(ui: &Ui, filing: &mut FileActions, session: &mut Session) {
-    if filing.waiting.is_some() {
-        unsaved(ui, filing, session);
+pub fn questions(ui: &Ui, file_actions: &mut FileActions, session: &mut Session) {
+    if file_actions.waiting.is_some() {
+        unsaved(ui, file_actions, session);
     }
-    if filing.typed.is_some() {
-        type_path(ui, filing, session);
+    if file_actions.typed.is_some() {
+        type_path(ui, file_actions, session);
     }
 }
 
-fn unsaved(ui: &Ui, filing: &mut FileActions, session: &mut Session) {
+fn unsaved(ui: &Ui, file_actions: &mut FileActions, session: &mut Session) {
     let mut answer = None;
     let response = egui::Modal::new(egui::Id::unique("unsaved")).show(ui.ctx(), |ui| {
-        ui.heading(format!("Save the changes of {}?", short(&session.document.preset.name, 60)));
+        ui.heading(format!("Save the changes of {}?", truncate_middle(&session.document.preset.name, 60)));
         ui.add_space(8.0);
         ui.horizontal(|ui| {
             for (text, value) in [("Save", Some(true)), ("Discard", Some(false)), ("Cancel", None)] {
@@ -73,13 +73,13 @@ fn unsaved(ui: &Ui, filing: &mut FileActions, session: &mut Session) {
         });
     });
     if let Some(is_saved) = answer.or(response.should_close().then_some(None)) {
-        filing.answer(is_saved, session);
+        file_actions.answer(is_saved, session);
         ui.ctx().request_repaint();
     }
 }
 
-fn type_path(ui: &Ui, filing: &mut FileActions, session: &mut Session) {
-    let Some(typed) = &mut filing.typed else { return };
+fn type_path(ui: &Ui, file_actions: &mut FileActions, session: &mut Session) {
+    let Some(typed) = &mut file_actions.typed else { return };
     let mut is_done = false;
     let response = egui::Modal::new(egui::Id::unique("path")).show(ui.ctx(), |ui| {
         ui.set_width(460.0);
@@ -96,7 +96,7 @@ fn type_path(ui: &Ui, filing: &mut FileActions, session: &mut Session) {
         edit.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "path"));
         edit.request_focus();
         if typed.purpose == Purpose::SaveAs {
-            ui.weak(format!("in {}", short(&folder_of(&typed.text), 80)));
+            ui.weak(format!("in {}", truncate_middle(&folder_of(&typed.text), 80)));
         }
         // Enter alone does not replace an existing file.
         let is_entered = button != "Replace" && ui.input(|input| input.key_pressed(Key::Enter));
@@ -104,10 +104,10 @@ fn type_path(ui: &Ui, filing: &mut FileActions, session: &mut Session) {
     });
     if is_done && !typed.text.is_empty() {
         let path = typed.text.clone();
-        filing.finish_typing(Some(Path::new(&path)), session);
+        file_actions.finish_typing(Some(Path::new(&path)), session);
         ui.ctx().request_repaint();
     } else if response.should_close() {
-        filing.finish_typing(None, session);
+        file_actions.finish_typing(None, session);
     }
 }
 

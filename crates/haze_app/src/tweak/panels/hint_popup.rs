@@ -4,7 +4,7 @@ use eframe::egui::{self, Align2, Pos2, Rect, Ui, Vec2, vec2};
 
 use crate::tweak::session::Session;
 use crate::tweak::session::action::{Action, keys_of};
-use crate::tweak::session::first_run_hints::{HINTS, Hint, Place, UserActivity};
+use crate::tweak::session::first_run_hints::{HINTS, Hint, UserActivity, WindowPart};
 use crate::tweak::session::view_options::Tab;
 
 /// Width of the text, points.
@@ -12,18 +12,21 @@ const WIDTH: f32 = 190.0;
 /// Distance to the part that it points at, and size of the arrow, points.
 const AWAY: f32 = 10.0;
 
-/// Draws the hint, away from the middle of the image. `presses`: a pointer button or the wheel is in use.
-/// `drags_light`: a light is being dragged.
-pub fn panel(ui: &Ui, session: &mut Session, presses: bool, drags_light: bool) {
-    let sees_look = session.show.tab == Tab::Look;
-    let (finds, sees_keys) = (session.search.is_open, session.show.help);
-    session.hints.follow(&session.document.preset, &UserActivity { presses, drags_light, sees_look, finds, sees_keys });
+/// Draws the hint, away from the middle of the image. `is_pressing`: a pointer button or the wheel is in use.
+/// `is_dragging_light`: a light is being dragged.
+pub fn panel(ui: &Ui, session: &mut Session, is_pressing: bool, is_dragging_light: bool) {
+    let is_look_visible = session.view.tab == Tab::Look;
+    let (is_searching, is_key_list_open) = (session.search.is_open, session.view.help);
+    session.hints.follow(
+        &session.document.preset,
+        &UserActivity { is_pressing, is_dragging_light, is_look_visible, is_searching, is_key_list_open },
+    );
     let Some((hint, at)) = session.hints.shown().filter(|(_, at)| at.is_positive()) else { return };
     let Some((_, _, text)) = HINTS.into_iter().find(|(of, ..)| *of == hint) else { return };
     let (corner, pivot, way) = match hint.place() {
-        Place::Image => (at.left_bottom() + vec2(AWAY, -AWAY), Align2::LEFT_BOTTOM, Vec2::UP),
-        Place::Settings => (at.left_top() + vec2(-AWAY, 64.0), Align2::RIGHT_TOP, Vec2::RIGHT),
-        Place::Find | Place::Keys => (at.right_bottom() + vec2(0.0, AWAY), Align2::RIGHT_TOP, Vec2::UP),
+        WindowPart::Image => (at.left_bottom() + vec2(AWAY, -AWAY), Align2::LEFT_BOTTOM, Vec2::UP),
+        WindowPart::Settings => (at.left_top() + vec2(-AWAY, 64.0), Align2::RIGHT_TOP, Vec2::RIGHT),
+        WindowPart::Find | WindowPart::Keys => (at.right_bottom() + vec2(0.0, AWAY), Align2::RIGHT_TOP, Vec2::UP),
     };
     let area = egui::Area::new(egui::Id::unique("hint")).fixed_pos(corner).pivot(pivot);
     let mut answer = None;
@@ -94,9 +97,9 @@ mod tests {
     /// Opens a window that persists its state in a folder.
     fn start(folder: &std::path::Path, size: Vec2, theme: Theme) -> Harness<'static, Window> {
         let mut session = Session::open("column".as_ref(), None).unwrap();
-        let keeping = Some(Persistence::new(folder.into(), &mut session));
-        let (layout, _) = Layout::recall(folder);
-        let start = Start { session, shaders: ShaderFolder::None, keeping, layout, has_dialogs: false };
+        let persistence = Some(Persistence::new(folder.into(), &mut session));
+        let (layout, _) = Layout::read(folder);
+        let start = Start { session, shaders: ShaderFolder::None, persistence, layout, has_dialogs: false };
         testing::open(start, size, theme)
     }
 
@@ -151,14 +154,14 @@ mod tests {
         harness.get_by_label("Got it").click();
         harness.run_steps(3);
         let window = harness.state_mut();
-        window.keeping.take().unwrap().finish(&window.layout().clone());
+        window.persistence.take().unwrap().finish(&window.layout().clone());
         drop(harness);
         let mut harness = start(folder.path(), vec2(1000.0, 640.0), Theme::Light);
         assert_eq!(shown(&harness), Some(Hint::Light));
         harness.get_by_label("No more hints").click();
         harness.run_steps(3);
         let window = harness.state_mut();
-        window.keeping.take().unwrap().finish(&window.layout().clone());
+        window.persistence.take().unwrap().finish(&window.layout().clone());
         drop(harness);
         assert_eq!(shown(&start(folder.path(), vec2(1000.0, 640.0), Theme::Light)), None);
         assert_eq!(shown(&testing::window("column", vec2(1000.0, 640.0), Theme::Light)), None);

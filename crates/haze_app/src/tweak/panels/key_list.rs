@@ -10,7 +10,7 @@ const ROOM: Vec2 = Vec2::new(100.0, 130.0);
 
 /// Draws the list over the window while it is open.
 pub fn panel(ui: &Ui, session: &mut Session) {
-    if !session.show.help {
+    if !session.view.help {
         return;
     }
     let response = egui::Modal::new(egui::Id::unique("help")).show(ui.ctx(), |ui| {
@@ -18,7 +18,7 @@ pub fn panel(ui: &Ui, session: &mut Session) {
             ui.heading("Keys and gestures");
             if ui.button("Show the hints again").on_hover_text("The hints of the first start").clicked() {
                 session.hints.begin();
-                session.show.help = false;
+                session.view.help = false;
             }
         });
         ui.add_space(6.0);
@@ -44,7 +44,7 @@ pub fn panel(ui: &Ui, session: &mut Session) {
         });
     });
     if response.should_close() {
-        session.show.help = false;
+        session.view.help = false;
     }
 }
 

@@ -8,23 +8,23 @@ use haze::{Bounds, Light, LightKind};
 
 use super::rows::setting_rows::RowContext;
 use super::rows::{Row, setting_rows, value_control};
-use crate::tweak::document::light_angles::{Angles, STEEPEST, from_angles, to_angles};
-use crate::tweak::document::light_defaults::{fresh, name_of};
+use crate::tweak::document::light_angles::{Angles, MAX_ELEVATION, from_angles, to_angles};
+use crate::tweak::document::light_defaults::{light_name, new_light};
 use crate::tweak::session::light_view::LightView;
-use crate::tweak::session::smoke_geometry::{Smoke, put_behind};
+use crate::tweak::session::smoke_geometry::{SmokeGeometry, put_behind};
 
 /// Draws the list and the settings of the selected light. `seen` gives the smoke that is shown, and the size of the
 /// image.
 pub fn panel(
     ui: &mut Ui,
-    desk: &mut RowContext<'_>,
+    context: &mut RowContext<'_>,
     preset: &mut Preset,
     shown: &mut LightView,
-    seen: (&dyn Fn() -> Smoke, UVec2),
+    seen: (&dyn Fn() -> SmokeGeometry, UVec2),
 ) {
     shown.follow(&preset.lights);
     // If a setting of a light was searched for, that light is selected.
-    let sought = desk.sought.and_then(|path| path.strip_prefix("lights[")?.split_once(']')?.0.parse().ok());
+    let sought = context.searched_path.and_then(|path| path.strip_prefix("lights[")?.split_once(']')?.0.parse().ok());
     shown.selected = sought.or(shown.selected).filter(|&index| index < preset.lights.len());
     for (index, light) in preset.lights.iter_mut().enumerate() {
         ui.horizontal(|ui| entry(ui, index, light, shown));
@@ -37,14 +37,14 @@ pub fn panel(
     };
     ui.separator();
     if light.kind != LightKind::Point {
-        angles(ui, desk, index, light);
+        angles(ui, context, index, light);
     }
-    setting_rows::show(ui, desk, &[("lights", Some(index))], light);
+    setting_rows::show(ui, context, &[("lights", Some(index))], light);
 }
 
 /// Draws a light of the list.
 fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut LightView) {
-    let name = name_of(index, light);
+    let name = light_name(index, light);
     let is_selected = shown.selected == Some(index);
     let button = egui::Button::selectable(is_selected, &name);
     let height = ui.spacing().interact_size.y;
@@ -59,7 +59,7 @@ fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut LightView) {
     let intensity = egui::DragValue::new(&mut light.intensity).speed(speed).range(0.0..=1.0e9).max_decimals(3);
     let intensity = ui.add_sized([70.0, height], intensity.update_while_editing(false));
     intensity.on_hover_text("Intensity").accessible_name(format!("intensity of {name}"));
-    if let Some(marks) = shown.marks(index) {
+    if let Some(mute_solo) = shown.mute_solo(index) {
         let mut toggle = |sign: &str, is_on: &mut bool, what: &str| {
             let button = ui.add(egui::Button::selectable(*is_on, sign).min_size(egui::vec2(22.0, height)));
             let button = button.on_hover_text(format!("{what}. Not saved in the preset."));
@@ -67,18 +67,18 @@ fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut LightView) {
                 *is_on = !*is_on;
             }
         };
-        toggle("S", &mut marks.is_solo, "Show this light alone");
-        toggle("M", &mut marks.is_muted, "Leave this light out");
+        toggle("S", &mut mute_solo.is_solo, "Show this light alone");
+        toggle("M", &mut mute_solo.is_muted, "Leave this light out");
     }
 }
 
 /// Draws the buttons for the list and the selected light.
-fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut LightView, (smoke, size): (&dyn Fn() -> Smoke, UVec2)) {
+fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut LightView, (smoke, size): (&dyn Fn() -> SmokeGeometry, UVec2)) {
     ui.add_enabled_ui(preset.lights.len() < MAX_LIGHTS, |ui| {
         ui.menu_button("Add", |ui| {
             for &kind in LightKind::ALL {
                 if ui.button(kind.name()).clicked() {
-                    let light = beside(fresh(kind, &preset.lights), &preset.camera, &smoke().bounds());
+                    let light = beside(new_light(kind, &preset.lights), &preset.camera, &smoke().bounds());
                     let end = preset.lights.len();
                     shown.insert(&mut preset.lights, end, light);
                 }
@@ -97,7 +97,7 @@ fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut LightView, (smoke, size):
     let behind = ui.button("Behind the smoke").on_hover_text("Puts the light behind the smoke, as seen by the camera");
     if behind.clicked() {
         let smoke = smoke();
-        let (eye, point) = (preset.camera.position, smoke.seen(&preset.camera, size));
+        let (eye, point) = (preset.camera.position, smoke.visible_centre(&preset.camera, size));
         if let Some(light) = preset.lights.get_mut(index) {
             put_behind(light, eye, point, &smoke.bounds);
         }
@@ -114,24 +114,31 @@ fn beside(mut light: Light, camera: &Camera, bounds: &Bounds) -> Light {
 }
 
 /// Draws the direction of a light as angles.
-fn angles(ui: &mut Ui, desk: &mut RowContext<'_>, index: usize, light: &mut Light) {
+fn angles(ui: &mut Ui, context: &mut RowContext<'_>, index: usize, light: &mut Light) {
     let before = to_angles(light.direction);
     let mut edited = before;
     let path = format!("lights[{index}].direction");
     let mut angle = |name: &str, value: &mut f32, most: f32, tooltip: &str| {
-        let second = desk.second(&path, "");
+        let second = context.second(&path, "");
         let second = second.as_ref().map(Option::as_deref);
-        let row = Row { name, tooltip, is_changed: desk.changed.contains(&path), second, sheet: None, inert: None };
-        let refused = &mut desk.refused;
-        let asked = row.show(ui, |ui, label| {
+        let row = Row {
+            name,
+            tooltip,
+            is_changed: context.changed.contains(&path),
+            second,
+            sheet: None,
+            reason_without_effect: None,
+        };
+        let refused = &mut context.refused;
+        let request = row.show(ui, |ui, label| {
             value_control::number(ui, label, value, (&(-most..=most), None), "degrees", refused);
         });
-        desk.asked.extend(asked.map(|asked| (asked, path.clone())));
+        context.requests.extend(request.map(|request| (request, path.clone())));
     };
     angle("azimuth", &mut edited.azimuth, 180.0, "Side that the light comes from: 0 is +z, 90 is +x.");
     angle("elevation", &mut edited.elevation, 90.0, "Angle of the light above the horizon; 0 is level.");
     if edited != before {
-        let elevation = edited.elevation.clamp(-STEEPEST, STEEPEST);
+        let elevation = edited.elevation.clamp(-MAX_ELEVATION, MAX_ELEVATION);
         light.direction = from_angles(Angles { elevation, ..edited });
     }
 }

@@ -4,34 +4,36 @@ use eframe::egui::Ui;
 use haze::preset::{Preset, PresetSystem};
 use haze::{Light, LightKind};
 
-use super::rows::setting_rows::{FIVE, RowContext, show_named};
-use super::rows::{self, Asked, Row, setting_rows, value_control};
-use crate::tweak::document::light_defaults::name_of;
+use super::rows::setting_rows::{FIVE_VALUES, RowContext, show_named};
+use super::rows::{self, Row, RowRequest, setting_rows, value_control};
+use crate::tweak::document::light_defaults::light_name;
 use crate::tweak::session::light_view::LightView;
-use crate::tweak::session::look_controls::{LOOK, Of};
-use crate::tweak::session::macro_param::Made;
+use crate::tweak::session::look_controls::{ControlTarget, LOOK_CONTROLS};
+use crate::tweak::session::macro_param::MacroParam;
 
 /// Draws the look of one system of the preset.
-pub fn panel(ui: &mut Ui, desk: &mut RowContext<'_>, preset: &mut Preset, shown: &mut LightView, index: usize) {
+pub fn panel(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, shown: &mut LightView, index: usize) {
     shown.follow(&preset.lights);
-    let key = shown.key(index, || key_light(preset, index));
+    let key = shown.key_light(index, || key_light(preset, index));
     let Preset { systems, lights, camera, .. } = preset;
     let Some(system) = systems.get_mut(index) else {
         ui.weak("The preset has no smoke.");
         return;
     };
     let path = [("systems", Some(index))];
-    for control in LOOK {
+    for control in LOOK_CONTROLS {
         let name = control.name;
-        match control.of {
-            Of::Made(made) => made_row(ui, desk, system, index, made),
-            Of::System(field, usual) => show_named(ui, desk, &path, system, (name, field, usual)),
-            Of::Camera(field, usual) => show_named(ui, desk, &[("camera", None)], camera, (name, field, usual)),
-            Of::KeyLight(field, usual) => {
+        match control.target {
+            ControlTarget::Macro(param) => macro_row(ui, context, system, index, param),
+            ControlTarget::System(field, usual) => show_named(ui, context, &path, system, (name, field, usual)),
+            ControlTarget::Camera(field, usual) => {
+                show_named(ui, context, &[("camera", None)], camera, (name, field, usual))
+            }
+            ControlTarget::KeyLight(field, usual) => {
                 let Some((key, light)) = key.and_then(|key| Some((key, lights.get_mut(key)?))) else { continue };
-                show_named(ui, desk, &[("lights", Some(key))], light, (name, field, usual));
-                let marks = if desk.second.is_some() { 2.0 } else { 1.0 };
-                rows::note(ui, marks, &name_of(key, light)).on_hover_text(KEY);
+                show_named(ui, context, &[("lights", Some(key))], light, (name, field, usual));
+                let marks = if context.second.is_some() { 2.0 } else { 1.0 };
+                rows::note(ui, marks, &light_name(key, light)).on_hover_text(KEY);
             }
         }
     }
@@ -41,29 +43,30 @@ pub fn panel(ui: &mut Ui, desk: &mut RowContext<'_>, preset: &mut Preset, shown:
 const KEY: &str = "The light that was brightest at the emitter when the preset was opened";
 
 /// Draws the row of a value that several settings make.
-fn made_row(ui: &mut Ui, desk: &mut RowContext<'_>, system: &mut PresetSystem, index: usize, made: &Made) {
-    let paths: Vec<_> = made.of.iter().map(|path| format!("systems[{index}].{path}")).collect();
-    let is_changed = paths.iter().any(|path| desk.changed.contains(path));
-    let apart = paths.iter().any(|path| desk.second.is_some_and(|second| second.contains_key(path)));
-    let second = desk.second.map(|_| apart.then_some("another value"));
-    let inert = paths.iter().map(|path| (desk.inert)(path)).collect::<Option<Vec<_>>>();
-    let inert = inert.and_then(|reasons| reasons.first().copied());
-    let sheet = FIVE.filter(|_| desk.has_sheets);
-    let row = Row { name: made.name, tooltip: made.tooltip, is_changed, second, sheet, inert };
-    let refused = &mut desk.refused;
+fn macro_row(ui: &mut Ui, context: &mut RowContext<'_>, system: &mut PresetSystem, index: usize, param: &MacroParam) {
+    let paths: Vec<_> = param.of.iter().map(|path| format!("systems[{index}].{path}")).collect();
+    let is_changed = paths.iter().any(|path| context.changed.contains(path));
+    let apart = paths.iter().any(|path| context.second.is_some_and(|second| second.contains_key(path)));
+    let second = context.second.map(|_| apart.then_some("another value"));
+    let reason_without_effect =
+        paths.iter().map(|path| (context.reason_without_effect)(path)).collect::<Option<Vec<_>>>();
+    let reason_without_effect = reason_without_effect.and_then(|reasons| reasons.first().copied());
+    let sheet = FIVE_VALUES.filter(|_| context.has_sheets);
+    let row = Row { name: param.name, tooltip: param.tooltip, is_changed, second, sheet, reason_without_effect };
+    let refused = &mut context.refused;
     let before = ui.cursor().min;
-    let asked = row.show(ui, |ui, label| {
-        let mut value = (made.get)(system);
-        if value_control::number(ui, label, &mut value, (&made.range, Some(made.usual)), made.unit, refused) {
-            (made.set)(system, value);
+    let request = row.show(ui, |ui, label| {
+        let mut value = (param.get)(system);
+        if value_control::number(ui, label, &mut value, (&param.range, Some(param.usual)), param.unit, refused) {
+            (param.set)(system, value);
         }
     });
-    if desk.sought == Some(made.path(index).as_str()) {
+    if context.searched_path == Some(param.path(index).as_str()) {
         setting_rows::scroll_to_and_mark(ui, before);
     }
-    match asked {
-        Some(Asked::Sheet) => desk.asked.push((Asked::Sheet, made.path(index))),
-        Some(asked) => desk.asked.extend(paths.into_iter().map(|path| (asked, path))),
+    match request {
+        Some(RowRequest::Sheet) => context.requests.push((RowRequest::Sheet, param.path(index))),
+        Some(request) => context.requests.extend(paths.into_iter().map(|path| (request, path))),
         None => {}
     }
 }
@@ -86,7 +89,7 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
-    use crate::tweak::session::look_controls::LOOK;
+    use crate::tweak::session::look_controls::LOOK_CONTROLS;
     use crate::tweak::session::view_options::Tab;
     use crate::tweak::window::Window;
     use crate::tweak::window::testing::window;
@@ -109,7 +112,7 @@ mod tests {
         set_key(&mut harness, 50.0);
         let bright = intensities(&harness);
         let key = (0..before.len()).find(|&index| (bright[index] - before[index]).abs() > 1.0e-3).unwrap();
-        let name = super::name_of(key, &harness.state().session.document.preset.lights[key]);
+        let name = super::light_name(key, &harness.state().session.document.preset.lights[key]);
         assert!(harness.query_by_label(&name).is_some(), "{name}");
         for value in [0.0, 1.0] {
             set_key(&mut harness, value);
@@ -129,7 +132,7 @@ mod tests {
     fn sliders_have_names_for_artists_and_are_found_by_either_name() {
         let mut harness = window("column", Vec2::new(1000.0, 900.0), Theme::Dark);
         let has = |harness: &Harness<'_, Window>, name| harness.query_all_by_label(name).next().is_some();
-        for control in LOOK {
+        for control in LOOK_CONTROLS {
             assert!(has(&harness, control.name), "{}", control.name);
         }
         assert!(!has(&harness, "radius start"));
@@ -152,7 +155,7 @@ mod tests {
             ("glow", Tab::Look),
         ] {
             find(&mut harness, text);
-            assert_eq!(harness.state().session.show.tab, tab, "{text}");
+            assert_eq!(harness.state().session.view.tab, tab, "{text}");
         }
         // Undo and files use the field's own name, and the tooltip shows it.
         let sliders = harness.get_all_by_label("rise");

@@ -9,7 +9,7 @@ use super::rows::value_text::grouped;
 use crate::tweak::session::Session;
 use crate::tweak::viewport_renderer::RenderStats;
 use crate::tweak::viewport_renderer::cached_render::set_scale;
-use crate::tweak::viewport_renderer::frame_timings::{Performance, REMEMBERED};
+use crate::tweak::viewport_renderer::frame_timings::{FrameTimings, MAX_KEPT_IMAGES};
 
 /// Height of the plot, points.
 const PLOT: f32 = 120.0;
@@ -27,10 +27,10 @@ const COLOURS: [Color32; 7] = [
 
 pub fn panel(ui: &mut Ui, session: &mut Session) {
     egui::ScrollArea::vertical().id_salt("performance").auto_shrink(false).show(ui, |ui| {
-        times(ui, &session.performance);
+        times(ui, &session.timings);
         section(ui, "Budget", |ui| budget(ui, session));
-        section(ui, "Drawn", |ui| drawn(ui, &session.performance));
-        section(ui, "Memory", |ui| memory(ui, &session.performance));
+        section(ui, "Drawn", |ui| drawn(ui, &session.timings));
+        section(ui, "Memory", |ui| memory(ui, &session.timings));
     });
 }
 
@@ -39,43 +39,43 @@ fn section(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui)) {
 }
 
 /// Draws the time of each pass, and the stacked times of the last images.
-fn times(ui: &mut Ui, performance: &Performance) {
-    if performance.figures.is_timed {
+fn times(ui: &mut Ui, timings: &FrameTimings) {
+    if timings.stats.is_timed {
         ui.label("GPU time of the smoke, by pass");
     } else {
         ui.label("CPU time of frames: this device cannot measure GPU time");
     }
-    plot(ui, performance);
+    plot(ui, timings);
     egui::Grid::new("passes").num_columns(3).min_col_width(0.0).striped(true).show(ui, |ui| {
-        for (index, name) in performance.names.iter().enumerate() {
+        for (index, name) in timings.names.iter().enumerate() {
             let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
             ui.painter().rect_filled(rect, 1.0, COLOURS[index % COLOURS.len()]);
             ui.label(*name);
-            ui.monospace(format!("{:6.3} ms", performance.mean(index)));
+            ui.monospace(format!("{:6.3} ms", timings.mean(index)));
             ui.end_row();
         }
         ui.label("");
         ui.strong("total");
         // The sum of an empty iterator is -0.
-        let sum = (0..performance.names.len()).map(|index| performance.mean(index)).sum::<f32>().max(0.0);
+        let sum = (0..timings.names.len()).map(|index| timings.mean(index)).sum::<f32>().max(0.0);
         ui.monospace(format!("{sum:6.3} ms"));
         ui.end_row();
     });
-    ui.weak(format!("Mean of the last {} pictures", performance.pictures.len()));
+    ui.weak(format!("Mean of the last {} pictures", timings.frame_times.len()));
 }
 
-fn plot(ui: &mut Ui, performance: &Performance) {
+fn plot(ui: &mut Ui, timings: &FrameTimings) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), PLOT), Sense::hover());
-    let limit = performance.is_held.then_some(performance.budget.milliseconds);
-    let sums = performance.pictures.iter().map(|picture| picture.iter().sum::<f32>());
+    let limit = timings.is_held.then_some(timings.budget.milliseconds);
+    let sums = timings.frame_times.iter().map(|picture| picture.iter().sum::<f32>());
     let most = sums.fold(limit.unwrap_or(0.0), f32::max).max(0.001) * 1.1;
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "time of the last pictures"));
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 2.0, ui.visuals().extreme_bg_color);
     let height = |ms: f32| ms / most * rect.height();
-    let width = rect.width() / REMEMBERED as f32;
-    for (index, picture) in performance.pictures.iter().enumerate() {
-        let left = rect.right() - (performance.pictures.len() - index) as f32 * width;
+    let width = rect.width() / MAX_KEPT_IMAGES as f32;
+    for (index, picture) in timings.frame_times.iter().enumerate() {
+        let left = rect.right() - (timings.frame_times.len() - index) as f32 * width;
         let mut bottom = rect.bottom();
         for (ms, colour) in picture.iter().zip(COLOURS.iter().cycle()) {
             let top = bottom - height(*ms);
@@ -96,33 +96,33 @@ fn plot(ui: &mut Ui, performance: &Performance) {
 }
 
 fn budget(ui: &mut Ui, session: &mut Session) {
-    let performance = &mut session.performance;
+    let timings = &mut session.timings;
     let hint = "Lowers the resolution of the shown smoke until it is within the budget; the preset does not change";
-    ui.add_enabled_ui(performance.figures.is_timed, |ui| {
-        let text = format!("Hold {} ms", performance.budget.milliseconds);
-        ui.checkbox(&mut performance.is_held, text)
+    ui.add_enabled_ui(timings.stats.is_timed, |ui| {
+        let text = format!("Hold {} ms", timings.budget.milliseconds);
+        ui.checkbox(&mut timings.is_held, text)
             .on_hover_text(hint)
             .on_disabled_hover_text("This device cannot measure GPU time");
     });
-    let mut desk = RowContext {
-        tooltips: &performance.tooltips,
+    let mut context = RowContext {
+        tooltips: &timings.tooltips,
         thumbnails: &session.thumbnails,
         changed: &HashSet::new(),
-        inert: &|_| None,
+        reason_without_effect: &|_| None,
         second: None,
         has_sheets: false,
-        asked: Vec::new(),
+        requests: Vec::new(),
         refused: None,
-        sought: None,
+        searched_path: None,
     };
-    let before = performance.budget;
-    setting_rows::show(ui, &mut desk, &[], &mut performance.budget);
-    let (refused, is_edited) = (desk.refused, session.performance.budget != before);
-    session.refuse(refused, is_edited);
-    let performance = &session.performance;
+    let before = timings.budget;
+    setting_rows::show(ui, &mut context, &[], &mut timings.budget);
+    let (refused, is_edited) = (context.refused, session.timings.budget != before);
+    session.report_refused_input(refused, is_edited);
+    let timings = &session.timings;
     let preset = &mut session.document.preset;
     let of_preset = preset.systems.first().map_or(1, |system| system.settings.accumulate.scale);
-    let Some(scale) = performance.scale() else { return };
+    let Some(scale) = timings.scale() else { return };
     ui.horizontal_wrapped(|ui| {
         ui.label(format!("Shown at scale {scale}; the preset has {of_preset}."));
         let keep = egui::Button::new("Keep this scale");
@@ -132,8 +132,8 @@ fn budget(ui: &mut Ui, session: &mut Session) {
     });
 }
 
-fn drawn(ui: &mut Ui, performance: &Performance) {
-    let RenderStats { counts, overdraw, .. } = &performance.figures;
+fn drawn(ui: &mut Ui, timings: &FrameTimings) {
+    let RenderStats { counts, overdraw, .. } = &timings.stats;
     rows(
         ui,
         "drawn",
@@ -150,13 +150,13 @@ fn drawn(ui: &mut Ui, performance: &Performance) {
         ],
     );
     // Empty for a system whose path is not `auto`.
-    for choice in &performance.figures.choices {
+    for choice in &timings.stats.choices {
         ui.label(format!("Path auto: {choice}"));
     }
 }
 
-fn memory(ui: &mut Ui, performance: &Performance) {
-    let (memory, beside) = (&performance.figures.memory, performance.figures.beside);
+fn memory(ui: &mut Ui, timings: &FrameTimings) {
+    let (memory, beside) = (&timings.stats.memory, timings.stats.other_memory);
     rows(
         ui,
         "memory",
@@ -211,20 +211,20 @@ mod tests {
     }
 
     fn scale(harness: &mut Harness<'_, Window>) -> Option<u32> {
-        harness.state_mut().session_mut().performance.scale()
+        harness.state_mut().session_mut().timings.scale()
     }
 
     #[test]
     fn every_pass_is_listed_by_name_only_while_the_tab_is_open() {
         let mut harness = measured("column", vec2(1000.0, 700.0));
         picture(&mut harness);
-        assert!(harness.state_mut().session_mut().performance.pictures.is_empty());
+        assert!(harness.state_mut().session_mut().timings.frame_times.is_empty());
         harness.get_by_label("Cost").click();
         settle(&mut harness);
-        let performance = &harness.state_mut().session_mut().performance;
-        assert!(performance.figures.is_timed, "lavapipe tells the time");
-        let names = performance.names.clone();
-        let memory = performance.figures.memory;
+        let timings = &harness.state_mut().session_mut().timings;
+        assert!(timings.stats.is_timed, "lavapipe tells the time");
+        let names = timings.names.clone();
+        let memory = timings.stats.memory;
         assert_eq!(names, ["depth_downsample", "accumulate", "transfer", "specular_scatter"]);
         for name in names.iter().chain(&[
             "targets",
@@ -241,8 +241,8 @@ mod tests {
         assert!(memory.smoke.targets > 0 && memory.smoke.buffers > 0 && memory.materials > 0 && memory.scene > 0);
         harness.get_by_label("Look").click();
         settle(&mut harness);
-        let performance = &harness.state_mut().session_mut().performance;
-        assert!(performance.pictures.is_empty());
+        let timings = &harness.state_mut().session_mut().timings;
+        assert!(timings.frame_times.is_empty());
     }
 
     #[test]
@@ -250,8 +250,8 @@ mod tests {
         let mut harness = measured("column", vec2(640.0, 760.0));
         let before = harness.state_mut().session_mut().document.preset.clone();
         let session = harness.state_mut().session_mut();
-        session.show.tab = crate::tweak::session::view_options::Tab::Performance;
-        session.performance.budget = haze::settings::Budget { milliseconds: 0.05, ..Default::default() };
+        session.view.tab = crate::tweak::session::view_options::Tab::Performance;
+        session.timings.budget = haze::settings::Budget { milliseconds: 0.05, ..Default::default() };
         harness.run_steps(2);
         assert_eq!(scale(&mut harness), None);
         harness.get_by_label("Hold 0.05 ms").click();
@@ -273,7 +273,7 @@ mod tests {
         let mut harness = window("column", vec2(1000.0, 700.0), egui::Theme::Dark);
         harness.get_by_label("Cost").click();
         settle(&mut harness);
-        assert!(!harness.state_mut().session_mut().performance.figures.is_timed);
+        assert!(!harness.state_mut().session_mut().timings.stats.is_timed);
         harness.get_by_label_contains("CPU time");
     }
 }

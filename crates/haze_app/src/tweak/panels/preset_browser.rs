@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui::{self, Sense, Ui, Vec2};
 
-use crate::tweak::files::preset_thumbnails::{Entry, PresetThumbnails, SIZE};
+use crate::tweak::files::preset_thumbnails::{PresetEntry, PresetThumbnails, SIZE};
 
 /// Margin around an image, points.
 const MARGIN: f32 = 4.0;
@@ -38,7 +38,7 @@ pub fn panel(ui: &Ui, thumbnails: &mut PresetThumbnails) -> Option<Option<PathBu
 }
 
 /// Draws an image with its name. Returns true if it was chosen.
-fn cell(ui: &mut Ui, entry: &Entry) -> bool {
+fn cell(ui: &mut Ui, entry: &PresetEntry) -> bool {
     let (rect, response) = ui.allocate_exact_size(CELL, Sense::click());
     let name = entry.shown.as_ref().map_or_else(|| file_name(&entry.path), |shown| shown.name.clone());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name.clone()));

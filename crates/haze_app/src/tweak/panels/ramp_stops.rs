@@ -5,7 +5,7 @@ use egui_gradient::Surroundings;
 use haze_author::ramp::bake::{Blend, RECIPE_VERSION, RampRecipe, RampRow};
 
 use super::rows::value_control;
-use crate::tweak::document::ramp_edits::Source;
+use crate::tweak::document::ramp_edits::RampOrigin;
 use crate::tweak::session::Session;
 
 /// Tooltip about saving.
@@ -14,7 +14,7 @@ const WRITTEN: &str =
 
 /// Ramp of the preset.
 #[derive(Clone, Copy)]
-pub struct Named<'a> {
+pub struct NamedRamp<'a> {
     pub system: usize,
     pub field: &'static str,
     /// Name that the preset has for it.
@@ -34,12 +34,12 @@ pub type AxisSamples = (Vec<Bins>, Vec<Mark>);
 pub fn editor(
     ui: &mut Ui,
     session: &mut Session,
-    ramp: Named<'_>,
+    ramp: NamedRamp<'_>,
     across: &AxisSamples,
     up: &AxisSamples,
 ) -> Option<Option<f32>> {
     let folders = session.folders();
-    let Source::Recipe(read) = session.ramps.source(ramp.name, &folders).clone() else { return None };
+    let RampOrigin::Recipe(read) = session.ramps.source(ramp.name, &folders).clone() else { return None };
     let mut recipe = session.document.recipes.ramps.get(ramp.name).unwrap_or(&read).clone();
     let (editor, index) = session.ramps.editor(ramp.field);
     let mut is_changed = choose(ui, &mut recipe, index);
@@ -72,9 +72,9 @@ pub fn editor(
         }
     }
     if let Some(refused) = edited.refused {
-        session.messages.complain("ramp", refused);
+        session.messages.error("ramp", refused);
     } else if is_changed {
-        session.messages.withdraw("ramp");
+        session.messages.clear("ramp");
     }
     Some(edited.pointed_at)
 }
@@ -134,36 +134,36 @@ fn choose(ui: &mut Ui, recipe: &mut RampRecipe, index: &mut usize) -> bool {
 }
 
 /// Draws where stops are saved, or a button to get stops.
-pub fn offer(ui: &mut Ui, session: &mut Session, ramp: Named<'_>) {
+pub fn offer_stops(ui: &mut Ui, session: &mut Session, ramp: NamedRamp<'_>) {
     let folders = session.folders();
     match session.ramps.source(ramp.name, &folders) {
-        Source::BuiltIn => {
+        RampOrigin::BuiltIn => {
             let about = "Writes a copy of this ramp and its recipe beside the preset, to be edited here; a preset that is \
                          built in is saved first";
             if button(ui, "Make my own", ramp, about) {
-                session.ramps.want_own(ramp.system, ramp.field, session.document.is_built_in());
+                session.ramps.request_copy(ramp.system, ramp.field, session.document.is_built_in());
             }
         }
-        Source::Painted => {
+        RampOrigin::Painted => {
             let about = "No recipe beside it makes this picture. Finds stops that do; the picture does not change until a stop is edited";
             if button(ui, "Fit stops to the picture", ramp, about) {
                 match session.ramps.fit(ramp.name) {
                     Ok((count, error)) => {
                         let name = ramp.name;
-                        session.messages.say("ramp", format!("{name}: {count} stops, at most {error:.1}/255 off"));
+                        session.messages.info("ramp", format!("{name}: {count} stops, at most {error:.1}/255 off"));
                     }
-                    Err(error) => session.messages.complain("ramp", error),
+                    Err(error) => session.messages.error("ramp", error),
                 }
             }
         }
-        Source::Recipe(_) => {
+        RampOrigin::Recipe(_) => {
             ui.weak("Saved with each step").on_hover_text(WRITTEN);
         }
-        Source::Missing => {}
+        RampOrigin::Missing => {}
     }
 }
 
-fn button(ui: &mut Ui, text: &str, ramp: Named<'_>, about: &str) -> bool {
+fn button(ui: &mut Ui, text: &str, ramp: NamedRamp<'_>, about: &str) -> bool {
     let button = ui.button(text);
     let name = format!("{text}: {}", ramp.name);
     button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));

@@ -2,17 +2,18 @@
 
 use eframe::egui::{self, Color32, Mesh, Rect, Response, Sense, Stroke, Ui, Vec2};
 use glam::UVec2;
+use haze::MaterialAssets;
 use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
 use haze::ramp::Ramp;
 use haze::settings::{ImageRole, RampFilter, set_field};
 use haze_author::preset::without_effect;
 use haze_reference::SystemProbe;
 
-use super::ramp_stops::{self, AxisSamples, Bins, Mark, Named};
+use super::ramp_stops::{self, AxisSamples, Bins, Mark, NamedRamp};
 use super::rows::picture_gallery::gallery;
-use super::rows::spaced;
-use crate::tweak::session::inspection::Told;
-use crate::tweak::session::ramp_survey::{Histogram, SIDE, Spot};
+use super::rows::with_spaces;
+use crate::tweak::session::inspection::PixelValues;
+use crate::tweak::session::ramp_survey::{Histogram, RampPlace, RampSurvey, SIDE};
 use crate::tweak::session::{Session, ramp_survey};
 use crate::tweak::viewport_renderer::compared_side::ComparedSide;
 
@@ -34,22 +35,22 @@ const LIGHTS: [Color32; 6] = [
 const LOOKED_UP: Color32 = Color32::from_rgb(120, 200, 240);
 
 /// Draws the tab. Returns the place on a ramp under the pointer.
-pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
+pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPlace> {
     let system = &session.document.preset.systems.get(index)?.clone();
     let material = &session.materials().into_iter().nth(index)?;
-    let is_first = |told: &&Told| told.side == ComparedSide::First && session.inspect.place().is_some();
-    let told = session.inspect.told.as_ref().filter(is_first);
-    let probe = told.and_then(|told| told.probe.systems.iter().find(|probe| probe.system == index)).cloned();
+    let is_first = |values: &&PixelValues| values.side == ComparedSide::First && session.inspect.place().is_some();
+    let values = session.inspect.pixel_values.as_ref().filter(is_first);
+    let probe = values.and_then(|values| values.probe.systems.iter().find(|probe| probe.system == index)).cloned();
     let probe = probe.as_ref();
     let filter = system.settings.ramp_filter;
     let is_forward = system.settings.is_forward();
     let survey = session.inspect.survey.clone().filter(|_| !is_forward);
     let survey = survey.as_deref();
-    let inert = |session: &Session, field: &str| {
+    let reason_without_effect = |session: &Session, field: &str| {
         let path = format!("systems[{index}].material.{field}");
-        without_effect(&session.document.preset, &path, session.show.size)
+        without_effect(&session.document.preset, &path, session.view.size)
     };
-    let mut spot = None;
+    let mut ramp_place = None;
     ui.weak("Point at a ramp to highlight the smoke that samples it. Point at smoke to mark its place.");
     if is_forward {
         ui.weak("Forward smoke is lit sprite by sprite: no texels to count.");
@@ -64,43 +65,25 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
     ] {
         ui.add_space(6.0);
         choose(ui, session, title, &format!("systems[{index}].material.{field}"), name);
-        if let Some(reason) = inert(session, field) {
+        if let Some(reason) = reason_without_effect(session, field) {
             ui.weak(format!("Not used: {reason}"));
             continue;
         }
-        let mut lights = Vec::new();
-        let ramp = Named { system: index, field, name };
-        ramp_stops::offer(ui, session, ramp);
-        let spoken = spaced(field);
-        let one = |at: Option<f32>| at.map(|at| (at, Color32::WHITE)).into_iter().collect();
+        let ramp = NamedRamp { system: index, field, name };
+        ramp_stops::offer_stops(ui, session, ramp);
+        let spoken = with_spaces(field);
         let ink = ui.visuals().text_color();
-        let (picture, marks, mut bins): (_, Vec<Mark>, Vec<Bins>) = match field {
-            "diffuse_ramp" | "backlight_ramp" => {
-                let looking = probe.iter().flat_map(|probe| &probe.lights);
-                let marks = looking.map(|light| (light.coordinate, of_light(light.light))).collect();
-                lights = survey.map_or_else(Vec::new, |survey| survey.by_light(index));
-                let bins = lights.iter().map(|histogram| (of_light(histogram.light), histogram.bins.clone()));
-                let ramp = if field == "diffuse_ramp" { &material.diffuse_ramp } else { &material.backlight_ramp };
-                (ramp, marks, bins.collect())
-            }
-            "soft_scatter_ramp" => {
-                let bins = survey.map(|survey| (ink, survey.by_amount(index)));
-                (&material.soft_scatter_ramp, one(probe.map(|probe| probe.amount)), bins.into_iter().collect())
-            }
-            "coverage_ramp" => {
-                let bins = survey.map(|survey| (ink, survey.by_coverage(index)));
-                let at = probe.map(|probe| probe.coverage_coordinate);
-                (&material.coverage_ramp, one(at), bins.into_iter().collect())
-            }
-            "specular_ramp" => {
-                let density = survey.map(|survey| survey.by_glow(index));
-                spot = spot.or(plane(ui, &spoken, (&material.specular_ramp, filter), density.as_deref(), probe));
-                let [across, up] = looked_up(density.as_deref(), probe, ink);
-                ramp_stops::editor(ui, session, ramp, &across, &up);
-                continue;
-            }
-            _ => (&material.age_ramp, Vec::new(), Vec::new()),
-        };
+        if field == "specular_ramp" {
+            let density = survey.map(|survey| survey.by_glow(index));
+            ramp_place =
+                ramp_place.or(plane(ui, &spoken, (&material.specular_ramp, filter), density.as_deref(), probe));
+            let [across, up] = looked_up(density.as_deref(), probe, ink);
+            ramp_stops::editor(ui, session, ramp, &across, &up);
+            continue;
+        }
+        let lights = survey.filter(|_| is_diffuse(field)).map_or_else(Vec::new, |survey| survey.by_light(index));
+        let (picture, mut bins, marks) =
+            ramp_samples(field, material, probe, survey.map(|survey| (survey, index)), &lights, ink);
         if bins.is_empty() && field != "age_ramp" && !is_forward {
             // Reserves the space of the histogram, so that nothing moves under the pointer when it arrives.
             bins.push((ink, Vec::new()));
@@ -113,17 +96,53 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<Spot> {
             at
         });
         if field == "diffuse_ramp" && survey.is_some() {
-            legend(ui, &lights, &session.show.lights.shown_names(&session.document.preset.lights));
+            legend(ui, &lights, &session.view.lights.shown_names(&session.document.preset.lights));
         }
-        spot = spot.or(at.and_then(|at| match field {
-            "diffuse_ramp" | "backlight_ramp" => Some(Spot::Diffuse(at)),
-            "soft_scatter_ramp" => Some(Spot::SoftScatter(at)),
-            "coverage_ramp" => Some(Spot::Coverage(at)),
+        ramp_place = ramp_place.or(at.and_then(|at| match field {
+            "diffuse_ramp" | "backlight_ramp" => Some(RampPlace::Diffuse(at)),
+            "soft_scatter_ramp" => Some(RampPlace::SoftScatter(at)),
+            "coverage_ramp" => Some(RampPlace::Coverage(at)),
             _ => None,
         }));
     }
     session.follow_ramps(true);
-    spot
+    ramp_place
+}
+
+fn is_diffuse(field: &str) -> bool {
+    matches!(field, "diffuse_ramp" | "backlight_ramp")
+}
+
+/// Returns a ramp with one axis, the histograms of the coordinates that the image samples, and the marks of the probed
+/// pixel. `survey` comes with the index of the system; `lights` are its histograms of the diffuse ramps.
+fn ramp_samples<'a>(
+    field: &str,
+    material: &'a MaterialAssets,
+    probe: Option<&SystemProbe>,
+    survey: Option<(&RampSurvey, usize)>,
+    lights: &[Histogram],
+    ink: Color32,
+) -> (&'a Ramp, Vec<Bins>, Vec<Mark>) {
+    let one = |at: Option<f32>| at.map(|at| (at, Color32::WHITE)).into_iter().collect();
+    match field {
+        "diffuse_ramp" | "backlight_ramp" => {
+            let looking = probe.iter().flat_map(|probe| &probe.lights);
+            let marks = looking.map(|light| (light.coordinate, of_light(light.light))).collect();
+            let bins = lights.iter().map(|histogram| (of_light(histogram.light), histogram.bins.clone()));
+            let ramp = if field == "diffuse_ramp" { &material.diffuse_ramp } else { &material.backlight_ramp };
+            (ramp, bins.collect(), marks)
+        }
+        "soft_scatter_ramp" => {
+            let bins = survey.map(|(survey, system)| (ink, survey.by_amount(system)));
+            (&material.soft_scatter_ramp, bins.into_iter().collect(), one(probe.map(|probe| probe.amount)))
+        }
+        "coverage_ramp" => {
+            let bins = survey.map(|(survey, system)| (ink, survey.by_coverage(system)));
+            let at = probe.map(|probe| probe.coverage_coordinate);
+            (&material.coverage_ramp, bins.into_iter().collect(), one(at))
+        }
+        _ => (&material.age_ramp, Vec::new(), Vec::new()),
+    }
 }
 
 /// Returns histograms and marks of the specular ramp along each axis.
@@ -146,7 +165,7 @@ fn choose(ui: &mut Ui, session: &mut Session, title: &str, path: &str, name: &st
     if chosen != name
         && let Err(error) = set_field(&mut session.document.preset, path, &chosen)
     {
-        session.messages.complain("ramp", error);
+        session.messages.error("ramp", error);
     }
 }
 
@@ -220,7 +239,7 @@ fn plane(
     (ramp, filter): (&Ramp, RampFilter),
     density: Option<&[f32]>,
     probe: Option<&SystemProbe>,
-) -> Option<Spot> {
+) -> Option<RampPlace> {
     let side = ui.available_width().min(220.0);
     let (rect, at) = space(ui, Vec2::new(side, 0.6 * side), name);
     picture(ui, rect, UVec2::splat(48), |at| sample_ramp_2d(ramp, filter, glam::Vec2::new(at.x, 1.0 - at.y)));
@@ -238,5 +257,5 @@ fn plane(
         ui.painter().circle(place, 4.0, of_light(light), Stroke::new(1.5, Color32::BLACK));
     }
     ui.weak("across: distance² from the light; up: amount");
-    at.map(|at| Spot::Specular(glam::Vec2::new(at.x, 1.0 - at.y)))
+    at.map(|at| RampPlace::Specular(glam::Vec2::new(at.x, 1.0 - at.y)))
 }

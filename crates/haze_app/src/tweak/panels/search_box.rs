@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Key, Ui};
 
-use super::rows::spaced;
+use super::rows::with_spaces;
 use crate::tweak::session::Session;
 use crate::tweak::session::setting_search::matches;
 
@@ -15,7 +15,7 @@ pub fn panel(ui: &Ui, session: &mut Session) {
     if !search.is_open {
         return;
     }
-    let found = matches(&session.document.preset, &session.tooltips, &session.show.lights, &search.text);
+    let found = matches(&session.document.preset, &session.tooltips, &session.view.lights, &search.text);
     let mut gone_to = None;
     let response = egui::Modal::new(egui::Id::unique("search")).show(ui.ctx(), |ui| {
         ui.set_width(460.0);
@@ -32,7 +32,7 @@ pub fn panel(ui: &Ui, session: &mut Session) {
             search.chosen = 0;
         }
         for (index, found) in found.iter().enumerate() {
-            let text = format!("{}   {}", spaced(&found.name), found.place);
+            let text = format!("{}   {}", with_spaces(&found.name), found.place);
             let entry = ui.selectable_label(index == search.chosen, text).on_hover_text(&found.tooltip);
             if entry.clicked() || is_entered && index == search.chosen {
                 gone_to = Some((found.tab, found.path.clone()));
@@ -43,7 +43,7 @@ pub fn panel(ui: &Ui, session: &mut Session) {
         }
     });
     if let Some((tab, path)) = gone_to {
-        session.show.tab = tab;
+        session.view.tab = tab;
         search.go_to(path);
     } else if response.should_close() {
         search.is_open = false;

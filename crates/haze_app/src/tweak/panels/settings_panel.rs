@@ -5,13 +5,13 @@ use haze::preset::Preset;
 use haze::settings::{Fields, field_path};
 use haze_author::preset::without_effect;
 
-use super::rows::setting_rows::{RowContext, Step, is_at};
-use super::rows::{Asked, setting_rows, soft_fade_plot};
+use super::rows::setting_rows::{FieldStep, RowContext, is_at};
+use super::rows::{RowRequest, setting_rows, soft_fade_plot};
 use super::{lights_panel, look_panel, ramps_panel, sprite_panel};
 use crate::tweak::session::Session;
-use crate::tweak::session::messages::short;
+use crate::tweak::session::messages::truncate_middle;
 use crate::tweak::session::setting_search::SMOKE_TAB_GROUPS;
-use crate::tweak::session::smoke_geometry::Smoke;
+use crate::tweak::session::smoke_geometry::SmokeGeometry;
 use crate::tweak::session::view_options::Tab;
 
 /// Tabs with their names and tooltips.
@@ -27,92 +27,107 @@ pub const TABS: [(Tab, &str, &str); 7] = [
 
 /// Draws the panel. Returns the path of a field if a sheet of its values is requested.
 pub fn panel(ui: &mut Ui, session: &mut Session) -> Option<String> {
-    // Small gaps, so that all tabs also fit into a narrow panel.
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = 3.0;
-        ui.spacing_mut().button_padding.x = 5.0;
-        for (tab, name, tooltip) in TABS {
-            ui.selectable_value(&mut session.show.tab, tab, name).on_hover_text(tooltip);
-        }
-    });
-    if session.show.tab == Tab::Performance {
+    tab_row(ui, session);
+    if session.view.tab == Tab::Performance {
         ui.separator();
         super::performance_panel::panel(ui, session);
         return None;
     }
-    let systems = session.document.preset.systems.len();
-    session.show.system = session.show.system.min(systems.saturating_sub(1));
-    if let Some(index) = session.search.found.as_ref().and_then(|(path, _)| system_of(path)) {
-        session.show.system = index;
-    }
-    if systems > 1 && session.show.tab != Tab::Light {
-        ui.horizontal_wrapped(|ui| {
-            for (index, system) in session.document.preset.systems.iter().enumerate() {
-                ui.selectable_value(&mut session.show.system, index, short(&system.name, 30));
-            }
-        });
-    }
+    system_row(ui, session);
     ui.separator();
-    session.inspect.spot = None;
+    session.inspect.ramp_place = None;
     session.thumbnails.follow(session.document.path(), session.assets.as_deref());
-    if session.show.tab == Tab::Ramps {
-        let area = egui::ScrollArea::vertical().id_salt(session.show.tab).auto_shrink(false);
-        let system = session.show.system;
+    if session.view.tab == Tab::Ramps {
+        let area = egui::ScrollArea::vertical().id_salt(session.view.tab).auto_shrink(false);
+        let system = session.view.system;
         let shown = area.show(ui, |ui| {
             // Keeps the handle of the last stop beside the scroll bar.
             ui.set_max_width(ui.available_width() - ui.spacing().scroll.bar_width);
             ramps_panel::panel(ui, session, system)
         });
-        session.inspect.spot = shown.inner;
+        session.inspect.ramp_place = shown.inner;
         return None;
     }
-    if session.show.tab == Tab::Sprite {
+    if session.view.tab == Tab::Sprite {
         sprite_panel::panel(ui, session);
         return None;
     }
-    let mut shown = std::mem::take(&mut session.show.lights);
+    setting_tab(ui, session)
+}
+
+fn tab_row(ui: &mut Ui, session: &mut Session) {
+    // Small gaps, so that all tabs also fit into a narrow panel.
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        ui.spacing_mut().button_padding.x = 5.0;
+        for (tab, name, tooltip) in TABS {
+            ui.selectable_value(&mut session.view.tab, tab, name).on_hover_text(tooltip);
+        }
+    });
+}
+
+/// Draws the choice of the system, and selects the system of a setting that was searched for.
+fn system_row(ui: &mut Ui, session: &mut Session) {
+    let systems = session.document.preset.systems.len();
+    session.view.system = session.view.system.min(systems.saturating_sub(1));
+    if let Some(index) = session.search.found.as_ref().and_then(|(path, _)| system_of(path)) {
+        session.view.system = index;
+    }
+    if systems > 1 && session.view.tab != Tab::Light {
+        ui.horizontal_wrapped(|ui| {
+            for (index, system) in session.document.preset.systems.iter().enumerate() {
+                ui.selectable_value(&mut session.view.system, index, truncate_middle(&system.name, 30));
+            }
+        });
+    }
+}
+
+/// Draws a tab of rows of settings, and runs their requests. Returns the path of a field if a sheet of its values is
+/// requested.
+fn setting_tab(ui: &mut Ui, session: &mut Session) -> Option<String> {
+    let mut shown = std::mem::take(&mut session.view.lights);
     let whole = || {
-        let mut smoke = Smoke::default();
+        let mut smoke = SmokeGeometry::default();
         smoke.of(session);
         smoke
     };
-    let mut desk = RowContext {
+    let mut context = RowContext {
         tooltips: &session.tooltips,
         thumbnails: &session.thumbnails,
         changed: session.changed(),
-        inert: &|path| without_effect(&session.document.preset, path, session.show.size),
-        second: session.second(),
+        reason_without_effect: &|path| without_effect(&session.document.preset, path, session.view.size),
+        second: session.second_diff(),
         has_sheets: true,
-        asked: Vec::new(),
+        requests: Vec::new(),
         refused: None,
-        sought: session.search.found.as_ref().map(|(path, _)| path.as_str()),
+        searched_path: session.search.found.as_ref().map(|(path, _)| path.as_str()),
     };
-    // Panels change a copy, because the desk borrows the session.
+    // Panels change a copy, because the rows borrow the session.
     let mut edited = session.document.preset.clone();
     let preset = &mut edited;
-    let system = session.show.system;
-    egui::ScrollArea::vertical().id_salt(session.show.tab).auto_shrink(false).show(ui, |ui| match session.show.tab {
-        Tab::Look => look_panel::panel(ui, &mut desk, preset, &mut shown, system),
+    let system = session.view.system;
+    egui::ScrollArea::vertical().id_salt(session.view.tab).auto_shrink(false).show(ui, |ui| match session.view.tab {
+        Tab::Look => look_panel::panel(ui, &mut context, preset, &mut shown, system),
         Tab::Light => {
-            lights_panel::panel(ui, &mut desk, preset, &mut shown, (&whole, session.show.size));
+            lights_panel::panel(ui, &mut context, preset, &mut shown, (&whole, session.view.size));
             ui.separator();
-            surroundings(ui, &mut desk, preset);
+            surroundings(ui, &mut context, preset);
         }
-        Tab::Smoke => smoke(ui, &mut desk, preset, system),
-        Tab::Advanced => advanced(ui, &mut desk, preset, system),
+        Tab::Smoke => smoke(ui, &mut context, preset, system),
+        Tab::Advanced => advanced(ui, &mut context, preset, system),
         Tab::Ramps | Tab::Sprite | Tab::Performance => {}
     });
-    let RowContext { asked, refused, .. } = desk;
+    let RowContext { requests, refused, .. } = context;
     let is_edited = session.document.preset != edited;
     session.document.preset = edited;
-    session.show.lights = shown;
-    session.refuse(refused, is_edited);
+    session.view.lights = shown;
+    session.report_refused_input(refused, is_edited);
     let mut sheet = None;
-    for (asked, path) in asked {
-        match asked {
-            Asked::SetBack => session.reset_field(&path),
-            Asked::Take => session.take(&path),
-            Asked::Sheet => sheet = Some(path),
+    for (request, path) in requests {
+        match request {
+            RowRequest::Reset => session.reset_field(&path),
+            RowRequest::CopySecond => session.copy_from_second(&path),
+            RowRequest::Sheet => sheet = Some(path),
         }
     }
     sheet
@@ -126,34 +141,35 @@ fn system_of(path: &str) -> Option<usize> {
 /// Draws a collapsible part of the preset. Returns true if it is open.
 fn section(
     ui: &mut Ui,
-    desk: &mut RowContext<'_>,
+    context: &mut RowContext<'_>,
     title: &str,
-    path: &[Step],
+    path: &[FieldStep],
     is_open: bool,
     fields: &mut dyn Fields,
 ) -> bool {
     let whole = field_path(path);
-    let header = setting_rows::header(desk, title, &|field| is_at(field, &whole)).id_salt(path).default_open(is_open);
-    header.show(ui, |ui| setting_rows::show(ui, desk, path, fields)).fully_open()
+    let header =
+        setting_rows::header(context, title, &|field| is_at(field, &whole)).id_salt(path).default_open(is_open);
+    header.show(ui, |ui| setting_rows::show(ui, context, path, fields)).fully_open()
 }
 
-fn surroundings(ui: &mut Ui, desk: &mut RowContext<'_>, preset: &mut Preset) {
-    section(ui, desk, "Sky and scene", &[("environment", None)], true, &mut preset.environment);
-    section(ui, desk, "Camera", &[("camera", None)], true, &mut preset.camera);
+fn surroundings(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset) {
+    section(ui, context, "Sky and scene", &[("environment", None)], true, &mut preset.environment);
+    section(ui, context, "Camera", &[("camera", None)], true, &mut preset.camera);
 }
 
-fn smoke(ui: &mut Ui, desk: &mut RowContext<'_>, preset: &mut Preset, index: usize) {
+fn smoke(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, index: usize) {
     let Some(system) = preset.systems.get_mut(index) else { return };
     let at = ("systems", Some(index));
-    section(ui, desk, "Emitter", &[at, ("emitter", None)], true, &mut system.emitter);
-    section(ui, desk, "Particles from files", &[at, ("cache", None)], false, &mut system.cache);
-    section(ui, desk, "Sprite and ramps", &[at, ("material", None)], false, &mut system.material);
+    section(ui, context, "Emitter", &[at, ("emitter", None)], true, &mut system.emitter);
+    section(ui, context, "Particles from files", &[at, ("cache", None)], false, &mut system.cache);
+    section(ui, context, "Sprite and ramps", &[at, ("material", None)], false, &mut system.material);
     let settings = &mut system.settings;
     let at = |name| [at, ("settings", None), (name, None)];
-    section(ui, desk, "Diffuse", &at("diffuse"), false, &mut settings.diffuse);
-    section(ui, desk, "Soft scatter", &at("soft_scatter"), false, &mut settings.soft_scatter);
-    section(ui, desk, "Specular scatter", &at("specular_scatter"), false, &mut settings.specular_scatter);
-    if section(ui, desk, "Soft fade", &at("soft_fade"), false, &mut settings.soft_fade) {
+    section(ui, context, "Diffuse", &at("diffuse"), false, &mut settings.diffuse);
+    section(ui, context, "Soft scatter", &at("soft_scatter"), false, &mut settings.soft_scatter);
+    section(ui, context, "Specular scatter", &at("specular_scatter"), false, &mut settings.specular_scatter);
+    if section(ui, context, "Soft fade", &at("soft_fade"), false, &mut settings.soft_fade) {
         soft_fade_plot::panel(ui, &settings.soft_fade);
     }
 }
@@ -161,14 +177,14 @@ fn smoke(ui: &mut Ui, desk: &mut RowContext<'_>, preset: &mut Preset, index: usi
 /// Groups of settings that only programmers need.
 const FOR_PROGRAMMERS: [&str; 3] = ["path", "blend_mode", "accumulate"];
 
-fn advanced(ui: &mut Ui, desk: &mut RowContext<'_>, preset: &mut Preset, index: usize) {
+fn advanced(ui: &mut Ui, context: &mut RowContext<'_>, preset: &mut Preset, index: usize) {
     let Some(system) = preset.systems.get_mut(index) else { return };
     let at = [("systems", Some(index)), ("settings", None)];
     let is_last = |name: &str| FOR_PROGRAMMERS.contains(&name);
-    setting_rows::show_where(ui, desk, &at, &mut system.settings, &|name| {
+    setting_rows::show_where(ui, context, &at, &mut system.settings, &|name| {
         !is_last(name) && !SMOKE_TAB_GROUPS.contains(&name)
     });
-    setting_rows::show_where(ui, desk, &at, &mut system.settings, &is_last);
+    setting_rows::show_where(ui, context, &at, &mut system.settings, &is_last);
 }
 
 #[cfg(test)]
@@ -179,7 +195,7 @@ mod tests {
     use haze::settings::Value;
 
     use crate::tweak::panels::rows::value_text::shown_value;
-    use crate::tweak::session::comparison::Against;
+    use crate::tweak::session::comparison::CompareWith;
     use crate::tweak::window::Window;
     use crate::tweak::window::testing::{row_menu, window};
 
@@ -279,10 +295,10 @@ mod tests {
         preset.systems[0].emitter.buoyancy += 1.0;
         harness.run_steps(3);
         assert!(!is_marked(&harness, exposure), "nothing is compared");
-        harness.state_mut().session.compare.against = Some(Against::Forward);
+        harness.state_mut().session.compare.against = Some(CompareWith::Forward);
         harness.run_steps(3);
         assert!(!is_marked(&harness, exposure), "the same settings, drawn in another way");
-        harness.state_mut().session.compare.against = Some(Against::Saved);
+        harness.state_mut().session.compare.against = Some(CompareWith::Saved);
         harness.run_steps(3);
         assert!(is_marked(&harness, exposure) && is_marked(&harness, buoyancy));
         assert!(!is_marked(&harness, "take glow of the second"));

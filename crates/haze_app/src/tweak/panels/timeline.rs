@@ -42,7 +42,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session) {
         let speed =
             egui::DragValue::new(&mut playback.speed).speed(0.01).range(-8.0..=8.0).fixed_decimals(2).prefix("x ");
         ui.add(speed).on_hover_text("Speed of the clock; negative runs backwards");
-        freeze(ui, &mut session.document.preset, session.show.size);
+        freeze(ui, &mut session.document.preset, session.view.size);
         let preset = &mut session.document.preset;
         let is_kept = preset.time.to_bits() == playback.time.to_bits();
         let keep =

@@ -15,10 +15,10 @@ use haze_demo::shot::Shot;
 pub use crate::inputs::particle_file_paths;
 
 /// Images and particles of each system of a preset.
-pub type Loaded = (Vec<MaterialAssets>, Vec<Option<ParticleFrames>>);
+pub type LoadedAssets = (Vec<MaterialAssets>, Vec<Option<ParticleFrames>>);
 
 /// Loads all files that the preset at a path names.
-pub fn all(preset: &Preset, path: &Path, folders: &AssetFolders) -> Result<Loaded, Error> {
+pub fn all(preset: &Preset, path: &Path, folders: &AssetFolders) -> Result<LoadedAssets, Error> {
     Ok((pictures(preset, path, folders)?, particles(preset, path, folders)?))
 }
 

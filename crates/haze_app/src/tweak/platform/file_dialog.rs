@@ -39,7 +39,7 @@ const TOO_SOON: Duration = Duration::from_millis(300);
 static FAILED: Mutex<Option<Instant>> = Mutex::new(None);
 
 /// Records log messages of rfd. Returns true for these; the window reports them itself.
-pub fn is_failure(target: &str) -> bool {
+pub fn is_dialog_target(target: &str) -> bool {
     let is_ours = target.starts_with("rfd::");
     if is_ours {
         *FAILED.lock().unwrap_or_else(PoisonError::into_inner) = Some(Instant::now());
@@ -119,7 +119,7 @@ mod tests {
         }
         // A failure of an earlier dialog.
         assert_eq!(without_choice(after(30.0), Some(after(25.0)), after(40.0)), Answer::Cancelled);
-        assert!(is_failure("rfd::backend::xdg_desktop_portal::portal") && !is_failure("wgpu_core"));
+        assert!(is_dialog_target("rfd::backend::xdg_desktop_portal::portal") && !is_dialog_target("wgpu_core"));
     }
 
     #[cfg(target_os = "linux")]

@@ -15,7 +15,7 @@ fn field_path(folder: &Path, name: &str) -> PathBuf {
 }
 
 /// Returns the value stored under a name, or the default; with the error if the file is not valid.
-pub fn recall<T: DeserializeOwned + Default>(folder: &Path, name: &str) -> (T, Option<Error>) {
+pub fn read<T: DeserializeOwned + Default>(folder: &Path, name: &str) -> (T, Option<Error>) {
     let path = field_path(folder, name);
     match file_io::read_text(&path).and_then(|text| json::parse(&path, &text)) {
         Ok(value) => (value, None),
@@ -25,7 +25,7 @@ pub fn recall<T: DeserializeOwned + Default>(folder: &Path, name: &str) -> (T, O
 }
 
 /// Stores a value under a name.
-pub fn remember<T: Serialize>(folder: &Path, name: &str, value: &T) -> Result<(), Error> {
+pub fn write<T: Serialize>(folder: &Path, name: &str, value: &T) -> Result<(), Error> {
     let path = field_path(folder, name);
     file_io::make_folder(folder)?;
     match serde_json::to_string_pretty(value) {
@@ -49,10 +49,10 @@ mod tests {
     fn a_stored_layout_is_restored_and_a_broken_one_is_reported_and_replaced() {
         let folder = tempfile::tempdir().unwrap();
         let state = folder.path().join("not/yet");
-        let found = || recall::<Layout>(&state, "layout");
+        let found = || read::<Layout>(&state, "layout");
         assert!(matches!(found(), (layout, None) if layout == Layout::default()));
         let layout = Layout { width: 0.1, open: vec!["lights".into()] };
-        remember(&state, "layout", &layout).unwrap();
+        write(&state, "layout", &layout).unwrap();
         assert!(matches!(found(), (found, None) if found == layout));
         std::fs::write(state.join("layout.json"), "{\"width\": wide}").unwrap();
         let (found, error) = found();

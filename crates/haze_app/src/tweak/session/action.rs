@@ -3,7 +3,7 @@
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 use glam::Vec3;
 
-use super::comparison::Against;
+use super::comparison::CompareWith;
 use super::view_options::Overlay;
 
 /// Command to the window.
@@ -29,7 +29,7 @@ pub enum Action {
     Inspect,
     NextStage,
     /// Shows this comparison beside the image, or hides it if it is shown.
-    Compare(&'static Against),
+    Compare(&'static CompareWith),
     Image,
     Help,
     InView(InView),
@@ -47,12 +47,12 @@ pub enum InView {
     Behind,
     Overlay(Overlay),
     Turntable,
-    Face(Side),
+    Face(CameraSide),
 }
 
 /// Side from which the camera looks at its target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum CameraSide {
     Front,
     Back,
     Right,
@@ -61,7 +61,7 @@ pub enum Side {
     Bottom,
 }
 
-impl Side {
+impl CameraSide {
     /// Returns the unit direction from the camera's target to the camera.
     pub fn way(self) -> Vec3 {
         match self {
@@ -76,20 +76,20 @@ impl Side {
 }
 
 /// Action with its menu name and its shortcut.
-pub struct Entry {
+pub struct ActionEntry {
     pub action: Action,
     pub name: &'static str,
     pub keys: KeyboardShortcut,
 }
 
-const fn entry(action: Action, name: &'static str, modifiers: Modifiers, key: Key) -> Entry {
-    Entry { action, name, keys: KeyboardShortcut::new(modifiers, key) }
+const fn entry(action: Action, name: &'static str, modifiers: Modifiers, key: Key) -> ActionEntry {
+    ActionEntry { action, name, keys: KeyboardShortcut::new(modifiers, key) }
 }
 
 const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// Entries with more modifiers come first, because egui matches a shortcut without Shift also while Shift is held.
-pub const ACTIONS: &[Entry] = &[
+pub const ACTIONS: &[ActionEntry] = &[
     entry(Action::Presets, "New from a preset", Modifiers::COMMAND, Key::N),
     entry(Action::Open, "Open a preset", Modifiers::COMMAND, Key::O),
     entry(Action::SaveAs, "Save as", COMMAND_SHIFT, Key::S),
@@ -109,10 +109,10 @@ pub const ACTIONS: &[Entry] = &[
     entry(Action::Strip, "Shade tree strip", Modifiers::NONE, Key::F4),
     entry(Action::Inspect, "Inspect the pixel under the pointer", Modifiers::NONE, Key::I),
     entry(Action::NextStage, "Next stage of the shading", Modifiers::NONE, Key::N),
-    entry(Action::Compare(&Against::Saved), "Compare with the file", Modifiers::NONE, Key::F5),
-    entry(Action::Compare(&Against::FullResolution), "Compare with full resolution", Modifiers::NONE, Key::F6),
-    entry(Action::Compare(&Against::Forward), "Compare with forward", Modifiers::NONE, Key::F7),
-    entry(Action::Compare(&Against::Reference), "Compare with the CPU reference", Modifiers::NONE, Key::F8),
+    entry(Action::Compare(&CompareWith::Saved), "Compare with the file", Modifiers::NONE, Key::F5),
+    entry(Action::Compare(&CompareWith::FullResolution), "Compare with full resolution", Modifiers::NONE, Key::F6),
+    entry(Action::Compare(&CompareWith::Forward), "Compare with forward", Modifiers::NONE, Key::F7),
+    entry(Action::Compare(&CompareWith::Reference), "Compare with the CPU reference", Modifiers::NONE, Key::F8),
     entry(Action::Image, "Back to the picture", Modifiers::NONE, Key::Escape),
     entry(Action::InView(InView::Frame), "Show the selected light, or all of the smoke", Modifiers::NONE, Key::F),
     entry(Action::InView(InView::Home), "Back to the saved camera", Modifiers::NONE, Key::Home),
@@ -124,12 +124,12 @@ pub const ACTIONS: &[Entry] = &[
     entry(Action::InView(InView::Overlay(Overlay::Particles)), "Particles", Modifiers::NONE, Key::P),
     entry(Action::InView(InView::Overlay(Overlay::Grid)), "Texels of the smoke", Modifiers::NONE, Key::G),
     entry(Action::InView(InView::Turntable), "Lights round the smoke", Modifiers::NONE, Key::T),
-    entry(Action::InView(InView::Face(Side::Back)), "From behind", Modifiers::COMMAND, Key::Num1),
-    entry(Action::InView(InView::Face(Side::Front)), "From the front", Modifiers::NONE, Key::Num1),
-    entry(Action::InView(InView::Face(Side::Left)), "From the left", Modifiers::COMMAND, Key::Num3),
-    entry(Action::InView(InView::Face(Side::Right)), "From the right", Modifiers::NONE, Key::Num3),
-    entry(Action::InView(InView::Face(Side::Bottom)), "From below", Modifiers::COMMAND, Key::Num7),
-    entry(Action::InView(InView::Face(Side::Top)), "From above", Modifiers::NONE, Key::Num7),
+    entry(Action::InView(InView::Face(CameraSide::Back)), "From behind", Modifiers::COMMAND, Key::Num1),
+    entry(Action::InView(InView::Face(CameraSide::Front)), "From the front", Modifiers::NONE, Key::Num1),
+    entry(Action::InView(InView::Face(CameraSide::Left)), "From the left", Modifiers::COMMAND, Key::Num3),
+    entry(Action::InView(InView::Face(CameraSide::Right)), "From the right", Modifiers::NONE, Key::Num3),
+    entry(Action::InView(InView::Face(CameraSide::Bottom)), "From below", Modifiers::COMMAND, Key::Num7),
+    entry(Action::InView(InView::Face(CameraSide::Top)), "From above", Modifiers::NONE, Key::Num7),
     entry(Action::Help, "This list", Modifiers::NONE, Key::F1),
     entry(Action::Help, "The same", Modifiers::NONE, Key::Questionmark),
 ];
@@ -167,7 +167,7 @@ mod tests {
     #[test]
     fn an_action_is_not_hidden_by_one_with_fewer_modifiers() {
         for (index, entry) in ACTIONS.iter().enumerate() {
-            let hides = |other: &&Entry| other.keys.logical_key == entry.keys.logical_key;
+            let hides = |other: &&ActionEntry| other.keys.logical_key == entry.keys.logical_key;
             for other in ACTIONS[index + 1..].iter().filter(hides) {
                 assert!(!other.keys.modifiers.contains(entry.keys.modifiers), "{} hides {}", entry.name, other.name);
             }

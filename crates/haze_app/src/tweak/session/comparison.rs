@@ -9,7 +9,7 @@ use crate::tweak::viewport_renderer::compared_side::ComparedSide;
 
 /// Variant that the image is compared with.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Against {
+pub enum CompareWith {
     /// The preset as it is on disk.
     Saved,
     /// A copy of the preset that the user kept earlier.
@@ -24,15 +24,15 @@ pub enum Against {
 
 /// State of the comparison.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Compare {
-    pub against: Option<Against>,
+pub struct CompareState {
+    pub against: Option<CompareWith>,
     /// Share of the width at which the second image begins, 0 to 1.
     pub split: f32,
     /// Factor on the difference image, which replaces the two images; 0 shows the two side by side.
     pub difference: f32,
 }
 
-impl Default for Compare {
+impl Default for CompareState {
     fn default() -> Self {
         Self { against: None, split: 0.5, difference: 0.0 }
     }
@@ -40,7 +40,7 @@ impl Default for Compare {
 
 /// Comparison that one click turns on.
 pub struct CompareOption {
-    pub against: Against,
+    pub against: CompareWith,
     /// Label of its button.
     pub short: &'static str,
     /// Label of its menu line.
@@ -48,20 +48,30 @@ pub struct CompareOption {
     pub tooltip: &'static str,
 }
 
-const fn offer(against: Against, short: &'static str, name: &'static str, tooltip: &'static str) -> CompareOption {
+const fn offer(against: CompareWith, short: &'static str, name: &'static str, tooltip: &'static str) -> CompareOption {
     CompareOption { against, short, name, tooltip }
 }
 
 pub static COMPARE_OPTIONS: [CompareOption; 4] = [
-    offer(Against::Saved, "Saved", "As saved", "The preset as it is on disk"),
-    offer(Against::FullResolution, "Full", "Full resolution", "The same smoke without a reduced target"),
-    offer(Against::Forward, "Forward", "Forward", "The same smoke lit and blended sprite by sprite, the classic way"),
-    offer(Against::Reference, "CPU", "CPU reference", "The same by the CPU renderer, the specification: takes a while"),
+    offer(CompareWith::Saved, "Saved", "As saved", "The preset as it is on disk"),
+    offer(CompareWith::FullResolution, "Full", "Full resolution", "The same smoke without a reduced target"),
+    offer(
+        CompareWith::Forward,
+        "Forward",
+        "Forward",
+        "The same smoke lit and blended sprite by sprite, the classic way",
+    ),
+    offer(
+        CompareWith::Reference,
+        "CPU",
+        "CPU reference",
+        "The same by the CPU renderer, the specification: takes a while",
+    ),
 ];
 
-impl Compare {
+impl CompareState {
     /// Turns this comparison on, or off if it is on.
-    pub fn toggle(&mut self, against: &Against) {
+    pub fn toggle(&mut self, against: &CompareWith) {
         self.against = (self.against.as_ref() != Some(against)).then(|| against.clone());
     }
 
@@ -72,7 +82,7 @@ impl Compare {
     }
 }
 
-impl Against {
+impl CompareWith {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Saved => "as saved",
@@ -132,10 +142,10 @@ mod tests {
         first.preset.systems[0].settings.boost = 1.0;
         let mut lights = LightView::default();
         lights.follow(&first.preset.lights);
-        lights.marks(0).unwrap().is_muted = true;
+        lights.mute_solo(0).unwrap().is_muted = true;
         first.preset.lights = lights.shown(&first.preset.lights);
-        let shot = |against: Against| against.shot(&first, &saved, &lights).preset;
-        let (as_saved, whole) = (shot(Against::Saved), shot(Against::FullResolution));
+        let shot = |against: CompareWith| against.shot(&first, &saved, &lights).preset;
+        let (as_saved, whole) = (shot(CompareWith::Saved), shot(CompareWith::FullResolution));
         assert_eq!((as_saved.camera, as_saved.systems.clone()), (first.preset.camera, saved.systems.clone()));
         assert_eq!((&as_saved.lights, &whole.lights), (&first.preset.lights, &first.preset.lights));
         assert_eq!(as_saved.time.to_bits(), first.preset.time.to_bits());
@@ -144,6 +154,6 @@ mod tests {
         let mut back = whole;
         back.systems[0].settings.accumulate = saved.systems[0].settings.accumulate;
         assert_eq!(back, first.preset);
-        assert!(shot(Against::Forward).systems[0].settings.is_forward());
+        assert!(shot(CompareWith::Forward).systems[0].settings.is_forward());
     }
 }

@@ -26,7 +26,7 @@ pub const HINTS: [(Hint, &str, &str); 5] = [
 
 /// Part of the window that a hint points at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum WindowPart {
     Image,
     Settings,
     Find,
@@ -34,12 +34,12 @@ pub enum Place {
 }
 
 impl Hint {
-    pub fn place(self) -> Place {
+    pub fn place(self) -> WindowPart {
         match self {
-            Self::Orbit | Self::Light => Place::Image,
-            Self::Look => Place::Settings,
-            Self::Find => Place::Find,
-            Self::Keys => Place::Keys,
+            Self::Orbit | Self::Light => WindowPart::Image,
+            Self::Look => WindowPart::Settings,
+            Self::Find => WindowPart::Find,
+            Self::Keys => WindowPart::Keys,
         }
     }
 }
@@ -67,7 +67,7 @@ impl FirstRunHints {
     }
 
     /// Continues with the hints of these names.
-    pub fn go_on(&mut self, names: &[String]) {
+    pub fn resume(&mut self, names: &[String]) {
         let left = HINTS.into_iter().filter(|(_, name, _)| names.iter().any(|left| left == name));
         self.open = left.map(|(hint, ..)| hint).collect();
     }
@@ -84,7 +84,7 @@ impl FirstRunHints {
     }
 
     /// Records the rectangle of a part of the window.
-    pub fn see(&mut self, place: Place, rect: Rect) {
+    pub fn record_rect(&mut self, place: WindowPart, rect: Rect) {
         self.places[place as usize] = rect;
     }
 
@@ -112,11 +112,11 @@ impl FirstRunHints {
             last.1.clone_from(systems);
         }
         self.open.retain(|hint| !match hint {
-            Hint::Orbit => has_moved && done.presses,
-            Hint::Light => done.drags_light,
-            Hint::Look => has_set && done.sees_look,
-            Hint::Find => done.finds,
-            Hint::Keys => done.sees_keys,
+            Hint::Orbit => has_moved && done.is_pressing,
+            Hint::Light => done.is_dragging_light,
+            Hint::Look => has_set && done.is_look_visible,
+            Hint::Find => done.is_searching,
+            Hint::Keys => done.is_key_list_open,
         });
     }
 }
@@ -125,10 +125,10 @@ impl FirstRunHints {
 #[allow(clippy::struct_excessive_bools, reason = "independent flags")]
 pub struct UserActivity {
     /// A pointer button or the wheel is in use.
-    pub presses: bool,
-    pub drags_light: bool,
+    pub is_pressing: bool,
+    pub is_dragging_light: bool,
     /// The sliders of the look tab are visible.
-    pub sees_look: bool,
-    pub finds: bool,
-    pub sees_keys: bool,
+    pub is_look_visible: bool,
+    pub is_searching: bool,
+    pub is_key_list_open: bool,
 }

@@ -7,12 +7,12 @@ use glam::{UVec2, Vec3};
 use haze::formula::tonemap::tonemapped;
 use haze_reference::Probe;
 
-use super::ramp_survey::{RampSurvey, Spot};
+use super::ramp_survey::{RampPlace, RampSurvey};
 use crate::tweak::viewport_renderer::compared_side::ComparedSide;
 
 /// State of the inspector.
 #[derive(Default)]
-pub struct Inspect {
+pub struct Inspection {
     /// The values of the pixel under the pointer are shown.
     pub is_on: bool,
     /// Pointer position over the image, in shares of its sides.
@@ -20,15 +20,15 @@ pub struct Inspect {
     /// Pinned position.
     pub pinned: Option<Vec2>,
     /// Values of the pixel.
-    pub told: Option<Told>,
+    pub pixel_values: Option<PixelValues>,
     /// Ramp coordinates of the whole image.
     pub survey: Option<Arc<RampSurvey>>,
     /// Place on a ramp. Smoke that samples it is highlighted in the image.
-    pub spot: Option<Spot>,
+    pub ramp_place: Option<RampPlace>,
 }
 
 /// Values of a pixel.
-pub struct Told {
+pub struct PixelValues {
     pub pixel: UVec2,
     /// Image that the pixel belongs to, and the names of its systems.
     pub side: ComparedSide,
@@ -38,7 +38,7 @@ pub struct Told {
     pub exposure: f32,
 }
 
-impl Inspect {
+impl Inspection {
     /// Follows the pointer over the viewport. A click pins the position, or releases it.
     pub fn point(&mut self, viewport: &Response) {
         self.pointer = viewport.hover_pos().map(|at| (at - viewport.rect.min) / viewport.rect.size());

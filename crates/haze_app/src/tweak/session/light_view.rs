@@ -6,22 +6,22 @@ use glam::{Quat, Vec3};
 use haze::Light;
 use haze::frame::MAX_LIGHTS;
 
-use crate::tweak::document::light_defaults::name_of;
+use crate::tweak::document::light_defaults::light_name;
 
 /// View state of a preset's lights, by their indices.
 #[derive(Clone, Debug, Default)]
 pub struct LightView {
     pub selected: Option<usize>,
     /// Key light of each system, once it is chosen.
-    keys: Vec<Option<usize>>,
+    key_lights: Vec<Option<usize>>,
     /// Set while all lights rotate about the smoke.
-    pub turn: Option<Turn>,
-    entries: Vec<Entry>,
+    pub turn: Option<LightTurn>,
+    entries: Vec<LightEntry>,
 }
 
 /// Rotation of the lights about a vertical axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turn {
+pub struct LightTurn {
     /// Point on the axis.
     pub middle: Vec3,
     /// Angle from the positions in the preset, radians.
@@ -29,12 +29,12 @@ pub struct Turn {
 }
 
 /// Duration of one turn, seconds.
-const TURN: f32 = 5.0;
+const TURN_SECONDS: f32 = 5.0;
 
-impl Turn {
+impl LightTurn {
     /// Advances by the elapsed seconds.
     pub fn advance(&mut self, seconds: f32) {
-        self.angle = (self.angle + seconds * TAU / TURN).rem_euclid(TAU);
+        self.angle = (self.angle + seconds * TAU / TURN_SECONDS).rem_euclid(TAU);
     }
 
     /// Returns a light rotated by the present angle.
@@ -46,10 +46,10 @@ impl Turn {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Entry {
+struct LightEntry {
     /// The light as it was last seen, to recognise it when lights are added or removed.
     light: Light,
-    marks: MuteSolo,
+    mute_solo: MuteSolo,
 }
 
 /// Mute and solo flags of a light.
@@ -64,7 +64,7 @@ pub struct MuteSolo {
 impl LightView {
     /// Follows changes of the list of lights, by undo or by another preset.
     pub fn follow(&mut self, lights: &[Light]) {
-        let entry = |&light| Entry { light, marks: MuteSolo::default() };
+        let entry = |&light| LightEntry { light, mute_solo: MuteSolo::default() };
         let (old, new) = (self.entries.len(), lights.len());
         if old != new {
             // Lights that are equal at either end of the list keep their state.
@@ -87,36 +87,38 @@ impl LightView {
     /// Gives all stored indices their new values; `None` removes an index.
     fn renumber(&mut self, place: impl Fn(usize) -> Option<usize>) {
         self.selected = self.selected.and_then(&place);
-        self.keys.iter_mut().for_each(|key| *key = key.and_then(&place));
+        self.key_lights.iter_mut().for_each(|key_light| *key_light = key_light.and_then(&place));
     }
 
     /// Returns the key light of a system. It is chosen once and kept as long as it exists.
-    pub fn key(&mut self, system: usize, choose: impl FnOnce() -> Option<usize>) -> Option<usize> {
-        self.keys.resize(self.keys.len().max(system + 1), None);
-        let key = &mut self.keys[system];
-        *key = key.or_else(choose);
-        *key
+    pub fn key_light(&mut self, system: usize, choose: impl FnOnce() -> Option<usize>) -> Option<usize> {
+        self.key_lights.resize(self.key_lights.len().max(system + 1), None);
+        let key_light = &mut self.key_lights[system];
+        *key_light = key_light.or_else(choose);
+        *key_light
     }
 
     /// Returns the key light of a system if it is already chosen.
     pub fn chosen_key_light(&self, system: usize) -> Option<usize> {
-        self.keys.get(system).copied().flatten()
+        self.key_lights.get(system).copied().flatten()
     }
 
     /// Forgets the key lights, so that they are chosen anew for another preset.
-    pub fn forget_keys(&mut self) {
-        self.keys.clear();
+    pub fn forget_key_lights(&mut self) {
+        self.key_lights.clear();
     }
 
     /// Returns the flags of a light, for changing them.
-    pub fn marks(&mut self, index: usize) -> Option<&mut MuteSolo> {
-        self.entries.get_mut(index).map(|entry| &mut entry.marks)
+    pub fn mute_solo(&mut self, index: usize) -> Option<&mut MuteSolo> {
+        self.entries.get_mut(index).map(|entry| &mut entry.mute_solo)
     }
 
     /// Returns true if a light is in the image.
     pub fn is_shown(&self, index: usize) -> bool {
         let has_solo = self.has_solo();
-        self.entries.get(index).is_none_or(|Entry { marks, .. }| if has_solo { marks.is_solo } else { !marks.is_muted })
+        self.entries
+            .get(index)
+            .is_none_or(|LightEntry { mute_solo, .. }| if has_solo { mute_solo.is_solo } else { !mute_solo.is_muted })
     }
 
     /// Returns the lights that are in the image, turned.
@@ -129,7 +131,7 @@ impl LightView {
         let mut of_these = self.clone();
         of_these.follow(lights);
         let shown = (0..).zip(lights).filter(|(index, _)| of_these.is_shown(*index));
-        shown.map(|(index, light)| name_of(index, light)).collect()
+        shown.map(|(index, light)| light_name(index, light)).collect()
     }
 
     /// Returns the lights of another preset that are in its image. They are matched by index, and by equality at the
@@ -142,7 +144,7 @@ impl LightView {
     }
 
     fn has_solo(&self) -> bool {
-        self.entries.iter().any(|entry| entry.marks.is_solo)
+        self.entries.iter().any(|entry| entry.mute_solo.is_solo)
     }
 
     /// Returns a light as the turn has moved it.
@@ -156,7 +158,7 @@ impl LightView {
             self.follow(lights);
             lights.insert(index, light);
             self.renumber(|place| Some(place + usize::from(place >= index)));
-            self.entries.insert(index, Entry { light, marks: MuteSolo::default() });
+            self.entries.insert(index, LightEntry { light, mute_solo: MuteSolo::default() });
             self.selected = Some(index);
         }
     }
@@ -190,7 +192,7 @@ mod tests {
     }
 
     fn muted(shown: &LightView) -> Vec<usize> {
-        (0..shown.entries.len()).filter(|&index| shown.entries[index].marks.is_muted).collect()
+        (0..shown.entries.len()).filter(|&index| shown.entries[index].mute_solo.is_muted).collect()
     }
 
     #[test]
@@ -198,7 +200,7 @@ mod tests {
         let mut all = lights(&[1.0, 2.0, 3.0]);
         let mut shown = LightView::default();
         shown.follow(&all);
-        shown.marks(1).unwrap().is_muted = true;
+        shown.mute_solo(1).unwrap().is_muted = true;
         shown.selected = Some(2);
         shown.remove(&mut all, 0);
         assert_eq!((muted(&shown), shown.selected), (vec![0], Some(1)));
@@ -222,13 +224,13 @@ mod tests {
         let mut all = lights(&[1.0, 2.0, 3.0]);
         let mut shown = LightView::default();
         shown.follow(&all);
-        assert_eq!((shown.key(0, || Some(1)), shown.key(1, || Some(2))), (Some(1), Some(2)));
+        assert_eq!((shown.key_light(0, || Some(1)), shown.key_light(1, || Some(2))), (Some(1), Some(2)));
         shown.insert(&mut all, 0, Light::default());
-        assert_eq!((shown.key(0, || Some(0)), shown.key(1, || Some(0))), (Some(2), Some(3)));
+        assert_eq!((shown.key_light(0, || Some(0)), shown.key_light(1, || Some(0))), (Some(2), Some(3)));
         shown.remove(&mut all, 2);
-        assert_eq!((shown.key(0, || Some(0)), shown.key(1, || Some(0))), (Some(0), Some(2)));
-        shown.forget_keys();
-        assert_eq!(shown.key(1, || Some(1)), Some(1));
+        assert_eq!((shown.key_light(0, || Some(0)), shown.key_light(1, || Some(0))), (Some(0), Some(2)));
+        shown.forget_key_lights();
+        assert_eq!(shown.key_light(1, || Some(1)), Some(1));
     }
 
     #[test]
@@ -238,7 +240,7 @@ mod tests {
         let mut shown = LightView::default();
         shown.follow(&all);
         assert_eq!(shown.shown_names(&all), ["sun 1", "lamp 2 (point)", "lamp 3 (spot)"]);
-        shown.marks(0).unwrap().is_muted = true;
+        shown.mute_solo(0).unwrap().is_muted = true;
         assert_eq!(shown.shown_names(&all), ["lamp 2 (point)", "lamp 3 (spot)"]);
     }
 
@@ -247,9 +249,9 @@ mod tests {
         let all = lights(&[1.0, 2.0, 3.0]);
         let mut shown = LightView::default();
         shown.follow(&all);
-        shown.marks(0).unwrap().is_muted = true;
+        shown.mute_solo(0).unwrap().is_muted = true;
         assert_eq!(shown.shown(&all), all[1..]);
-        shown.marks(2).unwrap().is_solo = true;
+        shown.mute_solo(2).unwrap().is_solo = true;
         assert_eq!(shown.shown(&all), all[2..]);
     }
 
@@ -258,14 +260,14 @@ mod tests {
         let all = lights(&[1.0, 2.0, 3.0]);
         let mut shown = LightView::default();
         shown.follow(&all);
-        shown.turn = Some(Turn { middle: Vec3::ZERO, angle: 1.0 });
-        shown.marks(1).unwrap().is_muted = true;
+        shown.turn = Some(LightTurn { middle: Vec3::ZERO, angle: 1.0 });
+        shown.mute_solo(1).unwrap().is_muted = true;
         let turned = |of: &[f32]| lights(of).iter().map(|light| shown.turned(light)).collect::<Vec<_>>();
         assert_eq!(shown.shown_of_preset(&lights(&[5.0, 6.0, 7.0])), turned(&[5.0, 7.0]));
         // The first light was added since, so it is missing here.
         assert_eq!(shown.shown_of_preset(&lights(&[2.0, 3.0])), turned(&[3.0]));
         let mut alone = shown.clone();
-        alone.marks(0).unwrap().is_solo = true;
+        alone.mute_solo(0).unwrap().is_solo = true;
         assert_eq!(alone.shown_of_preset(&lights(&[5.0, 6.0, 7.0])), turned(&[5.0]));
         assert_eq!(alone.shown_of_preset(&lights(&[2.0, 3.0])), []);
         assert_eq!(alone.shown(&all), turned(&[1.0]), "nothing is changed by looking");
@@ -275,10 +277,10 @@ mod tests {
     fn a_full_turn_keeps_height_and_distance_and_ends_at_the_start() {
         let light =
             Light { position: Vec3::new(3.0, 2.0, 1.0), direction: Vec3::new(0.5, -1.0, 0.2), ..Light::default() };
-        let mut turn = Turn { middle: Vec3::new(1.0, 4.0, 0.0), angle: 0.0 };
+        let mut turn = LightTurn { middle: Vec3::new(1.0, 4.0, 0.0), angle: 0.0 };
         assert_eq!(turn.turned(&light), light);
         for step in 1..=50 {
-            turn.advance(TURN / 50.0);
+            turn.advance(TURN_SECONDS / 50.0);
             let turned = turn.turned(&light);
             assert!((turned.position - turn.middle).length() - (light.position - turn.middle).length() < 1e-4);
             assert!((turned.position.y - 2.0).abs() < 1e-5 && (turned.direction.y + 1.0).abs() < 1e-5);

@@ -6,7 +6,7 @@ use glam::Vec3;
 use haze::preset::PresetSystem;
 
 /// Computed value of a system.
-pub struct Made {
+pub struct MacroParam {
     pub name: &'static str,
     pub tooltip: &'static str,
     pub unit: &'static str,
@@ -19,7 +19,7 @@ pub struct Made {
     pub set: fn(&mut PresetSystem, f32),
 }
 
-pub const THICKNESS: Made = Made {
+pub const THICKNESS: MacroParam = MacroParam {
     name: "thickness",
     tooltip: "Coverage of one full-grown sprite: amount x opacity x boost.",
     unit: "",
@@ -30,7 +30,7 @@ pub const THICKNESS: Made = Made {
     set: set_thickness,
 };
 
-pub const WIND: Made = Made {
+pub const WIND: MacroParam = MacroParam {
     name: "wind",
     tooltip: "Speed of the air. The direction is a setting of the emitter; from 0 it blows along +x.",
     unit: "m/s",
@@ -41,7 +41,7 @@ pub const WIND: Made = Made {
     set: |system, speed| system.emitter.wind = system.emitter.wind.normalize_or(Vec3::X) * speed,
 };
 
-pub const SOFTNESS: Made = Made {
+pub const SOFTNESS: MacroParam = MacroParam {
     name: "softness",
     tooltip: "Distance over which smoke dissolves before a surface: 1 / fade_scale.",
     unit: "m",
@@ -52,7 +52,7 @@ pub const SOFTNESS: Made = Made {
     set: |system, reach| system.settings.soft_fade.fade_scale = 1.0 / reach,
 };
 
-impl Made {
+impl MacroParam {
     /// Returns the path of the value, in the form of a setting's path.
     pub fn path(&self, system: usize) -> String {
         format!("systems[{system}].{}", self.name)

@@ -8,7 +8,7 @@ pub struct Message {
     pub text: String,
     /// An error stays until its cause is gone. Other messages time out.
     pub is_error: bool,
-    /// Subject. A new message replaces the one about the same subject, and [`Messages::withdraw`] removes it.
+    /// Subject. A new message replaces the one about the same subject, and [`Messages::clear`] removes it.
     about: &'static str,
     since: Instant,
 }
@@ -18,15 +18,15 @@ pub struct Message {
 pub struct Messages(Vec<Message>);
 
 /// Longest and shortest time for which a message that is no error is shown; user activity ends it in between.
-const SHOWN: Duration = Duration::from_secs(8);
-const READ: Duration = Duration::from_secs(1);
+const MAX_SHOWN: Duration = Duration::from_secs(8);
+const MIN_SHOWN: Duration = Duration::from_secs(1);
 
 /// Longest message, characters.
-const LONGEST: usize = 600;
+const MAX_CHARACTERS: usize = 600;
 
 /// Returns a text as one line of at most `most` characters. The middle is cut out, because paths and reasons end with
 /// the important part.
-pub fn short(text: &str, most: usize) -> String {
+pub fn truncate_middle(text: &str, most: usize) -> String {
     let mut line: Vec<_> = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     if line.len() > most {
         let (head, tail) = (most * 2 / 3, most / 3);
@@ -36,19 +36,19 @@ pub fn short(text: &str, most: usize) -> String {
 }
 
 /// Largest number of messages that are kept.
-const MOST: usize = 20;
+const MAX_MESSAGES: usize = 20;
 
 impl Messages {
-    pub fn say(&mut self, about: &'static str, text: impl ToString) {
+    pub fn info(&mut self, about: &'static str, text: impl ToString) {
         self.push(&text.to_string(), false, about);
     }
 
-    pub fn complain(&mut self, about: &'static str, text: impl ToString) {
+    pub fn error(&mut self, about: &'static str, text: impl ToString) {
         self.push(&text.to_string(), true, about);
     }
 
     /// Removes the message about a subject whose cause is gone.
-    pub fn withdraw(&mut self, about: &'static str) {
+    pub fn clear(&mut self, about: &'static str) {
         self.0.retain(|message| message.about != about);
     }
 
@@ -65,22 +65,23 @@ impl Messages {
     /// until the next message times out.
     pub fn advance(&mut self, now: Instant, acts: bool) -> Option<Duration> {
         let age = |message: &Message| now.saturating_duration_since(message.since);
-        let most = if acts { READ } else { SHOWN };
+        let most = if acts { MIN_SHOWN } else { MAX_SHOWN };
         self.0.retain(|message| message.is_error || age(message) < most);
-        let left = self.0.iter().filter(|message| !message.is_error).map(|message| SHOWN.saturating_sub(age(message)));
+        let left =
+            self.0.iter().filter(|message| !message.is_error).map(|message| MAX_SHOWN.saturating_sub(age(message)));
         left.min()
     }
 
     fn push(&mut self, text: &str, is_error: bool, about: &'static str) {
         // Names in the text may contain control characters and have any length.
-        let message = Message { text: short(text, LONGEST), is_error, about, since: Instant::now() };
+        let message = Message { text: truncate_middle(text, MAX_CHARACTERS), is_error, about, since: Instant::now() };
         let is_same = |other: &Message| (&other.text, other.is_error, other.about) == (&message.text, is_error, about);
         if is_error && self.0.iter().any(is_same) {
             return;
         }
-        self.withdraw(about);
+        self.clear(about);
         self.0.push(message);
-        let surplus = self.0.len().saturating_sub(MOST);
+        let surplus = self.0.len().saturating_sub(MAX_MESSAGES);
         self.0.drain(..surplus);
     }
 }
@@ -92,40 +93,40 @@ mod tests {
     #[test]
     fn a_message_is_one_line_of_limited_length() {
         let mut messages = Messages::default();
-        messages.say("file", format!("a\nb{}: it is full", "c".repeat(4000)));
+        messages.info("file", format!("a\nb{}: it is full", "c".repeat(4000)));
         let text = messages.latest().unwrap().text.clone();
         assert!(text.starts_with("a bcc") && text.contains("c…c") && text.ends_with("c: it is full"), "{text}");
-        assert_eq!((text.chars().count(), short("abcdef", 6)), (LONGEST + 1, "abcdef".into()));
+        assert_eq!((text.chars().count(), truncate_middle("abcdef", 6)), (MAX_CHARACTERS + 1, "abcdef".into()));
     }
 
     #[test]
     fn a_message_is_shown_once_and_can_be_withdrawn() {
         let mut messages = Messages::default();
         for _ in 0..3 {
-            messages.complain("ramp", "broken");
+            messages.error("ramp", "broken");
         }
-        messages.say("file", "saved");
+        messages.info("file", "saved");
         assert_eq!(messages.0.len(), 2);
-        messages.complain("ramp", "broken elsewhere");
+        messages.error("ramp", "broken elsewhere");
         assert_eq!(messages.latest().map(|message| message.text.as_str()), Some("broken elsewhere"));
-        messages.withdraw("ramp");
+        messages.clear("ramp");
         assert_eq!(messages.latest().map(|message| message.is_error), Some(false));
     }
 
     #[test]
     fn information_times_out_or_ends_with_activity_and_errors_stay() {
         let mut messages = Messages::default();
-        messages.complain("ramp", "broken");
-        messages.say("file", "saved");
+        messages.error("ramp", "broken");
+        messages.info("file", "saved");
         let begin = Instant::now();
         let latest = |messages: &Messages| messages.latest().unwrap().text.clone();
-        assert!(messages.advance(begin, true).is_some_and(|left| left <= SHOWN));
+        assert!(messages.advance(begin, true).is_some_and(|left| left <= MAX_SHOWN));
         assert_eq!(latest(&messages), "saved", "no one has read it");
-        messages.advance(begin + READ, false);
+        messages.advance(begin + MIN_SHOWN, false);
         assert_eq!(latest(&messages), "saved");
-        assert_eq!(messages.advance(begin + READ, true), None);
+        assert_eq!(messages.advance(begin + MIN_SHOWN, true), None);
         assert_eq!(latest(&messages), "broken");
-        messages.say("file", "saved");
-        assert_eq!((messages.advance(Instant::now() + SHOWN, false), latest(&messages)), (None, "broken".into()));
+        messages.info("file", "saved");
+        assert_eq!((messages.advance(Instant::now() + MAX_SHOWN, false), latest(&messages)), (None, "broken".into()));
     }
 }

@@ -32,55 +32,55 @@ use haze_author::preset::Tooltips;
 use haze_demo::shot::Shot;
 
 use crate::tweak::document::Document;
-use crate::tweak::document::loaded_materials::Pictures;
-use crate::tweak::document::loaded_particles::Caches;
+use crate::tweak::document::loaded_materials::LoadedMaterials;
+use crate::tweak::document::loaded_particles::LoadedParticles;
 use crate::tweak::document::preset_diff::{changed_fields, copy_field};
 use crate::tweak::document::ramp_edits::RampEdits;
 use crate::tweak::document::sprite_edits::SpriteEdits;
-use crate::tweak::platform::asset_loading::{self, Loaded};
+use crate::tweak::platform::asset_loading::{self, LoadedAssets};
 use crate::tweak::platform::repaint_handle::RepaintHandle;
 use crate::tweak::viewport_renderer::cpu_render_job::CpuRenderJob;
-use crate::tweak::viewport_renderer::frame_timings::Performance;
+use crate::tweak::viewport_renderer::frame_timings::FrameTimings;
 use crate::tweak::viewport_renderer::psnr_job::PsnrJob;
-use comparison::Compare;
+use comparison::CompareState;
 use first_run_hints::FirstRunHints;
-use inspection::Inspect;
+use inspection::Inspection;
 use light_view::LightView;
 use messages::Messages;
 use picture_thumbnails::PictureThumbnails;
 use playback::Playback;
 use setting_search::SettingSearch;
-use sprite_preview::Painted;
-use view_options::{Show, Tab};
+use sprite_preview::SpritePreview;
+use view_options::{Tab, ViewOptions};
 
 pub struct Session {
     /// Document; panels change its preset directly.
     pub document: Document,
     pub playback: Playback,
-    pub show: Show,
-    pub compare: Compare,
-    pub gauge: PsnrJob,
-    pub referee: CpuRenderJob,
-    pub inspect: Inspect,
+    pub view: ViewOptions,
+    pub compare: CompareState,
+    pub psnr_job: PsnrJob,
+    pub cpu_render_job: CpuRenderJob,
+    pub inspect: Inspection,
     pub search: SettingSearch,
     pub hints: FirstRunHints,
     pub messages: Messages,
-    pub performance: Performance,
+    pub timings: FrameTimings,
     pub tooltips: Tooltips,
     /// Descriptions of the debug views.
-    pub stages: Tooltips,
+    pub debug_view_tooltips: Tooltips,
     pub thumbnails: PictureThumbnails,
     /// Flipbook on the Sprite tab.
-    pub flipbook: Option<Painted>,
+    pub flipbook: Option<SpritePreview>,
     /// Repaints the window from threads that run for longer than one window is open.
-    pub wake: RepaintHandle,
+    pub repaint: RepaintHandle,
     /// Folder of images that presets share.
     pub assets: Option<PathBuf>,
     /// Path of a screenshot; the window closes once it is written.
     pub screenshot: Option<PathBuf>,
     /// Images as last loaded without error.
-    pub pictures: Pictures,
-    pub caches: Caches,
+    pub loaded_materials: LoadedMaterials,
+    pub particle_files: LoadedParticles,
     /// Ramps whose stops are edited.
     pub ramps: RampEdits,
     /// Sprites whose recipes are edited.
@@ -91,7 +91,7 @@ pub struct Session {
     pub is_changed_on_disk: bool,
     changed: Changed,
     /// Set while the second image has settings of its own.
-    second: Option<SecondDiff>,
+    second_diff: Option<SecondDiff>,
 }
 
 /// Paths of the fields that differ from the preset on disk, and the two presets that were compared.
@@ -103,7 +103,7 @@ struct Changed {
 
 /// Values of the second image's settings that differ, by path, and the two presets that were compared.
 struct SecondDiff {
-    apart: HashMap<String, Value>,
+    differing_values: HashMap<String, Value>,
     settings: Preset,
     preset: Preset,
 }
@@ -118,36 +118,36 @@ impl Session {
         Ok(Self {
             assets,
             playback: Playback::at(preset.time),
-            show: Show::default(),
-            compare: Compare::default(),
-            gauge: PsnrJob::default(),
-            referee: CpuRenderJob::default(),
-            inspect: Inspect::default(),
+            view: ViewOptions::default(),
+            compare: CompareState::default(),
+            psnr_job: PsnrJob::default(),
+            cpu_render_job: CpuRenderJob::default(),
+            inspect: Inspection::default(),
             search: SettingSearch::default(),
             hints: FirstRunHints::default(),
             messages: Messages::default(),
-            performance: Performance::default(),
+            timings: FrameTimings::default(),
             tooltips: Tooltips::of::<Preset>(),
-            stages: Tooltips::of::<DebugView>(),
+            debug_view_tooltips: Tooltips::of::<DebugView>(),
             thumbnails: PictureThumbnails::default(),
             flipbook: None,
-            wake: RepaintHandle::default(),
+            repaint: RepaintHandle::default(),
             screenshot: None,
-            pictures: Pictures::new(preset, materials),
-            caches: Caches::new(preset, caches),
+            loaded_materials: LoadedMaterials::new(preset, materials),
+            particle_files: LoadedParticles::new(preset, caches),
             ramps: RampEdits::default(),
             sprites: SpriteEdits::default(),
             shaders: None,
             is_changed_on_disk: false,
             changed: Changed { paths: HashSet::new(), saved: preset.clone(), preset: preset.clone() },
-            second: None,
+            second_diff: None,
             document,
         })
     }
 
     /// Attaches the session to another window. GPU resources of the previous device are dropped.
     pub fn attach_window(&mut self, context: &egui::Context) {
-        self.wake.follow(context);
+        self.repaint.follow(context);
         (self.thumbnails, self.flipbook) = (PictureThumbnails::default(), None);
     }
 
@@ -160,22 +160,22 @@ impl Session {
     pub fn shot(&self, size: UVec2) -> Shot {
         let mut preset = self.document.preset.clone();
         preset.time = self.playback.time;
-        preset.lights = self.show.lights.shown(&preset.lights);
-        let (materials, caches) = (self.materials(), self.caches());
-        Shot { preset, size, debug_view: self.show.stage, materials, caches }
+        preset.lights = self.view.lights.shown(&preset.lights);
+        let (materials, caches) = (self.materials(), self.particle_frames());
+        Shot { preset, size, debug_view: self.view.debug_view, materials, caches }
     }
 
     /// Returns the images of every system, with edits.
     pub fn materials(&self) -> Vec<MaterialAssets> {
-        let mut materials = self.pictures.of(&self.document.preset);
+        let mut materials = self.loaded_materials.of(&self.document.preset);
         self.ramps.apply(&self.document.preset, &mut materials);
         self.sprites.apply(&self.document.preset, &mut materials);
         materials
     }
 
     /// Returns the particles of every system that has particle files.
-    pub fn caches(&self) -> Vec<Option<ParticleFrames>> {
-        self.caches.of(&self.document.preset)
+    pub fn particle_frames(&self) -> Vec<Option<ParticleFrames>> {
+        self.particle_files.of(&self.document.preset)
     }
 
     /// Bakes edited ramps, and writes them unless a control is held.
@@ -183,10 +183,10 @@ impl Session {
         let folders = self.folders();
         let mut done = self.ramps.advance(&mut self.document, &folders, is_held);
         if !is_held && done.is_ok() {
-            done = self.ramps.make_own(&mut self.document);
+            done = self.ramps.write_requested_copy(&mut self.document);
         }
         if let Err(error) = done {
-            self.messages.complain("ramp", error);
+            self.messages.error("ramp", error);
         }
     }
 
@@ -194,10 +194,10 @@ impl Session {
     fn follow_sprites(&mut self, is_held: bool) {
         let mut done = self.sprites.advance(&mut self.document, is_held);
         if !is_held && done.is_ok() {
-            done = self.sprites.make_own(&mut self.document);
+            done = self.sprites.write_requested_copy(&mut self.document);
         }
         if let Err(error) = done {
-            self.messages.complain("sprite", error);
+            self.messages.error("sprite", error);
         }
     }
 
@@ -218,12 +218,12 @@ impl Session {
     }
 
     /// Returns the values of the second image's settings that differ, by path; `None` if it has no settings of its own.
-    pub fn second(&self) -> Option<&HashMap<String, Value>> {
-        self.second.as_ref().map(|second| &second.apart)
+    pub fn second_diff(&self) -> Option<&HashMap<String, Value>> {
+        self.second_diff.as_ref().map(|second| &second.differing_values)
     }
 
     /// Copies a field, a group or a list from the second image's settings.
-    pub fn take(&mut self, path: &str) {
+    pub fn copy_from_second(&mut self, path: &str) {
         if let Some(second) = self.compare.against.as_ref().and_then(|against| against.settings(self.saved())).cloned()
         {
             copy_field(&second, &mut self.document.preset, path);
@@ -232,7 +232,7 @@ impl Session {
 
     /// Records changes that panels made. `is_held`: a control is still being dragged or typed into.
     pub fn track(&mut self, is_held: bool) {
-        let is_held = is_held || self.show.tab == Tab::Ramps && self.ramps.is_editing();
+        let is_held = is_held || self.view.tab == Tab::Ramps && self.ramps.is_editing();
         self.follow_ramps(is_held);
         self.follow_sprites(is_held);
         self.document.track(is_held);
@@ -243,22 +243,23 @@ impl Session {
         }
         let second = self.compare.against.as_ref().and_then(|against| against.settings(self.saved()));
         let Some(settings) = second else {
-            self.second = None;
+            self.second_diff = None;
             return;
         };
         let preset = &self.document.preset;
-        if self.second.as_ref().is_none_or(|known| (&known.settings, &known.preset) != (settings, preset)) {
+        if self.second_diff.as_ref().is_none_or(|known| (&known.settings, &known.preset) != (settings, preset)) {
             let paths: HashSet<_> = changed_fields(settings, preset).into_iter().collect();
-            let apart = values(settings).into_iter().filter(|(path, _)| paths.contains(path)).collect();
-            self.second = Some(SecondDiff { apart, settings: settings.clone(), preset: preset.clone() });
+            let differing_values = values(settings).into_iter().filter(|(path, _)| paths.contains(path)).collect();
+            self.second_diff =
+                Some(SecondDiff { differing_values, settings: settings.clone(), preset: preset.clone() });
         }
     }
 
-    /// Shows the reason if typed input is not valid, and withdraws it after a valid edit.
-    pub fn refuse(&mut self, refused: Option<String>, is_edited: bool) {
+    /// Shows the reason if typed input is not valid, and clears it after a valid edit.
+    pub fn report_refused_input(&mut self, refused: Option<String>, is_edited: bool) {
         match refused {
-            Some(refused) => self.messages.complain("typed", refused),
-            None if is_edited => self.messages.withdraw("typed"),
+            Some(refused) => self.messages.error("typed", refused),
+            None if is_edited => self.messages.clear("typed"),
             None => {}
         }
     }
@@ -266,8 +267,8 @@ impl Session {
     /// Changes the selected light, if there is one.
     pub fn change_light(&mut self, change: impl FnOnce(&mut LightView, &mut Vec<Light>, usize)) {
         let lights = &mut self.document.preset.lights;
-        if let Some(index) = self.show.lights.selected.filter(|&index| index < lights.len()) {
-            change(&mut self.show.lights, lights, index);
+        if let Some(index) = self.view.lights.selected.filter(|&index| index < lights.len()) {
+            change(&mut self.view.lights, lights, index);
         }
     }
 
@@ -275,18 +276,18 @@ impl Session {
     pub fn add_light(&mut self, light: Light) {
         let lights = &mut self.document.preset.lights;
         let end = lights.len();
-        self.show.lights.insert(lights, end, light);
+        self.view.lights.insert(lights, end, light);
     }
 
     pub fn undo(&mut self) {
         if let Some(name) = self.document.undo() {
-            self.messages.say("undo", format!("undone: {name}"));
+            self.messages.info("undo", format!("undone: {name}"));
         }
     }
 
     pub fn redo(&mut self) {
         if let Some(name) = self.document.redo() {
-            self.messages.say("undo", format!("redone: {name}"));
+            self.messages.info("undo", format!("redone: {name}"));
         }
     }
 
@@ -294,30 +295,30 @@ impl Session {
     pub fn revert(&mut self) {
         self.is_changed_on_disk = false;
         match self.document.revert() {
-            Ok(()) => self.messages.withdraw("preset"),
-            Err(error) => self.messages.complain("preset", error),
+            Ok(()) => self.messages.clear("preset"),
+            Err(error) => self.messages.error("preset", error),
         }
     }
 
     /// Replaces the document, and resets the state that depended on the old one.
-    pub fn put(&mut self, document: Document, (materials, caches): Loaded) {
-        self.pictures = Pictures::new(&document.preset, materials);
-        self.caches = Caches::new(&document.preset, caches);
+    pub fn replace_document(&mut self, document: Document, (materials, caches): LoadedAssets) {
+        self.loaded_materials = LoadedMaterials::new(&document.preset, materials);
+        self.particle_files = LoadedParticles::new(&document.preset, caches);
         self.playback = Playback::at(document.preset.time);
-        (self.compare, self.show.system, self.is_changed_on_disk) = (Compare::default(), 0, false);
+        (self.compare, self.view.system, self.is_changed_on_disk) = (CompareState::default(), 0, false);
         self.ramps = RampEdits::default();
         self.sprites.forget();
-        self.show.lights.forget_keys();
+        self.view.lights.forget_key_lights();
         let stale = ["preset", "ramp", "sprite", "pictures", "caches", "file"];
-        stale.into_iter().for_each(|about| self.messages.withdraw(about));
+        stale.into_iter().for_each(|about| self.messages.clear(about));
         self.document = document;
     }
 
     /// Replaces the preset by one from a text.
     pub fn paste(&mut self, text: &str) {
         match self.document.paste(text) {
-            Ok(()) => self.messages.say("file", "pasted a preset"),
-            Err(error) => self.messages.complain("file", format!("nothing is pasted: {error}")),
+            Ok(()) => self.messages.info("file", "pasted a preset"),
+            Err(error) => self.messages.error("file", format!("nothing is pasted: {error}")),
         }
     }
 }

@@ -20,7 +20,7 @@ use crate::tweak::platform::worker::Worker;
 pub const SIZE: [usize; 2] = [72, 48];
 
 /// Largest number of files that a folder offers.
-const MOST: usize = 64;
+const MAX_SIDE: usize = 64;
 
 /// Interval in which a folder is listed again while its files are shown, seconds.
 const FRESH: f64 = 1.0;
@@ -94,10 +94,10 @@ impl PictureThumbnails {
             return thumb.texture.as_ref().map(TextureHandle::id);
         }
         let source = match builtin::find(builtin::of_role(role), name) {
-            Some(builtin) => Source::Builtin(builtin),
-            None => Source::File(file(&inner.folders, name)?),
+            Some(builtin) => ImageSource::Builtin(builtin),
+            None => ImageSource::File(file(&inner.folders, name)?),
         };
-        let stamp = if let Source::File(path) = &source { Stamp::of(path) } else { None };
+        let stamp = if let ImageSource::File(path) = &source { Stamp::of(path) } else { None };
         inner.pictures.insert(key.clone(), Thumb { stamp, texture: None });
         if inner.worker.is_none() {
             let context = context.clone();
@@ -119,20 +119,20 @@ fn file(folders: &[PathBuf], name: &str) -> Option<PathBuf> {
 fn pngs(folder: &Path) -> Vec<String> {
     let is_png = |path: &PathBuf| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
     let name = |path: PathBuf| Some(path.file_name()?.to_str()?.to_owned());
-    file_io::list(folder).into_iter().filter(is_png).filter_map(name).take(MOST).collect()
+    file_io::list(folder).into_iter().filter(is_png).filter_map(name).take(MAX_SIDE).collect()
 }
 
-enum Source {
+enum ImageSource {
     Builtin(&'static Builtin),
     File(PathBuf),
 }
 
-fn thumbnail(role: ImageRole, source: &Source) -> Result<ColorImage, Error> {
+fn thumbnail(role: ImageRole, source: &ImageSource) -> Result<ColorImage, Error> {
     match (role, source) {
-        (ImageRole::Sprite, Source::Builtin(builtin)) => Ok(puff(&builtin.sprite()?)),
-        (ImageRole::Noise, Source::Builtin(builtin)) => Ok(slice(&builtin.noise()?)),
-        (_, Source::Builtin(builtin)) => decoded(role, &builtin::path(builtin.name), builtin.bytes),
-        (_, Source::File(path)) => decoded(role, path, &file_io::read_picture(path)?),
+        (ImageRole::Sprite, ImageSource::Builtin(builtin)) => Ok(puff(&builtin.sprite()?)),
+        (ImageRole::Noise, ImageSource::Builtin(builtin)) => Ok(slice(&builtin.noise()?)),
+        (_, ImageSource::Builtin(builtin)) => decoded(role, &builtin::path(builtin.name), builtin.bytes),
+        (_, ImageSource::File(path)) => decoded(role, path, &file_io::read_picture(path)?),
     }
 }
 
@@ -189,7 +189,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("clear.png");
         image::RgbaImage::from_pixel(4, 1, image::Rgba([255, 255, 255, 55])).save(&path).unwrap();
-        let first = |role| thumbnail(role, &Source::File(path.clone())).unwrap().pixels[0];
+        let first = |role| thumbnail(role, &ImageSource::File(path.clone())).unwrap().pixels[0];
         // A transparent texel gives proportionally less light: alpha 55/255 halves the sRGB code of white.
         let grey = first(ImageRole::Ramp);
         assert!(grey.is_opaque() && grey.r().abs_diff(128) <= 1, "{grey:?}");

@@ -19,7 +19,7 @@ pub const STEP: f32 = 1.0 / 30.0;
 
 /// Longest time that one frame of the window may advance the clock, seconds. After a pause of the window, the smoke
 /// does not jump.
-const LONGEST: f32 = 0.1;
+const MAX_STEP: f32 = 0.1;
 
 impl Playback {
     /// Returns a clock that is paused at a time.
@@ -30,7 +30,7 @@ impl Playback {
     /// Advances by the elapsed seconds, if it plays.
     pub fn advance(&mut self, seconds: f32) {
         if self.is_playing {
-            self.move_by(seconds.clamp(0.0, LONGEST) * self.speed);
+            self.move_by(seconds.clamp(0.0, MAX_STEP) * self.speed);
         }
     }
 

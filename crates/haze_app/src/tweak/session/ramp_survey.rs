@@ -6,7 +6,7 @@ use haze_demo::capture::ProbeInputs;
 use haze_reference::SystemProbe;
 
 /// Largest number of pixels that are sampled.
-const MOST: u32 = 10_000;
+const MAX_PROBES: u32 = 10_000;
 
 /// Number of bins of a histogram; `SIDE` is that along each side of the specular ramp's.
 pub const BINS: usize = 64;
@@ -17,7 +17,7 @@ pub const NEAR: f32 = 0.02;
 
 /// Place on a ramp of a system.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Spot {
+pub enum RampPlace {
     /// Coordinate from the cosine N·L between normal and light.
     Diffuse(f32),
     /// Accumulated amount.
@@ -48,7 +48,7 @@ impl RampSurvey {
     /// If the texels belong to another shot.
     pub fn of(witness: &ProbeInputs) -> Result<Self, Error> {
         let size = witness.shot().size;
-        let step = (size.element_product() as f32 / MOST as f32).sqrt().ceil().max(1.0) as u32;
+        let step = (size.element_product() as f32 / MAX_PROBES as f32).sqrt().ceil().max(1.0) as u32;
         let column = |y| (step / 2..size.x).step_by(step as usize).map(move |x| UVec2::new(x, y));
         let pixels: Vec<_> = (step / 2..size.y).step_by(step as usize).flat_map(column).collect();
         let probes = witness.probe(&pixels)?;
@@ -116,13 +116,13 @@ impl RampSurvey {
     }
 
     /// Returns the sampled pixels whose smoke samples a place on a ramp.
-    pub fn at(&self, system: usize, spot: Spot) -> Vec<UVec2> {
+    pub fn at(&self, system: usize, ramp_place: RampPlace) -> Vec<UVec2> {
         let is_near = |a: f32, b: f32| (a - b).abs() <= NEAR;
-        let looks_up = |probe: &SystemProbe| match spot {
-            Spot::Diffuse(x) => probe.lights.iter().any(|light| is_near(light.coordinate, x)),
-            Spot::SoftScatter(x) => is_near(probe.amount, x),
-            Spot::Coverage(x) => is_near(probe.coverage_coordinate, x),
-            Spot::Specular(at) => probe
+        let looks_up = |probe: &SystemProbe| match ramp_place {
+            RampPlace::Diffuse(x) => probe.lights.iter().any(|light| is_near(light.coordinate, x)),
+            RampPlace::SoftScatter(x) => is_near(probe.amount, x),
+            RampPlace::Coverage(x) => is_near(probe.coverage_coordinate, x),
+            RampPlace::Specular(at) => probe
                 .lights
                 .iter()
                 .filter_map(|light| light.glow)

@@ -5,11 +5,11 @@ use haze::settings::{field_path, for_each_field};
 use haze_author::preset::Tooltips;
 
 use super::light_view::LightView;
-use super::look_controls::{LOOK, Of};
+use super::look_controls::{ControlTarget, LOOK_CONTROLS};
 use super::view_options::Tab;
 
 /// Largest number of results.
-const MOST: usize = 12;
+const MAX_RESULTS: usize = 12;
 
 /// State of the search.
 #[derive(Default)]
@@ -23,7 +23,7 @@ pub struct SettingSearch {
 }
 
 /// Number of frames that collapsed sections need to open and scroll.
-const FRAMES: u32 = 60;
+const SCROLL_FRAMES: u32 = 60;
 
 impl SettingSearch {
     pub fn open(&mut self) {
@@ -32,7 +32,7 @@ impl SettingSearch {
 
     /// Brings a setting into view.
     pub fn go_to(&mut self, path: String) {
-        *self = Self { found: Some((path, FRAMES)), ..Self::default() };
+        *self = Self { found: Some((path, SCROLL_FRAMES)), ..Self::default() };
     }
 
     /// Returns true while a setting is to be brought into view. Call once a frame.
@@ -48,7 +48,7 @@ impl SettingSearch {
 }
 
 /// Result of a search.
-pub struct Found {
+pub struct SearchResult {
     pub path: String,
     pub name: String,
     /// Path of the group that it belongs to.
@@ -61,23 +61,23 @@ pub struct Found {
 /// Returns settings whose names contain all words of a text, those that begin with it first; then those whose paths or
 /// tooltips do. Controls of the look tab are also found by their names there; `lights` tells which lights are key
 /// lights.
-pub fn matches(preset: &Preset, tooltips: &Tooltips, lights: &LightView, text: &str) -> Vec<Found> {
+pub fn matches(preset: &Preset, tooltips: &Tooltips, lights: &LightView, text: &str) -> Vec<SearchResult> {
     let words: Vec<_> = text.split_whitespace().map(str::to_lowercase).collect();
     let holds = |text: &str| words.iter().all(|word| text.to_lowercase().contains(word.as_str()));
     let begins = |name: &str| name.starts_with(&text.trim().to_lowercase());
     let mut found = Vec::new();
     for (index, system) in preset.systems.iter().enumerate() {
-        for control in LOOK.iter().filter(|control| holds(control.name)) {
+        for control in LOOK_CONTROLS.iter().filter(|control| holds(control.name)) {
             let Some(path) = control.path(index, lights.chosen_key_light(index)) else { continue };
-            let (is_made, tooltip) = match control.of {
-                Of::Made(made) => (true, made.tooltip.to_owned()),
+            let (is_made, tooltip) = match control.target {
+                ControlTarget::Macro(made) => (true, made.tooltip.to_owned()),
                 _ => (false, path.clone()),
             };
             // A control that is named like its field is found below.
             if is_made || !path.ends_with(&format!(".{}", control.name.replace(' ', "_"))) {
                 let place = if preset.systems.len() > 1 { format!("look of {}", system.name) } else { "look".into() };
                 let (name, rank) = (control.name.to_owned(), i32::from(!begins(control.name)));
-                found.push((rank, Found { path, name, place, tooltip, tab: Tab::Look }));
+                found.push((rank, SearchResult { path, name, place, tooltip, tab: Tab::Look }));
             }
         }
     }
@@ -97,10 +97,10 @@ pub fn matches(preset: &Preset, tooltips: &Tooltips, lights: &LightView, text: &
             () => return,
         };
         let (name, place, tooltip, tab) = (name.into(), place.into(), tooltip.into(), tab_of(&path));
-        found.push((rank, Found { path, name, place, tooltip, tab }));
+        found.push((rank, SearchResult { path, name, place, tooltip, tab }));
     });
     found.sort_by_key(|(rank, _)| *rank);
-    found.truncate(MOST);
+    found.truncate(MAX_RESULTS);
     found.into_iter().map(|(_, found)| found).collect()
 }
 

@@ -10,7 +10,7 @@ use super::Session;
 
 /// Particles and bounds of a preset's systems, cached until the systems or the time change.
 #[derive(Default)]
-pub struct Smoke {
+pub struct SmokeGeometry {
     /// Key of the cache: systems, particle files, and the bits of the time.
     of: Option<(Vec<PresetSystem>, Vec<Option<ParticleFrames>>, u32)>,
     pub systems: Vec<Vec<Particle>>,
@@ -18,10 +18,10 @@ pub struct Smoke {
     pub bounds: Vec<Bounds>,
 }
 
-impl Smoke {
+impl SmokeGeometry {
     /// Returns the smoke that a session shows.
     pub fn of(&mut self, session: &Session) -> &Self {
-        self.at(&session.document.preset, session.caches(), session.playback.time)
+        self.at(&session.document.preset, session.particle_frames(), session.playback.time)
     }
 
     fn at(&mut self, preset: &Preset, caches: Vec<Option<ParticleFrames>>, time: f32) -> &Self {
@@ -56,29 +56,29 @@ impl Smoke {
 
     /// Returns the centre of the smoke that is inside an image of this size, weighted by coverage. If there is none,
     /// returns the centre of all smoke.
-    pub fn seen(&self, camera: &Camera, size: UVec2) -> Vec3 {
+    pub fn visible_centre(&self, camera: &Camera, size: UVec2) -> Vec3 {
         let view = camera.view(size);
         let clip_from_world = view.clip_from_view * view.view_from_world;
         let is_seen = |particle: &&Particle| {
             let clip = clip_from_world * particle.position.extend(1.0);
             clip.w > camera.near && clip.x.abs() <= clip.w && clip.y.abs() <= clip.w
         };
-        middle(self.systems.iter().flatten().filter(is_seen)).unwrap_or_else(|| self.bounds().centre())
+        mean_position(self.systems.iter().flatten().filter(is_seen)).unwrap_or_else(|| self.bounds().centre())
     }
 
     /// Returns the point on a ray where the smoke that it crosses has its centre. `way` has unit length.
-    pub fn met(&self, eye: Vec3, way: Vec3) -> Option<Vec3> {
+    pub fn centre_on_ray(&self, eye: Vec3, way: Vec3) -> Option<Vec3> {
         let is_met = |particle: &&Particle| {
             let far = (particle.position - eye).dot(way);
             far > 0.0 && particle.position.distance(eye + way * far) < particle.radius
         };
-        let middle = middle(self.systems.iter().flatten().filter(is_met))?;
+        let middle = mean_position(self.systems.iter().flatten().filter(is_met))?;
         Some(eye + way * (middle - eye).dot(way))
     }
 }
 
 /// Returns the mean position of particles weighted by coverage; `None` if they cover nothing.
-fn middle<'a>(particles: impl Iterator<Item = &'a Particle>) -> Option<Vec3> {
+fn mean_position<'a>(particles: impl Iterator<Item = &'a Particle>) -> Option<Vec3> {
     let mut sum = Vec4::ZERO;
     for particle in particles {
         sum += particle.position.extend(1.0) * (particle.amount * particle.radius * particle.radius);
@@ -87,7 +87,7 @@ fn middle<'a>(particles: impl Iterator<Item = &'a Particle>) -> Option<Vec3> {
 }
 
 /// Lowest height of a light that is placed automatically, metres above the ground.
-const LOWEST: f32 = 0.2;
+const MIN_HEIGHT: f32 = 0.2;
 
 /// Puts a light behind a point of the smoke as seen from `eye`, slightly outside all boxes there. A spot or sun points
 /// at it.
@@ -97,10 +97,10 @@ pub fn put_behind(light: &mut Light, eye: Vec3, point: Vec3, boxes: &[Bounds]) {
         light.direction = -away;
         return;
     }
-    light.position = beyond(boxes, point, away);
-    if light.position.y < LOWEST {
+    light.position = point_behind(boxes, point, away);
+    if light.position.y < MIN_HEIGHT {
         // The ray ends in the ground, so the light is placed along the horizontal direction.
-        light.position = beyond(boxes, point, away.with_y(0.0).normalize_or(Vec3::NEG_Z)).with_y(LOWEST);
+        light.position = point_behind(boxes, point, away.with_y(0.0).normalize_or(Vec3::NEG_Z)).with_y(MIN_HEIGHT);
     }
     if light.kind == LightKind::Spot {
         light.direction = (point - light.position).normalize_or(-away);
@@ -108,13 +108,13 @@ pub fn put_behind(light: &mut Light, eye: Vec3, point: Vec3, boxes: &[Bounds]) {
 }
 
 /// Returns a point slightly beyond the last of the boxes that a ray crosses.
-fn beyond(boxes: &[Bounds], point: Vec3, way: Vec3) -> Vec3 {
-    let left = boxes.iter().filter_map(|bounds| leaves(bounds, point, way)).fold(0.0, f32::max);
+fn point_behind(boxes: &[Bounds], point: Vec3, way: Vec3) -> Vec3 {
+    let left = boxes.iter().filter_map(|bounds| exit_distance(bounds, point, way)).fold(0.0, f32::max);
     point + way * (1.1 * left + 0.2)
 }
 
 /// Returns the distance along a ray at which it leaves a box, metres; `None` if it misses the box.
-fn leaves(bounds: &Bounds, point: Vec3, way: Vec3) -> Option<f32> {
+fn exit_distance(bounds: &Bounds, point: Vec3, way: Vec3) -> Option<f32> {
     let (mut from, mut to) = (0.0_f32, f32::INFINITY);
     for axis in 0..3 {
         // Avoids a division by 0 for a ray parallel to a side.
@@ -166,7 +166,7 @@ mod tests {
         for eye in [Vec3::new(4.0, 9.0, 6.0), Vec3::new(0.25, 20.0, -0.5), Vec3::new(0.3, 6.0, 0.0)] {
             let mut light = Light { kind: LightKind::Spot, ..Light::default() };
             put_behind(&mut light, eye, BOX.centre(), &[BOX]);
-            assert!(light.position.y >= LOWEST, "{}", light.position);
+            assert!(light.position.y >= MIN_HEIGHT, "{}", light.position);
             // Outside the box, on its far side, and pointing at its centre.
             assert!(light.position.x < BOX.min.x || light.position.z < BOX.min.z, "{}", light.position);
             let to_middle = (BOX.centre() - light.position).normalize();
@@ -180,16 +180,18 @@ mod tests {
         let near = [at(0.5, 2.0, 0.0), at(-0.5, 2.0, 0.0)];
         // Above the upper edge, and behind the camera.
         let far = [at(0.0, 40.0, 0.0), at(0.0, 2.0, 20.0)];
-        let smoke =
-            |systems: [&[Particle]; 2]| Smoke { systems: systems.map(<[_]>::to_vec).into(), ..Smoke::default() };
+        let smoke = |systems: [&[Particle]; 2]| SmokeGeometry {
+            systems: systems.map(<[_]>::to_vec).into(),
+            ..SmokeGeometry::default()
+        };
         let (camera, size) = (Camera::default(), UVec2::new(160, 90));
-        assert!(smoke([&near, &far]).seen(&camera, size).distance(Vec3::new(0.0, 2.0, 0.0)) < 1e-4);
+        assert!(smoke([&near, &far]).visible_centre(&camera, size).distance(Vec3::new(0.0, 2.0, 0.0)) < 1e-4);
         let none = smoke([&far, &[]]);
-        assert_eq!(none.seen(&camera, size), none.bounds().centre());
+        assert_eq!(none.visible_centre(&camera, size), none.bounds().centre());
         let eye = Vec3::new(0.5, 2.0, 8.0);
         let behind = [at(0.6, 2.0, -4.0)];
-        let met = smoke([&near, &behind]).met(eye, Vec3::NEG_Z).unwrap();
+        let met = smoke([&near, &behind]).centre_on_ray(eye, Vec3::NEG_Z).unwrap();
         assert!(met.distance(Vec3::new(0.5, 2.0, -2.0)) < 1e-4, "{met}");
-        assert_eq!(smoke([&near, &far]).met(eye, Vec3::X), None);
+        assert_eq!(smoke([&near, &far]).centre_on_ray(eye, Vec3::X), None);
     }
 }

@@ -11,12 +11,12 @@ use haze::formula::sprite::{MOTION_RANGE, flipbook_frames, sample_detail, sample
 use haze::image::Image;
 use haze::settings::{NormalDecode, NormalEncoding, RampFilter};
 
-use super::sprite_view::Shown;
+use super::sprite_view::SpriteChannel;
 
 /// Parameters of the preview, apart from the material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    pub shown: Shown,
+    pub channel: SpriteChannel,
     pub frame: f32,
     /// Unit vector to the light.
     pub to_light: Vec3,
@@ -28,13 +28,13 @@ pub struct View {
 }
 
 /// Texture of the last preview, and its parameters.
-pub struct Painted {
+pub struct SpritePreview {
     view: View,
     material: MaterialAssets,
     texture: TextureHandle,
 }
 
-impl Painted {
+impl SpritePreview {
     /// Returns the preview's texture, redrawn only if its parameters have changed.
     pub fn show(
         painted: &mut Option<Self>,
@@ -82,16 +82,16 @@ fn code(material: &MaterialAssets, view: &View, uv: Vec2) -> Vec3 {
     let lod = sprite_lod(sprite.size() as f32, view.side as f32);
     let texel = sample_sprite(sprite, uv, frames, detail.yz() * view.motion, lod);
     let (normal, amount) = (texel.xyz(), texel.w);
-    match view.shown {
-        Shown::Lit => {
+    match view.channel {
+        SpriteChannel::Lit => {
             let normal = normal_from_accumulation(NormalEncoding::Signed, NormalDecode::Exact, normal, 1.0);
             let light = sample_ramp(&material.diffuse_ramp, view.filter, diffuse_coordinate(normal, view.to_light));
             gamma_target_colour(BEHIND.lerp(light, amount))
         }
-        Shown::Normals => normal * 0.5 + 0.5,
-        Shown::Amount => Vec3::splat(amount),
-        Shown::Depth => Vec3::splat(detail.x * 0.5 + 0.5),
-        Shown::Motion => (detail.yz() / MOTION_RANGE * 0.5 + 0.5).extend(0.5),
+        SpriteChannel::Normals => normal * 0.5 + 0.5,
+        SpriteChannel::Amount => Vec3::splat(amount),
+        SpriteChannel::Depth => Vec3::splat(detail.x * 0.5 + 0.5),
+        SpriteChannel::Motion => (detail.yz() / MOTION_RANGE * 0.5 + 0.5).extend(0.5),
     }
 }
 
@@ -106,9 +106,9 @@ mod tests {
         MaterialNames { sprite: "ball".into(), ..MaterialNames::default() }.load("".as_ref()).unwrap()
     }
 
-    fn view(shown: Shown, to_light: Vec3) -> View {
+    fn view(channel: SpriteChannel, to_light: Vec3) -> View {
         let motion = SpriteSettings::default().motion;
-        View { shown, frame: 0.0, to_light, filter: RampFilter::default(), motion, side: 64 }
+        View { channel, frame: 0.0, to_light, filter: RampFilter::default(), motion, side: 64 }
     }
 
     /// Returns the mean brightness of the left, right, upper and lower half.
@@ -124,7 +124,7 @@ mod tests {
     #[test]
     fn the_side_that_faces_the_light_is_brighter() {
         let material = material();
-        let lit = |to_light| halves(&draw(&material, &view(Shown::Lit, to_light)));
+        let lit = |to_light| halves(&draw(&material, &view(SpriteChannel::Lit, to_light)));
         let [left, right, ..] = lit(Vec3::NEG_X);
         assert!(left > 1.3 * right, "{left} {right}");
         let [left, right, ..] = lit(Vec3::X);
@@ -136,17 +136,17 @@ mod tests {
     #[test]
     fn each_view_shows_its_channel_of_the_sheet() {
         let material = material();
-        let middle = |shown| draw(&material, &view(shown, Vec3::Z)).pixels[32 * 64 + 32];
-        let corner = |shown| draw(&material, &view(shown, Vec3::Z)).pixels[0];
-        let [normal, amount] = [Shown::Normals, Shown::Amount].map(middle);
+        let middle = |channel| draw(&material, &view(channel, Vec3::Z)).pixels[32 * 64 + 32];
+        let corner = |channel| draw(&material, &view(channel, Vec3::Z)).pixels[0];
+        let [normal, amount] = [SpriteChannel::Normals, SpriteChannel::Amount].map(middle);
         assert!(normal.b() > 200 && amount.g() > 150, "{normal:?} {amount:?}");
-        assert_eq!(corner(Shown::Amount), Color32::BLACK);
+        assert_eq!(corner(SpriteChannel::Amount), Color32::BLACK);
         // The depth is largest in the middle.
-        assert!(middle(Shown::Depth).r() > 150, "{:?}", middle(Shown::Depth));
+        assert!(middle(SpriteChannel::Depth).r() > 150, "{:?}", middle(SpriteChannel::Depth));
         // Without a detail map the depth is unknown.
         let plain = MaterialAssets { detail: None, ..material.clone() };
-        assert_eq!(draw(&plain, &view(Shown::Motion, Vec3::Z)).pixels[2000], Color32::from_rgb(128, 128, 128));
-        let moved = View { frame: 0.5, ..view(Shown::Amount, Vec3::Z) };
-        assert_ne!(draw(&material, &moved), draw(&material, &view(Shown::Amount, Vec3::Z)));
+        assert_eq!(draw(&plain, &view(SpriteChannel::Motion, Vec3::Z)).pixels[2000], Color32::from_rgb(128, 128, 128));
+        let moved = View { frame: 0.5, ..view(SpriteChannel::Amount, Vec3::Z) };
+        assert_ne!(draw(&material, &moved), draw(&material, &view(SpriteChannel::Amount, Vec3::Z)));
     }
 }

@@ -6,7 +6,7 @@ use crate::tweak::document::light_angles::Angles;
 
 /// Channel of a sprite that is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shown {
+pub enum SpriteChannel {
     Lit,
     Normals,
     Amount,
@@ -15,18 +15,22 @@ pub enum Shown {
 }
 
 /// All channels with their names and tooltips.
-pub const SHOWN: [(Shown, &str, &str); 5] = [
-    (Shown::Lit, "Lit", "Through the diffuse ramp of the system"),
-    (Shown::Normals, "Normals", "As they are on the sheet: x in red, y up in green, z to the viewer in blue"),
-    (Shown::Amount, "Amount", "White hides all"),
-    (Shown::Depth, "Depth", "How far it stands out: white towards the viewer, grey in the middle"),
-    (Shown::Motion, "Motion", "Motion to the next frame: to the right in red, down in green; grey does not move"),
+pub const SPRITE_CHANNELS: [(SpriteChannel, &str, &str); 5] = [
+    (SpriteChannel::Lit, "Lit", "Through the diffuse ramp of the system"),
+    (SpriteChannel::Normals, "Normals", "As they are on the sheet: x in red, y up in green, z to the viewer in blue"),
+    (SpriteChannel::Amount, "Amount", "White hides all"),
+    (SpriteChannel::Depth, "Depth", "How far it stands out: white towards the viewer, grey in the middle"),
+    (
+        SpriteChannel::Motion,
+        "Motion",
+        "Motion to the next frame: to the right in red, down in green; grey does not move",
+    ),
 ];
 
 /// Flipbook and its light. Not part of the preset.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpriteView {
-    pub shown: Shown,
+    pub channel: SpriteChannel,
     /// Frame; a fraction blends two frames.
     pub frame: f32,
     pub is_playing: bool,
@@ -41,14 +45,14 @@ pub struct SpriteView {
 impl Default for SpriteView {
     fn default() -> Self {
         let light = Angles { azimuth: -40.0, elevation: 35.0 };
-        Self { shown: Shown::Lit, frame: 0.0, is_playing: true, rate: 12.0, light, is_turning: false }
+        Self { channel: SpriteChannel::Lit, frame: 0.0, is_playing: true, rate: 12.0, light, is_turning: false }
     }
 }
 
 /// Duration of one turn of the light, seconds.
 const TURN: f32 = 5.0;
 /// Longest time that one frame of the window may advance, seconds.
-const LONGEST: f32 = 0.1;
+const MAX_STEP: f32 = 0.1;
 
 impl SpriteView {
     /// Returns true if the flipbook plays or the light rotates.
@@ -58,7 +62,7 @@ impl SpriteView {
 
     /// Advances by the elapsed seconds.
     pub fn advance(&mut self, sprite: &Sprite, seconds: f32) {
-        let seconds = seconds.clamp(0.0, LONGEST);
+        let seconds = seconds.clamp(0.0, MAX_STEP);
         // A paused frame number stays, even while a coarse sprite has fewer frames.
         if self.is_playing {
             self.frame = (self.frame + seconds * self.rate).rem_euclid(sprite.frame_count() as f32);

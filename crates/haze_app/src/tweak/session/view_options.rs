@@ -8,8 +8,8 @@ use super::sprite_view::SpriteView;
 
 /// View options. They are not part of the preset.
 #[derive(Clone, Debug)]
-pub struct Show {
-    pub stage: DebugView,
+pub struct ViewOptions {
+    pub debug_view: DebugView,
     /// The strip of debug views is visible.
     pub has_strip: bool,
     /// Size of the image in pixels.
@@ -38,11 +38,11 @@ pub enum Tab {
     Performance,
 }
 
-impl Default for Show {
+impl Default for ViewOptions {
     fn default() -> Self {
         Self {
             size: UVec2::new(1280, 720),
-            stage: DebugView::Final,
+            debug_view: DebugView::Final,
             has_strip: true,
             aspect: 16.0 / 9.0,
             help: false,

@@ -6,7 +6,7 @@ use glam::Vec3;
 use haze::preset::Camera;
 
 use super::camera_moves::{dolly, fly, look, orbit, pan};
-use super::screen_projection::Lens;
+use super::screen_projection::ScreenProjection;
 
 /// Orbit angle of a drag over the height of the image, radians.
 const ORBIT: f32 = 3.5;
@@ -22,7 +22,7 @@ const SPEEDS: std::ops::RangeInclusive<f32> = 0.05..=200.0;
 /// Pause after which the wheel begins a new gesture, seconds.
 const PAUSE: f64 = 0.5;
 /// Largest coordinate that a preset may have, metres.
-const FARTHEST: f32 = 1.0e5;
+const MAX_DISTANCE: f32 = 1.0e5;
 
 /// Camera gesture in progress.
 pub struct CameraInput {
@@ -51,13 +51,13 @@ impl Default for CameraInput {
 
 impl CameraInput {
     /// Moves the camera as the pointer over the image asks for. Returns true if the flight speed was changed.
-    pub fn steer(&mut self, ui: &Ui, response: &Response, lens: &Lens, camera: &mut Camera) -> bool {
+    pub fn steer(&mut self, ui: &Ui, response: &Response, projection: &ScreenProjection, camera: &mut Camera) -> bool {
         let before = *camera;
         self.drag(ui, response, camera);
         self.fly(ui, response, camera);
-        let is_faster = self.wheel(ui, response, lens, camera);
+        let is_faster = self.wheel(ui, response, projection, camera);
         let places = [camera.position, camera.target];
-        if !places.iter().all(|place| place.is_finite() && place.abs().max_element() <= FARTHEST) {
+        if !places.iter().all(|place| place.is_finite() && place.abs().max_element() <= MAX_DISTANCE) {
             *camera = before;
         }
         is_faster
@@ -114,7 +114,7 @@ impl CameraInput {
         }
     }
 
-    fn wheel(&mut self, ui: &Ui, response: &Response, lens: &Lens, camera: &mut Camera) -> bool {
+    fn wheel(&mut self, ui: &Ui, response: &Response, projection: &ScreenProjection, camera: &mut Camera) -> bool {
         let (turned, is_flying, time) =
             ui.input(|input| (input.smooth_scroll_delta().y, input.pointer.secondary_down(), input.time));
         let Some(at) = response.hover_pos().filter(|_| turned != 0.0) else { return false };
@@ -122,7 +122,7 @@ impl CameraInput {
             self.speed = (self.speed * FASTER.powf(turned / WHEEL)).clamp(*SPEEDS.start(), *SPEEDS.end());
             self.has_flown = true;
         } else {
-            dolly(camera, lens.facing(at, camera.target), DOLLY.powf(-turned / WHEEL));
+            dolly(camera, projection.unproject_to_facing_plane(at, camera.target), DOLLY.powf(-turned / WHEEL));
             self.wheeled = time;
             // A later frame closes the undo step if the wheel has stopped.
             ui.ctx().request_repaint_after_secs(PAUSE as f32 + 0.01);

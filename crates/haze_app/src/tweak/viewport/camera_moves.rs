@@ -5,9 +5,9 @@ use haze::Bounds;
 use haze::preset::Camera;
 
 /// Least distance between the camera and its target, metres.
-const NEAREST: f32 = 0.05;
+const MIN_DISTANCE: f32 = 0.05;
 /// Largest absolute y of a unit view direction; 1 is straight up or down.
-const STEEPEST: f32 = 0.9995;
+const MAX_SINE_OF_ELEVATION: f32 = 0.9995;
 
 /// Orbits about the target; angles in radians to the side and up.
 pub fn orbit(camera: &mut Camera, angle: Vec2) {
@@ -25,7 +25,7 @@ fn turned(v: Vec3, angle: Vec2) -> Vec3 {
     let side = level.cross(Vec3::Y).normalize_or(Vec3::X);
     let steep = Quat::from_axis_angle(side, -angle.y) * level;
     let steepness = |v: Vec3| v.normalize_or_zero().y.abs();
-    if steepness(steep) < steepness(level).max(STEEPEST) { steep } else { level }
+    if steepness(steep) < steepness(level).max(MAX_SINE_OF_ELEVATION) { steep } else { level }
 }
 
 /// Moves camera and target by shares of the image height, so that the target stays under the pointer.
@@ -39,7 +39,7 @@ pub fn pan(camera: &mut Camera, share: Vec2) {
 /// Scales the distances of camera and target to a point by a factor. The point stays at its place in the image.
 pub fn dolly(camera: &mut Camera, point: Vec3, factor: f32) {
     let distance = camera.position.distance(camera.target).max(1.0e-6);
-    let factor = factor.clamp(NEAREST / distance, (0.5 * camera.far).max(NEAREST) / distance);
+    let factor = factor.clamp(MIN_DISTANCE / distance, (0.5 * camera.far).max(MIN_DISTANCE) / distance);
     camera.position = point + (camera.position - point) * factor;
     camera.target = point + (camera.target - point) * factor;
 }
@@ -64,8 +64,8 @@ pub fn frame(camera: &mut Camera, bounds: &Bounds, aspect: f32) {
     };
     let corners =
         (0..8).map(|corner| half * Vec3::from([1, 2, 4].map(|bit| if corner & bit == 0 { -1.0 } else { 1.0 })));
-    let farthest = 1.08 * corners.map(distance).fold(NEAREST, f32::max);
-    camera.position = centre - ahead * farthest.clamp(NEAREST, (0.5 * camera.far).max(NEAREST));
+    let farthest = 1.08 * corners.map(distance).fold(MIN_DISTANCE, f32::max);
+    camera.position = centre - ahead * farthest.clamp(MIN_DISTANCE, (0.5 * camera.far).max(MIN_DISTANCE));
     camera.target = centre;
 }
 
@@ -97,7 +97,7 @@ mod tests {
             orbit(&mut camera, Vec2::new(0.13, 0.11));
             assert!((camera.position.distance(camera.target) - distance).abs() < 1e-3);
             let up = (camera.position - camera.target).normalize().y.abs();
-            assert!(up <= STEEPEST);
+            assert!(up <= MAX_SINE_OF_ELEVATION);
         }
     }
 
@@ -125,7 +125,7 @@ mod tests {
         assert!((camera.position.distance(camera.target) - 0.5 * before.position.distance(before.target)).abs() < 1e-3);
         assert!(seen(&camera).distance(seen_before) < 1e-5);
         dolly(&mut camera, before.target, 0.0);
-        assert!(camera.position.distance(camera.target) >= 0.9 * NEAREST);
+        assert!(camera.position.distance(camera.target) >= 0.9 * MIN_DISTANCE);
     }
 
     #[test]

@@ -4,11 +4,11 @@ use eframe::egui::{Pos2, Response, Ui};
 use glam::Vec3;
 use haze::{Light, LightKind};
 
-use super::screen_projection::Lens;
-use crate::tweak::document::light_defaults::fresh;
+use super::screen_projection::ScreenProjection;
+use crate::tweak::document::light_defaults::new_light;
 use crate::tweak::session::Session;
 use crate::tweak::session::action::InView;
-use crate::tweak::session::smoke_geometry::Smoke;
+use crate::tweak::session::smoke_geometry::SmokeGeometry;
 
 /// Context menu, and the position where it was opened.
 #[derive(Default)]
@@ -28,25 +28,31 @@ impl Menu {
     pub fn show(
         &mut self,
         response: &Response,
-        lens: &Lens,
+        projection: &ScreenProjection,
         session: &mut Session,
-        smoke: &mut Smoke,
+        smoke: &mut SmokeGeometry,
     ) -> Option<InView> {
         if response.secondary_clicked() {
             self.at = response.interact_pointer_pos();
         }
         let at = self.at?;
         let mut asked = None;
-        response.context_menu(|ui| asked = entries(ui, at, lens, session, smoke));
+        response.context_menu(|ui| asked = entries(ui, at, projection, session, smoke));
         asked
     }
 }
 
-fn entries(ui: &mut Ui, at: Pos2, lens: &Lens, session: &mut Session, smoke: &mut Smoke) -> Option<InView> {
+fn entries(
+    ui: &mut Ui,
+    at: Pos2,
+    projection: &ScreenProjection,
+    session: &mut Session,
+    smoke: &mut SmokeGeometry,
+) -> Option<InView> {
     for (kind, name) in ADDED {
         if ui.button(name).clicked() {
             let middle = smoke.of(session).bounds().centre();
-            let light = here(fresh(kind, &session.document.preset.lights), at, lens, middle);
+            let light = here(new_light(kind, &session.document.preset.lights), at, projection, middle);
             session.add_light(light);
         }
     }
@@ -61,15 +67,15 @@ fn entries(ui: &mut Ui, at: Pos2, lens: &Lens, session: &mut Session, smoke: &mu
 }
 
 /// Returns a light under the pointer, on the plane through the smoke's centre that faces the camera. A sun shines from
-/// that place on the dome.
-fn here(mut light: Light, at: Pos2, lens: &Lens, middle: Vec3) -> Light {
-    let (centre, radius) = lens.dome;
-    light.position = lens.facing(at, middle);
+/// that place on the sun sphere.
+fn here(mut light: Light, at: Pos2, projection: &ScreenProjection, middle: Vec3) -> Light {
+    let (centre, radius) = projection.sun_sphere;
+    light.position = projection.unproject_to_facing_plane(at, middle);
     let to_middle = middle - light.position;
     light.direction = match light.kind {
-        LightKind::Directional => centre - lens.ray(at).on_sphere(centre, radius, true),
+        LightKind::Directional => centre - projection.ray(at).on_sphere(centre, radius, true),
         _ if to_middle.length() > 0.1 => to_middle,
-        _ => lens.ahead,
+        _ => projection.ahead,
     };
     light.direction = light.direction.normalize_or(Vec3::NEG_Y);
     light

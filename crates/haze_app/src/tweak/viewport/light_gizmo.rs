@@ -6,9 +6,9 @@ use haze::{Light, LightKind};
 
 use super::handle_drag::HandleDrag;
 use super::light_handle::{Cone, Handle, SQUARE, Shape, handles, hovered};
-use super::light_marker::{self, place};
-use super::outlined_painter::{AXES, HOVERED, Ink, PLAIN, SELECTED};
-use super::screen_projection::Lens;
+use super::light_marker::{self, light_position};
+use super::outlined_painter::{AXES, HOVERED, OutlinedPainter, PLAIN, SELECTED};
+use super::screen_projection::ScreenProjection;
 use crate::tweak::session::Session;
 
 /// Dragged and hovered handle.
@@ -23,16 +23,22 @@ pub struct LightGizmo {
 /// Number of corners of a circle.
 const CORNERS: u32 = 72;
 /// A circle with a larger radius is not drawn, points.
-const LARGEST: f32 = 1.0e4;
+const MAX_LENGTH: f32 = 1.0e4;
 
 impl LightGizmo {
     /// Selects and drags lights. Returns true while the pointer is used for that.
-    pub fn interact(&mut self, ui: &Ui, response: &Response, lens: &Lens, session: &mut Session) -> bool {
+    pub fn interact(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        projection: &ScreenProjection,
+        session: &mut Session,
+    ) -> bool {
         let (pointer, pressed, down, held) = ui.input(|input| {
             let pointer = &input.pointer;
             (pointer.interact_pos(), pointer.primary_pressed(), pointer.primary_down(), input.modifiers)
         });
-        let selected = session.show.lights.selected.filter(|_| session.show.lights.turn.is_none());
+        let selected = session.view.lights.selected.filter(|_| session.view.lights.turn.is_none());
         let light =
             selected.and_then(|index| session.document.preset.lights.get_mut(index).map(|light| (index, light)));
         let at = pointer.filter(|_| response.contains_pointer() || self.grab.is_some());
@@ -40,14 +46,14 @@ impl LightGizmo {
         self.is_busy &= down;
         self.hovered = None;
         if let Some((index, light)) = light {
-            let under = at.and_then(|at| hovered(&handles(light, lens), at));
+            let under = at.and_then(|at| hovered(&handles(light, projection), at));
             if let (Some(handle), Some(at), true) =
                 (under, at, pressed && response.is_pointer_button_down_on() && !held.alt)
             {
-                self.grab = Some(HandleDrag::new(index, handle, *light, lens, at));
+                self.grab = Some(HandleDrag::new(index, handle, *light, projection, at));
                 self.is_busy = true;
             }
-            self.drag(ui, index, light, lens, pointer.filter(|_| down), held);
+            self.drag(ui, index, light, projection, pointer.filter(|_| down), held);
             self.hovered = self.grab.as_ref().map(|grab| grab.handle).or(under.filter(|_| !down));
             if self.hovered.is_some() {
                 ui.ctx().set_cursor_icon(if self.grab.is_some() { CursorIcon::Grabbing } else { CursorIcon::Grab });
@@ -57,8 +63,8 @@ impl LightGizmo {
         }
         if let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked() && !was_busy) {
             let lights: Vec<_> =
-                session.document.preset.lights.iter().map(|light| session.show.lights.turned(light)).collect();
-            session.show.lights.selected = light_marker::pick(&lights, lens, at);
+                session.document.preset.lights.iter().map(|light| session.view.lights.turned(light)).collect();
+            session.view.lights.selected = light_marker::pick(&lights, projection, at);
         }
         self.is_busy || was_busy
     }
@@ -68,7 +74,7 @@ impl LightGizmo {
         ui: &Ui,
         index: usize,
         light: &mut Light,
-        lens: &Lens,
+        projection: &ScreenProjection,
         pointer: Option<Pos2>,
         held: eframe::egui::Modifiers,
     ) {
@@ -81,7 +87,7 @@ impl LightGizmo {
             *light = grab.before;
             self.grab = None;
         } else if let Some(pointer) = pointer {
-            *light = grab.drag(lens, pointer, held);
+            *light = grab.drag(projection, pointer, held);
         } else {
             self.grab = None;
         }
@@ -91,48 +97,56 @@ impl LightGizmo {
         self.grab.is_some()
     }
 
-    pub fn draw(&self, ink: &Ink<'_>, lens: &Lens, session: &Session) {
-        let lights = &session.show.lights;
+    pub fn draw(&self, outlined: &OutlinedPainter<'_>, projection: &ScreenProjection, session: &Session) {
+        let lights = &session.view.lights;
         for (index, light) in session.document.preset.lights.iter().enumerate() {
             let is_selected = lights.selected == Some(index);
             // A rotating light cannot be dragged.
             if is_selected && lights.turn.is_none() {
-                self.draw_selected(ink, light, lens);
+                self.draw_selected(outlined, light, projection);
             }
-            light_marker::draw(ink, &lights.turned(light), lens, is_selected, lights.is_shown(index));
+            light_marker::draw(outlined, &lights.turned(light), projection, is_selected, lights.is_shown(index));
         }
     }
 
-    fn draw_selected(&self, ink: &Ink<'_>, light: &Light, lens: &Lens) {
+    fn draw_selected(&self, outlined: &OutlinedPainter<'_>, light: &Light, projection: &ScreenProjection) {
         match light.kind {
-            LightKind::Directional => draw_sun(ink, light, lens),
+            LightKind::Directional => draw_sun(outlined, light, projection),
             kind => {
-                draw_depth(ink, light.position, lens);
+                draw_depth(outlined, light.position, projection);
                 let faint = hue_of(light).gamma_multiply(0.45);
-                circle(ink, lens, light.position, lens.right * light.range, lens.up * light.range, 1.0, faint);
-                let (right, up) = (lens.right * light.radius, lens.up * light.radius);
-                circle(ink, lens, light.position, right, up, 1.5, self.colour(Handle::Radius, PLAIN));
+                circle(
+                    outlined,
+                    projection,
+                    light.position,
+                    projection.right * light.range,
+                    projection.up * light.range,
+                    1.0,
+                    faint,
+                );
+                let (right, up) = (projection.right * light.radius, projection.up * light.radius);
+                circle(outlined, projection, light.position, right, up, 1.5, self.colour(Handle::Radius, PLAIN));
                 if kind == LightKind::Spot {
-                    self.draw_cone(ink, light, lens);
+                    self.draw_cone(outlined, light, projection);
                 }
             }
         }
-        for (handle, shape) in handles(light, lens) {
+        for (handle, shape) in handles(light, projection) {
             let colour = self.colour(handle, plain(handle));
             match shape {
                 Shape::Arrow([from, to]) => {
-                    ink.line(&[from, to], 2.0, colour);
-                    ink.arrow_head(to, to - from, colour);
+                    outlined.line(&[from, to], 2.0, colour);
+                    outlined.arrow_head(to, to - from, colour);
                 }
-                Shape::Quad(corners) => ink.quad(corners, colour),
-                Shape::Square(centre) => ink.square(centre, SQUARE, colour),
-                Shape::Knob(centre) => ink.knob(centre, colour),
+                Shape::Quad(corners) => outlined.quad(corners, colour),
+                Shape::Square(centre) => outlined.square(centre, SQUARE, colour),
+                Shape::Knob(centre) => outlined.knob(centre, colour),
             }
         }
     }
 
-    fn draw_cone(&self, ink: &Ink<'_>, light: &Light, lens: &Lens) {
-        let cone = Cone::new(light, lens);
+    fn draw_cone(&self, outlined: &OutlinedPainter<'_>, light: &Light, projection: &ScreenProjection) {
+        let cone = Cone::new(light, projection);
         let across = cone.side.cross(cone.way);
         let angles = [
             (light.inner_angle, self.colour(Handle::InnerAngle, PLAIN.gamma_multiply(0.5))),
@@ -141,15 +155,15 @@ impl LightGizmo {
         for (angle, colour) in angles {
             let sine = angle.to_radians().sin() * cone.length;
             let centre = light.position + cone.way * (angle.to_radians().cos() * cone.length);
-            circle(ink, lens, centre, cone.side * sine, across * sine, 1.0, colour);
+            circle(outlined, projection, centre, cone.side * sine, across * sine, 1.0, colour);
             for side in [cone.side, -cone.side] {
-                if let Some(ends) = lens.segment(light.position, cone.rim(angle, side)) {
-                    ink.line(&ends, 1.0, colour);
+                if let Some(ends) = projection.segment(light.position, cone.rim(angle, side)) {
+                    outlined.line(&ends, 1.0, colour);
                 }
             }
         }
-        if let Some(ends) = lens.segment(light.position, cone.rim(0.0, cone.side)) {
-            ink.dashes(ends, self.colour(Handle::Aim, PLAIN));
+        if let Some(ends) = projection.segment(light.position, cone.rim(0.0, cone.side)) {
+            outlined.dashes(ends, self.colour(Handle::Aim, PLAIN));
         }
     }
 
@@ -167,58 +181,74 @@ fn plain(handle: Handle) -> Color32 {
 }
 
 fn hue_of(light: &Light) -> Color32 {
-    light_marker::hue(light.colour)
+    light_marker::full_brightness(light.colour)
 }
 
-/// Draws a sun: a line from its place on the dome to the camera's target.
-fn draw_sun(ink: &Ink<'_>, light: &Light, lens: &Lens) {
-    let (centre, radius) = lens.dome;
-    circle(ink, lens, centre, lens.right * radius, lens.up * radius, 1.0, PLAIN.gamma_multiply(0.3));
-    let from = place(light, lens);
+/// Draws a sun: a line from its place on the sun sphere to the camera's target.
+fn draw_sun(outlined: &OutlinedPainter<'_>, light: &Light, projection: &ScreenProjection) {
+    let (centre, radius) = projection.sun_sphere;
+    circle(
+        outlined,
+        projection,
+        centre,
+        projection.right * radius,
+        projection.up * radius,
+        1.0,
+        PLAIN.gamma_multiply(0.3),
+    );
+    let from = light_position(light, projection);
     let tip = from.lerp(centre, 0.6);
-    if let Some([from, to]) = lens.segment(from, tip) {
-        ink.line(&[from, to], 2.0, SELECTED);
+    if let Some([from, to]) = projection.segment(from, tip) {
+        outlined.line(&[from, to], 2.0, SELECTED);
         if from.distance(to) > 12.0 {
-            ink.arrow_head(to, to - from, SELECTED);
+            outlined.arrow_head(to, to - from, SELECTED);
         }
     }
-    if let Some(ends) = lens.segment(tip, centre) {
-        ink.dashes(ends, SELECTED);
+    if let Some(ends) = projection.segment(tip, centre) {
+        outlined.dashes(ends, SELECTED);
     }
 }
 
 /// Draws a line straight down to the ground, with a cross there.
-fn draw_depth(ink: &Ink<'_>, at: Vec3, lens: &Lens) {
+fn draw_depth(outlined: &OutlinedPainter<'_>, at: Vec3, projection: &ScreenProjection) {
     let foot = at.with_y(0.0);
     let colour = AXES[1].gamma_multiply(0.8);
-    if let Some(ends) = lens.segment(at, foot) {
-        ink.dashes(ends, colour);
+    if let Some(ends) = projection.segment(at, foot) {
+        outlined.dashes(ends, colour);
     }
-    let reach = 7.0 * lens.metres_per_point(foot);
+    let reach = 7.0 * projection.metres_per_point(foot);
     for arm in [Vec3::X * reach, Vec3::Z * reach] {
-        if let Some(ends) = lens.segment(foot - arm, foot + arm) {
-            ink.line(&ends, 1.0, colour);
+        if let Some(ends) = projection.segment(foot - arm, foot + arm) {
+            outlined.line(&ends, 1.0, colour);
         }
     }
 }
 
 /// Draws a circle in the world, given two perpendicular radii.
-fn circle(ink: &Ink<'_>, lens: &Lens, centre: Vec3, u: Vec3, v: Vec3, width: f32, colour: Color32) {
-    if !u.is_finite() || u.length() > LARGEST * lens.metres_per_point(centre) {
+fn circle(
+    outlined: &OutlinedPainter<'_>,
+    projection: &ScreenProjection,
+    centre: Vec3,
+    u: Vec3,
+    v: Vec3,
+    width: f32,
+    colour: Color32,
+) {
+    if !u.is_finite() || u.length() > MAX_LENGTH * projection.metres_per_point(centre) {
         return;
     }
     let corner = |index: u32| {
         let (sine, cosine) = (std::f32::consts::TAU * (index % CORNERS) as f32 / CORNERS as f32).sin_cos();
         centre + u * cosine + v * sine
     };
-    let corners: Option<Vec<_>> = (0..=CORNERS).map(|index| lens.project(corner(index))).collect();
+    let corners: Option<Vec<_>> = (0..=CORNERS).map(|index| projection.project(corner(index))).collect();
     if let Some(corners) = corners {
-        return ink.line(&corners, width, colour);
+        return outlined.line(&corners, width, colour);
     }
     // The near plane cuts the circle, so each segment is clipped.
     for index in 0..CORNERS {
-        if let Some(ends) = lens.segment(corner(index), corner(index + 1)) {
-            ink.line(&ends, width, colour);
+        if let Some(ends) = projection.segment(corner(index), corner(index + 1)) {
+            outlined.line(&ends, width, colour);
         }
     }
 }

@@ -4,8 +4,8 @@ use eframe::egui::{Pos2, Vec2, vec2};
 use glam::Vec3;
 use haze::{Light, LightKind};
 
-use super::light_marker::place;
-use super::screen_projection::Lens;
+use super::light_marker::light_position;
+use super::screen_projection::ScreenProjection;
 
 /// Property that a handle changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,16 +49,16 @@ const SLIM: f32 = 0.2;
 pub const UNITS: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
 
 /// Returns the handles of a light. Later ones are drawn on top and hit first.
-pub fn handles(light: &Light, lens: &Lens) -> Vec<(Handle, Shape)> {
+pub fn handles(light: &Light, projection: &ScreenProjection) -> Vec<(Handle, Shape)> {
     let mut all = Vec::new();
-    let Some(middle) = lens.project(place(light, lens)) else { return all };
+    let Some(middle) = projection.project(light_position(light, projection)) else { return all };
     if light.kind == LightKind::Directional {
         return vec![(Handle::Aim, Shape::Knob(middle))];
     }
-    let (at, metre) = (light.position, lens.metres_per_point(light.position));
-    let view = (at - lens.eye).normalize_or(lens.ahead);
+    let (at, metre) = (light.position, projection.metres_per_point(light.position));
+    let view = (at - projection.eye).normalize_or(projection.ahead);
     for (axis, unit) in UNITS.into_iter().enumerate() {
-        let reach = |length: f32| lens.project(at + unit * (length * metre));
+        let reach = |length: f32| projection.project(at + unit * (length * metre));
         if let (Some(from), Some(to)) = (reach(AXIS[0]), reach(AXIS[1]))
             && unit.cross(view).length() > SLIM
         {
@@ -67,7 +67,7 @@ pub fn handles(light: &Light, lens: &Lens) -> Vec<(Handle, Shape)> {
     }
     for (axis, unit) in UNITS.into_iter().enumerate() {
         let (u, v) = (UNITS[(axis + 1) % 3], UNITS[(axis + 2) % 3]);
-        let corner = |a: usize, b: usize| lens.project(at + (u * PLANE[a] + v * PLANE[b]) * metre);
+        let corner = |a: usize, b: usize| projection.project(at + (u * PLANE[a] + v * PLANE[b]) * metre);
         if let (Some(a), Some(b), Some(c), Some(d)) = (corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1))
             && unit.dot(view).abs() > SLIM
         {
@@ -75,8 +75,8 @@ pub fn handles(light: &Light, lens: &Lens) -> Vec<(Handle, Shape)> {
         }
     }
     if light.kind == LightKind::Spot {
-        let cone = Cone::new(light, lens);
-        let mut knob = |handle, place: Vec3| all.extend(lens.project(place).map(|at| (handle, Shape::Knob(at))));
+        let cone = Cone::new(light, projection);
+        let mut knob = |handle, place: Vec3| all.extend(projection.project(place).map(|at| (handle, Shape::Knob(at))));
         knob(Handle::OuterAngle, cone.rim(light.outer_angle, cone.side));
         knob(Handle::InnerAngle, cone.rim(light.inner_angle, -cone.side));
         knob(Handle::Aim, cone.rim(0.0, cone.side));
@@ -127,11 +127,11 @@ pub struct Cone {
 }
 
 impl Cone {
-    pub fn new(light: &Light, lens: &Lens) -> Self {
+    pub fn new(light: &Light, projection: &ScreenProjection) -> Self {
         let way = light.direction.normalize_or(Vec3::NEG_Y);
-        let view = (light.position - lens.eye).normalize_or(lens.ahead);
-        let side = way.cross(view).normalize_or(lens.right);
-        Self { at: light.position, way, side, length: CONE * lens.metres_per_point(light.position) }
+        let view = (light.position - projection.eye).normalize_or(projection.ahead);
+        let side = way.cross(view).normalize_or(projection.right);
+        Self { at: light.position, way, side, length: CONE * projection.metres_per_point(light.position) }
     }
 
     /// Returns a point on the cone's end, at an angle from its axis towards a side.
@@ -141,8 +141,8 @@ impl Cone {
     }
 
     /// Returns the angle between the axis and the point under a position in the window, degrees.
-    pub fn angle(&self, lens: &Lens, at: Pos2) -> Option<f32> {
-        let ray = lens.ray(at);
+    pub fn angle(&self, projection: &ScreenProjection, at: Pos2) -> Option<f32> {
+        let ray = projection.ray(at);
         let normal = self.way.cross(self.side);
         // Seen along the axis, the plane through the sides is edge-on, so the plane across the end is used.
         let is_edge_on = normal.dot(ray.direction).abs() < 0.3;

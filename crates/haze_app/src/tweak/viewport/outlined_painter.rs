@@ -10,9 +10,9 @@ pub const HOVERED: Color32 = Color32::from_rgb(255, 232, 110);
 const RIM: Color32 = Color32::from_black_alpha(150);
 
 /// Painter of outlined shapes.
-pub struct Ink<'a>(pub &'a Painter);
+pub struct OutlinedPainter<'a>(pub &'a Painter);
 
-impl Ink<'_> {
+impl OutlinedPainter<'_> {
     pub fn line(&self, points: &[Pos2], width: f32, colour: Color32) {
         let stroke = |width, colour| Shape::line(points.to_vec(), Stroke::new(width, colour));
         self.0.add(stroke(width + 2.0, RIM.gamma_multiply(opacity(colour))));

@@ -15,7 +15,7 @@ use crate::medium::{default_sprite, sprite_recipe};
 use crate::puffs::{Shown, pairs};
 use crate::tweak::platform::worker::{Ticket, Worker};
 use crate::tweak::session::Session;
-use crate::tweak::session::light_view::Turn;
+use crate::tweak::session::light_view::LightTurn;
 
 /// Fine enough to judge; takes some seconds on two cores.
 const PATH_TRACE: PathTrace = PathTrace { size: 48, samples: 64, seed: 1 };
@@ -64,11 +64,11 @@ impl Default for PathTracedPuff {
 impl PathTracedPuff {
     /// Shows both puffs in the lower left corner of the image while lights rotate.
     pub fn show(&mut self, ui: &mut Ui, rect: Rect, session: &Session) {
-        let Some(turn) = session.show.lights.turn else { return };
+        let Some(turn) = session.view.lights.turn else { return };
         let preset = &session.document.preset;
-        let (index, materials) = (session.show.system, session.pictures.of(preset));
+        let (index, materials) = (session.view.system, session.loaded_materials.of(preset));
         let Some((system, material)) = preset.systems.get(index).zip(materials.get(index)) else { return };
-        let leading = session.show.lights.selected.or(session.show.lights.chosen_key_light(index)).unwrap_or(0);
+        let leading = session.view.lights.selected.or(session.view.lights.chosen_key_light(index)).unwrap_or(0);
         let Some(light) = preset.lights.get(leading).or(preset.lights.first()) else { return };
         let corner = rect.left_bottom() + vec2(6.0, -6.0);
         let area = egui::Area::new(ui.scope_id().with("puff")).pivot(Align2::LEFT_BOTTOM).fixed_pos(corner);
@@ -127,7 +127,7 @@ impl PathTracedPuff {
         let worker = match &self.worker {
             Some(worker) => worker,
             None => {
-                let wake = session.wake.clone();
+                let wake = session.repaint.clone();
                 let worker = Worker::new("puff", move || wake.call());
                 self.worker.insert(worker.map_err(|error| Error::Io { path: "a thread".into(), error })?)
             }
@@ -211,7 +211,7 @@ fn part(light: usize, row: usize) -> Rect {
 }
 
 /// Returns the angle of a rotating light about the vertical, from the camera's side to the right, degrees.
-fn angle(turn: &Turn, light: &Light, eye: Vec3) -> f32 {
+fn angle(turn: &LightTurn, light: &Light, eye: Vec3) -> f32 {
     let light = turn.turned(light);
     let to_light = match light.kind {
         LightKind::Directional => -light.direction,

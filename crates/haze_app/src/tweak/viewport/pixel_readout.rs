@@ -5,8 +5,8 @@ use glam::{Vec3, Vec4, Vec4Swizzles};
 use haze_reference::{LightProbe, SystemProbe};
 
 use crate::tweak::session::Session;
-use crate::tweak::session::comparison::Against;
-use crate::tweak::session::inspection::{Told, code};
+use crate::tweak::session::comparison::CompareWith;
+use crate::tweak::session::inspection::{PixelValues, code};
 use crate::tweak::viewport_renderer::compared_side::ComparedSide;
 
 /// Distance from the corner, points.
@@ -20,9 +20,9 @@ pub fn panel(ui: &Ui, viewport: Rect, session: &Session) {
     let (inspect, compare) = (&session.inspect, &session.compare);
     let Some(place) = inspect.place().filter(|_| inspect.is_on) else { return };
     let side = compare.side(place.x);
-    let is_made = side == ComparedSide::Second && compare.against == Some(Against::Reference);
-    let told = inspect.told.as_ref().filter(|told| told.side == side && !is_made);
-    if told.is_none() && !is_made {
+    let is_made = side == ComparedSide::Second && compare.against == Some(CompareWith::Reference);
+    let values = inspect.pixel_values.as_ref().filter(|values| values.side == side && !is_made);
+    if values.is_none() && !is_made {
         return;
     }
     cross(ui, viewport.min + place * viewport.size(), inspect.pinned.is_some());
@@ -41,8 +41,8 @@ pub fn panel(ui: &Ui, viewport: Rect, session: &Session) {
                 ui.spacing_mut().item_spacing = Vec2::new(4.0, 1.0);
                 ui.spacing_mut().interact_size = Vec2::new(26.0, 14.0);
             }
-            match told {
-                Some(told) => numbers(ui, told, session, is_small),
+            match values {
+                Some(values) => numbers(ui, values, session, is_small),
                 None => drop(ui.weak("Drawn by the CPU renderer: no texels to inspect")),
             }
         });
@@ -59,8 +59,8 @@ fn cross(ui: &Ui, at: egui::Pos2, is_pinned: bool) {
     }
 }
 
-fn numbers(ui: &mut Ui, told: &Told, session: &Session, is_small: bool) {
-    let Told { pixel, side, names, probe, exposure } = told;
+fn numbers(ui: &mut Ui, values: &PixelValues, session: &Session, is_small: bool) {
+    let PixelValues { pixel, side, names, probe, exposure } = values;
     let keep = if session.inspect.pinned.is_some() { "kept" } else { "click keeps it" };
     ui.horizontal(|ui| {
         ui.strong(format!("Pixel {}, {}", pixel.x, pixel.y));
@@ -71,7 +71,7 @@ fn numbers(ui: &mut Ui, told: &Told, session: &Session, is_small: bool) {
     });
     let preset = session.compare.against.as_ref().filter(|_| *side == ComparedSide::Second);
     let preset = preset.and_then(|against| against.settings(session.saved())).unwrap_or(&session.document.preset);
-    let lights = session.show.lights.shown_names(&preset.lights);
+    let lights = session.view.lights.shown_names(&preset.lights);
     // The nearest system comes first.
     for system in probe.systems.iter().rev() {
         ui.separator();
@@ -124,7 +124,7 @@ fn of_system(ui: &mut Ui, probe: &SystemProbe, lights: &[String], is_small: bool
 
 fn of_light(ui: &mut Ui, light: &LightProbe, names: &[String], is_small: bool) {
     // Their sums are shown as numbers in any case.
-    let colour = if is_small { hue } else { colour };
+    let colour = if is_small { hue_swatch } else { colour };
     ui.label(names.get(light.light).map_or("light", String::as_str));
     ui.label(format!("{:.2}", light.cosine));
     ui.label(format!("{:.2}", light.coordinate));
@@ -160,7 +160,7 @@ fn picture(ui: &mut Ui, light: Vec4, exposure: f32) {
     });
 }
 
-fn hue(ui: &mut Ui, light: Vec3) {
+fn hue_swatch(ui: &mut Ui, light: Vec3) {
     let [r, g, b] = (light / light.max_element().max(1.0)).to_array();
     swatch(ui, egui::Rgba::from_rgb(r, g, b).into());
 }
@@ -168,7 +168,7 @@ fn hue(ui: &mut Ui, light: Vec3) {
 /// Shows linear light as a swatch and as numbers.
 fn colour(ui: &mut Ui, light: Vec3) {
     ui.horizontal(|ui| {
-        hue(ui, light);
+        hue_swatch(ui, light);
         ui.label(format!("{:.3} {:.3} {:.3}", light.x, light.y, light.z));
     });
 }

@@ -11,128 +11,136 @@ use haze_demo::shot::Shot;
 use crate::tweak::platform::clock::Duration;
 use crate::tweak::platform::worker::Worker;
 use crate::tweak::session::Session;
-use crate::tweak::session::inspection::{Inspect, Told};
+use crate::tweak::session::inspection::{Inspection, PixelValues};
 use crate::tweak::session::ramp_survey::RampSurvey;
 use crate::tweak::session::view_options::Tab;
-use crate::tweak::viewport_renderer::Easel;
+use crate::tweak::viewport_renderer::ViewportRenderer;
 use crate::tweak::viewport_renderer::compared_side::ComparedSide;
 
 /// Least time between two copies of a changing image, seconds.
-const INTERVAL: f64 = 0.2;
+const MIN_COPY_INTERVAL: f64 = 0.2;
 
 /// Readback and analysis for the inspector and the ramps tab.
-pub struct Lens {
+pub struct ProbeJob {
     worker: Worker<Result<Answer, Error>>,
-    seen: Option<Arc<Seen>>,
+    captured: Option<Arc<CapturedImage>>,
     /// Pixel that was last requested, and whether its answer is pending.
-    asked: Option<UVec2>,
-    is_asking: bool,
+    requested: Option<UVec2>,
+    is_pending: bool,
     /// Time when the last copy arrived, seconds.
     arrived: f64,
 }
 
 /// Image with its texels.
-struct Seen {
+struct CapturedImage {
     side: ComparedSide,
-    witness: ProbeInputs,
+    inputs: ProbeInputs,
 }
 
 /// Result from the worker thread.
 enum Answer {
-    Seen(Arc<Seen>),
-    Told(Told),
+    CapturedImage(Arc<CapturedImage>),
+    PixelValues(PixelValues),
     RampSurvey(RampSurvey),
 }
 
-impl Lens {
+impl ProbeJob {
     pub fn new(context: &egui::Context) -> std::io::Result<Self> {
         let context = context.clone();
         let worker = Worker::new("inspector", move || context.request_repaint())?;
-        Ok(Self { worker, seen: None, asked: None, is_asking: false, arrived: f64::NEG_INFINITY })
+        Ok(Self { worker, captured: None, requested: None, is_pending: false, arrived: f64::NEG_INFINITY })
     }
 
     /// Takes finished results and requests missing ones. Call once a frame.
-    pub fn update(&mut self, ui: &Ui, session: &mut Session, easel: &Easel) {
-        let has_ramps = session.show.tab == Tab::Ramps;
+    pub fn update(&mut self, ui: &Ui, session: &mut Session, renderer: &ViewportRenderer) {
+        let has_ramps = session.view.tab == Tab::Ramps;
         if !session.inspect.is_on && !has_ramps {
-            easel.want_capture(None);
-            easel.forget_capture();
-            (self.seen, self.asked) = (None, None);
-            (session.inspect.told, session.inspect.survey) = (None, None);
+            renderer.want_capture(None);
+            renderer.forget_capture();
+            (self.captured, self.requested) = (None, None);
+            (session.inspect.pixel_values, session.inspect.survey) = (None, None);
             return;
         }
-        if !easel.can_capture() {
+        if !renderer.can_capture() {
             let what = "the inspector does not work on this graphics backend: it cannot read depth back";
-            session.messages.complain("inspector", what);
+            session.messages.error("inspector", what);
             session.inspect.is_on = false;
             return;
         }
         let now = ui.input(|input| input.time);
-        let waits = INTERVAL - (now - self.arrived);
+        let waits = MIN_COPY_INTERVAL - (now - self.arrived);
         let side = session.inspect.place().map_or(ComparedSide::First, |place| session.compare.side(place.x));
-        if let Some((side, shot, capture)) = easel.take_capture() {
+        if let Some((side, shot, capture)) = renderer.take_capture() {
             self.arrived = now;
-            self.worker.submit(move |_| Ok(Answer::Seen(Arc::new(read(side, shot, &capture)?))));
-        } else if easel.is_capturing() {
+            self.worker.submit(move |_| Ok(Answer::CapturedImage(Arc::new(read(side, shot, &capture)?))));
+        } else if renderer.is_capturing() {
             ui.ctx().request_repaint();
         }
-        easel.want_capture((waits <= 0.0).then_some(side));
+        renderer.want_capture((waits <= 0.0).then_some(side));
         if waits > 0.0 {
-            ui.ctx().request_repaint_after(Duration::from_secs_f64(waits.min(INTERVAL)));
+            ui.ctx().request_repaint_after(Duration::from_secs_f64(waits.min(MIN_COPY_INTERVAL)));
         }
         while let Some(answer) = self.worker.poll() {
-            self.is_asking &= matches!(answer, Some(Ok(Answer::Seen(_) | Answer::RampSurvey(_))));
+            self.is_pending &= matches!(answer, Some(Ok(Answer::CapturedImage(_) | Answer::RampSurvey(_))));
             match answer {
                 Some(Ok(answer)) => {
-                    session.messages.withdraw("inspector");
+                    session.messages.clear("inspector");
                     self.take(answer, &mut session.inspect, has_ramps);
                 }
-                Some(Err(error)) => session.messages.complain("inspector", error),
+                Some(Err(error)) => session.messages.error("inspector", error),
                 None => {}
             }
         }
         self.ask(&session.inspect, side);
     }
 
-    fn take(&mut self, answer: Answer, inspect: &mut Inspect, has_ramps: bool) {
+    fn take(&mut self, answer: Answer, inspect: &mut Inspection, has_ramps: bool) {
         match answer {
-            Answer::Seen(seen) => {
+            Answer::CapturedImage(captured) => {
                 // The ramps tab shows the first image.
-                if has_ramps && seen.side == ComparedSide::First {
-                    let seen = seen.clone();
-                    self.worker.submit(move |_| Ok(Answer::RampSurvey(RampSurvey::of(&seen.witness)?)));
+                if has_ramps && captured.side == ComparedSide::First {
+                    let captured = captured.clone();
+                    self.worker.submit(move |_| Ok(Answer::RampSurvey(RampSurvey::of(&captured.inputs)?)));
                 }
-                (self.seen, self.asked) = (Some(seen), None);
+                (self.captured, self.requested) = (Some(captured), None);
             }
-            Answer::Told(told) => inspect.told = Some(told),
+            Answer::PixelValues(values) => inspect.pixel_values = Some(values),
             Answer::RampSurvey(survey) => inspect.survey = Some(Arc::new(survey)),
         }
     }
 
     /// Requests the values of the pixel under the pointer, unless they are already known.
-    fn ask(&mut self, inspect: &Inspect, side: ComparedSide) {
-        let Some((seen, place)) = self.seen.as_ref().filter(|seen| seen.side == side).zip(inspect.place()) else {
+    fn ask(&mut self, inspect: &Inspection, side: ComparedSide) {
+        let Some((captured, place)) =
+            self.captured.as_ref().filter(|captured| captured.side == side).zip(inspect.place())
+        else {
             return;
         };
-        let size = seen.witness.shot().size;
+        let size = captured.inputs.shot().size;
         let at = |share: f32, side: u32| ((share * side as f32) as u32).min(side - 1);
         let pixel = UVec2::new(at(place.x, size.x), at(place.y, size.y));
         // A request waits for the previous answer; otherwise a moving pointer would never get one.
-        if self.is_asking || self.asked == Some(pixel) {
+        if self.is_pending || self.requested == Some(pixel) {
             return;
         }
-        let seen = seen.clone();
+        let captured = captured.clone();
         self.worker.submit(move |_| {
-            let probe = seen.witness.probe(&[pixel])?.remove(0);
-            let preset = &seen.witness.shot().preset;
+            let probe = captured.inputs.probe(&[pixel])?.remove(0);
+            let preset = &captured.inputs.shot().preset;
             let names = preset.systems.iter().map(|system| system.name.clone()).collect();
-            Ok(Answer::Told(Told { pixel, side: seen.side, names, probe, exposure: preset.camera.exposure.exp2() }))
+            Ok(Answer::PixelValues(PixelValues {
+                pixel,
+                side: captured.side,
+                names,
+                probe,
+                exposure: preset.camera.exposure.exp2(),
+            }))
         });
-        (self.asked, self.is_asking) = (Some(pixel), true);
+        (self.requested, self.is_pending) = (Some(pixel), true);
     }
 }
 
-fn read(side: ComparedSide, shot: Shot, capture: &Capture) -> Result<Seen, Error> {
+fn read(side: ComparedSide, shot: Shot, capture: &Capture) -> Result<CapturedImage, Error> {
     let none = || Error::Device("the texels of the image could not be read back".into());
-    Ok(Seen { side, witness: capture.read().ok_or_else(none)?.of(shot) })
+    Ok(CapturedImage { side, inputs: capture.read().ok_or_else(none)?.of(shot) })
 }

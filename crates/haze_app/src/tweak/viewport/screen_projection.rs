@@ -9,7 +9,7 @@ use super::ray::Ray;
 
 /// Camera, and the rectangle of its image in the window.
 #[derive(Clone, Copy, Debug)]
-pub struct Lens {
+pub struct ScreenProjection {
     pub rect: Rect,
     pub eye: Vec3,
     pub right: Vec3,
@@ -20,21 +20,21 @@ pub struct Lens {
     reach: Vec2,
     /// Centre and radius of the sphere on which suns are shown: around the camera's target, of constant size in the
     /// image.
-    pub dome: (Vec3, f32),
+    pub sun_sphere: (Vec3, f32),
 }
 
-/// Radius of the dome relative to half the image's height at the target. Below 1, so that the camera is never inside
+/// Radius of the sun sphere relative to half the image's height at the target. Below 1, so that the camera is never inside
 /// it.
-const DOME: f32 = 0.7;
+const SUN_SPHERE: f32 = 0.7;
 
-impl Lens {
+impl ScreenProjection {
     pub fn new(camera: &Camera, rect: Rect) -> Self {
         let ahead = (camera.target - camera.position).normalize_or(Vec3::NEG_Z);
         let (right, up) = sides(ahead);
         let tangent = (0.5 * camera.fov.to_radians()).tan();
         let reach = vec2(tangent * rect.aspect_ratio(), tangent);
-        let dome = (camera.target, DOME * tangent.min(1.0) * camera.position.distance(camera.target));
-        Self { rect, eye: camera.position, right, up, ahead, near: camera.near, reach, dome }
+        let sun_sphere = (camera.target, SUN_SPHERE * tangent.min(1.0) * camera.position.distance(camera.target));
+        Self { rect, eye: camera.position, right, up, ahead, near: camera.near, reach, sun_sphere }
     }
 
     /// Returns the distance in front of the camera along its axis, metres.
@@ -74,7 +74,7 @@ impl Lens {
     }
 
     /// Returns the point under a position in the window, on the plane through `point` that faces the camera.
-    pub fn facing(&self, at: Pos2, point: Vec3) -> Vec3 {
+    pub fn unproject_to_facing_plane(&self, at: Pos2, point: Vec3) -> Vec3 {
         self.ray(at).on_plane(point, self.ahead).unwrap_or(point)
     }
 
@@ -103,25 +103,26 @@ mod tests {
     fn a_projected_point_matches_the_image_and_can_be_unprojected() {
         let rect = Rect::from_min_size(pos2(37.0, 81.0), vec2(640.0, 360.0));
         for camera in cameras() {
-            let lens = Lens::new(&camera, rect);
+            let projection = ScreenProjection::new(&camera, rect);
             let view = camera.view(UVec2::new(640, 360));
             for (x, y, depth) in [(0.0, 0.0, 3.0), (0.8, -0.3, 1.0), (-2.0, 0.9, 11.0)] {
-                let point = lens.eye + lens.ahead * depth + lens.right * x + lens.up * y;
-                let seen = lens.project(point).unwrap();
+                let point = projection.eye + projection.ahead * depth + projection.right * x + projection.up * y;
+                let seen = projection.project(point).unwrap();
                 let ndc = (view.clip_from_view * view.view_from_world).project_point3(point);
                 let drawn = pos2(37.0 + 320.0 * (1.0 + ndc.x), 81.0 + 180.0 * (1.0 - ndc.y));
                 assert!(seen.distance(drawn) < 1.0, "{seen} is drawn at {drawn}");
-                assert!(lens.facing(seen, point).distance(point) < depth * 1e-3);
+                assert!(projection.unproject_to_facing_plane(seen, point).distance(point) < depth * 1e-3);
             }
         }
     }
 
     #[test]
     fn lines_are_clipped_at_the_near_plane() {
-        let lens = Lens::new(&Camera::default(), Rect::from_min_size(Pos2::ZERO, vec2(200.0, 100.0)));
-        let (behind, ahead) = (lens.eye - lens.ahead + lens.right, lens.eye + lens.ahead * 4.0);
-        assert_eq!((lens.project(behind), lens.segment(behind, behind - lens.ahead)), (None, None));
-        let [cut, end] = lens.segment(behind, ahead).unwrap();
-        assert!(end.distance(lens.rect.center()) < 1e-3 && cut.x > end.x && cut.x.is_finite());
+        let projection = ScreenProjection::new(&Camera::default(), Rect::from_min_size(Pos2::ZERO, vec2(200.0, 100.0)));
+        let (behind, ahead) =
+            (projection.eye - projection.ahead + projection.right, projection.eye + projection.ahead * 4.0);
+        assert_eq!((projection.project(behind), projection.segment(behind, behind - projection.ahead)), (None, None));
+        let [cut, end] = projection.segment(behind, ahead).unwrap();
+        assert!(end.distance(projection.rect.center()) < 1e-3 && cut.x > end.x && cut.x.is_finite());
     }
 }

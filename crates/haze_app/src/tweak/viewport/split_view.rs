@@ -5,25 +5,25 @@ use haze_demo::shot::Shot;
 use haze_demo::tonemap_pass::exposure;
 
 use crate::tweak::session::Session;
-use crate::tweak::session::comparison::Against;
-use crate::tweak::session::messages::short;
-use crate::tweak::viewport_renderer::comparison_image::Other;
+use crate::tweak::session::comparison::CompareWith;
+use crate::tweak::session::messages::truncate_middle;
+use crate::tweak::viewport_renderer::comparison_image::ComparisonImage;
 use crate::tweak::viewport_renderer::cpu_render_job::CpuRenderState;
 
 /// Returns the second image, once it is available.
-pub fn other(ui: &Ui, session: &mut Session, shot: &Shot) -> Option<Other> {
+pub fn comparison_image(ui: &Ui, session: &mut Session, shot: &Shot) -> Option<ComparisonImage> {
     let against = session.compare.against.clone()?;
-    if against != Against::Reference {
-        return Some(Other::Shot(Box::new(against.shot(shot, session.saved(), &session.show.lights))));
+    if against != CompareWith::Reference {
+        return Some(ComparisonImage::Shot(Box::new(against.shot(shot, session.saved(), &session.view.lights))));
     }
-    let wake = session.wake.clone();
-    match session.referee.judge(shot, move || wake.call()) {
-        CpuRenderState::Made(picture) => {
-            session.messages.withdraw("reference");
-            return Some(Other::Image(picture, exposure(shot)));
+    let wake = session.repaint.clone();
+    match session.cpu_render_job.poll_or_start(shot, move || wake.call()) {
+        CpuRenderState::Ready(picture) => {
+            session.messages.clear("reference");
+            return Some(ComparisonImage::Image(picture, exposure(shot)));
         }
         CpuRenderState::Later(wait) => ui.ctx().request_repaint_after(wait),
-        CpuRenderState::Failed(error) => session.messages.complain("reference", error),
+        CpuRenderState::Failed(error) => session.messages.error("reference", error),
         CpuRenderState::Soon => {}
     }
     None
@@ -70,33 +70,33 @@ pub fn divider(ui: &Ui, rect: egui::Rect, split: &mut f32) {
 pub fn labels(ui: &Ui, rect: egui::Rect, session: &Session) {
     let Some(against) = &session.compare.against else { return };
     let edited = if session.document.is_dirty() { ", edited" } else { "" };
-    let first = format!("A  {}{edited}", short(&session.document.title(), 24));
-    let [of_first, of_second] = session.performance.figures.sides.map(|ms| ms.map(|ms| format!("   {ms:.2} ms")));
-    let took = session.referee.took.filter(|_| *against == Against::Reference);
+    let first = format!("A  {}{edited}", truncate_middle(&session.document.title(), 24));
+    let [of_first, of_second] = session.timings.stats.smoke_ms_of_pair.map(|ms| ms.map(|ms| format!("   {ms:.2} ms")));
+    let took = session.cpu_render_job.took.filter(|_| *against == CompareWith::Reference);
     let took = took.map(|took| format!("   {:.0} ms of the CPU", 1.0e3 * took.as_secs_f32()));
-    let of_second = if *against == Against::Reference { took } else { of_second };
+    let of_second = if *against == CompareWith::Reference { took } else { of_second };
     let second = format!("B  {}", against.name());
     let what = "GPU time of its smoke, if the device can measure it";
-    plate(ui, rect, egui::Align2::LEFT_BOTTOM, &(first + &of_first.unwrap_or_default())).on_hover_text(what);
-    let place = plate(ui, rect, egui::Align2::RIGHT_BOTTOM, &(second + &of_second.unwrap_or_default()));
+    text_plate(ui, rect, egui::Align2::LEFT_BOTTOM, &(first + &of_first.unwrap_or_default())).on_hover_text(what);
+    let place = text_plate(ui, rect, egui::Align2::RIGHT_BOTTOM, &(second + &of_second.unwrap_or_default()));
     let above = rect.with_max_y(place.rect.top());
     place.on_hover_text(what);
-    if let Some(text) = session.gauge.text() {
-        plate(ui, above, egui::Align2::RIGHT_BOTTOM, &text).on_hover_text(
+    if let Some(text) = session.psnr_job.text() {
+        text_plate(ui, above, egui::Align2::RIGHT_BOTTOM, &text).on_hover_text(
             "Peak signal-to-noise ratio of the two as shown: over all pixels, and at edges of the scene's depth",
         );
     }
 }
 
 /// Draws text on a dark background in a corner of a part of the image.
-fn plate(ui: &Ui, rect: egui::Rect, corner: egui::Align2, text: &str) -> egui::Response {
+fn text_plate(ui: &Ui, rect: egui::Rect, corner: egui::Align2, text: &str) -> egui::Response {
     let font = egui::TextStyle::Body.resolve(ui.style());
     let galley = ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::WHITE);
     let inside = corner.align_size_within_rect(galley.size(), rect.shrink2(egui::vec2(12.0, 10.0)));
-    let plate = inside.expand2(egui::vec2(6.0, 3.0));
-    let response = ui.interact(plate, ui.scope_id().with((corner, plate.top() as i32)), Sense::hover());
+    let text_plate = inside.expand2(egui::vec2(6.0, 3.0));
+    let response = ui.interact(text_plate, ui.scope_id().with((corner, text_plate.top() as i32)), Sense::hover());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Status, true, text));
-    ui.painter().rect_filled(plate, 3.0, egui::Color32::from_black_alpha(170));
+    ui.painter().rect_filled(text_plate, 3.0, egui::Color32::from_black_alpha(170));
     ui.painter().galley(inside.min, galley, egui::Color32::WHITE);
     response
 }
@@ -127,7 +127,7 @@ mod tests {
     fn both_images_show_their_names_and_their_cost() {
         let mut harness = measured("column", Vec2::new(1000.0, 640.0));
         harness.state_mut().session.document.preset.camera.exposure = 1.0;
-        let mut label = |against: Against, sign: &str, unit: &str| {
+        let mut label = |against: CompareWith, sign: &str, unit: &str| {
             harness.state_mut().session.compare.against = Some(against);
             for _ in 0..300 {
                 picture(&mut harness);
@@ -140,16 +140,16 @@ mod tests {
             panic!("nothing is said of {sign}");
         };
         let ms = |label: &str| label.split_whitespace().rev().nth(1).unwrap().parse::<f32>().unwrap();
-        let first = label(Against::FullResolution, "A  ", " ms");
+        let first = label(CompareWith::FullResolution, "A  ", " ms");
         assert!(first.starts_with("A  column, edited   ") && ms(&first) > 0.0, "{first}");
         // Other programs may slow down either.
         let is_dearer = (0..5).any(|_| {
-            let whole = label(Against::FullResolution, "B  full resolution   ", " ms");
-            label(Against::Forward, "B  forward   ", " ms");
-            ms(&whole) > ms(&label(Against::FullResolution, "A  ", " ms"))
+            let whole = label(CompareWith::FullResolution, "B  full resolution   ", " ms");
+            label(CompareWith::Forward, "B  forward   ", " ms");
+            ms(&whole) > ms(&label(CompareWith::FullResolution, "A  ", " ms"))
         });
         assert!(is_dearer, "{first}");
-        let judged = label(Against::Reference, "B  CPU reference   ", " ms of the CPU");
+        let judged = label(CompareWith::Reference, "B  CPU reference   ", " ms of the CPU");
         assert!(judged.ends_with(" ms of the CPU"), "{judged}");
     }
 }

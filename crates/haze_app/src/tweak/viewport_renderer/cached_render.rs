@@ -30,7 +30,7 @@ impl Target<'_> {
 
 /// Off-screen renderer with the last shot that it drew.
 pub struct CachedRender {
-    pub stage: OffscreenRenderer,
+    pub offscreen: OffscreenRenderer,
     /// Shot that was drawn last.
     pub shot: Option<Shot>,
     /// Error of the last attempt to draw; the image before is then shown.
@@ -41,7 +41,7 @@ pub struct CachedRender {
 impl CachedRender {
     pub fn new(context: &OffscreenContext) -> Result<Self, Error> {
         Ok(Self {
-            stage: OffscreenRenderer::new(context, false)?,
+            offscreen: OffscreenRenderer::new(context, false)?,
             shot: None,
             error: None,
             tonemap_bindings: Default::default(),
@@ -54,13 +54,13 @@ impl CachedRender {
     }
 
     /// Draws a shot unless it was drawn last. Returns true if the textures may have been replaced.
-    pub fn record(&mut self, target: &mut Target<'_>, shot: &Shot, stages: &[DebugView]) -> bool {
+    pub fn record(&mut self, target: &mut Target<'_>, shot: &Shot, views: &[DebugView]) -> bool {
         if self.shows(shot) {
             return false;
         }
         // A shot that fails is tried only once.
         let last = self.shot.replace(shot.clone());
-        let done = self.stage.record(target.encoder, shot, stages);
+        let done = self.offscreen.record(target.encoder, shot, views);
         self.error = done.err().map(|error| error.to_string());
         last.is_none_or(|last| (last.size, last.debug_view) != (shot.size, shot.debug_view))
     }
@@ -68,11 +68,11 @@ impl CachedRender {
     /// Call if the commands that were recorded last were never submitted.
     pub fn forget(&mut self) {
         self.shot = None;
-        self.stage.forget();
+        self.offscreen.forget();
     }
 
-    pub fn picture(&self, stage: DebugView) -> Option<&wgpu::Texture> {
-        self.stage.picture(stage)
+    pub fn picture(&self, view: DebugView) -> Option<&wgpu::Texture> {
+        self.offscreen.picture(view)
     }
 }
 

@@ -12,19 +12,19 @@ use super::cached_render::{Target, reduced};
 
 /// Second image of a comparison.
 #[derive(Clone)]
-pub enum Other {
+pub enum ComparisonImage {
     Shot(Box<Shot>),
     /// Image rendered elsewhere, and its exposure factor.
     Image(Arc<Image<Vec4>>, f32),
 }
 
 /// Texture of an image that was rendered elsewhere.
-pub struct Made {
+pub struct UploadedImage {
     picture: Arc<Image<Vec4>>,
     pub texture: wgpu::Texture,
 }
 
-impl Other {
+impl ComparisonImage {
     /// Returns it at the reduced resolution that is used while something moves.
     pub fn reduced(&self, divisor: u32) -> Self {
         match self {
@@ -41,16 +41,16 @@ impl Other {
     }
 }
 
-impl Made {
+impl UploadedImage {
     /// Uploads an image, or drops the texture if there is none. Returns true if the texture was replaced.
-    pub fn hang(made: &mut Option<Self>, target: &Target<'_>, picture: Option<&Arc<Image<Vec4>>>) -> bool {
-        let is_up = match (&*made, picture) {
-            (Some(made), Some(picture)) => Arc::ptr_eq(&made.picture, picture),
+    pub fn sync_upload(uploaded: &mut Option<Self>, target: &Target<'_>, picture: Option<&Arc<Image<Vec4>>>) -> bool {
+        let is_up = match (&*uploaded, picture) {
+            (Some(uploaded), Some(picture)) => Arc::ptr_eq(&uploaded.picture, picture),
             (None, None) => true,
             _ => false,
         };
         if !is_up {
-            *made = picture.map(|picture| Self { texture: upload(target, picture), picture: picture.clone() });
+            *uploaded = picture.map(|picture| Self { texture: upload(target, picture), picture: picture.clone() });
         }
         !is_up
     }

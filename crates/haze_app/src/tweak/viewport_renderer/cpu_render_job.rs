@@ -23,7 +23,7 @@ pub struct CpuRenderJob {
     wanted: Option<(Shot, Instant)>,
     /// Set while the image is rendered.
     ticket: Option<Ticket>,
-    made: Option<Arc<Image<Vec4>>>,
+    image: Option<Arc<Image<Vec4>>>,
     /// Time that rendering took.
     pub took: Option<Duration>,
 }
@@ -34,23 +34,23 @@ pub enum CpuRenderState {
     Later(Duration),
     /// Rendering is in progress; `wake` will be called.
     Soon,
-    Made(Arc<Image<Vec4>>),
+    Ready(Arc<Image<Vec4>>),
     Failed(Error),
 }
 
 impl CpuRenderJob {
     /// Returns the image of a shot, or its state. `wake` is called from the worker thread when the image is ready.
-    pub fn judge(&mut self, shot: &Shot, wake: impl Fn() + Send + 'static) -> CpuRenderState {
+    pub fn poll_or_start(&mut self, shot: &Shot, wake: impl Fn() + Send + 'static) -> CpuRenderState {
         let now = Instant::now();
         if !self.wanted.as_ref().is_some_and(|(wanted, _)| wanted.is_same(shot)) {
             self.wanted = Some((shot.clone(), now));
-            (self.made, self.took) = (None, None);
+            (self.image, self.took) = (None, None);
             if let Some(ticket) = self.ticket.take() {
                 ticket.cancel();
             }
         }
-        if let Some(made) = &self.made {
-            return CpuRenderState::Made(made.clone());
+        if let Some(image) = &self.image {
+            return CpuRenderState::Ready(image.clone());
         }
         if self.ticket.is_none() {
             let since = self.wanted.as_ref().map_or(now, |(_, since)| *since);
@@ -74,9 +74,9 @@ impl CpuRenderJob {
         match self.worker.as_ref().and_then(Worker::poll) {
             None => CpuRenderState::Soon,
             Some(Some(Ok((picture, took)))) => {
-                let made = Arc::new(picture);
-                (self.made, self.took) = (Some(made.clone()), Some(took));
-                CpuRenderState::Made(made)
+                let image = Arc::new(picture);
+                (self.image, self.took) = (Some(image.clone()), Some(took));
+                CpuRenderState::Ready(image)
             }
             Some(Some(Err(error))) => CpuRenderState::Failed(error),
             Some(None) => CpuRenderState::Failed(Error::Device("the CPU renderer ended".into())),

@@ -30,7 +30,7 @@ impl DeviceHealth {
         });
         let (failed, frame) = (health.clone(), context.clone());
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-            failed.lock().get_or_insert(described(&error));
+            failed.lock().get_or_insert(one_line_error(&error));
             frame.request_repaint();
         }));
         health
@@ -52,7 +52,7 @@ impl DeviceHealth {
 }
 
 /// Formats an error of wgpu as one line.
-fn described(error: &wgpu::Error) -> Error {
+fn one_line_error(error: &wgpu::Error) -> Error {
     Error::Device(match error {
         wgpu::Error::OutOfMemory { .. } => "out of memory; a smaller window takes less".into(),
         error => error.to_string().split_whitespace().collect::<Vec<_>>().join(" "),

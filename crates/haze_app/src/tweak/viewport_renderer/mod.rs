@@ -25,12 +25,12 @@ use haze_demo::tonemap_pass::TonemapPass;
 use compared_side::ComparedSide;
 use device_health::DeviceHealth;
 use viewport_frame::RendererState;
-pub use viewport_frame::{Exhibit, RenderStats, Texels};
+pub use viewport_frame::{RenderStats, TargetTexels, ViewportFrame};
 
 /// Draws the images of one window. Clones share the state.
 #[derive(Clone)]
-pub struct Easel {
-    drawing: Arc<Mutex<RendererState>>,
+pub struct ViewportRenderer {
+    state: Arc<Mutex<RendererState>>,
     adapter: Arc<wgpu::AdapterInfo>,
     health: DeviceHealth,
     egui: egui::Context,
@@ -38,7 +38,7 @@ pub struct Easel {
     is_timed: bool,
 }
 
-impl Easel {
+impl ViewportRenderer {
     /// # Errors
     /// If there is no device, or it lacks what the demo renderer needs.
     pub fn new(window: &eframe::CreationContext<'_>) -> Result<Self, Error> {
@@ -55,10 +55,10 @@ impl Easel {
             })?;
         }
         let tonemap_pass = TonemapPass::new(&render.device, render.target_format);
-        let drawing = Arc::new(Mutex::new(RendererState::new(context, tonemap_pass)?));
+        let state = Arc::new(Mutex::new(RendererState::new(context, tonemap_pass)?));
         let (adapter, egui) = (Arc::new(render.adapter.get_info()), window.egui_ctx.clone());
         let is_timed = render.device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
-        Ok(Self { drawing, adapter, health, egui, is_timed })
+        Ok(Self { state, adapter, health, egui, is_timed })
     }
 
     /// Returns a function that requests a repaint from any thread.
@@ -89,23 +89,23 @@ impl Easel {
 
     /// Call at the beginning of a frame. While something moves, the image is drawn at an adaptive resolution.
     pub fn begin_frame(&self, is_moving: bool) {
-        let mut drawing = self.lock();
+        let mut state = self.lock();
         // egui drops recorded commands if there is no surface to draw to.
-        if std::mem::take(&mut drawing.is_unpainted) {
-            drawing.forget();
+        if std::mem::take(&mut state.has_unpainted_commands) {
+            state.forget();
         }
-        drawing.motion.begin_frame(is_moving);
+        state.motion.begin_frame(is_moving);
     }
 
     /// Simulates a long frame.
     #[cfg(test)]
     pub fn simulate_slow_frame(&self) {
-        self.lock().motion.pace.update(1.0);
+        self.lock().motion.resolution.update(1.0);
     }
 
     /// Returns the number of window pixels per image pixel, in each direction.
     pub fn divisor(&self) -> u32 {
-        self.lock().motion.pace.divisor()
+        self.lock().motion.resolution.divisor()
     }
 
     /// Returns the shared GPU context, for checking other shaders.
@@ -116,9 +116,9 @@ impl Easel {
     /// Draws everything with another context of the same device from now on.
     ///
     /// # Errors
-    /// As [`Easel::new`]. On an error, nothing changes.
-    pub fn set_context(&self, context: OffscreenContext) -> Result<(), Error> {
-        self.lock().set_context(context)
+    /// As [`ViewportRenderer::new`]. On an error, nothing changes.
+    pub fn replace_context(&self, context: OffscreenContext) -> Result<(), Error> {
+        self.lock().replace_context(context)
     }
 
     /// Returns the error of the image that should be shown.
@@ -144,12 +144,12 @@ impl Easel {
     }
 
     /// Returns the cost of drawing the image.
-    pub fn figures(&self) -> RenderStats {
-        self.lock().figures(self.is_timed)
+    pub fn render_stats(&self) -> RenderStats {
+        self.lock().render_stats(self.is_timed)
     }
 
     /// Returns the texels of each system in the last image; `None` if it was out of view or drawn forward.
-    pub fn texels(&self) -> Vec<Option<Texels>> {
+    pub fn texels(&self) -> Vec<Option<TargetTexels>> {
         self.lock().texels.clone()
     }
 
@@ -195,6 +195,6 @@ impl Easel {
 
     /// Locks the state.
     pub(super) fn lock(&self) -> MutexGuard<'_, RendererState> {
-        self.drawing.lock().unwrap_or_else(PoisonError::into_inner)
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

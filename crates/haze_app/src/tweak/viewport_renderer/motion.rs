@@ -5,23 +5,23 @@ use crate::tweak::platform::clock::Instant;
 
 /// Reports frame times to [`AdaptiveResolution`], for frames in which something moves and the image is drawn.
 #[derive(Default)]
-pub struct Motion {
-    pub pace: AdaptiveResolution,
+pub struct MotionTimer {
+    pub resolution: AdaptiveResolution,
     is_moving: bool,
     /// Start of the last frame, and whether the image was drawn in it.
     last: Option<Instant>,
     drew: bool,
 }
 
-impl Motion {
+impl MotionTimer {
     /// Call at the beginning of a frame.
     pub fn begin_frame(&mut self, is_moving: bool) {
         let last = self.last.replace(Instant::now());
         let drew = std::mem::take(&mut self.drew);
         if !is_moving {
-            self.pace.rest();
+            self.resolution.reset();
         } else if let Some(last) = last.filter(|_| drew && self.is_moving) {
-            self.pace.update(last.elapsed().as_secs_f32());
+            self.resolution.update(last.elapsed().as_secs_f32());
         }
         self.is_moving = is_moving;
     }

@@ -5,37 +5,37 @@ use eframe::egui_wgpu::{self, CallbackResources, CallbackTrait, ScreenDescriptor
 use eframe::{egui, wgpu};
 use haze_demo::shot::Shot;
 
-use super::Easel;
+use super::ViewportRenderer;
 use super::cached_render::Target;
-use super::viewport_frame::Exhibit;
+use super::viewport_frame::ViewportFrame;
 
-impl Easel {
+impl ViewportRenderer {
     /// Shows the viewport's image in a part of the window.
-    pub fn show(&self, ui: &egui::Ui, rect: egui::Rect, exhibit: Exhibit) {
-        self.add(ui, rect, What::Exhibit(Box::new(exhibit)));
+    pub fn show(&self, ui: &egui::Ui, rect: egui::Rect, frame: ViewportFrame) {
+        self.add(ui, rect, Content::Viewport(Box::new(frame)));
     }
 
     /// Shows a debug view of a shot in a part of the window. All views of one shot are drawn at once.
-    pub fn show_stage(&self, ui: &egui::Ui, rect: egui::Rect, shot: Shot) {
-        self.add(ui, rect, What::OffscreenRenderer(Box::new(shot)));
+    pub fn show_debug_view(&self, ui: &egui::Ui, rect: egui::Rect, shot: Shot) {
+        self.add(ui, rect, Content::DebugView(Box::new(shot)));
     }
 
-    fn add(&self, ui: &egui::Ui, rect: egui::Rect, what: What) {
-        let callback = Callback { easel: self.clone(), rect, what };
+    fn add(&self, ui: &egui::Ui, rect: egui::Rect, content: Content) {
+        let callback = Callback { renderer: self.clone(), rect, content };
         ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, callback));
     }
 }
 
 /// Paint callback of one part of the window.
 struct Callback {
-    easel: Easel,
+    renderer: ViewportRenderer,
     rect: egui::Rect,
-    what: What,
+    content: Content,
 }
 
-enum What {
-    Exhibit(Box<Exhibit>),
-    OffscreenRenderer(Box<Shot>),
+enum Content {
+    Viewport(Box<ViewportFrame>),
+    DebugView(Box<Shot>),
 }
 
 impl CallbackTrait for Callback {
@@ -47,25 +47,25 @@ impl CallbackTrait for Callback {
         encoder: &mut wgpu::CommandEncoder,
         _: &mut CallbackResources,
     ) -> Vec<wgpu::CommandBuffer> {
-        if self.easel.health().is_lost() {
+        if self.renderer.health().is_lost() {
             return Vec::new();
         }
         let place = ViewportInPixels::from_points(&self.rect, screen.pixels_per_point, screen.size_in_pixels);
         let mut target = Target { device, queue, encoder, place };
-        let mut drawing = self.easel.lock();
-        drawing.is_unpainted = true;
-        match &self.what {
-            What::Exhibit(exhibit) => drawing.record_viewport(&mut target, exhibit),
-            What::OffscreenRenderer(shot) => drawing.record_debug_view(&mut target, shot),
+        let mut state = self.renderer.lock();
+        state.has_unpainted_commands = true;
+        match &self.content {
+            Content::Viewport(frame) => state.record_viewport(&mut target, frame),
+            Content::DebugView(shot) => state.record_debug_view(&mut target, shot),
         }
-        if drawing.motion.wants_next() {
-            self.easel.egui().request_repaint();
+        if state.motion.wants_next() {
+            self.renderer.egui().request_repaint();
         }
         // Overlays use the texels of the previous image, so another frame must follow if they have changed.
-        if let What::Exhibit(exhibit) = &self.what
-            && drawing.update_target_texels(exhibit.shot.preset.systems.len())
+        if let Content::Viewport(frame) = &self.content
+            && state.update_target_texels(frame.shot.preset.systems.len())
         {
-            self.easel.egui().request_repaint();
+            self.renderer.egui().request_repaint();
         }
         Vec::new()
     }
@@ -75,14 +75,14 @@ impl CallbackTrait for Callback {
         if place.width_px <= 0 || place.height_px <= 0 {
             return;
         }
-        let mut drawing = self.easel.lock();
-        drawing.is_unpainted = false;
-        let tonemap_bindings = match &self.what {
-            What::Exhibit(_) => drawing.pair.as_ref(),
-            What::OffscreenRenderer(shot) => drawing.strip.tonemap_bindings[shot.debug_view as usize].as_ref(),
+        let mut state = self.renderer.lock();
+        state.has_unpainted_commands = false;
+        let tonemap_bindings = match &self.content {
+            Content::Viewport(_) => state.pair.as_ref(),
+            Content::DebugView(shot) => state.strip.tonemap_bindings[shot.debug_view as usize].as_ref(),
         };
         if let Some(tonemap_bindings) = tonemap_bindings {
-            drawing.tonemap_pass.record(pass, tonemap_bindings);
+            state.tonemap_pass.record(pass, tonemap_bindings);
         }
     }
 }

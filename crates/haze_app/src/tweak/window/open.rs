@@ -4,10 +4,10 @@ use eframe::{egui, egui_wgpu, wgpu};
 use haze::Error;
 
 use super::drag_end::split_events_at_release;
-use super::surface_pacing::paced;
+use super::surface_pacing::paced_surface_handler;
 use super::{Start, Window};
 use crate::tweak::platform::clock::{Duration, Instant};
-use crate::tweak::viewport_renderer::Easel;
+use crate::tweak::viewport_renderer::ViewportRenderer;
 use crate::tweak::viewport_renderer::device_health::{DeviceHealth, lose_device};
 
 /// Two device losses within this time end the program.
@@ -20,7 +20,7 @@ const LOSE_DEVICE: &str = "HAZE_TEST_LOSE_DEVICE";
 const INSTEAD: &str = "`haze render` draws to files without one";
 
 /// State that is kept while one window closes and the next opens.
-struct Kept {
+struct KeptState {
     /// `None` while a window owns it.
     start: Option<Start>,
     /// Memory of egui: sizes of panels, collapsed sections.
@@ -40,22 +40,22 @@ pub fn open(start: Start, size: Option<egui::Vec2>) -> Result<(), Error> {
     let lose_in = std::env::var(LOSE_DEVICE).unwrap_or_default();
     let lose_in = lose_in.split(',').filter_map(|frame| frame.parse().ok()).collect();
     let place = egui::ViewportBuilder::default().with_inner_size(size.unwrap_or(USUAL));
-    let mut kept = Kept { start: Some(start), memory: None, place, is_lost: false, frames: 0, lose_in };
+    let mut kept = KeptState { start: Some(start), memory: None, place, is_lost: false, frames: 0, lose_in };
     let mut is_sized = size.is_some();
     let mut last_loss = None;
     loop {
         let opened = open_once(&mut kept, is_sized);
         if !std::mem::take(&mut kept.is_lost) {
             return match last_loss {
-                Some(_) => {
-                    opened.map_err(|error| give_up(&mut kept, &format!("it was lost and cannot be reopened: {error}")))
-                }
+                Some(_) => opened.map_err(|error| {
+                    write_recovery_and_fail(&mut kept, &format!("it was lost and cannot be reopened: {error}"))
+                }),
                 None => opened,
             };
         }
         let now = Instant::now();
         if last_loss.replace(now).is_some_and(|last| now.saturating_duration_since(last) < TOO_SOON) {
-            return Err(give_up(&mut kept, "it was lost twice within 10 seconds"));
+            return Err(write_recovery_and_fail(&mut kept, "it was lost twice within 10 seconds"));
         }
         is_sized = true;
     }
@@ -65,41 +65,41 @@ pub fn open(start: Start, size: Option<egui::Vec2>) -> Result<(), Error> {
 const USUAL: egui::Vec2 = egui::Vec2::new(1280.0, 800.0);
 const SOFTWARE: egui::Vec2 = egui::Vec2::new(1000.0, 640.0);
 
-fn open_once(kept: &mut Kept, is_sized: bool) -> Result<(), Error> {
+fn open_once(kept: &mut KeptState, is_sized: bool) -> Result<(), Error> {
     let options = eframe::NativeOptions {
         viewport: kept.place.clone().with_app_id("haze").with_title("haze").with_min_inner_size([640.0, 400.0]),
         wgpu_options: egui_wgpu::WgpuConfiguration {
             wgpu_setup: setup(),
-            on_surface_status: paced(),
+            on_surface_status: paced_surface_handler(),
             ..Default::default()
         },
         ..Default::default()
     };
     let app: eframe::AppCreator<'_> = Box::new(move |context| {
-        let easel = Easel::new(context)?;
+        let renderer = ViewportRenderer::new(context)?;
         if let Some(memory) = kept.memory.take() {
             context.egui_ctx.memory_mut(|new| *new = memory);
         }
-        if !is_sized && easel.is_software() {
+        if !is_sized && renderer.is_software() {
             context.egui_ctx.send_viewport_cmd(egui::ViewportCommand::InnerSize(SOFTWARE));
         }
-        let health = easel.health().clone();
-        let window = kept.start.take().map(|start| Window::new(easel, start)).transpose()?;
-        Ok(Box::new(Shown { window, health, kept, later: Vec::new() }) as Box<dyn eframe::App>)
+        let health = renderer.health().clone();
+        let window = kept.start.take().map(|start| Window::new(renderer, start)).transpose()?;
+        Ok(Box::new(WindowApp { window, health, kept, later: Vec::new() }) as Box<dyn eframe::App>)
     });
     eframe::run_native("haze", options, app).map_err(no_window)
 }
 
 /// App of eframe around the window, while the device works.
-struct Shown<'a> {
+struct WindowApp<'a> {
     window: Option<Window>,
     health: DeviceHealth,
-    kept: &'a mut Kept,
+    kept: &'a mut KeptState,
     /// Events after the release of a button, kept for the next frame.
     later: Vec<egui::Event>,
 }
 
-impl eframe::App for Shown<'_> {
+impl eframe::App for WindowApp<'_> {
     fn raw_input_hook(&mut self, context: &egui::Context, input: &mut egui::RawInput) {
         split_events_at_release(&mut self.later, &mut input.events);
         if !self.later.is_empty() {
@@ -137,7 +137,7 @@ impl eframe::App for Shown<'_> {
     }
 }
 
-impl Drop for Shown<'_> {
+impl Drop for WindowApp<'_> {
     fn drop(&mut self) {
         self.kept.start = self.window.take().map(Window::into_start);
     }
@@ -154,13 +154,13 @@ fn place(window: &egui::ViewportInfo) -> egui::ViewportBuilder {
 }
 
 /// Writes unsaved work to the recovery file, and returns the error that ends the program.
-fn give_up(kept: &mut Kept, reason: &str) -> Error {
+fn write_recovery_and_fail(kept: &mut KeptState, reason: &str) -> Error {
     let start = kept.start.as_mut().filter(|start| start.session.document.is_dirty());
-    let Some(Start { session, keeping, .. }) = start else {
+    let Some(Start { session, persistence, .. }) = start else {
         return Error::Device(format!("{reason}; there was no unsaved work"));
     };
-    let saved = match keeping {
-        Some(keeping) => keeping.write(&session.document).map_err(|error| error.to_string()),
+    let saved = match persistence {
+        Some(persistence) => persistence.write(&session.document).map_err(|error| error.to_string()),
         None => Err("there is no folder for it; set HOME".into()),
     };
     Error::Device(match saved {

@@ -14,7 +14,7 @@ type Answer = dyn Fn(&CurrentSurfaceTexture) -> SurfaceErrorAction + Send + Sync
 
 /// Returns the handler of egui, which retries at once, slowed down to the rate of a screen while the surface stays
 /// unavailable.
-pub fn paced() -> Arc<Answer> {
+pub fn paced_surface_handler() -> Arc<Answer> {
     let usual = WgpuConfiguration::default().on_surface_status;
     let last = Mutex::new(None);
     Arc::new(move |status| {
@@ -36,7 +36,7 @@ mod tests {
 
     #[test]
     fn retries_for_a_lost_surface_are_limited_in_rate() {
-        let (answer, start) = (paced(), Instant::now());
+        let (answer, start) = (paced_surface_handler(), Instant::now());
         for _ in 0..5 {
             assert!(matches!(answer(&CurrentSurfaceTexture::Lost), SurfaceErrorAction::RecreateSurface));
             assert!(matches!(answer(&CurrentSurfaceTexture::Outdated), SurfaceErrorAction::Reconfigure));

@@ -13,7 +13,7 @@ use super::{Start, Window};
 use crate::tweak::files::hot_reload::ShaderFolder;
 use crate::tweak::files::persistence::Layout;
 use crate::tweak::session::Session;
-use crate::tweak::viewport_renderer::Easel;
+use crate::tweak::viewport_renderer::ViewportRenderer;
 
 /// Opens a window with a preset and waits until it has settled.
 pub fn window(preset: &str, size: Vec2, theme: egui::Theme) -> Harness<'static, Window> {
@@ -27,7 +27,7 @@ pub fn window_with(preset: &str, size: Vec2, theme: egui::Theme, shaders: Shader
 
 fn start(preset: &str, shaders: ShaderFolder) -> Start {
     let session = Session::open(Path::new(preset), None).unwrap();
-    Start { session, shaders, keeping: None, layout: Layout::default(), has_dialogs: false }
+    Start { session, shaders, persistence: None, layout: Layout::default(), has_dialogs: false }
 }
 
 /// Like [`window`], with any start state.
@@ -36,7 +36,7 @@ pub fn open(start: Start, size: Vec2, theme: egui::Theme) -> Harness<'static, Wi
 }
 
 fn settled(builder: HarnessBuilder<Window>, start: Start) -> Harness<'static, Window> {
-    let open = |context: &mut _| Window::new(Easel::new(context).unwrap(), start).unwrap();
+    let open = |context: &mut _| Window::new(ViewportRenderer::new(context).unwrap(), start).unwrap();
     let mut harness = builder.with_render_cursor(false).build_eframe(open);
     harness.run_steps(3);
     harness

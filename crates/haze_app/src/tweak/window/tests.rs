@@ -199,7 +199,7 @@ fn escape_closes_a_menu_and_nothing_else() {
     harness.key_press(Key::Escape);
     harness.run_steps(3);
     assert!(harness.query_by_label("As it is now").is_none());
-    assert_eq!(harness.state_mut().session_mut().show.stage, DebugView::SpecularScatter);
+    assert_eq!(harness.state_mut().session_mut().view.debug_view, DebugView::SpecularScatter);
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! Edits of stops in the window: shown at once, written with each step, superseded by changes from outside.
 
+mod ramp_image_files;
+
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -13,7 +15,7 @@ use haze::settings::DebugView;
 use haze_author::ramp::bake::{Blend, Curve, RampRecipe};
 use haze_author::ramp::template::Template;
 
-use super::{RampEdits, Source};
+use super::{RampEdits, RampOrigin};
 use crate::tweak::document::Document;
 use crate::tweak::window::Window;
 use crate::tweak::window::testing::{brightness, picture, window};
@@ -124,7 +126,7 @@ fn a_cancelled_drag_is_no_step() {
     let mut harness = folder.open();
     let before = (folder.recipe(), shown(&mut harness));
     let (from, width) = (harness.get_by_label("stop 3").rect().center(), strip(&harness).width());
-    harness.state_mut().session.show.stage = DebugView::Diffuse;
+    harness.state_mut().session.view.debug_view = DebugView::Diffuse;
     harness.drag_at(from);
     for part in 1..=4 {
         harness.hover_at(from - Vec2::new(0.2 * width * part as f32, 0.0));
@@ -134,104 +136,10 @@ fn a_cancelled_drag_is_no_step() {
     harness.drop_at(from);
     wait(&mut harness);
     // Escape ends the drag only.
-    assert_eq!(harness.state().session.show.stage, DebugView::Diffuse);
-    harness.state_mut().session.show.stage = DebugView::Final;
+    assert_eq!(harness.state().session.view.debug_view, DebugView::Diffuse);
+    harness.state_mut().session.view.debug_view = DebugView::Final;
     assert_eq!((folder.recipe(), harness.state().session.document.history().undo_name()), (before.0, None));
     assert!((shown(&mut harness) - before.1).abs() < 0.5);
-}
-
-#[test]
-fn an_image_painted_outside_takes_precedence_and_stops_can_be_fitted_to_it() {
-    let folder = Folder::new();
-    let mut harness = folder.open();
-    harness.get_by_label("Flip").click();
-    harness.run_steps(4);
-    let flipped = folder.recipe();
-    let painted = Template::find("hard_toon").unwrap().recipe().bake().unwrap();
-    write_png(&folder.path("mine.png"), &painted, CompressionEffort::Quick).unwrap();
-    wait(&mut harness);
-    let name = "Fit stops to the picture: mine.png";
-    assert!(harness.query_by_label(name).is_some() && harness.query_by_label("stop 1").is_none());
-    assert_eq!(folder.recipe(), flipped, "nothing is written over it");
-    assert_eq!(read_colour_png(&folder.path("mine.png")).unwrap(), painted);
-    let seen = harness.state().session.materials()[0].diffuse_ramp.clone();
-    assert_eq!(seen, Ramp::from_image(&painted));
-    harness.get_by_label(name).click();
-    harness.run_steps(4);
-    assert!(harness.query_by_label("stop 3").is_some());
-    assert!(harness.query_all_by_label_contains("mine.png: 3 stops, at most 0.").next().is_some());
-    assert_eq!(read_colour_png(&folder.path("mine.png")).unwrap(), painted, "until a stop is changed");
-    harness.get_by_label("stop 2").focus();
-    harness.run_steps(3);
-    press(&mut harness, Key::Delete, Modifiers::NONE);
-    assert_eq!(folder.recipe().rows[0].stops.len(), 2);
-    assert!(folder.is_baked());
-}
-
-#[test]
-fn files_are_compared_after_a_write_and_before_they_are_overwritten() {
-    let folder = Folder::new();
-    let folders = AssetFolders::beside(&folder.preset());
-    let mut document = Document::open(&folder.preset()).unwrap();
-    let mut ramps = RampEdits::default();
-    let painted = Template::find("hard_toon").unwrap().recipe().bake().unwrap();
-    let is_recipe = |ramps: &mut RampEdits, document: &mut Document, is_held: bool| {
-        ramps.advance(document, &folders, is_held).unwrap();
-        matches!(ramps.source("mine.png", &folders), Source::Recipe(_))
-    };
-    assert!(is_recipe(&mut ramps, &mut document, false));
-    write_png(&folder.path("mine.png"), &painted, CompressionEffort::Quick).unwrap();
-    assert!(is_recipe(&mut ramps, &mut document, false), "nobody has said that there is something to look at");
-    ramps.look_again();
-    assert!(is_recipe(&mut ramps, &mut document, true) && !is_recipe(&mut ramps, &mut document, false));
-    // The step ends before the change on disk was reported.
-    let folder = Folder::new();
-    let folders = AssetFolders::beside(&folder.preset());
-    let mut document = Document::open(&folder.preset()).unwrap();
-    let mut ramps = RampEdits::default();
-    ramps.advance(&mut document, &folders, false).unwrap();
-    assert!(matches!(ramps.source("mine.png", &folders), Source::Recipe(_)));
-    document.recipes.ramps.set("mine.png", Template::find("moon").unwrap().recipe());
-    ramps.advance(&mut document, &folders, true).unwrap();
-    write_png(&folder.path("mine.png"), &painted, CompressionEffort::Quick).unwrap();
-    ramps.advance(&mut document, &folders, false).unwrap();
-    assert_eq!(read_colour_png(&folder.path("mine.png")).unwrap(), painted);
-}
-
-#[test]
-fn a_built_in_ramp_is_copied_beside_the_preset() {
-    let folder = Folder::new();
-    let mut preset = Preset::load("column").unwrap();
-    let name = preset.systems[0].material.diffuse_ramp.clone();
-    preset.name = "other".into();
-    std::fs::write(folder.preset(), serde_json::to_string(&preset).unwrap()).unwrap();
-    let mut harness = folder.open();
-    harness.get_by_label(&format!("Make my own: {name}")).click();
-    harness.run_steps(4);
-    let file = format!("{name}_mine.png");
-    assert_eq!(harness.state().session.document.preset.systems[0].material.diffuse_ramp, file);
-    let own = RampRecipe::load(&folder.path(&file).with_extension("ramp.json")).unwrap();
-    let loaded = Ramp::load(&folder.path(&file)).unwrap();
-    assert_eq!(loaded, Ramp::from_image(&own.bake().unwrap()));
-    assert_eq!(loaded, harness.state().session.materials()[0].diffuse_ramp, "it looks as it did");
-    assert!(harness.query_by_label("stop 1").is_some());
-}
-
-#[test]
-fn a_built_in_preset_must_be_saved_before_a_ramp_is_copied() {
-    let mut harness = ramps_of("column");
-    let name = harness.state().session.document.preset.systems[0].material.diffuse_ramp.clone();
-    harness.get_by_label(&format!("Make my own: {name}")).click();
-    harness.run_steps(4);
-    assert!(harness.state().filing.typed.is_some());
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("mine.json");
-    let Window { filing, session, .. } = harness.state_mut();
-    filing.finish_typing(Some(&path), session);
-    wait(&mut harness);
-    let file = format!("{name}_mine.png");
-    assert_eq!(harness.state().session.document.preset.systems[0].material.diffuse_ramp, file);
-    assert!(folder.path().join(&file).is_file() && folder.path().join(format!("{name}_mine.ramp.json")).is_file());
 }
 
 #[test]
@@ -295,33 +203,6 @@ fn rows_and_their_multiplier_are_edited_in_the_window() {
 }
 
 #[test]
-fn a_version_1_recipe_accepts_new_features() {
-    let folder = Folder::new();
-    let recipe = RampRecipe { version: 1, ..Template::find("neutral").unwrap().recipe() };
-    std::fs::write(folder.path("mine.ramp.json"), recipe.to_text()).unwrap();
-    write_png(&folder.path("mine.png"), &recipe.bake().unwrap(), CompressionEffort::Quick).unwrap();
-    let mut harness = folder.open();
-    let choose = |harness: &mut Harness<'static, Window>, control: &str, entry: &str| {
-        let control = harness.get_all_by_label(control).find(|node| node.accesskit_node().role() == Role::ComboBox);
-        control.unwrap().click_accesskit();
-        harness.run_steps(3);
-        harness.get_by_label(entry).click_accesskit();
-        harness.run_steps(4);
-    };
-    choose(&mut harness, "then", "constant");
-    assert_eq!(folder.recipe().rows[0].stops[0].curve, Curve::Constant);
-    choose(&mut harness, "blended in", "hsv far");
-    assert_eq!((folder.recipe().blend, folder.recipe().version), (Blend::HsvFar, 2));
-    assert!(folder.is_baked());
-    assert!(harness.state().session.messages.latest().is_none_or(|message| !message.is_error));
-    for _ in 0..2 {
-        harness.state_mut().session.undo();
-        harness.run_steps(4);
-    }
-    assert_eq!(folder.recipe(), recipe);
-}
-
-#[test]
 fn stops_are_pasted_into_a_focused_editor_and_presets_elsewhere() {
     let folder = Folder::new();
     let mut harness = folder.open();
@@ -338,25 +219,6 @@ fn stops_are_pasted_into_a_focused_editor_and_presets_elsewhere() {
     harness.event(Event::Paste(serde_json::to_string(&preset).unwrap()));
     harness.run_steps(4);
     assert_eq!(harness.state().session.document.preset.name, preset.name);
-}
-
-#[test]
-fn a_write_error_is_reported() {
-    let folder = Folder::new();
-    let mut harness = folder.open();
-    std::fs::remove_file(folder.path("mine.ramp.json")).unwrap();
-    std::fs::create_dir(folder.path("mine.ramp.json")).unwrap();
-    wait(&mut harness);
-    // A folder has replaced the recipe's file, so the ramp has no recipe any more.
-    assert!(harness.query_by_label("Fit stops to the picture: mine.png").is_some());
-    harness.get_by_label("Fit stops to the picture: mine.png").click();
-    harness.run_steps(3);
-    harness.get_by_label("Flip").click();
-    harness.run_steps(4);
-    let message = harness.state().session.messages.latest().map(|message| (message.is_error, message.text.clone()));
-    let (is_error, text) = message.unwrap();
-    assert!(is_error && text.contains("mine.ramp.json"), "{text}");
-    assert!(Path::new(&folder.path("mine.png")).is_file());
 }
 
 #[test]
@@ -381,11 +243,11 @@ fn a_stop_takes_a_colour_from_the_image() {
     assert_eq!(harness.state().session.document.history().undo_name(), Some("colour of a stop: mine.png"));
     // The eyedropper takes the click and Escape; the viewport does not react.
     assert_eq!(harness.state().session.document.preset.camera, camera);
-    harness.state_mut().session.show.stage = DebugView::Normals;
+    harness.state_mut().session.view.debug_view = DebugView::Normals;
     harness.get_by_label("Take a colour").click();
     harness.run_steps(2);
     press(&mut harness, Key::Escape, Modifiers::NONE);
-    assert_eq!(harness.state().session.show.stage, DebugView::Normals);
+    assert_eq!(harness.state().session.view.debug_view, DebugView::Normals);
     press(&mut harness, Key::Z, Modifiers::COMMAND);
     assert_ne!(folder.recipe().rows[0].stops[0].colour.0, taken);
 }

@@ -13,28 +13,28 @@ use haze_author::sprite::bake::SpriteRecipe;
 
 use super::Document;
 use crate::tweak::platform::asset_loading::place_of;
-use sprite_bake_job::{Baked, Done, Order, SpriteBakeJob, What, Whole};
-use sprite_source::{Looked, Source, Stamps, copy, detail_of, recipe_of, recipe_of_built_in, stamps};
+use sprite_bake_job::{BakeOrder, BakeResult, Baked, FinishedBake, FullBake, SpriteBakeJob};
+use sprite_source::{SpriteOrigin, SpriteState, Stamps, copy, detail_of, recipe_of, recipe_of_built_in, stamps};
 
 /// Sprites by their names in the preset.
 #[derive(Default)]
 pub struct SpriteEdits {
     /// Path of the preset that they belong to.
     preset: PathBuf,
-    known: BTreeMap<String, Known>,
-    bakery: Option<SpriteBakeJob>,
+    known: BTreeMap<String, EditedSprite>,
+    bake_job: Option<SpriteBakeJob>,
     /// Built-in sprite that is to be copied, and the index of the system it is for.
     wanted: Option<(usize, String)>,
     /// The preset must first be saved to a file.
-    pub wants_place: bool,
+    pub needs_saved_preset: bool,
 }
 
 /// Sprite with its recipe and its bakes.
-pub struct Known {
+pub struct EditedSprite {
     picture: PathBuf,
     /// Layout that the preset has for it.
     layout: SpriteLayout,
-    pub source: Source,
+    pub source: SpriteOrigin,
     stamps: Stamps,
     /// Findings of its check, one per line.
     pub findings: Vec<String>,
@@ -44,11 +44,11 @@ pub struct Known {
     written: Option<SpriteRecipe>,
     /// Sprite that is shown in place of the files.
     live: Option<Baked>,
-    live_is_whole: bool,
+    live_is_full: bool,
     /// Number of the latest coarse bake, while it is in progress.
     coarse: Option<u64>,
     /// Full bake in progress.
-    pub whole: Option<Order>,
+    pub full: Option<BakeOrder>,
     /// Numbers of all jobs in progress, wanted or not.
     jobs: Vec<u64>,
     /// A file was written, so the stamps must be compared.
@@ -63,32 +63,32 @@ impl SpriteEdits {
         names: &MaterialNames,
         folders: &AssetFolders,
         wake: impl Fn() + Clone + Send + 'static,
-    ) -> Option<&mut Known> {
-        if self.bakery.is_none() {
-            self.bakery = SpriteBakeJob::new(wake);
+    ) -> Option<&mut EditedSprite> {
+        if self.bake_job.is_none() {
+            self.bake_job = SpriteBakeJob::new(wake);
         }
-        let bakery = self.bakery.as_mut()?;
+        let bake_job = self.bake_job.as_mut()?;
         let layout = SpriteLayout { columns: names.columns, rows: names.rows, y_down: names.y_down };
         let known = self.known.entry(names.sprite.clone()).or_insert_with(|| {
-            let mut known = Known::new(place_of(&names.sprite, folders), layout, Source::Reading);
-            known.look(&names.sprite, bakery);
+            let mut known = EditedSprite::new(place_of(&names.sprite, folders), layout, SpriteOrigin::Reading);
+            known.read_sprite(&names.sprite, bake_job);
             known
         });
         // A recipe determines its own layout.
-        if known.layout != layout && known.jobs.is_empty() && !matches!(known.source, Source::Recipe(_)) {
+        if known.layout != layout && known.jobs.is_empty() && !matches!(known.source, SpriteOrigin::Recipe(_)) {
             known.layout = layout;
-            known.look(&names.sprite, bakery);
+            known.read_sprite(&names.sprite, bake_job);
         }
         Some(known)
     }
 
     /// Requests a copy of a built-in sprite for a system. A built-in preset must be saved first.
-    pub fn want_own(&mut self, system: usize, name: &str, is_built_in: bool) {
-        (self.wanted, self.wants_place) = (Some((system, name.to_owned())), is_built_in);
+    pub fn request_copy(&mut self, system: usize, name: &str, is_built_in: bool) {
+        (self.wanted, self.needs_saved_preset) = (Some((system, name.to_owned())), is_built_in);
     }
 
     /// Writes the requested copy and names it in the preset, as soon as the preset is a file.
-    pub fn make_own(&mut self, document: &mut Document) -> Result<(), Error> {
+    pub fn write_requested_copy(&mut self, document: &mut Document) -> Result<(), Error> {
         let Some((system, name)) = self.wanted.take_if(|_| !document.is_built_in()) else { return Ok(()) };
         let (recipe, file) = (recipe_of_built_in(&name)?, copy(&name, document.path())?);
         let picture = document.path().with_file_name(&file);
@@ -98,7 +98,7 @@ impl SpriteEdits {
             lay_out(&mut system.material, &recipe);
         }
         // The content of the copy is known, so it is not read again.
-        let mut known = Known::new(picture, recipe.layout(), Source::Recipe(recipe.clone()));
+        let mut known = EditedSprite::new(picture, recipe.layout(), SpriteOrigin::Recipe(recipe.clone()));
         known.written = Some(recipe);
         if let Some(origin) = self.known.get(&name) {
             known.findings.clone_from(&origin.findings);
@@ -114,11 +114,11 @@ impl SpriteEdits {
             self.known.clear();
             self.preset = document.path().into();
         }
-        let Some(bakery) = &mut self.bakery else { return Ok(()) };
+        let Some(bake_job) = &mut self.bake_job else { return Ok(()) };
         let mut said = Ok(());
-        while let Some(done) = bakery.poll() {
+        while let Some(done) = bake_job.poll() {
             // The panic of a job was printed to standard error; the job never finishes.
-            let Some(Done { job, what }) = done else { continue };
+            let Some(FinishedBake { job, what }) = done else { continue };
             let Some((name, known)) = self.known.iter_mut().find(|(_, known)| known.jobs.contains(&job)) else {
                 continue;
             };
@@ -126,7 +126,7 @@ impl SpriteEdits {
             said = known.take(name, job, what, document).and(said);
         }
         for (name, known) in &mut self.known {
-            known.follow(name, document, bakery, is_held);
+            known.follow(name, document, bake_job, is_held);
         }
         said
     }
@@ -156,7 +156,7 @@ impl SpriteEdits {
     }
 
     /// Marks all sprites, so that changed files are read again.
-    pub fn look_again(&mut self) {
+    pub fn mark_stale(&mut self) {
         self.known.values_mut().for_each(|known| known.is_stale = true);
     }
 
@@ -167,7 +167,7 @@ impl SpriteEdits {
 
     /// Returns true while files do not yet match the recipes.
     pub fn is_baking(&self) -> bool {
-        self.known.values().any(|known| known.whole.is_some() || known.coarse.is_some())
+        self.known.values().any(|known| known.full.is_some() || known.coarse.is_some())
     }
 }
 
@@ -182,8 +182,8 @@ fn lay_out(names: &mut MaterialNames, recipe: &SpriteRecipe) {
     SpriteLayout { columns: names.columns, rows: names.rows, y_down: names.y_down } = recipe.layout();
 }
 
-impl Known {
-    fn new(picture: PathBuf, layout: SpriteLayout, source: Source) -> Self {
+impl EditedSprite {
+    fn new(picture: PathBuf, layout: SpriteLayout, source: SpriteOrigin) -> Self {
         let stamps = stamps(&picture);
         Self {
             picture,
@@ -194,9 +194,9 @@ impl Known {
             broken: None,
             written: None,
             live: None,
-            live_is_whole: false,
+            live_is_full: false,
             coarse: None,
-            whole: None,
+            full: None,
             jobs: Vec::new(),
             is_stale: false,
         }
@@ -209,48 +209,48 @@ impl Known {
 
     /// Uses the recipe beside the image again: it is baked and written.
     pub fn adopt(&mut self) {
-        if let Source::Apart(recipe) = &self.source {
-            self.source = Source::Recipe(recipe.clone());
+        if let SpriteOrigin::Apart(recipe) = &self.source {
+            self.source = SpriteOrigin::Recipe(recipe.clone());
             self.written = None;
         }
     }
 
-    fn look(&mut self, name: &str, bakery: &mut SpriteBakeJob) {
-        self.jobs.push(bakery.look(name, self.picture.clone(), self.layout));
+    fn read_sprite(&mut self, name: &str, bake_job: &mut SpriteBakeJob) {
+        self.jobs.push(bake_job.read_sprite(name, self.picture.clone(), self.layout));
     }
 
-    fn take(&mut self, name: &str, job: u64, what: What, document: &mut Document) -> Result<(), Error> {
+    fn take(&mut self, name: &str, job: u64, what: BakeResult, document: &mut Document) -> Result<(), Error> {
         match what {
-            What::Looked(Looked { source, stamps, findings, broken }) => {
+            BakeResult::Read(SpriteState { source, stamps, findings, broken }) => {
                 (self.stamps, self.broken) = (stamps, broken);
-                if self.broken.is_some() && matches!(self.source, Source::Recipe(_)) {
+                if self.broken.is_some() && matches!(self.source, SpriteOrigin::Recipe(_)) {
                     // The last valid recipe is kept.
                     return Ok(());
                 }
-                self.written = if let Source::Recipe(recipe) = &source { Some(recipe.clone()) } else { None };
+                self.written = if let SpriteOrigin::Recipe(recipe) = &source { Some(recipe.clone()) } else { None };
                 (self.source, self.findings, self.live) = (source, findings, None);
                 // A change by another program takes precedence.
                 document.recipes.sprites.forget(name);
             }
-            What::Coarse(baked) => {
+            BakeResult::Coarse(baked) => {
                 self.coarse = self.coarse.filter(|coarse| *coarse != job);
                 let baked = baked?;
-                let is_better = |live: &Baked| self.live_is_whole && live.recipe == baked.recipe;
+                let is_better = |live: &Baked| self.live_is_full && live.recipe == baked.recipe;
                 if !self.live.as_ref().is_some_and(is_better) {
-                    (self.live, self.live_is_whole) = (Some(baked), false);
+                    (self.live, self.live_is_full) = (Some(baked), false);
                 }
             }
-            What::Whole(whole) => {
-                let Whole { baked, stamps, written } = *whole;
-                let order = self.whole.take_if(|order| order.job == job);
+            BakeResult::Full(full) => {
+                let FullBake { baked, stamps, written } = *full;
+                let order = self.full.take_if(|order| order.job == job);
                 // Also set after a write error; the next change tries again.
                 self.written = baked.as_ref().map(|baked| baked.recipe.clone()).or(order.map(|order| order.recipe));
                 self.stamps = stamps;
-                (self.live, self.live_is_whole) = (baked, true);
+                (self.live, self.live_is_full) = (baked, true);
                 self.findings = written?;
             }
-            What::GivenUp => {
-                self.whole = self.whole.take().filter(|order| order.job != job);
+            BakeResult::GivenUp => {
+                self.full = self.full.take().filter(|order| order.job != job);
                 // The files may have been changed by another program, which is checked before the next bake.
                 self.is_stale = true;
             }
@@ -258,17 +258,17 @@ impl Known {
         Ok(())
     }
 
-    fn follow(&mut self, name: &str, document: &Document, bakery: &mut SpriteBakeJob, is_held: bool) {
+    fn follow(&mut self, name: &str, document: &Document, bake_job: &mut SpriteBakeJob, is_held: bool) {
         if !is_held
             && self.jobs.is_empty()
             && std::mem::take(&mut self.is_stale)
             && self.stamps != stamps(&self.picture)
         {
-            return self.look(name, bakery);
+            return self.read_sprite(name, bake_job);
         }
-        let Source::Recipe(recipe) = &self.source else { return };
+        let SpriteOrigin::Recipe(recipe) = &self.source else { return };
         let wanted = document.recipes.sprites.get(name).unwrap_or(recipe);
-        if let Some(order) = self.whole.take_if(|order| order.recipe != *wanted) {
+        if let Some(order) = self.full.take_if(|order| order.recipe != *wanted) {
             order.stop();
         }
         let is_live = self.live.as_ref().is_some_and(|live| live.recipe == *wanted);
@@ -279,15 +279,15 @@ impl Known {
             return;
         }
         if !is_live && self.coarse.is_none() {
-            let job = bakery.coarse(wanted.clone());
+            let job = bake_job.coarse(wanted.clone());
             self.coarse = Some(job);
             self.jobs.push(job);
         }
         // A file with an error that the user is about to fix is not overwritten.
-        if !is_held && self.whole.is_none() && self.broken.is_none() {
-            let order = bakery.whole(wanted.clone(), self.picture.clone(), self.stamps);
+        if !is_held && self.full.is_none() && self.broken.is_none() {
+            let order = bake_job.full(wanted.clone(), self.picture.clone(), self.stamps);
             self.jobs.push(order.job);
-            self.whole = Some(order);
+            self.full = Some(order);
         }
     }
 }

@@ -8,27 +8,27 @@ use haze::sprite::{Sprite, SpriteLayout};
 use haze::{Error, FieldError};
 use haze_author::sprite::bake::{BakedSprite, SpriteRecipe};
 
-use super::sprite_source::{Looked, Stamps, findings, look, stamps, write};
+use super::sprite_source::{SpriteState, Stamps, findings, read_sprite, stamps, write};
 use crate::tweak::platform::worker::Worker;
 
 /// Two threads, so that a coarse bake does not wait for a full one.
 pub struct SpriteBakeJob {
-    coarse: Worker<Done>,
-    whole: Worker<Done>,
+    coarse: Worker<FinishedBake>,
+    full: Worker<FinishedBake>,
     next: u64,
 }
 
 /// Finished job with its number.
-pub struct Done {
+pub struct FinishedBake {
     pub job: u64,
-    pub what: What,
+    pub what: BakeResult,
 }
 
-pub enum What {
-    Looked(Looked),
+pub enum BakeResult {
+    Read(SpriteState),
     /// Bake of a recipe at a low resolution.
     Coarse(Result<Baked, Error>),
-    Whole(Box<Whole>),
+    Full(Box<FullBake>),
     /// The order was cancelled, or another program has changed the files: nothing was written.
     GivenUp,
 }
@@ -41,7 +41,7 @@ pub struct Baked {
 }
 
 /// Result of a full bake that was written.
-pub struct Whole {
+pub struct FullBake {
     pub baked: Option<Baked>,
     pub stamps: Stamps,
     /// Findings of its check, or the error of writing.
@@ -49,14 +49,14 @@ pub struct Whole {
 }
 
 /// Full bake in progress.
-pub struct Order {
+pub struct BakeOrder {
     pub job: u64,
     pub recipe: SpriteRecipe,
     is_stopped: Arc<AtomicBool>,
     frames: Arc<AtomicU32>,
 }
 
-impl Order {
+impl BakeOrder {
     /// Cancels the bake, because another is wanted.
     pub fn stop(&self) {
         self.is_stopped.store(true, Ordering::Relaxed);
@@ -78,18 +78,18 @@ impl SpriteBakeJob {
     /// thread.
     pub fn new(wake: impl Fn() + Clone + Send + 'static) -> Option<Self> {
         let coarse = Worker::new("haze coarse sprite", wake.clone()).ok()?;
-        Some(Self { coarse, whole: Worker::new("haze sprite", wake).ok()?, next: 0 })
+        Some(Self { coarse, full: Worker::new("haze sprite", wake).ok()?, next: 0 })
     }
 
     /// Returns the oldest finished job; the inner `None` means that a job panicked.
-    pub fn poll(&self) -> Option<Option<Done>> {
-        self.coarse.poll().or_else(|| self.whole.poll())
+    pub fn poll(&self) -> Option<Option<FinishedBake>> {
+        self.coarse.poll().or_else(|| self.full.poll())
     }
 
     /// Reads a sprite and its recipe. Returns the number of the job.
-    pub fn look(&mut self, name: &str, picture: PathBuf, layout: SpriteLayout) -> u64 {
+    pub fn read_sprite(&mut self, name: &str, picture: PathBuf, layout: SpriteLayout) -> u64 {
         let (job, name) = (self.number(), name.to_owned());
-        self.whole.submit(move |_| Done { job, what: What::Looked(look(&name, &picture, layout)) });
+        self.full.submit(move |_| FinishedBake { job, what: BakeResult::Read(read_sprite(&name, &picture, layout)) });
         job
     }
 
@@ -102,32 +102,34 @@ impl SpriteBakeJob {
             let small = SpriteRecipe { size: recipe.size.min(size), columns, rows, ..recipe.clone() };
             let baked = small.bake(|_| Ok::<_, FieldError>(())).map_err(Error::from);
             let decoded = baked.and_then(|baked| decoded(recipe, small.layout(), &baked));
-            Done { job, what: What::Coarse(decoded) }
+            FinishedBake { job, what: BakeResult::Coarse(decoded) }
         });
         job
     }
 
     /// Bakes a recipe in full and writes it, if the files still have the stamps `before`.
-    pub fn whole(&mut self, recipe: SpriteRecipe, picture: PathBuf, before: Stamps) -> Order {
+    pub fn full(&mut self, recipe: SpriteRecipe, picture: PathBuf, before: Stamps) -> BakeOrder {
         let job = self.number();
         let (is_stopped, frames) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU32::new(0)));
         let order =
-            Order { job, recipe: recipe.clone(), is_stopped: Arc::clone(&is_stopped), frames: Arc::clone(&frames) };
-        self.whole.submit(move |_| {
+            BakeOrder { job, recipe: recipe.clone(), is_stopped: Arc::clone(&is_stopped), frames: Arc::clone(&frames) };
+        self.full.submit(move |_| {
             let go_on = || if is_stopped.load(Ordering::Relaxed) { Err(None) } else { Ok(()) };
             let baked = recipe.bake(|done| {
                 frames.store(done, Ordering::Relaxed);
                 go_on()
             });
             let what = match baked.and_then(|baked| go_on().map(|()| baked)) {
-                Ok(_) | Err(None) if stamps(&picture) != before => What::GivenUp,
-                Ok(baked) => What::Whole(Box::new(written(recipe, &picture, baked))),
-                Err(None) => What::GivenUp,
-                Err(Some(error)) => {
-                    What::Whole(Box::new(Whole { baked: None, stamps: before, written: Err(Error::from(error)) }))
-                }
+                Ok(_) | Err(None) if stamps(&picture) != before => BakeResult::GivenUp,
+                Ok(baked) => BakeResult::Full(Box::new(written(recipe, &picture, baked))),
+                Err(None) => BakeResult::GivenUp,
+                Err(Some(error)) => BakeResult::Full(Box::new(FullBake {
+                    baked: None,
+                    stamps: before,
+                    written: Err(Error::from(error)),
+                })),
             };
-            Done { job, what }
+            FinishedBake { job, what }
         });
         order
     }
@@ -143,10 +145,10 @@ fn decoded(recipe: SpriteRecipe, layout: SpriteLayout, baked: &BakedSprite) -> R
     Ok(Baked { sprite: sprite(&baked.picture)?, detail: sprite(&baked.detail)?, recipe })
 }
 
-fn written(recipe: SpriteRecipe, picture: &std::path::Path, baked: BakedSprite) -> Whole {
+fn written(recipe: SpriteRecipe, picture: &std::path::Path, baked: BakedSprite) -> FullBake {
     let layout = recipe.layout();
     let findings = findings(picture, &baked.picture, layout);
     let shown = decoded(recipe.clone(), layout, &baked);
     let written = write(picture, &recipe, baked).map(|()| findings);
-    Whole { baked: shown.ok(), stamps: stamps(picture), written }
+    FullBake { baked: shown.ok(), stamps: stamps(picture), written }
 }

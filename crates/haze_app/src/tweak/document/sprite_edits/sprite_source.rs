@@ -16,7 +16,7 @@ use crate::tweak::platform::file_io::{self, CompressionEffort, Stamp, read_png, 
 
 /// Origin of a sprite, which decides whether it can be edited.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Source {
+pub enum SpriteOrigin {
     /// Not known yet.
     Reading,
     /// Embedded in the program.
@@ -35,8 +35,8 @@ pub enum Source {
 pub type Stamps = [Option<Stamp>; 3];
 
 /// Sprite as read from its files.
-pub struct Looked {
-    pub source: Source,
+pub struct SpriteState {
+    pub source: SpriteOrigin,
     pub stamps: Stamps,
     /// Findings of the check of the image, one per line.
     pub findings: Vec<String>,
@@ -59,38 +59,38 @@ pub fn stamps(picture: &Path) -> Stamps {
 }
 
 /// Reads a sprite and its recipe. `layout` is the one in the preset.
-pub fn look(name: &str, picture: &Path, layout: SpriteLayout) -> Looked {
+pub fn read_sprite(name: &str, picture: &Path, layout: SpriteLayout) -> SpriteState {
     // Stamps are taken before the files are read, so that a write in between counts as a change.
     let stamps = stamps(picture);
     let (source, findings, broken) = match builtin::find(builtin::SPRITES, name) {
-        Some(found) => built_in(found).unwrap_or_else(|error| (Source::Missing, vec![error.to_string()], None)),
+        Some(found) => built_in(found).unwrap_or_else(|error| (SpriteOrigin::Missing, vec![error.to_string()], None)),
         None => file(picture, layout),
     };
-    Looked { source, stamps, findings, broken }
+    SpriteState { source, stamps, findings, broken }
 }
 
-type Found = (Source, Vec<String>, Option<String>);
+type Found = (SpriteOrigin, Vec<String>, Option<String>);
 
 fn built_in(found: &Builtin) -> Result<Found, Error> {
     let (path, recipe) = (builtin::path(found.name), recipe_of_built_in(found.name)?);
     let findings = findings(&path, &decode_png(&path, found.bytes)?.to_rgba8(), recipe.layout());
-    Ok((Source::BuiltIn(recipe), findings, None))
+    Ok((SpriteOrigin::BuiltIn(recipe), findings, None))
 }
 
 fn file(picture: &Path, layout: SpriteLayout) -> Found {
     let sheet = match read_png(picture) {
         Ok(sheet) => sheet.to_rgba8(),
-        Err(error) => return (Source::Missing, vec![error.to_string()], None),
+        Err(error) => return (SpriteOrigin::Missing, vec![error.to_string()], None),
     };
     let recipe = recipe_of(picture);
     let (source, layout, broken) = match file_io::exists(&recipe).then(|| sprite_recipe(&recipe)) {
-        None => (Source::Painted, layout, None),
-        Some(Err(error)) => (Source::Painted, layout, Some(error.to_string())),
+        None => (SpriteOrigin::Painted, layout, None),
+        Some(Err(error)) => (SpriteOrigin::Painted, layout, Some(error.to_string())),
         Some(Ok(recipe)) if makes(&recipe, &sheet) => {
             let layout = recipe.layout();
-            (Source::Recipe(recipe), layout, None)
+            (SpriteOrigin::Recipe(recipe), layout, None)
         }
-        Some(Ok(recipe)) => (Source::Apart(recipe), layout, None),
+        Some(Ok(recipe)) => (SpriteOrigin::Apart(recipe), layout, None),
     };
     (source, findings(picture, &sheet, layout), broken)
 }

@@ -22,7 +22,8 @@ fn bench() -> Bench {
     let path = folder.path().join("my.json");
     fs::write(&path, Preset::load("fence").unwrap().to_text("")).unwrap();
     let mut window = testing::window(path.to_str().unwrap(), Vec2::new(800.0, 500.0), Theme::Dark);
-    window.state_mut().exporting.order = Order { size: UVec2::new(64, 36), last: 3, ..Order::default() };
+    window.state_mut().export_job.options =
+        ExportOptions { size: UVec2::new(64, 36), last: 3, ..ExportOptions::default() };
     Bench { folder, window }
 }
 
@@ -43,12 +44,12 @@ impl Bench {
 
     /// Runs an export and returns the names of new files beside the preset.
     fn make(&mut self, product: ExportKind) -> Vec<String> {
-        self.window.state_mut().exporting.product = product;
-        self.window.state_mut().exporting.is_open = true;
+        self.window.state_mut().export_job.product = product;
+        self.window.state_mut().export_job.is_open = true;
         self.window.run_steps(2);
         self.window.get_by_label("Make").click();
         self.window.run_steps(2);
-        self.until(|window| window.exporting.progress().is_none());
+        self.until(|window| window.export_job.progress().is_none());
         self.window.run_steps(2);
         self.names()
     }
@@ -68,7 +69,7 @@ fn an_image_is_saved_beside_the_preset_without_replacing_files() {
     for _ in 0..2 {
         bench.window.key_press(Key::F12);
         bench.window.run_steps(2);
-        bench.until(|window| window.exporting.progress().is_none());
+        bench.until(|window| window.export_job.progress().is_none());
         bench.window.run_steps(2);
         assert!(bench.said().starts_with("written: "), "{}", bench.said());
     }
@@ -76,7 +77,7 @@ fn an_image_is_saved_beside_the_preset_without_replacing_files() {
     assert_eq!(names.len(), 2, "{names:?}");
     assert!(names.iter().all(|name| name.ends_with("s.png") || name.ends_with("s_2.png")), "{names:?}");
     let picture = haze::image::read_png(&bench.folder.path().join(&names[0])).unwrap();
-    let seen = 36.0 * bench.window.state().session.show.aspect;
+    let seen = 36.0 * bench.window.state().session.view.aspect;
     assert_eq!((picture.width(), picture.height()), (seen.round() as u32, 36));
 }
 
@@ -98,25 +99,25 @@ fn frames_are_written_as_sequence_flipbook_and_gif() {
 fn a_long_export_shows_progress_and_stops_and_a_new_sheet_replaces_the_old() {
     let mut bench = bench();
     let seeds = |bench: &mut Bench, size: UVec2| {
-        bench.window.state_mut().exporting.order.size = size;
+        bench.window.state_mut().export_job.options.size = size;
         bench.window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::E);
         bench.window.run_steps(2);
     };
     seeds(&mut bench, UVec2::new(2560, 1440));
     let start = Instant::now();
     while bench.window.query_by_label("Stop").is_none() {
-        assert!(start.elapsed() < Duration::from_secs(60) && bench.window.state().exporting.sheet.is_none());
+        assert!(start.elapsed() < Duration::from_secs(60) && bench.window.state().export_job.sheet.is_none());
         bench.window.step();
     }
     bench.window.get_by_label("Stop").click();
-    bench.until(|window| window.exporting.progress().is_none());
+    bench.until(|window| window.export_job.progress().is_none());
     bench.window.run_steps(2);
-    assert!(bench.window.state().exporting.sheet.is_none() && bench.window.query_by_label("Make").is_none());
+    assert!(bench.window.state().export_job.sheet.is_none() && bench.window.query_by_label("Make").is_none());
     let mut shown = |exposure: f32| {
         bench.window.state_mut().session.document.preset.camera.exposure = exposure;
         seeds(&mut bench, UVec2::new(192, 108));
         // The previous sheet is open meanwhile.
-        bench.until(|window| window.exporting.progress().is_none());
+        bench.until(|window| window.export_job.progress().is_none());
         bench.window.run_steps(3);
         let part = bench.window.get_by_label("sheet").rect();
         testing::brightness(&testing::picture(&mut bench.window), part)
@@ -130,20 +131,20 @@ fn sheets_are_shown_and_saved_on_request() {
     let mut bench = bench();
     bench.window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::E);
     bench.window.run_steps(2);
-    bench.until(|window| window.exporting.sheet.is_some());
+    bench.until(|window| window.export_job.sheet.is_some());
     assert!(bench.names().is_empty());
     bench.window.run_steps(2);
     bench.window.get_by_label("Save").click();
     bench.window.run_steps(2);
-    bench.until(|window| window.exporting.progress().is_none() && window.exporting.sheet.is_none());
+    bench.until(|window| window.export_job.progress().is_none() && window.export_job.sheet.is_none());
     bench.window.run_steps(2);
     assert!(bench.names()[0].contains("seeds"), "{:?}", bench.names());
     for (product, count) in
         [(ExportKind::DebugView, 9), (ExportKind::Values("systems[0].settings.accumulate.scale".into()), 1)]
     {
         bench.make(product);
-        bench.until(|window| window.exporting.sheet.is_some());
-        let Sheet { picture, .. } = bench.window.state_mut().exporting.sheet.take().unwrap();
+        bench.until(|window| window.export_job.sheet.is_some());
+        let Sheet { picture, .. } = bench.window.state_mut().export_job.sheet.take().unwrap();
         assert!(picture.width() > 64 && count > 0);
     }
 }
@@ -151,15 +152,15 @@ fn sheets_are_shown_and_saved_on_request() {
 #[test]
 fn a_stopped_export_is_reported_as_partial() {
     let mut bench = bench();
-    bench.window.state_mut().exporting.order.last = 9999;
-    bench.window.state_mut().exporting.is_open = true;
+    bench.window.state_mut().export_job.options.last = 9999;
+    bench.window.state_mut().export_job.is_open = true;
     bench.window.run_steps(2);
     bench.window.get_by_label("Make").click();
     bench.window.run_steps(2);
-    bench.until(|window| window.exporting.progress().is_some_and(|(done, _)| done >= 2));
+    bench.until(|window| window.export_job.progress().is_some_and(|(done, _)| done >= 2));
     bench.window.step();
     bench.window.get_by_label("Stop").click();
-    bench.until(|window| window.exporting.progress().is_none());
+    bench.until(|window| window.export_job.progress().is_none());
     bench.window.run_steps(2);
     assert!(bench.said().contains("this sequence is partial, "), "{}", bench.said());
 }
@@ -169,22 +170,22 @@ fn the_row_menu_makes_the_same_sheet_as_the_export_dialog() {
     let mut bench = bench();
     let path = "camera.exposure";
     bench.make(ExportKind::Values(path.into()));
-    bench.until(|window| window.exporting.sheet.is_some());
-    let Sheet { picture: made, .. } = bench.window.state_mut().exporting.sheet.take().unwrap();
-    bench.window.state_mut().exporting.is_open = false;
+    bench.until(|window| window.export_job.sheet.is_some());
+    let Sheet { picture: made, .. } = bench.window.state_mut().export_job.sheet.take().unwrap();
+    bench.window.state_mut().export_job.is_open = false;
     bench.window.run_steps(3);
     testing::row_menu(&mut bench.window, "exposure");
     bench.window.get_by_label("Five values on a sheet").click();
     bench.window.run_steps(2);
-    bench.until(|window| window.exporting.sheet.is_some());
-    let Sheet { picture: sheet, .. } = bench.window.state_mut().exporting.sheet.take().unwrap();
+    bench.until(|window| window.export_job.sheet.is_some());
+    let Sheet { picture: sheet, .. } = bench.window.state_mut().export_job.sheet.take().unwrap();
     assert!(sheet == made, "another sheet");
     // The same for a row that several settings make.
     testing::row_menu(&mut bench.window, "thickness");
     bench.window.get_by_label("Five values on a sheet").click();
     bench.window.run_steps(2);
-    bench.until(|window| window.exporting.sheet.is_some());
-    let Sheet { path, .. } = bench.window.state_mut().exporting.sheet.take().unwrap();
+    bench.until(|window| window.export_job.sheet.is_some());
+    let Sheet { path, .. } = bench.window.state_mut().export_job.sheet.take().unwrap();
     assert!(path.to_string_lossy().contains("thickness"), "{}", path.display());
 }
 
@@ -201,14 +202,14 @@ fn the_button_beside_a_name_makes_a_sheet() {
         bench.window.run_steps(2);
         let place = bench.window.get_by_label(button).rect().center();
         testing::click_at(&mut bench.window, place, PointerButton::Primary);
-        bench.until(|window| window.exporting.sheet.is_some());
-        let path = bench.window.state().exporting.sheet.as_ref().unwrap().path.clone();
+        bench.until(|window| window.export_job.sheet.is_some());
+        let path = bench.window.state().export_job.sheet.as_ref().unwrap().path.clone();
         // Escape closes the sheet and nothing below it.
         let hints = bench.window.state().session.hints.left();
         bench.window.key_press(Key::Escape);
         bench.window.run_steps(2);
         let window = bench.window.state();
-        assert!(window.exporting.sheet.is_none() && window.session.hints.left() == hints && !hints.is_empty());
+        assert!(window.export_job.sheet.is_none() && window.session.hints.left() == hints && !hints.is_empty());
         path.file_name().unwrap().to_string_lossy().into_owned()
     };
     assert!(made("Look", "thickness", "Five values on a sheet: thickness").contains("thickness"));

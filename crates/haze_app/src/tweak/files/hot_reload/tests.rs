@@ -71,7 +71,7 @@ impl Bench {
 
     /// Runs frames until no load is in progress.
     fn rest(&mut self) {
-        self.until(|bench| !bench.window.state().reload.worker.is_busy());
+        self.until(|bench| !bench.window.state().hot_reload.worker.is_busy());
         self.window.step();
     }
 
@@ -83,7 +83,7 @@ impl Bench {
 
     fn pictures(&mut self) -> MaterialAssets {
         let preset = self.session().document.preset.clone();
-        self.session().pictures.of(&preset).remove(0)
+        self.session().loaded_materials.of(&preset).remove(0)
     }
 }
 
@@ -249,9 +249,9 @@ fn exports_use_the_shaders_of_the_watched_folder() {
     let mut bench = Bench::new(SIZE);
     let export = |bench: &mut Bench| {
         let window = bench.window.state_mut();
-        window.exporting.order.size = glam::UVec2::new(96, 54);
-        window.exporting.begin(ExportKind::Image, &mut window.session);
-        bench.until(|bench| bench.window.state().exporting.progress().is_none());
+        window.export_job.options.size = glam::UVec2::new(96, 54);
+        window.export_job.begin(ExportKind::Image, &mut window.session);
+        bench.until(|bench| bench.window.state().export_job.progress().is_none());
         bench.window.run_steps(2);
         let said = bench.session().messages.latest().unwrap().text.clone();
         let picture = haze::image::read_png(Path::new(said.strip_prefix("written: ").unwrap())).unwrap();
@@ -290,7 +290,7 @@ fn latencies(bench: &mut Bench, count: u32) -> (Vec<u128>, Vec<u128>) {
 #[ignore = "measurement; run it alone on an idle machine"]
 fn a_saved_ramp_is_on_screen_within_a_quarter_of_a_second() {
     let mut bench = Bench::new(SIZE);
-    bench.session().show.has_strip = false;
+    bench.session().view.has_strip = false;
     let (loaded, seen) = latencies(&mut bench, 50);
     for (what, taken) in [("loaded", &loaded), ("seen", &seen)] {
         eprintln!("{what}: median {} ms, p95 {} ms, most {} ms", taken[25], taken[47], taken[49]);
@@ -304,7 +304,7 @@ fn particle_files_are_reloaded_and_the_last_valid_ones_stay() {
     let folder = bench.folder.path().to_owned();
     let write = |frame: u32, text: &str| fs::write(folder.join(format!("smoke_{frame:04}.csv")), text).unwrap();
     let count = |bench: &mut Bench| {
-        let cache = bench.session().caches().remove(0);
+        let cache = bench.session().particle_frames().remove(0);
         cache.map_or(0, |cache| cache.frames().iter().map(|(_, frame)| frame.particles().len()).sum::<usize>())
     };
     let set = |bench: &mut Bench, path: &str| bench.session().document.preset.systems[0].cache.path = path.into();

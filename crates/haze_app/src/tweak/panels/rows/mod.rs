@@ -28,34 +28,34 @@ pub struct Row<'a> {
     /// Label of the button that makes a sheet of values, if one can be made.
     pub sheet: Option<&'a str>,
     /// Reason why the setting has no effect.
-    pub inert: Option<&'a str>,
+    pub reason_without_effect: Option<&'a str>,
 }
 
 /// Request made on a row, beside its control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Asked {
-    SetBack,
+pub enum RowRequest {
+    Reset,
     /// Copy the second image's value.
-    Take,
+    CopySecond,
     /// Make a sheet of its values.
     Sheet,
 }
 
 impl Row<'_> {
     /// Draws the row and returns a request. `control` receives the response of the name, as its accessible label.
-    pub fn show(&self, ui: &mut Ui, control: impl FnOnce(&mut Ui, &Response)) -> Option<Asked> {
-        let mut asked = None;
+    pub fn show(&self, ui: &mut Ui, control: impl FnOnce(&mut Ui, &Response)) -> Option<RowRequest> {
+        let mut request = None;
         ui.horizontal(|ui| {
             let (width, height) = (name_width(ui), ui.spacing().interact_size.y);
             let tooltip = "Differs from the saved preset. Click to set it back.";
             if mark(ui, self.is_changed.then_some(("•", tooltip)), || format!("set back {}", self.name)) {
-                asked = Some(Asked::SetBack);
+                request = Some(RowRequest::Reset);
             }
             if let Some(second) = self.second {
                 let tooltip = second.map(|value| format!("The second picture has {value}. Click to take it."));
                 let sign = tooltip.as_deref().map(|tooltip| ("≠", tooltip));
                 if mark(ui, sign, || format!("take {} of the second", self.name)) {
-                    asked = Some(Asked::Take);
+                    request = Some(RowRequest::CopySecond);
                 }
             }
             let place = ui.allocate_ui_with_layout(
@@ -63,48 +63,50 @@ impl Row<'_> {
                 egui::Layout::left_to_right(egui::Align::Center),
                 |ui| {
                     ui.set_min_size(egui::vec2(width, height));
-                    let text = egui::RichText::new(spaced(self.name));
-                    let text = if self.inert.is_some() { text.weak() } else { text };
+                    let text = egui::RichText::new(with_spaces(self.name));
+                    let text = if self.reason_without_effect.is_some() { text.weak() } else { text };
                     ui.add(egui::Label::new(text).truncate().sense(egui::Sense::click()))
                 },
             );
             let (place, name) = (place.response.rect, place.inner.on_hover_text(self.hint()));
             if name.double_clicked() {
-                asked = Some(Asked::SetBack);
+                request = Some(RowRequest::Reset);
             }
-            name.context_menu(|ui| asked = self.menu(ui).or(asked));
-            if let Some(sheet) = self.sheet.filter(|_| self.inert.is_none() && ui.rect_contains_pointer(place)) {
+            name.context_menu(|ui| request = self.menu(ui).or(request));
+            if let Some(sheet) =
+                self.sheet.filter(|_| self.reason_without_effect.is_none() && ui.rect_contains_pointer(place))
+            {
                 let corner = place.with_min_x(place.right() - height);
-                let what = format!("{sheet}: {}", spaced(self.name));
+                let what = format!("{sheet}: {}", with_spaces(self.name));
                 if icon_button::button_over(ui, corner, name.id.with(sheet), Icon::Sheet, &what).clicked() {
-                    asked = Some(Asked::Sheet);
+                    request = Some(RowRequest::Sheet);
                 }
             }
-            ui.add_enabled_ui(self.inert.is_none(), |ui| control(ui, &name));
+            ui.add_enabled_ui(self.reason_without_effect.is_none(), |ui| control(ui, &name));
         });
-        asked
+        request
     }
 
-    fn menu(&self, ui: &mut Ui) -> Option<Asked> {
-        let mut asked = None;
+    fn menu(&self, ui: &mut Ui) -> Option<RowRequest> {
+        let mut request = None;
         let mut entry = |is_on, name: &str, what| {
             if ui.add_enabled(is_on, egui::Button::new(name)).clicked() {
-                asked = Some(what);
+                request = Some(what);
                 ui.close();
             }
         };
-        entry(self.is_changed, "Set back", Asked::SetBack);
+        entry(self.is_changed, "Set back", RowRequest::Reset);
         if let Some(Some(value)) = self.second {
-            entry(true, &format!("Take {value} of the second picture"), Asked::Take);
+            entry(true, &format!("Take {value} of the second picture"), RowRequest::CopySecond);
         }
         if let Some(sheet) = self.sheet {
-            entry(true, sheet, Asked::Sheet);
+            entry(true, sheet, RowRequest::Sheet);
         }
-        asked
+        request
     }
 
     fn hint(&self) -> String {
-        match self.inert {
+        match self.reason_without_effect {
             Some(reason) => format!("{}\n\nNo effect here: {reason}.", self.tooltip),
             None => self.tooltip.to_owned(),
         }
@@ -141,6 +143,6 @@ pub fn note(ui: &mut Ui, marks: f32, text: &str) -> Response {
 }
 
 /// Returns a name with spaces in place of underscores.
-pub fn spaced(name: &str) -> String {
+pub fn with_spaces(name: &str) -> String {
     name.replace('_', " ")
 }

@@ -10,12 +10,12 @@ use haze_author::preset::Tooltips;
 
 use super::picture_gallery::gallery;
 use super::value_text::shown_value;
-use super::{Asked, Row, spaced, value_control};
+use super::{Row, RowRequest, value_control, with_spaces};
 use crate::tweak::session::picture_thumbnails::PictureThumbnails;
 use crate::tweak::session::slider_range::UsualRange;
 
 /// Step on the path to a field: its name, and its index if it is in a list.
-pub type Step = (&'static str, Option<usize>);
+pub type FieldStep = (&'static str, Option<usize>);
 
 /// Data that rows read, and requests that they return.
 pub struct RowContext<'a> {
@@ -29,13 +29,13 @@ pub struct RowContext<'a> {
     /// The fields belong to the preset, so sheets of their values can be made.
     pub has_sheets: bool,
     /// Returns the reason why the field of a path has no effect.
-    pub inert: &'a dyn Fn(&str) -> Option<&'static str>,
+    pub reason_without_effect: &'a dyn Fn(&str) -> Option<&'static str>,
     /// Requests, with the paths of their fields.
-    pub asked: Vec<(Asked, String)>,
+    pub requests: Vec<(RowRequest, String)>,
     /// Reason why typed text was refused.
     pub refused: Option<String>,
     /// Path of the field that is brought into view.
-    pub sought: Option<&'a str>,
+    pub searched_path: Option<&'a str>,
 }
 
 impl RowContext<'_> {
@@ -47,50 +47,51 @@ impl RowContext<'_> {
 }
 
 /// Labels of the button that makes a sheet, for a number, a seed, and all values of a choice or flag.
-pub const FIVE: Option<&str> = Some("Five values on a sheet");
+pub const FIVE_VALUES: Option<&str> = Some("Five values on a sheet");
 const SEEDS: Option<&str> = Some("Nine seeds on a sheet");
 const ALL: Option<&str> = Some("All values on a sheet");
 
 /// Draws the fields of the struct at `path`. Groups and headings are collapsible; the first heading is open.
-pub fn show(ui: &mut Ui, desk: &mut RowContext<'_>, path: &[Step], fields: &mut dyn Fields) {
+pub fn show(ui: &mut Ui, context: &mut RowContext<'_>, path: &[FieldStep], fields: &mut dyn Fields) {
     let table = fields.headings();
     if table.is_empty() {
-        show_where(ui, desk, path, fields, &|_| true);
+        show_where(ui, context, path, fields, &|_| true);
     }
     for part in table.chunk_by(|_, (_, heading)| heading.is_none()) {
-        let mut rows = |ui: &mut Ui, desk: &mut RowContext<'_>| {
-            show_where(ui, desk, path, fields, &|name| part.iter().any(|(field, _)| *field == name));
+        let mut rows = |ui: &mut Ui, context: &mut RowContext<'_>| {
+            show_where(ui, context, path, fields, &|name| part.iter().any(|(field, _)| *field == name));
         };
         let Some(&(first, Some(heading))) = part.first() else {
-            rows(ui, desk);
+            rows(ui, context);
             continue;
         };
         let holds = |field: &str| {
             let below = field.strip_prefix(&field_path(path)).and_then(|rest| rest.strip_prefix('.'));
             part.iter().any(|(name, _)| below.is_some_and(|below| is_at(below, name)))
         };
-        let header = header(desk, heading, &holds).id_salt((path, heading)).default_open(first == table[0].0);
-        header.show_unindented(ui, |ui| rows(ui, desk));
+        let header = header(context, heading, &holds).id_salt((path, heading)).default_open(first == table[0].0);
+        header.show_unindented(ui, |ui| rows(ui, context));
     }
 }
 
 /// Draws the fields of a struct whose names are wanted.
 pub fn show_where(
     ui: &mut Ui,
-    desk: &mut RowContext<'_>,
-    path: &[Step],
+    context: &mut RowContext<'_>,
+    path: &[FieldStep],
     fields: &mut dyn Fields,
     is_wanted: &dyn Fn(&str) -> bool,
 ) {
-    fields.visit(&mut Rows { ui, desk, path: path.to_vec(), is_wanted, only: None });
+    fields.visit(&mut Rows { ui, context, path: path.to_vec(), is_wanted, only: None });
 }
 
-/// Returns a collapsible header. It opens if the sought field is inside, and shows the marks of the fields inside.
-pub fn header(desk: &RowContext<'_>, title: &str, holds: &dyn Fn(&str) -> bool) -> egui::CollapsingHeader {
-    let mark = if desk.changed.iter().any(|changed| holds(changed)) { " •" } else { "" };
-    let is_apart = desk.second.is_some_and(|second| second.keys().any(|apart| holds(apart)));
+/// Returns a collapsible header. It opens if the searched field is inside, and shows the marks of the fields inside.
+pub fn header(context: &RowContext<'_>, title: &str, holds: &dyn Fn(&str) -> bool) -> egui::CollapsingHeader {
+    let mark = if context.changed.iter().any(|changed| holds(changed)) { " •" } else { "" };
+    let is_apart = context.second.is_some_and(|second| second.keys().any(|apart| holds(apart)));
     let apart = if is_apart { " ≠" } else { "" };
-    egui::CollapsingHeader::new(format!("{title}{mark}{apart}")).open(desk.sought.is_some_and(holds).then_some(true))
+    egui::CollapsingHeader::new(format!("{title}{mark}{apart}"))
+        .open(context.searched_path.is_some_and(holds).then_some(true))
 }
 
 /// Returns true if a field is at a path or below it.
@@ -99,13 +100,19 @@ pub fn is_at(field: &str, path: &str) -> bool {
 }
 
 /// One field of a struct: title that replaces its name, relative path, and usual range of its slider.
-pub type Named<'a> = (&'a str, &'a str, UsualRange);
+pub type LabelledField<'a> = (&'a str, &'a str, UsualRange);
 
 /// Draws one field of the struct at `path`.
-pub fn show_named(ui: &mut Ui, desk: &mut RowContext<'_>, path: &[Step], fields: &mut dyn Fields, named: Named<'_>) {
+pub fn show_named(
+    ui: &mut Ui,
+    context: &mut RowContext<'_>,
+    path: &[FieldStep],
+    fields: &mut dyn Fields,
+    named: LabelledField<'_>,
+) {
     let (title, wanted, usual) = named;
     let only = Some(Only { title, wanted, usual, depth: path.len() });
-    fields.visit(&mut Rows { ui, desk, path: path.to_vec(), is_wanted: &|_| true, only });
+    fields.visit(&mut Rows { ui, context, path: path.to_vec(), is_wanted: &|_| true, only });
 }
 
 /// Brings the row that begins at a position into view and marks it, because it was searched for.
@@ -117,8 +124,8 @@ pub fn scroll_to_and_mark(ui: &Ui, begin: egui::Pos2) {
 
 struct Rows<'a, 'd, 'u> {
     ui: &'u mut Ui,
-    desk: &'a mut RowContext<'d>,
-    path: Vec<Step>,
+    context: &'a mut RowContext<'d>,
+    path: Vec<FieldStep>,
     /// Returns true if the field of this name is drawn.
     is_wanted: &'a dyn Fn(&str) -> bool,
     /// Draws a single field; `None` draws all.
@@ -153,49 +160,49 @@ impl Rows<'_, '_, '_> {
         if self.only.zip(below).is_some_and(|(only, path)| path != only.wanted) {
             return;
         }
-        let desk = &mut *self.desk;
-        let second = desk.second(&path, unit);
+        let context = &mut *self.context;
+        let second = context.second(&path, unit);
         let title = self.only.map_or(name, |only| only.title);
-        let mut tooltip = desk.tooltips.field(&plain).unwrap_or_default().to_owned();
-        if title != spaced(name) && self.only.is_some() {
+        let mut tooltip = context.tooltips.field(&plain).unwrap_or_default().to_owned();
+        if title != with_spaces(name) && self.only.is_some() {
             // The path that the field has in files.
             tooltip += &format!("\n\n{path}");
         }
         let row = Row {
             name: title,
             tooltip: &tooltip,
-            is_changed: desk.changed.contains(&path),
+            is_changed: context.changed.contains(&path),
             second: second.as_ref().map(Option::as_deref),
-            sheet: sheet.filter(|_| desk.has_sheets),
-            inert: (desk.inert)(&path),
+            sheet: sheet.filter(|_| context.has_sheets),
+            reason_without_effect: (context.reason_without_effect)(&path),
         };
-        let refused = &mut desk.refused;
-        let tooltips = desk.tooltips;
+        let refused = &mut context.refused;
+        let tooltips = context.tooltips;
         let before = self.ui.cursor().min;
-        let asked = row.show(self.ui, |ui, label| control(ui, label, refused, &path, tooltips));
-        desk.asked.extend(asked.map(|asked| (asked, path.clone())));
-        if let Some(what) = &mut desk.refused
+        let request = row.show(self.ui, |ui, label| control(ui, label, refused, &path, tooltips));
+        context.requests.extend(request.map(|request| (request, path.clone())));
+        if let Some(what) = &mut context.refused
             && !what.contains(": ")
         {
             *what = format!("{path}: {what}");
         }
-        if desk.sought == Some(path.as_str()) {
+        if context.searched_path == Some(path.as_str()) {
             scroll_to_and_mark(self.ui, before);
         }
     }
 
-    fn nested(&mut self, step: Step, title: &str, fields: &mut dyn Fields) {
+    fn nested(&mut self, step: FieldStep, title: &str, fields: &mut dyn Fields) {
         if !(self.is_wanted)(step.0) {
             return;
         }
         self.path.push(step);
         if self.only.is_some() {
             let path = self.path.clone();
-            fields.visit(&mut Rows { ui: self.ui, desk: self.desk, path, is_wanted: &|_| true, only: self.only });
+            fields.visit(&mut Rows { ui: self.ui, context: self.context, path, is_wanted: &|_| true, only: self.only });
         } else {
             let path = field_path(&self.path);
-            let header = header(self.desk, &spaced(title), &|field| is_at(field, &path)).id_salt(&path);
-            header.show(self.ui, |ui| show(ui, self.desk, &self.path, fields));
+            let header = header(self.context, &with_spaces(title), &|field| is_at(field, &path)).id_salt(&path);
+            header.show(self.ui, |ui| show(ui, self.context, &self.path, fields));
         }
         self.path.pop();
     }
@@ -204,13 +211,13 @@ impl Rows<'_, '_, '_> {
 impl FieldVisitor for Rows<'_, '_, '_> {
     fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, unit: &'static str) {
         let usual = self.only.and_then(|only| only.usual);
-        self.row(name, (unit, FIVE), |ui, label, refused, _, _| {
+        self.row(name, (unit, FIVE_VALUES), |ui, label, refused, _, _| {
             value_control::number(ui, label, value, (&range, usual), unit, refused);
         });
     }
 
     fn integer(&mut self, name: &'static str, value: &mut u32, range: RangeInclusive<u32>, unit: &'static str) {
-        self.row(name, (unit, FIVE), |ui, label, refused, _, _| {
+        self.row(name, (unit, FIVE_VALUES), |ui, label, refused, _, _| {
             value_control::integer(ui, label, value, &range, unit, refused);
         });
     }
@@ -245,7 +252,7 @@ impl FieldVisitor for Rows<'_, '_, '_> {
     }
 
     fn picture(&mut self, name: &'static str, value: &mut String, role: ImageRole) {
-        let thumbnails = self.desk.thumbnails;
+        let thumbnails = self.context.thumbnails;
         self.row(name, ("", None), |ui, label, _, path, _| {
             gallery(ui, thumbnails, role, value, path).labelled_by(label.id);
         });

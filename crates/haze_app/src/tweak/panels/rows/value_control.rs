@@ -7,9 +7,9 @@ use eframe::egui::{self, Response, Ui};
 use glam::Vec3;
 use haze::settings::Choice;
 
-use super::spaced;
 use super::value_text::{parse, shown, suffix};
-use crate::tweak::session::slider_range::{UsualRange, is_wide, reach};
+use super::with_spaces;
+use crate::tweak::session::slider_range::{UsualRange, needs_log_slider, slider_range};
 
 /// Least width of the number field, points.
 const VALUE: f32 = 84.0;
@@ -28,18 +28,19 @@ pub fn number(
     refused: &mut Refused,
 ) -> bool {
     let (low, high) = (*range.start(), *range.end());
-    let (shown, is_wide) = usual.map_or_else(|| reach(range, *value), |(low, high)| (low..=high, false));
-    let control = Control {
+    let (shown, needs_log_slider) =
+        usual.map_or_else(|| slider_range(range, *value), |(low, high)| (low..=high, false));
+    let slider = ValueSlider {
         name,
         unit,
         shown: f64::from(*shown.start())..=f64::from(*shown.end()),
         range: f64::from(low)..=f64::from(high),
-        is_logarithmic: is_wide,
+        is_logarithmic: needs_log_slider,
         smallest: f64::from(low.max(0.001)),
         decimals: 4,
     };
     let mut edited = f64::from(*value);
-    let is_changed = control.show(ui, &mut edited, refused) && edited.is_finite();
+    let is_changed = slider.show(ui, &mut edited, refused) && edited.is_finite();
     if is_changed {
         *value = (edited as f32).clamp(low, high);
     }
@@ -57,10 +58,17 @@ pub fn integer(
 ) -> bool {
     let (low, high) = (*whole.start(), *whole.end());
     let range = f64::from(low)..=f64::from(high);
-    let control =
-        Control { name, unit, shown: range.clone(), is_logarithmic: is_wide(whole), range, smallest: 1.0, decimals: 0 };
+    let slider = ValueSlider {
+        name,
+        unit,
+        shown: range.clone(),
+        is_logarithmic: needs_log_slider(whole),
+        range,
+        smallest: 1.0,
+        decimals: 0,
+    };
     let mut edited = f64::from(*value);
-    let is_changed = control.show(ui, &mut edited, refused);
+    let is_changed = slider.show(ui, &mut edited, refused);
     if is_changed {
         *value = (edited.round() as u32).clamp(low, high);
     }
@@ -68,7 +76,7 @@ pub fn integer(
 }
 
 /// Slider with a number field.
-struct Control<'a> {
+struct ValueSlider<'a> {
     name: &'a Response,
     unit: &'a str,
     /// Range of the slider.
@@ -81,7 +89,7 @@ struct Control<'a> {
     decimals: usize,
 }
 
-impl Control<'_> {
+impl ValueSlider<'_> {
     /// Returns true if the value was changed.
     fn show(&self, ui: &mut Ui, value: &mut f64, refused: &mut Refused) -> bool {
         let height = ui.spacing().interact_size.y;
@@ -219,12 +227,12 @@ pub fn choice<'t>(
 ) -> Response {
     let names = value.names();
     let mut index = value.index();
-    let selected = spaced(names.get(index).copied().unwrap_or_default());
+    let selected = with_spaces(names.get(index).copied().unwrap_or_default());
     let combo = egui::ComboBox::from_id_salt(salt).selected_text(selected).width(ui.available_width() - 8.0);
     let response = combo
         .show_ui(ui, |ui| {
             for (place, name) in names.iter().enumerate() {
-                let entry = ui.selectable_value(&mut index, place, spaced(name));
+                let entry = ui.selectable_value(&mut index, place, with_spaces(name));
                 if let Some(tooltip) = tooltip(name) {
                     entry.on_hover_text(tooltip);
                 }

@@ -3,16 +3,16 @@
 use eframe::egui::{self, Color32, Pos2, Rect, Sense, Stroke, Ui, Vec2, pos2};
 use haze::{MaterialAssets, Settings};
 
-use crate::tweak::document::light_angles::{Angles, STEEPEST, from_angles};
+use crate::tweak::document::light_angles::{Angles, MAX_ELEVATION, from_angles};
 use crate::tweak::panels::rows::icon_button::{self, Icon};
-use crate::tweak::session::sprite_preview::{Painted, View};
-use crate::tweak::session::sprite_view::{SHOWN, Shown, SpriteView};
+use crate::tweak::session::sprite_preview::{SpritePreview, View};
+use crate::tweak::session::sprite_view::{SPRITE_CHANNELS, SpriteChannel, SpriteView};
 
 /// Largest side of the image in points and in pixels. The image is small, because the CPU draws it.
 const SIDE: f32 = 300.0;
-const MOST: f32 = 256.0;
+const MAX_SIDE: f32 = 256.0;
 /// Least side in points, and largest share of the tab's height, which leaves room for the recipe.
-const LEAST: f32 = 96.0;
+const MIN_SIDE: f32 = 96.0;
 const SHARE: f32 = 0.42;
 /// Rotation of the light, degrees per point of a drag.
 const DRAG: f32 = 0.6;
@@ -20,27 +20,27 @@ const DRAG: f32 = 0.6;
 /// Draws the flipbook with its controls.
 pub fn panel(
     ui: &mut Ui,
-    (look, painted): (&mut SpriteView, &mut Option<Painted>),
+    (look, painted): (&mut SpriteView, &mut Option<SpritePreview>),
     material: &MaterialAssets,
     settings: &Settings,
 ) {
     look.advance(&material.sprite, ui.input(|input| input.stable_dt));
     ui.horizontal_wrapped(|ui| {
-        for (shown, name, tooltip) in SHOWN {
-            let needs_detail = matches!(shown, Shown::Depth | Shown::Motion);
-            let button = egui::Button::selectable(look.shown == shown, name);
+        for (channel, name, tooltip) in SPRITE_CHANNELS {
+            let needs_detail = matches!(channel, SpriteChannel::Depth | SpriteChannel::Motion);
+            let button = egui::Button::selectable(look.channel == channel, name);
             let button = ui.add_enabled(!needs_detail || material.detail.is_some(), button);
             if button.on_hover_text(tooltip).on_disabled_hover_text("The sprite has no detail map").clicked() {
-                look.shown = shown;
+                look.channel = channel;
             }
         }
     });
     // In a scroll area the available height is unlimited, so the visible part counts.
     let height = ui.available_height().min(ui.clip_rect().height());
-    let side = ui.available_width().min(SIDE).min((SHARE * height).max(LEAST));
+    let side = ui.available_width().min(SIDE).min((SHARE * height).max(MIN_SIDE));
     ui.vertical_centered(|ui| picture(ui, (look, painted), side, material, settings));
     time(ui, look, material.sprite.frame_count());
-    if look.shown == Shown::Lit {
+    if look.channel == SpriteChannel::Lit {
         light(ui, look);
     }
     if look.is_moving() {
@@ -50,7 +50,7 @@ pub fn panel(
 
 fn picture(
     ui: &mut Ui,
-    (look, painted): (&mut SpriteView, &mut Option<Painted>),
+    (look, painted): (&mut SpriteView, &mut Option<SpritePreview>),
     side: f32,
     material: &MaterialAssets,
     settings: &Settings,
@@ -61,21 +61,21 @@ fn picture(
     if response.dragged() && !response.drag_started() {
         let drag = response.drag_delta() * DRAG;
         look.turn_to(look.light.azimuth + drag.x);
-        look.light.elevation = (look.light.elevation - drag.y).clamp(-STEEPEST, STEEPEST);
+        look.light.elevation = (look.light.elevation - drag.y).clamp(-MAX_ELEVATION, MAX_ELEVATION);
     }
     let to_light = -from_angles(look.light);
     let view = View {
-        shown: look.shown,
+        channel: look.channel,
         frame: look.frame,
         to_light,
         filter: settings.ramp_filter,
         motion: settings.sprite.motion,
-        side: (side * ui.pixels_per_point()).clamp(1.0, MOST) as u32,
+        side: (side * ui.pixels_per_point()).clamp(1.0, MAX_SIDE) as u32,
     };
-    let texture = Painted::show(painted, ui.ctx(), view, material);
+    let texture = SpritePreview::show(painted, ui.ctx(), view, material);
     let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
     ui.painter().image(texture, rect, whole, Color32::WHITE);
-    if look.shown == Shown::Lit {
+    if look.channel == SpriteChannel::Lit {
         // Marks the direction of the light; hollow if it is behind the sprite.
         let reach = 0.5 * side - 6.0;
         let at = rect.center() + Vec2::new(to_light.x, -to_light.y) * reach;
@@ -113,7 +113,7 @@ fn light(ui: &mut Ui, look: &mut SpriteView) {
         ui.label("light at");
         ui.add(angle(azimuth, 180.0)).on_hover_text("Azimuth: 0 is before the sprite, 90 at its right");
         ui.label("and up");
-        ui.add(angle(elevation, STEEPEST)).on_hover_text("Height: 0 is level with the sprite, 90 above it");
+        ui.add(angle(elevation, MAX_ELEVATION)).on_hover_text("Height: 0 is level with the sprite, 90 above it");
         ui.checkbox(&mut look.is_turning, "turn").on_hover_text("Rotates the light, once in 5 seconds");
     });
 }

@@ -13,11 +13,11 @@ use haze_author::preset::Tooltips;
 use haze_author::sprite::bake::SpriteRecipe;
 
 use crate::tweak::document::sprite_edits::set_recipe;
-use crate::tweak::document::sprite_edits::sprite_source::Source;
+use crate::tweak::document::sprite_edits::sprite_source::SpriteOrigin;
 use crate::tweak::panels::rows::setting_rows::{self, RowContext};
 use crate::tweak::platform::clock::Duration;
 use crate::tweak::session::Session;
-use crate::tweak::session::messages::short;
+use crate::tweak::session::messages::truncate_middle;
 
 static TOOLTIPS: LazyLock<Tooltips> = LazyLock::new(Tooltips::of::<SpriteRecipe>);
 
@@ -26,36 +26,36 @@ const WRITTEN: &str = "Shown at once at a low resolution, and baked in full when
                        written, and again when the step is undone";
 
 /// Longest finding or error that is shown, characters.
-const LONGEST: usize = 400;
+const MAX_CHARACTERS: usize = 400;
 
 /// Draws the recipe of the selected system's sprite, or the ways to get one.
 pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialNames) {
-    let (folders, wake) = (session.folders(), session.wake.clone());
+    let (folders, wake) = (session.folders(), session.repaint.clone());
     let Some(known) = session.sprites.ask(names, &folders, move || wake.call()) else { return };
     if let Some(broken) = &known.broken {
-        ui.colored_label(ui.visuals().error_fg_color, short(broken, LONGEST));
+        ui.colored_label(ui.visuals().error_fg_color, truncate_middle(broken, MAX_CHARACTERS));
     }
     for finding in &known.findings {
-        ui.colored_label(ui.visuals().warn_fg_color, short(finding, LONGEST));
+        ui.colored_label(ui.visuals().warn_fg_color, truncate_middle(finding, MAX_CHARACTERS));
     }
     let file = known.recipe_file();
-    let file = short(&file.file_name().unwrap_or_default().to_string_lossy(), 60);
+    let file = truncate_middle(&file.file_name().unwrap_or_default().to_string_lossy(), 60);
     let (source, is_broken) = (known.source.clone(), known.broken.is_some());
-    let progress = known.whole.as_ref().map(|order| (order.frames(), order.recipe.frame_count()));
+    let progress = known.full.as_ref().map(|order| (order.frames(), order.recipe.frame_count()));
     let name = &names.sprite;
     match source {
-        Source::Reading => {
+        SpriteOrigin::Reading => {
             ui.weak("Reading the sprite.");
         }
-        Source::BuiltIn(recipe) => {
+        SpriteOrigin::BuiltIn(recipe) => {
             let about = "Writes a copy of this sprite and its recipe beside the preset, to be changed here; a preset that is \
                          built in is saved first";
             if ui.button("Make my own").on_hover_text(about).clicked() {
-                session.sprites.want_own(session.show.system, name, session.document.is_built_in());
+                session.sprites.request_copy(session.view.system, name, session.document.is_built_in());
             }
             rows(ui, session, name, &recipe, Some("a built-in recipe cannot be changed; make your own first"));
         }
-        Source::Recipe(recipe) => {
+        SpriteOrigin::Recipe(recipe) => {
             let recipe = session.document.recipes.sprites.get(name).unwrap_or(&recipe).clone();
             match progress {
                 Some((done, count)) => {
@@ -70,7 +70,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialNames) {
             }
             rows(ui, session, name, &recipe, is_broken.then_some("the file of the recipe has an error; fix it first"));
         }
-        Source::Apart(_) => {
+        SpriteOrigin::Apart(_) => {
             ui.label(format!("{file} makes another picture: another program has changed one of the two."));
             let about = "Replaces the picture by the one that the recipe makes";
             if ui.button("Bake the recipe").on_hover_text(about).clicked() {
@@ -78,13 +78,13 @@ pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialNames) {
             }
             templates(ui, session);
         }
-        Source::Painted => {
+        SpriteOrigin::Painted => {
             if !is_broken {
                 ui.label(format!("There is no recipe: {file} does not exist beside the picture."));
             }
             templates(ui, session);
         }
-        Source::Missing => templates(ui, session),
+        SpriteOrigin::Missing => templates(ui, session),
     }
 }
 
@@ -93,7 +93,7 @@ fn templates(ui: &mut Ui, session: &mut Session) {
     let menu = ui.menu_button("New from template", |ui| {
         for template in builtin::SPRITES {
             if ui.button(template.name).clicked() {
-                session.sprites.want_own(session.show.system, template.name, session.document.is_built_in());
+                session.sprites.request_copy(session.view.system, template.name, session.document.is_built_in());
                 ui.close();
             }
         }
@@ -106,18 +106,19 @@ fn templates(ui: &mut Ui, session: &mut Session) {
 fn rows(ui: &mut Ui, session: &mut Session, name: &str, recipe: &SpriteRecipe, locked: Option<&'static str>) {
     let (mut edited, mut within) = (recipe.clone(), RangeClamp::default());
     edited.visit(&mut within);
-    let inert = |path: &str| locked.or(within.zero.contains(path).then_some("recipe version 1 does not support it"));
-    let (unchanged, asked) = (HashSet::new(), Vec::new());
-    let mut desk = RowContext {
+    let reason_without_effect =
+        |path: &str| locked.or(within.zero.contains(path).then_some("recipe version 1 does not support it"));
+    let (unchanged, requests) = (HashSet::new(), Vec::new());
+    let mut context = RowContext {
         tooltips: &TOOLTIPS,
         thumbnails: &session.thumbnails,
         changed: &unchanged,
         second: None,
         has_sheets: false,
-        inert: &inert,
-        asked,
+        reason_without_effect: &reason_without_effect,
+        requests,
         refused: None,
-        sought: None,
+        searched_path: None,
     };
     if locked.is_none() && edited.version < 2 {
         let about = "Bakes about fifty times as fast and has more settings; the picture changes a little";
@@ -128,16 +129,16 @@ fn rows(ui: &mut Ui, session: &mut Session, name: &str, recipe: &SpriteRecipe, l
             }
         });
     }
-    setting_rows::show(ui, &mut desk, &[], &mut edited);
-    let refused = desk.refused;
+    setting_rows::show(ui, &mut context, &[], &mut edited);
+    let refused = context.refused;
     // Ranges may depend on the values that were changed.
     edited.visit(&mut RangeClamp::default());
     if edited != *recipe {
         set_recipe(&mut session.document, name, edited);
-        session.messages.withdraw("sprite");
+        session.messages.clear("sprite");
     }
     if let Some(refused) = refused {
-        session.messages.complain("typed", refused);
+        session.messages.error("typed", refused);
     }
 }
 

@@ -5,8 +5,8 @@ use egui_kittest::kittest::Queryable as _;
 use glam::Vec3;
 use haze::Light;
 
-use super::{camera, lens, light, lit, undo_name, viewport};
-use crate::tweak::session::smoke_geometry::Smoke;
+use super::{camera, light, lit, projection, undo_name, viewport};
+use crate::tweak::session::smoke_geometry::SmokeGeometry;
 
 #[test]
 fn f_frames_the_smoke_or_the_light_and_home_restores_the_camera() {
@@ -15,15 +15,15 @@ fn f_frames_the_smoke_or_the_light_and_home_restores_the_camera() {
     harness.key_press(Key::F);
     harness.run();
     assert!(camera(&harness).target.distance(light(&harness).position) < 1e-4);
-    harness.state_mut().session.show.lights.selected = None;
+    harness.state_mut().session.view.lights.selected = None;
     harness.key_press(Key::F);
     harness.run();
-    let mut smoke = Smoke::default();
+    let mut smoke = SmokeGeometry::default();
     let session = &harness.state().session;
     let bounds = smoke.of(session).bounds();
     assert_eq!(camera(&harness).target, bounds.centre());
     for corner in [bounds.min, bounds.max] {
-        assert!(lens(&harness).project(corner).is_some_and(|at| viewport(&harness).contains(at)));
+        assert!(projection(&harness).project(corner).is_some_and(|at| viewport(&harness).contains(at)));
     }
     harness.key_press(Key::Num7);
     harness.run();
@@ -55,7 +55,7 @@ fn wheel_steps_are_one_undo_step_and_zoom_towards_the_pointer() {
     let mut harness = lit(Light::default());
     let before = camera(&harness);
     let at = viewport(&harness).center() + vec2(150.0, -60.0);
-    let point = lens(&harness).facing(at, before.target);
+    let point = projection(&harness).unproject_to_facing_plane(at, before.target);
     harness.hover_at(at);
     let turn = || Event::MouseWheel {
         unit: MouseWheelUnit::Line,
@@ -70,7 +70,7 @@ fn wheel_steps_are_one_undo_step_and_zoom_towards_the_pointer() {
     harness.run_steps(6);
     let near = camera(&harness);
     assert!(near.position.distance(near.target) < 0.9 * before.position.distance(before.target));
-    assert!(lens(&harness).project(point).unwrap().distance(at) < 1.0);
+    assert!(projection(&harness).project(point).unwrap().distance(at) < 1.0);
     assert_eq!(undo_name(&harness).as_deref(), Some("camera"));
     harness.event(turn());
     harness.run_steps(6);

@@ -5,7 +5,7 @@ use egui_kittest::Harness;
 use glam::Vec3;
 use haze::{Light, LightKind};
 
-use super::{camera, drag, handle, lens, light, lit, undo_name};
+use super::{camera, drag, handle, light, lit, projection, undo_name};
 use crate::tweak::viewport::light_handle::Handle;
 use crate::tweak::window::Window;
 
@@ -13,7 +13,7 @@ use crate::tweak::window::Window;
 fn an_axis_drag_moves_the_light_along_the_axis_in_one_step() {
     for axis in 0..2 {
         let mut harness = lit(Light::default());
-        let (before, seen) = (light(&harness).position, lens(&harness));
+        let (before, seen) = (light(&harness).position, projection(&harness));
         let from = handle(&harness, Handle::Axis(axis));
         let along = seen.project(before + Vec3::AXES[axis]).unwrap() - seen.project(before).unwrap();
         let to = from + along * 0.6;
@@ -36,8 +36,8 @@ fn a_centre_drag_follows_the_pointer_and_escape_cancels_it() {
     let to = from + vec2(130.0, -70.0);
     drag(&mut harness, PointerButton::Primary, &[from, from + vec2(5.0, 5.0), to]);
     let after = light(&harness).position;
-    assert!(lens(&harness).project(after).unwrap().distance(to) < 1.0);
-    assert!((lens(&harness).depth(after) - lens(&harness).depth(before)).abs() < 1e-3);
+    assert!(projection(&harness).project(after).unwrap().distance(to) < 1.0);
+    assert!((projection(&harness).depth(after) - projection(&harness).depth(before)).abs() < 1e-3);
     // Pressed, moved, then Escape: the light is as before, and there is no step.
     let press = |pos, pressed| {
         let modifiers = Modifiers::NONE;
@@ -55,7 +55,7 @@ fn a_centre_drag_follows_the_pointer_and_escape_cancels_it() {
     harness.run();
     assert_eq!((light(&harness).position, camera(&harness)), (after, eye));
     assert_eq!(undo_name(&harness).as_deref(), Some("position of lamp 1 (point)"));
-    assert_eq!(harness.state().session.show.lights.selected, Some(0));
+    assert_eq!(harness.state().session.view.lights.selected, Some(0));
 }
 
 #[test]
@@ -72,7 +72,7 @@ fn ctrl_snaps_to_a_tenth_of_a_metre_and_shift_slows_the_drag() {
     harness.event(Event::ModifiersChanged(Modifiers::SHIFT));
     let from = handle(&harness, Handle::Centre);
     drag(&mut harness, PointerButton::Primary, &[from, from + vec2(100.0, 0.0)]);
-    let moved = lens(&harness).project(light(&harness).position).unwrap() - from;
+    let moved = projection(&harness).project(light(&harness).position).unwrap() - from;
     assert!((moved.x - 10.0).abs() < 0.5, "{moved}");
 }
 
@@ -118,10 +118,10 @@ fn a_sun_is_moved_on_its_dome() {
 #[test]
 fn a_click_selects_a_light_and_a_click_elsewhere_deselects() {
     let mut harness = lit(Light::default());
-    let at = lens(&harness).project(light(&harness).position).unwrap();
-    harness.state_mut().session.show.lights.selected = None;
+    let at = projection(&harness).project(light(&harness).position).unwrap();
+    harness.state_mut().session.view.lights.selected = None;
     harness.run();
-    let selected = |harness: &Harness<'_, Window>| harness.state().session.show.lights.selected;
+    let selected = |harness: &Harness<'_, Window>| harness.state().session.view.lights.selected;
     drag(&mut harness, PointerButton::Primary, &[at + vec2(6.0, 4.0)]);
     assert_eq!(selected(&harness), Some(0));
     // A drag elsewhere turns the camera and keeps the selection.

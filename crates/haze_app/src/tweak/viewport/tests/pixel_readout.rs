@@ -4,7 +4,7 @@ use eframe::egui::{self, Key, Pos2, Theme, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
-use crate::tweak::session::comparison::Against;
+use crate::tweak::session::comparison::CompareWith;
 use crate::tweak::window::Window;
 use crate::tweak::window::testing::{brightness, picture, window};
 
@@ -57,18 +57,18 @@ fn values_of_the_pixel_under_the_pointer_are_shown_and_a_click_pins_it() {
 fn the_inspector_reads_the_compared_image_under_the_pointer() {
     let mut harness = window("column", SIZE, Theme::Dark);
     harness.key_press(Key::I);
-    let mut show = |against: Against, x: f32, text: &str| {
+    let mut show = |against: CompareWith, x: f32, text: &str| {
         harness.state_mut().session.compare.against = Some(against);
         let place = smoke(&harness) + Vec2::new(x, 0.0);
         harness.hover_at(place);
         wait_for(&mut harness, |harness| shows(harness, text));
         [shows(&harness, "coverage"), shows(&harness, "second: ")]
     };
-    assert_eq!(show(Against::FullResolution, -20.0, "coverage"), [true, false]);
-    assert_eq!(show(Against::FullResolution, 20.0, "second: full resolution"), [true, true]);
-    assert_eq!(show(Against::Forward, 20.0, "lit sprite by sprite"), [false, true]);
-    assert_eq!(show(Against::Reference, 20.0, "Drawn by the CPU"), [false, false]);
-    assert_eq!(show(Against::Reference, -20.0, "coverage"), [true, false]);
+    assert_eq!(show(CompareWith::FullResolution, -20.0, "coverage"), [true, false]);
+    assert_eq!(show(CompareWith::FullResolution, 20.0, "second: full resolution"), [true, true]);
+    assert_eq!(show(CompareWith::Forward, 20.0, "lit sprite by sprite"), [false, true]);
+    assert_eq!(show(CompareWith::Reference, 20.0, "Drawn by the CPU"), [false, false]);
+    assert_eq!(show(CompareWith::Reference, -20.0, "coverage"), [true, false]);
 }
 
 #[test]

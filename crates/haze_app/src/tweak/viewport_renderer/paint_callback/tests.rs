@@ -21,13 +21,13 @@ use crate::tweak::window::{Start, Window};
 fn window() -> (Harness<'static, Window>, RenderState) {
     let session = Session::open(Path::new("column"), None).unwrap();
     let (shaders, layout) = (ShaderFolder::None, Layout::default());
-    let start = Start { session, shaders, keeping: None, layout, has_dialogs: false };
+    let start = Start { session, shaders, persistence: None, layout, has_dialogs: false };
     let state = Rc::new(RefCell::new(None));
     let its = Rc::clone(&state);
     let builder = Harness::builder().with_size(egui::vec2(640.0, 400.0)).with_theme(Theme::Dark).wgpu();
     let mut harness = builder.build_eframe(move |context| {
         *its.borrow_mut() = context.wgpu_render_state.clone();
-        Window::new(Easel::new(context).unwrap(), start).unwrap()
+        Window::new(ViewportRenderer::new(context).unwrap(), start).unwrap()
     });
     harness.run_steps(3);
     let state = state.borrow_mut().take().unwrap();
@@ -46,32 +46,32 @@ fn a_frame_dropped_by_egui_is_drawn_in_the_next() {
     let session = harness.state_mut().session_mut();
     session.document.preset.lights.iter_mut().for_each(|light| light.intensity *= 4.0);
     harness.step();
-    let (easel, session) = (harness.state().easel().clone(), &harness.state().session);
-    let exhibit = Exhibit { shot: session.shot(session.show.size), other: None, split: 0.5, difference: 0.0 };
+    let (renderer, session) = (harness.state().renderer().clone(), &harness.state().session);
+    let frame = ViewportFrame { shot: session.shot(session.view.size), other: None, split: 0.5, difference: 0.0 };
     let rect = harness.get_by_label("viewport").rect();
-    easel.want_capture(Some(ComparedSide::First));
-    let callback = Callback { easel: easel.clone(), rect, what: What::Exhibit(Box::new(exhibit)) };
+    renderer.want_capture(Some(ComparedSide::First));
+    let callback = Callback { renderer: renderer.clone(), rect, content: Content::Viewport(Box::new(frame)) };
     let mut encoder = state.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let screen = ScreenDescriptor { size_in_pixels: [640, 400], pixels_per_point: 1.0 };
     callback.prepare(&state.device, &state.queue, &screen, &mut encoder, &mut CallbackResources::default());
-    assert!(easel.is_capturing());
+    assert!(renderer.is_capturing());
     drop(encoder);
     let after = shown(&mut harness);
     assert!(after > before + 5.0, "{before} {after}");
-    assert!(!easel.is_capturing(), "what was dropped is not waited for");
+    assert!(!renderer.is_capturing(), "what was dropped is not waited for");
 }
 
 #[test]
 fn a_new_exposure_only_repeats_the_tonemapping() {
     let (mut harness, _) = window();
     let before = shown(&mut harness);
-    let drawn = harness.state().easel().figures().pictures;
+    let drawn = harness.state().renderer().render_stats().renders;
     harness.state_mut().session_mut().document.preset.camera.exposure += 1.0;
     let after = shown(&mut harness);
     assert!(after > before + 5.0, "{before} {after}");
-    assert_eq!(harness.state().easel().figures().pictures, drawn);
+    assert_eq!(harness.state().renderer().render_stats().renders, drawn);
     harness.state_mut().session_mut().document.preset.time += 1.0;
     harness.state_mut().session_mut().playback.time += 1.0;
     shown(&mut harness);
-    assert_eq!(harness.state().easel().figures().pictures, drawn + 1);
+    assert_eq!(harness.state().renderer().render_stats().renders, drawn + 1);
 }

@@ -44,7 +44,7 @@ fn drag(harness: &mut Harness<'_, Window>, frames: usize) -> (f64, u32) {
         }
         harness.hover_at(at(frame));
         picture(harness);
-        coarsest = coarsest.max(harness.state().easel().divisor());
+        coarsest = coarsest.max(harness.state().renderer().divisor());
     }
     let seconds = start.elapsed().as_secs_f64();
     println!("{:.0} ms of work a frame", (worked() - before) / frames as f64);
@@ -62,7 +62,7 @@ fn a_slider_is_dragged_at_15_frames_a_second() {
         let (rate, coarsest) = drag(&mut harness, 80);
         println!("{size:?}: {rate:.1} frames a second, {coarsest} pixels each way");
         assert!(rate >= 15.0 || size.x > 640.0, "{rate}");
-        assert_eq!(harness.state().easel().divisor(), 1);
+        assert_eq!(harness.state().renderer().divisor(), 1);
     }
 }
 
@@ -71,7 +71,7 @@ fn an_idle_window_draws_nothing_and_requests_no_repaint() {
     let mut harness = window("column", Vec2::new(700.0, 480.0), Theme::Dark);
     let drawn = |harness: &mut Harness<'_, Window>| {
         picture(harness);
-        harness.state().easel().figures().pictures
+        harness.state().renderer().render_stats().renders
     };
     drawn(&mut harness);
     harness.run_steps(10);
@@ -95,9 +95,9 @@ fn the_full_resolution_returns_when_everything_is_released() {
     let at = Pos2::new(350.0, 476.0);
     harness.drag_at(at);
     harness.step();
-    harness.state().easel().simulate_slow_frame();
+    harness.state().renderer().simulate_slow_frame();
     let coarse = picture(&mut harness);
-    assert!(harness.state().easel().divisor() > 1);
+    assert!(harness.state().renderer().divisor() > 1);
     harness.drop_at(at);
     harness.run_steps(3);
     let again = picture(&mut harness);
@@ -108,5 +108,5 @@ fn the_full_resolution_returns_when_everything_is_released() {
         pixels.filter(|&(x, y)| a.get_pixel(x, y) != b.get_pixel(x, y)).count()
     };
     assert!(apart(&whole, &coarse) > 1000);
-    assert_eq!((harness.state().easel().divisor(), apart(&whole, &again)), (1, 0));
+    assert_eq!((harness.state().renderer().divisor(), apart(&whole, &again)), (1, 0));
 }
