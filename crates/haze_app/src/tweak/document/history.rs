@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 /// Largest number of steps that can be undone.
-pub const MOST_STEPS: usize = 500;
+pub const MAX_STEPS: usize = 500;
 
 /// Steps that led to a value, and steps that were undone. Each step stores the whole value: a preset has a few
 /// kilobytes.
@@ -97,7 +97,7 @@ impl<T: Clone + PartialEq> History<T> {
     fn close(&mut self, value: T, name: String) {
         self.open = None;
         self.future.clear();
-        if self.past.len() == MOST_STEPS {
+        if self.past.len() == MAX_STEPS {
             self.past.pop_front();
         }
         let before = std::mem::replace(&mut self.settled, value);
@@ -170,7 +170,7 @@ mod tests {
         while history.undo(&mut value).is_some() {
             steps += 1;
         }
-        assert_eq!((steps, value), (MOST_STEPS, 2500));
+        assert_eq!((steps, value), (MAX_STEPS, 2500));
     }
 
     proptest! {

@@ -74,7 +74,7 @@ impl Recovery {
         Ok(())
     }
 
-    /// Returns true if [`Recovery::keep`] will write something when the interval is over.
+    /// Returns true if [`Recovery::write_periodically`] will write something when the interval is over.
     pub fn has_pending_write(&self, document: &Document) -> bool {
         let is_written = self.written.as_ref().is_some_and(|(preset, _)| *preset == document.preset);
         document.is_dirty() && !is_written && !self.is_broken && document.preset.validate().is_ok()
@@ -104,10 +104,10 @@ fn preset_beside(lock: &Path) -> PathBuf {
 /// Takes a lock file that no process uses.
 fn free_lock(folder: &Path) -> Result<Lock, Error> {
     /// Far more than the number of tweakers that run at the same time.
-    const MOST: u32 = 1000;
+    const MAX_LOCKS: u32 = 1000;
     let path = |number| folder.join(format!("recovery-{number}.lock"));
     let is_free = |path: &PathBuf| !file_io::exists(&preset_beside(path));
-    let free = (1..MOST).map(path).filter(is_free).find_map(|path| Lock::take(&path));
+    let free = (1..MAX_LOCKS).map(path).filter(is_free).find_map(|path| Lock::take(&path));
     free.ok_or_else(|| {
         let error = std::io::Error::other("cannot lock a file here; expected a writable folder");
         Error::Io { path: path(1), error }

@@ -58,7 +58,7 @@ impl Default for ExportOptions {
 }
 
 /// Longest side of an image, pixels.
-pub const MOST_PIXELS: u32 = 8192;
+pub const MAX_PIXELS: u32 = 8192;
 
 /// Export jobs, and the state of the export dialog.
 pub struct ExportJob {
@@ -133,7 +133,7 @@ impl ExportJob {
         let mut size = self.options.size;
         if product == ExportKind::Image {
             // A single image has the aspect ratio of the viewport.
-            size.x = ((size.y as f32 * session.view.aspect).round() as u32).clamp(1, MOST_PIXELS);
+            size.x = ((size.y as f32 * session.view.aspect).round() as u32).clamp(1, MAX_PIXELS);
         }
         let shot = session.shot(size);
         let place = ExportPath::new(session.document.path(), &shot.preset);
@@ -279,7 +279,7 @@ fn seeds(shot: &Shot) -> Vec<(String, Shot)> {
     (0..9).map(with).collect()
 }
 
-/// Returns shots with a field at the values of its [`spread`], without those that are not valid.
+/// Returns shots with a field at the values of its [`spread_values`], without those that are not valid.
 fn variations(shot: &Shot, path: &str) -> Vec<(String, Shot)> {
     let with = |text: String| {
         let mut shot = shot.clone();

@@ -36,7 +36,7 @@ pub struct FileActions {
 }
 
 /// Longest wait for the file thread at exit.
-const MAX_SAVE_WAIT: Duration = Duration::from_millis(500);
+const MAX_EXIT_WAIT: Duration = Duration::from_millis(500);
 
 /// Action that ends the work on the document.
 pub enum AfterUnsaved {
@@ -162,10 +162,10 @@ impl FileActions {
         self.worker.submit(move |_| FileResult::LayoutWritten(write()));
     }
 
-    /// Waits at exit for pending writes, but no longer than [`MAX_SAVE_WAIT`].
+    /// Waits at exit for pending writes, but no longer than [`MAX_EXIT_WAIT`].
     pub fn finish(&self) {
         let begun = Instant::now();
-        while self.worker.is_busy() && begun.elapsed() < MAX_SAVE_WAIT {
+        while self.worker.is_busy() && begun.elapsed() < MAX_EXIT_WAIT {
             sleep(Duration::from_millis(5));
         }
     }

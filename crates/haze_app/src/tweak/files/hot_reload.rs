@@ -158,7 +158,7 @@ impl HotReload {
             self.check_shaders(session, renderer);
         }
         while let Some(loaded) = self.worker.poll() {
-            self.put(loaded, session, renderer);
+            self.apply(loaded, session, renderer);
         }
     }
 
@@ -221,7 +221,7 @@ impl HotReload {
         }
     }
 
-    fn put(&mut self, loaded: Option<ReloadResult>, session: &mut Session, renderer: &ViewportRenderer) {
+    fn apply(&mut self, loaded: Option<ReloadResult>, session: &mut Session, renderer: &ViewportRenderer) {
         match loaded {
             Some(ReloadResult::Pictures(preset, Ok(loaded))) => {
                 session.loaded_materials = LoadedMaterials::new(&preset, loaded);

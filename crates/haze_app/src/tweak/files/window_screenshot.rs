@@ -11,7 +11,7 @@ use crate::tweak::platform::file_io::{CompressionEffort, write_png};
 use crate::tweak::session::Session;
 
 /// Number of frames after which the window has settled.
-const SETTLED: u32 = 6;
+const SETTLED_FRAMES: u32 = 6;
 
 #[derive(Default)]
 pub struct Screenshot {
@@ -31,7 +31,7 @@ impl Screenshot {
                 session.messages.error("screenshot", error);
             }
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
-        } else if self.frames == SETTLED {
+        } else if self.frames == SETTLED_FRAMES {
             let (taken, context) = (self.taken.clone(), ui.ctx().clone());
             ui.ctx().request_screenshot(move |picture| {
                 *taken.lock().unwrap_or_else(PoisonError::into_inner) = Some(picture);

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Ui};
 
-use crate::tweak::files::export_job::{ExportJob, ExportKind, MOST_PIXELS, Sheet};
+use crate::tweak::files::export_job::{ExportJob, ExportKind, MAX_PIXELS, Sheet};
 use crate::tweak::platform::clock::Duration;
 use crate::tweak::session::Session;
 use crate::tweak::session::setting_search::matches;
@@ -67,7 +67,7 @@ fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
             });
             ui.end_row();
         };
-        row("Size", [(&mut options.size.x, 16..=MOST_PIXELS), (&mut options.size.y, 16..=MOST_PIXELS)]);
+        row("Size", [(&mut options.size.x, 16..=MAX_PIXELS), (&mut options.size.y, 16..=MAX_PIXELS)]);
         if is_moving {
             row("Frames", [(&mut options.first, 0..=99_999), (&mut options.last, 0..=99_999)]);
         }

@@ -23,7 +23,7 @@ pub fn panel(ui: &Ui, session: &mut Session, is_pressing: bool, is_dragging_ligh
     );
     let Some((hint, at)) = session.hints.shown().filter(|(_, at)| at.is_positive()) else { return };
     let Some((_, _, text)) = HINTS.into_iter().find(|(of, ..)| *of == hint) else { return };
-    let (corner, pivot, way) = match hint.place() {
+    let (corner, pivot, way) = match hint.window_part() {
         WindowPart::Image => (at.left_bottom() + vec2(AWAY, -AWAY), Align2::LEFT_BOTTOM, Vec2::UP),
         WindowPart::Settings => (at.left_top() + vec2(-AWAY, 64.0), Align2::RIGHT_TOP, Vec2::RIGHT),
         WindowPart::Find | WindowPart::Keys => (at.right_bottom() + vec2(0.0, AWAY), Align2::RIGHT_TOP, Vec2::UP),

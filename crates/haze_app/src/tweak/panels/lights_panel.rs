@@ -11,7 +11,7 @@ use super::rows::{Row, setting_rows, value_control};
 use crate::tweak::document::light_angles::{Angles, MAX_ELEVATION, from_angles, to_angles};
 use crate::tweak::document::light_defaults::{light_name, new_light};
 use crate::tweak::session::light_view::LightView;
-use crate::tweak::session::smoke_geometry::{SmokeGeometry, put_behind};
+use crate::tweak::session::smoke_geometry::{SmokeGeometry, place_behind};
 
 /// Draws the list and the settings of the selected light. `seen` gives the smoke that is shown, and the size of the
 /// image.
@@ -99,7 +99,7 @@ fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut LightView, (smoke, size):
         let smoke = smoke();
         let (eye, point) = (preset.camera.position, smoke.visible_centre(&preset.camera, size));
         if let Some(light) = preset.lights.get_mut(index) {
-            put_behind(light, eye, point, &smoke.bounds);
+            place_behind(light, eye, point, &smoke.bounds);
         }
     }
 }

@@ -18,11 +18,11 @@ use crate::tweak::session::{Session, ramp_survey};
 use crate::tweak::viewport_renderer::compared_side::ComparedSide;
 
 /// Heights of a ramp and of a histogram, points.
-const STRIP: f32 = 20.0;
-const HISTOGRAM: f32 = 56.0;
+const RAMP_HEIGHT: f32 = 20.0;
+const HISTOGRAM_HEIGHT: f32 = 56.0;
 
 /// Colours of the lights, reused cyclically; distinguishable also with colour blindness.
-const LIGHTS: [Color32; 6] = [
+const LIGHT_COLOURS: [Color32; 6] = [
     Color32::from_rgb(230, 159, 0),
     Color32::from_rgb(86, 180, 233),
     Color32::from_rgb(0, 158, 115),
@@ -32,7 +32,7 @@ const LIGHTS: [Color32; 6] = [
 ];
 
 /// Colour over the specular ramp of the places that are sampled.
-const LOOKED_UP: Color32 = Color32::from_rgb(120, 200, 240);
+const SAMPLED_COLOUR: Color32 = Color32::from_rgb(120, 200, 240);
 
 /// Draws the tab. Returns the place on a ramp under the pointer.
 pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPlace> {
@@ -77,7 +77,7 @@ pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPla
             let density = survey.map(|survey| survey.by_glow(index));
             ramp_place =
                 ramp_place.or(plane(ui, &spoken, (&material.specular_ramp, filter), density.as_deref(), probe));
-            let [across, up] = looked_up(density.as_deref(), probe, ink);
+            let [across, up] = axis_samples(density.as_deref(), probe, ink);
             ramp_stops::editor(ui, session, ramp, &across, &up);
             continue;
         }
@@ -127,8 +127,8 @@ fn ramp_samples<'a>(
     match field {
         "diffuse_ramp" | "backlight_ramp" => {
             let looking = probe.iter().flat_map(|probe| &probe.lights);
-            let marks = looking.map(|light| (light.coordinate, of_light(light.light))).collect();
-            let bins = lights.iter().map(|histogram| (of_light(histogram.light), histogram.bins.clone()));
+            let marks = looking.map(|light| (light.coordinate, light_colour(light.light))).collect();
+            let bins = lights.iter().map(|histogram| (light_colour(histogram.light), histogram.bins.clone()));
             let ramp = if field == "diffuse_ramp" { &material.diffuse_ramp } else { &material.backlight_ramp };
             (ramp, bins.collect(), marks)
         }
@@ -146,9 +146,9 @@ fn ramp_samples<'a>(
 }
 
 /// Returns histograms and marks of the specular ramp along each axis.
-fn looked_up(density: Option<&[f32]>, probe: Option<&SystemProbe>, ink: Color32) -> [AxisSamples; 2] {
+fn axis_samples(density: Option<&[f32]>, probe: Option<&SystemProbe>, ink: Color32) -> [AxisSamples; 2] {
     let glows = probe.iter().flat_map(|probe| &probe.lights).filter_map(|light| Some((light.light, light.glow?)));
-    let marks: Vec<_> = glows.map(|(light, glow)| (of_light(light), glow.coordinate)).collect();
+    let marks: Vec<_> = glows.map(|(light, glow)| (light_colour(light), glow.coordinate)).collect();
     // Empty histograms reserve the space.
     let [across, up] = ramp_survey::along(density.unwrap_or_default());
     [
@@ -169,8 +169,8 @@ fn choose(ui: &mut Ui, session: &mut Session, title: &str, path: &str, name: &st
     }
 }
 
-fn of_light(index: usize) -> Color32 {
-    LIGHTS[index % LIGHTS.len()]
+fn light_colour(index: usize) -> Color32 {
+    LIGHT_COLOURS[index % LIGHT_COLOURS.len()]
 }
 
 /// Allocates space for an image with a name. Returns the pointer position in it, in shares of its sides.
@@ -182,7 +182,7 @@ fn space(ui: &mut Ui, size: Vec2, name: &str) -> (Rect, Option<Vec2>) {
 
 /// Draws a ramp from left to right with marks. Returns the coordinate under the pointer.
 fn strip(ui: &mut Ui, name: &str, ramp: &Ramp, filter: RampFilter, marks: &[(f32, Color32)]) -> Option<f32> {
-    let (rect, at) = space(ui, Vec2::new(ui.available_width(), STRIP), name);
+    let (rect, at) = space(ui, Vec2::new(ui.available_width(), RAMP_HEIGHT), name);
     picture(ui, rect, UVec2::new(128, 1), |at| sample_ramp(ramp, filter, at.x));
     for &(coordinate, colour) in marks {
         let x = rect.left() + coordinate * rect.width();
@@ -214,7 +214,7 @@ fn histogram(ui: &mut Ui, field: &str, histograms: &[Bins]) {
         return;
     }
     let name = if field == "diffuse_ramp" { "histogram of N·L" } else { "histogram of amounts" };
-    let (rect, _) = space(ui, Vec2::new(ui.available_width(), HISTOGRAM), name);
+    let (rect, _) = space(ui, Vec2::new(ui.available_width(), HISTOGRAM_HEIGHT), name);
     ui.painter().rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
     histograms.iter().for_each(|(colour, bins)| egui_gradient::histogram(ui, rect, bins, *colour));
 }
@@ -224,7 +224,7 @@ fn legend(ui: &mut Ui, histograms: &[Histogram], names: &[String]) {
     ui.horizontal_wrapped(|ui| {
         for histogram in histograms {
             let name = names.get(histogram.light).map_or("light", String::as_str);
-            ui.colored_label(of_light(histogram.light), name);
+            ui.colored_label(light_colour(histogram.light), name);
         }
         if histograms.is_empty() {
             ui.weak("No light reaches smoke in the picture");
@@ -248,13 +248,13 @@ fn plane(
     for (index, density) in density.unwrap_or_default().iter().enumerate().filter(|(_, density)| **density > 0.0) {
         let (x, y) = ((index % SIDE) as f32, (SIDE - 1 - index / SIDE) as f32);
         let square = Rect::from_min_size(rect.min + Vec2::new(x, y) * cell, cell);
-        mesh.add_colored_rect(square, LOOKED_UP.gamma_multiply(0.7 * density.sqrt()));
+        mesh.add_colored_rect(square, SAMPLED_COLOUR.gamma_multiply(0.7 * density.sqrt()));
     }
     ui.painter().add(mesh);
     for glow in probe.iter().flat_map(|probe| &probe.lights).filter_map(|light| Some((light.light, light.glow?))) {
         let (light, at) = (glow.0, glow.1.coordinate);
         let place = rect.min + Vec2::new(at.x, 1.0 - at.y) * rect.size();
-        ui.painter().circle(place, 4.0, of_light(light), Stroke::new(1.5, Color32::BLACK));
+        ui.painter().circle(place, 4.0, light_colour(light), Stroke::new(1.5, Color32::BLACK));
     }
     ui.weak("across: distance² from the light; up: amount");
     at.map(|at| RampPlace::Specular(glam::Vec2::new(at.x, 1.0 - at.y)))

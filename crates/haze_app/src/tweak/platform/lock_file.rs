@@ -41,10 +41,10 @@ impl Lock {
     /// Returns the text in the file, written by this process or by the previous owner.
     pub fn read(&mut self) -> io::Result<String> {
         /// Longer than any path.
-        const MOST: u64 = 1 << 16;
+        const MAX_BYTES: u64 = 1 << 16;
         let mut text = String::new();
         self.file.rewind()?;
-        (&self.file).take(MOST).read_to_string(&mut text)?;
+        (&self.file).take(MAX_BYTES).read_to_string(&mut text)?;
         Ok(text)
     }
 

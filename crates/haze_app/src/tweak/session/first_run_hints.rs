@@ -34,7 +34,7 @@ pub enum WindowPart {
 }
 
 impl Hint {
-    pub fn place(self) -> WindowPart {
+    pub fn window_part(self) -> WindowPart {
         match self {
             Self::Orbit | Self::Light => WindowPart::Image,
             Self::Look => WindowPart::Settings,
@@ -80,7 +80,7 @@ impl FirstRunHints {
 
     /// Returns the current hint and the rectangle that it points at.
     pub fn shown(&self) -> Option<(Hint, Rect)> {
-        self.open.first().map(|hint| (*hint, self.places[hint.place() as usize]))
+        self.open.first().map(|hint| (*hint, self.places[hint.window_part() as usize]))
     }
 
     /// Records the rectangle of a part of the window.

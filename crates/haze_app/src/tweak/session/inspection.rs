@@ -59,6 +59,6 @@ impl Inspection {
 }
 
 /// Returns tonemapped light as an sRGB code.
-pub fn code(light: Vec3, exposure: f32) -> [u8; 3] {
+pub fn srgb_code(light: Vec3, exposure: f32) -> [u8; 3] {
     tonemapped(light, exposure).to_array().map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round() as u8)
 }

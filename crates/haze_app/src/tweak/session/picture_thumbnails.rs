@@ -20,10 +20,10 @@ use crate::tweak::platform::worker::Worker;
 pub const SIZE: [usize; 2] = [72, 48];
 
 /// Largest number of files that a folder offers.
-const MAX_SIDE: usize = 64;
+const MAX_FILES: usize = 64;
 
 /// Interval in which a folder is listed again while its files are shown, seconds.
-const FRESH: f64 = 1.0;
+const LIST_INTERVAL: f64 = 1.0;
 
 type Key = (u8, String);
 type Decoded = (Key, Option<ColorImage>);
@@ -35,7 +35,7 @@ pub struct PictureThumbnails(RefCell<Inner>);
 #[derive(Default)]
 struct Inner {
     worker: Option<Worker<Decoded>>,
-    pictures: HashMap<Key, Thumb>,
+    thumbs: HashMap<Key, Thumb>,
     /// Folders with files; empty for a built-in preset without a shared folder.
     folders: Vec<PathBuf>,
     /// PNG files in the folders, and the time when they were listed, seconds.
@@ -67,15 +67,15 @@ impl PictureThumbnails {
     pub fn names(&self, context: &egui::Context, role: ImageRole) -> Vec<String> {
         let now = context.input(|input| input.time);
         let inner = &mut *self.0.borrow_mut();
-        if inner.listed.is_none_or(|listed| now - listed > FRESH) {
+        if inner.listed.is_none_or(|listed| now - listed > LIST_INTERVAL) {
             inner.listed = Some(now);
             inner.files = inner.folders.iter().flat_map(|folder| pngs(folder)).collect();
             inner.files.sort();
             inner.files.dedup();
             // Files that have changed since are decoded again.
-            let Inner { folders, pictures, .. } = inner;
+            let Inner { folders, thumbs, .. } = inner;
             let stamp = |name: &str| file(folders, name).and_then(|path| Stamp::of(&path));
-            pictures.retain(|(_, name), thumb| thumb.stamp.is_none() || thumb.stamp == stamp(name));
+            thumbs.retain(|(_, name), thumb| thumb.stamp.is_none() || thumb.stamp == stamp(name));
         }
         let builtins = builtin::of_role(role).iter().map(|builtin| builtin.name.to_owned());
         inner.files.iter().cloned().chain(builtins).collect()
@@ -85,12 +85,12 @@ impl PictureThumbnails {
     pub fn texture(&self, context: &egui::Context, role: ImageRole, name: &str) -> Option<egui::TextureId> {
         let inner = &mut *self.0.borrow_mut();
         while let Some(Some((key, image))) = inner.worker.as_ref().and_then(Worker::poll) {
-            if let Some((thumb, image)) = inner.pictures.get_mut(&key).zip(image) {
+            if let Some((thumb, image)) = inner.thumbs.get_mut(&key).zip(image) {
                 thumb.texture = Some(context.load_texture(&key.1, image, TextureOptions::LINEAR));
             }
         }
         let key = (role as u8, name.to_owned());
-        if let Some(thumb) = inner.pictures.get(&key) {
+        if let Some(thumb) = inner.thumbs.get(&key) {
             return thumb.texture.as_ref().map(TextureHandle::id);
         }
         let source = match builtin::find(builtin::of_role(role), name) {
@@ -98,7 +98,7 @@ impl PictureThumbnails {
             None => ImageSource::File(file(&inner.folders, name)?),
         };
         let stamp = if let ImageSource::File(path) = &source { Stamp::of(path) } else { None };
-        inner.pictures.insert(key.clone(), Thumb { stamp, texture: None });
+        inner.thumbs.insert(key.clone(), Thumb { stamp, texture: None });
         if inner.worker.is_none() {
             let context = context.clone();
             // Without a thread, only names are shown.
@@ -119,7 +119,7 @@ fn file(folders: &[PathBuf], name: &str) -> Option<PathBuf> {
 fn pngs(folder: &Path) -> Vec<String> {
     let is_png = |path: &PathBuf| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
     let name = |path: PathBuf| Some(path.file_name()?.to_str()?.to_owned());
-    file_io::list(folder).into_iter().filter(is_png).filter_map(name).take(MAX_SIDE).collect()
+    file_io::list(folder).into_iter().filter(is_png).filter_map(name).take(MAX_FILES).collect()
 }
 
 enum ImageSource {

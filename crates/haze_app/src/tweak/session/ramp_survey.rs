@@ -6,7 +6,7 @@ use haze_demo::capture::ProbeInputs;
 use haze_reference::SystemProbe;
 
 /// Largest number of pixels that are sampled.
-const MAX_PROBES: u32 = 10_000;
+const MAX_SAMPLED_PIXELS: u32 = 10_000;
 
 /// Number of bins of a histogram; `SIDE` is that along each side of the specular ramp's.
 pub const BINS: usize = 64;
@@ -48,7 +48,7 @@ impl RampSurvey {
     /// If the texels belong to another shot.
     pub fn of(witness: &ProbeInputs) -> Result<Self, Error> {
         let size = witness.shot().size;
-        let step = (size.element_product() as f32 / MAX_PROBES as f32).sqrt().ceil().max(1.0) as u32;
+        let step = (size.element_product() as f32 / MAX_SAMPLED_PIXELS as f32).sqrt().ceil().max(1.0) as u32;
         let column = |y| (step / 2..size.x).step_by(step as usize).map(move |x| UVec2::new(x, y));
         let pixels: Vec<_> = (step / 2..size.y).step_by(step as usize).flat_map(column).collect();
         let probes = witness.probe(&pixels)?;
@@ -59,14 +59,14 @@ impl RampSurvey {
         Ok(Self { size, step, samples })
     }
 
-    fn of_system(&self, system: usize) -> impl Iterator<Item = &(UVec2, SystemProbe)> {
+    fn probes_of_system(&self, system: usize) -> impl Iterator<Item = &(UVec2, SystemProbe)> {
         self.samples.iter().filter(move |(_, probe)| probe.system == system)
     }
 
     /// Returns histograms of the diffuse ramp, one for each light.
     pub fn by_light(&self, system: usize) -> Vec<Histogram> {
         let mut histograms: Vec<Histogram> = Vec::new();
-        for (_, probe) in self.of_system(system) {
+        for (_, probe) in self.probes_of_system(system) {
             for light in &probe.lights {
                 let at = histograms.iter().position(|histogram| histogram.light == light.light).unwrap_or_else(|| {
                     histograms.push(Histogram { light: light.light, bins: vec![0.0; BINS] });
@@ -94,7 +94,7 @@ impl RampSurvey {
     /// Returns a weighted histogram of a coordinate.
     fn count(&self, system: usize, of: impl Fn(&SystemProbe) -> (f32, f32)) -> Vec<f32> {
         let mut bins = vec![0.0; BINS];
-        for (coordinate, weight) in self.of_system(system).map(|(_, probe)| of(probe)) {
+        for (coordinate, weight) in self.probes_of_system(system).map(|(_, probe)| of(probe)) {
             bins[bin(coordinate, BINS)] += weight;
         }
         let most = bins.iter().fold(0.0, |a: f32, b| a.max(*b));
@@ -105,7 +105,7 @@ impl RampSurvey {
     /// Returns the histogram of the specular ramp, by rows of rising amount.
     pub fn by_glow(&self, system: usize) -> Vec<f32> {
         let mut bins = vec![0.0; SIDE * SIDE];
-        for (_, probe) in self.of_system(system) {
+        for (_, probe) in self.probes_of_system(system) {
             for glow in probe.lights.iter().filter_map(|light| light.glow) {
                 bins[bin(glow.coordinate.y, SIDE) * SIDE + bin(glow.coordinate.x, SIDE)] += probe.coverage;
             }
@@ -128,7 +128,7 @@ impl RampSurvey {
                 .filter_map(|light| light.glow)
                 .any(|glow| is_near(glow.coordinate.x, at.x) && is_near(glow.coordinate.y, at.y)),
         };
-        self.of_system(system).filter(|(_, probe)| looks_up(probe)).map(|(pixel, _)| *pixel).collect()
+        self.probes_of_system(system).filter(|(_, probe)| looks_up(probe)).map(|(pixel, _)| *pixel).collect()
     }
 }
 

@@ -91,7 +91,7 @@ const MIN_HEIGHT: f32 = 0.2;
 
 /// Puts a light behind a point of the smoke as seen from `eye`, slightly outside all boxes there. A spot or sun points
 /// at it.
-pub fn put_behind(light: &mut Light, eye: Vec3, point: Vec3, boxes: &[Bounds]) {
+pub fn place_behind(light: &mut Light, eye: Vec3, point: Vec3, boxes: &[Bounds]) {
     let away = (point - eye).normalize_or(Vec3::NEG_Z);
     if light.kind == LightKind::Directional {
         light.direction = -away;
@@ -137,7 +137,7 @@ mod tests {
         for &kind in LightKind::ALL {
             for point in [BOX.centre(), Vec3::new(0.9, 4.5, 0.8), Vec3::new(-0.8, 2.0, -1.0)] {
                 let mut light = Light { kind, ..Light::default() };
-                put_behind(&mut light, eye, point, &[BOX]);
+                place_behind(&mut light, eye, point, &[BOX]);
                 let away = (point - eye).normalize();
                 if kind != LightKind::Directional {
                     let seen = light.position - eye;
@@ -155,7 +155,7 @@ mod tests {
         let moved = |by: Vec3| Bounds { min: BOX.min + by, max: BOX.max + by };
         let (eye, point) = (Vec3::new(0.0, 2.0, 9.0), Vec3::new(0.0, 2.0, 0.0));
         let mut put = |by: Vec3| {
-            put_behind(&mut light, eye, point, &[BOX, moved(by)]);
+            place_behind(&mut light, eye, point, &[BOX, moved(by)]);
             light.position.z
         };
         assert!(put(Vec3::NEG_Z * 10.0) < -12.0 && (-3.0..-2.0).contains(&put(Vec3::X * 10.0)));
@@ -165,7 +165,7 @@ mod tests {
     fn a_light_put_behind_smoke_seen_from_above_stays_above_the_ground() {
         for eye in [Vec3::new(4.0, 9.0, 6.0), Vec3::new(0.25, 20.0, -0.5), Vec3::new(0.3, 6.0, 0.0)] {
             let mut light = Light { kind: LightKind::Spot, ..Light::default() };
-            put_behind(&mut light, eye, BOX.centre(), &[BOX]);
+            place_behind(&mut light, eye, BOX.centre(), &[BOX]);
             assert!(light.position.y >= MIN_HEIGHT, "{}", light.position);
             // Outside the box, on its far side, and pointing at its centre.
             assert!(light.position.x < BOX.min.x || light.position.z < BOX.min.z, "{}", light.position);

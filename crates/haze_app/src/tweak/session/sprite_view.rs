@@ -50,7 +50,7 @@ impl Default for SpriteView {
 }
 
 /// Duration of one turn of the light, seconds.
-const TURN: f32 = 5.0;
+const TURN_SECONDS: f32 = 5.0;
 /// Longest time that one frame of the window may advance, seconds.
 const MAX_STEP: f32 = 0.1;
 
@@ -68,7 +68,7 @@ impl SpriteView {
             self.frame = (self.frame + seconds * self.rate).rem_euclid(sprite.frame_count() as f32);
         }
         if self.is_turning {
-            self.turn_to(self.light.azimuth + 360.0 * seconds / TURN);
+            self.turn_to(self.light.azimuth + 360.0 * seconds / TURN_SECONDS);
         }
     }
 

@@ -22,7 +22,7 @@ const SPEEDS: std::ops::RangeInclusive<f32> = 0.05..=200.0;
 /// Pause after which the wheel begins a new gesture, seconds.
 const PAUSE: f64 = 0.5;
 /// Largest coordinate that a preset may have, metres.
-const MAX_DISTANCE: f32 = 1.0e5;
+const MAX_COORDINATE: f32 = 1.0e5;
 
 /// Camera gesture in progress.
 pub struct CameraInput {
@@ -57,7 +57,7 @@ impl CameraInput {
         self.fly(ui, response, camera);
         let is_faster = self.wheel(ui, response, projection, camera);
         let places = [camera.position, camera.target];
-        if !places.iter().all(|place| place.is_finite() && place.abs().max_element() <= MAX_DISTANCE) {
+        if !places.iter().all(|place| place.is_finite() && place.abs().max_element() <= MAX_COORDINATE) {
             *camera = before;
         }
         is_faster

@@ -7,7 +7,7 @@ use haze::preset::Camera;
 /// Least distance between the camera and its target, metres.
 const MIN_DISTANCE: f32 = 0.05;
 /// Largest absolute y of a unit view direction; 1 is straight up or down.
-const MAX_SINE_OF_ELEVATION: f32 = 0.9995;
+const MAX_ABS_Y: f32 = 0.9995;
 
 /// Orbits about the target; angles in radians to the side and up.
 pub fn orbit(camera: &mut Camera, angle: Vec2) {
@@ -25,7 +25,7 @@ fn turned(v: Vec3, angle: Vec2) -> Vec3 {
     let side = level.cross(Vec3::Y).normalize_or(Vec3::X);
     let steep = Quat::from_axis_angle(side, -angle.y) * level;
     let steepness = |v: Vec3| v.normalize_or_zero().y.abs();
-    if steepness(steep) < steepness(level).max(MAX_SINE_OF_ELEVATION) { steep } else { level }
+    if steepness(steep) < steepness(level).max(MAX_ABS_Y) { steep } else { level }
 }
 
 /// Moves camera and target by shares of the image height, so that the target stays under the pointer.
@@ -97,7 +97,7 @@ mod tests {
             orbit(&mut camera, Vec2::new(0.13, 0.11));
             assert!((camera.position.distance(camera.target) - distance).abs() < 1e-3);
             let up = (camera.position - camera.target).normalize().y.abs();
-            assert!(up <= MAX_SINE_OF_ELEVATION);
+            assert!(up <= MAX_ABS_Y);
         }
     }
 

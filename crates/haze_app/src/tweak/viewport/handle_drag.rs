@@ -10,10 +10,10 @@ use super::screen_projection::ScreenProjection;
 use crate::tweak::document::light_angles::{Angles, from_angles, to_angles};
 
 /// Steps of snapping with Ctrl, in metres and in degrees.
-const METRES: f32 = 0.1;
-const DEGREES: f32 = 5.0;
+const SNAP_METRES: f32 = 0.1;
+const SNAP_DEGREES: f32 = 5.0;
 /// Factor on the pointer's movement while Shift is held.
-const SLOW: f32 = 0.1;
+const SLOW_FACTOR: f32 = 0.1;
 
 /// Drag of a handle.
 pub struct HandleDrag {
@@ -51,7 +51,7 @@ impl HandleDrag {
 
     /// Returns the light for a position of the pointer.
     pub fn drag(&mut self, projection: &ScreenProjection, pointer: Pos2, held: Modifiers) -> Light {
-        self.at += (pointer - self.pointer) * if held.shift { SLOW } else { 1.0 };
+        self.at += (pointer - self.pointer) * if held.shift { SLOW_FACTOR } else { 1.0 };
         self.pointer = pointer;
         let snap = |value: f32, step: f32| if held.command { (value / step).round() * step } else { value };
         let mut light = self.before;
@@ -59,39 +59,40 @@ impl HandleDrag {
             Handle::Axis(axis) => {
                 let metres = |at| projection.ray(at).along_axis(light.position, UNITS[axis]);
                 if let (Some(from), Some(to)) = (metres(self.start), metres(self.at)) {
-                    light.position[axis] = snap(light.position[axis] + to - from, METRES);
+                    light.position[axis] = snap(light.position[axis] + to - from, SNAP_METRES);
                 }
             }
             Handle::Plane(axis) => {
                 if let Some(by) = self.moved(projection, UNITS[axis]) {
                     for other in [(axis + 1) % 3, (axis + 2) % 3] {
-                        light.position[other] = snap(light.position[other] + by[other], METRES);
+                        light.position[other] = snap(light.position[other] + by[other], SNAP_METRES);
                     }
                 }
             }
             Handle::Centre => {
                 if let Some(by) = self.moved(projection, projection.ahead) {
-                    light.position = Vec3::from((light.position + by).to_array().map(|axis| snap(axis, METRES)));
+                    light.position = Vec3::from((light.position + by).to_array().map(|axis| snap(axis, SNAP_METRES)));
                 }
             }
             Handle::Radius => {
                 let metres = |at| projection.unproject_to_facing_plane(at, light.position).distance(light.position);
-                light.radius = snap(light.radius + metres(self.at) - metres(self.start), METRES).clamp(0.0, 1.0e4);
+                light.radius = snap(light.radius + metres(self.at) - metres(self.start), SNAP_METRES).clamp(0.0, 1.0e4);
             }
             Handle::InnerAngle => {
-                light.inner_angle = snap(light.inner_angle + self.turned(projection), DEGREES).clamp(0.0, 89.0);
+                light.inner_angle = snap(light.inner_angle + self.turned(projection), SNAP_DEGREES).clamp(0.0, 89.0);
                 light.outer_angle = light.outer_angle.max(light.inner_angle);
             }
             Handle::OuterAngle => {
-                light.outer_angle = snap(light.outer_angle + self.turned(projection), DEGREES).clamp(0.0, 89.9);
+                light.outer_angle = snap(light.outer_angle + self.turned(projection), SNAP_DEGREES).clamp(0.0, 89.9);
                 light.inner_angle = light.inner_angle.min(light.outer_angle);
             }
             Handle::Aim => {
                 let Angles { azimuth, elevation } = to_angles(self.aim(projection));
                 light.direction = match held.command {
-                    true => {
-                        from_angles(Angles { azimuth: snap(azimuth, DEGREES), elevation: snap(elevation, DEGREES) })
-                    }
+                    true => from_angles(Angles {
+                        azimuth: snap(azimuth, SNAP_DEGREES),
+                        elevation: snap(elevation, SNAP_DEGREES),
+                    }),
                     false => self.aim(projection),
                 };
             }

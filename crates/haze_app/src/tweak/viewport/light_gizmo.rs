@@ -14,7 +14,7 @@ use crate::tweak::session::Session;
 /// Dragged and hovered handle.
 #[derive(Default)]
 pub struct LightGizmo {
-    grab: Option<HandleDrag>,
+    drag: Option<HandleDrag>,
     hovered: Option<Handle>,
     /// The button that started the drag is still down.
     is_busy: bool,
@@ -23,7 +23,7 @@ pub struct LightGizmo {
 /// Number of corners of a circle.
 const CORNERS: u32 = 72;
 /// A circle with a larger radius is not drawn, points.
-const MAX_LENGTH: f32 = 1.0e4;
+const MAX_CIRCLE_RADIUS: f32 = 1.0e4;
 
 impl LightGizmo {
     /// Selects and drags lights. Returns true while the pointer is used for that.
@@ -41,7 +41,7 @@ impl LightGizmo {
         let selected = session.view.lights.selected.filter(|_| session.view.lights.turn.is_none());
         let light =
             selected.and_then(|index| session.document.preset.lights.get_mut(index).map(|light| (index, light)));
-        let at = pointer.filter(|_| response.contains_pointer() || self.grab.is_some());
+        let at = pointer.filter(|_| response.contains_pointer() || self.drag.is_some());
         let was_busy = self.is_busy;
         self.is_busy &= down;
         self.hovered = None;
@@ -50,16 +50,16 @@ impl LightGizmo {
             if let (Some(handle), Some(at), true) =
                 (under, at, pressed && response.is_pointer_button_down_on() && !held.alt)
             {
-                self.grab = Some(HandleDrag::new(index, handle, *light, projection, at));
+                self.drag = Some(HandleDrag::new(index, handle, *light, projection, at));
                 self.is_busy = true;
             }
             self.drag(ui, index, light, projection, pointer.filter(|_| down), held);
-            self.hovered = self.grab.as_ref().map(|grab| grab.handle).or(under.filter(|_| !down));
+            self.hovered = self.drag.as_ref().map(|drag| drag.handle).or(under.filter(|_| !down));
             if self.hovered.is_some() {
-                ui.ctx().set_cursor_icon(if self.grab.is_some() { CursorIcon::Grabbing } else { CursorIcon::Grab });
+                ui.ctx().set_cursor_icon(if self.drag.is_some() { CursorIcon::Grabbing } else { CursorIcon::Grab });
             }
         } else {
-            self.grab = None;
+            self.drag = None;
         }
         if let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked() && !was_busy) {
             let lights: Vec<_> =
@@ -79,22 +79,22 @@ impl LightGizmo {
         held: eframe::egui::Modifiers,
     ) {
         // The light was changed by undo or by other means, so the drag ends.
-        let Some(grab) = self.grab.as_mut().filter(|grab| grab.index == index && grab.left == *light) else {
-            self.grab = None;
+        let Some(drag) = self.drag.as_mut().filter(|drag| drag.index == index && drag.left == *light) else {
+            self.drag = None;
             return;
         };
         if ui.input_mut(|input| input.consume_key(eframe::egui::Modifiers::NONE, Key::Escape)) {
-            *light = grab.before;
-            self.grab = None;
+            *light = drag.before;
+            self.drag = None;
         } else if let Some(pointer) = pointer {
-            *light = grab.drag(projection, pointer, held);
+            *light = drag.drag(projection, pointer, held);
         } else {
-            self.grab = None;
+            self.drag = None;
         }
     }
 
     pub fn is_dragging(&self) -> bool {
-        self.grab.is_some()
+        self.drag.is_some()
     }
 
     pub fn draw(&self, outlined: &OutlinedPainter<'_>, projection: &ScreenProjection, session: &Session) {
@@ -234,7 +234,7 @@ fn circle(
     width: f32,
     colour: Color32,
 ) {
-    if !u.is_finite() || u.length() > MAX_LENGTH * projection.metres_per_point(centre) {
+    if !u.is_finite() || u.length() > MAX_CIRCLE_RADIUS * projection.metres_per_point(centre) {
         return;
     }
     let corner = |index: u32| {

@@ -26,7 +26,7 @@ use crate::tweak::document::light_defaults::new_light;
 use crate::tweak::session::Session;
 use crate::tweak::session::action::InView;
 use crate::tweak::session::light_view::{LightTurn, LightView};
-use crate::tweak::session::smoke_geometry::{SmokeGeometry, put_behind};
+use crate::tweak::session::smoke_geometry::{SmokeGeometry, place_behind};
 use crate::tweak::viewport_renderer::{ViewportFrame, ViewportRenderer};
 use camera_input::CameraInput;
 use context_menu::Menu;
@@ -107,7 +107,7 @@ impl Viewport {
         let is_click = !self.steering.has_flown;
         if is_click && let Some(action) = self.menu.show(response, projection, session, &mut self.smoke) {
             match self.menu.at.filter(|_| action == InView::Behind) {
-                Some(at) => self.put_behind(session, Some(projection.ray(at))),
+                Some(at) => self.place_behind(session, Some(projection.ray(at))),
                 None => self.act(action, session),
             }
         }
@@ -146,7 +146,7 @@ impl Viewport {
             InView::Home => *camera = saved,
             InView::Delete => session.change_light(LightView::remove),
             InView::Duplicate => session.change_light(LightView::duplicate),
-            InView::Behind => self.put_behind(session, None),
+            InView::Behind => self.place_behind(session, None),
             InView::Overlay(overlay) => session.view.overlays.toggle(overlay),
             InView::Turntable => {
                 let middle = self.smoke.of(session).bounds().centre();
@@ -158,7 +158,7 @@ impl Viewport {
     }
 
     /// Puts the selected light, or a new one, behind the smoke on the ray, or else behind the smoke in the image.
-    fn put_behind(&mut self, session: &mut Session, at: Option<Ray>) {
+    fn place_behind(&mut self, session: &mut Session, at: Option<Ray>) {
         let smoke = self.smoke.of(session);
         let preset = &mut session.document.preset;
         let met = at.and_then(|ray| smoke.centre_on_ray(ray.origin, ray.direction));
@@ -166,10 +166,10 @@ impl Viewport {
         let eye = preset.camera.position;
         let selected = session.view.lights.selected.and_then(|index| preset.lights.get_mut(index));
         if let Some(light) = selected {
-            return put_behind(light, eye, point, &smoke.bounds);
+            return place_behind(light, eye, point, &smoke.bounds);
         }
         let mut light = new_light(LightKind::Point, &preset.lights);
-        put_behind(&mut light, eye, point, &smoke.bounds);
+        place_behind(&mut light, eye, point, &smoke.bounds);
         session.add_light(light);
     }
 

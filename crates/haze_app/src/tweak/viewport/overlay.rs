@@ -11,12 +11,12 @@ use crate::tweak::session::view_options::{Overlay, ViewOptions};
 use crate::tweak::viewport_renderer::TargetTexels;
 
 /// Largest number of particles that are drawn, over all systems.
-const MAX_LINES: usize = 4096;
+const MAX_PARTICLES: usize = 4096;
 /// Least distance between lines of the grid, points.
-const MIN_SPACING: f32 = 4.0;
+const MIN_GRID_SPACING: f32 = 4.0;
 
 /// Colours of systems, reused cyclically.
-const SYSTEMS: [Color32; 4] = [
+const SYSTEM_COLOURS: [Color32; 4] = [
     Color32::from_rgb(255, 196, 84),
     Color32::from_rgb(110, 214, 255),
     Color32::from_rgb(186, 255, 120),
@@ -33,9 +33,9 @@ pub fn draw(
 ) {
     let systems = smoke.systems.len().max(1);
     for (index, (particles, bounds)) in smoke.systems.iter().zip(&smoke.bounds).enumerate() {
-        let colour = SYSTEMS[index % SYSTEMS.len()];
+        let colour = SYSTEM_COLOURS[index % SYSTEM_COLOURS.len()];
         if view.overlays.has(Overlay::Particles) {
-            points(outlined.0, projection, particles, MAX_LINES / systems);
+            points(outlined.0, projection, particles, MAX_PARTICLES / systems);
         }
         if view.overlays.has(Overlay::Bounds) && !bounds.is_empty() {
             for [from, to] in edges(bounds) {
@@ -109,7 +109,7 @@ fn age(age: f32) -> Color32 {
 fn grid(painter: &Painter, rect: Rect, texels: &TargetTexels, colour: Color32) {
     let pixel = rect.width() / texels.picture.x.max(1) as f32;
     let texel = pixel * texels.scale as f32;
-    let every = (MIN_SPACING / texel).ceil().max(1.0) as u32;
+    let every = (MIN_GRID_SPACING / texel).ceil().max(1.0) as u32;
     let place = |x: i32, y: i32| pos2(rect.left() + x as f32 * texel, rect.top() + y as f32 * texel);
     let (start, end) = (texels.origin, texels.origin + texels.size.as_ivec2());
     let shown = Rect::from_two_pos(place(start.x, start.y), place(end.x, end.y));

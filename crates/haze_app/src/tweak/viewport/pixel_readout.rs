@@ -6,7 +6,7 @@ use haze_reference::{LightProbe, SystemProbe};
 
 use crate::tweak::session::Session;
 use crate::tweak::session::comparison::CompareWith;
-use crate::tweak::session::inspection::{PixelValues, code};
+use crate::tweak::session::inspection::{PixelValues, srgb_code};
 use crate::tweak::viewport_renderer::compared_side::ComparedSide;
 
 /// Distance from the corner, points.
@@ -76,7 +76,7 @@ fn numbers(ui: &mut Ui, values: &PixelValues, session: &Session, is_small: bool)
     for system in probe.systems.iter().rev() {
         ui.separator();
         ui.label(RichText::new(names.get(system.system).map_or("smoke", String::as_str)).strong());
-        of_system(ui, system, &lights, is_small);
+        system_values(ui, system, &lights, is_small);
     }
     if probe.systems.is_empty() {
         ui.weak("No smoke here");
@@ -90,7 +90,7 @@ fn numbers(ui: &mut Ui, values: &PixelValues, session: &Session, is_small: bool)
     }
 }
 
-fn of_system(ui: &mut Ui, probe: &SystemProbe, lights: &[String], is_small: bool) {
+fn system_values(ui: &mut Ui, probe: &SystemProbe, lights: &[String], is_small: bool) {
     ui.horizontal(|ui| {
         ball(ui, probe.normal);
         ui.vertical(|ui| {
@@ -104,7 +104,7 @@ fn of_system(ui: &mut Ui, probe: &SystemProbe, lights: &[String], is_small: bool
             ui.weak(title);
         }
         ui.end_row();
-        probe.lights.iter().for_each(|light| of_light(ui, light, lights, is_small));
+        probe.lights.iter().for_each(|light| light_row(ui, light, lights, is_small));
     });
     egui::Grid::new(("sums", probe.system)).num_columns(3).spacing(gaps(ui)).show(ui, |ui| {
         let scatter = probe.soft_scatter_weight.map_or("by ramp".into(), |weight| format!("weight {weight:.2}"));
@@ -122,7 +122,7 @@ fn of_system(ui: &mut Ui, probe: &SystemProbe, lights: &[String], is_small: bool
     });
 }
 
-fn of_light(ui: &mut Ui, light: &LightProbe, names: &[String], is_small: bool) {
+fn light_row(ui: &mut Ui, light: &LightProbe, names: &[String], is_small: bool) {
     // Their sums are shown as numbers in any case.
     let colour = if is_small { hue_swatch } else { colour };
     ui.label(names.get(light.light).map_or("light", String::as_str));
@@ -151,7 +151,7 @@ fn picture(ui: &mut Ui, light: Vec4, exposure: f32) {
         colour(ui, light.xyz());
         ui.end_row();
         ui.label("as shown, sRGB");
-        let [r, g, b] = code(light.xyz(), exposure);
+        let [r, g, b] = srgb_code(light.xyz(), exposure);
         ui.horizontal(|ui| {
             swatch(ui, Color32::from_rgb(r, g, b));
             ui.label(format!("{r} {g} {b}"));

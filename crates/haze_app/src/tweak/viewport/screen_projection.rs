@@ -25,7 +25,7 @@ pub struct ScreenProjection {
 
 /// Radius of the sun sphere relative to half the image's height at the target. Below 1, so that the camera is never inside
 /// it.
-const SUN_SPHERE: f32 = 0.7;
+const SUN_SPHERE_RADIUS: f32 = 0.7;
 
 impl ScreenProjection {
     pub fn new(camera: &Camera, rect: Rect) -> Self {
@@ -33,7 +33,8 @@ impl ScreenProjection {
         let (right, up) = sides(ahead);
         let tangent = (0.5 * camera.fov.to_radians()).tan();
         let reach = vec2(tangent * rect.aspect_ratio(), tangent);
-        let sun_sphere = (camera.target, SUN_SPHERE * tangent.min(1.0) * camera.position.distance(camera.target));
+        let sun_sphere =
+            (camera.target, SUN_SPHERE_RADIUS * tangent.min(1.0) * camera.position.distance(camera.target));
         Self { rect, eye: camera.position, right, up, ahead, near: camera.near, reach, sun_sphere }
     }
 

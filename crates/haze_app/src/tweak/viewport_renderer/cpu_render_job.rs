@@ -11,7 +11,7 @@ use crate::tweak::platform::clock::{Duration, Instant};
 use crate::tweak::platform::worker::{Ticket, Worker};
 
 /// Time for which the view must not change before rendering begins.
-const STILL: Duration = Duration::from_millis(250);
+const MIN_STILL_TIME: Duration = Duration::from_millis(250);
 
 /// Image, and the time it took.
 type Work = Result<(Image<Vec4>, Duration), Error>;
@@ -54,7 +54,7 @@ impl CpuRenderJob {
         }
         if self.ticket.is_none() {
             let since = self.wanted.as_ref().map_or(now, |(_, since)| *since);
-            let left = STILL.saturating_sub(now.duration_since(since));
+            let left = MIN_STILL_TIME.saturating_sub(now.duration_since(since));
             if left > Duration::ZERO {
                 return CpuRenderState::Later(left);
             }

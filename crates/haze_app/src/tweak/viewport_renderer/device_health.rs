@@ -60,7 +60,7 @@ fn one_line_error(error: &wgpu::Error) -> Error {
 }
 
 /// Destroys the device while this frame is painted, like a driver reset. For tests.
-pub fn lose_device(ui: &egui::Ui) {
+pub fn destroy_device(ui: &egui::Ui) {
     let callback = Callback::new_paint_callback(ui.ctx().content_rect(), DestroyDevice);
     ui.ctx().layer_painter(egui::LayerId::background()).add(callback);
 }

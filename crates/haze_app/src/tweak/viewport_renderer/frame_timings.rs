@@ -13,7 +13,7 @@ use super::{RenderStats, ViewportRenderer};
 pub const MAX_KEPT_IMAGES: usize = 200;
 
 /// Number of frames for which a result may still arrive after the image was drawn.
-const MAX_RESULT_DELAY: u32 = 8;
+const MAX_DELAY_FRAMES: u32 = 8;
 
 /// Data of the performance tab. Nothing is measured unless the tab is visible or a budget is held.
 pub struct FrameTimings {
@@ -74,7 +74,7 @@ impl FrameTimings {
         let is_drawn = self.stats.renders != before.renders;
         let is_second_drawn = self.stats.comparison_renders != before.comparison_renders;
         let times = self.stats.times.take().filter(|times| self.latest_frame.replace(times.frame) != Some(times.frame));
-        self.waiting = if is_drawn || is_second_drawn { MAX_RESULT_DELAY } else { self.waiting.saturating_sub(1) };
+        self.waiting = if is_drawn || is_second_drawn { MAX_DELAY_FRAMES } else { self.waiting.saturating_sub(1) };
         if let Some(times) = &times {
             self.add_times(times.passes.iter().filter(|pass| !pass.of_host).map(|pass| (pass.name, pass.ms)));
         } else if !self.stats.is_timed && is_drawn {
@@ -103,7 +103,7 @@ impl FrameTimings {
         // A still image is drawn again until it is within the budget or the scale has reached its limit.
         if ms > self.budget.milliseconds && scale < self.budget.max_scale {
             renderer.draw_again();
-            self.waiting = MAX_RESULT_DELAY;
+            self.waiting = MAX_DELAY_FRAMES;
         }
     }
 

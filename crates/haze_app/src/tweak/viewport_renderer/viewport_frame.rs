@@ -99,7 +99,7 @@ pub struct RendererState {
 }
 
 /// Interval of drawing the strip while something moves.
-const STRIP_EVERY: Duration = Duration::from_millis(400);
+const MIN_STRIP_INTERVAL: Duration = Duration::from_millis(400);
 
 impl RendererState {
     pub fn new(context: OffscreenContext, tonemap_pass: TonemapPass) -> Result<Self, Error> {
@@ -324,7 +324,8 @@ impl RendererState {
         let view = shot.debug_view;
         // The first view that is requested draws all.
         let all = Shot { debug_view: DebugView::Final, ..shot.clone() };
-        let may_wait = self.motion.is_moving() && self.strip_drawn.is_some_and(|drawn| drawn.elapsed() < STRIP_EVERY);
+        let may_wait =
+            self.motion.is_moving() && self.strip_drawn.is_some_and(|drawn| drawn.elapsed() < MIN_STRIP_INTERVAL);
         if !may_wait && !self.strip.shows(&all) {
             self.strip_drawn = Some(Instant::now());
             if self.strip.record(target, &all, DebugView::ALL) {

@@ -8,10 +8,10 @@ use super::surface_pacing::paced_surface_handler;
 use super::{Start, Window};
 use crate::tweak::platform::clock::{Duration, Instant};
 use crate::tweak::viewport_renderer::ViewportRenderer;
-use crate::tweak::viewport_renderer::device_health::{DeviceHealth, lose_device};
+use crate::tweak::viewport_renderer::device_health::{DeviceHealth, destroy_device};
 
 /// Two device losses within this time end the program.
-const TOO_SOON: Duration = Duration::from_secs(10);
+const MIN_TIME_BETWEEN_LOSSES: Duration = Duration::from_secs(10);
 
 /// Environment variable with the frames, counted over all windows, in which the device is destroyed: "5,9". For tests.
 const LOSE_DEVICE: &str = "HAZE_TEST_LOSE_DEVICE";
@@ -31,16 +31,16 @@ struct KeptState {
     /// Number of frames that were shown.
     frames: u32,
     /// Frames in which the device is destroyed.
-    lose_in: Vec<u32>,
+    destroy_in: Vec<u32>,
 }
 
 /// Shows a session in a window until the user closes it. `size` is in points; `None` leaves it to the adapter.
 pub fn open(start: Start, size: Option<egui::Vec2>) -> Result<(), Error> {
     check_display()?;
-    let lose_in = std::env::var(LOSE_DEVICE).unwrap_or_default();
-    let lose_in = lose_in.split(',').filter_map(|frame| frame.parse().ok()).collect();
-    let place = egui::ViewportBuilder::default().with_inner_size(size.unwrap_or(USUAL));
-    let mut kept = KeptState { start: Some(start), memory: None, place, is_lost: false, frames: 0, lose_in };
+    let destroy_in = std::env::var(LOSE_DEVICE).unwrap_or_default();
+    let destroy_in = destroy_in.split(',').filter_map(|frame| frame.parse().ok()).collect();
+    let place = egui::ViewportBuilder::default().with_inner_size(size.unwrap_or(DEFAULT_SIZE));
+    let mut kept = KeptState { start: Some(start), memory: None, place, is_lost: false, frames: 0, destroy_in };
     let mut is_sized = size.is_some();
     let mut last_loss = None;
     loop {
@@ -54,7 +54,7 @@ pub fn open(start: Start, size: Option<egui::Vec2>) -> Result<(), Error> {
             };
         }
         let now = Instant::now();
-        if last_loss.replace(now).is_some_and(|last| now.saturating_duration_since(last) < TOO_SOON) {
+        if last_loss.replace(now).is_some_and(|last| now.saturating_duration_since(last) < MIN_TIME_BETWEEN_LOSSES) {
             return Err(write_recovery_and_fail(&mut kept, "it was lost twice within 10 seconds"));
         }
         is_sized = true;
@@ -62,8 +62,8 @@ pub fn open(start: Start, size: Option<egui::Vec2>) -> Result<(), Error> {
 }
 
 /// Default size of a window in points, and the size where the CPU draws.
-const USUAL: egui::Vec2 = egui::Vec2::new(1280.0, 800.0);
-const SOFTWARE: egui::Vec2 = egui::Vec2::new(1000.0, 640.0);
+const DEFAULT_SIZE: egui::Vec2 = egui::Vec2::new(1280.0, 800.0);
+const DEFAULT_SOFTWARE_SIZE: egui::Vec2 = egui::Vec2::new(1000.0, 640.0);
 
 fn open_once(kept: &mut KeptState, is_sized: bool) -> Result<(), Error> {
     let options = eframe::NativeOptions {
@@ -81,7 +81,7 @@ fn open_once(kept: &mut KeptState, is_sized: bool) -> Result<(), Error> {
             context.egui_ctx.memory_mut(|new| *new = memory);
         }
         if !is_sized && renderer.is_software() {
-            context.egui_ctx.send_viewport_cmd(egui::ViewportCommand::InnerSize(SOFTWARE));
+            context.egui_ctx.send_viewport_cmd(egui::ViewportCommand::InnerSize(DEFAULT_SOFTWARE_SIZE));
         }
         let health = renderer.health().clone();
         let window = kept.start.take().map(|start| Window::new(renderer, start)).transpose()?;
@@ -124,8 +124,8 @@ impl eframe::App for WindowApp<'_> {
         }
         self.window.iter_mut().for_each(|window| window.ui(ui, frame));
         self.kept.frames += 1;
-        if self.kept.lose_in.contains(&self.kept.frames) {
-            lose_device(ui);
+        if self.kept.destroy_in.contains(&self.kept.frames) {
+            destroy_device(ui);
         }
     }
 

@@ -5,7 +5,8 @@ use eframe::egui::{self, Ui};
 use super::Window;
 
 /// Tooltip where the CPU draws.
-const SLOW: &str = "The CPU draws the picture, at a low resolution while something moves. A smaller window is faster.";
+const SOFTWARE_TOOLTIP: &str =
+    "The CPU draws the picture, at a low resolution while something moves. A smaller window is faster.";
 
 impl Window {
     /// Draws the line at the bottom: adapter and latest message.
@@ -13,7 +14,7 @@ impl Window {
         let mut is_read = false;
         let line = |ui: &mut Ui| {
             if self.renderer.is_software() {
-                ui.colored_label(ui.visuals().warn_fg_color, &self.adapter).on_hover_text(SLOW);
+                ui.colored_label(ui.visuals().warn_fg_color, &self.adapter).on_hover_text(SOFTWARE_TOOLTIP);
             } else {
                 ui.weak(&self.adapter);
             }

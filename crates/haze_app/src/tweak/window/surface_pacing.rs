@@ -8,7 +8,7 @@ use eframe::wgpu::CurrentSurfaceTexture;
 use crate::tweak::platform::clock::{Duration, Instant, sleep};
 
 /// Least time between two answers.
-const PACE: Duration = Duration::from_millis(16);
+const MIN_FRAME_INTERVAL: Duration = Duration::from_millis(16);
 
 type Answer = dyn Fn(&CurrentSurfaceTexture) -> SurfaceErrorAction + Send + Sync;
 
@@ -20,7 +20,7 @@ pub fn paced_surface_handler() -> Arc<Answer> {
     Arc::new(move |status| {
         let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
         let passed = last.map(|last: Instant| last.elapsed());
-        sleep(passed.map_or(Duration::ZERO, |passed| PACE.saturating_sub(passed)));
+        sleep(passed.map_or(Duration::ZERO, |passed| MIN_FRAME_INTERVAL.saturating_sub(passed)));
         *last = Some(Instant::now());
         match status {
             // The frame is still needed, so this requests another.
@@ -43,6 +43,6 @@ mod tests {
             assert!(matches!(answer(&CurrentSurfaceTexture::Occluded), SurfaceErrorAction::SkipFrame));
         }
         assert!(matches!(answer(&CurrentSurfaceTexture::Timeout), SurfaceErrorAction::Reconfigure));
-        assert!(start.elapsed() >= 14 * PACE);
+        assert!(start.elapsed() >= 14 * MIN_FRAME_INTERVAL);
     }
 }

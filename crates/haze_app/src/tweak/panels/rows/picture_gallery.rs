@@ -7,7 +7,7 @@ use haze::settings::ImageRole;
 use crate::tweak::session::picture_thumbnails::{PictureThumbnails, SIZE};
 
 /// Size of a thumbnail and height of its name, points.
-const PICTURE: Vec2 = Vec2::new(SIZE[0] as f32, SIZE[1] as f32);
+const THUMBNAIL: Vec2 = Vec2::new(SIZE[0] as f32, SIZE[1] as f32);
 const NAME: f32 = 16.0;
 /// Thumbnails in a row.
 const COLUMNS: f32 = 3.0;
@@ -25,11 +25,11 @@ pub fn gallery(
     let combo = egui::ComboBox::from_id_salt(path)
         .selected_text(shown)
         .width(ui.available_width() - 8.0)
-        .height(4.5 * (PICTURE.y + NAME + 8.0));
+        .height(4.5 * (THUMBNAIL.y + NAME + 8.0));
     combo
         .show_ui(ui, |ui| {
             let gap = ui.spacing().item_spacing.x;
-            ui.set_width(COLUMNS * (PICTURE.x + 8.0) + (COLUMNS + 1.0) * gap);
+            ui.set_width(COLUMNS * (THUMBNAIL.x + 8.0) + (COLUMNS + 1.0) * gap);
             let mut cells = |ui: &mut Ui, names: Vec<String>| {
                 ui.horizontal_wrapped(|ui| {
                     for name in names {
@@ -60,13 +60,13 @@ pub fn gallery(
 
 /// Draws a thumbnail with its name.
 fn cell(ui: &mut Ui, thumbnails: &PictureThumbnails, role: ImageRole, name: &str, is_chosen: bool) -> Response {
-    let (rect, response) = ui.allocate_exact_size(PICTURE + Vec2::new(8.0, NAME + 4.0), Sense::click());
+    let (rect, response) = ui.allocate_exact_size(THUMBNAIL + Vec2::new(8.0, NAME + 4.0), Sense::click());
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_chosen, name));
     let visuals = ui.style().interact_selectable(&response, is_chosen);
     if is_chosen || response.hovered() || response.has_focus() {
         ui.painter().rect_filled(rect, 3.0, visuals.bg_fill);
     }
-    let picture = Rect::from_min_size(rect.min + Vec2::splat(4.0), PICTURE);
+    let picture = Rect::from_min_size(rect.min + Vec2::splat(4.0), THUMBNAIL);
     let text = Rect::from_min_max(picture.left_bottom(), rect.max);
     match thumbnails.texture(ui.ctx(), role, name) {
         Some(texture) => {

@@ -6,14 +6,14 @@ use haze::settings::SoftFade;
 
 const HEIGHT: f32 = 84.0;
 /// Height of the labels below the plot, points.
-const WORDS: f32 = 16.0;
+const TEXT_SIZE: f32 = 16.0;
 const POINTS: usize = 160;
 
 /// Draws the plot, from behind the surface to where the sprite is fully visible.
 pub fn panel(ui: &mut Ui, fade: &SoftFade) {
     let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), HEIGHT), Sense::hover());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "fade curve"));
-    let plot = rect.with_max_y(rect.bottom() - WORDS).shrink(2.0);
+    let plot = rect.with_max_y(rect.bottom() - TEXT_SIZE).shrink(2.0);
     let reach = fade.reach();
     let (from, to) = (-0.6 * reach, 1.4 * reach);
     let x = |distance: f32| plot.left() + (distance - from) / (to - from) * plot.width();

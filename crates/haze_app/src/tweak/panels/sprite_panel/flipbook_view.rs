@@ -10,7 +10,7 @@ use crate::tweak::session::sprite_view::{SPRITE_CHANNELS, SpriteChannel, SpriteV
 
 /// Largest side of the image in points and in pixels. The image is small, because the CPU draws it.
 const SIDE: f32 = 300.0;
-const MAX_SIDE: f32 = 256.0;
+const MAX_PIXELS: f32 = 256.0;
 /// Least side in points, and largest share of the tab's height, which leaves room for the recipe.
 const MIN_SIDE: f32 = 96.0;
 const SHARE: f32 = 0.42;
@@ -70,7 +70,7 @@ fn picture(
         to_light,
         filter: settings.ramp_filter,
         motion: settings.sprite.motion,
-        side: (side * ui.pixels_per_point()).clamp(1.0, MAX_SIDE) as u32,
+        side: (side * ui.pixels_per_point()).clamp(1.0, MAX_PIXELS) as u32,
     };
     let texture = SpritePreview::show(painted, ui.ctx(), view, material);
     let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));

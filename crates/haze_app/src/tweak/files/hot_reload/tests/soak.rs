@@ -6,7 +6,7 @@ use std::path::Path;
 use haze::preset::Preset;
 
 use super::{Bench, COLOUR, SIZE, write_ramp};
-use crate::tweak::document::history::MOST_STEPS;
+use crate::tweak::document::history::MAX_STEPS;
 use crate::tweak::window::testing::picture;
 
 /// Resources of the process.
@@ -173,7 +173,7 @@ fn soak(reload: fn(&mut Bench, u32)) {
     let mut bench = Bench::new(SIZE);
     // Each preset read from disk is an undo step, so the history is filled first and does not grow afterwards.
     let exposure = bench.session().document.preset.camera.exposure;
-    for step in 0..=MOST_STEPS {
+    for step in 0..=MAX_STEPS {
         let document = &mut bench.session().document;
         document.preset.camera.exposure = exposure + (step % 2) as f32;
         document.track(false);
