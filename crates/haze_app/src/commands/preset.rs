@@ -13,7 +13,7 @@ use haze_author::preset::{check_files, no_effect_reason};
 use crate::file_kind::explain_wrong_kind;
 use crate::options::AssetsArguments;
 use crate::output::{Failures, has_extension, print_line, write_text};
-use crate::tweak::copy_beside;
+use crate::tweak::copy_assets;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -158,7 +158,7 @@ fn new(file: &Path, from: &Path) -> Result<(), Error> {
         preset.name = name.to_string_lossy().into_owned();
     }
     let folder = |path: &Path| path.parent().unwrap_or(Path::new("")).to_path_buf();
-    copy_beside(&preset, &folder(from), &folder(&path))?;
+    copy_assets(&preset, &folder(from), &folder(&path))?;
     write_file(&path, preset.to_text("").as_bytes())?;
     print_line!("{}: a copy of {}; open it with `haze {0}`", path.display(), from.display())
 }

@@ -1,58 +1,15 @@
 //! `haze tweak`: interactive window for lighting smoke.
 
-mod action;
-mod angles;
-mod caches;
-mod compare;
 mod document;
-mod dropped;
-mod easel;
-mod exporting;
-mod filing;
-mod gauge;
-mod health;
-mod hints;
-mod icon;
-mod inspect;
-mod keeping;
-mod lights;
-mod look;
-mod made;
-mod messages;
-#[cfg(test)]
-mod motion_tests;
-mod open;
-mod panel;
-mod performance;
-mod picture_thumbnails;
-mod pictures;
+mod files;
+mod panels;
 mod platform;
-mod playback;
-mod preset_thumbnails;
-mod ramp_files;
-mod reach;
-mod referee;
-mod release;
-mod reload;
-mod screenshot;
-mod search;
 mod session;
-mod show;
-mod smoke;
-mod sprite;
-mod strip;
-mod surface;
-#[cfg(test)]
-mod testing;
-#[cfg(test)]
-mod tests;
 mod viewport;
+mod viewport_renderer;
 mod window;
 
 use std::path::PathBuf;
-
-pub use document::pictures::copy_beside;
-pub use platform::dialog::is_failure as is_of_dialogs;
 
 use clap::Args;
 use eframe::egui;
@@ -61,13 +18,15 @@ use haze::Error;
 use haze::settings::set_field;
 
 use super::options::{AssetsArguments, parse_assignment, parse_size, with_option};
-use keeping::{Layout, Persistence};
-use open::open;
-use platform::dialog::Dialogs;
-use platform::{assets, folders};
-use reload::ShaderFolder;
+pub use document::copied_assets::copy_assets;
+use files::hot_reload::ShaderFolder;
+use files::persistence::{Layout, Persistence};
+use platform::file_dialog::Dialogs;
+pub use platform::file_dialog::is_dialog_target as is_of_dialogs;
+use platform::{asset_loading, state_folder};
 use session::Session;
 use window::Start;
+use window::open::open;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -112,18 +71,23 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     session.document.preset.validate()?;
     session.screenshot = arguments.screenshot.clone();
     let shaders = match &arguments.shaders {
-        Some(folder) => assets::shaders(folder).map(|_| ShaderFolder::Given(folder.clone()))?,
+        Some(folder) => asset_loading::shaders(folder).map(|_| ShaderFolder::Given(folder.clone()))?,
         None => ShaderFolder::of_checkout(),
     };
     // A screenshot must not depend on the stored layout, so that it is the same on every machine.
-    let state = folders::state(|name| std::env::var_os(name)).filter(|_| arguments.screenshot.is_none());
-    let (layout, error) = state.as_ref().map_or_else(Default::default, |folder| Layout::recall(folder));
+    let state = state_folder::state(|name| std::env::var_os(name)).filter(|_| arguments.screenshot.is_none());
+    let (layout, error) = state.as_ref().map_or_else(Default::default, |folder| Layout::read(folder));
     if let Some(error) = error {
-        session.messages.complain("layout", error);
+        session.messages.error("layout", error);
     }
     let size = arguments.size.map(|size| size.as_vec2().to_array()).or(layout.window);
-    let keeping = state.map(|folder| Persistence::new(folder, &mut session));
-    let start =
-        Start { session, shaders, keeping, layout, has_dialogs: Dialogs::are_likely(|name| std::env::var_os(name)) };
+    let persistence = state.map(|folder| Persistence::new(folder, &mut session));
+    let start = Start {
+        session,
+        shaders,
+        persistence,
+        layout,
+        has_dialogs: Dialogs::are_likely(|name| std::env::var_os(name)),
+    };
     open(start, size.map(egui::Vec2::from))
 }

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 /// Largest number of steps that can be undone.
-pub const MOST_STEPS: usize = 500;
+pub const MAX_STEPS: usize = 500;
 
 /// Steps that led to a value, and steps that were undone. Each step stores the whole value: a preset has a few
 /// kilobytes.
@@ -11,14 +11,14 @@ pub struct History<T> {
     /// Value after the last step.
     settled: T,
     /// Value before each step, the oldest first.
-    past: VecDeque<Step<T>>,
+    past: VecDeque<UndoStep<T>>,
     /// Value after each undone step; the last undone step is last.
-    future: Vec<Step<T>>,
+    future: Vec<UndoStep<T>>,
     /// Name of the step in progress, while a control is held.
     open: Option<String>,
 }
 
-struct Step<T> {
+struct UndoStep<T> {
     name: String,
     value: T,
 }
@@ -59,9 +59,9 @@ impl<T: Clone + PartialEq> History<T> {
             let name = self.open.take().unwrap_or_else(|| "change".into());
             self.close(current.clone(), name);
         }
-        let Step { name, value } = self.past.pop_back()?;
+        let UndoStep { name, value } = self.past.pop_back()?;
         let undone = std::mem::replace(&mut self.settled, value);
-        self.future.push(Step { name, value: undone });
+        self.future.push(UndoStep { name, value: undone });
         current.clone_from(&self.settled);
         self.redo_name()
     }
@@ -72,9 +72,9 @@ impl<T: Clone + PartialEq> History<T> {
         if self.is_changed(current) {
             return None;
         }
-        let Step { name, value } = self.future.pop()?;
+        let UndoStep { name, value } = self.future.pop()?;
         let before = std::mem::replace(&mut self.settled, value);
-        self.past.push_back(Step { name, value: before });
+        self.past.push_back(UndoStep { name, value: before });
         current.clone_from(&self.settled);
         self.undo_name()
     }
@@ -97,11 +97,11 @@ impl<T: Clone + PartialEq> History<T> {
     fn close(&mut self, value: T, name: String) {
         self.open = None;
         self.future.clear();
-        if self.past.len() == MOST_STEPS {
+        if self.past.len() == MAX_STEPS {
             self.past.pop_front();
         }
         let before = std::mem::replace(&mut self.settled, value);
-        self.past.push_back(Step { name, value: before });
+        self.past.push_back(UndoStep { name, value: before });
     }
 }
 
@@ -170,7 +170,7 @@ mod tests {
         while history.undo(&mut value).is_some() {
             steps += 1;
         }
-        assert_eq!((steps, value), (MOST_STEPS, 2500));
+        assert_eq!((steps, value), (MAX_STEPS, 2500));
     }
 
     proptest! {

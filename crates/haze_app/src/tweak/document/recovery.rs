@@ -9,10 +9,10 @@ use std::path::{Path, PathBuf};
 use haze::Error;
 use haze::preset::Preset;
 
-use super::document::Document;
+use super::Document;
 use crate::tweak::platform::clock::{Duration, Instant};
-use crate::tweak::platform::files;
-use crate::tweak::platform::lock::Lock;
+use crate::tweak::platform::file_io;
+use crate::tweak::platform::lock_file::Lock;
 
 /// Interval of writing the file: at most this much work is lost.
 pub const RECOVERY_WRITE_INTERVAL: Duration = Duration::from_secs(3);
@@ -35,7 +35,7 @@ impl Recovery {
 
     /// Writes the file while the document is not saved, at most once in [`RECOVERY_WRITE_INTERVAL`], and removes it once the
     /// document is saved. Call often. A write error is returned once.
-    pub fn keep(&mut self, document: &Document, now: Instant) -> Result<(), Error> {
+    pub fn write_periodically(&mut self, document: &Document, now: Instant) -> Result<(), Error> {
         if !document.is_dirty() {
             self.forget();
             return Ok(());
@@ -56,11 +56,11 @@ impl Recovery {
         if is_written || document.preset.validate().is_err() {
             return Ok(());
         }
-        let path = if document.is_built_in() { document.path().into() } else { files::absolute(document.path()) };
+        let path = if document.is_built_in() { document.path().into() } else { file_io::absolute(document.path()) };
         let lock = match &mut self.lock {
             Some(lock) => lock,
             none => {
-                files::make_folder(&self.folder)?;
+                file_io::make_folder(&self.folder)?;
                 none.insert(free_lock(&self.folder)?)
             }
         };
@@ -69,13 +69,13 @@ impl Recovery {
             let written = lock.write(path.to_str().unwrap_or_default());
             written.map_err(|error| Error::Io { path: lock.path().into(), error })?;
         }
-        files::write(&preset_beside(lock.path()), document.preset.to_text("").as_bytes())?;
+        file_io::write(&preset_beside(lock.path()), document.preset.to_text("").as_bytes())?;
         self.written = Some((document.preset.clone(), path));
         Ok(())
     }
 
-    /// Returns true if [`Recovery::keep`] will write something when the interval is over.
-    pub fn is_behind(&self, document: &Document) -> bool {
+    /// Returns true if [`Recovery::write_periodically`] will write something when the interval is over.
+    pub fn has_pending_write(&self, document: &Document) -> bool {
         let is_written = self.written.as_ref().is_some_and(|(preset, _)| *preset == document.preset);
         document.is_dirty() && !is_written && !self.is_broken && document.preset.validate().is_ok()
     }
@@ -84,7 +84,7 @@ impl Recovery {
         if self.written.take().is_some()
             && let Some(lock) = &self.lock
         {
-            files::remove(&preset_beside(lock.path()));
+            file_io::remove(&preset_beside(lock.path()));
         }
     }
 
@@ -104,10 +104,10 @@ fn preset_beside(lock: &Path) -> PathBuf {
 /// Takes a lock file that no process uses.
 fn free_lock(folder: &Path) -> Result<Lock, Error> {
     /// Far more than the number of tweakers that run at the same time.
-    const MOST: u32 = 1000;
+    const MAX_LOCKS: u32 = 1000;
     let path = |number| folder.join(format!("recovery-{number}.lock"));
-    let is_free = |path: &PathBuf| !files::exists(&preset_beside(path));
-    let free = (1..MOST).map(path).filter(is_free).find_map(|path| Lock::take(&path));
+    let is_free = |path: &PathBuf| !file_io::exists(&preset_beside(path));
+    let free = (1..MAX_LOCKS).map(path).filter(is_free).find_map(|path| Lock::take(&path));
     free.ok_or_else(|| {
         let error = std::io::Error::other("cannot lock a file here; expected a writable folder");
         Error::Io { path: path(1), error }
@@ -127,30 +127,30 @@ pub struct CrashedWork {
 impl CrashedWork {
     /// Removes its files: it was restored, or the user does not want it.
     pub fn discard(self) {
-        files::remove(&preset_beside(self.lock.path()));
+        file_io::remove(&preset_beside(self.lock.path()));
         self.lock.remove();
     }
 }
 
 /// Returns the unsaved work of crashed processes in the folder, and the errors of files that cannot be read. Those
 /// files stay.
-pub fn abandoned(folder: &Path) -> (Vec<CrashedWork>, Vec<Error>) {
+pub fn find_crashed_work(folder: &Path) -> (Vec<CrashedWork>, Vec<Error>) {
     let (mut found, mut errors) = (Vec::new(), Vec::new());
     let is_lock = |path: &PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         name.starts_with("recovery-") && name.ends_with(".lock")
     };
-    for path in files::list(folder).into_iter().filter(is_lock) {
+    for path in file_io::list(folder).into_iter().filter(is_lock) {
         let Some(mut lock) = Lock::take(&path) else { continue };
         let preset = preset_beside(&path);
-        if !files::exists(&preset) {
+        if !file_io::exists(&preset) {
             // The process crashed without unsaved work.
             lock.remove();
             continue;
         }
         let source = lock.read().unwrap_or_default();
         let source = if source.is_empty() { "recovered.json".into() } else { PathBuf::from(source) };
-        match files::read_preset(&preset) {
+        match file_io::read_preset(&preset) {
             Ok((preset, _)) => found.push(CrashedWork { lock, preset, source }),
             Err(error) => errors.push(error),
         }
@@ -163,11 +163,11 @@ mod tests {
     use std::fs;
 
     use super::*;
-    use crate::tweak::platform::lock::eventually;
+    use crate::tweak::platform::lock_file::eventually;
 
     /// Returns the work that is offered after the locks are released.
     fn offered(folder: &Path) -> Vec<CrashedWork> {
-        eventually(|| Some(abandoned(folder).0).filter(|offered| !offered.is_empty()))
+        eventually(|| Some(find_crashed_work(folder).0).filter(|offered| !offered.is_empty()))
     }
 
     fn changed(exposure: f32) -> Document {
@@ -177,7 +177,7 @@ mod tests {
     }
 
     fn names(folder: &Path) -> Vec<String> {
-        files::list(folder).iter().map(|path| path.file_name().unwrap().to_str().unwrap().to_owned()).collect()
+        file_io::list(folder).iter().map(|path| path.file_name().unwrap().to_str().unwrap().to_owned()).collect()
     }
 
     #[test]
@@ -186,23 +186,23 @@ mod tests {
         let (state, now) = (folder.path().join("state"), Instant::now());
         let mut document = changed(1.0);
         let mut recovery = Recovery::new(&state);
-        recovery.keep(&document, now).unwrap();
+        recovery.write_periodically(&document, now).unwrap();
         // While the process runs, with another one beside it, nothing is offered.
         let mut beside = Recovery::new(&state);
-        beside.keep(&changed(3.0), now).unwrap();
-        assert_eq!(abandoned(&state).0.len(), 0);
+        beside.write_periodically(&changed(3.0), now).unwrap();
+        assert_eq!(find_crashed_work(&state).0.len(), 0);
         // It is not written more often than every few seconds.
         document.preset.camera.exposure = 2.0;
-        recovery.keep(&document, now + RECOVERY_WRITE_INTERVAL / 2).unwrap();
+        recovery.write_periodically(&document, now + RECOVERY_WRITE_INTERVAL / 2).unwrap();
         let found = |name: &str| Preset::load(state.join(name)).unwrap().camera.exposure;
         assert_eq!((found("recovery-1.json"), found("recovery-2.json")), (1.0, 3.0));
-        recovery.keep(&document, now + RECOVERY_WRITE_INTERVAL).unwrap();
+        recovery.write_periodically(&document, now + RECOVERY_WRITE_INTERVAL).unwrap();
         assert_eq!((found("recovery-1.json"), found("recovery-2.json")), (2.0, 3.0));
         // Dropping releases the lock, like the end of the process.
         drop(recovery);
         let mut offered = offered(&state);
         assert_eq!(offered.len(), 1);
-        assert_eq!(abandoned(&state).0.len(), 0, "offered to one only");
+        assert_eq!(find_crashed_work(&state).0.len(), 0, "offered to one only");
         let one = offered.remove(0);
         let recovered = Document::recovered(one.preset.clone(), &one.source);
         assert!(recovered.is_dirty() && recovered.is_built_in() && recovered.preset == document.preset);
@@ -219,21 +219,21 @@ mod tests {
         let (state, now) = (folder.path(), Instant::now());
         let mut document = changed(1.0);
         let mut recovery = Recovery::new(state);
-        recovery.keep(&document, now).unwrap();
+        recovery.write_periodically(&document, now).unwrap();
         document.undo();
-        recovery.keep(&document, now).unwrap();
+        recovery.write_periodically(&document, now).unwrap();
         assert_eq!(names(state), ["recovery-1.lock"]);
         // Undo and redo do not cause more frequent writes.
         document.redo();
-        recovery.keep(&document, now).unwrap();
+        recovery.write_periodically(&document, now).unwrap();
         assert_eq!(names(state), ["recovery-1.lock"]);
-        recovery.keep(&document, now + RECOVERY_WRITE_INTERVAL).unwrap();
+        recovery.write_periodically(&document, now + RECOVERY_WRITE_INTERVAL).unwrap();
         assert_eq!(names(state), ["recovery-1.json", "recovery-1.lock"]);
         document.undo();
-        recovery.keep(&document, now + RECOVERY_WRITE_INTERVAL).unwrap();
+        recovery.write_periodically(&document, now + RECOVERY_WRITE_INTERVAL).unwrap();
         drop(recovery);
         eventually(|| {
-            assert_eq!(abandoned(state).0.len(), 0);
+            assert_eq!(find_crashed_work(state).0.len(), 0);
             names(state).is_empty().then_some(())
         });
     }
@@ -258,7 +258,7 @@ mod tests {
         drop(one);
         // A file that was corrupted from outside is reported and not touched.
         fs::write(state.join("recovery-1.json"), "{").unwrap();
-        let (offered, errors) = eventually(|| Some(abandoned(&state)).filter(|(_, errors)| !errors.is_empty()));
+        let (offered, errors) = eventually(|| Some(find_crashed_work(&state)).filter(|(_, errors)| !errors.is_empty()));
         assert!(offered.is_empty() && errors.len() == 1 && state.join("recovery-1.json").exists());
         // Its number is not used again.
         let mut recovery = Recovery::new(&state);
@@ -272,10 +272,10 @@ mod tests {
         let blocked = folder.path().join("state");
         fs::write(&blocked, "a file").unwrap();
         let (mut recovery, now) = (Recovery::new(&blocked), Instant::now());
-        assert!(recovery.keep(&changed(1.0), now).is_err());
-        assert!(recovery.keep(&changed(1.0), now + RECOVERY_WRITE_INTERVAL).is_ok());
+        assert!(recovery.write_periodically(&changed(1.0), now).is_err());
+        assert!(recovery.write_periodically(&changed(1.0), now + RECOVERY_WRITE_INTERVAL).is_ok());
         fs::remove_file(&blocked).unwrap();
-        recovery.keep(&changed(1.0), now + 2 * RECOVERY_WRITE_INTERVAL).unwrap();
+        recovery.write_periodically(&changed(1.0), now + 2 * RECOVERY_WRITE_INTERVAL).unwrap();
         assert_eq!(names(&blocked).len(), 2);
     }
 }

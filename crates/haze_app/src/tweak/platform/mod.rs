@@ -1,12 +1,12 @@
 //! All access to disk, clock and threads. The rest of the tweaker has no dependency on the operating system.
 
-pub mod assets;
+pub mod asset_loading;
 pub mod clock;
-pub mod dialog;
-pub mod export;
-pub mod files;
-pub mod folders;
-pub mod lock;
-pub mod memory;
-pub mod wake;
+pub mod file_dialog;
+pub mod file_io;
+pub mod json_store;
+pub mod lock_file;
+pub mod render_job;
+pub mod repaint_handle;
+pub mod state_folder;
 pub mod worker;

@@ -28,7 +28,7 @@ impl Ticket {
 }
 
 /// Job and its result; `None` if it panicked.
-type Done<T> = (Ticket, Option<T>);
+type FinishedJob<T> = (Ticket, Option<T>);
 
 type Job<T> = Box<dyn FnOnce(&Ticket) -> T + Send>;
 
@@ -40,7 +40,7 @@ struct Shared<T> {
 struct State<T> {
     queue: VecDeque<(Ticket, Job<T>)>,
     running: Option<Ticket>,
-    done: VecDeque<Done<T>>,
+    done: VecDeque<FinishedJob<T>>,
     is_over: bool,
 }
 

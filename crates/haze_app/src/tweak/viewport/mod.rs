@@ -1,44 +1,47 @@
 //! Viewport: the image, and its control by pointer and keys.
 
-mod camera;
-mod compare;
-mod gizmo;
-mod grab;
-mod handle;
-mod ink;
-mod lens;
-mod mark;
-mod menu;
+mod camera_input;
+mod camera_moves;
+mod context_menu;
+mod handle_drag;
+mod light_gizmo;
+mod light_handle;
+mod light_marker;
+mod outlined_painter;
 mod overlay;
-mod puff;
+mod path_traced_puff;
+pub mod pixel_readout;
+pub mod probe_job;
+mod ramp_highlight;
 mod ray;
-mod steer;
+mod screen_projection;
+mod split_view;
 mod toolbar;
 
 use eframe::egui::{self, Response, Sense, Ui};
 use glam::UVec2;
 use haze::{Bounds, LightKind};
 
-use super::action::InView;
-use super::easel::{Easel, Exhibit};
-use super::inspect::lit;
-use super::lights::{LightView, Turn, fresh};
-use super::session::Session;
-use super::smoke::{Smoke, put_behind};
-use compare::{divider, other};
-use gizmo::LightGizmo;
-use ink::Ink;
-use lens::Lens;
-use menu::Menu;
-use puff::PathTracedPuff;
+use crate::tweak::document::light_defaults::new_light;
+use crate::tweak::session::Session;
+use crate::tweak::session::action::InView;
+use crate::tweak::session::light_view::{LightTurn, LightView};
+use crate::tweak::session::smoke_geometry::{SmokeGeometry, place_behind};
+use crate::tweak::viewport_renderer::{ViewportFrame, ViewportRenderer};
+use camera_input::CameraInput;
+use context_menu::Menu;
+use light_gizmo::LightGizmo;
+use outlined_painter::OutlinedPainter;
+use path_traced_puff::PathTracedPuff;
 use ray::Ray;
-use steer::CameraInput;
+use screen_projection::ScreenProjection;
+use split_view::{comparison_image, divider};
 
 /// State of the viewport.
 #[derive(Default)]
 pub struct Viewport {
     steering: CameraInput,
-    smoke: Smoke,
+    smoke: SmokeGeometry,
     gizmo: LightGizmo,
     menu: Menu,
     puff: PathTracedPuff,
@@ -48,50 +51,50 @@ pub struct Viewport {
 const CLOSE: f32 = 0.75;
 
 impl Viewport {
-    pub fn show(&mut self, ui: &mut Ui, session: &mut Session, easel: &Easel) {
+    pub fn show(&mut self, ui: &mut Ui, session: &mut Session, renderer: &ViewportRenderer) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         let pixels = rect.size() * ui.pixels_per_point();
         let size = UVec2::new(pixels.x.round() as u32, pixels.y.round() as u32);
         if size.min_element() == 0 {
             return;
         }
-        session.show.size = size;
+        session.view.size = size;
         session.inspect.point(&response);
-        session.show.aspect = size.x as f32 / size.y as f32;
+        session.view.aspect = size.x as f32 / size.y as f32;
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "viewport"));
         self.begin_gesture(ui, session);
-        session.show.lights.follow(&session.document.preset.lights);
-        let lens = Lens::new(&session.document.preset.camera, rect);
+        session.view.lights.follow(&session.document.preset.lights);
+        let projection = ScreenProjection::new(&session.document.preset.camera, rect);
         // While the inspector is on, a click pins a pixel.
-        let is_taken = !session.inspect.is_on && self.gizmo.interact(ui, &response, &lens, session);
+        let is_taken = !session.inspect.is_on && self.gizmo.interact(ui, &response, &projection, session);
         if !is_taken {
-            self.steer(ui, &response, &lens, session);
+            self.steer(ui, &response, &projection, session);
         }
-        self.menu(&response, &lens, session);
-        if let Some(turn) = &mut session.show.lights.turn {
+        self.menu(&response, &projection, session);
+        if let Some(turn) = &mut session.view.lights.turn {
             turn.advance(ui.input(|input| input.stable_dt.min(0.1)));
             ui.ctx().request_repaint();
         }
         let shot = session.shot(size);
-        let other = other(ui, session, &shot);
+        let other = comparison_image(ui, session, &shot);
         let compare = &mut session.compare;
-        let exhibit = Exhibit { shot, other, split: compare.split, difference: compare.difference };
-        easel.show(ui, rect, exhibit);
-        session.gauge.update(ui.ctx(), easel, &session.wake, compare.against.is_some());
+        let frame = ViewportFrame { shot, other, split: compare.split, difference: compare.difference };
+        renderer.show(ui, rect, frame);
+        session.psnr_job.update(ui.ctx(), renderer, &session.repaint, compare.against.is_some());
         if compare.against.is_some() && compare.difference == 0.0 {
             divider(ui, rect, &mut compare.split);
         }
         // Above the image, and below everything else that is drawn on it.
-        lit::paint(ui, rect, &session.inspect, session.show.system);
-        let lens = Lens::new(&session.document.preset.camera, rect);
+        ramp_highlight::paint(ui, rect, &session.inspect, session.view.system);
+        let projection = ScreenProjection::new(&session.document.preset.camera, rect);
         let painter = ui.painter_at(rect);
-        let ink = Ink(&painter);
-        if session.show.overlays.is_any() {
+        let outlined = OutlinedPainter(&painter);
+        if session.view.overlays.is_any() {
             let smoke = self.smoke.of(session);
-            overlay::draw(&ink, &lens, &session.show, smoke, &easel.texels());
+            overlay::draw(&outlined, &projection, &session.view, smoke, &renderer.texels());
         }
-        self.gizmo.draw(&ink, &lens, session);
-        compare::labels(ui, rect, session);
+        self.gizmo.draw(&outlined, &projection, session);
+        split_view::labels(ui, rect, session);
         self.puff.show(ui, rect, session);
         if let Some(action) = toolbar::toolbar(ui, rect, session) {
             self.act(action, session);
@@ -99,12 +102,12 @@ impl Viewport {
         }
     }
 
-    fn menu(&mut self, response: &Response, lens: &Lens, session: &mut Session) {
+    fn menu(&mut self, response: &Response, projection: &ScreenProjection, session: &mut Session) {
         // A flight that did not turn the view is no click.
         let is_click = !self.steering.has_flown;
-        if is_click && let Some(action) = self.menu.show(response, lens, session, &mut self.smoke) {
+        if is_click && let Some(action) = self.menu.show(response, projection, session, &mut self.smoke) {
             match self.menu.at.filter(|_| action == InView::Behind) {
-                Some(at) => self.put_behind(session, Some(lens.ray(at))),
+                Some(at) => self.place_behind(session, Some(projection.ray(at))),
                 None => self.act(action, session),
             }
         }
@@ -123,9 +126,9 @@ impl Viewport {
         }
     }
 
-    fn steer(&mut self, ui: &Ui, response: &Response, lens: &Lens, session: &mut Session) {
-        if self.steering.steer(ui, response, lens, &mut session.document.preset.camera) {
-            session.messages.say("flight", format!("flying at {:.2} m/s", self.steering.speed));
+    fn steer(&mut self, ui: &Ui, response: &Response, projection: &ScreenProjection, session: &mut Session) {
+        if self.steering.steer(ui, response, projection, &mut session.document.preset.camera) {
+            session.messages.info("flight", format!("flying at {:.2} m/s", self.steering.speed));
         }
     }
 
@@ -143,30 +146,30 @@ impl Viewport {
             InView::Home => *camera = saved,
             InView::Delete => session.change_light(LightView::remove),
             InView::Duplicate => session.change_light(LightView::duplicate),
-            InView::Behind => self.put_behind(session, None),
-            InView::Overlay(overlay) => session.show.overlays.toggle(overlay),
+            InView::Behind => self.place_behind(session, None),
+            InView::Overlay(overlay) => session.view.overlays.toggle(overlay),
             InView::Turntable => {
                 let middle = self.smoke.of(session).bounds().centre();
-                let turn = &mut session.show.lights.turn;
-                *turn = if turn.is_some() { None } else { Some(Turn { middle, angle: 0.0 }) };
+                let turn = &mut session.view.lights.turn;
+                *turn = if turn.is_some() { None } else { Some(LightTurn { middle, angle: 0.0 }) };
             }
-            InView::Face(side) => camera::face(camera, side.way()),
+            InView::Face(side) => camera_moves::face(camera, side.way()),
         }
     }
 
     /// Puts the selected light, or a new one, behind the smoke on the ray, or else behind the smoke in the image.
-    fn put_behind(&mut self, session: &mut Session, at: Option<Ray>) {
+    fn place_behind(&mut self, session: &mut Session, at: Option<Ray>) {
         let smoke = self.smoke.of(session);
         let preset = &mut session.document.preset;
-        let met = at.and_then(|ray| smoke.met(ray.origin, ray.direction));
-        let point = met.unwrap_or_else(|| smoke.seen(&preset.camera, session.show.size));
+        let met = at.and_then(|ray| smoke.centre_on_ray(ray.origin, ray.direction));
+        let point = met.unwrap_or_else(|| smoke.visible_centre(&preset.camera, session.view.size));
         let eye = preset.camera.position;
-        let selected = session.show.lights.selected.and_then(|index| preset.lights.get_mut(index));
+        let selected = session.view.lights.selected.and_then(|index| preset.lights.get_mut(index));
         if let Some(light) = selected {
-            return put_behind(light, eye, point, &smoke.bounds);
+            return place_behind(light, eye, point, &smoke.bounds);
         }
-        let mut light = fresh(LightKind::Point, &preset.lights);
-        put_behind(&mut light, eye, point, &smoke.bounds);
+        let mut light = new_light(LightKind::Point, &preset.lights);
+        place_behind(&mut light, eye, point, &smoke.bounds);
         session.add_light(light);
     }
 
@@ -174,13 +177,13 @@ impl Viewport {
     fn frame(&mut self, session: &mut Session) {
         let mut bounds = self.smoke.of(session).bounds();
         let preset = &mut session.document.preset;
-        let selected = session.show.lights.selected.and_then(|index| preset.lights.get(index));
+        let selected = session.view.lights.selected.and_then(|index| preset.lights.get(index));
         let light = selected.filter(|light| light.kind != LightKind::Directional);
         if let Some(light) = light {
             bounds = Bounds::EMPTY;
             bounds.include(light.position, light.radius.max(CLOSE));
         }
-        camera::frame(&mut preset.camera, &bounds, session.show.aspect);
+        camera_moves::frame(&mut preset.camera, &bounds, session.view.aspect);
     }
 }
 

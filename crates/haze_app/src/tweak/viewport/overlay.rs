@@ -4,19 +4,19 @@ use eframe::egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, St
 use glam::{UVec2, Vec3};
 use haze::{Bounds, Particle};
 
-use super::ink::Ink;
-use super::lens::Lens;
-use crate::tweak::easel::Texels;
-use crate::tweak::show::{Overlay, Show};
-use crate::tweak::smoke::Smoke;
+use super::outlined_painter::OutlinedPainter;
+use super::screen_projection::ScreenProjection;
+use crate::tweak::session::smoke_geometry::SmokeGeometry;
+use crate::tweak::session::view_options::{Overlay, ViewOptions};
+use crate::tweak::viewport_renderer::TargetTexels;
 
 /// Largest number of particles that are drawn, over all systems.
-const MOST: usize = 4096;
+const MAX_PARTICLES: usize = 4096;
 /// Least distance between lines of the grid, points.
-const CLOSEST: f32 = 4.0;
+const MIN_GRID_SPACING: f32 = 4.0;
 
 /// Colours of systems, reused cyclically.
-const SYSTEMS: [Color32; 4] = [
+const SYSTEM_COLOURS: [Color32; 4] = [
     Color32::from_rgb(255, 196, 84),
     Color32::from_rgb(110, 214, 255),
     Color32::from_rgb(186, 255, 120),
@@ -24,26 +24,32 @@ const SYSTEMS: [Color32; 4] = [
 ];
 
 /// Draws the visible overlays. `texels` are those of each system in the last image.
-pub fn draw(ink: &Ink<'_>, lens: &Lens, show: &Show, smoke: &Smoke, texels: &[Option<Texels>]) {
+pub fn draw(
+    outlined: &OutlinedPainter<'_>,
+    projection: &ScreenProjection,
+    view: &ViewOptions,
+    smoke: &SmokeGeometry,
+    texels: &[Option<TargetTexels>],
+) {
     let systems = smoke.systems.len().max(1);
     for (index, (particles, bounds)) in smoke.systems.iter().zip(&smoke.bounds).enumerate() {
-        let colour = SYSTEMS[index % SYSTEMS.len()];
-        if show.overlays.has(Overlay::Particles) {
-            points(ink.0, lens, particles, MOST / systems);
+        let colour = SYSTEM_COLOURS[index % SYSTEM_COLOURS.len()];
+        if view.overlays.has(Overlay::Particles) {
+            points(outlined.0, projection, particles, MAX_PARTICLES / systems);
         }
-        if show.overlays.has(Overlay::Bounds) && !bounds.is_empty() {
+        if view.overlays.has(Overlay::Bounds) && !bounds.is_empty() {
             for [from, to] in edges(bounds) {
-                if let Some(ends) = lens.segment(from, to) {
-                    ink.line(&ends, 1.0, colour);
+                if let Some(ends) = projection.segment(from, to) {
+                    outlined.line(&ends, 1.0, colour);
                 }
             }
         }
         let Some(texels) = texels.get(index).copied().flatten() else { continue };
-        if show.overlays.has(Overlay::LitPlane) {
-            plane(ink, lens, bounds, texels.lit_depth, colour);
+        if view.overlays.has(Overlay::LitPlane) {
+            plane(outlined, projection, bounds, texels.lit_depth, colour);
         }
-        if show.overlays.has(Overlay::Grid) {
-            grid(ink.0, lens.rect, &texels, colour);
+        if view.overlays.has(Overlay::Grid) {
+            grid(outlined.0, projection.rect, &texels, colour);
         }
     }
 }
@@ -60,10 +66,10 @@ fn edges(bounds: &Bounds) -> impl Iterator<Item = [Vec3; 2]> {
 
 /// Returns the corners of the section of a box with the plane at a depth that faces the camera, in order around their
 /// centre.
-fn section(bounds: &Bounds, lens: &Lens, depth: f32) -> Vec<Pos2> {
+fn section(bounds: &Bounds, projection: &ScreenProjection, depth: f32) -> Vec<Pos2> {
     let cut = |[from, to]: [Vec3; 2]| {
-        let (a, b) = (lens.depth(from) - depth, lens.depth(to) - depth);
-        (a * b < 0.0).then(|| from.lerp(to, a / (a - b))).and_then(|at| lens.project(at))
+        let (a, b) = (projection.depth(from) - depth, projection.depth(to) - depth);
+        (a * b < 0.0).then(|| from.lerp(to, a / (a - b))).and_then(|at| projection.project(at))
     };
     let mut corners: Vec<_> = edges(bounds).filter_map(cut).collect();
     let middle = corners.iter().fold(Vec2::ZERO, |sum, at| sum + at.to_vec2()) / corners.len().max(1) as f32;
@@ -71,22 +77,22 @@ fn section(bounds: &Bounds, lens: &Lens, depth: f32) -> Vec<Pos2> {
     corners
 }
 
-fn plane(ink: &Ink<'_>, lens: &Lens, bounds: &Bounds, depth: f32, colour: Color32) {
-    let mut corners = section(bounds, lens, depth);
+fn plane(outlined: &OutlinedPainter<'_>, projection: &ScreenProjection, bounds: &Bounds, depth: f32, colour: Color32) {
+    let mut corners = section(bounds, projection, depth);
     let Some(&first) = corners.first() else { return };
-    ink.0.add(Shape::convex_polygon(corners.clone(), colour.gamma_multiply(0.18), Stroke::NONE));
+    outlined.0.add(Shape::convex_polygon(corners.clone(), colour.gamma_multiply(0.18), Stroke::NONE));
     corners.push(first);
-    ink.line(&corners, 1.0, colour);
+    outlined.line(&corners, 1.0, colour);
     let lowest = corners.iter().copied().fold(first, |low, at| if at.y > low.y { at } else { low });
-    label(ink.0, lens.rect, lowest + vec2(4.0, -18.0), &format!("lit at {depth:.2} m"));
+    label(outlined.0, projection.rect, lowest + vec2(4.0, -18.0), &format!("lit at {depth:.2} m"));
 }
 
 /// Draws particles, at most `most` of them.
-fn points(painter: &Painter, lens: &Lens, particles: &[Particle], most: usize) {
+fn points(painter: &Painter, projection: &ScreenProjection, particles: &[Particle], most: usize) {
     let mut mesh = Mesh::default();
     let step = particles.len().div_ceil(most.max(1)).max(1);
     for particle in particles.iter().step_by(step).filter(|particle| particle.is_visible()) {
-        if let Some(at) = lens.project(particle.position).filter(|at| lens.rect.contains(*at)) {
+        if let Some(at) = projection.project(particle.position).filter(|at| projection.rect.contains(*at)) {
             mesh.add_colored_rect(Rect::from_center_size(at, Vec2::splat(5.0)), Color32::from_black_alpha(160));
             mesh.add_colored_rect(Rect::from_center_size(at, Vec2::splat(3.0)), age(particle.age));
         }
@@ -100,10 +106,10 @@ fn age(age: f32) -> Color32 {
 }
 
 /// Draws the texels of a target. If they are too small, only every n-th line is drawn.
-fn grid(painter: &Painter, rect: Rect, texels: &Texels, colour: Color32) {
+fn grid(painter: &Painter, rect: Rect, texels: &TargetTexels, colour: Color32) {
     let pixel = rect.width() / texels.picture.x.max(1) as f32;
     let texel = pixel * texels.scale as f32;
-    let every = (CLOSEST / texel).ceil().max(1.0) as u32;
+    let every = (MIN_GRID_SPACING / texel).ceil().max(1.0) as u32;
     let place = |x: i32, y: i32| pos2(rect.left() + x as f32 * texel, rect.top() + y as f32 * texel);
     let (start, end) = (texels.origin, texels.origin + texels.size.as_ivec2());
     let shown = Rect::from_two_pos(place(start.x, start.y), place(end.x, end.y));
@@ -142,12 +148,12 @@ mod tests {
         let all: Vec<_> = edges(&bounds).collect();
         assert_eq!(all.len(), 12);
         assert!(all.iter().all(|[from, to]| (from.distance(*to) - 2.0).abs() < 1e-6));
-        let lens = Lens::new(&Camera::default(), Rect::from_min_size(Pos2::ZERO, vec2(400.0, 300.0)));
-        let middle = lens.depth(bounds.centre());
-        let corners = section(&bounds, &lens, middle);
+        let projection = ScreenProjection::new(&Camera::default(), Rect::from_min_size(Pos2::ZERO, vec2(400.0, 300.0)));
+        let middle = projection.depth(bounds.centre());
+        let corners = section(&bounds, &projection, middle);
         assert!(corners.len() >= 4, "{corners:?}");
-        let inside = lens.project(bounds.centre()).unwrap();
+        let inside = projection.project(bounds.centre()).unwrap();
         assert!(Rect::from_points(&corners).contains(inside));
-        assert!(section(&bounds, &lens, middle + 9.0).is_empty());
+        assert!(section(&bounds, &projection, middle + 9.0).is_empty());
     }
 }

@@ -1,5 +1,6 @@
-mod camera;
-mod gizmo;
+mod camera_input;
+mod light_gizmo;
+mod pixel_readout;
 mod turntable;
 
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Theme, vec2};
@@ -9,12 +10,12 @@ use glam::Vec3;
 use haze::preset::Camera;
 use haze::{Light, LightKind};
 
-use super::handle::{Handle, Shape, handles};
-use super::lens::Lens;
-use crate::tweak::show::Tab;
-use crate::tweak::smoke::Smoke;
-use crate::tweak::testing::{brightness, picture, window};
+use super::light_handle::{Handle, Shape, handles};
+use super::screen_projection::ScreenProjection;
+use crate::tweak::session::smoke_geometry::SmokeGeometry;
+use crate::tweak::session::view_options::Tab;
 use crate::tweak::window::Window;
+use crate::tweak::window::testing::{brightness, picture, window};
 
 const SIZE: [f32; 2] = [1100.0, 700.0];
 
@@ -24,8 +25,8 @@ fn lit(light: Light) -> Harness<'static, Window> {
     let session = &mut harness.state_mut().session;
     session.document.preset.lights = vec![Light { position: Vec3::new(0.4, 1.6, 1.0), ..light }];
     session.track(false);
-    session.show.lights.follow(&session.document.preset.lights);
-    session.show.lights.selected = Some(0);
+    session.view.lights.follow(&session.document.preset.lights);
+    session.view.lights.selected = Some(0);
     harness.run();
     harness
 }
@@ -47,8 +48,8 @@ fn drag(harness: &mut Harness<'_, Window>, button: PointerButton, places: &[Pos2
     harness.run();
 }
 
-fn lens(harness: &Harness<'_, Window>) -> Lens {
-    Lens::new(&harness.state().session.document.preset.camera, viewport(harness))
+fn projection(harness: &Harness<'_, Window>) -> ScreenProjection {
+    ScreenProjection::new(&harness.state().session.document.preset.camera, viewport(harness))
 }
 
 fn camera(harness: &Harness<'_, Window>) -> Camera {
@@ -65,7 +66,7 @@ fn undo_name(harness: &Harness<'_, Window>) -> Option<String> {
 
 /// Returns a position where a handle of the first light can be hit.
 fn handle(harness: &Harness<'_, Window>, handle: Handle) -> Pos2 {
-    let shapes = handles(&light(harness), &lens(harness));
+    let shapes = handles(&light(harness), &projection(harness));
     match shapes.into_iter().find(|shape| shape.0 == handle).unwrap().1 {
         Shape::Arrow([from, to]) => from.lerp(to, 0.7),
         Shape::Quad([a, _, c, _]) => a.lerp(c, 0.5),
@@ -76,7 +77,7 @@ fn handle(harness: &Harness<'_, Window>, handle: Handle) -> Pos2 {
 #[test]
 fn a_muted_light_is_not_in_the_image_but_stays_in_the_preset() {
     let mut harness = lit(Light { intensity: 200.0, ..Light::default() });
-    harness.state_mut().session.show.tab = Tab::Light;
+    harness.state_mut().session.view.tab = Tab::Light;
     let part = viewport(&harness);
     let lit = brightness(&picture(&mut harness), part);
     let click = |harness: &mut Harness<'_, Window>, label| {
@@ -97,10 +98,10 @@ fn a_muted_light_is_not_in_the_image_but_stays_in_the_preset() {
 #[test]
 fn lights_are_added_duplicated_and_deleted_by_panel_and_by_key() {
     let mut harness = lit(Light::default());
-    harness.state_mut().session.show.tab = Tab::Light;
+    harness.state_mut().session.view.tab = Tab::Light;
     harness.run();
     let count = |harness: &Harness<'_, Window>| harness.state().session.document.preset.lights.len();
-    let selected = |harness: &Harness<'_, Window>| harness.state().session.show.lights.selected;
+    let selected = |harness: &Harness<'_, Window>| harness.state().session.view.lights.selected;
     harness.get_by_label("Add").click();
     harness.run_steps(4);
     harness.get_by_label("spot").click();
@@ -121,8 +122,8 @@ fn lights_are_added_duplicated_and_deleted_by_panel_and_by_key() {
     harness.run();
     let session = &harness.state().session;
     let mut behind = session.document.preset.lights[1];
-    let bounds = Smoke::default().of(session).bounds();
-    let is_behind = lens(&harness).depth(behind.position) > lens(&harness).depth(bounds.centre());
+    let bounds = SmokeGeometry::default().of(session).bounds();
+    let is_behind = projection(&harness).depth(behind.position) > projection(&harness).depth(bounds.centre());
     assert!(is_behind && selected(&harness) == Some(1));
     // A direction that is set by angles keeps its azimuth at any elevation.
     behind.direction = Vec3::NEG_Z;
@@ -150,33 +151,34 @@ fn a_right_click_adds_a_light_there_or_behind_the_smoke() {
     harness.run();
     let added = |harness: &Harness<'_, Window>| *harness.state().session.document.preset.lights.last().unwrap();
     let spot = added(&harness);
-    assert!(spot.kind == LightKind::Spot && lens(&harness).project(spot.position).unwrap().distance(at) < 1.0);
+    assert!(spot.kind == LightKind::Spot && projection(&harness).project(spot.position).unwrap().distance(at) < 1.0);
     assert_eq!(undo_name(&harness).as_deref(), Some("light added"));
-    harness.state_mut().session.show.lights.selected = None;
+    harness.state_mut().session.view.lights.selected = None;
     harness.key_press_modifiers(Modifiers::SHIFT, Key::B);
     harness.run();
     assert_eq!(harness.state().session.document.preset.lights.len(), 3);
-    assert!(lens(&harness).depth(added(&harness).position) > lens(&harness).depth(spot.position));
+    assert!(projection(&harness).depth(added(&harness).position) > projection(&harness).depth(spot.position));
 }
 
 #[test]
 fn a_light_is_put_behind_the_clicked_smoke_or_the_smoke_in_the_image() {
     let mut harness = lit(Light::default());
     let session = &harness.state().session;
-    let mut smoke = Smoke::default();
+    let mut smoke = SmokeGeometry::default();
     let sprites = &smoke.of(session).systems[0];
     let in_view = |at: &Pos2| viewport(&harness).shrink(40.0).contains(*at);
-    let seen = sprites.iter().filter(|sprite| lens(&harness).project(sprite.position).is_some_and(|at| in_view(&at)));
+    let seen =
+        sprites.iter().filter(|sprite| projection(&harness).project(sprite.position).is_some_and(|at| in_view(&at)));
     let top = seen.max_by(|a, b| a.position.y.total_cmp(&b.position.y)).unwrap().position;
-    let at = lens(&harness).project(top).unwrap();
+    let at = projection(&harness).project(top).unwrap();
     drag(&mut harness, PointerButton::Secondary, &[at]);
     harness.run_steps(3);
     harness.get_by_label("Behind the smoke").click();
     harness.run();
     let is_behind = |harness: &Harness<'_, Window>| {
-        let (lens, place) = (lens(harness), light(harness).position);
-        assert!(lens.depth(place) > lens.depth(top), "{place}");
-        lens.project(place).unwrap()
+        let (projection, place) = (projection(harness), light(harness).position);
+        assert!(projection.depth(place) > projection.depth(top), "{place}");
+        projection.project(place).unwrap()
     };
     assert!(is_behind(&harness).distance(at) < 1.0, "not under the pointer");
     // So close that the centre of all smoke is outside the image.

@@ -8,10 +8,10 @@ use glam::Vec3;
 use haze::settings::{Choice, FieldVisitor, Fields};
 use haze_author::preset::Tooltips;
 
-use crate::tweak::action::{Action, InView, keys_of};
-use crate::tweak::panel::row::spaced;
+use crate::tweak::panels::rows::with_spaces;
 use crate::tweak::session::Session;
-use crate::tweak::show::Overlay;
+use crate::tweak::session::action::{Action, InView, keys_of};
+use crate::tweak::session::view_options::Overlay;
 
 /// Switches with their names and tooltips.
 const SWITCHES: [(InView, &str, &str); 5] = [
@@ -53,8 +53,8 @@ pub fn toolbar(ui: &mut Ui, rect: Rect, session: &mut Session) -> Option<InView>
 
 fn is_on(session: &Session, action: InView) -> bool {
     match action {
-        InView::Overlay(overlay) => session.show.overlays.has(overlay),
-        _ => session.show.lights.turn.is_some(),
+        InView::Overlay(overlay) => session.view.overlays.has(overlay),
+        _ => session.view.lights.turn.is_some(),
     }
 }
 
@@ -73,14 +73,14 @@ impl FieldVisitor for Switches<'_> {
 
     fn flag(&mut self, name: &'static str, value: &mut bool) {
         let tooltip = self.tooltips.field(&format!("environment.{name}")).unwrap_or_default();
-        self.ui.checkbox(value, spaced(name)).on_hover_text(tooltip);
+        self.ui.checkbox(value, with_spaces(name)).on_hover_text(tooltip);
     }
 
     fn choice(&mut self, name: &'static str, value: &mut dyn Choice) {
         let mut index = value.index();
         for (place, &choice) in value.names().iter().enumerate() {
             let tooltip = self.tooltips.choice(&format!("environment.{name}"), choice).unwrap_or_default();
-            self.ui.radio_value(&mut index, place, spaced(choice)).on_hover_text(tooltip);
+            self.ui.radio_value(&mut index, place, with_spaces(choice)).on_hover_text(tooltip);
         }
         value.set_index(index);
         self.ui.separator();

@@ -6,8 +6,8 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use haze::Light;
 
 use super::lit;
-use crate::tweak::testing::picture;
 use crate::tweak::window::Window;
+use crate::tweak::window::testing::picture;
 
 #[test]
 fn the_turntable_rotates_lights_and_does_not_change_the_preset() {

@@ -1,0 +1,163 @@
+//! Differences between two presets: names of undo steps, marks of changed fields, and copies of fields.
+
+use std::collections::HashMap;
+
+use haze::preset::Preset;
+use haze::settings::{Value, field_path, for_each_field, values};
+
+use super::light_defaults::light_name;
+
+/// Returns the paths of the fields that differ, such as `systems[0].settings.boost`. A list whose length differs counts
+/// as one field, such as `lights`.
+pub fn changed_fields(before: &Preset, after: &Preset) -> Vec<String> {
+    let pairs = lists(before).into_iter().zip(lists(after));
+    let lists: Vec<_> = pairs.filter(|(before, after)| before != after).map(|((list, _), _)| list).collect();
+    let is_whole = |path: &str| !lists.iter().any(|list| is_below(path, list));
+    let fields = |preset| values(preset).into_iter().filter(|(path, _)| is_whole(path)).collect::<Vec<_>>();
+    let pairs = fields(before).into_iter().zip(fields(after));
+    let changed = pairs.filter(|(before, after)| before != after).map(|((path, _), _)| path);
+    changed.chain(lists.iter().map(|&list| list.to_owned())).collect()
+}
+
+/// Returns the lists of a preset and their lengths.
+fn lists(preset: &Preset) -> [(&'static str, usize); 2] {
+    [("lights", preset.lights.len()), ("systems", preset.systems.len())]
+}
+
+/// Returns true if a path is `above` or lies below it.
+fn is_below(path: &str, above: &str) -> bool {
+    path.strip_prefix(above).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+}
+
+/// Copies the values at a path: a field, a group, an item of a list, or a whole list. Fields that only one preset has
+/// are skipped.
+pub fn copy_field(from: &Preset, to: &mut Preset, path: &str) {
+    match path {
+        "lights" => to.lights.clone_from(&from.lights),
+        "systems" => to.systems.clone_from(&from.systems),
+        _ => {
+            let values = values(from).into_iter().filter(|(field, _)| is_below(field, path));
+            let values: HashMap<String, Value> = values.collect();
+            for_each_field(to, &mut |path, leaf| {
+                if let Some(value) = values.get(&field_path(path)) {
+                    leaf.set(value);
+                }
+            });
+        }
+    }
+}
+
+/// Fields that a camera move changes.
+const MOVES: [&str; 2] = ["camera.position", "camera.target"];
+
+/// Returns a name for the step between two presets: "boost of smoke", "colour of sun 2", "camera", "3 fields of smoke",
+/// "light added".
+pub fn step_name(before: &Preset, after: &Preset) -> String {
+    let changed = changed_fields(before, after);
+    let Some(first) = changed.first() else { return "change".into() };
+    let owner = owner_of(first);
+    let of = owner.map(|(list, index)| match (list, after.systems.get(index), after.lights.get(index)) {
+        ("systems", Some(system), _) if !system.name.is_empty() => format!(" of {}", system.name),
+        ("lights", _, Some(light)) => format!(" of {}", light_name(index, light)),
+        _ => format!(" of {} {}", singular(list), index + 1),
+    });
+    let of = of.unwrap_or_default();
+    let length = |preset| lists(preset).into_iter().find(|(list, _)| list == first).map(|(_, length)| length);
+    match changed.as_slice() {
+        [list] if length(before) < length(after) => format!("{} added", singular(list)),
+        [list] if length(before) > length(after) => format!("{} removed", singular(list)),
+        fields if fields.iter().all(|field| MOVES.contains(&field.as_str())) => "camera".into(),
+        [field] => format!("{}{of}", field.rsplit('.').next().unwrap_or(field)),
+        fields if fields.iter().all(|field| owner_of(field) == owner) => format!("{} fields{of}", fields.len()),
+        fields => format!("{} fields", fields.len()),
+    }
+}
+
+/// Returns the list and the index that a field belongs to: `systems[1].name` gives `systems` and 1.
+fn owner_of(path: &str) -> Option<(&str, usize)> {
+    let (list, rest) = path.split_once('[')?;
+    let (index, _) = rest.split_once(']')?;
+    Some((list, index.parse().ok()?))
+}
+
+fn singular(list: &str) -> &str {
+    list.trim_end_matches('s')
+}
+
+#[cfg(test)]
+mod tests {
+    use haze::preset::PresetSystem;
+    use haze::{Light, Settings};
+
+    use super::*;
+
+    fn changed_by(change: impl Fn(&mut Preset)) -> (Vec<String>, String) {
+        let before = Preset::load("column").unwrap();
+        let mut after = before.clone();
+        change(&mut after);
+        let name = step_name(&before, &after);
+        let changed = changed_fields(&before, &after);
+        // Copied one by one, all fields become equal.
+        let mut copied = before.clone();
+        changed.iter().for_each(|path| copy_field(&after, &mut copied, path));
+        assert_eq!(changed_fields(&copied, &after), [""; 0]);
+        let mut back = after.clone();
+        changed.iter().for_each(|path| copy_field(&before, &mut back, path));
+        assert_eq!(back, before);
+        (changed, name)
+    }
+
+    #[test]
+    fn changes_are_named() {
+        let said = |change: fn(&mut Preset)| {
+            let (changed, name) = changed_by(change);
+            (changed.join(" "), name)
+        };
+        let expect = |said: (String, String), fields: &str, name: &str| assert_eq!(said, (fields.into(), name.into()));
+        expect(said(|_| {}), "", "change");
+        expect(said(|preset| preset.systems[0].settings.boost = 2.0), "systems[0].settings.boost", "boost of smoke");
+        expect(said(|preset| preset.lights[1].colour.x = 0.0), "lights[1].colour", "colour of sun 2");
+        expect(said(|preset| preset.camera.exposure = 2.0), "camera.exposure", "exposure");
+        expect(said(|preset| preset.camera.target.x += 1.0), "camera.target", "camera");
+        expect(said(|preset| preset.lights.push(Light::default())), "lights", "light added");
+        expect(said(|preset| preset.lights.truncate(2)), "lights", "light removed");
+        expect(said(|preset| preset.systems.push(PresetSystem::default())), "systems", "system added");
+        expect(
+            said(|preset| (preset.lights[1].colour.x, preset.lights[1].intensity) = (0.0, 0.0)),
+            "lights[1].colour lights[1].intensity",
+            "2 fields of sun 2",
+        );
+        expect(said(|preset| (preset.time, preset.camera.fov) = (0.0, 20.0)), "time camera.fov", "2 fields");
+        // A NaN counts as a change once, and not in every frame.
+        let nan = |preset: &mut Preset| preset.systems[0].settings.boost = f32::NAN;
+        let mut preset = Preset::load("column").unwrap();
+        assert_eq!(
+            changed_fields(&Preset::load("column").unwrap(), &{
+                nan(&mut preset);
+                preset.clone()
+            })
+            .len(),
+            1
+        );
+        assert_eq!(changed_fields(&preset, &preset), [""; 0]);
+    }
+
+    #[test]
+    fn copying_a_group_or_item_changes_nothing_else() {
+        let from = Preset::load("backlit_fog").unwrap();
+        let before = Preset::load("column").unwrap();
+        let mut to = before.clone();
+        copy_field(&from, &mut to, "systems[0].settings");
+        assert_eq!(to.systems[0].settings, from.systems[0].settings);
+        to.systems[0].settings = before.systems[0].settings;
+        assert_eq!(to, before);
+        copy_field(&from, &mut to, "lights[1]");
+        assert_eq!(to.lights[1], from.lights[1]);
+        to.lights[1] = before.lights[1];
+        // Only one of the presets has it, or none.
+        copy_field(&from, &mut to, "lights[3].colour");
+        copy_field(&from, &mut to, "systems[0].settings.boos");
+        assert_eq!(to, before);
+        assert_ne!(from.systems[0].settings, Settings::default());
+    }
+}

@@ -1,0 +1,154 @@
+//! Background bakes of sprites: at a low resolution while a control is held, in full when it is released.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+
+use haze::sprite::{Sprite, SpriteLayout};
+use haze::{Error, FieldError};
+use haze_author::sprite::bake::{BakedSprite, SpriteRecipe};
+
+use super::sprite_source::{SpriteState, Stamps, findings, read_sprite, stamps, write};
+use crate::tweak::platform::worker::Worker;
+
+/// Two threads, so that a coarse bake does not wait for a full one.
+pub struct SpriteBakeJob {
+    coarse: Worker<FinishedBake>,
+    full: Worker<FinishedBake>,
+    next: u64,
+}
+
+/// Finished job with its number.
+pub struct FinishedBake {
+    pub job: u64,
+    pub what: BakeResult,
+}
+
+pub enum BakeResult {
+    Read(SpriteState),
+    /// Bake of a recipe at a low resolution.
+    Coarse(Result<Baked, Error>),
+    Full(Box<FullBake>),
+    /// The order was cancelled, or another program has changed the files: nothing was written.
+    GivenUp,
+}
+
+/// Recipe and the images baked from it.
+pub struct Baked {
+    pub recipe: SpriteRecipe,
+    pub sprite: Sprite,
+    pub detail: Sprite,
+}
+
+/// Result of a full bake that was written.
+pub struct FullBake {
+    pub baked: Option<Baked>,
+    pub stamps: Stamps,
+    /// Findings of its check, or the error of writing.
+    pub written: Result<Vec<String>, Error>,
+}
+
+/// Full bake in progress.
+pub struct BakeOrder {
+    pub job: u64,
+    pub recipe: SpriteRecipe,
+    is_stopped: Arc<AtomicBool>,
+    frames: Arc<AtomicU32>,
+}
+
+impl BakeOrder {
+    /// Cancels the bake, because another is wanted.
+    pub fn stop(&self) {
+        self.is_stopped.store(true, Ordering::Relaxed);
+    }
+
+    /// Returns the number of baked frames.
+    pub fn frames(&self) -> u32 {
+        self.frames.load(Ordering::Relaxed)
+    }
+}
+
+/// Frame size in texels, and number of columns and rows, of a coarse bake, which takes some milliseconds. Version 1
+/// marches rays through a cube and needs a smaller size.
+const COARSE: [u32; 2] = [64, 2];
+const COARSE_FIRST: [u32; 2] = [32, 2];
+
+impl SpriteBakeJob {
+    /// `wake` is called from other threads when a job is done. Returns `None` if the system cannot start another
+    /// thread.
+    pub fn new(wake: impl Fn() + Clone + Send + 'static) -> Option<Self> {
+        let coarse = Worker::new("haze coarse sprite", wake.clone()).ok()?;
+        Some(Self { coarse, full: Worker::new("haze sprite", wake).ok()?, next: 0 })
+    }
+
+    /// Returns the oldest finished job; the inner `None` means that a job panicked.
+    pub fn poll(&self) -> Option<Option<FinishedBake>> {
+        self.coarse.poll().or_else(|| self.full.poll())
+    }
+
+    /// Reads a sprite and its recipe. Returns the number of the job.
+    pub fn read_sprite(&mut self, name: &str, picture: PathBuf, layout: SpriteLayout) -> u64 {
+        let (job, name) = (self.number(), name.to_owned());
+        self.full.submit(move |_| FinishedBake { job, what: BakeResult::Read(read_sprite(&name, &picture, layout)) });
+        job
+    }
+
+    /// Bakes a recipe at a low resolution. Returns the number of the job.
+    pub fn coarse(&mut self, recipe: SpriteRecipe) -> u64 {
+        let job = self.number();
+        self.coarse.submit(move |_| {
+            let [size, frames] = if recipe.version < 2 { COARSE_FIRST } else { COARSE };
+            let (columns, rows) = (recipe.columns.min(frames), recipe.rows.min(frames));
+            let small = SpriteRecipe { size: recipe.size.min(size), columns, rows, ..recipe.clone() };
+            let baked = small.bake(|_| Ok::<_, FieldError>(())).map_err(Error::from);
+            let decoded = baked.and_then(|baked| decoded(recipe, small.layout(), &baked));
+            FinishedBake { job, what: BakeResult::Coarse(decoded) }
+        });
+        job
+    }
+
+    /// Bakes a recipe in full and writes it, if the files still have the stamps `before`.
+    pub fn full(&mut self, recipe: SpriteRecipe, picture: PathBuf, before: Stamps) -> BakeOrder {
+        let job = self.number();
+        let (is_stopped, frames) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU32::new(0)));
+        let order =
+            BakeOrder { job, recipe: recipe.clone(), is_stopped: Arc::clone(&is_stopped), frames: Arc::clone(&frames) };
+        self.full.submit(move |_| {
+            let go_on = || if is_stopped.load(Ordering::Relaxed) { Err(None) } else { Ok(()) };
+            let baked = recipe.bake(|done| {
+                frames.store(done, Ordering::Relaxed);
+                go_on()
+            });
+            let what = match baked.and_then(|baked| go_on().map(|()| baked)) {
+                Ok(_) | Err(None) if stamps(&picture) != before => BakeResult::GivenUp,
+                Ok(baked) => BakeResult::Full(Box::new(written(recipe, &picture, baked))),
+                Err(None) => BakeResult::GivenUp,
+                Err(Some(error)) => BakeResult::Full(Box::new(FullBake {
+                    baked: None,
+                    stamps: before,
+                    written: Err(Error::from(error)),
+                })),
+            };
+            FinishedBake { job, what }
+        });
+        order
+    }
+
+    fn number(&mut self) -> u64 {
+        self.next += 1;
+        self.next
+    }
+}
+
+fn decoded(recipe: SpriteRecipe, layout: SpriteLayout, baked: &BakedSprite) -> Result<Baked, Error> {
+    let sprite = |sheet| Sprite::from_image("sprite".as_ref(), sheet, layout);
+    Ok(Baked { sprite: sprite(&baked.picture)?, detail: sprite(&baked.detail)?, recipe })
+}
+
+fn written(recipe: SpriteRecipe, picture: &std::path::Path, baked: BakedSprite) -> FullBake {
+    let layout = recipe.layout();
+    let findings = findings(picture, &baked.picture, layout);
+    let shown = decoded(recipe.clone(), layout, &baked);
+    let written = write(picture, &recipe, baked).map(|()| findings);
+    FullBake { baked: shown.ok(), stamps: stamps(picture), written }
+}

@@ -1,0 +1,149 @@
+//! Origin of a sprite: reads, checks, writes and copies its files.
+
+use std::path::{Path, PathBuf};
+
+use haze::assets::json;
+use haze::builtin::{self, Builtin};
+use haze::image::decode_png;
+use haze::sprite::SpriteLayout;
+use haze::{Error, FieldError};
+use haze_author::sprite::bake::{BakedSprite, SpriteRecipe};
+use haze_author::sprite::lint::lint_sprite;
+use image::RgbaImage;
+
+use crate::tweak::platform::asset_loading::sprite_recipe;
+use crate::tweak::platform::file_io::{self, CompressionEffort, Stamp, read_png, write_png};
+
+/// Origin of a sprite, which decides whether it can be edited.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SpriteOrigin {
+    /// Not known yet.
+    Reading,
+    /// Embedded in the program.
+    BuiltIn(SpriteRecipe),
+    /// Made from a recipe, which can be edited.
+    Recipe(SpriteRecipe),
+    /// The recipe beside it makes another image: another program has changed one of the two.
+    Apart(SpriteRecipe),
+    /// There is no recipe beside it.
+    Painted,
+    /// Unreadable.
+    Missing,
+}
+
+/// Stamps of the image, its detail image and the recipe.
+pub type Stamps = [Option<Stamp>; 3];
+
+/// Sprite as read from its files.
+pub struct SpriteState {
+    pub source: SpriteOrigin,
+    pub stamps: Stamps,
+    /// Findings of the check of the image, one per line.
+    pub findings: Vec<String>,
+    /// Error in the recipe's file.
+    pub broken: Option<String>,
+}
+
+/// Returns `mine.sprite.json` for `mine.png`.
+pub fn recipe_of(picture: &Path) -> PathBuf {
+    picture.with_extension("sprite.json")
+}
+
+/// Returns `mine.detail.png` for `mine.png`.
+pub fn detail_of(picture: &Path) -> PathBuf {
+    picture.with_extension("detail.png")
+}
+
+pub fn stamps(picture: &Path) -> Stamps {
+    [picture, &detail_of(picture), &recipe_of(picture)].map(Stamp::of)
+}
+
+/// Reads a sprite and its recipe. `layout` is the one in the preset.
+pub fn read_sprite(name: &str, picture: &Path, layout: SpriteLayout) -> SpriteState {
+    // Stamps are taken before the files are read, so that a write in between counts as a change.
+    let stamps = stamps(picture);
+    let (source, findings, broken) = match builtin::find(builtin::SPRITES, name) {
+        Some(found) => built_in(found).unwrap_or_else(|error| (SpriteOrigin::Missing, vec![error.to_string()], None)),
+        None => file(picture, layout),
+    };
+    SpriteState { source, stamps, findings, broken }
+}
+
+type Found = (SpriteOrigin, Vec<String>, Option<String>);
+
+fn built_in(found: &Builtin) -> Result<Found, Error> {
+    let (path, recipe) = (builtin::path(found.name), recipe_of_built_in(found.name)?);
+    let findings = findings(&path, &decode_png(&path, found.bytes)?.to_rgba8(), recipe.layout());
+    Ok((SpriteOrigin::BuiltIn(recipe), findings, None))
+}
+
+fn file(picture: &Path, layout: SpriteLayout) -> Found {
+    let sheet = match read_png(picture) {
+        Ok(sheet) => sheet.to_rgba8(),
+        Err(error) => return (SpriteOrigin::Missing, vec![error.to_string()], None),
+    };
+    let recipe = recipe_of(picture);
+    let (source, layout, broken) = match file_io::exists(&recipe).then(|| sprite_recipe(&recipe)) {
+        None => (SpriteOrigin::Painted, layout, None),
+        Some(Err(error)) => (SpriteOrigin::Painted, layout, Some(error.to_string())),
+        Some(Ok(recipe)) if makes(&recipe, &sheet) => {
+            let layout = recipe.layout();
+            (SpriteOrigin::Recipe(recipe), layout, None)
+        }
+        Some(Ok(recipe)) => (SpriteOrigin::Apart(recipe), layout, None),
+    };
+    (source, findings(picture, &sheet, layout), broken)
+}
+
+/// Returns true if a recipe makes a sheet.
+fn makes(recipe: &SpriteRecipe, sheet: &RgbaImage) -> bool {
+    if sheet.dimensions() != (recipe.size * recipe.columns, recipe.size * recipe.rows) {
+        return false;
+    }
+    if recipe.version < 2 {
+        // Version 1 takes about a minute to bake, so only the first frame is compared.
+        let frame = recipe.bake_frame(0.0).picture;
+        let size = frame.size.x as usize;
+        return frame.texels.chunks(size).zip(sheet.rows()).all(|(ours, theirs)| ours.iter().eq(theirs.take(size)));
+    }
+    recipe.bake(|_| Ok::<_, FieldError>(())).is_ok_and(|baked| baked.picture == *sheet)
+}
+
+/// Returns the findings of a check of a sheet.
+pub fn findings(path: &Path, sheet: &RgbaImage, layout: SpriteLayout) -> Vec<String> {
+    match lint_sprite(path, sheet, layout) {
+        Ok(findings) => {
+            findings.into_iter().map(|finding| format!("{}: {}", finding.name, finding.description)).collect()
+        }
+        Err(error) => vec![error.to_string()],
+    }
+}
+
+/// Writes the recipe first, because the images can be made again from it.
+pub fn write(picture: &Path, recipe: &SpriteRecipe, baked: BakedSprite) -> Result<(), Error> {
+    file_io::write(&recipe_of(picture), recipe.to_text().as_bytes())?;
+    write_png(&detail_of(picture), &baked.detail.into(), CompressionEffort::Small)?;
+    write_png(picture, &baked.picture.into(), CompressionEffort::Small)
+}
+
+/// Returns the recipe of a built-in sprite.
+pub fn recipe_of_built_in(name: &str) -> Result<SpriteRecipe, Error> {
+    json::parse(&builtin::path(name), builtin::find(builtin::SPRITES, name).map_or("", |builtin| builtin.recipe))
+}
+
+/// Writes a copy of a built-in sprite beside a preset under a free name, and returns the name.
+pub fn copy(name: &str, preset: &Path) -> Result<String, Error> {
+    let folder = preset.parent().unwrap_or(Path::new(""));
+    let file = file_io::free_copy_name(name, |file| {
+        let picture = folder.join(file);
+        stamps(&picture) == [None; 3]
+    });
+    let picture = folder.join(&file);
+    let find = |list| builtin::find(list, name);
+    if let Some((sprite, detail)) = find(builtin::SPRITES).zip(find(builtin::DETAILS)) {
+        file_io::write(&recipe_of(&picture), sprite.recipe.as_bytes())?;
+        file_io::write(&detail_of(&picture), detail.bytes)?;
+        file_io::write(&picture, sprite.bytes)?;
+    }
+    Ok(file)
+}

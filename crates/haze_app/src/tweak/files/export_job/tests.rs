@@ -1,0 +1,245 @@
+//! Tests of exports from the window.
+
+use std::fs;
+use std::time::{Duration, Instant};
+
+use eframe::egui::{Key, Modifiers, PointerButton, Theme, Vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use tempfile::TempDir;
+
+use super::*;
+use crate::tweak::session::macro_param::THICKNESS;
+use crate::tweak::window::{Window, testing};
+
+struct Bench {
+    folder: TempDir,
+    window: Harness<'static, Window>,
+}
+
+fn bench() -> Bench {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("my.json");
+    fs::write(&path, Preset::load("fence").unwrap().to_text("")).unwrap();
+    let mut window = testing::window(path.to_str().unwrap(), Vec2::new(800.0, 500.0), Theme::Dark);
+    window.state_mut().export_job.options =
+        ExportOptions { size: UVec2::new(64, 36), last: 3, ..ExportOptions::default() };
+    Bench { folder, window }
+}
+
+impl Bench {
+    fn until(&mut self, is_so: impl Fn(&Window) -> bool) {
+        let start = Instant::now();
+        while !is_so(self.window.state()) {
+            let said = self.window.state().session.messages.latest().cloned();
+            assert!(start.elapsed() < Duration::from_secs(60), "never; said: {said:?}");
+            self.window.step();
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    fn said(&self) -> String {
+        self.window.state().session.messages.latest().map(|message| message.text.clone()).unwrap_or_default()
+    }
+
+    /// Runs an export and returns the names of new files beside the preset.
+    fn make(&mut self, product: ExportKind) -> Vec<String> {
+        self.window.state_mut().export_job.product = product;
+        self.window.state_mut().export_job.is_open = true;
+        self.window.run_steps(2);
+        self.window.get_by_label("Make").click();
+        self.window.run_steps(2);
+        self.until(|window| window.export_job.progress().is_none());
+        self.window.run_steps(2);
+        self.names()
+    }
+
+    fn names(&self) -> Vec<String> {
+        let entries = fs::read_dir(self.folder.path()).unwrap();
+        let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.retain(|name| name != "my.json");
+        names.sort();
+        names
+    }
+}
+
+#[test]
+fn an_image_is_saved_beside_the_preset_without_replacing_files() {
+    let mut bench = bench();
+    for _ in 0..2 {
+        bench.window.key_press(Key::F12);
+        bench.window.run_steps(2);
+        bench.until(|window| window.export_job.progress().is_none());
+        bench.window.run_steps(2);
+        assert!(bench.said().starts_with("written: "), "{}", bench.said());
+    }
+    let names = bench.names();
+    assert_eq!(names.len(), 2, "{names:?}");
+    assert!(names.iter().all(|name| name.ends_with("s.png") || name.ends_with("s_2.png")), "{names:?}");
+    let picture = haze::image::read_png(&bench.folder.path().join(&names[0])).unwrap();
+    let seen = 36.0 * bench.window.state().session.view.aspect;
+    assert_eq!((picture.width(), picture.height()), (seen.round() as u32, 36));
+}
+
+#[test]
+fn frames_are_written_as_sequence_flipbook_and_gif() {
+    let mut bench = bench();
+    let names = bench.make(ExportKind::Sequence);
+    let folder = bench.folder.path().join(&names[0]);
+    assert_eq!(fs::read_dir(folder).unwrap().count(), 4);
+    let names = bench.make(ExportKind::Gif);
+    assert!(names.iter().any(|name| name.ends_with(".gif")), "{names:?}");
+    let names = bench.make(ExportKind::Flipbook);
+    let name = names.iter().find(|name| name.contains("flipbook")).unwrap();
+    let picture = haze::image::read_png(&bench.folder.path().join(name)).unwrap();
+    assert_eq!((picture.width(), picture.height()), (8 * 64, 4 * 36));
+}
+
+#[test]
+fn a_long_export_shows_progress_and_stops_and_a_new_sheet_replaces_the_old() {
+    let mut bench = bench();
+    let seeds = |bench: &mut Bench, size: UVec2| {
+        bench.window.state_mut().export_job.options.size = size;
+        bench.window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::E);
+        bench.window.run_steps(2);
+    };
+    seeds(&mut bench, UVec2::new(2560, 1440));
+    let start = Instant::now();
+    while bench.window.query_by_label("Stop").is_none() {
+        assert!(start.elapsed() < Duration::from_secs(60) && bench.window.state().export_job.sheet.is_none());
+        bench.window.step();
+    }
+    bench.window.get_by_label("Stop").click();
+    bench.until(|window| window.export_job.progress().is_none());
+    bench.window.run_steps(2);
+    assert!(bench.window.state().export_job.sheet.is_none() && bench.window.query_by_label("Make").is_none());
+    let mut shown = |exposure: f32| {
+        bench.window.state_mut().session.document.preset.camera.exposure = exposure;
+        seeds(&mut bench, UVec2::new(192, 108));
+        // The previous sheet is open meanwhile.
+        bench.until(|window| window.export_job.progress().is_none());
+        bench.window.run_steps(3);
+        let part = bench.window.get_by_label("sheet").rect();
+        testing::brightness(&testing::picture(&mut bench.window), part)
+    };
+    let (dark, bright) = (shown(-3.0), shown(2.0));
+    assert!(bright > dark + 5.0, "{dark} {bright}");
+}
+
+#[test]
+fn sheets_are_shown_and_saved_on_request() {
+    let mut bench = bench();
+    bench.window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::E);
+    bench.window.run_steps(2);
+    bench.until(|window| window.export_job.sheet.is_some());
+    assert!(bench.names().is_empty());
+    bench.window.run_steps(2);
+    bench.window.get_by_label("Save").click();
+    bench.window.run_steps(2);
+    bench.until(|window| window.export_job.progress().is_none() && window.export_job.sheet.is_none());
+    bench.window.run_steps(2);
+    assert!(bench.names()[0].contains("seeds"), "{:?}", bench.names());
+    for (product, count) in
+        [(ExportKind::DebugView, 9), (ExportKind::Values("systems[0].settings.accumulate.scale".into()), 1)]
+    {
+        bench.make(product);
+        bench.until(|window| window.export_job.sheet.is_some());
+        let Sheet { picture, .. } = bench.window.state_mut().export_job.sheet.take().unwrap();
+        assert!(picture.width() > 64 && count > 0);
+    }
+}
+
+#[test]
+fn a_stopped_export_is_reported_as_partial() {
+    let mut bench = bench();
+    bench.window.state_mut().export_job.options.last = 9999;
+    bench.window.state_mut().export_job.is_open = true;
+    bench.window.run_steps(2);
+    bench.window.get_by_label("Make").click();
+    bench.window.run_steps(2);
+    bench.until(|window| window.export_job.progress().is_some_and(|(done, _)| done >= 2));
+    bench.window.step();
+    bench.window.get_by_label("Stop").click();
+    bench.until(|window| window.export_job.progress().is_none());
+    bench.window.run_steps(2);
+    assert!(bench.said().contains("this sequence is partial, "), "{}", bench.said());
+}
+
+#[test]
+fn the_row_menu_makes_the_same_sheet_as_the_export_dialog() {
+    let mut bench = bench();
+    let path = "camera.exposure";
+    bench.make(ExportKind::Values(path.into()));
+    bench.until(|window| window.export_job.sheet.is_some());
+    let Sheet { picture: made, .. } = bench.window.state_mut().export_job.sheet.take().unwrap();
+    bench.window.state_mut().export_job.is_open = false;
+    bench.window.run_steps(3);
+    testing::row_menu(&mut bench.window, "exposure");
+    bench.window.get_by_label("Five values on a sheet").click();
+    bench.window.run_steps(2);
+    bench.until(|window| window.export_job.sheet.is_some());
+    let Sheet { picture: sheet, .. } = bench.window.state_mut().export_job.sheet.take().unwrap();
+    assert!(sheet == made, "another sheet");
+    // The same for a row that several settings make.
+    testing::row_menu(&mut bench.window, "thickness");
+    bench.window.get_by_label("Five values on a sheet").click();
+    bench.window.run_steps(2);
+    bench.until(|window| window.export_job.sheet.is_some());
+    let Sheet { path, .. } = bench.window.state_mut().export_job.sheet.take().unwrap();
+    assert!(path.to_string_lossy().contains("thickness"), "{}", path.display());
+}
+
+#[test]
+fn the_button_beside_a_name_makes_a_sheet() {
+    let mut bench = bench();
+    bench.window.state_mut().session.hints.begin();
+    let mut made = |tab: &str, name: &str, button: &str| {
+        bench.window.get_by_label(tab).click();
+        bench.window.run_steps(3);
+        assert!(bench.window.query_by_label(button).is_none());
+        let name = testing::row_name(&bench.window, name);
+        bench.window.hover_at(name);
+        bench.window.run_steps(2);
+        let place = bench.window.get_by_label(button).rect().center();
+        testing::click_at(&mut bench.window, place, PointerButton::Primary);
+        bench.until(|window| window.export_job.sheet.is_some());
+        let path = bench.window.state().export_job.sheet.as_ref().unwrap().path.clone();
+        // Escape closes the sheet and nothing below it.
+        let hints = bench.window.state().session.hints.left();
+        bench.window.key_press(Key::Escape);
+        bench.window.run_steps(2);
+        let window = bench.window.state();
+        assert!(window.export_job.sheet.is_none() && window.session.hints.left() == hints && !hints.is_empty());
+        path.file_name().unwrap().to_string_lossy().into_owned()
+    };
+    assert!(made("Look", "thickness", "Five values on a sheet: thickness").contains("thickness"));
+    assert!(made("Advanced", "coverage", "All values on a sheet: coverage").contains("coverage"));
+    assert!(made("Smoke", "seed", "Nine seeds on a sheet: seed").contains("seeds"));
+}
+
+#[test]
+fn values_of_a_field_cover_its_slider_or_surround_its_value_and_are_valid() {
+    let shot = Shot::load("column", UVec2::new(64, 36)).unwrap();
+    let labels = |path: &str| variations(&shot, path).into_iter().map(|(label, _)| label).collect::<Vec<_>>();
+    assert_eq!(labels("systems[0].settings.boost").len(), 5);
+    assert_eq!(labels("systems[0].settings.accumulate.opacity"), ["0", "0.25", "0.5", "0.75", "1"]);
+    let rate = shot.preset.systems[0].emitter.rate;
+    let rates = [0.25, 0.5, 1.0, 2.0, 4.0].map(|times| (rate * times).to_string());
+    assert_eq!(labels("systems[0].emitter.rate"), rates);
+    assert_eq!(labels("systems[0].emitter.seed").len(), 5);
+    assert!(labels("systems[0].emitter.wind").is_empty());
+    assert_eq!(labels("systems[0].settings.sprite.freeze_animation").len(), 2);
+    assert!(labels("systems[0].settings.path").contains(&"forward".to_owned()));
+    assert!(labels("systems[0].settings.accumulate.scale").iter().all(|label| label.parse::<u32>().unwrap() <= 16));
+    assert!(labels("systems[0].name").is_empty());
+    let thicker = variations(&shot, "systems[0].thickness").into_iter().map(|(label, shot)| {
+        let of = &shot.preset.systems[0];
+        let thickness = (THICKNESS.get)(of);
+        assert!((thickness / label.parse::<f32>().unwrap() - 1.0).abs() < 1e-2, "{label} {thickness}");
+        thickness
+    });
+    let thicker: Vec<_> = thicker.collect();
+    assert!(thicker.len() == 5 && thicker.is_sorted(), "{thicker:?}");
+    assert_eq!((labels("systems[0].wind").len(), labels("systems[0].softness").len()), (5, 5));
+    assert!(labels("systems[1].wind").is_empty());
+}

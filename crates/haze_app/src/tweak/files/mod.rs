@@ -1,0 +1,10 @@
+//! Data flow between the session and files: open, save, hot reload, export, stored layout, dropped images.
+
+pub mod dropped_image;
+pub mod export_job;
+pub mod file_actions;
+pub mod hot_reload;
+pub mod persistence;
+pub mod preset_thumbnails;
+pub mod value_spread;
+pub mod window_screenshot;

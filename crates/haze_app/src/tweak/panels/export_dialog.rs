@@ -1,0 +1,122 @@
+//! Export dialog, with progress, and the sheet that was made.
+
+use eframe::egui::{self, Ui};
+
+use crate::tweak::files::export_job::{ExportJob, ExportKind, MAX_PIXELS, Sheet};
+use crate::tweak::platform::clock::Duration;
+use crate::tweak::session::Session;
+use crate::tweak::session::setting_search::matches;
+
+/// Position below the menus and the toolbar of the viewport, points.
+const CORNER: [f32; 2] = [24.0, 76.0];
+
+/// Draws the export dialog and the sheet while they are open.
+pub fn panel(ui: &Ui, export_job: &mut ExportJob, session: &mut Session) {
+    export_job.advance(session);
+    let progress = export_job.progress();
+    if progress.is_some() {
+        // Progress needs frames, but no more than it changes.
+        ui.ctx().request_repaint_after(Duration::from_millis(200));
+    }
+    let mut is_open = export_job.is_open;
+    let window = egui::Window::new("Export").default_pos(CORNER).collapsible(false).resizable(false);
+    // A long export is always shown and can be stopped, even if it was started from elsewhere.
+    let is_long = progress.is_some_and(|(_, count)| count > 1);
+    let window = if is_long && !is_open { window } else { window.open(&mut is_open) };
+    window.show(ui.ctx(), |ui| match progress {
+        Some((done, count)) => {
+            let share = done as f32 / count.max(1) as f32;
+            ui.add(egui::ProgressBar::new(share).text(format!("{done} of {count}")));
+            if ui.button("Stop").on_hover_text("Files that are already written are complete").clicked() {
+                export_job.stop();
+            }
+        }
+        None => order(ui, export_job, session),
+    });
+    export_job.is_open = is_open;
+    sheet(ui, export_job);
+}
+
+fn order(ui: &mut Ui, export_job: &mut ExportJob, session: &mut Session) {
+    let values = match &export_job.product {
+        ExportKind::Values(path) => path.clone(),
+        _ => String::new(),
+    };
+    let products = [
+        ("Sequence", ExportKind::Sequence),
+        ("Flipbook", ExportKind::Flipbook),
+        ("GIF", ExportKind::Gif),
+        ("Shade tree", ExportKind::DebugView),
+        ("Nine seeds", ExportKind::Seeds),
+        ("Values of a setting", ExportKind::Values(values)),
+    ];
+    ui.horizontal_wrapped(|ui| {
+        for (name, product) in products {
+            ui.selectable_value(&mut export_job.product, product, name);
+        }
+    });
+    let (product, options) = (&mut export_job.product, &mut export_job.options);
+    let is_moving = matches!(product, ExportKind::Sequence | ExportKind::Flipbook | ExportKind::Gif);
+    egui::Grid::new("order").num_columns(2).show(ui, |ui| {
+        let mut row = |name: &str, numbers: [(&mut u32, std::ops::RangeInclusive<u32>); 2]| {
+            let label = ui.label(name).id;
+            ui.horizontal(|ui| {
+                for (number, range) in numbers {
+                    ui.add(egui::DragValue::new(number).range(range)).labelled_by(label);
+                }
+            });
+            ui.end_row();
+        };
+        row("Size", [(&mut options.size.x, 16..=MAX_PIXELS), (&mut options.size.y, 16..=MAX_PIXELS)]);
+        if is_moving {
+            row("Frames", [(&mut options.first, 0..=99_999), (&mut options.last, 0..=99_999)]);
+        }
+        if *product == ExportKind::Flipbook {
+            row("Rows, columns", [(&mut options.cells.x, 1..=64), (&mut options.cells.y, 1..=64)]);
+        }
+        if is_moving {
+            let label = ui.label("Frames per second").id;
+            ui.add(egui::DragValue::new(&mut options.rate).range(1.0..=50.0)).labelled_by(label);
+            ui.end_row();
+        }
+    });
+    if let ExportKind::Values(path) = product {
+        let edit = egui::TextEdit::singleline(&mut export_job.wanted).hint_text("Find a setting");
+        ui.add(edit).widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "setting to vary"));
+        let found = matches(&session.document.preset, &session.tooltips, &session.view.lights, &export_job.wanted);
+        for found in found.into_iter().take(6) {
+            let is_chosen = found.path == *path;
+            if ui.selectable_label(is_chosen, &found.path).on_hover_text(&found.tooltip).clicked() {
+                path.clone_from(&found.path);
+            }
+        }
+    }
+    let is_ready = *product != ExportKind::Values(String::new());
+    if ui.add_enabled(is_ready, egui::Button::new("Make")).clicked() {
+        let product = product.clone();
+        export_job.begin(product, session);
+    }
+}
+
+fn sheet(ui: &Ui, export_job: &mut ExportJob) {
+    let Some(Sheet { picture, texture, .. }) = &mut export_job.sheet else { return };
+    // Uploaded once.
+    let texture = texture.get_or_insert_with(|| {
+        let size = [picture.width() as usize, picture.height() as usize];
+        let picture = egui::ColorImage::from_rgb(size, picture);
+        ui.ctx().load_texture("sheet", picture, egui::TextureOptions::LINEAR)
+    });
+    let (mut is_open, mut is_saved) = (true, false);
+    let room = ui.ctx().content_rect().size() - egui::Vec2::new(60.0, 160.0);
+    let window = egui::Window::new("Sheet").default_pos(CORNER).open(&mut is_open).collapsible(false);
+    window.show(ui.ctx(), |ui| {
+        is_saved = ui.button("Save").on_hover_text("Beside the preset").clicked();
+        ui.add(egui::Image::new(&*texture).max_size(room).alt_text("sheet"));
+    });
+    if is_saved {
+        export_job.save_sheet();
+    }
+    if is_saved || !is_open {
+        export_job.sheet = None;
+    }
+}

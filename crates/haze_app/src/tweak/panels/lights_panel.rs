@@ -1,0 +1,144 @@
+//! List of lights, and the settings of the selected light.
+
+use eframe::egui::{self, Ui};
+use glam::UVec2;
+use haze::frame::MAX_LIGHTS;
+use haze::preset::{Camera, Preset};
+use haze::{Bounds, Light, LightKind};
+
+use super::rows::setting_rows::RowContext;
+use super::rows::{Row, setting_rows, value_control};
+use crate::tweak::document::light_angles::{Angles, MAX_ELEVATION, from_angles, to_angles};
+use crate::tweak::document::light_defaults::{light_name, new_light};
+use crate::tweak::session::light_view::LightView;
+use crate::tweak::session::smoke_geometry::{SmokeGeometry, place_behind};
+
+/// Draws the list and the settings of the selected light. `seen` gives the smoke that is shown, and the size of the
+/// image.
+pub fn panel(
+    ui: &mut Ui,
+    context: &mut RowContext<'_>,
+    preset: &mut Preset,
+    shown: &mut LightView,
+    seen: (&dyn Fn() -> SmokeGeometry, UVec2),
+) {
+    shown.follow(&preset.lights);
+    // If a setting of a light was searched for, that light is selected.
+    let sought = context.searched_path.and_then(|path| path.strip_prefix("lights[")?.split_once(']')?.0.parse().ok());
+    shown.selected = sought.or(shown.selected).filter(|&index| index < preset.lights.len());
+    for (index, light) in preset.lights.iter_mut().enumerate() {
+        ui.horizontal(|ui| entry(ui, index, light, shown));
+    }
+    ui.horizontal(|ui| tools(ui, preset, shown, seen));
+    let selected = shown.selected.and_then(|index| Some((index, preset.lights.get_mut(index)?)));
+    let Some((index, light)) = selected else {
+        ui.weak(if preset.lights.is_empty() { "The preset has no lights." } else { "Select a light to edit it." });
+        return;
+    };
+    ui.separator();
+    if light.kind != LightKind::Point {
+        angles(ui, context, index, light);
+    }
+    setting_rows::show(ui, context, &[("lights", Some(index))], light);
+}
+
+/// Draws a light of the list.
+fn entry(ui: &mut Ui, index: usize, light: &mut Light, shown: &mut LightView) {
+    let name = light_name(index, light);
+    let is_selected = shown.selected == Some(index);
+    let button = egui::Button::selectable(is_selected, &name);
+    let height = ui.spacing().interact_size.y;
+    // The width that the rest of the row leaves.
+    let width = (ui.available_width() - 200.0).clamp(40.0, 104.0);
+    let button = ui.add_sized([width, height], button.truncate()).on_hover_text(&name);
+    if button.clicked() {
+        shown.selected = (!is_selected).then_some(index);
+    }
+    value_control::swatch(ui, &mut light.colour).accessible_name(format!("colour of {name}"));
+    let speed = 0.01 * light.intensity.max(0.1);
+    let intensity = egui::DragValue::new(&mut light.intensity).speed(speed).range(0.0..=1.0e9).max_decimals(3);
+    let intensity = ui.add_sized([70.0, height], intensity.update_while_editing(false));
+    intensity.on_hover_text("Intensity").accessible_name(format!("intensity of {name}"));
+    if let Some(mute_solo) = shown.mute_solo(index) {
+        let mut toggle = |sign: &str, is_on: &mut bool, what: &str| {
+            let button = ui.add(egui::Button::selectable(*is_on, sign).min_size(egui::vec2(22.0, height)));
+            let button = button.on_hover_text(format!("{what}. Not saved in the preset."));
+            if button.accessible_name(format!("{what}, {name}")).clicked() {
+                *is_on = !*is_on;
+            }
+        };
+        toggle("S", &mut mute_solo.is_solo, "Show this light alone");
+        toggle("M", &mut mute_solo.is_muted, "Leave this light out");
+    }
+}
+
+/// Draws the buttons for the list and the selected light.
+fn tools(ui: &mut Ui, preset: &mut Preset, shown: &mut LightView, (smoke, size): (&dyn Fn() -> SmokeGeometry, UVec2)) {
+    ui.add_enabled_ui(preset.lights.len() < MAX_LIGHTS, |ui| {
+        ui.menu_button("Add", |ui| {
+            for &kind in LightKind::ALL {
+                if ui.button(kind.name()).clicked() {
+                    let light = beside(new_light(kind, &preset.lights), &preset.camera, &smoke().bounds());
+                    let end = preset.lights.len();
+                    shown.insert(&mut preset.lights, end, light);
+                }
+            }
+        });
+        if let Some(index) = shown.selected
+            && ui.button("Duplicate").clicked()
+        {
+            shown.duplicate(&mut preset.lights, index);
+        }
+    });
+    let Some(index) = shown.selected else { return };
+    if ui.button("Delete").clicked() {
+        shown.remove(&mut preset.lights, index);
+    }
+    let behind = ui.button("Behind the smoke").on_hover_text("Puts the light behind the smoke, as seen by the camera");
+    if behind.clicked() {
+        let smoke = smoke();
+        let (eye, point) = (preset.camera.position, smoke.visible_centre(&preset.camera, size));
+        if let Some(light) = preset.lights.get_mut(index) {
+            place_behind(light, eye, point, &smoke.bounds);
+        }
+    }
+}
+
+/// Returns the light placed above the smoke, to the side of the camera.
+fn beside(mut light: Light, camera: &Camera, bounds: &Bounds) -> Light {
+    let reach = 0.5 * (bounds.max - bounds.min);
+    let right = (camera.target - camera.position).cross(glam::Vec3::Y).normalize_or(glam::Vec3::X);
+    light.position = bounds.centre() + right * (reach.length() + 0.5);
+    light.direction = bounds.centre() - light.position - glam::Vec3::Y;
+    light
+}
+
+/// Draws the direction of a light as angles.
+fn angles(ui: &mut Ui, context: &mut RowContext<'_>, index: usize, light: &mut Light) {
+    let before = to_angles(light.direction);
+    let mut edited = before;
+    let path = format!("lights[{index}].direction");
+    let mut angle = |name: &str, value: &mut f32, most: f32, tooltip: &str| {
+        let second = context.second(&path, "");
+        let second = second.as_ref().map(Option::as_deref);
+        let row = Row {
+            name,
+            tooltip,
+            is_changed: context.changed.contains(&path),
+            second,
+            sheet: None,
+            reason_without_effect: None,
+        };
+        let refused = &mut context.refused;
+        let request = row.show(ui, |ui, label| {
+            value_control::number(ui, label, value, (&(-most..=most), None), "degrees", refused);
+        });
+        context.requests.extend(request.map(|request| (request, path.clone())));
+    };
+    angle("azimuth", &mut edited.azimuth, 180.0, "Side that the light comes from: 0 is +z, 90 is +x.");
+    angle("elevation", &mut edited.elevation, 90.0, "Angle of the light above the horizon; 0 is level.");
+    if edited != before {
+        let elevation = edited.elevation.clamp(-MAX_ELEVATION, MAX_ELEVATION);
+        light.direction = from_angles(Angles { elevation, ..edited });
+    }
+}

@@ -1,0 +1,20 @@
+//! Panels of the window: settings as rows made from the table of fields, menus and dialogs.
+
+pub mod comparison_bar;
+pub mod debug_view_strip;
+pub mod export_dialog;
+pub mod file_menu;
+pub mod hint_popup;
+pub mod key_list;
+pub mod lights_panel;
+pub mod look_panel;
+pub mod notice_bar;
+pub mod performance_panel;
+pub mod preset_browser;
+pub mod ramp_stops;
+pub mod ramps_panel;
+pub mod rows;
+pub mod search_box;
+pub mod settings_panel;
+pub mod sprite_panel;
+pub mod timeline;

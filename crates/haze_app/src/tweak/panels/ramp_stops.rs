@@ -1,0 +1,171 @@
+//! Stops of a ramp that has a recipe, and ways to get a recipe for one that has none.
+
+use eframe::egui::{self, Color32, Ui};
+use egui_gradient::DisplayOptions;
+use haze_author::ramp::{Blend, RECIPE_VERSION, RampRecipe, RampRow};
+
+use super::rows::value_control;
+use crate::tweak::document::ramp_edits::RampOrigin;
+use crate::tweak::session::Session;
+
+/// Tooltip about saving.
+const WRITTEN: &str =
+    "Shown at once. The recipe and its PNG are written when a step is complete, and again when it is undone";
+
+/// Ramp of the preset.
+#[derive(Clone, Copy)]
+pub struct NamedRamp<'a> {
+    pub system: usize,
+    pub field: &'static str,
+    /// Name that the preset has for it.
+    pub name: &'a str,
+}
+
+/// Histogram and its colour; coordinate and colour of a mark.
+pub type Bins = (Color32, Vec<f32>);
+pub type Mark = (f32, Color32);
+
+/// Histograms of the coordinates that the image samples along an axis of a ramp, and marks of single pixels.
+pub type AxisSamples = (Vec<Bins>, Vec<Mark>);
+
+/// Draws the editor of a ramp, and returns the coordinate under the pointer; the outer `None` means that the ramp has
+/// no stops. Histograms are shown for the axis of the edited gradient: rows run across, the gradient that multiplies
+/// them runs upwards.
+pub fn editor(
+    ui: &mut Ui,
+    session: &mut Session,
+    ramp: NamedRamp<'_>,
+    across: &AxisSamples,
+    up: &AxisSamples,
+) -> Option<Option<f32>> {
+    let folders = session.folders();
+    let RampOrigin::Recipe(read) = session.ramps.source(ramp.name, &folders).clone() else { return None };
+    let mut recipe = session.document.recipes.ramps.get(ramp.name).unwrap_or(&read).clone();
+    let (editor, index) = session.ramps.editor(ramp.field);
+    let mut is_changed = choose(ui, &mut recipe, index);
+    let (bins, marks) = if *index < recipe.rows.len() { across } else { up };
+    let histograms: Vec<_> = bins.iter().map(|(colour, bins)| (*colour, bins.as_slice())).collect();
+    let options = DisplayOptions { blend: recipe.blend, histograms: &histograms, marks };
+    let mut shown = shown(&recipe, *index)?;
+    let edited = ui.push_id(ramp.field, |ui| editor.show(ui, &mut shown, &options)).inner;
+    let index = *index;
+    is_changed |= ui.horizontal(|ui| blend(ui, &mut recipe.blend, ramp.field)).inner;
+    if let Some(step) = edited.step {
+        session.document.name_gradient_step(ramp.name, step);
+    }
+    if edited.is_changed {
+        match recipe.rows.get_mut(index) {
+            Some(row) => *row = shown,
+            None => recipe.times = shown.stops,
+        }
+        is_changed = true;
+    }
+    if is_changed {
+        // New features of the editor need the latest version of the format.
+        recipe.version = RECIPE_VERSION;
+        let ramps = &mut session.document.recipes.ramps;
+        // A recipe that equals the one on disk is no change, and no step.
+        if recipe == (RampRecipe { version: RECIPE_VERSION, ..read }) {
+            ramps.forget(ramp.name);
+        } else {
+            ramps.set(ramp.name, recipe);
+        }
+    }
+    if let Some(refused) = edited.refused {
+        session.messages.error("ramp", refused);
+    } else if is_changed {
+        session.messages.clear("ramp");
+    }
+    Some(edited.pointed_at)
+}
+
+/// Draws the choice of the colour space for blending. Returns true if it was changed.
+fn blend(ui: &mut Ui, blend: &mut Blend, field: &str) -> bool {
+    let before = *blend;
+    let label = ui.label("blended in");
+    value_control::choice(ui, blend, &format!("blend of {field}"), |_| None).labelled_by(label.id);
+    *blend != before
+}
+
+/// Returns the edited gradient: a row, or the gradient that multiplies the rows.
+fn shown(recipe: &RampRecipe, index: usize) -> Option<RampRow> {
+    let times = || RampRow { stops: recipe.times.clone(), ..RampRow::default() };
+    recipe.rows.get(index).cloned().or_else(|| (!recipe.times.is_empty()).then(times))
+}
+
+/// Draws the choice of a gradient for a ramp with two axes, with controls to add, move and remove rows. Returns true if
+/// the recipe was changed.
+fn choose(ui: &mut Ui, recipe: &mut RampRecipe, index: &mut usize) -> bool {
+    let has_times = !recipe.times.is_empty();
+    *index = (*index).min(recipe.rows.len() - usize::from(!has_times && !recipe.rows.is_empty()));
+    if recipe.height == 1 && recipe.rows.len() == 1 && !has_times {
+        return false;
+    }
+    let before = recipe.rows.clone();
+    ui.horizontal_wrapped(|ui| {
+        ui.label("row at");
+        for (place, of) in recipe.rows.iter().enumerate() {
+            ui.selectable_value(index, place, format!("{:.2}", of.at)).on_hover_text("On the second axis");
+        }
+        if has_times {
+            let about = "A gradient along the second axis that multiplies the rows";
+            ui.selectable_value(index, recipe.rows.len(), "times").on_hover_text(about);
+        }
+    });
+    let Some(chosen) = recipe.rows.get_mut(*index) else { return false };
+    let (mut is_added, mut is_removed) = (false, false);
+    ui.horizontal(|ui| {
+        let label = ui.label("position");
+        let field = egui::DragValue::new(&mut chosen.at).range(0.0..=1.0).speed(0.002).update_while_editing(false);
+        ui.add(field).labelled_by(label.id).on_hover_text("On the second axis, 0 to 1");
+        is_added = ui.button("Add a row").on_hover_text("A copy of this one, half way to the next").clicked();
+        is_removed = ui.add_enabled(before.len() > 1, egui::Button::new("Remove the row")).clicked();
+    });
+    if is_added {
+        let above = before.iter().map(|row| row.at).filter(|at| *at > chosen.at).fold(1.0, f32::min);
+        let copy = RampRow { at: 0.5 * (chosen.at + above), ..chosen.clone() };
+        *index += 1;
+        recipe.rows.insert(*index, copy);
+    } else if is_removed {
+        recipe.rows.remove(*index);
+        *index = index.saturating_sub(1);
+    }
+    recipe.rows != before
+}
+
+/// Draws where stops are saved, or a button to get stops.
+pub fn offer_stops(ui: &mut Ui, session: &mut Session, ramp: NamedRamp<'_>) {
+    let folders = session.folders();
+    match session.ramps.source(ramp.name, &folders) {
+        RampOrigin::BuiltIn => {
+            let about = "Writes a copy of this ramp and its recipe beside the preset, to be edited here; a preset that is \
+                         built in is saved first";
+            if button(ui, "Make my own", ramp, about) {
+                session.ramps.request_copy(ramp.system, ramp.field, session.document.is_built_in());
+            }
+        }
+        RampOrigin::Painted => {
+            let about = "No recipe beside it makes this picture. Finds stops that do; the picture does not change until a stop is edited";
+            if button(ui, "Fit stops to the picture", ramp, about) {
+                match session.ramps.fit(ramp.name) {
+                    Ok((count, error)) => {
+                        let name = ramp.name;
+                        session.messages.info("ramp", format!("{name}: {count} stops, at most {error:.1}/255 off"));
+                    }
+                    Err(error) => session.messages.error("ramp", error),
+                }
+            }
+        }
+        RampOrigin::Recipe(_) => {
+            ui.weak("Saved with each step").on_hover_text(WRITTEN);
+        }
+        RampOrigin::Missing => {}
+    }
+}
+
+fn button(ui: &mut Ui, text: &str, ramp: NamedRamp<'_>, about: &str) -> bool {
+    let button = ui.button(text);
+    let name = format!("{text}: {}", ramp.name);
+    button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    button.on_hover_text(about).clicked()
+}

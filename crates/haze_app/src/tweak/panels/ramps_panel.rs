@@ -1,0 +1,261 @@
+//! Ramps tab: the ramps in use, and the parts of them that this image samples.
+
+use eframe::egui::{self, Color32, Mesh, Rect, Response, Sense, Stroke, Ui, Vec2};
+use glam::UVec2;
+use haze::MaterialAssets;
+use haze::formula::ramp::{sample_ramp, sample_ramp_2d};
+use haze::ramp::Ramp;
+use haze::settings::{ImageRole, RampFilter, set_field};
+use haze_author::preset::no_effect_reason;
+use haze_reference::SystemProbe;
+
+use super::ramp_stops::{self, AxisSamples, Bins, Mark, NamedRamp};
+use super::rows::picture_gallery::gallery;
+use super::rows::with_spaces;
+use crate::tweak::session::inspection::PixelValues;
+use crate::tweak::session::ramp_survey::{Histogram, RampPlace, RampSurvey, SIDE};
+use crate::tweak::session::{Session, ramp_survey};
+use crate::tweak::viewport_renderer::compared_side::ComparedSide;
+
+/// Heights of a ramp and of a histogram, points.
+const RAMP_HEIGHT: f32 = 20.0;
+const HISTOGRAM_HEIGHT: f32 = 56.0;
+
+/// Colours of the lights, reused cyclically; distinguishable also with colour blindness.
+const LIGHT_COLOURS: [Color32; 6] = [
+    Color32::from_rgb(230, 159, 0),
+    Color32::from_rgb(86, 180, 233),
+    Color32::from_rgb(0, 158, 115),
+    Color32::from_rgb(204, 121, 167),
+    Color32::from_rgb(213, 94, 0),
+    Color32::from_rgb(120, 120, 240),
+];
+
+/// Colour over the specular ramp of the places that are sampled.
+const SAMPLED_COLOUR: Color32 = Color32::from_rgb(120, 200, 240);
+
+/// Draws the tab. Returns the place on a ramp under the pointer.
+pub fn panel(ui: &mut Ui, session: &mut Session, index: usize) -> Option<RampPlace> {
+    let system = &session.document.preset.systems.get(index)?.clone();
+    let material = &session.materials().into_iter().nth(index)?;
+    let is_first = |values: &&PixelValues| values.side == ComparedSide::First && session.inspect.place().is_some();
+    let values = session.inspect.pixel_values.as_ref().filter(is_first);
+    let probe = values.and_then(|values| values.probe.systems.iter().find(|probe| probe.system == index)).cloned();
+    let probe = probe.as_ref();
+    let filter = system.settings.ramp_filter;
+    let is_forward = system.settings.is_forward();
+    let survey = session.inspect.survey.clone().filter(|_| !is_forward);
+    let survey = survey.as_deref();
+    let reason_without_effect = |session: &Session, field: &str| {
+        let path = format!("systems[{index}].material.{field}");
+        no_effect_reason(&session.document.preset, &path, session.view.size)
+    };
+    let mut ramp_place = None;
+    ui.weak("Point at a ramp to highlight the smoke that samples it. Point at smoke to mark its place.");
+    if is_forward {
+        ui.weak("Forward smoke is lit sprite by sprite: no texels to count.");
+    }
+    for (field, title, name) in [
+        ("diffuse_ramp", "Diffuse, by normal and light", &system.material.diffuse_ramp),
+        ("backlight_ramp", "Diffuse, lit from behind", &system.material.backlight_ramp),
+        ("soft_scatter_ramp", "Soft scatter, by amount", &system.material.soft_scatter_ramp),
+        ("specular_ramp", "Specular, by distance² and amount", &system.material.specular_ramp),
+        ("coverage_ramp", "Coverage, by amount times boost", &system.material.coverage_ramp),
+        ("age_ramp", "Age, from birth to death", &system.material.age_ramp),
+    ] {
+        ui.add_space(6.0);
+        choose(ui, session, title, &format!("systems[{index}].material.{field}"), name);
+        if let Some(reason) = reason_without_effect(session, field) {
+            ui.weak(format!("Not used: {reason}"));
+            continue;
+        }
+        let ramp = NamedRamp { system: index, field, name };
+        ramp_stops::offer_stops(ui, session, ramp);
+        let spoken = with_spaces(field);
+        let ink = ui.visuals().text_color();
+        if field == "specular_ramp" {
+            let density = survey.map(|survey| survey.by_glow(index));
+            ramp_place =
+                ramp_place.or(plane(ui, &spoken, (&material.specular_ramp, filter), density.as_deref(), probe));
+            let [across, up] = axis_samples(density.as_deref(), probe, ink);
+            ramp_stops::editor(ui, session, ramp, &across, &up);
+            continue;
+        }
+        let lights = survey.filter(|_| is_diffuse(field)).map_or_else(Vec::new, |survey| survey.by_light(index));
+        let (picture, mut bins, marks) =
+            ramp_samples(field, material, probe, survey.map(|survey| (survey, index)), &lights, ink);
+        if bins.is_empty() && field != "age_ramp" && !is_forward {
+            // Reserves the space of the histogram, so that nothing moves under the pointer when it arrives.
+            bins.push((ink, Vec::new()));
+        }
+        let across = (bins, marks);
+        let edited = ramp_stops::editor(ui, session, ramp, &across, &AxisSamples::default());
+        let at = edited.unwrap_or_else(|| {
+            let at = strip(ui, &spoken, picture, filter, &across.1);
+            histogram(ui, field, &across.0);
+            at
+        });
+        if field == "diffuse_ramp" && survey.is_some() {
+            legend(ui, &lights, &session.view.lights.shown_names(&session.document.preset.lights));
+        }
+        ramp_place = ramp_place.or(at.and_then(|at| match field {
+            "diffuse_ramp" | "backlight_ramp" => Some(RampPlace::Diffuse(at)),
+            "soft_scatter_ramp" => Some(RampPlace::SoftScatter(at)),
+            "coverage_ramp" => Some(RampPlace::Coverage(at)),
+            _ => None,
+        }));
+    }
+    session.follow_ramps(true);
+    ramp_place
+}
+
+fn is_diffuse(field: &str) -> bool {
+    matches!(field, "diffuse_ramp" | "backlight_ramp")
+}
+
+/// Returns a ramp with one axis, the histograms of the coordinates that the image samples, and the marks of the probed
+/// pixel. `survey` comes with the index of the system; `lights` are its histograms of the diffuse ramps.
+fn ramp_samples<'a>(
+    field: &str,
+    material: &'a MaterialAssets,
+    probe: Option<&SystemProbe>,
+    survey: Option<(&RampSurvey, usize)>,
+    lights: &[Histogram],
+    ink: Color32,
+) -> (&'a Ramp, Vec<Bins>, Vec<Mark>) {
+    let one = |at: Option<f32>| at.map(|at| (at, Color32::WHITE)).into_iter().collect();
+    match field {
+        "diffuse_ramp" | "backlight_ramp" => {
+            let looking = probe.iter().flat_map(|probe| &probe.lights);
+            let marks = looking.map(|light| (light.coordinate, light_colour(light.light))).collect();
+            let bins = lights.iter().map(|histogram| (light_colour(histogram.light), histogram.bins.clone()));
+            let ramp = if field == "diffuse_ramp" { &material.diffuse_ramp } else { &material.backlight_ramp };
+            (ramp, bins.collect(), marks)
+        }
+        "soft_scatter_ramp" => {
+            let bins = survey.map(|(survey, system)| (ink, survey.by_amount(system)));
+            (&material.soft_scatter_ramp, bins.into_iter().collect(), one(probe.map(|probe| probe.amount)))
+        }
+        "coverage_ramp" => {
+            let bins = survey.map(|(survey, system)| (ink, survey.by_coverage(system)));
+            let at = probe.map(|probe| probe.coverage_coordinate);
+            (&material.coverage_ramp, bins.into_iter().collect(), one(at))
+        }
+        _ => (&material.age_ramp, Vec::new(), Vec::new()),
+    }
+}
+
+/// Returns histograms and marks of the specular ramp along each axis.
+fn axis_samples(density: Option<&[f32]>, probe: Option<&SystemProbe>, ink: Color32) -> [AxisSamples; 2] {
+    let glows = probe.iter().flat_map(|probe| &probe.lights).filter_map(|light| Some((light.light, light.glow?)));
+    let marks: Vec<_> = glows.map(|(light, glow)| (light_colour(light), glow.coordinate)).collect();
+    // Empty histograms reserve the space.
+    let [across, up] = ramp_survey::along(density.unwrap_or_default());
+    [
+        (vec![(ink, across)], marks.iter().map(|(colour, at)| (at.x, *colour)).collect()),
+        (vec![(ink, up)], marks.iter().map(|(colour, at)| (at.y, *colour)).collect()),
+    ]
+}
+
+/// Draws the title of a ramp and the choice of its image.
+fn choose(ui: &mut Ui, session: &mut Session, title: &str, path: &str, name: &str) {
+    let label = ui.strong(title);
+    let mut chosen = name.to_owned();
+    gallery(ui, &session.thumbnails, ImageRole::Ramp, &mut chosen, path).labelled_by(label.id);
+    if chosen != name
+        && let Err(error) = set_field(&mut session.document.preset, path, &chosen)
+    {
+        session.messages.error("ramp", error);
+    }
+}
+
+fn light_colour(index: usize) -> Color32 {
+    LIGHT_COLOURS[index % LIGHT_COLOURS.len()]
+}
+
+/// Allocates space for an image with a name. Returns the pointer position in it, in shares of its sides.
+fn space(ui: &mut Ui, size: Vec2, name: &str) -> (Rect, Option<Vec2>) {
+    let (rect, response): (Rect, Response) = ui.allocate_exact_size(size, Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
+    (rect, response.hover_pos().map(|at| (at - rect.min) / rect.size()))
+}
+
+/// Draws a ramp from left to right with marks. Returns the coordinate under the pointer.
+fn strip(ui: &mut Ui, name: &str, ramp: &Ramp, filter: RampFilter, marks: &[(f32, Color32)]) -> Option<f32> {
+    let (rect, at) = space(ui, Vec2::new(ui.available_width(), RAMP_HEIGHT), name);
+    picture(ui, rect, UVec2::new(128, 1), |at| sample_ramp(ramp, filter, at.x));
+    for &(coordinate, colour) in marks {
+        let x = rect.left() + coordinate * rect.width();
+        for (width, colour) in [(4.0, Color32::BLACK), (2.0, colour)] {
+            ui.painter().vline(x, rect.y_range(), Stroke::new(width, colour));
+        }
+    }
+    at.map(|at| at.x)
+}
+
+/// Draws a linear image from a function of the position, in shares of its sides, cell by cell.
+fn picture(ui: &Ui, rect: Rect, cells: UVec2, colour: impl Fn(glam::Vec2) -> glam::Vec3) {
+    let mut mesh = Mesh::default();
+    let side = rect.size() / Vec2::new(cells.x as f32, cells.y as f32);
+    for y in 0..cells.y {
+        for x in 0..cells.x {
+            let at = glam::Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / cells.as_vec2();
+            let [r, g, b] = colour(at).to_array();
+            let corner = rect.min + Vec2::new(x as f32, y as f32) * side;
+            mesh.add_colored_rect(Rect::from_min_size(corner, side), egui::Rgba::from_rgb(r, g, b).into());
+        }
+    }
+    ui.painter().add(mesh);
+}
+
+/// Draws histograms on top of each other.
+fn histogram(ui: &mut Ui, field: &str, histograms: &[Bins]) {
+    if histograms.is_empty() {
+        return;
+    }
+    let name = if field == "diffuse_ramp" { "histogram of N·L" } else { "histogram of amounts" };
+    let (rect, _) = space(ui, Vec2::new(ui.available_width(), HISTOGRAM_HEIGHT), name);
+    ui.painter().rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
+    histograms.iter().for_each(|(colour, bins)| egui_gradient::histogram(ui, rect, bins, *colour));
+}
+
+/// Draws the names of lights in the colours of their histograms.
+fn legend(ui: &mut Ui, histograms: &[Histogram], names: &[String]) {
+    ui.horizontal_wrapped(|ui| {
+        for histogram in histograms {
+            let name = names.get(histogram.light).map_or("light", String::as_str);
+            ui.colored_label(light_colour(histogram.light), name);
+        }
+        if histograms.is_empty() {
+            ui.weak("No light reaches smoke in the picture");
+        }
+    });
+}
+
+/// Draws the specular ramp with rising amounts upwards, and the sampled places over it.
+fn plane(
+    ui: &mut Ui,
+    name: &str,
+    (ramp, filter): (&Ramp, RampFilter),
+    density: Option<&[f32]>,
+    probe: Option<&SystemProbe>,
+) -> Option<RampPlace> {
+    let side = ui.available_width().min(220.0);
+    let (rect, at) = space(ui, Vec2::new(side, 0.6 * side), name);
+    picture(ui, rect, UVec2::splat(48), |at| sample_ramp_2d(ramp, filter, glam::Vec2::new(at.x, 1.0 - at.y)));
+    let mut mesh = Mesh::default();
+    let cell = rect.size() / SIDE as f32;
+    for (index, density) in density.unwrap_or_default().iter().enumerate().filter(|(_, density)| **density > 0.0) {
+        let (x, y) = ((index % SIDE) as f32, (SIDE - 1 - index / SIDE) as f32);
+        let square = Rect::from_min_size(rect.min + Vec2::new(x, y) * cell, cell);
+        mesh.add_colored_rect(square, SAMPLED_COLOUR.gamma_multiply(0.7 * density.sqrt()));
+    }
+    ui.painter().add(mesh);
+    for glow in probe.iter().flat_map(|probe| &probe.lights).filter_map(|light| Some((light.light, light.glow?))) {
+        let (light, at) = (glow.0, glow.1.coordinate);
+        let place = rect.min + Vec2::new(at.x, 1.0 - at.y) * rect.size();
+        ui.painter().circle(place, 4.0, light_colour(light), Stroke::new(1.5, Color32::BLACK));
+    }
+    ui.weak("across: distance² from the light; up: amount");
+    at.map(|at| RampPlace::Specular(glam::Vec2::new(at.x, 1.0 - at.y)))
+}

@@ -1,0 +1,148 @@
+//! One row of a panel: mark, name, control.
+
+pub mod icon_button;
+pub mod picture_gallery;
+pub mod setting_rows;
+pub mod soft_fade_plot;
+pub mod value_control;
+pub mod value_text;
+
+use eframe::egui::{self, Response, Ui};
+
+use icon_button::Icon;
+
+/// Width of the names, points, and their largest share of a row.
+const NAME: f32 = 118.0;
+const SHARE: f32 = 0.36;
+/// Width of the mark before a name, points.
+const MARK: f32 = 12.0;
+
+/// Texts and marks of a row.
+pub struct Row<'a> {
+    pub name: &'a str,
+    pub tooltip: &'a str,
+    /// The value differs from the preset on disk.
+    pub is_changed: bool,
+    /// Second image's value as text, if it differs; the outer `None` means that it has no settings of its own.
+    pub second: Option<Option<&'a str>>,
+    /// Label of the button that makes a sheet of values, if one can be made.
+    pub sheet: Option<&'a str>,
+    /// Reason why the setting has no effect.
+    pub reason_without_effect: Option<&'a str>,
+}
+
+/// Request made on a row, beside its control.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RowRequest {
+    Reset,
+    /// Copy the second image's value.
+    CopySecond,
+    /// Make a sheet of its values.
+    Sheet,
+}
+
+impl Row<'_> {
+    /// Draws the row and returns a request. `control` receives the response of the name, as its accessible label.
+    pub fn show(&self, ui: &mut Ui, control: impl FnOnce(&mut Ui, &Response)) -> Option<RowRequest> {
+        let mut request = None;
+        ui.horizontal(|ui| {
+            let (width, height) = (name_width(ui), ui.spacing().interact_size.y);
+            let tooltip = "Differs from the saved preset. Click to set it back.";
+            if mark(ui, self.is_changed.then_some(("•", tooltip)), || format!("set back {}", self.name)) {
+                request = Some(RowRequest::Reset);
+            }
+            if let Some(second) = self.second {
+                let tooltip = second.map(|value| format!("The second picture has {value}. Click to take it."));
+                let sign = tooltip.as_deref().map(|tooltip| ("≠", tooltip));
+                if mark(ui, sign, || format!("take {} of the second", self.name)) {
+                    request = Some(RowRequest::CopySecond);
+                }
+            }
+            let place = ui.allocate_ui_with_layout(
+                egui::vec2(width, height),
+                egui::Layout::left_to_right(egui::Align::Center),
+                |ui| {
+                    ui.set_min_size(egui::vec2(width, height));
+                    let text = egui::RichText::new(with_spaces(self.name));
+                    let text = if self.reason_without_effect.is_some() { text.weak() } else { text };
+                    ui.add(egui::Label::new(text).truncate().sense(egui::Sense::click()))
+                },
+            );
+            let (place, name) = (place.response.rect, place.inner.on_hover_text(self.hint()));
+            if name.double_clicked() {
+                request = Some(RowRequest::Reset);
+            }
+            name.context_menu(|ui| request = self.menu(ui).or(request));
+            if let Some(sheet) =
+                self.sheet.filter(|_| self.reason_without_effect.is_none() && ui.rect_contains_pointer(place))
+            {
+                let corner = place.with_min_x(place.right() - height);
+                let what = format!("{sheet}: {}", with_spaces(self.name));
+                if icon_button::button_over(ui, corner, name.id.with(sheet), Icon::Sheet, &what).clicked() {
+                    request = Some(RowRequest::Sheet);
+                }
+            }
+            ui.add_enabled_ui(self.reason_without_effect.is_none(), |ui| control(ui, &name));
+        });
+        request
+    }
+
+    fn menu(&self, ui: &mut Ui) -> Option<RowRequest> {
+        let mut request = None;
+        let mut entry = |is_on, name: &str, what| {
+            if ui.add_enabled(is_on, egui::Button::new(name)).clicked() {
+                request = Some(what);
+                ui.close();
+            }
+        };
+        entry(self.is_changed, "Set back", RowRequest::Reset);
+        if let Some(Some(value)) = self.second {
+            entry(true, &format!("Take {value} of the second picture"), RowRequest::CopySecond);
+        }
+        if let Some(sheet) = self.sheet {
+            entry(true, sheet, RowRequest::Sheet);
+        }
+        request
+    }
+
+    fn hint(&self) -> String {
+        match self.reason_without_effect {
+            Some(reason) => format!("{}\n\nNo effect here: {reason}.", self.tooltip),
+            None => self.tooltip.to_owned(),
+        }
+    }
+}
+
+/// Draws a mark if there is one, or the empty space for it. Returns true if it was clicked. `name` is the accessible
+/// name.
+fn mark(ui: &mut Ui, sign: Option<(&str, &str)>, name: impl Fn() -> String) -> bool {
+    let size = egui::vec2(MARK, ui.spacing().interact_size.y);
+    let layout = egui::Layout::left_to_right(egui::Align::Center);
+    let place = ui.allocate_ui_with_layout(size, layout, |ui| {
+        ui.set_min_size(size);
+        let (sign, tooltip) = sign?;
+        let mark = egui::Button::new(egui::RichText::new(sign).strong()).frame(false).small();
+        let mark = ui.add(mark).on_hover_text(tooltip);
+        mark.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name()));
+        Some(mark.clicked())
+    });
+    place.inner == Some(true)
+}
+
+fn name_width(ui: &Ui) -> f32 {
+    NAME.min(SHARE * ui.available_width())
+}
+
+/// Draws a note below a control. `marks`: number of marks that rows have before their names.
+pub fn note(ui: &mut Ui, marks: f32, text: &str) -> Response {
+    ui.horizontal(|ui| {
+        ui.add_space(marks * MARK + name_width(ui) + (marks + 1.0) * ui.spacing().item_spacing.x);
+        ui.weak(text)
+    })
+    .inner
+}
+
+/// Returns a name with spaces in place of underscores.
+pub fn with_spaces(name: &str) -> String {
+    name.replace('_', " ")
+}

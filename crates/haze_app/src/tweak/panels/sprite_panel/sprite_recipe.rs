@@ -1,0 +1,183 @@
+//! Recipe of a sprite as rows, and ways to get one for a sprite that has none.
+
+use std::collections::HashSet;
+use std::ops::RangeInclusive;
+use std::sync::LazyLock;
+
+use eframe::egui::{ProgressBar, Ui};
+use glam::Vec3;
+use haze::builtin;
+use haze::preset::MaterialNames;
+use haze::settings::{FieldVisitor, Fields};
+use haze_author::preset::Tooltips;
+use haze_author::sprite::bake::SpriteRecipe;
+
+use crate::tweak::document::sprite_edits::set_recipe;
+use crate::tweak::document::sprite_edits::sprite_source::SpriteOrigin;
+use crate::tweak::panels::rows::setting_rows::{self, RowContext};
+use crate::tweak::platform::clock::Duration;
+use crate::tweak::session::Session;
+use crate::tweak::session::messages::truncate_middle;
+
+static TOOLTIPS: LazyLock<Tooltips> = LazyLock::new(Tooltips::of::<SpriteRecipe>);
+
+/// Tooltip about saving.
+const WRITTEN: &str = "Shown at once at a low resolution, and baked in full when the control is released. Then the recipe and its PNGs are \
+                       written, and again when the step is undone";
+
+/// Longest finding or error that is shown, characters.
+const MAX_CHARACTERS: usize = 400;
+
+/// Draws the recipe of the selected system's sprite, or the ways to get one.
+pub fn panel(ui: &mut Ui, session: &mut Session, names: &MaterialNames) {
+    let (folders, wake) = (session.folders(), session.repaint.clone());
+    let Some(known) = session.sprites.ask(names, &folders, move || wake.call()) else { return };
+    if let Some(broken) = &known.broken {
+        ui.colored_label(ui.visuals().error_fg_color, truncate_middle(broken, MAX_CHARACTERS));
+    }
+    for finding in &known.findings {
+        ui.colored_label(ui.visuals().warn_fg_color, truncate_middle(finding, MAX_CHARACTERS));
+    }
+    let file = known.recipe_file();
+    let file = truncate_middle(&file.file_name().unwrap_or_default().to_string_lossy(), 60);
+    let (source, is_broken) = (known.source.clone(), known.broken.is_some());
+    let progress = known.full.as_ref().map(|order| (order.frames(), order.recipe.frame_count()));
+    let name = &names.sprite;
+    match source {
+        SpriteOrigin::Reading => {
+            ui.weak("Reading the sprite.");
+        }
+        SpriteOrigin::BuiltIn(recipe) => {
+            let about = "Writes a copy of this sprite and its recipe beside the preset, to be changed here; a preset that is \
+                         built in is saved first";
+            if ui.button("Make my own").on_hover_text(about).clicked() {
+                session.sprites.request_copy(session.view.system, name, session.document.is_built_in());
+            }
+            rows(ui, session, name, &recipe, Some("a built-in recipe cannot be changed; make your own first"));
+        }
+        SpriteOrigin::Recipe(recipe) => {
+            let recipe = session.document.recipes.sprites.get(name).unwrap_or(&recipe).clone();
+            match progress {
+                Some((done, count)) => {
+                    let text = format!("Baking frame {} of {count}", (done + 1).min(count));
+                    ui.add(ProgressBar::new(done as f32 / count as f32).text(text));
+                    // The bake does not request frames, so the progress bar does.
+                    ui.ctx().request_repaint_after(Duration::from_millis(100));
+                }
+                None => {
+                    ui.weak("Saved with each step").on_hover_text(WRITTEN);
+                }
+            }
+            rows(ui, session, name, &recipe, is_broken.then_some("the file of the recipe has an error; fix it first"));
+        }
+        SpriteOrigin::Apart(_) => {
+            ui.label(format!("{file} makes another picture: another program has changed one of the two."));
+            let about = "Replaces the picture by the one that the recipe makes";
+            if ui.button("Bake the recipe").on_hover_text(about).clicked() {
+                known.adopt();
+            }
+            templates(ui, session);
+        }
+        SpriteOrigin::Painted => {
+            if !is_broken {
+                ui.label(format!("There is no recipe: {file} does not exist beside the picture."));
+            }
+            templates(ui, session);
+        }
+        SpriteOrigin::Missing => templates(ui, session),
+    }
+}
+
+/// Menu of built-in sprites to copy.
+fn templates(ui: &mut Ui, session: &mut Session) {
+    let menu = ui.menu_button("New from template", |ui| {
+        for template in builtin::SPRITES {
+            if ui.button(template.name).clicked() {
+                session.sprites.request_copy(session.view.system, template.name, session.document.is_built_in());
+                ui.close();
+            }
+        }
+    });
+    menu.response
+        .on_hover_text("Writes a copy of a built-in sprite and its recipe beside the preset, in place of this one");
+}
+
+/// Draws the fields of a recipe by its table. `locked`: the reason why none can be changed.
+fn rows(ui: &mut Ui, session: &mut Session, name: &str, recipe: &SpriteRecipe, locked: Option<&'static str>) {
+    let (mut edited, mut within) = (recipe.clone(), RangeClamp::default());
+    edited.visit(&mut within);
+    let reason_without_effect =
+        |path: &str| locked.or(within.zero.contains(path).then_some("recipe version 1 does not support it"));
+    let (unchanged, requests) = (HashSet::new(), Vec::new());
+    let mut context = RowContext {
+        tooltips: &TOOLTIPS,
+        thumbnails: &session.thumbnails,
+        changed: &unchanged,
+        second: None,
+        has_sheets: false,
+        reason_without_effect: &reason_without_effect,
+        requests,
+        refused: None,
+        searched_path: None,
+    };
+    if locked.is_none() && edited.version < 2 {
+        let about = "Bakes about fifty times as fast and has more settings; the picture changes a little";
+        ui.horizontal(|ui| {
+            ui.weak("Version 1 is slow to bake.");
+            if ui.button("Convert to version 2").on_hover_text(about).clicked() {
+                edited.version = 2;
+            }
+        });
+    }
+    setting_rows::show(ui, &mut context, &[], &mut edited);
+    let refused = context.refused;
+    // Ranges may depend on the values that were changed.
+    edited.visit(&mut RangeClamp::default());
+    if edited != *recipe {
+        set_recipe(&mut session.document, name, edited);
+        session.messages.clear("sprite");
+    }
+    if let Some(refused) = refused {
+        session.messages.error("typed", refused);
+    }
+}
+
+/// Clamps numbers to their ranges, and records those whose range is 0 only.
+#[derive(Default)]
+struct RangeClamp {
+    zero: HashSet<&'static str>,
+}
+
+impl RangeClamp {
+    fn see<T: PartialOrd + Copy + Default>(&mut self, name: &'static str, value: &mut T, range: &RangeInclusive<T>) {
+        if *range.end() <= T::default() {
+            self.zero.insert(name);
+        }
+        if *value > *range.end() {
+            *value = *range.end();
+        }
+        if *value < *range.start() {
+            *value = *range.start();
+        }
+    }
+}
+
+impl FieldVisitor for RangeClamp {
+    fn number(&mut self, name: &'static str, value: &mut f32, range: RangeInclusive<f32>, _: &'static str) {
+        self.see(name, value, &range);
+    }
+
+    fn integer(&mut self, name: &'static str, value: &mut u32, range: RangeInclusive<u32>, _: &'static str) {
+        self.see(name, value, &range);
+    }
+
+    fn vector(&mut self, _: &'static str, _: &mut Vec3, _: RangeInclusive<f32>, _: &'static str) {}
+
+    fn group(&mut self, _: &'static str, fields: &mut dyn Fields) {
+        fields.visit(self);
+    }
+
+    fn item(&mut self, _: &'static str, _: usize, fields: &mut dyn Fields) {
+        fields.visit(self);
+    }
+}

@@ -1,0 +1,66 @@
+//! Reads the files that presets name.
+
+use std::path::{Path, PathBuf};
+
+use glam::UVec2;
+use haze::preset::{AssetFolders, MaterialNames, Preset, image_file_path};
+use haze::ramp::Ramp;
+use haze::shader::Sources;
+use haze::{Error, MaterialAssets};
+use haze_author::particle_files::{ParticleFrames, load_particle_files};
+use haze_author::ramp::RampRecipe;
+use haze_author::sprite::bake::SpriteRecipe;
+use haze_demo::shot::Shot;
+
+pub use crate::inputs::particle_file_paths;
+
+/// Images and particles of each system of a preset.
+pub type LoadedAssets = (Vec<MaterialAssets>, Vec<Option<ParticleFrames>>);
+
+/// Loads all files that the preset at a path names.
+pub fn all(preset: &Preset, path: &Path, folders: &AssetFolders) -> Result<LoadedAssets, Error> {
+    Ok((pictures(preset, path, folders)?, particles(preset, path, folders)?))
+}
+
+/// Loads the images of every system.
+pub fn pictures(preset: &Preset, path: &Path, folders: &AssetFolders) -> Result<Vec<MaterialAssets>, Error> {
+    preset.load_materials_from(path, folders)
+}
+
+/// Loads the particles of every system that has particle files.
+pub fn particles(preset: &Preset, path: &Path, folders: &AssetFolders) -> Result<Vec<Option<ParticleFrames>>, Error> {
+    load_particle_files(preset, path, folders)
+}
+
+/// Loads the images of one material.
+pub fn material(names: &MaterialNames, folder: &Path) -> Result<MaterialAssets, Error> {
+    names.load(folder)
+}
+
+/// Returns the path of an image, or the path where it is expected; empty if it is built in.
+pub fn place_of(name: &str, folders: &AssetFolders) -> PathBuf {
+    let place = |file| folders.find(file).ok().or_else(|| folders.places(file).next());
+    image_file_path(name).and_then(place).unwrap_or_default()
+}
+
+pub fn ramp(path: &Path) -> Result<Ramp, Error> {
+    Ramp::load(path)
+}
+
+pub fn ramp_recipe(path: &Path) -> Result<RampRecipe, Error> {
+    RampRecipe::load(path)
+}
+
+pub fn sprite_recipe(path: &Path) -> Result<SpriteRecipe, Error> {
+    SpriteRecipe::load(path)
+}
+
+/// Loads a preset, built-in or from a file, with all that it names.
+pub fn shot(path: &Path, folders: &AssetFolders, size: UVec2) -> Result<Shot, Error> {
+    Shot::from_folders(Preset::load(path)?, path, folders, size)
+}
+
+/// Loads the shaders of a folder.
+pub fn shaders(folder: &Path) -> Result<Sources, Error> {
+    Sources::from_folder(folder)
+}

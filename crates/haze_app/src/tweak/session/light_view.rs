@@ -1,0 +1,303 @@
+//! View state of lights: selection, mute, solo, turn. It is not part of the preset.
+
+use std::f32::consts::TAU;
+
+use glam::{Quat, Vec3};
+use haze::Light;
+use haze::frame::MAX_LIGHTS;
+
+use crate::tweak::document::light_defaults::light_name;
+
+/// View state of a preset's lights, by their indices.
+#[derive(Clone, Debug, Default)]
+pub struct LightView {
+    pub selected: Option<usize>,
+    /// Key light of each system, once it is chosen.
+    key_lights: Vec<Option<usize>>,
+    /// Set while all lights rotate about the smoke.
+    pub turn: Option<LightTurn>,
+    entries: Vec<LightEntry>,
+}
+
+/// Rotation of the lights about a vertical axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightTurn {
+    /// Point on the axis.
+    pub middle: Vec3,
+    /// Angle from the positions in the preset, radians.
+    pub angle: f32,
+}
+
+/// Duration of one turn, seconds.
+const TURN_SECONDS: f32 = 5.0;
+
+impl LightTurn {
+    /// Advances by the elapsed seconds.
+    pub fn advance(&mut self, seconds: f32) {
+        self.angle = (self.angle + seconds * TAU / TURN_SECONDS).rem_euclid(TAU);
+    }
+
+    /// Returns a light rotated by the present angle.
+    pub fn turned(&self, light: &Light) -> Light {
+        let turn = Quat::from_rotation_y(self.angle);
+        let position = self.middle + turn * (light.position - self.middle);
+        Light { position, direction: turn * light.direction, ..*light }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+struct LightEntry {
+    /// The light as it was last seen, to recognise it when lights are added or removed.
+    light: Light,
+    mute_solo: MuteSolo,
+}
+
+/// Mute and solo flags of a light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MuteSolo {
+    /// The light is left out of the image.
+    pub is_muted: bool,
+    /// If any light is solo, only solo lights are in the image.
+    pub is_solo: bool,
+}
+
+impl LightView {
+    /// Follows changes of the list of lights, by undo or by another preset.
+    pub fn follow(&mut self, lights: &[Light]) {
+        let entry = |&light| LightEntry { light, mute_solo: MuteSolo::default() };
+        let (old, new) = (self.entries.len(), lights.len());
+        if old != new {
+            // Lights that are equal at either end of the list keep their state.
+            let pairs = self.entries.iter().zip(lights);
+            let start = pairs.take_while(|(entry, light)| entry.light == **light).count();
+            let pairs = self.entries[start..].iter().rev().zip(lights[start..].iter().rev());
+            let end = pairs.take_while(|(entry, light)| entry.light == **light).count();
+            self.entries.splice(start..old - end, lights[start..new - end].iter().map(entry));
+            self.renumber(|index| match index {
+                _ if index < start => Some(index),
+                _ if index >= old - end => Some(index + new - old),
+                _ => None,
+            });
+        }
+        for (entry, light) in self.entries.iter_mut().zip(lights) {
+            entry.light = *light;
+        }
+    }
+
+    /// Gives all stored indices their new values; `None` removes an index.
+    fn renumber(&mut self, place: impl Fn(usize) -> Option<usize>) {
+        self.selected = self.selected.and_then(&place);
+        self.key_lights.iter_mut().for_each(|key_light| *key_light = key_light.and_then(&place));
+    }
+
+    /// Returns the key light of a system. It is chosen once and kept as long as it exists.
+    pub fn key_light(&mut self, system: usize, choose: impl FnOnce() -> Option<usize>) -> Option<usize> {
+        self.key_lights.resize(self.key_lights.len().max(system + 1), None);
+        let key_light = &mut self.key_lights[system];
+        *key_light = key_light.or_else(choose);
+        *key_light
+    }
+
+    /// Returns the key light of a system if it is already chosen.
+    pub fn chosen_key_light(&self, system: usize) -> Option<usize> {
+        self.key_lights.get(system).copied().flatten()
+    }
+
+    /// Forgets the key lights, so that they are chosen anew for another preset.
+    pub fn forget_key_lights(&mut self) {
+        self.key_lights.clear();
+    }
+
+    /// Returns the flags of a light, for changing them.
+    pub fn mute_solo(&mut self, index: usize) -> Option<&mut MuteSolo> {
+        self.entries.get_mut(index).map(|entry| &mut entry.mute_solo)
+    }
+
+    /// Returns true if a light is in the image.
+    pub fn is_shown(&self, index: usize) -> bool {
+        let has_solo = self.has_solo();
+        self.entries
+            .get(index)
+            .is_none_or(|LightEntry { mute_solo, .. }| if has_solo { mute_solo.is_solo } else { !mute_solo.is_muted })
+    }
+
+    /// Returns the lights that are in the image, turned.
+    pub fn shown(&self, lights: &[Light]) -> Vec<Light> {
+        (0..).zip(lights).filter(|(index, _)| self.is_shown(*index)).map(|(_, light)| self.turned(light)).collect()
+    }
+
+    /// Returns the names of the lights that are in the image, in the same order.
+    pub fn shown_names(&self, lights: &[Light]) -> Vec<String> {
+        let mut of_these = self.clone();
+        of_these.follow(lights);
+        let shown = (0..).zip(lights).filter(|(index, _)| of_these.is_shown(*index));
+        shown.map(|(index, light)| light_name(index, light)).collect()
+    }
+
+    /// Returns the lights of another preset that are in its image. They are matched by index, and by equality at the
+    /// ends of the lists.
+    pub fn shown_of_preset(&self, others: &[Light]) -> Vec<Light> {
+        let mut of_others = self.clone();
+        of_others.follow(others);
+        // If the solo light does not exist there, no light is in the image.
+        if self.has_solo() && !of_others.has_solo() { Vec::new() } else { of_others.shown(others) }
+    }
+
+    fn has_solo(&self) -> bool {
+        self.entries.iter().any(|entry| entry.mute_solo.is_solo)
+    }
+
+    /// Returns a light as the turn has moved it.
+    pub fn turned(&self, light: &Light) -> Light {
+        self.turn.map_or(*light, |turn| turn.turned(light))
+    }
+
+    /// Inserts a light and selects it, unless there are already [`MAX_LIGHTS`].
+    pub fn insert(&mut self, lights: &mut Vec<Light>, index: usize, light: Light) {
+        if lights.len() < MAX_LIGHTS {
+            self.follow(lights);
+            lights.insert(index, light);
+            self.renumber(|place| Some(place + usize::from(place >= index)));
+            self.entries.insert(index, LightEntry { light, mute_solo: MuteSolo::default() });
+            self.selected = Some(index);
+        }
+    }
+
+    /// Inserts a copy of a light after it, and selects the copy.
+    pub fn duplicate(&mut self, lights: &mut Vec<Light>, index: usize) {
+        if let Some(&light) = lights.get(index) {
+            self.insert(lights, index + 1, light);
+        }
+    }
+
+    /// Removes a light. If it was selected, none is selected afterwards.
+    pub fn remove(&mut self, lights: &mut Vec<Light>, index: usize) {
+        if index < lights.len() {
+            self.follow(lights);
+            lights.remove(index);
+            self.entries.remove(index);
+            self.renumber(|place| (place != index).then(|| place - usize::from(place > index)));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use haze::LightKind;
+
+    use super::*;
+
+    fn lights(intensities: &[f32]) -> Vec<Light> {
+        intensities.iter().map(|&intensity| Light { intensity, ..Light::default() }).collect()
+    }
+
+    fn muted(shown: &LightView) -> Vec<usize> {
+        (0..shown.entries.len()).filter(|&index| shown.entries[index].mute_solo.is_muted).collect()
+    }
+
+    #[test]
+    fn mute_and_solo_stay_with_their_lights() {
+        let mut all = lights(&[1.0, 2.0, 3.0]);
+        let mut shown = LightView::default();
+        shown.follow(&all);
+        shown.mute_solo(1).unwrap().is_muted = true;
+        shown.selected = Some(2);
+        shown.remove(&mut all, 0);
+        assert_eq!((muted(&shown), shown.selected), (vec![0], Some(1)));
+        shown.insert(&mut all, 0, Light::default());
+        assert_eq!((muted(&shown), shown.selected), (vec![1], Some(0)));
+        // An undo elsewhere: the added light disappears, then the former first light comes back.
+        shown.follow(&lights(&[2.0, 3.0]));
+        assert_eq!((muted(&shown), shown.selected), (vec![0], None));
+        shown.selected = Some(0);
+        shown.follow(&lights(&[1.0, 2.0, 3.0]));
+        assert_eq!((muted(&shown), shown.selected), (vec![1], Some(1)));
+        // A copy is distinguished from its original.
+        let mut twins = lights(&[1.0, 2.0, 3.0]);
+        shown.duplicate(&mut twins, 1);
+        shown.remove(&mut twins, 1);
+        assert_eq!((muted(&shown), shown.selected), (vec![], Some(1)));
+    }
+
+    #[test]
+    fn the_key_light_stays_the_same_light() {
+        let mut all = lights(&[1.0, 2.0, 3.0]);
+        let mut shown = LightView::default();
+        shown.follow(&all);
+        assert_eq!((shown.key_light(0, || Some(1)), shown.key_light(1, || Some(2))), (Some(1), Some(2)));
+        shown.insert(&mut all, 0, Light::default());
+        assert_eq!((shown.key_light(0, || Some(0)), shown.key_light(1, || Some(0))), (Some(2), Some(3)));
+        shown.remove(&mut all, 2);
+        assert_eq!((shown.key_light(0, || Some(0)), shown.key_light(1, || Some(0))), (Some(0), Some(2)));
+        shown.forget_key_lights();
+        assert_eq!(shown.key_light(1, || Some(1)), Some(1));
+    }
+
+    #[test]
+    fn names_tell_kind_and_index_of_the_lights_in_the_image() {
+        let mut all = lights(&[1.0, 2.0, 3.0]);
+        (all[0].kind, all[2].kind) = (LightKind::Directional, LightKind::Spot);
+        let mut shown = LightView::default();
+        shown.follow(&all);
+        assert_eq!(shown.shown_names(&all), ["sun 1", "lamp 2 (point)", "lamp 3 (spot)"]);
+        shown.mute_solo(0).unwrap().is_muted = true;
+        assert_eq!(shown.shown_names(&all), ["lamp 2 (point)", "lamp 3 (spot)"]);
+    }
+
+    #[test]
+    fn a_solo_light_mutes_the_others() {
+        let all = lights(&[1.0, 2.0, 3.0]);
+        let mut shown = LightView::default();
+        shown.follow(&all);
+        shown.mute_solo(0).unwrap().is_muted = true;
+        assert_eq!(shown.shown(&all), all[1..]);
+        shown.mute_solo(2).unwrap().is_solo = true;
+        assert_eq!(shown.shown(&all), all[2..]);
+    }
+
+    #[test]
+    fn mute_and_turn_apply_to_the_lights_of_another_preset() {
+        let all = lights(&[1.0, 2.0, 3.0]);
+        let mut shown = LightView::default();
+        shown.follow(&all);
+        shown.turn = Some(LightTurn { middle: Vec3::ZERO, angle: 1.0 });
+        shown.mute_solo(1).unwrap().is_muted = true;
+        let turned = |of: &[f32]| lights(of).iter().map(|light| shown.turned(light)).collect::<Vec<_>>();
+        assert_eq!(shown.shown_of_preset(&lights(&[5.0, 6.0, 7.0])), turned(&[5.0, 7.0]));
+        // The first light was added since, so it is missing here.
+        assert_eq!(shown.shown_of_preset(&lights(&[2.0, 3.0])), turned(&[3.0]));
+        let mut alone = shown.clone();
+        alone.mute_solo(0).unwrap().is_solo = true;
+        assert_eq!(alone.shown_of_preset(&lights(&[5.0, 6.0, 7.0])), turned(&[5.0]));
+        assert_eq!(alone.shown_of_preset(&lights(&[2.0, 3.0])), []);
+        assert_eq!(alone.shown(&all), turned(&[1.0]), "nothing is changed by looking");
+    }
+
+    #[test]
+    fn a_full_turn_keeps_height_and_distance_and_ends_at_the_start() {
+        let light =
+            Light { position: Vec3::new(3.0, 2.0, 1.0), direction: Vec3::new(0.5, -1.0, 0.2), ..Light::default() };
+        let mut turn = LightTurn { middle: Vec3::new(1.0, 4.0, 0.0), angle: 0.0 };
+        assert_eq!(turn.turned(&light), light);
+        for step in 1..=50 {
+            turn.advance(TURN_SECONDS / 50.0);
+            let turned = turn.turned(&light);
+            assert!((turned.position - turn.middle).length() - (light.position - turn.middle).length() < 1e-4);
+            assert!((turned.position.y - 2.0).abs() < 1e-5 && (turned.direction.y + 1.0).abs() < 1e-5);
+            if step == 25 {
+                assert!(turned.position.distance(Vec3::new(-1.0, 2.0, -1.0)) < 1e-4, "{}", turned.position);
+            }
+        }
+        let closed = turn.turned(&light);
+        assert!(closed.position.distance(light.position) < 1e-3 && closed.direction.distance(light.direction) < 1e-3);
+    }
+
+    #[test]
+    fn no_more_lights_are_added_than_a_frame_takes() {
+        let (mut all, mut shown) = (Vec::new(), LightView::default());
+        for _ in 0..MAX_LIGHTS + 2 {
+            shown.insert(&mut all, 0, Light::default());
+        }
+        assert_eq!(all.len(), MAX_LIGHTS);
+    }
+}

@@ -1,0 +1,324 @@
+//! Editing session: the document, and the state of its view. It is kept when a device is lost.
+
+pub mod action;
+pub mod comparison;
+pub mod first_run_hints;
+pub mod inspection;
+pub mod light_view;
+pub mod look_controls;
+pub mod macro_param;
+pub mod messages;
+pub mod picture_thumbnails;
+pub mod playback;
+pub mod ramp_survey;
+pub mod setting_search;
+pub mod slider_range;
+pub mod smoke_geometry;
+pub mod sprite_preview;
+pub mod sprite_view;
+pub mod view_options;
+
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
+
+use eframe::egui;
+use glam::UVec2;
+use haze::preset::{AssetFolders, Preset};
+use haze::settings::{DebugView, Value, values};
+use haze::shader::Sources;
+use haze::{Error, Light, MaterialAssets};
+use haze_author::particle_files::ParticleFrames;
+use haze_author::preset::Tooltips;
+use haze_demo::shot::Shot;
+
+use crate::tweak::document::Document;
+use crate::tweak::document::loaded_materials::LoadedMaterials;
+use crate::tweak::document::loaded_particles::LoadedParticles;
+use crate::tweak::document::preset_diff::{changed_fields, copy_field};
+use crate::tweak::document::ramp_edits::RampEdits;
+use crate::tweak::document::sprite_edits::SpriteEdits;
+use crate::tweak::platform::asset_loading::{self, LoadedAssets};
+use crate::tweak::platform::repaint_handle::RepaintHandle;
+use crate::tweak::viewport_renderer::cpu_render_job::CpuRenderJob;
+use crate::tweak::viewport_renderer::frame_timings::FrameTimings;
+use crate::tweak::viewport_renderer::psnr_job::PsnrJob;
+use comparison::CompareState;
+use first_run_hints::FirstRunHints;
+use inspection::Inspection;
+use light_view::LightView;
+use messages::Messages;
+use picture_thumbnails::PictureThumbnails;
+use playback::Playback;
+use setting_search::SettingSearch;
+use sprite_preview::SpritePreview;
+use view_options::{Tab, ViewOptions};
+
+pub struct Session {
+    /// Document; panels change its preset directly.
+    pub document: Document,
+    pub playback: Playback,
+    pub view: ViewOptions,
+    pub compare: CompareState,
+    pub psnr_job: PsnrJob,
+    pub cpu_render_job: CpuRenderJob,
+    pub inspect: Inspection,
+    pub search: SettingSearch,
+    pub hints: FirstRunHints,
+    pub messages: Messages,
+    pub timings: FrameTimings,
+    pub tooltips: Tooltips,
+    /// Descriptions of the debug views.
+    pub debug_view_tooltips: Tooltips,
+    pub thumbnails: PictureThumbnails,
+    /// Flipbook on the Sprite tab.
+    pub flipbook: Option<SpritePreview>,
+    /// Repaints the window from threads that run for longer than one window is open.
+    pub repaint: RepaintHandle,
+    /// Folder of images that presets share.
+    pub assets: Option<PathBuf>,
+    /// Path of a screenshot; the window closes once it is written.
+    pub screenshot: Option<PathBuf>,
+    /// Images as last loaded without error.
+    pub loaded_materials: LoadedMaterials,
+    pub particle_files: LoadedParticles,
+    /// Ramps whose stops are edited.
+    pub ramps: RampEdits,
+    /// Sprites whose recipes are edited.
+    pub sprites: SpriteEdits,
+    /// Shaders of a watched folder, as last compiled without error; `None` means the built-in ones.
+    pub shaders: Option<Sources>,
+    /// Another program has written the file while there are unsaved changes. The user has to choose a version.
+    pub is_changed_on_disk: bool,
+    changed: Changed,
+    /// Set while the second image has settings of its own.
+    second_diff: Option<SecondDiff>,
+}
+
+/// Paths of the fields that differ from the preset on disk, and the two presets that were compared.
+struct Changed {
+    paths: HashSet<String>,
+    saved: Preset,
+    preset: Preset,
+}
+
+/// Values of the second image's settings that differ, by path, and the two presets that were compared.
+struct SecondDiff {
+    differing_values: HashMap<String, Value>,
+    settings: Preset,
+    preset: Preset,
+}
+
+impl Session {
+    /// Opens a built-in preset by name, or a file. Images are looked up beside it and in `assets`.
+    pub fn open(source: &Path, assets: Option<PathBuf>) -> Result<Self, Error> {
+        let document = Document::open(source)?;
+        let preset = &document.preset;
+        let folders = AssetFolders::beside(source).with_shared(assets.clone());
+        let (materials, caches) = asset_loading::all(preset, source, &folders)?;
+        Ok(Self {
+            assets,
+            playback: Playback::at(preset.time),
+            view: ViewOptions::default(),
+            compare: CompareState::default(),
+            psnr_job: PsnrJob::default(),
+            cpu_render_job: CpuRenderJob::default(),
+            inspect: Inspection::default(),
+            search: SettingSearch::default(),
+            hints: FirstRunHints::default(),
+            messages: Messages::default(),
+            timings: FrameTimings::default(),
+            tooltips: Tooltips::of::<Preset>(),
+            debug_view_tooltips: Tooltips::of::<DebugView>(),
+            thumbnails: PictureThumbnails::default(),
+            flipbook: None,
+            repaint: RepaintHandle::default(),
+            screenshot: None,
+            loaded_materials: LoadedMaterials::new(preset, materials),
+            particle_files: LoadedParticles::new(preset, caches),
+            ramps: RampEdits::default(),
+            sprites: SpriteEdits::default(),
+            shaders: None,
+            is_changed_on_disk: false,
+            changed: Changed { paths: HashSet::new(), saved: preset.clone(), preset: preset.clone() },
+            second_diff: None,
+            document,
+        })
+    }
+
+    /// Attaches the session to another window. GPU resources of the previous device are dropped.
+    pub fn attach_window(&mut self, context: &egui::Context) {
+        self.repaint.follow(context);
+        (self.thumbnails, self.flipbook) = (PictureThumbnails::default(), None);
+    }
+
+    /// Returns the folders where images are looked up.
+    pub fn folders(&self) -> AssetFolders {
+        AssetFolders::beside(self.document.path()).with_shared(self.assets.clone())
+    }
+
+    /// Returns the shot of the present view.
+    pub fn shot(&self, size: UVec2) -> Shot {
+        let mut preset = self.document.preset.clone();
+        preset.time = self.playback.time;
+        preset.lights = self.view.lights.shown(&preset.lights);
+        let (materials, caches) = (self.materials(), self.particle_frames());
+        Shot { preset, size, debug_view: self.view.debug_view, materials, caches }
+    }
+
+    /// Returns the images of every system, with edits.
+    pub fn materials(&self) -> Vec<MaterialAssets> {
+        let mut materials = self.loaded_materials.of(&self.document.preset);
+        self.ramps.apply(&self.document.preset, &mut materials);
+        self.sprites.apply(&self.document.preset, &mut materials);
+        materials
+    }
+
+    /// Returns the particles of every system that has particle files.
+    pub fn particle_frames(&self) -> Vec<Option<ParticleFrames>> {
+        self.particle_files.of(&self.document.preset)
+    }
+
+    /// Bakes edited ramps, and writes them unless a control is held.
+    pub fn follow_ramps(&mut self, is_held: bool) {
+        let folders = self.folders();
+        let mut done = self.ramps.advance(&mut self.document, &folders, is_held);
+        if !is_held && done.is_ok() {
+            done = self.ramps.write_requested_copy(&mut self.document);
+        }
+        if let Err(error) = done {
+            self.messages.error("ramp", error);
+        }
+    }
+
+    /// Requests bakes of edited sprites; they are full and written unless a control is held.
+    fn follow_sprites(&mut self, is_held: bool) {
+        let mut done = self.sprites.advance(&mut self.document, is_held);
+        if !is_held && done.is_ok() {
+            done = self.sprites.write_requested_copy(&mut self.document);
+        }
+        if let Err(error) = done {
+            self.messages.error("sprite", error);
+        }
+    }
+
+    /// Returns the preset on disk, or the edited one if the file's content is not known.
+    pub fn saved(&self) -> &Preset {
+        self.document.saved().unwrap_or(&self.document.preset)
+    }
+
+    /// Returns the paths of the fields that differ from the preset on disk.
+    pub fn changed(&self) -> &HashSet<String> {
+        &self.changed.paths
+    }
+
+    /// Resets a field, a group or a list to its value on disk.
+    pub fn reset_field(&mut self, path: &str) {
+        let saved = self.saved().clone();
+        copy_field(&saved, &mut self.document.preset, path);
+    }
+
+    /// Returns the values of the second image's settings that differ, by path; `None` if it has no settings of its own.
+    pub fn second_diff(&self) -> Option<&HashMap<String, Value>> {
+        self.second_diff.as_ref().map(|second| &second.differing_values)
+    }
+
+    /// Copies a field, a group or a list from the second image's settings.
+    pub fn copy_from_second(&mut self, path: &str) {
+        if let Some(second) = self.compare.against.as_ref().and_then(|against| against.settings(self.saved())).cloned()
+        {
+            copy_field(&second, &mut self.document.preset, path);
+        }
+    }
+
+    /// Records changes that panels made. `is_held`: a control is still being dragged or typed into.
+    pub fn track(&mut self, is_held: bool) {
+        let is_held = is_held || self.view.tab == Tab::Ramps && self.ramps.is_editing();
+        self.follow_ramps(is_held);
+        self.follow_sprites(is_held);
+        self.document.track(is_held);
+        let (saved, preset) = (self.saved(), &self.document.preset);
+        if (&self.changed.saved, &self.changed.preset) != (saved, preset) {
+            let paths = changed_fields(saved, preset).into_iter().collect();
+            self.changed = Changed { paths, saved: saved.clone(), preset: preset.clone() };
+        }
+        let second = self.compare.against.as_ref().and_then(|against| against.settings(self.saved()));
+        let Some(settings) = second else {
+            self.second_diff = None;
+            return;
+        };
+        let preset = &self.document.preset;
+        if self.second_diff.as_ref().is_none_or(|known| (&known.settings, &known.preset) != (settings, preset)) {
+            let paths: HashSet<_> = changed_fields(settings, preset).into_iter().collect();
+            let differing_values = values(settings).into_iter().filter(|(path, _)| paths.contains(path)).collect();
+            self.second_diff =
+                Some(SecondDiff { differing_values, settings: settings.clone(), preset: preset.clone() });
+        }
+    }
+
+    /// Shows the reason if typed input is not valid, and clears it after a valid edit.
+    pub fn report_refused_input(&mut self, refused: Option<String>, is_edited: bool) {
+        match refused {
+            Some(refused) => self.messages.error("typed", refused),
+            None if is_edited => self.messages.clear("typed"),
+            None => {}
+        }
+    }
+
+    /// Changes the selected light, if there is one.
+    pub fn change_light(&mut self, change: impl FnOnce(&mut LightView, &mut Vec<Light>, usize)) {
+        let lights = &mut self.document.preset.lights;
+        if let Some(index) = self.view.lights.selected.filter(|&index| index < lights.len()) {
+            change(&mut self.view.lights, lights, index);
+        }
+    }
+
+    /// Adds a light, and selects it.
+    pub fn add_light(&mut self, light: Light) {
+        let lights = &mut self.document.preset.lights;
+        let end = lights.len();
+        self.view.lights.insert(lights, end, light);
+    }
+
+    pub fn undo(&mut self) {
+        if let Some(name) = self.document.undo() {
+            self.messages.info("undo", format!("undone: {name}"));
+        }
+    }
+
+    pub fn redo(&mut self) {
+        if let Some(name) = self.document.redo() {
+            self.messages.info("undo", format!("redone: {name}"));
+        }
+    }
+
+    /// Reads the file again. Undo restores the changes that it replaces.
+    pub fn revert(&mut self) {
+        self.is_changed_on_disk = false;
+        match self.document.revert() {
+            Ok(()) => self.messages.clear("preset"),
+            Err(error) => self.messages.error("preset", error),
+        }
+    }
+
+    /// Replaces the document, and resets the state that depended on the old one.
+    pub fn replace_document(&mut self, document: Document, (materials, caches): LoadedAssets) {
+        self.loaded_materials = LoadedMaterials::new(&document.preset, materials);
+        self.particle_files = LoadedParticles::new(&document.preset, caches);
+        self.playback = Playback::at(document.preset.time);
+        (self.compare, self.view.system, self.is_changed_on_disk) = (CompareState::default(), 0, false);
+        self.ramps = RampEdits::default();
+        self.sprites.forget();
+        self.view.lights.forget_key_lights();
+        let stale = ["preset", "ramp", "sprite", "pictures", "caches", "file"];
+        stale.into_iter().for_each(|about| self.messages.clear(about));
+        self.document = document;
+    }
+
+    /// Replaces the preset by one from a text.
+    pub fn paste(&mut self, text: &str) {
+        match self.document.paste(text) {
+            Ok(()) => self.messages.info("file", "pasted a preset"),
+            Err(error) => self.messages.error("file", format!("nothing is pasted: {error}")),
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! Context menu of the image.
+
+use eframe::egui::{Pos2, Response, Ui};
+use glam::Vec3;
+use haze::{Light, LightKind};
+
+use super::screen_projection::ScreenProjection;
+use crate::tweak::document::light_defaults::new_light;
+use crate::tweak::session::Session;
+use crate::tweak::session::action::InView;
+use crate::tweak::session::smoke_geometry::SmokeGeometry;
+
+/// Context menu, and the position where it was opened.
+#[derive(Default)]
+pub struct Menu {
+    pub at: Option<Pos2>,
+}
+
+/// Entries that add a light.
+const ADDED: [(LightKind, &str); 3] = [
+    (LightKind::Point, "Add point light here"),
+    (LightKind::Spot, "Add spot light here"),
+    (LightKind::Directional, "Add sun from here"),
+];
+
+impl Menu {
+    /// Draws the menu while it is open. Returns an action that the caller has to do.
+    pub fn show(
+        &mut self,
+        response: &Response,
+        projection: &ScreenProjection,
+        session: &mut Session,
+        smoke: &mut SmokeGeometry,
+    ) -> Option<InView> {
+        if response.secondary_clicked() {
+            self.at = response.interact_pointer_pos();
+        }
+        let at = self.at?;
+        let mut asked = None;
+        response.context_menu(|ui| asked = entries(ui, at, projection, session, smoke));
+        asked
+    }
+}
+
+fn entries(
+    ui: &mut Ui,
+    at: Pos2,
+    projection: &ScreenProjection,
+    session: &mut Session,
+    smoke: &mut SmokeGeometry,
+) -> Option<InView> {
+    for (kind, name) in ADDED {
+        if ui.button(name).clicked() {
+            let middle = smoke.of(session).bounds().centre();
+            let light = here(new_light(kind, &session.document.preset.lights), at, projection, middle);
+            session.add_light(light);
+        }
+    }
+    ui.separator();
+    let mut asked = None;
+    for (action, name) in [(InView::Behind, "Behind the smoke"), (InView::Frame, "Frame")] {
+        if ui.button(name).clicked() {
+            asked = Some(action);
+        }
+    }
+    asked
+}
+
+/// Returns a light under the pointer, on the plane through the smoke's centre that faces the camera. A sun shines from
+/// that place on the sun sphere.
+fn here(mut light: Light, at: Pos2, projection: &ScreenProjection, middle: Vec3) -> Light {
+    let (centre, radius) = projection.sun_sphere;
+    light.position = projection.unproject_to_facing_plane(at, middle);
+    let to_middle = middle - light.position;
+    light.direction = match light.kind {
+        LightKind::Directional => centre - projection.ray(at).on_sphere(centre, radius, true),
+        _ if to_middle.length() > 0.1 => to_middle,
+        _ => projection.ahead,
+    };
+    light.direction = light.direction.normalize_or(Vec3::NEG_Y);
+    light
+}

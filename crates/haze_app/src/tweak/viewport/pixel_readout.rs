@@ -1,0 +1,195 @@
+//! Values of a pixel, in a corner of the viewport.
+
+use eframe::egui::{self, Color32, Rect, RichText, Sense, Stroke, Ui, Vec2};
+use glam::{Vec3, Vec4, Vec4Swizzles};
+use haze_reference::{LightProbe, SystemProbe};
+
+use crate::tweak::session::Session;
+use crate::tweak::session::comparison::CompareWith;
+use crate::tweak::session::inspection::{PixelValues, srgb_code};
+use crate::tweak::viewport_renderer::compared_side::ComparedSide;
+
+/// Distance from the corner, points.
+const MARGIN: f32 = 8.0;
+
+/// A smaller viewport uses small text, points.
+const LARGE: Vec2 = Vec2::new(480.0, 400.0);
+
+/// Draws the values while the inspector is on, on the side away from the pointer.
+pub fn panel(ui: &Ui, viewport: Rect, session: &Session) {
+    let (inspect, compare) = (&session.inspect, &session.compare);
+    let Some(place) = inspect.place().filter(|_| inspect.is_on) else { return };
+    let side = compare.side(place.x);
+    let is_made = side == ComparedSide::Second && compare.against == Some(CompareWith::Reference);
+    let values = inspect.pixel_values.as_ref().filter(|values| values.side == side && !is_made);
+    if values.is_none() && !is_made {
+        return;
+    }
+    cross(ui, viewport.min + place * viewport.size(), inspect.pinned.is_some());
+    let (corner, pivot) = if place.x < 0.5 {
+        (viewport.right_top() + Vec2::new(-MARGIN, MARGIN), egui::Align2::RIGHT_TOP)
+    } else {
+        (viewport.left_top() + Vec2::splat(MARGIN), egui::Align2::LEFT_TOP)
+    };
+    let area = egui::Area::new(egui::Id::unique("inspector")).fixed_pos(corner).pivot(pivot).interactable(false);
+    let is_small = viewport.width() < LARGE.x || viewport.height() < LARGE.y;
+    area.constrain_to(viewport).show(ui.ctx(), |ui| {
+        egui::Frame::popup(ui.style()).show(ui, |ui| {
+            ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+            if is_small {
+                ui.style_mut().override_font_id = Some(egui::FontId::proportional(11.0));
+                ui.spacing_mut().item_spacing = Vec2::new(4.0, 1.0);
+                ui.spacing_mut().interact_size = Vec2::new(26.0, 14.0);
+            }
+            match values {
+                Some(values) => numbers(ui, values, session, is_small),
+                None => drop(ui.weak("Drawn by the CPU renderer: no texels to inspect")),
+            }
+        });
+    });
+}
+
+/// Marks the pixel with a cross.
+fn cross(ui: &Ui, at: egui::Pos2, is_pinned: bool) {
+    let reach = if is_pinned { 9.0 } else { 6.0 };
+    for (width, colour) in [(3.0, Color32::from_black_alpha(150)), (1.0, Color32::WHITE)] {
+        for way in [Vec2::new(1.0, 0.0), Vec2::new(-1.0, 0.0), Vec2::new(0.0, 1.0), Vec2::new(0.0, -1.0)] {
+            ui.painter().line_segment([at + way * 3.0, at + way * reach], Stroke::new(width, colour));
+        }
+    }
+}
+
+fn numbers(ui: &mut Ui, values: &PixelValues, session: &Session, is_small: bool) {
+    let PixelValues { pixel, side, names, probe, exposure } = values;
+    let keep = if session.inspect.pinned.is_some() { "kept" } else { "click keeps it" };
+    ui.horizontal(|ui| {
+        ui.strong(format!("Pixel {}, {}", pixel.x, pixel.y));
+        ui.weak(keep);
+        if let Some(against) = session.compare.against.as_ref().filter(|_| *side == ComparedSide::Second) {
+            ui.weak(format!("second: {}", against.name()));
+        }
+    });
+    let preset = session.compare.against.as_ref().filter(|_| *side == ComparedSide::Second);
+    let preset = preset.and_then(|against| against.settings(session.saved())).unwrap_or(&session.document.preset);
+    let lights = session.view.lights.shown_names(&preset.lights);
+    // The nearest system comes first.
+    for system in probe.systems.iter().rev() {
+        ui.separator();
+        ui.label(RichText::new(names.get(system.system).map_or("smoke", String::as_str)).strong());
+        system_values(ui, system, &lights, is_small);
+    }
+    if probe.systems.is_empty() {
+        ui.weak("No smoke here");
+    }
+    ui.separator();
+    match probe.colour {
+        Some(colour) => picture(ui, colour, *exposure),
+        None => {
+            ui.weak("Forward smoke is lit sprite by sprite:\nno texels to inspect");
+        }
+    }
+}
+
+fn system_values(ui: &mut Ui, probe: &SystemProbe, lights: &[String], is_small: bool) {
+    ui.horizontal(|ui| {
+        ball(ui, probe.normal);
+        ui.vertical(|ui| {
+            ui.label(format!("amount {:.3}   coverage {:.3}", probe.amount, probe.coverage));
+            let Vec3 { x, y, z } = probe.normal;
+            ui.label(format!("normal {x:.2} {y:.2} {z:.2}"));
+        });
+    });
+    egui::Grid::new(("lights", probe.system)).num_columns(6).spacing(gaps(ui)).show(ui, |ui| {
+        for title in ["", "N·L", "ramp", "reaches", "diffuse", "specular"] {
+            ui.weak(title);
+        }
+        ui.end_row();
+        probe.lights.iter().for_each(|light| light_row(ui, light, lights, is_small));
+    });
+    egui::Grid::new(("sums", probe.system)).num_columns(3).spacing(gaps(ui)).show(ui, |ui| {
+        let scatter = probe.soft_scatter_weight.map_or("by ramp".into(), |weight| format!("weight {weight:.2}"));
+        for (title, note, light) in [
+            ("diffuse", String::new(), probe.diffuse),
+            ("soft scatter", scatter, probe.soft_scatter),
+            ("specular", String::new(), probe.specular()),
+            ("blended", String::new(), probe.blended.xyz()),
+        ] {
+            ui.label(title);
+            colour(ui, light);
+            ui.weak(note);
+            ui.end_row();
+        }
+    });
+}
+
+fn light_row(ui: &mut Ui, light: &LightProbe, names: &[String], is_small: bool) {
+    // Their sums are shown as numbers in any case.
+    let colour = if is_small { hue_swatch } else { colour };
+    ui.label(names.get(light.light).map_or("light", String::as_str));
+    ui.label(format!("{:.2}", light.cosine));
+    ui.label(format!("{:.2}", light.coordinate));
+    ui.label(format!("{:.3}", light.attenuation));
+    colour(ui, light.diffuse);
+    match light.glow {
+        Some(glow) => colour(ui, glow.specular),
+        None => {
+            ui.weak("none");
+        }
+    }
+    ui.end_row();
+}
+
+/// Returns the spacing of columns and rows.
+fn gaps(ui: &Ui) -> Vec2 {
+    ui.spacing().item_spacing + Vec2::new(2.0, -1.0)
+}
+
+/// Shows the image value before and after tonemapping.
+fn picture(ui: &mut Ui, light: Vec4, exposure: f32) {
+    egui::Grid::new("picture").num_columns(2).spacing(gaps(ui)).show(ui, |ui| {
+        ui.label("picture, linear");
+        colour(ui, light.xyz());
+        ui.end_row();
+        ui.label("as shown, sRGB");
+        let [r, g, b] = srgb_code(light.xyz(), exposure);
+        ui.horizontal(|ui| {
+            swatch(ui, Color32::from_rgb(r, g, b));
+            ui.label(format!("{r} {g} {b}"));
+        });
+        ui.end_row();
+    });
+}
+
+fn hue_swatch(ui: &mut Ui, light: Vec3) {
+    let [r, g, b] = (light / light.max_element().max(1.0)).to_array();
+    swatch(ui, egui::Rgba::from_rgb(r, g, b).into());
+}
+
+/// Shows linear light as a swatch and as numbers.
+fn colour(ui: &mut Ui, light: Vec3) {
+    ui.horizontal(|ui| {
+        hue_swatch(ui, light);
+        ui.label(format!("{:.3} {:.3} {:.3}", light.x, light.y, light.z));
+    });
+}
+
+fn swatch(ui: &mut Ui, colour: Color32) {
+    let (rect, _) = ui.allocate_exact_size(Vec2::splat(11.0), Sense::hover());
+    ui.painter().rect(rect, 2.0, colour, ui.visuals().widgets.noninteractive.bg_stroke, egui::StrokeKind::Inside);
+}
+
+/// Draws a ball with the normal on it.
+fn ball(ui: &mut Ui, normal: Vec3) {
+    let (rect, _) = ui.allocate_exact_size(Vec2::splat(34.0), Sense::hover());
+    let (middle, radius) = (rect.center(), 15.0);
+    let painter = ui.painter();
+    // Dark at the edge, bright at the centre.
+    for step in 0..6_u8 {
+        let share = 1.0 - f32::from(step) / 6.0;
+        painter.circle_filled(middle, radius * share, Color32::from_gray(50 + 18 * step));
+    }
+    let tip = middle + Vec2::new(normal.x, -normal.y) * radius;
+    painter.line_segment([middle, tip], Stroke::new(1.5, Color32::from_rgb(255, 200, 60)));
+    painter.circle_filled(tip, 3.0, Color32::from_rgb(255, 200, 60));
+    painter.circle_stroke(middle, radius, ui.visuals().widgets.noninteractive.bg_stroke);
+}

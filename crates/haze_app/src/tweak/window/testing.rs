@@ -1,0 +1,96 @@
+//! Window for tests: controlled through accessible names, drawn by a real adapter.
+
+use std::path::Path;
+
+use eframe::egui::{self, Vec2};
+use eframe::egui_wgpu;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use egui_kittest::{Harness, HarnessBuilder};
+use image::RgbaImage;
+
+use super::open::device;
+use super::{Start, Window};
+use crate::tweak::files::hot_reload::ShaderFolder;
+use crate::tweak::files::persistence::Layout;
+use crate::tweak::session::Session;
+use crate::tweak::viewport_renderer::ViewportRenderer;
+
+/// Opens a window with a preset and waits until it has settled.
+pub fn window(preset: &str, size: Vec2, theme: egui::Theme) -> Harness<'static, Window> {
+    window_with(preset, size, theme, ShaderFolder::None)
+}
+
+/// Like [`window`], with a folder of shaders.
+pub fn window_with(preset: &str, size: Vec2, theme: egui::Theme, shaders: ShaderFolder) -> Harness<'static, Window> {
+    open(start(preset, shaders), size, theme)
+}
+
+fn start(preset: &str, shaders: ShaderFolder) -> Start {
+    let session = Session::open(Path::new(preset), None).unwrap();
+    Start { session, shaders, persistence: None, layout: Layout::default(), has_dialogs: false }
+}
+
+/// Like [`window`], with any start state.
+pub fn open(start: Start, size: Vec2, theme: egui::Theme) -> Harness<'static, Window> {
+    settled(Harness::builder().with_size(size).with_theme(theme).wgpu(), start)
+}
+
+fn settled(builder: HarnessBuilder<Window>, start: Start) -> Harness<'static, Window> {
+    let open = |context: &mut _| Window::new(ViewportRenderer::new(context).unwrap(), start).unwrap();
+    let mut harness = builder.with_render_cursor(false).build_eframe(open);
+    harness.run_steps(3);
+    harness
+}
+
+/// Like [`window`], on a device with timestamp queries if the adapter has them.
+pub fn measured(preset: &str, size: Vec2) -> Harness<'static, Window> {
+    let mut setup = egui_kittest::wgpu::default_wgpu_setup();
+    if let egui_wgpu::WgpuSetup::CreateNew(setup) = &mut setup {
+        setup.device_descriptor = std::sync::Arc::new(device);
+    }
+    settled(Harness::builder().with_size(size).wgpu_setup(setup), start(preset, ShaderFolder::None))
+}
+
+/// Opens the menu of the row whose control has this name.
+pub fn row_menu(harness: &mut Harness<'_, Window>, name: &str) {
+    let pos = row_name(harness, name);
+    click_at(harness, pos, egui::PointerButton::Secondary);
+}
+
+/// Returns the position of a row's name, to the left of its control.
+pub fn row_name(harness: &Harness<'_, Window>, name: &str) -> egui::Pos2 {
+    let is_control = |node: &egui_kittest::Node<'_>| {
+        [egui::Role::Slider, egui::Role::ComboBox, egui::Role::SpinButton].contains(&node.accesskit_node().role())
+    };
+    let control = harness.get_all_by_label(name).find(is_control).unwrap().rect();
+    control.left_center() - egui::vec2(115.0, 0.0)
+}
+
+/// Sends a click of the pointer.
+pub fn click_at(harness: &mut Harness<'_, Window>, pos: egui::Pos2, button: egui::PointerButton) {
+    harness.hover_at(pos);
+    for pressed in [true, false] {
+        let modifiers = egui::Modifiers::NONE;
+        harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
+    }
+    harness.run_steps(3);
+}
+
+/// Returns an image of the window.
+pub fn picture(harness: &mut Harness<'_, Window>) -> RgbaImage {
+    harness.step();
+    harness.render().unwrap()
+}
+
+/// Returns the mean brightness of a part of an image, 0 to 255.
+pub fn brightness(picture: &RgbaImage, part: egui::Rect) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for y in part.top() as u32..part.bottom() as u32 {
+        for x in part.left() as u32..part.right() as u32 {
+            let [r, g, b, _] = picture.get_pixel(x, y).0;
+            sum += (f64::from(r) + f64::from(g) + f64::from(b)) / 3.0;
+            count += 1.0;
+        }
+    }
+    sum / count
+}
