@@ -5,7 +5,7 @@ use std::path::{Component, Path};
 use super::asset_folders::{AssetFolders, MIN_SIMILARITY};
 use super::image_cache::ImageCache;
 use crate::assets::builtin::{self, Builtin};
-use crate::assets::material::MaterialAssets;
+use crate::assets::material_assets::MaterialAssets;
 use crate::assets::sprite::{Sprite, SpriteLayout, six_way_layout};
 use crate::error::{Error, FieldError};
 use crate::settings::{ImageRole, settings};

@@ -7,12 +7,12 @@ use super::auto::PathModel;
 use super::gpu::Gpu;
 use super::gpu::capabilities::{read_only_depth_is_supported, six_way_is_supported};
 use super::layouts::Layouts;
-use super::material::{SharedTextures, create_material};
-use super::passes::Passes;
+use super::material_upload::{SharedTextures, create_material};
+use super::pipelines::Passes;
 use super::plan::plans_covering_every_pass;
 use super::shader::{Sources, checked_shader, embedded_shader};
 use super::tiled::Tiled;
-use crate::assets::material::MaterialAssets;
+use crate::assets::material_assets::MaterialAssets;
 use crate::error::{Error, FieldError};
 use crate::frame::Material;
 

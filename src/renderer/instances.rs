@@ -2,7 +2,7 @@
 
 use super::gpu::Gpu;
 use super::gpu::idle_counter::IdleCounter;
-use super::pass::sprites::Sprites;
+use super::sprite_instances::Sprites;
 use crate::frame::{Particle, Particles};
 use crate::settings::{Order, Settings};
 use crate::view_setup::{SortScratch, ViewGeometry, in_order};

@@ -4,26 +4,27 @@ mod auto;
 mod context;
 mod counts;
 mod descriptor;
-mod draw;
 mod frame_bindings;
 mod gpu;
 mod instances;
 mod layouts;
-mod material;
-mod memory;
+mod material_upload;
+mod memory_use;
 mod pass;
-mod passes;
 mod path_probe;
+mod pipelines;
 mod plan;
 pub mod shader;
+mod sprite_instances;
+mod system_passes;
 mod system_state;
 mod system_targets;
 mod targets;
 mod tiled;
-mod validate;
+mod validate_frame;
 mod warm_up;
 
-use crate::assets::material::MaterialAssets;
+use crate::assets::material_assets::MaterialAssets;
 use crate::error::{Error, FieldError};
 use crate::frame::{Frame, Material};
 use crate::settings::{DebugView, Settings};
@@ -36,20 +37,20 @@ pub use descriptor::Descriptor;
 pub use gpu::capabilities::read_only_depth_is_supported;
 pub use gpu::frame_times::{FrameTimes, PassTime};
 pub use gpu::timing::Timing;
-pub use memory::{MemoryUse, TiledMemory};
+pub use memory_use::{MemoryUse, TiledMemory};
 pub use plan::SceneDepthKind;
 pub use targets::TargetViews;
 pub use warm_up::WarmUp;
 
-use draw::Draw;
 use frame_bindings::FrameBindings;
 use gpu::Gpu;
 use gpu::host_pass::HostPass;
 use gpu::record::set_viewport_and_scissor;
 use gpu::submission::Submission;
 use plan::{PipelineInputs, plan};
+use system_passes::Draw;
 use system_state::{FrameContext, SystemState};
-use validate::{host_size, validate};
+use validate_frame::{host_size, validate};
 
 /// Draws particle systems into a host's frame.
 ///

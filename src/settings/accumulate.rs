@@ -3,7 +3,7 @@
 use glam::UVec2;
 
 use super::choice::choice;
-use super::table::settings;
+use super::settings_macro::settings;
 
 /// Largest divisor of the target's resolution, pixels per texel.
 pub(super) const COARSEST: u32 = 16;

@@ -189,7 +189,7 @@ impl FieldVisitor for Validator {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::table::settings;
+    use crate::settings::settings_macro::settings;
 
     settings! {
         #[derive(Clone)]

@@ -5,14 +5,14 @@
 use crate::error::FieldError;
 
 mod accumulate;
-mod budget;
+mod assign;
 #[doc(hidden)]
 pub mod choice;
 pub(crate) mod fields;
 mod lighting;
-mod set;
+mod scale_budget;
+pub(crate) mod settings_macro;
 mod soft_fade;
-pub(crate) mod table;
 mod technique;
 mod traversal;
 
@@ -20,7 +20,7 @@ pub use accumulate::{
     Accumulate, AccumulationFormat, DepthDownsample, DepthSource, Layers, LightingResolution, NormalDecode,
     NormalEncoding, Order, Upsample,
 };
-pub use budget::{Budget, ScaleBudget};
+pub use assign::set_field;
 pub use choice::Choice;
 #[doc(hidden)]
 pub use choice::choice;
@@ -28,9 +28,9 @@ pub use fields::{FieldHeading, FieldVisitor, Fields, ImageRole, validate};
 pub use lighting::{
     Backlight, CoverageMode, Diffuse, DiffuseMode, Lighting, RampFilter, SoftScatter, SoftScatterMode, SpecularScatter,
 };
-pub use set::set_field;
+pub use scale_budget::{Budget, ScaleBudget};
+pub(crate) use settings_macro::settings;
 pub use soft_fade::{FadeCurve, SoftFade};
-pub(crate) use table::settings;
 pub use technique::{Density, SphericalBillboard, SpriteAnimation, SpriteSettings, Technique, Volumetric};
 pub use traversal::{Leaf, Step, Value, field_path, for_each_field, values};
 

@@ -1,7 +1,7 @@
 //! Fade of sprites near the scene and near the camera.
 
 use super::choice::choice;
-use super::table::settings;
+use super::settings_macro::settings;
 
 choice! {
     /// Curve from depth difference to fade. x is the difference times `fade_scale`, clamped to 0..1.

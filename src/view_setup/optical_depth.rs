@@ -4,7 +4,7 @@
 use glam::{DVec2, Vec3Swizzles, Vec4};
 
 use super::smoke_extent::SmokeExtent;
-use super::view::ViewGeometry;
+use super::view_geometry::ViewGeometry;
 use crate::formula::order::{FRONT_KNOTS, knot_coordinate};
 use crate::frame::Particle;
 use crate::settings::{Settings, Technique};

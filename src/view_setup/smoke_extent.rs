@@ -7,8 +7,8 @@
 
 use glam::{DVec3, Vec3};
 
-use super::bounds::ProjectedBounds;
-use super::view::ViewGeometry;
+use super::projected_bounds::ProjectedBounds;
+use super::view_geometry::ViewGeometry;
 use crate::frame::{Bounds, Particle};
 
 /// Extent of the smoke, view space.
@@ -94,7 +94,7 @@ mod tests {
 
     use super::*;
     use crate::frame::{View, particle_bounds};
-    use crate::view_setup::bounds::bounds_in_view;
+    use crate::view_setup::projected_bounds::bounds_in_view;
 
     fn middle(particles: &[Particle], depth: Option<f32>) -> SmokeExtent {
         let view = View::new(Mat4::IDENTITY, perspective(0.8, 1.0, 0.1, 80.0), UVec2::splat(64));

@@ -210,7 +210,7 @@ const SYSTEM_ACCESS: &[&str] = &[
     ".read_dir()",
     "rfd::",
     "pollster::",
-    "haze::assets::file",
+    "haze::assets::bounded_read",
     "haze::image::read_",
     "haze::image::write_",
     "haze::image::FileIdentity",

@@ -10,7 +10,7 @@ use super::scene_renderer::{COLOUR_FORMAT, DEPTH_FORMAT, LINEAR_FORMAT, SceneRen
 use super::shot::{Shot, Source};
 use crate::headless::Headless;
 use haze::assets::image::Image;
-use haze::assets::material::MaterialAssets;
+use haze::assets::material_assets::MaterialAssets;
 use haze::error::Error;
 use haze::frame::{Frame, Light, Material, Particles, SceneDepth, System, View};
 use haze::preset::Environment;

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::UVec2;
 
 use super::scene::Scene;
-use haze::assets::material::MaterialAssets;
+use haze::assets::material_assets::MaterialAssets;
 use haze::error::Error;
 use haze::frame::{EmitterSnapshot, Particle};
 use haze::preset::{AssetFolders, Preset, PresetSystem};

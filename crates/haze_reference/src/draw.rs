@@ -4,12 +4,14 @@ use glam::{IVec2, Mat4, UVec2, Vec2, Vec3, Vec4Swizzles};
 
 use super::frame::{Frame, System};
 use haze::assets::image::Image;
-use haze::assets::material::{MaterialAssets, MaterialInfo};
+use haze::assets::material_assets::{MaterialAssets, MaterialInfo};
 use haze::error::FieldError;
 use haze::formula::depth::view_depth_from_ndc_depth;
 use haze::formula::uniforms::{LightUniform, SystemUniform, ViewUniform};
 use haze::formula::view::{ndc_from_pixel, pixel_from_ndc, view_position};
-use haze::frame::validate::{validate_bounds_and_depth, validate_lights, validate_settings, validate_time_and_up};
+use haze::frame::validate_input::{
+    validate_bounds_and_depth, validate_lights, validate_settings, validate_time_and_up,
+};
 use haze::frame::{Bounds, Particle, View, particle_bounds};
 use haze::settings::{DebugView, Order, Settings};
 use haze::view_setup::{

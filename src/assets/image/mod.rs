@@ -1,19 +1,19 @@
 //! Images in memory with parallel iteration over rows, and reading and writing of PNG files.
 
-mod chunks;
+mod atomic_write;
 mod colour_space;
-mod file;
+mod icc_profile;
 mod png;
-mod profile;
+mod png_chunks;
 
+pub use atomic_write::{FileIdentity, check_file, write_file};
 pub use colour_space::{colour_conversion_notes, decode_colour_png, read_colour_png};
-pub use file::{FileIdentity, check_file, write_file};
 pub use png::is_png;
 pub use png::{CompressionEffort, MAX_BYTES, MAX_SIDE, decode_png, read_png, write_png};
 
 use glam::{IVec2, UVec2, Vec3, Vec4};
 
-use crate::assets::threads::{parallel_for_each, threads};
+use crate::assets::parallel::{parallel_for_each, threads};
 use crate::formula::texture::Texture2d;
 
 /// A 2D image, row by row from the top.

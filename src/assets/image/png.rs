@@ -6,10 +6,10 @@ use std::path::Path;
 use image::codecs::png::{CompressionType, FilterType, PngDecoder, PngEncoder};
 use image::{DynamicImage, ImageDecoder as _, ImageError, Limits};
 
-use super::chunks::colour_tags;
-use super::file::write_file;
-use crate::assets::file;
-use crate::assets::threads::parallel_for_each;
+use super::atomic_write::write_file;
+use super::png_chunks::colour_tags;
+use crate::assets::bounded_read;
+use crate::assets::parallel::parallel_for_each;
 use crate::error::Error;
 
 /// Maximum side of an image, pixels.
@@ -90,7 +90,7 @@ fn broken(error: Option<&ImageError>) -> String {
 /// # Errors
 /// [`Error::Io`] if the file cannot be read or is larger than 64 MiB, otherwise as [`decode_png`].
 pub fn read_png(path: &Path) -> Result<DynamicImage, Error> {
-    decode_png(path, &file::read(path, "PNG file", MAX_BYTES)?)
+    decode_png(path, &bounded_read::read(path, "PNG file", MAX_BYTES)?)
 }
 
 /// Compression effort.

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde::de::DeserializeOwned;
 
-use super::file;
+use super::bounded_read;
 use super::image::is_png;
 use crate::error::{Error, FieldError};
 
@@ -80,7 +80,7 @@ pub fn load<T: DeserializeOwned>(
 /// # Errors
 /// [`Error::Io`], or [`Error::Json`] if the file is not UTF-8 text.
 pub fn read(path: &Path, most: u64) -> Result<String, Error> {
-    text(path, &file::read(path, "JSON file", most)?).map(str::to_owned)
+    text(path, &bounded_read::read(path, "JSON file", most)?).map(str::to_owned)
 }
 
 /// Decodes UTF-8. The error names the kind of file if it is a PNG or UTF-16.

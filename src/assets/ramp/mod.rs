@@ -1,9 +1,9 @@
 //! Ramps: small lookup textures for lighting that an artist can paint. `ramps/README.md` describes axes, sizes and
 //! colour space.
 
-mod role;
+mod ramp_role;
 
-pub use role::Role;
+pub use ramp_role::Role;
 
 use std::path::Path;
 use std::sync::Arc;

@@ -10,7 +10,6 @@ use std::sync::Arc;
 use glam::UVec2;
 
 use super::Groups;
-use super::sprites::{PARTICLE_LAYOUT, SpriteKey, Sprites};
 use crate::renderer::gpu::host_pass::MAX_ATTACHMENTS;
 use crate::renderer::gpu::pipeline::{
     COUNT, PREMULTIPLIED_OVER, RenderPipelineDescription, STRIP, WEIGHTED_SUM, color_target, in_front, read_only_depth,
@@ -18,6 +17,7 @@ use crate::renderer::gpu::pipeline::{
 };
 use crate::renderer::gpu::record::{begin_pass, color_attachment, set_viewport_and_scissor, tested_depth};
 use crate::renderer::gpu::timing::Timing;
+use crate::renderer::sprite_instances::{PARTICLE_LAYOUT, SpriteKey, Sprites};
 use crate::renderer::targets::{DEPTH_COPY_FORMAT, ExtraAttachment, REDUCED_DEPTH_FORMAT, accumulation_layout};
 use crate::settings::{AccumulationFormat, NormalEncoding, Order};
 

@@ -6,12 +6,12 @@
 //! Source: OTEE "Typical game particles so far".
 
 use super::Groups;
-use super::sprites::{PARTICLE_LAYOUT, SpriteKey, Sprites};
 use crate::renderer::gpu::host_pass::HostPass;
 use crate::renderer::gpu::pipeline::{
     ADDITIVE, MULTIPLY, PREMULTIPLIED_OVER, RenderPipelineDescription, STRIP, in_front, read_only_depth, switch,
     variant,
 };
+use crate::renderer::sprite_instances::{PARTICLE_LAYOUT, SpriteKey, Sprites};
 use crate::settings::{Backlight, BlendMode, RampFilter, SoftScatterMode};
 
 /// Key of a forward pipeline.

@@ -7,9 +7,9 @@
 use glam::UVec2;
 
 use super::Groups;
-use super::sprites::SpriteKey;
 use super::tile_refine;
 use crate::renderer::gpu::pipeline::{ComputePipelineDescription, switch, variant};
+use crate::renderer::sprite_instances::SpriteKey;
 use crate::renderer::targets::ExtraAttachment;
 use crate::settings::{AccumulationFormat, NormalEncoding};
 

@@ -4,8 +4,8 @@
 //! Writes: sprites, their rectangles, and the keys and indices to sort.
 
 use super::Groups;
-use super::sprites::SpriteKey;
 use crate::renderer::gpu::pipeline::{ComputePipelineDescription, switch};
+use crate::renderer::sprite_instances::SpriteKey;
 
 /// Key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -6,8 +6,8 @@
 use glam::UVec2;
 
 use super::Groups;
-use super::sprites::SpriteKey;
 use crate::renderer::gpu::pipeline::{ComputePipelineDescription, switch};
+use crate::renderer::sprite_instances::SpriteKey;
 
 /// Texels of a tile: `PER_INVOCATION_TILE` in `shaders/lib/tiles.wgsl`.
 pub(crate) const PER_INVOCATION_TILE: UVec2 = UVec2::new(8, 4);

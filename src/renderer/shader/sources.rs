@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::embedded::SOURCES;
 use super::naga_messages::find_unclosed_bracket;
-use crate::assets::{builtin, file};
+use crate::assets::{bounded_read, builtin};
 use crate::error::{Error, one_line};
 
 /// Maximum size of a file, bytes. The longest of haze's own has about 10,000.
@@ -124,7 +124,7 @@ impl File {
     /// Reads a file of the folder; `None` if it does not exist.
     fn read(folder: &Path, name: &str) -> Result<Option<Self>, Error> {
         let path: Arc<Path> = folder.join(name).into();
-        let bytes = match file::read(&path, "WGSL file", MAX_BYTES) {
+        let bytes = match bounded_read::read(&path, "WGSL file", MAX_BYTES) {
             Err(Error::Io { error, .. }) if error.kind() == ErrorKind::NotFound => return Ok(None),
             read => read?,
         };

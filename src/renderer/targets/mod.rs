@@ -2,13 +2,13 @@
 
 mod accumulation;
 mod baked_diffuse;
+mod target_views;
 mod textures;
-mod views;
 
 pub(crate) use accumulation::{
     AccumulationKey, AccumulationTarget, DEPTH_COPY_FORMAT, ExtraAttachment, LIT_FORMAT, REDUCED_DEPTH_FORMAT,
     accumulation_layout, tiled_formats,
 };
 pub(crate) use baked_diffuse::{BAKED_DIFFUSE_FORMAT, BakedDiffuse};
+pub use target_views::TargetViews;
 pub(crate) use textures::storage_target;
-pub use views::TargetViews;

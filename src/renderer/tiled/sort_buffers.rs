@@ -1,7 +1,7 @@
 //! Buffers of a sort.
 
-use super::shared::Tiled;
-use super::storage::{WORD_BYTES, bind, storage};
+use super::storage_buffers::{WORD_BYTES, bind, storage};
+use super::tiled_pipelines::Tiled;
 use crate::renderer::pass::sort::{BLOCK, DIGITS};
 
 /// Keys, the particle indices that belong to them, and digit counts.

@@ -9,7 +9,7 @@ use super::colour::srgb_from_linear;
 use super::fit::{Fit, fit, validate_max_error};
 use super::ggr;
 use super::text::{Mistake, numbers, opaque, strip};
-use haze::assets::file;
+use haze::assets::bounded_read;
 use haze::assets::image::read_colour_png;
 use haze::error::{Error, FieldError};
 
@@ -41,7 +41,7 @@ pub fn import(path: &Path, most: f32) -> Result<Fit, Error> {
         }
     };
     let refuse = |Mistake { line, reason }: Mistake| Error::Json { path: path.into(), line, column: 1, reason };
-    let bytes = file::read(path, "gradient", MAX_BYTES)?;
+    let bytes = bounded_read::read(path, "gradient", MAX_BYTES)?;
     let text = std::str::from_utf8(&bytes)
         .map_err(|_| refuse(Mistake { line: 1, reason: "not UTF-8; expected a gradient as UTF-8 text".into() }))?;
     let fitted = read(text, most).map_err(refuse)?;

@@ -19,7 +19,7 @@ use image::{Rgba, RgbaImage};
 
 use super::detail::{detail, detail_size};
 use crate::path_trace::Volume;
-use haze::assets::threads::parallel_for_each;
+use haze::assets::parallel::parallel_for_each;
 use haze::error::FieldError;
 use haze::settings::validate;
 use haze::sprite::Sprite;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use super::storage::WORD_BYTES;
+use super::storage_buffers::WORD_BYTES;
 use crate::renderer::gpu::record::begin_compute;
 use crate::renderer::gpu::timing::Timing;
 use crate::renderer::pass::Groups;

@@ -5,23 +5,23 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use glam::UVec2;
 
-use super::buffers::{Capacity, Part, TileBuffers};
-use super::passes::TiledPasses;
-use super::shared::{Tiled, TiledKeys};
-use super::storage::WORD_BYTES;
+use super::storage_buffers::WORD_BYTES;
+use super::tile_buffers::{Capacity, Part, TileBuffers};
+use super::tiled_passes::TiledPasses;
+use super::tiled_pipelines::{Tiled, TiledKeys};
 use crate::formula::uniforms::TilesUniform;
 use crate::renderer::auto::PathWorkload;
 use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::idle_counter::IdleCounter;
-use crate::renderer::memory::TiledMemory;
+use crate::renderer::memory_use::TiledMemory;
 use crate::renderer::pass::Groups;
 use crate::renderer::pass::sort::{BLOCK, Sort};
-use crate::renderer::pass::sprites::Sprites;
 use crate::renderer::pass::tile_accumulate::TileAccumulate;
 use crate::renderer::pass::tile_bin::{RUN, TileBin};
 use crate::renderer::pass::tile_gather::TileGather;
 use crate::renderer::pass::tile_project::TileProject;
 use crate::renderer::pass::tile_refine::{BATCH, TileRefine};
+use crate::renderer::sprite_instances::Sprites;
 use crate::renderer::targets::ExtraAttachment;
 use crate::settings::AccumulationFormat;
 

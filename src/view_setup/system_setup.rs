@@ -2,12 +2,12 @@
 
 use glam::{DVec3, UVec2, Vec2, Vec3, Vec4};
 
-use super::bounds::{TargetRect, bounds_in_view, target_rect};
 use super::optical_depth::optical_depths;
+use super::projected_bounds::{TargetRect, bounds_in_view, target_rect};
 use super::smoke_extent::SmokeExtent;
-use super::sprites::Grid;
-use super::view::ViewGeometry;
-use crate::assets::material::MaterialInfo;
+use super::sprite_projector::Grid;
+use super::view_geometry::ViewGeometry;
+use crate::assets::material_assets::MaterialInfo;
 use crate::formula::depth::SKY_VIEW_DEPTH;
 use crate::formula::diffuse_bake::add_light;
 use crate::formula::lighting::{backlight_weight, direction_to_viewer, sample_light};

@@ -129,7 +129,7 @@ mod tests {
     use super::*;
     use crate::settings::FieldVisitor;
     use crate::settings::choice;
-    use crate::settings::table::settings;
+    use crate::settings::settings_macro::settings;
 
     choice! {
         /// Metals.

@@ -1,7 +1,7 @@
 //! Choice of the accumulation target's scale by a budget of GPU time.
 
 use super::accumulate::COARSEST;
-use super::table::settings;
+use super::settings_macro::settings;
 
 settings! {
     /// GPU time that the smoke may take, and the scales that it may use to stay within it.

@@ -1,14 +1,14 @@
 //! Evaluation of an emitter's particles on the GPU.
 
-use super::shared::Tiled;
-use super::storage::bind;
+use super::storage_buffers::bind;
+use super::tiled_pipelines::Tiled;
 use crate::formula::uniforms::EmitterUniform;
 use crate::frame::{EmitterSnapshot, Particle};
 use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::idle_counter::IdleCounter;
 use crate::renderer::gpu::record::uniform_buffer;
 use crate::renderer::pass::emit::Emit;
-use crate::renderer::pass::sprites::Sprites;
+use crate::renderer::sprite_instances::Sprites;
 
 /// Buffer for the particles of one system, kept between frames.
 #[derive(Debug, Default)]

@@ -8,7 +8,9 @@ use super::gpu::host_pass::HostPass;
 use super::plan::reads_linear;
 use super::tiled::{PARTICLE_ALIGNMENT, TILE_SPRITE_BYTES};
 use crate::error::FieldError;
-use crate::frame::validate::{validate_bounds_and_depth, validate_lights, validate_settings, validate_time_and_up};
+use crate::frame::validate_input::{
+    validate_bounds_and_depth, validate_lights, validate_settings, validate_time_and_up,
+};
 use crate::frame::{Frame, Particle, Particles, SceneDepth, System, View};
 use crate::settings::{DepthSource, RenderPath, Technique};
 

@@ -3,7 +3,7 @@
 
 use glam::{IVec2, UVec2, Vec2, Vec3};
 
-use super::view::ViewGeometry;
+use super::view_geometry::ViewGeometry;
 use crate::frame::Bounds;
 
 /// Screen rectangle and depth range of a bounding box.

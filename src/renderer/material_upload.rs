@@ -4,7 +4,7 @@ use glam::UVec2;
 
 use super::gpu::Gpu;
 use super::gpu::capabilities::array_layers;
-use crate::assets::material::MaterialAssets;
+use crate::assets::material_assets::MaterialAssets;
 use crate::assets::noise::NoiseVolume;
 use crate::assets::ramp::Ramp;
 use crate::assets::sprite::Sprite;

@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 
-use super::load::PathWorkload;
+use super::workload::PathWorkload;
 use crate::error::FieldError;
 use crate::settings::Technique;
 

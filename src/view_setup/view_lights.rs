@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::view::ViewGeometry;
+use super::view_geometry::ViewGeometry;
 use crate::formula::uniforms::LightUniform;
 use crate::frame::{Bounds, Light, LightKind};
 

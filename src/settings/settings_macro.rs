@@ -22,11 +22,11 @@ macro_rules! settings {
 
         impl $crate::settings::fields::Fields for $name {
             fn visit(&mut self, visitor: &mut dyn $crate::settings::fields::FieldVisitor) {
-                $($crate::settings::table::visit!(self, visitor, $field, $kind $($($argument)*)?);)+
+                $($crate::settings::settings_macro::visit!(self, visitor, $field, $kind $($($argument)*)?);)+
             }
 
             fn headings(&self) -> &'static [$crate::settings::fields::FieldHeading] {
-                &[$((stringify!($field), $crate::settings::table::heading!($($heading)?))),+]
+                &[$((stringify!($field), $crate::settings::settings_macro::heading!($($heading)?))),+]
             }
         }
     };

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use serde::{Serialize, Serializer};
 
-use super::preset::{Preset, PresetSystem};
+use super::preset_file::{Preset, PresetSystem};
 use crate::frame::Light;
 use crate::settings::{Step, Value, for_each_field};
 

@@ -1,18 +1,18 @@
 //! Sort of a host's particles back to front on the GPU.
 
-use super::buffers::Part;
-use super::shared::Tiled;
 use super::sort_buffers::SortBuffers;
-use super::storage::bind;
+use super::storage_buffers::bind;
+use super::tile_buffers::Part;
+use super::tiled_pipelines::Tiled;
 use crate::formula::uniforms::TilesUniform;
 use crate::frame::Particle;
 use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::idle_counter::IdleCounter;
 use crate::renderer::gpu::record::uniform_buffer;
-use crate::renderer::memory::TiledMemory;
+use crate::renderer::memory_use::TiledMemory;
 use crate::renderer::pass::depth_sort::{DepthSort, DepthSortKey};
 use crate::renderer::pass::sort::{BLOCK, Sort};
-use crate::renderer::pass::sprites::Sprites;
+use crate::renderer::sprite_instances::Sprites;
 
 /// Buffers for the sorted particles of one system, kept between frames.
 #[derive(Debug, Default)]

@@ -1,7 +1,7 @@
 //! Visible sprites in drawing order. Sorted normals are blended over each other and depend on the order; the amount
 //! does not. (OTEE "Accumulating")
 
-use super::view::ViewGeometry;
+use super::view_geometry::ViewGeometry;
 use crate::frame::Particle;
 
 /// Scratch memory, kept between frames.

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use super::load::PathWorkload;
-use super::model::{PathModel, PathModelSource};
+use super::path_model::{PathModel, PathModelSource};
+use super::workload::PathWorkload;
 use crate::settings::RenderPath;
 
 /// Frames for which the other path must look better before a switch: 0.5 s at 60 frames per second.

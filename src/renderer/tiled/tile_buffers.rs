@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use super::shared::Tiled;
 use super::sort_buffers::SortBuffers;
-use super::storage::{WORD_BYTES, bind, storage, workgroups};
+use super::storage_buffers::{WORD_BYTES, bind, storage, workgroups};
+use super::tiled_pipelines::Tiled;
 use crate::formula::uniforms::TilesUniform;
 use crate::renderer::gpu::Gpu;
 use crate::renderer::gpu::record::uniform_buffer;
-use crate::renderer::memory::TiledMemory;
-use crate::renderer::pass::sprites::Sprites;
+use crate::renderer::memory_use::TiledMemory;
+use crate::renderer::sprite_instances::Sprites;
 use crate::renderer::targets::ExtraAttachment;
 use crate::settings::AccumulationFormat;
 

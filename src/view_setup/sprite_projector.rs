@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, UVec2, Vec2, Vec3, Vec3Swizzles, Vec4};
 
-use crate::assets::material::MaterialInfo;
+use crate::assets::material_assets::MaterialInfo;
 use crate::assets::sprite::alpha_bounds::AlphaBounds;
 use crate::formula::soft_fade::near_fade;
 use crate::formula::sprite::{

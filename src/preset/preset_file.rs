@@ -8,11 +8,11 @@ use super::environment::Environment;
 use super::image_cache::ImageCache;
 use super::material_names::MaterialNames;
 use super::particle_source::ParticleFiles;
-use crate::assets::material::MaterialAssets;
+use crate::assets::material_assets::MaterialAssets;
 use crate::assets::{builtin, json};
 use crate::emitter::{Emitter, MAX_PARTICLES};
 use crate::error::{Error, FieldError, name};
-use crate::frame::validate::validate_lights;
+use crate::frame::validate_input::validate_lights;
 use crate::frame::{EmitterSnapshot, Light};
 use crate::settings::{FieldVisitor, Fields, Settings, validate};
 
